@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Third parties, found once. Include paths are SYSTEM, so that their headers pass our warnings.
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(TBB REQUIRED)
+find_package(PROJ REQUIRED CONFIG)
+find_package(GDAL REQUIRED)
+find_package(CGAL REQUIRED)
+set(PCL_FIND_QUIETLY ON)
+find_package(PCL REQUIRED COMPONENTS common kdtree search)
+find_package(tomlplusplus REQUIRED CONFIG)
+find_package(CLI11 REQUIRED CONFIG)
+find_package(PNG REQUIRED)
+if(SWATH_TESTS)
+  find_package(GTest REQUIRED)
+  include(GoogleTest)
+endif()

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A room is one static library. Each unit is three files: ROOM/x.h, ROOM/x.cpp, tests/ROOM/x_test.cpp.
+#
+#   swath_room(filters UNITS smrf noise USES core LIBRARIES some::target)
+#
+# USES are rooms (public), LIBRARIES third parties (private: they stay behind the .cpp files),
+# PUBLIC_LIBRARIES those that the room's headers show.
+add_library(swath_settings INTERFACE)
+target_compile_features(swath_settings INTERFACE cxx_std_20)
+target_compile_options(swath_settings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Wold-style-cast
+  -Wno-restrict  # GCC 12 reports string + string falsely (GCC bug 105651)
+  -ffp-contract=off $<$<BOOL:${SWATH_WERROR}>:-Werror>)
+if(SWATH_SANITIZE)
+  target_compile_options(swath_settings INTERFACE -fsanitize=${SWATH_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(swath_settings INTERFACE -fsanitize=${SWATH_SANITIZE})
+endif()
+
+function(swath_room room)
+  cmake_parse_arguments(R "" "" "UNITS;USES;LIBRARIES;PUBLIC_LIBRARIES;SOURCES" ${ARGN})
+  set(sources ${R_SOURCES})
+  set(tests "")
+  foreach(unit IN LISTS R_UNITS)
+    set(test ${PROJECT_SOURCE_DIR}/tests/${room}/${unit}_test.cpp)
+    foreach(file ${CMAKE_CURRENT_SOURCE_DIR}/${unit}.h ${CMAKE_CURRENT_SOURCE_DIR}/${unit}.cpp ${test})
+      if(NOT EXISTS ${file})
+        message(FATAL_ERROR "unit ${room}/${unit} needs ${file}")
+      endif()
+    endforeach()
+    list(APPEND sources ${unit}.cpp)
+    list(APPEND tests ${test})
+  endforeach()
+  add_library(swath_${room} STATIC ${sources})
+  add_library(swath::${room} ALIAS swath_${room})
+  target_include_directories(swath_${room} PUBLIC ${PROJECT_SOURCE_DIR})
+  foreach(used IN LISTS R_USES)
+    target_link_libraries(swath_${room} PUBLIC swath::${used})
+  endforeach()
+  target_link_libraries(swath_${room} PUBLIC ${R_PUBLIC_LIBRARIES} PRIVATE ${R_LIBRARIES} $<BUILD_INTERFACE:swath_settings>)
+  set_property(GLOBAL PROPERTY swath_tests_${room} ${tests})
+endfunction()
+
+# The tests of one room, one executable; further sources and libraries after the name.
+function(swath_room_tests room)
+  cmake_parse_arguments(T "" "" "SOURCES;LIBRARIES" ${ARGN})
+  get_property(tests GLOBAL PROPERTY swath_tests_${room})
+  list(APPEND tests ${T_SOURCES})
+  if(NOT tests)
+    return()
+  endif()
+  add_executable(${room}_tests ${tests})
+  target_link_libraries(${room}_tests PRIVATE swath::${room} ${T_LIBRARIES} swath_test_support swath_settings GTest::gtest_main)
+  gtest_discover_tests(${room}_tests DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+endfunction()

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Time scales. Inside everything is GPS time: seconds since 1980-01-06T00:00:00 GPS, continuous, in a double
+// (resolution 0.24 us in this century).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/option.h"
+
+namespace swath::core {
+
+/// Seconds since the GPS epoch, 1980-01-06T00:00:00.
+using GpsTime = double;
+
+constexpr double seconds_per_week = 604800.0;
+constexpr double adjusted_offset = 1.0e9;  ///< adjusted standard GPS time = GPS seconds - 1e9 (LAS 1.4)
+
+/// How the times of a file are written.
+enum class TimeScale {
+  unstated,      ///< an error wherever a time is read
+  gps,           ///< seconds since 1980-01-06, continuous
+  gps_adjusted,  ///< GPS seconds - 1e9
+  gps_week,      ///< seconds of week; the week of the first record is stated; roll-over is followed
+  unix_utc,      ///< seconds since 1970-01-01 UTC, leap seconds not counted (POSIX)
+  utc_day,       ///< UTC seconds of day; the date of the first record is stated; midnight is followed
+};
+
+template <>
+struct Choices<TimeScale> {
+  static constexpr std::array<std::string_view, 6> names{"unstated", "gps", "gps_adjusted", "gps_week", "unix", "utc_day"};
+};
+
+/// GPS - UTC in seconds at an instant of UTC (POSIX seconds). Table up to the announcement valid at `leap_table_date()`.
+int gps_minus_utc_at_unix(double unix_seconds);
+/// The same at an instant of GPS time.
+int gps_minus_utc_at_gps(GpsTime t);
+/// Date to which the inner leap-second table is known to be complete, "2026-06-28" form.
+std::string_view leap_table_date();
+
+GpsTime from_unix(double unix_seconds);
+double to_unix(GpsTime t);
+GpsTime from_week(int week, double seconds_of_week);
+int week_of(GpsTime t);
+double seconds_of_week(GpsTime t);
+/// POSIX seconds at 00:00 UTC of a civil date "2009-03-31", or nothing where the text is no date.
+std::optional<double> unix_of_date(std::string_view date);
+/// "2024-06-07T11:40:06.002Z" (UTC).
+std::string utc_text(GpsTime t);
+
+/// Converts the times of one file, in file order: follows week roll-over and midnight.
+/// Throws Error where the scale is unstated or its week/date is missing.
+class TimeReader {
+ public:
+  /// `week`: for gps_week; `date`: "YYYY-MM-DD" for utc_day; `where` names the file in errors.
+  TimeReader(TimeScale scale, std::optional<int> week, std::string_view date, std::string where);
+  GpsTime operator()(double recorded);
+
+ private:
+  TimeScale scale_;
+  double base_ = 0.0;  // added to the recorded number
+  double wrap_ = 0.0;  // period after which recorded numbers begin anew; 0 = never
+  std::optional<double> last_;
+};
+
+}  // namespace swath::core

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// survey.toml: the files of a survey, their time scales, the mounting, the scanner, its calibration, the CRS, the lines.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/option.h"
+#include "core/sensor.h"
+#include "core/time.h"
+
+namespace swath::io {
+
+/// How instants are written in one file.
+struct TimeTags {
+  core::TimeScale scale = core::TimeScale::unstated;
+  std::optional<int> week;
+  std::string date;
+};
+
+template <class V>
+void describe(TimeTags& t, V& v) {
+  v.option("scale", t.scale, "Scale of the file's times; a file whose scale is not stated is refused.");
+  v.option("week", t.week, core::within(0, 10000), "GPS week of the first record (scale gps_week).");
+  v.option("date", t.date, "UTC date of the first record, YYYY-MM-DD (scale utc_day).");
+}
+
+enum class LaserFormat { automatic, text, npy, las, csd };
+enum class AngleUnit { unstated, deg, rad, gon };
+
+/// Which column of a delimited file or field of a NumPy file holds what: a header name, or a number from 1.
+struct LaserColumns {
+  std::string time, week, line, scan_angle, range, intensity, return_number, return_count, x, y, z;
+};
+
+template <class V>
+void describe(LaserColumns& c, V& v) {
+  v.option("time", c.time, "Time of the record.");
+  v.option("week", c.week, "GPS week of the record, where it has a column of its own.");
+  v.option("line", c.line, "Flight line id.");
+  v.option("scan_angle", c.scan_angle, "Scan angle, positive to starboard.");
+  v.option("range", c.range, "Range.");
+  v.option("intensity", c.intensity, "Intensity.");
+  v.option("return_number", c.return_number, "Number of the return within its pulse, from 1.");
+  v.option("return_count", c.return_count, "Returns of the pulse.");
+  v.option("x", c.x, "Forward in the scanner frame, in place of range and angle.");
+  v.option("y", c.y, "Right in the scanner frame.");
+  v.option("z", c.z, "Nadir in the scanner frame.");
+}
+
+/// One file of raw laser records.
+struct LaserFile {
+  std::filesystem::path file;
+  LaserFormat format = LaserFormat::automatic;
+  TimeTags time;
+  AngleUnit angle_unit = AngleUnit::unstated;
+  core::Metres range_unit{1.0};
+  bool angle_to_port = false;
+  std::optional<int> line;
+  std::string delimiter;
+  LaserColumns columns;
+};
+
+template <class V>
+void describe(LaserFile& f, V& v) {
+  v.option("file", f.file, "File, relative to survey.toml.");
+  v.option("format", f.format, "Format; automatic goes by the name's ending (.csv .txt .npy .las .laz .csd).");
+  v.table("time", f.time, "Time scale.");
+  v.option("angle_unit", f.angle_unit, "Unit of recorded angles (text and NumPy files).");
+  v.option("range_unit", f.range_unit, core::above(0.0), "Length of one unit of recorded ranges (text and NumPy files).");
+  v.option("angle_to_port", f.angle_to_port, "True where the file counts scan angles positive to port.");
+  v.option("line", f.line, core::within(0, 65535), "Flight line id of all records, where the file has no column of lines.");
+  v.option("delimiter", f.delimiter, "Delimiter of a text file; empty: comma, semicolon, tab or blanks, found in its first line.");
+  v.table("columns", f.columns, "Columns of a text or NumPy file.");
+}
+
+enum class TrajectoryFormat { automatic, sbet, text };
+
+struct TrajectoryColumns {
+  std::string time, week, latitude, longitude, height, roll, pitch, heading, v_north, v_east, v_down;
+  std::string sigma_north, sigma_east, sigma_down, sigma_roll, sigma_pitch, sigma_heading;
+};
+
+template <class V>
+void describe(TrajectoryColumns& c, V& v) {
+  v.option("time", c.time, "Time of the record.");
+  v.option("week", c.week, "GPS week of the record, where it has a column of its own.");
+  v.option("latitude", c.latitude, "Geodetic latitude (or northing, where the file has a projected CRS).");
+  v.option("longitude", c.longitude, "Longitude (or easting).");
+  v.option("height", c.height, "Ellipsoidal height.");
+  v.option("roll", c.roll, "Roll, positive right wing down.");
+  v.option("pitch", c.pitch, "Pitch, positive nose up.");
+  v.option("heading", c.heading, "Heading from true north, clockwise.");
+  v.option("v_north", c.v_north, "Velocity north.");
+  v.option("v_east", c.v_east, "Velocity east.");
+  v.option("v_down", c.v_down, "Velocity down.");
+  v.option("sigma_north", c.sigma_north, "Sigma of the position, north.");
+  v.option("sigma_east", c.sigma_east, "Sigma of the position, east.");
+  v.option("sigma_down", c.sigma_down, "Sigma of the position, down.");
+  v.option("sigma_roll", c.sigma_roll, "Sigma of roll, in the file's angle unit.");
+  v.option("sigma_pitch", c.sigma_pitch, "Sigma of pitch.");
+  v.option("sigma_heading", c.sigma_heading, "Sigma of heading.");
+}
+
+/// One trajectory file.
+struct TrajectoryFile {
+  std::filesystem::path file;
+  TrajectoryFormat format = TrajectoryFormat::automatic;
+  std::optional<std::filesystem::path> accuracy;
+  TimeTags time;
+  AngleUnit angle_unit = AngleUnit::unstated;
+  bool wander = true;
+  std::string crs;
+  std::string delimiter;
+  TrajectoryColumns columns;
+  core::Metres sigma_horizontal{0.03}, sigma_vertical{0.05};
+  core::Radians sigma_roll_pitch = core::degrees(0.003), sigma_heading = core::degrees(0.008);
+};
+
+template <class V>
+void describe(TrajectoryFile& f, V& v) {
+  v.option("file", f.file, "File, relative to survey.toml.");
+  v.option("format", f.format, "Format; automatic goes by the name's ending (.out .sbet: SBET; .csv .txt .pos: text).");
+  v.option("accuracy", f.accuracy, "smrmsg file with the SBET's standard deviations.");
+  v.table("time", f.time, "Time scale.");
+  v.option("angle_unit", f.angle_unit, "Unit of angles in a text file.");
+  v.option("wander", f.wander,
+           "SBET: the platform heading counts from the wander azimuth, which is subtracted (heading = platform heading - wander angle).");
+  v.option("crs", f.crs,
+           "CRS of a text file's horizontal coordinates where they are projected; empty: geodetic WGS84. Headings stay from true north.");
+  v.option("delimiter", f.delimiter, "Delimiter of a text file; empty: found in its first line.");
+  v.table("columns", f.columns, "Columns of a text file.");
+  v.option("sigma_horizontal", f.sigma_horizontal, core::above(0), "Sigma of north and of east, where the file states none.");
+  v.option("sigma_vertical", f.sigma_vertical, core::above(0), "Sigma of height, where the file states none.");
+  v.option("sigma_roll_pitch", f.sigma_roll_pitch, core::above(0), "Sigma of roll and of pitch, where the file states none.");
+  v.option("sigma_heading", f.sigma_heading, core::above(0), "Sigma of heading, where the file states none.");
+}
+
+/// One point cloud in map coordinates, entering after georeferencing.
+struct PointFile {
+  std::filesystem::path file;
+  std::string crs;
+  std::optional<int> line;
+};
+
+template <class V>
+void describe(PointFile& f, V& v) {
+  v.option("file", f.file, "LAS or LAZ file, relative to survey.toml.");
+  v.option("crs", f.crs, "CRS of the file, where it states none or a wrong one.");
+  v.option("line", f.line, core::within(0, 65535), "Flight line id of all points; otherwise the points' source ids.");
+}
+
+/// A stretch of the flight. Records outside every line are counted and left out.
+struct FlightLine {
+  int id = 1;
+  std::string name;
+  core::Seconds start, end;
+};
+
+template <class V>
+void describe(FlightLine& l, V& v) {
+  v.option("id", l.id, core::within(0, 65535), "Number of the line, the points' source id.");
+  v.option("name", l.name, "Name for reports.");
+  v.option("start", l.start, "First instant, in the scale of line_time.");
+  v.option("end", l.end, "Last instant.");
+  v.check(l.end > l.start, "the line must end after it starts");
+}
+
+/// What is known of a simulated survey.
+struct TruthFiles {
+  std::optional<std::filesystem::path> trajectory, returns, dtm, calibration;
+};
+
+template <class V>
+void describe(TruthFiles& t, V& v) {
+  v.option("trajectory", t.trajectory, "SBET of the true trajectory.");
+  v.option("returns", t.returns, "NumPy file of true returns, row by row as the laser records.");
+  v.option("dtm", t.dtm, "GeoTIFF of the true terrain.");
+  v.option("calibration", t.calibration, "True calibration.");
+}
+
+struct Survey {
+  std::string name = "survey";
+  std::string crs;
+  core::Scanner scanner;
+  core::Calibration calibration;
+  core::SensorSigma sigma;
+  std::vector<LaserFile> laser;
+  std::vector<TrajectoryFile> trajectory;
+  std::vector<PointFile> points;
+  TimeTags line_time;
+  std::vector<FlightLine> lines;
+  TruthFiles truth;
+  std::filesystem::path folder;  ///< of survey.toml; files are relative to it
+};
+
+template <class V>
+void describe(Survey& s, V& v) {
+  v.option("name", s.name, "Name of the survey.");
+  v.option("crs", s.crs, "CRS of the products: EPSG code (\"EPSG:32632\", compound \"EPSG:25832+7837\"), WKT or PROJ text.");
+  v.table("scanner", s.scanner, "Scanner model.");
+  v.table("calibration", s.calibration, "Calibration and mounting.");
+  v.table("sigma", s.sigma, "How well calibration and records are known.");
+  v.tables("laser", s.laser, "Raw laser records.");
+  v.tables("trajectory", s.trajectory, "Trajectory.");
+  v.tables("points", s.points, "Point clouds in map coordinates, in place of raw records.");
+  v.table("line_time", s.line_time, "Time scale of the lines' start and end.");
+  v.tables("line", s.lines, "Flight lines.");
+  v.table("truth", s.truth, "Truth of a simulated survey.");
+}
+
+/// Reads and checks a survey.toml (or the same tree as .json). Throws Error with all faults.
+Survey read_survey(const std::filesystem::path& file);
+
+/// The path of a file named in the survey.
+std::filesystem::path resolve(const Survey& survey, const std::filesystem::path& file);
+
+}  // namespace swath::io
+
+namespace swath::core {
+template <>
+struct Choices<io::LaserFormat> {
+  static constexpr std::array<std::string_view, 5> names{"automatic", "text", "npy", "las", "csd"};
+};
+template <>
+struct Choices<io::AngleUnit> {
+  static constexpr std::array<std::string_view, 4> names{"unstated", "deg", "rad", "gon"};
+};
+template <>
+struct Choices<io::TrajectoryFormat> {
+  static constexpr std::array<std::string_view, 3> names{"automatic", "sbet", "text"};
+};
+}  // namespace swath::core
