@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/value_file.h"
+
+#include "core/error.h"
+#include "tests/world/support.h"
+
+namespace swath::io {
+namespace {
+
+const char* toml_text =
+    "name = \"a\"\n"
+    "[run]\n"
+    "  tile = \"500 m\"\n"
+    "[[stage]]\n"
+    "type = \"filters.smrf\"\n"
+    "slope = 0.15\n"
+    "[[stage]]\n"
+    "type = \"x\"\n";
+const char* json_text =
+    "{\"name\": \"a\",\n \"run\": {\n  \"tile\": \"500 m\"},\n \"stage\": [\n {\"type\": \"filters.smrf\",\n \"slope\": 0.15},\n "
+    "{\"type\": \"x\"}]}";
+
+TEST(ValueFile, TomlAndJsonAreTheSameTree) {
+  const core::Value a = parse_toml(toml_text, "a.toml");
+  const core::Value b = parse_json(json_text, "a.json");
+  EXPECT_EQ(to_json(a), to_json(b));
+  EXPECT_EQ(a.find("run")->find("tile")->where.text(), "a.toml:3:10");
+  EXPECT_EQ(b.find("run")->find("tile")->where.line, 3);
+  EXPECT_EQ(b.find("stage")->items()[0].find("slope")->where.line, 6);
+}
+
+TEST(ValueFile, FaultsNameLineAndColumn) {
+  try {
+    parse_toml("a = 1\nb = = 2\n", "bad.toml");
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_EQ(e.where().rfind("bad.toml:2:", 0), 0u) << e.text();
+    EXPECT_EQ(e.code(), core::Exit::bad_usage);
+  }
+  try {
+    parse_json("{\"a\": 1,\n \"b\" 2}", "bad.json");
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_EQ(e.where().rfind("bad.json:2:", 0), 0u) << e.text();
+  }
+}
+
+TEST(ValueFile, JsonReadsBackEveryDouble) {
+  core::Value v = core::Value::array();
+  for (const double d : {0.1, 1e300, -5e-324, 3.0, 12345678901234.5}) v.push(d);
+  v.push("quote \" and \\ and \n and \x01");
+  const core::Value back = parse_json(to_json(v), "x");
+  for (size_t i = 0; i < 5; ++i) EXPECT_EQ(back.items()[i].as_number(), v.items()[i].as_number());
+  EXPECT_EQ(back.items()[5].as_text(), v.items()[5].as_text());
+}
+
+TEST(ValueFile, MissingFileIsOneClearError) {
+  const test::TemporaryFolder folder;
+  EXPECT_THROW(read_value_file(folder / "none.toml"), core::Error);
+  EXPECT_THROW(read_value_file(folder.path()), core::Error);
+}
+
+}  // namespace
+}  // namespace swath::io
