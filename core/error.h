@@ -34,6 +34,12 @@ class Error : public std::runtime_error {
   Exit code_;
 };
 
+/// The machine refused (disk full, no rights): work done so far stays valid.
+class SystemError : public Error {
+ public:
+  using Error::Error;
+};
+
 /// An error of the command line or of a config: exit code 2.
 inline Error usage_error(std::string what, std::string where = {}, std::string hint = {}) {
   return Error(std::move(what), std::move(where), std::move(hint), Exit::bad_usage);

@@ -22,14 +22,25 @@ struct Shots {
   std::vector<std::uint32_t> record;        ///< row in the file, from 0
 
   size_t size() const { return time.size(); }
-  void clear() {
-    for (auto* c : {&time, &angle, &forward, &range}) c->clear();
-    intensity.clear();
-    return_number.clear();
-    return_count.clear();
-    flags.clear();
-    record.clear();
-  }
+  void clear();
 };
+
+/// The one list of the columns: calls f(column of a, column of b) for each pair of like columns.
+template <class A, class B, class F>
+void for_each_column(A& a, B& b, F&& f) {
+  f(a.time, b.time);
+  f(a.angle, b.angle);
+  f(a.forward, b.forward);
+  f(a.range, b.range);
+  f(a.intensity, b.intensity);
+  f(a.return_number, b.return_number);
+  f(a.return_count, b.return_count);
+  f(a.flags, b.flags);
+  f(a.record, b.record);
+}
+
+inline void Shots::clear() {
+  for_each_column(*this, *this, [](auto& c, auto&) { c.clear(); });
+}
 
 }  // namespace swath::core

@@ -19,7 +19,7 @@ void throw_system_error(std::string_view doing, const std::filesystem::path& fil
     hint = "the disk is full: free space there, then run the same command again; what is finished is kept";
   if (code == EACCES || code == EPERM || code == EROFS) hint = "choose a folder that you may write to";
   if (code == ENOENT) hint = "check the name; names in a survey are relative to its survey.toml";
-  throw core::Error(std::string(doing) + ": " + (code ? std::strerror(code) : "unknown reason"), file.string(), hint);
+  throw core::SystemError(std::string(doing) + ": " + (code ? std::strerror(code) : "unknown reason"), file.string(), hint);
 }
 
 OutputFile::OutputFile(std::filesystem::path final_name) : final_(std::move(final_name)) {
@@ -43,17 +43,17 @@ OutputFile::~OutputFile() {
   std::filesystem::remove(temporary_, ignored);
 }
 
-void OutputFile::commit() {
+void OutputFile::commit(bool flush) {
   const int fd = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) throw_system_error("cannot finish", final_, errno);
-  const int failed = ::fsync(fd) ? errno : 0;
+  const int failed = flush && ::fsync(fd) ? errno : 0;
   ::close(fd);
   if (failed) throw_system_error("cannot finish", final_, failed);
   if (std::rename(temporary_.c_str(), final_.c_str())) throw_system_error("cannot finish", final_, errno);
   committed_ = true;
 }
 
-void write_text_file(const std::filesystem::path& file, std::string_view text) {
+void write_text_file(const std::filesystem::path& file, std::string_view text, bool flush) {
   OutputFile out(file);
   const int fd = ::open(out.temporary().c_str(), O_WRONLY | O_CLOEXEC);
   if (fd < 0) throw_system_error("cannot write", file, errno);
@@ -68,7 +68,7 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
     done += static_cast<size_t>(n);
   }
   ::close(fd);
-  out.commit();
+  out.commit(flush);
 }
 
 }  // namespace swath::io

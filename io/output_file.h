@@ -18,8 +18,9 @@ class OutputFile {
 
   /// The name to write to, for libraries that open files themselves.
   const std::filesystem::path& temporary() const { return temporary_; }
-  /// Flushes to disk and renames. Throws core::Error.
-  void commit();
+  /// Flushes to disk and renames. Throws core::Error. Intermediate results pass `flush` = false: they survive a killed
+  /// process, not a power failure, and a run can make them again.
+  void commit(bool flush = true);
 
  private:
   std::filesystem::path final_, temporary_;
@@ -27,7 +28,7 @@ class OutputFile {
 };
 
 /// Writes a small file through OutputFile.
-void write_text_file(const std::filesystem::path& file, std::string_view text);
+void write_text_file(const std::filesystem::path& file, std::string_view text, bool flush = true);
 
 /// core::Error for a failed system call on `file` by errno: names the reason, with a hint for a full disk or missing rights.
 [[noreturn]] void throw_system_error(std::string_view doing, const std::filesystem::path& file, int code);

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/grid_store.h"
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace swath::pipeline {
+
+core::Grid GridStore::window(stages::Product product, const core::Lattice& lattice) const {
+  core::Grid out(lattice);
+  const auto at = folders_.find(product);
+  if (at == folders_.end()) return out;
+  const auto first = [this](double edge) { return static_cast<int>(std::floor(edge / tile_side_)); };
+  for (int iy = first(lattice.south()); iy <= first(lattice.north()); ++iy)
+    for (int ix = first(lattice.west()); ix <= first(lattice.east()); ++ix) {
+      const auto file = stages::grid_file(at->second, {ix, iy});
+      if (std::filesystem::exists(file)) stages::paste(stages::read_grid_tile(file), out);
+    }
+  return out;
+}
+
+double GridStore::cell(stages::Product product) const {
+  const auto at = folders_.find(product);
+  if (at != folders_.end())
+    for (const auto& entry : std::filesystem::directory_iterator(at->second))
+      if (entry.path().extension() == ".grid") return stages::read_grid_tile(entry.path()).lattice.cell;
+  throw core::Error("there is no " + std::string(stages::name_of(product)) + " to read from");
+}
+
+}  // namespace swath::pipeline

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <map>
+
+#include "stages/grid_tile.h"
+#include "stages/stage.h"
+
+namespace swath::pipeline {
+
+/// The grids that tile stages have left in their folders, seen as one surface.
+class GridStore : public stages::Grids {
+ public:
+  explicit GridStore(double tile_side) : tile_side_(tile_side) {}
+  /// From now on the product's tiles are in `folder`.
+  void add(stages::Product product, std::filesystem::path folder) { folders_[product] = std::move(folder); }
+
+  core::Grid window(stages::Product product, const core::Lattice& lattice) const override;
+  double cell(stages::Product product) const override;
+
+ private:
+  double tile_side_;
+  std::map<stages::Product, std::filesystem::path> folders_;
+};
+
+}  // namespace swath::pipeline

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/plan.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "io/value_file.h"
+#include "stages/registry.h"
+
+namespace swath::pipeline {
+namespace {
+
+using core::ColumnSet;
+using core::Fault;
+using core::Value;
+using stages::Grain;
+using stages::Product;
+
+/// The short name of a stage type in --set: "filters.smrf" is also "smrf".
+bool is_named(const std::string& type, const std::string& name) {
+  return type == name || (type.size() > name.size() && type.ends_with("." + name));
+}
+
+/// A --set value: true/false, a whole number, a number, otherwise text. A list is written [a, b, c].
+Value set_value(std::string text) {
+  const core::Location where{"--set", 0, 0};
+  try {
+    Value v = *io::parse_toml("v = " + text, "--set").find("v");
+    v.where = where;
+    return v;
+  } catch (const core::Error&) {
+    Value v(std::move(text));
+    v.where = where;
+    return v;
+  }
+}
+
+void apply_set(Value& tree, const std::string& set) {
+  const size_t equals = set.find('=');
+  const std::string path = set.substr(0, equals);
+  const size_t dot = path.rfind('.');
+  if (equals == std::string::npos || dot == std::string::npos)
+    throw core::usage_error("'" + set + "' is not stage.key=value", "--set", "for example --set smrf.cell=\"50 cm\"");
+  const Value value = set_value(set.substr(equals + 1));
+  if (path.rfind("run.", 0) == 0) {
+    Value* at = &tree["run"];
+    std::string rest = path.substr(4);
+    for (size_t d; (d = rest.find('.')) != std::string::npos; rest = rest.substr(d + 1)) at = &(*at)[rest.substr(0, d)];
+    (*at)[rest] = value;
+    return;
+  }
+  std::vector<std::string> types;
+  bool found = false;
+  if (Value* list = tree.find("stage"); list && list->is_array())
+    for (Value& stage : list->items()) {
+      const Value* type = stage.find("type");
+      if (!type || !type->is_text()) continue;
+      types.push_back(type->as_text());
+      // The longest stage name that begins the path wins: options of sub-tables have dots of their own.
+      for (size_t d = path.find('.'); d != std::string::npos; d = path.find('.', d + 1)) {
+        if (!is_named(type->as_text(), path.substr(0, d))) continue;
+        Value* at = &stage;
+        std::string rest = path.substr(d + 1);
+        for (size_t e; (e = rest.find('.')) != std::string::npos; rest = rest.substr(e + 1)) at = &(*at)[rest.substr(0, e)];
+        (*at)[rest] = value;
+        found = true;
+        break;
+      }
+    }
+  if (found) return;
+  const std::string near = core::nearest(path.substr(0, dot), types);
+  std::string known;
+  for (const std::string& t : types) known += (known.empty() ? "" : ", ") + t;
+  throw core::usage_error("no stage '" + path.substr(0, dot) + "' in this pipeline", "--set " + set,
+                          near.empty() ? "its stages: run, " + known : "did you mean '" + near + "'?");
+}
+
+std::vector<std::string> stage_names() {
+  std::vector<std::string> names;
+  for (const auto& e : stages::registry()) names.emplace_back(e.name);
+  return names;
+}
+
+void read_stages(const Value& tree, Plan& plan, std::vector<Fault>& faults) {
+  const Value* list = tree.find("stage");
+  if (!list || !list->is_array() || list->items().empty()) {
+    faults.push_back({tree.where, "stage", "the pipeline has no stages", "an ordered list of [[stage]] tables, each with a type"});
+    return;
+  }
+  int number = 0;
+  for (const Value& table : list->items()) {
+    const std::string path = "stage[" + std::to_string(++number) + "]";
+    const Value* type = table.find("type");
+    if (!type || !type->is_text()) {
+      faults.push_back({table.where, path, "the stage has no type", "`swath stages` lists them"});
+      continue;
+    }
+    auto stage = stages::make_stage(type->as_text());
+    if (!stage) {
+      const std::string near = core::nearest(type->as_text(), stage_names());
+      faults.push_back({type->where, path + ".type", "'" + type->as_text() + "' is no stage",
+                        near.empty() ? "`swath stages` lists them" : "did you mean '" + near + "'?"});
+      continue;
+    }
+    core::read_options([&](core::Visitor& v) { stage->visit(v); }, table, path + " (" + type->as_text() + ")", faults, {"type"});
+    plan.stages.push_back({std::move(stage), table, path});
+  }
+}
+
+/// Do the stages fit one another: sources first, columns and products given before they are needed, grains in order.
+void check_order(const Plan& plan, std::vector<Fault>& faults) {
+  ColumnSet columns;
+  std::vector<Product> products;
+  const auto has = [&](Product p) { return std::find(products.begin(), products.end(), p) != products.end(); };
+  bool tiles_began = false;
+  int sources = 0;
+  for (const PlannedStage& s : plan.stages) {
+    const stages::Info& info = s.stage->info();
+    const auto fault = [&](std::string what, std::string hint) {
+      faults.push_back({s.table.where, s.path + " (" + std::string(info.name) + ")", std::move(what), std::move(hint)});
+    };
+    const auto giver = [](auto&& gives) {
+      std::string names;
+      for (const auto& e : stages::registry())
+        if (gives(e.make()->info())) names += (names.empty() ? "" : ", ") + std::string(e.name);
+      return names.empty() ? std::string() : "given by: " + names;
+    };
+    sources += s.stage->is_source() ? 1 : 0;
+    if (s.stage->is_source() && sources > 1) fault("a second source of points", "one reader per pipeline");
+    if (s.stage->works_on(Grain::strip) && tiles_began)
+      fault("a strip stage behind a tile stage", "readers, georeference and returns come before filters and terrain");
+    tiles_began = tiles_began || s.stage->works_on(Grain::tile);
+    for (const Product p : info.needs_products)
+      if (!has(p))
+        fault("needs " + std::string(name_of(p)) + ", which no stage before it gives", giver([p](const stages::Info& i) {
+                return std::find(i.gives_products.begin(), i.gives_products.end(), p) != i.gives_products.end();
+              }));
+    for (int c = 0; c < core::column_count; ++c) {
+      const auto column = static_cast<core::Column>(c);
+      if (info.needs.has(column) && !columns.has(column))
+        fault("needs the column " + std::string(core::name_of(column)) + ", which no stage before it gives",
+              giver([column](const stages::Info& i) { return i.gives.has(column); }));
+    }
+    columns = columns | info.gives;
+    products.insert(products.end(), info.gives_products.begin(), info.gives_products.end());
+  }
+  if (sources == 0 && !plan.stages.empty())
+    faults.push_back({{plan.config.string(), 0, 0}, "stage", "no reader: nothing to work on", "begin with readers.laser or readers.las"});
+}
+
+/// Sets {"key": {"value", "from"}} for each effective option of a table.
+Value with_origin(const core::Describe& d, const Value& written) {
+  const std::function<Value(const Value&, const Value*)> walk = [&](const Value& effective, const Value* given) {
+    Value out = Value::object();
+    for (const auto& [key, value] : effective.members()) {
+      const Value* mine = given ? given->find(key) : nullptr;
+      if (value.is_object()) {
+        out[key] = walk(value, mine);
+        continue;
+      }
+      Value& one = out[key];
+      one["value"] = value;
+      one["from"] = mine ? mine->where.text() : std::string("default");
+    }
+    return out;
+  };
+  return walk(core::effective_values(d), &written);
+}
+
+}  // namespace
+
+Plan make_plan(const Request& request) {
+  Plan plan;
+  plan.config = request.config;
+  Value tree = io::read_value_file(request.config);
+  if (!tree.is_object()) throw core::usage_error("a pipeline is a table with [run] and [[stage]]", request.config.string());
+  for (const std::string& s : request.sets) apply_set(tree, s);
+
+  std::vector<Fault> faults;
+  for (const auto& [key, value] : tree.members())
+    if (key != "run" && key != "stage") {
+      const std::string near = core::nearest(key, {"run", "stage"});
+      faults.push_back({value.where, key, "unknown key", near.empty() ? "known here: run, stage" : "did you mean '" + near + "'?"});
+    }
+  plan.run_table = tree.find("run") ? *tree.find("run") : Value::object();
+  if (plan.run_table.is_object())
+    core::read_options(core::described(plan.run), plan.run_table, "run", faults);
+  else
+    faults.push_back({plan.run_table.where, "run", "expected a table", ""});
+  read_stages(tree, plan, faults);
+  if (faults.empty()) check_order(plan, faults);
+
+  if (!request.survey.empty())
+    plan.run.survey = request.survey;
+  else if (plan.run.survey.is_relative())
+    plan.run.survey = request.config.parent_path() / plan.run.survey;
+  if (!request.output.empty()) plan.run.output = request.output;
+  if (request.threads >= 0) plan.run.threads = request.threads;
+
+  std::string survey_faults;
+  try {
+    plan.survey = io::read_survey(plan.run.survey);
+  } catch (const core::Error& e) {
+    if (faults.empty()) throw;
+    survey_faults = e.text();
+  }
+  if (!survey_faults.empty()) faults.push_back({{plan.run.survey.string(), 0, 0}, "", survey_faults, ""});
+  core::throw_if_any(faults);
+  return plan;
+}
+
+core::Value explain(Plan& plan) {
+  Value out = Value::object();
+  out["config"] = plan.config.string();
+  out["survey"] = plan.run.survey.string();
+  out["run"] = with_origin(core::described(plan.run), plan.run_table);
+  Value& list = out["stages"] = Value::array();
+  for (const PlannedStage& s : plan.stages) {
+    Value one = Value::object();
+    one["type"] = s.stage->info().name;
+    one["options"] = with_origin(s.describe(), s.table);
+    list.push(std::move(one));
+  }
+  return out;
+}
+
+core::Value schema() {
+  Value out = Value::object();
+  out["$schema"] = "https://json-schema.org/draft/2020-12/schema";
+  out["title"] = "swath pipeline";
+  out["type"] = "object";
+  out["additionalProperties"] = false;
+  out["required"].push("stage");
+  RunOptions run;
+  out["properties"]["run"] = core::schema_of(core::described(run));
+  Value any = Value::array();
+  for (const auto& e : stages::registry()) {
+    const auto stage = e.make();
+    Value one = core::schema_of([&](core::Visitor& v) { stage->visit(v); });
+    Value type = Value::object();
+    type["const"] = e.name;
+    one["properties"]["type"] = std::move(type);
+    one["required"] = Value::array();
+    one["required"].push("type");
+    one["description"] = stage->info().summary;
+    any.push(std::move(one));
+  }
+  Value& list = out["properties"]["stage"];
+  list["type"] = "array";
+  list["items"]["anyOf"] = std::move(any);
+  io::Survey survey;
+  out["$defs"]["survey"] = core::schema_of(core::described(survey));
+  return out;
+}
+
+}  // namespace swath::pipeline

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A config and a survey become a checked plan: every fault is found before the first byte of data is read.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/option_visitors.h"
+#include "io/survey.h"
+#include "stages/stage.h"
+
+namespace swath::pipeline {
+
+/// Limits of quality; a run that misses one ends with exit code 3.
+struct Limits {
+  double outside = 1.0;
+  double voids = 1.0;
+  core::Metres truth_rms{1e9};
+};
+
+template <class V>
+void describe(Limits& l, V& v) {
+  v.option("outside", l.outside, core::within(0, 1), "Largest share of returns that the trajectory does not cover.");
+  v.option("voids", l.voids, core::within(0, 1), "Largest share of DTM cells without a height, inside the survey's tiles.");
+  v.option("truth_rms", l.truth_rms, core::at_least(0), "Largest 3D rms of the points against truth, where truth is present.");
+}
+
+struct RunOptions {
+  std::filesystem::path survey = "survey.toml";
+  std::filesystem::path output = "out";
+  core::Bytes memory{2e9};
+  core::Metres tile{500.0};
+  int threads = 0;
+  bool keep_work = false;
+  Limits limits;
+};
+
+template <class V>
+void describe(RunOptions& r, V& v) {
+  v.option("survey", r.survey, "The survey, relative to the config.");
+  v.option("output", r.output, "Folder of the products, relative to the working folder.");
+  v.option("memory", r.memory, core::at_least(2e8), "Budget of working memory.");
+  v.option("tile", r.tile, core::within(10.0, 1e5), "Side of the tiles in which the survey is worked on and delivered.");
+  v.option("threads", r.threads, core::within(0, 4096), "Threads; 0: one per processor.");
+  v.option("keep_work", r.keep_work, "Keep the intermediate point store after a finished run, so that changed late stages are done alone.");
+  v.table("limits", r.limits, "Limits of quality.");
+}
+
+/// What the command line gives.
+struct Request {
+  std::filesystem::path config;
+  std::vector<std::string> sets;         ///< "ground.cell=50 cm", "run.tile=250 m"
+  std::filesystem::path survey, output;  ///< empty: from the config
+  int threads = -1;
+};
+
+struct PlannedStage {
+  std::unique_ptr<stages::Stage> stage;
+  core::Value table;  ///< as written, for the origin of values
+  std::string path;   ///< "stage[3]"
+  core::Describe describe() const {
+    return [s = stage.get()](core::Visitor& v) { s->visit(v); };
+  }
+};
+
+struct Plan {
+  std::filesystem::path config;
+  RunOptions run;
+  core::Value run_table;
+  io::Survey survey;
+  std::vector<PlannedStage> stages;
+};
+
+/// Reads config and survey. Throws core::Error (exit code 2) with all faults.
+Plan make_plan(const Request& request);
+
+/// The effective options with where each comes from, for `explain` and the report:
+/// {"run": {"tile": {"value": "500 m", "from": "default"}}, "stages": [{"type": ..., "options": {...}}]}.
+core::Value explain(Plan& plan);
+
+/// JSON Schema of pipelines and, under "$defs", of surveys.
+core::Value schema();
+
+}  // namespace swath::pipeline

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a result was made from: hashes of the inputs, fingerprints of the stages, versions.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/value.h"
+#include "pipeline/plan.h"
+
+namespace swath::pipeline {
+
+std::string_view program_version();
+
+/// XXH3 (64 bit) of a file's content, 16 hex digits. Throws core::Error where it cannot be read.
+std::string hash_file(const std::filesystem::path& file);
+
+struct Input {
+  std::filesystem::path file;
+  std::uint64_t bytes = 0;
+  std::string hash;
+};
+
+/// Every file the plan reads, hashed, in the order of the survey.
+std::vector<Input> inputs_of(const Plan& plan);
+
+/// One fingerprint per stage; each holds those before it, the inputs, the survey and the tiling, so that a stage's
+/// result is still valid exactly where its fingerprint is the same.
+std::vector<std::string> fingerprints(const Plan& plan, const std::vector<Input>& inputs);
+
+/// Names and versions of the libraries in use.
+core::Value versions();
+
+}  // namespace swath::pipeline

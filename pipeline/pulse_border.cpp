@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/pulse_border.h"
+
+#include <numeric>
+
+namespace swath::pipeline {
+namespace {
+
+size_t last_pulse(const std::vector<double>& time) {
+  size_t at = time.size();
+  while (at > 0 && time[at - 1] == time.back()) --at;
+  return at;
+}
+
+core::Shots rows(const core::Shots& s, size_t from, size_t to) {
+  core::Shots out;
+  core::for_each_column(s, out, [&](const auto& a, auto& b) {
+    if (!a.empty()) b.assign(a.begin() + static_cast<std::ptrdiff_t>(from), a.begin() + static_cast<std::ptrdiff_t>(to));
+  });
+  return out;
+}
+
+}  // namespace
+
+void PulseBorder::cut(stages::StripBatch& batch, bool last) {
+  if (shots_.size() > 0) {
+    core::for_each_column(batch.shots, shots_, [](const auto& a, auto& b) { b.insert(b.end(), a.begin(), a.end()); });
+    batch.shots = std::move(shots_);
+    shots_ = {};
+  }
+  if (block_.size() > 0) {
+    if (batch.block.size() > 0) core::append(block_, batch.block);
+    batch.block = std::move(block_);
+    block_ = {};
+  }
+  if (last) return;
+  if (batch.shots.size() > 0) {
+    const size_t at = last_pulse(batch.shots.time);
+    shots_ = rows(batch.shots, at, batch.shots.size());
+    batch.shots = rows(batch.shots, 0, at);
+  }
+  if (batch.block.size() > 0 && !batch.block.time.empty()) {
+    const size_t at = last_pulse(batch.block.time);
+    std::vector<std::uint32_t> index(batch.block.size() - at);
+    std::iota(index.begin(), index.end(), static_cast<std::uint32_t>(at));
+    block_ = core::select(batch.block, index);
+    core::resize(batch.block, at);
+  }
+}
+
+}  // namespace swath::pipeline

@@ -1,0 +1,458 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Work folder: OUTPUT/.swath/<nn>-<stage>-<fingerprint>/. A folder's name says what it was made from, so a folder that is
+// there is still valid; within it a strip's strip.json or a tile's .done says that the piece is whole.
+#include "pipeline/run.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <set>
+#include <thread>
+
+#include "io/output_file.h"
+#include "io/value_file.h"
+#include "pipeline/grid_store.h"
+#include "pipeline/memory_gate.h"
+#include "pipeline/provenance.h"
+#include "pipeline/pulse_border.h"
+#include "pipeline/tile_store.h"
+
+namespace swath::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Tally;
+using core::Value;
+using stages::Grain;
+using stages::Stage;
+using Clock = std::chrono::steady_clock;
+
+constexpr size_t batch_points = 1 << 17;
+
+double since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
+
+/// One run at a time in one output folder.
+class Lock {
+ public:
+  explicit Lock(const fs::path& file) : fd_(::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666)) {
+    if (fd_ < 0) io::throw_system_error("cannot write", file, errno);
+    if (::flock(fd_, LOCK_EX | LOCK_NB)) {
+      ::close(fd_);
+      throw core::usage_error("another run is at work in this output folder", file.parent_path().parent_path().string());
+    }
+  }
+  ~Lock() { ::close(fd_); }
+  Lock(const Lock&) = delete;
+  Lock& operator=(const Lock&) = delete;
+
+ private:
+  int fd_;
+};
+
+/// What the report says of one stage.
+struct Account {
+  std::uint64_t in = 0, out = 0;
+  Tally tally;
+  Value findings = Value::object();
+  double seconds = 0;
+};
+
+class Engine {
+ public:
+  Engine(Plan& plan, Progress& progress)
+      : plan_(plan),
+        progress_(progress),
+        output_(fs::absolute(plan.run.output)),
+        work_(output_ / ".swath"),
+        threads_(plan.run.threads > 0 ? plan.run.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))),
+        tbb_threads_(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads_)),
+        grids_(plan.run.tile.value),
+        context_{plan.survey},
+        accounts_(plan.stages.size()) {}
+
+  Outcome run(const std::string& command);
+
+ private:
+  void prepare();
+  void run_survey_stages();
+  void run_strips();
+  void stream_strip(const stages::Strip& strip, const fs::path& folder);
+  void run_tile_stages();
+  void run_tiles(size_t number);
+  void run_merge(size_t number);
+  void compose_report(const std::string& command);
+  bool judge_limits();
+  fs::path folder(size_t number) const {
+    char digits[8];
+    std::snprintf(digits, sizeof digits, "%02zu-", number);
+    return work_ / (digits + std::string(plan_.stages[number].stage->info().name) + "-" + fingerprints_[number]);
+  }
+  const Stage& stage(size_t number) const { return *plan_.stages[number].stage; }
+  bool works_on(size_t number, Grain g) const { return stage(number).works_on(g); }
+
+  Plan& plan_;
+  Progress& progress_;
+  fs::path output_, work_;
+  int threads_;
+  tbb::global_control tbb_threads_;
+  GridStore grids_;
+  stages::Context context_;
+  std::vector<Account> accounts_;
+  std::vector<Input> inputs_;
+  std::vector<std::string> fingerprints_;
+  size_t last_strip_stage_ = 0;
+  std::unique_ptr<TileStore> store_;
+  std::uint64_t resumed_ = 0;
+  Value report_;
+};
+
+void Engine::prepare() {
+  context_.crs = core::Crs(plan_.survey.crs);
+  if (!context_.crs.is_projected())
+    throw core::usage_error("the products' CRS is " + context_.crs.name() + ", which is not a map projection",
+                            plan_.run.survey.string() + ": crs", "choose a projected CRS, for example the UTM zone EPSG:326xx");
+  context_.unit = context_.crs.metres_per_unit();
+  context_.vertical_unit = context_.crs.vertical_metres_per_unit();
+  context_.tile_side = plan_.run.tile.value;
+  context_.output = output_;
+  context_.config_folder = plan_.config.parent_path();
+  context_.grids = &grids_;
+  for (const PlannedStage& s : plan_.stages) s.stage->check(context_);
+  inputs_ = inputs_of(plan_);
+  fingerprints_ = fingerprints(plan_, inputs_);
+  for (size_t i = 0; i < plan_.stages.size(); ++i)
+    if (works_on(i, Grain::strip)) last_strip_stage_ = i;
+}
+
+void Engine::run_survey_stages() {
+  for (size_t i = 0; i < plan_.stages.size(); ++i) {
+    if (!works_on(i, Grain::survey)) continue;
+    const auto start = Clock::now();
+    progress_.begin(std::string(stage(i).info().name), 1, "survey");
+    stage(i).run_survey(context_, accounts_[i].tally, accounts_[i].findings);
+    progress_.advance(1);
+    progress_.end();
+    accounts_[i].seconds += since(start);
+  }
+}
+
+void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_folder) {
+  struct Parcel {
+    stages::StripBatch batch;
+    std::vector<Account> accounts;
+    std::uint64_t read = 0;
+  };
+  const size_t n = plan_.stages.size();
+  size_t source = 0;
+  while (!stage(source).is_source()) ++source;
+  const auto reader = stage(source).open(context_, strip);
+  StripWriter writer(strip_folder, plan_.run.tile.value, static_cast<size_t>(plan_.run.memory.value / 8));
+  std::vector<Account> accounts(n);
+  PulseBorder border;
+  bool more = true;
+
+  const auto read = [&](tbb::flow_control& flow) -> std::shared_ptr<Parcel> {
+    if (!more) {
+      flow.stop();
+      return nullptr;
+    }
+    auto parcel = std::make_shared<Parcel>();
+    parcel->accounts.resize(n);
+    parcel->batch.line = strip.line;
+    more = reader->next(parcel->batch, batch_points, parcel->accounts[source].tally);
+    parcel->read = parcel->batch.shots.size() + parcel->batch.block.size();
+    border.cut(parcel->batch, !more);
+    const std::uint64_t given = parcel->batch.shots.size() + parcel->batch.block.size();
+    parcel->accounts[source].out = given;
+    return parcel;
+  };
+  const auto work = [&](std::shared_ptr<Parcel> parcel) {
+    for (size_t i = source + 1; i <= last_strip_stage_; ++i) {
+      if (!works_on(i, Grain::strip)) continue;
+      const auto size = [&] { return std::max(parcel->batch.shots.size(), parcel->batch.block.size()); };
+      const auto start = Clock::now();
+      parcel->accounts[i].in = size();
+      stage(i).run_strip(context_, parcel->batch, parcel->accounts[i].tally);
+      parcel->accounts[i].out = size();
+      parcel->accounts[i].seconds = since(start);
+    }
+    return parcel;
+  };
+  const auto write = [&](const std::shared_ptr<Parcel>& parcel) {
+    writer.write(parcel->batch.block);
+    for (size_t i = 0; i < n; ++i) {
+      accounts[i].in += parcel->accounts[i].in;
+      accounts[i].out += parcel->accounts[i].out;
+      accounts[i].tally.add(parcel->accounts[i].tally);
+      accounts[i].seconds += parcel->accounts[i].seconds;
+    }
+    progress_.advance(parcel->read);
+  };
+  tbb::parallel_pipeline(static_cast<size_t>(threads_) + 1,
+                         tbb::make_filter<void, std::shared_ptr<Parcel>>(tbb::filter_mode::serial_in_order, read) &
+                             tbb::make_filter<std::shared_ptr<Parcel>, std::shared_ptr<Parcel>>(tbb::filter_mode::parallel, work) &
+                             tbb::make_filter<std::shared_ptr<Parcel>, void>(tbb::filter_mode::serial_in_order, write));
+
+  accounts[source].in = accounts[source].out + accounts[source].tally.of("kept out: unusable record");
+  Value note = Value::array();
+  for (const Account& a : accounts) {
+    Value one = Value::object();
+    one["in"] = a.in;
+    one["out"] = a.out;
+    one["seconds"] = a.seconds;
+    one["tally"] = a.tally.value();
+    note.push(std::move(one));
+  }
+  writer.commit(io::to_json(note));
+}
+
+void Engine::run_strips() {
+  size_t source = 0;
+  while (!stage(source).is_source()) ++source;
+  const std::vector<stages::Strip> strips = stage(source).strips(context_, accounts_[source].tally);
+  const fs::path strips_folder = folder(last_strip_stage_);
+  std::uint64_t records = 0;
+  for (const stages::Strip& s : strips) records += s.records;
+  progress_.begin("strips", records, "returns");
+  std::vector<std::string> names;
+  std::uint64_t in = 0;
+  for (size_t i = 0; i < strips.size(); ++i) {
+    char name[32];
+    std::snprintf(name, sizeof name, "strip_%04zu", i + 1);
+    names.emplace_back(name);
+    const fs::path strip_folder = strips_folder / name;
+    if (TileStore::is_committed(strip_folder)) {
+      ++resumed_;
+      progress_.advance(strips[i].records);
+    } else {
+      stream_strip(strips[i], strip_folder);
+    }
+    const Value note = io::parse_json(TileStore::note(strip_folder), strip_folder.string());
+    for (size_t k = 0; k < accounts_.size(); ++k) {
+      const Value& one = note.items()[k];
+      accounts_[k].in += static_cast<std::uint64_t>(one.find("in")->as_int());
+      accounts_[k].out += static_cast<std::uint64_t>(one.find("out")->as_int());
+      accounts_[k].seconds += one.find("seconds")->as_number();
+      accounts_[k].tally.add(Tally::from(*one.find("tally")));
+    }
+    in = accounts_[source].in;
+  }
+  progress_.end();
+  if (in == 0)
+    throw core::Error("no laser return to work on", plan_.run.survey.string(),
+                      "are the lines' times those of the records? see `swath info` of the laser file");
+  store_ = std::make_unique<TileStore>(strips_folder, plan_.run.tile.value, context_.origin);
+  store_->open(names);
+  if (store_->points() == 0)
+    throw core::Error("no return could be georeferenced: the trajectory covers none of them", plan_.run.survey.string(),
+                      "compare the time scales with `swath info` of the laser and trajectory files");
+}
+
+void Engine::run_tiles(size_t number) {
+  const Stage& s = stage(number);
+  const fs::path mine = folder(number);
+  const core::ColumnSet columns = s.info().needs | s.info().gives;
+  const bool changes = !s.info().gives.empty();
+  std::vector<TileKey> keys;
+  for (const auto& [key, n] : store_->tiles()) keys.push_back(key);
+  std::vector<Value> notes(keys.size());
+  progress_.begin(std::string(s.info().name), store_->points(), "points");
+
+  size_t row_bytes = 0;
+  core::for_each_column([&](core::Column c, std::string_view, auto member) {
+    using T = typename std::remove_reference_t<decltype(std::declval<core::Block>().*member)>::value_type;
+    if (columns.has(c) || c == core::Column::x || c == core::Column::y || c == core::Column::z) row_bytes += sizeof(T);
+  });
+  MemoryGate gate(static_cast<std::uint64_t>(plan_.run.memory.value * 0.8));
+  std::atomic<std::uint64_t> again{0};
+  tbb::parallel_for(
+      tbb::blocked_range<size_t>(0, keys.size(), 1),
+      [&](const tbb::blocked_range<size_t>& range) {
+        for (size_t i = range.begin(); i < range.end(); ++i) {
+          const fs::path done = mine / (file_label(keys[i]) + ".done");
+          if (fs::exists(done)) {
+            notes[i] = io::read_value_file(done);
+            ++again;
+          } else {
+            const double per_point = static_cast<double>(row_bytes) + s.bytes_per_point();
+            const MemoryGate::Pass pass(
+                gate, static_cast<std::uint64_t>(per_point * static_cast<double>(store_->points_with_halo(keys[i], s.halo()))));
+            stages::TileJob job{keys[i], context_.box_of(keys[i]), mine, {}, 0, {}};
+            const auto start = Clock::now();
+            job.block = store_->read_with_halo(keys[i], s.halo(), columns, job.own);
+            core::add_columns(job.block, s.info().gives);
+            const size_t before = job.block.size();
+            s.run_tile(context_, job);
+            if (job.block.size() != before)
+              throw core::Error("the stage changed the number of points of a tile", std::string(s.info().name),
+                                "this is a fault of the program");
+            if (changes) store_->write_overlay(mine, keys[i], job.block, job.own, s.info().gives);
+            Value note = Value::object();
+            note["tally"] = job.tally.value();
+            note["seconds"] = since(start);
+            io::write_text_file(mine / (file_label(keys[i]) + ".json"), io::to_json(note), false);
+            fs::rename(mine / (file_label(keys[i]) + ".json"), done);
+            notes[i] = std::move(note);
+          }
+          progress_.advance(store_->tiles().at(keys[i]));
+        }
+      },
+      tbb::simple_partitioner());
+  progress_.end();
+  resumed_ += again;
+  Account& account = accounts_[number];
+  account.in = account.out = store_->points();
+  for (const Value& note : notes) {
+    account.tally.add(Tally::from(*note.find("tally")));
+    account.seconds += note.find("seconds")->as_number();
+  }
+  if (changes) store_->add_overlay(mine, s.info().gives);
+}
+
+void Engine::run_merge(size_t number) {
+  stages::MergeJob job{folder(number), {}, {}};
+  for (const auto& [key, n] : store_->tiles()) job.tiles.push_back(key);
+  const auto start = Clock::now();
+  progress_.begin(std::string(stage(number).info().name) + " merge", 1, "survey");
+  stage(number).run_merge(context_, job);
+  progress_.advance(1);
+  progress_.end();
+  accounts_[number].tally.add(job.tally);
+  for (auto& [key, value] : job.findings.members()) accounts_[number].findings[key] = std::move(value);
+  accounts_[number].seconds += since(start);
+}
+
+void Engine::run_tile_stages() {
+  for (size_t i = last_strip_stage_ + 1; i < plan_.stages.size(); ++i) {
+    std::error_code ec;
+    fs::create_directories(folder(i), ec);
+    if (ec) io::throw_system_error("cannot make the folder", folder(i), ec.value());
+    if (works_on(i, Grain::tile)) run_tiles(i);
+    for (const stages::Product p : stage(i).info().gives_products) grids_.add(p, folder(i));
+    if (works_on(i, Grain::merge)) run_merge(i);
+  }
+}
+
+bool Engine::judge_limits() {
+  Value& list = report_["limits"] = Value::array();
+  bool held = true;
+  const auto judge = [&](const char* name, std::optional<double> value, double limit) {
+    if (!value) return;
+    Value one = Value::object();
+    one["name"] = name;
+    one["value"] = *value;
+    one["limit"] = limit;
+    one["held"] = *value <= limit;
+    held = held && *value <= limit;
+    list.push(std::move(one));
+  };
+  const auto finding = [&](std::string_view key) -> std::optional<double> {
+    for (const Account& a : accounts_)
+      if (const Value* v = a.findings.find(key); v && v->is_number()) return v->as_number();
+    return std::nullopt;
+  };
+  std::optional<double> outside;
+  for (size_t i = 0; i < accounts_.size(); ++i)
+    if (stage(i).info().name == "georeference" && accounts_[i].in > 0)
+      outside = static_cast<double>(accounts_[i].tally.of("kept out: outside the trajectory")) / static_cast<double>(accounts_[i].in);
+  const Limits& limits = plan_.run.limits;
+  judge("outside", outside, limits.outside);
+  judge("voids", finding("void_share"), limits.voids);
+  judge("truth_rms", finding("rms_3d"), limits.truth_rms.value);
+  return held;
+}
+
+void Engine::compose_report(const std::string& command) {
+  report_ = Value::object();
+  report_["program"] = "swath " + std::string(program_version());
+  report_["command"] = command;
+  report_["survey"] = plan_.survey.name;
+  report_["crs"]["name"] = context_.crs.name();
+  report_["crs"]["definition"] = plan_.survey.crs;
+  report_["crs"]["heights"] = context_.crs.vertical_name();
+  Value& files = report_["inputs"] = Value::array();
+  for (const Input& i : inputs_) {
+    Value one = Value::object();
+    one["file"] = i.file.generic_string();
+    one["bytes"] = i.bytes;
+    one["xxh3"] = i.hash;
+    files.push(std::move(one));
+  }
+  const Value options = explain(plan_);
+  report_["run"] = *options.find("run");
+  Value& list = report_["stages"] = Value::array();
+  for (size_t i = 0; i < accounts_.size(); ++i) {
+    const Account& a = accounts_[i];
+    Value one = Value::object();
+    one["type"] = stage(i).info().name;
+    one["fingerprint"] = fingerprints_[i];
+    if (!works_on(i, Grain::survey)) {
+      one["counts"]["in"] = a.in;
+      one["counts"]["out"] = a.out;
+    }
+    if (!a.tally.empty()) one["tally"] = a.tally.value();
+    if (!a.findings.members().empty()) one["findings"] = a.findings;
+    one["options"] = *options.find("stages")->items()[i].find("options");
+    one["seconds"] = a.seconds;
+    list.push(std::move(one));
+  }
+  report_["versions"] = versions();
+}
+
+/// Whatever lies in the work folder and is no part of this plan goes.
+void sweep(const fs::path& work, const std::set<std::string>& valid) {
+  for (const auto& entry : fs::directory_iterator(work)) {
+    const std::string name = entry.path().filename().string();
+    if (name != "lock" && !valid.contains(name)) fs::remove_all(entry.path());
+  }
+}
+
+/// Removes folders that hold nothing, upwards to `top` itself.
+void remove_if_empty(const fs::path& top) {
+  std::error_code ec;
+  if (fs::is_directory(top, ec) && fs::is_empty(top, ec)) fs::remove(top, ec);
+}
+
+Outcome Engine::run(const std::string& command) {
+  const auto start = Clock::now();
+  prepare();
+  const bool made_output = !fs::exists(output_);
+  std::error_code ec;
+  fs::create_directories(work_, ec);
+  if (ec) io::throw_system_error("cannot make the output folder", output_, ec.value());
+  try {
+    const Lock lock(work_ / "lock");
+    std::set<std::string> valid;
+    for (size_t i = 0; i < plan_.stages.size(); ++i) valid.insert(folder(i).filename().string());
+    sweep(work_, valid);
+    run_survey_stages();
+    run_strips();
+    run_tile_stages();
+    compose_report(command);
+    const bool held = judge_limits();
+    report_["pieces_resumed"] = resumed_;
+    report_["seconds"] = since(start);
+    report_["threads"] = threads_;
+    io::write_text_file(output_ / "report.json", io::to_json(report_));
+    if (!plan_.run.keep_work) fs::remove_all(work_);
+    return {held ? core::Exit::done : core::Exit::quality_missed, report_};
+  } catch (const core::SystemError&) {
+    throw;  // the work done so far stays, for the same command once the cause is mended
+  } catch (...) {
+    fs::remove_all(work_, ec);
+    if (made_output) remove_if_empty(output_);
+    throw;
+  }
+}
+
+}  // namespace
+
+Outcome run(Plan& plan, Progress& progress, const std::string& command) { return Engine(plan, progress).run(command); }
+
+}  // namespace swath::pipeline

@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// File of a strip's points in one tile: chunks of {u32 points, u32 column bits, columns in the order of the enum}.
+// File of an overlay: one such chunk. Numbers in the machine's own byte order: the store is never carried elsewhere.
+#include "pipeline/tile_store.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+
+#include "core/error.h"
+#include "io/output_file.h"
+#include "io/value_file.h"
+
+namespace swath::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Block;
+using core::Column;
+using core::ColumnSet;
+
+struct ChunkHead {
+  std::uint32_t points, columns;
+};
+
+class File {
+ public:
+  File(const fs::path& name, int mode) : name_(name), fd_(::open(name.c_str(), mode | O_CLOEXEC, 0666)) {
+    if (fd_ < 0) io::throw_system_error("cannot open", name_, errno);
+  }
+  ~File() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  void write(const void* data, size_t n) {
+    const char* at = static_cast<const char*>(data);
+    while (n > 0) {
+      const ssize_t done = ::write(fd_, at, n);
+      if (done < 0 && errno == EINTR) continue;
+      if (done <= 0) io::throw_system_error("cannot write", name_, errno);
+      at += done;
+      n -= static_cast<size_t>(done);
+    }
+  }
+  /// False at the end of the file.
+  bool read(void* data, size_t n) {
+    char* at = static_cast<char*>(data);
+    for (size_t left = n; left > 0;) {
+      const ssize_t done = ::read(fd_, at, left);
+      if (done < 0 && errno == EINTR) continue;
+      if (done < 0) io::throw_system_error("cannot read", name_, errno);
+      if (done == 0) {
+        if (left == n) return false;
+        throw core::Error("the point store is cut short", name_.string(), "remove the .swath folder beside the products and run again");
+      }
+      at += done;
+      left -= static_cast<size_t>(done);
+    }
+    return true;
+  }
+  void skip(size_t n) {
+    if (::lseek(fd_, static_cast<off_t>(n), SEEK_CUR) < 0) io::throw_system_error("cannot read", name_, errno);
+  }
+  void sync() {
+    if (::fsync(fd_)) io::throw_system_error("cannot finish", name_, errno);
+  }
+
+ private:
+  fs::path name_;
+  int fd_;
+};
+
+std::uint32_t bits_of(ColumnSet set) {
+  std::uint32_t bits = 0;
+  for (int c = 0; c < core::column_count; ++c)
+    if (set.has(static_cast<Column>(c))) bits |= 1u << c;
+  return bits;
+}
+
+ColumnSet set_of(std::uint32_t bits) {
+  ColumnSet set;
+  for (int c = 0; c < core::column_count; ++c)
+    if ((bits >> c) & 1u) set.add(static_cast<Column>(c));
+  return set;
+}
+
+void write_chunk(File& file, const Block& b, size_t n, ColumnSet columns) {
+  const ChunkHead head{static_cast<std::uint32_t>(n), bits_of(columns)};
+  file.write(&head, sizeof head);
+  core::for_each_column([&](Column c, std::string_view, auto member) {
+    if (columns.has(c)) file.write((b.*member).data(), n * sizeof((b.*member)[0]));
+  });
+}
+
+/// Appends the wanted columns of the next chunk to `to` at row `row`; false at the end of the file.
+bool read_chunk(File& file, Block& to, size_t& row, ColumnSet wanted, ColumnSet& seen) {
+  ChunkHead head{};
+  if (!file.read(&head, sizeof head)) return false;
+  const ColumnSet there = set_of(head.columns);
+  seen = seen | there;
+  core::for_each_column([&](Column c, std::string_view, auto member) {
+    if (!there.has(c)) return;
+    auto& column = to.*member;
+    const size_t bytes = head.points * sizeof(column[0]);
+    if (!wanted.has(c)) return file.skip(bytes);
+    if (column.size() < row + head.points) column.resize(row + head.points);
+    if (bytes > 0) file.read(column.data() + row, bytes);
+  });
+  row += head.points;
+  return true;
+}
+
+constexpr ColumnSet always{Column::x, Column::y, Column::z};
+
+}  // namespace
+
+std::string file_label(TileKey k) { return std::to_string(k.ix) + "_" + std::to_string(k.iy); }
+
+StripWriter::StripWriter(fs::path folder, double tile_side, size_t buffer_bytes)
+    : final_(std::move(folder)), part_(final_), tile_side_(tile_side), buffer_bytes_(buffer_bytes) {
+  part_ += ".part";
+  std::error_code ec;
+  fs::remove_all(part_, ec);
+  fs::create_directories(part_, ec);
+  if (ec) io::throw_system_error("cannot make the folder", part_, ec.value());
+}
+
+StripWriter::~StripWriter() {
+  if (committed_) return;
+  std::error_code ignored;
+  fs::remove_all(part_, ignored);
+}
+
+void StripWriter::write(const Block& block) {
+  std::map<TileKey, std::vector<std::uint32_t>> rows;
+  TileKey last{};
+  std::vector<std::uint32_t>* at = nullptr;
+  for (std::uint32_t i = 0; i < block.size(); ++i) {
+    const TileKey key{static_cast<int>(std::floor((block.origin.x() + block.x[i]) / tile_side_)),
+                      static_cast<int>(std::floor((block.origin.y() + block.y[i]) / tile_side_))};
+    if (!at || key != last) at = &rows[last = key];
+    at->push_back(i);
+  }
+  size_t row_bytes = 0;
+  const ColumnSet present = core::columns_of(block);
+  core::for_each_column([&](Column c, std::string_view, auto member) {
+    if (present.has(c)) row_bytes += sizeof((block.*member)[0]);
+  });
+  for (const auto& [key, mine] : rows) {
+    Block& pending = pending_[key];
+    pending.origin = block.origin;
+    core::append(pending, core::select(block, mine));
+    buffered_ += mine.size() * row_bytes;
+    if (pending.size() >= 65536) {
+      buffered_ -= std::min(buffered_, pending.size() * row_bytes);
+      flush(key, pending);
+    }
+  }
+  if (buffered_ > buffer_bytes_) {
+    for (auto& [key, points] : pending_) flush(key, points);
+    pending_.clear();
+    buffered_ = 0;
+  }
+}
+
+void StripWriter::flush(TileKey key, Block& points) {
+  if (points.size() == 0) return;
+  File file(part_ / (file_label(key) + ".pts"), O_WRONLY | O_CREAT | O_APPEND);
+  write_chunk(file, points, points.size(), core::columns_of(points));
+  counts_[key] += points.size();
+  core::Block fresh;
+  fresh.origin = points.origin;
+  points = std::move(fresh);
+}
+
+void StripWriter::commit(const std::string& note) {
+  for (auto& [key, points] : pending_) flush(key, points);
+  pending_.clear();
+  core::Value index = core::Value::object();
+  index["note"] = note;
+  core::Value& tiles = index["tiles"] = core::Value::array();
+  for (const auto& [key, n] : counts_) {
+    core::Value one = core::Value::array();
+    one.push(key.ix);
+    one.push(key.iy);
+    one.push(n);
+    tiles.push(std::move(one));
+  }
+  io::write_text_file(part_ / "strip.json", io::to_json(index), false);
+  std::error_code ec;
+  fs::remove_all(final_, ec);
+  fs::rename(part_, final_, ec);
+  if (ec) io::throw_system_error("cannot finish", final_, ec.value());
+  committed_ = true;
+}
+
+TileStore::TileStore(fs::path strips, double tile_side, Eigen::Vector3d origin)
+    : strips_(std::move(strips)), side_(tile_side), origin_(origin) {}
+
+bool TileStore::is_committed(const fs::path& strip_folder) { return fs::exists(strip_folder / "strip.json"); }
+
+std::string TileStore::note(const fs::path& strip_folder) {
+  return io::read_value_file(strip_folder / "strip.json").find("note")->as_text();
+}
+
+void TileStore::open(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const core::Value index = io::read_value_file(strips_ / name / "strip.json");
+    for (const core::Value& one : index.find("tiles")->items()) {
+      const TileKey key{static_cast<int>(one.items()[0].as_int()), static_cast<int>(one.items()[1].as_int())};
+      const auto n = static_cast<std::uint64_t>(one.items()[2].as_int());
+      const fs::path file = strips_ / name / (file_label(key) + ".pts");
+      segments_[key].push_back({file, n});
+      tiles_[key] += n;
+      points_ += n;
+      if (columns_.empty() || segments_[key].size() == 1) {
+        File f(file, O_RDONLY);
+        ChunkHead head{};
+        if (f.read(&head, sizeof head)) columns_ = columns_ | set_of(head.columns);
+      }
+    }
+  }
+}
+
+void TileStore::add_overlay(fs::path folder, ColumnSet columns) {
+  overlays_.emplace_back(std::move(folder), columns);
+  columns_ = columns_ | columns;
+}
+
+void TileStore::write_overlay(const fs::path& folder, TileKey key, const Block& block, size_t own, ColumnSet columns) const {
+  io::OutputFile out(folder / (file_label(key) + ".cols"));
+  {
+    File file(out.temporary(), O_WRONLY);
+    write_chunk(file, block, own, columns);
+  }
+  out.commit(false);
+}
+
+Block TileStore::read(TileKey key, ColumnSet columns) const {
+  Block out;
+  out.origin = origin_;
+  const auto at = tiles_.find(key);
+  if (at == tiles_.end()) return out;
+  columns = columns | always;
+  ColumnSet from_overlays;
+  std::vector<std::pair<fs::path, ColumnSet>> sources;
+  for (auto o = overlays_.rbegin(); o != overlays_.rend(); ++o) {
+    ColumnSet mine;
+    for (int c = 0; c < core::column_count; ++c) {
+      const auto column = static_cast<Column>(c);
+      if (columns.has(column) && o->second.has(column) && !from_overlays.has(column)) mine.add(column);
+    }
+    if (mine.empty()) continue;
+    from_overlays = from_overlays | mine;
+    sources.emplace_back(o->first / (file_label(key) + ".cols"), mine);
+  }
+  const ColumnSet from_strips = columns - from_overlays;
+  ColumnSet seen;
+  size_t row = 0;
+  for (const Segment& s : segments_.at(key)) {
+    File file(s.file, O_RDONLY);
+    while (read_chunk(file, out, row, from_strips, seen)) {
+    }
+  }
+  if (row != at->second)
+    throw core::Error("the point store is cut short", (strips_ / file_label(key)).string(),
+                      "remove the .swath folder beside the products and run again");
+  for (const auto& [file_name, mine] : sources) {
+    File file(file_name, O_RDONLY);
+    size_t overlay_row = 0;
+    ColumnSet ignored;
+    read_chunk(file, out, overlay_row, mine, ignored);
+  }
+  // A column that only some of the strips have is zero in the others.
+  core::for_each_column([&](Column c, std::string_view, auto member) {
+    if (columns.has(c) && columns_.has(c) && ((seen.has(c) && from_strips.has(c)) || from_overlays.has(c))) (out.*member).resize(row);
+  });
+  return out;
+}
+
+Block TileStore::read_with_halo(TileKey key, double halo, ColumnSet columns, size_t& own) const {
+  Block out = read(key, columns);
+  own = out.size();
+  if (halo <= 0) return out;
+  const int reach = static_cast<int>(std::ceil(halo / side_));
+  const stages::Box box = stages::Box{key.ix * side_, key.iy * side_, (key.ix + 1) * side_, (key.iy + 1) * side_}.grown(halo);
+  for (int iy = key.iy - reach; iy <= key.iy + reach; ++iy)
+    for (int ix = key.ix - reach; ix <= key.ix + reach; ++ix) {
+      if ((ix == key.ix && iy == key.iy) || !tiles_.contains({ix, iy})) continue;
+      const Block neighbour = read({ix, iy}, columns);
+      std::vector<std::uint32_t> rows;
+      for (std::uint32_t i = 0; i < neighbour.size(); ++i)
+        if (box.holds(origin_.x() + neighbour.x[i], origin_.y() + neighbour.y[i])) rows.push_back(i);
+      core::append(out, core::select(neighbour, rows));
+    }
+  return out;
+}
+
+std::uint64_t TileStore::points_with_halo(TileKey key, double halo) const {
+  std::uint64_t own = tiles_.contains(key) ? tiles_.at(key) : 0;
+  if (halo <= 0) return own;
+  const int reach = static_cast<int>(std::ceil(halo / side_));
+  double around = 0;
+  std::uint64_t largest = 0;
+  for (int iy = key.iy - reach; iy <= key.iy + reach; ++iy)
+    for (int ix = key.ix - reach; ix <= key.ix + reach; ++ix) {
+      const auto at = tiles_.find({ix, iy});
+      if ((ix == key.ix && iy == key.iy) || at == tiles_.end()) continue;
+      // Share of the neighbour that the halo covers, were its points spread evenly.
+      const auto share = [&](int d) { return d == 0 ? 1.0 : std::clamp((halo - (std::abs(d) - 1) * side_) / side_, 0.0, 1.0); };
+      around += static_cast<double>(at->second) * share(ix - key.ix) * share(iy - key.iy);
+      largest = std::max(largest, at->second);
+    }
+  return own + static_cast<std::uint64_t>(1.5 * around) + largest;
+}
+
+}  // namespace swath::pipeline

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The points of a survey on disk, by tile and by column. Strips are written once, each whole or not at all; tile stages add
+// overlays of the columns they change. The order of a tile's points is strip by strip, in the order of the records,
+// so that it depends neither on threads nor on a resumed run.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "core/block.h"
+#include "stages/stage.h"
+
+namespace swath::pipeline {
+
+using stages::TileKey;
+
+/// Scatters one strip's blocks over tiles. commit() makes the strip part of the store; without it nothing stays.
+class StripWriter {
+ public:
+  /// `buffer_bytes`: memory for points not yet on disk.
+  StripWriter(std::filesystem::path folder, double tile_side, size_t buffer_bytes);
+  ~StripWriter();
+  StripWriter(const StripWriter&) = delete;
+  StripWriter& operator=(const StripWriter&) = delete;
+
+  void write(const core::Block& block);
+  /// `note` is kept with the strip and comes back from TileStore::note().
+  void commit(const std::string& note);
+
+ private:
+  void flush(TileKey key, core::Block& points);
+  std::filesystem::path final_, part_;
+  double tile_side_;
+  size_t buffer_bytes_, buffered_ = 0;
+  std::map<TileKey, core::Block> pending_;
+  std::map<TileKey, std::uint64_t> counts_;
+  bool committed_ = false;
+};
+
+class TileStore {
+ public:
+  /// `strips`: the folder that holds one folder per committed strip.
+  TileStore(std::filesystem::path strips, double tile_side, Eigen::Vector3d origin);
+
+  static bool is_committed(const std::filesystem::path& strip_folder);
+  static std::string note(const std::filesystem::path& strip_folder);
+
+  /// Reads the list of tiles after all strips are committed. `names`: the strips' folders, in order.
+  void open(const std::vector<std::string>& names);
+
+  const std::map<TileKey, std::uint64_t>& tiles() const { return tiles_; }
+  std::uint64_t points() const { return points_; }
+  core::ColumnSet columns() const { return columns_; }
+
+  /// From now on these columns of a tile are read from overlays in `folder`.
+  void add_overlay(std::filesystem::path folder, core::ColumnSet columns);
+  /// Writes the overlay of one tile: the first `own` points of the block.
+  void write_overlay(const std::filesystem::path& folder, TileKey key, const core::Block& block, size_t own, core::ColumnSet columns) const;
+
+  /// The columns of one tile's points (x, y, z always).
+  core::Block read(TileKey key, core::ColumnSet columns) const;
+  /// The tile's own points, then those of its neighbours within `halo` metres of its box, in order of tiles; `own` receives the number of
+  /// the former.
+  core::Block read_with_halo(TileKey key, double halo, core::ColumnSet columns, size_t& own) const;
+  /// Upper bound of the points that read_with_halo would load for a moment.
+  std::uint64_t points_with_halo(TileKey key, double halo) const;
+
+ private:
+  std::filesystem::path strips_;
+  double side_;
+  Eigen::Vector3d origin_;
+  struct Segment {
+    std::filesystem::path file;
+    std::uint64_t points;
+  };
+  std::map<TileKey, std::vector<Segment>> segments_;
+  std::map<TileKey, std::uint64_t> tiles_;
+  std::vector<std::pair<std::filesystem::path, core::ColumnSet>> overlays_;
+  std::uint64_t points_ = 0;
+  core::ColumnSet columns_;
+};
+
+/// "12_-3": name of a tile within the store.
+std::string file_label(TileKey k);
+
+}  // namespace swath::pipeline

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/grid_tile.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/error.h"
+#include "io/output_file.h"
+#include "io/value_file.h"
+
+namespace swath::stages {
+namespace {
+
+struct Head {
+  char magic[8];
+  core::Lattice lattice;
+  std::uint32_t has_sigma, has_count;
+};
+constexpr char magic[8] = {'s', 'w', 'g', 'r', 'i', 'd', '1', 0};
+
+template <class T>
+void put(std::string& out, const std::vector<T>& v) {
+  if (v.empty()) return;
+  const size_t at = out.size();
+  out.resize(at + v.size() * sizeof(T));
+  std::memcpy(out.data() + at, v.data(), v.size() * sizeof(T));
+}
+
+template <class T>
+void take(const std::string& in, size_t& at, std::vector<T>& v, size_t n, const std::filesystem::path& file) {
+  if (in.size() < at + n * sizeof(T))
+    throw core::Error("the intermediate grid is cut short", file.string(), "remove the .swath folder beside the products and run again");
+  v.resize(n);
+  if (n > 0) std::memcpy(v.data(), in.data() + at, n * sizeof(T));
+  at += n * sizeof(T);
+}
+
+}  // namespace
+
+std::filesystem::path grid_file(const std::filesystem::path& folder, TileKey key) {
+  return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".grid");
+}
+
+void write_grid_tile(const std::filesystem::path& folder, TileKey key, const core::Grid& grid) {
+  Head head{};
+  std::memcpy(head.magic, magic, sizeof magic);
+  head.lattice = grid.lattice;
+  head.has_sigma = !grid.sigma.empty();
+  head.has_count = !grid.count.empty();
+  std::string out(sizeof head, '\0');
+  std::memcpy(out.data(), &head, sizeof head);
+  put(out, grid.height);
+  put(out, grid.sigma);
+  put(out, grid.count);
+  put(out, grid.reason);
+  io::write_text_file(grid_file(folder, key), out, false);
+}
+
+core::Grid read_grid_tile(const std::filesystem::path& file) {
+  const std::string in = io::read_text_file(file);
+  Head head{};
+  if (in.size() < sizeof head || std::memcmp(in.data(), magic, sizeof magic) != 0)
+    throw core::Error("no intermediate grid", file.string(), "remove the .swath folder beside the products and run again");
+  std::memcpy(&head, in.data(), sizeof head);
+  core::Grid grid(head.lattice);
+  const size_t n = head.lattice.size();
+  size_t at = sizeof head;
+  take(in, at, grid.height, n, file);
+  if (head.has_sigma) take(in, at, grid.sigma, n, file);
+  if (head.has_count) take(in, at, grid.count, n, file);
+  take(in, at, grid.reason, n, file);
+  return grid;
+}
+
+void paste(const core::Grid& tile, core::Grid& window) {
+  const core::Lattice& from = tile.lattice;
+  const core::Lattice& to = window.lattice;
+  const std::int64_t i0 = std::max(from.i0, to.i0), i1 = std::min(from.i0 + from.nx, to.i0 + to.nx);
+  const std::int64_t j0 = std::max(from.j0, to.j0), j1 = std::min(from.j0 + from.ny, to.j0 + to.ny);
+  if (i0 >= i1 || j0 >= j1) return;
+  if (!tile.sigma.empty() && window.sigma.empty()) window.sigma.assign(to.size(), std::numeric_limits<float>::quiet_NaN());
+  if (!tile.count.empty() && window.count.empty()) window.count.assign(to.size(), 0);
+  for (std::int64_t j = j0; j < j1; ++j) {
+    const size_t a = from.at(static_cast<int>(i0 - from.i0), static_cast<int>(j - from.j0));
+    const size_t b = to.at(static_cast<int>(i0 - to.i0), static_cast<int>(j - to.j0));
+    const auto n = static_cast<std::ptrdiff_t>(i1 - i0);
+    const auto copy = [&](const auto& source, auto& target) {
+      if (!source.empty()) std::copy_n(source.begin() + static_cast<std::ptrdiff_t>(a), n, target.begin() + static_cast<std::ptrdiff_t>(b));
+    };
+    copy(tile.height, window.height);
+    copy(tile.reason, window.reason);
+    copy(tile.sigma, window.sigma);
+    copy(tile.count, window.count);
+  }
+}
+
+}  // namespace swath::stages

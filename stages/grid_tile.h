@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One tile's grid as an intermediate file of a stage's folder.
+#pragma once
+
+#include <filesystem>
+
+#include "core/grid.h"
+#include "stages/stage.h"
+
+namespace swath::stages {
+
+/// The file of a tile's grid in a stage's folder.
+std::filesystem::path grid_file(const std::filesystem::path& folder, TileKey key);
+
+/// Writes the grid whole or not at all, in the machine's byte order.
+void write_grid_tile(const std::filesystem::path& folder, TileKey key, const core::Grid& grid);
+
+/// Reads it back; throws core::Error where it is damaged.
+core::Grid read_grid_tile(const std::filesystem::path& file);
+
+/// The part of a tile's grid that lies in `window`'s lattice is copied there.
+void paste(const core::Grid& tile, core::Grid& window);
+
+}  // namespace swath::stages

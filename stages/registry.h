@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "stages/stage.h"
+
+namespace swath::stages {
+
+struct Entry {
+  std::string_view name;
+  std::function<std::unique_ptr<Stage>()> make;
+};
+
+/// Every stage there is, in the order of the chain.
+const std::vector<Entry>& registry();
+
+/// A new stage of that name with its defaults, or nullptr.
+std::unique_ptr<Stage> make_stage(std::string_view name);
+
+}  // namespace swath::stages

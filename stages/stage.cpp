@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/stage.h"
+
+#include <cmath>
+
+namespace swath::stages {
+
+std::string_view name_of(Grain g) {
+  static constexpr std::string_view names[] = {"survey", "strip", "tile", "merge"};
+  return names[static_cast<size_t>(g)];
+}
+
+std::string_view name_of(Product p) {
+  static constexpr std::string_view names[] = {"trajectory", "shots", "points", "dtm", "dsm", "contours"};
+  return names[static_cast<size_t>(p)];
+}
+
+core::Lattice lattice_in(double cell, const Box& box) {
+  // Centre (i + 0.5) cell in [x0, x1)  <=>  i in [x0/cell - 0.5, x1/cell - 0.5).
+  const auto first = [cell](double edge) { return static_cast<std::int64_t>(std::ceil(edge / cell - 0.5)); };
+  const std::int64_t i0 = first(box.x0), j0 = first(box.y0);
+  return {cell, i0, j0, static_cast<int>(first(box.x1) - i0), static_cast<int>(first(box.y1) - j0)};
+}
+
+std::string Context::label(TileKey k) const {
+  const auto part = [this](int i) {
+    const double corner = i * tile_side;
+    if (corner == std::round(corner)) return std::to_string(static_cast<long long>(corner));
+    return std::to_string(static_cast<long long>(std::round(corner * 1000))) + "mm";
+  };
+  return part(k.ix) + "_" + part(k.iy);
+}
+
+}  // namespace swath::stages

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a stage is. A stage is thin: it adapts a free function of a lower room to the engine's three grains of work.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/block.h"
+#include "core/geodesy.h"
+#include "core/grid.h"
+#include "core/option.h"
+#include "core/report.h"
+#include "core/shot.h"
+#include "io/survey.h"
+#include "trajectory/trajectory.h"
+
+namespace swath::stages {
+
+/// The unit a stage works on (house plan, section 2). `merge` joins what crosses the tiles' edges.
+enum class Grain { survey, strip, tile, merge };
+std::string_view name_of(Grain g);
+
+/// What stages hand on besides columns. A plan is refused where a stage needs what none before it gives.
+enum class Product { trajectory, shots, points, dtm, dsm, contours };
+std::string_view name_of(Product p);
+
+struct Info {
+  std::string_view name;
+  std::string_view summary;  ///< one sentence
+  std::vector<Grain> grains;
+  core::ColumnSet needs, gives;
+  std::vector<Product> needs_products, gives_products;
+};
+
+/// A square of the survey's tiling: [ix, ix+1) x [iy, iy+1) times the tile's side, map metres.
+struct TileKey {
+  int ix = 0, iy = 0;
+  auto operator<=>(const TileKey&) const = default;
+};
+
+/// A box of map metres, half open.
+struct Box {
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  Box grown(double by) const { return {x0 - by, y0 - by, x1 + by, y1 + by}; }
+  bool holds(double x, double y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+};
+
+/// The cells whose centres lie in the box.
+core::Lattice lattice_in(double cell, const Box& box);
+
+/// Where the grids of earlier stages are found.
+class Grids {
+ public:
+  virtual ~Grids() = default;
+  /// The window of a product's surface, from as many tiles as it touches; void (no_data) outside them.
+  virtual core::Grid window(Product product, const core::Lattice& lattice) const = 0;
+  /// Side of the product's cells, m.
+  virtual double cell(Product product) const = 0;
+};
+
+/// What every stage sees of a run. Read-only but for `trajectory`, which a survey stage sets.
+struct Context {
+  const io::Survey& survey;
+  core::Crs crs;
+  double unit = 1.0;                                 ///< metres per horizontal unit of the CRS
+  double vertical_unit = 1.0;                        ///< metres per vertical unit of the CRS
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of every Block of the run, m
+  double tile_side = 500.0;                          ///< m
+  std::filesystem::path output;
+  std::filesystem::path config_folder;
+  const Grids* grids = nullptr;
+  std::shared_ptr<const trajectory::Trajectory> trajectory;
+
+  Box box_of(TileKey k) const { return {k.ix * tile_side, k.iy * tile_side, (k.ix + 1) * tile_side, (k.iy + 1) * tile_side}; }
+  /// "652_5310": the tile's south-west corner, for file names; whole metres, or millimetres where it is not whole.
+  std::string label(TileKey k) const;
+};
+
+/// One flight line of one source, read and georeferenced on its own.
+struct Strip {
+  size_t source = 0;  ///< index in the survey's [[laser]] or [[points]]
+  size_t index = 0;   ///< index within the source
+  int line = 0;       ///< flight line id
+  std::string name;   ///< "line 3 of flight.las", for messages
+  std::uint64_t records = 0;
+};
+
+/// A batch of one strip on its way: raw shots first, a block after georeferencing.
+struct StripBatch {
+  int line = 0;
+  core::Shots shots;
+  core::Block block;
+};
+
+/// Streams one strip. next() is false at the end.
+class StripReader {
+ public:
+  virtual ~StripReader() = default;
+  virtual bool next(StripBatch& batch, size_t most, core::Tally& tally) = 0;
+};
+
+/// One tile at work: its own points first, then those of the halo. `own` counts the former.
+struct TileJob {
+  TileKey key;
+  Box box;
+  std::filesystem::path folder;  ///< the stage's own folder for intermediate results
+  core::Block block;
+  size_t own = 0;
+  core::Tally tally;
+};
+
+/// The merge of one stage: all tiles, in order.
+struct MergeJob {
+  std::filesystem::path folder;
+  std::vector<TileKey> tiles;
+  core::Tally tally;
+  core::Value findings = core::Value::object();  ///< goes to the report under the stage
+};
+
+/// A stage of a plan. Every method that runs is const and may run in parallel with itself.
+class Stage {
+ public:
+  virtual ~Stage() = default;
+  virtual const Info& info() const = 0;
+  virtual void visit(core::Visitor& v) = 0;
+
+  /// Conditions that only the survey can settle; faults are thrown as core::Error before any byte is read.
+  virtual void check(const Context&) const {}
+
+  virtual void run_survey(Context&, core::Tally&, core::Value& /*findings*/) const {}
+
+  virtual bool is_source() const { return false; }
+  virtual std::vector<Strip> strips(const Context&, core::Tally&) const { return {}; }
+  virtual std::unique_ptr<StripReader> open(const Context&, const Strip&) const { return nullptr; }
+  /// Files whose content decides the result (hashed for provenance and resume).
+  virtual std::vector<std::filesystem::path> inputs(const io::Survey&) const { return {}; }
+
+  virtual void run_strip(const Context&, StripBatch&, core::Tally&) const {}
+
+  /// Metres of points around a tile that its result depends on.
+  virtual double halo() const { return 0.0; }
+  /// Bytes of working memory per point of tile and halo, beside the columns.
+  virtual double bytes_per_point() const { return 64.0; }
+  virtual void run_tile(const Context&, TileJob&) const {}
+
+  virtual void run_merge(const Context&, MergeJob&) const {}
+
+  bool works_on(Grain g) const {
+    for (const Grain mine : info().grains)
+      if (mine == g) return true;
+    return false;
+  }
+};
+
+/// A stage with a struct of options.
+template <class O>
+class OptionStage : public Stage {
+ public:
+  void visit(core::Visitor& v) override { describe(options, v); }
+  O options;
+};
+
+}  // namespace swath::stages
