@@ -190,21 +190,22 @@ Plan make_plan(const Request& request) {
   read_stages(tree, plan, faults);
   if (faults.empty()) check_order(plan, faults);
 
-  if (!request.survey.empty())
-    plan.run.survey = request.survey;
-  else if (plan.run.survey.is_relative())
-    plan.run.survey = request.config.parent_path() / plan.run.survey;
+  if (!request.survey.empty()) {
+    plan.survey_file = request.survey;
+  } else if (plan.run.survey) {
+    plan.survey_file = request.config.parent_path() / *plan.run.survey;
+  }
   if (!request.output.empty()) plan.run.output = request.output;
   if (request.threads >= 0) plan.run.threads = request.threads;
 
-  std::string survey_faults;
-  try {
-    plan.survey = io::read_survey(plan.run.survey);
-  } catch (const core::Error& e) {
-    if (faults.empty()) throw;
-    survey_faults = e.text();
+  if (!plan.survey_file.empty()) {
+    try {
+      plan.survey = io::read_survey(plan.survey_file);
+    } catch (const core::Error& e) {
+      if (faults.empty()) throw;
+      faults.push_back({{}, "", e.text(), ""});
+    }
   }
-  if (!survey_faults.empty()) faults.push_back({{plan.run.survey.string(), 0, 0}, "", survey_faults, ""});
   core::throw_if_any(faults);
   return plan;
 }
@@ -212,7 +213,7 @@ Plan make_plan(const Request& request) {
 core::Value explain(Plan& plan) {
   Value out = Value::object();
   out["config"] = plan.config.string();
-  out["survey"] = plan.run.survey.string();
+  out["survey"] = plan.survey_file.string();
   out["run"] = with_origin(core::described(plan.run), plan.run_table);
   Value& list = out["stages"] = Value::array();
   for (const PlannedStage& s : plan.stages) {

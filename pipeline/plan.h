@@ -28,7 +28,7 @@ void describe(Limits& l, V& v) {
 }
 
 struct RunOptions {
-  std::filesystem::path survey = "survey.toml";
+  std::optional<std::filesystem::path> survey;
   std::filesystem::path output = "out";
   core::Bytes memory{2e9};
   core::Metres tile{500.0};
@@ -39,7 +39,7 @@ struct RunOptions {
 
 template <class V>
 void describe(RunOptions& r, V& v) {
-  v.option("survey", r.survey, "The survey, relative to the config.");
+  v.option("survey", r.survey, "The survey.toml, relative to the config; usually given on the command line.");
   v.option("output", r.output, "Folder of the products, relative to the working folder.");
   v.option("memory", r.memory, core::at_least(2e8), "Budget of working memory.");
   v.option("tile", r.tile, core::within(10.0, 1e5), "Side of the tiles in which the survey is worked on and delivered.");
@@ -69,11 +69,13 @@ struct Plan {
   std::filesystem::path config;
   RunOptions run;
   core::Value run_table;
+  std::filesystem::path survey_file;  ///< empty: none was named
   io::Survey survey;
   std::vector<PlannedStage> stages;
 };
 
-/// Reads config and survey. Throws core::Error (exit code 2) with all faults.
+/// Reads config and survey. Throws core::Error (exit code 2) with all faults. A plan without a survey can be checked and
+/// explained, not run.
 Plan make_plan(const Request& request);
 
 /// The effective options with where each comes from, for `explain` and the report:

@@ -113,10 +113,12 @@ class Engine {
 };
 
 void Engine::prepare() {
+  if (plan_.survey_file.empty())
+    throw core::usage_error("no survey to run on", plan_.config.string(), "name it with --survey DIR/survey.toml, or as run.survey in the config");
   context_.crs = core::Crs(plan_.survey.crs);
   if (!context_.crs.is_projected())
     throw core::usage_error("the products' CRS is " + context_.crs.name() + ", which is not a map projection",
-                            plan_.run.survey.string() + ": crs", "choose a projected CRS, for example the UTM zone EPSG:326xx");
+                            plan_.survey_file.string() + ": crs", "choose a projected CRS, for example the UTM zone EPSG:326xx");
   context_.unit = context_.crs.metres_per_unit();
   context_.vertical_unit = context_.crs.vertical_metres_per_unit();
   context_.tile_side = plan_.run.tile.value;
@@ -245,12 +247,12 @@ void Engine::run_strips() {
   }
   progress_.end();
   if (in == 0)
-    throw core::Error("no laser return to work on", plan_.run.survey.string(),
+    throw core::Error("no laser return to work on", plan_.survey_file.string(),
                       "are the lines' times those of the records? see `swath info` of the laser file");
   store_ = std::make_unique<TileStore>(strips_folder, plan_.run.tile.value, context_.origin);
   store_->open(names);
   if (store_->points() == 0)
-    throw core::Error("no return could be georeferenced: the trajectory covers none of them", plan_.run.survey.string(),
+    throw core::Error("no return could be georeferenced: the trajectory covers none of them", plan_.survey_file.string(),
                       "compare the time scales with `swath info` of the laser and trajectory files");
 }
 

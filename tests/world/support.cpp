@@ -18,6 +18,8 @@ TemporaryFolder::~TemporaryFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
+std::filesystem::path source_folder() { return SWATH_SOURCE_DIR; }
+
 std::filesystem::path shared_data() {
   if (const char* given = std::getenv("SWATH_SHARED")) return given;
   const std::filesystem::path beside = std::filesystem::path(SWATH_SOURCE_DIR) / ".." / "shared";

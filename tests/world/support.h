@@ -22,6 +22,9 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+/// The root of the checkout.
+std::filesystem::path source_folder();
+
 /// The reference data beside the checkout (SWATH_SHARED, or ../shared); empty where it is absent.
 std::filesystem::path shared_data();
 

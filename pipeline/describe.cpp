@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/describe.h"
+
+#include "core/error.h"
+#include "core/option_visitors.h"
+#include "io/output_file.h"
+#include "io/survey.h"
+#include "io/value_file.h"
+#include "pipeline/plan.h"
+#include "stages/registry.h"
+
+namespace swath::pipeline {
+namespace {
+
+using stages::Stage;
+
+std::string columns_text(core::ColumnSet set) {
+  std::string out;
+  for (int c = 0; c < core::column_count; ++c)
+    if (set.has(static_cast<core::Column>(c))) out += (out.empty() ? "" : ", ") + std::string(core::name_of(static_cast<core::Column>(c)));
+  return out;
+}
+
+std::string products_text(const std::vector<stages::Product>& products) {
+  std::string out;
+  for (const stages::Product p : products) out += (out.empty() ? "" : ", ") + std::string(name_of(p));
+  return out;
+}
+
+std::string both(core::ColumnSet set, const std::vector<stages::Product>& products) {
+  const std::string c = columns_text(set), p = products_text(products);
+  if (c.empty() && p.empty()) return "nothing";
+  if (c.empty()) return p;
+  return (p.empty() ? "" : p + "; ") + "columns " + c;
+}
+
+std::string grains_text(const Stage& s) {
+  std::string out;
+  for (const stages::Grain g : s.info().grains) out += (out.empty() ? "" : ", ") + std::string(name_of(g));
+  return out;
+}
+
+core::Describe describe_of(Stage& s) {
+  return [&s](core::Visitor& v) { s.visit(v); };
+}
+
+std::string stage_page(Stage& s) {
+  std::string out = std::string(s.info().summary) + "\n\n";
+  out += "- works on: " + grains_text(s) + "\n- needs: " + both(s.info().needs, s.info().needs_products) +
+         "\n- gives: " + both(s.info().gives, s.info().gives_products) + "\n\n";
+  if (core::document_options(describe_of(s)).empty()) return out + "It has no options.\n";
+  return out + core::option_table_markdown(describe_of(s));
+}
+
+/// Replaces what stands between the marks; a page without marks gets them at its end.
+std::string with_generated(std::string page, const std::string& title, const std::string& text) {
+  static const std::string begin = "<!-- generated -->\n", end = "<!-- end -->\n";
+  if (page.empty()) page = "# " + title + "\n\n" + begin + end;
+  size_t from = page.find(begin);
+  size_t to = page.find(end);
+  if (from == std::string::npos || to == std::string::npos || to < from) {
+    page += "\n" + begin + end;
+    from = page.find(begin);
+    to = page.find(end);
+  }
+  from += begin.size();
+  return page.replace(from, to - from, text);
+}
+
+}  // namespace
+
+std::string stage_list() {
+  size_t width = 0;
+  for (const auto& e : stages::registry()) width = std::max(width, e.name.size());
+  std::string out;
+  for (const auto& e : stages::registry()) {
+    const auto s = e.make();
+    out += std::string(e.name) + std::string(width + 2 - e.name.size(), ' ') + std::string(s->info().summary) + "\n";
+  }
+  return out;
+}
+
+std::string stage_help(const std::string& name) {
+  const auto s = stages::make_stage(name);
+  if (!s) {
+    std::vector<std::string> names;
+    for (const auto& e : stages::registry()) names.emplace_back(e.name);
+    const std::string near = core::nearest(name, names);
+    throw core::usage_error("'" + name + "' is no stage", "", near.empty() ? "`swath stages` lists them" : "did you mean '" + near + "'?");
+  }
+  return std::string(s->info().name) + ": " + std::string(s->info().summary) + "\n\n  works on  " + grains_text(*s) + "\n  needs     " +
+         both(s->info().needs, s->info().needs_products) + "\n  gives     " + both(s->info().gives, s->info().gives_products) + "\n\nOptions\n" +
+         core::option_table_text(describe_of(*s));
+}
+
+std::vector<std::filesystem::path> write_docs(const std::filesystem::path& docs, bool only_check) {
+  std::vector<std::filesystem::path> differing;
+  const auto page = [&](const std::filesystem::path& file, const std::string& title, const std::string& text) {
+    const std::string before = std::filesystem::exists(file) ? io::read_text_file(file) : std::string();
+    const std::string after = with_generated(before, title, text);
+    if (before == after) return;
+    differing.push_back(file);
+    if (!only_check) io::write_text_file(file, after);
+  };
+  std::string index = "| stage | what it does |\n|---|---|\n";
+  for (const auto& e : stages::registry()) {
+    const auto s = e.make();
+    const std::string name(e.name);
+    page(docs / "stages" / (name + ".md"), "`" + name + "`", stage_page(*s));
+    index += "| [`" + name + "`](" + name + ".md) | " + std::string(s->info().summary) + " |\n";
+  }
+  page(docs / "stages" / "README.md", "Stages", index);
+  io::Survey survey;
+  page(docs / "survey.md", "survey.toml", core::option_table_markdown(core::described(survey)));
+  RunOptions run;
+  page(docs / "run.md", "[run]", core::option_table_markdown(core::described(run)));
+  return differing;
+}
+
+}  // namespace swath::pipeline

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Texts made from the stages' own declarations: terminal help and the generated parts of the documentation.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace swath::pipeline {
+
+/// One line per stage, in the order of the chain.
+std::string stage_list();
+/// Everything a stage says of itself. Throws core::Error (usage) for an unknown name, naming the nearest.
+std::string stage_help(const std::string& name);
+
+/// Writes the generated part of every page in `docs` (between "<!-- generated -->" and "<!-- end -->"): stages/NAME.md,
+/// survey.md, run.md, simulate.md. With `only_check` nothing is written. Returns the pages that differ (or differed).
+std::vector<std::filesystem::path> write_docs(const std::filesystem::path& docs, bool only_check);
+
+}  // namespace swath::pipeline

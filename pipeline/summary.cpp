@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/summary.h"
+
+#include <cstdio>
+
+#include "io/value_file.h"
+#include "pipeline/progress.h"
+
+namespace swath::pipeline {
+namespace {
+
+using core::Value;
+
+std::string scalar(const Value& v) {
+  if (v.is_text()) return v.as_text();
+  if (v.is_number() && !v.is_int()) {
+    char buf[32];
+    std::snprintf(buf, sizeof buf, "%.4g", v.as_number());
+    return buf;
+  }
+  std::string text = io::to_json(v);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text;
+}
+
+void indent(const Value& v, const std::string& margin, std::string& out) {
+  for (const auto& [key, value] : v.members()) {
+    if (value.is_object()) {
+      out += margin + key + "\n";
+      indent(value, margin + "  ", out);
+    } else {
+      out += margin + key + ": " + scalar(value) + "\n";
+    }
+  }
+}
+
+void options(const Value& table, const std::string& path, std::string& out) {
+  for (const auto& [key, value] : table.members()) {
+    const std::string name = path.empty() ? key : path + "." + key;
+    const Value* from = value.find("from");
+    if (value.is_object() && (!from || !value.find("value"))) {
+      options(value, name, out);
+      continue;
+    }
+    std::string line = "  " + name + " = " + (value.find("value") ? scalar(*value.find("value")) : "");
+    line.resize(std::max<size_t>(line.size() + 2, 46), ' ');
+    out += line + from->as_text() + "\n";
+  }
+}
+
+}  // namespace
+
+std::string summary(const Value& report, const std::filesystem::path& output) {
+  std::string out = "\n";
+  for (const Value& stage : report.find("stages")->items()) {
+    out += stage.find("type")->as_text();
+    if (const Value* counts = stage.find("counts")) {
+      const auto in = counts->find("in")->as_int(), gone = counts->find("out")->as_int();
+      out += ": " + std::to_string(in) + (in == gone ? " points" : " in, " + std::to_string(gone) + " out");
+    }
+    out += "\n";
+    if (const Value* tally = stage.find("tally"))
+      for (const auto& [what, one] : tally->members()) {
+        out += "    " + what + ": " + std::to_string(one.find("count")->as_int());
+        if (const Value* examples = one.find("examples")) out += "  (" + examples->items().front().as_text() + ")";
+        out += "\n";
+      }
+    if (const Value* findings = stage.find("findings")) indent(*findings, "    ", out);
+  }
+  out += "\nproducts in " + output.generic_string() + ", report in " + (output / "report.json").generic_string() + " (" +
+         duration_text(report.find("seconds")->as_number()) + ")\n";
+  return out;
+}
+
+std::string explanation_text(const Value& explanation) {
+  std::string out = "[run]\n";
+  options(*explanation.find("run"), "", out);
+  for (const Value& stage : explanation.find("stages")->items()) {
+    out += "\n[[stage]] " + stage.find("type")->as_text() + "\n";
+    options(*stage.find("options"), "", out);
+  }
+  return out;
+}
+
+}  // namespace swath::pipeline

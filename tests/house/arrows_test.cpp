@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The plan of the house, held by a test: which room may know which, and which door each heavy library stays behind.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path root = SWATH_SOURCE_DIR;
+
+/// Room -> rooms it may include, itself excepted.
+const std::map<std::string, std::set<std::string>> arrows = {
+    {"core", {}},
+    {"io", {"core"}},
+    {"filters", {"core"}},
+    {"terrain", {"core"}},
+    {"trajectory", {"core"}},
+    {"report", {"core"}},
+    {"calib", {"core", "io", "filters", "terrain", "trajectory", "report"}},
+    {"simulate", {"core", "io"}},
+    {"stages", {"core", "io", "filters", "terrain", "trajectory", "report", "calib"}},
+    {"pipeline", {"core", "io", "report", "stages"}},
+    {"tools", {"core", "io", "pipeline", "simulate"}},
+};
+
+/// Third party (as its includes begin) -> the only files that may include it.
+const std::vector<std::pair<std::regex, std::regex>> doors = {
+    {std::regex("CGAL/.*"), std::regex("terrain/.*\\.cpp|filters/ground_.*\\.cpp")},
+    {std::regex("octomap/.*"), std::regex("filters/visibility\\.cpp")},
+    {std::regex("pcl/.*"), std::regex("filters/.*\\.cpp|calib/tie_planes\\.cpp")},
+    {std::regex("(gdal|ogr|cpl|vrt).*\\.h"), std::regex("io/.*\\.cpp|io/gdal_door\\.h")},
+    {std::regex("proj.*\\.h"), std::regex("core/geodesy\\.cpp|core/crs\\.cpp|core/transform\\.cpp|core/proj_.*|io/versions\\.cpp")},
+    {std::regex("toml\\+\\+/.*|rapidjson/.*|png\\.h"), std::regex("io/.*\\.cpp")},
+    {std::regex("ceres/.*"), std::regex("calib/.*\\.cpp")},
+    {std::regex("tbb/.*|oneapi/.*"), std::regex("pipeline/.*\\.cpp|simulate/.*\\.cpp|io/.*\\.cpp")},
+    {std::regex("CLI/.*"), std::regex("tools/.*")},
+};
+
+struct Include {
+  fs::path file;
+  int line;
+  std::string what;
+  bool ours;
+};
+
+std::vector<fs::path> sources(const std::string& room) {
+  std::vector<fs::path> out;
+  for (const auto& e : fs::recursive_directory_iterator(root / room))
+    if (e.path().extension() == ".h" || e.path().extension() == ".cpp") out.push_back(e.path());
+  return out;
+}
+
+std::vector<Include> includes(const fs::path& file) {
+  static const std::regex pattern("^\\s*#\\s*include\\s*([<\"])([^>\"]+)[>\"].*");
+  std::vector<Include> out;
+  std::ifstream in(file);
+  std::string text;
+  for (int line = 1; std::getline(in, text); ++line) {
+    std::smatch m;
+    if (std::regex_match(text, m, pattern)) out.push_back({fs::relative(file, root), line, m[2], m[1] == "\""});
+  }
+  return out;
+}
+
+TEST(House, ArrowsGoDownOnly) {
+  for (const auto& [room, allowed] : arrows) {
+    const auto files = sources(room);
+    EXPECT_FALSE(files.empty()) << room << " is empty";
+    for (const fs::path& file : files)
+      for (const Include& i : includes(file)) {
+        if (!i.ours) continue;
+        const std::string to = i.what.substr(0, i.what.find('/'));
+        EXPECT_TRUE(arrows.contains(to)) << i.file << ":" << i.line << " includes \"" << i.what << "\", which is in no room";
+        EXPECT_TRUE(to == room || allowed.contains(to))
+            << i.file << ":" << i.line << " includes \"" << i.what << "\": " << room << " must not know " << to;
+      }
+  }
+}
+
+TEST(House, HeavyLibrariesStayBehindTheirDoors) {
+  for (const auto& [room, allowed] : arrows)
+    for (const fs::path& file : sources(room))
+      for (const Include& i : includes(file))
+        for (const auto& [library, door] : doors)
+          if (!i.ours && std::regex_match(i.what, library))
+            EXPECT_TRUE(std::regex_match(i.file.generic_string(), door))
+                << i.file << ":" << i.line << " includes <" << i.what << "> outside its door";
+}
+
+TEST(House, EveryFileStatesItsLicenceAndStaysShort) {
+  for (const auto& [room, allowed] : arrows)
+    for (const fs::path& file : sources(room)) {
+      std::ifstream in(file);
+      std::string first, second, text;
+      std::getline(in, first);
+      std::getline(in, second);
+      EXPECT_EQ(first, "// SPDX-License-Identifier: GPL-3.0-or-later") << file;
+      int lines = 2;
+      while (std::getline(in, text)) ++lines;
+      EXPECT_TRUE(lines <= 400 || second.find("over 400 lines") != std::string::npos)
+          << file << " has " << lines << " lines and gives no reason";
+    }
+}
+
+TEST(House, TheRootBuildFileStaysShort) {
+  std::ifstream in(root / "CMakeLists.txt");
+  int lines = 0;
+  for (std::string text; std::getline(in, text);) ++lines;
+  EXPECT_LT(lines, 80);
+}
+
+}  // namespace

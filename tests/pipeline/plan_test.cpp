@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/plan.h"
+
+#include "core/error.h"
+#include "io/value_file.h"
+#include "tests/world/support.h"
+
+namespace swath::pipeline {
+namespace {
+
+const char* good =
+    "[[stage]]\ntype = \"readers.las\"\n"
+    "[[stage]]\ntype = \"filters.smrf\"\nslope = 0.2\n"
+    "[[stage]]\ntype = \"terrain.dtm\"\ncell = \"2 m\"\n";
+
+struct Case {
+  test::TemporaryFolder folder;
+  Request request;
+  explicit Case(const std::string& pipeline) {
+    test::write_bytes(folder / "p.toml", pipeline);
+    test::write_bytes(folder / "cloud.las", "not read by check");
+    test::write_bytes(folder / "survey.toml", "crs = \"EPSG:32632\"\n[[points]]\nfile = \"cloud.las\"\n");
+    request.config = folder / "p.toml";
+  }
+  std::string fault() const {
+    try {
+      make_plan(request);
+    } catch (const core::Error& e) {
+      EXPECT_EQ(e.code(), core::Exit::bad_usage) << e.text();
+      return e.text();
+    }
+    return "";
+  }
+};
+
+TEST(Plan, ReadsConfigSurveyAndSets) {
+  Case c(good);
+  c.request.sets = {"smrf.slope=0.3", "run.tile=250 m", "terrain.dtm.cell=\"50 cm\""};
+  Plan plan = make_plan(c.request);
+  ASSERT_EQ(plan.stages.size(), 3u);
+  EXPECT_EQ(plan.run.tile.value, 250.0);
+  const core::Value told = explain(plan);
+  const core::Value& smrf = told.find("stages")->items()[1];
+  EXPECT_EQ(smrf.find("options")->find("slope")->find("value")->as_number(), 0.3);
+  EXPECT_EQ(smrf.find("options")->find("slope")->find("from")->as_text(), "--set");
+  EXPECT_EQ(smrf.find("options")->find("window")->find("from")->as_text(), "default");
+  EXPECT_EQ(told.find("stages")->items()[2].find("options")->find("cell")->find("value")->as_text(), "0.5 m");
+}
+
+TEST(Plan, TellsWhereAValueCameFrom) {
+  Case c(good);
+  Plan plan = make_plan(c.request);
+  const core::Value told = explain(plan);
+  EXPECT_TRUE(told.find("stages")->items()[1].find("options")->find("slope")->find("from")->as_text().ends_with("p.toml:5:9"));
+}
+
+TEST(Plan, AllFaultsAtOnceWithTheirPlaces) {
+  const Case c(
+      "[[stage]]\ntype = \"readers.las\"\n"
+      "[[stage]]\ntype = \"filters.smfr\"\n"
+      "[[stage]]\ntype = \"filters.smrf\"\nslop = 0.2\ncell = 1.0\n"
+      "[[stage]]\ntype = \"terrain.dtm\"\ncell = \"2 deg\"\n[rnu]\ntile = 1\n");
+  const std::string text = c.fault();
+  for (const char* part : {"p.toml:4:", "did you mean 'filters.smrf'", "did you mean 'slope'", "no unit", "'deg' is not a unit of length", "rnu"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
+}
+
+TEST(Plan, StagesMustFitOneAnother) {
+  EXPECT_NE(Case("[[stage]]\ntype = \"readers.las\"\n[[stage]]\ntype = \"terrain.contours\"\n").fault().find("needs dtm"), std::string::npos);
+  EXPECT_NE(Case("[[stage]]\ntype = \"georeference\"\n").fault().find("needs shots"), std::string::npos);
+  EXPECT_NE(Case("[[stage]]\ntype = \"filters.smrf\"\n").fault().find("no reader"), std::string::npos);
+  EXPECT_NE(Case("").fault().find("no stages"), std::string::npos);
+  EXPECT_NE(Case(std::string(good) + "[[stage]]\ntype = \"filters.returns\"\n").fault().find("strip stage behind a tile stage"), std::string::npos);
+}
+
+TEST(Plan, ASetThatFitsNothingIsAFault) {
+  Case c(good);
+  c.request.sets = {"smfr.slope=1"};
+  EXPECT_NE(c.fault().find("no stage 'smfr'"), std::string::npos);
+  c.request.sets = {"slope"};
+  EXPECT_NE(c.fault().find("is not stage.key=value"), std::string::npos);
+  c.request.sets = {"smrf.slope=steep"};
+  EXPECT_NE(c.fault().find("--set"), std::string::npos);
+}
+
+TEST(Plan, TheSameTreeAsJson) {
+  Case c(good);
+  test::write_bytes(c.folder / "p.json", io::to_json(io::read_value_file(c.folder / "p.toml")));
+  Plan toml = make_plan(c.request);
+  c.request.config = c.folder / "p.json";
+  Plan json = make_plan(c.request);
+  for (size_t i = 0; i < toml.stages.size(); ++i)
+    EXPECT_EQ(core::fingerprint_of(toml.stages[i].describe()), core::fingerprint_of(json.stages[i].describe()));
+}
+
+TEST(Plan, SchemaNamesEveryStage) {
+  const std::string text = io::to_json(schema());
+  for (const char* part : {"filters.smrf", "readers.laser", "writers.las", "lever_arm_scanner", "additionalProperties"})
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+}
+
+}  // namespace
+}  // namespace swath::pipeline

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/tile_store.h"
+
+#include <random>
+
+#include "core/error.h"
+
+#include "tests/world/support.h"
+
+namespace swath::pipeline {
+namespace {
+
+using core::Block;
+using core::Column;
+
+Block cloud(size_t n, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> at(-150.0, 250.0);
+  Block b;
+  b.origin = {1000, 2000, 0};
+  for (size_t i = 0; i < n; ++i) {
+    b.x.push_back(at(random));
+    b.y.push_back(at(random));
+    b.z.push_back(at(random));
+    b.record.push_back(static_cast<std::uint32_t>(i));
+    b.classification.push_back(1);
+  }
+  return b;
+}
+
+struct Store {
+  test::TemporaryFolder folder;
+  TileStore store;
+  Block all;
+
+  explicit Store(double side = 100.0, size_t buffer = 1 << 20) : store(folder / "strips", side, {1000, 2000, 0}) {
+    for (unsigned s = 1; s <= 2; ++s) {
+      StripWriter writer(folder / ("strips/strip_" + std::to_string(s)), side, buffer);
+      const Block part = cloud(3000, s);
+      for (std::uint32_t from = 0; from < 3000; from += 700) {
+        std::vector<std::uint32_t> rows;
+        for (std::uint32_t i = from; i < std::min(3000u, from + 700); ++i) rows.push_back(i);
+        writer.write(core::select(part, rows));
+      }
+      writer.commit("note " + std::to_string(s));
+      core::append(all, part);
+    }
+    store.open({"strip_1", "strip_2"});
+  }
+};
+
+TEST(TileStore, HoldsEveryPointOnceInTheOrderOfRecords) {
+  for (const size_t buffer : {size_t{1}, size_t{1} << 20}) {
+    const Store s(100.0, buffer);
+    EXPECT_EQ(s.store.points(), 6000u);
+    size_t seen = 0;
+    for (const auto& [key, n] : s.store.tiles()) {
+      const Block b = s.store.read(key, {Column::record, Column::classification});
+      EXPECT_EQ(b.size(), n);
+      EXPECT_EQ(b.record.size(), n);
+      int restarts = 0;
+      for (size_t i = 1; i < b.size(); ++i) restarts += b.record[i] <= b.record[i - 1];
+      EXPECT_LE(restarts, 1) << "records of the second strip follow those of the first";
+      seen += n;
+    }
+    EXPECT_EQ(seen, 6000u);
+  }
+}
+
+TEST(TileStore, ReadsOnlyTheColumnsAskedFor) {
+  const Store s;
+  const Block b = s.store.read(s.store.tiles().begin()->first, {Column::record});
+  EXPECT_FALSE(b.record.empty());
+  EXPECT_TRUE(b.classification.empty());
+  EXPECT_EQ(b.x.size(), b.size());
+}
+
+TEST(TileStore, HaloHoldsExactlyThePointsAroundTheBox) {
+  const Store s;
+  const double halo = 130.0;
+  for (const auto& [key, n] : s.store.tiles()) {
+    size_t own = 0;
+    const Block b = s.store.read_with_halo(key, halo, {}, own);
+    EXPECT_EQ(own, n);
+    const stages::Box box = stages::Box{key.ix * 100.0, key.iy * 100.0, key.ix * 100.0 + 100, key.iy * 100.0 + 100}.grown(halo);
+    size_t inside = 0;
+    for (size_t i = 0; i < s.all.size(); ++i) inside += box.holds(1000 + s.all.x[i], 2000 + s.all.y[i]);
+    EXPECT_EQ(b.size(), inside);
+    EXPECT_GE(s.store.points_with_halo(key, halo) * 10, b.size() * 8);
+  }
+}
+
+TEST(TileStore, OverlaysReplaceColumns) {
+  Store s;
+  std::filesystem::create_directories(s.folder / "overlay");
+  for (const auto& [key, n] : s.store.tiles()) {
+    size_t own = 0;
+    Block b = s.store.read_with_halo(key, 50, {Column::classification}, own);
+    for (auto& c : b.classification) c = 2;
+    s.store.write_overlay(s.folder / "overlay", key, b, own, {Column::classification});
+  }
+  s.store.add_overlay(s.folder / "overlay", {Column::classification});
+  for (const auto& [key, n] : s.store.tiles()) {
+    const Block b = s.store.read(key, {Column::classification, Column::record});
+    EXPECT_EQ(b.classification, std::vector<std::uint8_t>(n, 2));
+    EXPECT_EQ(b.record.size(), n);
+  }
+}
+
+TEST(TileStore, AnUncommittedStripLeavesNothing) {
+  const test::TemporaryFolder folder;
+  {
+    StripWriter writer(folder / "strips/strip_1", 100, 1);
+    writer.write(cloud(100, 1));
+  }
+  EXPECT_EQ(test::entries(folder / "strips"), 0u);
+  EXPECT_FALSE(TileStore::is_committed(folder / "strips/strip_1"));
+}
+
+TEST(TileStore, ACutFileIsAnError) {
+  Store s;
+  const auto key = s.store.tiles().begin()->first;
+  const auto file = s.folder / ("strips/strip_1/" + file_label(key) + ".pts");
+  const std::string bytes = test::read_bytes(file);
+  test::write_bytes(file, bytes.substr(0, bytes.size() - 5));
+  EXPECT_THROW(s.store.read(key, {Column::record, Column::classification}), core::Error);
+}
+
+}  // namespace
+}  // namespace swath::pipeline

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/registry.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/option_visitors.h"
+
+namespace swath::stages {
+namespace {
+
+TEST(Registry, NamesAreThoseOfTheStagesAndUnique) {
+  std::set<std::string_view> names;
+  for (const Entry& e : registry()) {
+    EXPECT_EQ(e.make()->info().name, e.name);
+    EXPECT_TRUE(names.insert(e.name).second) << e.name;
+  }
+  EXPECT_EQ(make_stage("filters.none"), nullptr);
+}
+
+TEST(Registry, EveryStageSaysWhatItDoesAndEveryOptionToo) {
+  for (const Entry& e : registry()) {
+    const auto stage = e.make();
+    EXPECT_TRUE(stage->info().summary.ends_with('.')) << e.name;
+    EXPECT_FALSE(stage->info().grains.empty()) << e.name;
+    for (const auto& o : core::document_options([&](core::Visitor& v) { stage->visit(v); }))
+      EXPECT_TRUE(o.doc.ends_with('.')) << e.name << " " << o.path;
+  }
+}
+
+TEST(Registry, DefaultsAreValid) {
+  for (const Entry& e : registry()) {
+    const auto stage = e.make();
+    std::vector<core::Fault> faults;
+    const core::Describe d = [&](core::Visitor& v) { stage->visit(v); };
+    core::read_options(d, core::effective_values(d), "", faults);
+    for (const auto& f : faults) ADD_FAILURE() << e.name << ": " << f.text();
+  }
+}
+
+}  // namespace
+}  // namespace swath::stages

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/stage.h"
+
+#include <gtest/gtest.h>
+
+namespace swath::stages {
+namespace {
+
+TEST(Stage, EveryCellBelongsToExactlyOneTile) {
+  // Tiles whose side is no multiple of the cell: the cells of neighbours neither overlap nor leave a gap.
+  const double cell = 0.7, side = 10.0;
+  std::int64_t next = 0;
+  for (int k = -3; k < 4; ++k) {
+    const core::Lattice l = lattice_in(cell, {k * side, 0, (k + 1) * side, side});
+    if (k > -3) EXPECT_EQ(l.i0, next);
+    next = l.i0 + l.nx;
+    for (int i = 0; i < l.nx; ++i) {
+      EXPECT_GE(l.centre_x(i), k * side);
+      EXPECT_LT(l.centre_x(i), (k + 1) * side);
+    }
+  }
+}
+
+TEST(Stage, LabelsAreCorners) {
+  const io::Survey survey;
+  Context c{survey};
+  c.tile_side = 250;
+  EXPECT_EQ(c.label({2, -3}), "500_-750");
+  c.tile_side = 30.48;
+  EXPECT_EQ(c.label({1, 0}), "30480mm_0");
+}
+
+}  // namespace
+}  // namespace swath::stages

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+
+#include "core/error.h"
+#include "io/info.h"
+#include "io/value_file.h"
+#include "pipeline/describe.h"
+#include "pipeline/plan.h"
+#include "pipeline/provenance.h"
+#include "pipeline/run.h"
+#include "pipeline/summary.h"
+#include "simulate/simulate.h"
+
+namespace {
+
+using namespace swath;
+
+struct Arguments {
+  pipeline::Request request;
+  std::string name, folder, scene;
+  bool quiet = false, json_log = false, json = false, check = false;
+
+  pipeline::Voice voice() const { return json_log ? pipeline::Voice::json : quiet ? pipeline::Voice::quiet : pipeline::Voice::bar; }
+};
+
+int run(Arguments& a, const std::string& command) {
+  pipeline::Plan plan = pipeline::make_plan(a.request);
+  pipeline::Progress progress(a.voice());
+  const pipeline::Outcome outcome = pipeline::run(plan, progress, command);
+  if (!a.quiet && !a.json_log) std::fputs(pipeline::summary(outcome.report, plan.run.output).c_str(), stdout);
+  if (outcome.code == core::Exit::quality_missed) std::fputs("swath: done, but a quality limit of the config was missed (see \"limits\" in report.json)\n", stderr);
+  return static_cast<int>(outcome.code);
+}
+
+int check(Arguments& a) {
+  const pipeline::Plan plan = pipeline::make_plan(a.request);
+  if (a.quiet) return 0;
+  std::printf("%s: %zu stages fit one another\n", a.request.config.c_str(), plan.stages.size());
+  if (plan.survey_file.empty())
+    std::printf("no survey was named: its files are not checked\n");
+  else
+    std::printf("%s: complete; %zu laser, %zu trajectory, %zu point files\n", plan.survey_file.c_str(), plan.survey.laser.size(),
+                plan.survey.trajectory.size(), plan.survey.points.size());
+  return 0;
+}
+
+int explain(Arguments& a) {
+  pipeline::Plan plan = pipeline::make_plan(a.request);
+  const core::Value told = pipeline::explain(plan);
+  std::fputs(a.json ? io::to_json(told).c_str() : pipeline::explanation_text(told).c_str(), stdout);
+  return 0;
+}
+
+int simulate_survey(Arguments& a) {
+  simulate::Options options = pipeline::simulation_options(a.request.config, a.request.sets);
+  pipeline::Progress progress(a.voice());
+  progress.begin("simulate", 1000, "per mille");
+  std::uint64_t told = 0;
+  const core::Value made = simulate::run(options, a.folder, [&](double share) {
+    const auto now = static_cast<std::uint64_t>(share * 1000);
+    if (now > told) progress.advance(now - told);
+    told = std::max(told, now);
+  });
+  progress.end();
+  if (!a.quiet) std::fputs(io::to_json(made).c_str(), stdout);
+  return 0;
+}
+
+int info(const Arguments& a) {
+  const core::Value told = io::describe_file(a.name);
+  std::fputs(a.json ? io::to_json(told).c_str() : io::info_text(told).c_str(), stdout);
+  return 0;
+}
+
+int docs(const Arguments& a) {
+  const auto differing = pipeline::write_docs(a.folder, a.check);
+  for (const auto& page : differing) std::printf("%s %s\n", a.check ? "out of date:" : "written:", page.c_str());
+  return a.check && !differing.empty() ? static_cast<int>(core::Exit::bad_data) : 0;
+}
+
+void add_request(CLI::App* c, Arguments& a) {
+  c->add_option("CONFIG", a.request.config, "Pipeline, .toml or .json")->required();
+  c->add_option("--survey", a.request.survey, "survey.toml, in place of the config's");
+  c->add_option("--output", a.request.output, "Folder of the products, in place of the config's");
+  c->add_option("--set", a.request.sets, "One option of one stage: smrf.cell=\"50 cm\", run.tile=\"250 m\"")->allow_extra_args(false);
+}
+
+int command_line(int argc, char** argv) {
+  Arguments a;
+  CLI::App app(
+      "Examples\n"
+      "  swath simulate demo                                   a small survey with its truth, in demo/\n"
+      "  swath run configs/survey.toml --survey demo/survey.toml --output out\n"
+      "  swath run configs/survey.toml --survey demo/survey.toml --set smrf.cell=\"50 cm\"\n"
+      "  swath info flight.laz                                 what a file holds, and what looks wrong in it\n"
+      "  swath stages filters.smrf                             a stage and its options\n"
+      "\n"
+      "swath: raw records of an airborne laser survey in; georeferenced, classified points, terrain model and contours out.\n",
+      "swath");
+  app.set_version_flag("--version", "swath " + std::string(pipeline::program_version()));
+  app.require_subcommand(1);
+  app.footer("Exit codes: 0 done, 1 bad data, 2 bad usage or config, 3 done but a quality limit set in the config was missed.");
+
+  auto* c = app.add_subcommand("run", "Examples\n  swath run configs/survey.toml --survey demo/survey.toml --output out\n  swath run configs/survey.toml --set run.memory=\"4 GB\" --threads 8 --json-log\n\nRun a pipeline on a survey; the same command continues a run that was killed.");
+  add_request(c, a);
+  c->add_option("--threads", a.request.threads, "Threads, in place of the config's (0: one per processor)");
+  c->add_flag("--quiet", a.quiet, "Nothing but errors");
+  c->add_flag("--json-log", a.json_log, "Progress as one JSON object per line on standard error");
+
+  c = app.add_subcommand("check", "Examples\n  swath check configs/survey.toml --survey demo/survey.toml\n\nTell every fault of a config and its survey, without reading data.");
+  add_request(c, a);
+  c->add_flag("--quiet", a.quiet, "Nothing but faults");
+
+  c = app.add_subcommand("explain", "Examples\n  swath explain configs/survey.toml --survey demo/survey.toml --set smrf.slope=0.3\n\nShow every effective option and where its value comes from.");
+  add_request(c, a);
+  c->add_flag("--json", a.json, "As JSON");
+
+  c = app.add_subcommand("stages", "Examples\n  swath stages\n  swath stages filters.smrf\n\nList the stages, or tell of one.");
+  c->add_option("NAME", a.name, "Stage");
+
+  app.add_subcommand("schema", "Examples\n  swath schema > swath.schema.json\n\nPrint the JSON Schema of pipelines and surveys.");
+
+  c = app.add_subcommand("simulate", "Examples\n  swath simulate demo\n  swath simulate demo --set seed=7 --set lines=2 --set scene=forest\n\nMake the raw records of a survey whose truth is known.");
+  c->add_option("FOLDER", a.folder, "Folder to make the survey in")->required();
+  c->add_option("--config", a.request.config, "Options of the simulation, .toml or .json");
+  c->add_option("--set", a.request.sets, "One option of the simulation: seed=7, flight.speed=\"60 m/s\"")->allow_extra_args(false);
+  c->add_flag("--quiet", a.quiet, "Nothing but errors");
+
+  c = app.add_subcommand("info", "Examples\n  swath info flight.laz\n  swath info trajectory.sbet --json\n\nTell what a LAS, LAZ, SBET, CSD, NumPy, text, survey.toml or GeoTIFF file holds, and what looks wrong.");
+  c->add_option("FILE", a.name, "File")->required();
+  c->add_flag("--json", a.json, "As JSON");
+
+  c = app.add_subcommand("docs", "Examples\n  swath docs docs\n  swath docs docs --check\n\nWrite the generated parts of the documentation's pages.");
+  c->add_option("FOLDER", a.folder, "The docs folder")->required();
+  c->add_flag("--check", a.check, "Write nothing; exit 1 where a page is out of date");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : static_cast<int>(core::Exit::bad_usage);
+  }
+  std::string command = "swath";
+  for (int i = 1; i < argc; ++i) command += std::string(" ") + argv[i];
+
+  const std::string name = app.get_subcommands().front()->get_name();
+  if (name == "run") return run(a, command);
+  if (name == "check") return check(a);
+  if (name == "explain") return explain(a);
+  if (name == "simulate") return simulate_survey(a);
+  if (name == "info") return info(a);
+  if (name == "docs") return docs(a);
+  if (name == "stages") std::fputs(a.name.empty() ? pipeline::stage_list().c_str() : pipeline::stage_help(a.name).c_str(), stdout);
+  if (name == "schema") std::fputs(io::to_json(pipeline::schema()).c_str(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    return command_line(argc, argv);
+  } catch (const swath::core::Error& e) {
+    std::fprintf(stderr, "swath: error: %s\n", e.text().c_str());
+    return static_cast<int>(e.code());
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "swath: error: out of memory\n  hint: a smaller run.memory or run.tile needs less\n");
+    return static_cast<int>(swath::core::Exit::bad_data);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "swath: error: %s\n", e.what());
+    return static_cast<int>(swath::core::Exit::bad_data);
+  }
+}
