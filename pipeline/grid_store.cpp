@@ -21,11 +21,18 @@ core::Grid GridStore::window(stages::Product product, const core::Lattice& latti
 }
 
 double GridStore::cell(stages::Product product) const {
-  const auto at = folders_.find(product);
-  if (at != folders_.end())
-    for (const auto& entry : std::filesystem::directory_iterator(at->second))
-      if (entry.path().extension() == ".grid") return stages::read_grid_tile(entry.path()).lattice.cell;
-  throw core::Error("there is no " + std::string(stages::name_of(product)) + " to read from");
+  const auto at = cells_.find(product);
+  if (at == cells_.end()) throw core::Error("there is no " + std::string(stages::name_of(product)) + " to read from");
+  return at->second;
+}
+
+void GridStore::add(stages::Product product, std::filesystem::path folder) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().extension() == ".grid") {
+      cells_[product] = stages::read_grid_tile(entry.path()).lattice.cell;
+      break;
+    }
+  folders_[product] = std::move(folder);
 }
 
 }  // namespace swath::pipeline

@@ -14,7 +14,9 @@ class GridStore : public stages::Grids {
  public:
   explicit GridStore(double tile_side) : tile_side_(tile_side) {}
   /// From now on the product's tiles are in `folder`.
-  void add(stages::Product product, std::filesystem::path folder) { folders_[product] = std::move(folder); }
+  void add(stages::Product product, std::filesystem::path folder);
+
+  bool has(stages::Product product) const override { return folders_.contains(product); }
 
   core::Grid window(stages::Product product, const core::Lattice& lattice) const override;
   double cell(stages::Product product) const override;
@@ -22,6 +24,7 @@ class GridStore : public stages::Grids {
  private:
   double tile_side_;
   std::map<stages::Product, std::filesystem::path> folders_;
+  std::map<stages::Product, double> cells_;
 };
 
 }  // namespace swath::pipeline

@@ -259,7 +259,7 @@ void Engine::run_strips() {
 void Engine::run_tiles(size_t number) {
   const Stage& s = stage(number);
   const fs::path mine = folder(number);
-  const core::ColumnSet columns = s.info().needs | s.info().gives;
+  const core::ColumnSet columns = s.info().needs | s.info().gives | s.also_reads();
   const bool changes = !s.info().gives.empty();
   std::vector<TileKey> keys;
   for (const auto& [key, n] : store_->tiles()) keys.push_back(key);

@@ -56,6 +56,7 @@ core::Lattice lattice_in(double cell, const Box& box);
 class Grids {
  public:
   virtual ~Grids() = default;
+  virtual bool has(Product product) const = 0;
   /// The window of a product's surface, from as many tiles as it touches; void (no_data) outside them.
   virtual core::Grid window(Product product, const core::Lattice& lattice) const = 0;
   /// Side of the product's cells, m.
@@ -141,6 +142,8 @@ class Stage {
 
   virtual void run_strip(const Context&, StripBatch&, core::Tally&) const {}
 
+  /// Columns a tile stage reads where they are there, beside those it needs.
+  virtual core::ColumnSet also_reads() const { return {}; }
   /// Metres of points around a tile that its result depends on.
   virtual double halo() const { return 0.0; }
   /// Bytes of working memory per point of tile and halo, beside the columns.

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One maker per stage; registry.cpp lists them.
+#pragma once
+
+#include <memory>
+
+#include "stages/stage.h"
+
+namespace swath::stages {
+
+std::unique_ptr<Stage> make_trajectory_reader();
+std::unique_ptr<Stage> make_laser_reader();
+std::unique_ptr<Stage> make_las_reader();
+std::unique_ptr<Stage> make_georeference();
+std::unique_ptr<Stage> make_returns();
+std::unique_ptr<Stage> make_noise();
+std::unique_ptr<Stage> make_smrf();
+std::unique_ptr<Stage> make_hag_dem();
+std::unique_ptr<Stage> make_dtm();
+std::unique_ptr<Stage> make_dsm();
+std::unique_ptr<Stage> make_contours();
+std::unique_ptr<Stage> make_las_writer();
+std::unique_ptr<Stage> make_gdal_writer();
+std::unique_ptr<Stage> make_picture_writer();
+std::unique_ptr<Stage> make_truth();
+
+}  // namespace swath::stages

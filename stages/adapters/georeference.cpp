@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calib/georeference.h"
+
+#include <mutex>
+
+#include "core/error.h"
+#include "stages/adapters/adapters.h"
+
+namespace swath::stages {
+namespace {
+
+struct Options {};
+template <class V>
+void describe(Options&, V&) {}
+
+class Georeference : public OptionStage<Options> {
+ public:
+  const Info& info() const override {
+    static const Info info{
+        "georeference",
+        "Takes every return from the scanner's frame to the map, at its own instant, with its uncertainty.",
+        {Grain::strip},
+        {},
+        {core::Column::x, core::Column::y, core::Column::z, core::Column::time, core::Column::intensity, core::Column::return_number,
+         core::Column::return_count, core::Column::classification, core::Column::flags, core::Column::scan_angle, core::Column::strip,
+         core::Column::record, core::Column::range, core::Column::incidence, core::Column::sigma_h, core::Column::sigma_v},
+        {Product::trajectory, Product::shots},
+        {Product::points}};
+    return info;
+  }
+
+  void run_strip(const Context& context, StripBatch& batch, core::Tally& tally) const override {
+    const std::shared_ptr<const calib::Georeferencer> g = georeferencer(context);
+    core::Block block;
+    block.origin = context.origin;
+    g->run(batch.shots, block, tally);
+    block.strip.assign(block.size(), static_cast<std::uint16_t>(batch.line));
+    block.classification.resize(block.size(), core::point_class::never_classified);
+    batch.block = std::move(block);
+    batch.shots = {};
+  }
+
+ private:
+  /// Made once, by the first batch: it needs the trajectory, which a survey stage has read by then.
+  std::shared_ptr<const calib::Georeferencer> georeferencer(const Context& context) const {
+    const std::lock_guard lock(mutex_);
+    if (!georeferencer_)
+      georeferencer_ = std::make_shared<calib::Georeferencer>(context.survey.scanner, context.survey.calibration, context.survey.sigma,
+                                                              *context.trajectory, context.crs, context.origin);
+    return georeferencer_;
+  }
+  mutable std::mutex mutex_;
+  mutable std::shared_ptr<const calib::Georeferencer> georeferencer_;
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> make_georeference() { return std::make_unique<Georeference>(); }
+
+}  // namespace swath::stages

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/registry.h"
+
+#include "stages/adapters/adapters.h"
+
+namespace swath::stages {
+
+const std::vector<Entry>& registry() {
+  static const std::vector<Entry> list = {
+      {"readers.trajectory", make_trajectory_reader},
+      {"readers.laser", make_laser_reader},
+      {"readers.las", make_las_reader},
+      {"georeference", make_georeference},
+      {"filters.returns", make_returns},
+      {"filters.noise", make_noise},
+      {"filters.smrf", make_smrf},
+      {"filters.hag_dem", make_hag_dem},
+      {"terrain.dtm", make_dtm},
+      {"terrain.dsm", make_dsm},
+      {"terrain.contours", make_contours},
+      {"writers.las", make_las_writer},
+      {"writers.gdal", make_gdal_writer},
+      {"writers.picture", make_picture_writer},
+      {"report.truth", make_truth},
+  };
+  return list;
+}
+
+std::unique_ptr<Stage> make_stage(std::string_view name) {
+  for (const Entry& e : registry())
+    if (e.name == name) return e.make();
+  return nullptr;
+}
+
+}  // namespace swath::stages
