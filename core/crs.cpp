@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Coordinate reference systems and transformations through PROJ's C interface. PROJ objects are made in a context of their own with the
 // log and the network off, and never shared between threads: a Crs keeps only plain facts and its definition.
+// Over 400 lines: Crs and Transform share PROJ's handles, which no header may show.
 #include "core/crs.h"
 
 #include <proj.h>
@@ -226,6 +227,11 @@ Pj three_dimensional(PJ_CONTEXT* c, const Crs& crs) {
   return promoted ? std::move(promoted) : std::move(plain);
 }
 
+std::string shown(const Crs& crs) {
+  const Crs::State& s = of(crs);
+  return "\"" + (s.name.rfind("unknown", 0) == 0 ? short_form(s.definition) : s.name) + "\"";
+}
+
 struct Candidate {
   double accuracy = 0.0;  // m; infinite where unknown
   double west = -180.0, south = -90.0, east = 180.0, north = 90.0;
@@ -242,21 +248,27 @@ Candidate candidate_of(PJ_CONTEXT* c, const PJ* operation) {
   double west, south, east, north;
   if (proj_get_area_of_use(c, operation, &west, &south, &east, &north, nullptr) && west > -1000.0)
     k.west = west, k.south = south, k.east = east, k.north = north;
+  bool has_null = false;  // PROJ's own grid of zeros: no file, and not counted as available
   for (int i = 0; i < proj_coordoperation_get_grid_used_count(c, operation); ++i) {
-    const char *name = nullptr, *full = nullptr, *package = nullptr, *url = nullptr;
-    int direct = 0, open = 0, available = 0;
-    if (!proj_coordoperation_get_grid_used(c, operation, i, &name, &full, &package, &url, &direct, &open, &available) || available)
+    const char *name = nullptr, *url = nullptr;
+    int available = 0;
+    if (!proj_coordoperation_get_grid_used(c, operation, i, &name, nullptr, nullptr, &url, nullptr, nullptr, &available) || available)
       continue;
-    if (text(name) == "@null" || text(name) == "null") continue;  // PROJ's own grid of zeros
-    k.missing += (k.missing.empty() ? "" : ", ") + text(name);
-    if (k.hint.empty())
-      k.hint = !text(url).empty()
-                   ? "fetch it with `projsync --file " + text(name) + "`, or put " + text(url) + " into a folder of PROJ_DATA"
-                   : "put the file into a folder of PROJ_DATA, or correct its path in the CRS";
+    const std::string grid = text(name);
+    if (grid == "@null" || grid == "null") {
+      has_null = true;
+      continue;
+    }
+    k.missing += (k.missing.empty() ? "the grid file " : " and ") + grid;
+    k.hint += (k.hint.empty() ? "" : "; ") +
+              (text(url).empty() ? "put " + grid +
+                                       " into a folder of PROJ_DATA or correct its path; where this PROJ has no such grid, name a GTX or "
+                                       "GeoTIFF file of it in PROJ text: +geoidgrids=FILE"
+                                 : "fetch " + text(url) + " with `projsync --file " + grid + "`, or put it into a folder of PROJ_DATA");
   }
   if (!k.missing.empty())
-    k.missing = "the grid file " + k.missing + ", which is not installed";
-  else if (!proj_coordoperation_is_instantiable(c, operation))
+    k.missing += ", not installed";
+  else if (!has_null && !proj_coordoperation_is_instantiable(c, operation))
     k.missing = "a method that this PROJ does not have", k.hint = "install a newer PROJ";
   return k;
 }
@@ -279,8 +291,10 @@ std::vector<Candidate> candidates_between(PJ_CONTEXT* c, const PJ* from, const P
 // PROJ would go on with the next best operation where a grid is missing, and with none at all where only the vertical part needs it.
 void refuse_where_worse(const std::vector<Candidate>& all, const std::string& what) {
   if (all.empty())
-    throw Error("no transformation is known from " + what, {},
-                "the datum of one of them is unknown or unrelated: state CRSs with known datums (PROJ text: +datum=, not only +ellps=)");
+    throw Error(
+        "no transformation is known from " + what, {},
+        "a datum is not known (PROJ text: give +datum=, not only +ellps=), or PROJ has no shift or geoid between the two: choose the "
+        "CRS of the data's own datum");
   const auto here = [](const Candidate& k) { return k.missing.empty(); };
   const bool any = std::any_of(all.begin(), all.end(), here);
   for (const Candidate& k : all) {
@@ -326,7 +340,7 @@ Transform::Transform(const Crs& from, const Crs& to) : state_(std::make_unique<S
   State& s = *state_;
   s.context = new_context();
   PJ_CONTEXT* c = s.context.get();
-  s.what = "\"" + of(from).name + "\" to \"" + of(to).name + "\"";
+  s.what = shown(from) + " to " + shown(to);
   Pj source = three_dimensional(c, from);
   Pj target = three_dimensional(c, to);
   const std::vector<Candidate> candidates = candidates_between(c, source.get(), target.get());

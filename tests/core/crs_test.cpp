@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -139,6 +140,27 @@ TEST(Crs, WktComesBackInBothForms) {
   EXPECT_EQ(Crs("EPSG:32632").wkt().rfind("PROJCRS[", 0), 0u);
 }
 
+// As older software writes LAS files: the ESRI and the bare GDAL form, without authorities.
+TEST(Crs, ReadsWkt1WithoutAuthorities) {
+  const std::string geographic =
+      R"(GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]])";
+  const std::string parameters =
+      R"(PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],)"
+      R"(PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1]])";
+  const std::string esri =
+      R"(PROJCS["WGS_1984_UTM_Zone_32N",GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],)"
+      R"(PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["False_Easting",500000.0],)"
+      R"(PARAMETER["False_Northing",0.0],PARAMETER["Central_Meridian",9.0],PARAMETER["Scale_Factor",0.9996],)"
+      R"(PARAMETER["Latitude_Of_Origin",0.0],UNIT["Meter",1.0]])";
+  for (const std::string& wkt : {"PROJCS[\"WGS 84 / UTM zone 32N\"," + geographic + "," + parameters, esri}) {
+    const Crs crs(wkt);
+    EXPECT_TRUE(crs.is_projected());
+    const Eigen::Vector3d m = Transform(wgs84_ecef(), crs)(ecef_of({50.0 * degree, 8.0 * degree, 120.0}));
+    EXPECT_LT((m.head<2>() - utm_by_krueger(50.0 * degree, 8.0 * degree, 9.0 * degree)).norm(), micrometre);
+    EXPECT_NEAR(m.z(), 120.0, micrometre);
+  }
+}
+
 TEST(Crs, RefusesWhatIsNoCrs) {
   EXPECT_TRUE(has(refusal([] { Crs("EPSG:999999"); }), "EPSG:999999"));
   EXPECT_TRUE(has(refusal([] { Crs("32632"); }), "\"EPSG:32632\""));
@@ -215,6 +237,23 @@ TEST(Transform, AppliesAGeoidGrid) {
   EXPECT_NEAR(z[1], 312.5 - 43.0, 5e-6);
 }
 
+// Geoid heights that NGA publishes with its EGM96 program (F477 OUTPUT.DAT), from the full series; PROJ has the grid of 15'.
+TEST(Transform, AppliesEgm96WhereItsGridIsInstalled) {
+  constexpr double of_the_grid = 0.15;  // m, bilinear interpolation in 15' cells
+  std::optional<Transform> t;
+  try {
+    t.emplace(wgs84_geodetic(), Crs("EPSG:4326+5773"));
+  } catch (const Error& e) {
+    GTEST_SKIP() << e.text();
+  }
+  struct Published {
+    double lat, lon, undulation;
+  };
+  for (const auto& [lat, lon, undulation] : {Published{38.628155, -90.220845, -31.628}, Published{-14.621217, -54.978886, -2.969},
+                                             Published{46.874319, 102.448729, -43.575}, Published{-23.617446, 133.874712, 15.871}})
+    EXPECT_NEAR((*t)({lon, lat, 100.0}).z(), 100.0 - undulation, of_the_grid) << lat << ' ' << lon;
+}
+
 TEST(Transform, RefusesAMissingGeoidGrid) {
   const std::string german = refusal([] { Transform(wgs84_ecef(), Crs("EPSG:25832+7837")); });
   if (!german.empty()) {
@@ -259,7 +298,8 @@ TEST(Transform, RefusesBallpark) {
 TEST(Transform, SameCrsChangesNothing) {
   const Eigen::Vector3d p(500123.25, 5.6e6, 77.0);
   EXPECT_LT((Transform(Crs("EPSG:25832+7837"), Crs("EPSG:25832+7837"))(p) - p).norm(), micrometre);
-  EXPECT_TRUE(std::isfinite(Transform(wgs84_geodetic(), Crs("+proj=merc +a=6378137 +b=6378137 +nadgrids=@null +wktext"))({9, 50, 1}).x()));
+  EXPECT_TRUE(
+      std::isfinite(Transform(wgs84_geodetic(), Crs("+proj=merc +a=6378137 +b=6378137 +nadgrids=@null +wktext"))({9.0, 50.0, 1.0}).x()));
   EXPECT_LT((Transform(Crs("EPSG:32632"), Crs("EPSG:32632"))(p) - p).norm(), micrometre);
 }
 
