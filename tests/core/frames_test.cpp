@@ -21,8 +21,8 @@ TEST(Frames, MatrixIsHeadingAfterPitchAfterRoll) {
   EXPECT_LT((matrix_of(a) - about(2, 2.5) * about(1, -0.2) * about(0, 0.1)).norm(), rounding);
 }
 
-// By hand: heading east, nose up 30 deg, right wing down 90 deg. Forward points east and up; the right wing points straight down but for
-// the pitch, which leans it west... z of the body (formerly down) lies level, pointing north's opposite.
+// By hand: heading east, nose up 30 deg, right wing down 90 deg. Forward points east and up, the right wing down and (square to the nose)
+// east, the belly to the left of the flight, north.
 TEST(Frames, MatrixMatchesAnAttitudeComposedByHand) {
   const Eigen::Matrix3d R = matrix_of({pi / 2, pi / 6, pi / 2});
   const double s = 0.5, c = std::sqrt(3.0) / 2.0;
