@@ -9,7 +9,7 @@
 #include "io/value_file.h"
 #include "io/vector.h"
 #include "io/vrt.h"
-#include "report/relief.h"
+#include "report/picture.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/units.h"
 
@@ -151,9 +151,94 @@ class GridTiles : public OptionStage<NoOptions> {
   }
 };
 
+/// The DTM's cells that have a height, as one lattice whose borders do not depend on the tiling; empty where there is none.
+core::Lattice extent_of(const Context& context, const std::vector<TileKey>& tiles) {
+  const double cell = context.grids->cell(Product::dtm);
+  std::int64_t i0 = 0, j0 = 0, i1 = 0, j1 = 0;
+  for (const TileKey key : tiles) {
+    const core::Grid g = context.grids->window(Product::dtm, lattice_in(cell, context.box_of(key)));
+    for (int j = 0; j < g.lattice.ny; ++j)
+      for (int i = 0; i < g.lattice.nx; ++i) {
+        if (g.reason[g.lattice.at(i, j)] != core::Void::none) continue;
+        const std::int64_t gi = g.lattice.i0 + i, gj = g.lattice.j0 + j;
+        if (i0 == i1) i0 = gi, i1 = gi + 1, j0 = gj, j1 = gj + 1;
+        i0 = std::min(i0, gi);
+        i1 = std::max(i1, gi + 1);
+        j0 = std::min(j0, gj);
+        j1 = std::max(j1, gj + 1);
+      }
+  }
+  return {cell, i0, j0, static_cast<int>(i1 - i0), static_cast<int>(j1 - j0)};
+}
+
+/// The DTM over `extent`, averaged to at most `most` cells a side, read in bands of rows so that memory stays bounded.
+core::Grid overview(const Context& context, core::Lattice extent, int most) {
+  const int factor = std::max(1, (std::max(extent.nx, extent.ny) + most - 1) / most);
+  if (factor == 1) return context.grids->window(Product::dtm, extent);
+  const core::Lattice whole{extent.cell * factor, 0, 0, (extent.nx + factor - 1) / factor, (extent.ny + factor - 1) / factor};
+  core::Grid out(whole);
+  for (int j = 0; j < whole.ny; ++j) {
+    const core::Grid row = report::averaged(
+        context.grids->window(Product::dtm, {extent.cell, extent.i0, extent.j0 + static_cast<std::int64_t>(j) * factor, whole.nx * factor, factor}),
+        factor);
+    for (int i = 0; i < whole.nx; ++i) {
+      out.height[whole.at(i, j)] = row.height[row.lattice.at(i, 0)];
+      out.reason[whole.at(i, j)] = row.reason[row.lattice.at(i, 0)];
+    }
+  }
+  return out;
+}
+
+struct PictureWriteOptions : report::PictureOptions {
+  std::string file = "relief.png";
+  std::string contours = "contours.gpkg";
+};
+
+template <class V>
+void describe(PictureWriteOptions& o, V& v) {
+  v.option("file", o.file, "Name of the picture within the output.");
+  v.option("contours", o.contours, "The run's contours to draw over it; empty for none.");
+  describe(static_cast<report::PictureOptions&>(o), v);
+}
+
+class PictureWriter : public OptionStage<PictureWriteOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{"writers.picture", "Picture of the terrain: hillshade with contours, as PNG.", {Grain::merge}, {}, {}, {Product::dtm}, {}};
+    return info;
+  }
+  void run_merge(const Context& context, MergeJob& job) const override {
+    const core::Lattice extent = extent_of(context, job.tiles);
+    if (extent.size() == 0) return;
+    core::Grid grid = overview(context, extent, 2 * options.max_side);
+    const double cell = grid.lattice.cell;
+    grid = in_crs_units(context, std::move(grid));
+
+    report::PictureOptions o = options;
+    if (o.title.empty()) o.title = context.survey.name;
+    o.unit = context.crs.unit_name() == "metre" ? "m" : "ft";
+    o.height_unit = context.vertical_unit == 1.0 ? "m" : "ft";
+    o.light.exaggeration *= context.vertical_unit / context.unit;
+    std::vector<core::ContourLine> lines;
+    if (!options.contours.empty() && context.grids->has(Product::contours) && fs::exists(context.output / options.contours)) {
+      // The overview has its own corner where it was averaged: contours are moved along.
+      const bool moved = cell != extent.cell;
+      const double x0 = moved ? extent.west() / context.unit : 0.0, y0 = moved ? extent.south() / context.unit : 0.0;
+      for (io::VectorLine& line : io::read_lines(context.output / options.contours).lines) {
+        for (double& x : line.x) x -= x0;
+        for (double& y : line.y) y -= y0;
+        lines.push_back({std::move(line.x), std::move(line.y), line.height, line.index, line.closed});
+      }
+    }
+    io::write_png(context.output / options.file, report::relief_picture(grid, lines, o));
+    job.findings["file"] = options.file;
+  }
+};
+
 }  // namespace
 
 std::unique_ptr<Stage> make_las_writer() { return std::make_unique<LasTiles>(); }
+std::unique_ptr<Stage> make_picture_writer() { return std::make_unique<PictureWriter>(); }
 std::unique_ptr<Stage> make_gdal_writer() { return std::make_unique<GridTiles>(); }
 
 }  // namespace swath::stages
