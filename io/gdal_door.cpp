@@ -89,6 +89,10 @@ CrsFacts crs_facts(const std::string& crs) {
   facts.wkt = wkt2(srs);
   const char* name = srs.GetName();
   facts.name = name ? name : "";
+  srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  facts.axis_mapping.clear();
+  for (const int axis : srs.GetDataAxisToSRSAxisMapping())
+    facts.axis_mapping += (facts.axis_mapping.empty() ? "" : ",") + std::to_string(axis);
   if (facts.geographic) {
     facts.unit = "degree";
   } else {

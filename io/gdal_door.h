@@ -48,6 +48,7 @@ struct CrsFacts {
   bool geographic = false;               ///< horizontal axes in degrees
   std::string wkt;                       ///< WKT2:2019, whole
   std::string horizontal_wkt;            ///< WKT2:2019 without the vertical part
+  std::string axis_mapping = "1,2";      ///< which CRS axes easting and northing are ("2,1" where the CRS puts northing first)
   std::string name;                      ///< of the whole CRS
   std::string unit = "unknown";          ///< of the horizontal axes: "m", "ft", "US survey foot", "degree", ...
   std::string vertical_unit = "m";       ///< of the vertical part; a projected CRS without one: the horizontal unit

@@ -82,6 +82,7 @@ RasterInfo info_of(GDALDataset& d) {
   d.GetGeoTransform(info.geotransform.data());
   info.nx = d.GetRasterXSize();
   info.ny = d.GetRasterYSize();
+  if (d.GetRasterCount() > 0) d.GetRasterBand(1)->GetBlockSize(&info.block_x, &info.block_y);
   for (int b = 1; b <= d.GetRasterCount(); ++b) {
     GDALRasterBand* band = d.GetRasterBand(b);
     info.names.emplace_back(band->GetDescription());
