@@ -13,7 +13,7 @@
 namespace swath::report {
 namespace {
 
-constexpr core::Rgb paper{255, 255, 255};
+constexpr core::Rgb paper{255, 255, 255}, level_grey{180, 180, 180};
 constexpr int margin = 14, text_scale = 2;  // pixels; pixels per dot of the letters
 constexpr int narrowest = 760;              // of the whole picture, so that the legend has room
 constexpr int enlarged_side = 1000;         // a small grid is enlarged to about this many pixels
@@ -45,7 +45,7 @@ std::vector<std::array<float, 3>> ground_colours(const core::Grid& g, const Span
   for (size_t k = 0; k < out.size(); ++k) {
     if (std::isnan(g.height[k])) continue;
     const double t = span.high > span.low ? (g.height[k] - span.low) / (span.high - span.low) : 0.5;
-    const core::Rgb base = o.tint ? tint_of(t) : core::Rgb{225, 225, 225};
+    const core::Rgb base = o.tint ? tint_of(t) : level_grey;
     const double brightness = darkest + (1.0 - darkest) * std::pow(shade[k] / level, contrast);
     for (size_t c = 0; c < 3; ++c) out[k][c] = static_cast<float>(std::min(255.0, base[c] * brightness));
   }
