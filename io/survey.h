@@ -184,6 +184,7 @@ void describe(TruthFiles& t, V& v) {
 struct Survey {
   std::string name = "survey";
   std::string crs;
+  std::optional<core::Metres> height_unit;
   core::Scanner scanner;
   core::Calibration calibration;
   core::SensorSigma sigma;
@@ -200,6 +201,8 @@ template <class V>
 void describe(Survey& s, V& v) {
   v.option("name", s.name, "Name of the survey.");
   v.option("crs", s.crs, "CRS of the products: EPSG code (\"EPSG:32632\", compound \"EPSG:25832+7837\"), WKT or PROJ text.");
+  v.option("height_unit", s.height_unit, core::above(0.0),
+           "One unit of heights where the CRS has no vertical part, for example \"1 ft\"; without it the metre, and for point clouds the unit of the horizontal axes.");
   v.table("scanner", s.scanner, "Scanner model.");
   v.table("calibration", s.calibration, "Calibration and mounting.");
   v.table("sigma", s.sigma, "How well calibration and records are known.");

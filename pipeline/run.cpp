@@ -121,11 +121,17 @@ void Engine::prepare() {
                             plan_.survey_file.string() + ": crs", "choose a projected CRS, for example the UTM zone EPSG:326xx");
   context_.unit = context_.crs.metres_per_unit();
   context_.vertical_unit = context_.crs.vertical_metres_per_unit();
+  if (!context_.crs.has_vertical()) {
+    if (plan_.survey.height_unit) context_.vertical_unit = plan_.survey.height_unit->value;
+    else if (!plan_.survey.points.empty()) context_.vertical_unit = context_.unit;
+  }
   context_.tile_side = plan_.run.tile.value;
   context_.output = output_;
   context_.config_folder = plan_.config.parent_path();
   context_.grids = &grids_;
   for (const PlannedStage& s : plan_.stages) s.stage->check(context_);
+  for (const PlannedStage& s : plan_.stages)
+    if (s.stage->is_source()) s.stage->locate(context_);
   inputs_ = inputs_of(plan_);
   fingerprints_ = fingerprints(plan_, inputs_);
   for (size_t i = 0; i < plan_.stages.size(); ++i)

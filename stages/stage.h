@@ -135,6 +135,8 @@ class Stage {
   virtual void run_survey(Context&, core::Tally&, core::Value& /*findings*/) const {}
 
   virtual bool is_source() const { return false; }
+  /// Sets context.origin from the source's own coordinates; sources of raw shots leave it to the trajectory.
+  virtual void locate(Context&) const {}
   virtual std::vector<Strip> strips(const Context&, core::Tally&) const { return {}; }
   virtual std::unique_ptr<StripReader> open(const Context&, const Strip&) const { return nullptr; }
   /// Files whose content decides the result (hashed for provenance and resume).

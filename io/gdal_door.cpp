@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/gdal_door.h"
+
+#include <cpl_conv.h>
+#include <cpl_error.h>
+#include <gdal.h>
+#include <ogr_spatialref.h>
+
+#include <cmath>
+#include <mutex>
+
+#include "core/error.h"
+
+namespace swath::io {
+namespace {
+
+void catch_message(CPLErr kind, CPLErrorNum, const char* message) {
+  auto* messages = static_cast<GdalMessages*>(CPLGetErrorHandlerUserData());
+  if (kind == CE_Debug || kind == CE_None || !messages) return;
+  messages->note(kind >= CE_Failure, message);
+}
+
+/// Names as the unit type of GeoTIFF bands is written and as GIS show it.
+std::string short_unit(const std::string& name, double si) {
+  if (si == 1.0) return "m";
+  if (name == "foot" || name == "ft" || si == 0.3048) return "ft";
+  if (std::abs(si - 1200.0 / 3937.0) < 1e-12) return "US survey foot";
+  return name;
+}
+
+std::string wkt2(const OGRSpatialReference& srs) {
+  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
+  char* text = nullptr;
+  std::string out;
+  if (srs.exportToWkt(&text, options) == OGRERR_NONE && text) out = text;
+  CPLFree(text);
+  return out;
+}
+
+}  // namespace
+
+GdalMessages::GdalMessages() {
+  static std::once_flag once;
+  std::call_once(once, [] { GDALAllRegister(); });
+  CPLPushErrorHandlerEx(catch_message, this);
+}
+
+GdalMessages::~GdalMessages() { CPLPopErrorHandler(); }
+
+void GdalMessages::note(bool failure, const char* message) {
+  if (text_.empty() || (failure && !failed_)) text_ = message;
+  failed_ = failed_ || failure;
+}
+
+void GdalMessages::fail(const std::string& doing, const std::filesystem::path& file, std::string hint) const {
+  std::error_code ec;
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  const auto space = std::filesystem::space(folder, ec);
+  constexpr std::uintmax_t nearly_nothing = 1u << 20;  // bytes
+  const bool full = text_.find("No space left") != std::string::npos || (!ec && space.available < nearly_nothing);
+  if (full && hint.empty()) hint = "the disk is full: free space there, then run the same command again; what is finished is kept";
+  throw core::Error(text_.empty() ? doing : doing + ": " + text_, file.string(), hint);
+}
+
+void GdalMessages::check(const std::string& doing, const std::filesystem::path& file) const {
+  if (failed_) fail(doing, file);
+}
+
+GdalSetting::GdalSetting(const char* key, const char* value) : key_(key) {
+  if (const char* before = CPLGetThreadLocalConfigOption(key, nullptr)) {
+    had_ = true;
+    before_ = before;
+  }
+  CPLSetThreadLocalConfigOption(key, value);
+}
+
+GdalSetting::~GdalSetting() { CPLSetThreadLocalConfigOption(key_.c_str(), had_ ? before_.c_str() : nullptr); }
+
+CrsFacts crs_facts(const std::string& crs) {
+  CrsFacts facts;
+  if (crs.empty()) return facts;
+  const GdalMessages messages;
+  OGRSpatialReference srs;
+  if (srs.SetFromUserInput(crs.c_str()) != OGRERR_NONE)
+    throw core::Error("CRS is not known" + (messages.text().empty() ? "" : ": " + messages.text()), crs,
+                      "give an EPSG code (\"EPSG:32632\", compound \"EPSG:25832+7837\"), WKT or PROJ text");
+  facts.empty = false;
+  facts.geographic = srs.IsGeographic() || srs.IsDerivedGeographic();
+  facts.wkt = wkt2(srs);
+  const char* name = srs.GetName();
+  facts.name = name ? name : "";
+  srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  facts.axis_mapping.clear();
+  for (const int axis : srs.GetDataAxisToSRSAxisMapping())
+    facts.axis_mapping += (facts.axis_mapping.empty() ? "" : ",") + std::to_string(axis);
+  if (facts.geographic) {
+    facts.unit = "degree";
+  } else {
+    const char* unit = nullptr;
+    const double si = srs.GetTargetLinearUnits("PROJCS", &unit);
+    facts.unit = facts.vertical_unit = short_unit(unit ? unit : "", si);
+  }
+  if (srs.IsVertical()) {
+    const char* unit = nullptr;
+    const double si = srs.GetTargetLinearUnits("VERT_CS", &unit);
+    facts.vertical_unit = short_unit(unit ? unit : "", si);
+    const char* vertical = srs.GetAttrValue("VERT_CS");
+    if (!vertical) vertical = srs.GetAttrValue("COMPD_CS|VERT_CS");
+    facts.vertical_name = vertical ? vertical : "ellipsoidal height";
+    srs.StripVertical();
+  } else {
+    facts.vertical_name = "ellipsoidal height";
+  }
+  facts.horizontal_wkt = wkt2(srs);
+  return facts;
+}
+
+}  // namespace swath::io

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What every use of GDAL in this room shares: drivers registered once, messages caught, CRS texts understood.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace swath::io {
+
+/// Catches GDAL's messages on this thread as long as it lives (nothing is printed) and registers GDAL's drivers.
+class GdalMessages {
+ public:
+  GdalMessages();
+  ~GdalMessages();
+  GdalMessages(const GdalMessages&) = delete;
+  GdalMessages& operator=(const GdalMessages&) = delete;
+
+  bool failed() const { return failed_; }
+  /// The first failure's text, or the first warning's; empty where GDAL said nothing.
+  const std::string& text() const { return text_; }
+  void note(bool failure, const char* message);
+  /// Throws core::Error "doing: GDAL's text" for `file`, with a hint where the disk is full.
+  [[noreturn]] void fail(const std::string& doing, const std::filesystem::path& file, std::string hint = {}) const;
+  /// fail() where GDAL reported a failure.
+  void check(const std::string& doing, const std::filesystem::path& file) const;
+
+ private:
+  bool failed_ = false;
+  std::string text_;
+};
+
+/// A setting of GDAL on this thread as long as the object lives.
+class GdalSetting {
+ public:
+  GdalSetting(const char* key, const char* value);
+  ~GdalSetting();
+  GdalSetting(const GdalSetting&) = delete;
+  GdalSetting& operator=(const GdalSetting&) = delete;
+
+ private:
+  std::string key_, before_;
+  bool had_ = false;
+};
+
+/// What a CRS text ("EPSG:25832+7837", WKT, PROJ text) says of coordinates and heights.
+struct CrsFacts {
+  bool empty = true;                     ///< no CRS: units unknown
+  bool geographic = false;               ///< horizontal axes in degrees
+  std::string wkt;                       ///< WKT2:2019, whole
+  std::string horizontal_wkt;            ///< WKT2:2019 without the vertical part
+  std::string axis_mapping = "1,2";      ///< which CRS axes easting and northing are ("2,1" where the CRS puts northing first)
+  std::string name;                      ///< of the whole CRS
+  std::string unit = "unknown";          ///< of the horizontal axes: "m", "ft", "US survey foot", "degree", ...
+  std::string vertical_unit = "m";       ///< of the vertical part; a projected CRS without one: the horizontal unit
+  std::string vertical_name = "height";  ///< name of the vertical CRS, or "ellipsoidal height"
+};
+
+/// Throws core::Error where PROJ does not know the text.
+CrsFacts crs_facts(const std::string& crs);
+
+}  // namespace swath::io

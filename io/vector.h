@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contours out as GeoPackage, DXF and GeoJSON, line by line; lines in from any vector file that GDAL reads.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/contour_line.h"
+
+namespace swath::io {
+
+class ContourSink;
+
+/// Writes contours one at a time (memory does not grow with their number). The file appears under its name at close(); without it,
+/// or where anything fails, nothing stays. The ending of the name chooses the format:
+/// - .gpkg: GeoPackage, layer `contours` of LineStrings in the horizontal part of the CRS; fields `height` (real, CRS vertical unit),
+///   `index` and `closed` (boolean); the layer's description names height unit and vertical datum. The same contours give the same
+///   bytes: the time stamp that the format wants is a constant, 2000-01-01.
+/// - .dxf: AutoCAD R12 polylines at their elevation (no other dimension than the CRS's), layers CONTOUR and CONTOUR_INDEX, 4 decimals
+///   (9 in degrees); $EXTMIN and $EXTMAX are true.
+/// - .geojson, .json: RFC 7946, hence in WGS84 longitude and latitude with 9 decimals (0.1 mm), cut at the antimeridian; properties as the
+///   GeoPackage's fields. Heights stay those of the CRS: the member `swath` names CRS, height unit and vertical datum. A CRS is needed.
+/// Throws core::Error: unknown ending or CRS, file not writable, disk full.
+class ContourWriter {
+ public:
+  ContourWriter(const std::filesystem::path& file, const std::string& crs);
+  ~ContourWriter();
+  ContourWriter(ContourWriter&&) noexcept;
+  ContourWriter& operator=(ContourWriter&&) noexcept;
+
+  /// Throws core::Error where a line has fewer than two vertices, columns of different length or a number that is not finite.
+  void add(const core::ContourLine& line);
+  std::uint64_t count() const { return count_; }
+  void close();
+
+ private:
+  std::unique_ptr<ContourSink> sink_;
+  std::filesystem::path file_;
+  std::uint64_t count_ = 0;
+};
+
+/// All lines into each of the files.
+void write_contours(const std::vector<std::filesystem::path>& files, const std::vector<core::ContourLine>& lines, const std::string& crs);
+
+/// A line of a vector file.
+struct VectorLine {
+  std::vector<double> x, y;  ///< easting before northing, CRS units
+  std::vector<double> z;     ///< empty where the file's geometry is flat
+  double height =
+      std::numeric_limits<double>::quiet_NaN();  ///< field `height`, `elev`, `elevation`, `contour` or `z`; or the one z of all vertices
+  bool index = false;                            ///< field `index`, or DXF layer CONTOUR_INDEX
+  bool closed = false;                           ///< last vertex = first
+  std::string layer;
+};
+
+struct VectorLines {
+  std::vector<VectorLine> lines;
+  std::string crs_wkt;  ///< WKT2:2019 of the first layer; empty where it states none
+};
+
+/// Reads all lines (also parts of multi-lines and rings of polygons, curves as chords) of all layers. Throws core::Error.
+VectorLines read_lines(const std::filesystem::path& file);
+
+}  // namespace swath::io

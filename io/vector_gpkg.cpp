@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// GeoPackage 1.2 (OGC 12-128r15) through GDAL. The layer's CRS is the horizontal part alone: LineStrings are flat and a height is a field,
+// which every GIS labels and styles by. gpkg_contents.last_change is set to a constant, so that equal contours are equal bytes.
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+#include <utility>
+
+#include "core/error.h"
+#include "io/vector_sink.h"
+
+namespace swath::io {
+namespace {
+
+constexpr const char* constant_date = "2000-01-01T00:00:00.000Z";
+constexpr int features_per_transaction = 20000;
+
+class GpkgSink : public ContourSink {
+ public:
+  GpkgSink(const std::filesystem::path& file, const CrsFacts& crs) : file_(file), out_(file) {
+    std::filesystem::remove(out_.temporary());  // the driver makes only files that are not there yet
+    const Scope scope;
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
+    if (!driver) throw core::Error("this GDAL has no GeoPackage driver", file.string());
+    const char* const creation[] = {"VERSION=1.2", nullptr};
+    set_ = driver->Create(out_.temporary().c_str(), 0, 0, 0, GDT_Unknown, const_cast<char**>(creation));
+    if (!set_) scope.messages.fail("cannot write", file_);
+    try {
+      make_layer(crs, scope);
+    } catch (...) {
+      drop();
+      throw;
+    }
+  }
+
+  ~GpkgSink() override { drop(); }
+
+  void add(const core::ContourLine& line) override {
+    const Scope scope;
+    OGRFeature feature(layer_->GetLayerDefn());
+    feature.SetField(0, line.height);
+    feature.SetField(1, line.index ? 1 : 0);
+    feature.SetField(2, line.closed ? 1 : 0);
+    OGRLineString shape;
+    shape.setPoints(static_cast<int>(line.x.size()), line.x.data(), line.y.data());
+    feature.SetGeometry(&shape);
+    if (layer_->CreateFeature(&feature) != OGRERR_NONE) scope.messages.fail("cannot write", file_);
+    if (++pending_ < features_per_transaction) return;
+    if (set_->CommitTransaction() != OGRERR_NONE || set_->StartTransaction() != OGRERR_NONE) scope.messages.fail("cannot write", file_);
+    pending_ = 0;
+  }
+
+  void close() override {
+    const Scope scope;
+    if (set_->CommitTransaction() != OGRERR_NONE) scope.messages.fail("cannot write", file_);
+    GDALClose(std::exchange(set_, nullptr));
+    remove_side_files();
+    scope.messages.check("cannot write", file_);
+    out_.commit();
+  }
+
+ private:
+  struct Scope {
+    GdalMessages messages;
+    GdalSetting date{"OGR_CURRENT_DATE", constant_date};
+    GdalSetting speed{"OGR_SQLITE_SYNCHRONOUS", "OFF"};  // the whole file is flushed once, before it gets its name
+  };
+
+  void make_layer(const CrsFacts& crs, const Scope& scope) {
+    OGRSpatialReference srs;
+    if (!crs.empty) srs.SetFromUserInput(crs.horizontal_wkt.c_str());
+    srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const std::string description = "DESCRIPTION=Contours; heights in " + crs.vertical_unit + ", " + crs.vertical_name;
+    const char* const options[] = {"GEOMETRY_NAME=geom", "FID=fid", "SPATIAL_INDEX=YES", description.c_str(), nullptr};
+    layer_ = set_->CreateLayer("contours", crs.empty ? nullptr : &srs, wkbLineString, const_cast<char**>(options));
+    if (!layer_) scope.messages.fail("cannot write", file_);
+    OGRFieldDefn height("height", OFTReal), index("index", OFTInteger), closed("closed", OFTInteger);
+    index.SetSubType(OFSTBoolean);
+    closed.SetSubType(OFSTBoolean);
+    for (OGRFieldDefn* field : {&height, &index, &closed})
+      if (layer_->CreateField(field) != OGRERR_NONE) scope.messages.fail("cannot write", file_);
+    if (set_->StartTransaction() != OGRERR_NONE) scope.messages.fail("cannot write", file_);
+  }
+
+  /// Lets go of an unfinished file.
+  void drop() noexcept {
+    if (!set_) return;
+    const Scope scope;
+    GDALClose(std::exchange(set_, nullptr));
+    remove_side_files();
+  }
+
+  /// What SQLite may leave beside a file that could not be finished.
+  void remove_side_files() noexcept {
+    std::error_code ignored;
+    for (const char* ending : {"-journal", "-wal", "-shm"}) std::filesystem::remove(out_.temporary().string() + ending, ignored);
+  }
+
+  std::filesystem::path file_;
+  OutputFile out_;
+  GDALDataset* set_ = nullptr;
+  OGRLayer* layer_ = nullptr;
+  int pending_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<ContourSink> make_gpkg_sink(const std::filesystem::path& file, const CrsFacts& crs) {
+  return std::make_unique<GpkgSink>(file, crs);
+}
+
+}  // namespace swath::io

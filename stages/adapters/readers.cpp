@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <set>
+
+#include "core/error.h"
+#include "core/time.h"
+#include "io/laser_file.h"
+#include "io/las_reader.h"
+#include "io/trajectory_file.h"
+#include "stages/adapters/adapters.h"
+#include "stages/adapters/units.h"
+#include "trajectory/checks.h"
+
+namespace swath::stages {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Column;
+
+/// Map metres to whole kilometres: the origin of every Block of a run, so that coordinates keep their last bits.
+double to_kilometres(double metres) { return std::round(metres / 1000.0) * 1000.0; }
+
+class TrajectoryReader : public OptionStage<trajectory::TrajectoryOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{"readers.trajectory",
+                           "Reads the survey's trajectory and judges it: gaps, repeated times, heading against track.",
+                           {Grain::survey},
+                           {},
+                           {},
+                           {},
+                           {Product::trajectory}};
+    return info;
+  }
+  std::vector<fs::path> inputs(const io::Survey& survey) const override {
+    std::vector<fs::path> out;
+    for (const io::TrajectoryFile& f : survey.trajectory) {
+      out.push_back(io::resolve(survey, f.file));
+      if (f.accuracy) out.push_back(io::resolve(survey, *f.accuracy));
+    }
+    return out;
+  }
+  void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
+    core::TrajectoryData data = io::read_trajectory(context.survey, tally);
+    trajectory::CheckOptions checks;
+    checks.max_gap = options.max_gap;
+    findings = trajectory::check_trajectory(data, checks).value();
+    context.trajectory = std::make_shared<trajectory::Trajectory>(std::move(data), options, context.survey.trajectory.front().file.string());
+    const core::TrajectoryData& d = context.trajectory->data();
+    const core::Transform to_map(core::wgs84_geodetic(), context.crs);
+    const Eigen::Vector3d start = to_map({core::to_degrees(d.longitude[0]), core::to_degrees(d.latitude[0]), d.height[0]});
+    context.origin = {to_kilometres(start.x() * context.unit), to_kilometres(start.y() * context.unit), 0.0};
+    check_area(context, d, tally);
+  }
+
+ private:
+  /// A survey beside the CRS's area of use is told; one far outside is refused: scale and convergence would be absurd.
+  static void check_area(const Context& context, const core::TrajectoryData& d, core::Tally& tally) {
+    double west = 0, south = 0, east = 0, north = 0;
+    if (!context.crs.area_of_use(west, south, east, north)) return;
+    constexpr double margin = 3.0;  // degrees: half a UTM zone, beyond which its scale error passes 0.3 %
+    std::uint64_t outside = 0;
+    for (size_t i = 0; i < d.size(); ++i) {
+      const double lon = core::to_degrees(d.longitude[i]), lat = core::to_degrees(d.latitude[i]);
+      const double beside_lon = west <= east ? std::max({west - lon, lon - east, 0.0}) : std::max(0.0, std::min(west - lon, lon - east));
+      const double beside = std::max({beside_lon, south - lat, lat - north, 0.0});
+      if (beside > margin)
+        throw core::usage_error("the trajectory lies " + core::format_number(std::round(beside * 10) / 10) + " degrees outside the area of use of " + context.crs.name(),
+                                context.survey.crs, "choose the CRS of the survey's place; is the trajectory in degrees where radians are meant?");
+      outside += beside > 0;
+    }
+    if (outside) tally.count("trajectory records outside the CRS's area of use (" + context.crs.name() + ")", outside);
+  }
+};
+
+struct NoOptions {};
+template <class V>
+void describe(NoOptions&, V&) {}
+
+class LaserReader : public OptionStage<NoOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{"readers.laser",
+                           "Reads the survey's raw laser records (text, NumPy, LAS or LAZ in the scanner's frame, Optech CSD), line by line.",
+                           {Grain::strip},
+                           {},
+                           {},
+                           {},
+                           {Product::shots}};
+    return info;
+  }
+  bool is_source() const override { return true; }
+  std::vector<fs::path> inputs(const io::Survey& survey) const override {
+    std::vector<fs::path> out;
+    for (const io::LaserFile& f : survey.laser) out.push_back(io::resolve(survey, f.file));
+    return out;
+  }
+  void check(const Context& context) const override {
+    if (context.survey.laser.empty())
+      throw core::usage_error("readers.laser: the survey names no [[laser]] file", context.survey.name, "for point clouds use readers.las");
+  }
+};
+
+/// Reads a point cloud in map coordinates, converted to the CRS and metres of the run.
+class CloudReader : public StripReader {
+ public:
+  CloudReader(const Context& context, const Strip& strip)
+      : context_(context), file_(context.survey.points[strip.source]), reader_(io::resolve(context.survey, file_.file)) {
+    const io::LasCrs stated = reader_.crs();
+    const std::string definition = file_.crs.empty() ? stated.definition : file_.crs;
+    if (definition.empty())
+      throw core::Error("states no CRS" + (stated.note.empty() ? std::string() : ": " + stated.note), io::resolve(context.survey, file_.file).string(),
+                        "name it as points.crs in the survey");
+    const core::Crs crs(definition);
+    if (crs.key() != context.crs.key()) transform_.emplace(crs, context.crs);
+    // Heights without a vertical CRS: PROJ takes metres; files have their own unit, by custom that of the horizontal axes.
+    if (!crs.has_vertical()) {
+      file_height_unit_ = stated.vertical_metres > 0 ? stated.vertical_metres : context.survey.height_unit ? context.survey.height_unit->value : crs.metres_per_unit();
+      if (!transform_) file_height_unit_ /= context.vertical_unit;
+    }
+    if (transform_ && !context.crs.has_vertical()) map_height_unit_ = context.vertical_unit;
+  }
+
+  bool next(StripBatch& batch, size_t most, core::Tally& tally) override {
+    core::Block block;
+    block.origin = context_.origin;
+    scale_block(context_, block, true);
+    io::LasTime time;
+    time.keep_seconds_of_week = true;
+    const size_t n = reader_.read(block, most, time);
+    if (n == 0) {
+      for (const std::string& w : reader_.warnings()) tally.count("oddities of the file", w);
+      return false;
+    }
+    if (file_height_unit_ != 1.0)
+      for (double& z : block.z) z *= file_height_unit_;
+    if (transform_) convert(block, tally);
+    scale_block(context_, block, false);
+    block.origin = context_.origin;
+    if (file_.line) block.strip.assign(block.size(), static_cast<std::uint16_t>(*file_.line));
+    for (const Column c : {Column::time, Column::intensity, Column::return_number, Column::return_count, Column::classification, Column::flags,
+                           Column::scan_angle, Column::strip, Column::record})
+      core::add_columns(block, {c});
+    batch.block = std::move(block);
+    return true;
+  }
+
+ private:
+  void convert(core::Block& block, core::Tally& tally) {
+    for (size_t i = 0; i < block.size(); ++i) {
+      block.x[i] += block.origin.x();
+      block.y[i] += block.origin.y();
+      block.z[i] += block.origin.z();
+    }
+    const size_t bad = transform_->apply(block.x.data(), block.y.data(), block.z.data(), block.size());
+    std::vector<std::uint32_t> good;
+    for (std::uint32_t i = 0; i < block.size(); ++i) {
+      if (!std::isfinite(block.x[i])) continue;
+      good.push_back(i);
+      block.x[i] -= block.origin.x();
+      block.y[i] -= block.origin.y();
+      block.z[i] = block.z[i] / map_height_unit_ - block.origin.z();
+    }
+    if (bad) {
+      tally.count("kept out: unusable record", bad);
+      block = core::select(block, good);
+    }
+  }
+
+  const Context& context_;
+  const io::PointFile& file_;
+  io::LasReader reader_;
+  std::optional<core::Transform> transform_;
+  double file_height_unit_ = 1.0, map_height_unit_ = 1.0;
+};
+
+class LasCloud : public OptionStage<NoOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{"readers.las",
+                           "Reads the survey's point clouds, LAS or LAZ in map coordinates.",
+                           {Grain::strip},
+                           {},
+                           {Column::x, Column::y, Column::z, Column::time, Column::intensity, Column::return_number, Column::return_count,
+                            Column::classification, Column::flags, Column::scan_angle, Column::strip, Column::record},
+                           {},
+                           {Product::points}};
+    return info;
+  }
+  bool is_source() const override { return true; }
+  std::vector<fs::path> inputs(const io::Survey& survey) const override {
+    std::vector<fs::path> out;
+    for (const io::PointFile& f : survey.points) out.push_back(io::resolve(survey, f.file));
+    return out;
+  }
+  void check(const Context& context) const override {
+    if (context.survey.points.empty())
+      throw core::usage_error("readers.las: the survey names no [[points]] file", context.survey.name, "for raw records use readers.laser and georeference");
+  }
+  void locate(Context& context) const override {
+    std::vector<std::string> ignored;
+    const io::PointFile& first = context.survey.points.front();
+    const io::LasHeader header = io::read_las_header(io::resolve(context.survey, first.file), ignored);
+    const std::string definition = first.crs.empty() ? io::las_crs(header).definition : first.crs;
+    Eigen::Vector3d corner = header.min;
+    if (!definition.empty() && core::Crs(definition).key() != context.crs.key()) corner = core::Transform(core::Crs(definition), context.crs)(corner);
+    context.origin = {to_kilometres(corner.x() * context.unit), to_kilometres(corner.y() * context.unit), 0.0};
+  }
+  std::vector<Strip> strips(const Context& context, core::Tally&) const override {
+    std::vector<Strip> out;
+    for (size_t i = 0; i < context.survey.points.size(); ++i) {
+      const io::PointFile& f = context.survey.points[i];
+      std::vector<std::string> ignored;
+      const io::LasHeader header = io::read_las_header(io::resolve(context.survey, f.file), ignored);
+      out.push_back({i, 0, f.line.value_or(0), f.file.string(), header.point_count});
+    }
+    return out;
+  }
+  std::unique_ptr<StripReader> open(const Context& context, const Strip& strip) const override { return std::make_unique<CloudReader>(context, strip); }
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> make_trajectory_reader() { return std::make_unique<TrajectoryReader>(); }
+std::unique_ptr<Stage> make_las_reader() { return std::make_unique<LasCloud>(); }
+
+}  // namespace swath::stages

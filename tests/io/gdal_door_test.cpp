@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/gdal_door.h"
+
+#include <cpl_conv.h>
+#include <cpl_error.h>
+
+#include "core/error.h"
+#include "tests/world/support.h"
+
+namespace swath::io {
+namespace {
+
+TEST(GdalDoor, FailuresAreCaughtAndNamed) {
+  const GdalMessages messages;
+  CPLError(CE_Warning, CPLE_AppDefined, "a warning");
+  EXPECT_FALSE(messages.failed());
+  EXPECT_EQ(messages.text(), "a warning");
+  CPLError(CE_Failure, CPLE_FileIO, "write: No space left on device");
+  CPLError(CE_Failure, CPLE_FileIO, "a second failure");
+  ASSERT_TRUE(messages.failed());
+  try {
+    messages.check("cannot write", "a.tif");
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_EQ(e.where(), "a.tif");
+    EXPECT_EQ(std::string(e.what()), "cannot write: write: No space left on device");
+    EXPECT_NE(e.hint().find("disk is full"), std::string::npos);
+  }
+}
+
+TEST(GdalDoor, SettingsLastAsLongAsTheirObject) {
+  const GdalSetting outer("SWATH_TEST_SETTING", "1");
+  {
+    const GdalSetting inner("SWATH_TEST_SETTING", "2");
+    EXPECT_STREQ(CPLGetConfigOption("SWATH_TEST_SETTING", ""), "2");
+  }
+  EXPECT_STREQ(CPLGetConfigOption("SWATH_TEST_SETTING", ""), "1");
+}
+
+TEST(GdalDoor, FactsOfProjectedCompoundFeetAndDegrees) {
+  const CrsFacts utm = crs_facts("EPSG:32632");
+  EXPECT_EQ(utm.unit, "m");
+  EXPECT_EQ(utm.vertical_unit, "m");
+  EXPECT_EQ(utm.vertical_name, "ellipsoidal height");
+  EXPECT_FALSE(utm.geographic);
+
+  const CrsFacts compound = crs_facts("EPSG:25832+7837");
+  EXPECT_EQ(compound.unit, "m");
+  EXPECT_EQ(compound.vertical_name, "DHHN2016 height");
+  EXPECT_NE(compound.wkt.find("COMPOUNDCRS"), std::string::npos);
+  EXPECT_EQ(compound.horizontal_wkt.find("COMPOUNDCRS"), std::string::npos);
+  EXPECT_NE(compound.horizontal_wkt.find("25832"), std::string::npos);
+
+  const CrsFacts feet = crs_facts("EPSG:2992");  // Oregon Lambert, international feet, without a vertical part
+  EXPECT_EQ(feet.unit, "ft");
+  EXPECT_EQ(feet.vertical_unit, "ft");
+  const CrsFacts mixed = crs_facts("EPSG:2263+6360");  // New York Long Island (ftUS) + NAVD88 (ftUS)
+  EXPECT_EQ(mixed.unit, "US survey foot");
+  EXPECT_EQ(mixed.vertical_unit, "US survey foot");
+  EXPECT_EQ(crs_facts("EPSG:2263+5703").vertical_unit, "m");
+
+  EXPECT_TRUE(crs_facts("EPSG:4326").geographic);
+  EXPECT_EQ(crs_facts("EPSG:4326").unit, "degree");
+  EXPECT_EQ(crs_facts("EPSG:4326").vertical_unit, "m");
+  EXPECT_TRUE(crs_facts("").empty);
+  EXPECT_THROW(crs_facts("EPSG:1"), core::Error);
+  EXPECT_THROW(crs_facts("somewhere"), core::Error);
+}
+
+}  // namespace
+}  // namespace swath::io
