@@ -18,13 +18,11 @@ enum class Gaps { renumber, keep };
 
 struct ReturnsOptions {
   Gaps gaps = Gaps::renumber;
-  core::Metres cell{10.0};
 };
 
 template <class V>
 void describe(ReturnsOptions& o, V& v) {
   v.option("gaps", o.gaps, "Pulses with absent returns: renumber those that are there, or keep the numbers and flag them as inconsistent.");
-  v.option("cell", o.cell, core::above(0.0), "Side of one cell of the penetration grid.", "Brandalize, penetration rate");
 }
 
 /// Most returns of one pulse (LAS 1.4 R15: four bits); a larger group under one time is no pulse.

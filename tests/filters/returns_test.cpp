@@ -148,11 +148,9 @@ TEST(Returns, OptionsAreDeclared) {
   std::vector<core::Fault> faults;
   core::Value table = core::Value::object();
   table["gaps"] = "keep";
-  table["cell"] = "5 m";
   core::read_options(core::described(o), table, "", faults);
   EXPECT_TRUE(faults.empty());
   EXPECT_EQ(o.gaps, Gaps::keep);
-  EXPECT_EQ(o.cell.value, 5.0);
 }
 
 }  // namespace
