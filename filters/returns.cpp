@@ -175,13 +175,16 @@ double Penetration::total_rate() const {
 }
 
 Penetration penetration(const core::Block& b, size_t own, const core::Lattice& l) {
-  Penetration out{l, std::vector<std::uint32_t>(l.size(), 0), std::vector<std::uint32_t>(l.size(), 0)};
+  const std::vector<std::uint32_t> none(l.size(), 0);
+  Penetration out{l, none, none, none};
   for (size_t p = 0; p < own; ++p) {
-    if (!core::is_usable(b, p) || !core::is_last_return(b, p)) continue;
+    if (!core::is_usable(b, p)) continue;
     const std::int64_t i = core::cell_index(b.origin.x() + b.x[p], l.cell) - l.i0;
     const std::int64_t j = core::cell_index(b.origin.y() + b.y[p], l.cell) - l.j0;
     if (i < 0 || j < 0 || i >= l.nx || j >= l.ny) continue;
     const size_t c = l.at(static_cast<int>(i), static_cast<int>(j));
+    ++out.returns[c];
+    if (!core::is_last_return(b, p)) continue;
     ++out.pulses[c];
     out.ground_pulses[c] += !b.classification.empty() && b.classification[p] == core::point_class::ground;
   }

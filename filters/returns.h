@@ -74,6 +74,7 @@ class ReturnStatistics {
 struct Penetration {
   core::Lattice lattice;
   std::vector<std::uint32_t> pulses, ground_pulses;
+  std::vector<std::uint32_t> returns;  ///< usable returns of any number
 
   /// Ground pulses / pulses, 0 to 1; NaN where there is no pulse.
   double rate(size_t cell) const;

@@ -4,13 +4,12 @@
 #include "core/error.h"
 #include "io/geotiff.h"
 #include "io/las_writer.h"
-#include "io/output_file.h"
 #include "io/png.h"
-#include "io/value_file.h"
 #include "io/vector.h"
 #include "io/vrt.h"
 #include "report/picture.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/tile_list.h"
 #include "stages/adapters/units.h"
 
 namespace swath::stages {
@@ -18,23 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using core::Column;
-
-/// Keeps `folder`/tiles.json, the list of the tiles that make the product, and removes tiles of an earlier run that are no longer in it.
-void keep_list(const fs::path& folder, const std::vector<std::string>& files) {
-  const fs::path list = folder / "tiles.json";
-  if (fs::exists(list)) {
-    const core::Value before = io::read_value_file(list);
-    if (before.is_array())
-      for (const core::Value& file : before.items())
-        if (file.is_text() && std::find(files.begin(), files.end(), file.as_text()) == files.end()) {
-          std::error_code ignored;
-          fs::remove(folder / fs::path(file.as_text()).filename(), ignored);
-        }
-  }
-  core::Value now = core::Value::array();
-  for (const std::string& f : files) now.push(f);
-  io::write_text_file(list, io::to_json(now));
-}
 
 struct LasOptions {
   std::string folder = "points";

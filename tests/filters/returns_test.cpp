@@ -137,6 +137,7 @@ TEST(Returns, PenetrationIsGroundPulsesOverPulses) {
   const core::Lattice l{10.0, 100, 200, 3, 1};
   const Penetration p = penetration(b, b.size(), l);
   EXPECT_EQ(p.pulses, (std::vector<std::uint32_t>{2, 1, 0}));
+  EXPECT_EQ(p.returns, (std::vector<std::uint32_t>{3, 1, 0}));
   EXPECT_DOUBLE_EQ(p.rate(0), 0.5);
   EXPECT_DOUBLE_EQ(p.rate(1), 0.0);
   EXPECT_TRUE(std::isnan(p.rate(2)));
