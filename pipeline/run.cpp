@@ -121,9 +121,15 @@ void Engine::prepare() {
                             plan_.survey_file.string() + ": crs", "choose a projected CRS, for example the UTM zone EPSG:326xx");
   context_.unit = context_.crs.metres_per_unit();
   context_.vertical_unit = context_.crs.vertical_metres_per_unit();
+  context_.product_crs = plan_.survey.crs;
   if (!context_.crs.has_vertical()) {
     if (plan_.survey.height_unit) context_.vertical_unit = plan_.survey.height_unit->value;
     else if (!plan_.survey.points.empty()) context_.vertical_unit = context_.unit;
+    if (context_.vertical_unit != 1.0)
+      context_.product_crs = "COMPD_CS[\"" + context_.crs.name() + " + height\"," + context_.crs.wkt1() +
+                             ",VERT_CS[\"height\",VERT_DATUM[\"unknown\",2005],UNIT[\"" +
+                             (context_.vertical_unit == 0.3048 ? "foot" : "height unit") + "\"," + core::format_number(context_.vertical_unit) +
+                             "],AXIS[\"Up\",UP]]]";
   }
   context_.tile_side = plan_.run.tile.value;
   context_.output = output_;

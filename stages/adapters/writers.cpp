@@ -54,7 +54,7 @@ class LasTiles : public OptionStage<LasOptions> {
     o.scale = Eigen::Vector3d::Constant(options.scale);
     // Near the data, and the same for every tile: tiles can be joined without rounding again.
     o.offset = Eigen::Vector3d(std::round(context.origin.x() / context.unit), std::round(context.origin.y() / context.unit), 0.0);
-    o.crs_wkt = context.crs.wkt1();
+    o.crs_wkt = core::Crs(context.product_crs).wkt1();
     o.threads = 1;
     core::Block block = std::move(job.block);
     job.block = {};
@@ -98,11 +98,11 @@ class GridTiles : public OptionStage<NoOptions> {
       const core::Lattice own = lattice_in(context.grids->cell(p), job.box);
       const core::Grid grid = in_crs_units(context, context.grids->window(p, own));
       const fs::path folder = context.output / name_of(p);
-      io::write_grid(folder / name(context, p, job.key, ""), grid, context.survey.crs, io::height_bands);
+      io::write_grid(folder / name(context, p, job.key, ""), grid, context.product_crs, io::height_bands);
       io::GridBands quality = io::quality_bands;
       quality.sigma = !grid.sigma.empty();
       quality.count = !grid.count.empty();
-      io::write_grid(folder / name(context, p, job.key, "_quality"), grid, context.survey.crs, quality);
+      io::write_grid(folder / name(context, p, job.key, "_quality"), grid, context.product_crs, quality);
     }
   }
   void run_merge(const Context& context, MergeJob& job) const override {
