@@ -76,6 +76,7 @@ void describe(LaserFile& f, V& v) {
   v.table("columns", f.columns, "Columns of a text or NumPy file.");
 }
 
+enum class VelocityAxes { automatic, ned, nwu, ignore };
 enum class TrajectoryFormat { automatic, sbet, text, csd };
 
 struct TrajectoryColumns {
@@ -112,6 +113,7 @@ struct TrajectoryFile {
   TimeTags time;
   AngleUnit angle_unit = AngleUnit::unstated;
   bool wander = true;
+  VelocityAxes velocity_axes = VelocityAxes::automatic;
   core::Seconds spacing{0.001};
   std::string crs;
   std::string delimiter;
@@ -129,6 +131,9 @@ void describe(TrajectoryFile& f, V& v) {
   v.option("angle_unit", f.angle_unit, "Unit of angles in a text file.");
   v.option("wander", f.wander,
            "SBET: the platform heading counts from the wander azimuth, which is subtracted (heading = platform heading - wander angle).");
+  v.option("velocity_axes", f.velocity_axes,
+           "SBET: axes of the velocities, turned by the wander angle: ned or nwu (north, west, up); automatic: those that agree with the "
+           "positions, or none; ignore: velocities are not used.");
   v.option("spacing", f.spacing, core::at_least(0), "CSD, which holds a pose per pulse: least time between two poses that are kept.");
   v.option("crs", f.crs,
            "CRS of a text file's horizontal coordinates where they are projected; empty: geodetic WGS84. Headings stay from true north.");
@@ -260,6 +265,10 @@ struct Choices<io::LaserFormat> {
 template <>
 struct Choices<io::AngleUnit> {
   static constexpr std::array<std::string_view, 4> names{"unstated", "deg", "rad", "gon"};
+};
+template <>
+struct Choices<io::VelocityAxes> {
+  static constexpr std::array<std::string_view, 4> names{"automatic", "ned", "nwu", "ignore"};
 };
 template <>
 struct Choices<io::TrajectoryFormat> {
