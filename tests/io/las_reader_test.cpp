@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/las_reader.h"
+
+#include "core/error.h"
+#include "tests/io/las_sample.h"
+#include "tests/world/support.h"
+
+namespace swath::io {
+namespace {
+
+TEST(LasReader, EveryFormatComesBackFieldByField) {
+  const test::TemporaryFolder folder;
+  for (int format = 0; format <= 10; ++format)
+    for (const char* name : {"a.las", "a.laz"})
+      for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{2000}}) {
+        const LasHeader h = test::sample_header(format, -1, format % 2 == 0);
+        const LasPoints p = test::sample_points(h, n, static_cast<unsigned>(format) + 1);
+        test::write_sample(folder / name, h, p);
+        LasReader r(folder / name);
+        EXPECT_EQ(r.header().compressed, std::string(name) == "a.laz");
+        EXPECT_EQ(r.header().point_count, n);
+        LasPoints q;
+        EXPECT_EQ(r.read(q, n + 5), n);
+        EXPECT_TRUE(q == p) << name << " format " << format << " points " << n;
+        EXPECT_EQ(r.read(q, 5), 0u);
+        EXPECT_EQ(q.size(), 0u);
+        EXPECT_TRUE(r.warnings().empty()) << r.warnings()[0];
+      }
+}
+
+TEST(LasReader, ManyChunksInBatchesOfAnySize) {
+  const test::TemporaryFolder folder;
+  constexpr std::size_t n = (1u << 20) + 1;
+  for (const int format : {1, 6, 10}) {
+    const LasHeader h = test::sample_header(format);
+    const LasPoints p = test::sample_points(h, n);
+    for (const char* name : {"a.las", "a.laz"}) {
+      test::write_sample(folder / name, h, p);
+      LasReader r(folder / name);
+      LasPoints q;
+      std::size_t at = 0, same = 0;
+      for (const std::size_t batch : {std::size_t{1}, std::size_t{49999}, std::size_t{300001}, n}) {
+        const std::size_t got = r.read(q, batch);
+        for (std::size_t i = 0; i < got; ++i)
+          same += q.raw_x[i] == p.raw_x[at + i] && q.raw_z[i] == p.raw_z[at + i] && q.gps_time[i] == p.gps_time[at + i] &&
+                  q.flags[i] == p.flags[at + i] && q.user_data[i] == p.user_data[at + i];
+        at += got;
+      }
+      EXPECT_EQ(at, n);
+      EXPECT_EQ(same, n) << name << " format " << format;
+      EXPECT_EQ(r.position(), n);
+    }
+    EXPECT_TRUE(test::read_all(folder / "a.laz", 1) == p) << format;
+  }
+}
+
+/// Cut anywhere, the file is refused or, where the last bytes say nothing, read whole: never something else.
+void every_cut_is_an_error(const std::string& ending, int format) {
+  const test::TemporaryFolder folder;
+  const LasHeader h = test::sample_header(format, -1, true);
+  const LasPoints p = test::sample_points(h, 400);
+  const std::string name = "cut." + ending;
+  test::write_sample(folder / name, h, p);
+  const std::string whole = test::read_bytes(folder / name);
+  // The arithmetic coder of LASzip ends with bytes that its decoder need not look at.
+  const std::size_t padding = ending == "laz" ? 4 : 0;
+  std::size_t refused = 0;
+  const std::size_t step = 1 + whole.size() / 1500;
+  for (std::size_t size = 0; size < whole.size(); size += size < 400 || size + 200 > whole.size() ? 1 : step) {
+    test::write_bytes(folder / name, whole.substr(0, size));
+    try {
+      const LasPoints q = test::read_all(folder / name);
+      EXPECT_GE(size + padding, whole.size()) << "a file cut at " << size << " of " << whole.size() << " was read";
+      EXPECT_TRUE(q == p);
+    } catch (const core::Error& e) {
+      EXPECT_NE(e.where().find(name), std::string::npos) << e.text();
+      EXPECT_FALSE(e.hint().empty());
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 500u);
+}
+TEST(LasReader, EveryCutOfALasFileIsAnError) { every_cut_is_an_error("las", 3); }
+TEST(LasReader, EveryCutOfALasFile14IsAnError) { every_cut_is_an_error("las", 8); }
+TEST(LasReader, EveryCutOfALazFileIsAnError) { every_cut_is_an_error("laz", 3); }
+TEST(LasReader, EveryCutOfALayeredLazFileIsAnError) { every_cut_is_an_error("laz", 10); }
+
+TEST(LasReader, DamagedBytesAreAnErrorOrOtherPointsNeverACrash) {
+  const test::TemporaryFolder folder;
+  std::mt19937 random(3);
+  for (const int format : {1, 5, 6, 10}) {
+    const LasHeader h = test::sample_header(format, -1, true);
+    const LasPoints p = test::sample_points(h, 500);
+    test::write_sample(folder / "a.laz", h, p);
+    const std::string whole = test::read_bytes(folder / "a.laz");
+    std::size_t refused = 0;
+    for (int i = 0; i < 600; ++i) {
+      std::string bytes = whole;
+      for (int k = 0; k <= i % 3; ++k) bytes[random() % bytes.size()] = static_cast<char>(random());
+      test::write_bytes(folder / "b.laz", bytes);
+      try {
+        LasReader r(folder / "b.laz");
+        LasPoints q;
+        while (r.read(q, 100) > 0) {
+        }
+      } catch (const core::Error&) {
+        ++refused;
+      }
+    }
+    EXPECT_GT(refused, 0u) << format;
+  }
+}
+
+TEST(LasReader, ACountThatTheChunksDoNotHoldIsAnError) {
+  const test::TemporaryFolder folder;
+  for (const int format : {1, 6}) {
+    const LasHeader h = test::sample_header(format, 4);
+    test::write_sample(folder / "a.laz", h, test::sample_points(h, 100));
+    for (const std::uint64_t lie : {std::uint64_t{60000}, std::uint64_t{1} << 40, std::uint64_t{99}, std::uint64_t{101}}) {
+      if (format == 1 && lie == 99) continue;  // a pointwise chunk does not say where it ends
+      std::string bytes = test::read_bytes(folder / "a.laz");
+      std::memcpy(&bytes[247], &lie, 8);
+      std::memset(&bytes[107], 0, 4);
+      test::write_bytes(folder / "b.laz", bytes);
+      EXPECT_THROW(test::read_all(folder / "b.laz"), core::Error) << format << " " << lie;
+    }
+  }
+}
+
+TEST(LasReader, PointsOutsideTheStatedBoundsAreAWarning) {
+  const test::TemporaryFolder folder;
+  const LasHeader h = test::sample_header(6);
+  test::write_sample(folder / "a.las", h, test::sample_points(h, 100));
+  std::string bytes = test::read_bytes(folder / "a.las");
+  const double low = 1e9;
+  std::memcpy(&bytes[187], &low, 8);
+  test::write_bytes(folder / "a.las", bytes);
+  LasReader r(folder / "a.las");
+  EXPECT_TRUE(r.warnings().empty());
+  LasPoints p;
+  r.read(p, 100);
+  ASSERT_EQ(r.warnings().size(), 1u);
+  EXPECT_NE(r.warnings()[0].find("100 points lie outside"), std::string::npos);
+}
+
+TEST(LasReader, ACompressedReferenceFileEqualsItsTwin) {
+  SWATH_SHARED_OR_SKIP(data, "data/isprs");
+  std::size_t twins = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(data)) {
+    if (entry.path().extension() != ".laz") continue;
+    std::filesystem::path twin = entry.path();
+    const LasPoints p = test::read_all(twin.replace_extension(".las"));
+    EXPECT_GT(p.size(), 5000u);
+    EXPECT_TRUE(test::read_all(entry.path()) == p) << entry.path();
+    ++twins;
+  }
+  EXPECT_EQ(twins, 7u);
+}
+
+TEST(LasReader, AutzenEqualsItsTwinAndComesOutAgain) {
+  SWATH_SHARED_OR_SKIP(data, "data/autzen");
+  const LasPoints p = test::read_all(data / "autzen_trim.las");
+  EXPECT_EQ(p.size(), 110000u);
+  EXPECT_TRUE(test::read_all(data / "autzen_trim.laz") == p);
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.las", "a.laz"}) {
+    test::write_sample(folder / name, LasReader(data / "autzen_trim.las").header(), p);
+    EXPECT_TRUE(test::read_all(folder / name) == p) << name;
+  }
+}
+
+}  // namespace
+}  // namespace swath::io

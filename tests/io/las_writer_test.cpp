@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/las_writer.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/error.h"
+#include "tests/io/las_sample.h"
+#include "tests/world/support.h"
+
+namespace swath::io {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+core::Block sample_block(std::size_t n) {
+  core::Block b;
+  b.origin = {512000.0, 5403000.0, 0.0};
+  core::ColumnSet all;
+  core::for_each_column([&](core::Column c, const char*, auto) { all.add(c); });
+  core::resize(b, n);
+  core::add_columns(b, all);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = static_cast<double>(i);
+    b.x[i] = 0.1234 * t;
+    b.y[i] = 300.0 - 0.37 * t;
+    b.z[i] = 40.0 * std::sin(t);
+    b.time[i] = 1.4e9 + 1e-5 * t;
+    b.intensity[i] = static_cast<std::uint16_t>(i * 31);
+    b.return_count[i] = 15;
+    b.return_number[i] = static_cast<std::uint8_t>(1 + i % 15);
+    b.classification[i] = static_cast<std::uint8_t>(i % 19);
+    b.flags[i] = static_cast<std::uint16_t>(i % 64);
+    b.scan_angle[i] = static_cast<float>((-30.0 + 0.06 * static_cast<double>(i % 1000)) * degree);
+    b.strip[i] = static_cast<std::uint16_t>(1 + i % 3);
+    b.record[i] = static_cast<std::uint32_t>(i);
+    b.range[i] = static_cast<float>(500.0 + 0.25 * static_cast<double>(i % 100));
+    b.incidence[i] = static_cast<float>(0.01 * static_cast<double>(i % 90));
+    b.sigma_h[i] = 0.04f;
+    b.sigma_v[i] = i % 10 == 0 ? std::numeric_limits<float>::quiet_NaN() : 0.0234f;
+    b.height[i] = static_cast<float>(-1.0 + 0.125 * static_cast<double>(i % 64));
+    b.red[i] = static_cast<std::uint16_t>(i);
+    b.green[i] = 256;
+    b.blue[i] = 65535;
+    b.user_data[i] = static_cast<std::uint8_t>(i);
+  }
+  return b;
+}
+
+LasWriteOptions options() {
+  LasWriteOptions o;
+  o.crs_wkt = "PROJCS[\"made\"]";
+  return o;
+}
+
+TEST(LasWriter, ABlockComesBackWithinItsSteps) {
+  // Half a step of every field, and the rounding of the Block's own floats.
+  constexpr double half_mm = 0.0005 + 1e-9, half_angle = 0.003 * degree + 1e-7;
+  const test::TemporaryFolder folder;
+  const core::Block b = sample_block(3000);
+  for (const char* name : {"a.las", "a.laz"}) {
+    LasWriter w(folder / name, options());
+    w.write(b);
+    EXPECT_EQ(w.count(), 3000u);
+    w.finish();
+    LasReader r(folder / name);
+    const LasHeader& h = r.header();
+    EXPECT_EQ(h.version_minor, 4);
+    EXPECT_EQ(h.point_format, 7);
+    EXPECT_TRUE(h.gps_time_is_adjusted());
+    EXPECT_TRUE(h.global_encoding & las_encoding::wkt);
+    EXPECT_EQ(r.crs().definition, "PROJCS[\"made\"]");
+    EXPECT_EQ(h.legacy_point_count, 0u);
+    for (const std::uint64_t k : h.by_return) EXPECT_EQ(k, 200u);
+    EXPECT_EQ(h.extras.size(), 5u);
+    core::Block q;
+    q.origin = b.origin;
+    ASSERT_EQ(r.read(q, 5000), 3000u);
+    EXPECT_TRUE(r.warnings().empty());
+    for (std::size_t i = 0; i < b.size(); ++i) {
+      ASSERT_NEAR(q.x[i], b.x[i], half_mm);
+      ASSERT_NEAR(q.y[i], b.y[i], half_mm);
+      ASSERT_NEAR(q.z[i], b.z[i], half_mm);
+      ASSERT_NEAR(q.time[i], b.time[i], 3e-7);  // doubles near 1.4e9 s
+      ASSERT_NEAR(q.scan_angle[i], b.scan_angle[i], half_angle);
+      ASSERT_NEAR(q.range[i], b.range[i], 0.0005 + 1e-4);
+      ASSERT_NEAR(q.incidence[i], b.incidence[i], 0.001 * degree + 1e-6);
+      ASSERT_NEAR(q.sigma_h[i], b.sigma_h[i], 0.00005 + 1e-8);
+      ASSERT_EQ(std::isnan(q.sigma_v[i]), std::isnan(b.sigma_v[i]));
+      ASSERT_NEAR(q.height[i], b.height[i], 0.0005 + 1e-6);
+    }
+    EXPECT_EQ(q.intensity, b.intensity);
+    EXPECT_EQ(q.return_number, b.return_number);
+    EXPECT_EQ(q.return_count, b.return_count);
+    EXPECT_EQ(q.classification, b.classification);
+    EXPECT_EQ(q.flags, b.flags);
+    EXPECT_EQ(q.strip, b.strip);
+    EXPECT_EQ(q.record, b.record);
+    EXPECT_EQ(q.red, b.red);
+    EXPECT_EQ(q.green, b.green);
+    EXPECT_EQ(q.blue, b.blue);
+    EXPECT_EQ(q.user_data, b.user_data);
+  }
+}
+
+TEST(LasWriter, BytesDependNeitherOnThreadsNorOnBatches) {
+  const test::TemporaryFolder folder;
+  const core::Block b = sample_block(180000);
+  const auto written = [&](const std::string& name, unsigned threads, std::size_t batch) {
+    LasWriteOptions o = options();
+    o.threads = threads;
+    LasWriter w(folder / name, o);
+    for (std::size_t at = 0; at < b.size(); at += batch) {
+      std::vector<std::uint32_t> rows;
+      for (std::size_t i = at; i < std::min(b.size(), at + batch); ++i) rows.push_back(static_cast<std::uint32_t>(i));
+      w.write(core::select(b, rows));
+    }
+    w.finish();
+    return test::read_bytes(folder / name);
+  };
+  const std::string las = written("a.las", 1, b.size()), laz = written("a.laz", 1, b.size());
+  EXPECT_EQ(written("b.las", 1, 777), las);
+  EXPECT_TRUE(written("b.laz", 1, 7777) == laz);
+  EXPECT_TRUE(written("c.laz", 3, b.size()) == laz);
+  EXPECT_TRUE(written("d.laz", 0, 60000) == laz);
+  EXPECT_LT(laz.size(), las.size());
+}
+
+TEST(LasWriter, OnlyWhatTheBlockHasIsWritten) {
+  const test::TemporaryFolder folder;
+  core::Block b;
+  core::resize(b, 3);
+  core::add_columns(b, {core::Column::time, core::Column::height});
+  LasWriter w(folder / "a.laz", options());
+  w.write(b);
+  core::Block more = b;
+  more.sigma_h.resize(3);
+  EXPECT_THROW(w.write(more), core::Error);
+  w.finish();
+  const LasReader r(folder / "a.laz");
+  EXPECT_EQ(r.header().point_format, 6);
+  ASSERT_EQ(r.header().extras.size(), 1u);
+  EXPECT_EQ(r.header().extras[0].name, "height_above_ground");
+  EXPECT_EQ(r.header().extras[0].description, "height above ground, m");
+}
+
+TEST(LasWriter, NoPointsIsAFileWithNoPoints) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.las", "a.laz"}) {
+    LasWriter w(folder / name, options());
+    w.finish();
+    LasReader r(folder / name);
+    EXPECT_EQ(r.header().point_count, 0u);
+    LasPoints p;
+    EXPECT_EQ(r.read(p, 10), 0u);
+    EXPECT_TRUE(r.warnings().empty());
+  }
+}
+
+TEST(LasWriter, WhatDoesNotFitIsRefusedAndLeavesNothing) {
+  const test::TemporaryFolder folder;
+  const auto refused = [&](auto change, const char* what) {
+    core::Block b = sample_block(10);
+    LasWriteOptions o = options();
+    change(b, o);
+    try {
+      LasWriter w(folder / "a.laz", o);
+      w.write(b);
+      w.finish();
+      ADD_FAILURE() << what;
+    } catch (const core::Error& e) {
+      EXPECT_NE(e.text().find(what), std::string::npos) << e.text();
+    }
+    EXPECT_EQ(test::entries(folder.path()), 0u);
+  };
+  refused([](core::Block& b, LasWriteOptions&) { b.x[4] = 3e6; }, "point 4: x = 3512000");
+  refused([](core::Block& b, LasWriteOptions&) { b.z[5] = std::numeric_limits<double>::quiet_NaN(); }, "point 5: z");
+  refused([](core::Block&, LasWriteOptions& o) { o.offset = Eigen::Vector3d::Zero(); }, "does not fit scale");
+  refused([](core::Block& b, LasWriteOptions&) { b.return_number[2] = 16; }, "return 16 of 15");
+  refused([](core::Block& b, LasWriteOptions&) { b.sigma_h[3] = -1.0f; }, "sigma_h");
+  refused([](core::Block&, LasWriteOptions& o) { o.scale.y() = 0.0; }, "scale of y");
+  refused([](core::Block&, LasWriteOptions& o) { o.version_minor = 2; }, "no point format 7");
+}
+
+TEST(LasWriter, AWriterThatNeverFinishesLeavesNothing) {
+  const test::TemporaryFolder folder;
+  {
+    LasWriter w(folder / "a.laz", options());
+    w.write(sample_block(100));
+  }
+  EXPECT_EQ(test::entries(folder.path()), 0u);
+}
+
+TEST(LasWriter, CoordinatesAreRoundedToTheNearest) {
+  const test::TemporaryFolder folder;
+  core::Block b;
+  core::resize(b, 2);
+  b.x = {0.0014, -0.0016};
+  LasWriteOptions o;
+  o.offset = Eigen::Vector3d::Zero();
+  LasWriter w(folder / "a.las", o);
+  w.write(b);
+  w.finish();
+  EXPECT_EQ(test::read_all(folder / "a.las").raw_x, (std::vector<std::int32_t>{1, -2}));
+}
+
+TEST(LasWriter, OldFormatsOfABlock) {
+  const test::TemporaryFolder folder;
+  core::Block b = sample_block(20);
+  for (auto& n : b.return_count) n = 7;
+  for (auto& n : b.return_number) n = 1;
+  for (auto& f : b.flags) f = core::flag::overlap;
+  for (auto& c : b.classification) c = 1;
+  LasWriteOptions o;
+  o.format = 3;
+  o.version_minor = 2;
+  LasWriter w(folder / "a.laz", o);
+  w.write(b);
+  w.finish();
+  LasReader r(folder / "a.laz");
+  EXPECT_EQ(r.header().version_minor, 2);
+  core::Block q;
+  ASSERT_EQ(r.read(q, 20), 20u);
+  EXPECT_EQ(q.flags, b.flags);  // through class 12
+  EXPECT_EQ(q.classification, b.classification);
+}
+
+}  // namespace
+}  // namespace swath::io
