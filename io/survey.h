@@ -76,7 +76,8 @@ void describe(LaserFile& f, V& v) {
   v.table("columns", f.columns, "Columns of a text or NumPy file.");
 }
 
-enum class TrajectoryFormat { automatic, sbet, text };
+enum class VelocityAxes { automatic, ned, nwu, ignore };
+enum class TrajectoryFormat { automatic, sbet, text, csd };
 
 struct TrajectoryColumns {
   std::string time, week, latitude, longitude, height, roll, pitch, heading, v_north, v_east, v_down;
@@ -112,6 +113,8 @@ struct TrajectoryFile {
   TimeTags time;
   AngleUnit angle_unit = AngleUnit::unstated;
   bool wander = true;
+  VelocityAxes velocity_axes = VelocityAxes::automatic;
+  core::Seconds spacing{0.001};
   std::string crs;
   std::string delimiter;
   TrajectoryColumns columns;
@@ -122,12 +125,16 @@ struct TrajectoryFile {
 template <class V>
 void describe(TrajectoryFile& f, V& v) {
   v.option("file", f.file, "File, relative to survey.toml.");
-  v.option("format", f.format, "Format; automatic goes by the name's ending (.out .sbet: SBET; .csv .txt .pos: text).");
+  v.option("format", f.format, "Format; automatic goes by the name's ending (.out .sbet: SBET; .csv .txt .pos: text; .csd).");
   v.option("accuracy", f.accuracy, "smrmsg file with the SBET's standard deviations.");
   v.table("time", f.time, "Time scale.");
   v.option("angle_unit", f.angle_unit, "Unit of angles in a text file.");
   v.option("wander", f.wander,
            "SBET: the platform heading counts from the wander azimuth, which is subtracted (heading = platform heading - wander angle).");
+  v.option("velocity_axes", f.velocity_axes,
+           "SBET: axes of the velocities, turned by the wander angle: ned or nwu (north, west, up); automatic: those that agree with the "
+           "positions, or none; ignore: velocities are not used.");
+  v.option("spacing", f.spacing, core::at_least(0), "CSD, which holds a pose per pulse: least time between two poses that are kept.");
   v.option("crs", f.crs,
            "CRS of a text file's horizontal coordinates where they are projected; empty: geodetic WGS84. Headings stay from true north.");
   v.option("delimiter", f.delimiter, "Delimiter of a text file; empty: found in its first line.");
@@ -188,6 +195,7 @@ struct Survey {
   core::Scanner scanner;
   core::Calibration calibration;
   core::SensorSigma sigma;
+  std::optional<std::filesystem::path> calibration_file;
   std::vector<LaserFile> laser;
   std::vector<TrajectoryFile> trajectory;
   std::vector<PointFile> points;
@@ -206,6 +214,10 @@ void describe(Survey& s, V& v) {
   v.table("scanner", s.scanner, "Scanner model.");
   v.table("calibration", s.calibration, "Calibration and mounting.");
   v.table("sigma", s.sigma, "How well calibration and records are known.");
+  v.option(
+      "calibration_file", s.calibration_file,
+      "Calibration whose values replace those of [calibration] and [sigma]: .json or .toml as the adjustment writes it, or the Optech .csd "
+      "whose header holds the boresight.");
   v.tables("laser", s.laser, "Raw laser records.");
   v.tables("trajectory", s.trajectory, "Trajectory.");
   v.tables("points", s.points, "Point clouds in map coordinates, in place of raw records.");
@@ -214,8 +226,34 @@ void describe(Survey& s, V& v) {
   v.table("truth", s.truth, "Truth of a simulated survey.");
 }
 
-/// Reads and checks a survey.toml (or the same tree as .json). Throws Error with all faults.
+/// Reads and checks a survey.toml (or the same tree as .json), and its calibration_file. Throws Error with all faults.
 Survey read_survey(const std::filesystem::path& file);
+/// The same from a tree already read (and changed by --set); `folder`: what its file names are relative to.
+Survey read_survey(const core::Value& tree, const std::filesystem::path& folder);
+
+/// Replaces the values that a calibration file states. The file is a table with the tables `calibration` (keys as [calibration]) and
+/// `sigma` (as [sigma]), further keys passed over; or the keys of [calibration] themselves beside `sigma`. Throws Error with all faults.
+void load_calibration(const std::filesystem::path& file, core::Calibration& calibration, core::SensorSigma& sigma);
+/// The tree that load_calibration() reads back.
+core::Value calibration_tree(const core::Calibration& calibration, const core::SensorSigma& sigma);
+
+/// The format a file is read in: the one stated, or by the name's ending; `automatic` where the ending says nothing.
+LaserFormat format_of(const LaserFile& file);
+TrajectoryFormat format_of(const TrajectoryFile& file);
+
+/// The trajectory files of a survey: those stated, or the CSD laser files where none is (their pulses carry their own poses).
+std::vector<TrajectoryFile> trajectory_files(const Survey& survey);
+
+/// rad per unit; 0 where unstated.
+double radians_per(AngleUnit unit);
+
+/// A flight line in GPS time.
+struct LineWindow {
+  int id = 0;
+  core::GpsTime start = 0, end = 0;
+};
+/// The survey's lines in GPS time, by start. Throws Error where their time scale is not stated.
+std::vector<LineWindow> line_windows(const Survey& survey);
 
 /// The path of a file named in the survey.
 std::filesystem::path resolve(const Survey& survey, const std::filesystem::path& file);
@@ -232,7 +270,11 @@ struct Choices<io::AngleUnit> {
   static constexpr std::array<std::string_view, 4> names{"unstated", "deg", "rad", "gon"};
 };
 template <>
+struct Choices<io::VelocityAxes> {
+  static constexpr std::array<std::string_view, 4> names{"automatic", "ned", "nwu", "ignore"};
+};
+template <>
 struct Choices<io::TrajectoryFormat> {
-  static constexpr std::array<std::string_view, 3> names{"automatic", "sbet", "text"};
+  static constexpr std::array<std::string_view, 4> names{"automatic", "sbet", "text", "csd"};
 };
 }  // namespace swath::core

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/trajectory_file.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/crs.h"
+#include "core/error.h"
+#include "core/frames.h"
+#include "io/csd.h"
+#include "io/delimited.h"
+#include "io/sbet.h"
+
+namespace swath::io {
+namespace {
+
+using core::TrajectoryData;
+
+constexpr double gap_steps = 5.0, gap_seconds = 0.05;
+
+/// Calls f(column) for every column that is there; their element types differ.
+template <class F>
+void for_each_column(TrajectoryData& t, F&& f) {
+  for (auto* c : {&t.time, &t.latitude, &t.longitude, &t.height, &t.roll, &t.pitch, &t.heading, &t.v_north, &t.v_east, &t.v_down})
+    if (!c->empty()) f(*c);
+  for (auto* c : {&t.sigma_north, &t.sigma_east, &t.sigma_down, &t.sigma_roll, &t.sigma_pitch, &t.sigma_heading})
+    if (!c->empty()) f(*c);
+}
+
+/// Calls f(column of a, column of b) for every pair of columns.
+template <class F>
+void for_each_pair(TrajectoryData& a, TrajectoryData& b, F&& f) {
+  for (auto c :
+       {&TrajectoryData::time, &TrajectoryData::latitude, &TrajectoryData::longitude, &TrajectoryData::height, &TrajectoryData::roll,
+        &TrajectoryData::pitch, &TrajectoryData::heading, &TrajectoryData::v_north, &TrajectoryData::v_east, &TrajectoryData::v_down})
+    f(a.*c, b.*c);
+  for (auto c : {&TrajectoryData::sigma_north, &TrajectoryData::sigma_east, &TrajectoryData::sigma_down, &TrajectoryData::sigma_roll,
+                 &TrajectoryData::sigma_pitch, &TrajectoryData::sigma_heading})
+    f(a.*c, b.*c);
+}
+
+/// Projected or geographic coordinates of a stated CRS to geodetic WGS84, in place (x = easting or longitude).
+void to_geodetic(const std::string& crs, const std::string& name, double unit, std::vector<double>& east, std::vector<double>& north,
+                 std::vector<double>& height) {
+  const core::Crs from(crs);
+  if (from.is_geocentric()) throw core::Error("geocentric coordinates are not read as a trajectory", name, "export latitude and longitude");
+  if (from.is_geographic())
+    for (auto* c : {&east, &north})
+      for (double& v : *c) v = core::to_degrees(v * unit);
+  const core::Transform transform(from, core::wgs84_geodetic());
+  if (const size_t lost = transform.apply(east.data(), north.data(), height.data(), east.size()))
+    throw core::Error(std::to_string(lost) + " positions lie outside the domain of " + from.name(), name, "check crs and the columns");
+  for (auto* c : {&east, &north})
+    for (double& v : *c) v *= core::degree;
+}
+
+TrajectoryData read_text(const std::filesystem::path& path, const TrajectoryFile& f) {
+  const std::string name = path.string();
+  const DelimitedLayout layout = inspect_delimited(path, f.delimiter);
+  const double unit = radians_per(f.angle_unit);
+  if (unit == 0) throw core::usage_error("the unit of angles is not stated", name, "angle_unit = \"deg\", \"rad\" or \"gon\"");
+  const TrajectoryColumns& c = f.columns;
+  TrajectoryData out;
+  std::vector<double> week;
+  std::vector<size_t> at;
+  std::vector<std::pair<std::vector<double>*, double>> doubles;  // column and factor to SI
+  std::vector<std::pair<std::vector<float>*, double>> floats;
+  for (const auto& [column, to, factor] : {std::tuple{&c.time, &out.time, 1.0},
+                                           {&c.latitude, &out.latitude, 1.0},
+                                           {&c.longitude, &out.longitude, 1.0},
+                                           {&c.height, &out.height, 1.0},
+                                           {&c.roll, &out.roll, unit},
+                                           {&c.pitch, &out.pitch, unit},
+                                           {&c.heading, &out.heading, unit},
+                                           {&c.v_north, &out.v_north, 1.0},
+                                           {&c.v_east, &out.v_east, 1.0},
+                                           {&c.v_down, &out.v_down, 1.0},
+                                           {&c.week, &week, 1.0}}) {
+    if (column->empty()) continue;
+    at.push_back(column_of(layout, *column, path));
+    doubles.emplace_back(to, factor);
+  }
+  for (const auto& [column, to, factor] : {std::tuple{&c.sigma_north, &out.sigma_north, 1.0},
+                                           {&c.sigma_east, &out.sigma_east, 1.0},
+                                           {&c.sigma_down, &out.sigma_down, 1.0},
+                                           {&c.sigma_roll, &out.sigma_roll, unit},
+                                           {&c.sigma_pitch, &out.sigma_pitch, unit},
+                                           {&c.sigma_heading, &out.sigma_heading, unit}}) {
+    if (column->empty()) continue;
+    at.push_back(column_of(layout, *column, path));
+    floats.emplace_back(to, factor);
+  }
+  const bool weeks = !c.week.empty();
+  std::optional<core::TimeReader> clock;
+  if (!weeks) clock.emplace(f.time.scale, f.time.week, f.time.date, name);
+  DelimitedReader reader(path, layout, at);
+  std::vector<double> row(at.size());
+  while (reader.next(row.data())) {
+    for (const double v : row)
+      if (!std::isfinite(v)) throw core::Error("a value is empty or not finite", name + ":" + std::to_string(reader.line()));
+    for (size_t i = 0; i < doubles.size(); ++i) doubles[i].first->push_back(row[i] * doubles[i].second);
+    for (size_t i = 0; i < floats.size(); ++i) floats[i].first->push_back(static_cast<float>(row[doubles.size() + i] * floats[i].second));
+    out.time.back() = weeks ? core::from_week(static_cast<int>(week.back()), out.time.back()) : (*clock)(out.time.back());
+  }
+  if (f.crs.empty()) {
+    for (auto* angles : {&out.latitude, &out.longitude})
+      for (double& v : *angles) v *= unit;
+  } else {
+    to_geodetic(f.crs, name, unit, out.longitude, out.latitude, out.height);
+  }
+  return out;
+}
+
+TrajectoryData read_csd(const std::filesystem::path& path, const TrajectoryFile& f, core::Tally& tally) {
+  CsdReader file(path);
+  TimeTags tags = f.time;
+  if (tags.scale == core::TimeScale::unstated) {
+    tags.scale = core::TimeScale::gps_week;
+    tags.week = tags.week ? tags.week : file.header().gps_week;
+  }
+  TrajectoryData out = read_csd_trajectory(file, f.spacing, tally);
+  core::TimeReader clock(tags.scale, tags.week, tags.date, path.string());
+  for (double& t : out.time) t = clock(t);
+  return out;
+}
+
+/// Sigmas that the file does not have, from the survey.
+void fill_sigmas(TrajectoryData& t, const TrajectoryFile& f) {
+  for (const auto& [column, value] : {std::pair{&t.sigma_north, f.sigma_horizontal.value},
+                                      {&t.sigma_east, f.sigma_horizontal.value},
+                                      {&t.sigma_down, f.sigma_vertical.value},
+                                      {&t.sigma_roll, f.sigma_roll_pitch.value},
+                                      {&t.sigma_pitch, f.sigma_roll_pitch.value},
+                                      {&t.sigma_heading, f.sigma_heading.value}})
+    if (column->empty()) column->assign(t.size(), static_cast<float>(value));
+}
+
+}  // namespace
+
+void check_trajectory(TrajectoryData& t, const std::string& name, core::Tally& tally) {
+  const auto where = [&](size_t i) { return name + ": record " + std::to_string(i); };
+  if (t.size() == 0) throw core::Error("the trajectory has no records", name);
+  for_each_column(t, [&](const auto& column) {
+    for (size_t i = 0; i < column.size(); ++i)
+      if (!std::isfinite(column[i])) throw core::Error("a value is not finite", where(i));
+  });
+  std::vector<std::uint32_t> repeated;
+  std::vector<double> steps;
+  for (size_t i = 0; i < t.size(); ++i) {
+    if (std::abs(t.latitude[i]) > core::pi / 2)
+      throw core::Error("latitude " + core::format_number(core::to_degrees(t.latitude[i])) + " deg", where(i),
+                        "check the angle unit and crs");
+    if (std::abs(t.pitch[i]) > core::pi / 2)
+      throw core::Error("pitch " + core::format_number(core::to_degrees(t.pitch[i])) + " deg", where(i), "check the angle unit");
+    t.longitude[i] = core::wrap_pi(t.longitude[i]);
+    t.roll[i] = core::wrap_pi(t.roll[i]);
+    t.heading[i] = core::wrap_two_pi(t.heading[i]);
+    if (i == 0) continue;
+    const double step = t.time[i] - t.time[i - 1];
+    if (step < 0)
+      throw core::Error("time goes back by " + core::format_number(-step) + " s", where(i), "export the trajectory sorted by time");
+    if (step == 0)
+      repeated.push_back(static_cast<std::uint32_t>(i));
+    else
+      steps.push_back(step);
+  }
+  if (!steps.empty()) {
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    const double gap = std::max(gap_steps * *middle, gap_seconds);
+    for (size_t i = 1; i < t.size(); ++i)
+      if (const double step = t.time[i] - t.time[i - 1]; step > gap)
+        tally.count("trajectory gaps", where(i) + ": " + core::format_number(std::round(step * 1e3) / 1e3) + " s before it");
+  }
+  if (repeated.empty()) return;
+  for (const std::uint32_t i : repeated) tally.count("trajectory records at a repeated time, dropped", where(i));
+  for_each_column(t, [&](auto& column) {
+    size_t kept = 0, next = 0;
+    for (size_t i = 0; i < column.size(); ++i) {
+      if (next < repeated.size() && repeated[next] == i)
+        ++next;
+      else
+        column[kept++] = column[i];
+    }
+    column.resize(kept);
+  });
+}
+
+TrajectoryData read_trajectory(const Survey& survey, const TrajectoryFile& f, core::Tally& tally) {
+  const std::filesystem::path path = resolve(survey, f.file);
+  TrajectoryData out;
+  switch (format_of(f)) {
+    case TrajectoryFormat::sbet: {
+      std::optional<std::filesystem::path> accuracy;
+      if (f.accuracy) accuracy = resolve(survey, *f.accuracy);
+      out = read_sbet(path, f.time, f.wander, f.velocity_axes, accuracy, tally);
+      break;
+    }
+    case TrajectoryFormat::text:
+      out = read_text(path, f);
+      break;
+    case TrajectoryFormat::csd:
+      out = read_csd(path, f, tally);
+      break;
+    case TrajectoryFormat::automatic:
+      throw core::usage_error("the name does not tell the format of the trajectory", path.string(),
+                              "state format = \"sbet\", \"text\" or \"csd\"");
+  }
+  fill_sigmas(out, f);
+  check_trajectory(out, path.string(), tally);
+  return out;
+}
+
+TrajectoryData read_trajectory(const Survey& survey, core::Tally& tally) {
+  const std::vector<TrajectoryFile> files = trajectory_files(survey);
+  if (files.empty()) throw core::usage_error("the survey has no trajectory");
+  std::vector<std::pair<TrajectoryData, std::string>> parts;
+  for (const TrajectoryFile& f : files) parts.emplace_back(read_trajectory(survey, f, tally), f.file.string());
+  std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first.time.front() < b.first.time.front(); });
+  const bool velocities = std::all_of(parts.begin(), parts.end(), [](const auto& p) { return p.first.has_velocity(); });
+  TrajectoryData out;
+  for (size_t k = 0; k < parts.size(); ++k) {
+    TrajectoryData& part = parts[k].first;
+    if (!velocities && part.has_velocity()) {
+      tally.count("trajectory files whose velocities are not used, as another has none", parts[k].second);
+      for (auto* c : {&part.v_north, &part.v_east, &part.v_down}) c->clear();
+    }
+    if (k > 0 && part.time.front() < out.time.back())
+      throw core::Error(parts[k - 1].second + " and " + parts[k].second + " overlap by " +
+                            core::format_number(out.time.back() - part.time.front()) + " s",
+                        parts[k].second, "trim one of them: two solutions for one instant have no order");
+    for_each_pair(out, part, [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); });
+  }
+  if (parts.size() > 1) check_trajectory(out, "joined trajectory", tally);
+  return out;
+}
+
+}  // namespace swath::io
