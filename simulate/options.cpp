@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulate/options.h"
+
+namespace swath::simulate {
+
+using core::degrees;
+using core::Metres;
+
+core::Calibration default_calibration() {
+  core::Calibration c;
+  c.roll = degrees(0.05);
+  c.pitch = degrees(0.12);
+  c.heading = degrees(-0.15);
+  c.lever_arm_scanner = {Metres(0.185), Metres(-0.072), Metres(0.324)};
+  c.range_offset = Metres(0.04);
+  c.scan_scale = 1.0003;
+  return c;
+}
+
+CalibrationSigma default_drawn_sigma() {
+  CalibrationSigma s;
+  s.roll = s.pitch = degrees(0.002);
+  s.heading = degrees(0.004);
+  s.lever_arm = Metres(0.005);
+  s.range_offset = Metres(0.005);
+  s.scan_scale = 2e-5;
+  return s;
+}
+
+CalibrationSigma default_nominal_sigma() {
+  CalibrationSigma s;
+  s.roll = s.pitch = s.heading = degrees(0.2);
+  s.lever_arm = Metres(0.005);
+  s.range_offset = Metres(0.05);
+  s.scan_scale = 5e-4;
+  return s;
+}
+
+core::ScannerModel model_of(Pattern p) {
+  switch (p) {
+    case Pattern::triangle:
+    case Pattern::sine:
+      return core::ScannerModel::mirror;
+    case Pattern::polygon:
+      return core::ScannerModel::polygon;
+    case Pattern::profile:
+      return core::ScannerModel::profile;
+    case Pattern::beam:
+      return core::ScannerModel::beam;
+    case Pattern::conical:
+      return core::ScannerModel::conical;
+    case Pattern::palmer:
+      return core::ScannerModel::palmer;
+  }
+  return core::ScannerModel::mirror;
+}
+
+Features features_of(const WorldOptions& w) {
+  Features f;
+  switch (w.scene) {
+    case Scene::flat:
+      f = {.slope = 0.01};
+      break;
+    case Scene::hills:
+      f = {.slope = 0.02, .relief = 20, .trees = 40, .low_vegetation = 0.1, .woodland = 0.1};
+      break;
+    case Scene::steep:
+      f = {.slope = 0.25, .relief = 30, .scarp = 12, .trees = 60, .low_vegetation = 0.2, .woodland = 0.25};
+      break;
+    case Scene::forest:
+      f = {.slope = 0.08, .relief = 12, .trees = 250, .low_vegetation = 0.3, .woodland = 0.75};
+      break;
+    case Scene::town:
+      f = {.slope = 0.01,
+           .relief = 2,
+           .buildings = 9,
+           .trees = 30,
+           .low_vegetation = 0.05,
+           .power_line = true,
+           .woodland = 0.2,
+           .built_up = 0.7};
+      break;
+    case Scene::mixed:
+      f = {.slope = 0.03,
+           .relief = 8,
+           .scarp = 5,
+           .embankment = 3,
+           .buildings = 6,
+           .trees = 150,
+           .low_vegetation = 0.15,
+           .water = true,
+           .power_line = true,
+           .woodland = 0.25,
+           .built_up = 0.35};
+      break;
+  }
+  if (w.slope) f.slope = *w.slope;
+  if (w.relief) f.relief = w.relief->value;
+  if (w.scarp) f.scarp = w.scarp->value;
+  if (w.embankment) f.embankment = w.embankment->value;
+  if (w.buildings) f.buildings = *w.buildings;
+  if (w.trees) f.trees = *w.trees;
+  if (w.low_vegetation) f.low_vegetation = *w.low_vegetation;
+  if (w.water) f.water = *w.water;
+  if (w.power_line) f.power_line = *w.power_line;
+  return f;
+}
+
+}  // namespace swath::simulate

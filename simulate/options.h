@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is simulated: the one declaration of each option of `swath simulate`.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/option.h"
+#include "core/sensor.h"
+#include "core/time.h"
+
+namespace swath::simulate {
+
+enum class Scene { flat, hills, steep, forest, town, mixed };
+
+/// The ground and what stands on it. Options without a value take the scene's own.
+struct WorldOptions {
+  Scene scene = Scene::mixed;
+  core::Metres length{1000.0}, width{400.0};
+  core::Metres ground{600.0};
+  std::optional<double> slope;
+  std::optional<core::Metres> relief, scarp, embankment;
+  std::optional<double> buildings, trees, low_vegetation;
+  std::optional<bool> water, power_line;
+};
+
+template <class V>
+void describe(WorldOptions& w, V& v) {
+  v.option("scene", w.scene, "Kind of scene; it fills the options below that are not given.");
+  v.option("length", w.length, core::within(50, 1e4), "Length of the area along the flight lines.");
+  v.option("width", w.width, core::within(50, 1e4), "Width of the area across the flight lines.");
+  v.option("ground", w.ground, core::within(-500, 8000), "Ellipsoidal height of the ground in the middle.");
+  v.option("slope", w.slope, core::within(0, 1), "Slope of the whole area (rise / run), down to grid north-east.");
+  v.option("relief", w.relief, core::within(0, 500), "Amplitude of hills.");
+  v.option("scarp", w.scarp, core::within(0, 100), "Height of a steep scarp through the area (0: none).");
+  v.option("embankment", w.embankment, core::within(0, 50), "Height of an embankment through the area (0: none).");
+  v.option("buildings", w.buildings, core::within(0, 30), "Buildings per hectare of built-up ground.");
+  v.option("trees", w.trees, core::within(0, 1000), "Trees per hectare of woodland.");
+  v.option("low_vegetation", w.low_vegetation, core::within(0, 1), "Share of open ground under low vegetation.");
+  v.option("water", w.water, "A lake.");
+  v.option("power_line", w.power_line, "A power line.");
+}
+
+struct FlightOptions {
+  core::Metres height{350.0};
+  core::MetresPerSecond speed{50.0};
+  int lines = 3;
+  std::optional<core::Metres> line_length;
+  double overlap = 0.4;
+  int cross_lines = 1;
+  core::Radians direction = core::degrees(60.0);
+  core::Radians bank = core::degrees(22.0);
+  core::Seconds lead{5.0};
+  double turbulence = 1.0;
+  core::MetresPerSecond wind{4.0};
+  core::Radians wind_from = core::degrees(300.0);
+};
+
+template <class V>
+void describe(FlightOptions& f, V& v) {
+  v.option("height", f.height, core::within(20, 5000), "Flying height above the ground in the middle of the area.");
+  v.option("speed", f.speed, core::within(5, 120), "Ground speed.");
+  v.option("lines", f.lines, core::within(1, 200), "Parallel flight lines, flown to and fro.");
+  v.option("line_length", f.line_length, core::within(20, 1e5), "Length of a flight line; without a value the area's length.");
+  v.option("overlap", f.overlap, core::within(-1.0, 0.95), "Share of the swath that neighbouring lines have in common.");
+  v.option("cross_lines", f.cross_lines, core::within(0, 50), "Lines flown across the others.");
+  v.option("direction", f.direction, core::within(0, 2 * core::pi), "Direction of the first line, clockwise from grid north.");
+  v.option("bank", f.bank, core::within(0.05, 1.0), "Bank of turns between lines.");
+  v.option("lead", f.lead, core::within(1, 300), "Straight flight before and after each line.");
+  v.option("turbulence", f.turbulence, core::within(0, 5), "Factor on the amplitudes of turbulence (1: about 1 deg of roll, 0.3 m).");
+  v.option("wind", f.wind, core::within(0, 40), "Wind, which the aircraft meets by crabbing.");
+  v.option("wind_from", f.wind_from, core::within(0, 2 * core::pi), "Direction the wind comes from, clockwise from grid north.");
+  v.check(f.wind.value < 0.8 * f.speed.value, "the wind must be well below the aircraft's speed");
+}
+
+/// How the beam moves.
+enum class Pattern { triangle, sine, polygon, profile, beam, conical, palmer };
+
+struct ScannerOptions {
+  Pattern pattern = Pattern::triangle;
+  core::Hertz prf{16000.0};
+  core::Hertz frequency{25.0};
+  core::Radians half_angle = core::degrees(20.0);
+  core::Radians forward_tilt = core::degrees(8.0);
+  core::Radians shaft_angle = core::degrees(45.0), mirror_tilt = core::degrees(7.0);
+  core::Radians divergence{0.3e-3};
+  int max_returns = 4;
+  core::Metres separation{1.2};
+  core::Metres range_resolution{0.001};
+  core::Radians angle_resolution = core::degrees(0.0002);
+};
+
+template <class V>
+void describe(ScannerOptions& s, V& v) {
+  v.option("pattern", s.pattern,
+           "Motion of the beam: oscillating mirror (triangle, sine), one-way polygon, profile (no scan), beam (a triangle scan that nods "
+           "forward, recorded as vectors), conical, palmer.");
+  v.option("prf", s.prf, core::within(10, 2e6), "Pulses per second.");
+  v.option("frequency", s.frequency, core::within(0.1, 1000), "Full scans (there and back, or turns, or facets) per second.");
+  v.option("half_angle", s.half_angle, core::within(0.005, 0.9), "Half of the field of view; half angle of the cone (conical).");
+  v.option("forward_tilt", s.forward_tilt, core::within(0, 0.6), "Amplitude of the nod (beam).");
+  v.option("shaft_angle", s.shaft_angle, core::within(0.1, 1.5), "Between the mirror's shaft and the nadir axis (palmer).");
+  v.option("mirror_tilt", s.mirror_tilt, core::above_to(0.0, 0.3), "Between the mirror's normal and its shaft (palmer).");
+  v.option("divergence", s.divergence, core::within(0, 0.01),
+           "Full divergence of the beam (1/e2); the echo lies anywhere in the footprint, with a quarter of it as sigma along and across.",
+           "Schaer2007");
+  v.option("max_returns", s.max_returns, core::within(1, 4), "Returns recorded of one pulse: the first ones and the last.");
+  v.option("separation", s.separation, core::within(0, 20), "A return nearer than this behind another is lost.");
+  v.option("range_resolution", s.range_resolution, core::within(0, 1), "Step of recorded ranges (0: none).");
+  v.option("angle_resolution", s.angle_resolution, core::within(0, 0.01), "Step of recorded angles (0: none).");
+}
+
+struct NoiseOptions {
+  bool noise_free = false;
+  core::Metres range{0.015};
+  core::Radians scan_angle = core::degrees(0.001);
+  core::Metres horizontal{0.02}, vertical{0.03};
+  core::Radians roll_pitch = core::degrees(0.0025), heading = core::degrees(0.005);
+  core::Seconds correlation{60.0};
+  double high_points = 2e-5, low_points = 2e-5, multipath = 5e-5;
+};
+
+template <class V>
+void describe(NoiseOptions& n, V& v) {
+  v.option("noise_free", n.noise_free, "No noise, no errors, no outliers, no rounding to resolutions, a beam without width.");
+  v.option("range", n.range, core::within(0, 1), "Sigma of one range.");
+  v.option("scan_angle", n.scan_angle, core::within(0, 0.01), "Sigma of one scan angle.");
+  v.option("horizontal", n.horizontal, core::within(0, 10), "Sigma of the delivered trajectory, north and east each.");
+  v.option("vertical", n.vertical, core::within(0, 10), "Sigma of the delivered trajectory's height.");
+  v.option("roll_pitch", n.roll_pitch, core::within(0, 0.02), "Sigma of the delivered roll and pitch.");
+  v.option("heading", n.heading, core::within(0, 0.02), "Sigma of the delivered heading.");
+  v.option("correlation", n.correlation, core::within(0.5, 3600), "Correlation time of the delivered trajectory's errors.");
+  v.option("high_points", n.high_points, core::within(0, 0.1), "Share of pulses whose first return is an isolated high point (class 18).");
+  v.option("low_points", n.low_points, core::within(0, 0.1),
+           "Share of pulses whose last return is an isolated low point, 3 to 25 m late (class 7).");
+  v.option("multipath", n.multipath, core::within(0, 0.1), "Share of pulses whose last return comes 0.5 to 3 m late (class 7).");
+}
+
+/// What survey.toml says of the calibration.
+enum class Deliver {
+  truth,    ///< the true values
+  drawn,    ///< the true values with errors drawn from their stated sigmas
+  nominal,  ///< the mounting as measured: lever arm with its drawn error, everything else as on the drawing board (0, scale 1)
+};
+
+struct CalibrationSigma {
+  core::Radians roll, pitch, heading;
+  core::Metres lever_arm, range_offset;
+  double range_scale = 0.0;
+  core::Radians scan_offset;
+  double scan_scale = 0.0;
+  core::Seconds latency;
+};
+
+template <class V>
+void describe(CalibrationSigma& s, V& v) {
+  v.option("roll", s.roll, core::at_least(0), "Sigma of the boresight roll.");
+  v.option("pitch", s.pitch, core::at_least(0), "Sigma of the boresight pitch.");
+  v.option("heading", s.heading, core::at_least(0), "Sigma of the boresight heading.");
+  v.option("lever_arm", s.lever_arm, core::at_least(0), "Sigma of each component of the lever arm.");
+  v.option("range_offset", s.range_offset, core::at_least(0), "Sigma of the range offset.");
+  v.option("range_scale", s.range_scale, core::at_least(0), "Sigma of the range scale.");
+  v.option("scan_offset", s.scan_offset, core::at_least(0), "Sigma of the scan offset.");
+  v.option("scan_scale", s.scan_scale, core::at_least(0), "Sigma of the scan scale.");
+  v.option("latency", s.latency, core::at_least(0), "Sigma of the latency.");
+}
+
+/// The calibration of the README's survey: a boresight that shows, a range offset, a scan scale.
+core::Calibration default_calibration();
+CalibrationSigma default_drawn_sigma();
+CalibrationSigma default_nominal_sigma();
+
+struct MountingOptions {
+  core::Calibration truth = default_calibration();
+  Deliver deliver = Deliver::nominal;
+  CalibrationSigma sigma = default_drawn_sigma();
+  CalibrationSigma nominal_sigma = default_nominal_sigma();
+  std::array<core::Metres, 3> lever_arm_antenna{core::Metres(-0.412), core::Metres(0.127), core::Metres(-1.236)};
+};
+
+template <class V>
+void describe(MountingOptions& m, V& v) {
+  v.table("truth", m.truth, "True calibration.");
+  v.option("deliver", m.deliver, "Which calibration survey.toml states: truth, drawn (with errors from `sigma`), nominal (uncalibrated).");
+  v.table("sigma", m.sigma, "Sigmas that errors are drawn from and that survey.toml states (drawn; lever arm also for nominal).");
+  v.table("nominal_sigma", m.nominal_sigma, "Sigmas that survey.toml states for a nominal calibration.");
+  v.option("lever_arm_antenna", m.lever_arm_antenna, "IMU centre to GNSS antenna: forward, right, down.");
+}
+
+enum class Format { csv, npy, las, laz };
+enum class TrajectoryOutput { sbet, text };
+enum class ImuGrade { none, perfect, navigation, tactical, mems };
+
+struct OutputOptions {
+  std::vector<Format> formats{Format::npy};
+  TrajectoryOutput trajectory = TrajectoryOutput::sbet;
+  core::TimeScale time = core::TimeScale::gps_week;
+  int week = 2317;
+  core::Seconds start{474000.0};
+  ImuGrade imu = ImuGrade::tactical;
+  bool gnss = true;
+  bool truth_returns = true;
+  core::Metres dtm_cell{1.0};
+};
+
+template <class V>
+void describe(OutputOptions& o, V& v) {
+  v.option("formats", o.formats,
+           "Formats of the raw laser records; survey.toml names the first, survey_FORMAT.toml each further one. LAS and LAZ hold "
+           "coordinates in the scanner's frame.");
+  v.option("trajectory", o.trajectory, "Format of the delivered trajectory: SBET with smrmsg, or text.");
+  v.option("time", o.time,
+           "Time scale of laser and text records (SBET, imu.csv and gnss.csv: seconds of week; LAS: seconds of week or adjusted).");
+  v.option("week", o.week, core::within(0, 5000), "GPS week of the start.");
+  v.option("start", o.start, core::within(0, core::seconds_per_week - 1), "Seconds of week of the start.");
+  v.option("imu", o.imu, "Grade of the IMU whose increments are written; none: no imu.csv.");
+  v.option("gnss", o.gnss, "Writes gnss.csv, antenna positions at 5 Hz.");
+  v.option("truth_returns", o.truth_returns, "Writes truth/returns.npy (105 bytes a return).");
+  v.option("dtm_cell", o.dtm_cell, core::within(0.1, 100), "Cell of truth/dtm.tif.");
+  v.check(o.time != core::TimeScale::unstated, "the time scale must be stated");
+  v.check(!o.formats.empty(), "at least one format");
+}
+
+struct Options {
+  std::int64_t seed = 1;
+  std::string name = "simulated";
+  std::string crs = "EPSG:32632";
+  core::Radians latitude = core::degrees(47.906), longitude = core::degrees(10.512);
+  WorldOptions world;
+  FlightOptions flight;
+  ScannerOptions scanner;
+  NoiseOptions noise;
+  MountingOptions mounting;
+  OutputOptions output;
+};
+
+template <class V>
+void describe(Options& o, V& v) {
+  v.option("seed", o.seed, core::at_least(0), "Everything random follows from it.");
+  v.option("name", o.name, "Name of the survey.");
+  v.option("crs", o.crs, "Projected CRS of the map, in metres, ellipsoidal heights.");
+  v.option("latitude", o.latitude, core::within(-1.45, 1.45), "Latitude of the middle of the area.");
+  v.option("longitude", o.longitude, core::within(-core::pi, core::pi), "Longitude of the middle of the area.");
+  v.table("world", o.world, "Ground and objects.");
+  v.table("flight", o.flight, "Flight.");
+  v.table("scanner", o.scanner, "Scanner.");
+  v.table("noise", o.noise, "Noise and outliers.");
+  v.table("mounting", o.mounting, "Calibration, true and delivered.");
+  v.table("output", o.output, "Files.");
+  bool las = false;
+  for (Format f : o.output.formats) las = las || f == Format::las || f == Format::laz;
+  v.check(!las || (o.scanner.pattern != Pattern::conical && o.scanner.pattern != Pattern::palmer),
+          "LAS and LAZ hold coordinates, not the encoder angle of a conical or palmer scanner: choose csv or npy");
+}
+
+/// The scanner model that calib uses for a pattern.
+core::ScannerModel model_of(Pattern p);
+
+/// The scene's numbers with the given options put in.
+struct Features {
+  double slope = 0, relief = 0, scarp = 0, embankment = 0, buildings = 0, trees = 0, low_vegetation = 0;
+  bool water = false, power_line = false;
+  double woodland = 0.3;  ///< share of the area under trees
+  double built_up = 0.3;  ///< share of the area with buildings
+};
+Features features_of(const WorldOptions& w);
+
+}  // namespace swath::simulate
+
+namespace swath::core {
+template <>
+struct Choices<simulate::Scene> {
+  static constexpr std::array<std::string_view, 6> names{"flat", "hills", "steep", "forest", "town", "mixed"};
+};
+template <>
+struct Choices<simulate::Pattern> {
+  static constexpr std::array<std::string_view, 7> names{"triangle", "sine", "polygon", "profile", "beam", "conical", "palmer"};
+};
+template <>
+struct Choices<simulate::Deliver> {
+  static constexpr std::array<std::string_view, 3> names{"true", "drawn", "nominal"};
+};
+template <>
+struct Choices<simulate::Format> {
+  static constexpr std::array<std::string_view, 4> names{"csv", "npy", "las", "laz"};
+};
+template <>
+struct Choices<simulate::TrajectoryOutput> {
+  static constexpr std::array<std::string_view, 2> names{"sbet", "text"};
+};
+template <>
+struct Choices<simulate::ImuGrade> {
+  static constexpr std::array<std::string_view, 5> names{"none", "perfect", "navigation", "tactical", "mems"};
+};
+}  // namespace swath::core

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "simulate/options.h"
+
+namespace swath::simulate {
+
+/// The analytic ground: a slope, waves, hills, a scarp, an embankment and a lake's basin. Coordinates: metres east and north
+/// of the middle of the area in the map frame, heights in the map's height system.
+class Relief {
+ public:
+  struct Sample {
+    double height = 0.0;
+    Eigen::Vector2d gradient = Eigen::Vector2d::Zero();  ///< d height / d (east, north)
+    bool water = false;
+  };
+
+  Relief() = default;
+  /// `half` is the half side of the square that holds everything the beam can reach.
+  Relief(const WorldOptions& world, std::int64_t seed, core::Radians direction, double half);
+
+  /// The ground, or the water's surface where it stands above it.
+  Sample at(double e, double n) const;
+  double height(double e, double n) const { return at(e, n).height; }
+  bool is_water(double e, double n) const { return at(e, n).water; }
+
+  double steepest() const { return steepest_; }  ///< no gradient is longer (analytic bound)
+  double highest() const { return highest_; }    ///< analytic bounds within the square
+  double lowest() const { return lowest_; }
+
+ private:
+  struct Wave {
+    Eigen::Vector2d k;
+    double amplitude, phase;
+  };
+  struct Hill {
+    Eigen::Vector2d centre;
+    double amplitude, inverse_width2;
+  };
+  /// amplitude * (tanh((d + half) / width) - tanh((d - half) / width)) / 2, or tanh(d / width) / 2 where half is 0.
+  struct Step {
+    Eigen::Vector2d normal;
+    double offset, amplitude, width, half;
+  };
+  double base_ = 0.0, steepest_ = 0.0, highest_ = 0.0, lowest_ = 0.0;
+  Eigen::Vector2d slope_ = Eigen::Vector2d::Zero();
+  std::vector<Wave> waves_;
+  std::vector<Hill> hills_;
+  std::vector<Step> steps_;
+  bool lake_ = false;
+  Eigen::Vector2d lake_centre_ = Eigen::Vector2d::Zero();
+  double lake_radius_ = 0.0, lake_level_ = 0.0;
+};
+
+}  // namespace swath::simulate

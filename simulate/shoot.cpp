@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One pulse: the pose at its true time, the true beam, its echoes, then what the instrument records of them. The truth is the beam's
+// equation itself, p = r_imu + ecef_R_ned ned_R_body (lever arm + body_R_scanner range beam), in ECEF, with the range found by the trace.
+// True times are whole multiples of the resolution of a double of GPS time, so that the equation holds for them as stored.
+#include "simulate/shoot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/block.h"
+#include "simulate/scan.h"
+
+namespace swath::simulate {
+namespace {
+
+using Eigen::Vector3d;
+
+double rounded(double v, double step) { return step > 0.0 ? step * std::round(v / step) : v; }
+
+/// The beam turned by two small angles across itself.
+Vector3d deflected(const Vector3d& beam, double one, double other) {
+  const Vector3d u = Vector3d::UnitY().cross(beam).normalized(), v = beam.cross(u);
+  return (beam + one * u + other * v).normalized();
+}
+
+}  // namespace
+
+void append(Returns& to, const Returns& from) {
+  for_each_column([&](auto column) { (to.*column).insert((to.*column).end(), (from.*column).begin(), (from.*column).end()); });
+}
+
+Shooter::Shooter(const Options& options, const World& world, const MapPatch& map, const Flight& flight, core::GpsTime start)
+    : options_(options), world_(world), map_(map), flight_(flight), start_(start) {
+  const core::Calibration& c = options.mounting.truth;
+  body_R_scanner_ = core::matrix_of({c.roll.value, c.pitch.value, c.heading.value});
+  lever_arm_ = {c.lever_arm_scanner[0].value, c.lever_arm_scanner[1].value, c.lever_arm_scanner[2].value};
+}
+
+std::int64_t Shooter::pulses(const Line& line) const {
+  return static_cast<std::int64_t>(std::floor((line.end - line.start) * options_.scanner.prf.value));
+}
+
+void Shooter::shoot(const Line& line, std::int64_t first, std::int64_t last, Returns& out) const {
+  Echoes echoes;
+  for (std::int64_t k = first; k < last; ++k) pulse(line, k, echoes, out);
+}
+
+void Shooter::pulse(const Line& line, std::int64_t number, Echoes& echoes, Returns& out) const {
+  const NoiseOptions& noise = options_.noise;
+  const ScannerOptions& scanner = options_.scanner;
+  const core::Calibration& truth = options_.mounting.truth;
+  const bool noisy = !noise.noise_free;
+  const auto index = static_cast<std::uint64_t>(line.id) << 40 | static_cast<std::uint64_t>(number);
+  Random random = random_of(options_.seed, Stream::pulse, index);
+
+  const core::GpsTime time = start_ + (line.start + static_cast<double>(number) / scanner.prf.value);
+  const double t = time - start_;
+  const Pose pose = flight_.pose(t);
+  const Eigen::Matrix3d ecef_R_body = core::ecef_R_ned(pose.position.latitude, pose.position.longitude) * core::matrix_of(pose.attitude);
+  const Vector3d origin = core::ecef_of(pose.position) + ecef_R_body * lever_arm_;
+
+  ScanState scan = scan_at(scanner, t);
+  if (scanner.pattern == Pattern::profile) scan.angle = truth.scan_offset.value;
+  Vector3d beam = beam_of(scanner, scan.angle, scan.forward);
+  if (noisy) {
+    const double sigma = 0.25 * scanner.divergence.value;
+    const double one = random.normal(), other = random.normal();
+    beam = deflected(beam, sigma * one, sigma * other);
+  }
+  const Vector3d direction = ecef_R_body * (body_R_scanner_ * beam);
+
+  // The beam on the map: a parabola through three of its points between the highest and the lowest ground.
+  const Vector3d tangent = map_.tangent_of(origin), slope = map_.direction_of(direction);
+  if (slope.z() > -0.1) return;
+  const double top = map_.map_of(tangent).z();
+  const double begin = std::max(0.0, (top - world_.relief().highest() - 1.0) / -slope.z());
+  const double end = std::max(begin + 10.0, (top - world_.relief().lowest() + 1.0) / -slope.z());
+  const double half = 0.5 * (end - begin);
+  const Vector3d a = map_.map_of(tangent + begin * slope), b = map_.map_of(tangent + (begin + half) * slope),
+                 c = map_.map_of(tangent + end * slope);
+  const Ray ray{a, (4 * b - 3 * a - c) / (2 * half), (a - 2 * b + c) / (2 * half * half)};
+  world_.trace(ray, end - begin + 50.0, noisy ? begin * scanner.divergence.value : 0.0, random, echoes);
+  detect(echoes, scanner.separation.value, scanner.max_returns);
+  if (echoes.count == 0) return;
+
+  Random error = random_of(options_.seed, Stream::noise, index);
+  double angle = scan.angle;
+  if (noisy) {
+    const double outlier = error.uniform();
+    Echo& first = echoes.echo[0];
+    Echo& last = echoes.echo[static_cast<size_t>(echoes.count - 1)];
+    if (outlier < noise.high_points) {
+      first.s -= error.uniform(10.0, std::max(11.0, 0.5 * begin));
+      first.kind = core::point_class::high_noise;
+    } else if (outlier < noise.high_points + noise.low_points) {
+      last.s += error.uniform(3.0, 25.0);
+      last.kind = core::point_class::low_noise;
+    } else if (outlier < noise.high_points + noise.low_points + noise.multipath) {
+      last.s += error.uniform(0.5, 3.0);
+      last.kind = core::point_class::low_noise;
+    }
+    angle += noise.scan_angle.value * error.normal();
+  }
+  const bool profile = scanner.pattern == Pattern::profile;
+  double recorded_angle = profile ? 0.0 : (angle - truth.scan_offset.value) / truth.scan_scale;
+  if (noisy) recorded_angle = rounded(recorded_angle, scanner.angle_resolution.value);
+
+  for (int i = 0; i < echoes.count; ++i) {
+    const Echo& echo = echoes.echo[static_cast<size_t>(i)];
+    const double range = begin + echo.s;
+    const Vector3d p = origin + range * direction;
+    const Vector3d map = map_.map_of(tangent + range * slope) + map_.map_origin();
+    double recorded = range, brightness = 0.0;
+    if (noisy) {
+      recorded += noise.range.value * error.normal();
+      brightness = 0.03 * error.normal();
+    }
+    recorded = (recorded - truth.range_offset.value) / truth.range_scale;
+    if (noisy) recorded = rounded(recorded, scanner.range_resolution.value);
+    const double nominal = options_.flight.height.value / range;
+    out.time.push_back(time - truth.latency.value);
+    out.angle.push_back(recorded_angle);
+    out.forward.push_back(scan.forward);
+    out.range.push_back(recorded);
+    out.intensity.push_back(std::clamp(std::round(2000 * echo.energy * (1 + brightness) * nominal * nominal), 1.0, 65535.0));
+    out.number.push_back(i + 1);
+    out.count.push_back(echoes.count);
+    out.line.push_back(line.id);
+    out.positive.push_back(scan.positive);
+    out.edge.push_back(scan.edge);
+    out.true_time.push_back(time);
+    out.x.push_back(p.x());
+    out.y.push_back(p.y());
+    out.z.push_back(p.z());
+    out.east.push_back(map.x());
+    out.north.push_back(map.y());
+    out.height.push_back(map.z());
+    out.true_range.push_back(range);
+    out.true_angle.push_back(scan.angle);
+    out.beam_x.push_back(beam.x());
+    out.beam_y.push_back(beam.y());
+    out.beam_z.push_back(beam.z());
+    out.kind.push_back(echo.kind);
+  }
+}
+
+}  // namespace swath::simulate

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulate/text_rows.h"
+
+#include <array>
+#include <charconv>
+#include <fstream>
+
+namespace swath::simulate {
+namespace {
+
+constexpr size_t flush_at = 1u << 20;  // bytes
+
+template <class... Style>
+void put(std::string& to, double v, Style... style) {
+  std::array<char, 400> text;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), v, style...);
+  to.append(text.data(), end.ptr);
+}
+
+}  // namespace
+
+TextRows::TextRows(const std::filesystem::path& file, const std::string& header)
+    : output_(file), out_(output_.temporary(), file), buffer_(header) {}
+
+void TextRows::separate() {
+  if (!first_) buffer_ += ',';
+  first_ = false;
+}
+
+void TextRows::number(double v, int decimals) {
+  separate();
+  put(buffer_, v, std::chars_format::fixed, decimals);
+}
+
+void TextRows::scientific(double v, int decimals) {
+  separate();
+  put(buffer_, v, std::chars_format::scientific, decimals);
+}
+
+void TextRows::shortest(double v) {
+  separate();
+  put(buffer_, v);
+}
+
+void TextRows::end() {
+  buffer_ += '\n';
+  first_ = true;
+  if (buffer_.size() < flush_at) return;
+  out_.append(buffer_.data(), buffer_.size());
+  buffer_.clear();
+}
+
+void TextRows::commit() {
+  out_.append(buffer_.data(), buffer_.size());
+  out_.close();
+  output_.commit();
+}
+
+}  // namespace swath::simulate

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "io/binary_file.h"
+#include "io/output_file.h"
+
+namespace swath::simulate {
+
+/// Comma-separated rows of numbers, streamed to a file that appears whole with commit().
+class TextRows {
+ public:
+  TextRows(const std::filesystem::path& file, const std::string& header);
+
+  void number(double v, int decimals);
+  void scientific(double v, int decimals);
+  void shortest(double v);  ///< fewest digits that read back to the same double
+  void end();
+  void commit();
+
+ private:
+  void separate();
+  io::OutputFile output_;
+  io::BinaryAppender out_;
+  std::string buffer_;
+  bool first_ = true;
+};
+
+}  // namespace swath::simulate
