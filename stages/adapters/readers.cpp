@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/time.h"
 #include "io/laser_file.h"
+#include "io/las_crs.h"
 #include "io/las_reader.h"
 #include "io/trajectory_file.h"
 #include "stages/adapters/adapters.h"
@@ -150,6 +151,7 @@ class CloudReader : public StripReader {
     block.origin = context_.origin;
     scale_block(context_, block, true);
     io::LasTime time;
+    time.week = file_.week;
     time.keep_seconds_of_week = true;
     const size_t n = reader_.read(block, most, time);
     if (n == 0) {
