@@ -80,7 +80,8 @@ TEST(Dtm, SameBitsForEveryTiling) {
   DtmOptions o;
   o.max_edge = core::Metres(8.0);
   const auto random = test::random_points(9000, 80.0, hills, 3);
-  for (const core::Block& all : {random, test::lattice_points(80, hills), test::quantised(random, 0.001), test::quantised(random, 0.25)}) {
+  for (const core::Block& all : {random, test::lattice_points(80, hills), test::quantised(random, 0.001), test::quantised(random, 0.25),
+                                 test::random_points(700, 80.0, hills, 6)}) {
     const core::Block b = pierced(all);
     const core::Lattice window{1.0, 499996, 4599996, 88, 88};
     const core::Grid whole = dtm(b, window, o);
