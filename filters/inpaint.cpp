@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stands for the spring metaphor of Pingel, Clarke & McBride 2013, 2.1 (a Laplace-like system over the whole raster, whose answer depends
+// Stands for the spring metaphor of Pingel, Clarke & McBride 2013 (a Laplace-like system over the whole raster, whose answer depends
 // on its whole extent). Here every filled cell depends on values within reach + relax cells only, as tiles need. Start: linear
-// interpolation along the four lines through the cell, weighted by the inverse of the lines' length; then a few Jacobi passes of the
-// Laplace equation.
+// interpolation along the four lines through the cell, weighted by the inverse product of the distances to the line's two ends; then a
+// few Jacobi passes of the Laplace equation.
 #include "filters/inpaint.h"
 
 #include <array>

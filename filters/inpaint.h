@@ -15,8 +15,8 @@ struct Inpainting {
 };
 
 /// Gives cells without value one, from the nearest values along the eight main directions. A line with values on both sides gives its
-/// linear interpolation (planes come back exactly); where no line has both, and `extrapolate`, the inverse-distance mean of the single
-/// ends. Cells with nothing within reach stay NaN. Cells with a value keep it.
+/// linear interpolation (planes come back exactly); where no line has both, and `extrapolate`, the mean of the single ends weighted
+/// by the inverse square of the distance. Cells with nothing within reach stay NaN. Cells with a value keep it.
 Raster inpaint(const Raster& surface, const Inpainting& how);
 
 }  // namespace swath::filters

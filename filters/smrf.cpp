@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pingel, Clarke & McBride 2013, "An improved simple morphological filter for the terrain classification of airborne LIDAR data", ISPRS
-// J. 77. Deviations; in brackets what each does to the mean total error over seven ISPRS samples, which is 3.95 % (percentage points):
-// - Holes are filled within a bounded reach (inpaint.h) instead of by springs over the whole raster, so that a tile's result does not
-// depend on its
-//   extent. The first filling also extrapolates beyond the hull, by the same reach: the openings then see a rim at the survey's edge
-//   (without: +1.8).
-// - Every opening works on the filled surface itself, not on the last opening, and the smaller of the two is kept. With ideal disks both
-// are the
-//   same (an opening absorbs the smaller ones); digital disks differ a little (-0.01). The support shrinks from the sum of all disks to
-//   twice the largest.
-// - Disks are exact Euclidean ones.
-// - Heights are read from the provisional surface bilinearly, not by splines.
-// - Cells of the cut net are given up in the provisional surface only where the net lowered them.
+// Pingel, Clarke & McBride 2013, "An improved simple morphological filter for the terrain classification of airborne LIDAR data",
+// ISPRS J. 77.
+//
+// Deviations. In brackets what each does to the mean total error over seven ISPRS samples, 3.95 %, in points, where it was measured:
+// - Holes are filled within a bounded reach (inpaint.h), not by springs over the whole raster: no result depends on a tile's extent.
+//   The first filling also extrapolates beyond the hull by that reach, so that openings see a rim there (without it: +1.8).
+// - Every opening works on the filled surface itself, not on the last opening, and the smaller of the two is kept. With ideal disks
+//   both are the same (an opening absorbs the smaller ones), with digital disks nearly (+0.01). The support shrinks from the sum of
+//   all disks to twice the largest.
+// - Disks are exact Euclidean ones; heights and slopes are read from the provisional surface bilinearly, not by splines. Not
+//   measured: the surface changes little within a cell where it counts as ground.
+// - Cells of the cut net are given up in the provisional surface only where the net lowered them (the net is off by default).
 #include "filters/smrf.h"
 
 #include <algorithm>
@@ -26,8 +25,8 @@ namespace swath::filters {
 namespace {
 
 constexpr float void_value = std::numeric_limits<float>::quiet_NaN();
-constexpr int outlier_radius = 1;      // cells, Pingel2013 2.3
-constexpr double outlier_slope = 5.0;  // rise / run: 500 %, Pingel2013 2.3
+constexpr int outlier_radius = 1;      // cells
+constexpr double outlier_slope = 5.0;  // rise / run: 500 %
 constexpr Inpainting gap_filling{.reach = 10, .relax = 2, .extrapolate = true};
 constexpr int sampling_reach = 2;  // cells from a point to those its height and slope come from
 

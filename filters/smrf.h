@@ -18,15 +18,15 @@ struct SmrfOptions {
 
 template <class V>
 void describe(SmrfOptions& o, V& v) {
-  v.option("cell", o.cell, core::above(0.0), "Side of one raster cell.", "Pingel2013 2.1");
-  v.option("slope", o.slope, core::within(0.0, 5.0), "Steepest ground kept (rise / run).", "Pingel2013 2.2");
+  v.option("cell", o.cell, core::above(0.0), "Side of one raster cell.", "Pingel2013, stage 1");
+  v.option("slope", o.slope, core::within(0.0, 5.0), "Steepest ground kept (rise / run).", "Pingel2013, stage 2");
   v.option("window", o.window, core::above(0.0), "Radius of the widest opening: half the width of the largest object taken off.",
-           "Pingel2013 2.2");
+           "Pingel2013, stage 2");
   v.option("threshold", o.threshold, core::at_least(0.0),
-           "Largest distance of a ground point from the provisional surface, on level ground.", "Pingel2013 2.4");
-  v.option("scalar", o.scalar, core::at_least(0.0), "Further distance per unit of the surface's slope.", "Pingel2013 2.4");
+           "Largest distance of a ground point from the provisional surface, on level ground.", "Pingel2013, stage 4");
+  v.option("scalar", o.scalar, core::at_least(0.0), "Further distance per unit of the surface's slope.", "Pingel2013, stage 4");
   v.option("cut", o.cut, core::at_least(0.0),
-           "Spacing of the net that is cut through the surface to break up very large objects; 0 for none.", "Pingel2013 2.2");
+           "Spacing of the net that is cut through the surface to break up very large objects; 0 for none.", "Pingel2013, stage 2");
   v.check(o.window >= o.cell, "window must span at least one cell");
   v.check(o.cut.value == 0.0 || o.cut >= o.cell, "cut must be 0 or span at least one cell");
 }

@@ -2,6 +2,10 @@
 // Every filter through every scene: counts in = counts out, the same labels for every tiling and every order of the points.
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <string>
+#include <vector>
+
 #include "filters/noise.h"
 #include "filters/smrf.h"
 #include "tests/world/scene.h"
@@ -59,6 +63,20 @@ TEST_P(Scenes, LabelsDependNeitherOnTilesNorOnOrder) {
     const core::Block expected = core::select(whole, rows);
     EXPECT_EQ(mixed.classification, expected.classification) << f.name;
     EXPECT_EQ(mixed.flags, expected.flags) << f.name;
+  }
+}
+
+TEST(ScenesTogether, WithoutTheHaloLabelsDoDependOnTiles) {
+  for (const Filter& f : all_filters()) {
+    size_t different = 0;
+    for (const char* name : {"town", "forest"}) {
+      const core::Block start = spoiled(test::make_scene(name));
+      core::Block whole = start;
+      f.run(whole, whole.size());
+      const core::Block tiles = test::run_tiled(start, 50.0, 0.0, f.run);
+      for (size_t p = 0; p < whole.size(); ++p) different += tiles.classification[p] != whole.classification[p];
+    }
+    EXPECT_GT(different, 0u) << f.name;
   }
 }
 
