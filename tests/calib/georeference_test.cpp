@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <limits>
 #include <random>
 #include <thread>
 
 #include "core/error.h"
+#include "tests/calib/reference_data.h"
 #include "tests/calib/survey_support.h"
 
 namespace swath::calib {
@@ -206,6 +208,75 @@ TEST(Georeference, MonteCarloMeetsTheStatedSigmas) {
       EXPECT_LT(std::sqrt(sum(k, k) / C(k, k)), high) << "model " << static_cast<int>(model) << " axis " << k;
     }
   }
+}
+
+// Returns of an independent simulator, with its true trajectory and calibration (truth/truth.json): what is left is its noise, 2 cm of
+// range.
+TEST(Georeference, TinySurveyWithItsTrueTrajectoryAndCalibration) {
+  SWATH_SHARED_OR_SKIP(folder, "data/tiny_survey");
+  const test::Records laser = test::npy(folder / "laser.npy", 30), truth = test::npy(folder / "truth" / "returns.npy", 77);
+  ASSERT_EQ(laser.count(), 108430u);
+  ASSERT_EQ(truth.count(), laser.count());
+  core::Shots shots;
+  for (size_t i = 0; i < laser.count(); ++i) {
+    shots.time.push_back(laser.get<double>(i, 0));
+    shots.angle.push_back(laser.get<double>(i, 8) * deg);
+    shots.range.push_back(laser.get<double>(i, 16));
+    shots.record.push_back(static_cast<std::uint32_t>(i));
+  }
+  core::Calibration c;
+  c.roll = core::degrees(0.05);
+  c.pitch = core::degrees(0.12);
+  c.heading = core::degrees(-0.15);
+  c.lever_arm_scanner = {core::Metres(0.185), core::Metres(-0.072), core::Metres(0.324)};
+  c.range_offset = core::Metres(0.02);
+  c.scan_scale = 1.0002;
+  const trajectory::Trajectory flight(test::sbet(folder / "truth" / "sbet.out"));
+  core::SensorSigma sigma;
+  const Georeferencer g({}, c, sigma, flight, utm(), Vector3d(613000.0, 5307000.0, 0.0));
+  core::Block out;
+  EXPECT_EQ(g.run(shots, out).georeferenced, laser.count());
+
+  Vector3d sum = Vector3d::Zero();
+  double squares = 0.0;
+  for (size_t i = 0; i < out.size(); ++i) {
+    ASSERT_EQ(out.record[i], i);
+    const Vector3d known(truth.get<double>(i, 32), truth.get<double>(i, 40), truth.get<double>(i, 48));
+    const Vector3d e = out.origin + Vector3d(out.x[i], out.y[i], out.z[i]) - known;
+    sum += e;
+    squares += e.squaredNorm();
+  }
+  const Vector3d mean = sum / static_cast<double>(out.size());
+  const double rms = std::sqrt(squares / static_cast<double>(out.size()));
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_LT(std::abs(mean[k]), 1e-3) << "axis " << k;
+    RecordProperty("mean_um_" + std::to_string(k), static_cast<int>(1e6 * mean[k]));
+  }
+  EXPECT_LE(rms, 0.0210);
+  RecordProperty("rms_um", static_cast<int>(1e6 * rms));
+}
+
+// Real returns in ECEF against their maker's UTM, and in the frame of their SBET: one scanner's beams lie in one plane of the body.
+TEST(Georeference, LeewardBodyVectorsLieInAPlane) {
+  SWATH_SHARED_OR_SKIP(folder, "data/als_leeward");
+  const test::Las ecef = test::las(folder / "points_ecef.las");
+  const trajectory::Trajectory flight(test::sbet(folder / "sbet.out"));
+  std::vector<Vector3d> beams;
+  Matrix3d sum = Matrix3d::Zero();
+  for (size_t i = 0; i < ecef.records.count(); ++i) {
+    const auto pose = flight.pose_at(ecef.time(i));
+    ASSERT_TRUE(pose) << i;
+    const Vector3d p(ecef.coordinate(i, 0), ecef.coordinate(i, 1), ecef.coordinate(i, 2));
+    beams.push_back((pose->ecef_R_body.transpose() * (p - pose->position)).normalized());
+    sum += beams.back() * beams.back().transpose();
+  }
+  ASSERT_EQ(beams.size(), 1325u);
+  const Vector3d normal = Eigen::SelfAdjointEigenSolver<Matrix3d>(sum).eigenvectors().col(0);
+  double squares = 0.0;
+  for (const Vector3d& b : beams) squares += std::pow(std::asin(b.dot(normal)), 2);
+  const double rms = std::sqrt(squares / static_cast<double>(beams.size()));
+  EXPECT_LT(rms, 0.005 * deg);
+  RecordProperty("rms_udeg", static_cast<int>(1e6 * rms / deg));
 }
 
 }  // namespace
