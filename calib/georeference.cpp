@@ -3,8 +3,8 @@
 // below is over one chunk. All vectors are in the body frame at the interval's first record ("base") until they are turned to ecef once.
 // Deviations from the single-shot form, with their size: the nadir is that of the interval's first record (1e-8 rad per 0.1 m flown) and
 // the lever arm is not turned within the interval where the refraction term takes the ray from (1e-8 m); sigmas use the attitude at the
-// interval's first record and the trajectory's sigmas at its middle, and take J without the derivative of the bending (5e-5 of themselves);
-// arc cosine by Abramowitz & Stegun 4.4.46, 2e-8 rad.
+// interval's first record and the trajectory's sigmas at its middle, and take J without the derivative of the bending (together 3e-3 of
+// themselves at 200 Hz); arc cosine by Abramowitz & Stegun 4.4.46, 2e-8 rad.
 #include "calib/georeference.h"
 
 #include <algorithm>
@@ -65,7 +65,7 @@ void make_rays(const ShotGeometry& g, bool with_derivative, Chunk& c) {
   for (size_t i = 0; i < c.n; ++i) {
     sine[i] = std::sin(c.angle[i]);
     cosine[i] = std::cos(c.angle[i]);
-    c.across[i] = c.angle[i];
+    c.across[i] = std::abs(c.angle[i]) <= core::pi ? c.angle[i] : core::wrap_pi(c.angle[i]);
   }
   for (size_t i = 0; i < c.n; ++i) {
     const double w = c.range[i] * std::sqrt(1.0 - c.forward[i] * c.forward[i]);

@@ -36,9 +36,22 @@ core::Shots some_shots(core::ScannerModel model, size_t n) {
   return shots;
 }
 
+core::SensorSigma every_sigma() {
+  core::SensorSigma sigma;
+  sigma.range_offset = core::Metres(0.01);
+  sigma.range_scale = 2e-5;
+  sigma.scan_offset = core::degrees(0.002);
+  sigma.scan_scale = 2e-4;
+  sigma.latency = core::Seconds(2e-4);
+  sigma.time = core::Seconds(1e-4);
+  sigma.beam_divergence = core::Radians(4e-4);
+  return sigma;
+}
+
 TEST(Georeference, BatchesAgreeWithTheSingleShotAndProj) {
   const trajectory::Trajectory flight(test::curved_flight(start, 1600.0));
   const core::Transform proj(core::wgs84_ecef(), utm());
+  constexpr double sigma_tolerance = 3e-3;       // the turn within an interval: 0.5 mrad, against sigmas that lie mostly level
   constexpr double position_tolerance = 2.1e-5;  // m: the patches' own, plus 1e-8 of the kernel
   for (const core::ScannerModel model : test::all_models)
     for (const bool air : {false, true}) {
@@ -46,7 +59,8 @@ TEST(Georeference, BatchesAgreeWithTheSingleShotAndProj) {
       const core::Calibration calibration = test::some_calibration();
       const core::Shots shots = some_shots(model, 3000);
       core::Block out;
-      const Georeferencer g(scanner, calibration, {}, flight, utm(), origin);
+      const core::SensorSigma sigma = every_sigma();
+      const Georeferencer g(scanner, calibration, sigma, flight, utm(), origin);
       const Counts counts = g.run(shots, out);
       ASSERT_EQ(counts.georeferenced, shots.size());
       ASSERT_EQ(out.size(), shots.size());
@@ -65,9 +79,9 @@ TEST(Georeference, BatchesAgreeWithTheSingleShotAndProj) {
         // Standard deviations of the fast form against J S J^T.
         const Vector3d beam = ecef_R_ned_at(pose).transpose() * pose.ecef_R_body * single.body_R_scanner() *
                               (single.range(record.range) * single.beam()(single.angle(record.angle), record.forward).direction);
-        const Matrix3d C = covariance(ned_jacobian(J, pose), variances({}, flight.sigma_at(t)), beam, 0.0);
-        EXPECT_NEAR(out.sigma_h[i], std::sqrt(C(0, 0) + C(1, 1)), 1e-3 * out.sigma_h[i]);
-        EXPECT_NEAR(out.sigma_v[i], std::sqrt(C(2, 2)), 1e-3 * out.sigma_v[i]);
+        const Matrix3d C = covariance(ned_jacobian(J, pose), variances(sigma, flight.sigma_at(t)), beam, sigma.beam_divergence.value);
+        EXPECT_NEAR(out.sigma_h[i], std::sqrt(C(0, 0) + C(1, 1)), sigma_tolerance * out.sigma_h[i]);
+        EXPECT_NEAR(out.sigma_v[i], std::sqrt(C(2, 2)), sigma_tolerance * out.sigma_v[i]);
         // The beam against the vertical at the ground.
         const core::Geodetic ground = core::geodetic_of(ecef);
         const double incidence =
@@ -75,6 +89,51 @@ TEST(Georeference, BatchesAgreeWithTheSingleShotAndProj) {
         EXPECT_NEAR(out.incidence[i], incidence, 2e-6);
       }
     }
+}
+
+TEST(Georeference, ScanAngleIsTheCalibratedOneInHalfATurn) {
+  const trajectory::Trajectory flight(test::curved_flight(start, 1600.0));
+  core::Shots shots = test::zigzag(2, start + 1.0, 1000.0, 900.0);
+  shots.angle = {0.2, 2.0 * core::pi - 0.3};  // an encoder that counts on
+  core::Calibration c;
+  c.scan_offset = core::Radians(0.01);
+  core::Block out;
+  Georeferencer({}, c, {}, flight, utm(), origin).run(shots, out);
+  EXPECT_FLOAT_EQ(out.scan_angle[0], 0.21f);
+  EXPECT_FLOAT_EQ(out.scan_angle[1], -0.29f);
+  core::Scanner cone;
+  cone.model = core::ScannerModel::conical;
+  shots.angle = {90.0 * deg, -90.0 * deg};
+  out = {};
+  Georeferencer(cone, {}, {}, flight, utm(), origin).run(shots, out);
+  EXPECT_FLOAT_EQ(out.scan_angle[0], static_cast<float>(cone.cone_angle.value));
+  EXPECT_FLOAT_EQ(out.scan_angle[1], static_cast<float>(-cone.cone_angle.value));
+}
+
+// Ten records a second in a steep turn: rotations within an interval too wide for the series.
+TEST(Georeference, CoarseTrajectoriesTurnExactly) {
+  const core::TrajectoryData fine = test::curved_flight(start, 1600.0);
+  core::TrajectoryData d;
+  for (size_t i = 0; i < fine.size(); i += 20) {
+    d.time.push_back(fine.time[i]);
+    d.latitude.push_back(fine.latitude[i]), d.longitude.push_back(fine.longitude[i]), d.height.push_back(fine.height[i]);
+    d.roll.push_back(fine.roll[i] * 8.0), d.pitch.push_back(fine.pitch[i]), d.heading.push_back(fine.heading[i]);
+  }
+  const trajectory::Trajectory flight(d);
+  const core::Shots shots = test::zigzag(4000, start + 1.0, 1000.0, 900.0);
+  const ShotGeometry single(test::scanner_of(core::ScannerModel::mirror, true), test::some_calibration());
+  const Georeferencer g(test::scanner_of(core::ScannerModel::mirror, true), test::some_calibration(), {}, flight, utm(), origin);
+  core::Block out;
+  ASSERT_EQ(g.run(shots, out).georeferenced, shots.size());
+  const core::Transform proj(core::wgs84_ecef(), utm());
+  double widest = 0.0;
+  for (size_t i = 0; i < out.size(); ++i) {
+    const trajectory::Pose pose = *flight.pose_at(single.time(shots.time[i]));
+    const Vector3d map = proj(single.ecef_point(pose, {shots.angle[i], 0.0, shots.range[i]})) - origin;
+    ASSERT_LT((Vector3d(out.x[i], out.y[i], out.z[i]) - map).cwiseAbs().maxCoeff(), 2.5e-5) << i;
+    widest = std::max(widest, pose.rate.norm() * 0.1);
+  }
+  EXPECT_GT(widest, 0.05);
 }
 
 TEST(Georeference, WhatHasNoPlaceIsCountedAndLeftOut) {
@@ -151,14 +210,7 @@ TEST(Georeference, MonteCarloMeetsTheStatedSigmas) {
   std::normal_distribution<double> normal(0.0, 1.0);
   constexpr int draws = 8000;  // standard error of a sigma: 0.8 %
   constexpr double low = 0.95, high = 1.05;
-  core::SensorSigma sigma;
-  sigma.range_offset = core::Metres(0.01);
-  sigma.range_scale = 2e-5;
-  sigma.scan_offset = core::degrees(0.002);
-  sigma.scan_scale = 2e-4;
-  sigma.latency = core::Seconds(2e-4);
-  sigma.time = core::Seconds(1e-4);
-  sigma.beam_divergence = core::Radians(4e-4);
+  const core::SensorSigma sigma = every_sigma();
   const trajectory::PoseSigma place{0.03, 0.02, 0.05, 0.003 * deg, 0.002 * deg, 0.006 * deg};
   for (const core::ScannerModel model : test::all_models) {
     const core::Scanner scanner = test::scanner_of(model, true);
@@ -232,8 +284,7 @@ TEST(Georeference, TinySurveyWithItsTrueTrajectoryAndCalibration) {
   c.range_offset = core::Metres(0.02);
   c.scan_scale = 1.0002;
   const trajectory::Trajectory flight(test::sbet(folder / "truth" / "sbet.out"));
-  core::SensorSigma sigma;
-  const Georeferencer g({}, c, sigma, flight, utm(), Vector3d(613000.0, 5307000.0, 0.0));
+  const Georeferencer g({}, c, {}, flight, utm(), Vector3d(613000.0, 5307000.0, 0.0));
   core::Block out;
   EXPECT_EQ(g.run(shots, out).georeferenced, laser.count());
 

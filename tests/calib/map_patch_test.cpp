@@ -50,6 +50,7 @@ double worst(const core::Crs& crs, const Points& points, MapPatches::Made* made 
     out = std::max({out, horizontal * std::abs(a.x[i] - b.x[i]), horizontal * std::abs(a.y[i] - b.y[i]),
                     crs.vertical_metres_per_unit() * std::abs(a.z[i] - b.z[i])});
   if (made) *made = patches.made();
+  ::testing::Test::RecordProperty("worst_nm_" + std::to_string(static_cast<int>(points.x[0])), static_cast<int>(1e9 * out));
   return out;
 }
 
