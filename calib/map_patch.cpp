@@ -94,17 +94,32 @@ void MapPatches::give_back(core::Transform t) const {
   pool_.push_back(std::move(t));
 }
 
+namespace {
+// The cubic in Horner's form.
+double cubic(const std::array<double, 20>& a, double x, double y, double z) {
+  const double by_x = a[1] + x * (a[4] + x * a[10] + y * a[11] + z * a[12]) + y * (a[5] + y * a[13] + z * a[14]) + z * (a[6] + z * a[15]);
+  const double by_y = a[2] + y * (a[7] + y * a[16] + z * a[17]) + z * (a[8] + z * a[18]);
+  const double by_z = a[3] + z * (a[9] + z * a[19]);
+  return a[0] + x * by_x + y * by_y + z * by_z;
+}
+}  // namespace
+
 Vector3d MapPatches::Patch::operator()(const Vector3d& ecef) const {
   const Vector3d u = (ecef - centre) / half;
-  const double x = u.x(), y = u.y(), z = u.z();
-  Vector3d out;
-  for (int k = 0; k < 3; ++k) {
-    const auto& a = c[static_cast<size_t>(k)];
-    out[k] = a[0] +
-             x * (a[1] + x * (a[4] + x * a[10] + y * a[11] + z * a[12]) + y * (a[5] + y * a[13] + z * a[14]) + z * (a[6] + z * a[15])) +
-             y * (a[2] + y * (a[7] + y * a[16] + z * a[17]) + z * (a[8] + z * a[18])) + z * (a[3] + z * (a[9] + z * a[19]));
+  return {cubic(c[0], u.x(), u.y(), u.z()), cubic(c[1], u.x(), u.y(), u.z()), cubic(c[2], u.x(), u.y(), u.z())};
+}
+
+void MapPatches::Patch::apply(double* x, double* y, double* z, size_t n, const Vector3d& origin) const {
+  std::array<std::array<double, 20>, 3> a = c;
+  for (int k = 0; k < 3; ++k) a[static_cast<size_t>(k)][0] -= origin[k];
+  const double cx = centre.x(), cy = centre.y(), cz = centre.z();
+  const double scale = 1.0 / half;  // a power of two: as exact as the division
+  for (size_t i = 0; i < n; ++i) {
+    const double u = (x[i] - cx) * scale, v = (y[i] - cy) * scale, w = (z[i] - cz) * scale;
+    x[i] = cubic(a[0], u, v, w);
+    y[i] = cubic(a[1], u, v, w);
+    z[i] = cubic(a[2], u, v, w);
   }
-  return out;
 }
 
 Matrix3d MapPatches::Patch::gradient(const Vector3d& ecef) const {
@@ -193,8 +208,7 @@ size_t MapPatches::apply(double* x, double* y, double* z, size_t n) const {
       left.push_back(i);
       continue;
     }
-    const Vector3d m = (*last)({x[i], y[i], z[i]});
-    x[i] = m.x(), y[i] = m.y(), z[i] = m.z();
+    last->apply(x + i, y + i, z + i, 1, Vector3d::Zero());
   }
   if (left.empty()) return 0;
   Columns rest;

@@ -43,6 +43,8 @@ class MapPatches {
              z < centre.z() + half;
     }
     Eigen::Vector3d operator()(const Eigen::Vector3d& ecef) const;
+    /// n points of this patch in place: map coordinates minus `origin`.
+    void apply(double* x, double* y, double* z, size_t n, const Eigen::Vector3d& origin) const;
     /// Derivative of map with respect to ecef, CRS units per m.
     Eigen::Matrix3d gradient(const Eigen::Vector3d& ecef) const;
   };

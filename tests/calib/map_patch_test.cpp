@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "core/units.h"
-#include "tests/world/support.h"
+#include "tests/calib/reference_data.h"
 
 namespace swath::calib {
 namespace {
@@ -50,6 +50,7 @@ double worst(const core::Crs& crs, const Points& points, MapPatches::Made* made 
     out = std::max({out, horizontal * std::abs(a.x[i] - b.x[i]), horizontal * std::abs(a.y[i] - b.y[i]),
                     crs.vertical_metres_per_unit() * std::abs(a.z[i] - b.z[i])});
   if (made) *made = patches.made();
+  ::testing::Test::RecordProperty("worst_nm_" + std::to_string(static_cast<int>(points.x[0])), static_cast<int>(1e9 * out));
   return out;
 }
 
@@ -79,11 +80,11 @@ void write_geoid(const std::filesystem::path& file, double south, double west, i
   put(south), put(west), put(1.0 / 60.0), put(1.0 / 60.0), put(rows), put(columns);
   for (int i = 0; i < rows; ++i)
     for (int j = 0; j < columns; ++j) put(static_cast<float>(45.0 + 0.2 * std::sin(0.9 * i) + 0.2 * std::cos(1.1 * j) + 0.02 * j));
-  test::write_bytes(file, bytes);
+  swath::test::write_bytes(file, bytes);
 }
 
 TEST(MapPatch, KinksOfAGeoidAreLeftToProj) {
-  const test::TemporaryFolder folder;
+  const swath::test::TemporaryFolder folder;
   write_geoid(folder / "made.gtx", 47.5, 10.0, 61, 61);
   const core::Crs crs("+proj=utm +zone=32 +datum=WGS84 +units=m +geoidgrids=" + (folder / "made.gtx").string() + " +vunits=m");
   ASSERT_TRUE(crs.has_vertical());
@@ -131,6 +132,36 @@ TEST(MapPatch, PointsWithoutAResultAreCounted) {
   EXPECT_EQ(patches.apply(x.data(), y.data(), z.data(), 2), 1u);
   EXPECT_TRUE(std::isfinite(x[0]));
   EXPECT_TRUE(std::isnan(x[1]) && std::isnan(y[1]) && std::isnan(z[1]));
+}
+
+// Real returns that their maker gives both in ECEF and in UTM 11N, to 1 cm each.
+TEST(MapPatch, LeewardPointsMeetTheirMakersUtm) {
+  SWATH_SHARED_OR_SKIP(folder, "data/als_leeward");
+  const test::Las ecef = test::las(folder / "points_ecef.las"), utm = test::las(folder / "points.las");
+  ASSERT_EQ(ecef.records.count(), 1325u);
+  Points p;
+  for (size_t i = 0; i < ecef.records.count(); ++i)
+    p.x.push_back(ecef.coordinate(i, 0)), p.y.push_back(ecef.coordinate(i, 1)), p.z.push_back(ecef.coordinate(i, 2));
+  const size_t n = p.x.size();
+  const MapPatches patches(core::Crs("EPSG:32611"));
+  EXPECT_EQ(patches.apply(p.x.data(), p.y.data(), p.z.data(), n), 0u);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const std::vector<double>& ours = axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+    double sum = 0.0, squares = 0.0, largest = 0.0;
+    for (size_t i = 0; i < n; ++i) {
+      const double e = ours[i] - utm.coordinate(i, axis);
+      sum += e, squares += e * e, largest = std::max(largest, std::abs(e));
+    }
+    const double mean = sum / static_cast<double>(n);
+    const double deviation = std::sqrt(squares / static_cast<double>(n) - mean * mean);
+    EXPECT_LT(std::abs(mean), 2e-4);
+    EXPECT_LT(deviation, 3.5e-3);
+    EXPECT_LT(largest, 9e-3);
+    const std::string name = std::to_string(axis);
+    RecordProperty("mean_um_" + name, static_cast<int>(1e6 * mean));
+    RecordProperty("std_um_" + name, static_cast<int>(1e6 * deviation));
+    RecordProperty("max_um_" + name, static_cast<int>(1e6 * largest));
+  }
 }
 
 }  // namespace
