@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A survey whose truth is known: an analytic world, an exact flight, an ideal scanner with given errors. Independent of the rooms that
+// process surveys, so that it can test them.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "core/value.h"
+#include "simulate/options.h"
+
+namespace swath::simulate {
+
+/// Called with the share done, 0 to 1, from the calling thread.
+using Progress = std::function<void(double)>;
+
+/// Writes into `out_folder` (made where it is not there):
+///   survey.toml (first format) and survey_FORMAT.toml (each further one), laser.FORMAT, sbet.out + smrmsg.out or trajectory.csv,
+///   imu.csv, gnss.csv, navigation.json (mounting and errors of both),
+///   truth/: sbet.out, returns.npy (see TruthFile), dtm.tif, calibration.json, simulation.json (options and what was made).
+/// The same options give the same bytes, whatever the number of threads. Memory is bounded whatever the number of returns (the
+/// trajectory, 100 bytes per 5 ms, and the truth's grid are held whole).
+/// Returns counts, sizes and the map's error. Throws Error where the options do not go together or a file cannot be written.
+core::Value run(const Options& options, const std::filesystem::path& out_folder, const Progress& progress = {});
+
+/// Default options of a preset: the zoo's scenes small (some 20 000 returns), for tests; `mixed` as the full default survey.
+Options preset(Scene scene);
+
+}  // namespace swath::simulate
