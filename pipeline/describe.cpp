@@ -89,8 +89,8 @@ std::string stage_help(const std::string& name) {
     throw core::usage_error("'" + name + "' is no stage", "", near.empty() ? "`swath stages` lists them" : "did you mean '" + near + "'?");
   }
   return std::string(s->info().name) + ": " + std::string(s->info().summary) + "\n\n  works on  " + grains_text(*s) + "\n  needs     " +
-         both(s->info().needs, s->info().needs_products) + "\n  gives     " + both(s->info().gives, s->info().gives_products) + "\n\nOptions\n" +
-         core::option_table_text(describe_of(*s));
+         both(s->info().needs, s->info().needs_products) + "\n  gives     " + both(s->info().gives, s->info().gives_products) +
+         "\n\nOptions\n" + core::option_table_text(describe_of(*s));
 }
 
 std::vector<std::filesystem::path> write_docs(const std::filesystem::path& docs, bool only_check) {

@@ -35,6 +35,14 @@ Value set_value(std::string text) {
   }
 }
 
+/// Sets "key" or "table.key" within a table.
+void set_member(Value& table, const std::string& path, const Value& value, const std::string& set) {
+  if (!table.is_null() && !table.is_object()) throw core::usage_error("what it changes is no table", "--set " + set);
+  const size_t dot = path.find('.');
+  if (dot != std::string::npos) return set_member(table[path.substr(0, dot)], path.substr(dot + 1), value, set);
+  table[path] = value;
+}
+
 void apply_set(Value& tree, const std::string& set) {
   const size_t equals = set.find('=');
   const std::string path = set.substr(0, equals);
@@ -43,11 +51,7 @@ void apply_set(Value& tree, const std::string& set) {
     throw core::usage_error("'" + set + "' is not stage.key=value", "--set", "for example --set smrf.cell=\"50 cm\"");
   const Value value = set_value(set.substr(equals + 1));
   if (path.rfind("run.", 0) == 0) {
-    Value* at = &tree["run"];
-    std::string rest = path.substr(4);
-    for (size_t d; (d = rest.find('.')) != std::string::npos; rest = rest.substr(d + 1)) at = &(*at)[rest.substr(0, d)];
-    (*at)[rest] = value;
-    return;
+    return set_member(tree["run"], path.substr(4), value, set);
   }
   std::vector<std::string> types;
   bool found = false;
@@ -59,10 +63,7 @@ void apply_set(Value& tree, const std::string& set) {
       // The longest stage name that begins the path wins: options of sub-tables have dots of their own.
       for (size_t d = path.find('.'); d != std::string::npos; d = path.find('.', d + 1)) {
         if (!is_named(type->as_text(), path.substr(0, d))) continue;
-        Value* at = &stage;
-        std::string rest = path.substr(d + 1);
-        for (size_t e; (e = rest.find('.')) != std::string::npos; rest = rest.substr(e + 1)) at = &(*at)[rest.substr(0, e)];
-        (*at)[rest] = value;
+        set_member(stage, path.substr(d + 1), value, set);
         found = true;
         break;
       }
@@ -144,8 +145,10 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
     columns = columns | info.gives;
     products.insert(products.end(), info.gives_products.begin(), info.gives_products.end());
   }
-  if (sources == 0 && !plan.stages.empty())
-    faults.push_back({{plan.config.string(), 0, 0}, "stage", "no reader: nothing to work on", "begin with readers.laser or readers.las"});
+  if (sources == 0 && !plan.stages.empty()) {
+    const core::Location place{plan.config.string(), 0, 0};
+    faults.push_back({place, "stage", "no reader: nothing to work on", "begin with readers.laser or readers.las"});
+  }
 }
 
 /// Sets {"key": {"value", "from"}} for each effective option of a table.
@@ -203,11 +206,19 @@ Plan make_plan(const Request& request) {
       plan.survey = io::read_survey(plan.survey_file);
     } catch (const core::Error& e) {
       if (faults.empty()) throw;
-      faults.push_back({{}, "", e.text(), ""});
+      const core::Location nowhere;
+      faults.push_back({nowhere, "", e.text(), ""});
     }
   }
   core::throw_if_any(faults);
   return plan;
+}
+
+void set_option(core::Value& table, const std::string& set) {
+  const size_t equals = set.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw core::usage_error("'" + set + "' is not key=value", "--set", "for example --set flight.speed=\"60 m/s\"");
+  set_member(table, set.substr(0, equals), set_value(set.substr(equals + 1)), set);
 }
 
 core::Value explain(Plan& plan) {

@@ -78,6 +78,9 @@ struct Plan {
 /// explained, not run.
 Plan make_plan(const Request& request);
 
+/// Sets one option of a table of options from "key=value" or "table.key=value", as --set does. Throws core::Error (usage).
+void set_option(core::Value& table, const std::string& set);
+
 /// The effective options with where each comes from, for `explain` and the report:
 /// {"run": {"tile": {"value": "500 m", "from": "default"}}, "stages": [{"type": ..., "options": {...}}]}.
 core::Value explain(Plan& plan);

@@ -114,7 +114,8 @@ class Engine {
 
 void Engine::prepare() {
   if (plan_.survey_file.empty())
-    throw core::usage_error("no survey to run on", plan_.config.string(), "name it with --survey DIR/survey.toml, or as run.survey in the config");
+    throw core::usage_error("no survey to run on", plan_.config.string(),
+                            "name it with --survey DIR/survey.toml, or as run.survey in the config");
   context_.crs = core::Crs(plan_.survey.crs);
   if (!context_.crs.is_projected())
     throw core::usage_error("the products' CRS is " + context_.crs.name() + ", which is not a map projection",
@@ -123,13 +124,15 @@ void Engine::prepare() {
   context_.vertical_unit = context_.crs.vertical_metres_per_unit();
   context_.product_crs = plan_.survey.crs;
   if (!context_.crs.has_vertical()) {
-    if (plan_.survey.height_unit) context_.vertical_unit = plan_.survey.height_unit->value;
-    else if (!plan_.survey.points.empty()) context_.vertical_unit = context_.unit;
+    if (plan_.survey.height_unit)
+      context_.vertical_unit = plan_.survey.height_unit->value;
+    else if (!plan_.survey.points.empty())
+      context_.vertical_unit = context_.unit;
     if (context_.vertical_unit != 1.0)
       context_.product_crs = "COMPD_CS[\"" + context_.crs.name() + " + height\"," + context_.crs.wkt1() +
                              ",VERT_CS[\"height\",VERT_DATUM[\"unknown\",2005],UNIT[\"" +
-                             (context_.vertical_unit == 0.3048 ? "foot" : "height unit") + "\"," + core::format_number(context_.vertical_unit) +
-                             "],AXIS[\"Up\",UP]]]";
+                             (context_.vertical_unit == 0.3048 ? "foot" : "height unit") + "\"," +
+                             core::format_number(context_.vertical_unit) + "],AXIS[\"Up\",UP]]]";
   }
   context_.tile_side = plan_.run.tile.value;
   context_.output = output_;

@@ -174,7 +174,7 @@ CalibrationSigma default_nominal_sigma();
 
 struct MountingOptions {
   core::Calibration truth = default_calibration();
-  Deliver deliver = Deliver::nominal;
+  Deliver deliver = Deliver::drawn;
   CalibrationSigma sigma = default_drawn_sigma();
   CalibrationSigma nominal_sigma = default_nominal_sigma();
   std::array<core::Metres, 3> lever_arm_antenna{core::Metres(-0.412), core::Metres(0.127), core::Metres(-1.236)};

@@ -66,15 +66,16 @@ class Grids {
 /// What every stage sees of a run. Read-only but for `trajectory`, which a survey stage sets.
 struct Context {
   const io::Survey& survey;
-  core::Crs crs;
-  double unit = 1.0;                                 ///< metres per horizontal unit of the CRS
-  double vertical_unit = 1.0;                        ///< metres per vertical unit of the CRS
+  core::Crs crs{};
+  std::string product_crs{};   ///< of the files written: `crs`, with an explicit height unit where the CRS leaves it open
+  double unit = 1.0;           ///< metres per horizontal unit of the CRS
+  double vertical_unit = 1.0;  ///< metres per vertical unit of the CRS
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of every Block of the run, m
   double tile_side = 500.0;                          ///< m
-  std::filesystem::path output;
-  std::filesystem::path config_folder;
+  std::filesystem::path output{};
+  std::filesystem::path config_folder{};
   const Grids* grids = nullptr;
-  std::shared_ptr<const trajectory::Trajectory> trajectory;
+  std::shared_ptr<const trajectory::Trajectory> trajectory{};
 
   Box box_of(TileKey k) const { return {k.ix * tile_side, k.iy * tile_side, (k.ix + 1) * tile_side, (k.iy + 1) * tile_side}; }
   /// "652_5310": the tile's south-west corner, for file names; whole metres, or millimetres where it is not whole.

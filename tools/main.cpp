@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "core/error.h"
+#include "core/option_visitors.h"
 #include "io/info.h"
 #include "io/value_file.h"
 #include "pipeline/describe.h"
@@ -31,7 +32,8 @@ int run(Arguments& a, const std::string& command) {
   pipeline::Progress progress(a.voice());
   const pipeline::Outcome outcome = pipeline::run(plan, progress, command);
   if (!a.quiet && !a.json_log) std::fputs(pipeline::summary(outcome.report, plan.run.output).c_str(), stdout);
-  if (outcome.code == core::Exit::quality_missed) std::fputs("swath: done, but a quality limit of the config was missed (see \"limits\" in report.json)\n", stderr);
+  if (outcome.code == core::Exit::quality_missed)
+    std::fputs("swath: done, but a quality limit of the config was missed (see \"limits\" in report.json)\n", stderr);
   return static_cast<int>(outcome.code);
 }
 
@@ -55,7 +57,12 @@ int explain(Arguments& a) {
 }
 
 int simulate_survey(Arguments& a) {
-  simulate::Options options = pipeline::simulation_options(a.request.config, a.request.sets);
+  core::Value given = a.request.config.empty() ? core::Value::object() : io::read_value_file(a.request.config);
+  for (const std::string& set : a.request.sets) pipeline::set_option(given, set);
+  simulate::Options options;
+  std::vector<core::Fault> faults;
+  core::read_options(core::described(options), given, "", faults);
+  core::throw_if_any(faults);
   pipeline::Progress progress(a.voice());
   progress.begin("simulate", 1000, "per mille");
   std::uint64_t told = 0;
@@ -104,17 +111,24 @@ int command_line(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("Exit codes: 0 done, 1 bad data, 2 bad usage or config, 3 done but a quality limit set in the config was missed.");
 
-  auto* c = app.add_subcommand("run", "Examples\n  swath run configs/survey.toml --survey demo/survey.toml --output out\n  swath run configs/survey.toml --set run.memory=\"4 GB\" --threads 8 --json-log\n\nRun a pipeline on a survey; the same command continues a run that was killed.");
+  auto* c = app.add_subcommand(
+      "run",
+      "Examples\n  swath run configs/survey.toml --survey demo/survey.toml --output out\n  swath run configs/survey.toml --set "
+      "run.memory=\"4 GB\" --threads 8 --json-log\n\nRun a pipeline on a survey; the same command continues a run that was killed.");
   add_request(c, a);
   c->add_option("--threads", a.request.threads, "Threads, in place of the config's (0: one per processor)");
   c->add_flag("--quiet", a.quiet, "Nothing but errors");
   c->add_flag("--json-log", a.json_log, "Progress as one JSON object per line on standard error");
 
-  c = app.add_subcommand("check", "Examples\n  swath check configs/survey.toml --survey demo/survey.toml\n\nTell every fault of a config and its survey, without reading data.");
+  c = app.add_subcommand("check",
+                         "Examples\n  swath check configs/survey.toml --survey demo/survey.toml\n\nTell every fault of a config and its "
+                         "survey, without reading data.");
   add_request(c, a);
   c->add_flag("--quiet", a.quiet, "Nothing but faults");
 
-  c = app.add_subcommand("explain", "Examples\n  swath explain configs/survey.toml --survey demo/survey.toml --set smrf.slope=0.3\n\nShow every effective option and where its value comes from.");
+  c = app.add_subcommand("explain",
+                         "Examples\n  swath explain configs/survey.toml --survey demo/survey.toml --set smrf.slope=0.3\n\nShow every "
+                         "effective option and where its value comes from.");
   add_request(c, a);
   c->add_flag("--json", a.json, "As JSON");
 
@@ -123,17 +137,22 @@ int command_line(int argc, char** argv) {
 
   app.add_subcommand("schema", "Examples\n  swath schema > swath.schema.json\n\nPrint the JSON Schema of pipelines and surveys.");
 
-  c = app.add_subcommand("simulate", "Examples\n  swath simulate demo\n  swath simulate demo --set seed=7 --set lines=2 --set scene=forest\n\nMake the raw records of a survey whose truth is known.");
+  c = app.add_subcommand("simulate",
+                         "Examples\n  swath simulate demo\n  swath simulate demo --set seed=7 --set flight.lines=2 --set "
+                         "world.scene=forest\n\nMake the raw records of a survey whose truth is known.");
   c->add_option("FOLDER", a.folder, "Folder to make the survey in")->required();
   c->add_option("--config", a.request.config, "Options of the simulation, .toml or .json");
   c->add_option("--set", a.request.sets, "One option of the simulation: seed=7, flight.speed=\"60 m/s\"")->allow_extra_args(false);
   c->add_flag("--quiet", a.quiet, "Nothing but errors");
 
-  c = app.add_subcommand("info", "Examples\n  swath info flight.laz\n  swath info trajectory.sbet --json\n\nTell what a LAS, LAZ, SBET, CSD, NumPy, text, survey.toml or GeoTIFF file holds, and what looks wrong.");
+  c = app.add_subcommand("info",
+                         "Examples\n  swath info flight.laz\n  swath info trajectory.sbet --json\n\nTell what a LAS, LAZ, SBET, CSD, "
+                         "NumPy, text, survey.toml or GeoTIFF file holds, and what looks wrong.");
   c->add_option("FILE", a.name, "File")->required();
   c->add_flag("--json", a.json, "As JSON");
 
-  c = app.add_subcommand("docs", "Examples\n  swath docs docs\n  swath docs docs --check\n\nWrite the generated parts of the documentation's pages.");
+  c = app.add_subcommand(
+      "docs", "Examples\n  swath docs docs\n  swath docs docs --check\n\nWrite the generated parts of the documentation's pages.");
   c->add_option("FOLDER", a.folder, "The docs folder")->required();
   c->add_flag("--check", a.check, "Write nothing; exit 1 where a page is out of date");
 
