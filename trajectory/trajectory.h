@@ -54,8 +54,8 @@ struct Interval {
 /// vectors relative to the interval's first record: no Euler angle is ever interpolated, so that heading may cross north and +-180 deg.
 /// At the ends of a span the four records lie to one side; a span of three or two records is interpolated by a parabola or a line.
 /// Intervals longer than max_gap are outside. Immutable, safe to share between threads.
-/// Error of the interpolation at 200 Hz for a motion of 2 Hz: 3.7e-7 of its amplitude (1.5e-6 in a span's first and last interval); a roll
-/// of +-2 deg at 2 Hz gives 0.013 mm at 1 km (0.05 mm), one at 5 Hz 0.5 mm.
+/// Error of the interpolation at 200 Hz for a motion of 2 Hz: 3.7e-7 of its amplitude (6.5e-7 in a span's first and last interval); a roll
+/// of +-2 deg at 2 Hz gives 0.013 mm at 1 km (0.023 mm), one at 5 Hz 0.5 mm.
 class Trajectory {
  public:
   /// Throws core::Error{where: "<where>: record N"} where times do not increase, a value is not finite, columns differ in length, or no two
