@@ -26,6 +26,13 @@ class Tally {
     const auto at = entries_.find(what);
     return at == entries_.end() ? 0 : at->second.n;
   }
+  /// Sum of what was left out: entries whose name ends in "left out".
+  std::uint64_t left_out() const {
+    std::uint64_t n = 0;
+    for (const auto& [what, e] : entries_)
+      if (what.ends_with("left out")) n += e.n;
+    return n;
+  }
   /// Adds another tally (of a later batch, strip or tile).
   void add(const Tally& o) {
     for (const auto& [what, e] : o.entries_) {

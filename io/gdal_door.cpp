@@ -9,6 +9,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "core/crs.h"
 #include "core/error.h"
 
 namespace swath::io {
@@ -23,7 +24,7 @@ void catch_message(CPLErr kind, CPLErrorNum, const char* message) {
 /// Names as the unit type of GeoTIFF bands is written and as GIS show it.
 std::string short_unit(const std::string& name, double si) {
   if (si == 1.0) return "m";
-  if (name == "foot" || name == "ft" || si == 0.3048) return "ft";
+  if (std::abs(si - 0.3048) < 1e-12) return "ft";
   if (std::abs(si - 1200.0 / 3937.0) < 1e-12) return "US survey foot";
   return name;
 }
@@ -76,41 +77,26 @@ GdalSetting::GdalSetting(const char* key, const char* value) : key_(key) {
 
 GdalSetting::~GdalSetting() { CPLSetThreadLocalConfigOption(key_.c_str(), had_ ? before_.c_str() : nullptr); }
 
-CrsFacts crs_facts(const std::string& crs) {
+CrsFacts crs_facts(const std::string& text) {
   CrsFacts facts;
-  if (crs.empty()) return facts;
+  if (text.empty()) return facts;
+  const core::Crs crs(text);
   const GdalMessages messages;
   OGRSpatialReference srs;
-  if (srs.SetFromUserInput(crs.c_str()) != OGRERR_NONE)
-    throw core::Error("CRS is not known" + (messages.text().empty() ? "" : ": " + messages.text()), crs,
-                      "give an EPSG code (\"EPSG:32632\", compound \"EPSG:25832+7837\"), WKT or PROJ text");
-  facts.empty = false;
-  facts.geographic = srs.IsGeographic() || srs.IsDerivedGeographic();
-  facts.wkt = wkt2(srs);
-  const char* name = srs.GetName();
-  facts.name = name ? name : "";
+  facts.wkt = crs.wkt();
+  if (srs.importFromWkt(facts.wkt.c_str()) != OGRERR_NONE)
+    throw core::Error("GDAL does not know the CRS" + (messages.text().empty() ? "" : ": " + messages.text()), text);
   srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   facts.axis_mapping.clear();
   for (const int axis : srs.GetDataAxisToSRSAxisMapping())
     facts.axis_mapping += (facts.axis_mapping.empty() ? "" : ",") + std::to_string(axis);
-  if (facts.geographic) {
-    facts.unit = "degree";
-  } else {
-    const char* unit = nullptr;
-    const double si = srs.GetTargetLinearUnits("PROJCS", &unit);
-    facts.unit = facts.vertical_unit = short_unit(unit ? unit : "", si);
-  }
-  if (srs.IsVertical()) {
-    const char* unit = nullptr;
-    const double si = srs.GetTargetLinearUnits("VERT_CS", &unit);
-    facts.vertical_unit = short_unit(unit ? unit : "", si);
-    const char* vertical = srs.GetAttrValue("VERT_CS");
-    if (!vertical) vertical = srs.GetAttrValue("COMPD_CS|VERT_CS");
-    facts.vertical_name = vertical ? vertical : "ellipsoidal height";
-    srs.StripVertical();
-  } else {
-    facts.vertical_name = "ellipsoidal height";
-  }
+  facts.empty = false;
+  facts.geographic = crs.is_geographic();
+  facts.name = crs.name();
+  facts.unit = facts.geographic ? "degree" : short_unit(crs.unit_name(), crs.metres_per_unit());
+  facts.vertical_unit = short_unit(crs.vertical_unit_name(), crs.vertical_metres_per_unit());
+  facts.vertical_name = crs.vertical_name();
+  srs.StripVertical();
   facts.horizontal_wkt = wkt2(srs);
   return facts;
 }

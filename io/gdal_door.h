@@ -51,8 +51,8 @@ struct CrsFacts {
   std::string axis_mapping = "1,2";      ///< which CRS axes easting and northing are ("2,1" where the CRS puts northing first)
   std::string name;                      ///< of the whole CRS
   std::string unit = "unknown";          ///< of the horizontal axes: "m", "ft", "US survey foot", "degree", ...
-  std::string vertical_unit = "m";       ///< of the vertical part; a projected CRS without one: the horizontal unit
-  std::string vertical_name = "height";  ///< name of the vertical CRS, or "ellipsoidal height"
+  std::string vertical_unit = "m";       ///< of the vertical part; without one heights are ellipsoidal, in metres (core/crs.h)
+  std::string vertical_name = "height";  ///< name of the vertical datum, or "ellipsoidal height"
 };
 
 /// Throws core::Error where PROJ does not know the text.

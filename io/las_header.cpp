@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Source: ASPRS LAS Specification 1.4 R15 (2019) and, for older files, 1.0 (2003), 1.1 (2005), 1.2 (2008), 1.3 (2010);
-// GeoTIFF keys: OGC 19-008r4. Deviation: extra bytes fields keep the deprecated two- and three-component types readable.
+// Source: ASPRS LAS Specification 1.4 R15 (2019) and, for older files, 1.0 (2003), 1.1 (2005), 1.2 (2008), 1.3 (2010).
+// Over 400 lines: reading and writing stand together, so that the place of every byte can be held against its twin.
+// Deviation: extra bytes fields keep the deprecated two- and three-component types readable.
 #include "io/las_header.h"
 
 #include <algorithm>
@@ -408,45 +409,6 @@ std::vector<std::uint8_t> las_evlr_bytes(const LasHeader& h) {
     std::copy(v.data.begin(), v.data.end(), b.begin() + static_cast<std::ptrdiff_t>(at + evlr_head));
   }
   return b;
-}
-
-LasCrs las_crs(const LasHeader& h) {
-  LasCrs out;
-  const LasVlr *wkt = nullptr, *keys = nullptr;
-  for (const auto* list : {&h.vlrs, &h.evlrs})
-    for (const LasVlr& v : *list) {
-      if (v.user_id == "LASF_Projection" && v.record_id == 2112) wkt = &v;
-      if (v.user_id == "LASF_Projection" && v.record_id == 34735) keys = &v;
-    }
-  if (wkt) {
-    out.definition = text_of(wkt->data.data(), wkt->data.size());
-    if (!out.definition.empty()) return out;
-    out.note = "the WKT record is empty";
-  }
-  if (!keys || keys->data.size() < 8) return out;
-  int horizontal = 0, vertical = 0;
-  const std::size_t count = std::min<std::size_t>(get<std::uint16_t>(&keys->data[6]), keys->data.size() / 8 - 1);
-  for (std::size_t i = 1; i <= count; ++i) {
-    const std::uint8_t* key = &keys->data[8 * i];
-    const int id = get<std::uint16_t>(key), place = get<std::uint16_t>(key + 2), value = get<std::uint16_t>(key + 6);
-    if (place != 0) continue;
-    if (id == 3072 || (id == 2048 && horizontal == 0)) horizontal = value;  // ProjectedCSType goes before GeographicType
-    if (id == 4096) vertical = value;
-    if (id == 4099) out.vertical_metres = value == 9001 ? 1.0 : value == 9002 ? 0.3048 : value == 9003 ? 1200.0 / 3937.0 : 0.0;
-  }
-  const auto is_code = [](int v) { return v > 1023 && v < 32767; };
-  if (!is_code(horizontal)) {
-    out.note =
-        horizontal == 0 ? "the GeoTIFF keys name no coordinate system" : "the GeoTIFF keys define a coordinate system without EPSG code";
-    return out;
-  }
-  out.definition = "EPSG:" + std::to_string(horizontal);
-  // GeoTIFF 1.0 numbers ellipsoidal heights 5001 to 5033: those are no EPSG vertical systems.
-  if (is_code(vertical) && (vertical < 5001 || vertical > 5033))
-    out.definition += "+" + std::to_string(vertical);
-  else if (vertical != 0)
-    out.note = "the vertical system " + std::to_string(vertical) + " of the GeoTIFF keys has no EPSG code";
-  return out;
 }
 
 }  // namespace swath::io

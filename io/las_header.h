@@ -84,14 +84,6 @@ struct LasHeader {
   std::optional<int> extra_offset(const std::string& name) const;
 };
 
-/// The coordinate reference system that a file states.
-struct LasCrs {
-  std::string definition;        ///< for core::Crs: WKT, or "EPSG:26910", "EPSG:26910+5703"; empty: none stated
-  double vertical_metres = 0.0;  ///< metres per unit of height by VerticalUnitsGeoKey; 0 not stated there
-  std::string note;              ///< why a stated CRS could not be used
-};
-LasCrs las_crs(const LasHeader& header);
-
 /// Reads and checks header, VLRs and EVLRs. Throws core::Error naming file and byte: wrong magic, unknown version or format, record
 /// length below the format's, scale or offset not finite or zero, counts that contradict each other or the file's size, VLRs that
 /// leave their place. What is odd and harmless is added to `warnings`.

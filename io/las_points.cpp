@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Source: ASPRS LAS Specification 1.4 R15 (2019), tables 7 to 16 and 24 to 25.
-// Deviations: scan angles of a Block are rounded to 0.006 deg (1 deg in formats 0 to 5), coordinates to the nearest multiple of the
-// scale, extra fields to the nearest multiple of theirs: half a step each. Angles beyond the field's range are cut to it.
+// Deviation: numbers of an extra field are rounded to the nearest multiple of its scale, half a step at most.
 #include "io/las_points.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/error.h"
 #include "io/las_bytes.h"
@@ -18,10 +16,6 @@ using las::get;
 using las::put;
 
 namespace {
-
-constexpr double extended_angle_step = 0.006;  // deg, R15 2.5.5
-constexpr double degree = std::numbers::pi / 180.0;
-constexpr std::uint8_t legacy_overlap_class = 12;
 
 /// Places of the optional parts in a record.
 struct Places {
@@ -187,7 +181,7 @@ void decode_las_points(std::span<const std::uint8_t> records, const LasHeader& h
       p.classification[i] = b[16];
       p.user_data[i] = b[17];
       p.raw_scan_angle[i] = get<std::int16_t>(b + 18);
-      p.scan_angle[i] = static_cast<float>(p.raw_scan_angle[i] * extended_angle_step);
+      p.scan_angle[i] = static_cast<float>(p.raw_scan_angle[i] * las_angle_step);
       p.point_source_id[i] = get<std::uint16_t>(b + 20);
     } else {
       p.return_number[i] = b[14] & 7;
@@ -318,157 +312,6 @@ void set_las_extra_values(LasPoints& p, const LasHeader& header, const std::stri
     else if (!put_number(at, base_type(*e), (values[i] - offset) / scale) || (e->nodata && bits_at(at, base_type(*e)) == (*e->nodata)[0]))
       fail("'" + name + "' of " + std::to_string(values[i]) + " does not fit its extra bytes field", where, i, "");
   }
-}
-
-std::vector<LasExtra> las_extras_of(core::ColumnSet columns) {
-  using core::Column;
-  std::vector<LasExtra> out;
-  const auto add = [&](Column c, const char* name, const char* description, std::uint8_t type, double step, std::uint64_t nodata) {
-    if (!columns.has(c)) return;
-    LasExtra e;
-    e.name = name;
-    e.description = description;
-    e.type = type;
-    e.nodata = {{nodata, 0, 0}};
-    e.scale = {{step, 0.0, 0.0}};
-    e.offset = {{0.0, 0.0, 0.0}};
-    out.push_back(std::move(e));
-  };
-  constexpr auto no_u32 = std::uint64_t{std::numeric_limits<std::uint32_t>::max()};
-  constexpr auto no_u16 = std::uint64_t{std::numeric_limits<std::uint16_t>::max()};
-  constexpr auto no_i32 = las_integer_bits(std::numeric_limits<std::int32_t>::min());
-  add(Column::range, las_name::range, "corrected range, m", 5, 0.001, no_u32);
-  add(Column::incidence, las_name::incidence, "beam to terrain normal, deg", 3, 0.002, no_u16);
-  add(Column::sigma_h, las_name::sigma_h, "horizontal standard deviation, m", 5, 0.0001, no_u32);
-  add(Column::sigma_v, las_name::sigma_v, "vertical standard deviation, m", 5, 0.0001, no_u32);
-  add(Column::height, las_name::height, "height above ground, m", 6, 0.001, no_i32);
-  return out;
-}
-
-void las_points_to_block(const LasPoints& p, const LasHeader& header, std::uint64_t first, const LasTime& time, double first_time,
-                         const std::string& where, core::Block& block) {
-  const LasLayout l = *las_layout(header.point_format);
-  const std::size_t n = p.size();
-  const Eigen::Vector3d origin = block.origin, shift = header.offset - origin;
-  block = core::Block{};
-  block.origin = origin;
-  using core::Column;
-  core::resize(block, n);
-  core::add_columns(block, {Column::time, Column::flags, Column::scan_angle, Column::record});
-  for (std::size_t i = 0; i < n; ++i) {
-    block.x[i] = p.raw_x[i] * header.scale.x() + shift.x();
-    block.y[i] = p.raw_y[i] * header.scale.y() + shift.y();
-    block.z[i] = p.raw_z[i] * header.scale.z() + shift.z();
-  }
-  if (l.gps && header.gps_time_is_adjusted()) {
-    for (std::size_t i = 0; i < n; ++i) block.time[i] = p.gps_time[i] + core::adjusted_offset;
-  } else if (l.gps && time.week) {
-    constexpr double half_week = core::seconds_per_week / 2;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double t = p.gps_time[i];
-      if (!(t >= 0.0 && t <= core::seconds_per_week))
-        fail("the time " + std::to_string(t) + " s is no second of a week", where, first + i,
-             "the file's times are on another scale than its GPS time bit says");
-      const double turn = t < first_time - half_week ? core::seconds_per_week : t > first_time + half_week ? -core::seconds_per_week : 0.0;
-      block.time[i] = *time.week * core::seconds_per_week + t + turn;
-    }
-  } else if (l.gps && time.keep_seconds_of_week) {
-    block.time = p.gps_time;
-  } else if (l.gps && n > 0) {
-    throw core::Error("times are seconds of a GPS week that the file does not name", where, "state the GPS week of the first point");
-  }
-  block.intensity = p.intensity;
-  block.return_number = p.return_number;
-  block.return_count = p.return_count;
-  block.classification = p.classification;
-  block.strip = p.point_source_id;
-  block.user_data = p.user_data;
-  block.red = p.red;
-  block.green = p.green;
-  block.blue = p.blue;
-  for (std::size_t i = 0; i < n; ++i) {
-    unsigned flags = p.flags[i];
-    if (!l.extended && p.classification[i] == legacy_overlap_class) {
-      flags |= core::flag::overlap;
-      block.classification[i] = core::point_class::unassigned;
-    }
-    if (p.scan_direction[i]) flags |= core::flag::scan_direction;
-    if (p.edge_of_line[i]) flags |= core::flag::edge_of_line;
-    block.flags[i] = static_cast<std::uint16_t>(flags);
-    block.scan_angle[i] = static_cast<float>(p.raw_scan_angle[i] * (l.extended ? extended_angle_step : 1.0) * degree);
-    block.record[i] = static_cast<std::uint32_t>(first + i);
-  }
-  const auto take = [&](const char* name, std::vector<float>& column, double unit) {
-    const std::vector<double> values = las_extra_values(p, header, name);
-    column.resize(values.size());
-    std::transform(values.begin(), values.end(), column.begin(), [unit](double v) { return static_cast<float>(v * unit); });
-  };
-  take(las_name::range, block.range, 1.0);
-  take(las_name::incidence, block.incidence, degree);
-  take(las_name::sigma_h, block.sigma_h, 1.0);
-  take(las_name::sigma_v, block.sigma_v, 1.0);
-  take(las_name::height, block.height, 1.0);
-}
-
-void block_to_las_points(const core::Block& block, const LasHeader& header, std::uint64_t first, const std::string& where, LasPoints& p) {
-  const LasLayout l = *las_layout(header.point_format);
-  const std::size_t n = block.size();
-  resize(p, header, n);
-  const Eigen::Vector3d shift = block.origin - header.offset;
-  const auto quantise = [&](const std::vector<double>& from, int axis, std::vector<std::int32_t>& to) {
-    for (std::size_t i = 0; i < n; ++i) {
-      const double raw = std::round((from[i] + shift[axis]) / header.scale[axis]);
-      if (!(raw >= std::numeric_limits<std::int32_t>::min() && raw <= std::numeric_limits<std::int32_t>::max()))
-        fail(std::string(1, "xyz"[axis]) + " = " + std::to_string(from[i] + block.origin[axis]) + " does not fit scale " +
-                 std::to_string(header.scale[axis]) + " and offset " + std::to_string(header.offset[axis]),
-             where, first + i, "choose a coarser scale or an offset near the data");
-      to[i] = static_cast<std::int32_t>(raw);
-    }
-  };
-  quantise(block.x, 0, p.raw_x);
-  quantise(block.y, 1, p.raw_y);
-  quantise(block.z, 2, p.raw_z);
-  const auto copy = [](const auto& from, auto& to) {
-    if (!from.empty() && !to.empty()) to = from;
-  };
-  copy(block.intensity, p.intensity);
-  copy(block.return_number, p.return_number);
-  copy(block.return_count, p.return_count);
-  copy(block.classification, p.classification);
-  copy(block.strip, p.point_source_id);
-  copy(block.user_data, p.user_data);
-  copy(block.red, p.red);
-  copy(block.green, p.green);
-  copy(block.blue, p.blue);
-  const double step = l.extended ? extended_angle_step : 1.0, most = l.extended ? 30000.0 : 90.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (l.gps && !block.time.empty())
-      p.gps_time[i] = header.gps_time_is_adjusted()
-                          ? block.time[i] - core::adjusted_offset
-                          : block.time[i] - core::seconds_per_week * std::floor(block.time[i] / core::seconds_per_week);
-    if (!block.flags.empty()) {
-      p.flags[i] = static_cast<std::uint8_t>(block.flags[i] & (l.extended ? 15 : 7));
-      p.scan_direction[i] = (block.flags[i] & core::flag::scan_direction) != 0;
-      p.edge_of_line[i] = (block.flags[i] & core::flag::edge_of_line) != 0;
-      if (!l.extended && (block.flags[i] & core::flag::overlap) && p.classification[i] <= core::point_class::unassigned)
-        p.classification[i] = legacy_overlap_class;
-    }
-    if (!block.scan_angle.empty()) {
-      const double angle = std::round(static_cast<double>(block.scan_angle[i]) / degree / step);
-      p.raw_scan_angle[i] = static_cast<std::int16_t>(std::isnan(angle) ? 0.0 : std::clamp(angle, -most, most));
-    }
-  }
-  const auto give = [&](const char* name, const std::vector<float>& column, double unit) {
-    if (column.empty() || !field(header, name)) return;
-    std::vector<double> values(column.begin(), column.end());
-    for (double& v : values) v *= unit;
-    set_las_extra_values(p, header, name, values, where);
-  };
-  give(las_name::range, block.range, 1.0);
-  give(las_name::incidence, block.incidence, 1.0 / degree);
-  give(las_name::sigma_h, block.sigma_h, 1.0);
-  give(las_name::sigma_v, block.sigma_v, 1.0);
-  give(las_name::height, block.height, 1.0);
 }
 
 }  // namespace swath::io

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "core/error.h"
+#include "io/laz/swath_laz.h"
 #include "io/output_file.h"
-#include "swath_laz.h"
 
 namespace swath::io {
 

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "core/block.h"
+#include "io/las_block.h"
+#include "io/las_crs.h"
 #include "io/las_header.h"
 #include "io/las_points.h"
 

@@ -8,11 +8,10 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 #include "core/error.h"
+#include "io/laz/swath_laz.h"
 #include "io/output_file.h"
-#include "swath_laz.h"
 
 namespace swath::io {
 
@@ -154,14 +153,6 @@ void LasRawWriter::finish() {
   s.put(head);
   if (std::fclose(s.out.release())) throw_system_error("cannot write", s.file, errno);
   s.output.commit();
-}
-
-void add_las_wkt(LasHeader& header, const std::string& wkt) {
-  if (wkt.empty()) return;
-  LasVlr v{"LASF_Projection", 2112, "OGC coordinate system WKT", {wkt.begin(), wkt.end()}, 0, 0};
-  v.data.push_back(0);
-  header.global_encoding |= las_encoding::wkt;
-  (v.data.size() > std::numeric_limits<std::uint16_t>::max() ? header.evlrs : header.vlrs).push_back(std::move(v));
 }
 
 struct LasWriter::State {

@@ -9,6 +9,8 @@
 #include <string>
 
 #include "core/block.h"
+#include "io/las_block.h"
+#include "io/las_crs.h"
 #include "io/las_header.h"
 #include "io/las_points.h"
 
@@ -74,8 +76,5 @@ class LasWriter {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// The WKT record (R15, 3.4) for `header.vlrs`, as an extended record where it is longer than 65535 bytes.
-void add_las_wkt(LasHeader& header, const std::string& wkt);
 
 }  // namespace swath::io

@@ -150,6 +150,7 @@ struct PointFile {
   std::filesystem::path file;
   std::string crs;
   std::optional<int> line;
+  std::optional<int> week;
 };
 
 template <class V>
@@ -157,6 +158,7 @@ void describe(PointFile& f, V& v) {
   v.option("file", f.file, "LAS or LAZ file, relative to survey.toml.");
   v.option("crs", f.crs, "CRS of the file, where it states none or a wrong one.");
   v.option("line", f.line, core::within(0, 65535), "Flight line id of all points; otherwise the points' source ids.");
+  v.option("week", f.week, core::within(0, 10000), "GPS week of the first point, where the file's times are seconds of week; without it they are kept as they are.");
 }
 
 /// A stretch of the flight. Records outside every line are counted and left out.

@@ -121,9 +121,15 @@ void Engine::prepare() {
                             plan_.survey_file.string() + ": crs", "choose a projected CRS, for example the UTM zone EPSG:326xx");
   context_.unit = context_.crs.metres_per_unit();
   context_.vertical_unit = context_.crs.vertical_metres_per_unit();
+  context_.product_crs = plan_.survey.crs;
   if (!context_.crs.has_vertical()) {
     if (plan_.survey.height_unit) context_.vertical_unit = plan_.survey.height_unit->value;
     else if (!plan_.survey.points.empty()) context_.vertical_unit = context_.unit;
+    if (context_.vertical_unit != 1.0)
+      context_.product_crs = "COMPD_CS[\"" + context_.crs.name() + " + height\"," + context_.crs.wkt1() +
+                             ",VERT_CS[\"height\",VERT_DATUM[\"unknown\",2005],UNIT[\"" +
+                             (context_.vertical_unit == 0.3048 ? "foot" : "height unit") + "\"," + core::format_number(context_.vertical_unit) +
+                             "],AXIS[\"Up\",UP]]]";
   }
   context_.tile_side = plan_.run.tile.value;
   context_.output = output_;
@@ -188,6 +194,8 @@ void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_fold
       parcel->accounts[i].in = size();
       stage(i).run_strip(context_, parcel->batch, parcel->accounts[i].tally);
       parcel->accounts[i].out = size();
+      if (parcel->accounts[i].in != parcel->accounts[i].out + parcel->accounts[i].tally.left_out())
+        throw core::Error("returns were lost on the way", std::string(stage(i).info().name), "this is a fault of the program");
       parcel->accounts[i].seconds = since(start);
     }
     return parcel;
@@ -207,7 +215,7 @@ void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_fold
                              tbb::make_filter<std::shared_ptr<Parcel>, std::shared_ptr<Parcel>>(tbb::filter_mode::parallel, work) &
                              tbb::make_filter<std::shared_ptr<Parcel>, void>(tbb::filter_mode::serial_in_order, write));
 
-  accounts[source].in = accounts[source].out + accounts[source].tally.of("kept out: unusable record");
+  accounts[source].in = accounts[source].out + accounts[source].tally.left_out();
   Value note = Value::array();
   for (const Account& a : accounts) {
     Value one = Value::object();
@@ -368,7 +376,7 @@ bool Engine::judge_limits() {
   std::optional<double> outside;
   for (size_t i = 0; i < accounts_.size(); ++i)
     if (stage(i).info().name == "georeference" && accounts_[i].in > 0)
-      outside = static_cast<double>(accounts_[i].tally.of("kept out: outside the trajectory")) / static_cast<double>(accounts_[i].in);
+      outside = static_cast<double>(accounts_[i].tally.of("outside the trajectory, left out")) / static_cast<double>(accounts_[i].in);
   const Limits& limits = plan_.run.limits;
   judge("outside", outside, limits.outside);
   judge("voids", finding("void_share"), limits.voids);

@@ -8,7 +8,12 @@ packages=(
   libtomlplusplus-dev rapidjson-dev libcli11-dev libxxhash-dev libgtest-dev
   python3 python3-venv clang-format
 )
-command -v cargo >/dev/null 2>&1 || packages+=(cargo rustc)
+# The LAZ coder needs Rust 1.66 or newer: Debian 12 has it as cargo-web, Ubuntu 24.04 as cargo.
+rust_minor() { cargo --version 2>/dev/null | sed -n 's/^cargo 1\.\([0-9]*\).*/\1/p'; }
+minor="$(rust_minor)"
+if [ "${minor:-0}" -lt 66 ]; then
+  if grep -q '^VERSION_CODENAME=bookworm' /etc/os-release; then packages+=(cargo-web rustc-web); else packages+=(cargo rustc); fi
+fi
 missing=()
 for p in "${packages[@]}"; do
   dpkg-query -W -f='${db:Status-Status}' "$p" 2>/dev/null | grep -qx installed || missing+=("$p")

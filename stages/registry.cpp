@@ -18,6 +18,7 @@ const std::vector<Entry>& registry() {
       {"terrain.dtm", make_dtm},
       {"terrain.dsm", make_dsm},
       {"terrain.contours", make_contours},
+      {"terrain.penetration", make_penetration},
       {"writers.las", make_las_writer},
       {"writers.gdal", make_gdal_writer},
       {"writers.picture", make_picture_writer},

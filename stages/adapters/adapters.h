@@ -19,6 +19,7 @@ std::unique_ptr<Stage> make_hag_dem();
 std::unique_ptr<Stage> make_dtm();
 std::unique_ptr<Stage> make_dsm();
 std::unique_ptr<Stage> make_contours();
+std::unique_ptr<Stage> make_penetration();
 std::unique_ptr<Stage> make_las_writer();
 std::unique_ptr<Stage> make_gdal_writer();
 std::unique_ptr<Stage> make_picture_writer();

@@ -34,6 +34,64 @@ class Smrf : public OptionStage<filters::SmrfOptions> {
   }
 };
 
+class Returns : public OptionStage<filters::ReturnsOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{"filters.returns",
+                           "First, last, only and intermediate returns: missing or inconsistent numbers mended or flagged, returns per pulse by line.",
+                           {Grain::strip},
+                           {Column::time, Column::return_number, Column::return_count},
+                           {Column::return_number, Column::return_count, Column::flags},
+                           {Product::points},
+                           {}};
+    return info;
+  }
+  void run_strip(const Context&, StripBatch& batch, core::Tally& tally) const override {
+    const filters::RepairCounts n = filters::repair_returns(batch.block, options);
+    if (n.repaired) tally.count("return numbers repaired", n.repaired);
+    if (n.inconsistent) tally.count("return numbers inconsistent, flagged", n.inconsistent);
+    filters::ReturnStatistics statistics;
+    statistics.add(batch.block);
+    for (const auto& [line, s] : statistics.strips()) {
+      const std::string name = "line " + std::to_string(line) + ": ";
+      for (size_t k = 1; k < s.pulses.size(); ++k)
+        if (s.pulses[k]) tally.count(name + "pulses of " + std::to_string(k) + (k == 1 ? " return" : " returns"), s.pulses[k]);
+      tally.count(name + "first returns", s.first);
+      tally.count(name + "last returns", s.last);
+      tally.count(name + "only returns", s.only);
+      if (s.intermediate) tally.count(name + "intermediate returns", s.intermediate);
+    }
+  }
+};
+
+class Noise : public OptionStage<filters::NoiseOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{"filters.noise",
+                           "Isolated points, low points and ranges outside the gate: flagged and classed as noise, never deleted.",
+                           {Grain::tile},
+                           {Column::flags, Column::classification},
+                           {Column::flags, Column::classification},
+                           {Product::points},
+                           {}};
+    return info;
+  }
+  core::ColumnSet also_reads() const override {
+    return options.range_min || options.range_max ? core::ColumnSet{Column::range} : core::ColumnSet{};
+  }
+  double halo() const override { return filters::halo(options); }
+  double bytes_per_point() const override { return 96.0; }
+  void run_tile(const Context&, TileJob& job) const override {
+    const filters::NoiseCounts n = filters::flag_noise(job.block, job.own, options);
+    job.tally.count("low noise", n.low_noise);
+    job.tally.count("high noise", n.high_noise);
+    if (n.isolated) job.tally.count("isolated", n.isolated);
+    if (n.low_point) job.tally.count("low points", n.low_point);
+    if (n.range_gate) job.tally.count("outside the range gate", n.range_gate);
+    if (n.untouched) job.tally.count("withheld or noise already, not looked at", n.untouched);
+  }
+};
+
 struct NoOptions {};
 template <class V>
 void describe(NoOptions&, V&) {}
@@ -60,6 +118,8 @@ class HeightAboveGround : public OptionStage<NoOptions> {
 
 }  // namespace
 
+std::unique_ptr<Stage> make_returns() { return std::make_unique<Returns>(); }
+std::unique_ptr<Stage> make_noise() { return std::make_unique<Noise>(); }
 std::unique_ptr<Stage> make_smrf() { return std::make_unique<Smrf>(); }
 std::unique_ptr<Stage> make_hag_dem() { return std::make_unique<HeightAboveGround>(); }
 

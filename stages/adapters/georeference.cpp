@@ -32,8 +32,13 @@ class Georeference : public OptionStage<Options> {
   void run_strip(const Context& context, StripBatch& batch, core::Tally& tally) const override {
     const std::shared_ptr<const calib::Georeferencer> g = georeferencer(context);
     core::Block block;
-    block.origin = context.origin;
-    g->run(batch.shots, block, tally);
+    block.origin = g->origin();
+    const calib::Counts n = g->run(batch.shots, block);
+    if (n.outside) tally.count("outside the trajectory, left out", n.outside);
+    if (n.no_range) tally.count("range not above zero, left out", n.no_range);
+    if (n.no_beam) tally.count("no beam for the scan angle, left out", n.no_beam);
+    if (n.no_map) tally.count("no coordinates in the CRS, left out", n.no_map);
+    to_metres(context, block);
     block.strip.assign(block.size(), static_cast<std::uint16_t>(batch.line));
     block.classification.resize(block.size(), core::point_class::never_classified);
     batch.block = std::move(block);
@@ -41,12 +46,26 @@ class Georeference : public OptionStage<Options> {
   }
 
  private:
+  static Eigen::Vector3d units_of(const Context& context) {
+    return {context.unit, context.unit, context.crs.vertical_metres_per_unit()};
+  }
+
+  static void to_metres(const Context& context, core::Block& block) {
+    const Eigen::Vector3d unit = units_of(context);
+    if (unit.x() != 1.0)
+      for (auto* column : {&block.x, &block.y})
+        for (double& v : *column) v *= unit.x();
+    if (unit.z() != 1.0)
+      for (double& v : block.z) v *= unit.z();
+    block.origin = context.origin;
+  }
+
   /// Made once, by the first batch: it needs the trajectory, which a survey stage has read by then.
   std::shared_ptr<const calib::Georeferencer> georeferencer(const Context& context) const {
     const std::lock_guard lock(mutex_);
     if (!georeferencer_)
       georeferencer_ = std::make_shared<calib::Georeferencer>(context.survey.scanner, context.survey.calibration, context.survey.sigma,
-                                                              *context.trajectory, context.crs, context.origin);
+                                                              *context.trajectory, context.crs, context.origin.cwiseQuotient(units_of(context)));
     return georeferencer_;
   }
   mutable std::mutex mutex_;

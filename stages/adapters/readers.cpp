@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/time.h"
 #include "io/laser_file.h"
+#include "io/las_crs.h"
 #include "io/las_reader.h"
 #include "io/trajectory_file.h"
 #include "stages/adapters/adapters.h"
@@ -76,6 +77,19 @@ struct NoOptions {};
 template <class V>
 void describe(NoOptions&, V&) {}
 
+class LaserStrip : public StripReader {
+ public:
+  LaserStrip(const io::Survey& survey, const io::StripInfo& strip) : source_(survey, strip) {}
+  bool next(StripBatch& batch, size_t most, core::Tally& tally) override {
+    if (source_.next(batch.shots, most)) return true;
+    tally.add(source_.tally());
+    return false;
+  }
+
+ private:
+  io::LaserSource source_;
+};
+
 class LaserReader : public OptionStage<NoOptions> {
  public:
   const Info& info() const override {
@@ -94,10 +108,22 @@ class LaserReader : public OptionStage<NoOptions> {
     for (const io::LaserFile& f : survey.laser) out.push_back(io::resolve(survey, f.file));
     return out;
   }
+  std::vector<Strip> strips(const Context& context, core::Tally& tally) const override {
+    strips_ = io::scan(context.survey, tally);
+    std::vector<Strip> out;
+    for (size_t i = 0; i < strips_.size(); ++i) out.push_back({strips_[i].file, i, strips_[i].line, strips_[i].name(context.survey), strips_[i].records});
+    return out;
+  }
+  std::unique_ptr<StripReader> open(const Context& context, const Strip& strip) const override {
+    return std::make_unique<LaserStrip>(context.survey, strips_[strip.index]);
+  }
   void check(const Context& context) const override {
     if (context.survey.laser.empty())
       throw core::usage_error("readers.laser: the survey names no [[laser]] file", context.survey.name, "for point clouds use readers.las");
   }
+
+ private:
+  mutable std::vector<io::StripInfo> strips_;  // of the run, found once before the strips are read
 };
 
 /// Reads a point cloud in map coordinates, converted to the CRS and metres of the run.
@@ -125,6 +151,7 @@ class CloudReader : public StripReader {
     block.origin = context_.origin;
     scale_block(context_, block, true);
     io::LasTime time;
+    time.week = file_.week;
     time.keep_seconds_of_week = true;
     const size_t n = reader_.read(block, most, time);
     if (n == 0) {
@@ -161,7 +188,7 @@ class CloudReader : public StripReader {
       block.z[i] = block.z[i] / map_height_unit_ - block.origin.z();
     }
     if (bad) {
-      tally.count("kept out: unusable record", bad);
+      tally.count("points without coordinates in the CRS, left out", bad);
       block = core::select(block, good);
     }
   }
@@ -221,6 +248,7 @@ class LasCloud : public OptionStage<NoOptions> {
 }  // namespace
 
 std::unique_ptr<Stage> make_trajectory_reader() { return std::make_unique<TrajectoryReader>(); }
+std::unique_ptr<Stage> make_laser_reader() { return std::make_unique<LaserReader>(); }
 std::unique_ptr<Stage> make_las_reader() { return std::make_unique<LasCloud>(); }
 
 }  // namespace swath::stages

@@ -155,7 +155,7 @@ class Contours : public OptionStage<ContourWriteOptions> {
     }
     std::vector<io::ContourWriter> writers;
     for (const char* ending : {".gpkg", ".dxf", ".geojson"})
-      writers.emplace_back(context.output / (options.name + ending), context.survey.crs);
+      writers.emplace_back(context.output / (options.name + ending), context.product_crs);
     double metres = 0.0;
     std::uint64_t closed = 0;
     for (const auto& [level, stretches] : levels) {

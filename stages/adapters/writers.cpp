@@ -4,13 +4,12 @@
 #include "core/error.h"
 #include "io/geotiff.h"
 #include "io/las_writer.h"
-#include "io/output_file.h"
 #include "io/png.h"
-#include "io/value_file.h"
 #include "io/vector.h"
 #include "io/vrt.h"
 #include "report/picture.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/tile_list.h"
 #include "stages/adapters/units.h"
 
 namespace swath::stages {
@@ -18,23 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using core::Column;
-
-/// Keeps `folder`/tiles.json, the list of the tiles that make the product, and removes tiles of an earlier run that are no longer in it.
-void keep_list(const fs::path& folder, const std::vector<std::string>& files) {
-  const fs::path list = folder / "tiles.json";
-  if (fs::exists(list)) {
-    const core::Value before = io::read_value_file(list);
-    if (before.is_array())
-      for (const core::Value& file : before.items())
-        if (file.is_text() && std::find(files.begin(), files.end(), file.as_text()) == files.end()) {
-          std::error_code ignored;
-          fs::remove(folder / fs::path(file.as_text()).filename(), ignored);
-        }
-  }
-  core::Value now = core::Value::array();
-  for (const std::string& f : files) now.push(f);
-  io::write_text_file(list, io::to_json(now));
-}
 
 struct LasOptions {
   std::string folder = "points";
@@ -72,7 +54,7 @@ class LasTiles : public OptionStage<LasOptions> {
     o.scale = Eigen::Vector3d::Constant(options.scale);
     // Near the data, and the same for every tile: tiles can be joined without rounding again.
     o.offset = Eigen::Vector3d(std::round(context.origin.x() / context.unit), std::round(context.origin.y() / context.unit), 0.0);
-    o.crs_wkt = context.crs.wkt1();
+    o.crs_wkt = core::Crs(context.product_crs).wkt1();
     o.threads = 1;
     core::Block block = std::move(job.block);
     job.block = {};
@@ -116,11 +98,11 @@ class GridTiles : public OptionStage<NoOptions> {
       const core::Lattice own = lattice_in(context.grids->cell(p), job.box);
       const core::Grid grid = in_crs_units(context, context.grids->window(p, own));
       const fs::path folder = context.output / name_of(p);
-      io::write_grid(folder / name(context, p, job.key, ""), grid, context.survey.crs, io::height_bands);
+      io::write_grid(folder / name(context, p, job.key, ""), grid, context.product_crs, io::height_bands);
       io::GridBands quality = io::quality_bands;
       quality.sigma = !grid.sigma.empty();
       quality.count = !grid.count.empty();
-      io::write_grid(folder / name(context, p, job.key, "_quality"), grid, context.survey.crs, quality);
+      io::write_grid(folder / name(context, p, job.key, "_quality"), grid, context.product_crs, quality);
     }
   }
   void run_merge(const Context& context, MergeJob& job) const override {

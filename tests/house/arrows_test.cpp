@@ -89,9 +89,10 @@ TEST(House, HeavyLibrariesStayBehindTheirDoors) {
     for (const fs::path& file : sources(room))
       for (const Include& i : includes(file))
         for (const auto& [library, door] : doors)
-          if (!i.ours && std::regex_match(i.what, library))
+          if (!i.ours && std::regex_match(i.what, library)) {
             EXPECT_TRUE(std::regex_match(i.file.generic_string(), door))
                 << i.file << ":" << i.line << " includes <" << i.what << "> outside its door";
+          }
 }
 
 TEST(House, EveryFileStatesItsLicenceAndStaysShort) {

@@ -4,6 +4,7 @@
 #include <cpl_conv.h>
 #include <cpl_error.h>
 
+#include "core/crs.h"
 #include "core/error.h"
 #include "tests/world/support.h"
 
@@ -46,14 +47,14 @@ TEST(GdalDoor, FactsOfProjectedCompoundFeetAndDegrees) {
 
   const CrsFacts compound = crs_facts("EPSG:25832+7837");
   EXPECT_EQ(compound.unit, "m");
-  EXPECT_EQ(compound.vertical_name, "DHHN2016 height");
+  EXPECT_EQ(compound.vertical_name, core::Crs("EPSG:25832+7837").vertical_name());
   EXPECT_NE(compound.wkt.find("COMPOUNDCRS"), std::string::npos);
   EXPECT_EQ(compound.horizontal_wkt.find("COMPOUNDCRS"), std::string::npos);
   EXPECT_NE(compound.horizontal_wkt.find("25832"), std::string::npos);
 
   const CrsFacts feet = crs_facts("EPSG:2992");  // Oregon Lambert, international feet, without a vertical part
   EXPECT_EQ(feet.unit, "ft");
-  EXPECT_EQ(feet.vertical_unit, "ft");
+  EXPECT_EQ(feet.vertical_unit, "m");                  // ellipsoidal
   const CrsFacts mixed = crs_facts("EPSG:2263+6360");  // New York Long Island (ftUS) + NAVD88 (ftUS)
   EXPECT_EQ(mixed.unit, "US survey foot");
   EXPECT_EQ(mixed.vertical_unit, "US survey foot");
@@ -62,6 +63,10 @@ TEST(GdalDoor, FactsOfProjectedCompoundFeetAndDegrees) {
   EXPECT_TRUE(crs_facts("EPSG:4326").geographic);
   EXPECT_EQ(crs_facts("EPSG:4326").unit, "degree");
   EXPECT_EQ(crs_facts("EPSG:4326").vertical_unit, "m");
+  EXPECT_EQ(crs_facts("EPSG:32632").axis_mapping, "1,2");
+  EXPECT_EQ(crs_facts("EPSG:4326").axis_mapping, "2,1");
+  EXPECT_EQ(crs_facts("EPSG:25832+EPSG:7837").wkt, compound.wkt);
+  EXPECT_EQ(crs_facts(compound.wkt).wkt, compound.wkt);
   EXPECT_TRUE(crs_facts("").empty);
   EXPECT_THROW(crs_facts("EPSG:1"), core::Error);
   EXPECT_THROW(crs_facts("somewhere"), core::Error);

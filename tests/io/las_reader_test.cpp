@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/las_reader.h"
 
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+
 #include "core/error.h"
 #include "tests/io/las_sample.h"
 #include "tests/world/support.h"
@@ -30,8 +34,8 @@ TEST(LasReader, EveryFormatComesBackFieldByField) {
 
 TEST(LasReader, ManyChunksInBatchesOfAnySize) {
   const test::TemporaryFolder folder;
-  constexpr std::size_t n = (1u << 20) + 1;
   for (const int format : {1, 6, 10}) {
+    const std::size_t n = format == 6 ? (1u << 20) + 1 : 150001;  // one file of many chunks, two whose last chunk holds one point
     const LasHeader h = test::sample_header(format);
     const LasPoints p = test::sample_points(h, n);
     for (const char* name : {"a.las", "a.laz"}) {
@@ -66,8 +70,9 @@ void every_cut_is_an_error(const std::string& ending, int format) {
   const std::size_t padding = ending == "laz" ? 4 : 0;
   std::size_t refused = 0;
   const std::size_t step = 1 + whole.size() / 1500;
-  for (std::size_t size = 0; size < whole.size(); size += size < 400 || size + 200 > whole.size() ? 1 : step) {
-    test::write_bytes(folder / name, whole.substr(0, size));
+  for (std::size_t size = whole.size(); size > 0;) {
+    size -= std::min(size, size < 400 || size + 200 > whole.size() ? 1 : step);
+    std::filesystem::resize_file(folder / name, size);
     try {
       const LasPoints q = test::read_all(folder / name);
       EXPECT_GE(size + padding, whole.size()) << "a file cut at " << size << " of " << whole.size() << " was read";
@@ -90,16 +95,18 @@ TEST(LasReader, DamagedBytesAreAnErrorOrOtherPointsNeverACrash) {
   std::mt19937 random(3);
   for (const int format : {1, 5, 6, 10}) {
     const LasHeader h = test::sample_header(format, -1, true);
-    const LasPoints p = test::sample_points(h, 500);
+    const LasPoints p = test::sample_points(h, 300);
     test::write_sample(folder / "a.laz", h, p);
     const std::string whole = test::read_bytes(folder / "a.laz");
+    std::fstream file(folder / "a.laz", std::ios::in | std::ios::out | std::ios::binary);
     std::size_t refused = 0;
-    for (int i = 0; i < 600; ++i) {
+    for (int i = 0; i < 300; ++i) {
       std::string bytes = whole;
-      for (int k = 0; k <= i % 3; ++k) bytes[random() % bytes.size()] = static_cast<char>(random());
-      test::write_bytes(folder / "b.laz", bytes);
+      for (int k = 0; k <= i % 3; ++k) bytes[random() % (i % 2 == 0 ? 700 : bytes.size())] = static_cast<char>(random());
+      file.seekp(0);
+      file << bytes << std::flush;
       try {
-        LasReader r(folder / "b.laz");
+        LasReader r(folder / "a.laz", 1);
         LasPoints q;
         while (r.read(q, 100) > 0) {
         }

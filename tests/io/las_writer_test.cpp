@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/las_writer.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "core/error.h"
+#include "io/laz/swath_laz.h"
 #include "tests/io/las_sample.h"
 #include "tests/world/support.h"
 
@@ -224,6 +226,47 @@ TEST(LasWriter, OldFormatsOfABlock) {
   ASSERT_EQ(r.read(q, 20), 20u);
   EXPECT_EQ(q.flags, b.flags);  // through class 12
   EXPECT_EQ(q.classification, b.classification);
+}
+
+TEST(LasWriter, ChunksOfVariableSizeThroughTheStreams) {
+  const test::TemporaryFolder folder;
+  const std::string file = (folder / "chunks").string();
+  std::array<char, 256> message{};
+  for (const int format : {3, 7}) {
+    LasHeader h = test::sample_header(format);
+    las_header_bytes(h, 0, "test");
+    const LasPoints p = test::sample_points(h, 1111);
+    std::vector<std::uint8_t> records(p.size() * h.record_length), vlr(256), back(records.size());
+    encode_las_points(p, 0, p.size(), h, records, "test");
+    std::size_t size = 0;
+    const auto f = static_cast<std::uint8_t>(format);
+    ASSERT_EQ(swath_laz_vlr(f, 0, 0, vlr.data(), vlr.size(), &size, message.data(), message.size()), SWATH_LAZ_OK) << message.data();
+    EXPECT_EQ(swath_laz_vlr(f, 0, 0, vlr.data(), 3, &size, message.data(), message.size()), SWATH_LAZ_USAGE);
+    test::write_bytes(file, "0123456789");
+    swath_laz_writer* w = nullptr;
+    ASSERT_EQ(swath_laz_writer_open(file.c_str(), 10, vlr.data(), size, 2, &w, message.data(), message.size()), SWATH_LAZ_OK);
+    const std::array<std::uint64_t, 3> counts{1, 1000, 110}, nothing{1, 0, 1};
+    std::array<std::uint64_t, 3> offsets{}, bytes{};
+    const auto chunks = [&](const auto& n) {
+      return swath_laz_writer_write_chunks(w, records.data(), n.data(), 3, offsets.data(), bytes.data(), message.data(), message.size());
+    };
+    EXPECT_EQ(chunks(nothing), SWATH_LAZ_USAGE);
+    EXPECT_EQ(swath_laz_writer_write(w, records.data(), 1, message.data(), message.size()), SWATH_LAZ_USAGE);
+    ASSERT_EQ(chunks(counts), SWATH_LAZ_OK) << message.data();
+    std::uint64_t end = 0;
+    ASSERT_EQ(swath_laz_writer_finish(w, &end, message.data(), message.size()), SWATH_LAZ_OK);
+    swath_laz_writer_close(w);
+    EXPECT_EQ(offsets[0], 18u);
+    EXPECT_EQ(offsets[2], offsets[1] + bytes[1]);
+    EXPECT_EQ(end, std::filesystem::file_size(file));
+    swath_laz_reader* r = nullptr;
+    ASSERT_EQ(swath_laz_reader_open(file.c_str(), 10, vlr.data(), size, f, h.record_length, 1111, 2, &r, message.data(), message.size()),
+              SWATH_LAZ_OK);
+    EXPECT_EQ(swath_laz_reader_read(r, back.data(), 1112, message.data(), message.size()), SWATH_LAZ_USAGE);
+    EXPECT_EQ(swath_laz_reader_read(r, back.data(), 1111, message.data(), message.size()), SWATH_LAZ_OK);
+    EXPECT_TRUE(back == records);
+    swath_laz_reader_close(r);
+  }
 }
 
 }  // namespace

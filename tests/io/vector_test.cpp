@@ -67,7 +67,7 @@ TEST(Vector, GeoPackageReturnsEveryBit) {
   EXPECT_EQ(layer->GetLayerDefn()->GetFieldDefn(0)->GetType(), OFTReal);
   EXPECT_EQ(layer->GetLayerDefn()->GetFieldDefn(1)->GetSubType(), OFSTBoolean);
   EXPECT_EQ(layer->GetLayerDefn()->GetFieldDefn(2)->GetSubType(), OFSTBoolean);
-  EXPECT_NE(std::string(layer->GetMetadataItem("DESCRIPTION")).find("DHHN2016"), std::string::npos);
+  EXPECT_NE(std::string(layer->GetMetadataItem("DESCRIPTION")).find("Deutsches Haupthoehennetz 2016"), std::string::npos);
   EXPECT_TRUE(layer->TestCapability(OLCFastSpatialFilter));
   GDALClose(d);
 }
@@ -107,7 +107,7 @@ TEST(Vector, GeoJsonIsInWgs84) {
   }
   expect_same(got.lines, made_lines(), geojson_tolerance);
   const std::string text = test::read_bytes(folder / "a.geojson");
-  EXPECT_NE(text.find("\"height_reference\": \"DHHN2016 height\""), std::string::npos);
+  EXPECT_NE(text.find("\"height_reference\": \"Deutsches Haupthoehennetz 2016\""), std::string::npos);
   EXPECT_EQ(text.find("\"crs\""), std::string::npos);  // RFC 7946 has no such member
 }
 

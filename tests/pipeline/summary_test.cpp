@@ -11,10 +11,10 @@ namespace {
 TEST(Summary, TellsCountsTalliesAndFindings) {
   const core::Value report = io::parse_json(
       R"({"seconds": 72, "stages": [{"type": "georeference", "counts": {"in": 10, "out": 9},
-          "tally": {"kept out: outside the trajectory": {"count": 1, "examples": ["record 3"]}}, "findings": {"rms_3d": 0.021234567}}]})",
+          "tally": {"outside the trajectory, left out": {"count": 1, "examples": ["record 3"]}}, "findings": {"rms_3d": 0.021234567}}]})",
       "report");
   const std::string text = summary(report, "out");
-  for (const char* part : {"georeference: 10 in, 9 out", "kept out: outside the trajectory: 1  (record 3)", "rms_3d: 0.02123", "1 m 12 s"})
+  for (const char* part : {"georeference: 10 in, 9 out", "outside the trajectory, left out: 1  (record 3)", "rms_3d: 0.02123", "1 m 12 s"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
 }
 

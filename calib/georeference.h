@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Raw returns of a flight line to map coordinates, with the standard deviations of each.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "calib/map_patch.h"
+#include "calib/shot_geometry.h"
+#include "core/block.h"
+#include "core/sensor.h"
+#include "core/shot.h"
+#include "trajectory/trajectory.h"
+
+namespace swath::calib {
+
+/// What became of the returns: their sum is the number of returns given.
+struct Counts {
+  std::uint64_t georeferenced = 0;
+  std::uint64_t outside = 0;   ///< time in no span of the trajectory (or not a number)
+  std::uint64_t no_range = 0;  ///< range not a number, or not above zero (recorded or calibrated)
+  std::uint64_t no_beam = 0;   ///< scan angle not a number, or `forward` beyond +-1
+  std::uint64_t no_map = 0;    ///< no coordinates in the map's CRS
+
+  Counts& operator+=(const Counts& o);
+  bool operator==(const Counts&) const = default;
+};
+
+/// Georeferences returns by the equation of calib/shot_geometry.h, positions to map by MapPatches (within 0.1 mm of PROJ).
+/// The trajectory must outlive this object. All functions are const and safe from many threads; the result for a return depends on nothing
+/// but that return.
+class Georeferencer {
+ public:
+  /// `block_origin`: CRS units, subtracted from all coordinates. `with_sigma`: also fill sigma_h and sigma_v.
+  Georeferencer(const core::Scanner& scanner, const core::Calibration& calibration, const core::SensorSigma& sigma,
+                const trajectory::Trajectory& trajectory, const core::Crs& map, Eigen::Vector3d block_origin, bool with_sigma = true);
+
+  /// Appends to `out` (empty, or of the same origin) every return that has a place; the others are counted. Order is kept. Columns filled:
+  ///   x y z       CRS units, relative to the block origin
+  ///   time        GPS time s, latency included
+  ///   intensity return_number return_count flags record   as recorded (where `shots` has them)
+  ///   scan_angle  rad, positive to starboard: the calibrated scanner angle a' (conical, palmer: the beam's angle across, atan2(y, z)). It
+  ///   is counted
+  ///               from the scanner's nadir; LAS 1.4 asks for the angle with the aircraft's roll, which differs by that roll.
+  ///   range       m, calibrated and corrected for the air
+  ///   incidence   rad, between the beam and the ellipsoid's normal at the ground (flat terrain; a terrain normal is not known yet)
+  ///   sigma_h     m, sqrt(var north + var east); sigma_v m: J S J^T with the trajectory's sigmas at that instant and SensorSigma
+  /// Throws core::Error where `out` holds points of another origin.
+  Counts run(const core::Shots& shots, core::Block& out) const;
+
+  const ShotGeometry& geometry() const { return geometry_; }
+  const MapPatches& map() const { return map_; }
+  const Eigen::Vector3d& origin() const { return origin_; }
+
+ private:
+  ShotGeometry geometry_;
+  core::SensorSigma sigma_;
+  const trajectory::Trajectory* trajectory_;
+  MapPatches map_;
+  Eigen::Vector3d origin_;
+  bool with_sigma_;
+};
+
+}  // namespace swath::calib

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "filters/bins.h"
+
+#include <algorithm>
+
+namespace swath::filters {
+
+core::Lattice lattice_around(const core::Block& b, double cell, int border) {
+  if (b.size() == 0) return {cell, 0, 0, 0, 0};
+  const auto [west, east] = std::minmax_element(b.x.begin(), b.x.end());
+  const auto [south, north] = std::minmax_element(b.y.begin(), b.y.end());
+  const std::int64_t i0 = core::cell_index(b.origin.x() + *west, cell) - border;
+  const std::int64_t j0 = core::cell_index(b.origin.y() + *south, cell) - border;
+  const std::int64_t i1 = core::cell_index(b.origin.x() + *east, cell) + border;
+  const std::int64_t j1 = core::cell_index(b.origin.y() + *north, cell) + border;
+  return {cell, i0, j0, static_cast<int>(i1 - i0) + 1, static_cast<int>(j1 - j0) + 1};
+}
+
+Bins::Bins(const core::Block& b, double cell, int border, const std::function<bool(size_t)>& takes_part)
+    : lattice_(lattice_around(b, cell, border)) {
+  constexpr std::uint32_t left_out = 0xffffffffu;
+  std::vector<std::uint32_t> cell_of_point(b.size(), left_out);
+  start_.assign(lattice_.size() + 1, 0);
+  for (size_t p = 0; p < b.size(); ++p) {
+    if (!takes_part(p)) continue;
+    const CellIndex c = cell_of(lattice_, b, p);
+    cell_of_point[p] = static_cast<std::uint32_t>(lattice_.at(c.i, c.j));
+    ++start_[cell_of_point[p] + 1];
+  }
+  for (size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
+  std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+  points_.resize(start_.back());
+  rows_.resize(start_.back());
+  for (size_t p = 0; p < b.size(); ++p) {
+    if (cell_of_point[p] == left_out) continue;
+    const std::uint32_t at = next[cell_of_point[p]]++;
+    points_[at] = {b.x[p], b.y[p], b.z[p]};
+    rows_[at] = static_cast<std::uint32_t>(p);
+  }
+}
+
+}  // namespace swath::filters

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/value.h"
+
+namespace swath::io {
+
+/// What a file holds, found from its content: LAS/LAZ, SBET, smrmsg, Optech CSD, NumPy, delimited text, survey.toml (or .json), GeoTIFF and
+/// what else GDAL reads. A table with `file`, `bytes`, `format`, counts, extents, times, CRS, statistics, and `warnings`, a list of texts:
+/// what looks wrong. Throws core::Error where the file cannot be read or is of no known kind.
+core::Value describe_file(const std::filesystem::path& file);
+
+/// The same for a person: one line per value, warnings last.
+std::string info_text(const core::Value& told);
+
+}  // namespace swath::io

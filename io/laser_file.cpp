@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Deviations: the strip pointers of CSD files are not used (see io/csd.cpp).
+#include "io/laser_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/error.h"
+
+namespace swath::io {
+namespace {
+
+constexpr size_t chunk = 1 << 15;        // records decoded at once
+constexpr size_t most_of_a_pulse = 255;  // return numbers are 8-bit
+
+std::string record_text(std::uint64_t record) { return "record " + std::to_string(record); }
+
+/// GPS time of the records of a chunk, in file order; NaN where the record has none.
+class Clock {
+ public:
+  Clock(core::TimeReader reader, std::string name) : reader_(std::move(reader)), name_(std::move(name)) {}
+  const core::TimeReader& reader() const { return reader_; }
+
+  double operator()(const LaserRecords& r, size_t i) {
+    if (!std::isfinite(r.time[i])) return std::nan("");
+    if (!r.week.empty()) {
+      if (!(r.week[i] >= 0 && r.week[i] <= 10000)) return std::nan("");
+      return core::from_week(static_cast<int>(r.week[i]), r.time[i]);
+    }
+    try {
+      return reader_(r.time[i]);
+    } catch (const core::Error& e) {
+      throw core::Error(e.what(), name_ + ": " + record_text(r.record[i]), e.hint());
+    }
+  }
+
+ private:
+  core::TimeReader reader_;
+  std::string name_;
+};
+
+core::TimeReader clock_of(const Survey& survey, const LaserFile& f) {
+  const TimeTags tags = time_of(survey, f);
+  // With a column of weeks the reader is never asked; it still must be made.
+  const auto week = f.columns.week.empty() ? tags.week : std::optional<int>(0);
+  return {tags.scale, week, tags.date, resolve(survey, f.file).string()};
+}
+
+/// Decides the flight line of a record (see scan()).
+class LineRule {
+ public:
+  LineRule(const Survey& survey, size_t file) : windows_(line_windows(survey)), name_(resolve(survey, survey.laser[file].file).string()) {
+    const LaserFile& f = survey.laser[file];
+    from_column_ = !f.columns.line.empty() || (format_of(f) == LaserFormat::las && !f.line && windows_.empty());
+    if (!from_column_ && f.line) stated_ = *f.line;
+    if (!from_column_ && !f.line && windows_.empty()) stated_ = static_cast<int>(file) + 1;
+  }
+
+  /// The id, or -1 outside every line.
+  int of(const LaserRecords& r, size_t i, double time) const {
+    if (from_column_) {
+      const double id = r.line[i];
+      if (!(id >= 0 && id <= 65535 && id == std::floor(id)))
+        throw core::Error("line id " + core::format_number(id) + " is no whole number from 0 to 65535",
+                          name_ + ": " + record_text(r.record[i]));
+      return within_window(static_cast<int>(id), time);
+    }
+    if (stated_) return within_window(*stated_, time);
+    // The last window that starts at or before the time; lines do not overlap, but may touch.
+    const auto after = std::upper_bound(windows_.begin(), windows_.end(), time, [](double t, const LineWindow& w) { return t < w.start; });
+    if (after == windows_.begin() || !(time <= std::prev(after)->end)) return -1;
+    return std::prev(after)->id;
+  }
+
+ private:
+  int within_window(int id, double time) const {
+    if (windows_.empty()) return id;
+    for (const LineWindow& w : windows_)
+      if (w.id == id) return time >= w.start && time <= w.end ? id : -1;
+    return -1;
+  }
+  std::vector<LineWindow> windows_;
+  std::string name_;
+  bool from_column_ = false;
+  std::optional<int> stated_;
+};
+
+/// A number as an unsigned field of the shot: cut to its range (`cut`) or 0 where it is none; counted.
+template <class T>
+T field(double v, bool cut, const char* what, std::uint64_t record, core::Tally& tally) {
+  constexpr double top = std::numeric_limits<T>::max();
+  if (v >= 0 && v <= top && (cut || v == std::floor(v))) return static_cast<T>(v + 0.5 > top ? v : v + 0.5);
+  tally.count(what, record_text(record) + ": " + core::format_number(v));
+  return cut && v > top ? std::numeric_limits<T>::max() : T{0};
+}
+
+}  // namespace
+
+std::string StripInfo::name(const Survey& survey) const {
+  return "line " + std::to_string(line) + " of " + survey.laser[file].file.filename().string();
+}
+
+std::vector<StripInfo> scan(const Survey& survey, size_t file, core::Tally& tally) {
+  const LaserFile& f = survey.laser[file];
+  const std::string name = resolve(survey, f.file).string();
+  const LineRule rule(survey, file);
+  Clock clock(clock_of(survey, f), name);
+  const auto reader = open_laser_records(survey, f, Wanted::plan);
+  std::vector<StripInfo> out;
+  std::map<int, size_t> strip_of;
+  LaserRecords r;
+  while (reader->next(r, chunk)) {
+    for (size_t i = 0; i < r.size(); ++i) {
+      const double time = clock(r, i);
+      const int line = rule.of(r, i, time);
+      if (line < 0) {
+        tally.count("records outside every line", f.file.filename().string() + ": " + record_text(r.record[i]));
+        continue;
+      }
+      const auto [at, fresh] = strip_of.try_emplace(line, out.size());
+      if (fresh) {
+        const bool text = !r.byte.empty();
+        const LaserPlace place{r.record[i], text ? r.byte[i] : 0, text ? r.text_line[i] : 0};
+        out.push_back({file, line, r.record[i], 0, 0, std::nan(""), std::nan(""), place, clock.reader()});
+      }
+      StripInfo& s = out[at->second];
+      s.last = r.record[i] + 1;
+      ++s.records;
+      if (!std::isnan(time)) {
+        if (std::isnan(s.first_time)) s.first_time = time;
+        s.last_time = time;
+      }
+    }
+  }
+  return out;
+}
+
+std::vector<StripInfo> scan(const Survey& survey, core::Tally& tally) {
+  std::vector<StripInfo> out;
+  for (size_t i = 0; i < survey.laser.size(); ++i)
+    for (StripInfo& s : scan(survey, i, tally)) out.push_back(std::move(s));
+  return out;
+}
+
+struct LaserSource::State {
+  State(const Survey& survey, const StripInfo& strip)
+      : file(survey.laser[strip.file]),
+        name(resolve(survey, file.file).string()),
+        line(strip.line),
+        rule(survey, strip.file),
+        clock(strip.clock, name),
+        reader(open_laser_records(survey, file, Wanted::all, strip.begin, strip.last)),
+        angle_unit((format_of(file) == LaserFormat::csd ? 1.0 : radians_per(file.angle_unit)) * (file.angle_to_port ? -1.0 : 1.0)) {
+    if (angle_unit == 0 && !file.columns.scan_angle.empty())
+      throw core::usage_error("the unit of the recorded angles is not stated", name, "angle_unit = \"deg\", \"rad\" or \"gon\"");
+  }
+
+  const LaserFile& file;
+  std::string name;
+  int line;
+  LineRule rule;
+  Clock clock;
+  std::unique_ptr<LaserRecordReader> reader;
+  double angle_unit;
+  core::Tally tally;
+  LaserRecords raw;
+  size_t at = 0;
+  double last_time = -std::numeric_limits<double>::infinity();
+  double last_recorded = std::nan("");  // of the record passed last, in the file's scale
+
+  /// Appends record i of the chunk to the batch, or counts why not.
+  void take(size_t i, double time, core::Shots& out) {
+    const std::uint64_t record = raw.record[i];
+    const auto drop = [&](const char* what) { tally.count(what, record_text(record)); };
+    if (!std::isfinite(time)) return drop("records without a time, left out");
+    double range, angle = 0.0, forward = 0.0;
+    if (!raw.x.empty()) {
+      const double x = raw.x[i], y = raw.y[i], z = raw.z[i];
+      range = std::sqrt(x * x + y * y + z * z);
+      angle = std::atan2(y, z);
+      forward = range > 0 ? x / range : 0.0;
+    } else {
+      range = raw.range[i];
+      if (!raw.angle.empty()) angle = raw.angle[i] * angle_unit;
+    }
+    if (!std::isfinite(range)) return drop("records with a range not finite, left out");
+    if (!(range > 0)) return drop("records with a range not positive, left out");
+    if (!std::isfinite(angle)) return drop("records with a scan angle not finite, left out");
+    if (time < last_time)
+      throw core::Error("time goes back by " + core::format_number(last_time - time) + " s inside line " + std::to_string(line),
+                        name + ": " + record_text(record), "records of a line must be in the order of their time");
+    if (record > std::numeric_limits<std::uint32_t>::max())
+      throw core::Error("more records than 32 bits count", name + ": " + record_text(record), "split the file by flight line");
+    last_time = time;
+    out.time.push_back(time);
+    out.angle.push_back(angle);
+    if (!raw.x.empty()) out.forward.push_back(forward);
+    out.range.push_back(range * file.range_unit.value);
+    const auto intensity = [&] { return field<std::uint16_t>(raw.intensity[i], true, "intensities cut to 0 to 65535", record, tally); };
+    const auto number = [&](const std::vector<double>& v, const char* what) {
+      return field<std::uint8_t>(v[i], false, what, record, tally);
+    };
+    out.intensity.push_back(raw.intensity.empty() ? std::uint16_t{0} : intensity());
+    out.return_number.push_back(raw.return_number.empty() ? std::uint8_t{0}
+                                                          : number(raw.return_number, "return numbers that are none, set to unknown"));
+    out.return_count.push_back(raw.return_count.empty() ? std::uint8_t{0}
+                                                        : number(raw.return_count, "return counts that are none, set to unknown"));
+    out.flags.push_back(raw.flags.empty() ? std::uint16_t{0} : raw.flags[i]);
+    out.record.push_back(static_cast<std::uint32_t>(record));
+  }
+};
+
+LaserSource::LaserSource(const Survey& survey, const StripInfo& strip) : state_(std::make_unique<State>(survey, strip)) {}
+LaserSource::~LaserSource() = default;
+LaserSource::LaserSource(LaserSource&&) noexcept = default;
+LaserSource& LaserSource::operator=(LaserSource&&) noexcept = default;
+int LaserSource::line() const { return state_->line; }
+const core::Tally& LaserSource::tally() const { return state_->tally; }
+
+bool LaserSource::next(core::Shots& batch, size_t most) {
+  State& s = *state_;
+  batch.clear();
+  most = std::max<size_t>(most, 1);
+  for (;;) {
+    if (s.at == s.raw.size()) {
+      s.at = 0;
+      if (!s.reader->next(s.raw, chunk)) {
+        s.raw.clear();
+        return batch.size() > 0;
+      }
+    }
+    for (; s.at < s.raw.size(); ++s.at) {
+      // A batch ends before the first record of a new pulse, judged by the time as recorded.
+      const size_t i = s.at;
+      const bool full = batch.size() >= most && (s.raw.time[i] != s.last_recorded || batch.size() >= most + most_of_a_pulse);
+      if (full) return true;
+      const double time = s.clock(s.raw, i);
+      s.last_recorded = s.raw.time[i];
+      if (s.rule.of(s.raw, i, time) == s.line) s.take(i, time, batch);
+    }
+  }
+}
+
+}  // namespace swath::io

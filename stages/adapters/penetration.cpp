@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+
+#include "filters/returns.h"
+#include "io/geotiff.h"
+#include "io/output_file.h"
+#include "io/value_file.h"
+#include "io/vrt.h"
+#include "stages/adapters/adapters.h"
+#include "stages/adapters/tile_list.h"
+
+namespace swath::stages {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Column;
+
+struct PenetrationOptions {
+  core::Metres cell{10.0};
+};
+
+template <class V>
+void describe(PenetrationOptions& o, V& v) {
+  v.option("cell", o.cell, core::above(0.0), "Side of one cell.");
+}
+
+class Penetration : public OptionStage<PenetrationOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{"terrain.penetration",
+                           "Penetration rate by cell, pulses that reached the ground over all pulses, and returns per pulse, as GeoTIFF.",
+                           {Grain::tile, Grain::merge},
+                           {Column::return_number, Column::return_count, Column::classification, Column::flags},
+                           {},
+                           {Product::points},
+                           {}};
+    return info;
+  }
+  double halo() const override { return options.cell.value; }
+
+  void run_tile(const Context& context, TileJob& job) const override {
+    const core::Lattice lattice = lattice_in(options.cell.value, job.box);
+    const filters::Penetration p = filters::penetration(job.block, job.block.size(), lattice);
+    std::vector<float> rate(lattice.size()), per_pulse(lattice.size()), pulses(lattice.size());
+    constexpr float none = std::numeric_limits<float>::quiet_NaN();
+    for (size_t c = 0; c < lattice.size(); ++c) {
+      rate[c] = static_cast<float>(p.rate(c));
+      per_pulse[c] = p.pulses[c] ? static_cast<float>(p.returns[c]) / static_cast<float>(p.pulses[c]) : none;
+      pulses[c] = static_cast<float>(p.pulses[c]);
+    }
+    core::Lattice in_crs = lattice;
+    in_crs.cell = std::round(lattice.cell / context.unit * 1e9) / 1e9;
+    io::write_raster(context.output / "penetration" / name(context, job.key), in_crs,
+                     {{"penetration rate", "", &rate}, {"returns per pulse", "", &per_pulse}, {"pulses", "", &pulses}}, context.product_crs, true);
+    const std::uint64_t sums[2] = {std::accumulate(p.pulses.begin(), p.pulses.end(), std::uint64_t{0}),
+                                   std::accumulate(p.ground_pulses.begin(), p.ground_pulses.end(), std::uint64_t{0})};
+    job.tally.count("pulses", sums[0]);
+    job.tally.count("pulses that reached the ground", sums[1]);
+    io::write_text_file(job.folder / (context.label(job.key) + ".sums"), {reinterpret_cast<const char*>(sums), sizeof sums}, false);
+  }
+
+  void run_merge(const Context& context, MergeJob& job) const override {
+    std::vector<std::string> files;
+    std::vector<fs::path> tiles;
+    std::uint64_t all[2] = {0, 0};
+    for (const TileKey key : job.tiles) {
+      files.push_back(name(context, key));
+      tiles.push_back(context.output / "penetration" / files.back());
+      std::uint64_t sums[2];
+      const std::string bytes = io::read_text_file(job.folder / (context.label(key) + ".sums"));
+      if (bytes.size() != sizeof sums) continue;
+      std::memcpy(sums, bytes.data(), sizeof sums);
+      all[0] += sums[0];
+      all[1] += sums[1];
+    }
+    io::write_vrt(context.output / "penetration.vrt", tiles);
+    keep_list(context.output / "penetration", files);
+    if (all[0]) job.findings["penetration_rate"] = static_cast<double>(all[1]) / static_cast<double>(all[0]);
+  }
+
+ private:
+  static std::string name(const Context& context, TileKey key) { return "penetration_" + context.label(key) + ".tif"; }
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> make_penetration() { return std::make_unique<Penetration>(); }
+
+}  // namespace swath::stages

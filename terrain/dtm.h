@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Terrain model: the TIN of the ground points, read at the cell centres.
+#pragma once
+
+#include <vector>
+
+#include "core/block.h"
+#include "core/grid.h"
+#include "core/option.h"
+#include "terrain/tin.h"
+
+namespace swath::terrain {
+
+struct DtmOptions {
+  core::Metres cell{1.0};
+  core::Metres max_edge{60.0};
+  std::vector<int> classes{core::point_class::ground};
+  double correlation = 1.0;
+  double unknown_bend = 0.1;
+};
+
+template <class V>
+void describe(DtmOptions& o, V& v) {
+  v.option("cell", o.cell, core::above(0.0), "Side of one cell.");
+  v.option("max_edge", o.max_edge, core::above(0.0),
+           "Longest triangle bridged: a triangle counts where its circumcircle's diameter is at most this, so no edge is longer and no gap "
+           "wider.");
+  v.option("classes", o.classes, core::within(0, 255), "ASPRS classes that are terrain.");
+  v.option("correlation", o.correlation, core::within(0.0, 1.0),
+           "Correlation of the height errors of a triangle's points: 1 where trajectory and boresight govern, 0 where range noise does.");
+  v.option("unknown_bend", o.unknown_bend, core::at_least(0.0),
+           "Change of slope (rise / run) that terrain may hide under a triangle whose neighbours are too large to tell.");
+  v.check(o.max_edge >= o.cell, "max_edge must span at least one cell");
+}
+
+/// Width of the border of points around a window that dtm() needs, m: max_edge and one cell.
+double halo(const DtmOptions& options);
+
+/// Rows of the points that make the terrain: usable and of one of the classes (all usable ones where there is no class column).
+std::vector<std::uint32_t> terrain_rows(const core::Block& block, const DtmOptions& options);
+
+/// The TIN that dtm() reads: terrain_rows, circumradius at most max_edge / 2.
+Tin terrain_tin(const core::Block& block, const DtmOptions& options);
+
+/// Terrain on the cells of `window` (window.cell must be options.cell, else Error) from the points within halo() of it.
+/// height: m, of the triangle's plane at the cell's centre, block origin added. count: terrain points in the cell.
+/// sigma: m, empty where the Block has no sigma_v; NaN where a point's sigma is NaN; see the source for its terms.
+/// reason: none, long_edge or no_data (terrain/voids.h).
+core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options);
+
+}  // namespace swath::terrain

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The Delaunay triangulation of chosen points, made so that any part of it is the same whatever else was triangulated.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/block.h"
+
+namespace swath::terrain {
+
+/// Triangulated irregular network. Coordinates are those of the Block (map frame minus its origin, m).
+/// Vertices are in lexicographic order of (x, y), so comparing indices compares positions; the three vertices of a triangle ascend.
+struct Tin {
+  std::vector<double> x, y, z;          ///< vertices, m
+  std::vector<float> sigma_v, sigma_h;  ///< m, per vertex; empty where the Block has no such column
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  size_t duplicates = 0;  ///< points left out because another stands at the same (x, y), not higher
+  size_t not_finite = 0;  ///< points left out because x, y or z is not finite
+
+  size_t size() const { return triangles.size(); }
+};
+
+/// Radius and centre of the circle through a triangle's vertices, m.
+struct Circumcircle {
+  double x = 0.0, y = 0.0, radius = 0.0;
+};
+Circumcircle circumcircle(const Tin& tin, std::int32_t triangle);
+
+/// Delaunay triangulation of the points at `rows`, less the triangles whose circumradius is over `max_radius` (m).
+/// Of points at one (x, y) the lowest stands. Where more than three points lie exactly on one empty circle their polygon is cut as a fan
+/// from its lexicographically smallest vertex. Fewer than three points, or all on one line, give no triangles.
+///
+/// The result does not depend on the order of the points, and it is local: over any place q the triangle is the same for every set of
+/// points that agrees within 2 max_radius of q (proof in the source).
+Tin triangulate(const core::Block& block, const std::vector<std::uint32_t>& rows,
+                double max_radius = std::numeric_limits<double>::infinity());
+
+/// For each triangle its neighbours across the edges opposite to vertex 0, 1, 2; -1 where there is none.
+std::vector<std::array<std::int32_t, 3>> neighbours(const Tin& tin);
+
+}  // namespace swath::terrain

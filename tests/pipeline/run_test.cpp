@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The whole chain on a small simulated survey: products, counts, errors against truth, independence of threads and tiling.
+#include "pipeline/run.h"
+
+#include <algorithm>
+#include <map>
+
+#include "core/option_visitors.h"
+#include "io/value_file.h"
+#include "simulate/simulate.h"
+#include "tests/world/support.h"
+
+namespace swath::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One survey for all tests of this file.
+const fs::path& survey_folder() {
+  static const test::TemporaryFolder folder;
+  static const bool made = [] {
+    simulate::Options o = simulate::preset(simulate::Scene::hills);
+    o.mounting.deliver = simulate::Deliver::truth;
+    simulate::run(o, folder.path());
+    return true;
+  }();
+  static_cast<void>(made);
+  return folder.path();
+}
+
+Request request(const fs::path& output, std::vector<std::string> sets = {}) {
+  Request r;
+  r.config = test::source_folder() / "configs/survey.toml";
+  r.survey = survey_folder() / "survey.toml";
+  r.output = output;
+  r.sets = std::move(sets);
+  r.threads = 2;
+  return r;
+}
+
+core::Value run_quietly(const Request& r) {
+  Plan plan = make_plan(r);
+  Progress progress(Voice::quiet);
+  return run(plan, progress, "test").report;
+}
+
+const core::Value& stage_of(const core::Value& report, const std::string& type) {
+  for (const core::Value& s : report.find("stages")->items())
+    if (s.find("type")->as_text() == type) return s;
+  throw std::runtime_error("no stage " + type);
+}
+
+/// Every product's bytes by name; the report tells of times and is left out.
+std::map<std::string, std::string> products(const fs::path& folder) {
+  std::map<std::string, std::string> out;
+  for (const auto& e : fs::recursive_directory_iterator(folder))
+    if (e.is_regular_file() && e.path().filename() != "report.json") out[fs::relative(e.path(), folder).string()] = test::read_bytes(e.path());
+  return out;
+}
+
+TEST(Run, MakesEveryProductAndTellsItsErrors) {
+  const test::TemporaryFolder out;
+  const core::Value report = run_quietly(request(out / "out"));
+  for (const char* product : {"report.json", "relief.png", "dtm.vrt", "dsm.vrt", "contours.gpkg", "contours.dxf", "contours.geojson", "penetration.vrt", "points"})
+    EXPECT_TRUE(fs::exists(out / "out" / product)) << product;
+  EXPECT_FALSE(fs::exists(out / "out/.swath"));
+  const core::Value& truth = *stage_of(report, "report.truth").find("findings");
+  // Range noise 1.5 cm, angles 0.001 deg at 350 m, trajectory 2-3 cm: what the survey's own sigmas add up to.
+  EXPECT_LT(truth.find("rms_3d")->as_number(), 0.10);
+  EXPECT_GT(truth.find("rms_3d")->as_number(), 0.005);
+  EXPECT_LT(std::abs(truth.find("dtm")->find("mean_m")->as_number()), 0.10);
+  EXPECT_LT(truth.find("dtm")->find("median_abs_m")->as_number(), 0.10);
+  for (const core::Value& s : report.find("stages")->items())
+    if (const core::Value* counts = s.find("counts"))
+      EXPECT_EQ(counts->find("in")->as_int(), counts->find("out")->as_int()) << s.find("type")->as_text() << ": nothing is left out in this survey";
+}
+
+TEST(Run, ThreadsChangeNothing) {
+  const test::TemporaryFolder out;
+  run_quietly(request(out / "two"));
+  Request one = request(out / "one");
+  one.threads = 1;
+  run_quietly(one);
+  EXPECT_EQ(products(out / "one"), products(out / "two"));
+}
+
+TEST(Run, TheTilingChangesNoContourAndNoPicture) {
+  const test::TemporaryFolder out;
+  run_quietly(request(out / "a", {"run.tile=250 m"}));
+  run_quietly(request(out / "b", {"run.tile=120 m"}));
+  const auto a = products(out / "a"), b = products(out / "b");
+  for (const char* name : {"contours.geojson", "contours.dxf", "contours.gpkg", "relief.png"}) EXPECT_EQ(a.at(name), b.at(name)) << name;
+}
+
+TEST(Run, KeptWorkIsNotDoneAgainAndChangedLateStagesAlone) {
+  const test::TemporaryFolder out;
+  run_quietly(request(out / "out", {"run.keep_work=true"}));
+  const auto first = products(out / "out");
+  const core::Value again = run_quietly(request(out / "out", {"run.keep_work=true"}));
+  EXPECT_GT(again.find("pieces_resumed")->as_int(), 5);
+  EXPECT_EQ(products(out / "out").size(), first.size());
+  const core::Value changed = run_quietly(request(out / "out", {"run.keep_work=true", "contours.interval=2 m"}));
+  EXPECT_GT(changed.find("pieces_resumed")->as_int(), 2);
+  EXPECT_LT(changed.find("pieces_resumed")->as_int(), again.find("pieces_resumed")->as_int());
+}
+
+TEST(Run, TilesOfAnEarlierTilingGo) {
+  const test::TemporaryFolder out;
+  run_quietly(request(out / "out", {"run.tile=120 m"}));
+  run_quietly(request(out / "out", {"run.tile=250 m"}));
+  run_quietly(request(out / "fresh", {"run.tile=250 m"}));
+  EXPECT_EQ(products(out / "out"), products(out / "fresh"));
+}
+
+TEST(Run, AMissedLimitEndsWithCode3) {
+  const test::TemporaryFolder out;
+  Plan plan = make_plan(request(out / "out", {"run.limits.truth_rms=1 mm"}));
+  Progress progress(Voice::quiet);
+  EXPECT_EQ(run(plan, progress, "test").code, core::Exit::quality_missed);
+}
+
+TEST(Run, BadDataLeavesNothingBehind) {
+  const test::TemporaryFolder out;
+  fs::copy(survey_folder(), out / "survey", fs::copy_options::recursive);
+  const std::string bytes = test::read_bytes(out / "survey/laser.npy");
+  test::write_bytes(out / "survey/laser.npy", bytes.substr(0, bytes.size() / 2));
+  Request r = request(out / "out");
+  r.survey = out / "survey/survey.toml";
+  EXPECT_THROW(run_quietly(r), core::Error);
+  EXPECT_FALSE(fs::exists(out / "out"));
+}
+
+TEST(Run, APlanWithoutSurveyIsNotRun) {
+  const test::TemporaryFolder out;
+  Request r = request(out / "out");
+  r.survey.clear();
+  Plan plan = make_plan(r);
+  Progress progress(Voice::quiet);
+  EXPECT_THROW(run(plan, progress, "test"), core::Error);
+}
+
+}  // namespace
+}  // namespace swath::pipeline

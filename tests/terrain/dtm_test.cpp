@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "terrain/dtm.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/option_visitors.h"
+#include "tests/terrain/made.h"
+
+namespace swath::terrain {
+namespace {
+
+using core::Void;
+constexpr double float_step = 1e-5;  // half the spacing of floats near 100 m, rounded up
+
+double hills(double x, double y) { return 40.0 + 5.0 * std::sin(x / 15.0) * std::cos(y / 12.0); }
+
+// A hole and a ragged edge, so that all void reasons occur.
+core::Block pierced(const core::Block& b) {
+  std::vector<std::uint32_t> rows;
+  for (size_t i = 0; i < b.size(); ++i)
+    if (std::hypot(b.x[i] - 40.0, b.y[i] - 45.0) > 12.0) rows.push_back(static_cast<std::uint32_t>(i));
+  return core::select(b, rows);
+}
+
+TEST(Dtm, PlaneAndItsSigma) {
+  const auto plane = [](double x, double y) { return 50.0 + 0.2 * x - 0.1 * y; };
+  core::Block b = test::random_points(4000, 60.0, plane, 1);
+  for (float& s : b.sigma_v) s = 0.04f;
+  const core::Lattice window{1.0, 500005, 4600005, 50, 50};
+  const DtmOptions o;
+  const core::Grid g = dtm(b, window, o);
+  // Equal sigmas with full correlation: the points' own, horizontal error through the slope included; no bend on a plane.
+  const double expected = std::sqrt(0.04 * 0.04 + 0.5 * (0.2 * 0.2 + 0.1 * 0.1) * 0.1 * 0.1);
+  std::uint32_t n = 0;
+  for (int j = 0; j < window.ny; ++j)
+    for (int i = 0; i < window.nx; ++i) {
+      const size_t at = window.at(i, j);
+      ASSERT_EQ(g.reason[at], Void::none);
+      ASSERT_NEAR(static_cast<double>(g.height[at]), plane(window.centre_x(i) - b.origin.x(), window.centre_y(j) - b.origin.y()),
+                  float_step);
+      ASSERT_NEAR(static_cast<double>(g.sigma[at]), expected, 1e-5);
+      n += g.count[at];
+    }
+  std::uint32_t inside = 0;
+  for (size_t i = 0; i < b.size(); ++i) inside += b.x[i] >= 5 && b.x[i] < 55 && b.y[i] >= 5 && b.y[i] < 55;
+  EXPECT_EQ(n, inside);
+
+  DtmOptions independent;
+  independent.correlation = 0.0;
+  const core::Grid free = dtm(b, window, independent);
+  for (size_t at = 0; at < g.sigma.size(); ++at) {
+    EXPECT_LE(free.sigma[at], g.sigma[at] + 1e-6f);
+    EXPECT_GE(free.sigma[at], g.sigma[at] / 1.7321f);
+  }
+}
+
+TEST(Dtm, SigmaCoversTheErrorBetweenSparsePoints) {
+  // Exact points on hills: all error is interpolation. Two sigma should hold for most cells, and not by being huge.
+  core::Block b = test::random_points(2500, 100.0, hills, 2);
+  for (float& s : b.sigma_v) s = 0.0f;
+  for (float& s : b.sigma_h) s = 0.0f;
+  const core::Lattice window{1.0, 500010, 4600010, 80, 80};
+  const core::Grid g = dtm(b, window, {});
+  double held = 0.0, error2 = 0.0, sigma2 = 0.0;
+  for (int j = 0; j < window.ny; ++j)
+    for (int i = 0; i < window.nx; ++i) {
+      const size_t at = window.at(i, j);
+      const double e = static_cast<double>(g.height[at]) - hills(window.centre_x(i) - b.origin.x(), window.centre_y(j) - b.origin.y());
+      held += std::abs(e) <= 2.0 * static_cast<double>(g.sigma[at]) + float_step;
+      error2 += e * e;
+      sigma2 += static_cast<double>(g.sigma[at]) * static_cast<double>(g.sigma[at]);
+    }
+  EXPECT_GT(held / static_cast<double>(window.size()), 0.95);
+  EXPECT_LT(std::sqrt(sigma2 / error2), 4.0);
+  RecordProperty("rms_error_mm", static_cast<int>(1e3 * std::sqrt(error2 / static_cast<double>(window.size()))));
+}
+
+TEST(Dtm, SameBitsForEveryTiling) {
+  DtmOptions o;
+  o.max_edge = core::Metres(8.0);
+  const auto random = test::random_points(9000, 80.0, hills, 3);
+  for (const core::Block& all : {random, test::lattice_points(80, hills), test::quantised(random, 0.001), test::quantised(random, 0.25),
+                                 test::random_points(700, 80.0, hills, 6)}) {
+    const core::Block b = pierced(all);
+    const core::Lattice window{1.0, 499996, 4599996, 88, 88};
+    const core::Grid whole = dtm(b, window, o);
+    for (const Void r : {Void::none, Void::long_edge, Void::no_data})
+      EXPECT_GT(std::count(whole.reason.begin(), whole.reason.end(), r), 20) << static_cast<int>(r);
+    for (const int cells : {11, 29, 64}) {
+      const core::Grid t =
+          test::tiled(b, window, cells, halo(o), [&](const core::Block& p, const core::Lattice& w) { return dtm(p, w, o); });
+      EXPECT_TRUE(test::same_bits(t.height, whole.height)) << cells;
+      EXPECT_TRUE(test::same_bits(t.sigma, whole.sigma)) << cells;
+      EXPECT_EQ(t.count, whole.count) << cells;
+      EXPECT_EQ(t.reason, whole.reason) << cells;
+    }
+  }
+}
+
+TEST(Dtm, OnlyUsableTerrainPointsCount) {
+  test::Made m;
+  for (int j = 0; j <= 10; ++j)
+    for (int i = 0; i <= 10; ++i) {
+      m.add(i, j, 7.0);
+      m.add(i + 0.3, j + 0.3, 20.0, 0.03f, core::point_class::building);
+      m.add(i + 0.6, j + 0.6, -20.0);
+      m.block.flags.resize(m.block.size(), 0);
+      m.block.flags.back() = core::flag::withheld;
+    }
+  const core::Lattice window{1.0, 500000, 4600000, 10, 10};
+  for (const float h : dtm(m.block, window, {}).height) EXPECT_EQ(h, 7.0f);
+  DtmOptions roofs;
+  roofs.classes = {core::point_class::building};
+  const core::Grid g = dtm(m.block, window, roofs);
+  EXPECT_EQ(g.height[window.at(5, 5)], 20.0f);
+}
+
+TEST(Dtm, AbsentOrUnknownSigmaIsSaid) {
+  core::Block b = test::random_points(500, 20.0, hills, 5);
+  const core::Lattice window{1.0, 500005, 4600005, 10, 10};
+  b.sigma_v.assign(b.size(), std::nanf(""));
+  for (const float s : dtm(b, window, {}).sigma) EXPECT_TRUE(std::isnan(s));
+  b.sigma_v.clear();
+  const core::Grid g = dtm(b, window, {});
+  EXPECT_TRUE(g.sigma.empty());
+  for (const float h : g.height) EXPECT_FALSE(std::isnan(h));
+}
+
+TEST(Dtm, EmptyAndDegenerateInput) {
+  test::Made m;
+  const core::Lattice window{1.0, 500000, 4600000, 4, 4};
+  for (int n = 0; n < 4; ++n) {
+    const core::Grid g = dtm(m.block, window, {});
+    for (const Void r : g.reason) EXPECT_EQ(r, Void::no_data);
+    for (const float h : g.height) EXPECT_TRUE(std::isnan(h));
+    m.add(n, n, 0.0);
+  }
+  EXPECT_THROW(dtm(m.block, core::Lattice{2.0, 0, 0, 1, 1}, {}), core::Error);
+}
+
+TEST(Dtm, OptionsAreChecked) {
+  DtmOptions o;
+  std::vector<core::Fault> faults;
+  core::Value bad = core::Value::object();
+  bad["cell"] = "5 m";
+  bad["max_edge"] = "2 m";
+  core::read_options(core::described(o), bad, "", faults);
+  EXPECT_EQ(faults.size(), 1u);
+  bad["correlation"] = 1.5;
+  faults.clear();
+  core::read_options(core::described(o), bad, "", faults);
+  EXPECT_EQ(faults.size(), 1u);
+}
+
+}  // namespace
+}  // namespace swath::terrain

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trajectory/checks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/frames.h"
+#include "core/geodesy.h"
+
+namespace swath::trajectory {
+namespace {
+
+constexpr double deg = core::degree;
+
+// 60 m/s towards `track`, nose turned into the wind by `crab`.
+core::TrajectoryData line(double track, double crab, size_t n = 2000) {
+  core::TrajectoryData d;
+  double latitude = 48.0 * deg, longitude = 11.0 * deg;
+  for (size_t i = 0; i < n; ++i) {
+    const double s = static_cast<double>(i) * 0.005;
+    d.time.push_back(1.4e9 + s);
+    d.latitude.push_back(latitude);
+    d.longitude.push_back(longitude);
+    d.height.push_back(1200.0);
+    d.roll.push_back(0.5 * deg * std::sin(s));
+    d.pitch.push_back(2.0 * deg);
+    d.heading.push_back(core::wrap_two_pi(track + crab + 0.2 * deg * std::sin(3.0 * s)));
+    d.v_north.push_back(60.0 * std::cos(track));
+    d.v_east.push_back(60.0 * std::sin(track));
+    d.v_down.push_back(0.0);
+    latitude += 0.005 * 60.0 * std::cos(track) / (core::meridian_radius(latitude) + 1200.0);
+    longitude += 0.005 * 60.0 * std::sin(track) / ((core::prime_vertical_radius(latitude) + 1200.0) * std::cos(latitude));
+  }
+  return d;
+}
+
+TEST(TrajectoryChecks, CrabAngleIsMeasured) {
+  const TrajectoryChecks c = check_trajectory(line(178.0 * deg, 5.0 * deg));
+  EXPECT_TRUE(c.warnings.empty()) << c.warnings[0];
+  EXPECT_GT(c.straight, 1800u);
+  EXPECT_NEAR(core::to_degrees(c.crab_median), 5.0, 0.15);
+  EXPECT_NEAR(core::to_degrees(c.crab_spread), 0.2, 0.1);
+  EXPECT_NEAR(c.speed_median, 60.0, 0.05);
+  EXPECT_NEAR(c.rate, 200.0, 0.1);
+  EXPECT_LT(c.velocity_difference, 0.05);
+}
+
+TEST(TrajectoryChecks, WanderAngleLeftInIsSeen) {
+  const TrajectoryChecks c = check_trajectory(line(90.0 * deg, 103.0 * deg));
+  ASSERT_EQ(c.warnings.size(), 1u);
+  EXPECT_NE(c.warnings[0].find("wander"), std::string::npos);
+}
+
+TEST(TrajectoryChecks, VelocityOfAnotherFrameIsSeen) {
+  core::TrajectoryData d = line(90.0 * deg, 0.0);
+  std::swap(d.v_north, d.v_east);
+  const TrajectoryChecks c = check_trajectory(d);
+  ASSERT_EQ(c.warnings.size(), 1u);
+  EXPECT_NE(c.warnings[0].find("velocity"), std::string::npos);
+}
+
+TEST(TrajectoryChecks, DegreesAndRadiansAreSeen) {
+  core::TrajectoryData d = line(90.0 * deg, 0.0);
+  for (auto* c : {&d.roll, &d.pitch, &d.heading})
+    for (double& v : *c) v /= deg;
+  EXPECT_NE(check_trajectory(d).warnings.at(0).find("degrees read as radians"), std::string::npos);
+  d = line(90.0 * deg, 0.0);
+  for (auto* c : {&d.roll, &d.pitch, &d.heading})
+    for (double& v : *c) v *= deg;
+  EXPECT_NE(check_trajectory(d).warnings.at(0).find("radians read as degrees"), std::string::npos);
+}
+
+TEST(TrajectoryChecks, GapsDuplicatesAndJumpsAreCounted) {
+  core::TrajectoryData d = line(0.0, 0.0);
+  for (size_t i = 1000; i < d.size(); ++i) d.time[i] += 3.0;
+  d.time[11] = d.time[10];
+  d.time[500] = d.time[499] - 0.001;
+  d.roll[700] = std::numeric_limits<double>::quiet_NaN();
+  const TrajectoryChecks c = check_trajectory(d);
+  ASSERT_EQ(c.gaps.size(), 1u);
+  EXPECT_EQ(c.gaps[0].record, 999u);
+  EXPECT_NEAR(c.gaps[0].length, 3.005, 1e-6);
+  EXPECT_EQ(c.duplicates, 1u);
+  EXPECT_EQ(c.backwards, 1u);
+  EXPECT_EQ(c.not_finite, 1u);
+  EXPECT_EQ(c.warnings.size(), 4u);
+  EXPECT_EQ(c.value().find("gaps")->items().size(), 1u);
+}
+
+TEST(TrajectoryChecks, TurnsAndStandingAreLeftOut) {
+  core::TrajectoryData d = line(0.0, 0.0);
+  for (double& r : d.roll) r = 25.0 * deg;
+  EXPECT_EQ(check_trajectory(d).straight, 0u);
+  d = line(0.0, 0.0);
+  for (double& l : d.latitude) l = d.latitude[0];
+  EXPECT_EQ(check_trajectory(d).straight, 0u);
+  EXPECT_EQ(check_trajectory({}).records, 0u);
+}
+
+}  // namespace
+}  // namespace swath::trajectory

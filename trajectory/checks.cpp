@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// No published source: the tests a surveyor makes when a trajectory comes in. The track is differenced from positions over a second, so
+// that it does not depend on recorded velocities; in a turn the difference lags, so turns are left out.
+#include "trajectory/checks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/frames.h"
+#include "core/geodesy.h"
+
+namespace swath::trajectory {
+
+namespace {
+
+constexpr double track_base = 1.0;                   // s over which the track is differenced
+constexpr double crab_limit = 20.0 * core::degree;   // wind of 22 m/s across at 60 m/s
+constexpr double spread_limit = 5.0 * core::degree;  // gusts move the crab angle by 1-2 deg
+constexpr double tilt_limit = 80.0 * core::degree;   // no survey aircraft flies so
+constexpr double tiny_angle = 0.1 * core::degree;    // the tilt of every aircraft exceeds it somewhere
+constexpr double velocity_limit = 1.0;               // m/s between recorded and differenced velocity
+constexpr double mad_to_sigma = 1.4826;
+
+double median(std::vector<double> v) {
+  if (v.empty()) return 0.0;
+  const auto middle = v.begin() + static_cast<long>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
+}
+
+// Median of angles about their mean direction.
+double median_angle(const std::vector<double>& angles, double& spread) {
+  double s = 0.0, c = 0.0;
+  for (double a : angles) s += std::sin(a), c += std::cos(a);
+  const double mean = std::atan2(s, c);
+  std::vector<double> about(angles.size());
+  std::transform(angles.begin(), angles.end(), about.begin(), [&](double a) { return core::wrap_pi(a - mean); });
+  const double m = median(about);
+  for (double& a : about) a = std::abs(a - m);
+  spread = mad_to_sigma * median(about);
+  return core::wrap_pi(mean + m);
+}
+
+bool finite(const core::TrajectoryData& d, size_t i) {
+  const double sum = d.time[i] + d.latitude[i] + d.longitude[i] + d.height[i] + d.roll[i] + d.pitch[i] + d.heading[i];
+  return std::isfinite(sum);
+}
+
+void check_times(const core::TrajectoryData& d, const CheckOptions& o, TrajectoryChecks& out) {
+  std::vector<double> steps;
+  for (size_t i = 1; i < d.size(); ++i) {
+    const double step = d.time[i] - d.time[i - 1];
+    if (step > 0.0) steps.push_back(step);
+    if (step == 0.0) ++out.duplicates;
+    if (step < 0.0) ++out.backwards;
+    if (step > o.max_gap.value) out.gaps.push_back({i - 1, d.time[i - 1], step});
+  }
+  if (const double step = median(std::move(steps)); step > 0.0) out.rate = 1.0 / step;
+}
+
+struct Ground {
+  double north = 0.0, east = 0.0;  // m/s
+};
+
+// Mean velocity over the ground from record i to j, from positions.
+Ground between(const core::TrajectoryData& d, size_t i, size_t j) {
+  const double dt = d.time[j] - d.time[i];
+  const double latitude = 0.5 * (d.latitude[i] + d.latitude[j]);
+  const double north = (core::meridian_radius(latitude) + d.height[i]) * (d.latitude[j] - d.latitude[i]);
+  const double east =
+      (core::prime_vertical_radius(latitude) + d.height[i]) * std::cos(latitude) * core::wrap_pi(d.longitude[j] - d.longitude[i]);
+  return {north / dt, east / dt};
+}
+
+void check_track(const core::TrajectoryData& d, const CheckOptions& o, TrajectoryChecks& out) {
+  std::vector<double> crab, speed, difference;
+  size_t j = 0, k = 0;
+  for (size_t i = 0; i < d.size(); ++i) {
+    // Records half a base before and after i; the time may stand still or jump in data that Trajectory would refuse.
+    while (j < i && d.time[i] - d.time[j] > 0.5 * track_base) ++j;
+    k = std::max(k, i);
+    while (k + 1 < d.size() && d.time[k] - d.time[i] < 0.5 * track_base) ++k;
+    const double before = d.time[i] - d.time[j], after = d.time[k] - d.time[i];
+    if (!finite(d, i) || !finite(d, j) || !finite(d, k) || before <= 0.0 || after <= 0.0 || before + after > 2.0 * track_base) continue;
+    const Ground v = between(d, j, k);
+    const double v_ground = std::hypot(v.north, v.east);
+    speed.push_back(v_ground);
+    if (d.has_velocity()) difference.push_back(std::hypot(d.v_north[i] - v.north, d.v_east[i] - v.east));
+    if (v_ground < o.min_speed.value || std::abs(d.roll[i]) > o.level_roll.value) continue;
+    const Ground v1 = between(d, j, i), v2 = between(d, i, k);
+    const double turn = core::wrap_pi(std::atan2(v2.east, v2.north) - std::atan2(v1.east, v1.north)) / (0.5 * (before + after));
+    if (std::abs(turn) > o.straight_rate.value) continue;
+    crab.push_back(core::wrap_pi(d.heading[i] - std::atan2(v.east, v.north)));
+  }
+  out.straight = crab.size();
+  out.speed_median = median(std::move(speed));
+  out.velocity_difference = median(std::move(difference));
+  if (!crab.empty()) out.crab_median = median_angle(crab, out.crab_spread);
+}
+
+void check_angles(const core::TrajectoryData& d, TrajectoryChecks& out) {
+  double tilt = 0.0, turn = 0.0;
+  for (size_t i = 0; i < d.size(); ++i) {
+    if (!finite(d, i)) {
+      ++out.not_finite;
+      continue;
+    }
+    tilt = std::max({tilt, std::abs(d.roll[i]), std::abs(d.pitch[i])});
+    turn = std::max(turn, std::abs(d.heading[i]));
+  }
+  if (tilt > tilt_limit || turn > 3.0 * core::pi)
+    out.warnings.push_back("roll or pitch reaches " + core::format_number(tilt) + " rad, heading " + core::format_number(turn) +
+                           " rad: degrees read as radians?");
+  else if (turn < 2.0 * core::pi * core::degree && out.straight > 0 && tilt < tiny_angle)
+    out.warnings.push_back("headings are all below 0.11 rad, roll and pitch below 0.1 deg: radians read as degrees?");
+}
+
+}  // namespace
+
+TrajectoryChecks check_trajectory(const core::TrajectoryData& d, const CheckOptions& o) {
+  TrajectoryChecks out;
+  out.records = d.size();
+  if (d.size() == 0) return out;
+  check_times(d, o, out);
+  check_track(d, o, out);
+  check_angles(d, out);
+
+  const auto degrees = [](double a) { return core::format_number(std::round(core::to_degrees(a) * 100.0) / 100.0) + " deg"; };
+  if (out.duplicates) out.warnings.push_back(std::to_string(out.duplicates) + " records repeat the time of the one before");
+  if (out.backwards) out.warnings.push_back(std::to_string(out.backwards) + " records go back in time");
+  if (out.not_finite) out.warnings.push_back(std::to_string(out.not_finite) + " records hold a value that is not a number");
+  if (!out.gaps.empty())
+    out.warnings.push_back(std::to_string(out.gaps.size()) + " gaps, the first after record " + std::to_string(out.gaps[0].record));
+  if (out.straight > 0 && std::abs(out.crab_median) > crab_limit)
+    out.warnings.push_back("heading differs from the track by " + degrees(out.crab_median) +
+                           " in straight flight: wander angle not removed (or removed twice), IMU axes turned, or another north?");
+  if (out.straight > 0 && out.crab_spread > spread_limit)
+    out.warnings.push_back("heading scatters about the track by " + degrees(out.crab_spread) + " in straight flight");
+  if (out.velocity_difference > velocity_limit)
+    out.warnings.push_back("recorded velocity differs from that of the positions by " + core::format_number(out.velocity_difference) +
+                           " m/s (median): wander frame, or other axes?");
+  return out;
+}
+
+core::Value TrajectoryChecks::value() const {
+  core::Value v = core::Value::object();
+  v["records"] = static_cast<std::int64_t>(records);
+  v["rate_hz"] = rate;
+  v["duplicates"] = static_cast<std::int64_t>(duplicates);
+  v["backwards"] = static_cast<std::int64_t>(backwards);
+  v["not_finite"] = static_cast<std::int64_t>(not_finite);
+  v["gaps"] = core::Value::array();
+  for (const Gap& g : gaps) {
+    core::Value one = core::Value::object();
+    one["record"] = static_cast<std::int64_t>(g.record);
+    one["time_s"] = g.first;
+    one["length_s"] = g.length;
+    v["gaps"].push(one);
+  }
+  v["straight_records"] = static_cast<std::int64_t>(straight);
+  v["heading_minus_track_median_deg"] = core::to_degrees(crab_median);
+  v["heading_minus_track_spread_deg"] = core::to_degrees(crab_spread);
+  v["speed_median_m_s"] = speed_median;
+  v["velocity_difference_m_s"] = velocity_difference;
+  v["warnings"] = core::Value::array();
+  for (const std::string& w : warnings) v["warnings"].push(w);
+  return v;
+}
+
+}  // namespace swath::trajectory
