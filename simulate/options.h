@@ -20,10 +20,10 @@ struct WorldOptions {
   Scene scene = Scene::mixed;
   core::Metres length{1000.0}, width{400.0};
   core::Metres ground{600.0};
-  std::optional<double> slope;
-  std::optional<core::Metres> relief, scarp, embankment;
-  std::optional<double> buildings, trees, low_vegetation;
-  std::optional<bool> water, power_line;
+  std::optional<double> slope{};
+  std::optional<core::Metres> relief{}, scarp{}, embankment{};
+  std::optional<double> buildings{}, trees{}, low_vegetation{};
+  std::optional<bool> water{}, power_line{};
 };
 
 template <class V>
