@@ -37,13 +37,14 @@ class Smrf : public OptionStage<filters::SmrfOptions> {
 class Returns : public OptionStage<filters::ReturnsOptions> {
  public:
   const Info& info() const override {
-    static const Info info{"filters.returns",
-                           "First, last, only and intermediate returns: missing or inconsistent numbers mended or flagged, returns per pulse by line.",
-                           {Grain::strip},
-                           {Column::time, Column::return_number, Column::return_count},
-                           {Column::return_number, Column::return_count, Column::flags},
-                           {Product::points},
-                           {}};
+    static const Info info{
+        "filters.returns",
+        "First, last, only and intermediate returns: missing or inconsistent numbers mended or flagged, returns per pulse by line.",
+        {Grain::strip},
+        {Column::time, Column::return_number, Column::return_count},
+        {Column::return_number, Column::return_count, Column::flags},
+        {Product::points},
+        {}};
     return info;
   }
   void run_strip(const Context&, StripBatch& batch, core::Tally& tally) const override {

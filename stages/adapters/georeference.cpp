@@ -46,9 +46,7 @@ class Georeference : public OptionStage<Options> {
   }
 
  private:
-  static Eigen::Vector3d units_of(const Context& context) {
-    return {context.unit, context.unit, context.crs.vertical_metres_per_unit()};
-  }
+  static Eigen::Vector3d units_of(const Context& context) { return {context.unit, context.unit, context.crs.vertical_metres_per_unit()}; }
 
   static void to_metres(const Context& context, core::Block& block) {
     const Eigen::Vector3d unit = units_of(context);
@@ -64,8 +62,9 @@ class Georeference : public OptionStage<Options> {
   std::shared_ptr<const calib::Georeferencer> georeferencer(const Context& context) const {
     const std::lock_guard lock(mutex_);
     if (!georeferencer_)
-      georeferencer_ = std::make_shared<calib::Georeferencer>(context.survey.scanner, context.survey.calibration, context.survey.sigma,
-                                                              *context.trajectory, context.crs, context.origin.cwiseQuotient(units_of(context)));
+      georeferencer_ =
+          std::make_shared<calib::Georeferencer>(context.survey.scanner, context.survey.calibration, context.survey.sigma,
+                                                 *context.trajectory, context.crs, context.origin.cwiseQuotient(units_of(context)));
     return georeferencer_;
   }
   mutable std::mutex mutex_;

@@ -54,7 +54,8 @@ class Penetration : public OptionStage<PenetrationOptions> {
     core::Lattice in_crs = lattice;
     in_crs.cell = std::round(lattice.cell / context.unit * 1e9) / 1e9;
     io::write_raster(context.output / "penetration" / name(context, job.key), in_crs,
-                     {{"penetration rate", "", &rate}, {"returns per pulse", "", &per_pulse}, {"pulses", "", &pulses}}, context.product_crs, true);
+                     {{"penetration rate", "", &rate}, {"returns per pulse", "", &per_pulse}, {"pulses", "", &pulses}}, context.product_crs,
+                     true);
     const std::uint64_t sums[2] = {std::accumulate(p.pulses.begin(), p.pulses.end(), std::uint64_t{0}),
                                    std::accumulate(p.ground_pulses.begin(), p.ground_pulses.end(), std::uint64_t{0})};
     job.tally.count("pulses", sums[0]);

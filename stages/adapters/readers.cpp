@@ -3,9 +3,9 @@
 
 #include "core/error.h"
 #include "core/time.h"
-#include "io/laser_file.h"
 #include "io/las_crs.h"
 #include "io/las_reader.h"
+#include "io/laser_file.h"
 #include "io/trajectory_file.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/units.h"
@@ -45,7 +45,8 @@ class TrajectoryReader : public OptionStage<trajectory::TrajectoryOptions> {
     trajectory::CheckOptions checks;
     checks.max_gap = options.max_gap;
     findings = trajectory::check_trajectory(data, checks).value();
-    context.trajectory = std::make_shared<trajectory::Trajectory>(std::move(data), options, context.survey.trajectory.front().file.string());
+    context.trajectory =
+        std::make_shared<trajectory::Trajectory>(std::move(data), options, context.survey.trajectory.front().file.string());
     const core::TrajectoryData& d = context.trajectory->data();
     const core::Transform to_map(core::wgs84_geodetic(), context.crs);
     const Eigen::Vector3d start = to_map({core::to_degrees(d.longitude[0]), core::to_degrees(d.latitude[0]), d.height[0]});
@@ -65,8 +66,10 @@ class TrajectoryReader : public OptionStage<trajectory::TrajectoryOptions> {
       const double beside_lon = west <= east ? std::max({west - lon, lon - east, 0.0}) : std::max(0.0, std::min(west - lon, lon - east));
       const double beside = std::max({beside_lon, south - lat, lat - north, 0.0});
       if (beside > margin)
-        throw core::usage_error("the trajectory lies " + core::format_number(std::round(beside * 10) / 10) + " degrees outside the area of use of " + context.crs.name(),
-                                context.survey.crs, "choose the CRS of the survey's place; is the trajectory in degrees where radians are meant?");
+        throw core::usage_error("the trajectory lies " + core::format_number(std::round(beside * 10) / 10) +
+                                    " degrees outside the area of use of " + context.crs.name(),
+                                context.survey.crs,
+                                "choose the CRS of the survey's place; is the trajectory in degrees where radians are meant?");
       outside += beside > 0;
     }
     if (outside) tally.count("trajectory records outside the CRS's area of use (" + context.crs.name() + ")", outside);
@@ -93,13 +96,14 @@ class LaserStrip : public StripReader {
 class LaserReader : public OptionStage<NoOptions> {
  public:
   const Info& info() const override {
-    static const Info info{"readers.laser",
-                           "Reads the survey's raw laser records (text, NumPy, LAS or LAZ in the scanner's frame, Optech CSD), line by line.",
-                           {Grain::strip},
-                           {},
-                           {},
-                           {},
-                           {Product::shots}};
+    static const Info info{
+        "readers.laser",
+        "Reads the survey's raw laser records (text, NumPy, LAS or LAZ in the scanner's frame, Optech CSD), line by line.",
+        {Grain::strip},
+        {},
+        {},
+        {},
+        {Product::shots}};
     return info;
   }
   bool is_source() const override { return true; }
@@ -111,7 +115,8 @@ class LaserReader : public OptionStage<NoOptions> {
   std::vector<Strip> strips(const Context& context, core::Tally& tally) const override {
     strips_ = io::scan(context.survey, tally);
     std::vector<Strip> out;
-    for (size_t i = 0; i < strips_.size(); ++i) out.push_back({strips_[i].file, i, strips_[i].line, strips_[i].name(context.survey), strips_[i].records});
+    for (size_t i = 0; i < strips_.size(); ++i)
+      out.push_back({strips_[i].file, i, strips_[i].line, strips_[i].name(context.survey), strips_[i].records});
     return out;
   }
   std::unique_ptr<StripReader> open(const Context& context, const Strip& strip) const override {
@@ -134,13 +139,15 @@ class CloudReader : public StripReader {
     const io::LasCrs stated = reader_.crs();
     const std::string definition = file_.crs.empty() ? stated.definition : file_.crs;
     if (definition.empty())
-      throw core::Error("states no CRS" + (stated.note.empty() ? std::string() : ": " + stated.note), io::resolve(context.survey, file_.file).string(),
-                        "name it as points.crs in the survey");
+      throw core::Error("states no CRS" + (stated.note.empty() ? std::string() : ": " + stated.note),
+                        io::resolve(context.survey, file_.file).string(), "name it as points.crs in the survey");
     const core::Crs crs(definition);
     if (crs.key() != context.crs.key()) transform_.emplace(crs, context.crs);
     // Heights without a vertical CRS: PROJ takes metres; files have their own unit, by custom that of the horizontal axes.
     if (!crs.has_vertical()) {
-      file_height_unit_ = stated.vertical_metres > 0 ? stated.vertical_metres : context.survey.height_unit ? context.survey.height_unit->value : crs.metres_per_unit();
+      file_height_unit_ = stated.vertical_metres > 0   ? stated.vertical_metres
+                          : context.survey.height_unit ? context.survey.height_unit->value
+                                                       : crs.metres_per_unit();
       if (!transform_) file_height_unit_ /= context.vertical_unit;
     }
     if (transform_ && !context.crs.has_vertical()) map_height_unit_ = context.vertical_unit;
@@ -164,8 +171,8 @@ class CloudReader : public StripReader {
     scale_block(context_, block, false);
     block.origin = context_.origin;
     if (file_.line) block.strip.assign(block.size(), static_cast<std::uint16_t>(*file_.line));
-    for (const Column c : {Column::time, Column::intensity, Column::return_number, Column::return_count, Column::classification, Column::flags,
-                           Column::scan_angle, Column::strip, Column::record})
+    for (const Column c : {Column::time, Column::intensity, Column::return_number, Column::return_count, Column::classification,
+                           Column::flags, Column::scan_angle, Column::strip, Column::record})
       core::add_columns(block, {c});
     batch.block = std::move(block);
     return true;
@@ -221,7 +228,8 @@ class LasCloud : public OptionStage<NoOptions> {
   }
   void check(const Context& context) const override {
     if (context.survey.points.empty())
-      throw core::usage_error("readers.las: the survey names no [[points]] file", context.survey.name, "for raw records use readers.laser and georeference");
+      throw core::usage_error("readers.las: the survey names no [[points]] file", context.survey.name,
+                              "for raw records use readers.laser and georeference");
   }
   void locate(Context& context) const override {
     std::vector<std::string> ignored;
@@ -229,7 +237,8 @@ class LasCloud : public OptionStage<NoOptions> {
     const io::LasHeader header = io::read_las_header(io::resolve(context.survey, first.file), ignored);
     const std::string definition = first.crs.empty() ? io::las_crs(header).definition : first.crs;
     Eigen::Vector3d corner = header.min;
-    if (!definition.empty() && core::Crs(definition).key() != context.crs.key()) corner = core::Transform(core::Crs(definition), context.crs)(corner);
+    if (!definition.empty() && core::Crs(definition).key() != context.crs.key())
+      corner = core::Transform(core::Crs(definition), context.crs)(corner);
     context.origin = {to_kilometres(corner.x() * context.unit), to_kilometres(corner.y() * context.unit), 0.0};
   }
   std::vector<Strip> strips(const Context& context, core::Tally&) const override {
@@ -242,7 +251,9 @@ class LasCloud : public OptionStage<NoOptions> {
     }
     return out;
   }
-  std::unique_ptr<StripReader> open(const Context& context, const Strip& strip) const override { return std::make_unique<CloudReader>(context, strip); }
+  std::unique_ptr<StripReader> open(const Context& context, const Strip& strip) const override {
+    return std::make_unique<CloudReader>(context, strip);
+  }
 };
 
 }  // namespace

@@ -32,15 +32,19 @@ void count_voids(const core::Grid& grid, core::Tally& tally) {
   if (n[3]) tally.count("void cells: water", n[3]);
 }
 
-/// The survey's share of void cells, from the tiles' grids.
-double void_share(const MergeJob& job) {
-  std::uint64_t cells = 0, known = 0;
+/// Cells of all tiles with a height, and holes: voids with ground on all sides.
+struct Cover {
+  std::uint64_t known = 0, holes = 0;
+};
+
+Cover cover_of(const MergeJob& job) {
+  Cover c;
   for (const TileKey key : job.tiles) {
     const core::Grid grid = read_grid_tile(grid_file(job.folder, key));
-    cells += grid.lattice.size();
-    known += static_cast<std::uint64_t>(std::count(grid.reason.begin(), grid.reason.end(), core::Void::none));
+    c.known += static_cast<std::uint64_t>(std::count(grid.reason.begin(), grid.reason.end(), core::Void::none));
+    c.holes += static_cast<std::uint64_t>(std::count(grid.reason.begin(), grid.reason.end(), core::Void::long_edge));
   }
-  return cells ? 1.0 - static_cast<double>(known) / static_cast<double>(cells) : 1.0;
+  return c;
 }
 
 class Dtm : public OptionStage<terrain::DtmOptions> {
@@ -67,12 +71,12 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
     static_cast<void>(context);
   }
   void run_merge(const Context& context, MergeJob& job) const override {
-    const double share = void_share(job);
-    if (share >= 1.0)
+    const Cover cover = cover_of(job);
+    if (cover.known == 0)
       throw core::Error("no triangle of ground points is small enough to give any cell of the DTM a height", context.survey.name,
                         "are there three ground points that are not on one line, closer than max_edge = " +
                             core::format_quantity(core::Dimension::length, options.max_edge.value) + "?");
-    job.findings["void_share"] = share;
+    job.findings["void_share"] = static_cast<double>(cover.holes) / static_cast<double>(cover.known + cover.holes);
   }
 };
 

@@ -39,7 +39,9 @@ struct Sums {
   }
 };
 
-fs::path sums_file(const fs::path& folder, TileKey key) { return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".sums"); }
+fs::path sums_file(const fs::path& folder, TileKey key) {
+  return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".sums");
+}
 
 struct NoOptions {};
 template <class V>
@@ -102,7 +104,8 @@ class Truth : public OptionStage<NoOptions> {
     for (size_t i = 0; i < own; ++i) {
       const std::uint64_t row = block.record[i];
       if (row >= truth.rows())
-        throw core::Error("record " + std::to_string(row) + " has no row of truth", file.string(), "truth.returns must have one row per laser record");
+        throw core::Error("record " + std::to_string(row) + " has no row of truth", file.string(),
+                          "truth.returns must have one row per laser record");
       if (row < first || row >= first + rows) {
         first = row;
         rows = std::min<std::uint64_t>(window, truth.rows() - first);
@@ -135,7 +138,7 @@ class Truth : public OptionStage<NoOptions> {
 
   static void tell_points(const Sums& s, core::Value& findings) {
     static constexpr const char* axes[] = {"east", "north", "up"};
-    core::Value& points = findings["points"];
+    core::Value points = core::Value::object();
     points["compared"] = static_cast<std::int64_t>(s.n);
     double square = 0;
     for (size_t a = 0; a < 3; ++a) {
@@ -149,6 +152,7 @@ class Truth : public OptionStage<NoOptions> {
       points["error_over_sigma_h"] = std::sqrt(s.ratio_h / s.with_sigma);
       points["error_over_sigma_v"] = std::sqrt(s.ratio_v / s.with_sigma);
     }
+    findings["points"] = std::move(points);
     if (s.ground_kept + s.object_taken == 0) return;
     core::Value& labels = findings["ground"];
     const double ground = s.ground_kept + s.ground_lost, object = s.object_kept + s.object_taken, n = ground + object;
@@ -185,7 +189,8 @@ class Truth : public OptionStage<NoOptions> {
         sum += e;
         square += e * e;
         ++histogram[static_cast<int>(std::min(1e8, std::abs(e) * 1000))];
-        if (!mine.sigma.empty() && mine.sigma[k] > 0) ratio += e * e / (static_cast<double>(mine.sigma[k]) * static_cast<double>(mine.sigma[k])), ++with_sigma;
+        if (!mine.sigma.empty() && mine.sigma[k] > 0)
+          ratio += e * e / (static_cast<double>(mine.sigma[k]) * static_cast<double>(mine.sigma[k])), ++with_sigma;
       }
     }
     core::Value& dtm = job.findings["dtm"];

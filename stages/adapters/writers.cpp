@@ -161,7 +161,8 @@ core::Grid overview(const Context& context, core::Lattice extent, int most) {
   core::Grid out(whole);
   for (int j = 0; j < whole.ny; ++j) {
     const core::Grid row = report::averaged(
-        context.grids->window(Product::dtm, {extent.cell, extent.i0, extent.j0 + static_cast<std::int64_t>(j) * factor, whole.nx * factor, factor}),
+        context.grids->window(Product::dtm,
+                              {extent.cell, extent.i0, extent.j0 + static_cast<std::int64_t>(j) * factor, whole.nx * factor, factor}),
         factor);
     for (int i = 0; i < whole.nx; ++i) {
       out.height[whole.at(i, j)] = row.height[row.lattice.at(i, 0)];
@@ -186,7 +187,8 @@ void describe(PictureWriteOptions& o, V& v) {
 class PictureWriter : public OptionStage<PictureWriteOptions> {
  public:
   const Info& info() const override {
-    static const Info info{"writers.picture", "Picture of the terrain: hillshade with contours, as PNG.", {Grain::merge}, {}, {}, {Product::dtm}, {}};
+    static const Info info{
+        "writers.picture", "Picture of the terrain: hillshade with contours, as PNG.", {Grain::merge}, {}, {}, {Product::dtm}, {}};
     return info;
   }
   void run_merge(const Context& context, MergeJob& job) const override {
