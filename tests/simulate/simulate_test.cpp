@@ -15,6 +15,7 @@
 #include "core/geodesy.h"
 #include "core/option_visitors.h"
 #include "io/geotiff.h"
+#include "io/laser_file.h"
 #include "io/npy.h"
 #include "io/sbet.h"
 #include "io/survey.h"
@@ -187,6 +188,53 @@ TEST(Simulate, EveryPatternAndFormatGivesASurveyThatReads) {
     const core::TrajectoryData flown = trajectory(folder.path());
     EXPECT_TRUE(flown.has_sigma());
     EXPECT_GT(flown.size(), 1000u);
+  }
+}
+
+TEST(Simulate, EveryFormatReadsBackToTheSameShots) {
+  for (const Pattern pattern : {Pattern::triangle, Pattern::beam}) {
+    const test::TemporaryFolder folder;
+    Options o = preset(Scene::forest);
+    o.scanner.pattern = pattern;
+    o.noise.noise_free = true;
+    o.output.imu = ImuGrade::none;
+    o.output.formats = {Format::csv, Format::npy, Format::las, Format::laz};
+    o.output.start = core::Seconds(604690.0);  // the second line is flown in the next week
+    o.mounting.truth.latency = core::Seconds(0.25);
+    o.scanner.prf = core::Hertz(1000);
+    run(o, folder.path());
+    const auto truth = columns_of(folder / "truth/returns.npy");
+    const core::Calibration& c = o.mounting.truth;
+    for (const char* name : {"survey.toml", "survey_npy.toml", "survey_las.toml", "survey_laz.toml"}) {
+      const io::Survey survey = io::read_survey(folder / name);
+      core::Tally tally;
+      const std::vector<io::StripInfo> strips = io::scan(survey, tally);
+      ASSERT_EQ(strips.size(), 2u) << name;
+      EXPECT_TRUE(tally.empty()) << name;
+      size_t row = 0;
+      double worst_range = 0, worst_beam = 0, worst_time = 0;
+      for (const io::StripInfo& strip : strips) {
+        io::LaserSource source(survey, strip);
+        core::Shots shots;
+        while (source.next(shots, 700)) {
+          for (size_t i = 0; i < shots.size(); ++i, ++row) {
+            ASSERT_LT(row, truth.at("t").size());
+            ASSERT_EQ(shots.return_number[i], truth.at("rn")[row]);
+            const double f = shots.forward.empty() ? 0.0 : shots.forward[i], w = std::sqrt(1 - f * f);
+            const double a = c.scan_scale * shots.angle[i] + c.scan_offset.value;
+            const Vector3d beam(f, w * std::sin(a), w * std::cos(a)),
+                expected(truth.at("bx")[row], truth.at("by")[row], truth.at("bz")[row]);
+            worst_beam = std::max(worst_beam, (beam - expected).norm() * truth.at("range")[row]);
+            worst_range = std::max(worst_range, std::abs(c.range_scale * shots.range[i] + c.range_offset.value - truth.at("range")[row]));
+            worst_time = std::max(worst_time, std::abs(shots.time[i] + c.latency.value - truth.at("t")[row]));
+          }
+        }
+      }
+      EXPECT_EQ(row, truth.at("t").size()) << name;
+      EXPECT_LT(worst_range, 2e-6) << name;  // LAS holds micrometres
+      EXPECT_LT(worst_beam, 2e-6) << name;
+      EXPECT_LT(worst_time, 5e-7) << name;
+    }
   }
 }
 
