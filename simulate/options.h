@@ -280,7 +280,7 @@ struct Choices<simulate::Pattern> {
 };
 template <>
 struct Choices<simulate::Deliver> {
-  static constexpr std::array<std::string_view, 3> names{"true", "drawn", "nominal"};
+  static constexpr std::array<std::string_view, 3> names{"truth", "drawn", "nominal"};
 };
 template <>
 struct Choices<simulate::Format> {
