@@ -4,6 +4,8 @@
 #include <gdal_priv.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -267,7 +269,11 @@ std::string scalar(const Value& v) {
   if (v.is_text()) return v.as_text();
   if (v.is_bool()) return v.as_bool() ? "yes" : "no";
   if (v.is_int()) return std::to_string(v.as_int());
-  return v.is_number() ? core::format_number(v.as_number()) : "-";
+  if (!v.is_number()) return "-";
+  // Ten digits: a millimetre of a northing, a microsecond of a week; the JSON form has them all.
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.10g", v.as_number());
+  return text.data();
 }
 
 void render(const Value& table, const std::string& indent, std::string& out) {
