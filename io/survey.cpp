@@ -75,7 +75,7 @@ class Checks {
 
   void project() {
     if (survey_.crs.empty()) {
-      fault("crs", "the CRS of the products is missing", "state it, for example crs = \"EPSG:32632\"");
+      if (survey_.points.empty()) fault("crs", "the CRS of the products is missing", "state it, for example crs = \"EPSG:32632\"");
     } else {
       try {
         core::Crs{survey_.crs};

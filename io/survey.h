@@ -158,7 +158,8 @@ void describe(PointFile& f, V& v) {
   v.option("file", f.file, "LAS or LAZ file, relative to survey.toml.");
   v.option("crs", f.crs, "CRS of the file, where it states none or a wrong one.");
   v.option("line", f.line, core::within(0, 65535), "Flight line id of all points; otherwise the points' source ids.");
-  v.option("week", f.week, core::within(0, 10000), "GPS week of the first point, where the file's times are seconds of week; without it they are kept as they are.");
+  v.option("week", f.week, core::within(0, 10000),
+           "GPS week of the first point, where the file's times are seconds of week; without it they are kept as they are.");
 }
 
 /// A stretch of the flight. Records outside every line are counted and left out.
@@ -210,9 +211,13 @@ struct Survey {
 template <class V>
 void describe(Survey& s, V& v) {
   v.option("name", s.name, "Name of the survey.");
-  v.option("crs", s.crs, "CRS of the products: EPSG code (\"EPSG:32632\", compound \"EPSG:25832+7837\"), WKT or PROJ text.");
+  v.option("crs", s.crs,
+           "CRS of the products: EPSG code (\"EPSG:32632\", compound \"EPSG:25832+7837\"), WKT or PROJ text. Point clouds may leave it "
+           "out: it is then that of "
+           "the first file.");
   v.option("height_unit", s.height_unit, core::above(0.0),
-           "One unit of heights where the CRS has no vertical part, for example \"1 ft\"; without it the metre, and for point clouds the unit of the horizontal axes.");
+           "One unit of heights where the CRS has no vertical part, for example \"1 ft\"; without it the metre, and for point clouds the "
+           "unit of the horizontal axes.");
   v.table("scanner", s.scanner, "Scanner model.");
   v.table("calibration", s.calibration, "Calibration and mounting.");
   v.table("sigma", s.sigma, "How well calibration and records are known.");

@@ -116,6 +116,8 @@ void Engine::prepare() {
   if (plan_.survey_file.empty())
     throw core::usage_error("no survey to run on", plan_.config.string(),
                             "name it with --survey DIR/survey.toml, or as run.survey in the config");
+  for (const PlannedStage& s : plan_.stages)
+    if (plan_.survey.crs.empty() && s.stage->is_source()) plan_.survey.crs = s.stage->own_crs(plan_.survey);
   context_.crs = core::Crs(plan_.survey.crs);
   if (!context_.crs.is_projected())
     throw core::usage_error("the products' CRS is " + context_.crs.name() + ", which is not a map projection",

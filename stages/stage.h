@@ -136,6 +136,8 @@ class Stage {
   virtual void run_survey(Context&, core::Tally&, core::Value& /*findings*/) const {}
 
   virtual bool is_source() const { return false; }
+  /// The CRS of the source's own coordinates, for surveys that state none.
+  virtual std::string own_crs(const io::Survey&) const { return {}; }
   /// Sets context.origin from the source's own coordinates; sources of raw shots leave it to the trajectory.
   virtual void locate(Context&) const {}
   virtual std::vector<Strip> strips(const Context&, core::Tally&) const { return {}; }

@@ -131,17 +131,25 @@ class LaserReader : public OptionStage<NoOptions> {
   mutable std::vector<io::StripInfo> strips_;  // of the run, found once before the strips are read
 };
 
+/// The CRS of a point cloud: what the survey says of it, else what the file says. Throws core::Error where neither does.
+std::string crs_of(const io::Survey& survey, const io::PointFile& f) {
+  if (!f.crs.empty()) return f.crs;
+  std::vector<std::string> ignored;
+  const fs::path file = io::resolve(survey, f.file);
+  const io::LasCrs stated = io::las_crs(io::read_las_header(file, ignored));
+  if (stated.definition.empty())
+    throw core::Error("states no CRS" + (stated.note.empty() ? std::string() : ": " + stated.note), file.string(),
+                      "name it as points.crs in the survey");
+  return stated.definition;
+}
+
 /// Reads a point cloud in map coordinates, converted to the CRS and metres of the run.
 class CloudReader : public StripReader {
  public:
   CloudReader(const Context& context, const Strip& strip)
       : context_(context), file_(context.survey.points[strip.source]), reader_(io::resolve(context.survey, file_.file)) {
     const io::LasCrs stated = reader_.crs();
-    const std::string definition = file_.crs.empty() ? stated.definition : file_.crs;
-    if (definition.empty())
-      throw core::Error("states no CRS" + (stated.note.empty() ? std::string() : ": " + stated.note),
-                        io::resolve(context.survey, file_.file).string(), "name it as points.crs in the survey");
-    const core::Crs crs(definition);
+    const core::Crs crs(crs_of(context.survey, file_));
     if (crs.key() != context.crs.key()) transform_.emplace(crs, context.crs);
     // Heights without a vertical CRS: PROJ takes metres; files have their own unit, by custom that of the horizontal axes.
     if (!crs.has_vertical()) {
@@ -231,14 +239,16 @@ class LasCloud : public OptionStage<NoOptions> {
       throw core::usage_error("readers.las: the survey names no [[points]] file", context.survey.name,
                               "for raw records use readers.laser and georeference");
   }
+  std::string own_crs(const io::Survey& survey) const override {
+    return survey.points.empty() ? std::string() : crs_of(survey, survey.points.front());
+  }
   void locate(Context& context) const override {
     std::vector<std::string> ignored;
     const io::PointFile& first = context.survey.points.front();
     const io::LasHeader header = io::read_las_header(io::resolve(context.survey, first.file), ignored);
-    const std::string definition = first.crs.empty() ? io::las_crs(header).definition : first.crs;
+    const core::Crs crs(crs_of(context.survey, first));
     Eigen::Vector3d corner = header.min;
-    if (!definition.empty() && core::Crs(definition).key() != context.crs.key())
-      corner = core::Transform(core::Crs(definition), context.crs)(corner);
+    if (crs.key() != context.crs.key()) corner = core::Transform(crs, context.crs)(corner);
     context.origin = {to_kilometres(corner.x() * context.unit), to_kilometres(corner.y() * context.unit), 0.0};
   }
   std::vector<Strip> strips(const Context& context, core::Tally&) const override {
