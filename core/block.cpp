@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/block.h"
 
+#include <algorithm>
+
 namespace swath::core {
 
 std::string_view name_of(Column c) {
@@ -43,6 +45,20 @@ void append(Block& to, const Block& from) {
     a.resize(before);
     a.insert(a.end(), b.begin(), b.end());
     a.resize(total);
+  });
+}
+
+void append(Block& to, const Block& from, const std::vector<std::uint32_t>& rows) {
+  const size_t before = to.size();
+  const size_t total = before + rows.size();
+  for_each_column([&](Column, std::string_view, auto member) {
+    auto& a = to.*member;
+    const auto& b = from.*member;
+    if (a.empty() && b.empty()) return;
+    if (a.capacity() < total) a.reserve(std::max(total, 2 * a.capacity()));
+    a.resize(total);
+    if (b.empty()) return;
+    for (size_t i = 0; i < rows.size(); ++i) a[before + i] = b[rows[i]];
   });
 }
 

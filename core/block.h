@@ -145,6 +145,9 @@ void resize(Block& b, size_t n);
 /// Appends all points of `from` (same origin); a column that only one side has is filled with zeros on the other.
 void append(Block& to, const Block& from);
 
+/// Appends the points of `from` at `rows`, in that order; otherwise as append().
+void append(Block& to, const Block& from, const std::vector<std::uint32_t>& rows);
+
 /// The points at `rows`, in that order, all columns.
 Block select(const Block& b, const std::vector<std::uint32_t>& rows);
 

@@ -216,6 +216,19 @@ void decode_las_points(std::span<const std::uint8_t> records, const LasHeader& h
   }
 }
 
+void decode_las_lines(std::span<const std::uint8_t> records, const LasHeader& header, std::vector<double>& gps_time,
+                      std::vector<double>& point_source_id) {
+  const LasLayout l = *las_layout(header.point_format);
+  const std::size_t n = records.size() / header.record_length, time_at = places_of(l).gps, source_at = l.extended ? 20 : 18;
+  gps_time.resize(n);
+  point_source_id.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint8_t* b = records.data() + i * header.record_length;
+    gps_time[i] = get<double>(b + time_at);
+    point_source_id[i] = get<std::uint16_t>(b + source_at);
+  }
+}
+
 void encode_las_points(const LasPoints& p, std::size_t begin, std::size_t end, const LasHeader& header, std::span<std::uint8_t> records,
                        const std::string& where) {
   const LasLayout l = *las_layout(header.point_format);

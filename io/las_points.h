@@ -47,6 +47,10 @@ void resize(LasPoints& points, const LasHeader& header, std::size_t n);
 /// Records (header.record_length bytes each) to columns; replaces what was in `points`.
 void decode_las_points(std::span<const std::uint8_t> records, const LasHeader& header, LasPoints& points);
 
+/// GPS time and point source id alone, of a format that has GPS time; replaces what was in the two columns.
+void decode_las_lines(std::span<const std::uint8_t> records, const LasHeader& header, std::vector<double>& gps_time,
+                      std::vector<double>& point_source_id);
+
 /// Columns to records, rows begin to end; columns that are empty count as zeros. A value that its field cannot hold (return number 9 in
 /// format 1) throws core::Error with `where` and the row.
 void encode_las_points(const LasPoints& points, std::size_t begin, std::size_t end, const LasHeader& header,

@@ -109,6 +109,7 @@ std::vector<StripInfo> scan(const Survey& survey, size_t file, core::Tally& tall
   const auto reader = open_laser_records(survey, f, Wanted::plan);
   std::vector<StripInfo> out;
   std::map<int, size_t> strip_of;
+  size_t last = 0;  // strip of the record before
   LaserRecords r;
   while (reader->next(r, chunk)) {
     for (size_t i = 0; i < r.size(); ++i) {
@@ -118,13 +119,16 @@ std::vector<StripInfo> scan(const Survey& survey, size_t file, core::Tally& tall
         tally.count("records outside every line", f.file.filename().string() + ": " + record_text(r.record[i]));
         continue;
       }
-      const auto [at, fresh] = strip_of.try_emplace(line, out.size());
-      if (fresh) {
-        const bool text = !r.byte.empty();
-        const LaserPlace place{r.record[i], text ? r.byte[i] : 0, text ? r.text_line[i] : 0};
-        out.push_back({file, line, r.record[i], 0, 0, std::nan(""), std::nan(""), place, clock.reader()});
+      if (out.empty() || out[last].line != line) {
+        const auto [at, fresh] = strip_of.try_emplace(line, out.size());
+        last = at->second;
+        if (fresh) {
+          const bool text = !r.byte.empty();
+          const LaserPlace place{r.record[i], text ? r.byte[i] : 0, text ? r.text_line[i] : 0};
+          out.push_back({file, line, r.record[i], 0, 0, std::nan(""), std::nan(""), place, clock.reader()});
+        }
       }
-      StripInfo& s = out[at->second];
+      StripInfo& s = out[last];
       s.last = r.record[i] + 1;
       ++s.records;
       if (!std::isnan(time)) {

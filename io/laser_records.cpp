@@ -3,6 +3,7 @@
 #include "io/laser_records.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/block.h"
 #include "core/error.h"
@@ -146,8 +147,11 @@ class CsdRecords : public LaserRecordReader {
 
 class LasRecords : public LaserRecordReader {
  public:
-  LasRecords(const std::filesystem::path& path, const LaserPlace& from, std::uint64_t end)
-      : header_(read_las_header(path, ignored_)), record_(from.record), end_(std::min<std::uint64_t>(end, header_.point_count)) {
+  LasRecords(const std::filesystem::path& path, Wanted wanted, const LaserPlace& from, std::uint64_t end)
+      : wanted_(wanted),
+        header_(read_las_header(path, ignored_)),
+        record_(from.record),
+        end_(std::min<std::uint64_t>(end, header_.point_count)) {
     if (!las_layout(header_.point_format)->gps)
       throw core::Error("point format " + std::to_string(header_.point_format) + " has no GPS time", path.string(),
                         "export the records in format 1, 3 or 6 and up");
@@ -173,28 +177,35 @@ class LasRecords : public LaserRecordReader {
     } else {
       bytes_.resize(n * header_.record_length);
       file_->read(header_.offset_to_points + record_ * header_.record_length, bytes_.data(), bytes_.size());
-      decode_las_points(bytes_, header_, points_);
+      if (wanted_ == Wanted::plan)
+        decode_las_lines(bytes_, header_, out.time, out.line);
+      else
+        decode_las_points(bytes_, header_, points_);
     }
+    out.record.resize(n);
+    std::iota(out.record.begin(), out.record.end(), record_);
+    record_ += n;
+    if (wanted_ == Wanted::plan && !reader_) return true;
     const LasPoints& p = points_;
     out.time = p.gps_time;
+    out.line.assign(p.point_source_id.begin(), p.point_source_id.end());
+    if (wanted_ == Wanted::plan) return true;
     out.x = p.x;
     out.y = p.y;
     out.z = p.z;
-    out.line.assign(p.point_source_id.begin(), p.point_source_id.end());
     out.intensity.assign(p.intensity.begin(), p.intensity.end());
     out.return_number.assign(p.return_number.begin(), p.return_number.end());
     out.return_count.assign(p.return_count.begin(), p.return_count.end());
     out.flags.resize(n);
-    for (size_t i = 0; i < n; ++i) {
+    for (size_t i = 0; i < n; ++i)
       out.flags[i] = static_cast<std::uint16_t>(p.flags[i] | (p.scan_direction[i] ? core::flag::scan_direction : 0) |
                                                 (p.edge_of_line[i] ? core::flag::edge_of_line : 0));
-      out.record.push_back(record_++);
-    }
     return true;
   }
 
  private:
   std::vector<std::string> ignored_;
+  Wanted wanted_;
   LasHeader header_;
   std::unique_ptr<BinaryFile> file_;
   std::unique_ptr<LasReader> reader_;
@@ -222,7 +233,7 @@ std::unique_ptr<LaserRecordReader> open_laser_records(const Survey& survey, cons
     case LaserFormat::csd:
       return std::make_unique<CsdRecords>(path, from, end);
     case LaserFormat::las:
-      return std::make_unique<LasRecords>(path, from, end);
+      return std::make_unique<LasRecords>(path, wanted, from, end);
     case LaserFormat::automatic:
       break;
   }

@@ -12,10 +12,13 @@ size_t last_pulse(const std::vector<double>& time) {
   return at;
 }
 
-core::Shots rows(const core::Shots& s, size_t from, size_t to) {
+/// Cuts the columns to their first `at` rows and gives the rest.
+core::Shots take_tail(core::Shots& s, size_t at) {
   core::Shots out;
-  core::for_each_column(s, out, [&](const auto& a, auto& b) {
-    if (!a.empty()) b.assign(a.begin() + static_cast<std::ptrdiff_t>(from), a.begin() + static_cast<std::ptrdiff_t>(to));
+  core::for_each_column(s, out, [at](auto& a, auto& b) {
+    if (a.empty()) return;
+    b.assign(a.begin() + static_cast<std::ptrdiff_t>(at), a.end());
+    a.resize(at);
   });
   return out;
 }
@@ -34,11 +37,7 @@ void PulseBorder::cut(stages::StripBatch& batch, bool last) {
     block_ = {};
   }
   if (last) return;
-  if (batch.shots.size() > 0) {
-    const size_t at = last_pulse(batch.shots.time);
-    shots_ = rows(batch.shots, at, batch.shots.size());
-    batch.shots = rows(batch.shots, 0, at);
-  }
+  if (batch.shots.size() > 0) shots_ = take_tail(batch.shots, last_pulse(batch.shots.time));
   if (batch.block.size() > 0 && !batch.block.time.empty()) {
     const size_t at = last_pulse(batch.block.time);
     std::vector<std::uint32_t> index(batch.block.size() - at);

@@ -154,7 +154,7 @@ void StripWriter::write(const Block& block) {
   for (const auto& [key, mine] : rows) {
     Block& pending = pending_[key];
     pending.origin = block.origin;
-    core::append(pending, core::select(block, mine));
+    core::append(pending, block, mine);
     buffered_ += mine.size() * row_bytes;
     if (pending.size() >= 65536) {
       buffered_ -= std::min(buffered_, pending.size() * row_bytes);
@@ -296,7 +296,7 @@ Block TileStore::read_with_halo(TileKey key, double halo, ColumnSet columns, siz
       std::vector<std::uint32_t> rows;
       for (std::uint32_t i = 0; i < neighbour.size(); ++i)
         if (box.holds(origin_.x() + neighbour.x[i], origin_.y() + neighbour.y[i])) rows.push_back(i);
-      core::append(out, core::select(neighbour, rows));
+      core::append(out, neighbour, rows);
     }
   return out;
 }
