@@ -74,10 +74,12 @@ core::Calibration calibration_of(const CsdHeader& h) {
 CsdReader::CsdReader(const std::filesystem::path& file) : file_(file) {
   std::vector<unsigned char> b(header_bytes);
   if (file_.read_some(0, b.data(), 4) < 4 || std::string(b.begin(), b.begin() + 4) != std::string("CSD\0", 4))
-    throw core::Error("is no Optech CSD file (wrong signature)", file.string());
+    throw core::Error("is no Optech CSD file: it does not begin with CSD", file.string() + ": byte 0",
+                      "check the name, or state the format");
   file_.read(0, b.data(), header_bytes);
   if (const int stated = load<std::uint16_t>(b.data() + 104); stated != header_bytes)
-    throw core::Error("the header states a size of " + std::to_string(stated) + " bytes; 2048 is known", file.string() + ": byte 104");
+    throw core::Error("the header states a size of " + std::to_string(stated) + " bytes; 2048 is known", file.string() + ": byte 104",
+                      "the file is damaged or of another version");
   header_ = header_from(b.data());
   const std::uint64_t body = file_.size() - header_bytes;
   pulses_ = body / pulse_bytes;
@@ -85,7 +87,9 @@ CsdReader::CsdReader(const std::filesystem::path& file) : file_(file) {
     throw core::Error("the file ends early: the header states " + std::to_string(header_.records) + " pulses, " + std::to_string(pulses_) +
                           " are there" + (body % pulse_bytes ? " and a part of one" : ""),
                       file.string() + ": byte " + std::to_string(file_.size()), "the file is truncated: copy or export it again");
-  if (header_.records != 0) pulses_ = header_.records;
+  if (pulses_ != header_.records)
+    throw core::Error("the header states " + std::to_string(header_.records) + " pulses, the file holds " + std::to_string(pulses_),
+                      file.string() + ": byte 124", "its writer was stopped before the end: export it again");
 }
 
 void CsdReader::read(std::uint64_t first, size_t n, std::vector<CsdPulse>& pulses) {
@@ -96,7 +100,7 @@ void CsdReader::read(std::uint64_t first, size_t n, std::vector<CsdPulse>& pulse
     pulses[i] = pulse_from(bytes_.data() + i * pulse_bytes);
     if (pulses[i].return_count > 4)
       throw core::Error("a pulse states " + std::to_string(pulses[i].return_count) + " returns; at most 4 are held",
-                        file_.path().string() + ": record " + std::to_string(first + i));
+                        file_.path().string() + ": record " + std::to_string(first + i), "the file is damaged: export it again");
   }
 }
 
@@ -112,11 +116,12 @@ core::TrajectoryData read_csd_trajectory(CsdReader& file, core::Seconds spacing,
       const std::string record = "record " + std::to_string(first + i);
       if (!std::isfinite(p.time) || !std::isfinite(p.roll) || !std::isfinite(p.pitch) || !std::isfinite(p.heading) ||
           !std::isfinite(p.latitude) || !std::isfinite(p.longitude) || !std::isfinite(p.height)) {
-        tally.count("CSD poses not finite", record);
-        continue;
+        throw core::Error("a value of the pose is not finite", file.path().string() + ": " + record,
+                          "the file is damaged: export it again");
       }
       if (p.time < last && last - p.time < core::seconds_per_week / 2)
-        throw core::Error("time goes back by " + core::format_number(last - p.time) + " s", record);
+        throw core::Error("time goes back by " + core::format_number(last - p.time) + " s", file.path().string() + ": " + record,
+                          "export the records in the order of their time");
       if (p.time == last) {
         tally.count("CSD poses at a repeated time", record);
         continue;

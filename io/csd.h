@@ -49,6 +49,7 @@ core::Calibration calibration_of(const CsdHeader& header);
 class CsdReader {
  public:
   explicit CsdReader(const std::filesystem::path& file);
+  const std::filesystem::path& path() const { return file_.path(); }
   const CsdHeader& header() const { return header_; }
   std::uint64_t pulses() const { return pulses_; }
   /// Pulses [first, first + n); they must exist.
@@ -62,7 +63,7 @@ class CsdReader {
 };
 
 /// The carrier's poses that the file holds, at least `spacing` apart (0: one per pulse), the last one always. Times as recorded
-/// (seconds of week). Pulses whose pose is not finite are counted and left out; so are repeated times.
+/// (seconds of week). Poses at a repeated time are counted and left out; one that is not finite is an error.
 /// Throws Error naming the record where time goes back (a drop of over half a week is the week's roll-over and is followed).
 core::TrajectoryData read_csd_trajectory(CsdReader& file, core::Seconds spacing, core::Tally& tally);
 

@@ -292,7 +292,8 @@ bool DelimitedReader::next(double* values) {
 
 void DelimitedReader::short_line(size_t fields) const {
   throw core::Error("the line has " + std::to_string(fields) + " fields, at least " + std::to_string(fields_needed_) + " are needed",
-                    file_.path().string() + ":" + std::to_string(line_));
+                    file_.path().string() + ":" + std::to_string(line_),
+                    "the line is cut off or has another delimiter: export the file again");
 }
 
 void DelimitedReader::bad_number(const char* begin, const char* end, size_t column) const {
@@ -300,7 +301,8 @@ void DelimitedReader::bad_number(const char* begin, const char* end, size_t colu
   const std::string text(begin, std::min(end, begin + 40));
   const std::string name = column < names_.size() ? "'" + names_[column] + "'" : std::to_string(column + 1);
   throw core::Error("'" + text + "' in column " + name + " is no number", file_.path().string() + ":" + std::to_string(line_),
-                    text.find(',') != std::string::npos ? "decimal commas are not read: write decimal points" : "");
+                    text.find(',') != std::string::npos ? "decimal commas are not read: write decimal points"
+                                                        : "correct the line, or export the file again");
 }
 
 }  // namespace swath::io

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <map>
 #include <memory>
@@ -276,17 +276,18 @@ std::string scalar(const Value& v) {
   return text.data();
 }
 
-void render(const Value& table, const std::string& indent, std::string& out) {
+/// `names`: the keys are names of the file's own (columns), and are told as they are written there.
+void render(const Value& table, const std::string& indent, std::string& out, bool names = false) {
   size_t width = 0;
   for (const auto& [key, value] : table.members())
     if (!value.is_object()) width = std::max(width, key.size());
   for (const auto& [key, value] : table.members()) {
     if (key == "warnings") continue;
     std::string name = key;
-    std::replace(name.begin(), name.end(), '_', ' ');
+    if (!names) std::replace(name.begin(), name.end(), '_', ' ');
     if (value.is_object()) {
       out += indent + name + "\n";
-      render(value, indent + "  ", out);
+      render(value, indent + "  ", out, key == "columns" || key == "types");
       continue;
     }
     if (value.is_array() && !value.items().empty() && value.items()[0].is_object()) {

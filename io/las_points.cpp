@@ -250,7 +250,8 @@ void encode_las_points(const LasPoints& p, std::size_t begin, std::size_t end, c
     if (flags > (l.extended ? 15u : 7u) || channel > (l.extended ? 3u : 0u))
       fail("overlap flag or scanner channel does not fit " + format, where, i, "point formats 6 to 10 have these fields");
     if (!l.extended && (angle < -128 || angle > 127))
-      fail("scan angle of " + std::to_string(angle) + " deg does not fit " + format, where, i, "");
+      fail("scan angle of " + std::to_string(angle) + " deg does not fit " + format, where, i,
+           "are the angles in another unit than stated?");
     put(b, p.raw_x[i]);
     put(b + 4, p.raw_y[i]);
     put(b + 8, p.raw_z[i]);
@@ -323,7 +324,8 @@ void set_las_extra_values(LasPoints& p, const LasHeader& header, const std::stri
     if (std::isnan(values[i]) && e->nodata)
       put_bits(at, base_type(*e), e->size(), (*e->nodata)[0]);
     else if (!put_number(at, base_type(*e), (values[i] - offset) / scale) || (e->nodata && bits_at(at, base_type(*e)) == (*e->nodata)[0]))
-      fail("'" + name + "' of " + std::to_string(values[i]) + " does not fit its extra bytes field", where, i, "");
+      fail("'" + name + "' of " + std::to_string(values[i]) + " does not fit its extra bytes field", where, i,
+           "the value is absurd: are the records damaged?");
   }
 }
 

@@ -11,27 +11,31 @@
 namespace swath::io {
 namespace {
 
-constexpr size_t chunk = 1 << 15;        // records decoded at once
+constexpr size_t chunk = 1 << 15;  // records decoded at once
+constexpr const char* damaged = "the file is damaged: export the records again";
+constexpr double farthest = 1e5;         // m; no airborne laser reaches a tenth of it
 constexpr size_t most_of_a_pulse = 255;  // return numbers are 8-bit
 
 std::string record_text(std::uint64_t record) { return "record " + std::to_string(record); }
 
-/// GPS time of the records of a chunk, in file order; NaN where the record has none.
+/// GPS time of the records of a chunk, in file order.
 class Clock {
  public:
   Clock(core::TimeReader reader, std::string name) : reader_(std::move(reader)), name_(std::move(name)) {}
   const core::TimeReader& reader() const { return reader_; }
 
   double operator()(const LaserRecords& r, size_t i) {
-    if (!std::isfinite(r.time[i])) return std::nan("");
+    const auto place = [&] { return name_ + ": " + record_text(r.record[i]); };
+    if (!std::isfinite(r.time[i])) throw core::Error("the time is missing or not finite", place(), damaged);
     if (!r.week.empty()) {
-      if (!(r.week[i] >= 0 && r.week[i] <= 10000)) return std::nan("");
+      if (!(r.week[i] >= 0 && r.week[i] <= 10000))
+        throw core::Error("the GPS week is " + core::format_number(r.week[i]) + ", which is none from 0 to 10000", place(), damaged);
       return core::from_week(static_cast<int>(r.week[i]), r.time[i]);
     }
     try {
       return reader_(r.time[i]);
     } catch (const core::Error& e) {
-      throw core::Error(e.what(), name_ + ": " + record_text(r.record[i]), e.hint());
+      throw core::Error(e.what(), place(), e.hint());
     }
   }
 
@@ -131,10 +135,8 @@ std::vector<StripInfo> scan(const Survey& survey, size_t file, core::Tally& tall
       StripInfo& s = out[last];
       s.last = r.record[i] + 1;
       ++s.records;
-      if (!std::isnan(time)) {
-        if (std::isnan(s.first_time)) s.first_time = time;
-        s.last_time = time;
-      }
+      if (std::isnan(s.first_time)) s.first_time = time;
+      s.last_time = time;
     }
   }
   return out;
@@ -177,7 +179,6 @@ struct LaserSource::State {
   void take(size_t i, double time, core::Shots& out) {
     const std::uint64_t record = raw.record[i];
     const auto drop = [&](const char* what) { tally.count(what, record_text(record)); };
-    if (!std::isfinite(time)) return drop("records without a time, left out");
     double range, angle = 0.0, forward = 0.0;
     if (!raw.x.empty()) {
       const double x = raw.x[i], y = raw.y[i], z = raw.z[i];
@@ -188,9 +189,12 @@ struct LaserSource::State {
       range = raw.range[i];
       if (!raw.angle.empty()) angle = raw.angle[i] * angle_unit;
     }
-    if (!std::isfinite(range)) return drop("records with a range not finite, left out");
+    if (!std::isfinite(range))
+      throw core::Error("the range is missing or not finite", name + ": " + record_text(record),
+                        "export the records again; a pulse without a return is written with range 0");
     if (!(range > 0)) return drop("records with a range not positive, left out");
-    if (!std::isfinite(angle)) return drop("records with a scan angle not finite, left out");
+    if (!(range * file.range_unit.value <= farthest)) return drop("records with a range over 100 km, left out");
+    if (!std::isfinite(angle)) throw core::Error("the scan angle is missing or not finite", name + ": " + record_text(record), damaged);
     if (time < last_time)
       throw core::Error("time goes back by " + core::format_number(last_time - time) + " s inside line " + std::to_string(line),
                         name + ": " + record_text(record), "records of a line must be in the order of their time");

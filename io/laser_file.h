@@ -48,7 +48,8 @@ class LaserSource {
 
   int line() const;
   /// The next shots, about `most`: returns of one time are not parted, up to 255 more than `most`. False at the end, with an empty batch.
-  /// Kept out and counted with first examples: time, range or angle not finite, range not positive. Counted and set to unknown: return
+  /// Throws core::Error with the record for a time, range or angle that is missing or not finite and for a time that goes back.
+  /// Kept out and counted with first examples: range not positive or over 100 km. Counted and set to unknown: return
   /// numbers that are none; cut to their field: intensities. Throws Error naming the record where time goes back inside the line.
   bool next(core::Shots& batch, size_t most);
   /// What was counted up to now.

@@ -233,8 +233,10 @@ NpyHeader read_npy_header(const std::filesystem::path& path) {
   unsigned char start[12] = {};
   const size_t got = file.read_some(0, start, sizeof start);
   if (got < 6 || std::string(reinterpret_cast<const char*>(start), 6) != "\x93NUMPY")
-    throw core::Error("is no .npy file (wrong magic)", where);
-  if (got < 10) throw core::Error("the header of the .npy file is cut", where + ": byte " + std::to_string(got));
+    throw core::Error("is no .npy file: it does not begin with \\x93NUMPY", where + ": byte 0", "check the name, or state the format");
+  if (got < 10)
+    throw core::Error("the header of the .npy file is cut", where + ": byte " + std::to_string(got),
+                      "the file is truncated: copy or export it again");
   const int version = start[6];
   if (version < 1 || version > 3) throw core::Error("version " + std::to_string(version) + " of the .npy format is not known", where);
   const size_t before = version == 1 ? 10 : 12;
@@ -283,6 +285,10 @@ NpyHeader read_npy_header(const std::filesystem::path& path) {
     throw core::Error(
         "the file ends early: " + std::to_string(out.rows) + " rows need " + std::to_string(out.data_begin + data_bytes) + " bytes",
         where + ": byte " + std::to_string(file.size()), "the file is truncated: copy or export it again");
+  if (file.size() > out.data_begin + data_bytes)
+    throw core::Error("the header counts " + std::to_string(out.rows) + " rows, but " +
+                          std::to_string(file.size() - out.data_begin - data_bytes) + " bytes follow the last of them",
+                      where + ": byte " + std::to_string(out.data_begin + data_bytes), "the header is damaged: save the array again");
   return out;
 }
 

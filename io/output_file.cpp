@@ -17,6 +17,8 @@ void throw_system_error(std::string_view doing, const std::filesystem::path& fil
   std::string hint;
   if (code == ENOSPC || code == EDQUOT)
     hint = "the disk is full: free space there, then run the same command again; what is finished is kept";
+  if (code == EFBIG)
+    hint = "the file size limit is reached: raise it (ulimit -f), then run the same command again; what is finished is kept";
   if (code == EACCES || code == EPERM || code == EROFS) hint = "choose a folder that you may write to";
   if (code == ENOENT) hint = "check the name; names in a survey are relative to its survey.toml";
   throw core::SystemError(std::string(doing) + ": " + (code ? std::strerror(code) : "unknown reason"), file.string(), hint);

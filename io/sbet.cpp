@@ -103,7 +103,7 @@ void add_accuracy(core::TrajectoryData& t, const std::filesystem::path& path, co
     const std::string where = path.string() + ": record " + std::to_string(i);
     for (size_t k = 0; k < 3; ++k)
       if (!(r.position[k] >= 0) || !(r.attitude[k] >= 0) || !std::isfinite(r.position[k] + r.attitude[k] + r.time))
-        throw core::Error("a standard deviation or time is negative or not finite", where);
+        throw core::Error("a standard deviation or time is negative or not finite", where, "the file is damaged: export it again");
     r.time = clock(r.time);
     if (i > 0 && r.time < rows[i - 1].time) throw core::Error("time goes back", where, "sort the file by time");
   }
@@ -159,7 +159,7 @@ class RowWriter {
 template <class Record>
 RecordFile<Record>::RecordFile(const std::filesystem::path& file) : file_(file) {
   const bool sbet = sizeof(Record) == sbet_bytes;
-  if (file_.size() == 0) throw core::Error("the file is empty", file.string());
+  if (file_.size() == 0) throw core::Error("the file is empty", file.string(), "export it again");
   if (file_.size() % sizeof(Record) != 0)
     throw core::Error(std::to_string(file_.size()) + " bytes are no whole number of " +
                           (sbet ? "SBET records (136" : "smrmsg records (80") + " bytes); the last begins at byte " +
@@ -199,7 +199,7 @@ core::TrajectoryData read_sbet(const std::filesystem::path& path, const TimeTags
       const SbetRecord& r = rows[i];
       const auto where = [&] { return path.string() + ": record " + std::to_string(first + i); };
       if (!std::isfinite(r.time + r.latitude + r.longitude + r.altitude + r.roll + r.pitch + r.platform_heading + r.wander_angle))
-        throw core::Error("a value is not finite", where());
+        throw core::Error("a value is not finite", where(), "the file is damaged: export it again");
       if (std::abs(r.latitude) > core::pi / 2 || std::abs(r.longitude) > 2 * core::pi)
         throw core::Error(
             "latitude " + core::format_number(r.latitude) + ", longitude " + core::format_number(r.longitude) + " are no radians", where(),

@@ -97,7 +97,9 @@ TrajectoryData read_text(const std::filesystem::path& path, const TrajectoryFile
   std::vector<double> row(at.size());
   while (reader.next(row.data())) {
     for (const double v : row)
-      if (!std::isfinite(v)) throw core::Error("a value is empty or not finite", name + ":" + std::to_string(reader.line()));
+      if (!std::isfinite(v))
+        throw core::Error("a value is empty or not finite", name + ":" + std::to_string(reader.line()),
+                          "the file is damaged: export the trajectory again");
     for (size_t i = 0; i < doubles.size(); ++i) doubles[i].first->push_back(row[i] * doubles[i].second);
     for (size_t i = 0; i < floats.size(); ++i) floats[i].first->push_back(static_cast<float>(row[doubles.size() + i] * floats[i].second));
     out.time.back() = weeks ? core::from_week(static_cast<int>(week.back()), out.time.back()) : (*clock)(out.time.back());
@@ -142,7 +144,8 @@ void check_trajectory(TrajectoryData& t, const std::string& name, core::Tally& t
   if (t.size() == 0) throw core::Error("the trajectory has no records", name);
   for_each_column(t, [&](const auto& column) {
     for (size_t i = 0; i < column.size(); ++i)
-      if (!std::isfinite(column[i])) throw core::Error("a value is not finite", where(i));
+      if (!std::isfinite(column[i]))
+        throw core::Error("a value is not finite", where(i), "the file is damaged: export the trajectory again");
   });
   std::vector<std::uint32_t> repeated;
   std::vector<double> steps;

@@ -175,6 +175,8 @@ Value with_origin(const core::Describe& d, const Value& written) {
 Plan make_plan(const Request& request) {
   Plan plan;
   plan.config = request.config;
+  if (!std::filesystem::exists(request.config))
+    throw core::usage_error("no such file", request.config.string(), "check the name of the config");
   Value tree = io::read_value_file(request.config);
   if (!tree.is_object()) throw core::usage_error("a pipeline is a table with [run] and [[stage]]", request.config.string());
   for (const std::string& s : request.sets) apply_set(tree, s);
@@ -202,6 +204,8 @@ Plan make_plan(const Request& request) {
   if (request.threads >= 0) plan.run.threads = request.threads;
 
   if (!plan.survey_file.empty()) {
+    if (!std::filesystem::exists(plan.survey_file))
+      throw core::usage_error("no such file", plan.survey_file.string(), "check the name of the survey");
     try {
       plan.survey = io::read_survey(plan.survey_file);
     } catch (const core::Error& e) {

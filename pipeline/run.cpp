@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Work folder: OUTPUT/.swath/<nn>-<stage>-<fingerprint>/. A folder's name says what it was made from, so a folder that is
-// there is still valid; within it a strip's strip.json or a tile's .done says that the piece is whole.
+// there is still valid; within it a strip's strip.json or a tile's .done says that the piece is whole. Products wait in its
+// products/ until the run is done.
+// Over 400 lines: the engine is one class whose steps share its state; the steps stand in the order of a run.
 #include "pipeline/run.h"
 
 #include <fcntl.h>
@@ -17,6 +19,7 @@
 
 #include "io/output_file.h"
 #include "io/value_file.h"
+#include "pipeline/delivery.h"
 #include "pipeline/grid_store.h"
 #include "pipeline/memory_gate.h"
 #include "pipeline/provenance.h"
@@ -44,7 +47,8 @@ class Lock {
     if (fd_ < 0) io::throw_system_error("cannot write", file, errno);
     if (::flock(fd_, LOCK_EX | LOCK_NB)) {
       ::close(fd_);
-      throw core::usage_error("another run is at work in this output folder", file.parent_path().parent_path().string());
+      throw core::usage_error("another run is at work in this output folder", file.parent_path().parent_path().string(),
+                              "wait for it to end, or choose another --output");
     }
   }
   ~Lock() { ::close(fd_); }
@@ -137,7 +141,6 @@ void Engine::prepare() {
                              core::format_number(context_.vertical_unit) + "],AXIS[\"Up\",UP]]]";
   }
   context_.tile_side = plan_.run.tile.value;
-  context_.output = output_;
   context_.config_folder = plan_.config.parent_path();
   context_.grids = &grids_;
   for (const PlannedStage& s : plan_.stages) s.stage->check(context_);
@@ -298,7 +301,7 @@ void Engine::run_tiles(size_t number) {
         for (size_t i = range.begin(); i < range.end(); ++i) {
           const fs::path done = mine / (file_label(keys[i]) + ".done");
           if (fs::exists(done)) {
-            notes[i] = io::read_value_file(done);
+            notes[i] = io::parse_json(io::read_text_file(done), done.string());
             ++again;
           } else {
             const double per_point = static_cast<double>(row_bytes) + s.bytes_per_point();
@@ -354,9 +357,11 @@ void Engine::run_tile_stages() {
     std::error_code ec;
     fs::create_directories(folder(i), ec);
     if (ec) io::throw_system_error("cannot make the folder", folder(i), ec.value());
+    context_.output = folder(i) / "products";
     if (works_on(i, Grain::tile)) run_tiles(i);
     for (const stages::Product p : stage(i).info().gives_products) grids_.add(p, folder(i));
     if (works_on(i, Grain::merge)) run_merge(i);
+    context_.earlier.push_back(context_.output);
   }
 }
 
@@ -426,12 +431,13 @@ void Engine::compose_report(const std::string& command) {
   report_["versions"] = versions();
 }
 
-/// Whatever lies in the work folder and is no part of this plan goes.
+/// Whatever lies in the work folder and is no part of this plan goes, as do pieces that a kill left half written.
 void sweep(const fs::path& work, const std::set<std::string>& valid) {
   for (const auto& entry : fs::directory_iterator(work)) {
     const std::string name = entry.path().filename().string();
     if (name != "lock" && !valid.contains(name)) fs::remove_all(entry.path());
   }
+  remove_temporary_files(work);
 }
 
 /// Removes folders that hold nothing, upwards to `top` itself.
@@ -447,8 +453,8 @@ Outcome Engine::run(const std::string& command) {
   std::error_code ec;
   fs::create_directories(work_, ec);
   if (ec) io::throw_system_error("cannot make the output folder", output_, ec.value());
+  const Lock lock(work_ / "lock");
   try {
-    const Lock lock(work_ / "lock");
     std::set<std::string> valid;
     for (size_t i = 0; i < plan_.stages.size(); ++i) valid.insert(folder(i).filename().string());
     sweep(work_, valid);
@@ -457,6 +463,7 @@ Outcome Engine::run(const std::string& command) {
     run_tile_stages();
     compose_report(command);
     const bool held = judge_limits();
+    for (const fs::path& made : context_.earlier) deliver(made, output_, plan_.run.keep_work);
     report_["pieces_resumed"] = resumed_;
     report_["seconds"] = since(start);
     report_["threads"] = threads_;

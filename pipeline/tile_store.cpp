@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/value.h"
 #include "io/output_file.h"
 #include "io/value_file.h"
 
@@ -115,6 +116,7 @@ bool read_chunk(File& file, Block& to, size_t& row, ColumnSet wanted, ColumnSet&
   return true;
 }
 
+constexpr double farthest = 1e8;  // m; beyond every map projection, and tile numbers stay in range
 constexpr ColumnSet always{Column::x, Column::y, Column::z};
 
 }  // namespace
@@ -141,8 +143,14 @@ void StripWriter::write(const Block& block) {
   TileKey last{};
   std::vector<std::uint32_t>* at = nullptr;
   for (std::uint32_t i = 0; i < block.size(); ++i) {
-    const TileKey key{static_cast<int>(std::floor((block.origin.x() + block.x[i]) / tile_side_)),
-                      static_cast<int>(std::floor((block.origin.y() + block.y[i]) / tile_side_))};
+    const double east = block.origin.x() + block.x[i], north = block.origin.y() + block.y[i];
+    if (!(std::abs(east) < farthest && std::abs(north) < farthest && std::isfinite(block.z[i])))
+      throw core::Error("a point lies at east " + core::format_number(east) + " m, north " + core::format_number(north) + " m, height " +
+                            core::format_number(block.origin.z() + block.z[i]) + " m",
+                        "line " + std::to_string(block.strip.empty() ? 0 : block.strip[i]) + ", record " +
+                            std::to_string(block.record.empty() ? i : block.record[i]),
+                        "no map projection reaches that far: is the file damaged, or its CRS another?");
+    const TileKey key{static_cast<int>(std::floor(east / tile_side_)), static_cast<int>(std::floor(north / tile_side_))};
     if (!at || key != last) at = &rows[last = key];
     at->push_back(i);
   }

@@ -22,6 +22,12 @@ core::Lattice lattice_in(double cell, const Box& box) {
   return {cell, i0, j0, static_cast<int>(first(box.x1) - i0), static_cast<int>(first(box.y1) - j0)};
 }
 
+std::filesystem::path Context::made(const std::filesystem::path& name) const {
+  for (auto folder = earlier.rbegin(); folder != earlier.rend(); ++folder)
+    if (std::filesystem::exists(*folder / name)) return *folder / name;
+  return {};
+}
+
 std::string Context::label(TileKey k) const {
   const auto part = [this](int i) {
     const double corner = i * tile_side;

@@ -72,12 +72,15 @@ struct Context {
   double vertical_unit = 1.0;  ///< metres per vertical unit of the CRS
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of every Block of the run, m
   double tile_side = 500.0;                          ///< m
-  std::filesystem::path output{};
+  std::filesystem::path output{};                    ///< where the stage at work puts its products, laid out as in the output folder
+  std::vector<std::filesystem::path> earlier{};      ///< the same of the stages before it
   std::filesystem::path config_folder{};
   const Grids* grids = nullptr;
   std::shared_ptr<const trajectory::Trajectory> trajectory{};
 
   Box box_of(TileKey k) const { return {k.ix * tile_side, k.iy * tile_side, (k.ix + 1) * tile_side, (k.iy + 1) * tile_side}; }
+  /// The file that a stage before this one made under `name`; empty where none did.
+  std::filesystem::path made(const std::filesystem::path& name) const;
   /// "652_5310": the tile's south-west corner, for file names; whole metres, or millimetres where it is not whole.
   std::string label(TileKey k) const;
 };

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <memory>
+#include <sstream>
 
 #include "core/error.h"
 #include "core/option_visitors.h"
@@ -88,6 +91,30 @@ int docs(const Arguments& a) {
   return a.check && !differing.empty() ? static_cast<int>(core::Exit::bad_data) : 0;
 }
 
+/// Help that opens with examples; the overview tells of each command in its last sentence alone.
+class HelpText : public CLI::Formatter {
+ public:
+  std::string make_subcommand(const CLI::App* c) const override {
+    const std::string told = c->get_description();
+    const size_t blank = told.rfind("\n\n");
+    std::ostringstream out;
+    CLI::detail::format_help(out, c->get_name(), blank == std::string::npos ? told : told.substr(blank + 2), column_width_);
+    return out.str();
+  }
+};
+
+/// A fault of the command line as every other error is told.
+core::Error usage_fault(const CLI::App& app, const CLI::ParseError& e, int argc, char** argv) {
+  std::vector<std::string> names;
+  for (const CLI::App* c : app.get_subcommands({})) names.push_back(c->get_name());
+  const std::string first = argc > 1 ? argv[1] : "";
+  const bool known = std::find(names.begin(), names.end(), first) != names.end();
+  if (known || first.empty() || first[0] == '-')
+    return core::usage_error(e.what(), known ? "swath " + first : "swath", known ? "see swath " + first + " --help" : "see swath --help");
+  const std::string near = core::nearest(first, names);
+  return core::usage_error("'" + first + "' is no command", "swath", near.empty() ? "see swath --help" : "did you mean '" + near + "'?");
+}
+
 void add_request(CLI::App* c, Arguments& a) {
   c->add_option("CONFIG", a.request.config, "Pipeline, .toml or .json")->required();
   c->add_option("--survey", a.request.survey, "survey.toml, in place of the config's");
@@ -109,6 +136,7 @@ int command_line(int argc, char** argv) {
       "swath");
   app.set_version_flag("--version", "swath " + std::string(pipeline::program_version()));
   app.require_subcommand(1);
+  app.formatter(std::make_shared<HelpText>());
   app.footer("Exit codes: 0 done, 1 bad data, 2 bad usage or config, 3 done but a quality limit set in the config was missed.");
 
   auto* c = app.add_subcommand(
@@ -159,7 +187,8 @@ int command_line(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : static_cast<int>(core::Exit::bad_usage);
+    if (e.get_exit_code() == 0) return app.exit(e);
+    throw usage_fault(app, e, argc, argv);
   }
   std::string command = "swath";
   for (int i = 1; i < argc; ++i) command += std::string(" ") + argv[i];
@@ -179,7 +208,9 @@ int command_line(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Writing past a limit fails like a full disk, with its error, and does not kill.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     return command_line(argc, argv);
   } catch (const swath::core::Error& e) {

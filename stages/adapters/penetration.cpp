@@ -78,7 +78,7 @@ class Penetration : public OptionStage<PenetrationOptions> {
       all[1] += sums[1];
     }
     io::write_vrt(context.output / "penetration.vrt", tiles);
-    keep_list(context.output / "penetration", files);
+    write_list(context.output / "penetration", files);
     if (all[0]) job.findings["penetration_rate"] = static_cast<double>(all[1]) / static_cast<double>(all[0]);
   }
 

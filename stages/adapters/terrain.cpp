@@ -32,6 +32,16 @@ void count_voids(const core::Grid& grid, core::Tally& tally) {
   if (n[3]) tally.count("void cells: water", n[3]);
 }
 
+/// The tile's own ground points that share their place with another: the TIN takes the lowest.
+void count_shared_places(const TileJob& job, const terrain::DtmOptions& options, core::Tally& tally) {
+  std::vector<std::pair<double, double>> places;
+  for (const std::uint32_t i : terrain::terrain_rows(job.block, options))
+    if (i < job.own) places.emplace_back(job.block.x[i], job.block.y[i]);
+  std::sort(places.begin(), places.end());
+  const auto shared = places.end() - std::unique(places.begin(), places.end());
+  if (shared > 0) tally.count("ground points at the same place as a lower or equal one", static_cast<std::uint64_t>(shared));
+}
+
 /// Cells of all tiles with a height, and holes: voids with ground on all sides.
 struct Cover {
   std::uint64_t known = 0, holes = 0;
@@ -64,11 +74,11 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
   double halo() const override { return terrain::halo(options); }
   // Vertices, faces and their links of a Delaunay triangulation, and the triangles taken out of it.
   double bytes_per_point() const override { return 360.0; }
-  void run_tile(const Context& context, TileJob& job) const override {
+  void run_tile(const Context&, TileJob& job) const override {
     const core::Grid grid = terrain::dtm(job.block, lattice_in(options.cell.value, job.box), options);
     count_voids(grid, job.tally);
+    count_shared_places(job, options, job.tally);
     write_grid_tile(job.folder, job.key, grid);
-    static_cast<void>(context);
   }
   void run_merge(const Context& context, MergeJob& job) const override {
     const Cover cover = cover_of(job);

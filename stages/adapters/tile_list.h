@@ -7,7 +7,7 @@
 
 namespace swath::stages {
 
-/// Keeps `folder`/tiles.json, the list of the tiles that make the product, and removes tiles of an earlier run that are no longer in it.
-void keep_list(const std::filesystem::path& folder, const std::vector<std::string>& files);
+/// Writes `folder`/tiles.json, the list of the tiles that make the product; delivery removes tiles of an earlier run by it.
+void write_list(const std::filesystem::path& folder, const std::vector<std::string>& files);
 
 }  // namespace swath::stages

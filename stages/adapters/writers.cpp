@@ -67,7 +67,7 @@ class LasTiles : public OptionStage<LasOptions> {
   void run_merge(const Context& context, MergeJob& job) const override {
     std::vector<std::string> files;
     for (const TileKey key : job.tiles) files.push_back(name(context, key));
-    keep_list(context.output / options.folder, files);
+    write_list(context.output / options.folder, files);
     job.findings["tiles"] = files.size();
   }
 
@@ -117,7 +117,7 @@ class GridTiles : public OptionStage<NoOptions> {
         }
         io::write_vrt(context.output / (std::string(name_of(p)) + kind + ".vrt"), tiles);
       }
-      keep_list(folder, files);
+      write_list(folder, files);
     }
     job.findings["tiles"] = job.tiles.size();
   }
@@ -204,11 +204,11 @@ class PictureWriter : public OptionStage<PictureWriteOptions> {
     o.height_unit = context.vertical_unit == 1.0 ? "m" : "ft";
     o.light.exaggeration *= context.vertical_unit / context.unit;
     std::vector<core::ContourLine> lines;
-    if (!options.contours.empty() && context.grids->has(Product::contours) && fs::exists(context.output / options.contours)) {
+    if (const fs::path contours = context.made(options.contours); !options.contours.empty() && !contours.empty()) {
       // The overview has its own corner where it was averaged: contours are moved along.
       const bool moved = cell != extent.cell;
       const double x0 = moved ? extent.west() / context.unit : 0.0, y0 = moved ? extent.south() / context.unit : 0.0;
-      for (io::VectorLine& line : io::read_lines(context.output / options.contours).lines) {
+      for (io::VectorLine& line : io::read_lines(contours).lines) {
         for (double& x : line.x) x -= x0;
         for (double& y : line.y) y -= y0;
         lines.push_back({std::move(line.x), std::move(line.y), line.height, line.index, line.closed});

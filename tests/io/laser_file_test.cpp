@@ -133,15 +133,20 @@ TEST_F(LaserFiles, BeamsBecomeRangeAngleAndForward) {
 }
 
 TEST_F(LaserFiles, BadRecordsAreCountedAndKeptOut) {
-  made(
-      "1,0,100,0,9,1,1\nnan,0,100,0,9,1,1\n3,0,nan,0,9,1,1\n4,0,-5,0,9,1,1\n5,0,inf,0,9,1,1\n6,0,100,nan,9,1,1\n7,0,,0,9,1,1\n8,0,8,0,9,1,"
-      "1\n");
+  made("1,0,100,0,9,1,1\n4,0,-5,0,9,1,1\n7,0,0,0,9,1,1\n8,0,8,0,9,1,1\n9,0,1e30,0,9,1,1\n");
   const Shots s = shots();
-  EXPECT_EQ(s.record, (std::vector<std::uint32_t>{0, 7}));
-  EXPECT_EQ(tally_.of("records without a time, left out"), 1u);
-  EXPECT_EQ(tally_.of("records with a range not finite, left out"), 3u);
-  EXPECT_EQ(tally_.of("records with a range not positive, left out"), 1u);
-  EXPECT_EQ(tally_.of("records with a scan angle not finite, left out"), 1u);
+  EXPECT_EQ(s.record, (std::vector<std::uint32_t>{0, 3}));
+  EXPECT_EQ(tally_.of("records with a range over 100 km, left out"), 1u);
+  EXPECT_EQ(tally_.of("records with a range not positive, left out"), 2u);
+}
+
+TEST_F(LaserFiles, NumbersThatAreNoneAreErrorsWithTheirRecord) {
+  for (const char* row :
+       {"nan,0,100,0,9,1,1", "inf,0,100,0,9,1,1", "2,0,nan,0,9,1,1", "2,0,-inf,0,9,1,1", "2,0,,0,9,1,1", "2,0,100,nan,9,1,1"}) {
+    const core::Error e = error_of("1,0,100,0,9,1,1\n" + std::string(row) + "\n3,0,8,0,9,1,1\n");
+    EXPECT_NE(e.where().find("record 1"), std::string::npos) << row;
+    EXPECT_NE(std::string(e.what()).find("not finite"), std::string::npos) << row;
+  }
 }
 
 TEST_F(LaserFiles, FaultsNameTheRecord) {

@@ -36,7 +36,8 @@ TEST(Describe, PagesAreWrittenOnceAndKeepTheirProse) {
 }
 
 TEST(Describe, TheCommittedPagesAreUpToDate) {
-  for (const auto& page : write_docs(test::source_folder() / "docs", true)) ADD_FAILURE() << page << " is out of date; run: swath docs docs";
+  for (const auto& page : write_docs(test::source_folder() / "docs", true))
+    ADD_FAILURE() << page << " is out of date; run: swath docs docs";
 }
 
 }  // namespace

@@ -61,16 +61,19 @@ TEST(Plan, AllFaultsAtOnceWithTheirPlaces) {
       "[[stage]]\ntype = \"filters.smrf\"\nslop = 0.2\ncell = 1.0\n"
       "[[stage]]\ntype = \"terrain.dtm\"\ncell = \"2 deg\"\n[rnu]\ntile = 1\n");
   const std::string text = c.fault();
-  for (const char* part : {"p.toml:4:", "did you mean 'filters.smrf'", "did you mean 'slope'", "no unit", "'deg' is not a unit of length", "rnu"})
+  for (const char* part :
+       {"p.toml:4:", "did you mean 'filters.smrf'", "did you mean 'slope'", "no unit", "'deg' is not a unit of length", "rnu"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
 }
 
 TEST(Plan, StagesMustFitOneAnother) {
-  EXPECT_NE(Case("[[stage]]\ntype = \"readers.las\"\n[[stage]]\ntype = \"terrain.contours\"\n").fault().find("needs dtm"), std::string::npos);
+  EXPECT_NE(Case("[[stage]]\ntype = \"readers.las\"\n[[stage]]\ntype = \"terrain.contours\"\n").fault().find("needs dtm"),
+            std::string::npos);
   EXPECT_NE(Case("[[stage]]\ntype = \"georeference\"\n").fault().find("needs shots"), std::string::npos);
   EXPECT_NE(Case("[[stage]]\ntype = \"filters.smrf\"\n").fault().find("no reader"), std::string::npos);
   EXPECT_NE(Case("").fault().find("no stages"), std::string::npos);
-  EXPECT_NE(Case(std::string(good) + "[[stage]]\ntype = \"filters.returns\"\n").fault().find("strip stage behind a tile stage"), std::string::npos);
+  EXPECT_NE(Case(std::string(good) + "[[stage]]\ntype = \"filters.returns\"\n").fault().find("strip stage behind a tile stage"),
+            std::string::npos);
 }
 
 TEST(Plan, ASetThatFitsNothingIsAFault) {

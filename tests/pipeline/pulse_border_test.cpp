@@ -23,7 +23,9 @@ TEST(PulseBorder, PulsesAreNeverCutAndNothingIsLost) {
         batch.block.time.push_back(times[i]);
       }
       border.cut(batch, last);
-      if (!seen.empty() && batch.shots.size() > 0) EXPECT_NE(seen.back(), batch.shots.time.front());
+      if (!seen.empty() && batch.shots.size() > 0) {
+        EXPECT_NE(seen.back(), batch.shots.time.front());
+      }
       seen.insert(seen.end(), batch.shots.time.begin(), batch.shots.time.end());
       seen_blocks.insert(seen_blocks.end(), batch.block.x.begin(), batch.block.x.end());
     }

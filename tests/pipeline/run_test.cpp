@@ -54,14 +54,16 @@ const core::Value& stage_of(const core::Value& report, const std::string& type) 
 std::map<std::string, std::string> products(const fs::path& folder) {
   std::map<std::string, std::string> out;
   for (const auto& e : fs::recursive_directory_iterator(folder))
-    if (e.is_regular_file() && e.path().filename() != "report.json") out[fs::relative(e.path(), folder).string()] = test::read_bytes(e.path());
+    if (e.is_regular_file() && e.path().filename() != "report.json")
+      out[fs::relative(e.path(), folder).string()] = test::read_bytes(e.path());
   return out;
 }
 
 TEST(Run, MakesEveryProductAndTellsItsErrors) {
   const test::TemporaryFolder out;
   const core::Value report = run_quietly(request(out / "out"));
-  for (const char* product : {"report.json", "relief.png", "dtm.vrt", "dsm.vrt", "contours.gpkg", "contours.dxf", "contours.geojson", "penetration.vrt", "points"})
+  for (const char* product : {"report.json", "relief.png", "dtm.vrt", "dsm.vrt", "contours.gpkg", "contours.dxf", "contours.geojson",
+                              "penetration.vrt", "points"})
     EXPECT_TRUE(fs::exists(out / "out" / product)) << product;
   EXPECT_FALSE(fs::exists(out / "out/.swath"));
   const core::Value& truth = *stage_of(report, "report.truth").find("findings");
@@ -71,8 +73,10 @@ TEST(Run, MakesEveryProductAndTellsItsErrors) {
   EXPECT_LT(std::abs(truth.find("dtm")->find("mean_m")->as_number()), 0.10);
   EXPECT_LT(truth.find("dtm")->find("median_abs_m")->as_number(), 0.10);
   for (const core::Value& s : report.find("stages")->items())
-    if (const core::Value* counts = s.find("counts"))
-      EXPECT_EQ(counts->find("in")->as_int(), counts->find("out")->as_int()) << s.find("type")->as_text() << ": nothing is left out in this survey";
+    if (const core::Value* counts = s.find("counts")) {
+      EXPECT_EQ(counts->find("in")->as_int(), counts->find("out")->as_int())
+          << s.find("type")->as_text() << ": nothing is left out in this survey";
+    }
 }
 
 TEST(Run, ThreadsChangeNothing) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/world/support.h"
+
 namespace swath::stages {
 namespace {
 
@@ -12,13 +14,27 @@ TEST(Stage, EveryCellBelongsToExactlyOneTile) {
   std::int64_t next = 0;
   for (int k = -3; k < 4; ++k) {
     const core::Lattice l = lattice_in(cell, {k * side, 0, (k + 1) * side, side});
-    if (k > -3) EXPECT_EQ(l.i0, next);
+    if (k > -3) {
+      EXPECT_EQ(l.i0, next);
+    }
     next = l.i0 + l.nx;
     for (int i = 0; i < l.nx; ++i) {
       EXPECT_GE(l.centre_x(i), k * side);
       EXPECT_LT(l.centre_x(i), (k + 1) * side);
     }
   }
+}
+
+TEST(Stage, FilesOfEarlierStagesAreFoundTheNewestFirst) {
+  const test::TemporaryFolder folder;
+  const io::Survey survey;
+  Context c{survey};
+  EXPECT_TRUE(c.made("a.gpkg").empty());
+  c.earlier = {folder / "1", folder / "2", folder / "3"};
+  test::write_bytes(folder / "1/a.gpkg", "one");
+  test::write_bytes(folder / "2/a.gpkg", "two");
+  EXPECT_EQ(c.made("a.gpkg"), folder / "2/a.gpkg");
+  EXPECT_TRUE(c.made("b.gpkg").empty());
 }
 
 TEST(Stage, LabelsAreCorners) {

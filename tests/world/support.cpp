@@ -39,6 +39,9 @@ std::string read_bytes(const std::filesystem::path& file) {
   return out.str();
 }
 
-void write_bytes(const std::filesystem::path& file, const std::string& bytes) { std::ofstream(file, std::ios::binary) << bytes; }
+void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary) << bytes;
+}
 
 }  // namespace swath::test

@@ -32,6 +32,7 @@ std::filesystem::path shared_data();
 size_t entries(const std::filesystem::path& folder);
 
 std::string read_bytes(const std::filesystem::path& file);
+/// Makes the folders on the way too.
 void write_bytes(const std::filesystem::path& file, const std::string& bytes);
 
 }  // namespace swath::test

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Finished products go from the work folder to the output folder, all of them at the end of a run: bad data found late leaves
+// the output folder as it was.
+#pragma once
+
+#include <filesystem>
+
+namespace swath::pipeline {
+
+/// Puts every file below `made` to the same place below `output`, each whole or not at all, in the order of their names. Products
+/// that a tiles.json of an earlier run lists and the new one does not are removed. With `keep` the files of `made` stay apart
+/// from the delivered ones (copies); otherwise both are one file where the file system allows. A delivery that was cut short may be
+/// repeated. Throws core::SystemError.
+void deliver(const std::filesystem::path& made, const std::filesystem::path& output, bool keep);
+
+/// Removes temporary files (see io::OutputFile) that a killed run left below `folder`.
+void remove_temporary_files(const std::filesystem::path& folder);
+
+}  // namespace swath::pipeline

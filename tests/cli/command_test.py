@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The commands on good input: help, exit codes, what is printed where, every config of configs/."""
+import json
+import re
+import tomllib
+import unittest
+from pathlib import Path
+
+from support import CLOUD, CONFIG, SMALL, SMALLEST, SOURCE, Case, products, stage, swath
+
+COMMANDS = ["run", "check", "explain", "stages", "schema", "simulate", "info", "docs"]
+CONFIGS = sorted((SOURCE / "configs").glob("*.toml"))
+
+
+class Help(Case):
+    def test_examples_stand_first(self):
+        for command in [[], *([c] for c in COMMANDS)]:
+            done = swath(*command, "--help")
+            self.assertEqual(done.returncode, 0, command)
+            self.assertEqual(done.stderr, "")
+            lines = done.stdout.lstrip().split("\n")
+            self.assertEqual(lines[0], "Examples", command)
+            self.assertTrue(lines[1].startswith("  swath " + " ".join(command)), lines[1])
+            self.assertIn("Exit codes: 0 done", done.stdout)
+
+    def test_the_overview_tells_of_every_command_in_a_line(self):
+        text = swath("--help").stdout
+        overview = text[text.index("Subcommands:"):]
+        for command in COMMANDS:
+            self.assertRegex(overview, rf"(?m)^  {command} +\S")
+        self.assertNotIn("Examples", overview)
+
+    def test_version(self):
+        self.assertRegex(swath("--version").stdout, r"^swath \d+\.\d+\.\d+\n$")
+
+    def test_wrong_usage(self):
+        for arguments, word in ([[], "see swath --help"], [["rnu"], "did you mean 'run'"], [["run"], "CONFIG"],
+                                [["run", CONFIG, "--nope"], "--nope"], [["run", "nowhere.toml"], "nowhere.toml"],
+                                [["check", "nowhere.json"], "nowhere.json"], [["stages", "filters.smrff"], "filters.smrf"],
+                                [["run", CONFIG, "--threads", "many"], "--threads"], [["run", CONFIG], "--survey"],
+                                [["check", CONFIG, "--set", "smrf.cel=1 m"], "did you mean 'cell'"],
+                                [["check", CONFIG, "--set", "smfr.cell=1 m"], "smrf"], [["check", CONFIG, "--set", "cell"], "stage.key=value"],
+                                [["simulate", "x", "--set", "sede=7"], "seed"]):
+            with self.subTest(arguments=arguments):
+                self.assert_error(swath(*arguments, cwd=self.folder), 2, re.escape(word))
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_bad_data_is_code_1(self):
+        (self.folder / "a.las").write_bytes(b"no such thing")
+        self.assert_error(swath("info", self.folder / "a.las"), 1, "a.las", "hint: ")
+
+
+class Looks(Case):
+    """Commands that write nothing."""
+    simulated = SMALLEST + ['output.formats=["npy", "csv", "las", "laz"]']
+
+    def test_check_passes_on_every_config(self):
+        self.assertGreaterEqual(len(CONFIGS), 3)
+        for config in CONFIGS:
+            done = swath("check", config)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(config.name, done.stdout)
+        done = swath("check", CONFIG, "--survey", self.survey / "survey.toml")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("1 laser, 1 trajectory", done.stdout)
+        quiet = swath("check", CONFIG, "--quiet")
+        self.assertEqual((quiet.returncode, quiet.stdout, quiet.stderr), (0, "", ""))
+
+    def test_check_tells_all_faults_at_once_with_their_places(self):
+        config = self.folder / "faulty.toml"
+        config.write_text('[run]\ntile = 500\n\n[[stage]]\ntype = "readers.las"\n\n[[stage]]\ntype = "filters.smrf"\ncel = "1 m"\n'
+                          'slope = 99\n\n[[stage]]\ntype = "terrain.dmt"\n')
+        self.assert_error(swath("check", config), 2, "4 faults", "faulty.toml:2:8", "faulty.toml:9:7.*did you mean 'cell'",
+                          "faulty.toml:10:9", "faulty.toml:13:8.*terrain.dtm")
+
+    def test_explain_tells_where_values_come_from(self):
+        done = swath("explain", CONFIG, "--survey", self.survey / "survey.toml", "--set", "smrf.cell=50 cm", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        told = json.loads(done.stdout)
+        smrf = next(s for s in told["stages"] if s["type"] == "filters.smrf")["options"]
+        self.assertEqual(smrf["cell"]["from"], "--set")
+        self.assertEqual(smrf["slope"]["from"], "default")
+        dtm = next(s for s in told["stages"] if s["type"] == "terrain.dtm")["options"]
+        self.assertRegex(dtm["cell"]["from"], r"survey\.toml:\d+:\d+")
+        text = swath("explain", CONFIG)
+        self.assertEqual(text.returncode, 0)
+        self.assertIn("filters.smrf", text.stdout)
+
+    def test_stages(self):
+        done = swath("stages")
+        names = [line.split()[0] for line in done.stdout.strip().split("\n")]
+        self.assertIn("filters.smrf", names)
+        for name in names:
+            one = swath("stages", name)
+            self.assertEqual(one.returncode, 0, one.stderr)
+            self.assertTrue(one.stdout.startswith(name + ": "))
+            self.assertIn("Options", one.stdout)
+
+    def test_schema_knows_every_stage(self):
+        schema = json.loads(swath("schema").stdout)
+        types = {one["properties"]["type"]["const"] for one in schema["properties"]["stage"]["items"]["anyOf"]}
+        self.assertEqual(types, {line.split()[0] for line in swath("stages").stdout.strip().split("\n")})
+        self.assertIn("laser", schema["$defs"]["survey"]["properties"])
+
+    def test_info_of_every_format(self):
+        for name, words in {"laser.npy": ["scan_angle_deg"], "laser.csv": ["range_m"], "laser.las": ["1.4"], "laser.laz": ["1.4"],
+                            "sbet.out": ["SBET"], "smrmsg.out": ["smrmsg"], "survey.toml": ["EPSG:32632"],
+                            "truth/dtm.tif": ["UTM zone 32N"]}.items():
+            with self.subTest(file=name):
+                done = swath("info", self.survey / name)
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                for word in words:
+                    self.assertIn(word, done.stdout)
+                json.loads(swath("info", self.survey / name, "--json").stdout)
+
+    def test_docs_are_up_to_date(self):
+        done = swath("docs", SOURCE / "docs", "--check")
+        self.assertEqual((done.returncode, done.stdout), (0, ""))
+        made = swath("docs", self.folder / "docs")
+        self.assertEqual(made.returncode, 0)
+        self.assertIn("written:", made.stdout)
+        self.assertEqual(swath("docs", self.folder / "docs", "--check").returncode, 0)
+        (self.folder / "docs" / "run.md").write_text("old")
+        stale = swath("docs", self.folder / "docs", "--check")
+        self.assertEqual(stale.returncode, 1)
+        self.assertIn("out of date:", stale.stdout)
+
+    def test_simulate_again_gives_the_same_records(self):
+        again = swath("simulate", self.folder / "again", *(w for s in self.simulated for w in ("--set", s)))
+        self.assertEqual(again.returncode, 0)
+        json.loads(again.stdout)
+        self.assertEqual(products(self.folder / "again"), products(self.survey))
+
+
+class Runs(Case):
+    simulated = SMALLEST
+
+    def arguments(self, *more):
+        return ["run", CONFIG, "--survey", self.survey / "survey.toml", "--output", self.out, *more]
+
+    def test_summary_on_standard_output_progress_on_standard_error(self):
+        done = swath(*self.arguments())
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("products in", done.stdout)
+        self.assertIn("rms_3d", done.stdout)
+        self.assertRegex(done.stderr, r"(?m)^filters\.smrf +100 %  \S+ k? ?points, .*/s, ")
+
+    def test_quiet_is_silent(self):
+        done = swath(*self.arguments("--quiet"))
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+        self.assertTrue((self.out / "report.json").exists())
+        self.assertFalse((self.out / ".swath").exists())
+
+    def test_json_log_is_one_object_per_line(self):
+        done = swath(*self.arguments("--json-log"))
+        self.assertEqual((done.returncode, done.stdout), (0, ""))
+        lines = [json.loads(line) for line in done.stderr.strip().split("\n")]
+        finished = [line["stage"] for line in lines if line.get("finished")]
+        for name in ("strips", "filters.smrf", "terrain.dtm", "writers.las"):
+            self.assertIn(name, finished)
+        for line in lines:
+            self.assertIn("per_second", line)
+
+    def test_the_report_counts_and_names_its_inputs(self):
+        report = self.run_ok(self.survey / "survey.toml")
+        for one in report["stages"]:
+            if "counts" in one:
+                left_out = sum(v["count"] for k, v in one.get("tally", {}).items() if k.endswith("left out"))
+                self.assertEqual(one["counts"]["in"], one["counts"]["out"] + left_out, one["type"])
+        self.assertEqual({Path(i["file"]).name for i in report["inputs"]}, {"laser.npy", "sbet.out", "smrmsg.out", "returns.npy", "dtm.tif"})
+        self.assertEqual(stage(report, "terrain.dtm")["options"]["cell"]["value"], "1 m")
+
+    def test_a_missed_limit_is_code_3(self):
+        done = swath(*self.arguments("--quiet", "--set", "run.limits.truth_rms=1 mm"))
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("limit", done.stderr)
+        limits = json.loads((self.out / "report.json").read_text())["limits"]
+        self.assertFalse(next(one for one in limits if one["name"] == "truth_rms")["held"])
+        self.assertTrue((self.out / "relief.png").exists(), "the products are there all the same")
+
+    def test_every_config_runs(self):
+        self.run_ok(self.survey / "survey.toml", config=CONFIG)
+        self.run_ok(self.survey / "survey.toml", config=SOURCE / "configs" / "georeference.toml", out=self.folder / "georeferenced")
+        tiles = sorted((self.folder / "georeferenced" / "points").glob("*.las"))
+        survey = self.folder / "cloud.toml"
+        survey.write_text('name = "cloud"\ncrs = "EPSG:32632"\n' + "".join(f'\n[[points]]\nfile = "{t}"\n' for t in tiles))
+        report = self.run_ok(survey, config=CLOUD, out=self.folder / "cloud")
+        self.assertEqual(stage(report, "writers.las")["counts"]["in"],
+                         stage(json.loads((self.out / "report.json").read_text()), "writers.las")["counts"]["in"])
+        known = {"survey.toml", "georeference.toml", "cloud.toml"}
+        self.assertEqual({c.name for c in CONFIGS}, known, "a new config is run here too")
+
+    def test_the_config_as_json_gives_the_same_products(self):
+        config = self.folder / "survey.json"
+        config.write_text(json.dumps(tomllib.loads(CONFIG.read_text())))
+        self.run_ok(self.survey / "survey.toml", out=self.folder / "toml")
+        self.run_ok(self.survey / "survey.toml", config=config, out=self.folder / "json")
+        self.assertEqual(products(self.folder / "toml"), products(self.folder / "json"))
+
+    def test_set_changes_what_it_names(self):
+        report = self.run_ok(self.survey / "survey.toml", "--set", "contours.interval=50 cm", "--set", "writers.las.compress=false",
+                             "--set", "run.tile=250 m")
+        self.assertEqual(stage(report, "terrain.contours")["options"]["interval"], {"value": "0.5 m", "from": "--set"})
+        self.assertTrue(list((self.out / "points").glob("*.las")))
+        self.assertFalse(list((self.out / "points").glob("*.laz")))
+
+    def test_a_survey_without_truth_runs(self):
+        survey = self.copy()
+        text = (survey / "survey.toml").read_text()
+        (survey / "survey.toml").write_text(text[:text.index("[truth]")])
+        report = self.run_ok(survey / "survey.toml")
+        self.assertNotIn("rms_3d", stage(report, "report.truth").get("findings", {}))
+
+
+if __name__ == "__main__":
+    unittest.main()

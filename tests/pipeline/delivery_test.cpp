@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/delivery.h"
+
+#include "tests/world/support.h"
+
+namespace swath::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Delivery : public ::testing::TestWithParam<bool> {
+ protected:
+  void make(const fs::path& name, const std::string& bytes) { test::write_bytes(folder_ / name, bytes); }
+  std::string delivered(const fs::path& name) const { return test::read_bytes(folder_ / "out" / name); }
+  test::TemporaryFolder folder_;
+};
+
+TEST_P(Delivery, EveryFileComesToItsPlaceAndCanComeAgain) {
+  make("made/points/a.laz", "points");
+  make("made/relief.png", "picture");
+  make("made/points/.part-7-a.laz", "half");
+  for (int times = 0; times < 2; ++times) deliver(folder_ / "made", folder_ / "out", GetParam());
+  EXPECT_EQ(delivered("points/a.laz"), "points");
+  EXPECT_EQ(delivered("relief.png"), "picture");
+  int files = 0;
+  for (const auto& e : fs::recursive_directory_iterator(folder_ / "out")) files += e.is_regular_file();
+  EXPECT_EQ(files, 2) << "nothing temporary goes along or stays";
+}
+
+TEST_P(Delivery, TilesThatAreNoLongerListedGo) {
+  make("out/points/tiles.json", "[\"old.laz\", \"a.laz\"]");
+  make("out/points/old.laz", "old");
+  make("out/points/a.laz", "older");
+  make("out/points/mine.txt", "a file of the user's");
+  make("made/points/tiles.json", "[\"a.laz\"]");
+  make("made/points/a.laz", "new");
+  deliver(folder_ / "made", folder_ / "out", GetParam());
+  EXPECT_FALSE(fs::exists(folder_ / "out/points/old.laz"));
+  EXPECT_EQ(delivered("points/a.laz"), "new");
+  EXPECT_EQ(delivered("points/mine.txt"), "a file of the user's");
+}
+
+TEST_P(Delivery, ATemporaryFileOfAKilledDeliveryIsWrittenOver) {
+  make("made/relief.png", "picture");
+  make("out/.part-relief.png", "half a pict");
+  deliver(folder_ / "made", folder_ / "out", GetParam());
+  EXPECT_EQ(delivered("relief.png"), "picture");
+  EXPECT_FALSE(fs::exists(folder_ / "out/.part-relief.png"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Keep, Delivery, ::testing::Bool());
+
+TEST(DeliveryCopies, WhatIsKeptIsApartFromWhatIsDelivered) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "made/a", "a");
+  deliver(folder / "made", folder / "out", true);
+  EXPECT_FALSE(fs::equivalent(folder / "made/a", folder / "out/a"));
+}
+
+TEST(TemporaryFiles, GoAndNothingElse) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "a/b/.part-1-2-x.laz", "half");
+  test::write_bytes(folder / "a/b/part-1.laz", "whole");
+  remove_temporary_files(folder.path());
+  EXPECT_FALSE(fs::exists(folder / "a/b/.part-1-2-x.laz"));
+  EXPECT_TRUE(fs::exists(folder / "a/b/part-1.laz"));
+}
+
+}  // namespace
+}  // namespace swath::pipeline
