@@ -71,6 +71,13 @@ void deliver(const fs::path& made, const fs::path& output, bool keep) {
   }
 }
 
+void discard(const fs::path& folder, const fs::path& as) {
+  std::error_code ignored;
+  fs::remove_all(as, ignored);
+  fs::rename(folder, as, ignored);
+  fs::remove_all(as, ignored);
+}
+
 void remove_temporary_files(const fs::path& folder) {
   std::error_code ec;
   std::vector<fs::path> files;

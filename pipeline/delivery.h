@@ -13,6 +13,10 @@ namespace swath::pipeline {
 /// repeated. Throws core::SystemError.
 void deliver(const std::filesystem::path& made, const std::filesystem::path& output, bool keep);
 
+/// Removes a folder under the name `as` beside it, so that one whose removal was cut short is not taken for a whole one. Failures are
+/// passed over: what is left is under that name.
+void discard(const std::filesystem::path& folder, const std::filesystem::path& as);
+
 /// Removes temporary files (see io::OutputFile) that a killed run left below `folder`.
 void remove_temporary_files(const std::filesystem::path& folder);
 

@@ -433,10 +433,12 @@ void Engine::compose_report(const std::string& command) {
 
 /// Whatever lies in the work folder and is no part of this plan goes, as do pieces that a kill left half written.
 void sweep(const fs::path& work, const std::set<std::string>& valid) {
+  std::vector<fs::path> gone;
   for (const auto& entry : fs::directory_iterator(work)) {
     const std::string name = entry.path().filename().string();
-    if (name != "lock" && !valid.contains(name)) fs::remove_all(entry.path());
+    if (name != "lock" && !valid.contains(name)) gone.push_back(entry.path());
   }
+  for (const fs::path& folder : gone) discard(folder, work / "discarded");
   remove_temporary_files(work);
 }
 
@@ -453,11 +455,13 @@ Outcome Engine::run(const std::string& command) {
   std::error_code ec;
   fs::create_directories(work_, ec);
   if (ec) io::throw_system_error("cannot make the output folder", output_, ec.value());
+  const fs::path discarded = output_ / ".swath-discarded";
   const Lock lock(work_ / "lock");
   try {
     std::set<std::string> valid;
     for (size_t i = 0; i < plan_.stages.size(); ++i) valid.insert(folder(i).filename().string());
     sweep(work_, valid);
+    fs::remove_all(discarded, ec);
     run_survey_stages();
     run_strips();
     run_tile_stages();
@@ -468,12 +472,12 @@ Outcome Engine::run(const std::string& command) {
     report_["seconds"] = since(start);
     report_["threads"] = threads_;
     io::write_text_file(output_ / "report.json", io::to_json(report_));
-    if (!plan_.run.keep_work) fs::remove_all(work_);
+    if (!plan_.run.keep_work) discard(work_, discarded);
     return {held ? core::Exit::done : core::Exit::quality_missed, report_};
   } catch (const core::SystemError&) {
     throw;  // the work done so far stays, for the same command once the cause is mended
   } catch (...) {
-    fs::remove_all(work_, ec);
+    discard(work_, discarded);
     if (made_output) remove_if_empty(output_);
     throw;
   }

@@ -57,6 +57,16 @@ TEST(DeliveryCopies, WhatIsKeptIsApartFromWhatIsDelivered) {
   EXPECT_FALSE(fs::equivalent(folder / "made/a", folder / "out/a"));
 }
 
+TEST(Discard, LeavesNothingUnderEitherName) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "work/a/b", "b");
+  test::write_bytes(folder / "gone/rest", "of a removal that was cut short");
+  discard(folder / "work", folder / "gone");
+  EXPECT_EQ(test::entries(folder.path()), 0u);
+  discard(folder / "work", folder / "gone");
+  EXPECT_EQ(test::entries(folder.path()), 0u);
+}
+
 TEST(TemporaryFiles, GoAndNothingElse) {
   const test::TemporaryFolder folder;
   test::write_bytes(folder / "a/b/.part-1-2-x.laz", "half");
