@@ -56,6 +56,19 @@ class Disk(Case):
                     subprocess.run(["umount", disk], check=True)
         self.assertGreaterEqual(full, 4, "the disks were too large to fill")
 
+    def test_read_only_disk(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        if not may_mount(disk):
+            self.skipTest("needs the right to mount a small disk")
+        subprocess.run(["mount", "-t", "tmpfs", "-o", "ro", "tmpfs", disk], check=True)
+        try:
+            done = swath(*self.arguments(disk / "out"))
+            self.assert_error(done, 1, "disk/out.*Read-only file system", "hint: choose a folder that you may write to")
+            self.assert_error(swath("simulate", disk / "survey", "--quiet"), 1, "disk/survey.*Read-only file system")
+        finally:
+            subprocess.run(["umount", disk], check=True)
+
     def test_file_size_limit(self):
         # What cannot be mounted can be limited: writing past the limit fails as on a full disk.
         for kilobytes in (8, 40, 150):

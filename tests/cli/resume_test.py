@@ -56,6 +56,12 @@ class Killed(Case):
         shutil.rmtree(self.out)
         return resumed
 
+    def test_what_a_kill_while_cleaning_up_leaves_goes_with_the_next_run(self):
+        (self.out / ".swath-discarded" / "03-strips").mkdir(parents=True)
+        (self.out / ".swath-discarded" / "03-strips" / "rest").write_text("rest")
+        subprocess.run(self.command(self.out), check=True)
+        self.assertEqual([p.name for p in self.out.iterdir() if p.name.startswith(".")], [])
+
     def test_a_run_killed_with_other_options_is_not_mixed_in(self):
         run = subprocess.Popen(self.command(self.out) + ["--set", "smrf.slope=0.9", "--set", "contours.interval=3 m"])
         time.sleep(0.6)
