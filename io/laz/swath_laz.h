@@ -39,8 +39,8 @@ int swath_laz_writer_open(const char* path, uint64_t position, const uint8_t* vl
 int swath_laz_writer_write(swath_laz_writer* writer, const uint8_t* points, uint64_t n, char* message, size_t message_capacity);
 /* `chunks` chunks of `counts[i]` records each (none 0), one after the other in `points`; only with chunks of variable size.
  * `offsets[i]`, `bytes[i]` get the place of each in the file. */
-int swath_laz_writer_write_chunks(swath_laz_writer* writer, const uint8_t* points, const uint64_t* counts, size_t chunks,
-                                  uint64_t* offsets, uint64_t* bytes, char* message, size_t message_capacity);
+int swath_laz_writer_write_chunks(swath_laz_writer* writer, const uint8_t* points, const uint64_t* counts, size_t chunks, uint64_t* offsets,
+                                  uint64_t* bytes, char* message, size_t message_capacity);
 /* Writes what is left and the chunk table; `end` gets the file position after it. */
 int swath_laz_writer_finish(swath_laz_writer* writer, uint64_t* end, char* message, size_t message_capacity);
 void swath_laz_writer_close(swath_laz_writer* writer);
