@@ -12,8 +12,10 @@
 #include <tbb/parallel_pipeline.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <numeric>
 #include <set>
 #include <thread>
 
@@ -295,10 +297,18 @@ void Engine::run_tiles(size_t number) {
   });
   MemoryGate gate(static_cast<std::uint64_t>(plan_.run.memory.value * 0.8));
   std::atomic<std::uint64_t> again{0};
+  // The tiles of most points first: no thread is left alone with a large one at the end.
+  std::vector<size_t> order(keys.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    return store_->points_with_halo(keys[a], s.halo()) > store_->points_with_halo(keys[b], s.halo());
+  });
+  std::atomic<size_t> next{0};
   tbb::parallel_for(
       tbb::blocked_range<size_t>(0, keys.size(), 1),
       [&](const tbb::blocked_range<size_t>& range) {
-        for (size_t i = range.begin(); i < range.end(); ++i) {
+        for (size_t turn = range.begin(); turn < range.end(); ++turn) {
+          const size_t i = order[next++];
           const fs::path done = mine / (file_label(keys[i]) + ".done");
           if (fs::exists(done)) {
             notes[i] = io::parse_json(io::read_text_file(done), done.string());
