@@ -23,7 +23,8 @@ struct Limits {
 template <class V>
 void describe(Limits& l, V& v) {
   v.option("outside", l.outside, core::within(0, 1), "Largest share of returns that the trajectory does not cover.");
-  v.option("voids", l.voids, core::within(0, 1), "Largest share of holes in the DTM: cells without a height that have ground on all sides.");
+  v.option("voids", l.voids, core::within(0, 1),
+           "Largest share of holes in the DTM: cells without a height that have ground on all sides.");
   v.option("truth_rms", l.truth_rms, core::at_least(0), "Largest 3D rms of the points against truth, where truth is present.");
 }
 

@@ -62,6 +62,9 @@ void take_vertices(const core::Block& b, const std::vector<std::uint32_t>& rows,
   tin.duplicates = static_cast<size_t>(candidates.end() - end);
   candidates.erase(end, candidates.end());
 
+  for (auto* column : {&tin.x, &tin.y, &tin.z}) column->reserve(candidates.size());
+  if (!b.sigma_v.empty()) tin.sigma_v.reserve(candidates.size());
+  if (!b.sigma_h.empty()) tin.sigma_h.reserve(candidates.size());
   for (const Candidate& c : candidates) {
     tin.x.push_back(c.x);
     tin.y.push_back(c.y);
