@@ -21,9 +21,9 @@
 #include "io/value_file.h"
 #include "pipeline/delivery.h"
 #include "pipeline/grid_store.h"
-#include "pipeline/memory_gate.h"
 #include "pipeline/provenance.h"
 #include "pipeline/pulse_border.h"
+#include "pipeline/tile_queue.h"
 #include "pipeline/tile_store.h"
 
 namespace swath::pipeline {
@@ -293,20 +293,27 @@ void Engine::run_tiles(size_t number) {
     using T = typename std::remove_reference_t<decltype(std::declval<core::Block>().*member)>::value_type;
     if (columns.has(c) || c == core::Column::x || c == core::Column::y || c == core::Column::z) row_bytes += sizeof(T);
   });
-  MemoryGate gate(static_cast<std::uint64_t>(plan_.run.memory.value * 0.8));
+  const auto done_file = [&](TileKey k) { return mine / (file_label(k) + ".done"); };
+  std::vector<std::uint64_t> bytes;
+  for (const TileKey k : keys) {
+    const TileStore::Load load = store_->load_with_halo(k, s.halo());
+    const double needed = (static_cast<double>(row_bytes) + s.bytes_per_point()) * static_cast<double>(load.points) +
+                          static_cast<double>(row_bytes) * static_cast<double>(load.neighbour);
+    bytes.push_back(fs::exists(done_file(k)) ? 0 : static_cast<std::uint64_t>(needed));
+  }
+  TileQueue queue(std::move(bytes), static_cast<std::uint64_t>(plan_.run.memory.value * 0.8));
   std::atomic<std::uint64_t> again{0};
   tbb::parallel_for(
       tbb::blocked_range<size_t>(0, keys.size(), 1),
       [&](const tbb::blocked_range<size_t>& range) {
-        for (size_t i = range.begin(); i < range.end(); ++i) {
-          const fs::path done = mine / (file_label(keys[i]) + ".done");
+        for (size_t turn = range.begin(); turn < range.end(); ++turn) {
+          const TileQueue::Piece piece = queue.take();
+          const size_t i = piece.number();
+          const fs::path done = done_file(keys[i]);
           if (fs::exists(done)) {
-            notes[i] = io::parse_json(io::read_text_file(done), done.string());
+            notes[i] = io::read_value_file(done);
             ++again;
           } else {
-            const double per_point = static_cast<double>(row_bytes) + s.bytes_per_point();
-            const MemoryGate::Pass pass(
-                gate, static_cast<std::uint64_t>(per_point * static_cast<double>(store_->points_with_halo(keys[i], s.halo()))));
             stages::TileJob job{keys[i], context_.box_of(keys[i]), mine, {}, 0, {}};
             const auto start = Clock::now();
             job.block = store_->read_with_halo(keys[i], s.halo(), columns, job.own);

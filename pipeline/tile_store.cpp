@@ -309,22 +309,22 @@ Block TileStore::read_with_halo(TileKey key, double halo, ColumnSet columns, siz
   return out;
 }
 
-std::uint64_t TileStore::points_with_halo(TileKey key, double halo) const {
-  std::uint64_t own = tiles_.contains(key) ? tiles_.at(key) : 0;
-  if (halo <= 0) return own;
+TileStore::Load TileStore::load_with_halo(TileKey key, double halo) const {
+  Load load{tiles_.contains(key) ? tiles_.at(key) : 0, 0};
+  if (halo <= 0) return load;
+  constexpr double unevenness = 1.3;  // points of a neighbour may lie denser along the common edge
   const int reach = static_cast<int>(std::ceil(halo / side_));
-  double around = 0;
-  std::uint64_t largest = 0;
   for (int iy = key.iy - reach; iy <= key.iy + reach; ++iy)
     for (int ix = key.ix - reach; ix <= key.ix + reach; ++ix) {
       const auto at = tiles_.find({ix, iy});
       if ((ix == key.ix && iy == key.iy) || at == tiles_.end()) continue;
-      // Share of the neighbour that the halo covers, were its points spread evenly.
+      // Share of the neighbour that the halo covers.
       const auto share = [&](int d) { return d == 0 ? 1.0 : std::clamp((halo - (std::abs(d) - 1) * side_) / side_, 0.0, 1.0); };
-      around += static_cast<double>(at->second) * share(ix - key.ix) * share(iy - key.iy);
-      largest = std::max(largest, at->second);
+      load.points +=
+          static_cast<std::uint64_t>(static_cast<double>(at->second) * std::min(1.0, unevenness * share(ix - key.ix) * share(iy - key.iy)));
+      load.neighbour = std::max(load.neighbour, at->second);
     }
-  return own + static_cast<std::uint64_t>(1.5 * around) + largest;
+  return load;
 }
 
 }  // namespace swath::pipeline

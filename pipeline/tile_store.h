@@ -64,8 +64,12 @@ class TileStore {
   /// The tile's own points, then those of its neighbours within `halo` metres of its box, in order of tiles; `own` receives the number of
   /// the former.
   core::Block read_with_halo(TileKey key, double halo, core::ColumnSet columns, size_t& own) const;
-  /// Upper bound of the points that read_with_halo would load for a moment.
-  std::uint64_t points_with_halo(TileKey key, double halo) const;
+  /// What read_with_halo loads, estimated to the safe side: the points it gives, and those of the largest neighbour, which it holds for a
+  /// moment.
+  struct Load {
+    std::uint64_t points = 0, neighbour = 0;
+  };
+  Load load_with_halo(TileKey key, double halo) const;
 
  private:
   std::filesystem::path strips_;

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -41,8 +42,8 @@ struct Candidate {
 float rank(float sigma) { return std::isnan(sigma) ? std::numeric_limits<float>::infinity() : sigma; }
 
 bool before(const Candidate& a, const Candidate& b) {
-  return std::make_tuple(a.x, a.y, a.z, rank(a.sigma_v), rank(a.sigma_h)) <
-         std::make_tuple(b.x, b.y, b.z, rank(b.sigma_v), rank(b.sigma_h));
+  if (a.x != b.x) return a.x < b.x;
+  return std::make_tuple(a.y, a.z, rank(a.sigma_v), rank(a.sigma_h)) < std::make_tuple(b.y, b.z, rank(b.sigma_v), rank(b.sigma_h));
 }
 
 void take_vertices(const core::Block& b, const std::vector<std::uint32_t>& rows, Tin& tin) {
@@ -61,6 +62,9 @@ void take_vertices(const core::Block& b, const std::vector<std::uint32_t>& rows,
   tin.duplicates = static_cast<size_t>(candidates.end() - end);
   candidates.erase(end, candidates.end());
 
+  for (auto* column : {&tin.x, &tin.y, &tin.z}) column->reserve(candidates.size());
+  if (!b.sigma_v.empty()) tin.sigma_v.reserve(candidates.size());
+  if (!b.sigma_h.empty()) tin.sigma_h.reserve(candidates.size());
   for (const Candidate& c : candidates) {
     tin.x.push_back(c.x);
     tin.y.push_back(c.y);
@@ -68,6 +72,36 @@ void take_vertices(const core::Block& b, const std::vector<std::uint32_t>& rows,
     if (!b.sigma_v.empty()) tin.sigma_v.push_back(c.sigma_v);
     if (!b.sigma_h.empty()) tin.sigma_h.push_back(c.sigma_h);
   }
+}
+
+// Place of (x, y), each below 2^16, on a Hilbert curve (Hilbert 1891).
+std::uint32_t hilbert_index(std::uint32_t x, std::uint32_t y) {
+  constexpr std::uint32_t side = 1u << 16;
+  std::uint32_t index = 0;
+  for (std::uint32_t s = side / 2; s > 0; s /= 2) {
+    const std::uint32_t rx = (x & s) ? 1 : 0, ry = (y & s) ? 1 : 0;
+    index += s * s * ((3 * rx) ^ ry);
+    if (ry) continue;
+    if (rx) x = side - 1 - x, y = side - 1 - y;
+    std::swap(x, y);
+  }
+  return index;
+}
+
+// The vertices in an order in which each is near the one before, so that CGAL finds its triangle in a few steps. The triangulation that
+// is handed out does not depend on it.
+std::vector<std::int32_t> insertion_order(const Tin& tin) {
+  const auto [south, north] = std::minmax_element(tin.y.begin(), tin.y.end());
+  const double west = tin.x.front(), low = *south;
+  const double span = std::max({tin.x.back() - west, *north - low, std::numeric_limits<double>::min()});
+  const auto cell = [span](double v) { return static_cast<std::uint32_t>(std::min(v / span * 65536.0, 65535.0)); };
+  std::vector<std::uint64_t> keys(tin.x.size());
+  for (size_t i = 0; i < keys.size(); ++i)
+    keys[i] = static_cast<std::uint64_t>(hilbert_index(cell(tin.x[i] - west), cell(tin.y[i] - low))) << 32 | i;
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::int32_t> order(keys.size());
+  std::transform(keys.begin(), keys.end(), order.begin(), [](std::uint64_t k) { return static_cast<std::int32_t>(k & 0xffffffffu); });
+  return order;
 }
 
 std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t f) {
@@ -127,12 +161,14 @@ Tin triangulate(const core::Block& block, const std::vector<std::uint32_t>& rows
   Tin tin;
   take_vertices(block, rows, tin);
 
+  if (tin.x.empty()) return tin;
+
   Delaunay dt;
-  {
-    std::vector<std::pair<Kernel::Point_2, std::int32_t>> points;
-    points.reserve(tin.x.size());
-    for (size_t i = 0; i < tin.x.size(); ++i) points.emplace_back(Kernel::Point_2(tin.x[i], tin.y[i]), static_cast<std::int32_t>(i));
-    dt.insert(points.begin(), points.end());
+  Delaunay::Face_handle near;
+  for (const std::int32_t i : insertion_order(tin)) {
+    const Delaunay::Vertex_handle v = dt.insert(Kernel::Point_2(tin.x[i], tin.y[i]), near);
+    v->info() = i;
+    near = v->face();
   }
   if (dt.dimension() < 2) return tin;
 
@@ -151,12 +187,10 @@ Tin triangulate(const core::Block& block, const std::vector<std::uint32_t>& rows
     const double radius = circumcircle(tin, static_cast<std::int32_t>(tin.triangles.size()) - 1).radius;
     if (!(radius <= max_radius)) tin.triangles.pop_back();
   };
-  std::vector<std::int32_t> order(faces.size());
-  std::iota(order.begin(), order.end(), 0);
   std::vector<std::int32_t> members_of(faces.size(), 0);
   for (const std::int32_t p : polygon) ++members_of[p];
   std::vector<std::pair<std::int32_t, std::int32_t>> shared;  // (polygon, face) of the polygons of several faces
-  for (const std::int32_t f : order) {
+  for (std::int32_t f = 0; f < static_cast<std::int32_t>(faces.size()); ++f) {
     const auto& face = faces[f];
     if (members_of[polygon[f]] == 1)
       emit({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});

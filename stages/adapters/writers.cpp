@@ -159,15 +159,16 @@ core::Grid overview(const Context& context, core::Lattice extent, int most) {
   if (factor == 1) return context.grids->window(Product::dtm, extent);
   const core::Lattice whole{extent.cell * factor, 0, 0, (extent.nx + factor - 1) / factor, (extent.ny + factor - 1) / factor};
   core::Grid out(whole);
-  for (int j = 0; j < whole.ny; ++j) {
-    const core::Grid row = report::averaged(
+  // Bands as high as a tile, so that no tile is read more than twice.
+  const int rows = std::max(1, static_cast<int>(context.tile_side / whole.cell));
+  for (int j0 = 0; j0 < whole.ny; j0 += rows) {
+    const int n = std::min(rows, whole.ny - j0);
+    const core::Grid band = report::averaged(
         context.grids->window(Product::dtm,
-                              {extent.cell, extent.i0, extent.j0 + static_cast<std::int64_t>(j) * factor, whole.nx * factor, factor}),
+                              {extent.cell, extent.i0, extent.j0 + static_cast<std::int64_t>(j0) * factor, whole.nx * factor, n * factor}),
         factor);
-    for (int i = 0; i < whole.nx; ++i) {
-      out.height[whole.at(i, j)] = row.height[row.lattice.at(i, 0)];
-      out.reason[whole.at(i, j)] = row.reason[row.lattice.at(i, 0)];
-    }
+    std::copy(band.height.begin(), band.height.end(), out.height.begin() + static_cast<std::ptrdiff_t>(whole.at(0, j0)));
+    std::copy(band.reason.begin(), band.reason.end(), out.reason.begin() + static_cast<std::ptrdiff_t>(whole.at(0, j0)));
   }
   return out;
 }

@@ -86,7 +86,7 @@ TEST(TileStore, HaloHoldsExactlyThePointsAroundTheBox) {
     size_t inside = 0;
     for (size_t i = 0; i < s.all.size(); ++i) inside += box.holds(1000 + s.all.x[i], 2000 + s.all.y[i]);
     EXPECT_EQ(b.size(), inside);
-    EXPECT_GE(s.store.points_with_halo(key, halo) * 10, b.size() * 8);
+    EXPECT_GE(s.store.load_with_halo(key, halo).points * 10, b.size() * 8);
   }
 }
 
