@@ -2,6 +2,7 @@
 #include "pipeline/plan.h"
 
 #include <algorithm>
+#include <map>
 
 #include "core/error.h"
 #include "io/value_file.h"
@@ -115,6 +116,7 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
   const auto has = [&](Product p) { return std::find(products.begin(), products.end(), p) != products.end(); };
   bool tiles_began = false;
   int sources = 0;
+  std::map<std::filesystem::path, std::string> makers{{"report.json", "the report"}, {".swath", "the work in progress"}};
   for (const PlannedStage& s : plan.stages) {
     const stages::Info& info = s.stage->info();
     const auto fault = [&](std::string what, std::string hint) {
@@ -141,6 +143,14 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
       if (info.needs.has(column) && !columns.has(column))
         fault("needs the column " + std::string(core::name_of(column)) + ", which no stage before it gives",
               giver([column](const stages::Info& i) { return i.gives.has(column); }));
+    }
+    for (const std::string& name : s.stage->products()) {
+      std::filesystem::path product = std::filesystem::path(name).lexically_normal();
+      if (!product.has_filename()) product = product.parent_path();
+      if (product.empty() || product == "." || product.is_absolute() || *product.begin() == "..")
+        fault("the name '" + name + "' of a product does not lie in the output folder", "a plain name, such as \"points\"");
+      else if (const auto [maker, fresh] = makers.try_emplace(product, s.path); !fresh)
+        fault("makes " + name + " in the output folder, as does " + maker->second, "give one of them another name, or leave it out");
     }
     columns = columns | info.gives;
     products.insert(products.end(), info.gives_products.begin(), info.gives_products.end());

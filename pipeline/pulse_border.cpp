@@ -6,10 +6,13 @@
 namespace swath::pipeline {
 namespace {
 
+constexpr size_t most_of_a_pulse = 255;  // return numbers are 8-bit
+
+/// The row where the last pulse begins; the end where more records share its time than a pulse can have (a cloud without times).
 size_t last_pulse(const std::vector<double>& time) {
   size_t at = time.size();
   while (at > 0 && time[at - 1] == time.back()) --at;
-  return at;
+  return time.size() - at > most_of_a_pulse ? time.size() : at;
 }
 
 /// Cuts the columns to their first `at` rows and gives the rest.

@@ -12,6 +12,7 @@
 #include <tbb/parallel_pipeline.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <set>
@@ -37,6 +38,11 @@ using stages::Stage;
 using Clock = std::chrono::steady_clock;
 
 constexpr size_t batch_points = 1 << 17;
+
+bool has_surface(const std::vector<stages::Product>& products) {
+  return std::any_of(products.begin(), products.end(),
+                     [](stages::Product p) { return p == stages::Product::dtm || p == stages::Product::dsm; });
+}
 
 double since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
@@ -88,7 +94,9 @@ class Engine {
   void run_strips();
   void stream_strip(const stages::Strip& strip, const fs::path& folder);
   void run_tile_stages();
+  std::vector<TileKey> tiles_of(size_t number) const;
   void run_tiles(size_t number);
+  void keep_surface_tiles(size_t number, const std::vector<TileKey>& fringe);
   void run_merge(size_t number);
   void compose_report(const std::string& command);
   bool judge_limits();
@@ -112,6 +120,7 @@ class Engine {
   std::vector<std::string> fingerprints_;
   size_t last_strip_stage_ = 0;
   std::unique_ptr<TileStore> store_;
+  std::set<TileKey> surface_tiles_;  ///< without a point of their own, but a surface reaches into them from their neighbours
   std::uint64_t resumed_ = 0;
   Value report_;
 };
@@ -278,13 +287,39 @@ void Engine::run_strips() {
                       "compare the time scales with `swath info` of the laser and trajectory files");
 }
 
+/// The tiles with points, and for what is made of surfaces also those that triangles of their neighbours' points reach into: the surface
+/// does not depend on where the tiles' borders lie.
+std::vector<TileKey> Engine::tiles_of(size_t number) const {
+  const stages::Info& info = stage(number).info();
+  std::set<TileKey> keys;
+  if (info.gives.empty() && (has_surface(info.gives_products) || has_surface(info.needs_products))) keys = surface_tiles_;
+  for (const auto& [key, n] : store_->tiles()) keys.insert(key);
+  return {keys.begin(), keys.end()};
+}
+
+/// Of the tiles without points only those stay in which the surface says anything.
+void Engine::keep_surface_tiles(size_t number, const std::vector<TileKey>& fringe) {
+  for (const TileKey key : fringe) {
+    const fs::path file = stages::grid_file(folder(number), key);
+    if (surface_tiles_.contains(key) || !fs::exists(file)) continue;
+    const core::Grid grid = stages::read_grid_tile(file);
+    if (std::all_of(grid.reason.begin(), grid.reason.end(), [](core::Void r) { return r == core::Void::no_data; }))
+      fs::remove(file);
+    else
+      surface_tiles_.insert(key);
+  }
+}
+
 void Engine::run_tiles(size_t number) {
   const Stage& s = stage(number);
   const fs::path mine = folder(number);
   const core::ColumnSet columns = s.info().needs | s.info().gives | s.also_reads();
   const bool changes = !s.info().gives.empty();
-  std::vector<TileKey> keys;
-  for (const auto& [key, n] : store_->tiles()) keys.push_back(key);
+  const bool makes_surface = has_surface(s.info().gives_products);
+  const std::vector<TileKey> fringe = makes_surface ? store_->fringe(s.halo()) : std::vector<TileKey>{};
+  std::vector<TileKey> keys = tiles_of(number);
+  for (const TileKey key : fringe)
+    if (!surface_tiles_.contains(key)) keys.push_back(key);
   std::vector<Value> notes(keys.size());
   progress_.begin(std::string(s.info().name), store_->points(), "points");
 
@@ -319,7 +354,7 @@ void Engine::run_tiles(size_t number) {
             job.block = store_->read_with_halo(keys[i], s.halo(), columns, job.own);
             core::add_columns(job.block, s.info().gives);
             const size_t before = job.block.size();
-            s.run_tile(context_, job);
+            if (before > 0 || !makes_surface) s.run_tile(context_, job);
             if (job.block.size() != before)
               throw core::Error("the stage changed the number of points of a tile", std::string(s.info().name),
                                 "this is a fault of the program");
@@ -331,7 +366,8 @@ void Engine::run_tiles(size_t number) {
             fs::rename(mine / (file_label(keys[i]) + ".json"), done);
             notes[i] = std::move(note);
           }
-          progress_.advance(store_->tiles().at(keys[i]));
+          const auto points = store_->tiles().find(keys[i]);
+          if (points != store_->tiles().end()) progress_.advance(points->second);
         }
       },
       tbb::simple_partitioner());
@@ -339,16 +375,17 @@ void Engine::run_tiles(size_t number) {
   resumed_ += again;
   Account& account = accounts_[number];
   account.in = account.out = store_->points();
-  for (const Value& note : notes) {
-    account.tally.add(Tally::from(*note.find("tally")));
-    account.seconds += note.find("seconds")->as_number();
+  keep_surface_tiles(number, fringe);
+  for (size_t i = 0; i < keys.size(); ++i) {
+    account.seconds += notes[i].find("seconds")->as_number();
+    if (store_->tiles().contains(keys[i]) || surface_tiles_.contains(keys[i])) account.tally.add(Tally::from(*notes[i].find("tally")));
   }
   if (changes) store_->add_overlay(mine, s.info().gives);
 }
 
 void Engine::run_merge(size_t number) {
   stages::MergeJob job{folder(number), {}, {}};
-  for (const auto& [key, n] : store_->tiles()) job.tiles.push_back(key);
+  job.tiles = tiles_of(number);
   const auto start = Clock::now();
   progress_.begin(std::string(stage(number).info().name) + " merge", 1, "survey");
   stage(number).run_merge(context_, job);

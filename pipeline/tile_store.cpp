@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <set>
 
 #include "core/error.h"
 #include "core/value.h"
@@ -226,13 +227,22 @@ void TileStore::open(const std::vector<std::string>& names) {
       segments_[key].push_back({file, n});
       tiles_[key] += n;
       points_ += n;
-      if (columns_.empty() || segments_[key].size() == 1) {
-        File f(file, O_RDONLY);
-        ChunkHead head{};
-        if (f.read(&head, sizeof head)) columns_ = columns_ | set_of(head.columns);
-      }
+      // Strips of several files need not have the same columns.
+      File f(file, O_RDONLY);
+      ChunkHead head{};
+      if (f.read(&head, sizeof head)) columns_ = columns_ | set_of(head.columns);
     }
   }
+}
+
+std::vector<TileKey> TileStore::fringe(double halo) const {
+  const int reach = static_cast<int>(std::ceil(halo / side_));
+  std::set<TileKey> out;
+  for (const auto& [key, n] : tiles_)
+    for (int iy = key.iy - reach; iy <= key.iy + reach; ++iy)
+      for (int ix = key.ix - reach; ix <= key.ix + reach; ++ix)
+        if (!tiles_.contains({ix, iy})) out.insert({ix, iy});
+  return {out.begin(), out.end()};
 }
 
 void TileStore::add_overlay(fs::path folder, ColumnSet columns) {

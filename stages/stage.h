@@ -160,6 +160,9 @@ class Stage {
 
   virtual void run_merge(const Context&, MergeJob&) const {}
 
+  /// Names within the output folder of the files and folders that the stage makes; each belongs to one stage of a plan.
+  virtual std::vector<std::string> products() const { return {}; }
+
   bool works_on(Grain g) const {
     for (const Grain mine : info().grains)
       if (mine == g) return true;

@@ -40,6 +40,7 @@ class Penetration : public OptionStage<PenetrationOptions> {
     return info;
   }
   double halo() const override { return options.cell.value; }
+  std::vector<std::string> products() const override { return {"penetration", "penetration.vrt"}; }
 
   void run_tile(const Context& context, TileJob& job) const override {
     const core::Lattice lattice = lattice_in(options.cell.value, job.box);

@@ -153,12 +153,16 @@ class CloudReader : public StripReader {
     if (crs.key() != context.crs.key()) transform_.emplace(crs, context.crs);
     // Heights without a vertical CRS: PROJ takes metres; files have their own unit, by custom that of the horizontal axes.
     if (!crs.has_vertical()) {
-      file_height_unit_ = stated.vertical_metres > 0   ? stated.vertical_metres
+      file_height_unit_ = file_.height_unit            ? file_.height_unit->value
+                          : stated.vertical_metres > 0 ? stated.vertical_metres
                           : context.survey.height_unit ? context.survey.height_unit->value
+                          : crs.is_geographic()        ? 1.0
                                                        : crs.metres_per_unit();
       if (!transform_) file_height_unit_ /= context.vertical_unit;
     }
     if (transform_ && !context.crs.has_vertical()) map_height_unit_ = context.vertical_unit;
+    const io::LasHeader& header = reader_.header();
+    keeps_seconds_of_week_ = io::las_layout(header.point_format)->gps && !header.gps_time_is_adjusted() && !file_.week;
   }
 
   bool next(StripBatch& batch, size_t most, core::Tally& tally) override {
@@ -179,9 +183,9 @@ class CloudReader : public StripReader {
     scale_block(context_, block, false);
     block.origin = context_.origin;
     if (file_.line) block.strip.assign(block.size(), static_cast<std::uint16_t>(*file_.line));
-    for (const Column c : {Column::time, Column::intensity, Column::return_number, Column::return_count, Column::classification,
-                           Column::flags, Column::scan_angle, Column::strip, Column::record})
-      core::add_columns(block, {c});
+    if (keeps_seconds_of_week_) tally.count("times are seconds of a GPS week not stated (points.week), kept as they are", n);
+    core::add_columns(block, {Column::time, Column::intensity, Column::return_number, Column::return_count, Column::classification,
+                              Column::flags, Column::scan_angle, Column::strip, Column::record});
     batch.block = std::move(block);
     return true;
   }
@@ -213,6 +217,7 @@ class CloudReader : public StripReader {
   io::LasReader reader_;
   std::optional<core::Transform> transform_;
   double file_height_unit_ = 1.0, map_height_unit_ = 1.0;
+  bool keeps_seconds_of_week_ = false;
 };
 
 class LasCloud : public OptionStage<NoOptions> {

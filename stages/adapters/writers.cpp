@@ -49,6 +49,7 @@ class LasTiles : public OptionStage<LasOptions> {
     return all;
   }
   double bytes_per_point() const override { return 120.0; }
+  std::vector<std::string> products() const override { return {options.folder}; }
   void run_tile(const Context& context, TileJob& job) const override {
     io::LasWriteOptions o;
     o.scale = Eigen::Vector3d::Constant(options.scale);
@@ -93,6 +94,7 @@ class GridTiles : public OptionStage<NoOptions> {
     return info;
   }
   double bytes_per_point() const override { return 16.0; }
+  std::vector<std::string> products() const override { return {"dtm", "dsm", "dtm.vrt", "dsm.vrt"}; }
   void run_tile(const Context& context, TileJob& job) const override {
     for (const Product p : surfaces(context)) {
       const core::Lattice own = lattice_in(context.grids->cell(p), job.box);
@@ -192,6 +194,7 @@ class PictureWriter : public OptionStage<PictureWriteOptions> {
         "writers.picture", "Picture of the terrain: hillshade with contours, as PNG.", {Grain::merge}, {}, {}, {Product::dtm}, {}};
     return info;
   }
+  std::vector<std::string> products() const override { return {options.file}; }
   void run_merge(const Context& context, MergeJob& job) const override {
     const core::Lattice extent = extent_of(context, job.tiles);
     if (extent.size() == 0) return;

@@ -47,6 +47,16 @@ TEST(Plan, ReadsConfigSurveyAndSets) {
   EXPECT_EQ(told.find("stages")->items()[2].find("options")->find("cell")->find("value")->as_text(), "0.5 m");
 }
 
+TEST(Plan, TwoStagesThatMakeTheSameProductAreRefused) {
+  const std::string writer = "[[stage]]\ntype = \"writers.las\"\n";
+  EXPECT_NE(Case(good + writer + writer + "compress = false\n").fault().find("makes points in the output folder, as does stage[4]"),
+            std::string::npos);
+  EXPECT_EQ(Case(good + writer + writer + "folder = \"las\"\n").fault(), "");
+  EXPECT_NE(Case(good + writer + "folder = \"./.swath/\"\n").fault(), "");
+  EXPECT_NE(Case(good + writer + "folder = \"../elsewhere\"\n").fault(), "");
+  EXPECT_NE(Case(good + writer + "folder = \"dtm/\"\n[[stage]]\ntype = \"writers.gdal\"\n").fault(), "");
+}
+
 TEST(Plan, TellsWhereAValueCameFrom) {
   Case c(good);
   Plan plan = make_plan(c.request);

@@ -34,5 +34,16 @@ TEST(PulseBorder, PulsesAreNeverCutAndNothingIsLost) {
   }
 }
 
+TEST(PulseBorder, ACloudWithoutTimesIsNotHeldBack) {
+  constexpr size_t n = 1000;
+  PulseBorder border;
+  stages::StripBatch batch;
+  for (auto* c : {&batch.block.x, &batch.block.y, &batch.block.z, &batch.block.time}) c->assign(n, 0.0);
+  batch.shots.time.assign(n, 0.0);
+  border.cut(batch, false);
+  EXPECT_EQ(batch.block.size(), n);
+  EXPECT_EQ(batch.shots.size(), n);
+}
+
 }  // namespace
 }  // namespace swath::pipeline

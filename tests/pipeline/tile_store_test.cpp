@@ -75,6 +75,28 @@ TEST(TileStore, ReadsOnlyTheColumnsAskedFor) {
   EXPECT_EQ(b.x.size(), b.size());
 }
 
+TEST(TileStore, AColumnOfOneStripIsZeroInTheOthers) {
+  const test::TemporaryFolder folder;
+  for (const int s : {1, 2, 3}) {
+    StripWriter writer(folder / ("strips/strip_" + std::to_string(s)), 1000.0, 1);
+    Block part = cloud(100, 1);
+    if (s == 2) part.red.assign(part.size(), 7);
+    writer.write(part);
+    writer.commit("");
+  }
+  TileStore store(folder / "strips", 1000.0, {1000, 2000, 0});
+  store.open({"strip_1", "strip_2", "strip_3"});
+  EXPECT_TRUE(store.columns().has(Column::red));
+  size_t coloured = 0;
+  for (const auto& [key, n] : store.tiles()) {
+    const Block b = store.read(key, {Column::red, Column::record});
+    ASSERT_EQ(b.red.size(), n);
+    for (size_t i = 0; i < n; ++i) coloured += b.red[i] == 7;
+    EXPECT_EQ(b.red.back(), 0);
+  }
+  EXPECT_EQ(coloured, 100u);
+}
+
 TEST(TileStore, HaloHoldsExactlyThePointsAroundTheBox) {
   const Store s;
   const double halo = 130.0;
