@@ -346,7 +346,7 @@ void Engine::run_tiles(size_t number) {
           const size_t i = piece.number();
           const fs::path done = done_file(keys[i]);
           if (fs::exists(done)) {
-            notes[i] = io::read_value_file(done);
+            notes[i] = io::parse_json(io::read_text_file(done), done.string());
             ++again;
           } else {
             stages::TileJob job{keys[i], context_.box_of(keys[i]), mine, {}, 0, {}};
