@@ -14,8 +14,8 @@ enum class Exit : int { done = 0, bad_data = 1, bad_usage = 2, quality_missed = 
 /// `what` says what is wrong, `where` names file, record, byte or key path, `hint` says what to do.
 class Error : public std::runtime_error {
  public:
-  explicit Error(std::string what, std::string where = {}, std::string hint = {}, Exit code = Exit::bad_data)
-      : std::runtime_error(std::move(what)), where_(std::move(where)), hint_(std::move(hint)), code_(code) {}
+  explicit Error(const std::string& what, std::string where = {}, std::string hint = {}, Exit code = Exit::bad_data)
+      : std::runtime_error(what), where_(std::move(where)), hint_(std::move(hint)), code_(code) {}
 
   const std::string& where() const { return where_; }
   const std::string& hint() const { return hint_; }

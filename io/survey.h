@@ -159,7 +159,8 @@ void describe(PointFile& f, V& v) {
   v.option("file", f.file, "LAS or LAZ file, relative to survey.toml.");
   v.option("crs", f.crs, "CRS of the file, where it states none or a wrong one.");
   v.option("height_unit", f.height_unit, core::above(0.0),
-           "One unit of the file's heights where its CRS has no vertical part; without it what the file states, then the survey's height_unit, then the unit of the file's horizontal axes.");
+           "One unit of the file's heights where its CRS has no vertical part; without it what the file states, then the survey's "
+           "height_unit, then the unit of the file's horizontal axes.");
   v.option("line", f.line, core::within(0, 65535), "Flight line id of all points; otherwise the points' source ids.");
   v.option("week", f.week, core::within(0, 10000),
            "GPS week of the first point, where the file's times are seconds of week; without it they are kept as they are.");

@@ -9,8 +9,8 @@ packages=(
   python3 python3-venv clang-format
 )
 # The LAZ coder needs Rust 1.66 or newer: Debian 12 has it as cargo-web, Ubuntu 24.04 as cargo.
-rust_minor() { cargo --version 2>/dev/null | sed -n 's/^cargo 1\.\([0-9]*\).*/\1/p'; }
-minor="$(rust_minor)"
+minor=0
+if command -v cargo >/dev/null; then minor="$(cargo --version | sed -n 's/^cargo 1\.\([0-9]*\).*/\1/p')"; fi
 if [ "${minor:-0}" -lt 66 ]; then
   if grep -q '^VERSION_CODENAME=bookworm' /etc/os-release; then packages+=(cargo-web rustc-web); else packages+=(cargo rustc); fi
 fi
@@ -21,6 +21,9 @@ done
 [ "${#missing[@]}" -eq 0 ] && exit 0
 echo "installing: ${missing[*]}"
 as_root=()
-[ "$(id -u)" -eq 0 ] || as_root=(sudo)
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "swath: no sudo here; as root: apt-get install --no-install-recommends ${missing[*]}" >&2; exit 1; }
+  as_root=(sudo)
+fi
 "${as_root[@]}" apt-get update -q
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"

@@ -139,9 +139,7 @@ class Contours : public OptionStage<ContourWriteOptions> {
                            {Product::contours}};
     return info;
   }
-  std::vector<std::string> products() const override {
-    return {options.name + ".gpkg", options.name + ".dxf", options.name + ".geojson"};
-  }
+  std::vector<std::string> products() const override { return {options.name + ".gpkg", options.name + ".dxf", options.name + ".geojson"}; }
   double bytes_per_point() const override { return 16.0; }
   void run_tile(const Context& context, TileJob& job) const override {
     core::Lattice own = lattice_in(context.grids->cell(Product::dtm), job.box);
