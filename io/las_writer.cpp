@@ -178,7 +178,8 @@ struct LasWriter::State {
     h.version_minor = options.version_minor;
     h.point_format = options.format.value_or(first.red.empty() ? 6 : 7);
     h.file_source_id = options.file_source_id;
-    if (las_layout(h.point_format) && las_layout(h.point_format)->gps) h.global_encoding |= las_encoding::adjusted_gps_time;
+    if (!options.seconds_of_week && las_layout(h.point_format) && las_layout(h.point_format)->gps)
+      h.global_encoding |= las_encoding::adjusted_gps_time;
     if (h.point_format >= 6) h.global_encoding |= las_encoding::wkt;
     h.system_identifier = options.system_identifier;
     h.generating_software = options.generating_software;

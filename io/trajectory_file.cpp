@@ -126,8 +126,10 @@ TrajectoryData read_csd(const std::filesystem::path& path, const TrajectoryFile&
   return out;
 }
 
-/// Sigmas that the file does not have, from the survey.
-void fill_sigmas(TrajectoryData& t, const TrajectoryFile& f) {
+/// Sigmas that the file does not have, from the survey; counted, because the points' uncertainties rest on them.
+void fill_sigmas(TrajectoryData& t, const TrajectoryFile& f, core::Tally& tally) {
+  if (t.sigma_north.empty() || t.sigma_heading.empty())
+    tally.count("trajectory files without sigmas of their own: those of the survey taken", f.file.filename().string());
   for (const auto& [column, value] : {std::pair{&t.sigma_north, f.sigma_horizontal.value},
                                       {&t.sigma_east, f.sigma_horizontal.value},
                                       {&t.sigma_down, f.sigma_vertical.value},
@@ -209,7 +211,7 @@ TrajectoryData read_trajectory(const Survey& survey, const TrajectoryFile& f, co
       throw core::usage_error("the name does not tell the format of the trajectory", path.string(),
                               "state format = \"sbet\", \"text\" or \"csd\"");
   }
-  fill_sigmas(out, f);
+  fill_sigmas(out, f, tally);
   check_trajectory(out, path.string(), tally);
   return out;
 }

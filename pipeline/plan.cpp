@@ -161,6 +161,13 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
   }
 }
 
+/// What only the survey can settle: a map projection, and each stage's own conditions.
+void check_against_survey(const Plan& plan) {
+  if (!plan.survey.crs.empty()) require_projected(core::Crs(plan.survey.crs), plan.survey_file);
+  const stages::Context context{plan.survey};
+  for (const PlannedStage& s : plan.stages) s.stage->check(context);
+}
+
 /// Sets {"key": {"value", "from"}} for each effective option of a table.
 Value with_origin(const core::Describe& d, const Value& written) {
   const std::function<Value(const Value&, const Value*)> walk = [&](const Value& effective, const Value* given) {
@@ -225,7 +232,14 @@ Plan make_plan(const Request& request) {
     }
   }
   core::throw_if_any(faults);
+  if (!plan.survey_file.empty()) check_against_survey(plan);
   return plan;
+}
+
+void require_projected(const core::Crs& crs, const std::filesystem::path& survey) {
+  if (crs.is_projected()) return;
+  throw core::usage_error("the products' CRS is " + crs.name() + ", which is not a map projection", survey.string() + ": crs",
+                          "choose a projected CRS, for example the UTM zone EPSG:326xx");
 }
 
 void set_option(core::Value& table, const std::string& set) {

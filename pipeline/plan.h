@@ -79,6 +79,9 @@ struct Plan {
 /// explained, not run.
 Plan make_plan(const Request& request);
 
+/// Throws core::Error (usage) where the CRS is no map projection.
+void require_projected(const core::Crs& crs, const std::filesystem::path& survey);
+
 /// Sets one option of a table of options from "key=value" or "table.key=value", as --set does. Throws core::Error (usage).
 void set_option(core::Value& table, const std::string& set);
 

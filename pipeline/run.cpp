@@ -132,9 +132,7 @@ void Engine::prepare() {
   for (const PlannedStage& s : plan_.stages)
     if (plan_.survey.crs.empty() && s.stage->is_source()) plan_.survey.crs = s.stage->own_crs(plan_.survey);
   context_.crs = core::Crs(plan_.survey.crs);
-  if (!context_.crs.is_projected())
-    throw core::usage_error("the products' CRS is " + context_.crs.name() + ", which is not a map projection",
-                            plan_.survey_file.string() + ": crs", "choose a projected CRS, for example the UTM zone EPSG:326xx");
+  require_projected(context_.crs, plan_.survey_file);
   context_.unit = context_.crs.metres_per_unit();
   context_.vertical_unit = context_.crs.vertical_metres_per_unit();
   context_.product_crs = plan_.survey.crs;
@@ -152,7 +150,6 @@ void Engine::prepare() {
   context_.tile_side = plan_.run.tile.value;
   context_.config_folder = plan_.config.parent_path();
   context_.grids = &grids_;
-  for (const PlannedStage& s : plan_.stages) s.stage->check(context_);
   for (const PlannedStage& s : plan_.stages)
     if (s.stage->is_source()) s.stage->locate(context_);
   inputs_ = inputs_of(plan_);
@@ -412,10 +409,16 @@ void Engine::run_tile_stages() {
 bool Engine::judge_limits() {
   Value& list = report_["limits"] = Value::array();
   bool held = true;
-  const auto judge = [&](const char* name, std::optional<double> value, double limit) {
-    if (!value) return;
+  const auto judge = [&](const char* name, std::optional<double> value, double limit, double none) {
+    if (!value && limit >= none) return;
     Value one = Value::object();
     one["name"] = name;
+    if (!value) {
+      one["limit"] = limit;
+      one["held"] = "not judged: no stage of this run measures it";
+      list.push(std::move(one));
+      return;
+    }
     one["value"] = *value;
     one["limit"] = limit;
     one["held"] = *value <= limit;
@@ -432,9 +435,10 @@ bool Engine::judge_limits() {
     if (stage(i).info().name == "georeference" && accounts_[i].in > 0)
       outside = static_cast<double>(accounts_[i].tally.of("outside the trajectory, left out")) / static_cast<double>(accounts_[i].in);
   const Limits& limits = plan_.run.limits;
-  judge("outside", outside, limits.outside);
-  judge("voids", finding("void_share"), limits.voids);
-  judge("truth_rms", finding("rms_3d"), limits.truth_rms.value);
+  const Limits no_limits;
+  judge("outside", outside, limits.outside, no_limits.outside);
+  judge("voids", finding("void_share"), limits.voids, no_limits.voids);
+  judge("truth_rms", finding("rms_3d"), limits.truth_rms.value, no_limits.truth_rms.value);
   return held;
 }
 

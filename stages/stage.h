@@ -71,6 +71,7 @@ struct Context {
   double unit = 1.0;           ///< metres per horizontal unit of the CRS
   double vertical_unit = 1.0;  ///< metres per vertical unit of the CRS
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of every Block of the run, m
+  bool weekless = false;                             ///< times are seconds of a GPS week that no file names: written on as such
   double tile_side = 500.0;                          ///< m
   std::filesystem::path output{};                    ///< where the stage at work puts its products, laid out as in the output folder
   std::vector<std::filesystem::path> earlier{};      ///< the same of the stages before it

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/error.h"
 #include "filters/returns.h"
 #include "io/geotiff.h"
 #include "io/output_file.h"
@@ -73,7 +74,9 @@ class Penetration : public OptionStage<PenetrationOptions> {
       tiles.push_back(context.output / "penetration" / files.back());
       std::uint64_t sums[2];
       const std::string bytes = io::read_text_file(job.folder / (context.label(key) + ".sums"));
-      if (bytes.size() != sizeof sums) continue;
+      if (bytes.size() != sizeof sums)
+        throw core::Error("the intermediate result is cut short", (job.folder / (context.label(key) + ".sums")).string(),
+                          "remove the .swath folder beside the products and run again");
       std::memcpy(sums, bytes.data(), sizeof sums);
       all[0] += sums[0];
       all[1] += sums[1];

@@ -40,6 +40,11 @@ class TrajectoryReader : public OptionStage<trajectory::TrajectoryOptions> {
     }
     return out;
   }
+  void check(const Context& context) const override {
+    if (io::trajectory_files(context.survey).empty())
+      throw core::usage_error("readers.trajectory: the survey names no [[trajectory]]", context.survey.name,
+                              "point clouds need no trajectory: leave the stage out");
+  }
   void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
     core::TrajectoryData data = io::read_trajectory(context.survey, tally);
     trajectory::CheckOptions checks;
@@ -141,6 +146,22 @@ std::string crs_of(const io::Survey& survey, const io::PointFile& f) {
     throw core::Error("states no CRS" + (stated.note.empty() ? std::string() : ": " + stated.note), file.string(),
                       "name it as points.crs in the survey");
   return stated.definition;
+}
+
+/// Are the clouds' times seconds of a week that neither file nor survey names? Throws core::Error where only some of the files' times are.
+bool has_weekless_times(const io::Survey& survey) {
+  std::vector<fs::path> weekless, dated;
+  for (const io::PointFile& f : survey.points) {
+    std::vector<std::string> ignored;
+    const fs::path file = io::resolve(survey, f.file);
+    const io::LasHeader header = io::read_las_header(file, ignored);
+    if (!io::las_layout(header.point_format)->gps) continue;
+    (header.gps_time_is_adjusted() || f.week ? dated : weekless).push_back(file);
+  }
+  if (!weekless.empty() && !dated.empty())
+    throw core::Error("times are seconds of a GPS week that is not stated, while those of " + dated.front().string() + " are dated",
+                      weekless.front().string(), "state points.week for it in the survey");
+  return !weekless.empty();
 }
 
 /// Reads a point cloud in map coordinates, converted to the CRS and metres of the run.
@@ -251,6 +272,7 @@ class LasCloud : public OptionStage<NoOptions> {
     std::vector<std::string> ignored;
     const io::PointFile& first = context.survey.points.front();
     const io::LasHeader header = io::read_las_header(io::resolve(context.survey, first.file), ignored);
+    context.weekless = has_weekless_times(context.survey);
     const core::Crs crs(crs_of(context.survey, first));
     Eigen::Vector3d corner = header.min;
     if (crs.key() != context.crs.key()) corner = core::Transform(crs, context.crs)(corner);

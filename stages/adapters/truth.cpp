@@ -68,6 +68,13 @@ class Truth : public OptionStage<NoOptions> {
     return out;
   }
 
+  void check(const Context& context) const override {
+    if (context.survey.truth.returns && context.survey.laser.size() > 1)
+      throw core::usage_error("report.truth: truth.returns has one row per record of one laser file; the survey names " +
+                                  std::to_string(context.survey.laser.size()),
+                              context.survey.name, "compare one file at a time, or leave truth.returns out");
+  }
+
   void run_tile(const Context& context, TileJob& job) const override {
     Sums sums;
     if (context.survey.truth.returns) sums = compare(context, job.block, job.own);
@@ -83,7 +90,10 @@ class Truth : public OptionStage<NoOptions> {
     for (const TileKey key : job.tiles) {
       const std::string bytes = io::read_text_file(sums_file(job.folder, key));
       Sums s;
-      if (bytes.size() == sizeof s) std::memcpy(&s, bytes.data(), sizeof s);
+      if (bytes.size() != sizeof s)
+        throw core::Error("the intermediate result is cut short", sums_file(job.folder, key).string(),
+                          "remove the .swath folder beside the products and run again");
+      std::memcpy(&s, bytes.data(), sizeof s);
       all.add(s);
     }
     if (all.n > 0) tell_points(all, job.findings);

@@ -56,6 +56,7 @@ class LasTiles : public OptionStage<LasOptions> {
     // Near the data, and the same for every tile: tiles can be joined without rounding again.
     o.offset = Eigen::Vector3d(std::round(context.origin.x() / context.unit), std::round(context.origin.y() / context.unit), 0.0);
     o.crs_wkt = core::Crs(context.product_crs).wkt1();
+    o.seconds_of_week = context.weekless;
     o.threads = 1;
     core::Block block = std::move(job.block);
     job.block = {};
