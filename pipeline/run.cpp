@@ -148,7 +148,6 @@ void Engine::prepare() {
                              core::format_number(context_.vertical_unit) + "],AXIS[\"Up\",UP]]]";
   }
   context_.tile_side = plan_.run.tile.value;
-  context_.config_folder = plan_.config.parent_path();
   context_.grids = &grids_;
   for (const PlannedStage& s : plan_.stages)
     if (s.stage->is_source()) s.stage->locate(context_);

@@ -75,7 +75,6 @@ struct Context {
   double tile_side = 500.0;                          ///< m
   std::filesystem::path output{};                    ///< where the stage at work puts its products, laid out as in the output folder
   std::vector<std::filesystem::path> earlier{};      ///< the same of the stages before it
-  std::filesystem::path config_folder{};
   const Grids* grids = nullptr;
   std::shared_ptr<const trajectory::Trajectory> trajectory{};
 

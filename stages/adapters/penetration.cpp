@@ -12,6 +12,7 @@
 #include "io/vrt.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/tile_list.h"
+#include "stages/adapters/units.h"
 
 namespace swath::stages {
 namespace {
@@ -53,9 +54,7 @@ class Penetration : public OptionStage<PenetrationOptions> {
       per_pulse[c] = p.pulses[c] ? static_cast<float>(p.returns[c]) / static_cast<float>(p.pulses[c]) : none;
       pulses[c] = static_cast<float>(p.pulses[c]);
     }
-    core::Lattice in_crs = lattice;
-    in_crs.cell = std::round(lattice.cell / context.unit * 1e9) / 1e9;
-    io::write_raster(context.output / "penetration" / name(context, job.key), in_crs,
+    io::write_raster(context.output / "penetration" / name(context, job.key), in_crs_units(context, lattice),
                      {{"penetration rate", "", &rate}, {"returns per pulse", "", &per_pulse}, {"pulses", "", &pulses}}, context.product_crs,
                      true);
     const std::uint64_t sums[2] = {std::accumulate(p.pulses.begin(), p.pulses.end(), std::uint64_t{0}),

@@ -8,10 +8,15 @@
 
 namespace swath::stages {
 
+/// The same cells with their side in units of the CRS; a cell of "3 ft" is 3 exactly again.
+inline core::Lattice in_crs_units(const Context& context, core::Lattice lattice) {
+  if (context.unit != 1.0) lattice.cell = std::round(lattice.cell / context.unit * 1e9) / 1e9;
+  return lattice;
+}
+
 /// The same grid with cell, heights and sigmas in the units of the CRS.
 inline core::Grid in_crs_units(const Context& context, core::Grid grid) {
-  // A cell of "3 ft" is 3 exactly again.
-  if (context.unit != 1.0) grid.lattice.cell = std::round(grid.lattice.cell / context.unit * 1e9) / 1e9;
+  grid.lattice = in_crs_units(context, grid.lattice);
   if (context.vertical_unit != 1.0) {
     for (float& h : grid.height) h = static_cast<float>(static_cast<double>(h) / context.vertical_unit);
     for (float& s : grid.sigma) s = static_cast<float>(static_cast<double>(s) / context.vertical_unit);
