@@ -52,6 +52,21 @@ const std::vector<Unit>& units() {
       {"GB", D::memory, 1e9},
       {"MiB", D::memory, 1048576.0},
       {"GiB", D::memory, 1073741824.0},
+      {"m/s2", D::acceleration, 1.0},
+      {"g", D::acceleration, 9.80665},
+      {"mg", D::acceleration, 9.80665e-3},
+      {"ug", D::acceleration, 9.80665e-6},
+      {"mGal", D::acceleration, 1e-5},
+      {"deg/sqrt(h)", D::angular_walk, degree / 60.0},
+      {"deg/s/sqrt(Hz)", D::angular_walk, degree},
+      {"deg/h/sqrt(Hz)", D::angular_walk, degree / 3600.0},
+      {"rad/sqrt(s)", D::angular_walk, 1.0},
+      {"m/s/sqrt(h)", D::velocity_walk, 1.0 / 60.0},
+      {"m/s/sqrt(s)", D::velocity_walk, 1.0},
+      {"mg/sqrt(Hz)", D::velocity_walk, 9.80665e-3},
+      {"ug/sqrt(Hz)", D::velocity_walk, 9.80665e-6},
+      {"ppm", D::ratio, 1e-6},
+      {"%", D::ratio, 1e-2},
   };
   return table;
 }
@@ -78,6 +93,14 @@ std::string_view name_of(Dimension d) {
       return "frequency";
     case Dimension::memory:
       return "memory";
+    case Dimension::acceleration:
+      return "acceleration";
+    case Dimension::angular_walk:
+      return "angular random walk";
+    case Dimension::velocity_walk:
+      return "velocity random walk";
+    case Dimension::ratio:
+      return "ratio";
   }
   return "number";
 }

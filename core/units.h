@@ -13,16 +13,20 @@ namespace swath::core {
 
 /// What a number measures. Inside, every quantity is in the SI unit of its dimension.
 enum class Dimension {
-  none,         // a bare number
-  length,       // m
-  angle,        // rad
-  time,         // s
-  speed,        // m/s
-  rate,         // rad/s
-  temperature,  // K
-  pressure,     // Pa
-  frequency,    // Hz
-  memory,       // bytes
+  none,           // a bare number
+  length,         // m
+  angle,          // rad
+  time,           // s
+  speed,          // m/s
+  rate,           // rad/s
+  temperature,    // K
+  pressure,       // Pa
+  frequency,      // Hz
+  memory,         // bytes
+  acceleration,   // m/s2
+  angular_walk,   // rad/sqrt(s), white noise of an angular rate
+  velocity_walk,  // m/s/sqrt(s), white noise of a specific force
+  ratio,          // 1
 };
 
 /// A number with its dimension in its type. Construction is explicit; `.value` is SI.
@@ -61,6 +65,10 @@ using Kelvin = Quantity<Dimension::temperature>;
 using Pascals = Quantity<Dimension::pressure>;
 using Hertz = Quantity<Dimension::frequency>;
 using Bytes = Quantity<Dimension::memory>;
+using MetresPerSecond2 = Quantity<Dimension::acceleration>;
+using AngularWalk = Quantity<Dimension::angular_walk>;
+using VelocityWalk = Quantity<Dimension::velocity_walk>;
+using Ratio = Quantity<Dimension::ratio>;
 
 constexpr double pi = std::numbers::pi;
 constexpr double degree = pi / 180.0;

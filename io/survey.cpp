@@ -252,20 +252,6 @@ std::vector<TrajectoryFile> trajectory_files(const Survey& survey) {
   return out;
 }
 
-double radians_per(AngleUnit unit) {
-  switch (unit) {
-    case AngleUnit::unstated:
-      return 0.0;
-    case AngleUnit::deg:
-      return core::degree;
-    case AngleUnit::rad:
-      return 1.0;
-    case AngleUnit::gon:
-      return core::pi / 200.0;
-  }
-  return 0.0;
-}
-
 std::vector<LineWindow> line_windows(const Survey& survey) {
   std::vector<LineWindow> out;
   if (survey.lines.empty()) return out;

@@ -10,25 +10,12 @@
 #include "core/option.h"
 #include "core/sensor.h"
 #include "core/time.h"
+#include "io/navigation.h"
+#include "io/time_tags.h"
 
 namespace swath::io {
 
-/// How instants are written in one file.
-struct TimeTags {
-  core::TimeScale scale = core::TimeScale::unstated;
-  std::optional<int> week;
-  std::string date;
-};
-
-template <class V>
-void describe(TimeTags& t, V& v) {
-  v.option("scale", t.scale, "Scale of the file's times; a file whose scale is not stated is refused.");
-  v.option("week", t.week, core::within(0, 10000), "GPS week of the first record (scale gps_week).");
-  v.option("date", t.date, "UTC date of the first record, YYYY-MM-DD (scale utc_day).");
-}
-
 enum class LaserFormat { automatic, text, npy, las, csd };
-enum class AngleUnit { unstated, deg, rad, gon };
 
 /// Which column of a delimited file or field of a NumPy file holds what: a header name, or a number from 1.
 struct LaserColumns {
@@ -205,6 +192,13 @@ struct Survey {
   std::optional<std::filesystem::path> calibration_file;
   std::vector<LaserFile> laser;
   std::vector<TrajectoryFile> trajectory;
+  std::vector<ImuFile> imu;
+  core::ImuSpec imu_spec;
+  std::vector<GnssFile> gnss;
+  Antenna antenna;
+  Rinex rinex;
+  std::vector<ClockLog> clock;
+  std::vector<EventFile> events;
   std::vector<PointFile> points;
   TimeTags line_time;
   std::vector<FlightLine> lines;
@@ -231,6 +225,13 @@ void describe(Survey& s, V& v) {
       "whose header holds the boresight.");
   v.tables("laser", s.laser, "Raw laser records.");
   v.tables("trajectory", s.trajectory, "Trajectory.");
+  v.tables("imu", s.imu, "IMU records.");
+  v.table("imu_spec", s.imu_spec, "What the IMU's data sheet says of its errors.");
+  v.tables("gnss", s.gnss, "GNSS positions of the antenna.");
+  v.table("antenna", s.antenna, "The GNSS antenna's place and time.");
+  v.table("rinex", s.rinex, "Raw GNSS observations of rover and base stations.");
+  v.tables("clock", s.clock, "Logs of the computer's clock.");
+  v.tables("event", s.events, "Events to be placed on the time scale and the trajectory.");
   v.tables("points", s.points, "Point clouds in map coordinates, in place of raw records.");
   v.table("line_time", s.line_time, "Time scale of the lines' start and end.");
   v.tables("line", s.lines, "Flight lines.");
@@ -255,9 +256,6 @@ TrajectoryFormat format_of(const TrajectoryFile& file);
 /// The trajectory files of a survey: those stated, or the CSD laser files where none is (their pulses carry their own poses).
 std::vector<TrajectoryFile> trajectory_files(const Survey& survey);
 
-/// rad per unit; 0 where unstated.
-double radians_per(AngleUnit unit);
-
 /// A flight line in GPS time.
 struct LineWindow {
   int id = 0;
@@ -275,10 +273,6 @@ namespace swath::core {
 template <>
 struct Choices<io::LaserFormat> {
   static constexpr std::array<std::string_view, 5> names{"automatic", "text", "npy", "las", "csd"};
-};
-template <>
-struct Choices<io::AngleUnit> {
-  static constexpr std::array<std::string_view, 4> names{"unstated", "deg", "rad", "gon"};
 };
 template <>
 struct Choices<io::VelocityAxes> {

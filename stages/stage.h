@@ -10,8 +10,11 @@
 #include <vector>
 
 #include "core/block.h"
+#include "core/event_data.h"
 #include "core/geodesy.h"
+#include "core/gnss_data.h"
 #include "core/grid.h"
+#include "core/imu_data.h"
 #include "core/option.h"
 #include "core/report.h"
 #include "core/shot.h"
@@ -25,7 +28,7 @@ enum class Grain { survey, strip, tile, merge };
 std::string_view name_of(Grain g);
 
 /// What stages hand on besides columns. A plan is refused where a stage needs what none before it gives.
-enum class Product { trajectory, shots, points, dtm, dsm, contours };
+enum class Product { imu, gnss, events, trajectory, shots, points, dtm, dsm, contours };
 std::string_view name_of(Product p);
 
 struct Info {
@@ -63,7 +66,7 @@ class Grids {
   virtual double cell(Product product) const = 0;
 };
 
-/// What every stage sees of a run. Read-only but for `trajectory`, which a survey stage sets.
+/// What every stage sees of a run. Read-only but for what survey stages hand on, and `origin`, which follows from the trajectory.
 struct Context {
   const io::Survey& survey;
   core::Crs crs{};
@@ -76,6 +79,10 @@ struct Context {
   std::filesystem::path output{};                    ///< where the stage at work puts its products, laid out as in the output folder
   std::vector<std::filesystem::path> earlier{};      ///< the same of the stages before it
   const Grids* grids = nullptr;
+  // What survey stages hand on.
+  std::shared_ptr<const core::ImuData> imu{};
+  std::shared_ptr<const core::GnssData> gnss{};
+  std::shared_ptr<const core::EventData> events{};
   std::shared_ptr<const trajectory::Trajectory> trajectory{};
 
   Box box_of(TileKey k) const { return {k.ix * tile_side, k.iy * tile_side, (k.ix + 1) * tile_side, (k.iy + 1) * tile_side}; }

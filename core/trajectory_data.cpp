@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/trajectory_data.h"
+
+#include <algorithm>
+
+namespace swath::core {
+
+CovarianceSeries::Packed CovarianceSeries::pack(const Matrix9& covariance) {
+  Packed out{};
+  size_t at = 0;
+  for (Eigen::Index i = 0; i < 9; ++i)
+    for (Eigen::Index j = i; j < 9; ++j) out[at++] = static_cast<float>(covariance(i, j));
+  return out;
+}
+
+CovarianceSeries::Matrix9 CovarianceSeries::unpack(const Packed& packed) {
+  Matrix9 out;
+  size_t at = 0;
+  for (Eigen::Index i = 0; i < 9; ++i)
+    for (Eigen::Index j = i; j < 9; ++j) out(i, j) = out(j, i) = static_cast<double>(packed[at++]);
+  return out;
+}
+
+CovarianceSeries::Matrix9 CovarianceSeries::at(double t) const {
+  const auto after = std::upper_bound(time.begin(), time.end(), t);
+  if (after == time.begin()) return unpack(upper.front());
+  if (after == time.end()) return unpack(upper.back());
+  const auto n = static_cast<size_t>(after - time.begin());
+  const double share = (t - time[n - 1]) / (time[n] - time[n - 1]);
+  return (1 - share) * unpack(upper[n - 1]) + share * unpack(upper[n]);
+}
+
+}  // namespace swath::core
