@@ -29,7 +29,7 @@ void frame(core::Picture& p, const Box& b, core::Rgb colour) {
 }
 
 Pen::Pen(core::Picture& p, const Box& clip)
-    : picture_(p), clip_(clip), share_(static_cast<size_t>(clip.width) * static_cast<size_t>(clip.height), 0.0f) {}
+    : picture_(&p), clip_(clip), share_(static_cast<size_t>(clip.width) * static_cast<size_t>(clip.height), 0.0f) {}
 
 namespace {
 
@@ -80,7 +80,7 @@ void Pen::line(const std::vector<double>& x, const std::vector<double>& y, doubl
   for (size_t k = 1; k < x.size(); ++k) cover(x[k - 1], y[k - 1], x[k], y[k], width / 2.0);
   const auto columns = static_cast<size_t>(clip_.width);
   for (const size_t at : touched_) {
-    mix(picture_, clip_.x + static_cast<int>(at % columns), clip_.y + static_cast<int>(at / columns), colour, opacity * share_[at]);
+    mix(*picture_, clip_.x + static_cast<int>(at % columns), clip_.y + static_cast<int>(at / columns), colour, opacity * share_[at]);
     share_[at] = 0.0f;
   }
   touched_.clear();

@@ -31,7 +31,7 @@ class Pen {
 
  private:
   void cover(double x0, double y0, double x1, double y1, double half_width);
-  core::Picture& picture_;
+  core::Picture* picture_;
   Box clip_;
   std::vector<float> share_;  // of each pixel of the clip box
   std::vector<size_t> touched_;

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the parts of a chart lie. Widths are those of report/font.h on every sheet; margins follow from the texts that stand in them.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/error.h"
+#include "report/chart_parts.h"
+#include "report/font.h"
+
+namespace swath::report {
+namespace {
+
+constexpr core::Rgb ink{40, 40, 40}, faint{228, 228, 228}, zero_colour{170, 170, 170};
+constexpr double text_scale = 1.5, title_scale = 2.0, panel_title_scale = 1.5;
+constexpr int pad = 10, gap = 8, sample_width = 26;
+constexpr double x_margin = 0.01, y_margin = 0.05;
+/// Room along an axis for one tick, pixels.
+constexpr int x_tick_room = 110, y_tick_room = 36;
+
+double width_of(std::string_view text, double scale) { return text_dots(text) * scale; }
+int line_height(double scale) { return static_cast<int>(std::ceil(glyph_height * scale)) + 6; }
+/// The scale at which a text has room.
+double fitting(std::string_view text, double scale, double room) {
+  const double width = width_of(text, scale);
+  return width > room ? scale * room / width : scale;
+}
+
+void check(const Panel& panel) {
+  for (const Series& s : panel.series)
+    if (s.x.size() != s.y.size() || (!s.y2.empty() && s.y2.size() != s.y.size()))
+      throw core::Error("a row of numbers of a chart has columns of different length", panel.title + ": " + s.name,
+                        "this is a fault of the program");
+}
+
+Reach x_reach(const Panel& panel) {
+  Reach r;
+  for (const Series& s : panel.series)
+    for (size_t k = 0; k < s.x.size(); ++k)
+      if (std::isfinite(s.y[k])) r.add(s.x[k]);
+  return r;
+}
+
+Reach y_reach(const Panel& panel) {
+  Reach r;
+  const bool positive = panel.log_y && !panel.equal_scale;
+  for (const Series& s : panel.series) {
+    if (s.mark == Mark::stems && !positive) r.add(0.0);
+    for (size_t k = 0; k < s.y.size(); ++k) {
+      if (!std::isfinite(s.x[k])) continue;
+      r.add(s.y[k], positive);
+      if (s.mark == Mark::band) r.add(s.y2.empty() ? -s.y[k] : s.y2[k], positive);
+    }
+  }
+  return r;
+}
+
+Reach widened(const Reach& r, double length) {
+  Reach out;
+  const double middle = (r.low + r.high) / 2.0;
+  out.add(middle - length / 2.0);
+  out.add(middle + length / 2.0);
+  return out;
+}
+
+struct LegendItem {
+  const Series* series;
+  core::Rgb colour;
+  int left = 0, line = 0;
+};
+
+/// One panel on its way to its place.
+struct Piece {
+  const Panel* panel = nullptr;
+  Plot plot;
+  std::vector<core::Rgb> colours;
+  std::vector<LegendItem> legend;
+  int legend_lines = 0;
+  bool x_texts = true;  ///< the last of those that share x and follow one another
+};
+
+class Layout {
+ public:
+  explicit Layout(const Chart& chart) : chart_(chart) {
+    for (const Panel& p : chart.panels) {
+      check(p);
+      Piece piece;
+      piece.panel = &p;
+      int next = 0;
+      for (const Series& s : p.series) piece.colours.push_back(palette(s.colour < 0 ? next++ : s.colour));
+      pieces_.push_back(std::move(piece));
+    }
+    for (size_t i = 0; i + 1 < pieces_.size(); ++i) pieces_[i].x_texts = !shares(pieces_[i], pieces_[i + 1]);
+    y_axes();
+    margins();
+    x_axes();
+    for (Piece& p : pieces_) place_legend(p);
+    stack();
+  }
+
+  int height() const { return height_; }
+  void draw(Sheet& sheet) const;
+
+ private:
+  static bool shares(const Piece& a, const Piece& b) {
+    return !a.panel->equal_scale && !b.panel->equal_scale && a.panel->x_label == b.panel->x_label;
+  }
+  void y_axes();
+  void margins();
+  void x_axes();
+  void place_legend(Piece& piece) const;
+  void stack();
+  void draw_frame(const Piece& piece, Sheet& sheet) const;
+  void draw_texts(const Piece& piece, Sheet& sheet) const;
+
+  const Chart& chart_;
+  std::vector<Piece> pieces_;
+  int left_ = 0, plot_width_ = 0, height_ = 0;
+};
+
+/// Ranges of y first: their texts decide the left margin, which decides the width.
+void Layout::y_axes() {
+  for (Piece& p : pieces_) {
+    p.plot.box.height = chart_.panel_height;
+    p.plot.y = make_axis(y_reach(*p.panel), p.panel->y_label, std::max(2, chart_.panel_height / y_tick_room), y_margin,
+                         p.panel->log_y && !p.panel->equal_scale);
+  }
+}
+
+void Layout::margins() {
+  double tick_width = 0.0, right = 0.0;
+  for (const Piece& p : pieces_)
+    for (const Tick& t : p.plot.y.ticks) tick_width = std::max(tick_width, width_of(t.text, text_scale));
+  // Maps get other ticks once their scale is known; these are not longer than the reach's ends.
+  left_ = pad + line_height(text_scale) + gap + static_cast<int>(std::ceil(tick_width)) + gap;
+  for (Piece& p : pieces_) {
+    const Axis trial = make_axis(x_reach(*p.panel), p.panel->x_label, std::max(2, chart_.width / x_tick_room), x_margin);
+    for (const Tick& t : trial.ticks) right = std::max(right, width_of(t.text, text_scale) / 2.0);
+  }
+  plot_width_ = std::max(50, chart_.width - left_ - pad - static_cast<int>(std::ceil(right)));
+}
+
+void Layout::x_axes() {
+  const int most_x = std::max(2, plot_width_ / x_tick_room);
+  std::map<std::string, Reach> shared;
+  for (const Piece& p : pieces_) {
+    if (p.panel->equal_scale) continue;
+    const Reach r = x_reach(*p.panel);
+    if (r.empty()) continue;
+    Reach& all = shared[p.panel->x_label];
+    all.add(r.low);
+    all.add(r.high);
+  }
+  for (Piece& p : pieces_) {
+    Box& box = p.plot.box;
+    box.x = left_;
+    box.width = plot_width_;
+    if (!p.panel->equal_scale) {
+      p.plot.x = make_axis(shared[p.panel->x_label], p.panel->x_label, most_x, x_margin);
+      continue;
+    }
+    // One unit is as long across as up: the height follows from the width within limits, beyond which the shorter range grows.
+    const Reach x = x_reach(*p.panel), y = y_reach(*p.panel);
+    const double grown = 1.0 + 2.0 * y_margin, least = 1e-9;
+    double across = std::max((x.high - x.low) * grown, least), up = std::max((y.high - y.low) * grown, least);
+    if (across <= least && up <= least) across = up = 1.0;
+    box.height = std::clamp(static_cast<int>(plot_width_ * std::min(up / across, 1.0)), chart_.panel_height,
+                            std::max(chart_.panel_height, plot_width_ * 2 / 3));
+    const double scale = std::max(across / box.width, up / box.height);
+    p.plot.x = make_axis(widened(x, scale * box.width), p.panel->x_label, most_x, 0.0);
+    p.plot.y = make_axis(widened(y, scale * box.height), p.panel->y_label, std::max(2, box.height / y_tick_room), 0.0);
+  }
+}
+
+/// From the left, onto a new line where the panel ends; under the title.
+void Layout::place_legend(Piece& p) const {
+  int at = 0, line = 0;
+  for (size_t k = 0; k < p.panel->series.size(); ++k) {
+    const Series& s = p.panel->series[k];
+    if (s.name.empty()) continue;
+    const int width = sample_width + gap + static_cast<int>(std::ceil(width_of(s.name, text_scale))) + 2 * gap;
+    if (at > 0 && at + width > plot_width_) {
+      at = 0;
+      ++line;
+    }
+    p.legend.push_back({&s, p.colours[k], at, line});
+    at += width;
+  }
+  p.legend_lines = p.legend.empty() ? 0 : line + 1;
+  // Beside the title where both have room on one line.
+  const double title = p.panel->title.empty() ? 0.0 : width_of(p.panel->title, panel_title_scale) + 4 * gap;
+  if (p.legend_lines == 1 && title + at <= plot_width_) {
+    for (LegendItem& item : p.legend) item.left += plot_width_ - at + 2 * gap;
+    if (!p.panel->title.empty()) p.legend_lines = 0;
+  }
+}
+
+void Layout::stack() {
+  int y = pad + (chart_.title.empty() ? 0 : line_height(title_scale) + gap);
+  for (Piece& p : pieces_) {
+    y += (p.panel->title.empty() ? 0 : line_height(panel_title_scale)) + p.legend_lines * line_height(text_scale) + gap / 2;
+    p.plot.box.y = y;
+    y += p.plot.box.height + gap;
+    if (p.x_texts) y += 2 * line_height(text_scale) + gap;
+  }
+  height_ = y + pad;
+}
+
+void Layout::draw_frame(const Piece& p, Sheet& sheet) const {
+  const Box& b = p.plot.box;
+  const double left = b.x, right = b.x + b.width, top = b.y, bottom = b.y + b.height;
+  const auto crisp = [](double v) { return std::floor(v) + 0.5; };
+  for (const Tick& t : p.plot.x.ticks) {
+    const double x = crisp(p.plot.column(t.value));
+    sheet.line({x, x}, {top, bottom}, 1.0, faint);
+  }
+  for (const Tick& t : p.plot.y.ticks) {
+    const double y = crisp(p.plot.row(t.value));
+    sheet.line({left, right}, {y, y}, 1.0, !p.plot.y.log && t.value == 0.0 ? zero_colour : faint);
+  }
+}
+
+void Layout::draw_texts(const Piece& p, Sheet& sheet) const {
+  const Box& b = p.plot.box;
+  const double left = b.x, right = b.x + b.width, top = b.y, bottom = b.y + b.height, half = line_height(text_scale) / 2.0;
+  const double edge_x[] = {left - 0.5, right + 0.5}, edge_y[] = {top - 0.5, bottom + 0.5};
+  sheet.line({edge_x[0], edge_x[1], edge_x[1], edge_x[0], edge_x[0]}, {edge_y[0], edge_y[0], edge_y[1], edge_y[1], edge_y[0]}, 1.0,
+             border_colour);
+
+  const int title_line = p.panel->title.empty() ? 0 : line_height(panel_title_scale);
+  const double head = top - gap / 2.0 - p.legend_lines * line_height(text_scale);
+  if (title_line) {
+    const double scale = fitting(p.panel->title, panel_title_scale, plot_width_);
+    sheet.text(left, head - title_line / 2.0, p.panel->title, scale, Anchor::start, false, ink);
+  }
+  for (const LegendItem& item : p.legend) {
+    const double y = p.legend_lines == 0 ? head - title_line / 2.0 : head + item.line * line_height(text_scale) + half;
+    const double x = left + item.left;
+    draw_sample(item.series->mark, item.colour, x, y, sample_width, sheet);
+    const double room = right - x - sample_width - gap;
+    sheet.text(x + sample_width + gap, y, item.series->name, fitting(item.series->name, text_scale, room), Anchor::start, false, ink);
+  }
+
+  for (const Tick& t : p.plot.y.ticks)
+    sheet.text(left - gap, p.plot.row(t.value), t.text, fitting(t.text, text_scale, left_ - pad - 2 * gap - line_height(text_scale)),
+               Anchor::end, false, ink);
+  const std::string& y_label = p.plot.y.label;
+  const double room = b.height + (p.x_texts ? 2.0 : 0.0) * half + title_line;
+  sheet.text(pad + half, top + b.height / 2.0, y_label, fitting(y_label, text_scale, room), Anchor::middle, true, ink);
+  if (!p.x_texts) return;
+  for (const Tick& t : p.plot.x.ticks)
+    sheet.text(p.plot.column(t.value), bottom + gap + half, t.text, text_scale, Anchor::middle, false, ink);
+  const std::string& x_label = p.plot.x.label;
+  sheet.text(left + b.width / 2.0, bottom + gap + 3.0 * half, x_label, fitting(x_label, text_scale, plot_width_), Anchor::middle, false,
+             ink);
+}
+
+void Layout::draw(Sheet& sheet) const {
+  if (!chart_.title.empty())
+    sheet.text(pad, pad + line_height(title_scale) / 2.0, chart_.title, fitting(chart_.title, title_scale, chart_.width - 2.0 * pad),
+               Anchor::start, false, ink);
+  for (const Piece& p : pieces_) {
+    sheet.clip(p.plot.box);
+    draw_frame(p, sheet);
+    bool any = false;
+    for (const bool bands : {true, false})  // lines are never under a band
+      for (size_t k = 0; k < p.panel->series.size(); ++k) {
+        const Series& s = p.panel->series[k];
+        if ((s.mark == Mark::band) == bands) draw_series(s, p.colours[k], p.plot, sheet);
+        any = any || std::any_of(s.y.begin(), s.y.end(), [](double v) { return std::isfinite(v); });
+      }
+    sheet.clip(std::nullopt);
+    draw_texts(p, sheet);
+    if (!any)
+      sheet.text(p.plot.box.x + p.plot.box.width / 2.0, p.plot.box.y + p.plot.box.height / 2.0, "no data", text_scale, Anchor::middle,
+                 false, border_colour);
+  }
+}
+
+}  // namespace
+
+int lay_out(const Chart& chart, Sheet* sheet) {
+  const Layout layout(chart);
+  if (sheet) layout.draw(*sheet);
+  return layout.height();
+}
+
+}  // namespace swath::report

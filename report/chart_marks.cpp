@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rows of numbers become marks. Colours: Okabe and Ito, "Color universal design", 2008 (yellow left out: too pale for lines on white).
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "report/chart_parts.h"
+
+namespace swath::report {
+namespace {
+
+constexpr double line_width = 1.5, stem_width = 1.2, dot_radius = 2.0, band_opacity = 0.25;
+/// Beyond this distance from the plot nothing is seen, and Pen and SVG need no larger numbers.
+constexpr double far_away = 1e5;
+
+double near(double pixel) { return std::clamp(pixel, -far_away, far_away); }
+
+/// Points of one pixel column that follow one another.
+class Column {
+ public:
+  Column(Stretch& out, bool band) : out_(out), band_(band) {}
+  void add(double x, double y, double lower) {
+    const double c = std::floor(x);
+    if (x_.empty() || c != column_) flush();
+    column_ = c;
+    x_.push_back(x);
+    y_.push_back(y);
+    if (band_) lower_.push_back(lower);
+  }
+  void flush() {
+    if (x_.empty()) return;
+    if (band_)
+      flush_band();
+    else
+      flush_line();
+    x_.clear();
+    y_.clear();
+    lower_.clear();
+  }
+
+ private:
+  void flush_line() {
+    const auto low = static_cast<size_t>(std::min_element(y_.begin(), y_.end()) - y_.begin());
+    const auto high = static_cast<size_t>(std::max_element(y_.begin(), y_.end()) - y_.begin());
+    for (const size_t k : std::set<size_t>{0, low, high, x_.size() - 1}) {
+      out_.x.push_back(x_[k]);
+      out_.y.push_back(y_[k]);
+    }
+  }
+  void flush_band() {
+    const double top = *std::min_element(y_.begin(), y_.end());  // rows count downwards
+    const double bottom = *std::max_element(lower_.begin(), lower_.end());
+    for (const size_t k : std::set<size_t>{0, x_.size() - 1}) {
+      out_.x.push_back(x_[k]);
+      out_.y.push_back(x_.size() > 2 ? top : y_[k]);
+      out_.lower.push_back(x_.size() > 2 ? bottom : lower_[k]);
+    }
+  }
+  Stretch& out_;
+  bool band_;
+  double column_ = 0.0;
+  std::vector<double> x_, y_, lower_;
+};
+
+void draw_dots(const Series& s, core::Rgb colour, const Plot& plot, Sheet& sheet) {
+  // Dots within half a pixel of one another cover the same.
+  std::set<std::pair<long, long>> taken;
+  std::vector<double> x, y;
+  for (size_t k = 0; k < s.x.size(); ++k) {
+    const double column = plot.column(s.x[k]), row = plot.row(s.y[k]);
+    if (!std::isfinite(column) || !std::isfinite(row)) continue;
+    if (!taken.emplace(std::lround(2.0 * near(column)), std::lround(2.0 * near(row))).second) continue;
+    x.push_back(near(column));
+    y.push_back(near(row));
+  }
+  sheet.dots(x, y, dot_radius, colour);
+}
+
+void draw_stems(const Series& s, core::Rgb colour, const Plot& plot, Sheet& sheet) {
+  // Per pixel column the longest stem upwards and the longest downwards.
+  struct Ends {
+    double top, bottom;
+  };
+  const double zero = plot.y.log ? plot.box.y + plot.box.height : near(plot.row(0.0));
+  std::vector<Ends> ends(static_cast<size_t>(plot.box.width) + 1, {zero, zero});
+  for (size_t k = 0; k < s.x.size(); ++k) {
+    const double column = plot.column(s.x[k]) - plot.box.x, row = plot.row(s.y[k]);
+    if (!std::isfinite(row) || !(column >= 0.0 && column <= plot.box.width)) continue;
+    Ends& e = ends[static_cast<size_t>(column)];
+    e.top = std::min(e.top, near(row));
+    e.bottom = std::max(e.bottom, near(row));
+  }
+  for (size_t c = 0; c < ends.size(); ++c) {
+    const double x = plot.box.x + static_cast<double>(c) + 0.5;
+    if (ends[c].top < ends[c].bottom) sheet.line({x, x}, {ends[c].top, ends[c].bottom}, stem_width, colour);
+  }
+}
+
+}  // namespace
+
+core::Rgb palette(int index) {
+  constexpr std::array<core::Rgb, 7> colours{
+      {{0, 114, 178}, {213, 94, 0}, {0, 158, 115}, {204, 121, 167}, {90, 90, 90}, {230, 159, 0}, {86, 180, 233}}};
+  const int n = static_cast<int>(colours.size());
+  return colours[static_cast<size_t>((index % n + n) % n)];
+}
+
+std::vector<Stretch> stretches(const Series& s, const Plot& plot) {
+  const bool band = s.mark == Mark::band;
+  std::vector<Stretch> out;
+  Stretch now;
+  Column column(now, band);
+  const auto end = [&] {
+    column.flush();
+    if (!now.x.empty()) out.push_back(std::move(now));
+    now = {};
+  };
+  for (size_t k = 0; k < s.x.size(); ++k) {
+    const double x = plot.column(s.x[k]);
+    double y = plot.row(s.y[k]), lower = y;
+    if (band) {
+      lower = plot.row(s.y2.empty() ? -s.y[k] : s.y2[k]);
+      // A logarithmic axis has no zero: the band then goes down to the plot's edge.
+      if (plot.y.log && std::isfinite(y) && std::isnan(lower)) lower = plot.box.y + plot.box.height;
+      if (y > lower) std::swap(y, lower);
+    }
+    if (std::isfinite(x) && std::isfinite(y) && std::isfinite(lower))
+      column.add(near(x), near(y), near(lower));
+    else
+      end();
+  }
+  end();
+  return out;
+}
+
+void draw_series(const Series& s, core::Rgb colour, const Plot& plot, Sheet& sheet) {
+  switch (s.mark) {
+    case Mark::dots:
+      draw_dots(s, colour, plot, sheet);
+      break;
+    case Mark::stems:
+      draw_stems(s, colour, plot, sheet);
+      break;
+    case Mark::band:
+      for (const Stretch& one : stretches(s, plot)) sheet.area(one.x, one.y, one.lower, colour, band_opacity);
+      break;
+    case Mark::line:
+      for (const Stretch& one : stretches(s, plot)) {
+        if (one.x.size() > 1)
+          sheet.line(one.x, one.y, line_width, colour);
+        else
+          sheet.dots(one.x, one.y, line_width / 2.0, colour);  // a lone value between breaks is seen too
+      }
+      break;
+  }
+}
+
+void draw_sample(Mark mark, core::Rgb colour, double x, double y, double width, Sheet& sheet) {
+  switch (mark) {
+    case Mark::dots:
+      sheet.dots({x + width / 2.0}, {y}, dot_radius * 1.5, colour);
+      break;
+    case Mark::band:
+      sheet.fill({static_cast<int>(x), static_cast<int>(y) - 5, static_cast<int>(width), 11}, colour, band_opacity);
+      break;
+    case Mark::stems:
+    case Mark::line:
+      sheet.line({x, x + width}, {y, y}, 2.0 * line_width, colour);
+      break;
+  }
+}
+
+}  // namespace swath::report
