@@ -96,11 +96,16 @@ double median_step(const std::vector<double>& time) {
 
 std::string_view name_of(Reach r) {
   switch (r) {
-    case Reach::full: return "full";
-    case Reach::partial: return "partial";
-    case Reach::too_few: return "too few fixes";
-    case Reach::gap: return "gap";
-    case Reach::outside: return "outside";
+    case Reach::full:
+      return "full";
+    case Reach::partial:
+      return "partial";
+    case Reach::too_few:
+      return "too few fixes";
+    case Reach::gap:
+      return "gap";
+    case Reach::outside:
+      return "outside";
   }
   return "";
 }

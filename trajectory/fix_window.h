@@ -22,7 +22,7 @@ struct PointFixes {
 
 /// East, north, up at one place: p_local = local_R_ecef (p_ecef - origin).
 struct LocalFrame {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();             ///< ecef, m
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();            ///< ecef, m
   Eigen::Matrix3d local_R_ecef = Eigen::Matrix3d::Identity();  ///< rows: east, north, up
 
   Eigen::Vector3d to_ecef(const Eigen::Vector3d& local) const { return origin + local_R_ecef.transpose() * local; }

@@ -82,8 +82,8 @@ LeaveOneOut leave_one_out(const PointFixes& fixes, const PointSmoother& smoother
 
 std::string LeaveOneOut::table() const {
   char line[200];
-  std::snprintf(line, sizeof line, "%zu fixes left out one at a time, %g s apart; %zu without a full window; differences in cm\n\n", fix.size(),
-                std::round(step * 1e6) / 1e6, beside_gaps);
+  std::snprintf(line, sizeof line, "%zu fixes left out one at a time, %g s apart; %zu without a full window; differences in cm\n\n",
+                fix.size(), std::round(step * 1e6) / 1e6, beside_gaps);
   std::string out = line;
   std::snprintf(line, sizeof line, "%-16s%4s %9s %9s %9s %9s %14s\n", "", "", "sigma", "mean", "rms", "largest", "formal sigma");
   out += line;

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "io/value_file.h"
 #include "tests/trajectory/kinematic_vectors.h"
+#include "tests/trajectory/made_flight.h"
 
 namespace swath::trajectory {
 namespace {
@@ -67,8 +69,6 @@ TEST(Kinematic, EveryVariantOfTheReferenceAtEveryEvent) {
           worst.matrix(s.covariance, test::matrix6(*e.find("cov6_x_vx_y_vy_z_vz")));
         }
       }
-      RecordProperty(name + " " + variant + " position", std::to_string(worst.position * 1e9) + " nm");
-      printf("%s %s %.3g %.3g %.3g\n", name.c_str(), variant.c_str(), worst.position, worst.velocity, worst.covariance);
       expect_close(worst, name + " " + variant);
     }
   }
@@ -95,8 +95,7 @@ TEST(Kinematic, EveryPredictionAndUpdateOfTheReference) {
     worst.matrix(trace.start_forward.covariance, test::matrix6(*stated.find("P0_forward")));
     worst.state(trace.start_backward.x, test::state6(*stated.find("x0_backward")));
     worst.matrix(trace.start_backward.covariance, test::matrix6(*stated.find("P0_backward")));
-    for (const auto& [direction, steps] :
-         {std::pair{"forward", &trace.forward}, std::pair{"backward", &trace.backward}}) {
+    for (const auto& [direction, steps] : {std::pair{"forward", &trace.forward}, std::pair{"backward", &trace.backward}}) {
       const core::Value::Array& theirs = stated.find(direction)->items();
       ASSERT_EQ(theirs.size(), steps->size());
       for (size_t k = 0; k < theirs.size(); ++k) {
@@ -119,11 +118,137 @@ TEST(Kinematic, EveryPredictionAndUpdateOfTheReference) {
     }
     worst.state(s.x, test::state6(*stated.find("smoothed")->find("x")));
     worst.matrix(s.covariance, test::matrix6(*stated.find("smoothed")->find("P")));
-      printf("%s %.3g %.3g %.3g %.3g\n", variant.c_str(), worst.position, worst.velocity, worst.covariance, worst.gain);
     expect_close(worst, variant);
     EXPECT_LT(worst.gain, 1e-6) << variant;
   }
   EXPECT_EQ(compared, 3 * 20);
+}
+
+PointFixes line_fixes(const Eigen::Vector3d& p, const Eigen::Vector3d& v) {
+  PointFixes fixes = test::MadeFlight(3).fixes(12, 1.0);
+  for (size_t i = 0; i < fixes.size(); ++i) fixes.position[i] = p + fixes.time[i] * v;
+  return fixes;
+}
+
+TEST(Kinematic, AStraightFlightWithoutNoiseIsMetInEveryForm) {
+  const Eigen::Vector3d p(500, -300, 1200), v(40, 45, -1.5);
+  const PointFixes fixes = line_fixes(p, v);
+  for (const AxesForm axes : {AxesForm::axis, AxesForm::simultaneous})
+    for (const StartCovariance start : {StartCovariance::a_priori, StartCovariance::a_posteriori, StartCovariance::diffuse})
+      for (const NoiseSpeed noise : {NoiseSpeed::axis, NoiseSpeed::speed})
+        for (const bool first : {false, true}) {
+          KinematicOptions o;
+          o.axes = axes;
+          o.start_covariance = start;
+          o.noise = noise;
+          o.update_first = first;
+          const PointState s = interpolate(fixes, window_at(fixes.time, 5.3, 5, 2.5), 5.3, o);
+          // Through P of 1e6 beside R of 1e-4 a state keeps 1e-16 * 1e10 of its correction.
+          constexpr double tolerance = 1e-7;
+          EXPECT_LT((s.position() - (p + 5.3 * v)).norm(), tolerance);
+          EXPECT_LT((s.velocity() - v).norm(), tolerance);
+          EXPECT_GT(s.covariance.diagonal().minCoeff(), 0.0);
+        }
+}
+
+TEST(Kinematic, NoiseIsAShareOfTheSpeedAndNotBelowTheFloor) {
+  const PointFixes fixes = line_fixes({0, 0, 0}, {30, -40, 0.5});
+  const FixWindow w = window_at(fixes.time, 5.3, 5, 2.5);
+  KinematicOptions o;
+  KinematicTrace trace;
+  const auto noise = [&] {
+    interpolate(fixes, w, 5.3, o, &trace);
+    return trace.noise;
+  };
+  constexpr double tolerance = 1e-9;
+  EXPECT_LT((noise() - Eigen::Vector3d::Constant(0.01 * std::sqrt(2500.25))).norm(), tolerance);
+  o.noise = NoiseSpeed::axis;
+  EXPECT_LT((noise() - Eigen::Vector3d(0.3, 0.4, 0.05)).norm(), tolerance);
+  o.noise_floor = core::MetresPerSecond(0.0);
+  EXPECT_LT((noise() - Eigen::Vector3d(0.3, 0.4, 0.005)).norm(), tolerance);
+  o.noise_share = core::Ratio(0.1);
+  EXPECT_LT((noise() - Eigen::Vector3d(3.0, 4.0, 0.05)).norm(), tolerance);
+}
+
+TEST(Kinematic, NoiseThatGrowsWithTimeDoesNotCountStepsButSeconds) {
+  // Velocity's variance after the event's own short step: by time it grows by that share of a second, else by a whole step.
+  const PointFixes fixes = line_fixes({0, 0, 0}, {60, 0, 0});
+  const FixWindow w = window_at(fixes.time, 5.2, 5, 2.5);
+  KinematicOptions o;
+  KinematicTrace trace;
+  for (const bool grows : {true, false}) {
+    o.noise_grows_with_time = grows;
+    interpolate(fixes, w, 5.2, o, &trace);
+    const auto last = trace.forward.end() - 1, before = trace.forward.end() - 2;
+    const double grown = last->state.covariance(3, 3) - before->state.covariance(3, 3);
+    const double share = grows ? last->state.time - before->state.time : 1.0;
+    EXPECT_NEAR(grown, 0.36 * share, 1e-9);
+  }
+}
+
+TEST(Kinematic, TimeBackwardsIsTheSameFlightBackwards) {
+  const PointFixes fixes = test::MadeFlight(4).fixes(12, 1.0);
+  PointFixes mirrored;
+  for (size_t i = fixes.size(); i-- > 0;) {
+    mirrored.time.push_back(-fixes.time[i]);
+    mirrored.position.push_back(fixes.position[i]);
+    mirrored.covariance.push_back(fixes.covariance[i]);
+  }
+  const KinematicOptions o;
+  const double t = 5.4;
+  const PointState a = interpolate(fixes, window_at(fixes.time, t, 5, 2.5), t, o);
+  const PointState b = interpolate(mirrored, window_at(mirrored.time, -t, 5, 2.5), -t, o);
+  EXPECT_LT((a.position() - b.position()).norm(), 1e-7);
+  EXPECT_LT((a.velocity() + b.velocity()).norm(), 1e-7);
+}
+
+TEST(Kinematic, PredictionCarriesTheCovarianceByItsJacobian) {
+  test::MadeFlight random(7);
+  PointState s;
+  PointState::Matrix6 root;
+  for (int i = 0; i < 6; ++i) s.x[i] = random.normal();
+  for (int i = 0; i < 36; ++i) root.data()[i] = random.normal();
+  s.covariance = root * root.transpose();
+  for (const double dt : {0.0, 0.3, 1.0, -2.0}) {
+    PointState::Matrix6 jacobian;
+    constexpr double h = 1e-3;  // the prediction is linear: any step will do
+    for (int i = 0; i < 6; ++i) {
+      PointState above = s, below = s;
+      above.x[i] += h;
+      below.x[i] -= h;
+      jacobian.col(i) = (predict(above, dt, PointState::Matrix6::Zero()).x - predict(below, dt, PointState::Matrix6::Zero()).x) / (2 * h);
+    }
+    const PointState::Matrix6 q = PointState::Matrix6::Identity();
+    EXPECT_LT((predict(s, dt, q).covariance - jacobian * s.covariance * jacobian.transpose() - q).norm(), 1e-9) << dt;
+  }
+}
+
+TEST(Kinematic, UpdateAndFusionAddInformation) {
+  test::MadeFlight random(8);
+  const auto state = [&] {
+    PointState s;
+    PointState::Matrix6 root;
+    for (int i = 0; i < 6; ++i) s.x[i] = random.normal();
+    for (int i = 0; i < 36; ++i) root.data()[i] = random.normal();
+    s.covariance = root * root.transpose() + PointState::Matrix6::Identity();
+    return s;
+  };
+  constexpr double tolerance = 1e-10;
+  const PointState a = state(), b = state();
+  const PointState::Matrix6 ia = a.covariance.inverse(), ib = b.covariance.inverse();
+  const PointState f = fuse(a, b);
+  EXPECT_LT((f.covariance.inverse() - (ia + ib)).norm(), tolerance * (ia + ib).norm() * 100);
+  EXPECT_LT((f.x - f.covariance * (ia * a.x + ib * b.x)).norm(), tolerance);
+
+  const Eigen::Matrix3d r = state().covariance.topLeftCorner<3, 3>();
+  const Eigen::Vector3d z(1, 2, 3);
+  const PointState u = update(a, z, r);
+  PointState::Matrix6 information = ia;
+  information.topLeftCorner<3, 3>() += r.inverse();
+  PointState::Vector6 right = ia * a.x;
+  right.head<3>() += r.inverse() * z;
+  EXPECT_LT((u.covariance * information - PointState::Matrix6::Identity()).norm(), tolerance * 100);
+  EXPECT_LT((u.x - u.covariance * right).norm(), tolerance * 100);
 }
 
 }  // namespace
