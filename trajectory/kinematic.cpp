@@ -28,7 +28,7 @@ Eigen::Matrix3d fix_covariance(const PointFixes& fixes, size_t i, const Kinemati
 }
 
 PolynomialFit window_polynomial(const PointFixes& fixes, const FixWindow& w, int degree, const KinematicOptions& o) {
-  return fit_polynomial(fixes, w, degree, o.axes == AxesForm::axis, o.line == LineWeights::weighted);
+  return fit_polynomial(fixes, w, degree, o.axes == AxesForm::axis, o.line_weights == LineWeights::weighted);
 }
 
 // Eq 7 and its wider forms.

@@ -19,7 +19,7 @@ struct KinematicOptions {
   int epochs = 5;
   double gap_steps = 2.5;
   AxesForm axes = AxesForm::simultaneous;
-  LineWeights line = LineWeights::weighted;
+  LineWeights line_weights = LineWeights::weighted;
   StartCovariance start_covariance = StartCovariance::diffuse;
   bool update_first = true;
   NoiseSpeed noise = NoiseSpeed::speed;
@@ -34,8 +34,8 @@ void describe(KinematicOptions& o, V& v) {
   v.option("gap_steps", o.gap_steps, core::within(2.1, 1000),
            "A step between fixes longer than this many median steps is a gap: windows end there, events within it are flagged.");
   v.option("axes", o.axes, "Each axis for itself, or the three at once with the full covariance of each fix.", "Jubanski2005 eq 2-20");
-  v.option("line", o.line, "Start values: straight line through the window, weighted by the fixes' variances or with unit weights.",
-           "Jubanski2005 eq 1");
+  v.option("line_weights", o.line_weights,
+           "Start values: straight line through the window, weighted by the fixes' variances or with unit weights.", "Jubanski2005 eq 1");
   v.option("start_covariance", o.start_covariance,
            "Covariance of the start values: that of the line before or after its residuals are seen, or so large that they do not count.");
   v.option("update_first", o.update_first, "The window's first fix updates the start values too.");

@@ -46,3 +46,10 @@ DifferenceStatistics statistics_of(const std::vector<Eigen::Vector3d>& differenc
 LeaveOneOut leave_one_out(const PointFixes& fixes, const PointSmoother& smoother, const KinematicOptions& options);
 
 }  // namespace swath::trajectory
+
+namespace swath::core {
+template <>
+struct Choices<trajectory::Interpolator> {
+  static constexpr std::array<std::string_view, 4> names{"kalman", "line", "parabola", "rts"};
+};
+}  // namespace swath::core

@@ -37,7 +37,7 @@ inline KinematicOptions options_of(const core::Value& variant) {
   const auto is = [&](const char* key, const char* value) { return variant.find(key)->as_text() == value; };
   KinematicOptions o;
   o.axes = is("mode", "axis") ? AxesForm::axis : AxesForm::simultaneous;
-  o.line = is("init", "wls") ? LineWeights::weighted : LineWeights::ordinary;
+  o.line_weights = is("init", "wls") ? LineWeights::weighted : LineWeights::ordinary;
   o.start_covariance = is("p0", "apriori")       ? StartCovariance::a_priori
                        : is("p0", "aposteriori") ? StartCovariance::a_posteriori
                                                  : StartCovariance::diffuse;
