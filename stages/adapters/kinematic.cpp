@@ -92,6 +92,7 @@ constexpr const char* header =
 std::string table(const Context& context, const core::EventData& events, const EventPositions& solved) {
   const core::Transform to_map(core::wgs84_ecef(), context.crs);
   const double height_unit = context.crs.has_vertical() ? 1.0 : context.vertical_unit;
+  const int decimals = context.crs.is_geographic() ? 10 : 4;
   std::string out = header;
   for (size_t i = 0; i < events.size(); ++i) {
     const EventPosition& e = solved.events[i];
@@ -104,9 +105,10 @@ std::string table(const Context& context, const core::EventData& events, const E
     const double along = events.sigma[i] > 0.0 ? events.sigma[i] * e.velocity.norm() : std::nan("");
     const Eigen::Vector3d empirical = reached(e.reach) ? solved.empirical : e.position;
     out += field(events.id[i]) + "," + (events.strip[i] ? std::to_string(events.strip[i]) : "") + "," + field(events.technique[i]) + "," +
-           number(events.time[i], 7) + "," + numbers(map, 4) + "," + numbers(e.position, 4) + "," + numbers(e.velocity, 4) + "," +
-           numbers(e.sigma, 4) + "," + numbers(empirical, 4) + "," + numbers(e.velocity_sigma, 4) + "," + number(along, 4) + "," +
-           std::to_string(e.fixes) + "," + flags_of(e, events.doubtful[i]) + "\n";
+           number(events.time[i], 7) + "," + number(map.x(), decimals) + "," + number(map.y(), decimals) + "," + number(map.z(), 4) + "," +
+           numbers(e.position, 4) + "," + numbers(e.velocity, 4) + "," + numbers(e.sigma, 4) + "," + numbers(empirical, 4) + "," +
+           numbers(e.velocity_sigma, 4) + "," + number(along, 4) + "," + std::to_string(e.fixes) + "," + flags_of(e, events.doubtful[i]) +
+           "\n";
   }
   return out;
 }
