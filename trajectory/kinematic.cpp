@@ -34,7 +34,7 @@ PolynomialFit window_polynomial(const PointFixes& fixes, const FixWindow& w, int
 // Eq 7 and its wider forms.
 Eigen::Vector3d velocity_noise(const Eigen::Vector3d& v, const KinematicOptions& o) {
   const Eigen::Vector3d speed = o.noise == NoiseSpeed::axis ? Eigen::Vector3d(v.cwiseAbs()) : Eigen::Vector3d::Constant(v.norm());
-  return (o.noise_share.value * speed).cwiseMax(o.noise_floor.value);
+  return (o.noise_share * speed).cwiseMax(o.noise_floor.value);
 }
 
 PointState start_values(const PolynomialFit& line, double t, const KinematicOptions& o) {

@@ -23,7 +23,7 @@ struct KinematicOptions {
   StartCovariance start_covariance = StartCovariance::diffuse;
   bool update_first = true;
   NoiseSpeed noise = NoiseSpeed::speed;
-  core::Ratio noise_share{0.01};
+  double noise_share = 0.01;
   core::MetresPerSecond noise_floor{0.05};
   bool noise_grows_with_time = true;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "core/error.h"
 #include "io/output_file.h"
@@ -118,8 +119,9 @@ report::Chart drawing(const trajectory::LeaveOneOut& test, double start) {
   report::Chart chart;
   chart.title = "Leave-one-out: fix minus interpolated";
   chart.panel_height = 200;
-  std::vector<double> seconds;
-  for (const double t : test.time) seconds.push_back(t - start);
+  // A NaN between fixes that are no neighbours breaks the line.
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto broken = [&](size_t k) { return k > 0 && test.fix[k] != test.fix[k - 1] + 1; };
   const auto panel = [&](const std::string& title, int axis, std::initializer_list<Interpolator> methods) {
     report::Panel p;
     p.title = title;
@@ -128,9 +130,12 @@ report::Chart drawing(const trajectory::LeaveOneOut& test, double start) {
     for (const Interpolator method : methods) {
       report::Series s;
       s.name = title_of(method);
-      s.x = seconds;
       s.colour = static_cast<int>(method);
-      for (const Eigen::Vector3d& d : test.difference[static_cast<size_t>(method)]) s.y.push_back(100.0 * d[axis]);
+      for (size_t k = 0; k < test.fix.size(); ++k) {
+        if (broken(k)) s.x.push_back(test.time[k] - start), s.y.push_back(nan);
+        s.x.push_back(test.time[k] - start);
+        s.y.push_back(100.0 * test.difference[static_cast<size_t>(method)][k][axis]);
+      }
       p.series.push_back(std::move(s));
     }
     chart.panels.push_back(std::move(p));

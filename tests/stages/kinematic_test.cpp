@@ -230,6 +230,20 @@ TEST(KinematicStage, TimesOfAnotherScaleAndTooFewFixesAreErrors) {
   EXPECT_THROW(few.go(), core::Error);
 }
 
+TEST(KinematicStage, ARecordTooShortForTheTestHasNoEmpiricalSigma) {
+  Trial run;
+  for (size_t i = 8; i < run.gnss->size(); ++i) run.gnss->covariance[i].setZero();
+  run.event(3.5, "1");
+  run.set(R"({"leave_one_out": true})");
+  run.go();
+  auto row = run.rows()[0];
+  EXPECT_EQ(row["flags"], "short_window");
+  EXPECT_FALSE(row["sigma_east"].empty());
+  EXPECT_TRUE(row["empirical_east"].empty());
+  EXPECT_EQ(run.findings.find("empirical_sigma_m"), nullptr);
+  EXPECT_TRUE(std::filesystem::exists(run.folder / "leave_one_out.png"));
+}
+
 TEST(KinematicStage, NoEventsGiveATableWithoutRows) {
   Trial run;
   run.go();

@@ -166,7 +166,7 @@ TEST(Kinematic, NoiseIsAShareOfTheSpeedAndNotBelowTheFloor) {
   EXPECT_LT((noise() - Eigen::Vector3d(0.3, 0.4, 0.05)).norm(), tolerance);
   o.noise_floor = core::MetresPerSecond(0.0);
   EXPECT_LT((noise() - Eigen::Vector3d(0.3, 0.4, 0.005)).norm(), tolerance);
-  o.noise_share = core::Ratio(0.1);
+  o.noise_share = 0.1;
   EXPECT_LT((noise() - Eigen::Vector3d(3.0, 4.0, 0.05)).norm(), tolerance);
 }
 

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
-#include <iostream>
+#include <cstdio>
+#include <string>
 
 #include "io/value_file.h"
 #include "tests/trajectory/kinematic_vectors.h"
@@ -44,25 +46,43 @@ TEST(LeaveOneOut, StatisticsOfTheReference) {
     }
     // The default form stands beside the paper's tables: 4-9 cm where the straight line has 20-70 cm.
     const LeaveOneOut l = leave_one_out(fixes, smoother, {});
-    std::cout << "flight " << name << ": " << l.table() << "\n";
+    std::printf("flight %s: %s\n", name.c_str(), l.table().c_str());
     EXPECT_GT(l.of(Interpolator::line).rms.norm() / l.of(Interpolator::kalman).rms.norm(), 8.0);
     EXPECT_LT(l.of(Interpolator::kalman).rms.maxCoeff(), 0.06);
     EXPECT_LT(l.of(Interpolator::rts).rms.norm(), l.of(Interpolator::kalman).rms.norm());
   }
 }
 
-/// Errors at events against the truth, per axis.
-std::array<std::vector<Eigen::Vector3d>, interpolators.size()> event_errors(const test::MadeFlight& flight, const PointFixes& fixes,
-                                                                            const PointSmoother& smoother, const KinematicOptions& o) {
-  std::array<std::vector<Eigen::Vector3d>, interpolators.size()> out;
-  const double longest = longest_step(fixes, o);
-  for (double t = fixes.time[6]; t < fixes.time[fixes.size() - 6]; t += 0.3123) {
-    const FixWindow w = window_at(fixes.time, t, static_cast<size_t>(o.epochs), longest);
+/// Errors at events against the truth, east, north, height.
+struct AtEvents {
+  Eigen::Vector3d rms = Eigen::Vector3d::Zero();         ///< m
+  Eigen::Vector3d normalised = Eigen::Vector3d::Zero();  ///< rms of error / formal sigma
+};
+std::array<AtEvents, interpolators.size()> at_events(const test::MadeFlight& flight, const PointFixes& fixes, const PointSmoother& smoother,
+                                                     const KinematicOptions& o) {
+  std::array<AtEvents, interpolators.size()> out;
+  double n = 0.0;
+  for (double t = fixes.time[6]; t < fixes.time[fixes.size() - 6]; t += 0.3123, ++n) {
+    const FixWindow w = window_at(fixes.time, t, static_cast<size_t>(o.epochs), longest_step(fixes, o));
     const PointState states[] = {interpolate(fixes, w, t, o), polynomial_at(fixes, w, t, 1, o), polynomial_at(fixes, w, t, 2, o),
                                  smoother.at(t)};
-    for (size_t k = 0; k < interpolators.size(); ++k) out[k].push_back(states[k].position() - flight.position(t));
+    for (size_t k = 0; k < interpolators.size(); ++k) {
+      const Eigen::Vector3d square = (states[k].position() - flight.position(t)).cwiseAbs2();
+      out[k].rms += square;
+      out[k].normalised += square.cwiseQuotient(states[k].covariance.diagonal().head<3>());
+    }
+  }
+  for (AtEvents& e : out) {
+    e.rms = (e.rms / n).cwiseSqrt().eval();
+    e.normalised = (e.normalised / n).cwiseSqrt().eval();
   }
   return out;
+}
+
+void print(const char* name, const AtEvents& e, const Eigen::Vector3d& empirical) {
+  const Eigen::Vector3d r = 100.0 * e.rms, f = e.normalised, m = e.rms.cwiseQuotient(empirical);
+  std::printf("  %-16s rms %5.1f %5.1f %5.1f cm; over formal sigma %5.2f %5.2f %5.2f; over empirical sigma %4.2f %4.2f %4.2f\n", name, r[0],
+              r[1], r[2], f[0], f[1], f[2], m[0], m[1], m[2]);
 }
 
 TEST(LeaveOneOut, TenTimesBetterThanTheStraightLineAtOneHertz) {
@@ -71,17 +91,15 @@ TEST(LeaveOneOut, TenTimesBetterThanTheStraightLineAtOneHertz) {
     const PointFixes fixes = flight.fixes(static_cast<size_t>(300 * rate) + 1, rate);
     const PointSmoother smoother(fixes);
     const LeaveOneOut l = leave_one_out(fixes, smoother, {});
-    std::cout << rate << " Hz: " << l.table();
-    const auto errors = event_errors(flight, fixes, smoother, {});
-    std::array<Eigen::Vector3d, interpolators.size()> rms;
+    const auto events = at_events(flight, fixes, smoother, {});
+    std::printf("%g Hz: %s  At events, against the truth:\n", rate, l.table().c_str());
     for (const Interpolator i : interpolators) {
-      const auto k = static_cast<size_t>(i);
-      rms[k] = statistics_of(errors[k], {}).rms;
-      std::cout << "  at events against truth, rms E N H cm, " << title_of(i) << ": " << 100 * rms[k].transpose() << "\n";
+      const AtEvents& e = events[static_cast<size_t>(i)];
+      print(std::string(title_of(i)).c_str(), e, l.of(i).rms);
       // An upper bound for events: twice the step, and the fix's own error.
-      EXPECT_LT(rms[k].norm(), l.of(i).rms.norm());
+      EXPECT_LT(e.rms.norm(), l.of(i).rms.norm());
     }
-    const double ratio = rms[1].norm() / rms[0].norm();
+    const double ratio = events[1].rms.norm() / events[0].rms.norm();
     if (rate == 1.0) {
       EXPECT_GT(ratio, 10.0);
       EXPECT_GT(l.of(Interpolator::line).rms.norm() / l.of(Interpolator::kalman).rms.norm(), 10.0);
@@ -92,6 +110,26 @@ TEST(LeaveOneOut, TenTimesBetterThanTheStraightLineAtOneHertz) {
       EXPECT_LT(l.of(Interpolator::kalman).rms.maxCoeff(), 0.05);
     }
   }
+}
+
+TEST(LeaveOneOut, FormsOfTheNoiseAtEvents) {
+  test::MadeFlight flight(1);
+  const PointFixes fixes = flight.fixes(301, 1.0);
+  const PointSmoother smoother(fixes);
+  const auto kalman = [&](const char* name, const KinematicOptions& o) {
+    const AtEvents e = at_events(flight, fixes, smoother, o)[0];
+    print(name, e, leave_one_out(fixes, smoother, o).of(Interpolator::kalman).rms);
+    return e.rms.norm();
+  };
+  KinematicOptions o;
+  const double best = kalman("default", o);
+  o.noise_grows_with_time = false;
+  const double by_step = kalman("noise per step", o);
+  o.noise = NoiseSpeed::axis;
+  o.noise_floor = core::MetresPerSecond(0.0);
+  const double literal = kalman("literal, diffuse", o);
+  EXPECT_LT(best, by_step);
+  EXPECT_LT(by_step, literal);
 }
 
 TEST(LeaveOneOut, TheLiteralNoiseLagsBehindOnASlowAxis) {
