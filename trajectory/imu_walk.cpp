@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trajectory/imu_walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/units.h"
+
+namespace swath::trajectory {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double no_time = 1e-6;      // s: instants nearer than this are one (a double of GPS seconds resolves 2.4e-7)
+constexpr double gap_share = 0.5;     // of a step missing makes a gap
+constexpr double bridge_step = 0.01;  // s: longest increment of a bridge
+constexpr size_t neighbours = 100;    // records on each side that say how much the motion changes
+
+/// RMS of the differences of rates over the length of the gap, from the records about it.
+double change(const std::vector<Vector3d>& values, const std::vector<double>& step, size_t k, double least) {
+  const size_t first = k > neighbours ? k - neighbours : 0, last = std::min(values.size(), k + neighbours);
+  Vector3d sum = Vector3d::Zero(), squares = Vector3d::Zero();
+  double n = 0;
+  for (size_t i = first; i < last; ++i, ++n) {
+    const Vector3d v = values[i] / step[i];
+    sum += v;
+    squares += v.cwiseAbs2();
+  }
+  const Vector3d variance = squares / n - (sum / n).cwiseAbs2();
+  return std::max(least, std::sqrt(std::max(0.0, variance.maxCoeff())));
+}
+
+}  // namespace
+
+const BridgedGap* ImuPath::gap_within(double t0, double t1) const {
+  for (const BridgedGap& g : gaps)
+    if (g.start < t1 && g.start + g.length > t0) return &g;
+  return nullptr;
+}
+
+ImuPath make_path(core::ImuData imu, double max_gap) {
+  ImuPath path;
+  std::vector<size_t> before;  // records with a gap before them
+  for (size_t k = 1; k < imu.size(); ++k) {
+    const double missing = imu.time[k] - imu.step[k] - imu.time[k - 1];
+    if (missing <= gap_share * imu.step[k]) continue;
+    if (missing > max_gap)
+      throw core::Error("the IMU has a gap of " + core::format_number(std::round(missing * 1e4) / 1e4) + " s, longer than " +
+                            core::format_number(max_gap) + " s",
+                        "IMU record " + std::to_string(k + 1) + ", GPS time " + std::to_string(imu.time[k]),
+                        "cut the survey there, or raise max_gap");
+    before.push_back(k);
+  }
+  if (before.empty()) {
+    for (size_t k = 1; k < imu.size(); ++k) imu.step[k] = imu.time[k] - imu.time[k - 1];
+    path.imu = std::move(imu);
+    return path;
+  }
+  core::ImuData& out = path.imu;
+  size_t at = 0;
+  for (size_t k = 0; k < imu.size(); ++k) {
+    if (at < before.size() && before[at] == k) {
+      ++at;
+      const double start = imu.time[k - 1], length = imu.time[k] - imu.step[k] - start;
+      path.gaps.push_back({start, length, change(imu.angle, imu.step, k, 0.01), change(imu.velocity, imu.step, k, 0.1)});
+      const auto pieces = static_cast<size_t>(std::ceil(length / bridge_step));
+      const double step = length / static_cast<double>(pieces);
+      const Vector3d rate0 = imu.angle[k - 1] / imu.step[k - 1], rate1 = imu.angle[k] / imu.step[k];
+      const Vector3d force0 = imu.velocity[k - 1] / imu.step[k - 1], force1 = imu.velocity[k] / imu.step[k];
+      for (size_t p = 0; p < pieces; ++p) {
+        const double share = (static_cast<double>(p) + 0.5) / static_cast<double>(pieces);
+        out.time.push_back(start + step * static_cast<double>(p + 1));
+        out.step.push_back(step);
+        out.angle.push_back(step * ((1 - share) * rate0 + share * rate1));
+        out.velocity.push_back(step * ((1 - share) * force0 + share * force1));
+        path.bridged.push_back(1);
+      }
+    }
+    out.time.push_back(imu.time[k]);
+    out.step.push_back(k == 0 ? imu.step[0] : imu.time[k] - out.time[out.time.size() - 2]);
+    out.angle.push_back(imu.angle[k]);
+    out.velocity.push_back(imu.velocity[k]);
+    path.bridged.push_back(0);
+  }
+  return path;
+}
+
+ImuWalk::ImuWalk(const ImuPath& path, double time) : path_(&path), time_(std::clamp(time, path.begin(), path.end())) {
+  const auto& t = path.imu.time;
+  k_ = std::min<size_t>(static_cast<size_t>(std::lower_bound(t.begin(), t.end(), time_) - t.begin()), t.size() - 1);
+}
+
+bool ImuWalk::next(double until, Increment& piece) {
+  const double goal = std::clamp(until, path_->begin(), path_->end());
+  if (std::abs(goal - time_) < no_time) return false;
+  const core::ImuData& imu = path_->imu;
+  const bool onward = goal > time_;
+  double target = 0;
+  for (;;) {
+    if (onward) {
+      if (time_ > imu.time[k_] - no_time && k_ + 1 < imu.size()) ++k_;
+      target = std::min(goal, imu.time[k_]);
+      if (goal > target - no_time && goal < target + no_time) target = goal;
+    } else {
+      if (time_ < path_->edge(k_) + no_time && k_ > 0) --k_;
+      target = std::max(goal, path_->edge(k_));
+    }
+    if (std::abs(target - time_) >= no_time) break;
+    if (std::abs(goal - target) < no_time) return false;
+    time_ = target;
+  }
+  piece = increment_of(imu, k_);
+  const double share = (target - time_) / piece.step;
+  piece.angle *= share;
+  piece.velocity *= share;
+  piece.step *= share;
+  time_ = target;
+  return true;
+}
+
+}  // namespace swath::trajectory

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The error-state Kalman filter over nodes: instants of fixes and some between them. The same code runs forward and backward in time.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/gnss_data.h"
+#include "trajectory/error_state.h"
+#include "trajectory/ins_gnss.h"
+
+namespace swath::trajectory {
+
+/// An instant at which the filter stops.
+struct Node {
+  double time = 0.0;
+  std::int32_t fix = -1;  ///< number of the GNSS fix, or -1
+  bool still = false;     ///< the body stands on the ground
+};
+
+/// One update as the smoother needs it.
+struct Update {
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, most_states> design;  ///< H
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_states, 3> gain;    ///< K
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> weight;            ///< S^-1
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> innovation;                     ///< y
+};
+
+/// What the filter knew at a node, after its updates.
+struct NodeRecord {
+  StateMatrix transition;  ///< from the node before
+  std::vector<Update> updates;
+  StateMatrix covariance;
+  Estimate estimate;
+};
+
+/// What one GNSS fix did.
+struct FixOutcome {
+  Eigen::Vector3d innovation, innovation_sigma;  ///< north east down, m
+  double nis = 0.0, velocity_nis = -1.0;         ///< -1: no velocity
+  double weight = 1.0;
+};
+
+/// What all passes share. References stay with the caller.
+struct Problem {
+  const ImuPath& path;
+  const core::GnssData& gnss;
+  const std::vector<Node>& nodes;
+  Layout layout;
+  ProcessNoise noise;
+  InsGnssOptions options;
+  double gate = 21.1;  ///< NIS of three degrees of freedom beyond which a fix is down-weighted
+};
+
+class InsFilter {
+ public:
+  /// `start`: at any instant of the path; `covariance` of its errors.
+  InsFilter(const Problem& problem, Estimate start, StateMatrix covariance);
+
+  /// Carries estimate and covariance to the next node; no measurement is used. `record` receives the transition.
+  void predict(const Node& node, NodeRecord* record);
+  /// Uses what was measured at the node.
+  void update(const Node& node, NodeRecord* record, FixOutcome* outcome);
+
+  const Estimate& estimate() const { return estimate_; }
+  const StateMatrix& covariance() const { return covariance_; }
+
+ private:
+  template <int Rows>
+  double apply(const Eigen::Matrix<double, Rows, Eigen::Dynamic, 0, Rows, most_states>& design,
+               const Eigen::Matrix<double, Rows, 1>& innovation, const Eigen::Matrix<double, Rows, Rows>& noise, double gate,
+               NodeRecord* record, double* weight);
+  void use_position(const Node& node, NodeRecord* record, FixOutcome* outcome);
+  void use_velocity(const Node& node, NodeRecord* record, FixOutcome* outcome);
+  void use_standstill(NodeRecord* record);
+  void use_wheels(NodeRecord* record);
+
+  const Problem* problem_;
+  Estimate estimate_;
+  StateMatrix covariance_;
+  ImuWalk walk_;
+  Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();  // body against inertial space at the node, rad/s
+  double last_wheels_ = -1e300;
+};
+
+/// The antenna's velocity relative to the Earth, ecef, of an estimate whose body turns by `rate` (rad/s, body).
+Eigen::Vector3d antenna_velocity(const Estimate& e, const Eigen::Vector3d& rate);
+
+}  // namespace swath::trajectory

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Error-state filter and smoother after Groves 2013 (chapters 14 and 16) and Bierman 1973; alignment in motion after Wu and Pan 2013.
+// Deviations, with their size: the attitude error is held small by repeating the whole from the smoothed start (a first error of 10 deg
+// leaves 1e-4 of itself after two passes); the bias drift is a random walk (see ProcessNoise).
+#include "trajectory/ins_gnss.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "core/frames.h"
+#include "core/geodesy.h"
+#include "trajectory/alignment.h"
+#include "trajectory/ins_output.h"
+#include "trajectory/ins_report.h"
+
+namespace swath::trajectory {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double node_spacing = 0.25;   // s: between nodes residuals of the mechanisation are linear in time
+constexpr double longest_lead = 120.0;  // s of IMU records kept before the first fix and after the last
+constexpr double near_fix = 2.0;        // s: a start as near to a fix takes its position
+constexpr int most_iterations = 4;
+constexpr double settled = 0.02;      // share of sigma by which the start may still move
+constexpr double first_gate = 400.0;  // NIS in the first pass, whose start may be degrees off
+
+std::string seconds(double t) { return core::format_number(std::round(t * 1000) / 1000); }
+
+/// NIS of 3 degrees of freedom that is exceeded with the given probability: Wilson and Hilferty, within 1 % below 1e-2.
+double gate_of(double probability) {
+  // Normal quantile by bisection of erfc.
+  double low = 0, high = 40;
+  for (int i = 0; i < 200; ++i) {
+    const double mid = 0.5 * (low + high);
+    (0.5 * std::erfc(mid / std::sqrt(2.0)) > probability ? low : high) = mid;
+  }
+  const double c = 2.0 / 27.0, root = 1 - c + low * std::sqrt(c);
+  return 3 * root * root * root;
+}
+
+/// An IMU whose numbers cannot be those of a survey: units or axes.
+void require_plausible(const core::ImuData& imu) {
+  Vector3d force = Vector3d::Zero();
+  double turn = 0, length = 0, rate2 = 0;
+  for (size_t k = 0; k < imu.size(); ++k) {
+    if (!imu.angle[k].allFinite() || !imu.velocity[k].allFinite() || !std::isfinite(imu.time[k]))
+      throw core::Error("a value is not finite", "IMU record " + std::to_string(k + 1),
+                        "such records must be left out before the smoother");
+    force += imu.velocity[k];
+    length += imu.step[k];
+    turn += imu.angle[k].norm();
+    rate2 += imu.angle[k].squaredNorm() / imu.step[k];
+  }
+  force /= length;
+  const double rate = std::sqrt(rate2 / length);
+  if (rate > 10.0)
+    throw core::Error("the gyros turn by " + seconds(rate) + " rad/s (rms): no carrier does", "IMU records",
+                      "are the angles in degrees? state imu.angle_unit");
+  if (force.norm() < 5.0 || force.norm() > 15.0)
+    throw core::Error("the mean specific force is " + seconds(force.norm()) + " m/s2, which is not gravity", "IMU records",
+                      "state imu.acceleration_unit and imu.kind");
+  if (-force.z() < 0.5 * force.norm())
+    throw core::Error("gravity lies along (" + seconds(force.x()) + ", " + seconds(force.y()) + ", " + seconds(force.z()) +
+                          ") m/s2 of forward, right, down, where (0, 0, -9.8) is expected",
+                      "IMU records", "state imu.axes or the mounting's roll, pitch and heading");
+}
+
+/// The fixes within the IMU's record; the record cut to their neighbourhood.
+struct Trimmed {
+  core::ImuData imu;
+  core::GnssData gnss;
+};
+
+template <class T>
+void keep(std::vector<T>& v, size_t first, size_t last) {
+  if (v.empty()) return;
+  v.erase(v.begin() + static_cast<std::ptrdiff_t>(last), v.end());
+  v.erase(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
+Trimmed trim(core::ImuData imu, core::GnssData gnss) {
+  if (imu.size() < 10) throw core::Error("too few IMU records: " + std::to_string(imu.size()), "IMU records");
+  if (gnss.size() < 4) throw core::Error("too few fixes: " + std::to_string(gnss.size()), "GNSS fixes");
+  const double begin = imu.time.front() - imu.step.front(), end = imu.time.back();
+  const auto first = static_cast<size_t>(std::lower_bound(gnss.time.begin(), gnss.time.end(), begin) - gnss.time.begin());
+  const auto last = static_cast<size_t>(std::upper_bound(gnss.time.begin(), gnss.time.end(), end) - gnss.time.begin());
+  if (last < first + 4)
+    throw core::Error("IMU and GNSS do not overlap: IMU from " + seconds(begin) + " to " + seconds(end) + ", fixes from " +
+                          seconds(gnss.time.front()) + " to " + seconds(gnss.time.back()) + " s GPS time",
+                      "trajectory.ins_gnss", "check the time scales, weeks and dates of both");
+  keep(gnss.time, first, last);
+  keep(gnss.position, first, last);
+  keep(gnss.covariance, first, last);
+  keep(gnss.velocity, first, last);
+  keep(gnss.velocity_covariance, first, last);
+  keep(gnss.quality, first, last);
+  keep(gnss.satellites, first, last);
+  const auto& t = imu.time;
+  const auto imu_first = static_cast<size_t>(std::lower_bound(t.begin(), t.end(), gnss.time.front() - longest_lead) - t.begin());
+  const auto imu_last = static_cast<size_t>(std::upper_bound(t.begin(), t.end(), gnss.time.back() + longest_lead) - t.begin());
+  keep(imu.time, imu_first, imu_last);
+  keep(imu.step, imu_first, imu_last);
+  keep(imu.angle, imu_first, imu_last);
+  keep(imu.velocity, imu_first, imu_last);
+  return {std::move(imu), std::move(gnss)};
+}
+
+/// The path's ends, every fix, and instants between where they are far apart.
+std::vector<Node> nodes_of(const ImuPath& path, const core::GnssData& gnss, const std::vector<Span>& standstills) {
+  std::vector<Node> out{{path.begin(), -1, false}};
+  const auto fill_to = [&out](double t) {
+    const double from = out.back().time;
+    const double n = std::ceil((t - from) / node_spacing - 1e-6);
+    for (double i = 1; i < n; ++i) out.push_back({from + (t - from) * i / n, -1, false});
+  };
+  constexpr double same = 1e-6;  // s
+  for (size_t k = 0; k < gnss.size(); ++k) {
+    if (gnss.time[k] < out.back().time + same) {
+      if (out.back().fix < 0) out.back().fix = static_cast<std::int32_t>(k);
+      continue;
+    }
+    fill_to(gnss.time[k]);
+    out.push_back({gnss.time[k], static_cast<std::int32_t>(k), false});
+  }
+  if (path.end() > out.back().time + same) {
+    fill_to(path.end());
+    out.push_back({path.end(), -1, false});
+  }
+  size_t s = 0;
+  for (Node& n : out) {
+    while (s < standstills.size() && standstills[s].last < n.time) ++s;
+    n.still = s < standstills.size() && n.time >= standstills[s].first;
+  }
+  return out;
+}
+
+Alignment align(const ImuPath& path, const core::GnssData& gnss, const core::ImuErrorModel& spec, const Vector3d& lever,
+                const std::vector<Span>& standstills, const InsGnssOptions& options) {
+  if (options.alignment == AlignmentMethod::given) {
+    const core::Geodetic g = core::geodetic_of(gnss.position.front());
+    const Matrix3d ned = core::ecef_R_ned(g.latitude, g.longitude);
+    Alignment out;
+    out.method = "given";
+    out.time = path.begin();
+    out.ecef_R_body = ned * core::matrix_of({options.given.roll.value, options.given.pitch.value, options.given.heading.value});
+    const double level = options.given.sigma_roll_pitch.value, heading = options.given.sigma_heading.value;
+    out.covariance = ned * Vector3d(level * level, level * level, heading * heading).asDiagonal() * ned.transpose();
+    return out;
+  }
+  std::optional<Alignment> still;
+  constexpr double compass = 5 * core::degree;  // better than this, gyrocompassing needs no motion
+  for (const Span& s : standstills) {
+    const auto fix = std::min<size_t>(
+        static_cast<size_t>(std::lower_bound(gnss.time.begin(), gnss.time.end(), s.first) - gnss.time.begin()), gnss.size() - 1);
+    const Alignment a = align_still(path, s, gnss.position[fix], spec);
+    if (!still || a.worst_sigma() < still->worst_sigma()) still = a;
+  }
+  if (options.alignment == AlignmentMethod::still && !still)
+    throw core::Error("no standstill to align on", "trajectory.ins_gnss", "choose alignment = \"moving\" or \"given\"");
+  if (still && (options.alignment == AlignmentMethod::still || still->worst_sigma() < compass)) return *still;
+  const std::optional<Alignment> moving = align_moving(path, gnss, lever, spec, still ? still->gyro_bias : Vector3d::Zero());
+  if (!moving)
+    throw core::Error("the fixes are too few or too far apart to find the attitude", "trajectory.ins_gnss",
+                      "state it: alignment = \"given\", with given.roll, given.pitch and given.heading");
+  return *moving;
+}
+
+/// Position and velocity at an instant near fixes: a straight line through those within 1.5 s.
+void set_motion(NavState& nav, const core::GnssData& gnss, size_t at, const Vector3d& lever) {
+  double n = 0, t1 = 0, t2 = 0;
+  Vector3d p1 = Vector3d::Zero(), tp = Vector3d::Zero();
+  const double origin = gnss.time[at];
+  for (size_t k = at; k < gnss.size() && (gnss.time[k] <= origin + 1.5 || k < at + 3); ++k) {
+    const double t = gnss.time[k] - origin;
+    n += 1;
+    t1 += t;
+    t2 += t * t;
+    p1 += gnss.position[k] - gnss.position[at];
+    tp += t * (gnss.position[k] - gnss.position[at]);
+  }
+  const double d = n * t2 - t1 * t1;
+  nav.velocity = d > 0 ? Vector3d((n * tp - t1 * p1) / d) : Vector3d::Zero();
+  nav.position = gnss.position[at] + nav.velocity * (nav.time - origin) - nav.ecef_R_body * lever;
+}
+
+struct Start {
+  Estimate estimate;
+  StateMatrix covariance;
+};
+
+/// The state at the path's beginning with the sigmas it is stated with.
+Start start_of(const ImuPath& path, const core::GnssData& gnss, const Alignment& alignment, const core::ImuErrorModel& spec,
+               const Layout& l, const Vector3d& lever, double lever_sigma, const InsGnssOptions& options) {
+  Start out;
+  Estimate& e = out.estimate;
+  e.lever = lever;
+  const double first = gnss.time.front(), lead = first - path.begin();
+  const bool near = lead < near_fix;
+  const Alignment a = carried(alignment, near ? path.begin() : first, path, spec);
+  e.nav.time = a.time;
+  e.nav.ecef_R_body = a.ecef_R_body;
+  set_motion(e.nav, gnss, 0, lever);
+  if (!near) {
+    ImuWalk walk(path, a.time);
+    Increment piece;
+    const Vector3d bias = a.gyro_bias;
+    while (walk.next(path.begin(), piece)) {
+      piece.angle -= piece.step * bias;
+      advance(e.nav, piece);
+    }
+  }
+  e.nav.time = path.begin();
+
+  StateMatrix& P = out.covariance;
+  P = StateMatrix::Zero(l.size, l.size);
+  const auto put = [&P](int row, double sigma) {
+    if (row >= 0) P.diagonal().segment<3>(row).setConstant(sigma * sigma);
+  };
+  // Dead reckoning back over `lead` seconds with an attitude of a few degrees.
+  const double away = near ? 0.0 : lead;
+  const double tilt = std::max(1 * core::degree, alignment.worst_sigma());
+  put(Layout::position, 10.0 + 0.5 * 9.8 * tilt * away * away);
+  put(Layout::velocity, 3.0 + 9.8 * tilt * away);
+  constexpr double slack = 1.0 * core::degree;  // what the alignment does not tell of itself
+  const double widest = core::pi / 3;
+  P.block<3, 3>(Layout::attitude, Layout::attitude) = 4 * a.covariance + slack * slack * Matrix3d::Identity();
+  for (int i = 0; i < 3; ++i) {
+    double& variance = P(Layout::attitude + i, Layout::attitude + i);
+    if (variance <= widest * widest) continue;
+    P.row(Layout::attitude + i) *= widest / std::sqrt(variance);
+    P.col(Layout::attitude + i) *= widest / std::sqrt(variance);
+    variance = widest * widest;
+  }
+  put(Layout::gyro_bias, std::hypot(spec.gyro_bias.value, spec.gyro_drift.value));
+  put(Layout::force_bias, std::hypot(spec.accelerometer_bias.value, spec.accelerometer_drift.value));
+  put(l.gyro_scale, spec.gyro_scale.value);
+  put(l.force_scale, spec.accelerometer_scale.value);
+  put(l.lever, lever_sigma);
+  put(l.fix, 1.0);
+  if (l.latency >= 0) P(l.latency, l.latency) = options.latency_sigma.value * options.latency_sigma.value;
+  constexpr double axis_sigma = 5 * core::degree;
+  if (l.track >= 0) P.diagonal().segment<2>(l.track).setConstant(axis_sigma * axis_sigma);
+  return out;
+}
+
+/// How far the smoothed start lies from the one it was computed with, in its sigmas.
+double moved(const Estimate& now, const Estimate& before, const SmootherRun& run, const Layout& l) {
+  const StateVector e = now.minus(before, l);
+  double most = 0;
+  for (int i = 0; i < 9; ++i) most = std::max(most, std::abs(e[i]) / std::max(1e-12, run.nodes.front().sigma[i]));
+  return most;
+}
+
+}  // namespace
+
+InsGnssResult smooth(const core::ImuData& imu_records, const core::GnssData& fixes, const core::ImuErrorModel& spec,
+                     const Vector3d& lever_arm, double lever_arm_sigma, const InsGnssOptions& options) {
+  require_plausible(imu_records);
+  Trimmed records = trim(imu_records, fixes);
+  const ImuPath path = make_path(std::move(records.imu), options.max_gap.value);
+  const core::GnssData& gnss = records.gnss;
+  const std::vector<Span> standstills =
+      options.zero_velocity || options.alignment != AlignmentMethod::given ? find_standstills(path, gnss, spec) : std::vector<Span>{};
+  const std::vector<Node> nodes = nodes_of(path, gnss, options.zero_velocity ? standstills : std::vector<Span>{});
+
+  const Layout layout(options.scale_factors, options.lever_arm && lever_arm_sigma > 0, options.correlated_share > 0, options.gnss_latency,
+                      options.non_holonomic);
+  Problem problem{path, gnss, nodes, layout, ProcessNoise::of(spec, options.correlation_time.value), options};
+
+  const Alignment alignment = align(path, gnss, spec, lever_arm, standstills, options);
+  const Start start = start_of(path, gnss, alignment, spec, layout, lever_arm, lever_arm_sigma, options);
+
+  // Repeated from the smoothed start until it stays: the errors are then small about the right motion.
+  Estimate first = start.estimate;
+  SmootherRun run;
+  int iterations = 0;
+  double shift = std::numeric_limits<double>::infinity();
+  while (iterations < most_iterations && shift > settled) {
+    problem.gate = iterations == 0 ? first_gate : gate_of(options.outlier_probability);
+    run = run_smoother(problem, first, start.covariance);
+    ++iterations;
+    const Estimate& smoothed = run.nodes.front().estimate;
+    shift = iterations == 1 ? std::numeric_limits<double>::infinity() : moved(smoothed, first, run, layout);
+    first.nav = smoothed.nav;
+  }
+  if (!run.nodes.front().estimate.nav.position.allFinite())
+    throw core::Error("the filter diverged", "trajectory.ins_gnss", "check units, axes, lever arm and time scales");
+
+  StateMatrix last = start.covariance;
+  Estimate end = start.estimate;
+  end.nav = run.nodes.back().estimate.nav;
+  const std::vector<FilterNode> backward = run_backward(problem, end, last);
+
+  InsGnssResult result;
+  const InsFindings findings{problem, run, backward, spec, alignment, lever_arm, lever_arm_sigma, standstills, iterations};
+  result.series = series_of(findings);
+  size_t rejected = 0;
+  for (const double w : result.series.weight) rejected += w < 1.0;
+  if (2 * rejected > result.series.weight.size())
+    throw core::Error(std::to_string(rejected) + " of " + std::to_string(result.series.weight.size()) + " fixes contradict the IMU",
+                      "trajectory.ins_gnss", "check the lever arm's sign, the time scales, imu_spec and the fixes' sigmas");
+  result.report = report_of(findings, result.series);
+  result.trajectory = trajectory_of(problem, run.nodes, options.output_rate.value);
+  return result;
+}
+
+}  // namespace swath::trajectory
