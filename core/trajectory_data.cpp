@@ -9,7 +9,7 @@ CovarianceSeries::Packed CovarianceSeries::pack(const Matrix9& covariance) {
   Packed out{};
   size_t at = 0;
   for (Eigen::Index i = 0; i < 9; ++i)
-    for (Eigen::Index j = i; j < 9; ++j) out[at++] = static_cast<float>(covariance(i, j));
+    for (Eigen::Index j = i; j < 9; ++j) out[at++] = covariance(i, j);
   return out;
 }
 
@@ -17,7 +17,7 @@ CovarianceSeries::Matrix9 CovarianceSeries::unpack(const Packed& packed) {
   Matrix9 out;
   size_t at = 0;
   for (Eigen::Index i = 0; i < 9; ++i)
-    for (Eigen::Index j = i; j < 9; ++j) out(i, j) = out(j, i) = static_cast<double>(packed[at++]);
+    for (Eigen::Index j = i; j < 9; ++j) out(i, j) = out(j, i) = packed[at++];
   return out;
 }
 

@@ -12,7 +12,7 @@ namespace swath::core {
 /// (m), velocity north, east, down (m/s), roll, pitch, heading (rad).
 struct CovarianceSeries {
   using Matrix9 = Eigen::Matrix<double, 9, 9>;
-  using Packed = std::array<float, 45>;  ///< upper triangle, row by row
+  using Packed = std::array<double, 45>;  ///< upper triangle, row by row
 
   std::vector<double> time;  ///< GPS time, s, rising
   std::vector<Packed> upper;

@@ -6,18 +6,15 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "core/frames.h"
 #include "core/geodesy.h"
 
 namespace swath::trajectory {
 namespace {
 
-using core::skew;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 using Design3 = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, most_states>;
-using Design2 = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, most_states>;
 
 constexpr double no_gate = 1e300;
 constexpr double still_sigma = 0.02;       // m/s: what an engine or a hand shakes
@@ -34,16 +31,24 @@ Matrix3d ned_at(const Vector3d& ecef) {
 
 }  // namespace
 
-Vector3d antenna_velocity(const Estimate& e, const Vector3d& rate) {
-  const Vector3d earth(0, 0, core::wgs84::omega);
-  return e.nav.velocity + e.nav.ecef_R_body * rate.cross(e.lever) - earth.cross(e.nav.ecef_R_body * e.lever);
+InsFilter::InsFilter(const Problem& problem, Estimate start, StateVector mean, StateMatrix covariance,
+                     const std::vector<Estimate>* reference)
+    : problem_(&problem),
+      reference_(reference),
+      estimate_(std::move(start)),
+      mean_(std::move(mean)),
+      covariance_(std::move(covariance)),
+      walk_(problem.path, estimate_.nav.time) {}
+
+Estimate InsFilter::estimate() const {
+  Estimate out = estimate_;
+  out.correct(problem_->layout, mean_);
+  return out;
 }
 
-InsFilter::InsFilter(const Problem& problem, Estimate start, StateMatrix covariance)
-    : problem_(&problem), estimate_(std::move(start)), covariance_(std::move(covariance)), walk_(problem.path, estimate_.nav.time) {}
-
-void InsFilter::predict(const Node& node, NodeRecord* record) {
+void InsFilter::predict(size_t number, NodeRecord* record) {
   const Layout& l = problem_->layout;
+  const Node& node = problem_->nodes[number];
   Propagation propagation(l, estimate_);
   const double from = walk_.time();
   Increment piece;
@@ -67,6 +72,11 @@ void InsFilter::predict(const Node& node, NodeRecord* record) {
   covariance_.diagonal() += 0.5 * q;
   estimate_.nav = propagation.nav();
   if (l.fix >= 0) estimate_.fix *= phi(l.fix, l.fix);
+  mean_ = (phi * mean_).eval();
+  if (reference_) {
+    mean_ += estimate_.minus((*reference_)[number], l);
+    estimate_ = (*reference_)[number];
+  }
   if (record) {
     record->transition = phi;
     record->updates.clear();
@@ -74,9 +84,11 @@ void InsFilter::predict(const Node& node, NodeRecord* record) {
 }
 
 template <int Rows>
-double InsFilter::apply(const Eigen::Matrix<double, Rows, Eigen::Dynamic, 0, Rows, most_states>& H, const Eigen::Matrix<double, Rows, 1>& y,
-                        const Eigen::Matrix<double, Rows, Rows>& R, double gate, NodeRecord* record, double* weight) {
+double InsFilter::apply(const Eigen::Matrix<double, Rows, Eigen::Dynamic, 0, Rows, most_states>& H,
+                        const Eigen::Matrix<double, Rows, 1>& measured, const Eigen::Matrix<double, Rows, Rows>& R, double gate,
+                        NodeRecord* record, double* weight) {
   using Square = Eigen::Matrix<double, Rows, Rows>;
+  const Eigen::Matrix<double, Rows, 1> y = measured - H * mean_;
   const Eigen::Matrix<double, Eigen::Dynamic, Rows, 0, most_states, Rows> PHt = covariance_ * H.transpose();
   Square S = H * PHt + R;
   S = 0.5 * (S + S.transpose()).eval();
@@ -95,12 +107,17 @@ double InsFilter::apply(const Eigen::Matrix<double, Rows, Eigen::Dynamic, 0, Row
   const Square middle = H * PHt + noise;
   covariance_ += K * middle * K.transpose();
   covariance_ = 0.5 * (covariance_ + covariance_.transpose()).eval();
-  estimate_.correct(problem_->layout, K * y);
+  mean_ += K * y;
+  if (!reference_) {
+    estimate_.correct(problem_->layout, mean_);
+    mean_.setZero();
+  }
   if (record) record->updates.push_back({H, K, inverse, y});
   return nis;
 }
 
-void InsFilter::update(const Node& node, NodeRecord* record, FixOutcome* outcome) {
+void InsFilter::update(size_t number, NodeRecord* record, FixOutcome* outcome) {
+  const Node& node = problem_->nodes[number];
   if (node.fix >= 0) {
     use_position(node, record, outcome);
     if (problem_->options.use_velocity && problem_->gnss.has_velocity()) use_velocity(node, record, outcome);
@@ -110,6 +127,7 @@ void InsFilter::update(const Node& node, NodeRecord* record, FixOutcome* outcome
   if (record) {
     record->covariance = covariance_;
     record->estimate = estimate_;
+    record->mean = mean_;
   }
 }
 
@@ -121,23 +139,15 @@ void InsFilter::use_position(const Node& node, NodeRecord* record, FixOutcome* o
   const double share = l.fix >= 0 ? problem_->options.correlated_share : 0.0;
   const Vector3d sigma = (ned.transpose() * total * ned).diagonal().cwiseMax(0.0).cwiseSqrt();
   const Matrix3d spread = ned * (std::sqrt(share) * sigma).asDiagonal();
-  const Vector3d arm = estimate_.nav.ecef_R_body * estimate_.lever;
-  const Vector3d moving = antenna_velocity(estimate_, rate_);
-
-  Design3 H = Design3::Zero(3, l.size);
-  H.block<3, 3>(0, l.position).setIdentity();
-  H.block<3, 3>(0, l.attitude) = -skew(arm);
-  if (l.lever >= 0) H.block<3, 3>(0, l.lever) = estimate_.nav.ecef_R_body;
-  if (l.fix >= 0) H.block<3, 3>(0, l.fix) = spread;
-  if (l.latency >= 0) H.col(l.latency) = moving;
-  const Vector3d y = problem_->gnss.position[k] - (estimate_.nav.position + arm + spread * estimate_.fix + estimate_.latency * moving);
+  const Prediction<3> expected = predict_fix(l, estimate_, rate_, spread);
+  const Vector3d y = problem_->gnss.position[k] - expected.value;
   if (outcome) {
-    const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, most_states, 3> PHt = covariance_ * H.transpose();
-    outcome->innovation = ned.transpose() * y;
-    outcome->innovation_sigma = (ned.transpose() * (H * PHt + (1 - share) * total) * ned).diagonal().cwiseSqrt();
+    const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, most_states, 3> PHt = covariance_ * expected.design.transpose();
+    outcome->innovation = ned.transpose() * (y - expected.design * mean_);
+    outcome->innovation_sigma = (ned.transpose() * (expected.design * PHt + (1 - share) * total) * ned).diagonal().cwiseSqrt();
   }
   double weight = 1.0;
-  const double nis = apply<3>(H, y, (1 - share) * total, problem_->gate, record, &weight);
+  const double nis = apply<3>(expected.design, y, (1 - share) * total, problem_->gate, record, &weight);
   if (outcome) {
     outcome->nis = nis;
     outcome->weight = weight;
@@ -145,25 +155,18 @@ void InsFilter::use_position(const Node& node, NodeRecord* record, FixOutcome* o
 }
 
 void InsFilter::use_velocity(const Node& node, NodeRecord* record, FixOutcome* outcome) {
-  const Layout& l = problem_->layout;
   const auto k = static_cast<size_t>(node.fix);
   const Vector3d& measured = problem_->gnss.velocity[k];
   if (!measured.allFinite()) return;
-  const Matrix3d& C = estimate_.nav.ecef_R_body;
-  const Vector3d swing = C * rate_.cross(estimate_.lever);
-  Design3 H = Design3::Zero(3, l.size);
-  H.block<3, 3>(0, l.velocity).setIdentity();
-  H.block<3, 3>(0, l.attitude) = -skew(swing);
-  H.block<3, 3>(0, l.gyro_bias) = C * skew(estimate_.lever);
-  if (l.lever >= 0) H.block<3, 3>(0, l.lever) = C * skew(rate_);
-  const Vector3d y = measured - antenna_velocity(estimate_, rate_);
-  const double nis = apply<3>(H, y, problem_->gnss.velocity_covariance[k], problem_->gate, record, nullptr);
+  const Prediction<3> expected = predict_velocity(problem_->layout, estimate_, rate_);
+  const double nis =
+      apply<3>(expected.design, measured - expected.value, problem_->gnss.velocity_covariance[k], problem_->gate, record, nullptr);
   if (outcome) outcome->velocity_nis = nis;
 }
 
 void InsFilter::use_standstill(NodeRecord* record) {
-  if (std::abs(estimate_.nav.time - last_wheels_) < still_interval) return;
-  last_wheels_ = estimate_.nav.time;
+  if (std::abs(estimate_.nav.time - last_virtual_) < still_interval) return;
+  last_virtual_ = estimate_.nav.time;
   const Layout& l = problem_->layout;
   Design3 H = Design3::Zero(3, l.size);
   H.block<3, 3>(0, l.velocity).setIdentity();
@@ -172,28 +175,14 @@ void InsFilter::use_standstill(NodeRecord* record) {
 
 void InsFilter::use_wheels(NodeRecord* record) {
   const double time = estimate_.nav.time;
-  if (std::abs(time - last_wheels_) < wheels_interval || rate_.norm() > most_wheel_rate) return;
-  const Layout& l = problem_->layout;
+  if (std::abs(time - last_virtual_) < wheels_interval || rate_.norm() > most_wheel_rate) return;
   const auto& w = problem_->options.wheel_point;
-  const Vector3d wheel(w[0].value, w[1].value, w[2].value);
-  const Matrix3d body_R_ecef = estimate_.nav.ecef_R_body.transpose();
-  const Vector3d carried = body_R_ecef * estimate_.nav.velocity;
-  const Vector3d v = carried + rate_.cross(wheel);
-  if (v.x() < least_wheel_speed) return;
-  last_wheels_ = time;
-  // Across: v_y - azimuth v_x; down: v_z + elevation v_x; both nothing.
-  const double azimuth = estimate_.track.x(), elevation = estimate_.track.y();
-  Eigen::Matrix<double, 2, 3> pick;
-  pick << -azimuth, 1, 0, elevation, 0, 1;
-  Design2 H = Design2::Zero(2, l.size);
-  H.block<2, 3>(0, l.velocity) = pick * body_R_ecef;
-  H.block<2, 3>(0, l.attitude) = pick * body_R_ecef * skew(estimate_.nav.velocity);
-  H.block<2, 3>(0, l.gyro_bias) = pick * skew(wheel);
-  H(0, l.track) = -v.x();
-  H(1, l.track + 1) = v.x();
-  const Eigen::Vector2d y = -(pick * v);
+  double forward = 0.0;
+  const Prediction<2> expected = predict_wheels(problem_->layout, estimate_, rate_, Vector3d(w[0].value, w[1].value, w[2].value), forward);
+  if (forward < least_wheel_speed) return;
+  last_virtual_ = time;
   const double s = problem_->options.non_holonomic_sigma.value;
-  apply<2>(H, y, s * s * Eigen::Matrix2d::Identity(), problem_->gate, record, nullptr);
+  apply<2>(expected.design, -expected.value, s * s * Eigen::Matrix2d::Identity(), problem_->gate, record, nullptr);
 }
 
 }  // namespace swath::trajectory

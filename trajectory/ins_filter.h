@@ -8,6 +8,7 @@
 #include "core/gnss_data.h"
 #include "trajectory/error_state.h"
 #include "trajectory/ins_gnss.h"
+#include "trajectory/measurement.h"
 
 namespace swath::trajectory {
 
@@ -31,7 +32,8 @@ struct NodeRecord {
   StateMatrix transition;  ///< from the node before
   std::vector<Update> updates;
   StateMatrix covariance;
-  Estimate estimate;
+  Estimate estimate;  ///< what the errors count from
+  StateVector mean;   ///< of the errors about `estimate`
 };
 
 /// What one GNSS fix did.
@@ -52,17 +54,21 @@ struct Problem {
   double gate = 21.1;  ///< NIS of three degrees of freedom beyond which a fix is down-weighted
 };
 
+/// Without a reference the filter feeds each correction back at once and linearises about its own estimate. With one, a trajectory near
+/// the truth from an earlier pass, it linearises about that and carries the mean of the errors beside it: one step of Gauss and Newton for
+/// the whole record, free of what the filter's first minutes did not know yet.
 class InsFilter {
  public:
-  /// `start`: at any instant of the path; `covariance` of its errors.
-  InsFilter(const Problem& problem, Estimate start, StateMatrix covariance);
+  /// `start`: at any instant of the path, with the mean and covariance of its errors; `reference`: per node, or nullptr.
+  InsFilter(const Problem& problem, Estimate start, StateVector mean, StateMatrix covariance, const std::vector<Estimate>* reference);
 
   /// Carries estimate and covariance to the next node; no measurement is used. `record` receives the transition.
-  void predict(const Node& node, NodeRecord* record);
+  void predict(size_t node, NodeRecord* record);
   /// Uses what was measured at the node.
-  void update(const Node& node, NodeRecord* record, FixOutcome* outcome);
+  void update(size_t node, NodeRecord* record, FixOutcome* outcome);
 
-  const Estimate& estimate() const { return estimate_; }
+  /// The mean of the errors put in.
+  Estimate estimate() const;
   const StateMatrix& covariance() const { return covariance_; }
 
  private:
@@ -76,14 +82,13 @@ class InsFilter {
   void use_wheels(NodeRecord* record);
 
   const Problem* problem_;
+  const std::vector<Estimate>* reference_;
   Estimate estimate_;
+  StateVector mean_;
   StateMatrix covariance_;
   ImuWalk walk_;
   Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();  // body against inertial space at the node, rad/s
-  double last_wheels_ = -1e300;
+  double last_virtual_ = -1e300;                    // of the last standstill or wheel update
 };
-
-/// The antenna's velocity relative to the Earth, ecef, of an estimate whose body turns by `rate` (rad/s, body).
-Eigen::Vector3d antenna_velocity(const Estimate& e, const Eigen::Vector3d& rate);
 
 }  // namespace swath::trajectory

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Error-state filter and smoother after Groves 2013 (chapters 14 and 16) and Bierman 1973; alignment in motion after Wu and Pan 2013.
-// Deviations, with their size: the attitude error is held small by repeating the whole from the smoothed start (a first error of 10 deg
-// leaves 1e-4 of itself after two passes); the bias drift is a random walk (see ProcessNoise).
+// The first pass feeds corrections back; the next ones are linearised about the smoothed trajectory before (Bell 1994: the iterated
+// smoother is Gauss and Newton's method), so that what the filter did not know in its first minutes leaves no trace. Deviation: the bias
+// drift is a random walk (see ProcessNoise).
 #include "trajectory/ins_gnss.h"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ using Eigen::Vector3d;
 constexpr double node_spacing = 0.25;   // s: between nodes residuals of the mechanisation are linear in time
 constexpr double longest_lead = 120.0;  // s of IMU records kept before the first fix and after the last
 constexpr double near_fix = 2.0;        // s: a start as near to a fix takes its position
-constexpr int most_iterations = 4;
+constexpr int most_iterations = 6;
 constexpr double settled = 0.02;      // share of sigma by which the start may still move
 constexpr double first_gate = 400.0;  // NIS in the first pass, whose start may be degrees off
 
@@ -247,11 +248,21 @@ Start start_of(const ImuPath& path, const core::GnssData& gnss, const Alignment&
   return out;
 }
 
-/// How far the smoothed start lies from the one it was computed with, in its sigmas.
-double moved(const Estimate& now, const Estimate& before, const SmootherRun& run, const Layout& l) {
-  const StateVector e = now.minus(before, l);
+/// The mean of the errors about a reference that the stated constants give. Position, velocity and attitude count as unknown.
+StateVector stated_mean(const Estimate& stated, const Estimate& reference, const Layout& l) {
+  StateVector mean = stated.minus(reference, l);
+  mean.head<9>().setZero();
+  if (l.fix >= 0) mean.segment<3>(l.fix) = -reference.fix;
+  return mean;
+}
+
+/// The largest change of position, velocity or attitude between two runs, in sigmas.
+double moved(const SmootherRun& now, const std::vector<Estimate>& before, const Layout& l) {
   double most = 0;
-  for (int i = 0; i < 9; ++i) most = std::max(most, std::abs(e[i]) / std::max(1e-12, run.nodes.front().sigma[i]));
+  for (size_t k = 0; k < before.size(); ++k) {
+    const StateVector e = now.nodes[k].estimate.minus(before[k], l);
+    for (int i = 0; i < 9; ++i) most = std::max(most, std::abs(e[i]) / std::max(1e-12, now.nodes[k].sigma[i]));
+  }
   return most;
 }
 
@@ -274,26 +285,23 @@ InsGnssResult smooth(const core::ImuData& imu_records, const core::GnssData& fix
   const Alignment alignment = align(path, gnss, spec, lever_arm, standstills, options);
   const Start start = start_of(path, gnss, alignment, spec, layout, lever_arm, lever_arm_sigma, options);
 
-  // Repeated from the smoothed start until it stays: the errors are then small about the right motion.
-  Estimate first = start.estimate;
-  SmootherRun run;
-  int iterations = 0;
-  double shift = std::numeric_limits<double>::infinity();
-  while (iterations < most_iterations && shift > settled) {
-    problem.gate = iterations == 0 ? first_gate : gate_of(options.outlier_probability);
-    run = run_smoother(problem, first, start.covariance);
-    ++iterations;
-    const Estimate& smoothed = run.nodes.front().estimate;
-    shift = iterations == 1 ? std::numeric_limits<double>::infinity() : moved(smoothed, first, run, layout);
-    first.nav = smoothed.nav;
+  // Repeated about the smoothed trajectory until it stays.
+  problem.gate = first_gate;
+  SmootherRun run =
+      run_smoother(problem, InsFilter(problem, start.estimate, StateVector::Zero(layout.size), start.covariance, nullptr), false);
+  problem.gate = gate_of(options.outlier_probability);
+  std::vector<Estimate> reference(nodes.size());
+  int iterations = 1;
+  for (double shift = std::numeric_limits<double>::infinity(); shift > settled && iterations < most_iterations; ++iterations) {
+    for (size_t k = 0; k < nodes.size(); ++k) reference[k] = run.nodes[k].estimate;
+    run = run_smoother(problem, InsFilter(problem, reference.front(), stated_mean(start.estimate, reference.front(), layout),
+                                          start.covariance, &reference));
+    shift = moved(run, reference, layout);
   }
   if (!run.nodes.front().estimate.nav.position.allFinite())
     throw core::Error("the filter diverged", "trajectory.ins_gnss", "check units, axes, lever arm and time scales");
-
-  StateMatrix last = start.covariance;
-  Estimate end = start.estimate;
-  end.nav = run.nodes.back().estimate.nav;
-  const std::vector<FilterNode> backward = run_backward(problem, end, last);
+  const std::vector<FilterNode> backward = run_backward(
+      problem, InsFilter(problem, reference.back(), stated_mean(start.estimate, reference.back(), layout), start.covariance, &reference));
 
   InsGnssResult result;
   const InsFindings findings{problem, run, backward, spec, alignment, lever_arm, lever_arm_sigma, standstills, iterations};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trajectory/ins_smoother.h"
 
+#include <Eigen/Cholesky>
+
 #include "core/frames.h"
 #include "core/geodesy.h"
 
@@ -22,7 +24,7 @@ Matrix3d angles_by_psi(const Matrix3d& ecef_R_ned, const core::Attitude& a) {
 }
 
 FilterNode filter_node(const InsFilter& f) {
-  const NavState& nav = f.estimate().nav;
+  const NavState nav = f.estimate().nav;
   const core::Geodetic g = core::geodetic_of(nav.position);
   const Matrix3d ned = core::ecef_R_ned(g.latitude, g.longitude);
   const core::Attitude a = core::attitude_of(ned.transpose() * nav.ecef_R_body);
@@ -46,11 +48,11 @@ struct Adjoint {
     // (I - K H)^T x = x - H^T (K^T x)
     const StateVector before = lambda;
     lambda = before - u.design.transpose() * (u.gain.transpose() * before + u.weight * u.innovation);
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_states, 3> turned = information * u.gain;
-    const StateMatrix shared = turned * u.design;
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> middle = u.gain.transpose() * turned + u.weight;
-    information -= shared + shared.transpose();
-    information += u.design.transpose() * middle * u.design;
+    StateMatrix kept = -u.gain * u.design, moved;
+    kept.diagonal().array() += 1.0;
+    moved.noalias() = information * kept;
+    information.noalias() = kept.transpose() * moved;
+    information += u.design.transpose() * u.weight * u.design;
     information = 0.5 * (information + information.transpose()).eval();
   }
   void pass_transition(const StateMatrix& phi) {
@@ -61,18 +63,33 @@ struct Adjoint {
   }
 };
 
-SmoothedNode smoothed(const Layout& layout, const NodeRecord& record, const Adjoint& adjoint, StateMatrix* whole) {
+/// P - P Lambda P = L (1 - L^T Lambda L) L^T with P = L L^T: the difference is taken where both sides are of the size 1.
+StateMatrix with_future(const StateMatrix& P, const StateMatrix& information) {
+  const StateVector scale = P.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  const StateMatrix correlation = scale.cwiseInverse().asDiagonal() * P * scale.cwiseInverse().asDiagonal();
+  const Eigen::LDLT<StateMatrix> factors(correlation);
+  StateMatrix root = factors.matrixL();
+  root = (root * factors.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal()).eval();
+  root = (factors.transpositionsP().transpose() * root).eval();
+  root = (scale.asDiagonal() * root).eval();
+  StateMatrix turned, rest;
+  turned.noalias() = information * root;
+  rest.noalias() = -root.transpose() * turned;
+  rest.diagonal().array() += 1.0;
+  turned.noalias() = root * rest;
+  rest.noalias() = turned * root.transpose();
+  return 0.5 * (rest + rest.transpose());
+}
+
+SmoothedNode smoothed(const Layout& layout, const NodeRecord& record, const Adjoint& adjoint, bool covariances) {
   SmoothedNode out;
   const StateMatrix& P = record.covariance;
-  StateMatrix weighted, covariance;
-  weighted.noalias() = adjoint.information * P;
-  covariance.noalias() = P * weighted;
-  covariance = P - covariance;
   out.estimate = record.estimate;
-  out.estimate.correct(layout, -(P * adjoint.lambda));
+  out.estimate.correct(layout, record.mean - P * adjoint.lambda);
+  if (!covariances) return out;
+  const StateMatrix covariance = with_future(P, adjoint.information);
   out.covariance = core::CovarianceSeries::pack(local_covariance(out.estimate.nav, covariance.topLeftCorner<9, 9>()));
   out.sigma = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  if (whole) *whole = covariance;
   return out;
 }
 
@@ -87,7 +104,7 @@ Matrix9 local_covariance(const NavState& nav, const Matrix9& ecef) {
   return turn * ecef * turn.transpose();
 }
 
-SmootherRun run_smoother(const Problem& problem, const Estimate& start, const StateMatrix& covariance, size_t stretch) {
+SmootherRun run_smoother(const Problem& problem, const InsFilter& start, bool covariances, size_t stretch) {
   const std::vector<Node>& nodes = problem.nodes;
   SmootherRun run;
   run.nodes.resize(nodes.size());
@@ -97,15 +114,15 @@ SmootherRun run_smoother(const Problem& problem, const Estimate& start, const St
   // Forward, leaving the filter at the beginning of each stretch. The last stretch is recorded at once.
   std::vector<InsFilter> left;
   std::vector<NodeRecord> records;
-  InsFilter filter(problem, start, covariance);
+  InsFilter filter = start;
   const size_t stretches = (nodes.size() + stretch - 1) / stretch;
   const auto pass = [&](InsFilter& f, size_t number, bool first_time, bool record) {
     const size_t begin = number * stretch, end = std::min(nodes.size(), begin + stretch);
     if (record) records.resize(end - begin);
     for (size_t k = begin; k < end; ++k) {
       NodeRecord* r = record ? &records[k - begin] : nullptr;
-      f.predict(nodes[k], r);
-      f.update(nodes[k], r, first_time ? &run.outcomes[k] : nullptr);
+      f.predict(k, r);
+      f.update(k, r, first_time ? &run.outcomes[k] : nullptr);
       if (first_time) run.forward[k] = filter_node(f);
     }
   };
@@ -119,7 +136,8 @@ SmootherRun run_smoother(const Problem& problem, const Estimate& start, const St
     if (s + 1 < stretches) pass(left[s], s, false, true);
     for (size_t k = records.size(); k-- > 0;) {
       const NodeRecord& r = records[k];
-      run.nodes[s * stretch + k] = smoothed(problem.layout, r, adjoint, s == 0 && k == 0 ? &run.first_covariance : nullptr);
+      run.nodes[s * stretch + k] =
+          smoothed(problem.layout, r, adjoint, covariances || (s == 0 && k == 0) || s * stretch + k + 1 == nodes.size());
       for (size_t u = r.updates.size(); u-- > 0;) adjoint.pass_update(r.updates[u]);
       adjoint.pass_transition(r.transition);
     }
@@ -128,13 +146,12 @@ SmootherRun run_smoother(const Problem& problem, const Estimate& start, const St
   return run;
 }
 
-std::vector<FilterNode> run_backward(const Problem& problem, const Estimate& last, const StateMatrix& covariance) {
+std::vector<FilterNode> run_backward(const Problem& problem, InsFilter filter) {
   std::vector<FilterNode> out(problem.nodes.size());
-  InsFilter filter(problem, last, covariance);
   for (size_t k = problem.nodes.size(); k-- > 0;) {
-    filter.predict(problem.nodes[k], nullptr);
+    filter.predict(k, nullptr);
     out[k] = filter_node(filter);
-    filter.update(problem.nodes[k], nullptr, nullptr);
+    filter.update(k, nullptr, nullptr);
   }
   return out;
 }

@@ -27,17 +27,16 @@ struct SmootherRun {
   std::vector<SmoothedNode> nodes;
   std::vector<FilterNode> forward;   ///< after the node's updates
   std::vector<FixOutcome> outcomes;  ///< per node; those without a fix are empty
-  StateMatrix first_covariance;      ///< of the smoothed state at the first node, error state's axes
 };
 
 /// Runs the filter over the nodes and the smoother back, in stretches of `stretch` nodes: the forward pass leaves the filter as it was at
-/// the beginning of each, from where the stretch is filtered once more when the smoother comes to it. Memory: 20 kB per node of a stretch,
-/// 1 kB per node of the whole.
-SmootherRun run_smoother(const Problem& problem, const Estimate& start, const StateMatrix& covariance, size_t stretch = 4000);
+/// the beginning of each, from where the stretch is filtered once more when the smoother comes to it. Memory: 18 kB per node of a stretch,
+/// 1 kB per node of the whole. Without `covariances` only the first and the last node get sigmas.
+SmootherRun run_smoother(const Problem& problem, const InsFilter& start, bool covariances = true, size_t stretch = 20000);
 
 /// A pass of the filter from the last node to the first; at each node before the node's own updates, so that it shares no fix with
 /// the forward pass after them.
-std::vector<FilterNode> run_backward(const Problem& problem, const Estimate& last, const StateMatrix& covariance);
+std::vector<FilterNode> run_backward(const Problem& problem, InsFilter last);
 
 /// Covariance of north, east, down, velocities, roll, pitch, heading from that of position, velocity and psi in ecef.
 core::CovarianceSeries::Matrix9 local_covariance(const NavState& nav, const Eigen::Matrix<double, 9, 9>& ecef);

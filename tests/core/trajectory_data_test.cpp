@@ -17,11 +17,11 @@ Matrix9 some_covariance(double seed) {
   return a * a.transpose() + 0.1 * Matrix9::Identity();
 }
 
-constexpr double float_share = 1e-6;  // floats hold 24 bits
+constexpr double rounding = 1e-14;
 
 TEST(CovarianceSeries, PacksAndUnpacks) {
   const Matrix9 c = some_covariance(1.0);
-  EXPECT_LT((CovarianceSeries::unpack(CovarianceSeries::pack(c)) - c).norm(), float_share * c.norm());
+  EXPECT_LT((CovarianceSeries::unpack(CovarianceSeries::pack(c)) - c).norm(), rounding * c.norm());
 }
 
 TEST(CovarianceSeries, IsLinearBetweenItsInstantsAndConstantBeyond) {
@@ -29,10 +29,10 @@ TEST(CovarianceSeries, IsLinearBetweenItsInstantsAndConstantBeyond) {
   const Matrix9 a = some_covariance(1.0), b = some_covariance(2.0);
   s.time = {10.0, 14.0};
   s.upper = {CovarianceSeries::pack(a), CovarianceSeries::pack(b)};
-  EXPECT_LT((s.at(11.0) - (0.75 * a + 0.25 * b)).norm(), float_share * a.norm());
-  EXPECT_LT((s.at(14.0) - b).norm(), float_share * b.norm());
-  EXPECT_LT((s.at(0.0) - a).norm(), float_share * a.norm());
-  EXPECT_LT((s.at(99.0) - b).norm(), float_share * b.norm());
+  EXPECT_LT((s.at(11.0) - (0.75 * a + 0.25 * b)).norm(), rounding * a.norm());
+  EXPECT_LT((s.at(14.0) - b).norm(), rounding * b.norm());
+  EXPECT_LT((s.at(0.0) - a).norm(), rounding * a.norm());
+  EXPECT_LT((s.at(99.0) - b).norm(), rounding * b.norm());
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Matrix9>(s.at(12.3)).eigenvalues().minCoeff(), 0.0);
 }
 
