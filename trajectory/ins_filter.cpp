@@ -134,9 +134,9 @@ void InsFilter::update(size_t number, NodeRecord* record, FixOutcome* outcome) {
 void InsFilter::use_position(const Node& node, NodeRecord* record, FixOutcome* outcome) {
   const Layout& l = problem_->layout;
   const auto k = static_cast<size_t>(node.fix);
-  const Matrix3d& total = problem_->gnss.covariance[k];
+  const Matrix3d total = problem_->variance * problem_->gnss.covariance[k];
   const Matrix3d ned = ned_at(problem_->gnss.position[k]);
-  const double share = l.fix >= 0 ? problem_->options.correlated_share : 0.0;
+  const double share = l.fix >= 0 ? problem_->share : 0.0;
   const Vector3d sigma = (ned.transpose() * total * ned).diagonal().cwiseMax(0.0).cwiseSqrt();
   const Matrix3d spread = ned * (std::sqrt(share) * sigma).asDiagonal();
   const Prediction<3> expected = predict_fix(l, estimate_, rate_, spread);

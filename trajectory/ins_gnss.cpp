@@ -25,9 +25,11 @@ using Eigen::Vector3d;
 constexpr double node_spacing = 0.25;   // s: between nodes residuals of the mechanisation are linear in time
 constexpr double longest_lead = 120.0;  // s of IMU records kept before the first fix and after the last
 constexpr double near_fix = 2.0;        // s: a start as near to a fix takes its position
-constexpr int most_iterations = 6;
-constexpr double settled = 0.02;      // share of sigma by which the start may still move
-constexpr double first_gate = 400.0;  // NIS in the first pass, whose start may be degrees off
+constexpr int most_iterations = 8;
+constexpr double settled = 0.05;                         // sigmas by which the trajectory may still move
+constexpr double least_share = 0.02, usual_share = 0.4;  // of the GNSS variance that is correlated, where nothing tells
+constexpr double least_fixes = 100;                      // from which noise is estimated
+constexpr double first_gate = 1e5;                       // NIS in the first pass, whose start may be degrees off
 
 std::string seconds(double t) { return core::format_number(std::round(t * 1000) / 1000); }
 
@@ -256,6 +258,40 @@ StateVector stated_mean(const Estimate& stated, const Estimate& reference, const
   return mean;
 }
 
+/// Sets share and variance of the fixes to what the innovations show: their excess (nis / 3 - 1) S over what was expected belongs to the
+/// white part R. White noise above the stated variance raises that. True where they changed by more than noise.
+bool adapt_fixes(Problem& problem, const std::vector<FixOutcome>& outcomes) {
+  double nis = 0, all = 0, n = 0;
+  for (size_t k = 0; k < problem.nodes.size(); ++k) {
+    const FixOutcome& o = outcomes[k];
+    if (problem.nodes[k].fix < 0 || o.weight < 1) continue;
+    const double expected = o.innovation_sigma.squaredNorm() / problem.gnss.covariance[static_cast<size_t>(problem.nodes[k].fix)].trace();
+    if (expected > 4 * problem.variance) continue;  // after an outage the innovations tell of the IMU
+    nis += o.nis / 3;
+    all += expected;
+    n += 1;
+  }
+  if (n < least_fixes) return false;
+  const double white = (1 - problem.share) * problem.variance;  // of the stated variance
+  const double shown = std::clamp(white + (nis / n - 1) * (all / n), 0.2 * white, 5 * white);
+  const double noise = std::sqrt(2 / (3 * n)) * (all / n);
+  // Within the stated variance the rest of it is correlated; beyond, the share rises to the usual one as the statement proves worthless.
+  problem.share =
+      shown < 1 ? std::clamp(1 - shown, least_share, 0.95) : std::min(usual_share, least_share + (usual_share - least_share) * (shown - 1));
+  problem.variance = std::max(1.0, shown / (1 - problem.share));
+  return std::abs(shown - white) > std::max(0.03 * white, 2 * noise);
+}
+
+/// Position, velocity and attitude to begin with count as unknown: ten of their smoothed sigmas add a hundredth of the information they
+/// have, and keep the numbers of the smoother small.
+StateMatrix widened(const StateMatrix& stated, const StateVector& smoothed_sigma) {
+  StateMatrix out = stated;
+  out.topLeftCorner<9, 9>().setZero();
+  for (int i = 0; i < 9; ++i)
+    out(i, i) = std::min(stated(i, i), 100 * std::max(smoothed_sigma[i] * smoothed_sigma[i], 1e-6 * stated(i, i)));
+  return out;
+}
+
 /// The largest change of position, velocity or attitude between two runs, in sigmas.
 double moved(const SmootherRun& now, const std::vector<Estimate>& before, const Layout& l) {
   double most = 0;
@@ -278,12 +314,14 @@ InsGnssResult smooth(const core::ImuData& imu_records, const core::GnssData& fix
       options.zero_velocity || options.alignment != AlignmentMethod::given ? find_standstills(path, gnss, spec) : std::vector<Span>{};
   const std::vector<Node> nodes = nodes_of(path, gnss, options.zero_velocity ? standstills : std::vector<Span>{});
 
-  const Layout layout(options.scale_factors, options.lever_arm && lever_arm_sigma > 0, options.correlated_share > 0, options.gnss_latency,
-                      options.non_holonomic);
+  const Layout layout(options.scale_factors, options.lever_arm && lever_arm_sigma > 0, options.correlated_share.value_or(1) > 0,
+                      options.gnss_latency, options.non_holonomic);
   Problem problem{path, gnss, nodes, layout, ProcessNoise::of(spec, options.correlation_time.value), options};
 
   const Alignment alignment = align(path, gnss, spec, lever_arm, standstills, options);
   const Start start = start_of(path, gnss, alignment, spec, layout, lever_arm, lever_arm_sigma, options);
+
+  problem.share = options.correlated_share.value_or(usual_share);
 
   // Repeated about the smoothed trajectory until it stays.
   problem.gate = first_gate;
@@ -291,17 +329,26 @@ InsGnssResult smooth(const core::ImuData& imu_records, const core::GnssData& fix
       run_smoother(problem, InsFilter(problem, start.estimate, StateVector::Zero(layout.size), start.covariance, nullptr), false);
   problem.gate = gate_of(options.outlier_probability);
   std::vector<Estimate> reference(nodes.size());
+  const auto about = [&](const SmoothedNode& at) {
+    return InsFilter(problem, at.estimate, stated_mean(start.estimate, at.estimate, layout), widened(start.covariance, at.sigma),
+                     &reference);
+  };
+  const auto refer = [&] {
+    for (size_t k = 0; k < nodes.size(); ++k) reference[k] = run.nodes[k].estimate;
+  };
+  refer();
+  if (!options.correlated_share)
+    for (int i = 0; i < most_iterations && adapt_fixes(problem, run_forward(problem, about(run.nodes.front()))); ++i) {
+    }
   int iterations = 1;
   for (double shift = std::numeric_limits<double>::infinity(); shift > settled && iterations < most_iterations; ++iterations) {
-    for (size_t k = 0; k < nodes.size(); ++k) reference[k] = run.nodes[k].estimate;
-    run = run_smoother(problem, InsFilter(problem, reference.front(), stated_mean(start.estimate, reference.front(), layout),
-                                          start.covariance, &reference));
+    refer();
+    run = run_smoother(problem, about(run.nodes.front()));
     shift = moved(run, reference, layout);
   }
   if (!run.nodes.front().estimate.nav.position.allFinite())
     throw core::Error("the filter diverged", "trajectory.ins_gnss", "check units, axes, lever arm and time scales");
-  const std::vector<FilterNode> backward = run_backward(
-      problem, InsFilter(problem, reference.back(), stated_mean(start.estimate, reference.back(), layout), start.covariance, &reference));
+  const std::vector<FilterNode> backward = run_backward(problem, about(run.nodes.back()));
 
   InsGnssResult result;
   const InsFindings findings{problem, run, backward, spec, alignment, lever_arm, lever_arm_sigma, standstills, iterations};

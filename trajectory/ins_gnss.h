@@ -38,7 +38,7 @@ struct InsGnssOptions {
   AlignmentMethod alignment = AlignmentMethod::automatic;
   GivenAttitude given;
   bool scale_factors = true, lever_arm = true, gnss_latency = false;
-  double correlated_share = 0.4;
+  std::optional<double> correlated_share;
   core::Seconds correlation_time{120.0};
   core::Seconds latency_sigma{0.005};
   bool use_velocity = true;
@@ -59,7 +59,10 @@ void describe(InsGnssOptions& o, V& v) {
   v.option("scale_factors", o.scale_factors, "Estimate scale factors of gyros and accelerometers.");
   v.option("lever_arm", o.lever_arm, "Estimate the antenna's lever arm about its stated value and sigma.");
   v.option("gnss_latency", o.gnss_latency, "Estimate a constant time offset of the GNSS fixes.");
-  v.option("correlated_share", o.correlated_share, core::within(0, 0.95), "Share of the GNSS variance that is correlated in time.");
+  v.option(
+      "correlated_share", o.correlated_share, core::within(0, 0.95),
+      "Share of the stated GNSS variance that is correlated in time; without a value it is estimated: what the innovations do not show as "
+      "white noise is taken as correlated, and sigmas that are stated too small are raised.");
   v.option("correlation_time", o.correlation_time, core::above(0), "Correlation time of that part.");
   v.option("latency_sigma", o.latency_sigma, core::above(0), "Sigma of the time offset before it is estimated.");
   v.option("use_velocity", o.use_velocity, "Use GNSS velocities where the fixes have them.");

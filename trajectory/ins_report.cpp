@@ -185,6 +185,11 @@ core::Value report_of(const InsFindings& f, const SmootherSeries& s) {
   if (static_cast<double>(weighted) > outlier_share * static_cast<double>(fixes) + 3)
     warnings.push(text("%.0f of %.0f fixes contradict the trajectory and are down-weighted", static_cast<double>(weighted),
                        static_cast<double>(fixes)));
+  gnss["correlated_share"] = f.problem.share;
+  gnss["white_share"] = 1 - f.problem.share;
+  gnss["variance_factor"] = f.problem.variance;
+  if (f.problem.variance > 1.3)
+    warnings.push(text("the fixes scatter %.2f times more than stated; their sigmas are raised by that", std::sqrt(f.problem.variance)));
   v["outages"] = Value::array();
   double before = nodes.front().time;
   const auto outage = [&](double until) {

@@ -146,6 +146,15 @@ SmootherRun run_smoother(const Problem& problem, const InsFilter& start, bool co
   return run;
 }
 
+std::vector<FixOutcome> run_forward(const Problem& problem, InsFilter filter) {
+  std::vector<FixOutcome> out(problem.nodes.size());
+  for (size_t k = 0; k < out.size(); ++k) {
+    filter.predict(k, nullptr);
+    filter.update(k, nullptr, &out[k]);
+  }
+  return out;
+}
+
 std::vector<FilterNode> run_backward(const Problem& problem, InsFilter filter) {
   std::vector<FilterNode> out(problem.nodes.size());
   for (size_t k = problem.nodes.size(); k-- > 0;) {

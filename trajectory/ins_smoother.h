@@ -34,6 +34,9 @@ struct SmootherRun {
 /// 1 kB per node of the whole. Without `covariances` only the first and the last node get sigmas.
 SmootherRun run_smoother(const Problem& problem, const InsFilter& start, bool covariances = true, size_t stretch = 20000);
 
+/// The outcome of each node's fix in one forward pass alone.
+std::vector<FixOutcome> run_forward(const Problem& problem, InsFilter filter);
+
 /// A pass of the filter from the last node to the first; at each node before the node's own updates, so that it shares no fix with
 /// the forward pass after them.
 std::vector<FilterNode> run_backward(const Problem& problem, InsFilter last);
