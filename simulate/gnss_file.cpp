@@ -97,13 +97,14 @@ std::int64_t write_gnss(const std::filesystem::path& folder, const Flight& fligh
                  "gps_sow_s,white_north_m,white_east_m,white_down_m,correlated_north_m,correlated_east_m,correlated_down_m,outlier_north_m,"
                  "outlier_east_m,outlier_down_m\n");
   const double sow = start - core::seconds_per_week * core::week_of(start);
+  const int decimals = decimals_of(sow, 1.0 / options.rate.value, 3);
   Receiver receiver(flight, options, lever_arm, noise_free, seed);
   std::int64_t n = 0;
   for (; const std::optional<Fix> f = receiver.next(); ++n) {
     const core::Geodetic g = core::geodetic_of(f->position);
     const Matrix3d R = core::ecef_R_ned(g.latitude, g.longitude);
     const Matrix3d cov = R * f->sigma.cwiseAbs2().asDiagonal() * R.transpose();
-    rows.number(sow + f->tag, 3);
+    rows.number(sow + f->tag, decimals);
     rows.number(g.latitude / core::degree, 11);
     rows.number(g.longitude / core::degree, 11);
     rows.number(g.height, 4);
@@ -118,7 +119,7 @@ std::int64_t write_gnss(const std::filesystem::path& folder, const Flight& fligh
       for (int i = 0; i < 3; ++i) rows.number(options.sigma_velocity.value, 5);
     }
     rows.end();
-    truth.number(sow + f->tag, 3);
+    truth.number(sow + f->tag, decimals);
     for (const Vector3d* v : {&f->white, &f->correlated, &f->outlier})
       for (const double x : *v) truth.number(x, 5);
     truth.end();

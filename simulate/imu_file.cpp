@@ -101,7 +101,7 @@ void write_imu(const std::filesystem::path& folder, const Flight& flight, core::
   ImuErrors errors(imu_spec_of(imu, noise_free).model(), step, seed);
   const Matrix3d R = record_R_body(imu);
   const double sow = start - core::seconds_per_week * core::week_of(start);
-  const int decimals = std::fmod(10000.0, rate) == 0.0 ? 4 : 9;
+  const int decimals = decimals_of(sow, step, 4);
   const auto put = [](TextRows& to, const Vector3d& v) {
     for (const double x : v) to.scientific(x, 12);
   };

@@ -225,8 +225,9 @@ void describe(OutputOptions& o, V& v) {
            "Format of the delivered trajectory: SBET with smrmsg, or text; none: the survey begins with IMU and GNSS records.");
   v.option("time", o.time,
            "Time scale of laser and text records (SBET, imu.csv and gnss.csv: seconds of week; LAS: seconds of week or adjusted).");
-  v.option("week", o.week, core::within(0, 5000), "GPS week of the start.");
-  v.option("start", o.start, core::within(0, core::seconds_per_week - 1), "Seconds of week of the start.");
+  v.option("week", o.week, core::within(0, 5000), "GPS week of the start (flights along a trajectory: that of its first record).");
+  v.option("start", o.start, core::within(0, core::seconds_per_week - 1),
+           "Seconds of week of the start (flights along a trajectory: its first record).");
   v.option("truth_returns", o.truth_returns, "Writes truth/returns.npy (105 bytes a return).");
   v.option("dtm_cell", o.dtm_cell, core::within(0.1, 100), "Cell of truth/dtm.tif.");
   v.check(o.time != core::TimeScale::unstated, "the time scale must be stated");
