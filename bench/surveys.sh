@@ -7,5 +7,5 @@ mkdir -p "$folder"
 for length in 1600 6400; do
   "$swath" simulate "$folder/length_$length" --quiet --set world.length="$length m" --set world.width="700 m" --set flight.lines=3 \
     --set flight.overlap=0.2 --set flight.cross_lines=0 --set scanner.prf="100 kHz" --set scanner.frequency="60 Hz" \
-    --set 'output.formats=["las"]' --set output.imu=none --set output.gnss=false
+    --set 'output.formats=["las"]' --set imu.file=false --set gnss.file=false
 done

@@ -2,13 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "core/frames.h"
 #include "core/geodesy.h"
-#include "simulate/options.h"
 
 namespace swath::simulate {
 
@@ -32,64 +30,39 @@ struct Line {
   double start, end;
 };
 
-/// A line to fly in the local plane (true north, east; m).
-struct LinePlan {
-  Eigen::Vector2d from, to;
-  std::string name;
-};
-
-/// The lines of the options about the area's middle. `convergence`: bearing of grid north from true north, rad.
-std::vector<LinePlan> plan_lines(const FlightOptions& flight, const WorldOptions& world, double half_angle, double convergence);
-
-/// A flight along straight lines joined by turns whose bank grows and falls smoothly (course three times differentiable), with wind,
-/// crab and turbulence as sums of sines: an analytic function of time.
+/// A motion whose pose is a function of time with two continuous derivatives at least, all of them known exactly.
 class Flight {
  public:
-  /// Height above the ellipsoid; the plane's origin; lines in their order.
-  Flight(const FlightOptions& options, const core::Geodetic& origin, double height, const std::vector<LinePlan>& plan, double wind_from,
-         std::int64_t seed);
+  virtual ~Flight() = default;
 
-  double duration() const { return duration_; }
-  const std::vector<Line>& lines() const { return lines_; }
-  Pose pose(double t) const;
-  Motion motion(double t) const;
+  /// A whole number of seconds, so that records of every usual rate end together.
+  virtual double duration() const = 0;
+  virtual const std::vector<Line>& lines() const = 0;
+  virtual Pose pose(double t) const = 0;
+  virtual Motion motion(double t) const = 0;
+};
+
+/// Latitude and longitude times constants (the radii at one place): a plane whose lines are straight to 0.1 m per km and in which every
+/// derivative is closed.
+class LocalPlane {
+ public:
+  /// Radii at the origin's latitude, for the given height.
+  LocalPlane(const core::Geodetic& origin, double height);
+
+  /// `plane`: north, east from the origin, height above the ellipsoid; m.
+  core::Geodetic geodetic_of(const Eigen::Vector3d& plane) const;
+  Eigen::Vector3d plane_of(const core::Geodetic& position) const;
+
+  /// What is moved: plane coordinates and roll, pitch, heading, with their derivatives.
+  struct State {
+    Eigen::Vector3d position, velocity, acceleration;  ///< m, m/s, m/s^2
+    Eigen::Vector3d attitude, attitude_rate;           ///< rad, rad/s
+  };
+  Motion motion_of(const State& state) const;
 
  private:
-  /// Stretch on which the course rate goes from r0 to r1 by a smooth step of degree 7.
-  struct Piece {
-    double start, duration, course, r0, r1;
-    std::vector<Eigen::Vector2d> knots;  // position at whole steps of the piece; only the first where it is straight
-  };
-  struct Course {
-    double angle, rate, acceleration;
-  };
-  struct Wave {
-    double amplitude, omega, phase;
-  };
-  struct Swing {
-    double value = 0, rate = 0, acceleration = 0;
-  };
-
-  static Course course_of(const Piece& piece, double since);
-  Eigen::Vector2d advance(const Piece& piece, double from, double to) const;
-  void add_piece(double duration, double r0, double r1);
-  void add_turn(double angle);
-  std::vector<double> turn_plan(double angle) const;
-  Eigen::Vector2d turn_displacement(double angle, double& seconds) const;
-  void fly_to(const Eigen::Vector2d& target, double course);
-  const Piece& piece_at(double t) const;
-  static Swing swing_of(const std::vector<Wave>& waves, double t);
-  Eigen::Vector2d plane_position(const Piece& piece, double t) const;
-
-  FlightOptions options_;
   core::Geodetic origin_;
-  double height_, wind_from_, metres_per_latitude_, metres_per_longitude_;
-  double turn_rate_, ramp_ = 4.0;
-  std::vector<Piece> pieces_;
-  Eigen::Vector2d at_ = Eigen::Vector2d::Zero();  // end of the pieces so far
-  double course_ = 0.0, duration_ = 0.0;
-  std::vector<Line> lines_;
-  std::vector<Wave> shake_[6];  // north, east, up, roll, pitch, heading
+  double metres_per_latitude_, metres_per_longitude_;
 };
 
 }  // namespace swath::simulate

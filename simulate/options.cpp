@@ -36,6 +36,20 @@ CalibrationSigma default_nominal_sigma() {
   return s;
 }
 
+bool is_axes_rotation(const std::array<std::string, 3>& axes) {
+  std::array<int, 3> place{};
+  int sign = 1;
+  for (size_t i = 0; i < 3; ++i) {
+    const std::string& a = axes[i];
+    const bool minus = a.size() == 2 && a[0] == '-';
+    if (!(minus || a.size() == 1) || a.back() < 'x' || a.back() > 'z') return false;
+    place[i] = a.back() - 'x';
+    if (minus) sign = -sign;
+  }
+  // The sign of a permutation of 0, 1, 2; 0 where one comes twice.
+  return sign * (place[1] - place[0]) * (place[2] - place[0]) * (place[2] - place[1]) == 2;
+}
+
 core::ScannerModel model_of(Pattern p) {
   switch (p) {
     case Pattern::triangle:

@@ -10,6 +10,8 @@
 #include "core/option.h"
 #include "core/sensor.h"
 #include "core/time.h"
+#include "io/survey.h"
+#include "simulate/navigation_options.h"
 
 namespace swath::simulate {
 
@@ -53,9 +55,12 @@ struct FlightOptions {
   core::Radians direction = core::degrees(60.0);
   core::Radians bank = core::degrees(22.0);
   core::Seconds lead{5.0};
+  core::Seconds still;
   double turbulence = 1.0;
   core::MetresPerSecond wind{4.0};
   core::Radians wind_from = core::degrees(300.0);
+  std::vector<io::TrajectoryFile> along;
+  core::Seconds along_knots{0.1};
 };
 
 template <class V>
@@ -69,9 +74,16 @@ void describe(FlightOptions& f, V& v) {
   v.option("direction", f.direction, core::within(0, 2 * core::pi), "Direction of the first line, clockwise from grid north.");
   v.option("bank", f.bank, core::within(0.05, 1.0), "Bank of turns between lines.");
   v.option("lead", f.lead, core::within(1, 300), "Straight flight before and after each line.");
+  v.option("still", f.still, core::within(0, 3600),
+           "Stand on the ground before take-off and climb; 0: the flight begins in the air, before its first line.");
   v.option("turbulence", f.turbulence, core::within(0, 5), "Factor on the amplitudes of turbulence (1: about 1 deg of roll, 0.3 m).");
   v.option("wind", f.wind, core::within(0, 40), "Wind, which the aircraft meets by crabbing.");
   v.option("wind_from", f.wind_from, core::within(0, 2 * core::pi), "Direction the wind comes from, clockwise from grid north.");
+  v.tables("along", f.along,
+           "Trajectory files to fly along, in place of lines: as in survey.toml, relative to the working folder; their time holds. Without "
+           "laser.");
+  v.option("along_knots", f.along_knots, core::within(0.01, 10),
+           "Spacing of the knots of the splines that follow that trajectory: motion faster than two of them is smoothed away.");
   v.check(f.wind.value < 0.8 * f.speed.value, "the wind must be well below the aircraft's speed");
 }
 
@@ -190,37 +202,36 @@ void describe(MountingOptions& m, V& v) {
 }
 
 enum class Format { csv, npy, las, laz };
-enum class TrajectoryOutput { sbet, text };
-enum class ImuGrade { none, perfect, navigation, tactical, mems };
+enum class TrajectoryOutput { sbet, text, none };
 
 struct OutputOptions {
+  bool laser = true;
   std::vector<Format> formats{Format::npy};
   TrajectoryOutput trajectory = TrajectoryOutput::sbet;
   core::TimeScale time = core::TimeScale::gps_week;
   int week = 2317;
   core::Seconds start{474000.0};
-  ImuGrade imu = ImuGrade::tactical;
-  bool gnss = true;
   bool truth_returns = true;
   core::Metres dtm_cell{1.0};
 };
 
 template <class V>
 void describe(OutputOptions& o, V& v) {
+  v.option("laser", o.laser, "Laser records and their world; without them navigation records are written alone, in seconds.");
   v.option("formats", o.formats,
            "Formats of the raw laser records; survey.toml names the first, survey_FORMAT.toml each further one. LAS and LAZ hold "
            "coordinates in the scanner's frame.");
-  v.option("trajectory", o.trajectory, "Format of the delivered trajectory: SBET with smrmsg, or text.");
+  v.option("trajectory", o.trajectory,
+           "Format of the delivered trajectory: SBET with smrmsg, or text; none: the survey begins with IMU and GNSS records.");
   v.option("time", o.time,
            "Time scale of laser and text records (SBET, imu.csv and gnss.csv: seconds of week; LAS: seconds of week or adjusted).");
-  v.option("week", o.week, core::within(0, 5000), "GPS week of the start.");
-  v.option("start", o.start, core::within(0, core::seconds_per_week - 1), "Seconds of week of the start.");
-  v.option("imu", o.imu, "Grade of the IMU whose increments are written; none: no imu.csv.");
-  v.option("gnss", o.gnss, "Writes gnss.csv, antenna positions at 5 Hz.");
+  v.option("week", o.week, core::within(0, 5000), "GPS week of the start (flights along a trajectory: that of its first record).");
+  v.option("start", o.start, core::within(0, core::seconds_per_week - 1),
+           "Seconds of week of the start (flights along a trajectory: its first record).");
   v.option("truth_returns", o.truth_returns, "Writes truth/returns.npy (105 bytes a return).");
   v.option("dtm_cell", o.dtm_cell, core::within(0.1, 100), "Cell of truth/dtm.tif.");
   v.check(o.time != core::TimeScale::unstated, "the time scale must be stated");
-  v.check(!o.formats.empty(), "at least one format");
+  v.check(!o.formats.empty(), "at least one format; `laser = false` for none");
 }
 
 struct Options {
@@ -233,6 +244,9 @@ struct Options {
   ScannerOptions scanner;
   NoiseOptions noise;
   MountingOptions mounting;
+  ImuOptions imu;
+  GnssOptions gnss;
+  EventOptions events;
   OutputOptions output;
 };
 
@@ -248,7 +262,13 @@ void describe(Options& o, V& v) {
   v.table("scanner", o.scanner, "Scanner.");
   v.table("noise", o.noise, "Noise and outliers.");
   v.table("mounting", o.mounting, "Calibration, true and delivered.");
+  v.table("imu", o.imu, "IMU.");
+  v.table("gnss", o.gnss, "GNSS receiver.");
+  v.table("events", o.events, "Camera exposures and the computer clock that times them.");
   v.table("output", o.output, "Files.");
+  v.check(o.flight.along.empty() || !o.output.laser, "a flight along a trajectory has no laser: set output.laser = false");
+  v.check(o.output.trajectory != TrajectoryOutput::none || (o.imu.file && o.gnss.file),
+          "without a trajectory the survey needs imu.file and gnss.file");
   bool las = false;
   for (Format f : o.output.formats) las = las || f == Format::las || f == Format::laz;
   v.check(!las || (o.scanner.pattern != Pattern::conical && o.scanner.pattern != Pattern::palmer),
@@ -288,10 +308,6 @@ struct Choices<simulate::Format> {
 };
 template <>
 struct Choices<simulate::TrajectoryOutput> {
-  static constexpr std::array<std::string_view, 2> names{"sbet", "text"};
-};
-template <>
-struct Choices<simulate::ImuGrade> {
-  static constexpr std::array<std::string_view, 5> names{"none", "perfect", "navigation", "tactical", "mems"};
+  static constexpr std::array<std::string_view, 3> names{"sbet", "text", "none"};
 };
 }  // namespace swath::core

@@ -50,4 +50,9 @@ int Random::poisson(double mean) {
   return n;
 }
 
+void GaussMarkov::advance(double step) {
+  const double phi = std::exp(-step / correlation_);
+  value_ = phi * value_ + std::sqrt(-std::expm1(-2 * step / correlation_)) * random_.normal();
+}
+
 }  // namespace swath::simulate

@@ -30,10 +30,43 @@ class Random {
 };
 
 /// The streams of one seed.
-enum class Stream : std::uint64_t { relief, buildings, trees, wires, turbulence, trajectory, calibration, pulse, noise, inertial, gnss };
+enum class Stream : std::uint64_t {
+  relief,
+  buildings,
+  trees,
+  wires,
+  turbulence,
+  trajectory,
+  calibration,
+  pulse,
+  noise,
+  inertial,
+  gnss,
+  imu_drift,
+  gnss_drift,
+  gnss_sky,
+  gnss_outlier,
+  gnss_velocity,
+  clock,
+  events
+};
 
 inline Random random_of(std::int64_t seed, Stream stream, std::uint64_t index = 0) {
   return Random(static_cast<std::uint64_t>(seed), static_cast<std::uint64_t>(stream), index);
 }
+
+/// First-order Gauss-Markov process of sigma 1, stationary from its first value, exact at any steps:
+/// x(t + step) = phi x(t) + sqrt(1 - phi^2) n, phi = exp(-step / correlation).
+class GaussMarkov {
+ public:
+  GaussMarkov(double correlation, Random random) : correlation_(correlation), random_(random), value_(random_.normal()) {}
+  double value() const { return value_; }
+  void advance(double step);
+
+ private:
+  double correlation_;
+  Random random_;
+  double value_;
+};
 
 }  // namespace swath::simulate

@@ -16,8 +16,9 @@ using Progress = std::function<void(double)>;
 
 /// Writes into `out_folder` (made where it is not there):
 ///   survey.toml (first format) and survey_FORMAT.toml (each further one), laser.FORMAT, sbet.out + smrmsg.out or trajectory.csv,
-///   imu.csv, gnss.csv, navigation.json (mounting and errors of both),
-///   truth/: sbet.out, returns.npy (see TruthFile), dtm.tif, calibration.json, simulation.json (options and what was made).
+///   imu.csv, gnss.csv, events_pc.csv, events_marks.csv, loopstats, pps.log,
+///   truth/: sbet.out (200 Hz), returns.npy (see TruthFile), dtm.tif, calibration.json, imu.json and imu_drift.csv (errors of the IMU),
+///   gnss.csv (errors of each fix), events.csv, simulation.json (options and what was made).
 /// The same options give the same bytes, whatever the number of threads. Memory is bounded whatever the number of returns (the
 /// trajectory, 100 bytes per 5 ms, and the truth's grid are held whole).
 /// Returns counts, sizes and the map's error. Throws Error where the options do not go together or a file cannot be written.

@@ -81,6 +81,26 @@ Value effective(S s) {
   return core::effective_values(core::described(s));
 }
 
+/// What the accuracy rests on is stated in full, defaults or not.
+bool is_full(const std::string& key) { return key == "calibration" || key == "sigma" || key == "name" || key == "crs" || key == "line"; }
+
+/// The defaults of one table of a list.
+Value fallback_of(const std::string& list) {
+  if (list == "laser") return effective(io::LaserFile{});
+  if (list == "trajectory") return effective(io::TrajectoryFile{});
+  if (list == "imu") return effective(io::ImuFile{});
+  if (list == "gnss") return effective(io::GnssFile{});
+  if (list == "clock") {
+    // The format of a log cannot be told from its name: it is always stated.
+    Value v = effective(io::ClockLog{});
+    v["format"] = Value{};
+    return v;
+  }
+  if (list == "event") return effective(io::EventFile{});
+  if (list == "points") return effective(io::PointFile{});
+  return Value::object();
+}
+
 }  // namespace
 
 std::string toml_of(const Value& tree) {
@@ -92,10 +112,9 @@ std::string toml_of(const Value& tree) {
 std::string survey_toml(io::Survey survey, const std::string& comment) {
   const Value all = effective(survey);
   Value out = pruned(all, effective(io::Survey{}));
-  // What the accuracy rests on is stated in full, defaults or not.
   Value ordered = Value::object();
   for (const auto& [key, v] : all.members()) {
-    if (key == "calibration" || key == "sigma" || key == "name" || key == "crs" || key == "line") {
+    if (is_full(key) || (key == "antenna" && !survey.gnss.empty())) {
       if (!(v.is_array() && v.items().empty())) ordered[key] = v;
       continue;
     }
@@ -104,9 +123,9 @@ std::string survey_toml(io::Survey survey, const std::string& comment) {
       if (key == "scanner") {
         for (const auto& [k, item] : kept->members()) ordered[key][k] = item;
       } else if (is_table_list(*kept)) {
+        const Value fallback = fallback_of(key);
         ordered[key] = Value::array();
-        for (const Value& item : kept->items())
-          ordered[key].push(pruned(item, key == "laser" ? effective(io::LaserFile{}) : effective(io::TrajectoryFile{})));
+        for (const Value& item : kept->items()) ordered[key].push(pruned(item, fallback));
       } else {
         ordered[key] = *kept;
       }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 
 namespace swath::simulate {
@@ -18,6 +19,14 @@ void put(std::string& to, double v, Style... style) {
 }
 
 }  // namespace
+
+int decimals_of(double first, double step, int least) {
+  const double scale = std::pow(10.0, least);
+  constexpr double rounding = 1e-4;  // of the last decimal: seconds of a week resolve 1e-10 s
+  for (const double v : {first * scale, step * scale})
+    if (std::abs(v - std::round(v)) > rounding) return 9;
+  return least;
+}
 
 TextRows::TextRows(const std::filesystem::path& file, const std::string& header)
     : output_(file), out_(output_.temporary(), file), buffer_(header) {}

@@ -9,6 +9,9 @@
 
 namespace swath::simulate {
 
+/// Decimals that hold the times first, first + step ... exactly: `least`, or 9 (ns) where those would round.
+int decimals_of(double first, double step, int least);
+
 /// Comma-separated rows of numbers, streamed to a file that appears whole with commit().
 class TextRows {
  public:

@@ -12,7 +12,7 @@ for pattern, form in PATTERNS.items():
         folder / pattern, world__length="5000 m", world__width="200 m", world__scene="hills", world__trees=0, flight__lines=2, flight__cross_lines=0,
         flight__height="1000 m", scanner__pattern=pattern, scanner__prf="500 Hz", noise__noise_free="true", mounting__deliver="truth",
         mounting__truth__latency="2 ms", mounting__truth__scan_offset="0.02 deg", mounting__truth__range_scale=1.00001,
-        output__formats=f'["{form}"]', output__imu="none", output__gnss="false", output__dtm_cell="100 m")
+        output__formats=f'["{form}"]', imu__file="false", gnss__file="false", output__dtm_cell="100 m")
     found = common.stage_of(common.run(STAGES, survey / "survey.toml", folder / f"{pattern}_out"), "report.truth")["findings"]
     points = found["points"]
     rows.append([pattern, form, points["compared"], f"{1e6 * found['rms_3d']:.3f}", f"{1e6 * points['largest_3d_m']:.3f}"])

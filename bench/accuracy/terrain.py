@@ -9,7 +9,7 @@ import common
 
 SCENES = {"open": {"world.scene": "hills", "world.trees": 0, "world.low_vegetation": 0}, "forest": {"world.scene": "forest"}, "steep": {"world.scene": "steep"},
           "mixed": {"world.scene": "mixed"}}
-COMMON = {"world.length": "400 m", "world.width": "250 m", "flight.lines": 2, "flight.cross_lines": 0, "output.imu": "none", "output.gnss": "false",
+COMMON = {"world.length": "400 m", "world.width": "250 m", "flight.lines": 2, "flight.cross_lines": 0, "imu.file": "false", "gnss.file": "false",
           "output.dtm_cell": "0.25 m"}
 GEOREFERENCE = [{"type": "readers.trajectory"}, {"type": "readers.laser"}, {"type": "georeference"},
                 {"type": "writers.las", "compress": False, "scale": 0.0001}]

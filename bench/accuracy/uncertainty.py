@@ -17,8 +17,8 @@ KINDS = {
         "flight.height": "700 m", "mounting.sigma.range_scale": 2e-5, "mounting.sigma.scan_offset": "0.002 deg", "mounting.sigma.latency": "0.5 ms",
         "scanner.divergence": "0.5 mrad", "noise.range": "3 cm", "noise.scan_angle": "0.003 deg"},
 }
-COMMON = {"world.length": "60 m", "world.width": "60 m", "flight.lines": 1, "flight.cross_lines": 0, "scanner.prf": "1500 Hz", "output.imu": "none",
-          "output.gnss": "false", "output.dtm_cell": "100 m", "mounting.deliver": "drawn"}
+COMMON = {"world.length": "60 m", "world.width": "60 m", "flight.lines": 1, "flight.cross_lines": 0, "scanner.prf": "1500 Hz", "imu.file": "false",
+          "gnss.file": "false", "output.dtm_cell": "100 m", "mounting.deliver": "drawn"}
 STAGES = [{"type": "readers.trajectory"}, {"type": "readers.laser"}, {"type": "georeference"},
           {"type": "writers.las", "compress": False, "scale": 0.0001}]
 

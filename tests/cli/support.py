@@ -19,10 +19,10 @@ CONFIG = SOURCE / "configs" / "survey.toml"
 CLOUD = SOURCE / "configs" / "cloud.toml"
 
 # One line of 60 m: some 4000 returns.
-SMALLEST = ["output.imu=none", "output.gnss=false", "world.scene=flat", "world.length=60 m", "world.width=60 m", "flight.lines=1",
+SMALLEST = ["imu.file=false", "gnss.file=false", "world.scene=flat", "world.length=60 m", "world.width=60 m", "flight.lines=1",
             "flight.cross_lines=0", "flight.height=250 m", "scanner.prf=3 kHz", "mounting.deliver=truth"]
 # Two lines over hills: some 19 000 returns.
-SMALL = ["output.imu=none", "output.gnss=false", "world.scene=hills", "world.length=160 m", "world.width=120 m", "flight.lines=2",
+SMALL = ["imu.file=false", "gnss.file=false", "world.scene=hills", "world.length=160 m", "world.width=120 m", "flight.lines=2",
          "flight.cross_lines=0", "flight.height=250 m", "scanner.prf=3 kHz", "mounting.deliver=truth"]
 
 

@@ -6,8 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "simulate/random.h"
-#include "tests/world/support.h"
+#include "simulate/planned_flight.h"
 
 namespace swath::simulate {
 namespace {
@@ -16,9 +15,9 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 const core::Geodetic origin{48 * core::degree, 10.5 * core::degree, 600.0};
 
-Flight flight() {
+PlannedFlight flight() {
   FlightOptions o;
-  return Flight(o, origin, 950.0, plan_lines(o, {}, core::degrees(20).value, 0.02), 5.2, 1);
+  return PlannedFlight(o, origin, 950.0, plan_lines(o, {}, core::degrees(20).value, 0.02), 5.2, 1);
 }
 
 Matrix3d inertial_R_ecef(double t) { return Eigen::AngleAxisd(core::wgs84::omega * t, Vector3d::UnitZ()).toRotationMatrix(); }
@@ -29,7 +28,7 @@ Matrix3d inertial_R_body(const Flight& f, double t) {
 }
 
 TEST(Inertial, IsTheMotionSeenFromInertialSpace) {
-  const Flight f = flight();
+  const PlannedFlight f = flight();
   constexpr double h = 0.02;
   for (double t = 1.0; t < f.duration() - 1; t += 3.1) {
     const Inertial at = inertial_of(f.motion(t));
@@ -51,45 +50,35 @@ TEST(Inertial, IsTheMotionSeenFromInertialSpace) {
 }
 
 TEST(Inertial, IncrementsAreIntegrals) {
-  const Flight f = flight();
+  constexpr double step = 0.005;
+  const PlannedFlight f = flight();
   for (const double t : {3.0, 28.3, 77.0}) {
     Increments fine{Vector3d::Zero(), Vector3d::Zero()};
     for (int i = 1; i <= 10; ++i) {
-      const Increments part = increments_of(f, t - imu_step + i * imu_step / 10, imu_step / 10);
+      const Increments part = increments_of(f, t - step + i * step / 10, step / 10);
       fine.angle += part.angle;
       fine.velocity += part.velocity;
     }
-    const Increments whole = increments_of(f, t, imu_step);
+    const Increments whole = increments_of(f, t, step);
     EXPECT_LT((whole.angle - fine.angle).norm(), 1e-12);
     EXPECT_LT((whole.velocity - fine.velocity).norm(), 1e-11);
   }
 }
 
-TEST(Inertial, GradesRiseInTheirErrors) {
-  double navigation = 0, mems = 0;
-  for (int s = 0; s < 50; ++s) {
-    navigation += std::abs(draw_imu_errors(ImuGrade::navigation, s).gyro_bias[0]);
-    mems += std::abs(draw_imu_errors(ImuGrade::mems, s).gyro_bias[0]);
+TEST(Inertial, VelocityOfAPointIsTheDerivativeOfItsPlace) {
+  const PlannedFlight f = flight();
+  const Vector3d lever(-0.4, 0.1, -1.2);
+  const auto place = [&](double t) -> Vector3d {
+    const Pose p = f.pose(t);
+    return core::ecef_of(p.position) + core::ecef_R_ned(p.position.latitude, p.position.longitude) * core::matrix_of(p.attitude) * lever;
+  };
+  constexpr double h = 2e-3;
+  for (double t = 1.0; t < f.duration() - 1; t += 2.3) {
+    const Motion m = f.motion(t);
+    const Matrix3d R = core::ecef_R_ned(m.pose.position.latitude, m.pose.position.longitude);
+    // Rounding of 1e-9 m over 2 h, and h^2 / 6 of a jerk of some m/s^3.
+    EXPECT_LT((R.transpose() * (place(t + h) - place(t - h)) / (2 * h) - velocity_at(m, lever)).norm(), 1e-5) << t;
   }
-  EXPECT_GT(mems, 500 * navigation);
-  EXPECT_EQ(draw_imu_errors(ImuGrade::perfect, 1).angle_walk, 0.0);
-}
-
-TEST(Inertial, FilesHoldTheRecords) {
-  const test::TemporaryFolder folder;
-  FlightOptions o;
-  o.lines = 1;
-  o.cross_lines = 0;
-  const Flight f(o, origin, 950.0, plan_lines(o, {}, 0.3, 0.0), 5.2, 1);
-  const core::GpsTime start = core::from_week(2317, 604795.0);
-  write_imu(folder / "imu.csv", f, start, {}, 1);
-  write_gnss(folder / "gnss.csv", f, start, {core::Metres(-0.4), core::Metres(0.1), core::Metres(-1.2)}, true, 1);
-  const std::string imu = test::read_bytes(folder / "imu.csv"), gnss = test::read_bytes(folder / "gnss.csv");
-  EXPECT_EQ(std::count(imu.begin(), imu.end(), '\n'), 1 + static_cast<long>(std::floor(f.duration() / imu_step)));
-  EXPECT_EQ(std::count(gnss.begin(), gnss.end(), '\n'), 2 + static_cast<long>(std::floor(f.duration() / gnss_step)));
-  EXPECT_NE(imu.find("\n604795.0050,"), std::string::npos);
-  EXPECT_NE(imu.find("\n604805.0000,"), std::string::npos);  // counts on past the week's end
-  EXPECT_NE(gnss.find("\n604795.200,"), std::string::npos);
 }
 
 }  // namespace

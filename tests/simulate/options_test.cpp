@@ -51,6 +51,37 @@ TEST(SimulateOptions, RefusesWhatCannotBeMade) {
   EXPECT_EQ(faults_of(o).size(), 1u);
 }
 
+TEST(SimulateOptions, RefusesNavigationThatCannotBeMade) {
+  const auto faults = [](auto change) {
+    Options o;
+    change(o);
+    return faults_of(o).size();
+  };
+  EXPECT_EQ(faults([](Options& o) { o.imu.spec.grade = core::ImuGrade::unstated; }), 1u);
+  EXPECT_EQ(faults([](Options& o) { o.imu.rate.value = 20.0; }), 1u);
+  EXPECT_EQ(faults([](Options& o) { o.imu.kind = io::ImuKind::unstated; }), 1u);
+  EXPECT_EQ(faults([](Options& o) { o.imu.axes = {"x", "y", "-z"}; }), 1u);
+  EXPECT_EQ(faults([](Options& o) { o.gnss.correlated_share = 1.5; }), 1u);
+  EXPECT_EQ(faults([](Options& o) { o.events.clock.poll = 7; }), 1u);
+  EXPECT_EQ(faults([](Options& o) { o.flight.along.resize(1); }), 2u);  // without a file, and with laser
+  const auto without_trajectory = [](Options& o) {
+    o.output.trajectory = TrajectoryOutput::none;
+    o.gnss.file = false;
+  };
+  EXPECT_EQ(faults(without_trajectory), 1u);
+}
+
+TEST(SimulateOptions, AxesAreRotations) {
+  EXPECT_TRUE(is_axes_rotation({"x", "y", "z"}));
+  EXPECT_TRUE(is_axes_rotation({"y", "x", "-z"}));
+  EXPECT_TRUE(is_axes_rotation({"y", "z", "x"}));
+  EXPECT_TRUE(is_axes_rotation({"-x", "-y", "z"}));
+  EXPECT_FALSE(is_axes_rotation({"y", "x", "z"}));  // left-handed
+  EXPECT_FALSE(is_axes_rotation({"x", "x", "z"}));
+  EXPECT_FALSE(is_axes_rotation({"x", "+y", "z"}));
+  EXPECT_FALSE(is_axes_rotation({"x", "", "z"}));
+}
+
 TEST(SimulateOptions, PatternsHaveTheirModels) {
   EXPECT_EQ(model_of(Pattern::sine), core::ScannerModel::mirror);
   EXPECT_EQ(model_of(Pattern::palmer), core::ScannerModel::palmer);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <set>
+#include <vector>
 
 namespace swath::simulate {
 namespace {
@@ -64,6 +65,27 @@ TEST(Random, ExponentialAndPoissonHaveTheirMeans) {
   EXPECT_NEAR(count / draws, 4.0, five_sigma * 2 / std::sqrt(draws));
   EXPECT_NEAR(square / draws - std::pow(count / draws, 2), 4.0, 0.1);
   EXPECT_NEAR(r.poisson(10000.0), 10000, 500);
+}
+
+TEST(Random, GaussMarkovKeepsItsVarianceAndForgetsByItsTime) {
+  constexpr double time = 120.0;
+  for (const double step : {0.2, 7.0}) {
+    GaussMarkov process(time, Random(5, 6, 7));
+    constexpr int n = 3000000;
+    std::vector<double> x;
+    for (int i = 0; i < n; ++i, process.advance(step)) x.push_back(process.value());
+    const auto lag = static_cast<size_t>(std::lround(time / step));
+    double square = 0, product = 0;
+    for (size_t i = 0; i + lag < x.size(); ++i) {
+      square += x[i] * x[i];
+      product += x[i] * x[i + lag];
+    }
+    const double m = static_cast<double>(x.size() - lag);
+    // n step / (2 time) independent values: 2500 at 0.2 s, five sigma of a variance.
+    const double chance = 5 * std::sqrt(2.0 / (n * step / (2 * time)));
+    EXPECT_NEAR(square / m, 1.0, chance) << step;
+    EXPECT_NEAR(product / square, std::exp(-static_cast<double>(lag) * step / time), chance) << step;
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/block.h"
+#include "simulate/planned_flight.h"
 #include "simulate/scan.h"
 
 namespace swath::simulate {
@@ -16,7 +17,7 @@ struct Parts {
   Options o;
   World world;
   MapPatch map;
-  Flight flight;
+  PlannedFlight flight;
   core::GpsTime start = core::from_week(2317, 1000.0);
   explicit Parts(const Options& options)
       : o(options),

@@ -142,6 +142,7 @@ TEST(Simulate, SameSeedSameBytesWhateverTheThreads) {
   Options o = preset(Scene::town);
   o.output.formats = {Format::npy, Format::csv};
   o.flight.lines = 1;
+  o.events.file = true;
   const test::TemporaryFolder one, two, other;
   {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
@@ -151,8 +152,8 @@ TEST(Simulate, SameSeedSameBytesWhateverTheThreads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 4);
     run(o, two.path());
   }
-  for (const char* file : {"laser.npy", "laser.csv", "sbet.out", "smrmsg.out", "imu.csv", "gnss.csv", "survey.toml", "survey_csv.toml",
-                           "truth/returns.npy", "truth/dtm.tif"})
+  for (const char* file : {"laser.npy", "laser.csv", "sbet.out", "smrmsg.out", "imu.csv", "gnss.csv", "truth/imu_drift.csv",
+                           "events_pc.csv", "loopstats", "pps.log", "survey.toml", "survey_csv.toml", "truth/returns.npy", "truth/dtm.tif"})
     EXPECT_EQ(test::read_bytes(one / file), test::read_bytes(two / file)) << file;
   o.seed = 2;
   run(o, other.path());
@@ -166,8 +167,8 @@ TEST(Simulate, EveryPatternAndFormatGivesASurveyThatReads) {
     Options o = preset(Scene::flat);
     o.scanner.pattern = pattern;
     o.flight.lines = 1;
-    o.output.imu = ImuGrade::none;
-    o.output.gnss = false;
+    o.imu.file = false;
+    o.gnss.file = false;
     o.output.time = core::TimeScale::unix_utc;
     o.output.formats = {Format::csv, Format::npy};
     if (pattern != Pattern::conical && pattern != Pattern::palmer)
@@ -197,7 +198,7 @@ TEST(Simulate, EveryFormatReadsBackToTheSameShots) {
     Options o = preset(Scene::forest);
     o.scanner.pattern = pattern;
     o.noise.noise_free = true;
-    o.output.imu = ImuGrade::none;
+    o.imu.file = false;
     o.output.formats = {Format::csv, Format::npy, Format::las, Format::laz};
     o.output.start = core::Seconds(604690.0);  // the second line is flown in the next week
     o.mounting.truth.latency = core::Seconds(0.25);
@@ -254,6 +255,76 @@ TEST(Simulate, RecordsMatchTheTruthRowByRow) {
   }
 }
 
+io::Survey stated(const std::filesystem::path& file) {
+  io::Survey s;
+  std::vector<core::Fault> faults;
+  core::read_options(core::described(s), io::read_value_file(file), "", faults);
+  core::throw_if_any(faults);
+  s.folder = file.parent_path();
+  return s;
+}
+
+TEST(Simulate, NavigationAloneNeedsNoWorld) {
+  const test::TemporaryFolder folder;
+  Options o = preset(Scene::hills);
+  o.output.laser = false;
+  o.output.trajectory = TrajectoryOutput::none;
+  o.events.file = true;
+  o.flight.still = core::Seconds(30.0);
+  o.imu.spec.grade = core::ImuGrade::mems;
+  o.imu.spec.gyro_drift = core::RadiansPerSecond(1e-5);
+  o.world.length = core::Metres(1e4);  // a world of this size would take minutes
+  const core::Value made = run(o, folder.path());
+  for (const char* file : {"laser.npy", "sbet.out", "smrmsg.out", "truth/returns.npy", "truth/dtm.tif"})
+    EXPECT_FALSE(std::filesystem::exists(folder / file)) << file;
+  for (const char* file : {"imu.csv", "gnss.csv", "events_pc.csv", "events_marks.csv", "loopstats", "pps.log", "truth/sbet.out",
+                           "truth/imu.json", "truth/imu_drift.csv", "truth/gnss.csv", "truth/events.csv", "truth/simulation.json"})
+    EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
+  EXPECT_EQ(made.find("fixes")->as_int(), 1 + static_cast<std::int64_t>(5 * made.find("seconds")->as_number()));
+  const io::Survey survey = stated(folder / "survey.toml");
+  EXPECT_TRUE(survey.laser.empty());
+  EXPECT_TRUE(survey.trajectory.empty());
+  ASSERT_EQ(survey.imu.size(), 1u);
+  ASSERT_EQ(survey.gnss.size(), 1u);
+  EXPECT_EQ(survey.events.size(), 2u);
+  EXPECT_EQ(survey.clock.size(), 1u);
+  EXPECT_EQ(survey.imu_spec.grade, core::ImuGrade::mems);
+  EXPECT_NEAR(survey.imu_spec.gyro_drift->value, 1e-5, 1e-18);
+  EXPECT_EQ(survey.imu[0].rate, o.imu.rate);
+  EXPECT_EQ(survey.antenna.lever_arm, o.mounting.lever_arm_antenna);
+  EXPECT_EQ(survey.lines.size(), 2u);
+}
+
+TEST(Simulate, RefusesOutagesThatLeaveNothing) {
+  const test::TemporaryFolder folder;
+  Options o = preset(Scene::flat);
+  o.output.laser = false;
+  o.gnss.outages = {{core::Seconds(0), core::Seconds(1e5)}};
+  EXPECT_THROW(run(o, folder / "a"), core::Error);
+  EXPECT_EQ(test::entries(folder.path()), 0u);
+}
+
+TEST(Simulate, FliesAlongAGivenTrajectory) {
+  const test::TemporaryFolder folder;
+  Options o = preset(Scene::flat);
+  o.output.laser = false;
+  o.noise.noise_free = true;
+  run(o, folder / "first");
+  Options along = o;
+  io::TrajectoryFile file;
+  file.file = folder / "first/truth/sbet.out";
+  file.time.scale = core::TimeScale::gps_week;
+  file.time.week = o.output.week;
+  along.flight.along = {file};
+  const core::Value made = run(along, folder / "second");
+  EXPECT_LT(made.find("splines_minus_trajectory")->find("worst")->find("north_m")->as_number(), 1e-3);
+  EXPECT_EQ(stated(folder / "second/survey.toml").imu_spec.grade, core::ImuGrade::perfect);  // noise-free
+  // The same instants, and nearly the same records.
+  const std::string one = test::read_bytes(folder / "first/gnss.csv"), two = test::read_bytes(folder / "second/gnss.csv");
+  EXPECT_EQ(std::count(one.begin(), one.end(), '\n'), std::count(two.begin(), two.end(), '\n'));
+  EXPECT_NE(two.find("\n474000.200,"), std::string::npos);
+}
+
 TEST(Simulate, TrajectoryErrorsAreOfTheirSigmas) {
   double position = 0, height = 0, attitude = 0, heading = 0;
   constexpr int seeds = 5;
@@ -264,7 +335,7 @@ TEST(Simulate, TrajectoryErrorsAreOfTheirSigmas) {
     o.seed = seed;
     o.noise.correlation = core::Seconds(2);
     o.scanner.prf = core::Hertz(100);
-    o.output.imu = ImuGrade::none;
+    o.imu.file = false;
     run(o, folder.path());
     const core::TrajectoryData given = trajectory(folder.path());
     core::Tally tally;

@@ -34,5 +34,12 @@ TEST(TextRows, RefusesAFolderThatIsAFile) {
   EXPECT_THROW(TextRows(folder / "file" / "a.csv", "x\n"), core::Error);
 }
 
+TEST(TextRows, TimesGetTheDecimalsTheyNeed) {
+  EXPECT_EQ(decimals_of(474000.0, 0.2, 3), 3);
+  EXPECT_EQ(decimals_of(604795.25, 0.005, 4), 4);
+  EXPECT_EQ(decimals_of(474000.0, 1.0 / 3, 3), 9);
+  EXPECT_EQ(decimals_of(407106.003323, 0.2, 3), 9);
+}
+
 }  // namespace
 }  // namespace swath::simulate
