@@ -15,6 +15,7 @@ struct ClockData {
   std::vector<double> time;    ///< by the clock, s since epoch, rising
   std::vector<double> offset;  ///< UTC - clock, s: to be added to what the clock shows
   std::vector<double> jitter;  ///< scatter of the offset as the log tells it, s
+  bool steered = false;        ///< by these very records: the clock then answers to their errors (ntpd)
 
   size_t size() const { return time.size(); }
 };

@@ -224,6 +224,7 @@ core::ClockData read_clock_log(const std::filesystem::path& file, ClockFormat fo
   const auto where = [&](const Record& r) { return file.string() + ":" + std::to_string(r.line); };
   core::ClockData out;
   out.epoch = core::from_unix(records.front().day * day_seconds);
+  out.steered = format != ClockFormat::pps;
   const bool with_jitter = std::any_of(records.begin(), records.end(), [](const Record& r) { return r.jitter > 0; });
   for (const Record& r : records) {
     const double t = core::from_unix(r.day * day_seconds) - out.epoch + r.second;

@@ -88,6 +88,7 @@ TEST_F(ClockLogs, PulsesStandOnWholeSeconds) {
   EXPECT_NEAR(two.offset[0], -0.000125, 1e-12);
   EXPECT_NEAR(two.offset[1], 0.01, 1e-12);
   EXPECT_TRUE(two.jitter.empty());
+  EXPECT_FALSE(two.steered);
   // POSIX seconds keep their nanoseconds.
   const core::ClockData one = read("1238457610.000000125#75\n1238457611.999999#76\n", ClockFormat::pps);
   EXPECT_EQ(one.epoch, midnight_gps);
@@ -147,6 +148,7 @@ TEST(ClockLogReference, LoopstatsWithAHeader) {
   EXPECT_EQ(c.time.back(), 43104);
   EXPECT_EQ(c.offset.front(), -0.000903768);
   EXPECT_EQ(c.jitter.back(), 0.000004);
+  EXPECT_TRUE(c.steered);
   EXPECT_TRUE(tally.empty());
 }
 
