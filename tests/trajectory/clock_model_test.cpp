@@ -265,7 +265,7 @@ TEST(ClockModel, OutsideTheLogAndInGapsNothingIsPretended) {
       EXPECT_EQ(m.at(2000).sigma, 0) << "not known";
       continue;
     }
-    EXPECT_GT(m.at(1990).sigma, 3 * m.at(1400).sigma);
+    EXPECT_GT(m.at(1990).sigma, 2 * m.at(1400).sigma);
     EXPECT_GT(m.at(-500).sigma, 3 * m.at(0).sigma);
     EXPECT_GT(m.at(7700).sigma, 3 * m.at(7200).sigma);
     EXPECT_LT(std::abs(m.at(1990).offset - w.at(1990)), 4 * m.at(1990).sigma);
