@@ -19,7 +19,8 @@ Eigen::Vector3d point_from_antenna(const Eigen::Vector3d& antenna_ned, const cor
 double tilt_shift(const Eigen::Vector3d& lever, const core::Attitude& tilt) { return (core::matrix_of(tilt) * lever - lever).norm(); }
 
 core::Attitude attitude_of_tilt(double omega, double phi) {
-  const Eigen::Matrix3d R = (Eigen::AngleAxisd(omega, Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(phi, Eigen::Vector3d::UnitY())).matrix();
+  const Eigen::Matrix3d R =
+      (Eigen::AngleAxisd(omega, Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(phi, Eigen::Vector3d::UnitY())).matrix();
   return core::attitude_of(turn_over * R * turn_over);
 }
 

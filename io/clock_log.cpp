@@ -160,7 +160,8 @@ std::vector<Record> read_peerstats(const std::filesystem::path& file, core::Tall
     ++sources[line.field(2)];
     by_selection[static_cast<int>(word >> 8 & 7)].push_back(r);
   };
-  for_each_line(file, [](const Line&) {}, read);
+  for_each_line(
+      file, [](const Line&) {}, read);
   std::vector<Record> out;
   size_t all = 0;
   for (const auto& [selection, records] : by_selection) all += records.size();

@@ -137,8 +137,7 @@ std::vector<core::EventTags> read_event_files(const Survey& survey, core::Tally&
 core::EventData events_of(const std::vector<core::EventTags>& techniques) {
   core::EventData out;
   for (const core::EventTags& t : techniques) {
-    if (t.computer_clock)
-      throw core::Error("events are still by the computer's clock", t.technique, "run time.sync with a [[clock]] log");
+    if (t.computer_clock) throw core::Error("events are still by the computer's clock", t.technique, "run time.sync with a [[clock]] log");
     for (size_t i = 0; i < t.size(); ++i) {
       out.time.push_back(t.epoch + (t.time[i] + t.latency));
       out.sigma.push_back(t.sigma[i]);

@@ -355,8 +355,7 @@ Strengths strengths_of(const Records& r) {
   for (size_t i = 0; i < n; ++i) {
     while (k + 2 < blocks.size() && r.time[i] > blocks[k + 1].middle) ++k;
     const size_t k1 = std::min(k + 1, blocks.size() - 1);
-    const double w =
-        k1 == k ? 0.0 : std::clamp((r.time[i] - blocks[k].middle) / (blocks[k1].middle - blocks[k].middle), 0.0, 1.0);
+    const double w = k1 == k ? 0.0 : std::clamp((r.time[i] - blocks[k].middle) / (blocks[k1].middle - blocks[k].middle), 0.0, 1.0);
     const auto mix = [&](double Logs::*m) { return std::exp((1 - w) * logs[k].*m + w * logs[k1].*m); };
     out.noise.push_back(mix(&Logs::factor) * r.shape[i]);
     out.walk.push_back({mix(&Logs::offset), mix(&Logs::drift)});

@@ -19,7 +19,7 @@ struct Records {
   std::vector<double> shape;        ///< sigma of each record up to a common factor
   std::vector<std::uint8_t> spike;  ///< 1: it stands out from the lines on both sides and is no observation
 
-  bool steered = false;             ///< the clock answers to the records' errors
+  bool steered = false;  ///< the clock answers to the records' errors
 
   size_t size() const { return time.size(); }
 };
@@ -55,10 +55,10 @@ std::vector<std::uint8_t> spikes_of(std::span<const double> time, std::span<cons
 /// Scatter of the offset about straight lines through neighbours, from second differences, running median; s. Records [first, last].
 std::vector<double> scatter_of(const core::ClockData& log, size_t first, size_t last, size_t width);
 
-/// From the likelihood of the innovations in blocks (40 records, more in logs of over 16 000), on a grid of the walks' strengths relative to
-/// the noise: the posterior mean of the logarithms, neighbouring blocks being alike but for rare jumps (a hidden Markov chain, its filters
-/// interacting at the blocks' borders). Linear in the logarithm between the blocks' middles. Wild innovations have a bounded say: outliers
-/// do not make the clock restless.
+/// From the likelihood of the innovations in blocks (40 records, more in logs of over 16 000), on a grid of the walks' strengths relative
+/// to the noise: the posterior mean of the logarithms, neighbouring blocks being alike but for rare jumps (a hidden Markov chain, its
+/// filters interacting at the blocks' borders). Linear in the logarithm between the blocks' middles. Wild innovations have a bounded say:
+/// outliers do not make the clock restless.
 Strengths strengths_of(const Records& records);
 
 /// Filter and smoother, weights iterated; records beyond six sigma are added to `outliers`.

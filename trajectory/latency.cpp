@@ -11,6 +11,7 @@
 
 #include "core/frames.h"
 #include "core/geodesy.h"
+#include "trajectory/motion_curve.h"
 
 namespace swath::trajectory {
 namespace {
@@ -20,7 +21,6 @@ using Normal = Eigen::Matrix4d;  // latency and three shifts
 using Vector4 = Eigen::Vector4d;
 
 constexpr double mad_to_sigma = 1.4826, huber = 2.5;
-constexpr double longest_steps = 5.0;      // an interval of more median steps is a gap
 constexpr size_t fewest = 20;              // common instants
 constexpr size_t most_grid = 20000;        // instants of the cross-correlation
 constexpr double speed_base = 1.0;         // s over which speed is differenced
@@ -29,81 +29,8 @@ constexpr double inflated = 100.0, hopeless = 1e6;
 constexpr int rounds = 30, common_rounds = 6;
 constexpr double weakest = 0.3;  // share of the derivative's energy that is motion, not noise
 
-double median(std::vector<double> v) {
-  if (v.empty()) return 0.0;
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
-
-double median_step(const Motion& m) {
-  std::vector<double> steps;
-  for (size_t i = 1; i < m.time.size(); ++i) steps.push_back(m.time[i] - m.time[i - 1]);
-  return median(std::move(steps));
-}
-
-/// Means over `width` of both times and values, so that no delay comes in.
-Motion averaged(const Motion& m, double width) {
-  if (!(width > 0)) return m;
-  Motion out;
-  size_t first = 0, last = 0;
-  for (size_t i = 0; i < m.time.size(); ++i) {
-    while (m.time[i] - m.time[first] > 0.5 * width) ++first;
-    while (last + 1 < m.time.size() && m.time[last + 1] - m.time[i] <= 0.5 * width) ++last;
-    double t = 0;
-    Vector3d v = Vector3d::Zero();
-    for (size_t k = first; k <= last; ++k) {
-      t += m.time[k] - m.time[i];
-      v += m.value[k];
-    }
-    const auto n = static_cast<double>(last - first + 1);
-    out.time.push_back(m.time[i] + t / n);
-    out.value.push_back(v / n);
-    if (out.time.size() > 1 && !(out.time.back() > out.time[out.time.size() - 2])) {  // at the record's very ends
-      out.time.pop_back();
-      out.value.pop_back();
-    }
-  }
-  return out;
-}
-
-/// The reference as a function of time: the cubic through four records (Lagrange), with its derivative.
-class Curve {
- public:
-  explicit Curve(const Motion& m) : m_(m), longest_(longest_steps * median_step(m)) {}
-  bool at(double t, Vector3d& value, Vector3d& rate) const {
-    const size_t n = m_.time.size();
-    const auto after = std::upper_bound(m_.time.begin(), m_.time.end(), t);
-    if (after == m_.time.begin() || after == m_.time.end()) return false;
-    const auto k = static_cast<size_t>(after - m_.time.begin()) - 1;
-    if (m_.time[k + 1] - m_.time[k] > longest_) return false;
-    size_t first = k > 0 ? k - 1 : 0, last = std::min(n - 1, k + 2);
-    while (first < k && m_.time[k] - m_.time[first] > longest_) ++first;
-    while (last > k + 1 && m_.time[last] - m_.time[k + 1] > longest_) --last;
-    value.setZero();
-    rate.setZero();
-    for (size_t i = first; i <= last; ++i) {
-      double weight = 1, slope = 0;
-      for (size_t j = first; j <= last; ++j) {
-        if (j == i) continue;
-        const double d = m_.time[i] - m_.time[j];
-        slope = (slope * (t - m_.time[j]) + weight) / d;
-        weight *= (t - m_.time[j]) / d;
-      }
-      value += weight * (m_.value[i] - m_.value[k]);
-      rate += slope * (m_.value[i] - m_.value[k]);
-    }
-    value += m_.value[k];
-    return true;
-  }
-
- private:
-  const Motion& m_;
-  double longest_;
-};
-
 /// Speed on a grid of time; NaN outside.
-std::vector<Vector3d> signal_of(const Curve& curve, bool places, double start, double step, size_t n, double base) {
+std::vector<Vector3d> signal_of(const MotionCurve& curve, bool places, double start, double step, size_t n, double base) {
   std::vector<Vector3d> out(n, Vector3d::Constant(std::nan("")));
   Vector3d a, b, unused;
   for (size_t i = 0; i < n; ++i) {
@@ -126,7 +53,8 @@ void correlate(const Motion& reference, const Motion& device, bool places, doubl
   const double step = std::max({length / static_cast<double>(most_grid), std::min(slowest, search / 10), search / 1000});
   const auto n = static_cast<size_t>(length / step) + 1;
   const double base = std::max(speed_base, 2 * slowest);
-  const auto a = signal_of(Curve(reference), places, start, step, n, base), b = signal_of(Curve(device), places, start, step, n, base);
+  const auto a = signal_of(MotionCurve(reference), places, start, step, n, base),
+             b = signal_of(MotionCurve(device), places, start, step, n, base);
   const auto lags = static_cast<long>(search / step);
   std::vector<double> r(static_cast<size_t>(2 * lags + 1), -1.0);
   for (long lag = -lags; lag <= lags; ++lag) {
@@ -154,13 +82,13 @@ void correlate(const Motion& reference, const Motion& device, bool places, doubl
 
 /// One instant's equation per axis: residual = (d value / d latency) dL + shift.
 struct Equation {
-  Vector3d residual;                       // device minus reference
-  Vector3d rate;                           // of the reference, from differences over a base: little noise
-  Vector3d local_rate;                     // the cubic's own: its noise is another
-  Eigen::Matrix3d track;                   // columns along, across, up
+  Vector3d residual;      // device minus reference
+  Vector3d rate;          // of the reference, from differences over a base: little noise
+  Vector3d local_rate;    // the cubic's own: its noise is another
+  Eigen::Matrix3d track;  // columns along, across, up
 };
 
-std::vector<Equation> equations(const Curve& reference, const Motion& device, double latency, double base) {
+std::vector<Equation> equations(const MotionCurve& reference, const Motion& device, double latency, double base) {
   std::vector<Equation> out;
   Equation e;
   Vector3d value, before, after, unused;
@@ -239,7 +167,8 @@ void measure(Solution& s, LatencyShift shift) {
   s.cost = s.scale.array().log().sum();
 }
 
-std::optional<Solution> solve(const Curve& reference, const Motion& device, LatencyShift shift, double start, double search, double base) {
+std::optional<Solution> solve(const MotionCurve& reference, const Motion& device, LatencyShift shift, double start, double search,
+                              double base) {
   Solution s;
   s.latency = start;
   for (int round = 0; round < rounds; ++round) {
@@ -322,7 +251,7 @@ LatencyResult estimate(const Motion& raw_reference, const Motion& raw_device, co
   const double search = o.search.value;
   const LatencyShift shift = places || o.shift == LatencyShift::none ? o.shift : LatencyShift::axes;
   correlate(reference, device, places, search, out);
-  const Curve curve(reference);
+  const MotionCurve curve(reference);
   const double base = std::max(places ? speed_base : 0.0, 2 * (o.smoothing.value + 2.5 * median_step(reference)));
   std::optional<Solution> best;
   for (const double start : {out.coarse, 0.0}) {

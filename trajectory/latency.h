@@ -44,15 +44,15 @@ void describe(LatencyOptions& o, V& v) {
 
 struct LatencyResult {
   bool determinable = false;
-  std::string reason;        ///< why not, or what the answer rests on; may be empty
-  double latency = 0.0;      ///< to be added to the device's times, s: value(device at t) = value(reference at t + latency)
-  double sigma = 0.0;        ///< s; 0 where not determinable
-  double coarse = 0.0;       ///< peak of the cross-correlation, s
-  double correlation = 0.0;  ///< there, -1 to 1; 0 where the speed hardly changes and it says nothing
-  size_t used = 0;           ///< instants of the device within the reference
-  size_t outliers = 0;       ///< of them down-weighted by more than half
-  std::array<double, 3> shift{};      ///< device minus reference, unit of the values; by options.shift
-  Eigen::Vector3d rms = {0, 0, 0};    ///< of the residuals per axis
+  std::string reason;               ///< why not, or what the answer rests on; may be empty
+  double latency = 0.0;             ///< to be added to the device's times, s: value(device at t) = value(reference at t + latency)
+  double sigma = 0.0;               ///< s; 0 where not determinable
+  double coarse = 0.0;              ///< peak of the cross-correlation, s
+  double correlation = 0.0;         ///< there, -1 to 1; 0 where the speed hardly changes and it says nothing
+  size_t used = 0;                  ///< instants of the device within the reference
+  size_t outliers = 0;              ///< of them down-weighted by more than half
+  std::array<double, 3> shift{};    ///< device minus reference, unit of the values; by options.shift
+  Eigen::Vector3d rms = {0, 0, 0};  ///< of the residuals per axis
   /// How many times the variance of the latency would grow if a shift along the axes, or along the track, were estimated too. Large:
   /// such a shift, where there is one, reads as latency (straight flight at one speed).
   double axes_inflation = 1.0, track_inflation = 1.0;

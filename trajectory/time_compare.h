@@ -31,12 +31,12 @@ struct TimePair {
 /// Differences in one unit.
 struct Spread {
   size_t n = 0;
-  double bias = 0.0;            ///< mean
-  double rms = 0.0;             ///< about zero
-  double standard = 0.0;        ///< about the mean, n - 1; 0 for n < 2
-  double largest = 0.0;         ///< greatest absolute value
-  double error_ratio = 0.0;     ///< rms of difference / sigma; 0 where sigmas are not known
-  core::Value value() const;    ///< {"n", "bias", ...}
+  double bias = 0.0;          ///< mean
+  double rms = 0.0;           ///< about zero
+  double standard = 0.0;      ///< about the mean, n - 1; 0 for n < 2
+  double largest = 0.0;       ///< greatest absolute value
+  double error_ratio = 0.0;   ///< rms of difference / sigma; 0 where sigmas are not known
+  core::Value value() const;  ///< {"n", "bias", ...}
 };
 
 /// difference = shift + drift (time - time of the first pair), by least squares.
@@ -47,9 +47,9 @@ struct ShiftDrift {
 };
 
 struct TimeComparison {
-  std::vector<TimePair> pairs;                ///< in the first technique's order
-  size_t only_first = 0, only_second = 0;     ///< events without a partner
-  Spread all, trusted;                        ///< s; trusted: neither doubts the event
+  std::vector<TimePair> pairs;             ///< in the first technique's order
+  size_t only_first = 0, only_second = 0;  ///< events without a partner
+  Spread all, trusted;                     ///< s; trusted: neither doubts the event
 };
 
 /// Events of two techniques, pair by pair; the latencies of both are applied. `tolerance`: pairs farther apart are none, s. Names that
@@ -59,7 +59,8 @@ TimeComparison compare(const core::EventTags& first, const core::EventTags& seco
 /// Of differences, s; sigmas as given (0: not known).
 Spread spread_of(const std::vector<double>& differences, const std::vector<double>& sigmas = {});
 
-/// Of pairs in time order; `stamps`: the first technique's own times where these are the line's abscissa. Less than two pairs: a shift alone.
+/// Of pairs in time order; `stamps`: the first technique's own times where these are the line's abscissa. Less than two pairs: a shift
+/// alone.
 ShiftDrift shift_and_drift(const std::vector<TimePair>& pairs, const core::EventTags& first);
 
 /// What a difference in time is in metres of flight at constant speed.

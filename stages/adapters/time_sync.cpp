@@ -89,8 +89,8 @@ std::string table(const std::vector<Technique>& techniques) {
         if (!t.readings[i].inside) flags += flags.empty() ? "outside_log" : ";outside_log";
         correction = number("%.9f", t.readings[i].offset);
       }
-      out += field(t.timed.id[i]) + "," + (t.timed.strip[i] ? std::to_string(t.timed.strip[i]) : "") + "," + field(t.timed.technique) + "," +
-             std::to_string(week) + "," + number("%.7f", second) + "," + core::utc_text(gps) + "," +
+      out += field(t.timed.id[i]) + "," + (t.timed.strip[i] ? std::to_string(t.timed.strip[i]) : "") + "," + field(t.timed.technique) +
+             "," + std::to_string(week) + "," + number("%.7f", second) + "," + core::utc_text(gps) + "," +
              (t.timed.sigma[i] > 0 ? number("%.9f", t.timed.sigma[i]) : "") + "," + correction + "," + flags + "\n";
     }
   return out;
@@ -307,9 +307,7 @@ class TimeSync : public OptionStage<TimeSyncOptions> {
   report::Chart drawing(const std::optional<ClockModel>& clock, const std::vector<Compared>& compared) const {
     report::Chart chart;
     chart.title = "One time scale";
-    const double start = clock                ? clock->log().epoch + clock->log().time.front()
-                         : compared.empty() ? 0.0
-                                              : compared[0].other->timed.epoch;
+    const double start = clock ? clock->log().epoch + clock->log().time.front() : compared.empty() ? 0.0 : compared[0].other->timed.epoch;
     const std::string x_label = clock ? "time since the log's start (s)" : "time since the first event (s)";
     if (clock) draw_clock(*clock, x_label, chart);
     for (const Compared& c : compared) {

@@ -30,9 +30,9 @@ class ClockLogs : public ::testing::Test {
 };
 
 TEST_F(ClockLogs, LoopstatsAsTheDaemonWritesThem) {
-  const core::ClockData c =
-      read("54921 75440.031 0.000006019 13.778190 0.000351733 0.013380 6\n"
-           "54921 75504.031 -0.000008 13.78 0.000200 0.013380 6\n");
+  const core::ClockData c = read(
+      "54921 75440.031 0.000006019 13.778190 0.000351733 0.013380 6\n"
+      "54921 75504.031 -0.000008 13.78 0.000200 0.013380 6\n");
   EXPECT_EQ(c.epoch, midnight_gps);
   EXPECT_EQ(c.time, (std::vector<double>{75440.031, 75504.031}));
   EXPECT_EQ(c.offset, (std::vector<double>{0.000006019, -0.000008}));
@@ -47,8 +47,8 @@ TEST_F(ClockLogs, OldLoopstatsHaveNoJitter) {
 
 TEST_F(ClockLogs, CommasTabsHeadersCommentsAndOtherOrders) {
   const char* forms[] = {"mjd,utc_sec_of_day,offset_s,freq_ppm,jitter_s\n54921,10,0.5,1,0.25\n",
-                         "\xEF\xBB\xBF# a log\r\n\r\njitter\toffset\tSeconds\tMJD\r\n0.25\t0.5\t10\t54921\r\n",
-                         "54921;10;0.5;1;0.25;6", "  54921   10 +0.5\t1  0.25 0 6\n"};
+                         "\xEF\xBB\xBF# a log\r\n\r\njitter\toffset\tSeconds\tMJD\r\n0.25\t0.5\t10\t54921\r\n", "54921;10;0.5;1;0.25;6",
+                         "  54921   10 +0.5\t1  0.25 0 6\n"};
   for (const char* form : forms) {
     const core::ClockData c = read(form);
     ASSERT_EQ(c.size(), 1u) << form;
@@ -99,7 +99,8 @@ TEST_F(ClockLogs, PulsesStandOnWholeSeconds) {
 }
 
 TEST_F(ClockLogs, AClockSetBackLeavesOutWhatWasBefore) {
-  const core::ClockData c = read("54921 100 1 0 0 0 6\n54921 116 2 0 0 0 6\n54921 110 3 0 0 0 6\n54921 110 4 0 0 0 6\n54921 126 5 0 0 0 6\n");
+  const core::ClockData c =
+      read("54921 100 1 0 0 0 6\n54921 116 2 0 0 0 6\n54921 110 3 0 0 0 6\n54921 110 4 0 0 0 6\n54921 126 5 0 0 0 6\n");
   EXPECT_EQ(c.offset, (std::vector<double>{3, 5}));
   EXPECT_EQ(tally_.of("clock records before the clock was set back, left out"), 2u);
   EXPECT_EQ(tally_.of("clock records at a repeated time, dropped"), 1u);

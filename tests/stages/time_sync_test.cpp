@@ -136,7 +136,14 @@ TEST(TimeSync, EveryOptionHasItsEffect) {
   EXPECT_GT(run(R"({"tag_sigma": "50 us"})")->context.events->sigma[0], 5e-5);
   EXPECT_EQ(run(R"({"technique": "marks"})")->context.events->size(), 20u);
   EXPECT_EQ(run(R"({"match": "time"})")->trusted("n"), 17);
-  EXPECT_EQ(run(R"({"tolerance": "1 us"})")->findings.find("comparisons")->items()[0].find("before_correction")->find("seconds")->find("n")->as_int(), 0);
+  EXPECT_EQ(run(R"({"tolerance": "1 us"})")
+                ->findings.find("comparisons")
+                ->items()[0]
+                .find("before_correction")
+                ->find("seconds")
+                ->find("n")
+                ->as_int(),
+            0);
   const auto renamed = run(R"({"file": "x.csv"})");
   EXPECT_TRUE(fs::exists(renamed->context.output / "x.csv"));
   EXPECT_FALSE(fs::exists(renamed->context.output / "events_time.csv"));

@@ -34,9 +34,9 @@ class Noise {
 struct World {
   unsigned seed = 1;
   double seconds = 7200, poll = 16, drift0 = 2e-6;
-  double walk = 1e-9;         // s/s per sqrt(s)
+  double walk = 1e-9;  // s/s per sqrt(s)
   bool steered = false;
-  double wild_share = 0;      // of records that are wrong by 50 sigma
+  double wild_share = 0;  // of records that are wrong by 50 sigma
   double step_at = 1e9, step = 0;
   double offset0 = 0;
   std::function<double(double)> sigma = [](double) { return 5e-6; };

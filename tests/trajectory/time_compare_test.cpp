@@ -99,9 +99,7 @@ TEST(TimeCompare, SecondsAreMetresOfFlight) {
   EXPECT_NEAR(metres_of(1e-3, 60), 0.06, 1e-12);
   EXPECT_NEAR(metres_of(10e-3, 60), 0.60, 1e-12);
   // The same along a trajectory, which differs from the plane it is made of by 1e-3 of the way.
-  const struct {
-    double speed, difference, expected;
-  } cases[] = {{220 / 3.6, 40e-6, 0.00244}, {60, 1e-3, 0.06}, {60, 10e-3, 0.60}};
+  const struct { double speed, difference, expected; } cases[] = {{220 / 3.6, 40e-6, 0.00244}, {60, 1e-3, 0.06}, {60, 10e-3, 0.60}};
   for (const auto& c : cases) {
     const Trajectory t = flight(c.speed, 0, 0);
     const core::EventTags second = tags({10, 20, 30}), first = tags({10 + c.difference, 20 + c.difference, 30 + c.difference});
