@@ -121,6 +121,10 @@ std::string list_of(const DelimitedLayout& layout) {
 
 }  // namespace
 
+std::vector<std::string> split_delimited(const std::string& line, char delimiter) { return split(line, delimiter); }
+char delimiter_in(const std::string& line) { return find_delimiter(line); }
+char delimiter_from(const std::string& stated, const std::filesystem::path& file) { return delimiter_of(stated, file); }
+
 DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::string& delimiter) {
   const BinaryFile file(path);
   DelimitedLayout out;

@@ -31,6 +31,13 @@ DelimitedLayout inspect_delimited(const std::filesystem::path& file, const std::
 /// or a number from 1. Throws Error naming the file, the columns that exist and the nearest name.
 size_t column_of(const DelimitedLayout& layout, const std::string& column, const std::filesystem::path& file);
 
+/// The fields of one line, without blanks and quotes around them.
+std::vector<std::string> split_delimited(const std::string& line, char delimiter);
+/// The delimiter of a line of data: tab, semicolon or comma where it has one, else ' ' for blanks.
+char delimiter_in(const std::string& line);
+/// The delimiter that a survey states as "," ";" "tab" "blank" ...; ' ' stands for blanks. Throws Error where it is none.
+char delimiter_from(const std::string& stated, const std::filesystem::path& file);
+
 /// Streams the numbers of chosen columns. Comments and empty lines are passed over. "nan" and "inf" are handed over as such, an empty
 /// field as NaN. Throws Error "file:line" for a field that is no number and for a line with too few fields.
 class DelimitedReader {

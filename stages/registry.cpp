@@ -8,6 +8,7 @@ namespace swath::stages {
 const std::vector<Entry>& registry() {
   static const std::vector<Entry> list = {
       {"readers.trajectory", make_trajectory_reader},
+      {"time.sync", make_time_sync},
       {"trajectory.kinematic", make_kinematic},
       {"readers.laser", make_laser_reader},
       {"readers.las", make_las_reader},

@@ -9,6 +9,7 @@
 namespace swath::stages {
 
 std::unique_ptr<Stage> make_trajectory_reader();
+std::unique_ptr<Stage> make_time_sync();
 std::unique_ptr<Stage> make_kinematic();
 std::unique_ptr<Stage> make_laser_reader();
 std::unique_ptr<Stage> make_las_reader();
