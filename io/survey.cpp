@@ -8,6 +8,7 @@
 #include "core/crs.h"
 #include "core/option_visitors.h"
 #include "io/csd.h"
+#include "io/imu_file.h"
 #include "io/value_file.h"
 
 namespace swath::io {
@@ -46,6 +47,8 @@ class Checks {
     project();
     for (size_t i = 0; i < survey_.laser.size(); ++i) laser(survey_.laser[i], numbered("laser", i));
     for (size_t i = 0; i < survey_.trajectory.size(); ++i) trajectory(survey_.trajectory[i], numbered("trajectory", i));
+    for (size_t i = 0; i < survey_.imu.size(); ++i) imu(survey_.imu[i], numbered("imu", i));
+    for (size_t i = 0; i < survey_.gnss.size(); ++i) gnss(survey_.gnss[i], numbered("gnss", i));
     for (size_t i = 0; i < survey_.points.size(); ++i) exists(survey_.points[i].file, numbered("points", i) + ".file");
     lines();
     const TruthFiles& t = survey_.truth;
@@ -74,8 +77,12 @@ class Checks {
   }
 
   void project() {
+    // A survey may be of the trajectory alone; with IMU, GNSS or raw observations the trajectory is computed.
+    const bool computed = !survey_.imu.empty() || !survey_.gnss.empty() || !survey_.rinex.rover.empty();
+    const bool navigation = computed && survey_.laser.empty();
     if (survey_.crs.empty()) {
-      if (survey_.points.empty()) fault("crs", "the CRS of the products is missing", "state it, for example crs = \"EPSG:32632\"");
+      if (survey_.points.empty() && !navigation)
+        fault("crs", "the CRS of the products is missing", "state it, for example crs = \"EPSG:32632\"");
     } else {
       try {
         core::Crs{survey_.crs};
@@ -86,10 +93,11 @@ class Checks {
     if (survey_.calibration_file) exists(*survey_.calibration_file, "calibration_file");
     const bool raw = !survey_.laser.empty();
     if (raw && !survey_.points.empty()) fault("points", "a survey has either raw [[laser]] records or georeferenced [[points]], not both");
-    if (!raw && survey_.points.empty()) fault("laser", "no records: neither [[laser]] nor [[points]] is there");
+    if (!raw && survey_.points.empty() && !navigation)
+      fault("laser", "no records: neither [[laser]] nor [[points]] is there, nor [[imu]] or [[gnss]]");
     const auto is_csd = [](const LaserFile& f) { return format_of(f) == LaserFormat::csd; };
-    if (raw && survey_.trajectory.empty() && !std::all_of(survey_.laser.begin(), survey_.laser.end(), is_csd))
-      fault("trajectory", "raw [[laser]] records need a [[trajectory]]");
+    if (raw && survey_.trajectory.empty() && !computed && !std::all_of(survey_.laser.begin(), survey_.laser.end(), is_csd))
+      fault("trajectory", "raw [[laser]] records need a [[trajectory]], or [[imu]] and [[gnss]] records to compute it from");
     const Value* calibration = tree_.find("calibration");
     const bool boresight = calibration && (calibration->find("roll") || calibration->find("pitch") || calibration->find("heading"));
     if (std::any_of(survey_.laser.begin(), survey_.laser.end(), is_csd) && !survey_.calibration_file && !boresight)
@@ -101,7 +109,7 @@ class Checks {
   void time(const TimeTags& t, const std::string& key, bool week_column, bool in_file) {
     using core::TimeScale;
     if (t.scale == TimeScale::unstated && !in_file)
-      fault(key + ".scale", "the time scale is not stated", "one of gps, gps_adjusted, gps_week, unix, utc_day");
+      fault(key + ".scale", "the time scale is not stated", "one of gps, gps_adjusted, gps_week, unix, utc_day, device");
     if (t.scale == TimeScale::gps_week && !t.week && !week_column)
       fault(key + ".week", "scale gps_week needs the GPS week of the first record");
     if (t.week && t.scale != TimeScale::gps_week && !in_file) fault(key + ".week", "a week has a meaning with scale gps_week only");
@@ -110,6 +118,11 @@ class Checks {
       fault(key + ".scale", "a column of weeks goes with scale gps_week only");
     if (t.scale == TimeScale::utc_day && t.date.empty()) fault(key + ".date", "scale utc_day needs the UTC date of the first record");
     if (!t.date.empty() && t.scale != TimeScale::utc_day) fault(key + ".date", "a date has a meaning with scale utc_day only");
+    if (t.scale == TimeScale::device && t.origin.empty()) fault(key + ".origin", "scale device needs the instant of the device's zero");
+    if (!t.origin.empty() && t.scale != TimeScale::device) fault(key + ".origin", "an origin has a meaning with scale device only");
+    if (t.origin_at != 0 && t.scale != TimeScale::device) fault(key + ".origin_at", "has a meaning with scale device only");
+    if (!t.origin.empty() && !core::gps_of_civil(t.origin))
+      fault(key + ".origin", "'" + t.origin + "' is no instant", "write it as \"YYYY-MM-DDThh:mm:ss.sss GPS\" (or UTC)");
     if (t.scale == TimeScale::utc_day && !t.date.empty() && !core::unix_of_date(t.date))
       fault(key + ".date", "'" + t.date + "' is no date", "write it as YYYY-MM-DD");
   }
@@ -181,9 +194,89 @@ class Checks {
     if (f.angle_unit == AngleUnit::unstated) fault(key + ".angle_unit", "the unit of angles is not stated", "one of deg, rad, gon");
   }
 
+  void imu(const ImuFile& f, const std::string& key) {
+    exists(f.file, key + ".file");
+    const RecordFormat format = format_of(f);
+    const ImuColumns& c = f.columns;
+    if (format == RecordFormat::automatic)
+      return fault(key + ".format", "the ending of '" + f.file.string() + "' does not tell the format", "one of text, npy");
+    time(f.time, key + ".time", !c.week.empty(), false);
+    if (format != RecordFormat::text && !f.delimiter.empty()) fault(key + ".delimiter", "has no effect: the file is no text");
+    if (f.kind == ImuKind::unstated)
+      fault(key + ".kind", "it is not stated whether the records are increments or rates", "one of increments, rates");
+    if (f.angle_unit == AngleUnit::unstated) fault(key + ".angle_unit", "the unit of angles is not stated", "one of deg, rad, gon");
+    if (f.acceleration_unit == AccelerationUnit::unstated)
+      fault(key + ".acceleration_unit", "the unit of specific force is not stated", "one of m/s2, g, mg");
+    if (f.sample == ImuSample::instant && f.kind == ImuKind::increments)
+      fault(key + ".sample", "has no effect: increments cover their interval");
+    if (f.sample == ImuSample::instant && f.kind == ImuKind::rates && f.stamp != ImuStamp::end)
+      fault(key + ".stamp", "has no effect: samples of an instant have no interval");
+    for (const auto& [name, column] : {std::pair{"time", &c.time},
+                                       {"gyro_x", &c.gyro_x},
+                                       {"gyro_y", &c.gyro_y},
+                                       {"gyro_z", &c.gyro_z},
+                                       {"accelerometer_x", &c.accelerometer_x},
+                                       {"accelerometer_y", &c.accelerometer_y},
+                                       {"accelerometer_z", &c.accelerometer_z}})
+      if (column->empty()) fault(key + ".columns." + name, "the column is not named");
+    try {
+      body_R_record(f);
+    } catch (const core::Error& e) {
+      fault(key + ".axes", e.what(), e.hint());
+    }
+  }
+
+  void gnss(const GnssFile& f, const std::string& key) {
+    exists(f.file, key + ".file");
+    const GnssFormat format = format_of(f);
+    const GnssColumns& c = f.columns;
+    if (format == GnssFormat::automatic)
+      return fault(key + ".format", "the ending of '" + f.file.string() + "' does not tell the format", "one of text, pos, nmea");
+    if (f.geoid_height) fault(key + ".geoid_height", "heights above the geoid are not read", "write the solution with ellipsoidal heights");
+    if (f.base && format != GnssFormat::pos) fault(key + ".base", "has no effect: only RTKLIB's baselines have a base");
+    if (format != GnssFormat::text) return own_fields(f, key, format == GnssFormat::nmea);
+    time(f.time, key + ".time", !c.week.empty(), false);
+    if (c.time.empty()) fault(key + ".columns.time", "the column of times is not named");
+    const auto together = [&](const char* names, std::initializer_list<const std::string*> columns) {
+      const auto named = std::count_if(columns.begin(), columns.end(), [](const std::string* s) { return !s->empty(); });
+      if (named != 0 && named != static_cast<std::ptrdiff_t>(columns.size()))
+        fault(key + ".columns", std::string(names) + " go together; one of them is not named");
+      return named != 0;
+    };
+    const bool geodetic = together("latitude, longitude and height", {&c.latitude, &c.longitude, &c.height});
+    const bool ecef = together("x, y and z", {&c.x, &c.y, &c.z});
+    if (geodetic == ecef)
+      fault(key + ".columns", geodetic ? "either latitude, longitude, height or x, y, z, not both" : "no columns of positions are named");
+    if (geodetic && f.angle_unit == AngleUnit::unstated)
+      fault(key + ".angle_unit", "the unit of angles is not stated", "one of deg, rad, gon");
+    const bool full = together("the six cov_ columns", {&c.cov_xx, &c.cov_xy, &c.cov_xz, &c.cov_yy, &c.cov_yz, &c.cov_zz});
+    const bool sigmas = together("sigma_north, sigma_east and sigma_up", {&c.sigma_north, &c.sigma_east, &c.sigma_up});
+    if (full && sigmas) fault(key + ".columns", "either the cov_ columns or the sigma_ columns, not both");
+    const bool velocity = together("v_north, v_east and v_up", {&c.v_north, &c.v_east, &c.v_up});
+    const bool sigma_v = together("sigma_v_north, sigma_v_east and sigma_v_up", {&c.sigma_v_north, &c.sigma_v_east, &c.sigma_v_up});
+    if (sigma_v && !velocity) fault(key + ".columns", "sigmas of the velocity without v_north, v_east and v_up");
+  }
+
+  /// Faults of options that the format leaves nothing to do for.
+  void own_fields(const GnssFile& f, const std::string& key, bool nmea) {
+    if (tree_at(key + ".columns")) fault(key + ".columns", "has no effect: the format defines its fields");
+    if (!f.delimiter.empty()) fault(key + ".delimiter", "has no effect: the format defines it");
+    if (f.angle_unit != AngleUnit::deg) fault(key + ".angle_unit", "has no effect: the format's angles are degrees");
+    const TimeTags& t = f.time;
+    if (t.scale != core::TimeScale::unstated) fault(key + ".time.scale", "has no effect: the format states its own");
+    if (t.week) fault(key + ".time.week", "has no effect: the format states its own");
+    if (t.unit.value != 1) fault(key + ".time.unit", "has no effect: the format states its own");
+    if (!t.origin.empty() || t.origin_at != 0) fault(key + ".time.origin", "has no effect: the format states its own");
+    if (!t.date.empty() && !nmea) fault(key + ".time.date", "has no effect: the format states its own");
+    if (!t.date.empty() && nmea && !core::unix_of_date(t.date))
+      fault(key + ".time.date", "'" + t.date + "' is no date", "write it as YYYY-MM-DD");
+  }
+
   void lines() {
     if (survey_.lines.empty()) return;
     time(survey_.line_time, "line_time", false, false);
+    if (survey_.line_time.unit.value != 1) fault("line_time.unit", "has no effect: start and end of a line state their own units");
+    if (survey_.line_time.origin_at != 0) fault("line_time.origin_at", "has no effect: state the origin at zero");
     std::map<int, size_t> ids;
     std::vector<size_t> order(survey_.lines.size());
     for (size_t i = 0; i < order.size(); ++i) {
@@ -238,6 +331,21 @@ TrajectoryFormat format_of(const TrajectoryFile& f) {
   return e == ".csd" ? TrajectoryFormat::csd : TrajectoryFormat::automatic;
 }
 
+RecordFormat format_of(const ImuFile& f) {
+  if (f.format != RecordFormat::automatic) return f.format;
+  const std::string e = ending_of(f.file);
+  if (e == ".csv" || e == ".txt" || e == ".asc") return RecordFormat::text;
+  return e == ".npy" ? RecordFormat::npy : RecordFormat::automatic;
+}
+
+GnssFormat format_of(const GnssFile& f) {
+  if (f.format != GnssFormat::automatic) return f.format;
+  const std::string e = ending_of(f.file);
+  if (e == ".csv" || e == ".txt" || e == ".asc") return GnssFormat::text;
+  if (e == ".pos") return GnssFormat::pos;
+  return e == ".nmea" || e == ".log" ? GnssFormat::nmea : GnssFormat::automatic;
+}
+
 std::vector<TrajectoryFile> trajectory_files(const Survey& survey) {
   if (!survey.trajectory.empty()) return survey.trajectory;
   std::vector<TrajectoryFile> out;
@@ -255,7 +363,7 @@ std::vector<TrajectoryFile> trajectory_files(const Survey& survey) {
 std::vector<LineWindow> line_windows(const Survey& survey) {
   std::vector<LineWindow> out;
   if (survey.lines.empty()) return out;
-  core::TimeReader clock(survey.line_time.scale, survey.line_time.week, survey.line_time.date, "line_time");
+  core::TimeReader clock = reader_of(survey.line_time, "line_time");
   for (const FlightLine& l : survey.lines) {
     LineWindow w{l.id, 0, 0};
     w.start = clock(l.start.value);
