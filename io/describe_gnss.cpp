@@ -36,10 +36,10 @@ void put_fixes(const core::GnssData& g, Value& out) {
       by[std::string(core::Choices<FixQuality>::names[q])] = static_cast<std::uint64_t>(n);
   out["from"] = core::utc_text(g.time.front());
   out["to"] = core::utc_text(g.time.back());
-  out["seconds"] = g.time.back() - g.time.front();
+  out["seconds"] = std::round((g.time.back() - g.time.front()) * 1e3) / 1e3;
   std::vector<double> steps;
   for (size_t k = 1; k < g.size(); ++k) steps.push_back(g.time[k] - g.time[k - 1]);
-  if (!steps.empty()) out["rate_hz"] = 1.0 / median_of(steps);
+  if (!steps.empty()) out["rate_hz"] = std::round(1e3 / median_of(steps)) / 1e3;
   std::array<double, 3> low, high;
   low.fill(std::numeric_limits<double>::infinity());
   high.fill(-low[0]);

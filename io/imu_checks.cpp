@@ -57,22 +57,25 @@ Seconds seconds_of(const core::ImuData& imu, double step) {
   return out;
 }
 
-/// The unit or kind by which the specific force would be gravity; empty where none does.
+/// The unit or kind by which the specific force would be gravity best; empty where none does within `sure`.
 std::string unit_hint(double ratio, const ImuFile& file, double step) {
   constexpr std::array units{AccelerationUnit::mps2, AccelerationUnit::g, AccelerationUnit::mg};
+  double nearest = sure;
+  std::string best;
   for (const ImuKind kind : {file.kind, file.kind == ImuKind::rates ? ImuKind::increments : ImuKind::rates})
     for (const AccelerationUnit unit : units) {
       const double by_kind = kind == file.kind ? 1.0 : kind == ImuKind::increments ? 1.0 / step : step;
       const double would_be = ratio * by_kind * mps2_per(unit) / mps2_per(file.acceleration_unit);
-      if (std::abs(would_be - 1) > sure || (kind == file.kind && unit == file.acceleration_unit)) continue;
-      std::string hint = "with ";
-      if (kind != file.kind) hint += "kind = \"" + std::string(core::Choices<ImuKind>::names[static_cast<size_t>(kind)]) + "\"";
-      if (kind != file.kind && unit != file.acceleration_unit) hint += " and ";
+      if (std::abs(would_be - 1) >= nearest || (kind == file.kind && unit == file.acceleration_unit)) continue;
+      nearest = std::abs(would_be - 1);
+      best = "with ";
+      if (kind != file.kind) best += "kind = \"" + std::string(core::Choices<ImuKind>::names[static_cast<size_t>(kind)]) + "\"";
+      if (kind != file.kind && unit != file.acceleration_unit) best += " and ";
       if (unit != file.acceleration_unit)
-        hint += "acceleration_unit = \"" + std::string(core::Choices<AccelerationUnit>::names[static_cast<size_t>(unit)]) + "\"";
-      return hint + " it would be " + text("%.2f m/s2", would_be * gravity);
+        best += "acceleration_unit = \"" + std::string(core::Choices<AccelerationUnit>::names[static_cast<size_t>(unit)]) + "\"";
+      best += " it would be " + text("%.2f m/s2", would_be * gravity);
     }
-  return {};
+  return best;
 }
 
 std::string opposite(const std::string& axis) { return axis[0] == '-' ? axis.substr(1) : "-" + axis; }

@@ -188,21 +188,30 @@ core::ImuData read_imu(const Survey& survey, const ImuFile& f, core::Tally& tall
 
 core::ImuData read_imu(const Survey& survey, core::Tally& tally) {
   if (survey.imu.empty()) throw core::usage_error("the survey has no IMU records");
-  std::vector<std::pair<core::ImuData, std::string>> parts;
-  for (const ImuFile& f : survey.imu) parts.emplace_back(read_imu(survey, f, tally), f.file.string());
-  std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first.time.front() < b.first.time.front(); });
-  core::ImuData out = std::move(parts.front().first);
+  struct Part {
+    core::ImuData data;
+    const ImuFile* file;
+  };
+  std::vector<Part> parts;
+  for (const ImuFile& f : survey.imu) parts.push_back({read_imu(survey, f, tally), &f});
+  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.data.time.front() < b.data.time.front(); });
+  core::ImuData out = std::move(parts.front().data);
   for (size_t i = 1; i < parts.size(); ++i) {
-    core::ImuData& part = parts[i].first;
-    const double start = part.time.front() - part.step.front(), end = out.time.back();
-    if (start < end - 0.5 * part.step.front())
-      throw core::Error(parts[i - 1].second + " and " + parts[i].second + " overlap by " +
-                            core::format_number(std::round((end - start) * 1e6) / 1e6) + " s",
-                        parts[i].second, "trim one of them, or check their time scales");
-    if (start > end + 0.5 * part.step.front())
+    core::ImuData& part = parts[i].data;
+    const double end = out.time.back(), step = part.step.front(), start = part.time.front() - step;
+    const std::string before = parts[i - 1].file->file.string(), name = parts[i].file->file.string();
+    if (start < end - 0.5 * step)
+      throw core::Error(before + " and " + name + " overlap by " + core::format_number(std::round((end - start) * 1e6) / 1e6) + " s", name,
+                        "trim one of them, or check their time scales");
+    if (start > end + 0.5 * step) {
       count_gaps({end}, {start}, gap_count, tally);
-    else
+    } else {
       part.step.front() = part.time.front() - end;
+      if (parts[i].file->kind == ImuKind::rates) {
+        part.angle.front() *= part.step.front() / step;
+        part.velocity.front() *= part.step.front() / step;
+      }
+    }
     const auto append = [](auto& to, auto& from) {
       to.insert(to.end(), from.begin(), from.end());
       from = {};

@@ -87,10 +87,13 @@ Cadence settle_times(std::vector<double>& t, const CadenceRule& rule, const std:
   const std::vector<double> d = differences(t);
   if (d.empty() && !rule.step) throw core::Error("one record alone has no step", name, "state the rate of the records");
   const double middle = d.empty() ? *rule.step : median_of(d);
-  double sum = 0, squares = 0;
   std::vector<double> deviation;
+  for (const double v : d) deviation.push_back(std::abs(v - middle));
+  const double common = d.empty() ? 0.0 : std::clamp(2 * quantile(deviation, 0.99), least_strict_gap * middle, (missing - 1) * middle);
+  double sum = 0, squares = 0;
+  deviation.clear();
   for (const double v : d)
-    if (std::abs(v - middle) < 0.5 * middle) {
+    if (std::abs(v - middle) <= common) {
       sum += v;
       deviation.push_back(v);
     }

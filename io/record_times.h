@@ -15,7 +15,7 @@ double median_of(std::vector<double> values);
 
 /// How a series of times advances.
 struct Cadence {
-  double step = 0.0;             ///< mean of the differences within half of their median, s
+  double step = 0.0;             ///< mean of the differences, those of gaps excepted, s
   double jitter = 0.0;           ///< rms of the times about an even advance, s
   double largest_jitter = 0.0;   ///< the largest distance from it, s
   bool smoothed = false;         ///< the times were replaced
