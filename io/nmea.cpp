@@ -134,7 +134,7 @@ class Scanner {
     const Fields& f = s.fields;
     NmeaFix fix;
     if (f.size() < 12) return tally_.count("NMEA positions that are cut off, left out", at.place());
-    fix.quality = static_cast<int>(std::isnan(number(f[6])) ? 0 : number(f[6]));
+    fix.quality = f[6].size() == 1 ? f[6][0] - '0' : 0;
     if (fix.quality < 1) return tally_.count("NMEA positions without a solution, left out", at.place());
     if (fix.quality > 5) return tally_.count("NMEA positions estimated, entered by hand or simulated, left out", at.place());
     const double separation = number(f[11]);

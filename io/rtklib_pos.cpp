@@ -18,7 +18,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Words = std::vector<std::string_view>;
 
-constexpr double most_junk = 0.05;  // of the lines
+constexpr double most_junk = 0.05;  // of the lines, beside one that may be cut off
 constexpr double jst = 9 * 3600.0;  // s ahead of UTC
 constexpr size_t header_lines = 200;
 
@@ -44,10 +44,10 @@ std::optional<Vector3d> base_of(const Words& words) {
 /// Takes in one comment line.
 void take_comment(std::string_view line, PosHeader& h) {
   const std::string_view text = line.substr(std::min(line.find_first_not_of("% \t"), line.size()));
-  if (text.starts_with("(")) {
+  if (text.starts_with("(lat/lon/height=") || text.starts_with("(x/y/z-ecef=") || text.starts_with("(e/n/u-baseline=")) {
     h.above_geoid = has(text, "/geodetic");
     const size_t at = text.find('=');
-    if (at != std::string_view::npos) h.datum = text.substr(at + 1, text.find_first_of("/,)", at) - at - 1);
+    h.datum = text.substr(at + 1, text.find_first_of("/,)", at) - at - 1);
     return;
   }
   if (text.starts_with("ref pos")) {
@@ -230,7 +230,7 @@ core::GnssData read_pos(const std::filesystem::path& path, const GnssFile& f, do
     }
     fixes.add(fix, lines.place());
   }
-  if (static_cast<double>(junk) > most_junk * static_cast<double>(read))
+  if (static_cast<double>(junk) > 1 + most_junk * static_cast<double>(read))
     throw core::Error(std::to_string(junk) + " of " + std::to_string(read) + " lines are no solution of RTKLIB", name,
                       "state the format of the file, or write it again");
   return fixes.finish();

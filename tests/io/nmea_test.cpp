@@ -128,6 +128,20 @@ TEST_F(Nmea, WhatIsLeftOut) {
   EXPECT_NE(refusal(gga("100001.00", 0)).find("had no solution"), std::string::npos);
 }
 
+TEST_F(Nmea, EveryTruncationIsReadOrRefused) {
+  const std::string text =
+      rmc("100000.00", "180320") + gga("100000.00") + sentence("GPGST,100000.00,1.0,,,,0.3,0.4,0.5") + gga("100001.00");
+  for (size_t n = 0; n <= text.size(); ++n) {
+    try {
+      const core::GnssData g = read(text.substr(0, n));
+      EXPECT_GT(n, rmc("100000.00", "180320").size());
+      EXPECT_EQ(core::utc_text(g.time[0]), "2020-03-18T10:00:00.000Z");
+    } catch (const core::Error& e) {
+      EXPECT_LT(n, text.size()) << e.text();
+    }
+  }
+}
+
 TEST_F(Nmea, IsKnownByItsContent) {
   test::write_bytes(folder_ / "a", std::string("\x01\x02", 2) + gga("100000.00"));
   EXPECT_TRUE(looks_like_nmea(folder_ / "a"));

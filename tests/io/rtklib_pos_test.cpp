@@ -139,10 +139,25 @@ TEST_F(PosFiles, JunkIsCountedAndTooMuchIsRefused) {
   EXPECT_EQ(g.size(), 99u);
   EXPECT_EQ(tally_.of("RTKLIB lines that are no solution, left out"), 2u);
   EXPECT_EQ(tally_.of("RTKLIB epochs without a solution, left out"), 1u);
-  EXPECT_NE(refusal("a b c d e f g\n").find("are no solution"), std::string::npos);
+  EXPECT_NE(refusal("a b c d e f g\na b c d e f g\n").find("2 of 2 lines are no solution"), std::string::npos);
   EXPECT_NE(refusal("%  GPST latitude(deg) longitude(deg) height(m) Q ns\n").find("no position"), std::string::npos);
   EXPECT_NE(refusal("2374 243258 400.5 -105.25 1600" + tail + "\n").find("a.pos:1"), std::string::npos);
   EXPECT_NE(refusal(text + "2374 243000 40.5 -105.25 1600" + tail + "\n").find("a.pos:102: time goes back"), std::string::npos);
+}
+
+TEST_F(PosFiles, EveryTruncationIsReadOrRefused) {
+  std::string text =
+      "% (lat/lon/height=WGS84/ellipsoidal,Q=1:fix)\n% ref pos   : 40.5 -105.2 1600.0\n%  GPST latitude(deg) longitude(deg) height(m) ";
+  text += sds + "\n2374 243258 40.5 -105.25 1600" + tail + "\n";
+  const size_t first = text.size();
+  text += "2374 243259 40.5 -105.25 1600" + tail + "\n";
+  for (size_t n = 0; n <= text.size(); ++n) {
+    try {
+      EXPECT_GE(read(text.substr(0, n)).size(), 1u);
+    } catch (const core::Error& e) {
+      EXPECT_LT(n, first) << e.text();
+    }
+  }
 }
 
 TEST(PosReference, ADrive) {
