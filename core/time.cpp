@@ -101,12 +101,42 @@ std::string utc_text(GpsTime t) {
   return out;
 }
 
-TimeReader::TimeReader(TimeScale scale, std::optional<int> week, std::string_view date, std::string where)
-    : scale_(scale), where_(std::move(where)) {
+std::optional<GpsTime> gps_of_gps_date(std::string_view date, double second_of_day) {
+  const std::optional<double> start = unix_of_date(date);
+  if (!start) return {};
+  return *start - gps_epoch_unix + second_of_day;
+}
+
+std::optional<GpsTime> gps_of_civil(std::string_view text) {
+  constexpr size_t shortest = 19;  // 2025-07-08T19:34:18
+  if (text.size() <= shortest || (text[10] != 'T' && text[10] != ' ') || text[13] != ':' || text[16] != ':') return {};
+  const auto number = [](std::string_view digits, double& to) {
+    if (digits.empty() || digits[0] == '-' || digits[0] == '+') return false;
+    const auto [end, bad] = std::from_chars(digits.data(), digits.data() + digits.size(), to, std::chars_format::fixed);
+    return bad == std::errc{} && end == digits.data() + digits.size();
+  };
+  const size_t stop = std::min(text.find_first_not_of("0123456789.", 17), text.size());
+  std::string_view scale = text.substr(stop);
+  while (!scale.empty() && scale.front() == ' ') scale.remove_prefix(1);
+  const bool gps = scale == "GPS", utc = scale == "UTC" || scale == "Z";
+  double hour = 0, minute = 0, second = 0;
+  if (!(gps || utc) || !number(text.substr(11, 2), hour) || !number(text.substr(14, 2), minute) ||
+      !number(text.substr(17, stop - 17), second))
+    return {};
+  if (hour >= 24 || minute >= 60 || second >= (utc ? 61 : 60)) return {};
+  const double of_day = hour * 3600 + minute * 60 + second;
+  if (gps) return gps_of_gps_date(text.substr(0, 10), of_day);
+  const std::optional<double> start = unix_of_date(text.substr(0, 10));
+  if (!start) return {};
+  return from_unix(*start) + of_day;
+}
+
+TimeReader::TimeReader(TimeScale scale, std::optional<int> week, std::string_view date, std::string where, const TimeNumbers& numbers)
+    : scale_(scale), where_(std::move(where)), unit_(numbers.unit), offset_(numbers.offset) {
   switch (scale) {
     case TimeScale::unstated:
       throw usage_error("the time scale is not stated", where_,
-                        "state scale = \"gps\", \"gps_adjusted\", \"gps_week\", \"unix\" or \"utc_day\"");
+                        "state scale = \"gps\", \"gps_adjusted\", \"gps_week\", \"unix\", \"utc_day\" or \"device\"");
     case TimeScale::gps_week:
       if (!week) throw usage_error("seconds of week without their week", where_, "state week = the GPS week of the first record");
       if (*week < 0) throw usage_error("GPS week " + std::to_string(*week) + " is before 1980", where_, "state the week since 1980-01-06");
@@ -122,6 +152,15 @@ TimeReader::TimeReader(TimeScale scale, std::optional<int> week, std::string_vie
       period_ = seconds_per_day;
       break;
     }
+    case TimeScale::device: {
+      const std::optional<GpsTime> zero = gps_of_civil(numbers.origin);
+      if (!zero)
+        throw usage_error(numbers.origin.empty() ? "the instant of the device's zero is not stated"
+                                                 : "\"" + std::string(numbers.origin) + "\" is no instant",
+                          where_, "state origin = \"YYYY-MM-DDThh:mm:ss.sss GPS\" (or UTC)");
+      origin_ = *zero - numbers.origin_at * unit_;
+      break;
+    }
     case TimeScale::gps:
     case TimeScale::gps_adjusted:
     case TimeScale::unix_utc:
@@ -131,6 +170,10 @@ TimeReader::TimeReader(TimeScale scale, std::optional<int> week, std::string_vie
 
 GpsTime TimeReader::operator()(double recorded) {
   if (!std::isfinite(recorded)) throw Error("a time is not a number", where_, "check the time column");
+  return on_scale(recorded * unit_) + offset_;
+}
+
+GpsTime TimeReader::on_scale(double recorded) {
   if (period_ > 0.0) follow(recorded);
   switch (scale_) {
     case TimeScale::gps_adjusted:
@@ -142,6 +185,8 @@ GpsTime TimeReader::operator()(double recorded) {
     case TimeScale::utc_day:
       // Counted on from midnight: an inserted second is 86400.x of its day.
       return from_unix(static_cast<double>(first_period_ + passed_) * seconds_per_day) + recorded;
+    case TimeScale::device:
+      return origin_ + recorded;
     case TimeScale::gps:
     case TimeScale::unstated:
       break;

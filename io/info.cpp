@@ -17,9 +17,12 @@
 #include "core/time.h"
 #include "io/csd.h"
 #include "io/delimited.h"
+#include "io/describe_gnss.h"
 #include "io/describe_las.h"
 #include "io/describe_trajectory.h"
+#include "io/nmea.h"
 #include "io/npy.h"
+#include "io/rtklib_pos.h"
 #include "io/survey.h"
 #include "io/value_file.h"
 
@@ -177,6 +180,8 @@ Value describe_survey(const Path& path) {
   };
   files("laser", s.laser);
   files("trajectory", s.trajectory);
+  files("imu", s.imu);
+  files("gnss", s.gnss);
   files("points", s.points);
   out["lines"] = static_cast<std::uint64_t>(s.lines.size());
   out["scanner"] = core::Codec<core::ScannerModel>::get(s.scanner.model);
@@ -255,6 +260,9 @@ Value describe_content(const Path& path) {
   if (begins("LASF")) return describe_las(path);
   if (begins(std::string_view("CSD\0", 4))) return describe_csd(path);
   if (begins("\x93NUMPY")) return describe_npy(path);
+  if (looks_like_tag(path)) return describe_tag(path);
+  if (looks_like_pos(path)) return describe_pos(path);
+  if (looks_like_nmea(path)) return describe_nmea(path);
   const bool binary = start.find('\0') != std::string::npos;
   if (path.extension() == ".toml" || path.extension() == ".json") return describe_survey(path);
   if (binary && looks_like_sbet(path)) return describe_sbet(path);
@@ -262,7 +270,7 @@ Value describe_content(const Path& path) {
   if (Value raster = describe_raster(path); !raster.is_null()) return raster;
   if (!binary) return describe_text(path);
   throw core::Error("is of no kind that is known here", path.string(),
-                    "LAS, LAZ, SBET, smrmsg, CSD, NumPy, text, survey.toml and rasters are read");
+                    "LAS, LAZ, SBET, smrmsg, CSD, NumPy, RTKLIB solutions, NMEA, text, survey.toml and rasters are read");
 }
 
 std::string scalar(const Value& v) {

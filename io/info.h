@@ -8,7 +8,8 @@
 
 namespace swath::io {
 
-/// What a file holds, found from its content: LAS/LAZ, SBET, smrmsg, Optech CSD, NumPy, delimited text, survey.toml (or .json), GeoTIFF and
+/// What a file holds, found from its content: LAS/LAZ, SBET, smrmsg, Optech CSD, NumPy, solutions and time tags of RTKLIB, NMEA,
+/// delimited text, survey.toml (or .json), GeoTIFF and
 /// what else GDAL reads. A table with `file`, `bytes`, `format`, counts, extents, times, CRS, statistics, and `warnings`, a list of texts:
 /// what looks wrong. Throws core::Error where the file cannot be read or is of no known kind.
 core::Value describe_file(const std::filesystem::path& file);

@@ -30,7 +30,7 @@ class Clock {
     if (!r.week.empty()) {
       if (!(r.week[i] >= 0 && r.week[i] <= 10000))
         throw core::Error("the GPS week is " + core::format_number(r.week[i]) + ", which is none from 0 to 10000", place(), damaged);
-      return core::from_week(static_cast<int>(r.week[i]), r.time[i]);
+      return reader_.in_week(static_cast<int>(r.week[i]), r.time[i]);
     }
     try {
       return reader_(r.time[i]);
@@ -45,10 +45,7 @@ class Clock {
 };
 
 core::TimeReader clock_of(const Survey& survey, const LaserFile& f) {
-  const TimeTags tags = time_of(survey, f);
-  // With a column of weeks the reader is never asked; it still must be made.
-  const auto week = f.columns.week.empty() ? tags.week : std::optional<int>(0);
-  return {tags.scale, week, tags.date, resolve(survey, f.file).string()};
+  return reader_of(time_of(survey, f), resolve(survey, f.file).string(), !f.columns.week.empty());
 }
 
 /// Decides the flight line of a record (see scan()).

@@ -53,6 +53,7 @@ struct ImuFile {
   double gyro_factor = 1.0, accelerometer_factor = 1.0;
   ImuSample sample = ImuSample::mean;
   ImuStamp stamp = ImuStamp::end;
+  bool even_times = true;
   std::optional<core::Hertz> rate;
   std::array<std::string, 3> axes{"x", "y", "z"};
   core::Radians roll, pitch, heading;
@@ -72,6 +73,9 @@ void describe(ImuFile& f, V& v) {
   v.option("accelerometer_factor", f.accelerometer_factor, core::above(0), "Units per recorded number of the accelerometers.");
   v.option("sample", f.sample, "Rates: the mean since the record before, or the value at the instant.");
   v.option("stamp", f.stamp, "Which instant of the record's interval its time names.");
+  v.option("even_times", f.even_times,
+           "Times that jitter by over 1 % of the step (stamps rounded, or given on reception) are smoothed over 101 records; false: the "
+           "records were taken when they say.");
   v.option("rate", f.rate, core::within(1, 1e4), "Records per second; without it from the median step.");
   v.option("axes", f.axes,
            "Axes of the record that point forward, right and down, each x, y, z or -x, -y, -z; before the mounting rotation.");
@@ -139,15 +143,17 @@ template <class V>
 void describe(GnssFile& f, V& v) {
   v.option("file", f.file, "File, relative to survey.toml.");
   v.option("format", f.format, "Format; automatic goes by the name's ending (.pos: RTKLIB; .nmea .log: NMEA; .csv .txt: text).");
-  v.table("time", f.time, "Time scale (text); RTKLIB files and NMEA state their own, NMEA may need `date`.");
+  v.table("time", f.time, "Time scale (text); RTKLIB files and NMEA state their own, NMEA may need `date`; `offset` acts on all.");
   v.option("angle_unit", f.angle_unit, "Unit of latitude and longitude in a text file.");
   v.option("geoid_height", f.geoid_height, "RTKLIB: heights were written above the geoid; refused, since swath does not know that geoid.");
   v.option("base", f.base, "RTKLIB files of baselines (e/n/u): ECEF position of the base.");
   v.option("delimiter", f.delimiter, "Delimiter of a text file; empty: found in its first line.");
   v.table("columns", f.columns, "Columns of a text file.");
   v.option("sigma_horizontal", f.sigma_horizontal, core::above(0),
-           "Sigma of north and of east, where the file states none (NMEA without GST: of an RTK-fixed solution; others by its quality).");
-  v.option("sigma_vertical", f.sigma_vertical, core::above(0), "Sigma of height, where the file states none.");
+           "Sigma of north and of east, where the file states none: of fixed solutions and of those of unknown kind; others have at least "
+           "0.1 m (PPP), 0.3 m (float), 1 m (differential, SBAS), 3 m (single).");
+  v.option("sigma_vertical", f.sigma_vertical, core::above(0),
+           "Sigma of height, where the file states none; others than fixed solutions have at least twice the values of sigma_horizontal.");
   v.option("sigma_velocity", f.sigma_velocity, core::above(0), "Sigma of each velocity component, where the file states none.");
 }
 

@@ -97,7 +97,7 @@ void add_accuracy(core::TrajectoryData& t, const std::filesystem::path& path, co
   const SmrmsgFile file(path);
   std::vector<SmrmsgRecord> rows;
   file.read(0, static_cast<size_t>(file.records()), rows);
-  core::TimeReader clock(tags.scale, tags.week, tags.date, path.string());
+  core::TimeReader clock = reader_of(tags, path.string());
   for (size_t i = 0; i < rows.size(); ++i) {
     SmrmsgRecord& r = rows[i];
     const std::string where = path.string() + ": record " + std::to_string(i);
@@ -186,7 +186,7 @@ template class RecordFile<SmrmsgRecord>;
 core::TrajectoryData read_sbet(const std::filesystem::path& path, const TimeTags& tags, bool wander, VelocityAxes axes,
                                const std::optional<std::filesystem::path>& accuracy, core::Tally& tally) {
   const SbetFile file(path);
-  core::TimeReader clock(tags.scale, tags.week, tags.date, path.string());
+  core::TimeReader clock = reader_of(tags, path.string());
   core::TrajectoryData out;
   std::vector<VelocityAxes> candidates;
   if (axes == VelocityAxes::automatic) candidates = {VelocityAxes::ned, VelocityAxes::nwu};

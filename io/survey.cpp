@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <map>
 
-#include "core/crs.h"
 #include "core/option_visitors.h"
 #include "io/csd.h"
+#include "io/survey_checks.h"
 #include "io/value_file.h"
 
 namespace swath::io {
@@ -15,199 +14,6 @@ namespace {
 
 using core::Fault;
 using core::Value;
-
-/// The place of the deepest table or value on the path "laser[1].time.scale" that the tree has.
-core::Location place_of(const Value& tree, const std::string& key) {
-  const Value* at = &tree;
-  size_t i = 0;
-  while (i < key.size()) {
-    const size_t stop = std::min(key.find_first_of(".[", i), key.size());
-    const Value* next = at->find(key.substr(i, stop - i));
-    if (!next) break;
-    at = next;
-    i = stop;
-    if (i < key.size() && key[i] == '[') {
-      const size_t number = std::stoul(key.substr(i + 1));
-      if (!at->is_array() || number > at->items().size()) break;
-      at = &at->items()[number - 1];
-      i = key.find(']', i) + 1;
-    }
-    if (i < key.size() && key[i] == '.') ++i;
-  }
-  return at->where;
-}
-
-/// The conditions between a survey's options and with the files on disk. A key that already has a fault gets no second one.
-class Checks {
- public:
-  Checks(const Survey& survey, const Value& tree, std::vector<Fault>& faults) : survey_(survey), tree_(tree), faults_(faults) {}
-
-  void all() {
-    project();
-    for (size_t i = 0; i < survey_.laser.size(); ++i) laser(survey_.laser[i], numbered("laser", i));
-    for (size_t i = 0; i < survey_.trajectory.size(); ++i) trajectory(survey_.trajectory[i], numbered("trajectory", i));
-    for (size_t i = 0; i < survey_.points.size(); ++i) exists(survey_.points[i].file, numbered("points", i) + ".file");
-    lines();
-    const TruthFiles& t = survey_.truth;
-    for (const auto& [name, file] :
-         {std::pair{"trajectory", &t.trajectory}, {"returns", &t.returns}, {"dtm", &t.dtm}, {"calibration", &t.calibration}})
-      if (*file) exists(**file, std::string("truth.") + name);
-  }
-
- private:
-  static std::string numbered(const char* name, size_t i) { return std::string(name) + "[" + std::to_string(i + 1) + "]"; }
-
-  void fault(const std::string& key, std::string what, std::string hint = {}) {
-    for (const Fault& f : faults_)
-      if (f.key == key) return;
-    faults_.push_back({place_of(tree_, key), key, std::move(what), std::move(hint)});
-  }
-
-  void exists(const std::filesystem::path& file, const std::string& key) {
-    if (file.empty()) return fault(key, "no file is named");
-    const auto path = resolve(survey_, file);
-    std::error_code ec;
-    if (!std::filesystem::exists(path, ec))
-      fault(key, "no such file: " + path.string(), "names are relative to the folder of the survey file");
-    else if (std::filesystem::is_directory(path, ec))
-      fault(key, path.string() + " is a folder, not a file");
-  }
-
-  void project() {
-    if (survey_.crs.empty()) {
-      if (survey_.points.empty()) fault("crs", "the CRS of the products is missing", "state it, for example crs = \"EPSG:32632\"");
-    } else {
-      try {
-        core::Crs{survey_.crs};
-      } catch (const core::Error& e) {
-        fault("crs", e.what(), e.hint());
-      }
-    }
-    if (survey_.calibration_file) exists(*survey_.calibration_file, "calibration_file");
-    const bool raw = !survey_.laser.empty();
-    if (raw && !survey_.points.empty()) fault("points", "a survey has either raw [[laser]] records or georeferenced [[points]], not both");
-    if (!raw && survey_.points.empty()) fault("laser", "no records: neither [[laser]] nor [[points]] is there");
-    const auto is_csd = [](const LaserFile& f) { return format_of(f) == LaserFormat::csd; };
-    if (raw && survey_.trajectory.empty() && !std::all_of(survey_.laser.begin(), survey_.laser.end(), is_csd))
-      fault("trajectory", "raw [[laser]] records need a [[trajectory]]");
-    const Value* calibration = tree_.find("calibration");
-    const bool boresight = calibration && (calibration->find("roll") || calibration->find("pitch") || calibration->find("heading"));
-    if (std::any_of(survey_.laser.begin(), survey_.laser.end(), is_csd) && !survey_.calibration_file && !boresight)
-      fault("calibration", "the boresight of CSD records is not stated",
-            "state calibration_file = the .csd file to use its header's values, or roll, pitch and heading in [calibration]");
-  }
-
-  /// `in_file`: the format states its own scale, which the survey may leave unstated.
-  void time(const TimeTags& t, const std::string& key, bool week_column, bool in_file) {
-    using core::TimeScale;
-    if (t.scale == TimeScale::unstated && !in_file)
-      fault(key + ".scale", "the time scale is not stated", "one of gps, gps_adjusted, gps_week, unix, utc_day");
-    if (t.scale == TimeScale::gps_week && !t.week && !week_column)
-      fault(key + ".week", "scale gps_week needs the GPS week of the first record");
-    if (t.week && t.scale != TimeScale::gps_week && !in_file) fault(key + ".week", "a week has a meaning with scale gps_week only");
-    if (week_column && t.week) fault(key + ".week", "the weeks come from a column; a stated week would have no effect");
-    if (week_column && t.scale != TimeScale::gps_week && t.scale != TimeScale::unstated)
-      fault(key + ".scale", "a column of weeks goes with scale gps_week only");
-    if (t.scale == TimeScale::utc_day && t.date.empty()) fault(key + ".date", "scale utc_day needs the UTC date of the first record");
-    if (!t.date.empty() && t.scale != TimeScale::utc_day) fault(key + ".date", "a date has a meaning with scale utc_day only");
-    if (t.scale == TimeScale::utc_day && !t.date.empty() && !core::unix_of_date(t.date))
-      fault(key + ".date", "'" + t.date + "' is no date", "write it as YYYY-MM-DD");
-  }
-
-  void laser(const LaserFile& f, const std::string& key) {
-    exists(f.file, key + ".file");
-    const LaserFormat format = format_of(f);
-    const LaserColumns& c = f.columns;
-    const bool own_scale = format == LaserFormat::las || format == LaserFormat::csd;
-    if (format == LaserFormat::automatic)
-      return fault(key + ".format", "the ending of '" + f.file.string() + "' does not tell the format", "one of text, npy, las, csd");
-    time(f.time, key + ".time", !c.week.empty(), own_scale);
-    const auto model = survey_.scanner.model;
-    const bool xyz = format == LaserFormat::las || !c.x.empty() || !c.y.empty() || !c.z.empty();
-    if (xyz && (model == core::ScannerModel::conical || model == core::ScannerModel::palmer))
-      fault("scanner.model", "records with x, y, z are beams already", "use model \"beam\" (or \"mirror\")");
-    if (!xyz && model == core::ScannerModel::beam)
-      fault("scanner.model", "model \"beam\" needs records with x, y, z in the scanner frame (" + key + ")");
-    if (xyz && f.angle_to_port) fault(key + ".angle_to_port", "has no effect on records with x, y, z");
-    if (own_scale) {
-      if (f.angle_unit != AngleUnit::unstated) fault(key + ".angle_unit", "has no effect: the format defines its angles");
-      if (f.range_unit.value != 1.0 && format == LaserFormat::csd) fault(key + ".range_unit", "has no effect: CSD ranges are metres");
-      if (tree_at(key + ".columns")) fault(key + ".columns", "has no effect: the format defines its fields");
-      return;
-    }
-    if (format != LaserFormat::text && !f.delimiter.empty()) fault(key + ".delimiter", "has no effect: the file is no text");
-    if (c.time.empty()) fault(key + ".columns.time", "the column of times is not named");
-    if (f.line && !c.line.empty()) fault(key + ".line", "lines come from a column; a stated line would have no effect");
-    if (xyz) {
-      if (c.x.empty() || c.y.empty() || c.z.empty()) fault(key + ".columns", "x, y and z go together; one of them is not named");
-      if (!c.range.empty() || !c.scan_angle.empty()) fault(key + ".columns", "either x, y, z or range and scan_angle, not both");
-      if (f.angle_unit != AngleUnit::unstated) fault(key + ".angle_unit", "has no effect on records with x, y, z");
-      return;
-    }
-    if (c.range.empty()) fault(key + ".columns.range", "the column of ranges is not named (nor x, y, z)");
-    if (c.scan_angle.empty()) {
-      if (model != core::ScannerModel::profile)
-        fault(key + ".columns.scan_angle", "the column of scan angles is not named", "only scanner.model \"profile\" goes without");
-    } else if (f.angle_unit == AngleUnit::unstated) {
-      fault(key + ".angle_unit", "the unit of the recorded angles is not stated", "one of deg, rad, gon");
-    }
-  }
-
-  void trajectory(const TrajectoryFile& f, const std::string& key) {
-    exists(f.file, key + ".file");
-    if (f.accuracy) exists(*f.accuracy, key + ".accuracy");
-    const TrajectoryFormat format = format_of(f);
-    const TrajectoryColumns& c = f.columns;
-    if (format == TrajectoryFormat::automatic)
-      return fault(key + ".format", "the ending of '" + f.file.string() + "' does not tell the format", "one of sbet, text, csd");
-    time(f.time, key + ".time", !c.week.empty(), format == TrajectoryFormat::csd);
-    if (f.accuracy && format != TrajectoryFormat::sbet) fault(key + ".accuracy", "smrmsg files go with SBET files only");
-    if (format != TrajectoryFormat::text) {
-      if (tree_at(key + ".columns")) fault(key + ".columns", "has no effect: the format defines its fields");
-      if (f.angle_unit != AngleUnit::unstated) fault(key + ".angle_unit", "has no effect: the format's angles are radians");
-      if (!f.crs.empty()) fault(key + ".crs", "has no effect: the format's positions are geodetic WGS84");
-      return;
-    }
-    for (const auto& [name, column] : {std::pair{"time", &c.time},
-                                       {"latitude", &c.latitude},
-                                       {"longitude", &c.longitude},
-                                       {"height", &c.height},
-                                       {"roll", &c.roll},
-                                       {"pitch", &c.pitch},
-                                       {"heading", &c.heading}})
-      if (column->empty()) fault(key + ".columns." + name, "the column is not named");
-    const int velocities = !c.v_north.empty() + !c.v_east.empty() + !c.v_down.empty();
-    if (velocities == 1 || velocities == 2) fault(key + ".columns", "v_north, v_east and v_down go together; one of them is not named");
-    if (f.angle_unit == AngleUnit::unstated) fault(key + ".angle_unit", "the unit of angles is not stated", "one of deg, rad, gon");
-  }
-
-  void lines() {
-    if (survey_.lines.empty()) return;
-    time(survey_.line_time, "line_time", false, false);
-    std::map<int, size_t> ids;
-    std::vector<size_t> order(survey_.lines.size());
-    for (size_t i = 0; i < order.size(); ++i) {
-      order[i] = i;
-      const auto [first, fresh] = ids.try_emplace(survey_.lines[i].id, i);
-      if (!fresh)
-        fault(numbered("line", i) + ".id",
-              "id " + std::to_string(survey_.lines[i].id) + " is taken by " + numbered("line", first->second) + " already");
-    }
-    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return survey_.lines[a].start < survey_.lines[b].start; });
-    for (size_t k = 1; k < order.size(); ++k)
-      if (survey_.lines[order[k]].start < survey_.lines[order[k - 1]].end)
-        fault(numbered("line", order[k]) + ".start", "the line starts before " + numbered("line", order[k - 1]) + " ends");
-  }
-
-  bool tree_at(const std::string& key) const {
-    const core::Location there = place_of(tree_, key), parent = place_of(tree_, key.substr(0, key.rfind('.')));
-    return there.line != parent.line || there.column != parent.column;
-  }
-
-  const Survey& survey_;
-  const Value& tree_;
-  std::vector<Fault>& faults_;
-};
 
 std::string ending_of(const std::filesystem::path& file) {
   std::string e = file.extension().string();
@@ -238,6 +44,21 @@ TrajectoryFormat format_of(const TrajectoryFile& f) {
   return e == ".csd" ? TrajectoryFormat::csd : TrajectoryFormat::automatic;
 }
 
+RecordFormat format_of(const ImuFile& f) {
+  if (f.format != RecordFormat::automatic) return f.format;
+  const std::string e = ending_of(f.file);
+  if (e == ".csv" || e == ".txt" || e == ".asc") return RecordFormat::text;
+  return e == ".npy" ? RecordFormat::npy : RecordFormat::automatic;
+}
+
+GnssFormat format_of(const GnssFile& f) {
+  if (f.format != GnssFormat::automatic) return f.format;
+  const std::string e = ending_of(f.file);
+  if (e == ".csv" || e == ".txt" || e == ".asc") return GnssFormat::text;
+  if (e == ".pos") return GnssFormat::pos;
+  return e == ".nmea" || e == ".log" ? GnssFormat::nmea : GnssFormat::automatic;
+}
+
 std::vector<TrajectoryFile> trajectory_files(const Survey& survey) {
   if (!survey.trajectory.empty()) return survey.trajectory;
   std::vector<TrajectoryFile> out;
@@ -255,7 +76,7 @@ std::vector<TrajectoryFile> trajectory_files(const Survey& survey) {
 std::vector<LineWindow> line_windows(const Survey& survey) {
   std::vector<LineWindow> out;
   if (survey.lines.empty()) return out;
-  core::TimeReader clock(survey.line_time.scale, survey.line_time.week, survey.line_time.date, "line_time");
+  core::TimeReader clock = reader_of(survey.line_time, "line_time");
   for (const FlightLine& l : survey.lines) {
     LineWindow w{l.id, 0, 0};
     w.start = clock(l.start.value);
@@ -299,7 +120,7 @@ Survey read_survey(const core::Value& tree, const std::filesystem::path& folder)
   survey.folder = folder;
   std::vector<Fault> faults;
   core::read_options(core::described(survey), tree, "", faults);
-  Checks(survey, tree, faults).all();
+  check_survey(survey, tree, faults);
   std::stable_sort(faults.begin(), faults.end(), [](const Fault& a, const Fault& b) {
     return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
   });

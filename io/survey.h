@@ -252,6 +252,8 @@ core::Value calibration_tree(const core::Calibration& calibration, const core::S
 /// The format a file is read in: the one stated, or by the name's ending; `automatic` where the ending says nothing.
 LaserFormat format_of(const LaserFile& file);
 TrajectoryFormat format_of(const TrajectoryFile& file);
+RecordFormat format_of(const ImuFile& file);
+GnssFormat format_of(const GnssFile& file);
 
 /// The trajectory files of a survey: those stated, or the CSD laser files where none is (their pulses carry their own poses).
 std::vector<TrajectoryFile> trajectory_files(const Survey& survey);

@@ -3,6 +3,12 @@
 
 namespace swath::io {
 
+core::TimeReader reader_of(const TimeTags& t, std::string where, bool week_column) {
+  const core::TimeNumbers numbers{t.unit.value, t.offset.value, t.origin, t.origin_at};
+  if (week_column) return {core::TimeScale::gps_week, 0, "", std::move(where), numbers};
+  return {t.scale, t.week, t.date, std::move(where), numbers};
+}
+
 double radians_per(AngleUnit unit) {
   switch (unit) {
     case AngleUnit::unstated:

@@ -91,8 +91,7 @@ TrajectoryData read_text(const std::filesystem::path& path, const TrajectoryFile
     floats.emplace_back(to, factor);
   }
   const bool weeks = !c.week.empty();
-  std::optional<core::TimeReader> clock;
-  if (!weeks) clock.emplace(f.time.scale, f.time.week, f.time.date, name);
+  core::TimeReader clock = reader_of(f.time, name, weeks);
   DelimitedReader reader(path, layout, at);
   std::vector<double> row(at.size());
   while (reader.next(row.data())) {
@@ -102,7 +101,7 @@ TrajectoryData read_text(const std::filesystem::path& path, const TrajectoryFile
                           "the file is damaged: export the trajectory again");
     for (size_t i = 0; i < doubles.size(); ++i) doubles[i].first->push_back(row[i] * doubles[i].second);
     for (size_t i = 0; i < floats.size(); ++i) floats[i].first->push_back(static_cast<float>(row[doubles.size() + i] * floats[i].second));
-    out.time.back() = weeks ? core::from_week(static_cast<int>(week.back()), out.time.back()) : (*clock)(out.time.back());
+    out.time.back() = weeks ? clock.in_week(static_cast<int>(week.back()), out.time.back()) : clock(out.time.back());
   }
   if (f.crs.empty()) {
     for (auto* angles : {&out.latitude, &out.longitude})
@@ -121,7 +120,7 @@ TrajectoryData read_csd(const std::filesystem::path& path, const TrajectoryFile&
     tags.week = tags.week ? tags.week : file.header().gps_week;
   }
   TrajectoryData out = read_csd_trajectory(file, f.spacing, tally);
-  core::TimeReader clock(tags.scale, tags.week, tags.date, path.string());
+  core::TimeReader clock = reader_of(tags, path.string());
   for (double& t : out.time) t = clock(t);
   return out;
 }

@@ -165,6 +165,7 @@ double time_in(core::TimeScale scale, core::GpsTime t) {
     case core::TimeScale::utc_day:
       return std::fmod(core::to_unix(t), 86400.0);
     case core::TimeScale::gps:
+    case core::TimeScale::device:
     case core::TimeScale::unstated:
       break;
   }

@@ -230,7 +230,8 @@ void describe(OutputOptions& o, V& v) {
            "Seconds of week of the start (flights along a trajectory: its first record).");
   v.option("truth_returns", o.truth_returns, "Writes truth/returns.npy (105 bytes a return).");
   v.option("dtm_cell", o.dtm_cell, core::within(0.1, 100), "Cell of truth/dtm.tif.");
-  v.check(o.time != core::TimeScale::unstated, "the time scale must be stated");
+  v.check(o.time != core::TimeScale::unstated && o.time != core::TimeScale::device,
+          "the time scale must be stated, and none of a device's own");
   v.check(!o.formats.empty(), "at least one format; `laser = false` for none");
 }
 

@@ -182,5 +182,37 @@ TEST(Time, UtcText) {
   EXPECT_EQ(utc_text(std::nan("")), "no time");
 }
 
+TEST(Time, CivilInstants) {
+  EXPECT_EQ(gps_of_civil("1980-01-06T00:00:00 GPS"), 0.0);
+  EXPECT_EQ(gps_of_civil("2025-07-08T19:34:18.5 GPS"), from_week(2374, 243258.5));
+  EXPECT_EQ(gps_of_civil("2025-07-08 19:34:00.5 UTC"), from_week(2374, 243258.5));
+  EXPECT_EQ(gps_of_civil("2025-07-08T19:34:00.5Z"), from_week(2374, 243258.5));
+  EXPECT_EQ(*gps_of_civil("2016-12-31T23:59:60.5Z") + 0.5, *gps_of_civil("2017-01-01T00:00:00Z"));
+  EXPECT_EQ(gps_of_gps_date("2025-07-08", 70458.5), from_week(2374, 243258.5));
+  for (const char* wrong : {"", "2025-07-08", "2025-07-08T19:34:18.5", "2025-07-08T19:34:18.5 TAI", "2025-13-08T19:34:18 GPS",
+                            "2025-07-08T24:34:18 GPS", "2025-07-08T19:60:18 GPS", "2025-07-08T19:34:60 GPS", "2025-07-08T-9:34:18 GPS",
+                            "2025-07-08T19:34:1.8.5 GPS", "2025/07/08T19:34:18 GPS", "2025-07-08T19:34: GPS"})
+    EXPECT_FALSE(gps_of_civil(wrong)) << wrong;
+  // utc_text() and back.
+  EXPECT_EQ(gps_of_civil(utc_text(1.4e9)), 1.4e9);
+}
+
+TEST(Time, UnitOffsetAndADevicesZero) {
+  TimeNumbers ms{0.001, -0.125, "2025-07-08T19:34:21.985 GPS", 261906};
+  TimeReader device(TimeScale::device, {}, "", "a.csv", ms);
+  EXPECT_NEAR(device(261906), from_week(2374, 243261.985 - 0.125), resolution);
+  EXPECT_NEAR(device(262906), from_week(2374, 243262.985 - 0.125), resolution);
+  ms.origin_at = 0;
+  EXPECT_NEAR(TimeReader(TimeScale::device, {}, "", "a.csv", ms)(1000), from_week(2374, 243262.985 - 0.125), resolution);
+  // Unit and offset act on every scale, and the roll-over is that of the scaled numbers.
+  TimeReader week(TimeScale::gps_week, 2317, "", "a.csv", {0.001, 2.0, "", 0});
+  EXPECT_EQ(week(604799000), from_week(2317, 604801));
+  EXPECT_EQ(week(1000), from_week(2318, 3));
+  EXPECT_EQ(TimeReader(TimeScale::unix_utc, {}, "", "a.csv", {1, 0.5, "", 0})(1.7e9), from_unix(1.7e9) + 0.5);
+  EXPECT_EQ(week.in_week(2000, 5000), from_week(2000, 7));
+  EXPECT_NE(refusal([] { TimeReader(TimeScale::device, {}, "", "a.csv"); }).find("not stated"), std::string::npos);
+  EXPECT_NE(refusal([] { TimeReader(TimeScale::device, {}, "", "a.csv", {1, 0, "yesterday", 0}); }).find("no instant"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace swath::core

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rows of chosen columns of a text or NumPy file.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/time.h"
+#include "io/navigation.h"
+
+namespace swath::io {
+
+/// Streams rows of numbers.
+class TableRows {
+ public:
+  virtual ~TableRows() = default;
+  /// The next row's values in the order of the columns; false at the end. An empty field of a text is NaN.
+  virtual bool next(double* values) = 0;
+  /// "file:line" or "file: record N" (from 0) of the row that next() gave last.
+  virtual std::string place() const = 0;
+};
+
+/// Opens a table. `columns`: names, or numbers from 1. Throws Error: a column that is not there, a format that is not known.
+std::unique_ptr<TableRows> open_table(const std::filesystem::path& file, RecordFormat format, const std::string& delimiter,
+                                      const std::vector<std::string>& columns);
+
+/// The instant of a row; `week`: the value of its week column, or null. Throws Error with the row's place.
+double time_of_row(core::TimeReader& clock, double recorded, const double* week, const TableRows& rows);
+
+}  // namespace swath::io
