@@ -7,6 +7,7 @@ namespace swath::stages {
 
 const std::vector<Entry>& registry() {
   static const std::vector<Entry> list = {
+      {"gnss.rtklib", make_rtklib},
       {"readers.trajectory", make_trajectory_reader},
       {"trajectory.kinematic", make_kinematic},
       {"readers.laser", make_laser_reader},
