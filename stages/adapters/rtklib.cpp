@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Over 250 lines: the choice of bases, the run on each and the judgement of the outcome share one table of bases.
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "core/error.h"
 #include "core/time.h"
-#include "io/antex.h"
-#include "io/output_file.h"
 #include "io/pos_writer.h"
 #include "io/process.h"
 #include "io/rinex_header.h"
 #include "io/rtklib_pos.h"
 #include "io/rtklib_run.h"
-#include "io/value_file.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/rtklib_bases.h"
 #include "trajectory/gnss_combine.h"
 
 namespace swath::stages {
@@ -59,61 +55,10 @@ void describe(RtklibStageOptions& o, V& v) {
   v.check(number_of_bases(o.bases) > 0, "bases is \"nearest\", \"all\" or a number from \"1\"");
 }
 
-std::string kilometres(double metres) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f km", metres / 1000);
-  return text;
-}
-
 std::string fixed_text(double value, int digits) {
   char text[48];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
   return text;
-}
-
-/// Observations of one receiver in one or several files.
-struct Receiver {
-  std::vector<fs::path> files;
-  io::RinexHeader header;  ///< of the first file; position and antenna of the first that states them
-  double first = std::numeric_limits<double>::infinity(), last = -std::numeric_limits<double>::infinity();
-  double interval = 0;
-  std::uint64_t epochs = 0;
-};
-
-Receiver scan(const io::Survey& survey, const std::vector<fs::path>& files) {
-  Receiver r;
-  for (const fs::path& name : files) {
-    r.files.push_back(io::resolve(survey, name));
-    const io::RinexObservations o = io::scan_rinex(r.files.back());
-    if (r.epochs == 0) r.header = o.header;
-    if (!r.header.position) r.header.position = o.header.position;
-    if (r.header.antenna_type.empty()) r.header.antenna_type = o.header.antenna_type;
-    r.first = std::min(r.first, o.first);
-    r.last = std::max(r.last, o.last);
-    r.interval = std::max(r.interval, o.interval);
-    r.epochs += o.epochs;
-  }
-  return r;
-}
-
-std::string span_text(const Receiver& r) { return core::utc_text(r.first) + " to " + core::utc_text(r.last); }
-
-struct Base {
-  std::string name, file_name;
-  Receiver receiver;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  io::RtklibAntenna antenna;
-  double distance = 0;  ///< from the rover's approximate position, m
-  double overlap = 0;   ///< s of the rover's span
-};
-
-/// A name that is a file's name everywhere, unlike those in `used`.
-std::string as_file_name(std::string name, std::set<std::string>& used) {
-  for (char& c : name)
-    if (!(std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_')) c = '_';
-  std::string out = name;
-  for (int i = 2; !used.insert(out).second; ++i) out = name + "_" + std::to_string(i);
-  return out;
 }
 
 void tell(const trajectory::GnssAccount& a, core::Value& v) {
@@ -180,12 +125,12 @@ class Rtklib : public OptionStage<RtklibStageOptions> {
     job.program = io::find_program(options.program);
     job.products = products;
     job.options = options;
-    const Receiver rover = scan(context.survey, context.survey.rinex.rover);
+    const Receiver rover = scan_receiver(context.survey, context.survey.rinex.rover);
     job.rover = rover.files;
     prepare(context, rover, job, tally);
     std::string place_from = "RINEX header";
     const Eigen::Vector3d place = place_of(rover, job, place_from);
-    std::vector<Base> bases = bases_of(context, rover, place, tally);
+    std::vector<Base> bases = read_bases(context.survey, rover, place, tally);
 
     core::Value& about = findings["rover"] = core::Value::object();
     about["epochs"] = rover.epochs;
@@ -194,7 +139,7 @@ class Rtklib : public OptionStage<RtklibStageOptions> {
     about["last"] = core::utc_text(rover.last);
     about["approximate_position_from"] = place_from;
     core::Value& list = findings["bases"] = core::Value::array();
-    const std::vector<Base> chosen = choose(bases, rover, list);
+    const std::vector<Base> chosen = choose_bases(bases, rover, options.max_distance.value, number_of_bases(options.bases), list);
 
     std::vector<core::GnssData> solutions;
     std::vector<std::string> names;
@@ -203,7 +148,7 @@ class Rtklib : public OptionStage<RtklibStageOptions> {
       core::Value one = core::Value::object();
       one["name"] = b.name;
       one["distance_m"] = b.distance;
-      one["overlap_percent"] = 100 * share_of_span(b.overlap, rover);
+      one["overlap_percent"] = 100 * b.share_of(rover);
       check_position(b, job, one, tally);
       try {
         core::GnssData fixes = solve(b, job, tally);
@@ -224,10 +169,6 @@ class Rtklib : public OptionStage<RtklibStageOptions> {
   }
 
  private:
-  static double share_of_span(double seconds, const Receiver& rover) {
-    return rover.last > rover.first ? seconds / (rover.last - rover.first) : 1.0;
-  }
-
   /// What the job of every base shares: navigation, orbits, the rover's antenna.
   void prepare(const Context& context, const Receiver& rover, io::RtklibJob& job, core::Tally& tally) const {
     const io::Rinex& r = context.survey.rinex;
@@ -251,18 +192,10 @@ class Rtklib : public OptionStage<RtklibStageOptions> {
       throw core::usage_error("gnss.rtklib: dynamics with an epoch every " + core::format_number(rover.interval) + " s",
                               rover.files.front().string(), "RTKLIB's prediction needs an epoch per 2 s or more: dynamics = false");
     if (r.antenna_file) job.antenna_file = io::resolve(context.survey, *r.antenna_file);
-    job.setup.rover_antenna.type = antenna_type(job, r.antenna_type, rover, "the rover");
+    job.setup.rover_antenna.type = antenna_type(job.antenna_file, r.antenna_type, rover, "the rover");
     for (size_t k = 0; k < 3; ++k) job.setup.rover_antenna.offset[static_cast<int>(k)] = r.antenna_offset[k].value;
     if (r.antenna_file && job.setup.rover_antenna.type.empty())
       tally.count("antenna without a type: its phase centre is not applied", "the rover");
-  }
-
-  static std::string antenna_type(const io::RtklibJob& job, const std::string& stated, const Receiver& receiver, const std::string& whose) {
-    if (stated.empty()) return {};
-    const std::string type = stated == "*" ? receiver.header.antenna_type : stated;
-    if (type.empty())
-      throw core::Error("the RINEX header names no antenna type for " + whose, receiver.files.front().string(), "state antenna_type");
-    return io::find_antenna(io::antex_types(*job.antenna_file), type, *job.antenna_file);
   }
 
   /// A receiver's own solution by code, an epoch per half minute. The files of it do not stay.
@@ -303,81 +236,6 @@ class Rtklib : public OptionStage<RtklibStageOptions> {
       throw core::Error("the RINEX header has no approximate position, and no fix was found from code: " + std::string(e.what()),
                         rover.files.front().string(), e.hint());
     }
-  }
-
-  std::vector<Base> bases_of(const Context& context, const Receiver& rover, const Eigen::Vector3d& place, core::Tally& tally) const {
-    std::vector<Base> out;
-    std::set<std::string> used = {"combined"};
-    const io::Rinex& r = context.survey.rinex;
-    io::RtklibJob job;
-    if (r.antenna_file) job.antenna_file = io::resolve(context.survey, *r.antenna_file);
-    for (const io::BaseStation& stated : r.bases) {
-      Base b;
-      b.receiver = scan(context.survey, stated.observations);
-      const io::RinexHeader& header = b.receiver.header;
-      b.name = !stated.name.empty() ? stated.name : !header.marker.empty() ? header.marker : "base " + std::to_string(out.size() + 1);
-      b.file_name = as_file_name(b.name, used);
-      if (stated.position) {
-        for (size_t k = 0; k < 3; ++k) b.position[static_cast<int>(k)] = (*stated.position)[k].value;
-      } else if (header.position) {
-        b.position = *header.position;
-        tally.count("base at the approximate position of its RINEX header: all fixes are wrong by what it is wrong", b.name);
-      } else {
-        throw core::Error("the base '" + b.name + "' has no position", b.receiver.files.front().string(),
-                          "state its marker's position in [[rinex.base]]: position = [\"x m\", \"y m\", \"z m\"] (ECEF)");
-      }
-      if (stated.antenna_offset)
-        for (size_t k = 0; k < 3; ++k) b.antenna.offset[static_cast<int>(k)] = (*stated.antenna_offset)[k].value;
-      else
-        b.antenna.offset = header.antenna_offset;
-      b.antenna.type = antenna_type(job, stated.antenna_type, b.receiver, "the base '" + b.name + "'");
-      if (r.antenna_file && b.antenna.type.empty()) tally.count("antenna without a type: its phase centre is not applied", b.name);
-      b.distance = (b.position - place).norm();
-      b.overlap = std::min(b.receiver.last, rover.last) - std::max(b.receiver.first, rover.first);
-      out.push_back(std::move(b));
-    }
-    std::stable_sort(out.begin(), out.end(), [](const Base& a, const Base& b) { return a.distance < b.distance; });
-    return out;
-  }
-
-  /// The bases to use, nearest first; the others go to the list with the reason.
-  std::vector<Base> choose(const std::vector<Base>& bases, const Receiver& rover, core::Value& list) const {
-    std::vector<Base> out;
-    std::string distances, spans;
-    size_t reached = 0;
-    for (const Base& b : bases) {
-      std::string reason;
-      if (b.distance > options.max_distance.value) {
-        reason = "farther than max_distance";
-        distances += (distances.empty() ? "" : ", ") + b.name + " " + kilometres(b.distance);
-      } else {
-        ++reached;
-        const bool one_epoch = rover.last == rover.first;
-        if (one_epoch ? b.overlap < 0 : b.overlap <= 0) {
-          reason = "records at other times than the rover";
-          spans += (spans.empty() ? "" : "; ") + b.name + " " + span_text(b.receiver);
-        } else if (out.size() >= number_of_bases(options.bases)) {
-          reason = "nearer ones are enough";
-        }
-      }
-      if (reason.empty()) {
-        out.push_back(b);
-        continue;
-      }
-      core::Value one = core::Value::object();
-      one["name"] = b.name;
-      one["distance_m"] = b.distance;
-      one["not_used"] = reason;
-      list.push(std::move(one));
-    }
-    if (reached == 0)
-      throw core::Error("no base station within " + kilometres(options.max_distance.value) + " of the rover: " + distances,
-                        rover.files.front().string(),
-                        "is the base's position in ECEF metres? take a nearer base, or raise max_distance (fixes grow worse)");
-    if (out.empty())
-      throw core::Error("no base station records while the rover does (" + span_text(rover) + "): " + spans, rover.files.front().string(),
-                        "name the base's observations of the flight");
-    return out;
   }
 
   /// A base's position against what its own code ranges say: a slip of the pen is found before hours are computed with it.
@@ -431,9 +289,8 @@ class Rtklib : public OptionStage<RtklibStageOptions> {
     }
     one["nearest_m"] = nearest;
     one["farthest_m"] = farthest;
-    if (share_of_span(b.overlap, rover) < complete)
-      tally.count("base that does not record over the whole flight",
-                  b.name + ": " + fixed_text(100 * share_of_span(b.overlap, rover), 1) + " % of it");
+    if (b.share_of(rover) < complete)
+      tally.count("base that does not record over the whole flight", b.name + ": " + fixed_text(100 * b.share_of(rover), 1) + " % of it");
     if (solved < complete)
       tally.count("epochs of the rover without a solution",
                   b.name + ": longest gap " + fixed_text(a.longest_gap, 1) + " s from " + core::utc_text(a.longest_gap_at),
