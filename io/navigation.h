@@ -176,7 +176,7 @@ struct BaseStation {
   std::string name;
   std::vector<std::filesystem::path> observations;
   std::optional<std::array<core::Metres, 3>> position;
-  std::array<core::Metres, 3> antenna_offset{};
+  std::optional<std::array<core::Metres, 3>> antenna_offset;
   std::string antenna_type;
 };
 
@@ -185,7 +185,7 @@ void describe(BaseStation& b, V& v) {
   v.option("name", b.name, "Name for reports.");
   v.option("observations", b.observations, "RINEX observation files.");
   v.option("position", b.position, "ECEF position of the marker; without it the RINEX header's approximate position, with a warning.");
-  v.option("antenna_offset", b.antenna_offset, "Marker to the antenna's reference point: east, north, up.");
+  v.option("antenna_offset", b.antenna_offset, "Marker to the antenna's reference point: east, north, up; without it the RINEX header's.");
   v.option("antenna_type", b.antenna_type, "Antenna type as in the antenna file; empty: none; \"*\": the RINEX header's.");
 }
 
@@ -201,11 +201,12 @@ struct Rinex {
 template <class V>
 void describe(Rinex& r, V& v) {
   v.option("rover", r.rover, "RINEX observation files of the aircraft.");
-  v.option("navigation", r.navigation, "RINEX navigation files, precise orbits (.sp3) and clocks.");
+  v.option("navigation", r.navigation, "RINEX navigation files; beside them precise orbits (SP3) and clocks.");
   v.tables("base", r.bases, "Base stations.");
   v.option("antenna_file", r.antenna_file, "Phase centre file (ANTEX) for both ends.");
   v.option("antenna_type", r.antenna_type, "The rover's antenna type; empty: none; \"*\": the RINEX header's.");
-  v.option("antenna_offset", r.antenna_offset, "The rover's antenna: east, north, up.");
+  v.option("antenna_offset", r.antenna_offset,
+           "From the point whose position is wanted up to the rover's antenna: east, north, up; zero for an aircraft.");
 }
 
 enum class ClockFormat { loopstats, peerstats, pps };

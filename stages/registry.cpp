@@ -7,6 +7,7 @@ namespace swath::stages {
 
 const std::vector<Entry>& registry() {
   static const std::vector<Entry> list = {
+      {"gnss.rtklib", make_rtklib},
       {"readers.trajectory", make_trajectory_reader},
       {"time.sync", make_time_sync},
       {"trajectory.kinematic", make_kinematic},

@@ -8,6 +8,7 @@
 
 namespace swath::stages {
 
+std::unique_ptr<Stage> make_rtklib();
 std::unique_ptr<Stage> make_trajectory_reader();
 std::unique_ptr<Stage> make_time_sync();
 std::unique_ptr<Stage> make_kinematic();
