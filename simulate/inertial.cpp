@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "io/output_file.h"
+#include "io/text_rows.h"
 #include "simulate/random.h"
-#include "simulate/text_rows.h"
 
 namespace swath::simulate {
 
@@ -92,7 +92,7 @@ core::Value value_of(const ImuErrors& e) {
 }
 
 void write_imu(const std::filesystem::path& file, const Flight& flight, core::GpsTime start, const ImuErrors& e, std::int64_t seed) {
-  TextRows rows(file, "gps_sow_s,dtheta_x_rad,dtheta_y_rad,dtheta_z_rad,dv_x_mps,dv_y_mps,dv_z_mps\n");
+  io::TextRows rows(file, "gps_sow_s,dtheta_x_rad,dtheta_y_rad,dtheta_z_rad,dv_x_mps,dv_y_mps,dv_z_mps\n");
   const double week = core::seconds_per_week * core::week_of(start);
   const auto steps = static_cast<std::int64_t>(std::floor(flight.duration() / imu_step));
   for (std::int64_t k = 1; k <= steps; ++k) {
@@ -118,9 +118,10 @@ void write_imu(const std::filesystem::path& file, const Flight& flight, core::Gp
 
 void write_gnss(const std::filesystem::path& file, const Flight& flight, core::GpsTime start, const std::array<core::Metres, 3>& lever_arm,
                 bool noise_free, std::int64_t seed) {
-  TextRows rows(file,
-                "gps_sow_s,lat_deg,lon_deg,h_ell_m,ecef_x_m,ecef_y_m,ecef_z_m,cov_xx_m2,cov_xy_m2,cov_xz_m2,cov_yy_m2,cov_yz_m2,cov_zz_m2,"
-                "sd_north_m,sd_east_m,sd_down_m,n_sat\n");
+  io::TextRows rows(
+      file,
+      "gps_sow_s,lat_deg,lon_deg,h_ell_m,ecef_x_m,ecef_y_m,ecef_z_m,cov_xx_m2,cov_xy_m2,cov_xz_m2,cov_yy_m2,cov_yz_m2,cov_zz_m2,"
+      "sd_north_m,sd_east_m,sd_down_m,n_sat\n");
   const double week = core::seconds_per_week * core::week_of(start);
   const Vector3d lever(lever_arm[0].value, lever_arm[1].value, lever_arm[2].value);
   const auto steps = static_cast<std::int64_t>(std::floor(flight.duration() / gnss_step));

@@ -15,6 +15,7 @@
 #include "io/output_file.h"
 #include "io/sbet.h"
 #include "io/survey.h"
+#include "io/text_rows.h"
 #include "io/value_file.h"
 #include "simulate/errors.h"
 #include "simulate/inertial.h"
@@ -22,7 +23,6 @@
 #include "simulate/scan.h"
 #include "simulate/shoot.h"
 #include "simulate/survey_file.h"
-#include "simulate/text_rows.h"
 
 namespace swath::simulate {
 namespace {
@@ -109,9 +109,9 @@ core::TrajectoryData trajectory_of(const Scenery& s, const TrajectoryErrors* err
 }
 
 void write_text_trajectory(const fs::path& file, const core::TrajectoryData& d, core::TimeScale scale) {
-  TextRows rows(file,
-                "time_s,latitude_deg,longitude_deg,height_m,roll_deg,pitch_deg,heading_deg,v_north_mps,v_east_mps,v_down_mps,"
-                "sigma_north_m,sigma_east_m,sigma_down_m,sigma_roll_deg,sigma_pitch_deg,sigma_heading_deg\n");
+  io::TextRows rows(file,
+                    "time_s,latitude_deg,longitude_deg,height_m,roll_deg,pitch_deg,heading_deg,v_north_mps,v_east_mps,v_down_mps,"
+                    "sigma_north_m,sigma_east_m,sigma_down_m,sigma_roll_deg,sigma_pitch_deg,sigma_heading_deg\n");
   for (size_t i = 0; i < d.size(); ++i) {
     rows.shortest(time_in(scale, d.time[i]));
     rows.number(d.latitude[i] / core::degree, 12);

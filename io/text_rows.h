@@ -7,7 +7,7 @@
 #include "io/binary_file.h"
 #include "io/output_file.h"
 
-namespace swath::simulate {
+namespace swath::io {
 
 /// Comma-separated rows of numbers, streamed to a file that appears whole with commit().
 class TextRows {
@@ -22,10 +22,10 @@ class TextRows {
 
  private:
   void separate();
-  io::OutputFile output_;
-  io::BinaryAppender out_;
+  OutputFile output_;
+  BinaryAppender out_;
   std::string buffer_;
   bool first_ = true;
 };
 
-}  // namespace swath::simulate
+}  // namespace swath::io

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "simulate/text_rows.h"
+#include "io/text_rows.h"
 
 #include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/world/support.h"
 
-namespace swath::simulate {
+namespace swath::io {
 namespace {
 
 TEST(TextRows, WritesRowsWholeOrNotAtAll) {
@@ -35,4 +35,4 @@ TEST(TextRows, RefusesAFolderThatIsAFile) {
 }
 
 }  // namespace
-}  // namespace swath::simulate
+}  // namespace swath::io
