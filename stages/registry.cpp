@@ -7,9 +7,12 @@ namespace swath::stages {
 
 const std::vector<Entry>& registry() {
   static const std::vector<Entry> list = {
+      {"readers.imu", make_imu_reader},
+      {"readers.gnss", make_gnss_reader},
       {"gnss.rtklib", make_rtklib},
-      {"readers.trajectory", make_trajectory_reader},
       {"time.sync", make_time_sync},
+      {"readers.trajectory", make_trajectory_reader},
+      {"trajectory.ins_gnss", make_ins_gnss},
       {"trajectory.kinematic", make_kinematic},
       {"readers.laser", make_laser_reader},
       {"readers.las", make_las_reader},
@@ -22,6 +25,7 @@ const std::vector<Entry>& registry() {
       {"terrain.dsm", make_dsm},
       {"terrain.contours", make_contours},
       {"terrain.penetration", make_penetration},
+      {"writers.trajectory", make_trajectory_writer},
       {"writers.las", make_las_writer},
       {"writers.gdal", make_gdal_writer},
       {"writers.picture", make_picture_writer},

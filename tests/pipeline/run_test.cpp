@@ -30,7 +30,7 @@ const fs::path& survey_folder() {
 
 Request request(const fs::path& output, std::vector<std::string> sets = {}) {
   Request r;
-  r.config = test::source_folder() / "configs/survey.toml";
+  r.config = test::source_folder() / "configs/survey_sbet.toml";
   r.survey = survey_folder() / "survey.toml";
   r.output = output;
   r.sets = std::move(sets);
@@ -132,6 +132,19 @@ TEST(Run, BadDataLeavesNothingBehind) {
   r.survey = out / "survey/survey.toml";
   EXPECT_THROW(run_quietly(r), core::Error);
   EXPECT_FALSE(fs::exists(out / "out"));
+}
+
+TEST(Run, SurveyStagesAloneRunWithoutAMap) {
+  const test::TemporaryFolder out;
+  test::write_bytes(out / "p.toml", "[[stage]]\ntype = \"readers.trajectory\"\n");
+  Request r = request(out / "out");
+  r.config = out / "p.toml";
+  const core::Value report = run_quietly(r);
+  const core::Value& stage = stage_of(report, "readers.trajectory");
+  EXPECT_GT(stage.find("findings")->find("records")->as_int(), 1000);
+  EXPECT_EQ(stage.find("counts"), nullptr);
+  EXPECT_TRUE(fs::exists(out / "out/report.json"));
+  EXPECT_FALSE(fs::exists(out / "out/.swath"));
 }
 
 TEST(Run, APlanWithoutSurveyIsNotRun) {
