@@ -100,18 +100,22 @@ core::EventTags read_event_file(const Survey& survey, const EventFile& file, cor
   out.technique = file.technique.empty() ? file.file.stem().string() : file.technique;
   out.computer_clock = file.computer_clock;
   out.latency = file.latency.value;
-  core::TimeReader clock(file.time.scale, file.time.week, file.time.date, path.string());
+  // The offset goes with the fraction, for the same reason as below.
+  TimeTags tags = file.time;
+  const double unit = tags.unit.value, offset = tags.offset.value;
+  tags.offset = core::Seconds(0);
+  core::TimeReader clock = reader_of(tags, path.string());
   for (const Row& row : rows) {
     // Whole seconds and their fraction apart: together they do not fit a double to better than 0.24 us.
-    const double recorded = row.number(time), whole = std::floor(recorded);
+    const double seconds = row.number(time) * unit, whole = std::floor(seconds);
     double gps = 0;
     try {
-      gps = clock(whole);
+      gps = clock(whole / unit);
     } catch (const core::Error& e) {
       throw core::Error(e.what(), row.where, e.hint());
     }
     if (out.time.empty()) out.epoch = gps;
-    out.time.push_back(gps - out.epoch + (recorded - whole));
+    out.time.push_back(gps - out.epoch + (seconds - whole) + offset);
     if (out.size() > 1 && out.time.back() < out.time[out.size() - 2]) tally.count("events whose time is before the one before", row.where);
     out.id.push_back(id ? row.at(*id) : std::to_string(out.size()));
     double line = 0;

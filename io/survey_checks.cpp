@@ -45,6 +45,8 @@ class Checks {
     for (size_t i = 0; i < survey_.trajectory.size(); ++i) trajectory(survey_.trajectory[i], numbered("trajectory", i));
     for (size_t i = 0; i < survey_.imu.size(); ++i) imu(survey_.imu[i], numbered("imu", i));
     for (size_t i = 0; i < survey_.gnss.size(); ++i) gnss(survey_.gnss[i], numbered("gnss", i));
+    for (size_t i = 0; i < survey_.clock.size(); ++i) exists(survey_.clock[i].file, numbered("clock", i) + ".file");
+    for (size_t i = 0; i < survey_.events.size(); ++i) event(survey_.events[i], numbered("event", i));
     for (size_t i = 0; i < survey_.points.size(); ++i) exists(survey_.points[i].file, numbered("points", i) + ".file");
     lines();
     const TruthFiles& t = survey_.truth;
@@ -73,9 +75,9 @@ class Checks {
   }
 
   void project() {
-    // A survey may be of the trajectory alone; with IMU, GNSS or raw observations the trajectory is computed.
+    // A survey may be of the trajectory or of events alone; with IMU, GNSS or raw observations the trajectory is computed.
     const bool computed = !survey_.imu.empty() || !survey_.gnss.empty() || !survey_.rinex.rover.empty();
-    const bool navigation = computed && survey_.laser.empty();
+    const bool navigation = (computed || !survey_.events.empty()) && survey_.laser.empty();
     if (survey_.crs.empty()) {
       if (survey_.points.empty() && !navigation)
         fault("crs", "the CRS of the products is missing", "state it, for example crs = \"EPSG:32632\"");
@@ -90,7 +92,7 @@ class Checks {
     const bool raw = !survey_.laser.empty();
     if (raw && !survey_.points.empty()) fault("points", "a survey has either raw [[laser]] records or georeferenced [[points]], not both");
     if (!raw && survey_.points.empty() && !navigation)
-      fault("laser", "no records: neither [[laser]] nor [[points]] is there, nor [[imu]] or [[gnss]]");
+      fault("laser", "no records: neither [[laser]] nor [[points]] is there, nor [[imu]], [[gnss]] or [[event]]");
     const auto is_csd = [](const LaserFile& f) { return format_of(f) == LaserFormat::csd; };
     if (raw && survey_.trajectory.empty() && !computed && !std::all_of(survey_.laser.begin(), survey_.laser.end(), is_csd))
       fault("trajectory", "raw [[laser]] records need a [[trajectory]], or [[imu]] and [[gnss]] records to compute it from");
@@ -251,6 +253,12 @@ class Checks {
     const bool velocity = together("v_north, v_east and v_up", {&c.v_north, &c.v_east, &c.v_up});
     const bool sigma_v = together("sigma_v_north, sigma_v_east and sigma_v_up", {&c.sigma_v_north, &c.sigma_v_east, &c.sigma_v_up});
     if (sigma_v && !velocity) fault(key + ".columns", "sigmas of the velocity without v_north, v_east and v_up");
+  }
+
+  void event(const EventFile& f, const std::string& key) {
+    exists(f.file, key + ".file");
+    time(f.time, key + ".time", false, false);
+    if (f.columns.time.empty()) fault(key + ".columns.time", "the column of times is not named");
   }
 
   /// Faults of options that the format leaves nothing to do for.

@@ -89,6 +89,19 @@ TEST_F(EventFiles, EveryTimeScale) {
   }
 }
 
+TEST_F(EventFiles, UnitOffsetAndADevicesZero) {
+  EventFile f = file("t,name,strip\n5250,a,1\n6000,b,1\n");
+  f.time = {core::TimeScale::device, {}, ""};
+  f.time.unit = core::Seconds(0.001);
+  f.time.origin = "2009-03-31T11:10:35 GPS";
+  f.time.origin_at = 1000;
+  f.time.offset = core::Seconds(-0.125);
+  const core::EventTags e = read(f);
+  EXPECT_EQ(e.epoch, 1525 * 604800.0 + 213035 + 4);
+  EXPECT_NEAR(e.time[0], 0.125, 1e-12);
+  EXPECT_NEAR(e.time[1], 0.875, 1e-12);
+}
+
 TEST_F(EventFiles, MidnightIsFollowedAndFallingTimesAreCounted) {
   EventFile f = file("t,name,strip\n86399.5,a,1\n0.5,b,1\n0.25,c,1\n");
   f.time = {core::TimeScale::utc_day, {}, "2009-03-31"};

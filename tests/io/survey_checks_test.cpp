@@ -75,6 +75,16 @@ TEST_F(NavigationChecks, NavigationRecordsMakeASurveyByThemselves) {
   EXPECT_EQ(fault_of(laser + navigation), "");
 }
 
+TEST_F(NavigationChecks, EventsAndClocks) {
+  const std::string events =
+      "[[event]]\nfile = \"imu.csv\"\ntime = {scale = \"unix\"}\ncolumns = {time = \"1\"}\n[[clock]]\nfile = \"x.dat\"\n";
+  EXPECT_EQ(fault_of(events), "");
+  EXPECT_NE(fault_of(with("x.dat", "y.dat", events)).find("no such file"), std::string::npos);
+  EXPECT_NE(fault_of(with("imu.csv", "imv.csv", events)).find("no such file"), std::string::npos);
+  EXPECT_NE(fault_of(with("scale = \"unix\"", "", events)).find("event[1].time.scale"), std::string::npos);
+  EXPECT_NE(fault_of(with("columns = {time = \"1\"}", "", events)).find("event[1].columns.time"), std::string::npos);
+}
+
 TEST_F(NavigationChecks, FaultsOfNavigationRecords) {
   struct Case {
     std::string from, to, place, words;
