@@ -155,15 +155,15 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
     columns = columns | info.gives;
     products.insert(products.end(), info.gives_products.begin(), info.gives_products.end());
   }
-  if (sources == 0 && !plan.stages.empty()) {
+  if (sources == 0 && works_on_the_map(plan)) {
     const core::Location place{plan.config.string(), 0, 0};
-    faults.push_back({place, "stage", "no reader: nothing to work on", "begin with readers.laser or readers.las"});
+    faults.push_back({place, "stage", "no reader: nothing to work on", "readers.laser or readers.las give points"});
   }
 }
 
 /// What only the survey can settle: a map projection, and each stage's own conditions.
 void check_against_survey(const Plan& plan) {
-  if (!plan.survey.crs.empty()) require_projected(core::Crs(plan.survey.crs), plan.survey_file);
+  if (!plan.survey.crs.empty() && works_on_the_map(plan)) require_projected(core::Crs(plan.survey.crs), plan.survey_file);
   const stages::Context context{plan.survey};
   for (const PlannedStage& s : plan.stages) s.stage->check(context);
 }
@@ -234,6 +234,13 @@ Plan make_plan(const Request& request) {
   core::throw_if_any(faults);
   if (!plan.survey_file.empty()) check_against_survey(plan);
   return plan;
+}
+
+bool works_on_the_map(const Plan& plan) {
+  return std::any_of(plan.stages.begin(), plan.stages.end(), [](const PlannedStage& s) {
+    const auto& grains = s.stage->info().grains;
+    return std::any_of(grains.begin(), grains.end(), [](stages::Grain g) { return g != stages::Grain::survey; });
+  });
 }
 
 void require_projected(const core::Crs& crs, const std::filesystem::path& survey) {

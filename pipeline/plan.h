@@ -79,6 +79,10 @@ struct Plan {
 /// explained, not run.
 Plan make_plan(const Request& request);
 
+/// Does a stage work with points or surfaces on the map? Plans of survey stages alone (records to trajectory) need no source and no
+/// map projection.
+bool works_on_the_map(const Plan& plan);
+
 /// Throws core::Error (usage) where the CRS is no map projection.
 void require_projected(const core::Crs& crs, const std::filesystem::path& survey);
 

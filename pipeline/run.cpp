@@ -90,6 +90,7 @@ class Engine {
 
  private:
   void prepare();
+  void prepare_map();
   void run_survey_stages();
   void run_strips();
   void stream_strip(const stages::Strip& strip, const fs::path& folder);
@@ -98,6 +99,7 @@ class Engine {
   void run_tiles(size_t number);
   void keep_surface_tiles(size_t number, const std::vector<TileKey>& fringe);
   void run_merge(size_t number);
+  void begin_products(size_t number);
   void compose_report(const std::string& command);
   bool judge_limits();
   fs::path folder(size_t number) const {
@@ -131,6 +133,16 @@ void Engine::prepare() {
                             "name it with --survey DIR/survey.toml, or as run.survey in the config");
   for (const PlannedStage& s : plan_.stages)
     if (plan_.survey.crs.empty() && s.stage->is_source()) plan_.survey.crs = s.stage->own_crs(plan_.survey);
+  context_.tile_side = plan_.run.tile.value;
+  context_.grids = &grids_;
+  if (works_on_the_map(plan_)) prepare_map();
+  inputs_ = inputs_of(plan_);
+  fingerprints_ = fingerprints(plan_, inputs_);
+  for (size_t i = 0; i < plan_.stages.size(); ++i)
+    if (works_on(i, Grain::strip)) last_strip_stage_ = i;
+}
+
+void Engine::prepare_map() {
   context_.crs = core::Crs(plan_.survey.crs);
   require_projected(context_.crs, plan_.survey_file);
   context_.unit = context_.crs.metres_per_unit();
@@ -147,25 +159,29 @@ void Engine::prepare() {
                              (context_.vertical_unit == 0.3048 ? "foot" : "height unit") + "\"," +
                              core::format_number(context_.vertical_unit) + "],AXIS[\"Up\",UP]]]";
   }
-  context_.tile_side = plan_.run.tile.value;
-  context_.grids = &grids_;
   for (const PlannedStage& s : plan_.stages)
     if (s.stage->is_source()) s.stage->locate(context_);
-  inputs_ = inputs_of(plan_);
-  fingerprints_ = fingerprints(plan_, inputs_);
-  for (size_t i = 0; i < plan_.stages.size(); ++i)
-    if (works_on(i, Grain::strip)) last_strip_stage_ = i;
+}
+
+/// What the stage writes from now on goes to its own folder, from which it is delivered at the end of the run.
+void Engine::begin_products(size_t number) {
+  std::error_code ec;
+  fs::create_directories(folder(number), ec);
+  if (ec) io::throw_system_error("cannot make the folder", folder(number), ec.value());
+  context_.output = folder(number) / "products";
 }
 
 void Engine::run_survey_stages() {
   for (size_t i = 0; i < plan_.stages.size(); ++i) {
     if (!works_on(i, Grain::survey)) continue;
+    begin_products(i);
     const auto start = Clock::now();
     progress_.begin(std::string(stage(i).info().name), 1, "survey");
     stage(i).run_survey(context_, accounts_[i].tally, accounts_[i].findings);
     progress_.advance(1);
     progress_.end();
     accounts_[i].seconds += since(start);
+    context_.earlier.push_back(context_.output);
   }
 }
 
@@ -394,14 +410,12 @@ void Engine::run_merge(size_t number) {
 
 void Engine::run_tile_stages() {
   for (size_t i = last_strip_stage_ + 1; i < plan_.stages.size(); ++i) {
-    std::error_code ec;
-    fs::create_directories(folder(i), ec);
-    if (ec) io::throw_system_error("cannot make the folder", folder(i), ec.value());
-    context_.output = folder(i) / "products";
+    if (!works_on(i, Grain::tile) && !works_on(i, Grain::merge)) continue;
+    begin_products(i);
     if (works_on(i, Grain::tile)) run_tiles(i);
     for (const stages::Product p : stage(i).info().gives_products) grids_.add(p, folder(i));
     if (works_on(i, Grain::merge)) run_merge(i);
-    context_.earlier.push_back(context_.output);
+    if (!works_on(i, Grain::survey)) context_.earlier.push_back(context_.output);
   }
 }
 
@@ -446,9 +460,11 @@ void Engine::compose_report(const std::string& command) {
   report_["program"] = "swath " + std::string(program_version());
   report_["command"] = command;
   report_["survey"] = plan_.survey.name;
-  report_["crs"]["name"] = context_.crs.name();
-  report_["crs"]["definition"] = plan_.survey.crs;
-  report_["crs"]["heights"] = context_.crs.vertical_name();
+  if (!context_.crs.empty()) {
+    report_["crs"]["name"] = context_.crs.name();
+    report_["crs"]["definition"] = plan_.survey.crs;
+    report_["crs"]["heights"] = context_.crs.vertical_name();
+  }
   Value& files = report_["inputs"] = Value::array();
   for (const Input& i : inputs_) {
     Value one = Value::object();
@@ -510,8 +526,10 @@ Outcome Engine::run(const std::string& command) {
     sweep(work_, valid);
     fs::remove_all(discarded, ec);
     run_survey_stages();
-    run_strips();
-    run_tile_stages();
+    if (works_on_the_map(plan_)) {
+      run_strips();
+      run_tile_stages();
+    }
     compose_report(command);
     const bool held = judge_limits();
     for (const fs::path& made : context_.earlier) deliver(made, output_, plan_.run.keep_work);

@@ -47,8 +47,9 @@ int check(Arguments& a) {
   if (plan.survey_file.empty())
     std::printf("no survey was named: its files are not checked\n");
   else
-    std::printf("%s: complete; %zu laser, %zu trajectory, %zu point files\n", plan.survey_file.c_str(), plan.survey.laser.size(),
-                plan.survey.trajectory.size(), plan.survey.points.size());
+    std::printf("%s: complete; %zu laser, %zu trajectory, %zu IMU, %zu GNSS, %zu point files\n", plan.survey_file.c_str(),
+                plan.survey.laser.size(), plan.survey.trajectory.size(), plan.survey.imu.size(), plan.survey.gnss.size(),
+                plan.survey.points.size());
   return 0;
 }
 

@@ -8,6 +8,7 @@
 #include "io/laser_file.h"
 #include "io/trajectory_file.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/place.h"
 #include "stages/adapters/units.h"
 #include "trajectory/checks.h"
 
@@ -16,9 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using core::Column;
-
-/// Map metres to whole kilometres: the origin of every Block of a run, so that coordinates keep their last bits.
-double to_kilometres(double metres) { return std::round(metres / 1000.0) * 1000.0; }
 
 class TrajectoryReader : public OptionStage<trajectory::TrajectoryOptions> {
  public:
@@ -52,32 +50,7 @@ class TrajectoryReader : public OptionStage<trajectory::TrajectoryOptions> {
     findings = trajectory::check_trajectory(data, checks).value();
     context.trajectory =
         std::make_shared<trajectory::Trajectory>(std::move(data), options, context.survey.trajectory.front().file.string());
-    const core::TrajectoryData& d = context.trajectory->data();
-    const core::Transform to_map(core::wgs84_geodetic(), context.crs);
-    const Eigen::Vector3d start = to_map({core::to_degrees(d.longitude[0]), core::to_degrees(d.latitude[0]), d.height[0]});
-    context.origin = {to_kilometres(start.x() * context.unit), to_kilometres(start.y() * context.unit), 0.0};
-    check_area(context, d, tally);
-  }
-
- private:
-  /// A survey beside the CRS's area of use is told; one far outside is refused: scale and convergence would be absurd.
-  static void check_area(const Context& context, const core::TrajectoryData& d, core::Tally& tally) {
-    double west = 0, south = 0, east = 0, north = 0;
-    if (!context.crs.area_of_use(west, south, east, north)) return;
-    constexpr double margin = 3.0;  // degrees: half a UTM zone, beyond which its scale error passes 0.3 %
-    std::uint64_t outside = 0;
-    for (size_t i = 0; i < d.size(); ++i) {
-      const double lon = core::to_degrees(d.longitude[i]), lat = core::to_degrees(d.latitude[i]);
-      const double beside_lon = west <= east ? std::max({west - lon, lon - east, 0.0}) : std::max(0.0, std::min(west - lon, lon - east));
-      const double beside = std::max({beside_lon, south - lat, lat - north, 0.0});
-      if (beside > margin)
-        throw core::usage_error("the trajectory lies " + core::format_number(std::round(beside * 10) / 10) +
-                                    " degrees outside the area of use of " + context.crs.name(),
-                                context.survey.crs,
-                                "choose the CRS of the survey's place; is the trajectory in degrees where radians are meant?");
-      outside += beside > 0;
-    }
-    if (outside) tally.count("trajectory records outside the CRS's area of use (" + context.crs.name() + ")", outside);
+    place_on_map(context, tally);
   }
 };
 
@@ -276,7 +249,7 @@ class LasCloud : public OptionStage<NoOptions> {
     const core::Crs crs(crs_of(context.survey, first));
     Eigen::Vector3d corner = header.min;
     if (crs.key() != context.crs.key()) corner = core::Transform(crs, context.crs)(corner);
-    context.origin = {to_kilometres(corner.x() * context.unit), to_kilometres(corner.y() * context.unit), 0.0};
+    context.origin = origin_near(context, corner);
   }
   std::vector<Strip> strips(const Context& context, core::Tally&) const override {
     std::vector<Strip> out;

@@ -86,6 +86,24 @@ TEST(Plan, StagesMustFitOneAnother) {
             std::string::npos);
 }
 
+TEST(Plan, SurveyStagesAloneNeedNoSourceAndNoMap) {
+  const std::string trajectory = "[[stage]]\ntype = \"readers.trajectory\"\n";
+  Case c(trajectory);
+  test::write_bytes(c.folder / "t.csv", "not read by check");
+  const std::string survey =
+      "[[points]]\nfile = \"cloud.las\"\n[[trajectory]]\nfile = \"t.csv\"\ntime.scale = \"gps\"\nangle_unit = \"deg\"\n"
+      "columns = {time = \"1\", latitude = \"2\", longitude = \"3\", height = \"4\", roll = \"5\", pitch = \"6\", heading = \"7\"}\n";
+  test::write_bytes(c.folder / "survey.toml", "crs = \"EPSG:4326\"\n" + survey);
+  c.request.survey = c.folder / "survey.toml";
+  EXPECT_EQ(c.fault(), "");
+  EXPECT_FALSE(works_on_the_map(make_plan(c.request)));
+  // As soon as a stage works on the map both are needed.
+  test::write_bytes(c.folder / "p.toml", trajectory + "[[stage]]\ntype = \"filters.smrf\"\n");
+  EXPECT_NE(c.fault().find("no reader"), std::string::npos);
+  test::write_bytes(c.folder / "p.toml", trajectory + good);
+  EXPECT_NE(c.fault().find("not a map projection"), std::string::npos);
+}
+
 TEST(Plan, ASetThatFitsNothingIsAFault) {
   Case c(good);
   c.request.sets = {"smfr.slope=1"};

@@ -134,6 +134,20 @@ TEST(Run, BadDataLeavesNothingBehind) {
   EXPECT_FALSE(fs::exists(out / "out"));
 }
 
+TEST(Run, SurveyStagesAloneRunWithoutAMap) {
+  const test::TemporaryFolder out;
+  test::write_bytes(out / "p.toml", "[[stage]]\ntype = \"readers.trajectory\"\n");
+  Request r = request(out / "out");
+  r.config = out / "p.toml";
+  const core::Value report = run_quietly(r);
+  const core::Value& stage = stage_of(report, "readers.trajectory");
+  EXPECT_GT(stage.find("findings")->find("records")->as_int(), 1000);
+  EXPECT_EQ(stage.find("counts"), nullptr);
+  EXPECT_EQ(report.find("crs"), nullptr);
+  EXPECT_TRUE(fs::exists(out / "out/report.json"));
+  EXPECT_FALSE(fs::exists(out / "out/.swath"));
+}
+
 TEST(Run, APlanWithoutSurveyIsNotRun) {
   const test::TemporaryFolder out;
   Request r = request(out / "out");

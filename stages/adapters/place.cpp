@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/adapters/place.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace swath::stages {
+namespace {
+
+void check_area(const Context& context, const core::TrajectoryData& d, core::Tally& tally) {
+  double west = 0, south = 0, east = 0, north = 0;
+  if (!context.crs.area_of_use(west, south, east, north)) return;
+  constexpr double margin = 3.0;  // degrees: half a UTM zone, beyond which its scale error passes 0.3 %
+  std::uint64_t outside = 0;
+  for (size_t i = 0; i < d.size(); ++i) {
+    const double lon = core::to_degrees(d.longitude[i]), lat = core::to_degrees(d.latitude[i]);
+    const double beside_lon = west <= east ? std::max({west - lon, lon - east, 0.0}) : std::max(0.0, std::min(west - lon, lon - east));
+    const double beside = std::max({beside_lon, south - lat, lat - north, 0.0});
+    if (beside > margin)
+      throw core::usage_error("the trajectory lies " + core::format_number(std::round(beside * 10) / 10) +
+                                  " degrees outside the area of use of " + context.crs.name(),
+                              context.survey.crs,
+                              "choose the CRS of the survey's place; is the trajectory in degrees where radians are meant?");
+    outside += beside > 0;
+  }
+  if (outside) tally.count("trajectory records outside the CRS's area of use (" + context.crs.name() + ")", outside);
+}
+
+}  // namespace
+
+Eigen::Vector3d origin_near(const Context& context, const Eigen::Vector3d& position) {
+  const auto to_kilometres = [](double metres) { return std::round(metres / 1000.0) * 1000.0; };
+  return {to_kilometres(position.x() * context.unit), to_kilometres(position.y() * context.unit), 0.0};
+}
+
+void place_on_map(Context& context, core::Tally& tally) {
+  if (context.crs.empty()) return;
+  const core::TrajectoryData& d = context.trajectory->data();
+  const core::Transform to_map(core::wgs84_geodetic(), context.crs);
+  context.origin = origin_near(context, to_map({core::to_degrees(d.longitude[0]), core::to_degrees(d.latitude[0]), d.height[0]}));
+  check_area(context, d, tally);
+}
+
+}  // namespace swath::stages

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a run lies on the map.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "stages/stage.h"
+
+namespace swath::stages {
+
+/// The origin of every Block of a run, so that coordinates keep their last bits: a position of the survey, in units of the CRS, rounded to
+/// whole kilometres; height 0.
+Eigen::Vector3d origin_near(const Context& context, const Eigen::Vector3d& position);
+
+/// For every stage that sets context.trajectory: sets context.origin by its first record. A survey beside the CRS's area of use is told;
+/// one far outside is refused (scale and convergence would be absurd): core::Error. A run without a map (no CRS) is left as it is.
+void place_on_map(Context& context, core::Tally& tally);
+
+}  // namespace swath::stages
