@@ -252,9 +252,12 @@ void write_smrmsg(const std::filesystem::path& file, const core::TrajectoryData&
   if (!t.has_sigma()) throw core::Error("the trajectory has no sigmas to write", file.string());
   RowWriter out(file);
   const double week = t.size() ? core::week_of(t.time[0]) * core::seconds_per_week : 0.0;
-  for (size_t i = 0; i < t.size(); ++i)
-    out.row({t.time[i] - week, t.sigma_north[i], t.sigma_east[i], t.sigma_down[i], 0, 0, 0, t.sigma_roll[i] / arc_minute,
-             t.sigma_pitch[i] / arc_minute, t.sigma_heading[i] / arc_minute});
+  for (size_t i = 0; i < t.size(); ++i) {
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+    if (!t.covariance.empty()) velocity = t.covariance.at(t.time[i]).diagonal().segment<3>(3).cwiseSqrt();
+    out.row({t.time[i] - week, t.sigma_north[i], t.sigma_east[i], t.sigma_down[i], velocity[0], velocity[1], velocity[2],
+             t.sigma_roll[i] / arc_minute, t.sigma_pitch[i] / arc_minute, t.sigma_heading[i] / arc_minute});
+  }
   out.commit();
 }
 

@@ -53,7 +53,7 @@ core::TrajectoryData read_sbet(const std::filesystem::path& file, const TimeTags
 /// Writes an SBET in seconds of the week of the first record (counting on past the week's end): wander angle 0, velocities north, west, up
 /// (as the vendor's files have them), from positions where the trajectory has none; accelerations and rates 0.
 void write_sbet(const std::filesystem::path& file, const core::TrajectoryData& trajectory);
-/// Writes the sigmas; velocity sigmas 0 (unknown). The trajectory must have sigmas.
+/// Writes the sigmas; those of velocity from the covariance series, 0 (unknown) where there is none. The trajectory must have sigmas.
 void write_smrmsg(const std::filesystem::path& file, const core::TrajectoryData& trajectory);
 
 }  // namespace swath::io

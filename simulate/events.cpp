@@ -11,7 +11,7 @@
 #include "simulate/computer_clock.h"
 #include "simulate/laser_file.h"
 #include "simulate/random.h"
-#include "simulate/text_rows.h"
+#include "io/text_rows.h"
 
 namespace swath::simulate {
 namespace {
@@ -76,16 +76,16 @@ std::int64_t write_events(const std::filesystem::path& folder, const Flight& fli
   if (noise_free) clock_options.jitter.value = clock_options.wander.value = 0.0;
   const double tag_noise = noise_free ? 0.0 : options.tag_noise.value, mark_noise = noise_free ? 0.0 : options.mark_noise.value;
   const ComputerClock clock(clock_options, flight.duration(), seed);
-  TextRows pc(folder / "events_pc.csv", "id,strip,pc_utc_s\n");
-  TextRows marks(folder / "events_marks.csv", "id,strip,gps_sow_s\n");
-  TextRows truth(folder / "truth" / "events.csv",
+  io::TextRows pc(folder / "events_pc.csv", "id,strip,pc_utc_s\n");
+  io::TextRows marks(folder / "events_marks.csv", "id,strip,gps_sow_s\n");
+  io::TextRows truth(folder / "truth" / "events.csv",
                  "id,strip,gps_sow_s,pc_minus_utc_s,latitude_deg,longitude_deg,height_m,roll_deg,pitch_deg,heading_deg\n");
   const double sow = start - core::seconds_per_week * core::week_of(start);
   const std::vector<Event> events = plan_events(flight, options, seed);
   for (const Event& e : events) {
     Random random = random_of(seed, Stream::events, (std::uint64_t{1} << 32) + static_cast<std::uint64_t>(e.id));
     const double offset = clock.offset(e.t);
-    for (TextRows* rows : {&pc, &marks, &truth}) {
+    for (io::TextRows* rows : {&pc, &marks, &truth}) {
       rows->number(e.id, 0);
       rows->number(e.line, 0);
     }
@@ -98,9 +98,9 @@ std::int64_t write_events(const std::filesystem::path& folder, const Flight& fli
     truth.number(pose.position.longitude / core::degree, 12);
     truth.number(pose.position.height, 6);
     for (const double a : {pose.attitude.roll, pose.attitude.pitch, pose.attitude.heading}) truth.number(a / core::degree, 9);
-    for (TextRows* rows : {&pc, &marks, &truth}) rows->end();
+    for (io::TextRows* rows : {&pc, &marks, &truth}) rows->end();
   }
-  for (TextRows* rows : {&pc, &marks, &truth}) rows->commit();
+  for (io::TextRows* rows : {&pc, &marks, &truth}) rows->commit();
   io::write_text_file(folder / "loopstats", loopstats(clock, start, options.clock.poll));
   io::write_text_file(folder / "pps.log", pulses(clock, start, flight.duration(), tag_noise, seed));
   return static_cast<std::int64_t>(events.size());

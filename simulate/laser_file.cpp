@@ -5,7 +5,7 @@
 
 #include "io/las_writer.h"
 #include "io/npy.h"
-#include "simulate/text_rows.h"
+#include "io/text_rows.h"
 
 namespace swath::simulate {
 namespace {
@@ -55,7 +55,7 @@ class CsvWriter : public LaserFileWriter {
       rows_.number(v, 6);
   }
   const Options& options_;
-  TextRows rows_;
+  io::TextRows rows_;
 };
 
 class NpyRecords : public LaserFileWriter {

@@ -71,6 +71,26 @@ TEST_F(Sbet, WrittenRecordsReadBack) {
   EXPECT_EQ(tally_.of("SBET files with velocities north, west, up"), 1u);
 }
 
+TEST_F(Sbet, VelocitySigmasComeFromTheCovariances) {
+  TrajectoryData t = straight();
+  core::CovarianceSeries::Matrix9 m = core::CovarianceSeries::Matrix9::Identity() * 1e-6;
+  for (int k = 0; k < 3; ++k) m(3 + k, 3 + k) = 1e-4 * (k + 1);
+  t.covariance.time = {t.time.front(), t.time.back()};
+  t.covariance.upper = {core::CovarianceSeries::pack(m), core::CovarianceSeries::pack(4.0 * m)};
+  write_smrmsg(folder_ / "acc.out", t);
+  std::vector<SmrmsgRecord> rows;
+  SmrmsgFile(folder_ / "acc.out").read(0, t.size(), rows);
+  constexpr double float_rounding = 1e-7;
+  for (size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(rows.front().velocity[k], 0.01 * std::sqrt(static_cast<double>(k + 1)), float_rounding);
+    EXPECT_NEAR(rows.back().velocity[k], 0.02 * std::sqrt(static_cast<double>(k + 1)), float_rounding);
+  }
+  t.covariance = {};
+  write_smrmsg(folder_ / "acc.out", t);
+  SmrmsgFile(folder_ / "acc.out").read(0, 1, rows);
+  EXPECT_EQ(rows.front().velocity[0], 0.0);
+}
+
 TEST_F(Sbet, VelocitiesAreMadeWhereTheTrajectoryHasNone) {
   TrajectoryData t = straight();
   t.v_north.clear();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "simulate/text_rows.h"
+#include "io/text_rows.h"
 
 #include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/world/support.h"
 
-namespace swath::simulate {
+namespace swath::io {
 namespace {
 
 TEST(TextRows, WritesRowsWholeOrNotAtAll) {
@@ -42,4 +42,4 @@ TEST(TextRows, TimesGetTheDecimalsTheyNeed) {
 }
 
 }  // namespace
-}  // namespace swath::simulate
+}  // namespace swath::io

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "simulate/text_rows.h"
+#include "io/text_rows.h"
 
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 
-namespace swath::simulate {
+namespace swath::io {
 namespace {
 
 constexpr size_t flush_at = 1u << 20;  // bytes
@@ -65,4 +65,4 @@ void TextRows::commit() {
   output_.commit();
 }
 
-}  // namespace swath::simulate
+}  // namespace swath::io

@@ -7,7 +7,7 @@
 #include "io/binary_file.h"
 #include "io/output_file.h"
 
-namespace swath::simulate {
+namespace swath::io {
 
 /// Decimals that hold the times first, first + step ... exactly: `least`, or 9 (ns) where those would round.
 int decimals_of(double first, double step, int least);
@@ -25,10 +25,10 @@ class TextRows {
 
  private:
   void separate();
-  io::OutputFile output_;
-  io::BinaryAppender out_;
+  OutputFile output_;
+  BinaryAppender out_;
   std::string buffer_;
   bool first_ = true;
 };
 
-}  // namespace swath::simulate
+}  // namespace swath::io
