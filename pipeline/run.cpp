@@ -135,7 +135,7 @@ void Engine::prepare() {
     if (plan_.survey.crs.empty() && s.stage->is_source()) plan_.survey.crs = s.stage->own_crs(plan_.survey);
   context_.tile_side = plan_.run.tile.value;
   context_.grids = &grids_;
-  if (works_on_the_map(plan_)) prepare_map();
+  if (works_on_the_map(plan_) || !plan_.survey.crs.empty()) prepare_map();
   inputs_ = inputs_of(plan_);
   fingerprints_ = fingerprints(plan_, inputs_);
   for (size_t i = 0; i < plan_.stages.size(); ++i)
@@ -144,7 +144,7 @@ void Engine::prepare() {
 
 void Engine::prepare_map() {
   context_.crs = core::Crs(plan_.survey.crs);
-  require_projected(context_.crs, plan_.survey_file);
+  if (works_on_the_map(plan_)) require_projected(context_.crs, plan_.survey_file);
   context_.unit = context_.crs.metres_per_unit();
   context_.vertical_unit = context_.crs.vertical_metres_per_unit();
   context_.product_crs = plan_.survey.crs;

@@ -9,6 +9,9 @@ const std::vector<Entry>& registry() {
   static const std::vector<Entry> list = {
       {"gnss.rtklib", make_rtklib},
       {"readers.trajectory", make_trajectory_reader},
+      {"readers.imu", make_imu_reader},
+      {"readers.gnss", make_gnss_reader},
+      {"trajectory.ins_gnss", make_ins_gnss},
       {"time.sync", make_time_sync},
       {"trajectory.kinematic", make_kinematic},
       {"readers.laser", make_laser_reader},
@@ -22,6 +25,7 @@ const std::vector<Entry>& registry() {
       {"terrain.dsm", make_dsm},
       {"terrain.contours", make_contours},
       {"terrain.penetration", make_penetration},
+      {"writers.trajectory", make_trajectory_writer},
       {"writers.las", make_las_writer},
       {"writers.gdal", make_gdal_writer},
       {"writers.picture", make_picture_writer},

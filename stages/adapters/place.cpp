@@ -36,7 +36,7 @@ Eigen::Vector3d origin_near(const Context& context, const Eigen::Vector3d& posit
 }
 
 void place_on_map(Context& context, core::Tally& tally) {
-  if (context.crs.empty()) return;
+  if (context.crs.empty() || !context.crs.is_projected()) return;
   const core::TrajectoryData& d = context.trajectory->data();
   const core::Transform to_map(core::wgs84_geodetic(), context.crs);
   context.origin = origin_near(context, to_map({core::to_degrees(d.longitude[0]), core::to_degrees(d.latitude[0]), d.height[0]}));

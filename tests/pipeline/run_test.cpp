@@ -143,7 +143,6 @@ TEST(Run, SurveyStagesAloneRunWithoutAMap) {
   const core::Value& stage = stage_of(report, "readers.trajectory");
   EXPECT_GT(stage.find("findings")->find("records")->as_int(), 1000);
   EXPECT_EQ(stage.find("counts"), nullptr);
-  EXPECT_EQ(report.find("crs"), nullptr);
   EXPECT_TRUE(fs::exists(out / "out/report.json"));
   EXPECT_FALSE(fs::exists(out / "out/.swath"));
 }

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a smoothed trajectory's quality looks like: charts of the smoother's results.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/gnss_data.h"
+#include "report/chart.h"
+#include "trajectory/compare.h"
+#include "trajectory/ins_gnss.h"
+
+namespace swath::stages {
+
+struct NamedChart {
+  std::string name;  ///< of its file, without ending
+  report::Chart chart;
+};
+
+/// track (local east and north of the first fix, fixes by quality), sigma, separation and separation_attitude (forward minus backward),
+/// innovations with their sigmas (down-weighted fixes marked) and NIS, residuals, attitude, biases with their sigmas, heading (forward
+/// filter minus smoothed); where the truth is known errors_position and errors_attitude with the printed sigmas. Position errors in m,
+/// attitude in arc seconds or degrees, gyros in deg/h, accelerometers in micro-g; time in seconds of the first record's GPS week.
+std::vector<NamedChart> trajectory_charts(const trajectory::InsGnssResult& result, const core::GnssData& gnss,
+                                          const std::optional<trajectory::TrajectoryErrors>& errors = std::nullopt);
+
+}  // namespace swath::stages
