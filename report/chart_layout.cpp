@@ -55,6 +55,23 @@ Reach y_reach(const Panel& panel) {
   return r;
 }
 
+/// The range that y_share asks for, and how many values lie beyond it.
+Reach shown_reach(const Panel& panel, size_t& beyond) {
+  if (!(panel.y_share < 1.0) || panel.equal_scale) return y_reach(panel);
+  std::vector<double> values;
+  for (const Series& s : panel.series) {
+    values.insert(values.end(), s.y.begin(), s.y.end());
+    if (s.mark == Mark::stems && !panel.log_y) values.push_back(0.0);
+    if (s.mark != Mark::band) continue;
+    for (size_t k = 0; k < s.y.size(); ++k) values.push_back(s.y2.empty() ? -s.y[k] : s.y2[k]);
+  }
+  const Reach out = middle_reach(std::move(values), panel.y_share, panel.log_y);
+  for (const Series& s : panel.series)
+    if (s.mark != Mark::band)
+      beyond += static_cast<size_t>(std::count_if(s.y.begin(), s.y.end(), [&](double v) { return v < out.low || v > out.high; }));
+  return out;
+}
+
 Reach widened(const Reach& r, double length) {
   Reach out;
   const double middle = (r.low + r.high) / 2.0;
@@ -72,6 +89,7 @@ struct LegendItem {
 /// One panel on its way to its place.
 struct Piece {
   const Panel* panel = nullptr;
+  std::string title;
   Plot plot;
   std::vector<core::Rgb> colours;
   std::vector<LegendItem> legend;
@@ -86,6 +104,7 @@ class Layout {
       check(p);
       Piece piece;
       piece.panel = &p;
+      piece.title = p.title;
       int next = 0;
       for (const Series& s : p.series) piece.colours.push_back(palette(s.colour < 0 ? next++ : s.colour));
       pieces_.push_back(std::move(piece));
@@ -122,8 +141,12 @@ class Layout {
 void Layout::y_axes() {
   for (Piece& p : pieces_) {
     p.plot.box.height = chart_.panel_height;
-    p.plot.y = make_axis(y_reach(*p.panel), p.panel->y_label, std::max(2, chart_.panel_height / y_tick_room), y_margin,
+    size_t beyond = 0;
+    p.plot.y = make_axis(shown_reach(*p.panel, beyond), p.panel->y_label, std::max(2, chart_.panel_height / y_tick_room), y_margin,
                          p.panel->log_y && !p.panel->equal_scale);
+    if (beyond)
+      p.title +=
+          (p.title.empty() ? "" : " ") + ("(" + std::to_string(beyond) + (beyond == 1 ? " value" : " values") + " beyond the frame)");
   }
 }
 
@@ -168,7 +191,7 @@ void Layout::x_axes() {
                             std::max(chart_.panel_height, plot_width_ * 2 / 3));
     const double scale = std::max(across / box.width, up / box.height);
     p.plot.x = make_axis(widened(x, scale * box.width), p.panel->x_label, most_x, 0.0);
-    p.plot.y = make_axis(widened(y, scale * box.height), p.panel->y_label, std::max(2, box.height / y_tick_room), 0.0);
+    p.plot.y = make_axis(widened(y, scale * box.height), p.panel->y_label, std::max(2, box.height / x_tick_room), 0.0);
   }
 }
 
@@ -188,17 +211,17 @@ void Layout::place_legend(Piece& p) const {
   }
   p.legend_lines = p.legend.empty() ? 0 : line + 1;
   // Beside the title where both have room on one line.
-  const double title = p.panel->title.empty() ? 0.0 : width_of(p.panel->title, panel_title_scale) + 4 * gap;
+  const double title = p.title.empty() ? 0.0 : width_of(p.title, panel_title_scale) + 4 * gap;
   if (p.legend_lines == 1 && title + at <= plot_width_) {
     for (LegendItem& item : p.legend) item.left += plot_width_ - at + 2 * gap;
-    if (!p.panel->title.empty()) p.legend_lines = 0;
+    if (!p.title.empty()) p.legend_lines = 0;
   }
 }
 
 void Layout::stack() {
   int y = pad + (chart_.title.empty() ? 0 : line_height(title_scale) + gap);
   for (Piece& p : pieces_) {
-    y += (p.panel->title.empty() ? 0 : line_height(panel_title_scale)) + p.legend_lines * line_height(text_scale) + gap / 2;
+    y += (p.title.empty() ? 0 : line_height(panel_title_scale)) + p.legend_lines * line_height(text_scale) + gap / 2;
     p.plot.box.y = y;
     y += p.plot.box.height + gap;
     if (p.x_texts) y += 2 * line_height(text_scale) + gap;
@@ -227,11 +250,11 @@ void Layout::draw_texts(const Piece& p, Sheet& sheet) const {
   sheet.line({edge_x[0], edge_x[1], edge_x[1], edge_x[0], edge_x[0]}, {edge_y[0], edge_y[0], edge_y[1], edge_y[1], edge_y[0]}, 1.0,
              border_colour);
 
-  const int title_line = p.panel->title.empty() ? 0 : line_height(panel_title_scale);
+  const int title_line = p.title.empty() ? 0 : line_height(panel_title_scale);
   const double head = top - gap / 2.0 - p.legend_lines * line_height(text_scale);
   if (title_line) {
-    const double scale = fitting(p.panel->title, panel_title_scale, plot_width_);
-    sheet.text(left, head - title_line / 2.0, p.panel->title, scale, Anchor::start, false, ink);
+    const double scale = fitting(p.title, panel_title_scale, plot_width_);
+    sheet.text(left, head - title_line / 2.0, p.title, scale, Anchor::start, false, ink);
   }
   for (const LegendItem& item : p.legend) {
     const double y = p.legend_lines == 0 ? head - title_line / 2.0 : head + item.line * line_height(text_scale) + half;

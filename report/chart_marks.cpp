@@ -68,8 +68,9 @@ void draw_dots(const Series& s, core::Rgb colour, const Plot& plot, Sheet& sheet
   std::set<std::pair<long, long>> taken;
   std::vector<double> x, y;
   for (size_t k = 0; k < s.x.size(); ++k) {
-    const double column = plot.column(s.x[k]), row = plot.row(s.y[k]);
-    if (!std::isfinite(column) || !std::isfinite(row)) continue;
+    const double column = plot.column(s.x[k]);
+    if (!std::isfinite(column) || !std::isfinite(plot.row(s.y[k]))) continue;
+    const double row = std::clamp(plot.row(s.y[k]), 0.0 + plot.box.y, 0.0 + plot.box.y + plot.box.height);
     if (!taken.emplace(std::lround(2.0 * near(column)), std::lround(2.0 * near(row))).second) continue;
     x.push_back(near(column));
     y.push_back(near(row));
@@ -104,6 +105,21 @@ core::Rgb palette(int index) {
       {{0, 114, 178}, {213, 94, 0}, {0, 158, 115}, {204, 121, 167}, {90, 90, 90}, {230, 159, 0}, {86, 180, 233}}};
   const int n = static_cast<int>(colours.size());
   return colours[static_cast<size_t>((index % n + n) % n)];
+}
+
+Reach middle_reach(std::vector<double> values, double share, bool log) {
+  std::erase_if(values, [log](double v) { return !std::isfinite(v) || (log && v <= 0.0); });
+  Reach out;
+  if (values.empty()) return out;
+  if (log)
+    for (double& v : values) v = std::log(v);
+  std::sort(values.begin(), values.end());
+  const double last = static_cast<double>(values.size() - 1), beside = (1.0 - share) / 2.0;
+  const double low = values[static_cast<size_t>(std::floor(beside * last))],
+               high = values[static_cast<size_t>(std::ceil((1.0 - beside) * last))];
+  const double more = 0.5 * (high - low);
+  for (const double v : {std::max(low - more, values.front()), std::min(high + more, values.back())}) out.add(log ? std::exp(v) : v);
+  return out;
 }
 
 std::vector<Stretch> stretches(const Series& s, const Plot& plot) {

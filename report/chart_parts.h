@@ -43,6 +43,10 @@ int lay_out(const Chart& chart, Sheet* sheet);
 /// Colour-blind safe, without yellow (Okabe and Ito 2008); any index.
 core::Rgb palette(int index);
 
+/// The middle part of a panel's values that holds its y_share, half as long again on both sides, no longer than all of them; on a
+/// logarithmic axis by their logarithms.
+Reach middle_reach(std::vector<double> values, double share, bool log);
+
 /// A panel's plot: its box and its axes.
 struct Plot {
   Box box;

@@ -23,6 +23,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double arc_second = core::degree / 3600.0, degree_per_hour = core::degree / 3600.0, micro_g = 9.80665e-6;
 constexpr std::array<const char*, 3> ned{"North", "East", "Down"}, rph{"Roll", "Pitch", "Heading"}, xyz{"x", "y", "z"};
 constexpr int small_panel = 170;  // of charts with many panels, pixels
+/// Shares of the values that a panel's range goes by: the others belong to the alignment at both ends of the flight, or are outliers.
+constexpr double aligned_share = 0.8, separation_share = 0.95, innovation_share = 0.99;
 /// The palette's colours by meaning (report/chart.h: an index).
 constexpr int blue = 0, orange_red = 1, green = 2, purple = 3, grey = 4, amber = 5, sky = 6;
 
@@ -96,7 +98,6 @@ Chart Charts::track() const {
     last = t.time[i];
     add(line, core::ecef_of({t.latitude[i], t.longitude[i], t.height[i]}));
   }
-  p.series.push_back(std::move(line));
   using Quality = core::FixQuality;
   for (const auto& [quality, colour] :
        {std::pair{Quality::single, purple}, std::pair{Quality::sbas, purple}, std::pair{Quality::differential, amber},
@@ -108,6 +109,7 @@ Chart Charts::track() const {
       if (gnss_.quality[i] == quality && gnss_.position[i].allFinite()) add(fixes, gnss_.position[i]);
     if (!fixes.x.empty()) p.series.push_back(std::move(fixes));
   }
+  p.series.push_back(std::move(line));  // over the fixes: they may be dense
   c.panels.push_back(std::move(p));
   return c;
 }
@@ -139,6 +141,7 @@ Chart Charts::separation() const {
   for (size_t k = 0; k < 3; ++k) {
     const auto axis = static_cast<Eigen::Index>(k);
     Panel p = panel(ned[k], "separation (m)");
+    p.y_share = separation_share;
     p.series = {{"its sigma", seconds(series_.time), component(series_.separation_sigma, axis, 1.0), {}, Mark::band, static_cast<int>(k)},
                 {"separation", seconds(series_.time), component(series_.separation, axis, 1.0), {}, Mark::line, static_cast<int>(k)}};
     c.panels.push_back(std::move(p));
@@ -151,6 +154,7 @@ Chart Charts::separation_attitude() const {
   c.title = "Forward minus backward attitude";
   for (size_t k = 0; k < 3; ++k) {
     Panel p = panel(rph[k], "separation (arcsec)");
+    p.y_share = aligned_share;
     p.series = {{"",
                  seconds(series_.time),
                  component(series_.attitude_separation, static_cast<Eigen::Index>(k), arc_second),
@@ -176,6 +180,7 @@ Chart Charts::innovations() const {
     const auto axis = static_cast<Eigen::Index>(k);
     const std::vector<double> values = component(series_.innovation, axis, 1.0);
     Panel p = panel(ned[k], "innovation (m)");
+    p.y_share = innovation_share;
     p.series = {{"its sigma", time, component(series_.innovation_sigma, axis, 1.0), {}, Mark::band, blue},
                 {"fix minus prediction", time, weighted(values, false), {}, Mark::dots, blue},
                 {"down-weighted", time, weighted(values, true), {}, Mark::dots, orange_red}};
@@ -183,6 +188,7 @@ Chart Charts::innovations() const {
   }
   Panel p = panel("Normalised innovation squared, 3 degrees of freedom", "NIS");
   p.log_y = true;
+  p.y_share = innovation_share;
   constexpr double bound = 7.815;  // 95 % of chi-square with 3 degrees of freedom
   p.series = {{"NIS", time, weighted(series_.nis, false), {}, Mark::dots, blue},
               {"down-weighted", time, weighted(series_.nis, true), {}, Mark::dots, orange_red}};
@@ -197,6 +203,7 @@ Chart Charts::residuals() const {
   c.panel_height = 200;
   for (size_t k = 0; k < 3; ++k) {
     Panel p = panel(ned[k], "residual (m)");
+    p.y_share = innovation_share;
     p.series = {{"", seconds(series_.fix_time), component(series_.residual, static_cast<Eigen::Index>(k), 1.0), {}, Mark::dots, blue}};
     c.panels.push_back(std::move(p));
   }
@@ -264,15 +271,13 @@ Chart Charts::heading() const {
   c.panels.push_back(all);
   if (size.empty()) return c;
   // While the filter still aligns it is far off: a second look at the rest of the flight.
-  constexpr double share = 0.8, room = 3.0;
-  std::sort(size.begin(), size.end());
-  const double usual = room * size[static_cast<size_t>(share * static_cast<double>(size.size() - 1))];
-  if (size.back() > room * usual && usual > 0.0) {
-    Panel near = panel("The same, after alignment", "difference (arcsec)");
-    for (double& d : difference)
-      if (!(std::abs(d) <= usual)) d = nan;
-    near.series = {{"", seconds(series_.time), difference, {}, Mark::line, green}};
-    c.panels.push_back(near);
+  const size_t usual = static_cast<size_t>(aligned_share * static_cast<double>(size.size() - 1));
+  std::nth_element(size.begin(), size.begin() + static_cast<std::ptrdiff_t>(usual), size.end());
+  constexpr double far = 5.0;
+  if (*std::max_element(size.begin(), size.end()) > far * size[usual]) {
+    all.title = "The same, enlarged";
+    all.y_share = aligned_share;
+    c.panels.push_back(std::move(all));
   }
   return c;
 }

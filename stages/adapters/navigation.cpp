@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "core/time.h"
 #include "io/gnss_file.h"
 #include "io/imu_file.h"
 #include "stages/adapters/adapters.h"
@@ -19,8 +20,9 @@ void describe(NoOptions&, V&) {}
 
 void tell_span(const std::vector<double>& time, core::Value& findings) {
   if (time.empty()) return;
-  findings["first_gps_s"] = time.front();
-  findings["last_gps_s"] = time.back();
+  findings["first_utc"] = core::utc_text(time.front());
+  findings["last_utc"] = core::utc_text(time.back());
+  findings["seconds"] = time.back() - time.front();
 }
 
 class ImuReader : public OptionStage<NoOptions> {

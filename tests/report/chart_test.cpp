@@ -283,6 +283,29 @@ TEST(Chart, ALogarithmicPanelLeavesOutWhatItCannotShow) {
   EXPECT_EQ(s.find("nan"), std::string::npos);
 }
 
+TEST(Chart, FarValuesNeedNotFlattenTheRest) {
+  std::vector<double> values(1001, 0.0);
+  for (size_t k = 0; k < values.size(); ++k) values[k] = std::sin(0.1 * static_cast<double>(k));
+  values[500] = 1e6;
+  const Reach r = middle_reach(values, 0.98, false);
+  EXPECT_NEAR(r.low, -1.0, 1e-3);
+  EXPECT_NEAR(r.high, 2.0, 1e-2);
+  EXPECT_DOUBLE_EQ(middle_reach({1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, 0.8, false).high, 10.0);  // no far value: all of them
+  EXPECT_NEAR(middle_reach({0.0, -3.0, 1e-9, 1, 1, 1, 2, 2, 2, 4, 4, 4, 4, 4, 1e9}, 0.7, true).high, 8.0, 1e-9);
+
+  Panel p = panel({"", ramp(1001, 0, 100), values, {}, Mark::line, 1});
+  p.y_share = 0.98;
+  Series mark{"", {50}, {1e6}, {}, Mark::dots, 0};
+  p.series.push_back(mark);
+  const Chart chart = chart_of({p});
+  EXPECT_NE(svg(chart).find("Height (2 values beyond the frame)"), std::string::npos);
+  const core::Picture picture = draw(chart);
+  const Found plot = find(picture, border), dot = find(picture, bluish), line = find(picture, reddish);
+  EXPECT_GT(line.bottom - line.top, (plot.bottom - plot.top) / 2);
+  EXPECT_LE(dot.top, plot.top + 3);  // the far dot stands at the frame
+  EXPECT_GT(dot.n, 3);
+}
+
 TEST(Chart, ColumnsOfDifferentLengthAreRefused) {
   EXPECT_THROW(draw(chart_of({panel({"s", {0, 1, 2}, {0, 1}, {}, Mark::line, -1})})), core::Error);
   EXPECT_THROW(svg(chart_of({panel({"s", {0, 1}, {0, 1}, {1}, Mark::band, -1})})), core::Error);
