@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The README's simulated survey, raw records to products: what report.truth tells, and its picture as the README shows it, relief_SEED.png."""
+"""The README's simulated survey with its delivered trajectory, raw records to products: what report.truth tells, and its picture as the README shows it, relief_SEED.png."""
 import sys
 import warnings
 
@@ -24,7 +24,7 @@ seeds = [int(v) for v in sys.argv[1:]] or [1]
 rows = []
 for seed in seeds:
     survey = common.simulate(folder / "survey", seed=seed)
-    report = common.run(common.ROOT / "configs/survey.toml", survey / "survey.toml", common.scratch("demo/products"))
+    report = common.run(common.ROOT / "configs/survey_sbet.toml", survey / "survey.toml", common.scratch("demo/products"))
     found = common.stage_of(report, "report.truth")["findings"]
     points, ground, dtm = found["points"], found["ground"], found["dtm"]
     rows.append([seed, points["compared"], " ".join(f"{1e3 * points[f'mean_{a}_m']:+.1f}" for a in ("east", "north", "up")),

@@ -81,7 +81,7 @@ class Looks(Case):
         self.assertEqual(smrf["cell"]["from"], "--set")
         self.assertEqual(smrf["slope"]["from"], "default")
         dtm = next(s for s in told["stages"] if s["type"] == "terrain.dtm")["options"]
-        self.assertRegex(dtm["cell"]["from"], r"survey\.toml:\d+:\d+")
+        self.assertRegex(dtm["cell"]["from"], r"survey_sbet\.toml:\d+:\d+")
         text = swath("explain", CONFIG)
         self.assertEqual(text.returncode, 0)
         self.assertIn("filters.smrf", text.stdout)
@@ -187,7 +187,8 @@ class Runs(Case):
         report = self.run_ok(survey, config=CLOUD, out=self.folder / "cloud")
         self.assertEqual(stage(report, "writers.las")["counts"]["in"],
                          stage(json.loads((self.out / "report.json").read_text()), "writers.las")["counts"]["in"])
-        known = {"survey.toml", "georeference.toml", "cloud.toml"}
+        # survey.toml and trajectory.toml, which need a longer flight, run in navigation_test.py.
+        known = {"survey.toml", "survey_sbet.toml", "trajectory.toml", "georeference.toml", "cloud.toml"}
         self.assertEqual({c.name for c in CONFIGS}, known, "a new config is run here too")
 
     def test_the_config_as_json_gives_the_same_products(self):

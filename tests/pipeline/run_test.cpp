@@ -30,7 +30,7 @@ const fs::path& survey_folder() {
 
 Request request(const fs::path& output, std::vector<std::string> sets = {}) {
   Request r;
-  r.config = test::source_folder() / "configs/survey.toml";
+  r.config = test::source_folder() / "configs/survey_sbet.toml";
   r.survey = survey_folder() / "survey.toml";
   r.output = output;
   r.sets = std::move(sets);
