@@ -99,7 +99,7 @@ void write_covariance_text(const std::filesystem::path& file, const core::Trajec
   TextRows rows(file, header + "\n");
   for (size_t k = 0; k < t.covariance.time.size(); ++k) {
     clock.write(t.covariance.time[k], rows);
-    for (const float c : t.covariance.upper[k]) rows.scientific(c, figures);
+    for (const double c : t.covariance.upper[k]) rows.scientific(c, figures);
     rows.end();
   }
   rows.commit();
