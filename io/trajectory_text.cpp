@@ -20,7 +20,8 @@ constexpr double seconds_per_day = 86400.0;
 class TimeColumn {
  public:
   TimeColumn(core::TimeScale scale, const std::vector<double>& times, const std::filesystem::path& file) : scale_(scale) {
-    if (scale == core::TimeScale::unstated) throw core::usage_error("the time scale of the text is not stated", file.string());
+    if (scale == core::TimeScale::unstated || scale == core::TimeScale::device)
+      throw core::usage_error("the time scale of the text is not stated, or a device's own", file.string());
     if (scale == core::TimeScale::utc_day && !times.empty())
       midnight_ = std::floor(core::to_unix(times.front()) / seconds_per_day) * seconds_per_day;
   }

@@ -7,12 +7,12 @@ namespace swath::stages {
 
 const std::vector<Entry>& registry() {
   static const std::vector<Entry> list = {
+      {"gnss.rtklib", make_rtklib},
+      {"readers.trajectory", make_trajectory_reader},
       {"readers.imu", make_imu_reader},
       {"readers.gnss", make_gnss_reader},
-      {"gnss.rtklib", make_rtklib},
-      {"time.sync", make_time_sync},
-      {"readers.trajectory", make_trajectory_reader},
       {"trajectory.ins_gnss", make_ins_gnss},
+      {"time.sync", make_time_sync},
       {"trajectory.kinematic", make_kinematic},
       {"readers.laser", make_laser_reader},
       {"readers.las", make_las_reader},

@@ -10,6 +10,10 @@ namespace swath::stages {
 
 std::unique_ptr<Stage> make_rtklib();
 std::unique_ptr<Stage> make_trajectory_reader();
+std::unique_ptr<Stage> make_imu_reader();
+std::unique_ptr<Stage> make_gnss_reader();
+std::unique_ptr<Stage> make_ins_gnss();
+std::unique_ptr<Stage> make_trajectory_writer();
 std::unique_ptr<Stage> make_time_sync();
 std::unique_ptr<Stage> make_imu_reader();
 std::unique_ptr<Stage> make_gnss_reader();

@@ -166,6 +166,11 @@ class Kinematic : public OptionStage<KinematicStageOptions> {
     if (options.leave_one_out) out.insert(out.end(), {"leave_one_out.txt", "leave_one_out.png", "leave_one_out.svg"});
     return out;
   }
+  void check(const Context& context) const override {
+    if (context.survey.crs.empty())
+      throw core::usage_error("trajectory.kinematic: the survey states no CRS for the table of events", context.survey.name,
+                              "state it, for example crs = \"EPSG:32632\"");
+  }
   void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
     const core::EventData& events = *context.events;
     const core::GnssData gnss = usable_fixes(*context.gnss, tally);

@@ -40,8 +40,9 @@ class TrajectoryReader : public OptionStage<trajectory::TrajectoryOptions> {
   }
   void check(const Context& context) const override {
     if (io::trajectory_files(context.survey).empty())
-      throw core::usage_error("readers.trajectory: the survey names no [[trajectory]]", context.survey.name,
-                              "point clouds need no trajectory: leave the stage out");
+      throw core::usage_error(
+          "readers.trajectory: the survey names no [[trajectory]]", context.survey.name,
+          "IMU and GNSS records begin with readers.imu, readers.gnss and trajectory.ins_gnss; point clouds need no trajectory");
   }
   void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
     core::TrajectoryData data = io::read_trajectory(context.survey, tally);

@@ -39,7 +39,8 @@ void describe(TrajectoryWriteOptions& o, V& v) {
       "smoother's nodes (upper triangle), between which it is linear in time.");
   v.option("time", o.time, "Time scale of the text files (SBET: seconds of week).");
   v.check(!o.formats.empty(), "at least one format");
-  v.check(o.time != core::TimeScale::unstated, "the time scale must be stated");
+  v.check(o.time != core::TimeScale::unstated && o.time != core::TimeScale::device,
+          "the time scale must be stated, and none of a device's own");
 }
 
 class TrajectoryWriter : public OptionStage<TrajectoryWriteOptions> {
