@@ -21,6 +21,7 @@ constexpr double half_span = 2.0;                             // s between the t
 constexpr double track_sigma = 15 * core::degree;             // crab and mounting
 constexpr double least_speed = 3.0;                           // m/s for a track
 constexpr double good_enough = 1.0 * core::degree;
+constexpr double most_bridged = 0.1;                                  // s of a window without IMU records
 constexpr double least_force_sigma = 0.02;                            // m/s^2: vibration, lever arm errors
 constexpr double still_rate = 0.5 * core::degree, still_force = 0.3;  // rad/s, m/s^2
 constexpr double still_least = 2.0;                                   // s
@@ -221,7 +222,7 @@ std::optional<Alignment> align_moving(const ImuPath& path, const core::GnssData&
     auto last = static_cast<size_t>(std::upper_bound(gnss.time.begin(), gnss.time.end(), t + window) - gnss.time.begin());
     if (last < first + 4) continue;
     --last;
-    if (path.gap_within(gnss.time[first], gnss.time[last])) continue;
+    if (path.bridged_within(gnss.time[first], gnss.time[last]).seconds > most_bridged) continue;
     const std::vector<Instant> at = collect(path, gnss, first, last, lever, gyro_bias);
     double fix_sigma = 0;
     for (size_t k = first; k <= last; ++k) fix_sigma = std::max(fix_sigma, std::sqrt(gnss.covariance[k].trace() / 3));

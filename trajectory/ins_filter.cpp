@@ -64,7 +64,7 @@ void InsFilter::predict(size_t number, NodeRecord* record) {
   if (span != 0.0) rate_ = turned / span;
   const StateMatrix phi = propagation.transition(problem_->noise);
   const StateVector q =
-      propagation.gained(problem_->noise, problem_->path.gap_within(std::min(from, node.time), std::max(from, node.time)));
+      propagation.gained(problem_->noise, problem_->path.bridged_within(std::min(from, node.time), std::max(from, node.time)));
   covariance_.diagonal() += 0.5 * q;
   StateMatrix moved;
   moved.noalias() = phi * covariance_;
