@@ -89,7 +89,7 @@ struct Solution {
 std::optional<Solution> solve(const std::vector<Instant>& at, const Vector3d& up, double fix_sigma, double force_sigma) {
   Matrix3d sum = Matrix3d::Zero(), track = Matrix3d::Zero();
   Matrix3d information = Matrix3d::Zero(), track_information = Matrix3d::Zero();
-  double pairs = 0, tracks = 0;
+  double pairs = 0, tracks = 0, weights = 0;
   size_t j = 0, k = 0;
   for (size_t i = 0; i < at.size(); ++i) {
     while (j < at.size() && at[j].time < at[i].time + half_span - 1e-3) ++j;
@@ -107,6 +107,7 @@ std::optional<Solution> solve(const std::vector<Instant>& at, const Vector3d& up
     const double weight = std::min(1.0, step / (2 * h)) / (sigma * sigma);
     sum += weight * to * from.transpose();
     information += weight * (to.squaredNorm() * Matrix3d::Identity() - to * to.transpose());
+    weights += weight;
     ++pairs;
     const Vector3d level = at[j].velocity - up * up.dot(at[j].velocity);
     if (level.norm() < least_speed) continue;
@@ -124,7 +125,8 @@ std::optional<Solution> solve(const std::vector<Instant>& at, const Vector3d& up
   Solution out;
   out.rotation = rotation_of(sum);
   information += 1e-3 * Matrix3d::Identity();  // an axis that nothing is known about: 1800 deg
-  out.covariance = information.inverse();
+  // A constant bias of the accelerometers does not average out: at most sigma^2 (sum of weights) beside the white part's 1.
+  out.covariance = (1 + force_sigma * force_sigma * weights) * information.inverse();
   return out;
 }
 
@@ -161,7 +163,7 @@ std::vector<Span> find_standstills(const ImuPath& path, const core::GnssData& gn
     const double rate_noise = spec.angular_random_walk.value / std::sqrt(step),
                  force_noise = spec.velocity_random_walk.value / std::sqrt(step);
     const double moved = (gnss.position[last] - gnss.position[fix]).norm();
-    const double sure = 0.03 + 2 * std::sqrt(gnss.covariance[fix].trace());
+    const double sure = 0.03 + 3 * std::sqrt(gnss.covariance[fix].trace());
     const double speed = gnss.has_velocity() && gnss.velocity[fix].allFinite() ? gnss.velocity[fix].norm() : 0.0;
     const bool still = spread(0) < still_rate + 2 * rate_noise && spread(1) < still_force + 2 * force_noise &&
                        (sum[0] / n).norm() < still_rate + bias && moved < sure && speed < 0.1;

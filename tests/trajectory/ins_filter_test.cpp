@@ -227,5 +227,20 @@ TEST(InsFilter, StandstillAndWheels) {
   EXPECT_LT(std::abs(v.z()), 0.3);
 }
 
+TEST(InsFilter, AStandstillThatTheFixesDenyIsNotBelieved) {
+  InsProblem::Setup setup;
+  setup.still_until = 40.0;  // of a car that drives from 6 s on
+  setup.sensors.until = 20;
+  const InsProblem made(test::Drive({{0, 0.3}}), setup);
+  InsFilter f = made.filter();
+  double worst = 0;
+  for (size_t k = 0; k < made.nodes.size(); ++k) {
+    f.predict(k, nullptr);
+    f.update(k, nullptr, nullptr);
+    if (made.nodes[k].time > test::motion_start + 10) worst = std::max(worst, made.error_of(f.estimate()).segment<3>(3).norm());
+  }
+  EXPECT_LT(worst, 1.0) << "of some 5 m/s";
+}
+
 }  // namespace
 }  // namespace swath::trajectory
