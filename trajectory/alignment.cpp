@@ -21,6 +21,7 @@ constexpr double half_span = 2.0;                             // s between the t
 constexpr double track_sigma = 15 * core::degree;             // crab and mounting
 constexpr double least_speed = 3.0;                           // m/s for a track
 constexpr double good_enough = 1.0 * core::degree;
+constexpr double most_bridged = 0.1;                                  // s of a window without IMU records
 constexpr double least_force_sigma = 0.02;                            // m/s^2: vibration, lever arm errors
 constexpr double still_rate = 0.5 * core::degree, still_force = 0.3;  // rad/s, m/s^2
 constexpr double still_least = 2.0;                                   // s
@@ -88,7 +89,7 @@ struct Solution {
 std::optional<Solution> solve(const std::vector<Instant>& at, const Vector3d& up, double fix_sigma, double force_sigma) {
   Matrix3d sum = Matrix3d::Zero(), track = Matrix3d::Zero();
   Matrix3d information = Matrix3d::Zero(), track_information = Matrix3d::Zero();
-  double pairs = 0, tracks = 0;
+  double pairs = 0, tracks = 0, weights = 0;
   size_t j = 0, k = 0;
   for (size_t i = 0; i < at.size(); ++i) {
     while (j < at.size() && at[j].time < at[i].time + half_span - 1e-3) ++j;
@@ -106,6 +107,7 @@ std::optional<Solution> solve(const std::vector<Instant>& at, const Vector3d& up
     const double weight = std::min(1.0, step / (2 * h)) / (sigma * sigma);
     sum += weight * to * from.transpose();
     information += weight * (to.squaredNorm() * Matrix3d::Identity() - to * to.transpose());
+    weights += weight;
     ++pairs;
     const Vector3d level = at[j].velocity - up * up.dot(at[j].velocity);
     if (level.norm() < least_speed) continue;
@@ -123,7 +125,8 @@ std::optional<Solution> solve(const std::vector<Instant>& at, const Vector3d& up
   Solution out;
   out.rotation = rotation_of(sum);
   information += 1e-3 * Matrix3d::Identity();  // an axis that nothing is known about: 1800 deg
-  out.covariance = information.inverse();
+  // A constant bias of the accelerometers does not average out: at most sigma^2 (sum of weights) beside the white part's 1.
+  out.covariance = (1 + force_sigma * force_sigma * weights) * information.inverse();
   return out;
 }
 
@@ -160,7 +163,7 @@ std::vector<Span> find_standstills(const ImuPath& path, const core::GnssData& gn
     const double rate_noise = spec.angular_random_walk.value / std::sqrt(step),
                  force_noise = spec.velocity_random_walk.value / std::sqrt(step);
     const double moved = (gnss.position[last] - gnss.position[fix]).norm();
-    const double sure = 0.03 + 2 * std::sqrt(gnss.covariance[fix].trace());
+    const double sure = 0.03 + 3 * std::sqrt(gnss.covariance[fix].trace());
     const double speed = gnss.has_velocity() && gnss.velocity[fix].allFinite() ? gnss.velocity[fix].norm() : 0.0;
     const bool still = spread(0) < still_rate + 2 * rate_noise && spread(1) < still_force + 2 * force_noise &&
                        (sum[0] / n).norm() < still_rate + bias && moved < sure && speed < 0.1;
@@ -221,7 +224,7 @@ std::optional<Alignment> align_moving(const ImuPath& path, const core::GnssData&
     auto last = static_cast<size_t>(std::upper_bound(gnss.time.begin(), gnss.time.end(), t + window) - gnss.time.begin());
     if (last < first + 4) continue;
     --last;
-    if (path.gap_within(gnss.time[first], gnss.time[last])) continue;
+    if (path.bridged_within(gnss.time[first], gnss.time[last]).seconds > most_bridged) continue;
     const std::vector<Instant> at = collect(path, gnss, first, last, lever, gyro_bias);
     double fix_sigma = 0;
     for (size_t k = first; k <= last; ++k) fix_sigma = std::max(fix_sigma, std::sqrt(gnss.covariance[k].trace() / 3));

@@ -125,15 +125,12 @@ StateMatrix Propagation::transition(const ProcessNoise& noise) const {
   return phi;
 }
 
-StateVector Propagation::gained(const ProcessNoise& noise, const BridgedGap* gap) const {
+StateVector Propagation::gained(const ProcessNoise& noise, const Bridging& bridged) const {
   const Layout& l = layout_;
   const double t = std::abs(elapsed_);
   StateVector q = StateVector::Zero(l.size);
-  // A rate that is wrong by sigma over the whole gap: variance (sigma length)^2 at its end.
-  const double turn = gap ? gap->rate_sigma * gap->rate_sigma * gap->length : 0.0;
-  const double push = gap ? gap->force_sigma * gap->force_sigma * gap->length : 0.0;
-  q.segment<3>(l.attitude).setConstant(t * (noise.angle + turn));
-  q.segment<3>(l.velocity).setConstant(t * (noise.velocity + push));
+  q.segment<3>(l.attitude).setConstant(t * noise.angle + bridged.turn);
+  q.segment<3>(l.velocity).setConstant(t * noise.velocity + bridged.push);
   q.segment<3>(l.gyro_bias).setConstant(t * noise.gyro_drift);
   q.segment<3>(l.force_bias).setConstant(t * noise.force_drift);
   if (l.fix >= 0) q.segment<3>(l.fix).setConstant(1 - std::exp(-2 * t / noise.fix_time));

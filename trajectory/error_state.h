@@ -71,8 +71,8 @@ class Propagation {
   double elapsed() const { return elapsed_; }
 
   StateMatrix transition(const ProcessNoise& noise) const;
-  /// Variances gained over the interval, by the diagonal; `gap`: of a bridged part.
-  StateVector gained(const ProcessNoise& noise, const BridgedGap* gap) const;
+  /// Variances gained over the interval, by the diagonal; `bridged`: what parts of it without records add.
+  StateVector gained(const ProcessNoise& noise, const Bridging& bridged = {}) const;
 
  private:
   Layout layout_;

@@ -12,31 +12,55 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double no_time = 1e-6;      // s: instants nearer than this are one (a double of GPS seconds resolves 2.4e-7)
-constexpr double gap_share = 0.5;     // of a step missing makes a gap
-constexpr double bridge_step = 0.01;  // s: longest increment of a bridge
-constexpr size_t neighbours = 100;    // records on each side that say how much the motion changes
+constexpr double no_time = 1e-6;                         // s: instants nearer than this are one (a double of GPS seconds resolves 2.4e-7)
+constexpr double gap_share = 0.5;                        // of a step missing makes a gap
+constexpr double bridge_step = 0.01;                     // s: longest increment of a bridge
+constexpr double least_rate = 1e-3, least_force = 0.02;  // rad/s, m/s^2 by which a bridge may be off, at least
+constexpr size_t neighbours = 100;                       // records on each side, at least, that show how much the motion changes
 
-/// RMS of the differences of rates over the length of the gap, from the records about it.
-double change(const std::vector<Vector3d>& values, const std::vector<double>& step, size_t k, double least) {
-  const size_t first = k > neighbours ? k - neighbours : 0, last = std::min(values.size(), k + neighbours);
-  Vector3d sum = Vector3d::Zero(), squares = Vector3d::Zero();
-  double n = 0;
-  for (size_t i = first; i < last; ++i, ++n) {
-    const Vector3d v = values[i] / step[i];
-    sum += v;
-    squares += v.cwiseAbs2();
+/// RMS by which a bridge over n records misses their mean rate: tried on the records of both sides of record k. Where they are too few for
+/// that: the standard deviation of their rates. The worst axis.
+double bridge_error(const std::vector<Vector3d>& values, const std::vector<double>& step, size_t k, size_t n, double least) {
+  const size_t reach = std::max(neighbours, 4 * n);
+  const size_t first = k > reach ? k - reach : 0, last = std::min(values.size(), k + reach);
+  const auto rate = [&](size_t i) -> Vector3d { return values[i] / step[i]; };
+  Vector3d squares = Vector3d::Zero();
+  double tries = 0;
+  const auto attempt = [&](size_t from, size_t until) {
+    Vector3d sum = Vector3d::Zero();
+    for (size_t i = from; i < until; ++i) {
+      sum += rate(i);
+      if (i < from + n + 1) continue;
+      sum -= rate(i - n - 1);  // now of the n + 1 records up to i
+      const Vector3d missed = (sum - rate(i)) / static_cast<double>(n) - 0.5 * (rate(i - n - 1) + rate(i));
+      squares += missed.cwiseAbs2();
+      ++tries;
+    }
+  };
+  attempt(first, k);
+  attempt(k, last);
+  if (tries < 10) {
+    Vector3d sum = Vector3d::Zero();
+    squares.setZero();
+    tries = static_cast<double>(last - first);
+    for (size_t i = first; i < last; ++i) sum += rate(i);
+    for (size_t i = first; i < last; ++i) squares += (rate(i) - sum / tries).cwiseAbs2();
   }
-  const Vector3d variance = squares / n - (sum / n).cwiseAbs2();
-  return std::max(least, std::sqrt(std::max(0.0, variance.maxCoeff())));
+  return std::max(least, std::sqrt((squares / tries).maxCoeff()));
 }
 
 }  // namespace
 
-const BridgedGap* ImuPath::gap_within(double t0, double t1) const {
-  for (const BridgedGap& g : gaps)
-    if (g.start < t1 && g.start + g.length > t0) return &g;
-  return nullptr;
+Bridging ImuPath::bridged_within(double t0, double t1) const {
+  Bridging out;
+  auto g = std::partition_point(gaps.begin(), gaps.end(), [&](const BridgedGap& gap) { return gap.start + gap.length <= t0; });
+  for (; g != gaps.end() && g->start < t1; ++g) {
+    const double seconds = std::min(t1, g->start + g->length) - std::max(t0, g->start);
+    out.seconds += seconds;
+    out.turn += seconds * g->length * g->rate_sigma * g->rate_sigma;
+    out.push += seconds * g->length * g->force_sigma * g->force_sigma;
+  }
+  return out;
 }
 
 ImuPath make_path(core::ImuData imu, double max_gap) {
@@ -63,7 +87,12 @@ ImuPath make_path(core::ImuData imu, double max_gap) {
     if (at < before.size() && before[at] == k) {
       ++at;
       const double start = imu.time[k - 1], length = imu.time[k] - imu.step[k] - start;
-      path.gaps.push_back({start, length, change(imu.angle, imu.step, k, 0.01), change(imu.velocity, imu.step, k, 0.1)});
+      const auto missing = static_cast<size_t>(std::max(1.0, std::round(length / imu.step[k])));
+      const auto sigma = [&](const std::vector<Vector3d>& values, double least) {
+        // The motion within the gap may be off by more than at its end: half of it counts as well.
+        return std::max(bridge_error(values, imu.step, k, missing, least), bridge_error(values, imu.step, k, (missing + 1) / 2, least));
+      };
+      path.gaps.push_back({start, length, sigma(imu.angle, least_rate), sigma(imu.velocity, least_force)});
       const auto pieces = static_cast<size_t>(std::ceil(length / bridge_step));
       const double step = length / static_cast<double>(pieces);
       const Vector3d rate0 = imu.angle[k - 1] / imu.step[k - 1], rate1 = imu.angle[k] / imu.step[k];

@@ -14,7 +14,13 @@ namespace swath::trajectory {
 /// A gap in the record that is bridged.
 struct BridgedGap {
   double start = 0.0, length = 0.0;            ///< GPS time, s
-  double rate_sigma = 0.0, force_sigma = 0.0;  ///< how far rate (rad/s) and specific force (m/s^2) may be from the bridge, whole gap
+  double rate_sigma = 0.0, force_sigma = 0.0;  ///< by which the mean rate (rad/s) and specific force (m/s^2) may be off, whole gap
+};
+
+/// What bridges within an interval add to what is not known.
+struct Bridging {
+  double seconds = 0.0;
+  double turn = 0.0, push = 0.0;  ///< variances of each component of attitude (rad^2) and velocity (m^2/s^2)
 };
 
 /// A record without holes: where it had some, increments by the mean of the neighbours' rates stand, marked as bridged.
@@ -27,7 +33,8 @@ struct ImuPath {
   double end() const { return imu.time.back(); }
   double edge(size_t k) const { return k == 0 ? begin() : imu.time[k - 1]; }  ///< where increment k begins
   bool is_bridged(size_t k) const { return !bridged.empty() && bridged[k]; }
-  const BridgedGap* gap_within(double t0, double t1) const;  ///< the first gap that overlaps, or nullptr
+  /// Of the bridges, or parts of them, between two instants. The whole of one: (sigma length)^2; a part has its share by time.
+  Bridging bridged_within(double t0, double t1) const;
 };
 
 /// Throws core::Error where a gap is longer than `max_gap`: its time, length and record. Steps become the differences of times.

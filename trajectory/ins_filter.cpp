@@ -16,7 +16,6 @@ using Eigen::Vector3d;
 
 using Design3 = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, most_states>;
 
-constexpr double no_gate = 1e300;
 constexpr double still_sigma = 0.02;       // m/s: what an engine or a hand shakes
 constexpr double still_interval = 0.2;     // s between updates that count as independent
 constexpr double wheels_interval = 0.2;    // s
@@ -64,7 +63,7 @@ void InsFilter::predict(size_t number, NodeRecord* record) {
   if (span != 0.0) rate_ = turned / span;
   const StateMatrix phi = propagation.transition(problem_->noise);
   const StateVector q =
-      propagation.gained(problem_->noise, problem_->path.gap_within(std::min(from, node.time), std::max(from, node.time)));
+      propagation.gained(problem_->noise, problem_->path.bridged_within(std::min(from, node.time), std::max(from, node.time)));
   covariance_.diagonal() += 0.5 * q;
   StateMatrix moved;
   moved.noalias() = phi * covariance_;
@@ -170,7 +169,7 @@ void InsFilter::use_standstill(NodeRecord* record) {
   const Layout& l = problem_->layout;
   Design3 H = Design3::Zero(3, l.size);
   H.block<3, 3>(0, l.velocity).setIdentity();
-  apply<3>(H, -estimate_.nav.velocity, still_sigma * still_sigma * Matrix3d::Identity(), no_gate, record, nullptr);
+  apply<3>(H, -estimate_.nav.velocity, still_sigma * still_sigma * Matrix3d::Identity(), problem_->gate, record, nullptr);
 }
 
 void InsFilter::use_wheels(NodeRecord* record) {

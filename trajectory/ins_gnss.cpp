@@ -24,6 +24,7 @@ using Eigen::Vector3d;
 
 constexpr double node_spacing = 0.25;   // s: between nodes residuals of the mechanisation are linear in time
 constexpr double longest_lead = 120.0;  // s of IMU records kept before the first fix and after the last
+constexpr double most_rate = 2.0;       // rad/s, rms over the record
 constexpr double near_fix = 2.0;        // s: a start as near to a fix takes its position
 constexpr int most_iterations = 8;
 constexpr double settled = 0.05;                         // sigmas by which the trajectory may still move
@@ -60,7 +61,7 @@ void require_plausible(const core::ImuData& imu) {
   }
   force /= length;
   const double rate = std::sqrt(rate2 / length);
-  if (rate > 10.0)
+  if (rate > most_rate)
     throw core::Error("the gyros turn by " + seconds(rate) + " rad/s (rms): no carrier does", "IMU records",
                       "are the angles in degrees? state imu.angle_unit");
   if (force.norm() < 5.0 || force.norm() > 15.0)
@@ -70,6 +71,13 @@ void require_plausible(const core::ImuData& imu) {
     throw core::Error("gravity lies along (" + seconds(force.x()) + ", " + seconds(force.y()) + ", " + seconds(force.z()) +
                           ") m/s2 of forward, right, down, where (0, 0, -9.8) is expected",
                       "IMU records", "state imu.axes or the mounting's roll, pitch and heading");
+}
+
+void require_finite(const core::GnssData& gnss) {
+  for (size_t k = 0; k < gnss.size(); ++k)
+    if (!gnss.position[k].allFinite() || !gnss.covariance[k].allFinite() || !std::isfinite(gnss.time[k]))
+      throw core::Error("a position, covariance or time is not finite", "GNSS fix " + std::to_string(k + 1),
+                        "such fixes must be left out before the smoother");
 }
 
 /// The fixes within the IMU's record; the record cut to their neighbourhood.
@@ -307,6 +315,7 @@ double moved(const SmootherRun& now, const std::vector<Estimate>& before, const 
 InsGnssResult smooth(const core::ImuData& imu_records, const core::GnssData& fixes, const core::ImuErrorModel& spec,
                      const Vector3d& lever_arm, double lever_arm_sigma, const InsGnssOptions& options) {
   require_plausible(imu_records);
+  require_finite(fixes);
   Trimmed records = trim(imu_records, fixes);
   const ImuPath path = make_path(std::move(records.imu), options.max_gap.value);
   const core::GnssData& gnss = records.gnss;
@@ -357,7 +366,7 @@ InsGnssResult smooth(const core::ImuData& imu_records, const core::GnssData& fix
   for (const double w : result.series.weight) rejected += w < 1.0;
   if (2 * rejected > result.series.weight.size())
     throw core::Error(std::to_string(rejected) + " of " + std::to_string(result.series.weight.size()) + " fixes contradict the IMU",
-                      "trajectory.ins_gnss", "check the lever arm's sign, the time scales, imu_spec and the fixes' sigmas");
+                      "trajectory.ins_gnss", "check the lever arm's sign, the time scales, imu.angle_unit, imu_spec and the fixes' sigmas");
   result.report = report_of(findings, result.series);
   result.trajectory = trajectory_of(problem, run.nodes, options.output_rate.value);
   return result;

@@ -24,12 +24,13 @@ struct Increment {
 };
 
 /// Increment k of a record with the coning and sculling terms of second order, which take the rate as linear over this and the
-/// preceding interval (Savage 1998, eq 33 and part 2, eq 54). What they leave out at 200 Hz and 1 deg of coning at 5 Hz: 2e-9 rad/s.
+/// preceding interval (Savage 1998, eq 33 and part 2, eq 54). What they leave out at 200 Hz and 1 deg of coning at 5 Hz: 1e-7 rad/s (of
+/// 2e-5).
 Increment increment_of(const core::ImuData& imu, size_t k);
 
 /// Normal gravity (with the centrifugal part) at a point, ecef, m/s^2.
 Eigen::Vector3d gravity_at(const Eigen::Vector3d& ecef);
-/// Its derivative by position, 1/s^2: point mass and centrifugal part (relative error 0.5 %, of an effect of 3e-6 m/s^2 per metre).
+/// Its derivative by position, 1/s^2: point mass and centrifugal part (off by up to 0.7 %, of an effect of 3e-6 m/s^2 per metre).
 Eigen::Matrix3d gravity_gradient_at(const Eigen::Vector3d& ecef);
 
 /// Advances the state over an increment; with a negative step and negated increments it goes back in time the same way.
