@@ -51,9 +51,10 @@ struct Problem {
   Layout layout;
   ProcessNoise noise;
   InsGnssOptions options;
-  double share = 0.4;     ///< of the fixes' variance that is correlated in time
-  double variance = 1.0;  ///< factor on the fixes' stated covariances
-  double gate = 21.1;     ///< NIS of three degrees of freedom beyond which a fix is down-weighted
+  double share = 0.4;      ///< of the fixes' variance that is correlated in time
+  double variance = 1.0;   ///< factor on the fixes' stated covariances
+  double roughness = 1.0;  ///< factor on the IMU's stated noise: what vibration adds
+  double gate = 21.1;      ///< NIS of three degrees of freedom beyond which a fix is down-weighted
 };
 
 /// Without a reference the filter feeds each correction back at once and linearises about its own estimate. With one, a trajectory near

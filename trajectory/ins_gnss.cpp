@@ -30,7 +30,9 @@ constexpr int most_iterations = 8;
 constexpr double settled = 0.05;                         // sigmas by which the trajectory may still move
 constexpr double least_share = 0.02, usual_share = 0.4;  // of the GNSS variance that is correlated, where nothing tells
 constexpr double least_fixes = 100;                      // from which noise is estimated
-constexpr double first_gate = 1e5;                       // NIS in the first pass, whose start may be degrees off
+constexpr double too_large = 1.5, too_alike = 0.25;      // normalised innovations: mean square, correlation of neighbours
+constexpr double most_roughness = 64;
+constexpr double first_gate = 1e5;  // NIS in the first pass, whose start may be degrees off
 
 std::string seconds(double t) { return core::format_number(std::round(t * 1000) / 1000); }
 
@@ -290,6 +292,26 @@ bool adapt_fixes(Problem& problem, const std::vector<FixOutcome>& outcomes) {
   return std::abs(shown - white) > std::max(0.03 * white, 2 * noise);
 }
 
+/// Doubles the IMU's noise where the innovations are too large and follow one another: more motion than the IMU tells of, as under
+/// vibration. (White noise of the fixes makes them large too, but not alike.) True where it did.
+bool adapt_imu(Problem& problem, const std::vector<FixOutcome>& outcomes) {
+  double alike = 0, squares = 0, n = 0;
+  Vector3d before = Vector3d::Zero();
+  for (size_t k = 0; k < problem.nodes.size(); ++k) {
+    if (problem.nodes[k].fix < 0) continue;
+    const Vector3d z = outcomes[k].innovation.cwiseQuotient(outcomes[k].innovation_sigma);
+    alike += z.dot(before);
+    squares += z.squaredNorm();
+    before = z;
+    n += 1;
+  }
+  if (n < least_fixes || squares / (3 * n) < too_large || alike / squares < too_alike || problem.roughness >= most_roughness) return false;
+  problem.roughness *= 2;
+  for (double* density : {&problem.noise.angle, &problem.noise.velocity, &problem.noise.gyro_drift, &problem.noise.force_drift})
+    *density *= 4;
+  return true;
+}
+
 /// Position, velocity and attitude to begin with count as unknown: ten of their smoothed sigmas add a hundredth of the information they
 /// have, and keep the numbers of the smoother small.
 StateMatrix widened(const StateMatrix& stated, const StateVector& smoothed_sigma) {
@@ -334,8 +356,10 @@ InsGnssResult smooth(const core::ImuData& imu_records, const core::GnssData& fix
 
   // Repeated about the smoothed trajectory until it stays.
   problem.gate = first_gate;
-  SmootherRun run =
-      run_smoother(problem, InsFilter(problem, start.estimate, StateVector::Zero(layout.size), start.covariance, nullptr), false);
+  const auto from_scratch = [&] { return InsFilter(problem, start.estimate, StateVector::Zero(layout.size), start.covariance, nullptr); };
+  while (adapt_imu(problem, run_forward(problem, from_scratch()))) {
+  }
+  SmootherRun run = run_smoother(problem, from_scratch(), false);
   problem.gate = gate_of(options.outlier_probability);
   std::vector<Estimate> reference(nodes.size());
   const auto about = [&](const SmoothedNode& at) {

@@ -129,7 +129,7 @@ SmootherSeries series_of(const InsFindings& f) {
     s.fix_time.push_back(nodes[k].time);
     s.innovation.push_back(o.innovation);
     s.innovation_sigma.push_back(o.innovation_sigma);
-    const Vector3d antenna = nav.position + nav.ecef_R_body * node.estimate.lever;
+    const Vector3d antenna = nav.position + nav.ecef_R_body * node.estimate.lever + node.estimate.latency * nav.velocity;
     s.residual.push_back(ned.transpose() * (f.problem.gnss.position[static_cast<size_t>(nodes[k].fix)] - antenna));
     s.nis.push_back(o.nis);
     s.weight.push_back(o.weight);
@@ -190,6 +190,12 @@ core::Value report_of(const InsFindings& f, const SmootherSeries& s) {
   gnss["variance_factor"] = f.problem.variance;
   if (f.problem.variance > 1.3)
     warnings.push(text("the fixes scatter %.2f times more than stated; their sigmas are raised by that", std::sqrt(f.problem.variance)));
+  v["imu_noise_factor"] = f.problem.roughness;
+  if (f.problem.roughness > 1)
+    warnings.push(
+        text("the IMU's records hold %.0f times the stated noise, which is allowed for: vibration, a better grade stated than flown "
+             "(imu_spec), or a wrong time offset",
+             f.problem.roughness));
   v["outages"] = Value::array();
   double before = nodes.front().time;
   const auto outage = [&](double until) {
@@ -283,6 +289,10 @@ core::Value report_of(const InsFindings& f, const SmootherSeries& s) {
     one["value"] = last.estimate.latency;
     one["sigma"] = last.sigma[l.latency];
     one["meaning"] = "to be added to the fixes' times";
+    const double stated = f.problem.options.latency_sigma.value;
+    if (std::abs(last.estimate.latency) > sure_sigmas * stated)
+      warnings.push(text("the fixes' times are off by %.4f s, %.1f times latency_sigma: state antenna.latency or the IMU's time.offset",
+                         last.estimate.latency, std::abs(last.estimate.latency) / stated));
   }
   if (l.track >= 0) {
     Value& one = v["estimates"]["vehicle_axis"];
