@@ -8,10 +8,10 @@
 
 #include "core/units.h"
 #include "io/output_file.h"
+#include "io/text_rows.h"
 #include "simulate/computer_clock.h"
 #include "simulate/laser_file.h"
 #include "simulate/random.h"
-#include "io/text_rows.h"
 
 namespace swath::simulate {
 namespace {
@@ -79,7 +79,7 @@ std::int64_t write_events(const std::filesystem::path& folder, const Flight& fli
   io::TextRows pc(folder / "events_pc.csv", "id,strip,pc_utc_s\n");
   io::TextRows marks(folder / "events_marks.csv", "id,strip,gps_sow_s\n");
   io::TextRows truth(folder / "truth" / "events.csv",
-                 "id,strip,gps_sow_s,pc_minus_utc_s,latitude_deg,longitude_deg,height_m,roll_deg,pitch_deg,heading_deg\n");
+                     "id,strip,gps_sow_s,pc_minus_utc_s,latitude_deg,longitude_deg,height_m,roll_deg,pitch_deg,heading_deg\n");
   const double sow = start - core::seconds_per_week * core::week_of(start);
   const std::vector<Event> events = plan_events(flight, options, seed);
   for (const Event& e : events) {

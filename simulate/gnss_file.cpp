@@ -7,9 +7,9 @@
 
 #include "core/frames.h"
 #include "core/geodesy.h"
+#include "io/text_rows.h"
 #include "simulate/inertial.h"
 #include "simulate/laser_file.h"
-#include "io/text_rows.h"
 
 namespace swath::simulate {
 
@@ -90,12 +90,13 @@ Fix Receiver::fix_at(std::int64_t k, double tag) {
 std::int64_t write_gnss(const std::filesystem::path& folder, const Flight& flight, core::GpsTime start, const GnssOptions& options,
                         const std::array<core::Metres, 3>& lever_arm, bool noise_free, std::int64_t seed) {
   io::TextRows rows(folder / "gnss.csv",
-                std::string("gps_sow_s,lat_deg,lon_deg,h_ell_m,ecef_x_m,ecef_y_m,ecef_z_m,cov_xx_m2,cov_xy_m2,cov_xz_m2,cov_yy_m2,"
-                            "cov_yz_m2,cov_zz_m2,sd_north_m,sd_east_m,sd_down_m,n_sat,quality") +
-                    (options.velocity ? ",v_north_mps,v_east_mps,v_up_mps,sd_v_north_mps,sd_v_east_mps,sd_v_up_mps\n" : "\n"));
-  io::TextRows truth(folder / "truth" / "gnss.csv",
-                 "gps_sow_s,white_north_m,white_east_m,white_down_m,correlated_north_m,correlated_east_m,correlated_down_m,outlier_north_m,"
-                 "outlier_east_m,outlier_down_m\n");
+                    std::string("gps_sow_s,lat_deg,lon_deg,h_ell_m,ecef_x_m,ecef_y_m,ecef_z_m,cov_xx_m2,cov_xy_m2,cov_xz_m2,cov_yy_m2,"
+                                "cov_yz_m2,cov_zz_m2,sd_north_m,sd_east_m,sd_down_m,n_sat,quality") +
+                        (options.velocity ? ",v_north_mps,v_east_mps,v_up_mps,sd_v_north_mps,sd_v_east_mps,sd_v_up_mps\n" : "\n"));
+  io::TextRows truth(
+      folder / "truth" / "gnss.csv",
+      "gps_sow_s,white_north_m,white_east_m,white_down_m,correlated_north_m,correlated_east_m,correlated_down_m,outlier_north_m,"
+      "outlier_east_m,outlier_down_m\n");
   const double sow = start - core::seconds_per_week * core::week_of(start);
   const int decimals = io::decimals_of(sow, 1.0 / options.rate.value, 3);
   Receiver receiver(flight, options, lever_arm, noise_free, seed);

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "io/output_file.h"
+#include "io/text_rows.h"
 #include "io/value_file.h"
 #include "simulate/inertial.h"
 #include "simulate/laser_file.h"
-#include "io/text_rows.h"
 
 namespace swath::simulate {
 
@@ -96,8 +96,9 @@ void write_imu(const std::filesystem::path& folder, const Flight& flight, core::
   const bool rates = imu.kind == io::ImuKind::rates;
   const double rate = imu.rate.value, step = 1.0 / rate;
   io::TextRows rows(folder / "imu.csv", rates ? "gps_sow_s,gyro_x_radps,gyro_y_radps,gyro_z_radps,acc_x_mps2,acc_y_mps2,acc_z_mps2\n"
-                                          : "gps_sow_s,dtheta_x_rad,dtheta_y_rad,dtheta_z_rad,dv_x_mps,dv_y_mps,dv_z_mps\n");
-  io::TextRows drift(folder / "truth" / "imu_drift.csv", "gps_sow_s,gyro_x_radps,gyro_y_radps,gyro_z_radps,acc_x_mps2,acc_y_mps2,acc_z_mps2\n");
+                                              : "gps_sow_s,dtheta_x_rad,dtheta_y_rad,dtheta_z_rad,dv_x_mps,dv_y_mps,dv_z_mps\n");
+  io::TextRows drift(folder / "truth" / "imu_drift.csv",
+                     "gps_sow_s,gyro_x_radps,gyro_y_radps,gyro_z_radps,acc_x_mps2,acc_y_mps2,acc_z_mps2\n");
   ImuErrors errors(imu_spec_of(imu, noise_free).model(), step, seed);
   const Matrix3d R = record_R_body(imu);
   const double sow = start - core::seconds_per_week * core::week_of(start);

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "io/sbet.h"
+#include "io/text_rows.h"
 #include "simulate/errors.h"
 #include "simulate/laser_file.h"
-#include "io/text_rows.h"
 
 namespace swath::simulate {
 namespace {
@@ -49,8 +49,8 @@ core::TrajectoryData trajectory_of(const Flight& flight, core::GpsTime start, co
 
 void write_text_trajectory(const std::filesystem::path& file, const core::TrajectoryData& d, core::TimeScale scale) {
   io::TextRows rows(file,
-                "time_s,latitude_deg,longitude_deg,height_m,roll_deg,pitch_deg,heading_deg,v_north_mps,v_east_mps,v_down_mps,"
-                "sigma_north_m,sigma_east_m,sigma_down_m,sigma_roll_deg,sigma_pitch_deg,sigma_heading_deg\n");
+                    "time_s,latitude_deg,longitude_deg,height_m,roll_deg,pitch_deg,heading_deg,v_north_mps,v_east_mps,v_down_mps,"
+                    "sigma_north_m,sigma_east_m,sigma_down_m,sigma_roll_deg,sigma_pitch_deg,sigma_heading_deg\n");
   for (size_t i = 0; i < d.size(); ++i) {
     rows.shortest(time_in(scale, d.time[i]));
     rows.number(d.latitude[i] / core::degree, 12);
