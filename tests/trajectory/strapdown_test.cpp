@@ -31,7 +31,7 @@ struct Flown {
   test::MotionAt motion;
   core::ImuData imu;
   explicit Flown(double seconds) {
-    const simulate::Flight flight = test::survey_flight(20);
+    const simulate::PlannedFlight flight = test::survey_flight(20);
     EXPECT_GT(flight.duration(), seconds);
     motion = test::motion_of(flight);
     imu = test::exact_records(motion, {.from = 0, .until = seconds}).imu;

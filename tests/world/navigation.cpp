@@ -16,7 +16,7 @@ const core::Geodetic origin{48 * core::degree, 10.5 * core::degree, 600.0};
 constexpr double eight_radius = 300.0, eight_rate = 0.05;  // m, rad/s of the figure's parameter
 constexpr double ramp = 6.0;                               // s
 
-simulate::Flight flight_over(const simulate::FlightOptions& options, const simulate::WorldOptions& world) {
+simulate::PlannedFlight flight_over(const simulate::FlightOptions& options, const simulate::WorldOptions& world) {
   return {options, origin, 950.0, simulate::plan_lines(options, world, core::degrees(20).value, 0.02), 5.2, 1};
 }
 
@@ -35,14 +35,14 @@ simulate::Increments increments_of(const MotionAt& motion, double t, double step
 
 }  // namespace
 
-simulate::Flight survey_flight(int lines) {
+simulate::PlannedFlight survey_flight(int lines) {
   simulate::FlightOptions options;
   options.lines = lines;
   options.cross_lines = 0;
   return flight_over(options, {});
 }
 
-simulate::Flight straight_flight(double length) {
+simulate::PlannedFlight straight_flight(double length) {
   simulate::FlightOptions options;
   options.lines = 1;
   options.cross_lines = 0;
@@ -50,7 +50,7 @@ simulate::Flight straight_flight(double length) {
   return flight_over(options, {});
 }
 
-MotionAt motion_of(simulate::Flight flight) {
+MotionAt motion_of(simulate::PlannedFlight flight) {
   return [flight = std::move(flight)](double t) { return flight.motion(t); };
 }
 

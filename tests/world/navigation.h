@@ -13,7 +13,7 @@
 #include "core/imu_data.h"
 #include "core/imu_spec.h"
 #include "core/trajectory_data.h"
-#include "simulate/flight.h"
+#include "simulate/planned_flight.h"
 
 namespace swath::test {
 
@@ -23,10 +23,10 @@ constexpr double motion_start = 2317 * 604800.0 + 208800.0;  ///< GPS time of se
 using MotionAt = std::function<simulate::Motion(double)>;
 
 /// Lines of 1 km flown to and fro at 50 m/s in turbulence, turns of 22 deg of bank between them: some 50 s each.
-simulate::Flight survey_flight(int lines);
+simulate::PlannedFlight survey_flight(int lines);
 /// One line with 5 s before and after it.
-simulate::Flight straight_flight(double length);
-MotionAt motion_of(simulate::Flight flight);
+simulate::PlannedFlight straight_flight(double length);
+MotionAt motion_of(simulate::PlannedFlight flight);
 
 /// A car on a level figure of eight, 300 m long, that does not slip: its velocity lies along the vehicle's forward axis.
 class Drive {
