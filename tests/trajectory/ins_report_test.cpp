@@ -79,15 +79,26 @@ TEST(InsReport, FixesThatContradict) {
 }
 
 TEST(InsReport, InnovationsThatDoNotFit) {
-  // Fixes three times as good, and half as bad, as they say.
+  // Fixes three times as good, and half as bad, as they say, where their noise is not to be estimated.
   for (const double factor : {9.0, 0.35}) {
     Trial run;
+    run.options.correlated_share = 0.4;
     run.change_gnss = [=](core::GnssData& g) {
       for (auto& c : g.covariance) c *= factor;
     };
     const std::string w = outcry(run, lines_and_turns(), "the innovations are");
     EXPECT_NE(w.find(factor > 1 ? "better than stated" : "worse than stated"), std::string::npos) << factor << w;
   }
+}
+
+TEST(InsReport, FixesThatScatterMoreThanStated) {
+  Trial run;
+  run.change_gnss = [](core::GnssData& g) {
+    for (auto& c : g.covariance) c *= 0.25;
+  };
+  EXPECT_NE(outcry(run, lines_and_turns(), "times more than stated"), "");
+  const InsGnssResult r = run.on(lines_and_turns());
+  EXPECT_NEAR(r.report.find("fixes")->find("variance_factor")->as_number(), 4.0, 0.5);
 }
 
 TEST(InsReport, AHeadingThatIsNotKnown) {
