@@ -334,11 +334,11 @@ double moved(const SmootherRun& now, const std::vector<Estimate>& before, const 
 
 }  // namespace
 
-InsGnssResult smooth(const core::ImuData& imu_records, const core::GnssData& fixes, const core::ImuErrorModel& spec,
-                     const Vector3d& lever_arm, double lever_arm_sigma, const InsGnssOptions& options) {
+InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core::ImuErrorModel& spec, const Vector3d& lever_arm,
+                     double lever_arm_sigma, const InsGnssOptions& options) {
   require_plausible(imu_records);
   require_finite(fixes);
-  Trimmed records = trim(imu_records, fixes);
+  Trimmed records = trim(std::move(imu_records), std::move(fixes));
   const ImuPath path = make_path(std::move(records.imu), options.max_gap.value);
   const core::GnssData& gnss = records.gnss;
   const std::vector<Span> standstills =

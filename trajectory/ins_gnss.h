@@ -102,8 +102,8 @@ struct InsGnssResult {
 
 /// `lever_arm`: IMU centre to antenna, body, m, with the sigma of each component. Throws core::Error: no overlap in time, every fix
 /// rejected, attitude not to be found, a gap longer than max_gap, an IMU whose values cannot be (units, axes).
-InsGnssResult smooth(const core::ImuData& imu, const core::GnssData& gnss, const core::ImuErrorModel& spec,
-                     const Eigen::Vector3d& lever_arm, double lever_arm_sigma, const InsGnssOptions& options = {});
+InsGnssResult smooth(core::ImuData imu, core::GnssData gnss, const core::ImuErrorModel& spec, const Eigen::Vector3d& lever_arm,
+                     double lever_arm_sigma, const InsGnssOptions& options = {});
 
 }  // namespace swath::trajectory
 

@@ -84,8 +84,10 @@ class InsGnss : public OptionStage<InsGnssStageOptions> {
   void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
     const io::Antenna& antenna = context.survey.antenna;
     const Eigen::Vector3d lever_arm(antenna.lever_arm[0].value, antenna.lever_arm[1].value, antenna.lever_arm[2].value);
-    trajectory::InsGnssResult result =
-        trajectory::smooth(*context.imu, *context.gnss, context.survey.imu_spec.model(), lever_arm, antenna.lever_arm_sigma.value, options);
+    core::ImuData imu = *context.imu;
+    context.imu.reset();  // a record of hours is large, and no stage after this one reads it
+    trajectory::InsGnssResult result = trajectory::smooth(std::move(imu), *context.gnss, context.survey.imu_spec.model(), lever_arm,
+                                                          antenna.lever_arm_sigma.value, options);
     for (const auto& [key, value] : result.report.members())
       if (key != "warnings") findings[key] = value;
     if (const core::Value* warnings = result.report.find("warnings"); warnings && warnings->is_array())
