@@ -135,6 +135,7 @@ TEST(InsFilter, AnOutlierIsKeptOnTheGate) {
     NodeRecord record;
     FixOutcome outcome;
     f.predict(k, &record);
+    const StateMatrix before = f.covariance();
     f.update(k, &record, &outcome);
     if (made.nodes[k].fix < 0) continue;
     if (made.nodes[k].fix != 50) {
@@ -146,6 +147,9 @@ TEST(InsFilter, AnOutlierIsKeptOnTheGate) {
     EXPECT_NEAR(outcome.weight, made.problem->gate / outcome.nis, 1e-12);
     const Update& u = record.updates.at(0);
     EXPECT_NEAR(u.innovation.dot(u.weight * u.innovation), made.problem->gate, 1e-6 * made.problem->gate);
+    // The gain is the best one for the larger noise: then P - K H P is Joseph's form.
+    const StateMatrix expected = before - u.gain * u.design * before;
+    for (int i = 0; i < expected.rows(); ++i) EXPECT_NEAR(f.covariance()(i, i) / expected(i, i), 1.0, 1e-6) << i;
   }
   EXPECT_EQ(seen, 1u);
   const Eigen::Matrix<double, 9, 1> e = made.error_of(f.estimate());

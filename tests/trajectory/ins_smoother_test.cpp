@@ -36,6 +36,7 @@ struct Textbook {
     std::vector<Eigen::VectorXd> mean_before(n), mean_after(n);
     InsFilter filter = made.filter(&reference);
     Eigen::MatrixXd P = made.covariance();
+    Eigen::VectorXd x;
     for (size_t k = 0; k < n; ++k) {
       // The transition and noise over the interval before, not by the filter.
       const size_t from = k > 0 ? k - 1 : 0;
@@ -51,9 +52,12 @@ struct Textbook {
       before[k] = P;
       NodeRecord record;
       filter.predict(k, &record);
-      mean_before[k] = filter.estimate().minus(reference[k], l);
+      Estimate pushed = reference[from];
+      pushed.nav = way.nav();
+      pushed.fix *= std::exp(-std::abs(way.elapsed()) / made.problem->noise.fix_time);
+      x = (k == 0 ? Eigen::VectorXd(made.start().minus(reference[0], l)) : Eigen::VectorXd(phi[k] * x + pushed.minus(reference[k], l)));
+      mean_before[k] = x;
       filter.update(k, &record, nullptr);
-      Eigen::VectorXd x = mean_before[k];
       for (const Update& u : record.updates) {
         const Eigen::MatrixXd gain = P * u.design.transpose() * u.weight;
         x += gain * u.innovation;
