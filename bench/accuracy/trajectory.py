@@ -24,19 +24,20 @@ OUTAGES = {"20 s within a line": [(IN_LINE, 20)], "60 s within a line": [(396, 6
 EXPECTED = r"no GNSS|outage|without a fix"  # warnings that tell of the outage that there is
 
 
-def fly(name, seed, grade, stated=None, **options):
-    """One flight, simulated and smoothed: what the tables take from it. Its folder is deleted."""
+def fly(name, seed, grade, stated=None, settings=None, **options):
+    """One flight, simulated with `options` and smoothed with `settings`: what the tables take from it. Its folder is deleted."""
     folder = common.scratch(f"trajectory/{name}_{seed}")
     outages = options.pop("outages", None) or options.pop("gnss.outage", [])
-    settings = {**FLIGHT, "imu.grade": grade, "seed": seed, **options}
+    chosen = {**FLIGHT, "imu.grade": grade, "seed": seed, **options}
     if outages:
-        settings["gnss.outage"] = "[" + ", ".join(f'{{start = "{a} s", length = "{b} s"}}' for a, b in outages) + "]"
-    common.call("simulate", folder / "survey", "--quiet", *common.sets(settings))
+        chosen["gnss.outage"] = "[" + ", ".join(f'{{start = "{a} s", length = "{b} s"}}' for a, b in outages) + "]"
+    common.call("simulate", folder / "survey", "--quiet", *common.sets(chosen))
     survey = folder / "survey/survey.toml"
     if stated:
         survey.write_text(survey.read_text().replace(f'grade = "{grade}"', f'grade = "{stated}"'))
     output = folder / "out"
-    common.call("run", common.ROOT / "configs/trajectory.toml", "--survey", survey, "--output", output, "--quiet", "--set", "ins_gnss.plots=[]")
+    common.call("run", common.ROOT / "configs/trajectory.toml", "--survey", survey, "--output", output, "--quiet",
+                *common.sets({"ins_gnss.plots": "[]", **(settings or {})}))
     described = tomllib.loads(survey.read_text())
     lines = [tuple(float(line[k].split()[0]) for k in ("start", "end")) for line in described["line"]]
     report = navigation.findings(output)
@@ -95,8 +96,8 @@ def warning_table(results):
     for name, runs in results.items():
         kinds = {}
         for r in runs:
-            for w in {kind(w): w for w in r["warnings"]}.items():
-                kinds.setdefault(w[0], []).append(w[1])
+            for which, text in {kind(w): w for w in r["warnings"]}.items():
+                kinds.setdefault(which, []).append(text)
         rows += [[name, f"{len(texts)} of {len(runs)}", texts[0]] for texts in kinds.values()]
     common.table(["case", "runs", "warning (the first of its kind)"], rows or [["all", "0", "none"]])
 
@@ -108,13 +109,16 @@ def error_cells(runs):
 
 
 def grades(seeds):
-    results = pool([(grade, seed, grade, options) for grade, options in GRADES.items() for seed in range(1, seeds + 1)])
+    jobs = [(grade, seed, grade, options) for grade, options in GRADES.items() for seed in range(1, seeds + 1)]
+    given = {"settings": {"ins_gnss.correlated_share": 0.4}}
+    jobs += [("tactical, share given", seed, "tactical", given) for seed in range(1, seeds + 1)]
+    results = pool(jobs)
     head = ["grade", "seeds", "rms N, E, D cm", "rms roll, pitch, heading arcsec", "error/sigma N E D", "error/sigma roll pitch heading",
             "NEES (9)", "NIS (3)", "NIS in its band", "correlated share", "false warnings"]
     rows = []
     for grade, runs in results.items():
         many = np.array([r["nees"] for r in runs])
-        rows.append([grade, len(runs), *error_cells(runs), f"{many.mean():.2f}±{many.std(ddof=1) / np.sqrt(len(many)):.2f}",
+        rows.append([grade, len(runs), *error_cells(runs), f"{many.mean():.2f}±{many.std() / np.sqrt(max(1, len(many) - 1)):.2f}",
                      navigation.ranges([[r["nis"]] for r in runs]), sum(r["in_band"] for r in runs),
                      navigation.ranges([[r["share"]] for r in runs]), len(false_warnings(runs))])
     common.table(head, rows)
