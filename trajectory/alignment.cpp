@@ -24,6 +24,7 @@ constexpr double good_enough = 1.0 * core::degree;
 constexpr double most_bridged = 0.1;                                  // s of a window without IMU records
 constexpr double least_force_sigma = 0.02;                            // m/s^2: vibration, lever arm errors
 constexpr double still_rate = 0.5 * core::degree, still_force = 0.3;  // rad/s, m/s^2
+constexpr double most_moved = 0.5;                                    // m within a second
 constexpr double still_least = 2.0;                                   // s
 
 Matrix3d turn_z(double angle) { return Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix(); }
@@ -163,7 +164,8 @@ std::vector<Span> find_standstills(const ImuPath& path, const core::GnssData& gn
     const double rate_noise = spec.angular_random_walk.value / std::sqrt(step),
                  force_noise = spec.velocity_random_walk.value / std::sqrt(step);
     const double moved = (gnss.position[last] - gnss.position[fix]).norm();
-    const double sure = 0.03 + 3 * std::sqrt(gnss.covariance[fix].trace());
+    // Poor fixes cannot show standstill: what they allow for stays below a walk.
+    const double sure = std::min(most_moved, 0.03 + 3 * std::sqrt(gnss.covariance[fix].trace()));
     const double speed = gnss.has_velocity() && gnss.velocity[fix].allFinite() ? gnss.velocity[fix].norm() : 0.0;
     const bool still = spread(0) < still_rate + 2 * rate_noise && spread(1) < still_force + 2 * force_noise &&
                        (sum[0] / n).norm() < still_rate + bias && moved < sure && speed < 0.1;
@@ -200,14 +202,16 @@ Alignment align_still(const ImuPath& path, const Span& stretch, const Vector3d& 
   Alignment out;
   out.method = "still";
   out.time = 0.5 * (stretch.first + stretch.last);
-  out.ecef_R_body = triad(up, earth) * triad(body_up, rate).transpose();
+  // Gyros that print zeros feel nothing: any heading, with a sigma that says so.
+  const bool felt = body_up.cross(rate).norm() > 1e-9;
+  out.ecef_R_body = triad(up, earth) * triad(body_up, felt ? rate : Vector3d(body_up.unitOrthogonal())).transpose();
   const auto square = [](double v) { return v * v; };
   const double tilt =
       square(spec.accelerometer_bias.value / gravity.norm()) + square(spec.velocity_random_walk.value) / length / gravity.squaredNorm();
   const double level_rate = (earth - up * up.dot(earth)).norm();
   const double rate_variance =
       square(spec.gyro_bias.value) + square(spec.gyro_drift.value) + square(spec.angular_random_walk.value) / length;
-  const double heading = std::min(square(core::pi), rate_variance / square(std::max(level_rate, 1e-9)));
+  const double heading = felt ? std::min(square(core::pi), rate_variance / square(std::max(level_rate, 1e-9))) : square(core::pi);
   out.covariance = (tilt + 1e-8) * (Matrix3d::Identity() - up * up.transpose()) + (heading + 1e-8) * up * up.transpose();
   out.gyro_bias = rate - out.ecef_R_body.transpose() * earth;
   return out;
@@ -218,7 +222,6 @@ std::optional<Alignment> align_moving(const ImuPath& path, const core::GnssData&
   std::optional<Alignment> best;
   if (gnss.size() < 4) return best;
   const double from = gnss.time.front(), until = std::min(gnss.time.back(), from + latest);
-  // Fixes denser than 5 Hz tell no more.
   for (double t = from; t == from || t + 0.5 * window <= until; t += hop) {
     const auto first = static_cast<size_t>(std::lower_bound(gnss.time.begin(), gnss.time.end(), t) - gnss.time.begin());
     auto last = static_cast<size_t>(std::upper_bound(gnss.time.begin(), gnss.time.end(), t + window) - gnss.time.begin());

@@ -96,12 +96,16 @@ void keep(std::vector<T>& v, size_t first, size_t last) {
 }
 
 Trimmed trim(core::ImuData imu, core::GnssData gnss) {
-  if (imu.size() < 10) throw core::Error("too few IMU records: " + std::to_string(imu.size()), "IMU records");
-  if (gnss.size() < 4) throw core::Error("too few fixes: " + std::to_string(gnss.size()), "GNSS fixes");
+  if (imu.size() < 10) throw core::Error("too few IMU records: " + std::to_string(imu.size()), "IMU records", "give a longer record");
+  if (gnss.size() < 4) throw core::Error("too few fixes: " + std::to_string(gnss.size()), "GNSS fixes", "four are the least");
   const double begin = imu.time.front() - imu.step.front(), end = imu.time.back();
   const auto first = static_cast<size_t>(std::lower_bound(gnss.time.begin(), gnss.time.end(), begin) - gnss.time.begin());
   const auto last = static_cast<size_t>(std::upper_bound(gnss.time.begin(), gnss.time.end(), end) - gnss.time.begin());
-  if (last < first + 4)
+  if (last > first && last < first + 4)
+    throw core::Error("only " + std::to_string(last - first) + " fixes lie within the IMU's record from " + seconds(begin) + " to " +
+                          seconds(end) + " s GPS time, four are the least",
+                      "trajectory.ins_gnss", "give longer records");
+  if (last <= first)
     throw core::Error("IMU and GNSS do not overlap: IMU from " + seconds(begin) + " to " + seconds(end) + ", fixes from " +
                           seconds(gnss.time.front()) + " to " + seconds(gnss.time.back()) + " s GPS time",
                       "trajectory.ins_gnss", "check the time scales, weeks and dates of both");
@@ -174,10 +178,11 @@ Alignment align(const ImuPath& path, const core::GnssData& gnss, const core::Imu
   }
   if (options.alignment == AlignmentMethod::still && !still)
     throw core::Error("no standstill to align on", "trajectory.ins_gnss", "choose alignment = \"moving\" or \"given\"");
-  if (still && (options.alignment == AlignmentMethod::still || still->worst_sigma() < compass)) return *still;
-  const std::optional<Alignment> moving = align_moving(path, gnss, lever, spec, still ? still->gyro_bias : Vector3d::Zero());
+  const bool automatic = options.alignment == AlignmentMethod::automatic;
+  if (still && (options.alignment == AlignmentMethod::still || (automatic && still->worst_sigma() < compass))) return *still;
+  const std::optional<Alignment> moving = align_moving(path, gnss, lever, spec, still && automatic ? still->gyro_bias : Vector3d::Zero());
   if (!moving)
-    throw core::Error("the fixes are too few or too far apart to find the attitude", "trajectory.ins_gnss",
+    throw core::Error("the fixes are too few or too far apart, or the IMU has too many gaps, to find the attitude", "trajectory.ins_gnss",
                       "state it: alignment = \"given\", with given.roll, given.pitch and given.heading");
   return *moving;
 }
@@ -295,6 +300,7 @@ bool adapt_fixes(Problem& problem, const std::vector<FixOutcome>& outcomes) {
 /// Doubles the IMU's noise where the innovations are too large and follow one another: more motion than the IMU tells of, as under
 /// vibration. (White noise of the fixes makes them large too, but not alike.) True where it did.
 bool adapt_imu(Problem& problem, const std::vector<FixOutcome>& outcomes) {
+  if (problem.noise.angle == 0 && problem.noise.velocity == 0) return false;  // stated as perfect
   double alike = 0, squares = 0, n = 0;
   Vector3d before = Vector3d::Zero();
   for (size_t k = 0; k < problem.nodes.size(); ++k) {
@@ -327,6 +333,7 @@ double moved(const SmootherRun& now, const std::vector<Estimate>& before, const 
   double most = 0;
   for (size_t k = 0; k < before.size(); ++k) {
     const StateVector e = now.nodes[k].estimate.minus(before[k], l);
+    if (!e.allFinite()) return std::numeric_limits<double>::infinity();
     for (int i = 0; i < 9; ++i) most = std::max(most, std::abs(e[i]) / std::max(1e-12, now.nodes[k].sigma[i]));
   }
   return most;
@@ -374,17 +381,19 @@ InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core
     for (int i = 0; i < most_iterations && adapt_fixes(problem, run_forward(problem, about(run.nodes.front()))); ++i) {
     }
   int iterations = 1;
-  for (double shift = std::numeric_limits<double>::infinity(); shift > settled && iterations < most_iterations; ++iterations) {
+  double shift = std::numeric_limits<double>::infinity();
+  for (; shift > settled && iterations < most_iterations; ++iterations) {
     refer();
     run = run_smoother(problem, about(run.nodes.front()));
     shift = moved(run, reference, layout);
   }
-  if (!run.nodes.front().estimate.nav.position.allFinite())
+  if (!std::isfinite(shift))
     throw core::Error("the filter diverged", "trajectory.ins_gnss", "check units, axes, lever arm and time scales");
   const std::vector<FilterNode> backward = run_backward(problem, about(run.nodes.back()));
 
   InsGnssResult result;
-  const InsFindings findings{problem, run, backward, spec, alignment, lever_arm, lever_arm_sigma, standstills, iterations};
+  const InsFindings findings{
+      problem, run, backward, spec, alignment, lever_arm, lever_arm_sigma, standstills, iterations, shift > settled ? shift : 0.0};
   result.series = series_of(findings);
   size_t rejected = 0;
   for (const double w : result.series.weight) rejected += w < 1.0;

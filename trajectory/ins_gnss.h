@@ -27,9 +27,9 @@ struct GivenAttitude {
 
 template <class V>
 void describe(GivenAttitude& a, V& v) {
-  v.option("roll", a.roll, "Roll at the first IMU record.");
-  v.option("pitch", a.pitch, "Pitch at the first IMU record.");
-  v.option("heading", a.heading, "Heading at the first IMU record.");
+  v.option("roll", a.roll, "Roll at the first IMU record used, which lies at most 120 s before the first fix.");
+  v.option("pitch", a.pitch, "Pitch at the first IMU record used, which lies at most 120 s before the first fix.");
+  v.option("heading", a.heading, "Heading at the first IMU record used, which lies at most 120 s before the first fix.");
   v.option("sigma_roll_pitch", a.sigma_roll_pitch, core::above(0), "Sigma of roll and of pitch.");
   v.option("sigma_heading", a.sigma_heading, core::above(0), "Sigma of heading.");
 }
@@ -55,7 +55,7 @@ template <class V>
 void describe(InsGnssOptions& o, V& v) {
   v.option("alignment", o.alignment,
            "Attitude to begin with: given; still (levelling and gyrocompassing on the ground); moving (from GNSS in motion); automatic.");
-  v.table("given", o.given, "Attitude at the first IMU record (alignment given).");
+  v.table("given", o.given, "Attitude to begin with (alignment given).");
   v.option("scale_factors", o.scale_factors, "Estimate scale factors of gyros and accelerometers.");
   v.option("lever_arm", o.lever_arm, "Estimate the antenna's lever arm about its stated value and sigma.");
   v.option("gnss_latency", o.gnss_latency, "Estimate a constant time offset of the GNSS fixes.");
@@ -73,7 +73,8 @@ void describe(InsGnssOptions& o, V& v) {
   v.option("non_holonomic_sigma", o.non_holonomic_sigma, core::above(0), "Sigma of the velocities across and up (non_holonomic).");
   v.option("wheel_point", o.wheel_point, "IMU centre to the point that does not slip sideways, the rear axle: forward, right, down.");
   v.option("max_gap", o.max_gap, core::within(0, 30), "Longest gap in the IMU records that is bridged; a longer one is an error.");
-  v.option("output_rate", o.output_rate, core::within(1, 2000), "Records per second of the trajectory, where the IMU has more.");
+  v.option("output_rate", o.output_rate, core::within(20, 2000),
+           "Records per second of the trajectory, where the IMU has more; georeferencing interpolates between these.");
 }
 
 /// Numbers over time for the report and its plots. Vectors of one group have one length.

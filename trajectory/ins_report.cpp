@@ -42,7 +42,7 @@ double median(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
-/// A sensor constant at the end of the smoothing, with the sigma it was stated with.
+/// A sensor constant at the middle of the record, with the sigma it was stated with.
 struct Constant {
   const char* name;
   const char* unit_name;
@@ -85,6 +85,11 @@ void judge_constants(const std::vector<Constant>& all, Value& warnings) {
   // Chi-square by Wilson and Hilferty: standard normal of the cube root.
   if (n < 3) return;
   const double z = (std::cbrt(sum / n) - (1 - 2 / (9 * n))) / std::sqrt(2 / (9 * n));
+  if (z > 3.1)
+    warnings.push(
+        text("the %.0f observed IMU constants are %.2f times their stated sigmas (rms): the IMU is worse than stated (imu_spec); "
+             "printed sigmas of the trajectory are too small",
+             n, std::sqrt(sum / n)));
   if (z < -3.5)
     warnings.push(
         text("the %.0f observed IMU constants are only %.3f of their stated sigmas (rms): the IMU is better than stated (imu_spec); "
@@ -158,7 +163,7 @@ core::Value report_of(const InsFindings& f, const SmootherSeries& s) {
   if (!f.problem.path.gaps.empty()) {
     double longest = 0;
     for (const BridgedGap& g : f.problem.path.gaps) longest = std::max(longest, g.length);
-    warnings.push(text("%.0f gaps in the IMU records, the longest of %.4g s, are bridged; they hold no trajectory",
+    warnings.push(text("%.0f gaps in the IMU records, the longest of %.4g s, are bridged; those over 0.1 s hold no trajectory",
                        static_cast<double>(f.problem.path.gaps.size()), longest));
   }
 
@@ -277,7 +282,7 @@ core::Value report_of(const InsFindings& f, const SmootherSeries& s) {
     one["sigma"] = list(sigma, 1);
     for (Eigen::Index i = 0; i < 3; ++i) {
       const double spread = std::sqrt(std::max(1e-12, f.lever_arm_sigma * f.lever_arm_sigma - sigma[i] * sigma[i]));
-      if (std::abs(change[i]) > 3.3 * spread)
+      if (sigma[i] < 0.95 * f.lever_arm_sigma && std::abs(change[i]) > 3.3 * spread)
         warnings.push(std::string("the antenna's lever arm ") + std::array{"forward", "right", "down"}[static_cast<size_t>(i)] +
                       text(" is estimated at %.3f m (sigma %.3f m) but stated as %.3f m: check antenna.lever_arm, its sign and its sigma",
                            last.estimate.lever[i], sigma[i], f.lever_arm[i]));
@@ -304,14 +309,17 @@ core::Value report_of(const InsFindings& f, const SmootherSeries& s) {
 
   // Sigmas of the product.
   Vector3d position = Vector3d::Zero(), attitude = Vector3d::Zero(), worst_position = Vector3d::Zero(), worst_attitude = Vector3d::Zero();
-  for (const SmoothedNode& node : f.run.nodes) {
+  double count = 0;
+  for (size_t k = 0; k < nodes.size(); ++k) {
+    if (f.problem.path.bridged_within(nodes[k].time - 1e-6, nodes[k].time + 1e-6).seconds > 0) continue;  // no trajectory there
+    const SmoothedNode& node = f.run.nodes[k];
+    ++count;
     const auto c = core::CovarianceSeries::unpack(node.covariance).diagonal().cwiseMax(0.0).eval();
     position += c.head<3>();
     attitude += c.tail<3>();
     worst_position = worst_position.cwiseMax(c.head<3>().cwiseSqrt());
     worst_attitude = worst_attitude.cwiseMax(c.tail<3>().cwiseSqrt());
   }
-  const auto count = static_cast<double>(f.run.nodes.size());
   Value& sigma = v["sigma"];
   sigma["rms_ned_m"] = list((position / count).cwiseSqrt(), 1);
   sigma["largest_ned_m"] = list(worst_position, 1);
@@ -320,10 +328,13 @@ core::Value report_of(const InsFindings& f, const SmootherSeries& s) {
   // Heading: what smoothing took away.
   double heading = 0;
   for (const double h : s.heading_forward) heading += h * h;
-  v["heading_smoothed_away_rms_arcsec"] = std::sqrt(heading / count) / arcsec;
+  v["heading_smoothed_away_rms_arcsec"] = std::sqrt(heading / static_cast<double>(nodes.size())) / arcsec;
   if (std::sqrt(attitude.z() / count) > 0.2 * core::degree)
     warnings.push(text("the heading is known to %.2f deg only (rms sigma): the flight has too few changes of speed or course for this IMU",
                        std::sqrt(attitude.z() / count) / core::degree));
+  if (f.unsettled > 0)
+    warnings.push(text("the smoother had not settled after %.0f rounds: the trajectory still moved by %.2f sigmas",
+                       static_cast<double>(f.iterations), f.unsettled));
   v["warnings"] = std::move(warnings);
   return v;
 }

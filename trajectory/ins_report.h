@@ -18,6 +18,7 @@ struct InsFindings {
   double lever_arm_sigma;     ///< m
   const std::vector<Span>& standstills;
   int iterations;
+  double unsettled;  ///< sigmas by which the last iteration still moved the trajectory; 0: it had settled
 };
 
 SmootherSeries series_of(const InsFindings& findings);

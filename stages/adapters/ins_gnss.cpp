@@ -76,9 +76,10 @@ class InsGnss : public OptionStage<InsGnssStageOptions> {
   }
   void check(const Context& context) const override {
     const core::ImuSpec& spec = context.survey.imu_spec;
-    if (spec.grade == core::ImuGrade::unstated && !(spec.angular_random_walk && spec.velocity_random_walk))
+    if (spec.grade == core::ImuGrade::unstated &&
+        !(spec.angular_random_walk && spec.velocity_random_walk && spec.gyro_bias && spec.accelerometer_bias))
       throw core::usage_error("trajectory.ins_gnss: the survey does not say how good the IMU is", context.survey.name,
-                              "state imu_spec.grade, or the values of its data sheet in [imu_spec]");
+                              "state imu_spec.grade, or in [imu_spec] at least the two random walks and the two biases of its data sheet");
   }
 
   void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
