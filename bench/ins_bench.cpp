@@ -10,9 +10,11 @@
 #include <cstdlib>
 #include <ctime>
 #include <random>
+#include <utility>
 
 #include "core/error.h"
 #include "simulate/inertial.h"
+#include "simulate/planned_flight.h"
 #include "trajectory/ins_gnss.h"
 
 namespace {
@@ -23,6 +25,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double start = 1.4e9;                         // GPS time, s
+constexpr double imu_step = 0.005, gnss_step = 0.2;     // s
 constexpr double limit_seconds = 20.0, limit_gb = 1.0;  // for an hour, on one core
 constexpr double horizontal = 0.025, vertical = 0.045;  // m, of the fixes; 40 % of the variance correlated over 120 s
 const Vector3d lever(-0.412, 0.127, -1.236);
@@ -41,7 +44,7 @@ core::ImuData imu_of(const simulate::Flight& flight, double seconds, const core:
   const Vector3d one = Vector3d::Ones();
   const Vector3d gyro_bias = m.gyro_bias.value * random.vector(), force_bias = m.accelerometer_bias.value * random.vector();
   const Vector3d gyro_scale = m.gyro_scale.value * random.vector(), force_scale = m.accelerometer_scale.value * random.vector();
-  const double dt = simulate::imu_step, root = std::sqrt(dt);
+  const double dt = imu_step, root = std::sqrt(dt);
   const auto records = static_cast<size_t>(seconds / dt);
   for (size_t k = 1; k <= records; ++k) {
     const double t = static_cast<double>(k) * dt;
@@ -57,12 +60,12 @@ core::ImuData imu_of(const simulate::Flight& flight, double seconds, const core:
 
 core::GnssData gnss_of(const simulate::Flight& flight, double seconds, Random& random) {
   core::GnssData out;
-  const double kept = std::exp(-simulate::gnss_step / 120.0), fresh = std::sqrt(1 - kept * kept);
+  const double kept = std::exp(-gnss_step / 120.0), fresh = std::sqrt(1 - kept * kept);
   const Vector3d sigma(horizontal, horizontal, vertical);
   Vector3d slow = random.vector();
-  const auto fixes = static_cast<size_t>(seconds / simulate::gnss_step);
+  const auto fixes = static_cast<size_t>(seconds / gnss_step);
   for (size_t k = 0; k <= fixes; ++k) {
-    const double t = static_cast<double>(k) * simulate::gnss_step;
+    const double t = static_cast<double>(k) * gnss_step;
     const simulate::Pose pose = flight.pose(t);
     const Matrix3d ned = core::ecef_R_ned(pose.position.latitude, pose.position.longitude);
     slow = kept * slow + fresh * random.vector();
@@ -90,29 +93,30 @@ int main(int argc, char** argv) try {
   options.line_length = core::Metres(3000);
   options.cross_lines = 0;
   options.lines = 2 + static_cast<int>(seconds / 120.0);
-  const simulate::Flight flight(options, {48 * core::degree, 10.5 * core::degree, 600.0}, 950.0,
-                                simulate::plan_lines(options, {}, core::degrees(20).value, 0.02), 5.2, 1);
+  const simulate::PlannedFlight flight(options, {48 * core::degree, 10.5 * core::degree, 600.0}, 950.0,
+                                       simulate::plan_lines(options, {}, core::degrees(20).value, 0.02), 5.2, 1);
   if (flight.duration() < seconds) throw core::Error("the flight is too short");
   const core::ImuErrorModel model = core::error_model_of(core::ImuGrade::tactical);
   Random random;
-  const core::ImuData imu = imu_of(flight, seconds, model, random);
-  const core::GnssData gnss = gnss_of(flight, seconds, random);
+  core::ImuData imu = imu_of(flight, seconds, model, random);
+  core::GnssData gnss = gnss_of(flight, seconds, random);
   const double before = peak_gb();
+  const size_t records = imu.size(), fixes = gnss.size();
 
   const auto a = Clock::now();
   const std::clock_t cpu = std::clock();
-  const trajectory::InsGnssResult result = trajectory::smooth(imu, gnss, model, lever, 0.02);
+  const trajectory::InsGnssResult result = trajectory::smooth(std::move(imu), std::move(gnss), model, lever, 0.02);
   const double cpu_seconds = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
   const double wall = std::chrono::duration<double>(Clock::now() - a).count();
   const double allowed = limit_seconds * hours, peak = peak_gb();
   const core::Value& span = *result.report.find("span");
-  std::printf("%.2f h: %zu IMU records, %zu fixes, %lld nodes, %lld passes\n", hours, imu.size(), gnss.size(),
+  std::printf("%.2f h: %zu IMU records, %zu fixes, %lld nodes, %lld passes\n", hours, records, fixes,
               static_cast<long long>(span.find("nodes")->as_int()), static_cast<long long>(span.find("iterations")->as_int()));
   std::printf("cpu %.2f s, wall %.2f s of %.0f s allowed: %.2f and %.2f of it\n", cpu_seconds, wall, allowed, cpu_seconds / allowed,
               wall / allowed);
   std::printf("peak memory %.3f GB (%.3f GB before, of the records): %.2f of the %.0f GB for an hour\n", peak, before, peak / limit_gb,
               limit_gb);
-  return result.trajectory.size() == imu.size() ? 0 : 1;
+  return result.trajectory.size() == records ? 0 : 1;
 } catch (const core::Error& e) {
   std::fprintf(stderr, "%s\n", e.text().c_str());
   return 1;

@@ -82,7 +82,7 @@ struct SmootherSeries {
   // Each node of the smoother.
   std::vector<double> time;                                 ///< GPS time, s
   std::vector<Eigen::Vector3d> separation;                  ///< forward minus backward position, north east down, m; NaN where none
-  std::vector<Eigen::Vector3d> separation_sigma;            ///< its sigma, m
+  std::vector<Eigen::Vector3d> separation_sigma;            ///< at most; errors that both passes share do not show, m
   std::vector<Eigen::Vector3d> attitude_separation;         ///< roll pitch heading, rad
   std::vector<double> heading_forward;                      ///< heading of the forward filter minus the smoothed one, rad
   std::vector<Eigen::Vector3d> gyro_bias, gyro_bias_sigma;  ///< rad/s
