@@ -46,7 +46,7 @@ class Scratch {
     return files.size() == 1 ? numbered(stem, 0, ending) : stem + "_*" + ending;
   }
   static std::string numbered(const std::string& stem, size_t i, const std::string& ending) {
-    char digits[8];
+    char digits[24];
     std::snprintf(digits, sizeof digits, "_%03zu", i + 1);
     return stem + digits + ending;
   }
