@@ -24,7 +24,7 @@ constexpr double good_enough = 1.0 * core::degree;
 constexpr double most_bridged = 0.1;                                  // s of a window without IMU records
 constexpr double least_force_sigma = 0.02;                            // m/s^2: vibration, lever arm errors
 constexpr double still_rate = 0.5 * core::degree, still_force = 0.3;  // rad/s, m/s^2
-constexpr double most_moved = 0.5;                                    // m within a second
+constexpr double most_moved = 3.0;                                    // m within a second
 constexpr double still_least = 2.0;                                   // s
 
 Matrix3d turn_z(double angle) { return Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix(); }
@@ -164,7 +164,7 @@ std::vector<Span> find_standstills(const ImuPath& path, const core::GnssData& gn
     const double rate_noise = spec.angular_random_walk.value / std::sqrt(step),
                  force_noise = spec.velocity_random_walk.value / std::sqrt(step);
     const double moved = (gnss.position[last] - gnss.position[fix]).norm();
-    // Poor fixes cannot show standstill: what they allow for stays below a walk.
+    // Poor fixes cannot show standstill: what they allow for stays below a slow flight.
     const double sure = std::min(most_moved, 0.03 + 3 * std::sqrt(gnss.covariance[fix].trace()));
     const double speed = gnss.has_velocity() && gnss.velocity[fix].allFinite() ? gnss.velocity[fix].norm() : 0.0;
     const bool still = spread(0) < still_rate + 2 * rate_noise && spread(1) < still_force + 2 * force_noise &&

@@ -3,6 +3,7 @@
 // The first pass feeds corrections back; the next ones are linearised about the smoothed trajectory before (Bell 1994: the iterated
 // smoother is Gauss and Newton's method), so that what the filter did not know in its first minutes leaves no trace. Deviation: the bias
 // drift is a random walk (see ProcessNoise).
+// Over 400 lines: the steps from records to the smoothed run stand in one place, each a short function.
 #include "trajectory/ins_gnss.h"
 
 #include <algorithm>

@@ -168,6 +168,18 @@ class Navigation(Case):
         for key in ("mean_east_m", "mean_north_m", "mean_up_m"):
             self.assertAlmostEqual(again["points"][key], found["points"][key], delta=1e-5)
 
+    def test_events_on_one_time_scale_have_positions(self):
+        survey = simulate(self.folder / "events", ["output.laser=false", "output.trajectory=none", "events.file=true",
+                                                   "events.clock.before=1500 s"])
+        out = self.folder / "placed"
+        done = swath("run", SOURCE / "configs" / "events.toml", "--survey", survey / "survey.toml", "--output", out, "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(out / "events.csv", newline="") as text:
+            placed = list(csv.DictReader(text))
+        self.assertGreater(len(placed), 10)
+        self.assertEqual({row["flags"] for row in placed}, {""})
+        self.assertTrue((out / "leave_one_out.png").exists())
+
     def test_a_survey_without_records_of_the_sensors_is_refused(self):
         survey = simulate(self.folder / "short", SMALLEST) / "survey.toml"
         self.assert_bad_usage(survey, r"readers\.imu", r"\[\[imu\]\]", "readers.trajectory", config=FULL)
