@@ -85,7 +85,7 @@ void judge_constants(const std::vector<Constant>& all, Value& warnings) {
   // Chi-square by Wilson and Hilferty: standard normal of the cube root.
   if (n < 3) return;
   const double z = (std::cbrt(sum / n) - (1 - 2 / (9 * n))) / std::sqrt(2 / (9 * n));
-  if (z > 3.1)
+  if (z > 5.0)  // estimates that lean on one another scatter more than independent ones
     warnings.push(
         text("the %.0f observed IMU constants are %.2f times their stated sigmas (rms): the IMU is worse than stated (imu_spec); "
              "printed sigmas of the trajectory are too small",
