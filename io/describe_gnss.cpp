@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/geodesy.h"
+#include "core/statistics.h"
 #include "core/time.h"
 #include "io/binary_file.h"
 #include "io/gnss_file.h"
@@ -39,7 +40,7 @@ void put_fixes(const core::GnssData& g, Value& out) {
   out["seconds"] = std::round((g.time.back() - g.time.front()) * 1e3) / 1e3;
   std::vector<double> steps;
   for (size_t k = 1; k < g.size(); ++k) steps.push_back(g.time[k] - g.time[k - 1]);
-  if (!steps.empty()) out["rate_hz"] = std::round(1e3 / median_of(steps)) / 1e3;
+  if (!steps.empty()) out["rate_hz"] = std::round(1e3 / core::median(steps)) / 1e3;
   std::array<double, 3> low, high;
   low.fill(std::numeric_limits<double>::infinity());
   high.fill(-low[0]);
@@ -59,8 +60,8 @@ void put_fixes(const core::GnssData& g, Value& out) {
   out["latitude_deg"] = interval(low[0], high[0]);
   out["longitude_deg"] = interval(low[1], high[1]);
   out["ellipsoidal_height_m"] = interval(low[2], high[2]);
-  out["median_sigma_horizontal_m"] = median_of(horizontal);
-  out["median_sigma_height_m"] = median_of(vertical);
+  out["median_sigma_horizontal_m"] = core::median(horizontal);
+  out["median_sigma_height_m"] = core::median(vertical);
   out["velocities"] = g.has_velocity();
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/frames.h"
 #include "core/geodesy.h"
+#include "core/statistics.h"
 #include "core/time.h"
 #include "io/sbet.h"
 
@@ -73,9 +74,7 @@ void describe_times(const std::vector<double>& time, Value& out, Value& warnings
   if (time.front() >= 0 && time.back() < 2 * core::seconds_per_week)
     warnings.push("times look like seconds of the GPS week (or of a day); the file does not say of which");
   if (steps.empty()) return;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  const double median = *middle;
+  const double median = core::median(steps);
   out["rate_hz"] = std::round(1e3 / median) / 1e3;
   size_t gaps = 0;
   double longest = 0;

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/geodesy.h"
+#include "core/statistics.h"
 #include "io/record_times.h"
 
 namespace swath::io {
@@ -151,7 +152,7 @@ core::GnssData FixList::finish() {
   for (const auto& [q, n] : by) tally_.count("GNSS fixes: " + std::string(core::Choices<FixQuality>::names[static_cast<size_t>(q)]), n);
   std::vector<double> steps, from, to;
   for (size_t k = 1; k < out_.size(); ++k) steps.push_back(out_.time[k] - out_.time[k - 1]);
-  const double step = median_of(steps);
+  const double step = core::median(steps);
   for (size_t k = 1; k < out_.size(); ++k) {
     if (steps[k - 1] > gap_steps * step) {
       from.push_back(out_.time[k - 1]);

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "core/error.h"
+#include "core/statistics.h"
 #include "io/imu_file.h"
 #include "io/record_times.h"
 
@@ -93,7 +94,7 @@ std::string axes_hint(const ImuFile& f, size_t up, bool positive) {
 }
 
 void check_force(const Seconds& s, const ImuFile& file, double step, const std::string& name, core::Tally& tally) {
-  const double length = median_of(s.force_length), ratio = length / gravity;
+  const double length = core::median(s.force_length), ratio = length / gravity;
   const std::string found = text("median specific force %.4g m/s2, gravity is %.2f m/s2", length, gravity);
   if (std::abs(ratio - 1) > near_gravity) {
     const std::string hint = unit_hint(ratio, file, step);
@@ -101,7 +102,7 @@ void check_force(const Seconds& s, const ImuFile& file, double step, const std::
       throw core::Error(found, name, hint.empty() ? "check kind, acceleration_unit and accelerometer_factor" : hint);
     tally.count("IMU files whose specific force is not gravity in the median", name + ": " + found);
   }
-  const Vector3d f(median_of(s.force[0]), median_of(s.force[1]), median_of(s.force[2]));
+  const Vector3d f(core::median(s.force[0]), core::median(s.force[1]), core::median(s.force[2]));
   const double tilt = core::to_degrees(std::acos(std::clamp(-f.z() / f.norm(), -1.0, 1.0)));
   const std::string vector = text("median specific force (%.2f, %.2f, %.2f) m/s2 forward, right, down", f.x(), f.y(), f.z());
   if (tilt > side) {
@@ -115,7 +116,7 @@ void check_force(const Seconds& s, const ImuFile& file, double step, const std::
 }
 
 void check_rate(const Seconds& s, const std::string& name, core::Tally& tally) {
-  const double rate = median_of(s.rate);
+  const double rate = core::median(s.rate);
   const std::string found = text("median over seconds %.3g rad/s = %.3g deg/s", rate, core::to_degrees(rate));
   if (rate > impossible)
     throw core::Error("angular rates no vehicle has: " + found, name,

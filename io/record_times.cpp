@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/statistics.h"
 #include "core/time.h"
 #include "core/units.h"
 
@@ -25,12 +26,6 @@ std::vector<double> differences(const std::vector<double>& t) {
   std::vector<double> d(t.size() > 1 ? t.size() - 1 : 0);
   for (size_t k = 0; k < d.size(); ++k) d[k] = t[k + 1] - t[k];
   return d;
-}
-
-double quantile(std::vector<double> values, double share) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
 }
 
 /// A difference that is long only because record k-1 was stamped early or k late: soon after as many records have come as should have.
@@ -75,21 +70,15 @@ void smooth(std::vector<double>& t, size_t first, size_t last, double step, doub
 
 }  // namespace
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return std::nan("");
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Cadence settle_times(std::vector<double>& t, const CadenceRule& rule, const std::string& name) {
   Cadence out;
   const std::vector<double> d = differences(t);
   if (d.empty() && !rule.step) throw core::Error("one record alone has no step", name, "state the rate of the records");
-  const double middle = d.empty() ? *rule.step : median_of(d);
+  const double middle = d.empty() ? *rule.step : core::median(d);
   std::vector<double> deviation;
   for (const double v : d) deviation.push_back(std::abs(v - middle));
-  const double common = d.empty() ? 0.0 : std::clamp(2 * quantile(deviation, 0.99), least_strict_gap * middle, (missing - 1) * middle);
+  const double common =
+      d.empty() ? 0.0 : std::clamp(2 * core::quantile(deviation, 0.99), least_strict_gap * middle, (missing - 1) * middle);
   double sum = 0, squares = 0;
   deviation.clear();
   for (const double v : d)
@@ -112,7 +101,7 @@ Cadence settle_times(std::vector<double>& t, const CadenceRule& rule, const std:
   out.smoothed = rule.smooth && out.jitter > regular * out.step;
   double longest = missing * out.step;
   if (rule.strict && !deviation.empty())
-    longest = out.step * (1 + std::clamp(2 * quantile(deviation, 0.99) / out.step, least_strict_gap, missing - 1));
+    longest = out.step * (1 + std::clamp(2 * core::quantile(deviation, 0.99) / out.step, least_strict_gap, missing - 1));
   out.restarts = gaps_of(t, out.step, longest, out.smoothed);
   if (!out.smoothed) {
     out.largest_jitter = deviation.empty() ? 0.0 : *std::max_element(deviation.begin(), deviation.end());

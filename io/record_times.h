@@ -10,9 +10,6 @@
 
 namespace swath::io {
 
-/// Middle of the values (the upper one of two); NaN where there is none.
-double median_of(std::vector<double> values);
-
 /// How a series of times advances.
 struct Cadence {
   double step = 0.0;             ///< mean of the differences, those of gaps excepted, s

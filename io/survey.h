@@ -10,6 +10,7 @@
 #include "core/option.h"
 #include "core/sensor.h"
 #include "core/time.h"
+#include "io/control.h"
 #include "io/navigation.h"
 #include "io/time_tags.h"
 
@@ -199,6 +200,7 @@ struct Survey {
   Rinex rinex;
   std::vector<ClockLog> clock;
   std::vector<EventFile> events;
+  std::vector<ControlFile> control;
   std::vector<PointFile> points;
   TimeTags line_time;
   std::vector<FlightLine> lines;
@@ -232,6 +234,7 @@ void describe(Survey& s, V& v) {
   v.table("rinex", s.rinex, "Raw GNSS observations of rover and base stations.");
   v.tables("clock", s.clock, "Logs of the computer's clock.");
   v.tables("event", s.events, "Events to be placed on the time scale and the trajectory.");
+  v.tables("control", s.control, "Surveyed points and targets.");
   v.tables("points", s.points, "Point clouds in map coordinates, in place of raw records.");
   v.table("line_time", s.line_time, "Time scale of the lines' start and end.");
   v.tables("line", s.lines, "Flight lines.");

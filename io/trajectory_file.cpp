@@ -7,6 +7,7 @@
 #include "core/crs.h"
 #include "core/error.h"
 #include "core/frames.h"
+#include "core/statistics.h"
 #include "io/csd.h"
 #include "io/delimited.h"
 #include "io/sbet.h"
@@ -169,9 +170,7 @@ void check_trajectory(TrajectoryData& t, const std::string& name, core::Tally& t
       steps.push_back(step);
   }
   if (!steps.empty()) {
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    const double gap = std::max(gap_steps * *middle, gap_seconds);
+    const double gap = std::max(gap_steps * core::median(std::move(steps)), gap_seconds);
     for (size_t i = 1; i < t.size(); ++i)
       if (const double step = t.time[i] - t.time[i - 1]; step > gap)
         tally.count("trajectory gaps", where(i) + ": " + core::format_number(std::round(step * 1e3) / 1e3) + " s before it");

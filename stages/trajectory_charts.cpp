@@ -8,6 +8,7 @@
 
 #include "core/frames.h"
 #include "core/geodesy.h"
+#include "core/statistics.h"
 #include "core/time.h"
 
 namespace swath::stages {
@@ -271,10 +272,8 @@ Chart Charts::heading() const {
   c.panels.push_back(all);
   if (size.empty()) return c;
   // While the filter still aligns it is far off: a second look at the rest of the flight.
-  const size_t usual = static_cast<size_t>(aligned_share * static_cast<double>(size.size() - 1));
-  std::nth_element(size.begin(), size.begin() + static_cast<std::ptrdiff_t>(usual), size.end());
   constexpr double far = 5.0;
-  if (*std::max_element(size.begin(), size.end()) > far * size[usual]) {
+  if (*std::max_element(size.begin(), size.end()) > far * core::quantile(size, aligned_share)) {
     all.title = "The same, enlarged";
     all.y_share = aligned_share;
     c.panels.push_back(std::move(all));

@@ -8,6 +8,7 @@
 
 #include "core/frames.h"
 #include "core/geodesy.h"
+#include "core/statistics.h"
 
 namespace swath::trajectory {
 
@@ -21,13 +22,6 @@ constexpr double tiny_angle = 0.1 * core::degree;    // the tilt of every aircra
 constexpr double velocity_limit = 1.0;               // m/s between recorded and differenced velocity
 constexpr double mad_to_sigma = 1.4826;
 
-double median(std::vector<double> v) {
-  if (v.empty()) return 0.0;
-  const auto middle = v.begin() + static_cast<long>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
-
 // Median of angles about their mean direction.
 double median_angle(const std::vector<double>& angles, double& spread) {
   double s = 0.0, c = 0.0;
@@ -35,9 +29,9 @@ double median_angle(const std::vector<double>& angles, double& spread) {
   const double mean = std::atan2(s, c);
   std::vector<double> about(angles.size());
   std::transform(angles.begin(), angles.end(), about.begin(), [&](double a) { return core::wrap_pi(a - mean); });
-  const double m = median(about);
+  const double m = core::median(about, 0.0);
   for (double& a : about) a = std::abs(a - m);
-  spread = mad_to_sigma * median(about);
+  spread = mad_to_sigma * core::median(about, 0.0);
   return core::wrap_pi(mean + m);
 }
 
@@ -55,7 +49,7 @@ void check_times(const core::TrajectoryData& d, const CheckOptions& o, Trajector
     if (step < 0.0) ++out.backwards;
     if (step > o.max_gap.value) out.gaps.push_back({i - 1, d.time[i - 1], step});
   }
-  if (const double step = median(std::move(steps)); step > 0.0) out.rate = 1.0 / step;
+  if (const double step = core::median(std::move(steps), 0.0); step > 0.0) out.rate = 1.0 / step;
 }
 
 struct Ground {
@@ -93,8 +87,8 @@ void check_track(const core::TrajectoryData& d, const CheckOptions& o, Trajector
     crab.push_back(core::wrap_pi(d.heading[i] - std::atan2(v.east, v.north)));
   }
   out.straight = crab.size();
-  out.speed_median = median(std::move(speed));
-  out.velocity_difference = median(std::move(difference));
+  out.speed_median = core::median(std::move(speed));
+  out.velocity_difference = core::median(std::move(difference), 0.0);
   if (!crab.empty()) out.crab_median = median_angle(crab, out.crab_spread);
 }
 

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/statistics.h"
 
 namespace swath::trajectory {
 namespace {
@@ -82,8 +83,8 @@ ClockModel::ClockModel(core::ClockData log, const ClockOptions& options) : log_(
     const std::vector<double> own = clock::scatter_of(log_, s.first, s.last, narrow);
     std::copy(own.begin(), own.end(), scatter.begin() + static_cast<std::ptrdiff_t>(s.first));
   }
-  const double calm_scatter = std::max(calmest, clock::quantile(scatter, 0.25));
-  const double calm_jitter = log_.jitter.empty() ? 0.0 : std::max(calmest, clock::quantile(log_.jitter, 0.25));
+  const double calm_scatter = std::max(calmest, core::quantile(scatter, 0.25, 0.0));
+  const double calm_jitter = log_.jitter.empty() ? 0.0 : std::max(calmest, core::quantile(log_.jitter, 0.25, 0.0));
   for (ClockStretch& s : stretches_) {
     s.settled = log_.time[s.first];
     if (options_.convergence == Convergence::fixed) s.settled += options_.convergence_time.value;

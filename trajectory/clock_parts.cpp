@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/statistics.h"
+
 namespace swath::trajectory::clock {
 namespace {
 
@@ -234,14 +236,7 @@ Pass pass_over(const Records& r, const Strengths& s, std::vector<double>& weight
 
 }  // namespace
 
-double quantile(std::vector<double> v, double p) {
-  if (v.empty()) return 0.0;
-  const auto at = v.begin() + static_cast<std::ptrdiff_t>(p * static_cast<double>(v.size() - 1));
-  std::nth_element(v.begin(), at, v.end());
-  return *at;
-}
-
-double median(std::vector<double> v) { return quantile(std::move(v), 0.5); }
+double median(std::vector<double> v) { return core::quantile(std::move(v), 0.5, 0.0); }
 
 std::vector<double> running_median(std::span<const double> v, size_t width) {
   std::vector<double> out;

@@ -40,7 +40,6 @@ struct Pass {
 };
 
 double median(std::vector<double> v);
-double quantile(std::vector<double> v, double p);
 std::vector<double> running_median(std::span<const double> v, size_t width);
 
 /// A straight line through the observations [first, last] by medians: its level at time t, its slope and the slopes' spread.

@@ -85,15 +85,6 @@ PointFixes to_local(const core::GnssData& gnss, const LocalFrame& frame) {
   return out;
 }
 
-double median_step(const std::vector<double>& time) {
-  if (time.size() < 2) return 0.0;
-  std::vector<double> steps;
-  for (size_t i = 1; i < time.size(); ++i) steps.push_back(time[i] - time[i - 1]);
-  const auto middle = steps.begin() + static_cast<long>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
-}
-
 std::string_view name_of(Reach r) {
   switch (r) {
     case Reach::full:

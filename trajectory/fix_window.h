@@ -30,9 +30,6 @@ struct LocalFrame {
 LocalFrame local_frame(const Eigen::Vector3d& ecef);
 PointFixes to_local(const core::GnssData& gnss, const LocalFrame& frame);
 
-/// Median of the steps between fixes, s; 0 where there are fewer than two fixes.
-double median_step(const std::vector<double>& time);
-
 /// Where an instant lies among the fixes.
 enum class Reach {
   full,     ///< the whole window on both sides

@@ -9,6 +9,7 @@
 
 #include "core/frames.h"
 #include "core/geodesy.h"
+#include "core/statistics.h"
 
 namespace swath::trajectory {
 namespace {
@@ -34,12 +35,6 @@ Value list(const Vector3d& v, double unit) {
   Value out = Value::array();
   for (Eigen::Index i = 0; i < 3; ++i) out.push(v[i] / unit);
   return out;
-}
-
-double median(std::vector<double> v) {
-  if (v.empty()) return std::nan("");
-  std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-  return v[v.size() / 2];
 }
 
 /// A sensor constant at the middle of the record, with the sigma it was stated with.
@@ -255,7 +250,7 @@ core::Value report_of(const InsFindings& f, const SmootherSeries& s) {
     Value& separation = v["separation"];
     separation["rms_ned_m"] = list((squared / count).cwiseSqrt(), 1);
     separation["by_its_sigma_ned"] = list((normed / count).cwiseSqrt(), 1);
-    separation["median_m"] = median(size);
+    separation["median_m"] = core::median(size);
     separation["largest_m"] = *std::max_element(size.begin(), size.end());
     separation["rms_roll_pitch_heading_arcsec"] = list((turned / count).cwiseSqrt(), arcsec);
   }

@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/statistics.h"
+
 namespace swath::trajectory {
 
 namespace {
@@ -84,7 +86,7 @@ PointState run(const PointFixes& fixes, PointState state, size_t first, int step
 
 }  // namespace
 
-double longest_step(const PointFixes& fixes, const KinematicOptions& o) { return o.gap_steps * median_step(fixes.time); }
+double longest_step(const PointFixes& fixes, const KinematicOptions& o) { return o.gap_steps * core::median_step(fixes.time); }
 
 PointState predict(const PointState& s, double dt, const Matrix6& noise) {
   PointState out;

@@ -11,6 +11,7 @@
 
 #include "core/frames.h"
 #include "core/geodesy.h"
+#include "core/statistics.h"
 #include "trajectory/motion_curve.h"
 
 namespace swath::trajectory {
@@ -49,7 +50,7 @@ void correlate(const Motion& reference, const Motion& device, bool places, doubl
   const double start = std::max(reference.time.front(), device.time.front()) - search;
   const double length = std::min(reference.time.back(), device.time.back()) + search - start;
   if (!(length > 2 * search)) return;
-  const double slowest = std::max(median_step(reference), median_step(device));
+  const double slowest = std::max(core::median_step(reference.time), core::median_step(device.time));
   const double step = std::max({length / static_cast<double>(most_grid), std::min(slowest, search / 10), search / 1000});
   const auto n = static_cast<size_t>(length / step) + 1;
   const double base = std::max(speed_base, 2 * slowest);
@@ -162,7 +163,7 @@ void measure(Solution& s, LatencyShift shift) {
   for (int a = 0; a < 3; ++a) {
     std::vector<double> left;
     for (const Equation& e : s.rows) left.push_back(std::abs((e.residual - jacobian(e, shift).rightCols<3>() * s.shift)[a]));
-    s.scale[a] = std::max(mad_to_sigma * median(std::move(left)), 1e-12);
+    s.scale[a] = std::max(mad_to_sigma * core::median(std::move(left), 0.0), 1e-12);
   }
   s.cost = s.scale.array().log().sum();
 }
@@ -252,7 +253,7 @@ LatencyResult estimate(const Motion& raw_reference, const Motion& raw_device, co
   const LatencyShift shift = places || o.shift == LatencyShift::none ? o.shift : LatencyShift::axes;
   correlate(reference, device, places, search, out);
   const MotionCurve curve(reference);
-  const double base = std::max(places ? speed_base : 0.0, 2 * (o.smoothing.value + 2.5 * median_step(reference)));
+  const double base = std::max(places ? speed_base : 0.0, 2 * (o.smoothing.value + 2.5 * core::median_step(reference.time)));
   std::optional<Solution> best;
   for (const double start : {out.coarse, 0.0}) {
     const std::optional<Solution> s = solve(curve, device, shift, start, search, base);

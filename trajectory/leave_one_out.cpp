@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/statistics.h"
+
 namespace swath::trajectory {
 
 namespace {
@@ -57,7 +59,7 @@ DifferenceStatistics statistics_of(const std::vector<Eigen::Vector3d>& differenc
 LeaveOneOut leave_one_out(const PointFixes& fixes, const PointSmoother& smoother, const KinematicOptions& o) {
   LeaveOneOut out;
   out.acceleration = smoother.acceleration();
-  out.step = median_step(fixes.time);
+  out.step = core::median_step(fixes.time);
   const double longest = longest_step(fixes, o);
   std::array<std::vector<Eigen::Vector3d>, interpolators.size()> formal;
   for (size_t i = 0; i < fixes.size(); ++i) {

@@ -3,25 +3,14 @@
 
 #include <algorithm>
 
+#include "core/statistics.h"
+
 namespace swath::trajectory {
 namespace {
 
 constexpr double longest_steps = 5.0;
 
 }  // namespace
-
-double median(std::vector<double> v) {
-  if (v.empty()) return 0.0;
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
-
-double median_step(const Motion& m) {
-  std::vector<double> steps;
-  for (size_t i = 1; i < m.time.size(); ++i) steps.push_back(m.time[i] - m.time[i - 1]);
-  return median(std::move(steps));
-}
 
 /// Means over `width` of both times and values, so that no delay comes in.
 Motion averaged(const Motion& m, double width) {
@@ -48,7 +37,7 @@ Motion averaged(const Motion& m, double width) {
   return out;
 }
 
-MotionCurve::MotionCurve(const Motion& m) : m_(m), longest_(longest_steps * median_step(m)) {}
+MotionCurve::MotionCurve(const Motion& m) : m_(m), longest_(longest_steps * core::median_step(m.time)) {}
 
 bool MotionCurve::at(double t, Eigen::Vector3d& value, Eigen::Vector3d& rate) const {
   const size_t n = m_.time.size();

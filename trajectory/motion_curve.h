@@ -8,9 +8,6 @@
 
 namespace swath::trajectory {
 
-double median(std::vector<double> v);
-double median_step(const Motion& m);
-
 /// Means over `width` (s) of both times and values, so that no delay comes in.
 Motion averaged(const Motion& m, double width);
 

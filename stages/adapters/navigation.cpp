@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "core/statistics.h"
 #include "core/time.h"
 #include "io/gnss_file.h"
 #include "io/imu_file.h"
@@ -45,11 +46,7 @@ class ImuReader : public OptionStage<NoOptions> {
   void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
     auto imu = std::make_shared<core::ImuData>(io::read_imu(context.survey, tally));
     findings["records"] = imu->size();
-    if (imu->size()) {
-      std::vector<double> steps = imu->step;
-      std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-      findings["rate_hz"] = 1.0 / steps[steps.size() / 2];
-    }
+    if (imu->size()) findings["rate_hz"] = 1.0 / core::median(imu->step);
     tell_span(imu->time, findings);
     context.imu = std::move(imu);
   }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/statistics.h"
 #include "core/time.h"
 #include "io/pos_writer.h"
 #include "io/process.h"
@@ -253,8 +254,7 @@ class Rtklib : public OptionStage<RtklibStageOptions> {
     for (int axis = 0; axis < 3; ++axis) {
       std::vector<double> values;
       for (const Eigen::Vector3d& p : fixes.position) values.push_back(p[axis]);
-      std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
-      middle[axis] = values[values.size() / 2];
+      middle[axis] = core::median(std::move(values));
     }
     const double off = (middle - b.position).norm();
     one["code_solution_off_m"] = off;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/statistics.h"
 #include "core/time.h"
 #include "io/clock_log.h"
 #include "io/event_file.h"
@@ -228,9 +229,7 @@ class TimeSync : public OptionStage<TimeSyncOptions> {
     v["first"] = core::utc_text(log.epoch + log.time.front());
     v["last"] = core::utc_text(log.epoch + log.time.back());
     if (!clock.noise().empty()) {
-      std::vector<double> noise = clock.noise();
-      std::nth_element(noise.begin(), noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 2), noise.end());
-      v["median_noise_s"] = noise[noise.size() / 2];
+      v["median_noise_s"] = core::median(clock.noise());
       v["outliers"] = clock.outliers();
     }
     Value& list = v["stretches"] = Value::array();

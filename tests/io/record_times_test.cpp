@@ -100,8 +100,6 @@ TEST(RecordTimes, DatesBeforeTheCentury) {
   EXPECT_TRUE(tally.empty());
   note_date(core::from_week(2317 - 2048, 0), "a", tally);
   EXPECT_NE(tally.value().find("files dated before 2000: a GPS week number that rolled over at 1024?"), nullptr);
-  EXPECT_TRUE(std::isnan(median_of({})));
-  EXPECT_EQ(median_of({3, 1, 2}), 2);
 }
 
 }  // namespace

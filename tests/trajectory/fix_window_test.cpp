@@ -70,12 +70,6 @@ TEST(FixWindow, GapsAreNeverInsideAWindow) {
   EXPECT_EQ(window_at(t, 15.5, 5, 2.5).reach, Reach::gap);
 }
 
-TEST(FixWindow, MedianStep) {
-  EXPECT_EQ(median_step({}), 0.0);
-  EXPECT_EQ(median_step({1.0}), 0.0);
-  EXPECT_EQ(median_step({0.0, 1.0, 2.0, 3.0, 50.0, 51.0}), 1.0);
-}
-
 TEST(LocalFrame, IsEastNorthUp) {
   const core::Geodetic place{48 * core::degree, 11 * core::degree, 600.0};
   const LocalFrame f = local_frame(core::ecef_of(place));

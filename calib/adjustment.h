@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Result of the rigorous adjustment: what was estimated, how well, and what could not be told.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "calib/shot_geometry.h"
+#include "calib/tie_set.h"
+#include "core/sensor.h"
+
+namespace swath::calib {
+
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+/// One calibration parameter (boresight_roll .. latency of calib::Parameter). Units m, rad, s or none.
+struct Estimate {
+  Parameter parameter = boresight_roll;
+  bool estimated = false;  ///< false: held at `start`
+  double start = 0.0, value = 0.0;
+  double apriori = std::numeric_limits<double>::infinity();  ///< sigma of `start` as an observation; infinite: free
+  double formal = 0.0;                                       ///< sigma with the trajectory's errors correlated in time
+  double white = 0.0;  ///< sigma if every return were independent and the trajectory without error: for comparison only
+  double jackknife_lines = not_known, jackknife_planes = not_known;  ///< sigma by leaving out one line, one region of planes at a time
+  double sigma = 0.0;                                                ///< the one that is delivered
+  double determined = 0.0;  ///< 1 - (formal / apriori)^2: share of the knowledge that is the data's; 1 for free parameters
+};
+
+/// Corrections to the trajectory along one line, linear in time between the knots: add them to the trajectory.
+struct LineCorrection {
+  int line = 0;                                              ///< id
+  std::vector<double> time;                                  ///< knots, GPS time, s
+  std::vector<std::array<double, 6>> value, sigma, apriori;  ///< north, east, down (m), roll, pitch, heading (rad)
+};
+
+/// What is left of one group of returns (one line on one plane) after the adjustment.
+struct GroupResidual {
+  std::uint32_t plane = 0, line = 0, returns = 0;
+  double time = 0.0;        ///< mean, s
+  double angle = 0.0;       ///< mean calibrated scan angle, rad
+  double range = 0.0;       ///< mean, m
+  double before = 0.0;      ///< mean distance from the plane with the start values (plane of all lines, refitted), m
+  double after = 0.0;       ///< mean distance from the adjusted plane, m
+  double rms = 0.0;         ///< of the returns about the adjusted plane, m
+  double redundancy = 0.0;  ///< of the group's mean as one observation, 0 to 1
+  double w = 0.0;           ///< its standardised residual (Baarda's w)
+  bool rejected = false;    ///< taken out by data snooping
+};
+
+struct ControlResidual {
+  std::string name;
+  std::uint32_t plane = 0;
+  double residual = 0.0, sigma = 0.0, redundancy = 0.0, w = 0.0;  ///< m; w standardised
+  bool rejected = false;
+};
+
+struct VarianceComponent {
+  std::string name;     ///< "range", "angle", "trajectory position", "trajectory attitude", "control"
+  double stated = 0.0;  ///< sigma as stated (m, rad; trajectory: rms over the knots)
+  double factor = 1.0;  ///< estimated sigma / stated
+  double redundancy = 0.0;
+  bool estimated = false;  ///< false: too little redundancy, the stated one was kept
+};
+
+/// One thing that the flight does not tell, or that looks wrong, in words.
+struct Finding {
+  std::string what;                   ///< "pitch and along-track shift cannot be told apart: only one line direction"
+  std::string cure;                   ///< "fly one line in the opposite direction ..."
+  std::vector<Parameter> parameters;  ///< concerned
+  bool refuses = false;               ///< true: the values of those parameters are not delivered
+};
+
+struct Adjustment {
+  core::Calibration calibration;                  ///< start values with the estimates put in
+  std::array<Estimate, latency + 1> estimates{};  ///< by Parameter
+  Eigen::MatrixXd correlation;                    ///< of the estimated ones, in the order of Parameter; 1 on the diagonal
+  double condition = 0.0;                         ///< of the normal matrix scaled to ones on its diagonal, estimated parameters alone
+  std::vector<LineCorrection> corrections;        ///< in the order of TieSet::lines
+  std::vector<TiePlane> planes;                   ///< centre and normal adjusted
+  std::vector<Eigen::Vector3d> plane_sigma;       ///< of d0 (m), d1, d2
+  std::vector<GroupResidual> groups;              ///< in the order of TieSet::groups
+  std::vector<ControlResidual> control;
+  std::vector<VarianceComponent> components;
+  std::vector<Finding> findings;
+  double sigma0 = 0.0;  ///< of unit weight after the variance components
+  std::uint64_t observations = 0, unknowns = 0, rejected_returns = 0;
+  int iterations = 0;
+};
+
+}  // namespace swath::calib

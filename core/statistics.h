@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Order statistics of plain numbers. Measures of accuracy: report/statistics.h.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+namespace swath::core {
+
+/// The value that floor(share (n - 1)) others lie below; `none` where there are no values. `share` in [0, 1]; values finite.
+double quantile(std::vector<double> values, double share, double none = std::numeric_limits<double>::quiet_NaN());
+
+/// The middle value, of an even number the upper of the two; `none` where there are no values. Values finite.
+double median(std::vector<double> values, double none = std::numeric_limits<double>::quiet_NaN());
+
+/// Median of the differences of neighbours; 0 for fewer than two.
+double median_step(const std::vector<double>& values);
+
+}  // namespace swath::core
