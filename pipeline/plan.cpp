@@ -243,6 +243,13 @@ bool works_on_the_map(const Plan& plan) {
   });
 }
 
+bool makes_points(const Plan& plan) {
+  return std::any_of(plan.stages.begin(), plan.stages.end(), [](const PlannedStage& s) {
+    const auto& grains = s.stage->info().grains;
+    return !s.stage->is_source() && std::any_of(grains.begin(), grains.end(), [](stages::Grain g) { return g != stages::Grain::survey; });
+  });
+}
+
 void require_projected(const core::Crs& crs, const std::filesystem::path& survey) {
   if (crs.is_projected()) return;
   throw core::usage_error("the products' CRS is " + crs.name() + ", which is not a map projection", survey.string() + ": crs",

@@ -83,6 +83,9 @@ Plan make_plan(const Request& request);
 /// map projection.
 bool works_on_the_map(const Plan& plan);
 
+/// Does a stage behind the source work on its strips or tiles? Plans of calibration stream the source's shots through survey stages alone.
+bool makes_points(const Plan& plan);
+
 /// Throws core::Error (usage) where the CRS is no map projection.
 void require_projected(const core::Crs& crs, const std::filesystem::path& survey);
 

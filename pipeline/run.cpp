@@ -44,6 +44,11 @@ bool has_surface(const std::vector<stages::Product>& products) {
                      [](stages::Product p) { return p == stages::Product::dtm || p == stages::Product::dsm; });
 }
 
+bool needs(const Stage& stage, stages::Product p) {
+  const auto& needed = stage.info().needs_products;
+  return std::find(needed.begin(), needed.end(), p) != needed.end();
+}
+
 double since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
 /// One run at a time in one output folder.
@@ -91,6 +96,7 @@ class Engine {
  private:
   void prepare();
   void prepare_map();
+  void find_strips();
   void run_survey_stages();
   void run_strips();
   void stream_strip(const stages::Strip& strip, const fs::path& folder);
@@ -120,6 +126,7 @@ class Engine {
   std::vector<Account> accounts_;
   std::vector<Input> inputs_;
   std::vector<std::string> fingerprints_;
+  size_t source_ = 0;  ///< the stage that is the plan's source; as many as there are stages where it has none
   size_t last_strip_stage_ = 0;
   std::unique_ptr<TileStore> store_;
   std::set<TileKey> surface_tiles_;  ///< without a point of their own, but a surface reaches into them from their neighbours
@@ -138,6 +145,7 @@ void Engine::prepare() {
   if (works_on_the_map(plan_) || !plan_.survey.crs.empty()) prepare_map();
   inputs_ = inputs_of(plan_);
   fingerprints_ = fingerprints(plan_, inputs_);
+  while (source_ < plan_.stages.size() && !stage(source_).is_source()) ++source_;
   for (size_t i = 0; i < plan_.stages.size(); ++i)
     if (works_on(i, Grain::strip)) last_strip_stage_ = i;
 }
@@ -171,9 +179,16 @@ void Engine::begin_products(size_t number) {
   context_.output = folder(number) / "products";
 }
 
+void Engine::find_strips() {
+  if (context_.source) return;
+  context_.source = &stage(source_);
+  context_.strips = context_.source->strips(context_, accounts_[source_].tally);
+}
+
 void Engine::run_survey_stages() {
   for (size_t i = 0; i < plan_.stages.size(); ++i) {
     if (!works_on(i, Grain::survey)) continue;
+    if (needs(stage(i), stages::Product::shots)) find_strips();
     begin_products(i);
     const auto start = Clock::now();
     progress_.begin(std::string(stage(i).info().name), 1, "survey");
@@ -191,9 +206,7 @@ void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_fold
     std::vector<Account> accounts;
     std::uint64_t read = 0;
   };
-  const size_t n = plan_.stages.size();
-  size_t source = 0;
-  while (!stage(source).is_source()) ++source;
+  const size_t n = plan_.stages.size(), source = source_;
   const auto reader = stage(source).open(context_, strip);
   StripWriter writer(strip_folder, plan_.run.tile.value, static_cast<size_t>(plan_.run.memory.value / 8));
   std::vector<Account> accounts(n);
@@ -258,9 +271,9 @@ void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_fold
 }
 
 void Engine::run_strips() {
-  size_t source = 0;
-  while (!stage(source).is_source()) ++source;
-  const std::vector<stages::Strip> strips = stage(source).strips(context_, accounts_[source].tally);
+  find_strips();
+  const size_t source = source_;
+  const std::vector<stages::Strip>& strips = context_.strips;
   const fs::path strips_folder = folder(last_strip_stage_);
   std::uint64_t records = 0;
   for (const stages::Strip& s : strips) records += s.records;
@@ -526,7 +539,7 @@ Outcome Engine::run(const std::string& command) {
     sweep(work_, valid);
     fs::remove_all(discarded, ec);
     run_survey_stages();
-    if (works_on_the_map(plan_)) {
+    if (makes_points(plan_)) {
       run_strips();
       run_tile_stages();
     }

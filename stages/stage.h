@@ -66,6 +66,17 @@ class Grids {
   virtual double cell(Product product) const = 0;
 };
 
+/// One flight line of one source, read and georeferenced on its own.
+struct Strip {
+  size_t source = 0;  ///< index in the survey's [[laser]] or [[points]]
+  size_t index = 0;   ///< index within the source
+  int line = 0;       ///< flight line id
+  std::string name;   ///< "line 3 of flight.las", for messages
+  std::uint64_t records = 0;
+};
+
+class Stage;
+
 /// What every stage sees of a run. Read-only but for what survey stages hand on, and `origin`, which follows from the trajectory.
 struct Context {
   const io::Survey& survey;
@@ -79,6 +90,8 @@ struct Context {
   std::filesystem::path output{};                    ///< where the stage at work puts its products, laid out as in the output folder
   std::vector<std::filesystem::path> earlier{};      ///< the same of the stages before it
   const Grids* grids = nullptr;
+  const Stage* source = nullptr;  ///< of the plan; null where it has none
+  std::vector<Strip> strips{};    ///< of the source, in the order of the work
   // What survey stages hand on.
   std::shared_ptr<const core::ImuData> imu{};
   std::shared_ptr<const core::GnssData> gnss{};
@@ -90,15 +103,6 @@ struct Context {
   std::filesystem::path made(const std::filesystem::path& name) const;
   /// "652_5310": the tile's south-west corner, for file names; whole metres, or millimetres where it is not whole.
   std::string label(TileKey k) const;
-};
-
-/// One flight line of one source, read and georeferenced on its own.
-struct Strip {
-  size_t source = 0;  ///< index in the survey's [[laser]] or [[points]]
-  size_t index = 0;   ///< index within the source
-  int line = 0;       ///< flight line id
-  std::string name;   ///< "line 3 of flight.las", for messages
-  std::uint64_t records = 0;
 };
 
 /// A batch of one strip on its way: raw shots first, a block after georeferencing.

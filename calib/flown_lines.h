@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The design of a flight as it was flown: where each line went, how high and how fast.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "calib/shot_geometry.h"
+#include "core/shot.h"
+#include "trajectory/trajectory.h"
+
+namespace swath::calib {
+
+/// A flight line as its returns and the trajectory show it.
+struct FlownLine {
+  int id = 0;
+  double first = 0.0, last = 0.0;  ///< GPS time of its returns, s
+  std::uint64_t returns = 0;       ///< read, inside the trajectory or not
+  double heading = 0.0;            ///< course over ground from its first to its last return, from true north, rad, [0, 2 pi)
+  double speed = 0.0;              ///< mean over ground, m/s
+  double length = 0.0;             ///< from its first to its last return, m
+  double height = 0.0;             ///< mean height of the scanner's IMU above the returns, m; NaN without returns inside the trajectory
+};
+
+class FlownLines {
+ public:
+  /// All must outlive it.
+  FlownLines(const ShotGeometry& geometry, const trajectory::Trajectory& trajectory) : geometry_(geometry), trajectory_(trajectory) {}
+  void add(int line, const core::Shots& shots);
+  /// By id. Course, speed and length are NaN where the trajectory does not cover the line's ends.
+  std::vector<FlownLine> lines() const;
+
+ private:
+  struct Sums {
+    double first = 0, last = 0, height = 0;
+    std::uint64_t returns = 0, samples = 0;
+  };
+  const ShotGeometry& geometry_;
+  const trajectory::Trajectory& trajectory_;
+  std::map<int, Sums> sums_;
+};
+
+/// Difference of two courses, 0 to pi.
+double between_courses(double a, double b);
+
+}  // namespace swath::calib
