@@ -19,7 +19,8 @@ constexpr const char* off_plane = "surveyed targets whose corners lie off one pl
 
 std::string examples_of(const core::Tally& tally) {
   std::string out;
-  for (const core::Value& v : tally.value().find(off_plane)->find("examples")->items()) out += v.as_text() + "\n";
+  const core::Value all = tally.value();
+  for (const core::Value& v : all.find(off_plane)->find("examples")->items()) out += v.as_text() + "\n";
   return out;
 }
 
