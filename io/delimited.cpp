@@ -210,7 +210,8 @@ size_t column_of(const DelimitedLayout& layout, const std::string& column, const
     throw core::Error("no column " + column + "; " + list_of(layout), file.string());
   }
   const std::string near = core::nearest(column, layout.names);
-  throw core::Error("no column '" + column + "'; " + list_of(layout), file.string(), near.empty() ? "" : "did you mean '" + near + "'?");
+  throw core::Error("no column '" + column + "'; " + list_of(layout), file.string(),
+                    near.empty() ? "name one of the columns, or its number from 1" : "did you mean '" + near + "'?");
 }
 
 DelimitedReader::DelimitedReader(const std::filesystem::path& file, const DelimitedLayout& layout, std::vector<size_t> columns)
