@@ -50,6 +50,34 @@ TEST(FlownLines, CourseSpeedLengthAndHeight) {
   EXPECT_NEAR(line.height, 690.0, 1e-6);
 }
 
+std::vector<FlownLine> lines_of(const std::vector<core::Shots>& shots) {
+  const trajectory::Trajectory trajectory(eastward(1000.0));
+  const ShotGeometry geometry(scanner_of(core::ScannerModel::mirror, false), {});
+  FlownLines flown(geometry, trajectory);
+  for (size_t k = 0; k < shots.size(); ++k) flown.add(static_cast<int>(k + 1), shots[k]);
+  return flown.lines();
+}
+
+TEST(FlownLines, GoodRecordsPassTheirCheck) {
+  EXPECT_TRUE(check_lines(lines_of({zigzag(4000, 1001, 1000, 690), zigzag(4000, 1006, 1000, 690)})).empty());
+}
+
+TEST(FlownLines, ConstantSaturatedMixedAndLostLinesAreNamed) {
+  core::Shots constant = zigzag(4000, 1001, 1000, 690), saturated = zigzag(4000, 1006, 1000, 690);
+  for (double& r : constant.range) r = 655.35;
+  for (double& r : saturated.range) r = std::min(r, 705.0);
+  std::vector<Finding> found = check_lines(lines_of({constant, saturated}));
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_NE(found[0].what.find("line 1: 100 % of the ranges repeat"), std::string::npos) << found[0].what;
+  EXPECT_TRUE(found[0].refuses);
+  EXPECT_NE(found[1].what.find("saturated"), std::string::npos) << found[1].what;
+  found = check_lines(lines_of({zigzag(4000, 1001, 1000, 690), zigzag(4000, 1003, 1000, 690), zigzag(4000, 9003, 1000, 690)}));
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].what, "line 3 lies outside the trajectory");
+  EXPECT_EQ(found[1].what, "lines 1 and 2 lie in one another in time");
+  EXPECT_FALSE(found[1].refuses);
+}
+
 TEST(FlownLines, CoursesMeetAcrossNorth) {
   EXPECT_NEAR(between_courses(359 * deg, 2 * deg), 3 * deg, 1e-12);
   EXPECT_NEAR(between_courses(10 * deg, 190 * deg), 180 * deg, 1e-12);
