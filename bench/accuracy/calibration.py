@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Simulated calibration flights, raw records to calibration.json, against truth: calibration.py [SEEDS [PART ...]]
+
+Every flight has a boresight, a range offset and a scan scale drawn by its seed; IMU and GNSS records go through the smoother.
+Parts: roof (its plane is surveyed), strips (no control), no_cross, one_direction, one_line, flat, mems."""
+import concurrent.futures
+import json
+import os
+import shutil
+import sys
+
+import numpy as np
+
+import common
+
+FLIGHT = {"world.scene": "airfield", "flight.pattern": "calibration", "output.trajectory": "none", "output.truth_returns": "false"}
+PARTS = {
+    "roof": ({"control.roof": "true"}, {}),
+    "strips": ({"control.roof": "false"}, {}),
+    "no_cross": ({"control.roof": "false", "flight.cross_lines": 0}, {}),
+    "one_direction": ({"control.roof": "false", "flight.opposite": "false", "flight.cross_lines": 0}, {}),
+    "one_line": ({"control.roof": "true", "flight.lines": 1, "flight.cross_lines": 0}, {}),
+    "flat": ({"control.roof": "false", "world.buildings": 0}, {}),
+    "mems": ({"control.roof": "true", "imu.grade": "mems"}, {}),
+}
+ARCSEC = np.degrees(1) * 3600
+# key in calibration.json, unit of the table, what an SI value is multiplied by
+VALUES = [("roll", '"', ARCSEC), ("pitch", '"', ARCSEC), ("heading", '"', ARCSEC), ("range_offset", "mm", 1e3), ("scan_scale", "ppm", 1e6)]
+
+
+def number(value):
+    """An SI number of "0.05 deg", "4 cm" or 1.0003."""
+    if isinstance(value, (int, float)):
+        return float(value)
+    amount, unit = value.split()
+    return float(amount) * {"deg": np.radians(1), "rad": 1, "mrad": 1e-3, "arcsec": 1 / ARCSEC, "m": 1, "cm": 1e-2, "mm": 1e-3, "s": 1}[unit]
+
+
+def fly(part, seed):
+    """One flight: start error, error, sigma and whether it was delivered, per value; findings. Its folder is deleted."""
+    folder = common.scratch(f"calibration/{part}_{seed}")
+    options, settings = PARTS[part]
+    common.call("simulate", folder / "survey", "--quiet", *common.sets({**FLIGHT, **options, "seed": seed}))
+    output = folder / "out"
+    common.call("run", common.ROOT / "configs/calibrate.toml", "--survey", folder / "survey/survey.toml", "--output", output, "--quiet",
+                *common.sets({"ins_gnss.plots": "[]", **settings}))
+    truth = json.loads((folder / "survey/truth/calibration.json").read_text())
+    found = json.loads((output / "calibration.json").read_text())
+    estimates = {e["parameter"].removeprefix("boresight_"): e for e in found["estimates"]}
+    rows = []
+    for key, _, scale in VALUES:
+        e, true = estimates[key], number(truth[key])
+        rows.append([scale * (e["start"] - true), scale * (e["value"] - true), scale * e["sigma"], scale * e["formal"], scale * e["white"],
+                     scale * (e["jackknife_lines"] or np.nan), float(e["delivered"])])
+    if not os.environ.get("KEEP"):
+        shutil.rmtree(folder)
+    return np.array(rows), [f["what"] for f in found["findings"]]
+
+
+def main():
+    seeds = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+    for part in sys.argv[2:] or ["roof", "strips", "no_cross", "one_direction", "one_line", "flat"]:
+        with concurrent.futures.ThreadPoolExecutor(int(os.environ.get("WORKERS", "2"))) as pool:
+            done = list(pool.map(lambda seed: fly(part, seed), range(1, seeds + 1)))
+        rows = np.stack([r for r, _ in done])
+        print(f"## {part}, {seeds} seeds")
+        table = []
+        for k, (key, unit, _) in enumerate(VALUES):
+            start, error, sigma, formal, white, jackknife, delivered = rows[:, k].T
+            table.append([f"{key} ({unit})", f"{common.rms(start):.1f}", f"{common.rms(error):.2f}", f"{np.abs(error).max():.2f}",
+                          f"{common.rms(sigma):.2f}", f"{common.rms(error / sigma):.2f}", f"{common.rms(formal):.2f}",
+                          f"{common.rms(error / formal):.2f}", f"{np.sqrt(np.nanmean(jackknife**2)):.2f}", f"{common.rms(error / white):.1f}",
+                          f"{int(delivered.sum())}"])
+        common.table(["value", "start rms", "error rms", "largest", "sigma", "error/sigma", "formal", "error/formal", "jackknife (lines)",
+                      "error/white", "delivered"], table)
+        for what in sorted({w for _, words in done for w in words}):
+            print(f"- {sum(what in words for _, words in done)} of {seeds}: {what}")
+
+
+if __name__ == "__main__":
+    main()

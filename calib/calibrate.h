@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A whole calibration: coarse boresight from surfaces, planes, adjustment, and planes again until nothing changes.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/adjust.h"
+#include "calib/adjustment.h"
+#include "calib/control.h"
+#include "calib/shot_stream.h"
+#include "calib/surface_match.h"
+#include "calib/tie_planes.h"
+#include "trajectory/error_model.h"
+#include "trajectory/trajectory.h"
+
+namespace swath::calib {
+
+struct CalibrateOptions {
+  bool coarse = true;
+  int rounds = 5;
+  core::Metres mismatch{0.5};
+  SurfaceMatchOptions match;
+  TiePlaneOptions planes;
+  AdjustOptions adjust;
+};
+
+template <class V>
+void describe(CalibrateOptions& o, V& v) {
+  v.option("coarse", o.coarse, "Find the boresight's first values by matching the surfaces of the lines; otherwise those of the survey are taken.");
+  v.option("rounds", o.rounds, core::within(1, 20), "Most times that planes are sought and adjusted; it ends before where nothing changes.");
+  v.option("mismatch", o.mismatch, core::above(0), "How far lines may lie apart when planes are sought for the first time.");
+  v.table("match", o.match, "The surfaces' matching.");
+  v.table("planes", o.planes, "The search for planes.");
+  describe(o.adjust, v);
+}
+
+/// What is calibrated. Pointers must outlive the call.
+struct CalibrationFlight {
+  ShotStream shots;
+  core::Scanner scanner;
+  core::Calibration start;
+  core::SensorSigma sensor;  ///< of single records: range, scan_angle, beam_divergence
+  const trajectory::Trajectory* trajectory = nullptr;
+  const trajectory::ErrorModel* errors = nullptr;
+  trajectory::LocalFrame frame;
+  std::vector<SurveyedTarget> targets;  ///< those of use `control` take part
+};
+
+struct Calibrated {
+  Adjustment adjustment;
+  TieSet ties;                        ///< of the last round
+  std::optional<SurfaceMatch> match;  ///< of the coarse step, where there was one
+  int rounds = 0;
+  std::vector<std::string> notes;  ///< sentences on how the result came about
+};
+
+/// A frame amid the flight, at its ground: the mean place of the lines' middles, `height` m below.
+trajectory::LocalFrame frame_of(const std::vector<std::pair<double, double>>& line_times, double height, const trajectory::Trajectory& trajectory);
+
+/// Throws core::Error where the flight cannot be calibrated at all: no two lines that see the same planes (and no target), or records of the
+/// scan angle with the wrong sign. `told`: a sentence on each step, as it is done.
+Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& options, core::Tally& tally,
+                     const std::function<void(const std::string&)>& told = {});
+
+}  // namespace swath::calib
