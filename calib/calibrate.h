@@ -29,8 +29,10 @@ struct CalibrateOptions {
 
 template <class V>
 void describe(CalibrateOptions& o, V& v) {
-  v.option("coarse", o.coarse, "Find the boresight's first values by matching the surfaces of the lines; otherwise those of the survey are taken.");
-  v.option("rounds", o.rounds, core::within(1, 20), "Most times that planes are sought and adjusted; it ends before where nothing changes.");
+  v.option("coarse", o.coarse,
+           "Find the boresight's first values by matching the surfaces of the lines; otherwise those of the survey are taken.");
+  v.option("rounds", o.rounds, core::within(1, 20),
+           "Most times that planes are sought and adjusted; it ends before where nothing changes.");
   v.option("mismatch", o.mismatch, core::above(0), "How far lines may lie apart when planes are sought for the first time.");
   v.table("match", o.match, "The surfaces' matching.");
   v.table("planes", o.planes, "The search for planes.");
@@ -58,10 +60,11 @@ struct Calibrated {
 };
 
 /// A frame amid the flight, at its ground: the mean place of the lines' middles, `height` m below.
-trajectory::LocalFrame frame_of(const std::vector<std::pair<double, double>>& line_times, double height, const trajectory::Trajectory& trajectory);
+trajectory::LocalFrame frame_of(const std::vector<std::pair<double, double>>& line_times, double height,
+                                const trajectory::Trajectory& trajectory);
 
-/// Throws core::Error where the flight cannot be calibrated at all: no two lines that see the same planes (and no target), or records of the
-/// scan angle with the wrong sign. `told`: a sentence on each step, as it is done.
+/// Throws core::Error where the flight cannot be calibrated at all: no two lines that see the same planes (and no target), or records of
+/// the scan angle with the wrong sign. `told`: a sentence on each step, as it is done.
 Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& options, core::Tally& tally,
                      const std::function<void(const std::string&)>& told = {});
 

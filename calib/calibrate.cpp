@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calib/calibrate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/geodesy.h"
+#include "core/statistics.h"
+
+namespace swath::calib {
+namespace {
+
+using Eigen::Vector3d;
+
+/// What a change of the calibration moves the returns by at the tie planes, rms over the groups, m: the measure of whether another round is
+/// worth its time.
+double moved(const core::Calibration& from, const core::Calibration& to, const Adjustment& at) {
+  const double roll = to.roll.value - from.roll.value, pitch = to.pitch.value - from.pitch.value,
+               heading = to.heading.value - from.heading.value;
+  const double offset = to.range_offset.value - from.range_offset.value, scale = to.scan_scale - from.scan_scale;
+  double squares = 0;
+  for (const GroupResidual& g : at.groups) {
+    const double across = g.range * std::sin(g.angle);
+    squares +=
+        std::pow(g.range * (roll + scale * g.angle), 2) + std::pow(g.range * pitch, 2) + std::pow(across * heading, 2) + offset * offset;
+  }
+  return at.groups.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(at.groups.size()));
+}
+
+/// How far the lines still lie apart: three times the robust scatter of the groups about their planes.
+double mismatch_after(const Adjustment& a) {
+  std::vector<double> sizes;
+  for (const GroupResidual& g : a.groups)
+    if (!g.rejected) sizes.push_back(std::abs(g.after));
+  return 3 * 1.4826 * core::median(std::move(sizes), 0.0);
+}
+
+std::string metres(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, v < 0.1 ? "%.3f m" : "%.2f m", v);
+  return text;
+}
+
+void refuse_without_ties(const TieSet& ties, const core::Tally& tally) {
+  if (!ties.planes.empty()) return;
+  std::string told;
+  for (const auto& [what, one] : tally.value().members())
+    told += (told.empty() ? "" : "; ") + what + ": " + std::to_string(one.find("count")->as_int());
+  throw core::Error("no plane was found that two lines have seen, and no surveyed target" + (told.empty() ? "" : " (" + told + ")"),
+                    "calibration flight",
+                    "lines must overlap over level or sloping planes of some metres: ground, roofs; see `planes` of the options");
+}
+
+}  // namespace
+
+trajectory::LocalFrame frame_of(const std::vector<std::pair<double, double>>& line_times, double height,
+                                const trajectory::Trajectory& trajectory) {
+  Vector3d sum = Vector3d::Zero();
+  int n = 0;
+  for (const auto& [first, last] : line_times)
+    if (const auto pose = trajectory.pose_at(0.5 * (first + last))) {
+      sum += pose->position;
+      ++n;
+    }
+  if (n == 0)
+    throw core::Error("the trajectory covers no flight line", "calibration flight",
+                      "compare the time scales of laser and trajectory with `swath info`");
+  core::Geodetic place = core::geodetic_of(sum / n);
+  place.height -= height;
+  return trajectory::local_frame(core::ecef_of(place));
+}
+
+Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& options, core::Tally& tally,
+                     const std::function<void(const std::string&)>& told) {
+  const auto tell = [&](const std::string& text) {
+    if (told) told(text);
+  };
+  Calibrated out;
+  core::Calibration now = flight.start;
+  double mismatch = options.mismatch.value;
+  if (options.coarse) {
+    tell("matching surfaces");
+    out.match = match_surfaces(flight.shots, flight.scanner, flight.start, *flight.trajectory, flight.frame, options.match);
+    if (out.match->scan_reversed)
+      throw core::Error("the surfaces of the lines meet only with the sign of the scan angle turned", "calibration flight",
+                        "positive is to starboard: turn it by the file's options (survey.toml, [[laser]])");
+    now = out.match->calibration;
+  }
+
+  std::vector<SurveyedTarget> targets;
+  std::copy_if(flight.targets.begin(), flight.targets.end(), std::back_inserter(targets),
+               [](const SurveyedTarget& t) { return t.use == io::ControlUse::control; });
+  constexpr double steady = 0.005, closest = 0.05;  // m
+  core::Tally of_round;
+  for (out.rounds = 1; out.rounds <= options.rounds; ++out.rounds) {
+    of_round = {};
+    TiePlaneOptions planes = options.planes;
+    planes.mismatch.value = std::max(mismatch, closest);
+    tell("round " + std::to_string(out.rounds) + ": planes");
+    out.ties = find_tie_planes(flight.shots, flight.scanner, now, *flight.trajectory, flight.frame, targets, planes, of_round);
+    refuse_without_ties(out.ties, of_round);
+    tell("round " + std::to_string(out.rounds) + ": adjustment");
+    AdjustOptions adjust_options = options.adjust;
+    // Sigmas by leaving out are asked for once, of the last round.
+    if (out.rounds < options.rounds) adjust_options.jackknife.lines = false, adjust_options.jackknife.blocks = 0;
+    out.adjustment = adjust(out.ties, flight.scanner, flight.start, flight.sensor, *flight.trajectory, *flight.errors, adjust_options);
+    const double change = moved(now, out.adjustment.calibration, out.adjustment);
+    now = out.adjustment.calibration;
+    mismatch = std::min(mismatch, mismatch_after(out.adjustment));
+    if (change < steady || out.rounds == options.rounds) {
+      out.notes.push_back("Planes were sought " + std::to_string(out.rounds) + " times; the last round moved the returns by " +
+                          metres(change) + ".");
+      if (out.rounds < options.rounds)
+        out.adjustment = adjust(out.ties, flight.scanner, flight.start, flight.sensor, *flight.trajectory, *flight.errors, options.adjust);
+      break;
+    }
+  }
+  tally.add(of_round);
+  if (out.match) {
+    for (const Finding& f : out.match->findings) out.notes.push_back("Surfaces: " + f.what + (f.cure.empty() ? "" : " (" + f.cure + ")"));
+  }
+  return out;
+}
+
+}  // namespace swath::calib

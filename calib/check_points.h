@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Surveyed points on the ground beside the returns around them.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/block.h"
+
+namespace swath::calib {
+
+struct CheckPoint {
+  std::string name;
+  Eigen::Vector3d map;  ///< easting, northing, height, map metres
+  double sigma = 0.0;   ///< of the height, m
+};
+
+struct CheckResidual {
+  std::string name;
+  std::uint64_t returns = 0;
+  double difference =
+      0.0;             ///< height of the returns' plane at the point minus the point's, m; NaN with too few returns, or none about a plane
+  double sigma = 0.0;  ///< of the point and of the plane's height by the returns' scatter, m
+  double roughness = 0.0;  ///< rms of the returns about their plane, m
+};
+
+/// Collects single returns within `radius` (m) of each point, over all lines and batches, and fits a plane to them.
+class CheckPoints {
+ public:
+  CheckPoints(std::vector<CheckPoint> points, double radius) : points_(std::move(points)), radius_(radius), moments_(points_.size()) {}
+  /// Coordinates in map metres.
+  void add(const core::Block& block);
+  std::vector<CheckResidual> residuals() const;
+
+ private:
+  struct Moments {
+    double n = 0;
+    Eigen::Matrix<double, 4, 4> sum = Eigen::Matrix<double, 4, 4>::Zero();  ///< of (1, x, y, z) products, from the point, m
+  };
+  std::vector<CheckPoint> points_;
+  double radius_;
+  std::vector<Moments> moments_;
+};
+
+}  // namespace swath::calib
