@@ -51,6 +51,28 @@ Motion delivered(const Motion& truth, const TrajectoryErrors::At& error) {
   return m;
 }
 
+core::Calibration true_calibration(const MountingOptions& mounting, std::int64_t seed) {
+  core::Calibration c = mounting.truth;
+  Random random = random_of(seed, Stream::mounting);
+  for (core::Radians* angle : {&c.roll, &c.pitch, &c.heading}) angle->value += mounting.random_boresight.value * random.uniform(-1.0, 1.0);
+  c.range_offset.value += mounting.random_range_offset.value * random.normal();
+  c.scan_scale += mounting.random_scan_scale * random.normal();
+  return c;
+}
+
+namespace {
+
+/// The sigmas stated of a mounting that nobody calibrated: what is drawn has the sigma of its draw.
+CalibrationSigma nominal_sigma_of(const MountingOptions& m) {
+  CalibrationSigma s = m.nominal_sigma;
+  if (m.random_boresight.value > 0.0) s.roll = s.pitch = s.heading = core::Radians(m.random_boresight.value / std::sqrt(3.0));
+  if (m.random_range_offset.value > 0.0) s.range_offset = m.random_range_offset;
+  if (m.random_scan_scale > 0.0) s.scan_scale = m.random_scan_scale;
+  return s;
+}
+
+}  // namespace
+
 DeliveredCalibration deliver_calibration(const MountingOptions& mounting, const NoiseOptions& noise, const ScannerOptions& scanner,
                                          std::int64_t seed) {
   const core::Calibration& t = mounting.truth;
@@ -93,7 +115,7 @@ DeliveredCalibration deliver_calibration(const MountingOptions& mounting, const 
     case Deliver::nominal:
       c = core::Calibration{};
       c.lever_arm_scanner = t.lever_arm_scanner;
-      set_sigma(mounting.nominal_sigma);
+      set_sigma(nominal_sigma_of(mounting));
       break;
   }
   if (mounting.deliver != Deliver::truth)

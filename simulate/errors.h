@@ -35,12 +35,16 @@ class TrajectoryErrors {
 /// The motion as delivered: with the errors at t.
 Motion delivered(const Motion& truth, const TrajectoryErrors::At& error);
 
+/// The true calibration: the options' with what the seed draws.
+core::Calibration true_calibration(const MountingOptions& mounting, std::int64_t seed);
+
 /// What survey.toml states.
 struct DeliveredCalibration {
   core::Calibration calibration;
   core::SensorSigma sigma;
 };
-/// `sigma` holds the stated sigmas of the single record too, with the rounding to the resolutions (step / sqrt 12) inside.
+/// Of a mounting whose truth is already drawn (true_calibration). `sigma` holds the stated sigmas of the single record too, with the
+/// rounding to the resolutions (step / sqrt 12) inside.
 DeliveredCalibration deliver_calibration(const MountingOptions& mounting, const NoiseOptions& noise, const ScannerOptions& scanner,
                                          std::int64_t seed);
 

@@ -28,6 +28,7 @@ struct Line {
   int id;
   std::string name;
   double start, end;
+  bool scans = true;  ///< false: the mirror stands still at nadir
 };
 
 /// A motion whose pose is a function of time with two continuous derivatives at least, all of them known exactly.

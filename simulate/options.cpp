@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simulate/options.h"
 
+#include <algorithm>
+
 namespace swath::simulate {
 
 using core::degrees;
@@ -48,6 +50,16 @@ bool is_axes_rotation(const std::array<std::string, 3>& axes) {
   }
   // The sign of a permutation of 0, 1, 2; 0 where one comes twice.
   return sign * (place[1] - place[0]) * (place[2] - place[0]) * (place[2] - place[1]) == 2;
+}
+
+double FlightOptions::upper_height() const {
+  if (pattern != FlightPattern::calibration) return 0.0;
+  return second_height ? second_height->value : 11.0 / 7.0 * height.value;
+}
+
+BuildingSize airfield_building(const WorldOptions& w) {
+  const double length = std::clamp(std::min(w.length.value, w.width.value) / 9.0, 12.0, 80.0);
+  return {0.5 * length, 0.25 * length, 12.0};
 }
 
 core::ScannerModel model_of(Pattern p) {
@@ -106,6 +118,9 @@ Features features_of(const WorldOptions& w) {
            .power_line = true,
            .woodland = 0.25,
            .built_up = 0.35};
+      break;
+    case Scene::airfield:
+      f = {.slope = 0.002, .relief = 0.4, .buildings = 0.3, .trees = 0.4};
       break;
   }
   if (w.slope) f.slope = *w.slope;

@@ -11,81 +11,11 @@
 #include "core/sensor.h"
 #include "core/time.h"
 #include "io/survey.h"
+#include "simulate/flight_options.h"
 #include "simulate/navigation_options.h"
+#include "simulate/scene_options.h"
 
 namespace swath::simulate {
-
-enum class Scene { flat, hills, steep, forest, town, mixed };
-
-/// The ground and what stands on it. Options without a value take the scene's own.
-struct WorldOptions {
-  Scene scene = Scene::mixed;
-  core::Metres length{1000.0}, width{400.0};
-  core::Metres ground{600.0};
-  std::optional<double> slope{};
-  std::optional<core::Metres> relief{}, scarp{}, embankment{};
-  std::optional<double> buildings{}, trees{}, low_vegetation{};
-  std::optional<bool> water{}, power_line{};
-};
-
-template <class V>
-void describe(WorldOptions& w, V& v) {
-  v.option("scene", w.scene, "Kind of scene; it fills the options below that are not given.");
-  v.option("length", w.length, core::within(50, 1e4), "Length of the area along the flight lines.");
-  v.option("width", w.width, core::within(50, 1e4), "Width of the area across the flight lines.");
-  v.option("ground", w.ground, core::within(-500, 8000), "Ellipsoidal height of the ground in the middle.");
-  v.option("slope", w.slope, core::within(0, 1), "Slope of the whole area (rise / run), down to grid north-east.");
-  v.option("relief", w.relief, core::within(0, 500), "Amplitude of hills.");
-  v.option("scarp", w.scarp, core::within(0, 100), "Height of a steep scarp through the area (0: none).");
-  v.option("embankment", w.embankment, core::within(0, 50), "Height of an embankment through the area (0: none).");
-  v.option("buildings", w.buildings, core::within(0, 30), "Buildings per hectare of built-up ground.");
-  v.option("trees", w.trees, core::within(0, 1000), "Trees per hectare of woodland.");
-  v.option("low_vegetation", w.low_vegetation, core::within(0, 1), "Share of open ground under low vegetation.");
-  v.option("water", w.water, "A lake.");
-  v.option("power_line", w.power_line, "A power line.");
-}
-
-struct FlightOptions {
-  core::Metres height{350.0};
-  core::MetresPerSecond speed{50.0};
-  int lines = 3;
-  std::optional<core::Metres> line_length;
-  double overlap = 0.4;
-  int cross_lines = 1;
-  core::Radians direction = core::degrees(60.0);
-  core::Radians bank = core::degrees(22.0);
-  core::Seconds lead{5.0};
-  core::Seconds still;
-  double turbulence = 1.0;
-  core::MetresPerSecond wind{4.0};
-  core::Radians wind_from = core::degrees(300.0);
-  std::vector<io::TrajectoryFile> along;
-  core::Seconds along_knots{0.1};
-};
-
-template <class V>
-void describe(FlightOptions& f, V& v) {
-  v.option("height", f.height, core::within(20, 5000), "Flying height above the ground in the middle of the area.");
-  v.option("speed", f.speed, core::within(5, 120), "Ground speed.");
-  v.option("lines", f.lines, core::within(1, 200), "Parallel flight lines, flown to and fro.");
-  v.option("line_length", f.line_length, core::within(20, 1e5), "Length of a flight line; without a value the area's length.");
-  v.option("overlap", f.overlap, core::within(-1.0, 0.95), "Share of the swath that neighbouring lines have in common.");
-  v.option("cross_lines", f.cross_lines, core::within(0, 50), "Lines flown across the others.");
-  v.option("direction", f.direction, core::within(0, 2 * core::pi), "Direction of the first line, clockwise from grid north.");
-  v.option("bank", f.bank, core::within(0.05, 1.0), "Bank of turns between lines.");
-  v.option("lead", f.lead, core::within(1, 300), "Straight flight before and after each line.");
-  v.option("still", f.still, core::within(0, 3600),
-           "Stand on the ground before take-off and climb; 0: the flight begins in the air, before its first line.");
-  v.option("turbulence", f.turbulence, core::within(0, 5), "Factor on the amplitudes of turbulence (1: about 1 deg of roll, 0.3 m).");
-  v.option("wind", f.wind, core::within(0, 40), "Wind, which the aircraft meets by crabbing.");
-  v.option("wind_from", f.wind_from, core::within(0, 2 * core::pi), "Direction the wind comes from, clockwise from grid north.");
-  v.tables("along", f.along,
-           "Trajectory files to fly along, in place of lines: as in survey.toml, relative to the working folder; their time holds. Without "
-           "laser.");
-  v.option("along_knots", f.along_knots, core::within(0.01, 10),
-           "Spacing of the knots of the splines that follow that trajectory: motion faster than two of them is smoothed away.");
-  v.check(f.wind.value < 0.8 * f.speed.value, "the wind must be well below the aircraft's speed");
-}
 
 /// How the beam moves.
 enum class Pattern { triangle, sine, polygon, profile, beam, conical, palmer };
@@ -131,6 +61,8 @@ struct NoiseOptions {
   core::Metres horizontal{0.02}, vertical{0.03};
   core::Radians roll_pitch = core::degrees(0.0025), heading = core::degrees(0.005);
   core::Seconds correlation{60.0};
+  core::Metres line_shift, line_drift;
+  core::Radians line_attitude, line_attitude_drift;
   double high_points = 2e-5, low_points = 2e-5, multipath = 5e-5;
 };
 
@@ -144,6 +76,11 @@ void describe(NoiseOptions& n, V& v) {
   v.option("roll_pitch", n.roll_pitch, core::within(0, 0.02), "Sigma of the delivered roll and pitch.");
   v.option("heading", n.heading, core::within(0, 0.02), "Sigma of the delivered heading.");
   v.option("correlation", n.correlation, core::within(0.5, 3600), "Correlation time of the delivered trajectory's errors.");
+  v.option("line_shift", n.line_shift, core::within(0, 10),
+           "Sigma of an offset that the delivered trajectory has on the whole of a line, drawn for each line and axis.");
+  v.option("line_drift", n.line_drift, core::within(0, 10), "Sigma of its linear change from the line's start to its end, for each axis.");
+  v.option("line_attitude", n.line_attitude, core::within(0, 0.02), "Sigma of such an offset of roll, pitch and heading.");
+  v.option("line_attitude_drift", n.line_attitude_drift, core::within(0, 0.02), "Sigma of the change of that offset along the line.");
   v.option("high_points", n.high_points, core::within(0, 0.1), "Share of pulses whose first return is an isolated high point (class 18).");
   v.option("low_points", n.low_points, core::within(0, 0.1),
            "Share of pulses whose last return is an isolated low point, 3 to 25 m late (class 7).");
@@ -189,6 +126,9 @@ struct MountingOptions {
   Deliver deliver = Deliver::drawn;
   CalibrationSigma sigma = default_drawn_sigma();
   CalibrationSigma nominal_sigma = default_nominal_sigma();
+  core::Radians random_boresight;
+  core::Metres random_range_offset;
+  double random_scan_scale = 0.0;
   std::array<core::Metres, 3> lever_arm_antenna{core::Metres(-0.412), core::Metres(0.127), core::Metres(-1.236)};
 };
 
@@ -197,7 +137,12 @@ void describe(MountingOptions& m, V& v) {
   v.table("truth", m.truth, "True calibration.");
   v.option("deliver", m.deliver, "Which calibration survey.toml states: truth, drawn (with errors from `sigma`), nominal (uncalibrated).");
   v.table("sigma", m.sigma, "Sigmas that errors are drawn from and that survey.toml states (drawn; lever arm also for nominal).");
-  v.table("nominal_sigma", m.nominal_sigma, "Sigmas that survey.toml states for a nominal calibration.");
+  v.table("nominal_sigma", m.nominal_sigma,
+          "Sigmas that survey.toml states for a nominal calibration; for what is drawn by a random_ option the sigma of that draw.");
+  v.option("random_boresight", m.random_boresight, core::within(0, 0.1),
+           "Adds to the true roll, pitch and heading what the seed draws, evenly within plus and minus this.");
+  v.option("random_range_offset", m.random_range_offset, core::within(0, 10), "Adds to the true range offset a draw of this sigma.");
+  v.option("random_scan_scale", m.random_scan_scale, core::within(0, 0.01), "Adds to the true scan scale a draw of this sigma.");
   v.option("lever_arm_antenna", m.lever_arm_antenna, "IMU centre to GNSS antenna: forward, right, down.");
 }
 
@@ -248,6 +193,7 @@ struct Options {
   ImuOptions imu;
   GnssOptions gnss;
   EventOptions events;
+  ControlOptions control;
   OutputOptions output;
 };
 
@@ -266,7 +212,11 @@ void describe(Options& o, V& v) {
   v.table("imu", o.imu, "IMU.");
   v.table("gnss", o.gnss, "GNSS receiver.");
   v.table("events", o.events, "Camera exposures and the computer clock that times them.");
+  v.table("control", o.control, "Surveyed points and targets, of surveys with laser records.");
   v.table("output", o.output, "Files.");
+  const bool parks = o.scanner.pattern == Pattern::triangle || o.scanner.pattern == Pattern::sine;
+  v.check(o.flight.pattern != FlightPattern::calibration || !o.flight.profile_lines || parks,
+          "only an oscillating mirror (triangle, sine) can stand still at nadir: set flight.profile_lines = false");
   v.check(o.flight.along.empty() || !o.output.laser, "a flight along a trajectory has no laser: set output.laser = false");
   v.check(o.output.trajectory != TrajectoryOutput::none || (o.imu.file && o.gnss.file),
           "without a trajectory the survey needs imu.file and gnss.file");
@@ -279,22 +229,9 @@ void describe(Options& o, V& v) {
 /// The scanner model that calib uses for a pattern.
 core::ScannerModel model_of(Pattern p);
 
-/// The scene's numbers with the given options put in.
-struct Features {
-  double slope = 0, relief = 0, scarp = 0, embankment = 0, buildings = 0, trees = 0, low_vegetation = 0;
-  bool water = false, power_line = false;
-  double woodland = 0.3;  ///< share of the area under trees
-  double built_up = 0.3;  ///< share of the area with buildings
-};
-Features features_of(const WorldOptions& w);
-
 }  // namespace swath::simulate
 
 namespace swath::core {
-template <>
-struct Choices<simulate::Scene> {
-  static constexpr std::array<std::string_view, 6> names{"flat", "hills", "steep", "forest", "town", "mixed"};
-};
 template <>
 struct Choices<simulate::Pattern> {
   static constexpr std::array<std::string_view, 7> names{"triangle", "sine", "polygon", "profile", "beam", "conical", "palmer"};

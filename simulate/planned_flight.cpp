@@ -41,26 +41,6 @@ Vector2d unit(double course) { return {std::cos(course), std::sin(course)}; }  /
 
 }  // namespace
 
-std::vector<LinePlan> plan_lines(const FlightOptions& flight, const WorldOptions& world, double half_angle, double convergence) {
-  const double swath = 2 * flight.height.value * std::tan(half_angle);
-  const double spacing = swath * (1 - flight.overlap);
-  const double length = flight.line_length ? flight.line_length->value : world.length.value;
-  const Vector2d along = unit(flight.direction.value + convergence), across(-along.y(), along.x());
-  std::vector<LinePlan> plan;
-  for (int i = 0; i < flight.lines; ++i) {
-    const Vector2d middle = (i - 0.5 * (flight.lines - 1)) * spacing * across;
-    const double sense = i % 2 ? -1.0 : 1.0;
-    plan.push_back({middle - sense * 0.5 * length * along, middle + sense * 0.5 * length * along, "line " + std::to_string(i + 1)});
-  }
-  const double reach = (flight.lines - 1) * spacing + swath;
-  for (int i = 0; i < flight.cross_lines; ++i) {
-    const Vector2d middle = length * ((i + 0.5) / flight.cross_lines - 0.5) * along;
-    const double sense = i % 2 ? -1.0 : 1.0;
-    plan.push_back({middle - sense * 0.5 * reach * across, middle + sense * 0.5 * reach * across, "cross line " + std::to_string(i + 1)});
-  }
-  return plan;
-}
-
 PlannedFlight::PlannedFlight(const FlightOptions& options, const core::Geodetic& origin, double height, const std::vector<LinePlan>& plan,
                              double wind_from, std::int64_t seed)
     : options_(options), plane_(origin, height), height_(height), wind_from_(wind_from) {
@@ -72,14 +52,16 @@ PlannedFlight::PlannedFlight(const FlightOptions& options, const core::Geodetic&
     const double course = std::atan2(way.y(), way.x());
     const Vector2d entry = plan[i].from - lead * speed * unit(course);
     if (i == 0) {
-      add_departure(entry, course);
+      add_departure(entry, course, plan[i].level);
+    } else if (plan[i].level != plan[i - 1].level) {
+      climb_to(entry, course, plan[i - 1].level, plan[i].level);
     } else {
       fly_to(entry, course);
     }
     add_piece(lead, 0, 0);
     const double start = duration_;
     add_piece(way.norm() / speed, 0, 0);
-    lines_.push_back({static_cast<int>(i) + 1, plan[i].name, start, duration_});
+    lines_.push_back({static_cast<int>(i) + 1, plan[i].name, start, duration_, plan[i].scans});
     add_piece(lead, 0, 0);
   }
   const double rest = std::ceil(duration_ - 1e-9) - duration_;
@@ -98,15 +80,17 @@ PlannedFlight::PlannedFlight(const FlightOptions& options, const core::Geodetic&
     }
 }
 
-void PlannedFlight::add_departure(const Vector2d& entry, double course) {
+void PlannedFlight::add_departure(const Vector2d& entry, double course, double level) {
   const double speed = options_.speed.value;
   course_ = course;
   at_ = entry;
+  first_level_ = level;
   if (options_.still.value == 0.0) return;
   departure_.still = options_.still.value;
   departure_.run = steepest * speed / take_off_acceleration;
-  departure_.height = options_.height.value - height_at_rest;
-  departure_.climb = steepest * departure_.height / climb_rate;
+  const double rest = height_at_rest - options_.height.value;
+  departure_.climb = steepest * (level - rest) / climb_rate;
+  climbs_.push_back({departure_.still + departure_.run, departure_.climb, rest, level});
   pieces_.push_back(
       {0.0, departure_.duration(), course, 0.0, 0.0, {entry - speed * (0.5 * departure_.run + departure_.climb) * unit(course)}});
   duration_ = departure_.duration();
@@ -234,6 +218,26 @@ void PlannedFlight::fly_to(const Vector2d& target, double course) {
   add_turn(best_second);
 }
 
+void PlannedFlight::climb_to(const Vector2d& target, double course, double from, double to) {
+  const double needed = steepest * std::abs(to - from) / climb_rate, start = duration_;
+  const size_t before = pieces_.size();
+  const Vector2d at = at_;
+  const double course_before = course_;
+  fly_to(target, course);
+  if (duration_ - start < needed) {
+    // The way there is too short: full circles first.
+    const std::vector<double> circle = turn_plan(2 * core::pi);
+    const double circles = std::ceil((needed - (duration_ - start)) / (2 * circle[0] + circle[1]));
+    pieces_.resize(before);
+    at_ = at;
+    course_ = course_before;
+    duration_ = start;
+    add_turn(2 * core::pi * circles);
+    fly_to(target, course);
+  }
+  climbs_.push_back({start, duration_ - start, from, to});
+}
+
 const PlannedFlight::Piece& PlannedFlight::piece_at(double t) const {
   const auto after = std::upper_bound(pieces_.begin(), pieces_.end(), t, [](double v, const Piece& p) { return v < p.start; });
   return after == pieces_.begin() ? pieces_.front() : *(after - 1);
@@ -246,10 +250,11 @@ PlannedFlight::Swing PlannedFlight::speed_at(double t) const {
 }
 
 PlannedFlight::Swing PlannedFlight::climb_at(double t) const {
-  const double since = t - departure_.still - departure_.run;
-  if (departure_.still == 0.0 || since >= departure_.climb) return {};
-  const double u = std::max(0.0, since / departure_.climb), h = departure_.height;
-  return {h * (step(u) - 1), h * step_slope(u) / departure_.climb, h * step_curve(u) / (departure_.climb * departure_.climb)};
+  const auto after = std::upper_bound(climbs_.begin(), climbs_.end(), t, [](double v, const Climb& c) { return v < c.start; });
+  if (after == climbs_.begin()) return {climbs_.empty() ? first_level_ : after->from, 0, 0};
+  const Climb& c = *(after - 1);
+  const double u = std::min(1.0, (t - c.start) / c.duration), h = c.to - c.from;
+  return {c.from + h * step(u), h * step_slope(u) / c.duration, h * step_curve(u) / (c.duration * c.duration)};
 }
 
 PlannedFlight::Swing PlannedFlight::share_at(double t) const {

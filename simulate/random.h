@@ -48,7 +48,10 @@ enum class Stream : std::uint64_t {
   gnss_outlier,
   gnss_velocity,
   clock,
-  events
+  events,
+  mounting,
+  line_errors,
+  control
 };
 
 inline Random random_of(std::int64_t seed, Stream stream, std::uint64_t index = 0) {

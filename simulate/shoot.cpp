@@ -60,7 +60,9 @@ void Shooter::pulse(const Line& line, std::int64_t number, Echoes& echoes, Retur
   const Vector3d origin = core::ecef_of(pose.position) + ecef_R_body * lever_arm_;
 
   ScanState scan = scan_at(scanner, t);
-  if (scanner.pattern == Pattern::profile) scan.angle = truth.scan_offset.value;
+  if (!line.scans) scan = {};
+  // A mirror that stands still reads 0.
+  if (scanner.pattern == Pattern::profile || !line.scans) scan.angle = truth.scan_offset.value;
   Vector3d beam = beam_of(scanner, scan.angle, scan.forward);
   if (noisy) {
     const double sigma = 0.25 * scanner.divergence.value;

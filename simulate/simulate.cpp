@@ -18,8 +18,10 @@
 #include "io/survey.h"
 #include "io/trajectory_file.h"
 #include "io/value_file.h"
+#include "simulate/control_files.h"
 #include "simulate/errors.h"
 #include "simulate/events.h"
+#include "simulate/facets.h"
 #include "simulate/gnss_file.h"
 #include "simulate/imu_file.h"
 #include "simulate/laser_file.h"
@@ -69,35 +71,53 @@ Scenery along_trajectory(const Options& o) {
   return s;
 }
 
+/// Half the swath's angle; a profile's place among other lines is planned as if it had some.
+double swath_angle(const ScannerOptions& s) { return widest_angle(s) > 0 ? widest_angle(s) : 0.1; }
+
+double lowest_of(const FlightOptions& f) { return f.upper_height() > 0.0 ? std::min(f.height.value, f.upper_height()) : f.height.value; }
+
+/// Half side of the square that beams reach, m. Boresight and attitude may add 6 degrees to the scan; lines and area may overlap either
+/// way.
+double reach_of(const Options& o) {
+  const FlightOptions& f = o.flight;
+  const double height = std::max(f.height.value, f.upper_height());
+  const double reach = height * std::tan(std::min(1.2, widest_angle(o.scanner) + 6 * core::degree)) + 60.0;
+  const double area = std::max(o.world.length.value, o.world.width.value);
+  if (f.pattern == FlightPattern::calibration) {
+    double farthest = 0.71 * area;
+    for (const LinePlan& l : plan_lines(f, o.world, swath_angle(o.scanner), 0.0))
+      farthest = std::max({farthest, l.from.lpNorm<Eigen::Infinity>(), l.to.lpNorm<Eigen::Infinity>()});
+    return farthest + reach;
+  }
+  const double swath = 2 * f.height.value * std::tan(widest_angle(o.scanner));
+  const double line = f.line_length ? f.line_length->value : o.world.length.value;
+  const double across = (f.lines.value_or(3) - 1) * swath * (1 - f.overlap) + swath;
+  return std::max({area, line, across}) * 0.71 + reach;
+}
+
 Scenery build(const Options& o) {
   const core::Crs crs(o.crs);
   if (!o.flight.along.empty()) return along_trajectory(o);
-  // Boresight and attitude may add 6 degrees to the scan; lines and area may overlap either way.
-  const double reach = o.flight.height.value * std::tan(std::min(1.2, widest_angle(o.scanner) + 6 * core::degree)) + 60.0;
-  const double swath = 2 * o.flight.height.value * std::tan(widest_angle(o.scanner));
-  const double line = o.flight.line_length ? o.flight.line_length->value : o.world.length.value;
-  const double across = std::max(0, o.flight.lines - 1) * swath * (1 - o.flight.overlap) + swath;
-  Scenery s;
-  s.half = std::max({o.world.length.value, o.world.width.value, line, across}) * 0.71 + reach;
-  s.start = core::from_week(o.output.week, o.output.start.value);
-
   const core::Geodetic origin{o.latitude.value, o.longitude.value, o.world.ground.value};
   const double ground = o.world.ground.value, flown = ground + o.flight.height.value;
+  const double highest = ground + std::max(o.flight.height.value, o.flight.upper_height());
+  Scenery s;
+  s.half = reach_of(o);
+  s.start = core::from_week(o.output.week, o.output.start.value);
   double low = ground;
   if (o.output.laser) {
     s.world.emplace(o.world, o.seed, o.flight.direction, s.half);
     low = s.world->relief().lowest() - low_margin;
-    if (s.world->relief().highest() > flown - 10.0)
+    if (s.world->relief().highest() > ground + lowest_of(o.flight) - 10.0)
       throw core::usage_error("the ground may reach " +
                                   core::format_quantity(core::Dimension::length, std::round(s.world->relief().highest())) +
                                   ", too near to the flying height",
                               "flight.height", "fly higher, or less relief, slope or area");
   }
   // Without laser the map serves for the bearing of its grid north alone.
-  s.map.emplace(crs, origin, o.output.laser ? s.half : 100.0, low, flown + 30.0);
+  s.map.emplace(crs, origin, o.output.laser ? s.half : 100.0, low, highest + 30.0);
   const double convergence = s.map->convergence();
-  const std::vector<LinePlan> plan =
-      plan_lines(o.flight, o.world, widest_angle(o.scanner) > 0 ? widest_angle(o.scanner) : 0.1, convergence);
+  const std::vector<LinePlan> plan = plan_lines(o.flight, o.world, swath_angle(o.scanner), convergence);
   // The ellipsoid's curvature: the flight keeps its height above the ellipsoid, as the ground does.
   s.flight = std::make_unique<PlannedFlight>(o.flight, origin, flown, plan, o.flight.wind_from.value + convergence, o.seed);
   return s;
@@ -247,6 +267,15 @@ void write_laser(const Scenery& s, const Options& o, const fs::path& folder, con
   made["largest_map_error_m"] = s.map->worst();
 }
 
+/// Facets of the buildings, and what was surveyed of them and of the ground. Returns what survey.toml says of it.
+std::vector<io::ControlFile> write_ground_truth(const Scenery& s, const Options& o, const fs::path& folder, Value& made) {
+  const std::vector<Facet> facets = facets_of(*s.world);
+  write_planes(folder / "truth" / "planes.csv", facets, *s.map);
+  const std::vector<SurveyedPoint> points = survey_points(o, *s.world, facets);
+  made["surveyed_points"] = static_cast<std::int64_t>(points.size());
+  return write_control(folder, points, o.control, *s.map);
+}
+
 /// survey.toml for the first format of laser records, and one for each further one.
 void write_surveys(const Scenery& s, const Options& o, const io::Survey& survey, const fs::path& folder) {
   const std::string comment = "# Simulated survey; truth/ holds what is known of it.\n";
@@ -274,7 +303,55 @@ Value departure_value(const RecordedFlight::Departure& d) {
 
 }  // namespace
 
+Options calibration_flight() {
+  Options o;
+  o.world.scene = Scene::airfield;
+  o.world.length = o.world.width = core::Metres(720);
+  o.flight.pattern = FlightPattern::calibration;
+  o.flight.height = core::Metres(700);
+  o.flight.speed = core::MetresPerSecond(60);
+  o.flight.cross_lines = 2;
+  o.flight.lead = core::Seconds(10);
+  o.scanner.prf = core::Hertz(30000);
+  o.scanner.frequency = core::Hertz(30);
+  o.scanner.half_angle = core::degrees(27);
+  o.noise.range = core::Metres(0.02);
+  core::Calibration& c = o.mounting.truth;
+  c.roll = c.pitch = c.heading = core::Radians(0);
+  c.range_offset = core::Metres(0);
+  c.scan_scale = 1.0;
+  o.mounting.deliver = Deliver::nominal;
+  o.mounting.random_boresight = core::degrees(0.5);
+  o.mounting.random_range_offset = core::Metres(0.1);
+  o.mounting.random_scan_scale = 1e-4;
+  o.control.roof = true;
+  o.control.points = 20;
+  o.output.truth_returns = false;
+  o.output.dtm_cell = core::Metres(2);
+  return o;
+}
+
+Options read_options(const Value& given) {
+  const Value* flight = given.is_object() ? given.find("flight") : nullptr;
+  const Value* pattern = flight && flight->is_object() ? flight->find("pattern") : nullptr;
+  Options options = pattern && pattern->is_text() && pattern->as_text() == "calibration" ? calibration_flight() : Options{};
+  std::vector<core::Fault> faults;
+  core::read_options(core::described(options), given, "", faults);
+  core::throw_if_any(faults);
+  return options;
+}
+
 Options preset(Scene scene) {
+  if (scene == Scene::airfield) {
+    Options o = calibration_flight();
+    o.world.length = o.world.width = core::Metres(300);
+    o.world.buildings = 0.9;
+    o.flight.height = core::Metres(300);
+    o.scanner.prf = core::Hertz(6000);
+    o.scanner.frequency = core::Hertz(16);
+    o.output.truth_returns = true;
+    return o;
+  }
   Options o;
   o.world.scene = scene;
   if (scene == Scene::mixed) return o;
@@ -288,8 +365,10 @@ Options preset(Scene scene) {
   return o;
 }
 
-Value run(const Options& options, const fs::path& folder, const Progress& progress) {
-  check(options);
+Value run(const Options& given, const fs::path& folder, const Progress& progress) {
+  check(given);
+  Options options = given;
+  options.mounting.truth = true_calibration(given.mounting, given.seed);
   const Scenery scenery = build(options);
   if (options.gnss.file && !Receiver(*scenery.flight, options.gnss, options.mounting.lever_arm_antenna, true, options.seed).next())
     throw core::usage_error("the outages leave no GNSS fix", "gnss.outage", "shorter outages, or gnss.file = false");
@@ -298,9 +377,12 @@ Value run(const Options& options, const fs::path& folder, const Progress& progre
   if (ec) throw core::SystemError("cannot make the folder: " + ec.message(), (folder / "truth").string());
 
   Value made = Value::object();
-  if (options.output.laser) write_laser(scenery, options, folder, progress, made);
-  write_navigation(scenery, options, folder, made);
   io::Survey survey = describe_survey(scenery, options);
+  if (options.output.laser) {
+    survey.control = write_ground_truth(scenery, options, folder, made);
+    write_laser(scenery, options, folder, progress, made);
+  }
+  write_navigation(scenery, options, folder, made);
   if (options.output.trajectory != TrajectoryOutput::none)
     survey.trajectory = {write_trajectory(folder, *scenery.flight, scenery.start, options)};
   io::write_sbet(folder / "truth" / "sbet.out", true_trajectory(*scenery.flight, scenery.start));
@@ -313,7 +395,7 @@ Value run(const Options& options, const fs::path& folder, const Progress& progre
     made["splines_minus_trajectory"] = departure_value(along->departure());
   Value all = Value::object();
   all["made"] = made;
-  all["options"] = effective(options);
+  all["options"] = effective(given);
   io::write_text_file(folder / "truth" / "simulation.json", io::to_json(all));
   if (progress) progress(1.0);
   return made;

@@ -17,14 +17,25 @@ using Progress = std::function<void(double)>;
 /// Writes into `out_folder` (made where it is not there):
 ///   survey.toml (first format) and survey_FORMAT.toml (each further one), laser.FORMAT, sbet.out + smrmsg.out or trajectory.csv,
 ///   imu.csv, gnss.csv, events_pc.csv, events_marks.csv, loopstats, pps.log,
-///   truth/: sbet.out (200 Hz), returns.npy (see TruthFile), dtm.tif, calibration.json, imu.json and imu_drift.csv (errors of the IMU),
-///   gnss.csv (errors of each fix), events.csv, simulation.json (options and what was made).
+///   control.csv (targets) and check.csv (ground points),
+///   truth/: planes.csv (facets of buildings), control.csv (exact places of what was surveyed), sbet.out (200 Hz), returns.npy (see
+///   TruthFile), dtm.tif, calibration.json, imu.json and imu_drift.csv (errors of the IMU), gnss.csv (errors of each fix), events.csv,
+///   simulation.json (options and what was made).
 /// The same options give the same bytes, whatever the number of threads. Memory is bounded whatever the number of returns (the
 /// trajectory, 100 bytes per 5 ms, and the truth's grid are held whole).
 /// Returns counts, sizes and the map's error. Throws Error where the options do not go together or a file cannot be written.
 core::Value run(const Options& options, const std::filesystem::path& out_folder, const Progress& progress = {});
 
-/// Default options of a preset: the zoo's scenes small (some 20 000 returns), for tests; `mixed` as the full default survey.
+/// A calibration flight of full size over the airfield: tactical IMU, 700 and 1100 m, boresight (evenly within 0.5 deg), range offset and
+/// scan scale drawn by the seed and delivered uncalibrated, the roof in the middle surveyed.
+Options calibration_flight();
+
+/// Options as a config gives them. What it leaves out has the defaults, which for flight.pattern = "calibration" are those of
+/// calibration_flight(). Throws Error with all faults.
+Options read_options(const core::Value& given);
+
+/// Default options of a preset: the zoo's scenes small (some 20 000 returns), for tests; `mixed` as the full default survey; `airfield` a
+/// small calibration flight at 300 m (some 800 000 returns).
 Options preset(Scene scene);
 
 }  // namespace swath::simulate

@@ -97,6 +97,7 @@ Value fallback_of(const std::string& list) {
     return v;
   }
   if (list == "event") return effective(io::EventFile{});
+  if (list == "control") return effective(io::ControlFile{});
   if (list == "points") return effective(io::PointFile{});
   return Value::object();
 }

@@ -4,31 +4,51 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "io/sbet.h"
 #include "io/text_rows.h"
 #include "simulate/errors.h"
 #include "simulate/laser_file.h"
+#include "simulate/line_errors.h"
 
 namespace swath::simulate {
 namespace {
 
 constexpr double trajectory_step = 0.005;  // s
 
+/// Errors of the delivered trajectory, those over the whole flight and those of its lines.
+struct Errors {
+  TrajectoryErrors whole;
+  LineErrors lines;
+};
+
 /// The flight at every step, with the errors of `errors` where there are any.
-core::TrajectoryData trajectory_of(const Flight& flight, core::GpsTime start, const TrajectoryErrors* errors) {
+core::TrajectoryData trajectory_of(const Flight& flight, core::GpsTime start, const Errors* errors) {
   core::TrajectoryData out;
   const auto n = static_cast<size_t>(std::ceil(flight.duration() / trajectory_step - 1e-9)) + 1;
   for (auto* c :
        {&out.time, &out.latitude, &out.longitude, &out.height, &out.roll, &out.pitch, &out.heading, &out.v_north, &out.v_east, &out.v_down})
     c->resize(n);
+  const std::array sigmas{&out.sigma_north, &out.sigma_east, &out.sigma_down, &out.sigma_roll, &out.sigma_pitch, &out.sigma_heading};
+  if (errors)
+    for (auto* c : sigmas) c->resize(n);
   tbb::parallel_for(size_t{0}, n, [&](size_t k) {
     // The instant that the record's time, a double, really names.
     const core::GpsTime time = start + static_cast<double>(k) * trajectory_step;
     const double t = std::min(time - start, flight.duration());
     Motion m = flight.motion(t);
-    if (errors) m = delivered(m, errors->at(t));
+    if (errors) {
+      TrajectoryErrors::At error = errors->whole.at(t);
+      const LineErrors::At of_line = errors->lines.at(t);
+      for (size_t i = 0; i < 6; ++i) {
+        error.value[i] += of_line.value[i];
+        error.rate[i] += of_line.rate[i];
+        (*sigmas[i])[k] = static_cast<float>(std::hypot(errors->whole.sigma()[i], of_line.sigma[i]));
+      }
+      m = delivered(m, error);
+    }
     out.time[k] = start + t;
     out.latitude[k] = m.pose.position.latitude;
     out.longitude[k] = m.pose.position.longitude;
@@ -40,10 +60,6 @@ core::TrajectoryData trajectory_of(const Flight& flight, core::GpsTime start, co
     out.v_east[k] = m.velocity.y();
     out.v_down[k] = m.velocity.z();
   });
-  if (!errors) return out;
-  size_t i = 0;
-  for (auto* c : {&out.sigma_north, &out.sigma_east, &out.sigma_down, &out.sigma_roll, &out.sigma_pitch, &out.sigma_heading})
-    c->assign(n, static_cast<float>(errors->sigma()[i++]));
   return out;
 }
 
@@ -70,7 +86,7 @@ void write_text_trajectory(const std::filesystem::path& file, const core::Trajec
 core::TrajectoryData true_trajectory(const Flight& flight, core::GpsTime start) { return trajectory_of(flight, start, nullptr); }
 
 io::TrajectoryFile write_trajectory(const std::filesystem::path& folder, const Flight& flight, core::GpsTime start, const Options& o) {
-  const TrajectoryErrors errors(o.noise, o.seed);
+  const Errors errors{{o.noise, o.seed}, {o.noise, flight.lines(), o.seed}};
   const core::TrajectoryData data = trajectory_of(flight, start, &errors);
   io::TrajectoryFile f;
   if (o.output.trajectory == TrajectoryOutput::sbet) {

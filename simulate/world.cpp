@@ -92,9 +92,11 @@ World::World(const WorldOptions& options, std::int64_t seed, core::Radians direc
     : relief_(options, seed, direction, half) {
   const Features f = features_of(options);
   low_vegetation_ = f.low_vegetation;
-  if (f.buildings > 0.0) plan_buildings(options, f, seed, direction);
+  const bool airfield = options.scene == Scene::airfield;
+  if (airfield) plan_airfield(options, f, seed, direction);
+  if (!airfield && f.buildings > 0.0) plan_buildings(options, f, seed, direction);
   if (f.power_line) plan_power_line(options, seed, direction);
-  if (f.trees > 0.0) plan_trees(options, f, seed, direction);
+  if (!airfield && f.trees > 0.0) plan_trees(options, f, seed, direction);
   index_objects(half);
 }
 

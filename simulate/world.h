@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "simulate/options.h"
@@ -41,6 +42,7 @@ struct Building {
   Eigen::Vector2d centre;
   double radius, top;
   std::uint8_t kind;
+  std::string name;
 };
 /// Crown as an ellipsoid of revolution, half full of gaps: share of a beam that passes a path L is exp(-extinction L) on average.
 struct Tree {
@@ -72,6 +74,8 @@ class World {
  private:
   enum class Sort : std::uint32_t { building, tree, wire };
   void plan_buildings(const WorldOptions& options, const Features& f, std::int64_t seed, core::Radians direction);
+  void plan_airfield(const WorldOptions& options, const Features& f, std::int64_t seed, core::Radians direction);
+  double highest_corner(const Eigen::Vector2d& centre, const Eigen::Vector2d& along, double half_length, double half_width) const;
   void plan_power_line(const WorldOptions& options, std::int64_t seed, core::Radians direction);
   void plan_trees(const WorldOptions& options, const Features& f, std::int64_t seed, core::Radians direction);
   void add_building(const Eigen::Vector2d& centre, const Eigen::Vector2d& along, double half_length, double half_width, double eaves,

@@ -31,7 +31,8 @@ struct Area {
 void World::add_building(const Vector2d& centre, const Vector2d& along, double half_length, double half_width, double eaves, double ridge,
                          std::uint8_t kind) {
   const Vector2d across(along.y(), -along.x());
-  Building b{{}, centre, std::hypot(half_length, half_width), std::max(eaves, ridge), kind};
+  Building b{
+      {}, centre, std::hypot(half_length, half_width), std::max(eaves, ridge), kind, "building " + std::to_string(buildings_.size() + 1)};
   const auto wall = [&](const Vector2d& n, double half) { b.planes.emplace_back(n.x(), n.y(), 0.0, n.dot(centre) + half); };
   wall(along, half_length);
   wall(-along, half_length);

@@ -63,10 +63,7 @@ int explain(Arguments& a) {
 int simulate_survey(Arguments& a) {
   core::Value given = a.request.config.empty() ? core::Value::object() : io::read_value_file(a.request.config);
   for (const std::string& set : a.request.sets) pipeline::set_option(given, set);
-  simulate::Options options;
-  std::vector<core::Fault> faults;
-  core::read_options(core::described(options), given, "", faults);
-  core::throw_if_any(faults);
+  const simulate::Options options = simulate::read_options(given);
   pipeline::Progress progress(a.voice());
   progress.begin("simulate", 1000, "per mille");
   std::uint64_t told = 0;

@@ -26,6 +26,20 @@ PlannedFlight with_departure() {
   return PlannedFlight(o, origin, 950.0, plan_lines(o, {}, core::degrees(20).value, 0.02), 5.2, 1);
 }
 
+/// A calibration flight at two heights: it climbs in circles, and sinks again to one more low line.
+PlannedFlight with_climbs(double still = 0.0, double turbulence = 1.0) {
+  FlightOptions o;
+  o.pattern = FlightPattern::calibration;
+  o.height = core::Metres(350.0);
+  o.second_height = core::Metres(1150.0);
+  o.edge_lines = o.profile_lines = false;
+  o.still = core::Seconds(still);
+  o.turbulence = turbulence;
+  std::vector<LinePlan> plan = plan_lines(o, {}, core::degrees(20).value, 0.02);
+  plan.push_back(plan.front());
+  return PlannedFlight(o, origin, 950.0, plan, 5.2, 1);
+}
+
 void expect_derivatives(const PlannedFlight& f) {
   constexpr double h = 1e-3;
   for (double t = 1.0; t < f.duration() - 1; t += 1.37) {
@@ -47,6 +61,45 @@ void expect_derivatives(const PlannedFlight& f) {
 TEST(PlannedFlight, DerivativesAreThoseOfThePose) {
   expect_derivatives(flight());
   expect_derivatives(with_departure());
+  expect_derivatives(with_climbs());
+  expect_derivatives(with_climbs(30.0));
+}
+
+TEST(PlannedFlight, ClimbsBetweenLinesOfDifferentHeightsOnly) {
+  const PlannedFlight f = with_climbs(0.0, 0.0);
+  ASSERT_EQ(f.lines().size(), 7u);  // along, across, along at both heights, along
+  for (const Line& l : f.lines()) {
+    const bool high = l.name.starts_with("high");
+    for (double t = l.start - 4.9; t < l.end + 4.9; t += 1.0) {
+      const Motion m = f.motion(t);
+      EXPECT_NEAR(m.pose.position.height, high ? 1750.0 : 950.0, 1e-9) << l.name;
+      EXPECT_EQ(m.velocity.z(), 0.0) << l.name;
+    }
+  }
+  double steepest_up = 0, steepest_down = 0, hardest = 0;
+  for (double t = 0; t < f.duration(); t += 0.05) {
+    const Motion a = f.motion(t), b = f.motion(t + 1e-6);
+    steepest_up = std::max(steepest_up, -a.velocity.z());
+    steepest_down = std::max(steepest_down, a.velocity.z());
+    hardest = std::max(hardest, std::abs(a.acceleration.z()));
+    // Steady up to the second derivative: nothing jumps within a microsecond.
+    EXPECT_LT((b.acceleration - a.acceleration).norm(), 1e-4) << t;
+    EXPECT_LT((b.attitude_rate - a.attitude_rate).norm(), 1e-5) << t;
+  }
+  EXPECT_LT(steepest_up, 8.0 + 1e-9);  // the steepest climb allowed
+  EXPECT_LT(steepest_down, 8.0 + 1e-9);
+  EXPECT_GT(steepest_up, 4.0);
+  EXPECT_GT(steepest_down, 4.0);
+  EXPECT_LT(hardest, 0.5);
+}
+
+TEST(PlannedFlight, BeginsAtTheFirstLinesHeight) {
+  FlightOptions o;
+  std::vector<LinePlan> plan = plan_lines(o, {}, 0.3, 0.0);
+  for (LinePlan& l : plan) l.level = 120.0;
+  o.turbulence = 0.0;
+  const PlannedFlight f(o, origin, 950.0, plan, 5.2, 1);
+  for (double t = 0; t < f.duration(); t += 10.0) EXPECT_NEAR(f.pose(t).position.height, 1070.0, 1e-9);
 }
 
 TEST(PlannedFlight, BeginsAtRestOnTheGroundWhereAsked) {
@@ -127,21 +180,6 @@ TEST(PlannedFlight, FliesItsLines) {
       EXPECT_GT(f.lines()[i].start, f.lines()[i - 1].end + 10);
     }
   }
-}
-
-TEST(PlannedFlight, LinesOverlapAsAsked) {
-  FlightOptions o;
-  o.height = core::Metres(500);
-  o.overlap = 0.25;
-  o.lines = 4;
-  o.cross_lines = 2;
-  const auto plan = plan_lines(o, {}, 0.3, 0.0);
-  ASSERT_EQ(plan.size(), 6u);
-  const double swath = 2 * 500 * std::tan(0.3);
-  const Eigen::Vector2d a = 0.5 * (plan[0].from + plan[0].to), b = 0.5 * (plan[1].from + plan[1].to);
-  EXPECT_NEAR((a - b).norm(), 0.75 * swath, 1e-9);
-  EXPECT_NEAR((plan[0].to - plan[0].from).normalized().dot((plan[4].to - plan[4].from).normalized()), 0.0, 1e-12);
-  EXPECT_NEAR((plan[0].to - plan[0].from).normalized().dot((plan[1].to - plan[1].from).normalized()), -1.0, 1e-12);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/block.h"
@@ -160,6 +161,87 @@ TEST(World, WiresHangBetweenMasts) {
       EXPECT_LT(nearest, 1e-6);
     }
     EXPECT_LT(z(w.length / 2), 0.5 * (z(0) + z(w.length)) - 2.0);
+  }
+}
+
+WorldOptions airfield() {
+  WorldOptions w;
+  w.scene = Scene::airfield;
+  w.length = w.width = core::Metres(720);
+  return w;
+}
+
+TEST(World, AirfieldHasAFlatRoofInTheMiddleAlongTheFlight) {
+  for (int seed = 1; seed < 20; ++seed) {
+    const core::Radians direction = core::degrees(37);
+    const World world(airfield(), seed, direction, 900);
+    const Building& b = world.buildings().front();
+    EXPECT_EQ(b.name, "building");
+    EXPECT_EQ(b.centre.norm(), 0.0);
+    ASSERT_EQ(b.planes.size(), 5u);
+    // Its long walls look across the flight, 20 m from its middle.
+    const Eigen::Vector4d& wall = b.planes[2];
+    EXPECT_NEAR(wall.head<2>().dot(Eigen::Vector2d(std::sin(direction.value), std::cos(direction.value))), 0.0, 1e-12);
+    EXPECT_NEAR(wall[3], 20.0, 1e-12);
+    EXPECT_NEAR(b.planes[0][3], 40.0, 1e-12);
+    const Eigen::Vector4d& roof = b.planes[4];
+    EXPECT_GT(roof.z(), std::cos(std::atan(0.02)));
+    EXPECT_NEAR(roof[3] / roof.z() - world.relief().height(0, 0), 12.0, 0.5);
+    EXPECT_LT(world.relief().highest() - world.relief().lowest(), 10.0);
+  }
+}
+
+TEST(World, AirfieldsHallsAreApartAndSpreadOverAreaCompassAndSlopes) {
+  for (int seed = 1; seed < 20; ++seed) {
+    const World world(airfield(), seed, core::degrees(60), 900);
+    const std::vector<Building>& all = world.buildings();
+    ASSERT_EQ(all.size(), 17u) << seed;
+    std::vector<double> bearings, slopes;
+    std::array<int, 16> cells{};
+    double farthest = 0;
+    for (size_t i = 1; i < all.size(); ++i) {
+      for (size_t k = 0; k < i; ++k) EXPECT_GT((all[i].centre - all[k].centre).norm(), all[i].radius + all[k].radius + 5.0);
+      const Eigen::Vector4d& end = all[i].planes[0];
+      bearings.push_back(std::fmod(std::atan2(end.x(), end.y()) + 2 * core::pi, core::pi));
+      slopes.push_back(std::acos(all[i].planes[4].z()) / core::degree);
+      const Eigen::Vector2d along(std::sin(core::pi / 3), std::cos(core::pi / 3)), across(along.y(), -along.x());
+      const double l = along.dot(all[i].centre), w = across.dot(all[i].centre);
+      ASSERT_LT(std::max(std::abs(l), std::abs(w)), 360.0);
+      farthest = std::max(farthest, std::abs(w));
+      ++cells[static_cast<size_t>(std::floor((l + 360) / 180)) * 4 + static_cast<size_t>(std::floor((w + 360) / 180))];
+    }
+    std::sort(bearings.begin(), bearings.end());
+    for (size_t i = 1; i < bearings.size(); ++i) EXPECT_LT(bearings[i] - bearings[i - 1], 2.001 * core::pi / 16);
+    EXPECT_GE(*std::min_element(slopes.begin(), slopes.end()), 20.0);
+    EXPECT_LE(*std::max_element(slopes.begin(), slopes.end()), 45.0);
+    EXPECT_GT(*std::max_element(slopes.begin(), slopes.end()), 40.0);
+    EXPECT_GT(farthest, 240.0);
+    // One in each cell of the lattice.
+    EXPECT_EQ(*std::min_element(cells.begin(), cells.end()), 1) << seed;
+  }
+}
+
+TEST(World, AirfieldFollowsTheSeedAndItsOptions) {
+  const World one(airfield(), 1, core::degrees(60), 900), same(airfield(), 1, core::degrees(60), 900),
+      two(airfield(), 2, core::degrees(60), 900);
+  EXPECT_EQ(one.buildings()[3].centre, same.buildings()[3].centre);
+  EXPECT_NE(one.buildings()[3].centre, two.buildings()[3].centre);
+  EXPECT_GT(one.trees().size(), 5u);
+  WorldOptions w = airfield();
+  w.buildings = 0.0;
+  w.trees = 0.0;
+  const World bare(w, 1, core::degrees(60), 900);
+  EXPECT_TRUE(bare.buildings().empty());
+  EXPECT_TRUE(bare.trees().empty());
+  // Areas of any shape hold their halls.
+  for (const auto& [length, width] : {std::pair{300.0, 300.0}, {150.0, 900.0}, {2000.0, 400.0}, {60.0, 60.0}}) {
+    w = airfield();
+    w.length = core::Metres(length);
+    w.width = core::Metres(width);
+    w.buildings = 0.9;
+    const World world(w, 1, core::degrees(60), 1500);
+    EXPECT_NEAR(static_cast<double>(world.buildings().size()), 1 + 0.9 * length * width / 1e4, 0.3 * 0.9 * length * width / 1e4 + 1.0)
+        << length << " x " << width;
   }
 }
 

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options of the ground, of what stands on it and of what a surveyor measured of it.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "core/option.h"
+
+namespace swath::simulate {
+
+enum class Scene { flat, hills, steep, forest, town, mixed, airfield };
+
+/// The ground and what stands on it. Options without a value take the scene's own.
+struct WorldOptions {
+  Scene scene = Scene::mixed;
+  core::Metres length{1000.0}, width{400.0};
+  core::Metres ground{600.0};
+  std::optional<double> slope{};
+  std::optional<core::Metres> relief{}, scarp{}, embankment{};
+  std::optional<double> buildings{}, trees{}, low_vegetation{};
+  std::optional<bool> water{}, power_line{};
+};
+
+template <class V>
+void describe(WorldOptions& w, V& v) {
+  v.option("scene", w.scene,
+           "Kind of scene; it fills the options below that are not given. airfield: nearly level ground, one large flat-roofed building in "
+           "the middle along the flight lines, gable halls of all directions over the whole area, a few trees at its rim.");
+  v.option("length", w.length, core::within(50, 1e4), "Length of the area along the flight lines.");
+  v.option("width", w.width, core::within(50, 1e4), "Width of the area across the flight lines.");
+  v.option("ground", w.ground, core::within(-500, 8000), "Ellipsoidal height of the ground in the middle.");
+  v.option("slope", w.slope, core::within(0, 1), "Slope of the whole area (rise / run), down to grid north-east.");
+  v.option("relief", w.relief, core::within(0, 500), "Amplitude of hills.");
+  v.option("scarp", w.scarp, core::within(0, 100), "Height of a steep scarp through the area (0: none).");
+  v.option("embankment", w.embankment, core::within(0, 50), "Height of an embankment through the area (0: none).");
+  v.option("buildings", w.buildings, core::within(0, 30),
+           "Buildings per hectare of built-up ground (airfield: halls per hectare of the area; 0: no building at all).");
+  v.option("trees", w.trees, core::within(0, 1000), "Trees per hectare of woodland (airfield: of the area, all at its rim).");
+  v.option("low_vegetation", w.low_vegetation, core::within(0, 1), "Share of open ground under low vegetation.");
+  v.option("water", w.water, "A lake.");
+  v.option("power_line", w.power_line, "A power line.");
+}
+
+/// The scene's numbers with the given options put in.
+struct Features {
+  double slope = 0, relief = 0, scarp = 0, embankment = 0, buildings = 0, trees = 0, low_vegetation = 0;
+  bool water = false, power_line = false;
+  double woodland = 0.3;  ///< share of the area under trees
+  double built_up = 0.3;  ///< share of the area with buildings
+};
+Features features_of(const WorldOptions& w);
+
+/// Ground plan and height of the airfield's flat-roofed building: 80 m by 40 m by 12 m, smaller on a small area.
+struct BuildingSize {
+  double half_length, half_width, height;  ///< m
+};
+BuildingSize airfield_building(const WorldOptions& w);
+
+/// Points and targets surveyed on the ground.
+struct ControlOptions {
+  bool roof = false;
+  int targets = 0, points = 0;
+  core::Metres sigma{0.02};
+  std::array<core::Metres, 3> shift{};
+};
+
+template <class V>
+void describe(ControlOptions& c, V& v) {
+  v.option("roof", c.roof,
+           "Surveys the corners of the flat roof in the middle, a target of control.csv (scene airfield, where it has buildings).");
+  v.option("targets", c.targets, core::within(0, 1000),
+           "Further roof facets whose corners are surveyed, spread over the area, targets of control.csv.");
+  v.option("points", c.points, core::within(0, 1e5), "Points surveyed on open ground, for comparison alone: check.csv.");
+  v.option("sigma", c.sigma, core::above_to(0, 1), "Sigma of each surveyed coordinate; the files state it.");
+  v.option("shift", c.shift, core::within(-1e4, 1e4), "East, north, up added to all surveyed coordinates: control in a wrong datum.");
+}
+
+}  // namespace swath::simulate
+
+namespace swath::core {
+template <>
+struct Choices<simulate::Scene> {
+  static constexpr std::array<std::string_view, 7> names{"flat", "hills", "steep", "forest", "town", "mixed", "airfield"};
+};
+}  // namespace swath::core
