@@ -30,4 +30,13 @@ CovarianceSeries::Matrix9 CovarianceSeries::at(double t) const {
   return (1 - share) * unpack(upper[n - 1]) + share * unpack(upper[n]);
 }
 
+void ErrorLinks::resize(size_t instants, Eigen::Index n) {
+  const auto width = static_cast<size_t>(n);
+  states = n;
+  time.assign(instants, 0.0);
+  lefts.assign(6 * width * instants, 0.0);
+  rights.assign(6 * width * instants, 0.0);
+  links.assign(width * width * instants, 0.0);
+}
+
 }  // namespace swath::core

@@ -24,6 +24,37 @@ struct CovarianceSeries {
   Matrix9 at(double t) const;
 };
 
+/// How the errors of a smoothed trajectory at some of its instants hang together, exactly as the smoother has them. The smoother's whole
+/// error state (navigation, biases, fixes' errors ...) is a Markov chain; with its n numbers normalised by what the filter knew (no unit),
+///   Cov(e_i, e_j) = left_i * (link_j * ... * link_{i+1})^T * right_j   for i <= j (de Jong and Mackinnon 1988),
+/// e: north, east, down (m), roll, pitch, heading (rad), estimated minus true or its opposite. Links are contractions: products of any
+/// length keep their digits.
+struct ErrorLinks {
+  using Left = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+  using Right = Eigen::Matrix<double, Eigen::Dynamic, 6>;
+
+  Eigen::Index states = 0;   ///< n
+  std::vector<double> time;  ///< GPS time, s, rising
+  // One after the other, by columns.
+  std::vector<double> lefts, rights, links;
+
+  bool empty() const { return time.empty(); }
+  size_t size() const { return time.size(); }
+  void resize(size_t instants, Eigen::Index n);
+  /// 6 x n.
+  Eigen::Map<const Left> left(size_t i) const { return {lefts.data() + 6 * states * index(i), 6, states}; }
+  Eigen::Map<Left> left(size_t i) { return {lefts.data() + 6 * states * index(i), 6, states}; }
+  /// n x 6.
+  Eigen::Map<const Right> right(size_t i) const { return {rights.data() + 6 * states * index(i), states, 6}; }
+  Eigen::Map<Right> right(size_t i) { return {rights.data() + 6 * states * index(i), states, 6}; }
+  /// n x n, from instant i - 1 to instant i; zeros for i = 0.
+  Eigen::Map<const Eigen::MatrixXd> link(size_t i) const { return {links.data() + states * states * index(i), states, states}; }
+  Eigen::Map<Eigen::MatrixXd> link(size_t i) { return {links.data() + states * states * index(i), states, states}; }
+
+ private:
+  static Eigen::Index index(size_t i) { return static_cast<Eigen::Index>(i); }
+};
+
 /// A trajectory as recorded: IMU centre and attitude of `body` over time. Columns of one length; the optional ones may be empty.
 struct TrajectoryData {
   std::vector<double> time;                         ///< GPS time, s
@@ -34,6 +65,7 @@ struct TrajectoryData {
   std::vector<float> sigma_north, sigma_east, sigma_down;     ///< m
   std::vector<float> sigma_roll, sigma_pitch, sigma_heading;  ///< rad
   CovarianceSeries covariance;                                ///< may be empty
+  ErrorLinks errors;                                          ///< may be empty
 
   size_t size() const { return time.size(); }
   bool has_sigma() const { return !sigma_north.empty(); }

@@ -365,9 +365,12 @@ InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core
   // Repeated about the smoothed trajectory until it stays.
   problem.gate = first_gate;
   const auto from_scratch = [&] { return InsFilter(problem, start.estimate, StateVector::Zero(layout.size), start.covariance, nullptr); };
-  while (adapt_imu(problem, run_forward(problem, from_scratch()))) {
-  }
   SmootherRun run = run_smoother(problem, from_scratch(), false);
+  if (adapt_imu(problem, run.outcomes)) {
+    while (adapt_imu(problem, run_forward(problem, from_scratch()))) {
+    }
+    run = run_smoother(problem, from_scratch(), false);
+  }
   problem.gate = gate_of(options.outlier_probability);
   std::vector<Estimate> reference(nodes.size());
   const auto about = [&](const SmoothedNode& at) {
@@ -403,6 +406,7 @@ InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core
                       "trajectory.ins_gnss", "check the lever arm's sign, the time scales, imu.angle_unit, imu_spec and the fixes' sigmas");
   result.report = report_of(findings, result.series);
   result.trajectory = trajectory_of(problem, run.nodes, options.output_rate.value);
+  result.trajectory.errors = std::move(run.errors);
   return result;
 }
 

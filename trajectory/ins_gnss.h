@@ -49,6 +49,7 @@ struct InsGnssOptions {
   std::array<core::Metres, 3> wheel_point{};
   core::Seconds max_gap{10.0};
   core::Hertz output_rate{200.0};
+  core::Seconds error_spacing{1.0};
 };
 
 template <class V>
@@ -75,6 +76,10 @@ void describe(InsGnssOptions& o, V& v) {
   v.option("max_gap", o.max_gap, core::within(0, 30), "Longest gap in the IMU records that is bridged; a longer one is an error.");
   v.option("output_rate", o.output_rate, core::within(20, 2000),
            "Records per second of the trajectory, where the IMU has more; georeferencing interpolates between these.");
+  v.option("error_spacing", o.error_spacing, core::within(0, 60),
+           "Spacing of the instants at which the trajectory keeps how its errors hang together in time, for calibration and strip adjustment "
+           "(30 MB per hour at 1 s); 0 keeps nothing.",
+           "deJong1988");
 }
 
 /// Numbers over time for the report and its plots. Vectors of one group have one length.
@@ -96,7 +101,7 @@ struct SmootherSeries {
 };
 
 struct InsGnssResult {
-  core::TrajectoryData trajectory;  ///< of the IMU centre, with sigmas and covariances at the nodes
+  core::TrajectoryData trajectory;  ///< of the IMU centre, with sigmas, covariances at the nodes and error links
   core::Value report;               ///< trajectory.json: estimates with sigmas, counts, NIS, separation, warnings
   SmootherSeries series;
 };

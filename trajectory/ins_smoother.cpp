@@ -2,6 +2,9 @@
 #include "trajectory/ins_smoother.h"
 
 #include <Eigen/Cholesky>
+#include <cmath>
+#include <optional>
+#include <utility>
 
 #include "core/frames.h"
 #include "core/geodesy.h"
@@ -63,44 +66,115 @@ struct Adjoint {
   }
 };
 
-/// P - P Lambda P = L (1 - L^T Lambda L) L^T with P = L L^T: the difference is taken where both sides are of the size 1.
-StateMatrix with_future(const StateMatrix& P, const StateMatrix& information) {
-  const StateVector scale = P.diagonal().cwiseMax(1e-300).cwiseSqrt();
-  const StateMatrix correlation = scale.cwiseInverse().asDiagonal() * P * scale.cwiseInverse().asDiagonal();
-  const Eigen::LDLT<StateMatrix> factors(correlation);
-  StateMatrix root = factors.matrixL();
-  root = (root * factors.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal()).eval();
-  root = (factors.transpositionsP().transpose() * root).eval();
-  root = (scale.asDiagonal() * root).eval();
-  StateMatrix turned, rest;
+/// P = L L^T. What is below the rounding of P has no column in L.
+class Root {
+ public:
+  explicit Root(const StateMatrix& P) : scale_(P.diagonal().cwiseMax(1e-300).cwiseSqrt()) {
+    factors_.compute(scale_.cwiseInverse().asDiagonal() * P * scale_.cwiseInverse().asDiagonal());
+    constexpr double rounding = 1e-14;  // of a correlation matrix of 30 rows
+    pivot_ = factors_.vectorD().unaryExpr([](double d) { return d > rounding ? std::sqrt(d) : 0.0; });
+    matrix_ = factors_.matrixL();
+    matrix_ = (matrix_ * pivot_.asDiagonal()).eval();
+    matrix_ = (factors_.transpositionsP().transpose() * matrix_).eval();
+    matrix_ = (scale_.asDiagonal() * matrix_).eval();
+  }
+  const StateMatrix& matrix() const { return matrix_; }
+  /// X of L X = `by`, zero in the rows without a column in L.
+  StateMatrix solved(const StateMatrix& by) const {
+    StateMatrix x = factors_.transpositionsP() * (scale_.cwiseInverse().asDiagonal() * by).eval();
+    factors_.matrixL().solveInPlace(x);
+    return pivot_.unaryExpr([](double d) { return d > 0 ? 1 / d : 0.0; }).asDiagonal() * x;
+  }
+
+ private:
+  StateVector scale_, pivot_;
+  Eigen::LDLT<StateMatrix> factors_;
+  StateMatrix matrix_;
+};
+
+/// P - P Lambda P = L (1 - L^T Lambda L) L^T: the difference, which this is, is taken where both sides are of the size 1.
+StateMatrix kept_share(const StateMatrix& root, const StateMatrix& information) {
+  StateMatrix turned, kept;
   turned.noalias() = information * root;
-  rest.noalias() = -root.transpose() * turned;
-  rest.diagonal().array() += 1.0;
-  turned.noalias() = root * rest;
-  rest.noalias() = turned * root.transpose();
-  return 0.5 * (rest + rest.transpose());
+  kept.noalias() = -root.transpose() * turned;
+  kept.diagonal().array() += 1.0;
+  return kept;
 }
 
-SmoothedNode smoothed(const Layout& layout, const NodeRecord& record, const Adjoint& adjoint, bool covariances) {
+SmoothedNode smoothed(const Layout& layout, const NodeRecord& record, const Adjoint& adjoint, const StateMatrix* root,
+                      const StateMatrix& kept) {
   SmoothedNode out;
-  const StateMatrix& P = record.covariance;
   out.estimate = record.estimate;
-  out.estimate.correct(layout, record.mean - P * adjoint.lambda);
-  if (!covariances) return out;
-  const StateMatrix covariance = with_future(P, adjoint.information);
+  out.estimate.correct(layout, record.mean - record.covariance * adjoint.lambda);
+  if (!root) return out;
+  StateMatrix turned, covariance;
+  turned.noalias() = *root * kept;
+  covariance.noalias() = turned * root->transpose();
+  covariance = 0.5 * (covariance + covariance.transpose()).eval();
   out.covariance = core::CovarianceSeries::pack(local_covariance(out.estimate.nav, covariance.topLeftCorner<9, 9>()));
   out.sigma = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   return out;
 }
 
-}  // namespace
-
-Matrix9 local_covariance(const NavState& nav, const Matrix9& ecef) {
+/// Takes position, velocity and psi in ecef to north, east, down, their velocities, roll, pitch, heading.
+Matrix9 local_by_ecef(const NavState& nav) {
   const core::Geodetic g = core::geodetic_of(nav.position);
   const Matrix3d ned = core::ecef_R_ned(g.latitude, g.longitude);
   Matrix9 turn = Matrix9::Zero();
   turn.block<3, 3>(0, 0) = turn.block<3, 3>(3, 3) = ned.transpose();
   turn.block<3, 3>(6, 6) = angles_by_psi(ned, core::attitude_of(ned.transpose() * nav.ecef_R_body));
+  return turn;
+}
+
+/// Collects the error links on the way back. Between instants i < j the filter's errors pass by Psi, the product of (I - K H) Phi, and
+///   Cov(e_i, e_j) = P_i Psi^T (I - Lambda_j P_j)
+/// (de Jong and Mackinnon 1988). With P = L L^T the links are L_j^-1 Psi L_i, the ends L_i and (1 - L_j^T Lambda_j L_j) L_j^T.
+class LinkCollector {
+ public:
+  LinkCollector(const Problem& problem, bool wanted) : size_(problem.layout.size) {
+    const double spacing = problem.options.error_spacing.value;
+    if (!wanted || !(spacing > 0) || problem.nodes.size() < 2) return;
+    constexpr double same = 1e-6;  // s
+    const size_t last = problem.nodes.size() - 1;
+    for (size_t k = 0; k <= last; ++k)
+      if (k == 0 || k == last || problem.nodes[k].time > problem.nodes[instants_.back()].time + spacing - same) instants_.push_back(k);
+    links_.resize(instants_.size(), size_);
+  }
+  /// `node` is the next one on the way back at which there is to be a link.
+  bool waits_for(size_t node) const { return !instants_.empty() && instants_.back() == node; }
+  void stop(const NavState& nav, const Root& root, const StateMatrix& kept) {
+    const size_t i = instants_.size() - 1;
+    if (later_) links_.link(i + 1) = later_->solved(way_ * root.matrix());
+    const Matrix9 turn = local_by_ecef(nav);
+    Eigen::Matrix<double, 6, 9> rows;
+    rows << turn.topRows<3>(), turn.bottomRows<3>();
+    links_.left(i) = rows * root.matrix().topRows<9>();
+    links_.right(i) = kept * links_.left(i).transpose();
+    links_.time[i] = nav.time;
+    instants_.pop_back();
+    later_ = root;
+    way_ = StateMatrix::Identity(size_, size_);
+  }
+  void pass(const NodeRecord& r) {
+    if (instants_.empty()) return;
+    for (size_t u = r.updates.size(); u-- > 0;) way_ -= ((way_ * r.updates[u].gain).eval() * r.updates[u].design).eval();
+    moved_.noalias() = way_ * r.transition;
+    way_.swap(moved_);
+  }
+  core::ErrorLinks take() { return std::move(links_); }
+
+ private:
+  int size_;
+  std::vector<size_t> instants_;  // those still to come
+  core::ErrorLinks links_;
+  std::optional<Root> later_;
+  StateMatrix way_, moved_;  // Psi
+};
+
+}  // namespace
+
+Matrix9 local_covariance(const NavState& nav, const Matrix9& ecef) {
+  const Matrix9 turn = local_by_ecef(nav);
   return turn * ecef * turn.transpose();
 }
 
@@ -132,17 +206,27 @@ SmootherRun run_smoother(const Problem& problem, const InsFilter& start, bool co
   }
 
   Adjoint adjoint(problem.layout.size);
+  LinkCollector links(problem, covariances);
   for (size_t s = stretches; s-- > 0;) {
     if (s + 1 < stretches) pass(left[s], s, false, true);
     for (size_t k = records.size(); k-- > 0;) {
       const NodeRecord& r = records[k];
-      run.nodes[s * stretch + k] =
-          smoothed(problem.layout, r, adjoint, covariances || (s == 0 && k == 0) || s * stretch + k + 1 == nodes.size());
+      const size_t node = s * stretch + k;
+      std::optional<Root> root;
+      StateMatrix kept;
+      if (covariances || node == 0 || node + 1 == nodes.size()) {
+        root.emplace(r.covariance);
+        kept = kept_share(root->matrix(), adjoint.information);
+      }
+      run.nodes[node] = smoothed(problem.layout, r, adjoint, root ? &root->matrix() : nullptr, kept);
+      if (links.waits_for(node)) links.stop(run.nodes[node].estimate.nav, *root, kept);
+      links.pass(r);
       for (size_t u = r.updates.size(); u-- > 0;) adjoint.pass_update(r.updates[u]);
       adjoint.pass_transition(r.transition);
     }
     left.pop_back();
   }
+  run.errors = links.take();
   return run;
 }
 

@@ -27,11 +27,13 @@ struct SmootherRun {
   std::vector<SmoothedNode> nodes;
   std::vector<FilterNode> forward;   ///< after the node's updates
   std::vector<FixOutcome> outcomes;  ///< per node; those without a fix are empty
+  core::ErrorLinks errors;           ///< at nodes some error_spacing apart, the first and the last among them
 };
 
 /// Runs the filter over the nodes and the smoother back, in stretches of `stretch` nodes: the forward pass leaves the filter as it was at
 /// the beginning of each, from where the stretch is filtered once more when the smoother comes to it. Memory: 18 kB per node of a stretch,
-/// 1 kB per node of the whole. Without `covariances` only the first and the last node get sigmas.
+/// 1 kB per node of the whole, 8 kB per error link. Without `covariances` only the first and the last node get sigmas, and there are no
+/// error links.
 SmootherRun run_smoother(const Problem& problem, const InsFilter& start, bool covariances = true, size_t stretch = 20000);
 
 /// The outcome of each node's fix in one forward pass alone.
