@@ -388,6 +388,7 @@ InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core
   double shift = std::numeric_limits<double>::infinity();
   for (; shift > settled && iterations < most_iterations; ++iterations) {
     refer();
+    run.errors = {};  // before the next one's: they are large
     run = run_smoother(problem, about(run.nodes.front()));
     shift = moved(run, reference, layout);
   }

@@ -76,10 +76,11 @@ void describe(InsGnssOptions& o, V& v) {
   v.option("max_gap", o.max_gap, core::within(0, 30), "Longest gap in the IMU records that is bridged; a longer one is an error.");
   v.option("output_rate", o.output_rate, core::within(20, 2000),
            "Records per second of the trajectory, where the IMU has more; georeferencing interpolates between these.");
-  v.option("error_spacing", o.error_spacing, core::within(0, 60),
-           "Spacing of the instants at which the trajectory keeps how its errors hang together in time, for calibration and strip adjustment "
-           "(30 MB per hour at 1 s); 0 keeps nothing.",
-           "deJong1988");
+  v.option(
+      "error_spacing", o.error_spacing, core::within(0, 60),
+      "Spacing of the instants at which the trajectory keeps how its errors hang together in time, for calibration and strip adjustment "
+      "(30 MB per hour at 1 s); 0 keeps nothing.",
+      "deJong1988");
 }
 
 /// Numbers over time for the report and its plots. Vectors of one group have one length.
