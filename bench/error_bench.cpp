@@ -150,6 +150,7 @@ void print(const char* grade, const Sums& s) {
   }
   const Eigen::Array<double, 1, 3> all = ratio.square().colwise().mean().sqrt();
   std::printf("together %.2f %.2f %.2f\n", all[0], all[1], all[2]);
+  std::fflush(stdout);
 }
 
 }  // namespace
