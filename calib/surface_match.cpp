@@ -8,9 +8,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <tuple>
+#include <utility>
 
 #include "calib/height_grid.h"
 #include "calib/window_match.h"
@@ -27,11 +30,15 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr std::uint64_t most_cells = 48u << 20;  // 6 bytes each
-constexpr double least_relief = 0.15;            // m: below it a square is level
+constexpr double least_relief = 0.15;            // m, shared by neighbouring cells
+constexpr double least_share = 0.4;              // of the relief's rms that neighbouring cells must share
+constexpr double level_rms = 0.3;                // m: squares without relief below it are level, above it they are woods
 constexpr double relief_cap = 3.0;               // m: more relief than this is not better
 constexpr double filled = 0.4;                   // share of a square's cells that a line must have seen
 constexpr double meets = 0.5;                    // share of the typical cost below which two surfaces meet
-constexpr double agreed = 0.3;                   // share of the squares that must meet
+constexpr double agreed = 0.15;                  // share of the squares that must meet:
+constexpr double surely_agreed = 0.5;            // this one always, the lower one if it is
+constexpr double above_chance = 3.0;             // so many times the share that meets under any boresight
 constexpr int fewest_squares = 4;                // with relief: fewer say nothing of pitch and heading
 constexpr double match_cells = 10.0;             // a search radius is this many cells or fewer where the cells allow
 
@@ -41,7 +48,6 @@ struct Pair {
   std::int32_t i = 0, j = 0;
   double relief = 0.0;
   Matrix3d by = Matrix3d::Zero();  // J_B - J_A: east, north, up by roll, pitch, heading, m/rad
-  double coverage = 0.0;
 };
 
 struct Round {
@@ -106,16 +112,20 @@ Round read_round(const ShotStream& stream, LocalPoints& points, const SurfaceMat
   for (auto& [place, seen] : squares) {
     std::erase_if(seen, [&](const Seen& s) { return s.cells < filled * cells * cells; });
     if (seen.size() < 2) continue;
-    std::vector<double> relief_in;
+    std::vector<Relief> in;
     for (const Seen& s : seen)
-      relief_in.push_back(
-          relief_of(r.grids.views[s.view].raster(std::int64_t{place.first} * cells, std::int64_t{place.second} * cells, cells, cells, 1)));
+      in.push_back(relief_of(r.grids.views[s.view].raster(std::int64_t{place.first} * cells, std::int64_t{place.second} * cells, cells, cells, 1))
+                       .value_or(Relief{1e9, 0.0}));
+    const auto stands_out = [](const Relief& x) { return x.shared > least_relief && x.shared > least_share * x.rms; };
     for (size_t x = 0; x < seen.size(); ++x)
       for (size_t y = x + 1; y < seen.size(); ++y) {
         Pair p;
         p.a = seen[x].view, p.b = seen[y].view, p.i = place.first, p.j = place.second;
-        p.relief = std::min(relief_in[x], relief_in[y]);
-        (p.relief < least_relief ? level : relief).push_back(p);
+        p.relief = std::min(in[x].shared, in[y].shared);
+        if (stands_out(in[x]) && stands_out(in[y]))
+          relief.push_back(p);
+        else if (std::max(in[x].rms, in[y].rms) < level_rms)
+          level.push_back(p);
       }
   }
   r.relief = chosen(std::move(relief), static_cast<size_t>(o.windows), true);
@@ -217,6 +227,12 @@ double agreement_of(const std::vector<Matched>& all, const Vector3d& e) {
   for (const Matched& m : all) n += share_at(m, e) < meets;
   return all.empty() ? 0.0 : n / static_cast<double>(all.size());
 }
+// Do the surfaces meet there as they would not elsewhere?
+bool is_agreed(const std::vector<Matched>& all, const Search& search, double agreement) {
+  double sum = 0.0, n = 0.0;
+  for_each_boresight(search, 0.5 * search, [&](const Vector3d& e) { sum += agreement_of(all, e), n += 1.0; });
+  return agreement >= surely_agreed || (agreement >= agreed && agreement > above_chance * sum / n);
+}
 
 // One displacement as observed: rows of it that count, whitened by `root`.
 struct Observed {
@@ -246,7 +262,7 @@ std::vector<Observed> observe(const Round& r, const std::vector<Matched>& matche
     const Raster a = r.grids.views[p.a].raster(i, j, n, n, 1);
     const Vector2d d = (p.by * e).head<2>() / r.grids.cell;
     const Raster b = r.grids.views[p.b].raster(i + std::lround(d.x()), j + std::lround(d.y()), n, n, 1);
-    const auto f = fit_shift(a, b, 0, 0, 0, 0);
+    const auto f = fit_shift(a, b, 0, 0, 0, 0, 3);
     if (!f) continue;
     Observed o{&p};
     o.shift.z() = f->rise;
@@ -264,8 +280,22 @@ struct Solution {
   double rms = 0.0;
 };
 
-// e and three shifts per line by robust least squares (Tukey's weights); angles of `held` stay zero.
-Solution solve(std::vector<Observed>& all, const Round& r, const SurfaceMatchOptions& o, const std::array<bool, 3>& held) {
+// Of n views of one square only n - 1 displacements are independent: pairs per independent displacement.
+double repetition(const std::vector<Observed>& all) {
+  std::map<std::pair<std::int32_t, std::int32_t>, std::set<size_t>> views;
+  for (const Observed& x : all) {
+    auto& of = views[{x.pair->i, x.pair->j}];
+    of.insert(x.pair->a), of.insert(x.pair->b);
+  }
+  double independent = 0.0;
+  for (const auto& [square, of] : views) independent += static_cast<double>(of.size()) - 1.0;
+  return std::max(static_cast<double>(all.size()) / std::max(independent, 1.0), 1.0);
+}
+
+// e and three shifts per line by robust least squares (Tukey's weights); angles of `held` stay zero, what their errors of `considered` (rad)
+// would change is in the covariance.
+Solution solve(std::vector<Observed>& all, const Round& r, const SurfaceMatchOptions& o, const std::array<bool, 3>& held,
+               const Vector3d& considered) {
   std::map<int, int> column;
   for (const Observed& x : all)
     for (const size_t v : {x.pair->a, x.pair->b}) column.try_emplace(r.grids.views[v].line, 0);
@@ -274,8 +304,6 @@ Solution solve(std::vector<Observed>& all, const Round& r, const SurfaceMatchOpt
   const auto rows_of = [&](const Observed& x) {
     MatrixXd A = MatrixXd::Zero(3, columns);
     A.leftCols<3>() = x.pair->by;
-    for (int k = 0; k < 3; ++k)
-      if (held[static_cast<size_t>(k)]) A.col(k).setZero();
     A.middleCols<3>(column.at(r.grids.views[x.pair->b].line)) += Matrix3d::Identity();
     A.middleCols<3>(column.at(r.grids.views[x.pair->a].line)) -= Matrix3d::Identity();
     return A;
@@ -290,6 +318,7 @@ Solution solve(std::vector<Observed>& all, const Round& r, const SurfaceMatchOpt
   Solution out;
   VectorXd solution = VectorXd::Zero(columns);
   MatrixXd inverse;
+  Matrix3d moved = Matrix3d::Zero();
   double factor = 1.0;
   for (Observed& x : all) x.weight = 1.0;
   for (int iteration = 0; iteration < 12; ++iteration) {
@@ -301,8 +330,18 @@ Solution solve(std::vector<Observed>& all, const Round& r, const SurfaceMatchOpt
       N += A.transpose() * P * A;
       g += A.transpose() * P * x.shift;
     }
+    MatrixXd effect = MatrixXd::Zero(columns, 3);  // of held angles on the right-hand side
+    for (int k = 0; k < 3; ++k) {
+      if (!held[static_cast<size_t>(k)]) continue;
+      effect.col(k) = N.col(k) * considered[k];
+      N.row(k).setZero(), N.col(k).setZero(), N(k, k) = 1.0;
+      g[k] = 0.0;
+    }
+    for (int k = 0; k < 3; ++k)
+      if (held[static_cast<size_t>(k)]) effect.row(k).setZero();
     inverse = N.ldlt().solve(MatrixXd::Identity(columns, columns));
     solution = inverse * g;
+    moved = (inverse * effect).topRows<3>();
     std::vector<double> size;
     for (const Observed& x : all) {
       const Vector3d v = x.shift - rows_of(x) * solution;
@@ -318,8 +357,9 @@ Solution solve(std::vector<Observed>& all, const Round& r, const SurfaceMatchOpt
     }
     factor = std::max(sum / std::max(weights - 3.0, 1.0), 1.0);
   }
+  factor *= repetition(all);
   out.error = solution.head<3>();
-  out.covariance = factor * inverse.topLeftCorner<3, 3>();
+  out.covariance = factor * inverse.topLeftCorner<3, 3>() + moved * moved.transpose();
   out.sigma = out.covariance.diagonal().cwiseSqrt();
   double sum = 0.0, n = 0.0;
   for (const Observed& x : all)
@@ -329,11 +369,14 @@ Solution solve(std::vector<Observed>& all, const Round& r, const SurfaceMatchOpt
 }
 
 // Solves with all angles, then without those that the squares do not determine, worst first.
+// Heights of level ground tell roll alone: what they say of pitch and heading, by the aircraft's sway, is less than other errors make.
 Solution solve_determined(std::vector<Observed>& all, const Round& r, const SurfaceMatchOptions& o) {
-  std::array<bool, 3> held{};
-  Vector3d sigma = Vector3d::Zero();
+  const auto squares = std::count_if(all.begin(), all.end(), [](const Observed& x) { return x.relief; });
+  std::array<bool, 3> held{false, squares < fewest_squares, squares < fewest_squares};
+  Vector3d sigma = Vector3d::Constant(std::numeric_limits<double>::infinity());
   for (int tries = 0;; ++tries) {
-    Solution s = solve(all, r, o, held);
+    const Vector3d considered = sigma.cwiseMin(0.5 * o.search.value);
+    Solution s = solve(all, r, o, held, considered);
     int worst = -1;
     for (int k = 0; k < 3; ++k)
       if (!held[static_cast<size_t>(k)]) {
@@ -395,14 +438,14 @@ SurfaceMatch match_surfaces(const ShotStream& stream, const core::Scanner& scann
     const Vector3d found = matched.empty() ? Vector3d::Zero() : seek(matched, search);
     if (round == 1) {
       out.agreement = agreement_of(matched, found);
-      if (matched.size() >= fewest_squares && out.agreement < agreed) {
+      if (matched.size() >= fewest_squares && !is_agreed(matched, search, out.agreement)) {
         core::Calibration mirrored = start;
         mirrored.scan_scale = -start.scan_scale;
         LocalPoints other(scanner, mirrored, trajectory, frame);
         const Round m = read_round(stream, other, o);
         const std::vector<Matched> match_there = match_all(m, search);
         const double there = match_there.empty() ? 0.0 : agreement_of(match_there, seek(match_there, search));
-        if (there >= agreed && there > 2.0 * out.agreement) {
+        if (there > 2.0 * out.agreement && is_agreed(match_there, search, there)) {
           out.scan_reversed = true;
           out.findings.push_back({"the surfaces of the lines meet with the sign of the scan angle turned, and not as recorded",
                                   "state that the file counts scan angles positive to port (angle_to_port)", {}, true});

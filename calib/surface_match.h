@@ -51,7 +51,7 @@ struct SurfaceMatch {
   core::Calibration calibration;                          ///< the start with the angles that were determined
   Eigen::Vector3d change = Eigen::Vector3d::Zero();       ///< of roll, pitch, heading against the start, rad
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();   ///< of the change; 0 for angles left as they were, rad^2
-  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();        ///< of the determined ones its root; of the others what the flight would allow
+  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();        ///< of the determined ones its root; of the others what the flight allows (infinite: nothing told)
   std::array<bool, 3> determined{};                       ///< roll, pitch, heading
   std::vector<MatchedWindow> windows;
   double agreement = 0.0;  ///< share of the squares with relief whose surfaces meet at the solution of the first round

@@ -21,16 +21,18 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double bound = 1.5;         // m: a difference counts as this at most
-constexpr double shared_cells = 0.5;  // of the window
+constexpr double seen_cells = 0.4;    // of a window that a line must have seen
+constexpr double shared_cells = 0.3;  // of a window that both lines must have seen
 constexpr double independence = 0.2;  // share of the cells whose misfits are independent: neighbours see the same roof edge
 constexpr double locking = 0.07;      // cells: what the quadric leaves of the true place between whole shifts
-constexpr double rise_floor = 0.02;   // m
+constexpr double rise_floor = 0.05;   // m: what errors of range and scan scale make of heights
 
 // Plane through values at (x, y), by sums.
 struct PlaneSums {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0, d = 0, dx = 0, dy = 0;
-  void add(double px, double py, double v) {
-    n += 1, x += px, y += py, xx += px * px, xy += px * py, yy += py * py, d += v, dx += v * px, dy += v * py;
+  void add(double px, double py, double v, double w = 1.0) {
+    const double wx = w * px, wy = w * py;
+    n += w, x += wx, y += wy, xx += wx * px, xy += wx * py, yy += wy * py, d += w * v, dx += wx * v, dy += wy * v;
   }
   Vector3d solve() const {
     Matrix3d N;
@@ -41,55 +43,60 @@ struct PlaneSums {
 
 }  // namespace
 
-double relief_of(const Raster& r) {
+std::optional<Relief> relief_of(const Raster& r) {
   PlaneSums s;
   for (int y = 0; y < r.ny; ++y)
     for (int x = 0; x < r.nx; ++x)
       if (const float z = r.z[static_cast<size_t>(y * r.nx + x)]; !std::isnan(z)) s.add(x, y, static_cast<double>(z));
-  if (s.n < shared_cells * r.nx * r.ny) return 0.0;
+  if (s.n < seen_cells * r.nx * r.ny || s.n < 12.0) return std::nullopt;
   const Vector3d plane = s.solve();
   const auto residual = [&](int x, int y) {
     return static_cast<double>(r.z[static_cast<size_t>(y * r.nx + x)]) - plane[0] - plane[1] * x - plane[2] * y;
   };
-  double sum = 0.0, n = 0.0;
+  double squares = 0.0, m = 0.0, sum = 0.0, n = 0.0;
   for (int y = 0; y + 2 < r.ny; ++y)
     for (int x = 0; x + 2 < r.nx; ++x) {
       const double here = residual(x, y), east = residual(x + 2, y), north = residual(x, y + 2);
       if (std::isnan(here)) continue;
+      squares += here * here, m += 1.0;
       if (!std::isnan(east)) sum += here * east, n += 1.0;
       if (!std::isnan(north)) sum += here * north, n += 1.0;
     }
-  return n > 0.0 ? std::sqrt(std::max(sum / n, 0.0)) : 0.0;
+  if (m == 0.0 || n == 0.0) return std::nullopt;
+  return Relief{std::sqrt(squares / m), std::sqrt(std::max(sum / n, 0.0))};
 }
 
-std::optional<ShiftFit> fit_shift(const Raster& a, const Raster& b, int margin_x, int margin_y, int shift_x, int shift_y) {
-  PlaneSums s;
+std::optional<ShiftFit> fit_shift(const Raster& a, const Raster& b, int margin_x, int margin_y, int shift_x, int shift_y, int refits) {
   const double mx = 0.5 * (a.nx - 1), my = 0.5 * (a.ny - 1);
-  const auto rows = [&](int y) {
-    return std::pair{a.z.data() + static_cast<size_t>(y) * static_cast<size_t>(a.nx),
-                     b.z.data() + static_cast<size_t>(y + margin_y + shift_y) * static_cast<size_t>(b.nx) + (margin_x + shift_x)};
+  const auto for_each_difference = [&](auto&& f) {
+    for (int y = 0; y < a.ny; ++y) {
+      const float* za = a.z.data() + static_cast<size_t>(y) * static_cast<size_t>(a.nx);
+      const float* zb = b.z.data() + static_cast<size_t>(y + margin_y + shift_y) * static_cast<size_t>(b.nx) + (margin_x + shift_x);
+      for (int x = 0; x < a.nx; ++x) {
+        const auto d = static_cast<double>(zb[x] - za[x]);
+        if (!std::isnan(d)) f(x - mx, y - my, d);
+      }
+    }
   };
-  for (int y = 0; y < a.ny; ++y) {
-    const auto [za, zb] = rows(y);
-    for (int x = 0; x < a.nx; ++x) {
-      const auto d = static_cast<double>(zb[x] - za[x]);
-      if (!std::isnan(d)) s.add(x - mx, y - my, d);
-    }
+  PlaneSums s;
+  for_each_difference([&](double x, double y, double d) { s.add(x, y, d); });
+  const double cells = s.n;
+  if (cells < shared_cells * a.nx * a.ny || cells < 12.0) return std::nullopt;
+  Vector3d plane = s.solve();
+  for (int k = 0; k < refits; ++k) {
+    PlaneSums again;
+    for_each_difference([&](double x, double y, double d) {
+      const double r = (d - plane[0] - plane[1] * x - plane[2] * y) / bound, w = 1.0 / (1.0 + r * r);
+      again.add(x, y, d, w * w);
+    });
+    plane = again.solve();
   }
-  if (s.n < shared_cells * a.nx * a.ny || s.n < 12.0) return std::nullopt;
-  const Vector3d plane = s.solve();
   double cost = 0.0;
-  for (int y = 0; y < a.ny; ++y) {
-    const auto [za, zb] = rows(y);
-    const double level = plane[0] + plane[2] * (y - my);
-    for (int x = 0; x < a.nx; ++x) {
-      const auto d = static_cast<double>(zb[x] - za[x]);
-      if (std::isnan(d)) continue;
-      const double r = d - level - plane[1] * (x - mx), r2 = r * r;
-      cost += r2 / (1.0 + r2 / (bound * bound));
-    }
-  }
-  return ShiftFit{static_cast<int>(s.n), cost / s.n, plane[0]};
+  for_each_difference([&](double x, double y, double d) {
+    const double r = d - plane[0] - plane[1] * x - plane[2] * y, r2 = r * r;
+    cost += r2 / (1.0 + r2 / (bound * bound));
+  });
+  return ShiftFit{static_cast<int>(cells), cost / cells, plane[0]};
 }
 
 double ShiftCosts::operator()(double x, double y) const {
@@ -133,7 +140,7 @@ std::optional<SubcellShift> subcell_shift(const Raster& a, const Raster& b, cons
   int cells = 0;
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) {
-      const auto f = fit_shift(a, b, costs.margin_x, costs.margin_y, bx + x, by + y);
+      const auto f = fit_shift(a, b, costs.margin_x, costs.margin_y, bx + x, by + y, 3);
       if (!f) return std::nullopt;
       const double c = f->cost;
       cost[y + 1][x + 1] = c;

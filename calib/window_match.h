@@ -10,9 +10,13 @@
 
 namespace swath::calib {
 
-/// Standard deviation of the heights about their plane that neighbours two cells apart share, m: buildings, banks and knolls count, noise
-/// and cell-wise vegetation do not. 0 where fewer than half of the cells have a height.
-double relief_of(const Raster& r);
+/// What stands in a raster, about the plane through its heights, m.
+struct Relief {
+  double rms = 0.0;     ///< of the heights
+  double shared = 0.0;  ///< part of it that cells two apart have in common: buildings, banks and knolls, not noise and single crowns
+};
+/// Nothing where fewer than 40 % of the cells have a height.
+std::optional<Relief> relief_of(const Raster& r);
 
 /// One displacement of `b` against `a`, in whole cells.
 struct ShiftFit {
@@ -20,9 +24,10 @@ struct ShiftFit {
   double cost = 0.0;  ///< mean square of the height differences about their own plane, each bounded by 1.5^2 m^2, m^2
   double rise = 0.0;  ///< of `b` over `a` at the middle of `a`, m
 };
-/// b(x + margin + shift) - a(x) = rise + tilt x. `b` is wider than `a` by the margin on each side. Nothing where fewer than half of the
-/// cells of `a` meet a height.
-std::optional<ShiftFit> fit_shift(const Raster& a, const Raster& b, int margin_x, int margin_y, int shift_x, int shift_y);
+/// b(x + margin + shift) - a(x) = rise + tilt x. `b` is wider than `a` by the margin on each side. Nothing where fewer than 30 % of
+/// the cells of `a` meet a height.
+/// `refits`: times that the plane is fitted again with bounded differences.
+std::optional<ShiftFit> fit_shift(const Raster& a, const Raster& b, int margin_x, int margin_y, int shift_x, int shift_y, int refits = 0);
 
 /// Costs of all shifts within the margins. `wanted` (may be empty: all): which of them to try, row by row from the south-west.
 struct ShiftCosts {
