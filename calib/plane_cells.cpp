@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <tuple>
 
@@ -64,8 +65,6 @@ PlaneShape shape_of(const Matrix3d& scatter, double freedom) {
   s.rms = std::sqrt(std::max(e.eigenvalues()[0], 0.0) * freedom / std::max(freedom - 2.0, 1.0));
   s.narrow = std::sqrt(std::max(e.eigenvalues()[1], 0.0));
   s.wide = std::sqrt(std::max(e.eigenvalues()[2], 0.0));
-  s.narrow_axis = e.eigenvectors().col(1);
-  s.wide_axis = e.eigenvectors().col(2);
   return s;
 }
 

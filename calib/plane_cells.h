@@ -41,10 +41,9 @@ struct Moments {
 
 /// The plane of a scatter matrix.
 struct PlaneShape {
-  Eigen::Vector3d normal;              ///< unit, up (or north, or east where level)
-  double rms = 0.0;                    ///< across the plane, m
-  double narrow = 0.0, wide = 0.0;     ///< standard deviations in the plane, m
-  Eigen::Vector3d narrow_axis, wide_axis;
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, up (or north, or east where level)
+  double rms = 0.0;                                   ///< across the plane, m
+  double narrow = 0.0, wide = 0.0;                    ///< standard deviations in the plane, m
 };
 /// `freedom`: points less their means; the rms takes two more off for the plane's tilt.
 PlaneShape shape_of(const Eigen::Matrix3d& scatter, double freedom);

@@ -45,14 +45,17 @@ struct Look {
   std::uint32_t line = 0;
   std::vector<std::uint32_t> rows;
   PlaneShape shape;  // of the rows' places
-  Vector3d mean;
+  Vector3d mean = Vector3d::Zero();
 };
 
 std::vector<Look> looks_of(std::vector<NearReturn>& all) {
   std::sort(all.begin(), all.end(), [](const NearReturn& a, const NearReturn& b) { return std::tie(a.line, a.time, a.draw) < std::tie(b.line, b.time, b.draw); });
   std::vector<Look> out;
   for (std::uint32_t r = 0; r < all.size(); ++r) {
-    if (r == 0 || all[r].line != all[r - 1].line || all[r].time - all[r - 1].time > new_look) out.push_back({all[r].line, {}, {}, {}});
+    if (r == 0 || all[r].line != all[r - 1].line || all[r].time - all[r - 1].time > new_look) {
+      out.emplace_back();
+      out.back().line = all[r].line;
+    }
     out.back().rows.push_back(r);
   }
   return out;
@@ -155,11 +158,12 @@ class Judge {
     std::string why = "seen by one line alone";
     std::erase_if(looks, [&](Look& l) {
       std::string fault = take_plane(l, all, region.normal, d);
-      if (!fault.empty()) why = std::move(fault);
-      return !why.empty() && l.rows.size() < d.fewest ? true : !fault_free(l, d);
+      const bool is_bad = !fault.empty();
+      if (is_bad) why = std::move(fault);
+      return is_bad;
     });
     if (looks.size() < d.looks) return why;
-    if (!agree(looks, d)) return "lines do not agree";
+    keep_agreeing(looks, d);
     if (looks.size() < d.looks) return "lines do not agree";
     const Vector3d normal = pooled_normal(looks, all);
     if (region.outline.empty()) drop_edges(looks, all, normal);
@@ -172,15 +176,13 @@ class Judge {
     // A look along a single scan line does not hold its plane.
     std::erase_if(looks, [&](const Look& l) { return l.shape.narrow < 0.3 * o_.extent.value; });
     if (looks.size() < d.looks) return "returns along one scan line";
-    return assemble(region, all, std::move(looks), d, out);
+    return assemble(region, all, std::move(looks), out);
   }
 
  private:
-  static bool fault_free(const Look& l, const Demands& d) { return l.rows.size() >= d.fewest && l.shape.rms <= d.tolerance && l.shape.rms > 0.0; }
-
-  // Takes out looks whose plane is another one. False where nothing agrees.
-  bool agree(std::vector<Look>& looks, const Demands& d) const {
-    if (looks.size() < 2) return true;
+  // Takes out looks whose plane is another one.
+  void keep_agreeing(std::vector<Look>& looks, const Demands& d) const {
+    if (looks.size() < 2) return;
     const Look* largest = &looks[0];
     for (const Look& l : looks)
       if (l.rows.size() > largest->rows.size()) largest = &l;
@@ -195,7 +197,6 @@ class Judge {
       const double allowed = 3.0 * (sigma(l) + sigma(*largest)) + tilt_slack + 0.5 * o_.mismatch.value / std::max(l.shape.narrow, 1.0);
       return std::abs(normal.dot(l.mean - at) - middle) > apart || tilt > allowed;
     });
-    return !looks.empty();
   }
 
   static Vector3d pooled_normal(const std::vector<Look>& looks, const std::vector<NearReturn>& all) {
@@ -238,7 +239,7 @@ class Judge {
     std::sort(l.rows.begin(), l.rows.end());
   }
 
-  std::string assemble(const PlaneRegion& region, const std::vector<NearReturn>& all, std::vector<Look> looks, const Demands& d, Judged& out) const {
+  std::string assemble(const PlaneRegion& region, const std::vector<NearReturn>& all, std::vector<Look> looks, Judged& out) const {
     Vector3d normal = pooled_normal(looks, all);
     // Which side each look sees: a thin wall has two.
     int front = 0, back = 0;
@@ -270,7 +271,6 @@ class Judge {
     plane.half = (3.0 * spread2).cwiseSqrt();  // of an even spread
     plane.roughness = std::sqrt(squares / freedom);
     if (plane.half.minCoeff() < o_.extent.value) return "too small";
-    if (d.looks > 1 && looks.size() < d.looks) return "seen by one line alone";
     out.looks = std::move(looks);
     return "";
   }
