@@ -1,0 +1,491 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A boresight error e moves every point of a line by J e (calib/shot_geometry.h), so that line B lies (J_B - J_A) e beside line A. Whatever
+// single squares show (rows of like houses, woods), only one e makes all of them meet: the costs of all squares are added up over a lattice
+// of e (a generalised Hough transform), then the squares' own displacements near that solution are adjusted.
+#include "calib/surface_match.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "calib/height_grid.h"
+#include "calib/window_match.h"
+#include "core/statistics.h"
+
+namespace swath::calib {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr std::uint64_t most_cells = 48u << 20;  // 6 bytes each
+constexpr double least_relief = 0.15;            // m, shared by neighbouring cells
+constexpr double least_share = 0.4;              // of the relief's rms that neighbouring cells must share
+constexpr double level_rms = 0.3;                // m: squares without relief below it are level, above it they are woods
+constexpr double relief_cap = 3.0;               // m: more relief than this is not better
+constexpr double filled = 0.4;                   // share of a square's cells that a line must have seen
+constexpr double meets = 0.5;                    // share of the typical cost below which two surfaces meet
+constexpr double agreed = 0.15;                  // share of the squares that must meet:
+constexpr double surely_agreed = 0.5;            // this one always, the lower one if it is
+constexpr double above_chance = 3.0;             // so many times the share that meets under any boresight
+constexpr int fewest_squares = 4;                // with relief: fewer say nothing of pitch and heading
+constexpr double match_cells = 10.0;             // a search radius is this many cells or fewer where the cells allow
+
+// A square seen by two views.
+struct Pair {
+  size_t a = 0, b = 0;  // views
+  std::int32_t i = 0, j = 0;
+  double relief = 0.0;
+  Matrix3d by = Matrix3d::Zero();  // J_B - J_A: east, north, up by roll, pitch, heading, m/rad
+};
+
+struct Round {
+  HeightGrids grids;
+  int side = 0;  // tiles along a square
+  std::vector<Pair> relief, level;
+};
+
+double square_side(const Round& r) { return r.grids.cell * HeightTile::side * r.side; }
+
+// The sample return of the tile of a view nearest to the middle of a square.
+std::optional<Matrix3d> turn_at(const HeightView& view, std::int32_t i, std::int32_t j, int side, LocalPoints& points) {
+  const HeightTile* best = nullptr;
+  double least = 1e30;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x)
+      if (const HeightTile* t = view.tile(i * side + x, j * side + y)) {
+        const double d = std::hypot(x - 0.5 * (side - 1), y - 0.5 * (side - 1));
+        if (d < least) least = d, best = t;
+      }
+  return best ? points.by_boresight(best->time, best->sample) : std::nullopt;
+}
+
+// The best `most` of each pair of views; ties and order do not depend on anything but the squares.
+std::vector<Pair> chosen(std::vector<Pair> all, size_t most, bool by_relief) {
+  std::map<std::pair<size_t, size_t>, std::vector<Pair>> of;
+  for (Pair& p : all) of[{p.a, p.b}].push_back(std::move(p));
+  if (of.empty()) return {};
+  const size_t each = std::max<size_t>(most / of.size(), 4);
+  const auto mixed = [](const Pair& p) { return (static_cast<std::uint32_t>(p.i) * 2654435761u) ^ (static_cast<std::uint32_t>(p.j) * 2246822519u); };
+  std::vector<Pair> out;
+  for (auto& [views, list] : of) {
+    std::sort(list.begin(), list.end(), [&](const Pair& x, const Pair& y) {
+      const double rx = by_relief ? std::min(x.relief, relief_cap) : 0.0, ry = by_relief ? std::min(y.relief, relief_cap) : 0.0;
+      return std::tuple(-rx, mixed(x), x.i, x.j) < std::tuple(-ry, mixed(y), y.i, y.j);
+    });
+    if (list.size() > each) list.resize(each);
+    for (Pair& p : list) out.push_back(std::move(p));
+  }
+  return out;
+}
+
+Round read_round(const ShotStream& stream, LocalPoints& points, const SurfaceMatchOptions& o) {
+  Round r;
+  r.grids = height_grids(stream, points, o.cell.value, most_cells);
+  const double tile = r.grids.cell * HeightTile::side;
+  r.side = std::max(2, static_cast<int>(std::lround(o.window.value / tile)));
+  const auto square_of = [&](std::int32_t t) { return t >= 0 ? t / r.side : -((-t + r.side - 1) / r.side); };
+  struct Seen {
+    size_t view;
+    int cells = 0;
+  };
+  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<Seen>> squares;
+  for (size_t v = 0; v < r.grids.views.size(); ++v)
+    for (const HeightTile& t : r.grids.views[v].tiles) {
+      auto& seen = squares[{square_of(t.i), square_of(t.j)}];
+      if (seen.empty() || seen.back().view != v) seen.push_back({v});
+      for (const std::uint16_t n : t.n) seen.back().cells += n > 0;
+    }
+  const int cells = r.side * HeightTile::side;
+  std::vector<Pair> relief, level;
+  for (auto& [place, seen] : squares) {
+    std::erase_if(seen, [&](const Seen& s) { return s.cells < filled * cells * cells; });
+    if (seen.size() < 2) continue;
+    std::vector<Relief> in;
+    for (const Seen& s : seen)
+      in.push_back(relief_of(r.grids.views[s.view].raster(std::int64_t{place.first} * cells, std::int64_t{place.second} * cells, cells, cells, 1))
+                       .value_or(Relief{1e9, 0.0}));
+    const auto stands_out = [](const Relief& x) { return x.shared > least_relief && x.shared > least_share * x.rms; };
+    for (size_t x = 0; x < seen.size(); ++x)
+      for (size_t y = x + 1; y < seen.size(); ++y) {
+        Pair p;
+        p.a = seen[x].view, p.b = seen[y].view, p.i = place.first, p.j = place.second;
+        p.relief = std::min(in[x].shared, in[y].shared);
+        if (stands_out(in[x]) && stands_out(in[y]))
+          relief.push_back(p);
+        else if (std::max(in[x].rms, in[y].rms) < level_rms)
+          level.push_back(p);
+      }
+  }
+  r.relief = chosen(std::move(relief), static_cast<size_t>(o.windows), true);
+  r.level = chosen(std::move(level), static_cast<size_t>(o.windows), false);
+  const auto no_turn = [&](Pair& p) {
+    const auto a = turn_at(r.grids.views[p.a], p.i, p.j, r.side, points), b = turn_at(r.grids.views[p.b], p.i, p.j, r.side, points);
+    if (a && b) p.by = *b - *a;
+    return !(a && b);
+  };
+  std::erase_if(r.relief, no_turn);
+  std::erase_if(r.level, no_turn);
+  return r;
+}
+
+// A square's surfaces and the costs of laying one over the other.
+struct Matched {
+  const Pair* pair = nullptr;
+  double cell = 0.0;
+  Raster a, b;
+  ShiftCosts costs;
+};
+
+// Half widths of the search of each angle.
+using Search = Vector3d;
+
+template <class F>
+void for_each_boresight(const Search& search, const Vector3d& step, F&& f) {
+  int n[3];
+  for (int k = 0; k < 3; ++k) n[k] = static_cast<int>(std::ceil(search[k] / step[k]));
+  for (int r = -n[0]; r <= n[0]; ++r)
+    for (int p = -n[1]; p <= n[1]; ++p)
+      for (int h = -n[2]; h <= n[2]; ++h) f(Vector3d(r * step[0], p * step[1], h * step[2]));
+}
+
+Matched match(const Round& r, const Pair& p, const Search& search) {
+  Matched m;
+  m.pair = &p;
+  const Vector3d reach = p.by.cwiseAbs() * search;
+  const double widest = std::max(reach.x(), reach.y());
+  const int cells = r.side * HeightTile::side;
+  int factor = 1;
+  while (factor < 8 && widest / (r.grids.cell * factor) > match_cells && cells / (2 * factor) >= 24) factor *= 2;
+  m.cell = r.grids.cell * factor;
+  const int n = cells / factor, mx = static_cast<int>(std::ceil(reach.x() / m.cell)) + 3, my = static_cast<int>(std::ceil(reach.y() / m.cell)) + 3;
+  const std::int64_t i = std::int64_t{p.i} * n, j = std::int64_t{p.j} * n;
+  m.a = r.grids.views[p.a].raster(i, j, n, n, factor);
+  m.b = r.grids.views[p.b].raster(i - mx, j - my, n + 2 * mx, n + 2 * my, factor);
+  // Only shifts that some boresight explains, two cells about.
+  std::vector<char> wanted(static_cast<size_t>((2 * mx + 1) * (2 * my + 1)), 0);
+  Vector3d step;
+  for (int k = 0; k < 3; ++k) step[k] = std::max(m.cell / std::max(p.by.col(k).head<2>().norm(), 1.0), search[k] / 20.0);
+  for_each_boresight(search, step, [&](const Vector3d& e) {
+    const Vector2d d = (p.by * e).head<2>() / m.cell;
+    const int x0 = static_cast<int>(std::lround(d.x())), y0 = static_cast<int>(std::lround(d.y()));
+    for (int y = std::max(y0 - 2, -my); y <= std::min(y0 + 2, my); ++y)
+      for (int x = std::max(x0 - 2, -mx); x <= std::min(x0 + 2, mx); ++x) wanted[static_cast<size_t>((y + my) * (2 * mx + 1) + x + mx)] = 1;
+  });
+  m.costs = shift_costs(m.a, m.b, mx, my, wanted);
+  return m;
+}
+
+double share_at(const Matched& m, const Vector3d& e) {
+  const Vector2d d = (m.pair->by * e).head<2>() / m.cell;
+  return m.costs(d.x(), d.y());
+}
+double cost_of(const std::vector<Matched>& all, const Search& search, const Vector3d& e) {
+  double sum = 0.0;
+  for (const Matched& m : all) sum += share_at(m, e);
+  return sum + 1e-6 * e.cwiseQuotient(search).squaredNorm();  // of equals the smallest
+}
+
+// The boresight error under which most squares meet: the best of a lattice, then of ever finer ones about it.
+Vector3d seek(const std::vector<Matched>& all, const Search& search) {
+  Vector3d step;
+  for (int k = 0; k < 3; ++k) {
+    double fastest = 1.0, cell = 1e9;
+    for (const Matched& m : all) fastest = std::max(fastest, m.pair->by.col(k).head<2>().norm()), cell = std::min(cell, m.cell);
+    step[k] = std::clamp(cell / fastest, search[k] / 20.0, search[k]);
+  }
+  Vector3d best = Vector3d::Zero();
+  double least = cost_of(all, search, best);
+  const auto attempt = [&](const Vector3d& e) {
+    if (const double c = cost_of(all, search, e); c < least) least = c, best = e;
+  };
+  for_each_boresight(search, step, attempt);
+  for (int halving = 0; halving < 4; ++halving) {
+    step *= 0.5;
+    for (int again = 0; again < 3; ++again) {
+      const Vector3d centre = best;
+      for_each_boresight(step, step, [&](const Vector3d& e) { attempt(centre + e); });
+      if (centre == best) break;
+    }
+  }
+  return best;
+}
+
+double agreement_of(const std::vector<Matched>& all, const Vector3d& e) {
+  double n = 0.0;
+  for (const Matched& m : all) n += share_at(m, e) < meets;
+  return all.empty() ? 0.0 : n / static_cast<double>(all.size());
+}
+// Do the surfaces meet there as they would not elsewhere?
+bool is_agreed(const std::vector<Matched>& all, const Search& search, double agreement) {
+  double sum = 0.0, n = 0.0;
+  for_each_boresight(search, 0.5 * search, [&](const Vector3d& e) { sum += agreement_of(all, e), n += 1.0; });
+  return agreement >= surely_agreed || (agreement >= agreed && agreement > above_chance * sum / n);
+}
+
+// One displacement as observed: rows of it that count, whitened by `root`.
+struct Observed {
+  const Pair* pair;
+  Vector3d shift = Vector3d::Zero();
+  Matrix3d covariance = Matrix3d::Identity();
+  bool relief = false;
+  double weight = 1.0;
+};
+
+std::vector<Observed> observe(const Round& r, const std::vector<Matched>& matched, const Vector3d& e) {
+  std::vector<Observed> out;
+  for (const Matched& m : matched) {
+    const Vector2d near = (m.pair->by * e).head<2>() / m.cell;
+    const auto s = subcell_shift(m.a, m.b, m.costs, near, 3);
+    if (!s || s->share > meets) continue;
+    Observed o{m.pair};
+    o.relief = true;
+    o.shift << s->shift * m.cell, s->rise;
+    o.covariance.topLeftCorner<2, 2>() = s->covariance * m.cell * m.cell;
+    o.covariance(2, 2) = s->rise_variance;
+    out.push_back(o);
+  }
+  for (const Pair& p : r.level) {
+    const int n = r.side * HeightTile::side;
+    const std::int64_t i = std::int64_t{p.i} * n, j = std::int64_t{p.j} * n;
+    const Raster a = r.grids.views[p.a].raster(i, j, n, n, 1);
+    const Vector2d d = (p.by * e).head<2>() / r.grids.cell;
+    const Raster b = r.grids.views[p.b].raster(i + std::lround(d.x()), j + std::lround(d.y()), n, n, 1);
+    const auto f = fit_shift(a, b, 0, 0, 0, 0, 3);
+    if (!f) continue;
+    Observed o{&p};
+    o.shift.z() = f->rise;
+    o.covariance = Vector3d(1e12, 1e12, f->cost / (0.2 * f->cells) + 4e-4).asDiagonal();
+    out.push_back(o);
+  }
+  return out;
+}
+
+struct Solution {
+  Vector3d error = Vector3d::Zero();
+  Matrix3d covariance = Matrix3d::Zero();
+  Vector3d sigma = Vector3d::Zero();
+  std::array<bool, 3> determined{};
+  double rms = 0.0;
+};
+
+// Of n views of one square only n - 1 displacements are independent: pairs per independent displacement.
+double repetition(const std::vector<Observed>& all) {
+  std::map<std::pair<std::int32_t, std::int32_t>, std::set<size_t>> views;
+  for (const Observed& x : all) {
+    auto& of = views[{x.pair->i, x.pair->j}];
+    of.insert(x.pair->a), of.insert(x.pair->b);
+  }
+  double independent = 0.0;
+  for (const auto& [square, of] : views) independent += static_cast<double>(of.size()) - 1.0;
+  return std::max(static_cast<double>(all.size()) / std::max(independent, 1.0), 1.0);
+}
+
+// e and three shifts per line by robust least squares (Tukey's weights); angles of `held` stay zero, what their errors of `considered` (rad)
+// would change is in the covariance.
+Solution solve(std::vector<Observed>& all, const Round& r, const SurfaceMatchOptions& o, const std::array<bool, 3>& held,
+               const Vector3d& considered) {
+  std::map<int, int> column;
+  for (const Observed& x : all)
+    for (const size_t v : {x.pair->a, x.pair->b}) column.try_emplace(r.grids.views[v].line, 0);
+  int columns = 3;
+  for (auto& [line, at] : column) at = columns, columns += 3;
+  const auto rows_of = [&](const Observed& x) {
+    MatrixXd A = MatrixXd::Zero(3, columns);
+    A.leftCols<3>() = x.pair->by;
+    A.middleCols<3>(column.at(r.grids.views[x.pair->b].line)) += Matrix3d::Identity();
+    A.middleCols<3>(column.at(r.grids.views[x.pair->a].line)) -= Matrix3d::Identity();
+    return A;
+  };
+  constexpr double loose = 0.2;  // rad: keeps the normal matrix regular
+  VectorXd prior(columns);
+  prior.head<3>().setConstant(1.0 / (loose * loose));
+  for (const auto& [line, at] : column) {
+    prior[at] = prior[at + 1] = 1.0 / (o.position_error.value * o.position_error.value);
+    prior[at + 2] = 1.0 / (o.height_error.value * o.height_error.value);
+  }
+  Solution out;
+  VectorXd solution = VectorXd::Zero(columns);
+  MatrixXd inverse;
+  Matrix3d moved = Matrix3d::Zero();
+  double factor = 1.0;
+  for (Observed& x : all) x.weight = 1.0;
+  for (int iteration = 0; iteration < 12; ++iteration) {
+    MatrixXd N = prior.asDiagonal();
+    VectorXd g = VectorXd::Zero(columns);
+    for (const Observed& x : all) {
+      const MatrixXd A = rows_of(x);
+      const Matrix3d P = x.weight * x.covariance.inverse();
+      N += A.transpose() * P * A;
+      g += A.transpose() * P * x.shift;
+    }
+    MatrixXd effect = MatrixXd::Zero(columns, 3);  // of held angles on the right-hand side
+    for (int k = 0; k < 3; ++k) {
+      if (!held[static_cast<size_t>(k)]) continue;
+      effect.col(k) = N.col(k) * considered[k];
+      N.row(k).setZero(), N.col(k).setZero(), N(k, k) = 1.0;
+      g[k] = 0.0;
+    }
+    for (int k = 0; k < 3; ++k)
+      if (held[static_cast<size_t>(k)]) effect.row(k).setZero();
+    inverse = N.ldlt().solve(MatrixXd::Identity(columns, columns));
+    solution = inverse * g;
+    moved = (inverse * effect).topRows<3>();
+    std::vector<double> size;
+    for (const Observed& x : all) {
+      const Vector3d v = x.shift - rows_of(x) * solution;
+      size.push_back(std::sqrt(v.dot(x.covariance.inverse() * v) / (x.relief ? 3.0 : 1.0)));
+    }
+    const double scale = std::max(1.4826 * core::median(size, 1.0), 1.0);
+    double sum = 0.0, weights = 0.0;
+    for (size_t i = 0; i < all.size(); ++i) {
+      const double u = size[i] / (4.685 * scale);
+      all[i].weight = u < 1.0 ? (1 - u * u) * (1 - u * u) : 0.0;
+      const double rows = all[i].relief ? 3.0 : 1.0;
+      sum += all[i].weight * rows * size[i] * size[i], weights += all[i].weight * rows;
+    }
+    factor = std::max(sum / std::max(weights - 3.0, 1.0), 1.0);
+  }
+  factor *= repetition(all);
+  out.error = solution.head<3>();
+  out.covariance = factor * inverse.topLeftCorner<3, 3>() + moved * moved.transpose();
+  out.sigma = out.covariance.diagonal().cwiseSqrt();
+  double sum = 0.0, n = 0.0;
+  for (const Observed& x : all)
+    if (x.relief) sum += x.weight * (x.shift - rows_of(x) * solution).head<2>().squaredNorm(), n += 2.0 * x.weight;
+  out.rms = n > 0.0 ? std::sqrt(sum / n) : 0.0;
+  return out;
+}
+
+// Solves with all angles, then without those that the squares do not determine, worst first.
+// Heights of level ground tell roll alone: what they say of pitch and heading, by the aircraft's sway, is less than other errors make.
+Solution solve_determined(std::vector<Observed>& all, const Round& r, const SurfaceMatchOptions& o) {
+  const auto squares = std::count_if(all.begin(), all.end(), [](const Observed& x) { return x.relief; });
+  std::array<bool, 3> held{false, squares < fewest_squares, squares < fewest_squares};
+  Vector3d sigma = Vector3d::Constant(std::numeric_limits<double>::infinity());
+  for (int tries = 0;; ++tries) {
+    const Vector3d considered = sigma.cwiseMin(0.5 * o.search.value);
+    Solution s = solve(all, r, o, held, considered);
+    int worst = -1;
+    for (int k = 0; k < 3; ++k)
+      if (!held[static_cast<size_t>(k)]) {
+        sigma[k] = s.sigma[k];
+        if (s.sigma[k] > o.undetermined.value && (worst < 0 || s.sigma[k] > s.sigma[worst])) worst = k;
+      }
+    if (worst < 0) {
+      for (int k = 0; k < 3; ++k) {
+        s.determined[static_cast<size_t>(k)] = !held[static_cast<size_t>(k)];
+        if (held[static_cast<size_t>(k)]) s.error[k] = 0.0, s.covariance.row(k).setZero(), s.covariance.col(k).setZero();
+      }
+      s.sigma = sigma;
+      return s;
+    }
+    held[static_cast<size_t>(worst)] = true;
+  }
+}
+
+std::vector<Matched> match_all(const Round& r, const Search& search) {
+  std::vector<Matched> out;
+  for (const Pair& p : r.relief) out.push_back(match(r, p, search));
+  return out;
+}
+
+core::Calibration turned(core::Calibration c, const Vector3d& error) {
+  c.roll.value -= error[0], c.pitch.value -= error[1], c.heading.value -= error[2];
+  return c;
+}
+
+void state_findings(SurfaceMatch& m, bool overlap) {
+  static const char* names[3] = {"roll", "pitch", "heading"};
+  static const char* cures[3] = {"fly lines in opposite directions, or lines that overlap side by side",
+                                 "fly lines in opposite directions over buildings or other relief",
+                                 "fly lines side by side over buildings or other relief that both see near the edge of the swath"};
+  if (!overlap) {
+    m.findings.push_back({"no two flight lines overlap", "fly lines that overlap by half a swath or more", {}, true});
+    return;
+  }
+  for (int k = 0; k < 3; ++k)
+    if (!m.determined[static_cast<size_t>(k)])
+      m.findings.push_back({std::string("the surfaces of the lines do not determine boresight ") + names[k] + ": it is left as it was", cures[k],
+                            {static_cast<Parameter>(boresight_roll + k)}, false});
+}
+
+}  // namespace
+
+SurfaceMatch match_surfaces(const ShotStream& stream, const core::Scanner& scanner, const core::Calibration& start,
+                            const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame, const SurfaceMatchOptions& o) {
+  SurfaceMatch out;
+  out.calibration = start;
+  Search search = Vector3d::Constant(o.search.value);
+  bool overlap = false;
+  for (int round = 1; round <= o.rounds; ++round) {
+    LocalPoints points(scanner, out.calibration, trajectory, frame);
+    const Round r = read_round(stream, points, o);
+    overlap = !r.relief.empty() || !r.level.empty();
+    if (!overlap) break;
+    const std::vector<Matched> matched = match_all(r, search);
+    const Vector3d found = matched.empty() ? Vector3d::Zero() : seek(matched, search);
+    if (round == 1) {
+      out.agreement = agreement_of(matched, found);
+      if (matched.size() >= fewest_squares && !is_agreed(matched, search, out.agreement)) {
+        core::Calibration mirrored = start;
+        mirrored.scan_scale = -start.scan_scale;
+        LocalPoints other(scanner, mirrored, trajectory, frame);
+        const Round m = read_round(stream, other, o);
+        const std::vector<Matched> match_there = match_all(m, search);
+        const double there = match_there.empty() ? 0.0 : agreement_of(match_there, seek(match_there, search));
+        if (there > 2.0 * out.agreement && is_agreed(match_there, search, there)) {
+          out.scan_reversed = true;
+          out.findings.push_back({"the surfaces of the lines meet with the sign of the scan angle turned, and not as recorded",
+                                  "state that the file counts scan angles positive to port (angle_to_port)", {}, true});
+        } else {
+          out.findings.push_back({"the surfaces of the lines do not meet under any boresight within the search",
+                                  "widen `search`; check the trajectory, time tags, line numbers and the scanner model", {}, true});
+        }
+        return out;
+      }
+    }
+    std::vector<Observed> seen = observe(r, matched, found);
+    if (matched.size() < fewest_squares)
+      std::erase_if(seen, [](const Observed& x) { return x.relief; });
+    const Solution s = solve_determined(seen, r, o);
+    out.calibration = turned(out.calibration, s.error);
+    out.covariance = s.covariance;
+    out.sigma = s.sigma;
+    out.determined = s.determined;
+    out.rms = s.rms;
+    out.cell = r.grids.cell;
+    out.rounds = round;
+    out.windows.clear();
+    for (const Observed& x : seen) {
+      MatchedWindow w;
+      w.line_a = r.grids.views[x.pair->a].line, w.line_b = r.grids.views[x.pair->b].line;
+      w.centre = Vector2d(x.pair->i + 0.5, x.pair->j + 0.5) * square_side(r);
+      w.relief = x.relief;
+      w.shift = x.shift;
+      w.residual = x.shift - x.pair->by * s.error;
+      w.weight = x.weight;
+      out.windows.push_back(w);
+    }
+    if (s.error.cwiseAbs().maxCoeff() < o.settled.value) break;
+    for (int k = 0; k < 3; ++k)
+      if (s.determined[static_cast<size_t>(k)]) search[k] = std::clamp(4.0 * s.sigma[k], 0.05 * core::degree, search[k]);
+  }
+  out.change = {out.calibration.roll.value - start.roll.value, out.calibration.pitch.value - start.pitch.value,
+                out.calibration.heading.value - start.heading.value};
+  state_findings(out, overlap);
+  return out;
+}
+
+}  // namespace swath::calib
