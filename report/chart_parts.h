@@ -2,6 +2,7 @@
 // The parts of a chart (report/chart.h): the sheet it is laid out on, and rows of numbers as marks in pixels. Inside of the room only.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,6 +36,10 @@ class Sheet {
   /// Capitals' middle at y; `scale`: pixels per dot of report/font.h, whose widths hold on every sheet; `upward`: read from below.
   virtual void text(double x, double y, std::string_view text, double scale, Anchor anchor, bool upward, core::Rgb colour) = 0;
 };
+
+/// What is drawn on a sheet of that size, white below, as a picture and as an SVG file.
+core::Picture paint(int width, int height, const std::function<void(Sheet&)>& drawing);
+std::string paint_svg(int width, int height, const std::function<void(Sheet&)>& drawing);
 
 /// Places everything and draws it; returns the height in pixels. Without a sheet it only measures.
 /// Throws core::Error where columns of a series differ in length.
