@@ -143,7 +143,8 @@ class SvgSheet : public Sheet {
   }
   void dots(const std::vector<double>& x, const std::vector<double>& y, double radius, core::Rgb colour) override {
     // Strokes of no length with round ends: a third of the text that circles take.
-    out_ += "<path fill=\"none\" stroke=\"" + hex(colour) + "\" stroke-width=\"" + number(2.0 * radius) + "\" stroke-linecap=\"round\" d=\"";
+    out_ +=
+        "<path fill=\"none\" stroke=\"" + hex(colour) + "\" stroke-width=\"" + number(2.0 * radius) + "\" stroke-linecap=\"round\" d=\"";
     for (size_t k = 0; k < x.size(); ++k) out_ += "M" + number(x[k]) + "," + number(y[k]) + "h0";
     out_ += "\"/>\n";
   }

@@ -45,7 +45,7 @@ std::string paint_svg(int width, int height, const std::function<void(Sheet&)>& 
 /// Throws core::Error where columns of a series differ in length.
 int lay_out(const Chart& chart, Sheet* sheet);
 
-/// Colour-blind safe, without yellow (Okabe and Ito 2008); any index.
+/// Colour-blind safe, without yellow (Okabe and Ito 2008): seven colours, the same darker, the same paler; any index.
 core::Rgb palette(int index);
 
 /// The middle part of a panel's values that holds its y_share, half as long again on both sides, no longer than all of them; on a

@@ -54,7 +54,8 @@ struct Layout {
       }
     }
     for (int c = 0; c < n; ++c)
-      sheet.text(left + (c + 0.5) * least_cell, top + n * row + gap, chart.names[static_cast<size_t>(c)], text_scale, Anchor::end, true, ink);
+      sheet.text(left + (c + 0.5) * least_cell, top + n * row + gap, chart.names[static_cast<size_t>(c)], text_scale, Anchor::end, true,
+                 ink);
   }
   const CorrelationChart& chart;
   int n, left = 0, top = 0, width = 0, height = 0;

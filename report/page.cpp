@@ -160,7 +160,8 @@ void Page::table(const Table& t) {
   body_ += "<div class=\"table\"><table";
   if (!t.id.empty()) body_ += " id=\"" + escaped(t.id) + "\"";
   body_ += ">\n<caption><b>Table " + std::to_string(++tables_) + ".</b> " + inline_html(t.caption) + "</caption>\n<thead><tr>";
-  for (const Column& c : t.columns) body_ += std::string(c.numbers ? "<th class=\"n\"" : "<th") + " scope=\"col\">" + inline_html(c.head) + "</th>";
+  for (const Column& c : t.columns)
+    body_ += std::string(c.numbers ? "<th class=\"n\"" : "<th") + " scope=\"col\">" + inline_html(c.head) + "</th>";
   body_ += "</tr></thead>\n<tbody>\n";
   for (size_t r = 0; r < t.rows.size(); ++r) {
     if (t.rows[r].size() > t.columns.size())
@@ -216,7 +217,8 @@ std::string Page::html() const {
   if (!contents_.empty()) {
     out += "<nav aria-label=\"Contents\"><ol>\n";
     for (const Entry& e : contents_)
-      out += std::string(e.level <= 2 ? "<li>" : "<li class=\"inner\">") + "<a href=\"#" + e.id + "\">" + inline_html(e.heading) + "</a></li>\n";
+      out += std::string(e.level <= 2 ? "<li>" : "<li class=\"inner\">") + "<a href=\"#" + e.id + "\">" + inline_html(e.heading) +
+             "</a></li>\n";
     out += "</ol></nav>\n";
   }
   out += "<main>\n" + body_ + "</main>\n";

@@ -13,8 +13,8 @@ namespace swath::report {
 enum class Tone { plain, good, caution, bad };
 
 struct Column {
-  std::string head;      ///< with the unit: "height (m)"
-  bool numbers = true;   ///< set to the right, digits of one width; otherwise texts, to the left
+  std::string head;     ///< with the unit: "height (m)"
+  bool numbers = true;  ///< set to the right, digits of one width; otherwise texts, to the left
 };
 
 /// Cells are texts (report/html.h makes numbers). Rows shorter than the columns end in empty cells.

@@ -134,8 +134,8 @@ Verdict verdict_of(const Adjustment& a) {
   out.tone = report::Tone::good;
   std::string text;
   for (size_t g = 0; g < groups.size(); ++g) {
-    const std::string part = known_to(a, groups[g]);
-    text += g == 0 ? part + " (one sigma)" : (groups[g].front() >= calib::lever_forward ? ", the " : ", ") + part;
+    text += (g == 0 ? "" : ", ") + std::string(groups[g].front() >= calib::lever_forward ? "the " : "") + known_to(a, groups[g]);
+    if (g == 0) text += " (one sigma)";
   }
   // "..., the range offset is known to 8 mm" reads better without the second verb.
   for (const std::string_view verb : {std::string_view(" is known to "), std::string_view(" are known to ")})
@@ -149,7 +149,8 @@ Verdict verdict_of(const Adjustment& a) {
       lost.push_back("the " + std::string(words_of(parameter_at(k)).name));
   if (!lost.empty()) {
     out.tone = report::Tone::caution;
-    out.text += "; not determined, and left at " + std::string(lost.size() == 1 ? "its start value: " : "their start values: ") + joined(lost);
+    out.text +=
+        "; not determined, and left at " + std::string(lost.size() == 1 ? "its start value: " : "their start values: ") + joined(lost);
   }
   const auto disagree = std::count_if(a.control.begin(), a.control.end(), [](const calib::ControlResidual& c) { return c.rejected; });
   if (disagree > 0) {

@@ -12,11 +12,11 @@ namespace swath::stages {
 
 /// How a parameter's numbers are shown.
 struct ParameterWords {
-  std::string_view key;          ///< in files: "boresight_roll"
-  std::string_view name;         ///< "boresight roll"
-  std::string_view unit;         ///< SI, of files: "m", "rad", "s", "1"
-  std::string_view sigma_unit;   ///< of sigmas in reports: "arcsec", "mm", "ppm", "ms"
-  double sigma_size;             ///< SI value of one sigma_unit
+  std::string_view key;         ///< in files: "boresight_roll"
+  std::string_view name;        ///< "boresight roll"
+  std::string_view unit;        ///< SI, of files: "m", "rad", "s", "1"
+  std::string_view sigma_unit;  ///< of sigmas in reports: "arcsec", "mm", "ppm", "ms"
+  double sigma_size;            ///< SI value of one sigma_unit
 };
 const ParameterWords& words_of(calib::Parameter parameter);
 
