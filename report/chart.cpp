@@ -10,6 +10,7 @@
 
 #include "report/chart_parts.h"
 #include "report/font.h"
+#include "report/html.h"
 
 namespace swath::report {
 namespace {
@@ -85,27 +86,6 @@ std::string number(double v) {
   auto end = std::to_chars(text, text + sizeof text, v, std::chars_format::fixed, 1).ptr;
   if (end - text > 2 && end[-1] == '0') end -= 2;
   return std::string(text, end) == "-0" ? "0" : std::string(text, end);
-}
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;  // XML holds no control characters
-    }
-  return out;
 }
 
 std::string hex(core::Rgb c) {

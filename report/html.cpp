@@ -94,8 +94,4 @@ std::string number_text(double v, int decimals) {
 
 std::string count_text(std::uint64_t n) { return grouped(std::to_string(n)); }
 
-std::string counted(std::uint64_t n, std::string_view one, std::string_view many) {
-  return count_text(n) + " " + std::string(n == 1 ? one : many);
-}
-
 }  // namespace swath::report

@@ -22,7 +22,4 @@ std::string number_text(double v, int decimals);
 /// The same for counts.
 std::string count_text(std::uint64_t n);
 
-/// "3 lines", "1 line".
-std::string counted(std::uint64_t n, std::string_view one, std::string_view many);
-
 }  // namespace swath::report

@@ -56,9 +56,11 @@ code{font-family:ui-monospace,"DejaVu Sans Mono",monospace;font-size:.9em}
 sup a{text-decoration:none}
 .notes{margin-top:3rem;padding-top:.5rem;border-top:1px solid var(--rule);font-size:.88rem;color:var(--soft)}
 .notes ol{padding-left:1.5rem}
-@media print{:root{color-scheme:light;--ink:#000;--soft:#444;--paper:#fff;--rule:#bbb;--shade:#f4f6f8;--link:#000}
+@media print{:root{font-size:9.5pt;color-scheme:light;--ink:#000;--soft:#444;--paper:#fff;--rule:#bbb;--shade:#f4f6f8;--link:#000}
 @page{margin:15mm}
-body{max-width:none;padding:0;font-size:10pt}
+body{max-width:none;padding:0;font-size:1rem}
+table{font-size:.8rem}
+th,td{padding:.2rem .4rem}
 nav{display:none}
 h2,h3{break-after:avoid}
 figure,tr,.banner{break-inside:avoid}

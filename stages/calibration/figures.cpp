@@ -19,7 +19,7 @@ using report::Series;
 
 constexpr double arc_second = core::degree / 3600.0, centimetre = 0.01;
 constexpr int grey = 4, colours = 7;
-/// A few groups far off do not flatten the rest.
+/// Share of the groups in use that the range of a panel goes by: a few far off, and those taken out, do not flatten the rest.
 constexpr double residual_share = 0.99;
 
 std::string line_name(int id) { return "line " + std::to_string(id); }
@@ -68,7 +68,10 @@ Panel residual_panel(const CalibrationReport& report, BinBy by, bool before) {
   p.title = before ? "Before: start values" : "After the adjustment";
   p.x_label = label_of(by);
   p.y_label = "distance (cm)";
-  p.y_share = residual_share;
+  const auto used = std::count_if(groups.begin(), groups.end(), [](const calib::GroupResidual& g) { return !g.rejected; });
+  // A little less than that share of all: those taken out lie on one side as a rule.
+  p.y_share = groups.empty() ? 1.0 : 1.0 - 2.0 * (1.0 - residual_share * static_cast<double>(used) / static_cast<double>(groups.size()));
+  p.y_share = std::max(p.y_share, 0.5);
   std::vector<size_t> seen(report.ties.lines.size()), all(report.ties.lines.size());
   for (const auto& g : groups) ++all[g.line];
   for (size_t k = 0; k < report.ties.lines.size(); ++k) {

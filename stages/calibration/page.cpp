@@ -75,6 +75,16 @@ const std::vector<Group>& value_groups() {
 
 std::string headed(const char* name, const char* unit) { return std::string(name) + " (" + unit + ")"; }
 
+/// Blanks that no line breaks at.
+std::string unbroken(std::string_view text) {
+  std::string out;
+  for (const char c : text) out += c == ' ' ? std::string("\u00A0") : std::string(1, c);
+  return out;
+}
+
+/// Decimals that tell one end of a bin from the other.
+int decimals_of(double step) { return std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9))); }
+
 std::string yes(bool v) { return v ? "yes" : "no"; }
 
 class Maker {
@@ -116,7 +126,7 @@ class Maker {
   void detail_table(const std::string& caption, const core::Value& rows);
   void flight();
   void residuals();
-  void residual_table(BinBy by, const char* id, const char* caption, const char* unit, double size, int decimals);
+  void residual_table(BinBy by, const char* id, const char* caption, const char* unit);
   void outliers();
   void control();
   void control_table(const char* id, const char* caption, const std::vector<calib::ControlResidual>& rows);
@@ -134,8 +144,8 @@ class Maker {
 
 void Maker::findings() {
   if (!adjustment_.findings.empty()) {
-    page_.section("What the flight does not tell");
-    Table t{"findings", "What cannot be told, or looks wrong, and what to do about it", {}, {}, {}};
+    page_.section("Findings");
+    Table t{"findings", "What the flight does not tell, or looks wrong, and what to do about it", {}, {}, {}};
     t.columns = {{"finding", false}, {"what to do", false}, {"parameters", false}, {"outcome", false}};
     for (const calib::Finding& f : adjustment_.findings) {
       std::vector<std::string> names;
@@ -163,7 +173,7 @@ void Maker::value_table(const Group& g, const std::array<std::string, 5>& notes)
     if (!e.estimated) continue;
     any = true;
     const auto shown = [&](double v) { return number_text((v - g.from) / g.value_size, g.value_decimals); };
-    std::vector<std::string> row{std::string(words_of(p).name), shown(e.start)};
+    std::vector<std::string> row{unbroken(words_of(p).name), shown(e.start)};
     const bool good = is_delivered(adjustment_, p);
     const double none = calib::not_known;
     row.push_back(shown(good ? e.value : none));
@@ -258,10 +268,12 @@ void Maker::target() {
 std::string plain_text(const core::Value& v) {
   if (v.is_text()) return v.as_text();
   if (v.is_bool()) return yes(v.as_bool());
-  if (v.is_int()) return std::to_string(v.as_int());
+  if (v.is_int()) return (v.as_int() < 0 ? "−" : "") + std::to_string(std::abs(v.as_int()));
   if (!v.is_number() || !std::isfinite(v.as_number())) return "–";
   char text[64];
-  return std::string(text, std::to_chars(text, text + sizeof text, v.as_number(), std::chars_format::general, 6).ptr);
+  const double size = std::abs(v.as_number());
+  return (std::signbit(v.as_number()) ? "−" : "") +
+         std::string(text, std::to_chars(text, text + sizeof text, size, std::chars_format::general, 6).ptr);
 }
 
 bool is_row(const core::Value& v) {
@@ -375,7 +387,7 @@ const std::array<report::Column, 9>& measure_columns() {
   return columns;
 }
 
-void Maker::residual_table(BinBy by, const char* id, const char* caption, const char* unit, double size, int decimals) {
+void Maker::residual_table(BinBy by, const char* id, const char* caption, const char* unit) {
   Table t{id, caption, {}, {}, {}};
   if (by == BinBy::line) {
     t.columns = {{"line"}};
@@ -388,7 +400,7 @@ void Maker::residual_table(BinBy by, const char* id, const char* caption, const 
     if (by == BinBy::line)
       row = {std::to_string(static_cast<int>(b.low))};
     else
-      row = {number_text(b.low / size, decimals), number_text(b.high / size, decimals)};
+      row = {number_text(b.low, decimals_of(b.high - b.low)), number_text(b.high, decimals_of(b.high - b.low))};
     const std::vector<std::string> rest = measures(b);
     row.insert(row.end(), rest.begin(), rest.end());
     t.rows.push_back(std::move(row));
@@ -410,15 +422,14 @@ void Maker::residuals() {
   struct View {
     BinBy by;
     const char *name, *heading, *id, *caption, *unit;
-    int decimals;
   };
   for (const View& v :
-       {View{BinBy::line, "residuals_line", "By line", "residuals-by-line", "Residuals by flight line", "", 0},
-        View{BinBy::angle, "residuals_angle", "By scan angle", "residuals-by-angle", "Residuals by scan angle", "deg", 1},
-        View{BinBy::range, "residuals_range", "By range", "residuals-by-range", "Residuals by range", "m", 1},
-        View{BinBy::time, "residuals_time", "By time", "residuals-by-time", "Residuals by time since the first return", "s", 1}}) {
+       {View{BinBy::line, "residuals_line", "By line", "residuals-by-line", "Residuals by flight line", ""},
+        View{BinBy::angle, "residuals_angle", "By scan angle", "residuals-by-angle", "Residuals by scan angle", "deg"},
+        View{BinBy::range, "residuals_range", "By range", "residuals-by-range", "Residuals by range", "m"},
+        View{BinBy::time, "residuals_time", "By time", "residuals-by-time", "Residuals by time since the first return", "s"}}) {
     page_.section(v.heading, 3);
-    residual_table(v.by, v.id, v.caption, v.unit, 1.0, v.decimals);
+    residual_table(v.by, v.id, v.caption, v.unit);
     figure(v.name, residual_chart(report_, v.by), std::string(v.caption) + ", one dot per group, by line colour (residuals.csv).");
   }
 }

@@ -77,7 +77,7 @@ void add_lines(CalibrationReport& r) {
     const int id = static_cast<int>(k) + 1;
     r.lines.push_back({id, k < 4 ? "low " + std::to_string(id) : "high <" + std::to_string(id) + "> & back", p.heading * core::degree,
                        p.height, 61.3 + 0.4 * static_cast<double>(k), (last - first) * 61.3, first, last, 3100000 + 1234 * k});
-    r.ties.lines.push_back({id, first + 0.25, last - 0.5});
+    r.ties.lines.push_back({id, first, last});
   }
 }
 
