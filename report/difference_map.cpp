@@ -19,7 +19,7 @@ constexpr int margin = 14, text_scale = 2, narrowest = 760, largest_cell = 16;
 
 /// 1, 2 or 5 times a power of ten, at least `v`.
 double round_up(double v) {
-  constexpr double rounding = 1e-9;
+  constexpr double rounding = 1e-6;  // differences are floats
   const double power = std::pow(10.0, std::floor(std::log10(v)));
   for (const double k : {1.0, 2.0, 5.0})
     if (k * power >= v * (1.0 - rounding)) return k * power;
