@@ -9,6 +9,7 @@
 #include "io/output_file.h"
 #include "io/png.h"
 #include "io/value_file.h"
+#include "stages/adapters/units.h"
 #include "stages/calibration/page.h"
 #include "stages/calibration/tables.h"
 #include "stages/calibration/verdict.h"
@@ -88,7 +89,9 @@ std::vector<std::string> write_calibration_report(const CalibrationReport& repor
   text("planes.csv", planes_csv(report));
   text("sections.csv", sections_csv(report));
   for (const LineDifference& d : report.differences)
-    for (const bool before : {true, false}) io::write_grid(named(difference_file(d, before)), before ? d.before : d.after, report.crs);
+    for (const bool before : {true, false})
+      io::write_grid(named(difference_file(d, before)), in_units(report.unit, report.vertical_unit, before ? d.before : d.after),
+                     report.crs);
   const std::string page = calibration_page(report, [&](const std::string& file, const core::Picture& picture) {
     const std::string bytes = io::png_bytes(picture, file);
     io::write_text_file(named(file), bytes);

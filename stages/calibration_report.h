@@ -40,11 +40,11 @@ struct SectionPoints {
 struct CrossSection {
   std::string name;                     ///< "gable 14, along line 3"
   double width = 0.0;                   ///< of the strip whose returns are shown, m
-  std::array<Eigen::Vector2d, 2> ends;  ///< CRS, map units: where `along` is 0, and where it is largest
+  std::array<Eigen::Vector2d, 2> ends;  ///< map, m: where `along` is 0, and the other
   std::vector<SectionPoints> before, after;
 };
 
-/// Heights of line a minus heights of line b on one lattice (CRS, m); NaN where the two do not meet or the ground is not smooth.
+/// Heights of line a minus heights of line b on one lattice (map, m); NaN where the two do not meet or the ground is not smooth.
 struct LineDifference {
   int line_a = 0, line_b = 0;  ///< ids
   core::Grid before, after;    ///< one lattice; `height` is the difference, m
@@ -59,15 +59,16 @@ struct TargetReading {
 };
 
 struct CalibrationReport {
-  std::string survey;        ///< name
-  std::string crs;           ///< of sections and differences, as io::write_grid takes it
-  core::SensorSigma sensor;  ///< as the survey states it: what is not estimated keeps its sigma in calibration.json
+  std::string survey;                      ///< name
+  std::string crs;                         ///< of sections and differences, as io::write_grid takes it
+  double unit = 1.0, vertical_unit = 1.0;  ///< metres per unit of that CRS, for the GeoTIFFs; all else here is in m
+  core::SensorSigma sensor;                ///< as the survey states it: what is not estimated keeps its sigma in calibration.json
   calib::Adjustment adjustment;
   calib::TieSet ties;  ///< its returns are not used and may be left out
   std::vector<FlownLine> lines;
   std::vector<CrossSection> sections;
   std::vector<LineDifference> differences;
-  std::vector<calib::ControlResidual> checks;  ///< surveyed points that took no part; redundancy 1
+  std::vector<calib::ControlResidual> checks;  ///< surveyed points that took no part: height of the returns minus that of the point
   std::vector<TargetReading> readings;         ///< of the flat-target analysis; empty: there was none
   core::Value flat_target;                     ///< its details: a table of numbers and texts, or of lists of such tables; null: none
   std::vector<std::string> notes;              ///< further sentences for the reader ("start values were found from height grids")

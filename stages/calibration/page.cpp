@@ -479,14 +479,12 @@ void Maker::control() {
     page_.paragraph("No surveyed point took part: heights and positions are those of the trajectory.");
     return;
   }
-  page_.paragraph("Distance of each point from the adjusted plane it lies on, along the plane's normal.");
-  control_table("control", "Points that took part", adjustment_.control);
-  std::vector<calib::ControlResidual> checks = report_.checks;
-  if (checks.empty()) return;
-  Table t{"checks", "Check points, which took no part", {{"point", false}, {"plane"}, {"residual (cm)"}, {"sigma (cm)"}, {"w"}}, {}, {}};
-  for (const calib::ControlResidual& c : checks)
-    t.rows.push_back({c.name, std::to_string(c.plane), number_text(c.residual / centimetre, 2), number_text(c.sigma / centimetre, 2),
-                      number_text(c.w, 1)});
+  control_table("control", "Points that took part: distance from the adjusted plane they lie on, along its normal", adjustment_.control);
+  if (report_.checks.empty()) return;
+  Table t{"checks", "Check points, which took no part: height of the returns around a point minus that of the point", {}, {}, {}};
+  t.columns = {{"point", false}, {"difference (cm)"}, {"sigma (cm)"}, {"difference / sigma"}};
+  for (const calib::ControlResidual& c : report_.checks)
+    t.rows.push_back({c.name, number_text(c.residual / centimetre, 2), number_text(c.sigma / centimetre, 2), number_text(c.w, 1)});
   page_.table(t);
 }
 

@@ -161,17 +161,18 @@ Value bins_tree(const CalibrationReport& report, BinBy by, double unit) {
   return out;
 }
 
-Value control_tree(const std::vector<calib::ControlResidual>& rows) {
+/// Points of the adjustment lie on planes, check points do not.
+Value control_tree(const std::vector<calib::ControlResidual>& rows, bool of_planes) {
   Value out = Value::array();
   for (const calib::ControlResidual& c : rows) {
     Value one;
     one["name"] = c.name;
-    one["plane"] = static_cast<std::uint64_t>(c.plane);
+    if (of_planes) one["plane"] = static_cast<std::uint64_t>(c.plane);
     one["residual"] = c.residual;
     one["sigma"] = c.sigma;
-    one["redundancy"] = c.redundancy;
+    if (of_planes) one["redundancy"] = c.redundancy;
     one["w"] = c.w;
-    one["rejected"] = c.rejected;
+    if (of_planes) one["rejected"] = c.rejected;
     out.push(std::move(one));
   }
   return out;
@@ -189,6 +190,7 @@ Value differences_tree(const CalibrationReport& report) {
       Value& side = one[before ? "before" : "after"];
       side["file"] = difference_file(d, before);
       side["cell"] = g.lattice.cell;
+      side["metres_per_unit"] = report.vertical_unit;  // of the file's heights
       side["statistics"] = report::value_of(s);
     }
     out.push(std::move(one));
@@ -293,8 +295,8 @@ core::Value calibration_report_tree(const CalibrationReport& report) {
   residuals["by_range"] = bins_tree(report, BinBy::range, 1.0);
   residuals["by_time"] = bins_tree(report, BinBy::time, 1.0);
   residuals["first_time"] = first_time(report.ties);
-  out["control"] = control_tree(a.control);
-  out["checks"] = control_tree(report.checks);
+  out["control"] = control_tree(a.control, true);
+  out["checks"] = control_tree(report.checks, false);
   out["sections"] = sections_tree(report);
   out["differences"] = differences_tree(report);
   out["readings"] = readings_tree(report);

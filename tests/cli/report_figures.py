@@ -208,7 +208,7 @@ class Report:
 
     def lines(self, _):
         for l in self.tree["flight"]["lines"]:
-            yield [l["id"], l["name"], math.degrees(l["heading"]), l["height"], l["speed"], l["length"],
+            yield [l["id"], l["name"], times(l["heading"], 180 / math.pi), l["height"], l["speed"], l["length"],
                    l["first"] - self.tree["residuals"]["first_time"], l["last"] - l["first"], l["returns"], len(self.seen(l["id"]))]
 
     def overlaps(self, _):
@@ -217,8 +217,9 @@ class Report:
             for b in lines[k + 1:]:
                 common = len(self.seen(a["id"]) & self.seen(b["id"]))
                 if common:
-                    turn = abs(math.remainder(b["heading"] - a["heading"], 2 * math.pi))
-                    yield [a["id"], b["id"], math.degrees(turn), common]
+                    known = a["heading"] is not None and b["heading"] is not None
+                    turn = math.degrees(abs(math.remainder(b["heading"] - a["heading"], 2 * math.pi))) if known else None
+                    yield [a["id"], b["id"], turn, common]
 
     def plane_kinds(self, _):
         for kind in ("ground", "roof", "wall", "target"):
@@ -272,7 +273,7 @@ class Report:
 
     def checks(self, _):
         for c in self.tree["checks"]:
-            yield [c["name"], c["plane"], 100 * c["residual"], 100 * c["sigma"], c["w"]]
+            yield [c["name"], 100 * c["residual"], 100 * c["sigma"], c["w"]]
 
     # --- lines against one another
 
@@ -293,7 +294,7 @@ class Report:
         for d in self.tree["differences"]:
             row = list(d["lines"])
             for state in ("before", "after"):
-                values = raster(self.folder / d[state]["file"])
+                values = [v * d[state]["metres_per_unit"] for v in raster(self.folder / d[state]["file"])]
                 row += [len(values), times(mean(values), 100), times(rms(values), 100),
                         100 * quantile([abs(v) for v in values], 0.95) if values else None]
             yield row

@@ -80,6 +80,22 @@ TEST(CalibrationReport, EveryFileIsNamedAndThereAndTheSameEachTime) {
   EXPECT_TRUE(tree.find("calibrated")->as_bool());
 }
 
+TEST(CalibrationReport, DifferencesAreInTheUnitsOfTheirCrs) {
+  const test::TemporaryFolder folder;
+  CalibrationReport r = made_report();
+  r.differences.resize(1);
+  r.crs = "EPSG:2263";  // US survey feet
+  r.unit = r.vertical_unit = 1200.0 / 3937.0;
+  write_calibration_report(r, folder / "report");
+  const core::Grid back = io::read_grid(folder / "report/differences/1_2_before.tif");
+  const core::Grid& grid = r.differences[0].before;
+  EXPECT_NEAR(back.lattice.cell * r.unit, grid.lattice.cell, 1e-9);
+  const size_t k = grid.lattice.at(100, 10);
+  EXPECT_NEAR(static_cast<double>(back.height[k]) * r.unit, static_cast<double>(grid.height[k]), 1e-6);
+  const core::Value tree = io::read_value_file(folder / "report/calibration.json");
+  EXPECT_EQ(tree.find("differences")->items()[0].find("before")->find("metres_per_unit")->as_number(), r.unit);
+}
+
 TEST(CalibrationReport, AnEmptyReportIsWrittenToo) {
   const test::TemporaryFolder folder;
   write_calibration_report(CalibrationReport{}, folder / "empty");
