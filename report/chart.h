@@ -32,6 +32,9 @@ struct Panel {
   std::vector<Series> series;
   bool equal_scale = false;  ///< maps: one metre is as long across as up
   bool log_y = false;
+  /// Kinds in place of numbers: x = k is the middle of the k-th kind (from 0), whose name stands below it. Not with equal_scale. Panels
+  /// that share x have the same names.
+  std::vector<std::string> x_names{};
   /// Below 1: the range of y goes by this share of the values, half as much again on both sides, so that a few far ones do not flatten the
   /// rest. Dots beyond it stand at the frame, lines leave it, and the title tells how many there are.
   double y_share = 1.0;

@@ -80,6 +80,16 @@ Reach widened(const Reach& r, double length) {
   return out;
 }
 
+/// One unit of x for each kind.
+Axis kinds_axis(const Panel& panel) {
+  Axis a;
+  a.low = -0.5;
+  a.high = static_cast<double>(panel.x_names.size()) - 0.5;
+  a.label = panel.x_label;
+  for (size_t k = 0; k < panel.x_names.size(); ++k) a.ticks.push_back({static_cast<double>(k), panel.x_names[k]});
+  return a;
+}
+
 struct LegendItem {
   const Series* series;
   core::Rgb colour;
@@ -179,7 +189,7 @@ void Layout::x_axes() {
     box.x = left_;
     box.width = plot_width_;
     if (!p.panel->equal_scale) {
-      p.plot.x = make_axis(shared[p.panel->x_label], p.panel->x_label, most_x, x_margin);
+      p.plot.x = p.panel->x_names.empty() ? make_axis(shared[p.panel->x_label], p.panel->x_label, most_x, x_margin) : kinds_axis(*p.panel);
       continue;
     }
     // One unit is as long across as up: the height follows from the width within limits, beyond which the shorter range grows.
@@ -271,8 +281,9 @@ void Layout::draw_texts(const Piece& p, Sheet& sheet) const {
   const double room = b.height + (p.x_texts ? 2.0 : 0.0) * half + title_line;
   sheet.text(pad + half, top + b.height / 2.0, y_label, fitting(y_label, text_scale, room), Anchor::middle, true, ink);
   if (!p.x_texts) return;
+  const double each = p.panel->x_names.empty() ? plot_width_ : static_cast<double>(b.width) / static_cast<double>(p.panel->x_names.size());
   for (const Tick& t : p.plot.x.ticks)
-    sheet.text(p.plot.column(t.value), bottom + gap + half, t.text, text_scale, Anchor::middle, false, ink);
+    sheet.text(p.plot.column(t.value), bottom + gap + half, t.text, fitting(t.text, text_scale, each - gap), Anchor::middle, false, ink);
   const std::string& x_label = p.plot.x.label;
   sheet.text(left + b.width / 2.0, bottom + gap + 3.0 * half, x_label, fitting(x_label, text_scale, plot_width_), Anchor::middle, false,
              ink);

@@ -103,8 +103,11 @@ void draw_stems(const Series& s, core::Rgb colour, const Plot& plot, Sheet& shee
 core::Rgb palette(int index) {
   constexpr std::array<core::Rgb, 7> colours{
       {{0, 114, 178}, {213, 94, 0}, {0, 158, 115}, {204, 121, 167}, {90, 90, 90}, {230, 159, 0}, {86, 180, 233}}};
-  const int n = static_cast<int>(colours.size());
-  return colours[static_cast<size_t>((index % n + n) % n)];
+  const int n = static_cast<int>(colours.size()), round = std::max(index, 0) / n % 3;
+  core::Rgb out = colours[static_cast<size_t>((index % n + n) % n)];
+  // The second time round darker, the third time paler.
+  for (std::uint8_t& c : out) c = static_cast<std::uint8_t>(round == 0 ? c : round == 1 ? c * 11 / 20 : 255 - (255 - c) / 2);
+  return out;
 }
 
 Reach middle_reach(std::vector<double> values, double share, bool log) {

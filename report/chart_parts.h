@@ -2,6 +2,7 @@
 // The parts of a chart (report/chart.h): the sheet it is laid out on, and rows of numbers as marks in pixels. Inside of the room only.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,11 +37,15 @@ class Sheet {
   virtual void text(double x, double y, std::string_view text, double scale, Anchor anchor, bool upward, core::Rgb colour) = 0;
 };
 
+/// What is drawn on a sheet of that size, white below, as a picture and as an SVG file.
+core::Picture paint(int width, int height, const std::function<void(Sheet&)>& drawing);
+std::string paint_svg(int width, int height, const std::function<void(Sheet&)>& drawing);
+
 /// Places everything and draws it; returns the height in pixels. Without a sheet it only measures.
 /// Throws core::Error where columns of a series differ in length.
 int lay_out(const Chart& chart, Sheet* sheet);
 
-/// Colour-blind safe, without yellow (Okabe and Ito 2008); any index.
+/// Colour-blind safe, without yellow (Okabe and Ito 2008): seven colours, the same darker, the same paler; any index.
 core::Rgb palette(int index);
 
 /// The middle part of a panel's values that holds its y_share, half as long again on both sides, no longer than all of them; on a

@@ -15,6 +15,8 @@ if command -v cargo >/dev/null; then minor="$(cargo --version | sed -n 's/^cargo
 if [ "${minor:-0}" -lt 66 ]; then
   if grep -q '^VERSION_CODENAME=bookworm' /etc/os-release; then packages+=(cargo-web rustc-web); else packages+=(cargo rustc); fi
 fi
+# Reports are opened in a browser. Debian 12 has one without a screen; Ubuntu's package is a stub for a snap, and the test says that it is left out.
+if grep -q '^VERSION_CODENAME=bookworm' /etc/os-release; then packages+=(chromium-headless-shell fonts-dejavu-core); fi
 missing=()
 for p in "${packages[@]}"; do
   dpkg-query -W -f='${db:Status-Status}' "$p" 2>/dev/null | grep -qx installed || missing+=("$p")

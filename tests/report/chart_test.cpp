@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "core/error.h"
 #include "report/chart_parts.h"
@@ -304,6 +305,32 @@ TEST(Chart, FarValuesNeedNotFlattenTheRest) {
   EXPECT_GT(line.bottom - line.top, (plot.bottom - plot.top) / 2);
   EXPECT_LE(dot.top, plot.top + 3);  // the far dot stands at the frame
   EXPECT_GT(dot.n, 3);
+}
+
+TEST(Chart, KindsStandSideBySideUnderTheirNames) {
+  Panel p = panel({"", {0, 2}, {1, 1}, {}, Mark::dots, 0});
+  p.x_names = {"line 3", "line 7", "line 12"};
+  const std::string s = svg(chart_of({p}));
+  for (const char* name : {">line 3<", ">line 7<", ">line 12<"}) EXPECT_EQ(count(s, name), 1u) << name;
+  EXPECT_EQ(s.find(">0.5<"), s.rfind(">0.5<")) << "no numbers along x";
+  const core::Picture picture = draw(chart_of({p}));
+  const Found plot = find(picture, border), dots = find(picture, bluish);
+  const double width = plot.right - plot.left;
+  EXPECT_NEAR((dots.left - plot.left) / width, 1.0 / 6.0, 0.02);
+  EXPECT_NEAR((dots.right - plot.left) / width, 5.0 / 6.0, 0.02);
+}
+
+TEST(Chart, DotsOfASeriesAreOnePath) {
+  const std::string s = svg(chart_of({panel({"", ramp(50, 0, 49), ramp(50, 0, 1), {}, Mark::dots, 0})}));
+  EXPECT_EQ(count(s, "stroke-linecap=\"round\""), 1u);
+  EXPECT_EQ(count(s, "h0"), 50u);
+}
+
+TEST(Chart, ColoursOfAnyIndexDifferForThreeRounds) {
+  std::set<core::Rgb> seen;
+  for (int k = 0; k < 21; ++k) seen.insert(palette(k));
+  EXPECT_EQ(seen.size(), 21u);
+  EXPECT_EQ(palette(21), palette(0));
 }
 
 TEST(Chart, ColumnsOfDifferentLengthAreRefused) {

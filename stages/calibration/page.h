@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "core/picture.h"
+#include "stages/calibration_report.h"
+
+namespace swath::stages {
+
+/// Keeps a figure as a file: its name relative to the report, and how it looks. Returns the bytes of its PNG.
+using KeepFigure = std::function<std::string(const std::string& file, const core::Picture& picture)>;
+
+/// report.html. Every table has an id, and every number in it follows from the files beside it (stages/calibration/tables.h, the
+/// difference grids). Line drawings stand in it as SVG, maps as PNG; all of them go through `keep`.
+std::string calibration_page(const CalibrationReport& report, const KeepFigure& keep);
+
+}  // namespace swath::stages

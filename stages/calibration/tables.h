@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The files of numbers behind a calibration report: its tree and its columns.
+#pragma once
+
+#include <string>
+
+#include "core/value.h"
+#include "stages/calibration_report.h"
+
+namespace swath::stages {
+
+/// calibration.json: "calibration" and "sigma" as io::load_calibration() reads them, then the report. SI units; times GPS; angles rad.
+core::Value calibration_report_tree(const CalibrationReport& report);
+
+// CSV with a header whose names end in the unit; numbers as short as they can be to read back the same.
+/// One row per group of returns: the plane (index from 0), line id, time since the first line's first return.
+std::string residuals_csv(const CalibrationReport& report);
+/// One row per line and knot.
+std::string corrections_csv(const CalibrationReport& report);
+/// One row per tie plane, local frame east, north, up (its origin: calibration.json).
+std::string planes_csv(const CalibrationReport& report);
+/// One row per return of a section, before and after.
+std::string sections_csv(const CalibrationReport& report);
+
+/// "differences/1_2_before.tif": names of the files of one pair.
+std::string difference_file(const LineDifference& difference, bool before);
+
+/// How two ways to one parameter agree. Both rest on the same flight, so their joint sigma is rather too large than too small.
+struct Agreement {
+  double difference = 0.0, joint_sigma = 0.0;  ///< reading minus adjusted
+  bool known = false;                          ///< the parameter was estimated and delivered
+  bool agrees = false;                         ///< |difference| <= agreement_limit joint_sigma
+};
+constexpr double agreement_limit = 2.0;
+Agreement agreement_of(const calib::Adjustment& adjustment, const TargetReading& reading);
+
+}  // namespace swath::stages

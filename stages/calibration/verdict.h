@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A calibration in the words of a surveyor.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "calib/adjustment.h"
+#include "report/page.h"
+
+namespace swath::stages {
+
+/// How a parameter's numbers are shown.
+struct ParameterWords {
+  std::string_view key;         ///< in files: "boresight_roll"
+  std::string_view name;        ///< "boresight roll"
+  std::string_view unit;        ///< SI, of files: "m", "rad", "s", "1"
+  std::string_view sigma_unit;  ///< of sigmas in reports: "arcsec", "mm", "ppm", "ms"
+  double sigma_size;            ///< SI value of one sigma_unit
+};
+const ParameterWords& words_of(calib::Parameter parameter);
+
+constexpr int estimated_count = calib::latency + 1;
+/// All parameters that an adjustment can estimate, in order.
+inline calib::Parameter parameter_at(int k) { return static_cast<calib::Parameter>(k); }
+
+/// Is it estimated, and refused by no finding? Only then is its value delivered.
+bool is_delivered(const calib::Adjustment& adjustment, calib::Parameter parameter);
+/// Does a finding refuse it?
+bool is_refused(const calib::Adjustment& adjustment, calib::Parameter parameter);
+
+struct Verdict {
+  bool calibrated = false;  ///< every estimated angle of the boresight is delivered, and something is
+  report::Tone tone = report::Tone::bad;
+  std::string text;  ///< "Calibrated: boresight roll, pitch and heading are known to 1.2, 1.9 and 3.4 arcsec (one sigma), ..."
+};
+/// "Not calibrated: WHAT. CURE" where a finding refuses an angle of the boresight or nothing is delivered. Otherwise the delivered
+/// parameters with their sigmas, then what is not determined, and how many surveyed points disagree.
+Verdict verdict_of(const calib::Adjustment& adjustment);
+
+/// "a", "a and b", "a, b and c".
+std::string joined(const std::vector<std::string>& items);
+
+}  // namespace swath::stages
