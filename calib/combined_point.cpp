@@ -155,7 +155,7 @@ PointSearch search(const PointNetwork& n, const std::optional<Vector3d>& start) 
     out.start_led_to_mirror = from_start && (*from_start - found[0].position()).norm() > same_place;
   }
   out.position = found[0].position();
-  out.variance_factor = found[0].adjusted.variance_factor;
+  out.variance_factor = found[0].adjusted.squares / std::max(found[0].adjusted.redundancy, 1);
   return out;
 }
 

@@ -83,7 +83,7 @@ enum class PointState {
 struct PointSearch {
   PointState state = PointState::not_found;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  double variance_factor = 0.0;           ///< of the point by itself
+  double variance_factor = 0.0;           ///< of the point by itself: its sum of squares over its redundancy (1 where that is 0)
   std::optional<Eigen::Vector3d> mirror;  ///< where the mirrored start leads
   double mirror_variance_factor = 0.0;
   bool start_led_to_mirror = false;    ///< from the stated start value alone the mirror would have been found

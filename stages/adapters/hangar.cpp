@@ -16,13 +16,11 @@ using calib::HangarResult;
 using core::Value;
 
 struct LeverArmOptions {
-  fs::path observations = "hangar.toml";
   bool hold_stations = false;
 };
 
 template <class V>
 void describe(LeverArmOptions& o, V& v) {
-  v.option("observations", o.observations, "What was measured in the hangar, relative to survey.toml.");
   v.option("hold_stations", o.hold_stations, "Takes the stations as free of error. Only for comparison: the sigmas come out far too small.",
            "Jubanski et al.");
 }
@@ -144,21 +142,29 @@ class LeverArmStage : public OptionStage<LeverArmOptions> {
   }
   std::vector<std::string> products() const override { return {"lever_arm.json", "lever_arm.toml"}; }
   std::vector<fs::path> inputs(const io::Survey& survey) const override {
-    const io::HangarSurvey hangar = io::read_hangar(io::resolve(survey, options.observations));
+    const io::HangarSurvey hangar = read(survey);
     std::vector<fs::path> out = io::hangar_tables(hangar);
     out.insert(out.begin(), hangar.file);
     return out;
   }
-  void check(const Context& context) const override { io::read_hangar(io::resolve(context.survey, options.observations)); }
+  void check(const Context& context) const override { read(context.survey); }
 
   void run_survey(Context& context, core::Tally& tally, Value& findings) const override {
-    const io::HangarSurvey hangar = io::read_hangar(io::resolve(context.survey, options.observations));
+    const io::HangarSurvey hangar = read(context.survey);
     HangarResult result = calib::solve_hangar(hangar, options.hold_stations);
     if (options.hold_stations) result.warnings.push_back("the stations were held: every sigma is far too small");
     for (const std::string& w : result.warnings) tally.count("warnings of the hangar survey", w);
     findings = told(result);
     io::write_text_file(context.output / "lever_arm.json", io::to_json(findings));
     io::write_text_file(context.output / "lever_arm.toml", calib::survey_lines(result));
+  }
+
+ private:
+  static io::HangarSurvey read(const io::Survey& survey) {
+    if (!survey.hangar)
+      throw core::usage_error("calib.lever_arm: the survey names no hangar file", survey.name,
+                              "state hangar = \"hangar.toml\" in the survey (docs/lever-arm.md)");
+    return io::read_hangar(io::resolve(survey, *survey.hangar));
   }
 };
 

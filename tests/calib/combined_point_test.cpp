@@ -237,6 +237,14 @@ TEST(CombinedPointReference, TheThreeAdjustments) {
       network.station_covariance(3 * s + k, 3 * s + k) =
           cp["station_cov_table1"][static_cast<rapidjson::SizeType>(s)][static_cast<rapidjson::SizeType>(k)].GetDouble();
   check(network, "stations with Table 1 sigmas");
+  PointNetwork blunt = network;
+  for (HorizontalAngle& a : blunt.angles) a.sigma = 30 * arc_second;
+  for (VerticalAngle& a : blunt.verticals) a.sigma = 30 * arc_second;
+  const CombinedPoints pointing = find_points(blunt, {}).adjusted;
+  for (rapidjson::SizeType i = 0; i < 3; ++i) {
+    const double sigma = 1e-3 * cp["expected"]["pointing 30 arcsec, Table 1 sigmas"]["sd_mm"][i].GetDouble();
+    EXPECT_NEAR(std::sqrt(pointing.covariance(i, i)), sigma, sigma_share * sigma);
+  }
   PointNetwork only_angles = network, only_distances = network;
   only_angles.distances.clear();
   check(only_angles, "angles only, Table 1 sigmas");

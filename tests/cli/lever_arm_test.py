@@ -6,7 +6,7 @@ import random
 import tomllib
 import unittest
 
-from support import SOURCE, Case, substitute
+from support import CONFIG, SOURCE, Case, substitute
 
 LEVER_ARM = SOURCE / "configs" / "lever_arm.toml"
 STATIONS = {"S1": (5.2, 1.6, 1.62), "S2": (12.9, 2.2, 1.55), "S3": (14.1, 9.3, 1.81), "S4": (4.4, 10.2, 1.47)}
@@ -55,7 +55,7 @@ def make_hangar(folder):
     (folder / "hangar.toml").write_text(
         'targets_file = "targets.csv"\ndistances_file = "distances.csv"\nangles_file = "angles.csv"\nverticals_file = "verticals.csv"\n'
         f'angle_unit = "deg"\n\n{stations}{roles}[axes]\nroll_sigma = "0.05 deg"\npitch_sigma = "0.05 deg"\nheading_sigma = "0.05 deg"\n')
-    (folder / "survey.toml").write_text('name = "hangar"\n')
+    (folder / "survey.toml").write_text('name = "hangar"\nhangar = "hangar.toml"\n')
     return folder / "survey.toml"
 
 
@@ -99,7 +99,10 @@ class LeverArm(Case):
                 substitute(self.folder / file, old, new)
                 self.assert_refused(self.hangar, code, words, config=LEVER_ARM)
                 (self.folder / file).write_text(before)
-        self.assert_refused(self.hangar, 1, "none.toml", config=LEVER_ARM, more=("--set", "lever_arm.observations=none.toml"))
+        self.hangar.write_text('hangar = "none.toml"\n')
+        self.assert_refused(self.hangar, 2, "survey.toml:1:10: hangar: no such file", config=LEVER_ARM)
+        self.hangar.write_text('crs = "EPSG:32632"\nhangar = "hangar.toml"\n')
+        self.assert_refused(self.hangar, 2, r"\[\[laser\]\]|trajectory", config=CONFIG)
 
     def test_too_few_distances_name_the_station(self):
         rows = (self.folder / "distances.csv").read_text().split("\n")
