@@ -201,6 +201,7 @@ struct Survey {
   std::vector<ClockLog> clock;
   std::vector<EventFile> events;
   std::vector<ControlFile> control;
+  std::optional<std::filesystem::path> hangar;
   std::vector<PointFile> points;
   TimeTags line_time;
   std::vector<FlightLine> lines;
@@ -235,6 +236,8 @@ void describe(Survey& s, V& v) {
   v.tables("clock", s.clock, "Logs of the computer's clock.");
   v.tables("event", s.events, "Events to be placed on the time scale and the trajectory.");
   v.tables("control", s.control, "Surveyed points and targets.");
+  v.option("hangar", s.hangar,
+           "What was measured in a hangar for the aircraft's lever arms (docs/lever-arm.md); may be all that a survey has.");
   v.tables("points", s.points, "Point clouds in map coordinates, in place of raw records.");
   v.table("line_time", s.line_time, "Time scale of the lines' start and end.");
   v.tables("line", s.lines, "Flight lines.");

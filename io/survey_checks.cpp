@@ -47,6 +47,8 @@ class Checks {
     for (size_t i = 0; i < survey_.gnss.size(); ++i) gnss(survey_.gnss[i], numbered("gnss", i));
     for (size_t i = 0; i < survey_.clock.size(); ++i) exists(survey_.clock[i].file, numbered("clock", i) + ".file");
     for (size_t i = 0; i < survey_.events.size(); ++i) event(survey_.events[i], numbered("event", i));
+    for (size_t i = 0; i < survey_.control.size(); ++i) exists(survey_.control[i].file, numbered("control", i) + ".file");
+    if (survey_.hangar) exists(*survey_.hangar, "hangar");
     for (size_t i = 0; i < survey_.points.size(); ++i) exists(survey_.points[i].file, numbered("points", i) + ".file");
     lines();
     const TruthFiles& t = survey_.truth;
@@ -77,7 +79,8 @@ class Checks {
   void project() {
     // A survey may be of the trajectory or of events alone; with IMU, GNSS or raw observations the trajectory is computed.
     const bool computed = !survey_.imu.empty() || !survey_.gnss.empty() || !survey_.rinex.rover.empty();
-    const bool navigation = (computed || !survey_.events.empty()) && survey_.laser.empty();
+    // One of a hangar has no records of a flight at all.
+    const bool navigation = (computed || !survey_.events.empty() || survey_.hangar) && survey_.laser.empty();
     if (survey_.crs.empty()) {
       if (survey_.points.empty() && !navigation)
         fault("crs", "the CRS of the products is missing", "state it, for example crs = \"EPSG:32632\"");
@@ -92,7 +95,7 @@ class Checks {
     const bool raw = !survey_.laser.empty();
     if (raw && !survey_.points.empty()) fault("points", "a survey has either raw [[laser]] records or georeferenced [[points]], not both");
     if (!raw && survey_.points.empty() && !navigation)
-      fault("laser", "no records: neither [[laser]] nor [[points]] is there, nor [[imu]], [[gnss]] or [[event]]");
+      fault("laser", "no records: neither [[laser]] nor [[points]] is there, nor [[imu]], [[gnss]], [[event]] or hangar");
     const auto is_csd = [](const LaserFile& f) { return format_of(f) == LaserFormat::csd; };
     if (raw && survey_.trajectory.empty() && !computed && !std::all_of(survey_.laser.begin(), survey_.laser.end(), is_csd))
       fault("trajectory", "raw [[laser]] records need a [[trajectory]], or [[imu]] and [[gnss]] records to compute it from");

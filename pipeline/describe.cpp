@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/option_visitors.h"
+#include "io/hangar_file.h"
 #include "io/output_file.h"
 #include "io/survey.h"
 #include "io/value_file.h"
@@ -112,6 +113,8 @@ std::vector<std::filesystem::path> write_docs(const std::filesystem::path& docs,
   page(docs / "stages" / "README.md", "Stages", index);
   io::Survey survey;
   page(docs / "survey.md", "survey.toml", core::option_table_markdown(core::described(survey)));
+  io::HangarSurvey hangar;
+  page(docs / "lever-arm.md", "hangar.toml", core::option_table_markdown(core::described(hangar)));
   RunOptions run;
   page(docs / "run.md", "[run]", core::option_table_markdown(core::described(run)));
   return differing;

@@ -14,7 +14,7 @@ std::string stage_list();
 std::string stage_help(const std::string& name);
 
 /// Writes the generated part of every page in `docs` (between "<!-- generated -->" and "<!-- end -->"): stages/NAME.md,
-/// survey.md, run.md, simulate.md. With `only_check` nothing is written. Returns the pages that differ (or differed).
+/// survey.md, lever-arm.md, run.md, simulate.md. With `only_check` nothing is written. Returns the pages that differ (or differed).
 std::vector<std::filesystem::path> write_docs(const std::filesystem::path& docs, bool only_check);
 
 }  // namespace swath::pipeline

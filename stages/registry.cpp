@@ -14,6 +14,7 @@ const std::vector<Entry>& registry() {
       {"trajectory.ins_gnss", make_ins_gnss},
       {"time.sync", make_time_sync},
       {"trajectory.kinematic", make_kinematic},
+      {"calib.lever_arm", make_lever_arm},
       {"readers.laser", make_laser_reader},
       {"readers.las", make_las_reader},
       {"georeference", make_georeference},

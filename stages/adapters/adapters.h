@@ -20,6 +20,7 @@ std::unique_ptr<Stage> make_gnss_reader();
 std::unique_ptr<Stage> make_ins_gnss();
 std::unique_ptr<Stage> make_trajectory_writer();
 std::unique_ptr<Stage> make_kinematic();
+std::unique_ptr<Stage> make_lever_arm();
 std::unique_ptr<Stage> make_laser_reader();
 std::unique_ptr<Stage> make_las_reader();
 std::unique_ptr<Stage> make_georeference();

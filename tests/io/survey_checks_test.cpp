@@ -131,5 +131,18 @@ TEST_F(NavigationChecks, FaultsOfNavigationRecords) {
   EXPECT_NE(fault_of(navigation + "[line_time]\nscale = \"gps\"\nunit = \"1 ms\"\n" + lines).find("line_time.unit"), std::string::npos);
 }
 
+TEST_F(NavigationChecks, AHangarMayBeAllThatASurveyHas) {
+  test::write_bytes(folder_ / "hangar.toml", "");
+  EXPECT_EQ(fault_of("hangar = \"hangar.toml\"\n"), "");
+  EXPECT_NE(fault_of("hangar = \"none.toml\"\n").find("survey.toml:1:10: hangar: no such file"), std::string::npos);
+  EXPECT_NE(fault_of("name = \"a\"\n").find("no records"), std::string::npos);
+}
+
+TEST_F(NavigationChecks, ControlFilesMustBeThere) {
+  const std::string text = "hangar = \"x.dat\"\n[[control]]\nfile = \"";
+  EXPECT_EQ(fault_of(text + "imu.csv\"\n"), "");
+  EXPECT_NE(fault_of(text + "none.csv\"\n").find("control[1].file: no such file"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace swath::io
