@@ -347,8 +347,10 @@ Options preset(Scene scene) {
     o.world.length = o.world.width = core::Metres(300);
     o.world.buildings = 0.9;
     o.flight.height = core::Metres(300);
-    o.scanner.prf = core::Hertz(6000);
-    o.scanner.frequency = core::Hertz(16);
+    o.flight.speed = core::MetresPerSecond(40);
+    o.flight.bank = core::degrees(30);
+    o.scanner.prf = core::Hertz(4500);
+    o.scanner.frequency = core::Hertz(12);
     o.output.truth_returns = true;
     return o;
   }

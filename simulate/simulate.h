@@ -35,7 +35,7 @@ Options calibration_flight();
 Options read_options(const core::Value& given);
 
 /// Default options of a preset: the zoo's scenes small (some 20 000 returns), for tests; `mixed` as the full default survey; `airfield` a
-/// small calibration flight at 300 m (some 800 000 returns).
+/// small calibration flight at 300 m (some 700 000 returns).
 Options preset(Scene scene);
 
 }  // namespace swath::simulate
