@@ -8,6 +8,7 @@
 
 #include "core/value.h"
 #include "simulate/options.h"
+#include "simulate/preset.h"
 
 namespace swath::simulate {
 
@@ -25,17 +26,5 @@ using Progress = std::function<void(double)>;
 /// trajectory, 100 bytes per 5 ms, and the truth's grid are held whole).
 /// Returns counts, sizes and the map's error. Throws Error where the options do not go together or a file cannot be written.
 core::Value run(const Options& options, const std::filesystem::path& out_folder, const Progress& progress = {});
-
-/// A calibration flight of full size over the airfield: tactical IMU, 700 and 1100 m, boresight (evenly within 0.5 deg), range offset and
-/// scan scale drawn by the seed and delivered uncalibrated, the roof in the middle surveyed.
-Options calibration_flight();
-
-/// Options as a config gives them. What it leaves out has the defaults, which for flight.pattern = "calibration" are those of
-/// calibration_flight(). Throws Error with all faults.
-Options read_options(const core::Value& given);
-
-/// Default options of a preset: the zoo's scenes small (some 20 000 returns), for tests; `mixed` as the full default survey; `airfield` a
-/// small calibration flight at 300 m (some 800 000 returns).
-Options preset(Scene scene);
 
 }  // namespace swath::simulate

@@ -76,7 +76,7 @@ void World::plan_airfield(const WorldOptions& options, const Features& f, std::i
     if (built == halls) break;
     const auto at = static_cast<size_t>(built);
     const double half_length = 0.5 * scale * (12.0 + 28.0 * (sizes[at] + random.uniform()) / halls);
-    const double half_width = half_length * random.uniform(0.45, 0.7);
+    const double half_width = half_length * random.uniform(0.55, 0.8);
     const double slope = flattest + (steepest - flattest) * (slopes[at] + random.uniform()) / halls;
     const Vector2d ridge = unit(direction.value + core::pi * (ridges[at] + random.uniform()) / halls);
     const double eaves = random.uniform(3.5, 7.0), radius = std::hypot(half_length, half_width);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace swath::simulate {
@@ -67,6 +69,49 @@ TEST(DeliverCalibration, TruthDrawnNominal) {
     lever += std::pow((d.lever_arm_scanner[2].value - m.truth.lever_arm_scanner[2].value) / m.sigma.lever_arm.value, 2) / seeds;
   }
   for (const double v : {roll, scale, lever}) EXPECT_NEAR(v, 1.0, 5 * std::sqrt(2.0 / seeds));
+}
+
+TEST(TrueCalibration, IsDrawnAboutTheOptions) {
+  MountingOptions m;
+  const core::Calibration same = true_calibration(m, 7);
+  EXPECT_EQ(same.roll.value, m.truth.roll.value);
+  EXPECT_EQ(same.scan_scale, m.truth.scan_scale);
+  EXPECT_EQ(same.range_offset.value, m.truth.range_offset.value);
+  const double limit = 0.5 * core::degree;
+  m.random_boresight = core::Radians(limit);
+  m.random_range_offset = core::Metres(0.1);
+  m.random_scan_scale = 1e-4;
+  std::array<double, 3> mean{}, square{};
+  double offset = 0, scale = 0, farthest = 0;
+  constexpr int seeds = 3000;
+  for (int s = 0; s < seeds; ++s) {
+    const core::Calibration c = true_calibration(m, s);
+    const std::array off{c.roll.value - m.truth.roll.value, c.pitch.value - m.truth.pitch.value, c.heading.value - m.truth.heading.value};
+    for (size_t k = 0; k < 3; ++k) {
+      mean[k] += off[k] / limit / seeds;
+      square[k] += off[k] * off[k] / (limit * limit) / seeds;
+      farthest = std::max(farthest, std::abs(off[k]));
+    }
+    offset += std::pow((c.range_offset.value - m.truth.range_offset.value) / 0.1, 2) / seeds;
+    scale += std::pow((c.scan_scale - m.truth.scan_scale) / 1e-4, 2) / seeds;
+  }
+  EXPECT_LE(farthest, limit);
+  EXPECT_GT(farthest, 0.99 * limit);
+  // Of values even within -1 and 1: variance 1/3, variance of the square 4/45.
+  for (const double v : mean) EXPECT_NEAR(v, 0.0, 5 * std::sqrt(1.0 / 3 / seeds));
+  for (const double v : square) EXPECT_NEAR(v, 1.0 / 3, 5 * std::sqrt(4.0 / 45 / seeds));
+  for (const double v : {offset, scale}) EXPECT_NEAR(v, 1.0, 5 * std::sqrt(2.0 / seeds));
+}
+
+TEST(DeliverCalibration, NominalStatesTheSigmaOfWhatIsDrawn) {
+  MountingOptions m;
+  m.deliver = Deliver::nominal;
+  m.random_boresight = core::Radians(0.003);
+  m.random_scan_scale = 2e-4;
+  const auto d = deliver_calibration(m, {}, {}, 1);
+  for (const core::Radians v : {d.sigma.roll, d.sigma.pitch, d.sigma.heading}) EXPECT_NEAR(v.value, 0.003 / std::sqrt(3.0), 1e-15);
+  EXPECT_EQ(d.sigma.scan_scale, 2e-4);
+  EXPECT_EQ(d.sigma.range_offset.value, m.nominal_sigma.range_offset.value);  // not drawn
 }
 
 TEST(DeliverCalibration, RecordSigmasHoldTheRounding) {

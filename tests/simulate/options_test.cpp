@@ -71,6 +71,18 @@ TEST(SimulateOptions, RefusesNavigationThatCannotBeMade) {
   EXPECT_EQ(faults(without_trajectory), 1u);
 }
 
+TEST(SimulateOptions, RefusesCalibrationFlightsThatCannotBeFlown) {
+  Options o;
+  o.flight.pattern = FlightPattern::calibration;
+  EXPECT_TRUE(faults_of(o).empty());
+  o.scanner.pattern = Pattern::polygon;  // cannot stand still
+  EXPECT_EQ(faults_of(o).size(), 1u);
+  o.flight.profile_lines = false;
+  EXPECT_TRUE(faults_of(o).empty());
+  o.flight.second_height = core::Metres(5);
+  EXPECT_EQ(faults_of(o).size(), 1u);
+}
+
 TEST(SimulateOptions, AxesAreRotations) {
   EXPECT_TRUE(is_axes_rotation({"x", "y", "z"}));
   EXPECT_TRUE(is_axes_rotation({"y", "x", "-z"}));

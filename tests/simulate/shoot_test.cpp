@@ -94,6 +94,26 @@ TEST(Shoot, NoiseFreeRecordsGiveTheTruthThroughTheCalibration) {
   }
 }
 
+TEST(Shoot, AMirrorThatStandsStillReadsZeroAndLooksDown) {
+  Options o = small();
+  o.mounting.truth.scan_offset = core::degrees(0.07);
+  const Parts p(o);
+  Line parked = p.flight.lines()[0];
+  parked.scans = false;
+  Returns r;
+  Shooter(p.o, p.world, p.map, p.flight, p.start).shoot(parked, 0, 2000, r);
+  ASSERT_GT(r.size(), 1900u);
+  double square = 0;
+  for (size_t i = 0; i < r.size(); ++i) {
+    EXPECT_EQ(r.true_angle[i], o.mounting.truth.scan_offset.value);
+    EXPECT_EQ(r.edge[i], 0.0);
+    square += r.angle[i] * r.angle[i];
+  }
+  // The encoder's noise alone; returns of one pulse share it.
+  const auto n = static_cast<double>(r.size());
+  EXPECT_NEAR(std::sqrt(square / n) / o.noise.scan_angle.value, 1.0, 5 * std::sqrt(0.5 / n) * 1.3 + 0.01);
+}
+
 TEST(Shoot, RecordErrorsHaveTheirSigmas) {
   Options o = small();
   o.scanner.prf = core::Hertz(5000);

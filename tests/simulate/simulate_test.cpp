@@ -22,6 +22,7 @@
 #include "io/trajectory_file.h"
 #include "io/value_file.h"
 #include "simulate/relief.h"
+#include "tests/world/npy_columns.h"
 #include "tests/world/support.h"
 
 namespace swath::simulate {
@@ -32,19 +33,6 @@ using Eigen::Vector3d;
 
 constexpr double on_terrain = 5e-5;  // m
 constexpr double exact = 1e-5;       // m: truth against the beam's equation
-
-/// The columns of a NumPy file by name.
-std::map<std::string, std::vector<double>> columns_of(const std::filesystem::path& file) {
-  const io::NpyHeader header = io::read_npy_header(file);
-  std::vector<size_t> all(header.fields.size());
-  for (size_t i = 0; i < all.size(); ++i) all[i] = i;
-  io::NpyReader reader(file, all);
-  std::vector<std::vector<double>> values;
-  reader.read(0, reader.rows(), values);
-  std::map<std::string, std::vector<double>> out;
-  for (size_t i = 0; i < all.size(); ++i) out[header.fields[i].name] = values[i];
-  return out;
-}
 
 /// Position and attitude between the records of a trajectory, by cubic polynomials through four of them (error below 1e-8 m at 200 Hz).
 struct TruePose {
@@ -88,7 +76,7 @@ TEST(Simulate, TruthIsTheBeamEquationOnTheTerrain) {
     o.world.scene = scene;
     o.noise.noise_free = true;
     run(o, folder.path());
-    const auto truth = columns_of(folder / "truth/returns.npy");
+    const auto truth = test::npy_columns(folder / "truth/returns.npy");
     core::Tally tally;
     io::TimeTags tags;
     tags.scale = core::TimeScale::gps_week;
@@ -181,7 +169,7 @@ TEST(Simulate, EveryPatternAndFormatGivesASurveyThatReads) {
       EXPECT_EQ(survey.lines.size(), 1u);
       EXPECT_EQ(survey.scanner.model, model_of(pattern));
       const io::LineWindow window = io::line_windows(survey).front();
-      const auto truth = columns_of(folder / "truth/returns.npy");
+      const auto truth = test::npy_columns(folder / "truth/returns.npy");
       EXPECT_LT(window.start, truth.at("t").front());
       EXPECT_GT(window.end, truth.at("t").back());
       EXPECT_LT(window.end - window.start, 1.0 + truth.at("t").back() - truth.at("t").front());
@@ -204,7 +192,7 @@ TEST(Simulate, EveryFormatReadsBackToTheSameShots) {
     o.mounting.truth.latency = core::Seconds(0.25);
     o.scanner.prf = core::Hertz(1000);
     run(o, folder.path());
-    const auto truth = columns_of(folder / "truth/returns.npy");
+    const auto truth = test::npy_columns(folder / "truth/returns.npy");
     const core::Calibration& c = o.mounting.truth;
     for (const char* name : {"survey.toml", "survey_npy.toml", "survey_las.toml", "survey_laz.toml"}) {
       const io::Survey survey = io::read_survey(folder / name);
@@ -243,7 +231,7 @@ TEST(Simulate, RecordsMatchTheTruthRowByRow) {
   const test::TemporaryFolder folder;
   const Options o = preset(Scene::forest);
   run(o, folder.path());
-  const auto laser = columns_of(folder / "laser.npy"), truth = columns_of(folder / "truth/returns.npy");
+  const auto laser = test::npy_columns(folder / "laser.npy"), truth = test::npy_columns(folder / "truth/returns.npy");
   ASSERT_EQ(laser.at("time").size(), truth.at("t").size());
   const double week = core::from_week(o.output.week, 0);
   for (size_t i = 0; i < laser.at("time").size(); ++i) {

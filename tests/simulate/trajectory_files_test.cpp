@@ -7,6 +7,7 @@
 
 #include "io/sbet.h"
 #include "io/trajectory_file.h"
+#include "simulate/line_errors.h"
 #include "simulate/planned_flight.h"
 #include "tests/world/support.h"
 
@@ -66,6 +67,40 @@ TEST(TrajectoryFiles, DeliveredFilesReadBackByTheirDescription) {
     EXPECT_GT(largest, 0.2 * o.noise.vertical.value);
     EXPECT_LT(largest, 5 * o.noise.vertical.value);
   }
+}
+
+TEST(TrajectoryFiles, DeliveredLinesCarryTheirOwnErrorsAndStateThem) {
+  const PlannedFlight f = flight();
+  const test::TemporaryFolder folder;
+  Options o;
+  // Nothing but the lines' errors.
+  o.noise.horizontal = o.noise.vertical = core::Metres(0);
+  o.noise.roll_pitch = o.noise.heading = core::Radians(0);
+  o.noise.line_shift = core::Metres(0.08);
+  o.noise.line_drift = core::Metres(0.05);
+  o.noise.line_attitude = core::degrees(0.01);
+  const LineErrors expected(o.noise, f.lines(), o.seed);
+  io::Survey survey;
+  survey.folder = folder.path();
+  survey.trajectory = {write_trajectory(folder.path(), f, start, o)};
+  core::Tally tally;
+  const core::TrajectoryData d = io::read_trajectory(survey, tally);
+  double largest = 0;
+  for (size_t i = 0; i < d.size(); i += 37) {
+    const double t = d.time[i] - start;
+    const Motion m = f.motion(t);
+    const LineErrors::At e = expected.at(t);
+    // A GPS time of today resolves 0.24 us.
+    EXPECT_NEAR((d.latitude[i] - m.pose.position.latitude) * (core::meridian_radius(d.latitude[i]) + d.height[i]), e.value[0], 2e-5);
+    EXPECT_NEAR(d.height[i] - m.pose.position.height, e.value[2], 2e-5);
+    EXPECT_NEAR(d.pitch[i] - m.pose.attitude.pitch, e.value[4], 1e-7);
+    EXPECT_NEAR(d.v_north[i] - m.velocity.x(), e.rate[0], 1e-5);
+    EXPECT_NEAR(d.v_down[i] - m.velocity.z(), -e.rate[2], 1e-5);
+    EXPECT_NEAR(static_cast<double>(d.sigma_down[i]), e.sigma[2], 1e-7);
+    EXPECT_NEAR(static_cast<double>(d.sigma_heading[i]), 0.01 * core::degree, 0.01 * core::degree);
+    largest = std::max(largest, std::abs(e.value[2]));
+  }
+  EXPECT_GT(largest, 0.005);
 }
 
 }  // namespace
