@@ -45,7 +45,8 @@ std::string metres(double v) {
 void refuse_without_ties(const TieSet& ties, const core::Tally& tally) {
   if (!ties.planes.empty()) return;
   std::string told;
-  for (const auto& [what, one] : tally.value().members())
+  const core::Value counts = tally.value();
+  for (const auto& [what, one] : counts.members())
     told += (told.empty() ? "" : "; ") + what + ": " + std::to_string(one.find("count")->as_int());
   throw core::Error("no plane was found that two lines have seen, and no surveyed target" + (told.empty() ? "" : " (" + told + ")"),
                     "calibration flight",

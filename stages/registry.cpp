@@ -17,6 +17,7 @@ const std::vector<Entry>& registry() {
       {"calib.lever_arm", make_lever_arm},
       {"readers.laser", make_laser_reader},
       {"readers.las", make_las_reader},
+      {"calib.adjust", make_adjust},
       {"georeference", make_georeference},
       {"filters.returns", make_returns},
       {"filters.noise", make_noise},

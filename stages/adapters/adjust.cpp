@@ -6,6 +6,7 @@
 #include "calib/flown_lines.h"
 #include "core/error.h"
 #include "stages/adapters/adapters.h"
+#include "stages/calibration/verdict.h"
 #include "stages/calibration_report.h"
 #include "stages/calibration_views.h"
 #include "stages/shot_source.h"
@@ -130,7 +131,7 @@ class Adjust : public OptionStage<AdjustStageOptions> {
       const auto before = std::find_if(views.before.begin(), views.before.end(), [&](const calib::LineDifferenceMap& m) {
         return m.statistics.line_a == after.statistics.line_a && m.statistics.line_b == after.statistics.line_b;
       });
-      LineDifference both{after.statistics.line_a, after.statistics.line_b, {}, std::move(after.grid)};
+      LineDifference both{after.statistics.line_a, after.statistics.line_b, core::Grid(), std::move(after.grid)};
       both.before = before == views.before.end() ? core::Grid(both.after.lattice) : on_lattice(before->grid, both.after.lattice);
       report.differences.push_back(std::move(both));
     }
@@ -159,7 +160,7 @@ class Adjust : public OptionStage<AdjustStageOptions> {
       one["value"] = e.value;
       one["sigma"] = e.sigma;
       one["start"] = e.start;
-      findings["estimates"][std::string(calib::name_of(e.parameter))] = std::move(one);
+      findings["estimates"][std::string(words_of(e.parameter).key)] = std::move(one);
     }
     findings["planes"] = c.ties.planes.size();
     findings["tie_returns"] = c.ties.returns.size();
