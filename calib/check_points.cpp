@@ -2,6 +2,7 @@
 #include "calib/check_points.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
