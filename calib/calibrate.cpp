@@ -95,25 +95,31 @@ Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& op
   constexpr double steady = 0.005, closest = 0.05;  // m
   core::Tally of_round;
   for (out.rounds = 1; out.rounds <= options.rounds; ++out.rounds) {
-    of_round = {};
+    // The first round looks at few planes: it only leads to where the others begin. Sigmas by leaving out are not asked of it.
+    const bool first = out.rounds == 1 && options.rounds > 1;
     TiePlaneOptions planes = options.planes;
+    AdjustOptions adjusted = options.adjust;
     planes.mismatch.value = std::max(mismatch, closest);
-    tell("round " + std::to_string(out.rounds) + ": planes");
+    if (first) {
+      planes.planes = std::max(300, planes.planes / 4);
+      planes.returns = std::max(planes.fewest, planes.returns / 3);
+      adjusted.jackknife.lines = false;
+      adjusted.jackknife.blocks = 0;
+    }
+    const std::string round = "round " + std::to_string(out.rounds);
+    of_round = {};
+    tell(round + ": planes");
     out.ties = find_tie_planes(flight.shots, flight.scanner, now, *flight.trajectory, flight.frame, targets, planes, of_round);
     refuse_without_ties(out.ties, of_round);
-    tell("round " + std::to_string(out.rounds) + ": adjustment");
-    AdjustOptions adjust_options = options.adjust;
-    // Sigmas by leaving out are asked for once, of the last round.
-    if (out.rounds < options.rounds) adjust_options.jackknife.lines = false, adjust_options.jackknife.blocks = 0;
-    out.adjustment = adjust(out.ties, flight.scanner, flight.start, flight.sensor, *flight.trajectory, *flight.errors, adjust_options);
+    tell(round + ": adjustment");
+    out.adjustment =
+        adjust(out.ties, flight.scanner, flight.start, flight.sensor, *flight.trajectory, *flight.errors, adjusted, flight.threads);
     const double change = moved(now, out.adjustment.calibration, out.adjustment);
     now = out.adjustment.calibration;
     mismatch = std::min(mismatch, mismatch_after(out.adjustment));
-    if (change < steady || out.rounds == options.rounds) {
-      out.notes.push_back("Planes were sought " + std::to_string(out.rounds) + " times; the last round moved the returns by " +
+    if ((change < steady && !first) || out.rounds == options.rounds) {
+      out.notes.push_back("Planes were sought " + std::to_string(out.rounds) + " times; the last time moved the returns by " +
                           metres(change) + ".");
-      if (out.rounds < options.rounds)
-        out.adjustment = adjust(out.ties, flight.scanner, flight.start, flight.sensor, *flight.trajectory, *flight.errors, options.adjust);
       break;
     }
   }

@@ -49,6 +49,7 @@ struct CalibrationFlight {
   const trajectory::ErrorModel* errors = nullptr;
   trajectory::LocalFrame frame;
   std::vector<SurveyedTarget> targets;  ///< those of use `control` take part
+  int threads = 1;
 };
 
 struct Calibrated {

@@ -18,7 +18,7 @@ namespace swath::calib {
 struct TiePlaneOptions {
   std::optional<core::Metres> cell;
   core::Metres piece{12.0}, extent{1.5}, roughness{0.08}, margin{0.4}, mismatch{0.05}, target_search{5.0};
-  int planes = 3000, returns = 150, fewest = 12;
+  int planes = 1200, returns = 100, fewest = 12;
 };
 
 template <class V>

@@ -142,6 +142,7 @@ void Engine::prepare() {
     if (plan_.survey.crs.empty() && s.stage->is_source()) plan_.survey.crs = s.stage->own_crs(plan_.survey);
   context_.tile_side = plan_.run.tile.value;
   context_.grids = &grids_;
+  context_.threads = threads_;
   if (works_on_the_map(plan_) || !plan_.survey.crs.empty()) prepare_map();
   inputs_ = inputs_of(plan_);
   fingerprints_ = fingerprints(plan_, inputs_);

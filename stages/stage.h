@@ -86,9 +86,10 @@ struct Context {
   double vertical_unit = 1.0;  ///< metres per vertical unit of the CRS
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of every Block of the run, m
   bool weekless = false;                             ///< times are seconds of a GPS week that no file names: written on as such
-  double tile_side = 500.0;                          ///< m
-  std::filesystem::path output{};                    ///< where the stage at work puts its products, laid out as in the output folder
-  std::vector<std::filesystem::path> earlier{};      ///< the same of the stages before it
+  int threads = 1;
+  double tile_side = 500.0;                      ///< m
+  std::filesystem::path output{};                ///< where the stage at work puts its products, laid out as in the output folder
+  std::vector<std::filesystem::path> earlier{};  ///< the same of the stages before it
   const Grids* grids = nullptr;
   const Stage* source = nullptr;  ///< of the plan; null where it has none
   std::vector<Strip> strips{};    ///< of the source, in the order of the work

@@ -71,6 +71,7 @@ class Adjust : public OptionStage<AdjustStageOptions> {
     flight.trajectory = &trajectory;
     const trajectory::ErrorModel errors(trajectory.data(), options.errors);
     flight.errors = &errors;
+    flight.threads = context.threads;
 
     const std::vector<calib::FlownLine> lines = fly(flight, tally);
     std::vector<std::pair<double, double>> times;
