@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/frames.h"
+#include "core/statistics.h"
 
 namespace swath::calib {
 namespace {
@@ -34,9 +35,10 @@ void FlownLines::add(int line, const core::Shots& shots) {
     if (s.returns++ % every || !cursor.seek(t)) continue;
     const trajectory::Pose pose = cursor.pose(t);
     const Return r{shots.angle[i], shots.forward.empty() ? 0.0 : shots.forward[i], range};
-    const double below = ecef_R_ned_at(pose).col(2).dot(geometry_.ecef_point(pose, r) - pose.position);
-    if (!std::isfinite(below)) continue;
-    s.height += below;
+    const Eigen::Vector3d ned = ecef_R_ned_at(pose).transpose() * (geometry_.ecef_point(pose, r) - pose.position);
+    if (!ned.allFinite()) continue;
+    s.height += ned.z();
+    s.aside = std::max(s.aside, ned.head<2>().norm());
     ++s.samples;
   }
 }
@@ -49,6 +51,7 @@ std::vector<FlownLine> FlownLines::lines() const {
     line.first = s.first;
     line.last = s.last;
     line.returns = s.returns;
+    line.width = 2 * s.aside;
     line.repeated = static_cast<double>(s.repeated) / static_cast<double>(s.returns);
     line.at_limit = static_cast<double>(s.at_limit) / static_cast<double>(s.returns);
     line.height = s.height / static_cast<double>(s.samples);
@@ -63,6 +66,14 @@ std::vector<FlownLine> FlownLines::lines() const {
     out.push_back(line);
   }
   return out;
+}
+
+double side_for(const std::vector<FlownLine>& lines, double returns) {
+  std::vector<double> sides;
+  for (const FlownLine& l : lines)
+    if (l.returns > 0 && l.width > 0.05 * l.height && l.length > 0)
+      sides.push_back(std::sqrt(returns * l.length * l.width / static_cast<double>(l.returns)));
+  return core::median(std::move(sides), 0.0);
 }
 
 std::vector<Finding> check_lines(const std::vector<FlownLine>& lines) {

@@ -21,6 +21,7 @@ struct FlownLine {
   double heading = 0.0;            ///< course over ground from its first to its last return, from true north, rad, [0, 2 pi)
   double speed = 0.0;              ///< mean over ground, m/s
   double length = 0.0;             ///< from its first to its last return, m
+  double width = 0.0;              ///< of the swath, twice the farthest return from the nadir, m
   double repeated = 0.0;           ///< share of returns whose recorded range is that of the return before
   double at_limit = 0.0;           ///< share of returns whose recorded range is the line's longest
   double height = 0.0;             ///< mean height of the scanner's IMU above the returns, m; NaN without returns inside the trajectory
@@ -36,13 +37,16 @@ class FlownLines {
 
  private:
   struct Sums {
-    double first = 0, last = 0, height = 0, range = -1, longest = -1;
+    double first = 0, last = 0, height = 0, aside = 0, range = -1, longest = -1;
     std::uint64_t returns = 0, samples = 0, repeated = 0, at_limit = 0;
   };
   const ShotGeometry& geometry_;
   const trajectory::Trajectory& trajectory_;
   std::map<int, Sums> sums_;
 };
+
+/// Side of a square that holds `returns` returns of one line, m; the median of the lines that scan. 0 without any.
+double side_for(const std::vector<FlownLine>& lines, double returns);
 
 /// What looks wrong with the records of the lines, in words: ranges that are constant or end at a limit, lines whose times lie in one
 /// another (mixed numbers), lines outside the trajectory.

@@ -37,7 +37,7 @@ std::optional<CellPlane> plane_of(const M& m, double cell) {
 void LineHeights::add(int line, const core::Block& b) {
   if (line != line_) close();
   line_ = line;
-  const double cell = options_.cell.value;
+  const double cell = cell_;
   for (size_t i = 0; i < b.size(); ++i) {
     if (!core::is_last_return(b, i) || (!b.return_number.empty() && b.return_number[i] > 1)) continue;
     const double x = (b.x[i] + b.origin.x()) / cell, y = (b.y[i] + b.origin.y()) / cell;
@@ -66,7 +66,7 @@ void LineHeights::close() {
     for (size_t k = 0; k < moments.size(); ++k) {
       const Moments& m = moments[k];
       if (m.n < options_.least) continue;
-      const std::optional<CellPlane> plane = plane_of(m, options_.cell.value);
+      const std::optional<CellPlane> plane = plane_of(m, cell_);
       if (!plane || plane->rms > options_.roughness.value) continue;
       const Key key{page.first * page_side + static_cast<std::int64_t>(k % page_side),
                     page.second * page_side + static_cast<std::int64_t>(k / page_side)};

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -14,14 +15,15 @@
 namespace swath::calib {
 
 struct LineHeightOptions {
-  core::Metres cell{2.0};
+  std::optional<core::Metres> cell;
   core::Metres roughness{0.10};
   int least = 5;
 };
 
 template <class V>
 void describe(LineHeightOptions& o, V& v) {
-  v.option("cell", o.cell, core::within(0.2, 100), "Side of the cells in which the heights of two lines are compared.");
+  v.option("cell", o.cell, core::within(0.2, 100),
+           "Side of the cells in which the heights of two lines are compared; without it wide enough for twelve returns of a line.");
   v.option("roughness", o.roughness, core::above(0),
            "A cell is compared where the single returns of each line lie about a plane of their own with no more than this rms.");
   v.option("least", o.least, core::within(4, 1000), "... and are at least this many.");
@@ -31,7 +33,9 @@ void describe(LineHeightOptions& o, V& v) {
 /// two pieces share keeps that of more returns. Memory: 80 bytes per cell of the line at work, 16 per smooth cell of every line.
 class LineHeights {
  public:
-  explicit LineHeights(const LineHeightOptions& options) : options_(options) {}
+  /// `automatic`: side of the cells where the options state none, m.
+  LineHeights(const LineHeightOptions& options, double automatic)
+      : options_(options), cell_(options.cell ? options.cell->value : automatic) {}
 
   /// Adds the single and last returns of a block of one line; coordinates in map metres.
   void add(int line, const core::Block& block);
@@ -45,7 +49,7 @@ class LineHeights {
   using Key = std::pair<std::int64_t, std::int64_t>;  ///< cell number along x and y
   /// By line id, then cell. Ends the line at work.
   const std::map<int, std::map<Key, Cell>>& lines();
-  double cell() const { return options_.cell.value; }
+  double cell() const { return cell_; }
 
  private:
   struct Moments {
@@ -55,6 +59,7 @@ class LineHeights {
   static constexpr int page_side = 64;
 
   LineHeightOptions options_;
+  double cell_;
   int line_ = 0;
   double origin_height_ = 0;
   std::map<Key, std::vector<Moments>> pages_;  // of the line at work; page (i, j) holds page_side^2 cells

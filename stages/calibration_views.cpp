@@ -36,7 +36,8 @@ class Mapper {
 }  // namespace
 
 CalibrationViews view_calibration(const Context& context, const Geometry& before, const Geometry& after, const calib::TieSet& ties,
-                                  const std::vector<io::ControlPoint>& control, const calib::LineHeightOptions& heights, size_t sections) {
+                                  const std::vector<io::ControlPoint>& control, const calib::LineHeightOptions& heights, double cell,
+                                  size_t sections) {
   const Mapper old_way(context, before), new_way(context, after);
   CalibrationViews out;
   out.sections = calib::plan_sections(ties, new_way.map(), context.unit, sections);
@@ -50,7 +51,7 @@ CalibrationViews view_calibration(const Context& context, const Geometry& before
   }
   constexpr double around = 2.0;  // m
   calib::CheckPoints checks(std::move(points), around);
-  calib::LineHeights old_heights(heights), new_heights(heights);
+  calib::LineHeights old_heights(heights, cell), new_heights(heights, cell);
   calib::SectionReturns old_sections(out.sections), new_sections(out.sections);
   stream_shots(context)([&](int line, const core::Shots& shots) {
     const core::Block was = old_way(shots), is = new_way(shots);

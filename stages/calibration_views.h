@@ -27,8 +27,10 @@ struct CalibrationViews {
   std::vector<calib::CheckResidual> checks;                                                   ///< with the result
 };
 
-/// Reads the flight once and georeferences it twice. Check points: those of use `check` that are points of their own.
+/// Reads the flight once and georeferences it twice. `cell`: for the differences, where the options state none, m. Check points: those of
+/// use `check` that are points of their own.
 CalibrationViews view_calibration(const Context& context, const Geometry& before, const Geometry& after, const calib::TieSet& ties,
-                                  const std::vector<io::ControlPoint>& control, const calib::LineHeightOptions& heights, size_t sections);
+                                  const std::vector<io::ControlPoint>& control, const calib::LineHeightOptions& heights, double cell,
+                                  size_t sections);
 
 }  // namespace swath::stages

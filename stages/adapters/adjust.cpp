@@ -37,6 +37,12 @@ double metres_down(const std::vector<calib::FlownLine>& lines) {
   return n > 0 ? sum / n : 0.0;
 }
 
+/// Wide enough for a plane of a line's returns, in whole half metres.
+double cell_for(const std::vector<calib::FlownLine>& lines) {
+  constexpr double returns = 12, step = 0.5;
+  return std::max(step, step * std::ceil(calib::side_for(lines, returns) / step));
+}
+
 class Adjust : public OptionStage<AdjustStageOptions> {
  public:
   const Info& info() const override {
@@ -84,7 +90,7 @@ class Adjust : public OptionStage<AdjustStageOptions> {
     CalibrationReport report = report_of(context, calibrated, lines);
     const DeliveredCalibration result = delivered(calibrated.adjustment, survey.sigma);
     add_views(report, view_calibration(context, {&survey.calibration, &trajectory}, {&result.calibration, &trajectory}, calibrated.ties,
-                                       control, options.differences, static_cast<size_t>(options.sections)));
+                                       control, options.differences, cell_for(lines), static_cast<size_t>(options.sections)));
     write_calibration_report(report, context.output);
     tell(calibrated, findings);
   }

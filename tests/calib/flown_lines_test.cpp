@@ -48,6 +48,8 @@ TEST(FlownLines, CourseSpeedLengthAndHeight) {
   EXPECT_NEAR(line.length, 500.0, chord);
   EXPECT_NEAR(line.speed, 50.0, chord / 10);
   EXPECT_NEAR(line.height, 690.0, 1e-6);
+  EXPECT_NEAR(line.width, 2 * 690.0 * std::tan(20 * deg), 2.0) << "one return in a hundred is looked at";
+  EXPECT_NEAR(side_for(lines, 10), std::sqrt(10 * line.length * line.width / 20001), 1e-9) << "the line outside the trajectory has no area";
 }
 
 std::vector<FlownLine> lines_of(const std::vector<core::Shots>& shots) {

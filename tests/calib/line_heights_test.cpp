@@ -24,7 +24,7 @@ core::Block returns_on(F&& height) {
 
 TEST(LineHeights, PlanesThatDifferByAConstantAlongTheirNormal) {
   const double slope = 0.75;  // cos = 0.8
-  LineHeights heights({});
+  LineHeights heights({}, 2.0);
   heights.add(4, returns_on([&](double x, double) { return slope * x; }));
   heights.add(2, returns_on([&](double x, double) { return slope * x + 0.10; }));
   const auto maps = line_differences(heights);
@@ -43,7 +43,7 @@ TEST(LineHeights, PlanesThatDifferByAConstantAlongTheirNormal) {
 }
 
 TEST(LineHeights, RoughCellsAndLaterReturnsTakeNoPart) {
-  LineHeights heights({});
+  LineHeights heights({}, 2.0);
   heights.add(1, returns_on([](double, double) { return 0.0; }));
   core::Block rough = returns_on([](double x, double y) { return x < 20 ? 0.05 : 3.0 * std::sin(17 * x) * std::cos(13 * y); });
   // A second return below each pulse, which a mean would notice.
@@ -63,7 +63,7 @@ TEST(LineHeights, RoughCellsAndLaterReturnsTakeNoPart) {
 
 TEST(LineHeights, ALineInTwoPiecesIsOneLine) {
   const auto flat = [](double level) { return [level](double, double) { return level; }; };
-  LineHeights heights({});
+  LineHeights heights({}, 2.0);
   core::Block few = returns_on(flat(0.0));
   std::vector<std::uint32_t> rows;
   for (std::uint32_t i = 0; i < few.size(); ++i)
@@ -79,7 +79,7 @@ TEST(LineHeights, ALineInTwoPiecesIsOneLine) {
 }
 
 TEST(LineHeights, WithoutOverlapThereIsNoPair) {
-  LineHeights heights({});
+  LineHeights heights({}, 2.0);
   heights.add(1, returns_on([](double, double) { return 0.0; }));
   core::Block away = returns_on([](double, double) { return 0.0; });
   away.origin.x() += 1000;
