@@ -12,7 +12,7 @@ namespace swath::trajectory {
 
 /// For trajectories that state sigmas alone: correlation times of exp(-|dt| / tau). Defaults: what bench/error_bench finds for the means
 /// over lines of 25 s of tactical, compact and mems flights (position 150-340 s, roll 130-390 s, pitch 24-36 s, heading 80-210 s). Roll
-/// goes with the bias of the accelerometer across, which neither lines nor turns show.
+/// goes with the bias of the accelerometer across, which coordinated turns hardly show.
 struct ErrorModelOptions {
   core::Seconds position_correlation{150.0}, roll_correlation{200.0}, pitch_correlation{30.0}, heading_correlation{120.0};
   // Sigmas where the trajectory states none.
