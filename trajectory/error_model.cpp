@@ -147,8 +147,7 @@ MatrixXd ErrorModel::of_sigmas(const std::vector<double>& times) const {
   const auto n = static_cast<Index>(times.size());
   Vector6 tau;
   tau.head<3>().setConstant(options_.position_correlation.value);
-  tau.segment<2>(3).setConstant(options_.attitude_correlation.value);
-  tau[5] = options_.heading_correlation.value;
+  tau.tail<3>() << options_.roll_correlation.value, options_.pitch_correlation.value, options_.heading_correlation.value;
   std::vector<Matrix6> roots;
   for (const double t : times) roots.push_back(root_at(t));
   MatrixXd out(6 * n, 6 * n);

@@ -298,7 +298,8 @@ TEST(ErrorModel, FallsBackToSigmasAndCorrelationTimes) {
   const core::TrajectoryData d = stated();
   ErrorModelOptions options;
   options.position_correlation.value = 10;
-  options.attitude_correlation.value = 5;
+  options.roll_correlation.value = 5;
+  options.pitch_correlation.value = 2.5;
   options.heading_correlation.value = 20;
   const ErrorModel model(d, options);
   EXPECT_FALSE(model.is_of_smoother());
@@ -311,6 +312,7 @@ TEST(ErrorModel, FallsBackToSigmasAndCorrelationTimes) {
   EXPECT_NEAR(c(17, 17), 36 * 9, 400 * rounding);
   EXPECT_NEAR(c(0, 6), 2.5 * 1.5 * std::exp(-0.5), 10 * rounding);
   EXPECT_NEAR(c(3, 9), 16 * 2.5 * 1.5 * std::exp(-1.0), 100 * rounding);
+  EXPECT_NEAR(c(4, 10), 25 * 2.5 * 1.5 * std::exp(-2.0), 200 * rounding);
   EXPECT_NEAR(c(5, 11), 36 * 2.5 * 1.5 * std::exp(-0.25), 200 * rounding);
   EXPECT_EQ(c(0, 1), 0);
   EXPECT_EQ(c(0, 7), 0);
