@@ -22,12 +22,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double least_width = 0.1;       // of a cell's side: narrower returns lie on one scan line
-constexpr double angle_slack = 0.05;      // rad between neighbouring cells beyond what their noise makes
-constexpr double stands_out = 1.5;        // m above its surroundings: a roof
-constexpr double surroundings = 8.0;      // m around a facet that are looked at for that
-constexpr double square_pieces = 6.0;     // squares of the spread, in pieces
-constexpr double level_share = 0.35;      // of the facets that level ground has if there are others enough
+constexpr double least_width = 0.1;    // of a cell's side: narrower returns lie on one scan line
+constexpr double angle_slack = 0.05;   // rad between neighbouring cells beyond what their noise makes
+constexpr double stands_out = 1.5;     // m above its surroundings: a roof
+constexpr double surroundings = 8.0;   // m around a facet that are looked at for that
+constexpr double square_pieces = 6.0;  // squares of the spread, in pieces
+constexpr double level_share = 0.35;   // of the facets that level ground has if there are others enough
 constexpr double wall_share = 0.25;
 
 // A cell whose looks are each plane.
@@ -41,7 +41,6 @@ struct PlaneCell {
 };
 
 double slope_of(const Vector3d& normal) { return std::acos(std::min(std::abs(normal.z()), 1.0)); }
-double tolerance_of(const Vector3d& normal, const FacetOptions& o) { return slope_of(normal) > wall_slope ? 2.0 * o.roughness : o.roughness; }
 
 // A look of the growing facet: moments about the seed.
 struct Growing {
@@ -120,7 +119,7 @@ class Grower {
         ++lonely;
         continue;
       }
-      if (s.rms > tolerance_of(s.normal, o_) || s.narrow < least_width * cells_.side) {
+      if (s.rms > o_.roughness || s.narrow < least_width * cells_.side) {
         ++rough;
         continue;
       }
@@ -137,10 +136,11 @@ class Grower {
   // One level cell of each square: that of most lines, then the flattest.
   std::vector<std::uint32_t> level_seeds(const std::vector<std::uint32_t>& level) const {
     const double area = static_cast<double>(level.size()) * cells_.side * cells_.side;
-    const double square = std::max(o_.piece, std::sqrt(area / (1.5 * static_cast<double>(o_.most))));
+    const double square = std::max(o_.piece, std::sqrt(area / (1.2 * static_cast<double>(o_.most))));
     std::map<std::pair<std::int64_t, std::int64_t>, std::uint32_t> best;
     const auto better = [&](std::uint32_t a, std::uint32_t b) {
-      return std::tuple(-static_cast<int>(plane_[a].lines), plane_[a].rms, a) < std::tuple(-static_cast<int>(plane_[b].lines), plane_[b].rms, b);
+      return std::tuple(-static_cast<int>(plane_[a].lines), plane_[a].rms, a) <
+             std::tuple(-static_cast<int>(plane_[b].lines), plane_[b].rms, b);
     };
     for (const std::uint32_t c : level) {
       const auto [at, fresh] = best.try_emplace({static_cast<std::int64_t>(std::floor(plane_[c].centre.x() / square)),
@@ -178,7 +178,7 @@ class Grower {
   bool continues(std::vector<Growing>& growing, const PlaneShape& shape, const PlaneCell& c, const Vector3d& seed) const {
     const double cosine = std::abs(shape.normal.dot(c.normal));
     if (std::acos(std::min(cosine, 1.0)) > 3.0 * c.tilt_sigma + angle_slack) return false;
-    const double tolerance = 1.5 * tolerance_of(shape.normal, o_);
+    const double tolerance = 1.5 * o_.roughness;
     bool shared = false;
     for (std::uint32_t k = c.begin; k < c.end; ++k) {
       const CellLook& l = cells_.looks[k];
@@ -221,7 +221,7 @@ class Grower {
 
   std::optional<Facet> finished(std::vector<Growing>& growing, const std::vector<std::uint32_t>& members, const PlaneShape& shape,
                                 const Vector3d& seed) const {
-    const double tolerance = tolerance_of(shape.normal, o_);
+    const double tolerance = o_.roughness;
     const bool wall = slope_of(shape.normal) > wall_slope;
     std::vector<const Growing*> good;
     for (const Growing& g : growing) {
@@ -240,7 +240,8 @@ class Grower {
     for (const Growing* g : good) spread_of += g->moments.scatter(), sum += g->moments.sum, n += g->moments.n;
     f.centre = seed + sum / n;
     const auto axes = plane_axes(f.normal);
-    for (int k = 0; k < 2; ++k) f.half[k] = std::sqrt(3.0 * std::max(axes[static_cast<size_t>(k)].dot(spread_of * axes[static_cast<size_t>(k)]), 0.0) / n);
+    for (int k = 0; k < 2; ++k)
+      f.half[k] = std::sqrt(3.0 * std::max(axes[static_cast<size_t>(k)].dot(spread_of * axes[static_cast<size_t>(k)]), 0.0) / n);
     if (f.half.minCoeff() < o_.extent) return std::nullopt;
     for (const Growing* g : good) {
       f.looks.push_back(g->look);
@@ -301,7 +302,8 @@ std::vector<Facet> spread(std::vector<Facet> facets, size_t most, double square)
       return std::tuple(-static_cast<int>(facets[a].looks.size()), -facets[a].half.prod(), a) <
              std::tuple(-static_cast<int>(facets[b].looks.size()), -facets[b].half.prod(), b);
     });
-    const std::uint64_t draw = mixed(static_cast<std::uint64_t>(place.first) * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(place.second));
+    const std::uint64_t draw =
+        mixed(static_cast<std::uint64_t>(place.first) * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(place.second));
     for (size_t rank = 0; rank < list.size(); ++rank) order.emplace_back(rank, draw, list[rank]);
   }
   std::sort(order.begin(), order.end());

@@ -12,10 +12,10 @@
 namespace swath::calib {
 
 struct FacetOptions {
-  double piece = 12.0;      ///< largest side, m
-  double roughness = 0.08;  ///< largest rms of one line about its plane, m (walls: twice that, for the footprint lies along the beam)
-  double extent = 1.5;      ///< least half extent in the plane, m
-  double mismatch = 0.05;   ///< rms by which lines may miss one another, m
+  double piece = 12.0;         ///< largest side, m
+  double roughness = 0.08;     ///< largest rms of one line about its plane, m
+  double extent = 1.5;         ///< least half extent in the plane, m
+  double mismatch = 0.05;      ///< rms by which lines may miss one another, m
   std::uint32_t returns = 12;  ///< fewest of one look
   size_t most = 3000;          ///< facets chosen
 };

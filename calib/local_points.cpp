@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kernel of calib/georeference.cpp without map coordinates and sigmas. Deviations from calib/shot_geometry.h: the nadir in the refraction
-// term is that of the trajectory interval's first record (1e-8 m); the ray is bent in the frame of that record (1e-8 m).
+// The kernel of calib/georeference.cpp without map coordinates and sigmas. Deviations from calib/shot_geometry.h: the nadir in the
+// refraction term is that of the trajectory interval's first record (1e-8 m); the ray is bent in the frame of that record (1e-8 m).
 #include "calib/local_points.h"
 
 #include <algorithm>
@@ -113,7 +113,9 @@ void stream_points(const ShotStream& stream, LocalPoints& points, const std::fun
     bool enough = line != waiting.front().first;
     for (size_t i = 0; i < shots.size() && !enough; ++i) {
       if (!is_last_return(shots, i) || std::isnan(p.x[i])) continue;
-      const auto index = [](double v) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(static_cast<std::int32_t>(std::floor(v / density_cell)))); };
+      const auto index = [](double v) {
+        return static_cast<std::uint64_t>(static_cast<std::uint32_t>(static_cast<std::int32_t>(std::floor(v / density_cell))));
+      };
       cells.insert(index(p.x[i]) << 32 | index(p.y[i]));
       enough = ++n == density_sample;
     }

@@ -106,7 +106,8 @@ PlaneCells plane_cells(const ShotStream& stream, LocalPoints& points, std::optio
       CellLook& l = looks[look];
       l.first = std::min(l.first, t), l.last = std::max(l.last, t);
       const Vector3d middle = centre_of(c, out.side);
-      l.moments.add(static_cast<float>(p.x[r] - middle.x()), static_cast<float>(p.y[r] - middle.y()), static_cast<float>(p.z[r] - middle.z()));
+      l.moments.add(static_cast<float>(p.x[r] - middle.x()), static_cast<float>(p.y[r] - middle.y()),
+                    static_cast<float>(p.z[r] - middle.z()));
     }
   });
   keep();
@@ -116,9 +117,8 @@ PlaneCells plane_cells(const ShotStream& stream, LocalPoints& points, std::optio
   std::vector<std::uint32_t> rank(came.size());
   for (std::uint32_t k = 0; k < out.lines.size(); ++k) rank[number.at(out.lines[k].id)] = k;
   for (CellLook& l : out.looks) l.line = rank[l.line];
-  std::sort(out.looks.begin(), out.looks.end(), [](const CellLook& a, const CellLook& b) {
-    return std::tie(a.cell, a.line, a.first) < std::tie(b.cell, b.line, b.first);
-  });
+  std::sort(out.looks.begin(), out.looks.end(),
+            [](const CellLook& a, const CellLook& b) { return std::tie(a.cell, a.line, a.first) < std::tie(b.cell, b.line, b.first); });
   return out;
 }
 

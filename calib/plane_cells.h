@@ -60,7 +60,8 @@ inline Eigen::Vector3d centre_of(const CellIndex3& c, double side) { return Eige
 /// 21 bits of each.
 inline std::uint64_t key_of(const CellIndex3& c) {
   constexpr std::uint64_t mask = (1u << 21) - 1;
-  return (static_cast<std::uint64_t>(c.i) & mask) << 42 | (static_cast<std::uint64_t>(c.j) & mask) << 21 | (static_cast<std::uint64_t>(c.k) & mask);
+  return (static_cast<std::uint64_t>(c.i) & mask) << 42 | (static_cast<std::uint64_t>(c.j) & mask) << 21 |
+         (static_cast<std::uint64_t>(c.k) & mask);
 }
 inline std::uint64_t mixed(std::uint64_t v) {  // splitmix64's last step
   v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9ull;

@@ -4,28 +4,22 @@
 // of e (a generalised Hough transform), then the squares' own displacements near that solution are adjusted.
 #include "calib/surface_match.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
-#include <set>
 #include <tuple>
 #include <utility>
 
 #include "calib/height_grid.h"
+#include "calib/shift_fit.h"
 #include "calib/window_match.h"
-#include "core/statistics.h"
 
 namespace swath::calib {
 
 using Eigen::Matrix3d;
-using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using Eigen::VectorXd;
 
 namespace {
 
@@ -47,7 +41,8 @@ struct Pair {
   size_t a = 0, b = 0;  // views
   std::int32_t i = 0, j = 0;
   double relief = 0.0;
-  Matrix3d by = Matrix3d::Zero();  // J_B - J_A: east, north, up by roll, pitch, heading, m/rad
+  Matrix3d by_a = Matrix3d::Zero(), by_b = Matrix3d::Zero();  // J: east, north, up by roll, pitch, heading, m/rad
+  Matrix3d by = Matrix3d::Zero();                             // J_B - J_A
 };
 
 struct Round {
@@ -77,7 +72,9 @@ std::vector<Pair> chosen(std::vector<Pair> all, size_t most, bool by_relief) {
   for (Pair& p : all) of[{p.a, p.b}].push_back(std::move(p));
   if (of.empty()) return {};
   const size_t each = std::max<size_t>(most / of.size(), 4);
-  const auto mixed = [](const Pair& p) { return (static_cast<std::uint32_t>(p.i) * 2654435761u) ^ (static_cast<std::uint32_t>(p.j) * 2246822519u); };
+  const auto mixed = [](const Pair& p) {
+    return (static_cast<std::uint32_t>(p.i) * 2654435761u) ^ (static_cast<std::uint32_t>(p.j) * 2246822519u);
+  };
   std::vector<Pair> out;
   for (auto& [views, list] : of) {
     std::sort(list.begin(), list.end(), [&](const Pair& x, const Pair& y) {
@@ -114,8 +111,9 @@ Round read_round(const ShotStream& stream, LocalPoints& points, const SurfaceMat
     if (seen.size() < 2) continue;
     std::vector<Relief> in;
     for (const Seen& s : seen)
-      in.push_back(relief_of(r.grids.views[s.view].raster(std::int64_t{place.first} * cells, std::int64_t{place.second} * cells, cells, cells, 1))
-                       .value_or(Relief{1e9, 0.0}));
+      in.push_back(
+          relief_of(r.grids.views[s.view].raster(std::int64_t{place.first} * cells, std::int64_t{place.second} * cells, cells, cells, 1))
+              .value_or(Relief{1e9, 0.0}));
     const auto stands_out = [](const Relief& x) { return x.shared > least_relief && x.shared > least_share * x.rms; };
     for (size_t x = 0; x < seen.size(); ++x)
       for (size_t y = x + 1; y < seen.size(); ++y) {
@@ -132,7 +130,7 @@ Round read_round(const ShotStream& stream, LocalPoints& points, const SurfaceMat
   r.level = chosen(std::move(level), static_cast<size_t>(o.windows), false);
   const auto no_turn = [&](Pair& p) {
     const auto a = turn_at(r.grids.views[p.a], p.i, p.j, r.side, points), b = turn_at(r.grids.views[p.b], p.i, p.j, r.side, points);
-    if (a && b) p.by = *b - *a;
+    if (a && b) p.by_a = *a, p.by_b = *b, p.by = *b - *a;
     return !(a && b);
   };
   std::erase_if(r.relief, no_turn);
@@ -169,7 +167,8 @@ Matched match(const Round& r, const Pair& p, const Search& search) {
   int factor = 1;
   while (factor < 8 && widest / (r.grids.cell * factor) > match_cells && cells / (2 * factor) >= 24) factor *= 2;
   m.cell = r.grids.cell * factor;
-  const int n = cells / factor, mx = static_cast<int>(std::ceil(reach.x() / m.cell)) + 3, my = static_cast<int>(std::ceil(reach.y() / m.cell)) + 3;
+  const int n = cells / factor, mx = static_cast<int>(std::ceil(reach.x() / m.cell)) + 3,
+            my = static_cast<int>(std::ceil(reach.y() / m.cell)) + 3;
   const std::int64_t i = std::int64_t{p.i} * n, j = std::int64_t{p.j} * n;
   m.a = r.grids.views[p.a].raster(i, j, n, n, factor);
   m.b = r.grids.views[p.b].raster(i - mx, j - my, n + 2 * mx, n + 2 * my, factor);
@@ -234,22 +233,22 @@ bool is_agreed(const std::vector<Matched>& all, const Search& search, double agr
   return agreement >= surely_agreed || (agreement >= agreed && agreement > above_chance * sum / n);
 }
 
-// One displacement as observed: rows of it that count, whitened by `root`.
-struct Observed {
-  const Pair* pair;
-  Vector3d shift = Vector3d::Zero();
-  Matrix3d covariance = Matrix3d::Identity();
-  bool relief = false;
-  double weight = 1.0;
-};
+ObservedShift observation(const Round& r, const Pair& p) {
+  ObservedShift o;
+  o.line_a = r.grids.views[p.a].line, o.line_b = r.grids.views[p.b].line;
+  o.look_a = p.a, o.look_b = p.b;
+  o.square = static_cast<std::uint64_t>(static_cast<std::uint32_t>(p.i)) << 32 | static_cast<std::uint32_t>(p.j);
+  o.by_a = p.by_a, o.by_b = p.by_b;
+  return o;
+}
 
-std::vector<Observed> observe(const Round& r, const std::vector<Matched>& matched, const Vector3d& e) {
-  std::vector<Observed> out;
+std::vector<ObservedShift> observe(const Round& r, const std::vector<Matched>& matched, const Vector3d& e) {
+  std::vector<ObservedShift> out;
   for (const Matched& m : matched) {
     const Vector2d near = (m.pair->by * e).head<2>() / m.cell;
     const auto s = subcell_shift(m.a, m.b, m.costs, near, 3);
     if (!s || s->share > meets) continue;
-    Observed o{m.pair};
+    ObservedShift o = observation(r, *m.pair);
     o.relief = true;
     o.shift << s->shift * m.cell, s->rise;
     o.covariance.topLeftCorner<2, 2>() = s->covariance * m.cell * m.cell;
@@ -264,135 +263,12 @@ std::vector<Observed> observe(const Round& r, const std::vector<Matched>& matche
     const Raster b = r.grids.views[p.b].raster(i + std::lround(d.x()), j + std::lround(d.y()), n, n, 1);
     const auto f = fit_shift(a, b, 0, 0, 0, 0, 3);
     if (!f) continue;
-    Observed o{&p};
+    ObservedShift o = observation(r, p);
     o.shift.z() = f->rise;
     o.covariance = Vector3d(1e12, 1e12, f->cost / (0.2 * f->cells) + 4e-4).asDiagonal();
     out.push_back(o);
   }
   return out;
-}
-
-struct Solution {
-  Vector3d error = Vector3d::Zero();
-  Matrix3d covariance = Matrix3d::Zero();
-  Vector3d sigma = Vector3d::Zero();
-  std::array<bool, 3> determined{};
-  double rms = 0.0;
-};
-
-// Of n views of one square only n - 1 displacements are independent: pairs per independent displacement.
-double repetition(const std::vector<Observed>& all) {
-  std::map<std::pair<std::int32_t, std::int32_t>, std::set<size_t>> views;
-  for (const Observed& x : all) {
-    auto& of = views[{x.pair->i, x.pair->j}];
-    of.insert(x.pair->a), of.insert(x.pair->b);
-  }
-  double independent = 0.0;
-  for (const auto& [square, of] : views) independent += static_cast<double>(of.size()) - 1.0;
-  return std::max(static_cast<double>(all.size()) / std::max(independent, 1.0), 1.0);
-}
-
-// e and three shifts per line by robust least squares (Tukey's weights); angles of `held` stay zero, what their errors of `considered` (rad)
-// would change is in the covariance.
-Solution solve(std::vector<Observed>& all, const Round& r, const SurfaceMatchOptions& o, const std::array<bool, 3>& held,
-               const Vector3d& considered) {
-  std::map<int, int> column;
-  for (const Observed& x : all)
-    for (const size_t v : {x.pair->a, x.pair->b}) column.try_emplace(r.grids.views[v].line, 0);
-  int columns = 3;
-  for (auto& [line, at] : column) at = columns, columns += 3;
-  const auto rows_of = [&](const Observed& x) {
-    MatrixXd A = MatrixXd::Zero(3, columns);
-    A.leftCols<3>() = x.pair->by;
-    A.middleCols<3>(column.at(r.grids.views[x.pair->b].line)) += Matrix3d::Identity();
-    A.middleCols<3>(column.at(r.grids.views[x.pair->a].line)) -= Matrix3d::Identity();
-    return A;
-  };
-  constexpr double loose = 0.2;  // rad: keeps the normal matrix regular
-  VectorXd prior(columns);
-  prior.head<3>().setConstant(1.0 / (loose * loose));
-  for (const auto& [line, at] : column) {
-    prior[at] = prior[at + 1] = 1.0 / (o.position_error.value * o.position_error.value);
-    prior[at + 2] = 1.0 / (o.height_error.value * o.height_error.value);
-  }
-  Solution out;
-  VectorXd solution = VectorXd::Zero(columns);
-  MatrixXd inverse;
-  Matrix3d moved = Matrix3d::Zero();
-  double factor = 1.0;
-  for (Observed& x : all) x.weight = 1.0;
-  for (int iteration = 0; iteration < 12; ++iteration) {
-    MatrixXd N = prior.asDiagonal();
-    VectorXd g = VectorXd::Zero(columns);
-    for (const Observed& x : all) {
-      const MatrixXd A = rows_of(x);
-      const Matrix3d P = x.weight * x.covariance.inverse();
-      N += A.transpose() * P * A;
-      g += A.transpose() * P * x.shift;
-    }
-    MatrixXd effect = MatrixXd::Zero(columns, 3);  // of held angles on the right-hand side
-    for (int k = 0; k < 3; ++k) {
-      if (!held[static_cast<size_t>(k)]) continue;
-      effect.col(k) = N.col(k) * considered[k];
-      N.row(k).setZero(), N.col(k).setZero(), N(k, k) = 1.0;
-      g[k] = 0.0;
-    }
-    for (int k = 0; k < 3; ++k)
-      if (held[static_cast<size_t>(k)]) effect.row(k).setZero();
-    inverse = N.ldlt().solve(MatrixXd::Identity(columns, columns));
-    solution = inverse * g;
-    moved = (inverse * effect).topRows<3>();
-    std::vector<double> size;
-    for (const Observed& x : all) {
-      const Vector3d v = x.shift - rows_of(x) * solution;
-      size.push_back(std::sqrt(v.dot(x.covariance.inverse() * v) / (x.relief ? 3.0 : 1.0)));
-    }
-    const double scale = std::max(1.4826 * core::median(size, 1.0), 1.0);
-    double sum = 0.0, weights = 0.0;
-    for (size_t i = 0; i < all.size(); ++i) {
-      const double u = size[i] / (4.685 * scale);
-      all[i].weight = u < 1.0 ? (1 - u * u) * (1 - u * u) : 0.0;
-      const double rows = all[i].relief ? 3.0 : 1.0;
-      sum += all[i].weight * rows * size[i] * size[i], weights += all[i].weight * rows;
-    }
-    factor = std::max(sum / std::max(weights - 3.0, 1.0), 1.0);
-  }
-  factor *= repetition(all);
-  out.error = solution.head<3>();
-  out.covariance = factor * inverse.topLeftCorner<3, 3>() + moved * moved.transpose();
-  out.sigma = out.covariance.diagonal().cwiseSqrt();
-  double sum = 0.0, n = 0.0;
-  for (const Observed& x : all)
-    if (x.relief) sum += x.weight * (x.shift - rows_of(x) * solution).head<2>().squaredNorm(), n += 2.0 * x.weight;
-  out.rms = n > 0.0 ? std::sqrt(sum / n) : 0.0;
-  return out;
-}
-
-// Solves with all angles, then without those that the squares do not determine, worst first.
-// Heights of level ground tell roll alone: what they say of pitch and heading, by the aircraft's sway, is less than other errors make.
-Solution solve_determined(std::vector<Observed>& all, const Round& r, const SurfaceMatchOptions& o) {
-  const auto squares = std::count_if(all.begin(), all.end(), [](const Observed& x) { return x.relief; });
-  std::array<bool, 3> held{false, squares < fewest_squares, squares < fewest_squares};
-  Vector3d sigma = Vector3d::Constant(std::numeric_limits<double>::infinity());
-  for (int tries = 0;; ++tries) {
-    const Vector3d considered = sigma.cwiseMin(0.5 * o.search.value);
-    Solution s = solve(all, r, o, held, considered);
-    int worst = -1;
-    for (int k = 0; k < 3; ++k)
-      if (!held[static_cast<size_t>(k)]) {
-        sigma[k] = s.sigma[k];
-        if (s.sigma[k] > o.undetermined.value && (worst < 0 || s.sigma[k] > s.sigma[worst])) worst = k;
-      }
-    if (worst < 0) {
-      for (int k = 0; k < 3; ++k) {
-        s.determined[static_cast<size_t>(k)] = !held[static_cast<size_t>(k)];
-        if (held[static_cast<size_t>(k)]) s.error[k] = 0.0, s.covariance.row(k).setZero(), s.covariance.col(k).setZero();
-      }
-      s.sigma = sigma;
-      return s;
-    }
-    held[static_cast<size_t>(worst)] = true;
-  }
 }
 
 std::vector<Matched> match_all(const Round& r, const Search& search) {
@@ -417,8 +293,10 @@ void state_findings(SurfaceMatch& m, bool overlap) {
   }
   for (int k = 0; k < 3; ++k)
     if (!m.determined[static_cast<size_t>(k)])
-      m.findings.push_back({std::string("the surfaces of the lines do not determine boresight ") + names[k] + ": it is left as it was", cures[k],
-                            {static_cast<Parameter>(boresight_roll + k)}, false});
+      m.findings.push_back({std::string("the surfaces of the lines do not determine boresight ") + names[k] + ": it is left as it was",
+                            cures[k],
+                            {static_cast<Parameter>(boresight_roll + k)},
+                            false});
 }
 
 }  // namespace
@@ -448,18 +326,22 @@ SurfaceMatch match_surfaces(const ShotStream& stream, const core::Scanner& scann
         if (there > 2.0 * out.agreement && is_agreed(match_there, search, there)) {
           out.scan_reversed = true;
           out.findings.push_back({"the surfaces of the lines meet with the sign of the scan angle turned, and not as recorded",
-                                  "state that the file counts scan angles positive to port (angle_to_port)", {}, true});
+                                  "state that the file counts scan angles positive to port (angle_to_port)",
+                                  {},
+                                  true});
         } else {
           out.findings.push_back({"the surfaces of the lines do not meet under any boresight within the search",
-                                  "widen `search`; check the trajectory, time tags, line numbers and the scanner model", {}, true});
+                                  "widen `search`; check the trajectory, time tags, line numbers and the scanner model",
+                                  {},
+                                  true});
         }
         return out;
       }
     }
-    std::vector<Observed> seen = observe(r, matched, found);
-    if (matched.size() < fewest_squares)
-      std::erase_if(seen, [](const Observed& x) { return x.relief; });
-    const Solution s = solve_determined(seen, r, o);
+    std::vector<ObservedShift> seen = observe(r, matched, found);
+    if (matched.size() < fewest_squares) std::erase_if(seen, [](const ObservedShift& x) { return x.relief; });
+    const LineErrors errors{o.position_error.value, o.height_error.value, o.attitude_error.value};
+    const ShiftFit3 s = fit_shifts(seen, errors, o.undetermined.value, 0.5 * o.search.value);
     out.calibration = turned(out.calibration, s.error);
     out.covariance = s.covariance;
     out.sigma = s.sigma;
@@ -468,15 +350,10 @@ SurfaceMatch match_surfaces(const ShotStream& stream, const core::Scanner& scann
     out.cell = r.grids.cell;
     out.rounds = round;
     out.windows.clear();
-    for (const Observed& x : seen) {
-      MatchedWindow w;
-      w.line_a = r.grids.views[x.pair->a].line, w.line_b = r.grids.views[x.pair->b].line;
-      w.centre = Vector2d(x.pair->i + 0.5, x.pair->j + 0.5) * square_side(r);
-      w.relief = x.relief;
-      w.shift = x.shift;
-      w.residual = x.shift - x.pair->by * s.error;
-      w.weight = x.weight;
-      out.windows.push_back(w);
+    for (const ObservedShift& x : seen) {
+      const Vector2d square(static_cast<std::int32_t>(x.square >> 32), static_cast<std::int32_t>(x.square & 0xffffffffu));
+      out.windows.push_back({x.line_a, x.line_b, (square + Vector2d::Constant(0.5)) * square_side(r), x.relief, x.shift,
+                             x.shift - (x.by_b - x.by_a) * s.error, x.weight});
     }
     if (s.error.cwiseAbs().maxCoeff() < o.settled.value) break;
     for (int k = 0; k < 3; ++k)

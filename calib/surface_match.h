@@ -22,6 +22,7 @@ struct SurfaceMatchOptions {
   int windows = 500, rounds = 4;
   core::Radians settled = core::degrees(0.01), undetermined = core::degrees(0.1);
   core::Metres position_error{0.1}, height_error{0.2};
+  core::Radians attitude_error = core::degrees(0.005);
 };
 
 template <class V>
@@ -32,9 +33,11 @@ void describe(SurfaceMatchOptions& o, V& v) {
   v.option("windows", o.windows, core::within(10, 100000), "Most squares with relief that are matched.");
   v.option("rounds", o.rounds, core::within(1, 20), "Most times that the flight is read.");
   v.option("settled", o.settled, core::above(0.0), "Change of all angles below which another round is not needed.");
-  v.option("undetermined", o.undetermined, core::above(0.0), "Sigma from which on an angle counts as not determined and is left as it was.");
+  v.option("undetermined", o.undetermined, core::above(0.0),
+           "Sigma from which on an angle counts as not determined and is left as it was.");
   v.option("position_error", o.position_error, core::above(0.0), "Sigma of a line's horizontal shift by its trajectory.");
   v.option("height_error", o.height_error, core::above(0.0), "Sigma of a line's shift in height.");
+  v.option("attitude_error", o.attitude_error, core::above(0.0), "Sigma of a line's turn by its trajectory, about each axis.");
 }
 
 /// One square seen by two lines, in the last round.
@@ -48,11 +51,12 @@ struct MatchedWindow {
 };
 
 struct SurfaceMatch {
-  core::Calibration calibration;                          ///< the start with the angles that were determined
-  Eigen::Vector3d change = Eigen::Vector3d::Zero();       ///< of roll, pitch, heading against the start, rad
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();   ///< of the change; 0 for angles left as they were, rad^2
-  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();        ///< of the determined ones its root; of the others what the flight allows (infinite: nothing told)
-  std::array<bool, 3> determined{};                       ///< roll, pitch, heading
+  core::Calibration calibration;                         ///< the start with the angles that were determined
+  Eigen::Vector3d change = Eigen::Vector3d::Zero();      ///< of roll, pitch, heading against the start, rad
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the change; 0 for angles left as they were, rad^2
+  Eigen::Vector3d sigma =
+      Eigen::Vector3d::Zero();       ///< of the determined ones its root; of the others what the flight allows (infinite: nothing told)
+  std::array<bool, 3> determined{};  ///< roll, pitch, heading
   std::vector<MatchedWindow> windows;
   double agreement = 0.0;  ///< share of the squares with relief whose surfaces meet at the solution of the first round
   double rms = 0.0;        ///< of the shifts' horizontal residuals, weighted, m

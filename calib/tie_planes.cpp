@@ -16,6 +16,7 @@
 #include <set>
 #include <tuple>
 
+#include "calib/plane_edges.h"
 #include "calib/tie_returns.h"
 #include "core/statistics.h"
 
@@ -27,15 +28,15 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double ransac_distance = 2.5;    // in roughnesses
-constexpr double found_share = 0.6;        // of a look's returns near a facet that must lie on its plane
-constexpr double target_share = 0.3;       // the same for targets, which are looked for over metres of height
-constexpr double facet_tilt = 0.1;         // rad, between a facet and the plane of a look's returns
-constexpr double target_tilt = 0.06;       // rad, between a target as surveyed and as seen
-constexpr double ground_tilt = 0.35;       // rad, of the ground about a lone point
-constexpr double point_radius = 3.0;       // m, of the ground about a lone point
-constexpr double tilt_slack = 0.01;        // rad, between looks: boresight and attitude
-constexpr double coarse_mismatch = 0.5;    // m: margins do not grow beyond it
+constexpr double ransac_distance = 2.5;  // in roughnesses
+constexpr double found_share = 0.6;      // of a look's returns near a facet that must lie on its plane
+constexpr double target_share = 0.3;     // the same for targets, which are looked for over metres of height
+constexpr double facet_tilt = 0.1;       // rad, between a facet and the plane of a look's returns
+constexpr double target_tilt = 0.06;     // rad, between a target as surveyed and as seen
+constexpr double ground_tilt = 0.35;     // rad, of the ground about a lone point
+constexpr double point_radius = 3.0;     // m, of the ground about a lone point
+constexpr double tilt_slack = 0.01;      // rad, between looks: boresight and attitude
+constexpr double coarse_mismatch = 0.5;  // m: margins do not grow beyond it
 constexpr int ransac_iterations = 200;
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
@@ -49,7 +50,8 @@ struct Look {
 };
 
 std::vector<Look> looks_of(std::vector<NearReturn>& all) {
-  std::sort(all.begin(), all.end(), [](const NearReturn& a, const NearReturn& b) { return std::tie(a.line, a.time, a.draw) < std::tie(b.line, b.time, b.draw); });
+  std::sort(all.begin(), all.end(),
+            [](const NearReturn& a, const NearReturn& b) { return std::tie(a.line, a.time, a.draw) < std::tie(b.line, b.time, b.draw); });
   std::vector<Look> out;
   for (std::uint32_t r = 0; r < all.size(); ++r) {
     if (r == 0 || all[r].line != all[r - 1].line || all[r].time - all[r - 1].time > new_look) {
@@ -111,38 +113,6 @@ std::string take_plane(Look& l, const std::vector<NearReturn>& all, const Vector
   return "";
 }
 
-// Cells of the plane that hold returns of any look; those in the middle of others count as well.
-class Occupied {
- public:
-  Occupied(const std::vector<Vector2d>& at, double cell) : cell_(cell) {
-    for (const Vector2d& p : at) cells_.insert(index(p));
-    std::set<std::pair<int, int>> filled;
-    for (const auto& [i, j] : cells_)
-      for (int dj = -1; dj <= 1; ++dj)
-        for (int di = -1; di <= 1; ++di)
-          if (!cells_.contains({i + di, j + dj}) && neighbours(i + di, j + dj) >= 6) filled.insert({i + di, j + dj});
-    cells_.merge(filled);
-  }
-  /// Is everything within `margin` of a place occupied?
-  bool surrounds(const Vector2d& p, double margin) const {
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx)
-        if (!cells_.contains(index(p + margin * Vector2d(dx, dy).normalized()))) return false;
-    return true;
-  }
-
- private:
-  std::pair<int, int> index(const Vector2d& p) const { return {static_cast<int>(std::floor(p.x() / cell_)), static_cast<int>(std::floor(p.y() / cell_))}; }
-  int neighbours(int i, int j) const {
-    int n = 0;
-    for (int dj = -1; dj <= 1; ++dj)
-      for (int di = -1; di <= 1; ++di) n += (di || dj) && cells_.contains({i + di, j + dj});
-    return n;
-  }
-  double cell_;
-  std::set<std::pair<int, int>> cells_;
-};
-
 struct Judged {
   TiePlane plane;
   std::vector<Look> looks;
@@ -193,7 +163,9 @@ class Judge {
     const double apart = 3.0 * o_.mismatch.value + 3.0 * d.tolerance;
     std::erase_if(looks, [&](const Look& l) {
       const double tilt = std::acos(std::min(std::abs(l.shape.normal.dot(normal)), 1.0));
-      const auto sigma = [](const Look& x) { return x.shape.rms / (std::sqrt(static_cast<double>(x.rows.size())) * std::max(x.shape.narrow, 0.1)); };
+      const auto sigma = [](const Look& x) {
+        return x.shape.rms / (std::sqrt(static_cast<double>(x.rows.size())) * std::max(x.shape.narrow, 0.1));
+      };
       const double allowed = 3.0 * (sigma(l) + sigma(*largest)) + tilt_slack + 0.5 * o_.mismatch.value / std::max(l.shape.narrow, 1.0);
       return std::abs(normal.dot(l.mean - at) - middle) > apart || tilt > allowed;
     });
@@ -327,8 +299,8 @@ void append(TieSet& set, Judged& j, const std::vector<NearReturn>& all) {
 }  // namespace
 
 TieSet find_tie_planes(const ShotStream& stream, const core::Scanner& scanner, const core::Calibration& calibration,
-                       const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame, const std::vector<SurveyedTarget>& targets,
-                       const TiePlaneOptions& o, core::Tally& tally) {
+                       const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame,
+                       const std::vector<SurveyedTarget>& targets, const TiePlaneOptions& o, core::Tally& tally) {
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   TieSet set;
   set.frame = frame;
@@ -360,7 +332,7 @@ TieSet find_tie_planes(const ShotStream& stream, const core::Scanner& scanner, c
   for (const Facet& f : facets) {
     PlaneRegion r;
     r.centre = f.centre, r.normal = f.normal, r.cells = f.cells, r.looks = f.looks;
-    r.reach = 3.0 * o.mismatch.value + ransac_distance * o.roughness.value * (f.kind == TieKind::wall ? 2.0 : 1.0);
+    r.reach = 3.0 * o.mismatch.value + ransac_distance * o.roughness.value;
     r.wanted = static_cast<std::uint32_t>(o.returns);
     regions.push_back(std::move(r));
   }
@@ -383,7 +355,6 @@ TieSet find_tie_planes(const ShotStream& stream, const core::Scanner& scanner, c
       d.tilt = targets[k].is_point ? ground_tilt : target_tilt;
     } else {
       j.plane.kind = facets[k - targets.size()].kind;
-      if (j.plane.kind == TieKind::wall) d.tolerance *= 2.0;
     }
     const std::string why = judge.judge(regions[k], near[k], d, j);
     if (!why.empty())

@@ -26,8 +26,9 @@ void describe(TiePlaneOptions& o, V& v) {
   v.option("cell", o.cell, core::above(0.0), "Side of the cubes that are judged plane or not; without it ten returns of a line wide.");
   v.option("piece", o.piece, core::above(0.0), "Largest side of a plane; larger ones are cut into pieces.");
   v.option("extent", o.extent, core::above(0.0), "Least half extent of a plane in both directions.");
-  v.option("roughness", o.roughness, core::above(0.0), "Largest rms of one line's returns about their plane; on walls twice that.");
-  v.option("margin", o.margin, core::at_least(0.0), "Returns nearer than this to an edge are left out, for the footprint may hang over it.");
+  v.option("roughness", o.roughness, core::above(0.0), "Largest rms of one line's returns about their plane.");
+  v.option("margin", o.margin, core::at_least(0.0),
+           "Returns nearer than this to an edge are left out, for the footprint may hang over it.");
   v.option("mismatch", o.mismatch, core::at_least(0.0), "Rms by which lines miss one another at present.");
   v.option("target_search", o.target_search, core::above(0.0), "Distance from its survey within which a target's plane is looked for.");
   v.option("planes", o.planes, core::within(1, 100000), "Most planes, surveyed targets not counted.");
@@ -41,7 +42,7 @@ void describe(TiePlaneOptions& o, V& v) {
 /// (seen once or more). Two passes over the stream; nothing but moments of cells and bounded samples is held. An empty set (no overlap, no
 /// planes) has its reason in the tally. Deterministic; independent of batches.
 TieSet find_tie_planes(const ShotStream& stream, const core::Scanner& scanner, const core::Calibration& calibration,
-                       const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame, const std::vector<SurveyedTarget>& targets,
-                       const TiePlaneOptions& options, core::Tally& tally);
+                       const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame,
+                       const std::vector<SurveyedTarget>& targets, const TiePlaneOptions& options, core::Tally& tally);
 
 }  // namespace swath::calib

@@ -145,10 +145,12 @@ std::vector<std::vector<NearReturn>> collect_returns(const ShotStream& stream, L
         const PlaneRegion& region = regions[*r];
         const Vector3d away = Vector3d(p.x[i], p.y[i], p.z[i]) - region.centre;
         if (std::abs(region.normal.dot(away)) > region.reach) continue;
-        const std::uint64_t draw = mixed(std::bit_cast<std::uint64_t>(shots.time[i]) * 0x9e3779b97f4a7c15ull ^ std::bit_cast<std::uint64_t>(shots.range[i]));
+        const std::uint64_t draw =
+            mixed(std::bit_cast<std::uint64_t>(shots.time[i]) * 0x9e3779b97f4a7c15ull ^ std::bit_cast<std::uint64_t>(shots.range[i]));
         if (draw > limits[*r][line]) continue;
         if (region.cells.empty() && !is_inside(region.outline, {axes[*r][0].dot(away), axes[*r][1].dot(away)}, region.margin)) continue;
-        out[*r].push_back({shots.time[i], shots.angle[i], shots.forward.empty() ? 0.0 : shots.forward[i], shots.range[i], away.cast<float>(), line, draw});
+        out[*r].push_back({shots.time[i], shots.angle[i], shots.forward.empty() ? 0.0 : shots.forward[i], shots.range[i],
+                           away.cast<float>(), line, draw});
       }
     }
   });

@@ -26,7 +26,7 @@ struct NearReturn {
   double time = 0.0, angle = 0.0, forward = 0.0, range = 0.0;  ///< as recorded: s, rad, none, m
   Eigen::Vector3f place;                                       ///< from the region's centre, local frame, m
   std::uint32_t line = 0;                                      ///< index into the lines
-  std::uint64_t draw = 0;  ///< of the record's time and range: the lowest draws are an even sample
+  std::uint64_t draw = 0;                                      ///< of the record's time and range: the lowest draws are an even sample
 };
 
 /// Reads the stream once: last returns in each region, as they come. Where a look has far more than `wanted`, an even share of about 1.5

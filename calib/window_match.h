@@ -51,6 +51,7 @@ struct SubcellShift {
 };
 /// The bottom of the quadric through the nine costs about the lowest shift within `reach` cells of `near`. Nothing where the lowest lies on
 /// the rim of what was looked at, or where the costs have no bottom.
-std::optional<SubcellShift> subcell_shift(const Raster& a, const Raster& b, const ShiftCosts& costs, const Eigen::Vector2d& near, int reach);
+std::optional<SubcellShift> subcell_shift(const Raster& a, const Raster& b, const ShiftCosts& costs, const Eigen::Vector2d& near,
+                                          int reach);
 
 }  // namespace swath::calib

@@ -173,7 +173,8 @@ inline std::vector<House> village(int count, double half, unsigned seed) {
   while (static_cast<int>(out.size()) < count) {
     const Eigen::Vector2d c(half * (2 * u(random) - 1), half * (2 * u(random) - 1));
     const double length = 6 + 10 * u(random), width = 4 + 3 * u(random), eaves = 3 + 4 * u(random), rise = 1.5 + 3 * u(random);
-    const bool near = std::any_of(out.begin(), out.end(), [&](const House& h) { return (h.centre - c).norm() < h.radius + length + width; });
+    const bool near =
+        std::any_of(out.begin(), out.end(), [&](const House& h) { return (h.centre - c).norm() < h.radius + length + width; });
     if (!near) out.push_back(gable(c, core::pi * u(random), length, width, 0.0, eaves, eaves + rise));
   }
   return out;
