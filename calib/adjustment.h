@@ -21,12 +21,14 @@ constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 struct Estimate {
   Parameter parameter = boresight_roll;
   bool estimated = false;  ///< false: held at `start`
+  bool delivered = false;  ///< false: not determined (see the findings), `value` is that of the start
   double start = 0.0, value = 0.0;
+  double found = 0.0;                                        ///< what the adjustment found, delivered or not
   double apriori = std::numeric_limits<double>::infinity();  ///< sigma of `start` as an observation; infinite: free
   double formal = 0.0;                                       ///< sigma with the trajectory's errors correlated in time
   double white = 0.0;  ///< sigma if every return were independent and the trajectory without error: for comparison only
   double jackknife_lines = not_known, jackknife_planes = not_known;  ///< sigma by leaving out one line, one region of planes at a time
-  double sigma = 0.0;                                                ///< the one that is delivered
+  double sigma = 0.0;       ///< of `value`: formal, enlarged where a jackknife is significantly larger; where not delivered: `apriori`
   double determined = 0.0;  ///< 1 - (formal / apriori)^2: share of the knowledge that is the data's; 1 for free parameters
 };
 
@@ -59,11 +61,19 @@ struct ControlResidual {
 };
 
 struct VarianceComponent {
-  std::string name;     ///< "range", "angle", "trajectory position", "trajectory attitude", "control"
-  double stated = 0.0;  ///< sigma as stated (m, rad; trajectory: rms over the knots)
+  std::string name;     ///< "range", "angle", "surface", "trajectory position", "trajectory attitude", "control"
+  double stated = 0.0;  ///< sigma as stated (m, rad; surface: start value; trajectory: rms over the knots)
   double factor = 1.0;  ///< estimated sigma / stated
   double redundancy = 0.0;
   bool estimated = false;  ///< false: too little redundancy, the stated one was kept
+};
+
+/// One return after the adjustment: for plots.
+struct ResidualSample {
+  std::uint32_t group = 0;  ///< number in TieSet::groups
+  double time = 0.0, angle = 0.0, range = 0.0;  ///< s, rad and m, calibrated
+  double residual = 0.0;                        ///< distance from the adjusted plane, m
+  double sigma = 0.0;                           ///< of that distance by ranges, angles and roughness, m
 };
 
 /// One thing that the flight does not tell, or that looks wrong, in words.
@@ -86,9 +96,11 @@ struct Adjustment {
   std::vector<ControlResidual> control;
   std::vector<VarianceComponent> components;
   std::vector<Finding> findings;
-  double sigma0 = 0.0;  ///< of unit weight after the variance components
+  std::vector<ResidualSample> samples;  ///< every n-th return of the groups in use, so that there are 20 000 at most
+  double sigma0 = 0.0;                  ///< of unit weight after the variance components
   std::uint64_t observations = 0, unknowns = 0, rejected_returns = 0;
   int iterations = 0;
+  bool converged = false;
 };
 
 }  // namespace swath::calib

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rigorous adjustment of a calibration flight or of a survey's strips: returns of several lines lie on common planes.
+#pragma once
+
+#include "calib/adjust_options.h"
+#include "calib/adjustment.h"
+#include "calib/correction_knots.h"
+#include "trajectory/error_model.h"
+#include "trajectory/trajectory.h"
+
+namespace swath::calib {
+
+/// Estimates calibration values, corrections of the trajectory along each line and the planes, from the returns of `ties` through the
+/// equation of calib/shot_geometry.h. `noise`: sigmas of single records (range, scan_angle, beam_divergence, time). `covariance`: of the
+/// trajectory's errors. Groups of ties must be ordered by plane. The result does not depend on the number of threads.
+///
+/// The delivered sigma of a value is the formal one - from the inverse of the normal equations of all unknowns, the trajectory's errors
+/// correlated as `covariance` says and scaled by the variances found - times an enlargement where leaving out lines, or regions, moves the
+/// value significantly more than these covariances allow (calib/jackknife.h). Values that the flight does not tell (Finding::refuses) are
+/// delivered as they started, with their a-priori sigma; they stay unknowns, so that the others' sigmas hold their uncertainty.
+Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::Calibration& start, const core::SensorSigma& noise,
+                  const trajectory::Trajectory& trajectory, const ErrorCovariance& covariance, const AdjustOptions& options,
+                  int threads = 1);
+
+inline Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::Calibration& start,
+                         const core::SensorSigma& noise, const trajectory::Trajectory& trajectory,
+                         const trajectory::ErrorModel& errors, const AdjustOptions& options, int threads = 1) {
+  return adjust(
+      ties, scanner, start, noise, trajectory, [&errors](const std::vector<double>& t) { return errors.covariance(t); }, options, threads);
+}
+
+}  // namespace swath::calib

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Source of shift and drift per line: Ackermann, GNSS-supported block adjustment, eq 1; of knots by time: Glira, Pfeifer & Mandlburger,
+// "Rigorous strip adjustment of UAV-based laserscanning data including time-dependent correction of trajectory errors" (2016).
+// Deviation: errors between knots that are not linear in time are not in this model. They are left to the sigma of the surfaces, which is
+// estimated (calib/variance_components.h).
+#include "calib/correction_knots.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace swath::calib {
+namespace {
+
+// A line shorter than this has one constant.
+constexpr double shortest_line = 0.05;  // s
+// Sigmas that no error falls below: exact trajectories state zeros, which cannot be inverted.
+constexpr double least_position = 1e-6;  // m
+constexpr double least_attitude = 1e-9;  // rad
+// Independent part added to each unknown's variance so that nearly equal ones can be told apart by the arithmetic: a thousandth of its sigma.
+constexpr double own_share = 1e-6;
+
+std::vector<double> grid_of(double first, double last, double spacing) {
+  if (last - first < shortest_line) return {0.5 * (first + last)};
+  const int steps = std::max(1, static_cast<int>(std::ceil((last - first) / spacing - 1e-9)));
+  std::vector<double> out;
+  for (int i = 0; i <= steps; ++i) out.push_back(first + (last - first) * i / steps);
+  return out;
+}
+
+// Rows: knots of the form; columns: instants of the grid. The least-squares fit of the form to values on the grid.
+Eigen::MatrixXd projection(CorrectionForm form, const std::vector<double>& grid) {
+  const auto n = static_cast<Eigen::Index>(grid.size());
+  if (form == CorrectionForm::none) return Eigen::MatrixXd(0, n);
+  if (n == 1 || form == CorrectionForm::spline) return Eigen::MatrixXd::Identity(n, n);
+  if (form == CorrectionForm::shift) return Eigen::MatrixXd::Constant(1, n, 1.0 / static_cast<double>(n));
+  Eigen::MatrixXd A(n, 2);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double share = (grid[static_cast<size_t>(i)] - grid.front()) / (grid.back() - grid.front());
+    A.row(i) << 1.0 - share, share;
+  }
+  return (A.transpose() * A).ldlt().solve(A.transpose());
+}
+
+std::vector<double> knots_of(CorrectionForm form, const std::vector<double>& grid) {
+  if (form == CorrectionForm::none) return {};
+  if (form == CorrectionForm::shift && grid.size() > 1) return {0.5 * (grid.front() + grid.back())};
+  if (form == CorrectionForm::drift && grid.size() > 1) return {grid.front(), grid.back()};
+  return grid;
+}
+
+// The inverse of a covariance, scaled to correlations; what cannot be told apart is given a small part of its own.
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& covariance) {
+  if (covariance.rows() == 0) return covariance;
+  const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd correlation = sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
+  for (double own = own_share;; own *= 10.0) {
+    Eigen::MatrixXd C = correlation;
+    C.diagonal().array() += own;
+    const Eigen::LLT<Eigen::MatrixXd> llt(C);
+    if (llt.info() != Eigen::Success && own < 1.0) continue;
+    const Eigen::MatrixXd inverse = llt.solve(Eigen::MatrixXd::Identity(C.rows(), C.cols()));
+    return sigma.cwiseInverse().asDiagonal() * inverse * sigma.cwiseInverse().asDiagonal();
+  }
+}
+
+}  // namespace
+
+ErrorCovariance stated_covariance(const CorrectionOptions& o) {
+  const double p = o.stated_position.value, a = o.stated_roll_pitch.value, h = o.stated_heading.value;
+  const Correction sigma = (Correction() << p, p, p, a, a, h).finished();
+  return [sigma, tau = o.stated_correlation.value](const std::vector<double>& t) {
+    const auto n = static_cast<Eigen::Index>(t.size());
+    Eigen::MatrixXd C = Eigen::MatrixXd::Zero(6 * n, 6 * n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j)
+        C.block<6, 6>(6 * i, 6 * j) =
+            std::exp(-std::abs(t[i] - t[j]) / tau) * Eigen::MatrixXd(sigma.cwiseAbs2().asDiagonal());
+    return C;
+  };
+}
+
+CorrectionKnots::CorrectionKnots(const std::vector<TieLine>& lines, double latency, const CorrectionOptions& o,
+                                 const ErrorCovariance& given) {
+  std::vector<double> instants;
+  std::vector<Eigen::Index> first_instant;
+  std::vector<std::vector<double>> grids;
+  const auto place = [this](Knots& k, CorrectionForm form, const std::vector<double>& grid, bool position) {
+    k.time = knots_of(form, grid);
+    k.first = size_;
+    size_ += 3 * static_cast<int>(k.time.size());
+    is_position_.resize(static_cast<size_t>(size_), position);
+  };
+  for (const TieLine& l : lines) {
+    const std::vector<double> grid = grid_of(l.first + latency, l.last + latency, o.spacing.value);
+    Line line;
+    place(line.position, o.position, grid, true);
+    place(line.attitude, o.attitude, grid, false);
+    line.told = std::max(line.position.time.size(), line.attitude.time.size()) > 1
+                    ? (line.position.time.size() > line.attitude.time.size() ? line.position.time : line.attitude.time)
+                    : std::vector<double>{grid.front(), grid.back()};
+    lines_.push_back(std::move(line));
+    first_instant.push_back(static_cast<Eigen::Index>(instants.size()));
+    instants.insert(instants.end(), grid.begin(), grid.end());
+    grids.push_back(grid);
+  }
+  covariance_ = Eigen::MatrixXd::Zero(size_, size_);
+  if (size_ == 0) {
+    information_ = covariance_;
+    return;
+  }
+  const Eigen::MatrixXd errors = given(instants);
+  // The unknowns are P times the errors at the instants.
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(size_, errors.rows());
+  for (size_t l = 0; l < lines_.size(); ++l)
+    for (const int part : {0, 1}) {
+      const Knots& knots = part == 0 ? lines_[l].position : lines_[l].attitude;
+      const Eigen::MatrixXd share = projection(part == 0 ? o.position : o.attitude, grids[l]);
+      for (Eigen::Index k = 0; k < share.rows(); ++k)
+        for (Eigen::Index i = 0; i < share.cols(); ++i)
+          for (int c = 0; c < 3; ++c) P(knots.first + 3 * k + c, 6 * (first_instant[l] + i) + 3 * part + c) = share(k, i);
+    }
+  covariance_ = P * errors * P.transpose();
+  for (int i = 0; i < size_; ++i) {
+    const double least = is_position(i) ? least_position : least_attitude;
+    covariance_(i, i) += least * least;
+  }
+  information_ = inverse_of(covariance_);
+}
+
+CorrectionKnots::Weights CorrectionKnots::weights(const Knots& k, double t) {
+  Weights w;
+  if (k.time.empty()) return w;
+  if (k.time.size() == 1) return {1, {k.first, 0}, {1.0, 0.0}};
+  const double step = (k.time.back() - k.time.front()) / static_cast<double>(k.time.size() - 1);
+  const double place = (std::clamp(t, k.time.front(), k.time.back()) - k.time.front()) / step;
+  const int j = std::min(static_cast<int>(place), static_cast<int>(k.time.size()) - 2);
+  const double share = place - j;
+  return {2, {k.first + 3 * j, k.first + 3 * j + 3}, {1.0 - share, share}};
+}
+
+Correction CorrectionKnots::at(size_t line, double t, const Eigen::VectorXd& x) const {
+  Correction out = Correction::Zero();
+  const Weights p = position(line, t), a = attitude(line, t);
+  for (size_t i = 0; i < static_cast<size_t>(p.count); ++i) out.head<3>() += p.weight[i] * x.segment<3>(p.first[i]);
+  for (size_t i = 0; i < static_cast<size_t>(a.count); ++i) out.tail<3>() += a.weight[i] * x.segment<3>(a.first[i]);
+  return out;
+}
+
+Eigen::MatrixXd CorrectionKnots::derivatives(size_t line, double t, std::vector<int>& numbers) const {
+  numbers.clear();
+  const Weights w[2] = {position(line, t), attitude(line, t)};
+  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(6, 3 * (w[0].count + w[1].count));
+  for (int part = 0; part < 2; ++part)
+    for (size_t i = 0; i < static_cast<size_t>(w[part].count); ++i)
+      for (int c = 0; c < 3; ++c) {
+        D(3 * part + c, static_cast<Eigen::Index>(numbers.size())) = w[part].weight[i];
+        numbers.push_back(w[part].first[i] + c);
+      }
+  return D;
+}
+
+Eigen::MatrixXd CorrectionKnots::information(double position_factor, double attitude_factor) const {
+  Eigen::VectorXd scale(size_);
+  for (int i = 0; i < size_; ++i) scale[i] = 1.0 / (is_position(i) ? position_factor : attitude_factor);
+  return scale.asDiagonal() * information_ * scale.asDiagonal();
+}
+
+Eigen::MatrixXd CorrectionKnots::common_shift() const {
+  Eigen::MatrixXd B = Eigen::MatrixXd::Zero(size_, 3);
+  for (const Line& l : lines_)
+    for (int k = 0; k < static_cast<int>(l.position.time.size()); ++k) B.block<3, 3>(l.position.first + 3 * k, 0).setIdentity();
+  return B;
+}
+
+}  // namespace swath::calib

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Source: Foerstner, "Ein Verfahren zur Schaetzung von Varianz- und Kovarianzkomponenten" (1979): variance = v^T P v / redundancy of the
+// component, repeated until steady. For ranges and angles, which share every condition, the pair of equations (Helmert's estimator) is solved
+// at once. Deviation: the trajectory's and the control's factors carry stated degrees of freedom, for a few lines would tell them badly: with
+// r degrees of freedom the estimated factor itself has the relative sigma 1 / sqrt(2 r).
+#include "calib/variance_components.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swath::calib {
+namespace {
+
+constexpr double told = 0.25;             // relative sigma of a variance that is taken
+constexpr double least_redundancy = 3.0;  // degrees of freedom
+constexpr double lowest = 0.1, highest = 20.0;
+constexpr double step = 2.0;  // of a sigma, in one round
+// Groups far out do not make the others' sigma: they are left to the snooping.
+constexpr double largest_square = 9.0;
+
+double bounded(double variance_ratio) { return std::clamp(std::sqrt(std::max(0.0, variance_ratio)), 1.0 / step, step); }
+void apply(SigmaFactor& f, double variance_ratio) { f.factor = std::clamp(f.factor * bounded(variance_ratio), lowest, highest); }
+
+}  // namespace
+
+void update_white(const std::vector<GroupBlock>& blocks, const TieSelection& use, const ComponentOptions& o, SigmaFactors& f) {
+  double m[5] = {};
+  for (size_t g = 0; g < blocks.size(); ++g)
+    if (use.group[g])
+      for (int k = 0; k < 5; ++k) m[k] += blocks[g].moment[k];
+  f.range.estimated = f.angle.estimated = false;
+  f.range.redundancy = m[0];
+  f.angle.redundancy = 0.0;
+  // Variance of normally distributed squares is twice their mean's: the estimates have the covariance 2 M^-1.
+  const double det = m[0] * m[2] - m[1] * m[1];
+  const auto is_told = [](double variance) { return variance > 0.0 && 2.0 * variance < told * told; };
+  if (det > 1e-12 * m[0] * m[2] && m[2] > 0.0) f.angle.redundancy = det / m[0];
+  if (o.range && o.angle && f.angle.redundancy > 0.0 && is_told(m[2] / det) && is_told(m[0] / det)) {
+    apply(f.range, (m[2] * m[3] - m[1] * m[4]) / det);
+    apply(f.angle, (m[0] * m[4] - m[1] * m[3]) / det);
+    f.range.estimated = f.angle.estimated = true;
+    f.range.redundancy = det / m[2];
+  } else if (o.range && m[0] > 0.0 && is_told(1.0 / m[0])) {
+    apply(f.range, (m[3] - m[1]) / m[0]);
+    f.range.estimated = true;
+  } else if (o.angle && !o.range && m[2] > 0.0 && is_told(1.0 / m[2])) {
+    apply(f.angle, (m[4] - m[1]) / m[2]);
+    f.angle.estimated = true;
+  }
+}
+
+void update_correlated(const TieProblem& problem, const TieSystem& system, const TieSolution& s, const TieTests& tests,
+                       const TieSelection& use, const TiePrior& prior, const Eigen::VectorXd& correction, const ComponentOptions& o,
+                       SigmaFactors& f) {
+  const auto globals = static_cast<Eigen::Index>(problem.globals.size());
+  const auto with_freedom = [&](SigmaFactor& factor, double omega, double redundancy, bool wanted) {
+    factor.redundancy = redundancy;
+    factor.estimated = wanted && redundancy >= least_redundancy;
+    if (!factor.estimated) return;
+    const double now = factor.factor * factor.factor;
+    apply(factor, (o.freedom + now * std::max(0.0, omega)) / (o.freedom + redundancy) / now);
+  };
+
+  double surface = 0.0, surface_freedom = 0.0;
+  const double t2 = system.surface() * system.surface();
+  for (size_t g = 0; g < tests.group.size(); ++g) {
+    if (!use.group[g]) continue;
+    const TieTest& t = tests.group[g];
+    surface += std::min(t.w * t.w, largest_square) * t2 * t.information;
+    surface_freedom += t2 * t.information;
+  }
+  f.surface.redundancy = surface_freedom;
+  f.surface.estimated = o.surface && surface_freedom >= least_redundancy;
+  if (f.surface.estimated) apply(f.surface, surface / surface_freedom);
+
+  double omega[2] = {}, freedom[2] = {};
+  const Eigen::VectorXd weighted = prior.corrections * correction;
+  for (Eigen::Index i = 0; i < correction.size(); ++i) {
+    const int part = problem.knots->is_position(static_cast<int>(i)) ? 0 : 1;
+    omega[part] += correction[i] * weighted[i];
+    freedom[part] += 1.0 - prior.corrections.col(i).dot(s.covariance.col(globals + i).tail(correction.size()));
+  }
+  with_freedom(f.position, omega[0], freedom[0], o.position);
+  with_freedom(f.attitude, omega[1], freedom[1], o.attitude);
+
+  double control = 0.0, control_freedom = 0.0;
+  for (size_t c = 0; c < tests.control.size(); ++c) {
+    if (!use.control[c]) continue;
+    control += tests.control[c].w * tests.control[c].w * tests.control[c].redundancy;
+    control_freedom += tests.control[c].redundancy;
+  }
+  with_freedom(f.control, control, control_freedom, o.control);
+}
+
+}  // namespace swath::calib

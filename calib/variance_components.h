@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How large the errors of ranges, angles, surfaces, trajectory and control really are, from the residuals.
+#pragma once
+
+#include "calib/adjust_options.h"
+#include "calib/snooping.h"
+
+namespace swath::calib {
+
+/// Factor on a stated sigma.
+struct SigmaFactor {
+  double factor = 1.0;
+  double redundancy = 0.0;  ///< degrees of freedom that tell it
+  bool estimated = false;
+};
+struct SigmaFactors {
+  SigmaFactor range, angle, surface, position, attitude, control;
+};
+
+/// Ranges and angles, from deviations of single returns within their groups. A component is told where its variance comes out to a
+/// quarter of itself; angles that are not are held as stated. Steps are between a half and twice the sigma.
+void update_white(const std::vector<GroupBlock>& blocks, const TieSelection& use, const ComponentOptions& options, SigmaFactors& factors);
+
+/// Surfaces, trajectory and control, from a solution with covariance. `correction`: values of the corrections after the step. The factors of
+/// trajectory and control are drawn to 1 by options.freedom degrees of freedom:
+/// factor^2 = (freedom + factor^2 Omega) / (freedom + redundancy).
+void update_correlated(const TieProblem& problem, const TieSystem& system, const TieSolution& solution, const TieTests& tests,
+                       const TieSelection& use, const TiePrior& prior, const Eigen::VectorXd& correction, const ComponentOptions& options,
+                       SigmaFactors& factors);
+
+}  // namespace swath::calib
