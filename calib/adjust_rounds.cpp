@@ -17,6 +17,7 @@ using Eigen::VectorXd;
 
 constexpr double steady_step = 0.01;    // of an unknown's sigma
 constexpr double steady_factor = 0.03;  // of a sigma's factor
+constexpr double least_range = 1e-3;  // m: a sigma of zero would leave nothing to weigh by
 constexpr int snooping_rounds = 6, batches = 8;
 // What holds a free unknown that nothing tells, in useful sigmas: the equations stay solvable, the value is refused.
 constexpr double free_sigma = 1e4;
@@ -36,7 +37,7 @@ AdjustRounds::AdjustRounds(const TieProblem& problem, const core::Calibration& s
 }
 
 TieNoise AdjustRounds::noise() const {
-  return {factors.range.factor * stated_->range.value, factors.angle.factor * stated_->scan_angle.value,
+  return {factors.range.factor * std::max(least_range, stated_->range.value), factors.angle.factor * stated_->scan_angle.value,
           factors.angle.factor * stated_->beam_divergence.value / 4.0, stated_->time.value};
 }
 

@@ -5,6 +5,7 @@
 // mm at 700 m); corrections do not enter the derivative by the latency (their rates, under 1 mm/s against the carrier's speed).
 #include "calib/tie_normals.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,6 +23,9 @@ using Eigen::Vector3d;
 
 constexpr double median_to_sigma = 1.4826;
 constexpr double least_scale = 0.05;  // of the stated sigmas: exact records would leave nothing to divide by
+
+// A point this share of its range off its plane is brought no nearer: it is an outlier, or the start is far.
+constexpr double most_correction = 0.01;
 
 // "Add it to the trajectory": metres in north, east, down, and Euler angles.
 void correct(trajectory::Pose& pose, const Correction& d) {
@@ -245,26 +249,54 @@ bool condition_of(const TieProblem& p, const ShotGeometry& geometry, const TieSt
   if (!cursor.seek(t)) return false;
   trajectory::Pose pose = cursor.pose(t);
   if (p.knots->size() > 0) correct(pose, p.knots->at(g.line, t, state.correction));
-  Jacobian J;
-  const Vector3d ecef = geometry.ecef_point(pose, {r.angle[i], r.forward[i], r.range[i]}, J);
+  const Return record{r.angle[i], r.forward[i], r.range[i]};
+  const Vector3d ecef = geometry.ecef_point(pose, record);
   if (!ecef.allFinite()) return false;
 
   const TiePlane& plane = state.planes[g.plane];
   const Matrix3d& local_R_ecef = p.ties->frame.local_R_ecef;
-  const Vector3d d = local_R_ecef * (ecef - p.ties->frame.origin) - plane.centre;
   const auto axes = plane_axes(plane.normal);
   const Vector3d normal = local_R_ecef.transpose() * plane.normal;
+  const Vector3d d = local_R_ecef * (ecef - p.ties->frame.origin) - plane.centre;
   out.f = plane.normal.dot(d);
-  out.by = normal.transpose() * J;
-  out.u = axes[0].dot(d);
-  out.v = axes[1].dot(d);
-  const Vector3d beam = ecef - pose.position - pose.ecef_R_body * geometry.lever_arm();
-  const double along = normal.dot(beam);
+
+  // How records move the point, and so the variance of the condition.
   const auto square = [](double v) { return v * v; };
-  out.range = square(out.by[record_range] * noise.range);
-  out.angle = square(out.by[record_angle] * noise.angle) + square(noise.pointing) * std::max(0.0, beam.squaredNorm() - along * along);
-  out.constant = square(out.by[record_time] * noise.time) + square(state.roughness[g.plane]);
+  const core::Calibration& c = geometry.calibration();
+  const Vector3d beam = ecef - pose.position - pose.ecef_R_body * geometry.lever_arm();
+  const double length = beam.norm(), along = normal.dot(beam);
+  const Vector3d by_range = beam * (geometry.air().range_factor * c.range_scale / length);
+  const Vector3d by_angle = pose.ecef_R_body * (geometry.body_R_scanner() * geometry.beam()(geometry.angle(record.angle), record.forward).by_angle) *
+                            (geometry.beam().ignores_record() ? 0.0 : length * c.scan_scale);
+  out.range = square(normal.dot(by_range) * noise.range);
+  out.angle = square(normal.dot(by_angle) * noise.angle) + square(noise.pointing) * std::max(0.0, square(length) - square(along));
+  out.constant = square(normal.dot(pose.velocity) * noise.time) + square(state.roughness[g.plane]);
   out.depth = std::abs((local_R_ecef * beam).z());
+
+  // Derivatives belong to the adjusted records (Gauss-Helmert): those of a point off its plane are correlated with its distance, and a
+  // million such products bias what is weakly determined. The records' corrections that bring the point to its plane:
+  const double k = -std::clamp(out.f, -most_correction * length, most_correction * length) / out.variance();
+  const Vector3d pointed = (k * square(noise.pointing)) * (square(length) * normal - along * beam);
+  const double turned = by_angle.squaredNorm();
+  const double pointed_angle = turned > 0.0 ? by_angle.dot(pointed) / turned : 0.0;
+  const Vector3d aside = pointed - pointed_angle * by_angle;  // by the pointing along the track, which no record holds
+  Jacobian J;
+  const Vector3d adjusted = aside + geometry.ecef_point(pose,
+                                                        {record.angle + k * square(noise.angle) * normal.dot(by_angle) + pointed_angle,
+                                                         record.forward, record.range + k * square(noise.range) * normal.dot(by_range)},
+                                                        J);
+  out.by = normal.transpose() * J;
+  if (noise.pointing > 0.0) {
+    const Vector3d down = -local_R_ecef.row(2).transpose();
+    const Vector3d attitude_axes[3] = {pose.ecef_R_body.col(0), down.cross(pose.ecef_R_body.col(0)).normalized(), down};
+    for (int q = 0; q < 3; ++q) {
+      out.by[boresight_roll + q] += normal.dot((pose.ecef_R_body * geometry.boresight_axes().col(q)).cross(aside));
+      out.by[attitude_roll + q] += normal.dot(attitude_axes[q].cross(aside));
+    }
+  }
+  const Vector3d place = local_R_ecef * (adjusted - p.ties->frame.origin) - plane.centre;
+  out.u = axes[0].dot(place);
+  out.v = axes[1].dot(place);
   return true;
 }
 
