@@ -2,9 +2,10 @@
 #include "calib/tie_set.h"
 
 #include <Eigen/Geometry>
-#include <cmath>
 
 namespace swath::calib {
+
+using Eigen::Vector3d;
 
 std::string_view name_of(TieKind kind) {
   switch (kind) {
@@ -14,15 +15,19 @@ std::string_view name_of(TieKind kind) {
       return "roof";
     case TieKind::wall:
       return "wall";
-    default:
+    case TieKind::target:
       return "target";
   }
+  return "";
 }
 
-std::array<Eigen::Vector3d, 2> plane_axes(const Eigen::Vector3d& normal) {
-  const double level = std::hypot(normal.x(), normal.y());
-  const Eigen::Vector3d u = level < 1e-9 ? Eigen::Vector3d(1.0, 0.0, 0.0) : Eigen::Vector3d(-normal.y() / level, normal.x() / level, 0.0);
-  return {u, normal.cross(u)};
+std::array<Vector3d, 2> plane_axes(const Vector3d& normal) {
+  // A level plane has no level line of its own: u is east turned into the plane.
+  constexpr double level = 1e-6;
+  const double across = normal.head<2>().norm();
+  const Vector3d u = across > level ? Vector3d(-normal.y() / across, normal.x() / across, 0.0)
+                                    : Vector3d(Vector3d::UnitX() - normal.x() * normal).normalized();
+  return {u, normal.cross(u).normalized()};
 }
 
 }  // namespace swath::calib
