@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sources: Skaloud & Lichti (2006) and Glira et al. (2016) for the model (calib/tie_normals.h, correction_knots.h); Foerstner (1979) for the
-// variances; Baarda (1968) for the tests. Here: the unknowns are chosen, the rounds are run, and the results are put together.
+// Sources: Skaloud & Lichti (2006) and Glira et al. (2016) for the model (calib/tie_normals.h, correction_knots.h); Foerstner (1979) for
+// the variances; Baarda (1968) for the tests. Here: the unknowns are chosen, the rounds are run, and the results are put together.
 // Deviations: sigmas take the estimated variances as known (their own scatter adds a per cent or so to 20 degrees of freedom's 16 % in a
 // component that is one of several); refused values are delivered as they started while the others come from the joint solution.
 #include "calib/adjust.h"
@@ -92,7 +92,13 @@ class Results {
  public:
   Results(const TieProblem& problem, const AdjustRounds& rounds, const core::Calibration& start, const core::SensorSigma& noise,
           const VectorXd& apriori, const AdjustOptions& options, Adjustment& out)
-      : p_(problem), r_(rounds), start_(start), noise_(noise), apriori_(apriori), o_(options), out_(out),
+      : p_(problem),
+        r_(rounds),
+        start_(start),
+        noise_(noise),
+        apriori_(apriori),
+        o_(options),
+        out_(out),
         globals_(static_cast<Eigen::Index>(problem.globals.size())) {}
 
   void all() {
@@ -192,7 +198,8 @@ class Results {
 
   void planes() {
     out_.planes = r_.state.planes;
-    for (const PlaneRest& rest : r_.rests) out_.plane_sigma.push_back(plane_covariance(rest, r_.solution.covariance).diagonal().cwiseSqrt());
+    for (const PlaneRest& rest : r_.rests)
+      out_.plane_sigma.push_back(plane_covariance(rest, r_.solution.covariance).diagonal().cwiseSqrt());
   }
 
   void residuals() {
@@ -257,6 +264,7 @@ class Results {
   }
 
   VectorXd white() const {
+    if (globals_ == 0) return {};
     Normals n{MatrixXd::Zero(globals_, globals_), VectorXd::Zero(globals_)};
     for (std::uint32_t k = 0; k < r_.system().planes(); ++k) r_.system().add(k, r_.use, 1.0, n, true);
     return sigmas_with(n.N, r_.prior.globals);
@@ -328,7 +336,8 @@ class Results {
     worse(f.attitude, "the trajectory's attitudes", "look at its IMU's model and its report");
     worse(f.control, "control points", "look at their residuals");
     if (r_.snooping_full)
-      tell("more planes or control points are displaced than may be left out", "look at the groups with the largest w; raise snooping.share");
+      tell("more planes or control points are displaced than may be left out",
+           "look at the groups with the largest w; raise snooping.share");
     if (static_cast<double>(outside_) > outside_to_tell * static_cast<double>(p_.ties->returns.size()))
       tell(std::to_string(outside_) + " of " + std::to_string(p_.ties->returns.size()) + " returns lie at times without trajectory",
            "check time scales and gaps");
@@ -351,8 +360,7 @@ class Results {
 }  // namespace
 
 Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::Calibration& start, const core::SensorSigma& noise,
-                  const trajectory::Trajectory& trajectory, const ErrorCovariance& covariance, const AdjustOptions& options,
-                  int threads) {
+                  const trajectory::Trajectory& trajectory, const ErrorCovariance& covariance, const AdjustOptions& options, int threads) {
   Adjustment out;
   out.calibration = start;
   for (int k = boresight_roll; k <= latency; ++k) {
@@ -360,9 +368,8 @@ Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::
     e.parameter = static_cast<Parameter>(k);
     e.start = e.value = e.found = value_of(start, e.parameter);
   }
-  const CorrectionKnots knots(
-      ties.lines, start.latency.value, options.corrections,
-      options.corrections.prior == CorrectionPrior::stated ? stated_covariance(options.corrections) : covariance);
+  const CorrectionKnots knots(ties.lines, start.latency.value, options.corrections,
+                              options.corrections.prior == CorrectionPrior::stated ? stated_covariance(options.corrections) : covariance);
   TieProblem problem{&ties, &scanner, &trajectory, &knots, {}, RobustWeight(options.robust.full, options.robust.zero), threads};
   problem.globals = chosen(options.estimate, BeamModel(scanner), out.findings);
   VectorXd apriori(problem.globals.size()), limit(problem.globals.size());
@@ -375,7 +382,8 @@ Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::
   rounds.run();
   if (!rounds.solution.solved) {
     out.planes = ties.planes;
-    out.findings.push_back({"the normal equations cannot be solved", "check that trajectory and returns are of one flight", problem.globals, true});
+    out.findings.push_back(
+        {"the normal equations cannot be solved", "check that trajectory and returns are of one flight", problem.globals, true});
     return out;
   }
   Results(problem, rounds, start, noise, apriori, options, out).all();

@@ -22,9 +22,9 @@ Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::
                   const trajectory::Trajectory& trajectory, const ErrorCovariance& covariance, const AdjustOptions& options,
                   int threads = 1);
 
-inline Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::Calibration& start,
-                         const core::SensorSigma& noise, const trajectory::Trajectory& trajectory,
-                         const trajectory::ErrorModel& errors, const AdjustOptions& options, int threads = 1) {
+inline Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::Calibration& start, const core::SensorSigma& noise,
+                         const trajectory::Trajectory& trajectory, const trajectory::ErrorModel& errors, const AdjustOptions& options,
+                         int threads = 1) {
   return adjust(
       ties, scanner, start, noise, trajectory, [&errors](const std::vector<double>& t) { return errors.covariance(t); }, options, threads);
 }

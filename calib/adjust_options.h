@@ -68,7 +68,8 @@ enum class CorrectionPrior {
 
 struct CorrectionOptions {
   CorrectionForm position = CorrectionForm::spline, attitude = CorrectionForm::spline;
-  core::Seconds spacing{3.0};
+  core::Seconds spacing{1.0};
+  int most = 1500;
   CorrectionPrior prior = CorrectionPrior::trajectory;
   core::Metres stated_position{0.1};
   core::Radians stated_roll_pitch = core::degrees(0.01), stated_heading = core::degrees(0.02);
@@ -80,7 +81,11 @@ void describe(CorrectionOptions& o, V& v) {
   v.option("position", o.position, "Correction of the position along each line: none, shift, drift (a0 + a1 t) or spline (knots by time).",
            "Ackermann eq 1");
   v.option("attitude", o.attitude, "Correction of the attitude along each line.");
-  v.option("spacing", o.spacing, core::above(0), "Longest time between two knots of a spline; shifts and drifts are fitted to this grid.");
+  v.option(
+      "spacing", o.spacing, core::above(0),
+      "Longest time between two knots of a spline; shifts and drifts are fitted to this grid. What the trajectory errs by between knots "
+      "is taken for an error of single planes: too wide a spacing makes sigmas too small.");
+  v.option("most", o.most, core::within(12, 6000), "Most unknowns of all lines' corrections: the spacing is widened to keep it.");
   v.option("prior", o.prior,
            "Where the corrections' covariance comes from: the trajectory, or the stated sigmas below where those of the trajectory cannot "
            "be believed.");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gauss-Newton with robust weights. The order matters: planes are refitted first, for the start values' errors are common to all returns of a
-// group; control enters after the strips agree among themselves, so that control in another datum is seen for what it is; displaced groups go
-// one batch at a time, and after each the variances are estimated anew.
+// Gauss-Newton with robust weights. The order matters: planes are refitted first, for the start values' errors are common to all returns of
+// a group; control enters after the strips agree among themselves, so that control in another datum is seen for what it is; displaced
+// groups go one batch at a time, and after each the variances are estimated anew.
 #include "calib/adjust_rounds.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 constexpr double steady_step = 0.01;    // of an unknown's sigma
 constexpr double steady_factor = 0.03;  // of a sigma's factor
-constexpr double least_range = 1e-3;  // m: a sigma of zero would leave nothing to weigh by
+constexpr double least_range = 1e-3;    // m: a sigma of zero would leave nothing to weigh by
 constexpr int snooping_rounds = 6, batches = 8;
 // What holds a free unknown that nothing tells, in useful sigmas: the equations stay solvable, the value is refused.
 constexpr double free_sigma = 1e4;

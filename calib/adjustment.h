@@ -70,7 +70,7 @@ struct VarianceComponent {
 
 /// One return after the adjustment: for plots.
 struct ResidualSample {
-  std::uint32_t group = 0;  ///< number in TieSet::groups
+  std::uint32_t group = 0;                      ///< number in TieSet::groups
   double time = 0.0, angle = 0.0, range = 0.0;  ///< s, rad and m, calibrated
   double residual = 0.0;                        ///< distance from the adjusted plane, m
   double sigma = 0.0;                           ///< of that distance by ranges, angles and roughness, m

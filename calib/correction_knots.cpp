@@ -17,7 +17,8 @@ constexpr double shortest_line = 0.05;  // s
 // Sigmas that no error falls below: exact trajectories state zeros, which cannot be inverted.
 constexpr double least_position = 1e-6;  // m
 constexpr double least_attitude = 1e-9;  // rad
-// Independent part added to each unknown's variance so that nearly equal ones can be told apart by the arithmetic: a thousandth of its sigma.
+// Independent part added to each unknown's variance so that nearly equal ones can be told apart by the arithmetic: a thousandth of its
+// sigma.
 constexpr double own_share = 1e-6;
 
 std::vector<double> grid_of(double first, double last, double spacing) {
@@ -26,6 +27,21 @@ std::vector<double> grid_of(double first, double last, double spacing) {
   std::vector<double> out;
   for (int i = 0; i <= steps; ++i) out.push_back(first + (last - first) * i / steps);
   return out;
+}
+
+// The stated spacing, or the least wider one that keeps the number of unknowns.
+double spacing_for(const std::vector<TieLine>& lines, const CorrectionOptions& o) {
+  const int splines = (o.position == CorrectionForm::spline) + (o.attitude == CorrectionForm::spline);
+  double spacing = o.spacing.value;
+  const auto unknowns = [&] {
+    size_t n = 0;
+    for (const TieLine& l : lines) n += 3 * splines * grid_of(l.first, l.last, spacing).size();
+    return n;
+  };
+  // Two knots on each line are the least.
+  const size_t most = std::max<size_t>(o.most, 6 * splines * lines.size());
+  while (unknowns() > most) spacing *= 1.1;
+  return spacing;
 }
 
 // Rows: knots of the form; columns: instants of the grid. The least-squares fit of the form to values on the grid.
@@ -74,8 +90,7 @@ ErrorCovariance stated_covariance(const CorrectionOptions& o) {
     Eigen::MatrixXd C = Eigen::MatrixXd::Zero(6 * n, 6 * n);
     for (Eigen::Index i = 0; i < n; ++i)
       for (Eigen::Index j = 0; j < n; ++j)
-        C.block<6, 6>(6 * i, 6 * j) =
-            std::exp(-std::abs(t[i] - t[j]) / tau) * Eigen::MatrixXd(sigma.cwiseAbs2().asDiagonal());
+        C.block<6, 6>(6 * i, 6 * j) = std::exp(-std::abs(t[i] - t[j]) / tau) * Eigen::MatrixXd(sigma.cwiseAbs2().asDiagonal());
     return C;
   };
 }
@@ -91,8 +106,9 @@ CorrectionKnots::CorrectionKnots(const std::vector<TieLine>& lines, double laten
     size_ += 3 * static_cast<int>(k.time.size());
     is_position_.resize(static_cast<size_t>(size_), position);
   };
+  spacing_ = spacing_for(lines, o);
   for (const TieLine& l : lines) {
-    const std::vector<double> grid = grid_of(l.first + latency, l.last + latency, o.spacing.value);
+    const std::vector<double> grid = grid_of(l.first + latency, l.last + latency, spacing_);
     Line line;
     place(line.position, o.position, grid, true);
     place(line.attitude, o.attitude, grid, false);

@@ -29,6 +29,8 @@ class CorrectionKnots {
   CorrectionKnots(const std::vector<TieLine>& lines, double latency, const CorrectionOptions& options, const ErrorCovariance& covariance);
 
   int size() const { return size_; }
+  /// Time between knots, s: as stated, or wider to keep options.most.
+  double spacing() const { return spacing_; }
   /// Which three unknowns act at an instant, and by how much; up to two threes each.
   struct Weights {
     int count = 0;
@@ -67,6 +69,7 @@ class CorrectionKnots {
   std::vector<Line> lines_;
   std::vector<bool> is_position_;
   int size_ = 0;
+  double spacing_ = 0.0;
   Eigen::MatrixXd covariance_, information_;
 };
 

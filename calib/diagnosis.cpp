@@ -69,7 +69,8 @@ Words words_for(Parameter p, const FlightShape& s) {
     case scan_scale:
       if (!s.crossed && !s.beside)
         return {name + " bends each swath alike, and no lines cross or lie side by side", "fly one line across the others"};
-      if (!s.control) return {name + " raises the swath's edges little at narrow angles", "fly cross lines, wide angles and a surveyed plane"};
+      if (!s.control)
+        return {name + " raises the swath's edges little at narrow angles", "fly cross lines, wide angles and a surveyed plane"};
       break;
     case lever_forward:
     case lever_right:
@@ -191,8 +192,8 @@ double scaled_condition(const MatrixXd& information) {
   return least > 1e-15 ? eigen.eigenvalues().maxCoeff() / least : std::numeric_limits<double>::infinity();
 }
 
-std::vector<Finding> diagnose(const std::vector<Parameter>& globals, const Separation& sep, const VectorXd& apriori, const FlightShape& shape,
-                              const LimitOptions& limits) {
+std::vector<Finding> diagnose(const std::vector<Parameter>& globals, const Separation& sep, const VectorXd& apriori,
+                              const FlightShape& shape, const LimitOptions& limits) {
   const auto n = static_cast<Eigen::Index>(globals.size());
   std::vector<Finding> out;
   if (n == 0) return out;
@@ -210,7 +211,8 @@ std::vector<Finding> diagnose(const std::vector<Parameter>& globals, const Separ
     for (Eigen::Index i = 0; i < n; ++i)
       if (std::pow(eigen.eigenvectors()(i, k), 2) > part_of_combination && refused[i]) parts.push_back(globals[i]);
     if (parts.size() < 2) continue;
-    if (std::all_of(parts.begin(), parts.end(), [&](Parameter p) { return named[std::find(globals.begin(), globals.end(), p) - globals.begin()]; }))
+    if (std::all_of(parts.begin(), parts.end(),
+                    [&](Parameter p) { return named[std::find(globals.begin(), globals.end(), p) - globals.begin()]; }))
       continue;
     Finding f{joined(parts) + " cannot be told apart", "", parts, true};
     std::set<std::string> cures;

@@ -19,15 +19,15 @@ double limit_of(const LimitOptions& limits, Parameter p);
 
 /// The geometry of a flight as its groups of returns show it.
 struct FlightShape {
-  int lines = 0;               ///< with returns on planes that another line sees too
-  bool opposite = false;       ///< two lines that share planes fly opposite ways
-  bool crossed = false;        ///< two lines that share planes cross
-  bool beside = false;         ///< two parallel lines see common planes at angles well apart: swaths overlap at their sides
-  bool two_heights = false;    ///< two lines that share planes fly at heights 1 : 1.2 or more
+  int lines = 0;             ///< with returns on planes that another line sees too
+  bool opposite = false;     ///< two lines that share planes fly opposite ways
+  bool crossed = false;      ///< two lines that share planes cross
+  bool beside = false;       ///< two parallel lines see common planes at angles well apart: swaths overlap at their sides
+  bool two_heights = false;  ///< two lines that share planes fly at heights 1 : 1.2 or more
   bool control = false;
-  int sloping = 0;             ///< planes steeper than 10 deg that two lines see
-  int common = 0;              ///< planes that two lines see
-  double widest = 0.0;         ///< largest scan angle on them, rad
+  int sloping = 0;      ///< planes steeper than 10 deg that two lines see
+  int common = 0;       ///< planes that two lines see
+  double widest = 0.0;  ///< largest scan angle on them, rad
 };
 FlightShape shape_of(const TieProblem& problem, const TieState& state, const std::vector<GroupBlock>& blocks);
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Source: Tukey's jackknife (Efron & Tibshirani, "An Introduction to the Bootstrap", 11). Deviation: the classical sigma is read against its
-// own expectation. Lines weigh unequally and come in correlated pairs, so that sqrt((J - 1) / J sum (x_j - x)^2) is no sigma of x: under the
-// model var(x_j - x) = var(x_j) - var(x) (least squares), and only its ratio to the sum of these says whether the covariances are true.
+// Source: Tukey's jackknife (Efron & Tibshirani, "An Introduction to the Bootstrap", 11). Deviation: the classical sigma is read against
+// its own expectation. Lines weigh unequally and come in correlated pairs, so that sqrt((J - 1) / J sum (x_j - x)^2) is no sigma of x:
+// under the model var(x_j - x) = var(x_j) - var(x) (least squares), and only its ratio to the sum of these says whether the covariances are
+// true.
 #include "calib/jackknife.h"
 
 #include <Eigen/Cholesky>
@@ -75,8 +76,7 @@ std::vector<std::vector<size_t>> groups_by_region(const TieSet& ties, const TieS
   std::vector<std::vector<size_t>> regions(1);  // numbers of planes
   for (size_t k = 0; k < ties.planes.size(); ++k) regions[0].push_back(k);
   while (static_cast<int>(regions.size()) < count) {
-    const auto largest =
-        std::max_element(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+    const auto largest = std::max_element(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
     if (largest->size() < 2) break;
     std::vector<size_t> planes = *largest;
     Eigen::Vector2d low = ties.planes[planes[0]].centre.head<2>(), high = low;

@@ -25,8 +25,8 @@ std::vector<std::vector<size_t>> groups_by_line(const TieSet& ties, const TieSel
 /// Those of `count` regions of about equally many planes, halved across their longer side until there are enough.
 std::vector<std::vector<size_t>> groups_by_region(const TieSet& ties, const TieSelection& use, int count);
 
-/// Factor on the formal sigma: 1 unless the jackknife's ratio is larger than chance makes it with probability `significance`; then the ratio
-/// divided by what chance makes it.
+/// Factor on the formal sigma: 1 unless the jackknife's ratio is larger than chance makes it with probability `significance`; then the
+/// ratio divided by what chance makes it.
 double enlargement(double ratio, double freedom, double significance);
 
 }  // namespace swath::calib

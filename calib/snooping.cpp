@@ -17,8 +17,8 @@ using Eigen::VectorXd;
 
 constexpr double least_redundancy = 1e-3;
 // A shift of control smaller than this is left to the tests of single points.
-constexpr double least_shift = 0.3;  // m
-constexpr double known_sigma = 0.5;  // m: of a component of the shift that is told
+constexpr double least_shift = 0.3;          // m
+constexpr double known_sigma = 0.5;          // m: of a component of the shift that is told
 constexpr double shift_significance = 30.0;  // chi-square of three: 1e-6
 constexpr double majority = 0.6;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sources: the condition that returns of all lines lie on common planes, with ranges and angles as observations (Gauss-Helmert): Skaloud
 // & Lichti, "Rigorous approach to bore-sight self-calibration in airborne laser scanning", ISPRS Journal 61 (2006) 47; corrections of the
-// trajectory by time: Glira et al. (2016). Deviations: the nadir's turn by a correction of the position is left out (0.1 m: 1.6e-8 rad, 0.01
-// mm at 700 m); corrections do not enter the derivative by the latency (their rates, under 1 mm/s against the carrier's speed).
+// trajectory by time: Glira et al. (2016). Deviations: the nadir's turn by a correction of the position is left out (0.1 m: 1.6e-8 rad,
+// 0.01 mm at 700 m); corrections do not enter the derivative by the latency (their rates, under 1 mm/s against the carrier's speed).
 #include "calib/tie_normals.h"
 
 #include <Eigen/Geometry>
@@ -266,7 +266,8 @@ bool condition_of(const TieProblem& p, const ShotGeometry& geometry, const TieSt
   const Vector3d beam = ecef - pose.position - pose.ecef_R_body * geometry.lever_arm();
   const double length = beam.norm(), along = normal.dot(beam);
   const Vector3d by_range = beam * (geometry.air().range_factor * c.range_scale / length);
-  const Vector3d by_angle = pose.ecef_R_body * (geometry.body_R_scanner() * geometry.beam()(geometry.angle(record.angle), record.forward).by_angle) *
+  const Vector3d by_angle = pose.ecef_R_body *
+                            (geometry.body_R_scanner() * geometry.beam()(geometry.angle(record.angle), record.forward).by_angle) *
                             (geometry.beam().ignores_record() ? 0.0 : length * c.scan_scale);
   out.range = square(normal.dot(by_range) * noise.range);
   out.angle = square(normal.dot(by_angle) * noise.angle) + square(noise.pointing) * std::max(0.0, square(length) - square(along));

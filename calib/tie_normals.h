@@ -40,16 +40,16 @@ struct TieNoise {
 /// The normal equations of one group: minimise sum w (f + a . x)^2 over x = (global unknowns, corrections, d0, d1, d2), f the distance
 /// from the plane in m, 1 / w its variance.
 struct GroupBlock {
-  std::vector<int> index;  ///< numbers of the unknowns but the plane's three, which come last in N and b
-  Eigen::MatrixXd N;       ///< sum w a a^T; symmetric, filled
-  Eigen::VectorXd b;       ///< sum w a f
-  double c = 0.0;          ///< sum w f^2
-  std::uint32_t used = 0;  ///< returns with a weight
-  std::uint32_t rejected = 0, outside = 0;  ///< without: far from their group; at a time without trajectory
+  std::vector<int> index;                       ///< numbers of the unknowns but the plane's three, which come last in N and b
+  Eigen::MatrixXd N;                            ///< sum w a a^T; symmetric, filled
+  Eigen::VectorXd b;                            ///< sum w a f
+  double c = 0.0;                               ///< sum w f^2
+  std::uint32_t used = 0;                       ///< returns with a weight
+  std::uint32_t rejected = 0, outside = 0;      ///< without: far from their group; at a time without trajectory
   double angle = 0.0, range = 0.0, time = 0.0;  ///< means over the used
-  double depth = 0.0;       ///< mean distance along the vertical from scanner to point, m
-  double noise = 0.0;       ///< mean variance of the records alone, m^2
-  double moment[5] = {};    ///< for range and angle sigma: sums over returns of q_r^2, q_r q_a, q_a^2, q_r (e - q_0), q_a (e - q_0)
+  double depth = 0.0;                           ///< mean distance along the vertical from scanner to point, m
+  double noise = 0.0;                           ///< mean variance of the records alone, m^2
+  double moment[5] = {};  ///< for range and angle sigma: sums over returns of q_r^2, q_r q_a, q_a^2, q_r (e - q_0), q_a (e - q_0)
 
   double weight() const { return N(index.size(), index.size()); }  ///< sum of w
 };
@@ -78,11 +78,11 @@ TiePass linearise(const TieProblem& problem, const TieState& state, const TieNoi
 
 /// One return at a state: distance from its plane, its derivatives and its variance.
 struct Condition {
-  double f = 0.0;                                ///< m
-  Eigen::Matrix<double, 1, parameter_count> by;  ///< per unit of each parameter
-  double u = 0.0, v = 0.0;                       ///< place in the plane's axes, m
+  double f = 0.0;                                   ///< m
+  Eigen::Matrix<double, 1, parameter_count> by;     ///< per unit of each parameter
+  double u = 0.0, v = 0.0;                          ///< place in the plane's axes, m
   double range = 0.0, angle = 0.0, constant = 0.0;  ///< parts of its variance, m^2: ranges; angles and pointing; time and roughness
-  double depth = 0.0;                            ///< along the vertical from scanner to point, m
+  double depth = 0.0;                               ///< along the vertical from scanner to point, m
   double variance() const { return range + angle + constant; }
 };
 /// `cursor` at any time; false where the trajectory does not reach.

@@ -27,8 +27,8 @@ struct TieSelection {
 
 /// What a plane leaves behind when it is eliminated.
 struct PlaneRest {
-  std::vector<int> index;  ///< numbers of the unknowns that its groups touch
-  Eigen::MatrixXd N_xp;    ///< their normal equations with d0, d1, d2
+  std::vector<int> index;                             ///< numbers of the unknowns that its groups touch
+  Eigen::MatrixXd N_xp;                               ///< their normal equations with d0, d1, d2
   Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();  ///< of the plane's own 3 x 3
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
 };
@@ -53,8 +53,8 @@ class TieSystem {
   /// All planes.
   Normals sum(const TieSelection& use, std::vector<PlaneRest>& rests) const;
 
-  const GroupBlock& block(size_t group) const { return blocks_[group]; }      ///< with the surface's departure eliminated
-  const GroupBlock& bare(size_t group) const { return (*bare_)[group]; }      ///< as linearised
+  const GroupBlock& block(size_t group) const { return blocks_[group]; }  ///< with the surface's departure eliminated
+  const GroupBlock& bare(size_t group) const { return (*bare_)[group]; }  ///< as linearised
   const std::vector<ControlRow>& control() const { return control_; }
   /// Numbers of the groups and control observations of a plane: [first, last).
   std::pair<size_t, size_t> groups_of(std::uint32_t plane) const { return {first_group_[plane], first_group_[plane + 1]}; }
@@ -82,16 +82,17 @@ void add_prior(const TiePrior& prior, Normals& n, bool of_globals = true);
 
 /// The solution with its covariance.
 struct TieSolution {
-  Eigen::VectorXd x;                        ///< steps of the unknowns
-  std::vector<Eigen::Vector3d> d;           ///< of each plane
-  Eigen::MatrixXd covariance;               ///< of x; empty where not asked for
+  Eigen::VectorXd x;               ///< steps of the unknowns
+  std::vector<Eigen::Vector3d> d;  ///< of each plane
+  Eigen::MatrixXd covariance;      ///< of x; empty where not asked for
   bool solved = false;
 };
 TieSolution solve(const TieSystem& system, const Normals& with_prior, const std::vector<PlaneRest>& rests, bool covariance);
 /// Covariance of a plane's d0, d1, d2.
 Eigen::Matrix3d plane_covariance(const PlaneRest& rest, const Eigen::MatrixXd& covariance);
 
-/// A linear function h . (x, d) of the unknowns and one plane's three, with the plane eliminated. h: over the unknowns `of`, then the three.
+/// A linear function h . (x, d) of the unknowns and one plane's three, with the plane eliminated. h: over the unknowns `of`, then the
+/// three.
 struct PlaneRow {
   PlaneRow(const Eigen::VectorXd& h, const std::vector<int>& of, const PlaneRest& rest);
   double variance(const Eigen::MatrixXd& of_unknowns) const { return own_variance + covariance(*this, of_unknowns); }

@@ -21,9 +21,9 @@ struct SigmaFactors {
 /// quarter of itself; angles that are not are held as stated. Steps are between a half and twice the sigma.
 void update_white(const std::vector<GroupBlock>& blocks, const TieSelection& use, const ComponentOptions& options, SigmaFactors& factors);
 
-/// Surfaces, trajectory and control, from a solution with covariance. `correction`: values of the corrections after the step. The factors of
-/// trajectory and control are drawn to 1 by options.freedom degrees of freedom:
-/// factor^2 = (freedom + factor^2 Omega) / (freedom + redundancy).
+/// Surfaces, trajectory and control, from a solution with covariance. `correction`: values of the corrections after the step. The factors
+/// of trajectory and control are drawn to 1 by options.freedom degrees of freedom: factor^2 = (freedom + factor^2 Omega) / (freedom +
+/// redundancy).
 void update_correlated(const TieProblem& problem, const TieSystem& system, const TieSolution& solution, const TieTests& tests,
                        const TieSelection& use, const TiePrior& prior, const Eigen::VectorXd& correction, const ComponentOptions& options,
                        SigmaFactors& factors);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A small calibration flight whose planes are known exactly: ties for the adjustment, with the true trajectory and one with errors drawn from
-// a covariance.
+// A small calibration flight whose planes are known exactly: ties for the adjustment, with the true trajectory and one with errors drawn
+// from a covariance.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -9,6 +9,7 @@
 
 #include "calib/correction_knots.h"
 #include "calib/shot_geometry.h"
+#include "calib/tie_normals.h"
 #include "calib/tie_set.h"
 #include "core/frames.h"
 #include "core/geodesy.h"
@@ -21,17 +22,17 @@ namespace swath::calib::test {
 using swath::test::Dice;
 
 struct FlownLine {
-  double heading = 0.0;                 // rad
-  double across = 0.0;                  // m to starboard of the block's middle
-  double height = 700.0;                // m above it
+  double heading = 0.0;                  // rad
+  double across = 0.0;                   // m to starboard of the block's middle
+  double height = 700.0;                 // m above it
   double length = 1200.0, speed = 60.0;  // m, m/s
   double duration() const { return length / speed; }
 };
 
 /// Opposite and crossed lines, two beside, two at another height.
 inline std::vector<FlownLine> full_pattern() {
-  return {{0.0, 0.0},           {180.0 * deg, 0.0},           {90.0 * deg, 0.0},          {270.0 * deg, 0.0},
-          {0.0, 230.0},         {180.0 * deg, 230.0},         {0.0, 0.0, 1000.0},         {90.0 * deg, 0.0, 1000.0}};
+  return {{0.0, 0.0},   {180.0 * deg, 0.0},   {90.0 * deg, 0.0},  {270.0 * deg, 0.0},
+          {0.0, 230.0}, {180.0 * deg, 230.0}, {0.0, 0.0, 1000.0}, {90.0 * deg, 0.0, 1000.0}};
 }
 
 struct World {
@@ -110,7 +111,8 @@ inline World make_world(std::vector<FlownLine> lines, std::vector<TiePlane> plan
     const int steps = static_cast<int>(std::lround((f.duration() + 2.0 * w.margin) / 0.05));
     for (int i = 0; i <= steps; ++i) {
       const double s = i * 0.05 - w.margin, phase = 0.7 * static_cast<double>(l);
-      const Eigen::Vector3d local = (f.speed * s - 0.5 * f.length) * direction_of(f.heading) + f.across * direction_of(f.heading + 90.0 * deg) +
+      const Eigen::Vector3d local = (f.speed * s - 0.5 * f.length) * direction_of(f.heading) +
+                                    f.across * direction_of(f.heading + 90.0 * deg) +
                                     Eigen::Vector3d(0.0, 0.0, f.height + 1.5 * std::sin(0.3 * s + phase));
       const core::Geodetic g = core::geodetic_of(w.frame.to_ecef(local));
       w.exact.time.push_back(first + s);
@@ -172,12 +174,13 @@ inline TieSet ties_of(const World& w, Dice* dice, std::uint64_t places = 1) {
   return out;
 }
 
-/// Draws trajectory errors of a covariance at instants one second apart in every line, linear between.
+/// Draws trajectory errors of a covariance at instants `step` apart in every line (from its first return on), linear between.
 class ErrorDraw {
  public:
-  ErrorDraw(const World& w, const ErrorCovariance& covariance) {
+  ErrorDraw(const World& w, const ErrorCovariance& covariance, double step = 1.0) {
+    const double before = step * std::ceil(w.margin / step);
     for (size_t l = 0; l < w.lines.size(); ++l)
-      for (double s = -w.margin; s < w.lines[l].duration() + w.margin + 0.999; s += 1.0) times_.push_back(w.first(l) + s);
+      for (double s = -before; s < w.lines[l].duration() + w.margin + 0.999 * step; s += step) times_.push_back(w.first(l) + s);
     Eigen::MatrixXd C = covariance(times_);
     const Eigen::VectorXd tiny = 1e-9 * C.diagonal();
     C.diagonal() += tiny;
@@ -191,7 +194,8 @@ class ErrorDraw {
     for (Eigen::Index i = 0; i < z.size(); ++i) z[i] = dice.normal();
     const Eigen::VectorXd e = root_ * z;
     return add(exact, [&](double t) {
-      const auto k = std::min<size_t>(times_.size() - 2, static_cast<size_t>(std::upper_bound(times_.begin(), times_.end(), t + 1e-9) - times_.begin() - 1));
+      const auto k = std::min<size_t>(times_.size() - 2,
+                                      static_cast<size_t>(std::upper_bound(times_.begin(), times_.end(), t + 1e-9) - times_.begin() - 1));
       const double share = (t - times_[k]) / (times_[k + 1] - times_[k]);
       return Correction((1.0 - share) * e.segment<6>(6 * k) + share * e.segment<6>(6 * k + 6));
     });
@@ -232,8 +236,31 @@ inline void survey(TiePlane& p, double sigma, Dice* dice) {
   const auto axes = plane_axes(p.normal);
   for (int k = 0; k < 4; ++k) {
     const double u = (k % 2 ? 1.0 : -1.0) * p.half.x(), v = (k / 2 ? 1.0 : -1.0) * p.half.y();
-    p.control.push_back({p.centre + u * axes[0] + v * axes[1] + (dice ? sigma * dice->normal() : 0.0) * p.normal, sigma, "C" + std::to_string(k + 1)});
+    p.control.push_back(
+        {p.centre + u * axes[0] + v * axes[1] + (dice ? sigma * dice->normal() : 0.0) * p.normal, sigma, "C" + std::to_string(k + 1)});
   }
 }
+
+/// All that a linearisation needs, in one place.
+struct TieBench {
+  TieBench(World w, TieSet t, core::TrajectoryData data, const CorrectionOptions& corrections, std::vector<Parameter> globals)
+      : world(std::move(w)),
+        ties(std::move(t)),
+        flown(std::move(data)),
+        knots(ties.lines, world.truth.latency.value, corrections, tactical_errors) {
+    problem = {&ties, &world.scanner, &flown, &knots, std::move(globals), RobustWeight(2.5, 6.0), 1};
+    state = {world.truth, Eigen::VectorXd::Zero(knots.size()), ties.planes, std::vector<double>(ties.planes.size(), 0.0)};
+  }
+  TieBench(const TieBench&) = delete;
+  TieBench& operator=(const TieBench&) = delete;
+
+  World world;
+  TieSet ties;
+  trajectory::Trajectory flown;
+  CorrectionKnots knots;
+  TieProblem problem;
+  TieState state;
+  TieNoise noise{0.02, 2e-5, 0.0, 0.0};
+};
 
 }  // namespace swath::calib::test
