@@ -29,8 +29,9 @@ struct FacetLook {
 
 /// A plane piece that two looks or more have seen.
 struct Facet {
-  Eigen::Vector3d centre, normal;  ///< m; unit, up (towards the scanner is not known yet)
-  Eigen::Vector2d half;            ///< along plane_axes(normal), m
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero(),
+                  normal = Eigen::Vector3d::UnitZ();  ///< m; unit, up (towards the scanner is not known yet)
+  Eigen::Vector2d half = Eigen::Vector2d::Zero();     ///< along plane_axes(normal), m
   TieKind kind = TieKind::ground;
   double slope = 0.0;  ///< rad
   std::vector<CellIndex3> cells;

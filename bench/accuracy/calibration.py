@@ -50,7 +50,7 @@ def fly(part, seed):
     rows = []
     for key, _, scale in VALUES:
         e, true = estimates[key], number(truth[key])
-        rows.append([scale * (e["start"] - true), scale * (e["value"] - true), scale * e["sigma"], scale * e["formal"], scale * e["white"],
+        rows.append([scale * (e["nominal"] - true), scale * (e["value"] - true), scale * e["sigma"], scale * e["formal"], scale * e["white"],
                      scale * (e["jackknife_lines"] or np.nan), float(e["delivered"])])
     if not os.environ.get("KEEP"):
         shutil.rmtree(folder)

@@ -71,7 +71,9 @@ TEST(HeightGrid, TheBudgetCoarsensAndBlocksOfCellsAreTheSameMeans) {
   constexpr double single_precision = 2e-5;  // m
   for (size_t c = 0; c < a.z.size(); ++c) {
     ASSERT_EQ(std::isnan(a.z[c]), std::isnan(b.z[c]));
-    if (!std::isnan(a.z[c])) EXPECT_NEAR(static_cast<double>(a.z[c]), static_cast<double>(b.z[c]), single_precision);
+    if (!std::isnan(a.z[c])) {
+      EXPECT_NEAR(static_cast<double>(a.z[c]), static_cast<double>(b.z[c]), single_precision);
+    }
   }
   // Sparse returns widen the cell by themselves.
   EXPECT_GT(height_grids(f.flown.stream(), points, 0.1, 1u << 28).cell, 0.5);

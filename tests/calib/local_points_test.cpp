@@ -109,8 +109,15 @@ TEST(LocalPoints, DensityIsToldBeforeTheFirstBatchWhateverTheBatches) {
     LocalPoints points({}, {}, flight, some_frame());
     size_t seen = 0;
     stream_points(
-        stream, points, [&](double d) { told[run] = d, EXPECT_EQ(seen, 0u); },
-        [&](int, const core::Shots& s, const PointColumns& p) { seen += s.size(), EXPECT_EQ(p.x.size(), s.size()); });
+        stream, points,
+        [&](double d) {
+          told[run] = d;
+          EXPECT_EQ(seen, 0u);
+        },
+        [&](int, const core::Shots& s, const PointColumns& p) {
+          seen += s.size();
+          EXPECT_EQ(p.x.size(), s.size());
+        });
     EXPECT_EQ(seen, all.size());
     ++run;
   }

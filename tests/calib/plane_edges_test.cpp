@@ -30,9 +30,13 @@ TEST(PlaneEdges, WithinAMarginOfAnEdgeNothingIsSurrounded) {
     for (double y = -0.45; y < 6.5; y += 0.1) {
       const Vector2d p(x, y);
       const bool out = x < margin || y < margin || x > 10 - margin || y > 6 - margin;
-      if (out) EXPECT_FALSE(o.surrounds(p, margin + 1e-9)) << p.transpose();
+      if (out) {
+        EXPECT_FALSE(o.surrounds(p, margin + 1e-9)) << p.transpose();
+      }
       const bool hole = x > 4.1 && x < 5.9 && y > 2.1 && y < 3.9;
-      if (hole) EXPECT_FALSE(o.surrounds(p, margin));
+      if (hole) {
+        EXPECT_FALSE(o.surrounds(p, margin));
+      }
       if (x > 1.6 && x < 2.4 && y > 1.6 && y < 4.4) ++inner, seen += o.surrounds(p, margin);
     }
   EXPECT_EQ(seen, inner) << "a square that is empty by chance is no edge";

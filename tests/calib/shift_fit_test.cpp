@@ -80,7 +80,9 @@ TEST(ShiftFit, ErrorsAgreeWithTheirSigmas) {
     ASSERT_TRUE(f.determined[0] && f.determined[1] && f.determined[2]);
     squares += (f.error - error).cwiseQuotient(f.sigma).cwiseAbs2() / seeds;
     for (const ObservedShift& s : shifts)
-      if (s.square % 10 == 0) EXPECT_LT(s.weight, 0.1) << "a wrong match";
+      if (s.square % 10 == 0) {
+        EXPECT_LT(s.weight, 0.1) << "a wrong match";
+      }
   }
   for (int k = 0; k < 3; ++k) {
     EXPECT_GT(std::sqrt(squares[k]), 0.7) << k;

@@ -110,7 +110,9 @@ TEST(WindowMatch, NothingIsFoundWithoutABottom) {
   const Raster b = raster_of([](double, double) { return 1.0; }, 48, 48, 0, 0);
   const ShiftCosts costs = shift_costs(a, b, margin, margin, {});
   const auto s = subcell_shift(a, b, costs, {0, 0}, 3);
-  if (s) EXPECT_GT(s->covariance.trace(), 1.0) << "level ground tells no shift";
+  if (s) {
+    EXPECT_GT(s->covariance.trace(), 1.0) << "level ground tells no shift";
+  }
   // The true shift lies beyond what was looked at: the lowest cost is on the rim.
   const Raster c = raster_of(houses, 60, 60, 0, 0),
                d = raster_of([](double x, double y) { return houses(x - 9, y); }, 68, 68, -margin, -margin);
