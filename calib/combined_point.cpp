@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Source: Jubanski et al., eq 4-8 and 10: D_A = Dh sin(beta) / (cos(gamma_A) sin(alpha + beta)), Dh the level distance of stations A and B,
 // alpha at A, beta at B. Beyond the paper the stations' coordinates are observations with their covariance (held, they make sigmas of
-// 0.06 mm out of 2 mm distances), all points are adjusted together, so that the stations' errors cancel in differences as they should, and
-// both sides of the stations' plane are tried.
+// 0.06 mm out of 2 mm distances), all points are adjusted together, so that the stations' errors cancel in differences as they should,
+// both sides of the stations' plane are tried, and vertical angles may make conditions for the height with their sign.
 #include "calib/combined_point.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -26,6 +27,7 @@ constexpr double same_place = 1e-4;       // m
 constexpr double equal_fit = 25.0;        // five sigmas between two sums of squares
 constexpr double rough_sigma = 0.005;     // m, of distances from triangles for start values; their relations matter little
 constexpr double rough_elevation = 0.01;  // rad, of elevations between start values
+constexpr double largest_sag = 0.001;     // m, that sights bend over one sigma of the point
 constexpr double least_redundancy = 1e-6;
 
 Index at(size_t i) { return static_cast<Index>(i); }
@@ -63,6 +65,7 @@ PointNetwork part_of(const PointNetwork& n, size_t point) {
   out.points = 1;
   out.stations = n.stations;
   out.station_covariance = n.station_covariance;
+  out.signed_elevations = n.signed_elevations;
   const auto copy = [point](const auto& from, auto& to) {
     for (auto o : from)
       if (o.point == point) {
@@ -101,6 +104,7 @@ PointSearch search(const PointNetwork& n, const std::optional<Vector3d>& start) 
   }
   std::vector<TargetDistance> rough;
   for (const PointCondition& c : conditions) {
+    if (c.kind == Kind::height) continue;
     if (c.kind == Kind::measured) {
       rough.push_back({n.stations[c.a], n.distances[c.other].distance, rough_sigma});
       continue;
@@ -110,7 +114,7 @@ PointSearch search(const PointNetwork& n, const std::optional<Vector3d>& start) 
     rough.push_back({n.stations[c.kind == Kind::from_a ? c.a : c.b], side, rough_sigma});
   }
   const Resection begin = resect(rough, start);
-  if (begin.state == ResectionState::in_line) {
+  if (begin.state == ResectionState::in_line || begin.state == ResectionState::too_few) {
     out.state = PointState::not_determined;
     return out;
   }
@@ -155,6 +159,10 @@ PointSearch search(const PointNetwork& n, const std::optional<Vector3d>& start) 
     out.start_led_to_mirror = from_start && (*from_start - found[0].position()).norm() > same_place;
   }
   out.position = found[0].position();
+  const double variance = Eigen::SelfAdjointEigenSolver<MatrixXd>(found[0].adjusted.covariance).eigenvalues().maxCoeff();
+  double sag = 0;
+  for (const TargetDistance& d : rough) sag += variance / (2 * d.distance) / static_cast<double>(rough.size());
+  if (out.state == PointState::solved && !(sag < largest_sag)) out.state = PointState::weak;
   out.variance_factor = found[0].adjusted.squares / std::max(found[0].adjusted.redundancy, 1);
   return out;
 }
@@ -175,6 +183,8 @@ std::vector<PointCondition> conditions_of(const PointNetwork& n) {
     }
   for (size_t k = 0; k < n.distances.size(); ++k)
     out.push_back({Kind::measured, n.distances[k].point, n.distances[k].at, n.distances[k].at, 0, 0, k});
+  for (size_t k = 0; n.signed_elevations && k < n.verticals.size(); ++k)
+    out.push_back({Kind::height, n.verticals[k].point, n.verticals[k].at, n.verticals[k].at, 0, 0, k});
   return out;
 }
 
@@ -203,6 +213,17 @@ Misclosures misclosures(const PointNetwork& n, const std::vector<PointCondition>
     const auto add_station = [&](size_t s, const Eigen::RowVector3d& d) {
       if (!held) by.segment<3>(at(c.stations + 3 * s)) += d;
     };
+    if (k.kind == Kind::height) {
+      const Vector3d d = points.segment<3>(at(3 * k.point)) - station(k.a);
+      const double level = d.head<2>().norm(), gamma = l[at(c.verticals + k.other)], tangent = std::tan(gamma);
+      Eigen::RowVector3d by_point(0, 0, 1);
+      by_point.head<2>() = -tangent / level * d.head<2>().transpose();
+      out.value[row] = d.z() - level * tangent;
+      out.by_points.row(row).segment<3>(at(3 * k.point)) = by_point;
+      add_station(k.a, -by_point);
+      by[at(c.verticals + k.other)] = -level * (1 + tangent * tangent);
+      continue;
+    }
     const size_t from = k.kind == Kind::from_b ? k.b : k.a;
     const DistanceModel m = distance_model(station(from), points.segment<3>(at(3 * k.point)));
     out.by_points.row(row).segment<3>(at(3 * k.point)) = -m.by_station;

@@ -33,18 +33,23 @@ struct PointNetwork {
   std::vector<HorizontalAngle> angles;
   std::vector<VerticalAngle> verticals;
   std::vector<PointDistance> distances;
+  /// Each vertical angle makes a condition for the height by its tangent too. Without it only its cosine counts, as in the paper: the sign
+  /// is lost, and a point at the height of the instrument has hardly a height.
+  bool signed_elevations = false;
 };
 
 /// One condition between a point and its observations. `from_a`: the point's distance from station A is that which the triangle A, B, point
-/// gives; `from_b`: the same from B; `measured`: it is that which was measured.
+/// gives; `from_b`: the same from B; `measured`: it is that which was measured; `height`: the point is as high over A as the vertical angle
+/// says.
 struct PointCondition {
-  enum class Kind { from_a, from_b, measured } kind;
+  enum class Kind { from_a, from_b, measured, height } kind;
   size_t point;
   size_t a, b;         ///< stations; b only with angles
   size_t alpha, beta;  ///< indices of the angles at a (to b) and at b (to a)
   size_t other;        ///< of the vertical angle, or of the distance
 };
-/// Pairs of stations with both angles and a vertical angle make a condition for each such vertical angle; every distance makes one.
+/// Pairs of stations with both angles and a vertical angle make a condition for each such vertical angle; every distance makes one, and
+/// every vertical angle where elevations are signed.
 std::vector<PointCondition> conditions_of(const PointNetwork& network);
 
 /// Observations in one column: angles, vertical angles, distances, then the stations' coordinates where they have a covariance.
@@ -76,6 +81,7 @@ enum class PointState {
   solved,
   too_few,         ///< fewer than three conditions
   not_determined,  ///< fewer than three stations see it, or they stand in one line
+  weak,            ///< its height (or another direction) is hardly determined, and no sigma of it is true
   two_fit,         ///< the point and its mirror image fit equally well, and nothing says which
   not_found,       ///< the adjustment does not converge
 };

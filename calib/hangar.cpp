@@ -89,6 +89,9 @@ void refuse(const PointSearch& p, const std::string& name, const std::string& fi
     case PointState::not_determined:
       throw Error("the stations that see " + point + " are fewer than three or stand in one line", file,
                   "sight it from three stations that make a triangle");
+    case PointState::weak:
+      throw Error("the sights at " + point + " hardly determine it: it lies in the plane of its stations, or they are too close together",
+                  file, "leave elevation_signs at true and measure vertical angles, or sight it from stations at other heights");
     case PointState::two_fit:
       throw Error(point + " fits at " + text_of(p.position) + " and, mirrored in the plane of the stations, at " +
                       text_of(p.mirror.value_or(p.position)),
@@ -177,6 +180,7 @@ class Solver {
   PointNetwork network(const std::map<std::string, size_t>& points, size_t n) const {
     PointNetwork net;
     net.points = n;
+    net.signed_elevations = h_.elevation_signs;
     const auto station = indices(h_.stations);
     for (const StationResult& s : out_.stations) net.stations.push_back(s.position);
     if (!hold_) {
@@ -275,6 +279,10 @@ class Solver {
     std::vector<bool> used(net.angles.size() + net.verticals.size(), false);
     for (const PointCondition& c : conditions_of(net)) {
       if (c.kind == PointCondition::Kind::measured) continue;
+      if (c.kind == PointCondition::Kind::height) {
+        used[net.angles.size() + c.other] = true;
+        continue;
+      }
       used[c.alpha] = used[c.beta] = used[net.angles.size() + c.other] = true;
     }
     Index row = 0;

@@ -23,7 +23,7 @@ constexpr double same_place = 1e-6;     // m; two searches that ended here ended
 constexpr double in_line_share = 1e-3;  // breadth of the targets by their length
 constexpr double least_rise = 0.02;     // of the targets' extent: start off their plane, where the normal matrix is regular
 constexpr double equal_fit = 25.0;      // five sigmas between two sums of squares
-constexpr double weak_share = 0.05;     // sigma by the mean distance
+constexpr double sag_share = 0.5;       // of a distance's sigma: what distances may bend over one sigma of the station
 constexpr size_t least_for_scale = 6;
 
 struct Search {
@@ -195,10 +195,13 @@ Resection resect(const std::vector<TargetDistance>& all, const std::optional<Vec
     out.mirror_variance_factor = ends[1].squares / std::max(out.redundancy, 1);
     out.start_led_to_mirror = from_start.found && (from_start.position - out.position).norm() > same_place;
   }
-  double mean = 0;
-  for (const TargetDistance& d : all) mean += d.distance / static_cast<double>(all.size());
-  const double largest = std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix3d>(out.covariance).eigenvalues().maxCoeff());
-  if (!(largest < weak_share * mean)) {
+  double sag = 0, sigma = 0;  // a straight model of distances that bend is no model
+  const double variance = Eigen::SelfAdjointEigenSolver<Matrix3d>(out.covariance).eigenvalues().maxCoeff();
+  for (const TargetDistance& d : all) {
+    sag += variance / (2 * d.distance);
+    sigma += d.sigma;
+  }
+  if (!(sag < sag_share * sigma)) {
     out.state = ResectionState::weak;
   } else if (both_fit) {
     out.decided_by_start = start.has_value();

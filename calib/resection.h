@@ -18,10 +18,10 @@ struct TargetDistance {
 
 enum class ResectionState {
   solved,
-  too_few,    ///< fewer than three distances
-  in_line,    ///< the targets lie in one line: the station may be anywhere on a circle around it
-  weak,       ///< the station lies (nearly) in the plane of its targets: its distance from the plane is not determined
-  two_fit,    ///< the station and its mirror image fit the distances equally well, and no start value says which
+  too_few,  ///< fewer than three distances
+  in_line,  ///< the targets lie in one line: the station may be anywhere on a circle around it
+  weak,     ///< the station lies nearly in the plane of its targets: its distance from the plane is hardly determined, and no sigma is true
+  two_fit,  ///< the station and its mirror image fit the distances equally well, and no start value says which
   not_found,  ///< no position fits
 };
 

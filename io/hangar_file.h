@@ -148,6 +148,7 @@ struct HangarSurvey {
   std::string name = "hangar";
   HangarInstrument instrument;
   VerticalFrom vertical_from = VerticalFrom::horizon;
+  bool elevation_signs = true;
   std::vector<HangarTarget> targets;
   std::vector<HangarStation> stations;
   std::vector<HangarPoint> points;
@@ -165,6 +166,11 @@ void describe(HangarSurvey& h, V& v) {
   v.option("name", h.name, "Name of aircraft and hangar, for reports.");
   v.table("instrument", h.instrument, "Precision of the instrument.");
   v.option("vertical_from", h.vertical_from, "Vertical angles count from the horizon, positive upwards, or from the zenith.");
+  v.option(
+      "elevation_signs", h.elevation_signs,
+      "Vertical angles give heights with their sign, by their tangent. False: they enter by their cosine alone, which does not know above "
+      "from below.",
+      "Jubanski et al., eq 4-8");
   v.tables("target", h.targets, "Targets with known coordinates.");
   v.tables("station", h.stations, "Stations of the instrument.");
   v.tables("point", h.points, "Points of the aircraft.");

@@ -59,11 +59,12 @@ TEST(CombinedPoint, JacobiansAreThoseOfCentralDifferences) {
   constexpr double h = 1e-6, tolerance = 1e-7;  // relative to values of some metres
   for (const bool held : {false, true}) {
     PointNetwork n = exact(two);
+    n.signed_elevations = true;
     if (held) n.station_covariance.resize(0, 0);
     const auto conditions = conditions_of(n);
     const VectorXd x = column(two) + VectorXd::Constant(6, 0.01), l = observations_of(n);
     const Misclosures m = misclosures(n, conditions, x, l);
-    EXPECT_EQ(m.value.size(), 2 * (6 * 2 + 4));
+    EXPECT_EQ(m.value.size(), 2 * (6 * 2 + 4 + 4));
     for (Index k = 0; k < x.size(); ++k) {
       const VectorXd d = h * VectorXd::Unit(x.size(), k);
       const VectorXd numeric = (misclosures(n, conditions, x + d, l).value - misclosures(n, conditions, x - d, l).value) / (2 * h);
@@ -131,6 +132,31 @@ TEST(CombinedPoint, LevelStationsLeaveItToTheSignOfTheVerticalAngles) {
   EXPECT_EQ(decided.state, PointState::solved);
   EXPECT_TRUE(decided.decided_by_start);
   EXPECT_LT(decided.position.z(), 1.5);
+}
+
+TEST(CombinedPoint, APointAsHighAsItsStationsNeedsTheSigns) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  const Vector3d point(2.5, 3.5, 1.55);
+  PointNetwork level = exact({point});
+  for (Vector3d& s : level.stations) s.z() = 1.55;
+  EXPECT_NE(find_points(level, {}).searches[0].state, PointState::solved);
+  constexpr int seeds = 200;
+  double squares = 0;
+  for (int k = 0; k < seeds; ++k) {
+    PointNetwork n = exact({point});  // from stations at several heights, all near the point's
+    n.signed_elevations = true;
+    for (HorizontalAngle& a : n.angles) a.angle += a.sigma * normal(random);
+    for (VerticalAngle& a : n.verticals) a.angle += a.sigma * normal(random);
+    for (PointDistance& d : n.distances) d.distance += d.sigma * normal(random);
+    for (size_t s = 0; s < stations.size(); ++s)
+      for (Index c = 0; c < 3; ++c) n.stations[s][c] += 0.001 * normal(random);
+    const FoundPoints found = find_points(n, {});
+    ASSERT_EQ(found.searches[0].state, PointState::solved);
+    EXPECT_LT(std::sqrt(found.adjusted.covariance(2, 2)), 0.001);
+    squares += std::pow(found.adjusted.points[2] - point.z(), 2) / found.adjusted.covariance(2, 2) / seeds;
+  }
+  EXPECT_NEAR(std::sqrt(squares), 1, 0.15);  // three sigmas of a rms of 200
 }
 
 TEST(CombinedPoint, WhatIsNotDetermined) {

@@ -54,13 +54,16 @@ TEST_F(Hangar, WithoutNoiseTheLeverArmsComeOut) {
       << lines;
 }
 
-TEST_F(Hangar, ErrorsAreAsLargeAsTheirSigmas) {
+class HangarErrors : public Hangar, public ::testing::WithParamInterface<bool> {};
+
+TEST_P(HangarErrors, AreAsLargeAsTheirSigmas) {
   constexpr int seeds = 200;
   std::array<Vector3d, 3> squares{Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
   double held = 0;
   const std::array<std::pair<size_t, size_t>, 3> ends{{{0, 1}, {0, 2}, {1, 2}}};
   for (unsigned s = 0; s < seeds; ++s) {
-    const io::HangarSurvey h = made_.measure(100 + s);
+    io::HangarSurvey h = made_.measure(100 + s);
+    h.elevation_signs = GetParam();
     const HangarResult r = solve_hangar(h, false);
     for (size_t k = 0; k < 3; ++k)
       squares[k] += ((r.lever_arms[k].value - made_.lever_arm(ends[k].first, ends[k].second)).array().square() /
@@ -79,8 +82,11 @@ TEST_F(Hangar, ErrorsAreAsLargeAsTheirSigmas) {
   EXPECT_GT(std::sqrt(held), 2);  // stations held: sigmas far too small
 }
 
+INSTANTIATE_TEST_SUITE_P(WithSignsAndWithout, HangarErrors, ::testing::Bool());
+
 TEST_F(Hangar, WrongStartsAndOneBadSightAreTold) {
   io::HangarSurvey h = made_.measure(5);
+  h.elevation_signs = false;
   const Vector3d at = made_.in_hangar(made_.points[0].body);
   h.points[0].start = {core::Metres(at.x()), core::Metres(at.y()), core::Metres(2.4)};
   h.distances[3].distance += core::Metres(0.03);
@@ -100,6 +106,8 @@ TEST_F(Hangar, VerticalAnglesThatCountDownwards) {
   made_.noise = 0;
   io::HangarSurvey h = made_.measure(5);
   for (io::HangarVertical& v : h.verticals) v.angle = -v.angle;
+  EXPECT_TRUE(warned(solve_hangar(h, false), "the sights at the points scatter"));
+  h.elevation_signs = false;
   EXPECT_TRUE(warned(solve_hangar(h, false), "are they positive upwards?"));
 }
 
