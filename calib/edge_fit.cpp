@@ -10,8 +10,8 @@
 namespace swath::calib {
 namespace {
 
-constexpr double outliers = 0.01;     // share of pulses that may say anything (chimneys, wires, multipath)
-constexpr size_t fewest_pulses = 5;   // on each side of the edge
+constexpr double outliers = 0.01;    // share of pulses that may say anything (chimneys, wires, multipath)
+constexpr size_t fewest_pulses = 5;  // on each side of the edge
 constexpr int offsets = 31, slopes = 11;
 constexpr double reach_in_sigma = 5.0;  // of a narrowed grid, to either side
 constexpr int most_levels = 7;
@@ -19,7 +19,7 @@ constexpr double most_mass_at_end = 0.02;
 
 double normal(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
-/// Logarithms of the three outcomes' probabilities by x = (e - s) / blur.
+/// Logarithms of the outcomes' probabilities by x = (e - s) / blur.
 class Likelihood {
  public:
   explicit Likelihood(double half_in_blurs) : reach_(8.0 + half_in_blurs), per_unit_((size - 2) / (2.0 * reach_)) {
@@ -30,6 +30,7 @@ class Likelihood {
       table_[EdgePulse::on][i] = mixed(on);
       table_[EdgePulse::both][i] = mixed(std::max(0.0, first_on - on));
       table_[EdgePulse::off][i] = mixed(normal(-x - half_in_blurs));
+      table_[EdgePulse::first_on][i] = mixed(first_on);
     }
   }
   double operator()(EdgePulse::Outcome outcome, double x) const {
@@ -43,7 +44,7 @@ class Likelihood {
  private:
   static constexpr size_t size = 1026;
   double reach_, per_unit_;
-  std::array<std::array<double, size>, 3> table_;
+  std::array<std::array<double, size>, 4> table_;
 };
 
 struct Grid {
@@ -97,7 +98,7 @@ SideView locate_edge(const std::vector<EdgePulse>& pulses, const EdgePrior& prio
   size_t on = 0, off = 0;
   for (const EdgePulse& p : pulses) {
     on += p.outcome != EdgePulse::off;
-    off += p.outcome != EdgePulse::on;
+    off += p.outcome == EdgePulse::off || p.outcome == EdgePulse::both;
     view.at += static_cast<double>(p.t) / static_cast<double>(pulses.size());
   }
   if (on < fewest_pulses || off < fewest_pulses) return view;

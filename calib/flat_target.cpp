@@ -171,8 +171,9 @@ class Analysis {
       if (out_.rounds == 1) remember(now, m);
       if (m.lines.empty()) break;
       angles = read_angles(m);
-      steady = (out_.target.surveyed || !coarse) && std::abs(angles.pitch.value) < steady_angle && std::abs(angles.roll.value) < steady_angle &&
-               std::abs(angles.heading.value) < steady_angle && std::abs(angles.range.value) < steady_range;
+      steady = (out_.target.surveyed || !coarse) && std::abs(angles.pitch.value) < steady_angle &&
+               std::abs(angles.roll.value) < steady_angle && std::abs(angles.heading.value) < steady_angle &&
+               std::abs(angles.range.value) < steady_range;
       if (steady || out_.rounds == options_.rounds) break;
       apply(angles, cal);
     }
@@ -269,7 +270,8 @@ class Analysis {
       measured.value = t.determined ? t.mean : t.present;
       delivered.value = t.value;
     };
-    angle(out_.roll, a.roll, out_.joint.roll, &out_.joint.lever_right, boresight_roll, present_.roll.value, cal.roll, out_.calibration.roll);
+    angle(out_.roll, a.roll, out_.joint.roll, &out_.joint.lever_right, boresight_roll, present_.roll.value, cal.roll,
+          out_.calibration.roll);
     angle(out_.pitch, a.pitch, out_.joint.pitch, &out_.joint.lever_forward, boresight_pitch, present_.pitch.value, cal.pitch,
           out_.calibration.pitch);
     angle(out_.heading, a.heading, out_.joint.heading, nullptr, boresight_heading, present_.heading.value, cal.heading,
@@ -301,20 +303,22 @@ class Analysis {
       }
       size_t used = 0;
       for (const SideView& s : l.after.sides) used += s.used;
-      if (used < out_.target.sides())
-        say(line + words(" sees %zu of the target's %zu edges", used, out_.target.sides()));
+      if (used < out_.target.sides()) say(line + words(" sees %zu of the target's %zu edges", used, out_.target.sides()));
     }
     if (!a.pitch.determined)
-      say("pitch is not determined: no two lines in opposite directions pass over the target at one height; fly the target's line once more "
+      say("pitch is not determined: no two lines in opposite directions pass over the target at one height; fly the target's line once "
+          "more "
           "in the opposite direction");
     if (!a.roll.determined)
-      say("roll is not determined: no two lines in opposite directions see both edges along their flight; fly along the target's long wall to "
+      say("roll is not determined: no two lines in opposite directions see both edges along their flight; fly along the target's long wall "
+          "to "
           "and fro");
     if (!a.heading.determined)
-      say(a.pitch.determined ? "heading is not determined: no two parallel lines see the target at places of the swath far enough apart; fly "
-                               "past it with the target at the swath's edge"
-                             : "heading is not determined: it needs pitch, or two lines of one direction with the target at different "
-                               "places of the swath");
+      say(a.pitch.determined
+              ? "heading is not determined: no two parallel lines see the target at places of the swath far enough apart; fly "
+                "past it with the target at the swath's edge"
+              : "heading is not determined: it needs pitch, or two lines of one direction with the target at different "
+                "places of the swath");
     bool edge = false;
     for (const LineMeasure& l : m.lines) edge = edge || l.role == TargetRole::edge;
     if (a.heading.determined && !edge) say("no line has the target at the swath's edge: heading is weak");
@@ -337,21 +341,24 @@ class Analysis {
       const double size = j.datum.head<2>().norm(), its = j.datum_sigma.head<2>().maxCoeff();
       constexpr double worth_telling = 0.05;  // m
       if (size > significant * its && size > worth_telling)
-        say(words("the target stands %.2f m east and %.2f m north (+-%.2f m) of its survey in all lines alike: datum or base station, not the "
-                  "mounting; it cancels in opposite lines",
-                  j.datum.x(), j.datum.y(), its));
+        say(words(
+            "the target stands %.2f m east and %.2f m north (+-%.2f m) of its survey in all lines alike: datum or base station, not the "
+            "mounting; it cancels in opposite lines",
+            j.datum.x(), j.datum.y(), its));
     }
     if (j.two_heights) {
       const auto arm = [&](const char* what, const char* angle, const JointTarget::One& one) {
         const double found = -one.value;
         if (std::abs(found) > significant * one.sigma)
-          say(words("two heights (%.0f and %.0f m): a part of the %s displacement stays the same at both: lever arm %+.3f m +-%.3f m from the "
-                    "one in force, not %s; %s is taken from what grows with height",
-                    j.lowest, j.highest, what, found, one.sigma, angle, angle));
+          say(words(
+              "two heights (%.0f and %.0f m): a part of the %s displacement stays the same at both: lever arm %+.3f m +-%.3f m from the "
+              "one in force, not %s; %s is taken from what grows with height",
+              j.lowest, j.highest, what, found, one.sigma, angle, angle));
         else
-          say(words("two heights (%.0f and %.0f m): the %s displacement grows with height as %s does; a constant part of %+.3f m +-%.3f m shows "
-                    "no error of the lever arm",
-                    j.lowest, j.highest, what, angle, found, one.sigma));
+          say(words(
+              "two heights (%.0f and %.0f m): the %s displacement grows with height as %s does; a constant part of %+.3f m +-%.3f m shows "
+              "no error of the lever arm",
+              j.lowest, j.highest, what, angle, found, one.sigma));
       };
       if (out_.pitch.determined) arm("along-track", "pitch", j.lever_forward);
       if (out_.roll.determined) arm("across-track", "roll", j.lever_right);
@@ -365,7 +372,8 @@ class Analysis {
     tell_length();
     constexpr double poor = 3.0;
     if (j.chi2 > poor)
-      say(words("displacements of the lines disagree by more than their sigmas (chi2 per degree of freedom %.1f): trajectory worse than "
+      say(
+          words("displacements of the lines disagree by more than their sigmas (chi2 per degree of freedom %.1f): trajectory worse than "
                 "stated, a wrong survey, or a part of the mounting that is not modelled here",
                 j.chi2));
   }

@@ -56,8 +56,8 @@ struct TargetAngle {
   std::vector<Reading> readings;  ///< `value`: the boresight angle that the reading speaks for
   double mean = 0.0, own = 0.0, scatter = 0.0, sigma = 0.0;
   double tolerance = 0.0;
-  bool beyond = false;       ///< mean and present differ by more than the tolerance
-  double value = 0.0;        ///< new value: the mean where `beyond`, else the present one
+  bool beyond = false;          ///< mean and present differ by more than the tolerance
+  double value = 0.0;           ///< new value: the mean where `beyond`, else the present one
   bool of_two_heights = false;  ///< the mean is that of angle and lever arm told apart by two flying heights
 };
 
@@ -82,11 +82,11 @@ struct FlatTarget {
   bool range_determined = false;
   double range_present = 0.0, range_mean = 0.0, range_sigma = 0.0;  ///< range offset, m
   std::vector<Reading> range_readings;                              ///< `value`: range offset, m
-  JointTarget joint;      ///< of the last round: what is left, all parameters at once
-  double scan_scale = 1.0, scan_scale_sigma = 0.0;  ///< by widths and places of the target
-  core::Calibration calibration;                    ///< new values where beyond the tolerance
-  core::Calibration measured;                       ///< the mean readings themselves
-  std::vector<std::string> findings;                ///< in words
+  JointTarget joint;                                                ///< of the last round: what is left, all parameters at once
+  double scan_scale = 1.0, scan_scale_sigma = 0.0;                  ///< by widths and places of the target
+  core::Calibration calibration;                                    ///< new values where beyond the tolerance
+  core::Calibration measured;                                       ///< the mean readings themselves
+  std::vector<std::string> findings;                                ///< in words
   int rounds = 0;
   std::uint64_t returns = 0;
 };

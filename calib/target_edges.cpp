@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pulse that passes the edge hits ground or wall beyond and below: its return lies elsewhere than where it pierced the roof's plane (3.6 m
-// for 20 deg and a height of 10 m). Pulses are therefore told apart by their returns' heights, but placed where their beam pierces the plane.
-// A return on the wall less than the tolerance below the roof counts as on the roof: the edge of a wall that faces the scanner is corrected
-// for it (tolerance times the beam's horizontal way per metre down: 2 cm at 20 deg).
+// A pulse that passes the edge hits ground or wall beyond and below: its return lies elsewhere than where it pierced the roof's plane (3.6
+// m for 20 deg and a height of 10 m). Pulses are therefore told apart by their returns' heights, but placed where their beam pierces the
+// plane. A return on the wall less than the tolerance below the roof counts as on the roof: the edge of a wall that faces the scanner is
+// corrected for it (tolerance times the beam's horizontal way per metre down: 2 cm at 20 deg).
 #include "calib/target_edges.h"
 
 #include <Eigen/Cholesky>
@@ -263,7 +263,7 @@ class Viewer {
       if (pass > 0) learn_shape();
       fit_edges(band(), 0.3 + 4.0 * shape_.blur + shape_.half, shape_.blur);
     }
-    if (!determined()) return refused(why_.empty() ? "none of its edges was seen" : why_);
+    if (!determined()) return refused("none of its edges was seen");
     measure_plane();
     finish();
     return view_;
@@ -355,6 +355,12 @@ class Viewer {
     return !first ? EdgePulse::off : last ? EdgePulse::on : EdgePulse::both;
   }
 
+  /// A wall that the beam meets behind the edge, too near below it for a return of its own.
+  static bool facing(const Side& side, const Pierced& p) {
+    constexpr double steep = 0.03;  // a footprint of 0.3 m then reaches 10 m down the wall
+    return -side.outward.dot(p.slope) > steep;
+  }
+
   /// The pulses near side k, seen from where the motion so far puts it.
   std::vector<EdgePulse> near_side(size_t k, double band, double margin) const {
     const Side side = side_of(target_, k);
@@ -366,7 +372,9 @@ class Viewer {
       if (std::abs(t) > 0.5 * side.length - margin) continue;
       const double s = side.outward.dot(at) - motion_.value[growth] - tolerance_ * std::max(0.0, -side.outward.dot(p.slope));
       if (std::abs(s) > band) continue;
-      out.push_back({static_cast<float>(s), static_cast<float>(t), outcome(p)});
+      EdgePulse::Outcome what = outcome(p);
+      if (facing(side, p) && what != EdgePulse::off) what = EdgePulse::first_on;
+      out.push_back({static_cast<float>(s), static_cast<float>(t), what});
     }
     // More pulses than these make the edge no better than the survey is.
     constexpr size_t enough = 3000;
@@ -384,8 +392,8 @@ class Viewer {
     size_t mixed = 0;
     for (size_t k = 0; k < target_.sides(); ++k) {
       if (!view_.sides[k].used) continue;
-      const auto pulses = near_side(k, band(), 0.3 + 4.0 * shape_.blur);
-      all.insert(all.end(), pulses.begin(), pulses.end());
+      for (const EdgePulse& p : near_side(k, band(), 0.3 + 4.0 * shape_.blur))
+        if (p.outcome != EdgePulse::first_on) all.push_back(p);
     }
     for (const EdgePulse& p : all) mixed += p.outcome == EdgePulse::both;
     constexpr size_t enough_mixed = 5;
@@ -405,7 +413,8 @@ class Viewer {
     for (size_t k = 0; k < target_.sides(); ++k) {
       const Side side = side_of(target_, k);
       SideView& v = view_.sides[k];
-      const double turn = std::hypot(options_.shear * std::abs(motion_.x.dot(side.outward)), options_.turn * std::abs(motion_.y.dot(side.outward)));
+      const double turn =
+          std::hypot(options_.shear * std::abs(motion_.x.dot(side.outward)), options_.turn * std::abs(motion_.y.dot(side.outward)));
       v = locate_edge(near_side(k, band, margin), {blur, shape_.half, 0.9 * band, turn});
       if (!v.used) continue;
       // From where the survey has it: the motion so far is added again.
@@ -427,9 +436,8 @@ class Viewer {
       N(u, u) += 1.0 / (sigma * sigma);
       b[u] += value / (sigma * sigma);
     };
-    constexpr double free = 1e3;  // m
-    prior(along, 0.0, free);
-    prior(across, 0.0, free);
+    prior(along, 0.0, options_.search);
+    prior(across, 0.0, options_.across);
     prior(along_by_y, 0.0, options_.shear);
     prior(across_by_x, 0.0, options_.turn);
     prior(along_by_x, 0.0, options_.strain_along);
@@ -473,8 +481,8 @@ class Viewer {
   }
 
   void growth_prior(double& value, double& sigma) const {
-    constexpr double least = 0.005;          // m
-    constexpr double share_of_mixed = 0.1;   // of the footprint: roof and ground reflect differently
+    constexpr double least = 0.005;            // m
+    constexpr double share_of_mixed = 0.1;     // of the footprint: roof and ground reflect differently
     constexpr double share_of_hidden = 0.125;  // of the footprint: two returns are possible, but none was seen at the edges
     if (mixed_ || options_.several_returns) {
       value = 0.0;
@@ -568,7 +576,6 @@ class Viewer {
   double tolerance_ = coarse_tolerance, growth_ = 0.0, growth_sigma_ = 1.0, middle_time_ = 0.0;
   Eigen::Matrix<double, unknowns, unknowns> covariance_;
   std::vector<Eigen::Matrix<double, unknowns, 2>> gains_;
-  std::string why_;
 };
 
 }  // namespace
@@ -612,7 +619,8 @@ RoofTarget roof_target(const std::string& name, const std::vector<Vector3d>& cor
   }
   if (area < 0.0) std::reverse(t.corners.begin(), t.corners.end());
   if (!t.holds(t.centre()) || std::abs(area) < 1.0)
-    throw core::Error{"the corners of target '" + name + "' do not go around a convex roof", name, "list them in their order around the roof"};
+    throw core::Error{"the corners of target '" + name + "' do not go around a convex roof", name,
+                      "list them in their order around the roof"};
   for (size_t k = 0; k < corners.size(); ++k) {
     const Vector2d a = t.corners[k], b = t.corners[(k + 1) % corners.size()], c = t.corners[(k + 2) % corners.size()];
     if ((b - a).x() * (c - b).y() - (b - a).y() * (c - b).x() <= 0.0)
@@ -620,6 +628,11 @@ RoofTarget roof_target(const std::string& name, const std::vector<Vector3d>& cor
                         "list them in their order around the roof"};
   }
   return t;
+}
+
+TargetView view_target(const TargetPulses& pulses, const ShotGeometry& geometry, const trajectory::Trajectory& trajectory,
+                       const RoofTarget& target, const EdgeOptions& options) {
+  return Viewer(pulses, geometry, trajectory, target, options).run();
 }
 
 void TargetPulses::halve() {

@@ -118,7 +118,8 @@ std::vector<FoundRoof> HeightGrid::roofs(const FinderOptions& options) const {
     if (roof.plane.tail<2>().norm() > options.level) continue;
     const auto up = [&](const Vector2d& p) { return roof.plane[0] + roof.plane.tail<2>().dot(p); };
     double squares = 0.0;
-    for (size_t i = 0; i < patch.size(); ++i) squares += std::pow(static_cast<double>(cells_.at(packed(patch[i])).mean()) - up(centres[i]), 2);
+    for (size_t i = 0; i < patch.size(); ++i)
+      squares += std::pow(static_cast<double>(cells_.at(packed(patch[i])).mean()) - up(centres[i]), 2);
     if (std::sqrt(squares / static_cast<double>(patch.size())) > roughest) continue;
 
     // Two cells away from the patch all is lower.

@@ -20,9 +20,9 @@ struct LinePulses {
 };
 
 struct CollectedPulses {
-  std::vector<LinePulses> lines;  ///< in the order of the stream; lines that pass the target by have no pulses
-  double widest = 0.0;            ///< largest |tangent| of the beams across the flight, scanner frame
-  bool several_returns = false;   ///< the scanner records more than one return of a pulse
+  std::vector<LinePulses> lines;           ///< in the order of the stream; lines that pass the target by have no pulses
+  double widest = 0.0;                     ///< largest |tangent| of the beams across the flight, scanner frame
+  bool several_returns = false;            ///< the scanner records more than one return of a pulse
   std::uint64_t returns = 0, outside = 0;  ///< all returns; those whose time no span of the trajectory holds
 };
 

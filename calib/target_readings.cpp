@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Source: Brandalize, "Perfilamento a laser", the calibration flight over a flat roof. Deviations: displacements are taken along the axes of
-// the body (exact for a banked aircraft), not of the flight; every pair of opposite lines is a reading; heading comes from any two parallel
-// lines that have the target at different distances to the side, so that an offset between survey and trajectory cancels there, too.
-// Sigmas: all readings are linear in the lines' displacements, whose full covariance is carried (edges, survey, trajectory, calibration
-// values held). Lines that are flown soon after one another share the trajectory's error.
+// Source: Brandalize, "Perfilamento a laser", the calibration flight over a flat roof. Deviations: displacements are taken along the axes
+// of the body (exact for a banked aircraft), not of the flight; every pair of opposite lines is a reading; heading comes from any two
+// parallel lines that have the target at different distances to the side, so that an offset between survey and trajectory cancels there,
+// too. Sigmas: all readings are linear in the lines' displacements, whose full covariance is carried (edges, survey, trajectory,
+// calibration values held). Lines that are flown soon after one another share the trajectory's error.
 #include "calib/target_readings.h"
 
 #include <Eigen/Cholesky>
@@ -26,13 +26,13 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double parallel = 0.94;         // |cosine| of two headings that count as parallel: within 20 deg
-constexpr double same_height = 0.15;      // relative difference of heights within one reading
-constexpr double too_vague = 0.5;         // m: a displacement of larger sigma is none
+constexpr double parallel = 0.94;          // |cosine| of two headings that count as parallel: within 20 deg
+constexpr double same_height = 0.15;       // relative difference of heights within one reading
+constexpr double too_vague = 0.5;          // m: a displacement of larger sigma is none
 constexpr double two_heights_apart = 1.2;  // ratio
-constexpr double profile_tangent = 0.01;  // of a line's widest beam over the target
-constexpr double along_free = 1.0;        // m, a-priori sigma of lever arms where two heights tell them from angles
-constexpr double datum_free = 10.0;       // m
+constexpr double profile_tangent = 0.01;   // of a line's widest beam over the target
+constexpr double along_free = 1.0;         // m, a-priori sigma of lever arms where two heights tell them from angles
+constexpr double datum_free = 10.0;        // m
 constexpr double scale_free = 0.02;
 
 using Index = Eigen::Index;
@@ -92,7 +92,8 @@ TargetMeasures target_measures(const std::vector<std::pair<int, const TargetView
   m.across = geometry.beam().is_across() && !geometry.beam().ignores_record();
   const Index corners = static_cast<Index>(target.sides());
   MatrixXd A(corners, 3);
-  for (Index k = 0; k < corners; ++k) A.row(k) << 1.0, target.corners[static_cast<size_t>(k)].x(), target.corners[static_cast<size_t>(k)].y();
+  for (Index k = 0; k < corners; ++k)
+    A.row(k) << 1.0, target.corners[static_cast<size_t>(k)].x(), target.corners[static_cast<size_t>(k)].y();
   const MatrixXd plane_by_heights = (A.transpose() * A).inverse() * A.transpose();
 
   std::vector<double> times;
@@ -111,8 +112,7 @@ TargetMeasures target_measures(const std::vector<std::pair<int, const TargetView
     local_R_level.block<2, 1>(0, 0) = x;
     local_R_level.block<2, 1>(0, 1) = y;
     l.body_R_level = l.body_R_local * local_R_level;
-    const Vector3d scanner =
-        target.frame.local_R_ecef * (pose->position + pose->ecef_R_body * geometry.lever_arm() - target.frame.origin);
+    const Vector3d scanner = target.frame.local_R_ecef * (pose->position + pose->ecef_R_body * geometry.lever_arm() - target.frame.origin);
     const Vector3d centre(view->centre.x(), view->centre.y(), target.up(view->centre));
     l.target = l.body_R_local * (centre - scanner);
     l.delta = l.body_R_level * Vector3d(view->displacement.x(), view->displacement.y(), view->height);
@@ -320,7 +320,8 @@ JointTarget solve_jointly(const TargetMeasures& m, const core::SensorSigma& sigm
   out.chi2 = v.dot(inverse * v) / std::max(1.0, freedom);
   const auto one = [&](int k, bool free) { return JointTarget::One{free, x[k], std::sqrt(covariance(k, k))}; };
   constexpr double known_angle = 0.01;  // rad: sigma below which an angle is told at all
-  for (const auto& [k, into] : {std::pair{int{roll}, &out.roll}, std::pair{int{pitch}, &out.pitch}, std::pair{int{heading}, &out.heading}}) {
+  for (const auto& [k, into] :
+       {std::pair{int{roll}, &out.roll}, std::pair{int{pitch}, &out.pitch}, std::pair{int{heading}, &out.heading}}) {
     *into = one(k, true);
     into->free = into->sigma < known_angle;
   }

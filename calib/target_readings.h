@@ -35,11 +35,11 @@ struct LineMeasure {
   int line = 0;
   const TargetView* view = nullptr;
   TargetRole role = TargetRole::nadir;
-  double heading = 0.0;         ///< of the body, rad
-  Eigen::Vector3d target;       ///< from scanner to the target's centre as surveyed, body, m
-  Eigen::Vector3d delta;        ///< displacement, computed minus surveyed, body, m
-  Eigen::Matrix3d body_R_level;  ///< columns: along, across (flight axes), up
-  Eigen::Matrix3d body_R_local;  ///< columns: east, north, up
+  double heading = 0.0;                          ///< of the body, rad
+  Eigen::Vector3d target;                        ///< from scanner to the target's centre as surveyed, body, m
+  Eigen::Vector3d delta;                         ///< displacement, computed minus surveyed, body, m
+  Eigen::Matrix3d body_R_level;                  ///< columns: along, across (flight axes), up
+  Eigen::Matrix3d body_R_local;                  ///< columns: east, north, up
   Eigen::Matrix<double, 3, parameter_count> by;  ///< of the point in body
   Eigen::Vector3d sigma;  ///< of the displacement along, across, up: with trajectory, survey and what else is not estimated
 };
@@ -47,9 +47,9 @@ struct LineMeasure {
 /// All lines together: displacements with the covariance of all that disturbs them.
 struct TargetMeasures {
   std::vector<LineMeasure> lines;
-  Eigen::MatrixXd covariance;  ///< 3n x 3n, of the deltas: edges, plane, survey, trajectory
-  Eigen::MatrixXd held;        ///< 3n x k: effect of one sigma of each calibration value that no reading estimates
-  double widest = 0.0;         ///< tangent of the swath's half angle
+  Eigen::MatrixXd covariance;           ///< 3n x 3n, of the deltas: edges, plane, survey, trajectory
+  Eigen::MatrixXd held;                 ///< 3n x k: effect of one sigma of each calibration value that no reading estimates
+  double widest = 0.0;                  ///< tangent of the swath's half angle
   bool surveyed = true, across = true;  ///< the target is surveyed; the scanner scans across
 };
 
@@ -90,9 +90,9 @@ struct JointTarget {
   };
   One roll, pitch, heading, range_offset, scan_scale, lever_forward, lever_right;
   Eigen::Vector3d datum = Eigen::Vector3d::Zero(), datum_sigma = Eigen::Vector3d::Zero();  ///< east, north, up common to all lines, m
-  double lowest = 0.0, highest = 0.0;  ///< flying heights above the target, m
-  bool two_heights = false;            ///< heights differ by a fifth at least: lever arms are free
-  double chi2 = 0.0;                   ///< per degree of freedom
+  double lowest = 0.0, highest = 0.0;                                                      ///< flying heights above the target, m
+  bool two_heights = false;  ///< heights differ by a fifth at least: lever arms are free
+  double chi2 = 0.0;         ///< per degree of freedom
 };
 JointTarget solve_jointly(const TargetMeasures& m, const core::SensorSigma& sigma);
 

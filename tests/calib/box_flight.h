@@ -74,7 +74,9 @@ inline BoxRecords fly(const BoxFlight& flight) {
 
   // The box.
   const Vector2d u(std::sin(flight.azimuth), std::cos(flight.azimuth)), v(u.y(), -u.x());
-  const auto inside = [&](const Vector2d& p) { return std::abs(p.dot(u)) <= flight.half_length && std::abs(p.dot(v)) <= flight.half_width; };
+  const auto inside = [&](const Vector2d& p) {
+    return std::abs(p.dot(u)) <= flight.half_length && std::abs(p.dot(v)) <= flight.half_width;
+  };
   for (const auto& [a, b] : {std::pair{1, 1}, std::pair{1, -1}, std::pair{-1, -1}, std::pair{-1, 1}}) {
     const Vector2d c = a * flight.half_length * u + b * flight.half_width * v;
     io::ControlPoint p;
@@ -213,7 +215,8 @@ inline BoxRecords fly(const BoxFlight& flight) {
   out.sigma.scan_angle.value = flight.angle_noise;
   out.sigma.beam_divergence.value = flight.footprint == Footprint::point ? 0.0 : flight.divergence;
   Eigen::Matrix<double, 6, 1> variance;
-  variance << flight.position_error, flight.position_error, flight.height_error, flight.level_error, flight.level_error, flight.heading_error;
+  variance << flight.position_error, flight.position_error, flight.height_error, flight.level_error, flight.level_error,
+      flight.heading_error;
   variance = variance.cwiseAbs2();
   out.covariance = [variance](const std::vector<double>& times) {
     Eigen::MatrixXd C = Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(times.size()), 6 * static_cast<Eigen::Index>(times.size()));
@@ -226,12 +229,9 @@ inline BoxRecords fly(const BoxFlight& flight) {
 /// Opposite lines over the target at `azimuth` and across it, with it at the swath's edges.
 inline std::vector<BoxLine> full_pattern(double azimuth, double height = 700.0, int first = 1) {
   const double pi = core::pi, side = 0.3 * height;
-  return {{first, azimuth, 0.0, height},
-          {first + 1, azimuth + pi, 5.0, height},
-          {first + 2, azimuth, side, height},
-          {first + 3, azimuth + pi, side, height},
-          {first + 4, azimuth + 0.5 * pi, -8.0, height},
-          {first + 5, azimuth - 0.5 * pi, 0.0, height}};
+  return {
+      {first, azimuth, 0.0, height},           {first + 1, azimuth + pi, 5.0, height},        {first + 2, azimuth, side, height},
+      {first + 3, azimuth + pi, side, height}, {first + 4, azimuth + 0.5 * pi, -8.0, height}, {first + 5, azimuth - 0.5 * pi, 0.0, height}};
 }
 
 }  // namespace swath::calib::test
