@@ -131,7 +131,8 @@ class Analysis {
     return e;
   }
 
-  std::vector<TargetView> views(const core::Calibration& calibration, bool coarse) const {
+  /// `across`: sigma of the displacement across the flight, m, once roll has been found; 0 before.
+  std::vector<TargetView> views(const core::Calibration& calibration, bool coarse, double across) const {
     const ShotGeometry geometry(scanner_, calibration);
     std::vector<TargetView> out;
     for (const LinePulses& l : collected_.lines) {
@@ -140,6 +141,7 @@ class Analysis {
       for (const double r : l.pulses.first) range = std::max(range, geometry.range(r));
       constexpr double datum = 2.0;  // m
       e.search = std::tan(options_.search.value) * range * std::sqrt(2.0) + datum;
+      e.across = across > 0.0 ? across : e.search;
       out.push_back(view_target(l.pulses, geometry, trajectory_, out_.target, e));
     }
     return out;
@@ -162,10 +164,13 @@ class Analysis {
     bool steady = false;
     for (out_.rounds = 1; out_.rounds <= options_.rounds; ++out_.rounds) {
       const bool coarse = out_.rounds <= coarse_rounds;
-      now = views(cal, coarse);
+      // Profiles cannot tell it: with the roll of the other lines it is small.
+      constexpr double left_after_roll = 0.3;  // m
+      const double across = angles.roll.determined ? left_after_roll : 0.0;
+      now = views(cal, coarse, across);
       if (!out_.target.surveyed) {
         rectangle_of(now);
-        now = views(cal, coarse);
+        now = views(cal, coarse, across);
       }
       m = measures(now, cal);
       if (out_.rounds == 1) remember(now, m);

@@ -93,7 +93,7 @@ std::vector<FoundRoof> HeightGrid::roofs(const FinderOptions& options) const {
     std::vector<Key> patch{start};
     for (size_t i = 0; i < patch.size(); ++i) {
       const float here = cells_.at(packed(patch[i])).mean();
-      for (const Key d : {Key{1, 0}, Key{-1, 0}, Key{0, 1}, Key{0, -1}}) {
+      for (const Key& d : {Key{1, 0}, Key{-1, 0}, Key{0, 1}, Key{0, -1}}) {
         const Key next{patch[i].first + d.first, patch[i].second + d.second};
         const auto at = left.find(next);
         if (at == left.end() || std::abs(cells_.at(packed(next)).mean() - here) > step) continue;

@@ -35,13 +35,13 @@ struct LineMeasure {
   int line = 0;
   const TargetView* view = nullptr;
   TargetRole role = TargetRole::nadir;
-  double heading = 0.0;                          ///< of the body, rad
-  Eigen::Vector3d target;                        ///< from scanner to the target's centre as surveyed, body, m
-  Eigen::Vector3d delta;                         ///< displacement, computed minus surveyed, body, m
-  Eigen::Matrix3d body_R_level;                  ///< columns: along, across (flight axes), up
-  Eigen::Matrix3d body_R_local;                  ///< columns: east, north, up
-  Eigen::Matrix<double, 3, parameter_count> by;  ///< of the point in body
-  Eigen::Vector3d sigma;  ///< of the displacement along, across, up: with trajectory, survey and what else is not estimated
+  double heading = 0.0;                                        ///< of the body, rad
+  Eigen::Vector3d target{0, 0, 0};                             ///< from scanner to the target's centre as surveyed, body, m
+  Eigen::Vector3d delta{0, 0, 0};                              ///< displacement, computed minus surveyed, body, m
+  Eigen::Matrix3d body_R_level = Eigen::Matrix3d::Identity();  ///< columns: along, across (flight axes), up
+  Eigen::Matrix3d body_R_local = Eigen::Matrix3d::Identity();  ///< columns: east, north, up
+  Jacobian by = Jacobian::Zero();                              ///< of the point in body
+  Eigen::Vector3d sigma{0, 0, 0};  ///< of the displacement along, across, up: with trajectory, survey and what else is not estimated
 };
 
 /// All lines together: displacements with the covariance of all that disturbs them.

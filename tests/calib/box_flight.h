@@ -174,7 +174,10 @@ inline BoxRecords fly(const BoxFlight& flight) {
         } else {
           first = last = hit(from, beam(0, 0), on_roof);
         }
-        if (flight.footprint == Footprint::disc && near) {
+        const Vector3d pierced = from + (flight.roof - from.z()) / beam(0, 0).z() * beam(0, 0);
+        const double from_edge = std::min(std::abs(std::abs(pierced.head<2>().dot(u)) - flight.half_length),
+                                          std::abs(std::abs(pierced.head<2>().dot(v)) - flight.half_width));
+        if (flight.footprint == Footprint::disc && from_edge < flight.divergence * line.height) {
           constexpr int rings = 5;
           int roofs = 0, all = 0;
           double below = 0.0;
