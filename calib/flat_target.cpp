@@ -340,7 +340,11 @@ class Analysis {
       z = std::max(z, l.target.z());
       y = std::max(y, std::abs(l.target.y()));
     }
-    if (const std::string w = small_angle_warning(moved, z, std::max(y, 1.0)); !w.empty())
+    // What the formulas alone would be wrong by matters where it is more than the readings' own sigma.
+    double most = 1e-4;
+    for (const TargetAngle* t : {&out_.roll, &out_.pitch, &out_.heading})
+      if (t->determined) most = std::min(most, t->sigma);
+    if (const std::string w = small_angle_warning(moved, z, std::max(y, 1.0), most); !w.empty())
       say(w + "; they were iterated with the exact rotation");
     if (j.datum_sigma.head<2>().maxCoeff() < 1.0 && m.surveyed) {
       const double size = j.datum.head<2>().norm(), its = j.datum_sigma.head<2>().maxCoeff();

@@ -56,8 +56,7 @@ void fit_rectangle(const std::vector<Vector2d>& centres, double cell, FoundRoof&
     roof.centre = {middle.x() * std::sin(azimuth) + middle.y() * std::cos(azimuth),
                    middle.x() * std::cos(azimuth) - middle.y() * std::sin(azimuth)};
     roof.azimuth = azimuth;
-    // Cells that the edge cuts belong to no patch: half of one is missing at each side on average.
-    roof.half = 0.5 * (side + Vector2d(cell, cell));
+    roof.half = 0.5 * side;
   }
   roof.share = static_cast<double>(centres.size()) * cell * cell / least;
   if (roof.half.x() < roof.half.y()) {

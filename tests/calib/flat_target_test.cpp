@@ -83,9 +83,8 @@ TEST(FlatTarget, FindsSmallAndLargeAngles) {
         EXPECT_GT(l.before.displacement.norm(), 5.0);
       }
     }
-    if (std::abs(size) > 0.1) {
-      EXPECT_TRUE(says(t, "small-angle formulas")) << all_of(t);
-    }
+    // Half a degree is where the formulas alone begin to err by more than the readings do.
+    EXPECT_EQ(says(t, "small-angle formulas"), std::abs(size) > 0.1) << all_of(t);
   }
 }
 
@@ -120,8 +119,8 @@ void run_seeds(int seeds, bool surveyed) {
     if (surveyed) scale.add(t.scan_scale - 1.0, t.scan_scale_sigma);
     EXPECT_EQ(t.range_determined, surveyed);
   }
-  // Twelve values: error / sigma lies within 0.6 and 1.4 in 95 of 100 cases.
-  const double low = seeds >= 12 ? 0.5 : 0.3, high = seeds >= 12 ? 1.5 : 1.8;
+  // Twelve values: error / sigma lies within 0.6 and 1.4 in 95 of 100 cases; four: within 0.35 and 1.7.
+  const double low = seeds >= 12 ? 0.6 : 0.25, high = seeds >= 12 ? 1.4 : 1.8;
   const auto check = [&](const char* name, const Ratio& r, double unit) {
     std::cout << name << ": rms " << r.rms() / unit << ", error / sigma " << r.value() << "\n";
     EXPECT_GT(r.value(), low) << name;
@@ -138,7 +137,7 @@ void run_seeds(int seeds, bool surveyed) {
 
 int seeds_wanted() {
   const char* wanted = std::getenv("SWATH_FLAT_TARGET_SEEDS");
-  return wanted ? std::atoi(wanted) : 6;
+  return wanted ? std::atoi(wanted) : 4;
 }
 
 TEST(FlatTarget, ErrorsAreWhatTheirSigmasSay) { run_seeds(seeds_wanted(), true); }
