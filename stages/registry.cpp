@@ -16,6 +16,7 @@ const std::vector<Entry>& registry() {
       {"trajectory.kinematic", make_kinematic},
       {"readers.laser", make_laser_reader},
       {"readers.las", make_las_reader},
+      {"calib.flat_target", make_flat_target},
       {"georeference", make_georeference},
       {"filters.returns", make_returns},
       {"filters.noise", make_noise},
