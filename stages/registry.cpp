@@ -18,6 +18,7 @@ const std::vector<Entry>& registry() {
       {"readers.laser", make_laser_reader},
       {"readers.las", make_las_reader},
       {"calib.adjust", make_adjust},
+      {"calib.flat_target", make_flat_target},
       {"georeference", make_georeference},
       {"filters.returns", make_returns},
       {"filters.noise", make_noise},
