@@ -18,6 +18,7 @@ const std::vector<Entry>& registry() {
       {"readers.laser", make_laser_reader},
       {"readers.las", make_las_reader},
       {"calib.adjust", make_adjust},
+      {"calib.strips", make_strips},
       {"georeference", make_georeference},
       {"filters.returns", make_returns},
       {"filters.noise", make_noise},

@@ -24,6 +24,7 @@ std::unique_ptr<Stage> make_lever_arm();
 std::unique_ptr<Stage> make_laser_reader();
 std::unique_ptr<Stage> make_las_reader();
 std::unique_ptr<Stage> make_adjust();
+std::unique_ptr<Stage> make_strips();
 std::unique_ptr<Stage> make_georeference();
 std::unique_ptr<Stage> make_returns();
 std::unique_ptr<Stage> make_noise();
