@@ -85,7 +85,7 @@ Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& op
     out.match = match_surfaces(flight.shots, flight.scanner, flight.start, *flight.trajectory, flight.frame, options.match);
     if (out.match->scan_reversed)
       throw core::Error("the surfaces of the lines meet only with the sign of the scan angle turned", "calibration flight",
-                        "positive is to starboard: turn it by the file's options (survey.toml, [[laser]])");
+                        "positive is to starboard: set laser.angle_to_port in survey.toml, or turn the sign of the column");
     now = out.match->calibration;
   }
 

@@ -7,10 +7,12 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calib/adjustment.h"
+#include "calib/strips.h"
 #include "calib/tie_set.h"
 #include "core/grid.h"
 #include "core/sensor.h"
@@ -72,6 +74,8 @@ struct CalibrationReport {
   std::vector<TargetReading> readings;         ///< of the flat-target analysis; empty: there was none
   core::Value flat_target;                     ///< its details: a table of numbers and texts, or of lists of such tables; null: none
   std::vector<std::string> notes;              ///< further sentences for the reader ("start values were found from height grids")
+  /// Set: the report is of a strip adjustment, no calibration value is estimated, and strips.json takes the place of calibration.json.
+  std::optional<calib::PlaneDifferences> strips;
 };
 
 /// What calibration.json delivers: the adjusted values, or the start values of parameters that a finding refuses; and their sigmas, those
@@ -83,7 +87,8 @@ struct DeliveredCalibration {
 DeliveredCalibration delivered(const calib::Adjustment& adjustment, const core::SensorSigma& sensor);
 
 /// Writes into the folder, which it makes:
-///   calibration.json     what io::load_calibration() reads, and the whole report as a tree (SI units, GPS time)
+///   calibration.json     what io::load_calibration() reads, and the whole report as a tree (SI units, GPS time); of a strip adjustment
+///                        strips.json, the report alone
 ///   report.html          self-contained
 ///   residuals.csv        one row per group of returns (line on plane)
 ///   corrections.csv      one row per line and knot

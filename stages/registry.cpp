@@ -19,6 +19,7 @@ const std::vector<Entry>& registry() {
       {"readers.las", make_las_reader},
       {"calib.adjust", make_adjust},
       {"calib.flat_target", make_flat_target},
+      {"calib.strips", make_strips},
       {"georeference", make_georeference},
       {"filters.returns", make_returns},
       {"filters.noise", make_noise},

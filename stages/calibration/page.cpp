@@ -90,13 +90,21 @@ std::string yes(bool v) { return v ? "yes" : "no"; }
 class Maker {
  public:
   Maker(const CalibrationReport& report, const KeepFigure& keep)
-      : report_(report), adjustment_(report.adjustment), keep_(keep), page_("Calibration report", subtitle(report)) {}
+      : report_(report),
+        adjustment_(report.adjustment),
+        keep_(keep),
+        page_(report.strips ? "Strip adjustment" : "Calibration report", subtitle(report)) {}
 
   std::string html() {
-    const Verdict v = verdict_of(adjustment_);
+    const Verdict v = report_.strips ? verdict_of_strips(adjustment_, *report_.strips) : verdict_of(adjustment_);
     page_.banner(v.tone, v.text);
     findings();
-    values();
+    if (report_.strips)
+      strips();
+    else
+      values();
+    summary();
+    if (!report_.strips) correlations();
     target();
     flight();
     residuals();
@@ -118,7 +126,9 @@ class Maker {
   }
 
   void findings();
+  void strips();
   void values();
+  void summary();
   void value_table(const Group& group, const std::array<std::string, 5>& notes);
   void correlations();
   void target();
@@ -204,14 +214,34 @@ void Maker::values() {
   if (!held.empty()) page_.paragraph("Held at the start value and not estimated: " + joined(held) + ".");
   page_.paragraph(
       "“From the data” is the share of the knowledge that this flight brought, the rest being the start value with its a-priori sigma.");
+}
 
+void Maker::strips() {
+  page_.section("How the lines meet");
+  page_.paragraph(
+      "Two lines that have seen the same plane: the difference of the mean distances of their returns from it, over all planes that the "
+      "two "
+      "share. Before: with the trajectory as it was given. After: with the corrected one. The calibration was held.");
+  Table t{"plane-differences", "Differences of lines on common planes", {}, {}, {}};
+  t.columns = {{"line"}, {"and line"}, {"planes"}, {"mean before (cm)"}, {"rms before (cm)"}, {"mean after (cm)"}, {"rms after (cm)"}};
+  const auto add = [&](const calib::PairOnPlanes& p, std::string a, std::string b) {
+    t.rows.push_back({std::move(a), std::move(b), count_text(p.planes), number_text(p.mean_before / centimetre, 2),
+                      number_text(p.rms_before / centimetre, 2), number_text(p.mean_after / centimetre, 2),
+                      number_text(p.rms_after / centimetre, 2)});
+  };
+  for (const calib::PairOnPlanes& p : report_.strips->pairs) add(p, std::to_string(p.line_a), std::to_string(p.line_b));
+  add(report_.strips->all, "all", "all");
+  page_.table(t);
+}
+
+void Maker::summary() {
   Table t{"adjustment", "The adjustment", {{"figure", false}, {"value"}}, {}, {}};
   t.rows = {{"observations", count_text(adjustment_.observations)},
             {"unknowns", count_text(adjustment_.unknowns)},
-            {"sigma of unit weight", number_text(adjustment_.sigma0, 3)},
-            {"condition number of the scaled normal matrix", number_text(adjustment_.condition, 1)},
-            {"iterations", count_text(static_cast<std::uint64_t>(std::max(adjustment_.iterations, 0)))},
-            {"returns taken out", count_text(adjustment_.rejected_returns)}};
+            {"sigma of unit weight", number_text(adjustment_.sigma0, 3)}};
+  if (!report_.strips) t.rows.push_back({"condition number of the scaled normal matrix", number_text(adjustment_.condition, 1)});
+  t.rows.insert(t.rows.end(), {{"iterations", count_text(static_cast<std::uint64_t>(std::max(adjustment_.iterations, 0)))},
+                               {"returns taken out", count_text(adjustment_.rejected_returns)}});
   page_.table(t);
 
   if (!adjustment_.components.empty()) {
@@ -224,7 +254,6 @@ void Maker::values() {
     }
     page_.table(c);
   }
-  correlations();
 }
 
 void Maker::correlations() {
@@ -411,7 +440,7 @@ void Maker::residual_table(BinBy by, const char* id, const char* caption, const 
 void Maker::residuals() {
   page_.section("Residuals");
   page_.paragraph(
-      "A group is the returns of one line on one tie plane. Its mean distance from the plane, towards the scanner, is what calibration "
+      "A group is the returns of one line on one tie plane. Its mean distance from the plane, towards the scanner, is what the adjustment "
       "makes "
       "small: before with the start values, after with the result. A slope over scan angle, range or time that is left tells of an error "
       "that "
@@ -578,7 +607,8 @@ void Maker::differences() {
 void Maker::files() {
   page_.section("Files beside this report");
   std::vector<std::string> items{
-      "calibration.json: the values for the survey's run, and everything in this report.",
+      report_.strips ? "strips.json: everything in this report."
+                     : "calibration.json: the values for the survey's run, and everything in this report.",
       "residuals.csv: each group of returns. planes.csv: each tie plane. corrections.csv: each line's corrections.",
   };
   if (!report_.sections.empty()) items.emplace_back("sections.csv: the returns of the cross-sections.");

@@ -230,6 +230,30 @@ Value readings_tree(const CalibrationReport& report) {
   return out;
 }
 
+Value strips_tree(const calib::PlaneDifferences& d) {
+  const auto of = [](const calib::PairOnPlanes& p) {
+    Value one;
+    one["planes"] = p.planes;
+    one["mean_before"] = p.mean_before;
+    one["rms_before"] = p.rms_before;
+    one["mean_after"] = p.mean_after;
+    one["rms_after"] = p.rms_after;
+    return one;
+  };
+  Value out;
+  out["all"] = of(d.all);
+  out["pairs"] = Value::array();
+  for (const calib::PairOnPlanes& p : d.pairs) {
+    Value one;
+    one["lines"].push(p.line_a);
+    one["lines"].push(p.line_b);
+    const Value rest = of(p);
+    for (const auto& [key, value] : rest.members()) one[key] = value;
+    out["pairs"].push(std::move(one));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string difference_file(const LineDifference& d, bool before) {
@@ -249,13 +273,17 @@ Agreement agreement_of(const calib::Adjustment& a, const TargetReading& r) {
 
 core::Value calibration_report_tree(const CalibrationReport& report) {
   const calib::Adjustment& a = report.adjustment;
-  const DeliveredCalibration d = delivered(a, report.sensor);
-  const Verdict v = verdict_of(a);
-  Value out = io::calibration_tree(d.calibration, d.sigma);
+  const Verdict v = report.strips ? verdict_of_strips(a, *report.strips) : verdict_of(a);
+  Value out;
+  if (!report.strips) {
+    const DeliveredCalibration d = delivered(a, report.sensor);
+    out = io::calibration_tree(d.calibration, d.sigma);
+  }
   out["survey"] = report.survey;
   out["crs"] = report.crs;
-  out["calibrated"] = v.calibrated;
+  if (!report.strips) out["calibrated"] = v.calibrated;
   out["verdict"] = v.text;
+  if (report.strips) out["plane_differences"] = strips_tree(*report.strips);
   Value findings = Value::array(), components = Value::array();
   for (const calib::Finding& f : a.findings) {
     Value one;
@@ -268,8 +296,10 @@ core::Value calibration_report_tree(const CalibrationReport& report) {
   out["findings"] = std::move(findings);
   out["notes"] = Value::array();
   for (const std::string& note : report.notes) out["notes"].push(note);
-  out["estimates"] = estimates_tree(a);
-  out["correlation"] = correlation_tree(a);
+  if (!report.strips) {
+    out["estimates"] = estimates_tree(a);
+    out["correlation"] = correlation_tree(a);
+  }
   Value& sums = out["adjustment"];
   sums["observations"] = a.observations;
   sums["unknowns"] = a.unknowns;

@@ -165,4 +165,20 @@ Verdict verdict_of(const Adjustment& a) {
   return out;
 }
 
+Verdict verdict_of_strips(const Adjustment& a, const calib::PlaneDifferences& d) {
+  constexpr double centimetre = 0.01;
+  Verdict out;
+  out.tone = d.all.rms_after <= d.all.rms_before ? report::Tone::good : report::Tone::bad;
+  out.text = "Lines meet within " + report::number_text(d.all.rms_after / centimetre, 1) + " cm on " + report::count_text(d.all.planes) +
+             " pairs of looks at planes (" + report::number_text(d.all.rms_before / centimetre, 1) + " cm before; rms)";
+  const auto disagree = std::count_if(a.control.begin(), a.control.end(), [](const calib::ControlResidual& c) { return c.rejected; });
+  if (disagree > 0)
+    out.text += "; " + std::to_string(disagree) + " of " + std::to_string(a.control.size()) + " surveyed points disagree with the flight";
+  if (a.control.empty()) out.text += "; without surveyed points the whole block keeps the trajectory's mean error";
+  out.text += ".";
+  if (disagree > 0 || !a.findings.empty()) out.tone = std::max(out.tone, report::Tone::caution);
+  if (!a.findings.empty()) out.text += " Read the warnings below.";
+  return out;
+}
+
 }  // namespace swath::stages

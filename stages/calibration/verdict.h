@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "calib/adjustment.h"
+#include "calib/strips.h"
 #include "report/page.h"
 
 namespace swath::stages {
@@ -37,6 +38,10 @@ struct Verdict {
 /// "Not calibrated: WHAT. CURE" where a finding refuses an angle of the boresight or nothing is delivered. Otherwise the delivered
 /// parameters with their sigmas, then what is not determined, and how many surveyed points disagree.
 Verdict verdict_of(const calib::Adjustment& adjustment);
+
+/// Of a strip adjustment: "Lines meet within 0.8 cm on planes (8.3 cm before) ...", rms over all pairs of lines; `calibrated` is always
+/// false.
+Verdict verdict_of_strips(const calib::Adjustment& adjustment, const calib::PlaneDifferences& differences);
 
 /// "a", "a and b", "a, b and c".
 std::string joined(const std::vector<std::string>& items);
