@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/frames.h"
 #include "core/geodesy.h"
 #include "core/units.h"
 

@@ -56,9 +56,9 @@ TEST(Snooping, TestsOfSoundObservationsAreNormal) {
     EXPECT_LE(g.redundancy, 1.0);
   }
   // The surfaces here are exact and their stated sigma 3 mm beside 6 mm of the ranges' mean: w is a little below its sigma of 1.
-  EXPECT_NEAR(std::sqrt(squares / t.group.size()), 1.0, 0.25);
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(t.group.size())), 1.0, 0.25);
   EXPECT_LT(largest, 4.0);
-  EXPECT_GT(redundancy, 0.3 * t.group.size());
+  EXPECT_GT(redundancy, 0.3 * static_cast<double>(t.group.size()));
   EXPECT_LT(redundancy, static_cast<double>(t.group.size()));
 }
 

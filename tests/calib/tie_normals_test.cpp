@@ -184,7 +184,7 @@ TEST(TieNormals, ValuesByParameter) {
   core::Calibration c;
   for (int k = boresight_roll; k <= latency; ++k) set_value(c, static_cast<Parameter>(k), 0.1 * k + 1.0);
   for (int k = boresight_roll; k <= latency; ++k) EXPECT_EQ(value_of(c, static_cast<Parameter>(k)), 0.1 * k + 1.0);
-  EXPECT_EQ(c.scan_offset.value, 0.1 * scan_offset + 1.0);
+  EXPECT_EQ(c.scan_offset.value, 0.1 * static_cast<int>(scan_offset) + 1.0);
 }
 
 }  // namespace

@@ -94,7 +94,9 @@ TEST(TiePlanes, FacetsLieOnTrueSurfaces) {
     EXPECT_EQ(x.begin, g == 0 ? 0 : set.groups[g - 1].end);
     EXPECT_GE(x.end - x.begin, 12u);
     EXPECT_LE(x.end - x.begin, 150u);
-    if (g > 0) EXPECT_TRUE(x.plane > set.groups[g - 1].plane || (x.plane == set.groups[g - 1].plane && x.line > set.groups[g - 1].line));
+    if (g > 0) {
+      EXPECT_TRUE(x.plane > set.groups[g - 1].plane || (x.plane == set.groups[g - 1].plane && x.line > set.groups[g - 1].line));
+    }
     ++lines[x.plane];
   }
   for (const int n : lines) EXPECT_GE(n, 2);
@@ -113,8 +115,9 @@ TEST(TiePlanes, NoReturnLiesAtAnEdge) {
       const Vector3d p = s.place(set.returns, i);
       ++of_roofs;
       for (const Eigen::Vector4d& q : t.house->planes)
-        if ((q.head<3>() - t.normal).norm() > 1e-9)
+        if ((q.head<3>() - t.normal).norm() > 1e-9) {
           EXPECT_LT(q.head<3>().dot(p), q[3] - margin * 0.5) << "return over the edge of its roof";
+        }
     }
   }
   EXPECT_GT(of_roofs, 1000u);
