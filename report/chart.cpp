@@ -122,11 +122,10 @@ class SvgSheet : public Sheet {
             "\" stroke-linejoin=\"round\"/>\n";
   }
   void dots(const std::vector<double>& x, const std::vector<double>& y, double radius, core::Rgb colour) override {
-    // Strokes of no length with round ends: a third of the text that circles take.
-    out_ +=
-        "<path fill=\"none\" stroke=\"" + hex(colour) + "\" stroke-width=\"" + number(2.0 * radius) + "\" stroke-linecap=\"round\" d=\"";
-    for (size_t k = 0; k < x.size(); ++k) out_ += "M" + number(x[k]) + "," + number(y[k]) + "h0";
-    out_ += "\"/>\n";
+    out_ += "<g fill=\"" + hex(colour) + "\">\n";
+    for (size_t k = 0; k < x.size(); ++k)
+      out_ += "<circle cx=\"" + number(x[k]) + "\" cy=\"" + number(y[k]) + "\" r=\"" + number(radius) + "\"/>\n";
+    out_ += "</g>\n";
   }
   void area(const std::vector<double>& x, const std::vector<double>& upper, const std::vector<double>& lower, core::Rgb colour,
             double opacity) override {

@@ -110,7 +110,7 @@ std::optional<Chart> correction_chart(const CalibrationReport& report) {
   const double first = first_time(report.ties);
   Chart c;
   c.title = "Corrections of the trajectory, with their sigmas";
-  c.panel_height = 120;
+  c.panel_height = 150;
   for (size_t axis = 0; axis < 6; ++axis) {
     const double unit = axis < 3 ? centimetre : arc_second;
     Panel p;

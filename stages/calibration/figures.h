@@ -21,7 +21,7 @@ std::optional<report::Chart> correction_chart(const CalibrationReport& report);
 /// Of the estimated parameters; none where fewer than two are.
 std::optional<report::CorrelationChart> correlation_chart(const CalibrationReport& report);
 /// Before above, after below. Of a line with more than `most` returns every k-th is drawn.
-report::Chart section_chart(const CalibrationReport& report, const CrossSection& section, size_t most = 1500);
+report::Chart section_chart(const CalibrationReport& report, const CrossSection& section, size_t most = 800);
 core::Picture difference_map(const LineDifference& difference, bool before);
 
 /// Index into the chart's palette for the k-th line of the flight: never that of what was taken out.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Over 400 lines: one page, whose sections stand here in the order in which they are read, each a few tables and their columns.
 #include "stages/calibration/page.h"
 
 #include <algorithm>

@@ -320,12 +320,6 @@ TEST(Chart, KindsStandSideBySideUnderTheirNames) {
   EXPECT_NEAR((dots.right - plot.left) / width, 5.0 / 6.0, 0.02);
 }
 
-TEST(Chart, DotsOfASeriesAreOnePath) {
-  const std::string s = svg(chart_of({panel({"", ramp(50, 0, 49), ramp(50, 0, 1), {}, Mark::dots, 0})}));
-  EXPECT_EQ(count(s, "stroke-linecap=\"round\""), 1u);
-  EXPECT_EQ(count(s, "h0"), 50u);
-}
-
 TEST(Chart, ColoursOfAnyIndexDifferForThreeRounds) {
   std::set<core::Rgb> seen;
   for (int k = 0; k < 21; ++k) seen.insert(palette(k));
