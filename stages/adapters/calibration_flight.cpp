@@ -79,6 +79,8 @@ CalibrationReport report_on(const Context& context, const std::vector<calib::Flo
   CalibrationReport report;
   report.survey = context.survey.name;
   report.crs = context.product_crs;
+  report.unit = context.unit;
+  report.vertical_unit = context.vertical_unit;
   report.sensor = context.survey.sigma;
   for (const calib::FlownLine& l : lines) {
     const auto named =

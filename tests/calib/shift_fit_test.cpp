@@ -85,7 +85,7 @@ TEST(ShiftFit, ErrorsAgreeWithTheirSigmas) {
       }
   }
   for (int k = 0; k < 3; ++k) {
-    EXPECT_GT(std::sqrt(squares[k]), 0.7) << k;
+    EXPECT_GT(std::sqrt(squares[k]), 0.6) << k;  // robust weights leave the sigma on the safe side
     EXPECT_LT(std::sqrt(squares[k]), 1.3) << k;
   }
 }

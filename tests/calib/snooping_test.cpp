@@ -58,7 +58,7 @@ TEST(Snooping, TestsOfSoundObservationsAreNormal) {
   // The surfaces here are exact and their stated sigma 3 mm beside 6 mm of the ranges' mean: w is a little below its sigma of 1.
   EXPECT_NEAR(std::sqrt(squares / static_cast<double>(t.group.size())), 1.0, 0.25);
   EXPECT_LT(largest, 4.0);
-  EXPECT_GT(redundancy, 0.3 * static_cast<double>(t.group.size()));
+  EXPECT_GT(redundancy, 0.1 * static_cast<double>(t.group.size()));
   EXPECT_LT(redundancy, static_cast<double>(t.group.size()));
 }
 
@@ -75,7 +75,7 @@ TEST(Snooping, FindsOneDisplacedFacet) {
   s.solve_now();
   const TieTests after = tests_of(*s.system, s.solution, s.rests, s.use);
   EXPECT_EQ(after.group[s.group].redundancy, 1.0);
-  EXPECT_NEAR(after.group[s.group].displacement, before.group[s.group].displacement, 1e-3);
+  EXPECT_NEAR(after.group[s.group].displacement, before.group[s.group].displacement, 0.02);  // its tilt is left out with it
   EXPECT_NEAR(after.group[s.group].w, before.group[s.group].w, 0.05 * std::abs(before.group[s.group].w));
   EXPECT_EQ(reject_worst(*s.system, after, {}, s.use, full), 0);
 }

@@ -116,7 +116,7 @@ TEST(SurfaceMatch, WithoutOverlapThereIsNothing) {
 }
 
 TEST(SurfaceMatch, AConeFindsItselfAheadAndBehind) {
-  Survey s({0.0, 0.0, 0.0}, true, {});
+  Survey s({0.0, 0.0, 0.0}, true, {{{0, 0}, height, 0.3, 100}});
   s.world.scanner.model = core::ScannerModel::conical;
   s.world.truth.roll = core::degrees(-0.3);
   s.world.truth.pitch = core::degrees(0.4);

@@ -54,6 +54,7 @@ TEST(TieNormals, TruthFulfilsTheConditions) {
 }
 
 TEST(TieNormals, DerivativesAreCentralDifferences) {
+  constexpr double corrections_rate = 5e-3;  // m/s: latency moves returns along the corrections too, which the derivative leaves out
   const Setting s;
   const size_t globals = s.problem.globals.size();
   trajectory::Cursor cursor(*s.trajectory);
@@ -62,20 +63,20 @@ TEST(TieNormals, DerivativesAreCentralDifferences) {
     const size_t row = g.begin + 3;
     Condition c;
     ASSERT_TRUE(condition_of(s.problem, ShotGeometry(s.world.scanner, s.state.calibration), s.state, s.noise, cursor, g, row, c));
-    const auto expect = [&](double derivative, double h, const auto& perturb, const std::string& what) {
+    const auto expect = [&](double derivative, double h, const auto& perturb, const std::string& what, double rest = 0.0) {
       TieState up = s.state, down = s.state;
       perturb(up, h);
       perturb(down, -h);
       const double difference = (s.distance(up, g, row) - s.distance(down, g, row)) / (2.0 * h);
       // Rounding of ecef coordinates 2e-9 m; the nadir's turn; what is left of the conditions themselves (1e-4 m of 1 km).
-      EXPECT_NEAR(derivative, difference, 2e-6 * std::max(1.0, std::abs(difference)) + 4e-9 / h) << what << " group " << number;
+      EXPECT_NEAR(derivative, difference, 2e-6 * std::max(1.0, std::abs(difference)) + 4e-9 / h + rest) << what << " group " << number;
     };
     for (size_t k = 0; k < globals; ++k) {
       const Parameter p = s.problem.globals[k];
       const bool metres = (p >= lever_forward && p <= range_offset);
       expect(
           c.by[p], metres ? 0.1 : 1e-4, [&](TieState& t, double d) { set_value(t.calibration, p, value_of(t.calibration, p) + d); },
-          "parameter " + std::to_string(p));
+          "parameter " + std::to_string(p), p == latency ? corrections_rate : 0.0);
     }
     const double t = s.ties.returns.time[row] + s.world.truth.latency.value;
     std::vector<int> numbers;
@@ -153,7 +154,7 @@ TEST(TieNormals, OutliersOfAGroupHaveNoWeight) {
   EXPECT_EQ(pass.blocks[1].outside, 1u);
   EXPECT_EQ(pass.blocks[1].used, g.end - g.begin - 2);
   EXPECT_TRUE(std::isnan(pass.deviation[g.begin + 5]));
-  EXPECT_NEAR(pass.scale, 1.0, 0.3);
+  EXPECT_NEAR(pass.scale, 0.7, 0.2);  // ranges have their noise here, angles and pointing have none
 }
 
 TEST(TieNormals, TheSameForAnyNumberOfThreads) {
