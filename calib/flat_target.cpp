@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Over 400 lines: one analysis, whose steps share the state of its rounds and stand in their order.
 // Source: Brandalize, "Perfilamento a laser", the calibration flight. Deviation: the small-angle formulas are applied, the returns are
 // computed anew and the target is measured again until nothing is left, so that their error (1e-4 rad at half a degree) has gone.
 #include "calib/flat_target.h"
