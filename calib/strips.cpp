@@ -15,7 +15,8 @@
 namespace swath::calib {
 namespace {
 
-constexpr double steady = 0.003, closest = 0.05;  // m
+// Planes are found the same way with returns that have moved by less than their own noise.
+constexpr double steady = 0.02, closest = 0.05;  // m
 
 std::vector<trajectory::CorrectionSeries> series_of(const std::vector<LineCorrection>& corrections) {
   std::vector<trajectory::CorrectionSeries> out;

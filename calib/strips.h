@@ -17,7 +17,7 @@ struct StripOptions {
   StripOptions() {
     planes.mismatch.value = 0.5;
     adjust.estimate = {false, false, false, false, false, false, false, false, false, false, false};
-    adjust.corrections.spacing.value = 10.0;
+    adjust.corrections.spacing.value = 3.0;
   }
   int rounds = 4;
   TiePlaneOptions planes;
