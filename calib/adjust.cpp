@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Over 400 lines: the steps of one adjustment, in their order, on one state.
 // Sources: Skaloud & Lichti (2006) and Glira et al. (2016) for the model (calib/tie_normals.h, correction_knots.h); Foerstner (1979) for
 // the variances; Baarda (1968) for the tests. Here: the unknowns are chosen, the rounds are run, and the results are put together.
 // Deviations: sigmas take the estimated variances as known (their own scatter adds a per cent or so to 20 degrees of freedom's 16 % in a

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Over 400 lines: one survey, whose steps share what was read and stand in their order.
 // Source: Jubanski et al., lever arm by a hangar survey. Beyond the paper: covariances go all the way (stations into points, points into
 // the vector), the aircraft's attitude in the hangar enters with its sigma, and where observations scatter more than their stated
 // sigmas allow, the covariance is multiplied by the variance factor and a warning says so.

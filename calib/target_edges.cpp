@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Over 400 lines: one likelihood with its model, its derivatives and its search, which share their terms.
 // A pulse that passes the edge hits ground or wall beyond and below: its return lies elsewhere than where it pierced the roof's plane (3.6
 // m for 20 deg and a height of 10 m). Pulses are therefore told apart by their returns' heights, but placed where their beam pierces the
 // plane. A return on the wall less than the tolerance below the roof counts as on the roof: the edge of a wall that faces the scanner is
