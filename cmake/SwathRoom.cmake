@@ -19,6 +19,8 @@ if(SWATH_SANITIZE)
   # Checks of every pointer before its use treble the time to compile Eigen; the address sanitizer sees those faults where they happen.
   target_compile_options(swath_settings INTERFACE -fsanitize=${SWATH_SANITIZE}
     -fno-sanitize=null,alignment,object-size,vptr,pointer-overflow -fno-omit-frame-pointer -Wno-maybe-uninitialized)
+  # With the address sanitizer Eigen's headers free by another way than PCL's library, built without it, allocates. Both are 16-byte aligned.
+  target_compile_definitions(swath_settings INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
   target_link_options(swath_settings INTERFACE -fsanitize=${SWATH_SANITIZE})
 endif()
 
