@@ -27,12 +27,13 @@ enum class Column : std::uint8_t {
   sigma_h,
   sigma_v,
   height,
+  ground_probability,
   red,
   green,
   blue,
   user_data,
 };
-constexpr int column_count = 21;
+constexpr int column_count = 22;
 
 /// A set of columns: what a stage needs, what it gives, what a store holds.
 class ColumnSet {
@@ -99,6 +100,7 @@ struct Block {
   std::vector<float> incidence;                      ///< rad, between beam and the terrain's normal
   std::vector<float> sigma_h, sigma_v;               ///< m, standard deviations (TPU): horizontal radial, vertical
   std::vector<float> height;                         ///< m above ground
+  std::vector<float> ground_probability;             ///< 0 to 1: that the return is from the bare ground; NaN: not judged
   std::vector<std::uint16_t> red, green, blue;       ///< as recorded
   std::vector<std::uint8_t> user_data;               ///< as recorded
 
@@ -125,6 +127,7 @@ void for_each_column(F&& f) {
   f(Column::sigma_h, "sigma_h", &Block::sigma_h);
   f(Column::sigma_v, "sigma_v", &Block::sigma_v);
   f(Column::height, "height", &Block::height);
+  f(Column::ground_probability, "ground_probability", &Block::ground_probability);
   f(Column::red, "red", &Block::red);
   f(Column::green, "green", &Block::green);
   f(Column::blue, "blue", &Block::blue);

@@ -40,7 +40,7 @@ inline Lattice lattice_of(double cell, double x0, double y0, double x1, double y
 }
 
 /// Why a cell has no height.
-enum class Void : std::uint8_t { none = 0, no_data = 1, long_edge = 2, water = 3 };
+enum class Void : std::uint8_t { none = 0, no_data = 1, long_edge = 2, water = 3, never_seen = 4 };
 
 /// A surface on a lattice; row-major from the south-west, i runs fastest. NaN height where reason is not none.
 struct Grid {

@@ -270,7 +270,7 @@ core::Grid read_grid(const std::filesystem::path& file, const std::optional<core
   each(sigma, [&](size_t k, double v) { grid.sigma[k] = static_cast<float>(v); });
   each(count, [&](size_t k, double v) { grid.count[k] = v > 0 ? static_cast<std::uint32_t>(v) : 0u; });
   each(reason,
-       [&](size_t k, double v) { grid.reason[k] = v >= 0 && v <= 3 ? static_cast<core::Void>(std::lround(v)) : core::Void::no_data; });
+       [&](size_t k, double v) { grid.reason[k] = v >= 0 && v <= 4 ? static_cast<core::Void>(std::lround(v)) : core::Void::no_data; });
   return grid;
 }
 

@@ -46,6 +46,7 @@ std::vector<LasExtra> las_extras_of(core::ColumnSet columns) {
   add(Column::sigma_h, las_name::sigma_h, "horizontal standard deviation, m", 5, 0.0001, no_u32);
   add(Column::sigma_v, las_name::sigma_v, "vertical standard deviation, m", 5, 0.0001, no_u32);
   add(Column::height, las_name::height, "height above ground, m", 6, 0.001, no_i32);
+  add(Column::ground_probability, las_name::ground_probability, "probability of bare ground", 3, 0.0001, no_u16);
   return out;
 }
 
@@ -112,6 +113,7 @@ void las_points_to_block(const LasPoints& p, const LasHeader& header, std::uint6
   take(las_name::sigma_h, block.sigma_h, 1.0);
   take(las_name::sigma_v, block.sigma_v, 1.0);
   take(las_name::height, block.height, 1.0);
+  take(las_name::ground_probability, block.ground_probability, 1.0);
 }
 
 void block_to_las_points(const core::Block& block, const LasHeader& header, std::uint64_t first, const std::string& where, LasPoints& p) {
@@ -173,6 +175,7 @@ void block_to_las_points(const core::Block& block, const LasHeader& header, std:
   give(las_name::sigma_h, block.sigma_h, 1.0);
   give(las_name::sigma_v, block.sigma_v, 1.0);
   give(las_name::height, block.height, 1.0);
+  give(las_name::ground_probability, block.ground_probability, 1.0);
 }
 
 }  // namespace swath::io

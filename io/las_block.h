@@ -23,12 +23,12 @@ struct LasTime {
 /// Names of the extra fields that carry columns of a Block.
 namespace las_name {
 constexpr const char *range = "range", *incidence = "incidence", *sigma_h = "sigma_h", *sigma_v = "sigma_v",
-                     *height = "height_above_ground";
+                     *height = "height_above_ground", *ground_probability = "ground_probability";
 }
 
 /// The extra fields written for those of the columns that need one: range (m, u32 * 0.001), incidence (deg, u16 * 0.002), sigma_h and
-/// sigma_v (m, u32 * 0.0001), height_above_ground (m, i32 * 0.001); the extreme raw value is nodata (NaN in the Block). LASzip keeps
-/// every byte in a layer of its own, so bytes that stay zero cost nothing.
+/// sigma_v (m, u32 * 0.0001), height_above_ground (m, i32 * 0.001), ground_probability (u16 * 0.0001); the extreme raw value is nodata (NaN
+/// in the Block). LASzip keeps every byte in a layer of its own, so bytes that stay zero cost nothing.
 std::vector<LasExtra> las_extras_of(core::ColumnSet columns);
 
 /// Points to a Block with the block's origin kept; `first` is the file's row of the first point. Class 12 of formats 0 to 5 becomes the

@@ -166,7 +166,7 @@ struct LasWriter::State {
     using core::Column;
     const core::ColumnSet there = core::columns_of(b);
     core::ColumnSet out;
-    for (const Column c : {Column::range, Column::incidence, Column::sigma_h, Column::sigma_v, Column::height})
+    for (const Column c : {Column::range, Column::incidence, Column::sigma_h, Column::sigma_v, Column::height, Column::ground_probability})
       if (there.has(c)) out.add(c);
     return out;
   }

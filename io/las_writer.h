@@ -48,7 +48,7 @@ struct LasWriteOptions {
   std::optional<Eigen::Vector3d> offset;       ///< unset: x and y of the first point to 100 000 units, z 0
   std::string crs_wkt;                         ///< WKT record; empty: none
   bool seconds_of_week = false;      ///< times are written as seconds of the week (GPS time bit 0), not as adjusted standard GPS time
-  bool extra_bytes = true;           ///< range, incidence, sigma_h, sigma_v, height_above_ground where a block has them
+  bool extra_bytes = true;           ///< range, incidence, sigma_h, sigma_v, height_above_ground, ground_probability where a block has them
   std::uint16_t file_source_id = 0;  ///< flight line of a file of one line
   std::string system_identifier = "swath", generating_software = "swath";
   std::uint16_t creation_day = 0, creation_year = 0;  ///< day of year from 1

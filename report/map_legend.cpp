@@ -57,6 +57,7 @@ core::Rgb void_colour(core::Void reason, int x, int y) {
   if (reason == core::Void::water) return water;
   const bool stripe = (x + y) % 10 < 3;
   if (reason == core::Void::long_edge) return stripe ? edge_dark : edge_light;
+  if (reason == core::Void::never_seen) return (x - y + 1000000) % 10 < 3 ? edge_dark : void_light;
   return stripe ? void_dark : void_light;
 }
 
@@ -115,7 +116,7 @@ int draw_legend(core::Picture& p, int left, int top, int right, int scale, const
   if (shown.ordinary) entry(every("contours", shown.interval), rule(scale, contour_colour));
   if (shown.index)
     entry(every(shown.thinned ? "index contours only" : "index contours", shown.index_interval), rule(2.0 * scale, index_colour));
-  static constexpr std::array<const char*, 4> names{"", "no data", "edge too long", "water"};
+  static constexpr std::array<const char*, 5> names{"", "no data", "edge too long", "water", "never seen"};
   for (size_t v = 1; v < names.size(); ++v)
     if (shown.voids[v])
       entry(names[v], [&](const Box& b) {

@@ -42,7 +42,7 @@ struct Shown {
   Span span;
   bool ordinary = false, index = false, thinned = false;
   double interval = 0.0, index_interval = 0.0;
-  std::array<bool, 4> voids{};
+  std::array<bool, 5> voids{};
 };
 
 /// Low ground to high ground, t from 0 to 1: green, straw, ochre, brown, stone.

@@ -166,7 +166,7 @@ core::Picture relief_picture(const core::Grid& grid, const std::vector<core::Con
   shown.height_unit = o.height_unit;
   shown.span = height_span(shown_grid);
   for (size_t k = 0; k < shown_grid.height.size(); ++k)
-    if (std::isnan(shown_grid.height[k])) shown.voids[std::clamp<size_t>(static_cast<size_t>(shown_grid.reason[k]), 1, 3)] = true;
+    if (std::isnan(shown_grid.height[k])) shown.voids[std::clamp<size_t>(static_cast<size_t>(shown_grid.reason[k]), 1, 4)] = true;
 
   View view;
   view.map = {0, o.title.empty() ? margin : margin + (glyph_height + 4) * (text_scale + 1), shown_grid.lattice.nx * size,

@@ -42,6 +42,7 @@ core::Block sample_block(std::size_t n) {
     b.sigma_h[i] = 0.04f;
     b.sigma_v[i] = i % 10 == 0 ? std::numeric_limits<float>::quiet_NaN() : 0.0234f;
     b.height[i] = static_cast<float>(-1.0 + 0.125 * static_cast<double>(i % 64));
+    b.ground_probability[i] = i % 7 == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(i % 101) / 100.0f;
     b.red[i] = static_cast<std::uint16_t>(i);
     b.green[i] = 256;
     b.blue[i] = 65535;
@@ -90,6 +91,8 @@ TEST(LasWriter, ABlockComesBackWithinItsSteps) {
       ASSERT_NEAR(q.incidence[i], b.incidence[i], 0.001 * degree + 1e-6);
       ASSERT_NEAR(q.sigma_h[i], b.sigma_h[i], 0.00005 + 1e-8);
       ASSERT_EQ(std::isnan(q.sigma_v[i]), std::isnan(b.sigma_v[i]));
+      ASSERT_EQ(std::isnan(q.ground_probability[i]), std::isnan(b.ground_probability[i]));
+      if (!std::isnan(b.ground_probability[i])) ASSERT_NEAR(q.ground_probability[i], b.ground_probability[i], 0.00005 + 1e-7);
       ASSERT_NEAR(q.height[i], b.height[i], 0.0005 + 1e-6);
     }
     EXPECT_EQ(q.intensity, b.intensity);
