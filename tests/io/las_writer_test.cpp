@@ -92,7 +92,9 @@ TEST(LasWriter, ABlockComesBackWithinItsSteps) {
       ASSERT_NEAR(q.sigma_h[i], b.sigma_h[i], 0.00005 + 1e-8);
       ASSERT_EQ(std::isnan(q.sigma_v[i]), std::isnan(b.sigma_v[i]));
       ASSERT_EQ(std::isnan(q.ground_probability[i]), std::isnan(b.ground_probability[i]));
-      if (!std::isnan(b.ground_probability[i])) ASSERT_NEAR(q.ground_probability[i], b.ground_probability[i], 0.00005 + 1e-7);
+      if (!std::isnan(b.ground_probability[i])) {
+        ASSERT_NEAR(q.ground_probability[i], b.ground_probability[i], 0.00005 + 1e-7);
+      }
       ASSERT_NEAR(q.height[i], b.height[i], 0.0005 + 1e-6);
     }
     EXPECT_EQ(q.intensity, b.intensity);
