@@ -2,7 +2,8 @@
 """Simulated calibration flights, raw records to calibration.json, against truth: calibration.py [SEEDS [PART ...]]
 
 Every flight has a boresight, a range offset and a scan scale drawn by its seed; IMU and GNSS records go through the smoother.
-Parts: roof (its plane is surveyed), strips (no control), no_cross, one_direction, one_line, flat, mems."""
+Parts: roof (its plane is surveyed), strips (no control), no_cross, one_direction, one_line, flat, mems. $PRF is the laser's pulse rate ("30 kHz");
+with $RESUME flights done before by the same program are not flown again."""
 import concurrent.futures
 import json
 import os
@@ -38,8 +39,14 @@ def number(value):
 
 def fly(part, seed):
     """One flight: start error, error, sigma and whether it was delivered, per value; findings. Its folder is deleted."""
+    kept = common.SCRATCH / "calibration" / f"{part}_{seed}.json"
+    if os.environ.get("RESUME") and kept.exists():
+        done = json.loads(kept.read_text())
+        return np.array(done["rows"]), done["findings"]
     folder = common.scratch(f"calibration/{part}_{seed}")
     options, settings = PARTS[part]
+    if "PRF" in os.environ:
+        options = {**options, "scanner.prf": os.environ["PRF"]}
     common.call("simulate", folder / "survey", "--quiet", *common.sets({**FLIGHT, **options, "seed": seed}))
     output = folder / "out"
     common.call("run", common.ROOT / "configs/calibrate.toml", "--survey", folder / "survey/survey.toml", "--output", output, "--quiet",
@@ -54,7 +61,9 @@ def fly(part, seed):
                      scale * (e["jackknife_lines"] or np.nan), float(e["delivered"])])
     if not os.environ.get("KEEP"):
         shutil.rmtree(folder)
-    return np.array(rows), [f["what"] for f in found["findings"]]
+    findings = [f["what"] for f in found["findings"]]
+    kept.write_text(json.dumps({"rows": rows, "findings": findings}))
+    return np.array(rows), findings
 
 
 def main():
