@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numeric>
 
@@ -15,6 +14,7 @@
 #include "stages/calibration/figures.h"
 #include "stages/calibration/residual_bins.h"
 #include "stages/calibration/tables.h"
+#include "stages/calibration/target_tables.h"
 #include "stages/calibration/verdict.h"
 
 namespace swath::stages {
@@ -133,8 +133,6 @@ class Maker {
   void value_table(const Group& group, const std::array<std::string, 5>& notes);
   void correlations();
   void target();
-  void details(const core::Value& tree, const std::string& name);
-  void detail_table(const std::string& caption, const core::Value& rows);
   void flight();
   void residuals();
   void residual_table(BinBy by, const char* id, const char* caption, const char* unit);
@@ -150,7 +148,6 @@ class Maker {
   const calib::Adjustment& adjustment_;
   const KeepFigure& keep_;
   report::Page page_;
-  int details_ = 0;
 };
 
 void Maker::findings() {
@@ -291,68 +288,7 @@ void Maker::target() {
     }
     page_.table(t);
   }
-  if (!report_.flat_target.is_null()) details(report_.flat_target, "Readings");
-}
-
-/// Six significant digits.
-std::string plain_text(const core::Value& v) {
-  if (v.is_text()) return v.as_text();
-  if (v.is_bool()) return yes(v.as_bool());
-  if (v.is_int()) return (v.as_int() < 0 ? "−" : "") + std::to_string(std::abs(v.as_int()));
-  if (!v.is_number() || !std::isfinite(v.as_number())) return "–";
-  char text[64];
-  const double size = std::abs(v.as_number());
-  return (std::signbit(v.as_number()) ? "−" : "") +
-         std::string(text, std::to_chars(text, text + sizeof text, size, std::chars_format::general, 6).ptr);
-}
-
-bool is_row(const core::Value& v) {
-  return v.is_object() && std::none_of(v.members().begin(), v.members().end(),
-                                       [](const core::Value::Member& m) { return m.second.is_object() || m.second.is_array(); });
-}
-
-/// A list of tables as one table: its columns are all the names that occur.
-void Maker::detail_table(const std::string& caption, const core::Value& rows) {
-  Table t{"detail-" + std::to_string(++details_), caption, {}, {}, {}};
-  std::vector<std::string> names;
-  for (const core::Value& row : rows.items())
-    for (const auto& [name, cell] : row.members())
-      if (std::find(names.begin(), names.end(), name) == names.end()) {
-        names.push_back(name);
-        t.columns.push_back({name, cell.is_number() || cell.is_null()});
-      }
-  for (const core::Value& row : rows.items()) {
-    std::vector<std::string> cells;
-    for (const std::string& name : names) {
-      const core::Value* cell = row.find(name);
-      cells.push_back(cell ? plain_text(*cell) : std::string());
-    }
-    t.rows.push_back(std::move(cells));
-  }
-  page_.table(t);
-}
-
-void Maker::details(const core::Value& tree, const std::string& name) {
-  if (tree.is_array()) {
-    if (std::all_of(tree.items().begin(), tree.items().end(), is_row)) {
-      if (!tree.items().empty()) detail_table(name, tree);
-      return;
-    }
-    for (size_t k = 0; k < tree.items().size(); ++k) details(tree.items()[k], name + " " + std::to_string(k + 1));
-    return;
-  }
-  if (!tree.is_object()) return;
-  core::Value plain = core::Value::array();
-  for (const auto& [key, value] : tree.members())
-    if (!value.is_object() && !value.is_array()) {
-      core::Value row;
-      row["figure"] = key;
-      row["value"] = plain_text(value);
-      plain.push(std::move(row));
-    }
-  if (!plain.items().empty()) detail_table(name, plain);
-  for (const auto& [key, value] : tree.members())
-    if (value.is_object() || value.is_array()) details(value, key);
+  for (const Table& t : target_tables(report_.flat_target)) page_.table(t);
 }
 
 void Maker::flight() {

@@ -61,7 +61,8 @@ class Figures(Case):
             "sigma of boresight_pitch": tree(lambda t: t["sigma"].update(pitch="0.001 deg")),
             "the verdict": tree(lambda t: t.update(verdict="All is well.")),
             "follows from no file": tree(lambda t: t["estimates"][2].update(sigma=1.0)),
-            "detail-2": tree(lambda t: t["flat_target"]["readings"][1].update(along_m=7.0)),
+            "target-readings": tree(lambda t: t["flat_target"]["roll"]["readings"][1].update(value_deg=7.0)),
+            "target-lines": tree(lambda t: t["flat_target"]["lines"][0]["after"].update(along_m=7.0)),
         }
         for words, spoil in spoilers.items():
             with self.subTest(words):

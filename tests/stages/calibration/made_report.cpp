@@ -178,6 +178,56 @@ LineDifference difference(int a, int b, Numbers& random) {
   return d;
 }
 
+/// In the shape of flat_target.json.
+core::Value made_flat_target() {
+  core::Value t = core::Value::object();
+  t["done"] = true;
+  const auto reading = [](std::vector<int> lines, const char* value, double v, const char* sigma, double s) {
+    core::Value r = core::Value::object();
+    r["lines"] = core::Value::array();
+    for (const int l : lines) r["lines"].push(l);
+    r[value] = v;
+    r[sigma] = s;
+    return r;
+  };
+  core::Value& roll = t["roll"];
+  roll["determined"] = true;
+  roll["present_deg"] = 0.3;
+  roll["mean_deg"] = 0.3154875;
+  roll["sigma_arcsec"] = 9.0;
+  roll["sigma_by_scatter_arcsec"] = 7.5;
+  roll["tolerance_arcsec"] = 18.0;
+  roll["beyond_tolerance"] = true;
+  roll["readings"].push(reading({1, 2}, "value_deg", 0.315, "sigma_arcsec", 12.0));
+  roll["readings"].push(reading({1, 4}, "value_deg", 0.316, "sigma_arcsec", 13.5));
+  t["heading"]["determined"] = false;
+  t["heading"]["present_deg"] = -0.1;
+  t["range_offset"]["readings"].push(reading({3}, "value_m", -0.0312, "sigma_m", 0.0125));
+  core::Value seen = core::Value::object();
+  seen["line"] = 1;
+  seen["role"] = "nadir";
+  seen["heading_deg"] = 58.25;
+  seen["height_m"] = 687.5;
+  seen["scan_angle_deg"] = 1.164;
+  seen["before"]["pulses"] = 2244;
+  seen["before"]["along_m"] = 0.812;
+  seen["before"]["across_m"] = -0.533;
+  seen["before"]["up_m"] = 0.12;
+  seen["after"]["along_m"] = 0.0123;
+  seen["after"]["across_m"] = 0.0031;
+  seen["after"]["up_m"] = -0.0257;
+  seen["along_sigma_m"] = 0.0507;
+  seen["across_sigma_m"] = 0.0504;
+  seen["up_sigma_m"] = 0.0265;
+  t["lines"].push(seen);
+  core::Value unseen = core::Value::object();
+  unseen["line"] = 2;
+  unseen["before"]["seen"] = false;
+  unseen["after"]["seen"] = false;
+  t["lines"].push(unseen);
+  return t;
+}
+
 }  // namespace
 
 CalibrationReport made_report(bool refused) {
@@ -218,16 +268,7 @@ CalibrationReport made_report(bool refused) {
   r.readings = {{calib::boresight_roll, 0.31437 * core::degree + 4 * arc_second, 9 * arc_second, 4, "lines 1 and 2, along the wall"},
                 {calib::boresight_pitch, -0.18264 * core::degree - 31 * arc_second, 12 * arc_second, 6, "profiles, opposite lines"},
                 {calib::scan_offset, 2 * arc_second, 8 * arc_second, 2, ""}};
-  r.flat_target["tolerance_arcsec"] = 20.0;
-  r.flat_target["edges_found"] = 12;
-  for (int k = 0; k < 3; ++k) {
-    core::Value row;
-    row["line"] = k + 1;
-    row["along_m"] = 0.123456789 * (k + 1);
-    row["across_m"] = -0.0712345 * (k + 1);
-    row["edge"] = k == 0 ? "north" : "south";
-    r.flat_target["readings"].push(row);
-  }
+  r.flat_target = made_flat_target();
   r.notes = {"The start values were found by matching height grids of the lines.", "Planes were extracted anew 2 times."};
   return r;
 }
