@@ -57,8 +57,11 @@ def fly(part, seed):
     rows = []
     for key, _, scale in VALUES:
         e, true = estimates[key], number(truth[key])
+        if not e["delivered"]:  # nothing but the start value is told
+            rows.append([scale * (e["nominal"] - true), *[np.nan] * 5, 0.0])
+            continue
         rows.append([scale * (e["nominal"] - true), scale * (e["value"] - true), scale * e["sigma"], scale * e["formal"], scale * e["white"],
-                     scale * (e["jackknife_lines"] or np.nan), float(e["delivered"])])
+                     scale * (e["jackknife_lines"] or np.nan), 1.0])
     if not os.environ.get("KEEP"):
         shutil.rmtree(folder)
     findings = [f["what"] for f in found["findings"]]
@@ -76,6 +79,10 @@ def main():
         table = []
         for k, (key, unit, _) in enumerate(VALUES):
             start, error, sigma, formal, white, jackknife, delivered = rows[:, k].T
+            if not delivered.any():
+                table.append([f"{key} ({unit})", f"{common.rms(start):.1f}", *["refused"] * 8, "0"])
+                continue
+            error, sigma, formal, white, jackknife = (v[delivered > 0] for v in (error, sigma, formal, white, jackknife))
             table.append([f"{key} ({unit})", f"{common.rms(start):.1f}", f"{common.rms(error):.2f}", f"{np.abs(error).max():.2f}",
                           f"{common.rms(sigma):.2f}", f"{common.rms(error / sigma):.2f}", f"{common.rms(formal):.2f}",
                           f"{common.rms(error / formal):.2f}", f"{np.sqrt(np.nanmean(jackknife**2)):.2f}", f"{common.rms(error / white):.1f}",
