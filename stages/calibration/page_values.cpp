@@ -105,7 +105,9 @@ void value_table(const PageParts& parts, const Group& g, const std::array<std::s
 void add_values(const PageParts& parts) {
   parts.page.section("Calibration values");
   const std::array<std::string, 5> notes{
-      parts.page.footnote("The one-sigma uncertainty that is delivered in calibration.json."),
+      parts.page.footnote(
+          "The one-sigma uncertainty that is delivered in calibration.json: the formal one, enlarged where a jackknife speaks against it, with "
+          "what the stated sigmas of values that were held (the lever arm) do to it."),
       parts.page.footnote("From the adjustment's covariance, with the trajectory's errors hanging together in time."),
       parts.page.footnote("How far the values scatter when one flight line at a time is left out."),
       parts.page.footnote("How far they scatter when one region of tie planes at a time is left out."),
