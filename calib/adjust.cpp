@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Over 400 lines: the steps of one adjustment, in their order, on one state.
 // Sources: Skaloud & Lichti (2006) and Glira et al. (2016) for the model (calib/tie_normals.h, correction_knots.h); Foerstner (1979) for
-// the variances; Baarda (1968) for the tests. Here: the unknowns are chosen, the rounds are run, and the results are put together.
-// Deviations: sigmas take the estimated variances as known (their own scatter adds a per cent or so to 20 degrees of freedom's 16 % in a
-// component that is one of several); refused values are delivered as they started while the others come from the joint solution.
+// the variances; Baarda (1968) for the tests; Schmidt (1966) for values that are held and yet uncertain ("considered"). Here: the unknowns
+// are chosen, the rounds are run, and the results are put together. Deviations: sigmas take the estimated variances as known (their own
+// scatter adds a per cent or so to 20 degrees of freedom's 16 % in a component that is one of several); refused values are delivered as
+// they started while the others come from the joint solution.
 #include "calib/adjust.h"
 
 #include <Eigen/LU>
@@ -14,6 +15,7 @@
 #include "calib/adjust_rounds.h"
 #include "calib/diagnosis.h"
 #include "calib/jackknife.h"
+#include "calib/parameter_words.h"
 
 namespace swath::calib {
 namespace {
@@ -25,6 +27,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr size_t most_samples = 20000;
 constexpr double common_shift = 1.0;      // m: how wrong all positions may be together, for Separation::unaided
 constexpr double factor_to_tell = 2.0;    // of a stated sigma
+constexpr double hardly_apart = 0.9;      // correlation
 constexpr double planes_apart = 10.0;     // of the ranges' sigma: lines that disagree so much were not put together rightly
 constexpr double outside_to_tell = 0.01;  // share of returns
 
@@ -34,7 +37,8 @@ double apriori_of(const AprioriOptions& o, Parameter p) {
   return sigma[p] > 0.0 ? sigma[p] : infinite;
 }
 
-std::vector<Parameter> chosen(const EstimateOptions& o, const BeamModel& beam, std::vector<Finding>& findings) {
+std::vector<Parameter> chosen(const EstimateOptions& o, const core::Scanner& scanner, std::vector<Finding>& findings) {
+  const BeamModel beam(scanner);
   const bool wanted[] = {o.roll,         o.pitch,       o.heading,     o.lever_forward, o.lever_right, o.lever_down,
                          o.range_offset, o.range_scale, o.scan_offset, o.scan_scale,    o.latency};
   std::vector<Parameter> out;
@@ -46,6 +50,14 @@ std::vector<Parameter> chosen(const EstimateOptions& o, const BeamModel& beam, s
                           "estimate one of the two",
                           {scan_offset},
                           true});
+      continue;
+    }
+    if (p == scan_offset && o.heading && scanner.model == core::ScannerModel::conical) {
+      findings.push_back(
+          {"scan offset and boresight heading are the same turn of a scanner whose beam goes around the nadir: the scan offset is held",
+           "estimate one of the two",
+           {scan_offset},
+           true});
       continue;
     }
     if (p == scan_scale && beam.ignores_record()) continue;
@@ -271,8 +283,34 @@ class Results {
     return sigmas_with(n.N, r_.prior.globals);
   }
 
+  // What the unknowns would be moved by if each calibration value that is held were one stated sigma larger: columns. A value that is the
+  // same turn as an estimated one is a matter of names.
+  MatrixXd effects_of_held() const {
+    const Variances stated = variances(noise_, {});
+    const auto is_unknown = [&](Parameter p) { return std::find(p_.globals.begin(), p_.globals.end(), p) != p_.globals.end(); };
+    const Parameter same = p_.scanner->model == core::ScannerModel::conical ? boresight_heading : boresight_roll;
+    std::vector<VectorXd> columns;
+    for (int k = boresight_roll; globals_ > 0 && k <= latency; ++k) {
+      const auto p = static_cast<Parameter>(k);
+      if (is_unknown(p) || !(stated[p] > 0.0) || (p == scan_offset && is_unknown(same))) continue;
+      TieState other = r_.state;
+      set_value(other.calibration, p, value_of(other.calibration, p) + std::sqrt(stated[p]));
+      const TiePass pass = linearise(p_, other, r_.noise(), r_.scale);
+      const TieSystem system(p_, pass.blocks, r_.system().control(), r_.surface());
+      std::vector<PlaneRest> rests;
+      Normals n = system.sum(r_.use, rests);
+      add_prior(r_.prior, n);
+      const TieSolution moved = solve(system, n, rests, false);
+      if (moved.solved) columns.push_back(moved.x - r_.solution.x);
+    }
+    MatrixXd out = MatrixXd::Zero(globals_, static_cast<Eigen::Index>(columns.size()));
+    for (size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Eigen::Index>(k)) = columns[k].head(globals_);
+    return out;
+  }
+
   void estimates() {
     const VectorXd white_sigma = white();
+    const MatrixXd held = effects_of_held();
     const double significance = o_.jackknife.significance;
     Jackknife lines, regions;
     if (globals_ > 0 && o_.jackknife.lines)
@@ -295,10 +333,12 @@ class Results {
         e.jackknife_planes = regions.sigma[i];
         larger = std::max(larger, enlargement(regions.ratio[i], regions.freedom[i], significance));
       }
-      e.sigma = larger * e.formal;
+      e.held = held.row(i).norm();
+      const double told = std::isfinite(e.jackknife_lines) ? std::max(larger * e.formal, e.jackknife_lines) : larger * e.formal;
+      e.sigma = std::hypot(told, e.held);
       e.determined = std::isfinite(e.apriori) ? 1.0 - std::pow(e.formal / e.apriori, 2) : 1.0;
     }
-    const MatrixXd C = r_.solution.covariance.topLeftCorner(globals_, globals_);
+    const MatrixXd C = r_.solution.covariance.topLeftCorner(globals_, globals_) + held * held.transpose();
     const VectorXd inverse = C.diagonal().cwiseSqrt().cwiseInverse();
     out_.correlation = inverse.asDiagonal() * C * inverse.asDiagonal();
     out_.correlation.diagonal().setOnes();
@@ -307,8 +347,30 @@ class Results {
     // The limits are held against the sigma that would be delivered.
     Separation judged = sep_;
     for (Eigen::Index i = 0; i < globals_; ++i) judged.formal[i] = out_.estimates[p_.globals[i]].sigma;
-    for (Finding& f : diagnose(p_.globals, judged, apriori_, shape_of(p_, r_.state, r_.pass.blocks), o_.limits))
+    FlightShape shape = shape_of(p_, r_.state, r_.pass.blocks);
+    shape.control = std::find(r_.use.control.begin(), r_.use.control.end(), char{1}) != r_.use.control.end();
+    std::vector<Parameter> refused;
+    for (Finding& f : diagnose(p_.globals, judged, apriori_, shape, o_.limits)) {
+      if (f.refuses) refused.insert(refused.end(), f.parameters.begin(), f.parameters.end());
       out_.findings.push_back(std::move(f));
+    }
+    tell_correlated(refused, shape);
+  }
+
+  void tell_correlated(const std::vector<Parameter>& refused, const FlightShape& shape) {
+    const auto is_refused = [&](Parameter p) { return std::find(refused.begin(), refused.end(), p) != refused.end(); };
+    for (Eigen::Index i = 0; i < globals_; ++i)
+      for (Eigen::Index j = 0; j < i; ++j) {
+        const Parameter a = p_.globals[j], b = p_.globals[i];
+        if (is_refused(a) || is_refused(b) || !(std::abs(out_.correlation(i, j)) > hardly_apart)) continue;
+        out_.findings.push_back({std::string(words_of(a).name) + " and " + std::string(words_of(b).name) +
+                                     " are hardly told apart: an error of the one is balanced by the other (correlations)",
+                                 !shape.crossed       ? "fly lines across"
+                                 : !shape.two_heights ? "fly some lines at another height, lower or higher by half"
+                                                      : "survey a target on the ground",
+                                 {a, b},
+                                 false});
+      }
   }
 
   void look() {
@@ -372,7 +434,7 @@ Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::
   const CorrectionKnots knots(ties.lines, start.latency.value, options.corrections,
                               options.corrections.prior == CorrectionPrior::stated ? stated_covariance(options.corrections) : covariance);
   TieProblem problem{&ties, &scanner, &trajectory, &knots, {}, RobustWeight(options.robust.full, options.robust.zero), threads};
-  problem.globals = chosen(options.estimate, BeamModel(scanner), out.findings);
+  problem.globals = chosen(options.estimate, scanner, out.findings);
   VectorXd apriori(problem.globals.size()), limit(problem.globals.size());
   for (size_t i = 0; i < problem.globals.size(); ++i) {
     apriori[i] = apriori_of(options.apriori, problem.globals[i]);

@@ -25,7 +25,9 @@ void describe(EstimateOptions& o, V& v) {
   v.option("lever_down", o.lever_down, "Scanner's lever arm, down.");
   v.option("range_offset", o.range_offset, "Offset of the ranges.");
   v.option("range_scale", o.range_scale, "Factor of the ranges.");
-  v.option("scan_offset", o.scan_offset, "Offset of the scan angle; for scanners that scan across it is the boresight roll and held.");
+  v.option("scan_offset", o.scan_offset,
+           "Offset of the scan angle. Held where it is the same turn as one that is estimated: for scanners that scan across the boresight "
+           "roll, for conical ones the heading.");
   v.option("scan_scale", o.scan_scale, "Factor of the scan angle.");
   v.option("latency", o.latency, "Latency of the records' times.");
 }
@@ -151,7 +153,8 @@ void describe(JackknifeOptions& o, V& v) {
   v.option("lines", o.lines, "Repeat the adjustment without each line in turn.");
   v.option("blocks", o.blocks, core::within(0, 200), "Repeat it without each of so many regions of planes in turn; 0: not.");
   v.option("significance", o.significance, core::within(1e-6, 0.5),
-           "The delivered sigma is enlarged where the jackknife's is larger than chance would make it with this probability.");
+           "Besides being at least the jackknife's over lines, the delivered sigma is enlarged where a jackknife's is larger than chance "
+           "would make it with this probability.");
 }
 
 /// A value whose sigma is larger is not delivered.

@@ -5,12 +5,24 @@
 #include <string>
 
 #include "core/picture.h"
+#include "report/chart.h"
+#include "report/page.h"
 #include "stages/calibration_report.h"
 
 namespace swath::stages {
 
 /// Keeps a figure as a file: its name relative to the report, and how it looks. Returns the bytes of its PNG.
 using KeepFigure = std::function<std::string(const std::string& file, const core::Picture& picture)>;
+
+/// What the parts of a page are made of, and where they go.
+struct PageParts {
+  const CalibrationReport& report;
+  const KeepFigure& keep;
+  report::Page& page;
+
+  /// A chart, kept as figures/NAME.png and set into the page.
+  void figure(const std::string& name, const report::Chart& chart, const std::string& caption) const;
+};
 
 /// report.html. Every table has an id, and every number in it follows from the files beside it (stages/calibration/tables.h, the
 /// difference grids). Line drawings stand in it as SVG, maps as PNG; all of them go through `keep`.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "core/error.h"
@@ -90,8 +91,27 @@ TEST(Calibrate, OneRoundIsOneRound) {
   const Calibrated c = flight.calibrated(options);
   EXPECT_EQ(c.rounds, 1);
   options.coarse = false;
-  options.mismatch = core::Metres(5.0);
+  options.planes.mismatch = core::Metres(5.0);
   EXPECT_FALSE(flight.calibrated(options).match);
+}
+
+TEST(Calibrate, ASurveyedTargetThatNoLineShowsIsTold) {
+  const Flight flight(pattern());
+  CalibrationFlight described = flight.described();
+  SurveyedTarget far;
+  far.name = "far roof";
+  far.corners = {{900, 900, 5}, {920, 900, 5}, {920, 920, 5}, {900, 920, 5}};
+  far.centre = {910, 910, 5};
+  for (const Vector3d& c : far.corners) far.control.push_back({c, 0.02, "corner"});
+  described.targets = {far};
+  CalibrateOptions options;
+  options.rounds = 1;
+  options.adjust.jackknife.lines = false;
+  options.adjust.jackknife.blocks = 0;
+  core::Tally tally;
+  const Calibrated c = calibrate(described, options, tally);
+  EXPECT_TRUE(std::any_of(c.notes.begin(), c.notes.end(),
+                          [](const std::string& n) { return n.starts_with("A surveyed target takes no part: far roof: "); }));
 }
 
 TEST(Calibrate, WithoutOverlapItIsRefused) {
@@ -113,6 +133,37 @@ TEST(Calibrate, TheSignOfTheScanAngleIsRefused) {
     FAIL();
   } catch (const core::Error& e) {
     EXPECT_NE(std::string(e.what()).find("sign of the scan angle"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Calibrate, TheMismatchOfThePlanesIsThatOfTheFirstRound) {
+  const Flight flight(pattern());  // lines lie up to five metres apart
+  CalibrateOptions options;
+  options.rounds = 1;
+  options.coarse = false;
+  options.adjust.jackknife.blocks = 0;
+  options.adjust.jackknife.lines = false;
+  const auto planes = [&](double mismatch) {
+    options.planes.mismatch = core::Metres(mismatch);
+    return flight.calibrated(options).ties.planes.size();
+  };
+  EXPECT_NE(planes(5.0), planes(0.1));
+}
+
+TEST(Calibrate, TheSignOfTheScanAngleIsRefusedWithoutTheCoarseStepToo) {
+  Flight flight(pattern());
+  CalibrateOptions options;
+  options.coarse = false;
+  options.planes.mismatch = core::Metres(5.0);
+  EXPECT_NO_THROW(refuse_reversed_scan(flight.described()));
+  for (auto& [id, shots] : flight.flown.lines)
+    for (double& a : shots.angle) a = -a;
+  try {
+    flight.calibrated(options);
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_NE(std::string(e.what()).find("sign of the scan angle"), std::string::npos) << e.what();
+    EXPECT_NE(e.hint().find("angle_to_port"), std::string::npos) << e.hint();
   }
 }
 

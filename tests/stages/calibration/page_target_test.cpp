@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/calibration/page_target.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/stages/calibration/made_report.h"
+
+namespace swath::stages {
+namespace {
+
+bool holds(const std::string& text, const std::string& what) { return text.find(what) != std::string::npos; }
+
+std::string html_of(const CalibrationReport& report, void (*add)(const PageParts&)) {
+  report::Page page("part");
+  const KeepFigure keep = [](const std::string&, const core::Picture&) { return std::string("png"); };
+  add({report, keep, page});
+  return page.html();
+}
+
+TEST(CalibrationPageTarget, AReadingIsSetBesideTheAdjustment) {
+  CalibrationReport r = made_report();
+  const calib::Estimate& roll = r.adjustment.estimates[calib::boresight_roll];
+  r.readings = {{calib::boresight_roll, roll.value + 10 * roll.sigma, roll.sigma, 3, "lines 1 and 2"}};
+  r.flat_target = {};
+  EXPECT_TRUE(holds(html_of(r, add_target), "<td>no</td><td>lines 1 and 2</td>"));
+  r.readings[0].value = roll.value + roll.sigma;
+  EXPECT_TRUE(holds(html_of(r, add_target), "<td>yes</td><td>lines 1 and 2</td>"));
+  r.readings.clear();
+  EXPECT_FALSE(holds(html_of(r, add_target), "Flat target"));
+}
+
+TEST(CalibrationPageTarget, TheAnalysisHasTablesOfItsOwn) {
+  CalibrationReport r = made_report();
+  r.readings.clear();
+  const std::string html = html_of(r, add_target);
+  for (const char* id : {"target-angles", "target-lines", "target-readings"})
+    EXPECT_TRUE(holds(html, std::string("<table id=\"") + id + "\">")) << id;
+}
+
+}  // namespace
+}  // namespace swath::stages
