@@ -10,7 +10,7 @@ namespace swath::filters {
 
 struct OutlierOptions {
   int mean_k = 8;
-  double multiplier = 3.0;
+  double multiplier = 5.0;
   core::Metres window{30.0};
   core::Metres min_distance{2.0};
   core::Metres reach{5.0};

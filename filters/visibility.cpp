@@ -13,7 +13,8 @@
 //   voxel, in single precision (1 um per 10 m), so that neither tiles nor the size of a survey change its voxels.
 #include "filters/visibility.h"
 
-#include <octomap/OcTreeBase.h>
+#include <octomap/AbstractOcTree.h>
+#include <octomap/OcTreeBaseImpl.h>
 #include <octomap/OcTreeDataNode.h>
 
 #include <algorithm>
@@ -51,14 +52,17 @@ class Node : public octomap::OcTreeDataNode<Counts> {
 };
 
 /// An octree of counts, its keys relative to a voxel in the tile's middle.
-class Space : public octomap::OcTreeBase<Node> {
+class Space : public octomap::OcTreeBaseImpl<Node, octomap::AbstractOcTree> {
  public:
-  Space(double voxel, const Voxel& middle) : OcTreeBase(voxel), middle_(middle) {
+  Space(double voxel, const Voxel& middle) : OcTreeBaseImpl(voxel), middle_(middle) {
     root = new Node();
     ++tree_size;
     path_.fill(nullptr);
     path_[0] = root;
   }
+
+  Space* create() const override { return new Space(resolution, middle_); }
+  std::string getTreeType() const override { return "Space"; }
 
   const Voxel& middle() const { return middle_; }
   bool is_empty() const { return !nodeHasChildren(root); }

@@ -23,6 +23,7 @@ constexpr double clear_tube = 1.5;      // m around the line
 constexpr double shortest = 5.0;        // m of line
 constexpr double least_baseline = 1.0;  // m from the point to the one that gives the direction
 constexpr int fewest = 4;               // other points on the line
+constexpr size_t fewest_in_line = 3;    // of those again, that are in line themselves
 constexpr double most_beside = 0.2;     // of the points within the tube may lie off the line
 constexpr double steepest = 0.5;        // sine of the line's inclination
 constexpr size_t most_nearest = 48;     // neighbours looked at
@@ -76,12 +77,22 @@ bool is_wire(const std::vector<Neighbour>& around, const Vector3d& along) {
   return on >= fewest && last - first >= shortest && beside <= most_beside * (on + beside + 1);
 }
 
+/// Does `good` hold for a line through the point and one of its neighbours?
+template <class Good>
+bool any_line(const std::vector<Neighbour>& around, Good&& good) {
+  return std::any_of(around.begin(), around.end(), [&](const Neighbour& n) {
+    if (n.distance2 < least_baseline * least_baseline) return false;
+    const Vector3d along = n.to / std::sqrt(n.distance2);
+    return std::abs(along.z()) <= steepest && good(along);
+  });
+}
+
 }  // namespace
 
-double wire_points_halo() { return reach; }
+double wire_points_halo() { return 2.0 * reach; }
 
 std::vector<std::uint8_t> wire_points(const core::Block& b, const std::vector<std::uint8_t>& candidate) {
-  std::vector<std::uint8_t> wire(b.size(), 0);
+  std::vector<std::uint8_t> in_line(b.size(), 0), wire(b.size(), 0);
   if (b.size() == 0) return wire;
   const auto takes_part = [&](size_t p) { return candidate[p] != 0; };
   const Bins close(b, clear_tube, 1, takes_part), wide(b, reach, 1, takes_part);
@@ -96,10 +107,18 @@ std::vector<std::uint8_t> wire_points(const core::Block& b, const std::vector<st
     std::vector<Neighbour> around = within(wide, b, p, reach);
     if (around.size() < fewest) continue;
     if (around.size() > most_nearest) around.resize(most_nearest);
-    wire[p] = std::any_of(around.begin(), around.end(), [&](const Neighbour& n) {
-      if (n.distance2 < least_baseline * least_baseline) return false;
-      const Vector3d along = n.to / std::sqrt(n.distance2);
-      return std::abs(along.z()) <= steepest && is_clear_here(near, along) && is_wire(around, along);
+    in_line[p] = any_line(around, [&](const Vector3d& along) { return is_clear_here(near, along) && is_wire(around, along); });
+  }
+  // By chance foliage is in line at a point, not along a wire; and at the end of a wire there are too few points to tell by.
+  const Bins lines(b, reach, 1, [&](size_t p) { return in_line[p] != 0; });
+  for (size_t p = 0; p < b.size(); ++p) {
+    if (!candidate[p]) continue;
+    const std::vector<Neighbour> around = within(lines, b, p, reach);
+    if (around.size() < fewest_in_line) continue;
+    const std::vector<Neighbour> near = within(close, b, p, clear_tube);
+    wire[p] = any_line(around, [&](const Vector3d& along) {
+      const auto on = std::count_if(around.begin(), around.end(), [&](const Neighbour& n) { return off(n.to, along) <= on_line; });
+      return on >= static_cast<std::ptrdiff_t>(fewest_in_line) && is_clear_here(near, along);
     });
   }
   return wire;

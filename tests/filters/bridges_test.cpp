@@ -48,7 +48,7 @@ TEST(Bridges, LongerThanTheLongestIsNotLookedFor) {
 
 TEST(Bridges, ARoofOnASlopeThatTouchesTheGroundAboveIsNone) {
   const auto hillside = [](int i, int) { return 0.3f * static_cast<float>(i); };
-  const StructureCells house = valley([](int i, int j) { return i >= 30 && i < 40 && std::abs(j - 30) < 6 ? 12.0f : empty; }, hillside);
+  const StructureCells house = valley([](int i, int j) { return i >= 30 && i < 40 && std::abs(j - 30) < 6 ? 13.8f : empty; }, hillside);
   for (const Deck d : deck_cells(house, 60.0, 2.0, 2.0)) EXPECT_EQ(d, Deck::none);
 }
 
