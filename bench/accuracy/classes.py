@@ -16,7 +16,7 @@ STAGES = [{"type": "readers.trajectory"}, {"type": "readers.laser"}, {"type": "g
 folder = common.scratch("classes")
 seed = int(sys.argv[1]) if len(sys.argv) > 1 else 1
 only = sys.argv[2].split(",") if len(sys.argv) > 2 else []  # stages left out
-survey = common.simulate(folder / "survey", seed=seed, world__scene="mixed")
+survey = common.simulate(folder / "survey", seed=seed, world__scene="mixed", imu__file="false", gnss__file="false")
 stages = [s for s in STAGES if s["type"] not in only]
 report = common.run(stages, survey / "survey.toml", folder / "products")
 truth = np.load(survey / "truth/returns.npy")
