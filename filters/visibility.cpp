@@ -21,7 +21,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <unordered_map>
 
 #include "core/error.h"
 
@@ -327,6 +327,7 @@ VisibilityCounts trace_visibility(core::Block& b, size_t own, const std::vector<
   count_layers(space, floor, side, out);
 
   std::vector<std::uint32_t> noise;
+  std::unordered_map<std::uint64_t, bool> verdicts;  // by voxel: the points of one share theirs
   for (size_t p = 0; p < own; ++p) {
     n.no_position += !scanner[p].allFinite();
     if (!core::is_usable(b, p)) {
@@ -336,7 +337,11 @@ VisibilityCounts trace_visibility(core::Block& b, size_t own, const std::vector<
     if (o.solid <= 0.0) continue;
     const Voxel v = voxel_at(b, place(b, p), side);
     const Counts* c = space.find(v);
-    if (c && c->passed > 0 && is_passed(space, v, o.solid)) noise.push_back(static_cast<std::uint32_t>(p));
+    if (!c || c->passed == 0) continue;
+    const octomap::OcTreeKey k = space.key_of(v);
+    const auto [verdict, fresh] = verdicts.try_emplace(std::uint64_t{k[0]} << 32 | std::uint64_t{k[1]} << 16 | k[2], false);
+    if (fresh) verdict->second = is_passed(space, v, o.solid);
+    if (verdict->second) noise.push_back(static_cast<std::uint32_t>(p));
   }
   for (const std::uint32_t p : noise) {
     b.flags[p] = static_cast<std::uint16_t>(b.flags[p] | core::flag::isolated);

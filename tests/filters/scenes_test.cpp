@@ -50,6 +50,8 @@ std::vector<Filter> all_filters() {
   net.cut = core::Metres(3.0);
   NoiseOptions noise;
   OutlierOptions outlier;
+  outlier.multiplier = 2.0;  // so that many points are near the threshold
+  outlier.min_distance = core::Metres(0.5);
   VisibilityOptions visibility;
   visibility.reach = core::Metres(20.0);
   ClassifyOptions classes;
