@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Search by rings of lattice columns around the point's own, until the columns left out are farther than the k-th neighbour found. The
 // columns are made so wide that the first ring mostly is enough; three columns in a row are one stretch of memory. Surveys are thin in
-// height, so that columns in place of cubes cost little. How wide the columns are decides the time, not the result.
+// height, so that columns in place of cubes cost little. The ball that holds a point's neighbours bounds where those of the next point in
+// the column can lie. How wide the columns are decides the time, not the result.
 #include "filters/neighbours.h"
 
 #include <algorithm>
@@ -61,6 +62,10 @@ class Least {
   std::array<double, most_neighbours + 1> value_{};
 };
 
+double distance(const Bins::Point& a, const Bins::Point& b) {
+  return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));
+}
+
 /// Offers the squared distances from p to all points of the columns i0 to i1 of row j.
 void offer_row(const Bins& bins, int i0, int i1, int j, const Bins::Point& p, Least& least) {
   const core::Lattice& l = bins.lattice();
@@ -91,11 +96,13 @@ std::vector<double> mean_neighbour_distance(const core::Block& b, const std::vec
       const auto points = bins.in(i, j);
       const auto rows = bins.rows(i, j);
       const double west = static_cast<double>(l.i0 + i) * side - b.origin.x(), south = static_cast<double>(l.j0 + j) * side - b.origin.y();
+      const Bins::Point* before = nullptr;  // the point before in this column, its neighbours all found
       for (size_t n = 0; n < points.size(); ++n) {
         if (!wanted[rows[n]]) continue;
         const Bins::Point& p = points[n];
         const double margin = std::min(std::min(p.x - west, west + side - p.x), std::min(p.y - south, south + side - p.y)) - rounding;
-        least.start(reach * reach);
+        const double farthest = before ? std::sqrt(least.worst()) + distance(*before, p) + rounding : reach;
+        least.start(farthest < reach ? farthest * farthest : reach * reach);
         for (int dj = -1; dj <= 1; ++dj) offer_row(bins, i - 1, i + 1, j + dj, p, least);
         for (int ring = 1;; ++ring) {
           const double searched = margin + ring * side;
@@ -111,6 +118,7 @@ std::vector<double> mean_neighbour_distance(const core::Block& b, const std::vec
         double sum = (k + 1 - least.count()) * reach;
         for (int m = 1; m < least.count(); ++m) sum += std::sqrt(least[m]);
         mean[rows[n]] = least.count() == 1 ? reach : sum / k;
+        before = least.full() ? &p : nullptr;
       }
     }
   return mean;

@@ -46,11 +46,10 @@ struct Sums {
 
 std::uint64_t quantum(double metres) { return static_cast<std::uint64_t>(std::llround(metres * resolution)); }
 
-/// The lattice of the windows' cells, and by cell whether its statistics are needed for an own point.
-std::vector<std::uint8_t> needed_cells(const core::Block& b, size_t own, const std::vector<std::uint8_t>& usable, const core::Lattice& l) {
-  std::vector<std::uint8_t> mine(l.size(), 0), needed(l.size(), 0);
-  for (size_t p = 0; p < own; ++p) {
-    if (!usable[p]) continue;
+/// 1 for the cells of the rows' points and those around them.
+std::vector<std::uint8_t> cells_around(const core::Block& b, const std::vector<std::uint32_t>& rows, const core::Lattice& l) {
+  std::vector<std::uint8_t> mine(l.size(), 0), out(l.size(), 0);
+  for (const std::uint32_t p : rows) {
     const CellIndex c = cell_of(l, b, p);
     mine[l.at(c.i, c.j)] = 1;
   }
@@ -59,9 +58,9 @@ std::vector<std::uint8_t> needed_cells(const core::Block& b, size_t own, const s
       if (!mine[l.at(i, j)]) continue;
       for (int dj = -1; dj <= 1; ++dj)
         for (int di = -1; di <= 1; ++di)
-          if (l.holds(i + di, j + dj)) needed[l.at(i + di, j + dj)] = 1;
+          if (l.holds(i + di, j + dj)) out[l.at(i + di, j + dj)] = 1;
     }
-  return needed;
+  return out;
 }
 
 std::vector<Sums> around(const std::vector<Sums>& cells, const core::Lattice& l) {
@@ -77,7 +76,10 @@ std::vector<Sums> around(const std::vector<Sums>& cells, const core::Lattice& l)
 /// Rows of the statistical outliers among the first `own`.
 std::vector<std::uint32_t> statistical(const core::Block& b, size_t own, const std::vector<std::uint8_t>& usable, const OutlierOptions& o) {
   const core::Lattice l = lattice_around(b, o.window.value / cells_of_window, 0);
-  const std::vector<std::uint8_t> needed = needed_cells(b, own, usable, l);
+  std::vector<std::uint32_t> judged;
+  for (std::uint32_t p = 0; p < own; ++p)
+    if (usable[p]) judged.push_back(p);
+  const std::vector<std::uint8_t> needed = cells_around(b, judged, l);
   std::vector<std::uint32_t> cell(b.size(), 0);
   std::vector<std::uint8_t> wanted(b.size(), 0);
   for (size_t p = 0; p < b.size(); ++p) {
@@ -134,7 +136,12 @@ OutlierCounts flag_outliers(core::Block& b, size_t own, const OutlierOptions& o)
   const std::vector<std::uint32_t> outliers = statistical(b, own, usable, o);
   const std::vector<LonePoint> lone = lone_points(b, usable, o.gap.value, o.group);
   if (!outliers.empty()) {
-    const Bins columns(b, o.reach.value, 1, [&](size_t p) { return usable[p] != 0; });
+    const core::Lattice l = lattice_around(b, o.reach.value, 1);
+    const std::vector<std::uint8_t> near = cells_around(b, outliers, l);
+    const Bins columns(b, o.reach.value, 1, [&](size_t p) {
+      const CellIndex c = cell_of(l, b, p);
+      return usable[p] && near[l.at(c.i, c.j)];
+    });
     for (const std::uint32_t p : outliers) set_noise(b, p, is_low(columns, b, p));
   }
   n.statistical = outliers.size();
