@@ -9,11 +9,11 @@
 namespace swath::filters {
 
 struct OutlierOptions {
-  int mean_k = 8;
+  int mean_k = 4;
   double multiplier = 5.0;
   core::Metres window{30.0};
-  core::Metres min_distance{2.0};
-  core::Metres reach{5.0};
+  core::Metres min_distance{5.0};
+  core::Metres reach{10.0};
   core::Metres gap{10.0};
   int group = 20;
 };

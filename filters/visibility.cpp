@@ -205,7 +205,7 @@ void fill(Space& space, const core::Block& b, const std::vector<Vector3d>& scann
 }
 
 /// Did so few of the beams that entered the voxel and those around it end there that what they met is noise?
-bool is_passed(const Space& space, const Voxel& v, double solid) {
+bool is_passed(const Space& space, const Voxel& v, const VisibilityOptions& o) {
   std::uint64_t passed = 0, met = 0;
   for (std::int64_t dz = -1; dz <= 1; ++dz)
     for (std::int64_t dy = -1; dy <= 1; ++dy)
@@ -214,7 +214,7 @@ bool is_passed(const Space& space, const Voxel& v, double solid) {
           passed += c->passed;
           met += static_cast<std::uint64_t>(c->ground) + c->other;
         }
-  return static_cast<double>(met) < solid * static_cast<double>(met + passed);
+  return met <= static_cast<std::uint64_t>(o.group) && static_cast<double>(met) < o.solid * static_cast<double>(met + passed);
 }
 
 /// Pulses by cell, and the voxel of each cell's lowest ground return.
@@ -340,7 +340,7 @@ VisibilityCounts trace_visibility(core::Block& b, size_t own, const std::vector<
     if (!c || c->passed == 0) continue;
     const octomap::OcTreeKey k = space.key_of(v);
     const auto [verdict, fresh] = verdicts.try_emplace(std::uint64_t{k[0]} << 32 | std::uint64_t{k[1]} << 16 | k[2], false);
-    if (fresh) verdict->second = is_passed(space, v, o.solid);
+    if (fresh) verdict->second = is_passed(space, v, o);
     if (verdict->second) noise.push_back(static_cast<std::uint32_t>(p));
   }
   for (const std::uint32_t p : noise) {

@@ -15,6 +15,7 @@ struct VisibilityOptions {
   core::Metres voxel{2.0};
   core::Metres reach{40.0};
   double solid = 0.02;
+  int group = 1;
   core::Metres cell{10.0};
 };
 
@@ -25,6 +26,7 @@ void describe(VisibilityOptions& o, V& v) {
   v.option(
       "solid", o.solid, core::within(0.0, 1.0),
       "A return is noise where less than this share of the beams that entered its voxel and the 26 around it ended there; 0 keeps all.");
+  v.option("group", o.group, core::within(1, 1000), "Most returns in these 27 voxels that can be noise together; wires have more.");
   v.option("cell", o.cell, core::above(0.0), "Side of one cell of the rasters.");
   v.check(o.reach >= o.voxel, "reach must span at least one voxel");
   v.check(o.cell >= o.voxel, "cell must span at least one voxel");

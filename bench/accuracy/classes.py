@@ -8,7 +8,7 @@ import common
 
 NAMES = {1: "unassigned", 2: "ground", 3: "low vegetation", 4: "medium vegetation", 5: "high vegetation", 6: "building", 7: "low noise", 9: "water",
          14: "wire", 15: "tower", 17: "bridge deck", 18: "high noise"}
-STAGES = [{"type": "readers.trajectory"}, {"type": "readers.laser"}, {"type": "georeference"}, {"type": "filters.returns"}, {"type": "filters.noise"},
+STAGES = [{"type": "readers.trajectory"}, {"type": "readers.laser"}, {"type": "georeference"}, {"type": "filters.returns"}, {"type": "filters.noise", "neighbours": 2},
           {"type": "filters.outlier"}, {"type": "filters.smrf"}, {"type": "filters.visibility"}, {"type": "terrain.dtm"}, {"type": "filters.hag_dem"},
           {"type": "filters.classify", "medium_vegetation": "2 m", "high_vegetation": "5 m"},  # the simulation's limits
           {"type": "writers.las", "compress": False}]

@@ -97,7 +97,7 @@ TEST(Outlier, OptionsAreCheckedAgainstOneAnother) {
   OutlierOptions o;
   std::vector<core::Fault> faults;
   core::Value table = core::Value::object();
-  table["min_distance"] = "9 m";
+  table["min_distance"] = "12 m";
   core::read_options(core::described(o), table, "", faults);
   ASSERT_EQ(faults.size(), 1u);
   EXPECT_EQ(faults[0].what, "min_distance must be less than reach");
