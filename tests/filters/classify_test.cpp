@@ -55,6 +55,14 @@ TEST(Classify, TownForestAndBridgeComeOutAsTheyAre) {
   }
 }
 
+TEST(Classify, DecksDoNotDependOnTiles) {
+  const core::Block start = prepared(test::make_scene("bridge"));
+  core::Block whole = start;
+  EXPECT_GT(classify(whole, whole.size(), {}).bridge_deck, 100u);
+  const auto filter = [](core::Block& b, size_t own) { classify(b, own, {}); };
+  EXPECT_EQ(test::run_tiled(start, 73.0, halo(ClassifyOptions{}), filter).classification, whole.classification);
+}
+
 TEST(Classify, VegetationByHeight) {
   test::Scene s = test::make_scene("flat");
   core::Block b = prepared(s);

@@ -55,7 +55,8 @@ std::vector<Filter> all_filters() {
   VisibilityOptions visibility;
   visibility.reach = core::Metres(20.0);
   ClassifyOptions classes;
-  classes.bridge_length = core::Metres(45.0);
+  classes.bridge_length = core::Metres(12.0);  // decks of full length: classify_test.cpp
+  classes.building_side = core::Metres(2.0);
   return {{"noise", halo(noise), [noise](core::Block& b, size_t own) { flag_noise(b, own, noise); }},
           {"outlier", halo(outlier), [outlier](core::Block& b, size_t own) { flag_outliers(b, own, outlier); }},
           {"visibility", halo(visibility), [visibility](core::Block& b, size_t own) { see(b, own, visibility); }},
