@@ -19,4 +19,8 @@ std::vector<std::uint32_t> count_points(const core::Block& block, const std::vec
 /// agree (membership in the convex hull of the whole survey would not be such a rule).
 void give_void_reasons(core::Grid& grid, const core::Block& block, const std::vector<std::uint32_t>& rows, double reach);
 
+/// Gives the cells of `surface` that have no height the reason `never_seen` where the cell of `seen` (of any size) that holds their centre
+/// has it.
+void mark_never_seen(core::Grid& surface, const core::Grid& seen);
+
 }  // namespace swath::terrain

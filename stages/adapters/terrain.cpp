@@ -16,6 +16,7 @@
 #include "terrain/contours.h"
 #include "terrain/dsm.h"
 #include "terrain/dtm.h"
+#include "terrain/voids.h"
 
 namespace swath::stages {
 namespace {
@@ -24,12 +25,13 @@ namespace fs = std::filesystem;
 
 /// Cells by void reason, for the tally of a surface stage.
 void count_voids(const core::Grid& grid, core::Tally& tally) {
-  std::array<std::uint64_t, 4> n{};
+  std::array<std::uint64_t, 5> n{};
   for (const core::Void r : grid.reason) ++n[static_cast<size_t>(r)];
   tally.count("cells with a height", n[0]);
   if (n[1]) tally.count("void cells: no data", n[1]);
   if (n[2]) tally.count("void cells: edge too long", n[2]);
   if (n[3]) tally.count("void cells: water", n[3]);
+  if (n[4]) tally.count("void cells: ground never seen", n[4]);
 }
 
 /// The tile's own ground points that share their place with another: the TIN takes the lowest.
@@ -42,7 +44,14 @@ void count_shared_places(const TileJob& job, const terrain::DtmOptions& options,
   if (shared > 0) tally.count("ground points at the same place as a lower or equal one", static_cast<std::uint64_t>(shared));
 }
 
-/// Cells of all tiles with a height, and holes: voids with ground on all sides.
+/// Where filters.visibility has run: void cells to which beams came of which none reached the ground.
+void mark_never_seen(const Context& context, const TileJob& job, core::Grid& grid) {
+  if (!context.grids->has(Product::visibility)) return;
+  const double cell = context.grids->cell(Product::visibility);
+  terrain::mark_never_seen(grid, context.grids->window(Product::visibility, lattice_in(cell, job.box.grown(cell))));
+}
+
+/// Cells of all tiles with a height, and holes: voids with ground on all sides, and those whose ground no beam reached.
 struct Cover {
   std::uint64_t known = 0, holes = 0;
 };
@@ -52,7 +61,8 @@ Cover cover_of(const MergeJob& job) {
   for (const TileKey key : job.tiles) {
     const core::Grid grid = read_grid_tile(grid_file(job.folder, key));
     c.known += static_cast<std::uint64_t>(std::count(grid.reason.begin(), grid.reason.end(), core::Void::none));
-    c.holes += static_cast<std::uint64_t>(std::count(grid.reason.begin(), grid.reason.end(), core::Void::long_edge));
+    for (const core::Void hole : {core::Void::long_edge, core::Void::never_seen})
+      c.holes += static_cast<std::uint64_t>(std::count(grid.reason.begin(), grid.reason.end(), hole));
   }
   return c;
 }
@@ -74,8 +84,9 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
   double halo() const override { return terrain::halo(options); }
   // Vertices (36), faces and their links of a Delaunay triangulation (112), their lists (32), triangles (24), the vertices' columns (40).
   double bytes_per_point() const override { return 250.0; }
-  void run_tile(const Context&, TileJob& job) const override {
-    const core::Grid grid = terrain::dtm(job.block, lattice_in(options.cell.value, job.box), options);
+  void run_tile(const Context& context, TileJob& job) const override {
+    core::Grid grid = terrain::dtm(job.block, lattice_in(options.cell.value, job.box), options);
+    mark_never_seen(context, job, grid);
     count_voids(grid, job.tally);
     count_shared_places(job, options, job.tally);
     write_grid_tile(job.folder, job.key, grid);

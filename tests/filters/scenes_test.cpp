@@ -6,8 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "filters/classify.h"
 #include "filters/noise.h"
+#include "filters/outlier.h"
 #include "filters/smrf.h"
+#include "filters/visibility.h"
 #include "tests/world/scene.h"
 
 namespace swath::filters {
@@ -19,6 +22,25 @@ struct Filter {
   std::function<void(core::Block&, size_t)> run;
 };
 
+/// Beams of up to 31 deg from a scanner that flies along y.
+void see(core::Block& b, size_t own, const VisibilityOptions& o) {
+  std::vector<Eigen::Vector3d> scanner;
+  for (size_t p = 0; p < b.size(); ++p) scanner.emplace_back(-100.0, b.y[p], 600.0);
+  Visibility rasters;
+  trace_visibility(b, own, scanner, {}, o, rasters);
+}
+
+/// Points above 101 m count as off the ground; heights from there.
+void class_above(core::Block& b, size_t own, const ClassifyOptions& o) {
+  core::add_columns(b, {core::Column::height});
+  for (size_t p = 0; p < b.size(); ++p) {
+    const double level = 97.0 + 0.04 * b.x[p];
+    b.height[p] = static_cast<float>(b.z[p] - level);
+    if (b.classification[p] == core::point_class::never_classified && b.z[p] < level + 3.5) b.classification[p] = core::point_class::ground;
+  }
+  classify(b, own, o);
+}
+
 std::vector<Filter> all_filters() {
   SmrfOptions smrf;
   smrf.window = core::Metres(5.0);  // so that the halo is smaller than the scene
@@ -27,7 +49,18 @@ std::vector<Filter> all_filters() {
   net.window = core::Metres(3.0);
   net.cut = core::Metres(3.0);
   NoiseOptions noise;
+  OutlierOptions outlier;
+  outlier.multiplier = 2.0;  // so that many points are near the threshold
+  outlier.min_distance = core::Metres(0.5);
+  VisibilityOptions visibility;
+  visibility.reach = core::Metres(20.0);
+  ClassifyOptions classes;
+  classes.bridge_length = core::Metres(12.0);  // decks of full length: classify_test.cpp
+  classes.building_side = core::Metres(2.0);
   return {{"noise", halo(noise), [noise](core::Block& b, size_t own) { flag_noise(b, own, noise); }},
+          {"outlier", halo(outlier), [outlier](core::Block& b, size_t own) { flag_outliers(b, own, outlier); }},
+          {"visibility", halo(visibility), [visibility](core::Block& b, size_t own) { see(b, own, visibility); }},
+          {"classify", halo(classes), [classes](core::Block& b, size_t own) { class_above(b, own, classes); }},
           {"smrf", halo(smrf), [smrf](core::Block& b, size_t own) { classify_ground_smrf(b, own, smrf); }},
           {"smrf_net", halo(net), [net](core::Block& b, size_t own) { classify_ground_smrf(b, own, net); }}};
 }

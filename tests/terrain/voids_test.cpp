@@ -39,5 +39,25 @@ TEST(Voids, CountsArePerCell) {
   EXPECT_EQ(count_points(m.block, test::all_rows(m.block), window), (std::vector<std::uint32_t>{2, 1}));
 }
 
+TEST(Voids, CellsThatNoBeamHasSeenSaySoWhereTheyHaveNoHeight) {
+  core::Grid surface(core::Lattice{1.0, 1000, 2000, 20, 10});
+  for (int i = 0; i < 20; ++i) {
+    surface.height[surface.lattice.at(i, 3)] = 5.0f;
+    surface.reason[surface.lattice.at(i, 3)] = core::Void::none;
+  }
+  surface.reason[surface.lattice.at(12, 7)] = core::Void::long_edge;
+  core::Grid seen(core::Lattice{10.0, 101, 200, 1, 1});  // east half of the surface
+  seen.reason[0] = core::Void::never_seen;
+  mark_never_seen(surface, seen);
+  EXPECT_EQ(surface.reason[surface.lattice.at(12, 7)], core::Void::never_seen);
+  EXPECT_EQ(surface.reason[surface.lattice.at(10, 0)], core::Void::never_seen);
+  EXPECT_EQ(surface.reason[surface.lattice.at(9, 0)], core::Void::no_data);
+  EXPECT_EQ(surface.reason[surface.lattice.at(12, 3)], core::Void::none);
+  seen.reason[0] = core::Void::none;
+  surface.reason[surface.lattice.at(12, 7)] = core::Void::long_edge;
+  mark_never_seen(surface, seen);
+  EXPECT_EQ(surface.reason[surface.lattice.at(12, 7)], core::Void::long_edge);
+}
+
 }  // namespace
 }  // namespace swath::terrain

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// ASPRS classes of what is not ground: vegetation by height, buildings, bridge decks, wires.
+#pragma once
+
+#include "core/block.h"
+#include "core/option.h"
+
+namespace swath::filters {
+
+struct ClassifyOptions {
+  core::Metres medium_vegetation{0.5};
+  core::Metres high_vegetation{2.0};
+  core::Metres building_height{2.0};
+  core::Metres building_side{3.0};
+  core::Metres roughness{0.15};
+  core::Metres bridge_length{60.0};
+  core::Metres wire_height{5.0};
+};
+
+template <class V>
+void describe(ClassifyOptions& o, V& v) {
+  v.option("medium_vegetation", o.medium_vegetation, core::at_least(0.0),
+           "Height above ground at which low vegetation (3) ends and medium (4) begins.",
+           "LAS 1.4 R15 names the classes, not their heights");
+  v.option("high_vegetation", o.high_vegetation, core::at_least(0.0),
+           "Height above ground at which medium vegetation (4) ends and high (5) begins.",
+           "LAS 1.4 R15 names the classes, not their heights");
+  v.option("building_height", o.building_height, core::at_least(1.0), "Least height of a roof (6) above ground.");
+  v.option("building_side", o.building_side, core::within(1.0, 30.0),
+           "A roof's returns hang together over at least the area of a square of this side.");
+  v.option("roughness", o.roughness, core::above(0.0), "Largest distance of a roof's or deck's return from its plane.");
+  v.option("bridge_length", o.bridge_length, core::within(0.0, 500.0),
+           "Longest bridge whose deck (17) is looked for; its points are needed around each tile. 0 looks for none.");
+  v.option("wire_height", o.wire_height, core::at_least(1.0), "Least height of a wire (14) above ground.");
+  v.check(o.high_vegetation >= o.medium_vegetation, "high_vegetation must not be less than medium_vegetation");
+}
+
+/// Classes set among the own points.
+struct ClassifyCounts {
+  std::uint64_t low_vegetation = 0, medium_vegetation = 0, high_vegetation = 0, building = 0, wire = 0, bridge_deck = 0, unassigned = 0;
+  std::uint64_t kept = 0;  ///< ground, water, noise and withheld: as they were
+};
+
+/// Metres of points around a tile that its result depends on.
+double halo(const ClassifyOptions& o);
+
+/// Classes those of the first `own` points that are neither ground, water, noise nor withheld; those after are the halo and stay as they
+/// are. Needs columns classification (with ground) and height. Unassigned stay points at or below the ground's height or without one, and
+/// smooth planes that are neither building nor deck: vehicles, containers, ground that the ground filter left out. Points on water are
+/// ground to a ground filter and stay so; lakes come from breaklines. The result depends on the points within halo() and not on their
+/// order.
+ClassifyCounts classify(core::Block& block, size_t own, const ClassifyOptions& o);
+
+}  // namespace swath::filters

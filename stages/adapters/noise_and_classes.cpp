@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "filters/classify.h"
+#include "filters/outlier.h"
+#include "stages/adapters/adapters.h"
+
+namespace swath::stages {
+namespace {
+
+using core::Column;
+
+class Outlier : public OptionStage<filters::OutlierOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{
+        "filters.outlier",
+        "Statistical outliers and small groups alone in space (birds, scraps of cloud, multipath): flagged and classed as "
+        "noise, never deleted.",
+        {Grain::tile},
+        {Column::flags, Column::classification},
+        {Column::flags, Column::classification},
+        {Product::points},
+        {}};
+    return info;
+  }
+  double halo() const override { return filters::halo(options); }
+  // Two bins of the points (56), their mean distances and cells (12), the cubes' index (40).
+  double bytes_per_point() const override { return 112.0; }
+  void run_tile(const Context&, TileJob& job) const override {
+    const filters::OutlierCounts n = filters::flag_outliers(job.block, job.own, options);
+    job.tally.count("low noise", n.low_noise);
+    job.tally.count("high noise", n.high_noise);
+    if (n.statistical) job.tally.count("statistical outliers", n.statistical);
+    if (n.grouped) job.tally.count("in groups alone in space", n.grouped);
+    if (n.untouched) job.tally.count("withheld or noise already, not looked at", n.untouched);
+  }
+};
+
+class Classify : public OptionStage<filters::ClassifyOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{"filters.classify",
+                           "Classes of what is not ground: low, medium and high vegetation, buildings, wires, bridge decks.",
+                           {Grain::tile},
+                           {Column::flags, Column::classification, Column::height},
+                           {Column::classification},
+                           {Product::points},
+                           {}};
+    return info;
+  }
+  core::ColumnSet also_reads() const override { return {Column::return_number, Column::return_count}; }
+  double halo() const override { return filters::halo(options); }
+  // Three bins of the points off the ground (84), cells of 1 m (20), marks (5).
+  double bytes_per_point() const override { return 112.0; }
+  void run_tile(const Context&, TileJob& job) const override {
+    const filters::ClassifyCounts n = filters::classify(job.block, job.own, options);
+    const auto tell = [&](const char* name, std::uint64_t count) {
+      if (count) job.tally.count(name, count);
+    };
+    tell("low vegetation", n.low_vegetation);
+    tell("medium vegetation", n.medium_vegetation);
+    tell("high vegetation", n.high_vegetation);
+    tell("building", n.building);
+    tell("wire", n.wire);
+    tell("bridge deck", n.bridge_deck);
+    tell("unassigned", n.unassigned);
+    tell("ground, water or noise, not looked at", n.kept);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> make_outlier() { return std::make_unique<Outlier>(); }
+std::unique_ptr<Stage> make_classify() { return std::make_unique<Classify>(); }
+
+}  // namespace swath::stages

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "filters/bridges.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace swath::filters {
+namespace {
+
+/// A valley along y, 8 m deep, under planes as wanted.
+StructureCells valley(const std::function<float(int, int)>& plane, const std::function<float(int, int)>& ground) {
+  StructureCells c;
+  c.lattice = {1.0, 0, 0, 80, 60};
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  c.plane.assign(c.lattice.size(), none);
+  c.height = c.ground = c.plane;
+  for (int j = 0; j < 60; ++j)
+    for (int i = 0; i < 80; ++i) {
+      const size_t at = c.lattice.at(i, j);
+      c.plane[at] = plane(i, j);
+      if (c.has_plane(at))
+        c.height[at] = c.plane[at] - ground(i, j);
+      else
+        c.ground[at] = ground(i, j);
+    }
+  return c;
+}
+
+constexpr float empty = std::numeric_limits<float>::quiet_NaN();
+float slopes(int i, int) { return std::abs(i - 40) < 15 ? -8.0f : 0.0f; }
+
+TEST(Bridges, ADeckFromBankToBankIsOneAndARoofInTheValleyIsNot) {
+  const auto deck = [](int i, int j) { return std::abs(i - 40) < 15 && std::abs(j - 30) < 4 ? 0.0f : empty; };
+  const StructureCells bridge = valley(deck, slopes);
+  const std::vector<Deck> found = deck_cells(bridge, 60.0, 2.0, 2.0);
+  for (size_t c = 0; c < found.size(); ++c) EXPECT_EQ(found[c], bridge.has_plane(c) ? Deck::deck : Deck::none) << c % 80 << " " << c / 80;
+  // As high as the banks, but it ends in the air on both sides.
+  const StructureCells house = valley([](int i, int j) { return std::abs(i - 40) < 8 && std::abs(j - 30) < 8 ? 0.0f : empty; }, slopes);
+  for (const Deck d : deck_cells(house, 60.0, 2.0, 2.0)) EXPECT_EQ(d, Deck::none);
+}
+
+TEST(Bridges, LongerThanTheLongestIsNotLookedFor) {
+  const StructureCells bridge = valley([](int i, int j) { return std::abs(i - 40) < 15 && std::abs(j - 30) < 4 ? 0.0f : empty; }, slopes);
+  for (const Deck d : deck_cells(bridge, 20.0, 2.0, 2.0)) EXPECT_NE(d, Deck::deck);
+}
+
+TEST(Bridges, ARoofOnASlopeThatTouchesTheGroundAboveIsNone) {
+  const auto hillside = [](int i, int) { return 0.3f * static_cast<float>(i); };
+  const StructureCells house = valley([](int i, int j) { return i >= 30 && i < 40 && std::abs(j - 30) < 6 ? 13.8f : empty; }, hillside);
+  for (const Deck d : deck_cells(house, 60.0, 2.0, 2.0)) EXPECT_EQ(d, Deck::none);
+}
+
+TEST(Bridges, AMoundThatTheGroundFilterLeftOutIsTerrain) {
+  const auto mound = [](int i, int j) { return std::max(0.0f, 3.0f - 0.14f * static_cast<float>(std::hypot(i - 40.0, j - 30.0))); };
+  StructureCells c = valley([&](int i, int j) { return mound(i, j) > 1.0f ? mound(i, j) : empty; }, mound);
+  for (size_t at = 0; at < c.height.size(); ++at)
+    if (c.has_plane(at)) c.height[at] = c.plane[at];
+  const std::vector<Deck> found = deck_cells(c, 60.0, 2.0, 2.0);
+  EXPECT_EQ(found[c.lattice.at(40, 30)], Deck::terrain);
+}
+
+}  // namespace
+}  // namespace swath::filters
