@@ -135,6 +135,7 @@ Features features_of(const WorldOptions& w) {
            .bridge = true,
            .woodland = 0.3,
            .built_up = 0.3,
+           .foliage = 0.5,
            .scarp_slope = 1.43,
            .embankment_at = -0.05};
       break;
@@ -151,6 +152,7 @@ Features features_of(const WorldOptions& w) {
   if (w.buildings) f.buildings = *w.buildings;
   if (w.trees) f.trees = *w.trees;
   if (w.woodland) f.woodland = *w.woodland;
+  if (w.foliage) f.foliage = *w.foliage;
   if (w.low_vegetation) f.low_vegetation = *w.low_vegetation;
   if (w.crops) f.crops = *w.crops;
   if (w.water) f.water = *w.water;

@@ -20,7 +20,7 @@ struct WorldOptions {
   std::optional<double> slope{};
   std::optional<core::Metres> relief{}, scarp{}, embankment{}, ditch{};
   std::optional<double> scarp_slope{};
-  std::optional<double> buildings{}, trees{}, woodland{}, low_vegetation{}, crops{};
+  std::optional<double> buildings{}, trees{}, woodland{}, foliage{}, low_vegetation{}, crops{};
   core::Metres low_vegetation_height{0.8}, crop_height{1.6};
   std::optional<bool> water{}, power_line{}, hall{}, bridge{};
 };
@@ -31,6 +31,7 @@ struct Features {
   bool water = false, power_line = false, hall = false, bridge = false;
   double woodland = 0.3;  ///< share of the area under trees
   double built_up = 0.3;  ///< share of the area with buildings
+  double foliage = 1.0;
   double scarp_slope = 1.7;
   double embankment_at = -0.3;  ///< where it crosses the area's axis, share of the length from the middle
 };
@@ -58,6 +59,7 @@ void describe(WorldOptions& w, V& v) {
            "Buildings per hectare of built-up ground (airfield: halls per hectare of the area; 0: no building at all).");
   v.option("trees", w.trees, core::within(0, 1000), "Trees per hectare of woodland (airfield: of the area, all at its rim).");
   v.option("woodland", w.woodland, core::within(0, 1), "Share of the area that is woodland.");
+  v.option("foliage", w.foliage, core::within(0.05, 5), "Density of the crowns: 1 in leaf, less where more pulses shall come through.");
   v.option("low_vegetation", w.low_vegetation, core::within(0, 1),
            "Share of open ground under low vegetation, a third of whose pulses it stops.");
   v.option("low_vegetation_height", w.low_vegetation_height, core::within(0.1, 2), "Height of the tallest low vegetation (from 0.1 m).");

@@ -116,7 +116,9 @@ TEST(Structures, TheHallIsOfItsSizeAndWithinTheArea) {
       EXPECT_EQ(world.cover_at(hall.centre.x(), hall.centre.y()), Cover::building);
       for (size_t i = 1; i < world.buildings().size(); ++i) {
         const Building& b = world.buildings()[i];
-        if (b.kind == cls::building) EXPECT_GT((b.centre - hall.centre).norm(), b.radius + hall.radius);
+        if (b.kind == cls::building) {
+          EXPECT_GT((b.centre - hall.centre).norm(), b.radius + hall.radius);
+        }
       }
     }
 }
@@ -230,8 +232,12 @@ TEST(Structures, CoverTellsWhatBeamsMeet) {
     const std::uint8_t kind = echoes.echo[static_cast<size_t>(echoes.count - 1)].kind;
     EXPECT_EQ(kind == cls::building, cover == Cover::building);
     EXPECT_EQ(kind == cls::bridge_deck, cover == Cover::bridge);
-    if (cover == Cover::open) EXPECT_TRUE(kind == cls::ground || kind == 15) << int(kind);
-    if (cover == Cover::steep) EXPECT_GT(ground.gradient.norm(), 0.577);
+    if (cover == Cover::open) {
+      EXPECT_TRUE(kind == cls::ground || kind == 15) << int(kind);
+    }
+    if (cover == Cover::steep) {
+      EXPECT_GT(ground.gradient.norm(), 0.577);
+    }
   }
   for (const Cover c : {Cover::open, Cover::forest, Cover::steep, Cover::building, Cover::low_vegetation, Cover::water, Cover::bridge})
     EXPECT_GT(seen[c], 5) << static_cast<int>(c);
