@@ -128,14 +128,14 @@ Features features_of(const WorldOptions& w) {
            .buildings = 7,
            .trees = 600,
            .low_vegetation = 0.1,
-           .crops = 0.6,
+           .crops = 0.8,
            .water = true,
            .power_line = true,
            .hall = true,
            .bridge = true,
            .woodland = 0.3,
            .built_up = 0.3,
-           .foliage = 0.5,
+           .foliage = 0.4,
            .scarp_slope = 1.43,
            .embankment_at = -0.05};
       break;

@@ -17,7 +17,7 @@ constexpr double hall_half_length = 40.0, hall_half_width = 20.0, hall_height = 
 constexpr double deck_half_width = 5.0, deck_thickness = 0.8;                          // m
 constexpr double parcel_length = 50.0, parcel_width = 30.0, headland = 1.0;            // m
 constexpr double steepest_field = 0.25;                                                // rise / run
-constexpr int most_trees_in_field = 8;
+constexpr int most_trees_in_field = 25;
 constexpr double steep_cover = 0.577350269;  // tan 30 degrees
 
 Vector2d unit(double bearing) { return {std::sin(bearing), std::cos(bearing)}; }

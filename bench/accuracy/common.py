@@ -81,14 +81,9 @@ def listing(*words):
 
 
 def ground_filters():
-    """Every filter of the program that tells the ground: stages that give classes and say so in their sentence."""
-    found = []
-    for line in listing("stages").splitlines():
-        name, _, sentence = line.partition(" ")
-        if name.startswith("filters.") and re.search(r"\bground\b", sentence, re.I) and not re.search(r"noise|outlier|isolated|height|vegetation|building", sentence, re.I):
-            if re.search(r"gives.*classification", listing("stages", name)):
-                found.append(name)
-    return found
+    """Every ground filter of the program: the filters whose sentence begins so."""
+    lines = (line.split(maxsplit=1) for line in listing("stages").splitlines())
+    return [name for name, sentence in lines if name.startswith("filters.") and sentence.startswith("Ground points")]
 
 
 def ground_chains(names=None, noise=True):

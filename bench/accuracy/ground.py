@@ -52,8 +52,8 @@ class Found:
 class Survey:
     """A simulated survey with its truth."""
 
-    def __init__(self, folder, seed, scene, options):
-        self.folder = common.simulate(folder, seed=seed, world__scene=scene, output__dtm_cell="1 m", **options)
+    def __init__(self, folder, seed, scene, options, cell="1 m"):
+        self.folder = common.simulate(folder, seed=seed, world__scene=scene, output__dtm_cell=cell, **options)
         self.truth = np.load(self.folder / "truth/returns.npy")
         self.terrain, self.place = common.raster(self.folder / "truth/dtm.tif")
         self.cover, _ = common.raster(self.folder / "truth/cover.tif")
@@ -150,8 +150,8 @@ def terrain_table(all_found):
             if not here.any():
                 continue
             e, missing = 1e3 * f.error[here], sum(f.without_height.values()) if key == 0 else f.without_height[key]
-            ratio = f.error[here] / f.sigma[here]
-            ratio = ratio[np.isfinite(ratio)]
+            stated = here & (f.sigma > 0)
+            ratio = f.error[stated] / f.sigma[stated]
             said = ["-"] * 3 if name == TRUE_LABELS or len(ratio) == 0 else [f"{common.rms(ratio):.2f}", f"{100 * np.mean(np.abs(ratio) < 1):.0f}", f"{100 * np.mean(np.abs(ratio) < 2):.0f}"]
             rows.append([name, cover, here.sum(), missing, f"{e.mean():+.0f}", f"{np.median(np.abs(e)):.0f}", f"{common.rms(e):.0f}", f"{np.quantile(np.abs(e), 0.95):.0f}", *said])
     common.table(["chain", "cover", "cells", "without height", "mean mm", "median abs mm", "rms mm", "95 % mm", "error/sigma", "within 1 sigma %", "within 2 %"], rows)
