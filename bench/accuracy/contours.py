@@ -23,7 +23,7 @@ def main():
     chain = [*GEOREFERENCE, {"type": "filters.noise"}, {"type": given.filter}, {"type": "terrain.dtm", "cell": "1 m"}, {"type": "terrain.contours"}, {"type": "writers.gdal"}]
     errors, slopes, covers, lines, shorts = [], [], [], 0, 0
     for seed in given.seeds:
-        survey = Survey(common.scratch("contours/survey"), seed, "zoo", {}, cell="0.25 m")
+        survey = Survey(common.scratch("contours/survey"), seed, "zoo", {}, cell="0.5 m")
         output = common.scratch("contours/run") / "out"
         common.run(chain, survey.folder / "survey.toml", output, **options)
         for level, line in common.lines_of(output / "contours.gpkg"):
@@ -44,7 +44,7 @@ def main():
         mm, tilted = 1e3 * e[here], here & (slope > LEVEL)
         aside = np.abs(e[tilted]) / slope[tilted]
         rows.append([name, here.sum(), f"{mm.mean():+.0f}", f"{np.median(np.abs(mm)):.0f}", f"{common.rms(mm):.0f}", f"{np.quantile(np.abs(mm), 0.95):.0f}",
-                     f"{np.median(aside):.2f}", f"{np.quantile(aside, 0.95):.2f}"])
+                     *([f"{np.median(aside):.2f}", f"{np.quantile(aside, 0.95):.2f}"] if len(aside) else ["-", "-"])])
     common.table(["cover", "vertices", "mean mm", "median abs mm", "rms mm", "95 % mm", "aside median m", "95 % m"], rows)
 
 
