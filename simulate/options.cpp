@@ -119,6 +119,26 @@ Features features_of(const WorldOptions& w) {
            .woodland = 0.25,
            .built_up = 0.35};
       break;
+    case Scene::zoo:
+      f = {.slope = 0.03,
+           .relief = 8,
+           .scarp = 9,
+           .embankment = 4,
+           .ditch = 5,
+           .buildings = 7,
+           .trees = 600,
+           .low_vegetation = 0.1,
+           .crops = 0.8,
+           .water = true,
+           .power_line = true,
+           .hall = true,
+           .bridge = true,
+           .woodland = 0.3,
+           .built_up = 0.3,
+           .foliage = 0.4,
+           .scarp_slope = 1.43,
+           .embankment_at = -0.05};
+      break;
     case Scene::airfield:
       f = {.slope = 0.002, .relief = 0.4, .buildings = 0.3, .trees = 0.4};
       break;
@@ -126,12 +146,20 @@ Features features_of(const WorldOptions& w) {
   if (w.slope) f.slope = *w.slope;
   if (w.relief) f.relief = w.relief->value;
   if (w.scarp) f.scarp = w.scarp->value;
+  if (w.scarp_slope) f.scarp_slope = *w.scarp_slope;
   if (w.embankment) f.embankment = w.embankment->value;
+  if (w.ditch) f.ditch = w.ditch->value;
   if (w.buildings) f.buildings = *w.buildings;
   if (w.trees) f.trees = *w.trees;
+  if (w.woodland) f.woodland = *w.woodland;
+  if (w.foliage) f.foliage = *w.foliage;
   if (w.low_vegetation) f.low_vegetation = *w.low_vegetation;
+  if (w.crops) f.crops = *w.crops;
   if (w.water) f.water = *w.water;
   if (w.power_line) f.power_line = *w.power_line;
+  // Without room for it, or a ditch to cross, the scene goes without.
+  f.hall = w.hall.value_or(f.hall) && std::min(w.length.value, w.width.value) >= least_side_with_hall;
+  f.bridge = w.bridge.value_or(f.bridge) && f.ditch > 0.0;
   return f;
 }
 

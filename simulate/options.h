@@ -64,6 +64,7 @@ struct NoiseOptions {
   core::Metres line_shift, line_drift;
   core::Radians line_attitude, line_attitude_drift;
   double high_points = 2e-5, low_points = 2e-5, multipath = 5e-5;
+  double low_groups = 0.0;
 };
 
 template <class V>
@@ -85,6 +86,10 @@ void describe(NoiseOptions& n, V& v) {
   v.option("low_points", n.low_points, core::within(0, 0.1),
            "Share of pulses whose last return is an isolated low point, 3 to 25 m late (class 7).");
   v.option("multipath", n.multipath, core::within(0, 0.1), "Share of pulses whose last return comes 0.5 to 3 m late (class 7).");
+  v.option(
+      "low_groups", n.low_groups, core::within(0, 100),
+      "Places per hectare with a group of low points (class 7): within 1.5 m of it 60 % of the ground's returns come late by one depth "
+      "of 1 to 6 m, to 0.1 m.");
 }
 
 /// What survey.toml says of the calibration.

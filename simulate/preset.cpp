@@ -33,10 +33,36 @@ Options calibration_flight() {
   return o;
 }
 
+Options zoo_survey() {
+  Options o;
+  o.world.scene = Scene::zoo;
+  o.world.length = core::Metres(600);
+  o.world.width = core::Metres(400);
+  o.flight.lines = 2;
+  o.flight.overlap = 0.4;
+  o.flight.cross_lines = 0;
+  o.flight.height = core::Metres(500);
+  o.flight.speed = core::MetresPerSecond(50);
+  o.scanner.prf = core::Hertz(60000);
+  o.scanner.frequency = core::Hertz(50);
+  o.scanner.half_angle = core::degrees(22);
+  o.noise.high_points = 1e-4;
+  o.noise.low_points = 1e-4;
+  o.noise.multipath = 3e-4;
+  o.noise.low_groups = 1.0;
+  o.imu.file = o.gnss.file = false;
+  return o;
+}
+
 Options read_options(const core::Value& given) {
-  const core::Value* flight = given.is_object() ? given.find("flight") : nullptr;
-  const core::Value* pattern = flight && flight->is_object() ? flight->find("pattern") : nullptr;
-  Options options = pattern && pattern->is_text() && pattern->as_text() == "calibration" ? calibration_flight() : Options{};
+  const auto says = [&](const char* table, const char* key, std::string_view text) {
+    const core::Value* t = given.is_object() ? given.find(table) : nullptr;
+    const core::Value* v = t && t->is_object() ? t->find(key) : nullptr;
+    return v && v->is_text() && v->as_text() == text;
+  };
+  Options options = says("flight", "pattern", "calibration") ? calibration_flight()
+                    : says("world", "scene", "zoo")          ? zoo_survey()
+                                                             : Options{};
   std::vector<core::Fault> faults;
   core::read_options(core::described(options), given, "", faults);
   core::throw_if_any(faults);
@@ -54,6 +80,12 @@ Options preset(Scene scene) {
     o.scanner.prf = core::Hertz(4500);
     o.scanner.frequency = core::Hertz(12);
     o.output.truth_returns = true;
+    return o;
+  }
+  if (scene == Scene::zoo) {
+    Options o = zoo_survey();
+    o.scanner.prf = core::Hertz(6000);
+    o.scanner.frequency = core::Hertz(16);
     return o;
   }
   Options o;

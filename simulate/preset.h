@@ -10,12 +10,16 @@ namespace swath::simulate {
 /// scan scale drawn by the seed and delivered uncalibrated, the roof in the middle surveyed.
 Options calibration_flight();
 
+/// The zoo for ground filters, 600 m by 400 m from 500 m: two lines, some 4 pulses per square metre, outliers of every kind; no IMU and
+/// GNSS records.
+Options zoo_survey();
+
 /// Options as a config gives them. What it leaves out has the defaults, which for flight.pattern = "calibration" are those of
-/// calibration_flight(). Throws Error with all faults.
+/// calibration_flight(), and otherwise for world.scene = "zoo" those of zoo_survey(). Throws Error with all faults.
 Options read_options(const core::Value& given);
 
 /// Default options of a preset: the zoo's scenes small (some 20 000 returns), for tests; `mixed` as the full default survey; `airfield` a
-/// small calibration flight at 300 m (some 700 000 returns).
+/// small calibration flight at 300 m (some 700 000 returns); `zoo` with a tenth of its pulses.
 Options preset(Scene scene);
 
 }  // namespace swath::simulate

@@ -51,7 +51,10 @@ enum class Stream : std::uint64_t {
   events,
   mounting,
   line_errors,
-  control
+  control,
+  structures,
+  fields,
+  low_groups
 };
 
 inline Random random_of(std::int64_t seed, Stream stream, std::uint64_t index = 0) {

@@ -39,14 +39,21 @@ Relief::Relief(const WorldOptions& world, std::int64_t seed, core::Radians direc
     }
   }
   if (f.scarp > 0.0) {
-    // Steepest in the middle: height / (2 width), about 60 degrees.
+    // Steepest in the middle: height / (2 width).
     const Eigen::Vector2d normal = unit(direction.value + 75 * core::degree);
-    steps_.push_back({normal, 0.28 * width, f.scarp, f.scarp / (2 * 1.7), 0.0});
+    steps_.push_back({normal, 0.28 * width, f.scarp, f.scarp / (2 * f.scarp_slope), 0.0});
   }
   if (f.embankment > 0.0) {
     // A crest 8 m wide with flanks of about 1 : 1.5.
     const Eigen::Vector2d normal = unit(direction.value + 20 * core::degree);
-    steps_.push_back({normal, -0.3 * length, f.embankment, 0.75 * f.embankment, 4.0 + 0.75 * f.embankment});
+    steps_.push_back({normal, f.embankment_at * length, f.embankment, 0.75 * f.embankment, 4.0 + 0.75 * f.embankment});
+  }
+  if (f.ditch > 0.0) {
+    // A bottom 3 m wide with flanks of about 1 : 1.5.
+    const Eigen::Vector2d normal = unit(direction.value + 15 * core::degree);
+    const double flank = 0.75 * f.ditch, half_bottom = 1.5 + flank;
+    steps_.push_back({normal, 0.33 * length, -f.ditch, flank, half_bottom});
+    ditch_ = {normal, 0.33 * length, half_bottom + 2 * flank};
   }
   if (f.water) {
     lake_ = true;
@@ -66,9 +73,9 @@ Relief::Relief(const WorldOptions& world, std::int64_t seed, core::Radians direc
     (h.amplitude > 0 ? up : down) += std::abs(h.amplitude);
   }
   for (const Step& s : steps_) {
-    steepest_ += s.amplitude / (2 * s.width);
-    up += s.amplitude;
-    down += s.amplitude;
+    steepest_ += std::abs(s.amplitude) / (2 * s.width);
+    up += std::abs(s.amplitude);
+    down += std::abs(s.amplitude);
   }
   highest_ = base_ + up;
   lowest_ = base_ - down;

@@ -3,13 +3,14 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "simulate/options.h"
 
 namespace swath::simulate {
 
-/// The analytic ground: a slope, waves, hills, a scarp, an embankment and a lake's basin. Coordinates: metres east and north
+/// The analytic ground: a slope, waves, hills, a scarp, an embankment, a ditch and a lake's basin. Coordinates: metres east and north
 /// of the middle of the area in the map frame, heights in the map's height system.
 class Relief {
  public:
@@ -17,6 +18,12 @@ class Relief {
     double height = 0.0;
     Eigen::Vector2d gradient = Eigen::Vector2d::Zero();  ///< d height / d (east, north)
     bool water = false;
+  };
+
+  /// Where the ditch's middle line runs (normal . p = offset), and how far from it the ground is as good as level again.
+  struct Ditch {
+    Eigen::Vector2d normal = Eigen::Vector2d::Zero();
+    double offset = 0.0, half_width = 0.0;
   };
 
   Relief() = default;
@@ -27,6 +34,9 @@ class Relief {
   Sample at(double e, double n) const;
   double height(double e, double n) const { return at(e, n).height; }
   bool is_water(double e, double n) const { return at(e, n).water; }
+
+  /// Only with an option `ditch` above 0.
+  const std::optional<Ditch>& ditch() const { return ditch_; }
 
   double steepest() const { return steepest_; }  ///< no gradient is longer (analytic bound)
   double highest() const { return highest_; }    ///< analytic bounds within the square
@@ -51,6 +61,7 @@ class Relief {
   std::vector<Wave> waves_;
   std::vector<Hill> hills_;
   std::vector<Step> steps_;
+  std::optional<Ditch> ditch_;
   bool lake_ = false;
   Eigen::Vector2d lake_centre_ = Eigen::Vector2d::Zero();
   double lake_radius_ = 0.0, lake_level_ = 0.0;

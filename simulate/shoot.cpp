@@ -15,6 +15,19 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double group_radius = 1.5, group_share = 0.6, group_scatter = 0.1;  // m, -, m: groups of low points
+
+/// How far below the ground the group of low points at a place lies, m; 0 where there is none. One place in each cell of a lattice.
+double group_depth(double per_hectare, std::int64_t seed, double x, double y) {
+  const double side = std::max(std::sqrt(1e4 / per_hectare), 2 * group_radius);
+  const auto i = static_cast<std::int64_t>(std::floor(x / side)), j = static_cast<std::int64_t>(std::floor(y / side));
+  Random random = random_of(seed, Stream::low_groups, static_cast<std::uint64_t>(i) << 32 ^ (static_cast<std::uint64_t>(j) & 0xffffffffu));
+  const double free = side - 2 * group_radius;
+  const double cx = static_cast<double>(i) * side + group_radius + random.uniform() * free,
+               cy = static_cast<double>(j) * side + group_radius + random.uniform() * free;
+  return std::hypot(x - cx, y - cy) < group_radius ? random.uniform(1.0, 6.0) : 0.0;
+}
+
 double rounded(double v, double step) { return step > 0.0 ? step * std::round(v / step) : v; }
 
 /// The beam turned by two small angles across itself.
@@ -100,6 +113,13 @@ void Shooter::pulse(const Line& line, std::int64_t number, Echoes& echoes, Retur
     } else if (outlier < noise.high_points + noise.low_points + noise.multipath) {
       last.s += error.uniform(0.5, 3.0);
       last.kind = core::point_class::low_noise;
+    } else if (noise.low_groups > 0.0 && last.kind == core::point_class::ground) {
+      const Vector3d foot = ray.at(last.s);
+      const double depth = group_depth(noise.low_groups, options_.seed, foot.x(), foot.y());
+      if (depth > 0.0 && error.uniform() < group_share) {
+        last.s += depth + group_scatter * error.normal();
+        last.kind = core::point_class::low_noise;
+      }
     }
     angle += noise.scan_angle.value * error.normal();
   }

@@ -183,6 +183,17 @@ core::Grid dtm_of(const Scenery& s, const Options& o) {
   return g;
 }
 
+/// What covers the ground at the cells of `on` (Cover).
+std::vector<float> cover_of(const Scenery& s, const core::Lattice& on) {
+  const Eigen::Vector3d& m = s.map->map_origin();
+  std::vector<float> cover(static_cast<size_t>(on.nx) * static_cast<size_t>(on.ny));
+  tbb::parallel_for(0, on.ny, [&](int j) {
+    for (int i = 0; i < on.nx; ++i)
+      cover[on.at(i, j)] = static_cast<float>(s.world->cover_at(on.centre_x(i) - m.x(), on.centre_y(j) - m.y()));
+  });
+  return cover;
+}
+
 struct Counts {
   std::int64_t pulses = 0, returns = 0;
   std::map<int, std::int64_t> by_class, by_number, by_line;
@@ -255,7 +266,10 @@ void write_laser(const Scenery& s, const Options& o, const fs::path& folder, con
   const Counts counts = fire(s, o, files, truth.get(), progress);
   for (auto& file : files) file->finish();
   if (truth) truth->finish();
-  io::write_grid(folder / "truth" / "dtm.tif", dtm_of(s, o), o.crs);
+  const core::Grid dtm = dtm_of(s, o);
+  io::write_grid(folder / "truth" / "dtm.tif", dtm, o.crs);
+  const std::vector<float> cover = cover_of(s, dtm.lattice);
+  io::write_raster(folder / "truth" / "cover.tif", dtm.lattice, {{"cover", "", &cover}}, o.crs, false);
   made["pulses"] = counts.pulses;
   made["returns"] = counts.returns;
   made["returns_by_class"] = counted(counts.by_class);
@@ -264,6 +278,7 @@ void write_laser(const Scenery& s, const Options& o, const fs::path& folder, con
   made["buildings"] = static_cast<std::int64_t>(s.world->buildings().size());
   made["trees"] = static_cast<std::int64_t>(s.world->trees().size());
   made["wires"] = static_cast<std::int64_t>(s.world->wires().size());
+  made["fields"] = std::count_if(s.world->fields().begin(), s.world->fields().end(), [](const Field& f) { return f.height > 0.0; });
   made["largest_map_error_m"] = s.map->worst();
 }
 

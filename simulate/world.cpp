@@ -21,6 +21,7 @@ namespace cls = core::point_class;
 constexpr double mean_share = 0.6;       // of the beam's energy that one interception takes
 constexpr double least_energy = 0.03;    // weakest echo the receiver sees
 constexpr double specular_angle = 0.10;  // rad: 1-sigma width of the water's glint
+constexpr double crop_bottom = 0.6;      // lowest echo of crops, share of their height
 constexpr double diffuse_water = 0.02;   // share of pulses that come back from water elsewhere
 
 double reflectance(std::uint8_t kind) {
@@ -92,11 +93,15 @@ World::World(const WorldOptions& options, std::int64_t seed, core::Radians direc
     : relief_(options, seed, direction, half) {
   const Features f = features_of(options);
   low_vegetation_ = f.low_vegetation;
+  low_vegetation_height_ = options.low_vegetation_height.value;
   const bool airfield = options.scene == Scene::airfield;
   if (airfield) plan_airfield(options, f, seed, direction);
+  if (!airfield && f.hall) plan_hall(options, f, seed, direction);
+  if (f.bridge) plan_bridge(options, seed, direction);
   if (!airfield && f.buildings > 0.0) plan_buildings(options, f, seed, direction);
   if (f.power_line) plan_power_line(options, seed, direction);
   if (!airfield && f.trees > 0.0) plan_trees(options, f, seed, direction);
+  if (f.crops > 0.0) plan_fields(options, f, seed, direction);
   index_objects(half);
 }
 
@@ -223,11 +228,17 @@ void World::trace(const Ray& ray, double far, double footprint, Random& random, 
   }
 
   const double cosine = std::clamp(-normal.dot(d) / d.norm(), 0.0, 1.0);
-  if (surface == cls::ground && low_vegetation_ > 0.0 && low_vegetation_at(q) && random.uniform() < 0.35) {
-    const double s = s_ground + random.uniform(0.1, 0.8) / d.z();
-    const double share = random.uniform(0.2, 1.0);
+  const auto stop = [&](double low, double high, double least_share) {
+    const double s = s_ground + random.uniform(low, high) / d.z();
+    const double share = random.uniform(least_share, 1.0);
     out.add({s, energy * share * reflectance(cls::low_vegetation), 1.0, cls::low_vegetation});
     energy *= 1 - share;
+  };
+  const Field field = surface == cls::ground ? field_at(q.x(), q.y()) : Field{};
+  if (field.height > 0.0) {
+    if (random.uniform() < field.stopped) stop(crop_bottom * field.height, field.height, 0.5);
+  } else if (surface == cls::ground && low_vegetation_ > 0.0 && low_vegetation_at(q) && random.uniform() < 0.35) {
+    stop(0.1, low_vegetation_height_, 0.2);
   }
   if (surface == cls::water) {
     const double off = std::acos(cosine) / specular_angle;

@@ -36,7 +36,8 @@ struct Echoes {
   }
 };
 
-/// Convex house or pole: inside where every plane has normal . p <= offset; open downwards (the ground closes it).
+/// Convex house, pole or bridge deck: inside where every plane has normal . p <= offset; open downwards (the ground closes it) but for
+/// the deck.
 struct Building {
   std::vector<Eigen::Vector4d> planes;  ///< unit normal, offset; absolute heights
   Eigen::Vector2d centre;
@@ -55,6 +56,15 @@ struct Wire {
   double length, middle, a, low, radius, top;
 };
 
+/// A field under crops of one height; 0: bare. `stopped`: share of the pulses that do not reach the soil.
+struct Field {
+  double height = 0.0, stopped = 0.0;
+};
+
+/// What covers a place, the first that holds: water, a building, a bridge, ground steeper than 30 degrees, crowns, crops and low
+/// vegetation, open ground. The values of truth/cover.tif.
+enum class Cover : std::uint8_t { open = 1, forest = 2, steep = 3, building = 4, low_vegetation = 5, water = 6, bridge = 7 };
+
 /// Ground and objects, and the exact way of a beam among them. Coordinates as Relief.
 class World {
  public:
@@ -64,6 +74,10 @@ class World {
   const std::vector<Building>& buildings() const { return buildings_; }
   const std::vector<Tree>& trees() const { return trees_; }
   const std::vector<Wire>& wires() const { return wires_; }
+  const std::vector<Field>& fields() const { return fields_; }
+
+  /// Coordinates as Relief.
+  Cover cover_at(double e, double n) const;
 
   /// First meeting of ray and ground, to 1e-7 m of height; the ray starts above the ground. False where it meets none within `far`.
   bool ground_hit(const Ray& ray, double far, double& s) const;
@@ -74,6 +88,10 @@ class World {
  private:
   enum class Sort : std::uint32_t { building, tree, wire };
   void plan_buildings(const WorldOptions& options, const Features& f, std::int64_t seed, core::Radians direction);
+  void plan_hall(const WorldOptions& options, const Features& f, std::int64_t seed, core::Radians direction);
+  void plan_bridge(const WorldOptions& options, std::int64_t seed, core::Radians direction);
+  void plan_fields(const WorldOptions& options, const Features& f, std::int64_t seed, core::Radians direction);
+  Field field_at(double e, double n) const;
   void plan_airfield(const WorldOptions& options, const Features& f, std::int64_t seed, core::Radians direction);
   double highest_corner(const Eigen::Vector2d& centre, const Eigen::Vector2d& along, double half_length, double half_width) const;
   void plan_power_line(const WorldOptions& options, std::int64_t seed, core::Radians direction);
@@ -84,10 +102,15 @@ class World {
   bool low_vegetation_at(const Eigen::Vector3d& q) const;
 
   Relief relief_;
-  double low_vegetation_ = 0.0;
+  double low_vegetation_ = 0.0, low_vegetation_height_ = 0.0;
   std::vector<Building> buildings_;
   std::vector<Tree> trees_;
   std::vector<Wire> wires_;
+
+  // Parcels in the area's own axes, row by row from `corner` (along, across).
+  std::vector<Field> fields_;
+  Eigen::Vector2d along_ = Eigen::Vector2d::Zero(), fields_corner_ = Eigen::Vector2d::Zero();
+  int fields_along_ = 0, fields_across_ = 0;
 
   // Objects by square cells: objects_[begin_[c] .. begin_[c + 1]) of cell c, sort in the upper two bits; top_[c] their highest point.
   static constexpr double cell_ = 8.0;

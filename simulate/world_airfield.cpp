@@ -99,7 +99,7 @@ void World::plan_airfield(const WorldOptions& options, const Features& f, std::i
     // On one of the four sides, from `rim` of its half to the area's edge.
     const double side = wood.uniform(rim, 0.5) * (wood.uniform() < 0.5 ? -1.0 : 1.0), other = wood.uniform(-0.5, 0.5);
     const bool ends = wood.uniform() < 0.5;
-    const double height = wood.uniform(5, 14), radius = std::max(1.0, 0.2 * height), extinction = wood.uniform(0.12, 0.4);
+    const double height = wood.uniform(5, 14), radius = std::max(1.0, 0.2 * height), extinction = f.foliage * wood.uniform(0.12, 0.4);
     const Vector2d p = (ends ? side : other) * length * along + (ends ? other : side) * width * across;
     if (clash(p, radius)) continue;
     const double ground = relief_.height(p.x(), p.y()), crown = 0.65 * height;

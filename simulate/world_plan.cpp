@@ -133,7 +133,7 @@ void World::plan_trees(const WorldOptions& options, const Features& f, std::int6
   for (std::int64_t i = 0; i < wanted; ++i) {
     const double l = random.uniform(-0.5, 0.5) * area.length, w = random.uniform(-0.5, 0.5) * area.width;
     const double height = random.uniform(4, 24) * random.uniform(0.7, 1.1), spread = random.uniform(0.16, 0.26);
-    const double extinction = random.uniform(0.12, 0.4);
+    const double extinction = f.foliage * random.uniform(0.12, 0.4);
     // Some trees stand alone outside woodland.
     const bool alone = random.uniform() < 0.04;
     if (density(l, w) < threshold && !alone) continue;

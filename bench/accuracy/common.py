@@ -12,6 +12,7 @@ import sys
 
 import laspy
 import numpy as np
+import rasterio
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRATCH = pathlib.Path(os.environ.get("SWATH_SCRATCH", ROOT / "out/accuracy"))
@@ -46,7 +47,9 @@ def sets(options):
 
 
 def call(*words):
-    done = subprocess.run([program(), *map(str, words)], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    # Another build may make the surveys: $SWATH_SIMULATE.
+    by = os.environ.get("SWATH_SIMULATE", program()) if words[0] == "simulate" else program()
+    done = subprocess.run([by, *map(str, words)], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     if done.returncode:
         sys.exit(f"swath {' '.join(map(str, words))}\n{done.stdout}{done.stderr}")
 
@@ -71,6 +74,59 @@ def toml(value):
     if isinstance(value, bool):
         return "true" if value else "false"
     return json.dumps(value)
+
+
+def listing(*words):
+    return subprocess.run([program(), *words], text=True, check=True, stdout=subprocess.PIPE).stdout
+
+
+def ground_filters():
+    """Every ground filter of the program: the filters whose sentence begins so."""
+    lines = (line.split(maxsplit=1) for line in listing("stages").splitlines())
+    return [name for name, sentence in lines if name.startswith("filters.") and sentence.startswith("Ground points")]
+
+
+def ground_chains(names=None, noise=True):
+    """The one list of chains that ground.py and isprs.py judge: every ground filter with its defaults, alone and (`noise`) behind filters.noise."""
+    chains = {}
+    for name in names or ground_filters():
+        short = name.removeprefix("filters.")
+        chains[short] = [{"type": name}]
+        if noise:
+            chains[f"noise + {short}"] = [{"type": "filters.noise"}, {"type": name}]
+    return chains
+
+
+def agreement(is_ground, said):
+    """Type I, II, total error and kappa in percent (Sithole and Vosselman 2004); NaN where a side is empty."""
+    lost, taken, count = np.sum(is_ground & ~said), np.sum(~is_ground & said), len(is_ground)
+    if count == 0:
+        return [np.nan] * 4
+    ground, other = is_ground.sum(), (~is_ground).sum()
+    agree = 1 - (lost + taken) / count
+    chance = is_ground.mean() * said.mean() + (1 - is_ground.mean()) * (1 - said.mean())
+    return [100 * lost / ground if ground else np.nan, 100 * taken / other if other else np.nan, 100 * (1 - agree),
+            100 * (agree - chance) / (1 - chance) if chance < 1 else np.nan]
+
+
+def cells(values, digits=2):
+    return ["-" if not np.isfinite(v) else f"{v:.{digits}f}" for v in values]
+
+
+def nearest(grid, transform, x, y):
+    """Values of the cells that hold x, y; NaN outside."""
+    i, j = np.floor((y - transform.f) / transform.e).astype(int), np.floor((x - transform.c) / transform.a).astype(int)
+    inside = (i >= 0) & (j >= 0) & (i < grid.shape[0]) & (j < grid.shape[1])
+    return np.where(inside, grid[np.where(inside, i, 0), np.where(inside, j, 0)], np.nan)
+
+
+def raster(file, band=1):
+    """Band of a raster as float, no data as NaN, and its transform."""
+    with rasterio.open(file) as source:
+        values = source.read(band).astype(float)
+        if source.nodata is not None:
+            values[values == source.nodata] = np.nan
+        return values, source.transform
 
 
 def stage_of(report, name):

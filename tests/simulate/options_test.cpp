@@ -31,6 +31,26 @@ TEST(SimulateOptions, GivenFeaturesReplaceTheScenes) {
   EXPECT_TRUE(features_of({.scene = Scene::mixed}).power_line);
 }
 
+TEST(SimulateOptions, ABridgeNeedsADitchAndAHallNeedsRoom) {
+  Options o;
+  o.world.bridge = true;
+  EXPECT_EQ(faults_of(o).size(), 1u);
+  o.world.ditch = core::Metres(4);
+  EXPECT_TRUE(faults_of(o).empty());
+  o.world.hall = true;
+  EXPECT_TRUE(faults_of(o).empty());
+  o.world.width = core::Metres(90);
+  EXPECT_EQ(faults_of(o).size(), 1u);
+  // What the scene alone would have, it goes without.
+  WorldOptions zoo{.scene = Scene::zoo};
+  EXPECT_TRUE(features_of(zoo).hall);
+  EXPECT_TRUE(features_of(zoo).bridge);
+  zoo.width = core::Metres(90);
+  zoo.ditch = core::Metres(0);
+  EXPECT_FALSE(features_of(zoo).hall);
+  EXPECT_FALSE(features_of(zoo).bridge);
+}
+
 TEST(SimulateOptions, RefusesWhatCannotBeMade) {
   Options o;
   o.scanner.pattern = Pattern::palmer;

@@ -24,7 +24,8 @@ namespace {
 using Eigen::Vector3d;
 
 TEST(Preset, EveryOneIsAccepted) {
-  for (const Scene scene : {Scene::flat, Scene::hills, Scene::steep, Scene::forest, Scene::town, Scene::mixed, Scene::airfield}) {
+  for (const Scene scene :
+       {Scene::flat, Scene::hills, Scene::steep, Scene::forest, Scene::town, Scene::mixed, Scene::airfield, Scene::zoo}) {
     Options o = preset(scene), read;
     EXPECT_EQ(o.world.scene, scene);
     std::vector<core::Fault> faults;
@@ -46,6 +47,22 @@ TEST(Preset, WhatAConfigLeavesOutFollowsThePatternOfTheFlight) {
   EXPECT_EQ(o.mounting.deliver, Deliver::nominal);
   given["flight"]["patern"] = "calibration";
   EXPECT_THROW(read_options(given), core::Error);
+}
+
+TEST(Preset, WhatAConfigLeavesOutFollowsTheZoo) {
+  core::Value given = core::Value::object();
+  given["world"]["scene"] = "zoo";
+  given["flight"]["height"] = "400 m";
+  Options o = read_options(given);
+  EXPECT_EQ(o.world.length.value, 600.0);
+  EXPECT_EQ(o.flight.height.value, 400.0);
+  EXPECT_GT(o.noise.low_groups, 0.0);
+  EXPECT_FALSE(o.imu.file);
+  given["flight"]["pattern"] = "calibration";
+  o = read_options(given);
+  EXPECT_EQ(o.world.scene, Scene::zoo);
+  EXPECT_EQ(o.world.length.value, 720.0);
+  EXPECT_EQ(o.noise.low_groups, 0.0);
 }
 
 /// One row of truth/planes.csv.

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "simulate/random.h"
 
 namespace swath::simulate {
@@ -12,7 +14,7 @@ constexpr double half = 800.0;
 
 TEST(Relief, GradientIsTheDerivativeOfTheHeight) {
   constexpr double step = 1e-3, tolerance = 1e-6;  // third derivatives are below 1 / m^2
-  for (const Scene scene : {Scene::flat, Scene::hills, Scene::steep, Scene::mixed}) {
+  for (const Scene scene : {Scene::flat, Scene::hills, Scene::steep, Scene::mixed, Scene::zoo}) {
     const Relief relief({.scene = scene}, 3, core::degrees(60), half);
     Random random(1, 1, 1);
     for (int i = 0; i < 2000; ++i) {
@@ -29,7 +31,7 @@ TEST(Relief, GradientIsTheDerivativeOfTheHeight) {
 }
 
 TEST(Relief, BoundsHold) {
-  for (const Scene scene : {Scene::flat, Scene::hills, Scene::steep, Scene::mixed, Scene::forest, Scene::town}) {
+  for (const Scene scene : {Scene::flat, Scene::hills, Scene::steep, Scene::mixed, Scene::forest, Scene::town, Scene::zoo}) {
     const Relief relief({.scene = scene}, 5, core::degrees(10), half);
     for (double e = -half; e <= half; e += 7.3)
       for (double n = -half; n <= half; n += 7.3) {
@@ -62,6 +64,44 @@ TEST(Relief, ScenesHaveWhatTheirNamesSay) {
         EXPECT_EQ(mixed.at(e, n).gradient.norm(), 0.0);
       }
   EXPECT_GT(water, 40);
+}
+
+WorldOptions level() {
+  WorldOptions w;
+  w.scene = Scene::flat;
+  w.slope = 0.0;
+  return w;
+}
+
+TEST(Relief, ADitchIsAsDeepAsToldAndLevelBeyondItsHalfWidth) {
+  WorldOptions w = level();
+  EXPECT_FALSE(Relief(w, 1, core::degrees(60), half).ditch());
+  w.ditch = core::Metres(5.0);
+  const Relief relief(w, 1, core::degrees(60), half);
+  ASSERT_TRUE(relief.ditch());
+  const Relief::Ditch& ditch = *relief.ditch();
+  const auto depth = [&](double from_middle) {
+    const Eigen::Vector2d p = (ditch.offset + from_middle) * ditch.normal;
+    return w.ground.value - relief.height(p.x(), p.y());
+  };
+  // The flanks' tails overlap: 4.4 m of 5 m are left in the middle, 2 % of it at the half width.
+  EXPECT_GT(depth(0), 0.85 * 5.0);
+  EXPECT_LE(depth(0), 5.0);
+  EXPECT_LT(std::abs(depth(ditch.half_width)), 0.02 * 5.0);
+  EXPECT_LT(std::abs(depth(-ditch.half_width)), 0.02 * 5.0);
+}
+
+TEST(Relief, AScarpHasItsSlope) {
+  for (const double slope : {0.8, 1.43, 2.5}) {
+    WorldOptions w = level();
+    w.scarp = core::Metres(9.0);
+    w.scarp_slope = slope;
+    const Relief relief(w, 1, core::degrees(60), half);
+    double steepest = 0;
+    // Along a line across it; the step misses the steepest place by less than 1 cm of flanks wider than 1 m.
+    for (double d = -400; d <= 400; d += 0.01) steepest = std::max(steepest, relief.at(0.7 * d, -0.7 * d).gradient.norm());
+    EXPECT_NEAR(steepest, slope, 1e-3 * slope);
+  }
 }
 
 }  // namespace

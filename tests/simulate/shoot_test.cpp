@@ -3,7 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include "core/block.h"
 #include "simulate/planned_flight.h"
@@ -159,6 +164,46 @@ TEST(Shoot, OutliersComeAtTheirRates) {
   const auto n = static_cast<double>(r.size());
   EXPECT_NEAR(high / n, 0.02, 5 * std::sqrt(0.02 / n));
   EXPECT_NEAR(low / n, 0.04, 5 * std::sqrt(0.04 / n));
+}
+
+TEST(Shoot, GroupsOfLowPointsLieTogetherAtOneDepth) {
+  Options o = small();
+  o.world.scene = Scene::flat;
+  o.scanner.prf = core::Hertz(20000);
+  o.noise.high_points = o.noise.low_points = o.noise.multipath = 0.0;
+  o.noise.low_groups = 20.0;
+  const Parts p(o);
+  const Returns r = p.shoot(0, 40000);
+  // Depths by place: one group in each cell of 22.4 m.
+  const double side = std::sqrt(1e4 / o.noise.low_groups);
+  std::map<std::pair<int, int>, std::vector<double>> groups;
+  std::map<std::pair<int, int>, Eigen::AlignedBox2d> places;
+  size_t low = 0;
+  for (size_t i = 0; i < r.size(); ++i) {
+    const double e = r.east[i] - p.map.map_origin().x(), n = r.north[i] - p.map.map_origin().y();
+    const double depth = p.world.relief().height(e, n) - r.height[i];
+    if (r.kind[i] != core::point_class::low_noise) {
+      ASSERT_LT(depth, 0.01);
+      continue;
+    }
+    ++low;
+    // The beam goes on aside below the ground, by up to 2.4 m: near a cell's edge the group may be the neighbour's.
+    if (std::min(std::abs(std::remainder(e, side)), std::abs(std::remainder(n, side))) < 2.5) continue;
+    const std::pair cell(static_cast<int>(std::floor(e / side)), static_cast<int>(std::floor(n / side)));
+    groups[cell].push_back(depth);
+    places[cell].extend(Eigen::Vector2d(e, n));
+  }
+  // 60 % of the discs' share of the ground.
+  const double expected = 0.6 * core::pi * 1.5 * 1.5 * o.noise.low_groups / 1e4;
+  EXPECT_NEAR(static_cast<double>(low) / static_cast<double>(r.size()), expected, 0.25 * expected);
+  ASSERT_GT(groups.size(), 15u);
+  for (const auto& [cell, depths] : groups) {
+    const auto [least, most] = std::minmax_element(depths.begin(), depths.end());
+    EXPECT_GT(*least, 0.4);  // 1 m less scatter of 0.1 m, of a slant of up to 23 degrees
+    EXPECT_LT(*most, 6.6);
+    EXPECT_LT(*most - *least, 1.0);
+    EXPECT_LT(places[cell].sizes().maxCoeff(), 2 * 1.5 + 1.0);
+  }
 }
 
 }  // namespace

@@ -140,8 +140,9 @@ TEST(Simulate, SameSeedSameBytesWhateverTheThreads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 4);
     run(o, two.path());
   }
-  for (const char* file : {"laser.npy", "laser.csv", "sbet.out", "smrmsg.out", "imu.csv", "gnss.csv", "truth/imu_drift.csv",
-                           "events_pc.csv", "loopstats", "pps.log", "survey.toml", "survey_csv.toml", "truth/returns.npy", "truth/dtm.tif"})
+  for (const char* file :
+       {"laser.npy", "laser.csv", "sbet.out", "smrmsg.out", "imu.csv", "gnss.csv", "truth/imu_drift.csv", "events_pc.csv", "loopstats",
+        "pps.log", "survey.toml", "survey_csv.toml", "truth/returns.npy", "truth/dtm.tif", "truth/cover.tif"})
     EXPECT_EQ(test::read_bytes(one / file), test::read_bytes(two / file)) << file;
   o.seed = 2;
   run(o, other.path());
@@ -250,6 +251,28 @@ io::Survey stated(const std::filesystem::path& file) {
   core::throw_if_any(faults);
   s.folder = file.parent_path();
   return s;
+}
+
+TEST(Simulate, TheZooHasEveryClassAndEveryCover) {
+  const test::TemporaryFolder folder;
+  Options o = preset(Scene::zoo);
+  o.scanner.prf = core::Hertz(15000);
+  const core::Value made = run(o, folder.path());
+  const core::Value& by_class = *made.find("returns_by_class");
+  for (const char* kind : {"2", "3", "4", "5", "6", "7", "9", "14", "17", "18"}) {
+    ASSERT_NE(by_class.find(kind), nullptr) << kind;
+    EXPECT_GT(by_class.find(kind)->as_int(), 5) << kind;
+  }
+  EXPECT_GT(made.find("fields")->as_int(), 10);
+  const io::Raster cover = io::read_raster(folder / "truth/cover.tif"), dtm = io::read_raster(folder / "truth/dtm.tif");
+  EXPECT_EQ(cover.geotransform, dtm.geotransform);
+  ASSERT_EQ(cover.values.size(), dtm.values.size());
+  std::map<double, size_t> cells;
+  for (const double v : cover.values) ++cells[v];
+  ASSERT_EQ(cells.size(), 7u);
+  for (const auto& [value, n] : cells) EXPECT_GT(n, 100u) << value;
+  EXPECT_EQ(cells.begin()->first, 1.0);
+  EXPECT_EQ(cells.rbegin()->first, 7.0);
 }
 
 TEST(Simulate, NavigationAloneNeedsNoWorld) {
