@@ -25,6 +25,7 @@ const std::vector<Entry>& registry() {
       {"filters.noise", make_noise},
       {"filters.smrf", make_smrf},
       {"filters.hag_dem", make_hag_dem},
+      {"terrain.breaklines", make_breaklines},
       {"terrain.dtm", make_dtm},
       {"terrain.dsm", make_dsm},
       {"terrain.contours", make_contours},

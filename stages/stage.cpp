@@ -11,7 +11,7 @@ std::string_view name_of(Grain g) {
 }
 
 std::string_view name_of(Product p) {
-  static constexpr std::string_view names[] = {"imu", "gnss", "events", "trajectory", "shots", "points", "dtm", "dsm", "contours"};
+  static constexpr std::string_view names[] = {"imu", "gnss", "events", "trajectory", "shots", "points", "dtm", "dsm", "contours", "breaklines"};
   return names[static_cast<size_t>(p)];
 }
 

@@ -85,10 +85,15 @@ Tin terrain_tin(const core::Block& block, const DtmOptions& options) {
   return triangulate(block, terrain_rows(block, options), 0.5 * options.max_edge.value);
 }
 
-core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options) {
+core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options, const Breaklines* lines) {
   if (window.cell != options.cell.value) throw core::Error("the window's cell is not the option's", "terrain.dtm");
-  const std::vector<std::uint32_t> rows = terrain_rows(block, options);
-  const Tin tin = triangulate(block, rows, 0.5 * options.max_edge.value);
+  std::vector<std::uint32_t> rows = terrain_rows(block, options);
+  Constraints constraints;
+  if (lines) {
+    constraints = lines->near(window, halo(options));
+    rows = lines->kept(block, rows, constraints);
+  }
+  const Tin tin = triangulate(block, rows, constraints, 0.5 * options.max_edge.value);
   const std::vector<std::int32_t> triangle = triangles_at_centres(tin, block.origin, window);
 
   core::Grid grid(window);
@@ -105,6 +110,7 @@ core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmO
       if (sigma) grid.sigma[at] = static_cast<float>(sigma->at(triangle[at], x, y));
     }
   give_void_reasons(grid, block, rows, options.max_edge.value);
+  if (lines) lines->apply(grid);
   return grid;
 }
 

@@ -7,6 +7,7 @@
 #include "core/block.h"
 #include "core/grid.h"
 #include "core/option.h"
+#include "terrain/breaklines.h"
 #include "terrain/tin.h"
 
 namespace swath::terrain {
@@ -46,6 +47,8 @@ Tin terrain_tin(const core::Block& block, const DtmOptions& options);
 /// height: m, of the triangle's plane at the cell's centre, block origin added. count: terrain points in the cell.
 /// sigma: m, empty where the Block has no sigma_v; NaN where a point's sigma is NaN; see the source for its terms.
 /// reason: none, long_edge or no_data (terrain/voids.h).
-core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options);
+/// With `lines` the terrain passes through the breaklines, water is flat or falling and boundaries cut (terrain/breaklines.h); cells of
+/// water whose height is known have the reason none.
+core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options, const Breaklines* lines = nullptr);
 
 }  // namespace swath::terrain

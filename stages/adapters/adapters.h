@@ -31,6 +31,7 @@ std::unique_ptr<Stage> make_returns();
 std::unique_ptr<Stage> make_noise();
 std::unique_ptr<Stage> make_smrf();
 std::unique_ptr<Stage> make_hag_dem();
+std::unique_ptr<Stage> make_breaklines();
 std::unique_ptr<Stage> make_dtm();
 std::unique_ptr<Stage> make_dsm();
 std::unique_ptr<Stage> make_contours();

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <mutex>
 #include <set>
 
 #include "core/error.h"
 #include "io/output_file.h"
 #include "io/vector.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/breaklines.h"
 #include "stages/adapters/units.h"
 #include "stages/grid_tile.h"
 #include "terrain/contour_lines.h"
@@ -24,12 +26,13 @@ namespace fs = std::filesystem;
 
 /// Cells by void reason, for the tally of a surface stage.
 void count_voids(const core::Grid& grid, core::Tally& tally) {
-  std::array<std::uint64_t, 4> n{};
+  std::array<std::uint64_t, 5> n{};
   for (const core::Void r : grid.reason) ++n[static_cast<size_t>(r)];
   tally.count("cells with a height", n[0]);
   if (n[1]) tally.count("void cells: no data", n[1]);
   if (n[2]) tally.count("void cells: edge too long", n[2]);
   if (n[3]) tally.count("void cells: water", n[3]);
+  if (n[4]) tally.count("void cells: never seen", n[4]);
 }
 
 /// The tile's own ground points that share their place with another: the TIN takes the lowest.
@@ -74,8 +77,9 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
   double halo() const override { return terrain::halo(options); }
   // Vertices (36), faces and their links of a Delaunay triangulation (112), their lists (32), triangles (24), the vertices' columns (40).
   double bytes_per_point() const override { return 250.0; }
-  void run_tile(const Context&, TileJob& job) const override {
-    const core::Grid grid = terrain::dtm(job.block, lattice_in(options.cell.value, job.box), options);
+  void run_tile(const Context& context, TileJob& job) const override {
+    std::call_once(once_, [&] { lines_ = settled_breaklines(context); });
+    const core::Grid grid = terrain::dtm(job.block, lattice_in(options.cell.value, job.box), options, lines_.get());
     count_voids(grid, job.tally);
     count_shared_places(job, options, job.tally);
     write_grid_tile(job.folder, job.key, grid);
@@ -88,6 +92,10 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
                             core::format_quantity(core::Dimension::length, options.max_edge.value) + "?");
     job.findings["void_share"] = static_cast<double>(cover.holes) / static_cast<double>(cover.known + cover.holes);
   }
+
+ private:
+  mutable std::once_flag once_;
+  mutable std::unique_ptr<const terrain::Breaklines> lines_;  ///< read by the first tile
 };
 
 class Dsm : public OptionStage<terrain::DsmOptions> {
