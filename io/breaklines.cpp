@@ -126,12 +126,12 @@ std::string own_crs(OGRLayer& layer) {
   return out;
 }
 
-/// Coordinates of one layer into `target`.
+/// Coordinates of one layer into those of the survey; `products`: the CRS of a survey that states none.
 void transform(std::vector<Breakline>& features, const BreaklineFile& f, const std::string& own, const Survey& survey,
-               const std::string& target, const std::string& place) {
+               const std::string& products, const std::string& place) {
   const std::string stated = !f.crs.empty() ? f.crs : own;
   if (stated.empty() || stated == survey.crs || features.empty()) return;
-  const core::Crs from(stated), to(target);
+  const core::Crs from(stated), to(survey.crs.empty() ? products : survey.crs);
   const bool heights = std::any_of(features.begin(), features.end(), [](const Breakline& b) { return b.has_height; });
   if (from.wkt() == to.wkt()) return;
   if (heights && f.crs.empty() && !from.has_vertical() && !from.is_geocentric() && to.has_vertical())
@@ -140,12 +140,13 @@ void transform(std::vector<Breakline>& features, const BreaklineFile& f, const s
         "state crs in this [[breaklines]]: with a vertical part, or without one where heights are ellipsoidal");
   if (from.epsg() != 0 && from.epsg() == to.epsg() && (!heights || (!from.has_vertical() && !to.has_vertical()))) return;
   const core::Transform operation(from, to);
+  const auto unit = [&](const core::Crs& crs) { return survey.height_unit && !crs.has_vertical() ? survey.height_unit->value : 1.0; };
   for (Breakline& b : features)
     for (auto& part : b.parts)
       for (Vector3d& v : part) {
-        const Vector3d moved = operation(v);
+        const Vector3d moved = operation({v.x(), v.y(), v.z() * unit(from)});
         v.head<2>() = moved.head<2>();
-        if (b.has_height) v.z() = moved.z();
+        if (b.has_height) v.z() = moved.z() / unit(to);
       }
 }
 

@@ -36,9 +36,10 @@ void describe(BreaklineFile& f, V& v) {
   v.option("sigma", f.sigma, core::at_least(0), "Sigma of the heights.");
 }
 
-/// All features of the survey's breakline files, in the files' order, in `crs` (the products' CRS; units of its axes). Lakes and rivers may
-/// have no heights. Throws Error with file and feature: geometries that do not suit the kind, breaklines without heights, coordinates not
-/// finite, a CRS without an operation to `crs`, heights whose datum is not known while that of `crs` is.
+/// All features of the survey's breakline files, in the files' order, in the survey's CRS (units of its axes; `crs` is the products', for a
+/// survey that states none). Lakes and rivers may have no heights. Throws Error with file and feature: geometries that do not suit the
+/// kind, breaklines without heights, coordinates not finite, a CRS without an operation to it, heights whose datum is not known while the
+/// survey's is.
 std::vector<core::Breakline> read_breaklines(const Survey& survey, const std::string& crs, core::Tally& tally);
 
 }  // namespace swath::io

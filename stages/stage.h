@@ -28,7 +28,24 @@ enum class Grain { survey, strip, tile, merge };
 std::string_view name_of(Grain g);
 
 /// What stages hand on besides columns. A plan is refused where a stage needs what none before it gives.
-enum class Product { imu, gnss, events, trajectory, shots, points, dtm, dsm, contours, breaklines };
+enum class Product {
+  imu,
+  gnss,
+  events,
+  trajectory,
+  shots,
+  points,
+  dtm,
+  dsm,
+  contours,
+  breaklines,
+  canopy,
+  slope,
+  hillshade,
+  intensity,
+  pulse_density,
+  return_density
+};
 std::string_view name_of(Product p);
 
 struct Info {

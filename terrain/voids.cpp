@@ -63,4 +63,10 @@ void give_void_reasons(core::Grid& grid, const core::Block& block, const std::ve
     }
 }
 
+void mark_never_seen(core::Grid& grid, const std::vector<bool>& seen) {
+  for (size_t at = 0; at < grid.reason.size(); ++at)
+    if (!seen[at] && (grid.reason[at] == core::Void::no_data || grid.reason[at] == core::Void::long_edge))
+      grid.reason[at] = core::Void::never_seen;
+}
+
 }  // namespace swath::terrain

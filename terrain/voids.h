@@ -19,4 +19,8 @@ std::vector<std::uint32_t> count_points(const core::Block& block, const std::vec
 /// agree (membership in the convex hull of the whole survey would not be such a rule).
 void give_void_reasons(core::Grid& grid, const core::Block& block, const std::vector<std::uint32_t>& rows, double reach);
 
+/// Voids of which `seen` (row-major as the grid) says that no beam came there, through gaps or not, become `never_seen`: more points of the
+/// same flight would not have filled them.
+void mark_never_seen(core::Grid& grid, const std::vector<bool>& seen);
+
 }  // namespace swath::terrain

@@ -39,5 +39,12 @@ TEST(Voids, CountsArePerCell) {
   EXPECT_EQ(count_points(m.block, test::all_rows(m.block), window), (std::vector<std::uint32_t>{2, 1}));
 }
 
+TEST(Voids, NeverSeenIsForVoidsAlone) {
+  core::Grid g(core::Lattice{1.0, 0, 0, 4, 1});
+  g.reason = {core::Void::none, core::Void::no_data, core::Void::long_edge, core::Void::water};
+  mark_never_seen(g, {false, true, false, false});
+  EXPECT_EQ(g.reason, (std::vector{core::Void::none, core::Void::no_data, core::Void::never_seen, core::Void::water}));
+}
+
 }  // namespace
 }  // namespace swath::terrain
