@@ -20,7 +20,7 @@ struct GridBands {
   bool height = true;   ///< band "height", CRS vertical unit
   bool sigma = false;   ///< band "sigma", standard deviation of the height, CRS vertical unit
   bool count = false;   ///< band "count", points in the cell (exact up to 2^24)
-  bool reason = false;  ///< band "void reason": 0 height known, 1 no data, 2 edge too long, 3 water (core::Void)
+  bool reason = false;  ///< band "void reason": 0 height known, 1 no data, 2 edge too long, 3 water, 4 never seen (core::Void)
 };
 
 /// The terrain itself: one band, what every program that reads heights expects (<name>_dtm.tif).
