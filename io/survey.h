@@ -10,6 +10,7 @@
 #include "core/option.h"
 #include "core/sensor.h"
 #include "core/time.h"
+#include "io/breaklines.h"
 #include "io/control.h"
 #include "io/navigation.h"
 #include "io/time_tags.h"
@@ -201,6 +202,7 @@ struct Survey {
   std::vector<ClockLog> clock;
   std::vector<EventFile> events;
   std::vector<ControlFile> control;
+  std::vector<BreaklineFile> breaklines;
   std::optional<std::filesystem::path> hangar;
   std::vector<PointFile> points;
   TimeTags line_time;
@@ -236,6 +238,7 @@ void describe(Survey& s, V& v) {
   v.tables("clock", s.clock, "Logs of the computer's clock.");
   v.tables("event", s.events, "Events to be placed on the time scale and the trajectory.");
   v.tables("control", s.control, "Surveyed points and targets.");
+  v.tables("breaklines", s.breaklines, "Breaklines, boundaries and water lines of the terrain.");
   v.option("hangar", s.hangar,
            "What was measured in a hangar for the aircraft's lever arms (docs/lever-arm.md); may be all that a survey has.");
   v.tables("points", s.points, "Point clouds in map coordinates, in place of raw records.");

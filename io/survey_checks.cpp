@@ -48,6 +48,7 @@ class Checks {
     for (size_t i = 0; i < survey_.clock.size(); ++i) exists(survey_.clock[i].file, numbered("clock", i) + ".file");
     for (size_t i = 0; i < survey_.events.size(); ++i) event(survey_.events[i], numbered("event", i));
     for (size_t i = 0; i < survey_.control.size(); ++i) exists(survey_.control[i].file, numbered("control", i) + ".file");
+    for (size_t i = 0; i < survey_.breaklines.size(); ++i) exists(survey_.breaklines[i].file, numbered("breaklines", i) + ".file");
     if (survey_.hangar) exists(*survey_.hangar, "hangar");
     for (size_t i = 0; i < survey_.points.size(); ++i) exists(survey_.points[i].file, numbered("points", i) + ".file");
     lines();

@@ -27,6 +27,8 @@ double GridStore::cell(stages::Product product) const {
 }
 
 void GridStore::add(stages::Product product, std::filesystem::path folder) {
+  // Of a stage that gives several grids each has a folder of its own.
+  if (std::filesystem::is_directory(folder / stages::name_of(product))) folder /= stages::name_of(product);
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().extension() == ".grid") {
       cells_[product] = stages::read_grid_tile(entry.path()).lattice.cell;

@@ -18,6 +18,7 @@ class GridStore : public stages::Grids {
 
   bool has(stages::Product product) const override { return folders_.contains(product); }
 
+  std::filesystem::path folder(stages::Product product) const override { return folders_.at(product); }
   core::Grid window(stages::Product product, const core::Lattice& lattice) const override;
   double cell(stages::Product product) const override;
 

@@ -11,7 +11,9 @@ std::string_view name_of(Grain g) {
 }
 
 std::string_view name_of(Product p) {
-  static constexpr std::string_view names[] = {"imu", "gnss", "events", "trajectory", "shots", "points", "dtm", "dsm", "contours", "visibility"};
+  static constexpr std::string_view names[] = {"imu",       "gnss",      "events",        "trajectory",     "shots",     "points",
+                                               "dtm",       "dsm",       "contours",      "breaklines",     "canopy",    "slope",
+                                               "hillshade", "intensity", "pulse_density", "return_density", "visibility"};
   return names[static_cast<size_t>(p)];
 }
 

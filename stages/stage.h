@@ -28,7 +28,25 @@ enum class Grain { survey, strip, tile, merge };
 std::string_view name_of(Grain g);
 
 /// What stages hand on besides columns. A plan is refused where a stage needs what none before it gives.
-enum class Product { imu, gnss, events, trajectory, shots, points, dtm, dsm, contours, visibility };
+enum class Product {
+  imu,
+  gnss,
+  events,
+  trajectory,
+  shots,
+  points,
+  dtm,
+  dsm,
+  contours,
+  breaklines,
+  canopy,
+  slope,
+  hillshade,
+  intensity,
+  pulse_density,
+  return_density,
+  visibility
+};
 std::string_view name_of(Product p);
 
 struct Info {
@@ -62,6 +80,8 @@ class Grids {
   virtual bool has(Product product) const = 0;
   /// The window of a product's surface, from as many tiles as it touches; void (no_data) outside them.
   virtual core::Grid window(Product product, const core::Lattice& lattice) const = 0;
+  /// Folder of the stage that gives the product.
+  virtual std::filesystem::path folder(Product product) const = 0;
   /// Side of the product's cells, m.
   virtual double cell(Product product) const = 0;
 };

@@ -40,7 +40,10 @@ std::vector<std::int64_t> highest_returns(const core::Block& b, const std::vecto
 
 }  // namespace
 
-double halo(const DsmOptions& options) { return options.max_gap.value + 2.0 * options.cell.value; }
+double halo(const DsmOptions& options) {
+  const double patch = options.method == SurfaceMethod::spike_free ? spike_free_halo(options.spike_free) : 0.0;
+  return options.max_gap.value + 2.0 * options.cell.value + patch;
+}
 
 std::vector<std::uint32_t> surface_rows(const core::Block& block) {
   std::vector<std::uint32_t> rows;
@@ -64,7 +67,8 @@ core::Grid dsm(const core::Block& block, const core::Lattice& window, const DsmO
   grid.count = count_points(block, rows, window);
   const bool has_sigma = !block.sigma_v.empty();
   if (has_sigma) grid.sigma.assign(window.size(), std::numeric_limits<float>::quiet_NaN());
-  for (int j = 0; j < window.ny; ++j)
+  const bool spike_free = options.method == SurfaceMethod::spike_free;
+  for (int j = 0; j < window.ny && !spike_free; ++j)
     for (int i = 0; i < window.nx; ++i) {
       const std::int64_t r = top[wide.at(i + border, j + border)];
       if (r < 0) continue;
@@ -74,14 +78,17 @@ core::Grid dsm(const core::Block& block, const core::Lattice& window, const DsmO
 
   if (options.max_gap.value > 0.0) {
     std::vector<std::uint32_t> tops;
-    for (const std::int64_t r : top)
-      if (r >= 0) tops.push_back(static_cast<std::uint32_t>(r));
+    if (spike_free)
+      tops = spike_free_rows(block, rows, window, options.max_gap.value + 2.0 * window.cell, options.spike_free);
+    else
+      for (const std::int64_t r : top)
+        if (r >= 0) tops.push_back(static_cast<std::uint32_t>(r));
     const Tin tin = triangulate(block, tops, 0.5 * options.max_gap.value);
     const std::vector<std::int32_t> triangle = triangles_at_centres(tin, block.origin, window);
     for (int j = 0; j < window.ny; ++j)
       for (int i = 0; i < window.nx; ++i) {
         const size_t at = window.at(i, j);
-        if (grid.count[at] > 0 || triangle[at] < 0) continue;
+        if ((!spike_free && grid.count[at] > 0) || triangle[at] < 0) continue;
         const double x = window.centre_x(i) - block.origin.x(), y = window.centre_y(j) - block.origin.y();
         grid.height[at] = static_cast<float>(block.origin.z() + height_in(tin, triangle[at], x, y));
         if (!has_sigma) continue;

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sigma of a cell is the root of the sum of two variances.
-//   Points: s_k^2 = sigma_v^2 + (|slope| sigma_h)^2 / 2 per vertex (sigma_h is radial: half its variance lies along the slope), then
-//     correlation (sum w_k s_k)^2 + (1 - correlation) sum w_k^2 s_k^2 with barycentric weights w. Correlation is one number for all pairs
-//     of a triangle's points; the two limits differ by a factor of at most sqrt(3).
-//   Between points: b/(2r) (r^2 - d^2), d the distance from the circumcentre, r the circumradius: the bound of linear interpolation on a
-//     triangle for second derivatives up to K, K/2 (r^2 - d^2) (Waldron 1998, "The error in linear interpolation at the vertices of a
-//     simplex"), with K = b/r. b is the rms change of slope to the neighbouring triangles. Noise of the points raises b as well, so in
-//     dense data the term is on the safe side by about the points' relative noise. Neighbours count only where r + r_neighbour <=
-//     max_edge / 2, which keeps the rule within the halo (the neighbour's disc shares an edge with the triangle's: all of it lies within
-//     2 r + 2 r_neighbour of the place); where none does, b is the option unknown_bend.
+// Sigma of a cell is the root of a sum of variances, at barycentric weights w in a triangle, with the terms and the reach s of
+// terrain/roughness.h, which the points around the cell tell:
+//   what neighbouring points share: (sum w_k c_k)^2, c_k^2 = s_k^2 - noise, at least correlation s_k^2, from the points' own
+//     s_k^2 = sigma_v^2 + (|slope| sigma_h)^2 / 2 (sigma_h is radial: half its variance lies along the slope);
+//   what they do not share (ranging, vegetation taken for ground): noise (sum w_k^2);
+//   the terrain between them: uneven s + curved s^2 / 4.
+// Where too few triangles stand around a place to tell these, noise is 0 and the terrain may bend by the option unknown_bend b between a
+// triangle and the next: (b (r^2 - d^2) / (2 r))^2, circumradius r, d from its centre, the bound of Waldron 1998, "The error in linear
+// interpolation at the vertices of a simplex".
 #include "terrain/dtm.h"
 
 #include <Eigen/Core>
@@ -18,57 +17,63 @@
 #include <optional>
 
 #include "core/error.h"
+#include "terrain/natural_neighbours.h"
+#include "terrain/roughness.h"
 #include "terrain/tin_surface.h"
 #include "terrain/voids.h"
 
 namespace swath::terrain {
 namespace {
 
+/// Side of the blocks on which roughness is told.
+double roughness_block(const DtmOptions& o) { return o.max_edge.value / 6.0; }
+
 /// Sigma at places of a TIN, by the terms above.
 class SigmaModel {
  public:
-  SigmaModel(const Tin& tin, const DtmOptions& o) : tin_(tin), options_(o), neighbours_(neighbours(tin)) {}
+  SigmaModel(const Tin& tin, const std::vector<std::array<std::int32_t, 3>>& neighbours, const Eigen::Vector3d& origin,
+             const core::Lattice& window, const DtmOptions& o)
+      : tin_(tin), options_(o), roughness_(tin, neighbours, origin, window, roughness_block(o)) {}
 
   double at(std::int32_t t, double x, double y) const {
-    const Circumcircle circle = circumcircle(tin_, t);
+    const Roughness rough = roughness_.at(x, y);
     const auto w = weights(tin_, t, x, y);
     const double slope_squared = gradient(tin_, t).squaredNorm();
-    double sum = 0.0, sum_of_squares = 0.0;
+    double shared = 0.0, own = 0.0;
     for (size_t k = 0; k < 3; ++k) {
       const auto v = static_cast<size_t>(tin_.triangles[t][k]);
       double variance = static_cast<double>(tin_.sigma_v[v]) * static_cast<double>(tin_.sigma_v[v]);
       if (!tin_.sigma_h.empty())
         variance += 0.5 * slope_squared * static_cast<double>(tin_.sigma_h[v]) * static_cast<double>(tin_.sigma_h[v]);
-      sum += w[k] * std::sqrt(variance);
-      sum_of_squares += w[k] * w[k] * variance;
+      // max() in this order hands on a variance that is NaN.
+      shared += w[k] * std::sqrt(std::max(variance - rough.noise, options_.correlation * variance));
+      own += w[k] * w[k] * rough.noise;
     }
-    const double points = options_.correlation * sum * sum + (1.0 - options_.correlation) * sum_of_squares;
-    const double dx = x - circle.x, dy = y - circle.y;
-    const double between =
-        bend(t, circle.radius) / (2.0 * circle.radius) * std::max(0.0, circle.radius * circle.radius - dx * dx - dy * dy);
-    return std::sqrt(points + between * between);
+    const double s = reach_of(tin_, t, w, x, y);
+    double between = rough.uneven * s + 0.25 * rough.curved * s * s;
+    if (!rough.known) {
+      const Circumcircle circle = circumcircle(tin_, t);
+      const double dx = x - circle.x, dy = y - circle.y;
+      const double power = std::max(0.0, circle.radius * circle.radius - dx * dx - dy * dy);
+      between = std::pow(0.5 * options_.unknown_bend * power / circle.radius, 2);
+    }
+    return std::sqrt(shared * shared + own + between);
   }
 
  private:
-  double bend(std::int32_t t, double radius) const {
-    double sum = 0.0;
-    int n = 0;
-    for (const std::int32_t other : neighbours_[t]) {
-      if (other < 0 || radius + circumcircle(tin_, other).radius > 0.5 * options_.max_edge.value) continue;
-      sum += (gradient(tin_, other) - gradient(tin_, t)).squaredNorm();
-      ++n;
-    }
-    return n > 0 ? std::sqrt(sum / n) : options_.unknown_bend;
-  }
-
   const Tin& tin_;
   const DtmOptions& options_;
-  std::vector<std::array<std::int32_t, 3>> neighbours_;
+  RoughnessMap roughness_;
 };
 
 }  // namespace
 
-double halo(const DtmOptions& options) { return options.max_edge.value + options.cell.value; }
+double halo(const DtmOptions& options) {
+  // A place needs the points within max_edge to know its triangle; the triangles that tell its roughness need as much around them, and
+  // those beyond the edges of the triangles that natural neighbours come from another max_edge.
+  const double around = options.interpolation == Interpolation::natural_neighbour ? options.max_edge.value : 0.0;
+  return options.max_edge.value + std::max(around, RoughnessMap::reach(roughness_block(options))) + options.cell.value;
+}
 
 std::vector<std::uint32_t> terrain_rows(const core::Block& block, const DtmOptions& options) {
   std::vector<std::uint32_t> rows;
@@ -85,26 +90,39 @@ Tin terrain_tin(const core::Block& block, const DtmOptions& options) {
   return triangulate(block, terrain_rows(block, options), 0.5 * options.max_edge.value);
 }
 
-core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options) {
+core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options, const Breaklines* lines) {
   if (window.cell != options.cell.value) throw core::Error("the window's cell is not the option's", "terrain.dtm");
-  const std::vector<std::uint32_t> rows = terrain_rows(block, options);
-  const Tin tin = triangulate(block, rows, 0.5 * options.max_edge.value);
+  std::vector<std::uint32_t> rows = terrain_rows(block, options);
+  Constraints constraints;
+  if (lines) {
+    constraints = lines->near(window, halo(options));
+    rows = lines->kept(block, rows, constraints);
+  }
+  const Tin tin = triangulate(block, rows, constraints, 0.5 * options.max_edge.value);
   const std::vector<std::int32_t> triangle = triangles_at_centres(tin, block.origin, window);
 
   core::Grid grid(window);
   grid.count = count_points(block, rows, window);
   const bool has_sigma = !block.sigma_v.empty();
   if (has_sigma) grid.sigma.assign(window.size(), std::numeric_limits<float>::quiet_NaN());
-  const std::optional<SigmaModel> sigma = has_sigma ? std::make_optional<SigmaModel>(tin, options) : std::nullopt;
+  const bool natural = options.interpolation == Interpolation::natural_neighbour;
+  std::vector<std::array<std::int32_t, 3>> across;
+  if (has_sigma || natural) across = neighbours(tin);
+  std::optional<SigmaModel> sigma;
+  if (has_sigma) sigma.emplace(tin, across, block.origin, window, options);
+  std::optional<NaturalNeighbours> neighbourhood;
+  if (natural) neighbourhood.emplace(tin, across);
   for (int j = 0; j < window.ny; ++j)
     for (int i = 0; i < window.nx; ++i) {
       const size_t at = window.at(i, j);
       if (triangle[at] < 0) continue;
       const double x = window.centre_x(i) - block.origin.x(), y = window.centre_y(j) - block.origin.y();
-      grid.height[at] = static_cast<float>(block.origin.z() + height_in(tin, triangle[at], x, y));
+      const double z = natural ? neighbourhood->height(triangle[at], x, y) : height_in(tin, triangle[at], x, y);
+      grid.height[at] = static_cast<float>(block.origin.z() + z);
       if (sigma) grid.sigma[at] = static_cast<float>(sigma->at(triangle[at], x, y));
     }
   give_void_reasons(grid, block, rows, options.max_edge.value);
+  if (lines) lines->apply(grid);
   return grid;
 }
 

@@ -2,20 +2,29 @@
 // Terrain model: the TIN of the ground points, read at the cell centres.
 #pragma once
 
+#include <array>
+#include <string_view>
 #include <vector>
 
 #include "core/block.h"
 #include "core/grid.h"
 #include "core/option.h"
+#include "terrain/breaklines.h"
 #include "terrain/tin.h"
 
 namespace swath::terrain {
 
+enum class Interpolation {
+  linear,             ///< the plane of the triangle
+  natural_neighbour,  ///< Sibson's coordinates
+};
+
 struct DtmOptions {
   core::Metres cell{1.0};
   core::Metres max_edge{60.0};
+  Interpolation interpolation = Interpolation::linear;
   std::vector<int> classes{core::point_class::ground};
-  double correlation = 1.0;
+  double correlation = 0.25;
   double unknown_bend = 0.1;
 };
 
@@ -25,15 +34,19 @@ void describe(DtmOptions& o, V& v) {
   v.option("max_edge", o.max_edge, core::above(0.0),
            "Longest triangle bridged: a triangle counts where its circumcircle's diameter is at most this, so no edge is longer and no gap "
            "wider.");
+  v.option("interpolation", o.interpolation, "Between the points: linear on the triangles, or natural_neighbour, smooth but at the points.",
+           "Sibson1981");
   v.option("classes", o.classes, core::within(0, 255), "ASPRS classes that are terrain.");
   v.option("correlation", o.correlation, core::within(0.0, 1.0),
-           "Correlation of the height errors of a triangle's points: 1 where trajectory and boresight govern, 0 where range noise does.");
+           "Least share of the variance of a point's height that its neighbours have in common (trajectory, boresight); the share that the "
+           "points' scatter leaves is taken where it is larger.");
   v.option("unknown_bend", o.unknown_bend, core::at_least(0.0),
-           "Change of slope (rise / run) that terrain may hide under a triangle whose neighbours are too large to tell.");
+           "Change of slope (rise / run) that terrain may hide under a triangle where too few stand around it to tell.");
   v.check(o.max_edge >= o.cell, "max_edge must span at least one cell");
 }
 
-/// Width of the border of points around a window that dtm() needs, m: max_edge and one cell.
+/// Width of the border of points around a window that dtm() needs, m: max_edge, one cell, and what roughness or natural neighbours need
+/// beyond (5/12 or a whole of max_edge).
 double halo(const DtmOptions& options);
 
 /// Rows of the points that make the terrain: usable and of one of the classes (all usable ones where there is no class column).
@@ -46,6 +59,15 @@ Tin terrain_tin(const core::Block& block, const DtmOptions& options);
 /// height: m, of the triangle's plane at the cell's centre, block origin added. count: terrain points in the cell.
 /// sigma: m, empty where the Block has no sigma_v; NaN where a point's sigma is NaN; see the source for its terms.
 /// reason: none, long_edge or no_data (terrain/voids.h).
-core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options);
+/// With `lines` the terrain passes through the breaklines, water is flat or falling and boundaries cut (terrain/breaklines.h); cells of
+/// water whose height is known have the reason none.
+core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options, const Breaklines* lines = nullptr);
 
 }  // namespace swath::terrain
+
+namespace swath::core {
+template <>
+struct Choices<terrain::Interpolation> {
+  static constexpr std::array<std::string_view, 2> names{"linear", "natural_neighbour"};
+};
+}  // namespace swath::core

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "core/block.h"
@@ -17,6 +18,8 @@ struct Tin {
   std::vector<double> x, y, z;          ///< vertices, m
   std::vector<float> sigma_v, sigma_h;  ///< m, per vertex; empty where the Block has no such column
   std::vector<std::array<std::int32_t, 3>> triangles;
+  /// Edges held by constraints, lower vertex first; ascending; also those whose triangles are left out.
+  std::vector<std::pair<std::int32_t, std::int32_t>> constrained;
   size_t duplicates = 0;  ///< points left out because another stands at the same (x, y), not higher
   size_t not_finite = 0;  ///< points left out because x, y or z is not finite
 
@@ -36,6 +39,20 @@ Circumcircle circumcircle(const Tin& tin, std::int32_t triangle);
 /// The result does not depend on the order of the points, and it is local: over any place q the triangle is the same for every set of
 /// points that agrees within 2 max_radius of q (proof in the source).
 Tin triangulate(const core::Block& block, const std::vector<std::uint32_t>& rows,
+                double max_radius = std::numeric_limits<double>::infinity());
+
+/// Vertices and edges that a triangulation must hold (breaklines). Block frame, m. Edges touch one another at vertices only.
+struct Constraints {
+  std::vector<double> x, y, z;
+  std::vector<float> sigma_v;                                ///< m, per vertex
+  std::vector<std::pair<std::int32_t, std::int32_t>> edges;  ///< of vertices
+  bool empty() const { return edges.empty(); }
+};
+
+/// The constrained Delaunay triangulation of the points at `rows` and the constraints, otherwise as above: a vertex of the constraints
+/// stands where a point has its (x, y); every constraint is an edge. It is local in the same sense, where the constraints that come
+/// within 2 max_radius of q are the same (proof in the source). Throws core::Error where constraints cross between their vertices.
+Tin triangulate(const core::Block& block, const std::vector<std::uint32_t>& rows, const Constraints& constraints,
                 double max_radius = std::numeric_limits<double>::infinity());
 
 /// For each triangle its neighbours across the edges opposite to vertex 0, 1, 2; -1 where there is none.

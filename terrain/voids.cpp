@@ -69,7 +69,7 @@ void mark_never_seen(core::Grid& surface, const core::Grid& seen) {
   for (int j = 0; j < l.ny; ++j)
     for (int i = 0; i < l.nx; ++i) {
       core::Void& reason = surface.reason[l.at(i, j)];
-      if (reason == core::Void::none) continue;
+      if (reason == core::Void::none || reason == core::Void::water) continue;
       const int oi = static_cast<int>(core::cell_index(l.centre_x(i), other.cell) - other.i0);
       const int oj = static_cast<int>(core::cell_index(l.centre_y(j), other.cell) - other.j0);
       if (other.holds(oi, oj) && seen.reason[other.at(oi, oj)] == core::Void::never_seen) reason = core::Void::never_seen;

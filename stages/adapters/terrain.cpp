@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <mutex>
 #include <set>
 
 #include "core/error.h"
 #include "io/output_file.h"
 #include "io/vector.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/breaklines.h"
 #include "stages/adapters/units.h"
 #include "stages/grid_tile.h"
 #include "terrain/contour_lines.h"
@@ -85,7 +87,8 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
   // Vertices (36), faces and their links of a Delaunay triangulation (112), their lists (32), triangles (24), the vertices' columns (40).
   double bytes_per_point() const override { return 250.0; }
   void run_tile(const Context& context, TileJob& job) const override {
-    core::Grid grid = terrain::dtm(job.block, lattice_in(options.cell.value, job.box), options);
+    std::call_once(once_, [&] { lines_ = settled_breaklines(context); });
+    core::Grid grid = terrain::dtm(job.block, lattice_in(options.cell.value, job.box), options, lines_.get());
     mark_never_seen(context, job, grid);
     count_voids(grid, job.tally);
     count_shared_places(job, options, job.tally);
@@ -99,6 +102,10 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
                             core::format_quantity(core::Dimension::length, options.max_edge.value) + "?");
     job.findings["void_share"] = static_cast<double>(cover.holes) / static_cast<double>(cover.known + cover.holes);
   }
+
+ private:
+  mutable std::once_flag once_;
+  mutable std::unique_ptr<const terrain::Breaklines> lines_;  ///< read by the first tile
 };
 
 class Dsm : public OptionStage<terrain::DsmOptions> {

@@ -11,6 +11,7 @@
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/tile_list.h"
 #include "stages/adapters/units.h"
+#include "stages/surfaces.h"
 
 namespace swath::stages {
 namespace {
@@ -86,7 +87,8 @@ class GridTiles : public OptionStage<NoOptions> {
   const Info& info() const override {
     static const Info info{
         "writers.gdal",
-        "DTM and DSM as Cloud Optimized GeoTIFF tiles (height; sigma, count and void reason beside it) with a mosaic index (VRT).",
+        "Every grid of the run (DTM, DSM, canopy, slope, hillshade, intensity, densities) as Cloud Optimized GeoTIFF tiles with "
+        "a mosaic index (VRT); sigma, count and void reason beside DTM and DSM.",
         {Grain::tile, Grain::merge},
         {},
         {},
@@ -95,30 +97,46 @@ class GridTiles : public OptionStage<NoOptions> {
     return info;
   }
   double bytes_per_point() const override { return 16.0; }
-  std::vector<std::string> products() const override { return {"dtm", "dsm", "dtm.vrt", "dsm.vrt"}; }
+  std::vector<std::string> products() const override {
+    std::vector<std::string> out;
+    for (const Surface& s : surfaces())
+      for (const char* ending : {"", ".vrt"}) out.push_back(std::string(name_of(s.product)) + ending);
+    return out;
+  }
   void run_tile(const Context& context, TileJob& job) const override {
-    for (const Product p : surfaces(context)) {
-      const core::Lattice own = lattice_in(context.grids->cell(p), job.box);
-      const core::Grid grid = in_crs_units(context, context.grids->window(p, own));
-      const fs::path folder = context.output / name_of(p);
-      io::write_grid(folder / name(context, p, job.key, ""), grid, context.product_crs, io::height_bands);
+    for (const Surface& s : made(context)) {
+      const core::Lattice own = lattice_in(context.grids->cell(s.product), job.box);
+      const core::Grid in_metres = context.grids->window(s.product, own);
+      const fs::path folder = context.output / name_of(s.product);
+      const fs::path file = folder / name(context, s.product, job.key, "");
+      if (!s.has_quality) {
+        const bool is_height = s.unit == "height";
+        const core::Grid grid = is_height ? in_crs_units(context, in_metres) : core::Grid();
+        const std::string unit(is_height ? (context.vertical_unit == 1.0 ? "m" : "ft") : s.unit);
+        io::write_raster(file, in_crs_units(context, own), {{std::string(s.band), unit, is_height ? &grid.height : &in_metres.height}},
+                         context.product_crs, true);
+        continue;
+      }
+      const core::Grid grid = in_crs_units(context, in_metres);
+      io::write_grid(file, grid, context.product_crs, io::height_bands);
       io::GridBands quality = io::quality_bands;
       quality.sigma = !grid.sigma.empty();
       quality.count = !grid.count.empty();
-      io::write_grid(folder / name(context, p, job.key, "_quality"), grid, context.product_crs, quality);
+      io::write_grid(folder / name(context, s.product, job.key, "_quality"), grid, context.product_crs, quality);
     }
   }
   void run_merge(const Context& context, MergeJob& job) const override {
-    for (const Product p : surfaces(context)) {
-      const fs::path folder = context.output / name_of(p);
+    for (const Surface& s : made(context)) {
+      const fs::path folder = context.output / name_of(s.product);
       std::vector<std::string> files;
       for (const char* kind : {"", "_quality"}) {
+        if (*kind && !s.has_quality) continue;
         std::vector<fs::path> tiles;
         for (const TileKey key : job.tiles) {
-          files.push_back(name(context, p, key, kind));
+          files.push_back(name(context, s.product, key, kind));
           tiles.push_back(folder / files.back());
         }
-        io::write_vrt(context.output / (std::string(name_of(p)) + kind + ".vrt"), tiles);
+        io::write_vrt(context.output / (std::string(name_of(s.product)) + kind + ".vrt"), tiles);
       }
       write_list(folder, files);
     }
@@ -126,9 +144,10 @@ class GridTiles : public OptionStage<NoOptions> {
   }
 
  private:
-  static std::vector<Product> surfaces(const Context& context) {
-    std::vector<Product> out{Product::dtm};
-    if (context.grids->has(Product::dsm)) out.push_back(Product::dsm);
+  static std::vector<Surface> made(const Context& context) {
+    std::vector<Surface> out;
+    for (const Surface& s : surfaces())
+      if (context.grids->has(s.product)) out.push_back(s);
     return out;
   }
   static std::string name(const Context& context, Product p, TileKey key, const std::string& kind) {

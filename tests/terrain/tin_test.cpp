@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "core/error.h"
 #include "tests/terrain/made.h"
 
 namespace swath::terrain {
@@ -145,6 +146,29 @@ TEST(Tin, NeighboursShareTheEdgeOppositeToTheVertex) {
     }
   // Euler: hull edges = 2 vertices - 2 - triangles.
   EXPECT_EQ(none, 2 * tin.x.size() - 2 - tin.size());
+}
+
+TEST(Tin, ConstraintsAreEdgesAndStandBeforePoints) {
+  core::Block b = test::random_points(2000, 50.0, wavy, 21);
+  b.x[0] = 10.0, b.y[0] = 10.0;
+  Constraints c{{10.0, 40.0, 40.0}, {10.0, 20.0, 45.0}, {5.0, 6.0, 7.0}, {0.1f, 0.1f, 0.1f}, {{0, 1}, {1, 2}}};
+  const Tin tin = triangulate(b, test::all_rows(b), c);
+  EXPECT_EQ(tin.duplicates, 1u);
+  ASSERT_EQ(tin.constrained.size(), 2u);
+  std::set<std::pair<std::int32_t, std::int32_t>> edges;
+  for (const auto& t : tin.triangles) edges.insert({{t[0], t[1]}, {t[1], t[2]}, {t[0], t[2]}});
+  for (const auto& e : tin.constrained) EXPECT_TRUE(edges.contains(e));
+  for (size_t k = 0; k < tin.x.size(); ++k)
+    if (tin.x[k] == 10.0 && tin.y[k] == 10.0) {
+      EXPECT_EQ(tin.z[k], 5.0);
+    }
+  EXPECT_NEAR(area(triangulate(b, test::all_rows(b), c)), area(triangulate(b, test::all_rows(b))), 1.0);  // the hull, corners moved apart
+}
+
+TEST(Tin, CrossingConstraintsAreRefused) {
+  const core::Block b = test::random_points(50, 10.0, wavy, 22);
+  const Constraints c{{0, 10, 0, 10}, {0, 10, 10, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {{0, 1}, {2, 3}}};
+  EXPECT_THROW(triangulate(b, test::all_rows(b), c), core::Error);
 }
 
 }  // namespace

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Breaklines, boundaries and water lines from any vector file that GDAL reads.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/breakline.h"
+#include "core/option.h"
+#include "core/report.h"
+
+namespace swath::io {
+
+struct Survey;
+
+/// One file of lines or areas: GeoPackage, Shapefile, DXF, GeoJSON.
+struct BreaklineFile {
+  std::filesystem::path file;
+  core::BreaklineKind kind = core::BreaklineKind::breakline;
+  std::string layer;
+  std::string crs;
+  std::string z = "z";
+  core::Metres sigma{0.05};
+};
+
+template <class V>
+void describe(BreaklineFile& f, V& v) {
+  v.option("file", f.file, "GeoPackage, Shapefile, DXF or GeoJSON, relative to survey.toml.");
+  v.option("kind", f.kind,
+           "breakline: the terrain passes through the line; boundary: area of the terrain model; lake: area of still water; river: area "
+           "between the banks of running water.");
+  v.option("layer", f.layer, "Layer of the file that is read; empty: all.");
+  v.option("crs", f.crs, "CRS of its coordinates; empty: the file's own, or that of the survey where it states none.");
+  v.option("z", f.z, "Attribute that holds the height of a feature whose geometry has none, in the unit of the CRS's heights.");
+  v.option("sigma", f.sigma, core::at_least(0), "Sigma of the heights.");
+}
+
+/// All features of the survey's breakline files, in the files' order, in the survey's CRS (units of its axes; `crs` is the products', for a
+/// survey that states none). Lakes and rivers may have no heights. Throws Error with file and feature: geometries that do not suit the
+/// kind, breaklines without heights, coordinates not finite, a CRS without an operation to it, heights whose datum is not known while the
+/// survey's is.
+std::vector<core::Breakline> read_breaklines(const Survey& survey, const std::string& crs, core::Tally& tally);
+
+}  // namespace swath::io
+
+namespace swath::core {
+template <>
+struct Choices<BreaklineKind> {
+  static constexpr std::array<std::string_view, 4> names{"breakline", "boundary", "lake", "river"};
+};
+}  // namespace swath::core

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "terrain/tin.h"
+
+namespace swath::terrain {
+
+/// Natural neighbour interpolation of a TIN's heights (Sibson 1981, "A brief description of natural neighbour interpolation").
+class NaturalNeighbours {
+ public:
+  /// `neighbours`: of the TIN's triangles, as neighbours(tin) gives them. Both are held by reference.
+  NaturalNeighbours(const Tin& tin, const std::vector<std::array<std::int32_t, 3>>& neighbours) : tin_(tin), neighbours_(neighbours) {}
+
+  /// Height at (x, y), m (Block frame), which `triangle` covers. The same bits for every numbering of the triangles. Where the natural
+  /// neighbours reach beyond the triangles that are there, or over a constrained edge, they are not all known: the triangle's plane.
+  double height(std::int32_t triangle, double x, double y) const;
+
+ private:
+  const Tin& tin_;
+  const std::vector<std::array<std::int32_t, 3>>& neighbours_;
+};
+
+}  // namespace swath::terrain

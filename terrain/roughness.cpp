@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every edge of the TIN is an experiment: the vertex beyond it against the plane on this side. Its misfit has the same form as the error of
+// interpolation within the triangle, so what it tells of the terrain holds there. Isotropic Gaussian terrain: E[H11^2] = E[H22^2] = 3 c,
+// E[H11 H22] = E[H12^2] = c (Longuet-Higgins 1957, "The statistical analysis of a random, moving surface"), hence E[(H:M)^2] =
+// c ((tr M)^2 + 2 |M|^2). Terms are fitted by least squares with weights 1 / (1 + s / s0)^2, none negative, as all are variances.
+// Sums are of integers, so that they do not depend on the order of the triangles, which differs from tile to tile.
+#include "terrain/roughness.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "terrain/tin_surface.h"
+
+namespace swath::terrain {
+namespace {
+
+constexpr double s0 = 4.0;                // m^2
+constexpr double largest = 1e4;           // m^2: of a squared misfit
+constexpr std::int64_t least_pairs = 12;  // per neighbourhood
+
+/// Sums of the normal equations over (1, s, s^2/4), per block.
+struct Sums {
+  std::array<std::int64_t, 9> v{};
+  std::int64_t pairs = 0;
+  void add(const Sums& o) {
+    for (size_t k = 0; k < v.size(); ++k) v[k] += o.v[k];
+    pairs += o.pairs;
+  }
+};
+// Resolution of the nine sums: each far below what a single pair adds, none over 63 bits for 10^4 pairs.
+constexpr std::array<double, 9> scale{0x1p30, 0x1p30, 0x1p30, 0x1p30, 0x1p24, 0x1p16, 0x1p34, 0x1p34, 0x1p32};
+
+void add_pair(Sums& sums, double misfit_squared, double gain, double s) {
+  const double y = std::min(misfit_squared, largest) / gain, x1 = s / gain, x2 = 0.25 * s * s / gain;
+  const double w = 1.0 / ((1.0 + s / s0) * (1.0 + s / s0));
+  const std::array<double, 9> terms{w, w * x1, w * x2, w * x1 * x1, w * x1 * x2, w * x2 * x2, w * y, w * y * x1, w * y * x2};
+  for (size_t k = 0; k < terms.size(); ++k) sums.v[k] += static_cast<std::int64_t>(terms[k] * scale[k]);
+  ++sums.pairs;
+}
+
+Roughness fit(const Sums& sums) {
+  Roughness out;
+  if (sums.pairs < least_pairs) return out;
+  std::array<double, 9> t;
+  for (size_t k = 0; k < t.size(); ++k) t[k] = static_cast<double>(sums.v[k]) / scale[k];
+  Eigen::Matrix3d normal;
+  normal << t[0], t[1], t[2], t[1], t[3], t[4], t[2], t[4], t[5];
+  const Eigen::Vector3d right(t[6], t[7], t[8]);
+  double least = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d best = Eigen::Vector3d::Zero();
+  for (unsigned set = 1; set < 8; ++set) {  // which of the three terms take part
+    Eigen::Matrix3d a = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    for (int i = 0; i < 3; ++i) {
+      if (!((set >> i) & 1u)) continue;
+      b[i] = right[i];
+      for (int j = 0; j < 3; ++j)
+        if ((set >> j) & 1u) a(i, j) = normal(i, j);
+    }
+    const Eigen::FullPivLU<Eigen::Matrix3d> lu(a);
+    if (!lu.isInvertible()) continue;
+    const Eigen::Vector3d x = lu.solve(b);
+    if (!x.allFinite() || x.minCoeff() < 0.0) continue;
+    const double squares = x.dot(normal * x) - 2.0 * x.dot(right);
+    if (squares < least) least = squares, best = x;
+  }
+  return {best[0], best[1], best[2], true};
+}
+
+}  // namespace
+
+double reach_of(const Tin& tin, std::int32_t triangle, const std::array<double, 3>& w, double x, double y) {
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (size_t k = 0; k < 3; ++k) {
+    const auto v = static_cast<size_t>(tin.triangles[static_cast<size_t>(triangle)][k]);
+    const double dx = tin.x[v] - x, dy = tin.y[v] - y;
+    xx += w[k] * dx * dx;
+    xy += w[k] * dx * dy;
+    yy += w[k] * dy * dy;
+  }
+  return std::sqrt((xx + yy) * (xx + yy) + 2.0 * (xx * xx + 2.0 * xy * xy + yy * yy));
+}
+
+RoughnessMap::RoughnessMap(const Tin& tin, const std::vector<std::array<std::int32_t, 3>>& neighbours, const Eigen::Vector3d& origin,
+                           const core::Lattice& window, double side)
+    : origin_(origin) {
+  const auto block = [side](double v) { return core::cell_index(v, side); };
+  blocks_ = {side, block(window.west()) - 1, block(window.south()) - 1, 0, 0};
+  blocks_.nx = static_cast<int>(block(window.east()) + 2 - blocks_.i0);
+  blocks_.ny = static_cast<int>(block(window.north()) + 2 - blocks_.j0);
+  const core::Lattice wide{side, blocks_.i0 - 1, blocks_.j0 - 1, blocks_.nx + 2, blocks_.ny + 2};
+  std::vector<Sums> sums(wide.size());
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(tin.size()); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t other = neighbours[t][k];
+      // From the triangle whose vertices come first, whatever their numbers in this tile.
+      if (other < 0 || tin.triangles[other] < tin.triangles[t]) continue;
+      const auto& v = tin.triangles[t];
+      const auto a = v[(k + 1) % 3], b = v[(k + 2) % 3];
+      const std::int64_t i = block(0.5 * (tin.x[a] + tin.x[b]) + origin.x()) - wide.i0;
+      const std::int64_t j = block(0.5 * (tin.y[a] + tin.y[b]) + origin.y()) - wide.j0;
+      if (i < 0 || j < 0 || i >= wide.nx || j >= wide.ny) continue;
+      if (!tin.constrained.empty() &&
+          std::binary_search(tin.constrained.begin(), tin.constrained.end(), std::pair<std::int32_t, std::int32_t>(std::minmax(a, b))))
+        continue;
+      std::int32_t far = -1;
+      for (const std::int32_t c : tin.triangles[other])
+        if (c != a && c != b) far = c;
+      const double misfit = tin.z[far] - height_in(tin, t, tin.x[far], tin.y[far]);
+      const auto w = weights(tin, t, tin.x[far], tin.y[far]);
+      const double s = reach_of(tin, t, w, tin.x[far], tin.y[far]);
+      add_pair(sums[wide.at(static_cast<int>(i), static_cast<int>(j))], misfit * misfit, 1.0 + w[0] * w[0] + w[1] * w[1] + w[2] * w[2], s);
+    }
+  fitted_.resize(blocks_.size());
+  for (int j = 0; j < blocks_.ny; ++j)
+    for (int i = 0; i < blocks_.nx; ++i) {
+      Sums pooled;
+      for (int dj = 0; dj < 3; ++dj)
+        for (int di = 0; di < 3; ++di) pooled.add(sums[wide.at(i + di, j + dj)]);
+      fitted_[blocks_.at(i, j)] = fit(pooled);
+    }
+}
+
+Roughness RoughnessMap::at(double x, double y) const {
+  // Between the centres of four blocks; those without pairs have no say.
+  const double u = (x + origin_.x()) / blocks_.cell - 0.5 - static_cast<double>(blocks_.i0);
+  const double v = (y + origin_.y()) / blocks_.cell - 0.5 - static_cast<double>(blocks_.j0);
+  const int i = std::clamp(static_cast<int>(std::floor(u)), 0, blocks_.nx - 2),
+            j = std::clamp(static_cast<int>(std::floor(v)), 0, blocks_.ny - 2);
+  Roughness out;
+  double total = 0.0;
+  for (int dj = 0; dj < 2; ++dj)
+    for (int di = 0; di < 2; ++di) {
+      const Roughness& r = fitted_[blocks_.at(i + di, j + dj)];
+      const double w = std::max(0.0, 1.0 - std::abs(u - i - di)) * std::max(0.0, 1.0 - std::abs(v - j - dj));
+      if (!r.known) continue;
+      total += w;
+      out.noise += w * r.noise;
+      out.uneven += w * r.uneven;
+      out.curved += w * r.curved;
+    }
+  if (!(total > 0.0)) return {};
+  return {out.noise / total, out.uneven / total, out.curved / total, true};
+}
+
+}  // namespace swath::terrain
