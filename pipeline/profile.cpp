@@ -327,7 +327,9 @@ core::Value write_profiles(const ProfileRequest& request) {
   const double half_width = request.half_width / (metric ? 1.0 : crs.metres_per_unit());
   const auto short_unit = [](double metres) { return std::string(metres == 1.0 ? "m" : "ft"); };
   const std::string unit = metric ? "m" : short_unit(crs.metres_per_unit()),
-                    height_unit = crs.empty() ? "m" : short_unit(crs.vertical_metres_per_unit());
+                    height_unit = short_unit(!request.dtm.empty() ? height_unit_of(request.dtm)
+                                             : crs.empty()        ? 1.0
+                                                                  : crs.vertical_metres_per_unit());
 
   std::vector<Section> sections;
   for (const ProfileLine& line : lines) sections.push_back(section_of(line, half_width));

@@ -61,6 +61,8 @@ core::Value volumes_of(const VolumeRequest& request) {
     if (!before.crs.empty() && !after.crs.empty() && before.crs.key() != after.crs.key())
       throw core::Error("the two surfaces are in different CRSs: " + before.crs.name() + " and " + after.crs.name(), request.after.string(),
                         "bring one to the other's CRS and vertical datum first");
+    if (before.vertical_unit != after.vertical_unit)
+      throw core::Error("the two surfaces have heights in different units", request.after.string(), "bring one to the other's unit first");
     const bool finer = after.grid.lattice.cell < lattice.cell;
     lattice = finer ? both(after.grid.lattice, before.grid.lattice) : both(before.grid.lattice, after.grid.lattice);
   }
@@ -72,7 +74,7 @@ core::Value volumes_of(const VolumeRequest& request) {
   const auto on = [&](const core::Grid& g) { return g.lattice == lattice ? g : report::resampled(g, lattice); };
   const core::Grid first = on(before.grid), second = request.design ? level(lattice, *request.design) : on(after.grid);
   const core::Crs& crs = before.crs.empty() ? after.crs : before.crs;
-  const double metre = crs.empty() ? 1.0 : crs.metres_per_unit(), vertical = crs.empty() ? 1.0 : crs.vertical_metres_per_unit();
+  const double metre = crs.empty() ? 1.0 : crs.metres_per_unit(), vertical = crs.empty() ? 1.0 : before.vertical_unit;
   if (metre == 0.0) throw core::Error("the surface is in degrees", request.before.string(), "volumes need a projected CRS");
   const report::Volumes v = report::volumes(first, second, vertical / metre, request.correlation, polygon);
   if (v.cells == 0)

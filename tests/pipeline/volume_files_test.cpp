@@ -72,6 +72,22 @@ TEST(VolumeFiles, FeetBecomeCubicMetres) {
   EXPECT_NEAR(number(v, "fill"), cone * foot * foot * foot, tolerance * cone * foot * foot * foot);
 }
 
+TEST(VolumeFiles, TheBandsOwnUnitCountsWhereTheCrsHasNoVerticalPart) {
+  const test::TemporaryFolder folder;
+  // Feet across; heights in the unit that the band states.
+  const auto heap_in = [&](const std::string& name, double height, const char* unit) {
+    const core::Grid g = heap({1.0, 600000, 300000, 60, 60}, height);
+    io::write_raster(folder / name, g.lattice, {{"height", unit, &g.height}}, "EPSG:2263", true);
+  };
+  heap_in("a.tif", 0.0, "ft");
+  heap_in("b.tif", 5.0, "ft");
+  heap_in("c.tif", 5.0, "m");
+  const double foot = 1200.0 / 3937.0;
+  EXPECT_NEAR(number(volumes_of({folder / "a.tif", folder / "b.tif", {}, {}, 1.0}), "fill"), cone * foot * foot * 0.3048,
+              tolerance * cone * foot * foot * 0.3048);
+  EXPECT_THROW(volumes_of({folder / "a.tif", folder / "c.tif", {}, {}, 1.0}), core::Error);
+}
+
 TEST(VolumeFiles, WhatDoesNotFitIsAnError) {
   const test::TemporaryFolder folder;
   write(folder.path(), "a", heap({1.0, 600000, 5300000, 20, 20}, 0.0), "EPSG:32632");
