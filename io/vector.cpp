@@ -31,7 +31,7 @@ std::unique_ptr<ContourSink> make_sink(const std::filesystem::path& file, const 
 }
 
 struct Fields {
-  int height = -1, index = -1;
+  int height = -1, index = -1, depression = -1;
   int cad_layer = -1;
 };
 
@@ -40,6 +40,7 @@ Fields fields_of(OGRFeatureDefn& defn) {
   for (const char* name : {"height", "elev", "elevation", "contour", "z"})
     if (f.height < 0) f.height = defn.GetFieldIndex(name);  // regardless of case
   f.index = defn.GetFieldIndex("index");
+  f.depression = defn.GetFieldIndex("depression");
   f.cad_layer = defn.GetFieldIndex("Layer");
   return f;
 }
@@ -94,6 +95,22 @@ void ContourWriter::add(const core::ContourLine& line) {
   ++count_;
 }
 
+void ContourWriter::add(const core::ContourLabel& label) {
+  const std::string at = file_.string() + ": label " + label.text;
+  if (!sink_) throw core::Error("the file is closed", at);
+  for (const double v : {label.x, label.y, label.rotation, label.text_height, label.height})
+    if (!std::isfinite(v)) throw core::Error("a label holds a number that is not finite", at);
+  sink_->add(label);
+}
+
+void ContourWriter::add(const core::SpotHeight& spot) {
+  const std::string at = file_.string() + ": spot height " + spot.text;
+  if (!sink_) throw core::Error("the file is closed", at);
+  for (const double v : {spot.x, spot.y, spot.text_height, spot.height})
+    if (!std::isfinite(v)) throw core::Error("a spot height holds a number that is not finite", at);
+  sink_->add(spot);
+}
+
 void ContourWriter::close() {
   if (!sink_) return;
   const std::unique_ptr<ContourSink> sink = std::move(sink_);
@@ -131,6 +148,8 @@ VectorLines read_lines(const std::filesystem::path& file) {
         like.layer = feature->GetFieldAsString(fields.cad_layer);
       if (fields.height >= 0 && feature->IsFieldSetAndNotNull(fields.height)) like.height = feature->GetFieldAsDouble(fields.height);
       like.index = (fields.index >= 0 && feature->GetFieldAsInteger(fields.index) != 0) || like.layer == "CONTOUR_INDEX";
+      like.depression =
+          (fields.depression >= 0 && feature->GetFieldAsInteger(fields.depression) != 0) || like.layer == "CONTOUR_DEPRESSION";
       add_shape(*shape, like, out.lines);
     }
   }

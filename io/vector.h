@@ -18,12 +18,15 @@ class ContourSink;
 /// Writes contours one at a time (memory does not grow with their number). The file appears under its name at close(); without it,
 /// or where anything fails, nothing stays. The ending of the name chooses the format:
 /// - .gpkg: GeoPackage, layer `contours` of LineStrings in the horizontal part of the CRS; fields `height` (real, CRS vertical unit),
-///   `index` and `closed` (boolean); the layer's description names height unit and vertical datum. The same contours give the same
-///   bytes: the time stamp that the format wants is a constant, 2000-01-01.
-/// - .dxf: AutoCAD R12 polylines at their elevation (no other dimension than the CRS's), layers CONTOUR and CONTOUR_INDEX, 4 decimals
+///   `index`, `closed` and `depression` (boolean); layers of Points `labels` (`text`, `height`, `rotation` in degrees counter-clockwise
+///   from east, `text_height` in CRS units) and `spot_heights` (`height`, `text`, `kind`: top or pit); the layers' descriptions name height
+///   unit and vertical datum. The same contours give the same bytes: the time stamp that the format wants is a constant, 2000-01-01.
+/// - .dxf: AutoCAD R12 polylines at their elevation (no other dimension than the CRS's), layers CONTOUR, CONTOUR_INDEX and
+///   CONTOUR_DEPRESSION (index or not), labels as centred TEXT on CONTOUR_LABEL, spot heights as POINT and TEXT on SPOT_HEIGHT; 4 decimals
 ///   (9 in degrees); $EXTMIN and $EXTMAX are true.
 /// - .geojson, .json: RFC 7946, hence in WGS84 longitude and latitude with 9 decimals (0.1 mm), cut at the antimeridian; properties as the
-///   GeoPackage's fields. Heights stay those of the CRS: the member `swath` names CRS, height unit and vertical datum. A CRS is needed.
+///   GeoPackage's fields; lines only, as a direction on the map is none in degrees. Heights stay those of the CRS: the member `swath` names
+///   CRS, height unit and vertical datum. A CRS is needed.
 /// Throws core::Error: unknown ending or CRS, file not writable, disk full.
 class ContourWriter {
  public:
@@ -34,6 +37,9 @@ class ContourWriter {
 
   /// Throws core::Error where a line has fewer than two vertices, columns of different length or a number that is not finite.
   void add(const core::ContourLine& line);
+  void add(const core::ContourLabel& label);
+  void add(const core::SpotHeight& spot);
+  /// Lines so far.
   std::uint64_t count() const { return count_; }
   void close();
 
@@ -54,6 +60,7 @@ struct VectorLine {
       std::numeric_limits<double>::quiet_NaN();  ///< field `height`, `elev`, `elevation`, `contour` or `z`; or the one z of all vertices
   bool index = false;                            ///< field `index`, or DXF layer CONTOUR_INDEX
   bool closed = false;                           ///< last vertex = first
+  bool depression = false;                       ///< field `depression`, or DXF layer CONTOUR_DEPRESSION
   std::string layer;
 };
 

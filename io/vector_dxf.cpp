@@ -5,14 +5,17 @@
 #include <array>
 #include <limits>
 
+#include "core/units.h"
 #include "io/vector_sink.h"
 
 namespace swath::io {
 namespace {
 
-constexpr std::string_view ordinary_layer = "CONTOUR", index_layer = "CONTOUR_INDEX";
-constexpr int colour_ordinary = 8, colour_index = 7;  // AutoCAD colour index: grey, white on black or black on white
-constexpr size_t patch_width = 24;                    // of each number of the header's extent, which is known only at the end
+constexpr std::string_view ordinary_layer = "CONTOUR", index_layer = "CONTOUR_INDEX", depression_layer = "CONTOUR_DEPRESSION",
+                           label_layer = "CONTOUR_LABEL", spot_layer = "SPOT_HEIGHT";
+// AutoCAD colour index: grey, white on black or black on white, blue, red
+constexpr int colour_ordinary = 8, colour_index = 7, colour_depression = 5, colour_spot = 1;
+constexpr size_t patch_width = 24;  // of each number of the header's extent, which is known only at the end
 
 std::string padded(double value, int decimals) {
   std::string text = fixed_text(value, decimals);
@@ -29,15 +32,18 @@ class DxfSink : public ContourSink {
     extent("$EXTMAX", high_at_);
     text_ << "0\nENDSEC\n0\nSECTION\n2\nTABLES\n";
     text_ << "0\nTABLE\n2\nLTYPE\n70\n1\n0\nLTYPE\n2\nCONTINUOUS\n70\n0\n3\nSolid line\n72\n65\n73\n0\n40\n0.0\n0\nENDTAB\n";
-    text_ << "0\nTABLE\n2\nLAYER\n70\n3\n";
+    text_ << "0\nTABLE\n2\nLAYER\n70\n6\n";
     layer("0", colour_index);
     layer(ordinary_layer, colour_ordinary);
     layer(index_layer, colour_index);
+    layer(depression_layer, colour_depression);
+    layer(label_layer, colour_index);
+    layer(spot_layer, colour_spot);
     text_ << "0\nENDTAB\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n";
   }
 
   void add(const core::ContourLine& line) override {
-    const std::string_view name = line.index ? index_layer : ordinary_layer;
+    const std::string_view name = line.depression ? depression_layer : line.index ? index_layer : ordinary_layer;
     const std::string elevation = fixed_text(line.height, decimals_);
     text_ << "0\nPOLYLINE\n8\n" << name << "\n66\n1\n10\n0.0\n20\n0.0\n30\n" << elevation << "\n70\n" << (line.closed ? "1" : "0") << "\n";
     const size_t n = line.x.size() - (line.closed ? 1 : 0);  // the closing flag stands for the repeated vertex
@@ -50,6 +56,16 @@ class DxfSink : public ContourSink {
     text_ << "0\nSEQEND\n8\n" << name << "\n";
   }
 
+  void add(const core::ContourLabel& l) override {
+    text(label_layer, l.x, l.y, l.height, l.text_height, l.rotation, 1, 2, l.text);  // centred, middle
+  }
+
+  void add(const core::SpotHeight& s) override {
+    text_ << "0\nPOINT\n8\n" << spot_layer << "\n";
+    place(10, s.x, s.y, s.height);
+    text(spot_layer, s.x + 0.5 * s.text_height, s.y + 0.5 * s.text_height, s.height, s.text_height, 0.0, 0, 0, s.text);
+  }
+
   void close() override {
     text_ << "0\nENDSEC\n0\nEOF\n";
     for (size_t axis = 0; axis < 3 && low_[0] <= high_[0]; ++axis) {
@@ -60,6 +76,24 @@ class DxfSink : public ContourSink {
   }
 
  private:
+  void place(int group, double x, double y, double z) {
+    text_ << std::to_string(group) << "\n";
+    text_.fixed(x, decimals_) << "\n" << std::to_string(group + 10) << "\n";
+    text_.fixed(y, decimals_) << "\n" << std::to_string(group + 20) << "\n";
+    text_.fixed(z, decimals_) << "\n";
+    note({x, y, z});
+  }
+  /// Groups 40 height, 50 rotation in degrees, 72 and 73 justification, which goes by the second point (11, 21, 31).
+  void text(std::string_view name, double x, double y, double z, double size, double rotation, int across, int up,
+            const std::string& words) {
+    text_ << "0\nTEXT\n8\n" << name << "\n";
+    place(10, x, y, z);
+    text_ << "40\n";
+    text_.fixed(size, decimals_) << "\n1\n" << words << "\n50\n";
+    text_.fixed(core::to_degrees(rotation), 4) << "\n72\n" << std::to_string(across) << "\n";
+    place(11, x, y, z);
+    text_ << "73\n" << std::to_string(up) << "\n";
+  }
   void comment(const std::string& words) {
     std::string one_line = words;
     std::replace(one_line.begin(), one_line.end(), '\n', ' ');

@@ -46,6 +46,7 @@ std::vector<Part> cut_at_antimeridian(const std::vector<double>& lon, const std:
 
 class GeoJsonSink : public ContourSink {
  public:
+  using ContourSink::add;
   GeoJsonSink(const std::filesystem::path& file, const CrsFacts& crs) : file_(file), text_(file) {
     if (crs.empty)
       throw core::Error("GeoJSON is in WGS84 and the contours' CRS is not known", file.string(),
@@ -79,7 +80,7 @@ class GeoJsonSink : public ContourSink {
     const std::vector<Part> parts = cut_at_antimeridian(lon_, lat_);
     text_ << (first_ ? "\n" : ",\n") << "{\"type\": \"Feature\", \"properties\": {\"height\": " << shortest_text(line.height)
           << ", \"index\": " << (line.index ? "true" : "false") << ", \"closed\": " << (line.closed ? "true" : "false")
-          << "}, \"geometry\": ";
+          << ", \"depression\": " << (line.depression ? "true" : "false") << "}, \"geometry\": ";
     first_ = false;
     if (parts.empty()) {
       text_ << "null}";

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// GeoPackage 1.2 (OGC 12-128r15) through GDAL. The layer's CRS is the horizontal part alone: LineStrings are flat and a height is a field,
+// GeoPackage 1.2 (OGC 12-128r15) through GDAL. The layers' CRS is the horizontal part alone: LineStrings are flat and a height is a field,
 // which every GIS labels and styles by. gpkg_contents.last_change is set to a constant, so that equal contours are equal bytes.
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
+#include "core/units.h"
 #include "io/vector_sink.h"
 
 namespace swath::io {
@@ -26,7 +28,7 @@ class GpkgSink : public ContourSink {
     set_ = driver->Create(out_.temporary().c_str(), 0, 0, 0, GDT_Unknown, const_cast<char**>(creation));
     if (!set_) scope.messages.fail("cannot write", file_);
     try {
-      make_layer(crs, scope);
+      make_layers(crs, scope);
     } catch (...) {
       drop();
       throw;
@@ -41,13 +43,34 @@ class GpkgSink : public ContourSink {
     feature.SetField(0, line.height);
     feature.SetField(1, line.index ? 1 : 0);
     feature.SetField(2, line.closed ? 1 : 0);
+    feature.SetField(3, line.depression ? 1 : 0);
     OGRLineString shape;
     shape.setPoints(static_cast<int>(line.x.size()), line.x.data(), line.y.data());
     feature.SetGeometry(&shape);
-    if (layer_->CreateFeature(&feature) != OGRERR_NONE) scope.messages.fail("cannot write", file_);
-    if (++pending_ < features_per_transaction) return;
-    if (set_->CommitTransaction() != OGRERR_NONE || set_->StartTransaction() != OGRERR_NONE) scope.messages.fail("cannot write", file_);
-    pending_ = 0;
+    write(*layer_, feature, scope);
+  }
+
+  void add(const core::ContourLabel& label) override {
+    const Scope scope;
+    OGRFeature feature(labels_->GetLayerDefn());
+    feature.SetField(0, label.text.c_str());
+    feature.SetField(1, label.height);
+    feature.SetField(2, core::to_degrees(label.rotation));
+    feature.SetField(3, label.text_height);
+    const OGRPoint shape(label.x, label.y);
+    feature.SetGeometry(&shape);
+    write(*labels_, feature, scope);
+  }
+
+  void add(const core::SpotHeight& spot) override {
+    const Scope scope;
+    OGRFeature feature(spots_->GetLayerDefn());
+    feature.SetField(0, spot.height);
+    feature.SetField(1, spot.text.c_str());
+    feature.SetField(2, spot.top ? "top" : "pit");
+    const OGRPoint shape(spot.x, spot.y);
+    feature.SetGeometry(&shape);
+    write(*spots_, feature, scope);
   }
 
   void close() override {
@@ -66,19 +89,45 @@ class GpkgSink : public ContourSink {
     GdalSetting speed{"OGR_SQLITE_SYNCHRONOUS", "OFF"};  // the whole file is flushed once, before it gets its name
   };
 
-  void make_layer(const CrsFacts& crs, const Scope& scope) {
+  void write(OGRLayer& layer, OGRFeature& feature, const Scope& scope) {
+    if (layer.CreateFeature(&feature) != OGRERR_NONE) scope.messages.fail("cannot write", file_);
+    if (++pending_ < features_per_transaction) return;
+    if (set_->CommitTransaction() != OGRERR_NONE || set_->StartTransaction() != OGRERR_NONE) scope.messages.fail("cannot write", file_);
+    pending_ = 0;
+  }
+
+  struct FieldKind {
+    const char* name;
+    OGRFieldType type;
+    OGRFieldSubType subtype = OFSTNone;
+  };
+
+  OGRLayer* make_layer(const char* name, const std::string& about, OGRwkbGeometryType type, const std::vector<FieldKind>& fields,
+                       const CrsFacts& crs, const Scope& scope) {
     OGRSpatialReference srs;
     if (!crs.empty) srs.SetFromUserInput(crs.horizontal_wkt.c_str());
     srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    const std::string description = "DESCRIPTION=Contours; heights in " + crs.vertical_unit + ", " + crs.vertical_name;
+    const std::string description = "DESCRIPTION=" + about + "; heights in " + crs.vertical_unit + ", " + crs.vertical_name;
     const char* const options[] = {"GEOMETRY_NAME=geom", "FID=fid", "SPATIAL_INDEX=YES", description.c_str(), nullptr};
-    layer_ = set_->CreateLayer("contours", crs.empty ? nullptr : &srs, wkbLineString, const_cast<char**>(options));
-    if (!layer_) scope.messages.fail("cannot write", file_);
-    OGRFieldDefn height("height", OFTReal), index("index", OFTInteger), closed("closed", OFTInteger);
-    index.SetSubType(OFSTBoolean);
-    closed.SetSubType(OFSTBoolean);
-    for (OGRFieldDefn* field : {&height, &index, &closed})
-      if (layer_->CreateField(field) != OGRERR_NONE) scope.messages.fail("cannot write", file_);
+    OGRLayer* layer = set_->CreateLayer(name, crs.empty ? nullptr : &srs, type, const_cast<char**>(options));
+    if (!layer) scope.messages.fail("cannot write", file_);
+    for (const FieldKind& kind : fields) {
+      OGRFieldDefn field(kind.name, kind.type);
+      field.SetSubType(kind.subtype);
+      if (layer->CreateField(&field) != OGRERR_NONE) scope.messages.fail("cannot write", file_);
+    }
+    return layer;
+  }
+
+  void make_layers(const CrsFacts& crs, const Scope& scope) {
+    const auto real = [](const char* field) { return FieldKind{field, OFTReal}; };
+    const auto text = [](const char* field) { return FieldKind{field, OFTString}; };
+    const auto boolean = [](const char* field) { return FieldKind{field, OFTInteger, OFSTBoolean}; };
+    layer_ = make_layer("contours", "Contours", wkbLineString, {real("height"), boolean("index"), boolean("closed"), boolean("depression")},
+                        crs, scope);
+    labels_ = make_layer("labels", "Heights along index contours, rotation in degrees counter-clockwise from east", wkbPoint,
+                         {text("text"), real("height"), real("rotation"), real("text_height")}, crs, scope);
+    spots_ = make_layer("spot_heights", "Tops and pits", wkbPoint, {real("height"), text("text"), text("kind")}, crs, scope);
     if (set_->StartTransaction() != OGRERR_NONE) scope.messages.fail("cannot write", file_);
   }
 
@@ -99,7 +148,7 @@ class GpkgSink : public ContourSink {
   std::filesystem::path file_;
   OutputFile out_;
   GDALDataset* set_ = nullptr;
-  OGRLayer* layer_ = nullptr;
+  OGRLayer *layer_ = nullptr, *labels_ = nullptr, *spots_ = nullptr;
   int pending_ = 0;
 };
 

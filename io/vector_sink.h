@@ -18,6 +18,8 @@ class ContourSink {
   virtual ~ContourSink() = default;
   /// The line is known to be sound; a closed one repeats its first vertex.
   virtual void add(const core::ContourLine& line) = 0;
+  virtual void add(const core::ContourLabel&) {}
+  virtual void add(const core::SpotHeight&) {}
   virtual void close() = 0;
 };
 

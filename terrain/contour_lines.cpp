@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every edge of the lattice is left by at most one segment and entered by at most one (terrain/contours.cpp), so following keys needs no
-// search by distance and no tolerance. Simplification works on whole lines, after joining: it cannot know of tiles.
+// search by distance and no tolerance. What is left out and what is a depression is judged on whole lines, after joining.
 #include "terrain/contour_lines.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <utility>
+
+#include "terrain/contour_shape.h"
 
 namespace swath::terrain {
 namespace {
@@ -16,40 +20,20 @@ void add(Vertices& v, double x, double y) {
   if (v.empty() || v.back() != p) v.push_back(p);
 }
 
-double distance_to_chord(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  const Eigen::Vector2d d = b - a;
-  const double dd = d.squaredNorm();
-  const double t = dd > 0.0 ? std::clamp((p - a).dot(d) / dd, 0.0, 1.0) : 0.0;
-  return (p - a - t * d).norm();
-}
-
-// The vertex between a and b farthest from their chord (the first of equals).
-std::pair<size_t, double> farthest(const Vertices& v, size_t a, size_t b) {
-  std::pair<size_t, double> best{a, -1.0};
-  for (size_t k = a + 1; k < b; ++k)
-    if (const double d = distance_to_chord(v[k], v[a], v[b]); d > best.second) best = {k, d};
-  return best;
-}
-
-// Marks what stays between the kept vertices first and last; a stack of its own, as lines have up to millions of vertices.
-void mark(const Vertices& v, size_t first, size_t last, double tolerance, std::vector<bool>& keep) {
-  std::vector<std::pair<size_t, size_t>> todo{{first, last}};
-  while (!todo.empty()) {
-    const auto [a, b] = todo.back();
-    todo.pop_back();
-    const auto [k, d] = farthest(v, a, b);
-    if (d <= tolerance) continue;
-    keep[k] = true;
-    todo.emplace_back(a, k);
-    todo.emplace_back(k, b);
-  }
-}
-
 }  // namespace
 
 double length(const Vertices& vertices) {
   double sum = 0.0;
   for (size_t k = 1; k < vertices.size(); ++k) sum += (vertices[k] - vertices[k - 1]).norm();
+  return sum;
+}
+
+double signed_area(const Vertices& v) {
+  double sum = 0.0;
+  for (size_t k = 1; k < v.size(); ++k) {
+    const Eigen::Vector2d a = v[k - 1] - v[0], b = v[k] - v[0];
+    sum += 0.5 * (a.x() * b.y() - a.y() * b.x());
+  }
   return sum;
 }
 
@@ -70,12 +54,13 @@ std::vector<ContourLine> join(std::vector<Segment> segments, const ContourOption
   std::vector<std::pair<Node, ContourLine>> lines;
   const auto follow = [&](std::ptrdiff_t start, bool closed) {
     ContourLine line{
-        segments[start].level, level_height(options, segments[start].level), is_index(options, segments[start].level), closed, {}};
+        segments[start].level, level_height(options, segments[start].level), is_index(options, segments[start].level), closed, false, {}};
     add(line.vertices, segments[start].from_x, segments[start].from_y);
     for (std::ptrdiff_t k = start; k >= 0 && !used[k]; k = after(segments[k])) {
       used[k] = true;
       add(line.vertices, segments[k].to_x, segments[k].to_y);
     }
+    line.depression = closed && signed_area(line.vertices) < 0.0;
     if (line.vertices.size() > (closed ? 3u : 1u)) lines.emplace_back(Node(segments[start].level, segments[start].from), std::move(line));
   };
   const auto n = static_cast<std::ptrdiff_t>(segments.size());
@@ -90,37 +75,21 @@ std::vector<ContourLine> join(std::vector<Segment> segments, const ContourOption
   return out;
 }
 
-Vertices simplify(const Vertices& v, bool closed, double tolerance) {
-  if (v.size() < 3 || tolerance <= 0.0) return v;
-  const size_t last = v.size() - 1;
-  std::vector<bool> keep(v.size(), false);
-  keep[0] = keep[last] = true;
-  if (!closed) {
-    mark(v, 0, last, tolerance, keep);
-  } else {
-    // A ring has no chord: it is cut at the vertex farthest from its first, and the larger of the two bows keeps a vertex in any case.
-    const size_t middle = farthest(v, 0, last).first;
-    keep[middle] = true;
-    const auto [k1, d1] = farthest(v, 0, middle);
-    const auto [k2, d2] = farthest(v, middle, last);
-    keep[d1 >= d2 ? k1 : k2] = true;
-    for (size_t a = 0, b = 1; b < v.size(); ++b)
-      if (keep[b]) {
-        mark(v, a, b, tolerance, keep);
-        a = b;
-      }
-  }
-  Vertices out;
-  for (size_t k = 0; k < v.size(); ++k)
-    if (keep[k]) out.push_back(v[k]);
-  return out;
-}
-
-std::vector<ContourLine> contour_lines(std::vector<Segment> segments, const ContourOptions& options) {
+std::vector<ContourLine> contour_lines(std::vector<Segment> segments, const ContourOptions& options, Facets& surface) {
   std::vector<ContourLine> lines = join(std::move(segments), options);
-  std::erase_if(lines, [&](const ContourLine& l) { return length(l.vertices) < options.min_length.value; });
-  for (ContourLine& l : lines) l.vertices = simplify(l.vertices, l.closed, options.tolerance.value);
-  return lines;
+  const double least_area = square_metres(options.min_area).value_or(0.0);
+  std::erase_if(lines, [&](const ContourLine& l) {
+    return length(l.vertices) < options.min_length.value || (l.closed && std::abs(signed_area(l.vertices)) < least_area);
+  });
+  std::vector<ContourLine> out, level;
+  for (size_t k = 0; k < lines.size(); ++k) {
+    level.push_back(std::move(lines[k]));
+    if (k + 1 < lines.size() && lines[k + 1].level == level[0].level) continue;
+    shape(level, surface, vertical_tolerance(options));
+    std::move(level.begin(), level.end(), std::back_inserter(out));
+    level.clear();
+  }
+  return out;
 }
 
 }  // namespace swath::terrain

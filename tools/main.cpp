@@ -13,9 +13,11 @@
 #include "io/value_file.h"
 #include "pipeline/describe.h"
 #include "pipeline/plan.h"
+#include "pipeline/profile.h"
 #include "pipeline/provenance.h"
 #include "pipeline/run.h"
 #include "pipeline/summary.h"
+#include "pipeline/volume_files.h"
 #include "simulate/simulate.h"
 
 namespace {
@@ -24,7 +26,9 @@ using namespace swath;
 
 struct Arguments {
   pipeline::Request request;
-  std::string name, folder, scene;
+  pipeline::VolumeRequest volumes;
+  pipeline::ProfileRequest profile;
+  std::string name, folder, scene, width = "1 m";
   bool quiet = false, json_log = false, json = false, check = false;
 
   pipeline::Voice voice() const { return json_log ? pipeline::Voice::json : quiet ? pipeline::Voice::quiet : pipeline::Voice::bar; }
@@ -80,6 +84,33 @@ int simulate_survey(Arguments& a) {
 int info(const Arguments& a) {
   const core::Value told = io::describe_file(a.name);
   std::fputs(a.json ? io::to_json(told).c_str() : io::info_text(told).c_str(), stdout);
+  return 0;
+}
+
+int volumes(const Arguments& a) {
+  if (a.volumes.after.empty() == !a.volumes.design)
+    throw core::usage_error("volumes need a second surface or a design height", "swath volumes", "give AFTER or --design, one of them");
+  const core::Value told = pipeline::volumes_of(a.volumes);
+  std::fputs(a.json ? io::to_json(told).c_str() : pipeline::volume_text(told).c_str(), stdout);
+  return 0;
+}
+
+int profile(Arguments& a) {
+  core::Shape length{core::Kind::quantity, core::Dimension::length};
+  std::string fault;
+  const auto width = core::read_scalar(length, a.width, fault);
+  if (!width || !(width->as_number() > 0.0))
+    throw core::usage_error("'" + a.width + "' is no width" + (fault.empty() ? "" : ": " + fault), "--half-width",
+                            "write a length with its unit: \"2 m\"");
+  a.profile.half_width = width->as_number();
+  const core::Value told = pipeline::write_profiles(a.profile);
+  if (a.json) std::fputs(io::to_json(told).c_str(), stdout);
+  for (size_t k = 0; !a.json && !a.quiet && k < told.items().size(); ++k) {
+    const core::Value& one = told.items()[k];
+    std::printf("%s: %.1f long, %lld points, %lld places of the terrain model; .csv, .svg and .png in %s\n",
+                one.find("name")->as_text().c_str(), one.find("length")->as_number(), static_cast<long long>(one.find("points")->as_int()),
+                static_cast<long long>(one.find("terrain_samples")->as_int()), a.profile.folder.c_str());
+  }
   return 0;
 }
 
@@ -178,6 +209,34 @@ int command_line(int argc, char** argv) {
   c->add_flag("--json", a.json, "As JSON");
 
   c = app.add_subcommand(
+      "volumes",
+      "Examples\n  swath volumes may/dtm.vrt june/dtm.vrt --polygon pit.gpkg\n  swath volumes out/dtm.vrt --design 412.5 "
+      "--json\n\nCut and fill between two terrain models, or from one to a design height, with sigma.");
+  c->add_option("BEFORE", a.volumes.before, "Terrain model, GeoTIFF or VRT; NAME_quality beside it gives sigma")->required();
+  c->add_option("AFTER", a.volumes.after, "The same later; its cells may be others");
+  c->add_option("--design", a.volumes.design, "Height in place of AFTER, in the unit of BEFORE's heights");
+  c->add_option("--polygon", a.volumes.polygon, "Polygons or closed lines to count within, in the CRS of BEFORE");
+  c->add_option("--correlation", a.volumes.correlation, "Of the errors of any two cells of a model: 1 one shift for all, 0 noise")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  c->add_flag("--json", a.json, "As JSON");
+
+  c = app.add_subcommand(
+      "profile",
+      "Examples\n  swath profile out/products/points --dtm out/products/dtm.vrt --from 652010,5310020 --to 652340,5310200 "
+      "--output sections\n  swath profile flight.laz --line axis.gpkg --half-width \"2 m\" --output sections\n\nSections "
+      "through points and terrain model along lines, as CSV, SVG and PNG.");
+  c->add_option("POINTS", a.profile.points, "LAS or LAZ files, or folders of them");
+  c->add_option("--dtm", a.profile.dtm, "Terrain model, GeoTIFF or VRT");
+  c->add_option("--line", a.profile.lines, "Lines to cut along: GeoPackage, GeoJSON, DXF ..., or .csv with profile,x,y");
+  c->add_option("--from", a.profile.from, "x,y where one straight line begins");
+  c->add_option("--to", a.profile.to, "x,y where it ends");
+  c->add_option("--half-width", a.width, "Points up to this far from the line are shown")->capture_default_str();
+  c->add_option("--output", a.profile.folder, "Folder to write to")->required();
+  c->add_flag("--quiet", a.quiet, "Nothing but errors");
+  c->add_flag("--json", a.json, "What was found, as JSON");
+
+  c = app.add_subcommand(
       "docs", "Examples\n  swath docs docs\n  swath docs docs --check\n\nWrite the generated parts of the documentation's pages.");
   c->add_option("FOLDER", a.folder, "The docs folder")->required();
   c->add_flag("--check", a.check, "Write nothing; exit 1 where a page is out of date");
@@ -197,6 +256,8 @@ int command_line(int argc, char** argv) {
   if (name == "explain") return explain(a);
   if (name == "simulate") return simulate_survey(a);
   if (name == "info") return info(a);
+  if (name == "volumes") return volumes(a);
+  if (name == "profile") return profile(a);
   if (name == "docs") return docs(a);
   if (name == "stages") std::fputs(a.name.empty() ? pipeline::stage_list().c_str() : pipeline::stage_help(a.name).c_str(), stdout);
   if (name == "schema") std::fputs(io::to_json(pipeline::schema()).c_str(), stdout);

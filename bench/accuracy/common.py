@@ -186,7 +186,7 @@ def write_las(file, x, y, z, classes, scale=1e-4, time=None):
 def lines_of(geopackage):
     """Contours of a GeoPackage: (elevation, vertices) per line."""
     with sqlite3.connect(geopackage) as base:
-        table, column = base.execute("select table_name, column_name from gpkg_geometry_columns").fetchone()
+        table, column = base.execute("select table_name, column_name from gpkg_geometry_columns order by table_name != 'contours'").fetchone()
         names = [row[1] for row in base.execute(f'pragma table_info("{table}")')]
         level = next(n for n in names if re.match("elev|height|level", n, re.I))
         for height, blob in base.execute(f'select "{level}", "{column}" from "{table}"'):

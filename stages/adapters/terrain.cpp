@@ -1,29 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fcntl.h>
-
 #include <algorithm>
-#include <cstring>
-#include <fstream>
 #include <mutex>
-#include <set>
 
 #include "core/error.h"
-#include "io/output_file.h"
-#include "io/vector.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/breaklines.h"
 #include "stages/adapters/units.h"
 #include "stages/grid_tile.h"
-#include "terrain/contour_lines.h"
-#include "terrain/contours.h"
 #include "terrain/dsm.h"
 #include "terrain/dtm.h"
 #include "terrain/voids.h"
 
 namespace swath::stages {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Cells by void reason, for the tally of a surface stage.
 void count_voids(const core::Grid& grid, core::Tally& tally) {
@@ -130,108 +119,9 @@ class Dsm : public OptionStage<terrain::DsmOptions> {
   }
 };
 
-/// A tile's segments on disk: sorted by level, so that a level is one stretch of the file.
-fs::path segment_file(const fs::path& folder, TileKey key) {
-  return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".segments");
-}
-
-struct ContourWriteOptions : terrain::ContourOptions {
-  std::string name = "contours";
-};
-
-template <class V>
-void describe(ContourWriteOptions& o, V& v) {
-  describe(static_cast<terrain::ContourOptions&>(o), v);
-  v.option("name", o.name, "Name of the files: NAME.gpkg, NAME.dxf, NAME.geojson.");
-}
-
-class Contours : public OptionStage<ContourWriteOptions> {
- public:
-  const Info& info() const override {
-    static const Info info{"terrain.contours",
-                           "Contours of the DTM with index contours, joined across tiles, as GeoPackage, DXF and GeoJSON.",
-                           {Grain::tile, Grain::merge},
-                           {},
-                           {},
-                           {Product::dtm},
-                           {Product::contours}};
-    return info;
-  }
-  std::vector<std::string> products() const override { return {options.name + ".gpkg", options.name + ".dxf", options.name + ".geojson"}; }
-  double bytes_per_point() const override { return 16.0; }
-  void run_tile(const Context& context, TileJob& job) const override {
-    core::Lattice own = lattice_in(context.grids->cell(Product::dtm), job.box);
-    core::Lattice window = own;
-    ++window.nx;
-    ++window.ny;
-    const auto segments = terrain::trace(context.grids->window(Product::dtm, window), own, options);
-    job.tally.count("contour segments", segments.size());
-    io::write_text_file(segment_file(job.folder, job.key),
-                        {reinterpret_cast<const char*>(segments.data()), segments.size() * sizeof(terrain::Segment)}, false);
-  }
-
-  void run_merge(const Context& context, MergeJob& job) const override {
-    // Where each level stands in each tile's file.
-    struct Stretch {
-      TileKey key;
-      std::uint64_t first, count;
-    };
-    std::map<std::int64_t, std::vector<Stretch>> levels;
-    for (const TileKey key : job.tiles) {
-      std::ifstream in(segment_file(job.folder, key), std::ios::binary);
-      terrain::Segment s;
-      for (std::uint64_t row = 0; in.read(reinterpret_cast<char*>(&s), sizeof s); ++row) {
-        auto& stretches = levels[s.level];
-        if (stretches.empty() || stretches.back().key != key) stretches.push_back({key, row, 0});
-        ++stretches.back().count;
-      }
-    }
-    std::vector<io::ContourWriter> writers;
-    for (const char* ending : {".gpkg", ".dxf", ".geojson"})
-      writers.emplace_back(context.output / (options.name + ending), context.product_crs);
-    double metres = 0.0;
-    std::uint64_t closed = 0;
-    for (const auto& [level, stretches] : levels) {
-      std::vector<terrain::Segment> segments;
-      for (const Stretch& s : stretches) {
-        std::ifstream in(segment_file(job.folder, s.key), std::ios::binary);
-        in.seekg(static_cast<std::streamoff>(s.first * sizeof(terrain::Segment)));
-        const size_t before = segments.size();
-        segments.resize(before + s.count);
-        in.read(reinterpret_cast<char*>(segments.data() + before), static_cast<std::streamsize>(s.count * sizeof(terrain::Segment)));
-      }
-      for (const terrain::ContourLine& line : terrain::contour_lines(std::move(segments), options)) {
-        metres += terrain::length(line.vertices);
-        closed += line.closed ? 1 : 0;
-        const core::ContourLine out = in_crs_units(context, line);
-        for (auto& w : writers) w.add(out);
-      }
-    }
-    job.findings["lines"] = writers.front().count();
-    job.findings["closed"] = closed;
-    job.findings["length_m"] = metres;
-    for (auto& w : writers) w.close();
-  }
-
- private:
-  static core::ContourLine in_crs_units(const Context& context, const terrain::ContourLine& line) {
-    core::ContourLine out;
-    for (const auto& v : line.vertices) {
-      out.x.push_back(v.x() / context.unit);
-      out.y.push_back(v.y() / context.unit);
-    }
-    // 0.1 um of rounding hides the conversion's last bits in the labels of contours in feet.
-    out.height = std::round(line.height / context.vertical_unit * 1e7) / 1e7;
-    out.index = line.is_index;
-    out.closed = line.closed;
-    return out;
-  }
-};
-
 }  // namespace
 
 std::unique_ptr<Stage> make_dtm() { return std::make_unique<Dtm>(); }
 std::unique_ptr<Stage> make_dsm() { return std::make_unique<Dsm>(); }
-std::unique_ptr<Stage> make_contours() { return std::make_unique<Contours>(); }
 
 }  // namespace swath::stages

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from support import CLOUD, CONFIG, SMALL, SMALLEST, SOURCE, Case, products, stage, swath
 
-COMMANDS = ["run", "check", "explain", "stages", "schema", "simulate", "info", "docs"]
+COMMANDS = ["run", "check", "explain", "stages", "schema", "simulate", "info", "volumes", "profile", "docs"]
 CONFIGS = sorted((SOURCE / "configs").glob("*.toml"))
 
 

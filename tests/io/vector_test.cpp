@@ -161,6 +161,43 @@ TEST(Vector, EqualContoursAreEqualBytes) {
   EXPECT_NE(test::read_bytes(folder / "a.gpkg").find("2000-01-01T00:00:00.000Z"), std::string::npos);
 }
 
+TEST(Vector, DepressionsLabelsAndSpotHeights) {
+  const test::TemporaryFolder folder;
+  std::vector<core::ContourLine> lines = made_lines();
+  lines[2].depression = true;
+  for (const char* name : {"a.gpkg", "a.dxf", "a.geojson"}) {
+    ContourWriter w(folder / name, "EPSG:25832+7837");
+    for (const auto& line : lines) w.add(line);
+    w.add(core::ContourLabel{500130.0, 5300460.0, "420", 0.5, 2.0, 420.0});
+    w.add(core::SpotHeight{500140.0, 5300470.0, 431.25, "431.3", false, 2.0});
+    EXPECT_THROW(w.add(core::SpotHeight{500140.0, std::nan(""), 431.25, "431.3", false, 2.0}), core::Error);
+    EXPECT_EQ(w.count(), lines.size());
+    w.close();
+    const VectorLines got = read_lines(folder / name);
+    ASSERT_EQ(got.lines.size(), lines.size()) << name;
+    for (size_t k = 0; k < lines.size(); ++k) EXPECT_EQ(got.lines[k].depression, lines[k].depression) << name << " " << k;
+  }
+  GDALAllRegister();
+  auto* d = GDALDataset::Open((folder / "a.gpkg").c_str(), GDAL_OF_VECTOR);
+  ASSERT_NE(d, nullptr);
+  OGRLayer* labels = d->GetLayerByName("labels");
+  OGRLayer* spots = d->GetLayerByName("spot_heights");
+  ASSERT_NE(labels, nullptr);
+  ASSERT_NE(spots, nullptr);
+  const OGRFeatureUniquePtr label(labels->GetNextFeature()), spot(spots->GetNextFeature());
+  EXPECT_STREQ(label->GetFieldAsString("text"), "420");
+  EXPECT_NEAR(label->GetFieldAsDouble("rotation"), 0.5 * 180.0 / M_PI, 1e-12);
+  EXPECT_EQ(label->GetGeometryRef()->toPoint()->getX(), 500130.0);
+  EXPECT_STREQ(spot->GetFieldAsString("kind"), "pit");
+  EXPECT_EQ(spot->GetFieldAsDouble("height"), 431.25);
+  GDALClose(d);
+  const std::string dxf = test::read_bytes(folder / "a.dxf");
+  EXPECT_NE(dxf.find("0\nTEXT\n8\nCONTOUR_LABEL\n10\n500130.0000\n"), std::string::npos);
+  EXPECT_NE(dxf.find("\n1\n420\n50\n28.6479\n72\n1\n"), std::string::npos);
+  EXPECT_NE(dxf.find("0\nPOINT\n8\nSPOT_HEIGHT\n10\n500140.0000\n"), std::string::npos);
+  EXPECT_NE(test::read_bytes(folder / "a.geojson").find("\"depression\": true"), std::string::npos);
+}
+
 TEST(Vector, NoContourAtAllIsAValidFile) {
   const test::TemporaryFolder folder;
   write_contours({folder / "a.gpkg", folder / "a.dxf", folder / "a.geojson"}, {}, "EPSG:32632");

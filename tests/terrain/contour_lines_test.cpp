@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "tests/terrain/lines.h"
 #include "tests/terrain/made.h"
 #include "tests/world/support.h"
 
@@ -15,19 +16,16 @@ namespace {
 
 using Vertices = std::vector<Eigen::Vector2d>;
 
-double signed_area(const Vertices& v) {
-  double sum = 0.0;
-  for (size_t k = 1; k < v.size(); ++k) {
-    const Eigen::Vector2d a = v[k - 1] - v[0], b = v[k] - v[0];
-    sum += 0.5 * (a.x() * b.y() - a.y() * b.x());
-  }
-  return sum;
+std::vector<ContourLine> lines_on(const core::Grid& g, std::vector<Segment> segments, const ContourOptions& o) {
+  Facets surface = test::facets_of(g);
+  return contour_lines(std::move(segments), o, surface);
 }
 
 bool same(const std::vector<ContourLine>& a, const std::vector<ContourLine>& b) {
   if (a.size() != b.size()) return false;
   for (size_t k = 0; k < a.size(); ++k)
-    if (a[k].level != b[k].level || a[k].closed != b[k].closed || a[k].vertices != b[k].vertices) return false;
+    if (a[k].level != b[k].level || a[k].closed != b[k].closed || a[k].depression != b[k].depression || a[k].vertices != b[k].vertices)
+      return false;
   return true;
 }
 
@@ -35,7 +33,7 @@ TEST(ContourLines, ConeGivesOneCircleCounterClockwise) {
   const core::Grid g = test::sampled({1.0, 0, 0, 60, 60}, [](double x, double y) { return 20.0 - std::hypot(x - 30.2, y - 29.7); });
   ContourOptions o;
   o.tolerance = core::Metres(0.0);
-  const auto lines = contour_lines(trace(g, g.lattice, o), o);
+  const auto lines = lines_on(g, trace(g, g.lattice, o), o);
   std::map<std::int64_t, const ContourLine*> closed;
   for (const ContourLine& l : lines)
     if (l.closed) {
@@ -61,6 +59,7 @@ TEST(ContourLines, PitIsClockwiseAndOpenLinesEndAtTheEdgeOrAVoid) {
   ASSERT_FALSE(pit.empty());
   ASSERT_TRUE(pit[0].closed);
   EXPECT_LT(signed_area(pit[0].vertices), 0.0);
+  EXPECT_TRUE(pit[0].depression);
 
   g.height[g.lattice.at(20, 12)] = std::nanf("");  // on the first ring
   const auto cut = join(trace(g, g.lattice, o), o);
@@ -71,12 +70,16 @@ TEST(ContourLines, PitIsClockwiseAndOpenLinesEndAtTheEdgeOrAVoid) {
     EXPECT_LT((end - Eigen::Vector2d(20.5, 12.5)).norm(), 1.5);
 }
 
-TEST(ContourLines, TouchedSummitsLeaveNoSpecks) {
+TEST(ContourLines, TouchedSummitsAreSpecksThatMinAreaLeavesOut) {
   core::Grid g = test::sampled({1.0, 0, 0, 9, 9}, [](double, double) { return 0.5; });
-  g.height[g.lattice.at(4, 4)] = 1.0f;  // exactly on the level: a ring of no length
+  g.height[g.lattice.at(4, 4)] = 1.0f;  // exactly on the level
   const ContourOptions o;
-  EXPECT_EQ(trace(g, g.lattice, o).size(), 4u);
-  EXPECT_TRUE(join(trace(g, g.lattice, o), o).empty());
+  const auto lines = join(trace(g, g.lattice, o), o);
+  ASSERT_EQ(lines.size(), 1u);  // a ring round the very summit, a ten-thousandth of a cell wide
+  EXPECT_LT(std::abs(signed_area(lines[0].vertices)), 1e-6);
+  ContourOptions larger;
+  larger.min_area = "1 m2";
+  EXPECT_TRUE(lines_on(g, trace(g, g.lattice, larger), larger).empty());
 }
 
 TEST(ContourLines, TilesOrderAndDoublesDoNotMatter) {
@@ -84,9 +87,10 @@ TEST(ContourLines, TilesOrderAndDoublesDoNotMatter) {
   const core::Grid g = test::sampled({1.0, 100, 200, 90, 70}, hills);
   ContourOptions o;
   o.min_length = core::Metres(3.0);
+  o.min_area = "1.5 m2";
   o.tolerance = core::Metres(0.2);
   const std::vector<Segment> all = trace(g, g.lattice, o);
-  const auto expected = contour_lines(all, o);
+  const auto expected = lines_on(g, all, o);
   EXPECT_GT(expected.size(), 20u);
   for (const ContourLine& l : expected) EXPECT_GT(l.vertices.size(), 1u);
   std::vector<Segment> mixed;
@@ -98,48 +102,68 @@ TEST(ContourLines, TilesOrderAndDoublesDoNotMatter) {
   EXPECT_EQ(mixed.size(), all.size());
   mixed.insert(mixed.end(), all.begin(), all.begin() + 50);
   std::shuffle(mixed.begin(), mixed.end(), std::mt19937(3));
-  EXPECT_TRUE(same(contour_lines(mixed, o), expected));
+  EXPECT_TRUE(same(lines_on(g, mixed, o), expected));
 
   std::vector<ContourLine> by_level;
   for (size_t k = 0; k < all.size();) {
     std::vector<Segment> one;
     for (const std::int64_t level = all[k].level; k < all.size() && all[k].level == level; ++k) one.push_back(all[k]);
-    for (ContourLine& l : contour_lines(one, o)) by_level.push_back(std::move(l));
+    for (ContourLine& l : lines_on(g, one, o)) by_level.push_back(std::move(l));
   }
   EXPECT_TRUE(same(by_level, expected));
 }
 
-TEST(ContourLines, SimplificationStaysWithinToleranceAndKeepsEnds) {
-  Vertices v;
-  for (int k = 0; k <= 400; ++k) v.emplace_back(0.25 * k, 5.0 * std::sin(0.05 * k) + 0.02 * std::sin(3.0 * k));
-  for (const double tolerance : {0.05, 0.5}) {
-    const Vertices s = simplify(v, false, tolerance);
-    EXPECT_EQ(s.front(), v.front());
-    EXPECT_EQ(s.back(), v.back());
-    EXPECT_LT(s.size(), v.size() / 2);
-    for (const Eigen::Vector2d& p : v) {
-      double nearest = 1e9;
-      for (size_t k = 1; k < s.size(); ++k) {
-        const Eigen::Vector2d d = s[k] - s[k - 1];
-        const double t = std::clamp((p - s[k - 1]).dot(d) / d.squaredNorm(), 0.0, 1.0);
-        nearest = std::min(nearest, (p - s[k - 1] - t * d).norm());
-      }
-      EXPECT_LE(nearest, tolerance);
+TEST(ContourLines, RingsBelowTheLeastAreaAreLeftOut) {
+  // A cone and a pit: rings of radius 1 to 17 m round each.
+  const core::Grid g = test::sampled({0.5, 0, 0, 180, 90}, [](double x, double y) {
+    return x < 45.0 ? 17.7 - std::hypot(x - 22.3, y - 22.4) : std::hypot(x - 67.6, y - 22.1) - 17.7;
+  });
+  ContourOptions o;
+  const auto smallest = [&](const std::string& area) {
+    o.min_area = area;
+    double least = 1e9;
+    size_t depressions = 0;
+    for (const ContourLine& l : lines_on(g, trace(g, g.lattice, o), o)) {
+      if (l.closed) least = std::min(least, std::abs(signed_area(l.vertices)));
+      EXPECT_EQ(l.depression, l.closed && l.vertices[0].x() > 45.0);
+      depressions += l.depression;
     }
-  }
-  EXPECT_EQ(simplify(v, false, 0.0).size(), v.size());
-  EXPECT_EQ(simplify(v, false, 100.0).size(), 2u);
+    EXPECT_GT(depressions, 10u);
+    return least;
+  };
+  EXPECT_NEAR(smallest("0 m2"), core::pi * 0.7 * 0.7, 0.3);
+  EXPECT_NEAR(smallest("10 m2"), core::pi * 2.7 * 2.7, 0.6);
+  EXPECT_EQ(smallest("10 m2"), smallest("107.639 ft2"));
+  EXPECT_EQ(smallest("10 m2"), smallest("0.001 ha"));
 }
 
-TEST(ContourLines, ASimplifiedRingStaysARing) {
-  Vertices ring;
-  for (int k = 0; k <= 60; ++k) ring.emplace_back(std::cos(2 * core::pi * (k % 60) / 60), std::sin(2 * core::pi * (k % 60) / 60));
-  for (const double tolerance : {0.01, 0.5, 10.0}) {
-    const Vertices s = simplify(ring, true, tolerance);
-    EXPECT_GE(s.size(), 4u);
-    EXPECT_EQ(s.front(), s.back());
-    EXPECT_GT(signed_area(s), 0.5);
+TEST(ContourLines, NoLineIsOpenInside) {
+  std::mt19937 random(8);
+  std::normal_distribution<double> noise(0.0, 0.2);
+  core::Grid g = test::sampled({1.0, 10, 20, 100, 80},
+                               [&](double x, double y) { return 6.0 * std::sin(x / 11.0) * std::cos(y / 9.0) + noise(random); });
+  for (int n = 0; n < 40; ++n) g.height[static_cast<size_t>(random() % g.height.size())] = std::nanf("");
+  ContourOptions o;
+  o.interval = core::Metres(0.5);
+  const auto lines = lines_on(g, trace(g, g.lattice, o), o);
+  size_t open = 0;
+  const auto is_known = [&](long i, long j) {
+    return g.lattice.holds(static_cast<int>(i), static_cast<int>(j)) &&
+           !std::isnan(g.height[g.lattice.at(static_cast<int>(i), static_cast<int>(j))]);
+  };
+  for (const ContourLine& l : lines) {
+    if (l.closed) continue;
+    ++open;
+    for (const Eigen::Vector2d& end : {l.vertices.front(), l.vertices.back()}) {
+      // A void, or nothing, at one of the centres around the end.
+      const long i = std::lround(std::floor(end.x() - 10.5)), j = std::lround(std::floor(end.y() - 20.5));
+      bool beside = false;
+      for (long dj = -1; dj <= 2; ++dj)
+        for (long di = -1; di <= 2; ++di) beside = beside || !is_known(i + di, j + dj);
+      EXPECT_TRUE(beside) << end.transpose();
+    }
   }
+  EXPECT_GT(open, 20u);
 }
 
 // --- against gdal_contour ---------------------------------------------------------------------------------------------------------
@@ -201,11 +225,13 @@ TEST(ContourLines, AgreesWithGdal) {
   ContourOptions o;
   o.interval = core::Metres(0.5);
   o.tolerance = core::Metres(0.0);
-  const auto ours = contour_lines(trace(g, g.lattice, o), o);
+  const auto ours = lines_on(g, trace(g, g.lattice, o), o);
 
   // Where the level halves an edge exactly, gdal_contour's vertex stands 1e-6 m of height beside it; over the DEM's gentler slope, 0.017,
-  // that is 5.9e-5 m (24 of its 1122 vertices). All others agree to 1e-7 m.
-  constexpr double vertex_shift = 6e-5, height_error = 1e-9;
+  // that is 5.9e-5 m (24 of its 1122 vertices). Ours beside a centre are squeezed by up to 1e-4 of an edge. Between the edges that both
+  // share, ours bend at the diagonals of the square: lengths agree to 1 %.
+  const double vertex_shift = 6e-5 + 1e-4 * g.lattice.cell;
+  constexpr double height_error = 1e-4, length_share = 0.01;
   std::map<double, std::vector<const Vertices*>> by_level;
   for (const auto& [level, v] : theirs) by_level[level].push_back(&v);
   EXPECT_EQ(ours.size(), theirs.size());
@@ -215,10 +241,12 @@ TEST(ContourLines, AgreesWithGdal) {
     const Vertices& v = *by_level[l.height][0];
     EXPECT_EQ(l.closed, v.front() == v.back());
     const double a = length(l.vertices), b = length_within(v, g.lattice);
-    EXPECT_NEAR(a, b, vertex_shift * static_cast<double>(l.vertices.size())) << l.height;
+    EXPECT_NEAR(a, b, length_share * b) << l.height;
     our_total += a;
     their_total += b;
     for (const Eigen::Vector2d& p : l.vertices) {
+      const double u = p.x() / g.lattice.cell - 0.5, w = p.y() / g.lattice.cell - 0.5;
+      if (std::min(std::abs(u - std::round(u)), std::abs(w - std::round(w))) > 1e-7) continue;  // on a diagonal
       worst_height = std::max(worst_height, std::abs(bilinear(g, p) - l.height));
       double nearest = 1e9;
       for (const Eigen::Vector2d& q : v) nearest = std::min(nearest, (p - q).norm());
@@ -227,7 +255,7 @@ TEST(ContourLines, AgreesWithGdal) {
   }
   EXPECT_LE(worst_height, height_error);
   EXPECT_LE(worst_shift, vertex_shift);
-  EXPECT_NEAR(our_total, their_total, 1e-3);
+  EXPECT_NEAR(our_total, their_total, 0.002 * their_total);
   std::ostringstream figures;
   figures << ours.size() << " lines, length " << our_total << " m (gdal_contour " << their_total
           << " m within the cell centres), vertex heights within " << worst_height << " m, vertices within " << worst_shift << " m";

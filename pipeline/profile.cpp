@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points are taken by the nearest piece of the line at right angles to which they lie; the terrain is read bilinearly every half cell.
+#include "pipeline/profile.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <tuple>
+
+#include "core/block.h"
+#include "core/error.h"
+#include "io/delimited.h"
+#include "io/geotiff.h"
+#include "io/las_reader.h"
+#include "io/output_file.h"
+#include "io/png.h"
+#include "io/vector.h"
+#include "pipeline/surface_file.h"
+#include "report/chart.h"
+
+namespace swath::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using Point = Eigen::Vector2d;
+
+constexpr size_t batch = 1 << 17;
+
+struct Sample {
+  double station = 0.0, offset = 0.0, x = 0.0, y = 0.0, z = 0.0;  ///< offset to the right of the line
+  double sigma = std::numeric_limits<double>::quiet_NaN();
+  int point_class = -1;
+};
+
+struct Section {
+  const ProfileLine* line = nullptr;
+  std::vector<double> start;  ///< length of the line before each vertex
+  Point low, high;            ///< of the strip
+  std::vector<Sample> points, terrain;
+  double length() const { return start.back(); }
+};
+
+double number(const std::string& text, const std::string& where) {
+  double v = 0.0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), v);
+  if (fault != std::errc{} || end != text.data() + text.size() || !std::isfinite(v))
+    throw core::usage_error("'" + text + "' is no coordinate", where, "write x,y in the units of the data");
+  return v;
+}
+
+Point place(const std::string& text, const std::string& where) {
+  const auto parts = io::split_delimited(text, ',');
+  if (parts.size() != 2) throw core::usage_error("'" + text + "' is no place", where, "write x,y in the units of the data");
+  return {number(parts[0], where), number(parts[1], where)};
+}
+
+/// Text with a header that names x and y, and a column `profile` (or `name`) where it holds several lines.
+std::vector<ProfileLine> lines_of_text(const fs::path& file) {
+  std::ifstream in(file);
+  if (!in) throw core::Error("cannot read the profiles' lines", file.string(), "check the name");
+  std::string row;
+  std::getline(in, row);
+  const char delimiter = io::delimiter_in(row);
+  const auto names = io::split_delimited(row, delimiter);
+  const auto column = [&](std::initializer_list<const char*> wanted) {
+    for (size_t k = 0; k < names.size(); ++k)
+      for (const char* w : wanted)
+        if (names[k] == w) return static_cast<int>(k);
+    return -1;
+  };
+  const int x = column({"x", "easting", "E"}), y = column({"y", "northing", "N"}), name = column({"profile", "name"});
+  if (x < 0 || y < 0) throw core::Error("the header names no columns x and y", file.string(), "the first line is: profile,x,y");
+  std::vector<ProfileLine> out;
+  for (int n = 2; std::getline(in, row); ++n) {
+    if (row.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const auto fields = io::split_delimited(row, delimiter);
+    const std::string where = file.string() + ":" + std::to_string(n);
+    if (fields.size() != names.size())
+      throw core::Error("the line has " + std::to_string(fields.size()) + " fields, the header " + std::to_string(names.size()), where);
+    const std::string mine = name < 0 ? "profile" : fields[static_cast<size_t>(name)];
+    if (out.empty() || out.back().name != mine) out.push_back({mine, {}});
+    out.back().vertices.emplace_back(number(fields[static_cast<size_t>(x)], where), number(fields[static_cast<size_t>(y)], where));
+  }
+  return out;
+}
+
+Section section_of(const ProfileLine& line, double half_width) {
+  Section s;
+  s.line = &line;
+  s.start.assign(line.vertices.size(), 0.0);
+  s.low = s.high = line.vertices[0];
+  for (size_t k = 1; k < line.vertices.size(); ++k) {
+    s.start[k] = s.start[k - 1] + (line.vertices[k] - line.vertices[k - 1]).norm();
+    s.low = s.low.cwiseMin(line.vertices[k]);
+    s.high = s.high.cwiseMax(line.vertices[k]);
+  }
+  s.low.array() -= half_width;
+  s.high.array() += half_width;
+  return s;
+}
+
+/// Station and offset by the nearest piece of the line whose strip holds the point; offset NaN where none does.
+Sample projected(const Section& s, const Point& p, double half_width) {
+  Sample best;
+  best.offset = std::numeric_limits<double>::quiet_NaN();
+  const auto& v = s.line->vertices;
+  for (size_t k = 1; k < v.size(); ++k) {
+    const Point d = v[k] - v[k - 1];
+    const double length = d.norm();
+    if (length == 0.0) continue;
+    const Point r = p - v[k - 1];
+    const double along = r.dot(d) / length, aside = (r.x() * d.y() - r.y() * d.x()) / length;
+    if (along < 0.0 || along > length || std::abs(aside) > half_width || std::abs(aside) >= std::abs(best.offset)) continue;
+    best.station = s.start[k - 1] + along;
+    best.offset = aside;
+  }
+  best.x = p.x();
+  best.y = p.y();
+  return best;
+}
+
+std::vector<fs::path> las_files(const std::vector<fs::path>& given) {
+  std::vector<fs::path> out;
+  const auto is_las = [](const fs::path& p) {
+    std::string e = p.extension().string();
+    std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return e == ".las" || e == ".laz";
+  };
+  for (const fs::path& p : given) {
+    if (!fs::is_directory(p)) {
+      out.push_back(p);
+      continue;
+    }
+    const size_t before = out.size();
+    for (const auto& e : fs::directory_iterator(p))
+      if (is_las(e.path())) out.push_back(e.path());
+    if (out.size() == before) throw core::Error("the folder holds no LAS or LAZ file", p.string());
+    std::sort(out.begin() + static_cast<std::ptrdiff_t>(before), out.end());
+  }
+  return out;
+}
+
+void take_points(const fs::path& file, double half_width, std::vector<Section>& sections) {
+  io::LasReader reader(file);
+  const io::LasHeader& h = reader.header();
+  const auto touches = [&](const Section& s) {
+    return h.min.x() <= s.high.x() && h.max.x() >= s.low.x() && h.min.y() <= s.high.y() && h.max.y() >= s.low.y();
+  };
+  if (std::none_of(sections.begin(), sections.end(), touches)) return;
+  core::Block block;
+  io::LasTime time;
+  time.keep_seconds_of_week = true;
+  while (reader.read(block, batch, time) > 0)
+    for (size_t i = 0; i < block.size(); ++i) {
+      if (!core::is_usable(block, i)) continue;
+      const Point p(block.x[i] + block.origin.x(), block.y[i] + block.origin.y());
+      for (Section& s : sections) {
+        if ((p.array() < s.low.array()).any() || (p.array() > s.high.array()).any()) continue;
+        Sample one = projected(s, p, half_width);
+        if (std::isnan(one.offset)) continue;
+        one.z = block.z[i] + block.origin.z();
+        one.point_class = block.classification.empty() ? 0 : block.classification[i];
+        s.points.push_back(one);
+      }
+    }
+}
+
+void take_terrain(const fs::path& file, Section& s) {
+  const core::Lattice whole = io::lattice_of(io::read_raster_info(file), file);
+  const auto near = [&](const Point& p) {
+    return Point(p.cwiseMax(Point(whole.west(), whole.south())).cwiseMin(Point(whole.east(), whole.north())));
+  };
+  const Point margin(2.0 * whole.cell, 2.0 * whole.cell), low = near(s.low - margin), high = near(s.high + margin);
+  const core::Grid grid = read_surface(file, core::lattice_of(whole.cell, low.x(), low.y(), high.x(), high.y())).grid;
+  const core::Lattice& l = grid.lattice;
+  const auto steps = static_cast<size_t>(std::ceil(s.length() / (0.5 * l.cell)));
+  size_t piece = 1;
+  for (size_t n = 0; n <= steps; ++n) {
+    Sample one;
+    one.offset = 0.0;
+    one.station = std::min(0.5 * l.cell * static_cast<double>(n), s.length());
+    while (piece + 1 < s.start.size() && s.start[piece] < one.station) ++piece;
+    const double span = s.start[piece] - s.start[piece - 1];
+    const double share = span > 0.0 ? (one.station - s.start[piece - 1]) / span : 0.0;
+    const Point p = s.line->vertices[piece - 1] + share * (s.line->vertices[piece] - s.line->vertices[piece - 1]);
+    const double u = p.x() / l.cell - 0.5 - static_cast<double>(l.i0), v = p.y() / l.cell - 0.5 - static_cast<double>(l.j0);
+    double z = 0.0, sigma = grid.sigma.empty() ? std::numeric_limits<double>::quiet_NaN() : 0.0;
+    for (int dj = 0; dj <= 1; ++dj)
+      for (int di = 0; di <= 1; ++di) {
+        const double fu = std::floor(u), fv = std::floor(v), w = (di ? u - fu : 1.0 - u + fu) * (dj ? v - fv : 1.0 - v + fv);
+        if (w == 0.0) continue;
+        const double gi = fu + di, gj = fv + dj;
+        const bool known = gi >= 0 && gj >= 0 && gi < l.nx && gj < l.ny;
+        const size_t at = known ? l.at(static_cast<int>(gi), static_cast<int>(gj)) : 0;
+        z += w * (known ? static_cast<double>(grid.height[at]) : std::numeric_limits<double>::quiet_NaN());
+        if (known && !grid.sigma.empty()) sigma += w * static_cast<double>(grid.sigma[at]);
+      }
+    one.x = p.x();
+    one.y = p.y();
+    one.z = z;
+    one.sigma = sigma;
+    s.terrain.push_back(one);
+  }
+}
+
+std::string class_name(int c) {
+  static const std::map<int, std::string> names{{0, "never classified"},
+                                                {1, "unassigned"},
+                                                {2, "ground"},
+                                                {3, "low vegetation"},
+                                                {4, "medium vegetation"},
+                                                {5, "high vegetation"},
+                                                {6, "building"},
+                                                {9, "water"},
+                                                {10, "rail"},
+                                                {11, "road"},
+                                                {14, "wire"},
+                                                {15, "tower"},
+                                                {17, "bridge deck"}};
+  const auto at = names.find(c);
+  return at == names.end() ? "class " + std::to_string(c) : at->second;
+}
+
+report::Chart chart_of(const Section& s, const std::string& unit, const std::string& height_unit) {
+  report::Panel panel;
+  panel.x_label = "distance along the profile (" + unit + ")";
+  panel.y_label = "height (" + height_unit + ")";
+  report::Series band, line{"terrain model", {}, {}, {}, report::Mark::line, -1};
+  band.name = "terrain model, 1 sigma";
+  band.mark = report::Mark::band;
+  bool sigma = false;
+  for (const Sample& t : s.terrain) {
+    line.x.push_back(t.station);
+    line.y.push_back(t.z);
+    band.x.push_back(t.station);
+    band.y.push_back(t.z - t.sigma);
+    band.y2.push_back(t.z + t.sigma);
+    sigma = sigma || !std::isnan(t.sigma + t.z);
+  }
+  if (sigma) panel.series.push_back(std::move(band));
+  std::map<int, report::Series> classes;
+  for (const Sample& p : s.points) {
+    report::Series& one = classes[p.point_class];
+    one.name = class_name(p.point_class);
+    one.mark = report::Mark::dots;
+    one.x.push_back(p.station);
+    one.y.push_back(p.z);
+  }
+  for (auto& [c, one] : classes) panel.series.push_back(std::move(one));
+  if (!line.x.empty()) panel.series.push_back(std::move(line));
+  report::Chart chart;
+  chart.title = s.line->name;
+  chart.panel_height = 420;
+  chart.panels.push_back(std::move(panel));
+  return chart;
+}
+
+std::string table_of(const Section& s) {
+  std::string out = "kind,station,offset,x,y,z,sigma,class\n";
+  char row[240];
+  for (const auto* samples : {&s.terrain, &s.points})
+    for (const Sample& p : *samples) {
+      const bool terrain = p.point_class < 0;
+      if (terrain && std::isnan(p.z)) continue;
+      std::snprintf(row, sizeof row, "%s,%.3f,%.3f,%.3f,%.3f,%.3f,", terrain ? "terrain" : "point", p.station, p.offset, p.x, p.y, p.z);
+      out += row;
+      if (!std::isnan(p.sigma)) {
+        std::snprintf(row, sizeof row, "%.4f", p.sigma);
+        out += row;
+      }
+      out += terrain ? ",\n" : "," + std::to_string(p.point_class) + "\n";
+    }
+  return out;
+}
+
+}  // namespace
+
+std::vector<ProfileLine> profile_lines(const ProfileRequest& request) {
+  std::vector<ProfileLine> out;
+  if (!request.lines.empty()) {
+    const std::string ending = request.lines.extension().string();
+    if (ending == ".csv" || ending == ".txt") {
+      out = lines_of_text(request.lines);
+    } else {
+      for (const io::VectorLine& line : io::read_lines(request.lines).lines) {
+        out.push_back({"profile_" + std::to_string(out.size() + 1), {}});
+        for (size_t k = 0; k < line.x.size(); ++k) out.back().vertices.emplace_back(line.x[k], line.y[k]);
+      }
+    }
+  } else if (!request.from.empty() && !request.to.empty()) {
+    out.push_back({"profile", {place(request.from, "--from"), place(request.to, "--to")}});
+  } else {
+    throw core::usage_error("no line to cut along is named", "swath profile", "give --line FILE, or --from x,y and --to x,y");
+  }
+  if (out.empty()) throw core::Error("the file holds no line", request.lines.string());
+  std::map<std::string, int> seen;
+  for (ProfileLine& line : out) {
+    for (char& c : line.name)
+      if (c == '/' || static_cast<unsigned char>(c) < 0x20) c = '_';
+    if (seen[line.name]++ > 0) line.name += "_" + std::to_string(seen[line.name]);
+    double length = 0.0;
+    for (size_t k = 1; k < line.vertices.size(); ++k) length += (line.vertices[k] - line.vertices[k - 1]).norm();
+    if (!(length > 0.0))
+      throw core::Error("the line has no length", request.lines.empty() ? "swath profile" : request.lines.string() + ": " + line.name);
+  }
+  return out;
+}
+
+core::Value write_profiles(const ProfileRequest& request) {
+  const std::vector<ProfileLine> lines = profile_lines(request);
+  const std::vector<fs::path> files = las_files(request.points);
+  if (files.empty() && request.dtm.empty())
+    throw core::usage_error("neither points nor a terrain model are named", "swath profile", "name LAS files or folders, or --dtm FILE");
+  core::Crs crs;
+  if (!request.dtm.empty()) {
+    const std::string wkt = io::read_raster_info(request.dtm).crs_wkt;
+    if (!wkt.empty()) crs = core::Crs(wkt);
+  } else if (const std::string stated = io::LasReader(files[0]).crs().definition; !stated.empty()) {
+    crs = core::Crs(stated);
+  }
+  const bool metric = crs.empty() || crs.metres_per_unit() == 0.0;
+  const double half_width = request.half_width / (metric ? 1.0 : crs.metres_per_unit());
+  const auto short_unit = [](double metres) { return std::string(metres == 1.0 ? "m" : "ft"); };
+  const std::string unit = metric ? "m" : short_unit(crs.metres_per_unit()),
+                    height_unit = short_unit(!request.dtm.empty() ? height_unit_of(request.dtm)
+                                             : crs.empty()        ? 1.0
+                                                                  : crs.vertical_metres_per_unit());
+
+  std::vector<Section> sections;
+  for (const ProfileLine& line : lines) sections.push_back(section_of(line, half_width));
+  for (const fs::path& file : files) take_points(file, half_width, sections);
+  core::Value told = core::Value::array();
+  for (Section& s : sections) {
+    if (!request.dtm.empty()) take_terrain(request.dtm, s);
+    const auto known = std::count_if(s.terrain.begin(), s.terrain.end(), [](const Sample& t) { return !std::isnan(t.z); });
+    if (s.points.empty() && known == 0)
+      throw core::Error("the line '" + s.line->name + "' meets neither points nor terrain", request.lines.string(),
+                        "are its coordinates those of the data's CRS?");
+    std::sort(s.points.begin(), s.points.end(), [](const Sample& a, const Sample& b) {
+      return std::tie(a.station, a.offset, a.z, a.point_class) < std::tie(b.station, b.offset, b.z, b.point_class);
+    });
+    const report::Chart chart = chart_of(s, unit, height_unit);
+    fs::create_directories(request.folder);
+    io::write_text_file(request.folder / (s.line->name + ".csv"), table_of(s));
+    io::write_text_file(request.folder / (s.line->name + ".svg"), report::svg(chart));
+    io::write_png(request.folder / (s.line->name + ".png"), report::draw(chart));
+    core::Value one = core::Value::object();
+    one["name"] = s.line->name;
+    one["length"] = s.length();
+    one["points"] = s.points.size();
+    one["terrain_samples"] = static_cast<std::uint64_t>(known);
+    told.push(std::move(one));
+  }
+  return told;
+}
+
+}  // namespace swath::pipeline

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `swath profile`: sections through a point cloud and a terrain model along lines.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/value.h"
+
+namespace swath::pipeline {
+
+/// A line to cut along, in units of the data's CRS.
+struct ProfileLine {
+  std::string name;
+  std::vector<Eigen::Vector2d> vertices;
+};
+
+struct ProfileRequest {
+  std::filesystem::path dtm;                  ///< raster, or empty
+  std::vector<std::filesystem::path> points;  ///< LAS or LAZ files and folders of them
+  std::filesystem::path lines;                ///< GeoPackage, GeoJSON, DXF ..., or text with the columns profile, x, y
+  std::string from, to;                       ///< "x,y" of one straight line in place of a file
+  double half_width = 1.0;                    ///< m
+  std::filesystem::path folder;               ///< of the results
+};
+
+/// The lines that a request names, those of a file as profile_1, profile_2 ... where they bear no name. Throws core::Error.
+std::vector<ProfileLine> profile_lines(const ProfileRequest& request);
+
+/// For each line FOLDER/NAME.csv, NAME.svg and NAME.png: every usable point within the half width by its class, and the terrain model every
+/// half cell with its sigma. Tells of each what it found. Throws core::Error; a line that meets neither points nor terrain is one.
+core::Value write_profiles(const ProfileRequest& request);
+
+}  // namespace swath::pipeline

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/volume_files.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "core/error.h"
+#include "io/vector.h"
+#include "pipeline/surface_file.h"
+#include "report/volumes.h"
+
+namespace swath::pipeline {
+namespace {
+
+std::vector<report::Ring> rings_of(const std::filesystem::path& file) {
+  std::vector<report::Ring> out;
+  for (const io::VectorLine& line : io::read_lines(file).lines) {
+    if (!line.closed) continue;
+    report::Ring ring;
+    for (size_t k = 0; k + 1 < line.x.size(); ++k) ring.emplace_back(line.x[k], line.y[k]);
+    if (ring.size() >= 3) out.push_back(std::move(ring));
+  }
+  if (out.empty()) throw core::Error("the file holds no polygon and no closed line", file.string());
+  return out;
+}
+
+/// The cells of `l` that the polygon reaches.
+core::Lattice around(const core::Lattice& l, const std::vector<report::Ring>& polygon) {
+  Eigen::Vector2d low = polygon[0][0], high = low;
+  for (const report::Ring& r : polygon)
+    for (const Eigen::Vector2d& p : r) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  const std::int64_t i0 = std::max(l.i0, core::cell_index(low.x(), l.cell)), j0 = std::max(l.j0, core::cell_index(low.y(), l.cell));
+  const std::int64_t i1 = std::min(l.i0 + l.nx, core::cell_index(high.x(), l.cell) + 1),
+                     j1 = std::min(l.j0 + l.ny, core::cell_index(high.y(), l.cell) + 1);
+  return {l.cell, i0, j0, static_cast<int>(std::max<std::int64_t>(0, i1 - i0)), static_cast<int>(std::max<std::int64_t>(0, j1 - j0))};
+}
+
+/// The smallest lattice of a's cells that holds both.
+core::Lattice both(const core::Lattice& a, const core::Lattice& b) {
+  return core::lattice_of(a.cell, std::min(a.west(), b.west()), std::min(a.south(), b.south()), std::max(a.east(), b.east()),
+                          std::max(a.north(), b.north()));
+}
+
+core::Grid level(const core::Lattice& l, double height) {
+  core::Grid g(l);
+  std::fill(g.height.begin(), g.height.end(), static_cast<float>(height));
+  std::fill(g.reason.begin(), g.reason.end(), core::Void::none);
+  g.sigma.assign(l.size(), 0.0f);
+  return g;
+}
+
+}  // namespace
+
+core::Value volumes_of(const VolumeRequest& request) {
+  SurfaceFile before = read_surface(request.before), after;
+  core::Lattice lattice = before.grid.lattice;
+  if (!request.design) {
+    after = read_surface(request.after);
+    if (!before.crs.empty() && !after.crs.empty() && before.crs.key() != after.crs.key())
+      throw core::Error("the two surfaces are in different CRSs: " + before.crs.name() + " and " + after.crs.name(), request.after.string(),
+                        "bring one to the other's CRS and vertical datum first");
+    if (before.vertical_unit != after.vertical_unit)
+      throw core::Error("the two surfaces have heights in different units", request.after.string(), "bring one to the other's unit first");
+    const bool finer = after.grid.lattice.cell < lattice.cell;
+    lattice = finer ? both(after.grid.lattice, before.grid.lattice) : both(before.grid.lattice, after.grid.lattice);
+  }
+  std::vector<report::Ring> polygon;
+  if (!request.polygon.empty()) {
+    polygon = rings_of(request.polygon);
+    lattice = around(lattice, polygon);
+  }
+  const auto on = [&](const core::Grid& g) { return g.lattice == lattice ? g : report::resampled(g, lattice); };
+  const core::Grid first = on(before.grid), second = request.design ? level(lattice, *request.design) : on(after.grid);
+  const core::Crs& crs = before.crs.empty() ? after.crs : before.crs;
+  const double metre = crs.empty() ? 1.0 : crs.metres_per_unit(), vertical = crs.empty() ? 1.0 : before.vertical_unit;
+  if (metre == 0.0) throw core::Error("the surface is in degrees", request.before.string(), "volumes need a projected CRS");
+  const report::Volumes v = report::volumes(first, second, vertical / metre, request.correlation, polygon);
+  if (v.cells == 0)
+    throw core::Error("the two surfaces have no cell in common" + std::string(polygon.empty() ? "" : " inside the polygon"),
+                      request.before.string());
+
+  const double area = metre * metre, volume = area * metre;
+  core::Value out = core::Value::object();
+  out["before"] = request.before.generic_string();
+  if (request.design)
+    out["design_height"] = *request.design;
+  else
+    out["after"] = request.after.generic_string();
+  if (!polygon.empty()) out["polygon"] = request.polygon.generic_string();
+  out["units"] = crs.empty() ? "those of the file, which states no CRS" : "m";
+  out["cell"] = lattice.cell * metre;
+  out["cut"] = v.cut * volume;
+  out["fill"] = v.fill * volume;
+  out["net"] = v.net * volume;
+  out["area"] = v.area * area;
+  out["cut_area"] = v.cut_area * area;
+  out["fill_area"] = v.fill_area * area;
+  out["correlation"] = request.correlation;
+  if (std::isfinite(v.sigma_net)) {
+    out["sigma_cut"] = v.sigma_cut * volume;
+    out["sigma_fill"] = v.sigma_fill * volume;
+    out["sigma_net"] = v.sigma_net * volume;
+  }
+  out["cells"] = v.cells;
+  out["cells_left_out"] = v.left_out;
+  out["area_left_out"] = v.area_left_out * area;
+  return out;
+}
+
+std::string volume_text(const core::Value& told) {
+  const auto number = [&](const char* key) { return told.find(key)->as_number(); };
+  const bool metres = told.find("units")->as_text() == "m";
+  std::string out;
+  char line[200];
+  const auto volume = [&](const char* name, const char* key, const char* sigma) {
+    if (told.find(sigma))
+      std::snprintf(line, sizeof line, "%-9s %14.2f%s  +- %.2f\n", name, number(key), metres ? " m3" : "", number(sigma));
+    else
+      std::snprintf(line, sizeof line, "%-9s %14.2f%s  (no sigma known)\n", name, number(key), metres ? " m3" : "");
+    out += line;
+  };
+  volume("cut", "cut", "sigma_cut");
+  volume("fill", "fill", "sigma_fill");
+  volume("net", "net", "sigma_net");
+  std::snprintf(line, sizeof line, "%-9s %14.2f%s in %lld cells; lowered %.2f, raised %.2f\n", "area", number("area"), metres ? " m2" : "",
+                static_cast<long long>(told.find("cells")->as_int()), number("cut_area"), number("fill_area"));
+  out += line;
+  std::snprintf(line, sizeof line, "%-9s %14.2f%s in %lld cells where a surface is void\n", "left out", number("area_left_out"),
+                metres ? " m2" : "", static_cast<long long>(told.find("cells_left_out")->as_int()));
+  out += line;
+  if (told.find("sigma_net")) {
+    std::snprintf(line, sizeof line, "sigmas: errors of any two cells of a model correlated by %g\n", number("correlation"));
+    out += line;
+  }
+  return out;
+}
+
+}  // namespace swath::pipeline

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cut and fill between two surfaces on a lattice.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/grid.h"
+
+namespace swath::report {
+
+/// A closed line without its repeated vertex, or with it. Of several, those inside an odd number of others are holes.
+using Ring = std::vector<Eigen::Vector2d>;
+
+/// Earth that is taken away (cut) and heaped up (fill) from `before` to `after`. Units are those of the grids: lengths cubed, squared.
+struct Volumes {
+  double cut = 0.0, fill = 0.0;
+  double net = 0.0;                        ///< fill - cut
+  double area = 0.0;                       ///< on which both surfaces are known, inside the polygon
+  double cut_area = 0.0, fill_area = 0.0;  ///< where the ground fell, where it rose
+  /// One sigma; NaN where a cell counted has no sigma.
+  double sigma_cut = 0.0, sigma_fill = 0.0, sigma_net = 0.0;
+  std::uint64_t cells = 0;     ///< counted, whole or in part
+  std::uint64_t left_out = 0;  ///< cells of the polygon where a surface is void; without a polygon where one of the two is
+  double area_left_out = 0.0;
+};
+
+/// Both grids on one lattice; `after` may be empty of sigma, as a design is. `height_unit`: horizontal units per unit of height, 1 where
+/// they are the same. `correlation`, 0 to 1, of the errors of any two cells of a model: 1 where trajectory and datum govern, 0 where
+/// noise does; between the two models none is assumed. `polygon`: in the coordinates of the lattice; empty for all cells. A cell that the
+/// polygon cuts counts with the share of its area inside. Throws core::Error where the lattices differ.
+Volumes volumes(const core::Grid& before, const core::Grid& after, double height_unit, double correlation,
+                const std::vector<Ring>& polygon = {});
+
+/// The grid's heights and sigmas at the cell centres of another lattice, bilinear: void where one of the four cells around is.
+core::Grid resampled(const core::Grid& grid, const core::Lattice& lattice);
+
+/// Share of each cell of the lattice, 0 to 1, inside the polygon (row-major as in core::Grid): exact for straight sides.
+std::vector<double> shares_inside(const core::Lattice& lattice, const std::vector<Ring>& polygon);
+
+}  // namespace swath::report

@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <map>
+
+#include "core/error.h"
+#include "core/statistics.h"
+#include "io/output_file.h"
+#include "io/value_file.h"
+#include "io/vector.h"
+#include "stages/adapters/adapters.h"
+#include "stages/adapters/units.h"
+#include "stages/grid_tile.h"
+#include "terrain/contour_labels.h"
+#include "terrain/contour_lines.h"
+#include "terrain/contours.h"
+#include "terrain/dtm.h"
+#include "terrain/map_class.h"
+#include "terrain/spot_heights.h"
+
+namespace swath::stages {
+
+/// What is traced: the DTM's cells, or a finer lattice that the TIN is read on.
+enum class ContourSource { grid, tin };
+
+}  // namespace swath::stages
+
+template <>
+struct swath::core::Choices<swath::stages::ContourSource> {
+  static constexpr std::array<std::string_view, 2> names{"grid", "tin"};
+};
+
+namespace swath::stages {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ContourWriteOptions : terrain::ContourOptions {
+  std::string name = "contours";
+  ContourSource source = ContourSource::grid;
+  terrain::DtmOptions tin;
+  terrain::LabelOptions labels;
+  terrain::SpotOptions spots;
+
+  ContourWriteOptions() { tin.cell = core::Metres(0.5); }
+};
+
+template <class V>
+void describe(ContourWriteOptions& o, V& v) {
+  describe(static_cast<terrain::ContourOptions&>(o), v);
+  v.option("name", o.name, "Name of the files: NAME.gpkg, NAME.dxf, NAME.geojson.");
+  v.option("source", o.source,
+           "grid: the DTM's cells are traced; tin: the TIN of the ground points, read on the lattice of the table `tin`.");
+  v.table("tin", o.tin, "With source tin: how the TIN is made and read, as terrain.dtm does.");
+  v.table("labels", o.labels, "Heights along index contours.");
+  v.table("spots", o.spots, "Spot heights.");
+}
+
+/// A tile's segments on disk: sorted by level, so that a level is one stretch of the file.
+fs::path segment_file(const fs::path& folder, TileKey key) {
+  return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".segments");
+}
+fs::path facts_file(const fs::path& folder, TileKey key) {
+  return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".facts");
+}
+
+/// What a tile tells of its surface besides the segments; plain data, the file holds it and then the spot heights.
+struct TileFacts {
+  double sum_of_heights = 0.0, sum_of_variances = 0.0;
+  std::uint64_t heights = 0, sigmas = 0;
+  std::uint64_t beyond = 0;  ///< cells whose own sigma keeps no class of maps at the interval
+};
+
+TileFacts facts_of(const core::Grid& grid, const core::Lattice& own, double interval) {
+  TileFacts f;
+  const core::Lattice& l = grid.lattice;
+  for (int j = 0; j < own.ny; ++j)
+    for (int i = 0; i < own.nx; ++i) {
+      const size_t at = l.at(static_cast<int>(own.i0 - l.i0) + i, static_cast<int>(own.j0 - l.j0) + j);
+      if (std::isnan(grid.height[at])) continue;
+      f.sum_of_heights += grid.height[at];
+      ++f.heights;
+      if (grid.sigma.empty() || std::isnan(grid.sigma[at])) continue;
+      const double sigma = grid.sigma[at];
+      f.sum_of_variances += sigma * sigma;
+      ++f.sigmas;
+      f.beyond += terrain::map_class_of(interval, sigma) == '-';
+    }
+  return f;
+}
+
+/// Decimals that a step of heights needs, at most 3.
+int decimals_of(double step) {
+  for (int n = 0; n < 3; ++n)
+    if (std::abs(step * std::pow(10.0, n) - std::round(step * std::pow(10.0, n))) < 1e-6) return n;
+  return 3;
+}
+
+std::string height_text(double height, int decimals) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", decimals, height);
+  return text;
+}
+
+/// Flying height above the mean terrain, m: NaN where the run has no trajectory on the map.
+double flying_height(const Context& context, double mean_terrain) {
+  if (!context.trajectory || context.crs.empty()) return std::nan("");
+  const core::TrajectoryData& d = context.trajectory->data();
+  const core::Transform to_map(core::wgs84_geodetic(), context.crs);
+  const size_t step = std::max<size_t>(1, d.size() / 1000);
+  std::vector<double> heights;
+  for (size_t k = 0; k < d.size(); k += step)
+    heights.push_back(to_map({core::to_degrees(d.longitude[k]), core::to_degrees(d.latitude[k]), d.height[k]}).z() * context.vertical_unit);
+  return core::median(std::move(heights)) - mean_terrain;
+}
+
+/// The interval against the model's sigma: findings and, where it is too small, words.
+void judge_interval(const Context& context, const TileFacts& f, double interval, core::Value& findings) {
+  core::Value words = core::Value::array();
+  if (f.heights > 0)
+    if (const double height = flying_height(context, f.sum_of_heights / static_cast<double>(f.heights)); std::isfinite(height))
+      findings["c_factor"] = height / interval;
+  if (f.sigmas == 0) {
+    words.push("the model has no sigma, so nothing says which interval it carries");
+  } else {
+    const double sigma = std::sqrt(f.sum_of_variances / static_cast<double>(f.sigmas));
+    const char kept = terrain::map_class_of(interval, sigma);
+    findings["model_sigma_m"] = sigma;
+    findings["map_class"] = kept == '-' ? std::string("none") : std::string(1, kept);
+    for (const terrain::MapClass& c : terrain::map_classes)
+      findings["smallest_interval_m"][std::string(1, c.name)] = terrain::smallest_interval(c, sigma);
+    findings["share_of_cells_below_class_c"] = static_cast<double>(f.beyond) / static_cast<double>(f.sigmas);
+    if (kept == '-') {
+      const std::string unit = context.vertical_unit == 1.0 ? " m" : " ft";
+      const auto told = [&](double metres) { return core::format_number(metres / context.vertical_unit) + unit; };
+      const auto carried = [&](size_t c) {
+        return told(context.vertical_unit *
+                    terrain::usual_interval(terrain::smallest_interval(terrain::map_classes[c], sigma) / context.vertical_unit));
+      };
+      words.push("contours every " + told(interval) + " say more than the model knows: its sigma of " +
+                 told(std::round(sigma * 1e3) / 1e3) + " (rms) carries " + carried(0) + " as class A, " + carried(1) + " as class B, " +
+                 carried(2) + " as class C");
+    }
+  }
+  if (!words.items().empty()) findings["findings"] = std::move(words);
+}
+
+class Contours : public OptionStage<ContourWriteOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{"terrain.contours",
+                           "Smooth contours of the DTM with index contours, depressions, labels and spot heights, joined across tiles, as "
+                           "GeoPackage, DXF and GeoJSON.",
+                           {Grain::tile, Grain::merge},
+                           {},
+                           {},
+                           {Product::dtm},
+                           {Product::contours}};
+    return info;
+  }
+  core::ColumnSet also_reads() const override {
+    if (options.source == ContourSource::grid) return {};
+    return {core::Column::classification, core::Column::flags, core::Column::sigma_v, core::Column::sigma_h};
+  }
+  double halo() const override {
+    // The lattice reaches a cell, and spot heights their radius, beyond the tile.
+    return options.source == ContourSource::grid ? 0.0 : terrain::halo(options.tin) + options.tin.cell.value + terrain::halo(options.spots);
+  }
+  double bytes_per_point() const override { return options.source == ContourSource::grid ? 16.0 : 300.0; }
+  std::vector<std::string> products() const override { return {options.name + ".gpkg", options.name + ".dxf", options.name + ".geojson"}; }
+
+  void run_tile(const Context& context, TileJob& job) const override {
+    const core::Lattice own = lattice_in(cell(context), job.box);
+    const int border = 1 + static_cast<int>(std::ceil(terrain::halo(options.spots) / own.cell));
+    const core::Lattice window{own.cell, own.i0 - border, own.j0 - border, own.nx + 2 * border, own.ny + 2 * border};
+    const core::Grid grid =
+        options.source == ContourSource::grid ? context.grids->window(Product::dtm, window) : terrain::dtm(job.block, window, options.tin);
+    if (options.source == ContourSource::tin) {
+      core::Grid mine(own);
+      paste(grid, mine);
+      write_grid_tile(job.folder, job.key, mine);
+    }
+    const auto segments = terrain::trace(grid, own, options);
+    job.tally.count("contour segments", segments.size());
+    io::write_text_file(segment_file(job.folder, job.key),
+                        {reinterpret_cast<const char*>(segments.data()), segments.size() * sizeof(terrain::Segment)}, false);
+    const TileFacts facts = facts_of(grid, own, options.interval.value);
+    const auto spots = terrain::spot_heights(grid, own, options.spots);
+    std::string bytes(reinterpret_cast<const char*>(&facts), sizeof facts);
+    bytes.append(reinterpret_cast<const char*>(spots.data()), spots.size() * sizeof(terrain::SpotHeight));
+    io::write_text_file(facts_file(job.folder, job.key), bytes, false);
+  }
+
+  void run_merge(const Context& context, MergeJob& job) const override {
+    std::vector<io::ContourWriter> writers;
+    for (const char* ending : {".gpkg", ".dxf", ".geojson"})
+      writers.emplace_back(context.output / (options.name + ending), context.product_crs);
+    TileFacts facts;
+    std::vector<terrain::SpotHeight> spots;
+    for (const TileKey key : job.tiles) read_facts(job.folder, key, facts, spots);
+    write_lines(context, job, writers);
+    write_spots(context, std::move(spots), writers, job.findings);
+    judge_interval(context, facts, options.interval.value, job.findings);
+    for (auto& w : writers) w.close();
+  }
+
+ private:
+  double cell(const Context& context) const {
+    return options.source == ContourSource::grid ? context.grids->cell(Product::dtm) : options.tin.cell.value;
+  }
+
+  static void read_facts(const fs::path& folder, TileKey key, TileFacts& facts, std::vector<terrain::SpotHeight>& spots) {
+    const fs::path file = facts_file(folder, key);
+    const std::string bytes = io::read_text_file(file);
+    if (bytes.size() < sizeof(TileFacts) || (bytes.size() - sizeof(TileFacts)) % sizeof(terrain::SpotHeight) != 0)
+      throw core::Error("the intermediate result is cut short", file.string(),
+                        "remove the .swath folder beside the products and run again");
+    TileFacts one;
+    std::memcpy(&one, bytes.data(), sizeof one);
+    facts.sum_of_heights += one.sum_of_heights;
+    facts.sum_of_variances += one.sum_of_variances;
+    facts.heights += one.heights;
+    facts.sigmas += one.sigmas;
+    facts.beyond += one.beyond;
+    const size_t before = spots.size();
+    spots.resize(before + (bytes.size() - sizeof one) / sizeof(terrain::SpotHeight));
+    if (spots.size() > before) std::memcpy(spots.data() + before, bytes.data() + sizeof one, bytes.size() - sizeof one);
+  }
+
+  /// The surface that was traced, of any window.
+  core::Grid surface(const Context& context, const fs::path& folder, const core::Lattice& window) const {
+    if (options.source == ContourSource::grid) return context.grids->window(Product::dtm, window);
+    core::Grid out(window);
+    const auto tile = [&](double edge) { return static_cast<int>(std::floor(edge / context.tile_side)); };
+    for (int iy = tile(window.south()); iy <= tile(window.north()); ++iy)
+      for (int ix = tile(window.west()); ix <= tile(window.east()); ++ix)
+        if (const fs::path file = grid_file(folder, {ix, iy}); fs::exists(file)) paste(read_grid_tile(file), out);
+    return out;
+  }
+
+  void write_lines(const Context& context, MergeJob& job, std::vector<io::ContourWriter>& writers) const {
+    // Where each level stands in each tile's file.
+    struct Stretch {
+      TileKey key;
+      std::uint64_t first, count;
+    };
+    std::map<std::int64_t, std::vector<Stretch>> levels;
+    for (const TileKey key : job.tiles) {
+      std::ifstream in(segment_file(job.folder, key), std::ios::binary);
+      terrain::Segment s;
+      for (std::uint64_t row = 0; in.read(reinterpret_cast<char*>(&s), sizeof s); ++row) {
+        auto& stretches = levels[s.level];
+        if (stretches.empty() || stretches.back().key != key) stretches.push_back({key, row, 0});
+        ++stretches.back().count;
+      }
+    }
+    terrain::Facets surface_of_all(cell(context), [&](const core::Lattice& window) { return surface(context, job.folder, window); });
+    terrain::Labeller labeller(options.labels);
+    const int decimals =
+        std::max(decimals_of(options.interval.value / context.vertical_unit), decimals_of(options.base.value / context.vertical_unit));
+    double metres = 0.0;
+    std::uint64_t closed = 0, depressions = 0, labels = 0;
+    for (const auto& [level, stretches] : levels) {
+      std::vector<terrain::Segment> segments;
+      for (const Stretch& s : stretches) {
+        std::ifstream in(segment_file(job.folder, s.key), std::ios::binary);
+        in.seekg(static_cast<std::streamoff>(s.first * sizeof(terrain::Segment)));
+        const size_t before = segments.size();
+        segments.resize(before + s.count);
+        in.read(reinterpret_cast<char*>(segments.data() + before), static_cast<std::streamsize>(s.count * sizeof(terrain::Segment)));
+      }
+      for (const terrain::ContourLine& line : terrain::contour_lines(std::move(segments), options, surface_of_all)) {
+        metres += terrain::length(line.vertices);
+        closed += line.closed ? 1 : 0;
+        depressions += line.depression ? 1 : 0;
+        const core::ContourLine out = in_crs_units(context, line);
+        for (auto& w : writers) w.add(out);
+        if (!line.is_index) continue;
+        const std::string text = height_text(out.height, decimals);
+        for (const terrain::ContourLabel& label : labeller.add(line, text.size())) {
+          ++labels;
+          const core::ContourLabel written{label.at.x() / context.unit,
+                                           label.at.y() / context.unit,
+                                           text,
+                                           label.angle,
+                                           options.labels.height.value / context.unit,
+                                           out.height};
+          for (auto& w : writers) w.add(written);
+        }
+      }
+    }
+    job.findings["lines"] = writers.front().count();
+    job.findings["closed"] = closed;
+    job.findings["depressions"] = depressions;
+    job.findings["length_m"] = metres;
+    job.findings["labels"] = labels;
+  }
+
+  void write_spots(const Context& context, std::vector<terrain::SpotHeight> spots, std::vector<io::ContourWriter>& writers,
+                   core::Value& findings) const {
+    std::sort(spots.begin(), spots.end());
+    const int decimals = std::min(3, decimals_of(options.interval.value / context.vertical_unit) + 1);
+    std::uint64_t tops = 0;
+    for (const terrain::SpotHeight& s : spots) {
+      core::SpotHeight out;
+      out.x = (static_cast<double>(s.i) + 0.5) * cell(context) / context.unit;
+      out.y = (static_cast<double>(s.j) + 0.5) * cell(context) / context.unit;
+      out.height = rounded(s.height / context.vertical_unit);
+      out.text = height_text(out.height, decimals);
+      out.top = s.top != 0;
+      out.text_height = options.labels.height.value / context.unit;
+      tops += out.top ? 1 : 0;
+      for (auto& w : writers) w.add(out);
+    }
+    findings["tops"] = tops;
+    findings["pits"] = spots.size() - tops;
+  }
+
+  // 0.1 um of rounding hides the last bits of the conversion to feet.
+  static double rounded(double height) { return std::round(height * 1e7) / 1e7; }
+
+  static core::ContourLine in_crs_units(const Context& context, const terrain::ContourLine& line) {
+    core::ContourLine out;
+    for (const auto& v : line.vertices) {
+      out.x.push_back(v.x() / context.unit);
+      out.y.push_back(v.y() / context.unit);
+    }
+    out.height = rounded(line.height / context.vertical_unit);
+    out.index = line.is_index;
+    out.closed = line.closed;
+    out.depression = line.depression;
+    return out;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> make_contours() { return std::make_unique<Contours>(); }
+
+}  // namespace swath::stages
