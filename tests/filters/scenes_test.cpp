@@ -6,7 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "filters/csf.h"
+#include "filters/ground_ptd.h"
 #include "filters/noise.h"
+#include "filters/pmf.h"
+#include "filters/robust.h"
 #include "filters/smrf.h"
 #include "tests/world/scene.h"
 
@@ -27,9 +31,22 @@ std::vector<Filter> all_filters() {
   net.window = core::Metres(3.0);
   net.cut = core::Metres(3.0);
   NoiseOptions noise;
+  PtdOptions ptd;
+  ptd.building = core::Metres(10.0);
+  CsfOptions csf;
+  csf.span = core::Metres(15.0);
+  csf.iterations = 100;
+  RobustOptions robust;
+  robust.levels = 2;
+  PmfOptions pmf;
+  pmf.max_window_size = core::Metres(9.0);
   return {{"noise", halo(noise), [noise](core::Block& b, size_t own) { flag_noise(b, own, noise); }},
           {"smrf", halo(smrf), [smrf](core::Block& b, size_t own) { classify_ground_smrf(b, own, smrf); }},
-          {"smrf_net", halo(net), [net](core::Block& b, size_t own) { classify_ground_smrf(b, own, net); }}};
+          {"smrf_net", halo(net), [net](core::Block& b, size_t own) { classify_ground_smrf(b, own, net); }},
+          {"ptd", halo(ptd), [ptd](core::Block& b, size_t own) { classify_ground_ptd(b, own, ptd); }},
+          {"csf", halo(csf), [csf](core::Block& b, size_t own) { classify_ground_csf(b, own, csf); }},
+          {"robust", halo(robust), [robust](core::Block& b, size_t own) { classify_ground_robust(b, own, robust); }},
+          {"pmf", halo(pmf), [pmf](core::Block& b, size_t own) { classify_ground_pmf(b, own, pmf); }}};
 }
 
 /// The scene with some noise: low groups, high points, holes.
