@@ -6,7 +6,8 @@
 // - Thresholds are the options, the same in every round; the paper takes them from the medians of the TIN's own histograms. Not measured.
 // - The scatter of the heights is taken off the distance before the angle is computed. Without it the angle of a point a step away from
 //   a vertex is that of its noise (SCATTER).
-// - A mirrored point is the point's reflection in space (x, y and z) in the facet's highest vertex, which is right on slopes too (MIRROR).
+// - A mirrored point is the point's reflection in space (x, y and z) in the facet's highest vertex, which is right on slopes too. It is
+//   tried where the facet is steeper than 30 degrees and that vertex is the nearest: elsewhere it takes roofs for ground (MIRROR).
 // - The TIN grows in squares of the survey's own lattice with a margin (patches.h), so that no result depends on a tile's extent
 //   (PATCH of the labels differ from those of one TIN over a whole sample).
 // - Beyond the outermost seeds the TIN is held by made vertices, at the centres of the empty squares around, on the plane through the
@@ -30,8 +31,9 @@
 namespace swath::filters {
 namespace {
 
-constexpr int patch_cells = 4;   // squares of the seeds
-constexpr int margin_cells = 2;  // a facet of the first TIN is seldom longer
+constexpr int patch_cells = 4;                                   // squares of the seeds
+constexpr int margin_cells = 2;                                  // a facet of the first TIN is seldom longer
+const double break_slope = std::tan(core::degrees(30.0).value);  // rise / run of a facet that hangs over a break
 
 struct VertexInfo {
   double z = 0;
@@ -213,7 +215,8 @@ class GroundTin {
     auto fit = fit_to(f, p);
     if (!fit && o_.mirror) {
       const Vertex top = highest(f);
-      if (p.z() > height_on(f, p) && !top->info().made) {
+      const bool at_break = p.z() > height_on(f, p) && is_steep(f) && is_nearest(f, top, p);
+      if (at_break && !top->info().made) {
         const Vector mirrored = 2.0 * place(top) - p;
         const Face there = tin_.locate({mirrored.x(), mirrored.y()}, f);
         if (!tin_.is_infinite(there) && !has_made_vertex(there)) fit = fit_to(there, mirrored);
@@ -247,6 +250,17 @@ class GroundTin {
     for (int i = 1; i < 3; ++i)
       if (f->vertex(i)->info().z > top->info().z) top = f->vertex(i);
     return top;
+  }
+  static bool is_steep(Face f) {
+    const Vector a = place(f->vertex(0));
+    const Vector n = (place(f->vertex(1)) - a).cross(place(f->vertex(2)) - a);
+    return n.head<2>().norm() > break_slope * std::abs(n.z());
+  }
+  static bool is_nearest(Face f, Vertex v, const Vector& p) {
+    const double d = (place(v) - p).head<2>().squaredNorm();
+    for (int i = 0; i < 3; ++i)
+      if ((place(f->vertex(i)) - p).head<2>().squaredNorm() < d) return false;
+    return true;
   }
   static bool has_made_vertex(Face f) { return f->vertex(0)->info().made || f->vertex(1)->info().made || f->vertex(2)->info().made; }
   static double height_on(Face f, const Vector& p) {

@@ -11,7 +11,7 @@ namespace swath::filters {
 struct PtdOptions {
   core::Metres building{40.0};
   core::Metres distance{1.4};
-  core::Radians angle = core::degrees(6.0);
+  core::Radians angle = core::degrees(15.0);
   core::Metres scatter{0.1};
   bool mirror = true;
 };

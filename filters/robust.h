@@ -13,7 +13,7 @@ struct RobustOptions {
   core::Metres cell{1.0};
   int levels = 4;
   core::Metres sigma{0.1};
-  double roughness = 0.03;
+  double roughness = 0.05;
   core::Metres tolerance{0.5};
 };
 

@@ -16,8 +16,10 @@ auto run(const PmfOptions& o = {}) {
 }
 
 TEST(Pmf, MadeScenesComeOutNearlyWhole) {
-  // The first opening keeps 0.15 m over three cells: five standard deviations of the points, but less than a slope of 0.25.
-  test::expect_within({{"flat", 0.5, 0}, {"town", 2.0, 0.1}, {"water", 0.5, 0}, {"void", 0.5, 0}, {"strip_edge", 0.5, 0}}, run());
+  // The first opening keeps 0.15 m over three cells: five standard deviations of the points. On a slope the lowest points of neighbouring
+  // cells lie at places up to two cells apart: 0.25 times that is more.
+  test::expect_within(
+      {{"flat", 0.5, 0}, {"town", 2.0, 0.1}, {"water", 0.5, 0}, {"void", 0.5, 0}, {"strip_edge", 0.5, 0}, {"slope", 25.0, 0}}, run());
 }
 
 TEST(Pmf, EveryWindowHasItsOwnThreshold) {
@@ -51,7 +53,8 @@ TEST(Pmf, ThresholdsAreTheSameInCellsOfAnotherSize) {
     for (size_t p = 0; p < s.block.size(); ++p) {
       s.block.z[p] = 100.0;
       const double out = std::max(std::abs(s.block.x[p] - 100.0), std::abs(s.block.y[p] - 80.0));
-      if (out < 4.0) s.block.z[p] += height, block.push_back(p);
+      if (out < 4.0) s.block.z[p] += height;
+      if (out < 2.0) block.push_back(p);
     }
     PmfOptions o;
     o.cell_size = core::Metres(2.0);
@@ -67,7 +70,7 @@ TEST(Pmf, NoiseEarlyReturnsAndHaloKeepOut) { test::expect_only_own_last_returns_
 TEST(Pmf, SeamsBetweenPatchesDecideNothing) {
   PmfOptions o;
   o.max_window_size = core::Metres(5.0);
-  constexpr double rounding = 0.01;  // %: single precision
+  constexpr double rounding = 0.01;  // %: single precision; the move is by whole cells
   for (const char* scene : {"slope", "town", "forest"}) EXPECT_LT(test::labels_that_hang_on_the_seams(scene, run(o)), rounding) << scene;
 }
 
