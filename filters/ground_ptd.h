@@ -27,11 +27,11 @@ void describe(PtdOptions& o, V& v) {
            "Largest angle between a facet and the lines from its vertices to a new ground point.", "Axelsson2000, angles to nodes");
   v.option("scatter", o.scatter, core::at_least(0.0),
            "Scatter of the heights: taken off the distance before the angles are computed, so that small facets keep their ground.");
-  v.option(
-      "mirror", o.mirror,
-      "Judge a point that lies too high over its facet again at its place mirrored in the facet's highest vertex, for the upper edges of "
-      "breaks.",
-      "Axelsson2000, discontinuities");
+  v.option("mirror", o.mirror,
+           "Judge a point that lies too high over a steep facet again at its place mirrored in the facet's highest vertex, for the upper "
+           "edges of "
+           "breaks.",
+           "Axelsson2000, discontinuities");
 }
 
 /// Metres of points around a tile that its result depends on.
