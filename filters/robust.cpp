@@ -5,7 +5,7 @@
 // Deviations (those of the interpolation itself: linear_prediction.cpp). In brackets what each does to the mean total error over seven
 // ISPRS samples, in points, where it was measured:
 // - A level is interpolated in computing units of 4 x 4 cells of the survey's own lattice from their own points and those of three cells
-//   around, so that no result depends on a tile's extent. Surfaces of neighbouring units meet with a small step (UNIT).
+//   around, so that no result depends on a tile's extent. Surfaces of neighbouring units meet with a small step (six cells around: +0.02).
 // - Each level keeps the lowest point of a cell; the papers also name the point nearest to the cells' mean for fine levels. Not measured.
 // - Standard deviation, half width and band of a level follow from `sigma` and `roughness`; in SCOP++ each level has its own settings.
 #include "filters/robust.h"
