@@ -12,8 +12,7 @@
 // - The TIN grows in squares of the survey's own lattice with a margin (patches.h), so that no result depends on a tile's extent
 //   (one TIN over a whole sample: +0.2).
 // - Beyond the outermost seeds the TIN is held by made vertices, at the centres of the empty squares around, on the plane through the
-// ground
-//   points near by; the plane is renewed in every round. The paper does not say what is done there.
+//   ground points near by; the plane is renewed in every round. The paper does not say what is done there.
 #include "filters/ground_ptd.h"
 
 #include <CGAL/Delaunay_triangulation_2.h>
