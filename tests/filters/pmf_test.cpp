@@ -18,8 +18,10 @@ auto run(const PmfOptions& o = {}) {
 TEST(Pmf, MadeScenesComeOutNearlyWhole) {
   // The first opening keeps 0.15 m over three cells: five standard deviations of the points. On a slope the lowest points of neighbouring
   // cells lie at places up to two cells apart: 0.25 times that is more.
+  PmfOptions o;
+  o.max_window_size = core::Metres(17.0);  // the widest house is 12 m
   test::expect_within(
-      {{"flat", 0.5, 0}, {"town", 2.0, 0.1}, {"water", 0.5, 0}, {"void", 0.5, 0}, {"strip_edge", 0.5, 0}, {"slope", 25.0, 0}}, run());
+      {{"flat", 0.5, 0}, {"town", 2.0, 0.1}, {"water", 0.5, 0}, {"void", 0.5, 0}, {"strip_edge", 0.5, 0}, {"slope", 5.0, 0}}, run(o));
 }
 
 TEST(Pmf, EveryWindowHasItsOwnThreshold) {
