@@ -7,8 +7,12 @@
 #include <vector>
 
 #include "filters/classify.h"
+#include "filters/csf.h"
+#include "filters/ground_ptd.h"
 #include "filters/noise.h"
 #include "filters/outlier.h"
+#include "filters/pmf.h"
+#include "filters/robust.h"
 #include "filters/smrf.h"
 #include "filters/visibility.h"
 #include "tests/world/scene.h"
@@ -57,12 +61,25 @@ std::vector<Filter> all_filters() {
   ClassifyOptions classes;
   classes.bridge_length = core::Metres(12.0);  // decks of full length: classify_test.cpp
   classes.building_side = core::Metres(2.0);
+  PtdOptions ptd;
+  ptd.building = core::Metres(10.0);
+  CsfOptions csf;
+  csf.span = core::Metres(15.0);
+  csf.iterations = 100;
+  RobustOptions robust;
+  robust.levels = 2;
+  PmfOptions pmf;
+  pmf.max_window_size = core::Metres(9.0);
   return {{"noise", halo(noise), [noise](core::Block& b, size_t own) { flag_noise(b, own, noise); }},
           {"outlier", halo(outlier), [outlier](core::Block& b, size_t own) { flag_outliers(b, own, outlier); }},
           {"visibility", halo(visibility), [visibility](core::Block& b, size_t own) { see(b, own, visibility); }},
           {"classify", halo(classes), [classes](core::Block& b, size_t own) { class_above(b, own, classes); }},
           {"smrf", halo(smrf), [smrf](core::Block& b, size_t own) { classify_ground_smrf(b, own, smrf); }},
-          {"smrf_net", halo(net), [net](core::Block& b, size_t own) { classify_ground_smrf(b, own, net); }}};
+          {"smrf_net", halo(net), [net](core::Block& b, size_t own) { classify_ground_smrf(b, own, net); }},
+          {"ptd", halo(ptd), [ptd](core::Block& b, size_t own) { classify_ground_ptd(b, own, ptd); }},
+          {"csf", halo(csf), [csf](core::Block& b, size_t own) { classify_ground_csf(b, own, csf); }},
+          {"robust", halo(robust), [robust](core::Block& b, size_t own) { classify_ground_robust(b, own, robust); }},
+          {"pmf", halo(pmf), [pmf](core::Block& b, size_t own) { classify_ground_pmf(b, own, pmf); }}};
 }
 
 /// The scene with some noise: low groups, high points, holes.

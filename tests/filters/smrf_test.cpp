@@ -4,70 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstring>
 
 #include "core/option_visitors.h"
-#include "tests/world/scene.h"
-#include "tests/world/support.h"
+#include "tests/filters/ground_truth.h"
 
 namespace swath::filters {
 namespace {
 
-struct Errors {
-  double ground = 0, object = 0, missed_ground = 0, taken_object = 0;
-
-  double all() const { return ground + object; }
-  double type_1() const { return 100.0 * missed_ground / ground; }
-  double type_2() const { return 100.0 * taken_object / object; }
-  double total() const { return 100.0 * (missed_ground + taken_object) / all(); }
-  /// Cohen's kappa, %.
-  double kappa() const {
-    const double agreed = 1.0 - (missed_ground + taken_object) / all();
-    const double said_ground = ground - missed_ground + taken_object;
-    const double by_chance = (ground * said_ground + object * (all() - said_ground)) / (all() * all());
-    return 100.0 * (agreed - by_chance) / (1.0 - by_chance);
-  }
-};
-
-Errors errors_of(const core::Block& b, const std::vector<std::uint8_t>& truth) {
-  Errors e;
-  for (size_t p = 0; p < b.size(); ++p) {
-    const bool is_ground = truth[p] == core::point_class::ground;
-    const bool said_ground = b.classification[p] == core::point_class::ground;
-    ++(is_ground ? e.ground : e.object);
-    e.missed_ground += is_ground && !said_ground;
-    e.taken_object += !is_ground && said_ground;
-  }
-  return e;
-}
-
-/// x, y, z and class of an uncompressed LAS file of a legacy point format (ASPRS LAS 1.2, 2.3 and 2.4).
-core::Block read_plain_las(const std::filesystem::path& file, std::vector<std::uint8_t>& truth) {
-  const std::string bytes = test::read_bytes(file);
-  const auto get = [&]<class T>(T& v, size_t at) { std::memcpy(&v, bytes.data() + at, sizeof v); };
-  std::uint32_t data = 0, count = 0;
-  std::uint16_t length = 0;
-  double scale[3], offset[3];
-  get(data, 96);
-  get(length, 105);
-  get(count, 107);
-  get(scale, 131);
-  get(offset, 155);
-  core::Block b;
-  b.origin = {500000.0, 5400000.0, 0.0};
-  core::resize(b, count);
-  truth.resize(count);
-  for (size_t p = 0; p < count; ++p) {
-    std::int32_t raw[3];
-    get(raw, data + p * length);
-    b.x[p] = raw[0] * scale[0] + offset[0] - b.origin.x();
-    b.y[p] = raw[1] * scale[1] + offset[1] - b.origin.y();
-    b.z[p] = raw[2] * scale[2] + offset[2];
-    get(truth[p], data + p * length + 15);
-    truth[p] &= 31;
-  }
-  return b;
-}
+using test::ground_errors;
 
 struct Sample {
   const char* name;
@@ -78,11 +22,11 @@ class SmrfIsprs : public testing::TestWithParam<Sample> {};
 TEST_P(SmrfIsprs, TotalErrorWithTheDefaultsIsWithinTheBar) {
   SWATH_SHARED_OR_SKIP(folder, "data/isprs");
   std::vector<std::uint8_t> truth;
-  core::Block b = read_plain_las(folder / (std::string(GetParam().name) + "-utm.las"), truth);
+  core::Block b = test::read_plain_las(folder / (std::string(GetParam().name) + "-utm.las"), truth);
   ASSERT_GT(b.size(), 7000u);
   const SmrfCounts n = classify_ground_smrf(b, b.size(), {});
   EXPECT_EQ(n.ground + n.object, b.size());
-  const Errors e = errors_of(b, truth);
+  const test::GroundErrors e = ground_errors(b, truth);
   RecordProperty("type_1", std::to_string(e.type_1()));
   RecordProperty("type_2", std::to_string(e.type_2()));
   RecordProperty("total", std::to_string(e.total()));
@@ -107,7 +51,7 @@ TEST(Smrf, MadeScenesComeOutNearlyWhole) {
                          Bar{"void", 0.01, 0}, Bar{"strip_edge", 0.01, 0}, Bar{"scarp", 0.1, 0}, Bar{"bridge", 0.1, 0.1}}) {
     test::Scene s = test::make_scene(bar.scene);
     classify_ground_smrf(s.block, s.block.size(), {});
-    const Errors e = errors_of(s.block, s.truth);
+    const test::GroundErrors e = ground_errors(s.block, s.truth);
     std::printf("%s: type I %.2f %%, type II %.2f %%\n", bar.scene, e.type_1(), e.object > 0 ? e.type_2() : 0.0);
     EXPECT_LE(e.type_1(), bar.type_1) << bar.scene;
     if (e.object > 0) {
@@ -133,11 +77,11 @@ TEST(Smrf, TheNetBreaksUpAHallWiderThanTheWindow) {
     }
   SmrfOptions o;
   classify_ground_smrf(s.block, s.block.size(), o);
-  EXPECT_GT(errors_of(s.block, s.truth).type_2(), 50.0);
+  EXPECT_GT(ground_errors(s.block, s.truth).type_2(), 50.0);
   o.cut = core::Metres(20.0);
   classify_ground_smrf(s.block, s.block.size(), o);
-  EXPECT_LT(errors_of(s.block, s.truth).type_2(), 1.0);
-  EXPECT_LT(errors_of(s.block, s.truth).type_1(), 1.0);
+  EXPECT_LT(ground_errors(s.block, s.truth).type_2(), 1.0);
+  EXPECT_LT(ground_errors(s.block, s.truth).type_1(), 1.0);
 }
 
 TEST(Smrf, NoiseEarlyReturnsAndHaloKeepOut) {

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What every ground filter does at its end: the class of each own point from the verdict on it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/block.h"
+
+namespace swath::filters {
+
+/// The verdict of a ground filter on one point.
+enum class Verdict : std::uint8_t { object, ground, no_surface };
+
+/// What one call of a ground filter did, counted over the own points.
+struct GroundCounts {
+  std::uint64_t ground = 0;      ///< set to class ground
+  std::uint64_t object = 0;      ///< set to class unassigned
+  std::uint64_t untouched = 0;   ///< withheld or noise
+  std::uint64_t early = 0;       ///< among `object`: a later return of the same pulse lies below
+  std::uint64_t no_surface = 0;  ///< among `object`: no ground within reach to compare with
+};
+
+/// True for the points that ground filters look at: usable last and only returns. An earlier return has one of the same pulse behind it:
+/// the beam went on, so the ground is not there.
+inline bool may_be_ground(const core::Block& b, size_t p) { return core::is_usable(b, p) && core::is_last_return(b, p); }
+
+/// Sets class ground or unassigned on the usable points among the first `own`; verdicts on points that may not be ground do not count.
+/// `verdicts` has one entry per point of the block.
+GroundCounts set_ground_classes(core::Block& block, size_t own, const std::vector<Verdict>& verdicts);
+
+}  // namespace swath::filters

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Ground filters that share one door: usable last returns in, class ground or unassigned out.
+#include "filters/csf.h"
+#include "filters/ground_ptd.h"
+#include "filters/pmf.h"
+#include "filters/robust.h"
+#include "stages/adapters/adapters.h"
+
+namespace swath::stages {
+namespace {
+
+using core::Column;
+
+Info ground_filter(std::string_view name, std::string_view summary) {
+  return {name, summary, {Grain::tile}, {Column::flags}, {Column::classification}, {Product::points}, {}};
+}
+
+void tell(const filters::GroundCounts& n, core::Tally& tally) {
+  tally.count("ground", n.ground);
+  tally.count("not ground", n.object);
+  if (n.early) tally.count("early returns, not ground", n.early);
+  if (n.untouched) tally.count("withheld or noise, not looked at", n.untouched);
+  if (n.no_surface) tally.count("no ground within reach", n.no_surface);
+}
+
+template <class O, filters::GroundCounts (*classify)(core::Block&, size_t, const O&)>
+class GroundFilter : public OptionStage<O> {
+ public:
+  explicit GroundFilter(const Info& info, double bytes) : info_(info), bytes_(bytes) {}
+  const Info& info() const override { return info_; }
+  core::ColumnSet also_reads() const override { return {Column::return_number, Column::return_count}; }
+  double halo() const override { return filters::halo(this->options); }
+  double bytes_per_point() const override { return bytes_; }
+  void run_tile(const Context&, TileJob& job) const override { tell(classify(job.block, job.own, this->options), job.tally); }
+
+ private:
+  const Info& info_;
+  double bytes_;
+};
+
+using Ptd = GroundFilter<filters::PtdOptions, filters::classify_ground_ptd>;
+using Robust = GroundFilter<filters::RobustOptions, filters::classify_ground_robust>;
+using Pmf = GroundFilter<filters::PmfOptions, filters::classify_ground_pmf>;
+using Csf = GroundFilter<filters::CsfOptions, filters::classify_ground_csf>;
+
+}  // namespace
+
+std::unique_ptr<Stage> make_ptd() {
+  static const Info info = ground_filter("filters.ptd", "Ground points by progressive TIN densification (Axelsson 2000).");
+  return std::make_unique<Ptd>(info, 160.0);
+}
+std::unique_ptr<Stage> make_robust() {
+  static const Info info =
+      ground_filter("filters.robust", "Ground points by hierarchic robust interpolation (Kraus and Pfeifer 1998; Pfeifer et al. 2001).");
+  return std::make_unique<Robust>(info, 600.0);
+}
+std::unique_ptr<Stage> make_pmf() {
+  static const Info info = ground_filter("filters.pmf", "Ground points by the progressive morphological filter (Zhang et al. 2003).");
+  return std::make_unique<Pmf>(info, 160.0);
+}
+std::unique_ptr<Stage> make_csf() {
+  static const Info info = ground_filter("filters.csf", "Ground points by cloth simulation (Zhang et al. 2016).");
+  return std::make_unique<Csf>(info, 160.0);
+}
+
+}  // namespace swath::stages
