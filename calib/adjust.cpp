@@ -34,7 +34,8 @@ double apriori_of(const AprioriOptions& o, Parameter p) {
   return sigma[p] > 0.0 ? sigma[p] : infinite;
 }
 
-std::vector<Parameter> chosen(const EstimateOptions& o, const BeamModel& beam, std::vector<Finding>& findings) {
+std::vector<Parameter> chosen(const EstimateOptions& o, const core::Scanner& scanner, std::vector<Finding>& findings) {
+  const BeamModel beam(scanner);
   const bool wanted[] = {o.roll,         o.pitch,       o.heading,     o.lever_forward, o.lever_right, o.lever_down,
                          o.range_offset, o.range_scale, o.scan_offset, o.scan_scale,    o.latency};
   std::vector<Parameter> out;
@@ -46,6 +47,14 @@ std::vector<Parameter> chosen(const EstimateOptions& o, const BeamModel& beam, s
                           "estimate one of the two",
                           {scan_offset},
                           true});
+      continue;
+    }
+    if (p == scan_offset && o.heading && scanner.model == core::ScannerModel::conical) {
+      findings.push_back(
+          {"scan offset and boresight heading are the same turn of a scanner whose beam goes around the nadir: the scan offset is held",
+           "estimate one of the two",
+           {scan_offset},
+           true});
       continue;
     }
     if (p == scan_scale && beam.ignores_record()) continue;
@@ -307,8 +316,9 @@ class Results {
     // The limits are held against the sigma that would be delivered.
     Separation judged = sep_;
     for (Eigen::Index i = 0; i < globals_; ++i) judged.formal[i] = out_.estimates[p_.globals[i]].sigma;
-    for (Finding& f : diagnose(p_.globals, judged, apriori_, shape_of(p_, r_.state, r_.pass.blocks), o_.limits))
-      out_.findings.push_back(std::move(f));
+    FlightShape shape = shape_of(p_, r_.state, r_.pass.blocks);
+    shape.control = std::find(r_.use.control.begin(), r_.use.control.end(), char{1}) != r_.use.control.end();
+    for (Finding& f : diagnose(p_.globals, judged, apriori_, shape, o_.limits)) out_.findings.push_back(std::move(f));
   }
 
   void look() {
@@ -372,7 +382,7 @@ Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::
   const CorrectionKnots knots(ties.lines, start.latency.value, options.corrections,
                               options.corrections.prior == CorrectionPrior::stated ? stated_covariance(options.corrections) : covariance);
   TieProblem problem{&ties, &scanner, &trajectory, &knots, {}, RobustWeight(options.robust.full, options.robust.zero), threads};
-  problem.globals = chosen(options.estimate, BeamModel(scanner), out.findings);
+  problem.globals = chosen(options.estimate, scanner, out.findings);
   VectorXd apriori(problem.globals.size()), limit(problem.globals.size());
   for (size_t i = 0; i < problem.globals.size(); ++i) {
     apriori[i] = apriori_of(options.apriori, problem.globals[i]);

@@ -25,7 +25,9 @@ void describe(EstimateOptions& o, V& v) {
   v.option("lever_down", o.lever_down, "Scanner's lever arm, down.");
   v.option("range_offset", o.range_offset, "Offset of the ranges.");
   v.option("range_scale", o.range_scale, "Factor of the ranges.");
-  v.option("scan_offset", o.scan_offset, "Offset of the scan angle; for scanners that scan across it is the boresight roll and held.");
+  v.option("scan_offset", o.scan_offset,
+           "Offset of the scan angle. Held where it is the same turn as one that is estimated: for scanners that scan across the boresight "
+           "roll, for conical ones the heading.");
   v.option("scan_scale", o.scan_scale, "Factor of the scan angle.");
   v.option("latency", o.latency, "Latency of the records' times.");
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/tie_normals.h"
 #include "core/error.h"
 #include "core/geodesy.h"
 #include "core/statistics.h"
@@ -15,15 +16,18 @@ using Eigen::Vector3d;
 
 /// What a change of the calibration moves the returns by at the tie planes, rms over the groups, m: the measure of whether another round is
 /// worth its time.
-double moved(const core::Calibration& from, const core::Calibration& to, const Adjustment& at) {
-  const double roll = to.roll.value - from.roll.value, pitch = to.pitch.value - from.pitch.value,
-               heading = to.heading.value - from.heading.value;
-  const double offset = to.range_offset.value - from.range_offset.value, scale = to.scan_scale - from.scan_scale;
+double moved(const core::Calibration& from, const core::Calibration& to, const Adjustment& at, const trajectory::Trajectory& trajectory) {
+  const auto change = [&](Parameter p) { return value_of(to, p) - value_of(from, p); };
+  const double arm = std::hypot(change(lever_forward), change(lever_right), change(lever_down)), late = change(latency);
   double squares = 0;
   for (const GroupResidual& g : at.groups) {
     const double across = g.range * std::sin(g.angle);
-    squares +=
-        std::pow(g.range * (roll + scale * g.angle), 2) + std::pow(g.range * pitch, 2) + std::pow(across * heading, 2) + offset * offset;
+    const double turned = change(boresight_roll) + change(scan_offset) + change(scan_scale) * g.angle;
+    squares += std::pow(g.range * turned, 2) + std::pow(g.range * change(boresight_pitch), 2) +
+               std::pow(across * change(boresight_heading), 2) + std::pow(change(range_offset) + g.range * change(range_scale), 2) +
+               arm * arm;
+    const auto pose = late != 0.0 ? trajectory.pose_at(g.time) : std::nullopt;
+    if (pose) squares += std::pow(late * pose->velocity.norm(), 2);
   }
   return at.groups.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(at.groups.size()));
 }
@@ -42,6 +46,11 @@ std::string metres(double v) {
   return text;
 }
 
+[[noreturn]] void throw_reversed_scan() {
+  throw core::Error("the surfaces of the lines meet only with the sign of the scan angle turned", "laser records",
+                    "positive is to starboard: set laser.angle_to_port in survey.toml, or turn the sign of the column");
+}
+
 void refuse_without_ties(const TieSet& ties, const core::Tally& tally) {
   if (!ties.planes.empty()) return;
   std::string told;
@@ -54,6 +63,10 @@ void refuse_without_ties(const TieSet& ties, const core::Tally& tally) {
 }
 
 }  // namespace
+
+void refuse_reversed_scan(const CalibrationFlight& flight, const SurfaceMatchOptions& options) {
+  if (scan_is_reversed(flight.shots, flight.scanner, flight.start, *flight.trajectory, flight.frame, options)) throw_reversed_scan();
+}
 
 trajectory::LocalFrame frame_of(const std::vector<std::pair<double, double>>& line_times, double height,
                                 const trajectory::Trajectory& trajectory) {
@@ -79,14 +92,14 @@ Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& op
   };
   Calibrated out;
   core::Calibration now = flight.start;
-  double mismatch = options.mismatch.value;
+  double mismatch = options.planes.mismatch.value;
   if (options.coarse) {
     tell("matching surfaces");
     out.match = match_surfaces(flight.shots, flight.scanner, flight.start, *flight.trajectory, flight.frame, options.match);
-    if (out.match->scan_reversed)
-      throw core::Error("the surfaces of the lines meet only with the sign of the scan angle turned", "calibration flight",
-                        "positive is to starboard: set laser.angle_to_port in survey.toml, or turn the sign of the column");
+    if (out.match->scan_reversed) throw_reversed_scan();
     now = out.match->calibration;
+  } else {
+    refuse_reversed_scan(flight, options.match);
   }
 
   std::vector<SurveyedTarget> targets;
@@ -114,7 +127,7 @@ Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& op
     tell(round + ": adjustment");
     out.adjustment =
         adjust(out.ties, flight.scanner, flight.start, flight.sensor, *flight.trajectory, *flight.errors, adjusted, flight.threads);
-    const double change = moved(now, out.adjustment.calibration, out.adjustment);
+    const double change = moved(now, out.adjustment.calibration, out.adjustment, *flight.trajectory);
     now = out.adjustment.calibration;
     mismatch = std::min(mismatch, mismatch_after(out.adjustment));
     if ((change < steady && !first) || out.rounds == options.rounds) {

@@ -19,9 +19,9 @@
 namespace swath::calib {
 
 struct CalibrateOptions {
+  CalibrateOptions() { planes.mismatch.value = 0.5; }
   bool coarse = true;
   int rounds = 5;
-  core::Metres mismatch{0.5};
   SurfaceMatchOptions match;
   TiePlaneOptions planes;
   AdjustOptions adjust;
@@ -29,13 +29,14 @@ struct CalibrateOptions {
 
 template <class V>
 void describe(CalibrateOptions& o, V& v) {
-  v.option("coarse", o.coarse,
-           "Find the boresight's first values by matching the surfaces of the lines; otherwise those of the survey are taken.");
+  v.option(
+      "coarse", o.coarse,
+      "Find the boresight's first values by matching the surfaces of the lines; otherwise those of the survey are taken, and the surfaces "
+      "are looked at for the sign of the scan angle alone.");
   v.option("rounds", o.rounds, core::within(1, 20),
            "Most times that planes are sought and adjusted; it ends before where nothing changes.");
-  v.option("mismatch", o.mismatch, core::above(0), "How far lines may lie apart when planes are sought for the first time.");
   v.table("match", o.match, "The surfaces' matching.");
-  v.table("planes", o.planes, "The search for planes.");
+  v.table("planes", o.planes, "The search for planes; `mismatch` is that of the first round.");
   describe(o.adjust, v);
 }
 
@@ -63,6 +64,9 @@ struct Calibrated {
 /// A frame amid the flight, at its ground: the mean place of the lines' middles, `height` m below.
 trajectory::LocalFrame frame_of(const std::vector<std::pair<double, double>>& line_times, double height,
                                 const trajectory::Trajectory& trajectory);
+
+/// Throws core::Error where the surfaces of the lines meet only with the sign of the scan angle turned (scan_is_reversed()).
+void refuse_reversed_scan(const CalibrationFlight& flight, const SurfaceMatchOptions& options = {});
 
 /// Throws core::Error where the flight cannot be calibrated at all: no two lines that see the same planes (and no target), or records of
 /// the scan angle with the wrong sign. `told`: a sentence on each step, as it is done.

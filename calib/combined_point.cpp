@@ -27,7 +27,6 @@ constexpr double same_place = 1e-4;       // m
 constexpr double equal_fit = 25.0;        // five sigmas between two sums of squares
 constexpr double rough_sigma = 0.005;     // m, of distances from triangles for start values; their relations matter little
 constexpr double rough_elevation = 0.01;  // rad, of elevations between start values
-constexpr double largest_sag = 0.001;     // m, that sights bend over one sigma of the point
 constexpr double least_redundancy = 1e-6;
 
 Index at(size_t i) { return static_cast<Index>(i); }
@@ -89,6 +88,22 @@ double elevation_squares(const PointNetwork& n, const Vector3d& p) {
   return sum;
 }
 
+/// What the sights at one point bend over one sigma of its least known direction, in the sigmas of all conditions together (largest_bend).
+double bend_of(const PointNetwork& n, const std::vector<PointCondition>& conditions, const CombinedPoints& a) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(a.covariance);
+  const double variance = solver.eigenvalues()[2];
+  const Vector3d direction = solver.eigenvectors().col(2), point = a.points;
+  VectorXd bend = VectorXd::Zero(at(conditions.size()));
+  for (size_t k = 0; k < conditions.size(); ++k) {
+    if (conditions[k].kind == Kind::height) continue;  // straight in the height
+    const Vector3d way = point - n.stations[conditions[k].kind == Kind::from_b ? conditions[k].b : conditions[k].a];
+    bend[at(k)] = variance / (2 * way.norm()) * (1 - std::pow(direction.dot(way.normalized()), 2));
+  }
+  const MatrixXd B = misclosures(n, conditions, a.points, observations_of(n) + a.residual).by_observations;
+  const Eigen::LLT<MatrixXd> M(B * covariance_of(n) * B.transpose());
+  return M.info() == Eigen::Success ? std::sqrt(bend.dot(M.solve(bend))) : std::numeric_limits<double>::infinity();
+}
+
 struct Candidate {
   CombinedPoints adjusted;
   double elevation = 0.0;
@@ -138,7 +153,11 @@ PointSearch search(const PointNetwork& n, const std::optional<Vector3d>& start) 
     if (a.adjusted.solved != b.adjusted.solved) return a.adjusted.solved;
     return a.adjusted.squares < b.adjusted.squares;
   });
-  if (found.empty() || !found[0].adjusted.solved) return out;
+  if (found.empty() || !found[0].adjusted.solved) {
+    // Beside the plane of the stations the squares of heights come out below zero as often as above.
+    if (begin.state == ResectionState::weak) out.state = PointState::weak;
+    return out;
+  }
   out.state = PointState::solved;
   if (found.size() > 1) {
     const bool both_fit = found[1].adjusted.solved && found[1].adjusted.squares - found[0].adjusted.squares < equal_fit;
@@ -159,10 +178,7 @@ PointSearch search(const PointNetwork& n, const std::optional<Vector3d>& start) 
     out.start_led_to_mirror = from_start && (*from_start - found[0].position()).norm() > same_place;
   }
   out.position = found[0].position();
-  const double variance = Eigen::SelfAdjointEigenSolver<MatrixXd>(found[0].adjusted.covariance).eigenvalues().maxCoeff();
-  double sag = 0;
-  for (const TargetDistance& d : rough) sag += variance / (2 * d.distance) / static_cast<double>(rough.size());
-  if (out.state == PointState::solved && !(sag < largest_sag)) out.state = PointState::weak;
+  if (!(bend_of(n, conditions, found[0].adjusted) < largest_bend)) out.state = PointState::weak;
   out.variance_factor = found[0].adjusted.squares / std::max(found[0].adjusted.redundancy, 1);
   return out;
 }

@@ -17,6 +17,23 @@ constexpr double least_redundancy = 1e-6;  // of a corner that the others check
 constexpr int rounds = 3;                  // weights follow the normal, which they hardly move
 constexpr const char* off_plane_count = "surveyed targets whose corners lie off one plane by more than four sigmas";
 
+constexpr const char* crossing_count =
+    "surveyed targets whose outline crosses itself: their corners do not stand in their order around them";
+
+/// Do two sides of the outline cross, seen along the plane's normal?
+bool crosses_itself(const SurveyedTarget& t) {
+  const size_t n = t.corners.size();
+  const auto side = [&](size_t from, size_t p) {
+    return t.normal.dot((t.corners[(from + 1) % n] - t.corners[from]).cross(t.corners[p] - t.corners[from]));
+  };
+  for (size_t i = 0; i < n; ++i)
+    for (size_t j = i + 2; j < n; ++j) {
+      const size_t k = (j + 1) % n;
+      if (k != i && side(i, j) * side(i, k) < 0 && side(j, i) * side(j, (i + 1) % n) < 0) return true;
+    }
+  return false;
+}
+
 Vector3d upwards(const Vector3d& n) { return n.z() < 0 ? Vector3d(-n) : n; }
 
 void check_corners(const SurveyedTarget& target, const CornerPlane& plane, const std::vector<std::string>& places, core::Tally& tally) {
@@ -111,6 +128,7 @@ std::vector<SurveyedTarget> surveyed_targets(const std::vector<io::ControlPoint>
       target.normal = plane.normal;
       for (size_t k = 0; k < plane.sigma.size(); ++k) target.control[k].sigma = plane.sigma[k];
       check_corners(target, plane, places, tally);
+      if (crosses_itself(target)) tally.count(crossing_count, target.name + ", " + places[0]);
     }
     out.push_back(std::move(target));
   }

@@ -40,7 +40,8 @@ CornerPlane corner_plane(const std::vector<Eigen::Vector3d>& corners, const std:
                          const std::vector<double>& sigma_v);
 
 /// Planes and points of read_control() in the local frame, in its order. Counted in the tally, with the corner and its distance: targets
-/// of which a corner lies off the plane of the others by more than four sigmas of that distance. The corner is kept.
+/// of which a corner lies off the plane of the others by more than four sigmas of that distance (the corner is kept), and those whose
+/// outline crosses itself.
 std::vector<SurveyedTarget> surveyed_targets(const std::vector<io::ControlPoint>& points, const trajectory::LocalFrame& frame,
                                              core::Tally& tally);
 

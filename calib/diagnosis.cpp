@@ -9,6 +9,8 @@
 #include <map>
 #include <set>
 
+#include "calib/parameter_words.h"
+
 namespace swath::calib {
 namespace {
 
@@ -31,7 +33,7 @@ const char* const slopes_cure = "fly over buildings with sloping roofs or walls"
 const char* const control_cure = "survey the plane of a roof or of level ground in the block";
 
 Words words_for(Parameter p, const FlightShape& s) {
-  const std::string name(words_of(p));
+  const std::string name(words_of(p).name);
   if (s.lines == 0)
     return {name + ": no plane is seen by two lines", "fly lines that overlap, with buildings or even ground in the overlap"};
   if (s.lines == 1)
@@ -91,19 +93,12 @@ std::string joined(const std::vector<Parameter>& list) {
   std::string out;
   for (size_t i = 0; i < list.size(); ++i) {
     if (i > 0) out += i + 1 < list.size() ? ", " : " and ";
-    out += words_of(list[i]);
+    out += words_of(list[i]).name;
   }
   return out;
 }
 
 }  // namespace
-
-std::string_view words_of(Parameter p) {
-  static constexpr std::array<std::string_view, latency + 1> words{
-      "boresight roll", "boresight pitch", "boresight heading", "lever arm forward", "lever arm right", "lever arm down",
-      "range offset",   "range scale",     "scan offset",       "scan scale",        "latency"};
-  return p <= latency ? words[static_cast<size_t>(p)] : "";
-}
 
 double limit_of(const LimitOptions& o, Parameter p) {
   switch (p) {

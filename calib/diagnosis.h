@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "calib/adjust_options.h"
@@ -12,8 +11,6 @@
 
 namespace swath::calib {
 
-/// "boresight pitch" ...
-std::string_view words_of(Parameter p);
 /// Largest useful sigma.
 double limit_of(const LimitOptions& limits, Parameter p);
 

@@ -34,8 +34,9 @@ std::string words(const char* format, A... a) {
   return text;
 }
 
-/// The surveyed target of that name, or the largest.
-std::optional<RoofTarget> surveyed_target(const std::vector<io::ControlPoint>& control, const std::string& wanted) {
+/// The surveyed target of that name, or the largest that is a level roof; `not_used`: what the others are, in words.
+std::optional<RoofTarget> surveyed_target(const std::vector<io::ControlPoint>& control, const std::string& wanted,
+                                          std::vector<std::string>& not_used) {
   std::map<std::string, std::vector<const io::ControlPoint*>> targets;
   for (const io::ControlPoint& p : control)
     if (!p.target.empty() && p.use == io::ControlUse::control) targets[p.target].push_back(&p);
@@ -55,9 +56,10 @@ std::optional<RoofTarget> surveyed_target(const std::vector<io::ControlPoint>& c
     std::optional<RoofTarget> t;
     try {
       t = roof_target(name, corners, sigma_h, sigma_v);
-    } catch (const core::Error&) {
+    } catch (const core::Error& e) {
       if (!wanted.empty()) throw;
-      continue;  // a gable, a wall: not for this analysis
+      not_used.push_back(std::string(e.what()) + "; it takes no part (" + e.hint() + ")");
+      continue;
     }
     double area = 0.0;
     for (size_t k = 0; k < t->sides(); ++k) {
@@ -88,11 +90,11 @@ class Analysis {
   FlatTarget run(const ShotStream& shots, const std::vector<io::ControlPoint>& control, core::Tally& tally) {
     const ShotGeometry start(scanner_, present_);
     const double search = std::tan(options_.search.value);
-    auto target = surveyed_target(control, options_.target);
+    auto target = surveyed_target(control, options_.target, out_.findings);
     if (!target)
       target = find_roof(shots, start, trajectory_, search, {options_.stands_out.value, options_.shortest_side.value, 0.05, 2.0});
     if (!target) {
-      say("no target: none is surveyed, and no flat level roof of " + words("%.0f m", options_.shortest_side.value) +
+      say("no target: no surveyed one is a level roof, and no flat level roof of " + words("%.0f m", options_.shortest_side.value) +
           " that stands out of its surroundings was found in any line");
       return out_;
     }

@@ -32,7 +32,8 @@ struct FlatTargetOptions {
 template <class V>
 void describe(FlatTargetOptions& o, V& v) {
   v.option("target", o.target, "Surveyed target to use; empty: the largest one, or without any the largest flat roof in the data.");
-  v.option("search", o.search, core::within(0.01, 5.0 * core::degree), "How far the mounting may be wrong at the start, about each axis.");
+  v.option("search", o.search, core::within(0.05 * core::degree, 5.0 * core::degree),
+           "How far the mounting may be wrong at the start, about each axis.");
   v.option("rounds", o.rounds, core::within(1, 20), "Most rounds of measuring the target, correcting and measuring again.");
   v.option("tolerance", o.tolerance, core::at_least(0),
            "An angle gets a new value only where it differs by more than this from the one in force; without a value: by tolerance_sigmas.",

@@ -30,7 +30,8 @@ void describe(LineHeightOptions& o, V& v) {
 }
 
 /// Fits a plane to the single returns of each line in each cell. Where a line comes in several pieces with others between them, a cell that
-/// two pieces share keeps that of more returns. Memory: 80 bytes per cell of the line at work, 16 per smooth cell of every line.
+/// two pieces share keeps that of more returns. Memory: 80 bytes per cell of the line at work, in squares of 64 cells, and about 100 per
+/// smooth cell of every line.
 class LineHeights {
  public:
   /// `automatic`: side of the cells where the options state none, m.

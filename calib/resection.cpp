@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Source: Jubanski et al., eq 9 (parametric adjustment of a station from distances). The paper starts from values read off a drawing; here
-// they are computed on both sides of the plane of the targets, because from the wrong side the adjustment ends in the mirror image.
+// they are computed on both sides of the plane of the targets, because from the wrong side the adjustment ends in the mirror image. Whether
+// the linear model, and with it the sigmas, holds: relative curvature (Bates & Watts, "Relative curvature measures of nonlinearity", 1980).
 #include "calib/resection.h"
 
 #include <Eigen/Cholesky>
@@ -23,7 +24,6 @@ constexpr double same_place = 1e-6;     // m; two searches that ended here ended
 constexpr double in_line_share = 1e-3;  // breadth of the targets by their length
 constexpr double least_rise = 0.02;     // of the targets' extent: start off their plane, where the normal matrix is regular
 constexpr double equal_fit = 25.0;      // five sigmas between two sums of squares
-constexpr double sag_share = 0.5;       // of a distance's sigma: what distances may bend over one sigma of the station
 constexpr size_t least_for_scale = 6;
 
 struct Search {
@@ -195,13 +195,10 @@ Resection resect(const std::vector<TargetDistance>& all, const std::optional<Vec
     out.mirror_variance_factor = ends[1].squares / std::max(out.redundancy, 1);
     out.start_led_to_mirror = from_start.found && (from_start.position - out.position).norm() > same_place;
   }
-  double sag = 0, sigma = 0;  // a straight model of distances that bend is no model
+  double bend = 0;  // a straight model of distances that bend is no model
   const double variance = Eigen::SelfAdjointEigenSolver<Matrix3d>(out.covariance).eigenvalues().maxCoeff();
-  for (const TargetDistance& d : all) {
-    sag += variance / (2 * d.distance);
-    sigma += d.sigma;
-  }
-  if (!(sag < sag_share * sigma)) {
+  for (const TargetDistance& d : all) bend += std::pow(variance / (2 * d.distance * d.sigma), 2);
+  if (!(std::sqrt(bend) < largest_bend)) {
     out.state = ResectionState::weak;
   } else if (both_fit) {
     out.decided_by_start = start.has_value();

@@ -123,6 +123,8 @@ AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions
   std::copy_if(survey.targets.begin(), survey.targets.end(), std::back_inserter(targets),
                [](const SurveyedTarget& t) { return t.use == io::ControlUse::control; });
   AdjustedStrips out;
+  tell("sign of the scan angle");
+  refuse_reversed_scan(survey);
   TiePlaneOptions planes = options.planes;
   core::Tally of_round;
   double change = 0;
@@ -134,7 +136,8 @@ AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions
     refuse_without_overlap(out.ties, of_round);
     tell("round " + std::to_string(out.rounds) + ": adjustment");
     const std::vector<LineCorrection> before = std::move(out.adjustment.corrections);
-    out.adjustment = adjust(out.ties, survey.scanner, survey.start, survey.sensor, *survey.trajectory, *survey.errors, options.adjust);
+    out.adjustment =
+        adjust(out.ties, survey.scanner, survey.start, survey.sensor, *survey.trajectory, *survey.errors, options.adjust, survey.threads);
     refuse_what_the_adjustment_refuses(out.adjustment);
     out.trajectory.emplace(with_corrections(*survey.trajectory, out.adjustment.corrections));
     change = moved(before, out.adjustment.corrections, out.adjustment);

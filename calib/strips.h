@@ -60,7 +60,8 @@ struct AdjustedStrips {
 };
 
 /// Planes are sought with the trajectory as corrected so far; the adjustment starts from the one that was given, whose errors `errors`
-/// tells. Throws core::Error where no two lines see the same planes, or where the lines do not agree with one another at all.
+/// tells. Throws core::Error where no two lines see the same planes, where the lines do not agree with one another at all, or only with the
+/// sign of the scan angle turned.
 AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions& options, core::Tally& tally,
                              const std::function<void(const std::string&)>& told = {});
 

@@ -299,7 +299,35 @@ void state_findings(SurfaceMatch& m, bool overlap) {
                             false});
 }
 
+/// Do the surfaces meet with the sign of the scan angle turned, and far better than the share `agreement` of them that meets as recorded?
+bool meets_turned(const ShotStream& stream, const core::Scanner& scanner, const core::Calibration& start,
+                  const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame, const SurfaceMatchOptions& o,
+                  const Search& search, double agreement) {
+  core::Calibration turned = start;
+  turned.scan_scale = -start.scan_scale;
+  LocalPoints points(scanner, turned, trajectory, frame);
+  const Round r = read_round(stream, points, o);
+  const std::vector<Matched> matched = match_all(r, search);
+  const double there = matched.empty() ? 0.0 : agreement_of(matched, seek(matched, search));
+  return there > 2.0 * agreement && is_agreed(matched, search, there);
+}
+
 }  // namespace
+
+bool scan_is_reversed(const ShotStream& stream, const core::Scanner& scanner, const core::Calibration& start,
+                      const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame, const SurfaceMatchOptions& o) {
+  const Search search = Vector3d::Constant(o.search.value);
+  double agreement = 0.0;
+  {
+    LocalPoints points(scanner, start, trajectory, frame);
+    const Round r = read_round(stream, points, o);
+    const std::vector<Matched> matched = match_all(r, search);
+    if (matched.size() < fewest_squares) return false;
+    agreement = agreement_of(matched, seek(matched, search));
+    if (is_agreed(matched, search, agreement)) return false;
+  }
+  return meets_turned(stream, scanner, start, trajectory, frame, o, search, agreement);
+}
 
 SurfaceMatch match_surfaces(const ShotStream& stream, const core::Scanner& scanner, const core::Calibration& start,
                             const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame, const SurfaceMatchOptions& o) {
@@ -317,13 +345,7 @@ SurfaceMatch match_surfaces(const ShotStream& stream, const core::Scanner& scann
     if (round == 1) {
       out.agreement = agreement_of(matched, found);
       if (matched.size() >= fewest_squares && !is_agreed(matched, search, out.agreement)) {
-        core::Calibration mirrored = start;
-        mirrored.scan_scale = -start.scan_scale;
-        LocalPoints other(scanner, mirrored, trajectory, frame);
-        const Round m = read_round(stream, other, o);
-        const std::vector<Matched> match_there = match_all(m, search);
-        const double there = match_there.empty() ? 0.0 : agreement_of(match_there, seek(match_there, search));
-        if (there > 2.0 * out.agreement && is_agreed(match_there, search, there)) {
+        if (meets_turned(stream, scanner, start, trajectory, frame, o, search, out.agreement)) {
           out.scan_reversed = true;
           out.findings.push_back({"the surfaces of the lines meet with the sign of the scan angle turned, and not as recorded",
                                   "state that the file counts scan angles positive to port (angle_to_port)",

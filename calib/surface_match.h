@@ -73,4 +73,11 @@ SurfaceMatch match_surfaces(const ShotStream& stream, const core::Scanner& scann
                             const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame,
                             const SurfaceMatchOptions& options = {});
 
+/// Do the surfaces meet with the sign of the scan angle turned, and not as recorded? The test of match_surfaces() by itself, for flights
+/// whose boresight is known. False too where nothing tells: no overlap, hardly any relief, or lines on one and the same track alone (each
+/// mirrors the ground about it alike). Reads the stream once, a second time where the surfaces do not meet.
+bool scan_is_reversed(const ShotStream& stream, const core::Scanner& scanner, const core::Calibration& start,
+                      const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame,
+                      const SurfaceMatchOptions& options = {});
+
 }  // namespace swath::calib

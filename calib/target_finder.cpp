@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <unordered_set>
 
 #include "core/units.h"
 
@@ -26,6 +27,7 @@ constexpr double surrounded = 0.85;   // of the cells around that hold returns a
 constexpr double known_around = 0.6;  // of the cells around hold returns: a roof at the swath's edge is not known to end there
 
 using Key = std::pair<std::int32_t, std::int32_t>;
+using Cells = std::unordered_set<std::uint64_t>;
 
 std::uint64_t packed(Key k) {
   return static_cast<std::uint64_t>(static_cast<std::uint32_t>(k.first)) << 32 | static_cast<std::uint32_t>(k.second);
@@ -83,18 +85,18 @@ std::vector<FoundRoof> HeightGrid::roofs(const FinderOptions& options) const {
   for (const auto& [key, cell] : cells_)
     if (cell.highest - cell.lowest < flat_cell) keys.push_back(unpacked(key));
   std::sort(keys.begin(), keys.end());
-  std::set<Key> left(keys.begin(), keys.end());
+  Cells left;  // a patch of level ground has half a million cells
+  for (const Key& k : keys) left.insert(packed(k));
   std::vector<FoundRoof> out;
   const auto fewest = static_cast<size_t>(options.shortest * options.shortest / (cell_ * cell_) / 2);
   for (const Key& start : keys) {
-    if (!left.contains(start)) continue;
-    left.erase(start);
+    if (left.erase(packed(start)) == 0) continue;
     std::vector<Key> patch{start};
     for (size_t i = 0; i < patch.size(); ++i) {
       const float here = cells_.at(packed(patch[i])).mean();
       for (const Key& d : {Key{1, 0}, Key{-1, 0}, Key{0, 1}, Key{0, -1}}) {
         const Key next{patch[i].first + d.first, patch[i].second + d.second};
-        const auto at = left.find(next);
+        const auto at = left.find(packed(next));
         if (at == left.end() || std::abs(cells_.at(packed(next)).mean() - here) > step) continue;
         left.erase(at);
         patch.push_back(next);
@@ -122,22 +124,23 @@ std::vector<FoundRoof> HeightGrid::roofs(const FinderOptions& options) const {
     if (std::sqrt(squares / static_cast<double>(patch.size())) > roughest) continue;
 
     // Two cells away from the patch all is lower.
-    const std::set<Key> own(patch.begin(), patch.end());
-    std::set<Key> near, around;
+    Cells own, near, around;
+    for (const Key& k : patch) own.insert(packed(k));
     for (const Key& k : patch)
       for (std::int32_t i = -2; i <= 2; ++i)
         for (std::int32_t j = -2; j <= 2; ++j) {
-          const Key other{k.first + i, k.second + j};
+          const std::uint64_t other = packed({k.first + i, k.second + j});
           if (own.contains(other)) continue;
           (std::abs(i) < 2 && std::abs(j) < 2 ? near : around).insert(other);
         }
     size_t known = 0, lower = 0, all = 0;
-    for (const Key& k : around) {
-      if (near.contains(k)) continue;
+    for (const std::uint64_t other : around) {
+      if (near.contains(other)) continue;
       ++all;
-      const auto at = cells_.find(packed(k));
+      const auto at = cells_.find(other);
       if (at == cells_.end()) continue;
       ++known;
+      const Key k = unpacked(other);
       lower += static_cast<double>(at->second.mean()) < up(cell_ * (Vector2d(k.first, k.second) + Vector2d(0.5, 0.5))) - options.stands_out;
     }
     if (static_cast<double>(known) < known_around * static_cast<double>(all) ||

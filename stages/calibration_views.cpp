@@ -36,21 +36,19 @@ class Mapper {
 }  // namespace
 
 CalibrationViews view_calibration(const Context& context, const Geometry& before, const Geometry& after, const calib::TieSet& ties,
-                                  const std::vector<io::ControlPoint>& control, const calib::LineHeightOptions& heights, double cell,
+                                  const std::vector<calib::SurveyedTarget>& targets, const calib::LineHeightOptions& heights, double cell,
                                   size_t sections) {
   const Mapper old_way(context, before), new_way(context, after);
   CalibrationViews out;
   out.sections = calib::plan_sections(ties, new_way.map(), context.unit, sections);
 
-  std::vector<calib::CheckPoint> points;
-  for (const io::ControlPoint& p : control) {
-    if (p.use != io::ControlUse::check || !p.target.empty()) continue;
-    const Eigen::Vector3d map = new_way.map()(p.ecef);
-    points.push_back(
-        {p.name, {map.x() * context.unit, map.y() * context.unit, map.z() * context.crs.vertical_metres_per_unit()}, p.sigma_v});
-  }
+  const Eigen::Vector3d metres(context.unit, context.unit, context.crs.vertical_metres_per_unit());
   constexpr double around = 2.0;  // m
-  calib::CheckPoints checks(std::move(points), around);
+  calib::CheckPoints checks(calib::check_points_of(targets,
+                                                   [&](const Eigen::Vector3d& local) -> Eigen::Vector3d {
+                                                     return new_way.map()(ties.frame.to_ecef(local)).cwiseProduct(metres);
+                                                   }),
+                            around);
   calib::LineHeights old_heights(heights, cell), new_heights(heights, cell);
   calib::SectionReturns old_sections(out.sections), new_sections(out.sections);
   stream_shots(context)([&](int line, const core::Shots& shots) {

@@ -8,7 +8,6 @@
 #include "calib/check_points.h"
 #include "calib/cross_sections.h"
 #include "calib/line_heights.h"
-#include "io/control.h"
 #include "stages/stage.h"
 #include "trajectory/trajectory.h"
 
@@ -27,10 +26,10 @@ struct CalibrationViews {
   std::vector<calib::CheckResidual> checks;                                                   ///< with the result
 };
 
-/// Reads the flight once and georeferences it twice. `cell`: for the differences, where the options state none, m. Check points: those of
-/// use `check` that are points of their own.
+/// Reads the flight once and georeferences it twice. `cell`: for the differences, where the options state none, m. `targets`: those of use
+/// `check` are compared with the result.
 CalibrationViews view_calibration(const Context& context, const Geometry& before, const Geometry& after, const calib::TieSet& ties,
-                                  const std::vector<io::ControlPoint>& control, const calib::LineHeightOptions& heights, double cell,
+                                  const std::vector<calib::SurveyedTarget>& targets, const calib::LineHeightOptions& heights, double cell,
                                   size_t sections);
 
 }  // namespace swath::stages

@@ -83,7 +83,7 @@ class Adjust : public OptionStage<AdjustStageOptions> {
     }
     const DeliveredCalibration result = delivered(calibrated.adjustment, survey.sigma);
     add_views(report, view_calibration(context, {&survey.calibration, context.trajectory.get()},
-                                       {&result.calibration, context.trajectory.get()}, calibrated.ties, prepared.control,
+                                       {&result.calibration, context.trajectory.get()}, calibrated.ties, prepared.flight.targets,
                                        options.differences, cell_for(prepared.lines), static_cast<size_t>(options.sections)));
     write_calibration_report(report, context.output);
     tell(calibrated, findings);
@@ -97,6 +97,7 @@ class Adjust : public OptionStage<AdjustStageOptions> {
       one["value"] = e.value;
       one["sigma"] = e.sigma;
       one["start"] = e.start;
+      one["delivered"] = is_delivered(c.adjustment, e.parameter);
       findings["estimates"][std::string(words_of(e.parameter).key)] = std::move(one);
     }
     findings["planes"] = c.ties.planes.size();

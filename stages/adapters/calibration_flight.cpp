@@ -66,8 +66,7 @@ PreparedFlight::PreparedFlight(const Context& context, const trajectory::ErrorMo
   std::vector<std::pair<double, double>> times;
   for (const calib::FlownLine& l : lines) times.emplace_back(l.first, l.last);
   flight.frame = calib::frame_of(times, metres_down(lines), *trajectory);
-  control = io::read_control(survey, tally);
-  flight.targets = calib::surveyed_targets(control, flight.frame, tally);
+  flight.targets = calib::surveyed_targets(io::read_control(survey, tally), flight.frame, tally);
 }
 
 double cell_for(const std::vector<calib::FlownLine>& lines) {
@@ -106,8 +105,14 @@ void add_views(CalibrationReport& report, CalibrationViews views) {
     both.before = before == views.before.end() ? core::Grid(both.after.lattice) : on_lattice(before->grid, both.after.lattice);
     report.differences.push_back(std::move(both));
   }
-  for (const calib::CheckResidual& c : views.checks)
-    if (std::isfinite(c.difference)) report.checks.push_back({c.name, 0, c.difference, c.sigma, 1.0, c.difference / c.sigma, false});
+  std::string bare;
+  for (const calib::CheckResidual& c : views.checks) {
+    if (std::isfinite(c.difference))
+      report.checks.push_back({c.name, 0, c.difference, c.sigma, 1.0, c.difference / c.sigma, false});
+    else
+      bare += (bare.empty() ? "" : ", ") + c.name;
+  }
+  if (!bare.empty()) report.notes.push_back("Check points that too few returns lie around to be compared: " + bare + ".");
 }
 
 }  // namespace swath::stages

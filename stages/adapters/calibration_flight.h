@@ -24,7 +24,6 @@ struct PreparedFlight {
   std::shared_ptr<const trajectory::Trajectory> trajectory;
   trajectory::ErrorModel errors;
   std::vector<calib::FlownLine> lines;
-  std::vector<io::ControlPoint> control;
   calib::CalibrationFlight flight;  ///< points at the members above
   PreparedFlight(const PreparedFlight&) = delete;
 };

@@ -60,7 +60,7 @@ class Strips : public OptionStage<StripStageOptions> {
     report.strips = strips.differences;
     const core::Calibration& held = context.survey.calibration;
     CalibrationViews views =
-        view_calibration(context, {&held, prepared.trajectory.get()}, {&held, corrected.get()}, strips.ties, prepared.control,
+        view_calibration(context, {&held, prepared.trajectory.get()}, {&held, corrected.get()}, strips.ties, prepared.flight.targets,
                          options.differences, cell_for(prepared.lines), static_cast<size_t>(options.sections));
     const double map_before = calib::overall_rms(views.before), map_after = calib::overall_rms(views.after);
     add_views(report, std::move(views));

@@ -276,7 +276,7 @@ void Maker::target() {
     t.columns = {{"parameter", false}, {"unit", false}, {"adjusted"},      {"flat target"}, {"difference"},
                  {"joint sigma"},      {"readings"},    {"agrees", false}, {"from", false}};
     for (const TargetReading& r : report_.readings) {
-      const ParameterWords& w = words_of(r.parameter);
+      const calib::ParameterWords& w = words_of(r.parameter);
       const Agreement a = agreement_of(adjustment_, r);
       const double from = w.unit == "1" ? 1.0 : 0.0, none = calib::not_known;
       const double adjusted = a.known ? adjustment_.estimates[static_cast<size_t>(r.parameter)].value : none;

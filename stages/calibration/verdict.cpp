@@ -2,11 +2,9 @@
 #include "stages/calibration/verdict.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 
-#include "core/units.h"
 #include "report/html.h"
 
 namespace swath::stages {
@@ -14,21 +12,6 @@ namespace {
 
 using calib::Adjustment;
 using calib::Parameter;
-
-constexpr double arc_second = core::degree / 3600.0;
-constexpr std::array<ParameterWords, estimated_count> words{{
-    {"boresight_roll", "boresight roll", "rad", "arcsec", arc_second},
-    {"boresight_pitch", "boresight pitch", "rad", "arcsec", arc_second},
-    {"boresight_heading", "boresight heading", "rad", "arcsec", arc_second},
-    {"lever_forward", "lever arm forward", "m", "mm", 1e-3},
-    {"lever_right", "lever arm right", "m", "mm", 1e-3},
-    {"lever_down", "lever arm down", "m", "mm", 1e-3},
-    {"range_offset", "range offset", "m", "mm", 1e-3},
-    {"range_scale", "range scale", "1", "ppm", 1e-6},
-    {"scan_offset", "scan offset", "rad", "arcsec", arc_second},
-    {"scan_scale", "scan scale", "1", "ppm", 1e-6},
-    {"latency", "latency", "s", "ms", 1e-3},
-}};
 
 std::string sigma_number(const calib::Estimate& e) { return report::number_text(e.sigma / words_of(e.parameter).sigma_size, 1); }
 
@@ -96,8 +79,6 @@ std::string not_calibrated(const Refusal& r) {
 }
 
 }  // namespace
-
-const ParameterWords& words_of(Parameter parameter) { return words.at(static_cast<size_t>(parameter)); }
 
 std::string joined(const std::vector<std::string>& items) {
   std::string out;

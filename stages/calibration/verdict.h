@@ -3,23 +3,13 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "calib/adjustment.h"
+#include "calib/parameter_words.h"
 #include "calib/strips.h"
 #include "report/page.h"
 
 namespace swath::stages {
-
-/// How a parameter's numbers are shown.
-struct ParameterWords {
-  std::string_view key;         ///< in files: "boresight_roll"
-  std::string_view name;        ///< "boresight roll"
-  std::string_view unit;        ///< SI, of files: "m", "rad", "s", "1"
-  std::string_view sigma_unit;  ///< of sigmas in reports: "arcsec", "mm", "ppm", "ms"
-  double sigma_size;            ///< SI value of one sigma_unit
-};
-const ParameterWords& words_of(calib::Parameter parameter);
 
 constexpr int estimated_count = calib::latency + 1;
 /// All parameters that an adjustment can estimate, in order.

@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-#include "calib/diagnosis.h"
+#include "calib/parameter_words.h"
 #include "tests/calib/tie_block.h"
 
 namespace swath::calib {
@@ -195,8 +195,8 @@ TEST(Adjust, SigmasAreTrueOverManyFlights) {
   const MonteCarlo m = fly(w, 60, plain(), 0);
   double mean = 0.0;
   for (const Parameter p : usual) {
-    EXPECT_GT(m.rms(p), low) << words_of(p);
-    EXPECT_LT(m.rms(p), high) << words_of(p);
+    EXPECT_GT(m.rms(p), low) << words_of(p).name;
+    EXPECT_LT(m.rms(p), high) << words_of(p).name;
     mean += m.rms(p) / static_cast<double>(usual.size());
   }
   EXPECT_NEAR(mean, 1.0, 0.12);
@@ -204,15 +204,15 @@ TEST(Adjust, SigmasAreTrueOverManyFlights) {
   for (const Parameter p : {boresight_roll, boresight_pitch, boresight_heading})
     EXPECT_GT(std::accumulate(m.white[p].begin(), m.white[p].end(), 0.0) / static_cast<double>(m.white[p].size()),
               p == boresight_heading ? 3.0 : 4.0)
-        << words_of(p);
+        << words_of(p).name;
 }
 
 TEST(Adjust, SigmasAreTrueWithControlAndWithoutCrossLines) {
   AdjustOptions o = plain();
   const MonteCarlo m = fly(pattern_of({{0.0, 0.0}, {180.0 * deg, 0.0}, {0.0, 230.0}, {180.0 * deg, 230.0}}, 8, 6), 40, o, 3);
   for (const Parameter p : usual) {
-    EXPECT_GT(m.rms(p), 0.75) << words_of(p);  // 40 flights: 11 %
-    EXPECT_LT(m.rms(p), 1.25) << words_of(p);
+    EXPECT_GT(m.rms(p), 0.75) << words_of(p).name;  // 40 flights: 11 %
+    EXPECT_LT(m.rms(p), 1.25) << words_of(p).name;
   }
 }
 
@@ -224,8 +224,8 @@ TEST(Adjust, SigmasAreTrueWhereLittleIsDetermined) {
   for (const World& w : {pattern_of({line}, 6, 6), pattern_of({line, line, {0.0, 150.0}}, 6, 6), level}) {
     const MonteCarlo m = fly(w, 40, plain(), 0);
     for (const Parameter p : usual) {
-      EXPECT_GT(m.rms(p), 0.65) << words_of(p) << ", lines " << w.lines.size();  // 40 flights: 11 %; fifteen of them
-      EXPECT_LT(m.rms(p), 1.35) << words_of(p) << ", lines " << w.lines.size();
+      EXPECT_GT(m.rms(p), 0.65) << words_of(p).name << ", lines " << w.lines.size();  // 40 flights: 11 %; fifteen of them
+      EXPECT_LT(m.rms(p), 1.35) << words_of(p).name << ", lines " << w.lines.size();
     }
   }
 }
@@ -283,7 +283,7 @@ TEST(Adjust, AGoodPatternIsDelivered) {
   const Adjustment a = flown(w, o, 5, near_truth(w));
   for (const Parameter p : usual) {
     const Estimate& e = a.estimates[p];
-    EXPECT_TRUE(e.estimated && e.delivered) << words_of(p);
+    EXPECT_TRUE(e.estimated && e.delivered) << words_of(p).name;
     EXPECT_LT(std::abs(e.value - value_of(w.truth, p)), 4.0 * e.sigma);
     EXPECT_GE(e.sigma, e.formal);
     EXPECT_GT(e.formal, e.white);
@@ -343,6 +343,8 @@ TEST(Adjust, ControlInAnotherDatumIsNamed) {
   const Adjustment a = flown(w, plain(), 6, near_truth(w));
   EXPECT_TRUE(says(a, "control does not fit: mean misfit east 3.0", false));
   for (const ControlResidual& c : a.control) EXPECT_TRUE(c.rejected);
+  // What was left out holds no height.
+  EXPECT_TRUE(says(a, "range offset and a common error of height cannot be told apart: no control; its value rests on", false));
 }
 
 // Ackermann's model: position = true + a0 + a1 t in every line, boresight held.
@@ -393,6 +395,22 @@ TEST(Adjust, ScanOffsetIsTheRollOfAScannerAcross) {
   EXPECT_FALSE(a.estimates[scan_offset].estimated);
   EXPECT_TRUE(a.estimates[boresight_roll].delivered);
   EXPECT_TRUE(says(a, "scan offset and boresight roll are the same turn", true));
+}
+
+TEST(Adjust, ScanOffsetIsTheHeadingOfACone) {
+  World w = pattern_of(full_pattern(), 6, 6);
+  TieSet none;
+  none.frame = w.frame;
+  w.scanner.model = core::ScannerModel::conical;
+  AdjustOptions o = plain();
+  o.estimate.scan_offset = true;
+  const Adjustment a = adjust(none, w.scanner, w.truth, w.noise, trajectory::Trajectory(w.exact), tactical_errors, o);
+  EXPECT_FALSE(a.estimates[scan_offset].estimated);
+  EXPECT_TRUE(a.estimates[boresight_heading].estimated);
+  EXPECT_TRUE(says(a, "scan offset and boresight heading are the same turn", true));
+  o.estimate.heading = false;
+  EXPECT_TRUE(
+      adjust(none, w.scanner, w.truth, w.noise, trajectory::Trajectory(w.exact), tactical_errors, o).estimates[scan_offset].estimated);
 }
 
 TEST(Adjust, NothingToAdjust) {

@@ -90,7 +90,7 @@ TEST(Calibrate, OneRoundIsOneRound) {
   const Calibrated c = flight.calibrated(options);
   EXPECT_EQ(c.rounds, 1);
   options.coarse = false;
-  options.mismatch = core::Metres(5.0);
+  options.planes.mismatch = core::Metres(5.0);
   EXPECT_FALSE(flight.calibrated(options).match);
 }
 
@@ -113,6 +113,37 @@ TEST(Calibrate, TheSignOfTheScanAngleIsRefused) {
     FAIL();
   } catch (const core::Error& e) {
     EXPECT_NE(std::string(e.what()).find("sign of the scan angle"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Calibrate, TheMismatchOfThePlanesIsThatOfTheFirstRound) {
+  const Flight flight(pattern());  // lines lie up to five metres apart
+  CalibrateOptions options;
+  options.rounds = 1;
+  options.coarse = false;
+  options.adjust.jackknife.blocks = 0;
+  options.adjust.jackknife.lines = false;
+  const auto planes = [&](double mismatch) {
+    options.planes.mismatch = core::Metres(mismatch);
+    return flight.calibrated(options).ties.planes.size();
+  };
+  EXPECT_NE(planes(5.0), planes(0.1));
+}
+
+TEST(Calibrate, TheSignOfTheScanAngleIsRefusedWithoutTheCoarseStepToo) {
+  Flight flight(pattern());
+  CalibrateOptions options;
+  options.coarse = false;
+  options.planes.mismatch = core::Metres(5.0);
+  EXPECT_NO_THROW(refuse_reversed_scan(flight.described()));
+  for (auto& [id, shots] : flight.flown.lines)
+    for (double& a : shots.angle) a = -a;
+  try {
+    flight.calibrated(options);
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_NE(std::string(e.what()).find("sign of the scan angle"), std::string::npos) << e.what();
+    EXPECT_NE(e.hint().find("angle_to_port"), std::string::npos) << e.hint();
   }
 }
 

@@ -46,6 +46,40 @@ TEST(CheckPoints, HeightOfThePlaneAtThePoint) {
   EXPECT_EQ(found[1].returns, 0u);
 }
 
+TEST(CheckPoints, PointsAndPlanesOfUseCheck) {
+  const auto plane = [](const char* name, io::ControlUse use, double rise, double half) {
+    SurveyedTarget t;
+    t.name = name;
+    t.use = use;
+    t.normal = Eigen::Vector3d(-rise, 0, 1).normalized();
+    t.centre = {50, 20, 8};
+    for (const auto& [x, y] : {std::pair{1, 1}, std::pair{-1, 1}, std::pair{-1, -1}, std::pair{1, -1}}) {
+      t.corners.push_back(t.centre + half * Eigen::Vector3d(x, y, x * rise));
+      t.control.push_back({t.corners.back(), 0.02, name});
+    }
+    return t;
+  };
+  SurveyedTarget peg;
+  peg.name = "peg";
+  peg.is_point = true;
+  peg.use = io::ControlUse::check;
+  peg.centre = {1, 2, 3};
+  peg.control = {{peg.centre, 0.03, "peg"}};
+  const Eigen::Vector3d away(500000, 5300000, 600);
+  const auto found = check_points_of({plane("control", io::ControlUse::control, 0.5, 5), plane("roof", io::ControlUse::check, 0.5, 5), peg,
+                                      plane("small", io::ControlUse::check, 0.0, 1.5), plane("wall", io::ControlUse::check, 5.0, 5)},
+                                     [&](const Eigen::Vector3d& local) -> Eigen::Vector3d { return local + away; });
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].name, "roof");
+  EXPECT_EQ(found[0].map, away + Eigen::Vector3d(50, 20, 8));
+  EXPECT_NEAR(found[0].sigma, 0.01 * std::hypot(0.5, 1.0), 1e-12);  // of the mean of four along the normal, as a height
+  EXPECT_DOUBLE_EQ(found[0].radius, 2.0);
+  EXPECT_EQ(found[1].name, "peg");
+  EXPECT_EQ(found[1].sigma, 0.03);
+  EXPECT_EQ(found[1].radius, 0.0);
+  EXPECT_NEAR(found[2].radius, 1.0, 1e-12);  // half a metre within its edges
+}
+
 TEST(CheckPoints, ReturnsInOneRowMakeNoPlane) {
   CheckPoints checks({{"row", {0, 0, 0}, 0.01}}, 2.0);
   core::Block b;

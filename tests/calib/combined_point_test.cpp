@@ -156,6 +156,63 @@ TEST(CombinedPoint, APointAsHighAsItsStationsNeedsTheSigns) {
   EXPECT_NEAR(std::sqrt(squares), 1, 0.15);  // three sigmas of a rms of 200
 }
 
+/// A survey from four stations of one height without the signs of vertical angles; the point `above` them.
+PointNetwork without_signs(double above, std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  PointNetwork n;
+  n.points = 1;
+  const Vector3d point(2.5, 3.5, 1.5 + above);
+  n.stations = stations;
+  for (Vector3d& s : n.stations) s.z() = 1.5;
+  n.station_covariance = MatrixXd::Identity(12, 12) * 1e-8;
+  for (size_t s = 0; s < n.stations.size(); ++s) {
+    const Vector3d d = point - n.stations[s];
+    for (size_t o = 0; o < n.stations.size(); ++o) {
+      if (o == s) continue;
+      const Vector3d base = n.stations[o] - n.stations[s];
+      const double angle = std::abs(core::wrap_pi(std::atan2(d.y(), d.x()) - std::atan2(base.y(), base.x())));
+      n.angles.push_back({s, o, 0, angle + 5 * arc_second * normal(random), 5 * arc_second});
+    }
+    n.verticals.push_back({s, 0, std::atan2(d.z(), d.head<2>().norm()) + 5 * arc_second * normal(random), 5 * arc_second});
+    n.distances.push_back({s, 0, d.norm() + 0.002 * normal(random), 0.002});
+  }
+  for (Vector3d& s : n.stations)
+    for (Index c = 0; c < 3; ++c) s[c] += 1e-4 * normal(random);
+  return n;
+}
+
+TEST(CombinedPoint, WithoutTheSignsAPointAsHighAsItsStationsIsRefused) {
+  std::mt19937 random(9);
+  for (int k = 0; k < 100; ++k) {
+    const PointNetwork n = without_signs(0.0, random);
+    // Neither one of two heights that noise has made, nor a start value, makes it known.
+    EXPECT_EQ(find_points(n, {}).searches[0].state, PointState::weak) << k;
+    EXPECT_EQ(find_points(n, {Vector3d(2.5, 3.5, 1.6)}).searches[0].state, PointState::weak) << k;
+  }
+}
+
+TEST(CombinedPoint, WithoutTheSignsHeightsThatAreTakenHaveTrueSigmas) {
+  std::mt19937 random(10);
+  constexpr int seeds = 200;
+  int taken = 0, refused = 0;
+  double squares = 0;
+  for (const double above : {0.02, 0.05, 0.1, 0.2, 0.5, 1.0})
+    for (int k = 0; k < seeds; ++k) {
+      const PointNetwork n = without_signs(above, random);
+      const FoundPoints found = find_points(n, {Vector3d(2.5, 3.5, 1.5 + above)});
+      if (found.searches[0].state != PointState::solved) {
+        EXPECT_EQ(found.searches[0].state, PointState::weak);
+        ++refused;
+        continue;
+      }
+      ++taken;
+      squares += std::pow(found.adjusted.points[2] - 1.5 - above, 2) / found.adjusted.covariance(2, 2);
+    }
+  EXPECT_GT(taken, 2 * seeds);
+  EXPECT_GT(refused, seeds);
+  EXPECT_NEAR(std::sqrt(squares / taken), 1, 0.12);  // what is taken at the limit is taken because it came out high
+}
+
 TEST(CombinedPoint, WhatIsNotDetermined) {
   PointNetwork n = exact({two[0]});
   n.angles.clear();

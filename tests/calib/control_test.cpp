@@ -95,6 +95,24 @@ TEST_F(ControlTargets, ACornerOffThePlaneIsNamed) {
   EXPECT_NEAR(sum, 3, 1e-9);
 }
 
+TEST_F(ControlTargets, CornersOutOfTheirOrderAreTold) {
+  constexpr const char* crossing = "surveyed targets whose outline crosses itself: their corners do not stand in their order around them";
+  const std::vector<io::ControlPoint> around{point("1", "roof", {0, 0, 10}), point("2", "roof", {30, 0, 10}),
+                                             point("3", "roof", {30, 10, 15}), point("4", "roof", {0, 10, 15})};
+  surveyed_targets(around, frame_, tally_);
+  surveyed_targets({around[3], around[2], around[1], around[0]}, frame_, tally_);
+  EXPECT_TRUE(tally_.empty());
+  surveyed_targets({around[0], around[2], around[1], around[3]}, frame_, tally_);
+  EXPECT_EQ(tally_.of(crossing), 1u);
+  // An L is no crossing.
+  std::vector<io::ControlPoint> ell;
+  for (const Vector3d& p :
+       {Vector3d(0, 0, 0), Vector3d(20, 0, 0), Vector3d(20, 8, 0), Vector3d(8, 8, 0), Vector3d(8, 20, 0), Vector3d(0, 20, 0)})
+    ell.push_back(point(std::to_string(ell.size()), "ell", p));
+  surveyed_targets(ell, frame_, tally_);
+  EXPECT_EQ(tally_.of(crossing), 1u);
+}
+
 TEST_F(ControlTargets, FourSigmasAreFourSigmas) {
   // Over many surveys of a four-cornered roof with true sigmas the misclosure in sigmas has mean square 1, so that hardly one is named.
   std::mt19937 random(7);

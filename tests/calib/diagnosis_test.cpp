@@ -111,11 +111,8 @@ TEST(Diagnosis, Condition) {
   EXPECT_TRUE(std::isinf(scaled_condition(N)));
 }
 
-TEST(Diagnosis, EveryParameterHasWordsAndALimit) {
-  for (int k = boresight_roll; k <= latency; ++k) {
-    EXPECT_FALSE(words_of(static_cast<Parameter>(k)).empty());
-    EXPECT_GT(limit_of({}, static_cast<Parameter>(k)), 0.0);
-  }
+TEST(Diagnosis, EveryParameterHasALimit) {
+  for (int k = boresight_roll; k <= latency; ++k) EXPECT_GT(limit_of({}, static_cast<Parameter>(k)), 0.0);
 }
 
 }  // namespace

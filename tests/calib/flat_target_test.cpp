@@ -245,5 +245,18 @@ TEST(FlatTarget, TargetsByName) {
   }
 }
 
+TEST(FlatTarget, ASurveyedRoofThatCannotBeUsedIsTold) {
+  BoxFlight f;
+  f.lines = {{1, 0.42, 0.0, 700.0}, {2, 0.42 + core::pi, 0.0, 700.0}};
+  BoxRecords r = fly(f);
+  std::swap(r.control[1], r.control[2]);  // across the roof and back
+  const core::Scanner scanner;
+  const trajectory::Trajectory trajectory(r.delivered);
+  core::Tally tally;
+  const FlatTarget t = analyse_flat_target(r.stream(), scanner, {}, r.sigma, trajectory, r.covariance, r.control, {}, tally);
+  EXPECT_TRUE(says(t, "the corners of target 'hall' do not go around a convex roof; it takes no part")) << all_of(t);
+  EXPECT_FALSE(t.target.surveyed);
+}
+
 }  // namespace
 }  // namespace swath::calib

@@ -90,6 +90,27 @@ TEST(Resection, WhatIsNotDetermined) {
   EXPECT_EQ(three.w, (std::vector<double>{0, 0, 0}));
 }
 
+TEST(Resection, AStationInThePlaneOfItsTargetsIsRefused) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const std::vector<Vector3d> level{{0, 0, 1}, {9, 0, 1}, {9, 9, 1}, {0, 9, 1}, {4, 0, 1}, {9, 5, 1}, {0, 4, 1}, {4, 9, 1}};
+  int solved = 0;
+  for (int k = 0; k < 200; ++k)
+    for (const double above : {0.0, 0.01, 3.0}) {
+      const Vector3d station(3, 7, 1 + above);
+      auto distances = exact(level, station);
+      for (TargetDistance& d : distances) d.distance += d.sigma * normal(random);
+      // A start value says on which side it stands, not how far.
+      const Resection r = resect(distances, station + Vector3d(0, 0, 0.1));
+      if (above > 1.0) {
+        solved += r.state == ResectionState::solved;
+      } else {
+        EXPECT_EQ(r.state, ResectionState::weak) << k;
+      }
+    }
+  EXPECT_EQ(solved, 200);
+}
+
 TEST(Resection, AnotherUnitAndABlunderAreTold) {
   test::MadeHangar made;
   made.build();

@@ -119,6 +119,19 @@ void expect_refused(const std::vector<Track>& tracks, const std::string& words) 
   }
 }
 
+TEST(Strips, AScanAngleOfTheWrongSignIsRefused) {
+  Survey s(small_world(), crossed_lines());
+  for (auto& [id, shots] : s.flown.lines)
+    for (double& a : shots.angle) a = -a;
+  core::Tally tally;
+  try {
+    adjust_strips(s.flight, {}, tally);
+    FAIL() << "not refused";
+  } catch (const core::Error& e) {
+    EXPECT_NE(std::string(e.what()).find("sign of the scan angle"), std::string::npos) << e.what();
+  }
+}
+
 TEST(Strips, OneLineIsRefused) { expect_refused({{{0, 0}, 350, 0.0, 320}}, "but one flight line"); }
 TEST(Strips, LinesBesideEachOtherAreRefused) {
   expect_refused({{{-400, 0}, 350, 0.0, 320}, {{400, 0}, 350, 0.0, 320}}, "no plane was found that two lines have seen");

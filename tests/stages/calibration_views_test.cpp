@@ -69,17 +69,18 @@ TEST(CalibrationViews, DifferencesSectionsAndChecksBeforeAndAfter) {
   roof.kind = calib::TieKind::roof;
   ties.planes = {roof};
   ties.groups = {{0, 0, 0, 0}, {0, 1, 0, 0}};
-  io::ControlPoint point;
+  calib::SurveyedTarget point;
   point.name = "peg";
-  point.ecef = world.frame.to_ecef({40, 10, -0.03});
-  point.sigma_v = 0.01;
+  point.is_point = true;
+  point.centre = {40, 10, -0.03};
+  point.control = {{point.centre, 0.01, "peg"}};
   point.use = io::ControlUse::check;
-  io::ControlPoint corner = point;
-  corner.target = "roof";
+  calib::SurveyedTarget used = point;
+  used.use = io::ControlUse::control;
 
   const core::Calibration nominal;
   const CalibrationViews views =
-      view_calibration(context, {&nominal, &trajectory}, {&world.truth, &trajectory}, ties, {point, corner}, {}, 2.0, 3);
+      view_calibration(context, {&nominal, &trajectory}, {&world.truth, &trajectory}, ties, {point, used}, {}, 2.0, 3);
   ASSERT_EQ(views.before.size(), 1u);
   ASSERT_EQ(views.after.size(), 1u);
   // Roll 0.1 deg turns the two lines against one another by 0.2 deg: up to 0.5 m at 145 m from the nadir.
@@ -87,7 +88,7 @@ TEST(CalibrationViews, DifferencesSectionsAndChecksBeforeAndAfter) {
   EXPECT_LT(views.after[0].statistics.rms, 0.02) << "means of some ten returns of 1 cm each";
   ASSERT_EQ(views.sections.size(), 1u);
   EXPECT_EQ(views.sections_after[0].size(), 2u) << "both lines";
-  ASSERT_EQ(views.checks.size(), 1u) << "corners of targets are no check points";
+  ASSERT_EQ(views.checks.size(), 1u) << "control is no check";
   EXPECT_NEAR(views.checks[0].difference, 0.03, 4 * 0.01 / std::sqrt(10));
 }
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <set>
 
 #include "core/units.h"
 #include "tests/stages/calibration/made_report.h"
@@ -27,15 +26,6 @@ calib::Adjustment boresight_only(double roll, double pitch, double heading) {
 }
 
 bool holds(const std::string& text, const std::string& what) { return text.find(what) != std::string::npos; }
-
-TEST(CalibrationVerdict, WordsHaveTheirParameters) {
-  std::set<std::string_view> keys;
-  for (int k = 0; k < estimated_count; ++k) keys.insert(words_of(parameter_at(k)).key);
-  EXPECT_EQ(keys.size(), static_cast<size_t>(estimated_count));
-  EXPECT_EQ(words_of(calib::lever_down).key, "lever_down");
-  EXPECT_EQ(words_of(calib::range_scale).sigma_unit, "ppm");
-  EXPECT_EQ(words_of(calib::latency).key, "latency");
-}
 
 TEST(CalibrationVerdict, TellsEachSigmaInOneSentence) {
   const Verdict v = verdict_of(boresight_only(1.2, 1.9, 3.4));
