@@ -68,6 +68,15 @@ void refuse_reversed_scan(const CalibrationFlight& flight, const SurfaceMatchOpt
   if (scan_is_reversed(flight.shots, flight.scanner, flight.start, *flight.trajectory, flight.frame, options)) throw_reversed_scan();
 }
 
+std::vector<std::string> targets_not_found(const core::Tally& tally) {
+  std::vector<std::string> out;
+  if (tally.of("targets not found") == 0) return out;
+  const core::Value counts = tally.value();
+  for (const core::Value& example : counts.find("targets not found")->find("examples")->items())
+    out.push_back("A surveyed target takes no part: " + example.as_text() + ".");
+  return out;
+}
+
 trajectory::LocalFrame frame_of(const std::vector<std::pair<double, double>>& line_times, double height,
                                 const trajectory::Trajectory& trajectory) {
   Vector3d sum = Vector3d::Zero();
@@ -137,6 +146,7 @@ Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& op
     }
   }
   tally.add(of_round);
+  for (std::string& note : targets_not_found(of_round)) out.notes.push_back(std::move(note));
   if (out.match) {
     for (const Finding& f : out.match->findings) out.notes.push_back("Surfaces: " + f.what + (f.cure.empty() ? "" : " (" + f.cure + ")"));
   }

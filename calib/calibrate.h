@@ -61,6 +61,9 @@ struct Calibrated {
   std::vector<std::string> notes;  ///< sentences on how the result came about
 };
 
+/// What find_tie_planes() counted of surveyed targets that no line shows, as sentences.
+std::vector<std::string> targets_not_found(const core::Tally& tally);
+
 /// A frame amid the flight, at its ground: the mean place of the lines' middles, `height` m below.
 trajectory::LocalFrame frame_of(const std::vector<std::pair<double, double>>& line_times, double height,
                                 const trajectory::Trajectory& trajectory);

@@ -61,11 +61,7 @@ std::optional<RoofTarget> surveyed_target(const std::vector<io::ControlPoint>& c
       not_used.push_back(std::string(e.what()) + "; it takes no part (" + e.hint() + ")");
       continue;
     }
-    double area = 0.0;
-    for (size_t k = 0; k < t->sides(); ++k) {
-      const Vector2d a = t->corners[k], b = t->corners[(k + 1) % t->sides()];
-      area += 0.5 * (a.x() * b.y() - a.y() * b.x());
-    }
+    const double area = t->area();
     constexpr double level = 0.05;  // rise / run
     if (wanted.empty() && t->plane.tail<2>().norm() > level) continue;
     if (area <= largest) continue;

@@ -149,6 +149,7 @@ AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions
   char size[32];
   std::snprintf(size, sizeof size, "%.3f m", change);
   out.notes.push_back("Planes were sought " + std::to_string(out.rounds) + " times; the last round moved the returns by " + size + ".");
+  for (std::string& note : targets_not_found(of_round)) out.notes.push_back(std::move(note));
   tally.add(of_round);
   return out;
 }

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.h"
 #include "core/statistics.h"
 
 namespace swath::calib {
@@ -24,71 +23,11 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr std::uint32_t fewest_on_roof = 30;
-constexpr double coarse_tolerance = 0.5;  // m, of heights: a roof 60 m wide tilts by 0.26 m under half a degree of roll error
 constexpr double tolerance_in_sigma = 3.5;
-constexpr double lookback = 10.0;  // m along the beam, for its direction
 
 /// Unknowns of a view: displacement along, across; their derivatives; growth.
 enum Unknown : int { along, across, along_by_y, across_by_x, along_by_x, across_by_y, growth, unknowns };
 using Row = Eigen::Matrix<double, 1, unknowns>;
-
-/// A pulse as a straight line in the local frame: its first return and the way per metre of range.
-struct Beamline {
-  Vector3d first, back;
-  double further = 0.0;  // range of the last return beyond the first
-  std::uint8_t returns = 1;
-  size_t pulse = 0;
-};
-
-/// The same against the roof's plane.
-struct Pierced {
-  Vector2d place, slope;  // east, north; horizontal way per metre down
-  double first, last;     // heights above the plane
-  size_t pulse;
-};
-
-struct Side {
-  Vector2d middle, along, outward;
-  double length;
-};
-
-Side side_of(const RoofTarget& t, size_t k) {
-  const Vector2d a = t.corners[k], b = t.corners[(k + 1) % t.sides()];
-  const Vector2d d = (b - a).normalized();
-  return {0.5 * (a + b), d, {d.y(), -d.x()}, (b - a).norm()};
-}
-
-std::vector<Beamline> beamlines(const TargetPulses& p, const ShotGeometry& geometry, const trajectory::Trajectory& trajectory,
-                                const RoofTarget& target) {
-  std::vector<Beamline> out;
-  out.reserve(p.size());
-  trajectory::Cursor cursor(trajectory);
-  for (size_t i = 0; i < p.size(); ++i) {
-    const double t = geometry.time(p.time[i]);
-    if (!cursor.seek(t)) continue;
-    const trajectory::Pose pose = cursor.pose(t);
-    const auto local = [&](double range) {
-      return Vector3d(target.frame.local_R_ecef * (geometry.ecef_point(pose, {p.angle[i], p.forward[i], range}) - target.frame.origin));
-    };
-    const Vector3d first = local(p.first[i]);
-    out.push_back({first, (local(p.first[i] - lookback) - first) / lookback, p.last[i] - p.first[i], p.returns[i], i});
-  }
-  return out;
-}
-
-std::vector<Pierced> pierce(const std::vector<Beamline>& beams, const Vector3d& plane) {
-  std::vector<Pierced> out;
-  out.reserve(beams.size());
-  const Vector3d normal(-plane[1], -plane[2], 1.0);
-  for (const Beamline& b : beams) {
-    const double above = normal.dot(b.first) - plane[0], rise = normal.dot(b.back);
-    if (rise < 0.1) continue;  // beams nearly level tell nothing of a flat roof
-    const Vector3d at = b.first - above / rise * b.back;
-    out.push_back({at.head<2>(), -b.back.head<2>() / b.back.z(), above, above - rise * b.further, b.pulse});
-  }
-  return out;
-}
 
 /// Flight axes and the affine displacement in them.
 struct Motion {
@@ -112,68 +51,6 @@ struct Motion {
   }
 };
 
-/// Shift that puts the roof onto the most returns at its height and the fewest others. `score`: their difference over the roof's pulses.
-Vector2d coarse_shift(const std::vector<Pierced>& pulses, const RoofTarget& target, double search, double& score) {
-  constexpr size_t enough = 3000;
-  const size_t every = pulses.size() / enough + 1;
-  const auto gain = [&](const Vector2d& shift) {
-    int sum = 0;
-    for (size_t i = 0; i < pulses.size(); i += every)
-      if (target.holds(pulses[i].place - shift)) sum += std::abs(pulses[i].first) < coarse_tolerance ? 1 : -1;
-    return sum;
-  };
-  Vector2d best(0, 0);
-  int highest = gain(best);
-  for (double step = 1.0; step > 0.2; step *= 0.5) {
-    const int n = step == 1.0 ? static_cast<int>(std::ceil(search)) : 2;
-    const Vector2d start = best;
-    Vector2d sum(0, 0);
-    int ties = 0;
-    highest = -1 << 30;
-    for (int i = -n; i <= n; ++i)
-      for (int j = -n; j <= n; ++j) {
-        const Vector2d shift = start + step * Vector2d(i, j);
-        if (shift.norm() > search + 2.0) continue;
-        const int g = gain(shift);
-        if (g > highest) {
-          highest = g;
-          sum.setZero();
-          ties = 0;
-        }
-        if (g == highest) {
-          sum += shift;
-          ++ties;
-        }
-      }
-    best = sum / std::max(ties, 1);
-  }
-  int on_roof = 0;
-  for (size_t i = 0; i < pulses.size(); i += every) on_roof += target.holds(pulses[i].place - best);
-  score = on_roof > 0 ? static_cast<double>(highest) / on_roof : 0.0;
-  return best;
-}
-
-/// Heights at which many first returns lie, best first.
-std::vector<double> frequent_heights(const std::vector<Pierced>& pulses, double reach) {
-  constexpr double bin = 0.2;  // m
-  constexpr size_t most = 4;
-  const auto bins = static_cast<size_t>(2.0 * reach / bin) + 3;
-  std::vector<double> count(bins, 0.0), smooth(bins, 0.0);
-  for (const Pierced& p : pulses) {
-    const double at = (p.first + reach) / bin + 1.0;
-    if (at >= 1.0 && at < static_cast<double>(bins - 1)) count[static_cast<size_t>(at)] += 1.0;
-  }
-  for (size_t i = 1; i + 1 < bins; ++i) smooth[i] = count[i - 1] + count[i] + count[i + 1];
-  std::vector<std::pair<double, double>> peaks;
-  for (size_t i = 1; i + 1 < bins; ++i)
-    if (smooth[i] >= fewest_on_roof && smooth[i] >= smooth[i - 1] && smooth[i] > smooth[i + 1])
-      peaks.push_back({-smooth[i], (static_cast<double>(i) - 0.5) * bin - reach});
-  std::sort(peaks.begin(), peaks.end());
-  std::vector<double> out;
-  for (size_t i = 0; i < std::min(peaks.size(), most); ++i) out.push_back(peaks[i].second);
-  return out;
-}
-
 /// The roof's plane in one line, relative to an expected one: height at the centre, slopes along x and y of the motion.
 struct PlaneFit {
   Vector3d value = Vector3d::Zero(), sigma = Vector3d::Zero();
@@ -195,7 +72,7 @@ PlaneFit fit_plane(const std::vector<Pierced>& pulses, const std::vector<Beamlin
     const Vector2d at = p.place - m.at(p.place);
     bool within = true;
     for (size_t k = 0; k < target.sides() && within; ++k) {
-      const Side s = side_of(target, k);
+      const RoofTarget::Side s = target.side(k);
       within = s.outward.dot(at - s.middle) < -inset;
     }
     if (!within || std::abs(p.first) > 2.0 * coarse_tolerance) continue;
@@ -335,19 +212,14 @@ class Viewer {
   }
   double widest_band() const {
     double width = 1e300;
-    for (size_t k = 0; k < target_.sides(); ++k) width = std::min(width, side_of(target_, k).length);
+    for (size_t k = 0; k < target_.sides(); ++k) width = std::min(width, target_.side(k).length);
     return 0.35 * width;
   }
   double band() const {
     // Some pulses on either side whatever their spacing.
     size_t near = 0;
-    double area = 0.0;
     for (const Pierced& p : pierced_) near += target_.holds(p.place - motion_.at(p.place));
-    for (size_t k = 0; k < target_.sides(); ++k) {
-      const Vector2d a = target_.corners[k], b = target_.corners[(k + 1) % target_.sides()];
-      area += 0.5 * (a.x() * b.y() - a.y() * b.x());
-    }
-    const double spacing = std::sqrt(area / static_cast<double>(std::max<size_t>(near, 1)));
+    const double spacing = std::sqrt(target_.area() / static_cast<double>(std::max<size_t>(near, 1)));
     return std::min(std::max({1.0, 6.0 * shape_.blur + 2.0 * shape_.half, 2.0 * spacing}), widest_band());
   }
 
@@ -357,14 +229,14 @@ class Viewer {
   }
 
   /// A wall that the beam meets behind the edge, too near below it for a return of its own.
-  static bool facing(const Side& side, const Pierced& p) {
+  static bool facing(const RoofTarget::Side& side, const Pierced& p) {
     constexpr double steep = 0.03;  // a footprint of 0.3 m then reaches 10 m down the wall
     return -side.outward.dot(p.slope) > steep;
   }
 
   /// The pulses near side k, seen from where the motion so far puts it.
   std::vector<EdgePulse> near_side(size_t k, double band, double margin) const {
-    const Side side = side_of(target_, k);
+    const RoofTarget::Side side = target_.side(k);
     std::vector<EdgePulse> out;
     for (const Pierced& p : pierced_) {
       if (p.first > tolerance_) continue;  // something above the roof
@@ -412,7 +284,7 @@ class Viewer {
     int used = 0;
     const Motion before = motion_;
     for (size_t k = 0; k < target_.sides(); ++k) {
-      const Side side = side_of(target_, k);
+      const RoofTarget::Side side = target_.side(k);
       SideView& v = view_.sides[k];
       const double turn =
           std::hypot(options_.shear * std::abs(motion_.x.dot(side.outward)), options_.turn * std::abs(motion_.y.dot(side.outward)));
@@ -451,7 +323,7 @@ class Viewer {
     for (size_t k = 0; k < target_.sides(); ++k) {
       const SideView& v = view_.sides[k];
       if (!v.used) continue;
-      const Side side = side_of(target_, k);
+      const RoofTarget::Side side = target_.side(k);
       rows[k].row(0) = motion_.along_normal(side.middle + v.at * side.along, side.outward);
       rows[k](0, growth) = 1.0;
       rows[k].row(1) = motion_.slope_normal(side.along, side.outward);
@@ -521,7 +393,7 @@ class Viewer {
     for (size_t k = 0; k < target_.sides(); ++k) {
       const SideView& v = view_.sides[k];
       if (!v.used) continue;
-      const Side side = side_of(target_, k);
+      const RoofTarget::Side side = target_.side(k);
       const auto i = 2 * static_cast<Eigen::Index>(k), j = 2 * static_cast<Eigen::Index>((k + 1) % target_.sides());
       const Eigen::RowVector2d n = side.outward.transpose();
       const double share = 0.5 + v.at / side.length;  // of the second corner
@@ -581,68 +453,9 @@ class Viewer {
 
 }  // namespace
 
-bool RoofTarget::holds(const Vector2d& p) const {
-  for (size_t k = 0; k < corners.size(); ++k) {
-    const Vector2d &a = corners[k], d = corners[(k + 1) % corners.size()] - a;
-    if (d.x() * (p.y() - a.y()) - d.y() * (p.x() - a.x()) < 0.0) return false;
-  }
-  return true;
-}
-
-Vector2d RoofTarget::centre() const {
-  Vector2d sum(0, 0);
-  for (const Vector2d& c : corners) sum += c;
-  return sum / static_cast<double>(corners.size());
-}
-
-RoofTarget roof_target(const std::string& name, const std::vector<Vector3d>& corners, double sigma_h, double sigma_v) {
-  if (corners.size() < 3) throw core::Error{"target '" + name + "' has fewer than three corners", name, "survey all its corners"};
-  RoofTarget t;
-  t.name = name;
-  t.sigma_h = sigma_h;
-  t.sigma_v = sigma_v;
-  Vector3d mean = Vector3d::Zero();
-  for (const Vector3d& c : corners) mean += c / static_cast<double>(corners.size());
-  t.frame = trajectory::local_frame(mean);
-  MatrixXd A(corners.size(), 3);
-  VectorXd up(corners.size());
-  double area = 0.0;
-  for (size_t k = 0; k < corners.size(); ++k) {
-    const Vector3d p = t.frame.local_R_ecef * (corners[k] - mean);
-    t.corners.push_back(p.head<2>());
-    A.row(static_cast<Eigen::Index>(k)) << 1.0, p.x(), p.y();
-    up[static_cast<Eigen::Index>(k)] = p.z();
-  }
-  t.plane = (A.transpose() * A).ldlt().solve(A.transpose() * up);
-  for (size_t k = 0; k < corners.size(); ++k) {
-    const Vector2d a = t.corners[k], b = t.corners[(k + 1) % corners.size()];
-    area += 0.5 * (a.x() * b.y() - a.y() * b.x());
-  }
-  if (area < 0.0) std::reverse(t.corners.begin(), t.corners.end());
-  if (!t.holds(t.centre()) || std::abs(area) < 1.0)
-    throw core::Error{"the corners of target '" + name + "' do not go around a convex roof", name,
-                      "list them in their order around the roof"};
-  for (size_t k = 0; k < corners.size(); ++k) {
-    const Vector2d a = t.corners[k], b = t.corners[(k + 1) % corners.size()], c = t.corners[(k + 2) % corners.size()];
-    if ((b - a).x() * (c - b).y() - (b - a).y() * (c - b).x() <= 0.0)
-      throw core::Error{"the corners of target '" + name + "' do not go around a convex roof", name,
-                        "list them in their order around the roof"};
-  }
-  return t;
-}
-
 TargetView view_target(const TargetPulses& pulses, const ShotGeometry& geometry, const trajectory::Trajectory& trajectory,
                        const RoofTarget& target, const EdgeOptions& options) {
   return Viewer(pulses, geometry, trajectory, target, options).run();
-}
-
-void TargetPulses::halve() {
-  const size_t n = size() / 2;
-  const auto thin = [n](auto& column) {
-    for (size_t i = 0; i < n; ++i) column[i] = column[2 * i];
-    column.resize(n);
-  };
-  thin(time), thin(angle), thin(forward), thin(first), thin(last), thin(returns);
 }
 
 bool TargetView::all_sides() const {

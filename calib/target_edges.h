@@ -3,45 +3,16 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "calib/edge_fit.h"
 #include "calib/shot_geometry.h"
-#include "trajectory/fix_window.h"
+#include "calib/target_beams.h"
 #include "trajectory/trajectory.h"
 
 namespace swath::calib {
-
-/// A flat roof with upright walls. Local frame: east, north, up; its origin near the roof's centre.
-struct RoofTarget {
-  std::string name;
-  trajectory::LocalFrame frame;
-  std::vector<Eigen::Vector2d> corners;             ///< east, north, m; counter-clockwise seen from above, three or more, convex
-  Eigen::Vector3d plane = Eigen::Vector3d::Zero();  ///< up = plane . (1, east, north), m
-  double sigma_h = 0.02, sigma_v = 0.02;            ///< of each corner: east and north each, height; m
-  bool surveyed = true;
-
-  double up(const Eigen::Vector2d& p) const { return plane[0] + plane[1] * p.x() + plane[2] * p.y(); }
-  bool holds(const Eigen::Vector2d& p) const;
-  Eigen::Vector2d centre() const;  ///< mean of the corners
-  size_t sides() const { return corners.size(); }
-};
-/// From corners in ecef, m, in their order around (either sense). Throws core::Error for fewer than three, or where they are not convex.
-RoofTarget roof_target(const std::string& name, const std::vector<Eigen::Vector3d>& corners, double sigma_h, double sigma_v);
-
-/// Raw pulses of one line near the target: columns of one length, as recorded.
-struct TargetPulses {
-  std::vector<double> time, angle, forward;  ///< s, rad, x of the unit beam
-  std::vector<double> first, last;           ///< ranges of the first and the last return, m
-  std::vector<std::uint8_t> returns;         ///< recorded of the pulse
-
-  size_t size() const { return time.size(); }
-  /// Keeps every second pulse.
-  void halve();
-};
 
 /// What the analysis knows beforehand.
 struct EdgeOptions {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "core/error.h"
@@ -92,6 +93,25 @@ TEST(Calibrate, OneRoundIsOneRound) {
   options.coarse = false;
   options.planes.mismatch = core::Metres(5.0);
   EXPECT_FALSE(flight.calibrated(options).match);
+}
+
+TEST(Calibrate, ASurveyedTargetThatNoLineShowsIsTold) {
+  const Flight flight(pattern());
+  CalibrationFlight described = flight.described();
+  SurveyedTarget far;
+  far.name = "far roof";
+  far.corners = {{900, 900, 5}, {920, 900, 5}, {920, 920, 5}, {900, 920, 5}};
+  far.centre = {910, 910, 5};
+  for (const Vector3d& c : far.corners) far.control.push_back({c, 0.02, "corner"});
+  described.targets = {far};
+  CalibrateOptions options;
+  options.rounds = 1;
+  options.adjust.jackknife.lines = false;
+  options.adjust.jackknife.blocks = 0;
+  core::Tally tally;
+  const Calibrated c = calibrate(described, options, tally);
+  EXPECT_TRUE(std::any_of(c.notes.begin(), c.notes.end(),
+                          [](const std::string& n) { return n.starts_with("A surveyed target takes no part: far roof: "); }));
 }
 
 TEST(Calibrate, WithoutOverlapItIsRefused) {

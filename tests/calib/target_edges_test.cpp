@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "calib/target_pulses.h"
-#include "core/error.h"
 #include "tests/calib/box_flight.h"
 
 namespace swath::calib {
@@ -180,27 +179,6 @@ TEST(TargetEdges, SaysWhyNot) {
   const TargetView v = view_target(pulses.lines[0].pulses, geometry, trajectory, moved, options_of(f));
   EXPECT_FALSE(v.seen);
   EXPECT_NE(v.why_not.find("no flat roof"), std::string::npos) << v.why_not;
-}
-
-TEST(TargetEdges, CornersInAnySense) {
-  BoxFlight f;
-  f.lines = {{1, 0.0, 0.0, 700.0}};
-  const BoxRecords r = fly(f);
-  std::vector<Vector3d> corners;
-  for (const io::ControlPoint& p : r.control) corners.push_back(p.ecef);
-  const RoofTarget a = roof_target("a", corners, 0.02, 0.02);
-  std::reverse(corners.begin(), corners.end());
-  const RoofTarget b = roof_target("b", corners, 0.02, 0.02);
-  for (const RoofTarget& t : {a, b}) {
-    EXPECT_TRUE(t.holds(t.centre()));
-    EXPECT_TRUE(t.holds({10.0, 5.0}));
-    EXPECT_FALSE(t.holds({60.0, 0.0}));
-    EXPECT_LT(std::abs(t.plane[0]), 1e-3);
-  }
-  std::swap(corners[0], corners[1]);
-  EXPECT_THROW(roof_target("crossed", corners, 0.02, 0.02), core::Error);
-  corners.resize(2);
-  EXPECT_THROW(roof_target("two", corners, 0.02, 0.02), core::Error);
 }
 
 }  // namespace
