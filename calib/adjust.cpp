@@ -316,9 +316,8 @@ class Results {
     // The limits are held against the sigma that would be delivered.
     Separation judged = sep_;
     for (Eigen::Index i = 0; i < globals_; ++i) judged.formal[i] = out_.estimates[p_.globals[i]].sigma;
-    FlightShape shape = shape_of(p_, r_.state, r_.pass.blocks);
-    shape.control = std::find(r_.use.control.begin(), r_.use.control.end(), char{1}) != r_.use.control.end();
-    for (Finding& f : diagnose(p_.globals, judged, apriori_, shape, o_.limits)) out_.findings.push_back(std::move(f));
+    for (Finding& f : diagnose(p_.globals, judged, apriori_, shape_of(p_, r_.state, r_.pass.blocks), o_.limits))
+      out_.findings.push_back(std::move(f));
   }
 
   void look() {
