@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Over 400 lines: the steps of one adjustment, in their order, on one state.
 // Sources: Skaloud & Lichti (2006) and Glira et al. (2016) for the model (calib/tie_normals.h, correction_knots.h); Foerstner (1979) for
-// the variances; Baarda (1968) for the tests. Here: the unknowns are chosen, the rounds are run, and the results are put together.
-// Deviations: sigmas take the estimated variances as known (their own scatter adds a per cent or so to 20 degrees of freedom's 16 % in a
-// component that is one of several); refused values are delivered as they started while the others come from the joint solution.
+// the variances; Baarda (1968) for the tests; Schmidt (1966) for values that are held and yet uncertain ("considered"). Here: the unknowns
+// are chosen, the rounds are run, and the results are put together. Deviations: sigmas take the estimated variances as known (their own
+// scatter adds a per cent or so to 20 degrees of freedom's 16 % in a component that is one of several); refused values are delivered as
+// they started while the others come from the joint solution.
 #include "calib/adjust.h"
 
 #include <Eigen/LU>
@@ -280,8 +281,34 @@ class Results {
     return sigmas_with(n.N, r_.prior.globals);
   }
 
+  // What the unknowns would be moved by if each calibration value that is held were one stated sigma larger: columns. A value that is the
+  // same turn as an estimated one is a matter of names.
+  MatrixXd effects_of_held() const {
+    const Variances stated = variances(noise_, {});
+    const auto is_unknown = [&](Parameter p) { return std::find(p_.globals.begin(), p_.globals.end(), p) != p_.globals.end(); };
+    const Parameter same = p_.scanner->model == core::ScannerModel::conical ? boresight_heading : boresight_roll;
+    std::vector<VectorXd> columns;
+    for (int k = boresight_roll; globals_ > 0 && k <= latency; ++k) {
+      const auto p = static_cast<Parameter>(k);
+      if (is_unknown(p) || !(stated[p] > 0.0) || (p == scan_offset && is_unknown(same))) continue;
+      TieState other = r_.state;
+      set_value(other.calibration, p, value_of(other.calibration, p) + std::sqrt(stated[p]));
+      const TiePass pass = linearise(p_, other, r_.noise(), r_.scale);
+      const TieSystem system(p_, pass.blocks, r_.system().control(), r_.surface());
+      std::vector<PlaneRest> rests;
+      Normals n = system.sum(r_.use, rests);
+      add_prior(r_.prior, n);
+      const TieSolution moved = solve(system, n, rests, false);
+      if (moved.solved) columns.push_back(moved.x - r_.solution.x);
+    }
+    MatrixXd out = MatrixXd::Zero(globals_, static_cast<Eigen::Index>(columns.size()));
+    for (size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Eigen::Index>(k)) = columns[k].head(globals_);
+    return out;
+  }
+
   void estimates() {
     const VectorXd white_sigma = white();
+    const MatrixXd held = effects_of_held();
     const double significance = o_.jackknife.significance;
     Jackknife lines, regions;
     if (globals_ > 0 && o_.jackknife.lines)
@@ -304,10 +331,11 @@ class Results {
         e.jackknife_planes = regions.sigma[i];
         larger = std::max(larger, enlargement(regions.ratio[i], regions.freedom[i], significance));
       }
-      e.sigma = larger * e.formal;
+      e.held = held.row(i).norm();
+      e.sigma = std::hypot(larger * e.formal, e.held);
       e.determined = std::isfinite(e.apriori) ? 1.0 - std::pow(e.formal / e.apriori, 2) : 1.0;
     }
-    const MatrixXd C = r_.solution.covariance.topLeftCorner(globals_, globals_);
+    const MatrixXd C = r_.solution.covariance.topLeftCorner(globals_, globals_) + held * held.transpose();
     const VectorXd inverse = C.diagonal().cwiseSqrt().cwiseInverse();
     out_.correlation = inverse.asDiagonal() * C * inverse.asDiagonal();
     out_.correlation.diagonal().setOnes();

@@ -16,7 +16,8 @@ namespace swath::calib {
 ///
 /// The delivered sigma of a value is the formal one - from the inverse of the normal equations of all unknowns, the trajectory's errors
 /// correlated as `covariance` says and scaled by the variances found - times an enlargement where leaving out lines, or regions, moves the
-/// value significantly more than these covariances allow (calib/jackknife.h). Values that the flight does not tell (Finding::refuses) are
+/// value significantly more than these covariances allow (calib/jackknife.h), with what the sigmas of `noise` for the calibration values
+/// that are held (the lever arm, as a rule) do to it. Values that the flight does not tell (Finding::refuses) are
 /// delivered as they started, with their a-priori sigma; they stay unknowns, so that the others' sigmas hold their uncertainty.
 Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::Calibration& start, const core::SensorSigma& noise,
                   const trajectory::Trajectory& trajectory, const ErrorCovariance& covariance, const AdjustOptions& options,

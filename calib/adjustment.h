@@ -28,7 +28,8 @@ struct Estimate {
   double formal = 0.0;                                       ///< sigma with the trajectory's errors correlated in time
   double white = 0.0;  ///< sigma if every return were independent and the trajectory without error: for comparison only
   double jackknife_lines = not_known, jackknife_planes = not_known;  ///< sigma by leaving out one line, one region of planes at a time
-  double sigma = 0.0;       ///< of `value`: formal, enlarged where a jackknife is significantly larger; where not delivered: `apriori`
+  double held = 0.0;   ///< sigma by the calibration values that are held: what their stated sigmas do to this one
+  double sigma = 0.0;  ///< of `value`: formal, enlarged where a jackknife is significantly larger, with `held`; not delivered: `apriori`
   double determined = 0.0;  ///< 1 - (formal / apriori)^2: share of the knowledge that is the data's; 1 for free parameters
 };
 

@@ -198,7 +198,9 @@ void Maker::value_table(const Group& g, const std::array<std::string, 5>& notes)
 void Maker::values() {
   page_.section("Calibration values");
   const std::array<std::string, 5> notes{
-      page_.footnote("The one-sigma uncertainty that is delivered in calibration.json."),
+      page_.footnote(
+          "The one-sigma uncertainty that is delivered in calibration.json: the formal one, enlarged where a jackknife speaks against it, with "
+          "what the stated sigmas of values that were held (the lever arm) do to it."),
       page_.footnote("From the adjustment's covariance, with the trajectory's errors hanging together in time."),
       page_.footnote("How far the values scatter when one flight line at a time is left out."),
       page_.footnote("How far they scatter when one region of tie planes at a time is left out."),

@@ -77,6 +77,7 @@ Value estimates_tree(const calib::Adjustment& a) {
       one["jackknife_lines"] = e.jackknife_lines;
       one["jackknife_planes"] = e.jackknife_planes;
       one["white"] = e.white;
+      one["held"] = e.held;
       one["apriori"] = e.apriori;
       one["determined"] = e.determined;
     }

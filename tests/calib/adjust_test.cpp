@@ -173,10 +173,11 @@ MonteCarlo fly(const World& w, int seeds, const AdjustOptions& o, int surveyed) 
     start.heading.value += o.apriori.heading.value * dice.normal();
     start.range_offset.value += o.apriori.range_offset.value * dice.normal();
     start.scan_scale += o.apriori.scan_scale * dice.normal();
+    for (core::Metres& arm : start.lever_arm_scanner) arm.value += w.noise.lever_arm.value * dice.normal();  // held, yet uncertain
     const Adjustment a = adjust(ties, w.scanner, start, w.noise, t, tactical_errors, o);
     for (const Estimate& e : a.estimates) {
       if (!e.estimated) continue;
-      const double sigma = e.delivered ? e.sigma : e.formal;
+      const double sigma = e.delivered ? e.sigma : std::hypot(e.formal, e.held);
       out.standard[e.parameter].push_back((e.found - value_of(w.truth, e.parameter)) / sigma);
       out.white[e.parameter].push_back(e.formal / e.white);
     }
@@ -393,6 +394,21 @@ TEST(Adjust, ScanOffsetIsTheRollOfAScannerAcross) {
   EXPECT_FALSE(a.estimates[scan_offset].estimated);
   EXPECT_TRUE(a.estimates[boresight_roll].delivered);
   EXPECT_TRUE(says(a, "scan offset and boresight roll are the same turn", true));
+}
+
+TEST(Adjust, HeldValuesAreInTheSigma) {
+  World w = pattern_of({{0.0, 0.0}, {180.0 * deg, 0.0}, {90.0 * deg, 0.0}, {270.0 * deg, 0.0}}, 8, 8);
+  const auto pitch = [&](double lever_arm) {
+    w.noise.lever_arm = core::Metres(lever_arm);
+    return flown(w, plain(), 3, near_truth(w)).estimates[boresight_pitch];
+  };
+  const Estimate without = pitch(0.0), with = pitch(0.02);
+  EXPECT_EQ(without.held, 0.0);
+  EXPECT_EQ(without.sigma, without.formal);
+  EXPECT_EQ(with.found, without.found);
+  EXPECT_EQ(with.formal, without.formal);
+  EXPECT_NEAR(with.held, 0.02 / 700.0, 0.15 * 0.02 / 700.0);  // a lever arm forward looks like pitch from one height
+  EXPECT_DOUBLE_EQ(with.sigma, std::hypot(with.formal, with.held));
 }
 
 TEST(Adjust, ScanOffsetIsTheHeadingOfACone) {
