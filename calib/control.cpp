@@ -122,6 +122,7 @@ std::vector<SurveyedTarget> surveyed_targets(const std::vector<io::ControlPoint>
       places.push_back(points[k].place);
     }
     target.centre = target.corners[0];
+    if (target.is_point) target.sigma_h = sigma_h[0];
     if (!target.is_point) {
       const CornerPlane plane = corner_plane(target.corners, sigma_h, sigma_v);
       target.centre = plane.centre;

@@ -21,6 +21,7 @@ struct SurveyedTarget {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();   ///< weighted mean of the corners
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, upwards; of a point: up
   bool is_point = false;
+  double sigma_h = 0.0;  ///< of a point: of each horizontal coordinate, which counts where the ground slopes, m
   io::ControlUse use = io::ControlUse::control;
 };
 

@@ -357,6 +357,9 @@ TieSet find_tie_planes(const ShotStream& stream, const core::Scanner& scanner, c
       j.plane.kind = facets[k - targets.size()].kind;
     }
     const std::string why = judge.judge(regions[k], near[k], d, j);
+    // Only now is known which way the ground about a lone point slopes.
+    if (is_target && targets[k].is_point && why.empty())
+      for (PlaneControl& c : j.plane.control) c.sigma = sigma_along(j.plane.normal, targets[k].sigma_h, c.sigma);
     if (!why.empty())
       is_target ? tally.count("targets not found", targets[k].name + ": " + why) : tally.count("planes refused: " + why);
     else

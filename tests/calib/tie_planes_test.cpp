@@ -243,6 +243,7 @@ TEST(TiePlanes, ALonePointIsAPatchOfGround) {
   t.centre = {30.0, -20.0, w.ground(30.0, -20.0) + 0.4};
   t.corners = {t.centre};
   t.control = {{t.centre, 0.03, "P7"}};
+  t.sigma_h = 0.4;
   SurveyedTarget far = t;
   far.name = "P8";
   far.centre = far.corners[0] = {5000.0, 0.0, 0.0};
@@ -252,6 +253,7 @@ TEST(TiePlanes, ALonePointIsAPatchOfGround) {
   EXPECT_EQ(p.name, "P7");
   EXPECT_EQ(p.kind, TieKind::target);
   EXPECT_NEAR(p.normal.dot(t.centre - p.centre), 0.4, 0.03);
+  EXPECT_NEAR(p.control[0].sigma, std::hypot(0.03, 0.4 * w.slope), 0.003) << "on a slope its place counts for its height";
   EXPECT_LT(p.half.maxCoeff(), 4.0);
   EXPECT_EQ(s.tally.of("targets not found"), 1u);
 }
