@@ -88,7 +88,7 @@ double elevation_squares(const PointNetwork& n, const Vector3d& p) {
   return sum;
 }
 
-/// What the sights at one point bend over one sigma of its least known direction, in the sigmas of all conditions together (largest_bend).
+/// How far the point moves, in its sigmas, by what its sights bend over one sigma of its least known direction (largest_bend).
 double bend_of(const PointNetwork& n, const std::vector<PointCondition>& conditions, const CombinedPoints& a) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(a.covariance);
   const double variance = solver.eigenvalues()[2];
@@ -99,9 +99,11 @@ double bend_of(const PointNetwork& n, const std::vector<PointCondition>& conditi
     const Vector3d way = point - n.stations[conditions[k].kind == Kind::from_b ? conditions[k].b : conditions[k].a];
     bend[at(k)] = variance / (2 * way.norm()) * (1 - std::pow(direction.dot(way.normalized()), 2));
   }
-  const MatrixXd B = misclosures(n, conditions, a.points, observations_of(n) + a.residual).by_observations;
-  const Eigen::LLT<MatrixXd> M(B * covariance_of(n) * B.transpose());
-  return M.info() == Eigen::Success ? std::sqrt(bend.dot(M.solve(bend))) : std::numeric_limits<double>::infinity();
+  const Misclosures m = misclosures(n, conditions, a.points, observations_of(n) + a.residual);
+  const Eigen::LLT<MatrixXd> M(m.by_observations * covariance_of(n) * m.by_observations.transpose());
+  if (M.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
+  const Vector3d moved = m.by_points.transpose() * M.solve(bend);
+  return std::sqrt(moved.dot(a.covariance * moved));
 }
 
 struct Candidate {
@@ -154,8 +156,10 @@ PointSearch search(const PointNetwork& n, const std::optional<Vector3d>& start) 
     return a.adjusted.squares < b.adjusted.squares;
   });
   if (found.empty() || !found[0].adjusted.solved) {
-    // Beside the plane of the stations the squares of heights come out below zero as often as above.
-    if (begin.state == ResectionState::weak) out.state = PointState::weak;
+    // Beside the plane of the stations squares of heights come out below zero as often as above, and the search ends nowhere.
+    const bool level = !n.verticals.empty() && std::all_of(n.verticals.begin(), n.verticals.end(),
+                                                           [](const VerticalAngle& v) { return std::abs(v.angle) < rough_elevation; });
+    if (begin.state == ResectionState::weak || level) out.state = PointState::weak;
     return out;
   }
   out.state = PointState::solved;

@@ -195,10 +195,11 @@ Resection resect(const std::vector<TargetDistance>& all, const std::optional<Vec
     out.mirror_variance_factor = ends[1].squares / std::max(out.redundancy, 1);
     out.start_led_to_mirror = from_start.found && (from_start.position - out.position).norm() > same_place;
   }
-  double bend = 0;  // a straight model of distances that bend is no model
+  Vector3d moved = Vector3d::Zero();  // a straight model of distances that bend is no model
   const double variance = Eigen::SelfAdjointEigenSolver<Matrix3d>(out.covariance).eigenvalues().maxCoeff();
-  for (const TargetDistance& d : all) bend += std::pow(variance / (2 * d.distance * d.sigma), 2);
-  if (!(std::sqrt(bend) < largest_bend)) {
+  for (const TargetDistance& d : all)
+    moved += distance_model(out.position, d.target).by_station.transpose() * variance / (2 * d.distance * d.sigma * d.sigma);
+  if (!(std::sqrt(moved.dot(out.covariance * moved)) < largest_bend)) {
     out.state = ResectionState::weak;
   } else if (both_fit) {
     out.decided_by_start = start.has_value();

@@ -47,8 +47,9 @@ struct Resection {
 /// nearer to `start`.
 Resection resect(const std::vector<TargetDistance>& distances, const std::optional<Eigen::Vector3d>& start = {});
 
-/// What distances may bend over one sigma of the least known direction, in the sigmas of all together. They tell the square of a height h
-/// over the plane of their targets; with s its sigma they bend by s / (4 h^2): the height's sign and sigma are told from three s on.
+/// By how many of its sigmas a position may move by what distances bend over one sigma of its least known direction. Distances tell the
+/// square of a height h over the plane of their targets; with s its sigma this is s / (4 h^2): sign and sigma of a height are told from
+/// three s on.
 constexpr double largest_bend = 1.0 / 12.0;
 
 /// Distance to a target as the adjustment computes it, and its derivatives by the station.

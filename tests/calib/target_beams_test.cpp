@@ -48,7 +48,7 @@ std::vector<Pierced> roof_at(const Vector2d& shift, double up) {
 TEST(TargetBeams, TheRoofIsAmongTheFrequentHeights) {
   const std::vector<double> found = frequent_heights(roof_at({0, 0}, 1.7), 12.0);
   ASSERT_EQ(found.size(), 2u);
-  constexpr double bin = 0.2;  // m
+  constexpr double bin = 0.4;  // m: counts of three bins of 0.2 m are taken together
   EXPECT_NEAR(found[0], -8.0, bin) << "most returns come from the ground";
   EXPECT_NEAR(found[1], 1.7, bin);
   EXPECT_EQ(frequent_heights(roof_at({0, 0}, 1.7), 5.0).size(), 1u) << "the ground is out of reach";
