@@ -24,6 +24,7 @@ const std::vector<Entry>& registry() {
       {"filters.returns", make_returns},
       {"filters.noise", make_noise},
       {"filters.smrf", make_smrf},
+      {"filters.ground", make_ground},
       {"filters.hag_dem", make_hag_dem},
       {"terrain.dtm", make_dtm},
       {"terrain.dsm", make_dsm},

@@ -30,6 +30,7 @@ std::unique_ptr<Stage> make_georeference();
 std::unique_ptr<Stage> make_returns();
 std::unique_ptr<Stage> make_noise();
 std::unique_ptr<Stage> make_smrf();
+std::unique_ptr<Stage> make_ground();
 std::unique_ptr<Stage> make_hag_dem();
 std::unique_ptr<Stage> make_dtm();
 std::unique_ptr<Stage> make_dsm();
