@@ -6,6 +6,7 @@
 // where the distance is just bearable. Its constants are fitted to simulated scenes, so that it tells the share of true ground.
 #include "filters/ground.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -16,12 +17,15 @@ namespace swath::filters {
 namespace {
 
 constexpr float not_judged = std::numeric_limits<float>::quiet_NaN();
-constexpr double per_spread = 3.0;      // of one standard deviation
-constexpr double per_slope = 0.4;       // m per rise / run
-constexpr double leniency = 0.3;        // m
-constexpr double fading = 0.06;         // of leniency to 1 / e, share of returns standing knee-high
-constexpr double below_to_above = 1.5;  // bearable distance under the surface to that over it
-constexpr double steepness = 4.0;       // of the probability about the bearable distance
+constexpr double per_spread = 3.0;                     // of one standard deviation
+constexpr double widest_spread = 0.15;                 // m: what is more is not the ground's
+constexpr double per_slope = 1.0;                      // m per rise / run
+constexpr double leniency = 0.2;                       // m
+constexpr double fading = 0.12;                        // of leniency to 1 / e, share of returns standing knee-high
+constexpr double below = 0.45, below_per_slope = 0.5;  // m, m per rise / run: most that is bearable under the surface
+constexpr double sunken_few = 0.1;                     // share of returns deep below the surface from which it is the surface that errs
+constexpr double sunken_room = 1.5;                    // m more under the surface where twice that share is
+constexpr double steepness = 4.0;                      // of the probability about the bearable distance
 
 GroundSurfaceOptions surface_options(const GroundOptions& o) { return {o.widest.value, std::tan(o.steepest.value), o.noise.value}; }
 
@@ -31,11 +35,16 @@ struct Evidence {
   double slope;     ///< rise / run of the surface
   double spread;    ///< m, standard deviation of the ground's returns around
   double standing;  ///< share of the returns around that stand knee-high
+  double sunken;    ///< share of them that lie deep below the surface
 };
 
 double probability(const Evidence& e, double noise) {
-  const double bearable = per_spread * std::hypot(noise, e.spread) + per_slope * e.slope + leniency * std::exp(-e.standing / fading);
-  const double u = e.above >= 0 ? e.above / bearable : -e.above / (below_to_above * bearable);
+  double bearable =
+      per_spread * std::hypot(noise, std::min(e.spread, widest_spread)) + per_slope * e.slope + leniency * std::exp(-e.standing / fading);
+  // A low outlier lies alone; where many lie below, the surface has been drawn over a break.
+  if (e.above < 0)
+    bearable = std::min(bearable, below + below_per_slope * e.slope) + sunken_room * std::clamp(e.sunken / sunken_few - 1.0, 0.0, 1.0);
+  const double u = std::abs(e.above) / bearable;
   return 1.0 / (1.0 + std::pow(u, steepness));
 }
 
@@ -64,7 +73,8 @@ GroundCounts classify_ground(core::Block& b, size_t own, const GroundOptions& o)
       } else {
         const CellIndex c = cell_of(g.lattice, b, p);
         const size_t at = g.lattice.at(c.i, c.j);
-        chance = probability({b.z[p] - s.height, std::hypot(s.east, s.north), g.spread.value[at], g.standing.value[at]}, o.noise.value);
+        chance = probability({b.z[p] - s.height, std::hypot(s.east, s.north), g.spread.value[at], g.standing.value[at], g.sunken.value[at]},
+                             o.noise.value);
       }
     }
     const auto stated = static_cast<float>(chance);

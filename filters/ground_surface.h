@@ -22,6 +22,7 @@ struct GroundSurface {
   Raster spread;    ///< m, standard deviation of the ground's returns about it; 0 without any
   Raster support;   ///< ground's returns around the cell, by the last planes' kernel
   Raster standing;  ///< 0 to 1: share of the returns around that stand knee-high above the surface
+  Raster sunken;    ///< 0 to 1: share of them that lie deep below it
 };
 
 constexpr double ground_cell = 1.0;  ///< m

@@ -95,6 +95,40 @@ TEST(Ground, CropsAreTakenOff) {
   EXPECT_LT(e.type_2(), 5.0);
 }
 
+/// Six scenes side by side, 600 m x 320 m, with sheer steps between them.
+core::Block six_scenes() {
+  core::Block all;
+  int k = 0;
+  for (const char* name : {"town", "forest", "scarp", "bridge", "strip_edge", "slope"}) {
+    core::Block b = test::make_scene(name).block;
+    for (double& x : b.x) x += (k % 3) * test::scene_width;
+    for (double& y : b.y) y += (k / 3) * test::scene_height;
+    for (size_t p = 0; p < b.size(); p += 997) b.z[p] += p % 2 == 0 ? 25.0 : -6.0;
+    if (k++ == 0)
+      all = b;
+    else
+      core::append(all, b);
+  }
+  return all;
+}
+
+TEST(Ground, LabelsDependNeitherOnTilesNorOnOrder) {
+  GroundOptions o;
+  o.widest = core::Metres(8.0);
+  ASSERT_LT(halo(o), 160.0);  // so that tiles do not see the whole
+  const auto filter = [&](core::Block& b, size_t own) { classify_ground(b, own, o); };
+  const core::Block start = six_scenes();
+  core::Block whole = start;
+  filter(whole, whole.size());
+  EXPECT_EQ(test::run_tiled(start, 150.0, halo(o), filter).classification, whole.classification);
+  std::vector<std::uint32_t> rows;
+  core::Block mixed = test::shuffled(start, 11, rows);
+  filter(mixed, mixed.size());
+  const core::Block expected = core::select(whole, rows);
+  EXPECT_EQ(mixed.classification, expected.classification);
+  EXPECT_EQ(mixed.ground_probability, expected.ground_probability);
+}
+
 TEST(Ground, NoiseEarlyReturnsAndHaloKeepOut) { test::expect_only_own_last_returns_judged(run); }
 
 TEST(Ground, ProbabilityDecidesAndIsGivenToAllThatAreJudged) {

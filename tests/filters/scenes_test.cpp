@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "filters/ground.h"
 #include "filters/noise.h"
 #include "filters/smrf.h"
 #include "tests/world/scene.h"
@@ -27,11 +26,8 @@ std::vector<Filter> all_filters() {
   net.cell = core::Metres(0.7);
   net.window = core::Metres(3.0);
   net.cut = core::Metres(3.0);
-  GroundOptions ground;
-  ground.widest = core::Metres(6.0);
   NoiseOptions noise;
-  return {{"ground", halo(ground), [ground](core::Block& b, size_t own) { classify_ground(b, own, ground); }},
-          {"noise", halo(noise), [noise](core::Block& b, size_t own) { flag_noise(b, own, noise); }},
+  return {{"noise", halo(noise), [noise](core::Block& b, size_t own) { flag_noise(b, own, noise); }},
           {"smrf", halo(smrf), [smrf](core::Block& b, size_t own) { classify_ground_smrf(b, own, smrf); }},
           {"smrf_net", halo(net), [net](core::Block& b, size_t own) { classify_ground_smrf(b, own, net); }}};
 }
