@@ -30,6 +30,7 @@ const std::vector<Entry>& registry() {
       {"filters.robust", make_robust},
       {"filters.pmf", make_pmf},
       {"filters.csf", make_csf},
+      {"filters.ground", make_ground},
       {"filters.hag_dem", make_hag_dem},
       {"filters.classify", make_classify},
       {"terrain.breaklines", make_breaklines},

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Ground points by a surface that is fitted to the last returns, with a probability for every point.
+#pragma once
+
+#include "core/block.h"
+#include "core/option.h"
+
+namespace swath::filters {
+
+struct GroundOptions {
+  core::Metres widest{50.0};
+  core::Radians steepest = core::degrees(55.0);
+  core::Metres noise{0.03};
+};
+
+template <class V>
+void describe(GroundOptions& o, V& v) {
+  v.option("widest", o.widest, core::within(2.0, 200.0),
+           "Width of the widest building or bridge, across its narrower side: what is wider counts as ground.");
+  v.option("steepest", o.steepest, core::within(10 * core::degree, 80 * core::degree),
+           "Steepest ground: what rises more steeply and stands alone is an object.");
+  v.option("noise", o.noise, core::within(0.005, 1.0),
+           "Standard deviation of the heights of returns from hard level ground, strips' misfit included.");
+}
+
+/// What one call did, counted over the own points.
+struct GroundCounts {
+  std::uint64_t ground = 0;      ///< set to class ground
+  std::uint64_t object = 0;      ///< set to class unassigned
+  std::uint64_t untouched = 0;   ///< withheld or noise
+  std::uint64_t early = 0;       ///< among `object`: not the last return of the pulse
+  std::uint64_t doubtful = 0;    ///< probability between 0.25 and 0.75
+  std::uint64_t no_surface = 0;  ///< among `object`: no ground within reach to compare with
+};
+
+/// Metres of points around a tile that its result depends on.
+double halo(const GroundOptions& o);
+
+/// Sets class ground or unassigned and the column ground_probability of the usable points among the first `own`; those after are the halo
+/// and keep theirs. Ground is what has a probability of 0.5 or more. Only the last or only return of a pulse can be ground: the beam went
+/// on behind every earlier one, so that one lay above something lower; its probability is 0. Points that are not usable get NaN. The result
+/// of a point depends on the points within halo() of it and on nothing else.
+GroundCounts classify_ground(core::Block& block, size_t own, const GroundOptions& o);
+
+}  // namespace swath::filters

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two passes.
+// The coarse one is Pingel, Clarke & McBride 2013 (ISPRS J. 77): lowest last return per cell, holes filled, objects where an opening by a
+// growing disk drops. Deviations: the drop that is allowed per radius grows with the slope of the country (as Sithole 2001 adapts the
+// slope filter), and is never more than the steepest ground can fall within a cell and half a metre, so that low halls are taken off by
+// large disks too; low outliers are looked for in the surface that a small opening leaves and not in the lowest returns, where ground
+// seen through a gap of the canopy looks the same.
+// The fine one is robust interpolation (Kraus & Pfeifer 1998, ISPRS J. 53): a surface through all last returns with weights by their
+// distance from the surface before. Deviations: moving planes stand for linear prediction (moving_planes.h) and breaks are kept by taking
+// the smoother side; the weight's arm follows the spread of the returns under the surface and shrinks where many stand knee-high, which
+// does what Kraus & Pfeifer's eccentric weights do, and keeps the surface in the middle of the ground's returns in the open.
+#include "filters/ground_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "filters/bins.h"
+#include "filters/inpaint.h"
+#include "filters/moving_planes.h"
+
+namespace swath::filters {
+namespace {
+
+constexpr float void_value = std::numeric_limits<float>::quiet_NaN();
+constexpr Inpainting gap_filling{.reach = 10, .relax = 2, .extrapolate = true};
+constexpr Inpainting pit_filling{.reach = 6, .relax = 0, .extrapolate = true};
+constexpr double growth = 0.12;           // rise / run: drop of an opening allowed per radius on level ground (Pingel's slope)
+constexpr double growth_per_slope = 0.3;  // further drop per slope of the country
+constexpr double country_sigma = 5.0;     // cells
+constexpr double step_left = 0.5;         // m, beyond the steepest ground within one cell
+constexpr int pit_window = 6;             // cells
+constexpr int pit_radius = 2;             // cells
+constexpr double pit_depth = 0.8;         // m
+constexpr double prior_weight = 0.2;      // returns that the smoothed coarse surface stands for
+constexpr double smoothing = 1.0;         // of the coarse surface, cells
+constexpr std::array<double, 3> kernels{3.0, 2.0, 2.0};  // of the rounds of the fine pass, cells
+constexpr int break_step = 2;                            // cells
+// Distance at which a return weighs half: of the spread, in the open (fading where returns stand knee-high), on slopes.
+constexpr double arm_per_spread = 2.5, arm_open = 0.3 /* m */, arm_fading = 0.06, arm_per_slope = 0.3 /* m per rise / run */;
+constexpr double spread_sigma = 3.0;    // cells
+constexpr double stated_returns = 2.0;  // that the stated noise stands for in the spread
+
+constexpr double knee_low = 0.12, knee_low_per_slope = 0.5, knee_high = 2.0;  // m above the surface
+constexpr double sunken_depth = 0.4;                                          // m below the surface
+constexpr double share_sigma = 3.0;                                           // cells, of the shares
+
+int window_of(const GroundSurfaceOptions& o) { return static_cast<int>(std::ceil(0.5 * o.widest / ground_cell - 1e-9)) + 1; }
+Inpainting terrain_filling(int window) { return {.reach = 2 * window, .relax = 4, .extrapolate = true}; }
+
+/// Calls f(point, its cell) for all that make the surface.
+template <class F>
+void for_each_maker(const core::Block& b, const core::Lattice& l, F&& f) {
+  for (size_t p = 0; p < b.size(); ++p) {
+    if (!makes_ground(b, p)) continue;
+    const CellIndex c = cell_of(l, b, p);
+    f(p, l.at(c.i, c.j));
+  }
+}
+
+Raster lowest_returns(const core::Block& b, const core::Lattice& l) {
+  Raster r(l.nx, l.ny, void_value);
+  for_each_maker(b, l, [&](size_t p, size_t c) {
+    const auto z = static_cast<float>(b.z[p]);
+    if (std::isnan(r.value[c]) || z < r.value[c]) r.value[c] = z;
+  });
+  return r;
+}
+
+/// The mean under the Gaussian of the cells that have a value.
+Raster smoothed(const Raster& r, double sigma) {
+  Raster weight(r.nx, r.ny, 0.0F), value = weight;
+  for (size_t c = 0; c < r.value.size(); ++c)
+    if (!std::isnan(r.value[c])) weight.value[c] = 1.0F, value.value[c] = r.value[c];
+  weight = blur(weight, sigma);
+  value = blur(value, sigma);
+  for (size_t c = 0; c < r.value.size(); ++c) value.value[c] = std::isnan(r.value[c]) ? void_value : value.value[c] / weight.value[c];
+  return value;
+}
+
+/// Rise / run of a smooth surface, 0 where it is not known.
+Raster steepness(const Raster& r) {
+  Raster out(r.nx, r.ny, 0.0F);
+  for (int j = 1; j + 1 < r.ny; ++j)
+    for (int i = 1; i + 1 < r.nx; ++i) {
+      const float v = std::hypot(r.value[r.at(i + 1, j)] - r.value[r.at(i - 1, j)], r.value[r.at(i, j + 1)] - r.value[r.at(i, j - 1)]);
+      if (!std::isnan(v)) out.value[out.at(i, j)] = std::min(1.0F, v / static_cast<float>(2.0 * ground_cell));
+    }
+  return out;
+}
+
+/// Voids in `terrain` the cells that drop by more than ground can when the disk grows by a cell. `slope`: of the country.
+void remove_objects(Raster& terrain, const Raster& filled, const Raster& slope, const GroundSurfaceOptions& o, int window) {
+  const double cap = o.steepest * ground_cell + step_left;
+  Raster last = filled;
+  for (int radius = 1; radius <= window; ++radius) {
+    const Raster opened = open_disk(filled, radius);
+    for (size_t c = 0; c < terrain.value.size(); ++c) {
+      const double tolerance = std::min((growth + growth_per_slope * slope.value[c]) * ground_cell * radius, cap);
+      if (last.value[c] - opened.value[c] > tolerance) terrain.value[c] = void_value;
+      last.value[c] = std::min(last.value[c], opened.value[c]);
+    }
+  }
+}
+
+/// Closing along a line of 2 half + 1 cells in the direction (di, dj). Cells without value take no part.
+Raster close_line(const Raster& r, int di, int dj, int half) {
+  const auto pass = [&](const Raster& in, bool highest) {
+    Raster out = in;
+    for (int j = 0; j < r.ny; ++j)
+      for (int i = 0; i < r.nx; ++i) {
+        float& v = out.value[r.at(i, j)];
+        for (int k = -half; k <= half; ++k) {
+          if (!r.holds(i + k * di, j + k * dj)) continue;
+          const float other = in.value[r.at(i + k * di, j + k * dj)];
+          v = highest ? (other > v ? other : v) : (other < v ? other : v);
+        }
+      }
+    return out;
+  };
+  return pass(pass(r, true), false);
+}
+
+/// Voids the cells of `ground` where the surface through them has a pit: deeper than pit_depth along all four lines and at most
+/// 2 pit_radius wide.
+void remove_pits(Raster& ground, const Raster& surface) {
+  Raster closed = close_line(surface, 1, 0, pit_radius);
+  for (const auto& [di, dj] : {std::pair{0, 1}, std::pair{1, 1}, std::pair{-1, 1}}) {
+    const Raster other = close_line(surface, di, dj, pit_radius);
+    for (size_t c = 0; c < closed.value.size(); ++c) closed.value[c] = std::min(closed.value[c], other.value[c]);
+  }
+  for (size_t c = 0; c < ground.value.size(); ++c)
+    if (closed.value[c] - surface.value[c] > pit_depth) ground.value[c] = void_value;
+}
+
+Raster coarse_surface(const core::Block& b, const core::Lattice& l, const GroundSurfaceOptions& o, int window) {
+  Raster lowest = lowest_returns(b, l);
+  Raster ground = lowest;
+  remove_objects(ground, inpaint(lowest, gap_filling), Raster(l.nx, l.ny, 0.0F), o, std::min(window, pit_window));
+  remove_pits(lowest, inpaint(ground, pit_filling));
+  ground = lowest;
+  const Raster filled = inpaint(lowest, gap_filling);
+  const Raster country = smoothed(open_disk(filled, window), country_sigma);
+  remove_objects(ground, filled, steepness(country), o, window);
+  return inpaint(ground, terrain_filling(window));
+}
+
+/// Sums in whole units, so that they do not depend on the order of the points.
+class Sums {
+ public:
+  explicit Sums(const core::Lattice& l) : nx_(l.nx), ny_(l.ny), weight_(l.size(), 0), value_(l.size(), 0), square_(l.size(), 0) {}
+  void add(size_t c, double w, double r) {
+    weight_[c] += whole(w);
+    value_[c] += whole(w * r);
+    square_[c] += whole(w * r * r);
+  }
+  CellSums by_cell() const { return {raster(weight_), raster(value_), raster(square_)}; }
+
+ private:
+  static constexpr double unit = 1 << 24;
+  static std::int64_t whole(double v) { return std::llround(v * unit); }
+  Raster raster(const std::vector<std::int64_t>& sums) const {
+    Raster r(nx_, ny_, 0.0F);
+    for (size_t c = 0; c < sums.size(); ++c) r.value[c] = static_cast<float>(static_cast<double>(sums[c]) / unit);
+    return r;
+  }
+  int nx_, ny_;
+  std::vector<std::int64_t> weight_, value_, square_;
+};
+
+/// 1 on the surface, a half at `above` from it, 0 beyond five times as much (Kraus & Pfeifer's with exponent 4).
+double weight_of(double r, double above) {
+  const double u = std::abs(r) / above;
+  return u > 5.0 ? 0.0 : 1.0 / (1.0 + u * u * u * u);
+}
+
+/// One round: a surface through the returns by their weights about the surface before, counted from the smooth one.
+void refine(GroundSurface& g, const Raster& smooth, const core::Block& b, double sigma, double noise) {
+  const core::Lattice& l = g.lattice;
+  Sums sums(l), lower(l);
+  for_each_maker(b, l, [&](size_t p, size_t c) {
+    const double x = b.origin.x() + b.x[p], y = b.origin.y() + b.y[p];
+    const RasterSample s = sample(g.height, l, x, y);
+    if (std::isnan(s.height)) return;
+    const double r = b.z[p] - s.height, slope = std::hypot(s.east, s.north);
+    const double above =
+        arm_per_spread * g.spread.value[c] + arm_open * std::exp(-g.standing.value[c] / arm_fading) + arm_per_slope * slope;
+    const double w = weight_of(r, above);
+    sums.add(c, w, b.z[p] - sample(smooth, l, x, y).height);
+    if (r < 0) lower.add(c, w, r);
+  });
+  PlaneField planes = fit_planes(sums.by_cell(), sigma, prior_weight);
+  const Raster shift = across_breaks(planes, break_step, noise);
+  for (size_t c = 0; c < l.size(); ++c) g.height.value[c] = smooth.value[c] + shift.value[c];
+  g.support = std::move(planes.support);
+  const CellSums below = lower.by_cell();
+  const Raster weight = blur(below.weight, spread_sigma), square = blur(below.square, spread_sigma);
+  for (size_t c = 0; c < l.size(); ++c)
+    g.spread.value[c] =
+        static_cast<float>(std::sqrt((square.value[c] + stated_returns * noise * noise) / (weight.value[c] + stated_returns)));
+}
+
+/// Shares of the returns around each cell, by their heights over the surface: knee-high, and deep below.
+struct Shares {
+  Raster standing, sunken;
+};
+Shares shares_of(const GroundSurface& g, const core::Block& b) {
+  const core::Lattice& l = g.lattice;
+  Raster all(l.nx, l.ny, 0.0F);
+  Shares s{all, all};
+  for_each_maker(b, l, [&](size_t p, size_t c) {
+    const RasterSample at = sample(g.height, l, b.origin.x() + b.x[p], b.origin.y() + b.y[p]);
+    const double r = b.z[p] - at.height;
+    all.value[c] += 1.0F;
+    if (r > knee_low + knee_low_per_slope * std::hypot(at.east, at.north) && r < knee_high) s.standing.value[c] += 1.0F;
+    if (r < -sunken_depth) s.sunken.value[c] += 1.0F;
+  });
+  all = blur(all, share_sigma);
+  for (Raster* r : {&s.standing, &s.sunken}) {
+    *r = blur(*r, share_sigma);
+    for (size_t c = 0; c < all.value.size(); ++c) r->value[c] /= all.value[c] + 1.0F;
+  }
+  return s;
+}
+
+}  // namespace
+
+bool makes_ground(const core::Block& b, size_t p) { return core::is_usable(b, p) && core::is_last_return(b, p); }
+
+RasterSample sample(const Raster& r, const core::Lattice& l, double x, double y) {
+  const double u = x / l.cell - 0.5 - static_cast<double>(l.i0);
+  const double v = y / l.cell - 0.5 - static_cast<double>(l.j0);
+  const int i = static_cast<int>(std::floor(u));
+  const int j = static_cast<int>(std::floor(v));
+  const double fu = u - i, fv = v - j;
+  const size_t at = r.at(i, j), up = at + static_cast<size_t>(r.nx);
+  const double sw = r.value[at], se = r.value[at + 1], nw = r.value[up], ne = r.value[up + 1];
+  const double south = sw + fu * (se - sw), north = nw + fu * (ne - nw);
+  return {south + fv * (north - south), ((se - sw) * (1 - fv) + (ne - nw) * fv) / l.cell, (north - south) / l.cell};
+}
+
+int surface_reach(const GroundSurfaceOptions& o) {
+  const int window = window_of(o);
+  int cells = gap_filling.support() + 2 * std::min(window, pit_window) + pit_filling.support() + 4 * pit_radius;
+  cells += gap_filling.support() + 2 * window + 1 + reach(country_sigma) + terrain_filling(window).support() + reach(smoothing);
+  cells += 1 + reach(share_sigma);
+  for (const double sigma : kernels) cells += 1 + std::max(reach(sigma) + break_step, reach(spread_sigma));
+  return cells + 1 + reach(share_sigma);
+}
+
+GroundSurface ground_surface(const core::Block& b, const GroundSurfaceOptions& o) {
+  const int window = window_of(o);
+  // The rim holds the centres of all disks that touch a filled cell.
+  const core::Lattice l = lattice_around(b, ground_cell, gap_filling.support() + window + 1);
+  const Raster smooth = smoothed(coarse_surface(b, l, o, window), smoothing);
+  GroundSurface g{l, smooth, Raster(l.nx, l.ny, static_cast<float>(2.0 * o.noise)), {}, {}, {}};
+  g.standing = shares_of(g, b).standing;
+  for (const double sigma : kernels) refine(g, smooth, b, sigma, o.noise);
+  Shares shares = shares_of(g, b);
+  g.standing = std::move(shares.standing);
+  g.sunken = std::move(shares.sunken);
+  return g;
+}
+
+}  // namespace swath::filters

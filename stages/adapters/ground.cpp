@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "filters/ground.h"
+
+#include "stages/adapters/adapters.h"
+
+namespace swath::stages {
+namespace {
+
+using core::Column;
+
+class Ground : public OptionStage<filters::GroundOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{"filters.ground",
+                           "Ground points by a robust surface through the last returns, with a probability of bare ground for every point.",
+                           {Grain::tile},
+                           {Column::flags},
+                           {Column::classification, Column::ground_probability},
+                           {Product::points},
+                           {}};
+    return info;
+  }
+  core::ColumnSet also_reads() const override { return {Column::return_number, Column::return_count}; }
+  double halo() const override { return filters::halo(options); }
+  double bytes_per_point() const override { return 160.0; }
+  void run_tile(const Context&, TileJob& job) const override {
+    const filters::GroundCounts n = filters::classify_ground(job.block, job.own, options);
+    job.tally.count("ground", n.ground);
+    job.tally.count("not ground", n.object);
+    job.tally.count("doubtful: probability between 0.25 and 0.75", n.doubtful);
+    if (n.early) job.tally.count("not a last return, not ground", n.early);
+    if (n.untouched) job.tally.count("withheld or noise, not looked at", n.untouched);
+    if (n.no_surface) job.tally.count("no ground within reach", n.no_surface);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> make_ground() { return std::make_unique<Ground>(); }
+
+}  // namespace swath::stages

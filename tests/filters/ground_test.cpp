@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "filters/ground.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "tests/filters/ground_truth.h"
+
+namespace swath::filters {
+namespace {
+
+GroundCounts run(core::Block& b, size_t own) { return classify_ground(b, own, {}); }
+
+struct Sample {
+  const char* name;
+  double total_bar;  ///< %, of PDAL's filters.smrf with its defaults
+};
+class GroundIsprs : public testing::TestWithParam<Sample> {};
+
+TEST_P(GroundIsprs, TotalErrorWithTheDefaultsIsWithinTheBar) {
+  SWATH_SHARED_OR_SKIP(folder, "data/isprs");
+  test::expect_sample_within(folder, GetParam().name, GetParam().total_bar, run);
+}
+
+INSTANTIATE_TEST_SUITE_P(Samples, GroundIsprs,
+                         testing::Values(Sample{"samp11", 9.9}, Sample{"samp21", 2.5}, Sample{"samp24", 4.1}, Sample{"samp41", 6.5},
+                                         Sample{"samp52", 4.5}, Sample{"samp54", 7.0}, Sample{"samp71", 3.7}),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+TEST(Ground, MadeScenesComeOutNearlyWhole) {
+  test::expect_within({{"flat", 0.2, 0},
+                       {"slope", 0.2, 0},
+                       {"town", 0.3, 0.3},
+                       {"forest", 2.0, 0.5},
+                       {"water", 0.2, 0},
+                       {"void", 0.2, 0},
+                       {"strip_edge", 0.2, 0},
+                       {"scarp", 0.5, 0},
+                       {"bridge", 0.5, 3.0}},
+                      run);
+}
+
+/// A hall of 80 m x 40 m around a courtyard of 20 m x 12 m.
+test::Scene hall() {
+  test::Scene s = test::make_scene("flat");
+  for (size_t p = 0; p < s.block.size(); ++p) {
+    const double u = std::abs(s.block.x[p] - 100.0), v = std::abs(s.block.y[p] - 80.0);
+    if (u > 40.0 || v > 20.0 || (u < 10.0 && v < 6.0)) continue;
+    s.block.z[p] += 9.0;
+    s.truth[p] = core::point_class::building;
+  }
+  return s;
+}
+
+TEST(Ground, AHallIsTakenOffAndItsCourtyardKept) {
+  test::Scene s = hall();
+  classify_ground(s.block, s.block.size(), {});
+  const test::GroundErrors e = test::ground_errors(s.block, s.truth);
+  EXPECT_LT(e.type_2(), 0.1);
+  EXPECT_LT(e.type_1(), 0.3);
+  size_t kept = 0, yard = 0;
+  for (size_t p = 0; p < s.block.size(); ++p)
+    if (std::abs(s.block.x[p] - 100.0) < 9.0 && std::abs(s.block.y[p] - 80.0) < 5.0)
+      ++yard, kept += s.block.classification[p] == core::point_class::ground;
+  EXPECT_GT(kept, yard * 97 / 100);
+}
+
+TEST(Ground, LowPointsAreNotGroundNorDoTheyTakeTheirSurroundingsAlong) {
+  test::Scene s = test::make_scene("slope");
+  size_t low = 0;
+  for (size_t p = 0; p < s.block.size(); p += 211) {
+    s.block.z[p] -= 0.7 + 0.05 * static_cast<double>(p % 300);
+    s.truth[p] = core::point_class::low_noise;
+    ++low;
+  }
+  classify_ground(s.block, s.block.size(), {});
+  const test::GroundErrors e = test::ground_errors(s.block, s.truth);
+  EXPECT_EQ(e.object, static_cast<double>(low));
+  constexpr double bearable = 0.01;  // of the low points
+  EXPECT_LE(e.taken_object, bearable * e.object);
+  EXPECT_LT(e.type_1(), 0.3);
+}
+
+TEST(Ground, CropsAreTakenOff) {
+  test::Scene s = test::make_scene("flat");
+  for (size_t p = 0; p < s.block.size(); ++p)
+    if (p % 2 != 0 && s.block.x[p] > 60 && s.block.x[p] < 140) {
+      s.block.z[p] += 0.15 + 0.6 * std::fmod(0.618034 * static_cast<double>(p), 1.0);
+      s.truth[p] = core::point_class::low_vegetation;
+    }
+  classify_ground(s.block, s.block.size(), {});
+  const test::GroundErrors e = test::ground_errors(s.block, s.truth);
+  EXPECT_LT(e.type_1(), 2.0);
+  EXPECT_LT(e.type_2(), 5.0);
+}
+
+/// Six scenes side by side, 600 m x 320 m, with sheer steps between them.
+core::Block six_scenes() {
+  core::Block all;
+  int k = 0;
+  for (const char* name : {"town", "forest", "scarp", "bridge", "strip_edge", "slope"}) {
+    core::Block b = test::make_scene(name).block;
+    for (double& x : b.x) x += (k % 3) * test::scene_width;
+    for (double& y : b.y) y += (k / 3) * test::scene_height;
+    for (size_t p = 0; p < b.size(); p += 997) b.z[p] += p % 2 == 0 ? 25.0 : -6.0;
+    if (k++ == 0)
+      all = b;
+    else
+      core::append(all, b);
+  }
+  return all;
+}
+
+TEST(Ground, LabelsDependNeitherOnTilesNorOnOrder) {
+  GroundOptions o;
+  o.widest = core::Metres(8.0);
+  ASSERT_LT(halo(o), 160.0);  // so that tiles do not see the whole
+  const auto filter = [&](core::Block& b, size_t own) { classify_ground(b, own, o); };
+  const core::Block start = six_scenes();
+  core::Block whole = start;
+  filter(whole, whole.size());
+  EXPECT_EQ(test::run_tiled(start, 150.0, halo(o), filter).classification, whole.classification);
+  std::vector<std::uint32_t> rows;
+  core::Block mixed = test::shuffled(start, 11, rows);
+  filter(mixed, mixed.size());
+  const core::Block expected = core::select(whole, rows);
+  EXPECT_EQ(mixed.classification, expected.classification);
+  EXPECT_EQ(mixed.ground_probability, expected.ground_probability);
+}
+
+TEST(Ground, NoiseEarlyReturnsAndHaloKeepOut) { test::expect_only_own_last_returns_judged(run); }
+
+TEST(Ground, ProbabilityDecidesAndIsGivenToAllThatAreJudged) {
+  test::Scene s = test::make_scene("town");
+  s.block.flags[0] = core::flag::withheld;
+  s.block.return_count[1] = 2;
+  const GroundCounts n = classify_ground(s.block, s.block.size(), {});
+  EXPECT_EQ(n.untouched, 1u);
+  EXPECT_TRUE(std::isnan(s.block.ground_probability[0]));
+  EXPECT_EQ(s.block.ground_probability[1], 0.0F);
+  for (size_t p = 1; p < s.block.size(); ++p) {
+    const float stated = s.block.ground_probability[p];
+    ASSERT_GE(stated, 0.0F);
+    ASSERT_LE(stated, 1.0F);
+    ASSERT_EQ(stated >= 0.5F, s.block.classification[p] == core::point_class::ground);
+  }
+}
+
+TEST(Ground, AWideBuildingStaysWhereTheOptionSaysNarrower) {
+  test::Scene s = hall();
+  GroundOptions o;
+  o.widest = core::Metres(12.0);
+  classify_ground(s.block, s.block.size(), o);
+  EXPECT_GT(test::ground_errors(s.block, s.truth).type_2(), 30.0);
+}
+
+}  // namespace
+}  // namespace swath::filters
