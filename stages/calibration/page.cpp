@@ -23,7 +23,7 @@ using report::number_text;
 using report::Table;
 using report::Tone;
 
-constexpr double centimetre = 0.01;
+constexpr double arc_second = core::degree / 3600.0, centimetre = 0.01;
 constexpr size_t most_maps = 6;  ///< pairs of lines whose maps stand in the page; all are kept as files
 
 void findings(const PageParts& parts) {
@@ -33,7 +33,7 @@ void findings(const PageParts& parts) {
     t.columns = {{"finding", false}, {"what to do", false}, {"parameters", false}, {"outcome", false}};
     for (const calib::Finding& f : parts.report.adjustment.findings) {
       std::vector<std::string> names;
-      for (const Parameter p : f.parameters) names.emplace_back(words_of(p).name);
+      for (const calib::Parameter p : f.parameters) names.emplace_back(words_of(p).name);
       t.rows.push_back({f.what, f.cure, joined(names), f.refuses ? "not delivered" : "warning"});
       t.tones.push_back(f.refuses ? Tone::bad : Tone::caution);
     }
