@@ -78,7 +78,7 @@ class Breaklines(Case):
                 t = (px * dx + py * dy) / (dx * dx + dy * dy)
                 if 0 < t < 1 and abs(px * dy - py * dx) < 0.02 * (dx * dx + dy * dy) ** 0.5:
                     near += 1
-                    self.assertLess(abs(v - az - t * (bz - az)), 0.15)  # 2 cm beside a line that stands up to 8 m over the ground 0.5 m away
+                    self.assertLess(abs(v - az - t * (bz - az)), 0.02 * 8 / 0.5)  # 2 cm beside a line that stands up to 8 m over the ground 0.5 m away
         self.assertGreater(near, 3)
 
     def test_lines_that_cross_at_different_heights_are_named(self):

@@ -76,7 +76,7 @@ TEST(LasWriter, ABlockComesBackWithinItsSteps) {
     EXPECT_EQ(r.crs().definition, "PROJCS[\"made\"]");
     EXPECT_EQ(h.legacy_point_count, 0u);
     for (const std::uint64_t k : h.by_return) EXPECT_EQ(k, 200u);
-    EXPECT_EQ(h.extras.size(), 5u);
+    EXPECT_EQ(h.extras.size(), 6u);
     core::Block q;
     q.origin = b.origin;
     ASSERT_EQ(r.read(q, 5000), 3000u);
