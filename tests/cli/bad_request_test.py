@@ -27,7 +27,7 @@ class Requests(Case):
         self.assert_bad_usage(self.toml, r"survey\.toml:\d+:\d+: calibration\.roll: 0\.05: no unit", "deg, rad")
 
     def test_wrong_unit(self):
-        self.assert_bad_usage(self.toml, r"--set.*smrf.*cell", "5 s", more=["--set", "smrf.cell=5 s"])
+        self.assert_bad_usage(self.toml, r"--set.*ground.*widest", "5 s", more=["--set", "ground.widest=5 s"])
 
     def test_time_scale_missing(self):
         substitute(self.toml, 'scale = "gps_week"\nweek = 2317\n', "")
@@ -180,7 +180,7 @@ class Clouds(Case):
             self.assertAlmostEqual(height, again[place], delta=1e-3)  # the LAS file's own resolution
         same = "ground points at the same place as a lower or equal one"
         self.assertNotIn(same, stage(once, "terrain.dtm")["tally"])
-        ground = stage(once, "filters.smrf")["tally"]["ground"]["count"]
+        ground = stage(once, "filters.ground")["tally"]["ground"]["count"]
         self.assertEqual(stage(twice, "terrain.dtm")["tally"][same]["count"], ground)
 
     def test_all_points_at_one_place(self):

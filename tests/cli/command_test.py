@@ -38,8 +38,8 @@ class Help(Case):
                                 [["run", CONFIG, "--nope"], "--nope"], [["run", "nowhere.toml"], "nowhere.toml"],
                                 [["check", "nowhere.json"], "nowhere.json"], [["stages", "filters.smrff"], "filters.smrf"],
                                 [["run", CONFIG, "--threads", "many"], "--threads"], [["run", CONFIG], "--survey"],
-                                [["check", CONFIG, "--set", "smrf.cel=1 m"], "did you mean 'cell'"],
-                                [["check", CONFIG, "--set", "smfr.cell=1 m"], "smrf"], [["check", CONFIG, "--set", "cell"], "stage.key=value"],
+                                [["check", CONFIG, "--set", "ground.widets=30 m"], "did you mean 'widest'"],
+                                [["check", CONFIG, "--set", "grond.widest=30 m"], "ground"], [["check", CONFIG, "--set", "cell"], "stage.key=value"],
                                 [["simulate", "x", "--set", "sede=7"], "seed"]):
             with self.subTest(arguments=arguments):
                 self.assert_error(swath(*arguments, cwd=self.folder), 2, re.escape(word))
@@ -74,17 +74,17 @@ class Looks(Case):
                           "faulty.toml:10:9", "faulty.toml:13:8.*terrain.dtm")
 
     def test_explain_tells_where_values_come_from(self):
-        done = swath("explain", CONFIG, "--survey", self.survey / "survey.toml", "--set", "smrf.cell=50 cm", "--json")
+        done = swath("explain", CONFIG, "--survey", self.survey / "survey.toml", "--set", "ground.widest=30 m", "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         told = json.loads(done.stdout)
-        smrf = next(s for s in told["stages"] if s["type"] == "filters.smrf")["options"]
-        self.assertEqual(smrf["cell"]["from"], "--set")
-        self.assertEqual(smrf["slope"]["from"], "default")
+        ground = next(s for s in told["stages"] if s["type"] == "filters.ground")["options"]
+        self.assertEqual(ground["widest"]["from"], "--set")
+        self.assertEqual(ground["steepest"]["from"], "default")
         dtm = next(s for s in told["stages"] if s["type"] == "terrain.dtm")["options"]
         self.assertRegex(dtm["cell"]["from"], r"survey_sbet\.toml:\d+:\d+")
         text = swath("explain", CONFIG)
         self.assertEqual(text.returncode, 0)
-        self.assertIn("filters.smrf", text.stdout)
+        self.assertIn("filters.ground", text.stdout)
 
     def test_stages(self):
         done = swath("stages")
@@ -143,7 +143,7 @@ class Runs(Case):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("products in", done.stdout)
         self.assertIn("rms_3d", done.stdout)
-        self.assertRegex(done.stderr, r"(?m)^filters\.smrf +100 %  \S+ k? ?points, .*/s, ")
+        self.assertRegex(done.stderr, r"(?m)^filters\.ground +100 %  \S+ k? ?points, .*/s, ")
 
     def test_quiet_is_silent(self):
         done = swath(*self.arguments("--quiet"))
@@ -156,7 +156,7 @@ class Runs(Case):
         self.assertEqual((done.returncode, done.stdout), (0, ""))
         lines = [json.loads(line) for line in done.stderr.strip().split("\n")]
         finished = [line["stage"] for line in lines if line.get("finished")]
-        for name in ("strips", "filters.smrf", "terrain.dtm", "writers.las"):
+        for name in ("strips", "filters.ground", "terrain.dtm", "writers.las"):
             self.assertIn(name, finished)
         for line in lines:
             self.assertIn("per_second", line)
