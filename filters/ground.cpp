@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "filters/bins.h"
 #include "filters/ground_surface.h"
@@ -58,39 +59,33 @@ double probability(const Evidence& e, double noise) {
 
 double halo(const GroundOptions& o) { return (surface_reach(surface_options(o)) + 2) * ground_cell; }
 
-GroundCounts classify_ground(core::Block& b, size_t own, const GroundOptions& o) {
-  GroundCounts n;
+GroundChances classify_ground(core::Block& b, size_t own, const GroundOptions& o) {
+  GroundChances n;
   core::add_columns(b, {core::Column::classification, core::Column::ground_probability});
   if (own == 0) return n;
   const GroundSurface g = ground_surface(b, surface_options(o));
+  std::vector<Verdict> verdicts(b.size(), Verdict::object);
   for (size_t p = 0; p < own; ++p) {
-    if (!core::is_usable(b, p)) {
-      b.ground_probability[p] = not_judged;
-      ++n.untouched;
+    if (!may_be_ground(b, p)) {
+      b.ground_probability[p] = core::is_usable(b, p) ? 0.0F : not_judged;
       continue;
     }
-    double chance = 0.0;
-    if (!core::is_last_return(b, p)) {
-      ++n.early;
-    } else {
-      const RasterSample s = sample(g.height, g.lattice, b.origin.x() + b.x[p], b.origin.y() + b.y[p]);
-      if (std::isnan(s.height)) {
-        ++n.no_surface;
-      } else {
-        const CellIndex c = cell_of(g.lattice, b, p);
-        const size_t at = g.lattice.at(c.i, c.j);
-        chance = probability({b.z[p] - s.height, std::hypot(s.east, s.north), g.spread.value[at], g.standing.value[at], g.sunken.value[at],
-                              g.support.value[at]},
-                             o.noise.value);
-      }
+    const RasterSample s = sample(g.height, g.lattice, b.origin.x() + b.x[p], b.origin.y() + b.y[p]);
+    if (std::isnan(s.height)) {
+      b.ground_probability[p] = 0.0F;
+      verdicts[p] = Verdict::no_surface;
+      continue;
     }
-    const auto stated = static_cast<float>(chance);
-    const bool ground = stated >= 0.5F;
+    const CellIndex c = cell_of(g.lattice, b, p);
+    const size_t at = g.lattice.at(c.i, c.j);
+    const auto stated = static_cast<float>(probability(
+        {b.z[p] - s.height, std::hypot(s.east, s.north), g.spread.value[at], g.standing.value[at], g.sunken.value[at], g.support.value[at]},
+        o.noise.value));
     b.ground_probability[p] = stated;
-    b.classification[p] = ground ? core::point_class::ground : core::point_class::unassigned;
-    ++(ground ? n.ground : n.object);
+    if (stated >= 0.5F) verdicts[p] = Verdict::ground;
     n.doubtful += stated > 0.25F && stated < 0.75F;
   }
+  static_cast<GroundCounts&>(n) = set_ground_classes(b, own, verdicts);
   return n;
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/block.h"
 #include "core/option.h"
+#include "filters/ground_labels.h"
 
 namespace swath::filters {
 
@@ -24,13 +25,8 @@ void describe(GroundOptions& o, V& v) {
 }
 
 /// What one call did, counted over the own points.
-struct GroundCounts {
-  std::uint64_t ground = 0;      ///< set to class ground
-  std::uint64_t object = 0;      ///< set to class unassigned
-  std::uint64_t untouched = 0;   ///< withheld or noise
-  std::uint64_t early = 0;       ///< among `object`: not the last return of the pulse
-  std::uint64_t doubtful = 0;    ///< probability between 0.25 and 0.75
-  std::uint64_t no_surface = 0;  ///< among `object`: no ground within reach to compare with
+struct GroundChances : GroundCounts {
+  std::uint64_t doubtful = 0;  ///< probability between 0.25 and 0.75
 };
 
 /// Metres of points around a tile that its result depends on.
@@ -40,6 +36,6 @@ double halo(const GroundOptions& o);
 /// and keep theirs. Ground is what has a probability of 0.5 or more. Only the last or only return of a pulse can be ground: the beam went
 /// on behind every earlier one, so that one lay above something lower; its probability is 0. Points that are not usable get NaN. The result
 /// of a point depends on the points within halo() of it and on nothing else.
-GroundCounts classify_ground(core::Block& block, size_t own, const GroundOptions& o);
+GroundChances classify_ground(core::Block& block, size_t own, const GroundOptions& o);
 
 }  // namespace swath::filters

@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "filters/bins.h"
+#include "filters/ground_labels.h"
 #include "filters/inpaint.h"
 #include "filters/moving_planes.h"
 
@@ -55,7 +56,7 @@ Inpainting terrain_filling(int window) { return {.reach = 2 * window, .relax = 4
 template <class F>
 void for_each_maker(const core::Block& b, const core::Lattice& l, F&& f) {
   for (size_t p = 0; p < b.size(); ++p) {
-    if (!makes_ground(b, p)) continue;
+    if (!may_be_ground(b, p)) continue;
     const CellIndex c = cell_of(l, b, p);
     f(p, l.at(c.i, c.j));
   }
@@ -227,8 +228,6 @@ Shares shares_of(const GroundSurface& g, const core::Block& b) {
 }
 
 }  // namespace
-
-bool makes_ground(const core::Block& b, size_t p) { return core::is_usable(b, p) && core::is_last_return(b, p); }
 
 RasterSample sample(const Raster& r, const core::Lattice& l, double x, double y) {
   const double u = x / l.cell - 0.5 - static_cast<double>(l.i0);

@@ -27,10 +27,7 @@ struct GroundSurface {
 
 constexpr double ground_cell = 1.0;  ///< m
 
-/// True where the point makes the surface: usable, and the last or only return of its pulse.
-bool makes_ground(const core::Block& b, size_t p);
-
-/// The result at a place depends on the points within surface_reach() and not on their order.
+/// From the points that may_be_ground(). The result at a place depends on the points within surface_reach() and not on their order.
 GroundSurface ground_surface(const core::Block& b, const GroundSurfaceOptions& o);
 
 /// Cells around a point that its surface depends on.

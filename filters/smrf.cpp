@@ -18,6 +18,7 @@
 #include <limits>
 
 #include "filters/bins.h"
+#include "filters/ground_labels.h"
 #include "filters/inpaint.h"
 #include "filters/morphology.h"
 
@@ -35,12 +36,10 @@ int cells(core::Metres length, core::Metres cell) { return static_cast<int>(std:
 /// An object of the widest kind must be bridged from side to side.
 Inpainting terrain_filling(int window) { return {.reach = 2 * window, .relax = 4, .extrapolate = true}; }
 
-bool takes_part(const core::Block& b, size_t p) { return core::is_usable(b, p) && core::is_last_return(b, p); }
-
 Raster minimum_surface(const core::Block& b, const core::Lattice& l) {
   Raster r(l.nx, l.ny, void_value);
   for (size_t p = 0; p < b.size(); ++p) {
-    if (!takes_part(b, p)) continue;
+    if (!may_be_ground(b, p)) continue;
     const CellIndex c = cell_of(l, b, p);
     float& lowest = r.value[r.at(c.i, c.j)];
     const auto z = static_cast<float>(b.z[p]);

@@ -24,7 +24,7 @@ class Ground : public OptionStage<filters::GroundOptions> {
   double halo() const override { return filters::halo(options); }
   double bytes_per_point() const override { return 160.0; }
   void run_tile(const Context&, TileJob& job) const override {
-    const filters::GroundCounts n = filters::classify_ground(job.block, job.own, options);
+    const filters::GroundChances n = filters::classify_ground(job.block, job.own, options);
     job.tally.count("ground", n.ground);
     job.tally.count("not ground", n.object);
     job.tally.count("doubtful: probability between 0.25 and 0.75", n.doubtful);

@@ -136,7 +136,7 @@ TEST(Ground, ProbabilityDecidesAndIsGivenToAllThatAreJudged) {
   test::Scene s = test::make_scene("town");
   s.block.flags[0] = core::flag::withheld;
   s.block.return_count[1] = 2;
-  const GroundCounts n = classify_ground(s.block, s.block.size(), {});
+  const GroundChances n = classify_ground(s.block, s.block.size(), {});
   EXPECT_EQ(n.untouched, 1u);
   EXPECT_TRUE(std::isnan(s.block.ground_probability[0]));
   EXPECT_EQ(s.block.ground_probability[1], 0.0F);
