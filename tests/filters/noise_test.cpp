@@ -13,12 +13,7 @@
 namespace swath::filters {
 namespace {
 
-void add_point(core::Block& b, double x, double y, double z) {
-  core::resize(b, b.size() + 1);
-  b.x.back() = x;
-  b.y.back() = y;
-  b.z.back() = z;
-}
+using test::add_point;
 
 bool is(const core::Block& b, size_t p, std::uint16_t f) { return b.flags[p] & f; }
 

@@ -12,12 +12,7 @@
 namespace swath::filters {
 namespace {
 
-void add_point(core::Block& b, double x, double y, double z) {
-  core::resize(b, b.size() + 1);
-  b.x.back() = x;
-  b.y.back() = y;
-  b.z.back() = z;
-}
+using test::add_point;
 
 TEST(Outlier, ThresholdIsMeanAndDeviationsOfTheWindow) {
   // Points 1 m apart in a row, one 2.5 m above it; k = 1: distances are 1 but for that one.

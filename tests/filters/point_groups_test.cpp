@@ -8,12 +8,7 @@
 namespace swath::filters {
 namespace {
 
-void add_point(core::Block& b, double x, double y, double z) {
-  core::resize(b, b.size() + 1);
-  b.x.back() = x;
-  b.y.back() = y;
-  b.z.back() = z;
-}
+using test::add_point;
 
 std::vector<LonePoint> lone(const core::Block& b) { return lone_points(b, std::vector<std::uint8_t>(b.size(), 1), 10.0, 20); }
 

@@ -125,6 +125,13 @@ Scene make_scene(const std::string& name) {
   return s;
 }
 
+void add_point(core::Block& b, double x, double y, double z) {
+  core::resize(b, b.size() + 1);
+  b.x.back() = x;
+  b.y.back() = y;
+  b.z.back() = z;
+}
+
 core::Block shuffled(const core::Block& b, unsigned seed, std::vector<std::uint32_t>& rows) {
   rows.resize(b.size());
   std::iota(rows.begin(), rows.end(), 0u);

@@ -28,6 +28,9 @@ std::vector<std::string> scene_names();
 /// One pulse per square metre at a random place in each (strip_edge: a second line over part of it). The same scene at every call.
 Scene make_scene(const std::string& name);
 
+/// One more point; its other columns hold zeros.
+void add_point(core::Block& b, double x, double y, double z);
+
 /// The scene's points in another, random order.
 core::Block shuffled(const core::Block& b, unsigned seed, std::vector<std::uint32_t>& rows);
 

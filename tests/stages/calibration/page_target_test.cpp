@@ -4,18 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "tests/stages/calibration/made_report.h"
+#include "tests/stages/calibration/part_of_page.h"
 
 namespace swath::stages {
 namespace {
-
-bool holds(const std::string& text, const std::string& what) { return text.find(what) != std::string::npos; }
-
-std::string html_of(const CalibrationReport& report, void (*add)(const PageParts&)) {
-  report::Page page("part");
-  const KeepFigure keep = [](const std::string&, const core::Picture&) { return std::string("png"); };
-  add({report, keep, page});
-  return page.html();
-}
 
 TEST(CalibrationPageTarget, AReadingIsSetBesideTheAdjustment) {
   CalibrationReport r = made_report();

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "tests/stages/calibration/made_report.h"
+#include "tests/stages/calibration/part_of_page.h"
 
 namespace swath::stages {
 namespace {
@@ -24,8 +25,6 @@ Made page_of(const CalibrationReport& r) {
   });
   return out;
 }
-
-bool holds(const std::string& text, const std::string& what) { return text.find(what) != std::string::npos; }
 
 TEST(CalibrationPage, HoldsEveryPartAndKeepsEveryFigure) {
   const Made m = page_of(made_report());

@@ -7,6 +7,7 @@
 
 #include "core/units.h"
 #include "tests/stages/calibration/made_report.h"
+#include "tests/stages/calibration/part_of_page.h"
 
 namespace swath::stages {
 namespace {
@@ -24,8 +25,6 @@ calib::Adjustment boresight_only(double roll, double pitch, double heading) {
   }
   return a;
 }
-
-bool holds(const std::string& text, const std::string& what) { return text.find(what) != std::string::npos; }
 
 TEST(CalibrationVerdict, TellsEachSigmaInOneSentence) {
   const Verdict v = verdict_of(boresight_only(1.2, 1.9, 3.4));
