@@ -8,7 +8,9 @@
 // The fine one is robust interpolation (Kraus & Pfeifer 1998, ISPRS J. 53): a surface through all last returns with weights by their
 // distance from the surface before. Deviations: moving planes stand for linear prediction (moving_planes.h) and breaks are kept by taking
 // the smoother side; the weight's arm follows the spread of the returns under the surface and shrinks where many stand knee-high, which
-// does what Kraus & Pfeifer's eccentric weights do, and keeps the surface in the middle of the ground's returns in the open.
+// does what Kraus & Pfeifer's eccentric weights do, and keeps the surface in the middle of the ground's returns in the open. A plane
+// under a kernel of sigma s lies 0.5 s^2 f'' off a curved surface f; planes of a finer kernel, where the data favour them, and residuals
+// fitted again take most of that away: on a scarp of 55 degrees 45 mm in rms in place of 68 mm, of which 42 mm are the returns' own.
 #include "filters/ground_surface.h"
 
 #include <algorithm>
@@ -16,9 +18,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <vector>
 #include <utility>
 
 #include "filters/bins.h"
+#include "filters/decks.h"
 #include "filters/ground_labels.h"
 #include "filters/inpaint.h"
 #include "filters/moving_planes.h"
@@ -40,6 +45,8 @@ constexpr double prior_weight = 0.2;      // returns that the smoothed coarse su
 constexpr double smoothing = 1.0;         // of the coarse surface, cells
 constexpr std::array<double, 3> kernels{3.0, 2.0, 2.0};  // of the rounds of the fine pass, cells
 constexpr int break_step = 2;                            // cells
+constexpr double fine_kernel = 1.0;                      // cells, beside them from the second round on
+constexpr int fine_step = 1;                             // cells
 // Distance at which a return weighs half: of the spread, in the open (fading where returns stand knee-high), on slopes.
 constexpr double arm_per_spread = 2.5, arm_open = 0.3 /* m */, arm_fading = 0.06, arm_per_slope = 0.3 /* m per rise / run */;
 constexpr double spread_sigma = 3.0;    // cells
@@ -146,6 +153,7 @@ Raster coarse_surface(const core::Block& b, const core::Lattice& l, const Ground
   const Raster filled = inpaint(lowest, gap_filling);
   const Raster country = smoothed(open_disk(filled, window), country_sigma);
   remove_objects(ground, filled, steepness(country), o, window);
+  remove_deck_ends(ground, lowest, {.steepest = o.steepest, .step = step_left});
   return inpaint(ground, terrain_filling(window));
 }
 
@@ -178,8 +186,9 @@ double weight_of(double r, double above) {
   return u > 5.0 ? 0.0 : 1.0 / (1.0 + u * u * u * u);
 }
 
-/// One round: a surface through the returns by their weights about the surface before, counted from the smooth one.
-void refine(GroundSurface& g, const Raster& smooth, const core::Block& b, double sigma, double noise) {
+/// One round: a surface through the returns by their weights about the surface before, as shifts from `base`. `fine`: with the fine
+/// kernel's planes beside the others.
+void refine(GroundSurface& g, const Raster& base, const core::Block& b, double sigma, double noise, bool fine) {
   const core::Lattice& l = g.lattice;
   Sums sums(l), lower(l);
   for_each_maker(b, l, [&](size_t p, size_t c) {
@@ -190,12 +199,19 @@ void refine(GroundSurface& g, const Raster& smooth, const core::Block& b, double
     const double above =
         arm_per_spread * g.spread.value[c] + arm_open * std::exp(-g.standing.value[c] / arm_fading) + arm_per_slope * slope;
     const double w = weight_of(r, above);
-    sums.add(c, w, b.z[p] - sample(smooth, l, x, y).height);
+    sums.add(c, w, &base == &g.height ? r : b.z[p] - sample(base, l, x, y).height);
     if (r < 0) lower.add(c, w, r);
   });
-  PlaneField planes = fit_planes(sums.by_cell(), sigma, prior_weight);
-  const Raster shift = across_breaks(planes, break_step, noise);
-  for (size_t c = 0; c < l.size(); ++c) g.height.value[c] = smooth.value[c] + shift.value[c];
+  const CellSums data = sums.by_cell();
+  PlaneField planes = fit_planes(data, sigma, prior_weight);
+  std::vector<PlaneChoice> fields{{planes, break_step}};
+  std::optional<PlaneField> finer;
+  if (fine) {
+    finer = fit_planes(data, fine_kernel, prior_weight);
+    fields.push_back({*finer, fine_step});
+  }
+  const Raster shift = across_breaks(fields, noise);
+  for (size_t c = 0; c < l.size(); ++c) g.height.value[c] = base.value[c] + shift.value[c];
   g.support = std::move(planes.support);
   const CellSums below = lower.by_cell();
   const Raster weight = blur(below.weight, spread_sigma), square = blur(below.square, spread_sigma);
@@ -244,7 +260,7 @@ RasterSample sample(const Raster& r, const core::Lattice& l, double x, double y)
 int surface_reach(const GroundSurfaceOptions& o) {
   const int window = window_of(o);
   int cells = gap_filling.support() + 2 * std::min(window, pit_window) + pit_filling.support() + 4 * pit_radius;
-  cells += gap_filling.support() + 2 * window + 1 + reach(country_sigma) + terrain_filling(window).support() + reach(smoothing);
+  cells += gap_filling.support() + 2 * window + 1 + reach(country_sigma) + deck_support + terrain_filling(window).support() + reach(smoothing);
   cells += 1 + reach(share_sigma);
   for (const double sigma : kernels) cells += 1 + std::max(reach(sigma) + break_step, reach(spread_sigma));
   return cells + 1 + reach(share_sigma);
@@ -257,7 +273,11 @@ GroundSurface ground_surface(const core::Block& b, const GroundSurfaceOptions& o
   const Raster smooth = smoothed(coarse_surface(b, l, o, window), smoothing);
   GroundSurface g{l, smooth, Raster(l.nx, l.ny, static_cast<float>(2.0 * o.noise)), {}, {}, {}};
   g.standing = shares_of(g, b).standing;
-  for (const double sigma : kernels) refine(g, smooth, b, sigma, o.noise);
+  // What the first round's planes cannot follow, the later ones get from the residuals about it ("twicing": Tukey 1977).
+  for (const double& sigma : kernels) {
+    const bool first = &sigma == kernels.data();
+    refine(g, first ? smooth : g.height, b, sigma, o.noise, !first);
+  }
   Shares shares = shares_of(g, b);
   g.standing = std::move(shares.standing);
   g.sunken = std::move(shares.sunken);
