@@ -70,11 +70,17 @@ std::optional<Judged> judge(const core::Block& b, const GroundSurface& g, size_t
   if (std::isnan(s.height)) return std::nullopt;
   const CellIndex c = cell_of(g.lattice, b, p);
   const size_t at = g.lattice.at(c.i, c.j);
-  const double above = b.z[p] - s.height, slope = std::hypot(s.east, s.north), sparse = sparse_of(g.support.value[at]);
+  const double above = b.z[p] - s.height, slope = std::sqrt(s.east * s.east + s.north * s.north), sparse = sparse_of(g.support.value[at]);
   const double spread = std::max<double>(least_spread, g.spread.value[at]);
   const double doubt = std::hypot(2.0 * spread, sparse * (per_slope * slope + leniency));
   return Judged{{static_cast<float>(above), static_cast<float>(spread), static_cast<float>(doubt), above < -deepest(slope)},
                 {above, slope, g.spread.value[at], g.standing.value[at], g.sunken.value[at], sparse}};
+}
+
+/// Halo points beyond the surface have no influence.
+bool within_reach(const core::Lattice& l, const core::Block& b, size_t p) {
+  const CellIndex c = cell_of(l, b, p);
+  return c.i > 0 && c.j > 0 && c.i < l.nx - 1 && c.j < l.ny - 1;
 }
 
 }  // namespace
@@ -85,12 +91,12 @@ GroundChances classify_ground(core::Block& b, size_t own, const GroundOptions& o
   GroundChances n;
   core::add_columns(b, {core::Column::classification, core::Column::ground_probability});
   if (own == 0) return n;
-  const GroundSurface g = ground_surface(b, surface_options(o));
+  const GroundSurface g = ground_surface(b, own, ground_chance_reach, surface_options(o));
   std::vector<ReturnOverGround> returns(b.size(), {not_judged, 0, 0, false});
   std::vector<Verdict> verdicts(b.size(), Verdict::object);
   std::vector<float> least(own, 2.0F);
   for (size_t p = 0; p < b.size(); ++p) {
-    if (!may_be_ground(b, p)) continue;
+    if (!may_be_ground(b, p) || !within_reach(g.lattice, b, p)) continue;
     const std::optional<Judged> j = judge(b, g, p);
     if (j) returns[p] = j->over;
     if (p >= own) continue;
