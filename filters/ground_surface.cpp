@@ -58,6 +58,8 @@ constexpr double share_sigma = 3.0;                                           //
 
 int window_of(const GroundSurfaceOptions& o) { return static_cast<int>(std::ceil(0.5 * o.widest / ground_cell - 1e-9)) + 1; }
 Inpainting terrain_filling(int window) { return {.reach = 2 * window, .relax = 4, .extrapolate = true}; }
+// So that the country's slope reaches no farther than the widest opening.
+int country_window(int window) { return std::max(1, window - (reach(country_sigma) + 1) / 2); }
 
 Raster lowest_returns(const core::Block& b, const core::Lattice& l) {
   Raster r(l.nx, l.ny, void_value);
@@ -144,7 +146,7 @@ Raster coarse_surface(const core::Block& b, const core::Lattice& l, const Ground
   remove_pits(lowest, inpaint(ground, pit_filling));
   ground = lowest;
   const Raster filled = inpaint(lowest, gap_filling);
-  const Raster country = smoothed(open_disk(filled, window), country_sigma);
+  const Raster country = smoothed(open_disk(filled, country_window(window)), country_sigma);
   remove_objects(ground, filled, slope_of(country), o, window);
   remove_deck_ends(ground, lowest, {.steepest = o.steepest, .step = step_left});
   return inpaint(ground, terrain_filling(window));
@@ -313,7 +315,8 @@ RasterSample sample(const Raster& r, const core::Lattice& l, double x, double y)
 int surface_reach(const GroundSurfaceOptions& o) {
   const int window = window_of(o);
   int cells = gap_filling.support() + 2 * std::min(window, pit_window) + pit_filling.support() + 4 * pit_radius;
-  cells += gap_filling.support() + 2 * window + 1 + reach(country_sigma) + deck_support + terrain_filling(window).support();
+  const int country = 2 * country_window(window) + reach(country_sigma) + 1;
+  cells += gap_filling.support() + std::max(2 * window, country) + deck_support + terrain_filling(window).support();
   return cells + reach(smoothing) + fine_reach();
 }
 
