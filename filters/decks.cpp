@@ -13,10 +13,10 @@
 namespace swath::filters {
 namespace {
 
-constexpr int directions = 8;      // of the half circle
-constexpr int gap = 3;             // cells without return at an edge: the beam's shadow beside a high deck
-constexpr int alike = 2;           // cells to each side lengthwise that must show the edges too, most of them
-constexpr int growth = 8;          // cells
+constexpr int directions = 8;                     // of the half circle
+constexpr int gap = 3;                            // cells without return at an edge: the beam's shadow beside a high deck
+constexpr int alike = 2;                          // cells to each side lengthwise that must show the edges too, most of them
+constexpr int growth = 8;                         // cells
 constexpr double roughness = 0.15, grade = 0.08;  // m, rise / run: from cell to cell of a deck
 
 struct Step {

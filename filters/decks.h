@@ -18,7 +18,7 @@ struct DeckOptions {
 /// towards its ends it goes on while both edges drop by the step.
 void remove_deck_ends(Raster& ground, const Raster& surface, const DeckOptions& o);
 
-constexpr int deck_width = 16;   ///< cells
-extern const int deck_support;   ///< cells around a cell that decide on it
+constexpr int deck_width = 16;  ///< cells
+extern const int deck_support;  ///< cells around a cell that decide on it
 
 }  // namespace swath::filters

@@ -3,8 +3,8 @@
 // noise and roughness of the ground there and, where returns are sparse, what the surface errs by between them: more on slopes, and a
 // leniency for what it smooths away (kerbs, furrows, boulders) that fades where many returns stand knee-high, as in crops and shrubs: there
 // the lowest ones alone are ground.
-// The probability is Kraus & Pfeifer's weight function 1 / (1 + (distance / bearable)^k) (ISPRS J. 53, 1998) read as a chance: a half
-// where the distance is just bearable.
+// The probability is counted from the heights of all returns around (ground_chance.h), and what is bearable must have some: a half where
+// returns are dense, any where they are sparse and the surface itself is in doubt.
 #include "filters/ground.h"
 
 #include <algorithm>

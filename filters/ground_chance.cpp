@@ -24,14 +24,14 @@ constexpr double sigma = 1.5;  // cells: parcels and groups of shrubs are wider
 // Classes of height, in spreads.
 constexpr std::array<double, 19> edges{0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 8, 10, 14, 20, 30, 50, 100, 200};
 constexpr int classes = static_cast<int>(edges.size()) - 1;
-constexpr int drowned = 4, next_to_drowned = 7;  // classes under 2 spreads; those that stand for them end at 3.5
-constexpr double core_of_ground = 2.0;           // spreads
-constexpr double missed = 0.07;                  // share of the ground that the surface misses
-constexpr double chance_excess = 0.25;           // standard deviations of a count that are not taken for objects
-constexpr double stray = 0.02, stray_height = 2.0;         // objects per return of the ground that no neighbour shows, over so many m
-constexpr double deep_stray = 0.001, deep_range = 3.0;     // the same of low outliers
-constexpr double widest_doubt = 200.0;                     // spreads
-constexpr double doubt_unit = 16.0;                        // sums are whole numbers, so that their order does not matter
+constexpr int drowned = 4, next_to_drowned = 7;         // classes under 2 spreads; those that stand for them end at 3.5
+constexpr double core_of_ground = 2.0;                  // spreads
+constexpr double missed = 0.07;                         // share of the ground that the surface misses
+constexpr double chance_excess = 0.25;                  // standard deviations of a count that are not taken for objects
+constexpr double stray = 0.02, stray_height = 2.0;      // objects per return of the ground that no neighbour shows, over so many m
+constexpr double deep_stray = 0.001, deep_range = 3.0;  // the same of low outliers
+constexpr double widest_doubt = 200.0;                  // spreads
+constexpr double doubt_unit = 16.0;                     // sums are whole numbers, so that their order does not matter
 
 double within(double t) { return std::erf(t * 0.70710678118654752); }
 double density(double t) { return 0.79788456080286536 * std::exp(-0.5 * t * t); }  // of |t|

@@ -19,8 +19,8 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <vector>
 #include <utility>
+#include <vector>
 
 #include "filters/bins.h"
 #include "filters/decks.h"
