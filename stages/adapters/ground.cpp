@@ -22,7 +22,7 @@ class Ground : public OptionStage<filters::GroundOptions> {
   }
   core::ColumnSet also_reads() const override { return {Column::return_number, Column::return_count}; }
   double halo() const override { return filters::halo(options); }
-  double bytes_per_point() const override { return 160.0; }
+  double bytes_per_point() const override { return 220.0; }
   void run_tile(const Context&, TileJob& job) const override {
     const filters::GroundChances n = filters::classify_ground(job.block, job.own, options);
     job.tally.count("ground", n.ground);
