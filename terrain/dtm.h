@@ -60,8 +60,10 @@ Tin terrain_tin(const core::Block& block, const DtmOptions& options);
 /// sigma: m, empty where the Block has no sigma_v; NaN where a point's sigma is NaN; see the source for its terms.
 /// reason: none, long_edge or no_data (terrain/voids.h).
 /// With `lines` the terrain passes through the breaklines, water is flat or falling and boundaries cut (terrain/breaklines.h); cells of
-/// water whose height is known have the reason none.
-core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options, const Breaklines* lines = nullptr);
+/// water whose height is known have the reason none. `left_out` receives the number of terrain points in the window that share their place
+/// with one that is not higher.
+core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options, const Breaklines* lines = nullptr,
+               std::uint64_t* left_out = nullptr);
 
 }  // namespace swath::terrain
 

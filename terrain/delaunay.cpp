@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Insertion after Bowyer 1981, "Computing Dirichlet tessellations", and Watson 1981, "Computing the n-dimensional Delaunay tessellation with
+// application to Voronoi polytopes": the faces whose circles hold the new place make a hole, which is filled by a fan around the place.
+// A face at infinity holds what lies beyond its edge of the hull, or on it.
+#include "terrain/delaunay.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace swath::terrain {
+namespace {
+
+int next(int k) { return k == 2 ? 0 : k + 1; }
+int last(int k) { return k == 0 ? 2 : k - 1; }
+
+int index_of(const std::array<std::int32_t, 3>& of, std::int32_t what) { return of[0] == what ? 0 : of[1] == what ? 1 : 2; }
+
+std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t f) {
+  while (parent[f] != f) f = parent[f] = parent[parent[f]];
+  return f;
+}
+
+/// Cuts the convex polygon of `members` anew as a fan from its first vertex.
+void fan(std::vector<Delaunay::Face>& faces, const std::vector<Place>& places, const std::vector<std::int32_t>& members,
+         const std::vector<std::int32_t>& polygon) {
+  struct Side {
+    std::int32_t from, to, across, back;
+  };
+  std::vector<Side> sides;
+  for (const std::int32_t m : members)
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t g = faces[m].n[k];
+      if (polygon[g] == polygon[m]) continue;
+      sides.push_back({faces[m].v[next(k)], faces[m].v[last(k)], g, index_of(faces[g].n, m)});
+    }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.from < b.from; });
+  std::vector<Side> ring{*std::min_element(sides.begin(), sides.end(), [&](const Side& a, const Side& b) {
+    return is_before(places[static_cast<size_t>(a.from)], places[static_cast<size_t>(b.from)]);
+  })};
+  while (ring.size() < sides.size())
+    ring.push_back(*std::lower_bound(sides.begin(), sides.end(), ring.back().to, [](const Side& s, std::int32_t v) { return s.from < v; }));
+  const auto link = [&](std::int32_t f, int k, const Side& s) {
+    faces[f].n[k] = s.across;
+    faces[s.across].n[s.back] = f;
+  };
+  for (size_t i = 0; i < members.size(); ++i) {
+    const std::int32_t f = members[i];
+    faces[f].v = {ring[0].from, ring[i + 1].from, ring[i + 1].to};
+    link(f, 0, ring[i + 1]);
+    if (i == 0)
+      link(f, 2, ring[0]);
+    else
+      faces[f].n[2] = members[i - 1];
+    if (i + 1 == members.size())
+      link(f, 1, ring.back());
+    else
+      faces[f].n[1] = members[i + 1];
+  }
+}
+
+}  // namespace
+
+void Delaunay::insert(std::int32_t first, std::int32_t last) {
+  faces_.reserve(faces_.size() + 2 * static_cast<size_t>(std::max(0, last - first)) + 8);
+  for (std::int32_t p = first; p < last; ++p) insert(p);
+}
+
+void Delaunay::insert(const std::vector<std::int32_t>& order) {
+  for (const std::int32_t p : order) insert(p);
+}
+
+bool Delaunay::start(std::int32_t p) {
+  if (waiting_.size() < 2) return false;
+  std::int32_t a = waiting_[0], b = waiting_[1];
+  const int turn = orientation(at(a), at(b), at(p));
+  if (turn == 0) return false;
+  if (turn < 0) std::swap(a, b);
+  faces_.push_back({{a, b, p}, {1, 2, 3}});
+  faces_.push_back({{p, b, beyond}, {3, 2, 0}});
+  faces_.push_back({{a, p, beyond}, {1, 3, 0}});
+  faces_.push_back({{b, a, beyond}, {2, 1, 0}});
+  return true;
+}
+
+bool Delaunay::conflicts(const Face& f, const Place& q) const {
+  if (f.is_finite()) return in_circle(at(f.v[0]), at(f.v[1]), at(f.v[2]), q) > 0;
+  const int k = index_of(f.v, beyond);
+  const Place &a = at(f.v[next(k)]), &b = at(f.v[last(k)]);
+  const int side = orientation(a, b, q);
+  if (side != 0) return side > 0;
+  return a.x != b.x ? (a.x < q.x) == (q.x < b.x) : (a.y < q.y) == (q.y < b.y);
+}
+
+std::int32_t Delaunay::locate(const Place& q) const {
+  std::int32_t f = near_, from = -1;
+  if (!faces_[f].is_finite()) f = faces_[f].n[index_of(faces_[f].v, beyond)];
+  for (bool moved = true; moved;) {
+    moved = false;
+    const Face& face = faces_[f];
+    for (int k = 0; k < 3 && !moved; ++k) {
+      const std::int32_t g = face.n[k];
+      if (g == from || orientation(at(face.v[next(k)]), at(face.v[last(k)]), q) >= 0) continue;
+      if (!faces_[g].is_finite()) return g;
+      from = f;
+      f = g;
+      moved = true;
+    }
+  }
+  return f;
+}
+
+void Delaunay::insert(std::int32_t p) {
+  if (faces_.empty()) {
+    if (!start(p)) return waiting_.push_back(p);
+    const std::vector<std::int32_t> rest(waiting_.begin() + 2, waiting_.end());
+    waiting_.clear();
+    return insert(rest);
+  }
+  const Place q = at(p);
+  const std::int32_t in = locate(q);
+  hole_.assign(1, in);
+  rim_.clear();
+  stack_.assign({{in, 2}, {in, 1}, {in, 0}});
+  // Depth first, edges counter-clockwise: the rim comes out in order. The faces of the hole hang together as a tree.
+  while (!stack_.empty()) {
+    const auto [f, k] = stack_.back();
+    stack_.pop_back();
+    const std::int32_t g = faces_[f].n[k];
+    const int back = index_of(faces_[g].n, f);
+    if (conflicts(faces_[g], q)) {
+      hole_.push_back(g);
+      stack_.push_back({g, last(back)});
+      stack_.push_back({g, next(back)});
+    } else {
+      rim_.push_back({faces_[f].v[next(k)], faces_[f].v[last(k)], g, back});
+    }
+  }
+  const auto size = static_cast<std::int32_t>(faces_.size());
+  const auto slot = [&](size_t i) { return i < hole_.size() ? hole_[i] : size + static_cast<std::int32_t>(i - hole_.size()); };
+  faces_.resize(faces_.size() + rim_.size() - hole_.size());
+  std::int32_t before = slot(rim_.size() - 1), here = slot(0);
+  for (size_t i = 0; i < rim_.size(); ++i) {
+    const std::int32_t after = slot(i + 1 == rim_.size() ? 0 : i + 1);
+    faces_[here] = {{p, rim_[i].a, rim_[i].b}, {rim_[i].across, after, before}};
+    faces_[rim_[i].across].n[rim_[i].back] = here;
+    before = here;
+    here = after;
+  }
+  near_ = before;
+}
+
+std::vector<Delaunay::Pair> Delaunay::cocircular() const {
+  std::vector<Pair> out;
+  // Edges to look at are gathered without branches, which no processor would foresee.
+  constexpr std::int32_t batch = 256;
+  std::array<Pair, 3 * batch> edges;
+  const auto size = static_cast<std::int32_t>(faces_.size());
+  for (std::int32_t begin = 0; begin < size; begin += batch) {
+    size_t count = 0;
+    for (std::int32_t f = begin; f < std::min(begin + batch, size); ++f) {
+      const Face& face = faces_[f];
+      if (!face.is_finite()) continue;
+      for (const std::int32_t g : face.n) {
+        edges[count] = {f, g};
+        count += g > f;
+      }
+    }
+    for (size_t e = 0; e < count; ++e) {
+      const Face &face = faces_[edges[e][0]], &other = faces_[edges[e][1]];
+      if (!other.is_finite()) continue;
+      // The vertex of the other that is not of this.
+      const auto [a, b, c] = face.v;
+      const std::int32_t u = other.v[0], v = other.v[1], w = other.v[2];
+      const bool has_u = (u == a) | (u == b) | (u == c), has_v = (v == a) | (v == b) | (v == c);
+      if (in_circle(at(a), at(b), at(c), at(has_u ? (has_v ? w : v) : u)) == 0) out.push_back(edges[e]);
+    }
+  }
+  return out;
+}
+
+std::vector<std::int32_t> Delaunay::settle(const std::vector<Pair>& pairs) {
+  if (pairs.empty()) return {};
+  std::vector<std::int32_t> polygon(faces_.size());
+  std::iota(polygon.begin(), polygon.end(), 0);
+  for (const auto& [f, g] : pairs) polygon[root_of(polygon, g)] = root_of(polygon, f);
+  std::vector<Pair> member;  // polygon, face
+  for (const auto& pair : pairs)
+    for (const std::int32_t f : pair) member.push_back({root_of(polygon, f), f});
+  for (const auto& [root, f] : member) polygon[f] = root;
+  std::sort(member.begin(), member.end());
+  member.erase(std::unique(member.begin(), member.end()), member.end());
+  std::vector<std::int32_t> made, members;
+  for (size_t i = 0; i < member.size();) {
+    members.clear();
+    const std::int32_t root = member[i].front();
+    for (; i < member.size() && member[i].front() == root; ++i) members.push_back(member[i].back());
+    fan(faces_, places_, members, polygon);
+    made.insert(made.end(), members.begin(), members.end());
+  }
+  return made;
+}
+
+}  // namespace swath::terrain
