@@ -92,8 +92,8 @@ bool Delaunay::conflicts(const Face& f, const Place& q) const {
   return a.x != b.x ? (a.x < q.x) == (q.x < b.x) : (a.y < q.y) == (q.y < b.y);
 }
 
-std::int32_t Delaunay::locate(const Place& q) const {
-  std::int32_t f = near_, from = -1;
+std::int32_t Delaunay::locate(const Place& q, std::int32_t near) const {
+  std::int32_t f = near, from = -1;
   if (!faces_[f].is_finite()) f = faces_[f].n[index_of(faces_[f].v, beyond)];
   for (bool moved = true; moved;) {
     moved = false;
@@ -118,7 +118,7 @@ void Delaunay::insert(std::int32_t p) {
     return insert(rest);
   }
   const Place q = at(p);
-  const std::int32_t in = locate(q);
+  const std::int32_t in = locate(q, near_);
   hole_.assign(1, in);
   rim_.clear();
   stack_.assign({{in, 2}, {in, 1}, {in, 0}});
@@ -179,8 +179,8 @@ std::vector<Delaunay::Pair> Delaunay::cocircular() const {
   return out;
 }
 
-std::vector<std::int32_t> Delaunay::settle(const std::vector<Pair>& pairs) {
-  if (pairs.empty()) return {};
+void Delaunay::settle(const std::vector<Pair>& pairs) {
+  if (pairs.empty()) return;
   std::vector<std::int32_t> polygon(faces_.size());
   std::iota(polygon.begin(), polygon.end(), 0);
   for (const auto& [f, g] : pairs) polygon[root_of(polygon, g)] = root_of(polygon, f);
@@ -190,15 +190,13 @@ std::vector<std::int32_t> Delaunay::settle(const std::vector<Pair>& pairs) {
   for (const auto& [root, f] : member) polygon[f] = root;
   std::sort(member.begin(), member.end());
   member.erase(std::unique(member.begin(), member.end()), member.end());
-  std::vector<std::int32_t> made, members;
+  std::vector<std::int32_t> members;
   for (size_t i = 0; i < member.size();) {
     members.clear();
     const std::int32_t root = member[i].front();
     for (; i < member.size() && member[i].front() == root; ++i) members.push_back(member[i].back());
     fan(faces_, places_, members, polygon);
-    made.insert(made.end(), members.begin(), members.end());
   }
-  return made;
 }
 
 }  // namespace swath::terrain

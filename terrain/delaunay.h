@@ -34,8 +34,11 @@ class Delaunay {
   /// Neighbours with one circle, the lower number first.
   std::vector<Pair> cocircular() const;
   /// Cuts the polygons inscribed in one empty circle as fans from their vertex of least (x, y): now the triangulation is unique, if
-  /// `pairs` are those that cocircular() gives. No insertion after it. Returns the faces that it made.
-  std::vector<std::int32_t> settle(const std::vector<Pair>& pairs);
+  /// `pairs` are those that cocircular() gives.
+  void settle(const std::vector<Pair>& pairs);
+
+  /// The face that holds a place, or one beyond the edge of the hull that the place lies outside of; found quickly from a face near it.
+  std::int32_t locate(const Place& q, std::int32_t near) const;
 
   /// Empty until three places are not on one line.
   const std::vector<Face>& faces() const { return faces_; }
@@ -43,7 +46,6 @@ class Delaunay {
  private:
   void insert(std::int32_t p);
   bool start(std::int32_t p);
-  std::int32_t locate(const Place& q) const;
   bool conflicts(const Face& f, const Place& q) const;
   const Place& at(std::int32_t v) const { return places_[static_cast<std::size_t>(v)]; }
 

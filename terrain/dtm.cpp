@@ -86,6 +86,7 @@ std::vector<std::uint32_t> terrain_rows(const core::Block& block, const DtmOptio
   std::vector<std::uint32_t> rows;
   for (size_t i = 0; i < block.size(); ++i) {
     if (!core::is_usable(block, i)) continue;
+    if (options.key_points && (block.flags.empty() || !(block.flags[i] & core::flag::key_point))) continue;
     const bool is_terrain = block.classification.empty() ||
                             std::find(options.classes.begin(), options.classes.end(), block.classification[i]) != options.classes.end();
     if (is_terrain) rows.push_back(static_cast<std::uint32_t>(i));

@@ -24,6 +24,7 @@ struct DtmOptions {
   core::Metres max_edge{60.0};
   Interpolation interpolation = Interpolation::linear;
   std::vector<int> classes{core::point_class::ground};
+  bool key_points = false;
   double correlation = 0.25;
   double unknown_bend = 0.1;
 };
@@ -37,6 +38,7 @@ void describe(DtmOptions& o, V& v) {
   v.option("interpolation", o.interpolation, "Between the points: linear on the triangles, or natural_neighbour, smooth but at the points.",
            "Sibson1981");
   v.option("classes", o.classes, core::within(0, 255), "ASPRS classes that are terrain.");
+  v.option("key_points", o.key_points, "Only the points that filters.key_points has flagged.");
   v.option("correlation", o.correlation, core::within(0.0, 1.0),
            "Least share of the variance of a point's height that its neighbours have in common (trajectory, boresight); the share that the "
            "points' scatter leaves is taken where it is larger.");
@@ -49,7 +51,8 @@ void describe(DtmOptions& o, V& v) {
 /// beyond (5/12 or a whole of max_edge).
 double halo(const DtmOptions& options);
 
-/// Rows of the points that make the terrain: usable and of one of the classes (all usable ones where there is no class column).
+/// Rows of the points that make the terrain: usable and of one of the classes (all usable ones where there is no class column), flagged
+/// where key_points asks for it.
 std::vector<std::uint32_t> terrain_rows(const core::Block& block, const DtmOptions& options);
 
 /// The TIN that dtm() reads: terrain_rows, circumradius at most max_edge / 2.

@@ -47,6 +47,7 @@ class Vertices {
     std::vector<OnCurve> order = along_hilbert_curve(at);
     for (auto* column : {&tin_.x, &tin_.y, &tin_.z}) column->reserve(column->size() + order.size());
     places_.reserve(places_.size() + order.size());
+    tin_.row.reserve(places_.capacity());
     if (!b_.sigma_v.empty()) tin_.sigma_v.reserve(places_.capacity());
     if (!b_.sigma_h.empty()) tin_.sigma_h.reserve(places_.capacity());
     for (size_t i = 0, end = 0; i < order.size(); i = end) {
@@ -69,10 +70,10 @@ class Vertices {
   float sigma_v(std::uint32_t s) const { return s >= points_ ? lines_.sigma_v[s - points_] : b_.sigma_v.empty() ? 0.0f : b_.sigma_v[s]; }
   float sigma_h(std::uint32_t s) const { return s >= points_ || b_.sigma_h.empty() ? 0.0f : b_.sigma_h[s]; }
   // Of one place constraints come first, then the lowest; NaN last, so that a point of known sigma stands before one of unknown sigma.
-  std::tuple<double, double, bool, double, float, float> rank(std::uint32_t s) const {
+  std::tuple<double, double, bool, double, float, float, std::uint32_t> rank(std::uint32_t s) const {
     const Place p = place(s);
     const auto known = [](float sigma) { return std::isnan(sigma) ? std::numeric_limits<float>::infinity() : sigma; };
-    return {p.x, p.y, s < points_, height(s), known(sigma_v(s)), known(sigma_h(s))};
+    return {p.x, p.y, s < points_, height(s), known(sigma_v(s)), known(sigma_h(s)), s};
   }
   void put(std::uint32_t s, const Place& p, bool first) {
     const bool again = !first && places_.back().x == p.x && places_.back().y == p.y;
@@ -83,6 +84,7 @@ class Vertices {
       tin_.x.push_back(p.x);
       tin_.y.push_back(p.y);
       tin_.z.push_back(height(s));
+      tin_.row.push_back(s);
       if (!b_.sigma_v.empty()) tin_.sigma_v.push_back(sigma_v(s));
       if (!b_.sigma_h.empty()) tin_.sigma_h.push_back(sigma_h(s));
     }
@@ -204,11 +206,14 @@ bool Tin::is_before(std::int32_t a, std::int32_t b) const {
 
 Circumcircle circumcircle(const Tin& tin, std::int32_t triangle) {
   const auto [a, b, c] = tin.triangles[static_cast<size_t>(triangle)];
-  const Measures m(tin.place(a), tin.place(b), tin.place(c));
-  const double bx = tin.x[b] - tin.x[a], by = tin.y[b] - tin.y[a];
-  const double cx = tin.x[c] - tin.x[a], cy = tin.y[c] - tin.y[a];
+  return circumcircle(tin.place(a), tin.place(b), tin.place(c));
+}
+
+Circumcircle circumcircle(const Place& a, const Place& b, const Place& c) {
+  const Measures m(a, b, c);
+  const double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
   const double ux = (cy * m.bb - by * m.cc) / (2.0 * m.twice_area), uy = (bx * m.cc - cx * m.bb) / (2.0 * m.twice_area);
-  return {tin.x[a] + ux, tin.y[a] + uy, std::sqrt(m.aa) * std::sqrt(m.bb) * std::sqrt(m.cc) / (2.0 * std::abs(m.twice_area))};
+  return {a.x + ux, a.y + uy, std::sqrt(m.aa) * std::sqrt(m.bb) * std::sqrt(m.cc) / (2.0 * std::abs(m.twice_area))};
 }
 
 Tin triangulate(const core::Block& block, const std::vector<std::uint32_t>& rows, double max_radius, const Rectangle& where) {

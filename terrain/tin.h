@@ -18,6 +18,7 @@ namespace swath::terrain {
 struct Tin {
   std::vector<double> x, y, z;          ///< vertices, m
   std::vector<float> sigma_v, sigma_h;  ///< m, per vertex; empty where the Block has no such column
+  std::vector<std::uint32_t> row;       ///< of the Block, per vertex; its size and more at vertices of constraints
   std::vector<std::array<std::int32_t, 3>> triangles;
   /// For each triangle its neighbours across the edges opposite to vertex 0, 1, 2; -1 where there is none.
   std::vector<std::array<std::int32_t, 3>> across;
@@ -37,6 +38,8 @@ struct Circumcircle {
   double x = 0.0, y = 0.0, radius = 0.0;
 };
 Circumcircle circumcircle(const Tin& tin, std::int32_t triangle);
+/// Of places that ascend in (x, y).
+Circumcircle circumcircle(const Place& a, const Place& b, const Place& c);
 
 /// A rectangle of the Block's frame, m; its border belongs to it.
 struct Rectangle {
