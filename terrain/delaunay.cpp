@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Insertion after Bowyer 1981, "Computing Dirichlet tessellations", and Watson 1981, "Computing the n-dimensional Delaunay tessellation with
-// application to Voronoi polytopes": the faces whose circles hold the new place make a hole, which is filled by a fan around the place.
-// A face at infinity holds what lies beyond its edge of the hull, or on it.
+// Insertion after Bowyer 1981, "Computing Dirichlet tessellations", and Watson 1981, "Computing the n-dimensional Delaunay tessellation
+// with application to Voronoi polytopes": the faces whose circles hold the new place make a hole, which is filled by a fan around the
+// place. A face at infinity holds what lies beyond its edge of the hull, or on it.
 #include "terrain/delaunay.h"
+
+#include <CGAL/Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include <algorithm>
 #include <numeric>
@@ -10,6 +15,12 @@
 
 namespace swath::terrain {
 namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Triangulation =
+    CGAL::Delaunay_triangulation_2<Kernel,
+                                   CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel>,
+                                                                        CGAL::Triangulation_face_base_with_info_2<std::int32_t, Kernel>>>;
 
 int next(int k) { return k == 2 ? 0 : k + 1; }
 int last(int k) { return k == 0 ? 2 : k - 1; }
@@ -61,35 +72,45 @@ void fan(std::vector<Delaunay::Face>& faces, const std::vector<Place>& places, c
 
 }  // namespace
 
+struct Delaunay::Cgal {
+  Triangulation triangulation;
+  Triangulation::Face_handle near;
+
+  void insert(const Place& p, std::int32_t number) {
+    const auto v = triangulation.insert(Kernel::Point_2(p.x, p.y), near);
+    v->info() = number;
+    near = v->face();
+  }
+};
+
+Delaunay::Delaunay(const std::vector<Place>& places) : places_(places), cgal_(std::make_unique<Cgal>()) {
+  cgal_->triangulation.infinite_vertex()->info() = beyond;
+}
+Delaunay::~Delaunay() = default;
+
 void Delaunay::insert(std::int32_t first, std::int32_t last) {
-  faces_.reserve(faces_.size() + 2 * static_cast<size_t>(std::max(0, last - first)) + 8);
-  for (std::int32_t p = first; p < last; ++p) insert(p);
+  for (std::int32_t p = first; p < last; ++p) cgal_->insert(at(p), p);
+  copy_faces();
 }
 
 void Delaunay::insert(const std::vector<std::int32_t>& order) {
-  for (const std::int32_t p : order) insert(p);
+  for (const std::int32_t p : order) cgal_->insert(at(p), p);
+  copy_faces();
 }
 
-bool Delaunay::start(std::int32_t p) {
-  if (waiting_.size() < 2) return false;
-  std::int32_t a = waiting_[0], b = waiting_[1];
-  const int turn = orientation(at(a), at(b), at(p));
-  if (turn == 0) return false;
-  if (turn < 0) std::swap(a, b);
-  faces_.push_back({{a, b, p}, {1, 2, 3}});
-  faces_.push_back({{p, b, beyond}, {3, 2, 0}});
-  faces_.push_back({{a, p, beyond}, {1, 3, 0}});
-  faces_.push_back({{b, a, beyond}, {2, 1, 0}});
-  return true;
-}
-
-bool Delaunay::conflicts(const Face& f, const Place& q) const {
-  if (f.is_finite()) return in_circle(at(f.v[0]), at(f.v[1]), at(f.v[2]), q) > 0;
-  const int k = index_of(f.v, beyond);
-  const Place &a = at(f.v[next(k)]), &b = at(f.v[last(k)]);
-  const int side = orientation(a, b, q);
-  if (side != 0) return side > 0;
-  return a.x != b.x ? (a.x < q.x) == (q.x < b.x) : (a.y < q.y) == (q.y < b.y);
+void Delaunay::copy_faces() {
+  Triangulation& t = cgal_->triangulation;
+  if (t.dimension() < 2) return;
+  std::int32_t count = 0;
+  for (const auto f : t.all_face_handles()) f->info() = count++;
+  faces_.resize(static_cast<size_t>(count));
+  for (const auto f : t.all_face_handles()) {
+    Face& face = faces_[static_cast<size_t>(f->info())];
+    for (int k = 0; k < 3; ++k) {
+      face.v[static_cast<size_t>(k)] = f->vertex(k)->info();
+      face.n[static_cast<size_t>(k)] = f->neighbor(k)->info();
+    }
+  }
 }
 
 std::int32_t Delaunay::locate(const Place& q, std::int32_t near) const {
@@ -108,46 +129,6 @@ std::int32_t Delaunay::locate(const Place& q, std::int32_t near) const {
     }
   }
   return f;
-}
-
-void Delaunay::insert(std::int32_t p) {
-  if (faces_.empty()) {
-    if (!start(p)) return waiting_.push_back(p);
-    const std::vector<std::int32_t> rest(waiting_.begin() + 2, waiting_.end());
-    waiting_.clear();
-    return insert(rest);
-  }
-  const Place q = at(p);
-  const std::int32_t in = locate(q, near_);
-  hole_.assign(1, in);
-  rim_.clear();
-  stack_.assign({{in, 2}, {in, 1}, {in, 0}});
-  // Depth first, edges counter-clockwise: the rim comes out in order. The faces of the hole hang together as a tree.
-  while (!stack_.empty()) {
-    const auto [f, k] = stack_.back();
-    stack_.pop_back();
-    const std::int32_t g = faces_[f].n[k];
-    const int back = index_of(faces_[g].n, f);
-    if (conflicts(faces_[g], q)) {
-      hole_.push_back(g);
-      stack_.push_back({g, last(back)});
-      stack_.push_back({g, next(back)});
-    } else {
-      rim_.push_back({faces_[f].v[next(k)], faces_[f].v[last(k)], g, back});
-    }
-  }
-  const auto size = static_cast<std::int32_t>(faces_.size());
-  const auto slot = [&](size_t i) { return i < hole_.size() ? hole_[i] : size + static_cast<std::int32_t>(i - hole_.size()); };
-  faces_.resize(faces_.size() + rim_.size() - hole_.size());
-  std::int32_t before = slot(rim_.size() - 1), here = slot(0);
-  for (size_t i = 0; i < rim_.size(); ++i) {
-    const std::int32_t after = slot(i + 1 == rim_.size() ? 0 : i + 1);
-    faces_[here] = {{p, rim_[i].a, rim_[i].b}, {rim_[i].across, after, before}};
-    faces_[rim_[i].across].n[rim_[i].back] = here;
-    before = here;
-    here = after;
-  }
-  near_ = before;
 }
 
 std::vector<Delaunay::Pair> Delaunay::cocircular() const {

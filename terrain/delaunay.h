@@ -3,13 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "terrain/predicates.h"
 
 namespace swath::terrain {
 
-/// Delaunay triangulation of a growing set of places. Predicates are exact.
+/// CGAL's Delaunay triangulation of a growing set of places (exact predicates), with its faces as plain numbers.
 class Delaunay {
  public:
   static constexpr std::int32_t beyond = -1;  ///< the vertex at infinity, which every edge of the hull has on its outer side
@@ -21,7 +22,10 @@ class Delaunay {
   };
 
   /// `places` is held by reference and may grow; no two of those inserted may be equal.
-  explicit Delaunay(const std::vector<Place>& places) : places_(places) {}
+  explicit Delaunay(const std::vector<Place>& places);
+  ~Delaunay();
+  Delaunay(const Delaunay&) = delete;
+  Delaunay& operator=(const Delaunay&) = delete;
 
   /// Inserts places `first` to `last` - 1. Any order gives the same triangulation, but for the cuts of cocircular polygons; places that
   /// are near the one before are found quickly.
@@ -34,7 +38,7 @@ class Delaunay {
   /// Neighbours with one circle, the lower number first.
   std::vector<Pair> cocircular() const;
   /// Cuts the polygons inscribed in one empty circle as fans from their vertex of least (x, y): now the triangulation is unique, if
-  /// `pairs` are those that cocircular() gives.
+  /// `pairs` are those that cocircular() gives. Until the next insertion, which begins from CGAL's own cuts again.
   void settle(const std::vector<Pair>& pairs);
 
   /// The face that holds a place, or one beyond the edge of the hull that the place lies outside of; found quickly from a face near it.
@@ -44,22 +48,13 @@ class Delaunay {
   const std::vector<Face>& faces() const { return faces_; }
 
  private:
-  void insert(std::int32_t p);
-  bool start(std::int32_t p);
-  bool conflicts(const Face& f, const Place& q) const;
+  void copy_faces();
   const Place& at(std::int32_t v) const { return places_[static_cast<std::size_t>(v)]; }
 
-  /// An edge of the hole around a new place: from a to b with the hole on its left, and the face across with the index of the way back.
-  struct Rim {
-    std::int32_t a, b, across, back;
-  };
+  struct Cgal;  // CGAL's headers are in the source alone
   const std::vector<Place>& places_;
+  std::unique_ptr<Cgal> cgal_;
   std::vector<Face> faces_;
-  std::vector<std::int32_t> waiting_;  // places on one line, until one beside it comes
-  std::int32_t near_ = 0;              // a face near the last place
-  std::vector<std::int32_t> hole_;
-  std::vector<Rim> rim_;
-  std::vector<Pair> stack_;  // face, edge
 };
 
 /// The order of (x, y).
