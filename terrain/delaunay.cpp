@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Insertion after Bowyer 1981, "Computing Dirichlet tessellations", and Watson 1981, "Computing the n-dimensional Delaunay tessellation with
-// application to Voronoi polytopes": the faces whose circles hold the new place make a hole, which is filled by a fan around the place.
-// A face at infinity holds what lies beyond its edge of the hull, or on it.
+// Insertion after Bowyer 1981, "Computing Dirichlet tessellations", and Watson 1981, "Computing the n-dimensional Delaunay tessellation
+// with application to Voronoi polytopes": the faces whose circles hold the new place make a hole, which is filled by a fan around the
+// place. A face at infinity holds what lies beyond its edge of the hull, or on it.
 #include "terrain/delaunay.h"
 
 #include <algorithm>
