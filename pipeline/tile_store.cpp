@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Over 400 lines: the one format of the store, written and read side by side.
 // File of a strip's points in one tile: chunks of {u32 points, u32 column bits, columns in the order of the enum}.
 // File of an overlay: one such chunk. Numbers in the machine's own byte order: the store is never carried elsewhere.
 #include "pipeline/tile_store.h"

@@ -111,8 +111,8 @@ ConstrainedTriangles triangles_of(Constrained& dt, const std::vector<Place>& pla
 
 }  // namespace
 
-ConstrainedTriangles constrained_delaunay(const std::vector<Place>& places,
-                                          const std::vector<std::pair<std::int32_t, std::int32_t>>& edges, const Place& origin) {
+ConstrainedTriangles constrained_delaunay(const std::vector<Place>& places, const std::vector<std::pair<std::int32_t, std::int32_t>>& edges,
+                                          const Place& origin) {
   Constrained dt;
   std::vector<Constrained::Vertex_handle> handles;
   handles.reserve(places.size());
@@ -128,7 +128,8 @@ ConstrainedTriangles constrained_delaunay(const std::vector<Place>& places,
       dt.insert_constraint(handles[static_cast<size_t>(a)], handles[static_cast<size_t>(b)]);
     } catch (const Constrained::Intersection_of_constraints_exception&) {
       const Place& at = places[static_cast<size_t>(a)];
-      throw core::Error("constraints cross between their vertices", "x " + std::to_string(origin.x + at.x) + ", y " + std::to_string(origin.y + at.y));
+      throw core::Error("constraints cross between their vertices",
+                        "x " + std::to_string(origin.x + at.x) + ", y " + std::to_string(origin.y + at.y));
     }
   }
   return triangles_of(dt, places);

@@ -114,7 +114,8 @@ core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmO
   if (left_out)
     *left_out = static_cast<std::uint64_t>(std::count_if(tin.duplicates.begin(), tin.duplicates.end(), [&](const Place& p) {
       const auto cell = [&](double v) { return core::cell_index(v, window.cell); };
-      return window.holds(static_cast<int>(cell(p.x + block.origin.x()) - window.i0), static_cast<int>(cell(p.y + block.origin.y()) - window.j0));
+      return window.holds(static_cast<int>(cell(p.x + block.origin.x()) - window.i0),
+                          static_cast<int>(cell(p.y + block.origin.y()) - window.j0));
     }));
   core::Grid grid(window);
   grid.count = count_points(block, rows, window);

@@ -2,13 +2,13 @@
 // Greedy insertion: Heller 1990, "Triangulation algorithms for adaptive terrain modeling"; Garland & Heckbert 1995, "Fast polygonal
 // approximation of terrains and height fields". Deviation: in each round the worst point of every triangle enters, not the worst of all.
 //
-// Cells that do not know of one another. Let P be all points, K the key points, R half of max_edge, t a triangle of P's triangulation with a
-// radius of at most R. Kept, as fixed, are the vertices of every t that reaches over the border of a cell, and of every t that has no
-// neighbour across one of its edges (the rim of what is covered). The disc of a fixed t holds no point of P, so none of K: t is a triangle of
-// K's triangulation whatever else is in K. A triangle of K within a cell is shut in by fixed ones: the part of its disc beyond an edge that
-// it shares with a fixed triangle lies in the disc of that one, which is empty. So what the interior of a cell needs is told from the points
-// in it and the fixed vertices around it alone, and t is known from the points within 2 R.
-// Coverage: a triangle of K wider than R whose disc holds a point of P is broken up by it; the others are triangles of P too.
+// Cells that do not know of one another. Let P be all points, K the key points, R half of max_edge, t a triangle of P's triangulation with
+// a radius of at most R. Kept, as fixed, are the vertices of every t that reaches over the border of a cell, and of every t that has no
+// neighbour across one of its edges (the rim of what is covered). The disc of a fixed t holds no point of P, so none of K: t is a triangle
+// of K's triangulation whatever else is in K. A triangle of K within a cell is shut in by fixed ones: the part of its disc beyond an edge
+// that it shares with a fixed triangle lies in the disc of that one, which is empty. So what the interior of a cell needs is told from the
+// points in it and the fixed vertices around it alone, and t is known from the points within 2 R. Coverage: a triangle of K wider than R
+// whose disc holds a point of P is broken up by it; the others are triangles of P too.
 #include "terrain/key_points.h"
 
 #include <algorithm>
@@ -180,7 +180,8 @@ KeyPointCounts mark_key_points(core::Block& block, std::size_t own, const KeyPoi
   std::vector<std::uint32_t> rows;
   for (std::uint32_t i = 0; i < block.size(); ++i) {
     block.flags[i] &= static_cast<std::uint16_t>(~core::flag::key_point);
-    const bool is_terrain = core::is_usable(block, i) && std::find(o.classes.begin(), o.classes.end(), block.classification[i]) != o.classes.end();
+    const bool is_terrain =
+        core::is_usable(block, i) && std::find(o.classes.begin(), o.classes.end(), block.classification[i]) != o.classes.end();
     if (!is_terrain) continue;
     rows.push_back(i);
     counts.terrain += i < own;

@@ -20,9 +20,11 @@ struct KeyPointOptions {
 template <class V>
 void describe(KeyPointOptions& o, V& v) {
   v.option("tolerance", o.tolerance, core::above(0.0),
-           "Farthest in height that a point may lie from the triangulation of the key points: 0.1 m suits contours of 0.5 m.", "Heller1990");
-  v.option("cell", o.cell, core::above(0.0),
-           "Side of the squares that are thinned each by itself; the points along their borders are kept, so that smaller squares keep more.");
+           "Farthest in height that a point may lie from the triangulation of the key points: 0.1 m suits contours of 0.5 m.",
+           "Heller1990");
+  v.option(
+      "cell", o.cell, core::above(0.0),
+      "Side of the squares that are thinned each by itself; the points along their borders are kept, so that smaller squares keep more.");
   v.option("max_edge", o.max_edge, core::above(0.0), "As in terrain.dtm: no gap wider than this is bridged, before or after.");
   v.option("classes", o.classes, core::within(0, 255), "ASPRS classes that are terrain.");
 }
@@ -36,8 +38,8 @@ struct KeyPointCounts {
 double halo(const KeyPointOptions& options);
 
 /// Sets the key-point flag of those of the first `own` points that the terrain needs and clears it on all others. The Delaunay
-/// triangulation of the flagged points, circumradius at most max_edge / 2, covers what that of all terrain points covers, and passes each of
-/// them within the tolerance (of points at one place the lowest counts). The answer is the same for every tiling (proof in the source).
+/// triangulation of the flagged points, circumradius at most max_edge / 2, covers what that of all terrain points covers, and passes each
+/// of them within the tolerance (of points at one place the lowest counts). The answer is the same for every tiling (proof in the source).
 KeyPointCounts mark_key_points(core::Block& block, std::size_t own, const KeyPointOptions& options);
 
 }  // namespace swath::terrain

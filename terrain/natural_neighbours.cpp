@@ -92,7 +92,8 @@ double NaturalNeighbours::height(std::int32_t triangle, double x, double y) cons
       share(b).twice_area -= term;
     }
   }
-  std::sort(shares.begin(), shares.end(), [&](const Share& a, const Share& b) { return is_before(tin_.place(a.vertex), tin_.place(b.vertex)); });
+  std::sort(shares.begin(), shares.end(),
+            [&](const Share& a, const Share& b) { return is_before(tin_.place(a.vertex), tin_.place(b.vertex)); });
   double sum = 0.0, total = 0.0;
   const double z0 = tin_.z[shares.front().vertex];
   for (const Share& s : shares) {

@@ -87,8 +87,7 @@ double reach_of(const Tin& tin, std::int32_t triangle, const std::array<double, 
   return length_of(xx, xy, yy);
 }
 
-RoughnessMap::RoughnessMap(const Tin& tin, const Eigen::Vector3d& origin, const core::Lattice& window, double side)
-    : origin_(origin) {
+RoughnessMap::RoughnessMap(const Tin& tin, const Eigen::Vector3d& origin, const core::Lattice& window, double side) : origin_(origin) {
   const auto block = [side](double v) { return core::cell_index(v, side); };
   blocks_ = {side, block(window.west()) - 1, block(window.south()) - 1, 0, 0};
   blocks_.nx = static_cast<int>(block(window.east()) + 2 - blocks_.i0);
@@ -130,7 +129,8 @@ RoughnessMap::RoughnessMap(const Tin& tin, const Eigen::Vector3d& origin, const 
       const double inverse = 1.0 / (b.x() * c.y() - b.y() * c.x());
       const double wb = (f.x() * c.y() - f.y() * c.x()) * inverse, wc = (b.x() * f.y() - b.y() * f.x()) * inverse, wa = 1.0 - wb - wc;
       const double misfit = f.z() - wb * b.z() - wc * c.z();
-      const double xx = wb * b.x() * b.x() + wc * c.x() * c.x() - f.x() * f.x(), yy = wb * b.y() * b.y() + wc * c.y() * c.y() - f.y() * f.y();
+      const double xx = wb * b.x() * b.x() + wc * c.x() * c.x() - f.x() * f.x(),
+                   yy = wb * b.y() * b.y() + wc * c.y() * c.y() - f.y() * f.y();
       const double xy = wb * b.x() * b.y() + wc * c.x() * c.y() - f.x() * f.y();
       add_pair(sums[wide.at(static_cast<int>(i), static_cast<int>(j))], misfit * misfit, 1.0 + wa * wa + wb * wb + wc * wc,
                length_of(xx, xy, yy));

@@ -46,7 +46,8 @@ std::vector<std::uint32_t> Surroundings::first() {
       inside.push_back(r);
       continue;
     }
-    const auto i = static_cast<std::uint32_t>((block_.x[r] - corner_.x) / side_), j = static_cast<std::uint32_t>((block_.y[r] - corner_.y) / side_);
+    const auto i = static_cast<std::uint32_t>((block_.x[r] - corner_.x) / side_),
+               j = static_cast<std::uint32_t>((block_.y[r] - corner_.y) / side_);
     outside.emplace_back(j * static_cast<std::uint32_t>(nx_) + i, r);
     ++start_[outside.back().first + 1];
   }

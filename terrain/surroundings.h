@@ -30,9 +30,9 @@ class Surroundings {
 
   const core::Block& block_;
   const std::vector<std::uint32_t>& rows_;
-  Rectangle where_, near_;             // near_: whose points were handed out first
-  Place corner_;                       // south-west of the cells
-  double side_ = 1.0;                  // of a cell, m
+  Rectangle where_, near_;  // near_: whose points were handed out first
+  Place corner_;            // south-west of the cells
+  double side_ = 1.0;       // of a cell, m
   std::int32_t nx_ = 0, ny_ = 0;
   std::vector<std::uint32_t> start_;   // of each cell within sorted_
   std::vector<std::uint32_t> sorted_;  // rows beyond near_ by cell

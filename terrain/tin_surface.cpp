@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangle by triangle: each triangle visits the places in its bounding box. Whether a place lies in it is decided exactly, so that edges shared by two triangles leave neither gaps nor doubt.
+// Triangle by triangle: each triangle visits the places in its bounding box. Whether a place lies in it is decided exactly, so that edges
+// shared by two triangles leave neither gaps nor doubt.
 #include "terrain/tin_surface.h"
 
 #include <algorithm>

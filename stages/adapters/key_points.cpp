@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "terrain/key_points.h"
 
-
 #include "stages/adapters/adapters.h"
 
 namespace swath::stages {

@@ -64,7 +64,8 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
   }
   core::ColumnSet also_reads() const override { return {core::Column::sigma_v, core::Column::sigma_h}; }
   double halo() const override { return terrain::halo(options); }
-  // Vertices (48), their order (32), faces of the triangulation (2 of 24, growing), triangles and their neighbours (2 of 24), their lists (2 of 14).
+  // Vertices (48), their order (32), faces of the triangulation (2 of 24, growing), triangles and their neighbours (2 of 24), their lists
+  // (2 of 14).
   double bytes_per_point() const override { return 250.0; }
   void run_tile(const Context& context, TileJob& job) const override {
     std::call_once(once_, [&] { lines_ = settled_breaklines(context); });

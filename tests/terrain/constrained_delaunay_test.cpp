@@ -30,7 +30,8 @@ TEST(ConstrainedDelaunay, HoldsTheEdgeThatIsNotDelaunay) {
 TEST(ConstrainedDelaunay, PolygonsAreNotJoinedAcrossAConstraint) {
   const std::vector<Place> square{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   const ConstrainedTriangles held = constrained_delaunay(square, {{1, 3}}, {0, 0});
-  for (const auto& t : held.triangles) EXPECT_TRUE(std::find(t.begin(), t.end(), 1) != t.end() && std::find(t.begin(), t.end(), 3) != t.end());
+  for (const auto& t : held.triangles)
+    EXPECT_TRUE(std::find(t.begin(), t.end(), 1) != t.end() && std::find(t.begin(), t.end(), 3) != t.end());
   for (const auto& t : constrained_delaunay(square, {}, {0, 0}).triangles) EXPECT_EQ(*std::min_element(t.begin(), t.end()), 0);
 }
 

@@ -53,9 +53,9 @@ TEST(KeyPoints, EveryPointIsWithinTheTolerance) {
   for (const double tolerance : {0.05, 0.3})
     for (const core::Block& made :
          {test::random_points(20000, 80.0, hills, 1), with_noise(test::random_points(20000, 80.0, hills, 2), 0.03, 3),
-          test::random_points(20000, 80.0, steep, 4), holed(test::random_points(20000, 80.0, steep, 5), 15.0), test::lattice_points(80, hills),
-          test::quantised(test::random_points(9000, 80.0, hills, 6), 0.25), test::random_points(300, 80.0, hills, 7),
-          test::random_points(20000, 80.0, flat, 8)}) {
+          test::random_points(20000, 80.0, steep, 4), holed(test::random_points(20000, 80.0, steep, 5), 15.0),
+          test::lattice_points(80, hills), test::quantised(test::random_points(9000, 80.0, hills, 6), 0.25),
+          test::random_points(300, 80.0, hills, 7), test::random_points(20000, 80.0, flat, 8)}) {
       core::Block b = with_flags(made);
       KeyPointOptions o = options();
       o.tolerance = core::Metres(tolerance);
@@ -95,7 +95,8 @@ TEST(KeyPoints, SmoothTerrainNeedsFew) {
 
 TEST(KeyPoints, SameForEveryTiling) {
   const KeyPointOptions o = options();
-  for (const core::Block& made : {holed(with_noise(test::random_points(12000, 80.0, steep, 11), 0.05, 12), 14.0), test::lattice_points(80, hills)}) {
+  for (const core::Block& made :
+       {holed(with_noise(test::random_points(12000, 80.0, steep, 11), 0.05, 12), 14.0), test::lattice_points(80, hills)}) {
     core::Block whole = with_flags(made);
     mark_key_points(whole, whole.size(), o);
     for (const double side : {17.0, 40.0}) {
