@@ -40,6 +40,7 @@ std::unique_ptr<Stage> make_csf();
 std::unique_ptr<Stage> make_ground();
 std::unique_ptr<Stage> make_hag_dem();
 std::unique_ptr<Stage> make_breaklines();
+std::unique_ptr<Stage> make_key_points();
 std::unique_ptr<Stage> make_dtm();
 std::unique_ptr<Stage> make_dsm();
 std::unique_ptr<Stage> make_canopy();
