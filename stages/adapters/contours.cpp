@@ -4,6 +4,8 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <memory>
+#include <mutex>
 
 #include "core/error.h"
 #include "core/statistics.h"
@@ -11,6 +13,7 @@
 #include "io/value_file.h"
 #include "io/vector.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/breaklines.h"
 #include "stages/adapters/units.h"
 #include "stages/grid_tile.h"
 #include "terrain/contour_labels.h"
@@ -186,8 +189,14 @@ class Contours : public OptionStage<ContourWriteOptions> {
     const core::Lattice own = lattice_in(cell(context), job.box);
     const int border = 1 + static_cast<int>(std::ceil(terrain::halo(options.spots) / own.cell));
     const core::Lattice window{own.cell, own.i0 - border, own.j0 - border, own.nx + 2 * border, own.ny + 2 * border};
-    const core::Grid grid =
-        options.source == ContourSource::grid ? context.grids->window(Product::dtm, window) : terrain::dtm(job.block, window, options.tin);
+    core::Grid grid;
+    if (options.source == ContourSource::grid) {
+      grid = context.grids->window(Product::dtm, window);
+    } else {  // as terrain.dtm makes it, breaklines and boundaries with it
+      std::call_once(once_, [&] { lines_ = settled_breaklines(context); });
+      grid = terrain::dtm(job.block, window, options.tin, lines_.get());
+      if (lines_) lines_->cut(grid);
+    }
     if (options.source == ContourSource::tin) {
       core::Grid mine(own);
       paste(grid, mine);
@@ -218,6 +227,9 @@ class Contours : public OptionStage<ContourWriteOptions> {
   }
 
  private:
+  mutable std::once_flag once_;
+  mutable std::unique_ptr<const terrain::Breaklines> lines_;  ///< of source = "tin", read by the first tile
+
   double cell(const Context& context) const {
     return options.source == ContourSource::grid ? context.grids->cell(Product::dtm) : options.tin.cell.value;
   }

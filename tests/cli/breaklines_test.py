@@ -10,7 +10,9 @@ LAKE = [(80, 60), (160, 66), (150, 120), (84, 110)]
 WALL = [(20.3, 150.2, 108.0), (120.7, 170.4, 111.0), (260.1, 161.9, 110.0)]
 CONFIG = "".join(f'[[stage]]\ntype = "{s}"\n{more}\n' for s, more in (
     ("readers.las", ""), ("terrain.breaklines", "classes = [0]\n"), ("terrain.dtm", "classes = [0]\n"), ("terrain.dsm", 'method = "spike_free"\nfreeze = "3 m"\nmax_gap = "6 m"\n'),
-    ("terrain.canopy", ""), ("terrain.relief", ""), ("terrain.density", ""), ("terrain.intensity", ""), ("writers.gdal", "")))
+    ("terrain.canopy", ""), ("terrain.relief", ""), ("terrain.density", ""), ("terrain.intensity", ""), ("writers.gdal", ""),
+    ("terrain.contours", 'interval = "0.5 m"\n'),
+    ("terrain.contours", 'interval = "0.5 m"\nname = "of_tin"\nsource = "tin"\ntin = {classes = [0], cell = "1 m"}\n')))
 GRIDS = ("dtm", "dsm", "canopy", "slope", "hillshade", "pulse_density", "return_density", "intensity")
 
 
@@ -80,6 +82,12 @@ class Breaklines(Case):
                     near += 1
                     self.assertLess(abs(v - az - t * (bz - az)), 0.02 * 8 / 0.5)  # 2 cm beside a line that stands up to 8 m over the ground 0.5 m away
         self.assertGreater(near, 3)
+
+    def test_contours_of_the_tin_hold_lake_and_wall_as_those_of_the_grid_do(self):
+        # The TIN read on the grid's own lattice.
+        of_grid, of_tin = (json.loads((self.out_of[1000] / f"{name}.geojson").read_text())["features"] for name in ("contours", "of_tin"))
+        self.assertGreater(len(of_grid), 5)
+        self.assertEqual(of_grid, of_tin)
 
     def test_lines_that_cross_at_different_heights_are_named(self):
         geojson(self.survey.parent / "stair.geojson", "LineString", [(60, 140, 101.0), (62, 190, 101.0)])
