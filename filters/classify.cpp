@@ -27,6 +27,12 @@ bool is_free(const core::Block& b, size_t p) {
   return core::is_usable(b, p) && b.classification[p] != cls::ground && b.classification[p] != cls::water;
 }
 
+/// A filter found it alone in space; a thin wire's returns may be.
+bool is_isolated(const core::Block& b, size_t p) {
+  return b.classification[p] == cls::high_noise && !b.flags.empty() && (b.flags[p] & core::flag::isolated) &&
+         !(b.flags[p] & core::flag::withheld);
+}
+
 int search_radius(const ClassifyOptions& o) { return static_cast<int>(std::ceil(search_sides * o.building_side.value / structure_cell)); }
 
 /// Cells of roofs that are high and large enough.
@@ -70,8 +76,9 @@ ClassifyCounts classify(core::Block& b, size_t own, const ClassifyOptions& o) {
                                       ? deck_cells(cells, o.bridge_length.value, o.building_height.value, o.building_height.value)
                                       : std::vector<Deck>(cells.lattice.size(), Deck::none);
   const std::vector<std::uint8_t> buildings = building_cells(cells, decks, o);
-  for (size_t p = 0; p < b.size(); ++p) high[p] = raised[p] && !planar[p] && static_cast<double>(b.height[p]) >= o.wire_height.value;
-  const std::vector<std::uint8_t> wires = wire_points(b, high);
+  for (size_t p = 0; p < b.size(); ++p)
+    high[p] = ((raised[p] && !planar[p]) || is_isolated(b, p)) && static_cast<double>(b.height[p]) >= o.wire_height.value;
+  const std::vector<std::uint8_t> wires = wire_points(b, high, planar);
 
   const auto class_of = [&](size_t p) {
     const CellIndex at = cell_of(cells.lattice, b, p);
@@ -83,7 +90,9 @@ ClassifyCounts classify(core::Block& b, size_t own, const ClassifyOptions& o) {
     return planar[p] ? cls::unassigned : vegetation(b.height[p], o);
   };
   for (size_t p = 0; p < own; ++p) {
-    if (!is_free(b, p)) {
+    if (wires[p] && is_isolated(b, p)) {
+      b.flags[p] = static_cast<std::uint16_t>(b.flags[p] & ~core::flag::isolated);
+    } else if (!is_free(b, p)) {
       ++n.kept;
       continue;
     }
