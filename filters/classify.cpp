@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "filters/bridges.h"
+#include "filters/building_sides.h"
 #include "filters/roof_planes.h"
 #include "filters/structure_cells.h"
 #include "filters/wires.h"
@@ -63,7 +64,7 @@ std::uint8_t vegetation(float height, const ClassifyOptions& o) {
 double halo(const ClassifyOptions& o) {
   const double decks = o.bridge_length.value > 0.0 ? deck_cells_halo(o.bridge_length.value) : 0.0;
   const double structures = planar_points_halo() + decks + (search_radius(o) + structure_link + 1) * structure_cell;
-  return std::max(structures, wire_points_halo());
+  return std::max(structures + building_sides_halo(), planar_points_halo() + wire_points_halo());
 }
 
 ClassifyCounts classify(core::Block& b, size_t own, const ClassifyOptions& o) {
@@ -80,12 +81,22 @@ ClassifyCounts classify(core::Block& b, size_t own, const ClassifyOptions& o) {
     high[p] = ((raised[p] && !planar[p]) || is_isolated(b, p)) && static_cast<double>(b.height[p]) >= o.wire_height.value;
   const std::vector<std::uint8_t> wires = wire_points(b, high, planar);
 
+  std::vector<std::uint8_t> roof(b.size(), 0), free(b.size(), 0);
+  for (size_t p = 0; p < b.size(); ++p) {
+    if (!is_free(b, p)) continue;
+    const CellIndex at = cell_of(cells.lattice, b, p);
+    const size_t c = cells.lattice.at(at.i, at.j);
+    roof[p] = planar[p] && buildings[c];
+    free[p] = decks[c] != Deck::deck;
+  }
+  const std::vector<std::uint8_t> sides = building_sides(b, roof, free, o.roughness.value);
+
   const auto class_of = [&](size_t p) {
     const CellIndex at = cell_of(cells.lattice, b, p);
     const size_t c = cells.lattice.at(at.i, at.j);
     const float above = static_cast<float>(b.z[p]) - cells.plane[c];  // NaN: no plane there
     if (raised[p] && decks[c] == Deck::deck && (planar[p] || std::abs(above) <= beside_deck)) return cls::bridge_deck;
-    if (raised[p] && buildings[c] && above <= above_roof) return cls::building;
+    if (sides[p] || (raised[p] && buildings[c] && above <= above_roof)) return cls::building;
     if (wires[p]) return cls::wire;
     return planar[p] ? cls::unassigned : vegetation(b.height[p], o);
   };

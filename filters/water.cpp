@@ -83,8 +83,9 @@ class Plots {
         sparse_(lattice().size()),
         heights_(lattice().size()),
         ground_(lattice().size(), 0),
-        low_(lattice().size(), std::numeric_limits<double>::infinity()),
-        high_(lattice().size(), -std::numeric_limits<double>::infinity()) {
+        all_(lattice().size()),
+        thin_(lattice().size()),
+        is_sparse_row_(b.size(), 0) {
     for (int j = 0; j < lattice().ny; ++j)
       for (int i = 0; i < lattice().nx; ++i) {
         std::vector<double>& z = heights_[lattice().at(i, j)];
@@ -92,6 +93,9 @@ class Plots {
         std::sort(z.begin(), z.end());
         for (const std::uint32_t row : bins_.rows(i, j)) ground_[lattice().at(i, j)] += b.classification[row] == cls::ground;
       }
+    forms_.reserve(lattice().size());
+    for (int j = 0; j < lattice().ny; ++j)
+      for (int i = 0; i < lattice().nx; ++i) forms_.push_back(form_of(i, j));
     usual_.assign(lattice().size(), 0.0);
     find_sparse();
   }
@@ -117,8 +121,10 @@ class Plots {
       }
   }
 
-  /// Is a return of plot c at height z a water's?
-  bool is_water(size_t c, double z) const { return z >= low_[c] && z <= high_[c]; }
+  /// Is the return of plot c a water's?
+  bool is_water(size_t c, size_t row) const {
+    return all_[c].holds(block_.z[row]) || (is_sparse_row_[row] && thin_[c].holds(block_.z[row]));
+  }
 
  private:
   double middle(size_t c) const { return heights_[c][heights_[c].size() / 2]; }
@@ -161,8 +167,10 @@ class Plots {
           const auto points = bins_.in(i, j);
           const auto rows = bins_.rows(i, j);
           for (size_t k = 0; k < points.size(); ++k)
-            if (line_of(rows[k]) == line && is_sparse(i, j, points[k], line, radius, static_cast<int>(most)))
+            if (line_of(rows[k]) == line && is_sparse(i, j, points[k], line, radius, static_cast<int>(most))) {
               sparse_[c].push_back({points[k].x, points[k].y, points[k].z});
+              is_sparse_row_[rows[k]] = 1;
+            }
         }
     }
     for (std::vector<Sparse>& s : sparse_)
@@ -307,7 +315,7 @@ class Plots {
       lower += middle(plot_of(r, at)) < level - options_.level.value;
     }
     if (static_cast<double>(lower) > lower_share * static_cast<double>(known)) return;
-    const auto found = level_plane(returns, options_.slope);
+    const auto found = level_plane(returns, options_.slope, options_.slope);
     if (found && found->sigma <= most_waves * options_.level.value) mark(r, *found);
   }
 
@@ -315,7 +323,7 @@ class Plots {
   void judge_closed(int i, int j, double level) {
     const Region r = grow(i, j, level, 1, [&](size_t c) {
       return is_at_level(c, level) && static_cast<double>(ground_[c]) >= level_share * static_cast<double>(heights_[c].size()) &&
-             is_smooth(c, level, 0.0, closed_distance);
+             is_smooth(c, level, 0.0);
     });
     if (r.water.size() < least_closed) return;
     std::vector<Sparse> means;
@@ -331,7 +339,7 @@ class Plots {
       n += count;
       means.push_back({lattice().centre_x(r.i + at.i) - block_.origin.x(), lattice().centre_y(r.j + at.j) - block_.origin.y(), mean});
     }
-    auto found = level_plane(means, closed_slope);
+    auto found = level_plane(means, closed_slope, closed_slope);
     if (!found || found->sigma > closed_distance) return;
     found->sigma = std::sqrt(squares / n);
     size_t rising = 0, lower = 0, known = 0, ring = 0;
@@ -360,19 +368,33 @@ class Plots {
 
   void mark(const Region& r, const Water& found) {
     const double band = std::max(3.0 * found.sigma, least_band);
-    const auto put = [&](const CellIndex& at, double above) {
-      const size_t c = plot_of(r, at);
-      const double z = found.at(lattice().centre_x(r.i + at.i) - block_.origin.x(), lattice().centre_y(r.j + at.j) - block_.origin.y());
-      if (!is_smooth(c, z, found.sigma)) return;
-      low_[c] = std::min(low_[c], z - band);
-      high_[c] = std::max(high_[c], z + above);
+    const auto height = [&](const CellIndex& at) {
+      return found.at(lattice().centre_x(r.i + at.i) - block_.origin.x(), lattice().centre_y(r.j + at.j) - block_.origin.y());
     };
-    for (const CellIndex& at : r.water) put(at, band);
-    for (const CellIndex& at : r.shore) put(at, 0.5 * band);
+    // Plots that are water all over; then those beside them, where what is dense is land unless dense water is next to it.
+    std::vector<std::uint8_t> certain(r.distance.size(), 0), beside(r.distance.size(), 0);
+    constexpr std::uint8_t thin = 1, thick = 2;
+    for (const CellIndex& at : r.water)
+      if (is_smooth(plot_of(r, at), height(at), found.sigma)) certain[r.local(at.i, at.j)] = is_dense(plot_of(r, at)) ? thick : thin;
+    for (const CellIndex& at : r.water) {
+      const std::uint8_t kind = certain[r.local(at.i, at.j)];
+      if (kind == 0) continue;
+      const size_t c = plot_of(r, at);
+      all_[c].add(height(at) - band, height(at) + band);
+      for (int dj = -1; dj <= 1; ++dj)
+        for (int di = -1; di <= 1; ++di) {
+          if (!inside(r, at.i + di, at.j + dj) || certain[r.local(at.i + di, at.j + dj)]) continue;
+          std::uint8_t& known = beside[r.local(at.i + di, at.j + dj)];
+          if (known >= kind) continue;
+          known = kind;
+          const CellIndex to{at.i + di, at.j + dj};
+          (kind == thick ? all_ : thin_)[plot_of(r, to)].add(height(to) - band, height(to) + 0.5 * band);
+        }
+    }
   }
 
   /// The plane through the points where it is level as far as they can tell; nothing where it is not, or they cannot.
-  static std::optional<Water> level_plane(std::vector<Sparse>& s, double steepest) {
+  static std::optional<Water> level_plane(std::vector<Sparse>& s, double steepest, double most_uncertain) {
     std::sort(s.begin(), s.end(), [](const Sparse& a, const Sparse& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
     const auto n = static_cast<double>(s.size());
     Water found;
@@ -399,7 +421,7 @@ class Plots {
     found.sigma = std::max(std::sqrt(std::max(left, 0.0) / std::max(n - 3.0, 1.0)), least_sigma);
     for (int k = 0; k < 2; ++k) {
       const double lambda = std::max(axes.eigenvalues()(k), least_spread), uncertain = found.sigma / std::sqrt(lambda);
-      if (k == 1 && uncertain > steepest) return std::nullopt;  // not even along its longer axis
+      if (k == 1 && uncertain > most_uncertain) return std::nullopt;  // not even along its longer axis
       if (std::abs(slope(k)) > steepest + 2.0 * uncertain) return std::nullopt;
       slope(k) *= lambda / (lambda + found.sigma * found.sigma / (prior_slope * prior_slope));
     }
@@ -409,17 +431,36 @@ class Plots {
     return found;
   }
 
-  /// Dense plots must follow the water closely: flat land beside it does not. Of a shore's plot the returns at the level alone count.
-  bool is_smooth(size_t c, double z, double sigma, double distance = dense_distance) const {
-    const std::vector<double>& h = heights_[c];
-    const auto from = std::lower_bound(h.begin(), h.end(), z - options_.level.value),
-               to = std::upper_bound(h.begin(), h.end(), z + options_.level.value);
-    const auto n = static_cast<double>(to - from);
-    if (n < dense * usual_[c]) return true;
-    double sum = 0, squares = 0;
-    for (auto at = from; at != to; ++at) sum += *at - z, squares += (*at - z) * (*at - z);
-    return std::abs(sum / n) <= distance && std::sqrt(squares / n) <= std::max(2.0 * sigma, dense_distance);
+  bool is_dense(size_t c) const { return static_cast<double>(heights_[c].size()) >= dense * usual_[c]; }
+
+  /// Dense plots must follow the water closely and be level themselves: flat land beside it is not.
+  bool is_smooth(size_t c, double z, double sigma) const {
+    return !is_dense(c) ||
+           (forms_[c].level && std::abs(forms_[c].mean - z) <= closed_distance && forms_[c].sigma <= std::max(2.0 * sigma, dense_distance));
   }
+
+  /// The plane of a plot's returns about their median.
+  struct Form {
+    bool level = false;
+    double mean = 0, sigma = 0;
+  };
+  Form form_of(int i, int j) const {
+    const size_t c = lattice().at(i, j);
+    if (heights_[c].size() < fewest_on_land) return {};
+    const double z = middle(c);
+    std::vector<Sparse> points;
+    for (const Bins::Point& p : bins_.in(i, j))
+      if (std::abs(p.z - z) <= options_.level.value) points.push_back({p.x, p.y, p.z});
+    const auto plane = level_plane(points, options_.slope, std::numeric_limits<double>::infinity());
+    return plane ? Form{true, plane->centre.z(), plane->sigma} : Form{};
+  }
+
+  /// Heights from `low` to `high`.
+  struct Range {
+    double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+    void add(double from, double to) { low = std::min(low, from), high = std::max(high, to); }
+    bool holds(double z) const { return z >= low && z <= high; }
+  };
 
   const core::Block& block_;
   const WaterOptions& options_;
@@ -427,8 +468,10 @@ class Plots {
   std::vector<std::vector<Sparse>> sparse_;   // per plot
   std::vector<std::vector<double>> heights_;  // of the last returns per plot, ascending
   std::vector<std::uint32_t> ground_;         // of these of class ground
-  std::vector<double> usual_;                 // returns per plot, of the densest line
-  std::vector<double> low_, high_;            // of water per plot
+  std::vector<Form> forms_;
+  std::vector<double> usual_;                // returns per plot, of the densest line
+  std::vector<Range> all_, thin_;            // of water per plot: of all returns, of sparse ones
+  std::vector<std::uint8_t> is_sparse_row_;  // per row of the block
 };
 
 }  // namespace
@@ -449,7 +492,7 @@ WaterCounts classify_water(core::Block& b, size_t own, const WaterOptions& o) {
     const bool may = before == cls::ground || before == cls::unassigned || before == cls::never_classified;
     if (!may || !core::is_usable(b, p) || !core::is_last_return(b, p)) continue;
     const CellIndex at = cell_of(plots.lattice(), b, p);
-    if (!plots.is_water(plots.lattice().at(at.i, at.j), b.z[p])) continue;
+    if (!plots.is_water(plots.lattice().at(at.i, at.j), p)) continue;
     b.classification[p] = cls::water;
     ++n.water;
     n.ground += before == cls::ground;

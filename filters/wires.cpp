@@ -20,9 +20,11 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double reach = 20.0;          // m from the point
+constexpr double reach = 25.0;          // m from the point
 constexpr double shortest = 15.0;       // m of line
 constexpr double longest_gap = 7.0;     // m between returns of one wire
+constexpr double widest_gap = 16.0;     // m between groups of returns where lines of scan run nearly along it
+constexpr int fewest_over_gaps = 7;     // returns on the line with such gaps
 constexpr double least_baseline = 4.0;  // m from the point to the one that gives the direction
 constexpr double near_line = 0.5;       // m from the line through two returns, each off the wire by up to half the beam's width
 constexpr double on_line = 0.4;         // m from the line through all; holds a bundle of conductors together
@@ -88,7 +90,7 @@ bool is_airy(const std::vector<Neighbour>& near) {
     const Vector3d along = n.to / std::sqrt(n.distance2), across = along.unitOrthogonal(), third = along.cross(across);
     CrossSection beside;
     for (const Neighbour& q : near)
-      if (std::hypot(across.dot(q.to), third.dot(q.to)) > on_line) beside.add(across.dot(q.to), third.dot(q.to));
+      if (std::sqrt(std::pow(across.dot(q.to), 2) + std::pow(third.dot(q.to), 2)) > on_line) beside.add(across.dot(q.to), third.dot(q.to));
     return static_cast<double>(beside.taken()) <= most_beside * static_cast<double>(near.size() + 1);
   });
 }
@@ -216,13 +218,19 @@ class Search {
     for (const Vector3d& q : roughly)
       if (line->off(q) <= on_line) on.push_back(line->u(q));
     std::sort(on.begin(), on.end());
-    // The stretch around the point without longer gaps.
-    auto first = std::lower_bound(on.begin(), on.end(), line->u(Vector3d::Zero())), last = first;
-    while (first != on.begin() && *first - *(first - 1) <= longest_gap) --first;
-    while (last + 1 != on.end() && *(last + 1) - *last <= longest_gap) ++last;
+    const auto here = std::lower_bound(on.begin(), on.end(), line->u(Vector3d::Zero()));
+    return is_clear_stretch(p, *line, on, here, longest_gap, fewest) || is_clear_stretch(p, *line, on, here, widest_gap, fewest_over_gaps);
+  }
+
+  /// Are there enough of the places `on` the line, ascending, around `here` without longer gaps, and nearly nothing beside them?
+  bool is_clear_stretch(size_t p, const Line& line, const std::vector<double>& on, std::vector<double>::const_iterator here, double gap,
+                        int least) const {
+    auto first = here, last = here;
+    while (first != on.begin() && *first - *(first - 1) <= gap) --first;
+    while (last + 1 != on.end() && *(last + 1) - *last <= gap) ++last;
     const auto n = last - first + 1;
-    if (n < fewest || *last - *first < shortest) return false;
-    const Beside b = beside(p, *line, *first, *last);
+    if (n < least || *last - *first < shortest) return false;
+    const Beside b = beside(p, line, *first, *last);
     return static_cast<double>(b.cells) <= most_beside * static_cast<double>(n) &&
            static_cast<double>(b.close) <= most_close * static_cast<double>(n);
   }
