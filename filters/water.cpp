@@ -25,6 +25,8 @@
 #include <vector>
 
 #include "filters/bins.h"
+#include "filters/level_plane.h"
+#include "filters/sparse_returns.h"
 
 namespace swath::filters {
 namespace {
@@ -33,21 +35,15 @@ namespace cls = core::point_class;
 
 constexpr double plot = 4.0;              // m
 constexpr int seed_plots = 3;             // a side of the squares that water is grown from
-constexpr int district = 8;               // plots, a side of the squares that the usual density is told for
-constexpr int districts_around = 2;       // on each side
 constexpr int link = 2;                   // plots
-constexpr double usual_returns = 50.0;    // in the circle in which a return is judged
-constexpr int widest_circle = 2;          // plots of radius
 constexpr double level_share = 0.7;       // of a plot's last returns, and of the sparse returns in and around the water
 constexpr double lower_share = 0.25;      // of the plots around
-constexpr double prior_slope = 0.001;     // standard deviation
 constexpr double least_band = 0.06;       // m: three sigma of a good scanner
 constexpr double most_waves = 1.0 / 3.0;  // of `level`: standard deviation of the returns about the plane
-constexpr double least_sigma = 0.01;      // m
-constexpr double least_spread = 1.0;      // m2
 constexpr size_t least_closed = 12;       // plots, some 200 m2
 constexpr double closed_slope = 0.001;    // rise / run; courts and pitches are laid out with 0.005 to 0.01
 constexpr double closed_distance = 0.03;  // m: rms of the plots' means about the plane
+constexpr double hollow = 0.01;           // m
 constexpr double known_share = 0.9;       // of the plots 4 to 12 m beyond the shore that must have returns
 constexpr double rising_share = 0.7;      // of these that must lie above the water: a shore may be marshy
 constexpr double outlet_share = 0.25;     // of these that may lie below it: behind a dam, one side
@@ -63,29 +59,18 @@ double median(std::vector<double>& v) {
   return v[v.size() / 2];
 }
 
-struct Sparse {
-  double x, y, z;
-};
-
-/// A found water as seen from one place.
-struct Water {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the returns
-  double east = 0, north = 0, sigma = 0;
-  double at(double x, double y) const { return centre.z() + east * (x - centre.x()) + north * (y - centre.y()); }
-};
-
 class Plots {
  public:
   Plots(const core::Block& b, const WaterOptions& o)
       : block_(b),
         options_(o),
-        bins_(b, plot, widest_circle, [&b](size_t p) { return core::is_usable(b, p) && core::is_last_return(b, p); }),
+        bins_(b, plot, sparse_circle, [&b](size_t p) { return core::is_usable(b, p) && core::is_last_return(b, p); }),
         sparse_(lattice().size()),
         heights_(lattice().size()),
         ground_(lattice().size(), 0),
         all_(lattice().size()),
         thin_(lattice().size()),
-        is_sparse_row_(b.size(), 0) {
+        thin_returns_(sparse_returns(b, bins_, o.sparse)) {
     for (int j = 0; j < lattice().ny; ++j)
       for (int i = 0; i < lattice().nx; ++i) {
         std::vector<double>& z = heights_[lattice().at(i, j)];
@@ -96,8 +81,13 @@ class Plots {
     forms_.reserve(lattice().size());
     for (int j = 0; j < lattice().ny; ++j)
       for (int i = 0; i < lattice().nx; ++i) forms_.push_back(form_of(i, j));
-    usual_.assign(lattice().size(), 0.0);
-    find_sparse();
+    for (int j = 0; j < lattice().ny; ++j)
+      for (int i = 0; i < lattice().nx; ++i) {
+        const auto points = bins_.in(i, j);
+        const auto rows = bins_.rows(i, j);
+        for (size_t k = 0; k < points.size(); ++k)
+          if (thin_returns_.sparse[rows[k]]) sparse_[lattice().at(i, j)].emplace_back(points[k].x, points[k].y, points[k].z);
+      }
   }
 
   const core::Lattice& lattice() const { return bins_.lattice(); }
@@ -114,7 +104,7 @@ class Plots {
           for (int dj = -half; dj <= half; ++dj)
             for (int di = -half; di <= half; ++di)
               if (l.holds(i + di, j + dj))
-                for (const Sparse& s : sparse_[l.at(i + di, j + dj)]) z.push_back(s.z);
+                for (const Eigen::Vector3d& s : sparse_[l.at(i + di, j + dj)]) z.push_back(s.z());
           if (!z.empty()) judge_sparse(i, j, median(z));
         }
         if (is_level(i, j)) judge_closed(i, j, middle(l.at(i, j)));
@@ -123,7 +113,7 @@ class Plots {
 
   /// Is the return of plot c a water's?
   bool is_water(size_t c, size_t row) const {
-    return all_[c].holds(block_.z[row]) || (is_sparse_row_[row] && thin_[c].holds(block_.z[row]));
+    return all_[c].holds(block_.z[row]) || (thin_returns_.sparse[row] && thin_[c].holds(block_.z[row]));
   }
 
  private:
@@ -140,95 +130,6 @@ class Plots {
         east += di * z / (6.0 * plot), north += dj * z / (6.0 * plot);
       }
     return high - low <= dense_distance && std::hypot(east, north) <= 2.0 * closed_slope;
-  }
-
-  /// Sets usual_ to that of one line and adds its sparse returns.
-  void find_sparse() {
-    std::map<std::uint16_t, std::vector<std::uint32_t>> counts;
-    const core::Lattice& l = lattice();
-    const auto line_of = [&](std::uint32_t row) { return block_.strip.empty() ? std::uint16_t{0} : block_.strip[row]; };
-    for (int j = 0; j < l.ny; ++j)
-      for (int i = 0; i < l.nx; ++i)
-        for (const std::uint32_t row : bins_.rows(i, j)) {
-          auto& of_line = counts[line_of(row)];
-          of_line.resize(l.size(), 0);
-          ++of_line[l.at(i, j)];
-        }
-    for (const auto& [line, of_line] : counts) {
-      const std::vector<double> usual = usual_counts(of_line);
-      for (int j = 0; j < l.ny; ++j)
-        for (int i = 0; i < l.nx; ++i) {
-          const size_t c = l.at(i, j);
-          usual_[c] = std::max(usual_[c], usual[c]);
-          if (of_line[c] == 0 || usual[c] <= 0.0) continue;
-          const double radius = std::min(plot * std::sqrt(usual_returns / (M_PI * usual[c])), plot * widest_circle);
-          const double most = options_.sparse * usual[c] * M_PI * radius * radius / (plot * plot);
-          if (most < 1.0) continue;  // too thin to tell
-          const auto points = bins_.in(i, j);
-          const auto rows = bins_.rows(i, j);
-          for (size_t k = 0; k < points.size(); ++k)
-            if (line_of(rows[k]) == line && is_sparse(i, j, points[k], line, radius, static_cast<int>(most))) {
-              sparse_[c].push_back({points[k].x, points[k].y, points[k].z});
-              is_sparse_row_[rows[k]] = 1;
-            }
-        }
-    }
-    for (std::vector<Sparse>& s : sparse_)
-      std::sort(s.begin(), s.end(), [](const Sparse& a, const Sparse& b) { return std::tie(a.z, a.x, a.y) < std::tie(b.z, b.x, b.y); });
-  }
-
-  bool is_sparse(int i, int j, const Bins::Point& p, std::uint16_t line, double radius, int most) const {
-    const int reach = static_cast<int>(std::ceil(radius / plot));
-    int n = 0;
-    for (int ring = 0; ring <= reach; ++ring)  // the own plot first: most returns are done with there
-      for (int dj = -ring; dj <= ring; ++dj)
-        for (int di = -ring; di <= ring; ++di) {
-          if (std::max(std::abs(di), std::abs(dj)) != ring || !lattice().holds(i + di, j + dj)) continue;
-          const auto points = bins_.in(i + di, j + dj);
-          const auto rows = bins_.rows(i + di, j + dj);
-          for (size_t k = 0; k < points.size(); ++k) {
-            if (!block_.strip.empty() && block_.strip[rows[k]] != line) continue;
-            const double dx = points[k].x - p.x, dy = points[k].y - p.y;
-            if (dx * dx + dy * dy <= radius * radius && ++n > most) return false;
-          }
-        }
-    return true;
-  }
-
-  /// For each plot the number of returns in a plot that half of the returns in the districts around have at most.
-  std::vector<double> usual_counts(const std::vector<std::uint32_t>& counts) const {
-    const core::Lattice& l = lattice();
-    std::vector<double> out(l.size(), 0.0);
-    if (l.size() == 0) return out;
-    std::vector<std::uint32_t> sorted;
-    for (std::int64_t v = floor_div(l.j0, district); v <= floor_div(l.j0 + l.ny - 1, district); ++v)
-      for (std::int64_t u = floor_div(l.i0, district); u <= floor_div(l.i0 + l.nx - 1, district); ++u) {
-        const auto range = [](std::int64_t from, std::int64_t to, std::int64_t first, int n) {
-          return std::pair{static_cast<int>(std::max<std::int64_t>(from * district - first, 0)),
-                           static_cast<int>(std::min<std::int64_t>(to * district - first, n))};
-        };
-        const auto [i0, i1] = range(u - districts_around, u + districts_around + 1, l.i0, l.nx);
-        const auto [j0, j1] = range(v - districts_around, v + districts_around + 1, l.j0, l.ny);
-        sorted.clear();
-        std::uint64_t total = 0;
-        for (int j = j0; j < j1; ++j)
-          for (int i = i0; i < i1; ++i)
-            if (const std::uint32_t n = counts[l.at(i, j)]; n > 0) sorted.push_back(n), total += n;
-        if (total == 0) continue;
-        std::sort(sorted.begin(), sorted.end());
-        std::uint64_t sum = 0;
-        double usual = 0;
-        for (const std::uint32_t n : sorted) {
-          sum += n;
-          usual = n;
-          if (2 * sum >= total) break;
-        }
-        const auto [a0, a1] = range(u, u + 1, l.i0, l.nx);
-        const auto [b0, b1] = range(v, v + 1, l.j0, l.ny);
-        for (int j = b0; j < b1; ++j)
-          for (int i = a0; i < a1; ++i) out[l.at(i, j)] = usual;
-      }
-    return out;
   }
 
   /// Last returns of the plot within `level` of z.
@@ -297,13 +198,13 @@ class Plots {
   /// Water that few pulses come back from.
   void judge_sparse(int i, int j, double level) {
     const Region r = grow(i, j, level, link, [&](size_t c) { return is_at_level(c, level); });
-    std::vector<Sparse> returns;
+    std::vector<Eigen::Vector3d> returns;
     size_t all = 0;
     for (const auto* plots : {&r.water, &r.shore})
       for (const CellIndex& at : *plots)
-        for (const Sparse& s : sparse_[plot_of(r, at)]) {
+        for (const Eigen::Vector3d& s : sparse_[plot_of(r, at)]) {
           ++all;
-          if (std::abs(s.z - level) <= options_.level.value) returns.push_back(s);
+          if (std::abs(s.z() - level) <= options_.level.value) returns.push_back(s);
         }
     if (static_cast<int>(returns.size()) < options_.returns || static_cast<double>(returns.size()) < level_share * static_cast<double>(all))
       return;
@@ -326,8 +227,8 @@ class Plots {
              is_smooth(c, level, 0.0);
     });
     if (r.water.size() < least_closed) return;
-    std::vector<Sparse> means;
-    double squares = 0, n = 0;
+    std::vector<Eigen::Vector3d> means;
+    double squares = 0, n = 0, rim = 0, rim_plots = 0, interior = 0, interior_plots = 0;
     for (const CellIndex& at : r.water) {
       const size_t c = plot_of(r, at);
       double sum = 0, count = 0;
@@ -337,10 +238,14 @@ class Plots {
       for (const double z : heights_[c])
         if (std::abs(z - level) <= options_.level.value) squares += (z - mean) * (z - mean);
       n += count;
-      means.push_back({lattice().centre_x(r.i + at.i) - block_.origin.x(), lattice().centre_y(r.j + at.j) - block_.origin.y(), mean});
+      (is_interior(r, at) ? interior : rim) += mean;
+      ++(is_interior(r, at) ? interior_plots : rim_plots);
+      means.emplace_back(lattice().centre_x(r.i + at.i) - block_.origin.x(), lattice().centre_y(r.j + at.j) - block_.origin.y(), mean);
     }
     auto found = level_plane(means, closed_slope, closed_slope);
     if (!found || found->sigma > closed_distance) return;
+    // A hollow's rim is higher than its middle.
+    if (interior_plots == 0 || rim / rim_plots - interior / interior_plots > hollow) return;
     found->sigma = std::sqrt(squares / n);
     size_t rising = 0, lower = 0, known = 0, ring = 0;
     for (int dj = -r.radius; dj <= r.radius; ++dj)
@@ -366,7 +271,14 @@ class Plots {
       mark(r, *found);
   }
 
-  void mark(const Region& r, const Water& found) {
+  bool is_interior(const Region& r, const CellIndex& at) const {
+    for (int dj = -1; dj <= 1; ++dj)
+      for (int di = -1; di <= 1; ++di)
+        if (!inside(r, at.i + di, at.j + dj) || r.distance[r.local(at.i + di, at.j + dj)] != 0) return false;
+    return true;
+  }
+
+  void mark(const Region& r, const LevelPlane& found) {
     const double band = std::max(3.0 * found.sigma, least_band);
     const auto height = [&](const CellIndex& at) {
       return found.at(lattice().centre_x(r.i + at.i) - block_.origin.x(), lattice().centre_y(r.j + at.j) - block_.origin.y());
@@ -393,45 +305,7 @@ class Plots {
     }
   }
 
-  /// The plane through the points where it is level as far as they can tell; nothing where it is not, or they cannot.
-  static std::optional<Water> level_plane(std::vector<Sparse>& s, double steepest, double most_uncertain) {
-    std::sort(s.begin(), s.end(), [](const Sparse& a, const Sparse& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
-    const auto n = static_cast<double>(s.size());
-    Water found;
-    for (const Sparse& r : s) found.centre += Eigen::Vector3d(r.x, r.y, r.z) / n;
-    Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-    Eigen::Vector2d moment = Eigen::Vector2d::Zero();
-    double left = 0;
-    for (const Sparse& r : s) {
-      const Eigen::Vector2d d(r.x - found.centre.x(), r.y - found.centre.y());
-      const double dz = r.z - found.centre.z();
-      spread += d * d.transpose();
-      moment += d * dz;
-      left += dz * dz;
-    }
-    // Along each axis on its own: the least squares' slope and its standard deviation.
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
-    Eigen::Vector2d slope = Eigen::Vector2d::Zero();
-    for (int k = 0; k < 2; ++k) {
-      const double lambda = axes.eigenvalues()(k);
-      if (!(lambda > least_spread)) continue;
-      slope(k) = axes.eigenvectors().col(k).dot(moment) / lambda;
-      left -= slope(k) * slope(k) * lambda;
-    }
-    found.sigma = std::max(std::sqrt(std::max(left, 0.0) / std::max(n - 3.0, 1.0)), least_sigma);
-    for (int k = 0; k < 2; ++k) {
-      const double lambda = std::max(axes.eigenvalues()(k), least_spread), uncertain = found.sigma / std::sqrt(lambda);
-      if (k == 1 && uncertain > most_uncertain) return std::nullopt;  // not even along its longer axis
-      if (std::abs(slope(k)) > steepest + 2.0 * uncertain) return std::nullopt;
-      slope(k) *= lambda / (lambda + found.sigma * found.sigma / (prior_slope * prior_slope));
-    }
-    const Eigen::Vector2d gradient = axes.eigenvectors() * slope;
-    found.east = gradient.x();
-    found.north = gradient.y();
-    return found;
-  }
-
-  bool is_dense(size_t c) const { return static_cast<double>(heights_[c].size()) >= dense * usual_[c]; }
+  bool is_dense(size_t c) const { return static_cast<double>(heights_[c].size()) >= dense * thin_returns_.usual[c]; }
 
   /// Dense plots must follow the water closely and be level themselves: flat land beside it is not.
   bool is_smooth(size_t c, double z, double sigma) const {
@@ -448,9 +322,9 @@ class Plots {
     const size_t c = lattice().at(i, j);
     if (heights_[c].size() < fewest_on_land) return {};
     const double z = middle(c);
-    std::vector<Sparse> points;
+    std::vector<Eigen::Vector3d> points;
     for (const Bins::Point& p : bins_.in(i, j))
-      if (std::abs(p.z - z) <= options_.level.value) points.push_back({p.x, p.y, p.z});
+      if (std::abs(p.z - z) <= options_.level.value) points.emplace_back(p.x, p.y, p.z);
     const auto plane = level_plane(points, options_.slope, std::numeric_limits<double>::infinity());
     return plane ? Form{true, plane->centre.z(), plane->sigma} : Form{};
   }
@@ -465,20 +339,19 @@ class Plots {
   const core::Block& block_;
   const WaterOptions& options_;
   Bins bins_;
-  std::vector<std::vector<Sparse>> sparse_;   // per plot
-  std::vector<std::vector<double>> heights_;  // of the last returns per plot, ascending
-  std::vector<std::uint32_t> ground_;         // of these of class ground
+  std::vector<std::vector<Eigen::Vector3d>> sparse_;  // per plot
+  std::vector<std::vector<double>> heights_;          // of the last returns per plot, ascending
+  std::vector<std::uint32_t> ground_;                 // of these of class ground
   std::vector<Form> forms_;
-  std::vector<double> usual_;                // returns per plot, of the densest line
-  std::vector<Range> all_, thin_;            // of water per plot: of all returns, of sparse ones
-  std::vector<std::uint8_t> is_sparse_row_;  // per row of the block
+  std::vector<Range> all_, thin_;  // of water per plot: of all returns, of sparse ones
+  SparseReturns thin_returns_;
 };
 
 }  // namespace
 
 double halo(const WaterOptions& o) {
   const double grown = 2.0 * (std::ceil(o.reach.value / plot) + seed_plots + 1.0);
-  return (grown + widest_circle + 1.0 + (districts_around + 1) * district) * plot;
+  return (grown + 1.0 + sparse_returns_reach) * plot;
 }
 
 WaterCounts classify_water(core::Block& b, size_t own, const WaterOptions& o) {
