@@ -16,6 +16,7 @@
 #include "calib/diagnosis.h"
 #include "calib/jackknife.h"
 #include "calib/parameter_words.h"
+#include "calib/short_waves.h"
 
 namespace swath::calib {
 namespace {
@@ -159,42 +160,56 @@ class Results {
   void components() {
     const SigmaFactors& f = r_.factors;
     double squares[2] = {}, count[2] = {}, control = 0.0;
-    for (int i = 0; i < p_.knots->size(); ++i) {
-      const int part = p_.knots->is_position(i) ? 0 : 1;
-      squares[part] += p_.knots->covariance()(i, i);
+    const CorrectionKnots& knots = *p_.knots;
+    for (int i = 0; i < knots.size(); ++i) {
+      const int part = knots.is_position(i) ? 0 : 1;
+      squares[part] += knots.covariance()(i, i);
       count[part] += 1.0;
     }
-    const auto rms = [](double sum, double n) { return n > 0.0 ? std::sqrt(sum / n) : 0.0; };
+    const auto rms = [](double sum, double n) { return n > 0.0 ? std::sqrt(std::max(0.0, sum) / n) : 0.0; };
     const std::vector<ControlRow> rows = control_rows(r_.state.planes, 1.0);
     for (const ControlRow& row : rows) control += row.sigma * row.sigma;
-    const auto add = [&](const char* name, double stated, const SigmaFactor& s) {
+    const auto add = [&](const std::string& name, double stated, const SigmaFactor& s) {
       out_.components.push_back({name, stated, s.factor, s.redundancy, s.estimated});
     };
     add("range", noise_.range.value, f.range);
     add("angle", std::hypot(noise_.scan_angle.value, noise_.beam_divergence.value / 4.0), f.angle);
     add("surface", o_.components.surface_sigma.value, f.surface);
-    if (count[0] > 0.0) add("trajectory position", rms(squares[0], count[0]), f.position);
-    if (count[1] > 0.0) add("trajectory attitude", rms(squares[1], count[1]), f.attitude);
+    for (const int part : {0, 1}) {
+      if (count[part] == 0.0) continue;
+      const std::array<SigmaFactor, 3>& of = part == 0 ? f.position : f.attitude;
+      const std::string name = part == 0 ? "trajectory position" : "trajectory attitude";
+      if (!knots.scales_apart()) {
+        add(name, rms(squares[part], count[part]), of[0]);
+        continue;
+      }
+      const auto share = [&](CorrectionScale scale) {
+        const MatrixXd& m = knots.modes(part == 0, scale);
+        return (m.transpose() * knots.covariance() * m).trace();
+      };
+      const double mean = share(line_mean), drift = share(line_drift);
+      add(name + ", mean of a line", rms(mean, count[part]), of[line_mean]);
+      add(name + ", drift along a line", rms(drift, count[part]), of[line_drift]);
+      add(name + ", within a line", rms(squares[part] - mean - drift, count[part]), of[within_line]);
+    }
     if (!rows.empty()) add("control", rms(control, static_cast<double>(rows.size())), f.control);
   }
 
   void corrections() {
     const CorrectionKnots& k = *p_.knots;
     const TieSet& ties = *p_.ties;
-    VectorXd factor(k.size());
-    for (int i = 0; i < k.size(); ++i) factor[i] = k.is_position(i) ? r_.factors.position.factor : r_.factors.attitude.factor;
+    const MatrixXd apriori = k.covariance(r_.factors.of_position(), r_.factors.of_attitude());
     for (size_t l = 0; l < ties.lines.size(); ++l) {
       LineCorrection c;
       c.line = ties.lines[l].id;
       for (const double t : k.size() > 0 ? k.times(l) : std::vector<double>{}) {
         std::vector<int> numbers;
         const MatrixXd D = k.derivatives(l, t, numbers);
-        const auto variances = [&](const MatrixXd& of, Eigen::Index offset, bool scaled) {
+        const auto variances = [&](const MatrixXd& of, Eigen::Index offset) {
           std::array<double, 6> s{};
           MatrixXd C(D.cols(), D.cols());
           for (Eigen::Index i = 0; i < D.cols(); ++i)
-            for (Eigen::Index j = 0; j < D.cols(); ++j)
-              C(i, j) = of(offset + numbers[i], offset + numbers[j]) * (scaled ? factor[numbers[i]] * factor[numbers[j]] : 1.0);
+            for (Eigen::Index j = 0; j < D.cols(); ++j) C(i, j) = of(offset + numbers[i], offset + numbers[j]);
           const MatrixXd V = D * C * D.transpose();
           for (int i = 0; i < 6; ++i) s[i] = std::sqrt(std::max(0.0, V(i, i)));
           return s;
@@ -202,8 +217,8 @@ class Results {
         const Correction v = k.at(l, t, r_.state.correction);
         c.time.push_back(t);
         c.value.push_back({v[0], v[1], v[2], v[3], v[4], v[5]});
-        c.sigma.push_back(variances(r_.solution.covariance, globals_, false));
-        c.apriori.push_back(variances(k.covariance(), 0, true));
+        c.sigma.push_back(variances(r_.solution.covariance, globals_));
+        c.apriori.push_back(variances(apriori, 0));
       }
       out_.corrections.push_back(std::move(c));
     }
@@ -238,6 +253,7 @@ class Results {
       out_.groups.push_back(r);
       if (r_.use.group[g]) returns += ties.groups[g].end - ties.groups[g].begin;
     }
+    if (p_.knots->size() > 0 && p_.knots->spacing() > 0.0) out_.waves_between = short_waves(out_.groups, 0.5 * p_.knots->spacing()).seen();
     size_t c = 0;
     for (size_t k = 0; k < r_.state.planes.size(); ++k)
       for (const PlaneControl& control : r_.state.planes[k].control) {
@@ -395,9 +411,13 @@ class Results {
     };
     worse(f.range, "ranges", "state the sigma of the ranges as it is");
     worse(f.angle, "scan angles", "state the sigma of the scan angles and the beam's divergence as they are");
-    worse(f.position, "the trajectory's positions", "look at its GNSS and its report; state stated_position instead");
-    worse(f.attitude, "the trajectory's attitudes", "look at its IMU's model and its report");
+    worse(f.position[line_mean], "the trajectory's positions", "look at its GNSS and its report; state stated_position instead");
+    worse(f.attitude[line_mean], "the trajectory's attitudes", "look at its IMU's model and its report");
     worse(f.control, "control points", "look at their residuals");
+    if (out_.waves_between)
+      tell("what is left on the planes waves along the lines: the trajectory errs faster than corrections " + number(out_.knot_spacing) +
+               " s apart can follow, and the sigmas are too small",
+           "narrow corrections.spacing, raise corrections.most");
     if (r_.snooping_full)
       tell("more planes or control points are displaced than may be left out",
            "look at the groups with the largest w; raise snooping.share");
@@ -423,7 +443,8 @@ class Results {
 }  // namespace
 
 Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::Calibration& start, const core::SensorSigma& noise,
-                  const trajectory::Trajectory& trajectory, const ErrorCovariance& covariance, const AdjustOptions& options, int threads) {
+                  const trajectory::Trajectory& trajectory, const ErrorCovariance& covariance, const AdjustOptions& options, int threads,
+                  ErrorShape shape) {
   Adjustment out;
   out.calibration = start;
   for (int k = boresight_roll; k <= latency; ++k) {
@@ -431,8 +452,10 @@ Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::
     e.parameter = static_cast<Parameter>(k);
     e.start = e.value = e.found = value_of(start, e.parameter);
   }
+  const bool is_stated = options.corrections.prior == CorrectionPrior::stated;
   const CorrectionKnots knots(ties.lines, start.latency.value, options.corrections,
-                              options.corrections.prior == CorrectionPrior::stated ? stated_covariance(options.corrections) : covariance);
+                              is_stated ? stated_covariance(options.corrections) : covariance, is_stated || shape == ErrorShape::guessed);
+  out.knot_spacing = knots.spacing();
   TieProblem problem{&ties, &scanner, &trajectory, &knots, {}, RobustWeight(options.robust.full, options.robust.zero), threads};
   problem.globals = chosen(options.estimate, scanner, out.findings);
   VectorXd apriori(problem.globals.size()), limit(problem.globals.size());

@@ -10,6 +10,12 @@
 
 namespace swath::calib {
 
+/// How far the trajectory's covariances between instants are known.
+enum class ErrorShape {
+  known,    ///< from the smoother that made it
+  guessed,  ///< sigmas with a correlation time: means, drifts and what is within a line have factors of their own
+};
+
 /// Estimates calibration values, corrections of the trajectory along each line and the planes, from the returns of `ties` through the
 /// equation of calib/shot_geometry.h. `noise`: sigmas of single records (range, scan_angle, beam_divergence, time). `covariance`: of the
 /// trajectory's errors. Groups of ties must be ordered by plane. The result does not depend on the number of threads.
@@ -21,13 +27,14 @@ namespace swath::calib {
 /// are delivered as they started, with their a-priori sigma; they stay unknowns, so that the others' sigmas hold their uncertainty.
 Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::Calibration& start, const core::SensorSigma& noise,
                   const trajectory::Trajectory& trajectory, const ErrorCovariance& covariance, const AdjustOptions& options,
-                  int threads = 1);
+                  int threads = 1, ErrorShape shape = ErrorShape::known);
 
 inline Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::Calibration& start, const core::SensorSigma& noise,
                          const trajectory::Trajectory& trajectory, const trajectory::ErrorModel& errors, const AdjustOptions& options,
                          int threads = 1) {
   return adjust(
-      ties, scanner, start, noise, trajectory, [&errors](const std::vector<double>& t) { return errors.covariance(t); }, options, threads);
+      ties, scanner, start, noise, trajectory, [&errors](const std::vector<double>& t) { return errors.covariance(t); }, options, threads,
+      errors.is_of_smoother() ? ErrorShape::known : ErrorShape::guessed);
 }
 
 }  // namespace swath::calib

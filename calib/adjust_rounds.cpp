@@ -100,7 +100,7 @@ void AdjustRounds::sum_up() {
 void AdjustRounds::solve_here() {
   pass = linearise(*problem_, state, noise(), scale);
   system_ = std::make_unique<TieSystem>(*problem_, pass.blocks, control_rows(state.planes, factors.control.factor), surface());
-  prior.corrections = problem_->knots->information(factors.position.factor, factors.attitude.factor);
+  prior.corrections = problem_->knots->information(factors.of_position(), factors.of_attitude());
   prior.correction = state.correction;
   prior.globals = information_;
   prior.departure = VectorXd::Zero(information_.size());
@@ -128,9 +128,15 @@ bool AdjustRounds::round(bool variances) {
   update_white(pass.blocks, use, options_->components, factors);
   update_correlated(*problem_, *system_, solution, tests, use, prior, state.correction, options_->components, factors);
   scale *= old.range.factor / factors.range.factor;
-  for (SigmaFactor SigmaFactors::*f : {&SigmaFactors::range, &SigmaFactors::angle, &SigmaFactors::surface, &SigmaFactors::position,
-                                       &SigmaFactors::attitude, &SigmaFactors::control})
-    if (std::abs((factors.*f).factor / (old.*f).factor - 1.0) > steady_factor) steady = false;
+  const auto look = [&](const SigmaFactor& now, const SigmaFactor& was) {
+    if (std::abs(now.factor / was.factor - 1.0) > steady_factor) steady = false;
+  };
+  for (SigmaFactor SigmaFactors::*f : {&SigmaFactors::range, &SigmaFactors::angle, &SigmaFactors::surface, &SigmaFactors::control})
+    look(factors.*f, old.*f);
+  for (const size_t k : {line_mean, line_drift, within_line}) {
+    look(factors.position[k], old.position[k]);
+    look(factors.attitude[k], old.attitude[k]);
+  }
   return steady;
 }
 

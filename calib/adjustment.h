@@ -63,7 +63,7 @@ struct ControlResidual {
 };
 
 struct VarianceComponent {
-  std::string name;     ///< "range", "angle", "surface", "trajectory position", "trajectory attitude", "control"
+  std::string name;     ///< "range", "angle", "surface", "trajectory position" (perhaps by scale), "trajectory attitude", "control"
   double stated = 0.0;  ///< sigma as stated (m, rad; surface: start value; trajectory: rms over the knots)
   double factor = 1.0;  ///< estimated sigma / stated
   double redundancy = 0.0;
@@ -101,6 +101,8 @@ struct Adjustment {
   std::vector<ResidualSample> samples;  ///< every n-th return of the groups in use, so that there are 20 000 at most
   double sigma0 = 0.0;                  ///< of unit weight after the variance components
   std::uint64_t observations = 0, unknowns = 0, rejected_returns = 0;
+  double knot_spacing = 0.0;   ///< of the corrections, s: as stated or wider
+  bool waves_between = false;  ///< what is left on the planes goes together within half of it (calib/short_waves.h)
   int iterations = 0;
   bool converged = false;
 };

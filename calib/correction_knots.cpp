@@ -96,7 +96,8 @@ ErrorCovariance stated_covariance(const CorrectionOptions& o) {
 }
 
 CorrectionKnots::CorrectionKnots(const std::vector<TieLine>& lines, double latency, const CorrectionOptions& o,
-                                 const ErrorCovariance& given) {
+                                 const ErrorCovariance& given, bool scales_apart)
+    : scales_apart_(scales_apart) {
   std::vector<double> instants;
   std::vector<Eigen::Index> first_instant;
   std::vector<std::vector<double>> grids;
@@ -120,6 +121,7 @@ CorrectionKnots::CorrectionKnots(const std::vector<TieLine>& lines, double laten
     instants.insert(instants.end(), grid.begin(), grid.end());
     grids.push_back(grid);
   }
+  make_modes();
   covariance_ = Eigen::MatrixXd::Zero(size_, size_);
   if (size_ == 0) {
     information_ = covariance_;
@@ -176,10 +178,58 @@ Eigen::MatrixXd CorrectionKnots::derivatives(size_t line, double t, std::vector<
   return D;
 }
 
-Eigen::MatrixXd CorrectionKnots::information(double position_factor, double attitude_factor) const {
-  Eigen::VectorXd scale(size_);
-  for (int i = 0; i < size_; ++i) scale[i] = 1.0 / (is_position(i) ? position_factor : attitude_factor);
-  return scale.asDiagonal() * information_ * scale.asDiagonal();
+void CorrectionKnots::make_modes() {
+  for (const int part : {0, 1})
+    for (const int scale : {line_mean, line_drift}) {
+      std::vector<Eigen::VectorXd> columns;
+      for (const Line& l : lines_) {
+        const Knots& k = part == 0 ? l.position : l.attitude;
+        const size_t n = k.time.size();
+        if (n < (scale == line_mean ? 1u : 2u)) continue;
+        const double middle = 0.5 * (k.time.front() + k.time.back());  // knots are evenly spaced
+        for (int c = 0; c < 3; ++c) {
+          Eigen::VectorXd v = Eigen::VectorXd::Zero(size_);
+          for (size_t i = 0; i < n; ++i) v[k.first + 3 * static_cast<int>(i) + c] = scale == line_mean ? 1.0 : k.time[i] - middle;
+          columns.push_back(v.normalized());
+        }
+      }
+      Eigen::MatrixXd& m = modes_[static_cast<size_t>(part)][static_cast<size_t>(scale)];
+      m.resize(size_, static_cast<Eigen::Index>(columns.size()));
+      for (size_t i = 0; i < columns.size(); ++i) m.col(static_cast<Eigen::Index>(i)) = columns[i];
+    }
+}
+
+// F = D + M E M^T: D is the factor within the line, M the means and drifts, E what their factors are more.
+Eigen::MatrixXd CorrectionKnots::scaled(const Eigen::MatrixXd& A, const std::array<ScaleFactors, 2>& factor) const {
+  Eigen::VectorXd D(size_);
+  for (int i = 0; i < size_; ++i) D[i] = factor[is_position(i) ? 0 : 1][within_line];
+  Eigen::MatrixXd out = D.asDiagonal() * A * D.asDiagonal();
+  Eigen::Index n = 0;
+  for (const auto& part : modes_)
+    for (const Eigen::MatrixXd& m : part) n += m.cols();
+  Eigen::MatrixXd M(size_, n);
+  Eigen::VectorXd E(n);
+  n = 0;
+  for (const size_t part : {0, 1})
+    for (const size_t scale : {line_mean, line_drift}) {
+      const Eigen::MatrixXd& m = modes_[part][scale];
+      M.middleCols(n, m.cols()) = m;
+      E.segment(n, m.cols()).setConstant(factor[part][scale] - factor[part][within_line]);
+      n += m.cols();
+    }
+  if (n == 0 || E.isZero(0.0)) return out;
+  const Eigen::MatrixXd AM = A * M, ME = M * E.asDiagonal();
+  const Eigen::MatrixXd side = D.asDiagonal() * AM * ME.transpose();
+  out += side + side.transpose() + ME * (M.transpose() * AM) * ME.transpose();
+  return 0.5 * (out + out.transpose());
+}
+
+Eigen::MatrixXd CorrectionKnots::covariance(const ScaleFactors& position, const ScaleFactors& attitude) const {
+  return scaled(covariance_, {position, attitude});
+}
+Eigen::MatrixXd CorrectionKnots::information(const ScaleFactors& position, const ScaleFactors& attitude) const {
+  const auto inverse = [](const ScaleFactors& f) { return ScaleFactors{1.0 / f[0], 1.0 / f[1], 1.0 / f[2]}; };
+  return scaled(information_, {inverse(position), inverse(attitude)});
 }
 
 Eigen::MatrixXd CorrectionKnots::common_shift() const {

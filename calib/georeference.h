@@ -43,7 +43,7 @@ class Georeferencer {
   ///   is counted
   ///               from the scanner's nadir; LAS 1.4 asks for the angle with the aircraft's roll, which differs by that roll.
   ///   range       m, calibrated and corrected for the air
-  ///   incidence   rad, between the beam and the ellipsoid's normal at the ground (flat terrain; a terrain normal is not known yet)
+  ///   incidence   rad, between the beam and the ellipsoid's normal at the ground (terrain.intensity takes the terrain's)
   ///   sigma_h     m, sqrt(var north + var east); sigma_v m: J S J^T with the trajectory's sigmas at that instant and SensorSigma
   /// Throws core::Error where `out` holds points of another origin.
   Counts run(const core::Shots& shots, core::Block& out) const;

@@ -48,6 +48,12 @@ double moved(const std::vector<LineCorrection>& from, const std::vector<LineCorr
   return at.groups.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(at.groups.size()));
 }
 
+std::string seconds(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g s", v);
+  return text;
+}
+
 double scatter_after(const Adjustment& a) {
   std::vector<double> sizes;
   for (const GroupResidual& g : a.groups)
@@ -126,6 +132,7 @@ AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions
   tell("sign of the scan angle");
   refuse_reversed_scan(survey);
   TiePlaneOptions planes = options.planes;
+  AdjustOptions how = options.adjust;
   core::Tally of_round;
   double change = 0;
   for (out.rounds = 1; out.rounds <= options.rounds; ++out.rounds) {
@@ -136,8 +143,14 @@ AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions
     refuse_without_overlap(out.ties, of_round);
     tell("round " + std::to_string(out.rounds) + ": adjustment");
     const std::vector<LineCorrection> before = std::move(out.adjustment.corrections);
-    out.adjustment =
-        adjust(out.ties, survey.scanner, survey.start, survey.sensor, *survey.trajectory, *survey.errors, options.adjust, survey.threads);
+    for (;;) {
+      out.adjustment =
+          adjust(out.ties, survey.scanner, survey.start, survey.sensor, *survey.trajectory, *survey.errors, how, survey.threads);
+      // Wider knots than asked for: there are as many as may be.
+      const double spacing = out.adjustment.knot_spacing, narrower = std::max(0.5 * spacing, options.least_spacing.value);
+      if (!out.adjustment.waves_between || narrower >= spacing || spacing > how.corrections.spacing.value) break;
+      how.corrections.spacing.value = narrower;
+    }
     refuse_what_the_adjustment_refuses(out.adjustment);
     out.trajectory.emplace(with_corrections(*survey.trajectory, out.adjustment.corrections));
     change = moved(before, out.adjustment.corrections, out.adjustment);
@@ -149,6 +162,9 @@ AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions
   char size[32];
   std::snprintf(size, sizeof size, "%.3f m", change);
   out.notes.push_back("Planes were sought " + std::to_string(out.rounds) + " times; the last round moved the returns by " + size + ".");
+  if (how.corrections.spacing.value < options.adjust.corrections.spacing.value)
+    out.notes.push_back("The trajectory errs faster than its corrections could follow: their knots were brought nearer, to " +
+                        seconds(out.adjustment.knot_spacing) + ".");
   for (std::string& note : targets_not_found(of_round)) out.notes.push_back(std::move(note));
   tally.add(of_round);
   return out;

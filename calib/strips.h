@@ -20,6 +20,7 @@ struct StripOptions {
     adjust.corrections.spacing.value = 3.0;
   }
   int rounds = 4;
+  core::Seconds least_spacing{0.25};
   TiePlaneOptions planes;
   AdjustOptions adjust;  ///< no calibration value is estimated
 };
@@ -28,6 +29,9 @@ template <class V>
 void describe(StripOptions& o, V& v) {
   v.option("rounds", o.rounds, core::within(1, 20),
            "Most times that planes are sought and adjusted; it ends before where the corrections stay the same.");
+  v.option("least_spacing", o.least_spacing, core::above(0),
+           "Where what is left on the planes shows that the trajectory errs faster than the knots of corrections.spacing can follow, that "
+           "is halved, and again, though not below this, nor to more unknowns than corrections.most.");
   v.table("planes", o.planes, "The search for planes; `mismatch` is that of the first round.");
   v.table("corrections", o.adjust.corrections, "Corrections to the trajectory along each line.");
   v.table("robust", o.adjust.robust, "Weights of single returns.");

@@ -24,6 +24,8 @@ constexpr float step = 0.3f;          // m between neighbouring cells of one pat
 constexpr double roughest = 0.15;     // m, rms of the cells about the patch's plane
 constexpr double fills = 0.8;         // of the rectangle
 constexpr double surrounded = 0.85;   // of the cells around that hold returns are lower
+constexpr double per_cell = 3.0;      // returns: one cell in twenty is empty then, and patches hang together
+constexpr double coarse_cell = 10.0;  // m, in which returns are counted for their density
 constexpr double known_around = 0.6;  // of the cells around hold returns: a roof at the swath's edge is not known to end there
 
 using Key = std::pair<std::int32_t, std::int32_t>;
@@ -65,6 +67,17 @@ void fit_rectangle(const std::vector<Vector2d>& centres, double cell, FoundRoof&
     std::swap(roof.half.x(), roof.half.y());
     roof.azimuth += 0.5 * core::pi;
   }
+}
+
+/// Edge of the cells for one line's returns, m: as stated, or wider where the line is sparse, though a third of the roof's side at most.
+double cell_for(const std::vector<Eigen::Vector3f>& points, const FinderOptions& options) {
+  Cells seen;
+  for (const Eigen::Vector3f& p : points)
+    seen.insert(
+        packed({static_cast<std::int32_t>(std::floor(p.x() / coarse_cell)), static_cast<std::int32_t>(std::floor(p.y() / coarse_cell))}));
+  const double area = static_cast<double>(seen.size()) * coarse_cell * coarse_cell;
+  const double wanted = std::sqrt(per_cell * area / static_cast<double>(points.size()));
+  return std::max(options.cell, std::min(wanted, options.shortest / 3.0));
 }
 
 }  // namespace
@@ -157,16 +170,20 @@ std::optional<RoofTarget> find_roof(const ShotStream& shots, const ShotGeometry&
                                     double search, const FinderOptions& options) {
   std::optional<trajectory::LocalFrame> frame;
   trajectory::Cursor cursor(trajectory);
-  HeightGrid grid(options.cell);
+  std::vector<Eigen::Vector3f> points;           // of one line, in the frame
   std::vector<std::pair<FoundRoof, int>> found;  // with the line
   int line = 0;
-  double range = 0.0;
+  double range = 0.0, widest = options.cell;
   const auto close_line = [&] {
+    const double cell = cell_for(points, options);
+    widest = std::max(widest, cell);
+    HeightGrid grid(cell);
+    for (const Eigen::Vector3f& p : points) grid.add(p.cast<double>());
     for (const FoundRoof& r : grid.roofs(options)) found.push_back({r, line});
-    grid = HeightGrid(options.cell);
+    points.clear();
   };
   shots([&](int id, const core::Shots& s) {
-    if (id != line && !grid.empty()) close_line();
+    if (id != line && !points.empty()) close_line();
     line = id;
     for (size_t i = 0; i < s.size(); ++i) {
       const double t = geometry.time(s.time[i]);
@@ -175,13 +192,13 @@ std::optional<RoofTarget> find_roof(const ShotStream& shots, const ShotGeometry&
       const Vector3d p = geometry.ecef_point(cursor.pose(t), {s.angle[i], forward, s.range[i]});
       if (!frame) frame = trajectory::local_frame(p);
       range = std::max(range, s.range[i]);
-      grid.add(frame->local_R_ecef * (p - frame->origin));
+      points.emplace_back((frame->local_R_ecef * (p - frame->origin)).cast<float>());
     }
   });
-  if (!grid.empty()) close_line();
+  if (!points.empty()) close_line();
 
   // The target: of the largest area times lines that show it.
-  const double near = 2.0 * search * range + 2.0 * options.cell;
+  const double near = 2.0 * search * range + 2.0 * widest;
   std::optional<RoofTarget> best;
   double score = 0.0;
   for (const auto& [seed, seed_line] : found) {

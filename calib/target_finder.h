@@ -18,7 +18,7 @@ struct FinderOptions {
   double stands_out = 3.0;  ///< m above what surrounds it
   double shortest = 10.0;   ///< least length of its sides, m
   double level = 0.05;      ///< steepest tilt, rise / run: the roof's own and that of half a degree of roll error
-  double cell = 2.0;        ///< m, of the height grids
+  double cell = 2.0;        ///< least edge of the height grids' cells, m; wider where a line has fewer than three returns in one
 };
 
 /// Roofs in one line's height grid, or the target that most lines agree on.
@@ -30,8 +30,8 @@ struct FoundRoof {
   int lines = 1;
 };
 
-/// Searches line by line on grids of heights (memory: cells of one line), then joins what lies at one place within `search` m per m of
-/// height. Nothing where no line shows such a roof.
+/// Searches line by line on grids of heights (memory: returns and cells of one line), then joins what lies at one place within `search` m
+/// per m of height. Nothing where no line shows such a roof.
 std::optional<RoofTarget> find_roof(const ShotStream& shots, const ShotGeometry& geometry, const trajectory::Trajectory& trajectory,
                                     double search, const FinderOptions& options = {});
 
@@ -42,7 +42,6 @@ class HeightGrid {
   void add(const Eigen::Vector3d& local);
   /// The roofs among them, in no particular order.
   std::vector<FoundRoof> roofs(const FinderOptions& options) const;
-  bool empty() const { return cells_.empty(); }
 
  private:
   struct Cell {

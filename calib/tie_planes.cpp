@@ -4,7 +4,6 @@
 // edges; agreement between the lines.
 #include "calib/tie_planes.h"
 
-#include <pcl/console/print.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <pcl/sample_consensus/ransac.h>
@@ -19,6 +18,7 @@
 #include "calib/plane_edges.h"
 #include "calib/tie_returns.h"
 #include "core/statistics.h"
+#include "filters/pcl_messages.h"
 
 namespace swath::calib {
 
@@ -301,7 +301,7 @@ void append(TieSet& set, Judged& j, const std::vector<NearReturn>& all) {
 TieSet find_tie_planes(const ShotStream& stream, const core::Scanner& scanner, const core::Calibration& calibration,
                        const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame,
                        const std::vector<SurveyedTarget>& targets, const TiePlaneOptions& o, core::Tally& tally) {
-  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  filters::silence_pcl();
   TieSet set;
   set.frame = frame;
   LocalPoints points(scanner, calibration, trajectory, frame);

@@ -2,7 +2,9 @@
 // Source: Foerstner, "Ein Verfahren zur Schaetzung von Varianz- und Kovarianzkomponenten" (1979): variance = v^T P v / redundancy of the
 // component, repeated until steady. For ranges and angles, which share every condition, the pair of equations (Helmert's estimator) is
 // solved at once. Deviation: the trajectory's and the control's factors carry stated degrees of freedom, for a few lines would tell them
-// badly: with r degrees of freedom the estimated factor itself has the relative sigma 1 / sqrt(2 r).
+// badly: with r degrees of freedom the estimated factor itself has the relative sigma 1 / sqrt(2 r). Where the prior's correlation in time
+// is a guess, the mean of a line, its drift and what is left within it have factors of their own: one for all would follow the many
+// corrections within the lines and be untrue for the few means.
 #include "calib/variance_components.h"
 
 #include <algorithm>
@@ -74,14 +76,41 @@ void update_correlated(const TieProblem& problem, const TieSystem& system, const
   if (f.surface.estimated) apply(f.surface, surface / surface_freedom);
 
   double omega[2] = {}, freedom[2] = {};
+  const CorrectionKnots& knots = *problem.knots;
   const Eigen::VectorXd weighted = prior.corrections * correction;
   for (Eigen::Index i = 0; i < correction.size(); ++i) {
-    const int part = problem.knots->is_position(static_cast<int>(i)) ? 0 : 1;
+    const int part = knots.is_position(static_cast<int>(i)) ? 0 : 1;
     omega[part] += correction[i] * weighted[i];
     freedom[part] += 1.0 - prior.corrections.col(i).dot(s.covariance.col(globals + i).tail(correction.size()));
   }
-  with_freedom(f.position, omega[0], freedom[0], o.position);
-  with_freedom(f.attitude, omega[1], freedom[1], o.attitude);
+  for (const int part : {0, 1}) {
+    std::array<SigmaFactor, 3>& of_part = part == 0 ? f.position : f.attitude;
+    const bool wanted = part == 0 ? o.position : o.attitude;
+    if (!knots.scales_apart()) {
+      with_freedom(of_part[0], omega[part], freedom[part], wanted);
+      of_part[1] = of_part[2] = of_part[0];
+      continue;
+    }
+    // Means and drifts by their own prior, what is left by what it adds to both.
+    const Eigen::MatrixXd &mean = knots.modes(part == 0, line_mean), &drift = knots.modes(part == 0, line_drift);
+    Eigen::MatrixXd both(mean.rows(), mean.cols() + drift.cols());
+    both << mean, drift;
+    const Eigen::MatrixXd C = knots.covariance(f.of_position(), f.of_attitude());
+    const auto S = s.covariance.bottomRightCorner(correction.size(), correction.size());
+    const auto tell = [&](const Eigen::MatrixXd& modes) {
+      if (modes.cols() == 0) return std::pair(0.0, 0.0);
+      const Eigen::VectorXd value = modes.transpose() * correction;
+      const auto expected = (modes.transpose() * C * modes).ldlt();
+      const Eigen::MatrixXd left = modes.transpose() * S * modes;
+      return std::pair(value.dot(expected.solve(value)), static_cast<double>(modes.cols()) - expected.solve(left).trace());
+    };
+    const auto [omega_mean, freedom_mean] = tell(mean);
+    const auto [omega_drift, freedom_drift] = tell(drift);
+    const auto [omega_both, freedom_both] = tell(both);
+    with_freedom(of_part[line_mean], omega_mean, freedom_mean, wanted);
+    with_freedom(of_part[line_drift], omega_drift, freedom_drift, wanted);
+    with_freedom(of_part[within_line], omega[part] - omega_both, freedom[part] - freedom_both, wanted);
+  }
 
   double control = 0.0, control_freedom = 0.0;
   for (size_t c = 0; c < tests.control.size(); ++c) {

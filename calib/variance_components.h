@@ -14,7 +14,12 @@ struct SigmaFactor {
   bool estimated = false;
 };
 struct SigmaFactors {
-  SigmaFactor range, angle, surface, position, attitude, control;
+  SigmaFactor range, angle, surface, control;
+  /// Of the trajectory, by CorrectionScale; all alike where the knots do not hold the scales apart.
+  std::array<SigmaFactor, 3> position, attitude;
+
+  ScaleFactors of_position() const { return {position[0].factor, position[1].factor, position[2].factor}; }
+  ScaleFactors of_attitude() const { return {attitude[0].factor, attitude[1].factor, attitude[2].factor}; }
 };
 
 /// Ranges and angles, from deviations of single returns within their groups. A component is told where its variance comes out to a

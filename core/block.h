@@ -97,7 +97,7 @@ struct Block {
   std::vector<std::uint16_t> strip;                  ///< flight line id (point source id)
   std::vector<std::uint32_t> record;                 ///< row in the strip's source, from 0
   std::vector<float> range;                          ///< m, corrected
-  std::vector<float> incidence;                      ///< rad, between beam and the terrain's normal
+  std::vector<float> incidence;                      ///< rad, between beam and the vertical (the ellipsoid's normal)
   std::vector<float> sigma_h, sigma_v;               ///< m, standard deviations (TPU): horizontal radial, vertical
   std::vector<float> height;                         ///< m above ground
   std::vector<float> ground_probability;             ///< 0 to 1: that the return is from the bare ground; NaN: not judged

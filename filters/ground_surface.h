@@ -27,8 +27,9 @@ struct GroundSurface {
 
 constexpr double ground_cell = 1.0;  ///< m
 
-/// From the points that may_be_ground(). The result at a place depends on the points within surface_reach() and not on their order.
-GroundSurface ground_surface(const core::Block& b, const GroundSurfaceOptions& o);
+/// From the points that may_be_ground(), for the first `own` points and `around` metres about them (the rasters may hold more, which is not
+/// for use). The result at a place depends on the points within surface_reach() and not on their order.
+GroundSurface ground_surface(const core::Block& b, size_t own, double around, const GroundSurfaceOptions& o);
 
 /// Cells around a point that its surface depends on.
 int surface_reach(const GroundSurfaceOptions& o);

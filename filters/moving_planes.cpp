@@ -100,29 +100,29 @@ PlaneField fit_planes(const CellSums& data, double sigma, double prior) {
   return f;
 }
 
-Raster across_breaks(const PlaneField& p, int step, double noise) {
+Raster across_breaks(std::span<const PlaneChoice> fields, double noise) {
   constexpr std::array<std::pair<int, int>, 9> places{{{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}}};
-  const int nx = p.height.nx, ny = p.height.ny;
-  Raster out(nx, ny, 0.0F);
-  Raster quality(nx, ny, 0.0F);
+  const int nx = fields[0].planes.height.nx, ny = fields[0].planes.height.ny;
+  Raster out(nx, ny, 0.0F), weights = out, quality = out;
   const auto floor = static_cast<float>(noise * noise);
-  for (size_t c = 0; c < quality.value.size(); ++c) {
-    const float q = 1.0F / (p.variance.value[c] + floor);
-    quality.value[c] = p.support.value[c] * q * q * q;
-  }
-  for (int j = 0; j < ny; ++j)
-    for (int i = 0; i < nx; ++i) {
-      float weights = 0.0F, sum = 0.0F;
-      for (const auto& [a, b] : places) {
-        const int di = a * step, dj = b * step;
-        if (!p.height.holds(i + di, j + dj)) continue;
-        const size_t n = p.height.at(i + di, j + dj);
-        const float w = quality.value[n];
-        weights += w;
-        sum += w * (p.height.value[n] - p.east.value[n] * static_cast<float>(di) - p.north.value[n] * static_cast<float>(dj));
-      }
-      if (weights > 0.0F) out.value[out.at(i, j)] = sum / weights;
+  for (const auto& [p, step] : fields) {
+    for (size_t c = 0; c < quality.value.size(); ++c) {
+      const float q = 1.0F / (p.variance.value[c] + floor);
+      quality.value[c] = p.support.value[c] * q * q * q;
     }
+    for (const auto& [a, b] : places) {
+      const int di = a * step, dj = b * step;
+      const auto fi = static_cast<float>(di), fj = static_cast<float>(dj);
+      for (int j = std::max(0, -dj); j < ny - std::max(0, dj); ++j)
+        for (int i = std::max(0, -di); i < nx - std::max(0, di); ++i) {
+          const size_t c = out.at(i, j), n = out.at(i + di, j + dj);
+          const float w = quality.value[n];
+          weights.value[c] += w;
+          out.value[c] += w * (p.height.value[n] - p.east.value[n] * fi - p.north.value[n] * fj);
+        }
+    }
+  }
+  for (size_t c = 0; c < out.value.size(); ++c) out.value[c] = weights.value[c] > 0.0F ? out.value[c] / weights.value[c] : 0.0F;
   return out;
 }
 

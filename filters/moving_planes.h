@@ -2,6 +2,8 @@
 // A plane through the weighted data around every cell of a raster.
 #pragma once
 
+#include <span>
+
 #include "filters/morphology.h"
 
 namespace swath::filters {
@@ -30,9 +32,15 @@ Raster blur(const Raster& in, double sigma);
 /// Cells from a cell to the farthest that its plane depends on.
 int reach(double sigma);
 
-/// The planes' heights at their cells with the breaks kept: each cell takes the mean of its own plane and those `step` cells away to the
-/// eight main directions, continued to the cell, weighted by (support / (variance + noise^2)^sharpness).
-/// Support: `step` cells beyond the planes'.
-Raster across_breaks(const PlaneField& planes, int step, double noise);
+/// Planes that stand for a cell when they lie `step` cells away.
+struct PlaneChoice {
+  const PlaneField& planes;
+  int step = 1;
+};
+
+/// The planes' heights at their cells with the breaks kept: each cell takes the mean of its own planes and those `step` cells away to the
+/// eight main directions, continued to the cell, of all fields, weighted by support / (variance + noise^2)^3.
+/// Reach: `step` cells beyond the planes'.
+Raster across_breaks(std::span<const PlaneChoice> fields, double noise);
 
 }  // namespace swath::filters

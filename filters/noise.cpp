@@ -78,11 +78,6 @@ std::vector<bool> outside_range_gate(const core::Block& b, const NoiseOptions& o
   return outside;
 }
 
-void set_noise(core::Block& b, size_t p, std::uint16_t why, std::uint8_t noise_class) {
-  b.flags[p] = static_cast<std::uint16_t>(b.flags[p] | why);
-  b.classification[p] = noise_class;
-}
-
 /// Calls found(row) for the points among the first `own` for which `judge(cell, point)` holds.
 template <class Judge, class Found>
 void for_each_own(const Bins& bins, size_t own, Judge&& judge, Found&& found) {
@@ -106,14 +101,19 @@ NoiseCounts flag_noise(core::Block& b, size_t own, const NoiseOptions& o) {
   NoiseCounts n;
   const std::vector<bool> gated = outside_range_gate(b, o);
   core::add_columns(b, {core::Column::classification, core::Column::flags});
-  std::vector<bool> judged(b.size());
+  std::vector<bool> judged(b.size()), set(own);
+  const auto set_noise = [&](size_t p, std::uint16_t why, std::uint8_t noise_class) {
+    b.flags[p] = static_cast<std::uint16_t>(b.flags[p] | why);
+    b.classification[p] = noise_class;
+    set[p] = true;
+  };
   for (size_t p = 0; p < b.size(); ++p) judged[p] = core::is_usable(b, p) && !gated[p];
   for (size_t p = 0; p < own; ++p) n.untouched += !core::is_usable(b, p);
 
   for (size_t p = 0; p < own; ++p) {
     if (!gated[p] || !core::is_usable(b, p)) continue;
     const bool too_long = o.range_max && b.range[p] > o.range_max->value;
-    set_noise(b, p, core::flag::range_gate, too_long ? core::point_class::low_noise : core::point_class::high_noise);
+    set_noise(p, core::flag::range_gate, too_long ? core::point_class::low_noise : core::point_class::high_noise);
     ++n.range_gate;
   }
 
@@ -138,17 +138,16 @@ NoiseCounts flag_noise(core::Block& b, size_t own, const NoiseOptions& o) {
       return count_around(bins, c, o.neighbours + 1, near) <= o.neighbours;  // the point itself is counted
     };
     for_each_own(bins, own, is_isolated, [&](std::uint32_t p) {
-      set_noise(b, p, core::flag::isolated, core::point_class::high_noise);
+      set_noise(p, core::flag::isolated, core::point_class::high_noise);
       ++n.isolated;
     });
   }
   for (const std::uint32_t p : low) {
-    set_noise(b, p, core::flag::low_point, core::point_class::low_noise);  // also where isolated
+    set_noise(p, core::flag::low_point, core::point_class::low_noise);  // also where isolated
     ++n.low_point;
   }
-  const std::uint16_t ours = core::flag::range_gate | core::flag::isolated | core::flag::low_point;
   for (size_t p = 0; p < own; ++p) {
-    if (!(b.flags[p] & ours)) continue;
+    if (!set[p]) continue;
     n.low_noise += b.classification[p] == core::point_class::low_noise;
     n.high_noise += b.classification[p] == core::point_class::high_noise;
   }

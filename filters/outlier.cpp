@@ -75,7 +75,7 @@ std::vector<Sums> around(const std::vector<Sums>& cells, const core::Lattice& l)
 
 /// Rows of the statistical outliers among the first `own`.
 std::vector<std::uint32_t> statistical(const core::Block& b, size_t own, const std::vector<std::uint8_t>& usable, const OutlierOptions& o) {
-  const core::Lattice l = lattice_around(b, o.window.value / cells_of_window, 0);
+  const core::Lattice l = lattice_around(b, outlier_cell(o), 0);
   std::vector<std::uint32_t> judged;
   for (std::uint32_t p = 0; p < own; ++p)
     if (usable[p]) judged.push_back(p);
@@ -119,6 +119,8 @@ void set_noise(core::Block& b, size_t p, bool low) {
 }
 
 }  // namespace
+
+double outlier_cell(const OutlierOptions& o) { return o.window.value / cells_of_window; }
 
 double halo(const OutlierOptions& o) {
   const double statistics = 2.0 * o.window.value / cells_of_window + o.reach.value;

@@ -43,6 +43,9 @@ struct OutlierCounts {
 /// Metres of points around a tile that its result depends on.
 double halo(const OutlierOptions& o);
 
+/// Side of the cells that the mean and standard deviation of a window are summed by, m.
+double outlier_cell(const OutlierOptions& o);
+
 /// Sets flag isolated and class 18, or flag low_point and class 7, among the first `own` points; those after are the halo and stay as they
 /// are. A statistical outlier is low where more of the points of the columns around (3 x 3 lattice cells of side `reach`) lie above it than
 /// below. The result of a point depends on the points within halo() of it and on nothing else.

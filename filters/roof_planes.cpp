@@ -5,7 +5,6 @@
 // depend on nothing but the window's points.
 #include "filters/roof_planes.h"
 
-#include <pcl/console/print.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <pcl/sample_consensus/ransac.h>
@@ -17,6 +16,7 @@
 #include <tuple>
 
 #include "filters/bins.h"
+#include "filters/pcl_messages.h"
 
 namespace swath::filters {
 namespace {
@@ -181,7 +181,7 @@ double planar_points_halo() { return 2.0 * step + plan_cell; }
 std::vector<std::uint8_t> planar_points(const core::Block& b, const std::vector<std::uint8_t>& candidate, double tolerance) {
   std::vector<std::uint8_t> planar(b.size(), 0);
   if (b.size() == 0) return planar;
-  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  silence_pcl();
   const GroundPlan plan(b);
   const Bins bins(b, step, 1, [&](size_t p) { return candidate[p] != 0; });
   const core::Lattice& l = bins.lattice();

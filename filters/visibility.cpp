@@ -34,7 +34,8 @@ using Voxel = std::array<std::int64_t, 3>;
 constexpr int most_layers = 24;
 constexpr std::int64_t key_middle = 32768, key_reach = 30000;  // OctoMap's keys have 16 bits
 constexpr unsigned depth = 16;
-constexpr double leaf_bytes = 46.0;  // a leaf with its share of inner nodes
+constexpr double leaf_bytes = 46.0;    // a leaf with its share of inner nodes
+constexpr double column_height = 1.3;  // of the reach: returns of one column lie at several heights
 
 struct Counts {
   std::uint32_t passed = 0;
@@ -291,11 +292,10 @@ core::Grid Visibility::seen() const {
 
 double halo(const VisibilityOptions& o) { return o.reach.value + std::max(2.0 * o.voxel.value, o.cell.value + o.voxel.value); }
 
-double visibility_bytes(const VisibilityOptions& o) {
-  // Leaves of a square metre up to the reach, at one pulse per square metre; no beam makes more than it passes.
-  const double per_metre = o.reach.value / (o.voxel.value * o.voxel.value * o.voxel.value);
-  return 64.0 + leaf_bytes * std::min(per_metre, 1.5 * o.reach / o.voxel);
-}
+double visibility_bytes_per_column(const VisibilityOptions& o) { return column_height * leaf_bytes * o.reach / o.voxel; }
+
+// A beam makes no more voxels than it passes: 1.5 per voxel of its length.
+double visibility_columns_per_point() { return 1.5 / column_height; }
 
 VisibilityCounts trace_visibility(core::Block& b, size_t own, const std::vector<Vector3d>& scanner, const core::Lattice& lattice,
                                   const VisibilityOptions& o, Visibility& out) {

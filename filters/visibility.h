@@ -68,7 +68,10 @@ double halo(const VisibilityOptions& o);
 VisibilityCounts trace_visibility(core::Block& block, size_t own, const std::vector<Eigen::Vector3d>& scanner, const core::Lattice& lattice,
                                   const VisibilityOptions& o, Visibility& out);
 
-/// Bytes per point that a call needs beside the block.
-double visibility_bytes(const VisibilityOptions& o);
+/// What a call needs beside the block, bytes: for every point, and for every column of voxels that beams pass or may pass.
+constexpr double visibility_bytes_per_point = 64.0;
+double visibility_bytes_per_column(const VisibilityOptions& o);
+/// Most voxel columns whose voxels one point's beam makes, in columns as tall as `reach`.
+double visibility_columns_per_point();
 
 }  // namespace swath::filters

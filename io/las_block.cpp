@@ -42,7 +42,7 @@ std::vector<LasExtra> las_extras_of(core::ColumnSet columns) {
   constexpr auto no_u16 = std::uint64_t{std::numeric_limits<std::uint16_t>::max()};
   constexpr auto no_i32 = las_integer_bits(std::numeric_limits<std::int32_t>::min());
   add(Column::range, las_name::range, "corrected range, m", 5, 0.001, no_u32);
-  add(Column::incidence, las_name::incidence, "beam to terrain normal, deg", 3, 0.002, no_u16);
+  add(Column::incidence, las_name::incidence, "beam to the vertical, deg", 3, 0.002, no_u16);
   add(Column::sigma_h, las_name::sigma_h, "horizontal standard deviation, m", 5, 0.0001, no_u32);
   add(Column::sigma_v, las_name::sigma_v, "vertical standard deviation, m", 5, 0.0001, no_u32);
   add(Column::height, las_name::height, "height above ground, m", 6, 0.001, no_i32);

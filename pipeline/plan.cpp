@@ -2,6 +2,7 @@
 #include "pipeline/plan.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "core/error.h"
@@ -113,6 +114,7 @@ void read_stages(const Value& tree, Plan& plan, std::vector<Fault>& faults) {
 void check_order(const Plan& plan, std::vector<Fault>& faults) {
   ColumnSet columns;
   std::vector<Product> products;
+  std::map<Product, double> cells;  // of the grids given
   const auto has = [&](Product p) { return std::find(products.begin(), products.end(), p) != products.end(); };
   bool tiles_began = false;
   int sources = 0;
@@ -138,6 +140,17 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
         fault("needs " + std::string(name_of(p)) + ", which no stage before it gives", giver([p](const stages::Info& i) {
                 return std::find(i.gives_products.begin(), i.gives_products.end(), p) != i.gives_products.end();
               }));
+    const Product* first = nullptr;
+    for (const Product& p : info.needs_products) {
+      if (!cells.contains(p)) continue;
+      if (first && cells.at(p) != cells.at(*first)) {
+        const auto cell = [&](Product q) {
+          return core::format_quantity(core::Dimension::length, cells.at(q)) + " of " + std::string(name_of(q));
+        };
+        fault("needs grids of the same cells, and they are " + cell(*first) + " and " + cell(p), "give both stages the same cell");
+      }
+      first = &p;
+    }
     for (int c = 0; c < core::column_count; ++c) {
       const auto column = static_cast<core::Column>(c);
       if (info.needs.has(column) && !columns.has(column))
@@ -153,6 +166,8 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
         fault("makes " + name + " in the output folder, as does " + maker->second, "give one of them another name, or leave it out");
     }
     columns = columns | info.gives;
+    if (s.stage->cell() > 0.0)
+      for (const Product p : info.gives_products) cells[p] = s.stage->cell();
     products.insert(products.end(), info.gives_products.begin(), info.gives_products.end());
   }
   if (sources == 0 && works_on_the_map(plan)) {
@@ -161,10 +176,38 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
   }
 }
 
+/// The rasters of one tile must fit into the budget, however few points there are.
+void check_memory(const Plan& plan, std::vector<Fault>& faults) {
+  stages::Context context{plan.survey};
+  context.tile_side = plan.run.tile.value;
+  for (const PlannedStage& s : plan.stages) {
+    double needed = 0.0;
+    stages::Raster largest;
+    for (const stages::Raster& r : s.stage->rasters(context)) {
+      needed += r.total(0.0);
+      if (r.total(0.0) > largest.total(0.0)) largest = r;
+    }
+    if (needed <= plan.run.memory.value) continue;
+    const std::string option(largest.option);
+    const core::Value* given = option.empty() ? nullptr : s.table.find(option);
+    const auto megabytes = [](double bytes) { return core::format_quantity(core::Dimension::memory, std::ceil(bytes * 1e-6) * 1e6); };
+    const auto length = [](double v) { return core::format_quantity(core::Dimension::length, v); };
+    faults.push_back({given ? given->where : s.table.where,
+                      s.path + " (" + std::string(s.stage->info().name) + ")" + (option.empty() ? "" : "." + option),
+                      "cells of " + length(largest.cell) + " over a square of " + length(std::round(largest.side)) + " need " +
+                          megabytes(needed) + " for a single tile, more than run.memory = " + megabytes(plan.run.memory.value),
+                      std::string(option.empty() ? "" : "a larger " + option + ", ") +
+                          "smaller tiles (run.tile = " + length(plan.run.tile.value) + ") or more memory"});
+  }
+}
+
 /// What only the survey can settle: a map projection, and each stage's own conditions.
 void check_against_survey(const Plan& plan) {
   if (!plan.survey.crs.empty() && works_on_the_map(plan)) require_projected(core::Crs(plan.survey.crs), plan.survey_file);
-  const stages::Context context{plan.survey};
+  stages::Context context{plan.survey};
+  context.tile_side = plan.run.tile.value;
+  for (const PlannedStage& s : plan.stages)
+    if (s.stage->is_source()) context.source = s.stage.get();
   for (const PlannedStage& s : plan.stages) s.stage->check(context);
 }
 
@@ -211,6 +254,7 @@ Plan make_plan(const Request& request) {
     faults.push_back({plan.run_table.where, "run", "expected a table", ""});
   read_stages(tree, plan, faults);
   if (faults.empty()) check_order(plan, faults);
+  if (faults.empty()) check_memory(plan, faults);
 
   if (!request.survey.empty()) {
     plan.survey_file = request.survey;

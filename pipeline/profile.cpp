@@ -19,9 +19,10 @@
 #include "io/las_reader.h"
 #include "io/output_file.h"
 #include "io/png.h"
-#include "io/vector.h"
+#include "pipeline/line_file.h"
 #include "pipeline/surface_file.h"
 #include "report/chart.h"
+#include "report/volumes.h"
 
 namespace swath::pipeline {
 namespace {
@@ -30,6 +31,7 @@ namespace fs = std::filesystem;
 using Point = Eigen::Vector2d;
 
 constexpr size_t batch = 1 << 17;
+constexpr size_t window_cells = 1 << 20;  // of the terrain model that is held at a time
 
 struct Sample {
   double station = 0.0, offset = 0.0, x = 0.0, y = 0.0, z = 0.0;  ///< offset to the right of the line
@@ -170,41 +172,42 @@ void take_points(const fs::path& file, double half_width, std::vector<Section>& 
     }
 }
 
+/// The model along the line, every half cell, read in windows of at most `window_cells` cells.
 void take_terrain(const fs::path& file, Section& s) {
   const core::Lattice whole = io::lattice_of(io::read_raster_info(file), file);
-  const auto near = [&](const Point& p) {
-    return Point(p.cwiseMax(Point(whole.west(), whole.south())).cwiseMin(Point(whole.east(), whole.north())));
-  };
-  const Point margin(2.0 * whole.cell, 2.0 * whole.cell), low = near(s.low - margin), high = near(s.high + margin);
-  const core::Grid grid = read_surface(file, core::lattice_of(whole.cell, low.x(), low.y(), high.x(), high.y())).grid;
-  const core::Lattice& l = grid.lattice;
-  const auto steps = static_cast<size_t>(std::ceil(s.length() / (0.5 * l.cell)));
+  const auto steps = static_cast<size_t>(std::ceil(s.length() / (0.5 * whole.cell)));
   size_t piece = 1;
   for (size_t n = 0; n <= steps; ++n) {
     Sample one;
-    one.offset = 0.0;
-    one.station = std::min(0.5 * l.cell * static_cast<double>(n), s.length());
+    one.station = std::min(0.5 * whole.cell * static_cast<double>(n), s.length());
     while (piece + 1 < s.start.size() && s.start[piece] < one.station) ++piece;
     const double span = s.start[piece] - s.start[piece - 1];
     const double share = span > 0.0 ? (one.station - s.start[piece - 1]) / span : 0.0;
     const Point p = s.line->vertices[piece - 1] + share * (s.line->vertices[piece] - s.line->vertices[piece - 1]);
-    const double u = p.x() / l.cell - 0.5 - static_cast<double>(l.i0), v = p.y() / l.cell - 0.5 - static_cast<double>(l.j0);
-    double z = 0.0, sigma = grid.sigma.empty() ? std::numeric_limits<double>::quiet_NaN() : 0.0;
-    for (int dj = 0; dj <= 1; ++dj)
-      for (int di = 0; di <= 1; ++di) {
-        const double fu = std::floor(u), fv = std::floor(v), w = (di ? u - fu : 1.0 - u + fu) * (dj ? v - fv : 1.0 - v + fv);
-        if (w == 0.0) continue;
-        const double gi = fu + di, gj = fv + dj;
-        const bool known = gi >= 0 && gj >= 0 && gi < l.nx && gj < l.ny;
-        const size_t at = known ? l.at(static_cast<int>(gi), static_cast<int>(gj)) : 0;
-        z += w * (known ? static_cast<double>(grid.height[at]) : std::numeric_limits<double>::quiet_NaN());
-        if (known && !grid.sigma.empty()) sigma += w * static_cast<double>(grid.sigma[at]);
-      }
     one.x = p.x();
     one.y = p.y();
-    one.z = z;
-    one.sigma = sigma;
     s.terrain.push_back(one);
+  }
+  const auto around = [&](const Point& low, const Point& high) {
+    return core::lattice_of(whole.cell, low.x() - whole.cell, low.y() - whole.cell, high.x() + whole.cell, high.y() + whole.cell);
+  };
+  for (size_t first = 0, last; first < s.terrain.size(); first = last) {
+    Point low(s.terrain[first].x, s.terrain[first].y), high = low;
+    for (last = first + 1; last < s.terrain.size(); ++last) {
+      const Point p(s.terrain[last].x, s.terrain[last].y), new_low = low.cwiseMin(p), new_high = high.cwiseMax(p);
+      if (around(new_low, new_high).size() > window_cells) break;
+      low = new_low;
+      high = new_high;
+    }
+    const core::Lattice needed = around(low, high);
+    const bool meets = needed.i0 < whole.i0 + whole.nx && needed.i0 + needed.nx > whole.i0 && needed.j0 < whole.j0 + whole.ny &&
+                       needed.j0 + needed.ny > whole.j0;
+    const core::Grid grid = meets ? read_surface(file, needed).grid : core::Grid(needed);
+    for (size_t n = first; n < last; ++n) {
+      const report::GridSample at = report::sample(grid, s.terrain[n].x, s.terrain[n].y);
+      s.terrain[n].z = at.height;
+      s.terrain[n].sigma = at.sigma;
+    }
   }
 }
 
@@ -280,14 +283,14 @@ std::string table_of(const Section& s) {
 
 }  // namespace
 
-std::vector<ProfileLine> profile_lines(const ProfileRequest& request) {
+std::vector<ProfileLine> profile_lines(const ProfileRequest& request, const core::Crs& crs) {
   std::vector<ProfileLine> out;
   if (!request.lines.empty()) {
     const std::string ending = request.lines.extension().string();
     if (ending == ".csv" || ending == ".txt") {
       out = lines_of_text(request.lines);
     } else {
-      for (const io::VectorLine& line : io::read_lines(request.lines).lines) {
+      for (const io::VectorLine& line : read_lines_in(request.lines, crs)) {
         out.push_back({"profile_" + std::to_string(out.size() + 1), {}});
         for (size_t k = 0; k < line.x.size(); ++k) out.back().vertices.emplace_back(line.x[k], line.y[k]);
       }
@@ -312,7 +315,6 @@ std::vector<ProfileLine> profile_lines(const ProfileRequest& request) {
 }
 
 core::Value write_profiles(const ProfileRequest& request) {
-  const std::vector<ProfileLine> lines = profile_lines(request);
   const std::vector<fs::path> files = las_files(request.points);
   if (files.empty() && request.dtm.empty())
     throw core::usage_error("neither points nor a terrain model are named", "swath profile", "name LAS files or folders, or --dtm FILE");
@@ -323,6 +325,7 @@ core::Value write_profiles(const ProfileRequest& request) {
   } else if (const std::string stated = io::LasReader(files[0]).crs().definition; !stated.empty()) {
     crs = core::Crs(stated);
   }
+  const std::vector<ProfileLine> lines = profile_lines(request, crs);
   const bool metric = crs.empty() || crs.metres_per_unit() == 0.0;
   const double half_width = request.half_width / (metric ? 1.0 : crs.metres_per_unit());
   const auto short_unit = [](double metres) { return std::string(metres == 1.0 ? "m" : "ft"); };

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/crs.h"
 #include "core/value.h"
 
 namespace swath::pipeline {
@@ -26,8 +27,9 @@ struct ProfileRequest {
   std::filesystem::path folder;               ///< of the results
 };
 
-/// The lines that a request names, those of a file as profile_1, profile_2 ... where they bear no name. Throws core::Error.
-std::vector<ProfileLine> profile_lines(const ProfileRequest& request);
+/// The lines that a request names, those of a file as profile_1, profile_2 ... where they bear no name. Those of a vector file that states
+/// a CRS are brought to `crs`, that of the data. Throws core::Error.
+std::vector<ProfileLine> profile_lines(const ProfileRequest& request, const core::Crs& crs = {});
 
 /// For each line FOLDER/NAME.csv, NAME.svg and NAME.png: every usable point within the half width by its class, and the terrain model every
 /// half cell with its sigma. Tells of each what it found. Throws core::Error; a line that meets neither points nor terrain is one.

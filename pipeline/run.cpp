@@ -355,11 +355,14 @@ void Engine::run_tiles(size_t number) {
     if (columns.has(c) || c == core::Column::x || c == core::Column::y || c == core::Column::z) row_bytes += sizeof(T);
   });
   const auto done_file = [&](TileKey k) { return mine / (file_label(k) + ".done"); };
+  const std::vector<stages::Raster> rasters = s.rasters(context_);
   std::vector<std::uint64_t> bytes;
   for (const TileKey k : keys) {
     const TileStore::Load load = store_->load_with_halo(k, s.halo());
-    const double needed = (static_cast<double>(row_bytes) + s.bytes_per_point()) * static_cast<double>(load.points) +
-                          static_cast<double>(row_bytes) * static_cast<double>(load.neighbour);
+    const auto points = static_cast<double>(load.points);
+    double needed = (static_cast<double>(row_bytes) + s.bytes_per_point()) * points +
+                    static_cast<double>(row_bytes) * static_cast<double>(load.neighbour);
+    for (const stages::Raster& r : rasters) needed += r.total(points);
     bytes.push_back(fs::exists(done_file(k)) ? 0 : static_cast<std::uint64_t>(needed));
   }
   TileQueue queue(std::move(bytes), static_cast<std::uint64_t>(plan_.run.memory.value * 0.8));

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Over 400 lines: the one format of the store, written and read side by side.
 // File of a strip's points in one tile: chunks of {u32 points, u32 column bits, columns in the order of the enum}.
 // File of an overlay: one such chunk. Numbers in the machine's own byte order: the store is never carried elsewhere.
 #include "pipeline/tile_store.h"
@@ -10,6 +11,8 @@
 #include <cerrno>
 #include <cmath>
 #include <set>
+#include <type_traits>
+#include <utility>
 
 #include "core/error.h"
 #include "core/value.h"
@@ -259,25 +262,40 @@ void TileStore::write_overlay(const fs::path& folder, TileKey key, const Block& 
   out.commit(false);
 }
 
-Block TileStore::read(TileKey key, ColumnSet columns) const {
+TileStore::Overlays TileStore::overlays_of(TileKey key, ColumnSet columns) const {
+  Overlays out;
+  for (auto o = overlays_.rbegin(); o != overlays_.rend(); ++o) {
+    ColumnSet mine;
+    for (int c = 0; c < core::column_count; ++c) {
+      const auto column = static_cast<Column>(c);
+      if (columns.has(column) && o->second.has(column) && !out.columns.has(column)) mine.add(column);
+    }
+    if (mine.empty()) continue;
+    out.columns = out.columns | mine;
+    out.files.emplace_back(o->first / (file_label(key) + ".cols"), mine);
+  }
+  return out;
+}
+
+void TileStore::expect_whole(TileKey key, size_t rows) const {
+  if (rows != tiles_.at(key))
+    throw core::Error("the point store is cut short", (strips_ / file_label(key)).string(),
+                      "remove the .swath folder beside the products and run again");
+}
+
+Block TileStore::read(TileKey key, ColumnSet columns) const { return read(key, columns, 0); }
+
+Block TileStore::read(TileKey key, ColumnSet columns, size_t more) const {
   Block out;
   out.origin = origin_;
   const auto at = tiles_.find(key);
   if (at == tiles_.end()) return out;
   columns = columns | always;
-  ColumnSet from_overlays;
-  std::vector<std::pair<fs::path, ColumnSet>> sources;
-  for (auto o = overlays_.rbegin(); o != overlays_.rend(); ++o) {
-    ColumnSet mine;
-    for (int c = 0; c < core::column_count; ++c) {
-      const auto column = static_cast<Column>(c);
-      if (columns.has(column) && o->second.has(column) && !from_overlays.has(column)) mine.add(column);
-    }
-    if (mine.empty()) continue;
-    from_overlays = from_overlays | mine;
-    sources.emplace_back(o->first / (file_label(key) + ".cols"), mine);
-  }
-  const ColumnSet from_strips = columns - from_overlays;
+  const Overlays overlays = overlays_of(key, columns);
+  const ColumnSet from_strips = columns - overlays.columns;
+  core::for_each_column([&](Column c, std::string_view, auto member) {
+    if (columns.has(c) && columns_.has(c)) (out.*member).reserve(at->second + more);
+  });
   ColumnSet seen;
   size_t row = 0;
   for (const Segment& s : segments_.at(key)) {
@@ -285,10 +303,8 @@ Block TileStore::read(TileKey key, ColumnSet columns) const {
     while (read_chunk(file, out, row, from_strips, seen)) {
     }
   }
-  if (row != at->second)
-    throw core::Error("the point store is cut short", (strips_ / file_label(key)).string(),
-                      "remove the .swath folder beside the products and run again");
-  for (const auto& [file_name, mine] : sources) {
+  expect_whole(key, row);
+  for (const auto& [file_name, mine] : overlays.files) {
     File file(file_name, O_RDONLY);
     size_t overlay_row = 0;
     ColumnSet ignored;
@@ -296,26 +312,91 @@ Block TileStore::read(TileKey key, ColumnSet columns) const {
   }
   // A column that only some of the strips have is zero in the others.
   core::for_each_column([&](Column c, std::string_view, auto member) {
-    if (columns.has(c) && columns_.has(c) && ((seen.has(c) && from_strips.has(c)) || from_overlays.has(c))) (out.*member).resize(row);
+    if (columns.has(c) && columns_.has(c) && ((seen.has(c) && from_strips.has(c)) || overlays.columns.has(c))) (out.*member).resize(row);
   });
   return out;
 }
 
+void TileStore::append_within(Block& out, TileKey key, ColumnSet columns, const stages::Box& box) const {
+  columns = columns | always;
+  const Overlays overlays = overlays_of(key, columns);
+  const ColumnSet from_strips = columns - overlays.columns;
+  std::vector<std::uint32_t> chosen, rows;  // within the tile, within the chunk
+  if (overlays.columns.has(Column::x) || overlays.columns.has(Column::y)) {
+    const Block all = read(key, columns);
+    for (std::uint32_t i = 0; i < all.size(); ++i)
+      if (box.holds(origin_.x() + all.x[i], origin_.y() + all.y[i])) rows.push_back(i);
+    return core::append(out, all, rows);
+  }
+  const size_t before = out.size();
+  size_t row = 0;
+  std::vector<double> x, y;
+  const auto gather = [](auto& to, size_t at, const auto& from, const std::vector<std::uint32_t>& which) {
+    to.resize(at + which.size());
+    for (size_t i = 0; i < which.size(); ++i) to[at + i] = from[which[i]];
+  };
+  for (const Segment& s : segments_.at(key)) {
+    File file(s.file, O_RDONLY);
+    for (ChunkHead head{}; file.read(&head, sizeof head); row += head.points) {
+      const size_t at = before + chosen.size(), n = head.points;
+      const ColumnSet there = set_of(head.columns);
+      size_t beyond = 0;  // bytes to pass over
+      core::for_each_column([&](Column c, std::string_view, auto member) {
+        using T = typename std::remove_reference_t<decltype(out.*member)>::value_type;
+        if (!there.has(c)) return;
+        // x and y come first and tell which rows are wanted.
+        const bool is_place = c == Column::x || c == Column::y;
+        if (!is_place && (rows.empty() || !from_strips.has(c))) {
+          beyond += n * sizeof(T);
+          return;
+        }
+        if (beyond > 0) file.skip(std::exchange(beyond, 0));
+        std::vector<T> own;
+        std::vector<T>* column = &own;
+        if constexpr (std::is_same_v<T, double>) column = c == Column::x ? &x : c == Column::y ? &y : &own;
+        column->resize(n);
+        if (n > 0) file.read(column->data(), n * sizeof(T));
+        if (c == Column::y) {
+          rows.clear();
+          for (std::uint32_t i = 0; i < n; ++i)
+            if (box.holds(origin_.x() + x[i], origin_.y() + y[i])) rows.push_back(i);
+          gather(out.x, at, x, rows);
+        }
+        if (c != Column::x) gather(out.*member, at, *column, rows);
+      });
+      if (beyond > 0) file.skip(beyond);
+      for (const std::uint32_t i : rows) chosen.push_back(static_cast<std::uint32_t>(row) + i);
+    }
+  }
+  expect_whole(key, row);
+  for (const auto& [file_name, mine] : overlays.files) {
+    if (chosen.empty()) break;
+    File file(file_name, O_RDONLY);
+    Block all;
+    size_t overlay_row = 0;
+    ColumnSet ignored;
+    read_chunk(file, all, overlay_row, mine, ignored);
+    core::for_each_column([&](Column c, std::string_view, auto member) {
+      if (mine.has(c)) gather(out.*member, before, all.*member, chosen);
+    });
+  }
+  // A column that only some of the points have is zero in the others.
+  core::for_each_column([&](Column, std::string_view, auto member) {
+    if (!(out.*member).empty()) (out.*member).resize(out.size());
+  });
+}
+
 Block TileStore::read_with_halo(TileKey key, double halo, ColumnSet columns, size_t& own) const {
-  Block out = read(key, columns);
-  own = out.size();
-  if (halo <= 0) return out;
-  const int reach = static_cast<int>(std::ceil(halo / side_));
+  Block around;
+  around.origin = origin_;
+  const int reach = halo > 0.0 ? static_cast<int>(std::ceil(halo / side_)) : 0;
   const stages::Box box = stages::Box{key.ix * side_, key.iy * side_, (key.ix + 1) * side_, (key.iy + 1) * side_}.grown(halo);
   for (int iy = key.iy - reach; iy <= key.iy + reach; ++iy)
-    for (int ix = key.ix - reach; ix <= key.ix + reach; ++ix) {
-      if ((ix == key.ix && iy == key.iy) || !tiles_.contains({ix, iy})) continue;
-      const Block neighbour = read({ix, iy}, columns);
-      std::vector<std::uint32_t> rows;
-      for (std::uint32_t i = 0; i < neighbour.size(); ++i)
-        if (box.holds(origin_.x() + neighbour.x[i], origin_.y() + neighbour.y[i])) rows.push_back(i);
-      core::append(out, neighbour, rows);
-    }
+    for (int ix = key.ix - reach; ix <= key.ix + reach; ++ix)
+      if ((ix != key.ix || iy != key.iy) && tiles_.contains({ix, iy})) append_within(around, {ix, iy}, columns, box);
+  Block out = read(key, columns, around.size());
+  own = out.size();
+  core::append(out, around);
   return out;
 }
 

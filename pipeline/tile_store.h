@@ -74,6 +74,18 @@ class TileStore {
   Load load_with_halo(TileKey key, double halo) const;
 
  private:
+  /// The files that overlay a tile's columns, and what each gives.
+  struct Overlays {
+    std::vector<std::pair<std::filesystem::path, core::ColumnSet>> files;
+    core::ColumnSet columns;
+  };
+  Overlays overlays_of(TileKey key, core::ColumnSet columns) const;
+  void expect_whole(TileKey key, size_t rows) const;
+  /// As read(), with room for `more` points.
+  core::Block read(TileKey key, core::ColumnSet columns, size_t more) const;
+  /// Appends those of a tile's points that the box holds; of chunks without one only places are read.
+  void append_within(core::Block& out, TileKey key, core::ColumnSet columns, const stages::Box& box) const;
+
   std::filesystem::path strips_;
   double side_;
   Eigen::Vector3d origin_;

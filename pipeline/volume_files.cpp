@@ -7,16 +7,19 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/vector.h"
+#include "io/geotiff.h"
+#include "pipeline/line_file.h"
 #include "pipeline/surface_file.h"
 #include "report/volumes.h"
 
 namespace swath::pipeline {
 namespace {
 
-std::vector<report::Ring> rings_of(const std::filesystem::path& file) {
+constexpr std::int64_t band_cells = 1 << 22;  // of the surfaces that are held at a time
+
+std::vector<report::Ring> rings_of(const std::filesystem::path& file, const core::Crs& crs) {
   std::vector<report::Ring> out;
-  for (const io::VectorLine& line : io::read_lines(file).lines) {
+  for (const io::VectorLine& line : read_lines_in(file, crs)) {
     if (!line.closed) continue;
     report::Ring ring;
     for (size_t k = 0; k + 1 < line.x.size(); ++k) ring.emplace_back(line.x[k], line.y[k]);
@@ -37,11 +40,40 @@ core::Lattice around(const core::Lattice& l, const std::vector<report::Ring>& po
   return {l.cell, i0, j0, static_cast<int>(std::max<std::int64_t>(0, i1 - i0)), static_cast<int>(std::max<std::int64_t>(0, j1 - j0))};
 }
 
+/// The cells of one size that both lattices have.
+core::Lattice meet(const core::Lattice& a, const core::Lattice& b) {
+  const std::int64_t i0 = std::max(a.i0, b.i0), j0 = std::max(a.j0, b.j0);
+  const std::int64_t i1 = std::min(a.i0 + a.nx, b.i0 + b.nx), j1 = std::min(a.j0 + a.ny, b.j0 + b.ny);
+  return {a.cell, i0, j0, static_cast<int>(std::max<std::int64_t>(0, i1 - i0)), static_cast<int>(std::max<std::int64_t>(0, j1 - j0))};
+}
+
 /// The smallest lattice of a's cells that holds both.
 core::Lattice both(const core::Lattice& a, const core::Lattice& b) {
   return core::lattice_of(a.cell, std::min(a.west(), b.west()), std::min(a.south(), b.south()), std::max(a.east(), b.east()),
                           std::max(a.north(), b.north()));
 }
+
+/// A surface on its file's lattice, of which any window can be asked for.
+struct Surface {
+  std::filesystem::path file;
+  core::Lattice lattice;
+  core::Crs crs;
+  double vertical_unit = 1.0;
+
+  explicit Surface(const std::filesystem::path& f) : file(f) {
+    const io::RasterInfo info = io::read_raster_info(f);
+    lattice = io::lattice_of(info, f);
+    if (!info.crs_wkt.empty()) crs = core::Crs(info.crs_wkt);
+    vertical_unit = height_unit_of(f);
+  }
+  /// On the cells of `l`, of any size.
+  core::Grid on(const core::Lattice& l) const {
+    if (l.cell == lattice.cell) return read_surface(file, l).grid;
+    const core::Lattice needed = core::lattice_of(lattice.cell, l.west() - lattice.cell, l.south() - lattice.cell, l.east() + lattice.cell,
+                                                  l.north() + lattice.cell);
+    return report::resampled(read_surface(file, meet(needed, lattice)).grid, l);
+  }
+};
 
 core::Grid level(const core::Lattice& l, double height) {
   core::Grid g(l);
@@ -54,29 +86,34 @@ core::Grid level(const core::Lattice& l, double height) {
 }  // namespace
 
 core::Value volumes_of(const VolumeRequest& request) {
-  SurfaceFile before = read_surface(request.before), after;
-  core::Lattice lattice = before.grid.lattice;
+  const Surface before(request.before);
+  std::optional<Surface> after;
+  core::Lattice lattice = before.lattice;
   if (!request.design) {
-    after = read_surface(request.after);
-    if (!before.crs.empty() && !after.crs.empty() && before.crs.key() != after.crs.key())
-      throw core::Error("the two surfaces are in different CRSs: " + before.crs.name() + " and " + after.crs.name(), request.after.string(),
-                        "bring one to the other's CRS and vertical datum first");
-    if (before.vertical_unit != after.vertical_unit)
+    after.emplace(request.after);
+    if (!before.crs.empty() && !after->crs.empty() && before.crs.key() != after->crs.key())
+      throw core::Error("the two surfaces are in different CRSs: " + before.crs.name() + " and " + after->crs.name(),
+                        request.after.string(), "bring one to the other's CRS and vertical datum first");
+    if (before.vertical_unit != after->vertical_unit)
       throw core::Error("the two surfaces have heights in different units", request.after.string(), "bring one to the other's unit first");
-    const bool finer = after.grid.lattice.cell < lattice.cell;
-    lattice = finer ? both(after.grid.lattice, before.grid.lattice) : both(before.grid.lattice, after.grid.lattice);
+    const bool finer = after->lattice.cell < lattice.cell;
+    lattice = finer ? both(after->lattice, before.lattice) : both(before.lattice, after->lattice);
   }
-  std::vector<report::Ring> polygon;
-  if (!request.polygon.empty()) {
-    polygon = rings_of(request.polygon);
-    lattice = around(lattice, polygon);
-  }
-  const auto on = [&](const core::Grid& g) { return g.lattice == lattice ? g : report::resampled(g, lattice); };
-  const core::Grid first = on(before.grid), second = request.design ? level(lattice, *request.design) : on(after.grid);
-  const core::Crs& crs = before.crs.empty() ? after.crs : before.crs;
+  const core::Crs& crs = before.crs.empty() && after ? after->crs : before.crs;
   const double metre = crs.empty() ? 1.0 : crs.metres_per_unit(), vertical = crs.empty() ? 1.0 : before.vertical_unit;
   if (metre == 0.0) throw core::Error("the surface is in degrees", request.before.string(), "volumes need a projected CRS");
-  const report::Volumes v = report::volumes(first, second, vertical / metre, request.correlation, polygon);
+  std::vector<report::Ring> polygon;
+  if (!request.polygon.empty()) {
+    polygon = rings_of(request.polygon, crs);
+    lattice = around(lattice, polygon);
+  }
+  report::VolumeSum sum(vertical / metre, request.correlation, polygon);
+  const int rows = static_cast<int>(std::max<std::int64_t>(1, band_cells / std::max(1, lattice.nx)));
+  for (int j = 0; lattice.nx > 0 && j < lattice.ny; j += rows) {
+    const core::Lattice band{lattice.cell, lattice.i0, lattice.j0 + j, lattice.nx, std::min(rows, lattice.ny - j)};
+    sum.add(before.on(band), after ? after->on(band) : level(band, *request.design));
+  }
+  const report::Volumes v = sum.result();
   if (v.cells == 0)
     throw core::Error("the two surfaces have no cell in common" + std::string(polygon.empty() ? "" : " inside the polygon"),
                       request.before.string());

@@ -8,32 +8,20 @@
 #include "report/volumes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "core/error.h"
+#include "core/ring.h"
 
 namespace swath::report {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-double signed_area(const Ring& r) {
-  double sum = 0.0;
-  for (size_t k = 0; k < r.size(); ++k) {
-    const Eigen::Vector2d a = r[k] - r[0], b = r[(k + 1) % r.size()] - r[0];
-    sum += 0.5 * (a.x() * b.y() - a.y() * b.x());
-  }
-  return sum;
-}
-
 bool holds(const Ring& r, const Eigen::Vector2d& p) {
   bool odd = false;
-  for (size_t k = 0; k < r.size(); ++k) {
-    const Eigen::Vector2d &a = r[k], &b = r[(k + 1) % r.size()];
-    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) odd = !odd;
-  }
+  for (size_t k = 0; k < r.size(); ++k) odd = odd != core::crosses_eastward(r[k], r[(k + 1) % r.size()], p.x(), p.y());
   return odd;
 }
 
@@ -50,25 +38,6 @@ Ring clipped(const Ring& r, int axis, double limit, double sign) {
   return out;
 }
 
-/// Sums of one of cut, fill and net.
-struct Sum {
-  double value = 0.0;
-  std::array<double, 2> linear{}, square{};  // of a_c s_c, by model
-  void add(double volume, double area, double s0, double s1) {
-    value += volume;
-    const std::array<double, 2> s{s0 * area, s1 * area};
-    for (size_t m = 0; m < 2; ++m) {
-      linear[m] += s[m];
-      square[m] += s[m] * s[m];
-    }
-  }
-  double sigma(double r) const {
-    double variance = 0.0;
-    for (size_t m = 0; m < 2; ++m) variance += (1.0 - r) * square[m] + r * linear[m] * linear[m];
-    return std::sqrt(variance);
-  }
-};
-
 }  // namespace
 
 std::vector<double> shares_inside(const core::Lattice& l, const std::vector<Ring>& polygon) {
@@ -79,7 +48,7 @@ std::vector<double> shares_inside(const core::Lattice& l, const std::vector<Ring
     if (ring.size() < 3) continue;
     int around = 0;
     for (size_t m = 0; m < polygon.size(); ++m) around += m != n && holds(polygon[m], ring[0]);
-    const double sign = (around % 2 == 0 ? 1.0 : -1.0) * (signed_area(ring) >= 0.0 ? 1.0 : -1.0);
+    const double sign = (around % 2 == 0 ? 1.0 : -1.0) * (core::signed_area(ring) >= 0.0 ? 1.0 : -1.0);
     // Row by row, then cell by cell of what is left of the ring.
     for (int j = 0; j < l.ny; ++j) {
       const double south = static_cast<double>(l.j0 + j) * l.cell, north = static_cast<double>(l.j0 + j + 1) * l.cell;
@@ -93,7 +62,7 @@ std::vector<double> shares_inside(const core::Lattice& l, const std::vector<Ring
       Ring rest = clipped(row, 0, static_cast<double>(l.i0 + first) * l.cell, -1.0);
       for (std::int64_t i = first; i <= last && rest.size() >= 3; ++i) {
         const double east = static_cast<double>(l.i0 + i + 1) * l.cell;
-        share[l.at(static_cast<int>(i), j)] += sign * signed_area(clipped(rest, 0, east, 1.0)) / (l.cell * l.cell);
+        share[l.at(static_cast<int>(i), j)] += sign * core::signed_area(clipped(rest, 0, east, 1.0)) / (l.cell * l.cell);
         rest = clipped(rest, 0, east, -1.0);
       }
     }
@@ -102,72 +71,99 @@ std::vector<double> shares_inside(const core::Lattice& l, const std::vector<Ring
   return share;
 }
 
+GridSample sample(const core::Grid& grid, double x, double y) {
+  const core::Lattice& l = grid.lattice;
+  const double u = x / l.cell - 0.5 - static_cast<double>(l.i0), v = y / l.cell - 0.5 - static_cast<double>(l.j0);
+  const double fu = std::floor(u), fv = std::floor(v);
+  GridSample out{0.0, grid.sigma.empty() ? nan : 0.0};
+  for (int dj = 0; dj <= 1; ++dj)
+    for (int di = 0; di <= 1; ++di) {
+      const double w = (di ? u - fu : 1.0 - u + fu) * (dj ? v - fv : 1.0 - v + fv);
+      if (w == 0.0) continue;
+      const double gi = fu + di, gj = fv + dj;
+      const bool known = gi >= 0 && gj >= 0 && gi < l.nx && gj < l.ny;
+      const size_t at = known ? l.at(static_cast<int>(gi), static_cast<int>(gj)) : 0;
+      out.height += w * (known ? static_cast<double>(grid.height[at]) : nan);
+      if (!grid.sigma.empty()) out.sigma += w * (known ? static_cast<double>(grid.sigma[at]) : nan);
+    }
+  return out;
+}
+
 core::Grid resampled(const core::Grid& grid, const core::Lattice& lattice) {
   core::Grid out(lattice);
   const bool sigma = !grid.sigma.empty();
   if (sigma) out.sigma.assign(lattice.size(), std::numeric_limits<float>::quiet_NaN());
-  const core::Lattice& l = grid.lattice;
   for (int j = 0; j < lattice.ny; ++j)
     for (int i = 0; i < lattice.nx; ++i) {
-      const double u = lattice.centre_x(i) / l.cell - 0.5 - static_cast<double>(l.i0),
-                   v = lattice.centre_y(j) / l.cell - 0.5 - static_cast<double>(l.j0);
-      const double fu = std::floor(u), fv = std::floor(v);
-      double height = 0.0, variance_root = 0.0;
-      for (int dj = 0; dj <= 1; ++dj)
-        for (int di = 0; di <= 1; ++di) {
-          const double w = (di ? u - fu : 1.0 - u + fu) * (dj ? v - fv : 1.0 - v + fv);
-          if (w == 0.0) continue;
-          const double gi = fu + di, gj = fv + dj;
-          const bool known = gi >= 0 && gj >= 0 && gi < l.nx && gj < l.ny;
-          const size_t at = known ? l.at(static_cast<int>(gi), static_cast<int>(gj)) : 0;
-          height += w * (known ? static_cast<double>(grid.height[at]) : nan);
-          if (sigma) variance_root += w * (known ? static_cast<double>(grid.sigma[at]) : nan);
-        }
+      const GridSample s = sample(grid, lattice.centre_x(i), lattice.centre_y(j));
       const size_t at = lattice.at(i, j);
-      out.height[at] = static_cast<float>(height);
-      if (!std::isnan(height)) out.reason[at] = core::Void::none;
-      if (sigma) out.sigma[at] = static_cast<float>(variance_root);
+      out.height[at] = static_cast<float>(s.height);
+      if (!std::isnan(s.height)) out.reason[at] = core::Void::none;
+      if (sigma) out.sigma[at] = static_cast<float>(s.sigma);
     }
+  return out;
+}
+
+void VolumeSum::Sum::add(double volume, double area, double s0, double s1) {
+  value += volume;
+  const std::array<double, 2> s{s0 * area, s1 * area};
+  for (size_t m = 0; m < 2; ++m) {
+    linear[m] += s[m];
+    square[m] += s[m] * s[m];
+  }
+}
+
+double VolumeSum::Sum::sigma(double correlation) const {
+  double variance = 0.0;
+  for (size_t m = 0; m < 2; ++m) variance += (1.0 - correlation) * square[m] + correlation * linear[m] * linear[m];
+  return std::sqrt(variance);
+}
+
+void VolumeSum::add(const core::Grid& before, const core::Grid& after) {
+  if (!(before.lattice == after.lattice)) throw core::Error("the two surfaces are not on one lattice", "report.volumes");
+  const core::Lattice& l = before.lattice;
+  const std::vector<double> share = shares_inside(l, polygon_);
+  const auto sigma_of = [](const core::Grid& g, size_t at) { return g.sigma.empty() ? nan : static_cast<double>(g.sigma[at]); };
+  for (size_t k = 0; k < l.size(); ++k) {
+    if (share[k] <= 0.0) continue;
+    const double area = share[k] * l.cell * l.cell;
+    const double rise = (static_cast<double>(after.height[k]) - static_cast<double>(before.height[k])) * height_unit_;
+    if (std::isnan(rise)) {
+      if (polygon_.empty() && std::isnan(before.height[k]) && std::isnan(after.height[k])) continue;
+      ++out_.left_out;
+      out_.area_left_out += area;
+      continue;
+    }
+    ++out_.cells;
+    out_.area += area;
+    const double s0 = sigma_of(before, k) * height_unit_, s1 = sigma_of(after, k) * height_unit_;
+    net_.add(rise * area, area, s0, s1);
+    if (rise < 0.0) {
+      cut_.add(-rise * area, area, s0, s1);
+      out_.cut_area += area;
+    } else if (rise > 0.0) {
+      fill_.add(rise * area, area, s0, s1);
+      out_.fill_area += area;
+    }
+  }
+}
+
+Volumes VolumeSum::result() const {
+  Volumes out = out_;
+  out.cut = cut_.value;
+  out.fill = fill_.value;
+  out.net = net_.value;
+  out.sigma_cut = cut_.sigma(correlation_);
+  out.sigma_fill = fill_.sigma(correlation_);
+  out.sigma_net = net_.sigma(correlation_);
   return out;
 }
 
 Volumes volumes(const core::Grid& before, const core::Grid& after, double height_unit, double correlation,
                 const std::vector<Ring>& polygon) {
-  if (!(before.lattice == after.lattice)) throw core::Error("the two surfaces are not on one lattice", "report.volumes");
-  const core::Lattice& l = before.lattice;
-  const std::vector<double> share = shares_inside(l, polygon);
-  Volumes out;
-  Sum cut, fill, net;
-  const auto sigma_of = [](const core::Grid& g, size_t at) { return g.sigma.empty() ? nan : static_cast<double>(g.sigma[at]); };
-  for (size_t k = 0; k < l.size(); ++k) {
-    if (share[k] <= 0.0) continue;
-    const double area = share[k] * l.cell * l.cell;
-    const double rise = (static_cast<double>(after.height[k]) - static_cast<double>(before.height[k])) * height_unit;
-    if (std::isnan(rise)) {
-      if (polygon.empty() && std::isnan(before.height[k]) && std::isnan(after.height[k])) continue;
-      ++out.left_out;
-      out.area_left_out += area;
-      continue;
-    }
-    ++out.cells;
-    out.area += area;
-    const double s0 = sigma_of(before, k) * height_unit, s1 = sigma_of(after, k) * height_unit;
-    net.add(rise * area, area, s0, s1);
-    if (rise < 0.0) {
-      cut.add(-rise * area, area, s0, s1);
-      out.cut_area += area;
-    } else if (rise > 0.0) {
-      fill.add(rise * area, area, s0, s1);
-      out.fill_area += area;
-    }
-  }
-  out.cut = cut.value;
-  out.fill = fill.value;
-  out.net = net.value;
-  out.sigma_cut = cut.sigma(correlation);
-  out.sigma_fill = fill.sigma(correlation);
-  out.sigma_net = net.sigma(correlation);
-  return out;
+  VolumeSum sum(height_unit, correlation, polygon);
+  sum.add(before, after);
+  return sum.result();
 }
 
 }  // namespace swath::report

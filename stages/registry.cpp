@@ -34,6 +34,7 @@ const std::vector<Entry>& registry() {
       {"filters.water", make_water},
       {"filters.hag_dem", make_hag_dem},
       {"filters.classify", make_classify},
+      {"filters.key_points", make_key_points},
       {"terrain.breaklines", make_breaklines},
       {"terrain.dtm", make_dtm},
       {"terrain.dsm", make_dsm},

@@ -24,6 +24,13 @@ core::Lattice lattice_in(double cell, const Box& box) {
   return {cell, i0, j0, static_cast<int>(first(box.x1) - i0), static_cast<int>(first(box.y1) - j0)};
 }
 
+std::vector<Raster> window_of(const Context& context, Product product, int others) {
+  if (!context.grids || !context.grids->has(product)) return {};
+  constexpr double cell_bytes = 13.0;  // of a core::Grid with sigma and count
+  // While a tile is read its file, its grid and the window are there.
+  return {{"", context.grids->cell(product), context.tile_side, cell_bytes * (3.0 + others)}};
+}
+
 std::filesystem::path Context::made(const std::filesystem::path& name) const {
   for (auto folder = earlier.rbegin(); folder != earlier.rend(); ++folder)
     if (std::filesystem::exists(*folder / name)) return *folder / name;

@@ -95,7 +95,27 @@ struct Strip {
   std::uint64_t records = 0;
 };
 
+/// A raster that a stage works on, for the memory that it takes.
+struct Raster {
+  std::string_view option;       ///< of the stage, that sets the cells; empty where none does
+  double cell = 1.0;             ///< side of a cell, m
+  double side = 0.0;             ///< of the square that the raster covers, m
+  double bytes = 0.0;            ///< of working memory per cell
+  double cells_per_point = 0.0;  ///< most cells that a point makes, where only those are kept; 0: every cell is there
+
+  /// Bytes, where `points` are worked on.
+  double total(double points) const {
+    const double cells = (side / cell) * (side / cell);
+    return bytes * (cells_per_point > 0.0 && points * cells_per_point < cells ? points * cells_per_point : cells);
+  }
+};
+
 class Stage;
+struct Context;
+
+/// The rasters of a stage that works on a tile's window of a grid and on `others` grids of that size made from it; none where the run has
+/// no such grid (yet).
+std::vector<Raster> window_of(const Context& context, Product product, int others);
 
 /// What every stage sees of a run. Read-only but for what survey stages hand on, and `origin`, which follows from the trajectory.
 struct Context {
@@ -188,6 +208,12 @@ class Stage {
   virtual double halo() const { return 0.0; }
   /// Bytes of working memory per point of tile and halo, beside the columns.
   virtual double bytes_per_point() const { return 64.0; }
+  /// The rasters of one tile at work: memory that is needed however few points there are. In a plan there are no `grids` yet, and rasters
+  /// whose cells they set are left out.
+  virtual std::vector<Raster> rasters(const Context&) const { return {}; }
+  /// Side of the cells of the grids that the stage gives, m; 0 where it gives none or takes them from a grid. A stage that needs several
+  /// grids needs them with the same cells.
+  virtual double cell() const { return 0.0; }
   virtual void run_tile(const Context&, TileJob&) const {}
 
   virtual void run_merge(const Context&, MergeJob&) const {}

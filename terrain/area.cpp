@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/ring.h"
+
 namespace swath::terrain {
 
 Area::Area(const std::vector<std::vector<Eigen::Vector3d>>& rings) {
@@ -39,7 +41,7 @@ bool Area::holds(double x, double y) const {
   bool inside = false;
   for (const std::uint32_t s : rows_[row_of(y)]) {
     const Side& e = sides_[s];
-    if (e.y0 <= y && y < e.y1 && x < e.x0 + (y - e.y0) / (e.y1 - e.y0) * (e.x1 - e.x0)) inside = !inside;
+    inside = inside != core::crosses_eastward({e.x0, e.y0}, {e.x1, e.y1}, x, y);
   }
   return inside;
 }

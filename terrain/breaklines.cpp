@@ -59,14 +59,38 @@ void put(std::string& out, const T& v) {
   out.append(reinterpret_cast<const char*>(&v), sizeof v);
 }
 
-template <class T>
-T take(const std::string& in, size_t& at) {
-  T v;
-  if (in.size() < at + sizeof v) throw core::Error("the settled breaklines are cut short");
-  std::memcpy(&v, in.data() + at, sizeof v);
-  at += sizeof v;
-  return v;
-}
+/// Takes what put() put.
+class Unpacker {
+ public:
+  Unpacker(const std::string& bytes, const std::string& place) : bytes_(bytes), place_(place) {}
+  template <class T>
+  T take() {
+    T v;
+    std::memcpy(&v, bytes_.data() + advance(sizeof v), sizeof v);
+    return v;
+  }
+  /// A number of things that take at least `least` bytes each.
+  size_t count(size_t least) {
+    const auto n = take<std::uint64_t>();
+    if (n > (bytes_.size() - at_) / least) damaged();
+    return n;
+  }
+  std::string text(size_t n) { return bytes_.substr(advance(n), n); }
+
+ private:
+  size_t advance(size_t n) {
+    if (bytes_.size() - at_ < n) damaged();
+    at_ += n;
+    return at_ - n;
+  }
+  [[noreturn]] void damaged() const {
+    throw core::Error("the settled breaklines are cut short or damaged", place_,
+                      "remove the .swath folder beside the products and run again");
+  }
+  const std::string& bytes_;
+  const std::string& place_;
+  size_t at_ = 0;
+};
 
 }  // namespace
 
@@ -143,6 +167,10 @@ void Breaklines::fill(const Water& water, core::Grid& grid) const {
 
 void Breaklines::apply(core::Grid& grid) const {
   for (const Water& w : waters_) fill(w, grid);
+  cut(grid);
+}
+
+void Breaklines::cut(core::Grid& grid) const {
   if (boundaries_.empty()) return;
   const core::Lattice& l = grid.lattice;
   for (int j = 0; j < l.ny; ++j)
@@ -176,22 +204,21 @@ std::string pack(const std::vector<SettledLine>& lines) {
   return out;
 }
 
-std::vector<SettledLine> unpack(const std::string& bytes) {
-  size_t at = 0;
-  std::vector<SettledLine> out(take<std::uint64_t>(bytes, at));
+std::vector<SettledLine> unpack(const std::string& bytes, const std::string& place) {
+  Unpacker in(bytes, place);
+  constexpr size_t least_line = 3 + sizeof(double) + 2 * sizeof(std::uint64_t);
+  std::vector<SettledLine> out(in.count(least_line));
   for (auto& [line, derived] : out) {
-    line.kind = take<core::BreaklineKind>(bytes, at);
-    line.has_height = take<bool>(bytes, at);
-    derived = take<bool>(bytes, at);
-    line.sigma = take<double>(bytes, at);
-    const auto name = take<std::uint64_t>(bytes, at);
-    line.place = bytes.substr(at, name);
-    at += name;
-    line.parts.resize(take<std::uint64_t>(bytes, at));
+    line.kind = in.take<core::BreaklineKind>();
+    line.has_height = in.take<bool>();
+    derived = in.take<bool>();
+    line.sigma = in.take<double>();
+    line.place = in.text(in.count(1));
+    line.parts.resize(in.count(sizeof(std::uint64_t)));
     for (auto& part : line.parts) {
-      part.resize(take<std::uint64_t>(bytes, at));
+      part.resize(in.count(3 * sizeof(double)));
       for (Vector3d& v : part)
-        for (int k = 0; k < 3; ++k) v[k] = take<double>(bytes, at);
+        for (int k = 0; k < 3; ++k) v[k] = in.take<double>();
     }
   }
   return out;

@@ -53,6 +53,8 @@ class Breaklines {
   /// Water: the height and sigma of its surface, reason none; where that is not known no height, reason water. Outside all boundaries
   /// (where there are any): no height, reason no_data.
   void apply(core::Grid& grid) const;
+  /// The boundaries' part of apply(): cells outside all of them have no height, reason no_data.
+  void cut(core::Grid& grid) const;
 
  private:
   struct Water {
@@ -71,8 +73,8 @@ class Breaklines {
   std::vector<Area> boundaries_;
 };
 
-/// Settled lines as bytes, and back.
+/// Settled lines as bytes, and back. Throws core::Error, naming `place`, where the bytes are cut short or damaged.
 std::string pack(const std::vector<SettledLine>& lines);
-std::vector<SettledLine> unpack(const std::string& bytes);
+std::vector<SettledLine> unpack(const std::string& bytes, const std::string& place = {});
 
 }  // namespace swath::terrain

@@ -14,9 +14,10 @@ constexpr double straightest = 0.85;  // chord over arc; a stronger bend carries
 constexpr int tries = 16;             // places looked at within a label's share of the line
 constexpr double bucket = 64.0;       // m
 
-std::uint64_t bucket_of(double x, double y) {
-  return (static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / bucket))) << 32) ^
-         (static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(y / bucket))) & 0xffffffffu);
+std::int64_t bucket_row(double v) { return static_cast<std::int64_t>(std::floor(v / bucket)); }
+
+std::uint64_t bucket_of(std::int64_t i, std::int64_t j) {
+  return (static_cast<std::uint64_t>(i) << 32) ^ (static_cast<std::uint64_t>(j) & 0xffffffffu);
 }
 
 /// A line by its length.
@@ -41,10 +42,10 @@ class Arc {
 }  // namespace
 
 bool Labeller::is_free(const Eigen::Vector2d& at, double radius) const {
-  const double reach = radius + 0.5 * bucket;
-  for (double y = at.y() - reach; y < at.y() + reach + bucket; y += bucket)
-    for (double x = at.x() - reach; x < at.x() + reach + bucket; x += bucket)
-      if (const auto found = buckets_.find(bucket_of(x, y)); found != buckets_.end())
+  const double reach = radius + largest_;
+  for (std::int64_t j = bucket_row(at.y() - reach); j <= bucket_row(at.y() + reach); ++j)
+    for (std::int64_t i = bucket_row(at.x() - reach); i <= bucket_row(at.x() + reach); ++i)
+      if (const auto found = buckets_.find(bucket_of(i, j)); found != buckets_.end())
         for (const size_t k : found->second)
           if ((taken_[k].at - at).norm() < taken_[k].radius + radius) return false;
   return true;
@@ -76,7 +77,8 @@ std::vector<ContourLabel> Labeller::add(const ContourLine& line, size_t letters)
     if (!found) continue;
     if (options_.facing == LabelFacing::upright && label.angle > 0.5 * core::pi) label.angle -= core::pi;
     if (options_.facing == LabelFacing::upright && label.angle <= -0.5 * core::pi) label.angle += core::pi;
-    buckets_[bucket_of(label.at.x(), label.at.y())].push_back(taken_.size());
+    buckets_[bucket_of(bucket_row(label.at.x()), bucket_row(label.at.y()))].push_back(taken_.size());
+    largest_ = std::max(largest_, 0.5 * width);
     taken_.push_back({label.at, 0.5 * width});
     out.push_back(label);
   }

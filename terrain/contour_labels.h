@@ -52,6 +52,7 @@ class Labeller {
     double radius;
   };
   std::vector<Taken> taken_;
+  double largest_ = 0.0;  ///< radius of all taken
   std::unordered_map<std::uint64_t, std::vector<size_t>> buckets_;
 };
 

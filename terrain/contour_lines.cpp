@@ -28,15 +28,6 @@ double length(const Vertices& vertices) {
   return sum;
 }
 
-double signed_area(const Vertices& v) {
-  double sum = 0.0;
-  for (size_t k = 1; k < v.size(); ++k) {
-    const Eigen::Vector2d a = v[k - 1] - v[0], b = v[k] - v[0];
-    sum += 0.5 * (a.x() * b.y() - a.y() * b.x());
-  }
-  return sum;
-}
-
 std::vector<ContourLine> join(std::vector<Segment> segments, const ContourOptions& options) {
   std::sort(segments.begin(), segments.end());
   segments.erase(std::unique(segments.begin(), segments.end()), segments.end());

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/ring.h"
 #include "terrain/contours.h"
 #include "terrain/facets.h"
 
@@ -24,8 +25,7 @@ struct ContourLine {
 /// Length of a line, CRS units (metres inside a run).
 double length(const std::vector<Eigen::Vector2d>& vertices);
 
-/// Area that a closed line encloses, m2: positive counter-clockwise (round a summit), negative round a depression.
-double signed_area(const std::vector<Eigen::Vector2d>& vertices);
+using core::signed_area;  // m2: positive round a summit, negative round a depression
 
 /// Joins segments (any order, doubles allowed; one level at a time keeps memory small) to lines. Open lines start at their own end, closed
 /// ones at their smallest edge key; lines are in the order of level and start key: the same answer for every tiling. Vertices that coincide

@@ -31,9 +31,8 @@ double roughness_block(const DtmOptions& o) { return o.max_edge.value / 6.0; }
 /// Sigma at places of a TIN, by the terms above.
 class SigmaModel {
  public:
-  SigmaModel(const Tin& tin, const std::vector<std::array<std::int32_t, 3>>& neighbours, const Eigen::Vector3d& origin,
-             const core::Lattice& window, const DtmOptions& o)
-      : tin_(tin), options_(o), roughness_(tin, neighbours, origin, window, roughness_block(o)) {}
+  SigmaModel(const Tin& tin, const Eigen::Vector3d& origin, const core::Lattice& window, const DtmOptions& o)
+      : tin_(tin), options_(o), roughness_(tin, origin, window, roughness_block(o)) {}
 
   double at(std::int32_t t, double x, double y) const {
     const Roughness rough = roughness_.at(x, y);
@@ -66,6 +65,14 @@ class SigmaModel {
   RoughnessMap roughness_;
 };
 
+/// Where the triangles have a say, in the Block's frame: at the cells' centres, where roughness is told, and where natural neighbours are.
+Rectangle reached(const core::Lattice& window, const Eigen::Vector3d& origin, const DtmOptions& o, bool has_sigma) {
+  double around = has_sigma ? RoughnessMap::reach(roughness_block(o)) : 0.0;
+  if (o.interpolation == Interpolation::natural_neighbour) around = std::max(around, o.max_edge.value);
+  return {window.west() - origin.x() - around, window.south() - origin.y() - around, window.east() - origin.x() + around,
+          window.north() - origin.y() + around};
+}
+
 }  // namespace
 
 double halo(const DtmOptions& options) {
@@ -79,6 +86,7 @@ std::vector<std::uint32_t> terrain_rows(const core::Block& block, const DtmOptio
   std::vector<std::uint32_t> rows;
   for (size_t i = 0; i < block.size(); ++i) {
     if (!core::is_usable(block, i)) continue;
+    if (options.key_points && (block.flags.empty() || !(block.flags[i] & core::flag::key_point))) continue;
     const bool is_terrain = block.classification.empty() ||
                             std::find(options.classes.begin(), options.classes.end(), block.classification[i]) != options.classes.end();
     if (is_terrain) rows.push_back(static_cast<std::uint32_t>(i));
@@ -90,28 +98,33 @@ Tin terrain_tin(const core::Block& block, const DtmOptions& options) {
   return triangulate(block, terrain_rows(block, options), 0.5 * options.max_edge.value);
 }
 
-core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options, const Breaklines* lines) {
+core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options, const Breaklines* lines,
+               std::uint64_t* left_out) {
   if (window.cell != options.cell.value) throw core::Error("the window's cell is not the option's", "terrain.dtm");
+  const bool has_sigma = !block.sigma_v.empty();
   std::vector<std::uint32_t> rows = terrain_rows(block, options);
   Constraints constraints;
   if (lines) {
     constraints = lines->near(window, halo(options));
     rows = lines->kept(block, rows, constraints);
   }
-  const Tin tin = triangulate(block, rows, constraints, 0.5 * options.max_edge.value);
+  const Tin tin = triangulate(block, rows, constraints, 0.5 * options.max_edge.value, reached(window, block.origin, options, has_sigma));
   const std::vector<std::int32_t> triangle = triangles_at_centres(tin, block.origin, window);
 
+  if (left_out)
+    *left_out = static_cast<std::uint64_t>(std::count_if(tin.duplicates.begin(), tin.duplicates.end(), [&](const Place& p) {
+      const auto cell = [&](double v) { return core::cell_index(v, window.cell); };
+      return window.holds(static_cast<int>(cell(p.x + block.origin.x()) - window.i0),
+                          static_cast<int>(cell(p.y + block.origin.y()) - window.j0));
+    }));
   core::Grid grid(window);
   grid.count = count_points(block, rows, window);
-  const bool has_sigma = !block.sigma_v.empty();
   if (has_sigma) grid.sigma.assign(window.size(), std::numeric_limits<float>::quiet_NaN());
   const bool natural = options.interpolation == Interpolation::natural_neighbour;
-  std::vector<std::array<std::int32_t, 3>> across;
-  if (has_sigma || natural) across = neighbours(tin);
   std::optional<SigmaModel> sigma;
-  if (has_sigma) sigma.emplace(tin, across, block.origin, window, options);
+  if (has_sigma) sigma.emplace(tin, block.origin, window, options);
   std::optional<NaturalNeighbours> neighbourhood;
-  if (natural) neighbourhood.emplace(tin, across);
+  if (natural) neighbourhood.emplace(tin);
   for (int j = 0; j < window.ny; ++j)
     for (int i = 0; i < window.nx; ++i) {
       const size_t at = window.at(i, j);

@@ -24,6 +24,7 @@ struct DtmOptions {
   core::Metres max_edge{60.0};
   Interpolation interpolation = Interpolation::linear;
   std::vector<int> classes{core::point_class::ground};
+  bool key_points = false;
   double correlation = 0.25;
   double unknown_bend = 0.1;
 };
@@ -37,6 +38,7 @@ void describe(DtmOptions& o, V& v) {
   v.option("interpolation", o.interpolation, "Between the points: linear on the triangles, or natural_neighbour, smooth but at the points.",
            "Sibson1981");
   v.option("classes", o.classes, core::within(0, 255), "ASPRS classes that are terrain.");
+  v.option("key_points", o.key_points, "Only the points that filters.key_points has flagged.");
   v.option("correlation", o.correlation, core::within(0.0, 1.0),
            "Least share of the variance of a point's height that its neighbours have in common (trajectory, boresight); the share that the "
            "points' scatter leaves is taken where it is larger.");
@@ -49,7 +51,8 @@ void describe(DtmOptions& o, V& v) {
 /// beyond (5/12 or a whole of max_edge).
 double halo(const DtmOptions& options);
 
-/// Rows of the points that make the terrain: usable and of one of the classes (all usable ones where there is no class column).
+/// Rows of the points that make the terrain: usable and of one of the classes (all usable ones where there is no class column), flagged
+/// where key_points asks for it.
 std::vector<std::uint32_t> terrain_rows(const core::Block& block, const DtmOptions& options);
 
 /// The TIN that dtm() reads: terrain_rows, circumradius at most max_edge / 2.
@@ -60,8 +63,10 @@ Tin terrain_tin(const core::Block& block, const DtmOptions& options);
 /// sigma: m, empty where the Block has no sigma_v; NaN where a point's sigma is NaN; see the source for its terms.
 /// reason: none, long_edge or no_data (terrain/voids.h).
 /// With `lines` the terrain passes through the breaklines, water is flat or falling and boundaries cut (terrain/breaklines.h); cells of
-/// water whose height is known have the reason none.
-core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options, const Breaklines* lines = nullptr);
+/// water whose height is known have the reason none. `left_out` receives the number of terrain points in the window that share their place
+/// with one that is not higher.
+core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options, const Breaklines* lines = nullptr,
+               std::uint64_t* left_out = nullptr);
 
 }  // namespace swath::terrain
 

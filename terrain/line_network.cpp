@@ -22,6 +22,7 @@ using Eigen::Vector3d;
 constexpr double snap = 1e-3;        // m: a vertex nearer than this to another, or to an edge, is on it
 constexpr double index_cell = 20.0;  // m: of the grid in which edges find one another
 constexpr int most_passes = 16;
+constexpr double rounding = 1e-6;  // m: heights interpolated along two lines that meet
 
 struct Node {
   Vector3d at;
@@ -52,7 +53,10 @@ class Noder {
     drop_doubles();
     for (int pass = 0; pass < most_passes; ++pass)
       if (!split_where_met()) return;
-    throw core::Error("breaklines lie so close to one another that no network can be made of them", lines.front().place,
+    const auto number = [](double v) { return core::format_number(std::round(v * 1e3) / 1e3); };
+    throw core::Error("breaklines lie so close to one another at x " + number(met_->at.x() + origin_.x()) + ", y " +
+                          number(met_->at.y() + origin_.y()) + " that no network can be made of them",
+                      lines[met_->line].place + " and " + lines[met_->other].place,
                       "lines that run along one another within a millimetre should share their vertices");
   }
 
@@ -91,7 +95,7 @@ class Noder {
     if (l.yields && o.yields) return std::min(z, other_z);
     if (l.yields) return other_z;
     if (o.yields) return z;
-    if (std::abs(z - other_z) > options_.tolerance.value) {
+    if (std::abs(z - other_z) > options_.tolerance.value + rounding) {
       const auto number = [](double v) { return core::format_number(std::round(v * 1e3) / 1e3); };
       throw core::Error("breaklines meet at different heights: " + number(z + origin_.z()) + " m and " + number(other_z + origin_.z()) +
                             " m at x " + number(place.x() + origin_.x()) + ", y " + number(place.y() + origin_.y()),
@@ -204,7 +208,11 @@ class Noder {
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 
     Splits splits;
-    for (const auto& [i, j] : pairs) meet(i, j, splits);
+    for (const auto& [i, j] : pairs) {
+      const size_t before = splits.size();
+      meet(i, j, splits);
+      if (splits.size() > before) met_ = Meeting{flat(nodes_[edges_[i].a].at), edges_[i].line, edges_[j].line};
+    }
     if (splits.empty()) return false;
     std::vector<Edge> out;
     for (size_t i = 0; i < edges_.size(); ++i) {
@@ -230,12 +238,18 @@ class Noder {
     return true;
   }
 
+  struct Meeting {
+    Vector2d at;
+    size_t line, other;
+  };
+
   const std::vector<NetworkLine>& lines_;
   const NetworkOptions& options_;
   Vector3d origin_;
   std::vector<Node> nodes_;
   std::vector<Edge> edges_;
   std::unordered_map<std::int64_t, std::vector<std::int32_t>> places_;
+  std::optional<Meeting> met_;  // two edges that were divided last
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "terrain/delaunay.h"
 #include "terrain/tin_surface.h"
 
 namespace swath::terrain {
@@ -45,7 +46,7 @@ double NaturalNeighbours::height(std::int32_t triangle, double x, double y) cons
   std::vector<std::int32_t> hole{triangle};
   for (size_t n = 0; n < hole.size(); ++n)
     for (int k = 0; k < 3; ++k) {
-      const std::int32_t other = neighbours_[static_cast<size_t>(hole[n])][static_cast<size_t>(k)];
+      const std::int32_t other = tin_.across[static_cast<size_t>(hole[n])][static_cast<size_t>(k)];
       if (other < 0) return plane();
       if (std::find(hole.begin(), hole.end(), other) != hole.end() || !holds(other)) continue;
       const auto& v = tin_.triangles[static_cast<size_t>(hole[n])];
@@ -54,7 +55,7 @@ double NaturalNeighbours::height(std::int32_t triangle, double x, double y) cons
       if (std::binary_search(tin_.constrained.begin(), tin_.constrained.end(), edge)) return plane();
       hole.push_back(other);
     }
-  std::sort(hole.begin(), hole.end(), [&](std::int32_t a, std::int32_t b) { return tin_.triangles[a] < tin_.triangles[b]; });
+  std::sort(hole.begin(), hole.end(), [&](std::int32_t a, std::int32_t b) { return tin_.is_before(a, b); });
 
   std::vector<Share> shares;
   const auto share = [&](std::int32_t v) -> Share& {
@@ -74,9 +75,9 @@ double NaturalNeighbours::height(std::int32_t triangle, double x, double y) cons
       // The edge opposite vertex k with this triangle on its left.
       std::int32_t a = v[static_cast<size_t>((k + 1) % 3)], b = v[static_cast<size_t>((k + 2) % 3)];
       if (turned) std::swap(a, b);
-      const std::int32_t other = neighbours_[static_cast<size_t>(t)][static_cast<size_t>(k)];
+      const std::int32_t other = tin_.across[static_cast<size_t>(t)][static_cast<size_t>(k)];
       const bool inner = std::find(hole.begin(), hole.end(), other) != hole.end();
-      if (inner && tin_.triangles[static_cast<size_t>(other)] < v) continue;  // was met from the other side
+      if (inner && tin_.is_before(other, t)) continue;  // was met from the other side
       Vec right;
       if (inner) {
         const Circumcircle c = circumcircle(tin_, other);
@@ -91,7 +92,8 @@ double NaturalNeighbours::height(std::int32_t triangle, double x, double y) cons
       share(b).twice_area -= term;
     }
   }
-  std::sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) { return a.vertex < b.vertex; });
+  std::sort(shares.begin(), shares.end(),
+            [&](const Share& a, const Share& b) { return is_before(tin_.place(a.vertex), tin_.place(b.vertex)); });
   double sum = 0.0, total = 0.0;
   const double z0 = tin_.z[shares.front().vertex];
   for (const Share& s : shares) {

@@ -12,8 +12,8 @@ namespace swath::terrain {
 /// Natural neighbour interpolation of a TIN's heights (Sibson 1981, "A brief description of natural neighbour interpolation").
 class NaturalNeighbours {
  public:
-  /// `neighbours`: of the TIN's triangles, as neighbours(tin) gives them. Both are held by reference.
-  NaturalNeighbours(const Tin& tin, const std::vector<std::array<std::int32_t, 3>>& neighbours) : tin_(tin), neighbours_(neighbours) {}
+  /// The TIN is held by reference.
+  explicit NaturalNeighbours(const Tin& tin) : tin_(tin) {}
 
   /// Height at (x, y), m (Block frame), which `triangle` covers. The same bits for every numbering of the triangles. Where the natural
   /// neighbours reach beyond the triangles that are there, or over a constrained edge, they are not all known: the triangle's plane.
@@ -21,7 +21,6 @@ class NaturalNeighbours {
 
  private:
   const Tin& tin_;
-  const std::vector<std::array<std::int32_t, 3>>& neighbours_;
 };
 
 }  // namespace swath::terrain

@@ -4,12 +4,15 @@
 // difference in range) is left out. Sums are of integers (1/256 of a unit), so that the order of the points has no say.
 #include "terrain/return_grids.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
 
 #include "core/error.h"
+#include "terrain/relief.h"
+#include "terrain/voids.h"
 
 namespace swath::terrain {
 namespace {
@@ -24,18 +27,43 @@ std::optional<size_t> cell_of(const core::Block& b, size_t r, const core::Lattic
 
 }  // namespace
 
-core::Grid density(const core::Block& b, const core::Lattice& window, bool pulses) {
+double halo(const DensityOptions& o) { return o.max_gap.value + o.cell.value; }
+
+core::Grid density(const core::Block& b, const core::Lattice& window, const DensityOptions& o, bool pulses) {
+  if (window.cell != o.cell.value) throw core::Error("the window's cell is not the option's", "terrain.density");
   core::Grid g(window);
   g.count.assign(window.size(), 0);
-  for (size_t r = 0; r < b.size(); ++r) {
-    if (!core::is_usable(b, r) || (pulses && !b.return_number.empty() && b.return_number[r] > 1)) continue;
-    if (const auto at = cell_of(b, r, window)) ++g.count[*at];
+  std::vector<std::uint32_t> usable;
+  for (std::uint32_t r = 0; r < b.size(); ++r) {
+    if (!core::is_usable(b, r)) continue;
+    usable.push_back(r);
+    const auto at = cell_of(b, r, window);
+    if (!at) continue;
+    g.height[*at] = 0.0f;  // known, whatever the number of its pulses
+    if (!pulses || b.return_number.empty() || b.return_number[r] <= 1) ++g.count[*at];
   }
+  give_void_reasons(g, b, usable, o.max_gap.value);
   for (size_t k = 0; k < window.size(); ++k) {
+    if (g.reason[k] == core::Void::no_data) continue;
     g.height[k] = static_cast<float>(g.count[k] / (window.cell * window.cell));
     g.reason[k] = core::Void::none;
   }
   return g;
+}
+
+void set_incidence(core::Block& b, const core::Grid& terrain, const std::vector<Eigen::Vector3d>& scanner) {
+  core::Lattice inner = terrain.lattice;
+  ++inner.i0, ++inner.j0, inner.nx -= 2, inner.ny -= 2;
+  if (inner.nx <= 0 || inner.ny <= 0) return;
+  const Gradients g = gradients(terrain, inner);
+  core::add_columns(b, {core::Column::incidence});
+  for (size_t r = 0; r < b.size(); ++r) {
+    const Eigen::Vector3d beam = scanner[r] - Eigen::Vector3d(b.x[r], b.y[r], b.z[r]);
+    const auto at = cell_of(b, r, inner);
+    if (!at || !beam.allFinite() || std::isnan(g.east[*at])) continue;
+    const Eigen::Vector3d normal(-static_cast<double>(g.east[*at]), -static_cast<double>(g.north[*at]), 1.0);
+    b.incidence[r] = static_cast<float>(std::atan2(beam.cross(normal).norm(), beam.dot(normal)));
+  }
 }
 
 core::Grid intensity(const core::Block& b, const core::Lattice& window, const IntensityOptions& o) {

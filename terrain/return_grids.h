@@ -2,6 +2,9 @@
 // What the returns of each cell say without any model: how dense they are and how bright.
 #pragma once
 
+#include <Eigen/Core>
+#include <vector>
+
 #include "core/block.h"
 #include "core/grid.h"
 #include "core/option.h"
@@ -10,16 +13,30 @@ namespace swath::terrain {
 
 struct DensityOptions {
   core::Metres cell{1.0};
+  core::Metres max_gap{60.0};
 };
 
 template <class V>
 void describe(DensityOptions& o, V& v) {
   v.option("cell", o.cell, core::above(0.0), "Side of one cell.");
+  v.option(
+      "max_gap", o.max_gap, core::at_least(0.0),
+      "A cell without a return has density 0 where returns lie on all sides within this; otherwise it lies beyond the survey's edge and "
+      "is void.");
 }
 
-/// height: usable returns (or, with `pulses`, first returns: those numbered 1 or not numbered) per square metre; 0 where there are none.
-/// count: how many. No void cells.
-core::Grid density(const core::Block& block, const core::Lattice& window, bool pulses);
+/// Width of the border of points around a window that density() needs, m.
+double halo(const DensityOptions& options);
+
+/// height: usable returns (or, with `pulses`, first returns: those numbered 1 or not numbered) per square metre, over the whole cell, on
+/// the cells of `window` (window.cell must be options.cell, else Error). count: how many. reason: none or no_data, by the rule of
+/// terrain/voids.h for all usable returns.
+core::Grid density(const core::Block& block, const core::Lattice& window, const DensityOptions& options, bool pulses);
+
+/// Sets the column incidence of the points over a known cell of `terrain` to the angle, rad, between their beam and the normal of the
+/// terrain there (Horn's gradients of 3 x 3 cells). `scanner`: its position at each point's time, relative to the block's origin, m. Other
+/// points, and those whose scanner is not finite, keep theirs; where there was no such column it is made, with 0.
+void set_incidence(core::Block& block, const core::Grid& terrain, const std::vector<Eigen::Vector3d>& scanner);
 
 struct IntensityOptions {
   core::Metres cell{1.0};

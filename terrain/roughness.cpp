@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 
+#include "terrain/delaunay.h"
 #include "terrain/tin_surface.h"
 
 namespace swath::terrain {
@@ -33,8 +34,8 @@ struct Sums {
 constexpr std::array<double, 9> scale{0x1p30, 0x1p30, 0x1p30, 0x1p30, 0x1p24, 0x1p16, 0x1p34, 0x1p34, 0x1p32};
 
 void add_pair(Sums& sums, double misfit_squared, double gain, double s) {
-  const double y = std::min(misfit_squared, largest) / gain, x1 = s / gain, x2 = 0.25 * s * s / gain;
-  const double w = 1.0 / ((1.0 + s / s0) * (1.0 + s / s0));
+  const double share = 1.0 / gain, y = std::min(misfit_squared, largest) * share, x1 = s * share, x2 = 0.25 * s * s * share;
+  const double near = s0 / (s0 + s), w = near * near;
   const std::array<double, 9> terms{w, w * x1, w * x2, w * x1 * x1, w * x1 * x2, w * x2 * x2, w * y, w * y * x1, w * y * x2};
   for (size_t k = 0; k < terms.size(); ++k) sums.v[k] += static_cast<std::int64_t>(terms[k] * scale[k]);
   ++sums.pairs;
@@ -69,6 +70,9 @@ Roughness fit(const Sums& sums) {
   return {best[0], best[1], best[2], true};
 }
 
+// Of the tensor M.
+double length_of(double xx, double xy, double yy) { return std::sqrt((xx + yy) * (xx + yy) + 2.0 * (xx * xx + 2.0 * xy * xy + yy * yy)); }
+
 }  // namespace
 
 double reach_of(const Tin& tin, std::int32_t triangle, const std::array<double, 3>& w, double x, double y) {
@@ -80,39 +84,58 @@ double reach_of(const Tin& tin, std::int32_t triangle, const std::array<double, 
     xy += w[k] * dx * dy;
     yy += w[k] * dy * dy;
   }
-  return std::sqrt((xx + yy) * (xx + yy) + 2.0 * (xx * xx + 2.0 * xy * xy + yy * yy));
+  return length_of(xx, xy, yy);
 }
 
-RoughnessMap::RoughnessMap(const Tin& tin, const std::vector<std::array<std::int32_t, 3>>& neighbours, const Eigen::Vector3d& origin,
-                           const core::Lattice& window, double side)
-    : origin_(origin) {
+RoughnessMap::RoughnessMap(const Tin& tin, const Eigen::Vector3d& origin, const core::Lattice& window, double side) : origin_(origin) {
   const auto block = [side](double v) { return core::cell_index(v, side); };
   blocks_ = {side, block(window.west()) - 1, block(window.south()) - 1, 0, 0};
   blocks_.nx = static_cast<int>(block(window.east()) + 2 - blocks_.i0);
   blocks_.ny = static_cast<int>(block(window.north()) + 2 - blocks_.j0);
   const core::Lattice wide{side, blocks_.i0 - 1, blocks_.j0 - 1, blocks_.nx + 2, blocks_.ny + 2};
   std::vector<Sums> sums(wide.size());
-  for (std::int32_t t = 0; t < static_cast<std::int32_t>(tin.size()); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t other = neighbours[t][k];
-      // From the triangle whose vertices come first, whatever their numbers in this tile.
-      if (other < 0 || tin.triangles[other] < tin.triangles[t]) continue;
+  const auto place = [&](std::int32_t v) { return Eigen::Vector3d(tin.x[v], tin.y[v], tin.z[v]); };
+  const double west = origin.x() - wide.west(), south = origin.y() - wide.south();
+  // Edges are gathered without branches, which no processor would foresee.
+  struct Edge {
+    std::int32_t triangle, p, q, far;
+  };
+  constexpr std::int32_t batch = 256;
+  std::array<Edge, 3 * batch> edges;
+  const auto size = static_cast<std::int32_t>(tin.size());
+  for (std::int32_t begin = 0; begin < size; begin += batch) {
+    size_t count = 0;
+    for (std::int32_t t = begin; t < std::min(begin + batch, size); ++t) {
       const auto& v = tin.triangles[t];
-      const auto a = v[(k + 1) % 3], b = v[(k + 2) % 3];
-      const std::int64_t i = block(0.5 * (tin.x[a] + tin.x[b]) + origin.x()) - wide.i0;
-      const std::int64_t j = block(0.5 * (tin.y[a] + tin.y[b]) + origin.y()) - wide.j0;
-      if (i < 0 || j < 0 || i >= wide.nx || j >= wide.ny) continue;
-      if (!tin.constrained.empty() &&
-          std::binary_search(tin.constrained.begin(), tin.constrained.end(), std::pair<std::int32_t, std::int32_t>(std::minmax(a, b))))
-        continue;
-      std::int32_t far = -1;
-      for (const std::int32_t c : tin.triangles[other])
-        if (c != a && c != b) far = c;
-      const double misfit = tin.z[far] - height_in(tin, t, tin.x[far], tin.y[far]);
-      const auto w = weights(tin, t, tin.x[far], tin.y[far]);
-      const double s = reach_of(tin, t, w, tin.x[far], tin.y[far]);
-      add_pair(sums[wide.at(static_cast<int>(i), static_cast<int>(j))], misfit * misfit, 1.0 + w[0] * w[0] + w[1] * w[1] + w[2] * w[2], s);
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t other = tin.across[t][k];
+        if (other < 0) continue;
+        const auto& u = tin.triangles[other];
+        const std::int32_t p = v[(k + 1) % 3], q = v[(k + 2) % 3], far = u[0] ^ u[1] ^ u[2] ^ p ^ q;
+        edges[count] = {t, p, q, far};
+        count += is_before(tin.place(v[k]), tin.place(far));  // from the triangle that comes first, whatever their numbers in this tile
+      }
     }
+    for (size_t e = 0; e < count; ++e) {
+      const auto [t, p, q, far] = edges[e];
+      const double i = (0.5 * (tin.x[p] + tin.x[q]) + west) / side, j = (0.5 * (tin.y[p] + tin.y[q]) + south) / side;
+      if (!(i >= 0.0 && j >= 0.0 && i < wide.nx && j < wide.ny)) continue;
+      if (!tin.constrained.empty() &&
+          std::binary_search(tin.constrained.begin(), tin.constrained.end(), std::pair<std::int32_t, std::int32_t>(std::minmax(p, q))))
+        continue;
+      // As weights(), height_in() and reach_of(), all from the triangle's first vertex: M = sum w_k p_k p_k^T - q q^T.
+      const auto& v = tin.triangles[t];
+      const Eigen::Vector3d corner = place(v[0]), b = place(v[1]) - corner, c = place(v[2]) - corner, f = place(far) - corner;
+      const double inverse = 1.0 / (b.x() * c.y() - b.y() * c.x());
+      const double wb = (f.x() * c.y() - f.y() * c.x()) * inverse, wc = (b.x() * f.y() - b.y() * f.x()) * inverse, wa = 1.0 - wb - wc;
+      const double misfit = f.z() - wb * b.z() - wc * c.z();
+      const double xx = wb * b.x() * b.x() + wc * c.x() * c.x() - f.x() * f.x(),
+                   yy = wb * b.y() * b.y() + wc * c.y() * c.y() - f.y() * f.y();
+      const double xy = wb * b.x() * b.y() + wc * c.x() * c.y() - f.x() * f.y();
+      add_pair(sums[wide.at(static_cast<int>(i), static_cast<int>(j))], misfit * misfit, 1.0 + wa * wa + wb * wb + wc * wc,
+               length_of(xx, xy, yy));
+    }
+  }
   fitted_.resize(blocks_.size());
   for (int j = 0; j < blocks_.ny; ++j)
     for (int i = 0; i < blocks_.nx; ++i) {

@@ -30,8 +30,7 @@ struct Roughness {
 class RoughnessMap {
  public:
   /// From all pairs of neighbouring triangles within `reach(side)` of the window; edges held by constraints do not count.
-  RoughnessMap(const Tin& tin, const std::vector<std::array<std::int32_t, 3>>& neighbours, const Eigen::Vector3d& origin,
-               const core::Lattice& window, double side);
+  RoughnessMap(const Tin& tin, const Eigen::Vector3d& origin, const core::Lattice& window, double side);
   /// At a place of the Block's frame within the window.
   Roughness at(double x, double y) const;
   /// Metres around a window from which pairs are taken.

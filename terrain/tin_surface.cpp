@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangle by triangle: each triangle visits the places in its bounding box. Whether a place lies in it is decided exactly (CGAL's
-// orientation predicate), so that edges shared by two triangles leave neither gaps nor doubt.
+// Triangle by triangle: each triangle visits the places in its bounding box. Whether a place lies in it is decided exactly, so that edges
+// shared by two triangles leave neither gaps nor doubt.
 #include "terrain/tin_surface.h"
-
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,33 +10,30 @@
 namespace swath::terrain {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
 /// Exact test of one triangle against many places.
 class Inside {
  public:
   Inside(const Tin& tin, const std::array<std::int32_t, 3>& t) {
-    for (int k = 0; k < 3; ++k) p_[k] = Kernel::Point_2(tin.x[t[k]], tin.y[t[k]]);
-    if (CGAL::orientation(p_[0], p_[1], p_[2]) == CGAL::RIGHT_TURN) std::swap(p_[1], p_[2]);
+    for (int k = 0; k < 3; ++k) p_[k] = tin.place(t[k]);
+    if (orientation(p_[0], p_[1], p_[2]) < 0) std::swap(p_[1], p_[2]);
   }
   bool operator()(double x, double y) const {
-    const Kernel::Point_2 q(x, y);
     for (int k = 0; k < 3; ++k)
-      if (CGAL::orientation(p_[k], p_[(k + 1) % 3], q) == CGAL::RIGHT_TURN) return false;
+      if (orientation(p_[k], p_[(k + 1) % 3], {x, y}) < 0) return false;
     return true;
   }
   /// Interval of x that the triangle spans at height y (rounded; y within the triangle's range).
   std::pair<double, double> span(double y) const {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (int k = 0; k < 3; ++k) {
-      const Kernel::Point_2 &a = p_[k], &b = p_[(k + 1) % 3];
-      if (std::min(a.y(), b.y()) > y || std::max(a.y(), b.y()) < y) continue;
-      if (a.y() == b.y()) {
-        low = std::min({low, a.x(), b.x()});
-        high = std::max({high, a.x(), b.x()});
+      const Place &a = p_[k], &b = p_[(k + 1) % 3];
+      if (std::min(a.y, b.y) > y || std::max(a.y, b.y) < y) continue;
+      if (a.y == b.y) {
+        low = std::min({low, a.x, b.x});
+        high = std::max({high, a.x, b.x});
         continue;
       }
-      const double x = a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+      const double x = a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
       low = std::min(low, x);
       high = std::max(high, x);
     }
@@ -46,12 +41,12 @@ class Inside {
   }
 
  private:
-  std::array<Kernel::Point_2, 3> p_;
+  std::array<Place, 3> p_;
 };
 
-// The smaller triangle of two that share a place.
+// The first triangle of two that share a place.
 void claim(const Tin& tin, std::int32_t t, std::int32_t& held) {
-  if (held < 0 || tin.triangles[t] < tin.triangles[held]) held = t;
+  if (held < 0 || tin.is_before(t, held)) held = t;
 }
 
 }  // namespace
@@ -82,35 +77,37 @@ Eigen::Vector2d gradient(const Tin& tin, std::int32_t triangle) {
 
 std::vector<std::int32_t> triangles_at_centres(const Tin& tin, const Eigen::Vector3d& origin, const core::Lattice& window) {
   // Bounding boxes are rounded outward by this share of a cell: over the rounding of map coordinates, under a visible cost.
-  constexpr double slack = 1e-6;
+  static constexpr double slack = 1e-6;
   std::vector<std::int32_t> out(window.size(), -1);
-  const auto first = [&](double v, std::int64_t index0) {
-    return static_cast<std::int64_t>(std::ceil(v / window.cell - 0.5 - slack)) - index0;
+  // Cell centres lie at whole numbers of these.
+  const double inverse = 1.0 / window.cell;
+  const double east = (origin.x() - window.west()) * inverse - 0.5, north = (origin.y() - window.south()) * inverse - 0.5;
+  const auto column = [&](double x) { return x * inverse + east; };
+  const auto row = [&](double y) { return y * inverse + north; };
+  const auto first = [](double v) {  // at least 0
+    const auto whole = static_cast<int>(std::max(v - slack, 0.0));
+    return whole < v - slack ? whole + 1 : whole;
   };
-  const auto last = [&](double v, std::int64_t index0) {
-    return static_cast<std::int64_t>(std::floor(v / window.cell - 0.5 + slack)) - index0;
-  };
+  const auto last = [](double v, int n) { return v + slack < 0.0 ? -1 : static_cast<int>(std::min(v + slack, n - 1.0)); };
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(tin.size()); ++t) {
     const auto& v = tin.triangles[t];
-    const auto [y_low, y_high] = std::minmax({tin.y[v[0]], tin.y[v[1]], tin.y[v[2]]});
-    const double x_low = tin.x[v[0]], x_high = tin.x[v[2]];  // vertices ascend in x
-    const std::int64_t j0 = std::max<std::int64_t>(0, first(y_low + origin.y(), window.j0));
-    const std::int64_t j1 = std::min<std::int64_t>(window.ny - 1, last(y_high + origin.y(), window.j0));
-    const std::int64_t i0 = std::max<std::int64_t>(0, first(x_low + origin.x(), window.i0));
-    const std::int64_t i1 = std::min<std::int64_t>(window.nx - 1, last(x_high + origin.x(), window.i0));
+    const double y0 = tin.y[v[0]], y1 = tin.y[v[1]], y2 = tin.y[v[2]];
+    const double y_low = std::min(std::min(y0, y1), y2), y_high = std::max(std::max(y0, y1), y2);
+    const double low = column(tin.x[v[0]]), high = column(tin.x[v[2]]);  // vertices ascend in x
+    if (!(low < window.nx && row(y_low) < window.ny)) continue;
+    const int i0 = first(low), i1 = last(high, window.nx), j0 = first(row(y_low)), j1 = last(row(y_high), window.ny);
     if (i0 > i1 || j0 > j1) continue;
     const Inside inside(tin, v);
-    for (std::int64_t j = j0; j <= j1; ++j) {
-      const double y = window.centre_y(static_cast<int>(j)) - origin.y();
-      std::int64_t a = i0, b = i1;
+    for (int j = j0; j <= j1; ++j) {
+      const double y = window.centre_y(j) - origin.y();
+      int a = i0, b = i1;
       if (b - a > 2) {  // wide triangle: only the part of the row that it spans
-        const auto [low, high] = inside.span(std::clamp(y, y_low, y_high));
-        a = std::max(a, first(low + origin.x(), window.i0) - 1);
-        b = std::min(b, last(high + origin.x(), window.i0) + 1);
+        const auto [from, to] = inside.span(std::clamp(y, y_low, y_high));
+        a = std::max(a, first(column(from)) - 1);
+        b = std::min(b, last(column(to), window.nx) + 1);
       }
-      for (std::int64_t i = a; i <= b; ++i)
-        if (inside(window.centre_x(static_cast<int>(i)) - origin.x(), y))
-          claim(tin, t, out[window.at(static_cast<int>(i), static_cast<int>(j))]);
+      for (int i = a; i <= b; ++i)
+        if (inside(window.centre_x(i) - origin.x(), y)) claim(tin, t, out[window.at(i, j)]);
     }
   }
   return out;

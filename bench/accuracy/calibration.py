@@ -38,11 +38,12 @@ def number(value):
 
 
 def fly(part, seed):
-    """One flight: start error, error, sigma and whether it was delivered, per value; findings. Its folder is deleted."""
+    """One flight: start error, error, sigma and whether it was delivered, per value; findings; the flat target's readings: error, sigma,
+    difference from the adjustment over the joint sigma. Its folder is deleted."""
     kept = common.SCRATCH / "calibration" / f"{part}_{seed}.json"
     if os.environ.get("RESUME") and kept.exists():
         done = json.loads(kept.read_text())
-        return np.array(done["rows"]), done["findings"]
+        return np.array(done["rows"]), done["findings"], done["readings"]
     folder = common.scratch(f"calibration/{part}_{seed}")
     options, settings = PARTS[part]
     if "PRF" in os.environ:
@@ -65,8 +66,14 @@ def fly(part, seed):
     if not os.environ.get("KEEP"):
         shutil.rmtree(folder)
     findings = [f["what"] for f in found["findings"]]
-    kept.write_text(json.dumps({"rows": rows, "findings": findings}))
-    return np.array(rows), findings
+    readings = {}
+    for r in found["readings"]:
+        key = r["parameter"].removeprefix("boresight_")
+        scale = {k: s for k, _, s in VALUES}.get(key)
+        if scale and "difference" in r:
+            readings[key] = [scale * (r["value"] - number(truth[key])), scale * r["sigma"], r["difference"] / r["joint_sigma"]]
+    kept.write_text(json.dumps({"rows": rows, "findings": findings, "readings": readings}))
+    return np.array(rows), findings, readings
 
 
 def main():
@@ -74,7 +81,7 @@ def main():
     for part in sys.argv[2:] or ["roof", "strips", "no_cross", "one_direction", "one_line", "flat"]:
         with concurrent.futures.ThreadPoolExecutor(int(os.environ.get("WORKERS", "2"))) as pool:
             done = list(pool.map(lambda seed: fly(part, seed), range(1, seeds + 1)))
-        rows = np.stack([r for r, _ in done])
+        rows = np.stack([r for r, _, _ in done])
         print(f"## {part}, {seeds} seeds")
         table = []
         for k, (key, unit, _) in enumerate(VALUES):
@@ -89,8 +96,17 @@ def main():
                           f"{int(delivered.sum())}"])
         common.table(["value", "start rms", "error rms", "largest", "sigma", "error/sigma", "formal", "error/formal", "jackknife (lines)",
                       "error/white", "delivered"], table)
-        for what in sorted({w for _, words in done for w in words}):
-            print(f"- {sum(what in words for _, words in done)} of {seeds}: {what}")
+        target = []
+        for key, unit, _ in VALUES:
+            told = np.array([readings[key] for _, _, readings in done if key in readings])
+            if len(told):
+                error, sigma, apart = told.T
+                target.append([f"{key} ({unit})", len(told), f"{common.rms(error):.2f}", f"{common.rms(sigma):.2f}",
+                               f"{common.rms(error / sigma):.2f}", f"{common.rms(apart):.2f}", f"{np.abs(apart).max():.2f}"])
+        if target:
+            common.table(["flat target's", "flights", "error rms", "sigma", "error/sigma", "difference from the adjustment/joint sigma", "largest"], target)
+        for what in sorted({w for _, words, _ in done for w in words}):
+            print(f"- {sum(what in words for _, words, _ in done)} of {seeds}: {what}")
 
 
 if __name__ == "__main__":

@@ -41,6 +41,7 @@ std::unique_ptr<Stage> make_ground();
 std::unique_ptr<Stage> make_water();
 std::unique_ptr<Stage> make_hag_dem();
 std::unique_ptr<Stage> make_breaklines();
+std::unique_ptr<Stage> make_key_points();
 std::unique_ptr<Stage> make_dtm();
 std::unique_ptr<Stage> make_dsm();
 std::unique_ptr<Stage> make_canopy();

@@ -24,6 +24,10 @@ fs::path shore_file(const fs::path& folder, TileKey key) {
   return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".shores");
 }
 
+[[noreturn]] void cut_short(const fs::path& file) {
+  throw core::Error("the intermediate result is damaged", file.string(), "remove the .swath folder beside the products and run again");
+}
+
 /// The survey's features in metres of the run's Blocks.
 std::vector<core::Breakline> features_of(const Context& context, core::Tally& tally) {
   std::vector<core::Breakline> out = io::read_breaklines(context.survey, context.product_crs, tally);
@@ -82,11 +86,14 @@ class BreaklineStage : public OptionStage<SettleOptions> {
     std::vector<core::Breakline> all = features_of(context, job.tally);
     std::vector<std::vector<terrain::ShorePoint>> shores(all.size());
     for (const TileKey key : job.tiles) {
-      const std::string bytes = io::read_text_file(shore_file(job.folder, key));
+      const fs::path file = shore_file(job.folder, key);
+      const std::string bytes = io::read_text_file(file);
+      if (bytes.size() % sizeof(terrain::ShorePoint) != 0) cut_short(file);
       for (size_t at = 0; at + sizeof(terrain::ShorePoint) <= bytes.size(); at += sizeof(terrain::ShorePoint)) {
         terrain::ShorePoint p;
         std::memcpy(&p, bytes.data() + at, sizeof p);
-        shores.at(p.feature).push_back(p);
+        if (p.feature >= shores.size()) cut_short(file);
+        shores[p.feature].push_back(p);
       }
     }
     std::vector<terrain::SettledLine> settled;
@@ -142,7 +149,8 @@ std::unique_ptr<terrain::Breaklines> settled_breaklines(const Context& context) 
   std::vector<core::Fault> faults;
   core::read_options(core::described(options), io::read_value_file(folder / options_file), "", faults);
   core::throw_if_any(faults);
-  return std::make_unique<terrain::Breaklines>(terrain::unpack(io::read_text_file(folder / settled_file)), options, context.origin);
+  return std::make_unique<terrain::Breaklines>(terrain::unpack(io::read_text_file(folder / settled_file), (folder / settled_file).string()),
+                                               options, context.origin);
 }
 
 std::unique_ptr<Stage> make_breaklines() { return std::make_unique<BreaklineStage>(); }

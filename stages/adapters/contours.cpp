@@ -98,6 +98,10 @@ int decimals_of(double step) {
   return 3;
 }
 
+[[noreturn]] void cut_short(const fs::path& file) {
+  throw core::Error("the intermediate result is cut short", file.string(), "remove the .swath folder beside the products and run again");
+}
+
 std::string height_text(double height, int decimals) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", decimals, height);
@@ -168,7 +172,14 @@ class Contours : public OptionStage<ContourWriteOptions> {
     // The lattice reaches a cell, and spot heights their radius, beyond the tile.
     return options.source == ContourSource::grid ? 0.0 : terrain::halo(options.tin) + options.tin.cell.value + terrain::halo(options.spots);
   }
-  double bytes_per_point() const override { return options.source == ContourSource::grid ? 16.0 : 300.0; }
+  double bytes_per_point() const override { return options.source == ContourSource::grid ? 0.0 : 300.0; }
+  // Measured 2026-11-22 with tests/stages/memory_test.cpp, cells of 0.5 m: 32 bytes per cell of the grid and of the TIN's lattice.
+  std::vector<Raster> rasters(const Context& c) const override {
+    if (options.source == ContourSource::grid) return window_of(c, Product::dtm, 1);
+    const double side = c.tile_side + 2.0 * (options.tin.cell.value + terrain::halo(options.spots));
+    return {{"tin.cell", options.tin.cell.value, side, 40.0},
+            {"tin.cell", options.tin.cell.value, side + 2.0 * options.tin.max_edge.value, 8.0}};
+  }
   std::vector<std::string> products() const override { return {options.name + ".gpkg", options.name + ".dxf", options.name + ".geojson"}; }
 
   void run_tile(const Context& context, TileJob& job) const override {
@@ -214,9 +225,7 @@ class Contours : public OptionStage<ContourWriteOptions> {
   static void read_facts(const fs::path& folder, TileKey key, TileFacts& facts, std::vector<terrain::SpotHeight>& spots) {
     const fs::path file = facts_file(folder, key);
     const std::string bytes = io::read_text_file(file);
-    if (bytes.size() < sizeof(TileFacts) || (bytes.size() - sizeof(TileFacts)) % sizeof(terrain::SpotHeight) != 0)
-      throw core::Error("the intermediate result is cut short", file.string(),
-                        "remove the .swath folder beside the products and run again");
+    if (bytes.size() < sizeof(TileFacts) || (bytes.size() - sizeof(TileFacts)) % sizeof(terrain::SpotHeight) != 0) cut_short(file);
     TileFacts one;
     std::memcpy(&one, bytes.data(), sizeof one);
     facts.sum_of_heights += one.sum_of_heights;
@@ -248,7 +257,10 @@ class Contours : public OptionStage<ContourWriteOptions> {
     };
     std::map<std::int64_t, std::vector<Stretch>> levels;
     for (const TileKey key : job.tiles) {
-      std::ifstream in(segment_file(job.folder, key), std::ios::binary);
+      const fs::path file = segment_file(job.folder, key);
+      std::error_code absent;
+      if (const auto size = fs::file_size(file, absent); absent || size % sizeof(terrain::Segment) != 0) cut_short(file);
+      std::ifstream in(file, std::ios::binary);
       terrain::Segment s;
       for (std::uint64_t row = 0; in.read(reinterpret_cast<char*>(&s), sizeof s); ++row) {
         auto& stretches = levels[s.level];
@@ -269,7 +281,8 @@ class Contours : public OptionStage<ContourWriteOptions> {
         in.seekg(static_cast<std::streamoff>(s.first * sizeof(terrain::Segment)));
         const size_t before = segments.size();
         segments.resize(before + s.count);
-        in.read(reinterpret_cast<char*>(segments.data() + before), static_cast<std::streamsize>(s.count * sizeof(terrain::Segment)));
+        const auto size = static_cast<std::streamsize>(s.count * sizeof(terrain::Segment));
+        if (!in.read(reinterpret_cast<char*>(segments.data() + before), size)) cut_short(segment_file(job.folder, s.key));
       }
       for (const terrain::ContourLine& line : terrain::contour_lines(std::move(segments), options, surface_of_all)) {
         metres += terrain::length(line.vertices);

@@ -26,6 +26,11 @@ class Outlier : public OptionStage<filters::OutlierOptions> {
   double halo() const override { return filters::halo(options); }
   // Two bins of the points (56), their mean distances and cells (12), the cubes' index (40).
   double bytes_per_point() const override { return 112.0; }
+  // Measured 2026-11-22 with tests/stages/memory_test.cpp, tile 200 m, reach 0.8 m, window 1 m: 50 bytes per cell of a third of the window.
+  std::vector<Raster> rasters(const Context& c) const override {
+    const double side = c.tile_side + 2.0 * halo();
+    return {{"window", filters::outlier_cell(options), side, 52.0}, {"reach", options.reach.value, side, 10.0}};
+  }
   void run_tile(const Context&, TileJob& job) const override {
     const filters::OutlierCounts n = filters::flag_outliers(job.block, job.own, options);
     job.tally.count("low noise", n.low_noise);
@@ -50,8 +55,9 @@ class Classify : public OptionStage<filters::ClassifyOptions> {
   }
   core::ColumnSet also_reads() const override { return {Column::return_number, Column::return_count}; }
   double halo() const override { return filters::halo(options); }
-  // Three bins of the points off the ground (84), cells of 1 m (20), marks (5).
-  double bytes_per_point() const override { return 112.0; }
+  // Measured 2026-11-22 with tests/stages/memory_test.cpp, tile 200 m: 22 bytes per cell of 1 m; up to 177 per point where none is ground.
+  double bytes_per_point() const override { return 180.0; }
+  std::vector<Raster> rasters(const Context& c) const override { return {{"", 1.0, c.tile_side + 2.0 * halo(), 24.0}}; }
   void run_tile(const Context&, TileJob& job) const override {
     const filters::ClassifyCounts n = filters::classify(job.block, job.own, options);
     const auto tell = [&](const char* name, std::uint64_t count) {
@@ -82,8 +88,10 @@ class Water : public OptionStage<filters::WaterOptions> {
   }
   core::ColumnSet also_reads() const override { return {Column::strip, Column::return_number, Column::return_count}; }
   double halo() const override { return filters::halo(options); }
-  // A bin of the points (28), their heights (8), plots of 16 square metres (some 100 bytes each).
+  // A bin of the points (28), their heights (8), what is in sorting.
   double bytes_per_point() const override { return 64.0; }
+  // Plots of 4 m: heights, sparse returns, planes, ranges.
+  std::vector<Raster> rasters(const Context& c) const override { return {{"", 4.0, c.tile_side + 2.0 * halo(), 160.0}}; }
   void run_tile(const Context&, TileJob& job) const override {
     const filters::WaterCounts n = filters::classify_water(job.block, job.own, options);
     if (n.water) job.tally.count("water", n.water);

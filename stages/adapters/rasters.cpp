@@ -2,6 +2,7 @@
 // Grids beside the models of terrain and surface.
 #include "core/error.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/scanner.h"
 #include "stages/grid_tile.h"
 #include "terrain/relief.h"
 #include "terrain/return_grids.h"
@@ -25,7 +26,8 @@ class Relief : public OptionStage<terrain::ReliefOptions> {
                            {Product::dtm},   {Product::slope, Product::hillshade}};
     return info;
   }
-  double bytes_per_point() const override { return 16.0; }
+  double bytes_per_point() const override { return 0.0; }
+  std::vector<Raster> rasters(const Context& c) const override { return window_of(c, Product::dtm, 0); }
   void run_tile(const Context& context, TileJob& job) const override {
     const core::Lattice own = lattice_in(context.grids->cell(Product::dtm), job.box);
     const core::Grid model = context.grids->window(Product::dtm, {own.cell, own.i0 - 1, own.j0 - 1, own.nx + 2, own.ny + 2});
@@ -50,7 +52,8 @@ class Canopy : public OptionStage<NoOptions> {
                            {Product::canopy}};
     return info;
   }
-  double bytes_per_point() const override { return 16.0; }
+  double bytes_per_point() const override { return 0.0; }
+  std::vector<Raster> rasters(const Context& c) const override { return window_of(c, Product::dtm, 2); }
   void run_tile(const Context& context, TileJob& job) const override {
     const core::Lattice of_surface = lattice_in(context.grids->cell(Product::dsm), job.box);
     const core::Lattice of_terrain = lattice_in(context.grids->cell(Product::dtm), job.box);
@@ -72,11 +75,18 @@ class Density : public OptionStage<terrain::DensityOptions> {
     return info;
   }
   core::ColumnSet also_reads() const override { return {core::Column::classification}; }
+  double halo() const override { return terrain::halo(options); }
+  double cell() const override { return options.cell.value; }
+  // Measured 2026-11-22 with tests/stages/memory_test.cpp, tile 200 m, cells of 0.5 m: 30 bytes per cell (intensity 34); the search for
+  // returns on all sides has two counts per cell.
   double bytes_per_point() const override { return 8.0; }
+  std::vector<Raster> rasters(const Context& c) const override {
+    return {{"cell", options.cell.value, c.tile_side, 32.0}, {"cell", options.cell.value, c.tile_side + 2.0 * halo(), 8.0}};
+  }
   void run_tile(const Context&, TileJob& job) const override {
     const core::Lattice own = lattice_in(options.cell.value, job.box);
-    keep(job, Product::pulse_density, terrain::density(job.block, own, true));
-    keep(job, Product::return_density, terrain::density(job.block, own, false));
+    keep(job, Product::pulse_density, terrain::density(job.block, own, options, true));
+    keep(job, Product::return_density, terrain::density(job.block, own, options, false));
   }
 };
 
@@ -84,21 +94,46 @@ class Intensity : public OptionStage<terrain::IntensityOptions> {
  public:
   const Info& info() const override {
     static const Info info{"terrain.intensity",
-                           "Image of the intensity of single returns, brought to one range and to perpendicular incidence.",
+                           "Image of the intensity of single returns, brought to one range and to perpendicular incidence on the terrain.",
                            {Grain::tile},
-                           {core::Column::intensity, core::Column::return_count, core::Column::flags},
+                           {core::Column::time, core::Column::intensity, core::Column::return_count, core::Column::flags},
                            {},
                            {Product::points},
                            {Product::intensity}};
     return info;
   }
   core::ColumnSet also_reads() const override { return {core::Column::classification, core::Column::range, core::Column::incidence}; }
-  double bytes_per_point() const override { return 8.0; }
-  void run_tile(const Context&, TileJob& job) const override {
+  double halo() const override { return options.cell.value; }  // cells reach over the tile's border
+  double cell() const override { return options.cell.value; }
+  double bytes_per_point() const override { return 32.0; }  // scanner positions and incidence
+  std::vector<Raster> rasters(const Context& c) const override {
+    std::vector<Raster> out = window_of(c, Product::dtm, 0);
+    out.push_back({"cell", options.cell.value, c.tile_side, 36.0});
+    return out;
+  }
+  void run_tile(const Context& context, TileJob& job) const override {
+    meet_terrain(context, job);
     const core::Grid grid = terrain::intensity(job.block, lattice_in(options.cell.value, job.box), options);
     if (job.block.range.empty() && job.own > 0) job.tally.count("returns without a range: intensity as recorded", job.own);
     write_grid_tile(job.folder, job.key, grid);
   }
+
+ private:
+  /// The column incidence, which is to the vertical, by the terrain model where the run has one and knows where the scanner was.
+  void meet_terrain(const Context& context, TileJob& job) const {
+    if (options.steepest.value == 0.0 || job.own == 0) return;
+    if (!context.trajectory || !context.grids->has(Product::dtm)) {
+      job.tally.count(job.block.incidence.empty() ? "returns without an incidence: intensity not brought to perpendicular"
+                                                  : "returns without terrain model or trajectory: incidence to the vertical",
+                      job.own);
+      return;
+    }
+    const double cell = context.grids->cell(Product::dtm);
+    const double border = halo() + 2.0 * cell;
+    const core::Grid model = context.grids->window(Product::dtm, lattice_in(cell, job.box.grown(border)));
+    terrain::set_incidence(job.block, model, scanner_.of(context, job.block));
+  }
+  ScannerPositions scanner_;
 };
 
 }  // namespace

@@ -2,12 +2,11 @@
 #include "filters/visibility.h"
 
 #include <limits>
-#include <mutex>
 
-#include "calib/map_patch.h"
 #include "io/geotiff.h"
 #include "io/vrt.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/scanner.h"
 #include "stages/adapters/tile_list.h"
 #include "stages/adapters/units.h"
 #include "stages/grid_tile.h"
@@ -34,15 +33,21 @@ class Visibility : public OptionStage<filters::VisibilityOptions> {
     return info;
   }
   double halo() const override { return filters::halo(options); }
-  // The octree, the scanner's positions (24) and the order of the returns (8).
-  double bytes_per_point() const override { return 32.0 + filters::visibility_bytes(options); }
+  // Measured 2026-11-22 with tests/stages/memory_test.cpp, tile 200 m, points 0.7 and 3 m apart, voxels of 1 and 2 m: 36 to 54 bytes for
+  // each voxel that the reach holds. Of a raster's cell: 24 layers of counts (16) and their bands (4).
+  double bytes_per_point() const override { return 32.0 + filters::visibility_bytes_per_point; }
+  std::vector<Raster> rasters(const Context& c) const override {
+    const double voxel = options.voxel.value;
+    return {
+        {"voxel", voxel, c.tile_side + 2.0 * voxel, filters::visibility_bytes_per_column(options), filters::visibility_columns_per_point()},
+        {"cell", options.cell.value, c.tile_side, 600.0}};
+  }
   std::vector<std::string> products() const override { return {"visibility", "visibility.vrt"}; }
 
   void run_tile(const Context& context, TileJob& job) const override {
     const core::Lattice lattice = lattice_in(options.cell.value, job.box);
     filters::Visibility v;
-    const filters::VisibilityCounts n =
-        filters::trace_visibility(job.block, job.own, scanner_positions(context, job.block), lattice, options, v);
+    const filters::VisibilityCounts n = filters::trace_visibility(job.block, job.own, scanner_.of(context, job.block), lattice, options, v);
     job.tally.count("high noise", n.noise);
     if (n.untouched) job.tally.count("withheld or noise already, not looked at", n.untouched);
     if (n.no_position) job.tally.count("outside the trajectory: beam not followed", n.no_position);
@@ -73,25 +78,6 @@ class Visibility : public OptionStage<filters::VisibilityOptions> {
  private:
   static std::string name(const Context& context, TileKey key) { return "visibility_" + context.label(key) + ".tif"; }
 
-  /// Relative to the block's origin, m; NaN where the trajectory does not reach.
-  std::vector<Eigen::Vector3d> scanner_positions(const Context& context, const core::Block& block) const {
-    const std::shared_ptr<const calib::MapPatches> map = patches(context);
-    Eigen::Vector3d lever;
-    for (Eigen::Index a = 0; a < 3; ++a) lever[a] = context.survey.calibration.lever_arm_scanner[static_cast<size_t>(a)].value;
-    const Eigen::Vector3d unit(context.unit, context.unit, context.crs.vertical_metres_per_unit());
-    std::vector<Eigen::Vector3d> out(block.size(), Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
-    trajectory::Cursor cursor(*context.trajectory);
-    for (size_t p = 0; p < block.size(); ++p) {
-      if (p > 0 && block.time[p] == block.time[p - 1]) {
-        out[p] = out[p - 1];
-      } else if (cursor.seek(block.time[p])) {
-        const trajectory::Pose pose = cursor.pose(block.time[p]);
-        out[p] = (*map)(pose.position + pose.ecef_R_body * lever).cwiseProduct(unit) - block.origin;
-      }
-    }
-    return out;
-  }
-
   void write_bands(const Context& context, TileKey key, const filters::Visibility& v) const {
     const size_t n = v.lattice.size();
     std::vector<std::vector<float>> columns(static_cast<size_t>(v.layers) + 4, std::vector<float>(n));
@@ -115,13 +101,7 @@ class Visibility : public OptionStage<filters::VisibilityOptions> {
                      true);
   }
 
-  std::shared_ptr<const calib::MapPatches> patches(const Context& context) const {
-    const std::lock_guard lock(mutex_);
-    if (!patches_) patches_ = std::make_shared<calib::MapPatches>(context.crs);
-    return patches_;
-  }
-  mutable std::mutex mutex_;
-  mutable std::shared_ptr<const calib::MapPatches> patches_;
+  ScannerPositions scanner_;
 };
 
 }  // namespace

@@ -59,7 +59,7 @@ TEST(CorrectionKnots, PriorOfASplineIsTheTrajectorys) {
   EXPECT_NEAR(k.covariance()(0, second), C(0, 6), 1e-10);  // between the lines
   EXPECT_NEAR(k.covariance()(15 + 2, 15 + 2), C(5, 5), 1e-15);
   // Scaled: variances by the squares of the factors.
-  const Eigen::MatrixXd I = k.information(2.0, 3.0) * k.information().inverse();
+  const Eigen::MatrixXd I = k.information({2.0, 2.0, 2.0}, {3.0, 3.0, 3.0}) * k.information().inverse();
   EXPECT_NEAR(I(0, 0), 0.25, 1e-3);
   EXPECT_NEAR(I(15, 15), 1.0 / 9.0, 1e-3);
   const Eigen::MatrixXd one = k.information() * k.covariance();
@@ -102,6 +102,32 @@ TEST(CorrectionKnots, ExactAndFullyCorrelatedTrajectoriesCanBeInverted) {
     EXPECT_TRUE(k.information().allFinite());
     EXPECT_GT(k.information().diagonal().minCoeff(), 0.0);
   }
+}
+
+TEST(CorrectionKnots, EachScaleHasItsOwnFactor) {
+  const CorrectionKnots k(two_lines, 0.0, form(CorrectionForm::spline, CorrectionForm::drift), test::tactical_errors, true);
+  const ScaleFactors p{2.0, 3.0, 0.5}, a{4.0, 5.0, 1.0};
+  const Eigen::MatrixXd C = k.covariance(p, a);
+  for (const bool position : {true, false})
+    for (const CorrectionScale scale : {line_mean, line_drift}) {
+      const Eigen::MatrixXd& m = k.modes(position, scale);
+      ASSERT_EQ(m.cols(), 6);  // two lines, three components
+      EXPECT_LT((m.transpose() * m - Eigen::MatrixXd::Identity(6, 6)).norm(), 1e-12);
+      const double factor = (position ? p : a)[scale];
+      const Eigen::MatrixXd bare = m.transpose() * k.covariance() * m;
+      EXPECT_LT((m.transpose() * C * m - factor * factor * bare).norm(), 1e-9 * bare.norm());
+    }
+  // A correction of the position within the first line alone: north, up and down about its mean and drift.
+  Eigen::VectorXd wave = Eigen::VectorXd::Zero(k.size());
+  const double values[] = {1.0, -2.0, 2.0, -2.0, 1.0};
+  for (int i = 0; i < 5; ++i) wave[3 * i] = values[i];
+  for (const CorrectionScale scale : {line_mean, line_drift}) wave -= k.modes(true, scale) * (k.modes(true, scale).transpose() * wave);
+  EXPECT_GT(wave.norm(), 1.0);
+  EXPECT_NEAR(wave.dot(C * wave), 0.25 * wave.dot(k.covariance() * wave), 1e-9 * wave.dot(C * wave));
+  // The information is the inverse of the covariance, as far as the unscaled one is.
+  const Eigen::MatrixXd one = k.information(p, a) * C, bare = k.information() * k.covariance();
+  const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(k.size(), k.size());
+  EXPECT_LT((one - I).diagonal().cwiseAbs().maxCoeff(), 20.0 * std::max(1e-6, (bare - I).cwiseAbs().maxCoeff()));
 }
 
 TEST(CorrectionKnots, StatedSigmas) {

@@ -38,6 +38,21 @@ TEST(TargetFinder, FindsTheHallAmongItsNeighbours) {
   EXPECT_LT(std::abs(std::sin(2.0 * (azimuth - f.azimuth))), 0.08);
 }
 
+// 0.3 returns per m2: of the least cells a third would be empty, and no patch would hang together.
+TEST(TargetFinder, FindsTheHallInSparseLines) {
+  BoxFlight f;
+  f.lines = full_pattern(0.5);
+  f.spacing = 1.8;
+  const BoxRecords r = fly(f);
+  const core::Scanner scanner;
+  const ShotGeometry geometry(scanner, {});
+  const trajectory::Trajectory trajectory(r.delivered);
+  const auto t = find_roof(r.stream(), geometry, trajectory, 0.012);
+  ASSERT_TRUE(t);
+  const double side = 3.4;  // m: the widest cells
+  EXPECT_NEAR((t->corners[1] - t->corners[0]).norm() * (t->corners[2] - t->corners[1]).norm(), 60.0 * 32.0, 92.0 * side);
+}
+
 TEST(TargetFinder, FlatGroundIsNoRoof) {
   BoxFlight f;
   f.lines = {{1, 0.5, 0.0, 700.0}};

@@ -82,10 +82,10 @@ TEST(VarianceComponents, FewDegreesOfFreedomMoveAFactorLittle) {
     o.freedom = freedom;
     SigmaFactors f;
     update_correlated(s->problem, system, solution, tests, use, prior, Eigen::VectorXd::Constant(n, 3.0), o, f);
-    EXPECT_DOUBLE_EQ(f.position.redundancy, n / 2.0);
-    EXPECT_TRUE(f.attitude.estimated);
+    EXPECT_DOUBLE_EQ(f.position[line_mean].redundancy, n / 2.0);
+    EXPECT_TRUE(f.attitude[line_mean].estimated);
     EXPECT_FALSE(f.control.estimated);
-    return f.position.factor;
+    return f.position[line_mean].factor;
   };
   const double r = n / 2.0;
   EXPECT_NEAR(factor(1e9), 1.0, 1e-6);

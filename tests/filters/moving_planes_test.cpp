@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -58,7 +59,7 @@ TEST(MovingPlanes, VarianceIsThatOfTheDataAboutThePlane) {
 TEST(MovingPlanes, ABreakIsKeptFromBothSides) {
   const auto crest = [](int i, int) { return i < 20 ? 0.0 : -1.4 * (i - 19.5); };
   const PlaneField f = fit_planes(data_of(crest, one), 2.0, 1e-3);
-  const Raster kept = across_breaks(f, 3, 0.03);
+  const Raster kept = across_breaks(std::array{PlaneChoice{f, 3}}, 0.03);
   double plain = 0.0, worst = 0.0;
   for (int i = 12; i < 28; ++i) {
     const size_t c = kept.at(i, 20);
@@ -67,6 +68,16 @@ TEST(MovingPlanes, ABreakIsKeptFromBothSides) {
   }
   EXPECT_GT(plain, 0.5);
   EXPECT_LT(worst, 0.2);
+}
+
+TEST(MovingPlanes, FinerPlanesAreTakenWhereTheGroundIsCurved) {
+  const auto ridge = [](int i, int) { return -0.15 * (i - 20) * (i - 20); };
+  const CellSums data = data_of(ridge, one);
+  const PlaneField wide = fit_planes(data, 2.0, 1e-3), fine = fit_planes(data, 1.0, 1e-3);
+  const size_t crest = fine.height.at(20, 20);
+  const double alone = across_breaks(std::array{PlaneChoice{wide, 2}}, 0.03).value[crest];
+  const double both = across_breaks(std::array{PlaneChoice{wide, 2}, PlaneChoice{fine, 1}}, 0.03).value[crest];
+  EXPECT_LT(std::abs(both), 0.6 * std::abs(alone));
 }
 
 TEST(MovingPlanes, ACellDependsOnItsReachAlone) {

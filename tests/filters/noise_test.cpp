@@ -121,6 +121,21 @@ TEST(Noise, OnlyOwnPointsAreTouchedAndNoiseIsNobodysNeighbour) {
   EXPECT_EQ(flag_noise(empty, 0, {}).isolated, 0u);
 }
 
+TEST(Noise, WhatEarlierStagesSetIsNotCountedAgain) {
+  core::Block b;
+  for (int k = 0; k < 8; ++k) add_point(b, 0.1 * k, 0, 0);
+  add_point(b, 40, 0, 0);  // isolated
+  core::add_columns(b, {core::Column::classification, core::Column::flags});
+  b.classification[2] = core::point_class::low_noise;
+  b.flags[2] = core::flag::low_point;
+  b.classification[3] = core::point_class::high_noise;
+  b.flags[3] = core::flag::isolated;
+  const NoiseCounts n = flag_noise(b, b.size(), {});
+  EXPECT_EQ(n.high_noise, 1u);
+  EXPECT_EQ(n.low_noise, 0u);
+  EXPECT_EQ(n.untouched, 2u);
+}
+
 TEST(Noise, TwoMillionPointsAreFast) {
   core::Block b;
   core::resize(b, 2'000'000);

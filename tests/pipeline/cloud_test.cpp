@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "core/crs.h"
 #include "io/las_reader.h"
@@ -133,6 +134,30 @@ TEST(Cloud, TheSurfaceReachesIntoTilesWithoutPoints) {
   const std::string whole = surface_of(c, "1000 m");
   EXPECT_EQ(surface_of(c, "50 m"), whole);
   EXPECT_EQ(surface_of(c, "100 m"), whole);
+}
+
+TEST(Cloud, KeyPointsAreTheSameForEveryTiling) {
+  CloudCase c;
+  Block b = square(8000, easting, northing, 200, 0);
+  for (size_t i = 0; i < b.size(); ++i) b.z[i] = 100 + 0.1 * b.x[i] + 5 * std::sin(b.y[i] / 20);
+  b.classification.assign(b.size(), core::point_class::ground);
+  c.add(b, "hills.las", "EPSG:32632");
+  const auto key_points = [&](const std::string& tile) {
+    const Block out =
+        points_of(c.run("[[stage]]\ntype = \"readers.las\"\n[[stage]]\ntype = \"filters.key_points\"\n[[stage]]\ntype = "
+                        "\"writers.las\"\ncompress = false\n",
+                        tile));
+    EXPECT_EQ(out.size(), 8000u);
+    std::set<std::pair<long, long>> places;  // mm
+    for (size_t i = 0; i < out.size(); ++i)
+      if (out.flags[i] & core::flag::key_point)
+        places.insert({std::lround(1e3 * (out.origin.x() + out.x[i])), std::lround(1e3 * (out.origin.y() + out.y[i]))});
+    return places;
+  };
+  const auto whole = key_points("1000 m");
+  EXPECT_GT(whole.size(), 200u);
+  EXPECT_LT(whole.size(), 3000u);
+  EXPECT_EQ(key_points("70 m"), whole);
 }
 
 }  // namespace

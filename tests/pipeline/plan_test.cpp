@@ -57,6 +57,30 @@ TEST(Plan, TwoStagesThatMakeTheSameProductAreRefused) {
   EXPECT_NE(Case(good + writer + "folder = \"dtm/\"\n[[stage]]\ntype = \"writers.gdal\"\n").fault(), "");
 }
 
+TEST(Plan, RastersThatDoNotFitIntoTheMemoryAreRefused) {
+  Case c(good);
+  c.request.sets = {"smrf.cell=\"1 mm\""};
+  std::string text = c.fault();
+  for (const char* part : {"--set", "(filters.smrf).cell", "0.001 m", "run.memory = 2000 MB", "a larger cell, smaller tiles"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
+  c.request.sets = {"terrain.dtm.cell=\"1 cm\""};
+  EXPECT_NE(c.fault().find("(terrain.dtm).cell"), std::string::npos) << c.fault();
+  c.request.sets = {"terrain.dtm.cell=\"1 cm\"", "run.tile=\"10 m\"", "terrain.dtm.max_edge=\"3 m\"", "smrf.window=\"5 m\""};
+  EXPECT_EQ(c.fault(), "");
+  // Of what is divided into cells none is so small that it gets by.
+  const std::string noise = "[[stage]]\ntype = \"readers.las\"\n[[stage]]\ntype = \"filters.noise\"\nlow_radius = \"1 mm\"\n";
+  EXPECT_NE(Case(noise).fault().find("(filters.noise).low_radius"), std::string::npos);
+}
+
+TEST(Plan, ACanopyNeedsItsModelsOnTheSameCells) {
+  const std::string canopy = "[[stage]]\ntype = \"terrain.dsm\"\ncell = \"1 m\"\n[[stage]]\ntype = \"terrain.canopy\"\n";
+  const std::string text = Case(good + canopy).fault();
+  for (const char* part : {"terrain.canopy", "2 m of dtm", "1 m of dsm"}) EXPECT_NE(text.find(part), std::string::npos) << text;
+  Case c(good + canopy);
+  c.request.sets = {"terrain.dsm.cell=\"2 m\""};
+  EXPECT_EQ(c.fault(), "");
+}
+
 TEST(Plan, TellsWhereAValueCameFrom) {
   Case c(good);
   Plan plan = make_plan(c.request);

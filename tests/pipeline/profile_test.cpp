@@ -3,13 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <sstream>
 
 #include "core/crs.h"
 #include "core/error.h"
 #include "io/geotiff.h"
 #include "io/las_writer.h"
+#include "io/vrt.h"
 #include "tests/world/support.h"
 
 namespace swath::pipeline {
@@ -126,6 +129,49 @@ TEST(Profile, SeveralLinesOfATextAndBends) {
   for (const Row& row : rows_of(folder / "out/road.csv"))
     EXPECT_NEAR(row.station, row.station <= 40.0 ? row.x - 600005.0 : 40.0 + row.y - 5300005.0, 1e-3);
   EXPECT_TRUE(std::filesystem::exists(folder / "out/ditch.png"));
+}
+
+TEST(Profile, ALineInAnotherCrsIsBroughtToThatOfTheData) {
+  const test::TemporaryFolder folder;
+  make(folder);
+  const core::Transform to_degrees(core::Crs("EPSG:32632"), core::Crs("EPSG:4326"));
+  const Eigen::Vector3d from = to_degrees({600005, 5300010, 0}), to = to_degrees({600065, 5300055, 0});
+  char text[300];
+  std::snprintf(text, sizeof text, R"({"type":"LineString","coordinates":[[%.11f,%.11f],[%.11f,%.11f]]})", from.x(), from.y(), to.x(),
+                to.y());
+  test::write_bytes(folder / "axis.geojson", text);
+  ProfileRequest r;
+  r.dtm = folder / "dtm.tif";
+  r.lines = folder / "axis.geojson";
+  r.folder = folder / "out";
+  const core::Value told = write_profiles(r);
+  ASSERT_EQ(told.items().size(), 1u);
+  EXPECT_NEAR(told.items()[0].find("length")->as_number(), 75.0, 1e-3);
+  EXPECT_GE(told.items()[0].find("terrain_samples")->as_int(), 150);
+}
+
+TEST(Profile, ALongLineAcrossAModelHoldsOnlyWhatLiesAlongIt) {
+  // From one tile to another 100 km away: a bounding box of 1e10 cells.
+  const test::TemporaryFolder folder;
+  make(folder);
+  core::Grid far(core::Lattice{1.0, 700000, 5400000, 80, 80});
+  std::fill(far.height.begin(), far.height.end(), 7.0f);
+  std::fill(far.reason.begin(), far.reason.end(), core::Void::none);
+  io::write_grid(folder / "far.tif", far, "EPSG:32632");
+  io::write_vrt(folder / "all.vrt", {folder / "dtm.tif", folder / "far.tif"});
+  ProfileRequest r;
+  r.dtm = folder / "all.vrt";
+  r.from = "600010,5300010";
+  r.to = "700070,5400070";
+  r.folder = folder / "out";
+  write_profiles(r);
+  size_t here = 0, there = 0;
+  for (const Row& row : rows_of(folder / "out/profile.csv")) {
+    here += row.x < 600080.0 && std::abs(row.z - ground(row.x, row.y)) < 1e-3;
+    there += row.x > 700000.0 && row.z == 7.0;
+  }
+  EXPECT_GE(here, 190u);  // 69 of the diagonal's 70 m, times the square root of two, every half metre
+  EXPECT_GE(there, 190u);
 }
 
 TEST(Profile, WhatIsNotThereIsAnError) {

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
+#include "core/crs.h"
 #include "core/error.h"
 #include "io/geotiff.h"
+#include "io/vrt.h"
 #include "tests/world/support.h"
 
 namespace swath::pipeline {
@@ -61,6 +64,39 @@ TEST(VolumeFiles, DesignHeightInsideAPolygon) {
   EXPECT_NEAR(number(v, "cut"), 0.5 * cone, tolerance * cone);
   EXPECT_NEAR(number(v, "area"), 1800.0, 1e-6);
   EXPECT_NEAR(number(v, "sigma_net"), 0.03 * std::sqrt(1800.0), 1e-4);
+}
+
+TEST(VolumeFiles, APolygonInAnotherCrsIsBroughtToThatOfTheModel) {
+  const test::TemporaryFolder folder;
+  write(folder.path(), "a", heap({1.0, 600000, 5300000, 60, 60}, 5.0), "EPSG:32632");
+  const core::Transform to_degrees(core::Crs("EPSG:32632"), core::Crs("EPSG:4326"));
+  std::string ring;
+  for (const auto& [x, y] : {std::pair{0, 0}, {30, 0}, {30, 60}, {0, 60}, {0, 0}}) {
+    const Eigen::Vector3d p = to_degrees({600000.0 + x, 5300000.0 + y, 0.0});
+    char text[80];
+    std::snprintf(text, sizeof text, "%s[%.11f,%.11f]", ring.empty() ? "" : ",", p.x(), p.y());
+    ring += text;
+  }
+  test::write_bytes(
+      folder / "half.geojson",
+      R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":[[)" + ring +
+          "]]}}]}");
+  const core::Value v = volumes_of({folder / "a.tif", {}, 100.0, folder / "half.geojson", 0.0});
+  EXPECT_NEAR(number(v, "area"), 1800.0, 1e-3);
+  EXPECT_NEAR(number(v, "cut"), 0.5 * cone, tolerance * cone);
+}
+
+TEST(VolumeFiles, OfAModelOfAnySizeOnlyThePolygonsPartIsHeld) {
+  // Two tiles 100 km apart: 1e10 cells.
+  const test::TemporaryFolder folder;
+  write(folder.path(), "a", heap({1.0, 600000, 5300000, 60, 60}, 5.0), "EPSG:32632");
+  write(folder.path(), "b", heap({1.0, 700000, 5400000, 60, 60}, 5.0), "EPSG:32632");
+  io::write_vrt(folder / "all.vrt", {folder / "a.tif", folder / "b.tif"});
+  test::write_bytes(folder / "heap.geojson",
+                    R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"EPSG:32632"}},"features":[{"type":"Feature",
+"properties":{},"geometry":{"type":"Polygon","coordinates":[[[700000,5400000],[700060,5400000],[700060,5400060],[700000,5400060],
+[700000,5400000]]]}}]})");
+  EXPECT_NEAR(number(volumes_of({folder / "all.vrt", {}, 100.0, folder / "heap.geojson", 0.0}), "cut"), cone, tolerance * cone);
 }
 
 TEST(VolumeFiles, FeetBecomeCubicMetres) {

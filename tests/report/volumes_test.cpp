@@ -122,5 +122,38 @@ TEST(Volumes, OtherLatticesAreReadBilinearly) {
   EXPECT_THROW(volumes(coarse, fine, 1.0, 1.0), core::Error);
 }
 
+TEST(Volumes, BandsOfRowsAddUpToTheWhole) {
+  core::Grid before(core::Lattice{1.0, 100, 200, 9, 10}), after = before;
+  for (int j = 0; j < 10; ++j)
+    for (int i = 0; i < 9; ++i) {
+      const size_t at = before.lattice.at(i, j);
+      before.height[at] = static_cast<float>(i);
+      after.height[at] = static_cast<float>(j);
+    }
+  after.height[4] = std::nanf("");
+  before.sigma.assign(90, 0.05f);
+  after.sigma.assign(90, 0.02f);
+  const std::vector<Ring> polygon{{{101.3, 200.2}, {108.1, 203.0}, {103.0, 209.7}}};
+  const Volumes whole = volumes(before, after, 1.0, 0.3, polygon);
+  VolumeSum sum(1.0, 0.3, polygon);
+  const auto rows = [](const core::Grid& g, int first, int n) {
+    core::Grid out(core::Lattice{1.0, 100, 200 + first, 9, n});
+    out.sigma.resize(out.height.size());
+    for (size_t k = 0; k < out.height.size(); ++k) {
+      out.height[k] = g.height[k + static_cast<size_t>(9 * first)];
+      out.sigma[k] = g.sigma[k + static_cast<size_t>(9 * first)];
+    }
+    return out;
+  };
+  for (const auto& [first, n] : {std::pair{0, 3}, {3, 1}, {4, 6}}) sum.add(rows(before, first, n), rows(after, first, n));
+  const Volumes parts = sum.result();
+  EXPECT_EQ(parts.net, whole.net);
+  EXPECT_EQ(parts.sigma_net, whole.sigma_net);
+  EXPECT_EQ(parts.sigma_cut, whole.sigma_cut);
+  EXPECT_EQ(parts.cells, whole.cells);
+  EXPECT_EQ(parts.left_out, whole.left_out);
+  EXPECT_GT(whole.net, 0.0);
+}
+
 }  // namespace
 }  // namespace swath::report

@@ -166,7 +166,36 @@ TEST(Breaklines, PackedAndUnpackedTheyAreTheSame) {
     EXPECT_EQ(after[k].line.sigma, before[k].line.sigma);
     EXPECT_EQ(after[k].derived, before[k].derived);
   }
-  EXPECT_THROW(unpack(pack(before).substr(0, 100)), core::Error);
+}
+
+TEST(Breaklines, DamagedBytesAreToldWithTheirFile) {
+  const std::string bytes = pack(world());
+  const auto fault = [](const std::string& given) {
+    try {
+      unpack(given, "work/breaklines.settled");
+    } catch (const core::Error& e) {
+      return e.text();
+    }
+    return std::string("none");
+  };
+  for (const size_t n : {size_t{4}, size_t{100}, bytes.size() - 1}) {
+    EXPECT_NE(fault(bytes.substr(0, n)).find("work/breaklines.settled"), std::string::npos) << n;
+    EXPECT_NE(fault(bytes.substr(0, n)).find(".swath"), std::string::npos) << n;
+  }
+  std::string many = bytes;  // a number of lines that no memory holds
+  many[6] = 0x7f;
+  EXPECT_NE(fault(many).find("damaged"), std::string::npos);
+}
+
+TEST(Breaklines, CellsOutsideTheBoundaryStaySoWhateverIsSaidOfThemLater) {
+  const core::Block b = test::random_points(3000, 80.0, step, 13);
+  const core::Breakline boundary{BreaklineKind::boundary, "edge", {{{0, 0, 0}, {40, 0, 0}, {40, 80, 0}, {0, 80, 0}}}, false, 0.0};
+  const Breaklines lines({{boundary, false}}, {}, b.origin);
+  core::Grid g(core::Lattice{1.0, 500000, 4600000, 80, 80});
+  std::fill(g.reason.begin(), g.reason.end(), Void::never_seen);
+  lines.cut(g);
+  EXPECT_EQ(g.reason[g.lattice.at(60, 40)], Void::no_data);
+  EXPECT_EQ(g.reason[g.lattice.at(20, 40)], Void::never_seen);
 }
 
 }  // namespace

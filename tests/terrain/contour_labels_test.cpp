@@ -66,5 +66,23 @@ TEST(ContourLabels, NoneOnShortOrCurledLinesOrOverAnother) {
     for (const ContourLabel& b : second) EXPECT_GE((a.at - b.at).norm(), width);
 }
 
+TEST(ContourLabels, WideTextsKeepApartToo) {
+  LabelOptions o;
+  o.height = core::Metres(50.0);
+  Labeller labeller(o);
+  std::vector<std::pair<Eigen::Vector2d, double>> placed;  // middle, half width
+  for (int k = 0; k < 30; ++k) {
+    ContourLine line;
+    for (int n = 0; n <= 60; ++n) line.vertices.emplace_back(50.0 * n, 2000.0 + 37.0 * k);
+    const size_t letters = k % 3 == 0 ? 8 : 2;  // of different widths
+    for (const ContourLabel& l : labeller.add(line, letters))
+      placed.emplace_back(l.at, 0.5 * 0.7 * 50.0 * static_cast<double>(letters + 2));
+  }
+  ASSERT_GT(placed.size(), 10u);
+  for (size_t a = 0; a < placed.size(); ++a)
+    for (size_t b = 0; b < a; ++b)
+      EXPECT_GE((placed[a].first - placed[b].first).norm(), placed[a].second + placed[b].second) << a << " " << b;
+}
+
 }  // namespace
 }  // namespace swath::terrain

@@ -78,6 +78,37 @@ TEST(LineNetwork, EndOnALineAtAnotherHeightIsAnErrorToo) {
   EXPECT_NEAR(total(c), 18.0, rounding);
 }
 
+TEST(LineNetwork, EqualHeightsMeetAtToleranceZero) {
+  // On both lines the height is 0.1 x, rounded by different ways.
+  NetworkOptions o;
+  o.tolerance = core::Metres(0.0);
+  const auto at = [](double x, double y) { return Vector3d(x, y, 0.1 * x + 0.03 * y); };
+  for (int k = 1; k < 40; ++k)
+    EXPECT_NO_THROW(line_network({line({at(0, 0), at(70.1, 33.3)}, "a"), line({at(1.7 * k, 40.3), at(2.1 * k, -11.9)}, "b")}, o)) << k;
+  EXPECT_THROW(line_network({line({{0, 0, 3}, {10, 0, 3}}, "a"), line({{5, -5, 3.0001}, {5, 8, 3.0001}}, "b")}, o), core::Error);
+}
+
+TEST(LineNetwork, LinesThatCannotBeNodedAreNamedWithThePlace) {
+  int refused = 0;
+  for (unsigned seed = 0; seed < 300 && refused < 3; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> near(0.0, 0.008), along(0.0, 1.0);
+    std::vector<NetworkLine> lines{line({{900, 900, 1}, {950, 900, 1}}, "far.gpkg: feature 1")};
+    for (int k = 0; k < 40; ++k)
+      lines.push_back(
+          line({{along(random), near(random), 1}, {along(random), near(random), 1}}, "close.gpkg: feature " + std::to_string(k)));
+    try {
+      line_network(lines, {}, {500000, 4600000, 0});
+    } catch (const core::Error& e) {
+      ++refused;
+      EXPECT_EQ(e.where().find("far.gpkg"), std::string::npos) << e.text();
+      EXPECT_NE(e.where().find("close.gpkg: feature "), std::string::npos) << e.text();
+      EXPECT_NE(std::string(e.what()).find("x 50000"), std::string::npos) << e.text();
+    }
+  }
+  EXPECT_GT(refused, 0);
+}
+
 TEST(LineNetwork, DerivedHeightsYield) {
   for (const bool first : {true, false}) {
     std::vector<NetworkLine> lines{line({{0, 5, 3}, {10, 5, 3}}, "lake", true), line({{5, 0, 4}, {5, 10, 4}}, "wall")};

@@ -24,7 +24,6 @@ TEST(NaturalNeighbours, AgreeWithCgal) {
   using Delaunay = CGAL::Delaunay_triangulation_2<Kernel>;
   const core::Block b = test::random_points(2000, 50.0, hills, 31);
   const Tin tin = triangulate(b, test::all_rows(b));
-  const auto across = neighbours(tin);
   Delaunay dt;
   std::map<Kernel::Point_2, double> z;
   for (size_t k = 0; k < b.size(); ++k) {
@@ -36,7 +35,7 @@ TEST(NaturalNeighbours, AgreeWithCgal) {
   std::vector<double> x, y;
   for (int k = 0; k < 2000; ++k) x.push_back(place(random)), y.push_back(place(random));
   const auto at = triangles_at(tin, x, y);
-  const NaturalNeighbours here(tin, across);
+  const NaturalNeighbours here(tin);
   for (size_t k = 0; k < x.size(); ++k) {
     std::vector<std::pair<Kernel::Point_2, double>> weights;
     const auto norm = CGAL::natural_neighbor_coordinates_2(dt, Kernel::Point_2(x[k], y[k]), std::back_inserter(weights)).second;
@@ -50,8 +49,7 @@ TEST(NaturalNeighbours, PlanesAreExact) {
   const auto plane = [](double x, double y) { return 3.0 + 0.4 * x - 0.7 * y; };
   const core::Block b = test::random_points(500, 50.0, plane, 32);
   const Tin tin = triangulate(b, test::all_rows(b));
-  const auto across = neighbours(tin);
-  const NaturalNeighbours here(tin, across);
+  const NaturalNeighbours here(tin);
   std::vector<double> x, y;
   for (int k = 0; k < 400; ++k) x.push_back(5.0 + 0.1 * k), y.push_back(7.0 + 0.09 * k);
   const auto at = triangles_at(tin, x, y);
@@ -62,8 +60,7 @@ TEST(NaturalNeighbours, AtTheEdgeThePlaneStands) {
   test::Made m;
   m.add(0, 0, 1), m.add(4, 0, 2), m.add(0, 4, 3);
   const Tin tin = triangulate(m.block, test::all_rows(m.block));
-  const auto across = neighbours(tin);
-  EXPECT_EQ(NaturalNeighbours(tin, across).height(0, 1, 1), height_in(tin, 0, 1, 1));
+  EXPECT_EQ(NaturalNeighbours(tin).height(0, 1, 1), height_in(tin, 0, 1, 1));
 }
 
 }  // namespace

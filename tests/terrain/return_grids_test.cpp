@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/error.h"
+#include "core/units.h"
 #include "tests/terrain/made.h"
 
 namespace swath::terrain {
@@ -16,10 +20,69 @@ TEST(ReturnGrids, DensityOfPulsesAndReturns) {
   for (int k = 0; k < 6; ++k) m.add(0.1 + 0.3 * k, 1.0, 0.0);
   m.block.return_number[1] = 2, m.block.return_number[2] = 3;
   m.add(1.0, 1.0, 0.0, 0.03f, core::point_class::low_noise);
-  EXPECT_EQ(density(m.block, window, false).height[0], 1.5f);
-  EXPECT_EQ(density(m.block, window, true).height[0], 1.0f);
-  EXPECT_EQ(density(m.block, window, true).height[1], 0.0f);
-  EXPECT_EQ(density(m.block, window, true).reason[1], core::Void::none);
+  const DensityOptions o{core::Metres(2.0), core::Metres(10.0)};
+  EXPECT_EQ(density(m.block, window, o, false).height[0], 1.5f);
+  EXPECT_EQ(density(m.block, window, o, true).height[0], 1.0f);
+  EXPECT_THROW(density(m.block, window, {}, true), core::Error);
+}
+
+TEST(ReturnGrids, NoReturnIsZeroWithinTheSurveyAndVoidBeyondItsEdge) {
+  test::Made m;
+  for (int j = 0; j < 30; ++j)
+    for (int i = 0; i < 30; ++i)
+      if (i < 12 || i >= 18 || j < 12 || j >= 18) m.add(i + 0.5, j + 0.5, 0.0);
+  m.block.return_number.assign(m.block.size(), 1);
+  m.block.return_number[31] = 2;  // a cell with a return and without a pulse
+  const core::Lattice wide{1.0, 499990, 4599990, 60, 50};
+  const DensityOptions o{core::Metres(1.0), core::Metres(8.0)};
+  for (const bool pulses : {false, true}) {
+    const core::Grid g = density(m.block, wide, o, pulses);
+    EXPECT_EQ(g.height[wide.at(10 + 15, 10 + 15)], 0.0f);  // the gap's middle
+    EXPECT_EQ(g.height[wide.at(10 + 3, 10 + 3)], 1.0f);
+    EXPECT_EQ(g.height[wide.at(10 + 1, 10 + 1)], pulses ? 0.0f : 1.0f);
+    for (const auto& [i, j] : {std::pair{5, 20}, {45, 20}, {20, 45}, {0, 0}}) {
+      EXPECT_EQ(g.reason[wide.at(i, j)], core::Void::no_data) << i << " " << j;
+      EXPECT_TRUE(std::isnan(g.height[wide.at(i, j)]));
+    }
+    // A part of the window with no more than the halo's points says the same.
+    const core::Lattice part{1.0, 499990 + 20, 4599990 + 20, 40, 12};
+    core::Block near;
+    near.origin = m.block.origin;
+    std::vector<std::uint32_t> rows;
+    for (std::uint32_t r = 0; r < m.block.size(); ++r) {
+      const double x = m.block.x[r] + m.block.origin.x(), y = m.block.y[r] + m.block.origin.y(), h = halo(o);
+      if (x >= part.west() - h && x < part.east() + h && y >= part.south() - h && y < part.north() + h) rows.push_back(r);
+    }
+    const core::Grid own = density(core::select(m.block, rows), part, o, pulses);
+    for (int j = 0; j < part.ny; ++j)
+      for (int i = 0; i < part.nx; ++i) EXPECT_EQ(own.reason[part.at(i, j)], g.reason[wide.at(i + 20, j + 20)]) << i << " " << j;
+  }
+}
+
+TEST(ReturnGrids, ASlopeIsAsBrightAsTheFlat) {
+  // A plane that rises by 30 degrees to the east, seen from straight above: its returns are weaker by the cosine.
+  const double rise = std::tan(core::pi / 6.0);
+  test::Made m;
+  std::vector<Eigen::Vector3d> scanner;
+  core::add_columns(m.block, {core::Column::intensity, core::Column::range, core::Column::incidence});
+  for (int k = 0; k < 40; ++k) {
+    const double x = 0.25 * k;
+    m.add(x, 4.5, rise * x);
+    scanner.emplace_back(x, 4.5, 1000.0 + rise * x);
+  }
+  core::add_columns(m.block, {core::Column::intensity, core::Column::range, core::Column::incidence, core::Column::return_count});
+  m.block.range.assign(40, 1000.0f);
+  m.block.intensity.assign(40, static_cast<std::uint16_t>(std::lround(20000.0 * std::cos(core::pi / 6.0))));
+  m.block.return_count.assign(40, 1);
+  core::Grid terrain = test::sampled({1.0, 499997, 4599997, 16, 16}, [&](double x, double) { return rise * (x - 500000.0); });
+  const core::Lattice l{1.0, 500000, 4600000, 10, 10};
+  set_incidence(m.block, terrain, scanner);
+  EXPECT_NEAR(static_cast<double>(intensity(m.block, l, {}).height[l.at(5, 4)]), 20000.0, 2.0);
+  // Where the terrain is not known the beam's angle to the vertical stays.
+  std::fill(terrain.height.begin(), terrain.height.end(), std::nanf(""));
+  m.block.incidence.assign(40, 0.0f);
+  set_incidence(m.block, terrain, scanner);
+  EXPECT_NEAR(static_cast<double>(intensity(m.block, l, {}).height[l.at(5, 4)]), 20000.0 * std::cos(core::pi / 6.0), 2.0);
 }
 
 TEST(ReturnGrids, IntensityIsThatAtTheReferenceRange) {

@@ -16,7 +16,7 @@ const core::Lattice window{1.0, 500030, 4600030, 40, 40};
 
 Roughness in_the_middle(const core::Block& b) {
   const Tin tin = triangulate(b, test::all_rows(b), 10.0);
-  return RoughnessMap(tin, neighbours(tin), b.origin, window, side).at(50.0, 50.0);
+  return RoughnessMap(tin, b.origin, window, side).at(50.0, 50.0);
 }
 
 core::Block with_noise(const test::Surface& surface, double sigma, size_t n = 20000) {
@@ -47,7 +47,7 @@ TEST(Roughness, ErrorsBetweenThePointsAreForetold) {
     for (unsigned draw = 0; draw < 10; ++draw) {
       const core::Block b = test::random_points(n, 100.0, waves, 50 + draw);
       const Tin tin = triangulate(b, test::all_rows(b), 20.0);
-      const RoughnessMap map(tin, neighbours(tin), b.origin, window, side);
+      const RoughnessMap map(tin, b.origin, window, side);
       std::vector<double> x, y;
       for (int k = 0; k < 1000; ++k) x.push_back(30.5 + std::fmod(7.31 * k, 39.0)), y.push_back(30.5 + std::fmod(3.77 * k, 39.0));
       const auto at = triangles_at(tin, x, y);

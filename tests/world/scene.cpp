@@ -142,7 +142,7 @@ core::Block shuffled(const core::Block& b, unsigned seed, std::vector<std::uint3
 
 core::Block run_tiled(const core::Block& whole, double side, double halo, const std::function<void(core::Block&, size_t)>& filter) {
   core::Block out = whole;
-  core::add_columns(out, {core::Column::classification, core::Column::flags});
+  core::add_columns(out, {core::Column::classification, core::Column::flags, core::Column::ground_probability});
   std::map<std::pair<int, int>, std::vector<std::uint32_t>> tiles;
   const auto map_x = [&](size_t p) { return whole.origin.x() + whole.x[p]; };
   const auto map_y = [&](size_t p) { return whole.origin.y() + whole.y[p]; };
@@ -158,10 +158,11 @@ core::Block run_tiled(const core::Block& whole, double side, double halo, const 
     }
     core::Block tile = core::select(whole, rows);
     filter(tile, own.size());
-    core::add_columns(tile, {core::Column::classification, core::Column::flags});
+    core::add_columns(tile, {core::Column::classification, core::Column::flags, core::Column::ground_probability});
     for (size_t k = 0; k < own.size(); ++k) {
       out.classification[own[k]] = tile.classification[k];
       out.flags[own[k]] = tile.flags[k];
+      out.ground_probability[own[k]] = tile.ground_probability[k];
     }
   }
   return out;

@@ -35,7 +35,7 @@ void add_point(core::Block& b, double x, double y, double z);
 core::Block shuffled(const core::Block& b, unsigned seed, std::vector<std::uint32_t>& rows);
 
 /// Runs `filter(block, own)` tile by tile (squares of `side` metres, the halo's points behind the own ones) and puts the columns
-/// classification and flags of the own points together, in the rows of `whole`.
+/// classification, flags and ground_probability of the own points together, in the rows of `whole`.
 core::Block run_tiled(const core::Block& whole, double side, double halo, const std::function<void(core::Block&, size_t)>& filter);
 
 }  // namespace swath::test

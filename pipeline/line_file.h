@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lines and polygons of a vector file in the CRS of the data that they are laid over.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/crs.h"
+#include "io/vector.h"
+
+namespace swath::pipeline {
+
+/// All lines of the file, x and y in the horizontal part of `crs`; z, where there is one, stays as the file has it. A file that states no
+/// CRS (DXF), and any file where `crs` is empty, is taken as it is. Throws core::Error, naming both
+/// CRSs where a place has no coordinates in the other.
+std::vector<io::VectorLine> read_lines_in(const std::filesystem::path& file, const core::Crs& crs);
+
+}  // namespace swath::pipeline

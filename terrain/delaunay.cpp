@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// CGAL inserts; what follows works on the faces as numbers in one array.
+#include "terrain/delaunay.h"
+
+#include <CGAL/Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace swath::terrain {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Triangulation =
+    CGAL::Delaunay_triangulation_2<Kernel,
+                                   CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel>,
+                                                                        CGAL::Triangulation_face_base_with_info_2<std::int32_t, Kernel>>>;
+
+int next(int k) { return k == 2 ? 0 : k + 1; }
+int last(int k) { return k == 0 ? 2 : k - 1; }
+
+int index_of(const std::array<std::int32_t, 3>& of, std::int32_t what) { return of[0] == what ? 0 : of[1] == what ? 1 : 2; }
+
+std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t f) {
+  while (parent[f] != f) f = parent[f] = parent[parent[f]];
+  return f;
+}
+
+/// Cuts the convex polygon of `members` anew as a fan from its first vertex.
+void fan(std::vector<Delaunay::Face>& faces, const std::vector<Place>& places, const std::vector<std::int32_t>& members,
+         const std::vector<std::int32_t>& polygon) {
+  struct Side {
+    std::int32_t from, to, across, back;
+  };
+  std::vector<Side> sides;
+  for (const std::int32_t m : members)
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t g = faces[m].n[k];
+      if (polygon[g] == polygon[m]) continue;
+      sides.push_back({faces[m].v[next(k)], faces[m].v[last(k)], g, index_of(faces[g].n, m)});
+    }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.from < b.from; });
+  std::vector<Side> ring{*std::min_element(sides.begin(), sides.end(), [&](const Side& a, const Side& b) {
+    return is_before(places[static_cast<size_t>(a.from)], places[static_cast<size_t>(b.from)]);
+  })};
+  while (ring.size() < sides.size())
+    ring.push_back(*std::lower_bound(sides.begin(), sides.end(), ring.back().to, [](const Side& s, std::int32_t v) { return s.from < v; }));
+  const auto link = [&](std::int32_t f, int k, const Side& s) {
+    faces[f].n[k] = s.across;
+    faces[s.across].n[s.back] = f;
+  };
+  for (size_t i = 0; i < members.size(); ++i) {
+    const std::int32_t f = members[i];
+    faces[f].v = {ring[0].from, ring[i + 1].from, ring[i + 1].to};
+    link(f, 0, ring[i + 1]);
+    if (i == 0)
+      link(f, 2, ring[0]);
+    else
+      faces[f].n[2] = members[i - 1];
+    if (i + 1 == members.size())
+      link(f, 1, ring.back());
+    else
+      faces[f].n[1] = members[i + 1];
+  }
+}
+
+}  // namespace
+
+struct Delaunay::Cgal {
+  Triangulation triangulation;
+  Triangulation::Face_handle near;
+
+  void insert(const Place& p, std::int32_t number) {
+    const auto v = triangulation.insert(Kernel::Point_2(p.x, p.y), near);
+    v->info() = number;
+    near = v->face();
+  }
+};
+
+Delaunay::Delaunay(const std::vector<Place>& places) : places_(places), cgal_(std::make_unique<Cgal>()) {
+  cgal_->triangulation.infinite_vertex()->info() = beyond;
+}
+Delaunay::~Delaunay() = default;
+
+void Delaunay::insert(std::int32_t first, std::int32_t last) {
+  for (std::int32_t p = first; p < last; ++p) cgal_->insert(at(p), p);
+  copy_faces();
+}
+
+void Delaunay::insert(const std::vector<std::int32_t>& order) {
+  for (const std::int32_t p : order) cgal_->insert(at(p), p);
+  copy_faces();
+}
+
+void Delaunay::copy_faces() {
+  Triangulation& t = cgal_->triangulation;
+  if (t.dimension() < 2) return;
+  std::int32_t count = 0;
+  for (const auto f : t.all_face_handles()) f->info() = count++;
+  faces_.resize(static_cast<size_t>(count));
+  for (const auto f : t.all_face_handles()) {
+    Face& face = faces_[static_cast<size_t>(f->info())];
+    for (int k = 0; k < 3; ++k) {
+      face.v[static_cast<size_t>(k)] = f->vertex(k)->info();
+      face.n[static_cast<size_t>(k)] = f->neighbor(k)->info();
+    }
+  }
+}
+
+std::int32_t Delaunay::locate(const Place& q, std::int32_t near) const {
+  std::int32_t f = near, from = -1;
+  if (!faces_[f].is_finite()) f = faces_[f].n[index_of(faces_[f].v, beyond)];
+  for (bool moved = true; moved;) {
+    moved = false;
+    const Face& face = faces_[f];
+    for (int k = 0; k < 3 && !moved; ++k) {
+      const std::int32_t g = face.n[k];
+      if (g == from || orientation(at(face.v[next(k)]), at(face.v[last(k)]), q) >= 0) continue;
+      if (!faces_[g].is_finite()) return g;
+      from = f;
+      f = g;
+      moved = true;
+    }
+  }
+  return f;
+}
+
+std::vector<Delaunay::Pair> Delaunay::cocircular() const {
+  std::vector<Pair> out;
+  // Edges to look at are gathered without branches, which no processor would foresee.
+  constexpr std::int32_t batch = 256;
+  std::array<Pair, 3 * batch> edges;
+  const auto size = static_cast<std::int32_t>(faces_.size());
+  for (std::int32_t begin = 0; begin < size; begin += batch) {
+    size_t count = 0;
+    for (std::int32_t f = begin; f < std::min(begin + batch, size); ++f) {
+      const Face& face = faces_[f];
+      if (!face.is_finite()) continue;
+      for (const std::int32_t g : face.n) {
+        edges[count] = {f, g};
+        count += g > f;
+      }
+    }
+    for (size_t e = 0; e < count; ++e) {
+      const Face &face = faces_[edges[e][0]], &other = faces_[edges[e][1]];
+      if (!other.is_finite()) continue;
+      // The vertex of the other that is not of this.
+      const auto [a, b, c] = face.v;
+      const std::int32_t u = other.v[0], v = other.v[1], w = other.v[2];
+      const bool has_u = (u == a) | (u == b) | (u == c), has_v = (v == a) | (v == b) | (v == c);
+      if (in_circle(at(a), at(b), at(c), at(has_u ? (has_v ? w : v) : u)) == 0) out.push_back(edges[e]);
+    }
+  }
+  return out;
+}
+
+void Delaunay::settle(const std::vector<Pair>& pairs) {
+  if (pairs.empty()) return;
+  std::vector<std::int32_t> polygon(faces_.size());
+  std::iota(polygon.begin(), polygon.end(), 0);
+  for (const auto& [f, g] : pairs) polygon[root_of(polygon, g)] = root_of(polygon, f);
+  std::vector<Pair> member;  // polygon, face
+  for (const auto& pair : pairs)
+    for (const std::int32_t f : pair) member.push_back({root_of(polygon, f), f});
+  for (const auto& [root, f] : member) polygon[f] = root;
+  std::sort(member.begin(), member.end());
+  member.erase(std::unique(member.begin(), member.end()), member.end());
+  std::vector<std::int32_t> members;
+  for (size_t i = 0; i < member.size();) {
+    members.clear();
+    const std::int32_t root = member[i].front();
+    for (; i < member.size() && member[i].front() == root; ++i) members.push_back(member[i].back());
+    fan(faces_, places_, members, polygon);
+  }
+}
+
+}  // namespace swath::terrain

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "terrain/constrained_delaunay.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+
+namespace swath::terrain {
+namespace {
+
+using Edges = std::vector<std::pair<std::int32_t, std::int32_t>>;
+
+TEST(ConstrainedDelaunay, HoldsTheEdgeThatIsNotDelaunay) {
+  // Of this flat diamond the short diagonal is Delaunay.
+  const std::vector<Place> places{{0, 0}, {5, 1}, {10, 0}, {5, -1}};
+  const auto has = [](const ConstrainedTriangles& c, std::int32_t a, std::int32_t b) {
+    return std::all_of(c.triangles.begin(), c.triangles.end(), [&](const auto& t) {
+      return std::find(t.begin(), t.end(), a) != t.end() && std::find(t.begin(), t.end(), b) != t.end();
+    });
+  };
+  EXPECT_TRUE(has(constrained_delaunay(places, {}, {0, 0}), 1, 3));
+  const ConstrainedTriangles held = constrained_delaunay(places, {{2, 0}}, {0, 0});
+  EXPECT_EQ(held.triangles.size(), 2u);
+  EXPECT_TRUE(has(held, 0, 2));
+  EXPECT_EQ(held.held, (Edges{{0, 2}}));
+}
+
+TEST(ConstrainedDelaunay, PolygonsAreNotJoinedAcrossAConstraint) {
+  const std::vector<Place> square{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  const ConstrainedTriangles held = constrained_delaunay(square, {{1, 3}}, {0, 0});
+  for (const auto& t : held.triangles)
+    EXPECT_TRUE(std::find(t.begin(), t.end(), 1) != t.end() && std::find(t.begin(), t.end(), 3) != t.end());
+  for (const auto& t : constrained_delaunay(square, {}, {0, 0}).triangles) EXPECT_EQ(*std::min_element(t.begin(), t.end()), 0);
+}
+
+TEST(ConstrainedDelaunay, CrossingEdgesAreNamed) {
+  try {
+    constrained_delaunay({{0, 0}, {2, 2}, {2, 0}, {0, 2}}, {{0, 1}, {2, 3}}, {100, 200});
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_NE(e.where().find("x 102"), std::string::npos) << e.where();
+  }
+}
+
+}  // namespace
+}  // namespace swath::terrain
