@@ -4,8 +4,9 @@
     speed.py [--millions 10] [--threads 2] [--rounds 3] [--filters filters.smrf ...] [--pylasr PYTHON] [--cloth 1.0]
 
 Makes a simulated cloud (mixed scene, 8 returns per square metre, true classes in the file) in the scratch folder, or takes the one that an
-earlier run with as many returns left there. Every number is a whole process; "step" is its wall time less that of reading alone. Needs bench/accuracy's
-packages; --pylasr: a Python that has pylasr 0.17.4. Run it on a quiet machine.
+earlier run with as many returns left there. Every number is a whole process; "step" is its wall time less that of reading alone, which is a run whose one stage
+counts every point and does nothing else. Needs bench/accuracy's packages; --pylasr: a Python that has pylasr 0.17.4, which on Debian needs 13
+(docs/performance.md); where it cannot be imported its columns stay empty. Run it on a quiet machine.
 """
 import argparse
 import pathlib
@@ -21,6 +22,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent / "accuracy"))
 import common  # noqa: E402
 
 READ = [{"type": "readers.las"}]
+READ_ALL = [*READ, {"type": "filters.noise", "neighbours": 0, "low_group": 0}]  # the least that takes every point to a tile
 TERRAIN = [{"type": "terrain.dtm", "cell": "1 m"}]
 RETURNS_PER_METRE = 6374  # of the simulated strip's length
 
@@ -65,15 +67,29 @@ def timed(words, rounds, before):
     return best
 
 
+def has_pylasr(python):
+    """Can it be imported there? Says why not."""
+    try:
+        done = subprocess.run([python, "-c", "import pylasr; pylasr.reader_coverage"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    except OSError as error:
+        print(f"pylasr is left out: {error}", file=sys.stderr)
+        return False
+    if done.returncode:
+        print(f"pylasr is left out: {python} cannot import it: {done.stdout.strip().splitlines()[-1]}", file=sys.stderr)
+    return done.returncode == 0
+
+
 def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--millions", type=float, default=10)
     p.add_argument("--threads", type=int, default=2)
     p.add_argument("--rounds", type=int, default=3)
     p.add_argument("--filters", nargs="*", default=[])
-    p.add_argument("--pylasr", help="a Python that has pylasr")
+    p.add_argument("--pylasr", help="a Python that has pylasr; left out where it has not")
     p.add_argument("--cloth", type=float, default=1.0)
     given = p.parse_args()
+    if given.pylasr and not has_pylasr(given.pylasr):
+        given.pylasr = None
     folder = common.SCRATCH / f"speed_{given.millions:g}"
     make_cloud(folder, given.millions)
     with laspy.open(folder / "cloud.las") as cloud:
@@ -81,7 +97,7 @@ def main():
     filters = given.filters or common.ground_filters()
     best = "filters.ground" if "filters.ground" in filters else filters[0]
     writers = [{"type": "writers.las", "compress": False}, {"type": "writers.gdal"}]
-    chains = {"reading alone": READ, "noise": [*READ, {"type": "filters.noise"}], **{f"ground: {name}": [*READ, {"type": name}] for name in filters},
+    chains = {"reading alone": READ_ALL, "noise": [*READ, {"type": "filters.noise"}], **{f"ground: {name}": [*READ, {"type": name}] for name in filters},
               "TIN + DTM of true ground": [*READ, *TERRAIN],
               f"LAS to classes, DTM, contours ({best})": [*READ, {"type": "filters.noise"}, {"type": best}, *TERRAIN, {"type": "terrain.contours"}, *writers]}
     theirs = {"reading alone": "read", "noise": "noise", "TIN + DTM of true ground": "terrain", **{f"ground: {name}": "ground" for name in filters},

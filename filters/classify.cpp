@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Classes: ASPRS LAS 1.4 R15, table 17. Order of the decisions as in the usual chains of rules (Vosselman & Maas 2010, "Airborne and
 // terrestrial laser scanning", ch. 4): planes first, of these decks before roofs, then lines, and what has neither is vegetation.
-// The steps and their deviations: roof_planes, structure_cells, bridges, wires.
+// The steps and their deviations: roof_planes, structure_cells, bridges, building_sides, wires.
 #include "filters/classify.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "filters/bridges.h"
+#include "filters/building_sides.h"
 #include "filters/roof_planes.h"
 #include "filters/structure_cells.h"
 #include "filters/wires.h"
@@ -25,6 +26,12 @@ constexpr double search_sides = 3.0;        // of the square of the least area, 
 
 bool is_free(const core::Block& b, size_t p) {
   return core::is_usable(b, p) && b.classification[p] != cls::ground && b.classification[p] != cls::water;
+}
+
+/// A filter found it alone in space; a thin wire's returns may be.
+bool is_isolated(const core::Block& b, size_t p) {
+  return b.classification[p] == cls::high_noise && !b.flags.empty() && (b.flags[p] & core::flag::isolated) &&
+         !(b.flags[p] & core::flag::withheld);
 }
 
 int search_radius(const ClassifyOptions& o) { return static_cast<int>(std::ceil(search_sides * o.building_side.value / structure_cell)); }
@@ -57,7 +64,7 @@ std::uint8_t vegetation(float height, const ClassifyOptions& o) {
 double halo(const ClassifyOptions& o) {
   const double decks = o.bridge_length.value > 0.0 ? deck_cells_halo(o.bridge_length.value) : 0.0;
   const double structures = planar_points_halo() + decks + (search_radius(o) + structure_link + 1) * structure_cell;
-  return std::max(structures, wire_points_halo());
+  return std::max(structures + building_sides_halo(), planar_points_halo() + wire_points_halo());
 }
 
 ClassifyCounts classify(core::Block& b, size_t own, const ClassifyOptions& o) {
@@ -70,20 +77,33 @@ ClassifyCounts classify(core::Block& b, size_t own, const ClassifyOptions& o) {
                                       ? deck_cells(cells, o.bridge_length.value, o.building_height.value, o.building_height.value)
                                       : std::vector<Deck>(cells.lattice.size(), Deck::none);
   const std::vector<std::uint8_t> buildings = building_cells(cells, decks, o);
-  for (size_t p = 0; p < b.size(); ++p) high[p] = raised[p] && !planar[p] && static_cast<double>(b.height[p]) >= o.wire_height.value;
-  const std::vector<std::uint8_t> wires = wire_points(b, high);
+  for (size_t p = 0; p < b.size(); ++p)
+    high[p] = ((raised[p] && !planar[p]) || is_isolated(b, p)) && static_cast<double>(b.height[p]) >= o.wire_height.value;
+  const std::vector<std::uint8_t> wires = wire_points(b, high, planar);
+
+  std::vector<std::uint8_t> roof(b.size(), 0), free(b.size(), 0);
+  for (size_t p = 0; p < b.size(); ++p) {
+    if (!is_free(b, p)) continue;
+    const CellIndex at = cell_of(cells.lattice, b, p);
+    const size_t c = cells.lattice.at(at.i, at.j);
+    roof[p] = planar[p] && buildings[c];
+    free[p] = decks[c] != Deck::deck;
+  }
+  const std::vector<std::uint8_t> sides = building_sides(b, roof, free, o.roughness.value);
 
   const auto class_of = [&](size_t p) {
     const CellIndex at = cell_of(cells.lattice, b, p);
     const size_t c = cells.lattice.at(at.i, at.j);
     const float above = static_cast<float>(b.z[p]) - cells.plane[c];  // NaN: no plane there
     if (raised[p] && decks[c] == Deck::deck && (planar[p] || std::abs(above) <= beside_deck)) return cls::bridge_deck;
-    if (raised[p] && buildings[c] && above <= above_roof) return cls::building;
+    if (sides[p] || (raised[p] && buildings[c] && above <= above_roof)) return cls::building;
     if (wires[p]) return cls::wire;
     return planar[p] ? cls::unassigned : vegetation(b.height[p], o);
   };
   for (size_t p = 0; p < own; ++p) {
-    if (!is_free(b, p)) {
+    if (wires[p] && is_isolated(b, p)) {
+      b.flags[p] = static_cast<std::uint16_t>(b.flags[p] & ~core::flag::isolated);
+    } else if (!is_free(b, p)) {
       ++n.kept;
       continue;
     }

@@ -46,9 +46,8 @@ double halo(const ClassifyOptions& o);
 
 /// Classes those of the first `own` points that are neither ground, water, noise nor withheld; those after are the halo and stay as they
 /// are. Needs columns classification (with ground) and height. Unassigned stay points at or below the ground's height or without one, and
-/// smooth planes that are neither building nor deck: vehicles, containers, ground that the ground filter left out. Points on water are
-/// ground to a ground filter and stay so; lakes come from breaklines. The result depends on the points within halo() and not on their
-/// order.
+/// smooth planes that are neither building nor deck: vehicles, containers, ground that the ground filter left out. Points flagged isolated
+/// and of class 18 that lie on a wire become wire. The result depends on the points within halo() and not on their order.
 ClassifyCounts classify(core::Block& block, size_t own, const ClassifyOptions& o);
 
 }  // namespace swath::filters

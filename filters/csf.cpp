@@ -12,6 +12,11 @@
 // Springs
 //   are the paper's: to neighbours, across the diagonals, and to the neighbours' neighbours in rows and columns. Not measured.
 // - Particles without a point in their cell get their height by interpolation (inpaint.h), not from the nearest point. Not measured.
+// - In each step the inner forces act `rigidness` times over the whole cloth and gravity moves it by 0.2 step^2. The authors' program lets
+// them
+//   act once, by shares of 1 - 0.7^n (one particle free) and 0.5 - 0.5 * 0.4^n (both), with 0.2 step^4 (so: -0.4; these shares with the
+//   gravity here: -0.1; the paper's shares of 1 - 0.5^n with either gravity: -0.1).
+// - The authors' program lays particles down on slopes only where the cloth is within 0.3 m of its point; the paper does not say so (+5.0).
 // - Velocities lose 1 % in each step, as in the authors' program and not in the paper: an undamped cloth over a pit swings for ever.
 #include "filters/csf.h"
 

@@ -36,30 +36,41 @@ double column_side(const core::Block& b, const std::vector<std::uint8_t>& takes_
   return std::max(side, std::sqrt(extent / (2.0 * points + 1e4)));
 }
 
-/// The k least of the numbers offered that are below a limit, ascending.
+/// The k least of the numbers offered that are below a limit, ascending; the places of those not found hold the limit. Without branches
+/// where k is known to the compiler.
+template <int K>
 class Least {
  public:
   explicit Least(int k) : k_(k) {}
   void start(double limit) {
-    n_ = 0;
-    worst_ = limit;
+    limit_ = limit;
+    std::fill_n(value_.begin(), size(), limit);
   }
   void offer(double v) {
-    if (!(v < worst_)) return;
-    int at = n_ < k_ ? n_++ : k_ - 1;
-    for (; at > 0 && value_[static_cast<size_t>(at - 1)] > v; --at) value_[static_cast<size_t>(at)] = value_[static_cast<size_t>(at - 1)];
-    value_[static_cast<size_t>(at)] = v;
-    if (n_ == k_) worst_ = value_[static_cast<size_t>(k_ - 1)];
+    if (!(v < worst())) return;
+    size_t at = size() - 1;
+    if constexpr (K > 0) {
+      for (; at > 0; --at) value_[at] = std::max(value_[at - 1], std::min(v, value_[at]));
+      value_[0] = std::min(v, value_[0]);
+    } else {
+      for (; at > 0 && value_[at - 1] > v; --at) value_[at] = value_[at - 1];
+      value_[at] = v;
+    }
   }
-  bool full() const { return n_ == k_; }
-  double worst() const { return worst_; }
-  int count() const { return n_; }
+  bool full() const { return worst() < limit_; }
+  double worst() const { return value_[size() - 1]; }
+  int count() const {
+    return static_cast<int>(std::lower_bound(value_.begin(), value_.begin() + static_cast<std::ptrdiff_t>(size()), limit_) -
+                            value_.begin());
+  }
   double operator[](int i) const { return value_[static_cast<size_t>(i)]; }
 
  private:
-  int k_, n_ = 0;
-  double worst_ = 0;
-  std::array<double, most_neighbours + 1> value_{};
+  constexpr size_t size() const { return K > 0 ? static_cast<size_t>(K) : static_cast<size_t>(k_); }
+  int k_;
+  double limit_ = 0;
+  static constexpr size_t most = static_cast<size_t>(K == 0 ? most_neighbours + 1 : K);
+  std::array<double, most> value_{};
 };
 
 double distance(const Bins::Point& a, const Bins::Point& b) {
@@ -67,7 +78,8 @@ double distance(const Bins::Point& a, const Bins::Point& b) {
 }
 
 /// Offers the squared distances from p to all points of the columns i0 to i1 of row j.
-void offer_row(const Bins& bins, int i0, int i1, int j, const Bins::Point& p, Least& least) {
+template <int K>
+void offer_row(const Bins& bins, int i0, int i1, int j, const Bins::Point& p, Least<K>& least) {
   const core::Lattice& l = bins.lattice();
   if (j < 0 || j >= l.ny) return;
   i0 = std::max(i0, 0);
@@ -81,16 +93,15 @@ void offer_row(const Bins& bins, int i0, int i1, int j, const Bins::Point& p, Le
   }
 }
 
-}  // namespace
-
-std::vector<double> mean_neighbour_distance(const core::Block& b, const std::vector<std::uint8_t>& takes_part,
-                                            const std::vector<std::uint8_t>& wanted, int k, double reach) {
+template <int K>
+std::vector<double> mean_distance(const core::Block& b, const std::vector<std::uint8_t>& takes_part,
+                                  const std::vector<std::uint8_t>& wanted, int k, double reach) {
   std::vector<double> mean(b.size(), std::numeric_limits<double>::quiet_NaN());
   if (b.size() == 0) return mean;
   const double side = column_side(b, takes_part, reach);
   const Bins bins(b, side, 0, [&](size_t p) { return takes_part[p] != 0; });
   const core::Lattice& l = bins.lattice();
-  Least least(k + 1);  // the point itself is one of them
+  Least<K> least(k + 1);  // the point itself is one of them
   for (int j = 0; j < l.ny; ++j)
     for (int i = 0; i < l.nx; ++i) {
       const auto points = bins.in(i, j);
@@ -122,6 +133,14 @@ std::vector<double> mean_neighbour_distance(const core::Block& b, const std::vec
       }
     }
   return mean;
+}
+
+}  // namespace
+
+std::vector<double> mean_neighbour_distance(const core::Block& b, const std::vector<std::uint8_t>& takes_part,
+                                            const std::vector<std::uint8_t>& wanted, int k, double reach) {
+  constexpr int usual = 4;  // the default of filters.outlier
+  return k == usual ? mean_distance<usual + 1>(b, takes_part, wanted, k, reach) : mean_distance<0>(b, takes_part, wanted, k, reach);
 }
 
 }  // namespace swath::filters

@@ -21,13 +21,14 @@
 namespace swath::filters {
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Model = pcl::SampleConsensusModelPlane<pcl::PointXYZ>;
 
 constexpr double step = 3.0;          // m; a window spans two
 constexpr double plan_cell = 2.0;     // m: raster of a plane's ground plan
 constexpr size_t fewest = 8;          // returns of a plane
-constexpr double own_share = 0.5;     // of all returns over its ground plan that lie on it
+constexpr double own_share = 0.5;     // of all returns over the hull of its ground plan that lie on it
 constexpr double last_share = 0.7;    // of its returns that are last ones
 constexpr double least_upward = 0.5;  // cosine of the steepest plane's slope
 constexpr int iterations = 200;
@@ -50,31 +51,54 @@ Plane fit(const std::vector<Vector3d>& points, const std::vector<size_t>& rows) 
   return {mean, axes.eigenvectors().col(0)};
 }
 
-/// All usable returns by cell of the ground plan.
+double cross(const Vector2d& o, const Vector2d& a, const Vector2d& b) {
+  return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
+}
+
+/// Convex hull, counter-clockwise (Andrew 1979).
+std::vector<Vector2d> hull_of(std::vector<Vector2d> p) {
+  std::sort(p.begin(), p.end(), [](const Vector2d& a, const Vector2d& b) { return std::tie(a.x(), a.y()) < std::tie(b.x(), b.y()); });
+  std::vector<Vector2d> hull;
+  for (int pass = 0; pass < 2; ++pass) {
+    const size_t start = hull.size();
+    for (const Vector2d& q : p) {
+      while (hull.size() >= start + 2 && cross(hull[hull.size() - 2], hull.back(), q) <= 0.0) hull.pop_back();
+      hull.push_back(q);
+    }
+    hull.pop_back();
+    std::reverse(p.begin(), p.end());
+  }
+  return hull;
+}
+
+/// All usable returns in plan.
 class GroundPlan {
  public:
-  explicit GroundPlan(const core::Block& b) : lattice_(lattice_around(b, plan_cell, 0)), returns_(lattice_.size(), 0) {
-    for (size_t p = 0; p < b.size(); ++p)
-      if (core::is_usable(b, p)) ++returns_[cell(b, p)];
-  }
-  size_t cell(const core::Block& b, size_t p) const {
-    const CellIndex c = cell_of(lattice_, b, p);
-    return lattice_.at(c.i, c.j);
-  }
-  /// Returns over the cells that hold any of the rows.
+  explicit GroundPlan(const core::Block& b) : bins_(b, plan_cell, 0, [&b](size_t p) { return core::is_usable(b, p); }) {}
+
+  /// Returns within the convex hull of the rows, its border included. What lies beside a roof does not tell against it.
   std::uint64_t returns_over(const core::Block& b, const std::vector<std::uint32_t>& rows) const {
-    std::vector<size_t> cells;
-    for (const std::uint32_t r : rows) cells.push_back(cell(b, r));
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    std::vector<Vector2d> plan;
+    for (const std::uint32_t r : rows) plan.emplace_back(b.x[r], b.y[r]);
+    const std::vector<Vector2d> hull = hull_of(plan);
+    CellIndex low = cell_of(bins_.lattice(), b, rows.front()), high = low;
+    for (const std::uint32_t r : rows) {
+      const CellIndex c = cell_of(bins_.lattice(), b, r);
+      low = {std::min(low.i, c.i), std::min(low.j, c.j)}, high = {std::max(high.i, c.i), std::max(high.j, c.j)};
+    }
     std::uint64_t n = 0;
-    for (const size_t c : cells) n += returns_[c];
+    for (int j = low.j; j <= high.j; ++j)
+      for (int i = low.i; i <= high.i; ++i)
+        for (const Bins::Point& q : bins_.in(i, j)) {
+          bool inside = true;
+          for (size_t k = 0; inside && k < hull.size(); ++k) inside = cross(hull[k], hull[(k + 1) % hull.size()], {q.x, q.y}) >= 0.0;
+          n += inside;
+        }
     return n;
   }
 
  private:
-  core::Lattice lattice_;
-  std::vector<std::uint32_t> returns_;
+  Bins bins_;
 };
 
 class Window {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wires: points in line, high up, with empty space around the line.
+// Wires: returns in line over a long stretch, high up, with empty space around the line.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,12 @@ namespace swath::filters {
 /// Metres of points around a place that wire_points depends on there.
 double wire_points_halo();
 
-/// 1 for each of the points with `candidate` that lies on a straight, not steep line with at least four other candidates over at least
-/// 5 m, within 0.5 m of it, while nearly nothing else lies within 1.5 m of that line; judged within 6 m of the point. At least
-/// three of those around must be in line themselves; where they are, fewer points suffice, as at a wire's end. Does not depend on the order
-/// of the points.
-std::vector<std::uint8_t> wire_points(const core::Block& b, const std::vector<std::uint8_t>& candidate);
+/// 1 for each of the points with `candidate` that lies on a wire: in line with at least four other candidates over at least 15 m, straight
+/// in plan and no steeper than 30 degrees, in height along a parabola that may open upwards as a catenary does, each within 0.4 m, with
+/// gaps of at most 7 m (16 m with at least six others), while nearly nothing else lies within 1.5 m of that line, points of a `surface`
+/// least of all. Wires side by side are told from foliage by the few places of the line's cross-section that they take. Then the candidates
+/// that carry on such lines by up to one gap. Does not depend on the order of the points.
+std::vector<std::uint8_t> wire_points(const core::Block& b, const std::vector<std::uint8_t>& candidate,
+                                      const std::vector<std::uint8_t>& surface);
 
 }  // namespace swath::filters

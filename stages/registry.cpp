@@ -31,6 +31,7 @@ const std::vector<Entry>& registry() {
       {"filters.pmf", make_pmf},
       {"filters.csf", make_csf},
       {"filters.ground", make_ground},
+      {"filters.water", make_water},
       {"filters.hag_dem", make_hag_dem},
       {"filters.classify", make_classify},
       {"filters.key_points", make_key_points},

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Classes of a simulated mixed survey with outliers against truth: recall and precision of each, and what noise the filters find."""
-import sys
+"""Classes of simulated surveys with outliers against truth: recall and precision of each, and what noise the filters find. Sums over the seeds.
+
+    classes.py [--seeds 1 ...] [--scene mixed] [--without filters.outlier ...] [--set KEY=VALUE ...]
+"""
+import argparse
 
 import numpy as np
 
@@ -9,20 +12,30 @@ import common
 NAMES = {1: "unassigned", 2: "ground", 3: "low vegetation", 4: "medium vegetation", 5: "high vegetation", 6: "building", 7: "low noise", 9: "water",
          14: "wire", 15: "tower", 17: "bridge deck", 18: "high noise"}
 STAGES = [{"type": "readers.trajectory"}, {"type": "readers.laser"}, {"type": "georeference"}, {"type": "filters.returns"}, {"type": "filters.noise", "neighbours": 2},
-          {"type": "filters.outlier"}, {"type": "filters.smrf"}, {"type": "filters.visibility"}, {"type": "terrain.dtm"}, {"type": "filters.hag_dem"},
+          {"type": "filters.outlier"}, {"type": "filters.ground"}, {"type": "filters.water"}, {"type": "filters.visibility"},
+          {"type": "terrain.dtm", "classes": [2, 9]}, {"type": "filters.hag_dem"},
           {"type": "filters.classify", "medium_vegetation": "2 m", "high_vegetation": "5 m"},  # the simulation's limits
           {"type": "writers.las", "compress": False}]
 
-folder = common.scratch("classes")
-seed = int(sys.argv[1]) if len(sys.argv) > 1 else 1
-only = sys.argv[2].split(",") if len(sys.argv) > 2 else []  # stages left out
-survey = common.simulate(folder / "survey", seed=seed, world__scene="mixed", imu__file="false", gnss__file="false")
-stages = [s for s in STAGES if s["type"] not in only]
-report = common.run(stages, survey / "survey.toml", folder / "products")
-truth = np.load(survey / "truth/returns.npy")
-points = common.points_of(folder / "products")
-order = common.paired(points, truth["t"] - 1e9, truth["rn"])
-said, true = points["classification"][order].astype(int), truth["cls"].astype(int)
+given = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+given.add_argument("--seeds", type=int, nargs="+", default=[1])
+given.add_argument("--scene", default="mixed")
+given.add_argument("--without", nargs="*", default=[], help="stages left out")
+given.add_argument("--set", action="append", default=[], help="option of swath simulate, KEY=VALUE")
+given = given.parse_args()
+options = {"imu.file": "false", "gnss.file": "false", **dict(o.split("=", 1) for o in given.set)}
+stages = [s for s in STAGES if s["type"] not in given.without]
+said, true = [], []
+for seed in given.seeds:
+    folder = common.scratch("classes")
+    survey = common.simulate(folder / "survey", seed=seed, world__scene=given.scene, **options)
+    report = common.run(stages, survey / "survey.toml", folder / "products")
+    truth = np.load(survey / "truth/returns.npy")
+    points = common.points_of(folder / "products")
+    order = common.paired(points, truth["t"] - 1e9, truth["rn"])
+    said.append(points["classification"][order].astype(int))
+    true.append(truth["cls"].astype(int))
+said, true = np.concatenate(said), np.concatenate(true)
 rows = []
 for kind in sorted(set(np.unique(true)) | set(np.unique(said))):
     both = np.sum((said == kind) & (true == kind))

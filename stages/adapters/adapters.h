@@ -38,6 +38,7 @@ std::unique_ptr<Stage> make_robust();
 std::unique_ptr<Stage> make_pmf();
 std::unique_ptr<Stage> make_csf();
 std::unique_ptr<Stage> make_ground();
+std::unique_ptr<Stage> make_water();
 std::unique_ptr<Stage> make_hag_dem();
 std::unique_ptr<Stage> make_breaklines();
 std::unique_ptr<Stage> make_key_points();

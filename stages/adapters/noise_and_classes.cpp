@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "filters/classify.h"
 #include "filters/outlier.h"
+#include "filters/water.h"
 #include "stages/adapters/adapters.h"
 
 namespace swath::stages {
@@ -73,8 +74,34 @@ class Classify : public OptionStage<filters::ClassifyOptions> {
   }
 };
 
+class Water : public OptionStage<filters::WaterOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{"filters.water",
+                           "Water (class 9) by level returns where most pulses do not come back; between a ground filter and the terrain.",
+                           {Grain::tile},
+                           {Column::flags, Column::classification},
+                           {Column::classification},
+                           {Product::points},
+                           {}};
+    return info;
+  }
+  core::ColumnSet also_reads() const override { return {Column::strip, Column::return_number, Column::return_count}; }
+  double halo() const override { return filters::halo(options); }
+  // A bin of the points (28), their heights (8), what is in sorting.
+  double bytes_per_point() const override { return 64.0; }
+  // Plots of 4 m: heights, sparse returns, planes, ranges.
+  std::vector<Raster> rasters(const Context& c) const override { return {{"", 4.0, c.tile_side + 2.0 * halo(), 160.0}}; }
+  void run_tile(const Context&, TileJob& job) const override {
+    const filters::WaterCounts n = filters::classify_water(job.block, job.own, options);
+    if (n.water) job.tally.count("water", n.water);
+    if (n.ground) job.tally.count("of these ground before", n.ground);
+  }
+};
+
 }  // namespace
 
+std::unique_ptr<Stage> make_water() { return std::make_unique<Water>(); }
 std::unique_ptr<Stage> make_outlier() { return std::make_unique<Outlier>(); }
 std::unique_ptr<Stage> make_classify() { return std::make_unique<Classify>(); }
 

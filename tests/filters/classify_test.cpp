@@ -118,9 +118,12 @@ TEST(Classify, AWireOverAFieldAndNoiseWaterAndHaloStay) {
   core::Block b = prepared(s);
   b.classification[0] = cls::high_noise;
   b.classification[1] = cls::water;
+  b.classification[before + 50] = cls::high_noise;  // found alone in space
+  b.flags[before + 50] = core::flag::isolated;
   const size_t own = b.size() - 2;
   classify(b, own, {});
   for (size_t p = before; p < own; ++p) EXPECT_EQ(b.classification[p], cls::wire) << p;
+  EXPECT_EQ(b.flags[before + 50], 0);
   EXPECT_EQ(b.classification[0], cls::high_noise);
   EXPECT_EQ(b.classification[1], cls::water);
   EXPECT_EQ(b.classification[own], cls::unassigned);

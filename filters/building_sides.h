@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What belongs to a building beside the planes of its roof: the rest of the roof's rim, and its walls.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/block.h"
+
+namespace swath::filters {
+
+/// Metres of points around a place that building_sides depends on there.
+double building_sides_halo();
+
+/// 1 for the last returns with `candidate` that lie within `tolerance` (m) of the plane through the returns of `roof` around them, at least
+/// six within 3 m; and for those within 1 m in plan of a return of `roof` that is higher: walls lie under the eaves. Does not depend on
+/// the order of the points.
+std::vector<std::uint8_t> building_sides(const core::Block& b, const std::vector<std::uint8_t>& roof,
+                                         const std::vector<std::uint8_t>& candidate, double tolerance);
+
+}  // namespace swath::filters
