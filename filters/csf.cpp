@@ -5,18 +5,17 @@
 // Deviations. In brackets what each does to the mean total error over seven ISPRS samples, in points, where it was measured:
 // - The cloth is cut into squares of the survey's own lattice with a margin (patches.h), so that no result depends on a tile's extent
 //   (squares 4.5 times as wide, which hold a sample nearly whole: +0.9, and 0.2 to 6.6 % of a sample's labels differ).
-// - Springs act pair by pair in a fixed colouring by the parity of the particles' lattice indices: pairs of one colour share no particle,
-// so
-//   that no order of particles is preferred. The authors' program goes particle by particle in the order of its rows. Not measured.
+// - Springs act pair by pair in a fixed colouring by the parity of the particles' lattice indices: pairs of one colour share no
+//   particle, so that no order of particles is preferred. The authors' program goes particle by particle in the order of its rows. Not
+//   measured.
 // - Both particles of a spring go to their mean, as the paper says; the authors' program moves them by 0.3 to 0.5 of their distance.
-// Springs
-//   are the paper's: to neighbours, across the diagonals, and to the neighbours' neighbours in rows and columns. Not measured.
+//   Springs are the paper's: to neighbours, across the diagonals, and to the neighbours' neighbours in rows and columns. Not measured.
 // - Particles without a point in their cell get their height by interpolation (inpaint.h), not from the nearest point. Not measured.
-// - In each step the inner forces act `rigidness` times over the whole cloth and gravity moves it by 0.2 step^2. The authors' program lets
-// them
-//   act once, by shares of 1 - 0.7^n (one particle free) and 0.5 - 0.5 * 0.4^n (both), with 0.2 step^4 (so: -0.4; these shares with the
-//   gravity here: -0.1; the paper's shares of 1 - 0.5^n with either gravity: -0.1).
-// - The authors' program lays particles down on slopes only where the cloth is within 0.3 m of its point; the paper does not say so (+5.0).
+// - In each step the inner forces act `rigidness` times over the whole cloth and gravity moves it by 0.2 step^2. The authors' program
+//   lets them act once, by shares of 1 - 0.7^n (one particle free) and 0.5 - 0.5 * 0.4^n (both), with 0.2 step^4 (so: -0.4; these
+//   shares with the gravity here: -0.1; the paper's shares of 1 - 0.5^n with either gravity: -0.1).
+// - The authors' program lays particles down on slopes only where the cloth is within 0.3 m of its point; the paper does not say so
+//   (+5.0).
 // - Velocities lose 1 % in each step, as in the authors' program and not in the paper: an undamped cloth over a pit swings for ever.
 #include "filters/csf.h"
 

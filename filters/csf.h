@@ -25,7 +25,7 @@ void describe(CsfOptions& o, V& v) {
       "rigidness", o.rigidness, core::within(1, 10),
       "How often the inner forces act in each step: 1 for steep terrain, 2 for relief with few buildings, 3 for flat and built-up terrain.",
       "Zhang2016, RI");
-  v.option("step", o.step, core::above_to(0.0, 2.0), "Time step: gravity moves the free cloth by 0.2 step^2 metres more in each step.",
+  v.option("step", o.step, core::within(0.2, 2.0), "Time step: gravity moves the free cloth by 0.2 step^2 metres more in each step.",
            "Zhang2016, dT");
   v.option("iterations", o.iterations, core::within(1, 10000), "Most steps; the cloth may come to rest earlier.", "Zhang2016");
   v.option("threshold", o.threshold, core::above(0.0), "Largest distance of a ground point from the cloth.", "Zhang2016, h_cc");

@@ -121,7 +121,9 @@ TEST(Ground, LabelsDependNeitherOnTilesNorOnOrder) {
   const core::Block start = six_scenes();
   core::Block whole = start;
   filter(whole, whole.size());
-  EXPECT_EQ(test::run_tiled(start, 150.0, halo(o), filter).classification, whole.classification);
+  const core::Block tiles = test::run_tiled(start, 150.0, halo(o), filter);
+  EXPECT_EQ(tiles.classification, whole.classification);
+  EXPECT_EQ(tiles.ground_probability, whole.ground_probability);
   std::vector<std::uint32_t> rows;
   core::Block mixed = test::shuffled(start, 11, rows);
   filter(mixed, mixed.size());
