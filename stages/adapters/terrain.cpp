@@ -64,9 +64,9 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
   }
   core::ColumnSet also_reads() const override { return {core::Column::sigma_v, core::Column::sigma_h}; }
   double halo() const override { return terrain::halo(options); }
-  // Vertices (48), their order (32), CGAL's vertex and two faces (32 and 2 of 56), the faces as numbers (2 of 24), triangles and their
-  // neighbours (2 of 24), their lists (2 of 14).
-  double bytes_per_point() const override { return 350.0; }
+  // Measured 2026-11-22 with tests/stages/memory_test.cpp: 160 bytes, tile 500 m and 1.5 points per square metre. Of the halo only the
+  // points that the tile's triangles need are triangulated; beyond a few metres that is none.
+  double bytes_per_point() const override { return 200.0; }
   // Measured 2026-11-22 with tests/stages/memory_test.cpp, tile 200 m, cells of 0.25 m: 24 bytes per cell; two counts per cell around the
   // tile for the void reasons.
   std::vector<Raster> rasters(const Context& c) const override {
