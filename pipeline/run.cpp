@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cmath>
+#include <limits>
 #include <set>
 #include <thread>
 
@@ -26,6 +28,7 @@
 #include "pipeline/pulse_border.h"
 #include "pipeline/tile_queue.h"
 #include "pipeline/tile_store.h"
+#include "stages/waters.h"
 
 namespace swath::pipeline {
 namespace {
@@ -102,6 +105,7 @@ class Engine {
   void stream_strip(const stages::Strip& strip, const fs::path& folder);
   void run_tile_stages();
   std::vector<TileKey> tiles_of(size_t number) const;
+  std::set<TileKey> tiles_of_water() const;
   void run_tiles(size_t number);
   void keep_surface_tiles(size_t number, const std::vector<TileKey>& fringe);
   void run_merge(size_t number);
@@ -323,6 +327,29 @@ std::vector<TileKey> Engine::tiles_of(size_t number) const {
   return {keys.begin(), keys.end()};
 }
 
+/// Tiles without points that water of known height lies in, between the survey's own tiles.
+std::set<TileKey> Engine::tiles_of_water() const {
+  std::set<TileKey> out;
+  if (store_->tiles().empty()) return out;
+  int x0 = std::numeric_limits<int>::max(), y0 = x0, x1 = std::numeric_limits<int>::min(), y1 = x1;
+  for (const auto& [key, n] : store_->tiles()) {
+    x0 = std::min(x0, key.ix), x1 = std::max(x1, key.ix);
+    y0 = std::min(y0, key.iy), y1 = std::max(y1, key.iy);
+  }
+  const auto tile = [&](double edge, int low, int high) {
+    return static_cast<int>(std::clamp(std::floor(edge / context_.tile_side), static_cast<double>(low), static_cast<double>(high)));
+  };
+  for (const stages::Box& water : stages::waters_of(context_)) {
+    if (water.x1 < x0 * context_.tile_side || water.x0 > (x1 + 1) * context_.tile_side || water.y1 < y0 * context_.tile_side ||
+        water.y0 > (y1 + 1) * context_.tile_side)
+      continue;
+    for (int iy = tile(water.y0, y0, y1); iy <= tile(water.y1, y0, y1); ++iy)
+      for (int ix = tile(water.x0, x0, x1); ix <= tile(water.x1, x0, x1); ++ix)
+        if (!store_->tiles().contains({ix, iy})) out.insert({ix, iy});
+  }
+  return out;
+}
+
 /// Of the tiles without points only those stay in which the surface says anything.
 void Engine::keep_surface_tiles(size_t number, const std::vector<TileKey>& fringe) {
   for (const TileKey key : fringe) {
@@ -342,7 +369,12 @@ void Engine::run_tiles(size_t number) {
   const core::ColumnSet columns = s.info().needs | s.info().gives | s.also_reads();
   const bool changes = !s.info().gives.empty();
   const bool makes_surface = has_surface(s.info().gives_products);
-  const std::vector<TileKey> fringe = makes_surface ? store_->fringe(s.halo()) : std::vector<TileKey>{};
+  std::vector<TileKey> fringe = makes_surface ? store_->fringe(s.halo()) : std::vector<TileKey>{};
+  const std::vector<stages::Product>& gives = s.info().gives_products;
+  const bool makes_terrain = std::find(gives.begin(), gives.end(), stages::Product::dtm) != gives.end();
+  const std::set<TileKey> wet = makes_terrain ? tiles_of_water() : std::set<TileKey>{};
+  for (const TileKey key : wet)
+    if (std::find(fringe.begin(), fringe.end(), key) == fringe.end()) fringe.push_back(key);
   std::vector<TileKey> keys = tiles_of(number);
   for (const TileKey key : fringe)
     if (!surface_tiles_.contains(key)) keys.push_back(key);
@@ -383,7 +415,7 @@ void Engine::run_tiles(size_t number) {
             job.block = store_->read_with_halo(keys[i], s.halo(), columns, job.own);
             core::add_columns(job.block, s.info().gives);
             const size_t before = job.block.size();
-            if (before > 0 || !makes_surface) s.run_tile(context_, job);
+            if (before > 0 || !makes_surface || wet.contains(keys[i])) s.run_tile(context_, job);
             if (job.block.size() != before)
               throw core::Error("the stage changed the number of points of a tile", std::string(s.info().name),
                                 "this is a fault of the program");

@@ -43,7 +43,7 @@ def fly(part, seed):
     kept = common.SCRATCH / "calibration" / f"{part}_{seed}.json"
     if os.environ.get("RESUME") and kept.exists():
         done = json.loads(kept.read_text())
-        return np.array(done["rows"]), done["findings"], done["readings"]
+        return np.array(done["rows"]), done["findings"], done.get("readings", {})
     folder = common.scratch(f"calibration/{part}_{seed}")
     options, settings = PARTS[part]
     if "PRF" in os.environ:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/adapters/breaklines.h"
 
+#include <algorithm>
 #include <cstring>
 #include <mutex>
 
@@ -10,6 +11,7 @@
 #include "io/output_file.h"
 #include "io/value_file.h"
 #include "stages/adapters/adapters.h"
+#include "stages/waters.h"
 #include "terrain/dtm.h"
 
 namespace swath::stages {
@@ -151,6 +153,24 @@ std::unique_ptr<terrain::Breaklines> settled_breaklines(const Context& context) 
   core::throw_if_any(faults);
   return std::make_unique<terrain::Breaklines>(terrain::unpack(io::read_text_file(folder / settled_file), (folder / settled_file).string()),
                                                options, context.origin);
+}
+
+std::vector<Box> waters_of(const Context& context) {
+  std::vector<Box> out;
+  if (!context.grids || !context.grids->has(Product::breaklines)) return out;
+  const fs::path file = context.grids->folder(Product::breaklines) / settled_file;
+  for (const terrain::SettledLine& line : terrain::unpack(io::read_text_file(file), file.string())) {
+    const core::Breakline& b = line.line;
+    if (!b.is_water() || !b.has_height) continue;
+    Box box{1e300, 1e300, -1e300, -1e300};
+    for (const auto& part : b.parts)
+      for (const Eigen::Vector3d& v : part) {
+        const double x = v.x() + context.origin.x(), y = v.y() + context.origin.y();
+        box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x), std::max(box.y1, y)};
+      }
+    if (box.x0 <= box.x1) out.push_back(box);
+  }
+  return out;
 }
 
 std::unique_ptr<Stage> make_breaklines() { return std::make_unique<BreaklineStage>(); }

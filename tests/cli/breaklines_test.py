@@ -62,6 +62,18 @@ class Breaklines(Case):
             if name in ("dtm", "dsm", "canopy", "slope", "hillshade", "intensity"):
                 self.assertEqual(len(a.keys() ^ b.keys()), 0, name)
 
+    def test_a_lake_wider_than_a_tile_is_whole(self):
+        # Tiles of 20 m, no point within 10 m of those in the lake's middle.
+        models = []
+        for tile in (20, 1000):
+            out = self.class_folder / f"wide_{tile}"
+            done = swath("run", self.config, "--survey", self.survey, "--output", out, "--quiet", "--set", f"run.tile={tile} m",
+                         "--set", "dtm.max_edge=5 m")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            models.append(raster(out / "dtm.vrt"))
+        self.assertGreater(sum(in_lake(x - EAST, y - NORTH) for x, y in models[1]), 3000)
+        self.assertEqual(models[0], models[1])
+
     def test_lake_is_flat_at_the_level_of_its_shore(self):
         water = stage(self.report[1000], "terrain.breaklines")["findings"]["waters"][0]
         self.assertGreater(water["shore_points"], 50)
