@@ -2,10 +2,7 @@
 // Returns per second of filters.outlier on one thread and on two, each with its own tile of a made survey: hills at 8 returns per square
 // metre in scan lines, a quarter of it under trees, halo included. Prints the median of the rounds, by the clock and by the threads' own
 // processor time, which holds where other programs share the cores.
-#include <time.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -13,12 +10,13 @@
 #include <thread>
 #include <vector>
 
+#include "bench/timing.h"
 #include "filters/outlier.h"
 
 namespace {
 
 using namespace swath;
-using Clock = std::chrono::steady_clock;
+using namespace bench;
 
 constexpr double side = 500.0, density = 8.0;
 
@@ -43,19 +41,6 @@ core::Block tile(double halo, unsigned seed, size_t& own) {
   own = inner.size();
   core::append(inner, outer);
   return inner;
-}
-
-double seconds(Clock::time_point from) { return std::chrono::duration<double>(Clock::now() - from).count(); }
-
-double processor_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double median(std::vector<double> v) {
-  std::sort(v.begin(), v.end());
-  return v[v.size() / 2];
 }
 
 }  // namespace

@@ -2,10 +2,7 @@
 // Ground points per second of terrain.dtm, one thread and two, each with its own tile of a made survey: hills at 8 points per square metre
 // in scan lines, halo included. Prints the median of the rounds, by the clock and by the threads' own processor time, which holds where
 // other programs share the cores.
-#include <time.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -13,12 +10,13 @@
 #include <thread>
 #include <vector>
 
+#include "bench/timing.h"
 #include "terrain/dtm.h"
 
 namespace {
 
 using namespace swath;
-using Clock = std::chrono::steady_clock;
+using namespace bench;
 
 constexpr double side = 500.0, density = 8.0;
 
@@ -47,17 +45,6 @@ core::Block tile(double halo, unsigned seed, size_t& own) {
   return b;
 }
 
-double processor_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double median(std::vector<double> v) {
-  std::sort(v.begin(), v.end());
-  return v[v.size() / 2];
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -82,7 +69,7 @@ int main(int argc, char** argv) {
         });
       }
       for (std::thread& t : crew) t.join();
-      rate.push_back(points / std::chrono::duration<double>(Clock::now() - start).count());
+      rate.push_back(points / seconds(start));
       processor_rate.push_back(points / *std::max_element(used.begin(), used.end()));
     }
     std::printf("terrain.dtm, %d thread%s: %.2f M ground points/s, %.2f by processor time (%zu own of %zu)\n", threads,

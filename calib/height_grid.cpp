@@ -7,6 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "core/floor_div.h"
+
 namespace swath::calib {
 namespace {
 
@@ -18,8 +20,6 @@ std::uint64_t key_of(std::int32_t i, std::int32_t j) {
   return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) << 32 | static_cast<std::uint32_t>(j);
 }
 std::int32_t index_of(double v, double cell) { return static_cast<std::int32_t>(std::floor(v / cell)); }
-// Division by a positive number that rounds down.
-std::int64_t floor_div(std::int64_t a, std::int64_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
 HeightTile& tile_at(HeightView& view, std::int32_t i, std::int32_t j, bool& made) {
   const auto [at, fresh] = view.number.try_emplace(key_of(i, j), static_cast<std::uint32_t>(view.tiles.size()));
@@ -37,7 +37,8 @@ HeightView coarser(const HeightView& fine) {
   out.line = fine.line, out.astern = fine.astern;
   for (const HeightTile& t : fine.tiles) {
     bool made = false;
-    HeightTile& to = tile_at(out, static_cast<std::int32_t>(floor_div(t.i, 2)), static_cast<std::int32_t>(floor_div(t.j, 2)), made);
+    HeightTile& to =
+        tile_at(out, static_cast<std::int32_t>(core::floor_div(t.i, 2)), static_cast<std::int32_t>(core::floor_div(t.j, 2)), made);
     if (made) to.base = t.base, to.time = t.time, to.sample = t.sample;
     const int left = (t.i - 2 * to.i) * side / 2, low = (t.j - 2 * to.j) * side / 2;
     for (int y = 0; y < side; ++y)
@@ -63,8 +64,8 @@ Raster HeightView::raster(std::int64_t i0, std::int64_t j0, int nx, int ny, int 
   std::vector<double> sum(cells, 0.0);
   std::vector<std::uint32_t> n(cells, 0);
   const std::int64_t west = i0 * factor, south = j0 * factor, wide = std::int64_t{nx} * factor, high = std::int64_t{ny} * factor;
-  for (std::int64_t tj = floor_div(south, side); tj <= floor_div(south + high - 1, side); ++tj)
-    for (std::int64_t ti = floor_div(west, side); ti <= floor_div(west + wide - 1, side); ++ti) {
+  for (std::int64_t tj = core::floor_div(south, side); tj <= core::floor_div(south + high - 1, side); ++tj)
+    for (std::int64_t ti = core::floor_div(west, side); ti <= core::floor_div(west + wide - 1, side); ++ti) {
       const HeightTile* t = tile(static_cast<std::int32_t>(ti), static_cast<std::int32_t>(tj));
       if (!t) continue;
       for (int y = 0; y < side; ++y) {
@@ -114,7 +115,7 @@ HeightGrids height_grids(const ShotStream& stream, LocalPoints& points, double s
         view = &out.views[at->second];
       }
       const std::int32_t i = index_of(p.x[r], out.cell), j = index_of(p.y[r], out.cell);
-      const auto ti = static_cast<std::int32_t>(floor_div(i, side)), tj = static_cast<std::int32_t>(floor_div(j, side));
+      const auto ti = static_cast<std::int32_t>(core::floor_div(i, side)), tj = static_cast<std::int32_t>(core::floor_div(j, side));
       if (!last || view != last_view || last->i != ti || last->j != tj) {
         bool made = false;
         last = &tile_at(*view, ti, tj, made);

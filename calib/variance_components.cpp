@@ -83,6 +83,9 @@ void update_correlated(const TieProblem& problem, const TieSystem& system, const
     omega[part] += correction[i] * weighted[i];
     freedom[part] += 1.0 - prior.corrections.col(i).dot(s.covariance.col(globals + i).tail(correction.size()));
   }
+  // Before the factors change.
+  const Eigen::MatrixXd apriori = knots.scales_apart() ? knots.covariance(f.of_position(), f.of_attitude()) : Eigen::MatrixXd();
+  const auto left = s.covariance.bottomRightCorner(correction.size(), correction.size());
   for (const int part : {0, 1}) {
     std::array<SigmaFactor, 3>& of_part = part == 0 ? f.position : f.attitude;
     const bool wanted = part == 0 ? o.position : o.attitude;
@@ -95,18 +98,17 @@ void update_correlated(const TieProblem& problem, const TieSystem& system, const
     const Eigen::MatrixXd &mean = knots.modes(part == 0, line_mean), &drift = knots.modes(part == 0, line_drift);
     Eigen::MatrixXd both(mean.rows(), mean.cols() + drift.cols());
     both << mean, drift;
-    const Eigen::MatrixXd C = knots.covariance(f.of_position(), f.of_attitude());
-    const auto S = s.covariance.bottomRightCorner(correction.size(), correction.size());
-    const auto tell = [&](const Eigen::MatrixXd& modes) {
-      if (modes.cols() == 0) return std::pair(0.0, 0.0);
-      const Eigen::VectorXd value = modes.transpose() * correction;
-      const auto expected = (modes.transpose() * C * modes).ldlt();
-      const Eigen::MatrixXd left = modes.transpose() * S * modes;
-      return std::pair(value.dot(expected.solve(value)), static_cast<double>(modes.cols()) - expected.solve(left).trace());
+    const Eigen::VectorXd value = both.transpose() * correction;
+    const Eigen::MatrixXd C = both.transpose() * apriori * both, S = both.transpose() * left * both;
+    const auto tell = [&](Eigen::Index first, Eigen::Index n) {
+      if (n == 0) return std::pair(0.0, 0.0);
+      const auto expected = C.block(first, first, n, n).ldlt();
+      return std::pair(value.segment(first, n).dot(expected.solve(value.segment(first, n))),
+                       static_cast<double>(n) - expected.solve(S.block(first, first, n, n)).trace());
     };
-    const auto [omega_mean, freedom_mean] = tell(mean);
-    const auto [omega_drift, freedom_drift] = tell(drift);
-    const auto [omega_both, freedom_both] = tell(both);
+    const auto [omega_mean, freedom_mean] = tell(0, mean.cols());
+    const auto [omega_drift, freedom_drift] = tell(mean.cols(), drift.cols());
+    const auto [omega_both, freedom_both] = tell(0, both.cols());
     with_freedom(of_part[line_mean], omega_mean, freedom_mean, wanted);
     with_freedom(of_part[line_drift], omega_drift, freedom_drift, wanted);
     with_freedom(of_part[within_line], omega[part] - omega_both, freedom[part] - freedom_both, wanted);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/floor_div.h"
 #include "core/units.h"
 
 namespace swath::filters {
@@ -13,8 +14,6 @@ namespace {
 constexpr int district = 8;             // cells, a side of the squares that the usual number is told for
 constexpr int districts_around = 2;     // on each side
 constexpr double usual_returns = 50.0;  // in the circle
-
-std::int64_t floor_div(std::int64_t a, std::int64_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
 std::uint16_t line_of(const core::Block& b, std::uint32_t row) { return b.strip.empty() ? std::uint16_t{0} : b.strip[row]; }
 
@@ -42,8 +41,8 @@ std::vector<double> usual_counts(const core::Lattice& l, const std::vector<std::
   std::vector<double> out(l.size(), 0.0);
   if (l.size() == 0) return out;
   std::vector<std::uint32_t> sorted;
-  for (std::int64_t v = floor_div(l.j0, district); v <= floor_div(l.j0 + l.ny - 1, district); ++v)
-    for (std::int64_t u = floor_div(l.i0, district); u <= floor_div(l.i0 + l.nx - 1, district); ++u) {
+  for (std::int64_t v = core::floor_div(l.j0, district); v <= core::floor_div(l.j0 + l.ny - 1, district); ++v)
+    for (std::int64_t u = core::floor_div(l.i0, district); u <= core::floor_div(l.i0 + l.nx - 1, district); ++u) {
       const auto range = [](std::int64_t from, std::int64_t to, std::int64_t first, int n) {
         return std::pair{static_cast<int>(std::max<std::int64_t>(from * district - first, 0)),
                          static_cast<int>(std::min<std::int64_t>(to * district - first, n))};

@@ -24,6 +24,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/floor_div.h"
 #include "filters/bins.h"
 #include "filters/level_plane.h"
 #include "filters/sparse_returns.h"
@@ -51,8 +52,6 @@ constexpr double lowest_share = 0.1;      // of a plot's last returns that may b
 constexpr size_t fewest_on_land = 3;      // returns of a plot that tells whether the land rises
 constexpr double dense = 0.5;             // of the usual density
 constexpr double dense_distance = 0.05;   // m: mean and rms of a dense plot's returns about the plane
-
-std::int64_t floor_div(std::int64_t a, std::int64_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
 double median(std::vector<double>& v) {
   std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
@@ -96,7 +95,7 @@ class Plots {
   void find_water() {
     const core::Lattice& l = lattice();
     constexpr int half = seed_plots / 2;
-    const auto is_middle = [](std::int64_t k) { return k - floor_div(k, seed_plots) * seed_plots == half; };
+    const auto is_middle = [](std::int64_t k) { return k - core::floor_div(k, seed_plots) * seed_plots == half; };
     for (int j = 0; j < l.ny; ++j)
       for (int i = 0; i < l.nx; ++i) {
         if (is_middle(l.i0 + i) && is_middle(l.j0 + j)) {

@@ -16,7 +16,6 @@
 #include <atomic>
 #include <cerrno>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <thread>
 
@@ -107,7 +106,7 @@ class Engine {
   std::vector<TileKey> tiles_of(size_t number) const;
   std::set<TileKey> tiles_of_water() const;
   void run_tiles(size_t number);
-  void keep_surface_tiles(size_t number, const std::vector<TileKey>& fringe);
+  void keep_surface_tiles(size_t number, const std::set<TileKey>& fringe);
   void run_merge(size_t number);
   void begin_products(size_t number);
   void compose_report(const std::string& command);
@@ -331,27 +330,25 @@ std::vector<TileKey> Engine::tiles_of(size_t number) const {
 std::set<TileKey> Engine::tiles_of_water() const {
   std::set<TileKey> out;
   if (store_->tiles().empty()) return out;
-  int x0 = std::numeric_limits<int>::max(), y0 = x0, x1 = std::numeric_limits<int>::min(), y1 = x1;
+  TileKey low = store_->tiles().begin()->first, high = low;
   for (const auto& [key, n] : store_->tiles()) {
-    x0 = std::min(x0, key.ix), x1 = std::max(x1, key.ix);
-    y0 = std::min(y0, key.iy), y1 = std::max(y1, key.iy);
+    low = {std::min(low.ix, key.ix), std::min(low.iy, key.iy)};
+    high = {std::max(high.ix, key.ix), std::max(high.iy, key.iy)};
   }
-  const auto tile = [&](double edge, int low, int high) {
-    return static_cast<int>(std::clamp(std::floor(edge / context_.tile_side), static_cast<double>(low), static_cast<double>(high)));
-  };
+  const auto tile = [&](double edge) { return std::floor(edge / context_.tile_side); };
   for (const stages::Box& water : stages::waters_of(context_)) {
-    if (water.x1 < x0 * context_.tile_side || water.x0 > (x1 + 1) * context_.tile_side || water.y1 < y0 * context_.tile_side ||
-        water.y0 > (y1 + 1) * context_.tile_side)
-      continue;
-    for (int iy = tile(water.y0, y0, y1); iy <= tile(water.y1, y0, y1); ++iy)
-      for (int ix = tile(water.x0, x0, x1); ix <= tile(water.x1, x0, x1); ++ix)
-        if (!store_->tiles().contains({ix, iy})) out.insert({ix, iy});
+    // As numbers: water may reach far beyond the survey.
+    const double x0 = std::max<double>(low.ix, tile(water.x0)), x1 = std::min<double>(high.ix, tile(water.x1));
+    const double y0 = std::max<double>(low.iy, tile(water.y0)), y1 = std::min<double>(high.iy, tile(water.y1));
+    for (double iy = y0; iy <= y1; ++iy)
+      for (double ix = x0; ix <= x1; ++ix)
+        if (const TileKey key{static_cast<int>(ix), static_cast<int>(iy)}; !store_->tiles().contains(key)) out.insert(key);
   }
   return out;
 }
 
 /// Of the tiles without points only those stay in which the surface says anything.
-void Engine::keep_surface_tiles(size_t number, const std::vector<TileKey>& fringe) {
+void Engine::keep_surface_tiles(size_t number, const std::set<TileKey>& fringe) {
   for (const TileKey key : fringe) {
     const fs::path file = stages::grid_file(folder(number), key);
     if (surface_tiles_.contains(key) || !fs::exists(file)) continue;
@@ -369,12 +366,11 @@ void Engine::run_tiles(size_t number) {
   const core::ColumnSet columns = s.info().needs | s.info().gives | s.also_reads();
   const bool changes = !s.info().gives.empty();
   const bool makes_surface = has_surface(s.info().gives_products);
-  std::vector<TileKey> fringe = makes_surface ? store_->fringe(s.halo()) : std::vector<TileKey>{};
+  std::set<TileKey> fringe = makes_surface ? store_->fringe(s.halo()) : std::set<TileKey>{};
   const std::vector<stages::Product>& gives = s.info().gives_products;
   const bool makes_terrain = std::find(gives.begin(), gives.end(), stages::Product::dtm) != gives.end();
   const std::set<TileKey> wet = makes_terrain ? tiles_of_water() : std::set<TileKey>{};
-  for (const TileKey key : wet)
-    if (std::find(fringe.begin(), fringe.end(), key) == fringe.end()) fringe.push_back(key);
+  fringe.insert(wet.begin(), wet.end());
   std::vector<TileKey> keys = tiles_of(number);
   for (const TileKey key : fringe)
     if (!surface_tiles_.contains(key)) keys.push_back(key);

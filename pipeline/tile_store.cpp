@@ -238,14 +238,14 @@ void TileStore::open(const std::vector<std::string>& names) {
   }
 }
 
-std::vector<TileKey> TileStore::fringe(double halo) const {
+std::set<TileKey> TileStore::fringe(double halo) const {
   const int reach = static_cast<int>(std::ceil(halo / side_));
   std::set<TileKey> out;
   for (const auto& [key, n] : tiles_)
     for (int iy = key.iy - reach; iy <= key.iy + reach; ++iy)
       for (int ix = key.ix - reach; ix <= key.ix + reach; ++ix)
         if (!tiles_.contains({ix, iy})) out.insert({ix, iy});
-  return {out.begin(), out.end()};
+  return out;
 }
 
 void TileStore::add_overlay(fs::path folder, ColumnSet columns) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <vector>
 
 #include "core/block.h"
@@ -53,7 +54,7 @@ class TileStore {
   const std::map<TileKey, std::uint64_t>& tiles() const { return tiles_; }
   std::uint64_t points() const { return points_; }
   /// The tiles without a point that have tiles with points within `halo` metres: a surface may reach into them.
-  std::vector<TileKey> fringe(double halo) const;
+  std::set<TileKey> fringe(double halo) const;
   core::ColumnSet columns() const { return columns_; }
 
   /// From now on these columns of a tile are read from overlays in `folder`.

@@ -37,6 +37,10 @@ void take(const std::string& in, size_t& at, std::vector<T>& v, size_t n, const 
 
 }  // namespace
 
+void cut_short(const std::filesystem::path& file) {
+  throw core::Error("the intermediate result is cut short", file.string(), "remove the .swath folder beside the products and run again");
+}
+
 std::filesystem::path grid_file(const std::filesystem::path& folder, TileKey key) {
   return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".grid");
 }

@@ -18,6 +18,9 @@ void write_grid_tile(const std::filesystem::path& folder, TileKey key, const cor
 /// Reads it back; throws core::Error where it is damaged.
 core::Grid read_grid_tile(const std::filesystem::path& file);
 
+/// An intermediate file of a stage is not as long as it must be: throws core::Error.
+[[noreturn]] void cut_short(const std::filesystem::path& file);
+
 /// The part of a tile's grid that lies in `window`'s lattice is copied there.
 void paste(const core::Grid& tile, core::Grid& window);
 

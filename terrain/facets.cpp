@@ -7,13 +7,13 @@
 #include <array>
 #include <cmath>
 
+#include "core/floor_div.h"
+
 namespace swath::terrain {
 namespace {
 
 constexpr std::int64_t page_side = 256;  // nodes
 constexpr size_t most_pages = 256;       // 64 MB
-
-std::int64_t floor_div(std::int64_t a, std::int64_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -39,7 +39,7 @@ const Facets::Page& Facets::page(std::int64_t pi, std::int64_t pj) {
 }
 
 double Facets::node(std::int64_t i, std::int64_t j) {
-  const std::int64_t pi = floor_div(i, page_side), pj = floor_div(j, page_side);
+  const std::int64_t pi = core::floor_div(i, page_side), pj = core::floor_div(j, page_side);
   return page(pi, pj).height[static_cast<size_t>((j - pj * page_side) * page_side + (i - pi * page_side))];
 }
 

@@ -3,7 +3,7 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
-namespace swath::terrain::exact {
+namespace swath::terrain {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -19,4 +19,4 @@ int in_circle(const Place& a, const Place& b, const Place& c, const Place& d) {
   return static_cast<int>(CGAL::side_of_oriented_circle(point(a), point(b), point(c), point(d)));
 }
 
-}  // namespace swath::terrain::exact
+}  // namespace swath::terrain

@@ -4,8 +4,6 @@
 #include <cstring>
 #include <fstream>
 #include <map>
-#include <memory>
-#include <mutex>
 
 #include "core/error.h"
 #include "core/statistics.h"
@@ -101,10 +99,6 @@ int decimals_of(double step) {
   return 3;
 }
 
-[[noreturn]] void cut_short(const fs::path& file) {
-  throw core::Error("the intermediate result is cut short", file.string(), "remove the .swath folder beside the products and run again");
-}
-
 std::string height_text(double height, int decimals) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", decimals, height);
@@ -193,9 +187,9 @@ class Contours : public OptionStage<ContourWriteOptions> {
     if (options.source == ContourSource::grid) {
       grid = context.grids->window(Product::dtm, window);
     } else {  // as terrain.dtm makes it, breaklines and boundaries with it
-      std::call_once(once_, [&] { lines_ = settled_breaklines(context); });
-      grid = terrain::dtm(job.block, window, options.tin, lines_.get());
-      if (lines_) lines_->cut(grid);
+      const terrain::Breaklines* lines = lines_.get(context);
+      grid = terrain::dtm(job.block, window, options.tin, lines);
+      if (lines) lines->cut(grid);
     }
     if (options.source == ContourSource::tin) {
       core::Grid mine(own);
@@ -227,8 +221,7 @@ class Contours : public OptionStage<ContourWriteOptions> {
   }
 
  private:
-  mutable std::once_flag once_;
-  mutable std::unique_ptr<const terrain::Breaklines> lines_;  ///< of source = "tin", read by the first tile
+  BreaklinesOfRun lines_;  ///< of source = "tin"
 
   double cell(const Context& context) const {
     return options.source == ContourSource::grid ? context.grids->cell(Product::dtm) : options.tin.cell.value;

@@ -4,7 +4,6 @@
 #include <limits>
 #include <numeric>
 
-#include "core/error.h"
 #include "filters/returns.h"
 #include "io/geotiff.h"
 #include "io/output_file.h"
@@ -13,6 +12,7 @@
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/tile_list.h"
 #include "stages/adapters/units.h"
+#include "stages/grid_tile.h"
 
 namespace swath::stages {
 namespace {
@@ -74,10 +74,9 @@ class Penetration : public OptionStage<PenetrationOptions> {
       files.push_back(name(context, key));
       tiles.push_back(context.output / "penetration" / files.back());
       std::uint64_t sums[2];
-      const std::string bytes = io::read_text_file(job.folder / (context.label(key) + ".sums"));
-      if (bytes.size() != sizeof sums)
-        throw core::Error("the intermediate result is cut short", (job.folder / (context.label(key) + ".sums")).string(),
-                          "remove the .swath folder beside the products and run again");
+      const fs::path file = job.folder / (context.label(key) + ".sums");
+      const std::string bytes = io::read_text_file(file);
+      if (bytes.size() != sizeof sums) cut_short(file);
       std::memcpy(sums, bytes.data(), sizeof sums);
       all[0] += sums[0];
       all[1] += sums[1];

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cstdint>
-#include <mutex>
 
 #include "core/error.h"
 #include "stages/adapters/adapters.h"
@@ -74,12 +73,12 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
   }
   double cell() const override { return options.cell.value; }
   void run_tile(const Context& context, TileJob& job) const override {
-    std::call_once(once_, [&] { lines_ = settled_breaklines(context); });
+    const terrain::Breaklines* lines = lines_.get(context);
     std::uint64_t shared = 0;
-    core::Grid grid = terrain::dtm(job.block, lattice_in(options.cell.value, job.box), options, lines_.get(), &shared);
+    core::Grid grid = terrain::dtm(job.block, lattice_in(options.cell.value, job.box), options, lines, &shared);
     if (shared > 0) job.tally.count("ground points at the same place as a lower or equal one", shared);
     mark_never_seen(context, job, grid);
-    if (lines_) lines_->cut(grid);  // beyond the boundary nothing is missed
+    if (lines) lines->cut(grid);  // beyond the boundary nothing is missed
     count_voids(grid, job.tally);
     write_grid_tile(job.folder, job.key, grid);
   }
@@ -93,8 +92,7 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
   }
 
  private:
-  mutable std::once_flag once_;
-  mutable std::unique_ptr<const terrain::Breaklines> lines_;  ///< read by the first tile
+  BreaklinesOfRun lines_;
 };
 
 class Dsm : public OptionStage<terrain::DsmOptions> {

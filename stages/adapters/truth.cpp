@@ -90,9 +90,7 @@ class Truth : public OptionStage<NoOptions> {
     for (const TileKey key : job.tiles) {
       const std::string bytes = io::read_text_file(sums_file(job.folder, key));
       Sums s;
-      if (bytes.size() != sizeof s)
-        throw core::Error("the intermediate result is cut short", sums_file(job.folder, key).string(),
-                          "remove the .swath folder beside the products and run again");
+      if (bytes.size() != sizeof s) cut_short(sums_file(job.folder, key));
       std::memcpy(&s, bytes.data(), sizeof s);
       all.add(s);
     }
