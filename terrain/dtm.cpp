@@ -3,7 +3,8 @@
 // terrain/roughness.h, which the points around the cell tell:
 //   what neighbouring points share: (sum w_k c_k)^2, c_k^2 = s_k^2 - noise, at least correlation s_k^2, from the points' own
 //     s_k^2 = sigma_v^2 + (|slope| sigma_h)^2 / 2 (sigma_h is radial: half its variance lies along the slope);
-//   what they do not share (ranging, vegetation taken for ground): noise (sum w_k^2);
+//   what they do not share (ranging, vegetation taken for ground): noise (sum w_k^2). Smoothing leaves a share l_k of it, in common: noise
+//     (sum w_k sqrt(l_k))^2; only of what the points' own sigmas explain: beyond them scatter may be one-sided, and no mean takes that out;
 //   the terrain between them: uneven s + curved s^2 / 4.
 // Where too few triangles stand around a place to tell these, noise is 0 and the terrain may bend by the option unknown_bend b between a
 // triangle and the next: (b (r^2 - d^2) / (2 r))^2, circumradius r, d from its centre, the bound of Waldron 1998, "The error in linear
@@ -19,6 +20,7 @@
 #include "core/error.h"
 #include "terrain/natural_neighbours.h"
 #include "terrain/roughness.h"
+#include "terrain/smoothing.h"
 #include "terrain/tin_surface.h"
 #include "terrain/voids.h"
 
@@ -31,14 +33,15 @@ double roughness_block(const DtmOptions& o) { return o.max_edge.value / 6.0; }
 /// Sigma at places of a TIN, by the terms above.
 class SigmaModel {
  public:
-  SigmaModel(const Tin& tin, const Eigen::Vector3d& origin, const core::Lattice& window, const DtmOptions& o)
-      : tin_(tin), options_(o), roughness_(tin, origin, window, roughness_block(o)) {}
+  /// `roughness`: of the points as they are. `left`: of smooth_heights(), empty without.
+  SigmaModel(const Tin& tin, const RoughnessMap& roughness, const std::vector<float>& left, const DtmOptions& o)
+      : tin_(tin), roughness_(roughness), left_(left), options_(o) {}
 
   double at(std::int32_t t, double x, double y) const {
     const Roughness rough = roughness_.at(x, y);
     const auto w = weights(tin_, t, x, y);
     const double slope_squared = gradient(tin_, t).squaredNorm();
-    double shared = 0.0, own = 0.0;
+    double shared = 0.0, apart = 0.0, together = 0.0, excess = 0.0;
     for (size_t k = 0; k < 3; ++k) {
       const auto v = static_cast<size_t>(tin_.triangles[t][k]);
       double variance = static_cast<double>(tin_.sigma_v[v]) * static_cast<double>(tin_.sigma_v[v]);
@@ -46,8 +49,11 @@ class SigmaModel {
         variance += 0.5 * slope_squared * static_cast<double>(tin_.sigma_h[v]) * static_cast<double>(tin_.sigma_h[v]);
       // max() in this order hands on a variance that is NaN.
       shared += w[k] * std::sqrt(std::max(variance - rough.noise, options_.correlation * variance));
-      own += w[k] * w[k] * rough.noise;
+      const double explained = std::min(rough.noise, variance), left = left_.empty() ? 1.0 : static_cast<double>(left_[v]);
+      (left < 1.0 ? together : apart) += left < 1.0 ? w[k] * std::sqrt(left * explained) : w[k] * w[k] * explained;
+      excess += w[k] * w[k] * (rough.noise - explained);
     }
+    const double own = together * together + apart + excess;
     const double s = reach_of(tin_, t, w, x, y);
     double between = rough.uneven * s + 0.25 * rough.curved * s * s;
     if (!rough.known) {
@@ -61,14 +67,21 @@ class SigmaModel {
 
  private:
   const Tin& tin_;
+  const RoughnessMap& roughness_;
+  const std::vector<float>& left_;
   const DtmOptions& options_;
-  RoughnessMap roughness_;
 };
 
-/// Where the triangles have a say, in the Block's frame: at the cells' centres, where roughness is told, and where natural neighbours are.
-Rectangle reached(const core::Lattice& window, const Eigen::Vector3d& origin, const DtmOptions& o, bool has_sigma) {
-  double around = has_sigma ? RoughnessMap::reach(roughness_block(o)) : 0.0;
-  if (o.interpolation == Interpolation::natural_neighbour) around = std::max(around, o.max_edge.value);
+bool smooths(const DtmOptions& o) { return o.smoothing.value > 0.0 && !o.key_points; }
+
+/// Metres about the window where triangles have a say: where roughness is told, natural neighbours are, and heights are smoothed.
+double around_window(const DtmOptions& o, bool has_sigma) {
+  const double read = o.interpolation == Interpolation::natural_neighbour ? o.max_edge.value : 0.0;
+  return std::max(has_sigma ? RoughnessMap::reach(roughness_block(o)) : 0.0,
+                  read + (smooths(o) ? smoothing_reach(o.smoothing.value) : 0.0));
+}
+
+Rectangle reached(const core::Lattice& window, const Eigen::Vector3d& origin, double around) {
   return {window.west() - origin.x() - around, window.south() - origin.y() - around, window.east() - origin.x() + around,
           window.north() - origin.y() + around};
 }
@@ -76,10 +89,8 @@ Rectangle reached(const core::Lattice& window, const Eigen::Vector3d& origin, co
 }  // namespace
 
 double halo(const DtmOptions& options) {
-  // A place needs the points within max_edge to know its triangle; the triangles that tell its roughness need as much around them, and
-  // those beyond the edges of the triangles that natural neighbours come from another max_edge.
-  const double around = options.interpolation == Interpolation::natural_neighbour ? options.max_edge.value : 0.0;
-  return options.max_edge.value + std::max(around, RoughnessMap::reach(roughness_block(options))) + options.cell.value;
+  // A place needs the points within max_edge to know its triangle.
+  return options.max_edge.value + around_window(options, true) + options.cell.value;
 }
 
 std::vector<std::uint32_t> terrain_rows(const core::Block& block, const DtmOptions& options) {
@@ -108,7 +119,12 @@ core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmO
     constraints = lines->near(window, halo(options));
     rows = lines->kept(block, rows, constraints);
   }
-  const Tin tin = triangulate(block, rows, constraints, 0.5 * options.max_edge.value, reached(window, block.origin, options, has_sigma));
+  Tin tin =
+      triangulate(block, rows, constraints, 0.5 * options.max_edge.value, reached(window, block.origin, around_window(options, has_sigma)));
+  std::optional<RoughnessMap> roughness;
+  if (has_sigma) roughness.emplace(tin, block.origin, window, roughness_block(options));
+  std::vector<float> left;
+  if (smooths(options)) left = smooth_heights(tin, block.size(), options.smoothing.value);
   const std::vector<std::int32_t> triangle = triangles_at_centres(tin, block.origin, window);
 
   if (left_out)
@@ -122,7 +138,7 @@ core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmO
   if (has_sigma) grid.sigma.assign(window.size(), std::numeric_limits<float>::quiet_NaN());
   const bool natural = options.interpolation == Interpolation::natural_neighbour;
   std::optional<SigmaModel> sigma;
-  if (has_sigma) sigma.emplace(tin, block.origin, window, options);
+  if (has_sigma) sigma.emplace(tin, *roughness, left, options);
   std::optional<NaturalNeighbours> neighbourhood;
   if (natural) neighbourhood.emplace(tin);
   for (int j = 0; j < window.ny; ++j)

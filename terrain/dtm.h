@@ -22,10 +22,11 @@ enum class Interpolation {
 struct DtmOptions {
   core::Metres cell{1.0};
   core::Metres max_edge{60.0};
+  core::Metres smoothing{2.5};
   Interpolation interpolation = Interpolation::linear;
   std::vector<int> classes{core::point_class::ground};
   bool key_points = false;
-  double correlation = 0.25;
+  double correlation = 0.05;
   double unknown_bend = 0.1;
 };
 
@@ -35,6 +36,10 @@ void describe(DtmOptions& o, V& v) {
   v.option("max_edge", o.max_edge, core::above(0.0),
            "Longest triangle bridged: a triangle counts where its circumcircle's diameter is at most this, so no edge is longer and no gap "
            "wider.");
+  v.option("smoothing", o.smoothing, core::within(0.0, 20.0),
+           "Distance within which the points even out one another's random errors, breaks kept; 0: the surface passes through every point. "
+           "Points of breaklines and key points stay where they are.",
+           "JonesDurandDesbrun2003, with planes judged by their misfit");
   v.option("interpolation", o.interpolation, "Between the points: linear on the triangles, or natural_neighbour, smooth but at the points.",
            "Sibson1981");
   v.option("classes", o.classes, core::within(0, 255), "ASPRS classes that are terrain.");
@@ -47,8 +52,8 @@ void describe(DtmOptions& o, V& v) {
   v.check(o.max_edge >= o.cell, "max_edge must span at least one cell");
 }
 
-/// Width of the border of points around a window that dtm() needs, m: max_edge, one cell, and what roughness or natural neighbours need
-/// beyond (5/12 or a whole of max_edge).
+/// Width of the border of points around a window that dtm() needs, m: max_edge, one cell, and what roughness (5/12 of max_edge), smoothing
+/// and natural neighbours (another max_edge) need beyond.
 double halo(const DtmOptions& options);
 
 /// Rows of the points that make the terrain: usable and of one of the classes (all usable ones where there is no class column), flagged
