@@ -19,15 +19,23 @@ namespace {
 constexpr int outer_ring = 3;       // cells of low_radius
 constexpr int chords_needed = 8;    // of 20
 constexpr int chords_pardoned = 1;  // that another group of low points, lying around, may spoil
+constexpr int sparse = 8;           // times `neighbours` in plan
+constexpr int wider = 2;            // balls where points are sparser
 
-/// Number of points in the 3 x 3 cells around for which `counts` holds, or `enough` where there are that many.
+/// Number of points in the cells up to `ring` away for which `counts` holds, or `enough` where there are that many. The point's own column
+/// comes first.
 template <class F>
-int count_around(const Bins& bins, CellIndex c, int enough, F&& counts) {
-  constexpr std::array<std::array<int, 2>, 9> around{{{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
+int count_around(const Bins& bins, CellIndex c, int ring, int enough, F&& counts) {
   int n = 0;
-  for (const auto& [di, dj] : around)
+  const auto full = [&](int di, int dj) {
     for (const Bins::Point& q : bins.in(c.i + di, c.j + dj))
-      if (counts(q) && ++n >= enough) return n;
+      if (counts(q) && ++n >= enough) return true;
+    return false;
+  };
+  if (full(0, 0)) return n;
+  for (int dj = -ring; dj <= ring; ++dj)
+    for (int di = -ring; di <= ring; ++di)
+      if ((di != 0 || dj != 0) && full(di, dj)) return n;
   return n;
 }
 
@@ -95,7 +103,7 @@ double squared(double v) { return v * v; }
 
 }  // namespace
 
-double halo(const NoiseOptions& o) { return std::max(o.radius.value, (outer_ring + 1) * o.low_radius.value); }
+double halo(const NoiseOptions& o) { return std::max(wider * o.radius.value, (outer_ring + 1) * o.low_radius.value); }
 
 NoiseCounts flag_noise(core::Block& b, size_t own, const NoiseOptions& o) {
   NoiseCounts n;
@@ -125,17 +133,22 @@ NoiseCounts flag_noise(core::Block& b, size_t own, const NoiseOptions& o) {
     const double reach = squared(o.low_radius.value);
     const auto is_low = [&](CellIndex c, const Bins::Point& p) {
       const auto company = [&](const Bins::Point& q) { return q.z < p.z + depth && squared(q.x - p.x) + squared(q.y - p.y) <= reach; };
-      return count_around(bins, c, o.low_group + 1, company) <= o.low_group && ground_around_is_above(lowest, bins.lattice(), c, p, depth);
+      return count_around(bins, c, 1, o.low_group + 1, company) <= o.low_group && ground_around_is_above(lowest, bins.lattice(), c, p, depth);
     };
     for_each_own(bins, own, is_low, [&](std::uint32_t p) { low.push_back(p); });
   }
 
   if (o.neighbours > 0) {
-    const Bins bins(b, o.radius.value, 1, [&](size_t p) { return judged[p]; });
-    const double reach = squared(o.radius.value);
+    const Bins bins(b, o.radius.value, wider, [&](size_t p) { return judged[p]; });
     const auto is_isolated = [&](CellIndex c, const Bins::Point& p) {
-      const auto near = [&](const Bins::Point& q) { return squared(q.x - p.x) + squared(q.y - p.y) + squared(q.z - p.z) <= reach; };
-      return count_around(bins, c, o.neighbours + 1, near) <= o.neighbours;  // the point itself is counted
+      const auto alone = [&](int balls) {
+        const double reach = squared(balls * o.radius.value);
+        const auto near = [&](const Bins::Point& q) { return squared(q.x - p.x) + squared(q.y - p.y) + squared(q.z - p.z) <= reach; };
+        return count_around(bins, c, balls, o.neighbours + 1, near) <= o.neighbours;  // the point itself is counted
+      };
+      if (!alone(1)) return false;
+      const auto beside = [&](const Bins::Point& q) { return squared(q.x - p.x) + squared(q.y - p.y) <= squared(o.radius.value); };
+      return count_around(bins, c, 1, sparse * o.neighbours + 1, beside) > sparse * o.neighbours || alone(wider);
     };
     for_each_own(bins, own, is_isolated, [&](std::uint32_t p) {
       set_noise(p, core::flag::isolated, core::point_class::high_noise);

@@ -21,7 +21,7 @@ struct NoiseOptions {
 
 template <class V>
 void describe(NoiseOptions& o, V& v) {
-  v.option("radius", o.radius, core::above(0.0), "Radius of the ball in which an isolated point's neighbours are counted.");
+  v.option("radius", o.radius, core::above(0.0), "Radius of the ball in which an isolated point's neighbours are counted, and of one twice as wide where points are sparse.");
   v.option("neighbours", o.neighbours, core::within(0, 1000), "A point with fewer neighbours is isolated; 0 keeps all.");
   v.option("low_depth", o.low_depth, core::above(0.0), "A low point lies at least this far below the ground around it.");
   v.option("low_radius", o.low_radius, core::above(0.0), "Horizontal radius in which a group of low points must stand alone.");
@@ -44,7 +44,8 @@ double halo(const NoiseOptions& o);
 /// Sets flags range_gate, isolated, low_point and classes 7 (low point, range too long) or 18 (isolated, range too short) among the first
 /// `own` points; those after are the halo and stay as they are.
 /// - Range gate: range outside [range_min, range_max]; such points are no neighbours to others. Needs column range (else core::Error).
-/// - Isolated: fewer than `neighbours` other points within `radius` in 3D (exact).
+/// - Isolated: fewer than `neighbours` other points within `radius` in 3D (exact); where fewer than eight times as many lie within it in
+///   plan, so that sparse ground would be isolated too, also within twice the radius.
 /// - Low point: at most `low_group` points (itself one) within `low_radius` horizontally are lower than low_depth above it, and the
 ///   lowest points of the cells around (side low_radius, second and third ring) say the same: of the 20 chords between opposite cells at
 ///   least 8 exist, and at most one passes less than low_depth above the point.
