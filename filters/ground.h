@@ -2,6 +2,8 @@
 // Ground points by a surface that is fitted to the last returns, with a probability for every point.
 #pragma once
 
+#include <vector>
+
 #include "core/block.h"
 #include "core/option.h"
 #include "filters/ground_labels.h"
@@ -23,6 +25,22 @@ void describe(GroundOptions& o, V& v) {
   v.option("noise", o.noise, core::within(0.005, 1.0),
            "Standard deviation of the heights of returns from hard level ground, strips' misfit included.");
 }
+
+/// What is known of a return and of the ground around it.
+struct GroundEvidence {
+  float chance = 0.0F;    ///< that it is ground, as counted around it (ground_chance.h)
+  float above = 0.0F;     ///< m over the surface; NaN: not judged
+  float spread = 0.0F;    ///< m, standard deviation of the ground's returns about it
+  float lowered = 0.0F;   ///< m that the ground lies below the surface, where that runs between two populations
+  float narrowed = 0.0F;  ///< m, standard deviation of the ground's returns about the ground
+  float slope = 0.0F;     ///< rise / run of the surface
+  float standing = 0.0F;  ///< share of the returns around that stand knee-high
+  float sunken = 0.0F;    ///< share of them that lie deep below the surface
+  float support = 0.0F;   ///< ground's returns behind the surface
+};
+
+/// One entry for each of the first `own` points.
+std::vector<GroundEvidence> ground_evidence(const core::Block& block, size_t own, const GroundOptions& o);
 
 /// What one call did, counted over the own points.
 struct GroundChances : GroundCounts {

@@ -20,7 +20,7 @@ class Ground : public OptionStage<filters::GroundOptions> {
                            {}};
     return info;
   }
-  core::ColumnSet also_reads() const override { return {Column::return_number, Column::return_count}; }
+  core::ColumnSet also_reads() const override { return {Column::return_number, Column::return_count, Column::strip}; }
   double halo() const override { return filters::halo(options); }
   // Measured 2026-11-22 with tests/stages/memory_test.cpp, tiles of 200 to 500 m, points 0.7 m and 3 m apart.
   double bytes_per_point() const override { return 24.0; }

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
+#include <vector>
 
 #include "tests/filters/ground_truth.h"
 
@@ -151,6 +154,34 @@ TEST(Ground, ProbabilityIsGivenToAllThatAreJudgedAndAgreesWithTheClass) {
   }
   constexpr double bearable = 0.005;  // the class leans to ground where returns are sparse
   EXPECT_LE(different, bearable * static_cast<double>(s.block.size()));
+}
+
+TEST(Ground, ProbabilityIsTheShareOfGroundInALowCrop) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  std::normal_distribution<double> soil(0.0, 0.018);
+  core::Block b;
+  b.origin = {512000.0, 5402000.0, 0.0};
+  core::resize(b, 60000);
+  std::vector<char> plant(b.size());
+  for (size_t p = 0; p < b.size(); ++p) {
+    b.x[p] = 100.0 * part(random), b.y[p] = 100.0 * part(random);
+    plant[p] = b.x[p] > 40.0 && part(random) < 0.7;
+    b.z[p] = soil(random) + (plant[p] ? 0.09 + 0.06 * part(random) : 0.0);
+  }
+  classify_ground(b, b.size(), {});
+  std::array<double, 10> count{}, stated{}, ground{};
+  for (size_t p = 0; p < b.size(); ++p) {
+    const auto decile = static_cast<size_t>(std::min(9.0F, 10.0F * b.ground_probability[p]));
+    count[decile] += 1, stated[decile] += b.ground_probability[p], ground[decile] += !plant[p];
+  }
+  constexpr double bearable = 0.15;
+  for (size_t k = 0; k < 10; ++k) {
+    if (count[k] >= 1000) {  // fewer are the rim of the field
+      EXPECT_NEAR(stated[k] / count[k], ground[k] / count[k], bearable) << "decile " << k << " of " << count[k];
+    }
+  }
+  EXPECT_GT(count[0], 10000.0) << "crop that is told";
 }
 
 TEST(Ground, AWideBuildingStaysWhereTheOptionSaysNarrower) {

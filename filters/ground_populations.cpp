@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A robust surface through a low crop that stops most pulses lies between soil and crop, and the returns about it are two populations. The
+// ground is then the lower one, in place of the normal distribution about the surface (the "empirical null" of Efron 2004, J. Am. Stat.
+// Assoc. 99). Two normal distributions and a uniform one are fitted by expectation and maximisation (Dempster, Laird & Rubin 1977, J. R.
+// Stat. Soc. B 39) to the heights under a Gaussian around each cell, and believed where they are much likelier than a single one and lie
+// well apart: farther than strips that do not fit.
+#include "filters/ground_populations.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+
+#include "filters/bins.h"
+#include "filters/moving_planes.h"
+
+namespace swath::filters {
+namespace {
+
+constexpr double cell = 2.0;   // m
+constexpr double sigma = 1.5;  // cells: fields are much wider, and their edges must not look like two populations
+constexpr int classes = 60;
+constexpr double lowest = -0.405, width = 0.015;  // m
+constexpr double core_of_ground = 0.3;            // m from the surface, where both populations lie at first
+constexpr double fewest = 20.0;                   // returns under the kernel
+constexpr int rounds = 40;
+constexpr double narrowest = 0.01;     // m: below what ranges are recorded to
+constexpr double rough = 0.8;          // of the noise: spread of the ground from which a place is looked at
+constexpr double likelier = 6.0;       // natural logarithm
+constexpr double apart = 1.8;          // of both spreads together
+constexpr double beyond_noise = 2.0;   // of the noise, between the two
+constexpr double least_ground = 0.05;  // share of the lower one
+constexpr double deepest = 0.2;        // m under the surface: what lies deeper under one that so many draw up is a step of the ground
+
+constexpr double by_strips = 0.4;     // of the gap, between the means of two strips: it is the strips that differ
+constexpr double strip_fewest = 5.0;  // returns of a strip under the kernel
+constexpr double unit = 1e-4;         // m: sums are whole numbers, so that their order does not matter
+
+using Histogram = std::array<double, classes>;
+
+double middle(int k) { return lowest + width * (k + 0.5); }
+
+/// Heights near the surface of one strip, by cell.
+struct StripSums {
+  std::vector<std::int32_t> sum;  ///< in units
+  std::vector<std::uint16_t> count;
+};
+
+struct Normal {
+  double share = 0.0, mean = 0.0, spread = 1.0;
+};
+
+/// Share of the normal distribution's returns in each class.
+Histogram densities(const Normal& n) {
+  constexpr double negligible = 1e-12;
+  Histogram d{};
+  if (n.share <= 0.0) return d;
+  const auto at = [&](int k) { return (middle(k) - n.mean) / n.spread; };
+  const double step = width / n.spread, ratio = std::exp(-step * step);
+  const int start = std::clamp(static_cast<int>(std::floor((n.mean - lowest) / width)), 0, classes - 1);
+  const double peak = n.share * width * 0.3989422804014327 / n.spread * std::exp(-0.5 * at(start) * at(start));
+  // exp(-t^2 / 2) from class to class by products.
+  for (const int way : {1, -1}) {
+    double value = peak, factor = std::exp(-way * step * at(start) - 0.5 * step * step);
+    for (int k = start; k >= 0 && k < classes && value > negligible; k += way) {
+      d[static_cast<size_t>(k)] = value;
+      value *= factor;
+      factor *= ratio;
+    }
+  }
+  return d;
+}
+
+struct Mixture {
+  std::array<Normal, 2> part;
+  double elsewhere = 0.1;
+  double log_likelihood = 0.0;
+};
+
+/// Moments about the lowest class's edge.
+struct Moments {
+  double n = 0.0, first = 0.0, second = 0.0;
+  void add(double w, double x) { n += w, first += w * x, second += w * x * x; }
+};
+
+Mixture fitted(const Histogram& h, double total, Mixture m) {
+  for (int round = 0;; ++round) {
+    const Histogram lower = densities(m.part[0]), upper = densities(m.part[1]);
+    std::array<Moments, 2> moments;
+    double other = 0.0;
+    m.log_likelihood = 0.0;
+    for (int k = 0; k < classes; ++k) {
+      const auto at = static_cast<size_t>(k);
+      if (h[at] <= 0.0) continue;
+      const double uniform = m.elsewhere / classes, sum = lower[at] + upper[at] + uniform, w = h[at] / sum;
+      moments[0].add(w * lower[at], middle(k));
+      moments[1].add(w * upper[at], middle(k));
+      other += w * uniform;
+      if (round == rounds) m.log_likelihood += h[at] * std::log(sum);
+    }
+    if (round == rounds) return m;
+    for (size_t i = 0; i < 2; ++i) {
+      const Moments& s = moments[i];
+      if (s.n < 1e-6) {
+        m.part[i].share = 0.0;
+        continue;
+      }
+      const double mean = s.first / s.n;
+      m.part[i] = {s.n / total, mean, std::sqrt(std::max(narrowest * narrowest, s.second / s.n - mean * mean))};
+    }
+    m.elsewhere = std::max(1e-6, other / total);
+  }
+}
+
+struct TwoPopulations {
+  Normal lower;
+  double gap = 0.0;  ///< m; 0 where there is one
+};
+TwoPopulations populations_of(const Histogram& h, double noise) {
+  double total = 0.0;
+  Moments core;
+  for (int k = 0; k < classes; ++k) {
+    total += h[static_cast<size_t>(k)];
+    if (std::abs(middle(k)) < core_of_ground) core.add(h[static_cast<size_t>(k)], middle(k));
+  }
+  if (core.n < fewest) return {};
+  const auto quantile = [&](double part) {
+    double sum = 0.0;
+    for (int k = 0; k < classes; ++k) {
+      if (std::abs(middle(k)) < core_of_ground) sum += h[static_cast<size_t>(k)];
+      if (sum >= part * core.n) return middle(k);
+    }
+    return 0.0;
+  };
+  const double about_surface = std::clamp(std::sqrt(core.second / core.n), narrowest, 0.05);
+  const Mixture one = fitted(h, total, {{Normal{0.9, 0.0, about_surface}, Normal{}}});
+  const Mixture two = fitted(h, total, {{Normal{0.5, quantile(0.15), 0.02}, Normal{0.4, quantile(0.8), 0.04}}});
+  const Normal& lower = two.part[0];
+  const Normal& upper = two.part[1];
+  const double gap = upper.mean - lower.mean;
+  const bool believed = two.log_likelihood - one.log_likelihood > likelier && gap > apart * std::hypot(lower.spread, upper.spread) &&
+                        gap > beyond_noise * noise && lower.share > least_ground && upper.share > 0.0 && lower.mean < 0.0 &&
+                        lower.mean > -deepest;
+  return believed ? TwoPopulations{lower, gap} : TwoPopulations{};
+}
+
+}  // namespace
+
+const double ground_populations_reach = (reach(sigma) + 1) * cell;
+
+LowerPopulations lower_populations(const core::Block& b, size_t own, double around, const std::vector<ReturnOverGround>& returns,
+                                   double noise) {
+  const auto x = std::minmax_element(b.x.begin(), b.x.begin() + static_cast<std::ptrdiff_t>(own));
+  const auto y = std::minmax_element(b.y.begin(), b.y.begin() + static_cast<std::ptrdiff_t>(own));
+  const int border = reach(sigma);
+  const auto index = [](double v) { return core::cell_index(v, cell); };
+  const std::int64_t i0 = index(b.origin.x() + *x.first - around) - border, j0 = index(b.origin.y() + *y.first - around) - border;
+  const core::Lattice l{cell, i0, j0, static_cast<int>(index(b.origin.x() + *x.second + around) + border + 1 - i0),
+                        static_cast<int>(index(b.origin.y() + *y.second + around) + border + 1 - j0)};
+  const Raster none(l.nx, l.ny, std::numeric_limits<float>::quiet_NaN());
+  LowerPopulations out{l, none, none};
+
+  std::vector<std::array<std::uint16_t, classes>> counts(l.size(), std::array<std::uint16_t, classes>{});
+  std::vector<char> suspect(l.size(), 0);
+  std::map<std::uint16_t, StripSums> strips;
+  for (size_t p = 0; p < b.size(); ++p) {
+    const double k = std::floor((static_cast<double>(returns[p].above) - lowest) / width);
+    if (!(k >= 0.0 && k < classes)) continue;
+    const CellIndex at = cell_of(l, b, p);
+    if (!none.holds(at.i, at.j)) continue;
+    const size_t c = l.at(at.i, at.j);
+    std::uint16_t& n = counts[c][static_cast<size_t>(k)];
+    if (n < std::numeric_limits<std::uint16_t>::max()) ++n;
+    if (returns[p].spread > rough * noise) suspect[c] = 1;
+    if (b.strip.empty() || std::abs(returns[p].above) >= static_cast<float>(core_of_ground)) continue;
+    StripSums& s = strips[b.strip[p]];
+    if (s.count.empty()) s.sum.assign(l.size(), 0), s.count.assign(l.size(), 0);
+    s.sum[c] += static_cast<std::int32_t>(std::lround(returns[p].above / unit));
+    if (s.count[c] < std::numeric_limits<std::uint16_t>::max()) ++s.count[c];
+  }
+  std::vector<double> weight(static_cast<size_t>(2 * border + 1));
+  for (int d = -border; d <= border; ++d) weight[static_cast<size_t>(d + border)] = std::exp(-0.5 * d * d / (sigma * sigma));
+  for (int j = border; j + border < l.ny; ++j)
+    for (int i = border; i + border < l.nx; ++i) {
+      const size_t c = l.at(i, j);
+      if (!suspect[c]) continue;
+      const auto around_cell = [&](const auto& take) {
+        for (int dj = -border; dj <= border; ++dj)
+          for (int di = -border; di <= border; ++di)
+            take(weight[static_cast<size_t>(di + border)] * weight[static_cast<size_t>(dj + border)], l.at(i + di, j + dj));
+      };
+      Histogram h{};
+      around_cell([&](double w, size_t near) {
+        for (size_t k = 0; k < classes; ++k) h[k] += w * counts[near][k];
+      });
+      const auto [lower, gap] = populations_of(h, noise);
+      if (gap <= 0.0) continue;
+      double lowest_mean = std::numeric_limits<double>::infinity(), highest_mean = -lowest_mean;
+      for (const auto& [id, s] : strips) {
+        double n = 0.0, sum = 0.0;
+        around_cell([&](double w, size_t near) { n += w * s.count[near], sum += w * s.sum[near]; });
+        if (n < strip_fewest) continue;
+        lowest_mean = std::min(lowest_mean, unit * sum / n);
+        highest_mean = std::max(highest_mean, unit * sum / n);
+      }
+      if (highest_mean - lowest_mean > by_strips * gap) continue;
+      out.middle.value[c] = static_cast<float>(lower.mean);
+      out.spread.value[c] = static_cast<float>(lower.spread);
+    }
+  return out;
+}
+
+}  // namespace swath::filters
