@@ -14,7 +14,20 @@
 namespace swath::terrain {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+/// CGAL's exact predicates; notes when a place was found on a circle.
+struct Kernel : CGAL::Exact_predicates_inexact_constructions_kernel {
+  using Exact = CGAL::Exact_predicates_inexact_constructions_kernel;
+  struct Side_of_oriented_circle_2 {
+    bool* met;
+    CGAL::Oriented_side operator()(const Point_2& a, const Point_2& b, const Point_2& c, const Point_2& d) const {
+      const CGAL::Oriented_side side = Exact::Side_of_oriented_circle_2()(a, b, c, d);
+      *met |= side == CGAL::ON_ORIENTED_BOUNDARY;
+      return side;
+    }
+  };
+  Side_of_oriented_circle_2 side_of_oriented_circle_2_object() const { return {met}; }
+  bool* met = nullptr;
+};
 using Triangulation =
     CGAL::Delaunay_triangulation_2<Kernel,
                                    CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel>,
@@ -71,13 +84,24 @@ void fan(std::vector<Delaunay::Face>& faces, const std::vector<Place>& places, c
 }  // namespace
 
 struct Delaunay::Cgal {
+  bool met = false;
   Triangulation triangulation;
   Triangulation::Face_handle near;
+  std::vector<Triangulation::Vertex_handle> on_circles;  ///< vertices at whose insertion a place was on a circle
 
+  Cgal() : triangulation(kernel()) {}
   void insert(const Place& p, std::int32_t number) {
     const auto v = triangulation.insert(Kernel::Point_2(p.x, p.y), near);
     v->info() = number;
     near = v->face();
+    if (std::exchange(met, false)) on_circles.push_back(v);
+  }
+
+ private:
+  Kernel kernel() {
+    Kernel k;
+    k.met = &met;
+    return k;
   }
 };
 
@@ -129,30 +153,33 @@ std::int32_t Delaunay::locate(const Place& q, std::int32_t near) const {
   return f;
 }
 
+// Of every polygon inscribed in one empty circle the vertex that came last is among on_circles: when it came the others' polygon was there
+// (the circle was empty before, too), and CGAL asked on which side of that circle it lies.
 std::vector<Delaunay::Pair> Delaunay::cocircular() const {
   std::vector<Pair> out;
-  // Edges to look at are gathered without branches, which no processor would foresee.
-  constexpr std::int32_t batch = 256;
-  std::array<Pair, 3 * batch> edges;
-  const auto size = static_cast<std::int32_t>(faces_.size());
-  for (std::int32_t begin = 0; begin < size; begin += batch) {
-    size_t count = 0;
-    for (std::int32_t f = begin; f < std::min(begin + batch, size); ++f) {
+  if (faces_.empty()) return out;
+  std::vector<bool> seen(faces_.size(), false);
+  std::vector<std::int32_t> open;
+  const auto look_at = [&](std::int32_t f) {
+    if (seen[f] || !faces_[f].is_finite()) return;
+    seen[f] = true;
+    open.push_back(f);
+  };
+  for (const auto v : cgal_->on_circles) {
+    auto around = v->incident_faces();
+    const auto first = around;
+    do look_at(around->info());
+    while (++around != first);
+    while (!open.empty()) {
+      const std::int32_t f = open.back();
+      open.pop_back();
       const Face& face = faces_[f];
-      if (!face.is_finite()) continue;
       for (const std::int32_t g : face.n) {
-        edges[count] = {f, g};
-        count += g > f;
+        if (!faces_[g].is_finite()) continue;
+        if (in_circle(at(face.v[0]), at(face.v[1]), at(face.v[2]), at(faces_[g].v[index_of(faces_[g].n, f)])) != 0) continue;
+        if (g > f) out.push_back({f, g});
+        look_at(g);
       }
-    }
-    for (size_t e = 0; e < count; ++e) {
-      const Face &face = faces_[edges[e][0]], &other = faces_[edges[e][1]];
-      if (!other.is_finite()) continue;
-      // The vertex of the other that is not of this.
-      const auto [a, b, c] = face.v;
-      const std::int32_t u = other.v[0], v = other.v[1], w = other.v[2];
-      const bool has_u = (u == a) | (u == b) | (u == c), has_v = (v == a) | (v == b) | (v == c);
-      if (in_circle(at(a), at(b), at(c), at(has_u ? (has_v ? w : v) : u)) == 0) out.push_back(edges[e]);
     }
   }
   return out;

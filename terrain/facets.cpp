@@ -45,7 +45,8 @@ float Facets::node(std::int64_t i, std::int64_t j) {
 }
 
 std::array<float, 4> Facets::corners(std::int64_t i, std::int64_t j) {
-  const std::int64_t pi = core::floor_div(i, page_side), pj = core::floor_div(j, page_side), ci = i - pi * page_side, cj = j - pj * page_side;
+  const std::int64_t pi = core::floor_div(i, page_side), pj = core::floor_div(j, page_side), ci = i - pi * page_side,
+                     cj = j - pj * page_side;
   if (ci + 1 == page_side || cj + 1 == page_side) return {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)};
   const float* h = page(pi, pj).height.data() + cj * page_side + ci;
   return {h[0], h[1], h[page_side + 1], h[page_side]};

@@ -126,7 +126,8 @@ struct Measures {
 /// Gives tin.triangles and tin.across the faces that come near `where` and whose circles are small enough.
 class Faces {
  public:
-  Faces(Delaunay& dt, double max_radius, const Rectangle& where, Tin& tin) : dt_(dt), max_radius_(max_radius), where_(where), tin_(tin) {}
+  Faces(Delaunay& dt, const std::vector<Place>& places, double max_radius, const Rectangle& where, Tin& tin)
+      : dt_(dt), places_(places), max_radius_(max_radius), where_(where), tin_(tin) {}
 
   void take() {
     const auto& faces = dt_.faces();
@@ -157,7 +158,7 @@ class Faces {
 
   /// The one of `orders` in which the vertices ascend; -1 where the face is left out.
   std::int8_t order_of(const Delaunay::Face& face) const {
-    const std::array<Place, 3> p{tin_.place(face.v[0]), tin_.place(face.v[1]), tin_.place(face.v[2])};
+    const std::array<Place, 3> p{places_[face.v[0]], places_[face.v[1]], places_[face.v[2]]};
     if (std::max(std::max(p[0].y, p[1].y), p[2].y) < where_.south || std::min(std::min(p[0].y, p[1].y), p[2].y) > where_.north) return -1;
     const int order = is_before(p[1], p[0]) | is_before(p[2], p[0]) << 1 | is_before(p[2], p[1]) << 2;
     const auto [i, j, k] = orders[static_cast<size_t>(order)];
@@ -166,6 +167,7 @@ class Faces {
   }
 
   Delaunay& dt_;
+  const std::vector<Place>& places_;
   double max_radius_;
   const Rectangle& where_;
   Tin& tin_;
@@ -228,7 +230,7 @@ Tin triangulate(const core::Block& block, const std::vector<std::uint32_t>& rows
     vertices.take(more);
     dt.insert(first, vertices.count());
   }
-  Faces(dt, max_radius, where, tin).take();
+  Faces(dt, vertices.places(), max_radius, where, tin).take();
   return tin;
 }
 
