@@ -12,7 +12,11 @@
 //
 // A part. Points near the rectangle are inserted first (S). A face that touches the rectangle and whose disc holds no point of P that is
 // not in S is a face of P's triangulation; the half plane beyond an edge of the hull is the disc of what lies out there. So as long as such
-// a disc reaches a cell of points that were not inserted, they are.
+// a disc reaches a cell of points that were not inserted, they are: but only cells within 2R of the part of the rectangle that the face
+// covers. Let the face f of S and the face t of P, with a radius of R at most, cover a place q in that part. t's vertices lie within 2R of
+// q, so none of them that is not in S lies in D(f), nor does one that is; and D(t) is empty. Two faces that each have an empty disc
+// overlap only where their circles are the same, and a vertex on D(f)'s circle would have been inserted. Where f has a radius of R at most
+// and is no face of P, D(f) holds a point of P within 2R of q, which would have been inserted.
 //
 // Rounding: the radius is compared after rounding (relative error below 1e-9 for edges over 1 mm in triangles under 1 km), always from
 // the same three vertices in the same order; callers keep a margin of that size in their halo.
@@ -224,7 +228,7 @@ Tin triangulate(const core::Block& block, const std::vector<std::uint32_t>& rows
   Vertices vertices(block, none, tin);
   Delaunay dt(vertices.places());
   const std::vector<std::uint32_t> usable = finite(block, rows, tin);
-  Surroundings around(block, usable, where);
+  Surroundings around(block, usable, where, max_radius);
   for (std::vector<std::uint32_t> more = around.first(); !more.empty(); more = around.needed(dt, vertices.places())) {
     const std::int32_t first = vertices.count();
     vertices.take(more);
