@@ -16,9 +16,13 @@
 #include <atomic>
 #include <cerrno>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
 #include <set>
 #include <thread>
 
+#include "core/floor_div.h"
 #include "io/output_file.h"
 #include "io/value_file.h"
 #include "pipeline/delivery.h"
@@ -79,6 +83,42 @@ struct Account {
   Value findings = Value::object();
   double seconds = 0;
 };
+
+/// The tiles of a stage in pieces of work: squares of as many tiles across, and the bytes that each needs.
+struct Pieces {
+  std::vector<std::vector<TileKey>> keys;
+  std::vector<std::uint64_t> bytes;
+  int across;
+
+  template <class BytesOf>
+  Pieces(const std::vector<TileKey>& tiles, int tiles_across, const BytesOf& bytes_of) : across(tiles_across) {
+    std::map<TileKey, std::vector<TileKey>> squares;
+    for (const TileKey k : tiles)
+      squares[{static_cast<int>(core::floor_div(k.ix, across)), static_cast<int>(core::floor_div(k.iy, across))}].push_back(k);
+    for (auto& [square, members] : squares) {
+      bytes.push_back(bytes_of(members, across));
+      keys.push_back(std::move(members));
+    }
+  }
+  /// Needed at once by the largest.
+  std::uint64_t most(int threads) const {
+    std::vector<std::uint64_t> b = bytes;
+    std::sort(b.begin(), b.end(), std::greater<>());
+    b.resize(std::min(b.size(), static_cast<size_t>(threads)));
+    return std::accumulate(b.begin(), b.end(), std::uint64_t{0});
+  }
+  /// Of the thread that has most to do, if work goes as bytes do.
+  std::uint64_t longest(int threads) const {
+    std::vector<std::uint64_t> b = bytes, load(static_cast<size_t>(threads), 0);
+    std::sort(b.begin(), b.end(), std::greater<>());
+    for (const std::uint64_t one : b) *std::min_element(load.begin(), load.end()) += one;
+    return *std::max_element(load.begin(), load.end());
+  }
+};
+
+stages::Box around(const stages::Box& a, const stages::Box& b) {
+  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+}
 
 class Engine {
  public:
@@ -374,7 +414,6 @@ void Engine::run_tiles(size_t number) {
   std::vector<TileKey> keys = tiles_of(number);
   for (const TileKey key : fringe)
     if (!surface_tiles_.contains(key)) keys.push_back(key);
-  std::vector<Value> notes(keys.size());
   progress_.begin(std::string(s.info().name), store_->points(), "points");
 
   size_t row_bytes = 0;
@@ -382,49 +421,70 @@ void Engine::run_tiles(size_t number) {
     using T = typename std::remove_reference_t<decltype(std::declval<core::Block>().*member)>::value_type;
     if (columns.has(c) || c == core::Column::x || c == core::Column::y || c == core::Column::z) row_bytes += sizeof(T);
   });
-  const auto done_file = [&](TileKey k) { return mine / (file_label(k) + ".done"); };
-  const std::vector<stages::Raster> rasters = s.rasters(context_);
-  std::vector<std::uint64_t> bytes;
-  for (const TileKey k : keys) {
-    const TileStore::Load load = store_->load_with_halo(k, s.halo());
+  const auto bytes_of = [&](const std::vector<TileKey>& piece, int across) {
+    const TileStore::Load load = store_->load_with_halo(piece, s.halo());
     const auto points = static_cast<double>(load.points);
     double needed = (static_cast<double>(row_bytes) + s.bytes_per_point()) * points +
                     static_cast<double>(row_bytes) * static_cast<double>(load.neighbour);
-    for (const stages::Raster& r : rasters) needed += r.total(points);
-    bytes.push_back(fs::exists(done_file(k)) ? 0 : static_cast<std::uint64_t>(needed));
-  }
-  TileQueue queue(std::move(bytes), static_cast<std::uint64_t>(plan_.run.memory.value * 0.8));
+    stages::Context wide = context_;
+    wide.tile_side *= across;
+    for (const stages::Raster& r : s.rasters(wide)) needed += r.total(points);
+    return static_cast<std::uint64_t>(needed);
+  };
+  const auto budget = static_cast<std::uint64_t>(plan_.run.memory.value * 0.8);
+  Pieces pieces(keys, 1, bytes_of);
+  // Tiles joined have less halo. Only where nothing but points' columns comes of them.
+  if (changes && s.info().gives_products.empty() && !works_on(number, Grain::merge))
+    for (const int across : {2, 4}) {
+      Pieces joined(keys, across, bytes_of);
+      if (joined.most(threads_) <= budget && joined.longest(threads_) < pieces.longest(threads_)) pieces = std::move(joined);
+    }
+  std::vector<Value> notes(pieces.keys.size());
+  const auto done_file = [&](const std::vector<TileKey>& piece) {
+    return mine / (file_label(piece[0]) + (pieces.across > 1 ? "x" + std::to_string(pieces.across) : "") + ".done");
+  };
+  for (size_t i = 0; i < pieces.keys.size(); ++i)
+    if (fs::exists(done_file(pieces.keys[i]))) pieces.bytes[i] = 0;
+  TileQueue queue(pieces.bytes, budget);
   std::atomic<std::uint64_t> again{0};
   tbb::parallel_for(
-      tbb::blocked_range<size_t>(0, keys.size(), 1),
+      tbb::blocked_range<size_t>(0, pieces.keys.size(), 1),
       [&](const tbb::blocked_range<size_t>& range) {
         for (size_t turn = range.begin(); turn < range.end(); ++turn) {
           const TileQueue::Piece piece = queue.take();
           const size_t i = piece.number();
-          const fs::path done = done_file(keys[i]);
+          const std::vector<TileKey>& tiles = pieces.keys[i];
+          const fs::path done = done_file(tiles);
           if (fs::exists(done)) {
             notes[i] = io::parse_json(io::read_text_file(done), done.string());
             ++again;
           } else {
-            stages::TileJob job{keys[i], context_.box_of(keys[i]), mine, {}, 0, {}};
+            stages::TileJob job{tiles[0], context_.box_of(tiles[0]), mine, {}, 0, {}};
+            for (const TileKey k : tiles) job.box = around(job.box, context_.box_of(k));
             const auto start = Clock::now();
-            job.block = store_->read_with_halo(keys[i], s.halo(), columns, job.own);
+            job.block = store_->read_with_halo(tiles, s.halo(), columns, job.own);
             core::add_columns(job.block, s.info().gives);
             const size_t before = job.block.size();
-            if (before > 0 || !makes_surface || wet.contains(keys[i])) s.run_tile(context_, job);
+            if (before > 0 || !makes_surface || wet.contains(tiles[0])) s.run_tile(context_, job);
             if (job.block.size() != before)
               throw core::Error("the stage changed the number of points of a tile", std::string(s.info().name),
                                 "this is a fault of the program");
-            if (changes) store_->write_overlay(mine, keys[i], job.block, job.own, s.info().gives);
+            for (size_t k = 0, first = 0; changes && k < tiles.size(); ++k) {
+              const size_t count = tiles.size() == 1 ? job.own : store_->tiles().at(tiles[k]);
+              store_->write_overlay(mine, tiles[k], job.block, first, count, s.info().gives);
+              first += count;
+            }
             Value note = Value::object();
             note["tally"] = job.tally.value();
             note["seconds"] = since(start);
-            io::write_text_file(mine / (file_label(keys[i]) + ".json"), io::to_json(note), false);
-            fs::rename(mine / (file_label(keys[i]) + ".json"), done);
+            fs::path fresh = done;
+            fresh.replace_extension(".json");
+            io::write_text_file(fresh, io::to_json(note), false);
+            fs::rename(fresh, done);
             notes[i] = std::move(note);
           }
-          const auto points = store_->tiles().find(keys[i]);
-          if (points != store_->tiles().end()) progress_.advance(points->second);
+          for (const TileKey k : tiles)
+            if (const auto points = store_->tiles().find(k); points != store_->tiles().end()) progress_.advance(points->second);
         }
       },
       tbb::simple_partitioner());
@@ -433,9 +493,10 @@ void Engine::run_tiles(size_t number) {
   Account& account = accounts_[number];
   account.in = account.out = store_->points();
   keep_surface_tiles(number, fringe);
-  for (size_t i = 0; i < keys.size(); ++i) {
+  for (size_t i = 0; i < notes.size(); ++i) {
+    const TileKey first = pieces.keys[i][0];
     account.seconds += notes[i].find("seconds")->as_number();
-    if (store_->tiles().contains(keys[i]) || surface_tiles_.contains(keys[i])) account.tally.add(Tally::from(*notes[i].find("tally")));
+    if (store_->tiles().contains(first) || surface_tiles_.contains(first)) account.tally.add(Tally::from(*notes[i].find("tally")));
   }
   if (changes) store_->add_overlay(mine, s.info().gives);
 }

@@ -94,11 +94,11 @@ ColumnSet set_of(std::uint32_t bits) {
   return set;
 }
 
-void write_chunk(File& file, const Block& b, size_t n, ColumnSet columns) {
+void write_chunk(File& file, const Block& b, size_t first, size_t n, ColumnSet columns) {
   const ChunkHead head{static_cast<std::uint32_t>(n), bits_of(columns)};
   file.write(&head, sizeof head);
   core::for_each_column([&](Column c, std::string_view, auto member) {
-    if (columns.has(c)) file.write((b.*member).data(), n * sizeof((b.*member)[0]));
+    if (columns.has(c)) file.write((b.*member).data() + first, n * sizeof((b.*member)[0]));
   });
 }
 
@@ -183,7 +183,7 @@ void StripWriter::write(const Block& block) {
 void StripWriter::flush(TileKey key, Block& points) {
   if (points.size() == 0) return;
   File file(part_ / (file_label(key) + ".pts"), O_WRONLY | O_CREAT | O_APPEND);
-  write_chunk(file, points, points.size(), core::columns_of(points));
+  write_chunk(file, points, 0, points.size(), core::columns_of(points));
   counts_[key] += points.size();
   core::Block fresh;
   fresh.origin = points.origin;
@@ -253,11 +253,12 @@ void TileStore::add_overlay(fs::path folder, ColumnSet columns) {
   columns_ = columns_ | columns;
 }
 
-void TileStore::write_overlay(const fs::path& folder, TileKey key, const Block& block, size_t own, ColumnSet columns) const {
+void TileStore::write_overlay(const fs::path& folder, TileKey key, const Block& block, size_t first, size_t count,
+                              ColumnSet columns) const {
   io::OutputFile out(folder / (file_label(key) + ".cols"));
   {
     File file(out.temporary(), O_WRONLY);
-    write_chunk(file, block, own, columns);
+    write_chunk(file, block, first, count, columns);
   }
   out.commit(false);
 }
@@ -386,33 +387,65 @@ void TileStore::append_within(Block& out, TileKey key, ColumnSet columns, const 
   });
 }
 
-Block TileStore::read_with_halo(TileKey key, double halo, ColumnSet columns, size_t& own) const {
+namespace {
+
+/// Tiles [low, high], both in it.
+struct TileBox {
+  TileKey low, high;
+  explicit TileBox(const std::vector<TileKey>& keys) : low(keys[0]), high(keys[0]) {
+    for (const TileKey k : keys) {
+      low = {std::min(low.ix, k.ix), std::min(low.iy, k.iy)};
+      high = {std::max(high.ix, k.ix), std::max(high.iy, k.iy)};
+    }
+  }
+  bool holds(TileKey k) const { return k.ix >= low.ix && k.ix <= high.ix && k.iy >= low.iy && k.iy <= high.iy; }
+};
+
+/// Tiles from a number to those from `low` to `high`.
+int apart(int i, int low, int high) { return std::max({low - i, i - high, 0}); }
+
+}  // namespace
+
+Block TileStore::read_with_halo(const std::vector<TileKey>& keys, double halo, ColumnSet columns, size_t& own) const {
   Block around;
   around.origin = origin_;
+  const TileBox tiles(keys);
   const int reach = halo > 0.0 ? static_cast<int>(std::ceil(halo / side_)) : 0;
-  const stages::Box box = stages::Box{key.ix * side_, key.iy * side_, (key.ix + 1) * side_, (key.iy + 1) * side_}.grown(halo);
-  for (int iy = key.iy - reach; iy <= key.iy + reach; ++iy)
-    for (int ix = key.ix - reach; ix <= key.ix + reach; ++ix)
-      if ((ix != key.ix || iy != key.iy) && tiles_.contains({ix, iy})) append_within(around, {ix, iy}, columns, box);
-  Block out = read(key, columns, around.size());
+  const stages::Box box =
+      stages::Box{tiles.low.ix * side_, tiles.low.iy * side_, (tiles.high.ix + 1) * side_, (tiles.high.iy + 1) * side_}.grown(halo);
+  for (int iy = tiles.low.iy - reach; iy <= tiles.high.iy + reach; ++iy)
+    for (int ix = tiles.low.ix - reach; ix <= tiles.high.ix + reach; ++ix)
+      if (!tiles.holds({ix, iy}) && tiles_.contains({ix, iy})) append_within(around, {ix, iy}, columns, box);
+  size_t more = around.size();
+  for (size_t k = 1; k < keys.size(); ++k) more += tiles_.at(keys[k]);
+  Block out = read(keys[0], columns, more);
+  for (size_t k = 1; k < keys.size(); ++k) core::append(out, read(keys[k], columns));
   own = out.size();
   core::append(out, around);
   return out;
 }
 
-TileStore::Load TileStore::load_with_halo(TileKey key, double halo) const {
-  Load load{tiles_.contains(key) ? tiles_.at(key) : 0, 0};
+TileStore::Load TileStore::load_with_halo(const std::vector<TileKey>& keys, double halo) const {
+  Load load;
+  for (const TileKey k : keys) {
+    const auto at = tiles_.find(k);
+    if (at == tiles_.end()) continue;
+    load.points += at->second;
+    if (keys.size() > 1) load.neighbour = std::max(load.neighbour, at->second);
+  }
   if (halo <= 0) return load;
   constexpr double unevenness = 1.3;  // points of a neighbour may lie denser along the common edge
+  const TileBox tiles(keys);
   const int reach = static_cast<int>(std::ceil(halo / side_));
-  for (int iy = key.iy - reach; iy <= key.iy + reach; ++iy)
-    for (int ix = key.ix - reach; ix <= key.ix + reach; ++ix) {
+  for (int iy = tiles.low.iy - reach; iy <= tiles.high.iy + reach; ++iy)
+    for (int ix = tiles.low.ix - reach; ix <= tiles.high.ix + reach; ++ix) {
       const auto at = tiles_.find({ix, iy});
-      if ((ix == key.ix && iy == key.iy) || at == tiles_.end()) continue;
+      if (tiles.holds({ix, iy}) || at == tiles_.end()) continue;
       // Share of the neighbour that the halo covers.
-      const auto share = [&](int d) { return d == 0 ? 1.0 : std::clamp((halo - (std::abs(d) - 1) * side_) / side_, 0.0, 1.0); };
-      load.points +=
-          static_cast<std::uint64_t>(static_cast<double>(at->second) * std::min(1.0, unevenness * share(ix - key.ix) * share(iy - key.iy)));
+      const auto share = [&](int d) { return d == 0 ? 1.0 : std::clamp((halo - (d - 1) * side_) / side_, 0.0, 1.0); };
+      load.points += static_cast<std::uint64_t>(
+          static_cast<double>(at->second) *
+          std::min(1.0, unevenness * share(apart(ix, tiles.low.ix, tiles.high.ix)) * share(apart(iy, tiles.low.iy, tiles.high.iy))));
       load.neighbour = std::max(load.neighbour, at->second);
     }
   return load;

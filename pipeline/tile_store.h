@@ -59,20 +59,21 @@ class TileStore {
 
   /// From now on these columns of a tile are read from overlays in `folder`.
   void add_overlay(std::filesystem::path folder, core::ColumnSet columns);
-  /// Writes the overlay of one tile: the first `own` points of the block.
-  void write_overlay(const std::filesystem::path& folder, TileKey key, const core::Block& block, size_t own, core::ColumnSet columns) const;
+  /// Writes the overlay of one tile: `count` points of the block from `first` on.
+  void write_overlay(const std::filesystem::path& folder, TileKey key, const core::Block& block, size_t first, size_t count,
+                     core::ColumnSet columns) const;
 
   /// The columns of one tile's points (x, y, z always).
   core::Block read(TileKey key, core::ColumnSet columns) const;
-  /// The tile's own points, then those of its neighbours within `halo` metres of its box, in order of tiles; `own` receives the number of
-  /// the former.
-  core::Block read_with_halo(TileKey key, double halo, core::ColumnSet columns, size_t& own) const;
+  /// The points of tiles, one tile after the other, then those of their neighbours within `halo` metres of the box around them, in order
+  /// of tiles; `own` receives the number of the former. `keys`: all with points of a box of tiles, or one.
+  core::Block read_with_halo(const std::vector<TileKey>& keys, double halo, core::ColumnSet columns, size_t& own) const;
   /// What read_with_halo loads, estimated to the safe side: the points it gives, and those of the largest neighbour, which it holds for a
   /// moment.
   struct Load {
     std::uint64_t points = 0, neighbour = 0;
   };
-  Load load_with_halo(TileKey key, double halo) const;
+  Load load_with_halo(const std::vector<TileKey>& keys, double halo) const;
 
  private:
   /// The files that overlay a tile's columns, and what each gives.

@@ -162,8 +162,8 @@ class StripReader {
 
 /// One tile at work: its own points first, then those of the halo. `own` counts the former.
 struct TileJob {
-  TileKey key;
-  Box box;
+  TileKey key;                   ///< of the first, where a filter gets several tiles at once
+  Box box;                       ///< around them all
   std::filesystem::path folder;  ///< the stage's own folder for intermediate results
   core::Block block;
   size_t own = 0;

@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include "core/floor_div.h"
+
 namespace swath::terrain {
 namespace {
 
@@ -125,7 +127,7 @@ class Level {
   std::uint64_t bucket_key(std::int64_t i, std::int64_t j) const {
     return (static_cast<std::uint64_t>(i) << 32) ^ (static_cast<std::uint64_t>(j) & 0xffffffffu);
   }
-  std::int64_t bucket_index(double v) const { return static_cast<std::int64_t>(std::floor(v / (bucket_side * cell_))); }
+  std::int64_t bucket_index(double v) const { return core::floor_of(v / (bucket_side * cell_)); }
 
   template <class F>
   void each_bucket(const Point& low, const Point& high, const F& f) const {

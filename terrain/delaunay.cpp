@@ -14,16 +14,43 @@
 namespace swath::terrain {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+/// CGAL's exact predicates; notes when a place was found on a circle.
+struct Kernel : CGAL::Exact_predicates_inexact_constructions_kernel {
+  using Exact = CGAL::Exact_predicates_inexact_constructions_kernel;
+  struct Side_of_oriented_circle_2 {
+    bool* met;
+    CGAL::Oriented_side operator()(const Point_2& a, const Point_2& b, const Point_2& c, const Point_2& d) const {
+      const CGAL::Oriented_side side = Exact::Side_of_oriented_circle_2()(a, b, c, d);
+      *met |= side == CGAL::ON_ORIENTED_BOUNDARY;
+      return side;
+    }
+  };
+  Side_of_oriented_circle_2 side_of_oriented_circle_2_object() const { return {met}; }
+  bool* met = nullptr;
+};
+struct FaceNumber {
+  std::int32_t value = -1;
+};
 using Triangulation =
     CGAL::Delaunay_triangulation_2<Kernel,
                                    CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel>,
-                                                                        CGAL::Triangulation_face_base_with_info_2<std::int32_t, Kernel>>>;
+                                                                        CGAL::Triangulation_face_base_with_info_2<FaceNumber, Kernel>>>;
 
 int next(int k) { return k == 2 ? 0 : k + 1; }
 int last(int k) { return k == 0 ? 2 : k - 1; }
 
 int index_of(const std::array<std::int32_t, 3>& of, std::int32_t what) { return of[0] == what ? 0 : of[1] == what ? 1 : 2; }
+
+size_t number_of(Triangulation::Face_handle f) { return static_cast<size_t>(f->info().value); }
+
+Delaunay::Face copy_of(Triangulation::Face_handle f) {
+  Delaunay::Face face;
+  for (int k = 0; k < 3; ++k) {
+    face.v[static_cast<size_t>(k)] = f->vertex(k)->info();
+    face.n[static_cast<size_t>(k)] = f->neighbor(k)->info().value;
+  }
+  return face;
+}
 
 std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t f) {
   while (parent[f] != f) f = parent[f] = parent[parent[f]];
@@ -71,13 +98,27 @@ void fan(std::vector<Delaunay::Face>& faces, const std::vector<Place>& places, c
 }  // namespace
 
 struct Delaunay::Cgal {
+  bool met = false;
   Triangulation triangulation;
   Triangulation::Face_handle near;
+  std::vector<Triangulation::Vertex_handle> on_circles;  ///< vertices at whose insertion a place was on a circle
+  bool copied = false;
+  std::vector<Triangulation::Vertex_handle> fresh;  ///< those since the faces were copied
 
+  Cgal() : triangulation(kernel()) {}
   void insert(const Place& p, std::int32_t number) {
     const auto v = triangulation.insert(Kernel::Point_2(p.x, p.y), near);
     v->info() = number;
     near = v->face();
+    if (copied) fresh.push_back(v);
+    if (std::exchange(met, false)) on_circles.push_back(v);
+  }
+
+ private:
+  Kernel kernel() {
+    Kernel k;
+    k.met = &met;
+    return k;
   }
 };
 
@@ -99,16 +140,34 @@ void Delaunay::insert(const std::vector<std::int32_t>& order) {
 void Delaunay::copy_faces() {
   Triangulation& t = cgal_->triangulation;
   if (t.dimension() < 2) return;
-  std::int32_t count = 0;
-  for (const auto f : t.all_face_handles()) f->info() = count++;
-  faces_.resize(static_cast<size_t>(count));
-  for (const auto f : t.all_face_handles()) {
-    Face& face = faces_[static_cast<size_t>(f->info())];
-    for (int k = 0; k < 3; ++k) {
-      face.v[static_cast<size_t>(k)] = f->vertex(k)->info();
-      face.n[static_cast<size_t>(k)] = f->neighbor(k)->info();
-    }
+  if (faces_.empty() || settled_) {
+    std::int32_t count = 0;
+    for (const auto f : t.all_face_handles()) f->info().value = count++;
+    faces_.resize(static_cast<size_t>(count));
+    for (const auto f : t.all_face_handles()) faces_[number_of(f)] = copy_of(f);
+    settled_ = false;
+  } else {
+    // CGAL takes no face away, and every face that it made or changed has a vertex that is new.
+    const auto each = [this](auto&& see) {
+      for (const auto v : cgal_->fresh) {
+        auto f = v->incident_faces();
+        const auto first = f;
+        do see(f);
+        while (++f != first);
+      }
+    };
+    auto count = static_cast<std::int32_t>(faces_.size());
+    each([&](const auto& f) {
+      if (f->info().value < 0) f->info().value = count++;
+    });
+    faces_.resize(static_cast<size_t>(count));
+    each([&](const auto& f) {
+      faces_[number_of(f)] = copy_of(f);
+      for (int k = 0; k < 3; ++k) faces_[number_of(f->neighbor(k))] = copy_of(f->neighbor(k));
+    });
   }
+  cgal_->fresh.clear();
+  cgal_->copied = true;
 }
 
 std::int32_t Delaunay::locate(const Place& q, std::int32_t near) const {
@@ -129,30 +188,33 @@ std::int32_t Delaunay::locate(const Place& q, std::int32_t near) const {
   return f;
 }
 
+// Of every polygon inscribed in one empty circle the vertex that came last is among on_circles: when it came the others' polygon was there
+// (the circle was empty before, too), and CGAL asked on which side of that circle it lies.
 std::vector<Delaunay::Pair> Delaunay::cocircular() const {
   std::vector<Pair> out;
-  // Edges to look at are gathered without branches, which no processor would foresee.
-  constexpr std::int32_t batch = 256;
-  std::array<Pair, 3 * batch> edges;
-  const auto size = static_cast<std::int32_t>(faces_.size());
-  for (std::int32_t begin = 0; begin < size; begin += batch) {
-    size_t count = 0;
-    for (std::int32_t f = begin; f < std::min(begin + batch, size); ++f) {
+  if (faces_.empty()) return out;
+  std::vector<bool> seen(faces_.size(), false);
+  std::vector<std::int32_t> open;
+  const auto look_at = [&](std::int32_t f) {
+    if (seen[f] || !faces_[f].is_finite()) return;
+    seen[f] = true;
+    open.push_back(f);
+  };
+  for (const auto v : cgal_->on_circles) {
+    auto around = v->incident_faces();
+    const auto first = around;
+    do look_at(around->info().value);
+    while (++around != first);
+    while (!open.empty()) {
+      const std::int32_t f = open.back();
+      open.pop_back();
       const Face& face = faces_[f];
-      if (!face.is_finite()) continue;
       for (const std::int32_t g : face.n) {
-        edges[count] = {f, g};
-        count += g > f;
+        if (!faces_[g].is_finite()) continue;
+        if (in_circle(at(face.v[0]), at(face.v[1]), at(face.v[2]), at(faces_[g].v[index_of(faces_[g].n, f)])) != 0) continue;
+        if (g > f) out.push_back({f, g});
+        look_at(g);
       }
-    }
-    for (size_t e = 0; e < count; ++e) {
-      const Face &face = faces_[edges[e][0]], &other = faces_[edges[e][1]];
-      if (!other.is_finite()) continue;
-      // The vertex of the other that is not of this.
-      const auto [a, b, c] = face.v;
-      const std::int32_t u = other.v[0], v = other.v[1], w = other.v[2];
-      const bool has_u = (u == a) | (u == b) | (u == c), has_v = (v == a) | (v == b) | (v == c);
-      if (in_circle(at(a), at(b), at(c), at(has_u ? (has_v ? w : v) : u)) == 0) out.push_back(edges[e]);
     }
   }
   return out;
@@ -160,6 +222,7 @@ std::vector<Delaunay::Pair> Delaunay::cocircular() const {
 
 void Delaunay::settle(const std::vector<Pair>& pairs) {
   if (pairs.empty()) return;
+  settled_ = true;
   std::vector<std::int32_t> polygon(faces_.size());
   std::iota(polygon.begin(), polygon.end(), 0);
   for (const auto& [f, g] : pairs) polygon[root_of(polygon, g)] = root_of(polygon, f);

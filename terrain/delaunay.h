@@ -55,6 +55,7 @@ class Delaunay {
   const std::vector<Place>& places_;
   std::unique_ptr<Cgal> cgal_;
   std::vector<Face> faces_;
+  bool settled_ = false;  ///< faces_ are cut otherwise than CGAL's
 };
 
 /// The order of (x, y).

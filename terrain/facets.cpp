@@ -13,20 +13,21 @@ namespace swath::terrain {
 namespace {
 
 constexpr std::int64_t page_side = 256;  // nodes
-constexpr size_t most_pages = 256;       // 64 MB
+constexpr size_t page_bytes = page_side * page_side * sizeof(float);
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 }  // namespace
 
-Facets::Facets(double cell, Load load) : cell_(cell), load_(std::move(load)) {}
+Facets::Facets(double cell, Load load, size_t bytes)
+    : cell_(cell), load_(std::move(load)), most_pages_(std::max<size_t>(1, bytes / page_bytes)) {}
 
 const Facets::Page& Facets::page(std::int64_t pi, std::int64_t pj) {
   const std::uint64_t key = (static_cast<std::uint64_t>(pi) << 32) ^ (static_cast<std::uint64_t>(pj) & 0xffffffffu);
   if (last_ && key == last_key_) return *last_;
   auto at = pages_.find(key);
   if (at == pages_.end()) {
-    if (pages_.size() >= most_pages)
+    if (pages_.size() >= most_pages_)
       pages_.erase(
           std::min_element(pages_.begin(), pages_.end(), [](const auto& a, const auto& b) { return a.second.used < b.second.used; }));
     const int side = static_cast<int>(page_side);
@@ -38,13 +39,22 @@ const Facets::Page& Facets::page(std::int64_t pi, std::int64_t pj) {
   return *last_;
 }
 
-double Facets::node(std::int64_t i, std::int64_t j) {
+float Facets::node(std::int64_t i, std::int64_t j) {
   const std::int64_t pi = core::floor_div(i, page_side), pj = core::floor_div(j, page_side);
   return page(pi, pj).height[static_cast<size_t>((j - pj * page_side) * page_side + (i - pi * page_side))];
 }
 
+std::array<float, 4> Facets::corners(std::int64_t i, std::int64_t j) {
+  const std::int64_t pi = core::floor_div(i, page_side), pj = core::floor_div(j, page_side), ci = i - pi * page_side,
+                     cj = j - pj * page_side;
+  if (ci + 1 == page_side || cj + 1 == page_side) return {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)};
+  const float* h = page(pi, pj).height.data() + cj * page_side + ci;
+  return {h[0], h[1], h[page_side + 1], h[page_side]};
+}
+
 double Facets::in_square(std::int64_t i, std::int64_t j, double s, double t) {
-  const double h00 = node(i, j), h10 = node(i + 1, j), h11 = node(i + 1, j + 1), h01 = node(i, j + 1);
+  const std::array<float, 4> around = corners(i, j);
+  const double h00 = around[0], h10 = around[1], h11 = around[2], h01 = around[3];
   const double middle = 0.25 * ((h00 + h10) + (h11 + h01));
   // r: distance from the triangle's outer edge, along which p runs.
   const auto in = [&](double a, double b, double p, double r) { return a * (1.0 - p - r) + b * (p - r) + 2.0 * r * middle; };
@@ -53,8 +63,8 @@ double Facets::in_square(std::int64_t i, std::int64_t j, double s, double t) {
 }
 
 double Facets::at_node_units(double u, double v) {
-  const double fu = std::floor(u), fv = std::floor(v);
-  const auto i = static_cast<std::int64_t>(fu), j = static_cast<std::int64_t>(fv);
+  const std::int64_t i = core::floor_of(u), j = core::floor_of(v);
+  const auto fu = static_cast<double>(i), fv = static_cast<double>(j);
   double h = in_square(i, j, u - fu, v - fv);
   if (std::isnan(h) && u == fu) h = in_square(i - 1, j, 1.0, v - fv);
   if (std::isnan(h) && v == fv) h = in_square(i, j - 1, u - fu, 1.0);
@@ -73,7 +83,7 @@ bool Facets::within(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double h
   const std::array<double, 4> start{p.x(), p.y(), p.x() + p.y(), p.x() - p.y()}, step{d.x(), d.y(), d.x() + d.y(), d.x() - d.y()};
   for (int family = 0; family < 4; ++family) {
     const double low = std::min(start[family], start[family] + step[family]), high = std::max(start[family], start[family] + step[family]);
-    for (double k = std::floor(low) + 1.0; k < high; k += 1.0) {
+    for (double k = static_cast<double>(core::floor_of(low)) + 1.0; k < high; k += 1.0) {
       const double share = (k - start[family]) / step[family];
       const double u = family == 0 ? k : p.x() + share * d.x(), v = family == 1 ? k : p.y() + share * d.y();
       if (!near(at_node_units(u, v))) return false;

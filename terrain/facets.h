@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <unordered_map>
@@ -18,7 +19,8 @@ class Facets {
  public:
   /// Gives the heights of a window, NaN where there are none.
   using Load = std::function<core::Grid(const core::Lattice&)>;
-  Facets(double cell, Load load);
+  /// `bytes`: of heights held at a time, at least one page.
+  Facets(double cell, Load load, size_t bytes = size_t{64} << 20);
 
   double cell() const { return cell_; }
   /// Height at map coordinates, m; NaN in voids.
@@ -35,7 +37,9 @@ class Facets {
     std::uint64_t used = 0;
   };
   const Page& page(std::int64_t pi, std::int64_t pj);
-  double node(std::int64_t i, std::int64_t j);
+  float node(std::int64_t i, std::int64_t j);
+  /// Of a square, counter-clockwise from the south-west.
+  std::array<float, 4> corners(std::int64_t i, std::int64_t j);
   /// On the square with south-west node (i, j), s and t from 0 to 1 across it.
   double in_square(std::int64_t i, std::int64_t j, double s, double t);
   /// On an edge between a known and a void square: from the known one.
@@ -44,6 +48,7 @@ class Facets {
 
   double cell_;
   Load load_;
+  size_t most_pages_;
   std::unordered_map<std::uint64_t, Page> pages_;
   std::uint64_t clock_ = 0, last_key_ = 0;
   const Page* last_ = nullptr;

@@ -2,6 +2,7 @@
 #include "terrain/surroundings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -16,9 +17,27 @@ constexpr double most_cells = 1024.0;  // along a side
 
 bool holds(const Rectangle& r, double x, double y) { return x >= r.west && x <= r.east && y >= r.south && y <= r.north; }
 
+/// What of `r` lies to the left of the line from a to b, as a box around it. `slack`: of the cross product.
+Rectangle left_of(const Place& a, const Place& b, const Rectangle& r, double slack) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  Rectangle out{far, far, -far, -far};
+  const std::array<Place, 4> corner{{{r.west, r.south}, {r.east, r.south}, {r.east, r.north}, {r.west, r.north}}};
+  const auto left = [&](const Place& p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); };
+  const auto add = [&](double x, double y) {
+    out = {std::min(out.west, x), std::min(out.south, y), std::max(out.east, x), std::max(out.north, y)};
+  };
+  for (size_t k = 0; k < 4; ++k) {
+    const Place &p = corner[k], &q = corner[(k + 1) % 4];
+    const double lp = left(p), lq = left(q);
+    if (lp >= -slack) add(p.x, p.y);
+    if ((lp < 0.0) != (lq < 0.0)) add(p.x + (q.x - p.x) * lp / (lp - lq), p.y + (q.y - p.y) * lp / (lp - lq));
+  }
+  return out;
+}
+
 }  // namespace
 
-Surroundings::Surroundings(const core::Block& block, const std::vector<std::uint32_t>& rows, const Rectangle& where)
+Surroundings::Surroundings(const core::Block& block, const std::vector<std::uint32_t>& rows, const Rectangle& where, double max_radius)
     : block_(block), rows_(rows), where_(where), near_(where) {
   if (rows.empty() || !std::isfinite(where.west + where.east + where.south + where.north)) return;
   Rectangle all{block.x[rows[0]], block.y[rows[0]], block.x[rows[0]], block.y[rows[0]]};
@@ -29,6 +48,7 @@ Surroundings::Surroundings(const core::Block& block, const std::vector<std::uint
   const double width = all.east - all.west, height = all.north - all.south;
   side_ = border * std::sqrt(width * height / static_cast<double>(rows.size()));
   side_ = std::max({side_, std::max(width, height) / most_cells, std::numeric_limits<double>::min()});
+  reach_ = 2.0 * max_radius * (1.0 + rounding) + rounding * side_;
   near_ = {where.west - side_, where.south - side_, where.east + side_, where.north + side_};
   corner_ = {all.west, all.south};
   nx_ = static_cast<std::int32_t>(width / side_) + 1;
@@ -69,17 +89,24 @@ Rectangle Surroundings::cell(std::int32_t c) const {
   return {x, y, x + side_, y + side_};
 }
 
-void Surroundings::mark_disc(double x, double y, double radius) {
+bool Surroundings::is_near(const Rectangle& cell, const Rectangle& part) const {
+  return cell.west <= part.east + reach_ && cell.east >= part.west - reach_ && cell.south <= part.north + reach_ &&
+         cell.north >= part.south - reach_;
+}
+
+void Surroundings::mark_disc(double x, double y, double radius, const Rectangle& part) {
   const double reach = radius * (1.0 + rounding) + rounding * side_;
   const auto touch = [&](std::int32_t c) {
     if (state_[c] != 1) return;
     const Rectangle r = cell(c);
     const double dx = std::max({r.west - x, x - r.east, 0.0}), dy = std::max({r.south - y, y - r.north, 0.0});
-    if (!(dx * dx + dy * dy > reach * reach)) state_[c] = 2;
+    if (!(dx * dx + dy * dy > reach * reach) && is_near(r, part)) state_[c] = 2;
   };
   const auto index = [&](double v, std::int32_t n) { return static_cast<std::int32_t>(std::clamp(std::floor(v / side_), 0.0, n - 1.0)); };
-  const std::int32_t i0 = index(x - reach - corner_.x, nx_), i1 = index(x + reach - corner_.x, nx_);
-  const std::int32_t j0 = index(y - reach - corner_.y, ny_), j1 = index(y + reach - corner_.y, ny_);
+  const std::int32_t i0 = index(std::max(x - reach, part.west - reach_) - corner_.x, nx_),
+                     i1 = index(std::min(x + reach, part.east + reach_) - corner_.x, nx_);
+  const std::int32_t j0 = index(std::max(y - reach, part.south - reach_) - corner_.y, ny_),
+                     j1 = index(std::min(y + reach, part.north + reach_) - corner_.y, ny_);
   if (!std::isfinite(x + y + reach) || static_cast<size_t>(i1 - i0 + 1) * static_cast<size_t>(j1 - j0 + 1) > left_.size()) {
     for (const std::int32_t c : left_) touch(c);
     return;
@@ -96,8 +123,12 @@ void Surroundings::mark_half_plane(const Place& a, const Place& b) {
     return dx * (y - a.y) - dy * (x - a.x) >= -slack;
   };
   if (!reaches(where_)) return;
+  const Rectangle part = left_of(a, b, where_, slack);
   for (const std::int32_t c : left_)
-    if (state_[c] == 1 && reaches(cell(c))) state_[c] = 2;
+    if (state_[c] == 1) {
+      const Rectangle r = cell(c);
+      if (reaches(r) && is_near(r, part)) state_[c] = 2;
+    }
 }
 
 void Surroundings::mark(const Delaunay::Face& face, const std::vector<Place>& places) {
@@ -117,7 +148,8 @@ void Surroundings::mark(const Delaunay::Face& face, const std::vector<Place>& pl
   const double room = std::min(std::min(west - near_.west, near_.east - east), std::min(south - near_.south, near_.north - north));
   if (room > 0.0 && aa * bb * cc < (1.0 - rounding) * room * room * twice_area * twice_area) return;
   mark_disc(a.x + (cy * bb - by * cc) / (2.0 * twice_area), a.y + (bx * cc - cx * bb) / (2.0 * twice_area),
-            std::sqrt(aa) * std::sqrt(bb) * std::sqrt(cc) / (2.0 * std::abs(twice_area)));
+            std::sqrt(aa) * std::sqrt(bb) * std::sqrt(cc) / (2.0 * std::abs(twice_area)),
+            {std::max(west, where_.west), std::max(south, where_.south), std::min(east, where_.east), std::min(north, where_.north)});
 }
 
 std::vector<std::uint32_t> Surroundings::needed(const Delaunay& dt, const std::vector<Place>& places) {

@@ -10,11 +10,12 @@
 
 namespace swath::terrain {
 
-/// Tells which points a triangulation needs so that its faces that touch a rectangle are those of all points.
+/// Tells which points a triangulation needs so that its faces that touch a rectangle are those of all points, but for faces whose
+/// circumradius is over `max_radius` (proof in terrain/tin.cpp).
 class Surroundings {
  public:
   /// `rows`: all points, finite. Held by reference.
-  Surroundings(const core::Block& block, const std::vector<std::uint32_t>& rows, const Rectangle& where);
+  Surroundings(const core::Block& block, const std::vector<std::uint32_t>& rows, const Rectangle& where, double max_radius);
 
   /// The rows to begin with: in the rectangle and near it.
   std::vector<std::uint32_t> first();
@@ -24,15 +25,18 @@ class Surroundings {
 
  private:
   void mark(const Delaunay::Face& face, const std::vector<Place>& places);
-  void mark_disc(double x, double y, double radius);
+  void mark_disc(double x, double y, double radius, const Rectangle& part);
   void mark_half_plane(const Place& a, const Place& b);
   Rectangle cell(std::int32_t c) const;
+  /// Whether a cell comes near the part of the rectangle that a face covers.
+  bool is_near(const Rectangle& cell, const Rectangle& part) const;
 
   const core::Block& block_;
   const std::vector<std::uint32_t>& rows_;
   Rectangle where_, near_;  // near_: whose points were handed out first
   Place corner_;            // south-west of the cells
   double side_ = 1.0;       // of a cell, m
+  double reach_;            // m: diameter of the widest disc that counts
   std::int32_t nx_ = 0, ny_ = 0;
   std::vector<std::uint32_t> start_;   // of each cell within sorted_
   std::vector<std::uint32_t> sorted_;  // rows beyond near_ by cell

@@ -12,7 +12,11 @@
 //
 // A part. Points near the rectangle are inserted first (S). A face that touches the rectangle and whose disc holds no point of P that is
 // not in S is a face of P's triangulation; the half plane beyond an edge of the hull is the disc of what lies out there. So as long as such
-// a disc reaches a cell of points that were not inserted, they are.
+// a disc reaches a cell of points that were not inserted, they are: but only cells within 2R of the part of the rectangle that the face
+// covers. Let the face f of S and the face t of P, with a radius of R at most, cover a place q in that part. t's vertices lie within 2R of
+// q, so none of them that is not in S lies in D(f), nor does one that is; and D(t) is empty. Two faces that each have an empty disc
+// overlap only where their circles are the same, and a vertex on D(f)'s circle would have been inserted. Where f has a radius of R at most
+// and is no face of P, D(f) holds a point of P within 2R of q, which would have been inserted.
 //
 // Rounding: the radius is compared after rounding (relative error below 1e-9 for edges over 1 mm in triangles under 1 km), always from
 // the same three vertices in the same order; callers keep a margin of that size in their halo.
@@ -126,7 +130,8 @@ struct Measures {
 /// Gives tin.triangles and tin.across the faces that come near `where` and whose circles are small enough.
 class Faces {
  public:
-  Faces(Delaunay& dt, double max_radius, const Rectangle& where, Tin& tin) : dt_(dt), max_radius_(max_radius), where_(where), tin_(tin) {}
+  Faces(Delaunay& dt, const std::vector<Place>& places, double max_radius, const Rectangle& where, Tin& tin)
+      : dt_(dt), places_(places), max_radius_(max_radius), where_(where), tin_(tin) {}
 
   void take() {
     const auto& faces = dt_.faces();
@@ -157,7 +162,7 @@ class Faces {
 
   /// The one of `orders` in which the vertices ascend; -1 where the face is left out.
   std::int8_t order_of(const Delaunay::Face& face) const {
-    const std::array<Place, 3> p{tin_.place(face.v[0]), tin_.place(face.v[1]), tin_.place(face.v[2])};
+    const std::array<Place, 3> p{places_[face.v[0]], places_[face.v[1]], places_[face.v[2]]};
     if (std::max(std::max(p[0].y, p[1].y), p[2].y) < where_.south || std::min(std::min(p[0].y, p[1].y), p[2].y) > where_.north) return -1;
     const int order = is_before(p[1], p[0]) | is_before(p[2], p[0]) << 1 | is_before(p[2], p[1]) << 2;
     const auto [i, j, k] = orders[static_cast<size_t>(order)];
@@ -166,6 +171,7 @@ class Faces {
   }
 
   Delaunay& dt_;
+  const std::vector<Place>& places_;
   double max_radius_;
   const Rectangle& where_;
   Tin& tin_;
@@ -222,13 +228,13 @@ Tin triangulate(const core::Block& block, const std::vector<std::uint32_t>& rows
   Vertices vertices(block, none, tin);
   Delaunay dt(vertices.places());
   const std::vector<std::uint32_t> usable = finite(block, rows, tin);
-  Surroundings around(block, usable, where);
+  Surroundings around(block, usable, where, max_radius);
   for (std::vector<std::uint32_t> more = around.first(); !more.empty(); more = around.needed(dt, vertices.places())) {
     const std::int32_t first = vertices.count();
     vertices.take(more);
     dt.insert(first, vertices.count());
   }
-  Faces(dt, max_radius, where, tin).take();
+  Faces(dt, vertices.places(), max_radius, where, tin).take();
   return tin;
 }
 

@@ -4,8 +4,13 @@
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <sstream>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "core/error.h"
 #include "core/option_visitors.h"
@@ -264,12 +269,23 @@ int command_line(int argc, char** argv) {
   return 0;
 }
 
+/// Columns and grids of one tile are freed as those of the next are made: pages kept need not be fetched and cleared again. One arena for
+/// all threads, so that what one has freed serves the others and no more is held than was needed at once.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_ARENA_MAX, 1);
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that glibc takes
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   // Writing past a limit fails like a full disk, with its error, and does not kill.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  keep_freed_memory();
   try {
     return command_line(argc, argv);
   } catch (const swath::core::Error& e) {

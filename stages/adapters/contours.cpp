@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_pipeline.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <memory>
 
 #include "core/error.h"
 #include "core/statistics.h"
@@ -37,6 +41,8 @@ namespace swath::stages {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr size_t page_bytes = size_t{64} << 20;  ///< of the surface, held while lines are drawn
 
 struct ContourWriteOptions : terrain::ContourOptions {
   std::string name = "contours";
@@ -273,23 +279,40 @@ class Contours : public OptionStage<ContourWriteOptions> {
         ++stretches.back().count;
       }
     }
-    terrain::Facets surface_of_all(cell(context), [&](const core::Lattice& window) { return surface(context, job.folder, window); });
+    tbb::enumerable_thread_specific<terrain::Facets> surfaces([&] {
+      return terrain::Facets(
+          cell(context), [&](const core::Lattice& window) { return surface(context, job.folder, window); }, page_bytes / context.threads);
+    });
     terrain::Labeller labeller(options.labels);
     const int decimals =
         std::max(decimals_of(options.interval.value / context.vertical_unit), decimals_of(options.base.value / context.vertical_unit));
     double metres = 0.0;
     std::uint64_t closed = 0, depressions = 0, labels = 0;
-    for (const auto& [level, stretches] : levels) {
-      std::vector<terrain::Segment> segments;
-      for (const Stretch& s : stretches) {
+    // Levels do not know of one another: several are drawn at once and written in their order.
+    using Segments = std::shared_ptr<std::vector<terrain::Segment>>;
+    using Lines = std::shared_ptr<std::vector<terrain::ContourLine>>;
+    auto level = levels.begin();
+    const auto read = [&](tbb::flow_control& flow) -> Segments {
+      if (level == levels.end()) {
+        flow.stop();
+        return nullptr;
+      }
+      auto segments = std::make_shared<std::vector<terrain::Segment>>();
+      for (const Stretch& s : (level++)->second) {
         std::ifstream in(segment_file(job.folder, s.key), std::ios::binary);
         in.seekg(static_cast<std::streamoff>(s.first * sizeof(terrain::Segment)));
-        const size_t before = segments.size();
-        segments.resize(before + s.count);
+        const size_t before = segments->size();
+        segments->resize(before + s.count);
         const auto size = static_cast<std::streamsize>(s.count * sizeof(terrain::Segment));
-        if (!in.read(reinterpret_cast<char*>(segments.data() + before), size)) cut_short(segment_file(job.folder, s.key));
+        if (!in.read(reinterpret_cast<char*>(segments->data() + before), size)) cut_short(segment_file(job.folder, s.key));
       }
-      for (const terrain::ContourLine& line : terrain::contour_lines(std::move(segments), options, surface_of_all)) {
+      return segments;
+    };
+    const auto draw = [&](const Segments& segments) -> Lines {
+      return std::make_shared<std::vector<terrain::ContourLine>>(terrain::contour_lines(std::move(*segments), options, surfaces.local()));
+    };
+    const auto write = [&](const Lines& lines) {
+      for (const terrain::ContourLine& line : *lines) {
         metres += terrain::length(line.vertices);
         closed += line.closed ? 1 : 0;
         depressions += line.depression ? 1 : 0;
@@ -308,7 +331,11 @@ class Contours : public OptionStage<ContourWriteOptions> {
           for (auto& w : writers) w.add(written);
         }
       }
-    }
+    };
+    tbb::parallel_pipeline(2 * static_cast<size_t>(context.threads),
+                           tbb::make_filter<void, Segments>(tbb::filter_mode::serial_in_order, read) &
+                               tbb::make_filter<Segments, Lines>(tbb::filter_mode::parallel, draw) &
+                               tbb::make_filter<Lines, void>(tbb::filter_mode::serial_in_order, write));
     job.findings["lines"] = writers.front().count();
     job.findings["closed"] = closed;
     job.findings["depressions"] = depressions;

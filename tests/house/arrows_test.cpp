@@ -39,7 +39,7 @@ const std::vector<std::pair<std::regex, std::regex>> doors = {
     {std::regex("proj.*\\.h"), std::regex("core/geodesy\\.cpp|core/crs\\.cpp|core/transform\\.cpp|core/proj_.*|io/versions\\.cpp")},
     {std::regex("toml\\+\\+/.*|rapidjson/.*|png\\.h"), std::regex("io/.*\\.cpp")},
     {std::regex("ceres/.*"), std::regex("calib/.*\\.cpp")},
-    {std::regex("tbb/.*|oneapi/.*"), std::regex("pipeline/.*\\.cpp|simulate/.*\\.cpp|io/.*\\.cpp")},
+    {std::regex("tbb/.*|oneapi/.*"), std::regex("(pipeline|simulate|io|stages/adapters)/.*\\.cpp")},
     {std::regex("CLI/.*"), std::regex("tools/.*")},
 };
 

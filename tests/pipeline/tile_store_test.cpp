@@ -102,14 +102,33 @@ TEST(TileStore, HaloHoldsExactlyThePointsAroundTheBox) {
   const double halo = 130.0;
   for (const auto& [key, n] : s.store.tiles()) {
     size_t own = 0;
-    const Block b = s.store.read_with_halo(key, halo, {}, own);
+    const Block b = s.store.read_with_halo({key}, halo, {}, own);
     EXPECT_EQ(own, n);
     const stages::Box box = stages::Box{key.ix * 100.0, key.iy * 100.0, key.ix * 100.0 + 100, key.iy * 100.0 + 100}.grown(halo);
     size_t inside = 0;
     for (size_t i = 0; i < s.all.size(); ++i) inside += box.holds(1000 + s.all.x[i], 2000 + s.all.y[i]);
     EXPECT_EQ(b.size(), inside);
-    EXPECT_GE(s.store.load_with_halo(key, halo).points * 10, b.size() * 8);
+    EXPECT_GE(s.store.load_with_halo({key}, halo).points * 10, b.size() * 8);
   }
+}
+
+TEST(TileStore, JoinedTilesComeOneAfterTheOtherWithOneHalo) {
+  const Store s;
+  const double halo = 30.0;
+  const std::vector<TileKey> keys = {s.store.tiles().begin()->first, std::next(s.store.tiles().begin())->first};
+  stages::Box box{1e9, 1e9, -1e9, -1e9};
+  for (const TileKey k : keys)
+    box = {std::min(box.x0, k.ix * 100.0), std::min(box.y0, k.iy * 100.0), std::max(box.x1, k.ix * 100.0 + 100),
+           std::max(box.y1, k.iy * 100.0 + 100)};
+  size_t own = 0, at = 0;
+  const Block b = s.store.read_with_halo(keys, halo, {Column::record}, own);
+  for (const TileKey k : keys)
+    for (const auto record : s.store.read(k, {Column::record}).record) ASSERT_EQ(b.record[at++], record);
+  EXPECT_EQ(own, at);
+  size_t inside = 0;
+  for (size_t i = 0; i < s.all.size(); ++i) inside += box.grown(halo).holds(1000 + s.all.x[i], 2000 + s.all.y[i]);
+  EXPECT_EQ(b.size(), inside);
+  EXPECT_GE(s.store.load_with_halo(keys, halo).points * 10, b.size() * 8);
 }
 
 TEST(TileStore, OverlaysReplaceColumns) {
@@ -117,9 +136,9 @@ TEST(TileStore, OverlaysReplaceColumns) {
   std::filesystem::create_directories(s.folder / "overlay");
   for (const auto& [key, n] : s.store.tiles()) {
     size_t own = 0;
-    Block b = s.store.read_with_halo(key, 50, {Column::classification}, own);
+    Block b = s.store.read_with_halo({key}, 50, {Column::classification}, own);
     for (auto& c : b.classification) c = 2;
-    s.store.write_overlay(s.folder / "overlay", key, b, own, {Column::classification});
+    s.store.write_overlay(s.folder / "overlay", key, b, 0, own, {Column::classification});
   }
   s.store.add_overlay(s.folder / "overlay", {Column::classification});
   for (const auto& [key, n] : s.store.tiles()) {

@@ -90,6 +90,22 @@ TEST(Delaunay, AgreesWithCgal) {
     }
 }
 
+TEST(Delaunay, GrowsInPieces) {
+  for (const double step : {0.0, 4.0}) {
+    const std::vector<Place> places = random_places(600, step, 7);
+    Delaunay whole(places), grown(places);
+    whole.insert(0, 600);
+    std::int32_t first = 0;
+    for (const std::int32_t next : {5, 6, 200, 201, 250, 600}) {
+      grown.insert(first, next);
+      first = next;
+      expect_sound(grown, {places.begin(), places.begin() + next});
+    }
+    for (Delaunay* dt : {&whole, &grown}) dt->settle(dt->cocircular());
+    EXPECT_EQ(triangles(grown), triangles(whole));
+  }
+}
+
 TEST(Delaunay, CocircularAndCollinearPlaces) {
   // On whole numbers nearly every square is cocircular and every row and column of the hull collinear.
   for (unsigned seed = 0; seed < 20; ++seed) {
