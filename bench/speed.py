@@ -98,9 +98,9 @@ def main():
     best = "filters.ground" if "filters.ground" in filters else filters[0]
     writers = [{"type": "writers.las", "compress": False}, {"type": "writers.gdal"}]
     chains = {"reading alone": READ_ALL, "noise": [*READ, {"type": "filters.noise"}], **{f"ground: {name}": [*READ, {"type": name}] for name in filters},
-              "TIN + DTM of true ground": [*READ, *TERRAIN],
+              "TIN + DTM of true ground": [*READ, *TERRAIN], "the same, smoothing 0": [*READ, {**TERRAIN[0], "smoothing": "0 m"}],
               f"LAS to classes, DTM, contours ({best})": [*READ, {"type": "filters.noise"}, {"type": best}, *TERRAIN, {"type": "terrain.contours"}, *writers]}
-    theirs = {"reading alone": "read", "noise": "noise", "TIN + DTM of true ground": "terrain", **{f"ground: {name}": "ground" for name in filters},
+    theirs = {"reading alone": "read", "noise": "noise", "TIN + DTM of true ground": "terrain", "the same, smoothing 0": "terrain", **{f"ground: {name}": "ground" for name in filters},
               f"LAS to classes, DTM, contours ({best})": "all"}
     output, rows, other = folder / "out", [], {}
     for name, chain in chains.items():

@@ -16,19 +16,16 @@
 #include <atomic>
 #include <cerrno>
 #include <cmath>
-#include <functional>
-#include <map>
-#include <numeric>
 #include <set>
 #include <thread>
 
-#include "core/floor_div.h"
 #include "io/output_file.h"
 #include "io/value_file.h"
 #include "pipeline/delivery.h"
 #include "pipeline/grid_store.h"
 #include "pipeline/provenance.h"
 #include "pipeline/pulse_border.h"
+#include "pipeline/tile_groups.h"
 #include "pipeline/tile_queue.h"
 #include "pipeline/tile_store.h"
 #include "stages/waters.h"
@@ -82,38 +79,6 @@ struct Account {
   Tally tally;
   Value findings = Value::object();
   double seconds = 0;
-};
-
-/// The tiles of a stage in pieces of work: squares of as many tiles across, and the bytes that each needs.
-struct Pieces {
-  std::vector<std::vector<TileKey>> keys;
-  std::vector<std::uint64_t> bytes;
-  int across;
-
-  template <class BytesOf>
-  Pieces(const std::vector<TileKey>& tiles, int tiles_across, const BytesOf& bytes_of) : across(tiles_across) {
-    std::map<TileKey, std::vector<TileKey>> squares;
-    for (const TileKey k : tiles)
-      squares[{static_cast<int>(core::floor_div(k.ix, across)), static_cast<int>(core::floor_div(k.iy, across))}].push_back(k);
-    for (auto& [square, members] : squares) {
-      bytes.push_back(bytes_of(members, across));
-      keys.push_back(std::move(members));
-    }
-  }
-  /// Needed at once by the largest.
-  std::uint64_t most(int threads) const {
-    std::vector<std::uint64_t> b = bytes;
-    std::sort(b.begin(), b.end(), std::greater<>());
-    b.resize(std::min(b.size(), static_cast<size_t>(threads)));
-    return std::accumulate(b.begin(), b.end(), std::uint64_t{0});
-  }
-  /// Of the thread that has most to do, if work goes as bytes do.
-  std::uint64_t longest(int threads) const {
-    std::vector<std::uint64_t> b = bytes, load(static_cast<size_t>(threads), 0);
-    std::sort(b.begin(), b.end(), std::greater<>());
-    for (const std::uint64_t one : b) *std::min_element(load.begin(), load.end()) += one;
-    return *std::max_element(load.begin(), load.end());
-  }
 };
 
 stages::Box around(const stages::Box& a, const stages::Box& b) {
@@ -421,40 +386,41 @@ void Engine::run_tiles(size_t number) {
     using T = typename std::remove_reference_t<decltype(std::declval<core::Block>().*member)>::value_type;
     if (columns.has(c) || c == core::Column::x || c == core::Column::y || c == core::Column::z) row_bytes += sizeof(T);
   });
-  const auto bytes_of = [&](const std::vector<TileKey>& piece, int across) {
-    const TileStore::Load load = store_->load_with_halo(piece, s.halo());
+  const Measure measure = [&](std::vector<TileKey> tiles) {
+    const TileBox box(tiles);
+    const TileStore::Load load = store_->load_with_halo(tiles, s.halo());
     const auto points = static_cast<double>(load.points);
-    double needed = (static_cast<double>(row_bytes) + s.bytes_per_point()) * points +
-                    static_cast<double>(row_bytes) * static_cast<double>(load.neighbour);
+    double bytes = (static_cast<double>(row_bytes) + s.bytes_per_point()) * points +
+                   static_cast<double>(row_bytes) * static_cast<double>(load.neighbour);
     stages::Context wide = context_;
-    wide.tile_side *= across;
-    for (const stages::Raster& r : s.rasters(wide)) needed += r.total(points);
-    return static_cast<std::uint64_t>(needed);
+    wide.tile_side *= 0.5 * (box.across() + box.up());  // of the square with the same outline, which is not smaller
+    for (const stages::Raster& r : s.rasters(wide)) bytes += r.total(points);
+    TileGroup group{std::move(tiles), 0, load.points, static_cast<std::uint64_t>(bytes)};
+    for (const TileKey k : group.tiles)
+      if (const auto at = store_->tiles().find(k); at != store_->tiles().end()) group.own += at->second;
+    return group;
   };
   const auto budget = static_cast<std::uint64_t>(plan_.run.memory.value * 0.8);
-  Pieces pieces(keys, 1, bytes_of);
-  // Tiles joined have less halo. Only where nothing but points' columns comes of them.
-  if (changes && s.info().gives_products.empty() && !works_on(number, Grain::merge))
-    for (const int across : {2, 4}) {
-      Pieces joined(keys, across, bytes_of);
-      if (joined.most(threads_) <= budget && joined.longest(threads_) < pieces.longest(threads_)) pieces = std::move(joined);
-    }
-  std::vector<Value> notes(pieces.keys.size());
-  const auto done_file = [&](const std::vector<TileKey>& piece) {
-    return mine / (file_label(piece[0]) + (pieces.across > 1 ? "x" + std::to_string(pieces.across) : "") + ".done");
+  // Joined only where nothing but points' columns comes of them.
+  const bool joins = changes && gives.empty() && !works_on(number, Grain::merge);
+  const std::vector<TileGroup> groups = joins ? joined_tiles(keys, threads_, budget, measure) : single_tiles(keys, measure);
+  std::vector<Value> notes(groups.size());
+  const auto done_file = [&](const TileGroup& group) {
+    const TileBox box(group.tiles);
+    return mine / (file_label(box.low) + (group.tiles.size() > 1 ? "_to_" + file_label(box.high) : "") + ".done");
   };
-  for (size_t i = 0; i < pieces.keys.size(); ++i)
-    if (fs::exists(done_file(pieces.keys[i]))) pieces.bytes[i] = 0;
-  TileQueue queue(pieces.bytes, budget);
+  std::vector<std::uint64_t> bytes;
+  for (const TileGroup& g : groups) bytes.push_back(fs::exists(done_file(g)) ? 0 : g.bytes);
+  TileQueue queue(std::move(bytes), budget);
   std::atomic<std::uint64_t> again{0};
   tbb::parallel_for(
-      tbb::blocked_range<size_t>(0, pieces.keys.size(), 1),
+      tbb::blocked_range<size_t>(0, groups.size(), 1),
       [&](const tbb::blocked_range<size_t>& range) {
         for (size_t turn = range.begin(); turn < range.end(); ++turn) {
           const TileQueue::Piece piece = queue.take();
           const size_t i = piece.number();
-          const std::vector<TileKey>& tiles = pieces.keys[i];
-          const fs::path done = done_file(tiles);
+          const std::vector<TileKey>& tiles = groups[i].tiles;
+          const fs::path done = done_file(groups[i]);
           if (fs::exists(done)) {
             notes[i] = io::parse_json(io::read_text_file(done), done.string());
             ++again;
@@ -494,7 +460,7 @@ void Engine::run_tiles(size_t number) {
   account.in = account.out = store_->points();
   keep_surface_tiles(number, fringe);
   for (size_t i = 0; i < notes.size(); ++i) {
-    const TileKey first = pieces.keys[i][0];
+    const TileKey first = groups[i].tiles[0];
     account.seconds += notes[i].find("seconds")->as_number();
     if (store_->tiles().contains(first) || surface_tiles_.contains(first)) account.tally.add(Tally::from(*notes[i].find("tally")));
   }

@@ -18,6 +18,7 @@
 #include "core/value.h"
 #include "io/output_file.h"
 #include "io/value_file.h"
+#include "pipeline/tile_groups.h"
 
 namespace swath::pipeline {
 namespace {
@@ -388,18 +389,6 @@ void TileStore::append_within(Block& out, TileKey key, ColumnSet columns, const 
 }
 
 namespace {
-
-/// Tiles [low, high], both in it.
-struct TileBox {
-  TileKey low, high;
-  explicit TileBox(const std::vector<TileKey>& keys) : low(keys[0]), high(keys[0]) {
-    for (const TileKey k : keys) {
-      low = {std::min(low.ix, k.ix), std::min(low.iy, k.iy)};
-      high = {std::max(high.ix, k.ix), std::max(high.iy, k.iy)};
-    }
-  }
-  bool holds(TileKey k) const { return k.ix >= low.ix && k.ix <= high.ix && k.iy >= low.iy && k.iy <= high.iy; }
-};
 
 /// Tiles from a number to those from `low` to `high`.
 int apart(int i, int low, int high) { return std::max({low - i, i - high, 0}); }

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All tiles are one group at first; then the one with most work is cut in two, again and again, across its longer side.
+#include "pipeline/tile_groups.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace swath::pipeline {
+namespace {
+
+constexpr size_t per_thread = 4;  // groups: more only add to what is around them
+
+// A point around the tiles takes less than half as long as one of their own (filters.ground, 2026-11-22).
+std::uint64_t work(const TileGroup& g) { return (g.own + g.with_halo) / 2; }
+
+/// Needed at once by the largest.
+std::uint64_t most_bytes(const std::vector<TileGroup>& groups, size_t threads) {
+  std::vector<std::uint64_t> bytes;
+  for (const TileGroup& g : groups) bytes.push_back(g.bytes);
+  const size_t n = std::min(bytes.size(), threads);
+  std::nth_element(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n) - 1, bytes.end(), std::greater<>());
+  return std::accumulate(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n), std::uint64_t{0});
+}
+
+/// Work of the thread that has most of it, the largest group first.
+std::uint64_t longest(const std::vector<TileGroup>& groups, size_t threads) {
+  std::vector<std::uint64_t> left, load(threads, 0);
+  for (const TileGroup& g : groups) left.push_back(work(g));
+  std::sort(left.begin(), left.end(), std::greater<>());
+  for (const std::uint64_t one : left) *std::min_element(load.begin(), load.end()) += one;
+  return *std::max_element(load.begin(), load.end());
+}
+
+/// Where half of a group's tiles lie on each side.
+std::pair<std::vector<TileKey>, std::vector<TileKey>> cut(const std::vector<TileKey>& tiles) {
+  const TileBox box(tiles);
+  const bool upright = box.across() >= box.up();
+  const auto at = [&](TileKey k) { return upright ? k.ix : k.iy; };
+  std::vector<int> places;
+  for (const TileKey k : tiles) places.push_back(at(k));
+  std::sort(places.begin(), places.end());
+  int first_behind = places[places.size() / 2];
+  if (first_behind == places.front()) first_behind = *std::upper_bound(places.begin(), places.end(), first_behind);
+  std::pair<std::vector<TileKey>, std::vector<TileKey>> halves;
+  for (const TileKey k : tiles) (at(k) < first_behind ? halves.first : halves.second).push_back(k);
+  return halves;
+}
+
+}  // namespace
+
+TileBox::TileBox(const std::vector<TileKey>& tiles) : low(tiles[0]), high(tiles[0]) {
+  for (const TileKey k : tiles) {
+    low = {std::min(low.ix, k.ix), std::min(low.iy, k.iy)};
+    high = {std::max(high.ix, k.ix), std::max(high.iy, k.iy)};
+  }
+}
+
+std::vector<TileGroup> single_tiles(const std::vector<TileKey>& tiles, const Measure& measure) {
+  std::vector<TileGroup> groups;
+  for (const TileKey k : tiles) groups.push_back(measure({k}));
+  return groups;
+}
+
+std::vector<TileGroup> joined_tiles(const std::vector<TileKey>& tiles, int threads, std::uint64_t budget, const Measure& measure) {
+  if (tiles.empty()) return {};
+  const auto n = static_cast<size_t>(threads);
+  std::vector<TileGroup> groups, best;
+  std::uint64_t shortest = std::numeric_limits<std::uint64_t>::max();
+  groups.push_back(measure(tiles));
+  while (true) {
+    if (most_bytes(groups, n) <= budget) {
+      if (const std::uint64_t l = longest(groups, n); l < shortest) shortest = l, best = groups;
+      if (groups.size() >= per_thread * n) return best;
+    }
+    const auto divisible = [](const TileGroup& g) { return g.tiles.size() > 1 ? work(g) + 1 : 0; };
+    const auto largest =
+        std::max_element(groups.begin(), groups.end(), [&](const TileGroup& a, const TileGroup& b) { return divisible(a) < divisible(b); });
+    if (divisible(*largest) == 0) return best.empty() ? groups : best;
+    auto [low, high] = cut(largest->tiles);
+    *largest = measure(std::move(low));
+    groups.push_back(measure(std::move(high)));
+  }
+}
+
+}  // namespace swath::pipeline

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tiles that a stage works on as one: what they have around them is read and worked through once.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "stages/stage.h"
+
+namespace swath::pipeline {
+
+using stages::TileKey;
+
+/// Tiles from `low` to `high`, both in it.
+struct TileBox {
+  TileKey low, high;
+  explicit TileBox(const std::vector<TileKey>& tiles);
+  bool holds(TileKey k) const { return k.ix >= low.ix && k.ix <= high.ix && k.iy >= low.iy && k.iy <= high.iy; }
+  int across() const { return high.ix - low.ix + 1; }
+  int up() const { return high.iy - low.iy + 1; }
+};
+
+struct TileGroup {
+  std::vector<TileKey> tiles;   ///< all there are in their box, ascending
+  std::uint64_t own = 0;        ///< points of the tiles
+  std::uint64_t with_halo = 0;  ///< points to work on, those around with them
+  std::uint64_t bytes = 0;      ///< needed
+};
+
+/// Counts own, with_halo and bytes of the tiles.
+using Measure = std::function<TileGroup(std::vector<TileKey>)>;
+
+/// A group for each tile.
+std::vector<TileGroup> single_tiles(const std::vector<TileKey>& tiles, const Measure& measure);
+
+/// The tiles in boxes so that the thread with most to do has least, where the largest of `threads` groups fit into `budget` bytes; a group
+/// for each tile where nothing else does.
+std::vector<TileGroup> joined_tiles(const std::vector<TileKey>& tiles, int threads, std::uint64_t budget, const Measure& measure);
+
+}  // namespace swath::pipeline
