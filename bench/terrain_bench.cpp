@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Ground points per second of terrain.dtm, one thread and two, each with its own tile of a made survey: hills at 8 points per square metre
-// in scan lines, halo included. Prints the median of the rounds, by the clock and by the threads' own processor time, which holds where
-// other programs share the cores.
+// in scan lines, halo included; with the defaults and without smoothing. Prints the median of the rounds, by the clock and by the threads'
+// own processor time, which holds where other programs share the cores.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -49,30 +49,34 @@ core::Block tile(double halo, unsigned seed, size_t& own) {
 
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 5;
-  const terrain::DtmOptions options;
   const core::Lattice window{1.0, 0, 0, static_cast<int>(side), static_cast<int>(side)};
   size_t own[2];
-  const core::Block tiles[2] = {tile(terrain::halo(options), 1, own[0]), tile(terrain::halo(options), 2, own[1])};
-  for (const int threads : {1, 2}) {
-    std::vector<double> rate, processor_rate;
-    for (int round = 0; round < rounds; ++round) {
-      const auto start = Clock::now();
-      std::vector<double> used(static_cast<size_t>(threads));
-      std::vector<std::thread> crew;
-      double points = 0.0;
-      for (size_t k = 0; k < used.size(); ++k) {
-        points += static_cast<double>(own[k]);
-        crew.emplace_back([&, k] {
-          const double began = processor_seconds();
-          terrain::dtm(tiles[k], window, options);
-          used[k] = processor_seconds() - began;
-        });
+  const terrain::DtmOptions defaults;
+  terrain::DtmOptions exact;
+  exact.smoothing = core::Metres(0.0);
+  const core::Block tiles[2] = {tile(terrain::halo(defaults), 1, own[0]), tile(terrain::halo(defaults), 2, own[1])};
+  for (const terrain::DtmOptions& options : {defaults, exact})
+    for (const int threads : {1, 2}) {
+      std::vector<double> rate, processor_rate;
+      for (int round = 0; round < rounds; ++round) {
+        const auto start = Clock::now();
+        std::vector<double> used(static_cast<size_t>(threads));
+        std::vector<std::thread> crew;
+        double points = 0.0;
+        for (size_t k = 0; k < used.size(); ++k) {
+          points += static_cast<double>(own[k]);
+          crew.emplace_back([&, k] {
+            const double began = processor_seconds();
+            terrain::dtm(tiles[k], window, options);
+            used[k] = processor_seconds() - began;
+          });
+        }
+        for (std::thread& t : crew) t.join();
+        rate.push_back(points / seconds(start));
+        processor_rate.push_back(points / *std::max_element(used.begin(), used.end()));
       }
-      for (std::thread& t : crew) t.join();
-      rate.push_back(points / seconds(start));
-      processor_rate.push_back(points / *std::max_element(used.begin(), used.end()));
+      std::printf("terrain.dtm, smoothing %.1f m, %d thread%s: %.2f M ground points/s, %.2f by processor time (%zu own of %zu)\n",
+                  options.smoothing.value, threads, threads == 1 ? "" : "s", median(rate) / 1e6, median(processor_rate) / 1e6, own[0],
+                  tiles[0].size());
     }
-    std::printf("terrain.dtm, %d thread%s: %.2f M ground points/s, %.2f by processor time (%zu own of %zu)\n", threads,
-                threads == 1 ? "" : "s", median(rate) / 1e6, median(processor_rate) / 1e6, own[0], tiles[0].size());
-  }
 }
