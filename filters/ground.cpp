@@ -3,8 +3,9 @@
 // noise and roughness of the ground there and, where returns are sparse, what the surface errs by between them: more on slopes, and a
 // leniency for what it smooths away (kerbs, furrows, boulders) that fades where many returns stand knee-high, as in crops and shrubs: there
 // the lowest ones alone are ground.
-// The probability is counted from the heights of all returns around (ground_chance.h), and what is bearable must have some: a half where
-// returns are dense, any where they are sparse and the surface itself is in doubt.
+// Where the returns are two populations, soil and a low crop that drew the surface up, the ground is the lower one (ground_populations.h).
+// The chance is counted from the heights of all returns around (ground_chance.h), and what is bearable must have some: a half where returns
+// are dense, any where they are sparse and the surface itself is in doubt. The probability that is stated is the chance, calibrated.
 #include "filters/ground.h"
 
 #include <algorithm>

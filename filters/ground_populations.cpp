@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <tuple>
+#include <utility>
 
 #include "filters/bins.h"
 #include "filters/moving_planes.h"
@@ -42,11 +44,35 @@ using Histogram = std::array<double, classes>;
 
 double middle(int k) { return lowest + width * (k + 0.5); }
 
-/// Heights near the surface of one strip, by cell.
-struct StripSums {
-  std::vector<std::int32_t> sum;  ///< in units
-  std::vector<std::uint16_t> count;
+/// Returns of one strip near the surface in one cell.
+struct OfStrip {
+  size_t cell;
+  std::uint16_t strip;
+  std::int64_t sum, count;  ///< of heights, in units
 };
+
+/// For the cells of `wanted`, ascending.
+std::vector<OfStrip> by_strip(const core::Block& b, const core::Lattice& l, const std::vector<ReturnOverGround>& returns,
+                              const std::vector<char>& wanted) {
+  std::vector<OfStrip> all;
+  for (size_t p = 0; p < b.strip.size(); ++p) {
+    if (!(std::abs(returns[p].above) < static_cast<float>(core_of_ground))) continue;
+    const CellIndex at = cell_of(l, b, p);
+    if (at.i < 0 || at.j < 0 || at.i >= l.nx || at.j >= l.ny || !wanted[l.at(at.i, at.j)]) continue;
+    all.push_back({l.at(at.i, at.j), b.strip[p], std::lround(returns[p].above / unit), 1});
+  }
+  std::sort(all.begin(), all.end(),
+            [](const OfStrip& x, const OfStrip& y) { return std::tie(x.cell, x.strip) < std::tie(y.cell, y.strip); });
+  size_t kept = 0;
+  for (const OfStrip& s : all) {
+    if (kept > 0 && all[kept - 1].cell == s.cell && all[kept - 1].strip == s.strip)
+      all[kept - 1].sum += s.sum, ++all[kept - 1].count;
+    else
+      all[kept++] = s;
+  }
+  all.resize(kept);
+  return all;
+}
 
 struct Normal {
   double share = 0.0, mean = 0.0, spread = 1.0;
@@ -164,7 +190,6 @@ LowerPopulations lower_populations(const core::Block& b, size_t own, double arou
 
   std::vector<std::array<std::uint16_t, classes>> counts(l.size(), std::array<std::uint16_t, classes>{});
   std::vector<char> suspect(l.size(), 0);
-  std::map<std::uint16_t, StripSums> strips;
   for (size_t p = 0; p < b.size(); ++p) {
     const double k = std::floor((static_cast<double>(returns[p].above) - lowest) / width);
     if (!(k >= 0.0 && k < classes)) continue;
@@ -174,41 +199,51 @@ LowerPopulations lower_populations(const core::Block& b, size_t own, double arou
     std::uint16_t& n = counts[c][static_cast<size_t>(k)];
     if (n < std::numeric_limits<std::uint16_t>::max()) ++n;
     if (returns[p].spread > rough * noise) suspect[c] = 1;
-    if (b.strip.empty() || std::abs(returns[p].above) >= static_cast<float>(core_of_ground)) continue;
-    StripSums& s = strips[b.strip[p]];
-    if (s.count.empty()) s.sum.assign(l.size(), 0), s.count.assign(l.size(), 0);
-    s.sum[c] += static_cast<std::int32_t>(std::lround(returns[p].above / unit));
-    if (s.count[c] < std::numeric_limits<std::uint16_t>::max()) ++s.count[c];
   }
   std::vector<double> weight(static_cast<size_t>(2 * border + 1));
   for (int d = -border; d <= border; ++d) weight[static_cast<size_t>(d + border)] = std::exp(-0.5 * d * d / (sigma * sigma));
+  const auto around_cell = [&](size_t c, const auto& take) {
+    for (int dj = -border; dj <= border; ++dj)
+      for (int di = -border; di <= border; ++di)
+        take(weight[static_cast<size_t>(di + border)] * weight[static_cast<size_t>(dj + border)],
+             static_cast<size_t>(static_cast<std::ptrdiff_t>(c) + std::ptrdiff_t{dj} * l.nx + di));
+  };
+  std::vector<std::pair<size_t, TwoPopulations>> found;
+  std::vector<char> near_found(l.size(), 0);
   for (int j = border; j + border < l.ny; ++j)
     for (int i = border; i + border < l.nx; ++i) {
       const size_t c = l.at(i, j);
       if (!suspect[c]) continue;
-      const auto around_cell = [&](const auto& take) {
-        for (int dj = -border; dj <= border; ++dj)
-          for (int di = -border; di <= border; ++di)
-            take(weight[static_cast<size_t>(di + border)] * weight[static_cast<size_t>(dj + border)], l.at(i + di, j + dj));
-      };
       Histogram h{};
-      around_cell([&](double w, size_t near) {
+      around_cell(c, [&](double w, size_t near) {
         for (size_t k = 0; k < classes; ++k) h[k] += w * counts[near][k];
       });
-      const auto [lower, gap] = populations_of(h, noise);
-      if (gap <= 0.0) continue;
-      double lowest_mean = std::numeric_limits<double>::infinity(), highest_mean = -lowest_mean;
-      for (const auto& [id, s] : strips) {
-        double n = 0.0, sum = 0.0;
-        around_cell([&](double w, size_t near) { n += w * s.count[near], sum += w * s.sum[near]; });
-        if (n < strip_fewest) continue;
-        lowest_mean = std::min(lowest_mean, unit * sum / n);
-        highest_mean = std::max(highest_mean, unit * sum / n);
-      }
-      if (highest_mean - lowest_mean > by_strips * gap) continue;
-      out.middle.value[c] = static_cast<float>(lower.mean);
-      out.spread.value[c] = static_cast<float>(lower.spread);
+      const TwoPopulations two = populations_of(h, noise);
+      if (two.gap <= 0.0) continue;
+      found.emplace_back(c, two);
+      around_cell(c, [&](double, size_t near) { near_found[near] = 1; });
     }
+  const std::vector<OfStrip> strips = by_strip(b, l, returns, near_found);
+  for (const auto& [c, two] : found) {
+    std::map<std::uint16_t, std::pair<double, double>> sums;  // weights and heights
+    around_cell(c, [&](double w, size_t near) {
+      auto s =
+          std::lower_bound(strips.begin(), strips.end(), near, [](const OfStrip& of, size_t cell_number) { return of.cell < cell_number; });
+      for (; s != strips.end() && s->cell == near; ++s) {
+        auto& [n, sum] = sums[s->strip];
+        n += w * static_cast<double>(s->count), sum += w * static_cast<double>(s->sum);
+      }
+    });
+    double lowest_mean = std::numeric_limits<double>::infinity(), highest_mean = -lowest_mean;
+    for (const auto& [strip, of] : sums) {
+      if (of.first < strip_fewest) continue;
+      lowest_mean = std::min(lowest_mean, unit * of.second / of.first);
+      highest_mean = std::max(highest_mean, unit * of.second / of.first);
+    }
+    if (highest_mean - lowest_mean > by_strips * two.gap) continue;
+    out.middle.value[c] = static_cast<float>(two.lower.mean);
+    out.spread.value[c] = static_cast<float>(two.lower.spread);
+  }
   return out;
 }
 

@@ -133,7 +133,8 @@ NoiseCounts flag_noise(core::Block& b, size_t own, const NoiseOptions& o) {
     const double reach = squared(o.low_radius.value);
     const auto is_low = [&](CellIndex c, const Bins::Point& p) {
       const auto company = [&](const Bins::Point& q) { return q.z < p.z + depth && squared(q.x - p.x) + squared(q.y - p.y) <= reach; };
-      return count_around(bins, c, 1, o.low_group + 1, company) <= o.low_group && ground_around_is_above(lowest, bins.lattice(), c, p, depth);
+      return count_around(bins, c, 1, o.low_group + 1, company) <= o.low_group &&
+             ground_around_is_above(lowest, bins.lattice(), c, p, depth);
     };
     for_each_own(bins, own, is_low, [&](std::uint32_t p) { low.push_back(p); });
   }

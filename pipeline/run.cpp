@@ -81,6 +81,31 @@ struct Account {
   double seconds = 0;
 };
 
+constexpr const char* groups_file = "groups.json";
+
+void write_boxes(const fs::path& file, const std::vector<TileGroup>& groups) {
+  Value boxes = Value::array();
+  for (const TileGroup& g : groups) {
+    const TileBox box(g.tiles);
+    Value one = Value::array();
+    for (const int k : {box.low.ix, box.low.iy, box.high.ix, box.high.iy}) one.push(std::int64_t{k});
+    boxes.push(std::move(one));
+  }
+  io::write_text_file(file, io::to_json(boxes), false);
+}
+
+/// None where there is no such file.
+std::vector<TileBox> read_boxes(const fs::path& file) {
+  std::vector<TileBox> boxes;
+  if (!fs::exists(file)) return boxes;
+  const Value all = io::parse_json(io::read_text_file(file), file.string());
+  for (const Value& one : all.items()) {
+    const auto at = [&](size_t k) { return static_cast<int>(one.items().at(k).as_int()); };
+    boxes.push_back({{at(0), at(1)}, {at(2), at(3)}});
+  }
+  return boxes;
+}
+
 stages::Box around(const stages::Box& a, const stages::Box& b) {
   return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
 }
@@ -386,14 +411,14 @@ void Engine::run_tiles(size_t number) {
     using T = typename std::remove_reference_t<decltype(std::declval<core::Block>().*member)>::value_type;
     if (columns.has(c) || c == core::Column::x || c == core::Column::y || c == core::Column::z) row_bytes += sizeof(T);
   });
+  stages::Context wide = context_;
   const Measure measure = [&](std::vector<TileKey> tiles) {
     const TileBox box(tiles);
     const TileStore::Load load = store_->load_with_halo(tiles, s.halo());
     const auto points = static_cast<double>(load.points);
     double bytes = (static_cast<double>(row_bytes) + s.bytes_per_point()) * points +
                    static_cast<double>(row_bytes) * static_cast<double>(load.neighbour);
-    stages::Context wide = context_;
-    wide.tile_side *= 0.5 * (box.across() + box.up());  // of the square with the same outline, which is not smaller
+    wide.tile_side = context_.tile_side * 0.5 * (box.across() + box.up());  // the square of the same perimeter is not smaller
     for (const stages::Raster& r : s.rasters(wide)) bytes += r.total(points);
     TileGroup group{std::move(tiles), 0, load.points, static_cast<std::uint64_t>(bytes)};
     for (const TileKey k : group.tiles)
@@ -403,12 +428,24 @@ void Engine::run_tiles(size_t number) {
   const auto budget = static_cast<std::uint64_t>(plan_.run.memory.value * 0.8);
   // Joined only where nothing but points' columns comes of them.
   const bool joins = changes && gives.empty() && !works_on(number, Grain::merge);
-  const std::vector<TileGroup> groups = joins ? joined_tiles(keys, threads_, budget, measure) : single_tiles(keys, measure);
-  std::vector<Value> notes(groups.size());
   const auto done_file = [&](const TileGroup& group) {
     const TileBox box(group.tiles);
     return mine / (file_label(box.low) + (group.tiles.size() > 1 ? "_to_" + file_label(box.high) : "") + ".done");
   };
+  const auto groups_of_stage = [&] {
+    if (!joins) return single_tiles(keys, measure);
+    // Those of a run that was killed, so that what it has done counts.
+    std::vector<TileGroup> groups = grouped_tiles(keys, read_boxes(mine / groups_file), measure), open;
+    std::copy_if(groups.begin(), groups.end(), std::back_inserter(open), [&](const TileGroup& g) { return !fs::exists(done_file(g)); });
+    size_t held = 0;
+    for (const TileGroup& g : groups) held += g.tiles.size();
+    if (held == keys.size() && most_bytes(open, threads_) <= budget) return groups;
+    groups = joined_tiles(keys, threads_, budget, measure);
+    write_boxes(mine / groups_file, groups);
+    return groups;
+  };
+  const std::vector<TileGroup> groups = groups_of_stage();
+  std::vector<Value> notes(groups.size());
   std::vector<std::uint64_t> bytes;
   for (const TileGroup& g : groups) bytes.push_back(fs::exists(done_file(g)) ? 0 : g.bytes);
   TileQueue queue(std::move(bytes), budget);

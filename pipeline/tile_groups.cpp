@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -16,18 +17,9 @@ constexpr size_t per_thread = 4;  // groups: more only add to what is around the
 // A point around the tiles takes less than half as long as one of their own (filters.ground, 2026-11-22).
 std::uint64_t work(const TileGroup& g) { return (g.own + g.with_halo) / 2; }
 
-/// Needed at once by the largest.
-std::uint64_t most_bytes(const std::vector<TileGroup>& groups, size_t threads) {
-  std::vector<std::uint64_t> bytes;
-  for (const TileGroup& g : groups) bytes.push_back(g.bytes);
-  const size_t n = std::min(bytes.size(), threads);
-  std::nth_element(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n) - 1, bytes.end(), std::greater<>());
-  return std::accumulate(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n), std::uint64_t{0});
-}
-
 /// Work of the thread that has most of it, the largest group first.
-std::uint64_t longest(const std::vector<TileGroup>& groups, size_t threads) {
-  std::vector<std::uint64_t> left, load(threads, 0);
+std::uint64_t longest(const std::vector<TileGroup>& groups, int threads) {
+  std::vector<std::uint64_t> left, load(static_cast<size_t>(threads), 0);
   for (const TileGroup& g : groups) left.push_back(work(g));
   std::sort(left.begin(), left.end(), std::greater<>());
   for (const std::uint64_t one : left) *std::min_element(load.begin(), load.end()) += one;
@@ -64,24 +56,52 @@ std::vector<TileGroup> single_tiles(const std::vector<TileKey>& tiles, const Mea
   return groups;
 }
 
+std::vector<TileGroup> grouped_tiles(const std::vector<TileKey>& tiles, const std::vector<TileBox>& boxes, const Measure& measure) {
+  std::vector<TileGroup> groups;
+  for (const TileBox& box : boxes) {
+    std::vector<TileKey> held;
+    std::copy_if(tiles.begin(), tiles.end(), std::back_inserter(held), [&](TileKey k) { return box.holds(k); });
+    if (!held.empty()) groups.push_back(measure(std::move(held)));
+  }
+  return groups;
+}
+
+std::uint64_t most_bytes(const std::vector<TileGroup>& groups, int threads) {
+  std::vector<std::uint64_t> bytes;
+  for (const TileGroup& g : groups) bytes.push_back(g.bytes);
+  const auto n = static_cast<std::ptrdiff_t>(std::min(bytes.size(), static_cast<size_t>(threads)));
+  std::partial_sort(bytes.begin(), bytes.begin() + n, bytes.end(), std::greater<>());
+  return std::accumulate(bytes.begin(), bytes.begin() + n, std::uint64_t{0});
+}
+
 std::vector<TileGroup> joined_tiles(const std::vector<TileKey>& tiles, int threads, std::uint64_t budget, const Measure& measure) {
   if (tiles.empty()) return {};
-  const auto n = static_cast<size_t>(threads);
+  const size_t many = per_thread * static_cast<size_t>(threads);
   std::vector<TileGroup> groups, best;
   std::uint64_t shortest = std::numeric_limits<std::uint64_t>::max();
+  // A heap: single tiles, which cannot be cut, at its end.
+  const auto divisible = [](const TileGroup& g) { return g.tiles.size() > 1 ? work(g) + 1 : 0; };
+  const auto less = [&](const TileGroup& a, const TileGroup& b) { return divisible(a) < divisible(b); };
   groups.push_back(measure(tiles));
-  while (true) {
-    if (most_bytes(groups, n) <= budget) {
-      if (const std::uint64_t l = longest(groups, n); l < shortest) shortest = l, best = groups;
-      if (groups.size() >= per_thread * n) return best;
+  for (size_t looked_at = 0;;) {
+    const bool last = divisible(groups.front()) == 0;
+    // Each number of groups while there are few, every eighth more then.
+    if (last || groups.size() >= looked_at + looked_at / 8) {
+      looked_at = groups.size();
+      const bool small =
+          std::all_of(groups.begin(), groups.end(), [](const TileGroup& g) { return g.tiles.size() == 1 || g.with_halo <= most_points; });
+      if (small && most_bytes(groups, threads) <= budget) {
+        if (const std::uint64_t l = longest(groups, threads); l < shortest) shortest = l, best = groups;
+        if (groups.size() >= many) return best;
+      }
     }
-    const auto divisible = [](const TileGroup& g) { return g.tiles.size() > 1 ? work(g) + 1 : 0; };
-    const auto largest =
-        std::max_element(groups.begin(), groups.end(), [&](const TileGroup& a, const TileGroup& b) { return divisible(a) < divisible(b); });
-    if (divisible(*largest) == 0) return best.empty() ? groups : best;
-    auto [low, high] = cut(largest->tiles);
-    *largest = measure(std::move(low));
+    if (last) return best.empty() ? groups : best;
+    std::pop_heap(groups.begin(), groups.end(), less);
+    auto [low, high] = cut(groups.back().tiles);
+    groups.back() = measure(std::move(low));
+    std::push_heap(groups.begin(), groups.end(), less);
     groups.push_back(measure(std::move(high)));
+    std::push_heap(groups.begin(), groups.end(), less);
   }
 }
 

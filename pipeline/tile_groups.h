@@ -15,6 +15,7 @@ using stages::TileKey;
 /// Tiles from `low` to `high`, both in it.
 struct TileBox {
   TileKey low, high;
+  TileBox(TileKey l, TileKey h) : low(l), high(h) {}
   explicit TileBox(const std::vector<TileKey>& tiles);
   bool holds(TileKey k) const { return k.ix >= low.ix && k.ix <= high.ix && k.iy >= low.iy && k.iy <= high.iy; }
   int across() const { return high.ix - low.ix + 1; }
@@ -34,8 +35,16 @@ using Measure = std::function<TileGroup(std::vector<TileKey>)>;
 /// A group for each tile.
 std::vector<TileGroup> single_tiles(const std::vector<TileKey>& tiles, const Measure& measure);
 
-/// The tiles in boxes so that the thread with most to do has least, where the largest of `threads` groups fit into `budget` bytes; a group
-/// for each tile where nothing else does.
+/// The tiles in boxes so that the thread with most to do has least, where the largest of `threads` groups fit into `budget` bytes and none
+/// has more than most_points (a kill must not cost too much); a group for each tile where nothing else does.
 std::vector<TileGroup> joined_tiles(const std::vector<TileKey>& tiles, int threads, std::uint64_t budget, const Measure& measure);
+
+constexpr std::uint64_t most_points = 20'000'000;  ///< of a group of several tiles
+
+/// The same groups again: the tiles of each box.
+std::vector<TileGroup> grouped_tiles(const std::vector<TileKey>& tiles, const std::vector<TileBox>& boxes, const Measure& measure);
+
+/// Needed at once by the largest of `threads` groups.
+std::uint64_t most_bytes(const std::vector<TileGroup>& groups, int threads);
 
 }  // namespace swath::pipeline

@@ -105,10 +105,6 @@ std::vector<std::uint32_t> terrain_rows(const core::Block& block, const DtmOptio
   return rows;
 }
 
-Tin terrain_tin(const core::Block& block, const DtmOptions& options) {
-  return triangulate(block, terrain_rows(block, options), 0.5 * options.max_edge.value);
-}
-
 core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options, const Breaklines* lines,
                std::uint64_t* left_out) {
   if (window.cell != options.cell.value) throw core::Error("the window's cell is not the option's", "terrain.dtm");

@@ -37,7 +37,9 @@ void describe(DtmOptions& o, V& v) {
            "Longest triangle bridged: a triangle counts where its circumcircle's diameter is at most this, so no edge is longer and no gap "
            "wider.");
   v.option("smoothing", o.smoothing, core::within(0.0, 20.0),
-           "Distance within which the points even out one another's random errors, breaks kept; 0: the surface passes through every point. "
+           "Neighbours of the triangulation within this distance even out one another's random errors, breaks kept; 0: the surface passes "
+           "through "
+           "every point. "
            "Points of breaklines and key points stay where they are.",
            "JonesDurandDesbrun2003, with planes judged by their misfit");
   v.option("interpolation", o.interpolation, "Between the points: linear on the triangles, or natural_neighbour, smooth but at the points.",
@@ -59,9 +61,6 @@ double halo(const DtmOptions& options);
 /// Rows of the points that make the terrain: usable and of one of the classes (all usable ones where there is no class column), flagged
 /// where key_points asks for it.
 std::vector<std::uint32_t> terrain_rows(const core::Block& block, const DtmOptions& options);
-
-/// The TIN that dtm() reads: terrain_rows, circumradius at most max_edge / 2.
-Tin terrain_tin(const core::Block& block, const DtmOptions& options);
 
 /// Terrain on the cells of `window` (window.cell must be options.cell, else Error) from the points within halo() of it.
 /// height: m, of the triangle's plane at the cell's centre, block origin added. count: terrain points in the cell.

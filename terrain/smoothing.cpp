@@ -23,7 +23,7 @@ constexpr int passes = 3;
 constexpr double longest_edge = 2.0;  // radii
 constexpr double alike = 0.05;        // m: planes of less misfit have the same say
 constexpr size_t least_ring = 4;      // neighbours of a plane
-constexpr double least_area = 1e-3;   // radii^4: of the neighbours' spread, east^2 north^2
+constexpr double least_area = 0.01;   // det / trace^2 of the neighbours' spread, 0.25 where it is round
 
 constexpr int probes = 4;
 using Probe = Eigen::Array<float, probes, 1>;
@@ -37,7 +37,7 @@ struct Vertex {
 struct Plane {
   double height = 0.0;
   float east = 0.0F, north = 0.0F, quality = 0.0F;
-  Probe noise, noise_east, noise_north;
+  Probe noise = Probe::Zero(), noise_east = Probe::Zero(), noise_north = Probe::Zero();
 };
 
 /// Signs that follow from the place alone (mixing of Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators").
@@ -127,8 +127,7 @@ Plane plane_at(const std::vector<Vertex>& vertices, size_t v, std::span<const st
   // Cholesky, the height first.
   const double lx = sx / s, ly = sy / s, xx = sxx - lx * sx, xy = sxy - lx * sy, yy = syy - ly * sy;
   Plane p;
-  const double area = radius * radius;
-  if (!(xx * yy - xy * xy > least_area * area * area)) return p;
+  if (!(xx * yy - xy * xy > least_area * (xx + yy) * (xx + yy))) return p;
   const double lxy = xy / xx, rest = yy - lxy * xy;
   const double xz = sxz - lx * sz, yz = syz - ly * sz;
   const double north = (yz - lxy * xz) / rest, east = (xz - xy * north) / xx, height = (sz - sx * east - sy * north) / s;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <sstream>
+#include <thread>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -270,10 +271,10 @@ int command_line(int argc, char** argv) {
 }
 
 /// Columns and grids of one tile are freed as those of the next are made: pages kept need not be fetched and cleared again. One arena for
-/// all threads, so that what one has freed serves the others and no more is held than was needed at once.
+/// all threads of a small machine, so that what one has freed serves the others and hardly more is held than was needed at once.
 void keep_freed_memory() {
 #ifdef __GLIBC__
-  mallopt(M_ARENA_MAX, 1);
+  mallopt(M_ARENA_MAX, static_cast<int>(1 + std::thread::hardware_concurrency() / 4));
   mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that glibc takes
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
 #endif

@@ -5,7 +5,7 @@ counted around a return and on its place (Platt 1999, "Probabilistic outputs for
     ground_calibration.py [--repeat]
 
 Needs the program ground_evidence (cmake -DSWATH_BENCH=ON). Prints for each survey the true share of ground by stated probability, with the
-coefficients of all other surveys, and then the coefficients of all. --repeat: from the surveys of the last call.
+coefficients of the surveys of all other sensors, and then the coefficients of all. --repeat: from the surveys of the last call.
 """
 import subprocess
 import sys

@@ -11,6 +11,7 @@
 #include "io/output_file.h"
 #include "io/value_file.h"
 #include "stages/adapters/adapters.h"
+#include "stages/grid_tile.h"
 #include "stages/waters.h"
 #include "terrain/dtm.h"
 
@@ -24,10 +25,6 @@ constexpr const char* options_file = "options.json";
 
 fs::path shore_file(const fs::path& folder, TileKey key) {
   return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".shores");
-}
-
-[[noreturn]] void damaged(const fs::path& file) {
-  throw core::Error("the intermediate result is damaged", file.string(), "remove the .swath folder beside the products and run again");
 }
 
 /// The survey's features in metres of the run's Blocks.
@@ -90,11 +87,11 @@ class BreaklineStage : public OptionStage<SettleOptions> {
     for (const TileKey key : job.tiles) {
       const fs::path file = shore_file(job.folder, key);
       const std::string bytes = io::read_text_file(file);
-      if (bytes.size() % sizeof(terrain::ShorePoint) != 0) damaged(file);
+      if (bytes.size() % sizeof(terrain::ShorePoint) != 0) cut_short(file);
       for (size_t at = 0; at + sizeof(terrain::ShorePoint) <= bytes.size(); at += sizeof(terrain::ShorePoint)) {
         terrain::ShorePoint p;
         std::memcpy(&p, bytes.data() + at, sizeof p);
-        if (p.feature >= shores.size()) damaged(file);
+        if (p.feature >= shores.size()) cut_short(file);
         shores[p.feature].push_back(p);
       }
     }

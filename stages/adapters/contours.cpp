@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <memory>
 
@@ -42,7 +43,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t page_bytes = size_t{64} << 20;  ///< of the surface, held while lines are drawn
+constexpr size_t page_bytes = size_t{64} << 20,
+                 least_page_bytes = size_t{8} << 20;  ///< of the surface, held while lines are drawn; of a thread
+constexpr size_t drawn_bytes = size_t{256} << 20;     ///< of the levels that are drawn at once
 
 struct ContourWriteOptions : terrain::ContourOptions {
   std::string name = "contours";
@@ -281,14 +284,25 @@ class Contours : public OptionStage<ContourWriteOptions> {
     }
     tbb::enumerable_thread_specific<terrain::Facets> surfaces([&] {
       return terrain::Facets(
-          cell(context), [&](const core::Lattice& window) { return surface(context, job.folder, window); }, page_bytes / context.threads);
+          cell(context), [&](const core::Lattice& window) { return surface(context, job.folder, window); },
+          std::max(least_page_bytes, page_bytes / static_cast<size_t>(context.threads)));
     });
     terrain::Labeller labeller(options.labels);
     const int decimals =
         std::max(decimals_of(options.interval.value / context.vertical_unit), decimals_of(options.base.value / context.vertical_unit));
     double metres = 0.0;
     std::uint64_t closed = 0, depressions = 0, labels = 0;
-    // Levels do not know of one another: several are drawn at once and written in their order.
+    // Levels do not know of one another: several are drawn at once, as many as their bytes allow, and written in their order.
+    std::vector<size_t> bytes;
+    for (const auto& [level, stretches] : levels) {
+      bytes.push_back(0);
+      for (const Stretch& s : stretches) bytes.back() += s.count * sizeof(terrain::Segment);
+    }
+    std::sort(bytes.begin(), bytes.end(), std::greater<>());
+    size_t at_once = 0;
+    for (size_t sum = 0; at_once < std::min(bytes.size(), 2 * static_cast<size_t>(context.threads)); ++at_once)
+      if ((sum += bytes[at_once]) > drawn_bytes) break;
+    at_once = std::max<size_t>(at_once, 1);
     using Segments = std::shared_ptr<std::vector<terrain::Segment>>;
     using Lines = std::shared_ptr<std::vector<terrain::ContourLine>>;
     auto level = levels.begin();
@@ -332,10 +346,9 @@ class Contours : public OptionStage<ContourWriteOptions> {
         }
       }
     };
-    tbb::parallel_pipeline(2 * static_cast<size_t>(context.threads),
-                           tbb::make_filter<void, Segments>(tbb::filter_mode::serial_in_order, read) &
-                               tbb::make_filter<Segments, Lines>(tbb::filter_mode::parallel, draw) &
-                               tbb::make_filter<Lines, void>(tbb::filter_mode::serial_in_order, write));
+    tbb::parallel_pipeline(at_once, tbb::make_filter<void, Segments>(tbb::filter_mode::serial_in_order, read) &
+                                        tbb::make_filter<Segments, Lines>(tbb::filter_mode::parallel, draw) &
+                                        tbb::make_filter<Lines, void>(tbb::filter_mode::serial_in_order, write));
     job.findings["lines"] = writers.front().count();
     job.findings["closed"] = closed;
     job.findings["depressions"] = depressions;

@@ -22,9 +22,11 @@ class Ground : public OptionStage<filters::GroundOptions> {
   }
   core::ColumnSet also_reads() const override { return {Column::return_number, Column::return_count, Column::strip}; }
   double halo() const override { return filters::halo(options); }
-  // Measured 2026-11-22 with tests/stages/memory_test.cpp, tiles of 200 to 500 m, points 0.7 m and 3 m apart.
-  double bytes_per_point() const override { return 24.0; }
-  std::vector<Raster> rasters(const Context& c) const override { return {{"", 1.0, c.tile_side + 2.0 * halo(), 90.0}}; }
+  // Measured 2026-11-22 with tests/stages/memory_test.cpp, tiles of 200 to 1500 m, points 0.7 m and 3 m apart.
+  double bytes_per_point() const override { return 60.0; }
+  std::vector<Raster> rasters(const Context& c) const override {
+    return {{"", 1.0, c.tile_side + 2.0 * halo(), 90.0}, {"", 1.0, c.tile_side, 70.0}};
+  }
   void run_tile(const Context&, TileJob& job) const override {
     const filters::GroundChances n = filters::classify_ground(job.block, job.own, options);
     job.tally.count("ground", n.ground);

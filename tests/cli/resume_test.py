@@ -17,8 +17,9 @@ class Killed(Case):
     simulated = SMALL
     KILLS = 10
 
-    def command(self, out):
-        return [SWATH, "run", CONFIG, "--survey", self.survey / "survey.toml", "--output", out, "--quiet", "--set", "run.tile=100 m"]
+    def command(self, out, *more):
+        options = [word for option in ("run.tile=100 m", *more) for word in ("--set", option)]
+        return [SWATH, "run", CONFIG, "--survey", self.survey / "survey.toml", "--output", out, "--quiet", *options]
 
     def test_a_run_killed_ten_times_gives_the_products_of_one_that_was_not(self):
         start = time.monotonic()
@@ -31,7 +32,8 @@ class Killed(Case):
         moments = random.Random(20260101)
         kills = resumed = 0
         while kills < self.KILLS:
-            run = subprocess.Popen(self.command(self.out))
+            # Other threads and memory join other tiles.
+            run = subprocess.Popen(self.command(self.out, f"run.threads={moments.choice((1, 2))}", f"run.memory={moments.choice(('600 MB', '2 GB'))}"))
             try:
                 run.wait(timeout=moments.uniform(0.02, takes))
             except subprocess.TimeoutExpired:
@@ -63,10 +65,10 @@ class Killed(Case):
         self.assertEqual([p.name for p in self.out.iterdir() if p.name.startswith(".")], [])
 
     def test_a_run_killed_with_other_options_is_not_mixed_in(self):
-        run = subprocess.Popen(self.command(self.out) + ["--set", "smrf.slope=0.9", "--set", "contours.interval=3 m"])
+        run = subprocess.Popen(self.command(self.out, "ground.widest=30 m", "contours.interval=3 m"))
         time.sleep(0.6)
         run.send_signal(signal.SIGKILL)
-        run.wait()
+        self.assertEqual(run.wait(), -signal.SIGKILL, "it had ended before")
         subprocess.run(self.command(self.out), check=True)
         whole = self.folder / "whole"
         subprocess.run(self.command(whole), check=True)

@@ -60,5 +60,34 @@ TEST(GroundPopulations, StripsThatDoNotFitAreOneGround) {
   EXPECT_FALSE(std::isnan(middle_at(without, f.block, 15.0, 30.0)));
 }
 
+TEST(GroundPopulations, NeitherOrderNorWhatLiesFarAwayMatters) {
+  const Field f = field(crop, lifted, 0.03);
+  const LowerPopulations whole = lower_populations(f.block, f.block.size(), 0.0, f.returns, noise);
+  // Own points from x = 28 m to 40 m first, then those within reach, all backwards.
+  std::vector<std::uint32_t> rows, around;
+  for (auto p = static_cast<std::uint32_t>(f.block.size()); p-- > 0;) {
+    const double x = f.block.x[p];
+    if (x > 28.0 && x < 40.0)
+      rows.push_back(p);
+    else if (x > 28.0 - ground_populations_reach && x < 40.0 + ground_populations_reach)
+      around.push_back(p);
+  }
+  const size_t own = rows.size();
+  rows.insert(rows.end(), around.begin(), around.end());
+  ASSERT_LT(rows.size(), f.block.size());
+  std::vector<ReturnOverGround> returns;
+  for (const std::uint32_t p : rows) returns.push_back(f.returns[p]);
+  const core::Block part_block = core::select(f.block, rows);
+  const LowerPopulations part = lower_populations(part_block, own, 0.0, returns, noise);
+  size_t found = 0;
+  for (double x = 28.5; x < 40.0; x += 1.0)
+    for (double y = 4.5; y < 56.0; y += 1.0) {
+      const float a = middle_at(whole, f.block, x, y), b = middle_at(part, f.block, x, y);
+      ASSERT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << x << " " << y;
+      found += !std::isnan(a);
+    }
+  EXPECT_GT(found, 100u);
+}
+
 }  // namespace
 }  // namespace swath::filters

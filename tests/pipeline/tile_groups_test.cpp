@@ -51,7 +51,7 @@ TEST(TileGroups, OneForEachThreadWhereTheyBalance) {
 
 TEST(TileGroups, MemoryBoundsThem) {
   const std::vector<TileKey> tiles = rectangle(8, 8);
-  for (const std::uint64_t budget : {400'000u, 200'000u, 100'000u, 60'000u}) {
+  for (const std::uint64_t budget : {400'000u, 200'000u, 100'000u, 80'000u}) {
     const auto groups = joined_tiles(tiles, 2, budget, measured);
     expect_all_once(groups, tiles);
     std::vector<std::uint64_t> bytes;
@@ -63,6 +63,26 @@ TEST(TileGroups, MemoryBoundsThem) {
   EXPECT_EQ(joined_tiles(tiles, 2, 1000, measured).size(), tiles.size());  // nothing fits: the smallest there are
   EXPECT_EQ(single_tiles(tiles, measured).size(), tiles.size());
   EXPECT_TRUE(joined_tiles({}, 2, 1000, measured).empty());
+}
+
+TEST(TileGroups, NoneIsTooLargeAndTheSameComeAgain) {
+  const auto dense = [](std::vector<TileKey> tiles) {
+    TileGroup g = measured(std::move(tiles));
+    g.own *= 5000, g.with_halo *= 5000;
+    return g;
+  };
+  const std::vector<TileKey> tiles = rectangle(6, 5);
+  const auto groups = joined_tiles(tiles, 1, 1'000'000'000, dense);
+  expect_all_once(groups, tiles);
+  std::vector<TileBox> boxes;
+  for (const TileGroup& g : groups) {
+    EXPECT_LE(g.with_halo, most_points);
+    boxes.emplace_back(g.tiles);
+  }
+  EXPECT_GT(groups.size(), 4u);
+  const auto again = grouped_tiles(tiles, boxes, dense);
+  ASSERT_EQ(again.size(), groups.size());
+  for (size_t k = 0; k < groups.size(); ++k) EXPECT_EQ(again[k].tiles, groups[k].tiles);
 }
 
 TEST(TileGroups, TilesWithGaps) {

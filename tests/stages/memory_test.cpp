@@ -188,10 +188,11 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(Slow, Memory,
                          testing::Values(Case{"filters.visibility", "voxel = \"1 m\"\ncell = \"2 m\""}, Case{"filters.ground", ""},
-                                         Case{"filters.smrf", ""}, Case{"filters.pmf", "", 10.0}, Case{"filters.csf", ""},
-                                         Case{"filters.csf", "resolution = \"0.5 m\""}, Case{"filters.ptd", ""}, Case{"filters.robust", ""},
-                                         Case{"filters.classify", ""}, Case{"filters.water", ""}, Case{"filters.key_points", ""},
-                                         Case{"terrain.dtm", ""}, Case{"terrain.dsm", "cell = \"0.5 m\"\nmethod = \"spike_free\""},
+                                         Case{"filters.ground", "", 1200.0}, Case{"filters.smrf", ""}, Case{"filters.pmf", "", 10.0},
+                                         Case{"filters.csf", ""}, Case{"filters.csf", "resolution = \"0.5 m\""}, Case{"filters.ptd", ""},
+                                         Case{"filters.robust", ""}, Case{"filters.classify", ""}, Case{"filters.water", ""},
+                                         Case{"filters.key_points", ""}, Case{"terrain.dtm", ""},
+                                         Case{"terrain.dsm", "cell = \"0.5 m\"\nmethod = \"spike_free\""},
                                          Case{"terrain.contours", "source = \"tin\""}),
                          [](const auto& tested) { return name_of(tested.param, tested.index); });
 

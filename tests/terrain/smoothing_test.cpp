@@ -46,10 +46,15 @@ TEST(Smoothing, APlaneStays) {
 }
 
 TEST(Smoothing, TakesRandomErrorOutAndTellsWhatIsLeft) {
-  for (const size_t points : {3000u, 12000u, 30000u}) {  // 0.8, 3.3 and 8 per square metre
+  struct Case {
+    size_t points;
+    double radius;
+  };
+  for (const auto& [points, within] : {Case{3000, radius}, Case{12000, radius}, Case{30000, radius}, Case{30000, 5.0}, Case{30000, 10.0},
+                                       Case{108000, radius}}) {  // 0.8, 3.3, 8 and 30 per square metre
     const core::Block b = noisy(points, plane, 0.03, 2);
     Tin tin = tin_of(b);
-    const std::vector<float> left = smooth_heights(tin, b.size(), radius);
+    const std::vector<float> left = smooth_heights(tin, b.size(), within);
     const double after = rms(tin, plane, everywhere);
     double told = 0.0, n = 0.0;
     for (size_t v = 0; v < left.size(); ++v)
@@ -100,14 +105,15 @@ TEST(Smoothing, NeitherOrderNorWhatLiesFarAwayMatters) {
   Tin part = triangulate(b, rows, std::numeric_limits<double>::infinity(),
                          {where.west - reach, where.south - reach, where.east + reach, where.north + reach});
   ASSERT_LT(part.size(), whole.size());
-  smooth_heights(whole, b.size(), 1.0);
-  smooth_heights(part, b.size(), 1.0);
+  const std::vector<float> left = smooth_heights(whole, b.size(), 1.0), left_of_part = smooth_heights(part, b.size(), 1.0);
   std::vector<double> height(b.size());
-  for (size_t v = 0; v < whole.x.size(); ++v) height[whole.row[v]] = whole.z[v];
+  std::vector<float> share(b.size());
+  for (size_t v = 0; v < whole.x.size(); ++v) height[whole.row[v]] = whole.z[v], share[whole.row[v]] = left[v];
   size_t compared = 0;
   for (size_t v = 0; v < part.x.size(); ++v) {
     if (part.x[v] < where.west || part.x[v] > where.east || part.y[v] < where.south || part.y[v] > where.north) continue;
     ASSERT_EQ(part.z[v], height[part.row[v]]);
+    ASSERT_EQ(left_of_part[v], share[part.row[v]]);
     ++compared;
   }
   EXPECT_GT(compared, 1000u);
