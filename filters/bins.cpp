@@ -7,15 +7,16 @@ namespace swath::filters {
 
 core::Lattice lattice_around(const core::Block& b, double cell, int border) {
   if (b.size() == 0) return {cell, 0, 0, 0, 0};
-  double west = b.x[0], east = west, south = b.y[0], north = south;
-  for (size_t p = 1; p < b.size(); ++p) {
-    west = std::min(west, b.x[p]), east = std::max(east, b.x[p]);
-    south = std::min(south, b.y[p]), north = std::max(north, b.y[p]);
-  }
-  const std::int64_t i0 = core::cell_index(b.origin.x() + west, cell) - border;
-  const std::int64_t j0 = core::cell_index(b.origin.y() + south, cell) - border;
-  const std::int64_t i1 = core::cell_index(b.origin.x() + east, cell) + border;
-  const std::int64_t j1 = core::cell_index(b.origin.y() + north, cell) + border;
+  return lattice_around(b, b.size(), cell, 0.0, border);
+}
+
+core::Lattice lattice_around(const core::Block& b, size_t own, double cell, double around, int border) {
+  const auto [west, east] = std::minmax_element(b.x.begin(), b.x.begin() + static_cast<std::ptrdiff_t>(own));
+  const auto [south, north] = std::minmax_element(b.y.begin(), b.y.begin() + static_cast<std::ptrdiff_t>(own));
+  const std::int64_t i0 = core::cell_index(b.origin.x() + *west - around, cell) - border;
+  const std::int64_t j0 = core::cell_index(b.origin.y() + *south - around, cell) - border;
+  const std::int64_t i1 = core::cell_index(b.origin.x() + *east + around, cell) + border;
+  const std::int64_t j1 = core::cell_index(b.origin.y() + *north + around, cell) + border;
   return {cell, i0, j0, static_cast<int>(i1 - i0) + 1, static_cast<int>(j1 - j0) + 1};
 }
 

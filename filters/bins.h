@@ -15,6 +15,8 @@ namespace swath::filters {
 /// The cells that hold all points of the block, grown by `border` cells on each side; empty for an empty block.
 /// Only its extent follows the block: cells lie on whole multiples of `cell` (CRS units) in map coordinates.
 core::Lattice lattice_around(const core::Block& b, double cell, int border);
+/// The same for the first `own` points and `around` (CRS units) about them; there must be one.
+core::Lattice lattice_around(const core::Block& b, size_t own, double cell, double around, int border);
 
 /// Column and row of point p in the lattice.
 struct CellIndex {

@@ -116,17 +116,6 @@ double at_height(const Objects& o, double t) {
   return o[static_cast<size_t>(k)] + part * (o[static_cast<size_t>(k) + 1] - o[static_cast<size_t>(k)]);
 }
 
-/// The cells of the first `own` points and of all that their chances depend on.
-core::Lattice lattice_of_own(const core::Block& b, size_t own) {
-  const auto x = std::minmax_element(b.x.begin(), b.x.begin() + static_cast<std::ptrdiff_t>(own));
-  const auto y = std::minmax_element(b.y.begin(), b.y.begin() + static_cast<std::ptrdiff_t>(own));
-  const int border = reach(sigma);
-  const auto index = [](double v) { return core::cell_index(v, cell); };
-  const std::int64_t i0 = index(b.origin.x() + *x.first) - border, j0 = index(b.origin.y() + *y.first) - border;
-  return {cell, i0, j0, static_cast<int>(index(b.origin.x() + *x.second) + border + 1 - i0),
-          static_cast<int>(index(b.origin.y() + *y.second) + border + 1 - j0)};
-}
-
 }  // namespace
 
 const double ground_chance_reach = (reach(sigma) + 1) * cell;
@@ -134,7 +123,7 @@ const double ground_chance_reach = (reach(sigma) + 1) * cell;
 std::vector<float> ground_chances(const core::Block& b, size_t own, const std::vector<ReturnOverGround>& returns) {
   std::vector<float> chance(own, 0.0F);
   if (own == 0) return chance;
-  const Counts n = count(b, lattice_of_own(b, own), returns);
+  const Counts n = count(b, lattice_around(b, own, cell, 0.0, reach(sigma)), returns);
   std::vector<Objects> objects(n.lattice.size());
   std::vector<char> known(n.lattice.size(), 0);
   for (size_t p = 0; p < own; ++p) {

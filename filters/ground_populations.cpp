@@ -178,13 +178,8 @@ const double ground_populations_reach = (reach(sigma) + 1) * cell;
 
 LowerPopulations lower_populations(const core::Block& b, size_t own, double around, const std::vector<ReturnOverGround>& returns,
                                    double noise) {
-  const auto x = std::minmax_element(b.x.begin(), b.x.begin() + static_cast<std::ptrdiff_t>(own));
-  const auto y = std::minmax_element(b.y.begin(), b.y.begin() + static_cast<std::ptrdiff_t>(own));
   const int border = reach(sigma);
-  const auto index = [](double v) { return core::cell_index(v, cell); };
-  const std::int64_t i0 = index(b.origin.x() + *x.first - around) - border, j0 = index(b.origin.y() + *y.first - around) - border;
-  const core::Lattice l{cell, i0, j0, static_cast<int>(index(b.origin.x() + *x.second + around) + border + 1 - i0),
-                        static_cast<int>(index(b.origin.y() + *y.second + around) + border + 1 - j0)};
+  const core::Lattice l = lattice_around(b, own, cell, around, border);
   const Raster none(l.nx, l.ny, std::numeric_limits<float>::quiet_NaN());
   LowerPopulations out{l, none, none};
 

@@ -83,33 +83,6 @@ struct Account {
 
 constexpr const char* groups_file = "groups.json";
 
-void write_boxes(const fs::path& file, const std::vector<TileGroup>& groups) {
-  Value boxes = Value::array();
-  for (const TileGroup& g : groups) {
-    const TileBox box(g.tiles);
-    Value one = Value::array();
-    for (const int k : {box.low.ix, box.low.iy, box.high.ix, box.high.iy}) one.push(std::int64_t{k});
-    boxes.push(std::move(one));
-  }
-  io::write_text_file(file, io::to_json(boxes), false);
-}
-
-/// None where there is no such file.
-std::vector<TileBox> read_boxes(const fs::path& file) {
-  std::vector<TileBox> boxes;
-  if (!fs::exists(file)) return boxes;
-  const Value all = io::parse_json(io::read_text_file(file), file.string());
-  for (const Value& one : all.items()) {
-    const auto at = [&](size_t k) { return static_cast<int>(one.items().at(k).as_int()); };
-    boxes.push_back({{at(0), at(1)}, {at(2), at(3)}});
-  }
-  return boxes;
-}
-
-stages::Box around(const stages::Box& a, const stages::Box& b) {
-  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
-}
-
 class Engine {
  public:
   Engine(Plan& plan, Progress& progress)
@@ -360,11 +333,9 @@ std::vector<TileKey> Engine::tiles_of(size_t number) const {
 std::set<TileKey> Engine::tiles_of_water() const {
   std::set<TileKey> out;
   if (store_->tiles().empty()) return out;
-  TileKey low = store_->tiles().begin()->first, high = low;
-  for (const auto& [key, n] : store_->tiles()) {
-    low = {std::min(low.ix, key.ix), std::min(low.iy, key.iy)};
-    high = {std::max(high.ix, key.ix), std::max(high.iy, key.iy)};
-  }
+  std::vector<TileKey> keys;
+  for (const auto& [key, n] : store_->tiles()) keys.push_back(key);
+  const auto [low, high] = TileBox(keys);
   const auto tile = [&](double edge) { return std::floor(edge / context_.tile_side); };
   for (const stages::Box& water : stages::waters_of(context_)) {
     // As numbers: water may reach far beyond the survey.
@@ -462,8 +433,7 @@ void Engine::run_tiles(size_t number) {
             notes[i] = io::parse_json(io::read_text_file(done), done.string());
             ++again;
           } else {
-            stages::TileJob job{tiles[0], context_.box_of(tiles[0]), mine, {}, 0, {}};
-            for (const TileKey k : tiles) job.box = around(job.box, context_.box_of(k));
+            stages::TileJob job{tiles[0], TileBox(tiles).metres(context_.tile_side), mine, {}, 0, {}};
             const auto start = Clock::now();
             job.block = store_->read_with_halo(tiles, s.halo(), columns, job.own);
             core::add_columns(job.block, s.info().gives);

@@ -9,6 +9,10 @@
 #include <numeric>
 #include <utility>
 
+#include "core/value.h"
+#include "io/output_file.h"
+#include "io/value_file.h"
+
 namespace swath::pipeline {
 namespace {
 
@@ -64,6 +68,28 @@ std::vector<TileGroup> grouped_tiles(const std::vector<TileKey>& tiles, const st
     if (!held.empty()) groups.push_back(measure(std::move(held)));
   }
   return groups;
+}
+
+void write_boxes(const std::filesystem::path& file, const std::vector<TileGroup>& groups) {
+  core::Value boxes = core::Value::array();
+  for (const TileGroup& g : groups) {
+    const TileBox box(g.tiles);
+    core::Value one = core::Value::array();
+    for (const int k : {box.low.ix, box.low.iy, box.high.ix, box.high.iy}) one.push(std::int64_t{k});
+    boxes.push(std::move(one));
+  }
+  io::write_text_file(file, io::to_json(boxes), false);
+}
+
+std::vector<TileBox> read_boxes(const std::filesystem::path& file) {
+  std::vector<TileBox> boxes;
+  if (!std::filesystem::exists(file)) return boxes;
+  const core::Value all = io::parse_json(io::read_text_file(file), file.string());
+  for (const core::Value& one : all.items()) {
+    const auto at = [&](size_t k) { return static_cast<int>(one.items().at(k).as_int()); };
+    boxes.push_back({{at(0), at(1)}, {at(2), at(3)}});
+  }
+  return boxes;
 }
 
 std::uint64_t most_bytes(const std::vector<TileGroup>& groups, int threads) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct TileBox {
   TileBox(TileKey l, TileKey h) : low(l), high(h) {}
   explicit TileBox(const std::vector<TileKey>& tiles);
   bool holds(TileKey k) const { return k.ix >= low.ix && k.ix <= high.ix && k.iy >= low.iy && k.iy <= high.iy; }
+  /// In map metres, of tiles with such a side.
+  stages::Box metres(double side) const { return {low.ix * side, low.iy * side, (high.ix + 1) * side, (high.iy + 1) * side}; }
   int across() const { return high.ix - low.ix + 1; }
   int up() const { return high.iy - low.iy + 1; }
 };
@@ -43,6 +46,10 @@ constexpr std::uint64_t most_points = 20'000'000;  ///< of a group of several ti
 
 /// The same groups again: the tiles of each box.
 std::vector<TileGroup> grouped_tiles(const std::vector<TileKey>& tiles, const std::vector<TileBox>& boxes, const Measure& measure);
+
+/// The boxes of groups in a file, and back; none where there is no such file.
+void write_boxes(const std::filesystem::path& file, const std::vector<TileGroup>& groups);
+std::vector<TileBox> read_boxes(const std::filesystem::path& file);
 
 /// Needed at once by the largest of `threads` groups.
 std::uint64_t most_bytes(const std::vector<TileGroup>& groups, int threads);

@@ -400,8 +400,7 @@ Block TileStore::read_with_halo(const std::vector<TileKey>& keys, double halo, C
   around.origin = origin_;
   const TileBox tiles(keys);
   const int reach = halo > 0.0 ? static_cast<int>(std::ceil(halo / side_)) : 0;
-  const stages::Box box =
-      stages::Box{tiles.low.ix * side_, tiles.low.iy * side_, (tiles.high.ix + 1) * side_, (tiles.high.iy + 1) * side_}.grown(halo);
+  const stages::Box box = tiles.metres(side_).grown(halo);
   for (int iy = tiles.low.iy - reach; iy <= tiles.high.iy + reach; ++iy)
     for (int ix = tiles.low.ix - reach; ix <= tiles.high.ix + reach; ++ix)
       if (!tiles.holds({ix, iy}) && tiles_.contains({ix, iy})) append_within(around, {ix, iy}, columns, box);

@@ -50,7 +50,10 @@ class SigmaModel {
       // max() in this order hands on a variance that is NaN.
       shared += w[k] * std::sqrt(std::max(variance - rough.noise, options_.correlation * variance));
       const double explained = std::min(rough.noise, variance), left = left_.empty() ? 1.0 : static_cast<double>(left_[v]);
-      (left < 1.0 ? together : apart) += left < 1.0 ? w[k] * std::sqrt(left * explained) : w[k] * w[k] * explained;
+      if (left < 1.0)
+        together += w[k] * std::sqrt(left * explained);
+      else
+        apart += w[k] * w[k] * explained;
       excess += w[k] * w[k] * (rough.noise - explained);
     }
     const double own = together * together + apart + excess;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Over 400 lines: one adjustment, seen from all sides on the same made block.
 #include "calib/adjust.h"
 
 #include <gtest/gtest.h>

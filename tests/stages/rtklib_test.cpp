@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Over 400 lines: one stage, whose cases share the script that stands for the program.
 // The stage with a script in the place of RTKLIB's program, and with the program itself where it is installed.
 #include <Eigen/Geometry>
 #include <cstdio>
