@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "core/floor_div.h"
+
 namespace swath::core {
 
 /// Cells of one size whose corners lie on whole multiples of the cell (the whole survey shares one lattice).
@@ -28,7 +30,7 @@ struct Lattice {
 };
 
 /// Index of the cell that holds map coordinate v.
-inline std::int64_t cell_index(double v, double cell) { return static_cast<std::int64_t>(std::floor(v / cell)); }
+inline std::int64_t cell_index(double v, double cell) { return floor_of(v / cell); }
 
 /// The smallest lattice that holds the box [x0, x1) x [y0, y1) of map coordinates.
 inline Lattice lattice_of(double cell, double x0, double y0, double x1, double y1) {

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/floor_div.h"
 #include "filters/bins.h"
 #include "filters/moving_planes.h"
 
@@ -75,7 +76,7 @@ Counts count(const core::Block& b, const core::Lattice& l, const std::vector<Ret
     }
     if (std::abs(t) < edges[15]) {
       all.value[c] += 1.0F;
-      n.doubt.value[c] += static_cast<float>(std::round(doubt_unit * doubt_of(r)));
+      n.doubt.value[c] += static_cast<float>(core::floor_of(doubt_unit * doubt_of(r) + 0.5));
     }
   }
   for (Raster& r : n.above) r = blur(r, sigma);

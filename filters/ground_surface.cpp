@@ -22,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/floor_div.h"
 #include "filters/bins.h"
 #include "filters/decks.h"
 #include "filters/ground_labels.h"
@@ -166,7 +167,7 @@ class Sums {
 
  private:
   static constexpr double unit = 1 << 24;
-  static std::int64_t whole(double v) { return std::llround(v * unit); }
+  static std::int64_t whole(double v) { return core::floor_of(v * unit + 0.5); }
   Raster raster(const std::vector<std::int64_t>& sums) const {
     Raster r(nx_, ny_, 0.0F);
     for (size_t c = 0; c < sums.size(); ++c) r.value[c] = static_cast<float>(static_cast<double>(sums[c]) / unit);
@@ -184,7 +185,7 @@ struct Place {
 
 Place place_of(const core::Lattice& l, double x, double y) {
   const double u = x / l.cell - 0.5 - static_cast<double>(l.i0), v = y / l.cell - 0.5 - static_cast<double>(l.j0);
-  const double i = std::floor(u), j = std::floor(v);
+  const auto i = static_cast<double>(core::floor_of(u)), j = static_cast<double>(core::floor_of(v));
   return {l.at(static_cast<int>(i), static_cast<int>(j)), u - i, v - j};
 }
 

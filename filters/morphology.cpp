@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/wide.h"
+
 namespace swath::filters {
 namespace {
 
@@ -24,12 +26,12 @@ std::vector<int> chord_half_widths(int radius) {
   return half;
 }
 
-void keep_smaller(float* to, const float* from, int n) {
+SWATH_WIDE void keep_smaller(float* to, const float* from, int n) {
   for (int i = 0; i < n; ++i) to[i] = from[i] < to[i] ? from[i] : to[i];
 }
 
 /// Erosion by the disk; +infinity marks cells that take no part.
-std::vector<float> erode(const std::vector<float>& in, int nx, int ny, int radius) {
+SWATH_WIDE std::vector<float> erode(const std::vector<float>& in, int nx, int ny, int radius) {
   const std::vector<int> half = chord_half_widths(radius);
   const int stride = nx + 2 * radius;
   std::vector<float> out(in.size(), infinity);

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/wide.h"
+
 namespace swath::filters {
 namespace {
 
@@ -28,7 +30,7 @@ std::array<Kernel, 3> kernels(double sigma) {
   return k;
 }
 
-Raster along_rows(const Raster& in, const Kernel& k) {
+SWATH_WIDE Raster along_rows(const Raster& in, const Kernel& k) {
   Raster out(in.nx, in.ny, 0.0F);
   const int r = static_cast<int>(k.size()) / 2;
   std::vector<float> padded(static_cast<size_t>(in.nx + 2 * r), 0.0F);
@@ -44,7 +46,7 @@ Raster along_rows(const Raster& in, const Kernel& k) {
   return out;
 }
 
-Raster along_columns(const Raster& in, const Kernel& k) {
+SWATH_WIDE Raster along_columns(const Raster& in, const Kernel& k) {
   Raster out(in.nx, in.ny, 0.0F);
   const int r = static_cast<int>(k.size()) / 2;
   for (int j = 0; j < in.ny; ++j) {

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/floor_div.h"
 #include "core/value.h"
 #include "io/output_file.h"
 #include "io/value_file.h"
@@ -155,7 +156,7 @@ void StripWriter::write(const Block& block) {
                         "line " + std::to_string(block.strip.empty() ? 0 : block.strip[i]) + ", record " +
                             std::to_string(block.record.empty() ? i : block.record[i]),
                         "no map projection reaches that far: is the file damaged, or its CRS another?");
-    const TileKey key{static_cast<int>(std::floor(east / tile_side_)), static_cast<int>(std::floor(north / tile_side_))};
+    const TileKey key{static_cast<int>(core::floor_of(east / tile_side_)), static_cast<int>(core::floor_of(north / tile_side_))};
     if (!at || key != last) at = &rows[last = key];
     at->push_back(i);
   }

@@ -8,160 +8,189 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
-
-#include "terrain/delaunay.h"
 
 namespace swath::terrain {
 namespace {
 
 constexpr int passes = 3;
 constexpr double longest_edge = 2.0;  // radii
-constexpr double alike = 0.05;        // m: planes of less misfit have the same say
+constexpr float alike = 0.05F;        // m: planes of less misfit have the same say
 constexpr size_t least_ring = 4;      // neighbours of a plane
-constexpr double least_area = 0.01;   // det / trace^2 of the neighbours' spread, 0.25 where it is round
+constexpr float least_area = 0.01F;   // det / trace^2 of the neighbours' spread, 0.25 where it is round
 
-constexpr int probes = 4;
-using Probe = Eigen::Array<float, probes, 1>;
-
-struct Vertex {
-  double x, y, z;
-  Probe noise;
-};
-
-/// Through a vertex's surroundings, heights at the vertex; quality 0 where there is none.
-struct Plane {
-  double height = 0.0;
-  float east = 0.0F, north = 0.0F, quality = 0.0F;
-  Probe noise = Probe::Zero(), noise_east = Probe::Zero(), noise_north = Probe::Zero();
-};
+/// What goes the same way from pass to pass: m that a vertex has moved up, and three draws of white noise.
+using Signal = Eigen::Array4f;
 
 /// Signs that follow from the place alone (mixing of Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators").
-Probe white_noise(double x, double y) {
+Signal white_noise(double x, double y) {
   std::uint64_t h = std::bit_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15U + std::bit_cast<std::uint64_t>(y);
   h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9U;
   h = (h ^ (h >> 27)) * 0x94d049bb133111ebU;
-  Probe p;
-  for (int k = 0; k < probes; ++k) p[k] = (h >> (40 + k)) & 1U ? 1.0F : -1.0F;
-  return p;
+  const auto sign = [h](int k) { return (h >> (40 + k)) & 1U ? 1.0F : -1.0F; };
+  return {0.0F, sign(0), sign(1), sign(2)};
 }
 
-/// The neighbours of each vertex that moves, in an order that the places alone decide.
+float noise_square(const Signal& s) { return (s[1] * s[1] + s[2] * s[2] + s[3] * s[3]) / 3.0F; }
+
+/// To a neighbour, m; the rise is that of the heights as they came.
+struct Edge {
+  std::int32_t to;
+  float east, north, rise;
+};
+
+/// A neighbour on its way to its place in the order.
+struct Near {
+  Edge edge;
+  std::uint64_t key;  ///< what it is does not matter, as long as place and height alone decide it
+  std::uint32_t rank;
+};
+
+std::uint64_t key_of(const Edge& e) {
+  const auto bits = [](float f) { return std::uint64_t{std::bit_cast<std::uint32_t>(f)}; };
+  return (bits(e.east) << 32 | bits(e.north)) ^ bits(e.rise) * 0x9e3779b97f4a7c15U;
+}
+
+/// The neighbours of each vertex that moves, in an order that their places alone decide.
 class Rings {
  public:
-  Rings(const Tin& tin, size_t points, double radius) : tin_(tin), radius_(radius), start_(tin.x.size() + 1, 0) {
-    std::vector<std::int32_t> triangle(tin.x.size(), -1);
-    for (size_t t = 0; t < tin.size(); ++t)
-      for (const std::int32_t v : tin.triangles[t]) triangle[static_cast<size_t>(v)] = static_cast<std::int32_t>(t);
-    near_.reserve(6 * tin.x.size());
-    std::vector<std::int32_t> ring;
-    for (size_t v = 0; v < tin.x.size(); ++v) {
-      if (tin.row[v] < points && triangle[v] >= 0 && goes_round(static_cast<std::int32_t>(v), triangle[v], ring)) take(v, ring);
-      start_[v + 1] = static_cast<std::uint32_t>(near_.size());
+  Rings(const Tin& tin, size_t points, double radius) : start_(tin.x.size() + 1, 0) {
+    const size_t size = tin.x.size();
+    std::vector<std::uint32_t> start(size + 1, 0);
+    std::vector<char> open(size, 0);
+    const auto each_edge = [&tin](auto&& see) {  // once
+      for (std::int32_t t = 0; t < static_cast<std::int32_t>(tin.size()); ++t) {
+        const auto& v = tin.triangles[static_cast<size_t>(t)];
+        for (size_t k = 0; k < 3; ++k) {
+          const std::int32_t other = tin.across[static_cast<size_t>(t)][k];
+          if (other < t) see(static_cast<size_t>(v[k == 2 ? 0 : k + 1]), static_cast<size_t>(v[k == 0 ? 2 : k - 1]), other < 0);
+        }
+      }
+    };
+    each_edge([&](size_t p, size_t q, bool is_border) {
+      ++start[p], ++start[q];
+      if (is_border) open[p] = open[q] = 1;
+    });
+    std::uint32_t sum = 0;
+    for (std::uint32_t& s : start) sum += std::exchange(s, sum);
+    std::vector<std::int32_t> neighbours(sum);
+    each_edge([&](size_t p, size_t q, bool) {
+      neighbours[start[p]++] = static_cast<std::int32_t>(q);
+      neighbours[start[q]++] = static_cast<std::int32_t>(p);
+    });
+    std::vector<Eigen::Vector3d> place(size);
+    for (size_t v = 0; v < size; ++v) place[v] = {tin.x[v], tin.y[v], tin.z[v]};
+    edges_ = std::make_unique_for_overwrite<Edge[]>(sum);
+    std::vector<Near> near;
+    std::uint32_t taken = 0;
+    for (size_t v = 0; v < size; ++v) {
+      const std::uint32_t first = v == 0 ? 0 : start[v - 1];
+      if (tin.row[v] < points && !open[v]) {
+        look_around(place, v, std::span(neighbours).subspan(first, start[v] - first), radius, near);
+        put_in_order(near, edges_.get() + taken);
+        taken += static_cast<std::uint32_t>(near.size());
+      }
+      start_[v + 1] = taken;
     }
   }
 
-  std::span<const std::int32_t> of(size_t v) const { return {near_.data() + start_[v], near_.data() + start_[v + 1]}; }
+  std::span<const Edge> of(size_t v) const { return {edges_.get() + start_[v], edges_.get() + start_[v + 1]}; }
 
  private:
-  /// Collects the vertices around v; false where a triangle is missing.
-  bool goes_round(std::int32_t v, std::int32_t first, std::vector<std::int32_t>& ring) const {
-    ring.clear();
-    std::int32_t t = first, behind = 0, ahead = 0;
-    for (const std::int32_t u : tin_.triangles[static_cast<size_t>(t)])
-      if (u != v) behind = ahead, ahead = u;
-    do {
-      ring.push_back(ahead);
-      const auto& [a, b, c] = tin_.triangles[static_cast<size_t>(t)];
-      t = tin_.across[static_cast<size_t>(t)][behind == a ? 0 : behind == b ? 1 : 2];
-      if (t < 0) return false;
-      const auto& [d, e, f] = tin_.triangles[static_cast<size_t>(t)];
-      behind = std::exchange(ahead, d ^ e ^ f ^ v ^ ahead);
-    } while (t != first);
-    return true;
-  }
-
-  void take(size_t v, std::vector<std::int32_t>& ring) {
-    const auto before = [&](std::int32_t a, std::int32_t b) { return is_before(tin_.place(a), tin_.place(b)); };
-    std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end(), before), ring.end());
-    if (before(ring.back(), ring[1])) std::reverse(ring.begin() + 1, ring.end());
-    const size_t first = near_.size();
-    for (const std::int32_t u : ring) {
-      const double dx = tin_.x[static_cast<size_t>(u)] - tin_.x[v], dy = tin_.y[static_cast<size_t>(u)] - tin_.y[v];
-      const double square = dx * dx + dy * dy;
-      if (square > longest_edge * longest_edge * radius_ * radius_) return near_.resize(first);
-      if (square < radius_ * radius_) near_.push_back(u);
+  /// None where one of them is far or too few are near.
+  static void look_around(const std::vector<Eigen::Vector3d>& place, size_t v, std::span<const std::int32_t> neighbours, double radius,
+                          std::vector<Near>& near) {
+    near.resize(neighbours.size());
+    size_t count = 0;
+    double longest = 0.0;
+    for (const std::int32_t n : neighbours) {
+      const Eigen::Vector3d d = place[static_cast<size_t>(n)] - place[v];
+      const double square = d.x() * d.x() + d.y() * d.y();
+      const Edge e{n, static_cast<float>(d.x()), static_cast<float>(d.y()), static_cast<float>(d.z())};
+      near[count] = {e, key_of(e), 0};
+      count += square < radius * radius;
+      longest = std::max(longest, square);
     }
-    if (near_.size() - first < least_ring) near_.resize(first);
+    near.resize(longest > longest_edge * longest_edge * radius * radius || count < least_ring ? 0 : count);
   }
 
-  const Tin& tin_;
-  double radius_;
+  /// Each to where as many are before it: a few, nearly always six.
+  static void put_in_order(std::vector<Near>& near, Edge* out) {
+    for (size_t i = 0; i < near.size(); ++i)
+      for (size_t j = 0; j < i; ++j) {
+        const bool before = near[j].key < near[i].key;
+        near[i].rank += before;
+        near[j].rank += !before;
+      }
+    for (const Near& n : near) out[n.rank] = n.edge;
+  }
+
   std::vector<std::uint32_t> start_;
-  std::vector<std::int32_t> near_;
+  std::unique_ptr<Edge[]> edges_;
+};
+
+/// Through a vertex's surroundings: the signal at the vertex and its change per metre, heights over the vertex's own as it came.
+struct Plane {
+  Signal at = Signal::Zero(), east = Signal::Zero(), north = Signal::Zero();
+  float quality = 0.0F;  ///< 0 where there is none
 };
 
 /// Tukey's biweight.
-double weight(double square, double radius) {
-  const double u = 1.0 - square / (radius * radius);
+float weight(const Edge& e, float per_square) {
+  const float u = 1.0F - (e.east * e.east + e.north * e.north) * per_square;
   return u * u;
 }
 
-/// By weighted least squares through a vertex and its neighbours.
-Plane plane_at(const std::vector<Vertex>& vertices, size_t v, std::span<const std::int32_t> ring, double radius) {
-  const Vertex& at = vertices[v];
-  double s = 1.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, syy = 0.0, sz = 0.0, sxz = 0.0, syz = 0.0, szz = 0.0;
-  Probe n = at.noise, nx = Probe::Zero(), ny = Probe::Zero();
-  for (const std::int32_t u : ring) {
-    const Vertex& o = vertices[static_cast<size_t>(u)];
-    const double x = o.x - at.x, y = o.y - at.y, z = o.z - at.z, w = weight(x * x + y * y, radius);
-    const double wx = w * x, wy = w * y, wz = w * z;
-    s += w, sx += wx, sy += wy, sz += wz;
-    sxx += wx * x, sxy += wx * y, syy += wy * y, sxz += wx * z, syz += wy * z, szz += wz * z;
-    n += static_cast<float>(w) * o.noise, nx += static_cast<float>(wx) * o.noise, ny += static_cast<float>(wy) * o.noise;
+/// By weighted least squares through a vertex and its neighbours. `per_square`: of the radius.
+Plane plane_at(const std::vector<Signal>& signals, size_t v, std::span<const Edge> ring, float per_square) {
+  float s = 1.0F, sx = 0.0F, sy = 0.0F, sxx = 0.0F, sxy = 0.0F, syy = 0.0F, rise = 0.0F, rise_x = 0.0F, rise_y = 0.0F;
+  Signal f = signals[v], fx = Signal::Zero(), fy = Signal::Zero();
+  for (const Edge& e : ring) {
+    const float w = weight(e, per_square), wx = w * e.east, wy = w * e.north;
+    s += w, sx += wx, sy += wy, sxx += wx * e.east, sxy += wx * e.north, syy += wy * e.north;
+    rise += w * e.rise, rise_x += wx * e.rise, rise_y += wy * e.rise;
+    const Signal& at = signals[static_cast<size_t>(e.to)];
+    f += w * at, fx += wx * at, fy += wy * at;
   }
-  // Cholesky, the height first.
-  const double lx = sx / s, ly = sy / s, xx = sxx - lx * sx, xy = sxy - lx * sy, yy = syy - ly * sy;
+  f[0] += rise, fx[0] += rise_x, fy[0] += rise_y;
+  // About the places' mean.
+  const float per_s = 1.0F / s, mx = sx * per_s, my = sy * per_s, xx = sxx - mx * sx, xy = sxy - mx * sy, yy = syy - my * sy;
+  const float det = xx * yy - xy * xy;
   Plane p;
-  if (!(xx * yy - xy * xy > least_area * (xx + yy) * (xx + yy))) return p;
-  const double lxy = xy / xx, rest = yy - lxy * xy;
-  const double xz = sxz - lx * sz, yz = syz - ly * sz;
-  const double north = (yz - lxy * xz) / rest, east = (xz - xy * north) / xx, height = (sz - sx * east - sy * north) / s;
-  const double left = std::max(0.0, szz - height * sz - east * sxz - north * syz);
-  const auto count = static_cast<double>(ring.size() + 1);
-  const double misfit = left / s * count / (count - 3.0) + alike * alike;
-  const Probe nxc = nx - static_cast<float>(lx) * n, nyc = ny - static_cast<float>(ly) * n;
-  p.noise_north = (nyc - static_cast<float>(lxy) * nxc) / static_cast<float>(rest);
-  p.noise_east = (nxc - static_cast<float>(xy) * p.noise_north) / static_cast<float>(xx);
-  p.noise = (n - static_cast<float>(sx) * p.noise_east - static_cast<float>(sy) * p.noise_north) / static_cast<float>(s);
-  p.height = at.z + height;
-  p.east = static_cast<float>(east), p.north = static_cast<float>(north);
-  p.quality = static_cast<float>(alike * alike * alike * alike / (misfit * misfit));
+  if (!(det > least_area * (xx + yy) * (xx + yy))) return p;
+  fx -= mx * f, fy -= my * f;
+  const float per_det = 1.0F / det;
+  p.east = (per_det * yy) * fx - (per_det * xy) * fy;
+  p.north = (per_det * xx) * fy - (per_det * xy) * fx;
+  p.at = per_s * f - mx * p.east - my * p.north;
+  float left = (signals[v][0] - p.at[0]) * (signals[v][0] - p.at[0]);
+  for (const Edge& e : ring) {
+    const float misfit = signals[static_cast<size_t>(e.to)][0] + e.rise - p.at[0] - p.east[0] * e.east - p.north[0] * e.north;
+    left += weight(e, per_square) * misfit * misfit;
+  }
+  const auto count = static_cast<float>(ring.size() + 1);
+  const float misfit = alike * alike + left * per_s * count / (count - 3.0F);
+  p.quality = alike * alike * alike * alike / (misfit * misfit);
   return p;
 }
 
-void move(std::vector<Vertex>& vertices, size_t v, std::span<const std::int32_t> ring, const std::vector<Plane>& planes, double radius) {
-  Vertex& at = vertices[v];
-  const Plane& own = planes[v];
-  double weights = own.quality, z = own.quality * (own.height - at.z);
-  Probe noise = own.quality * own.noise;
-  for (const std::int32_t u : ring) {
-    const Plane& p = planes[static_cast<size_t>(u)];
-    const Vertex& o = vertices[static_cast<size_t>(u)];
-    const double x = at.x - o.x, y = at.y - o.y, w = p.quality * weight(x * x + y * y, radius);
-    if (!(w > 0.0)) continue;
-    const auto fw = static_cast<float>(w), fx = static_cast<float>(x), fy = static_cast<float>(y);
+/// The mean of what the planes foretell.
+Signal moved(const Signal& signal, const std::vector<Plane>& planes, size_t v, std::span<const Edge> ring, float per_square) {
+  float weights = planes[v].quality, rise = 0.0F;
+  Signal sum = weights * planes[v].at;
+  for (const Edge& e : ring) {
+    const Plane& p = planes[static_cast<size_t>(e.to)];
+    const float w = p.quality * weight(e, per_square);
     weights += w;
-    z += w * (p.height - at.z + p.east * x + p.north * y);
-    noise += fw * (p.noise + p.noise_east * fx + p.noise_north * fy);
+    rise += w * e.rise;
+    sum += w * (p.at - e.east * p.east - e.north * p.north);
   }
-  if (!(weights > 0.0)) return;
-  at.z += z / weights;
-  at.noise = noise / static_cast<float>(weights);
+  sum[0] += rise;
+  return weights > 0.0F ? Signal(sum * (1.0F / weights)) : signal;
 }
 
 }  // namespace
@@ -171,24 +200,23 @@ double smoothing_reach(double radius) { return (longest_edge + 2.0 * passes) * r
 std::vector<float> smooth_heights(Tin& tin, size_t points, double radius) {
   const Rings rings(tin, points, radius);
   const size_t size = tin.x.size();
-  std::vector<Vertex> vertices(size);
-  for (size_t v = 0; v < size; ++v) vertices[v] = {tin.x[v], tin.y[v], tin.z[v], white_noise(tin.x[v], tin.y[v])};
-  {
-    std::vector<Plane> planes(size);
-    for (int pass = 0; pass < passes; ++pass) {
-      for (size_t v = 0; v < size; ++v)
-        if (!rings.of(v).empty()) planes[v] = plane_at(vertices, v, rings.of(v), radius);
-      for (size_t v = 0; v < size; ++v)
-        if (!rings.of(v).empty()) move(vertices, v, rings.of(v), planes, radius);
-    }
+  const auto per_square = static_cast<float>(1.0 / (radius * radius));
+  std::vector<Signal> signals(size);
+  for (size_t v = 0; v < size; ++v) signals[v] = white_noise(tin.x[v], tin.y[v]);
+  std::vector<Plane> planes(size);
+  for (int pass = 0; pass < passes; ++pass) {
+    for (size_t v = 0; v < size; ++v)
+      if (!rings.of(v).empty()) planes[v] = plane_at(signals, v, rings.of(v), per_square);
+    for (size_t v = 0; v < size; ++v)
+      if (!rings.of(v).empty()) signals[v] = moved(signals[v], planes, v, rings.of(v), per_square);
   }
   std::vector<float> left(size, 1.0F);
   for (size_t v = 0; v < size; ++v) {
-    tin.z[v] = vertices[v].z;
     const auto ring = rings.of(v);
     if (ring.empty()) continue;
-    float sum = vertices[v].noise.square().mean();
-    for (const std::int32_t u : ring) sum += vertices[static_cast<size_t>(u)].noise.square().mean();
+    tin.z[v] += static_cast<double>(signals[v][0]);
+    float sum = noise_square(signals[v]);
+    for (const Edge& e : ring) sum += noise_square(signals[static_cast<size_t>(e.to)]);
     left[v] = std::min(1.0F, sum / static_cast<float>(ring.size() + 1));
   }
   return left;

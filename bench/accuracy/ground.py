@@ -19,7 +19,7 @@ COVER = {1: "open", 2: "forest", 3: "steep", 4: "building", 5: "low vegetation",
 KIND = {3: "low vegetation", 4: "medium", 5: "high", 6: "building", 7: "low outlier", 9: "water", 14: "wire", 15: "mast", 17: "bridge", 18: "high outlier"}
 GEOREFERENCE = [{"type": "readers.trajectory"}, {"type": "readers.laser"}, {"type": "georeference"}, {"type": "filters.returns"}]
 PRODUCTS = [{"type": "terrain.dtm", "cell": "1 m"}, {"type": "writers.las", "compress": False, "scale": 0.0001}, {"type": "writers.gdal"}]
-TRUE_LABELS = "true labels"
+TRUE_LABELS, TRUE_PLACES = "true labels", "true labels and places"
 MARGIN = 5.0  # m: cells nearer to the area's edge are not judged
 
 
@@ -107,11 +107,11 @@ def judge(found, survey, chain, folder):
     return points, order
 
 
-def judge_true_labels(found, survey, points, order, folder):
-    """What the terrain model is with every label right."""
+def judge_true_labels(found, survey, places, folder):
+    """What the terrain model is with every label right, the returns at `places`."""
     work = common.scratch(f"{folder}/labels")
     ground = survey.kind == 2
-    common.write_las(work / "ground.las", *(points[a][order][ground] for a in "xyz"), np.full(ground.sum(), 2, np.uint8))
+    common.write_las(work / "ground.las", *(axis[ground] for axis in places), np.full(ground.sum(), 2, np.uint8))
     (work / "survey.toml").write_text('name = "ground"\ncrs = "EPSG:32632"\n[[points]]\nfile = "ground.las"\ncrs = "EPSG:32632"\nline = 1\n')
     common.run([{"type": "readers.las"}, PRODUCTS[0], PRODUCTS[2]], work / "survey.toml", work / "out")
     add_terrain(found, survey, work / "out")
@@ -152,7 +152,7 @@ def terrain_table(all_found):
             e, missing = 1e3 * f.error[here], sum(f.without_height.values()) if key == 0 else f.without_height[key]
             stated = here & (f.sigma > 0)
             ratio = f.error[stated] / f.sigma[stated]
-            said = ["-"] * 3 if name == TRUE_LABELS or len(ratio) == 0 else [f"{common.rms(ratio):.2f}", f"{100 * np.mean(np.abs(ratio) < 1):.0f}", f"{100 * np.mean(np.abs(ratio) < 2):.0f}"]
+            said = ["-"] * 3 if name in (TRUE_LABELS, TRUE_PLACES) or len(ratio) == 0 else [f"{common.rms(ratio):.2f}", f"{100 * np.mean(np.abs(ratio) < 1):.0f}", f"{100 * np.mean(np.abs(ratio) < 2):.0f}"]
             rows.append([name, cover, here.sum(), missing, f"{e.mean():+.0f}", f"{np.median(np.abs(e)):.0f}", f"{common.rms(e):.0f}", f"{np.quantile(np.abs(e), 0.95):.0f}", *said])
     common.table(["chain", "cover", "cells", "without height", "mean mm", "median abs mm", "rms mm", "95 % mm", "error/sigma", "within 1 sigma %", "within 2 %"], rows)
 
@@ -184,16 +184,17 @@ def main():
     if given.filters or not chains:
         chains = {**common.ground_chains(given.filters, not given.no_noise), **chains}
     options = dict(o.split("=", 1) for o in given.set)
-    all_found = {name: Found() for name in [*chains, TRUE_LABELS]}
+    all_found = {name: Found() for name in [*chains, TRUE_LABELS, TRUE_PLACES]}
     for seed in given.seeds:
         survey = Survey(common.scratch(f"{given.folder}/survey"), seed, given.scene, options)
         for name, chain in chains.items():
             print(f"seed {seed}: {name}", file=sys.stderr, flush=True)
             points, order = judge(all_found[name], survey, chain, given.folder)
-        judge_true_labels(all_found[TRUE_LABELS], survey, points, order, given.folder)
+        judge_true_labels(all_found[TRUE_LABELS], survey, [points[a][order] for a in "xyz"], given.folder)
+        judge_true_labels(all_found[TRUE_PLACES], survey, [survey.truth[a] for a in ("e", "n", "h")], given.folder)
     for found in all_found.values():
         found.join()
-    label_tables({name: found for name, found in all_found.items() if name != TRUE_LABELS})
+    label_tables({name: found for name, found in all_found.items() if name in chains})
     terrain_table(all_found)
     probability_table(all_found)
 

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// Before a function whose loops the compiler turns into vector instructions: it is built for processors with AVX2 too, and the program
+/// takes what its processor can do. Both give the same numbers, as products are not fused with sums (-ffp-contract=off).
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define SWATH_WIDE [[gnu::target_clones("avx2", "default")]]
+#else
+#define SWATH_WIDE
+#endif
