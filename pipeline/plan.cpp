@@ -137,9 +137,8 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
     tiles_began = tiles_began || s.stage->works_on(Grain::tile);
     for (const Product p : info.needs_products)
       if (!has(p))
-        fault("needs " + std::string(name_of(p)) + ", which no stage before it gives", giver([p](const stages::Info& i) {
-                return std::find(i.gives_products.begin(), i.gives_products.end(), p) != i.gives_products.end();
-              }));
+        fault("needs " + std::string(name_of(p)) + ", which no stage before it gives",
+              giver([p](const stages::Info& i) { return i.makes(p); }));
     const Product* first = nullptr;
     for (const Product& p : info.needs_products) {
       if (!cells.contains(p)) continue;

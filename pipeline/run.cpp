@@ -83,6 +83,9 @@ struct Account {
 
 constexpr const char* groups_file = "groups.json";
 
+/// What a tile stage reads and changes.
+core::ColumnSet columns_of_tiles(const Stage& s) { return s.info().needs | s.info().gives | s.also_reads(); }
+
 class Engine {
  public:
   Engine(Plan& plan, Progress& progress)
@@ -108,6 +111,10 @@ class Engine {
   void run_tile_stages();
   std::vector<TileKey> tiles_of(size_t number) const;
   std::set<TileKey> tiles_of_water() const;
+  TileGroup measured(size_t number, std::vector<TileKey> tiles) const;
+  fs::path done_file(size_t number, const TileGroup& group) const;
+  std::vector<TileGroup> groups_of(size_t number, const std::vector<TileKey>& keys, std::uint64_t budget) const;
+  Value run_group(size_t number, const TileGroup& group, bool has_water);
   void run_tiles(size_t number);
   void keep_surface_tiles(size_t number, const std::set<TileKey>& fringe);
   void run_merge(size_t number);
@@ -361,64 +368,96 @@ void Engine::keep_surface_tiles(size_t number, const std::set<TileKey>& fringe) 
   }
 }
 
-void Engine::run_tiles(size_t number) {
+/// The tiles that a stage works on, with what that takes.
+TileGroup Engine::measured(size_t number, std::vector<TileKey> tiles) const {
   const Stage& s = stage(number);
-  const fs::path mine = folder(number);
-  const core::ColumnSet columns = s.info().needs | s.info().gives | s.also_reads();
-  const bool changes = !s.info().gives.empty();
-  const bool makes_surface = has_surface(s.info().gives_products);
-  std::set<TileKey> fringe = makes_surface ? store_->fringe(s.halo()) : std::set<TileKey>{};
-  const std::vector<stages::Product>& gives = s.info().gives_products;
-  const bool makes_terrain = std::find(gives.begin(), gives.end(), stages::Product::dtm) != gives.end();
-  const std::set<TileKey> wet = makes_terrain ? tiles_of_water() : std::set<TileKey>{};
-  fringe.insert(wet.begin(), wet.end());
-  std::vector<TileKey> keys = tiles_of(number);
-  for (const TileKey key : fringe)
-    if (!surface_tiles_.contains(key)) keys.push_back(key);
-  progress_.begin(std::string(s.info().name), store_->points(), "points");
-
-  size_t row_bytes = 0;
+  const core::ColumnSet columns = columns_of_tiles(s);
+  double row_bytes = 0.0;
   core::for_each_column([&](core::Column c, std::string_view, auto member) {
     using T = typename std::remove_reference_t<decltype(std::declval<core::Block>().*member)>::value_type;
     if (columns.has(c) || c == core::Column::x || c == core::Column::y || c == core::Column::z) row_bytes += sizeof(T);
   });
+  const TileBox box(tiles);
+  const TileStore::Load load = store_->load_with_halo(tiles, s.halo());
+  const auto points = static_cast<double>(load.points);
+  double bytes = (row_bytes + s.bytes_per_point()) * points + row_bytes * static_cast<double>(load.neighbour);
   stages::Context wide = context_;
-  const Measure measure = [&](std::vector<TileKey> tiles) {
-    const TileBox box(tiles);
-    const TileStore::Load load = store_->load_with_halo(tiles, s.halo());
-    const auto points = static_cast<double>(load.points);
-    double bytes = (static_cast<double>(row_bytes) + s.bytes_per_point()) * points +
-                   static_cast<double>(row_bytes) * static_cast<double>(load.neighbour);
-    wide.tile_side = context_.tile_side * 0.5 * (box.across() + box.up());  // the square of the same perimeter is not smaller
-    for (const stages::Raster& r : s.rasters(wide)) bytes += r.total(points);
-    TileGroup group{std::move(tiles), 0, load.points, static_cast<std::uint64_t>(bytes)};
-    for (const TileKey k : group.tiles)
-      if (const auto at = store_->tiles().find(k); at != store_->tiles().end()) group.own += at->second;
-    return group;
-  };
+  wide.tile_side *= 0.5 * (box.across() + box.up());  // the square of the same perimeter is not smaller
+  for (const stages::Raster& r : s.rasters(wide)) bytes += r.total(points);
+  TileGroup group{std::move(tiles), 0, load.points, static_cast<std::uint64_t>(bytes)};
+  for (const TileKey k : group.tiles)
+    if (const auto at = store_->tiles().find(k); at != store_->tiles().end()) group.own += at->second;
+  return group;
+}
+
+fs::path Engine::done_file(size_t number, const TileGroup& group) const {
+  const TileBox box(group.tiles);
+  return folder(number) / (file_label(box.low) + (group.tiles.size() > 1 ? "_to_" + file_label(box.high) : "") + ".done");
+}
+
+/// Tiles are joined only where nothing but points' columns comes of them.
+std::vector<TileGroup> Engine::groups_of(size_t number, const std::vector<TileKey>& keys, std::uint64_t budget) const {
+  const stages::Info& info = stage(number).info();
+  const Measure measure = [&](std::vector<TileKey> tiles) { return measured(number, std::move(tiles)); };
+  if (info.gives.empty() || !info.gives_products.empty() || works_on(number, Grain::merge)) return single_tiles(keys, measure);
+  // Those of a run that was killed, so that what it has done counts.
+  const fs::path file = folder(number) / groups_file;
+  std::vector<TileGroup> groups = grouped_tiles(keys, read_boxes(file), measure), open;
+  std::copy_if(groups.begin(), groups.end(), std::back_inserter(open),
+               [&](const TileGroup& g) { return !fs::exists(done_file(number, g)); });
+  size_t held = 0;
+  for (const TileGroup& g : groups) held += g.tiles.size();
+  if (held == keys.size() && most_bytes(open, threads_) <= budget) return groups;
+  groups = joined_tiles(keys, threads_, budget, measure);
+  write_boxes(file, groups);
+  return groups;
+}
+
+/// Runs the stage on a group and keeps what it did: the tally and seconds.
+Value Engine::run_group(size_t number, const TileGroup& group, bool has_water) {
+  const Stage& s = stage(number);
+  const stages::Info& info = s.info();
+  const fs::path mine = folder(number), done = done_file(number, group);
+  stages::TileJob job{group.tiles[0], TileBox(group.tiles).metres(context_.tile_side), mine, {}, 0, {}};
+  const auto start = Clock::now();
+  job.block = store_->read_with_halo(group.tiles, s.halo(), columns_of_tiles(s), job.own);
+  core::add_columns(job.block, info.gives);
+  const size_t before = job.block.size();
+  if (before > 0 || !has_surface(info.gives_products) || has_water) s.run_tile(context_, job);
+  if (job.block.size() != before)
+    throw core::Error("the stage changed the number of points of a tile", std::string(info.name), "this is a fault of the program");
+  size_t first = 0;
+  for (const TileKey k : group.tiles) {
+    if (info.gives.empty()) break;
+    const size_t count = group.tiles.size() == 1 ? job.own : store_->tiles().at(k);
+    store_->write_overlay(mine, k, job.block, first, count, info.gives);
+    first += count;
+  }
+  Value note = Value::object();
+  note["tally"] = job.tally.value();
+  note["seconds"] = since(start);
+  fs::path fresh = done;
+  fresh.replace_extension(".json");
+  io::write_text_file(fresh, io::to_json(note), false);
+  fs::rename(fresh, done);
+  return note;
+}
+
+void Engine::run_tiles(size_t number) {
+  const stages::Info& info = stage(number).info();
+  std::set<TileKey> fringe = has_surface(info.gives_products) ? store_->fringe(stage(number).halo()) : std::set<TileKey>{};
+  const std::set<TileKey> wet = info.makes(stages::Product::dtm) ? tiles_of_water() : std::set<TileKey>{};
+  fringe.insert(wet.begin(), wet.end());
+  std::vector<TileKey> keys = tiles_of(number);
+  for (const TileKey key : fringe)
+    if (!surface_tiles_.contains(key)) keys.push_back(key);
+  progress_.begin(std::string(info.name), store_->points(), "points");
+
   const auto budget = static_cast<std::uint64_t>(plan_.run.memory.value * 0.8);
-  // Joined only where nothing but points' columns comes of them.
-  const bool joins = changes && gives.empty() && !works_on(number, Grain::merge);
-  const auto done_file = [&](const TileGroup& group) {
-    const TileBox box(group.tiles);
-    return mine / (file_label(box.low) + (group.tiles.size() > 1 ? "_to_" + file_label(box.high) : "") + ".done");
-  };
-  const auto groups_of_stage = [&] {
-    if (!joins) return single_tiles(keys, measure);
-    // Those of a run that was killed, so that what it has done counts.
-    std::vector<TileGroup> groups = grouped_tiles(keys, read_boxes(mine / groups_file), measure), open;
-    std::copy_if(groups.begin(), groups.end(), std::back_inserter(open), [&](const TileGroup& g) { return !fs::exists(done_file(g)); });
-    size_t held = 0;
-    for (const TileGroup& g : groups) held += g.tiles.size();
-    if (held == keys.size() && most_bytes(open, threads_) <= budget) return groups;
-    groups = joined_tiles(keys, threads_, budget, measure);
-    write_boxes(mine / groups_file, groups);
-    return groups;
-  };
-  const std::vector<TileGroup> groups = groups_of_stage();
+  const std::vector<TileGroup> groups = groups_of(number, keys, budget);
   std::vector<Value> notes(groups.size());
   std::vector<std::uint64_t> bytes;
-  for (const TileGroup& g : groups) bytes.push_back(fs::exists(done_file(g)) ? 0 : g.bytes);
+  for (const TileGroup& g : groups) bytes.push_back(fs::exists(done_file(number, g)) ? 0 : g.bytes);
   TileQueue queue(std::move(bytes), budget);
   std::atomic<std::uint64_t> again{0};
   tbb::parallel_for(
@@ -426,38 +465,15 @@ void Engine::run_tiles(size_t number) {
       [&](const tbb::blocked_range<size_t>& range) {
         for (size_t turn = range.begin(); turn < range.end(); ++turn) {
           const TileQueue::Piece piece = queue.take();
-          const size_t i = piece.number();
-          const std::vector<TileKey>& tiles = groups[i].tiles;
-          const fs::path done = done_file(groups[i]);
-          if (fs::exists(done)) {
-            notes[i] = io::parse_json(io::read_text_file(done), done.string());
+          const TileGroup& group = groups[piece.number()];
+          Value& note = notes[piece.number()];
+          if (const fs::path done = done_file(number, group); fs::exists(done)) {
+            note = io::parse_json(io::read_text_file(done), done.string());
             ++again;
           } else {
-            stages::TileJob job{tiles[0], TileBox(tiles).metres(context_.tile_side), mine, {}, 0, {}};
-            const auto start = Clock::now();
-            job.block = store_->read_with_halo(tiles, s.halo(), columns, job.own);
-            core::add_columns(job.block, s.info().gives);
-            const size_t before = job.block.size();
-            if (before > 0 || !makes_surface || wet.contains(tiles[0])) s.run_tile(context_, job);
-            if (job.block.size() != before)
-              throw core::Error("the stage changed the number of points of a tile", std::string(s.info().name),
-                                "this is a fault of the program");
-            for (size_t k = 0, first = 0; changes && k < tiles.size(); ++k) {
-              const size_t count = tiles.size() == 1 ? job.own : store_->tiles().at(tiles[k]);
-              store_->write_overlay(mine, tiles[k], job.block, first, count, s.info().gives);
-              first += count;
-            }
-            Value note = Value::object();
-            note["tally"] = job.tally.value();
-            note["seconds"] = since(start);
-            fs::path fresh = done;
-            fresh.replace_extension(".json");
-            io::write_text_file(fresh, io::to_json(note), false);
-            fs::rename(fresh, done);
-            notes[i] = std::move(note);
+            note = run_group(number, group, wet.contains(group.tiles[0]));
           }
-          for (const TileKey k : tiles)
-            if (const auto points = store_->tiles().find(k); points != store_->tiles().end()) progress_.advance(points->second);
+          progress_.advance(group.own);
         }
       },
       tbb::simple_partitioner());
@@ -471,7 +487,7 @@ void Engine::run_tiles(size_t number) {
     account.seconds += notes[i].find("seconds")->as_number();
     if (store_->tiles().contains(first) || surface_tiles_.contains(first)) account.tally.add(Tally::from(*notes[i].find("tally")));
   }
-  if (changes) store_->add_overlay(mine, s.info().gives);
+  if (!info.gives.empty()) store_->add_overlay(folder(number), info.gives);
 }
 
 void Engine::run_merge(size_t number) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -55,6 +56,7 @@ struct Info {
   std::vector<Grain> grains;
   core::ColumnSet needs, gives;
   std::vector<Product> needs_products, gives_products;
+  bool makes(Product p) const { return std::find(gives_products.begin(), gives_products.end(), p) != gives_products.end(); }
 };
 
 /// A square of the survey's tiling: [ix, ix+1) x [iy, iy+1) times the tile's side, map metres.

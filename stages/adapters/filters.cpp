@@ -15,11 +15,6 @@ namespace {
 
 using core::Column;
 
-bool gives_points(const Stage& stage) {
-  const auto& given = stage.info().gives_products;
-  return std::find(given.begin(), given.end(), Product::points) != given.end();
-}
-
 class Smrf : public OptionStage<filters::SmrfOptions> {
  public:
   const Info& info() const override {
@@ -95,7 +90,7 @@ class Noise : public OptionStage<filters::NoiseOptions> {
   }
   void check(const Context& context) const override {
     // Ranges come from raw records; a cloud has them only where its files say so.
-    if ((!options.range_min && !options.range_max) || !context.source || !gives_points(*context.source)) return;
+    if ((!options.range_min && !options.range_max) || !context.source || !context.source->info().makes(Product::points)) return;
     for (const io::PointFile& f : context.survey.points) {
       const std::filesystem::path file = io::resolve(context.survey, f.file);
       std::vector<std::string> ignored;
