@@ -107,12 +107,12 @@ class Thinning {
 
   /// Whether the place lies on an edge of the face; of the two beside it the one whose vertices come first becomes the face.
   bool move_to_first(std::int32_t& face, const Place& p) const {
-    const Delaunay::Face& f = dt_.faces()[face];
+    const Face& f = dt_.faces()[face];
     if (!f.is_finite()) return false;
     for (size_t k = 0; k < 3; ++k) {
       const std::int32_t a = f.v[(k + 1) % 3], b = f.v[(k + 2) % 3];
       if (orientation(places_[a], places_[b], p) != 0) continue;
-      const Delaunay::Face& across = dt_.faces()[f.n[k]];
+      const Face& across = dt_.faces()[f.n[k]];
       if (!across.is_finite()) return true;
       const std::int32_t far = across.v[0] ^ across.v[1] ^ across.v[2] ^ a ^ b;
       if (is_before(places_[far], places_[f.v[k]])) face = f.n[k];
@@ -125,7 +125,7 @@ class Thinning {
   /// Where all points are within the tolerance: of every disc that is too wide the point nearest its centre.
   std::vector<std::int32_t> in_wide_discs() const {
     std::vector<std::int32_t> out;
-    for (const Delaunay::Face& face : dt_.faces()) {
+    for (const Face& face : dt_.faces()) {
       if (!face.is_finite()) continue;
       const Circumcircle c = circle(face.v);
       if (c.radius <= widest_) continue;

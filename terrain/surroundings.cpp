@@ -131,7 +131,7 @@ void Surroundings::mark_half_plane(const Place& a, const Place& b) {
     }
 }
 
-void Surroundings::mark(const Delaunay::Face& face, const std::vector<Place>& places) {
+void Surroundings::mark(const Face& face, const std::vector<Place>& places) {
   const auto at = [&](int k) -> const Place& { return places[static_cast<size_t>(face.v[k])]; };
   if (!face.is_finite()) {
     const int k = face.v[0] < 0 ? 0 : face.v[1] < 0 ? 1 : 2;
@@ -157,7 +157,7 @@ std::vector<std::uint32_t> Surroundings::needed(const Delaunay& dt, const std::v
   if (left_.empty()) return more;
   if (dt.faces().empty())
     for (const std::int32_t c : left_) state_[c] = 2;
-  for (const Delaunay::Face& face : dt.faces())
+  for (const Face& face : dt.faces())
     if (settled_ == 0 || std::max({face.v[0], face.v[1], face.v[2]}) >= settled_) mark(face, places);
   settled_ = static_cast<std::int32_t>(places.size());
   std::vector<std::int32_t> still;

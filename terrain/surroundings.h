@@ -24,7 +24,7 @@ class Surroundings {
   std::vector<std::uint32_t> needed(const Delaunay& dt, const std::vector<Place>& places);
 
  private:
-  void mark(const Delaunay::Face& face, const std::vector<Place>& places);
+  void mark(const Face& face, const std::vector<Place>& places);
   void mark_disc(double x, double y, double radius, const Rectangle& part);
   void mark_half_plane(const Place& a, const Place& b);
   Rectangle cell(std::int32_t c) const;

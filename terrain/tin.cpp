@@ -130,17 +130,15 @@ struct Measures {
 /// Gives tin.triangles and tin.across the faces that come near `where` and whose circles are small enough.
 class Faces {
  public:
-  Faces(Delaunay& dt, const std::vector<Place>& places, double max_radius, const Rectangle& where, Tin& tin)
-      : dt_(dt), places_(places), max_radius_(max_radius), where_(where), tin_(tin) {}
+  Faces(const std::vector<Face>& faces, const std::vector<Place>& places, double max_radius, const Rectangle& where, Tin& tin)
+      : faces_(faces), places_(places), max_radius_(max_radius), where_(where), tin_(tin) {}
 
   void take() {
-    const auto& faces = dt_.faces();
-    const auto size = static_cast<std::int32_t>(faces.size());
-    std::vector<std::int8_t> order(faces.size(), -1);
-    dt_.settle(dt_.cocircular());
+    const auto size = static_cast<std::int32_t>(faces_.size());
+    std::vector<std::int8_t> order(faces_.size(), -1);
     for (std::int32_t f = 0; f < size; ++f)
-      if (faces[f].is_finite()) order[f] = order_of(faces[f]);
-    std::vector<std::int32_t> number(faces.size(), -1);
+      if (faces_[f].is_finite()) order[f] = order_of(faces_[f]);
+    std::vector<std::int32_t> number(faces_.size(), -1);
     std::int32_t count = 0;
     for (std::int32_t f = 0; f < size; ++f)
       if (order[f] >= 0) number[f] = count++;
@@ -149,7 +147,7 @@ class Faces {
     for (std::int32_t f = 0; f < size; ++f) {
       if (order[f] < 0) continue;
       const auto [i, j, k] = orders[static_cast<size_t>(order[f])];
-      const auto& [v, n] = faces[f];
+      const auto& [v, n] = faces_[f];
       tin_.triangles.push_back({v[i], v[j], v[k]});
       tin_.across.push_back({number[n[i]], number[n[j]], number[n[k]]});
     }
@@ -161,7 +159,7 @@ class Faces {
       {{0, 1, 2}, {1, 0, 2}, {}, {1, 2, 0}, {0, 2, 1}, {}, {2, 0, 1}, {2, 1, 0}}};
 
   /// The one of `orders` in which the vertices ascend; -1 where the face is left out.
-  std::int8_t order_of(const Delaunay::Face& face) const {
+  std::int8_t order_of(const Face& face) const {
     const std::array<Place, 3> p{places_[face.v[0]], places_[face.v[1]], places_[face.v[2]]};
     if (std::max(std::max(p[0].y, p[1].y), p[2].y) < where_.south || std::min(std::min(p[0].y, p[1].y), p[2].y) > where_.north) return -1;
     const int order = is_before(p[1], p[0]) | is_before(p[2], p[0]) << 1 | is_before(p[2], p[1]) << 2;
@@ -170,36 +168,12 @@ class Faces {
     return static_cast<std::int8_t>(order);
   }
 
-  Delaunay& dt_;
+  const std::vector<Face>& faces_;
   const std::vector<Place>& places_;
   double max_radius_;
   const Rectangle& where_;
   Tin& tin_;
 };
-
-/// Neighbours of triangles.
-std::vector<Triangle> neighbours(const std::vector<Triangle>& triangles) {
-  // Edges by their vertices: both sides of one are neighbours in that order.
-  struct Edge {
-    std::int32_t low, high, triangle, opposite;
-  };
-  std::vector<Edge> edges;
-  edges.reserve(3 * triangles.size());
-  for (size_t t = 0; t < triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax(triangles[t][(k + 1) % 3], triangles[t][(k + 2) % 3]);
-      edges.push_back({low, high, static_cast<std::int32_t>(t), k});
-    }
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return std::tie(a.low, a.high) < std::tie(b.low, b.high); });
-  std::vector<Triangle> out(triangles.size(), Triangle{-1, -1, -1});
-  for (size_t e = 0; e + 1 < edges.size(); ++e) {
-    const Edge &a = edges[e], &b = edges[e + 1];
-    if (a.low != b.low || a.high != b.high) continue;
-    out[a.triangle][a.opposite] = b.triangle;
-    out[b.triangle][b.opposite] = a.triangle;
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -234,7 +208,8 @@ Tin triangulate(const core::Block& block, const std::vector<std::uint32_t>& rows
     vertices.take(more);
     dt.insert(first, vertices.count());
   }
-  Faces(dt, vertices.places(), max_radius, where, tin).take();
+  dt.settle(dt.cocircular());
+  Faces(dt.faces(), vertices.places(), max_radius, where, tin).take();
   return tin;
 }
 
@@ -248,12 +223,8 @@ Tin triangulate(const core::Block& block, const std::vector<std::uint32_t>& rows
   vertices.take(sources);
   std::vector<std::pair<std::int32_t, std::int32_t>> edges;
   for (const auto& [a, b] : constraints.edges) edges.emplace_back(vertices.of_line(a), vertices.of_line(b));
-  ConstrainedTriangles found = constrained_delaunay(vertices.places(), edges, {block.origin.x(), block.origin.y()});
-  for (Triangle& t : found.triangles) {
-    std::sort(t.begin(), t.end(), [&](std::int32_t a, std::int32_t b) { return is_before(tin.place(a), tin.place(b)); });
-    if (!Measures(tin.place(t[0]), tin.place(t[1]), tin.place(t[2])).wider_than(max_radius)) tin.triangles.push_back(t);
-  }
-  tin.across = neighbours(tin.triangles);
+  ConstrainedFaces found = constrained_delaunay(vertices.places(), edges, {block.origin.x(), block.origin.y()});
+  Faces(found.faces, vertices.places(), max_radius, where, tin).take();
   tin.constrained = std::move(found.held);
   return tin;
 }
