@@ -82,6 +82,8 @@ function(swath_room_tests room)
   endif()
   add_executable(${room}_tests ${tests})
   target_link_libraries(${room}_tests PRIVATE swath::${room} ${T_LIBRARIES} swath_test_support swath_settings GTest::gtest_main)
+  # The rooms do the work: the tests themselves compile in three quarters of the time.
+  target_compile_options(${room}_tests PRIVATE $<$<CONFIG:Release>:-O1>)
   if(T_SLOW)
     gtest_discover_tests(${room}_tests TEST_FILTER "${T_SLOW}" TEST_LIST ${room}_slow DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900 LABELS slow)
     gtest_discover_tests(${room}_tests TEST_FILTER "-${T_SLOW}" DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
