@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "filters/bins.h"
+#include "filters/crests.h"
 #include "filters/decks.h"
 #include "filters/ground_labels.h"
 #include "filters/inpaint.h"
@@ -59,6 +60,7 @@ constexpr double share_sigma = 3.0;                                           //
 
 int window_of(const GroundSurfaceOptions& o) { return static_cast<int>(std::ceil(0.5 * o.widest / ground_cell - 1e-9)) + 1; }
 Inpainting terrain_filling(int window) { return {.reach = 2 * window, .relax = 4, .extrapolate = true}; }
+CrestOptions crest_options(int window) { return {.widest = 2 * window - 2, .cut = 0.5}; }
 // So that the country's slope reaches no farther than the widest opening.
 int country_window(int window) { return std::max(1, window - (reach(country_sigma) + 1) / 2); }
 
@@ -149,7 +151,8 @@ Raster coarse_surface(const core::Block& b, const core::Lattice& l, const Ground
   const Raster filled = inpaint(lowest, gap_filling);
   const Raster country = smoothed(open_disk(filled, country_window(window)), country_sigma);
   remove_objects(ground, filled, slope_of(country), o, window);
-  remove_deck_ends(ground, lowest, {.steepest = o.steepest, .step = step_left});
+  remove_decks(ground, lowest, {.steepest = o.steepest, .step = step_left});
+  restore_crests(ground, lowest, filled, crest_options(window));
   return inpaint(ground, terrain_filling(window));
 }
 
@@ -317,7 +320,9 @@ int surface_reach(const GroundSurfaceOptions& o) {
   const int window = window_of(o);
   int cells = gap_filling.support() + 2 * std::min(window, pit_window) + pit_filling.support() + 4 * pit_radius;
   const int country = 2 * country_window(window) + reach(country_sigma) + 1;
-  cells += gap_filling.support() + std::max(2 * window, country) + deck_support + terrain_filling(window).support();
+  const CrestReach crest = crest_reach(crest_options(window));
+  cells += gap_filling.support() + std::max(std::max(2 * window, country) + deck_support + crest.ground, crest.filled);
+  cells += terrain_filling(window).support();
   return cells + reach(smoothing) + fine_reach();
 }
 

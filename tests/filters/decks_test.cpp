@@ -44,7 +44,7 @@ int voids(const Raster& r) {
 TEST(Decks, TheEndsGoWithTheMiddleAndTheBanksStay) {
   const Raster surface = crossed_ditch(0.67, 5.0, deck);
   Raster ground = without_middle(surface, 36, 44);
-  remove_deck_ends(ground, surface, {});
+  remove_decks(ground, surface, {});
   for (int j = 0; j < size; ++j)
     for (int i = 0; i < size; ++i) {
       const size_t c = ground.at(i, j);
@@ -64,7 +64,7 @@ TEST(Decks, AnEmbankmentStaysWhateverWasTakenOffOnIt) {
       surface.value[surface.at(i, j)] = level - static_cast<float>(std::clamp(1.43 * (std::abs(i - 40) - 4.0), 0.0, 8.0));
   Raster ground = without_middle(surface, 36, 44);
   const int before = voids(ground);
-  remove_deck_ends(ground, surface, {});
+  remove_decks(ground, surface, {});
   EXPECT_EQ(voids(ground), before);
 }
 
@@ -74,14 +74,14 @@ TEST(Decks, ARoofBesideLevelGroundTakesNoneOfItAlong) {
     for (int i = 36; i <= 44; ++i) surface.value[surface.at(i, j)] = level + 6.0F;
   Raster ground = without_middle(surface, 30, 50);
   const int before = voids(ground);
-  remove_deck_ends(ground, surface, {});
+  remove_decks(ground, surface, {});
   EXPECT_EQ(voids(ground), before);
 }
 
 TEST(Decks, NothingHappensBeyondTheSupport) {
   const Raster surface = crossed_ditch(0.67, 5.0, deck);
   Raster ground = without_middle(surface, 36, 44);
-  remove_deck_ends(ground, surface, {});
+  remove_decks(ground, surface, {});
   for (int j = 0; j < size; ++j)
     for (int i = 0; i < size; ++i)
       if (std::isnan(ground.value[ground.at(i, j)])) {
