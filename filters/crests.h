@@ -6,21 +6,19 @@
 
 namespace swath::filters {
 
-/// Cells of 1 m.
-struct CrestOptions {
-  int widest = 50;   ///< cells across an object
-  double cut = 0.5;  ///< m: what was cut off less deep is not looked for
+/// The lowest returns in cells of 1 m, and what an opening made of them.
+struct OpenedReturns {
+  const Raster& lowest;  ///< NaN where no return is, and on decks
+  const Raster& filled;  ///< with holes filled
+  const Raster& opened;  ///< the lowest that the opening came to
+  int widest = 25;       ///< cells, radius of the widest disk
 };
 
-/// Puts back into `ground` what an opening cut off from spurs, ridges and the rims of breaks, where no disk rests: cells that planes
-/// through the ground beside them foretell, although the surface without them lies lower. `surface`: the lowest returns, NaN where none
-/// and on decks; `ground`: NaN also where an object was taken off; `filled`: the lowest returns, holes filled.
-void restore_crests(Raster& ground, const Raster& surface, const Raster& filled, const CrestOptions& o);
+/// Puts back into `ground` (NaN where no return is and where an object was taken off) what the opening cut deeply off spurs, ridges and
+/// the rims of breaks.
+void restore_crests(Raster& ground, const OpenedReturns& r);
 
-/// Cells around a cell that decide on it: of `ground` and `surface`, and of `filled`.
-struct CrestReach {
-  int ground, filled;
-};
-CrestReach crest_reach(const CrestOptions& o);
+/// Cells around a cell of `ground` that decide on it; of `filled`, the widest disk more.
+extern const int crest_support;
 
 }  // namespace swath::filters

@@ -60,7 +60,6 @@ constexpr double share_sigma = 3.0;                                           //
 
 int window_of(const GroundSurfaceOptions& o) { return static_cast<int>(std::ceil(0.5 * o.widest / ground_cell - 1e-9)) + 1; }
 Inpainting terrain_filling(int window) { return {.reach = 2 * window, .relax = 4, .extrapolate = true}; }
-CrestOptions crest_options(int window) { return {.widest = 2 * window - 2, .cut = 0.5}; }
 // So that the country's slope reaches no farther than the widest opening.
 int country_window(int window) { return std::max(1, window - (reach(country_sigma) + 1) / 2); }
 
@@ -98,8 +97,9 @@ Raster slope_of(const Raster& r) {
   return out;
 }
 
-/// Voids in `terrain` the cells that drop by more than ground can when the disk grows by a cell. `slope`: of the country.
-void remove_objects(Raster& terrain, const Raster& filled, const Raster& slope, const GroundSurfaceOptions& o, int window) {
+/// Voids in `terrain` the cells that drop by more than ground can when the disk grows by a cell. `slope`: of the country. Returns the
+/// opened surface.
+Raster remove_objects(Raster& terrain, const Raster& filled, const Raster& slope, const GroundSurfaceOptions& o, int window) {
   const double cap = o.steepest * ground_cell + step_left;
   Raster last = filled;
   for (int radius = 1; radius <= window; radius += radius < every_radius ? 1 : 2) {
@@ -110,6 +110,7 @@ void remove_objects(Raster& terrain, const Raster& filled, const Raster& slope, 
       last.value[c] = std::min(last.value[c], opened.value[c]);
     }
   }
+  return last;
 }
 
 /// Closing along a line of 2 half + 1 cells in the direction (di, dj). Cells without value take no part.
@@ -150,9 +151,9 @@ Raster coarse_surface(const core::Block& b, const core::Lattice& l, const Ground
   ground = lowest;
   const Raster filled = inpaint(lowest, gap_filling);
   const Raster country = smoothed(open_disk(filled, country_window(window)), country_sigma);
-  remove_objects(ground, filled, slope_of(country), o, window);
+  const Raster opened = remove_objects(ground, filled, slope_of(country), o, window);
   remove_decks(ground, lowest, {.steepest = o.steepest, .step = step_left});
-  restore_crests(ground, lowest, filled, crest_options(window));
+  restore_crests(ground, {lowest, filled, opened, window - 1});
   return inpaint(ground, terrain_filling(window));
 }
 
@@ -320,9 +321,7 @@ int surface_reach(const GroundSurfaceOptions& o) {
   const int window = window_of(o);
   int cells = gap_filling.support() + 2 * std::min(window, pit_window) + pit_filling.support() + 4 * pit_radius;
   const int country = 2 * country_window(window) + reach(country_sigma) + 1;
-  const CrestReach crest = crest_reach(crest_options(window));
-  cells += gap_filling.support() + std::max(std::max(2 * window, country) + deck_support + crest.ground, crest.filled);
-  cells += terrain_filling(window).support();
+  cells += gap_filling.support() + std::max(2 * window, country) + deck_support + crest_support + terrain_filling(window).support();
   return cells + reach(smoothing) + fine_reach();
 }
 
