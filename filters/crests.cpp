@@ -15,7 +15,7 @@ namespace swath::filters {
 namespace {
 
 constexpr double cut = 1.5;         // m: what was cut less deep, the robust surface comes back to by itself
-constexpr int rounds = 3;           // each leads a few cells farther
+constexpr int rounds = 2;           // each leads a few cells farther
 constexpr int near = 3, far = 5;    // cells, half the width of the ground that foretells: where returns are dense, and where sparse
 constexpr int dense = 15;           // cells with a return of the 49 around
 constexpr double fewest = 5.0;      // cells of ground behind a plane

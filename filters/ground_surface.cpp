@@ -170,7 +170,7 @@ class Sums {
 
  private:
   static constexpr double unit = 1 << 24;
-  static std::int64_t whole(double v) { return std::llround(v * unit); }
+  static std::int64_t whole(double v) { return static_cast<std::int64_t>(v * unit + std::copysign(0.5, v)); }
   Raster raster(const std::vector<std::int64_t>& sums) const {
     Raster r(nx_, ny_, 0.0F);
     for (size_t c = 0; c < sums.size(); ++c) r.value[c] = static_cast<float>(static_cast<double>(sums[c]) / unit);
@@ -188,8 +188,9 @@ struct Place {
 
 Place place_of(const core::Lattice& l, double x, double y) {
   const double u = x / l.cell - 0.5 - static_cast<double>(l.i0), v = y / l.cell - 0.5 - static_cast<double>(l.j0);
-  const double i = std::floor(u), j = std::floor(v);
-  return {l.at(static_cast<int>(i), static_cast<int>(j)), u - i, v - j};
+  // Both are positive: the lattice holds a ring of cells around.
+  const int i = static_cast<int>(u), j = static_cast<int>(v);
+  return {l.at(i, j), u - i, v - j};
 }
 
 RasterSample sample(const Raster& r, const Place& at, double cell) {
