@@ -14,15 +14,16 @@
 namespace swath::filters {
 namespace {
 
-constexpr double cut = 1.5;         // m: what was cut less deep, the robust surface comes back to by itself
-constexpr int rounds = 2;           // each leads a few cells farther
-constexpr int near = 3, far = 5;    // cells, half the width of the ground that foretells: where returns are dense, and where sparse
-constexpr int dense = 15;           // cells with a return of the 49 around
-constexpr double fewest = 5.0;      // cells of ground behind a plane
-constexpr double roughest = 0.3;    // m, standard deviation of the ground about a plane that foretells
-constexpr double smoothest = 0.05;  // m: where it comes out as less, by chance
-constexpr double sigmas = 2.0;      // of the plane's error at the cell, in the depth of the cut
-constexpr double tolerance = 0.3;   // m from the plane, beyond the ground's own deviation
+constexpr double cut = 1.5;            // m: what was cut less deep, the robust surface comes back to by itself
+constexpr int rounds = 3;              // each leads a few cells farther
+constexpr int near = 3, far = 5;       // cells, half the width of the ground that foretells: where returns are dense, and where sparse
+constexpr int dense = 15;              // cells with a return of the 49 around
+constexpr double fewest = 5.0;         // cells of ground behind a plane
+constexpr double roughest = 0.3;       // m, standard deviation of the ground about a plane that foretells
+constexpr double place_in_cell = 0.3;  // m, standard deviation of a return's place within its cell along the slope
+constexpr double smoothest = 0.05;     // m: where it comes out as less, by chance
+constexpr double sigmas = 2.0;         // of the plane's error at the cell, in the depth of the cut
+constexpr double tolerance = 0.3;      // m from the plane, beyond the ground's own deviation
 // m, and m per m to the side: below the plane, where the surface falls off it. Planes through the roughest ground err by as much.
 constexpr double fall = 0.5, fall_per_run = 0.1;
 
@@ -90,7 +91,8 @@ bool is_crest(const Raster& ground, const OpenedReturns& r, Cell c) {
   const int half = returns < dense ? far : near;
   return std::any_of(directions.begin(), directions.end(), [&](const auto& d) {
     const Foretold plane = foretold(ground, c, {c.i + half * d.first, c.j + half * d.second}, half);
-    return plane.known && plane.spread <= roughest && std::abs(r.lowest.value[at] - plane.height) <= tolerance + plane.spread &&
+    return plane.known && plane.spread <= std::hypot(roughest, place_in_cell * std::hypot(plane.east, plane.north)) &&
+           std::abs(r.lowest.value[at] - plane.height) <= tolerance + plane.spread &&
            plane.height - r.opened.value[at] > cut + sigmas * plane.error && !stands_free(r, plane, c);
   });
 }

@@ -42,7 +42,7 @@ int voids(const Raster& r) {
 }
 
 TEST(Decks, TheEndsGoWithTheMiddleAndTheBanksStay) {
-  const Raster surface = crossed_ditch(0.67, 5.0, deck);
+  Raster surface = crossed_ditch(0.67, 5.0, deck);
   Raster ground = without_middle(surface, 36, 44);
   remove_decks(ground, surface, {});
   for (int j = 0; j < size; ++j)
@@ -52,6 +52,7 @@ TEST(Decks, TheEndsGoWithTheMiddleAndTheBanksStay) {
       // Where the deck stands less than the step over the flank it may be ground.
       if (!on_deck || std::abs(j - 40) <= 9) {
         EXPECT_EQ(std::isnan(ground.value[c]), on_deck) << i << " " << j;
+        EXPECT_EQ(std::isnan(surface.value[c]), on_deck) << i << " " << j;
       }
     }
 }
@@ -79,7 +80,7 @@ TEST(Decks, ARoofBesideLevelGroundTakesNoneOfItAlong) {
 }
 
 TEST(Decks, NothingHappensBeyondTheSupport) {
-  const Raster surface = crossed_ditch(0.67, 5.0, deck);
+  Raster surface = crossed_ditch(0.67, 5.0, deck);
   Raster ground = without_middle(surface, 36, 44);
   remove_decks(ground, surface, {});
   for (int j = 0; j < size; ++j)
