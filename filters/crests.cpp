@@ -20,7 +20,7 @@ constexpr int near = 3, far = 5;       // cells, half the width of the ground th
 constexpr int dense = 15;              // cells with a return of the 49 around
 constexpr double fewest = 5.0;         // cells of ground behind a plane
 constexpr double roughest = 0.3;       // m, standard deviation of the ground about a plane that foretells
-constexpr double place_in_cell = 0.3;  // m, standard deviation of a return's place within its cell along the slope
+constexpr double place_in_cell = 0.3;  // m, standard deviation of where in its cell, up the slope, a return lies
 constexpr double smoothest = 0.05;     // m: where it comes out as less, by chance
 constexpr double sigmas = 2.0;         // of the plane's error at the cell, in the depth of the cut
 constexpr double tolerance = 0.3;      // m from the plane, beyond the ground's own deviation

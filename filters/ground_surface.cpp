@@ -4,7 +4,7 @@
 // growing disk drops. Deviations: the drop that is allowed per radius grows with the slope of the country (as Sithole 2001 adapts the
 // slope filter), and is never more than the steepest ground can fall within a cell and half a metre, so that low halls are taken off by
 // large disks too; low outliers are looked for in the surface that a small opening leaves and not in the lowest returns, where ground
-// seen through a gap of the canopy looks the same.
+// seen through a gap of the canopy looks the same. Bridge decks are taken off to their ends, and crests put back (decks.h, crests.h).
 // The fine one is robust interpolation (Kraus & Pfeifer 1998, ISPRS J. 53): a surface through all last returns with weights by their
 // distance from the surface before. Deviations: moving planes stand for linear prediction (moving_planes.h) and breaks are kept by taking
 // the smoother side; the weight's arm follows the spread of the returns under the surface and shrinks where many stand knee-high, which
