@@ -70,7 +70,7 @@ class Edges {
 
 const int deck_support = growth + deck_width + gap + alike + 1;
 
-void remove_deck_ends(Raster& ground, const Raster& surface, const DeckOptions& o) {
+void remove_decks(Raster& ground, Raster& surface, const DeckOptions& o) {
   const Edges sheer(surface, o.steepest, o.step), stepped(surface, 0.0, o.step);
   const auto taken_off = [&](size_t c) { return std::isnan(ground.value[c]) && !std::isnan(surface.value[c]); };
   std::array<std::vector<char>, directions> shows;
@@ -117,7 +117,7 @@ void remove_deck_ends(Raster& ground, const Raster& surface, const DeckOptions& 
     front = std::move(next);
   }
   for (size_t c = 0; c < deck.size(); ++c)
-    if (deck[c]) ground.value[c] = std::nanf("");
+    if (deck[c]) ground.value[c] = surface.value[c] = std::nanf("");
 }
 
 }  // namespace swath::filters

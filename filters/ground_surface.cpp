@@ -4,7 +4,7 @@
 // growing disk drops. Deviations: the drop that is allowed per radius grows with the slope of the country (as Sithole 2001 adapts the
 // slope filter), and is never more than the steepest ground can fall within a cell and half a metre, so that low halls are taken off by
 // large disks too; low outliers are looked for in the surface that a small opening leaves and not in the lowest returns, where ground
-// seen through a gap of the canopy looks the same.
+// seen through a gap of the canopy looks the same. Bridge decks are taken off to their ends, and crests put back (decks.h, crests.h).
 // The fine one is robust interpolation (Kraus & Pfeifer 1998, ISPRS J. 53): a surface through all last returns with weights by their
 // distance from the surface before. Deviations: moving planes stand for linear prediction (moving_planes.h) and breaks are kept by taking
 // the smoother side; the weight's arm follows the spread of the returns under the surface and shrinks where many stand knee-high, which
@@ -24,6 +24,7 @@
 
 #include "core/floor_div.h"
 #include "filters/bins.h"
+#include "filters/crests.h"
 #include "filters/decks.h"
 #include "filters/ground_labels.h"
 #include "filters/inpaint.h"
@@ -97,8 +98,9 @@ Raster slope_of(const Raster& r) {
   return out;
 }
 
-/// Voids in `terrain` the cells that drop by more than ground can when the disk grows by a cell. `slope`: of the country.
-void remove_objects(Raster& terrain, const Raster& filled, const Raster& slope, const GroundSurfaceOptions& o, int window) {
+/// Voids in `terrain` the cells that drop by more than ground can when the disk grows by a cell. `slope`: of the country. Returns the
+/// opened surface.
+Raster remove_objects(Raster& terrain, const Raster& filled, const Raster& slope, const GroundSurfaceOptions& o, int window) {
   const double cap = o.steepest * ground_cell + step_left;
   Raster last = filled;
   for (int radius = 1; radius <= window; radius += radius < every_radius ? 1 : 2) {
@@ -109,6 +111,7 @@ void remove_objects(Raster& terrain, const Raster& filled, const Raster& slope, 
       last.value[c] = std::min(last.value[c], opened.value[c]);
     }
   }
+  return last;
 }
 
 /// Closing along a line of 2 half + 1 cells in the direction (di, dj). Cells without value take no part.
@@ -149,8 +152,9 @@ Raster coarse_surface(const core::Block& b, const core::Lattice& l, const Ground
   ground = lowest;
   const Raster filled = inpaint(lowest, gap_filling);
   const Raster country = smoothed(open_disk(filled, country_window(window)), country_sigma);
-  remove_objects(ground, filled, slope_of(country), o, window);
-  remove_deck_ends(ground, lowest, {.steepest = o.steepest, .step = step_left});
+  const Raster opened = remove_objects(ground, filled, slope_of(country), o, window);
+  remove_decks(ground, lowest, {.steepest = o.steepest, .step = step_left});
+  restore_crests(ground, {lowest, filled, opened, window - 1});
   return inpaint(ground, terrain_filling(window));
 }
 
@@ -318,7 +322,7 @@ int surface_reach(const GroundSurfaceOptions& o) {
   const int window = window_of(o);
   int cells = gap_filling.support() + 2 * std::min(window, pit_window) + pit_filling.support() + 4 * pit_radius;
   const int country = 2 * country_window(window) + reach(country_sigma) + 1;
-  cells += gap_filling.support() + std::max(2 * window, country) + deck_support + terrain_filling(window).support();
+  cells += gap_filling.support() + std::max(2 * window, country) + deck_support + crest_support + terrain_filling(window).support();
   return cells + reach(smoothing) + fine_reach();
 }
 

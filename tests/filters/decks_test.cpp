@@ -42,9 +42,9 @@ int voids(const Raster& r) {
 }
 
 TEST(Decks, TheEndsGoWithTheMiddleAndTheBanksStay) {
-  const Raster surface = crossed_ditch(0.67, 5.0, deck);
+  Raster surface = crossed_ditch(0.67, 5.0, deck);
   Raster ground = without_middle(surface, 36, 44);
-  remove_deck_ends(ground, surface, {});
+  remove_decks(ground, surface, {});
   for (int j = 0; j < size; ++j)
     for (int i = 0; i < size; ++i) {
       const size_t c = ground.at(i, j);
@@ -52,6 +52,7 @@ TEST(Decks, TheEndsGoWithTheMiddleAndTheBanksStay) {
       // Where the deck stands less than the step over the flank it may be ground.
       if (!on_deck || std::abs(j - 40) <= 9) {
         EXPECT_EQ(std::isnan(ground.value[c]), on_deck) << i << " " << j;
+        EXPECT_EQ(std::isnan(surface.value[c]), on_deck) << i << " " << j;
       }
     }
 }
@@ -64,7 +65,7 @@ TEST(Decks, AnEmbankmentStaysWhateverWasTakenOffOnIt) {
       surface.value[surface.at(i, j)] = level - static_cast<float>(std::clamp(1.43 * (std::abs(i - 40) - 4.0), 0.0, 8.0));
   Raster ground = without_middle(surface, 36, 44);
   const int before = voids(ground);
-  remove_deck_ends(ground, surface, {});
+  remove_decks(ground, surface, {});
   EXPECT_EQ(voids(ground), before);
 }
 
@@ -74,14 +75,14 @@ TEST(Decks, ARoofBesideLevelGroundTakesNoneOfItAlong) {
     for (int i = 36; i <= 44; ++i) surface.value[surface.at(i, j)] = level + 6.0F;
   Raster ground = without_middle(surface, 30, 50);
   const int before = voids(ground);
-  remove_deck_ends(ground, surface, {});
+  remove_decks(ground, surface, {});
   EXPECT_EQ(voids(ground), before);
 }
 
 TEST(Decks, NothingHappensBeyondTheSupport) {
-  const Raster surface = crossed_ditch(0.67, 5.0, deck);
+  Raster surface = crossed_ditch(0.67, 5.0, deck);
   Raster ground = without_middle(surface, 36, 44);
-  remove_deck_ends(ground, surface, {});
+  remove_decks(ground, surface, {});
   for (int j = 0; j < size; ++j)
     for (int i = 0; i < size; ++i)
       if (std::isnan(ground.value[ground.at(i, j)])) {

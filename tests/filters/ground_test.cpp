@@ -99,6 +99,16 @@ TEST(Ground, CropsAreTakenOff) {
   EXPECT_LT(e.type_2(), 5.0);
 }
 
+TEST(Ground, ASpurThatNoDiskRestsOnStays) {
+  core::Block b = test::make_scene("flat").block;
+  // 12 m high, its sides of 35 degrees.
+  for (size_t p = 0; p < b.size(); ++p)
+    b.z[p] += std::max(0.0, 12.0 - 0.7 * std::max(std::abs(b.x[p] - 100.0), std::abs(b.y[p] - 80.0) - 30.0));
+  classify_ground(b, b.size(), {});
+  const auto kept = static_cast<size_t>(std::count(b.classification.begin(), b.classification.end(), core::point_class::ground));
+  EXPECT_GT(kept, b.size() * 997 / 1000);  // of a spur that is cut off, 4 % of all are lost
+}
+
 /// Six scenes side by side, 600 m x 320 m, with sheer steps between them.
 core::Block six_scenes() {
   core::Block all;
@@ -119,7 +129,7 @@ core::Block six_scenes() {
 TEST(Ground, LabelsDependNeitherOnTilesNorOnOrder) {
   GroundOptions o;
   o.widest = core::Metres(8.0);
-  ASSERT_LT(halo(o), 200.0);  // so that tiles do not see the whole
+  ASSERT_LT(halo(o), 225.0);  // so that tiles do not see the whole
   const auto filter = [&](core::Block& b, size_t own) { classify_ground(b, own, o); };
   const core::Block start = six_scenes();
   core::Block whole = start;
