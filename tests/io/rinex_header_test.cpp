@@ -34,7 +34,7 @@ std::string epoch_2(const std::string& time, int n) {
   std::string out = text;
   for (int i = 0; i < n; ++i) {
     if (i > 0 && i % 12 == 0) out += "\n" + std::string(32, ' ');
-    char name[8];
+    char name[16];
     std::snprintf(name, sizeof name, "G%2d", i + 1);
     out += name;
   }
