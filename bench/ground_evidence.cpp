@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What filters.ground knows of returns, for bench/accuracy/ground_calibration.py: ground_evidence < POINTS > EVIDENCE.
-// In: six doubles per point: easting, northing, height (m), return number, number of returns, strip. Out: the floats of
+// In: six doubles per point: easting, northing, height (m), return number, number of returns, strip. Out: the nine floats of
 // GroundEvidence.
 #include <array>
 #include <cstdio>
@@ -22,8 +22,7 @@ int main() {
     b.strip.push_back(static_cast<std::uint16_t>(row[5]));
   }
   for (const filters::GroundEvidence& e : filters::ground_evidence(b, b.size(), {})) {
-    const std::array<float, 11> row{e.chance,   e.above,  e.spread,  e.lowered,     e.narrowed,   e.slope,
-                                    e.standing, e.sunken, e.support, e.over_lowest, e.low_objects};
+    const std::array<float, 9> row{e.chance, e.above, e.spread, e.lowered, e.narrowed, e.slope, e.standing, e.sunken, e.support};
     if (std::fwrite(row.data(), sizeof row, 1, stdout) != 1) return 1;
   }
   return 0;

@@ -5,15 +5,13 @@
 // the lowest ones alone are ground.
 // Where the returns are two populations, soil and a low crop that drew the surface up, the ground is the lower one (ground_populations.h).
 // The chance is counted from the heights of all returns around (ground_chance.h), and what is bearable must have some: a half where returns
-// are dense, any where they are sparse and the surface itself is in doubt. The probability that is stated is the chance, calibrated
-// with what else is seen at the place.
+// are dense, any where they are sparse and the surface itself is in doubt. The probability that is stated is the chance, calibrated.
 #include "filters/ground.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 #include "filters/bins.h"
@@ -37,9 +35,8 @@ constexpr double sunken_room = 1.5;                    // m more under the surfa
 constexpr double least_spread = 0.01;                  // m: below what ranges are recorded to
 constexpr double inflated = 1.5;                       // of the lower population's spread: the surface's where it lies between two
 
-// By evidence_of(): bench/accuracy/ground_calibration.py, 2026-11-22.
-constexpr std::array<double, 9> calibration{17.4583, 0.3839, -5.4725, 5.5460, -0.0937, 2.9383, 0.4145, -0.6776, -0.1367};
-constexpr double least_chance = 1e-4;  // that is calibrated
+// Constant, per log odds of the chance, per logarithm of the share standing knee-high: bench/accuracy/ground_calibration.py, 2026-11-22.
+constexpr std::array<double, 3> calibration{-2.497, 0.860, -0.830};
 
 GroundSurfaceOptions surface_options(const GroundOptions& o) { return {o.widest.value, std::tan(o.steepest.value), o.noise.value}; }
 
@@ -89,31 +86,12 @@ void move_to_lower(ReturnOverGround& r, const LowerPopulations& lower, const cor
   r.spread = spread;
 }
 
-/// What tells a crop that drew the surface up from ground that the surface missed, beside the chance: lower returns near by, the height,
-/// what stands low and knee-high around, and returns deep under a surface that errs. Low objects are believed the more the
-/// denser the returns.
-std::array<double, calibration.size()> evidence_of(const GroundEvidence& e, double over) {
-  const double p = std::clamp<double>(e.chance, least_chance, 1.0 - least_chance);
-  const double returns = std::log(e.support + 1.0), objects = std::log(e.low_objects + 0.003);
-  return {1.0,
-          std::log(p / (1.0 - p)),
-          std::log1p(e.over_lowest / 0.03),
-          std::min(over, 1.0),
-          std::log(e.standing + 0.01),
-          std::log(e.sunken + 0.01),
-          returns,
-          objects,
-          returns * objects};
-}
-
-/// The chance as counted, brought to the true share of ground among returns of that chance and of such places (Platt 1999), where one lies
-/// over the ground; below nothing but outliers contest it.
+/// The chance as counted, brought to the true share of ground among returns of that chance and of such places (Platt 1999): just above the
+/// ground a crop nothing tells stands where returns stand knee-high, and on bare ground what the surface missed.
 float stated_chance(const GroundEvidence& e) {
   if (std::isnan(e.above)) return 0.0F;
-  const double over = e.above + e.lowered;
-  if (over <= 0 || e.chance < static_cast<float>(least_chance)) return e.chance;
-  const auto evidence = evidence_of(e, over);
-  const double log_odds = std::inner_product(evidence.begin(), evidence.end(), calibration.begin(), 0.0);
+  const double p = std::clamp<double>(e.chance, 1e-4, 1.0 - 1e-4);
+  const double log_odds = calibration[0] + calibration[1] * std::log(p / (1.0 - p)) + calibration[2] * std::log(e.standing + 0.01);
   return static_cast<float>(1.0 / (1.0 + std::exp(-log_odds)));
 }
 
@@ -156,11 +134,8 @@ std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, co
     e.lowered = returns[p].above - e.above;
     e.narrowed = e.lowered > 0 ? returns[p].spread : e.spread;
   }
-  const std::vector<GroundChance> chances = ground_chances(b, own, returns);
-  for (size_t p = 0; p < own; ++p) {
-    GroundEvidence& e = evidence[p];
-    e.chance = chances[p].chance, e.over_lowest = chances[p].over_lowest, e.low_objects = chances[p].low_objects;
-  }
+  const std::vector<float> chances = ground_chances(b, own, returns);
+  for (size_t p = 0; p < own; ++p) evidence[p].chance = chances[p];
   return evidence;
 }
 

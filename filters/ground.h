@@ -28,17 +28,15 @@ void describe(GroundOptions& o, V& v) {
 
 /// What is known of a return and of the ground around it.
 struct GroundEvidence {
-  float chance = 0.0F;       ///< that it is ground, as counted around it (ground_chance.h)
-  float above = 0.0F;        ///< m over the surface; NaN: not judged
-  float spread = 0.0F;       ///< m, standard deviation of the ground's returns about it
-  float lowered = 0.0F;      ///< m that the ground lies below the surface, where that runs between two populations
-  float narrowed = 0.0F;     ///< m, standard deviation of the ground's returns about the ground
-  float slope = 0.0F;        ///< rise / run of the surface
-  float standing = 0.0F;     ///< share of the returns around that stand knee-high
-  float sunken = 0.0F;       ///< share of them that lie deep below the surface
-  float support = 0.0F;      ///< ground's returns behind the surface
-  float over_lowest = 0.0F;  ///< m, as in GroundChance
-  float low_objects = 0.0F;  ///< as in GroundChance
+  float chance = 0.0F;    ///< that it is ground, as counted around it (ground_chance.h)
+  float above = 0.0F;     ///< m over the surface; NaN: not judged
+  float spread = 0.0F;    ///< m, standard deviation of the ground's returns about it
+  float lowered = 0.0F;   ///< m that the ground lies below the surface, where that runs between two populations
+  float narrowed = 0.0F;  ///< m, standard deviation of the ground's returns about the ground
+  float slope = 0.0F;     ///< rise / run of the surface
+  float standing = 0.0F;  ///< share of the returns around that stand knee-high
+  float sunken = 0.0F;    ///< share of them that lie deep below the surface
+  float support = 0.0F;   ///< ground's returns behind the surface
 };
 
 /// One entry for each of the first `own` points.

@@ -32,9 +32,6 @@ constexpr double chance_excess = 0.25;                  // standard deviations o
 constexpr double stray = 0.02, stray_height = 2.0;      // objects per return of the ground that no neighbour shows, over so many m
 constexpr double deep_stray = 0.001, deep_range = 3.0;  // the same of low outliers
 constexpr double widest_doubt = 200.0;                  // spreads
-constexpr double low_from = 3.0;                        // spreads, of low objects
-constexpr float low_to = 0.4F;                          // m
-constexpr double lowest_cell = 1.0;                     // m
 constexpr double doubt_unit = 16.0;                     // sums are whole numbers, so that their order does not matter
 
 double within(double t) { return std::erf(t * 0.70710678118654752); }
@@ -56,13 +53,12 @@ struct Counts {
   core::Lattice lattice;
   std::vector<Raster> above;  ///< by class of height
   Raster below, core, deep;
-  Raster low;    ///< objects between low_from and low_to
   Raster doubt;  ///< mean, spreads
 };
 
 Counts count(const core::Block& b, const core::Lattice& l, const std::vector<ReturnOverGround>& returns) {
   const Raster none(l.nx, l.ny, 0.0F);
-  Counts n{l, std::vector<Raster>(classes, none), none, none, none, none, none};
+  Counts n{l, std::vector<Raster>(classes, none), none, none, none, none};
   Raster all = none;
   for (size_t p = 0; p < b.size(); ++p) {
     const ReturnOverGround& r = returns[p];
@@ -74,7 +70,6 @@ Counts count(const core::Block& b, const core::Lattice& l, const std::vector<Ret
     if (t > 0) {
       n.above[static_cast<size_t>(class_of(t))].value[c] += 1.0F;
       if (t < core_of_ground) n.core.value[c] += 1.0F;
-      if (t > low_from && r.above < low_to) n.low.value[c] += 1.0F;
     } else {
       if (t > -2.0 * core_of_ground) n.below.value[c] += 1.0F;
       if (r.deep) n.deep.value[c] += 1.0F;
@@ -85,7 +80,7 @@ Counts count(const core::Block& b, const core::Lattice& l, const std::vector<Ret
     }
   }
   for (Raster& r : n.above) r = blur(r, sigma);
-  for (Raster* r : {&n.below, &n.core, &n.deep, &n.low, &n.doubt, &all}) *r = blur(*r, sigma);
+  for (Raster* r : {&n.below, &n.core, &n.deep, &n.doubt, &all}) *r = blur(*r, sigma);
   for (size_t c = 0; c < all.value.size(); ++c)
     n.doubt.value[c] = all.value[c] > 0 ? n.doubt.value[c] / (static_cast<float>(doubt_unit) * all.value[c]) : 2.0F;
   return n;
@@ -93,36 +88,6 @@ Counts count(const core::Block& b, const core::Lattice& l, const std::vector<Ret
 
 /// Ground's returns on one side of the surface.
 double ground_of(const Counts& n, size_t c) { return std::max(n.below.value[c], n.core.value[c]); }
-
-/// Those a little above the ground's returns, per one of these.
-double low_objects_of(const Counts& n, size_t c) { return n.low.value[c] / (n.below.value[c] + n.core.value[c] + 1.0F); }
-
-/// Heights over the surface of the lowest returns around the first `own` points: in each cell and the eight around it.
-struct Lowest {
-  core::Lattice lattice;
-  Raster height;  ///< m; infinite where nothing is
-};
-
-Lowest lowest_around(const core::Block& b, size_t own, const std::vector<ReturnOverGround>& returns) {
-  Lowest low{lattice_around(b, own, lowest_cell, 0.0, 2), {}};
-  low.height = Raster(low.lattice.nx, low.lattice.ny, std::numeric_limits<float>::infinity());
-  Raster& h = low.height;
-  for (size_t p = 0; p < b.size(); ++p) {
-    const ReturnOverGround& r = returns[p];
-    if (std::isnan(r.above) || r.deep) continue;
-    const CellIndex at = cell_of(low.lattice, b, p);
-    if (!h.holds(at.i, at.j)) continue;
-    float& lowest = h.value[h.at(at.i, at.j)];
-    lowest = std::min(lowest, r.above);
-  }
-  const auto least_of_three = [&h](size_t step) {
-    const Raster in = h;
-    for (size_t c = step; c + step < in.value.size(); ++c) h.value[c] = std::min({in.value[c - step], in.value[c], in.value[c + step]});
-  };
-  least_of_three(1);
-  least_of_three(static_cast<size_t>(h.nx));
-  return low;
-}
 
 /// Objects per spread of height, by class.
 using Objects = std::array<float, classes>;
@@ -156,13 +121,12 @@ double at_height(const Objects& o, double t) {
 
 const double ground_chance_reach = (reach(sigma) + 1) * cell;
 
-std::vector<GroundChance> ground_chances(const core::Block& b, size_t own, const std::vector<ReturnOverGround>& returns) {
-  std::vector<GroundChance> chance(own);
+std::vector<float> ground_chances(const core::Block& b, size_t own, const std::vector<ReturnOverGround>& returns) {
+  std::vector<float> chance(own, 0.0F);
   if (own == 0) return chance;
   const Counts n = count(b, lattice_around(b, own, cell, 0.0, reach(sigma)), returns);
   std::vector<Objects> objects(n.lattice.size());
   std::vector<char> known(n.lattice.size(), 0);
-  const Lowest lowest = lowest_around(b, own, returns);
   for (size_t p = 0; p < own; ++p) {
     const ReturnOverGround& r = returns[p];
     if (std::isnan(r.above)) continue;
@@ -177,10 +141,7 @@ std::vector<GroundChance> ground_chances(const core::Block& b, size_t own, const
       o = (n.deep.value[c] + deep_stray * ground) * spread / deep_range;
     }
     const double g = ground * ((1 - missed) * density(t) + missed * density(t / wide) / wide);
-    const CellIndex near = cell_of(lowest.lattice, b, p);
-    chance[p] = {.chance = g > 0.0 ? static_cast<float>(g / (g + o)) : 0.0F,
-                 .over_lowest = std::max(0.0F, r.above - lowest.height.value[lowest.lattice.at(near.i, near.j)]),
-                 .low_objects = static_cast<float>(low_objects_of(n, c))};
+    chance[p] = g > 0.0 ? static_cast<float>(g / (g + o)) : 0.0F;
   }
   return chance;
 }

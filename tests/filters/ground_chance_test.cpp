@@ -46,13 +46,13 @@ TEST(GroundChance, IsTheShareOfGroundAmongReturnsOfThatChance) {
   double outside = 0.0;
   for (const auto& [stopped, low, high] : {std::array{0.3, 0.05, 0.3}, {0.5, 0.08, 0.2}, {0.7, 0.06, 0.4}, {0.5, 0.1, 1.0}}) {
     const Field f = field(4.0, stopped, low, high);
-    const std::vector<GroundChance> chance = ground_chances(f.block, f.block.size(), f.returns);
+    const std::vector<float> chance = ground_chances(f.block, f.block.size(), f.returns);
     for (size_t p = 0; p < chance.size(); ++p) {
-      const auto decile = static_cast<size_t>(std::min(9.0, 10.0 * chance[p].chance));
-      stated[decile] += chance[p].chance;
+      const auto decile = static_cast<size_t>(std::min(9.0, 10.0 * chance[p]));
+      stated[decile] += chance[p];
       true_ground[decile] += f.is_ground[p];
       ++count[decile];
-      outside += chance[p].chance < 0 || chance[p].chance > 1;
+      outside += chance[p] < 0 || chance[p] > 1;
     }
   }
   EXPECT_EQ(outside, 0.0);
@@ -71,9 +71,9 @@ TEST(GroundChance, OneHeightIsDoubtfulInACropAndGroundOnBareSoil) {
     f.block.x[k] = x[k], f.block.y[k] = 60.0;
     f.returns[k].above = 3.0F * spread;
   }
-  const std::vector<GroundChance> chance = ground_chances(f.block, 2, f.returns);
-  EXPECT_GT(chance[0].chance, 0.6F);
-  EXPECT_LT(chance[1].chance, 0.3F);
+  const std::vector<float> chance = ground_chances(f.block, 2, f.returns);
+  EXPECT_GT(chance[0], 0.6F);
+  EXPECT_LT(chance[1], 0.3F);
 }
 
 TEST(GroundChance, FallsWithHeightOverBareGroundAndStaysHighJustBelowIt) {
@@ -81,16 +81,16 @@ TEST(GroundChance, FallsWithHeightOverBareGroundAndStaysHighJustBelowIt) {
   for (size_t k = 0; k < 4; ++k) f.block.x[k] = 30.0, f.block.y[k] = 60.0;
   const std::array<float, 4> above{0.0F, 0.2F, 2.0F, -0.06F};
   for (size_t k = 0; k < 4; ++k) f.returns[k].above = above[k];
-  const std::vector<GroundChance> chance = ground_chances(f.block, 4, f.returns);
-  EXPECT_GT(chance[0].chance, 0.95F);
-  EXPECT_GT(chance[0].chance, chance[1].chance);
-  EXPECT_LT(chance[2].chance, 0.01F);
-  EXPECT_GT(chance[3].chance, 0.95F);
+  const std::vector<float> chance = ground_chances(f.block, 4, f.returns);
+  EXPECT_GT(chance[0], 0.95F);
+  EXPECT_GT(chance[0], chance[1]);
+  EXPECT_LT(chance[2], 0.01F);
+  EXPECT_GT(chance[3], 0.95F);
 }
 
 TEST(GroundChance, DependsNeitherOnTheOrderNorOnWhatLiesBeyondItsReach) {
   const Field f = field(2.0, 0.5, 0.08, 0.4);
-  const std::vector<GroundChance> all = ground_chances(f.block, f.block.size(), f.returns);
+  const std::vector<float> all = ground_chances(f.block, f.block.size(), f.returns);
   // Those within 10 m of the middle, with their surroundings, backwards.
   std::vector<std::uint32_t> rows, halo;
   for (size_t p = f.block.size(); p-- > 0;) {
@@ -104,22 +104,17 @@ TEST(GroundChance, DependsNeitherOnTheOrderNorOnWhatLiesBeyondItsReach) {
   rows.insert(rows.end(), halo.begin(), halo.end());
   std::vector<ReturnOverGround> some;
   for (const std::uint32_t p : rows) some.push_back(f.returns[p]);
-  const std::vector<GroundChance> part = ground_chances(core::select(f.block, rows), own, some);
-  for (size_t k = 0; k < own; ++k) {
-    const GroundChance& expected = all[rows[k]];
-    ASSERT_EQ(part[k].chance, expected.chance);
-    ASSERT_EQ(part[k].over_lowest, expected.over_lowest);
-    ASSERT_EQ(part[k].low_objects, expected.low_objects);
-  }
+  const std::vector<float> part = ground_chances(core::select(f.block, rows), own, some);
+  for (size_t k = 0; k < own; ++k) ASSERT_EQ(part[k], all[rows[k]]);
 }
 
 TEST(GroundChance, WithoutGroundAroundThereIsNone) {
   Field f = field(1.0, 0.0, 0.0, 0.0);
   for (ReturnOverGround& r : f.returns) r.above = std::numeric_limits<float>::quiet_NaN();
   f.returns[0].above = 5.0F;
-  const std::vector<GroundChance> chance = ground_chances(f.block, 2, f.returns);
-  EXPECT_EQ(chance[0].chance, 0.0F);
-  EXPECT_EQ(chance[1].chance, 0.0F);
+  const std::vector<float> chance = ground_chances(f.block, 2, f.returns);
+  EXPECT_EQ(chance[0], 0.0F);
+  EXPECT_EQ(chance[1], 0.0F);
   EXPECT_TRUE(ground_chances(f.block, 0, f.returns).empty());
 }
 

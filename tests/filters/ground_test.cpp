@@ -194,35 +194,6 @@ TEST(Ground, ProbabilityIsTheShareOfGroundInALowCrop) {
   EXPECT_GT(count[0], 10000.0) << "crop that is told";
 }
 
-TEST(Ground, TheSameHeightIsProbablerOnABankThanInACrop) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> part(0.0, 1.0);
-  std::normal_distribution<double> soil(0.0, 0.018);
-  core::Block b;
-  b.origin = {512000.0, 5402000.0, 0.0};
-  core::resize(b, 60000);
-  // Banks 0.12 m high and 1 m wide every 12 m in the west, a crop of 0.06 to 0.14 m in the east.
-  std::vector<char> in_crop(b.size()), ground(b.size(), 1);
-  for (size_t p = 0; p < b.size(); ++p) {
-    b.x[p] = 120.0 * part(random), b.y[p] = 80.0 * part(random);
-    in_crop[p] = b.x[p] > 60.0;
-    const bool plant = in_crop[p] && part(random) < 0.5;
-    const double rise = in_crop[p] ? 0.0 : 0.12 * static_cast<double>(std::fmod(b.x[p], 12.0) < 1.0);
-    ground[p] = !plant;
-    b.z[p] = rise + soil(random) + (plant ? 0.06 + 0.08 * part(random) : 0.0);
-  }
-  classify_ground(b, b.size(), {});
-  std::array<double, 2> count{}, stated{};
-  for (size_t p = 0; p < b.size(); ++p) {
-    const bool high = b.z[p] > 0.09 && b.z[p]<0.14, inside = std::abs(b.x[p] - 60.0)> 10.0;
-    if (!high || !inside || (in_crop[p] && ground[p])) continue;
-    const size_t of = in_crop[p] ? 1 : 0;
-    count[of] += 1, stated[of] += b.ground_probability[p];
-  }
-  EXPECT_GT(stated[0] / count[0], 0.8);
-  EXPECT_LT(stated[1] / count[1], 0.3);
-}
-
 TEST(Ground, AWideBuildingStaysWhereTheOptionSaysNarrower) {
   test::Scene s = hall();
   GroundOptions o;
