@@ -148,8 +148,8 @@ def paired(points, time, number):
     """Order of `points` in which they stand beside records of adjusted GPS time `time` and return number `number`; an error of latency shifts them all."""
     if len(points["x"]) != len(time):
         sys.exit(f"{len(points['x'])} points, {len(time)} records")
-    mine = np.lexsort((points["return_number"], np.round(points["gps_time"] * 1e5)))
-    theirs = np.lexsort((number, np.round(np.asarray(time) * 1e5)))
+    mine = np.lexsort((points["return_number"], points["gps_time"]))
+    theirs = np.lexsort((number, time))
     order = np.empty(len(mine), dtype=np.int64)
     order[theirs] = mine
     apart = points["gps_time"][order] - time
