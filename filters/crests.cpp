@@ -24,6 +24,7 @@ constexpr double place_in_cell = 0.3;  // m, standard deviation of where in its 
 constexpr double smoothest = 0.05;     // m: where it comes out as less, by chance
 constexpr double sigmas = 2.0;         // of the plane's error at the cell, in the depth of the cut
 constexpr double tolerance = 0.3;      // m from the plane, beyond the ground's own deviation
+constexpr double shallow = cut - tolerance - roughest;  // m: what was cut by less is not looked at, on rough slopes a little too early
 // m, and m per m to the side: below the plane, where the surface falls off it. Planes through the roughest ground err by as much.
 constexpr double fall = 0.5, fall_per_run = 0.1;
 
@@ -104,7 +105,7 @@ const int crest_support = rounds * 2 * far;
 void restore_crests(Raster& ground, const OpenedReturns& r) {
   std::vector<size_t> off;
   for (size_t c = 0; c < ground.value.size(); ++c)
-    if (std::isnan(ground.value[c]) && r.lowest.value[c] - r.opened.value[c] > cut - tolerance - roughest) off.push_back(c);
+    if (std::isnan(ground.value[c]) && r.lowest.value[c] - r.opened.value[c] > shallow) off.push_back(c);
   for (int round = 0; round < rounds; ++round) {
     const auto crest = std::partition(off.begin(), off.end(), [&](size_t c) {
       return !is_crest(ground, r,

@@ -11,7 +11,7 @@ struct OpenedReturns {
   const Raster& lowest;  ///< NaN where no return is, and on decks
   const Raster& filled;  ///< with holes filled
   const Raster& opened;  ///< the lowest that the opening came to
-  int widest = 25;       ///< cells, radius of the widest disk
+  int widest;            ///< cells, half the width of the widest object
 };
 
 /// Puts back into `ground` (NaN where no return is and where an object was taken off) what the opening cut deeply off spurs, ridges and

@@ -111,7 +111,7 @@ class Engine {
   void run_tile_stages();
   std::vector<TileKey> tiles_of(size_t number) const;
   std::set<TileKey> tiles_of_water() const;
-  TileGroup measured(size_t number, std::vector<TileKey> tiles) const;
+  TileGroup measured(size_t number, std::vector<TileKey> tiles, stages::Context& wide) const;
   fs::path done_file(size_t number, const TileGroup& group) const;
   std::vector<TileGroup> groups_of(size_t number, const std::vector<TileKey>& keys, std::uint64_t budget) const;
   Value run_group(size_t number, const TileGroup& group, bool has_water);
@@ -368,8 +368,8 @@ void Engine::keep_surface_tiles(size_t number, const std::set<TileKey>& fringe) 
   }
 }
 
-/// The tiles that a stage works on, with what that takes.
-TileGroup Engine::measured(size_t number, std::vector<TileKey> tiles) const {
+/// The tiles that a stage works on, with what that takes. `wide`: a copy of the context to change.
+TileGroup Engine::measured(size_t number, std::vector<TileKey> tiles, stages::Context& wide) const {
   const Stage& s = stage(number);
   const core::ColumnSet columns = columns_of_tiles(s);
   double row_bytes = 0.0;
@@ -381,8 +381,7 @@ TileGroup Engine::measured(size_t number, std::vector<TileKey> tiles) const {
   const TileStore::Load load = store_->load_with_halo(tiles, s.halo());
   const auto points = static_cast<double>(load.points);
   double bytes = (row_bytes + s.bytes_per_point()) * points + row_bytes * static_cast<double>(load.neighbour);
-  stages::Context wide = context_;
-  wide.tile_side *= 0.5 * (box.across() + box.up());  // the square of the same perimeter is not smaller
+  wide.tile_side = context_.tile_side * 0.5 * (box.across() + box.up());  // the square of the same perimeter is not smaller
   for (const stages::Raster& r : s.rasters(wide)) bytes += r.total(points);
   TileGroup group{std::move(tiles), 0, load.points, static_cast<std::uint64_t>(bytes)};
   for (const TileKey k : group.tiles)
@@ -398,7 +397,8 @@ fs::path Engine::done_file(size_t number, const TileGroup& group) const {
 /// Tiles are joined only where nothing but points' columns comes of them.
 std::vector<TileGroup> Engine::groups_of(size_t number, const std::vector<TileKey>& keys, std::uint64_t budget) const {
   const stages::Info& info = stage(number).info();
-  const Measure measure = [&](std::vector<TileKey> tiles) { return measured(number, std::move(tiles)); };
+  stages::Context wide = context_;
+  const Measure measure = [&](std::vector<TileKey> tiles) { return measured(number, std::move(tiles), wide); };
   if (info.gives.empty() || !info.gives_products.empty() || works_on(number, Grain::merge)) return single_tiles(keys, measure);
   // Those of a run that was killed, so that what it has done counts.
   const fs::path file = folder(number) / groups_file;

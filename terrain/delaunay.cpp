@@ -123,7 +123,7 @@ void Delaunay::copy_faces() {
 
 std::int32_t Delaunay::locate(const Place& q, std::int32_t near) const {
   std::int32_t f = near, from = -1;
-  if (!faces_[f].is_finite()) f = faces_[f].n[(faces_[f].v[0] == beyond ? 0 : faces_[f].v[1] == beyond ? 1 : 2)];
+  if (!faces_[f].is_finite()) f = faces_[f].n[faces_[f].corner_beyond()];
   for (bool moved = true; moved;) {
     moved = false;
     const Face& face = faces_[f];

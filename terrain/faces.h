@@ -18,6 +18,8 @@ struct Face {
   bool is_finite() const { return (v[0] | v[1] | v[2]) >= 0; }
   /// Where `face` stands among n; it must.
   int side_of(std::int32_t face) const { return n[0] == face ? 0 : n[1] == face ? 1 : 2; }
+  /// Of a face that is not finite: where the vertex at infinity stands among v.
+  int corner_beyond() const { return v[0] == beyond ? 0 : v[1] == beyond ? 1 : 2; }
 };
 
 constexpr int ccw(int k) { return k == 2 ? 0 : k + 1; }
@@ -27,8 +29,5 @@ using FacePair = std::array<std::int32_t, 2>;
 
 /// Cuts the polygons that `pairs` of neighbours with one circle make up as fans from their vertex of least (x, y).
 void cut_as_fans(std::vector<Face>& faces, const std::vector<Place>& places, const std::vector<FacePair>& pairs);
-
-/// The order of (x, y).
-inline bool is_before(const Place& a, const Place& b) { return (a.x < b.x) | ((a.x == b.x) & (a.y < b.y)); }
 
 }  // namespace swath::terrain

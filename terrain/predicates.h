@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exact signs of the two determinants of planar Delaunay triangulation, by CGAL's filtered predicates.
+// Places on the map, and exact signs of the two determinants of planar Delaunay triangulation, by CGAL's filtered predicates.
 #pragma once
 
 namespace swath::terrain {
@@ -8,6 +8,9 @@ namespace swath::terrain {
 struct Place {
   double x = 0.0, y = 0.0;
 };
+
+/// The order of (x, y).
+inline bool is_before(const Place& a, const Place& b) { return (a.x < b.x) | ((a.x == b.x) & (a.y < b.y)); }
 
 /// 1 where a, b, c turn left, -1 right, 0 on one line.
 int orientation(const Place& a, const Place& b, const Place& c);

@@ -55,7 +55,7 @@ std::uint64_t key_of(const Edge& e) {
   return (bits(e.east) << 32 | bits(e.north)) ^ bits(e.rise) * 0x9e3779b97f4a7c15U;
 }
 
-/// The neighbours of each vertex that moves, in an order that their places alone decide.
+/// The neighbours of each vertex that moves, in an order that their places and heights alone decide.
 class Rings {
  public:
   Rings(const Tin& tin, size_t points, double radius) : start_(tin.x.size() + 1, 0) {

@@ -134,7 +134,7 @@ void Surroundings::mark_half_plane(const Place& a, const Place& b) {
 void Surroundings::mark(const Face& face, const std::vector<Place>& places) {
   const auto at = [&](int k) -> const Place& { return places[static_cast<size_t>(face.v[k])]; };
   if (!face.is_finite()) {
-    const int k = face.v[0] < 0 ? 0 : face.v[1] < 0 ? 1 : 2;
+    const int k = face.corner_beyond();
     return mark_half_plane(at((k + 1) % 3), at((k + 2) % 3));
   }
   const Place &a = at(0), &b = at(1), &c = at(2);

@@ -128,9 +128,9 @@ struct Measures {
 };
 
 /// Gives tin.triangles and tin.across the faces that come near `where` and whose circles are small enough.
-class Faces {
+class Selection {
  public:
-  Faces(const std::vector<Face>& faces, const std::vector<Place>& places, double max_radius, const Rectangle& where, Tin& tin)
+  Selection(const std::vector<Face>& faces, const std::vector<Place>& places, double max_radius, const Rectangle& where, Tin& tin)
       : faces_(faces), places_(places), max_radius_(max_radius), where_(where), tin_(tin) {}
 
   void take() {
@@ -209,7 +209,7 @@ Tin triangulate(const core::Block& block, const std::vector<std::uint32_t>& rows
     dt.insert(first, vertices.count());
   }
   dt.settle(dt.cocircular());
-  Faces(dt.faces(), vertices.places(), max_radius, where, tin).take();
+  Selection(dt.faces(), vertices.places(), max_radius, where, tin).take();
   return tin;
 }
 
@@ -224,7 +224,7 @@ Tin triangulate(const core::Block& block, const std::vector<std::uint32_t>& rows
   std::vector<std::pair<std::int32_t, std::int32_t>> edges;
   for (const auto& [a, b] : constraints.edges) edges.emplace_back(vertices.of_line(a), vertices.of_line(b));
   ConstrainedFaces found = constrained_delaunay(vertices.places(), edges, {block.origin.x(), block.origin.y()});
-  Faces(found.faces, vertices.places(), max_radius, where, tin).take();
+  Selection(found.faces, vertices.places(), max_radius, where, tin).take();
   tin.constrained = std::move(found.held);
   return tin;
 }

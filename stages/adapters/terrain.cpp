@@ -63,9 +63,9 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
   }
   core::ColumnSet also_reads() const override { return {core::Column::sigma_v, core::Column::sigma_h}; }
   double halo() const override { return terrain::halo(options); }
-  // Measured 2026-11-22 with tests/stages/memory_test.cpp: 195 bytes, tile 500 m and 1.5 points per square metre. Of the halo only the
-  // points that the tile's triangles need are triangulated; beyond a few metres that is none.
-  double bytes_per_point() const override { return 230.0; }
+  // Measured 2026-11-22: 290 bytes, tile 1000 m and 4 points per square metre (195 in tests/stages/memory_test.cpp, tile 500 m). Of the
+  // halo only the points that the tile's triangles need are triangulated; the larger the tile, the smaller is the share of the others.
+  double bytes_per_point() const override { return 310.0; }
   // Measured 2026-11-22 with tests/stages/memory_test.cpp, tile 200 m, cells of 0.25 m: 24 bytes per cell; two counts per cell around the
   // tile for the void reasons.
   std::vector<Raster> rasters(const Context& c) const override {

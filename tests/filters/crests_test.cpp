@@ -84,13 +84,19 @@ TEST(Crests, BushesOnLevelGroundStayOff) {
   EXPECT_EQ(left_off(lowest, ground), size * size / 5);
 }
 
-TEST(Crests, NothingHappensBeyondTheSupport) {
-  const Raster lowest = raster(ridge);
-  const auto cut_to = [](int rows) { return [rows](int i, int j) { return on_ridge(i, 5) && j <= rows; }; };
-  Raster ground = without(lowest, cut_to(30)), longer = without(lowest, cut_to(60));
-  left_off(lowest, ground), left_off(lowest, longer);
-  for (int j = 0; j < 60 && j + crest_support <= 30; ++j)
-    for (int i = 0; i < size; ++i) EXPECT_EQ(std::isnan(ground.value[ground.at(i, j)]), std::isnan(longer.value[longer.at(i, j)]));
+TEST(Crests, TheSupportIsAsFarAsTheRimGrows) {
+  // A rim whose ground is known up to a row: from there it grows along the cliff.
+  const Raster lowest = without(raster([](int i, int) { return i <= middle ? level + 0.5 * (i - middle) : level - 30.0; }),
+                                [](int i, int j) { return i % 3 != 2 || j % 3 != 0; });
+  const auto known_to = [&](int row) { return without(lowest, [row](int i, int j) { return i <= middle && j > row; }); };
+  Raster ground = known_to(12), less = known_to(9);
+  left_off(lowest, ground), left_off(lowest, less);
+  int farthest = 0;
+  for (int j = 0; j < size; ++j)
+    for (int i = 0; i < size; ++i)
+      if (std::isnan(ground.value[ground.at(i, j)]) != std::isnan(less.value[less.at(i, j)])) farthest = j;
+  EXPECT_GT(farthest, 12 + crest_support / 2);
+  EXPECT_LE(farthest, 12 + crest_support);
 }
 
 }  // namespace

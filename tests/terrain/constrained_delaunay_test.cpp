@@ -51,6 +51,16 @@ TEST(ConstrainedDelaunay, PolygonsAreNotJoinedAcrossAConstraint) {
   for (const auto& t : triangles(constrained_delaunay(square, {}, {0, 0}))) EXPECT_EQ(*std::min_element(t.begin(), t.end()), 0);
 }
 
+TEST(ConstrainedDelaunay, BothSidesOfAConstraintAreCutInOneCircle) {
+  // On a circle of radius 5; the held diagonal leaves two polygons of four corners.
+  const std::vector<Place> hexagon{{5, 0}, {3, 4}, {-3, 4}, {-5, 0}, {-3, -4}, {3, -4}};
+  const ConstrainedFaces c = constrained_delaunay(hexagon, {{0, 3}}, {0, 0});
+  const auto all = triangles(c);
+  ASSERT_EQ(all.size(), 4u);
+  for (const auto& t : all) EXPECT_TRUE(std::find(t.begin(), t.end(), 3) != t.end()) << "corner 3 lies farthest west";
+  EXPECT_EQ(c.held, (Edges{{0, 3}}));
+}
+
 TEST(ConstrainedDelaunay, CrossingEdgesAreNamed) {
   try {
     constrained_delaunay({{0, 0}, {2, 2}, {2, 0}, {0, 2}}, {{0, 1}, {2, 3}}, {100, 200});
