@@ -380,8 +380,9 @@ TileGroup Engine::measured(size_t number, std::vector<TileKey> tiles, stages::Co
   const TileBox box(tiles);
   const TileStore::Load load = store_->load_with_halo(tiles, s.halo());
   const auto points = static_cast<double>(load.points);
-  double bytes = (row_bytes + s.bytes_per_point()) * points + row_bytes * static_cast<double>(load.neighbour);
   wide.tile_side = context_.tile_side * 0.5 * (box.across() + box.up());  // the square of the same perimeter is not smaller
+  double bytes =
+      (row_bytes + s.bytes_per_point() * s.share_of_points(wide.tile_side)) * points + row_bytes * static_cast<double>(load.neighbour);
   for (const stages::Raster& r : s.rasters(wide)) bytes += r.total(points);
   TileGroup group{std::move(tiles), 0, load.points, static_cast<std::uint64_t>(bytes)};
   for (const TileKey k : group.tiles)

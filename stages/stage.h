@@ -210,6 +210,9 @@ class Stage {
   virtual double halo() const { return 0.0; }
   /// Bytes of working memory per point of tile and halo, beside the columns.
   virtual double bytes_per_point() const { return 64.0; }
+  /// Share of the points of tile and halo that these bytes are for: less than 1 where a stage leaves the halo's far points out. `side`: m,
+  /// of the tile.
+  virtual double share_of_points([[maybe_unused]] double side) const { return 1.0; }
   /// The rasters of one tile at work: memory that is needed however few points there are. In a plan there are no `grids` yet, and rasters
   /// whose cells they set are left out.
   virtual std::vector<Raster> rasters(const Context&) const { return {}; }

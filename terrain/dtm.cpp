@@ -96,6 +96,8 @@ double halo(const DtmOptions& options) {
   return options.max_edge.value + around_window(options, true) + options.cell.value;
 }
 
+double triangulated_border(const DtmOptions& options) { return around_window(options, true); }
+
 std::vector<std::uint32_t> terrain_rows(const core::Block& block, const DtmOptions& options) {
   std::vector<std::uint32_t> rows;
   for (size_t i = 0; i < block.size(); ++i) {

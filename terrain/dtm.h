@@ -56,6 +56,9 @@ void describe(DtmOptions& o, V& v) {
 /// and natural neighbours (another max_edge) need beyond.
 double halo(const DtmOptions& options);
 
+/// Width of that border from which points are triangulated where none is missing near by, m.
+double triangulated_border(const DtmOptions& options);
+
 /// Rows of the points that make the terrain: usable and of one of the classes (all usable ones where there is no class column), flagged
 /// where key_points asks for it.
 std::vector<std::uint32_t> terrain_rows(const core::Block& block, const DtmOptions& options);

@@ -63,9 +63,13 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
   }
   core::ColumnSet also_reads() const override { return {core::Column::sigma_v, core::Column::sigma_h}; }
   double halo() const override { return terrain::halo(options); }
-  // Measured 2026-11-22: 290 bytes, tile 1000 m and 4 points per square metre (195 in tests/stages/memory_test.cpp, tile 500 m). Of the
-  // halo only the points that the tile's triangles need are triangulated; the larger the tile, the smaller is the share of the others.
-  double bytes_per_point() const override { return 310.0; }
+  // Measured 2026-11-22: 290 bytes, tile 1000 m and 4 points per square metre; 195 in tests/stages/memory_test.cpp, tile 500 m, where half
+  // of the points are those of the halo that are not triangulated and take a few bytes each.
+  double bytes_per_point() const override { return 330.0; }
+  double share_of_points(double side) const override {
+    const double near = side + 2.0 * terrain::triangulated_border(options) + room, all = side + 2.0 * halo();
+    return std::min(1.0, near * near / (all * all));
+  }
   // Measured 2026-11-22 with tests/stages/memory_test.cpp, tile 200 m, cells of 0.25 m: 24 bytes per cell; two counts per cell around the
   // tile for the void reasons.
   std::vector<Raster> rasters(const Context& c) const override {
@@ -92,6 +96,7 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
   }
 
  private:
+  static constexpr double room = 10.0;  // m: for triangles that reach beyond the border
   BreaklinesOfRun lines_;
 };
 

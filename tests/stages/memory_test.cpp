@@ -138,7 +138,7 @@ Taken take(const Case& c, double side, double spacing) {
   for (size_t p = 0; p < job.block.height.size(); ++p)
     job.block.height[p] = static_cast<float>(job.block.z[p] - 100.0 - 0.05 * job.block.x[p]);
 
-  Taken t{0.0, stage->bytes_per_point() * static_cast<double>(job.block.size()), job.block.size()};
+  Taken t{0.0, stage->bytes_per_point() * stage->share_of_points(side) * static_cast<double>(job.block.size()), job.block.size()};
   for (const Raster& r : stage->rasters(context)) t.declared += r.total(static_cast<double>(job.block.size()));
   if (c.type == "filters.visibility") {  // the stage itself wants a trajectory
     filters::VisibilityOptions o;
