@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "filters/bins.h"
+
 namespace swath::filters {
 namespace {
 
@@ -30,13 +32,9 @@ constexpr double fall = 0.5, fall_per_run = 0.1;
 
 constexpr std::array<std::pair<int, int>, 8> directions{{{1, 0}, {0, 1}, {1, 1}, {1, -1}, {-1, 0}, {0, -1}, {-1, -1}, {-1, 1}}};
 
-struct Cell {
-  int i, j;
-};
-
 /// Calls take(a, b, height) for the cells with a value within `half` of `middle`; a, b: cells from `from`.
 template <class Take>
-void around(const Raster& r, Cell middle, int half, Cell from, const Take& take) {
+void around(const Raster& r, CellIndex middle, int half, CellIndex from, const Take& take) {
   for (int j = std::max(0, middle.j - half); j <= std::min(r.ny - 1, middle.j + half); ++j)
     for (int i = std::max(0, middle.i - half); i <= std::min(r.nx - 1, middle.i + half); ++i)
       if (const double height = r.value[r.at(i, j)]; !std::isnan(height)) take(i - from.i, j - from.j, height);
@@ -51,7 +49,7 @@ struct Foretold {
   double at(int a, int b) const { return height + east * a + north * b; }
 };
 
-Foretold foretold(const Raster& ground, Cell c, Cell middle, int half) {
+Foretold foretold(const Raster& ground, CellIndex c, CellIndex middle, int half) {
   double n = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0, base = 0;
   around(ground, middle, half, c, [&](double a, double b, double height) {
     if (n == 0) base = height;
@@ -71,11 +69,11 @@ Foretold foretold(const Raster& ground, Cell c, Cell middle, int half) {
 }
 
 /// True where the surface falls off the plane on both sides of a cell.
-bool stands_free(const OpenedReturns& r, const Foretold& plane, Cell c) {
+bool stands_free(const OpenedReturns& r, const Foretold& plane, CellIndex c) {
   const auto falls = [&](int di, int dj) {
     const double step = std::hypot(di, dj);
     for (int k = 1; k * step <= r.widest; ++k) {
-      const Cell to{c.i + k * di, c.j + k * dj};
+      const CellIndex to{c.i + k * di, c.j + k * dj};
       if (!r.filled.holds(to.i, to.j)) return false;
       if (plane.at(k * di, k * dj) - r.filled.value[r.filled.at(to.i, to.j)] > fall + fall_per_run * k * step) return true;
     }
@@ -85,7 +83,7 @@ bool stands_free(const OpenedReturns& r, const Foretold& plane, Cell c) {
                      [&](const auto& d) { return falls(d.first, d.second) && falls(-d.first, -d.second); });
 }
 
-bool is_crest(const Raster& ground, const OpenedReturns& r, Cell c) {
+bool is_crest(const Raster& ground, const OpenedReturns& r, CellIndex c) {
   const size_t at = ground.at(c.i, c.j);
   int returns = 0;
   around(r.lowest, c, near, c, [&](double, double, double) { ++returns; });
@@ -111,6 +109,7 @@ void restore_crests(Raster& ground, const OpenedReturns& r) {
       return !is_crest(ground, r,
                        {static_cast<int>(c % static_cast<size_t>(ground.nx)), static_cast<int>(c / static_cast<size_t>(ground.nx))});
     });
+    if (crest == off.end()) break;
     for (auto c = crest; c != off.end(); ++c) ground.value[*c] = r.lowest.value[*c];
     off.erase(crest, off.end());
   }

@@ -47,11 +47,6 @@ bool has_surface(const std::vector<stages::Product>& products) {
                      [](stages::Product p) { return p == stages::Product::dtm || p == stages::Product::dsm; });
 }
 
-bool needs(const Stage& stage, stages::Product p) {
-  const auto& needed = stage.info().needs_products;
-  return std::find(needed.begin(), needed.end(), p) != needed.end();
-}
-
 double since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
 /// One run at a time in one output folder.
@@ -111,7 +106,7 @@ class Engine {
   void run_tile_stages();
   std::vector<TileKey> tiles_of(size_t number) const;
   std::set<TileKey> tiles_of_water() const;
-  TileGroup measured(size_t number, std::vector<TileKey> tiles, stages::Context& wide) const;
+  Measure measure_of(size_t number) const;
   fs::path done_file(size_t number, const TileGroup& group) const;
   std::vector<TileGroup> groups_of(size_t number, const std::vector<TileKey>& keys, std::uint64_t budget) const;
   Value run_group(size_t number, const TileGroup& group, bool has_water);
@@ -202,7 +197,7 @@ void Engine::find_strips() {
 void Engine::run_survey_stages() {
   for (size_t i = 0; i < plan_.stages.size(); ++i) {
     if (!works_on(i, Grain::survey)) continue;
-    if (needs(stage(i), stages::Product::shots)) find_strips();
+    if (stage(i).info().takes(stages::Product::shots)) find_strips();
     begin_products(i);
     const auto start = Clock::now();
     progress_.begin(std::string(stage(i).info().name), 1, "survey");
@@ -368,8 +363,8 @@ void Engine::keep_surface_tiles(size_t number, const std::set<TileKey>& fringe) 
   }
 }
 
-/// The tiles that a stage works on, with what that takes. `wide`: a copy of the context to change.
-TileGroup Engine::measured(size_t number, std::vector<TileKey> tiles, stages::Context& wide) const {
+/// Tells what it takes to work on tiles with a stage.
+Measure Engine::measure_of(size_t number) const {
   const Stage& s = stage(number);
   const core::ColumnSet columns = columns_of_tiles(s);
   double row_bytes = 0.0;
@@ -377,17 +372,19 @@ TileGroup Engine::measured(size_t number, std::vector<TileKey> tiles, stages::Co
     using T = typename std::remove_reference_t<decltype(std::declval<core::Block>().*member)>::value_type;
     if (columns.has(c) || c == core::Column::x || c == core::Column::y || c == core::Column::z) row_bytes += sizeof(T);
   });
-  const TileBox box(tiles);
-  const TileStore::Load load = store_->load_with_halo(tiles, s.halo());
-  const auto points = static_cast<double>(load.points);
-  wide.tile_side = context_.tile_side * 0.5 * (box.across() + box.up());  // the square of the same perimeter is not smaller
-  double bytes =
-      (row_bytes + s.bytes_per_point() * s.share_of_points(wide.tile_side)) * points + row_bytes * static_cast<double>(load.neighbour);
-  for (const stages::Raster& r : s.rasters(wide)) bytes += r.total(points);
-  TileGroup group{std::move(tiles), 0, load.points, static_cast<std::uint64_t>(bytes)};
-  for (const TileKey k : group.tiles)
-    if (const auto at = store_->tiles().find(k); at != store_->tiles().end()) group.own += at->second;
-  return group;
+  return [this, &s, row_bytes, wide = context_](std::vector<TileKey> tiles) mutable {
+    const TileBox box(tiles);
+    const TileStore::Load load = store_->load_with_halo(tiles, s.halo());
+    const auto points = static_cast<double>(load.points);
+    wide.tile_side = context_.tile_side * 0.5 * (box.across() + box.up());  // the square of the same perimeter is not smaller
+    double bytes =
+        (row_bytes + s.bytes_per_point() * s.share_of_points(wide.tile_side)) * points + row_bytes * static_cast<double>(load.neighbour);
+    for (const stages::Raster& r : s.rasters(wide)) bytes += r.total(points);
+    TileGroup group{std::move(tiles), 0, load.points, static_cast<std::uint64_t>(bytes)};
+    for (const TileKey k : group.tiles)
+      if (const auto at = store_->tiles().find(k); at != store_->tiles().end()) group.own += at->second;
+    return group;
+  };
 }
 
 fs::path Engine::done_file(size_t number, const TileGroup& group) const {
@@ -398,8 +395,7 @@ fs::path Engine::done_file(size_t number, const TileGroup& group) const {
 /// Tiles are joined only where nothing but points' columns comes of them.
 std::vector<TileGroup> Engine::groups_of(size_t number, const std::vector<TileKey>& keys, std::uint64_t budget) const {
   const stages::Info& info = stage(number).info();
-  stages::Context wide = context_;
-  const Measure measure = [&](std::vector<TileKey> tiles) { return measured(number, std::move(tiles), wide); };
+  const Measure measure = measure_of(number);
   if (info.gives.empty() || !info.gives_products.empty() || works_on(number, Grain::merge)) return single_tiles(keys, measure);
   // Those of a run that was killed, so that what it has done counts.
   const fs::path file = folder(number) / groups_file;
@@ -427,12 +423,13 @@ Value Engine::run_group(size_t number, const TileGroup& group, bool has_water) {
   if (before > 0 || !has_surface(info.gives_products) || has_water) s.run_tile(context_, job);
   if (job.block.size() != before)
     throw core::Error("the stage changed the number of points of a tile", std::string(info.name), "this is a fault of the program");
-  size_t first = 0;
-  for (const TileKey k : group.tiles) {
-    if (info.gives.empty()) break;
-    const size_t count = group.tiles.size() == 1 ? job.own : store_->tiles().at(k);
-    store_->write_overlay(mine, k, job.block, first, count, info.gives);
-    first += count;
+  if (!info.gives.empty()) {
+    size_t first = 0;
+    for (const TileKey k : group.tiles) {
+      const size_t count = group.tiles.size() == 1 ? job.own : store_->tiles().at(k);
+      store_->write_overlay(mine, k, job.block, first, count, info.gives);
+      first += count;
+    }
   }
   Value note = Value::object();
   note["tally"] = job.tally.value();

@@ -56,6 +56,7 @@ struct Info {
   std::vector<Grain> grains;
   core::ColumnSet needs, gives;
   std::vector<Product> needs_products, gives_products;
+  bool takes(Product p) const { return std::find(needs_products.begin(), needs_products.end(), p) != needs_products.end(); }
   bool makes(Product p) const { return std::find(gives_products.begin(), gives_products.end(), p) != gives_products.end(); }
 };
 

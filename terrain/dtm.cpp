@@ -91,12 +91,12 @@ Rectangle reached(const core::Lattice& window, const Eigen::Vector3d& origin, do
 
 }  // namespace
 
+double triangulated_border(const DtmOptions& options) { return around_window(options, true); }
+
 double halo(const DtmOptions& options) {
   // A place needs the points within max_edge to know its triangle.
-  return options.max_edge.value + around_window(options, true) + options.cell.value;
+  return options.max_edge.value + triangulated_border(options) + options.cell.value;
 }
-
-double triangulated_border(const DtmOptions& options) { return around_window(options, true); }
 
 std::vector<std::uint32_t> terrain_rows(const core::Block& block, const DtmOptions& options) {
   std::vector<std::uint32_t> rows;

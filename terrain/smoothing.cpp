@@ -14,6 +14,8 @@
 #include <span>
 #include <utility>
 
+#include "terrain/faces.h"
+
 namespace swath::terrain {
 namespace {
 
@@ -65,9 +67,9 @@ class Rings {
     const auto each_edge = [&tin](auto&& see) {  // once
       for (std::int32_t t = 0; t < static_cast<std::int32_t>(tin.size()); ++t) {
         const auto& v = tin.triangles[static_cast<size_t>(t)];
-        for (size_t k = 0; k < 3; ++k) {
+        for (int k = 0; k < 3; ++k) {
           const std::int32_t other = tin.across[static_cast<size_t>(t)][k];
-          if (other < t) see(static_cast<size_t>(v[k == 2 ? 0 : k + 1]), static_cast<size_t>(v[k == 0 ? 2 : k - 1]), other < 0);
+          if (other < t) see(static_cast<size_t>(v[ccw(k)]), static_cast<size_t>(v[cw(k)]), other < 0);
         }
       }
     };
@@ -86,9 +88,8 @@ class Rings {
     for (size_t v = 0; v < size; ++v) place[v] = {tin.x[v], tin.y[v], tin.z[v]};
     edges_ = std::make_unique_for_overwrite<Edge[]>(sum);
     std::vector<Near> near;
-    std::uint32_t taken = 0;
-    for (size_t v = 0; v < size; ++v) {
-      const std::uint32_t first = v == 0 ? 0 : start[v - 1];
+    std::uint32_t first = 0, taken = 0;
+    for (size_t v = 0; v < size; first = start[v++]) {
       if (tin.row[v] < points && !open[v]) {
         look_around(place, v, std::span(neighbours).subspan(first, start[v] - first), radius, near);
         put_in_order(near, edges_.get() + taken);
