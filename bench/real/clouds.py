@@ -11,8 +11,6 @@ from scipy import ndimage, spatial
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "accuracy"))
 import common
 
-BLANK = 1  # class of every point in the copies that the program reads
-
 
 @dataclass
 class Cloud:
@@ -45,10 +43,11 @@ def named(words):
     return [c for c in ALL if not words or any(w in c.name for w in words)]
 
 
-def blank_copy(cloud, source, folder):
-    """Writes a copy without its classes, and a survey.toml beside it."""
+def copy_of(cloud, source, folder, classes):
+    """Writes a copy with other classes, and a survey.toml beside it."""
+    folder.mkdir(exist_ok=True)
     las = laspy.LasData(source.header, source.points.copy())
-    las.classification = np.full(len(las.points), BLANK, np.uint8)
+    las.classification = classes
     if las.header.point_format.id and len(las.points) and np.min(las.gps_time) > 604800:
         las.header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD  # the makers left the bit out
     las.write(str(folder / "cloud.las"))
@@ -71,15 +70,26 @@ def order_of(points, source):
     return order
 
 
-def rim_distance(x, y, cell=1.0, gap=12.0):
-    """Distance of every point to the outside of the data, m; voids inside narrower than `gap` are no outside."""
-    tree = spatial.cKDTree(np.column_stack([x, y]))
-    gap = max(gap, 6 * np.median(tree.query(np.column_stack([x, y])[:: max(1, len(x) // 5000)], k=2)[0][:, 1]))
-    wide = int(np.ceil(gap / cell))
-    i, j = ((x - x.min()) / cell).astype(int) + 2 * wide, ((y - y.min()) / cell).astype(int) + 2 * wide
-    held = np.zeros((j.max() + 1 + 2 * wide, i.max() + 1 + 2 * wide), bool)
-    held[j, i] = True
-    near = ndimage.distance_transform_edt(~held) * cell <= gap / 2
-    held = ndimage.distance_transform_edt(near) * cell > gap / 2
-    held = ndimage.binary_fill_holes(held)
-    return ndimage.distance_transform_edt(held)[j, i] * cell
+class Rim:
+    """Distance to the outside of the data, m; voids inside narrower than `gap` are no outside."""
+
+    def __init__(self, x, y, cell=1.0, gap=12.0):
+        places = np.column_stack([x, y])
+        apart = spatial.cKDTree(places).query(places[:: max(1, len(x) // 5000)], k=2)[0][:, 1]
+        gap = max(gap, 6 * np.median(apart))
+        wide = 2 * int(np.ceil(gap / cell))
+        self.x0, self.y0, self.cell = x.min() - wide * cell, y.min() - wide * cell, cell
+        i, j = self.cells(x, y)
+        held = np.zeros((j.max() + 1 + wide, i.max() + 1 + wide), bool)
+        held[j, i] = True
+        near = ndimage.distance_transform_edt(~held) * cell <= gap / 2
+        inside = ndimage.distance_transform_edt(near) * cell > gap / 2
+        self.distance = ndimage.distance_transform_edt(ndimage.binary_fill_holes(inside)) * cell
+
+    def cells(self, x, y):
+        return ((x - self.x0) / self.cell).astype(int), ((y - self.y0) / self.cell).astype(int)
+
+    def __call__(self, x, y):
+        i, j = self.cells(x, y)
+        within = (i >= 0) & (j >= 0) & (i < self.distance.shape[1]) & (j < self.distance.shape[0])
+        return np.where(within, self.distance[np.where(within, j, 0), np.where(within, i, 0)], 0.0)

@@ -17,6 +17,7 @@ import numpy as np
 import clouds
 from clouds import common
 
+BLANK = 1  # class of every point that the program is given
 CHAIN = [{"type": "filters.noise"}, {"type": "filters.ground"}, {"type": "filters.water"}]
 PRODUCTS = [{"type": "terrain.dtm", "cell": "1 m"}, {"type": "filters.hag_dem"}, {"type": "filters.classify"},
             {"type": "writers.las", "compress": False}, {"type": "writers.gdal"}]
@@ -38,42 +39,40 @@ def cpu():
 
 
 def run(cloud, chain):
-    """Points in the source's order, the terrain model and what the run cost."""
+    """The source; points in its order; terrain models of the run and of the maker's own ground; what the run cost; its report."""
     folder = common.scratch(f"real/{cloud.name.replace(' ', '_')}")
     source = cloud.read()
-    clouds.blank_copy(cloud, source, folder)
+    clouds.copy_of(cloud, source, folder, np.full(len(source.points), BLANK, np.uint8))
     before, start = cpu(), time.monotonic()
     report = common.run([{"type": "readers.las"}, *chain, *PRODUCTS], folder / "survey.toml", folder / "out")
     cost = {"cpu": cpu() - before, "wall": time.monotonic() - start}
     points = common.points_of(folder / "out")
     order = clouds.order_of(points, source)
-    return source, {name: column[order] for name, column in points.items()}, common.raster(folder / "out/dtm.vrt"), cost, report
+    clouds.copy_of(cloud, source, folder / "maker", np.where(np.isin(source.classification, cloud.ground), 2, BLANK).astype(np.uint8))
+    common.run([{"type": "readers.las"}, PRODUCTS[0], {"type": "writers.gdal"}], folder / "maker/survey.toml", folder / "maker/out")
+    models = [common.raster(folder / out / "dtm.vrt") for out in ("out", "maker/out")]
+    return source, {name: column[order] for name, column in points.items()}, models, cost, report
 
 
-def terrain(source, labels, cloud, dtm, rim):
-    """Errors of the cells that hold the maker's ground, with their distance from the rim."""
-    grid, place = dtm
-    on = np.isin(labels, cloud.ground)
-    x, y, z = (np.asarray(axis)[on] for axis in (source.x, source.y, source.z))
-    i, j = np.floor((y - place.f) / place.e).astype(int), np.floor((x - place.c) / place.a).astype(int)
-    inside = (i >= 0) & (j >= 0) & (i < grid.shape[0]) & (j < grid.shape[1])
-    key = i[inside] * grid.shape[1] + j[inside]
-    cell, back, count = np.unique(key, return_inverse=True, return_counts=True)
-    mean = np.bincount(back, z[inside]) / count
-    far = np.bincount(back, rim[on][inside]) / count
-    return grid.ravel()[cell] - mean, far
+def terrain(models, rim):
+    """Differences of the cells that both terrain models cover, NaN where ours alone is missing; their distance from the rim."""
+    (ours, place), (theirs, other) = models
+    i, j = np.nonzero(np.isfinite(theirs))
+    x, y = other.c + (j + 0.5) * other.a, other.f + (i + 0.5) * other.e
+    return common.nearest(ours, place, x, y) - theirs[i, j], rim(x, y)
 
 
 def judge(cloud, chain):
-    source, points, dtm, cost, report = run(cloud, chain)
+    source, points, models, cost, report = run(cloud, chain)
     labels = np.asarray(source.classification).astype(int)
     said = points["classification"].astype(int)
     judged = ~np.isin(labels, cloud.ignored)
     ground = np.isin(labels, cloud.ground)
-    rim = clouds.rim_distance(np.asarray(source.x), np.asarray(source.y))
-    error, far = terrain(source, labels, cloud, dtm, rim)
+    x, y = np.asarray(source.x), np.asarray(source.y)
+    rim = clouds.Rim(x, y)
+    error, far = terrain(models, rim)
     found = {"name": cloud.name, "points": len(labels), "agreement": common.agreement(ground[judged], said[judged] == 2), **cost,
-             "ground": ground[judged], "said": said[judged], "labels": labels[judged], "rim": rim[judged], "error": error, "far": far,
+             "ground": ground[judged], "said": said[judged], "labels": labels[judged], "rim": rim(x, y)[judged], "error": error, "far": far,
              "probability": points["ground_probability"][judged].astype(float) if "ground_probability" in points else np.array([])}
     found["rates"] = {s["type"]: s["counts"]["in"] / max(s["seconds"], 1e-9) / 1e6 for s in report["stages"] if "counts" in s and "seconds" in s}
     return found
@@ -106,7 +105,7 @@ def terrain_table(found):
             if len(known):
                 rows.append([f["name"], f"{low}-{high}", len(e), len(e) - len(known), f"{np.median(known):+.3f}", f"{common.rms(known):.3f}",
                              f"{100 * np.mean(np.abs(known) > 0.5):.2f}"])
-    print("Terrain model minus the maker's ground, cells of 1 m by distance from the rim\n")
+    print("Terrain model minus that of the maker's ground, cells of 1 m by distance from the rim\n")
     common.table(["cloud", "from the rim m", "cells", "without height", "median m", "rms m", "off by > 0.5 m %"], rows)
 
 
