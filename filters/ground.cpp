@@ -38,7 +38,9 @@ constexpr double inflated = 1.5;                       // of the lower populatio
 // Constant, per log odds of the chance, per logarithm of the share standing knee-high: bench/accuracy/ground_calibration.py, 2026-11-22.
 constexpr std::array<double, 3> calibration{-2.497, 0.860, -0.830};
 
-GroundSurfaceOptions surface_options(const GroundOptions& o) { return {o.widest.value, std::tan(o.steepest.value), o.noise.value}; }
+GroundSurfaceOptions surface_options(const GroundOptions& o) {
+  return {o.widest.value, o.longest.value, std::tan(o.steepest.value), o.noise.value};
+}
 
 /// The error between returns grows with the square of their distance, and that is the inverse of their number; between dense and sparse
 /// the square of this share came out best on both simulated and scanned ground. `support`: ground's returns behind the surface.

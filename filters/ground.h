@@ -12,6 +12,7 @@ namespace swath::filters {
 
 struct GroundOptions {
   core::Metres widest{50.0};
+  core::Metres longest{180.0};
   core::Radians steepest = core::degrees(55.0);
   core::Metres noise{0.03};
 };
@@ -19,7 +20,9 @@ struct GroundOptions {
 template <class V>
 void describe(GroundOptions& o, V& v) {
   v.option("widest", o.widest, core::within(2.0, 200.0),
-           "Width of the widest building or bridge, across its narrower side: what is wider counts as ground.");
+           "Width of the widest building or bridge, across its narrower side; wider ones are found by walls.");
+  v.option("longest", o.longest, core::within(0.0, 1000.0),
+           "Length of the longest building found by the walls around it, however wide; 0 m: by width alone.");
   v.option("steepest", o.steepest, core::within(10 * core::degree, 80 * core::degree),
            "Steepest ground: what rises more steeply and stands alone is an object.");
   v.option("noise", o.noise, core::within(0.005, 1.0),

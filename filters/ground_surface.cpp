@@ -3,14 +3,15 @@
 // The coarse one is Pingel, Clarke & McBride 2013 (ISPRS J. 77): lowest last return per cell, holes filled, objects where an opening by a
 // growing disk drops. Deviations: the drop that is allowed per radius grows with the slope of the country (as Sithole 2001 adapts the
 // slope filter), and is never more than the steepest ground can fall within a cell and half a metre, so that low halls are taken off by
-// large disks too; low outliers are looked for in the surface that a small opening leaves and not in the lowest returns, where ground
-// seen through a gap of the canopy looks the same. Bridge decks are taken off to their ends, and crests put back (decks.h, crests.h).
-// The fine one is robust interpolation (Kraus & Pfeifer 1998, ISPRS J. 53): a surface through all last returns with weights by their
-// distance from the surface before. Deviations: moving planes stand for linear prediction (moving_planes.h) and breaks are kept by taking
-// the smoother side; the weight's arm follows the spread of the returns under the surface and shrinks where many stand knee-high, which
-// does what Kraus & Pfeifer's eccentric weights do, and keeps the surface in the middle of the ground's returns in the open. A plane
-// under a kernel of sigma s lies 0.5 s^2 f'' off a curved surface f; planes of a finer kernel, where the data favour them, and residuals
-// fitted again take most of that away: on a scarp of 55 degrees 45 mm in rms in place of 68 mm, of which 42 mm are the returns' own.
+// large disks too; halls wider than the disk, and roofs at the rim of the data, go by their walls (walls.h); low outliers are looked for in
+// the surface that a small opening leaves and not in the lowest returns, where ground seen through a gap of the canopy looks the same.
+// Bridge decks are taken off to their ends, and crests put back (decks.h, crests.h). The fine one is robust interpolation (Kraus & Pfeifer
+// 1998, ISPRS J. 53): a surface through all last returns with weights by their distance from the surface before. Deviations: moving planes
+// stand for linear prediction (moving_planes.h) and breaks are kept by taking the smoother side; the weight's arm follows the spread of the
+// returns under the surface and shrinks where many stand knee-high, which does what Kraus & Pfeifer's eccentric weights do, and keeps the
+// surface in the middle of the ground's returns in the open. A plane under a kernel of sigma s lies 0.5 s^2 f'' off a curved surface f;
+// planes of a finer kernel, where the data favour them, and residuals fitted again take most of that away: on a scarp of 55 degrees 45 mm
+// in rms in place of 68 mm, of which 42 mm are the returns' own.
 #include "filters/ground_surface.h"
 
 #include <algorithm>
@@ -29,6 +30,7 @@
 #include "filters/ground_labels.h"
 #include "filters/inpaint.h"
 #include "filters/moving_planes.h"
+#include "filters/walls.h"
 
 namespace swath::filters {
 namespace {
@@ -61,6 +63,9 @@ constexpr double share_sigma = 3.0;                                           //
 
 int window_of(const GroundSurfaceOptions& o) { return static_cast<int>(std::ceil(0.5 * o.widest / ground_cell - 1e-9)) + 1; }
 Inpainting terrain_filling(int window) { return {.reach = 2 * window, .relax = 4, .extrapolate = true}; }
+WallOptions walls_of(const GroundSurfaceOptions& o) {
+  return {.longest = static_cast<int>(std::ceil(o.longest / ground_cell)), .widest = static_cast<int>(o.widest / ground_cell)};
+}
 // So that the country's slope reaches no farther than the widest opening.
 int country_window(int window) { return std::max(1, window - (reach(country_sigma) + 1) / 2); }
 
@@ -149,6 +154,7 @@ Raster coarse_surface(const core::Block& b, const core::Lattice& l, const Ground
   Raster ground = lowest;
   remove_objects(ground, inpaint(lowest, gap_filling), Raster(l.nx, l.ny, 0.0F), o, std::min(window, pit_window));
   remove_pits(lowest, inpaint(ground, pit_filling));
+  remove_walled(lowest, walls_of(o));
   ground = lowest;
   const Raster filled = inpaint(lowest, gap_filling);
   const Raster country = smoothed(open_disk(filled, country_window(window)), country_sigma);
@@ -320,7 +326,7 @@ RasterSample sample(const Raster& r, const core::Lattice& l, double x, double y)
 
 int surface_reach(const GroundSurfaceOptions& o) {
   const int window = window_of(o);
-  int cells = gap_filling.support() + 2 * std::min(window, pit_window) + pit_filling.support() + 4 * pit_radius;
+  int cells = gap_filling.support() + 2 * std::min(window, pit_window) + pit_filling.support() + 4 * pit_radius + wall_support(walls_of(o));
   const int country = 2 * country_window(window) + reach(country_sigma) + 1;
   cells += gap_filling.support() + std::max(2 * window, country) + deck_support + crest_support + terrain_filling(window).support();
   return cells + reach(smoothing) + fine_reach();

@@ -10,7 +10,8 @@ namespace swath::filters {
 
 /// What the surface is built with.
 struct GroundSurfaceOptions {
-  double widest = 50.0;    ///< m, across the largest building
+  double widest = 50.0;    ///< m, across the largest building that is found by its width
+  double longest = 180.0;  ///< m, the longest building that is found by its walls
   double steepest = 1.43;  ///< rise / run of the steepest ground
   double noise = 0.03;     ///< m, standard deviation of a height on hard level ground
 };

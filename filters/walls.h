@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Raised surfaces that walls surround, however wide, and those that the rim of the data cuts.
+#pragma once
+
+#include "filters/morphology.h"
+
+namespace swath::filters {
+
+/// Cells of 1 m.
+struct WallOptions {
+  int longest = 180;  ///< cells: larger surfaces are ground; 0: none is looked for
+  int widest = 50;    ///< cells: the same half of surfaces that the rim of the data cuts, whose other walls are not known
+};
+
+/// Voids in `lowest` (the lowest returns, NaN where none) the surfaces that end at walls wherever their end is seen: halls, and roofs of
+/// which the data hold a part. What lies beyond the rim of the data is unknown: neither ground nor object.
+void remove_walled(Raster& lowest, const WallOptions& o);
+
+/// Cells around a cell that decide on it.
+int wall_support(const WallOptions& o);
+
+}  // namespace swath::filters
