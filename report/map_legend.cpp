@@ -116,7 +116,7 @@ int draw_legend(core::Picture& p, int left, int top, int right, int scale, const
   if (shown.ordinary) entry(every("contours", shown.interval), rule(scale, contour_colour));
   if (shown.index)
     entry(every(shown.thinned ? "index contours only" : "index contours", shown.index_interval), rule(2.0 * scale, index_colour));
-  static constexpr std::array<const char*, 5> names{"", "no data", "edge too long", "water", "never seen"};
+  static constexpr std::array<const char*, void_reasons> names{"", "no data", "edge too long", "water", "never seen"};
   for (size_t v = 1; v < names.size(); ++v)
     if (shown.voids[v])
       entry(names[v], [&](const Box& b) {

@@ -35,6 +35,8 @@ struct Span {
   bool any = false;
 };
 
+constexpr size_t void_reasons = static_cast<size_t>(core::Void::never_seen) + 1;  ///< with `none`
+
 /// What the map shows, for the legend.
 struct Shown {
   bool tint = true;
@@ -42,7 +44,7 @@ struct Shown {
   Span span;
   bool ordinary = false, index = false, thinned = false;
   double interval = 0.0, index_interval = 0.0;
-  std::array<bool, 5> voids{};
+  std::array<bool, void_reasons> voids{};
 };
 
 /// Low ground to high ground, t from 0 to 1: green, straw, ochre, brown, stone.

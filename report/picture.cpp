@@ -129,12 +129,12 @@ core::Grid averaged(const core::Grid& g, int factor) {
     for (int bi = 0; bi < out.lattice.nx; ++bi) {
       double sum = 0.0;
       int heights = 0, cells = 0;
-      std::array<int, 4> reasons{};
+      std::array<int, void_reasons> reasons{};
       for (int j = bj * f; j < std::min((bj + 1) * f, l.ny); ++j)
         for (int i = bi * f; i < std::min((bi + 1) * f, l.nx); ++i, ++cells) {
           const size_t k = l.at(i, j);
           if (std::isnan(g.height[k])) {
-            ++reasons[std::min<size_t>(static_cast<size_t>(g.reason[k]), 3)];
+            ++reasons[static_cast<size_t>(g.reason[k])];
           } else {
             sum += g.height[k];
             ++heights;
@@ -166,7 +166,7 @@ core::Picture relief_picture(const core::Grid& grid, const std::vector<core::Con
   shown.height_unit = o.height_unit;
   shown.span = height_span(shown_grid);
   for (size_t k = 0; k < shown_grid.height.size(); ++k)
-    if (std::isnan(shown_grid.height[k])) shown.voids[std::clamp<size_t>(static_cast<size_t>(shown_grid.reason[k]), 1, 4)] = true;
+    if (std::isnan(shown_grid.height[k])) shown.voids[static_cast<size_t>(shown_grid.reason[k])] = true;
 
   View view;
   view.map = {0, o.title.empty() ? margin : margin + (glyph_height + 4) * (text_scale + 1), shown_grid.lattice.nx * size,

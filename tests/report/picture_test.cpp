@@ -74,6 +74,28 @@ TEST(Picture, BlocksAreAveragedAndMostlyEmptyOnesAreVoid) {
   EXPECT_EQ(averaged(g, 1).reason[4], core::Void::long_edge);
 }
 
+TEST(Picture, AVoidKeepsItsReasonWhenItIsAveraged) {
+  for (const core::Void reason : {core::Void::no_data, core::Void::long_edge, core::Void::water, core::Void::never_seen}) {
+    core::Grid g(core::Lattice{1.0, 0, 0, 4, 4});
+    std::fill(g.reason.begin(), g.reason.end(), reason);
+    for (const core::Void shown : averaged(g, 2).reason) EXPECT_EQ(shown, reason);
+  }
+}
+
+TEST(Picture, GroundNeverSeenIsNotDrawnAsWater) {
+  core::Grid g = two_levels(400, 400);
+  for (int j = 100; j < 300; ++j)
+    for (int i = 100; i < 300; ++i) {
+      g.height[g.lattice.at(i, j)] = none;
+      g.reason[g.lattice.at(i, j)] = core::Void::never_seen;
+    }
+  PictureOptions o;
+  o.max_side = 100;  // four cells to a pixel
+  const core::Picture p = relief_picture(g, {}, o);
+  const int x = p.width / 2;
+  for (int dx = -10; dx < 10; ++dx) EXPECT_LE(p.at(x + dx, 14 + 50)[2], p.at(x + dx, 14 + 50)[0] + 10) << dx;  // blue is water's
+}
+
 TEST(Picture, ContoursLieWhereTheyAre) {
   core::Grid g = two_levels(100, 80);
   std::fill(g.height.begin(), g.height.end(), 100.0f);
