@@ -9,24 +9,10 @@
 
 #include "core/option_visitors.h"
 #include "io/survey.h"
+#include "pipeline/limits.h"
 #include "stages/stage.h"
 
 namespace swath::pipeline {
-
-/// Limits of quality; a run that misses one ends with exit code 3.
-struct Limits {
-  double outside = 1.0;
-  double voids = 1.0;
-  core::Metres truth_rms{1e9};
-};
-
-template <class V>
-void describe(Limits& l, V& v) {
-  v.option("outside", l.outside, core::within(0, 1), "Largest share of returns that the trajectory does not cover.");
-  v.option("voids", l.voids, core::within(0, 1),
-           "Largest share of holes in the DTM: cells without a height that have ground on all sides.");
-  v.option("truth_rms", l.truth_rms, core::at_least(0), "Largest 3D rms of the points against truth, where truth is present.");
-}
 
 struct RunOptions {
   std::optional<std::filesystem::path> survey;

@@ -4,13 +4,19 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <numeric>
 
 #include "core/value.h"
 #include "io/value_file.h"
 
 namespace swath::pipeline {
 namespace {
+
+constexpr double least_share = 0.02;  // of a step, from which its speed says how long the rest takes
+
+std::chrono::milliseconds pause_of(Voice voice) { return std::chrono::milliseconds(voice == Voice::bar ? 100 : 3000); }
 
 /// JSON on one line.
 std::string one_line(const core::Value& v) {
@@ -53,30 +59,60 @@ std::string count_text(double n) {
 
 Progress::Progress(Voice voice) : voice_(voice) {
   if (voice_ == Voice::bar && !isatty(STDERR_FILENO)) voice_ = Voice::lines;
+  if (voice_ != Voice::quiet) ticker_ = std::thread([this] { tick(); });
 }
 
 Progress::~Progress() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  wake_.notify_all();
+  if (ticker_.joinable()) ticker_.join();
   if (open_ && voice_ == Voice::bar) std::fputc('\n', stderr);
 }
 
-void Progress::begin(const std::string& what, std::uint64_t total, const std::string& unit) {
+void Progress::expect(std::vector<double> steps) {
+  const std::lock_guard lock(mutex_);
+  expected_ = std::move(steps);
+  steps_ = begun_ + expected_.size();
+}
+
+void Progress::begin(const std::string& what, std::uint64_t total, const std::string& unit, double work) {
   const std::lock_guard lock(mutex_);
   what_ = what;
   unit_ = unit;
   total_ = total;
-  done_ = 0;
-  began_ = shown_ = std::chrono::steady_clock::now();
+  work_ = work;
+  done_ = skipped_ = 0;
+  work_done_ = work_skipped_ = 0.0;
+  share_ = -1.0;
+  expected_now_ = 0.0;
+  if (!expected_.empty()) {
+    expected_now_ = expected_.front();
+    expected_.erase(expected_.begin());
+    ++begun_;
+  }
+  began_ = shown_ = Clock::now();
   open_ = true;
   if (voice_ == Voice::bar) show(false);
 }
 
-void Progress::advance(std::uint64_t n) {
+void Progress::advance(std::uint64_t n, double work) { count(n, work, false); }
+void Progress::skip(std::uint64_t n, double work) { count(n, work, true); }
+
+void Progress::count(std::uint64_t n, double work, bool skipped) {
   const std::lock_guard lock(mutex_);
   done_ += n;
-  const auto pause = voice_ == Voice::bar ? std::chrono::milliseconds(100) : std::chrono::milliseconds(3000);
-  if (std::chrono::steady_clock::now() - shown_ < pause) return;
-  shown_ = std::chrono::steady_clock::now();
-  show(false);
+  work_done_ += work;
+  if (skipped) skipped_ += n, work_skipped_ += work;
+  if (Clock::now() - shown_ >= pause_of(voice_)) show(false);
+}
+
+void Progress::share(double done) {
+  const std::lock_guard lock(mutex_);
+  share_ = std::max(share_, std::clamp(done, 0.0, 1.0));
+  if (Clock::now() - shown_ >= pause_of(voice_)) show(false);
 }
 
 void Progress::end() {
@@ -84,6 +120,14 @@ void Progress::end() {
   if (!open_) return;
   total_ = std::max(total_, done_);
   show(true);
+  // What was skipped took no time and says nothing of the speed.
+  const double skipped = work_ > 0.0  ? work_skipped_ / work_
+                         : total_ > 0 ? static_cast<double>(skipped_) / static_cast<double>(total_)
+                                      : 0.0;
+  if (expected_now_ > 0.0 && skipped < 1.0) {
+    spent_ += seconds();
+    spent_expected_ += expected_now_ * (1.0 - skipped);
+  }
   open_ = false;
 }
 
@@ -100,34 +144,105 @@ void Progress::say(const std::string& text) {
   std::fprintf(stderr, "%s\n", text.c_str());
 }
 
+void Progress::tick() {
+  std::unique_lock lock(mutex_);
+  while (!wake_.wait_for(lock, pause_of(voice_), [this] { return ending_; }))
+    if (open_ && Clock::now() - shown_ >= pause_of(voice_)) show(false);
+}
+
+double Progress::seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
+
+/// Of the step, 0 to 1; negative where nothing says it.
+double Progress::done_share() const {
+  if (work_ > 0.0) return std::min(1.0, work_done_ / work_);
+  if (total_ > 0) return std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_));
+  return share_;
+}
+
+Progress::Left Progress::left() const {
+  Left out;
+  const double share = done_share(), time = seconds();
+  double skipped = 0.0;
+  if (work_ > 0.0)
+    skipped = work_skipped_ / work_;
+  else if (total_ > 0)
+    skipped = static_cast<double>(skipped_) / static_cast<double>(total_);
+  const double fresh = share - skipped;
+  if (share >= 0.0 && fresh >= least_share) out.step = time * (1.0 - share) / fresh;
+  // The time that the work so far took, per expected time.
+  const double expected = spent_expected_ + (out.step >= 0.0 ? expected_now_ * fresh : 0.0);
+  const double to_come = std::accumulate(expected_.begin(), expected_.end(), 0.0);
+  if (expected <= 0.0 || expected_now_ <= 0.0) return out;
+  const double scale = (spent_ + (out.step >= 0.0 ? time : 0.0)) / expected;
+  const double now = out.step >= 0.0 ? out.step : std::max(0.0, scale * expected_now_ * (1.0 - skipped) - time);
+  out.run = now + scale * to_come;
+  return out;
+}
+
 void Progress::show(bool last) {
   if (voice_ == Voice::quiet) return;
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
-  const double rate = seconds > 0 ? static_cast<double>(done_) / seconds : 0.0;
-  const double share = total_ > 0 ? std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_)) : 0.0;
-  const double left = rate > 0 ? static_cast<double>(total_ - std::min(total_, done_)) / rate : 0.0;
-  if (voice_ == Voice::json) {
-    core::Value line;
-    line["stage"] = what_;
+  shown_ = Clock::now();
+  if (voice_ == Voice::json)
+    show_json(last);
+  else
+    show_text(last);
+}
+
+void Progress::show_json(bool last) {
+  const double time = seconds(), share = last ? 1.0 : done_share();
+  const Left l = left();
+  core::Value line;
+  line["stage"] = what_;
+  if (total_ > 0) {
     line["done"] = done_;
     line["total"] = total_;
     line["unit"] = unit_;
-    line["per_second"] = rate;
-    line["seconds"] = seconds;
-    if (last) line["finished"] = true;
-    std::fprintf(stderr, "%s\n", one_line(line).c_str());
-    return;
   }
-  char bar[24] = {};
-  const int filled = static_cast<int>(share * 20);
-  for (int i = 0; i < 20; ++i) bar[i] = i < filled ? '#' : '.';
-  const std::string tail = last ? duration_text(seconds) : duration_text(left) + " left";
-  if (voice_ == Voice::bar)
-    std::fprintf(stderr, "\r\033[K%-22s [%s] %3.0f %%  %s %s, %s/s, %s%s", what_.c_str(), bar, 100 * share,
-                 count_text(static_cast<double>(done_)).c_str(), unit_.c_str(), count_text(rate).c_str(), tail.c_str(), last ? "\n" : "");
+  line["per_second"] = time > 0 ? static_cast<double>(done_ - skipped_) / time : 0.0;
+  line["seconds"] = time;
+  if (share >= 0.0) line["share"] = share;
+  if (steps_ > 0) {
+    line["step"] = begun_;
+    line["steps"] = steps_;
+  }
+  if (!last && l.step >= 0.0) line["seconds_left"] = l.step;
+  if (!last && l.run >= 0.0) line["run_seconds_left"] = l.run;
+  if (last) line["finished"] = true;
+  std::fprintf(stderr, "%s\n", one_line(line).c_str());
+}
+
+void Progress::show_text(bool last) {
+  const double time = seconds(), share = last ? 1.0 : done_share();
+  const Left l = left();
+  std::string text;
+  char part[64];
+  std::snprintf(part, sizeof part, "%-22s ", what_.c_str());
+  text += part;
+  if (voice_ == Voice::bar) {
+    text += '[';
+    for (int i = 0; i < 20; ++i) text += i < static_cast<int>(share * 20) ? '#' : '.';
+    text += "] ";
+  }
+  if (share >= 0.0)
+    std::snprintf(part, sizeof part, "%3.0f %%  ", std::floor(100.0 * share));
   else
-    std::fprintf(stderr, "%-22s %3.0f %%  %s %s, %s/s, %s\n", what_.c_str(), 100 * share, count_text(static_cast<double>(done_)).c_str(),
-                 unit_.c_str(), count_text(rate).c_str(), tail.c_str());
+    std::snprintf(part, sizeof part, "       ");
+  text += part;
+  if (total_ > 0)
+    text += count_text(static_cast<double>(done_)) + " " + unit_ + ", " +
+            count_text(time > 0 ? static_cast<double>(done_ - skipped_) / time : 0.0) + "/s, ";
+  if (last || l.step < 0.0)
+    text += duration_text(time);
+  else
+    text += duration_text(l.step) + " left";
+  if (!last && steps_ > 1) {
+    text += "; step " + std::to_string(begun_) + " of " + std::to_string(steps_);
+    if (l.run >= 0.0) text += ", run: " + duration_text(l.run) + " left";
+  }
+  if (voice_ == Voice::bar)
+    std::fprintf(stderr, "\r\033[K%s%s", text.c_str(), last ? "\n" : "");
+  else
+    std::fprintf(stderr, "%s\n", text.c_str());
   std::fflush(stderr);
 }
 

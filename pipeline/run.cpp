@@ -22,7 +22,9 @@
 #include "io/output_file.h"
 #include "io/value_file.h"
 #include "pipeline/delivery.h"
+#include "pipeline/expected_time.h"
 #include "pipeline/grid_store.h"
+#include "pipeline/limits.h"
 #include "pipeline/provenance.h"
 #include "pipeline/pulse_border.h"
 #include "pipeline/tile_groups.h"
@@ -78,6 +80,10 @@ struct Account {
 
 constexpr const char* groups_file = "groups.json";
 
+/// What a group takes to work on, for the progress: its memory holds the points around it and its rasters, and so one point alone in a tile
+/// is not taken for next to nothing.
+double work_of(const TileGroup& g) { return 1.0 + static_cast<double>(g.bytes); }
+
 /// What a tile stage reads and changes.
 core::ColumnSet columns_of_tiles(const Stage& s) { return s.info().needs | s.info().gives | s.also_reads(); }
 
@@ -115,7 +121,10 @@ class Engine {
   void run_merge(size_t number);
   void begin_products(size_t number);
   void compose_report(const std::string& command);
-  bool judge_limits();
+  Measured measured() const;
+  void say_what_is_done();
+  size_t steps() const;
+  void expect_times(std::uint64_t returns);
   fs::path folder(size_t number) const {
     char digits[8];
     std::snprintf(digits, sizeof digits, "%02zu-", number);
@@ -151,6 +160,7 @@ void Engine::prepare() {
   context_.tile_side = plan_.run.tile.value;
   context_.grids = &grids_;
   context_.threads = threads_;
+  context_.share = [this](double done) { progress_.share(done); };
   if (works_on_the_map(plan_) || !plan_.survey.crs.empty()) prepare_map();
   inputs_ = inputs_of(plan_);
   fingerprints_ = fingerprints(plan_, inputs_);
@@ -194,15 +204,55 @@ void Engine::find_strips() {
   context_.strips = context_.source->strips(context_, accounts_[source_].tally);
 }
 
+/// Survey stages, strips, tile stages and merges.
+size_t Engine::steps() const {
+  const bool points = makes_points(plan_);
+  size_t n = points ? 1 : 0;
+  for (size_t i = 0; i < plan_.stages.size(); ++i) {
+    n += works_on(i, Grain::survey);
+    if (points && i > last_strip_stage_)
+      n += static_cast<size_t>(works_on(i, Grain::tile)) + static_cast<size_t>(works_on(i, Grain::merge));
+  }
+  return n;
+}
+
+/// Of the strips and what follows them.
+void Engine::expect_times(std::uint64_t returns) {
+  const auto n = static_cast<double>(returns), shared = n / threads_;
+  std::vector<double> seconds(1, 0.0);
+  for (size_t i = 0; i < plan_.stages.size(); ++i) {
+    const std::string_view name = stage(i).info().name;
+    if (works_on(i, Grain::strip)) seconds[0] += shared * expected_seconds(name, Grain::strip);
+    if (i <= last_strip_stage_) continue;
+    if (works_on(i, Grain::tile)) seconds.push_back(shared * expected_seconds(name, Grain::tile));
+    if (works_on(i, Grain::merge)) seconds.push_back(n * expected_seconds(name, Grain::merge));
+  }
+  progress_.expect(std::move(seconds));
+}
+
+/// Of an earlier run of this plan that was killed, or whose work was kept.
+void Engine::say_what_is_done() {
+  size_t lines = 0, pieces = 0;
+  for (size_t i = 0; i < plan_.stages.size(); ++i) {
+    if (!fs::is_directory(folder(i))) continue;
+    for (const auto& entry : fs::directory_iterator(folder(i))) {
+      lines += TileStore::is_committed(entry.path());
+      pieces += entry.path().extension() == ".done";
+    }
+  }
+  if (lines + pieces > 0)
+    progress_.say("resumed: " + std::to_string(lines) + " flight lines or files and " + std::to_string(pieces) +
+                  " pieces of tile stages were done by an earlier run and are not done again");
+}
+
 void Engine::run_survey_stages() {
   for (size_t i = 0; i < plan_.stages.size(); ++i) {
     if (!works_on(i, Grain::survey)) continue;
     if (stage(i).info().takes(stages::Product::shots)) find_strips();
     begin_products(i);
     const auto start = Clock::now();
-    progress_.begin(std::string(stage(i).info().name), 1, "survey");
+    progress_.begin(std::string(stage(i).info().name), 0, "");
     stage(i).run_survey(context_, accounts_[i].tally, accounts_[i].findings);
-    progress_.advance(1);
     progress_.end();
     accounts_[i].seconds += since(start);
     context_.earlier.push_back(context_.output);
@@ -286,6 +336,7 @@ void Engine::run_strips() {
   const fs::path strips_folder = folder(last_strip_stage_);
   std::uint64_t records = 0;
   for (const stages::Strip& s : strips) records += s.records;
+  expect_times(records);
   progress_.begin("strips", records, "returns");
   std::vector<std::string> names;
   std::uint64_t in = 0;
@@ -296,7 +347,7 @@ void Engine::run_strips() {
     const fs::path strip_folder = strips_folder / name;
     if (TileStore::is_committed(strip_folder)) {
       ++resumed_;
-      progress_.advance(strips[i].records);
+      progress_.skip(strips[i].records);
     } else {
       stream_strip(strips[i], strip_folder);
     }
@@ -449,13 +500,17 @@ void Engine::run_tiles(size_t number) {
   std::vector<TileKey> keys = tiles_of(number);
   for (const TileKey key : fringe)
     if (!surface_tiles_.contains(key)) keys.push_back(key);
-  progress_.begin(std::string(info.name), store_->points(), "points");
 
   const auto budget = static_cast<std::uint64_t>(plan_.run.memory.value * 0.8);
   const std::vector<TileGroup> groups = groups_of(number, keys, budget);
   std::vector<Value> notes(groups.size());
   std::vector<std::uint64_t> bytes;
-  for (const TileGroup& g : groups) bytes.push_back(fs::exists(done_file(number, g)) ? 0 : g.bytes);
+  double work = 0.0;
+  for (const TileGroup& g : groups) {
+    bytes.push_back(fs::exists(done_file(number, g)) ? 0 : g.bytes);
+    work += work_of(g);
+  }
+  progress_.begin(std::string(info.name), store_->points(), "points", work);
   TileQueue queue(std::move(bytes), budget);
   std::atomic<std::uint64_t> again{0};
   tbb::parallel_for(
@@ -468,10 +523,11 @@ void Engine::run_tiles(size_t number) {
           if (const fs::path done = done_file(number, group); fs::exists(done)) {
             note = io::parse_json(io::read_text_file(done), done.string());
             ++again;
+            progress_.skip(group.own, work_of(group));
           } else {
             note = run_group(number, group, wet.contains(group.tiles[0]));
+            progress_.advance(group.own, work_of(group));
           }
-          progress_.advance(group.own);
         }
       },
       tbb::simple_partitioner());
@@ -492,9 +548,8 @@ void Engine::run_merge(size_t number) {
   stages::MergeJob job{folder(number), {}, {}};
   job.tiles = tiles_of(number);
   const auto start = Clock::now();
-  progress_.begin(std::string(stage(number).info().name) + " merge", 1, "survey");
+  progress_.begin(std::string(stage(number).info().name) + " merge", 0, "");
   stage(number).run_merge(context_, job);
-  progress_.advance(1);
   progress_.end();
   accounts_[number].tally.add(job.tally);
   for (auto& [key, value] : job.findings.members()) accounts_[number].findings[key] = std::move(value);
@@ -512,25 +567,7 @@ void Engine::run_tile_stages() {
   }
 }
 
-bool Engine::judge_limits() {
-  Value& list = report_["limits"] = Value::array();
-  bool held = true;
-  const auto judge = [&](const char* name, std::optional<double> value, double limit, double none) {
-    if (!value && limit >= none) return;
-    Value one = Value::object();
-    one["name"] = name;
-    if (!value) {
-      one["limit"] = limit;
-      one["held"] = "not judged: no stage of this run measures it";
-      list.push(std::move(one));
-      return;
-    }
-    one["value"] = *value;
-    one["limit"] = limit;
-    one["held"] = *value <= limit;
-    held = held && *value <= limit;
-    list.push(std::move(one));
-  };
+Measured Engine::measured() const {
   const auto finding = [&](std::string_view key) -> std::optional<double> {
     for (const Account& a : accounts_)
       if (const Value* v = a.findings.find(key); v && v->is_number()) return v->as_number();
@@ -540,12 +577,7 @@ bool Engine::judge_limits() {
   for (size_t i = 0; i < accounts_.size(); ++i)
     if (stage(i).info().name == "georeference" && accounts_[i].in > 0)
       outside = static_cast<double>(accounts_[i].tally.of("outside the trajectory, left out")) / static_cast<double>(accounts_[i].in);
-  const Limits& limits = plan_.run.limits;
-  const Limits no_limits;
-  judge("outside", outside, limits.outside, no_limits.outside);
-  judge("voids", finding("void_share"), limits.voids, no_limits.voids);
-  judge("truth_rms", finding("rms_3d"), limits.truth_rms.value, no_limits.truth_rms.value);
-  return held;
+  return {outside, finding("void_share"), finding("rms_3d")};
 }
 
 void Engine::compose_report(const std::string& command) {
@@ -618,13 +650,16 @@ Outcome Engine::run(const std::string& command) {
     for (size_t i = 0; i < plan_.stages.size(); ++i) valid.insert(folder(i).filename().string());
     sweep(work_, valid);
     fs::remove_all(discarded, ec);
+    say_what_is_done();
+    progress_.expect(std::vector<double>(steps(), 0.0));
     run_survey_stages();
     if (makes_points(plan_)) {
       run_strips();
       run_tile_stages();
     }
     compose_report(command);
-    const bool held = judge_limits();
+    report_["limits"] = judged(plan_.run.limits, measured());
+    const bool held = missed_limits(report_["limits"]).empty();
     for (const fs::path& made : context_.earlier) deliver(made, output_, plan_.run.keep_work);
     report_["pieces_resumed"] = resumed_;
     report_["seconds"] = since(start);

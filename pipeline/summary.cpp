@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "io/value_file.h"
+#include "pipeline/limits.h"
 #include "pipeline/progress.h"
 
 namespace swath::pipeline {
@@ -67,6 +68,10 @@ std::string summary(const Value& report, const std::filesystem::path& output) {
       }
     if (const Value* findings = stage.find("findings")) indent(*findings, "    ", out);
   }
+  if (const Value* resumed = report.find("pieces_resumed"); resumed && resumed->as_int() > 0)
+    out += "\nresumed: " + std::to_string(resumed->as_int()) + " pieces were done by an earlier run\n";
+  if (const Value* limits = report.find("limits"))
+    for (const std::string& limit : missed_limits(*limits)) out += "\nlimit missed: " + limit + "\n";
   out += "\nproducts in " + output.generic_string() + ", report in " + (output / "report.json").generic_string() + " (" +
          duration_text(report.find("seconds")->as_number()) + ")\n";
   return out;

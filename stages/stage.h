@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -133,6 +134,8 @@ struct Context {
   double tile_side = 500.0;                      ///< m
   std::filesystem::path output{};                ///< where the stage at work puts its products, laid out as in the output folder
   std::vector<std::filesystem::path> earlier{};  ///< the same of the stages before it
+  /// How far the survey stage or merge at work is, 0 to 1; from any thread, as often as it likes.
+  std::function<void(double)> share = [](double) {};
   const Grids* grids = nullptr;
   const Stage* source = nullptr;  ///< of the plan; null where it has none
   std::vector<Strip> strips{};    ///< of the source, in the order of the work

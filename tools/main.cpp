@@ -18,6 +18,7 @@
 #include "io/info.h"
 #include "io/value_file.h"
 #include "pipeline/describe.h"
+#include "pipeline/limits.h"
 #include "pipeline/plan.h"
 #include "pipeline/profile.h"
 #include "pipeline/provenance.h"
@@ -46,7 +47,8 @@ int run(Arguments& a, const std::string& command) {
   const pipeline::Outcome outcome = pipeline::run(plan, progress, command);
   if (!a.quiet && !a.json_log) std::fputs(pipeline::summary(outcome.report, plan.run.output).c_str(), stdout);
   if (outcome.code == core::Exit::quality_missed)
-    std::fputs("swath: done, but a quality limit of the config was missed (see \"limits\" in report.json)\n", stderr);
+    for (const std::string& limit : pipeline::missed_limits(*outcome.report.find("limits")))
+      std::fprintf(stderr, "swath: done, but a quality limit was missed: %s\n", limit.c_str());
   return static_cast<int>(outcome.code);
 }
 

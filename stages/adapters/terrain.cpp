@@ -37,9 +37,11 @@ struct Cover {
   std::uint64_t known = 0, holes = 0;
 };
 
-Cover cover_of(const MergeJob& job) {
+Cover cover_of(const Context& context, const MergeJob& job) {
   Cover c;
+  size_t done = 0;
   for (const TileKey key : job.tiles) {
+    context.share(static_cast<double>(done++) / static_cast<double>(job.tiles.size()));
     const core::Grid grid = read_grid_tile(grid_file(job.folder, key));
     c.known += static_cast<std::uint64_t>(std::count(grid.reason.begin(), grid.reason.end(), core::Void::none));
     for (const core::Void hole : {core::Void::long_edge, core::Void::never_seen})
@@ -87,7 +89,7 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
     write_grid_tile(job.folder, job.key, grid);
   }
   void run_merge(const Context& context, MergeJob& job) const override {
-    const Cover cover = cover_of(job);
+    const Cover cover = cover_of(context, job);
     if (cover.known == 0)
       throw core::Error("no triangle of ground points is small enough to give any cell of the DTM a height", context.survey.name,
                         "are there three ground points that are not on one line, closer than max_edge = " +

@@ -135,9 +135,11 @@ class GridTiles : public OptionStage<NoOptions> {
     }
   }
   void run_merge(const Context& context, MergeJob& job) const override {
+    size_t done = 0;
     for (const Surface& s : made(context)) {
       const fs::path folder = context.output / name_of(s.product);
       std::vector<std::string> files;
+      context.share(static_cast<double>(done++) / static_cast<double>(surfaces().size()));
       for (const char* kind : {"", "_quality"}) {
         if (*kind && !s.has_quality) continue;
         std::vector<fs::path> tiles;

@@ -173,7 +173,7 @@ class Runs(Case):
     def test_a_missed_limit_is_code_3(self):
         done = swath(*self.arguments("--quiet", "--set", "run.limits.truth_rms=1 mm"))
         self.assertEqual(done.returncode, 3)
-        self.assertIn("limit", done.stderr)
+        self.assertRegex(done.stderr, r"run\.limits\.truth_rms = 0\.001 m is exceeded by 0\.\d+ m: .* 0\.\d+ m")
         limits = json.loads((self.out / "report.json").read_text())["limits"]
         self.assertFalse(next(one for one in limits if one["name"] == "truth_rms")["held"])
         self.assertTrue((self.out / "relief.png").exists(), "the products are there all the same")

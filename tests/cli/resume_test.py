@@ -58,6 +58,14 @@ class Killed(Case):
         shutil.rmtree(self.out)
         return resumed
 
+    def test_a_resumed_run_says_what_is_not_done_again(self):
+        command = [c for c in self.command(self.out, "run.keep_work=true") if c != "--quiet"]
+        first = subprocess.run(command, check=True, capture_output=True, text=True)
+        self.assertNotIn("resumed", first.stdout + first.stderr)
+        again = subprocess.run(command, check=True, capture_output=True, text=True)
+        self.assertRegex(again.stderr, r"(?m)^resumed: [1-9]\d* flight lines or files and [1-9]\d* pieces of tile stages were done")
+        self.assertRegex(again.stdout, r"(?m)^resumed: [1-9]\d* pieces")
+
     def test_what_a_kill_while_cleaning_up_leaves_goes_with_the_next_run(self):
         (self.out / ".swath-discarded" / "03-strips").mkdir(parents=True)
         (self.out / ".swath-discarded" / "03-strips" / "rest").write_text("rest")

@@ -3,6 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <sstream>
+#include <thread>
+
+#include "io/value_file.h"
+
 namespace swath::pipeline {
 namespace {
 
@@ -12,6 +18,78 @@ TEST(Progress, Texts) {
   EXPECT_EQ(duration_text(3725), "1 h 02 m");
   EXPECT_EQ(count_text(840), "840");
   EXPECT_EQ(count_text(12.34e6), "12.34 M");
+}
+
+/// What `work` says as JSON, line by line.
+template <class F>
+std::vector<core::Value> said(const F& work) {
+  testing::internal::CaptureStderr();
+  {
+    Progress p(Voice::json);
+    work(p);
+  }
+  std::istringstream text(testing::internal::GetCapturedStderr());
+  std::vector<core::Value> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(io::parse_json(line, "log"));
+  return lines;
+}
+
+void pass(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
+constexpr int pause = 3050;  // ms, between two lines
+
+TEST(Progress, TheShareFollowsTheWorkAndNotTheCounts) {
+  // A tile with one point is as much work as one of a million: a time left by counts would be a thousand hours.
+  const auto lines = said([](Progress& p) {
+    p.begin("terrain.dtm", 1'000'001, "points", 4.0);
+    pass(200);
+    p.advance(1, 1.0);
+    pass(pause);
+    p.advance(1'000'000, 3.0);
+    p.end();
+  });
+  ASSERT_GE(lines.size(), 2u);  // of itself after three seconds, and at the end
+  const core::Value& one = lines[0];
+  EXPECT_EQ(one.find("done")->as_int(), 1);
+  EXPECT_DOUBLE_EQ(one.find("share")->as_number(), 0.25);
+  EXPECT_NEAR(one.find("seconds_left")->as_number(), 3.0 * one.find("seconds")->as_number(), 0.5);
+}
+
+TEST(Progress, AStepWithoutCountsSaysThatItIsAtWorkAndHowFarItIs) {
+  const auto lines = said([](Progress& p) {
+    p.expect({0.0, 0.0});
+    p.begin("trajectory.ins_gnss", 0, "");
+    pass(pause);
+    p.share(0.5);
+    pass(pause);
+    p.end();
+  });
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[0].find("share"), nullptr);
+  EXPECT_EQ(lines[0].find("step")->as_int(), 1);
+  EXPECT_EQ(lines[0].find("steps")->as_int(), 2);
+  EXPECT_DOUBLE_EQ(lines[1].find("share")->as_number(), 0.5);
+  EXPECT_DOUBLE_EQ(lines[2].find("share")->as_number(), 1.0);
+}
+
+TEST(Progress, TheTimeLeftOfTheRunIsThatOfTheStepsToCome) {
+  const auto lines = said([](Progress& p) {
+    p.expect({1.0, 1.0, 8.0});
+    p.begin("strips", 10, "returns");
+    pass(200);
+    p.advance(10);
+    p.end();
+    p.begin("filters.noise", 10, "points");
+    p.skip(5);  // takes no time: half of the step is left
+    pass(pause);
+    p.advance(3);
+    p.end();
+  });
+  ASSERT_GE(lines.size(), 3u);
+  const core::Value& now = lines[lines.size() - 2];
+  EXPECT_EQ(now.find("step")->as_int(), 2);
+  // 0.2 s for 1.0 expected and 3.05 s for 0.3 expected: 2.5 s per 1.0; left are 0.2 of this step and 8.0.
+  EXPECT_NEAR(now.find("run_seconds_left")->as_number(), 2.03 + 20.0, 1.0);
+  EXPECT_NEAR(now.find("seconds_left")->as_number(), 2.03, 0.2);
 }
 
 TEST(Progress, JsonIsOneObjectPerLineAndQuietIsQuiet) {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Limits of quality and how a run fared by them; a run that misses one ends with exit code 3.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/option.h"
+#include "core/units.h"
+#include "core/value.h"
+
+namespace swath::pipeline {
+
+struct Limits {
+  double outside = 1.0;
+  double voids = 1.0;
+  core::Metres truth_rms{1e9};
+};
+
+template <class V>
+void describe(Limits& l, V& v) {
+  v.option("outside", l.outside, core::within(0, 1), "Largest share of returns that the trajectory does not cover.");
+  v.option("voids", l.voids, core::within(0, 1),
+           "Largest share of holes in the DTM: cells without a height that have ground on all sides.");
+  v.option("truth_rms", l.truth_rms, core::at_least(0), "Largest 3D rms of the points against truth, where truth is present.");
+}
+
+/// What a run measured of what the limits judge, in their units; nothing where no stage measures it.
+struct Measured {
+  std::optional<double> outside, voids, truth_rms;
+};
+
+/// For report.json: every limit that the config sets or the run measured, with `name`, `value`, `limit` and `held`, and `excess` where the
+/// value is over the limit.
+core::Value judged(const Limits& limits, const Measured& measured);
+
+/// One line for each limit that was missed: which, the value, the limit and by how much. Empty where all are held.
+std::vector<std::string> missed_limits(const core::Value& judged);
+
+}  // namespace swath::pipeline

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/expected_time.h"
+
+#include <gtest/gtest.h>
+
+#include "stages/registry.h"
+
+namespace swath::pipeline {
+namespace {
+
+using stages::Grain;
+
+TEST(ExpectedTime, EveryStageThatWorksOnReturnsHasOne) {
+  size_t longer = 0;
+  for (const auto& e : stages::registry())
+    for (const Grain g : e.make()->info().grains) {
+      const double s = expected_seconds(e.name, g);
+      if (g == Grain::survey) {
+        EXPECT_EQ(s, 0.0) << e.name;
+      } else {
+        EXPECT_GT(s, 0.0) << e.name;
+      }
+      longer += g == Grain::tile && s != expected_seconds("any other", g);
+    }
+  EXPECT_EQ(longer, 9u) << "a name of the list is not a stage";
+  EXPECT_GT(expected_seconds("filters.ground", Grain::tile), expected_seconds("filters.noise", Grain::tile));
+}
+
+}  // namespace
+}  // namespace swath::pipeline
