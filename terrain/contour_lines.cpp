@@ -76,7 +76,7 @@ std::vector<ContourLine> contour_lines(std::vector<Segment> segments, const Cont
   for (size_t k = 0; k < lines.size(); ++k) {
     level.push_back(std::move(lines[k]));
     if (k + 1 < lines.size() && lines[k + 1].level == level[0].level) continue;
-    shape(level, surface, vertical_tolerance(options));
+    thin(level, surface, vertical_tolerance(options));
     std::move(level.begin(), level.end(), std::back_inserter(out));
     level.clear();
   }

@@ -29,11 +29,11 @@ using core::signed_area;  // m2: positive round a summit, negative round a depre
 
 /// Joins segments (any order, doubles allowed; one level at a time keeps memory small) to lines. Open lines start at their own end, closed
 /// ones at their smallest edge key; lines are in the order of level and start key: the same answer for every tiling. Vertices that coincide
-/// are one; what has no length is left out. No smoothing yet.
+/// are one; what has no length is left out.
 std::vector<ContourLine> join(std::vector<Segment> segments, const ContourOptions& options);
 
-/// What a tile merge calls per level: join, leave out what is shorter than min_length or encloses less than min_area, and shape
-/// (terrain/contour_shape.h) on the surface that was traced.
+/// What a tile merge calls per level: join, leave out what is shorter than min_length or encloses less than min_area, and thin
+/// (terrain/contour_shape.h) within the tolerance of `surface`, the model itself.
 std::vector<ContourLine> contour_lines(std::vector<Segment> segments, const ContourOptions& options, Facets& surface);
 
 }  // namespace swath::terrain

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smoothing: Taubin (1995), "A signal processing approach to fair surface design": every vertex goes by turns towards and away from the
-// middle of its neighbours, which takes out what is shorter than some four cells and keeps size and place of what is longer. Thinning: a
-// vertex goes where it and all that went before it lie within `thinnest` of the new chord. Deviation from both: a step is taken only
-// where the corridor of the tolerance and the other lines of the level leave room; it is tried once whole and once by half.
-// Every step is checked against the level as it then stands, so the lines are free of crossings after each of them.
+// A vertex goes where it and all that went before it lie within `thinnest` of the new chord, and where the corridor of the tolerance and
+// the other lines of the level leave room. Every step is checked against the level as it then is, so the lines are free of crossings after
+// each of them.
 #include "terrain/contour_shape.h"
 
 #include <algorithm>
@@ -19,13 +17,11 @@ namespace {
 
 using Point = Eigen::Vector2d;
 
-constexpr int rounds = 6;                           // of smoothing, two sweeps each
-constexpr double inwards = 0.5, outwards = -0.515;  // Taubin's lambda and mu
-constexpr double clearance = 1e-5;                  // of a cell, between what moves and all else
-constexpr double joint = 1e-6;                      // of a cell, the same between neighbours beside the vertex they share
-constexpr double thinnest = 0.05;                   // of a cell, from a removed vertex to the line
-constexpr double longest = 32.0;                    // cells that a segment may bridge
-constexpr double bucket_side = 1.0;                 // cells
+constexpr double clearance = 1e-5;   // of a cell, between a new segment and all else
+constexpr double joint = 1e-6;       // of a cell, the same between neighbours beside the vertex they share
+constexpr double thinnest = 0.05;    // of a cell, from a removed vertex to the line
+constexpr double longest = 32.0;     // cells that a segment may bridge
+constexpr double bucket_side = 1.0;  // cells
 
 double cross(const Point& a, const Point& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -81,32 +77,6 @@ class Level {
   }
 
   const Node& node(int k) const { return nodes_[k]; }
-
-  /// From node k to the middle of its neighbours; none at the ends of open lines.
-  Point to_middle(int k) const {
-    const Node& n = nodes_[k];
-    if (n.before < 0 || n.after < 0) return Point::Zero();
-    return 0.5 * (nodes_[n.before].p + nodes_[n.after].p) - n.p;
-  }
-
-  /// Moves node k, no end of an open line, where that is allowed.
-  void move(int k, const Point& aim) {
-    const Node n = nodes_[k];
-    const Point &a = nodes_[n.before].p, &b = nodes_[n.after].p;
-    for (const double part : {1.0, 0.5}) {
-      const Point to = n.p + part * aim;
-      if (!surface_.within(a, to, height_, tolerance_) || !surface_.within(to, b, height_, tolerance_)) continue;
-      if (!sweeps_free(a, n.p, to, k) || !sweeps_free(n.p, to, b, k)) continue;
-      if (!keeps_clear(a, to, n.before, k, n.after) || !keeps_clear(to, b, n.before, k, n.after)) continue;
-      if (!unfolded(a, to, b)) continue;
-      leave(n.before);
-      leave(k);
-      nodes_[k].p = to;
-      enter(n.before);
-      enter(k);
-      return;
-    }
-  }
 
   /// Takes node k out, where that is allowed.
   bool remove(int k) {
@@ -220,7 +190,7 @@ class Level {
 };
 
 /// Walks along a line from `first`: from every vertex that stays as far as the next may be.
-void thin(Level& level, int first, bool closed, double cell) {
+void thin_line(Level& level, int first, bool closed, double cell) {
   int left = 1;
   for (int k = level.node(first).after; k >= 0 && k != first; k = level.node(k).after) ++left;
   std::vector<Point> gone;
@@ -245,27 +215,22 @@ void thin(Level& level, int first, bool closed, double cell) {
 
 }  // namespace
 
-void shape(std::vector<ContourLine>& lines, Facets& surface, double tolerance) {
+void thin(std::vector<ContourLine>& lines, Facets& surface, double tolerance) {
   if (tolerance <= 0.0 || lines.empty()) return;
   Level level(lines, surface, tolerance);
-  std::vector<int> first{0};
-  for (const ContourLine& line : lines) first.push_back(first.back() + static_cast<int>(line.vertices.size()) - (line.closed ? 1 : 0));
-  std::vector<Point> aim(static_cast<size_t>(first.back()));
-  for (int sweep = 0; sweep < 2 * rounds; ++sweep) {
-    for (int k = 0; k < first.back(); ++k) aim[static_cast<size_t>(k)] = (sweep % 2 == 0 ? inwards : outwards) * level.to_middle(k);
-    for (int k = 0; k < first.back(); ++k)
-      if (!aim[static_cast<size_t>(k)].isZero(0.0)) level.move(k, aim[static_cast<size_t>(k)]);
-  }
-  for (size_t n = 0; n < lines.size(); ++n) {
-    thin(level, first[n], lines[n].closed, surface.cell());
-    std::vector<Point>& v = lines[n].vertices;
+  int first = 0;
+  for (ContourLine& line : lines) {
+    const int next = first + static_cast<int>(line.vertices.size()) - (line.closed ? 1 : 0);
+    thin_line(level, first, line.closed, surface.cell());
+    std::vector<Point>& v = line.vertices;
     v.clear();
-    int k = first[n];
+    int k = first;
     do {
       v.push_back(level.node(k).p);
       k = level.node(k).after;
-    } while (k >= 0 && k != first[n]);
-    if (lines[n].closed) v.push_back(v.front());
+    } while (k >= 0 && k != first);
+    if (line.closed) v.push_back(v.front());
+    first = next;
   }
 }
 

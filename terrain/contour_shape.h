@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contour lines of one level smoothed and thinned within a vertical tolerance, so that no line crosses another or itself.
+// Contour lines of one level thinned within a vertical tolerance, so that no line crosses another or itself.
 #pragma once
 
 #include <vector>
@@ -9,13 +9,13 @@
 
 namespace swath::terrain {
 
-/// Smooths and thins all lines of one level, given as traced (contour_lines.h). Afterwards
-/// - the surface lies within `tolerance` (m) of the line's height along every segment that was moved, not only at its vertices, so lines of
+/// Thins all lines of one level, given as traced (contour_lines.h). Afterwards
+/// - `surface` lies within `tolerance` (m) of the line's height along every segment that is new, not only at its vertices, so lines of
 ///   levels more than twice the tolerance apart cannot meet;
-/// - no two segments of the level meet but neighbours at their vertex: what was moved keeps 1e-5 of a cell from all else;
+/// - no two segments of the level meet but neighbours at their vertex: what is new keeps 1e-5 of a cell from all else;
 /// - no line was drawn across a node of the surface that lies outside the tolerance, nor across another line: the order of the lines and
 ///   what they enclose is as traced.
 /// Ends of open lines stay. The outcome depends on the lines and the surface alone. Tolerance 0 leaves everything as it is.
-void shape(std::vector<ContourLine>& lines, Facets& surface, double tolerance);
+void thin(std::vector<ContourLine>& lines, Facets& surface, double tolerance);
 
 }  // namespace swath::terrain

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contours of a height grid, traced tile by tile; terrain/contour_lines.h joins them, terrain/contour_shape.h smooths them.
+// Contours of a height grid, traced tile by tile on a smoothed surface (terrain/contour_surface.h); terrain/contour_lines.h joins the
+// segments, terrain/contour_shape.h thins the lines.
 #pragma once
 
 #include <compare>

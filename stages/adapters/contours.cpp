@@ -11,19 +11,19 @@
 #include <memory>
 
 #include "core/error.h"
-#include "core/statistics.h"
 #include "io/output_file.h"
 #include "io/value_file.h"
 #include "io/vector.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/breaklines.h"
+#include "stages/adapters/contour_interval.h"
 #include "stages/adapters/units.h"
 #include "stages/grid_tile.h"
 #include "terrain/contour_labels.h"
 #include "terrain/contour_lines.h"
+#include "terrain/contour_surface.h"
 #include "terrain/contours.h"
 #include "terrain/dtm.h"
-#include "terrain/map_class.h"
 #include "terrain/spot_heights.h"
 
 namespace swath::stages {
@@ -76,31 +76,6 @@ fs::path facts_file(const fs::path& folder, TileKey key) {
   return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".facts");
 }
 
-/// What a tile tells of its surface besides the segments; plain data, the file holds it and then the spot heights.
-struct TileFacts {
-  double sum_of_heights = 0.0, sum_of_variances = 0.0;
-  std::uint64_t heights = 0, sigmas = 0;
-  std::uint64_t beyond = 0;  ///< cells whose own sigma keeps no class of maps at the interval
-};
-
-TileFacts facts_of(const core::Grid& grid, const core::Lattice& own, double interval) {
-  TileFacts f;
-  const core::Lattice& l = grid.lattice;
-  for (int j = 0; j < own.ny; ++j)
-    for (int i = 0; i < own.nx; ++i) {
-      const size_t at = l.at(static_cast<int>(own.i0 - l.i0) + i, static_cast<int>(own.j0 - l.j0) + j);
-      if (std::isnan(grid.height[at])) continue;
-      f.sum_of_heights += grid.height[at];
-      ++f.heights;
-      if (grid.sigma.empty() || std::isnan(grid.sigma[at])) continue;
-      const double sigma = grid.sigma[at];
-      f.sum_of_variances += sigma * sigma;
-      ++f.sigmas;
-      f.beyond += terrain::map_class_of(interval, sigma) == '-';
-    }
-  return f;
-}
-
 /// Decimals that a step of heights needs, at most 3.
 int decimals_of(double step) {
   for (int n = 0; n < 3; ++n)
@@ -112,49 +87,6 @@ std::string height_text(double height, int decimals) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", decimals, height);
   return text;
-}
-
-/// Flying height above the mean terrain, m: NaN where the run has no trajectory on the map.
-double flying_height(const Context& context, double mean_terrain) {
-  if (!context.trajectory || context.crs.empty()) return std::nan("");
-  const core::TrajectoryData& d = context.trajectory->data();
-  const core::Transform to_map(core::wgs84_geodetic(), context.crs);
-  const size_t step = std::max<size_t>(1, d.size() / 1000);
-  std::vector<double> heights;
-  for (size_t k = 0; k < d.size(); k += step)
-    heights.push_back(to_map({core::to_degrees(d.longitude[k]), core::to_degrees(d.latitude[k]), d.height[k]}).z() * context.vertical_unit);
-  return core::median(std::move(heights)) - mean_terrain;
-}
-
-/// The interval against the model's sigma: findings and, where it is too small, words.
-void judge_interval(const Context& context, const TileFacts& f, double interval, core::Value& findings) {
-  core::Value words = core::Value::array();
-  if (f.heights > 0)
-    if (const double height = flying_height(context, f.sum_of_heights / static_cast<double>(f.heights)); std::isfinite(height))
-      findings["c_factor"] = height / interval;
-  if (f.sigmas == 0) {
-    words.push("the model has no sigma, so nothing says which interval it carries");
-  } else {
-    const double sigma = std::sqrt(f.sum_of_variances / static_cast<double>(f.sigmas));
-    const char kept = terrain::map_class_of(interval, sigma);
-    findings["model_sigma_m"] = sigma;
-    findings["map_class"] = kept == '-' ? std::string("none") : std::string(1, kept);
-    for (const terrain::MapClass& c : terrain::map_classes)
-      findings["smallest_interval_m"][std::string(1, c.name)] = terrain::smallest_interval(c, sigma);
-    findings["share_of_cells_below_class_c"] = static_cast<double>(f.beyond) / static_cast<double>(f.sigmas);
-    if (kept == '-') {
-      const std::string unit = context.vertical_unit == 1.0 ? " m" : " ft";
-      const auto told = [&](double metres) { return core::format_number(metres / context.vertical_unit) + unit; };
-      const auto carried = [&](size_t c) {
-        return told(context.vertical_unit *
-                    terrain::usual_interval(terrain::smallest_interval(terrain::map_classes[c], sigma) / context.vertical_unit));
-      };
-      words.push("contours every " + told(interval) + " say more than the model knows: its sigma of " +
-                 told(std::round(sigma * 1e3) / 1e3) + " (rms) carries " + carried(0) + " as class A, " + carried(1) + " as class B, " +
-                 carried(2) + " as class C");
-    }
-  }
-  if (!words.items().empty()) findings["findings"] = std::move(words);
 }
 
 class Contours : public OptionStage<ContourWriteOptions> {
@@ -175,23 +107,28 @@ class Contours : public OptionStage<ContourWriteOptions> {
     return {core::Column::classification, core::Column::flags, core::Column::sigma_v, core::Column::sigma_h};
   }
   double halo() const override {
-    // The lattice reaches a cell, and spot heights their radius, beyond the tile.
-    return options.source == ContourSource::grid ? 0.0 : terrain::halo(options.tin) + options.tin.cell.value + terrain::halo(options.spots);
+    return options.source == ContourSource::grid ? 0.0
+                                                 : terrain::halo(options.tin) + border(options.tin.cell.value) * options.tin.cell.value;
   }
   double bytes_per_point() const override { return options.source == ContourSource::grid ? 0.0 : 300.0; }
-  // Measured 2026-11-22 with tests/stages/memory_test.cpp, cells of 0.5 m: 32 bytes per cell of the grid and of the TIN's lattice.
+  // Measured 2026-11-22 with tests/stages/memory_test.cpp, cells of 0.5 m: 32 bytes per cell of the grid and of the TIN's lattice; and six
+  // fields of five bytes while the surface is smoothed.
   std::vector<Raster> rasters(const Context& c) const override {
-    if (options.source == ContourSource::grid) return window_of(c, Product::dtm, 1);
-    const double side = c.tile_side + 2.0 * (options.tin.cell.value + terrain::halo(options.spots));
-    return {{"tin.cell", options.tin.cell.value, side, 40.0},
+    if (options.source == ContourSource::grid) {
+      std::vector<Raster> out = window_of(c, Product::dtm, 1);
+      if (!out.empty()) out.push_back({"", out[0].cell, c.tile_side + 2.0 * border(out[0].cell) * out[0].cell, 32.0});
+      return out;
+    }
+    const double side = c.tile_side + 2.0 * border(options.tin.cell.value) * options.tin.cell.value;
+    return {{"tin.cell", options.tin.cell.value, side, 72.0},
             {"tin.cell", options.tin.cell.value, side + 2.0 * options.tin.max_edge.value, 8.0}};
   }
   std::vector<std::string> products() const override { return {options.name + ".gpkg", options.name + ".dxf", options.name + ".geojson"}; }
 
   void run_tile(const Context& context, TileJob& job) const override {
     const core::Lattice own = lattice_in(cell(context), job.box);
-    const int border = 1 + static_cast<int>(std::ceil(terrain::halo(options.spots) / own.cell));
-    const core::Lattice window{own.cell, own.i0 - border, own.j0 - border, own.nx + 2 * border, own.ny + 2 * border};
+    const int around = border(own.cell);
+    const core::Lattice window{own.cell, own.i0 - around, own.j0 - around, own.nx + 2 * around, own.ny + 2 * around};
     core::Grid grid;
     if (options.source == ContourSource::grid) {
       grid = context.grids->window(Product::dtm, window);
@@ -205,12 +142,12 @@ class Contours : public OptionStage<ContourWriteOptions> {
       paste(grid, mine);
       write_grid_tile(job.folder, job.key, mine);
     }
-    const auto segments = terrain::trace(grid, own, options);
+    const SurfaceFacts facts = facts_of(grid, own, options.interval.value);
+    const auto spots = terrain::spot_heights(grid, own, options.spots);
+    const auto segments = terrain::trace(terrain::contour_surface(std::move(grid), terrain::vertical_tolerance(options)), own, options);
     job.tally.count("contour segments", segments.size());
     io::write_text_file(segment_file(job.folder, job.key),
                         {reinterpret_cast<const char*>(segments.data()), segments.size() * sizeof(terrain::Segment)}, false);
-    const TileFacts facts = facts_of(grid, own, options.interval.value);
-    const auto spots = terrain::spot_heights(grid, own, options.spots);
     std::string bytes(reinterpret_cast<const char*>(&facts), sizeof facts);
     bytes.append(reinterpret_cast<const char*>(spots.data()), spots.size() * sizeof(terrain::SpotHeight));
     io::write_text_file(facts_file(job.folder, job.key), bytes, false);
@@ -220,7 +157,7 @@ class Contours : public OptionStage<ContourWriteOptions> {
     std::vector<io::ContourWriter> writers;
     for (const char* ending : {".gpkg", ".dxf", ".geojson"})
       writers.emplace_back(context.output / (options.name + ending), context.product_crs);
-    TileFacts facts;
+    SurfaceFacts facts;
     std::vector<terrain::SpotHeight> spots;
     for (const TileKey key : job.tiles) read_facts(job.folder, key, facts, spots);
     write_lines(context, job, writers);
@@ -232,15 +169,21 @@ class Contours : public OptionStage<ContourWriteOptions> {
  private:
   BreaklinesOfRun lines_;  ///< of source = "tin"
 
+  /// Cells around a tile that its lines and spot heights depend on: squares reach a cell beyond the tile.
+  int border(double cell) const {
+    return std::max(1 + terrain::contour_surface_reach(terrain::vertical_tolerance(options)),
+                    1 + static_cast<int>(std::ceil(terrain::halo(options.spots) / cell)));
+  }
+
   double cell(const Context& context) const {
     return options.source == ContourSource::grid ? context.grids->cell(Product::dtm) : options.tin.cell.value;
   }
 
-  static void read_facts(const fs::path& folder, TileKey key, TileFacts& facts, std::vector<terrain::SpotHeight>& spots) {
+  static void read_facts(const fs::path& folder, TileKey key, SurfaceFacts& facts, std::vector<terrain::SpotHeight>& spots) {
     const fs::path file = facts_file(folder, key);
     const std::string bytes = io::read_text_file(file);
-    if (bytes.size() < sizeof(TileFacts) || (bytes.size() - sizeof(TileFacts)) % sizeof(terrain::SpotHeight) != 0) cut_short(file);
-    TileFacts one;
+    if (bytes.size() < sizeof(SurfaceFacts) || (bytes.size() - sizeof(SurfaceFacts)) % sizeof(terrain::SpotHeight) != 0) cut_short(file);
+    SurfaceFacts one;
     std::memcpy(&one, bytes.data(), sizeof one);
     facts.sum_of_heights += one.sum_of_heights;
     facts.sum_of_variances += one.sum_of_variances;
@@ -252,7 +195,7 @@ class Contours : public OptionStage<ContourWriteOptions> {
     if (spots.size() > before) std::memcpy(spots.data() + before, bytes.data() + sizeof one, bytes.size() - sizeof one);
   }
 
-  /// The surface that was traced, of any window.
+  /// The model that is contoured, of any window.
   core::Grid surface(const Context& context, const fs::path& folder, const core::Lattice& window) const {
     if (options.source == ContourSource::grid) return context.grids->window(Product::dtm, window);
     core::Grid out(window);
@@ -325,7 +268,9 @@ class Contours : public OptionStage<ContourWriteOptions> {
     const auto draw = [&](const Segments& segments) -> Lines {
       return std::make_shared<std::vector<terrain::ContourLine>>(terrain::contour_lines(std::move(*segments), options, surfaces.local()));
     };
+    size_t drawn = 0;
     const auto write = [&](const Lines& lines) {
+      context.share(static_cast<double>(++drawn) / static_cast<double>(levels.size()));
       for (const terrain::ContourLine& line : *lines) {
         metres += terrain::length(line.vertices);
         closed += line.closed ? 1 : 0;

@@ -5,6 +5,7 @@
 
 #include <numeric>
 
+#include "terrain/contour_surface.h"
 #include "tests/terrain/lines.h"
 #include "tests/terrain/made.h"
 
@@ -18,9 +19,13 @@ ContourOptions every(double interval, std::optional<double> tolerance = std::nul
   return o;
 }
 
+std::vector<Segment> traced(const core::Grid& g, const ContourOptions& o) {
+  return trace(contour_surface(g, vertical_tolerance(o)), g.lattice, o);
+}
+
 std::vector<ContourLine> lines_of(const core::Grid& g, const ContourOptions& o) {
   Facets f = test::facets_of(g);
-  return contour_lines(trace(g, g.lattice, o), o, f);
+  return contour_lines(traced(g, o), o, f);
 }
 
 double rms_against(const std::vector<ContourLine>& lines, const test::Surface& truth) {
@@ -87,7 +92,7 @@ TEST(ContourShape, NothingMeetsOnAnyTerrain) {
        {Case{"steps", steps, 1.0, 0.25}, Case{"steps", steps, 0.5, 0.05}, Case{"holed hills", holed, 0.5, 0.125},
         Case{"cliff", cliff, 1.0, 0.25}, Case{"flat with noise", noisy([](double x, double) { return 0.004 * x; }, 0.1, 3), 0.2, 0.05},
         Case{"cone", noisy(cone, 0.0, 1), 0.5, 0.1}, Case{"saddle", noisy(saddle, 0.02, 1), 0.5, 0.1}}) {
-    const auto raw = join(trace(c.grid, c.grid.lattice, every(c.interval)), every(c.interval));
+    const auto raw = join(traced(c.grid, every(c.interval, c.tolerance)), every(c.interval));
     EXPECT_EQ(test::meetings(raw, 2.0), 0u) << c.name << " as traced";
     const auto lines = lines_of(c.grid, every(c.interval, c.tolerance));
     EXPECT_GT(lines.size(), 3u);
@@ -100,7 +105,7 @@ TEST(ContourShape, NothingMeetsOnAnyTerrain) {
         const double d = std::abs(c.grid.height[c.grid.lattice.at(i, j)] - c.grid.height[c.grid.lattice.at(i - 1, j)]);
         if (d > rise) rise = d;
       }
-    EXPECT_LE(test::farthest_from(f, raw, 4), 2e-4 * rise + 1e-9) << c.name;
+    EXPECT_LE(test::farthest_from(f, raw, 4), contour_surface_share * c.tolerance + 2e-4 * rise + 1e-5) << c.name;
     EXPECT_LE(test::farthest_from(f, lines, 20), c.tolerance + 2e-4 * rise + 1e-9) << c.name;
     ASSERT_EQ(raw.size(), lines.size()) << c.name;
     for (size_t k = 0; k < raw.size(); ++k) {
