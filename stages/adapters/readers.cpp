@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <limits>
 #include <set>
 
 #include "core/error.h"
@@ -10,6 +11,7 @@
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/place.h"
 #include "stages/adapters/units.h"
+#include "stages/cloud_rim.h"
 #include "trajectory/checks.h"
 
 namespace swath::stages {
@@ -141,8 +143,9 @@ bool has_weekless_times(const io::Survey& survey) {
 /// Reads a point cloud in map coordinates, converted to the CRS and metres of the run.
 class CloudReader : public StripReader {
  public:
-  CloudReader(const Context& context, const Strip& strip)
-      : context_(context), file_(context.survey.points[strip.source]), reader_(io::resolve(context.survey, file_.file)) {
+  /// `rim`: largest coordinates of the survey's files.
+  CloudReader(const Context& context, const Strip& strip, const Eigen::Vector2d& rim)
+      : context_(context), file_(context.survey.points[strip.source]), reader_(io::resolve(context.survey, file_.file)), rim_(rim) {
     const io::LasCrs stated = reader_.crs();
     const core::Crs crs(crs_of(context.survey, file_));
     if (crs.key() != context.crs.key()) transform_.emplace(crs, context.crs);
@@ -172,6 +175,7 @@ class CloudReader : public StripReader {
       for (const std::string& w : reader_.warnings()) tally.count("oddities of the file", w);
       return false;
     }
+    if (!transform_) keep_rim_inside(block, rim_, reader_.header().scale.head<2>());
     if (file_height_unit_ != 1.0)
       for (double& z : block.z) z *= file_height_unit_;
     if (transform_) convert(block, tally);
@@ -210,6 +214,7 @@ class CloudReader : public StripReader {
   const Context& context_;
   const io::PointFile& file_;
   io::LasReader reader_;
+  Eigen::Vector2d rim_;
   std::optional<core::Transform> transform_;
   double file_height_unit_ = 1.0, map_height_unit_ = 1.0;
   bool keeps_seconds_of_week_ = false;
@@ -254,17 +259,22 @@ class LasCloud : public OptionStage<NoOptions> {
   }
   std::vector<Strip> strips(const Context& context, core::Tally&) const override {
     std::vector<Strip> out;
+    rim_.setConstant(-std::numeric_limits<double>::infinity());
     for (size_t i = 0; i < context.survey.points.size(); ++i) {
       const io::PointFile& f = context.survey.points[i];
       std::vector<std::string> ignored;
       const io::LasHeader header = io::read_las_header(io::resolve(context.survey, f.file), ignored);
       out.push_back({i, 0, f.line.value_or(0), f.file.string(), header.point_count});
+      if (header.point_count > 0) rim_ = rim_.cwiseMax(header.max.head<2>());
     }
     return out;
   }
   std::unique_ptr<StripReader> open(const Context& context, const Strip& strip) const override {
-    return std::make_unique<CloudReader>(context, strip);
+    return std::make_unique<CloudReader>(context, strip, rim_);
   }
+
+ private:
+  mutable Eigen::Vector2d rim_;  // of the run, found once before the files are read
 };
 
 }  // namespace

@@ -136,6 +136,45 @@ TEST(Cloud, TheSurfaceReachesIntoTilesWithoutPoints) {
   EXPECT_EQ(surface_of(c, "100 m"), whole);
 }
 
+TEST(Cloud, ASquareWithBothItsRimsHasNoTilesAndCellsOfRimPointsAlone) {
+  CloudCase c;
+  Block b = square(20000, easting, northing, 200, 0);
+  for (size_t i = 0; i < 10; ++i) b.x[i] = 200.0, b.y[10 + i] = 200.0;
+  b.x[19] = 200.0;  // the corner
+  for (size_t i = 0; i < b.size(); ++i) b.z[i] = 100 + 0.1 * b.x[i] + 5 * std::sin(b.y[i] / 20);
+  b.classification.assign(b.size(), core::point_class::ground);
+  b.return_number.assign(b.size(), 1);
+  b.return_count.assign(b.size(), 1);
+  c.add(b, "square.las", "EPSG:32632");
+  const auto cells_of = [&](const std::string& tile, size_t tiles) {
+    const fs::path out = c.run(
+        copy_stages + "[[stage]]\ntype = \"terrain.dtm\"\n[[stage]]\ntype = \"terrain.dsm\"\n[[stage]]\ntype = \"writers.gdal\"\n", tile);
+    const Block all = points_of(out);
+    EXPECT_EQ(all.size(), b.size());
+    size_t on_rim = 0;
+    for (size_t i = 0; i < all.size(); ++i)
+      on_rim +=
+          std::abs(all.origin.x() + all.x[i] - easting - 200.0) < 1e-6 || std::abs(all.origin.y() + all.y[i] - northing - 200.0) < 1e-6;
+    EXPECT_EQ(on_rim, 20u) << "coordinates are as they were";
+    for (const std::string product : {"points", "dtm", "dsm"}) {
+      size_t files = 0;
+      for (const auto& e : fs::directory_iterator(out / product)) {
+        const std::string name = e.path().filename().string();
+        files += name.ends_with(".las") || (name.ends_with(".tif") && !name.ends_with("_quality.tif"));
+      }
+      EXPECT_EQ(files, tiles) << product << " " << tile;
+    }
+    std::string cells;
+    for (const core::Value& s : io::read_value_file(out / "report.json").find("stages")->items())
+      if (const core::Value* tally = s.find("tally"); tally && tally->find("cells with a height"))
+        cells += std::to_string(tally->find("cells with a height")->find("count")->as_int()) + " ";
+    return cells;
+  };
+  const std::string whole = cells_of("200 m", 1);
+  EXPECT_EQ(cells_of("100 m", 4), whole);
+  EXPECT_EQ(cells_of("70 m", 16), whole);
+}
+
 TEST(Cloud, KeyPointsAreTheSameForEveryTiling) {
   CloudCase c;
   Block b = square(8000, easting, northing, 200, 0);
