@@ -118,7 +118,9 @@ double halo(const GroundOptions& o) {
 
 std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, const GroundOptions& o) {
   std::vector<GroundEvidence> evidence(own, GroundEvidence{.above = not_judged});
-  if (own == 0) return evidence;
+  bool any = false;
+  for (size_t p = 0; p < b.size() && !any; ++p) any = may_be_ground(b, p);
+  if (own == 0 || !any) return evidence;
   const GroundSurface g = ground_surface(b, own, ground_chance_reach + ground_populations_reach, surface_options(o));
   std::vector<ReturnOverGround> returns(b.size(), {not_judged, 0, 0, false});
   for (size_t p = 0; p < b.size(); ++p) {

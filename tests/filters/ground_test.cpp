@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -146,6 +147,25 @@ TEST(Ground, LabelsDependNeitherOnTilesNorOnOrder) {
 }
 
 TEST(Ground, NoiseEarlyReturnsAndHaloKeepOut) { test::expect_only_own_last_returns_judged(run); }
+
+TEST(Ground, WhereNothingMayBeGroundNoSurfaceIsMade) {
+  // 25 km2 with some few points, all of them noise: rasters of a metre over it would take 2 GB and 20 s.
+  core::Block b;
+  b.origin = {500000.0, 5300000.0, 0.0};
+  core::resize(b, 3000);
+  core::add_columns(b, {core::Column::flags, core::Column::classification});
+  for (size_t p = 0; p < b.size(); ++p) {
+    b.x[p] = std::fmod(static_cast<double>(p) * 1618.0339, 5000.0);
+    b.y[p] = std::fmod(static_cast<double>(p) * 754.8777, 5000.0);
+    b.z[p] = 100.0;
+    b.classification[p] = core::point_class::high_noise;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const GroundCounts n = run(b, b.size());
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 1.0);
+  EXPECT_EQ(n.ground, 0u);
+  EXPECT_EQ(n.untouched, b.size());
+}
 
 TEST(Ground, ProbabilityIsGivenToAllThatAreJudgedAndAgreesWithTheClass) {
   test::Scene s = test::make_scene("town");
