@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/value.h"
+#include "io/cut_line.h"
 
 namespace swath::io {
 namespace {
@@ -125,64 +126,105 @@ std::vector<std::string> split_delimited(const std::string& line, char delimiter
 char delimiter_in(const std::string& line) { return find_delimiter(line); }
 char delimiter_from(const std::string& stated, const std::filesystem::path& file) { return delimiter_of(stated, file); }
 
-DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::string& delimiter) {
-  const BinaryFile file(path);
-  DelimitedLayout out;
-  std::string comment, header, line;
-  std::uint64_t at = 0, number = 0;
-  bool have_header = false;
-  std::vector<char> chunk(1 << 14);
-  size_t fill = 0, used = 0;
-  std::uint64_t loaded = 0;
-  const auto next_line = [&] {
+namespace {
+
+/// The lines at the beginning of a file.
+class FirstLines {
+ public:
+  explicit FirstLines(const std::filesystem::path& path) : file_(path), chunk_(1 << 14) {}
+
+  /// The next line without its end; false at the end of the file and before a stretch that is no text, which `broken` tells of.
+  bool next(std::string& line) {
     line.clear();
+    begin_ = loaded_ - (fill_ - used_);
     for (;;) {
-      if (used == fill) {
-        fill = file.read_some(loaded, chunk.data(), chunk.size());
-        loaded += fill;
-        used = 0;
-        if (fill == 0) return !line.empty();
+      if (used_ == fill_) {
+        fill_ = file_.read_some(loaded_, chunk_.data(), chunk_.size());
+        loaded_ += fill_;
+        used_ = 0;
+        if (fill_ == 0) break;
       }
-      const char* nl = static_cast<const char*>(std::memchr(chunk.data() + used, '\n', fill - used));
-      const size_t stop = nl ? static_cast<size_t>(nl - chunk.data()) : fill;
-      line.append(chunk.data() + used, stop - used);
-      used = stop + (nl ? 1 : 0);
-      if (line.size() > longest_line || line.find('\0') != std::string::npos)
-        throw core::Error("is not delimited text", path.string() + ":" + std::to_string(number + 1));
-      if (nl) return true;
+      const char* nl = static_cast<const char*>(std::memchr(chunk_.data() + used_, '\n', fill_ - used_));
+      const size_t stop = nl ? static_cast<size_t>(nl - chunk_.data()) : fill_;
+      line.append(chunk_.data() + used_, stop - used_);
+      used_ = stop + (nl ? 1 : 0);
+      broken_ = line.size() > longest_line || line.find('\0') != std::string::npos;
+      if (broken_) return false;
+      if (nl) break;
     }
-  };
-  for (;;) {
-    at = loaded - (fill - used);
-    if (!next_line()) break;
-    ++number;
-    if (number == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0) {
+    if (line.empty() && fill_ == 0) return false;
+    ++number_;
+    if (number_ == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0) {
       line.erase(0, 3);
-      at += 3;
+      begin_ += 3;
     }
     const char *b = line.data(), *e = b + line.size();
     trim(b, e);
-    if (b == e) continue;
-    const std::string text(b, e);
-    if (is_comment(text)) {
-      comment = text.substr(text.find_first_not_of("#% \t") == std::string::npos ? text.size() : text.find_first_not_of("#% \t"));
-      continue;
-    }
-    const char d = delimiter.empty() ? find_delimiter(text) : delimiter_of(delimiter, path);
-    const std::vector<std::string> fields = split(text, d);
-    if (!have_header && !all_numbers(fields)) {
-      have_header = true;
-      header = text;
-      continue;
-    }
-    out.delimiter = d;
-    out.columns = fields.size();
-    out.data_begin = at;
-    out.data_line = number;
-    break;
+    line = std::string(b, e);
+    return true;
   }
-  if (out.columns == 0)
-    throw core::Error("no line of numbers", path.string(), number == 0 ? "the file is empty" : "the file holds a header or comments only");
+  std::uint64_t begin() const { return begin_; }    ///< byte of the line
+  std::uint64_t number() const { return number_; }  ///< of the line, from 1
+  bool broken() const { return broken_; }
+
+ private:
+  BinaryFile file_;
+  std::vector<char> chunk_;
+  size_t fill_ = 0, used_ = 0;
+  std::uint64_t loaded_ = 0, begin_ = 0, number_ = 0;
+  bool broken_ = false;
+};
+
+/// A line of data with its place.
+struct DataLine {
+  std::vector<std::string> fields;
+  std::uint64_t begin, number;
+};
+
+/// A record whose first number is cut off counts as a header no more than one that is whole.
+bool is_header(const std::vector<std::string>& fields) {
+  if (all_numbers(fields)) return false;
+  const bool rest = fields.size() > 1 && all_numbers({fields.begin() + 1, fields.end()});
+  return !rest || fields[0].find_first_not_of("0123456789+-.eE") != std::string::npos;
+}
+
+}  // namespace
+
+DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::string& delimiter) {
+  FirstLines lines(path);
+  DelimitedLayout out;
+  std::string comment, header, line;
+  bool have_header = false, anything = false;
+  std::vector<DataLine> data;
+  while (data.size() <= cut_line_context && lines.next(line)) {
+    if (line.empty()) continue;
+    if (is_comment(line)) {
+      anything = true;
+      if (data.empty()) comment = line.substr(std::min(line.find_first_not_of("#% \t"), line.size()));
+      continue;
+    }
+    if (data.empty()) out.delimiter = delimiter.empty() ? find_delimiter(line) : delimiter_of(delimiter, path);
+    if (data.size() == 1 && data[0].fields.size() == 1 && delimiter.empty()) out.delimiter = find_delimiter(line);  // a cut line has none
+    std::vector<std::string> fields = split(line, out.delimiter);
+    if (data.empty() && !have_header && is_header(fields)) {
+      have_header = anything = true;
+      header = line;
+      continue;
+    }
+    data.push_back({std::move(fields), lines.begin(), lines.number()});
+  }
+  if (lines.broken() && data.empty()) throw core::Error("is not delimited text", path.string() + ":" + std::to_string(lines.number() + 1));
+  if (data.empty())
+    throw core::Error("no line of numbers", path.string(),
+                      lines.number() == 0 ? "the file is empty" : "the file holds a header or comments only");
+  std::vector<std::vector<std::string>> fields;
+  for (const DataLine& d : data) fields.push_back(d.fields);
+  const bool cut = first_line_is_cut(fields, !anything);
+  const DataLine& first = data[cut ? 1 : 0];
+  if (cut) out.cut_line = data[0].number;
+  out.columns = first.fields.size();
+  out.data_begin = first.begin;
+  out.data_line = first.number;
   if (have_header) {
     out.names = split(header, out.delimiter);
   } else if (!comment.empty()) {

@@ -20,10 +20,12 @@ struct DelimitedLayout {
   size_t columns = 0;              ///< fields of the first data line (0: no data line)
   std::uint64_t data_begin = 0;    ///< byte of the first data line
   std::uint64_t data_line = 1;     ///< its number, from 1
+  std::uint64_t cut_line = 0;      ///< the line before it, where that is the end of a record only (io/cut_line.h); 0: none
 };
 
 /// Reads the first lines: byte order mark, comments (# or %), header, first data line. A header is a first line with a field that is
-/// no number; or, where there is none, the last comment with as many words as the data have fields.
+/// no number; or, where there is none, the last comment with as many words as the data have fields. A first line of data that is cut off is
+/// passed over.
 /// `delimiter`: "," ";" "tab" "\t" "blank" " ", or "" to find it in the first data line. Throws Error where the file has no data line.
 DelimitedLayout inspect_delimited(const std::filesystem::path& file, const std::string& delimiter = {});
 

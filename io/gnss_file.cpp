@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/geodesy.h"
+#include "io/cut_line.h"
 #include "io/fix_list.h"
 #include "io/nmea.h"
 #include "io/record_times.h"
@@ -64,6 +65,7 @@ core::GnssData read_text(const std::filesystem::path& path, const GnssFile& f, d
   const double unit = radians_per(f.angle_unit);
   if (geodetic && unit == 0) throw core::usage_error("the unit of angles is not stated", name, "angle_unit = \"deg\", \"rad\" or \"gon\"");
   const auto rows = open_table(path, RecordFormat::text, f.delimiter, v.names());
+  count_cut_line(rows->cut_line(), path, tally);
   core::TimeReader clock = reader_of(f.time, name, !c.week.empty());
   FixList fixes(f, name, latency, false, tally);
   double farthest_north = 0, farthest_east = 0;

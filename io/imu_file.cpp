@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/frames.h"
+#include "io/cut_line.h"
 #include "io/imu_checks.h"
 #include "io/record_times.h"
 #include "io/table_rows.h"
@@ -38,6 +39,7 @@ Raw read_raw(const std::filesystem::path& path, const ImuFile& f, core::Tally& t
   std::vector<std::string> columns{c.time, c.gyro_x, c.gyro_y, c.gyro_z, c.accelerometer_x, c.accelerometer_y, c.accelerometer_z};
   if (weeks) columns.push_back(c.week);
   const std::unique_ptr<TableRows> rows = open_table(path, format_of(f), f.delimiter, columns);
+  count_cut_line(rows->cut_line(), path, tally);
   core::TimeReader clock = reader_of(f.time, name, weeks);
   Raw out;
   std::vector<double> v(columns.size());

@@ -149,6 +149,7 @@ Value describe_text(const Path& path) {
   if (!layout.names.empty() && layout.names.size() != layout.columns)
     warnings.push("the header names " + std::to_string(layout.names.size()) + " columns, the first line has " +
                   std::to_string(layout.columns));
+  if (layout.cut_line > 0) warnings.push("line " + std::to_string(layout.cut_line) + " is only the end of a record and is left out");
   DelimitedReader reader(path, layout, indices);
   std::vector<Column> columns(indices.size());
   std::vector<double> row(indices.size());

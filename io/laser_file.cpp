@@ -7,6 +7,8 @@
 #include <map>
 
 #include "core/error.h"
+#include "io/cut_line.h"
+#include "io/delimited.h"
 
 namespace swath::io {
 namespace {
@@ -108,6 +110,7 @@ std::vector<StripInfo> scan(const Survey& survey, size_t file, core::Tally& tall
   const LineRule rule(survey, file);
   Clock clock(clock_of(survey, f), name);
   const auto reader = open_laser_records(survey, f, Wanted::plan);
+  if (format_of(f) == LaserFormat::text) count_cut_line(inspect_delimited(name, f.delimiter).cut_line, name, tally);
   std::vector<StripInfo> out;
   std::map<int, size_t> strip_of;
   size_t last = 0;  // strip of the record before

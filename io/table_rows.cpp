@@ -15,12 +15,14 @@ constexpr size_t chunk = 8192;  // rows
 class TextRows : public TableRows {
  public:
   TextRows(const std::filesystem::path& file, const DelimitedLayout& layout, std::vector<size_t> columns)
-      : name_(file.string()), reader_(file, layout, std::move(columns)) {}
+      : name_(file.string()), cut_(layout.cut_line), reader_(file, layout, std::move(columns)) {}
+  std::uint64_t cut_line() const override { return cut_; }
   bool next(double* values) override { return reader_.next(values); }
   std::string place() const override { return name_ + ":" + std::to_string(reader_.line()); }
 
  private:
   std::string name_;
+  std::uint64_t cut_;
   DelimitedReader reader_;
 };
 

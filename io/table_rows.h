@@ -2,6 +2,7 @@
 // Rows of chosen columns of a text or NumPy file.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -20,6 +21,8 @@ class TableRows {
   virtual bool next(double* values) = 0;
   /// "file:line" or "file: record N" (from 0) of the row that next() gave last.
   virtual std::string place() const = 0;
+  /// Number of a line before the first row that is cut off and left out; 0: none.
+  virtual std::uint64_t cut_line() const { return 0; }
 };
 
 /// Opens a table. `columns`: names, or numbers from 1. Throws Error: a column that is not there, a format that is not known.

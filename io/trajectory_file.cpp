@@ -9,6 +9,7 @@
 #include "core/frames.h"
 #include "core/statistics.h"
 #include "io/csd.h"
+#include "io/cut_line.h"
 #include "io/delimited.h"
 #include "io/sbet.h"
 
@@ -55,9 +56,10 @@ void to_geodetic(const std::string& crs, const std::string& name, double unit, s
     for (double& v : *c) v *= core::degree;
 }
 
-TrajectoryData read_text(const std::filesystem::path& path, const TrajectoryFile& f) {
+TrajectoryData read_text(const std::filesystem::path& path, const TrajectoryFile& f, core::Tally& tally) {
   const std::string name = path.string();
   const DelimitedLayout layout = inspect_delimited(path, f.delimiter);
+  count_cut_line(layout.cut_line, path, tally);
   const double unit = radians_per(f.angle_unit);
   if (unit == 0) throw core::usage_error("the unit of angles is not stated", name, "angle_unit = \"deg\", \"rad\" or \"gon\"");
   const TrajectoryColumns& c = f.columns;
@@ -200,7 +202,7 @@ TrajectoryData read_trajectory(const Survey& survey, const TrajectoryFile& f, co
       break;
     }
     case TrajectoryFormat::text:
-      out = read_text(path, f);
+      out = read_text(path, f, tally);
       break;
     case TrajectoryFormat::csd:
       out = read_csd(path, f, tally);

@@ -16,6 +16,7 @@
 #include "trajectory/alignment.h"
 #include "trajectory/ins_output.h"
 #include "trajectory/ins_report.h"
+#include "trajectory/ins_start.h"
 
 namespace swath::trajectory {
 namespace {
@@ -26,7 +27,6 @@ using Eigen::Vector3d;
 constexpr double node_spacing = 0.25;   // s: between nodes residuals of the mechanisation are linear in time
 constexpr double longest_lead = 120.0;  // s of IMU records kept before the first fix and after the last
 constexpr double most_rate = 2.0;       // rad/s, rms over the record
-constexpr double near_fix = 2.0;        // s: a start as near to a fix takes its position
 constexpr int most_iterations = 8;
 constexpr double settled = 0.05;                         // sigmas by which the trajectory may still move
 constexpr double least_share = 0.02, usual_share = 0.4;  // of the GNSS variance that is correlated, where nothing tells
@@ -156,124 +156,6 @@ std::vector<Node> nodes_of(const ImuPath& path, const core::GnssData& gnss, cons
   return out;
 }
 
-Alignment align(const ImuPath& path, const core::GnssData& gnss, const core::ImuErrorModel& spec, const Vector3d& lever,
-                const std::vector<Span>& standstills, const InsGnssOptions& options) {
-  if (options.alignment == AlignmentMethod::given) {
-    const core::Geodetic g = core::geodetic_of(gnss.position.front());
-    const Matrix3d ned = core::ecef_R_ned(g.latitude, g.longitude);
-    Alignment out;
-    out.method = "given";
-    out.time = path.begin();
-    out.ecef_R_body = ned * core::matrix_of({options.given.roll.value, options.given.pitch.value, options.given.heading.value});
-    const double level = options.given.sigma_roll_pitch.value, heading = options.given.sigma_heading.value;
-    out.covariance = ned * Vector3d(level * level, level * level, heading * heading).asDiagonal() * ned.transpose();
-    return out;
-  }
-  std::optional<Alignment> still;
-  constexpr double compass = 5 * core::degree;  // better than this, gyrocompassing needs no motion
-  for (const Span& s : standstills) {
-    const auto fix = std::min<size_t>(
-        static_cast<size_t>(std::lower_bound(gnss.time.begin(), gnss.time.end(), s.first) - gnss.time.begin()), gnss.size() - 1);
-    const Alignment a = align_still(path, s, gnss.position[fix], spec);
-    if (!still || a.worst_sigma() < still->worst_sigma()) still = a;
-  }
-  if (options.alignment == AlignmentMethod::still && !still)
-    throw core::Error("no standstill to align on", "trajectory.ins_gnss", "choose alignment = \"moving\" or \"given\"");
-  const bool automatic = options.alignment == AlignmentMethod::automatic;
-  if (still && (options.alignment == AlignmentMethod::still || (automatic && still->worst_sigma() < compass))) return *still;
-  const std::optional<Alignment> moving = align_moving(path, gnss, lever, spec, still && automatic ? still->gyro_bias : Vector3d::Zero());
-  if (!moving)
-    throw core::Error("the fixes are too few or too far apart, or the IMU has too many gaps, to find the attitude", "trajectory.ins_gnss",
-                      "state it: alignment = \"given\", with given.roll, given.pitch and given.heading");
-  return *moving;
-}
-
-/// Position and velocity at an instant near fixes: a straight line through those within 1.5 s.
-void set_motion(NavState& nav, const core::GnssData& gnss, size_t at, const Vector3d& lever) {
-  double n = 0, t1 = 0, t2 = 0;
-  Vector3d p1 = Vector3d::Zero(), tp = Vector3d::Zero();
-  const double origin = gnss.time[at];
-  for (size_t k = at; k < gnss.size() && (gnss.time[k] <= origin + 1.5 || k < at + 3); ++k) {
-    const double t = gnss.time[k] - origin;
-    n += 1;
-    t1 += t;
-    t2 += t * t;
-    p1 += gnss.position[k] - gnss.position[at];
-    tp += t * (gnss.position[k] - gnss.position[at]);
-  }
-  const double d = n * t2 - t1 * t1;
-  nav.velocity = d > 0 ? Vector3d((n * tp - t1 * p1) / d) : Vector3d::Zero();
-  nav.position = gnss.position[at] + nav.velocity * (nav.time - origin) - nav.ecef_R_body * lever;
-}
-
-struct Start {
-  Estimate estimate;
-  StateMatrix covariance;
-};
-
-/// The state at the path's beginning with the sigmas it is stated with.
-Start start_of(const ImuPath& path, const core::GnssData& gnss, const Alignment& alignment, const core::ImuErrorModel& spec,
-               const Layout& l, const Vector3d& lever, double lever_sigma, const InsGnssOptions& options) {
-  Start out;
-  Estimate& e = out.estimate;
-  e.lever = lever;
-  const double first = gnss.time.front(), lead = first - path.begin();
-  const bool near = lead < near_fix;
-  const Alignment a = carried(alignment, near ? path.begin() : first, path, spec);
-  e.nav.time = a.time;
-  e.nav.ecef_R_body = a.ecef_R_body;
-  set_motion(e.nav, gnss, 0, lever);
-  if (!near) {
-    ImuWalk walk(path, a.time);
-    Increment piece;
-    const Vector3d bias = a.gyro_bias;
-    while (walk.next(path.begin(), piece)) {
-      piece.angle -= piece.step * bias;
-      advance(e.nav, piece);
-    }
-  }
-  e.nav.time = path.begin();
-
-  StateMatrix& P = out.covariance;
-  P = StateMatrix::Zero(l.size, l.size);
-  const auto put = [&P](int row, double sigma) {
-    if (row >= 0) P.diagonal().segment<3>(row).setConstant(sigma * sigma);
-  };
-  // Dead reckoning back over `lead` seconds with an attitude of a few degrees.
-  const double away = near ? 0.0 : lead;
-  const double tilt = std::max(1 * core::degree, alignment.worst_sigma());
-  put(Layout::position, 10.0 + 0.5 * 9.8 * tilt * away * away);
-  put(Layout::velocity, 3.0 + 9.8 * tilt * away);
-  constexpr double slack = 1.0 * core::degree;  // what the alignment does not tell of itself
-  const double widest = core::pi / 3;
-  P.block<3, 3>(Layout::attitude, Layout::attitude) = 4 * a.covariance + slack * slack * Matrix3d::Identity();
-  for (int i = 0; i < 3; ++i) {
-    double& variance = P(Layout::attitude + i, Layout::attitude + i);
-    if (variance <= widest * widest) continue;
-    P.row(Layout::attitude + i) *= widest / std::sqrt(variance);
-    P.col(Layout::attitude + i) *= widest / std::sqrt(variance);
-    variance = widest * widest;
-  }
-  put(Layout::gyro_bias, std::hypot(spec.gyro_bias.value, spec.gyro_drift.value));
-  put(Layout::force_bias, std::hypot(spec.accelerometer_bias.value, spec.accelerometer_drift.value));
-  put(l.gyro_scale, spec.gyro_scale.value);
-  put(l.force_scale, spec.accelerometer_scale.value);
-  put(l.lever, lever_sigma);
-  put(l.fix, 1.0);
-  if (l.latency >= 0) P(l.latency, l.latency) = options.latency_sigma.value * options.latency_sigma.value;
-  constexpr double axis_sigma = 5 * core::degree;
-  if (l.track >= 0) P.diagonal().segment<2>(l.track).setConstant(axis_sigma * axis_sigma);
-  return out;
-}
-
-/// The mean of the errors about a reference that the stated constants give. Position, velocity and attitude count as unknown.
-StateVector stated_mean(const Estimate& stated, const Estimate& reference, const Layout& l) {
-  StateVector mean = stated.minus(reference, l);
-  mean.head<9>().setZero();
-  if (l.fix >= 0) mean.segment<3>(l.fix) = -reference.fix;
-  return mean;
-}
-
 /// Sets share and variance of the fixes to what the innovations show: their excess (nis / 3 - 1) S over what was expected belongs to the
 /// white part R. White noise above the stated variance raises that. True where they changed by more than noise.
 bool adapt_fixes(Problem& problem, const std::vector<FixOutcome>& outcomes) {
@@ -319,16 +201,6 @@ bool adapt_imu(Problem& problem, const std::vector<FixOutcome>& outcomes) {
   return true;
 }
 
-/// Position, velocity and attitude to begin with count as unknown: ten of their smoothed sigmas add a hundredth of the information they
-/// have, and keep the numbers of the smoother small.
-StateMatrix widened(const StateMatrix& stated, const StateVector& smoothed_sigma) {
-  StateMatrix out = stated;
-  out.topLeftCorner<9, 9>().setZero();
-  for (int i = 0; i < 9; ++i)
-    out(i, i) = std::min(stated(i, i), 100 * std::max(smoothed_sigma[i] * smoothed_sigma[i], 1e-6 * stated(i, i)));
-  return out;
-}
-
 /// The largest change of position, velocity or attitude between two runs, in sigmas.
 double moved(const SmootherRun& now, const std::vector<Estimate>& before, const Layout& l) {
   double most = 0;
@@ -340,15 +212,9 @@ double moved(const SmootherRun& now, const std::vector<Estimate>& before, const 
   return most;
 }
 
-}  // namespace
-
-InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core::ImuErrorModel& spec, const Vector3d& lever_arm,
-                     double lever_arm_sigma, const InsGnssOptions& options) {
-  require_plausible(imu_records);
-  require_finite(fixes);
-  Trimmed records = trim(std::move(imu_records), std::move(fixes));
-  const ImuPath path = make_path(std::move(records.imu), options.max_gap.value);
-  const core::GnssData& gnss = records.gnss;
+/// The smoother over records that are in order.
+InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const core::ImuErrorModel& spec, const Vector3d& lever_arm,
+                          double lever_arm_sigma, const InsGnssOptions& options, const ClockFindings& clocks) {
   const std::vector<Span> standstills =
       options.zero_velocity || options.alignment != AlignmentMethod::given ? find_standstills(path, gnss, spec) : std::vector<Span>{};
   const std::vector<Node> nodes = nodes_of(path, gnss, options.zero_velocity ? standstills : std::vector<Span>{});
@@ -374,8 +240,9 @@ InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core
   problem.gate = gate_of(options.outlier_probability);
   std::vector<Estimate> reference(nodes.size());
   const auto about = [&](const SmoothedNode& at) {
-    return InsFilter(problem, at.estimate, stated_mean(start.estimate, at.estimate, layout), widened(start.covariance, at.sigma),
-                     &reference);
+    const bool attitude = start.attitude_given && &at == &run.nodes.front();  // what is given is that of the beginning
+    return InsFilter(problem, at.estimate, stated_mean(start.estimate, at.estimate, layout, attitude),
+                     widened(start.covariance, at.sigma, attitude), &reference);
   };
   const auto refer = [&] {
     for (size_t k = 0; k < nodes.size(); ++k) reference[k] = run.nodes[k].estimate;
@@ -398,7 +265,7 @@ InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core
 
   InsGnssResult result;
   const InsFindings findings{
-      problem, run, backward, spec, alignment, lever_arm, lever_arm_sigma, standstills, iterations, shift > settled ? shift : 0.0};
+      problem, run, backward, spec, alignment, lever_arm, lever_arm_sigma, standstills, iterations, shift > settled ? shift : 0.0, clocks};
   result.series = series_of(findings);
   size_t rejected = 0;
   for (const double w : result.series.weight) rejected += w < 1.0;
@@ -409,6 +276,30 @@ InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core
   result.trajectory = trajectory_of(problem, run.nodes, options.output_rate.value);
   result.trajectory.errors = std::move(run.errors);
   return result;
+}
+
+}  // namespace
+
+InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core::ImuErrorModel& spec, const Vector3d& lever_arm,
+                     double lever_arm_sigma, const InsGnssOptions& stated_options, const StatedClocks& stated) {
+  require_plausible(imu_records);
+  require_finite(fixes);
+  InsGnssOptions options = stated_options;
+  Trimmed records = trim(std::move(imu_records), std::move(fixes));
+  const ImuPath path = make_path(std::move(records.imu), options.max_gap.value);
+  ClockFindings clocks;
+  clocks.stated = stated;
+  clocks.imu.reason = clocks.velocity.reason = "not looked for";
+  if (options.clock_search.value > 0)
+    clocks.imu = imu_clock_offset(path, records.gnss, spec, lever_arm, lever_arm_sigma, options.clock_search.value);
+  if (records.gnss.has_velocity()) clocks.velocity = velocity_lag(records.gnss);
+  options.use_velocity = options.use_velocity && !clocks.velocities_lag();
+  try {
+    return smooth_path(path, records.gnss, spec, lever_arm, lever_arm_sigma, options, clocks);
+  } catch (const core::Error& e) {
+    if (!clocks.apart()) throw;
+    throw core::Error(e.what(), e.where(), clocks.advice() + (e.hint().empty() ? "" : "; otherwise " + e.hint()), e.code());
+  }
 }
 
 }  // namespace swath::trajectory

@@ -14,6 +14,7 @@
 #include "core/option.h"
 #include "core/trajectory_data.h"
 #include "core/value.h"
+#include "trajectory/clock_offset.h"
 
 namespace swath::trajectory {
 
@@ -41,6 +42,7 @@ struct InsGnssOptions {
   std::optional<double> correlated_share;
   core::Seconds correlation_time{120.0};
   core::Seconds latency_sigma{0.005};
+  core::Seconds clock_search{2.0};
   bool use_velocity = true;
   double outlier_probability = 1e-4;
   bool zero_velocity = true;
@@ -56,7 +58,7 @@ template <class V>
 void describe(InsGnssOptions& o, V& v) {
   v.option("alignment", o.alignment,
            "Attitude to begin with: given; still (levelling and gyrocompassing on the ground); moving (from GNSS in motion); automatic.");
-  v.table("given", o.given, "Attitude to begin with (alignment given).");
+  v.table("given", o.given, "Attitude to begin with (alignment given), used with its sigmas.");
   v.option("scale_factors", o.scale_factors, "Estimate scale factors of gyros and accelerometers.");
   v.option("lever_arm", o.lever_arm, "Estimate the antenna's lever arm about its stated value and sigma.");
   v.option("gnss_latency", o.gnss_latency, "Estimate a constant time offset of the GNSS fixes.");
@@ -66,7 +68,9 @@ void describe(InsGnssOptions& o, V& v) {
       "white noise is taken as correlated, and sigmas that are stated too small are raised.");
   v.option("correlation_time", o.correlation_time, core::above(0), "Correlation time of that part.");
   v.option("latency_sigma", o.latency_sigma, core::above(0), "Sigma of the time offset before it is estimated.");
-  v.option("use_velocity", o.use_velocity, "Use GNSS velocities where the fixes have them.");
+  v.option("clock_search", o.clock_search, core::within(0, 30),
+           "Largest offset between IMU and GNSS clocks that is looked for; 0: none is.");
+  v.option("use_velocity", o.use_velocity, "Use GNSS velocities where the fixes have them and they do not lag behind the positions.");
   v.option("outlier_probability", o.outlier_probability, core::above_to(0, 0.05),
            "A fix whose innovation is less probable than this is down-weighted and counted.");
   v.option("zero_velocity", o.zero_velocity, "Use standstill on the ground, where IMU and GNSS show it.");
@@ -107,10 +111,11 @@ struct InsGnssResult {
   SmootherSeries series;
 };
 
-/// `lever_arm`: IMU centre to antenna, body, m, with the sigma of each component. Throws core::Error: no overlap in time, every fix
-/// rejected, attitude not to be found, a gap longer than max_gap, an IMU whose values cannot be (units, axes).
+/// `lever_arm`: IMU centre to antenna, body, m, with the sigma of each component. `stated`: offsets of the clocks that the records were
+/// read with, for the advice on them. Throws core::Error: no overlap in time, every fix rejected, attitude not to be found, a gap longer
+/// than max_gap, an IMU whose values cannot be (units, axes); with the clocks' offset in the hint where that may be the reason.
 InsGnssResult smooth(core::ImuData imu, core::GnssData gnss, const core::ImuErrorModel& spec, const Eigen::Vector3d& lever_arm,
-                     double lever_arm_sigma, const InsGnssOptions& options = {});
+                     double lever_arm_sigma, const InsGnssOptions& options = {}, const StatedClocks& stated = {});
 
 }  // namespace swath::trajectory
 

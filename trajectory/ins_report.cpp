@@ -62,6 +62,40 @@ std::vector<Constant> constants(const InsFindings& f) {
   return out;
 }
 
+/// What the clocks show. With gnss_latency the filter has allowed for a small offset.
+void judge_clocks(const InsFindings& f, Value& v, Value& warnings) {
+  v["clocks"] = f.clocks.to_value();
+  const InsGnssOptions& o = f.problem.options;
+  if (f.clocks.apart() && !(o.gnss_latency && std::abs(f.clocks.imu.value) < sure_sigmas * o.latency_sigma.value))
+    warnings.push(f.clocks.advice());
+  if (f.clocks.velocities_lag())
+    warnings.push(text("the GNSS velocities are %.3f s late (sigma %.3f s) against the positions of the same fixes and are not used",
+                       f.clocks.velocity.value, f.clocks.velocity.sigma));
+}
+
+/// A given attitude against the smoothed one, which it is part of: the difference has the variance given^2 - smoothed^2.
+void judge_given(const InsFindings& f, Value& alignment, Value& warnings) {
+  if (f.alignment.method != "given") return;
+  const SmoothedNode& first = f.run.nodes.front();
+  const core::Geodetic g = core::geodetic_of(first.estimate.nav.position);
+  const Matrix3d ned = core::ecef_R_ned(g.latitude, g.longitude);
+  const core::Attitude is = core::attitude_of(ned.transpose() * first.estimate.nav.ecef_R_body),
+                       given = core::attitude_of(ned.transpose() * f.alignment.ecef_R_body);
+  const Vector3d off(core::wrap_pi(given.roll - is.roll), core::wrap_pi(given.pitch - is.pitch), core::wrap_pi(given.heading - is.heading));
+  const Vector3d stated = (ned.transpose() * f.alignment.covariance * ned).diagonal().cwiseSqrt();
+  const Vector3d smoothed = core::CovarianceSeries::unpack(first.covariance).diagonal().tail<3>().cwiseMax(0.0).cwiseSqrt();
+  alignment["given_minus_smoothed_deg"] = list(off, core::degree);
+  alignment["given_sigma_deg"] = list(stated, core::degree);
+  constexpr double least = 1.0 / 16;  // records that show little themselves contradict nothing
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double spread = std::sqrt(std::max(least * stated[i] * stated[i], stated[i] * stated[i] - smoothed[i] * smoothed[i]));
+    if (std::abs(off[i]) > sure_sigmas * spread)
+      warnings.push(std::string("the given ") + std::array{"roll", "pitch", "heading"}[static_cast<size_t>(i)] +
+                    text(" contradicts the records by %.3f deg, %.1f times its sigma of %.3f deg: check trajectory.ins_gnss.given",
+                         std::abs(off[i]) / core::degree, std::abs(off[i]) / spread, stated[i] / core::degree));
+  }
+}
+
 /// Are the constants as large as their stated sigmas say? The estimate minus nothing has variance stated^2 - sigma^2 if the data sheet is
 /// true.
 void judge_constants(const std::vector<Constant>& all, Value& warnings) {
@@ -162,10 +196,12 @@ core::Value report_of(const InsFindings& f, const SmootherSeries& s) {
                        static_cast<double>(f.problem.path.gaps.size()), longest));
   }
 
+  judge_clocks(f, v, warnings);
   Value& alignment = v["alignment"];
   alignment["method"] = f.alignment.method;
   alignment["at_gps_s"] = f.alignment.time;
   alignment["worst_sigma_deg"] = f.alignment.worst_sigma() / core::degree;
+  judge_given(f, alignment, warnings);
   double still = 0;
   for (const Span& span_still : f.standstills) still += span_still.last - span_still.first;
   v["standstill_s"] = still;

@@ -19,6 +19,7 @@ struct InsFindings {
   const std::vector<Span>& standstills;
   int iterations;
   double unsettled;  ///< sigmas by which the last iteration still moved the trajectory; 0: it had settled
+  const ClockFindings& clocks;
 };
 
 SmootherSeries series_of(const InsFindings& findings);

@@ -51,6 +51,16 @@ std::optional<trajectory::Trajectory> truth_of(const io::Survey& survey, double 
   return trajectory::Trajectory(io::read_sbet(file, time, true, io::VelocityAxes::ignore, std::nullopt, ignored), {}, file.string());
 }
 
+/// The clock offsets that the survey states, where one holds for all IMU files.
+trajectory::StatedClocks clocks_of(const io::Survey& survey) {
+  trajectory::StatedClocks out;
+  out.antenna_latency = survey.antenna.latency.value;
+  if (!survey.imu.empty()) out.imu_offset = survey.imu.front().time.offset.value;
+  for (const io::ImuFile& f : survey.imu)
+    if (out.imu_offset && f.time.offset.value != *out.imu_offset) out.imu_offset.reset();
+  return out;
+}
+
 class InsGnss : public OptionStage<InsGnssStageOptions> {
  public:
   const Info& info() const override {
@@ -88,7 +98,7 @@ class InsGnss : public OptionStage<InsGnssStageOptions> {
     core::ImuData imu = *context.imu;
     context.imu.reset();  // a record of hours is large, and no stage after this one reads it
     trajectory::InsGnssResult result = trajectory::smooth(std::move(imu), *context.gnss, context.survey.imu_spec.model(), lever_arm,
-                                                          antenna.lever_arm_sigma.value, options);
+                                                          antenna.lever_arm_sigma.value, options, clocks_of(context.survey));
     for (const auto& [key, value] : result.report.members())
       if (key != "warnings") findings[key] = value;
     if (const core::Value* warnings = result.report.find("warnings"); warnings && warnings->is_array())

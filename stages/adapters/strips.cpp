@@ -1,10 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/strips.h"
+#include <algorithm>
+
+#include "calib/line_agreement.h"
+#include "core/error.h"
 #include "core/units.h"
+#include "io/output_file.h"
+#include "io/value_file.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/calibration_flight.h"
 #include "stages/calibration_report.h"
 #include "stages/calibration_views.h"
+
+namespace swath::stages {
+
+enum class AdjustWhen { always, needed };
+
+}  // namespace swath::stages
+
+namespace swath::core {
+template <>
+struct Choices<stages::AdjustWhen> {
+  static constexpr std::array<std::string_view, 2> names{"always", "needed"};
+};
+}  // namespace swath::core
 
 namespace swath::stages {
 namespace {
@@ -17,6 +36,8 @@ struct StripStageOptions : calib::StripOptions {
     errors.roll_pitch = core::degrees(0.01);
     errors.heading = core::degrees(0.02);
   }
+  AdjustWhen when = AdjustWhen::always;
+  core::Metres tolerance{0.08};
   trajectory::ErrorModelOptions errors;
   calib::LineHeightOptions differences;
   int sections = 4;
@@ -24,6 +45,8 @@ struct StripStageOptions : calib::StripOptions {
 
 template <class V>
 void describe(StripStageOptions& o, V& v) {
+  v.option("when", o.when, "Adjust always, or only where lines differ by more than their sigmas or `tolerance` (needed).");
+  v.option("tolerance", o.tolerance, core::above(0), "RMS difference of two lines above which `needed` adjusts whatever the sigmas.");
   describe(static_cast<calib::StripOptions&>(o), v);
   v.table("errors", o.errors, "Errors of trajectories that state no covariances between instants.");
   v.table("differences", o.differences, "Maps of the differences of overlapping lines.");
@@ -49,7 +72,65 @@ class Strips : public OptionStage<StripStageOptions> {
   std::vector<fs::path> inputs(const io::Survey& survey) const override { return control_files(survey); }
 
   void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
-    const PreparedFlight prepared(context, options.errors, tally);
+    if (options.when == AdjustWhen::always) return adjust(context, PreparedFlight(context, options.errors, tally), tally, findings);
+    // Whatever stands against it, the survey goes on with its trajectory as it is, and says why.
+    const auto left = [&](const std::string& why, const std::string& what) {
+      findings["adjusted"] = false;
+      findings["reason"] = what;
+      if (!why.empty()) tally.count(why, what);
+    };
+    try {
+      const PreparedFlight prepared(context, options.errors, tally);
+      const calib::LineAgreement lines = agreement(prepared);
+      core::Value found = lines.pairs.empty() ? core::Value::object() : tree_of(lines);
+      findings["agreement"] = found;
+      const bool apart = std::any_of(lines.pairs.begin(), lines.pairs.end(),
+                                     [this](const calib::PairAgreement& p) { return p.rms > options.tolerance.value; });
+      findings["adjusted"] = lines.exceeded() || apart;
+      if (lines.exceeded() || apart) return adjust(context, prepared, tally, findings);
+      left("",
+           lines.pairs.empty() ? "no plane was found that two lines have seen" : "the lines agree within their sigmas and the tolerance");
+      found["adjusted"] = false;
+      found["reason"] = *findings.find("reason");
+      io::write_text_file(context.output / "strips.json", io::to_json(found));
+    } catch (const core::SystemError&) {
+      throw;
+    } catch (const core::Error& e) {
+      left("flight lines that could not be compared or adjusted: the trajectory is left as it is", e.what());
+    }
+  }
+
+ private:
+  calib::LineAgreement agreement(const PreparedFlight& prepared) const {
+    const calib::CalibrationFlight& f = prepared.flight;
+    if (prepared.lines.size() < 2) return {};
+    core::Tally ignored;
+    const calib::TieSet ties = calib::find_tie_planes(f.shots, f.scanner, f.start, *f.trajectory, f.frame, {}, options.planes, ignored);
+    return calib::line_agreement(ties, f.scanner, f.start, f.sensor, *f.trajectory,
+                                 [&](const std::vector<double>& times) { return f.errors->covariance(times); });
+  }
+
+  static core::Value tree_of(const calib::LineAgreement& lines) {
+    core::Value v = core::Value::object();
+    v["planes"] = lines.planes;
+    v["rms"] = lines.rms;
+    v["predicted"] = lines.predicted;
+    core::Value& pairs = v["pairs"] = core::Value::array();
+    for (const calib::PairAgreement& p : lines.pairs) {
+      core::Value one = core::Value::object();
+      one["lines"].push(p.line_a);
+      one["lines"].push(p.line_b);
+      one["planes"] = p.planes;
+      one["mean"] = p.mean;
+      one["rms"] = p.rms;
+      one["predicted"] = p.predicted;
+      one["surplus"] = p.surplus;
+      pairs.push(std::move(one));
+    }
+    return v;
+  }
+
+  void adjust(Context& context, const PreparedFlight& prepared, core::Tally& tally, core::Value& findings) const {
     calib::AdjustedStrips strips = calib::adjust_strips(prepared.flight, options, tally);
     const auto corrected = std::make_shared<const trajectory::Trajectory>(std::move(*strips.trajectory));
 

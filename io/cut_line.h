@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A logger that is read from the middle begins its file with what is left of a record.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/report.h"
+
+namespace swath::io {
+
+/// Lines after the first that show how records are written.
+constexpr size_t cut_line_context = 30;
+
+/// Is the first line of data only the end of a record? `lines`: the fields of the first lines of data, up to cut_line_context + 1. It has
+/// fewer fields than all that follow; or, where nothing stands before it in the file (`opens_file`) and all that follow are written alike,
+/// its first field is not: the rest of a number, digits after the point that are fewer, no digit before the point, or, where the
+/// field rises evenly, a number that lacks its leading digits. A cut that leaves a number of the usual form in another column than
+/// the first is not found.
+bool first_line_is_cut(const std::vector<std::vector<std::string>>& lines, bool opens_file);
+
+/// Counts the line (from 1; 0: none is cut).
+void count_cut_line(std::uint64_t line, const std::filesystem::path& file, core::Tally& tally);
+
+}  // namespace swath::io
