@@ -19,7 +19,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "accuracy"))
 import common
 
-ONE_TILE = "100000 km"
+WIDEST = "100 km"  # what the program takes
 STAND_IN = "EPSG:32632"  # for files without a usable CRS: nothing is computed in it
 CRS = {("LASF_Projection", n) for n in (2111, 2112, 34735, 34736, 34737)}
 MADE = 2000  # points of a made file
@@ -30,7 +30,7 @@ def made_file(folder, point_format, ending):
     random = np.random.default_rng(100 + point_format)
     version = "1.4" if point_format >= 6 or point_format % 2 else "1.3" if point_format >= 4 else "1.2"
     header = laspy.LasHeader(point_format=point_format, version=version)
-    header.scales, header.offsets = [0.0001, 0.0002, 0.0005], [5e5, 5.4e6, -100.0]
+    header.scales, header.offsets = [0.0001, 0.0002, 0.0005], [5.5e5, 5.45e6, -100.0]
     header.creation_date, header.uuid, header.file_source_id = date(2013, 4, 5), uuid.uuid4(), 321
     header.system_identifier = "OTHER"
     header.vlrs.append(laspy.VLR(user_id="vendor", record_id=7, description="odd", record_data=bytes(range(256))))
@@ -47,7 +47,7 @@ def made_file(folder, point_format, ending):
     for name in array.dtype.names:  # every bit of the records, return numbers of 0 and all flags with them
         array[name] = np.frombuffer(random.bytes(array[name].nbytes), array[name].dtype).reshape(array[name].shape)
     for name in ("X", "Y", "Z"):
-        array[name] //= 4
+        array[name] //= 16
     if point_format < 6:
         array["scan_angle_rank"] = random.integers(-90, 91, MADE)
     else:
@@ -75,8 +75,7 @@ def faults_of(before, after, crs_given):
     """Names of what differs between two files (`after` may be several: tiles)."""
     a, b = before.header, after[0].header
     out = []
-    expected = {name: getattr(a, name) for name in ("point_format", "uuid", "creation_date", "file_source_id", "system_identifier", "major_version", "minor_version")
-                if hasattr(a, name)}
+    expected = {name: getattr(a, name) for name in ("point_format", "uuid", "creation_date", "file_source_id", "system_identifier")}
     out += [name for name, value in expected.items() if value != getattr(b, name)]
     if not crs_given and a.version != b.version:
         out.append("version")
@@ -125,7 +124,7 @@ def round_trip(file, folder, tile):
 def main():
     given = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     given.add_argument("names", nargs="*")
-    given.add_argument("--tile", default=ONE_TILE)
+    given.add_argument("--tile", default=WIDEST)
     given = given.parse_args()
     scratch = common.scratch("real/roundtrip")
     (scratch / "made").mkdir()

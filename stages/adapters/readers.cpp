@@ -295,7 +295,12 @@ std::vector<io::LasSource> cloud_sources(const Context& context) {
 bool keeps_crs(const Context& context, const std::vector<io::LasSource>& sources) {
   return std::all_of(sources.begin(), sources.end(), [&](const io::LasSource& s) {
     const std::string stated = io::las_crs(s.header).definition;
-    return s.same_places && !stated.empty() && core::Crs(stated).key() == context.crs.key();
+    if (!s.same_places || stated.empty()) return false;
+    try {
+      return core::Crs(stated).key() == context.crs.key();
+    } catch (const core::Error&) {  // not known to PROJ: the survey states another
+      return false;
+    }
   });
 }
 

@@ -101,10 +101,17 @@ std::string tallies_of(const fs::path& out) {
   return text;
 }
 
+/// A header whose points lie in one tile.
+io::LasHeader header_of(int format, bool extras = false) {
+  io::LasHeader h = test::sample_header(format, -1, extras);
+  h.offset = {easting + 50000.0, northing + 50000.0, -100.0};
+  return h;
+}
+
 TEST(Cloud, EveryFieldOfEveryFormatIsKept) {
   for (int format = 0; format <= 10; ++format) {
     CloudCase c;
-    io::LasHeader h = test::sample_header(format, -1, true);
+    io::LasHeader h = header_of(format, true);
     h.scale = {0.0001, 0.0001, 0.0025};
     h.guid.fill(0x5C);
     h.creation_day = 200, h.creation_year = 2015;
@@ -112,7 +119,7 @@ TEST(Cloud, EveryFieldOfEveryFormatIsKept) {
     p.return_number[0] = p.return_count[0] = 0;
     p.return_number[1] = 5, p.return_count[1] = 2;
     c.add(h, p, "a.las");
-    const fs::path tile = only_tile(c.run(copy_stages, "10000 km"));
+    const fs::path tile = only_tile(c.run(copy_stages, "100 km"));
     EXPECT_EQ(test::read_all(tile, 1), p) << format;
     const io::LasReader r(tile, 1);
     EXPECT_EQ(r.header().point_format, format);
@@ -126,11 +133,11 @@ TEST(Cloud, EveryFieldOfEveryFormatIsKept) {
 
 TEST(Cloud, TimesAgainstTheBitAreKeptAndNamed) {
   CloudCase c;
-  io::LasHeader h = test::sample_header(8);
+  io::LasHeader h = header_of(8);
   h.global_encoding = io::las_encoding::wkt;  // seconds of week, says the bit
   const io::LasPoints p = test::sample_points(h, 1000);
   c.add(h, p, "a.las");
-  const fs::path out = c.run(copy_stages, "10000 km");
+  const fs::path out = c.run(copy_stages, "100 km");
   EXPECT_EQ(test::read_all(only_tile(out), 1).gps_time, p.gps_time);
   EXPECT_FALSE(io::LasReader(only_tile(out), 1).header().gps_time_is_adjusted());
   EXPECT_NE(tallies_of(out).find("contradict"), std::string::npos);
@@ -139,32 +146,32 @@ TEST(Cloud, TimesAgainstTheBitAreKeptAndNamed) {
 
 TEST(Cloud, AStatedScaleSetsTheBitAndNoTime) {
   CloudCase c;
-  io::LasHeader h = test::sample_header(8);
+  io::LasHeader h = header_of(8);
   h.global_encoding = io::las_encoding::wkt;
   const io::LasPoints p = test::sample_points(h, 1000);
   c.add(h, p, "a.las", "time_scale = \"gps_adjusted\"\n");
-  const fs::path out = c.run(copy_stages, "10000 km");
+  const fs::path out = c.run(copy_stages, "100 km");
   EXPECT_EQ(test::read_all(only_tile(out), 1).gps_time, p.gps_time);
   EXPECT_TRUE(io::LasReader(only_tile(out), 1).header().gps_time_is_adjusted());
   EXPECT_EQ(tallies_of(out).find("contradict"), std::string::npos);
 }
 
 TEST(Cloud, SecondsOfAWeekStayAsRecordedUnlessAsked) {
-  io::LasHeader h = test::sample_header(1);
+  io::LasHeader h = header_of(1);
   h.global_encoding = 0;
   io::LasPoints p = test::sample_points(h, 1000);
   for (size_t i = 0; i < p.size(); ++i) p.gps_time[i] = 604700.1 + 0.01 * static_cast<double>(i);
   CloudCase kept, dated;
   kept.add(h, p, "a.las", "week = 2000\n");
-  EXPECT_EQ(test::read_all(only_tile(kept.run(copy_stages, "10000 km")), 1).gps_time, p.gps_time);
+  EXPECT_EQ(test::read_all(only_tile(kept.run(copy_stages, "100 km")), 1).gps_time, p.gps_time);
   dated.add(h, p, "a.las", "week = 2000\n");
-  const fs::path tile = only_tile(dated.run(copy_stages + "times = \"adjusted\"\n", "10000 km"));
+  const fs::path tile = only_tile(dated.run(copy_stages + "times = \"adjusted\"\n", "100 km"));
   EXPECT_TRUE(io::LasReader(tile, 1).header().gps_time_is_adjusted());
   EXPECT_NEAR(test::read_all(tile, 1).gps_time[5], 2000 * 604800.0 + p.gps_time[5] - 1e9, 1e-6);
 }
 
 TEST(Cloud, ReturnNumbersOfACloudStayUnlessAsked) {
-  io::LasHeader h = test::sample_header(6);
+  io::LasHeader h = header_of(6);
   io::LasPoints p = test::sample_points(h, 1000);
   std::fill(p.return_number.begin(), p.return_number.end(), std::uint8_t{0});
   for (size_t i = 0; i < p.size(); ++i) p.gps_time[i] = 3e8 + 1e-4 * static_cast<double>(i / 2);
@@ -172,9 +179,9 @@ TEST(Cloud, ReturnNumbersOfACloudStayUnlessAsked) {
                     write = "[[stage]]\ntype = \"writers.las\"\n";
   CloudCase kept, repaired;
   kept.add(h, p, "a.las");
-  EXPECT_EQ(test::read_all(only_tile(kept.run(stages + write, "10000 km")), 1), p);
+  EXPECT_EQ(test::read_all(only_tile(kept.run(stages + write, "100 km")), 1), p);
   repaired.add(h, p, "a.las");
-  const io::LasPoints q = test::read_all(only_tile(repaired.run(stages + "repair_clouds = true\n" + write, "10000 km")), 1);
+  const io::LasPoints q = test::read_all(only_tile(repaired.run(stages + "repair_clouds = true\n" + write, "100 km")), 1);
   EXPECT_EQ(q.return_number[0] + q.return_number[1], 3);
   EXPECT_EQ(q.return_count[0], 2);
 }
