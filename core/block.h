@@ -32,8 +32,9 @@ enum class Column : std::uint8_t {
   green,
   blue,
   user_data,
+  source,
 };
-constexpr int column_count = 22;
+constexpr int column_count = 23;
 
 /// A set of columns: what a stage needs, what it gives, what a store holds.
 class ColumnSet {
@@ -83,6 +84,20 @@ constexpr std::uint8_t never_classified = 0, unassigned = 1, ground = 2, low_veg
                        building = 6, low_noise = 7, water = 9, wire = 14, bridge_deck = 17, high_noise = 18;
 }
 
+/// A column of rows of bytes, all of one width. Rows of 0 are empty ones.
+struct ByteRows {
+  size_t width = 0;
+  std::vector<std::uint8_t> bytes;
+
+  bool empty() const { return bytes.empty(); }
+  size_t size() const { return width > 0 ? bytes.size() / width : 0; }
+  const std::uint8_t* row(size_t i) const { return bytes.data() + i * width; }
+  std::uint8_t* row(size_t i) { return bytes.data() + i * width; }
+  /// `n` rows of at least `least` bytes: narrower ones are filled up with 0, as are new rows.
+  void resize(size_t n, size_t least);
+  bool operator==(const ByteRows&) const = default;
+};
+
 /// Georeferenced returns as columns, one entry per return. Filters add or change columns and never remove rows.
 struct Block {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< map frame, CRS units; x, y, z are relative to it
@@ -103,11 +118,13 @@ struct Block {
   std::vector<float> ground_probability;             ///< 0 to 1: that the return is from the bare ground; NaN: not judged
   std::vector<std::uint16_t> red, green, blue;       ///< as recorded
   std::vector<std::uint8_t> user_data;               ///< as recorded
+  ByteRows source;                                   ///< the point in the file it came from (io/las_source.h); where it came from one
 
   size_t size() const { return x.size(); }
 };
 
-/// The one list of a Block's columns: calls f(Column, name, pointer to member) for each, in the order of the enum.
+/// The one list of a Block's columns: calls f(Column, name, pointer to member) for each but `source`, which is no column of numbers, in
+/// the order of the enum.
 template <class F>
 void for_each_column(F&& f) {
   f(Column::x, "x", &Block::x);

@@ -88,6 +88,20 @@ size_t end_of_pulse(const core::Block& b, size_t begin) {
   return end;
 }
 
+bool tells_pulses(const core::Block& b) {
+  if (b.time.size() != b.size() || b.size() == 0) return false;
+  if (b.size() > 1 && std::all_of(b.time.begin(), b.time.end(), [&](double t) { return t == b.time[0]; })) return false;
+  size_t groups = 0, shared = 0;
+  for (size_t begin = 0, end = 0; begin < b.size(); begin = end) {
+    end = end_of_pulse(b, begin);
+    ++groups;
+    size_t first = 0;
+    for (size_t i = begin; i < end && !b.return_number.empty(); ++i) first += b.return_number[i] == 1;
+    shared += end - begin > most_returns || first > 1;
+  }
+  return shared * 100 <= groups;
+}
+
 RepairCounts repair_returns(core::Block& b, const ReturnsOptions& o) {
   core::add_columns(b, {core::Column::return_number, core::Column::return_count, core::Column::flags});
   RepairCounts n;

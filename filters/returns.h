@@ -36,6 +36,10 @@ inline bool is_intermediate_return(const core::Block& b, size_t p) { return !is_
 /// Row after the last of the pulse that starts at `begin`: adjacent rows of one strip and one time. Without times every row is a pulse.
 size_t end_of_pulse(const core::Block& b, size_t begin);
 
+/// Do the times tell the pulses apart? Not where points have none, and not where they are so coarse that pulses share them: more rows under
+/// one time than a pulse has returns, or two first returns, in more than one of a hundred.
+bool tells_pulses(const core::Block& b);
+
 struct RepairCounts {
   std::uint64_t pulses = 0, repaired_pulses = 0, inconsistent_pulses = 0;
   std::uint64_t repaired = 0, inconsistent = 0;  ///< returns

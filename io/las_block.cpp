@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Source: ASPRS LAS Specification 1.4 R15 (2019), tables 7 to 17.
 // Deviations: scan angles of a Block are rounded to 0.006 deg (1 deg in formats 0 to 5), coordinates to the nearest multiple of the
-// scale: half a step each. Angles beyond the field's range are cut to it, NaN becomes 0.
+// scale, heights above ground to 1/1024 m and probabilities to 1/16384: half a step each. Angles beyond the field's range are cut to it,
+// NaN becomes 0.
 #include "io/las_block.h"
 
 #include <algorithm>
@@ -16,7 +17,12 @@ namespace swath::io {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
-constexpr std::uint8_t legacy_overlap_class = 12;
+/// Floats end in zero bits, so that they compress.
+double rounded(core::Column c, double v) {
+  constexpr double per_metre = 1024.0, per_one = 16384.0;
+  if (c == core::Column::height) return std::round(v * per_metre) / per_metre;
+  return c == core::Column::ground_probability ? std::round(v * per_one) / per_one : v;
+}
 
 [[noreturn]] void fail(const std::string& what, const std::string& where, std::uint64_t row, const std::string& hint) {
   throw core::Error(what, where + ": point " + std::to_string(row), hint);
@@ -27,26 +33,25 @@ constexpr std::uint8_t legacy_overlap_class = 12;
 std::vector<LasExtra> las_extras_of(core::ColumnSet columns) {
   using core::Column;
   std::vector<LasExtra> out;
-  const auto add = [&](Column c, const char* name, const char* description, std::uint8_t type, double step, std::uint64_t nodata) {
+  const auto add = [&](Column c, const char* name, const char* description, std::uint8_t type, std::optional<double> step,
+                       std::optional<std::uint64_t> nodata) {
     if (!columns.has(c)) return;
     LasExtra e;
     e.name = name;
     e.description = description;
     e.type = type;
-    e.nodata = {{nodata, 0, 0}};
-    e.scale = {{step, 0.0, 0.0}};
-    e.offset = {{0.0, 0.0, 0.0}};
+    if (nodata) e.nodata = {{*nodata, 0, 0}};
+    if (step) e.scale = {{*step, 0.0, 0.0}}, e.offset = {{0.0, 0.0, 0.0}};
     out.push_back(std::move(e));
   };
   constexpr auto no_u32 = std::uint64_t{std::numeric_limits<std::uint32_t>::max()};
   constexpr auto no_u16 = std::uint64_t{std::numeric_limits<std::uint16_t>::max()};
-  constexpr auto no_i32 = las_integer_bits(std::numeric_limits<std::int32_t>::min());
   add(Column::range, las_name::range, "corrected range, m", 5, 0.001, no_u32);
   add(Column::incidence, las_name::incidence, "beam to the vertical, deg", 3, 0.002, no_u16);
   add(Column::sigma_h, las_name::sigma_h, "horizontal standard deviation, m", 5, 0.0001, no_u32);
   add(Column::sigma_v, las_name::sigma_v, "vertical standard deviation, m", 5, 0.0001, no_u32);
-  add(Column::height, las_name::height, "height above ground, m", 6, 0.001, no_i32);
-  add(Column::ground_probability, las_name::ground_probability, "probability of bare ground", 3, 0.0001, no_u16);
+  add(Column::height, las_name::height, "height above ground, m", 9, {}, {});
+  add(Column::ground_probability, las_name::ground_probability, "probability of bare ground", 9, {}, {});
   return out;
 }
 
@@ -65,23 +70,7 @@ void las_points_to_block(const LasPoints& p, const LasHeader& header, std::uint6
     block.y[i] = p.raw_y[i] * header.scale.y() + shift.y();
     block.z[i] = p.raw_z[i] * header.scale.z() + shift.z();
   }
-  if (l.gps && header.gps_time_is_adjusted()) {
-    for (std::size_t i = 0; i < n; ++i) block.time[i] = p.gps_time[i] + core::adjusted_offset;
-  } else if (l.gps && time.week) {
-    constexpr double half_week = core::seconds_per_week / 2;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double t = p.gps_time[i];
-      if (!(t >= 0.0 && t <= core::seconds_per_week))
-        fail("the time " + std::to_string(t) + " s is no second of a week", where, first + i,
-             "the file's times are on another scale than its GPS time bit says");
-      const double turn = t < first_time - half_week ? core::seconds_per_week : t > first_time + half_week ? -core::seconds_per_week : 0.0;
-      block.time[i] = *time.week * core::seconds_per_week + t + turn;
-    }
-  } else if (l.gps && time.keep_seconds_of_week) {
-    block.time = p.gps_time;
-  } else if (l.gps && n > 0) {
-    throw core::Error("times are seconds of a GPS week that the file does not name", where, "state the GPS week of the first point");
-  }
+  if (l.gps) block.time = las_gps_times(p.gps_time, header, time, first_time, where, first);
   block.intensity = p.intensity;
   block.return_number = p.return_number;
   block.return_count = p.return_count;
@@ -103,20 +92,16 @@ void las_points_to_block(const LasPoints& p, const LasHeader& header, std::uint6
     block.scan_angle[i] = static_cast<float>(p.raw_scan_angle[i] * (l.extended ? las_angle_step : 1.0) * degree);
     block.record[i] = static_cast<std::uint32_t>(first + i);
   }
-  const auto take = [&](const char* name, std::vector<float>& column, double unit) {
+  for_each_extra_column([&](Column c, const char* name, auto member) {
     const std::vector<double> values = las_extra_values(p, header, name);
-    column.resize(values.size());
-    std::transform(values.begin(), values.end(), column.begin(), [unit](double v) { return static_cast<float>(v * unit); });
-  };
-  take(las_name::range, block.range, 1.0);
-  take(las_name::incidence, block.incidence, degree);
-  take(las_name::sigma_h, block.sigma_h, 1.0);
-  take(las_name::sigma_v, block.sigma_v, 1.0);
-  take(las_name::height, block.height, 1.0);
-  take(las_name::ground_probability, block.ground_probability, 1.0);
+    (block.*member).resize(values.size());
+    std::transform(values.begin(), values.end(), (block.*member).begin(),
+                   [c](double v) { return static_cast<float>(c == Column::incidence ? v * degree : v); });
+  });
 }
 
-void block_to_las_points(const core::Block& block, const LasHeader& header, std::uint64_t first, const std::string& where, LasPoints& p) {
+void block_to_las_points(const core::Block& block, const LasHeader& header, std::uint64_t first, const std::string& where, LasPoints& p,
+                         core::ColumnSet carried) {
   const LasLayout l = *las_layout(header.point_format);
   const std::size_t n = block.size();
   resize(p, header, n);
@@ -148,10 +133,7 @@ void block_to_las_points(const core::Block& block, const LasHeader& header, std:
   copy(block.blue, p.blue);
   const double step = l.extended ? las_angle_step : 1.0, most = l.extended ? 30000.0 : 90.0;
   for (std::size_t i = 0; i < n; ++i) {
-    if (l.gps && !block.time.empty())
-      p.gps_time[i] = header.gps_time_is_adjusted()
-                          ? block.time[i] - core::adjusted_offset
-                          : block.time[i] - core::seconds_per_week * std::floor(block.time[i] / core::seconds_per_week);
+    if (l.gps && !block.time.empty()) p.gps_time[i] = header.gps_time_is_adjusted() ? block.time[i] - core::adjusted_offset : block.time[i];
     if (!block.flags.empty()) {
       p.flags[i] = static_cast<std::uint8_t>(block.flags[i] & (l.extended ? 15 : 7));
       p.scan_direction[i] = (block.flags[i] & core::flag::scan_direction) != 0;
@@ -164,18 +146,13 @@ void block_to_las_points(const core::Block& block, const LasHeader& header, std:
       p.raw_scan_angle[i] = static_cast<std::int16_t>(std::isnan(angle) ? 0.0 : std::clamp(angle, -most, most));
     }
   }
-  const auto give = [&](const char* name, const std::vector<float>& column, double unit) {
-    if (column.empty() || !header.extra_offset(name)) return;
+  for_each_extra_column([&](core::Column c, const char* name, auto member) {
+    const std::vector<float>& column = block.*member;
+    if (column.empty() || carried.has(c) || !header.extra_offset(name)) return;
     std::vector<double> values(column.begin(), column.end());
-    for (double& v : values) v *= unit;
+    for (double& v : values) v = rounded(c, c == core::Column::incidence ? v / degree : v);
     set_las_extra_values(p, header, name, values, where);
-  };
-  give(las_name::range, block.range, 1.0);
-  give(las_name::incidence, block.incidence, 1.0 / degree);
-  give(las_name::sigma_h, block.sigma_h, 1.0);
-  give(las_name::sigma_v, block.sigma_v, 1.0);
-  give(las_name::height, block.height, 1.0);
-  give(las_name::ground_probability, block.ground_probability, 1.0);
+  });
 }
 
 }  // namespace swath::io

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Source: ASPRS LAS Specification 1.4 R15 (2019) and, for older files, 1.0 (2003), 1.1 (2005), 1.2 (2008), 1.3 (2010).
-// Over 400 lines: reading and writing stand together, so that the place of every byte can be held against its twin.
-// Deviation: extra bytes fields keep the deprecated two- and three-component types readable.
+// Reading and writing are together, so that the place of every byte can be held against its twin.
 #include "io/las_header.h"
 
 #include <algorithm>
@@ -19,22 +18,17 @@ namespace swath::io {
 
 using las::get;
 using las::put;
+using las::put_text;
+using las::text_of;
 
 namespace {
 
-constexpr std::size_t vlr_head = 54, evlr_head = 60, extra_record = 192;
+constexpr std::size_t vlr_head = 54, evlr_head = las_evlr_head;
 constexpr std::uint64_t largest_evlr_kept = 64u << 20;
 
 std::size_t header_size(int minor) { return minor >= 4 ? 375 : minor == 3 ? 235 : 227; }
 
 std::string at_byte(const std::filesystem::path& file, std::uint64_t byte) { return file.string() + ": byte " + std::to_string(byte); }
-
-std::string text_of(const std::uint8_t* at, std::size_t n) {
-  const auto* end = std::find(at, at + n, std::uint8_t{0});
-  return {at, end};
-}
-
-void put_text(std::uint8_t* at, std::size_t n, const std::string& text) { std::memcpy(at, text.data(), std::min(n, text.size())); }
 
 /// Reads parts of one file; a part that is not there is an error that names what is cut.
 class Input {
@@ -68,80 +62,6 @@ LasVlr parse_vlr_head(const std::uint8_t* b, bool extended) {
   v.size = extended ? get<std::uint64_t>(b + 20) : get<std::uint16_t>(b + 20);
   v.description = text_of(b + (extended ? 28 : 22), 32);
   return v;
-}
-
-std::vector<LasExtra> parse_extras(const std::vector<std::uint8_t>& data) {
-  std::vector<LasExtra> out;
-  for (std::size_t at = 0; at + extra_record <= data.size(); at += extra_record) {
-    const std::uint8_t* b = data.data() + at;
-    LasExtra e;
-    e.type = b[2];
-    e.name = text_of(b + 4, 32);
-    e.description = text_of(b + 160, 32);
-    if (e.type == 0) {
-      e.bytes = b[3];
-    } else {
-      const auto three = [b]<class T>(int where, T) {
-        return std::array<T, 3>{get<T>(b + where), get<T>(b + where + 8), get<T>(b + where + 16)};
-      };
-      const std::uint8_t options = b[3];
-      if (options & 1) e.nodata = three(40, std::uint64_t{});
-      if (options & 2) e.min = three(64, std::uint64_t{});
-      if (options & 4) e.max = three(88, std::uint64_t{});
-      if (options & 8) e.scale = three(112, 0.0);
-      if (options & 16) e.offset = three(136, 0.0);
-    }
-    out.push_back(std::move(e));
-  }
-  return out;
-}
-
-std::vector<std::uint8_t> extras_bytes(const std::vector<LasExtra>& extras) {
-  std::vector<std::uint8_t> out(extras.size() * extra_record);
-  for (std::size_t i = 0; i < extras.size(); ++i) {
-    std::uint8_t* b = out.data() + i * extra_record;
-    const LasExtra& e = extras[i];
-    b[2] = e.type;
-    b[3] =
-        e.type == 0
-            ? e.bytes
-            : static_cast<std::uint8_t>((e.nodata ? 1 : 0) | (e.min ? 2 : 0) | (e.max ? 4 : 0) | (e.scale ? 8 : 0) | (e.offset ? 16 : 0));
-    put_text(b + 4, 32, e.name);
-    put_text(b + 160, 32, e.description);
-    const auto three = [b](int where, const auto& values) {
-      if (values)
-        for (int k = 0; k < 3; ++k) put(b + where + 8 * k, (*values)[static_cast<std::size_t>(k)]);
-    };
-    three(40, e.nodata), three(64, e.min), three(88, e.max), three(112, e.scale), three(136, e.offset);
-  }
-  return out;
-}
-
-/// Fits the described extra fields to the bytes that the records have.
-void settle_extras(LasHeader& h, std::vector<std::string>& warnings) {
-  for (const auto* list : {&h.vlrs, &h.evlrs})
-    for (const LasVlr& v : *list)
-      if (v.user_id == "LASF_Spec" && v.record_id == 4) h.extras = parse_extras(v.data);
-  int left = h.record_length - las_layout(h.point_format)->size;
-  for (std::size_t i = 0; i < h.extras.size(); ++i) {
-    if (h.extras[i].type > 30) {
-      warnings.push_back("extra bytes field '" + h.extras[i].name + "' has the unknown type " + std::to_string(h.extras[i].type) +
-                         "; it and all after it are kept as raw bytes");
-      h.extras.resize(i);
-    } else if (h.extras[i].size() > left) {
-      warnings.push_back("extra bytes field '" + h.extras[i].name + "' is described but not in the records");
-      h.extras.resize(i);
-    } else {
-      left -= h.extras[i].size();
-    }
-  }
-  while (left > 0) {
-    LasExtra raw;
-    raw.type = 0;
-    raw.bytes = static_cast<std::uint8_t>(std::min(left, 255));
-    left -= raw.bytes;
-    h.extras.push_back(raw);
-  }
 }
 
 void parse_counts(LasHeader& h, const std::vector<std::uint8_t>& b, const std::filesystem::path& file, std::vector<std::string>& warnings) {
@@ -260,12 +180,6 @@ std::optional<LasLayout> las_layout(int format) {
   return l;
 }
 
-int LasExtra::size() const {
-  constexpr std::array<int, 11> of_type{0, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
-  if (type == 0) return bytes;
-  return components() * of_type[static_cast<std::size_t>((type - 1) % 10 + 1)];
-}
-
 int LasHeader::extra_bytes() const {
   int sum = 0;
   for (const LasExtra& e : extras) sum += e.size();
@@ -322,7 +236,7 @@ LasHeader read_las_header(const std::filesystem::path& file, std::vector<std::st
   read_vlrs(h, in, stated_size, vlr_count, file);
   check_records(h, in.size(), file, warnings, evlr_start);
   if (h.version_minor >= 4) read_evlrs(h, in, evlr_start, get<std::uint32_t>(&b[243]));
-  settle_extras(h, warnings);
+  h.extras = extras_of(h.vlrs, h.evlrs, h.record_length - las_layout(h.point_format)->size, warnings);
   if (las_layout(h.point_format)->gps && !h.gps_time_is_adjusted() && h.point_count > 0)
     warnings.push_back("the GPS time bit is not set: times count as seconds of a GPS week that the file does not name");
   if (h.point_format >= 6 && !(h.global_encoding & las_encoding::wkt))
@@ -344,11 +258,7 @@ std::vector<std::uint8_t> las_header_bytes(LasHeader& h, std::uint64_t evlr_star
   if (record_length > std::numeric_limits<std::uint16_t>::max()) throw core::Error("the extra bytes do not fit the point record", file);
   h.record_length = static_cast<std::uint16_t>(record_length);
 
-  std::vector<LasVlr> vlrs;
-  for (const LasVlr& v : h.vlrs)
-    if (!(v.user_id == "LASF_Spec" && v.record_id == 4)) vlrs.push_back(v);
-  const bool described = std::any_of(h.extras.begin(), h.extras.end(), [](const LasExtra& e) { return e.type != 0 || !e.name.empty(); });
-  if (described) vlrs.push_back({"LASF_Spec", 4, "Extra bytes", extras_bytes(h.extras), 0, 0});
+  std::vector<LasVlr> vlrs = with_extras(h.vlrs, h.extras);
   if (h.compressed) vlrs.push_back({"laszip encoded", 22204, "LASzip record", h.laszip, 0, 0});
   const std::size_t head = header_size(h.version_minor);
   std::vector<std::uint8_t> b(head);

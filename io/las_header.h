@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "io/las_extras.h"
+
 namespace swath::io {
 
 /// What the records of one point format hold besides the fields that all formats have (R15, tables 7 to 16).
@@ -22,33 +24,6 @@ struct LasLayout {
 
 /// The layout of point format 0 to 10; nothing for others.
 std::optional<LasLayout> las_layout(int format);
-
-/// A variable length record. `data` of waveform packets (LASF_Spec 65535) stay in the file: see `offset` and `size`.
-struct LasVlr {
-  std::string user_id;
-  std::uint16_t record_id = 0;
-  std::string description;
-  std::vector<std::uint8_t> data;
-  std::uint64_t offset = 0;  ///< byte of the data in the file that was read
-  std::uint64_t size = 0;    ///< bytes of the data in the file that was read
-};
-
-/// One extra field of the records (R15, extra bytes VLR). A value is raw * scale + offset.
-struct LasExtra {
-  std::string name;         ///< up to 32 bytes
-  std::string description;  ///< up to 32 bytes
-  std::uint8_t type = 9;    ///< 0 raw bytes; 1 to 10: u8 i8 u16 i16 u32 i32 u64 i64 f32 f64; 11 to 30: two or three of them
-  std::uint8_t bytes = 0;   ///< size of a field of type 0
-  std::optional<std::array<std::uint64_t, 3>> nodata, min, max;  ///< bit patterns of u64, i64 or f64, as the type
-  std::optional<std::array<double, 3>> scale, offset;
-
-  int components() const { return type <= 10 ? 1 : type <= 20 ? 2 : 3; }
-  /// Bytes in the record.
-  int size() const;
-};
-
-/// The bit pattern that `nodata` of an integer field holds.
-constexpr std::uint64_t las_integer_bits(std::int64_t v) { return static_cast<std::uint64_t>(v); }
 
 /// Bits of LasHeader::global_encoding.
 namespace las_encoding {

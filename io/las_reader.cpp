@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "io/las_source.h"
 #include "io/laz/swath_laz.h"
 #include "io/output_file.h"
 
@@ -30,6 +31,7 @@ struct LasReader::State {
   std::unique_ptr<swath_laz_reader, CloseLaz> laz;
   std::uint64_t position = 0, outside = 0;
   std::optional<double> first_time;
+  LasTimeCheck times;
   std::vector<std::uint8_t> records;
   LasPoints points;
   bool ended = false;
@@ -84,6 +86,7 @@ struct LasReader::State {
     read_records(n);
     decode_las_points(records, header, points);
     count_outside();
+    times.add(points.gps_time);
     if (!first_time && !points.gps_time.empty()) first_time = points.gps_time.front();
     position += n;
     if (position == header.point_count && !ended) {
@@ -114,11 +117,14 @@ std::size_t LasReader::read(LasPoints& out, std::size_t most) {
   return n;
 }
 
-std::size_t LasReader::read(core::Block& out, std::size_t most, const LasTime& time) {
+std::size_t LasReader::read(core::Block& out, std::size_t most, const LasTime& time, std::uint32_t number) {
   const std::uint64_t first = state_->position;
   const std::size_t n = state_->next(most);
   las_points_to_block(state_->points, state_->header, first, time, state_->first_time.value_or(0.0), state_->file.string(), out);
+  if (number > 0) keep_source(state_->records, state_->header.record_length, number, out.source);
   return n;
 }
+
+std::string LasReader::time_fault(core::TimeScale stated) const { return state_->times.fault(state_->header, stated); }
 
 }  // namespace swath::io

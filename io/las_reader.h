@@ -35,8 +35,11 @@ class LasReader {
 
   /// The next points, at most `most`, every field; 0 at the end. Replaces what was in `out`.
   std::size_t read(LasPoints& out, std::size_t most);
-  /// The same as map coordinates relative to `out.origin`, which the caller sets; see las_points_to_block().
-  std::size_t read(core::Block& out, std::size_t most, const LasTime& time = {});
+  /// The same as map coordinates relative to `out.origin`, which the caller sets; see las_points_to_block(). `number`: of the file from 1,
+  /// to keep the records as out.source (io/las_source.h); 0: without them.
+  std::size_t read(core::Block& out, std::size_t most, const LasTime& time = {}, std::uint32_t number = 0);
+  /// What of the times read so far contradicts the file's GPS time bit; empty where nothing does.
+  std::string time_fault(core::TimeScale stated) const;
 
  private:
   struct State;

@@ -148,6 +148,11 @@ void LasRawWriter::finish() {
   }
   if (std::fseek(s.out.get(), static_cast<long>(evlr_start), SEEK_SET)) throw_system_error("cannot write", s.file, errno);
   s.put(las_evlr_bytes(s.header));
+  s.header.waveform_start = 0;
+  for (std::uint64_t at = evlr_start; const LasVlr& v : s.header.evlrs) {
+    if (v.user_id == "LASF_Spec" && v.record_id == 65535) s.header.waveform_start = at;
+    at += las_evlr_head + v.data.size();
+  }
   const std::vector<std::uint8_t> head = las_header_bytes(s.header, evlr_start, s.file.string());
   if (std::fseek(s.out.get(), 0, SEEK_SET)) throw_system_error("cannot write", s.file, errno);
   s.put(head);
@@ -159,32 +164,62 @@ struct LasWriter::State {
   std::filesystem::path file;
   LasWriteOptions options;
   std::optional<LasRawWriter> raw;
-  core::ColumnSet extras;
+  core::ColumnSet extras, carried;
+  bool has_sources = false;
+  std::uint64_t overlap_lost = 0;
   LasPoints points;
 
   static core::ColumnSet extra_columns(const core::Block& b) {
     using core::Column;
     const core::ColumnSet there = core::columns_of(b);
     core::ColumnSet out;
-    for (const Column c : {Column::range, Column::incidence, Column::sigma_h, Column::sigma_v, Column::height, Column::ground_probability})
+    for_each_extra_column([&](Column c, const char*, auto) {
       if (there.has(c)) out.add(c);
+    });
     return out;
   }
 
   /// The first block decides format, offset and extra bytes.
   void open(const core::Block& first) {
+    extras = extra_columns(first);
+    has_sources = options.sources && !first.source.empty();
+    raw.emplace(file, has_sources ? header_of_sources(first) : own_header(first), options.threads);
+  }
+
+  /// The sources' header, with the extra fields that the block's columns need besides; columns that are as read keep their fields.
+  LasHeader header_of_sources(const core::Block& first) {
+    LasHeader h = options.header;
+    carried = options.sources->unchanged(first);
+    core::ColumnSet added = extras;
+    for_each_extra_column([&](core::Column c, const char* name, auto) {
+      for (LasExtra& e : h.extras) {
+        if (e.name != name || !added.has(c)) continue;
+        if (!carried.has(c)) e = las_extras_of({c}).front(), h.version_minor = 4;
+        added = added - core::ColumnSet{c};
+      }
+    });
+    carried = carried - added;
+    for (LasExtra& e : las_extras_of(options.extra_bytes ? added : core::ColumnSet{})) {
+      h.extras.push_back(std::move(e));
+      h.version_minor = 4;
+    }
+    return h;
+  }
+
+  LasHeader own_header(const core::Block& first) const {
     constexpr double offset_step = 1e5;  // with 0.001 the 32 bits reach 2147 km to either side
     LasHeader h;
     h.version_minor = options.version_minor;
     h.point_format = options.format.value_or(first.red.empty() ? 6 : 7);
     h.file_source_id = options.file_source_id;
-    if (!options.seconds_of_week && las_layout(h.point_format) && las_layout(h.point_format)->gps)
+    if (!options.times_as_they_are && las_layout(h.point_format) && las_layout(h.point_format)->gps)
       h.global_encoding |= las_encoding::adjusted_gps_time;
     if (h.point_format >= 6) h.global_encoding |= las_encoding::wkt;
     h.system_identifier = options.system_identifier;
     h.generating_software = options.generating_software;
     h.creation_day = options.creation_day;
     h.creation_year = options.creation_year;
+    h.guid = options.guid;
     h.scale = options.scale;
     for (int k = 0; k < 3; ++k)
       if (!(std::isfinite(h.scale[k]) && h.scale[k] > 0.0))
@@ -196,9 +231,8 @@ struct LasWriter::State {
                   std::round((first.y[0] + first.origin.y()) / offset_step) * offset_step, 0.0};
     if (!h.offset.allFinite()) throw core::Error("the offset is not finite", file.string(), "the first point's coordinates are not finite");
     add_las_wkt(h, options.crs_wkt);
-    extras = extra_columns(first);
     if (options.extra_bytes) h.extras = las_extras_of(extras);
-    raw.emplace(file, std::move(h), options.threads);
+    return h;
   }
 };
 
@@ -216,7 +250,8 @@ void LasWriter::write(const core::Block& block) {
   if (!s.raw) s.open(block);
   if (s.options.extra_bytes && !(State::extra_columns(block) == s.extras))
     throw core::Error("a block has other columns than the first one", s.file.string() + ": from point " + std::to_string(count()));
-  block_to_las_points(block, s.raw->header(), count(), s.file.string(), s.points);
+  block_to_las_points(block, s.raw->header(), count(), s.file.string(), s.points, s.carried);
+  if (s.has_sources) s.overlap_lost += s.options.sources->restore(block, s.raw->header(), s.carried, s.points);
   s.raw->write(s.points);
 }
 
@@ -224,6 +259,8 @@ void LasWriter::finish() {
   if (!state_->raw) state_->open({});
   state_->raw->finish();
 }
+
+std::uint64_t LasWriter::overlap_lost() const { return state_->overlap_lost; }
 
 std::uint64_t LasWriter::count() const { return state_->raw ? state_->raw->header().point_count : 0; }
 

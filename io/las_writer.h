@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "io/las_crs.h"
 #include "io/las_header.h"
 #include "io/las_points.h"
+#include "io/las_source.h"
 
 namespace swath::io {
 
@@ -47,12 +49,17 @@ struct LasWriteOptions {
   Eigen::Vector3d scale{0.001, 0.001, 0.001};  ///< CRS units
   std::optional<Eigen::Vector3d> offset;       ///< unset: x and y of the first point to 100 000 units, z 0
   std::string crs_wkt;                         ///< WKT record; empty: none
-  bool seconds_of_week = false;      ///< times are written as seconds of the week (GPS time bit 0), not as adjusted standard GPS time
+  bool times_as_they_are = false;    ///< times of an unknown scale: written as they are (GPS time bit 0), not as adjusted standard GPS time
   bool extra_bytes = true;           ///< range, incidence, sigma_h, sigma_v, height_above_ground, ground_probability where a block has them
   std::uint16_t file_source_id = 0;  ///< flight line of a file of one line
   std::string system_identifier = "swath", generating_software = "swath";
   std::uint16_t creation_day = 0, creation_year = 0;  ///< day of year from 1
+  std::array<std::uint8_t, 16> guid{};                ///< of the project
   unsigned threads = 0;                               ///< for LAZ: 1 the caller's, 0 one per processor
+  /// For blocks with the column `source`: the files that their points came from, and the header to write in place of what is above
+  /// (LasSources::header, with scale, offset and CRS as they are to be).
+  std::shared_ptr<const LasSources> sources = {};
+  LasHeader header = {};
 };
 
 /// Writes Blocks as LAS 1.4 (LAZ where the name ends in .laz): WKT, adjusted standard GPS time, scan angle in 0.006 deg units, point
@@ -72,6 +79,8 @@ class LasWriter {
   void finish();
   /// Points written so far.
   std::uint64_t count() const;
+  /// Of these, those with an overlap flag that the point format cannot hold.
+  std::uint64_t overlap_lost() const;
 
  private:
   struct State;

@@ -140,7 +140,9 @@ struct PointFile {
   std::string crs;
   std::optional<core::Metres> height_unit;
   std::optional<int> line;
+  core::TimeScale time_scale = core::TimeScale::unstated;
   std::optional<int> week;
+  std::string date;
 };
 
 template <class V>
@@ -151,8 +153,12 @@ void describe(PointFile& f, V& v) {
            "One unit of the file's heights where its CRS has no vertical part; without it what the file states, then the survey's "
            "height_unit, then the unit of the file's horizontal axes.");
   v.option("line", f.line, core::within(0, 65535), "Flight line id of all points; otherwise the points' source ids.");
+  v.option("time_scale", f.time_scale, "Scale of the file's times, where its GPS time bit is wrong; unstated: as that bit says.");
   v.option("week", f.week, core::within(0, 10000),
            "GPS week of the first point, where the file's times are seconds of week; without it they are kept as they are.");
+  v.option("date", f.date, "UTC date of the first point, YYYY-MM-DD (time_scale utc_day).");
+  v.check(f.time_scale != core::TimeScale::device, "the times of a point cloud cannot be on a device's own scale");
+  v.check(f.time_scale != core::TimeScale::utc_day || !f.date.empty(), "time_scale utc_day needs the date of the first point");
 }
 
 /// A stretch of the flight. Records outside every line are counted and left out.

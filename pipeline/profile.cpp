@@ -156,7 +156,7 @@ void take_points(const fs::path& file, double half_width, std::vector<Section>& 
   if (std::none_of(sections.begin(), sections.end(), touches)) return;
   core::Block block;
   io::LasTime time;
-  time.keep_seconds_of_week = true;
+  time.keep_unknown = true;
   while (reader.read(block, batch, time) > 0)
     for (size_t i = 0; i < block.size(); ++i) {
       if (!core::is_usable(block, i)) continue;

@@ -6,6 +6,9 @@
 #include <tbb/version.h>
 #include <Eigen/Core>
 #include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
 #include <fstream>
 
 #include "io/output_file.h"
@@ -52,6 +55,29 @@ std::vector<std::string> fingerprints(const Plan& plan, const std::vector<Input>
     out.push_back(core::hex(chain));
   }
   return out;
+}
+
+std::array<std::uint8_t, 16> project_id(const std::string& fingerprint) {
+  std::array<std::uint8_t, 16> id{};
+  const std::uint64_t a = core::fnv1a("project " + fingerprint), b = core::fnv1a(fingerprint + " project");
+  std::memcpy(id.data(), &a, 8);
+  std::memcpy(id.data() + 8, &b, 8);
+  // Version and variant, as LAS stores them: the first three fields little-endian (R15, table 3).
+  id[7] = static_cast<std::uint8_t>((id[7] & 0x0f) | 0x80);
+  id[8] = static_cast<std::uint8_t>((id[8] & 0x3f) | 0x80);
+  return id;
+}
+
+Day creation_day() {
+  std::time_t now = std::time(nullptr);
+  if (const char* stated = std::getenv("SOURCE_DATE_EPOCH")) {
+    char* end = nullptr;
+    const long long seconds = std::strtoll(stated, &end, 10);
+    if (end != stated && *end == '\0') now = static_cast<std::time_t>(seconds);
+  }
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  return {utc.tm_year + 1900, utc.tm_yday + 1};
 }
 
 core::Value versions() {

@@ -164,6 +164,10 @@ void Engine::prepare() {
   if (works_on_the_map(plan_) || !plan_.survey.crs.empty()) prepare_map();
   inputs_ = inputs_of(plan_);
   fingerprints_ = fingerprints(plan_, inputs_);
+  if (!fingerprints_.empty()) context_.project = project_id(fingerprints_.back());
+  const Day day = creation_day();
+  context_.creation_year = day.year;
+  context_.creation_day = day.of_year;
   while (source_ < plan_.stages.size() && !stage(source_).is_source()) ++source_;
   for (size_t i = 0; i < plan_.stages.size(); ++i)
     if (works_on(i, Grain::strip)) last_strip_stage_ = i;
@@ -423,6 +427,7 @@ Measure Engine::measure_of(size_t number) const {
     using T = typename std::remove_reference_t<decltype(std::declval<core::Block>().*member)>::value_type;
     if (columns.has(c) || c == core::Column::x || c == core::Column::y || c == core::Column::z) row_bytes += sizeof(T);
   });
+  if (columns.has(core::Column::source)) row_bytes += static_cast<double>(store_->source_width());
   return [this, &s, row_bytes, wide = context_](std::vector<TileKey> tiles) mutable {
     const TileBox box(tiles);
     const TileStore::Load load = store_->load_with_halo(tiles, s.halo());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Over 400 lines: the one format of the store, written and read side by side.
-// File of a strip's points in one tile: chunks of {u32 points, u32 column bits, columns in the order of the enum}.
+// File of a strip's points in one tile: chunks of {u32 points, u32 column bits, u32 bytes of a row of the column `source`, columns in the
+// order of the enum}.
 // File of an overlay: one such chunk. Numbers in the machine's own byte order: the store is never carried elsewhere.
 #include "pipeline/tile_store.h"
 
@@ -30,7 +31,7 @@ using core::Column;
 using core::ColumnSet;
 
 struct ChunkHead {
-  std::uint32_t points, columns;
+  std::uint32_t points, columns, source_width;
 };
 
 class File {
@@ -97,11 +98,26 @@ ColumnSet set_of(std::uint32_t bits) {
 }
 
 void write_chunk(File& file, const Block& b, size_t first, size_t n, ColumnSet columns) {
-  const ChunkHead head{static_cast<std::uint32_t>(n), bits_of(columns)};
+  const ChunkHead head{static_cast<std::uint32_t>(n), bits_of(columns), static_cast<std::uint32_t>(b.source.width)};
   file.write(&head, sizeof head);
   core::for_each_column([&](Column c, std::string_view, auto member) {
     if (columns.has(c)) file.write((b.*member).data() + first, n * sizeof((b.*member)[0]));
   });
+  if (columns.has(Column::source)) file.write(b.source.row(first), n * b.source.width);
+}
+
+/// The rows of the chunk's column `source`, behind its other columns, to row `row` of `to`; passed over where they are not wanted.
+void read_source(File& file, const ChunkHead& head, bool wanted, core::ByteRows& to, size_t row) {
+  const size_t bytes = size_t{head.points} * head.source_width;
+  if (!wanted) return file.skip(bytes);
+  to.resize(std::max(to.size(), row + head.points), head.source_width);
+  if (to.width == head.source_width) {
+    if (bytes > 0) file.read(to.row(row), bytes);
+    return;
+  }
+  std::vector<std::uint8_t> narrow(bytes);
+  if (bytes > 0) file.read(narrow.data(), bytes);
+  for (size_t i = 0; i < head.points; ++i) std::copy_n(narrow.data() + i * head.source_width, head.source_width, to.row(row + i));
 }
 
 /// Appends the wanted columns of the next chunk to `to` at row `row`; false at the end of the file.
@@ -118,6 +134,7 @@ bool read_chunk(File& file, Block& to, size_t& row, ColumnSet wanted, ColumnSet&
     if (column.size() < row + head.points) column.resize(row + head.points);
     if (bytes > 0) file.read(column.data() + row, bytes);
   });
+  if (there.has(Column::source)) read_source(file, head, wanted.has(Column::source), to.source, row);
   row += head.points;
   return true;
 }
@@ -165,6 +182,7 @@ void StripWriter::write(const Block& block) {
   core::for_each_column([&](Column c, std::string_view, auto member) {
     if (present.has(c)) row_bytes += sizeof((block.*member)[0]);
   });
+  row_bytes += block.source.width;
   for (const auto& [key, mine] : rows) {
     Block& pending = pending_[key];
     pending.origin = block.origin;
@@ -235,7 +253,9 @@ void TileStore::open(const std::vector<std::string>& names) {
       // Strips of several files need not have the same columns.
       File f(file, O_RDONLY);
       ChunkHead head{};
-      if (f.read(&head, sizeof head)) columns_ = columns_ | set_of(head.columns);
+      if (!f.read(&head, sizeof head)) continue;
+      columns_ = columns_ | set_of(head.columns);
+      source_width_ = std::max<size_t>(source_width_, head.source_width);
     }
   }
 }
@@ -299,6 +319,7 @@ Block TileStore::read(TileKey key, ColumnSet columns, size_t more) const {
   core::for_each_column([&](Column c, std::string_view, auto member) {
     if (columns.has(c) && columns_.has(c)) (out.*member).reserve(at->second + more);
   });
+  if (columns.has(Column::source)) out.source.bytes.reserve((at->second + more) * source_width_);
   ColumnSet seen;
   size_t row = 0;
   for (const Segment& s : segments_.at(key)) {
@@ -317,6 +338,7 @@ Block TileStore::read(TileKey key, ColumnSet columns, size_t more) const {
   core::for_each_column([&](Column c, std::string_view, auto member) {
     if (columns.has(c) && columns_.has(c) && ((seen.has(c) && from_strips.has(c)) || overlays.columns.has(c))) (out.*member).resize(row);
   });
+  if (!out.source.empty()) out.source.resize(row, 0);
   return out;
 }
 
@@ -325,7 +347,8 @@ void TileStore::append_within(Block& out, TileKey key, ColumnSet columns, const 
   const Overlays overlays = overlays_of(key, columns);
   const ColumnSet from_strips = columns - overlays.columns;
   std::vector<std::uint32_t> chosen, rows;  // within the tile, within the chunk
-  if (overlays.columns.has(Column::x) || overlays.columns.has(Column::y)) {
+  // Rows of the files that points came from go to writers, which have no halo.
+  if (overlays.columns.has(Column::x) || overlays.columns.has(Column::y) || (columns.has(Column::source) && source_width_ > 0)) {
     const Block all = read(key, columns);
     for (std::uint32_t i = 0; i < all.size(); ++i)
       if (box.holds(origin_.x() + all.x[i], origin_.y() + all.y[i])) rows.push_back(i);
@@ -367,6 +390,7 @@ void TileStore::append_within(Block& out, TileKey key, ColumnSet columns, const 
         }
         if (c != Column::x) gather(out.*member, at, *column, rows);
       });
+      if (there.has(Column::source)) beyond += n * head.source_width;
       if (beyond > 0) file.skip(beyond);
       for (const std::uint32_t i : rows) chosen.push_back(static_cast<std::uint32_t>(row) + i);
     }

@@ -56,6 +56,8 @@ class TileStore {
   /// The tiles without a point that have tiles with points within `halo` metres: a surface may reach into them.
   std::set<TileKey> fringe(double halo) const;
   core::ColumnSet columns() const { return columns_; }
+  /// Bytes of the widest row of the column `source`; 0 where no strip has it.
+  size_t source_width() const { return source_width_; }
 
   /// From now on these columns of a tile are read from overlays in `folder`.
   void add_overlay(std::filesystem::path folder, core::ColumnSet columns);
@@ -99,6 +101,7 @@ class TileStore {
   std::map<TileKey, std::uint64_t> tiles_;
   std::vector<std::pair<std::filesystem::path, core::ColumnSet>> overlays_;
   std::uint64_t points_ = 0;
+  size_t source_width_ = 0;
   core::ColumnSet columns_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -130,6 +131,8 @@ struct Context {
   double vertical_unit = 1.0;  ///< metres per vertical unit of the CRS
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of every Block of the run, m
   bool weekless = false;                             ///< times are seconds of a GPS week that no file names: written on as such
+  std::array<std::uint8_t, 16> project{};            ///< identifier of all files of the run
+  int creation_year = 0, creation_day = 0;           ///< UTC, day of year from 1; 0 0: not stated
   int threads = 1;
   double tile_side = 500.0;                      ///< m
   std::filesystem::path output{};                ///< where the stage at work puts its products, laid out as in the output folder

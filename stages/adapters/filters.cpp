@@ -9,13 +9,14 @@
 #include "io/las_block.h"
 #include "io/las_header.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/kept_classes.h"
 
 namespace swath::stages {
 namespace {
 
 using core::Column;
 
-class Smrf : public OptionStage<filters::SmrfOptions> {
+class Smrf : public OptionStage<Keeping<filters::SmrfOptions>> {
  public:
   const Info& info() const override {
     static const Info info{"filters.smrf",
@@ -34,7 +35,9 @@ class Smrf : public OptionStage<filters::SmrfOptions> {
   double bytes_per_point() const override { return 16.0; }
   std::vector<Raster> rasters(const Context& c) const override { return {{"cell", options.cell.value, c.tile_side + 2.0 * halo(), 66.0}}; }
   void run_tile(const Context&, TileJob& job) const override {
+    const KeptClasses kept(job.block, options.keep_classes);
     const filters::SmrfCounts n = filters::classify_ground_smrf(job.block, job.own, options);
+    kept.put_back(job.block, job.own, true, job.tally);
     job.tally.count("ground", n.ground);
     job.tally.count("not ground", n.object);
     if (n.untouched) job.tally.count("withheld or noise, not looked at", n.untouched);
@@ -42,7 +45,17 @@ class Smrf : public OptionStage<filters::SmrfOptions> {
   }
 };
 
-class Returns : public OptionStage<filters::ReturnsOptions> {
+struct ReturnsStageOptions : filters::ReturnsOptions {
+  bool repair_clouds = false;
+};
+
+template <class V>
+void describe(ReturnsStageOptions& o, V& v) {
+  describe(static_cast<filters::ReturnsOptions&>(o), v);
+  v.option("repair_clouds", o.repair_clouds, "Repair numbers of point clouds, too, where the points' times tell the pulses apart.");
+}
+
+class Returns : public OptionStage<ReturnsStageOptions> {
  public:
   const Info& info() const override {
     static const Info info{
@@ -55,10 +68,19 @@ class Returns : public OptionStage<filters::ReturnsOptions> {
         {}};
     return info;
   }
-  void run_strip(const Context&, StripBatch& batch, core::Tally& tally) const override {
-    const filters::RepairCounts n = filters::repair_returns(batch.block, options);
-    if (n.repaired) tally.count("return numbers repaired", n.repaired);
-    if (n.inconsistent) tally.count("return numbers inconsistent, flagged", n.inconsistent);
+  void run_strip(const Context& context, StripBatch& batch, core::Tally& tally) const override {
+    // A cloud may be cropped, thinned or dated to the second: its numbers are its maker's.
+    const bool is_cloud = context.source && context.source->info().makes(Product::points);
+    if (!is_cloud) {
+      repair(batch.block, options, tally);
+    } else if (options.repair_clouds) {
+      filters::ReturnsOptions careful = options;
+      careful.gaps = filters::Gaps::keep;  // returns beyond a crop's rim are absent rightly
+      if (filters::tells_pulses(batch.block))
+        repair(batch.block, careful, tally);
+      else
+        tally.count("times do not tell pulses apart, return numbers left as they are", batch.block.size());
+    }
     filters::ReturnStatistics statistics;
     statistics.add(batch.block);
     for (const auto& [line, s] : statistics.strips()) {
@@ -71,9 +93,16 @@ class Returns : public OptionStage<filters::ReturnsOptions> {
       if (s.intermediate) tally.count(name + "intermediate returns", s.intermediate);
     }
   }
+
+ private:
+  static void repair(core::Block& block, const filters::ReturnsOptions& o, core::Tally& tally) {
+    const filters::RepairCounts n = filters::repair_returns(block, o);
+    if (n.repaired) tally.count("return numbers repaired", n.repaired);
+    if (n.inconsistent) tally.count("return numbers inconsistent, flagged", n.inconsistent);
+  }
 };
 
-class Noise : public OptionStage<filters::NoiseOptions> {
+class Noise : public OptionStage<Keeping<filters::NoiseOptions>> {
  public:
   const Info& info() const override {
     static const Info info{"filters.noise",
@@ -108,7 +137,9 @@ class Noise : public OptionStage<filters::NoiseOptions> {
     return {{"low_radius", options.low_radius.value, side, 34.0}, {"radius", options.radius.value, side, 8.0}};
   }
   void run_tile(const Context&, TileJob& job) const override {
+    const KeptClasses kept(job.block, options.keep_classes);
     const filters::NoiseCounts n = filters::flag_noise(job.block, job.own, options);
+    kept.put_back(job.block, job.own, false, job.tally);
     job.tally.count("low noise", n.low_noise);
     job.tally.count("high noise", n.high_noise);
     if (n.isolated) job.tally.count("isolated", n.isolated);

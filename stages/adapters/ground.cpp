@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "filters/ground.h"
 
+#include <limits>
+
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/kept_classes.h"
 
 namespace swath::stages {
 namespace {
 
 using core::Column;
 
-class Ground : public OptionStage<filters::GroundOptions> {
+class Ground : public OptionStage<Keeping<filters::GroundOptions>> {
  public:
   const Info& info() const override {
     static const Info info{"filters.ground",
@@ -28,7 +31,10 @@ class Ground : public OptionStage<filters::GroundOptions> {
     return {{"", 1.0, c.tile_side + 2.0 * halo(), 90.0}, {"", 1.0, c.tile_side, 70.0}};
   }
   void run_tile(const Context&, TileJob& job) const override {
+    const KeptClasses kept(job.block, options.keep_classes);
     const filters::GroundChances n = filters::classify_ground(job.block, job.own, options);
+    kept.put_back(job.block, job.own, true, job.tally,
+                  [&](size_t i) { job.block.ground_probability[i] = std::numeric_limits<float>::quiet_NaN(); });
     job.tally.count("ground", n.ground);
     job.tally.count("not ground", n.object);
     job.tally.count("doubtful: probability between 0.25 and 0.75", n.doubtful);

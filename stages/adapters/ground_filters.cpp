@@ -5,6 +5,7 @@
 #include "filters/pmf.h"
 #include "filters/robust.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/kept_classes.h"
 
 namespace swath::stages {
 namespace {
@@ -37,7 +38,7 @@ std::vector<Raster> rasters_of(const filters::CsfOptions& o) {
 }
 
 template <class O, filters::GroundCounts (*classify)(core::Block&, size_t, const O&), std::vector<Raster> (*rasters_of_tile)(const O&)>
-class GroundFilter : public OptionStage<O> {
+class GroundFilter : public OptionStage<Keeping<O>> {
  public:
   explicit GroundFilter(const Info& info, double bytes) : info_(info), bytes_(bytes) {}
   std::vector<Raster> rasters(const Context&) const override { return rasters_of_tile(this->options); }
@@ -45,7 +46,11 @@ class GroundFilter : public OptionStage<O> {
   core::ColumnSet also_reads() const override { return {Column::return_number, Column::return_count}; }
   double halo() const override { return filters::halo(this->options); }
   double bytes_per_point() const override { return bytes_; }
-  void run_tile(const Context&, TileJob& job) const override { tell(classify(job.block, job.own, this->options), job.tally); }
+  void run_tile(const Context&, TileJob& job) const override {
+    const KeptClasses kept(job.block, this->options.keep_classes);
+    tell(classify(job.block, job.own, this->options), job.tally);
+    kept.put_back(job.block, job.own, true, job.tally);
+  }
 
  private:
   const Info& info_;

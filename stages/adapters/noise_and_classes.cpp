@@ -3,13 +3,14 @@
 #include "filters/outlier.h"
 #include "filters/water.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/kept_classes.h"
 
 namespace swath::stages {
 namespace {
 
 using core::Column;
 
-class Outlier : public OptionStage<filters::OutlierOptions> {
+class Outlier : public OptionStage<Keeping<filters::OutlierOptions>> {
  public:
   const Info& info() const override {
     static const Info info{
@@ -32,7 +33,9 @@ class Outlier : public OptionStage<filters::OutlierOptions> {
     return {{"window", filters::outlier_cell(options), side, 52.0}, {"reach", options.reach.value, side, 10.0}};
   }
   void run_tile(const Context&, TileJob& job) const override {
+    const KeptClasses kept(job.block, options.keep_classes);
     const filters::OutlierCounts n = filters::flag_outliers(job.block, job.own, options);
+    kept.put_back(job.block, job.own, false, job.tally);
     job.tally.count("low noise", n.low_noise);
     job.tally.count("high noise", n.high_noise);
     if (n.statistical) job.tally.count("statistical outliers", n.statistical);
@@ -41,7 +44,7 @@ class Outlier : public OptionStage<filters::OutlierOptions> {
   }
 };
 
-class Classify : public OptionStage<filters::ClassifyOptions> {
+class Classify : public OptionStage<Keeping<filters::ClassifyOptions>> {
  public:
   const Info& info() const override {
     static const Info info{"filters.classify",
@@ -59,7 +62,9 @@ class Classify : public OptionStage<filters::ClassifyOptions> {
   double bytes_per_point() const override { return 180.0; }
   std::vector<Raster> rasters(const Context& c) const override { return {{"", 1.0, c.tile_side + 2.0 * halo(), 24.0}}; }
   void run_tile(const Context&, TileJob& job) const override {
+    const KeptClasses kept(job.block, options.keep_classes);
     const filters::ClassifyCounts n = filters::classify(job.block, job.own, options);
+    kept.put_back(job.block, job.own, false, job.tally);
     const auto tell = [&](const char* name, std::uint64_t count) {
       if (count) job.tally.count(name, count);
     };
@@ -74,7 +79,7 @@ class Classify : public OptionStage<filters::ClassifyOptions> {
   }
 };
 
-class Water : public OptionStage<filters::WaterOptions> {
+class Water : public OptionStage<Keeping<filters::WaterOptions>> {
  public:
   const Info& info() const override {
     static const Info info{"filters.water",
@@ -93,7 +98,9 @@ class Water : public OptionStage<filters::WaterOptions> {
   // Plots of 4 m: heights, sparse returns, planes, ranges.
   std::vector<Raster> rasters(const Context& c) const override { return {{"", 4.0, c.tile_side + 2.0 * halo(), 160.0}}; }
   void run_tile(const Context&, TileJob& job) const override {
+    const KeptClasses kept(job.block, options.keep_classes);
     const filters::WaterCounts n = filters::classify_water(job.block, job.own, options);
+    kept.put_back(job.block, job.own, false, job.tally);
     if (n.water) job.tally.count("water", n.water);
     if (n.ground) job.tally.count("of these ground before", n.ground);
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <limits>
 #include <set>
 
@@ -9,6 +10,7 @@
 #include "io/laser_file.h"
 #include "io/trajectory_file.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/clouds.h"
 #include "stages/adapters/place.h"
 #include "stages/adapters/units.h"
 #include "stages/cloud_rim.h"
@@ -132,11 +134,11 @@ bool has_weekless_times(const io::Survey& survey) {
     const fs::path file = io::resolve(survey, f.file);
     const io::LasHeader header = io::read_las_header(file, ignored);
     if (!io::las_layout(header.point_format)->gps) continue;
-    (header.gps_time_is_adjusted() || f.week ? dated : weekless).push_back(file);
+    (io::las_time_scale(header, times_of(f)) == core::TimeScale::unstated ? weekless : dated).push_back(file);
   }
   if (!weekless.empty() && !dated.empty())
     throw core::Error("times are seconds of a GPS week that is not stated, while those of " + dated.front().string() + " are dated",
-                      weekless.front().string(), "state points.week for it in the survey");
+                      weekless.front().string(), "state points.week or points.time_scale for it in the survey");
   return !weekless.empty();
 }
 
@@ -145,44 +147,36 @@ class CloudReader : public StripReader {
  public:
   /// `rim`: largest coordinates of the survey's files.
   CloudReader(const Context& context, const Strip& strip, const Eigen::Vector2d& rim)
-      : context_(context), file_(context.survey.points[strip.source]), reader_(io::resolve(context.survey, file_.file)), rim_(rim) {
-    const io::LasCrs stated = reader_.crs();
-    const core::Crs crs(crs_of(context.survey, file_));
-    if (crs.key() != context.crs.key()) transform_.emplace(crs, context.crs);
-    // Heights without a vertical CRS: PROJ takes metres; files have their own unit, by custom that of the horizontal axes.
-    if (!crs.has_vertical()) {
-      file_height_unit_ = file_.height_unit            ? file_.height_unit->value
-                          : stated.vertical_metres > 0 ? stated.vertical_metres
-                          : context.survey.height_unit ? context.survey.height_unit->value
-                          : crs.is_geographic()        ? 1.0
-                                                       : crs.metres_per_unit();
-      if (!transform_) file_height_unit_ /= context.vertical_unit;
-    }
-    if (transform_ && !context.crs.has_vertical()) map_height_unit_ = context.vertical_unit;
-    const io::LasHeader& header = reader_.header();
-    keeps_seconds_of_week_ = io::las_layout(header.point_format)->gps && !header.gps_time_is_adjusted() && !file_.week;
+      : context_(context),
+        file_(context.survey.points[strip.source]),
+        number_(static_cast<std::uint32_t>(strip.source + 1)),
+        reader_(io::resolve(context.survey, file_.file)),
+        rim_(rim),
+        place_(place_of(context, file_, reader_.crs())),
+        time_(times_of(file_)) {
+    has_unknown_times_ =
+        io::las_layout(reader_.header().point_format)->gps && io::las_time_scale(reader_.header(), time_) == core::TimeScale::unstated;
   }
 
   bool next(StripBatch& batch, size_t most, core::Tally& tally) override {
     core::Block block;
     block.origin = context_.origin;
     scale_block(context_, block, true);
-    io::LasTime time;
-    time.week = file_.week;
-    time.keep_seconds_of_week = true;
-    const size_t n = reader_.read(block, most, time);
+    const size_t n = reader_.read(block, most, time_, number_);
     if (n == 0) {
       for (const std::string& w : reader_.warnings()) tally.count("oddities of the file", w);
+      if (const std::string fault = reader_.time_fault(file_.time_scale); !fault.empty())
+        tally.count("times contradict the file's GPS time bit, kept as they are", file_.file.string() + ": " + fault);
       return false;
     }
-    if (!transform_) keep_rim_inside(block, rim_, reader_.header().scale.head<2>());
-    if (file_height_unit_ != 1.0)
-      for (double& z : block.z) z *= file_height_unit_;
-    if (transform_) convert(block, tally);
+    if (!place_.transform) keep_rim_inside(block, rim_, reader_.header().scale.head<2>());
+    if (place_.file_height_unit != 1.0)
+      for (double& z : block.z) z *= place_.file_height_unit;
+    if (place_.transform) convert(block, tally);
     scale_block(context_, block, false);
     block.origin = context_.origin;
     if (file_.line) block.strip.assign(block.size(), static_cast<std::uint16_t>(*file_.line));
-    if (keeps_seconds_of_week_) tally.count("times are seconds of a GPS week not stated (points.week), kept as they are", n);
+    if (has_unknown_times_) tally.count("times of no stated week or scale (points.week, points.time_scale), kept as they are", n);
     core::add_columns(block, {Column::time, Column::intensity, Column::return_number, Column::return_count, Column::classification,
                               Column::flags, Column::scan_angle, Column::strip, Column::record});
     batch.block = std::move(block);
@@ -196,14 +190,14 @@ class CloudReader : public StripReader {
       block.y[i] += block.origin.y();
       block.z[i] += block.origin.z();
     }
-    const size_t bad = transform_->apply(block.x.data(), block.y.data(), block.z.data(), block.size());
+    const size_t bad = place_.transform->apply(block.x.data(), block.y.data(), block.z.data(), block.size());
     std::vector<std::uint32_t> good;
     for (std::uint32_t i = 0; i < block.size(); ++i) {
       if (!std::isfinite(block.x[i])) continue;
       good.push_back(i);
       block.x[i] -= block.origin.x();
       block.y[i] -= block.origin.y();
-      block.z[i] = block.z[i] / map_height_unit_ - block.origin.z();
+      block.z[i] = block.z[i] / place_.map_height_unit - block.origin.z();
     }
     if (bad) {
       tally.count("points without coordinates in the CRS, left out", bad);
@@ -213,11 +207,12 @@ class CloudReader : public StripReader {
 
   const Context& context_;
   const io::PointFile& file_;
+  std::uint32_t number_;
   io::LasReader reader_;
   Eigen::Vector2d rim_;
-  std::optional<core::Transform> transform_;
-  double file_height_unit_ = 1.0, map_height_unit_ = 1.0;
-  bool keeps_seconds_of_week_ = false;
+  CloudPlace place_;
+  io::LasTime time_;
+  bool has_unknown_times_ = false;
 };
 
 class LasCloud : public OptionStage<NoOptions> {
@@ -228,7 +223,7 @@ class LasCloud : public OptionStage<NoOptions> {
                            {Grain::strip},
                            {},
                            {Column::x, Column::y, Column::z, Column::time, Column::intensity, Column::return_number, Column::return_count,
-                            Column::classification, Column::flags, Column::scan_angle, Column::strip, Column::record},
+                            Column::classification, Column::flags, Column::scan_angle, Column::strip, Column::record, Column::source},
                            {},
                            {Product::points}};
     return info;
@@ -278,6 +273,48 @@ class LasCloud : public OptionStage<NoOptions> {
 };
 
 }  // namespace
+
+CloudPlace place_of(const Context& context, const io::PointFile& file, const io::LasCrs& stated) {
+  CloudPlace place;
+  const core::Crs crs(crs_of(context.survey, file));
+  if (crs.key() != context.crs.key()) place.transform.emplace(crs, context.crs);
+  // Heights without a vertical CRS: PROJ takes metres; files have their own unit, by custom that of the horizontal axes.
+  if (!crs.has_vertical()) {
+    place.file_height_unit = file.height_unit             ? file.height_unit->value
+                             : stated.vertical_metres > 0 ? stated.vertical_metres
+                             : context.survey.height_unit ? context.survey.height_unit->value
+                             : crs.is_geographic()        ? 1.0
+                                                          : crs.metres_per_unit();
+    if (!place.transform) place.file_height_unit /= context.vertical_unit;
+  }
+  if (place.transform && !context.crs.has_vertical()) place.map_height_unit = context.vertical_unit;
+  return place;
+}
+
+io::LasTime times_of(const io::PointFile& file) { return {file.week, true, file.time_scale, file.date}; }
+
+std::vector<io::LasSource> cloud_sources(const Context& context) {
+  std::vector<io::LasSource> out;
+  for (const io::PointFile& f : context.survey.points) {
+    std::vector<std::string> ignored;
+    io::LasSource& s = out.emplace_back(io::LasSource{io::resolve(context.survey, f.file), {}, times_of(f), true});
+    s.header = io::read_las_header(s.file, ignored);
+    s.same_places = place_of(context, f, io::las_crs(s.header)).is_same();
+  }
+  return out;
+}
+
+bool keeps_crs(const Context& context, const std::vector<io::LasSource>& sources) {
+  return std::all_of(sources.begin(), sources.end(), [&](const io::LasSource& s) {
+    const std::string stated = io::las_crs(s.header).definition;
+    if (!s.same_places || stated.empty()) return false;
+    try {
+      return core::Crs(stated).key() == context.crs.key();
+    } catch (const core::Error&) {  // not known to PROJ: the survey states another
+      return false;
+    }
+  });
+}
 
 std::unique_ptr<Stage> make_trajectory_reader() { return std::make_unique<TrajectoryReader>(); }
 std::unique_ptr<Stage> make_laser_reader() { return std::make_unique<LaserReader>(); }

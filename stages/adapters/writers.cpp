@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
+#include <mutex>
 
 #include "core/error.h"
 #include "io/geotiff.h"
@@ -9,9 +11,19 @@
 #include "io/vrt.h"
 #include "report/picture.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/clouds.h"
 #include "stages/adapters/tile_list.h"
 #include "stages/adapters/units.h"
 #include "stages/surfaces.h"
+
+namespace swath::stages {
+enum class WrittenTimes { recorded, adjusted };
+}
+
+template <>
+struct swath::core::Choices<swath::stages::WrittenTimes> {
+  static constexpr std::array<std::string_view, 2> names{"recorded", "adjusted"};
+};
 
 namespace swath::stages {
 namespace {
@@ -22,21 +34,26 @@ using core::Column;
 struct LasOptions {
   std::string folder = "points";
   bool compress = true;
-  double scale = 0.001;
+  std::optional<double> scale;
+  std::optional<int> point_format;
+  WrittenTimes times = WrittenTimes::recorded;
 };
 
 template <class V>
 void describe(LasOptions& o, V& v) {
   v.option("folder", o.folder, "Folder of the tiles within the output.");
   v.option("compress", o.compress, "LAZ in place of LAS.");
-  v.option("scale", o.scale, core::above_to(0.0, 1.0), "Resolution of coordinates, in units of the CRS.");
+  v.option("scale", o.scale, core::above_to(0.0, 1.0),
+           "Resolution of coordinates, in units of the CRS; unset: that of the cloud's files, or 0.001.");
+  v.option("point_format", o.point_format, core::within(0, 10), "Point format; unset: that of the cloud's files, or 6 (7 with colours).");
+  v.option("times", o.times, "Times of clouds: as recorded, or adjusted (adjusted standard GPS time).");
 }
 
 class LasTiles : public OptionStage<LasOptions> {
  public:
   const Info& info() const override {
     static const Info info{"writers.las",
-                           "LAS 1.4 or LAZ tiles with WKT CRS, adjusted standard GPS time and extra bytes.",
+                           "LAS or LAZ tiles: points of clouds with every field as recorded, others as LAS 1.4 with extra bytes.",
                            {Grain::tile, Grain::merge},
                            {},
                            {},
@@ -53,17 +70,26 @@ class LasTiles : public OptionStage<LasOptions> {
   std::vector<std::string> products() const override { return {options.folder}; }
   void run_tile(const Context& context, TileJob& job) const override {
     io::LasWriteOptions o;
-    o.scale = Eigen::Vector3d::Constant(options.scale);
-    // Near the data, and the same for every tile: tiles can be joined without rounding again.
-    o.offset = Eigen::Vector3d(std::round(context.origin.x() / context.unit), std::round(context.origin.y() / context.unit), 0.0);
+    o.format = options.point_format;
+    o.scale = Eigen::Vector3d::Constant(options.scale.value_or(finest_default));
+    o.offset = offset_near(context);
     o.crs_wkt = core::Crs(context.product_crs).wkt1();
-    o.seconds_of_week = context.weekless;
+    o.times_as_they_are = context.weekless;
+    o.guid = context.project;
+    o.creation_year = static_cast<std::uint16_t>(context.creation_year);
+    o.creation_day = static_cast<std::uint16_t>(context.creation_day);
     o.threads = 1;
+    if (!job.block.source.empty()) {
+      o.sources = sources(context);
+      o.header = header_;
+    }
     core::Block block = std::move(job.block);
     job.block = {};
     scale_block(context, block, true);
     io::LasWriter writer(context.output / options.folder / name(context, job.key), o);
     writer.write(block);
+    if (writer.overlap_lost() > 0)
+      job.tally.count("overlap flags that the point format cannot hold (point_format = 6 keeps them)", writer.overlap_lost());
     writer.finish();
     job.block = std::move(block);
   }
@@ -72,10 +98,49 @@ class LasTiles : public OptionStage<LasOptions> {
     for (const TileKey key : job.tiles) files.push_back(name(context, key));
     write_list(context.output / options.folder, files);
     job.findings["tiles"] = files.size();
+    if (sources_)
+      for (const std::string& what : sources_->left_out()) job.tally.count("not carried from the cloud's files", what);
   }
 
  private:
+  static constexpr double finest_default = 0.001;
+
+  /// Near the data, and the same for every tile: tiles can be joined without rounding again.
+  static Eigen::Vector3d offset_near(const Context& context) {
+    return {std::round(context.origin.x() / context.unit), std::round(context.origin.y() / context.unit), 0.0};
+  }
+
+  /// The files of the run's clouds; sets header_, too. The same for every tile.
+  std::shared_ptr<const io::LasSources> sources(const Context& context) const {
+    std::call_once(sources_read_, [&] {
+      std::vector<io::LasSource> files = cloud_sources(context);
+      const bool same_places = std::all_of(files.begin(), files.end(), [](const io::LasSource& s) { return s.same_places; });
+      const bool same_offsets =
+          std::all_of(files.begin(), files.end(), [&](const io::LasSource& s) { return s.header.offset == files[0].header.offset; });
+      const bool to_extended = options.point_format && *options.point_format >= 6 && files[0].header.point_format < 6;
+      const bool keep_crs = !to_extended && keeps_crs(context, files);
+      auto all = std::make_shared<const io::LasSources>(std::move(files), options.times == WrittenTimes::recorded);
+      header_ = all->header(keep_crs);
+      if (!all->same_project()) {
+        header_.guid = context.project;
+        header_.creation_year = static_cast<std::uint16_t>(context.creation_year);
+        header_.creation_day = static_cast<std::uint16_t>(context.creation_day);
+      }
+      if (options.scale || !same_places) header_.scale = Eigen::Vector3d::Constant(options.scale.value_or(finest_default));
+      if (options.scale || !same_places || !same_offsets) header_.offset = offset_near(context);
+      if (options.point_format) header_.point_format = *options.point_format;
+      if (!keep_crs) io::add_las_wkt(header_, core::Crs(context.product_crs).wkt1());
+      if (!keep_crs || options.point_format) header_.version_minor = 4;
+      sources_ = std::move(all);
+    });
+    return sources_;
+  }
+
   std::string name(const Context& context, TileKey key) const { return context.label(key) + (options.compress ? ".laz" : ".las"); }
+
+  mutable std::once_flag sources_read_;
+  mutable std::shared_ptr<const io::LasSources> sources_;
+  mutable io::LasHeader header_;
 };
 
 struct NoOptions {};

@@ -187,13 +187,18 @@ class Runs(Case):
         report = self.run_ok(survey, config=CLOUD, out=self.folder / "cloud")
         self.assertEqual(stage(report, "writers.las")["counts"]["in"],
                          stage(json.loads((self.out / "report.json").read_text()), "writers.las")["counts"]["in"])
-        classes = stage(self.run_ok(self.survey / "survey.toml", config=SOURCE / "configs" / "classes.toml", out=self.folder / "classes"),
-                        "filters.classify")
-        self.assertEqual(classes["counts"]["in"], classes["counts"]["out"])
+        for name, clouds in (("survey_classes.toml", self.survey / "survey.toml"), ("classes.toml", survey)):
+            classes = stage(self.run_ok(clouds, config=SOURCE / "configs" / name, out=self.folder / name), "filters.classify")
+            self.assertEqual(classes["counts"]["in"], classes["counts"]["out"])
+        tiles = sorted((self.folder / "classes.toml" / "points").glob("*.laz"))
+        classified = self.folder / "classified.toml"
+        classified.write_text("".join(f'[[points]]\nfile = "{t}"\n' for t in tiles))
+        terrain = self.run_ok(classified, config=SOURCE / "configs" / "terrain.toml", out=self.folder / "terrain")
+        self.assertGreater(stage(terrain, "terrain.dtm")["tally"]["cells with a height"]["count"], 0)
         # survey.toml, trajectory.toml and events.toml, which need other records, run in navigation_test.py, lever_arm.toml in
         # lever_arm_test.py, strips.toml in strips_test.py, calibrate.toml in calibration_test.py.
         known = {"survey.toml", "survey_sbet.toml", "trajectory.toml", "events.toml", "georeference.toml", "cloud.toml", "lever_arm.toml",
-                 "strips.toml", "calibrate.toml", "classes.toml"}
+                 "strips.toml", "calibrate.toml", "classes.toml", "survey_classes.toml", "terrain.toml"}
         self.assertEqual({c.name for c in CONFIGS}, known, "a new config is run here too")
 
     def test_the_config_as_json_gives_the_same_products(self):

@@ -21,7 +21,9 @@ TEST(Block, TheListOfColumnsIsWhole) {
     EXPECT_EQ(static_cast<int>(c), n++);
     EXPECT_FALSE(name.empty());
   });
-  EXPECT_EQ(n, column_count);
+  EXPECT_EQ(static_cast<int>(Column::source), n);
+  EXPECT_EQ(n + 1, column_count);
+  EXPECT_EQ(name_of(Column::source), "source");
 }
 
 TEST(Block, AppendFillsWhatOneSideLacks) {
@@ -40,6 +42,23 @@ TEST(Block, SelectKeepsOrderAndColumns) {
   EXPECT_EQ(s.x, (std::vector<double>{2, 1, 2}));
   EXPECT_EQ(s.return_number, (std::vector<std::uint8_t>{2, 1, 2}));
   EXPECT_TRUE(s.intensity.empty());
+}
+
+TEST(Block, RowsOfBytesKeepPaceAndWiden) {
+  Block a = two_points(), b = two_points();
+  a.source = {2, {1, 2, 3, 4}};
+  b.source = {3, {5, 6, 7, 8, 9, 10}};
+  EXPECT_TRUE(columns_of(a).has(Column::source));
+  append(a, b, {1});
+  EXPECT_EQ(a.source, (ByteRows{3, {1, 2, 0, 3, 4, 0, 8, 9, 10}}));
+  append(a, two_points());
+  EXPECT_EQ(a.source.size(), 5u);
+  EXPECT_EQ(select(a, {2, 4}).source, (ByteRows{3, {8, 9, 10, 0, 0, 0}}));
+  Block c = two_points();
+  append(c, b);
+  EXPECT_EQ(c.source, (ByteRows{3, {0, 0, 0, 0, 0, 0, 5, 6, 7, 8, 9, 10}}));
+  resize(c, 3);
+  EXPECT_EQ(c.source.size(), 3u);
 }
 
 TEST(Block, ResizeKeepsColumnsInStep) {

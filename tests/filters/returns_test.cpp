@@ -32,6 +32,25 @@ core::Block block_of(const std::vector<Row>& rows, bool with_range = true) {
 
 std::vector<int> numbers(const core::Block& b) { return {b.return_number.begin(), b.return_number.end()}; }
 
+TEST(Returns, CoarseOrAbsentTimesDoNotTellPulses) {
+  std::vector<Row> rows, coarse, zero;
+  for (int i = 0; i < 600; ++i) {
+    rows.push_back({i / 2 * 1e-5, 0, 0, 500});  // numbers lost, two returns a pulse
+    coarse.push_back({static_cast<double>(i / 100), 1, 1, 500});
+    zero.push_back({0.0, 0, 0, 500});
+  }
+  EXPECT_TRUE(tells_pulses(block_of(rows)));
+  EXPECT_FALSE(tells_pulses(block_of(coarse)));
+  EXPECT_FALSE(tells_pulses(block_of(zero)));
+  rows[6].number = rows[7].number = 1;  // one pulse of 300 is broken: no reason to leave the others
+  EXPECT_TRUE(tells_pulses(block_of(rows)));
+  for (Row& r : rows) r.number = 1;
+  EXPECT_FALSE(tells_pulses(block_of(rows)));
+  core::Block untimed = block_of(rows);
+  untimed.time.clear();
+  EXPECT_FALSE(tells_pulses(untimed));
+}
+
 TEST(Returns, SoundPulsesStayAsTheyAre) {
   core::Block b = block_of({{1, 1, 1, 500}, {2, 1, 2, 480}, {2, 2, 2, 500}, {3, 2, 2, 500}, {3, 1, 2, 490}});
   EXPECT_EQ(repair_returns(b, {}), (RepairCounts{.pulses = 3}));

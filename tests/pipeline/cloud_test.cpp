@@ -10,6 +10,7 @@
 #include "io/las_writer.h"
 #include "io/value_file.h"
 #include "pipeline/run.h"
+#include "tests/io/las_sample.h"
 #include "tests/world/support.h"
 
 namespace swath::pipeline {
@@ -33,6 +34,10 @@ struct CloudCase {
     writer.write(block);
     writer.finish();
     survey += "[[points]]\nfile = \"" + name + "\"\ncrs = \"" + crs + "\"\n" + more;
+  }
+  void add(const io::LasHeader& header, const io::LasPoints& points, const std::string& name, const std::string& more = {}) {
+    test::write_sample(folder / name, header, points, 1);
+    survey += "[[points]]\nfile = \"" + name + "\"\ncrs = \"EPSG:32632\"\n" + more;
   }
   /// The products' folder.
   fs::path run(const std::string& stages, const std::string& tile) {
@@ -76,6 +81,134 @@ Block square(size_t n, double x0, double y0, double side, double z) {
     b.z.push_back(z);
   }
   return b;
+}
+
+/// The only file of points of a run.
+fs::path only_tile(const fs::path& out) {
+  std::vector<fs::path> tiles;
+  for (const auto& e : fs::directory_iterator(out / "points"))
+    if (e.path().extension() != ".vrt" && e.path().extension() != ".txt") tiles.push_back(e.path());
+  std::erase_if(tiles, [](const fs::path& f) { return f.extension() != ".las" && f.extension() != ".laz"; });
+  EXPECT_EQ(tiles.size(), 1u);
+  return tiles.at(0);
+}
+
+/// Tallies of a run's stages as text.
+std::string tallies_of(const fs::path& out) {
+  std::string text;
+  for (const core::Value& stage : io::read_value_file(out / "report.json").find("stages")->items())
+    if (const core::Value* tally = stage.find("tally")) text += io::to_json(*tally);
+  return text;
+}
+
+/// A header whose points lie in one tile.
+io::LasHeader header_of(int format, bool extras = false) {
+  io::LasHeader h = test::sample_header(format, -1, extras);
+  h.offset = {easting + 50000.0, northing + 50000.0, -100.0};
+  return h;
+}
+
+TEST(Cloud, EveryFieldOfEveryFormatIsKept) {
+  for (int format = 0; format <= 10; ++format) {
+    CloudCase c;
+    io::LasHeader h = header_of(format, true);
+    h.scale = {0.0001, 0.0001, 0.0025};
+    h.guid.fill(0x5C);
+    h.creation_day = 200, h.creation_year = 2015;
+    io::LasPoints p = test::sample_points(h, 3000);
+    p.return_number[0] = p.return_count[0] = 0;
+    p.return_number[1] = 5, p.return_count[1] = 2;
+    c.add(h, p, "a.las");
+    const fs::path tile = only_tile(c.run(copy_stages, "100 km"));
+    EXPECT_EQ(test::read_all(tile, 1), p) << format;
+    const io::LasReader r(tile, 1);
+    EXPECT_EQ(r.header().point_format, format);
+    EXPECT_EQ(r.header().scale, h.scale);
+    EXPECT_EQ(r.header().offset, h.offset);
+    EXPECT_EQ(r.header().guid, h.guid);
+    EXPECT_EQ(r.header().creation_year, 2015);
+    EXPECT_EQ(r.header().file_source_id, 7);
+  }
+}
+
+TEST(Cloud, TimesAgainstTheBitAreKeptAndNamed) {
+  CloudCase c;
+  io::LasHeader h = header_of(8);
+  h.global_encoding = io::las_encoding::wkt;  // seconds of week, says the bit
+  const io::LasPoints p = test::sample_points(h, 1000);
+  c.add(h, p, "a.las");
+  const fs::path out = c.run(copy_stages, "100 km");
+  EXPECT_EQ(test::read_all(only_tile(out), 1).gps_time, p.gps_time);
+  EXPECT_FALSE(io::LasReader(only_tile(out), 1).header().gps_time_is_adjusted());
+  EXPECT_NE(tallies_of(out).find("contradict"), std::string::npos);
+  EXPECT_NE(tallies_of(out).find("time_scale"), std::string::npos);
+}
+
+TEST(Cloud, AStatedScaleSetsTheBitAndNoTime) {
+  CloudCase c;
+  io::LasHeader h = header_of(8);
+  h.global_encoding = io::las_encoding::wkt;
+  const io::LasPoints p = test::sample_points(h, 1000);
+  c.add(h, p, "a.las", "time_scale = \"gps_adjusted\"\n");
+  const fs::path out = c.run(copy_stages, "100 km");
+  EXPECT_EQ(test::read_all(only_tile(out), 1).gps_time, p.gps_time);
+  EXPECT_TRUE(io::LasReader(only_tile(out), 1).header().gps_time_is_adjusted());
+  EXPECT_EQ(tallies_of(out).find("contradict"), std::string::npos);
+}
+
+TEST(Cloud, SecondsOfAWeekStayAsRecordedUnlessAsked) {
+  io::LasHeader h = header_of(1);
+  h.global_encoding = 0;
+  io::LasPoints p = test::sample_points(h, 1000);
+  for (size_t i = 0; i < p.size(); ++i) p.gps_time[i] = 604700.1 + 0.01 * static_cast<double>(i);
+  CloudCase kept, dated;
+  kept.add(h, p, "a.las", "week = 2000\n");
+  EXPECT_EQ(test::read_all(only_tile(kept.run(copy_stages, "100 km")), 1).gps_time, p.gps_time);
+  dated.add(h, p, "a.las", "week = 2000\n");
+  const fs::path tile = only_tile(dated.run(copy_stages + "times = \"adjusted\"\n", "100 km"));
+  EXPECT_TRUE(io::LasReader(tile, 1).header().gps_time_is_adjusted());
+  EXPECT_NEAR(test::read_all(tile, 1).gps_time[5], 2000 * 604800.0 + p.gps_time[5] - 1e9, 1e-6);
+}
+
+TEST(Cloud, ReturnNumbersOfACloudStayUnlessAsked) {
+  io::LasHeader h = header_of(6);
+  io::LasPoints p = test::sample_points(h, 1000);
+  std::fill(p.return_number.begin(), p.return_number.end(), std::uint8_t{0});
+  for (size_t i = 0; i < p.size(); ++i) p.gps_time[i] = 3e8 + 1e-4 * static_cast<double>(i / 2);
+  const std::string stages = "[[stage]]\ntype = \"readers.las\"\n[[stage]]\ntype = \"filters.returns\"\n",
+                    write = "[[stage]]\ntype = \"writers.las\"\n";
+  CloudCase kept, repaired;
+  kept.add(h, p, "a.las");
+  EXPECT_EQ(test::read_all(only_tile(kept.run(stages + write, "100 km")), 1), p);
+  repaired.add(h, p, "a.las");
+  const io::LasPoints q = test::read_all(only_tile(repaired.run(stages + "repair_clouds = true\n" + write, "100 km")), 1);
+  EXPECT_EQ(q.return_number[0] + q.return_number[1], 3);
+  EXPECT_EQ(q.return_count[0], 2);
+}
+
+TEST(Cloud, KeptClassesAreRespected) {
+  CloudCase c;
+  Block b = square(4000, easting, northing, 100, 10);
+  b.classification.assign(b.size(), core::point_class::unassigned);
+  for (size_t i = 0; i < b.size(); i += 4) b.classification[i] = core::point_class::building;
+  for (size_t i = 1; i < b.size(); i += 40) b.classification[i] = core::point_class::ground;
+  c.add(b, "a.las", "EPSG:32632");
+  const auto classes_with = [&](const std::string& keep) {
+    std::map<int, size_t> n;
+    const fs::path out = c.run("[[stage]]\ntype = \"readers.las\"\n[[stage]]\ntype = \"filters.ground\"\nkeep_classes = \"" + keep +
+                                   "\"\n[[stage]]\ntype = \"writers.las\"\ncompress = false\n",
+                               "1000 m");
+    for (const std::uint8_t k : points_of(out).classification) ++n[k];
+    fs::remove_all(out);
+    return n;
+  };
+  const size_t nearly_all = 90;  // % of what the filter may call ground: the rim of the square is its own affair
+  std::map<int, size_t> anew = classes_with("none"), rest = classes_with("all");
+  EXPECT_EQ(anew[6], 0u);
+  EXPECT_GT(anew[2], 4000 * nearly_all / 100);
+  EXPECT_EQ(classes_with("ground"), (std::map<int, size_t>{{1, 2900}, {2, 100}, {6, 1000}}));
+  EXPECT_EQ(rest[6], 1000u);
+  EXPECT_GT(rest[2], 3000 * nearly_all / 100);
 }
 
 TEST(Cloud, HeightsOfAGeographicFileAreMetres) {

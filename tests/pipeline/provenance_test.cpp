@@ -35,6 +35,23 @@ TEST(Provenance, HashesContent) {
   EXPECT_EQ(hash_file(folder / "empty"), "2d06800538d394c2");  // XXH3 of nothing, as its specification prints it
 }
 
+TEST(Provenance, TheProjectFollowsFromTheFingerprint) {
+  const auto id = project_id("a");
+  EXPECT_EQ(id, project_id("a"));
+  EXPECT_NE(id, project_id("b"));
+  EXPECT_EQ(id[7] >> 4, 8);  // version: the high bits of the third field, little-endian
+  EXPECT_EQ(id[8] >> 6, 2);  // variant
+}
+
+TEST(Provenance, TheDayIsTodayUnlessStated) {
+  EXPECT_GE(creation_day().year, 2026);
+  ::setenv("SOURCE_DATE_EPOCH", "1709164800", 1);  // 2024-02-29
+  const Day day = creation_day();
+  ::unsetenv("SOURCE_DATE_EPOCH");
+  EXPECT_EQ(day.year, 2024);
+  EXPECT_EQ(day.of_year, 60);
+}
+
 TEST(Provenance, AStageKeepsItsFingerprintUntilItOrOneBeforeItChanges) {
   Plan plan = two_stages();
   const auto before = fingerprints(plan, {});

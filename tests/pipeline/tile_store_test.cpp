@@ -49,6 +49,43 @@ struct Store {
   }
 };
 
+TEST(TileStore, RowsOfBytesComeBackWithTheirPoints) {
+  const test::TemporaryFolder folder;
+  const auto row_of = [](unsigned strip, std::uint32_t record) {
+    return std::vector<std::uint8_t>{static_cast<std::uint8_t>(strip), static_cast<std::uint8_t>(record),
+                                     static_cast<std::uint8_t>(record >> 8)};
+  };
+  for (unsigned s = 1; s <= 3; ++s) {  // rows of 3 bytes, none, rows of 5
+    Block part = cloud(2000, s);
+    part.strip.assign(part.size(), static_cast<std::uint16_t>(s));
+    for (size_t i = 0; s != 2 && i < part.size(); ++i) {
+      part.source.resize(i + 1, s == 1 ? 3 : 5);
+      const std::vector<std::uint8_t> row = row_of(s, part.record[i]);
+      std::copy(row.begin(), row.end(), part.source.row(i));
+    }
+    StripWriter writer(folder / ("strips/strip_" + std::to_string(s)), 100.0, 1 << 16);
+    writer.write(part);
+    writer.commit("");
+  }
+  TileStore store(folder / "strips", 100.0, {1000, 2000, 0});
+  store.open({"strip_1", "strip_2", "strip_3"});
+  EXPECT_EQ(store.source_width(), 5u);
+  const auto expect_rows = [&](const Block& b) {
+    ASSERT_EQ(b.source.size(), b.size());
+    for (size_t i = 0; i < b.size(); ++i) {
+      std::vector<std::uint8_t> row = b.strip[i] == 2 ? std::vector<std::uint8_t>{0, 0, 0} : row_of(b.strip[i], b.record[i]);
+      row.resize(5);
+      ASSERT_TRUE(std::equal(row.begin(), row.end(), b.source.row(i))) << i;
+    }
+  };
+  for (const auto& [key, n] : store.tiles()) {
+    expect_rows(store.read(key, {Column::record, Column::strip, Column::source}));
+    EXPECT_TRUE(store.read(key, {Column::record}).source.empty());
+    size_t own = 0;
+    expect_rows(store.read_with_halo({key}, 20.0, {Column::record, Column::strip, Column::source}, own));
+  }
+}
+
 TEST(TileStore, HoldsEveryPointOnceInTheOrderOfRecords) {
   for (const size_t buffer : {size_t{1}, size_t{1} << 20}) {
     const Store s(100.0, buffer);
