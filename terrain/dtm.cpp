@@ -4,7 +4,11 @@
 //   what neighbouring points share: (sum w_k c_k)^2, c_k^2 = s_k^2 - noise, at least correlation s_k^2, from the points' own
 //     s_k^2 = sigma_v^2 + (|slope| sigma_h)^2 / 2 (sigma_h is radial: half its variance lies along the slope);
 //   what they do not share (ranging, vegetation taken for ground): noise (sum w_k^2). Smoothing leaves a share l_k of it, in common: noise
-//     (sum w_k sqrt(l_k))^2; only of what the points' own sigmas explain: beyond them scatter may be one-sided, and no mean takes that out;
+//     (sum w_k sqrt(l_k))^2; only of what the points' own sigmas explain;
+//   scatter beyond that, as smoothing finds it near by: it is one-sided (echoes of low plants merged with that of
+//   the
+//     ground), no mean takes it out, and of a quantity that only adds, exponentially distributed, the mean is as large as the standard
+//     deviation: sum w_k (scatter_k - explained). Without smoothing (noise - explained) (sum w_k^2);
 //   the terrain between them: uneven s + curved s^2 / 4.
 // Points without a sigma of their own get s_k^2 = noise.
 // Where too few triangles stand around a place to tell these, noise is 0 and the terrain may bend by the option unknown_bend b between a
@@ -31,12 +35,15 @@ namespace {
 /// Side of the blocks on which roughness is told.
 double roughness_block(const DtmOptions& o) { return o.max_edge.value / 6.0; }
 
+/// The scatter around a vertex is told by some fifteen points: within a standard deviation of that more is nothing.
+constexpr double by_chance = 1.4;
+
 /// Sigma at places of a TIN, by the terms above.
 class SigmaModel {
  public:
-  /// `roughness`: of the points as they are. `left`: of smooth_heights(), empty without.
-  SigmaModel(const Tin& tin, const RoughnessMap& roughness, const std::vector<float>& left, const DtmOptions& o)
-      : tin_(tin), roughness_(roughness), left_(left), options_(o) {}
+  /// `roughness`: of the points as they are. `smoothed`: empty without smoothing.
+  SigmaModel(const Tin& tin, const RoughnessMap& roughness, const Smoothed& smoothed, const DtmOptions& o)
+      : tin_(tin), roughness_(roughness), smoothed_(smoothed), options_(o) {}
 
   double at(std::int32_t t, double x, double y) const {
     const Roughness rough = roughness_.at(x, y);
@@ -51,12 +58,13 @@ class SigmaModel {
         variance += 0.5 * slope_squared * static_cast<double>(tin_.sigma_h[v]) * static_cast<double>(tin_.sigma_h[v]);
       // max() in this order hands on a variance that is NaN.
       shared += w[k] * std::sqrt(std::max(variance - rough.noise, options_.correlation * variance));
-      const double explained = std::min(rough.noise, variance), left = left_.empty() ? 1.0 : static_cast<double>(left_[v]);
+      const double explained = std::min(rough.noise, variance),
+                   left = smoothed_.left.empty() ? 1.0 : static_cast<double>(smoothed_.left[v]);
       if (left < 1.0)
         together += w[k] * std::sqrt(left * explained);
       else
         apart += w[k] * w[k] * explained;
-      excess += w[k] * w[k] * (rough.noise - explained);
+      excess += beyond(v, w[k], rough.noise, explained);
     }
     const double own = together * together + apart + excess;
     const double s = reach_of(tin_, t, w, x, y);
@@ -71,9 +79,15 @@ class SigmaModel {
   }
 
  private:
+  /// m^2: of a vertex's scatter beyond what its own sigma explains.
+  double beyond(size_t v, double w, double noise, double explained) const {
+    const double scatter = smoothed_.scatter.empty() ? std::nan("") : static_cast<double>(smoothed_.scatter[v]);
+    return std::isnan(scatter) ? w * w * (noise - explained) : w * std::max(0.0, scatter - by_chance * explained);
+  }
+
   const Tin& tin_;
   const RoughnessMap& roughness_;
-  const std::vector<float>& left_;
+  const Smoothed& smoothed_;
   const DtmOptions& options_;
 };
 
@@ -122,8 +136,8 @@ core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmO
   }
   Tin tin = triangulate(block, rows, constraints, 0.5 * options.max_edge.value, reached(window, block.origin, around_window(options)));
   const RoughnessMap roughness(tin, block.origin, window, roughness_block(options));
-  std::vector<float> left;
-  if (smooths(options)) left = smooth_heights(tin, block.size(), options.smoothing.value);
+  Smoothed smoothed;
+  if (smooths(options)) smoothed = smooth_heights(tin, block.size(), options.smoothing.value);
   const std::vector<std::int32_t> triangle = triangles_at_centres(tin, block.origin, window);
 
   if (left_out)
@@ -136,7 +150,7 @@ core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmO
   grid.count = count_points(block, rows, window);
   grid.sigma.assign(window.size(), std::numeric_limits<float>::quiet_NaN());
   const bool natural = options.interpolation == Interpolation::natural_neighbour;
-  const SigmaModel sigma(tin, roughness, left, options);
+  const SigmaModel sigma(tin, roughness, smoothed, options);
   std::optional<NaturalNeighbours> neighbourhood;
   if (natural) neighbourhood.emplace(tin);
   for (int j = 0; j < window.ny; ++j)

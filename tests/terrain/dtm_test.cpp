@@ -215,6 +215,38 @@ TEST(Dtm, PointsWithoutASigmaGiveTheirScatters) {
   }
 }
 
+TEST(Dtm, SigmaCoversScatterThatOnlyAdds) {
+  // Echoes of low plants merged with the ground's, in a patch of 20 m: the mean of what they add is in the model, however many there are.
+  constexpr double noise = 0.02, added = 0.10;
+  const core::Lattice inside{1.0, 500043, 4600043, 14, 14}, outside{1.0, 500010, 4600010, 14, 14};
+  double in = 0.0, out = 0.0;
+  constexpr int seeds = 3;
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    core::Block b = test::random_points(40000, 100.0, hills, seed);
+    std::mt19937 random(seed);
+    std::normal_distribution<double> error(0.0, noise);
+    std::exponential_distribution<double> plants(1.0 / added);
+    for (size_t p = 0; p < b.size(); ++p) {
+      b.z[p] += error(random) + (std::abs(b.x[p] - 50.0) < 10.0 && std::abs(b.y[p] - 50.0) < 10.0 ? plants(random) : 0.0);
+      b.sigma_v[p] = static_cast<float>(noise);
+      b.sigma_h[p] = 0.0F;
+    }
+    for (const core::Lattice& window : {inside, outside}) {
+      const core::Grid g = dtm(b, window, {});
+      for (int j = 0; j < window.ny; ++j)
+        for (int i = 0; i < window.nx; ++i) {
+          const size_t at = window.at(i, j);
+          const double e = static_cast<double>(g.height[at]) - hills(window.centre_x(i) - b.origin.x(), window.centre_y(j) - b.origin.y());
+          (window == inside ? in : out) += std::pow(e / static_cast<double>(g.sigma[at]), 2) / (seeds * static_cast<double>(window.size()));
+        }
+    }
+  }
+  EXPECT_GT(std::sqrt(in), 0.8);
+  EXPECT_LT(std::sqrt(in), 1.25);
+  EXPECT_GT(std::sqrt(out), 0.5);  // 30 m away the plants do not count
+  EXPECT_LT(std::sqrt(out), 1.25);
+}
+
 TEST(Dtm, EmptyAndDegenerateInput) {
   test::Made m;
   const core::Lattice window{1.0, 500000, 4600000, 4, 4};
