@@ -84,6 +84,22 @@ std::vector<std::string> stage_names() {
   return names;
 }
 
+/// What a stage uses of others and the plan does not name, where there are points for it.
+void add_implied(const stages::Stage& stage, const core::Location& where, const std::string& path, Plan& plan) {
+  bool cloud = false, points = false;
+  for (const PlannedStage& s : plan.stages) {
+    points = points || s.stage->info().makes(Product::points);
+    cloud = cloud || (s.stage->is_source() && s.stage->info().makes(Product::points));
+  }
+  const std::string_view name = stage.implied(cloud);
+  if (name.empty() || !points) return;
+  for (const PlannedStage& s : plan.stages)
+    if (s.stage->info().name == name) return;
+  Value table = Value::object();
+  table.where = where;
+  plan.stages.push_back({stages::make_stage(name), std::move(table), path});
+}
+
 void read_stages(const Value& tree, Plan& plan, std::vector<Fault>& faults) {
   const Value* list = tree.find("stage");
   if (!list || !list->is_array() || list->items().empty()) {
@@ -106,6 +122,7 @@ void read_stages(const Value& tree, Plan& plan, std::vector<Fault>& faults) {
       continue;
     }
     core::read_options([&](core::Visitor& v) { stage->visit(v); }, table, path + " (" + type->as_text() + ")", faults, {"type"});
+    add_implied(*stage, table.where, path, plan);
     plan.stages.push_back({std::move(stage), table, path});
   }
 }

@@ -25,6 +25,7 @@ const std::vector<Entry>& registry() {
       {"filters.noise", make_noise},
       {"filters.outlier", make_outlier},
       {"filters.visibility", make_visibility},
+      {"quality.lines", make_lines},
       {"filters.smrf", make_smrf},
       {"filters.ptd", make_ptd},
       {"filters.robust", make_robust},

@@ -194,6 +194,10 @@ class Stage {
   virtual const Info& info() const = 0;
   virtual void visit(core::Visitor& v) = 0;
 
+  /// The stage whose findings this one uses: put in front of it where the plan does not name it; empty: none. `cloud`: the plan's points
+  /// come georeferenced.
+  virtual std::string_view implied([[maybe_unused]] bool cloud) const { return {}; }
+
   /// Conditions that only the survey can settle; faults are thrown as core::Error before any byte is read.
   virtual void check(const Context&) const {}
 

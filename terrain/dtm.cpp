@@ -4,8 +4,13 @@
 //   what neighbouring points share: (sum w_k c_k)^2, c_k^2 = s_k^2 - noise, at least correlation s_k^2, from the points' own
 //     s_k^2 = sigma_v^2 + (|slope| sigma_h)^2 / 2 (sigma_h is radial: half its variance lies along the slope);
 //   what they do not share (ranging, vegetation taken for ground): noise (sum w_k^2). Smoothing leaves a share l_k of it, in common: noise
-//     (sum w_k sqrt(l_k))^2; only of what the points' own sigmas explain: beyond them scatter may be one-sided, and no mean takes that out;
+//     (sum w_k sqrt(l_k))^2; only of what the points' own sigmas explain;
+//   scatter beyond that, as smoothing finds it near by: it is one-sided (echoes of low plants merged with that of
+//   the
+//     ground), no mean takes it out, and of a quantity that only adds, exponentially distributed, the mean is as large as the standard
+//     deviation: sum w_k (scatter_k - explained). Without smoothing (noise - explained) (sum w_k^2);
 //   the terrain between them: uneven s + curved s^2 / 4.
+// Points without a sigma of their own get s_k^2 = noise.
 // Where too few triangles stand around a place to tell these, noise is 0 and the terrain may bend by the option unknown_bend b between a
 // triangle and the next: (b (r^2 - d^2) / (2 r))^2, circumradius r, d from its centre, the bound of Waldron 1998, "The error in linear
 // interpolation at the vertices of a simplex".
@@ -30,12 +35,15 @@ namespace {
 /// Side of the blocks on which roughness is told.
 double roughness_block(const DtmOptions& o) { return o.max_edge.value / 6.0; }
 
+/// The scatter around a vertex is told by some fifteen points: within a standard deviation of that more is nothing.
+constexpr double by_chance = 1.4;
+
 /// Sigma at places of a TIN, by the terms above.
 class SigmaModel {
  public:
-  /// `roughness`: of the points as they are. `left`: of smooth_heights(), empty without.
-  SigmaModel(const Tin& tin, const RoughnessMap& roughness, const std::vector<float>& left, const DtmOptions& o)
-      : tin_(tin), roughness_(roughness), left_(left), options_(o) {}
+  /// `roughness`: of the points as they are. `smoothed`: empty without smoothing.
+  SigmaModel(const Tin& tin, const RoughnessMap& roughness, const Smoothed& smoothed, const DtmOptions& o)
+      : tin_(tin), roughness_(roughness), smoothed_(smoothed), options_(o) {}
 
   double at(std::int32_t t, double x, double y) const {
     const Roughness rough = roughness_.at(x, y);
@@ -44,17 +52,19 @@ class SigmaModel {
     double shared = 0.0, apart = 0.0, together = 0.0, excess = 0.0;
     for (size_t k = 0; k < 3; ++k) {
       const auto v = static_cast<size_t>(tin_.triangles[t][k]);
-      double variance = static_cast<double>(tin_.sigma_v[v]) * static_cast<double>(tin_.sigma_v[v]);
+      double variance = rough.noise;
+      if (!tin_.sigma_v.empty()) variance = static_cast<double>(tin_.sigma_v[v]) * static_cast<double>(tin_.sigma_v[v]);
       if (!tin_.sigma_h.empty())
         variance += 0.5 * slope_squared * static_cast<double>(tin_.sigma_h[v]) * static_cast<double>(tin_.sigma_h[v]);
       // max() in this order hands on a variance that is NaN.
       shared += w[k] * std::sqrt(std::max(variance - rough.noise, options_.correlation * variance));
-      const double explained = std::min(rough.noise, variance), left = left_.empty() ? 1.0 : static_cast<double>(left_[v]);
+      const double explained = std::min(rough.noise, variance),
+                   left = smoothed_.left.empty() ? 1.0 : static_cast<double>(smoothed_.left[v]);
       if (left < 1.0)
         together += w[k] * std::sqrt(left * explained);
       else
         apart += w[k] * w[k] * explained;
-      excess += w[k] * w[k] * (rough.noise - explained);
+      excess += beyond(v, w[k], rough.noise, explained);
     }
     const double own = together * together + apart + excess;
     const double s = reach_of(tin_, t, w, x, y);
@@ -69,19 +79,24 @@ class SigmaModel {
   }
 
  private:
+  /// m^2: of a vertex's scatter beyond what its own sigma explains.
+  double beyond(size_t v, double w, double noise, double explained) const {
+    const double scatter = smoothed_.scatter.empty() ? std::nan("") : static_cast<double>(smoothed_.scatter[v]);
+    return std::isnan(scatter) ? w * w * (noise - explained) : w * std::max(0.0, scatter - by_chance * explained);
+  }
+
   const Tin& tin_;
   const RoughnessMap& roughness_;
-  const std::vector<float>& left_;
+  const Smoothed& smoothed_;
   const DtmOptions& options_;
 };
 
 bool smooths(const DtmOptions& o) { return o.smoothing.value > 0.0 && !o.key_points; }
 
 /// Metres about the window where triangles have a say: where roughness is told, natural neighbours are, and heights are smoothed.
-double around_window(const DtmOptions& o, bool has_sigma) {
+double around_window(const DtmOptions& o) {
   const double read = o.interpolation == Interpolation::natural_neighbour ? o.max_edge.value : 0.0;
-  return std::max(has_sigma ? RoughnessMap::reach(roughness_block(o)) : 0.0,
-                  read + (smooths(o) ? smoothing_reach(o.smoothing.value) : 0.0));
+  return std::max(RoughnessMap::reach(roughness_block(o)), read + (smooths(o) ? smoothing_reach(o.smoothing.value) : 0.0));
 }
 
 Rectangle reached(const core::Lattice& window, const Eigen::Vector3d& origin, double around) {
@@ -91,7 +106,7 @@ Rectangle reached(const core::Lattice& window, const Eigen::Vector3d& origin, do
 
 }  // namespace
 
-double triangulated_border(const DtmOptions& options) { return around_window(options, true); }
+double triangulated_border(const DtmOptions& options) { return around_window(options); }
 
 double halo(const DtmOptions& options) {
   // A place needs the points within max_edge to know its triangle.
@@ -113,19 +128,16 @@ std::vector<std::uint32_t> terrain_rows(const core::Block& block, const DtmOptio
 core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options, const Breaklines* lines,
                std::uint64_t* left_out) {
   if (window.cell != options.cell.value) throw core::Error("the window's cell is not the option's", "terrain.dtm");
-  const bool has_sigma = !block.sigma_v.empty();
   std::vector<std::uint32_t> rows = terrain_rows(block, options);
   Constraints constraints;
   if (lines) {
     constraints = lines->near(window, halo(options));
     rows = lines->kept(block, rows, constraints);
   }
-  Tin tin =
-      triangulate(block, rows, constraints, 0.5 * options.max_edge.value, reached(window, block.origin, around_window(options, has_sigma)));
-  std::optional<RoughnessMap> roughness;
-  if (has_sigma) roughness.emplace(tin, block.origin, window, roughness_block(options));
-  std::vector<float> left;
-  if (smooths(options)) left = smooth_heights(tin, block.size(), options.smoothing.value);
+  Tin tin = triangulate(block, rows, constraints, 0.5 * options.max_edge.value, reached(window, block.origin, around_window(options)));
+  const RoughnessMap roughness(tin, block.origin, window, roughness_block(options));
+  Smoothed smoothed;
+  if (smooths(options)) smoothed = smooth_heights(tin, block.size(), options.smoothing.value);
   const std::vector<std::int32_t> triangle = triangles_at_centres(tin, block.origin, window);
 
   if (left_out)
@@ -136,10 +148,9 @@ core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmO
     }));
   core::Grid grid(window);
   grid.count = count_points(block, rows, window);
-  if (has_sigma) grid.sigma.assign(window.size(), std::numeric_limits<float>::quiet_NaN());
+  grid.sigma.assign(window.size(), std::numeric_limits<float>::quiet_NaN());
   const bool natural = options.interpolation == Interpolation::natural_neighbour;
-  std::optional<SigmaModel> sigma;
-  if (has_sigma) sigma.emplace(tin, *roughness, left, options);
+  const SigmaModel sigma(tin, roughness, smoothed, options);
   std::optional<NaturalNeighbours> neighbourhood;
   if (natural) neighbourhood.emplace(tin);
   for (int j = 0; j < window.ny; ++j)
@@ -149,7 +160,7 @@ core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmO
       const double x = window.centre_x(i) - block.origin.x(), y = window.centre_y(j) - block.origin.y();
       const double z = natural ? neighbourhood->height(triangle[at], x, y) : height_in(tin, triangle[at], x, y);
       grid.height[at] = static_cast<float>(block.origin.z() + z);
-      if (sigma) grid.sigma[at] = static_cast<float>(sigma->at(triangle[at], x, y));
+      grid.sigma[at] = static_cast<float>(sigma.at(triangle[at], x, y));
     }
   give_void_reasons(grid, block, rows, options.max_edge.value);
   if (lines) lines->apply(grid);

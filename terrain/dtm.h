@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct DtmOptions {
   bool key_points = false;
   double correlation = 0.05;
   double unknown_bend = 0.1;
+  std::optional<core::Metres> assumed_sigma;
 };
 
 template <class V>
@@ -49,6 +51,8 @@ void describe(DtmOptions& o, V& v) {
            "points' scatter leaves is taken where it is larger.");
   v.option("unknown_bend", o.unknown_bend, core::at_least(0.0),
            "Change of slope (rise / run) that terrain may hide under a triangle where too few stand around it to tell.");
+  v.option("assumed_sigma", o.assumed_sigma, core::within(0.0, 100.0),
+           "Standard deviation of the heights of points that carry none; without it estimated from the points.");
   v.check(o.max_edge >= o.cell, "max_edge must span at least one cell");
 }
 
@@ -65,7 +69,8 @@ std::vector<std::uint32_t> terrain_rows(const core::Block& block, const DtmOptio
 
 /// Terrain on the cells of `window` (window.cell must be options.cell, else Error) from the points within halo() of it.
 /// height: m, of the triangle's plane at the cell's centre, block origin added. count: terrain points in the cell.
-/// sigma: m, empty where the Block has no sigma_v; NaN where a point's sigma is NaN; see the source for its terms.
+/// sigma: m; NaN where a point's sigma is NaN; see the source for its terms. A Block without sigma_v gets sigmas of the points' scatter
+/// alone, which does not show what neighbours have in common.
 /// reason: none, long_edge or no_data (terrain/voids.h).
 /// With `lines` the terrain passes through the breaklines, water is flat or falling and boundaries cut (terrain/breaklines.h); cells of
 /// water whose height is known have the reason none. `left_out` receives the number of terrain points in the window that share their place

@@ -9,7 +9,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
@@ -21,6 +23,8 @@ namespace {
 
 constexpr int passes = 3;
 constexpr double longest_edge = 2.0;  // radii
+constexpr float least_taken = 0.25F;  // share of the variance
+constexpr int scatter_rings = 2;      // over which it is averaged how far vertices have moved
 constexpr float alike = 0.05F;        // m: planes of less misfit have the same say
 constexpr size_t least_ring = 4;      // neighbours of a plane
 constexpr float least_area = 0.01F;   // det / trace^2 of the neighbours' spread, 0.25 where it is round
@@ -194,11 +198,32 @@ Signal moved(const Signal& signal, const std::vector<Plane>& planes, size_t v, s
   return weights > 0.0F ? Signal(sum * (1.0F / weights)) : signal;
 }
 
+/// Mean square of what vertices have moved, over rings around each; NaN where none has.
+std::vector<float> squares_around(const Rings& rings, const std::vector<Signal>& signals) {
+  const size_t size = signals.size();
+  std::vector<float> square(size, std::numeric_limits<float>::quiet_NaN()), mean(size);
+  for (size_t v = 0; v < size; ++v)
+    if (!rings.of(v).empty()) square[v] = signals[v][0] * signals[v][0];
+  for (int ring = 0; ring < scatter_rings; ++ring) {
+    for (size_t v = 0; v < size; ++v) {
+      float sum = 0.0F, count = 0.0F;
+      const auto add = [&](float s) {
+        if (!std::isnan(s)) sum += s, count += 1.0F;
+      };
+      add(square[v]);
+      for (const Edge& e : rings.of(v)) add(square[static_cast<size_t>(e.to)]);
+      mean[v] = count > 0.0F ? sum / count : square[v];
+    }
+    square.swap(mean);
+  }
+  return square;
+}
+
 }  // namespace
 
-double smoothing_reach(double radius) { return (longest_edge + 2.0 * passes) * radius; }
+double smoothing_reach(double radius) { return (longest_edge + 2.0 * passes + longest_edge * scatter_rings) * radius; }
 
-std::vector<float> smooth_heights(Tin& tin, size_t points, double radius) {
+Smoothed smooth_heights(Tin& tin, size_t points, double radius) {
   const Rings rings(tin, points, radius);
   const size_t size = tin.x.size();
   const auto per_square = static_cast<float>(1.0 / (radius * radius));
@@ -211,16 +236,17 @@ std::vector<float> smooth_heights(Tin& tin, size_t points, double radius) {
     for (size_t v = 0; v < size; ++v)
       if (!rings.of(v).empty()) signals[v] = moved(signals[v], planes, v, rings.of(v), per_square);
   }
-  std::vector<float> left(size, 1.0F);
+  Smoothed out{std::vector<float>(size, 1.0F), squares_around(rings, signals)};
   for (size_t v = 0; v < size; ++v) {
     const auto ring = rings.of(v);
     if (ring.empty()) continue;
     tin.z[v] += static_cast<double>(signals[v][0]);
     float sum = noise_square(signals[v]);
     for (const Edge& e : ring) sum += noise_square(signals[static_cast<size_t>(e.to)]);
-    left[v] = std::min(1.0F, sum / static_cast<float>(ring.size() + 1));
+    out.left[v] = std::min(1.0F, sum / static_cast<float>(ring.size() + 1));
+    out.scatter[v] /= std::max(least_taken, 1.0F - out.left[v]);
   }
-  return left;
+  return out;
 }
 
 }  // namespace swath::terrain

@@ -37,6 +37,7 @@ std::unique_ptr<Stage> make_ptd();
 std::unique_ptr<Stage> make_robust();
 std::unique_ptr<Stage> make_pmf();
 std::unique_ptr<Stage> make_csf();
+std::unique_ptr<Stage> make_lines();
 std::unique_ptr<Stage> make_ground();
 std::unique_ptr<Stage> make_water();
 std::unique_ptr<Stage> make_hag_dem();

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "filters/ground.h"
 
+#include <cmath>
 #include <limits>
 
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/kept_classes.h"
+#include "stages/line_comparison.h"
 
 namespace swath::stages {
 namespace {
@@ -24,15 +26,21 @@ class Ground : public OptionStage<Keeping<filters::GroundOptions>> {
     return info;
   }
   core::ColumnSet also_reads() const override { return {Column::return_number, Column::return_count, Column::strip}; }
+  std::string_view implied(bool) const override { return "quality.lines"; }
   double halo() const override { return filters::halo(options); }
   // Measured 2026-11-22 with tests/stages/memory_test.cpp, tiles of 200 to 1500 m, points 0.7 m and 3 m apart.
   double bytes_per_point() const override { return 60.0; }
   std::vector<Raster> rasters(const Context& c) const override {
     return {{"", 1.0, c.tile_side + 2.0 * halo(), 90.0}, {"", 1.0, c.tile_side, 70.0}};
   }
-  void run_tile(const Context&, TileJob& job) const override {
+  void run_tile(const Context& context, TileJob& job) const override {
+    filters::GroundOptions o = options;
+    if (const std::optional<KnownLines> lines = known_lines(context)) {
+      take_offsets(job.block, *lines);  // of this copy: heights are not among what the stage gives
+      if (!std::isnan(lines->residual)) o.noise.value = std::hypot(o.noise.value, lines->residual);
+    }
     const KeptClasses kept(job.block, options.keep_classes);
-    const filters::GroundChances n = filters::classify_ground(job.block, job.own, options);
+    const filters::GroundChances n = filters::classify_ground(job.block, job.own, o);
     kept.put_back(job.block, job.own, true, job.tally,
                   [&](size_t i) { job.block.ground_probability[i] = std::numeric_limits<float>::quiet_NaN(); });
     job.tally.count("ground", n.ground);

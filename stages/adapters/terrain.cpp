@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "core/error.h"
@@ -7,6 +8,7 @@
 #include "stages/adapters/breaklines.h"
 #include "stages/adapters/units.h"
 #include "stages/grid_tile.h"
+#include "stages/line_comparison.h"
 #include "terrain/dsm.h"
 #include "terrain/dtm.h"
 #include "terrain/voids.h"
@@ -64,6 +66,7 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
     return info;
   }
   core::ColumnSet also_reads() const override { return {core::Column::sigma_v, core::Column::sigma_h}; }
+  std::string_view implied(bool cloud) const override { return cloud && !options.assumed_sigma ? "quality.lines" : ""; }
   double halo() const override { return terrain::halo(options); }
   // Measured 2026-11-22: 290 bytes, tile 1000 m and 4 points per square metre; 195 in tests/stages/memory_test.cpp, tile 500 m, where half
   // of the points are those of the halo that are not triangulated and take a few bytes each.
@@ -81,6 +84,7 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
   void run_tile(const Context& context, TileJob& job) const override {
     const terrain::Breaklines* lines = lines_.get(context);
     std::uint64_t shared = 0;
+    complete_sigmas(context, job.block);
     core::Grid grid = terrain::dtm(job.block, lattice_in(options.cell.value, job.box), options, lines, &shared);
     if (shared > 0) job.tally.count("ground points at the same place as a lower or equal one", shared);
     mark_never_seen(context, job, grid);
@@ -98,6 +102,13 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
   }
 
  private:
+  /// To points that carry none.
+  void complete_sigmas(const Context& context, core::Block& block) const {
+    if (options.assumed_sigma)
+      give_sigmas(block, options.assumed_sigma->value, 0.0);
+    else if (const std::optional<KnownLines> lines = known_lines(context); lines && !std::isnan(lines->scatter))
+      give_sigmas(block, lines->sigma(), lines->horizontal_sigma());
+  }
   static constexpr double room = 10.0;  // m: for triangles that reach beyond the border
   BreaklinesOfRun lines_;
 };

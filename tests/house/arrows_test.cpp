@@ -21,11 +21,12 @@ const std::map<std::string, std::set<std::string>> arrows = {
     {"io", {"core"}},
     {"filters", {"core"}},
     {"terrain", {"core"}},
+    {"quality", {"core"}},
     {"trajectory", {"core"}},
     {"report", {"core"}},
     {"calib", {"core", "io", "filters", "terrain", "trajectory", "report"}},
     {"simulate", {"core", "io"}},
-    {"stages", {"core", "io", "filters", "terrain", "trajectory", "report", "calib"}},
+    {"stages", {"core", "io", "filters", "terrain", "quality", "trajectory", "report", "calib"}},
     {"pipeline", {"core", "io", "report", "stages"}},
     {"tools", {"core", "io", "pipeline", "simulate"}},
 };

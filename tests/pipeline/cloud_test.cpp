@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Point clouds that enter after georeferencing: units, files that differ, tiles without points.
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <set>
 
 #include "core/crs.h"
+#include "core/statistics.h"
+#include "io/geotiff.h"
 #include "io/las_reader.h"
 #include "io/las_writer.h"
 #include "io/value_file.h"
@@ -247,7 +251,7 @@ std::string surface_of(CloudCase& c, const std::string& tile) {
       "[[stage]]\ntype = \"writers.gdal\"\n",
       tile);
   const core::Value report = io::read_value_file(out / "report.json");
-  const core::Value& dtm = report.find("stages")->items()[1];
+  const core::Value& dtm = report.find("stages")->items()[2];  // behind quality.lines, which it implies
   return test::read_bytes(out / "contours.geojson") +
          std::to_string(dtm.find("tally")->find("cells with a height")->find("count")->as_int());
 }
@@ -330,6 +334,82 @@ TEST(Cloud, KeyPointsAreTheSameForEveryTiling) {
   EXPECT_GT(whole.size(), 200u);
   EXPECT_LT(whole.size(), 3000u);
   EXPECT_EQ(key_points("70 m"), whole);
+}
+
+/// Lines of a plain, 60 m wide every 40 m; line n lies `offset(n)` too high. What they see twice is 20 m wide.
+Block plain(int lines, const std::function<double(int)>& offset) {
+  Block all;
+  for (int line = 1; line <= lines; ++line) {
+    Block b = square(24000, easting, northing, 1.0, 100.0);
+    for (size_t i = 0; i < b.size(); ++i) {
+      b.x[i] = 60.0 * b.x[i] + 40.0 * (line - 1);
+      b.y[i] = 200.0 * std::fmod(b.y[i] + 0.37 * line, 1.0);
+      b.z[i] += 0.5 * std::sin(b.x[i] / 30.0) + offset(line) + 0.04 * std::fmod(static_cast<double>(i) * 0.569840, 1.0) - 0.02;
+    }
+    b.strip.assign(b.size(), static_cast<std::uint16_t>(line));
+    core::append(all, b);
+  }
+  return all;
+}
+
+std::string lines_of(CloudCase& c, const std::string& tile) {
+  return test::read_bytes(c.run("[[stage]]\ntype = \"readers.las\"\n[[stage]]\ntype = \"quality.lines\"\n", tile) / "lines.json");
+}
+
+TEST(Cloud, LinesAreComparedWithoutATrajectory) {
+  CloudCase c;
+  c.add(plain(3, [](int line) { return line == 2 ? 0.12 : 0.0; }), "lines.las", "EPSG:32632");
+  const std::string whole = lines_of(c, "1000 m");
+  const core::Value found = io::parse_json(whole, "lines.json");
+  const std::vector<double> expected{-0.04, 0.08, -0.04};
+  ASSERT_EQ(found.find("lines")->items().size(), 3u);
+  for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(found.find("lines")->items()[k].find("offset_m")->as_number(), expected[k], 0.003) << k;
+  EXPECT_NEAR(found.find("scatter_m")->as_number(), 0.04 / std::sqrt(12.0), 0.004);  // the errors are evenly spread, not random
+  EXPECT_NEAR(found.find("common_m")->as_number(), 0.12 / std::sqrt(2.0), 0.005);
+  EXPECT_LT(found.find("residual_m")->as_number(), 0.005);
+  EXPECT_EQ(lines_of(c, "70 m"), whole);
+  EXPECT_EQ(lines_of(c, "33 m"), whole);
+}
+
+TEST(Cloud, GroundIsNotLostBetweenLinesThatLieApart) {
+  const auto ground_of = [](double apart, const std::string& before) {
+    CloudCase c;
+    const Block b = plain(3, [apart](int line) { return line == 2 ? apart : 0.0; });
+    c.add(b, "lines.las", "EPSG:32632");
+    const Block out = points_of(c.run("[[stage]]\ntype = \"readers.las\"\n" + before +
+                                          "[[stage]]\ntype = \"filters.ground\"\n[[stage]]\ntype = \"writers.las\"\ncompress = false\n",
+                                      "500 m"));
+    double heights = 0.0;
+    for (size_t i = 0; i < b.size(); ++i) heights += b.z[i];
+    for (size_t i = 0; i < out.size(); ++i) heights -= out.origin.z() + out.z[i];
+    EXPECT_NEAR(heights / static_cast<double>(b.size()), 0.0, 1e-4);  // as they were
+    return static_cast<double>(std::count(out.classification.begin(), out.classification.end(), core::point_class::ground)) /
+           static_cast<double>(out.size());
+  };
+  const std::string compared = "[[stage]]\ntype = \"quality.lines\"\n";
+  const double together = ground_of(0.0, compared);
+  EXPECT_GT(together, 0.98);
+  for (const double apart : {0.05, 0.10, 0.15}) EXPECT_GT(ground_of(apart, compared), together - 0.01) << apart;
+  EXPECT_EQ(ground_of(0.15, ""), ground_of(0.15, compared));  // the filter has them compared where the plan does not say so
+  EXPECT_LT(ground_of(0.15, "[[stage]]\ntype = \"quality.lines\"\nleast = 1000\n"), together - 0.02);  // nothing compared: why it does
+}
+
+TEST(Cloud, AModelOfPointsWithoutASigmaHasOne) {
+  CloudCase c;
+  Block b = plain(3, [](int line) { return line == 2 ? 0.12 : 0.0; });
+  b.classification.assign(b.size(), core::point_class::ground);
+  c.add(b, "lines.las", "EPSG:32632");
+  const auto sigma = [&c](const std::string& before, const std::string& option) {
+    const fs::path out = c.run("[[stage]]\ntype = \"readers.las\"\n" + before + "[[stage]]\ntype = \"terrain.dtm\"\n" + option +
+                                   "[[stage]]\ntype = \"writers.gdal\"\n",
+                               "500 m");
+    std::vector<double> values;
+    for (const double v : io::read_raster(out / "dtm_quality.vrt").values)
+      if (!std::isnan(v)) values.push_back(v);
+    return core::median(values);
+  };
+  EXPECT_NEAR(sigma("", ""), 0.12 / std::sqrt(2.0), 0.02);
+  EXPECT_NEAR(sigma("", "assumed_sigma = \"0.25 m\"\n"), 0.25, 0.02);
 }
 
 }  // namespace

@@ -37,14 +37,32 @@ TEST(Plan, ReadsConfigSurveyAndSets) {
   Case c(good);
   c.request.sets = {"smrf.slope=0.3", "run.tile=250 m", "terrain.dtm.cell=\"50 cm\""};
   Plan plan = make_plan(c.request);
-  ASSERT_EQ(plan.stages.size(), 3u);
+  ASSERT_EQ(plan.stages.size(), 4u);  // with quality.lines, which the terrain model of a cloud uses
   EXPECT_EQ(plan.run.tile.value, 250.0);
   const core::Value told = explain(plan);
   const core::Value& smrf = told.find("stages")->items()[1];
   EXPECT_EQ(smrf.find("options")->find("slope")->find("value")->as_number(), 0.3);
   EXPECT_EQ(smrf.find("options")->find("slope")->find("from")->as_text(), "--set");
   EXPECT_EQ(smrf.find("options")->find("window")->find("from")->as_text(), "default");
-  EXPECT_EQ(told.find("stages")->items()[2].find("options")->find("cell")->find("value")->as_text(), "0.5 m");
+  EXPECT_EQ(told.find("stages")->items()[3].find("options")->find("cell")->find("value")->as_text(), "0.5 m");
+}
+
+TEST(Plan, AStageThatAnotherUsesIsPutInFrontOfIt) {
+  const auto names = [](const std::string& pipeline) {
+    std::string out;
+    for (const PlannedStage& s : make_plan(Case(pipeline).request).stages) out += std::string(s.stage->info().name) + " ";
+    return out;
+  };
+  const auto stage = [](const std::string& type) { return "[[stage]]\ntype = \"" + type + "\"\n"; };
+  EXPECT_EQ(names(stage("readers.las") + stage("filters.ground") + stage("terrain.dtm")),
+            "readers.las quality.lines filters.ground terrain.dtm ");
+  EXPECT_EQ(names(stage("readers.las") + stage("quality.lines") + stage("filters.noise") + stage("filters.ground")),
+            "readers.las quality.lines filters.noise filters.ground ");
+  EXPECT_EQ(names(stage("readers.las") + stage("terrain.dtm") + "assumed_sigma = \"5 cm\"\n"), "readers.las terrain.dtm ");
+  // Points from raw records bring their sigmas.
+  EXPECT_EQ(names(stage("readers.trajectory") + stage("readers.laser") + stage("georeference") + stage("terrain.dtm")),
+            "readers.trajectory readers.laser georeference terrain.dtm ");
+  EXPECT_EQ(Case(stage("filters.ground")).fault().find("quality.lines"), std::string::npos);  // nothing that was not asked for is a fault
 }
 
 TEST(Plan, TwoStagesThatMakeTheSameProductAreRefused) {

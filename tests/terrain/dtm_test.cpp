@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "core/error.h"
 #include "core/option_visitors.h"
 #include "tests/terrain/made.h"
@@ -179,15 +182,69 @@ TEST(Dtm, OnlyUsableTerrainPointsCount) {
   EXPECT_EQ(g.height[window.at(5, 5)], 20.0f);
 }
 
-TEST(Dtm, AbsentOrUnknownSigmaIsSaid) {
+TEST(Dtm, UnknownSigmaIsNotANumber) {
   core::Block b = test::random_points(500, 20.0, hills, 5);
   const core::Lattice window{1.0, 500005, 4600005, 10, 10};
   b.sigma_v.assign(b.size(), std::nanf(""));
   for (const float s : dtm(b, window, {}).sigma) EXPECT_TRUE(std::isnan(s));
-  b.sigma_v.clear();
-  const core::Grid g = dtm(b, window, {});
-  EXPECT_TRUE(g.sigma.empty());
-  for (const float h : g.height) EXPECT_FALSE(std::isnan(h));
+}
+
+TEST(Dtm, PointsWithoutASigmaGiveTheirScatters) {
+  // White noise alone: the model's sigma follows from how the points scatter.
+  const core::Lattice window{1.0, 500020, 4600020, 60, 60};
+  for (const double noise : {0.02, 0.10}) {
+    double sum = 0.0;
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+      core::Block b = test::random_points(20000, 100.0, hills, seed);
+      b.sigma_v.clear();
+      b.sigma_h.clear();
+      std::mt19937 random(seed);
+      std::normal_distribution<double> error(0.0, noise);
+      for (double& z : b.z) z += error(random);
+      const core::Grid g = dtm(b, window, {});
+      for (int j = 0; j < window.ny; ++j)
+        for (int i = 0; i < window.nx; ++i) {
+          const size_t at = window.at(i, j);
+          const double e = static_cast<double>(g.height[at]) - hills(window.centre_x(i) - b.origin.x(), window.centre_y(j) - b.origin.y());
+          sum += std::pow(e / static_cast<double>(g.sigma[at]), 2);
+        }
+    }
+    const double ratio = std::sqrt(sum / (4.0 * static_cast<double>(window.size())));
+    EXPECT_GT(ratio, 0.8) << noise;
+    EXPECT_LT(ratio, 1.25) << noise;
+  }
+}
+
+TEST(Dtm, SigmaCoversScatterThatOnlyAdds) {
+  // Echoes of low plants merged with the ground's, in a patch of 20 m: the mean of what they add is in the model, however many there are.
+  constexpr double noise = 0.02, added = 0.10;
+  const core::Lattice inside{1.0, 500043, 4600043, 14, 14}, outside{1.0, 500010, 4600010, 14, 14};
+  double in = 0.0, out = 0.0;
+  constexpr int seeds = 3;
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    core::Block b = test::random_points(40000, 100.0, hills, seed);
+    std::mt19937 random(seed);
+    std::normal_distribution<double> error(0.0, noise);
+    std::exponential_distribution<double> plants(1.0 / added);
+    for (size_t p = 0; p < b.size(); ++p) {
+      b.z[p] += error(random) + (std::abs(b.x[p] - 50.0) < 10.0 && std::abs(b.y[p] - 50.0) < 10.0 ? plants(random) : 0.0);
+      b.sigma_v[p] = static_cast<float>(noise);
+      b.sigma_h[p] = 0.0F;
+    }
+    for (const core::Lattice& window : {inside, outside}) {
+      const core::Grid g = dtm(b, window, {});
+      for (int j = 0; j < window.ny; ++j)
+        for (int i = 0; i < window.nx; ++i) {
+          const size_t at = window.at(i, j);
+          const double e = static_cast<double>(g.height[at]) - hills(window.centre_x(i) - b.origin.x(), window.centre_y(j) - b.origin.y());
+          (window == inside ? in : out) += std::pow(e / static_cast<double>(g.sigma[at]), 2) / (seeds * static_cast<double>(window.size()));
+        }
+    }
+  }
+  EXPECT_GT(std::sqrt(in), 0.8);
+  EXPECT_LT(std::sqrt(in), 1.25);
+  EXPECT_GT(std::sqrt(out), 0.5);  // 30 m away the plants do not count
+  EXPECT_LT(std::sqrt(out), 1.25);
 }
 
 TEST(Dtm, EmptyAndDegenerateInput) {

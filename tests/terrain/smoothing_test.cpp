@@ -54,7 +54,7 @@ TEST(Smoothing, TakesRandomErrorOutAndTellsWhatIsLeft) {
                                        Case{108000, radius}}) {  // 0.8, 3.3, 8 and 30 per square metre
     const core::Block b = noisy(points, plane, 0.03, 2);
     Tin tin = tin_of(b);
-    const std::vector<float> left = smooth_heights(tin, b.size(), within);
+    const std::vector<float> left = smooth_heights(tin, b.size(), within).left;
     const double after = rms(tin, plane, everywhere);
     double told = 0.0, n = 0.0;
     for (size_t v = 0; v < left.size(); ++v)
@@ -81,7 +81,7 @@ TEST(Smoothing, BorderLongEdgesAndLinesStay) {
   const core::Block b = noisy(200, plane, 0.5, 4);  // some 4 m apart
   Tin tin = tin_of(b);
   const Tin before = tin;
-  const std::vector<float> left = smooth_heights(tin, b.size(), 1.0);
+  const std::vector<float> left = smooth_heights(tin, b.size(), 1.0).left;
   size_t kept = 0;
   for (size_t v = 0; v < left.size(); ++v) {
     if (left[v] < 1.0F) continue;
@@ -95,6 +95,19 @@ TEST(Smoothing, BorderLongEdgesAndLinesStay) {
   EXPECT_EQ(tin.z, before.z);
 }
 
+TEST(Smoothing, HowFarVerticesMoveShowsTheirScatter) {
+  for (const double noise : {0.02, 0.10}) {
+    const core::Block b = noisy(
+        12000, [](double, double) { return 7.0; }, noise, 5);
+    Tin tin = tin_of(b);
+    double sum = 0.0, count = 0.0;
+    for (const float m : smooth_heights(tin, b.size(), 1.0).scatter)
+      if (!std::isnan(m)) sum += static_cast<double>(m), count += 1.0;
+    EXPECT_GT(count, 11000.0);
+    EXPECT_NEAR(std::sqrt(sum / count), noise, 0.15 * noise);
+  }
+}
+
 TEST(Smoothing, NeitherOrderNorWhatLiesFarAwayMatters) {
   const core::Block b = noisy(12000, scarp, 0.05, 5);
   const Rectangle where{20.0, 20.0, 40.0, 40.0};
@@ -105,15 +118,18 @@ TEST(Smoothing, NeitherOrderNorWhatLiesFarAwayMatters) {
   Tin part = triangulate(b, rows, std::numeric_limits<double>::infinity(),
                          {where.west - reach, where.south - reach, where.east + reach, where.north + reach});
   ASSERT_LT(part.size(), whole.size());
-  const std::vector<float> left = smooth_heights(whole, b.size(), 1.0), left_of_part = smooth_heights(part, b.size(), 1.0);
+  const Smoothed of_whole = smooth_heights(whole, b.size(), 1.0), of_part = smooth_heights(part, b.size(), 1.0);
+  const std::vector<float>&left = of_whole.left, &left_of_part = of_part.left;
   std::vector<double> height(b.size());
-  std::vector<float> share(b.size());
-  for (size_t v = 0; v < whole.x.size(); ++v) height[whole.row[v]] = whole.z[v], share[whole.row[v]] = left[v];
+  std::vector<float> share(b.size()), scatter(b.size());
+  for (size_t v = 0; v < whole.x.size(); ++v)
+    height[whole.row[v]] = whole.z[v], share[whole.row[v]] = left[v], scatter[whole.row[v]] = of_whole.scatter[v];
   size_t compared = 0;
   for (size_t v = 0; v < part.x.size(); ++v) {
     if (part.x[v] < where.west || part.x[v] > where.east || part.y[v] < where.south || part.y[v] > where.north) continue;
     ASSERT_EQ(part.z[v], height[part.row[v]]);
     ASSERT_EQ(left_of_part[v], share[part.row[v]]);
+    ASSERT_TRUE(of_part.scatter[v] == scatter[part.row[v]] || std::isnan(scatter[part.row[v]]));
     ++compared;
   }
   EXPECT_GT(compared, 1000u);

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A plane by least squares through the single returns of each line in each cell; where two lines have one that fits, they are compared at
+// the cell's centre. Steep cells are left out: there an error of place passes for one of height. A cell's rms is divided by the root of the
+// lower quartile of chi square over its degrees of freedom (Wilson and Hilferty 1931), so that the lower quartile over cells on planes is
+// the standard deviation of a return, and rough cells, up to half of them, hardly raise it.
+// Returns are summed in an order that their coordinates alone decide, so that tiles that share a block agree to the last bit.
+#include "quality/line_cells.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <span>
+#include <tuple>
+
+#include "core/grid.h"
+#include "core/statistics.h"
+
+namespace swath::quality {
+namespace {
+
+constexpr int block_side = 16;         // narrowest cells
+constexpr double steepest = 0.35;      // rise / run
+constexpr double least_spread = 0.15;  // of a cell, rms about the mean along the worse direction: 0.29 for an even spread
+constexpr double farthest = 0.35;      // of a cell, from the mean of the returns to the centre
+constexpr size_t least_cells = 3;      // of a block
+constexpr double per_mad = 1.4826;
+
+struct BlockKey {
+  std::int64_t i, j;
+  auto operator<=>(const BlockKey&) const = default;
+};
+
+/// A single return, by block, cell within the block and line.
+struct Return {
+  std::uint32_t block;
+  std::uint16_t cell, line;
+  double x, y, z;  ///< m; x, y from the block's centre
+  auto operator<=>(const Return&) const = default;
+};
+
+struct Moments {
+  std::uint16_t cell, line;
+  double n = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0;
+
+  void add(const Return& r) {
+    n += 1, x += r.x, y += r.y, z += r.z;
+    xx += r.x * r.x, xy += r.x * r.y, yy += r.y * r.y;
+    xz += r.x * r.z, yz += r.y * r.z, zz += r.z * r.z;
+  }
+  void add(const Moments& o) {
+    n += o.n, x += o.x, y += o.y, z += o.z;
+    xx += o.xx, xy += o.xy, yy += o.yy, xz += o.xz, yz += o.yz, zz += o.zz;
+  }
+};
+
+struct Plane {
+  double height, rms;
+};
+
+/// Nothing where the returns do not span the cell: the height at its centre would be a guess. `cx`, `cy`: the cell's centre.
+std::optional<Plane> plane_of(const Moments& m, double cx, double cy, double cell) {
+  const double mx = m.x / m.n, my = m.y / m.n, mz = m.z / m.n;
+  const double xx = m.xx / m.n - mx * mx, xy = m.xy / m.n - mx * my, yy = m.yy / m.n - my * my;
+  const double half = 0.5 * (xx + yy), narrow = half - std::sqrt(std::max(0.0, half * half - (xx * yy - xy * xy)));
+  if (!(narrow > least_spread * least_spread * cell * cell) || std::hypot(mx - cx, my - cy) > farthest * cell) return std::nullopt;
+  const double xz = m.xz / m.n - mx * mz, yz = m.yz / m.n - my * mz, zz = m.zz / m.n - mz * mz;
+  const double det = xx * yy - xy * xy, bx = (yy * xz - xy * yz) / det, by = (xx * yz - xy * xz) / det;
+  if (!(bx * bx + by * by <= steepest * steepest)) return std::nullopt;
+  const double rest = std::max(0.0, zz - bx * xz - by * yz) * m.n / (m.n - 3);
+  return Plane{mz + bx * (cx - mx) + by * (cy - my), std::sqrt(rest)};
+}
+
+/// Root of the lower quartile of chi square over its degrees of freedom.
+double quartile_of(double freedom) {
+  constexpr double normal = -0.6745;
+  const double part = 2.0 / (9.0 * freedom);
+  return std::pow(1.0 - part + normal * std::sqrt(part), 1.5);
+}
+
+/// The returns of blocks that hold one of the first `own` points.
+std::vector<Return> returns_in_blocks(const core::Block& b, size_t own, double cell, std::vector<BlockKey>& blocks) {
+  const double side = cell * block_side;
+  const auto counts = [&b](size_t p) {
+    return core::is_usable(b, p) && core::is_last_return(b, p) && (b.return_number.empty() || b.return_number[p] <= 1);
+  };
+  const auto block_of = [&](size_t p) {
+    return BlockKey{core::cell_index(b.origin.x() + b.x[p], side), core::cell_index(b.origin.y() + b.y[p], side)};
+  };
+  for (size_t p = 0; p < own; ++p)
+    if (const BlockKey key = block_of(p); counts(p) && (blocks.empty() || blocks.back() != key)) blocks.push_back(key);
+  std::sort(blocks.begin(), blocks.end());
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  std::vector<Return> out;
+  out.reserve(b.size());
+  size_t last = 0;
+  for (size_t p = 0; p < b.size(); ++p) {
+    if (!counts(p)) continue;
+    const BlockKey key = block_of(p);
+    if (last >= blocks.size() || blocks[last] != key)
+      last = static_cast<size_t>(std::lower_bound(blocks.begin(), blocks.end(), key) - blocks.begin());
+    if (last >= blocks.size() || blocks[last] != key) continue;
+    const double east = b.origin.x() + b.x[p] - static_cast<double>(key.i) * side,
+                 north = b.origin.y() + b.y[p] - static_cast<double>(key.j) * side;
+    const auto place = [cell](double v) { return std::clamp(static_cast<int>(v / cell), 0, block_side - 1); };
+    out.push_back({static_cast<std::uint32_t>(last), static_cast<std::uint16_t>(place(north) * block_side + place(east)),
+                   b.strip.empty() ? std::uint16_t{0} : b.strip[p], east - 0.5 * side, north - 0.5 * side, b.z[p]});
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::vector<Moments> moments_of(std::span<const Return> returns) {
+  std::vector<Moments> out;
+  for (const Return& r : returns) {
+    if (out.empty() || out.back().cell != r.cell || out.back().line != r.line) out.push_back({r.cell, r.line});
+    out.back().add(r);
+  }
+  return out;
+}
+
+/// Cells of twice the side, `across` of them before.
+std::vector<Moments> doubled(std::vector<Moments> cells, int across) {
+  for (Moments& m : cells) m.cell = static_cast<std::uint16_t>(m.cell / across / 2 * (across / 2) + m.cell % across / 2);
+  const auto key = [](const Moments& m) { return std::tuple(m.cell, m.line); };
+  std::stable_sort(cells.begin(), cells.end(), [&key](const Moments& a, const Moments& b) { return key(a) < key(b); });
+  std::vector<Moments> out;
+  for (const Moments& m : cells)
+    if (!out.empty() && key(out.back()) == key(m))
+      out.back().add(m);
+    else
+      out.push_back(m);
+  return out;
+}
+
+/// Differences and scatters of one block on one level.
+class BlockAtLevel {
+ public:
+  BlockAtLevel(const LineOptions& o, double cell, int across) : options_(o), cell_(cell), across_(across) {}
+
+  void see(const std::vector<Moments>& moments) {
+    for (size_t begin = 0, end = 0; begin < moments.size(); begin = end) {
+      while (end < moments.size() && moments[end].cell == moments[begin].cell) ++end;
+      see_cell({moments.data() + begin, end - begin});
+    }
+  }
+
+  void give(LineCells& out, std::int32_t level, const BlockKey& key) const {
+    const auto i = static_cast<std::int32_t>(key.i), j = static_cast<std::int32_t>(key.j);
+    for (const auto& [line, sigmas] : sigmas_)
+      if (sigmas.size() >= least_cells)
+        out.scatters.push_back(
+            {level, i, j, line, static_cast<std::uint32_t>(sigmas.size()), static_cast<float>(core::quantile(sigmas, 0.25))});
+    for (const auto& [pair, differences] : differences_) {
+      if (differences.size() < least_cells) continue;
+      const double middle = core::median(differences);
+      std::vector<double> apart;
+      for (const double d : differences) apart.push_back(std::abs(d - middle));
+      out.differences.push_back({level, i, j, pair.first, pair.second, static_cast<std::uint32_t>(differences.size()),
+                                 static_cast<float>(middle), static_cast<float>(per_mad * core::median(apart))});
+    }
+  }
+
+ private:
+  void see_cell(std::span<const Moments> lines) {
+    const double middle = 0.5 * cell_ * across_;
+    const double cx = (lines[0].cell % across_ + 0.5) * cell_ - middle, cy = (lines[0].cell / across_ + 0.5) * cell_ - middle;
+    smooth_.clear();
+    for (const Moments& m : lines) {
+      if (m.n < options_.least) continue;
+      const std::optional<Plane> plane = plane_of(m, cx, cy, cell_);
+      if (!plane || plane->rms > options_.roughness.value) continue;
+      sigmas_[m.line].push_back(plane->rms / quartile_of(m.n - 3.0));
+      smooth_.emplace_back(m.line, plane->height);
+    }
+    for (size_t a = 0; a < smooth_.size(); ++a)
+      for (size_t b = a + 1; b < smooth_.size(); ++b)
+        differences_[{smooth_[a].first, smooth_[b].first}].push_back(smooth_[a].second - smooth_[b].second);
+  }
+
+  const LineOptions& options_;
+  double cell_;
+  int across_;
+  std::map<int, std::vector<double>> sigmas_;
+  std::map<std::pair<int, int>, std::vector<double>> differences_;
+  std::vector<std::pair<int, double>> smooth_;
+};
+
+}  // namespace
+
+std::vector<double> cell_sides(const LineOptions& o) {
+  if (o.cell) return {o.cell->value};
+  return {2.0, 4.0, 8.0};
+}
+
+double halo(const LineOptions& o) { return block_side * cell_sides(o).front(); }
+
+LineCells compare_cells(const core::Block& b, size_t own, const LineOptions& o) {
+  const std::vector<double> sides = cell_sides(o);
+  std::vector<BlockKey> blocks;
+  const std::vector<Return> returns = returns_in_blocks(b, own, sides.front(), blocks);
+  LineCells out;
+  for (size_t begin = 0, end = 0; begin < returns.size(); begin = end) {
+    while (end < returns.size() && returns[end].block == returns[begin].block) ++end;
+    std::vector<Moments> moments = moments_of({returns.data() + begin, end - begin});
+    int across = block_side;
+    for (size_t level = 0; level < sides.size(); ++level, across /= 2) {
+      if (level > 0) moments = doubled(std::move(moments), 2 * across);
+      BlockAtLevel judge(o, sides[level], across);
+      judge.see(moments);
+      judge.give(out, static_cast<std::int32_t>(level), blocks[returns[begin].block]);
+    }
+  }
+  return out;
+}
+
+}  // namespace swath::quality

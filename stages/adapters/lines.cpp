@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/output_file.h"
+#include "io/value_file.h"
+#include "quality/line_offsets.h"
+#include "stages/adapters/adapters.h"
+#include "stages/line_comparison.h"
+
+namespace swath::stages {
+namespace {
+
+using core::Column;
+
+class Lines : public OptionStage<quality::LineOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{
+        "quality.lines",
+        "Flight lines compared where they overlap: a height offset per line, scatter of the returns, what neighbours share.",
+        {Grain::tile, Grain::merge},
+        {Column::strip, Column::flags},
+        {},
+        {Product::points},
+        {}};
+    return info;
+  }
+  core::ColumnSet also_reads() const override { return {Column::classification, Column::return_number, Column::return_count}; }
+  double halo() const override { return quality::halo(options); }
+  double bytes_per_point() const override { return 48.0; }
+  std::vector<std::string> products() const override { return {"lines.json"}; }
+
+  void run_tile(const Context& context, TileJob& job) const override {
+    write_line_cells(file_of(context, job.folder, job.key), quality::compare_cells(job.block, job.own, options));
+  }
+
+  void run_merge(const Context& context, MergeJob& job) const override {
+    quality::LineCells cells;
+    for (const TileKey key : job.tiles) read_line_cells(file_of(context, job.folder, key), cells);
+    const quality::LineComparison c = quality::compare_lines(std::move(cells), options);
+    const core::Value v = value_of(c);
+    io::write_text_file(context.output / "lines.json", io::to_json(v));
+    job.findings = v;
+    size_t alone = 0;
+    for (const quality::LineOffset& l : c.lines) alone += l.pairs == 0;
+    job.tally.count("overlaps of two lines", c.pairs.size());
+    if (alone > 0) job.tally.count("lines that overlap no other on smooth ground: no offset", alone);
+  }
+
+ private:
+  static std::filesystem::path file_of(const Context& context, const std::filesystem::path& folder, TileKey key) {
+    return folder / (context.label(key) + ".cells");
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> make_lines() { return std::make_unique<Lines>(); }
+
+}  // namespace swath::stages

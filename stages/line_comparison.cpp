@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/line_comparison.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "io/output_file.h"
+#include "io/value_file.h"
+#include "stages/grid_tile.h"
+
+namespace swath::stages {
+namespace {
+
+constexpr const char* file_name = "lines.json";
+
+template <class T>
+void put(std::string& bytes, const std::vector<T>& records) {
+  const std::uint64_t n = records.size();
+  bytes.append(reinterpret_cast<const char*>(&n), sizeof n);
+  bytes.append(reinterpret_cast<const char*>(records.data()), n * sizeof(T));
+}
+
+template <class T>
+void take(const std::string& bytes, size_t& at, std::vector<T>& records, const std::filesystem::path& file) {
+  std::uint64_t n = 0;
+  if (bytes.size() < at + sizeof n) cut_short(file);
+  std::memcpy(&n, bytes.data() + at, sizeof n);
+  at += sizeof n;
+  if ((bytes.size() - at) / sizeof(T) < n) cut_short(file);
+  const size_t before = records.size();
+  records.resize(before + n);
+  if (n > 0) std::memcpy(records.data() + before, bytes.data() + at, n * sizeof(T));
+  at += n * sizeof(T);
+}
+
+double number(const core::Value& v, std::string_view key) {
+  const core::Value* found = v.find(key);
+  return found && found->is_number() ? found->as_number() : std::nan("");
+}
+
+}  // namespace
+
+core::Value value_of(const quality::LineComparison& c) {
+  core::Value v = core::Value::object();
+  v["cell_m"] = c.cell;
+  v["scatter_m"] = c.scatter;
+  v["common_m"] = c.common;
+  v["residual_m"] = c.residual;
+  core::Value& lines = v["lines"] = core::Value::array();
+  for (const quality::LineOffset& l : c.lines) {
+    core::Value one = core::Value::object();
+    one["line"] = l.line;
+    one["group"] = l.group;
+    one["overlaps"] = l.pairs;
+    one["offset_m"] = l.offset;
+    one["sigma_m"] = l.sigma;
+    lines.push(std::move(one));
+  }
+  core::Value& pairs = v["pairs"] = core::Value::array();
+  for (const quality::LinePair& p : c.pairs) {
+    core::Value one = core::Value::object();
+    one["line_a"] = p.line_a;
+    one["line_b"] = p.line_b;
+    one["cells"] = p.cells;
+    one["difference_m"] = p.difference;
+    one["sigma_m"] = p.sigma;
+    one["rms_m"] = p.rms;
+    one["rms_after_m"] = p.rms_after;
+    pairs.push(std::move(one));
+  }
+  return v;
+}
+
+void write_line_cells(const std::filesystem::path& file, const quality::LineCells& cells) {
+  std::string bytes;
+  put(bytes, cells.differences);
+  put(bytes, cells.scatters);
+  io::write_text_file(file, bytes, false);
+}
+
+void read_line_cells(const std::filesystem::path& file, quality::LineCells& cells) {
+  const std::string bytes = io::read_text_file(file);
+  size_t at = 0;
+  take(bytes, at, cells.differences, file);
+  take(bytes, at, cells.scatters, file);
+  if (at != bytes.size()) cut_short(file);
+}
+
+std::optional<KnownLines> known_lines(const Context& context) {
+  const std::filesystem::path file = context.made(file_name);
+  if (file.empty()) return std::nullopt;
+  const core::Value v = io::read_value_file(file);
+  KnownLines out{{}, number(v, "scatter_m"), number(v, "common_m"), number(v, "residual_m")};
+  for (const core::Value& l : v.find("lines")->items())
+    out.offsets[static_cast<int>(l.find("line")->as_int())] = l.find("offset_m")->as_number();
+  return out;
+}
+
+void take_offsets(core::Block& b, const KnownLines& lines) {
+  if (b.strip.empty()) return;
+  int line = -1;
+  double offset = 0.0;
+  for (size_t p = 0; p < b.size(); ++p) {
+    if (b.strip[p] != line) {
+      line = b.strip[p];
+      const auto found = lines.offsets.find(line);
+      offset = found == lines.offsets.end() ? 0.0 : found->second;
+    }
+    b.z[p] -= offset;
+  }
+}
+
+double KnownLines::sigma() const { return std::hypot(scatter, std::isnan(common) ? 0.0 : common); }
+
+double KnownLines::horizontal_sigma() const { return std::isnan(common) ? 0.0 : std::sqrt(2.0) * common; }
+
+void give_sigmas(core::Block& b, double vertical, double horizontal) {
+  core::add_columns(b, {core::Column::sigma_v, core::Column::sigma_h});
+  for (size_t p = 0; p < b.size(); ++p)
+    if (b.sigma_v[p] == 0.0F) {
+      b.sigma_v[p] = static_cast<float>(vertical);
+      b.sigma_h[p] = static_cast<float>(horizontal);
+    }
+}
+
+}  // namespace swath::stages

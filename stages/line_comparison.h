@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What quality.lines hands to the stages behind it: lines.json.
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "core/value.h"
+#include "quality/line_offsets.h"
+#include "stages/stage.h"
+
+namespace swath::stages {
+
+/// lines.json and the report's findings.
+core::Value value_of(const quality::LineComparison& c);
+
+/// One tile's cells as an intermediate file, in the machine's byte order.
+void write_line_cells(const std::filesystem::path& file, const quality::LineCells& cells);
+/// Appends them to `cells`; throws core::Error where the file is damaged.
+void read_line_cells(const std::filesystem::path& file, quality::LineCells& cells);
+
+/// What is known of a run's lines. NaN where the points do not show it.
+struct KnownLines {
+  std::map<int, double> offsets;  ///< m, by line
+  double scatter = 0, common = 0, residual = 0;
+  double sigma() const;             ///< m, of one point's height
+  double horizontal_sigma() const;  ///< m, radial: what neighbours share has the same size along each axis, for want of better
+};
+
+/// Nothing where no stage before this one has compared the lines.
+std::optional<KnownLines> known_lines(const Context& context);
+
+/// Takes its line's offset from the height of every point.
+void take_offsets(core::Block& block, const KnownLines& lines);
+
+/// Gives the points that have no sigma_v (no column, or 0) these sigmas, m.
+void give_sigmas(core::Block& block, double vertical, double horizontal);
+
+}  // namespace swath::stages
