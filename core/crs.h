@@ -6,12 +6,18 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <string_view>
 
 namespace swath::core {
 
-/// A coordinate reference system: "EPSG:32632", compound "EPSG:25832+7837" (also "EPSG:25832+EPSG:7837"), WKT (WKT2, WKT1 of
-/// GDAL or ESRI), PROJ text. Without a vertical part heights are ellipsoidal, in metres, on the CRS's own ellipsoid, whatever the unit of
-/// the horizontal axes. Holds plain facts only: copies may be used from any thread.
+/// What a CRS says of heights: nothing (two axes, or a vertical part on an unknown datum, which states a unit alone), that they are
+/// ellipsoidal (three axes, or geocentric), or that they count from a geoid or level (a compound's vertical part).
+enum class Heights { unknown, ellipsoidal, vertical };
+inline constexpr std::string_view unknown_heights = "height system not stated", ellipsoidal_heights = "ellipsoidal height";
+
+/// A coordinate reference system: "EPSG:32632", compound "EPSG:25832+7837" (also "EPSG:25832+EPSG:7837"), with ellipsoidal heights
+/// "EPSG:25832+ellipsoidal", WKT (WKT2, WKT1 of GDAL, ESRI or LAStools), PROJ text. A shift to WGS 84 (TOWGS84) that WKT holds beside a
+/// datum known by its code is not used, as in GDAL. Holds plain facts only: copies may be used from any thread.
 class Crs {
  public:
   Crs() = default;
@@ -27,8 +33,11 @@ class Crs {
   bool is_geographic() const;
   bool is_projected() const;
   bool is_geocentric() const;
-  bool has_vertical() const;                ///< compound with a vertical part (heights over a geoid or a level)
-  std::string vertical_name() const;        ///< vertical datum's name, or "ellipsoidal height"
+  Heights heights() const;
+  bool has_vertical() const;                ///< compound with a vertical part (heights over a geoid, a level, or an unknown datum)
+  bool has_height_unit() const;             ///< it states the unit of heights
+  std::string vertical_name() const;        ///< vertical datum's name, unknown_heights or ellipsoidal_heights
+  Crs horizontal() const;                   ///< without heights
   double metres_per_unit() const;           ///< of the horizontal axes (geographic: 0)
   double vertical_metres_per_unit() const;  ///< of heights
   std::string unit_name() const;
@@ -54,7 +63,9 @@ Crs wgs84_geodetic();
 /// best available operation. Refuses ballpark operations and those whose grids are missing: Error names the grid file and how to get it.
 /// Refused is also a second-best operation, where a missing grid would give 1 m or better by EPSG's statement and no installed operation
 /// is as good over the same area; coarser grids (1.5 m and up, as WGS 84 to NAD83) are let go, accuracy() then states what is left.
-/// A CRS without a vertical part is taken with ellipsoidal heights, so heights are never dropped.
+/// Heights: a CRS that does not state its system and one that counts from a geoid or level have no relation, and Error says so; two that
+/// state none hand heights through as they are; beside ellipsoidal heights (ECEF, geodetic 3D) an unstated system is ellipsoidal in metres,
+/// as in the map coordinates of raw records.
 /// One object is for one thread; copy() makes another.
 class Transform {
  public:

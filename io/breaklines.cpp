@@ -134,13 +134,13 @@ void transform(std::vector<Breakline>& features, const BreaklineFile& f, const s
   const core::Crs from(stated), to(survey.crs.empty() ? products : survey.crs);
   const bool heights = std::any_of(features.begin(), features.end(), [](const Breakline& b) { return b.has_height; });
   if (from.wkt() == to.wkt()) return;
-  if (heights && f.crs.empty() && !from.has_vertical() && !from.is_geocentric() && to.has_vertical())
+  if (heights && from.heights() == core::Heights::unknown && to.heights() == core::Heights::vertical)
     throw core::Error(
         "the file's CRS, " + from.name() + ", does not say what its heights are, while the survey's are " + to.vertical_name(), place,
-        "state crs in this [[breaklines]]: with a vertical part, or without one where heights are ellipsoidal");
+        "state crs in this [[breaklines]] with its vertical part, or as \"EPSG:25832+ellipsoidal\" where heights are ellipsoidal");
   if (from.epsg() != 0 && from.epsg() == to.epsg() && (!heights || (!from.has_vertical() && !to.has_vertical()))) return;
-  const core::Transform operation(from, to);
-  const auto unit = [&](const core::Crs& crs) { return survey.height_unit && !crs.has_vertical() ? survey.height_unit->value : 1.0; };
+  const core::Transform operation = heights ? core::Transform(from, to) : core::Transform(from.horizontal(), to.horizontal());
+  const auto unit = [&](const core::Crs& crs) { return survey.height_unit && !crs.has_height_unit() ? survey.height_unit->value : 1.0; };
   for (Breakline& b : features)
     for (auto& part : b.parts)
       for (Vector3d& v : part) {

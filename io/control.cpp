@@ -191,12 +191,12 @@ core::Crs crs_of(const Survey& survey, const ControlFile& f, const RawLayer& lay
   const std::string stated = !f.crs.empty() ? f.crs : !layer.own_crs.empty() ? layer.own_crs : survey.crs;
   if (stated.empty()) throw core::Error("the CRS of the control is not known", file, "state crs in this [[control]], or in the survey");
   const core::Crs crs(stated);
-  if (f.crs.empty() && !layer.own_crs.empty() && !survey.crs.empty() && !crs.has_vertical() && !crs.is_geocentric()) {
+  if ((!f.crs.empty() || !layer.own_crs.empty()) && !survey.crs.empty() && crs.heights() == core::Heights::unknown) {
     const core::Crs of_survey(survey.crs);
-    if (of_survey.has_vertical())
+    if (of_survey.heights() == core::Heights::vertical)
       throw core::Error(
           "the file's CRS, " + crs.name() + ", does not say what its heights are, while the survey's are " + of_survey.vertical_name(),
-          file, "state crs in this [[control]]: with a vertical part, or without one where heights are ellipsoidal");
+          file, "state crs in this [[control]] with its vertical part, or as \"EPSG:25832+ellipsoidal\" where heights are ellipsoidal");
   }
   return crs;
 }
@@ -239,7 +239,7 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
     if (layer.points.empty()) continue;
     const core::Crs crs = crs_of(survey, f, layer, file);
     const core::Transform to_ecef(crs, core::wgs84_ecef());
-    const double height_unit = survey.height_unit && !crs.has_vertical() && !crs.is_geocentric() ? survey.height_unit->value : 1.0;
+    const double height_unit = survey.height_unit && !crs.has_height_unit() ? survey.height_unit->value : 1.0;
     for (const RawPoint& raw : layer.points) {
       if (!raw.at.allFinite()) throw core::Error("a coordinate is not finite", raw.place, "correct the point, or leave it out");
       hold_sigma(raw.sigma_h, "easting and northing", raw.place);

@@ -104,6 +104,14 @@ void CsdReader::read(std::uint64_t first, size_t n, std::vector<CsdPulse>& pulse
   }
 }
 
+void hold_csd_week(const std::filesystem::path& file, int week) {
+  const int stated = CsdReader(file).header().gps_week;
+  constexpr int roll_over = 1024;
+  if (stated == week || (stated < roll_over && stated == week % roll_over)) return;
+  throw core::usage_error("the survey states GPS week " + std::to_string(week) + ", the file's header " + std::to_string(stated),
+                          file.string(), "leave the week out to use the header's, or correct it; `swath info` shows the header");
+}
+
 core::TrajectoryData read_csd_trajectory(CsdReader& file, core::Seconds spacing, core::Tally& tally) {
   core::TrajectoryData out;
   std::vector<CsdPulse> pulses;

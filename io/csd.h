@@ -62,6 +62,9 @@ class CsdReader {
   std::vector<unsigned char> bytes_;
 };
 
+/// Throws Error where the header states another GPS week than `week`, as the survey does. A header below 1024 may have rolled over.
+void hold_csd_week(const std::filesystem::path& file, int week);
+
 /// The carrier's poses that the file holds, at least `spacing` apart (0: one per pulse), the last one always. Times as recorded
 /// (seconds of week). Poses at a repeated time are counted and left out; one that is not finite is an error.
 /// Throws Error naming the record where time goes back (a drop of over half a week is the week's roll-over and is followed).

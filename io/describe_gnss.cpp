@@ -15,6 +15,7 @@
 #include "io/gnss_file.h"
 #include "io/nmea.h"
 #include "io/record_times.h"
+#include "io/rinex_header.h"
 #include "io/rtklib_pos.h"
 
 namespace swath::io {
@@ -152,6 +153,45 @@ Value describe_tag(const std::filesystem::path& path) {
     out[name] = load<std::uint32_t>(record.data()) * 1e-3;
   }
   if (records == 0) warnings.push("no arrival is recorded");
+  out["warnings"] = std::move(warnings);
+  return out;
+}
+
+Value describe_rinex(const std::filesystem::path& path) {
+  Value out = Value::object(), warnings = Value::array();
+  const RinexKind kind = rinex_kind(path);
+  out["format"] = kind == RinexKind::orbits ? "SP3 orbits" : "RINEX";
+  if (kind == RinexKind::navigation || kind == RinexKind::clocks)
+    out["kind"] = kind == RinexKind::navigation ? "navigation messages" : "clocks";
+  if (kind == RinexKind::observations) {
+    out["kind"] = "observations";
+    try {
+      const RinexObservations o = scan_rinex(path);
+      const RinexHeader& h = o.header;
+      out["version"] = h.version;
+      out["systems"] = std::string(1, h.system);
+      out["marker"] = h.marker;
+      out["antenna"] = h.antenna_type;
+      out["antenna_offset_enu_m"] = Value(Value::Array{h.antenna_offset.x(), h.antenna_offset.y(), h.antenna_offset.z()});
+      if (h.position) {
+        const core::Geodetic g = core::geodetic_of(*h.position);
+        out["approximate_latitude_deg"] = core::to_degrees(g.latitude);
+        out["approximate_longitude_deg"] = core::to_degrees(g.longitude);
+        out["approximate_ellipsoidal_height_m"] = g.height;
+      } else {
+        warnings.push("the header states no approximate position");
+      }
+      out["epochs"] = o.epochs;
+      out["interval_s"] = o.interval;
+      out["from"] = core::utc_text(o.first);
+      out["to"] = core::utc_text(o.last);
+      out["seconds"] = std::round((o.last - o.first) * 1e3) / 1e3;
+      out["longest_gap_s"] = o.longest_gap;
+      if (o.interval > 0 && o.longest_gap > 1.5 * o.interval) warnings.push("epochs are missing");
+    } catch (const core::Error& e) {
+      warnings.push(e.text());
+    }
+  }
   out["warnings"] = std::move(warnings);
   return out;
 }

@@ -12,6 +12,8 @@ namespace swath::io {
 core::Value describe_pos(const std::filesystem::path& file);
 core::Value describe_nmea(const std::filesystem::path& file);
 core::Value describe_tag(const std::filesystem::path& file);
+/// What a RINEX file holds: its kind; of observations the station, the antenna, the epochs and their gaps.
+core::Value describe_rinex(const std::filesystem::path& file);
 
 /// True where the file starts as a time tag file of RTKLIB.
 bool looks_like_tag(const std::filesystem::path& file);

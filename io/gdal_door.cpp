@@ -92,11 +92,13 @@ CrsFacts crs_facts(const std::string& text) {
     facts.axis_mapping += (facts.axis_mapping.empty() ? "" : ",") + std::to_string(axis);
   facts.empty = false;
   facts.geographic = crs.is_geographic();
+  facts.ellipsoidal = crs.heights() == core::Heights::ellipsoidal;
   facts.name = crs.name();
   facts.unit = facts.geographic ? "degree" : short_unit(crs.unit_name(), crs.metres_per_unit());
   facts.vertical_unit = short_unit(crs.vertical_unit_name(), crs.vertical_metres_per_unit());
   facts.vertical_name = crs.vertical_name();
   srs.StripVertical();
+  srs.DemoteTo2D(nullptr);
   facts.horizontal_wkt = wkt2(srs);
   return facts;
 }

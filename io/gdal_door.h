@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "core/crs.h"
+
 namespace swath::io {
 
 /// Catches GDAL's messages on this thread as long as it lives (nothing is printed) and registers GDAL's drivers.
@@ -44,15 +46,16 @@ class GdalSetting {
 
 /// What a CRS text ("EPSG:25832+7837", WKT, PROJ text) says of coordinates and heights.
 struct CrsFacts {
-  bool empty = true;                     ///< no CRS: units unknown
-  bool geographic = false;               ///< horizontal axes in degrees
-  std::string wkt;                       ///< WKT2:2019, whole
-  std::string horizontal_wkt;            ///< WKT2:2019 without the vertical part
-  std::string axis_mapping = "1,2";      ///< which CRS axes easting and northing are ("2,1" where the CRS puts northing first)
-  std::string name;                      ///< of the whole CRS
-  std::string unit = "unknown";          ///< of the horizontal axes: "m", "ft", "US survey foot", "degree", ...
-  std::string vertical_unit = "m";       ///< of the vertical part; without one heights are ellipsoidal, in metres (core/crs.h)
-  std::string vertical_name = "height";  ///< name of the vertical datum, or "ellipsoidal height"
+  bool empty = true;                                 ///< no CRS: units unknown
+  bool geographic = false;                           ///< horizontal axes in degrees
+  bool ellipsoidal = false;                          ///< three axes: heights are ellipsoidal
+  std::string wkt;                                   ///< WKT2:2019, whole
+  std::string horizontal_wkt;                        ///< WKT2:2019 without the vertical part
+  std::string axis_mapping = "1,2";                  ///< which CRS axes easting and northing are ("2,1" where the CRS puts northing first)
+  std::string name;                                  ///< of the whole CRS
+  std::string unit = "unknown";                      ///< of the horizontal axes: "m", "ft", "US survey foot", "degree", ...
+  std::string vertical_unit = "m";                   ///< of heights; the metre where the CRS does not say
+  std::string vertical_name{core::unknown_heights};  ///< name of the vertical datum, "ellipsoidal height", or that none is stated
 };
 
 /// Throws core::Error where PROJ does not know the text.

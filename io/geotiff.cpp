@@ -49,7 +49,10 @@ void check_blocks(const std::filesystem::path& file, const std::filesystem::path
 void set_crs(GDALDataset& d, const CrsFacts& facts) {
   if (facts.empty) return;
   OGRSpatialReference srs;
-  srs.SetFromUserInput(facts.wkt.c_str());
+  // GDAL writes no GeoTIFF keys at all for a projection with three axes.
+  const bool flat = facts.ellipsoidal && !facts.geographic;
+  srs.SetFromUserInput(flat ? facts.horizontal_wkt.c_str() : facts.wkt.c_str());
+  if (flat) d.SetMetadataItem(height_system_item, facts.vertical_name.c_str());
   srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   d.SetSpatialRef(&srs);
 }

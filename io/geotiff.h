@@ -12,6 +12,9 @@
 
 namespace swath::io {
 
+/// Metadata of a raster whose heights are ellipsoidal above a projection: GeoTIFF keys do not say it.
+inline constexpr const char* height_system_item = "HEIGHT_SYSTEM";
+
 /// Stands for "no value" in every raster written. A number, not NaN: all GIS take it, some (Surfer, older ArcGIS, SAGA) not NaN.
 constexpr double raster_nodata = -9999.0;
 

@@ -19,9 +19,13 @@
 #include "io/delimited.h"
 #include "io/describe_gnss.h"
 #include "io/describe_las.h"
+#include "io/describe_pcap.h"
 #include "io/describe_trajectory.h"
+#include "io/describe_vector.h"
+#include "io/geotiff.h"
 #include "io/nmea.h"
 #include "io/npy.h"
+#include "io/rinex_header.h"
 #include "io/rtklib_pos.h"
 #include "io/survey.h"
 #include "io/value_file.h"
@@ -195,6 +199,40 @@ Value describe_survey(const Path& path) {
   return out;
 }
 
+/// JSON and TOML: a survey, a pipeline, or what this program writes.
+Value describe_tree(const Path& path) {
+  const Value tree = read_value_file(path);
+  const auto has = [&](const char* key) { return tree.is_object() && tree.find(key); };
+  if (has("type") && tree.find("type")->is_text() && (has("features") || has("coordinates") || has("geometry")))
+    if (Value vector = describe_vector(path); !vector.is_null()) return vector;
+  const bool report = has("program") && has("stages"), pipeline = has("stage");
+  const bool calibration = has("calibration") && has("sigma") && !has("laser") && !has("imu");
+  if (!report && !pipeline && !calibration && tree.is_object()) {
+    for (const char* key : {"laser", "trajectory", "imu", "gnss", "points", "event", "hangar", "rinex", "crs", "scanner"})
+      if (has(key)) return describe_survey(path);
+  }
+  Value out = Value::object();
+  out["format"] = report ? "report of a run" : pipeline ? "pipeline" : calibration ? "calibration" : "JSON or TOML";
+  if (report)
+    for (const char* key : {"program", "command", "survey", "crs", "seconds"})
+      if (const Value* v = tree.find(key)) out[key] = *v;
+  if (report || pipeline) {
+    const Value* list = tree.find(report ? "stages" : "stage");
+    Value& names = out["stages"] = Value::array();
+    if (list->is_array())
+      for (const Value& s : list->items())
+        if (const Value* type = s.is_object() ? s.find("type") : nullptr; type && type->is_text()) names.push(*type);
+  }
+  if (calibration) out["calibration"] = *tree.find("calibration");
+  if (tree.is_array()) out["items"] = static_cast<std::uint64_t>(tree.items().size());
+  if (tree.is_object() && !report) {
+    Value& keys = out["keys"] = Value::array();
+    for (const auto& [key, value] : tree.members()) keys.push(key);
+  }
+  out["warnings"] = Value::array();
+  return out;
+}
+
 struct CloseDataset {
   void operator()(GDALDataset* d) const { GDALClose(d); }
 };
@@ -223,7 +261,8 @@ Value describe_raster(const Path& path) {
     if (wkt && *wkt) {
       const core::Crs crs{std::string(wkt)};
       out["crs"] = crs.name();
-      out["heights"] = crs.vertical_name();
+      const char* heights = data->GetMetadataItem(height_system_item);
+      out["heights"] = heights ? std::string(heights) : crs.vertical_name();
     } else {
       warnings.push("the file states no CRS");
     }
@@ -264,14 +303,18 @@ Value describe_content(const Path& path) {
   if (looks_like_tag(path)) return describe_tag(path);
   if (looks_like_pos(path)) return describe_pos(path);
   if (looks_like_nmea(path)) return describe_nmea(path);
+  if (looks_like_pcap(start)) return describe_pcap(path);
   const bool binary = start.find('\0') != std::string::npos;
-  if (path.extension() == ".toml" || path.extension() == ".json") return describe_survey(path);
+  if (!binary && rinex_kind(path) != RinexKind::other) return describe_rinex(path);
+  if (path.extension() == ".toml" || path.extension() == ".json") return describe_tree(path);
   if (binary && looks_like_sbet(path)) return describe_sbet(path);
   if (binary && looks_like_smrmsg(path)) return describe_smrmsg(path);
   if (Value raster = describe_raster(path); !raster.is_null()) return raster;
+  if (Value vector = describe_vector(path); !vector.is_null()) return vector;
   if (!binary) return describe_text(path);
   throw core::Error("is of no kind that is known here", path.string(),
-                    "LAS, LAZ, SBET, smrmsg, CSD, NumPy, RTKLIB solutions, NMEA, text, survey.toml and rasters are read");
+                    "LAS, LAZ, SBET, smrmsg, CSD, NumPy, RTKLIB solutions, NMEA, RINEX, PCAP, text, survey.toml, JSON, rasters and vector "
+                    "files are known");
 }
 
 std::string scalar(const Value& v) {

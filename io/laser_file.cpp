@@ -17,6 +17,7 @@ constexpr size_t chunk = 1 << 15;  // records decoded at once
 constexpr const char* damaged = "the file is damaged: export the records again";
 constexpr double farthest = 1e5;         // m; no airborne laser reaches a tenth of it
 constexpr size_t most_of_a_pulse = 255;  // return numbers are 8-bit
+constexpr double full_turn = 2 * core::pi * (1 + 1e-9);
 
 std::string record_text(std::uint64_t record) { return "record " + std::to_string(record); }
 
@@ -89,6 +90,14 @@ class LineRule {
   std::optional<int> stated_;
 };
 
+/// Throws: an angle beyond a full turn is none of a scanner, in the unit that is stated.
+[[noreturn]] void hold_angle_unit(double recorded, AngleUnit unit, const std::string& place) {
+  const bool radians = unit == AngleUnit::rad;
+  throw core::Error("a scan angle of " + core::format_number(recorded) + (radians ? " rad" : "") + " is more than a full turn", place,
+                    radians ? "are the angles in degrees? State angle_unit = \"deg\" in this [[laser]]"
+                            : "check angle_unit and columns.scan_angle of this [[laser]]");
+}
+
 /// A number as an unsigned field of the shot: cut to its range (`cut`) or 0 where it is none; counted.
 template <class T>
 T field(double v, bool cut, const char* what, std::uint64_t record, core::Tally& tally) {
@@ -158,6 +167,7 @@ struct LaserSource::State {
         clock(strip.clock, name),
         reader(open_laser_records(survey, file, Wanted::all, strip.begin, strip.last)),
         angle_unit((format_of(file) == LaserFormat::csd ? 1.0 : radians_per(file.angle_unit)) * (file.angle_to_port ? -1.0 : 1.0)) {
+    is_profile = file.model == core::ScannerModel::profile && survey.scanner.model != core::ScannerModel::profile;
     if (angle_unit == 0 && !file.columns.scan_angle.empty())
       throw core::usage_error("the unit of the recorded angles is not stated", name, "angle_unit = \"deg\", \"rad\" or \"gon\"");
   }
@@ -169,6 +179,7 @@ struct LaserSource::State {
   Clock clock;
   std::unique_ptr<LaserRecordReader> reader;
   double angle_unit;
+  bool is_profile = false;  // beside a mirror, whose beam at angle 0 is the profile's
   core::Tally tally;
   LaserRecords raw;
   size_t at = 0;
@@ -187,7 +198,7 @@ struct LaserSource::State {
       forward = range > 0 ? x / range : 0.0;
     } else {
       range = raw.range[i];
-      if (!raw.angle.empty()) angle = raw.angle[i] * angle_unit;
+      if (!raw.angle.empty() && !is_profile) angle = raw.angle[i] * angle_unit;
     }
     if (!std::isfinite(range))
       throw core::Error("the range is missing or not finite", name + ": " + record_text(record),
@@ -195,6 +206,7 @@ struct LaserSource::State {
     if (!(range > 0)) return drop("records with a range not positive, left out");
     if (!(range * file.range_unit.value <= farthest)) return drop("records with a range over 100 km, left out");
     if (!std::isfinite(angle)) throw core::Error("the scan angle is missing or not finite", name + ": " + record_text(record), damaged);
+    if (std::abs(angle) > full_turn) hold_angle_unit(raw.angle[i], file.angle_unit, name + ": " + record_text(record));
     if (time < last_time)
       throw core::Error("time goes back by " + core::format_number(last_time - time) + " s inside line " + std::to_string(line),
                         name + ": " + record_text(record), "records of a line must be in the order of their time");

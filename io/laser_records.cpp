@@ -243,6 +243,7 @@ std::unique_ptr<LaserRecordReader> open_laser_records(const Survey& survey, cons
 
 TimeTags time_of(const Survey& survey, const LaserFile& f) {
   TimeTags tags = f.time;
+  if (format_of(f) == LaserFormat::csd && tags.week) hold_csd_week(resolve(survey, f.file), *tags.week);
   if (tags.scale != core::TimeScale::unstated) return tags;
   const std::filesystem::path path = resolve(survey, f.file);
   if (format_of(f) == LaserFormat::csd) {

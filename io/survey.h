@@ -48,6 +48,7 @@ struct LaserFile {
   core::Metres range_unit{1.0};
   bool angle_to_port = false;
   std::optional<int> line;
+  std::optional<core::ScannerModel> model;
   std::string delimiter;
   LaserColumns columns;
 };
@@ -61,6 +62,7 @@ void describe(LaserFile& f, V& v) {
   v.option("range_unit", f.range_unit, core::above(0.0), "Length of one unit of recorded ranges (text and NumPy files).");
   v.option("angle_to_port", f.angle_to_port, "True where the file counts scan angles positive to port.");
   v.option("line", f.line, core::within(0, 65535), "Flight line id of all records, where the file has no column of lines.");
+  v.option("model", f.model, "Scanner model of this file, where it is not scanner.model: profile, mirror or polygon beside one another.");
   v.option("delimiter", f.delimiter, "Delimiter of a text file; empty: comma, semicolon, tab or blanks, found in its first line.");
   v.table("columns", f.columns, "Columns of a text or NumPy file.");
 }
@@ -148,7 +150,8 @@ struct PointFile {
 template <class V>
 void describe(PointFile& f, V& v) {
   v.option("file", f.file, "LAS or LAZ file, relative to survey.toml.");
-  v.option("crs", f.crs, "CRS of the file, where it states none or a wrong one.");
+  v.option("crs", f.crs,
+           "CRS of the file, where it states none, a wrong one or no heights: \"EPSG:25832+7837\", \"EPSG:25832+ellipsoidal\".");
   v.option("height_unit", f.height_unit, core::above(0.0),
            "One unit of the file's heights where its CRS has no vertical part; without it what the file states, then the survey's "
            "height_unit, then the unit of the file's horizontal axes.");
@@ -221,9 +224,7 @@ template <class V>
 void describe(Survey& s, V& v) {
   v.option("name", s.name, "Name of the survey.");
   v.option("crs", s.crs,
-           "CRS of the products: EPSG code (\"EPSG:32632\", compound \"EPSG:25832+7837\"), WKT or PROJ text. Point clouds may leave it "
-           "out: it is then that of "
-           "the first file.");
+           "CRS of the products: \"EPSG:32632\", \"EPSG:25832+7837\", WKT or PROJ text; of clouds the first file's where left out.");
   v.option("height_unit", s.height_unit, core::above(0.0),
            "One unit of heights where the CRS has no vertical part, for example \"1 ft\"; without it the metre, and for point clouds the "
            "unit of the horizontal axes.");
@@ -263,6 +264,9 @@ Survey read_survey(const core::Value& tree, const std::filesystem::path& folder)
 void load_calibration(const std::filesystem::path& file, core::Calibration& calibration, core::SensorSigma& sigma);
 /// The tree that load_calibration() reads back.
 core::Value calibration_tree(const core::Calibration& calibration, const core::SensorSigma& sigma);
+
+/// The scanner model of a file's records: its own, else the survey's.
+inline core::ScannerModel model_of(const Survey& survey, const LaserFile& file) { return file.model.value_or(survey.scanner.model); }
 
 /// The format a file is read in: the one stated, or by the name's ending; `automatic` where the ending says nothing.
 LaserFormat format_of(const LaserFile& file);

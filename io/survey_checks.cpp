@@ -5,21 +5,17 @@
 #include <map>
 
 #include "core/crs.h"
+#include "io/csd.h"
 #include "io/imu_file.h"
 
 namespace swath::io {
-namespace {
 
-using core::Fault;
-using core::Value;
-
-/// The place of the deepest table or value on the path "laser[1].time.scale" that the tree has.
-core::Location place_of(const Value& tree, const std::string& key) {
-  const Value* at = &tree;
+core::Location place_in(const core::Value& tree, const std::string& key) {
+  const core::Value* at = &tree;
   size_t i = 0;
   while (i < key.size()) {
     const size_t stop = std::min(key.find_first_of(".[", i), key.size());
-    const Value* next = at->find(key.substr(i, stop - i));
+    const core::Value* next = at->find(key.substr(i, stop - i));
     if (!next) break;
     at = next;
     i = stop;
@@ -33,6 +29,11 @@ core::Location place_of(const Value& tree, const std::string& key) {
   }
   return at->where;
 }
+
+namespace {
+
+using core::Fault;
+using core::Value;
 
 /// The conditions between a survey's options and with the files on disk. A key that already has a fault gets no second one.
 class Checks {
@@ -64,7 +65,7 @@ class Checks {
   void fault(const std::string& key, std::string what, std::string hint = {}) {
     for (const Fault& f : faults_)
       if (f.key == key) return;
-    faults_.push_back({place_of(tree_, key), key, std::move(what), std::move(hint)});
+    faults_.push_back({place_in(tree_, key), key, std::move(what), std::move(hint)});
   }
 
   void exists(const std::filesystem::path& file, const std::string& key) {
@@ -78,10 +79,10 @@ class Checks {
   }
 
   void project() {
-    // A survey may be of the trajectory or of events alone; with IMU, GNSS or raw observations the trajectory is computed.
+    // A survey may be of a trajectory or of events alone; with IMU, GNSS or raw observations the trajectory is computed.
     const bool computed = !survey_.imu.empty() || !survey_.gnss.empty() || !survey_.rinex.rover.empty();
     // One of a hangar has no records of a flight at all.
-    const bool navigation = (computed || !survey_.events.empty() || survey_.hangar) && survey_.laser.empty();
+    const bool navigation = (computed || !survey_.trajectory.empty() || !survey_.events.empty() || survey_.hangar) && survey_.laser.empty();
     if (survey_.crs.empty()) {
       if (survey_.points.empty() && !navigation)
         fault("crs", "the CRS of the products is missing", "state it, for example crs = \"EPSG:32632\"");
@@ -96,10 +97,15 @@ class Checks {
     const bool raw = !survey_.laser.empty();
     if (raw && !survey_.points.empty()) fault("points", "a survey has either raw [[laser]] records or georeferenced [[points]], not both");
     if (!raw && survey_.points.empty() && !navigation)
-      fault("laser", "no records: neither [[laser]] nor [[points]] is there, nor [[imu]], [[gnss]], [[event]] or hangar");
+      fault("laser", "no records: neither [[laser]] nor [[points]] is there, nor [[trajectory]], [[imu]], [[gnss]], [[event]] or hangar");
     const auto is_csd = [](const LaserFile& f) { return format_of(f) == LaserFormat::csd; };
     if (raw && survey_.trajectory.empty() && !computed && !std::all_of(survey_.laser.begin(), survey_.laser.end(), is_csd))
       fault("trajectory", "raw [[laser]] records need a [[trajectory]], or [[imu]] and [[gnss]] records to compute it from");
+    const Value* antenna = tree_.find("antenna");
+    const bool fixes = !survey_.gnss.empty() || !survey_.rinex.rover.empty();
+    if (!survey_.imu.empty() && fixes && survey_.trajectory.empty() && !(antenna && antenna->find("lever_arm")))
+      fault("antenna.lever_arm", "IMU and GNSS records go together through the antenna's lever arm, which is not stated",
+            "state it as [antenna] lever_arm = [\"... m\", \"... m\", \"... m\"] from the IMU's centre: forward, right, down");
     const Value* calibration = tree_.find("calibration");
     const bool boresight = calibration && (calibration->find("roll") || calibration->find("pitch") || calibration->find("heading"));
     if (std::any_of(survey_.laser.begin(), survey_.laser.end(), is_csd) && !survey_.calibration_file && !boresight)
@@ -137,7 +143,14 @@ class Checks {
     if (format == LaserFormat::automatic)
       return fault(key + ".format", "the ending of '" + f.file.string() + "' does not tell the format", "one of text, npy, las, csd");
     time(f.time, key + ".time", !c.week.empty(), own_scale);
-    const auto model = survey_.scanner.model;
+    const auto model = model_of(survey_, f);
+    const auto scans_across = [](core::ScannerModel m) {
+      return m == core::ScannerModel::mirror || m == core::ScannerModel::polygon || m == core::ScannerModel::profile;
+    };
+    if (f.model && *f.model != survey_.scanner.model && !(scans_across(*f.model) && scans_across(survey_.scanner.model)))
+      fault(key + ".model", "a file may have another model than scanner.model only among mirror, polygon and profile",
+            "give records of other scanners a survey of their own");
+    if (format == LaserFormat::csd) csd_week(f, key);
     const bool xyz = format == LaserFormat::las || !c.x.empty() || !c.y.empty() || !c.z.empty();
     if (xyz && (model == core::ScannerModel::conical || model == core::ScannerModel::palmer))
       fault("scanner.model", "records with x, y, z are beams already", "use model \"beam\" (or \"mirror\")");
@@ -162,9 +175,20 @@ class Checks {
     if (c.range.empty()) fault(key + ".columns.range", "the column of ranges is not named (nor x, y, z)");
     if (c.scan_angle.empty()) {
       if (model != core::ScannerModel::profile)
-        fault(key + ".columns.scan_angle", "the column of scan angles is not named", "only scanner.model \"profile\" goes without");
+        fault(key + ".columns.scan_angle", "the column of scan angles is not named",
+              "only model \"profile\" goes without: of the scanner, or of this file");
     } else if (f.angle_unit == AngleUnit::unstated) {
       fault(key + ".angle_unit", "the unit of the recorded angles is not stated", "one of deg, rad, gon");
+    }
+  }
+
+  /// The week that a CSD file's header states against the survey's.
+  void csd_week(const LaserFile& f, const std::string& key) {
+    try {
+      if (f.time.week) hold_csd_week(resolve(survey_, f.file), *f.time.week);
+    } catch (const core::Error& e) {
+      // A damaged file is left to its reader, which names the byte.
+      if (e.code() == core::Exit::bad_usage) fault(key + ".time.week", e.what(), e.hint());
     }
   }
 
@@ -301,7 +325,7 @@ class Checks {
   }
 
   bool tree_at(const std::string& key) const {
-    const core::Location there = place_of(tree_, key), parent = place_of(tree_, key.substr(0, key.rfind('.')));
+    const core::Location there = place_in(tree_, key), parent = place_in(tree_, key.substr(0, key.rfind('.')));
     return there.line != parent.line || there.column != parent.column;
   }
 

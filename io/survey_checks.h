@@ -13,4 +13,7 @@ namespace swath::io {
 /// a fault already gets no second one.
 void check_survey(const Survey& survey, const core::Value& tree, std::vector<core::Fault>& faults);
 
+/// The place of the deepest table or value on the path "laser[1].time.scale" that the tree has.
+core::Location place_in(const core::Value& tree, const std::string& key);
+
 }  // namespace swath::io

@@ -116,6 +116,7 @@ TrajectoryData read_text(const std::filesystem::path& path, const TrajectoryFile
 }
 
 TrajectoryData read_csd(const std::filesystem::path& path, const TrajectoryFile& f, core::Tally& tally) {
+  if (f.time.week) hold_csd_week(path, *f.time.week);
   CsdReader file(path);
   TimeTags tags = f.time;
   if (tags.scale == core::TimeScale::unstated) {

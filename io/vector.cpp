@@ -22,11 +22,13 @@ std::string lower(std::string text) {
   return text;
 }
 
-std::unique_ptr<ContourSink> make_sink(const std::filesystem::path& file, const std::string& crs) {
+std::unique_ptr<ContourSink> make_sink(const std::filesystem::path& file, const std::string& crs, const std::string& heights) {
+  CrsFacts facts = crs_facts(crs);
+  if (!heights.empty()) facts.vertical_name = heights;
   const std::string ending = lower(file.extension().string());
-  if (ending == ".gpkg") return make_gpkg_sink(file, crs_facts(crs));
-  if (ending == ".dxf") return make_dxf_sink(file, crs_facts(crs));
-  if (ending == ".geojson" || ending == ".json") return make_geojson_sink(file, crs_facts(crs));
+  if (ending == ".gpkg") return make_gpkg_sink(file, facts);
+  if (ending == ".dxf") return make_dxf_sink(file, facts);
+  if (ending == ".geojson" || ending == ".json") return make_geojson_sink(file, facts);
   throw core::usage_error("contours cannot be written as '" + ending + "'", file.string(), "use .gpkg, .dxf or .geojson");
 }
 
@@ -72,7 +74,8 @@ void add_shape(const OGRGeometry& shape, const VectorLine& like, std::vector<Vec
 
 }  // namespace
 
-ContourWriter::ContourWriter(const std::filesystem::path& file, const std::string& crs) : sink_(make_sink(file, crs)), file_(file) {}
+ContourWriter::ContourWriter(const std::filesystem::path& file, const std::string& crs, const std::string& heights)
+    : sink_(make_sink(file, crs, heights)), file_(file) {}
 ContourWriter::~ContourWriter() = default;
 ContourWriter::ContourWriter(ContourWriter&&) noexcept = default;
 ContourWriter& ContourWriter::operator=(ContourWriter&&) noexcept = default;

@@ -27,10 +27,11 @@ class ContourSink;
 /// - .geojson, .json: RFC 7946, hence in WGS84 longitude and latitude with 9 decimals (0.1 mm), cut at the antimeridian; properties as the
 ///   GeoPackage's fields; lines only, as a direction on the map is none in degrees. Heights stay those of the CRS: the member `swath` names
 ///   CRS, height unit and vertical datum. A CRS is needed.
-/// Throws core::Error: unknown ending or CRS, file not writable, disk full.
+/// Throws core::Error: unknown ending or CRS, no transformation to WGS84 (GeoJSON), file not writable, disk full.
 class ContourWriter {
  public:
-  ContourWriter(const std::filesystem::path& file, const std::string& crs);
+  /// `heights`: what they count from, where the CRS leaves it open; empty: what the CRS says.
+  ContourWriter(const std::filesystem::path& file, const std::string& crs, const std::string& heights = {});
   ~ContourWriter();
   ContourWriter(ContourWriter&&) noexcept;
   ContourWriter& operator=(ContourWriter&&) noexcept;

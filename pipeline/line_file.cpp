@@ -9,9 +9,7 @@ namespace swath::pipeline {
 namespace {
 
 /// Without heights, so that no geoid is asked for.
-core::Crs flat(const core::Crs& crs) {
-  return crs.has_vertical() && crs.epsg() != 0 ? core::Crs("EPSG:" + std::to_string(crs.epsg())) : crs;
-}
+core::Crs flat(const core::Crs& crs) { return crs.is_geocentric() ? crs : crs.horizontal(); }
 
 }  // namespace
 

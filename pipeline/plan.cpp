@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "io/record_checks.h"
 #include "io/value_file.h"
 #include "stages/registry.h"
 
@@ -217,14 +218,44 @@ void check_memory(const Plan& plan, std::vector<Fault>& faults) {
   }
 }
 
+/// The trajectory has a way to the products' CRS, with every grid that it takes.
+void require_way_to(const core::Crs& crs, const std::filesystem::path& survey) {
+  try {
+    core::Transform(core::wgs84_geodetic(), crs);
+  } catch (const core::Error& e) {
+    throw core::usage_error(e.what(), survey.string() + ": crs", e.hint());
+  }
+}
+
+/// The CRS of the source's own coordinates; empty where it has none.
+std::string crs_of_source(const Plan& plan) {
+  for (const PlannedStage& s : plan.stages)
+    if (s.stage->is_source()) return s.stage->own_crs(plan.survey);
+  return {};
+}
+
 /// What only the survey can settle: a map projection, and each stage's own conditions.
 void check_against_survey(const Plan& plan) {
   if (!plan.survey.crs.empty() && works_on_the_map(plan)) require_projected(core::Crs(plan.survey.crs), plan.survey_file);
+  if (!plan.survey.crs.empty() && plan.survey.points.empty() && !plan.survey.hangar)
+    require_way_to(core::Crs(plan.survey.crs), plan.survey_file);
   stages::Context context{plan.survey};
   context.tile_side = plan.run.tile.value;
   for (const PlannedStage& s : plan.stages)
     if (s.stage->is_source()) context.source = s.stage.get();
   for (const PlannedStage& s : plan.stages) s.stage->check(context);
+  if (plan.survey.crs.empty() && works_on_the_map(plan))
+    if (const std::string own = crs_of_source(plan); !own.empty()) require_projected(core::Crs(own), plan.survey_file);
+}
+
+/// Where the side of the tiles is left to the program, their corners have whole numbers in the CRS's unit: 1600 ft in place of 500 m.
+void settle_tile(Plan& plan) {
+  if (plan.run_table.find("tile") || !works_on_the_map(plan)) return;
+  const std::string definition = plan.survey.crs.empty() ? crs_of_source(plan) : plan.survey.crs;
+  const double unit = definition.empty() ? 1.0 : core::Crs(definition).metres_per_unit();
+  if (unit == 1.0) return;
+  const double hundred = 100.0 * unit;
+  plan.run.tile = core::Metres(std::floor(plan.run.tile.value / hundred) * hundred);
 }
 
 /// Sets {"key": {"value", "from"}} for each effective option of a table.
@@ -284,7 +315,9 @@ Plan make_plan(const Request& request) {
     if (!std::filesystem::exists(plan.survey_file))
       throw core::usage_error("no such file", plan.survey_file.string(), "check the name of the survey");
     try {
-      plan.survey = io::read_survey(plan.survey_file);
+      const Value survey = io::read_value_file(plan.survey_file);
+      plan.survey = io::read_survey(survey, plan.survey_file.parent_path());
+      io::check_records(plan.survey, survey);
     } catch (const core::Error& e) {
       if (faults.empty()) throw;
       const core::Location nowhere;
@@ -292,7 +325,10 @@ Plan make_plan(const Request& request) {
     }
   }
   core::throw_if_any(faults);
-  if (!plan.survey_file.empty()) check_against_survey(plan);
+  if (!plan.survey_file.empty()) {
+    check_against_survey(plan);
+    settle_tile(plan);
+  }
   return plan;
 }
 

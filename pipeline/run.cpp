@@ -110,6 +110,7 @@ class Engine {
   void run_strips();
   void stream_strip(const stages::Strip& strip, const fs::path& folder);
   void run_tile_stages();
+  [[noreturn]] void keep_finished(const core::Error& e);
   std::vector<TileKey> tiles_of(size_t number) const;
   std::set<TileKey> tiles_of_water() const;
   Measure measure_of(size_t number) const;
@@ -147,6 +148,7 @@ class Engine {
   size_t last_strip_stage_ = 0;
   std::unique_ptr<TileStore> store_;
   std::set<TileKey> surface_tiles_;  ///< without a point of their own, but a surface reaches into them from their neighbours
+  bool has_products_ = false;        ///< of a tile stage that is finished
   std::uint64_t resumed_ = 0;
   Value report_;
 };
@@ -179,7 +181,8 @@ void Engine::prepare_map() {
   context_.unit = context_.crs.metres_per_unit();
   context_.vertical_unit = context_.crs.vertical_metres_per_unit();
   context_.product_crs = plan_.survey.crs;
-  if (!context_.crs.has_vertical()) {
+  context_.heights = context_.crs.vertical_name();
+  if (!context_.crs.has_height_unit()) {
     if (plan_.survey.height_unit)
       context_.vertical_unit = plan_.survey.height_unit->value;
     else if (!plan_.survey.points.empty())
@@ -190,6 +193,8 @@ void Engine::prepare_map() {
                              (context_.vertical_unit == 0.3048 ? "foot" : "height unit") + "\"," +
                              core::format_number(context_.vertical_unit) + "],AXIS[\"Up\",UP]]]";
   }
+  // What comes from the records of a flight has ellipsoidal heights; a cloud's source knows about its own.
+  if (context_.crs.heights() == core::Heights::unknown) context_.heights = core::ellipsoidal_heights;
   for (const PlannedStage& s : plan_.stages)
     if (s.stage->is_source()) s.stage->locate(context_);
 }
@@ -569,7 +574,17 @@ void Engine::run_tile_stages() {
     for (const stages::Product p : stage(i).info().gives_products) grids_.add(p, folder(i));
     if (works_on(i, Grain::merge)) run_merge(i);
     if (!works_on(i, Grain::survey)) context_.earlier.push_back(context_.output);
+    has_products_ = has_products_ || fs::exists(context_.output);
   }
+}
+
+/// A late stage failed: the products of those before it are whole and stay, with the work that the same command goes on from.
+void Engine::keep_finished(const core::Error& e) {
+  for (const fs::path& made : context_.earlier) deliver(made, output_, true);
+  throw core::Error(e.what(), e.where(),
+                    (e.hint().empty() ? std::string() : e.hint() + "; ") + "the products of the stages before it are in " +
+                        output_.string() + ", and the same command goes on from there",
+                    e.code());
 }
 
 Measured Engine::measured() const {
@@ -593,7 +608,7 @@ void Engine::compose_report(const std::string& command) {
   if (!context_.crs.empty()) {
     report_["crs"]["name"] = context_.crs.name();
     report_["crs"]["definition"] = plan_.survey.crs;
-    report_["crs"]["heights"] = context_.crs.vertical_name();
+    report_["crs"]["heights"] = context_.heights;
   }
   Value& files = report_["inputs"] = Value::array();
   for (const Input& i : inputs_) {
@@ -673,7 +688,12 @@ Outcome Engine::run(const std::string& command) {
     if (!plan_.run.keep_work) discard(work_, discarded);
     return {held ? core::Exit::done : core::Exit::quality_missed, report_};
   } catch (const core::SystemError&) {
-    throw;  // the work done so far stays, for the same command once the cause is mended
+    throw;  // the work done so far stays, for the same command once the cause is repaired
+  } catch (const core::Error& e) {
+    if (has_products_) keep_finished(e);
+    discard(work_, discarded);
+    if (made_output) remove_if_empty(output_);
+    throw;
   } catch (...) {
     discard(work_, discarded);
     if (made_output) remove_if_empty(output_);

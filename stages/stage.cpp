@@ -39,9 +39,10 @@ std::filesystem::path Context::made(const std::filesystem::path& name) const {
 
 std::string Context::label(TileKey k) const {
   const auto part = [this](int i) {
-    const double corner = i * tile_side;
-    if (corner == std::round(corner)) return std::to_string(static_cast<long long>(corner));
-    return std::to_string(static_cast<long long>(std::round(corner * 1000))) + "mm";
+    const double corner = i * (tile_side / unit);
+    // A tile is at least 10 m wide: rounded corners stay apart.
+    if (unit != 1.0 || corner == std::round(corner)) return std::to_string(std::llround(corner));
+    return std::to_string(std::llround(corner * 1000)) + "mm";
   };
   return part(k.ix) + "_" + part(k.iy);
 }

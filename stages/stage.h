@@ -126,9 +126,10 @@ std::vector<Raster> window_of(const Context& context, Product product, int other
 struct Context {
   const io::Survey& survey;
   core::Crs crs{};
-  std::string product_crs{};   ///< of the files written: `crs`, with an explicit height unit where the CRS leaves it open
-  double unit = 1.0;           ///< metres per horizontal unit of the CRS
-  double vertical_unit = 1.0;  ///< metres per vertical unit of the CRS
+  std::string product_crs{};                   ///< of the files written: `crs`, with an explicit height unit where the CRS leaves it open
+  std::string heights{core::unknown_heights};  ///< what the run's heights count from, for files and reports
+  double unit = 1.0;                           ///< metres per horizontal unit of the CRS
+  double vertical_unit = 1.0;                  ///< metres per vertical unit of the CRS
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of every Block of the run, m
   bool weekless = false;                             ///< times are seconds of a GPS week that no file names: written on as such
   std::array<std::uint8_t, 16> project{};            ///< identifier of all files of the run
@@ -151,7 +152,8 @@ struct Context {
   Box box_of(TileKey k) const { return {k.ix * tile_side, k.iy * tile_side, (k.ix + 1) * tile_side, (k.iy + 1) * tile_side}; }
   /// The file that a stage before this one made under `name`; empty where none did.
   std::filesystem::path made(const std::filesystem::path& name) const;
-  /// "652_5310": the tile's south-west corner, for file names; whole metres, or millimetres where it is not whole.
+  /// "652000_5310500": the tile's south-west corner in units of the CRS, for file names. Millimetres where it is not whole metres; in other
+  /// units the nearest whole one.
   std::string label(TileKey k) const;
 };
 
@@ -206,7 +208,8 @@ class Stage {
   virtual bool is_source() const { return false; }
   /// The CRS of the source's own coordinates, for surveys that state none.
   virtual std::string own_crs(const io::Survey&) const { return {}; }
-  /// Sets context.origin from the source's own coordinates; sources of raw shots leave it to the trajectory.
+  /// Sets context.origin from the source's own coordinates, and context.heights where the CRS leaves them open; sources of raw shots leave
+  /// both to the trajectory.
   virtual void locate(Context&) const {}
   virtual std::vector<Strip> strips(const Context&, core::Tally&) const { return {}; }
   virtual std::unique_ptr<StripReader> open(const Context&, const Strip&) const { return nullptr; }

@@ -129,7 +129,7 @@ std::vector<Segment> trace(const core::Grid& grid, const core::Lattice& own, con
       if (std::isnan(s.h[4])) continue;
       const auto [low, high] = std::minmax({s.h[0], s.h[1], s.h[2], s.h[3]});
       // One level early, so that rounding of the division cannot lose one; the comparison below is exact.
-      for (auto k = static_cast<std::int64_t>(std::floor((low - options.base.value) / options.interval.value)) - 1;; ++k) {
+      for (auto k = static_cast<std::int64_t>(std::floor((low - options.base.value) / interval_of(options))) - 1;; ++k) {
         const double height = level_height(options, k);
         if (height > high) break;
         if (height > low) trace_level(s, k, height, out);

@@ -15,7 +15,7 @@
 namespace swath::terrain {
 
 struct ContourOptions {
-  core::Metres interval{1.0};
+  std::optional<core::Metres> interval;
   core::Metres base{0.0};
   int index = 5;
   std::optional<core::Metres> tolerance;
@@ -26,12 +26,18 @@ struct ContourOptions {
 /// "20 m2", "200 ft2" or "0.1 ha" in m2; nothing where the text is none of them.
 std::optional<double> square_metres(const std::string& text);
 
+/// Height between contours, m: the option, or 1 m.
+inline double interval_of(const ContourOptions& o) { return o.interval ? o.interval->value : 1.0; }
+
+/// The interval where none is stated: the largest of 1, 2 and 5 height units (of `unit` metres) that is at most 1 m; 1 m, 2 ft.
+inline double usual_interval_of(double unit) { return unit * (5.0 * unit <= 1.0 ? 5.0 : 2.0 * unit <= 1.0 ? 2.0 : 1.0); }
+
 /// Height by which a line may leave the surface, m: the option, or a twentieth of the interval.
-inline double vertical_tolerance(const ContourOptions& o) { return o.tolerance ? o.tolerance->value : 0.05 * o.interval.value; }
+inline double vertical_tolerance(const ContourOptions& o) { return o.tolerance ? o.tolerance->value : 0.05 * interval_of(o); }
 
 template <class V>
 void describe(ContourOptions& o, V& v) {
-  v.option("interval", o.interval, core::above(0.0), "Height between contours.");
+  v.option("interval", o.interval, core::above(0.0), "Height between contours; left out: 1 m, or 2 ft where heights are in feet.");
   v.option("base", o.base, "Height from which levels are counted.");
   v.option("index", o.index, core::at_least(0), "Every so many levels is an index contour; 0 for none.");
   v.option(
@@ -41,13 +47,13 @@ void describe(ContourOptions& o, V& v) {
   v.option("min_length", o.min_length, core::at_least(0.0), "Lines shorter than this are left out.");
   v.option("min_area", o.min_area, "Rings that enclose less than this are left out: m2, ft2 or ha.");
   v.check(square_metres(o.min_area).has_value(), "min_area must be an area with its unit, such as \"20 m2\"");
-  v.check(vertical_tolerance(o) <= 0.25 * o.interval.value,
+  v.check(vertical_tolerance(o) <= 0.25 * interval_of(o),
           "tolerance must be at most a quarter of the interval, so that lines of two levels stay apart");
 }
 
 /// Height of a level, m.
 inline double level_height(const ContourOptions& o, std::int64_t level) {
-  return o.base.value + static_cast<double>(level) * o.interval.value;
+  return o.base.value + static_cast<double>(level) * interval_of(o);
 }
 inline bool is_index(const ContourOptions& o, std::int64_t level) { return o.index > 0 && level % o.index == 0; }
 

@@ -210,9 +210,10 @@ int command_line(int argc, char** argv) {
   c->add_option("--set", a.request.sets, "One option of the simulation: seed=7, flight.speed=\"60 m/s\"")->allow_extra_args(false);
   c->add_flag("--quiet", a.quiet, "Nothing but errors");
 
-  c = app.add_subcommand("info",
-                         "Examples\n  swath info flight.laz\n  swath info trajectory.sbet --json\n\nTell what a LAS, LAZ, SBET, CSD, "
-                         "NumPy, text, survey.toml or GeoTIFF file holds, and what looks wrong.");
+  c = app.add_subcommand(
+      "info",
+      "Examples\n  swath info flight.laz\n  swath info trajectory.sbet --json\n\nReport what a file holds (points, trajectories, "
+      "raw records, RINEX, PCAP, rasters, GeoPackage, DXF, JSON), and what looks wrong.");
   c->add_option("FILE", a.name, "File")->required();
   c->add_flag("--json", a.json, "As JSON");
 

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "core/error.h"
 #include "io/output_file.h"
@@ -89,6 +90,46 @@ std::string height_text(double height, int decimals) {
   return text;
 }
 
+/// The files of contours. GeoJSON is in WGS84: where the CRS has no way there it is left out, and the findings say why.
+class ContourFiles {
+ public:
+  ContourFiles(const Context& context, const std::string& name) : geojson_name_(name + ".geojson") {
+    for (const char* ending : {".gpkg", ".dxf"})
+      files_.emplace_back(context.output / (name + ending), context.product_crs, context.heights);
+    with_geojson([&] { geojson_.emplace(context.output / geojson_name_, context.product_crs, context.heights); });
+  }
+  template <class T>
+  void add(const T& what) {
+    for (io::ContourWriter& f : files_) f.add(what);
+    if (geojson_) with_geojson([&] { geojson_->add(what); });
+  }
+  std::uint64_t count() const { return files_.front().count(); }
+  void close(core::Value& findings) {
+    for (io::ContourWriter& f : files_) f.close();
+    if (geojson_) geojson_->close();
+    if (left_out_.empty()) return;
+    core::Value& words = findings["findings"];
+    if (!words.is_array()) words = core::Value::array();
+    words.push(geojson_name_ + " is left out: " + left_out_);
+  }
+
+ private:
+  template <class F>
+  void with_geojson(const F& work) {
+    try {
+      work();
+    } catch (const core::SystemError&) {
+      throw;
+    } catch (const core::Error& e) {
+      geojson_.reset();
+      left_out_ = e.what() + (e.hint().empty() ? std::string() : " (" + e.hint() + ")");
+    }
+  }
+  std::vector<io::ContourWriter> files_;
+  std::optional<io::ContourWriter> geojson_;
+  std::string geojson_name_, left_out_;
+};
+
 class Contours : public OptionStage<ContourWriteOptions> {
  public:
   const Info& info() const override {
@@ -142,9 +183,10 @@ class Contours : public OptionStage<ContourWriteOptions> {
       paste(grid, mine);
       write_grid_tile(job.folder, job.key, mine);
     }
-    const SurfaceFacts facts = facts_of(grid, own, options.interval.value);
+    const SurfaceFacts facts = facts_of(grid, own, interval(context));
     const auto spots = terrain::spot_heights(grid, own, options.spots);
-    const auto segments = terrain::trace(terrain::contour_surface(std::move(grid), terrain::vertical_tolerance(options)), own, options);
+    const terrain::ContourOptions drawn = spaced(context);
+    const auto segments = terrain::trace(terrain::contour_surface(std::move(grid), terrain::vertical_tolerance(drawn)), own, drawn);
     job.tally.count("contour segments", segments.size());
     io::write_text_file(segment_file(job.folder, job.key),
                         {reinterpret_cast<const char*>(segments.data()), segments.size() * sizeof(terrain::Segment)}, false);
@@ -154,21 +196,27 @@ class Contours : public OptionStage<ContourWriteOptions> {
   }
 
   void run_merge(const Context& context, MergeJob& job) const override {
-    std::vector<io::ContourWriter> writers;
-    for (const char* ending : {".gpkg", ".dxf", ".geojson"})
-      writers.emplace_back(context.output / (options.name + ending), context.product_crs);
+    ContourFiles writers(context, options.name);
     SurfaceFacts facts;
     std::vector<terrain::SpotHeight> spots;
     for (const TileKey key : job.tiles) read_facts(job.folder, key, facts, spots);
     write_lines(context, job, writers);
     write_spots(context, std::move(spots), writers, job.findings);
-    judge_interval(context, facts, options.interval.value, job.findings);
-    for (auto& w : writers) w.close();
+    judge_interval(context, facts, interval(context), job.findings);
+    writers.close(job.findings);
   }
 
  private:
   BreaklinesOfRun lines_;  ///< of source = "tin"
 
+  double interval(const Context& context) const {
+    return options.interval ? options.interval->value : terrain::usual_interval_of(context.vertical_unit);
+  }
+  terrain::ContourOptions spaced(const Context& context) const {
+    terrain::ContourOptions o = options;
+    o.interval = core::Metres(interval(context));
+    return o;
+  }
   /// Cells around a tile that its lines and spot heights depend on: squares reach a cell beyond the tile.
   int border(double cell) const {
     return std::max(1 + terrain::contour_surface_reach(terrain::vertical_tolerance(options)),
@@ -206,7 +254,7 @@ class Contours : public OptionStage<ContourWriteOptions> {
     return out;
   }
 
-  void write_lines(const Context& context, MergeJob& job, std::vector<io::ContourWriter>& writers) const {
+  void write_lines(const Context& context, MergeJob& job, ContourFiles& writers) const {
     // Where each level stands in each tile's file.
     struct Stretch {
       TileKey key;
@@ -232,7 +280,7 @@ class Contours : public OptionStage<ContourWriteOptions> {
     });
     terrain::Labeller labeller(options.labels);
     const int decimals =
-        std::max(decimals_of(options.interval.value / context.vertical_unit), decimals_of(options.base.value / context.vertical_unit));
+        std::max(decimals_of(interval(context) / context.vertical_unit), decimals_of(options.base.value / context.vertical_unit));
     double metres = 0.0;
     std::uint64_t closed = 0, depressions = 0, labels = 0;
     // Levels do not know of one another: several are drawn at once, as many as their bytes allow, and written in their order.
@@ -265,18 +313,19 @@ class Contours : public OptionStage<ContourWriteOptions> {
       }
       return segments;
     };
+    const terrain::ContourOptions drawn = spaced(context);
     const auto draw = [&](const Segments& segments) -> Lines {
-      return std::make_shared<std::vector<terrain::ContourLine>>(terrain::contour_lines(std::move(*segments), options, surfaces.local()));
+      return std::make_shared<std::vector<terrain::ContourLine>>(terrain::contour_lines(std::move(*segments), drawn, surfaces.local()));
     };
-    size_t drawn = 0;
+    size_t finished = 0;
     const auto write = [&](const Lines& lines) {
-      context.share(static_cast<double>(++drawn) / static_cast<double>(levels.size()));
+      context.share(static_cast<double>(++finished) / static_cast<double>(levels.size()));
       for (const terrain::ContourLine& line : *lines) {
         metres += terrain::length(line.vertices);
         closed += line.closed ? 1 : 0;
         depressions += line.depression ? 1 : 0;
         const core::ContourLine out = in_crs_units(context, line);
-        for (auto& w : writers) w.add(out);
+        writers.add(out);
         if (!line.is_index) continue;
         const std::string text = height_text(out.height, decimals);
         for (const terrain::ContourLabel& label : labeller.add(line, text.size())) {
@@ -287,24 +336,23 @@ class Contours : public OptionStage<ContourWriteOptions> {
                                            label.angle,
                                            options.labels.height.value / context.unit,
                                            out.height};
-          for (auto& w : writers) w.add(written);
+          writers.add(written);
         }
       }
     };
     tbb::parallel_pipeline(at_once, tbb::make_filter<void, Segments>(tbb::filter_mode::serial_in_order, read) &
                                         tbb::make_filter<Segments, Lines>(tbb::filter_mode::parallel, draw) &
                                         tbb::make_filter<Lines, void>(tbb::filter_mode::serial_in_order, write));
-    job.findings["lines"] = writers.front().count();
+    job.findings["lines"] = writers.count();
     job.findings["closed"] = closed;
     job.findings["depressions"] = depressions;
     job.findings["length_m"] = metres;
     job.findings["labels"] = labels;
   }
 
-  void write_spots(const Context& context, std::vector<terrain::SpotHeight> spots, std::vector<io::ContourWriter>& writers,
-                   core::Value& findings) const {
+  void write_spots(const Context& context, std::vector<terrain::SpotHeight> spots, ContourFiles& writers, core::Value& findings) const {
     std::sort(spots.begin(), spots.end());
-    const int decimals = std::min(3, decimals_of(options.interval.value / context.vertical_unit) + 1);
+    const int decimals = std::min(3, decimals_of(interval(context) / context.vertical_unit) + 1);
     std::uint64_t tops = 0;
     for (const terrain::SpotHeight& s : spots) {
       core::SpotHeight out;
@@ -315,7 +363,7 @@ class Contours : public OptionStage<ContourWriteOptions> {
       out.top = s.top != 0;
       out.text_height = options.labels.height.value / context.unit;
       tops += out.top ? 1 : 0;
-      for (auto& w : writers) w.add(out);
+      writers.add(out);
     }
     findings["tops"] = tops;
     findings["pits"] = spots.size() - tops;

@@ -92,7 +92,7 @@ constexpr const char* header =
 /// One row per event, metres and m/s (easting, northing and height: units of the CRS); fields without a value are empty.
 std::string table(const Context& context, const core::EventData& events, const EventPositions& solved) {
   const core::Transform to_map(core::wgs84_ecef(), context.crs);
-  const double height_unit = context.crs.has_vertical() ? 1.0 : context.vertical_unit;
+  const double height_unit = context.crs.has_height_unit() ? 1.0 : context.vertical_unit;
   const int decimals = context.crs.is_geographic() ? 10 : 4;
   std::string out = header;
   for (size_t i = 0; i < events.size(); ++i) {

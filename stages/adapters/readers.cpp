@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
 #include "core/error.h"
 #include "core/time.h"
-#include "io/las_crs.h"
 #include "io/las_reader.h"
 #include "io/laser_file.h"
 #include "io/trajectory_file.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/cloud_crs.h"
 #include "stages/adapters/clouds.h"
 #include "stages/adapters/place.h"
 #include "stages/adapters/units.h"
@@ -113,18 +114,6 @@ class LaserReader : public OptionStage<NoOptions> {
  private:
   mutable std::vector<io::StripInfo> strips_;  // of the run, found once before the strips are read
 };
-
-/// The CRS of a point cloud: what the survey says of it, else what the file says. Throws core::Error where neither does.
-std::string crs_of(const io::Survey& survey, const io::PointFile& f) {
-  if (!f.crs.empty()) return f.crs;
-  std::vector<std::string> ignored;
-  const fs::path file = io::resolve(survey, f.file);
-  const io::LasCrs stated = io::las_crs(io::read_las_header(file, ignored));
-  if (stated.definition.empty())
-    throw core::Error("states no CRS" + (stated.note.empty() ? std::string() : ": " + stated.note), file.string(),
-                      "name it as points.crs in the survey");
-  return stated.definition;
-}
 
 /// Are the clouds' times seconds of a week that neither file nor survey names? Throws core::Error where only some of the files' times are.
 bool has_weekless_times(const io::Survey& survey) {
@@ -238,19 +227,21 @@ class LasCloud : public OptionStage<NoOptions> {
     if (context.survey.points.empty())
       throw core::usage_error("readers.las: the survey names no [[points]] file", context.survey.name,
                               "for raw records use readers.laser and georeference");
+    check_clouds(context.survey);
   }
   std::string own_crs(const io::Survey& survey) const override {
-    return survey.points.empty() ? std::string() : crs_of(survey, survey.points.front());
+    return survey.points.empty() ? std::string() : cloud_definition(survey, survey.points.front());
   }
   void locate(Context& context) const override {
     std::vector<std::string> ignored;
     const io::PointFile& first = context.survey.points.front();
     const io::LasHeader header = io::read_las_header(io::resolve(context.survey, first.file), ignored);
     context.weekless = has_weekless_times(context.survey);
-    const core::Crs crs(crs_of(context.survey, first));
+    const core::Crs crs = cloud_crs(context.survey, first);
     Eigen::Vector3d corner = header.min;
-    if (crs.key() != context.crs.key()) corner = core::Transform(crs, context.crs)(corner);
+    if (!is_same_crs(crs, context.crs)) corner = core::Transform(crs, context.crs)(corner);
     context.origin = origin_near(context, corner);
+    if (context.crs.heights() == core::Heights::unknown) context.heights = heights_of_clouds(context.survey);
   }
   std::vector<Strip> strips(const Context& context, core::Tally&) const override {
     std::vector<Strip> out;
@@ -276,18 +267,14 @@ class LasCloud : public OptionStage<NoOptions> {
 
 CloudPlace place_of(const Context& context, const io::PointFile& file, const io::LasCrs& stated) {
   CloudPlace place;
-  const core::Crs crs(crs_of(context.survey, file));
-  if (crs.key() != context.crs.key()) place.transform.emplace(crs, context.crs);
-  // Heights without a vertical CRS: PROJ takes metres; files have their own unit, by custom that of the horizontal axes.
-  if (!crs.has_vertical()) {
-    place.file_height_unit = file.height_unit             ? file.height_unit->value
-                             : stated.vertical_metres > 0 ? stated.vertical_metres
-                             : context.survey.height_unit ? context.survey.height_unit->value
-                             : crs.is_geographic()        ? 1.0
-                                                          : crs.metres_per_unit();
-    if (!place.transform) place.file_height_unit /= context.vertical_unit;
-  }
-  if (place.transform && !context.crs.has_vertical()) place.map_height_unit = context.vertical_unit;
+  const core::Crs crs = cloud_crs(context.survey, file);
+  if (!is_same_crs(crs, context.crs)) place.transform.emplace(crs, context.crs);
+  // PROJ takes heights of a known system in the CRS's own unit; those of an unknown one it hands through.
+  const bool handed_through = !place.transform || crs.heights() == core::Heights::unknown;
+  place.file_height_unit = height_unit(context.survey, file, crs, stated.vertical_metres);
+  place.file_height_unit /= handed_through ? context.vertical_unit : crs.vertical_metres_per_unit();
+  if (std::abs(place.file_height_unit - 1.0) < 1e-9) place.file_height_unit = 1.0;  // one unit, printed with other digits
+  if (!handed_through) place.map_height_unit = context.vertical_unit / context.crs.vertical_metres_per_unit();
   return place;
 }
 

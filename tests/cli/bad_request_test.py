@@ -56,7 +56,8 @@ class Requests(Case):
     def test_missing_geoid_grid(self):
         # No grid of the German quasigeoid comes with PROJ's packages; a path of its own holds it where one is installed.
         substitute(self.toml, "EPSG:32632", "EPSG:25832+7837")
-        self.assert_refused(self.toml, 1, "needs the grid file", "hint: ")
+        self.assert_bad_usage(self.toml, r"survey\.toml: crs: .* needs the grid file", "hint: ")
+        self.assertIn("needs the grid file", swath("check", CONFIG, "--survey", self.toml).stderr)
 
     def test_geographic_crs(self):
         substitute(self.toml, "EPSG:32632", "EPSG:4326")

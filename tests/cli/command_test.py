@@ -12,6 +12,12 @@ COMMANDS = ["run", "check", "explain", "stages", "schema", "simulate", "info", "
 CONFIGS = sorted((SOURCE / "configs").glob("*.toml"))
 
 
+def trajectory_time(survey):
+    """The line of a survey's [[trajectory]] that states its time scale."""
+    time = tomllib.loads(survey.read_text())["trajectory"][0]["time"]
+    return "time = {" + ", ".join(f"{k} = {json.dumps(v)}" for k, v in time.items()) + "}\n"
+
+
 class Help(Case):
     def test_examples_stand_first(self):
         for command in [[], *([c] for c in COMMANDS)]:
@@ -195,10 +201,15 @@ class Runs(Case):
         classified.write_text("".join(f'[[points]]\nfile = "{t}"\n' for t in tiles))
         terrain = self.run_ok(classified, config=SOURCE / "configs" / "terrain.toml", out=self.folder / "terrain")
         self.assertGreater(stage(terrain, "terrain.dtm")["tally"]["cells with a height"]["count"], 0)
+        given = self.folder / "given.toml"  # a trajectory and nothing else
+        given.write_text(f'[[trajectory]]\nfile = "{self.survey / "sbet.out"}"\n' + trajectory_time(self.survey / "survey.toml"))
+        made = self.run_ok(given, config=SOURCE / "configs" / "convert_trajectory.toml", out=self.folder / "given")
+        self.assertGreater(stage(made, "writers.trajectory")["findings"]["records"], 100)
+        self.assertTrue((self.folder / "given" / "trajectory.sbet").exists())
         # survey.toml, trajectory.toml and events.toml, which need other records, run in navigation_test.py, lever_arm.toml in
         # lever_arm_test.py, strips.toml in strips_test.py, calibrate.toml in calibration_test.py.
         known = {"survey.toml", "survey_sbet.toml", "trajectory.toml", "events.toml", "georeference.toml", "cloud.toml", "lever_arm.toml",
-                 "strips.toml", "calibrate.toml", "classes.toml", "survey_classes.toml", "terrain.toml"}
+                 "strips.toml", "calibrate.toml", "classes.toml", "survey_classes.toml", "terrain.toml", "convert_trajectory.toml"}
         self.assertEqual({c.name for c in CONFIGS}, known, "a new config is run here too")
 
     def test_the_config_as_json_gives_the_same_products(self):

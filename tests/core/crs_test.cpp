@@ -81,7 +81,8 @@ TEST(Crs, FactsOfAProjectedCrs) {
   EXPECT_EQ(crs.vertical_epsg(), 0);
   EXPECT_TRUE(crs.is_projected());
   EXPECT_FALSE(crs.is_geographic() || crs.is_geocentric() || crs.has_vertical());
-  EXPECT_EQ(crs.vertical_name(), "ellipsoidal height");
+  EXPECT_EQ(crs.heights(), Heights::unknown);
+  EXPECT_EQ(crs.vertical_name(), "height system not stated");
   EXPECT_EQ(crs.metres_per_unit(), 1.0);
   EXPECT_EQ(crs.unit_name(), "metre");
   double w = 0, s = 0, e = 0, n = 0;
@@ -266,8 +267,74 @@ TEST(Transform, RefusesAMissingGeoidGrid) {
     EXPECT_TRUE(has(text, "/nowhere/made.gtx")) << text;
   }
   // From a levelled height to an ellipsoidal one, and between two levels.
-  EXPECT_TRUE(has(refusal([] { Transform(Crs("EPSG:25832+7837"), Crs("EPSG:25832")); }), "grid file"));
+  EXPECT_TRUE(has(refusal([] { Transform(Crs("EPSG:25832+7837"), Crs("EPSG:25832+ellipsoidal")); }), "grid file"));
   refusal([] { Transform(Crs("EPSG:25832+7837"), Crs("EPSG:25832+5773")); });
+}
+
+// A cloud in UTM without a height system was moved by the geoid's 48.55 m.
+TEST(Transform, HeightsOfAnUnknownSystemAreNeverShifted) {
+  for (const auto& [from, to] : {std::pair{"EPSG:32632", "EPSG:32632+5773"}, {"EPSG:32632+5773", "EPSG:32632"}}) {
+    const std::string text = refusal([&] { Transform(Crs(from), Crs(to)); });
+    EXPECT_TRUE(has(text, "does not state its height system")) << text;
+    EXPECT_TRUE(has(text, "\"EPSG:32632+5773\"") && has(text, "\"EPSG:32632+ellipsoidal\"")) << text;
+  }
+  // Neither states one: heights go through, whatever the datums.
+  const Eigen::Vector3d p = Transform(Crs("EPSG:32632"), Crs("EPSG:31467"))({500123.25, 5.4e6, 77.125});
+  EXPECT_EQ(p.z(), 77.125);
+  EXPECT_GT(std::abs(p.x() - 500123.25), 1.0);
+  const Transform copy = Transform(Crs("EPSG:32632"), Crs("EPSG:32633")).copy();
+  EXPECT_EQ(copy({500123.25, 5.4e6, -3.5}).z(), -3.5);
+}
+
+TEST(Crs, EllipsoidalHeightsAreStated) {
+  const Crs crs("EPSG:32632+ellipsoidal");
+  EXPECT_EQ(crs.epsg(), 32632);
+  EXPECT_EQ(crs.heights(), Heights::ellipsoidal);
+  EXPECT_EQ(crs.vertical_name(), "ellipsoidal height");
+  EXPECT_TRUE(crs.has_height_unit() && !crs.has_vertical() && crs.is_projected());
+  EXPECT_EQ(crs.horizontal().heights(), Heights::unknown);
+  for (const std::string& text : {crs.wkt(), crs.wkt1()}) {
+    EXPECT_EQ(Crs(text).heights(), Heights::ellipsoidal) << text;
+    EXPECT_TRUE(Crs(text).is_projected());
+  }
+  EXPECT_EQ(crs.wkt1().rfind("COMPD_CS[", 0), 0u);  // as LAS wants it, WKT1
+  EXPECT_EQ(Crs("EPSG:32632+4979").heights(), Heights::ellipsoidal);
+  EXPECT_EQ(wgs84_geodetic().heights(), Heights::ellipsoidal);
+  EXPECT_EQ(wgs84_ecef().heights(), Heights::ellipsoidal);
+  EXPECT_EQ(Crs("EPSG:25832+7837").heights(), Heights::vertical);
+  EXPECT_EQ(Crs("EPSG:25832+7837").horizontal().epsg(), 25832);
+  EXPECT_TRUE(has(refusal([] { Crs("EPSG:25832+7837+ellipsoidal"); }), "vertical part already"));
+  EXPECT_NEAR(Transform(wgs84_ecef(), crs)(ecef_of({50.0 * degree, 8.0 * degree, 120.0})).z(), 120.0, micrometre);
+}
+
+std::string compound_of(const std::string& vertical) {
+  return R"(COMPD_CS["WGS 84 / UTM zone 10N + VERT_CS",PROJCS["WGS 84 / UTM zone 10N",GEOGCS["WGS 84",DATUM["WGS_1984",)"
+         R"(SPHEROID["WGS 84",6378137,298.257223563,AUTHORITY["EPSG","7030"]],TOWGS84[0,0,0,0,0,0,0],AUTHORITY["EPSG","6326"]],)"
+         R"(PRIMEM["Greenwich",0,AUTHORITY["EPSG","8901"]],UNIT["degree",0.0174532925199433,AUTHORITY["EPSG","9122"]],)"
+         R"(AUTHORITY["EPSG","4326"]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],)"
+         R"(PARAMETER["central_meridian",-123],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],)"
+         R"(PARAMETER["false_northing",0],UNIT["metre",1,AUTHORITY["EPSG","9001"]],AXIS["X",EAST],AXIS["Y",NORTH],)"
+         R"(AUTHORITY["EPSG","32610"]],)" +
+         vertical + "]";
+}
+
+// As LAStools and others write LAS files.
+TEST(Crs, CompoundsOfLasFiles) {
+  const Crs navd(compound_of(R"(VERT_CS["NAVD88",VERT_DATUM["North American Vertical Datum 1988",2005,AUTHORITY["EPSG","5103"]],)"
+                             R"(UNIT["metre",1.0,AUTHORITY["EPSG","9001"]],AXIS["Gravity-related height",UP],AUTHORITY["EPSG","5703"]])"));
+  EXPECT_EQ(navd.epsg(), 32610);
+  EXPECT_EQ(navd.vertical_epsg(), 5703);
+  EXPECT_EQ(navd.heights(), Heights::vertical);
+  EXPECT_EQ(navd.wkt().find("BOUNDCRS"), std::string::npos);  // the null shift beside a known datum
+  EXPECT_EQ(Crs(navd.wkt1()).vertical_epsg(), 5703);
+  // A unit and no system.
+  const Crs open(compound_of(R"(VERT_CS["unknown",VERT_DATUM["unknown",2005],UNIT["US survey foot",0.304800609601219],AXIS["Up",UP]])"));
+  EXPECT_EQ(open.heights(), Heights::unknown);
+  EXPECT_EQ(open.vertical_name(), "height system not stated");
+  EXPECT_TRUE(open.has_height_unit());
+  EXPECT_NEAR(open.vertical_metres_per_unit(), 1200.0 / 3937.0, 1e-12);
+  const Crs ellipsoid(compound_of(R"(VERT_CS["Ellipsoid",VERT_DATUM["Ellipsoid",2002],UNIT["metre",1],AXIS["Up",UP]])"));
+  EXPECT_EQ(ellipsoid.heights(), Heights::ellipsoidal);
 }
 
 TEST(Transform, RefusesTheSecondBestWhereABetterGridIsMissing) {

@@ -42,7 +42,7 @@ TEST(GdalDoor, FactsOfProjectedCompoundFeetAndDegrees) {
   const CrsFacts utm = crs_facts("EPSG:32632");
   EXPECT_EQ(utm.unit, "m");
   EXPECT_EQ(utm.vertical_unit, "m");
-  EXPECT_EQ(utm.vertical_name, "ellipsoidal height");
+  EXPECT_EQ(utm.vertical_name, "height system not stated");
   EXPECT_FALSE(utm.geographic);
 
   const CrsFacts compound = crs_facts("EPSG:25832+7837");
@@ -54,11 +54,15 @@ TEST(GdalDoor, FactsOfProjectedCompoundFeetAndDegrees) {
 
   const CrsFacts feet = crs_facts("EPSG:2992");  // Oregon Lambert, international feet, without a vertical part
   EXPECT_EQ(feet.unit, "ft");
-  EXPECT_EQ(feet.vertical_unit, "m");                  // ellipsoidal
+  EXPECT_EQ(feet.vertical_unit, "m");                  // where nothing says otherwise
   const CrsFacts mixed = crs_facts("EPSG:2263+6360");  // New York Long Island (ftUS) + NAVD88 (ftUS)
   EXPECT_EQ(mixed.unit, "US survey foot");
   EXPECT_EQ(mixed.vertical_unit, "US survey foot");
   EXPECT_EQ(crs_facts("EPSG:2263+5703").vertical_unit, "m");
+
+  const CrsFacts ellipsoidal = crs_facts("EPSG:32632+ellipsoidal");
+  EXPECT_EQ(ellipsoidal.vertical_name, "ellipsoidal height");
+  EXPECT_EQ(ellipsoidal.horizontal_wkt.find("ellipsoidal"), std::string::npos) << ellipsoidal.horizontal_wkt;
 
   EXPECT_TRUE(crs_facts("EPSG:4326").geographic);
   EXPECT_EQ(crs_facts("EPSG:4326").unit, "degree");

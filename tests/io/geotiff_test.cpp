@@ -7,7 +7,9 @@
 
 #include <cmath>
 
+#include "core/crs.h"
 #include "core/error.h"
+#include "io/info.h"
 #include "tests/io/file_size_limit.h"
 #include "tests/world/support.h"
 
@@ -263,6 +265,15 @@ TEST(GeoTiff, AWriteThatIsCutShortAnywhereLeavesNothing) {
     EXPECT_THROW(write_grid(folder / "a.tif", g, "EPSG:32632"), core::Error) << s;
     EXPECT_EQ(test::entries(folder.path()), 0u) << s;
   }
+}
+
+TEST(GeoTiff, AProjectionWithEllipsoidalHeightsKeepsItsCrs) {
+  const test::TemporaryFolder folder;
+  const core::Grid grid = made_grid(8, 8);
+  write_grid(folder / "a.tif", grid, "EPSG:32632+ellipsoidal", height_bands);
+  const core::Crs crs(read_raster_info(folder / "a.tif").crs_wkt);
+  EXPECT_EQ(crs.epsg(), 32632);
+  EXPECT_EQ(describe_file(folder / "a.tif").find("heights")->as_text(), "ellipsoidal height");
 }
 
 }  // namespace

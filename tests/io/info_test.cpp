@@ -37,6 +37,26 @@ TEST(Info, ASurveyWithItsFaults) {
   EXPECT_NE(info_text(told).find("no such file"), std::string::npos);
 }
 
+TEST(Info, WhatThisProgramWritesAndReads) {
+  const test::TemporaryFolder folder;
+  const auto format = [&](const char* name, const std::string& text) {
+    test::write_bytes(folder / name, text);
+    const core::Value told = describe_file(folder / name);
+    EXPECT_TRUE(told.find("warnings")->items().empty()) << info_text(told);
+    return told.find("format")->as_text();
+  };
+  EXPECT_EQ(format("report.json", R"({"program": "swath 1", "survey": "s", "stages": [{"type": "readers.las"}]})"), "report of a run");
+  EXPECT_NE(info_text(describe_file(folder / "report.json")).find("readers.las"), std::string::npos);
+  EXPECT_EQ(format("calibration.json", R"({"calibration": {"roll": "0.1 deg"}, "sigma": {"roll": "1 arcsec"}})"), "calibration");
+  EXPECT_EQ(format("p.toml", "[[stage]]\ntype = \"readers.las\"\n"), "pipeline");
+  EXPECT_EQ(format("tiles.json", R"(["a.tif", "b.tif"])"), "JSON or TOML");
+  EXPECT_EQ(format("a.geojson", R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": )"
+                                R"({"type": "LineString", "coordinates": [[9, 48], [9.1, 48]]}}]})"),
+            "GeoJSON");
+  std::filesystem::rename(folder / "a.geojson", folder / "a.json");
+  EXPECT_EQ(describe_file(folder / "a.json").find("format")->as_text(), "GeoJSON");
+}
+
 TEST(Info, UnknownFilesAreErrors) {
   const test::TemporaryFolder folder;
   test::write_bytes(folder / "empty", "");
@@ -56,12 +76,16 @@ TEST(InfoReference, EveryKind) {
                                      {"tiny_survey/laser.npy", "NumPy array"},
                                      {"tiny_survey/gnss.csv", "delimited text"},
                                      {"tiny_survey/truth/dtm_1m.tif", "GTiff"},
+                                     {"rinex_rtklib/07590920.05o", "RINEX"},
+                                     {"rinex_rtklib/07590920.05n", "RINEX"},
+                                     {"contour_gdal/contour-gdal.geojson", "GeoJSON"},
                                      {"contour_gdal/input-dem.asc", "AAIGrid"}}) {
     const core::Value told = describe_file(data / name);
     EXPECT_EQ(told.find("format")->as_text(), format) << name;
-    EXPECT_GT(info_text(told).size(), 100u);
+    EXPECT_GT(info_text(told).size(), 80u);
   }
   EXPECT_EQ(describe_file(data / "optech_csd/sample.csd").find("pulses")->as_int(), 1000);
+  EXPECT_EQ(describe_file(data / "rinex_rtklib/07590920.05o").find("interval_s")->as_number(), 30.0);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/crs.h"
 #include "core/error.h"
 #include "io/laz/swath_laz.h"
 #include "tests/io/las_sample.h"
@@ -53,7 +54,7 @@ core::Block sample_block(std::size_t n) {
 
 LasWriteOptions options() {
   LasWriteOptions o;
-  o.crs_wkt = "PROJCS[\"made\"]";
+  o.crs_wkt = core::Crs("EPSG:32632").wkt1();
   return o;
 }
 
@@ -73,7 +74,7 @@ TEST(LasWriter, ABlockComesBackWithinItsSteps) {
     EXPECT_EQ(h.point_format, 7);
     EXPECT_TRUE(h.gps_time_is_adjusted());
     EXPECT_TRUE(h.global_encoding & las_encoding::wkt);
-    EXPECT_EQ(r.crs().definition, "PROJCS[\"made\"]");
+    EXPECT_EQ(r.crs().definition, core::Crs("EPSG:32632").wkt1());
     EXPECT_EQ(h.legacy_point_count, 0u);
     for (const std::uint64_t k : h.by_return) EXPECT_EQ(k, 200u);
     EXPECT_EQ(h.extras.size(), 6u);

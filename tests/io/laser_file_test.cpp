@@ -276,5 +276,24 @@ TEST(LaserReference, CsdPulses) {
   EXPECT_EQ(s.record[999], 999u);
 }
 
+TEST_F(LaserFiles, DegreesStatedAsRadiansAreRefusedByTheReader) {
+  survey_.laser[0].angle_unit = AngleUnit::rad;
+  const core::Error e = error_of("1,1,500,-20,9,1,1\n2,1,500,3,9,1,1\n");
+  EXPECT_NE(e.text().find("a.csv: record 0"), std::string::npos) << e.text();
+  EXPECT_NE(e.text().find("more than a full turn"), std::string::npos) << e.text();
+  EXPECT_NE(e.hint().find("angle_unit = \"deg\""), std::string::npos) << e.text();
+}
+
+TEST_F(LaserFiles, AProfileLineBesideAMirrorHasNoAngle) {
+  survey_.laser[0].model = core::ScannerModel::profile;
+  made("1,1,500,20,9,1,1\n2,1,500,3,9,1,1\n");
+  EXPECT_EQ(shots().angle, (std::vector<double>{0, 0}));
+  survey_.laser[0].columns.scan_angle.clear();
+  EXPECT_EQ(shots().angle, (std::vector<double>{0, 0}));
+  survey_.laser[0].columns.scan_angle = "a";
+  survey_.laser[0].model.reset();
+  EXPECT_NEAR(shots().angle[0], 20 * core::degree, 1e-12);
+}
+
 }  // namespace
 }  // namespace swath::io

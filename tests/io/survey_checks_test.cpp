@@ -7,6 +7,8 @@
 namespace swath::io {
 namespace {
 
+const std::string antenna = "[antenna]\nlever_arm = [\"0 m\", \"0 m\", \"-1 m\"]\n";
+
 const std::string navigation =
     "[[imu]]\n"
     "file = \"imu.csv\"\n"
@@ -26,7 +28,8 @@ const std::string navigation =
     "file = \"rover.pos\"\n"
     "[[gnss]]\n"
     "file = \"gps.log\"\n"
-    "time = {date = \"2025-07-08\"}\n";
+    "time = {date = \"2025-07-08\"}\n" +
+    antenna;
 
 const std::string laser =
     "crs = \"EPSG:32632\"\n"
@@ -73,6 +76,43 @@ TEST_F(NavigationChecks, NavigationRecordsMakeASurveyByThemselves) {
   EXPECT_EQ(format_of(s.gnss[2]), GnssFormat::nmea);
   // With laser records they stand for the trajectory.
   EXPECT_EQ(fault_of(laser + navigation), "");
+}
+
+TEST_F(NavigationChecks, ImuAndGnssNeedTheAntennasLeverArm) {
+  const std::string bare = with(antenna, "", navigation);
+  EXPECT_NE(fault_of(bare).find("antenna.lever_arm"), std::string::npos) << fault_of(bare);
+  EXPECT_NE(fault_of(bare + "[antenna]\nlatency = \"1 ms\"\n").find("antenna.lever_arm"), std::string::npos);
+  const size_t gnss = bare.find("[[gnss]]");
+  EXPECT_EQ(fault_of(bare.substr(gnss)), "");  // fixes alone
+}
+
+const std::string given =
+    "[[trajectory]]\nfile = \"imu.csv\"\nangle_unit = \"deg\"\ntime = {scale = \"gps\"}\ncolumns = {time = \"t\", latitude = \"a\", "
+    "longitude "
+    "= \"o\", height = \"h\", roll = \"r\", pitch = \"p\", heading = \"y\"}\n";
+
+TEST_F(NavigationChecks, ATrajectoryMayBeAllThatASurveyHas) { EXPECT_EQ(fault_of(given), ""); }
+
+TEST_F(NavigationChecks, AProfileLineInASurveyByAMirror) {
+  const std::string lines = laser + "[[laser]]\nfile = \"laser.csv\"\ntime = {scale = \"gps\"}\ncolumns = {time = \"t\", range = \"r\"}\n";
+  const std::string text = fault_of(lines + given);
+  EXPECT_NE(text.find("laser[2].columns.scan_angle"), std::string::npos) << text;
+  EXPECT_EQ(fault_of(lines + "model = \"profile\"\n" + given), "");
+  EXPECT_NE(fault_of(lines + "model = \"palmer\"\n" + given).find("laser[2].model"), std::string::npos);
+}
+
+TEST_F(NavigationChecks, TheWeekOfACsdFile) {
+  std::string bytes(2048, '\0');
+  bytes.replace(0, 3, "CSD");
+  bytes[104] = 0, bytes[105] = 8;            // size of the header
+  bytes[106] = '\x64', bytes[107] = '\x05';  // week 1380
+  test::write_bytes(folder_ / "a.csd", bytes);
+  const std::string csd = "crs = \"EPSG:32632\"\ncalibration_file = \"a.csd\"\n[[laser]]\nfile = \"a.csd\"\n";
+  EXPECT_EQ(fault_of(csd), "");
+  EXPECT_EQ(fault_of(csd + "time = {week = 1380}\n"), "");
+  const std::string text = fault_of(csd + "time = {week = 1381}\n");
+  EXPECT_NE(text.find("laser[1].time.week"), std::string::npos) << text;
+  EXPECT_NE(text.find("1381") != std::string::npos && text.find("1380") != std::string::npos, false) << text;
 }
 
 TEST_F(NavigationChecks, EventsAndClocks) {

@@ -2,6 +2,7 @@
 #include "pipeline/plan.h"
 
 #include "core/error.h"
+#include "io/las_writer.h"
 #include "io/value_file.h"
 #include "tests/world/support.h"
 
@@ -18,8 +19,11 @@ struct Case {
   Request request;
   explicit Case(const std::string& pipeline) {
     test::write_bytes(folder / "p.toml", pipeline);
-    test::write_bytes(folder / "cloud.las", "not read by check");
-    test::write_bytes(folder / "survey.toml", "crs = \"EPSG:32632\"\n[[points]]\nfile = \"cloud.las\"\n");
+    io::LasWriteOptions o;
+    o.threads = 1;
+    io::LasWriter cloud(folder / "cloud.las", o);
+    cloud.finish();
+    test::write_bytes(folder / "survey.toml", "crs = \"EPSG:32632\"\n[[points]]\nfile = \"cloud.las\"\ncrs = \"EPSG:32632\"\n");
     request.config = folder / "p.toml";
   }
   std::string fault() const {

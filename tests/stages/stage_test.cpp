@@ -44,6 +44,10 @@ TEST(Stage, LabelsAreCorners) {
   EXPECT_EQ(c.label({2, -3}), "500_-750");
   c.tile_side = 30.48;
   EXPECT_EQ(c.label({1, 0}), "30480mm_0");
+  c.unit = 0.3048;
+  EXPECT_EQ(c.label({1, -2}), "100_-200");
+  c.tile_side = 500;  // 1640.42 ft
+  EXPECT_EQ(c.label({1, 2}), "1640_3281");
 }
 
 }  // namespace

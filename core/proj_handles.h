@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// PROJ's objects with their owners, for the sources that call PROJ alone: no other header shows it.
+#pragma once
+
+#include <proj.h>
+
+#include <memory>
+#include <string>
+
+#include "core/crs.h"
+
+namespace swath::core {
+
+struct ContextEnd {
+  void operator()(PJ_CONTEXT* c) const { proj_context_destroy(c); }
+};
+struct PjEnd {
+  void operator()(PJ* p) const { proj_destroy(p); }
+};
+using ProjContext = std::unique_ptr<PJ_CONTEXT, ContextEnd>;
+using Pj = std::unique_ptr<PJ, PjEnd>;
+
+struct Axis {
+  double factor = 1.0;
+  std::string unit = "metre";
+};
+
+struct Crs::State {
+  std::string definition, name, wkt, wkt1, horizontal_wkt, vertical_name;
+  int epsg = 0, vertical_epsg = 0;
+  bool geographic = false, projected = false, geocentric = false, vertical = false;
+  Heights heights = Heights::unknown;
+  Axis horizontal_axis, vertical_axis;
+  bool has_area = false;
+  double area[4] = {0, 0, 0, 0};
+};
+
+/// Log and network are off.
+ProjContext new_proj_context();
+/// Empty for nullptr.
+std::string proj_text(const char* t);
+/// Null where PROJ does not understand the definition.
+Pj parse_crs(PJ_CONTEXT* c, const std::string& definition);
+/// At most 80 characters of a definition, for messages.
+std::string short_form(const std::string& definition);
+/// The facts of a CRS; throws Error where it is empty.
+const Crs::State& facts_of(const Crs& crs);
+
+}  // namespace swath::core
