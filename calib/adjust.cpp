@@ -14,9 +14,11 @@
 
 #include "calib/adjust_rounds.h"
 #include "calib/diagnosis.h"
+#include "calib/held_effects.h"
 #include "calib/jackknife.h"
 #include "calib/parameter_words.h"
 #include "calib/short_waves.h"
+#include "calib/start_sigmas.h"
 
 namespace swath::calib {
 namespace {
@@ -27,16 +29,11 @@ using Eigen::VectorXd;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr size_t most_samples = 20000;
 constexpr double common_shift = 1.0;      // m: how wrong all positions may be together, for Separation::unaided
+constexpr int least_jackknifed = 4;       // lines: without one of two or three the others' geometry is another flight's
 constexpr double factor_to_tell = 2.0;    // of a stated sigma
 constexpr double hardly_apart = 0.9;      // correlation
 constexpr double planes_apart = 10.0;     // of the ranges' sigma: lines that disagree so much were not put together rightly
 constexpr double outside_to_tell = 0.01;  // share of returns
-
-double apriori_of(const AprioriOptions& o, Parameter p) {
-  const double sigma[] = {o.roll.value,         o.pitch.value, o.heading.value,     o.lever_arm.value, o.lever_arm.value, o.lever_arm.value,
-                          o.range_offset.value, o.range_scale, o.scan_offset.value, o.scan_scale,      o.latency.value};
-  return sigma[p] > 0.0 ? sigma[p] : infinite;
-}
 
 std::vector<Parameter> chosen(const EstimateOptions& o, const core::Scanner& scanner, std::vector<Finding>& findings) {
   const BeamModel beam(scanner);
@@ -118,6 +115,7 @@ class Results {
   void all() {
     counts();
     components();
+    held_ = effects_of_held(p_, r_, noise_);
     corrections();
     planes();
     residuals();
@@ -130,6 +128,8 @@ class Results {
   void counts() {
     out_.iterations = r_.rounds;
     out_.converged = r_.converged;
+    for (Eigen::Index i = 0; i < globals_; ++i)
+      out_.last_step = std::max(out_.last_step, std::abs(r_.solution.x[i]) / std::sqrt(std::max(1e-300, r_.solution.covariance(i, i))));
     double sum = 0.0, freedom = 0.0;
     for (size_t g = 0; g < r_.pass.blocks.size(); ++g) {
       const GroupBlock& b = r_.pass.blocks[g];
@@ -199,6 +199,8 @@ class Results {
     const CorrectionKnots& k = *p_.knots;
     const TieSet& ties = *p_.ties;
     const MatrixXd apriori = k.covariance(r_.factors.of_position(), r_.factors.of_attitude());
+    MatrixXd with_held = r_.solution.covariance;
+    with_held.bottomRightCorner(k.size(), k.size()) += held_.covariance(globals_, k.size());
     for (size_t l = 0; l < ties.lines.size(); ++l) {
       LineCorrection c;
       c.line = ties.lines[l].id;
@@ -217,8 +219,14 @@ class Results {
         const Correction v = k.at(l, t, r_.state.correction);
         c.time.push_back(t);
         c.value.push_back({v[0], v[1], v[2], v[3], v[4], v[5]});
-        c.sigma.push_back(variances(r_.solution.covariance, globals_));
+        c.sigma.push_back(variances(with_held, globals_));
         c.apriori.push_back(variances(apriori, 0));
+        c.response.push_back(Eigen::Matrix<double, 6, latency + 1>::Zero());
+        for (size_t h = 0; h < held_.parameters.size(); ++h)
+          for (Eigen::Index i = 0; i < D.cols(); ++i)
+            c.response.back().col(held_.parameters[h]) +=
+                D.col(i) * (held_.effect(globals_ + numbers[static_cast<size_t>(i)], static_cast<Eigen::Index>(h)) /
+                            held_.sigma[static_cast<Eigen::Index>(h)]);
       }
       out_.corrections.push_back(std::move(c));
     }
@@ -299,34 +307,9 @@ class Results {
     return sigmas_with(n.N, r_.prior.globals);
   }
 
-  // What the unknowns would be moved by if each calibration value that is held were one stated sigma larger: columns. A value that is the
-  // same turn as an estimated one is a matter of names.
-  MatrixXd effects_of_held() const {
-    const Variances stated = variances(noise_, {});
-    const auto is_unknown = [&](Parameter p) { return std::find(p_.globals.begin(), p_.globals.end(), p) != p_.globals.end(); };
-    const Parameter same = p_.scanner->model == core::ScannerModel::conical ? boresight_heading : boresight_roll;
-    std::vector<VectorXd> columns;
-    for (int k = boresight_roll; globals_ > 0 && k <= latency; ++k) {
-      const auto p = static_cast<Parameter>(k);
-      if (is_unknown(p) || !(stated[p] > 0.0) || (p == scan_offset && is_unknown(same))) continue;
-      TieState other = r_.state;
-      set_value(other.calibration, p, value_of(other.calibration, p) + std::sqrt(stated[p]));
-      const TiePass pass = linearise(p_, other, r_.noise(), r_.scale);
-      const TieSystem system(p_, pass.blocks, r_.system().control(), r_.surface());
-      std::vector<PlaneRest> rests;
-      Normals n = system.sum(r_.use, rests);
-      add_prior(r_.prior, n);
-      const TieSolution moved = solve(system, n, rests, false);
-      if (moved.solved) columns.push_back(moved.x - r_.solution.x);
-    }
-    MatrixXd out = MatrixXd::Zero(globals_, static_cast<Eigen::Index>(columns.size()));
-    for (size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Eigen::Index>(k)) = columns[k].head(globals_);
-    return out;
-  }
-
   void estimates() {
     const VectorXd white_sigma = white();
-    const MatrixXd held = effects_of_held();
+    const MatrixXd held = held_.covariance(0, globals_);
     const double significance = o_.jackknife.significance;
     Jackknife lines, regions;
     if (globals_ > 0 && o_.jackknife.lines)
@@ -349,16 +332,17 @@ class Results {
         e.jackknife_planes = regions.sigma[i];
         larger = std::max(larger, enlargement(regions.ratio[i], regions.freedom[i], significance));
       }
-      e.held = held.row(i).norm();
-      const double told = std::isfinite(e.jackknife_lines) ? std::max(larger * e.formal, e.jackknife_lines) : larger * e.formal;
-      e.sigma = std::hypot(told, e.held);
+      e.held = std::sqrt(std::max(0.0, held(i, i)));
+      const double told = lines.replicates >= least_jackknifed ? std::max(larger * e.formal, e.jackknife_lines) : larger * e.formal;
+      e.sigma = e.found_sigma = std::hypot(told, e.held);
       e.determined = std::isfinite(e.apriori) ? 1.0 - std::pow(e.formal / e.apriori, 2) : 1.0;
     }
-    const MatrixXd C = r_.solution.covariance.topLeftCorner(globals_, globals_) + held * held.transpose();
+    const MatrixXd C = r_.solution.covariance.topLeftCorner(globals_, globals_) + held;
     const VectorXd inverse = C.diagonal().cwiseSqrt().cwiseInverse();
     out_.correlation = inverse.asDiagonal() * C * inverse.asDiagonal();
     out_.correlation.diagonal().setOnes();
     out_.condition = scaled_condition(sep_.information);
+    keep_covariance();
 
     // The limits are held against the sigma that would be delivered.
     Separation judged = sep_;
@@ -371,6 +355,22 @@ class Results {
       out_.findings.push_back(std::move(f));
     }
     tell_correlated(refused, shape);
+  }
+
+  void keep_covariance() {
+    constexpr int n = latency + 1;
+    out_.formal = out_.held = MatrixXd::Zero(n, n);
+    out_.held_correlation = MatrixXd::Identity(n, n);
+    for (Eigen::Index i = 0; i < globals_; ++i)
+      for (Eigen::Index j = 0; j < globals_; ++j) out_.formal(p_.globals[i], p_.globals[j]) = r_.solution.covariance(i, j);
+    for (size_t h = 0; h < held_.parameters.size(); ++h) {
+      const auto column = static_cast<Eigen::Index>(h);
+      const Parameter p = held_.parameters[h];
+      out_.held(p, p) = held_.sigma[column];
+      for (Eigen::Index i = 0; i < globals_; ++i) out_.held(p_.globals[i], p) = held_.effect(i, column);
+      for (size_t k = 0; k < held_.parameters.size(); ++k)
+        out_.held_correlation(p, held_.parameters[k]) = held_.correlation(column, static_cast<Eigen::Index>(k));
+    }
   }
 
   void tell_correlated(const std::vector<Parameter>& refused, const FlightShape& shape) {
@@ -424,8 +424,11 @@ class Results {
     if (static_cast<double>(outside_) > outside_to_tell * static_cast<double>(p_.ties->returns.size()))
       tell(std::to_string(outside_) + " of " + std::to_string(p_.ties->returns.size()) + " returns lie at times without trajectory",
            "check time scales and gaps");
-    if (!r_.converged)
-      tell("the adjustment is not steady after " + std::to_string(r_.rounds) + " rounds", "start from better values, or allow more rounds");
+    if (out_.last_step > settled_step)
+      tell("the adjustment did not converge: its last step still moves a value by " + number(out_.last_step) + " of its sigmas",
+           "start from better values, or allow more iterations", true);
+    else if (!r_.converged)
+      tell("the adjustment is not steady after " + std::to_string(r_.rounds) + " rounds of linearisation", "allow more iterations");
   }
 
   const TieProblem& p_;
@@ -437,8 +440,28 @@ class Results {
   Adjustment& out_;
   Eigen::Index globals_;
   Separation sep_;
+  HeldEffects held_;
   std::uint64_t outside_ = 0;
 };
+
+}  // namespace
+
+namespace {
+
+/// A start value that the flight contradicts counts for nothing.
+void report_contradicted(const TieProblem& problem, const AdjustRounds& r, VectorXd& apriori, std::vector<Finding>& findings) {
+  for (size_t i = 0; i < problem.globals.size(); ++i) {
+    const double far = r.contradiction[static_cast<Eigen::Index>(i)];
+    if (far == 0.0) continue;
+    const Parameter p = problem.globals[i];
+    findings.push_back({"the start value of " + std::string(words_of(p).name) + " is off by " + number(far) +
+                            " times its stated sigma: it counts for nothing",
+                        "state [sigma] of the survey as the value is known",
+                        {p},
+                        false});
+    apriori[static_cast<Eigen::Index>(i)] = infinite;
+  }
+}
 
 }  // namespace
 
@@ -472,21 +495,19 @@ Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::
         {"the normal equations cannot be solved", "check that trajectory and returns are of one flight", problem.globals, true});
     return out;
   }
+  report_contradicted(problem, rounds, apriori, out.findings);
   Results(problem, rounds, start, noise, apriori, options, out).all();
 
-  for (const Parameter p : problem.globals) out.estimates[p].delivered = true;
-  for (const Finding& f : out.findings)
-    if (f.refuses)
-      for (const Parameter p : f.parameters) out.estimates[p].delivered = false;
-  for (const Parameter p : problem.globals) {
+  for (size_t i = 0; i < problem.globals.size(); ++i) {
+    const Parameter p = problem.globals[i];
     Estimate& e = out.estimates[p];
-    if (e.delivered) {
-      e.value = e.found;
-      set_value(out.calibration, p, e.value);
-    } else {
-      e.sigma = e.apriori;
-    }
+    e.delivered = true;
+    e.grade = e.sigma <= limit[static_cast<Eigen::Index>(i)] ? Grade::good : Grade::coarse;
+    e.value = e.found;
+    set_value(out.calibration, p, e.value);
   }
+  for (const Finding& f : out.findings)
+    if (f.refuses) withdraw(out, f.parameters, out.last_step > settled_step ? Grade::unsettled : Grade::undetermined);
   return out;
 }
 

@@ -32,7 +32,8 @@ void describe(EstimateOptions& o, V& v) {
   v.option("latency", o.latency, "Latency of the records' times.");
 }
 
-/// Sigmas of the start values as observations; 0: the start value counts for nothing.
+/// Sigmas of the start values as observations; 0: the start value counts for nothing. Not an option: a survey states them in [sigma]
+/// (start_sigmas()); these stand in for those that it leaves out, and are the uncertainty of a mounting that nobody calibrated.
 struct AprioriOptions {
   core::Radians roll = core::degrees(1.0), pitch = core::degrees(1.0), heading = core::degrees(1.0);
   core::Metres lever_arm{0.02};
@@ -42,19 +43,6 @@ struct AprioriOptions {
   double scan_scale = 2e-3;
   core::Seconds latency{0.01};
 };
-
-template <class V>
-void describe(AprioriOptions& o, V& v) {
-  v.option("roll", o.roll, core::at_least(0), "Sigma of the start value of the boresight roll; 0: it counts for nothing.");
-  v.option("pitch", o.pitch, core::at_least(0), "Sigma of the start value of the boresight pitch.");
-  v.option("heading", o.heading, core::at_least(0), "Sigma of the start value of the boresight heading.");
-  v.option("lever_arm", o.lever_arm, core::at_least(0), "Sigma of each component of the lever arm as surveyed.");
-  v.option("range_offset", o.range_offset, core::at_least(0), "Sigma of the start value of the range offset.");
-  v.option("range_scale", o.range_scale, core::at_least(0), "Sigma of the start value of the range scale.");
-  v.option("scan_offset", o.scan_offset, core::at_least(0), "Sigma of the start value of the scan offset.");
-  v.option("scan_scale", o.scan_scale, core::at_least(0), "Sigma of the start value of the scan scale.");
-  v.option("latency", o.latency, core::at_least(0), "Sigma of the start value of the latency.");
-}
 
 /// How the trajectory is corrected along each line.
 enum class CorrectionForm {
@@ -157,7 +145,7 @@ void describe(JackknifeOptions& o, V& v) {
            "would make it with this probability.");
 }
 
-/// A value whose sigma is larger is not delivered.
+/// A value whose sigma is larger is graded coarse; one that is not determined is not delivered.
 struct LimitOptions {
   core::Radians roll_pitch = core::degrees(0.005), heading = core::degrees(0.01);
   core::Metres lever_arm{0.02};
@@ -171,15 +159,16 @@ struct LimitOptions {
 
 template <class V>
 void describe(LimitOptions& o, V& v) {
-  v.option("roll_pitch", o.roll_pitch, core::above(0), "Largest useful sigma of boresight roll and pitch.");
-  v.option("heading", o.heading, core::above(0), "Largest useful sigma of the boresight heading.");
-  v.option("lever_arm", o.lever_arm, core::above(0), "Largest useful sigma of a component of the lever arm.");
-  v.option("range_offset", o.range_offset, core::above(0), "Largest useful sigma of the range offset.");
-  v.option("range_scale", o.range_scale, core::above(0), "Largest useful sigma of the range scale.");
-  v.option("scan_offset", o.scan_offset, core::above(0), "Largest useful sigma of the scan offset.");
-  v.option("scan_scale", o.scan_scale, core::above(0), "Largest useful sigma of the scan scale.");
-  v.option("latency", o.latency, core::above(0), "Largest useful sigma of the latency.");
-  v.option("determined", o.determined, core::within(0, 1), "Least share of the knowledge of a value that must come from the flight.");
+  v.option("roll_pitch", o.roll_pitch, core::above(0), "Sigma of boresight roll and pitch up to which it is graded good.");
+  v.option("heading", o.heading, core::above(0), "Sigma of the boresight heading up to which it is graded good.");
+  v.option("lever_arm", o.lever_arm, core::above(0), "Sigma of a component of the lever arm up to which it is graded good.");
+  v.option("range_offset", o.range_offset, core::above(0), "Sigma of the range offset up to which it is graded good.");
+  v.option("range_scale", o.range_scale, core::above(0), "Sigma of the range scale up to which it is graded good.");
+  v.option("scan_offset", o.scan_offset, core::above(0), "Sigma of the scan offset up to which it is graded good.");
+  v.option("scan_scale", o.scan_scale, core::above(0), "Sigma of the scan scale up to which it is graded good.");
+  v.option("latency", o.latency, core::above(0), "Sigma of the latency up to which it is graded good.");
+  v.option("determined", o.determined, core::within(0, 1),
+           "Share of the knowledge of a value that the flight must bring for it to be delivered.");
 }
 
 struct AdjustOptions {
@@ -197,13 +186,12 @@ struct AdjustOptions {
 template <class V>
 void describe(AdjustOptions& o, V& v) {
   v.table("estimate", o.estimate, "Which values are unknowns.");
-  v.table("apriori", o.apriori, "Sigmas of the start values as observations.");
   v.table("corrections", o.corrections, "Corrections to the trajectory along each line.");
   v.table("robust", o.robust, "Weights of single returns.");
   v.table("snooping", o.snooping, "Search for displaced planes and wrong control.");
   v.table("components", o.components, "Variances estimated from the residuals.");
   v.table("jackknife", o.jackknife, "Sigmas by leaving out.");
-  v.table("limits", o.limits, "Values less certain than this are not delivered.");
+  v.table("limits", o.limits, "Grades of the values: good within these sigmas, coarse beyond; undetermined ones are not delivered.");
   v.option("iterations", o.iterations, core::within(2, 100), "Most rounds of linearisation.");
 }
 

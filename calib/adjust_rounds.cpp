@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gauss-Newton with robust weights. The order matters: planes are refitted first, for the start values' errors are common to all returns of
-// a group; control enters after the strips agree among themselves, so that control in another datum is seen for what it is; displaced
-// groups go one batch at a time, and after each the variances are estimated anew.
+// a group; start values are tested against the flight before the variances are estimated, which would explain any contradiction; control
+// enters after the strips agree among themselves, so that control in another datum is seen for what it is; displaced groups go one batch at
+// a time, and after each the variances are estimated anew.
 #include "calib/adjust_rounds.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "calib/start_sigmas.h"
 #include "core/statistics.h"
 
 namespace swath::calib {
@@ -31,7 +33,10 @@ AdjustRounds::AdjustRounds(const TieProblem& problem, const core::Calibration& s
   state.correction = VectorXd::Zero(problem.knots->size());
   state.planes = problem.ties->planes;
   state.roughness.assign(state.planes.size(), 0.0);
-  information_ = apriori.cwiseMin(free_sigma * limit).cwiseAbs2().cwiseInverse();
+  apriori_ = std::move(apriori);
+  free_ = (free_sigma * limit).cwiseAbs2().cwiseInverse();
+  information_ = apriori_.cwiseAbs2().cwiseInverse().cwiseMax(free_);
+  contradiction = VectorXd::Zero(apriori_.size());
   use.group.assign(problem.ties->groups.size(), 1);
   use.control.assign(control_rows(state.planes, 1.0).size(), 0);
 }
@@ -156,9 +161,26 @@ bool AdjustRounds::snoop() {
   return any;
 }
 
+void AdjustRounds::release_contradicted() {
+  const auto n = static_cast<Eigen::Index>(problem_->globals.size());
+  if (n == 0 || !solution.solved) return;
+  solve_here();
+  if (!solution.solved) return;
+  VectorXd found(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Parameter p = problem_->globals[static_cast<size_t>(i)];
+    found[i] = value_of(state.calibration, p) - value_of(start_, p);
+  }
+  contradiction = contradicted(found, solution.covariance.diagonal().head(n).cwiseSqrt(), apriori_);
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (contradiction[i] > 0.0) information_[i] = free_[i];
+}
+
 void AdjustRounds::run() {
   fit_planes();
   set_roughness();
+  iterate(false);
+  release_contradicted();
   iterate(true);
   if (!use.control.empty() && solution.solved) {
     solve_here();

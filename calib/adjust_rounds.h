@@ -32,6 +32,7 @@ class AdjustRounds {
   TieSolution solution;
   TieTests tests;
   ControlShift shift;
+  Eigen::VectorXd contradiction;  ///< of each start value by the flight, in sigmas; it then counts for nothing. 0: none
   int rounds = 0;
   bool converged = false, snooping_full = false;
 
@@ -49,12 +50,14 @@ class AdjustRounds {
   bool round(bool variances);
   void iterate(bool variances);
   bool snoop();
+  /// Lets go of start values that the flight contradicts, before the variances make room for them.
+  void release_contradicted();
 
   const TieProblem* problem_;
   const core::SensorSigma* stated_;
   const AdjustOptions* options_;
   core::Calibration start_;
-  Eigen::VectorXd information_;  // of the global unknowns
+  Eigen::VectorXd apriori_, information_, free_;  // of the global unknowns: sigmas, information, that of a free one
   std::unique_ptr<TieSystem> system_;
 };
 

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
+#include "calib/parameter_words.h"
 #include "calib/tie_normals.h"
 #include "core/error.h"
 #include "core/geodesy.h"
@@ -14,8 +16,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What a change of the calibration moves the returns by at the tie planes, rms over the groups, m: the measure of whether another round is
-/// worth its time.
+constexpr double swinging = 0.25;  // of the move before, turned back
+
+/// What a change of the calibration moves the returns by at the tie planes, rms over the groups, m: for the reader.
 double moved(const core::Calibration& from, const core::Calibration& to, const Adjustment& at, const trajectory::Trajectory& trajectory) {
   const auto change = [&](Parameter p) { return value_of(to, p) - value_of(from, p); };
   const double arm = std::hypot(change(lever_forward), change(lever_right), change(lever_down)), late = change(latency);
@@ -30,6 +33,64 @@ double moved(const core::Calibration& from, const core::Calibration& to, const A
     if (pose) squares += std::pow(late * pose->velocity.norm(), 2);
   }
   return at.groups.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(at.groups.size()));
+}
+
+/// The estimated value that two rounds leave farthest apart, in its sigmas.
+struct Move {
+  Parameter parameter = boresight_roll;
+  double sigmas = 0.0;
+};
+Move largest_move(const core::Calibration& from, const Adjustment& to) {
+  Move out;
+  for (const Estimate& e : to.estimates) {
+    if (!e.estimated) continue;
+    const double sigmas = std::abs(e.found - value_of(from, e.parameter)) / std::max(e.found_sigma, 1e-15);
+    if (!(sigmas <= out.sigmas)) out = {e.parameter, sigmas};
+  }
+  return out;
+}
+
+/// All that was found, delivered or not: the planes are sought with it.
+core::Calibration found_by(const Adjustment& a) {
+  core::Calibration out = a.calibration;
+  for (const Estimate& e : a.estimates)
+    if (e.estimated) set_value(out, e.parameter, e.found);
+  return out;
+}
+
+/// Where the next round looks for planes. A round that turns back much of what the one before moved swings about the answer: it is met half
+/// way.
+core::Calibration next_of(const core::Calibration& before, const core::Calibration& now, const Adjustment& a) {
+  double product = 0.0, last = 0.0;
+  core::Calibration found = found_by(a);
+  for (const Estimate& e : a.estimates) {
+    if (!e.estimated) continue;
+    const double scale = std::max(e.found_sigma, 1e-15), was = (value_of(now, e.parameter) - value_of(before, e.parameter)) / scale;
+    product += was * (e.found - value_of(now, e.parameter)) / scale;
+    last += was * was;
+  }
+  if (product >= -swinging * last) return found;
+  for (const Estimate& e : a.estimates)
+    if (e.estimated) set_value(found, e.parameter, 0.5 * (e.found + value_of(now, e.parameter)));
+  return found;
+}
+
+void refuse_unsettled(Adjustment& a, const Move& move, int rounds) {
+  std::vector<Parameter> all;
+  for (const Estimate& e : a.estimates)
+    if (e.estimated) all.push_back(e.parameter);
+  char sigmas[32];
+  std::snprintf(sigmas, sizeof sigmas, "%.2g", move.sigmas);
+  a.findings.push_back({"the values did not settle in " + std::to_string(rounds) + " rounds: the last one still moved " +
+                            std::string(words_of(move.parameter).name) + " by " + sigmas + " of its sigmas",
+                        "allow more rounds, or fly lines that share more planes: opposite lines, cross lines, sloping roofs", all, true});
+  withdraw(a, all, Grade::unsettled);
+}
+
+/// How far the lines may lie apart at first: what the surfaces leave of the boresight moves returns by less from lower down.
+double first_mismatch(double stated, double height) {
+  constexpr double per_height = 1.0 / 800.0, least = 0.1;  // m
+  return height > 0.0 ? std::min(stated, std::max(least, per_height * height)) : stated;
 }
 
 /// How far the lines still lie apart: three times the robust scatter of the groups about their planes.
@@ -65,7 +126,8 @@ void refuse_without_ties(const TieSet& ties, const core::Tally& tally) {
 }  // namespace
 
 void refuse_reversed_scan(const CalibrationFlight& flight, const SurfaceMatchOptions& options) {
-  if (scan_is_reversed(flight.shots, flight.scanner, flight.start, *flight.trajectory, flight.frame, options)) throw_reversed_scan();
+  if (scan_is_reversed(flight.shots, flight.scanner, flight.start, *flight.trajectory, flight.frame, sized(options, flight.scale.height)))
+    throw_reversed_scan();
 }
 
 std::vector<std::string> targets_not_found(const core::Tally& tally) {
@@ -101,25 +163,27 @@ Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& op
   };
   Calibrated out;
   core::Calibration now = flight.start;
-  double mismatch = options.planes.mismatch.value;
+  const SurfaceMatchOptions match = sized(options.match, flight.scale.height);
+  double mismatch = first_mismatch(options.planes.mismatch.value, flight.scale.height);
   if (options.coarse) {
     tell("matching surfaces");
-    out.match = match_surfaces(flight.shots, flight.scanner, flight.start, *flight.trajectory, flight.frame, options.match);
+    out.match = match_surfaces(flight.shots, flight.scanner, flight.start, *flight.trajectory, flight.frame, match);
     if (out.match->scan_reversed) throw_reversed_scan();
     now = out.match->calibration;
   } else {
-    refuse_reversed_scan(flight, options.match);
+    refuse_reversed_scan(flight, match);
   }
 
   std::vector<SurveyedTarget> targets;
   std::copy_if(flight.targets.begin(), flight.targets.end(), std::back_inserter(targets),
                [](const SurveyedTarget& t) { return t.use == io::ControlUse::control; });
-  constexpr double steady = 0.005, closest = 0.05;  // m
+  constexpr double closest = 0.05;  // m
   core::Tally of_round;
+  core::Calibration before = now;
   for (out.rounds = 1; out.rounds <= options.rounds; ++out.rounds) {
     // The first round looks at few planes: it only leads to where the others begin. Sigmas by leaving out are not asked of it.
     const bool first = out.rounds == 1 && options.rounds > 1;
-    TiePlaneOptions planes = options.planes;
+    TiePlaneOptions planes = sized(options.planes, flight.scale);
     AdjustOptions adjusted = options.adjust;
     planes.mismatch.value = std::max(mismatch, closest);
     if (first) {
@@ -136,12 +200,19 @@ Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& op
     tell(round + ": adjustment");
     out.adjustment =
         adjust(out.ties, flight.scanner, flight.start, flight.sensor, *flight.trajectory, *flight.errors, adjusted, flight.threads);
-    const double change = moved(now, out.adjustment.calibration, out.adjustment, *flight.trajectory);
-    now = out.adjustment.calibration;
+    const Move move = largest_move(now, out.adjustment);
+    const double change = moved(now, found_by(out.adjustment), out.adjustment, *flight.trajectory);
+    const core::Calibration next = out.rounds > 2 ? next_of(before, now, out.adjustment) : found_by(out.adjustment);
+    before = now;
+    now = next;
     mismatch = std::min(mismatch, mismatch_after(out.adjustment));
-    if ((change < steady && !first) || out.rounds == options.rounds) {
+    const bool settled = !first && move.sigmas <= settled_step;
+    if (settled || out.rounds == options.rounds) {
+      char sigmas[32];
+      std::snprintf(sigmas, sizeof sigmas, "%.2g", move.sigmas);
       out.notes.push_back("Planes were sought " + std::to_string(out.rounds) + " times; the last time moved the returns by " +
-                          metres(change) + ".");
+                          metres(change) + ", and no value by more than " + sigmas + " of its sigmas.");
+      if (!settled) refuse_unsettled(out.adjustment, move, out.rounds);
       break;
     }
   }

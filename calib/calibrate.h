@@ -21,7 +21,7 @@ namespace swath::calib {
 struct CalibrateOptions {
   CalibrateOptions() { planes.mismatch.value = 0.5; }
   bool coarse = true;
-  int rounds = 5;
+  int rounds = 12;
   SurfaceMatchOptions match;
   TiePlaneOptions planes;
   AdjustOptions adjust;
@@ -34,9 +34,9 @@ void describe(CalibrateOptions& o, V& v) {
       "Find the boresight's first values by matching the surfaces of the lines; otherwise those of the survey are taken, and the surfaces "
       "are looked at for the sign of the scan angle alone.");
   v.option("rounds", o.rounds, core::within(1, 20),
-           "Most times that planes are sought and adjusted; it ends before where nothing changes.");
+           "Maximum of rounds, planes sought and adjusted in each; they end where no value moves by half of its sigma.");
   v.table("match", o.match, "The surfaces' matching.");
-  v.table("planes", o.planes, "The search for planes; `mismatch` is that of the first round.");
+  v.table("planes", o.planes, "The search for planes; `mismatch` is that of the first round, 1/800 of the height at most.");
   describe(o.adjust, v);
 }
 
@@ -49,6 +49,7 @@ struct CalibrationFlight {
   const trajectory::Trajectory* trajectory = nullptr;
   const trajectory::ErrorModel* errors = nullptr;
   trajectory::LocalFrame frame;
+  FlownScale scale;                     ///< sizes of planes and squares follow it
   std::vector<SurveyedTarget> targets;  ///< those of use `control` take part
   int threads = 1;
 };
@@ -72,7 +73,8 @@ trajectory::LocalFrame frame_of(const std::vector<std::pair<double, double>>& li
 void refuse_reversed_scan(const CalibrationFlight& flight, const SurfaceMatchOptions& options = {});
 
 /// Throws core::Error where the flight cannot be calibrated at all: no two lines that see the same planes (and no target), or records of
-/// the scan angle with the wrong sign. `told`: a sentence on each step, as it is done.
+/// the scan angle with the wrong sign. Values that still move by more than half of their sigma after the last round are not delivered.
+/// `told`: a sentence on each step, as it is done.
 Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& options, core::Tally& tally,
                      const std::function<void(const std::string&)>& told = {});
 

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers decide, the flight's geometry chooses the words. An eigenvector of the information, scaled to useful sigmas, whose eigenvalue is
-// below 1 is a combination of values that the flight does not tell to a useful accuracy.
+// Numbers decide, the flight's geometry chooses the words. An eigenvector of the information, scaled to the start values' sigmas, whose
+// eigenvalue is below 1 is a combination of values of which the start values know more than the flight.
 #include "calib/diagnosis.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <set>
 
 #include "calib/parameter_words.h"
+#include "calib/start_sigmas.h"
 
 namespace swath::calib {
 namespace {
@@ -87,6 +89,12 @@ Words words_for(Parameter p, const FlightShape& s) {
   }
   return {name + " is not told to a useful accuracy by these lines and this trajectory",
           "fly more lines over more planes, or with a better trajectory"};
+}
+
+std::string in_words(Parameter p, double sigma) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.3g %s", sigma / words_of(p).sigma_size, std::string(words_of(p).sigma_unit).c_str());
+  return text;
 }
 
 std::string joined(const std::vector<Parameter>& list) {
@@ -192,16 +200,16 @@ std::vector<Finding> diagnose(const std::vector<Parameter>& globals, const Separ
   const auto n = static_cast<Eigen::Index>(globals.size());
   std::vector<Finding> out;
   if (n == 0) return out;
-  VectorXd limit(n);
-  for (Eigen::Index i = 0; i < n; ++i) limit[i] = limit_of(limits, globals[i]);
+  // A start value that counts for nothing is as uncertain as an uncalibrated mounting's.
+  VectorXd known(n);
+  for (Eigen::Index i = 0; i < n; ++i) known[i] = std::isfinite(apriori[i]) ? apriori[i] : apriori_of({}, globals[i]);
   std::vector<bool> refused(globals.size()), named(globals.size());
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double share = std::isfinite(apriori[i]) ? 1.0 - std::pow(sep.formal[i] / apriori[i], 2) : 1.0;
-    refused[i] = !(sep.formal[i] <= limit[i]) || share < limits.determined;
-  }
+  for (Eigen::Index i = 0; i < n; ++i) refused[i] = !(1.0 - std::pow(sep.formal[i] / known[i], 2) >= limits.determined);
 
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(limit.asDiagonal() * sep.information * limit.asDiagonal());
-  for (Eigen::Index k = 0; k < n && eigen.eigenvalues()[k] < 1.0; ++k) {
+  // Where the flight brings less than the start values, the combination is not its own.
+  const double least = limits.determined / std::max(1e-9, 1.0 - limits.determined);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(known.asDiagonal() * sep.information * known.asDiagonal());
+  for (Eigen::Index k = 0; k < n && eigen.eigenvalues()[k] < least; ++k) {
     std::vector<Parameter> parts;
     for (Eigen::Index i = 0; i < n; ++i)
       if (std::pow(eigen.eigenvectors()(i, k), 2) > part_of_combination && refused[i]) parts.push_back(globals[i]);
@@ -221,9 +229,16 @@ std::vector<Finding> diagnose(const std::vector<Parameter>& globals, const Separ
   }
   for (Eigen::Index i = 0; i < n; ++i) {
     const Words w = words_for(globals[i], shape);
+    const double limit = limit_of(limits, globals[i]);
     if (refused[i] && !named[i]) {
       out.push_back({w.what, w.cure, {globals[i]}, true});
-    } else if (!refused[i] && sep.unaided.size() == n && sep.unaided[i] > rests_on_position * limit[i]) {
+    } else if (!refused[i] && !(sep.formal[i] <= limit)) {
+      out.push_back({std::string(words_of(globals[i]).name) + " is coarse: known to " + in_words(globals[i], sep.formal[i]) +
+                         ", where a sigma of " + in_words(globals[i], limit) + " is graded good; " + w.what,
+                     w.cure,
+                     {globals[i]},
+                     false});
+    } else if (!refused[i] && sep.unaided.size() == n && sep.unaided[i] > rests_on_position * limit) {
       out.push_back({w.what + "; its value rests on the trajectory's positions alone", w.cure, {globals[i]}, false});
     }
   }

@@ -11,7 +11,7 @@
 
 namespace swath::calib {
 
-/// Largest useful sigma.
+/// Sigma up to which a value is graded good.
 double limit_of(const LimitOptions& limits, Parameter p);
 
 /// The geometry of a flight as its groups of returns show it.
@@ -37,7 +37,8 @@ struct Separation {
 /// Condition number of a normal matrix scaled to ones on its diagonal; infinite where it is singular.
 double scaled_condition(const Eigen::MatrixXd& information);
 
-/// Findings on what is not determined; those that refuse name the parameters whose values must not be delivered.
+/// Findings on what is not determined, or coarse; those that refuse name the parameters whose values must not be delivered: the flight
+/// brings less than limits.determined of what is known of them. `apriori`: infinite where the start counts for nothing.
 std::vector<Finding> diagnose(const std::vector<Parameter>& globals, const Separation& separation, const Eigen::VectorXd& apriori,
                               const FlightShape& shape, const LimitOptions& limits);
 

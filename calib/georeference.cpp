@@ -47,6 +47,7 @@ struct Local {
   Vector3d down;  // in base
   trajectory::Pose pose;
   trajectory::PoseSigma sigma;
+  SharedErrors errors;  // where they are correlated
 };
 
 void make_rays(const ShotGeometry& g, bool with_derivative, Chunk& c) {
@@ -128,6 +129,36 @@ void place(const trajectory::Interval& k, const Local& here, const Vector3d& lev
     c.x[i] = R(0, 0) * x + R(0, 1) * y + R(0, 2) * z + (p[0].x() + s * (p[1].x() + s * (p[2].x() + s * p[3].x())));
     c.y[i] = R(1, 0) * x + R(1, 1) * y + R(1, 2) * z + (p[0].y() + s * (p[1].y() + s * (p[2].y() + s * p[3].y())));
     c.z[i] = R(2, 0) * x + R(2, 1) * y + R(2, 2) * z + (p[0].z() + s * (p[1].z() + s * (p[2].z() + s * p[3].z())));
+  }
+}
+
+// What every record adds by itself: range, angle, pointing, time. `total` and `down` grow by it.
+void add_records(const Variances& v, const core::Calibration& cal, double pointing, double factor2, bool recorded, const PointTerms& p,
+                 double cosine, const Vector3d& D, double& total, double& down) {
+  const double range = factor2 * v[record_range] * cal.range_scale * cal.range_scale;
+  total += range;
+  down += range * cosine * cosine;
+  const double angle = recorded ? v[record_angle] * cal.scan_scale * cal.scan_scale : 0.0;
+  const double lift = p.by_angle.dot(D), sink = p.by_time.dot(D), r2 = p.ray.squaredNorm();
+  total += angle * p.by_angle.squaredNorm() + 2.0 * pointing * r2 + v[record_time] * p.by_time.squaredNorm();
+  down += angle * lift * lift + pointing * r2 * (1.0 - cosine * cosine) + v[record_time] * sink * sink;
+}
+
+// The same as propagate() where the shared errors are correlated.
+void propagate_correlated(const ShotGeometry& g, const core::SensorSigma& sensor, const Local& here, Chunk& c) {
+  const Variances v = variances(sensor, here.sigma);
+  const double factor = g.air().range_factor;
+  const double pointing = sensor.beam_divergence.value * sensor.beam_divergence.value / 16.0;
+  const bool recorded = !g.beam().ignores_record();
+  const Vector3d speed = here.ecef_R_base.transpose() * here.pose.velocity;
+  for (size_t i = 0; i < c.n; ++i) {
+    const Vector3d t(c.rx[i], c.ry[i], c.rz[i]), q = t - g.lever_arm();
+    const PointTerms p{q,          q * (factor / c.range[i]),      c.raw_range[i], Vector3d(c.ax[i], c.ay[i], c.az[i]),
+                       c.angle[i], speed + here.pose.rate.cross(t)};
+    PointVariance s = variance_of(p, here.errors, here.down);
+    add_records(v, g.calibration(), pointing, factor * factor, recorded, p, c.cosine[i], here.down, s.total, s.down);
+    c.sigma_h[i] = static_cast<float>(std::sqrt(std::max(s.total - s.down, 0.0)));
+    c.sigma_v[i] = static_cast<float>(std::sqrt(s.down));
   }
 }
 
@@ -277,6 +308,7 @@ Georeferencer::Georeferencer(const core::Scanner& scanner, const core::Calibrati
                              const trajectory::Trajectory& trajectory, const core::Crs& map, Vector3d block_origin, bool with_sigma)
     : geometry_(scanner, calibration),
       sigma_(sigma),
+      correlated_(geometry_, sigma, trajectory.data().response),
       trajectory_(&trajectory),
       map_(map),
       origin_(std::move(block_origin)),
@@ -303,12 +335,14 @@ Counts Georeferencer::run(const core::Shots& shots, core::Block& out) const {
       here.pose = k.pose(k.start);
       here.ecef_R_base = k.base_attitude;
       here.sigma = cursor.sigma(0.5 * (k.start + k.end));
-      here.down = here.ecef_R_base.transpose() * ecef_R_ned_at(here.pose).col(2);
+      const Matrix3d base_R_ned = here.ecef_R_base.transpose() * ecef_R_ned_at(here.pose);
+      here.down = base_R_ned.col(2);
+      if (with_sigma_ && correlated_.any()) here.errors = correlated_.at(k.start, here.sigma, base_R_ned);
     }
     make_rays(geometry_, with_sigma_, c);
     turn_to_base(k, geometry_.lever_arm(), c);
     place(k, here, geometry_.lever_arm(), geometry_.air().bending, c);
-    if (with_sigma_) propagate(geometry_, sigma_, here, c);
+    if (with_sigma_) (correlated_.any() ? propagate_correlated : propagate)(geometry_, sigma_, here, c);
     to_map(map_, origin_, patch, c);
     const size_t written = write(c, k, shots, with_sigma_, out, at);
     counts.no_map += c.n - written;

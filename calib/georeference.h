@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "calib/correlated_errors.h"
 #include "calib/map_patch.h"
 #include "calib/shot_geometry.h"
 #include "core/block.h"
@@ -44,7 +45,8 @@ class Georeferencer {
   ///               from the scanner's nadir; LAS 1.4 asks for the angle with the aircraft's roll, which differs by that roll.
   ///   range       m, calibrated and corrected for the air
   ///   incidence   rad, between the beam and the ellipsoid's normal at the ground (terrain.intensity takes the terrain's)
-  ///   sigma_h     m, sqrt(var north + var east); sigma_v m: J S J^T with the trajectory's sigmas at that instant and SensorSigma
+  ///   sigma_h     m, sqrt(var north + var east); sigma_v m: J S J^T with the trajectory's sigmas at that instant and SensorSigma, its
+  ///               correlations and those of the trajectory with the calibration (core::CalibrationResponse)
   /// Throws core::Error where `out` holds points of another origin.
   Counts run(const core::Shots& shots, core::Block& out) const;
 
@@ -55,6 +57,7 @@ class Georeferencer {
  private:
   ShotGeometry geometry_;
   core::SensorSigma sigma_;
+  CorrelatedErrors correlated_;
   const trajectory::Trajectory* trajectory_;
   MapPatches map_;
   Eigen::Vector3d origin_;

@@ -22,7 +22,9 @@ std::vector<trajectory::CorrectionSeries> series_of(const std::vector<LineCorrec
   std::vector<trajectory::CorrectionSeries> out;
   for (const LineCorrection& c : corrections) {
     trajectory::CorrectionSeries s;
-    for (size_t k = 0; k < c.time.size(); ++k) s.knots.push_back({c.time[k], c.value[k], c.sigma[k]});
+    for (size_t k = 0; k < c.time.size(); ++k)
+      s.knots.push_back({c.time[k], c.value[k], c.sigma[k],
+                         k < c.response.size() ? std::optional(core::CalibrationResponse::Matrix(c.response[k])) : std::nullopt});
     if (!s.knots.empty()) out.push_back(std::move(s));
   }
   return out;
@@ -46,6 +48,12 @@ double moved(const std::vector<LineCorrection>& from, const std::vector<LineCorr
     for (size_t i = 0; i < 6; ++i) squares += std::pow((b[i] - a[i]) * (i < 3 ? 1.0 : i < 5 ? g.range : g.range * std::sin(g.angle)), 2);
   }
   return at.groups.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(at.groups.size()));
+}
+
+std::string metres(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f m", v);
+  return text;
 }
 
 std::string seconds(double v) {
@@ -131,7 +139,7 @@ AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions
   AdjustedStrips out;
   tell("sign of the scan angle");
   refuse_reversed_scan(survey);
-  TiePlaneOptions planes = options.planes;
+  TiePlaneOptions planes = sized(options.planes, survey.scale);
   AdjustOptions how = options.adjust;
   core::Tally of_round;
   double change = 0;
@@ -158,10 +166,15 @@ AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions
     if (change < steady) break;
   }
   out.rounds = std::min(out.rounds, options.rounds);
+  if (change >= steady)
+    out.adjustment.findings.push_back({"the corrections did not settle in " + std::to_string(out.rounds) +
+                                           " rounds: the last one still moved the returns by " + metres(change),
+                                       "allow more rounds, or fly lines that share more planes",
+                                       {},
+                                       false});
   out.differences = plane_differences(out.ties, out.adjustment);
-  char size[32];
-  std::snprintf(size, sizeof size, "%.3f m", change);
-  out.notes.push_back("Planes were sought " + std::to_string(out.rounds) + " times; the last round moved the returns by " + size + ".");
+  out.notes.push_back("Planes were sought " + std::to_string(out.rounds) + " times; the last round moved the returns by " + metres(change) +
+                      ".");
   if (how.corrections.spacing.value < options.adjust.corrections.spacing.value)
     out.notes.push_back("The trajectory errs faster than its corrections could follow: their knots were brought nearer, to " +
                         seconds(out.adjustment.knot_spacing) + ".");

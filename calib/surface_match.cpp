@@ -24,17 +24,19 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::uint64_t most_cells = 48u << 20;  // 6 bytes each
-constexpr double least_relief = 0.15;            // m, shared by neighbouring cells
-constexpr double least_share = 0.4;              // of the relief's rms that neighbouring cells must share
-constexpr double level_rms = 0.3;                // m: squares without relief below it are level, above it they are woods
-constexpr double relief_cap = 3.0;               // m: more relief than this is not better
-constexpr double filled = 0.4;                   // share of a square's cells that a line must have seen
-constexpr double meets = 0.5;                    // share of the typical cost below which two surfaces meet
-constexpr double agreed = 0.15;                  // share of the squares that must meet:
-constexpr double surely_agreed = 0.5;            // this one always, the lower one if it is
-constexpr double above_chance = 3.0;             // so many times the share that meets under any boresight
-constexpr int fewest_squares = 4;                // with relief: fewer say nothing of pitch and heading
-constexpr double match_cells = 10.0;             // a search radius is this many cells or fewer where the cells allow
+constexpr double full_height = 400.0;            // m: squares and cells no longer grow
+constexpr double widest_window = 80.0, smallest_window = 8.0, widest_cell = 1.0, smallest_cell = 0.25;  // m
+constexpr double least_relief = 0.15;                                                                   // m, shared by neighbouring cells
+constexpr double least_share = 0.4;    // of the relief's rms that neighbouring cells must share
+constexpr double level_rms = 0.3;      // m: squares without relief below it are level, above it they are woods
+constexpr double relief_cap = 3.0;     // m: more relief than this is not better
+constexpr double filled = 0.4;         // share of a square's cells that a line must have seen
+constexpr double meets = 0.5;          // share of the typical cost below which two surfaces meet
+constexpr double agreed = 0.15;        // share of the squares that must meet:
+constexpr double surely_agreed = 0.5;  // this one always, the lower one if it is
+constexpr double above_chance = 3.0;   // so many times the share that meets under any boresight
+constexpr int fewest_squares = 4;      // with relief: fewer say nothing of pitch and heading
+constexpr double match_cells = 10.0;   // a search radius is this many cells or fewer where the cells allow
 
 // A square seen by two views.
 struct Pair {
@@ -87,11 +89,12 @@ std::vector<Pair> chosen(std::vector<Pair> all, size_t most, bool by_relief) {
   return out;
 }
 
-Round read_round(const ShotStream& stream, LocalPoints& points, const SurfaceMatchOptions& o) {
+Round read_round(const ShotStream& stream, LocalPoints& points, const SurfaceMatchOptions& given) {
+  const SurfaceMatchOptions o = sized(given, 0.0);
   Round r;
-  r.grids = height_grids(stream, points, o.cell.value, most_cells);
+  r.grids = height_grids(stream, points, o.cell->value, most_cells);
   const double tile = r.grids.cell * HeightTile::side;
-  r.side = std::max(2, static_cast<int>(std::lround(o.window.value / tile)));
+  r.side = std::max(2, static_cast<int>(std::lround(o.window->value / tile)));
   const auto square_of = [&](std::int32_t t) { return t >= 0 ? t / r.side : -((-t + r.side - 1) / r.side); };
   struct Seen {
     size_t view;
@@ -313,6 +316,13 @@ bool meets_turned(const ShotStream& stream, const core::Scanner& scanner, const 
 }
 
 }  // namespace
+
+SurfaceMatchOptions sized(SurfaceMatchOptions o, double height) {
+  const bool low = height > 0.0 && height < full_height;
+  if (!o.window) o.window = core::Metres(low ? std::max(smallest_window, widest_window * height / full_height) : widest_window);
+  if (!o.cell) o.cell = core::Metres(low ? std::max(smallest_cell, widest_cell * height / full_height) : widest_cell);
+  return o;
+}
 
 bool scan_is_reversed(const ShotStream& stream, const core::Scanner& scanner, const core::Calibration& start,
                       const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame, const SurfaceMatchOptions& o) {

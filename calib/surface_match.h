@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "calib/adjustment.h"
@@ -18,7 +19,7 @@ namespace swath::calib {
 
 struct SurfaceMatchOptions {
   core::Radians search = core::degrees(0.7);
-  core::Metres window{80.0}, cell{1.0};
+  std::optional<core::Metres> window, cell;  ///< without them 80 m and 1 m, or less by sized()
   int windows = 500, rounds = 4;
   core::Radians settled = core::degrees(0.01), undetermined = core::degrees(0.1);
   core::Metres position_error{0.1}, height_error{0.2};
@@ -28,8 +29,9 @@ struct SurfaceMatchOptions {
 template <class V>
 void describe(SurfaceMatchOptions& o, V& v) {
   v.option("search", o.search, core::above_to(0.0, 0.05), "Largest error of each boresight angle at the start that is found.");
-  v.option("window", o.window, core::above(0.0), "Side of the squares whose surfaces are matched between lines.");
-  v.option("cell", o.cell, core::above(0.0), "Smallest cell of the surfaces; wider where returns are sparse.");
+  v.option("window", o.window, core::above(0.0),
+           "Side of the squares whose surfaces are matched; without it by the height, 80 m from 400 m on.");
+  v.option("cell", o.cell, core::above(0.0), "Smallest cell of the surfaces, wider where returns are sparse; without it by the height.");
   v.option("windows", o.windows, core::within(10, 100000), "Most squares with relief that are matched.");
   v.option("rounds", o.rounds, core::within(1, 20), "Most times that the flight is read.");
   v.option("settled", o.settled, core::above(0.0), "Change of all angles below which another round is not needed.");
@@ -39,6 +41,10 @@ void describe(SurfaceMatchOptions& o, V& v) {
   v.option("height_error", o.height_error, core::above(0.0), "Sigma of a line's shift in height.");
   v.option("attitude_error", o.attitude_error, core::above(0.0), "Sigma of a line's turn by its trajectory, about each axis.");
 }
+
+/// The options with the sizes that they do not state, for a flight `height` m above the ground (0: not known): a swath from 40 m is
+/// narrower than one square of a flight at 700 m.
+SurfaceMatchOptions sized(SurfaceMatchOptions options, double height);
 
 /// One square seen by two lines, in the last round.
 struct MatchedWindow {

@@ -144,7 +144,7 @@ class Judge {
       refit(l, all);
     }
     // A look along a single scan line does not hold its plane.
-    std::erase_if(looks, [&](const Look& l) { return l.shape.narrow < 0.3 * o_.extent.value; });
+    std::erase_if(looks, [&](const Look& l) { return l.shape.narrow < 0.3 * o_.extent->value; });
     if (looks.size() < d.looks) return "returns along one scan line";
     return assemble(region, all, std::move(looks), out);
   }
@@ -197,7 +197,7 @@ class Judge {
     constexpr double per_cell = 4.0, smallest = 0.4;
     const double cell = std::max(smallest, std::sqrt(per_cell * (high - low).prod() / static_cast<double>(at.size())));
     const Occupied occupied(at, cell);
-    const double margin = o_.margin.value + std::min(o_.mismatch.value, coarse_mismatch);
+    const double margin = o_.margin->value + std::min(o_.mismatch.value, coarse_mismatch);
     for (Look& l : looks) std::erase_if(l.rows, [&](std::uint32_t r) { return !occupied.surrounds(flat(r), margin); });
   }
 
@@ -242,7 +242,7 @@ class Judge {
     plane.normal = normal;
     plane.half = (3.0 * spread2).cwiseSqrt();  // of an even spread
     plane.roughness = std::sqrt(squares / freedom);
-    if (plane.half.minCoeff() < o_.extent.value) return "too small";
+    if (plane.half.minCoeff() < o_.extent->value) return "too small";
     out.looks = std::move(looks);
     return "";
   }
@@ -253,7 +253,7 @@ class Judge {
 
 FacetOptions facet_options(const TiePlaneOptions& o) {
   FacetOptions f;
-  f.piece = o.piece.value, f.roughness = o.roughness.value, f.extent = o.extent.value, f.mismatch = o.mismatch.value;
+  f.piece = o.piece->value, f.roughness = o.roughness->value, f.extent = o.extent->value, f.mismatch = o.mismatch.value;
   f.returns = static_cast<std::uint32_t>(o.fewest), f.most = static_cast<size_t>(o.planes);
   return f;
 }
@@ -266,7 +266,7 @@ PlaneRegion region_of(const SurveyedTarget& t, const TiePlaneOptions& o, double 
   if (t.is_point) {
     for (int k = 0; k < 16; ++k) r.outline.push_back(point_radius * Vector2d(std::cos(k * core::pi / 8), std::sin(k * core::pi / 8)));
   } else {
-    r.margin = o.margin.value + std::min(o.mismatch.value, coarse_mismatch);
+    r.margin = o.margin->value + std::min(o.mismatch.value, coarse_mismatch);
     for (const Vector3d& p : t.corners) r.outline.emplace_back(axes[0].dot(p - r.centre), axes[1].dot(p - r.centre));
   }
   double area = 0.0;
@@ -300,8 +300,9 @@ void append(TieSet& set, Judged& j, const std::vector<NearReturn>& all) {
 
 TieSet find_tie_planes(const ShotStream& stream, const core::Scanner& scanner, const core::Calibration& calibration,
                        const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame,
-                       const std::vector<SurveyedTarget>& targets, const TiePlaneOptions& o, core::Tally& tally) {
+                       const std::vector<SurveyedTarget>& targets, const TiePlaneOptions& given, core::Tally& tally) {
   filters::silence_pcl();
+  const TiePlaneOptions o = sized(given, {});
   TieSet set;
   set.frame = frame;
   LocalPoints points(scanner, calibration, trajectory, frame);
@@ -332,7 +333,7 @@ TieSet find_tie_planes(const ShotStream& stream, const core::Scanner& scanner, c
   for (const Facet& f : facets) {
     PlaneRegion r;
     r.centre = f.centre, r.normal = f.normal, r.cells = f.cells, r.looks = f.looks;
-    r.reach = 3.0 * o.mismatch.value + ransac_distance * o.roughness.value;
+    r.reach = 3.0 * o.mismatch.value + ransac_distance * o.roughness->value;
     r.wanted = static_cast<std::uint32_t>(o.returns);
     regions.push_back(std::move(r));
   }
@@ -345,7 +346,7 @@ TieSet find_tie_planes(const ShotStream& stream, const core::Scanner& scanner, c
     Judged j;
     Demands d;
     d.fewest = static_cast<size_t>(o.fewest);
-    d.tolerance = o.roughness.value;
+    d.tolerance = o.roughness->value;
     if (is_target) {
       j.plane.kind = TieKind::target;
       j.plane.name = targets[k].name;

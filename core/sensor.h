@@ -3,6 +3,9 @@
 #pragma once
 
 #include <array>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/option.h"
 
@@ -43,6 +46,11 @@ void describe(Calibration& c, V& v) {
   v.option("latency", c.latency, "Added to every record's time.");
 }
 
+/// The calibration values as files name them, in the order of SensorSigma::correlation.
+inline constexpr std::array<std::string_view, 11> calibration_keys{
+    "boresight_roll", "boresight_pitch", "boresight_heading", "lever_forward", "lever_right", "lever_down",
+    "range_offset",   "range_scale",     "scan_offset",       "scan_scale",    "latency"};
+
 /// One-sigma uncertainties of the calibration and of the single record: what the TPU is made of.
 struct SensorSigma {
   Radians roll = degrees(0.005), pitch = degrees(0.005), heading = degrees(0.01);
@@ -56,6 +64,10 @@ struct SensorSigma {
   Radians scan_angle = degrees(0.001);
   Seconds time;
   Radians beam_divergence;  ///< full angle (1/e2)
+  /// Keys of these that a survey or its calibration file states; the others are the defaults above.
+  std::vector<std::string> stated;
+  /// Correlations of the errors of the calibration values, 11 x 11 row by row in the order of calibration_keys. Empty: none are known.
+  std::vector<double> correlation;
 };
 
 template <class V>

@@ -39,4 +39,14 @@ void ErrorLinks::resize(size_t instants, Eigen::Index n) {
   links.assign(width * width * instants, 0.0);
 }
 
+CalibrationResponse::Matrix CalibrationResponse::at(double t) const {
+  if (empty()) return Matrix::Zero();
+  const auto next = std::upper_bound(time.begin(), time.end(), t);
+  if (next == time.begin()) return per_unit.front();
+  if (next == time.end()) return per_unit.back();
+  const auto k = static_cast<size_t>(next - time.begin());
+  const double share = (t - time[k - 1]) / (time[k] - time[k - 1]);
+  return (1.0 - share) * per_unit[k - 1] + share * per_unit[k];
+}
+
 }  // namespace swath::core

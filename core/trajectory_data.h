@@ -55,6 +55,20 @@ struct ErrorLinks {
   static Eigen::Index index(size_t i) { return static_cast<Eigen::Index>(i); }
 };
 
+/// What an error of the calibration that was held while the trajectory was corrected does to it, at some instants, linear in time between
+/// them: the trajectory's error has a part that is `per_unit` times the calibration's, and the two cannot be taken as independent.
+struct CalibrationResponse {
+  static constexpr int values = 11;                 ///< core::calibration_keys
+  using Matrix = Eigen::Matrix<double, 6, values>;  ///< north, east, down (m), roll, pitch, heading (rad), per m, rad, s or one
+
+  std::vector<double> time;      ///< GPS time, s, rising
+  std::vector<Matrix> per_unit;  ///< empty: the trajectory owes nothing to a calibration
+
+  bool empty() const { return time.empty(); }
+  /// The first or last outside them; zero where it is empty.
+  Matrix at(double t) const;
+};
+
 /// A trajectory as recorded: IMU centre and attitude of `body` over time. Columns of one length; the optional ones may be empty.
 struct TrajectoryData {
   std::vector<double> time;                         ///< GPS time, s
@@ -66,6 +80,7 @@ struct TrajectoryData {
   std::vector<float> sigma_roll, sigma_pitch, sigma_heading;  ///< rad
   CovarianceSeries covariance;                                ///< may be empty
   ErrorLinks errors;                                          ///< may be empty
+  CalibrationResponse response;                               ///< may be empty; its part is in the sigmas
 
   size_t size() const { return time.size(); }
   bool has_sigma() const { return !sigma_north.empty(); }

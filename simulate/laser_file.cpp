@@ -10,7 +10,7 @@
 namespace swath::simulate {
 namespace {
 
-bool has_vectors(const Options& o) { return o.scanner.pattern == Pattern::beam; }
+bool has_vectors(const Options& o) { return model_of(o.scanner.pattern) == core::ScannerModel::beam; }
 
 Eigen::Vector3d recorded_vector(const Returns& r, size_t i) {
   const double w = std::sqrt(1 - r.forward[i] * r.forward[i]);

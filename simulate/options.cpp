@@ -72,6 +72,7 @@ core::ScannerModel model_of(Pattern p) {
     case Pattern::profile:
       return core::ScannerModel::profile;
     case Pattern::beam:
+    case Pattern::multibeam:
       return core::ScannerModel::beam;
     case Pattern::conical:
       return core::ScannerModel::conical;

@@ -18,7 +18,7 @@
 namespace swath::simulate {
 
 /// How the beam moves.
-enum class Pattern { triangle, sine, polygon, profile, beam, conical, palmer };
+enum class Pattern { triangle, sine, polygon, profile, beam, multibeam, conical, palmer };
 
 struct ScannerOptions {
   Pattern pattern = Pattern::triangle;
@@ -28,6 +28,7 @@ struct ScannerOptions {
   core::Radians forward_tilt = core::degrees(8.0);
   core::Radians shaft_angle = core::degrees(45.0), mirror_tilt = core::degrees(7.0);
   core::Radians divergence{0.3e-3};
+  int beams = 32;
   int max_returns = 4;
   core::Metres separation{1.2};
   core::Metres range_resolution{0.001};
@@ -36,13 +37,16 @@ struct ScannerOptions {
 
 template <class V>
 void describe(ScannerOptions& s, V& v) {
-  v.option("pattern", s.pattern,
-           "Motion of the beam: oscillating mirror (triangle, sine), one-way polygon, profile (no scan), beam (a triangle scan that nods "
-           "forward, recorded as vectors), conical, palmer.");
+  v.option(
+      "pattern", s.pattern,
+      "Motion of the beam: oscillating mirror (triangle, sine), one-way polygon, profile (no scan), beam (a triangle scan that nods "
+      "forward, recorded as vectors), multibeam (a fan of beams along the track that a head turns across, recorded as vectors), conical, "
+      "palmer.");
   v.option("prf", s.prf, core::within(10, 2e6), "Pulses per second.");
   v.option("frequency", s.frequency, core::within(0.1, 1000), "Full scans (there and back, or turns, or facets) per second.");
   v.option("half_angle", s.half_angle, core::within(0.005, 0.9), "Half of the field of view; half angle of the cone (conical).");
-  v.option("forward_tilt", s.forward_tilt, core::within(0, 0.6), "Amplitude of the nod (beam).");
+  v.option("forward_tilt", s.forward_tilt, core::within(0, 0.6), "Amplitude of the nod (beam); half of the fan (multibeam).");
+  v.option("beams", s.beams, core::within(2, 128), "Beams of the fan, fired one after the other (multibeam).");
   v.option("shaft_angle", s.shaft_angle, core::within(0.1, 1.5), "Between the mirror's shaft and the nadir axis (palmer).");
   v.option("mirror_tilt", s.mirror_tilt, core::above_to(0.0, 0.3), "Between the mirror's normal and its shaft (palmer).");
   v.option("divergence", s.divergence, core::within(0, 0.01),
@@ -239,7 +243,8 @@ core::ScannerModel model_of(Pattern p);
 namespace swath::core {
 template <>
 struct Choices<simulate::Pattern> {
-  static constexpr std::array<std::string_view, 7> names{"triangle", "sine", "polygon", "profile", "beam", "conical", "palmer"};
+  static constexpr std::array<std::string_view, 8> names{"triangle", "sine",      "polygon", "profile",
+                                                         "beam",     "multibeam", "conical", "palmer"};
 };
 template <>
 struct Choices<simulate::Deliver> {

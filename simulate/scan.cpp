@@ -37,6 +37,13 @@ ScanState scan_at(const ScannerOptions& s, double t) {
       out.angle = s.half_angle.value * (2 * phase - 1);
       out.edge = next >= 1.0;
       break;
+    case Pattern::multibeam: {
+      out.angle = s.half_angle.value * (2 * phase - 1);
+      out.edge = next >= 1.0;
+      const double beam = std::fmod(std::floor(t * s.prf.value + 0.5), s.beams);
+      out.forward = std::sin(s.forward_tilt.value * (2 * beam / (s.beams - 1) - 1));
+      break;
+    }
     case Pattern::profile:
       break;
     case Pattern::conical:
@@ -70,7 +77,8 @@ Vector3d beam_of(const ScannerOptions& s, double a, double f) {
 
 double widest_angle(const ScannerOptions& s) {
   if (s.pattern == Pattern::profile) return 0.0;
-  if (s.pattern == Pattern::beam) return std::acos(std::cos(s.half_angle.value) * std::cos(s.forward_tilt.value));
+  if (s.pattern == Pattern::beam || s.pattern == Pattern::multibeam)
+    return std::acos(std::cos(s.half_angle.value) * std::cos(s.forward_tilt.value));
   if (s.pattern != Pattern::palmer) return s.half_angle.value;
   double widest = 0.0;
   for (int i = 0; i < 360; ++i) widest = std::max(widest, std::acos(beam_of(s, i * core::degree, 0.0).z()));

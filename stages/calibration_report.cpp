@@ -16,6 +16,23 @@
 
 namespace swath::stages {
 
+namespace {
+
+/// Row by row; empty where nothing is correlated.
+std::vector<double> correlation_of(const Eigen::MatrixXd& covariance) {
+  std::vector<double> out;
+  bool any = false;
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i)
+    for (Eigen::Index j = 0; j < covariance.cols(); ++j) {
+      const double scale = std::sqrt(std::max(0.0, covariance(i, i)) * std::max(0.0, covariance(j, j)));
+      out.push_back(i == j ? 1.0 : scale > 0.0 ? std::clamp(covariance(i, j) / scale, -1.0, 1.0) : 0.0);
+      any = any || (i != j && out.back() != 0.0);
+    }
+  return any ? out : std::vector<double>{};
+}
+
+}  // namespace
+
 DeliveredCalibration delivered(const calib::Adjustment& a, const core::SensorSigma& sensor) {
   DeliveredCalibration out{a.calibration, sensor};
   core::Calibration& c = out.calibration;
@@ -72,6 +89,7 @@ DeliveredCalibration delivered(const calib::Adjustment& a, const core::SensorSig
     }
   }
   s.lever_arm.value = lever;
+  s.correlation = correlation_of(calib::delivered_covariance(a));
   return out;
 }
 

@@ -60,8 +60,16 @@ struct TargetReading {
   std::string note;                 ///< "lines 1 and 2, profiles"; may be empty
 };
 
+/// What a calibration was made from.
+struct ReportOrigin {
+  std::string program;               ///< with its version
+  std::string flown_from, flown_to;  ///< UTC of the first and last return; empty where the week is not known
+  std::vector<std::string> inputs;   ///< "laser: laser.npy", in the survey's order
+};
+
 struct CalibrationReport {
-  std::string survey;                      ///< name
+  std::string survey;  ///< name
+  ReportOrigin origin;
   std::string crs;                         ///< of sections and differences, as io::write_grid takes it
   double unit = 1.0, vertical_unit = 1.0;  ///< metres per unit of that CRS, for the GeoTIFFs; all else here is in m
   core::SensorSigma sensor;                ///< as the survey states it: what is not estimated keeps its sigma in calibration.json

@@ -74,12 +74,33 @@ CorrectionCurve::Value CorrectionCurve::at(double time) const {
   return out;
 }
 
+namespace {
+
+core::CalibrationResponse response_of(const std::vector<CorrectionSeries>& corrections) {
+  std::vector<const CorrectionSeries::Knot*> knots;
+  for (const CorrectionSeries& s : corrections)
+    for (const CorrectionSeries::Knot& k : s.knots) {
+      if (!k.response) return {};
+      knots.push_back(&k);
+    }
+  std::sort(knots.begin(), knots.end(), [](const auto* a, const auto* b) { return a->time < b->time; });
+  core::CalibrationResponse out;
+  for (const CorrectionSeries::Knot* k : knots) {
+    out.time.push_back(k->time);
+    out.per_unit.push_back(*k->response);
+  }
+  return out;
+}
+
+}  // namespace
+
 core::TrajectoryData corrected(const core::TrajectoryData& trajectory, const std::vector<CorrectionSeries>& corrections) {
   const CorrectionCurve curve(corrections);
   if (corrections.empty()) return trajectory;
   core::TrajectoryData out = trajectory;
   out.covariance = {};
   out.errors = {};
+  out.response = response_of(corrections);
   for (size_t k = 0; k < out.size(); ++k) {
     const CorrectionCurve::Value c = curve.at(out.time[k]);
     const Eigen::Vector3d move(c.value[0], c.value[1], c.value[2]);

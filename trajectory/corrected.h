@@ -16,7 +16,8 @@ struct CorrectionSeries {
   struct Knot {
     double time = 0.0;  ///< GPS time, s
     Six value{};
-    std::optional<Six> sigma;  ///< of the trajectory with the correction, where it is known
+    std::optional<Six> sigma;                                   ///< of the trajectory with the correction, where it is known
+    std::optional<core::CalibrationResponse::Matrix> response{};  ///< of `value` to the calibration that was held, where it is known
   };
   std::vector<Knot> knots;  ///< rising in time, one at least
 };
@@ -41,7 +42,8 @@ class CorrectionCurve {
 
 /// Positions moved along the local axes, angles added (heading stays within [0, 2 pi)), velocities changed by the derivative of the
 /// position's correction. Sigmas are replaced where the corrections state them; those columns are left out where the trajectory has none.
-/// Covariances and error links tell of the trajectory as it was: they stay only where nothing is corrected.
+/// Covariances and error links are those of the trajectory as it was: they stay only where nothing is corrected. The response to the
+/// calibration is that of the corrections, where all their knots state it.
 core::TrajectoryData corrected(const core::TrajectoryData& trajectory, const std::vector<CorrectionSeries>& corrections);
 
 }  // namespace swath::trajectory

@@ -2,7 +2,8 @@
 """Simulated calibration flights, raw records to calibration.json, against truth: calibration.py [SEEDS [PART ...]]
 
 Every flight has a boresight, a range offset and a scan scale drawn by its seed; IMU and GNSS records go through the smoother.
-Parts: roof (its plane is surveyed), strips (no control), no_cross, one_direction, one_line, flat, mems. $PRF is the laser's pulse rate ("30 kHz");
+Parts: roof (its plane is surveyed), strips (no control), no_cross, one_direction, one_line, flat, mems, uav (32 beams from 40 m over a town, two
+lines to and fro, no cross lines, MEMS). "unsettled" counts flights whose values still moved. $PRF is the laser's pulse rate ("30 kHz");
 with $RESUME flights done before by the same program are not flown again."""
 import concurrent.futures
 import json
@@ -23,6 +24,11 @@ PARTS = {
     "one_line": ({"control.roof": "true", "flight.lines": 1, "flight.cross_lines": 0}, {}),
     "flat": ({"control.roof": "false", "world.buildings": 0}, {}),
     "mems": ({"control.roof": "true", "imu.grade": "mems"}, {}),
+    "uav": ({"world.scene": "town", "world.length": "160 m", "world.width": "90 m", "flight.pattern": "block", "flight.lines": 2,
+             "flight.cross_lines": 0, "flight.overlap": 0.7, "flight.height": "40 m", "flight.speed": "6 m/s", "scanner.pattern": "multibeam",
+             "scanner.half_angle": "45 deg", "scanner.forward_tilt": "20 deg", "scanner.frequency": "10 Hz", "scanner.prf": "40 kHz",
+             "scanner.divergence": "3 mrad", "scanner.max_returns": 2, "noise.range": "2 cm", "imu.grade": "mems", "mounting.deliver": "nominal",
+             "mounting.random_boresight": "0.5 deg", "mounting.random_range_offset": "2 cm", "mounting.random_scan_scale": 1e-4}, {}),
 }
 ARCSEC = np.degrees(1) * 3600
 # key in calibration.json, unit of the table, what an SI value is multiplied by
@@ -78,7 +84,7 @@ def fly(part, seed):
 
 def main():
     seeds = int(sys.argv[1]) if len(sys.argv) > 1 else 20
-    for part in sys.argv[2:] or ["roof", "strips", "no_cross", "one_direction", "one_line", "flat"]:
+    for part in sys.argv[2:] or ["roof", "strips", "no_cross", "one_direction", "one_line", "flat", "mems", "uav"]:
         with concurrent.futures.ThreadPoolExecutor(int(os.environ.get("WORKERS", "2"))) as pool:
             done = list(pool.map(lambda seed: fly(part, seed), range(1, seeds + 1)))
         rows = np.stack([r for r, _, _ in done])
@@ -105,6 +111,8 @@ def main():
                                f"{common.rms(error / sigma):.2f}", f"{common.rms(apart):.2f}", f"{np.abs(apart).max():.2f}"])
         if target:
             common.table(["flat target's", "flights", "error rms", "sigma", "error/sigma", "difference from the adjustment/joint sigma", "largest"], target)
+        unsettled = sum(any("did not settle" in w for w in words) for _, words, _ in done)
+        print(f"- unsettled: {unsettled} of {seeds}")
         for what in sorted({w for _, words, _ in done for w in words}):
             print(f"- {sum(what in words for _, words, _ in done)} of {seeds}: {what}")
 

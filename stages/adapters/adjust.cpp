@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/calibrate.h"
+#include "calib/start_sigmas.h"
 #include "core/units.h"
 #include "io/output_file.h"
 #include "io/value_file.h"
@@ -72,7 +73,9 @@ class Adjust : public OptionStage<AdjustStageOptions> {
   void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
     const io::Survey& survey = context.survey;
     const PreparedFlight prepared(context, options.errors, tally);
-    const calib::Calibrated calibrated = calib::calibrate(prepared.flight, options, tally);
+    calib::CalibrateOptions how = options;
+    how.adjust.apriori = calib::start_sigmas(survey.sigma);
+    const calib::Calibrated calibrated = calib::calibrate(prepared.flight, how, tally);
     CalibrationReport report = report_on(context, prepared.lines);
     report.adjustment = calibrated.adjustment;
     report.ties = calibrated.ties;
@@ -98,6 +101,7 @@ class Adjust : public OptionStage<AdjustStageOptions> {
       one["sigma"] = e.sigma;
       one["start"] = e.start;
       one["delivered"] = is_delivered(c.adjustment, e.parameter);
+      one["grade"] = calib::name_of(e.grade);
       findings["estimates"][std::string(words_of(e.parameter).key)] = std::move(one);
     }
     findings["planes"] = c.ties.planes.size();

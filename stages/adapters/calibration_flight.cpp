@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/time.h"
 #include "stages/shot_source.h"
 
 namespace swath::stages {
@@ -44,6 +45,28 @@ core::Grid on_lattice(const core::Grid& from, const core::Lattice& lattice) {
   return out;
 }
 
+ReportOrigin origin_of(const Context& context, const std::vector<calib::FlownLine>& lines) {
+  const io::Survey& survey = context.survey;
+  ReportOrigin out;
+  out.program = "swath " SWATH_VERSION;
+  if (!lines.empty() && !context.weekless) {
+    double first = lines.front().first, last = lines.front().last;
+    for (const calib::FlownLine& l : lines) first = std::min(first, l.first), last = std::max(last, l.last);
+    out.flown_from = core::utc_text(first);
+    out.flown_to = core::utc_text(last);
+  }
+  const auto add = [&](const char* what, const auto& files) {
+    for (const auto& f : files) out.inputs.push_back(std::string(what) + ": " + f.file.string());
+  };
+  add("laser", survey.laser);
+  add("trajectory", survey.trajectory);
+  add("imu", survey.imu);
+  add("gnss", survey.gnss);
+  add("control", survey.control);
+  if (survey.calibration_file) out.inputs.push_back("calibration: " + survey.calibration_file->string());
+  return out;
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> control_files(const io::Survey& survey) {
@@ -65,7 +88,9 @@ PreparedFlight::PreparedFlight(const Context& context, const trajectory::ErrorMo
   lines = fly(flight, tally);
   std::vector<std::pair<double, double>> times;
   for (const calib::FlownLine& l : lines) times.emplace_back(l.first, l.last);
-  flight.frame = calib::frame_of(times, metres_down(lines), *trajectory);
+  const double height = metres_down(lines), side = calib::side_for(lines, 1.0);
+  flight.frame = calib::frame_of(times, height, *trajectory);
+  flight.scale = calib::scale_of(height, side > 0.0 ? 1.0 / (side * side) : 0.0, survey.sigma);
   flight.targets = calib::surveyed_targets(io::read_control(survey, tally), flight.frame, tally);
 }
 
@@ -81,6 +106,7 @@ CalibrationReport report_on(const Context& context, const std::vector<calib::Flo
   report.unit = context.unit;
   report.vertical_unit = context.vertical_unit;
   report.sensor = context.survey.sigma;
+  report.origin = origin_of(context, lines);
   for (const calib::FlownLine& l : lines) {
     const auto named =
         std::find_if(context.survey.lines.begin(), context.survey.lines.end(), [&](const io::FlightLine& f) { return f.id == l.id; });

@@ -7,6 +7,7 @@
 
 #include "core/units.h"
 #include "report/html.h"
+#include "stages/calibration/agreement.h"
 #include "stages/calibration/figures.h"
 #include "stages/calibration/page_residuals.h"
 #include "stages/calibration/page_target.h"
@@ -44,6 +45,19 @@ void findings(const PageParts& parts) {
   parts.page.list(parts.report.notes);
 }
 
+void origin(const PageParts& parts) {
+  const ReportOrigin& o = parts.report.origin;
+  Table t{"origin", "What this was made from", {{"what", false}, {"value", false}}, {}, {}};
+  const auto row = [&](const char* what, const std::string& value) {
+    if (!value.empty()) t.rows.push_back({what, value});
+  };
+  row("made by", o.program);
+  row("flown (UTC)", o.flown_from.empty() ? std::string() : o.flown_from + " to " + o.flown_to);
+  row("CRS", parts.report.crs);
+  for (const std::string& input : o.inputs) row("input", input);
+  if (!t.rows.empty()) parts.page.table(t);
+}
+
 void corrections(const PageParts& parts) {
   const auto chart = correction_chart(parts.report);
   if (!chart) return;
@@ -69,8 +83,8 @@ void corrections(const PageParts& parts) {
 void sections(const PageParts& parts) {
   if (parts.report.sections.empty()) return;
   parts.page.section("Cross-sections");
-  parts.page.paragraph(
-      "Returns near a vertical cut, by line colour. Before, the lines stand apart; after, they should lie on one another.");
+  parts.page.paragraph("Returns near a vertical cut, by line colour. Before, the lines lie apart; after, they should lie on one another. " +
+                       differences_after(parts.report));
   Table t{"sections", "Cross-sections", {}, {}, {}};
   t.columns = {{"section", false}, {"width (m)"}, {"length (m)"}, {"lines"}, {"returns before"}, {"returns after"}};
   for (const CrossSection& s : parts.report.sections) {
@@ -90,7 +104,7 @@ void sections(const PageParts& parts) {
 void differences(const PageParts& parts) {
   if (parts.report.differences.empty()) return;
   parts.page.section("Differences between lines");
-  parts.page.paragraph("Heights of one line minus heights of the other where both have smooth ground.");
+  parts.page.paragraph("Heights of one line minus heights of the other where both have smooth ground. " + differences_after(parts.report));
   Table t{"differences", "Height differences of overlapping lines, before and after", {}, {}, {}};
   t.columns = {{"line"}, {"minus line"}};
   for (const char* state : {"before", "after"})
@@ -158,8 +172,9 @@ std::string calibration_page(const CalibrationReport& report, const KeepFigure& 
   report::Page page(report.strips ? "Strip adjustment" : "Calibration report",
                     report.survey.empty() ? std::string() : "Survey " + report.survey);
   const PageParts parts{report, keep, page};
-  const Verdict v = report.strips ? verdict_of_strips(report.adjustment, *report.strips) : verdict_of(report.adjustment);
+  const Verdict v = verdict_of(report);
   page.banner(v.tone, v.text);
+  origin(parts);
   findings(parts);
   if (report.strips)
     add_plane_differences(parts);

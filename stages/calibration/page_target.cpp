@@ -2,6 +2,7 @@
 #include "stages/calibration/page_target.h"
 
 #include "report/html.h"
+#include "stages/calibration/agreement.h"
 #include "stages/calibration/tables.h"
 #include "stages/calibration/target_tables.h"
 #include "stages/calibration/verdict.h"

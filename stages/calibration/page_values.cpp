@@ -89,11 +89,15 @@ void value_table(const PageParts& parts, const Group& g, const std::array<std::s
     std::vector<std::string> row{unbroken(words_of(p).name), shown(e.start)};
     const bool good = is_delivered(parts.report.adjustment, p);
     const double none = calib::not_known;
-    row.push_back(shown(good ? e.value : none));
-    for (const double v : {e.value - e.start, e.sigma, e.formal, e.jackknife_lines, e.jackknife_planes, e.white})
-      row.push_back(number_text(good ? v / g.change_size : none, g.change_decimals));
-    row.push_back(number_text(good ? 100.0 * e.determined : none, 1));
-    row.emplace_back(good ? "delivered" : "not determined");
+    const bool known = good || e.found_sigma > 0.0;
+    const double value = good ? e.value : e.found;
+    row.push_back(shown(known ? value : none));
+    for (const double v : {value - e.start, good ? e.sigma : e.found_sigma, e.formal, e.jackknife_lines, e.jackknife_planes, e.white})
+      row.push_back(number_text(known ? v / g.change_size : none, g.change_decimals));
+    row.push_back(number_text(known ? 100.0 * e.determined : none, 1));
+    row.emplace_back(!good                             ? (e.grade == calib::Grade::unsettled ? "not settled" : "not determined")
+                     : e.grade == calib::Grade::coarse ? "delivered, coarse"
+                                                       : "delivered");
     t.rows.push_back(std::move(row));
     t.tones.push_back(good ? Tone::plain : Tone::bad);
   }
@@ -105,9 +109,9 @@ void value_table(const PageParts& parts, const Group& g, const std::array<std::s
 void add_values(const PageParts& parts) {
   parts.page.section("Calibration values");
   const std::array<std::string, 5> notes{
-      parts.page.footnote(
-          "The one-sigma uncertainty that is delivered in calibration.json: the larger of the formal one and the lines' jackknife, with "
-          "what the stated sigmas of values that were held (the lever arm) do to it."),
+      parts.page.footnote("The one-sigma uncertainty that is delivered in calibration.json: the larger of the formal one and the lines' "
+                          "jackknife (of four lines or more), with "
+                          "what the stated sigmas of values that were held (the lever arm) do to it."),
       parts.page.footnote("From the adjustment's covariance, with the trajectory's errors hanging together in time."),
       parts.page.footnote("How far the values scatter when one flight line at a time is left out."),
       parts.page.footnote("How far they scatter when one region of tie planes at a time is left out."),
@@ -120,7 +124,8 @@ void add_values(const PageParts& parts) {
     if (!parts.report.adjustment.estimates[static_cast<size_t>(k)].estimated) held.emplace_back(words_of(parameter_at(k)).name);
   if (!held.empty()) parts.page.paragraph("Held at the start value and not estimated: " + joined(held) + ".");
   parts.page.paragraph(
-      "“From the data” is the share of the knowledge that this flight brought, the rest being the start value with its a-priori sigma.");
+      "“From the data” is the share of the knowledge that this flight brought, the rest being the start value with its a-priori sigma. "
+      "calibration.json keeps the start value of what is not determined or not settled; the value found stands here and in its estimates.");
 }
 
 void add_plane_differences(const PageParts& parts) {

@@ -7,6 +7,7 @@
 #include "core/frames.h"
 #include "core/units.h"
 #include "io/survey.h"
+#include "stages/calibration/agreement.h"
 #include "stages/calibration/residual_bins.h"
 #include "stages/calibration/verdict.h"
 
@@ -70,9 +71,16 @@ Value estimates_tree(const calib::Adjustment& a) {
     one["estimated"] = e.estimated;
     one["delivered"] = delivered;
     one["nominal"] = e.start;
+    if (e.estimated) {
+      one["grade"] = calib::name_of(delivered || e.grade == calib::Grade::unsettled ? e.grade : calib::Grade::undetermined);
+      one["found"] = e.found;
+      one["found_sigma"] = e.found_sigma;
+    }
     if (delivered) {
       one["value"] = e.value;
       one["sigma"] = e.sigma;
+    }
+    if (e.estimated) {
       one["formal"] = e.formal;
       one["jackknife_lines"] = e.jackknife_lines;
       one["jackknife_planes"] = e.jackknife_planes;
@@ -257,24 +265,19 @@ Value strips_tree(const calib::PlaneDifferences& d) {
 
 }  // namespace
 
+std::string differences_after(const CalibrationReport& report) {
+  return report.strips ? "Before: with the trajectory as it was given. After: with the corrected trajectory."
+                       : "Before: with the start values. After: with the delivered calibration and the trajectory as it was given, as in a "
+                         "survey that uses this calibration; the corrections of the lines (corrections.csv) are not in it.";
+}
+
 std::string difference_file(const LineDifference& d, bool before) {
   return "differences/" + std::to_string(d.line_a) + "_" + std::to_string(d.line_b) + (before ? "_before.tif" : "_after.tif");
 }
 
-Agreement agreement_of(const calib::Adjustment& a, const TargetReading& r) {
-  const calib::Estimate& e = a.estimates.at(static_cast<size_t>(r.parameter));
-  Agreement out;
-  out.known = is_delivered(a, r.parameter);
-  if (!out.known) return out;
-  out.difference = r.value - e.value;
-  out.joint_sigma = std::hypot(r.sigma, e.sigma);
-  out.agrees = std::abs(out.difference) <= agreement_limit * out.joint_sigma;
-  return out;
-}
-
 core::Value calibration_report_tree(const CalibrationReport& report) {
   const calib::Adjustment& a = report.adjustment;
-  const Verdict v = report.strips ? verdict_of_strips(a, *report.strips) : verdict_of(a);
+  const Verdict v = verdict_of(report);
   Value out;
   if (!report.strips) {
     const DeliveredCalibration d = delivered(a, report.sensor);
@@ -282,6 +285,11 @@ core::Value calibration_report_tree(const CalibrationReport& report) {
   }
   out["survey"] = report.survey;
   out["crs"] = report.crs;
+  out["program"] = report.origin.program;
+  out["flown"]["from"] = report.origin.flown_from;
+  out["flown"]["to"] = report.origin.flown_to;
+  Value& inputs = out["inputs"] = Value::array();
+  for (const std::string& input : report.origin.inputs) inputs.push(input);
   if (!report.strips) out["calibrated"] = v.calibrated;
   out["verdict"] = v.text;
   if (report.strips) out["plane_differences"] = strips_tree(*report.strips);
@@ -299,7 +307,7 @@ core::Value calibration_report_tree(const CalibrationReport& report) {
   for (const std::string& note : report.notes) out["notes"].push(note);
   if (!report.strips) {
     out["estimates"] = estimates_tree(a);
-    out["correlation"] = correlation_tree(a);
+    if (!out.find("correlation")) out["correlation"] = correlation_tree(a);
   }
   Value& sums = out["adjustment"];
   sums["observations"] = a.observations;
@@ -330,6 +338,7 @@ core::Value calibration_report_tree(const CalibrationReport& report) {
   out["checks"] = control_tree(report.checks, false);
   out["sections"] = sections_tree(report);
   out["differences"] = differences_tree(report);
+  if (!report.differences.empty()) out["differences_after"] = differences_after(report);
   out["readings"] = readings_tree(report);
   if (!report.flat_target.is_null()) out["flat_target"] = report.flat_target;
   Value& frame = out["frame"];

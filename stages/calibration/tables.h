@@ -22,16 +22,10 @@ std::string planes_csv(const CalibrationReport& report);
 /// One row per return of a section, before and after.
 std::string sections_csv(const CalibrationReport& report);
 
+/// With what the maps of differences were made, as a sentence.
+std::string differences_after(const CalibrationReport& report);
+
 /// "differences/1_2_before.tif": names of the files of one pair.
 std::string difference_file(const LineDifference& difference, bool before);
-
-/// How two ways to one parameter agree. Both rest on the same flight, so their joint sigma is rather too large than too small.
-struct Agreement {
-  double difference = 0.0, joint_sigma = 0.0;  ///< reading minus adjusted
-  bool known = false;                          ///< the parameter was estimated and delivered
-  bool agrees = false;                         ///< |difference| <= agreement_limit joint_sigma
-};
-constexpr double agreement_limit = 2.0;
-Agreement agreement_of(const calib::Adjustment& adjustment, const TargetReading& reading);
 
 }  // namespace swath::stages

@@ -124,6 +124,14 @@ Verdict verdict_of(const Adjustment& a) {
       text.replace(at, verb.size(), " to ");
   out.text = "Calibrated: " + text;
 
+  std::vector<std::string> coarse;
+  for (int k = 0; k < estimated_count; ++k)
+    if (is_delivered(a, parameter_at(k)) && a.estimates[static_cast<size_t>(k)].grade == calib::Grade::coarse)
+      coarse.push_back("the " + std::string(words_of(parameter_at(k)).name));
+  if (!coarse.empty()) {
+    out.tone = report::Tone::caution;
+    out.text += "; coarse " + std::string(coarse.size() == 1 ? "is " : "are ") + joined(coarse);
+  }
   std::vector<std::string> lost;
   for (int k = 0; k < estimated_count; ++k)
     if (a.estimates[static_cast<size_t>(k)].estimated && !is_delivered(a, parameter_at(k)))

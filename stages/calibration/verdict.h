@@ -26,7 +26,7 @@ struct Verdict {
   std::string text;  ///< "Calibrated: boresight roll, pitch and heading are known to 1.2, 1.9 and 3.4 arcsec (one sigma), ..."
 };
 /// "Not calibrated: WHAT. CURE" where a finding refuses an angle of the boresight or nothing is delivered. Otherwise the delivered
-/// parameters with their sigmas, then what is not determined, and how many surveyed points disagree.
+/// parameters with their sigmas, then what is coarse, what is not determined, and how many surveyed points disagree.
 Verdict verdict_of(const calib::Adjustment& adjustment);
 
 /// Of a strip adjustment: "Lines meet within 0.8 cm on planes (8.3 cm before) ...", rms over all pairs of lines; `calibrated` is always

@@ -57,7 +57,7 @@ std::vector<Finding> two(double roll, double pitch, double correlation, const Fl
 TEST(Diagnosis, WellDeterminedSaysNothing) { EXPECT_TRUE(two(0.3, 0.5, 0.6, {8, true, true, true, true, true, 9, 9, 0.4}).empty()); }
 
 TEST(Diagnosis, OneDirection) {
-  const auto found = two(0.3, 5.0, 0.0, {2, false, false, false, false, false, 9, 9, 0.4});
+  const auto found = two(0.3, 500.0, 0.0, {2, false, false, false, false, false, 9, 9, 0.4});
   ASSERT_EQ(found.size(), 1u);
   EXPECT_TRUE(found[0].refuses);
   EXPECT_EQ(found[0].parameters, std::vector<Parameter>{boresight_pitch});
@@ -66,14 +66,26 @@ TEST(Diagnosis, OneDirection) {
 }
 
 TEST(Diagnosis, LevelGround) {
-  const auto found = two(0.3, 50.0, 0.0, {4, true, true, false, false, false, 0, 9, 0.4});
+  const auto found = two(0.3, 500.0, 0.0, {4, true, true, false, false, false, 0, 9, 0.4});
   ASSERT_EQ(found.size(), 1u);
   EXPECT_NE(found[0].what.find("no sloping planes or walls"), std::string::npos);
   EXPECT_NE(found[0].cure.find("sloping roofs or walls"), std::string::npos);
 }
 
+TEST(Diagnosis, ACoarseValueIsNotRefused) {
+  // 90 arcsec where a degree was known before: the flight has brought nearly all there is.
+  const auto found = two(0.3, 5.0, 0.0, {2, false, false, false, false, false, 9, 9, 0.4});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_FALSE(found[0].refuses);
+  EXPECT_EQ(found[0].parameters, std::vector<Parameter>{boresight_pitch});
+  EXPECT_EQ(found[0].what.find("boresight pitch is coarse: known to 90 arcsec, where a sigma of 18 arcsec is graded good; "), 0u)
+      << found[0].what;
+  EXPECT_NE(found[0].what.find("only one line direction"), std::string::npos);
+  EXPECT_EQ(found[0].cure, "fly one line in the opposite direction over the same buildings");
+}
+
 TEST(Diagnosis, CombinationsAreNamedTogether) {
-  const auto found = two(5.0, 5.0, 0.9999, {4, true, false, false, false, false, 3, 9, 0.4});
+  const auto found = two(500.0, 500.0, 0.9999, {4, true, false, false, false, false, 3, 9, 0.4});
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].parameters, (std::vector<Parameter>{boresight_roll, boresight_pitch}));
   EXPECT_EQ(found[0].what.find("boresight roll and boresight pitch cannot be told apart"), 0u);

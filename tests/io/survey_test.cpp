@@ -58,6 +58,40 @@ class SurveyFile : public ::testing::Test {
   test::TemporaryFolder folder_;
 };
 
+TEST_F(SurveyFile, WhichSigmasAreStatedIsKept) {
+  EXPECT_TRUE(read(good).sigma.stated.empty());
+  const Survey s = read(good + "[sigma]\nroll = \"0.3 deg\"\nscan_scale = 1e-4\n");
+  EXPECT_EQ(s.sigma.stated, (std::vector<std::string>{"roll", "scan_scale"}));
+  test::write_bytes(folder_ / "c.json", R"({"calibration": {"roll": "1 deg"}, "sigma": {"pitch": "0.01 deg"}})");
+  const Survey c = read("calibration_file = \"c.json\"\n" + good + "[sigma]\nroll = \"0.3 deg\"\n");
+  EXPECT_EQ(c.sigma.stated, (std::vector<std::string>{"roll", "pitch"}));
+}
+
+TEST_F(SurveyFile, CorrelationsOfACalibrationAreRead) {
+  const auto with_correlation = [&](const std::string& table) {
+    test::write_bytes(folder_ / "c.json", R"({"calibration": {"roll": "1 deg"}, "correlation": )" + table + "}");
+    return "calibration_file = \"c.json\"\n" + good;
+  };
+  const Survey s = read(with_correlation(R"({"parameters": ["scan_scale", "boresight_roll"], "matrix": [[1, -0.4], [-0.4, 1]]})"));
+  ASSERT_EQ(s.sigma.correlation.size(), 121u);
+  EXPECT_EQ(s.sigma.correlation[0 * 11 + 9], -0.4);
+  EXPECT_EQ(s.sigma.correlation[9 * 11 + 0], -0.4);
+  EXPECT_EQ(s.sigma.correlation[1 * 11 + 1], 1.0);
+  EXPECT_EQ(s.sigma.correlation[1 * 11 + 9], 0.0);
+  core::Calibration c;
+  core::SensorSigma back;
+  test::write_bytes(folder_ / "again.json", to_json(calibration_tree(s.calibration, s.sigma)));
+  load_calibration(folder_ / "again.json", c, back);
+  EXPECT_EQ(back.correlation, s.sigma.correlation);
+  for (const auto& [table, what] : std::vector<std::pair<std::string, std::string>>{
+           {R"({"parameters": ["roll"], "matrix": [[1]]})", "not a calibration value"},
+           {R"({"parameters": ["boresight_roll"], "matrix": [[1], [1]]})", "as many rows"},
+           {R"({"parameters": ["boresight_roll", "latency"], "matrix": [[1, 2], [2, 1]]})", "-1 to 1"},
+           {R"({"parameters": ["boresight_roll", "latency"], "matrix": [[1, 0.2], [0.1, 1]]})", "not symmetric"},
+           {R"({"parameters": ["boresight_roll", "latency"], "matrix": [[1, 0.2], [0.2]]})", "row 2 has another length"}})
+    EXPECT_NE(fault_of(with_correlation(table)).find(what), std::string::npos) << table;
+}
+
 TEST_F(SurveyFile, AGoodOneIsRead) {
   const Survey s = read(good);
   EXPECT_EQ(s.laser.at(0).columns.scan_angle, "a");

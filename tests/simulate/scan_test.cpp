@@ -18,8 +18,8 @@ ScannerOptions scanner(Pattern p) {
 }
 
 TEST(Scan, BeamsAreUnitVectorsWithinTheWidestAngle) {
-  for (const Pattern p :
-       {Pattern::triangle, Pattern::sine, Pattern::polygon, Pattern::profile, Pattern::beam, Pattern::conical, Pattern::palmer}) {
+  for (const Pattern p : {Pattern::triangle, Pattern::sine, Pattern::polygon, Pattern::profile, Pattern::beam, Pattern::multibeam,
+                          Pattern::conical, Pattern::palmer}) {
     const ScannerOptions s = scanner(p);
     double widest = 0;
     for (int k = 0; k < 5000; ++k) {
@@ -39,6 +39,17 @@ TEST(Scan, MirrorFormIsTheConvention) {
   const Eigen::Vector3d nod = beam_of(scanner(Pattern::beam), a, 0.1);
   EXPECT_NEAR(nod.x(), 0.1, tight);
   EXPECT_NEAR(std::atan2(nod.y(), nod.z()), a, tight);
+}
+
+TEST(Scan, MultibeamFiresItsFanAtEachTurn) {
+  ScannerOptions s = scanner(Pattern::multibeam);
+  s.beams = 32;
+  s.forward_tilt = core::degrees(20.0);
+  s.prf = core::Hertz(32000.0);
+  for (int k = 0; k < 64; ++k) {
+    const ScanState at = scan_at(s, k / s.prf.value);
+    EXPECT_NEAR(std::asin(at.forward), s.forward_tilt.value * (2.0 * (k % 32) / 31 - 1), tight) << k;
+  }
 }
 
 TEST(Scan, PalmerIsAReflection) {

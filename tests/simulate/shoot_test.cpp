@@ -80,8 +80,8 @@ TEST(Shoot, ReturnsOfAPulseAreAdjacentAndOrdered) {
 }
 
 TEST(Shoot, NoiseFreeRecordsGiveTheTruthThroughTheCalibration) {
-  for (const Pattern pattern :
-       {Pattern::triangle, Pattern::sine, Pattern::polygon, Pattern::profile, Pattern::beam, Pattern::conical, Pattern::palmer}) {
+  for (const Pattern pattern : {Pattern::triangle, Pattern::sine, Pattern::polygon, Pattern::profile, Pattern::beam, Pattern::multibeam,
+                                Pattern::conical, Pattern::palmer}) {
     Options o = small(pattern);
     o.noise.noise_free = true;
     core::Calibration& c = o.mounting.truth;

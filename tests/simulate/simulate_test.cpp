@@ -150,8 +150,8 @@ TEST(Simulate, SameSeedSameBytesWhateverTheThreads) {
 }
 
 TEST(Simulate, EveryPatternAndFormatGivesASurveyThatReads) {
-  for (const Pattern pattern :
-       {Pattern::triangle, Pattern::sine, Pattern::polygon, Pattern::profile, Pattern::beam, Pattern::conical, Pattern::palmer}) {
+  for (const Pattern pattern : {Pattern::triangle, Pattern::sine, Pattern::polygon, Pattern::profile, Pattern::beam, Pattern::multibeam,
+                                Pattern::conical, Pattern::palmer}) {
     const test::TemporaryFolder folder;
     Options o = preset(Scene::flat);
     o.scanner.pattern = pattern;

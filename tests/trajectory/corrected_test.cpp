@@ -115,6 +115,20 @@ TEST(Corrected, NothingChangesNothing) {
   EXPECT_EQ(after.covariance.time, before.covariance.time);
 }
 
+TEST(Corrected, TheResponseToTheCalibrationIsCarriedOn) {
+  core::CalibrationResponse::Matrix one = core::CalibrationResponse::Matrix::Constant(1.0), two = 3.0 * one;
+  EXPECT_TRUE(corrected(flight(), two_lines()).response.empty());
+  std::vector<CorrectionSeries> lines = {{{Knot{start + 60, third, {}, two}}}, {{Knot{start + 10, first, {}, one}}}};
+  const core::CalibrationResponse r = corrected(flight(), lines).response;
+  EXPECT_EQ(r.time, (std::vector<double>{start + 10, start + 60}));
+  EXPECT_EQ(r.at(start)(5, 10), 1.0);
+  EXPECT_EQ(r.at(start + 35)(0, 0), 2.0);
+  EXPECT_EQ(r.at(start + 99)(3, 0), 3.0);
+  EXPECT_TRUE(core::CalibrationResponse{}.at(start).isZero(0.0));
+  lines[0].knots[0].response.reset();
+  EXPECT_TRUE(corrected(flight(), lines).response.empty());
+}
+
 std::string refused(std::vector<CorrectionSeries> corrections) {
   try {
     (void)corrected(flight(), corrections);

@@ -73,18 +73,5 @@ TEST(CalibrationTables, ATreeTellsNoValueOfWhatIsRefused) {
   EXPECT_EQ(tree.find("differences")->items()[2].find("before")->find("file")->as_text(), "differences/2_5_before.tif");
 }
 
-TEST(CalibrationTables, TwoWaysAgreeWithinTwiceTheirJointSigma) {
-  calib::Adjustment a = made_report().adjustment;
-  calib::Estimate& e = a.estimates[calib::range_offset];
-  e.value = 0.10;
-  e.sigma = 0.03;
-  const Agreement near = agreement_of(a, {calib::range_offset, 0.19, 0.04, 3, ""});
-  EXPECT_TRUE(near.known && near.agrees);
-  EXPECT_DOUBLE_EQ(near.difference, 0.09);
-  EXPECT_DOUBLE_EQ(near.joint_sigma, 0.05);
-  EXPECT_FALSE(agreement_of(a, {calib::range_offset, -0.01, 0.04, 3, ""}).agrees);
-  EXPECT_FALSE(agreement_of(a, {calib::latency, 0.0, 1.0, 3, ""}).known);
-}
-
 }  // namespace
 }  // namespace swath::stages
