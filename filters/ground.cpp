@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A return is judged by its distance from the robust surface (ground_surface.h) against the distance that is bearable at its place: the
-// noise and roughness of the ground there and, where returns are sparse, what the surface errs by between them: more on slopes, and a
-// leniency for what it smooths away (kerbs, furrows, boulders) that fades where many returns stand knee-high, as in crops and shrubs: there
-// the lowest ones alone are ground.
+// A return is judged by its distance from the robust surface (ground_surface.h), by the heights of all returns around (ground_chance.h) and
+// by those nearest to it. One probability is made of them (ground_probability.h), and ground is what has at least a half.
 // Where the returns are two populations, soil and a low crop that drew the surface up, the ground is the lower one (ground_populations.h).
-// The chance is counted from the heights of all returns around (ground_chance.h), and what is bearable must have some: a half where returns
-// are dense, any where they are sparse and the surface itself is in doubt. The probability that is stated is the chance, calibrated.
 #include "filters/ground.h"
 
 #include <algorithm>
@@ -40,7 +36,9 @@ GroundEvidence beside(const GroundSurface& g, const core::Block& b, size_t p) {
           .slope = static_cast<float>(std::sqrt(s.east * s.east + s.north * s.north)),
           .standing = g.standing.value[at],
           .sunken = g.sunken.value[at],
-          .support = g.support.value[at]};
+          .support = g.support.value[at],
+          .splitting = 0.0F,
+          .nearest = {}};
 }
 
 ReturnOverGround judged(const GroundEvidence& e) {
@@ -74,7 +72,9 @@ double halo(const GroundOptions& o) {
 }
 
 std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, const GroundOptions& o) {
-  std::vector<GroundEvidence> evidence(own, GroundEvidence{.above = not_judged});
+  GroundEvidence unknown;
+  unknown.above = not_judged;
+  std::vector<GroundEvidence> evidence(own, unknown);
   bool any = false;
   for (size_t p = 0; p < b.size() && !any; ++p) any = may_be_ground(b, p);
   if (own == 0 || !any) return evidence;

@@ -46,7 +46,7 @@ struct GroundChances : GroundCounts {
 double halo(const GroundOptions& o);
 
 /// Sets class ground or unassigned and the column ground_probability of the usable points among the first `own`; those after are the halo
-/// and keep theirs. Ground is what lies near enough to the surface and, the more the denser returns are, up to 0.5, is probable. Only the
+/// and keep theirs. Ground is what has a probability of at least 0.5. Only the
 /// last or only return of a pulse can be ground: the beam went on behind every earlier one, so that one lay above something lower; its
 /// probability is 0. Points that are not usable get NaN. The result of a point depends on the points within halo() of it and on nothing
 /// else.

@@ -39,9 +39,9 @@ constexpr double split_few = 0.01;                     // share of split pulses 
 
 // In the order of terms_of().
 constexpr std::array<double, ground_terms> mown_weights{
-    3.115,  0.177,  -0.043, -0.366, -0.247,  0.099,  0.661,  -0.421, 3.464,  -2.504, -0.293, -0.217,  -0.445, -1.079, 2.994,  -0.851,
-    -3.658, 6.698,  -3.053, 14.117, -18.478, -0.648, 0.076,  3.708,  -6.146, 1.927,  6.198,  -30.324, 11.858, -6.457, -0.900, -9.446,
-    3.608,  10.482, -0.310, 1.482,  1.366,   0.190,  -4.761, 2.645,  0.262,  -0.017, 0.165,  3.005,   0.506,  5.676};
+    3.070,  0.161, -0.037, -0.318, -0.334,  0.131,  0.596,  -0.432, 3.424,  -2.447, -0.223, -0.230,  -0.508, -0.982, 2.820,  -0.713,
+    -4.170, 6.299, -2.210, 14.065, -17.867, -0.421, -0.336, 3.549,  -5.551, 1.561,  5.418,  -32.302, 12.435, -6.009, -0.903, -8.771,
+    3.259,  9.616, -0.385, 1.649,  1.656,   0.169,  -5.113, 2.587,  0.325,  -0.042, 0.148,  3.089,   0.475,  5.248};
 constexpr std::array<double, ground_terms> bare_earth_weights{
     4.563,  0.514,  -0.257, -0.005,  -0.968, -0.365, 1.171,  1.511,  2.771,   -1.570, -2.456, -0.517,  -1.491, -5.573,  22.706, -10.318,
     -7.912, 3.703,  1.387,  -18.914, 17.422, -6.569, 5.629,  5.881,  -32.491, 16.498, 95.676, -14.377, 16.979, -41.236, -2.282, -8.529,
@@ -176,7 +176,7 @@ std::array<double, ground_terms> terms_of(const GroundEvidence& e, double noise)
 float ground_probability(const GroundEvidence& e, double noise, Grass grass) {
   if (std::isnan(e.above) || std::abs(e.above) > far) return 0.0F;
   const std::array<double, ground_terms> terms = terms_of(e, noise);
-  if (terms[below_tolerable] <= -1.0) return 0.0F;
+  if (terms[below_tolerable] <= -1.0 && e.above < -deepest_ground(e.slope)) return 0.0F;
   const std::array<double, ground_terms>& weights = grass == Grass::mown ? mown_weights : bare_earth_weights;
   double sum = 0.0;
   for (size_t k = 0; k < ground_terms; ++k) sum += weights[k] * terms[k];
@@ -195,7 +195,11 @@ void look_around(const core::Block& b, const std::vector<float>& above, std::vec
   }
   all = blur(all, split_sigma);
   split = blur(split, split_sigma);
-  const Bins bins(b, 1.0, 0, [&](size_t p) { return !std::isnan(above[p]); });
+  const Bins bins(b, 1.0, 0, [&](size_t p) {
+    if (std::isnan(above[p])) return false;
+    const CellIndex at = cell_of(l, b, p);
+    return all.holds(at.i, at.j);
+  });
   for (size_t p = 0; p < own; ++p) {
     GroundEvidence& e = evidence[p];
     if (std::isnan(e.above)) continue;
