@@ -151,6 +151,28 @@ TEST(LasSource, FilesThatDifferShareOneHeader) {
   EXPECT_EQ(mixed.version_minor, 4);
 }
 
+TEST(LasSource, WaveformPacketsGoWithTheirPoints) {
+  const test::TemporaryFolder folder;
+  LasHeader h = test::sample_header(9);
+  h.global_encoding |= las_encoding::waveform_internal;
+  h.evlrs.push_back({"vendor", 3, "before", {1, 2, 3}, 0, 3});
+  h.evlrs.push_back({"LASF_Spec", 65535, "Waveform data packets", {9, 8, 7, 6}, 0, 4});
+  test::write_sample(folder / "a.las", h, test::sample_points(h, 10), 1);
+  carried(folder / "a.las", folder / "b.las");
+  std::vector<std::string> warnings;
+  const LasHeader b = read_las_header(folder / "b.las", warnings);
+  EXPECT_TRUE(b.global_encoding & las_encoding::waveform_internal);
+  ASSERT_EQ(b.evlrs.size(), 2u);
+  EXPECT_EQ(b.waveform_start, b.evlrs[1].offset - las_evlr_head);
+  const std::string bytes = test::read_bytes(folder / "b.las");
+  EXPECT_EQ(bytes.substr(b.evlrs[1].offset, 4), std::string({9, 8, 7, 6}));
+  // Points of two files refer to packets of both: neither goes along, and the report says so.
+  const LasHeader a = read_las_header(folder / "a.las", warnings);
+  const LasSources two({{folder / "a.las", a, {}, true}, {folder / "b.las", b, {}, true}});
+  EXPECT_FALSE(two.header(true).global_encoding & las_encoding::waveform_internal);
+  EXPECT_EQ(two.left_out().size(), 2u);
+}
+
 TEST(LasSource, RecordsOfAFilesOwnBytesStayBehind) {
   LasHeader h = test::sample_header(6);
   h.vlrs.push_back({"copc", 1, "COPC info", std::vector<std::uint8_t>(160), 0, 160});

@@ -51,17 +51,16 @@ struct Store {
 
 TEST(TileStore, RowsOfBytesComeBackWithTheirPoints) {
   const test::TemporaryFolder folder;
-  const auto row_of = [](unsigned strip, std::uint32_t record) {
-    return std::vector<std::uint8_t>{static_cast<std::uint8_t>(strip), static_cast<std::uint8_t>(record),
-                                     static_cast<std::uint8_t>(record >> 8)};
+  const auto byte_of = [](unsigned strip, std::uint32_t record, size_t k) {
+    const std::uint32_t value = k == 0 ? strip : k == 1 ? record : k == 2 ? record >> 8 : 0;
+    return static_cast<std::uint8_t>(strip == 2 ? 0 : value);
   };
   for (unsigned s = 1; s <= 3; ++s) {  // rows of 3 bytes, none, rows of 5
     Block part = cloud(2000, s);
     part.strip.assign(part.size(), static_cast<std::uint16_t>(s));
     for (size_t i = 0; s != 2 && i < part.size(); ++i) {
       part.source.resize(i + 1, s == 1 ? 3 : 5);
-      const std::vector<std::uint8_t> row = row_of(s, part.record[i]);
-      std::copy(row.begin(), row.end(), part.source.row(i));
+      for (size_t k = 0; k < 3; ++k) part.source.row(i)[k] = byte_of(s, part.record[i], k);
     }
     StripWriter writer(folder / ("strips/strip_" + std::to_string(s)), 100.0, 1 << 16);
     writer.write(part);
@@ -72,11 +71,8 @@ TEST(TileStore, RowsOfBytesComeBackWithTheirPoints) {
   EXPECT_EQ(store.source_width(), 5u);
   const auto expect_rows = [&](const Block& b) {
     ASSERT_EQ(b.source.size(), b.size());
-    for (size_t i = 0; i < b.size(); ++i) {
-      std::vector<std::uint8_t> row = b.strip[i] == 2 ? std::vector<std::uint8_t>{0, 0, 0} : row_of(b.strip[i], b.record[i]);
-      row.resize(5);
-      ASSERT_TRUE(std::equal(row.begin(), row.end(), b.source.row(i))) << i;
-    }
+    for (size_t i = 0; i < b.size(); ++i)
+      for (size_t k = 0; k < 5; ++k) ASSERT_EQ(b.source.row(i)[k], byte_of(b.strip[i], b.record[i], k)) << i;
   };
   for (const auto& [key, n] : store.tiles()) {
     expect_rows(store.read(key, {Column::record, Column::strip, Column::source}));
