@@ -60,7 +60,9 @@ class GeoJsonSink : public ContourSink {
     OGRCoordinateTransformationOptions options;
     options.SetBallparkAllowed(false);
     to_wgs84_.reset(OGRCreateCoordinateTransformation(&from, &to, options));
-    if (!to_wgs84_) messages.fail("GeoJSON is in WGS84 and there is no transformation to it from " + crs.name, file);
+    if (!to_wgs84_)
+      throw core::Error("GeoJSON is in WGS84 and there is no transformation to it from " + crs.name, file.string(),
+                        "the CRS's datum is not known: state an EPSG code, or use the GeoPackage");
     text_ << "{\n\"type\": \"FeatureCollection\",\n\"swath\": {\"source_crs\": " << quoted(crs.name)
           << ", \"height_unit\": " << quoted(crs.vertical_unit) << ", \"height_reference\": " << quoted(crs.vertical_name)
           << "},\n\"features\": [";
