@@ -2,8 +2,7 @@
 // No published source for the whole; second differences instead of Wu and Pan's integrals (2013) as in trajectory/alignment.h, offset by
 // correlation as in Skog and Haendel (2011, "Time synchronization errors in loosely coupled GPS-aided inertial navigation systems"),
 // sigma by clusters after Liang and Zeger (1986, "Longitudinal data analysis using generalized linear models").
-// Deviations: gravity is that of the middle fix (its change over 2 s: 1e-7 m/s^2); a gyro's bias turns with the window's frame, not with
-// the body (second order in bias and turn).
+// Deviation: gravity and Coriolis are those of the middle fix; their changes are odd about it and leave less than 1e-5 m/s^2.
 #include "trajectory/clock_offset.h"
 
 #include <Eigen/Cholesky>
@@ -28,12 +27,15 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Vector10 = Eigen::Matrix<double, 10, 1>;  // offset; rotation, its drift, accelerometer bias
-using Matrix10 = Eigen::Matrix<double, 10, 10>;
+constexpr int own = 15;                             // unknowns of a window beside the offset
+using VectorN = Eigen::Matrix<double, own + 1, 1>;  // offset; rotation; gyro and accelerometer bias; their scale factors
+using MatrixN = Eigen::Matrix<double, own + 1, own + 1>;
 
-constexpr double widest_fixes = 3.0;  // s between fixes
+constexpr double widest_fixes = 3.0;             // s between fixes
+constexpr std::array half_spans{1.0, 2.0, 4.0};  // s: shaken vehicles, flights
 constexpr double huber = 2.5, mad_to_sigma = 1.4826;
 constexpr double loose_drift = 3e-3, loose_bias = 0.2;      // rad/s, m/s^2: what a window may take beside the stated sensor errors
+constexpr double loose_scale = 2e-4;                        // the same of scale factors
 constexpr double least_scale = 1e-3;                        // m/s^2
 constexpr double largest_sigma = 0.02, least_sigma = 2e-4;  // s
 constexpr double sure_sigmas = 4.0;
@@ -90,7 +92,7 @@ double huber_weight(double residual, double scale) {
 }
 
 /// `before`: residuals of the round before, for the weights; empty at first.
-void solve_window(const ClockWindow& w, double offset, const Vector3d& scale, const Vector10& prior, const std::vector<Vector3d>& before,
+void solve_window(const ClockWindow& w, double offset, const Vector3d& scale, const VectorN& prior, const std::vector<Vector3d>& before,
                   Round& out) {
   std::vector<Vector3d> sensed, rate;
   std::vector<double> whole(before.empty() ? 0 : w.triples.size(), 1.0);
@@ -102,15 +104,16 @@ void solve_window(const ClockWindow& w, double offset, const Vector3d& scale, co
   for (size_t i = 0; i < whole.size(); ++i)
     for (int a = 0; a < 3; ++a) whole[i] = std::min(whole[i], huber_weight(before[i][a], scale[a]));
   const Matrix3d R = rotation_of(w, sensed, whole);
-  Matrix10 normal = prior.asDiagonal();
-  Vector10 right = Vector10::Zero();
-  std::vector<Eigen::Matrix<double, 3, 10>> rows;
+  MatrixN normal = prior.asDiagonal();
+  VectorN right = VectorN::Zero();
+  std::vector<Eigen::Matrix<double, 3, own + 1>> rows;
   std::vector<Vector3d> residual;
   for (size_t i = 0; i < w.triples.size(); ++i) {
     const ClockTriple& t = w.triples[i];
-    Eigen::Matrix<double, 3, 10> J;
+    Eigen::Matrix<double, 3, own + 1> J;
     const Vector3d turned = R * sensed[i];
-    J << R * rate[i], -core::skew(turned), -t.time * core::skew(turned), R * t.turn;
+    J << R * rate[i], -core::skew(turned), -core::skew(turned) * R * t.drift, R * t.turn, -core::skew(turned) * R * t.scale,
+        R * t.turn * (t.turn.transpose() * sensed[i]).asDiagonal().toDenseMatrix();
     const Vector3d r = t.force - turned;
     for (int a = 0; a < 3; ++a) {
       const double weight = (before.empty() ? 1.0 : huber_weight(before[i][a], scale[a])) / (scale[a] * scale[a]);
@@ -120,12 +123,12 @@ void solve_window(const ClockWindow& w, double offset, const Vector3d& scale, co
     rows.push_back(J);
     residual.push_back(r);
   }
-  const Eigen::Matrix<double, 9, 9> own = normal.bottomRightCorner<9, 9>();
-  const Eigen::LDLT<Eigen::Matrix<double, 9, 9>> solver(own);
-  const Eigen::Matrix<double, 9, 1> by_offset = solver.solve(normal.block<9, 1>(1, 0)), by_right = solver.solve(right.tail<9>());
-  out.normal.push_back(normal(0, 0) - normal.block<9, 1>(1, 0).dot(by_offset));
-  out.right.push_back(right[0] - normal.block<9, 1>(1, 0).dot(by_right));
-  for (size_t i = 0; i < residual.size(); ++i) residual[i] -= rows[i].rightCols<9>() * by_right;
+  const Eigen::Matrix<double, own, own> theirs = normal.bottomRightCorner<own, own>();
+  const Eigen::LDLT<Eigen::Matrix<double, own, own>> solver(theirs);
+  const Eigen::Matrix<double, own, 1> by_offset = solver.solve(normal.block<own, 1>(1, 0)), by_right = solver.solve(right.tail<own>());
+  out.normal.push_back(normal(0, 0) - normal.block<own, 1>(1, 0).dot(by_offset));
+  out.right.push_back(right[0] - normal.block<own, 1>(1, 0).dot(by_right));
+  for (size_t i = 0; i < residual.size(); ++i) residual[i] -= rows[i].rightCols<own>() * by_right;
   out.left.push_back(std::move(residual));
 }
 
@@ -146,8 +149,9 @@ std::string seconds(double v, const char* form = "%.3f s") {
   return text.data();
 }
 
-/// The grid's best offset. Sets `out.reason` where another fits as well or it lies at the end.
-double coarse_offset(const std::vector<ClockWindow>& windows, size_t offsets, TimeOffset& out) {
+/// The grid's best offset; `alike_triples`: neighbours that count as one. Sets `out.reason` where another fits as well or it lies at the
+/// end.
+double coarse_offset(const std::vector<ClockWindow>& windows, size_t offsets, double alike_triples, TimeOffset& out) {
   std::vector<double> cost(offsets);
   for (size_t i = 0; i < offsets; ++i) cost[i] = misfit(windows, i);
   const auto best = static_cast<size_t>(std::min_element(cost.begin(), cost.end()) - cost.begin());
@@ -156,8 +160,8 @@ double coarse_offset(const std::vector<ClockWindow>& windows, size_t offsets, Ti
   for (const ClockWindow& w : windows) triples += static_cast<double>(w.triples.size());
   out.contrast = 1 - cost[best] / std::max(core::median(cost), 1e-12);
   // Distances that are exponentially distributed have the log likelihood -sum / mean; neighbours within a span are about one.
-  const double mean = std::max(cost[best] / triples, least_scale), independent = clock_half_span / clock_spacing;
-  const auto likelihood = [&](size_t i) { return (cost[i] - cost[best]) / mean / independent; };
+  const double mean = std::max(cost[best] / triples, least_scale);
+  const auto likelihood = [&](size_t i) { return (cost[i] - cost[best]) / mean / alike_triples; };
   for (size_t i = 0; i < offsets; ++i) {
     const bool minimum = (i == 0 || cost[i] <= cost[i - 1]) && (i + 1 == offsets || cost[i] <= cost[i + 1]);
     if (!minimum || std::abs(value(i) - value(best)) < apart || likelihood(i) > alike) continue;
@@ -170,7 +174,7 @@ double coarse_offset(const std::vector<ClockWindow>& windows, size_t offsets, Ti
 }
 
 /// Sigma of the common offset from the scatter of the windows' own answers and from the residuals' noise.
-double sigma_of(const Round& r, double speed, double lever_sigma) {
+double sigma_of(const Round& r, double alike_triples, double speed, double lever_sigma) {
   const double n = std::accumulate(r.normal.begin(), r.normal.end(), 0.0), step = r.step();
   double scores = 0, squares = 0;
   for (size_t i = 0; i < r.normal.size(); ++i) {
@@ -179,17 +183,19 @@ double sigma_of(const Round& r, double speed, double lever_sigma) {
   }
   // Few windows say little of their own scatter: the residuals' noise counts like two more.
   const double windows = n * n / squares;  // of equal weight
-  const double noise = clock_half_span / clock_spacing / n, scatter = scores / (n * n) * windows;
-  const double own = std::sqrt((scatter + 2 * noise) / (windows + 1));
-  return std::sqrt(own * own + std::pow(lever_sigma / std::max(speed, 1.0), 2) + least_sigma * least_sigma);
+  const double noise = alike_triples / n, scatter = scores / (n * n) * windows;
+  const double sigma = std::sqrt((scatter + 2 * noise) / (windows + 1));
+  return std::sqrt(sigma * sigma + std::pow(lever_sigma / std::max(speed, 1.0), 2) + least_sigma * least_sigma);
 }
 
 TimeOffset refine(const std::vector<ClockWindow>& windows, double coarse, double search, const core::ImuErrorModel& spec,
-                  double lever_sigma, TimeOffset out) {
-  Vector10 prior = Vector10::Zero();
+                  double lever_sigma, double alike_triples, TimeOffset out) {
+  VectorN prior = VectorN::Zero();
   prior.segment<3>(1).setConstant(1.0);
   prior.segment<3>(4).setConstant(1 / std::pow(loose_drift + 3 * spec.gyro_bias.value, 2));
   prior.segment<3>(7).setConstant(1 / std::pow(loose_bias + 3 * spec.accelerometer_bias.value, 2));
+  prior.segment<3>(10).setConstant(1 / std::pow(loose_scale + 3 * spec.gyro_scale.value, 2));
+  prior.segment<3>(13).setConstant(1 / std::pow(loose_scale + 3 * spec.accelerometer_scale.value, 2));
   Vector3d scale = Vector3d::Constant(0.1);
   Round round;
   double offset = coarse;
@@ -215,7 +221,7 @@ TimeOffset refine(const std::vector<ClockWindow>& windows, double coarse, double
     out.reason = "the motion does not change";
     return out;
   }
-  const double sigma = sigma_of(round, speed / weight, lever_sigma);
+  const double sigma = sigma_of(round, alike_triples, speed / weight, lever_sigma);
   if (out.reason.empty() && (!(sigma < largest_sigma) || std::abs(offset - coarse) > 0.5 * apart))
     out.reason = "the motion changes too little against the records' noise (sigma " + seconds(sigma) + ")";
   out.determinable = out.reason.empty();
@@ -251,14 +257,19 @@ TimeOffset imu_clock_offset(const ImuPath& path, const core::GnssData& gnss, con
     return out;
   }
   const size_t offsets = 2 * static_cast<size_t>(std::ceil(search / clock_grid)) + 5;  // two beyond the search on either side
-  const std::vector<ClockWindow> windows =
-      clock_windows(path, gnss, lever_arm, 0.5 * static_cast<double>(offsets - 1) * clock_grid, step, offsets);
-  if (windows.empty()) {
-    out.reason = "no 10 s of fixes and IMU records without a gap";
-    return out;
+  out.reason = "no 20 s of fixes and IMU records without a gap";
+  for (const double half_span : half_spans) {
+    const std::vector<ClockWindow> windows =
+        clock_windows(path, gnss, lever_arm, 0.5 * static_cast<double>(offsets - 1) * clock_grid, step, half_span, offsets);
+    if (windows.empty()) continue;
+    const double alike_triples = std::max(half_span, step) / std::max(clock_spacing, step);
+    TimeOffset found;
+    const double coarse = coarse_offset(windows, offsets, alike_triples, found);
+    found = refine(windows, coarse, search, spec, lever_arm_sigma, alike_triples, found);
+    if (found.determinable && (!out.determinable || found.sigma < out.sigma)) out = found;
+    if (!out.determinable && out.used == 0) out = found;
   }
-  const double coarse = coarse_offset(windows, offsets, out);
-  return refine(windows, coarse, search, spec, lever_arm_sigma, out);
+  return out;
 }
 
 TimeOffset velocity_lag(const core::GnssData& gnss) {

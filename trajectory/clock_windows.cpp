@@ -17,9 +17,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double window_length = 10.0;    // s
+constexpr double window_length = 20.0;    // s
 constexpr size_t most_cells = 1'000'000;  // triples times grid: 24 MB
-constexpr size_t fewest_triples = 15;     // of a window: three equations each for ten unknowns
+constexpr size_t fewest_triples = 15;     // of a window: three equations each for 15 unknowns
 
 /// Indices of fixes: the middle one and those half a span before and after it.
 struct Three {
@@ -51,7 +51,8 @@ class Integral {
  public:
   Integral(const ImuPath& path, double from, double until) {
     ImuWalk walk(path, from);
-    samples_.push_back({from, Matrix3d::Identity(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()});
+    samples_.push_back(
+        {from, Matrix3d::Identity(), Matrix3d::Zero(), Matrix3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()});
     Increment piece;
     while (walk.next(until, piece)) {
       Sample next = samples_.back();
@@ -59,12 +60,16 @@ class Integral {
       samples_.back().force = push / piece.step;
       next.way += piece.step * (next.speed + 0.5 * push);
       next.speed += push;
+      next.drift += piece.step * next.turn;
+      next.scale += next.turn * piece.angle.asDiagonal();
       next.turn = next.turn * core::exp_so3(piece.angle);
       next.time = walk.time();
       samples_.push_back(next);
     }
   }
   Matrix3d turn(double t) const { return at(t).turn; }
+  Matrix3d drift(double t) const { return at(t).drift; }
+  Matrix3d scale(double t) const { return at(t).scale; }
   /// Twice integrated specific force and the turned lever arm.
   Vector3d place(double t, const Vector3d& lever) const {
     const Sample& s = at(t);
@@ -77,7 +82,7 @@ class Integral {
  private:
   struct Sample {
     double time;
-    Matrix3d turn;
+    Matrix3d turn, drift, scale;
     Vector3d speed, way, force;
   };
   const Sample& at(double t) const {
@@ -118,6 +123,8 @@ ClockWindow window_of(const ImuPath& path, const core::GnssData& g, const std::v
     const Matrix3d inertial = Eigen::AngleAxisd(core::wgs84::omega * time, Vector3d::UnitZ()).toRotationMatrix();
     t.force = ned_R_ecef * inertial * force_of(g, f);
     t.turn = integral.turn(g.time[f.b]);
+    t.drift = integral.drift(g.time[f.b]) - integral.drift(middle);
+    t.scale = integral.scale(g.time[f.b]) - integral.scale(middle);
     t.sensed.resize(offsets);
     const double h1 = g.time[f.b] - g.time[f.a], h2 = g.time[f.c] - g.time[f.b];
     for (size_t i = 0; i < offsets; ++i) {
@@ -146,9 +153,9 @@ double liveliness(const core::GnssData& g, const std::vector<Three>& all, size_t
 }  // namespace
 
 std::vector<ClockWindow> clock_windows(const ImuPath& path, const core::GnssData& g, const Vector3d& lever, double search, double step,
-                                       size_t offsets) {
-  const double length = window_length * std::max(1.0, 2 * step);  // as many triples where there are few fixes
-  const std::vector<Three> all = threes_of(g, std::max(clock_half_span, step));
+                                       double half_span, size_t offsets) {
+  const double length = window_length * std::max(1.0, step);
+  const std::vector<Three> all = threes_of(g, std::max(half_span, step));
   struct Stretch {
     double liveliness;
     size_t first, last;
