@@ -144,11 +144,22 @@ class Report:
                 if e["parameter"] not in parameters or not e["estimated"]:
                     continue
                 at = lambda v: times(None if v is None else v - origin, 1 / size)
-                value = e.get("value")
-                yield [e["name"], at(e["nominal"]), at(value), times(None if value is None else value - e["nominal"], 1 / change),
-                       *(times(e.get(k), 1 / change) for k in ("sigma", "formal", "jackknife_lines", "jackknife_planes", "white")),
-                       times(e.get("determined"), 100), "delivered" if e["delivered"] else "not determined"]
+                known = e["delivered"] or (e["found_sigma"] or 0.0) > 0.0  # what was found is shown though it is not delivered
+                value, sigma = (e["value"], e["sigma"]) if e["delivered"] else (e["found"], e["found_sigma"])
+                outcome = "delivered, coarse" if e["grade"] == "coarse" else "delivered"
+                if not e["delivered"]:
+                    outcome = "not settled" if e["grade"] == "unsettled" else "not determined"
+                shown = lambda v, by: times(v if known else None, by)
+                yield [e["name"], at(e["nominal"]), at(value if known else None), shown(value - e["nominal"], 1 / change), shown(sigma, 1 / change),
+                       *(shown(e[k], 1 / change) for k in ("formal", "jackknife_lines", "jackknife_planes", "white")),
+                       shown(e["determined"], 100), outcome]
         return rows
+
+    def origin(self, _):
+        flown = self.tree["flown"]
+        rows = [["made by", self.tree["program"]], ["flown (UTC)", f"{flown['from']} to {flown['to']}" if flown["from"] else ""],
+                ["CRS", self.tree["crs"]], *(["input", i] for i in self.tree["inputs"])]
+        yield from (row for row in rows if row[1])
 
     def adjustment(self, _):
         a = self.tree["adjustment"]
@@ -307,7 +318,7 @@ class Report:
     def tables(self):
         angles = {"boresight_roll", "boresight_pitch", "boresight_heading", "scan_offset"}
         lengths = {"range_offset", "lever_forward", "lever_right", "lever_down"}
-        out = {"findings": self.findings, "values-angles": self.values(angles, math.radians(1), ARC_SECOND),
+        out = {"findings": self.findings, "origin": self.origin, "values-angles": self.values(angles, math.radians(1), ARC_SECOND),
                "values-lengths": self.values(lengths, 1.0, 1e-3),
                "values-scales": self.values({"range_scale", "scan_scale"}, 1e-6, 1e-6, 1.0), "values-time": self.values({"latency"}, 1e-3, 1e-3),
                "adjustment": self.adjustment, "components": self.components, "readings": self.readings, "lines": self.lines,
@@ -357,6 +368,11 @@ def check_texts(report, page):
             if tree["calibrated"] and not hit:
                 yield f"the verdict does not tell the sigma of {e['name']}"
             known |= hit
+    for r in tree["readings"]:  # a flat target that disagrees
+        if not r.get("agrees", True):
+            unit = next(e["unit"] for e in tree["estimates"] if e["parameter"] == r["parameter"])
+            size = {"rad": ARC_SECOND, "1": 1e-6}.get(unit, 1e-3)
+            known |= {n for n in numbers if agrees(n, abs(r["difference"]) / size) or agrees(n, abs(r["difference"]) / r["joint_sigma"])}
     for n in numbers - known:
         yield f"the verdict tells {n}, which follows from no file"
     for text in page.paragraphs:
