@@ -100,7 +100,8 @@ fs::path only_tile(const fs::path& out) {
 /// Tallies of a run's stages as text.
 std::string tallies_of(const fs::path& out) {
   std::string text;
-  for (const core::Value& stage : io::read_value_file(out / "report.json").find("stages")->items())
+  const core::Value report = io::read_value_file(out / "report.json");
+  for (const core::Value& stage : report.find("stages")->items())
     if (const core::Value* tally = stage.find("tally")) text += io::to_json(*tally);
   return text;
 }
