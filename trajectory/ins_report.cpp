@@ -69,7 +69,7 @@ void judge_clocks(const InsFindings& f, Value& v, Value& warnings) {
   if (f.clocks.apart() && !(o.gnss_latency && std::abs(f.clocks.imu.value) < sure_sigmas * o.latency_sigma.value))
     warnings.push(f.clocks.advice());
   if (f.clocks.velocities_lag())
-    warnings.push(text("the GNSS velocities are %.3f s late (sigma %.3f s) against the positions of the same fixes and are not used",
+    warnings.push(text("the GNSS velocities are %.3f s late (sigma %.4f s) against the positions of the same fixes and are not used",
                        f.clocks.velocity.value, f.clocks.velocity.sigma));
 }
 
