@@ -98,8 +98,11 @@ std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, co
     e.lowered = returns[p].above - e.above;
     e.narrowed = e.lowered > 0 ? returns[p].spread : e.spread;
   }
-  const std::vector<float> chances = ground_chances(b, own, returns);
-  for (size_t p = 0; p < own; ++p) evidence[p].chance = chances[p];
+  {
+    const std::vector<float> chances = ground_chances(b, own, returns);
+    for (size_t p = 0; p < own; ++p) evidence[p].chance = chances[p];
+  }
+  std::vector<ReturnOverGround>().swap(returns);
   look_around(b, above, evidence);
   return evidence;
 }
