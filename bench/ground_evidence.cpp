@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What filters.ground knows of returns, for bench/accuracy/ground_calibration.py: ground_evidence < POINTS > EVIDENCE.
-// In: six doubles per point: easting, northing, height (m), return number, number of returns, strip. Out: the nine floats of
-// GroundEvidence.
+// In: six doubles per point: easting, northing, height (m), return number, number of returns, strip. Out: above (m, NaN where not judged),
+// chance, probability, and the terms of the regression, as floats.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "filters/ground.h"
@@ -21,8 +23,10 @@ int main() {
     b.flags.push_back(0);
     b.strip.push_back(static_cast<std::uint16_t>(row[5]));
   }
-  for (const filters::GroundEvidence& e : filters::ground_evidence(b, b.size(), {})) {
-    const std::array<float, 9> row{e.chance, e.above, e.spread, e.lowered, e.narrowed, e.slope, e.standing, e.sunken, e.support};
+  const filters::GroundOptions options;
+  for (const filters::GroundEvidence& e : filters::ground_evidence(b, b.size(), options)) {
+    std::array<float, filters::ground_terms + 3> row{e.above, e.chance, filters::ground_probability(e, options.noise.value, options.grass)};
+    if (!std::isnan(e.above)) std::ranges::copy(filters::terms_of(e, options.noise.value), row.begin() + 3);
     if (std::fwrite(row.data(), sizeof row, 1, stdout) != 1) return 1;
   }
   return 0;

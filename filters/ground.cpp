@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A return is judged by its distance from the robust surface (ground_surface.h) against the distance that is bearable at its place: the
-// noise and roughness of the ground there and, where returns are sparse, what the surface errs by between them: more on slopes, and a
-// leniency for what it smooths away (kerbs, furrows, boulders) that fades where many returns stand knee-high, as in crops and shrubs: there
-// the lowest ones alone are ground.
+// A return is judged by its distance from the robust surface (ground_surface.h), by the heights of all returns around (ground_chance.h) and
+// by those nearest to it. One probability is made of them (ground_probability.h), and ground is what has at least a half.
 // Where the returns are two populations, soil and a low crop that drew the surface up, the ground is the lower one (ground_populations.h).
-// The chance is counted from the heights of all returns around (ground_chance.h), and what is bearable must have some: a half where returns
-// are dense, any where they are sparse and the surface itself is in doubt. The probability that is stated is the chance, calibrated.
 #include "filters/ground.h"
 
 #include <algorithm>
@@ -23,39 +19,11 @@ namespace swath::filters {
 namespace {
 
 constexpr float not_judged = std::numeric_limits<float>::quiet_NaN();
-constexpr double per_spread = 2.0, per_spread_sparse = 3.0;  // of one standard deviation
-constexpr double dense = 34.0;          // ground's returns in the kernel of the last planes from which the surface follows the ground
-constexpr double widest_spread = 0.15;  // m: what is more is not the ground's
-constexpr double per_slope = 1.0;       // m per rise / run
-constexpr double leniency = 0.2;        // m
-constexpr double fading = 0.25;         // of leniency to 1 / e, share of returns standing knee-high
-constexpr double below = 0.45, below_per_slope = 0.5;  // m, m per rise / run: most that is bearable under the surface
-constexpr double sunken_few = 0.06;                    // share of returns deep below the surface from which it is the surface that errs
-constexpr double sunken_room = 1.5;                    // m more under the surface where twice that share is
-constexpr double least_spread = 0.01;                  // m: below what ranges are recorded to
-constexpr double inflated = 1.5;                       // of the lower population's spread: the surface's where it lies between two
-
-// Constant, per log odds of the chance, per logarithm of the share standing knee-high: bench/accuracy/ground_calibration.py, 2026-11-22.
-constexpr std::array<double, 3> calibration{-2.497, 0.860, -0.830};
+constexpr double least_spread = 0.01;  // m: below what ranges are recorded to
+constexpr double inflated = 1.5;       // of the lower population's spread: the surface's where it lies between two
 
 GroundSurfaceOptions surface_options(const GroundOptions& o) {
   return {o.widest.value, o.longest.value, std::tan(o.steepest.value), o.noise.value};
-}
-
-/// The error between returns grows with the square of their distance, and that is the inverse of their number; between dense and sparse
-/// the square of this share came out best on both simulated and scanned ground. `support`: ground's returns behind the surface.
-double sparse_of(double support) { return support > dense ? std::pow(dense / support, 2) : 1.0; }
-
-/// m below the surface.
-double deepest(double slope) { return below + below_per_slope * slope; }
-
-/// m from the ground. `above`: m over it, `spread`: m, standard deviation about it.
-double bearable(const GroundEvidence& e, double above, double spread, double sparse, double noise) {
-  const double most = (per_spread + (per_spread_sparse - per_spread) * sparse) * std::hypot(noise, std::min(spread, widest_spread)) +
-                      sparse * (per_slope * e.slope + leniency * std::exp(-e.standing / fading));
-  // A low outlier lies alone; where many lie below, the surface has been drawn over a break.
-  if (above < 0) return std::min(most, deepest(e.slope)) + sunken_room * std::clamp(e.sunken / sunken_few - 1.0, 0.0, 1.0);
-  return most;
 }
 
 /// A point beside the surface; above NaN where no surface is.
@@ -68,13 +36,15 @@ GroundEvidence beside(const GroundSurface& g, const core::Block& b, size_t p) {
           .slope = static_cast<float>(std::sqrt(s.east * s.east + s.north * s.north)),
           .standing = g.standing.value[at],
           .sunken = g.sunken.value[at],
-          .support = g.support.value[at]};
+          .support = g.support.value[at],
+          .splitting = 0.0F,
+          .nearest = {}};
 }
 
 ReturnOverGround judged(const GroundEvidence& e) {
-  const double sparse = sparse_of(e.support), spread = std::max<double>(least_spread, e.spread);
-  const double doubt = std::hypot(2.0 * spread, sparse * (per_slope * e.slope + leniency));
-  return {e.above, static_cast<float>(spread), static_cast<float>(doubt), e.above < -deepest(e.slope)};
+  const double spread = std::max<double>(least_spread, e.spread);
+  const double doubt = std::hypot(2.0 * spread, sparse_error(e.slope, 0.0, sparseness(e.support)));
+  return {e.above, static_cast<float>(spread), static_cast<float>(doubt), e.above < -deepest_ground(e.slope)};
 }
 
 /// Where returns are two populations the ground is the lower one.
@@ -88,22 +58,6 @@ void move_to_lower(ReturnOverGround& r, const LowerPopulations& lower, const cor
   r.spread = spread;
 }
 
-/// The chance as counted, brought to the true share of ground among returns of that chance and of such places (Platt 1999): just above the
-/// ground a crop nothing tells stands where returns stand knee-high, and on bare ground what the surface missed.
-float stated_chance(const GroundEvidence& e) {
-  if (std::isnan(e.above)) return 0.0F;
-  const double p = std::clamp<double>(e.chance, 1e-4, 1.0 - 1e-4);
-  const double log_odds = calibration[0] + calibration[1] * std::log(p / (1.0 - p)) + calibration[2] * std::log(e.standing + 0.01);
-  return static_cast<float>(1.0 / (1.0 + std::exp(-log_odds)));
-}
-
-/// Ground lies near enough and is probable enough. Two populations are the less certain the fewer returns there are.
-bool is_ground(const GroundEvidence& e, double noise) {
-  const double sparse = sparse_of(e.support), above = e.above + (1.0 - sparse) * e.lowered;
-  const double spread = e.spread + (1.0 - sparse) * (e.narrowed - e.spread);
-  return std::abs(above) <= bearable(e, above, spread, sparse, noise) && e.chance >= static_cast<float>(0.5 * std::pow(1.0 - sparse, 2));
-}
-
 /// Halo points beyond the surface have no influence.
 bool within_reach(const core::Lattice& l, const core::Block& b, size_t p) {
   const CellIndex c = cell_of(l, b, p);
@@ -113,13 +67,17 @@ bool within_reach(const core::Lattice& l, const core::Block& b, size_t p) {
 }  // namespace
 
 double halo(const GroundOptions& o) {
-  return std::ceil((surface_reach(surface_options(o)) + 2) * ground_cell + ground_chance_reach + ground_populations_reach);
+  const double around = std::max(ground_chance_reach + ground_populations_reach, ground_probability_reach);
+  return std::ceil((surface_reach(surface_options(o)) + 2) * ground_cell + around);
 }
 
 std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, const GroundOptions& o) {
-  std::vector<GroundEvidence> evidence(own, GroundEvidence{.above = not_judged});
+  GroundEvidence unknown;
+  unknown.above = not_judged;
+  std::vector<GroundEvidence> evidence(own, unknown);
   if (own == 0) return evidence;
-  const GroundSurface g = ground_surface(b, own, ground_chance_reach + ground_populations_reach, surface_options(o));
+  const GroundSurface g =
+      ground_surface(b, own, std::max(ground_chance_reach + ground_populations_reach, ground_probability_reach), surface_options(o));
   std::vector<ReturnOverGround> returns(b.size(), {not_judged, 0, 0, false});
   for (size_t p = 0; p < b.size(); ++p) {
     if (!may_be_ground(b, p) || !within_reach(g.lattice, b, p)) continue;
@@ -127,6 +85,8 @@ std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, co
     if (!std::isnan(e.above)) returns[p] = judged(e);
     if (p < own) evidence[p] = e;
   }
+  std::vector<float> above(b.size());
+  for (size_t p = 0; p < b.size(); ++p) above[p] = returns[p].above;
   const LowerPopulations lower = lower_populations(b, own, ground_chance_reach, returns, o.noise.value);
   for (size_t p = 0; p < b.size(); ++p) {
     if (std::isnan(returns[p].above)) continue;
@@ -136,8 +96,12 @@ std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, co
     e.lowered = returns[p].above - e.above;
     e.narrowed = e.lowered > 0 ? returns[p].spread : e.spread;
   }
-  const std::vector<float> chances = ground_chances(b, own, returns);
-  for (size_t p = 0; p < own; ++p) evidence[p].chance = chances[p];
+  {
+    const std::vector<float> chances = ground_chances(b, own, returns);
+    for (size_t p = 0; p < own; ++p) evidence[p].chance = chances[p];
+  }
+  std::vector<ReturnOverGround>().swap(returns);
+  look_around(b, above, evidence);
   return evidence;
 }
 
@@ -149,12 +113,12 @@ GroundChances classify_ground(core::Block& b, size_t own, const GroundOptions& o
   std::vector<Verdict> verdicts(b.size(), Verdict::object);
   for (size_t p = 0; p < own; ++p) {
     const GroundEvidence& e = evidence[p];
-    b.ground_probability[p] = core::is_usable(b, p) ? stated_chance(e) : not_judged;
+    b.ground_probability[p] = core::is_usable(b, p) ? ground_probability(e, o.noise.value, o.grass) : not_judged;
     n.doubtful += b.ground_probability[p] > 0.25F && b.ground_probability[p] < 0.75F;
     if (!may_be_ground(b, p)) continue;
     if (std::isnan(e.above))
       verdicts[p] = Verdict::no_surface;
-    else if (is_ground(e, o.noise.value))
+    else if (b.ground_probability[p] >= 0.5F)
       verdicts[p] = Verdict::ground;
   }
   static_cast<GroundCounts&>(n) = set_ground_classes(b, own, verdicts);

@@ -2,11 +2,14 @@
 // Ground points by a surface that is fitted to the last returns, with a probability for every point.
 #pragma once
 
+#include <array>
+#include <string_view>
 #include <vector>
 
 #include "core/block.h"
 #include "core/option.h"
 #include "filters/ground_labels.h"
+#include "filters/ground_probability.h"
 
 namespace swath::filters {
 
@@ -15,6 +18,7 @@ struct GroundOptions {
   core::Metres longest{180.0};
   core::Radians steepest = core::degrees(55.0);
   core::Metres noise{0.03};
+  Grass grass = Grass::mown;
 };
 
 template <class V>
@@ -27,20 +31,8 @@ void describe(GroundOptions& o, V& v) {
            "Steepest ground: what rises more steeply and stands alone is an object.");
   v.option("noise", o.noise, core::within(0.005, 1.0),
            "Standard deviation of the heights of returns from hard level ground, strips' misfit included.");
+  v.option("grass", o.grass, "Grass of 7 to 15 cm: mown counts as ground, as most makers of clouds have it; bare_earth does not.");
 }
-
-/// What is known of a return and of the ground around it.
-struct GroundEvidence {
-  float chance = 0.0F;    ///< that it is ground, as counted around it (ground_chance.h)
-  float above = 0.0F;     ///< m over the surface; NaN: not judged
-  float spread = 0.0F;    ///< m, standard deviation of the ground's returns about it
-  float lowered = 0.0F;   ///< m that the ground lies below the surface, where that runs between two populations
-  float narrowed = 0.0F;  ///< m, standard deviation of the ground's returns about the ground
-  float slope = 0.0F;     ///< rise / run of the surface
-  float standing = 0.0F;  ///< share of the returns around that stand knee-high
-  float sunken = 0.0F;    ///< share of them that lie deep below the surface
-  float support = 0.0F;   ///< ground's returns behind the surface
-};
 
 /// One entry for each of the first `own` points.
 std::vector<GroundEvidence> ground_evidence(const core::Block& block, size_t own, const GroundOptions& o);
@@ -54,10 +46,15 @@ struct GroundChances : GroundCounts {
 double halo(const GroundOptions& o);
 
 /// Sets class ground or unassigned and the column ground_probability of the usable points among the first `own`; those after are the halo
-/// and keep theirs. Ground is what lies near enough to the surface and, the more the denser returns are, up to 0.5, is probable. Only the
+/// and keep theirs. Ground is what has a probability of at least 0.5. Only the
 /// last or only return of a pulse can be ground: the beam went on behind every earlier one, so that one lay above something lower; its
 /// probability is 0. Points that are not usable get NaN. The result of a point depends on the points within halo() of it and on nothing
 /// else.
 GroundChances classify_ground(core::Block& block, size_t own, const GroundOptions& o);
 
 }  // namespace swath::filters
+
+template <>
+struct swath::core::Choices<swath::filters::Grass> {
+  static constexpr std::array<std::string_view, 2> names{"mown", "bare_earth"};
+};

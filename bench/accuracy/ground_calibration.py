@@ -1,113 +1,127 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The coefficients of filters.ground's stated probability (`calibration` in filters/ground.cpp): a logistic regression of true ground on the chance
-counted around a return and on its place (Platt 1999, "Probabilistic outputs for support vector machines"), over simulated zoos of many sensors.
+"""The weights of filters/ground_probability.cpp: a logistic regression on what filters.ground knows of the returns of simulated surveys (the zoo at several
+densities and echo_scenes.py) and of labelled real clouds. Prints for each cloud the total error and the deciles with it in the fit and with its
+family held out, then the weights.
 
-    ground_calibration.py [--repeat]
-
-Needs the program ground_evidence (cmake -DSWATH_BENCH=ON). Prints for each survey the true share of ground by stated probability, with the
-coefficients of the surveys of all other sensors, and then the coefficients of all. --repeat: from the surveys of the last call.
+    ground_calibration.py [--bare-earth]      needs the target ground_evidence of a build with SWATH_BENCH=ON
 """
 import subprocess
 import sys
 
+import laspy
 import numpy as np
 
 import common
+import echo_scenes
 import ground
 
-# Seeds other than those of docs/accuracy.md. PRF in kHz, height in m, noise of ranges in cm.
-SURVEYS = {11: (60, 500, 2), 12: (60, 500, 2), 13: (20, 900, 2), 14: (100, 400, 1), 15: (50, 600, 3), 16: (20, 600, 2), 17: (100, 700, 1), 18: (50, 400, 3),
-           19: (20, 900, 1), 20: (60, 500, 2), 21: (40, 500, 2), 22: (80, 500, 2), 23: (30, 900, 2), 24: (100, 400, 1), 25: (60, 700, 2), 26: (20, 900, 2)}
-COLUMNS = ("chance", "above", "spread", "lowered", "narrowed", "slope", "standing", "sunken", "support")
-EVERY = 20           # of returns that no probability is in doubt of
-LOG_ODDS = (-3, 4)   # of the chance: those in the regression; the many beyond would decide it alone
-RIDGE = 1e-4
+# Seeds other than those of docs/accuracy.md, but for 2; options of swath simulate.
+ZOO = {"zoo 2": (2, {}), "zoo 13": (13, {"scanner.prf": "20 kHz", "flight.height": "900 m"}), "zoo 21": (21, {"scanner.prf": "40 kHz"}),
+       "zoo 16": (16, {"scanner.prf": "20 kHz", "flight.height": "600 m"})}
+ISPRS = {f"ISPRS {sample}": f"isprs/samp{sample}-utm.las" for sample in (11, 21, 24, 41, 52, 54, 71)}
+AHN = {"AHN3": "ahn3_delft/ahn3_cropped_1.laz"}
+IGN = {"IGN 627760": "ign_lidarhd/test_data_77050_627760_LA93_IGN69.laz", "IGN 627755": "ign_lidarhd/test_data_77055_627755_LA93_IGN69.laz",
+       "IGN farmland": "ign_lidarhd/las_with_several_extra_byte_bloc.laz", "IGN thinned": "ign_lidarhd/test_semis_2021_0382_6565_LA93_IGN69_cropped.laz"}
+# How much a cloud counts: its returns in doubt share the number. For bare earth labels count only where the truth is known.
+MOWN = {**dict.fromkeys(ISPRS, 5), **dict.fromkeys(AHN, 3), **dict.fromkeys(IGN, 2), **dict.fromkeys(ZOO, 0.8), "zoo 2": 3, **dict.fromkeys(echo_scenes.SCENES, 0.3)}
+BARE_EARTH = {**dict.fromkeys(ISPRS, 0.3), **dict.fromkeys(AHN, 0), **dict.fromkeys(IGN, 0), **dict.fromkeys(ZOO, 1), "zoo 2": 3, **dict.fromkeys(echo_scenes.SCENES, 0.6)}
+FAMILIES = [*([name] for name in ISPRS), list(AHN), list(IGN), list(ZOO), list(echo_scenes.SCENES)]
+FAR = 3.0              # m from the surface: there is no ground beyond
+DOUBTFUL, SURE = 9000, 1500   # returns of a cloud that are looked at
+RIDGE = 3e-6
 
 
-def evidence(survey, folder):
-    """Returns of a survey as filters.ground sees them, with the truth."""
-    output = common.scratch(f"{folder}/run") / "out"
+def evidence(rows):
+    """Distance from the surface, chance, and the terms of each return."""
+    program = common.program().parents[1] / "bench/ground_evidence"
+    done = subprocess.run([program], input=rows.astype("<f8").tobytes(), stdout=subprocess.PIPE, check=True)
+    seen = np.frombuffer(done.stdout, "<f4").reshape(len(rows), -1).astype(float)
+    return seen[:, 0], seen[:, 1], seen[:, 3:]
+
+
+def zoo(name):
+    seed, options = ZOO[name]
+    survey = ground.Survey(common.scratch("ground_calibration/survey"), seed, "zoo", options)
+    output = common.scratch("ground_calibration/run") / "out"
     common.run([*ground.GEOREFERENCE, {"type": "writers.las", "compress": False, "scale": 0.0001}], survey.folder / "survey.toml", output)
     points = common.points_of(output)
     order = common.paired(points, survey.truth["t"] - 1e9, survey.truth["rn"])
-    rows = np.stack([points[name][order] for name in ("x", "y", "z", "return_number", "number_of_returns", "point_source_id")], axis=1).astype("<f8")
-    program = common.program().parents[1] / "bench/ground_evidence"
-    done = subprocess.run([program], input=rows.tobytes(), stdout=subprocess.PIPE, check=True)
-    seen = dict(zip(COLUMNS, np.frombuffer(done.stdout, "<f4").reshape(-1, len(COLUMNS)).T.astype(float)))
-    # The lake's returns look like ground by every measure there is; breaks of the water's edge are not theirs.
-    judged = np.isfinite(seen["above"]) & (survey.return_cover != 6) & (survey.kind != 9)
-    seen = {name: column[judged] for name, column in seen.items()}
-    return features(seen), survey.kind[judged] == 2, weights(seen)
+    rows = np.stack([points[c][order] for c in ("x", "y", "z", "return_number", "number_of_returns", "point_source_id")], axis=1)
+    # The lake's returns look like ground by every measure there is.
+    return rows, survey.kind == 2, (survey.return_cover != 6) & (survey.kind != 9)
 
 
-def features(e):
-    """As in filters/ground.cpp."""
-    p = np.clip(e["chance"], 1e-4, 1 - 1e-4)
-    return np.stack([np.ones(len(p)), np.log(p / (1 - p)), np.log(e["standing"] + 0.01)], axis=1)
+def real(file):
+    las = laspy.read(common.reference(file))
+    rows = np.stack([las.x, las.y, las.z, las.return_number, las.number_of_returns, las.point_source_id], axis=1)
+    return rows, np.asarray(las.classification) == 2, np.ones(len(rows), bool)
 
 
-def weights(e):
-    """Returns that stand for others: doubtful ones for themselves, one of EVERY of the rest for all of them."""
-    over = e["above"] + e["lowered"]
-    doubtful = ((e["chance"] > 0.02) & (e["chance"] < 0.99)) | ((np.abs(over) > 2 * e["narrowed"]) & (over > -1) & (over < 0.7)) | (e["lowered"] > 0)
-    return np.where(doubtful, 1, np.where(np.random.default_rng(1).random(len(over)) < 1 / EVERY, EVERY, 0))
-
-
-def fitted(surveys):
-    """Coefficients by iterated weighted least squares, every survey with the same weight."""
+def sampled(rows, is_ground, counts):
+    """Terms, truth and weights of some returns; number of all, ground that is lost whatever the weights are."""
+    above, chance, terms = evidence(rows)
+    judged = counts & (np.abs(above) <= FAR) & (rows[:, 3] >= rows[:, 4])
+    doubtful = judged & ((chance < 0.999) | (np.abs(above) > 0.1))
+    random = np.random.default_rng(1)
     parts = []
-    for x, ground_is, _ in surveys:
-        rows = (x[:, 1] > LOG_ODDS[0]) & (x[:, 1] < LOG_ODDS[1])
-        parts.append((x[rows], ground_is[rows], np.full(rows.sum(), 1 / rows.sum())))
-    x, y, w = (np.concatenate(p) for p in zip(*parts))
-    w = w / w.sum()
-    scale = np.maximum(x.std(axis=0), 1e-9)
-    scale[0] = 1
-    x, b = x / scale, np.zeros(x.shape[1])
-    for _ in range(30):
-        p = probability(x, b)
-        r = w * p * (1 - p)
-        lead = RIDGE * r.mean()
-        step = np.linalg.solve((x * r[:, None]).T @ x + lead * np.eye(len(b)), x.T @ (w * (y - p)) - lead * b)
-        b += step * min(1, 3 / np.abs(step).max())
-    return b / scale
+    for group, limit in ((doubtful, DOUBTFUL), (judged & ~doubtful, SURE)):
+        at = np.flatnonzero(group)
+        some = at if len(at) <= limit else random.choice(at, limit, replace=False)
+        parts.append((some, np.full(len(some), len(at) / max(1, len(some)))))
+    at, weight = (np.concatenate(p) for p in zip(*parts))
+    return terms[at], is_ground[at], weight, counts.sum(), np.sum(is_ground & counts & ~judged)
 
 
 def probability(x, b):
     return 1 / (1 + np.exp(-np.clip(x @ b, -30, 30)))
 
 
-def shares(p, ground_is, w):
+def solved(x, y, w):
+    scale = np.sqrt(np.average(x**2, axis=0, weights=w)) + 1e-9
+    x, b, w = x / scale, np.zeros(x.shape[1]), w / w.sum()
+    for _ in range(12):
+        p = probability(x, b)
+        curvature = (x * (w * p * (1 - p))[:, None]).T @ x + RIDGE * np.eye(len(b))
+        step = np.linalg.solve(curvature, x.T @ (w * (y - p)) - RIDGE * b)
+        b += step * min(1, 4 / np.abs(step).max())
+    return b / scale
+
+
+def fitted(clouds, importance):
+    b = None
+    for _ in range(3):
+        parts = []
+        for name, (x, y, w, *_) in clouds.items():
+            p = probability(x, b) if b is not None else 0
+            doubt = w.sum() if b is None else np.sum(w * 4 * p * (1 - p)) + np.sum(w * np.abs(p - y)) + 30
+            if importance[name]:
+                parts.append((x, y.astype(float), w * importance[name] / doubt))
+        b = solved(*(np.concatenate(p) for p in zip(*parts)))
+    return b
+
+
+def judged(cloud, b):
+    x, y, w, count, lost = cloud
+    p = probability(x, b)
     decile = np.minimum((10 * p).astype(int), 9)
-    cells = []
-    for k in range(10):
-        here = (decile == k) & (w > 0)
-        cells.append(f"{100 * np.average(p[here], weights=w[here]):.0f} / {100 * np.average(ground_is[here], weights=w[here]):.0f} ({w[here].sum()})" if here.any() else "-")
-    return cells
+    shares = [f"{100 * np.average(p[decile == k], weights=w[decile == k]):.0f} / {100 * np.average(y[decile == k], weights=w[decile == k]):.0f}" if (decile == k).any() else "-"
+              for k in range(10)]
+    return [f"{100 * (np.sum(w * ((p >= 0.5) != y)) + lost) / count:.2f}", *shares]
 
 
 def main():
-    kept = common.SCRATCH / "ground_calibration"
-    if "--repeat" not in sys.argv:
-        common.scratch("ground_calibration")
-        for seed, (prf, height, noise) in SURVEYS.items():
-            options = {"scanner.prf": f"{prf} kHz", "flight.height": f"{height} m", "noise.range": f"{noise} cm"}
-            survey = ground.Survey(common.scratch("ground_calibration/survey"), seed, "zoo", options)
-            x, ground_is, w = evidence(survey, "ground_calibration")
-            np.savez(kept / f"{seed}.npz", x=x[w > 0], ground=ground_is[w > 0], w=w[w > 0])
-            print(f"seed {seed}: {len(x)} returns", file=sys.stderr, flush=True)
-    surveys = {}
-    for seed in SURVEYS:
-        with np.load(kept / f"{seed}.npz") as file:
-            surveys[seed] = file["x"], file["ground"], file["w"]
-    rows, left_out = [], []
-    for seed, (x, ground_is, w) in surveys.items():
-        b = fitted([s for other, s in surveys.items() if SURVEYS[other] != SURVEYS[seed]])
-        left_out.append((probability(x, b), ground_is, w))
-        rows.append([seed, "%d kHz, %d m, %d cm" % SURVEYS[seed], *shares(*left_out[-1])])
-    rows.append(["all", "", *shares(*(np.concatenate(part) for part in zip(*left_out)))])
-    common.table(["seed", "sensor", *(f"{k / 10:.1f}-{(k + 1) / 10:.1f}" for k in range(10))], rows)
-    print("calibration{" + ", ".join(f"{v:.3f}" for v in fitted(list(surveys.values()))) + "}")
+    importance = BARE_EARTH if "--bare-earth" in sys.argv else MOWN
+    clouds = {name: sampled(*real(file)) for name, file in {**ISPRS, **AHN, **IGN}.items()}
+    clouds |= {name: sampled(*zoo(name)) for name in ZOO}
+    clouds |= {name: sampled(rows, truth, np.ones(len(rows), bool)) for name in echo_scenes.SCENES for rows, truth in [echo_scenes.cloud(name)]}
+    weights = fitted(clouds, importance)
+    rows = []
+    for family in FAMILIES:
+        without = fitted({name: cloud for name, cloud in clouds.items() if name not in family}, importance)
+        for name in family:
+            rows += [[name, "in", *judged(clouds[name], weights)], [name, "held out", *judged(clouds[name], without)]]
+    common.table(["cloud", "in the fit", "total %", *(f"{k / 10:.1f}-{(k + 1) / 10:.1f}" for k in range(10))], rows)
+    print("weights{" + ", ".join(f"{v:.3f}" for v in weights) + "}")
 
 
 if __name__ == "__main__":
