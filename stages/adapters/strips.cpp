@@ -105,7 +105,8 @@ class Strips : public OptionStage<StripStageOptions> {
     const calib::CalibrationFlight& f = prepared.flight;
     if (prepared.lines.size() < 2) return {};
     core::Tally ignored;
-    const calib::TieSet ties = calib::find_tie_planes(f.shots, f.scanner, f.start, *f.trajectory, f.frame, {}, options.planes, ignored);
+    const calib::TieSet ties =
+        calib::find_tie_planes(f.shots, f.scanner, f.start, *f.trajectory, f.frame, {}, calib::sized(options.planes, f.scale), ignored);
     return calib::line_agreement(ties, f.scanner, f.start, f.sensor, *f.trajectory,
                                  [&](const std::vector<double>& times) { return f.errors->covariance(times); });
   }
