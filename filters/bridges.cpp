@@ -9,29 +9,35 @@
 #include <cmath>
 #include <optional>
 
+#include "core/floor_div.h"
 #include "core/units.h"
 
 namespace swath::filters {
 namespace {
 
 constexpr int directions = 16;
-constexpr double grade = 0.15;      // rise / run of a deck
-constexpr double roughness = 0.3;   // m: step from cell to cell beside the grade
-constexpr int widest_gap = 3;       // cells without any return that a way crosses
-constexpr int terrain_ways = 12;    // of the directions
-constexpr int deck_growth = 10;     // cells
-constexpr double level_link = 0.5;  // m between cells of one deck
+constexpr double grade = 0.15;             // rise / run of a deck
+constexpr double roughness = 0.3;          // m: step from cell to cell beside the grade
+constexpr int widest_gap = 3;              // cells without any return that a way crosses
+constexpr int bank = 10;                   // cells from a deck's end to ground at its level
+constexpr double ends_of_clearance = 0.4;  // at most
+constexpr int half_width = 25;             // cells to the side of a deck
+constexpr double fall = 1.0;               // m beside a deck
+constexpr int deck_growth = 5;             // links
+constexpr double level_link = 0.5;         // m between cells of one deck
 
 /// A way that came to the ground's level.
 struct Way {
-  double length = 0, clearance = 0;
+  double length = 0, clearance = 0, drop = 0;  ///< m; drop: from its end to the ground there
 };
 
-/// Among the 3 x 3 cells around, the value nearest to z; nothing where there is none.
-std::optional<size_t> nearest_level(const core::Lattice& l, const std::vector<float>& level, int i, int j, float z) {
+enum class Side : std::uint8_t { level, open, falls };  ///< open: no returns beside it, as over water
+
+/// Among the cells up to `ring` around, the value nearest to z; nothing where there is none.
+std::optional<size_t> nearest_level(const core::Lattice& l, const std::vector<float>& level, int i, int j, float z, int ring = 1) {
   std::optional<size_t> best;
-  for (int dj = -1; dj <= 1; ++dj)
-    for (int di = -1; di <= 1; ++di) {
+  for (int dj = -ring; dj <= ring; ++dj)
+    for (int di = -ring; di <= ring; ++di) {
       if (!l.holds(i + di, j + dj)) continue;
       const size_t c = l.at(i + di, j + dj);
       if (std::isnan(level[c])) continue;
@@ -40,72 +46,145 @@ std::optional<size_t> nearest_level(const core::Lattice& l, const std::vector<fl
   return best;
 }
 
-std::optional<Way> way(const StructureCells& cells, int i, int j, int direction, double longest, double step) {
-  const core::Lattice& l = cells.lattice;
+CellIndex ahead(int direction, int k) {
   const double bearing = 2.0 * core::pi * direction / directions;
-  const double dx = std::cos(bearing), dy = std::sin(bearing);
-  float z = cells.plane[l.at(i, j)];
-  Way w{0.0, static_cast<double>(cells.height[l.at(i, j)])};
-  int last = 0;
-  for (int k = 1; k * structure_cell <= longest; ++k) {
-    const int ci = i + static_cast<int>(std::lround(k * dx)), cj = j + static_cast<int>(std::lround(k * dy));
-    if (!l.holds(ci, cj)) return std::nullopt;
-    const double may = roughness + grade * structure_cell * (k - last);
-    if (const auto next = nearest_level(l, cells.plane, ci, cj, z); next && std::abs(cells.plane[*next] - z) <= may) {
-      z = cells.plane[*next];
-      w.clearance = std::max(w.clearance, static_cast<double>(cells.height[*next]));
-      last = k;
-      continue;
-    }
-    if (const auto ground = nearest_level(l, cells.ground, ci, cj, z)) {
-      w.length = k * structure_cell;
-      const bool level = std::abs(cells.ground[*ground] - z) <= std::max(step, may);
-      return level ? std::optional(w) : std::nullopt;
-    }
-    if (k - last > widest_gap) return std::nullopt;
-  }
-  return std::nullopt;
+  return {static_cast<int>(std::lround(k * std::cos(bearing))), static_cast<int>(std::lround(k * std::sin(bearing)))};
 }
 
-Deck judge(const StructureCells& cells, int i, int j, double longest, double clearance, double step) {
-  std::array<std::optional<Way>, directions> ways;
-  int arrived = 0;
-  for (int d = 0; d < directions; ++d) {
-    ways[static_cast<size_t>(d)] = way(cells, i, j, d, longest, step);
-    arrived += ways[static_cast<size_t>(d)].has_value();
+class Decks {
+ public:
+  Decks(const StructureCells& cells, const BridgeLimits& limits)
+      : cells_(cells), limits_(limits), reach_(static_cast<int>(std::ceil(limits.longest / structure_cell))) {
+    for (int d = 0; d < directions; ++d)
+      for (int k = 0; k <= reach_; ++k) ahead_[static_cast<size_t>(d)].push_back(ahead(d, k));
   }
-  const auto at = [&](int d) -> const std::optional<Way>& { return ways[static_cast<size_t>(d % directions)]; };
-  for (int d = 0; d < directions / 2; ++d) {
-    const auto &one = at(d), &other = at(d + directions / 2);
-    if (!one || !other || at(d + directions / 4) || at(d + 3 * directions / 4)) continue;
-    if (one->length + other->length <= longest && std::max(one->clearance, other->clearance) >= clearance) return Deck::deck;
+
+  std::vector<std::uint8_t> find() const {
+    const core::Lattice& l = cells_.lattice;
+    const std::vector<std::uint8_t> may = near_ground_level();
+    std::vector<std::uint8_t> deck(l.size(), 0);
+    const auto is_second = [](std::int64_t at) { return at != 2 * core::floor_div(at, 2); };
+    for (int j = 0; j < l.ny; ++j)
+      for (int i = 0; i < l.nx; ++i) {
+        const auto may_be = [&](int u, int v) { return l.holds(u, v) && may[l.at(u, v)] != 0 && cells_.kind[l.at(u, v)] == Planar::wide; };
+        // One cell in each square of 2 x 2 is judged, the first that may be a deck.
+        const int west = is_second(l.i0 + i) ? i - 1 : i, south = is_second(l.j0 + j) ? j - 1 : j;
+        if (!may_be(i, j) || (i > west && may_be(west, j)) || (j > south && (may_be(west, south) || may_be(west + 1, south)))) continue;
+        deck[l.at(i, j)] = is_deck(i, j);
+      }
+    spread(
+        cells_, deck, deck_growth, [](size_t) { return structure_link; },
+        [&](size_t from, size_t to, int) { return std::abs(cells_.plane[from] - cells_.plane[to]) <= level_link; });
+    return deck;
   }
-  return arrived >= terrain_ways ? Deck::terrain : Deck::none;
-}
+
+ private:
+  /// Cells that planes lead to from places where they join the ground: most roofs are none of them.
+  std::vector<std::uint8_t> near_ground_level() const {
+    const core::Lattice& l = cells_.lattice;
+    std::vector<std::uint8_t> out(l.size(), 0);
+    for (int j = 0; j < l.ny; ++j)
+      for (int i = 0; i < l.nx; ++i) {
+        const size_t c = l.at(i, j);
+        if (cells_.kind[c] != Planar::wide) continue;
+        const auto ground = nearest_level(l, cells_.ground, i, j, cells_.plane[c], structure_link);
+        out[c] = ground && std::abs(cells_.ground[*ground] - cells_.plane[c]) <= limits_.end;
+      }
+    spread(
+        cells_, out, reach_ / structure_link, [](size_t) { return structure_link; },
+        [&](size_t from, size_t to, int run) { return std::abs(cells_.plane[from] - cells_.plane[to]) <= roughness + grade * run; });
+    return out;
+  }
+
+  bool is_deck(int i, int j) const {
+    for (int d = 0; d < directions / 2; ++d) {
+      const Side right = side(i, j, d + directions / 4);
+      if (right == Side::level) continue;
+      const Side left = side(i, j, (d + 3 * directions / 4) % directions);
+      if (left == Side::level) continue;
+      const auto one = way(i, j, d);
+      if (!one) continue;
+      const auto other = way(i, j, d + directions / 2);
+      if (!other || one->length + other->length > limits_.longest) continue;
+      // Hedges and sheds are as high at their ends as between them.
+      const double clearance = std::max(one->clearance, other->clearance);
+      if (std::max(one->drop, other->drop) > std::max(limits_.step, ends_of_clearance * clearance)) continue;
+      if (right == Side::falls || left == Side::falls || clearance >= limits_.clearance) return true;
+    }
+    return false;
+  }
+
+  std::optional<Way> way(int i, int j, int direction) const {
+    const core::Lattice& l = cells_.lattice;
+    float z = cells_.plane[l.at(i, j)];
+    Way w{0.0, static_cast<double>(cells_.height[l.at(i, j)]), 0.0};
+    int last = 0;
+    for (int k = 1; k <= reach_; ++k) {
+      const CellIndex to = ahead_[static_cast<size_t>(direction)][static_cast<size_t>(k)];
+      if (!l.holds(i + to.i, j + to.j)) return std::nullopt;
+      const double may = roughness + grade * structure_cell * (k - last);
+      if (const auto next = nearest_level(l, cells_.plane, i + to.i, j + to.j, z); next && std::abs(cells_.plane[*next] - z) <= may) {
+        z = cells_.plane[*next];
+        w.clearance = std::max(w.clearance, static_cast<double>(cells_.height[*next]));
+        last = k;
+        continue;
+      }
+      if (const auto ground = nearest_level(l, cells_.ground, i + to.i, j + to.j, z)) {
+        w.length = k * structure_cell;
+        w.drop = static_cast<double>(std::abs(cells_.ground[*ground] - z));
+        return w.drop <= limits_.end && reaches_level(i, j, direction, k, z) ? std::optional(w) : std::nullopt;
+      }
+      if (k - last > widest_gap) return std::nullopt;
+    }
+    return std::nullopt;
+  }
+
+  /// Does the ground come to level z within a few cells from the k-th ahead on?
+  bool reaches_level(int i, int j, int direction, int k, float z) const {
+    for (int n = k; n <= std::min(k + bank, reach_); ++n) {
+      const CellIndex to = ahead_[static_cast<size_t>(direction)][static_cast<size_t>(n)];
+      if (const auto ground = nearest_level(cells_.lattice, cells_.ground, i + to.i, j + to.j, z);
+          ground && std::abs(cells_.ground[*ground] - z) <= limits_.step + grade * structure_cell * (n - k))
+        return true;
+    }
+    return false;
+  }
+
+  /// What is beside the plane in a direction, once it ends.
+  Side side(int i, int j, int direction) const {
+    const core::Lattice& l = cells_.lattice;
+    float z = cells_.plane[l.at(i, j)];
+    int last = 0;
+    for (int k = 1; k <= std::min(half_width + widest_gap, reach_); ++k) {
+      const CellIndex to = ahead_[static_cast<size_t>(direction)][static_cast<size_t>(k)];
+      if (!l.holds(i + to.i, j + to.j)) return Side::open;
+      const double may = roughness + grade * structure_cell * (k - last);
+      if (const auto next = nearest_level(l, cells_.plane, i + to.i, j + to.j, z); next && std::abs(cells_.plane[*next] - z) <= may) {
+        z = cells_.plane[*next];
+        last = k;
+        if (last >= half_width) return Side::level;
+        continue;
+      }
+      const size_t c = l.at(i + to.i, j + to.j);
+      if (static_cast<double>(z - cells_.low[c]) >= fall) return Side::falls;
+      if (const auto ground = nearest_level(l, cells_.ground, i + to.i, j + to.j, z);
+          ground && std::abs(cells_.ground[*ground] - z) <= limits_.step)
+        return Side::level;
+      if (k - last > widest_gap) return Side::open;
+    }
+    return Side::level;
+  }
+
+  const StructureCells& cells_;
+  BridgeLimits limits_;
+  int reach_;
+  std::array<std::vector<CellIndex>, directions> ahead_;
+};
 
 }  // namespace
 
-double deck_cells_halo(double longest) { return longest + (deck_growth + 3) * structure_cell; }
+double deck_cells_halo(double longest) { return longest + (deck_growth * structure_link + 3) * structure_cell; }
 
-std::vector<Deck> deck_cells(const StructureCells& cells, double longest, double clearance, double step) {
-  const core::Lattice& l = cells.lattice;
-  std::vector<Deck> judged(l.size(), Deck::none);
-  for (int j = 0; j < l.ny; ++j)
-    for (int i = 0; i < l.nx; ++i)
-      if (cells.has_plane(l.at(i, j))) judged[l.at(i, j)] = judge(cells, i, j, longest, clearance, step);
-  if (std::find(judged.begin(), judged.end(), Deck::deck) == judged.end()) return judged;
-
-  std::vector<Deck> out = judged;
-  const auto level = [&](size_t from, size_t to) {
-    return cells.has_plane(to) && std::abs(cells.plane[from] - cells.plane[to]) <= level_link;
-  };
-  for (int j = 0; j < l.ny; ++j)
-    for (int i = 0; i < l.nx; ++i) {
-      const size_t c = l.at(i, j);
-      if (!cells.has_plane(c) || judged[c] == Deck::deck) continue;
-      if (grow(l, i, j, deck_growth, level, [&](size_t at, int) { return judged[at] == Deck::deck; })) out[c] = Deck::deck;
-    }
-  return out;
-}
+std::vector<std::uint8_t> deck_cells(const StructureCells& cells, const BridgeLimits& limits) { return Decks(cells, limits).find(); }
 
 }  // namespace swath::filters

@@ -9,15 +9,20 @@
 
 namespace swath::filters {
 
-enum class Deck : std::uint8_t { none, deck, terrain };
+struct BridgeLimits {
+  double longest = 60.0;   ///< m
+  double clearance = 2.0;  ///< m above the ground, where no returns show what is beside a deck
+  double end = 2.0;        ///< m between the ends of a deck and the ground below them
+  double step = 0.6;       ///< m between the deck and the ground a few metres on
+};
 
 /// Metres of cells around a place that deck_cells depends on there.
 double deck_cells_halo(double longest);
 
-/// For every cell with a plane: `deck` where some straight way over planes of at most 15 % of grade leads to the ground's level on both
-/// sides, together at most `longest` (m) long and somewhere `clearance` (m) above the ground, while the ways at right angles to it end
-/// high in the air; and the cells that hang level together with such a one within 10 m. Ground up to `step` (m) below a deck's end is at
-/// its level. `terrain` where ways in nearly all directions lead to the ground's level: ground that a ground filter left out.
-std::vector<Deck> deck_cells(const StructureCells& cells, double longest, double clearance, double step);
+/// 1 for every cell with a wide plane where some straight way over planes of at most 15 % of grade leads to the ground's level on both
+/// sides, together at most `longest`, while at right angles to it the plane ends within 25 m on both sides: what is beside it lies a metre
+/// lower, or no beam came back, on one side at most unless the plane is somewhere `clearance` above the ground. And for the cells that are
+/// linked level with such a one over at most 10 m.
+std::vector<std::uint8_t> deck_cells(const StructureCells& cells, const BridgeLimits& limits);
 
 }  // namespace swath::filters

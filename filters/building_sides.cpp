@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <tuple>
 
 #include "filters/bins.h"
@@ -32,6 +33,68 @@ bool on_plane(const std::vector<Vector3d>& points, double tolerance) {
   return flat && std::abs(axes.eigenvectors().col(0).dot(mean)) <= tolerance;
 }
 
+/// The returns of roofs around a return, by rings of cells as wide as walls are searched for.
+class Surroundings {
+ public:
+  Surroundings(const Bins& roofs, const core::Block& b) : roofs_(roofs), block_(b) {}
+
+  /// Is there a higher one within wall_reach in plan?
+  bool under_eaves(size_t p) const {
+    const CellIndex c = cell_of(roofs_.lattice(), block_, p);
+    for (int dj = -1; dj <= 1; ++dj)
+      for (int di = -1; di <= 1; ++di) {
+        if (!roofs_.lattice().holds(c.i + di, c.j + dj)) continue;
+        for (const Bins::Point& q : roofs_.in(c.i + di, c.j + dj)) {
+          const double x = q.x - block_.x[p], y = q.y - block_.y[p];
+          if (q.z > block_.z[p] && x * x + y * y <= wall_reach * wall_reach) return true;
+        }
+      }
+    return false;
+  }
+
+  /// The `nearest` within rim_reach in plan, seen from p; false where there are fewer than `fewest`.
+  bool nearest_of(size_t p, std::vector<Vector3d>& out) {
+    const CellIndex c = cell_of(roofs_.lattice(), block_, p);
+    around_.clear();
+    const auto rings = static_cast<int>(rim_reach / wall_reach);
+    for (int ring = 0; ring <= rings; ++ring) {
+      add_ring(p, c, ring);
+      // All within `ring` cells' width are known now.
+      const double known = ring * wall_reach;
+      if (static_cast<size_t>(std::count_if(around_.begin(), around_.end(), [&](const auto& a) { return a.first <= known * known; })) >=
+          nearest)
+        break;
+    }
+    if (around_.size() < fewest) return false;
+    const auto before = [](const auto& a, const auto& o) {
+      return std::make_tuple(a.first, a.second.x(), a.second.y(), a.second.z()) <
+             std::make_tuple(o.first, o.second.x(), o.second.y(), o.second.z());
+    };
+    const size_t n = std::min(around_.size(), nearest);
+    std::partial_sort(around_.begin(), around_.begin() + static_cast<std::ptrdiff_t>(n), around_.end(), before);
+    out.clear();
+    for (size_t k = 0; k < n; ++k) out.push_back(around_[k].second);
+    return true;
+  }
+
+ private:
+  void add_ring(size_t p, CellIndex c, int ring) {
+    for (int dj = -ring; dj <= ring; ++dj)
+      for (int di = -ring; di <= ring; di += std::abs(dj) == ring || di == ring ? 1 : 2 * ring) {
+        if (!roofs_.lattice().holds(c.i + di, c.j + dj)) continue;
+        for (const Bins::Point& q : roofs_.in(c.i + di, c.j + dj)) {
+          const Vector3d to(q.x - block_.x[p], q.y - block_.y[p], q.z - block_.z[p]);
+          const double d2 = to.head<2>().squaredNorm();
+          if (d2 <= rim_reach * rim_reach) around_.emplace_back(d2, to);
+        }
+      }
+  }
+
+  const Bins& roofs_;
+  const core::Block& block_;
+  std::vector<std::pair<double, Vector3d>> around_;
+};
+
 }  // namespace
 
 double building_sides_halo() { return rim_reach; }
@@ -40,31 +103,12 @@ std::vector<std::uint8_t> building_sides(const core::Block& b, const std::vector
                                          const std::vector<std::uint8_t>& candidate, double tolerance) {
   std::vector<std::uint8_t> out(b.size(), 0);
   if (b.size() == 0) return out;
-  const Bins roofs(b, rim_reach, 1, [&](size_t p) { return roof[p] != 0; });
-  const core::Lattice& l = roofs.lattice();
-  std::vector<std::pair<double, Vector3d>> around;
+  const Bins roofs(b, wall_reach, 0, [&](size_t p) { return roof[p] != 0; });
+  Surroundings around(roofs, b);
   std::vector<Vector3d> plane;
   for (size_t p = 0; p < b.size(); ++p) {
     if (!candidate[p] || roof[p] || !core::is_last_return(b, p)) continue;
-    const CellIndex c = cell_of(l, b, p);
-    around.clear();
-    for (int dj = -1; dj <= 1; ++dj)
-      for (int di = -1; di <= 1; ++di)
-        for (const Bins::Point& q : roofs.in(c.i + di, c.j + dj)) {
-          const Vector3d to(q.x - b.x[p], q.y - b.y[p], q.z - b.z[p]);
-          const double d2 = to.head<2>().squaredNorm();
-          if (d2 > rim_reach * rim_reach) continue;
-          if (d2 <= wall_reach * wall_reach && to.z() > 0.0) out[p] = 1;
-          around.emplace_back(d2, to);
-        }
-    if (out[p] || around.size() < fewest) continue;
-    std::sort(around.begin(), around.end(), [](const auto& a, const auto& o) {
-      return std::make_tuple(a.first, a.second.x(), a.second.y(), a.second.z()) <
-             std::make_tuple(o.first, o.second.x(), o.second.y(), o.second.z());
-    });
-    plane.clear();
-    for (size_t k = 0; k < std::min(around.size(), nearest); ++k) plane.push_back(around[k].second);
-    out[p] = on_plane(plane, tolerance);
+    out[p] = around.under_eaves(p) || (around.nearest_of(p, plane) && on_plane(plane, tolerance));
   }
   return out;
 }

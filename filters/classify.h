@@ -38,7 +38,8 @@ void describe(ClassifyOptions& o, V& v) {
 /// Classes set among the own points.
 struct ClassifyCounts {
   std::uint64_t low_vegetation = 0, medium_vegetation = 0, high_vegetation = 0, building = 0, wire = 0, bridge_deck = 0, unassigned = 0;
-  std::uint64_t kept = 0;  ///< ground, water, noise and withheld: as they were
+  std::uint64_t low_noise = 0;  ///< scattered among ground returns a metre or more above them
+  std::uint64_t kept = 0;       ///< ground, water, noise and withheld: as they were
 };
 
 /// Metres of points around a tile that its result depends on.
@@ -47,7 +48,9 @@ double halo(const ClassifyOptions& o);
 /// Classes those of the first `own` points that are neither ground, water, noise nor withheld; those after are the halo and stay as they
 /// are. Needs columns classification (with ground) and height. Unassigned stay points at or below the ground's height or without one, and
 /// smooth planes that are neither building nor deck: vehicles, containers, ground that the ground filter left out. Points flagged isolated
-/// and of class 18 that lie on a wire become wire. The result depends on the points within halo() and not on their order.
+/// and of class 18 that lie on a wire become wire. Returns a metre or more below ground returns among which they are scattered (at least a
+/// quarter of the last returns within one and a half times the usual distance) become low noise, flag low_point. The result depends on the
+/// points within halo() and not on their order.
 ClassifyCounts classify(core::Block& block, size_t own, const ClassifyOptions& o);
 
 }  // namespace swath::filters

@@ -11,16 +11,20 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/units.h"
 #include "filters/bins.h"
 
 namespace swath::filters {
 namespace {
 
-constexpr int outer_ring = 3;       // cells of low_radius
-constexpr int chords_needed = 8;    // of 20
-constexpr int chords_pardoned = 1;  // that another group of low points, lying around, may spoil
-constexpr int sparse = 8;           // times `neighbours` in plan
-constexpr int wider = 2;            // balls where points are sparser
+constexpr int outer_ring = 3;           // cells of low_radius
+constexpr int chords_needed = 8;        // of 20
+constexpr int chords_pardoned = 1;      // that another group of low points, lying around, may spoil
+constexpr int sparse = 8;               // times `neighbours` in plan
+constexpr int wider = 2;                // balls where points are sparser
+constexpr int district = 4;             // cells of radius on each side, whose returns say how many neighbours are usual
+constexpr double usual_of_group = 2.0;  // times low_group: returns usual within low_radius where a low group can be told
+constexpr double usual_alone = 2.0;     // times `neighbours`: those usual within the wider ball where a return can be told to be isolated
 
 /// Number of points in the cells up to `ring` away for which `counts` holds, or `enough` where there are that many. The point's own column
 /// comes first.
@@ -37,6 +41,20 @@ int count_around(const Bins& bins, CellIndex c, int ring, int enough, F&& counts
     for (int di = -ring; di <= ring; ++di)
       if ((di != 0 || dj != 0) && full(di, dj)) return n;
   return n;
+}
+
+/// Number of points in the columns up to `ring` away.
+std::size_t points_around(const Bins& bins, CellIndex c, int ring) {
+  std::size_t n = 0;
+  for (int dj = -ring; dj <= ring; ++dj)
+    for (int di = -ring; di <= ring; ++di) n += bins.in(c.i + di, c.j + dj).size();
+  return n;
+}
+
+/// Returns usual in a disc of `cells` columns' width as radius, by those of the columns up to `ring` away.
+double usual_in_disc(const Bins& bins, CellIndex c, int ring, double cells) {
+  const double columns = (2.0 * ring + 1.0) * (2.0 * ring + 1.0);
+  return core::pi * cells * cells / columns * static_cast<double>(points_around(bins, c, ring));
 }
 
 /// The lowest point of every cell; z is NaN where there is none. Ties: least x, then least y.
@@ -103,7 +121,7 @@ double squared(double v) { return v * v; }
 
 }  // namespace
 
-double halo(const NoiseOptions& o) { return std::max(wider * o.radius.value, (outer_ring + 1) * o.low_radius.value); }
+double halo(const NoiseOptions& o) { return std::max((district + 1) * o.radius.value, (outer_ring + 1) * o.low_radius.value); }
 
 NoiseCounts flag_noise(core::Block& b, size_t own, const NoiseOptions& o) {
   NoiseCounts n;
@@ -134,13 +152,14 @@ NoiseCounts flag_noise(core::Block& b, size_t own, const NoiseOptions& o) {
     const auto is_low = [&](CellIndex c, const Bins::Point& p) {
       const auto company = [&](const Bins::Point& q) { return q.z < p.z + depth && squared(q.x - p.x) + squared(q.y - p.y) <= reach; };
       return count_around(bins, c, 1, o.low_group + 1, company) <= o.low_group &&
-             ground_around_is_above(lowest, bins.lattice(), c, p, depth);
+             ground_around_is_above(lowest, bins.lattice(), c, p, depth) &&
+             usual_in_disc(bins, c, outer_ring, 1.0) >= usual_of_group * o.low_group;
     };
     for_each_own(bins, own, is_low, [&](std::uint32_t p) { low.push_back(p); });
   }
 
   if (o.neighbours > 0) {
-    const Bins bins(b, o.radius.value, wider, [&](size_t p) { return judged[p]; });
+    const Bins bins(b, o.radius.value, district, [&](size_t p) { return judged[p]; });
     const auto is_isolated = [&](CellIndex c, const Bins::Point& p) {
       const auto alone = [&](int balls) {
         const double reach = squared(balls * o.radius.value);
@@ -149,7 +168,9 @@ NoiseCounts flag_noise(core::Block& b, size_t own, const NoiseOptions& o) {
       };
       if (!alone(1)) return false;
       const auto beside = [&](const Bins::Point& q) { return squared(q.x - p.x) + squared(q.y - p.y) <= squared(o.radius.value); };
-      return count_around(bins, c, 1, sparse * o.neighbours + 1, beside) > sparse * o.neighbours || alone(wider);
+      if (count_around(bins, c, 1, sparse * o.neighbours + 1, beside) > sparse * o.neighbours) return true;
+      return alone(wider) && (usual_in_disc(bins, c, district, wider) >= usual_alone * o.neighbours ||
+                              points_around(bins, c, district) <= static_cast<size_t>(o.neighbours));
     };
     for_each_own(bins, own, is_isolated, [&](std::uint32_t p) {
       set_noise(p, core::flag::isolated, core::point_class::high_noise);

@@ -46,10 +46,12 @@ double halo(const NoiseOptions& o);
 /// `own` points; those after are the halo and stay as they are.
 /// - Range gate: range outside [range_min, range_max]; such points are no neighbours to others. Needs column range (else core::Error).
 /// - Isolated: fewer than `neighbours` other points within `radius` in 3D (exact); where fewer than eight times as many lie within it in
-///   plan, so that sparse ground would be isolated too, also within twice the radius.
+///   plan, so that sparse ground would be isolated too, also within twice the radius. Where the 9 x 9 columns around (side radius) hold so
+///   few that less than twice `neighbours` are usual within twice the radius, only those with fewer than `neighbours` in these columns.
 /// - Low point: at most `low_group` points (itself one) within `low_radius` horizontally are lower than low_depth above it, and the
 ///   lowest points of the cells around (side low_radius, second and third ring) say the same: of the 20 chords between opposite cells at
-///   least 8 exist, and at most one passes less than low_depth above the point.
+///   least 8 exist, and at most one passes less than low_depth above the point. Where fewer than twice low_group are usual within
+///   low_radius nothing is judged: there a few ground returns between roofs and crowns look like such a group.
 /// So groups of multipath lows are found, on slopes too (from a depth of about low_depth + slope * low_radius). Kept are valleys (chords
 /// along them), pits, quarries and shafts with more than low_group points at the bottom, and sparse ground under trees (its company lies
 /// around). A shaft with fewer points is taken for noise.

@@ -1,200 +1,344 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Planes by RANSAC (Fischler & Bolles 1981; PCL's SampleConsensusModelPlane), one after the other, in overlapping windows of the survey's
-// lattice, as Schnabel, Wahl & Klein 2007 ("Efficient RANSAC for point-cloud shape detection") localise their samples; each is fitted once
-// more by least squares. The points of a window are sorted by their coordinates first and PCL draws from a fixed seed, so that planes
-// depend on nothing but the window's points.
+// Planes by random sample consensus (Fischler & Bolles 1981), localised as in Schnabel, Wahl & Klein 2007 ("Efficient RANSAC for
+// point-cloud shape detection"): around each cell of a lattice that is as fine as the returns allow, planes through one sampled return of
+// the cell and two of the 3 x 3 cells around; the best of 24 is fitted by least squares and judged. Deviations: samples of at most four
+// returns of a cell stand for all, so that the cost follows the area and not the returns (PCL's RANSAC over all returns of windows of 6 m
+// took 28 % of the class filter's time at 14 returns/m2); the draws are those of a fixed sequence.
 #include "filters/roof_planes.h"
 
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
-#include <pcl/sample_consensus/ransac.h>
-#include <pcl/sample_consensus/sac_model_plane.h>
-
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <tuple>
 
+#include "core/floor_div.h"
 #include "filters/bins.h"
-#include "filters/pcl_messages.h"
+#include "filters/plane_samples.h"
 
 namespace swath::filters {
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-using Model = pcl::SampleConsensusModelPlane<pcl::PointXYZ>;
+constexpr int ring = 1;  // cells around a window's middle
+constexpr size_t fullest = samples_of_cell * (2 * ring + 1) * (2 * ring + 1);
+constexpr size_t fewest = 5;          // sampled returns of a plane
+constexpr float least_share = 0.25f;  // of the window's candidates
+constexpr float own_share = 0.5f;     // of all sampled returns over the hull of its ground plan that lie on it
+constexpr float agreement = 0.3f;     // of the windows around a return that must have a plane through it
+constexpr float most_turned = 0.2f;   // between the normals of planes of one surface, rad
+constexpr int growth = 4;             // cells
+constexpr double most_cells = 40.0;   // of 81 that a wide plane must cover
+constexpr int fewest_cells = 3;       // of a wide plane
+constexpr float last_share = 0.7f;    // of its returns that are last ones
+constexpr float steepest2 = 3.0f;     // squared rise / run: 60 deg
+constexpr int hypotheses = 24;
+constexpr int planes_of_window = 3;
+constexpr float rms_share = 0.6f;       // of the tolerance: points evenly spread within it have 0.58
+constexpr float least_triangle = 0.1f;  // area in plan, of a cell's
 
-constexpr double step = 3.0;          // m; a window spans two
-constexpr double plan_cell = 2.0;     // m: raster of a plane's ground plan
-constexpr size_t fewest = 8;          // returns of a plane
-constexpr double own_share = 0.5;     // of all returns over the hull of its ground plan that lie on it
-constexpr double last_share = 0.7;    // of its returns that are last ones
-constexpr double least_upward = 0.5;  // cosine of the steepest plane's slope
-constexpr int iterations = 200;
-constexpr double certainty = 0.99;
-constexpr int planes_given_up = 2;  // before a window is left
-constexpr double rms_share = 0.6;   // of the tolerance: points evenly spread within it have 0.58
-
+/// z = level + east x + north y about the window's centre.
 struct Plane {
-  Vector3d point, normal;
-  double distance(const Vector3d& p) const { return normal.dot(p - point); }
+  float level = 0, east = 0, north = 0;
+  float above(float x, float y, float z) const { return z - (level + east * x + north * y); }
+  float cosine() const { return 1.0f / std::sqrt(1.0f + east * east + north * north); }
 };
 
-Plane fit(const std::vector<Vector3d>& points, const std::vector<size_t>& rows) {
-  Vector3d mean = Vector3d::Zero();
-  for (const size_t r : rows) mean += points[r];
-  mean /= static_cast<double>(rows.size());
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const size_t r : rows) spread += (points[r] - mean) * (points[r] - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
-  return {mean, axes.eigenvectors().col(0)};
-}
-
-double cross(const Vector2d& o, const Vector2d& a, const Vector2d& b) {
-  return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
-}
-
-/// Convex hull, counter-clockwise (Andrew 1979).
-std::vector<Vector2d> hull_of(std::vector<Vector2d> p) {
-  std::sort(p.begin(), p.end(), [](const Vector2d& a, const Vector2d& b) { return std::tie(a.x(), a.y()) < std::tie(b.x(), b.y()); });
-  std::vector<Vector2d> hull;
-  for (int pass = 0; pass < 2; ++pass) {
-    const size_t start = hull.size();
-    for (const Vector2d& q : p) {
-      while (hull.size() >= start + 2 && cross(hull[hull.size() - 2], hull.back(), q) <= 0.0) hull.pop_back();
-      hull.push_back(q);
-    }
-    hull.pop_back();
-    std::reverse(p.begin(), p.end());
+struct Points {
+  std::array<float, fullest> x, y, z;
+  std::array<std::uint32_t, fullest> row;
+  size_t n = 0;
+  void add(float px, float py, float pz, std::uint32_t r) {
+    x[n] = px, y[n] = py, z[n] = pz, row[n] = r;
+    ++n;
   }
-  return hull;
+  size_t within(const Plane& plane, float band) const {
+    int count = 0;
+    for (size_t k = 0; k < n; ++k) count += std::abs(plane.above(x[k], y[k], z[k])) <= band;
+    return static_cast<size_t>(count);
+  }
+  Points on(const Plane& plane, float tolerance, bool is_on = true) const {
+    Points out;
+    const float band = tolerance / plane.cosine();
+    for (size_t k = 0; k < n; ++k)
+      if ((std::abs(plane.above(x[k], y[k], z[k])) <= band) == is_on) out.add(x[k], y[k], z[k], row[k]);
+    return out;
+  }
+};
+
+/// By least squares of heights.
+Plane fit(const Points& p) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  const auto z0 = static_cast<double>(p.z[0]);
+  for (size_t k = 0; k < p.n; ++k) {
+    const Eigen::Vector3d a(1.0, p.x[k], p.y[k]);
+    normal.selfadjointView<Eigen::Lower>().rankUpdate(a);
+    right += a * (static_cast<double>(p.z[k]) - z0);
+  }
+  const Eigen::Vector3d s = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+  return {static_cast<float>(s(0) + z0), static_cast<float>(s(1)), static_cast<float>(s(2))};
 }
 
-/// All usable returns in plan.
-class GroundPlan {
- public:
-  explicit GroundPlan(const core::Block& b) : bins_(b, plan_cell, 0, [&b](size_t p) { return core::is_usable(b, p); }) {}
+float cross(float ax, float ay, float bx, float by) { return ax * by - ay * bx; }
 
-  /// Returns within the convex hull of the rows, its border included. What lies beside a roof does not tell against it.
-  std::uint64_t returns_over(const core::Block& b, const std::vector<std::uint32_t>& rows) const {
-    std::vector<Vector2d> plan;
-    for (const std::uint32_t r : rows) plan.emplace_back(b.x[r], b.y[r]);
-    const std::vector<Vector2d> hull = hull_of(plan);
-    CellIndex low = cell_of(bins_.lattice(), b, rows.front()), high = low;
-    for (const std::uint32_t r : rows) {
-      const CellIndex c = cell_of(bins_.lattice(), b, r);
-      low = {std::min(low.i, c.i), std::min(low.j, c.j)}, high = {std::max(high.i, c.i), std::max(high.j, c.j)};
-    }
-    std::uint64_t n = 0;
-    for (int j = low.j; j <= high.j; ++j)
-      for (int i = low.i; i <= high.i; ++i)
-        for (const Bins::Point& q : bins_.in(i, j)) {
-          bool inside = true;
-          for (size_t k = 0; inside && k < hull.size(); ++k) inside = cross(hull[k], hull[(k + 1) % hull.size()], {q.x, q.y}) >= 0.0;
-          n += inside;
-        }
-    return n;
+/// Convex hull in plan, counter-clockwise (Andrew 1979).
+class Hull {
+ public:
+  explicit Hull(const Points& p) {
+    std::array<std::pair<float, float>, fullest> sorted;
+    for (size_t k = 0; k < p.n; ++k) sorted[k] = {p.x[k], p.y[k]};
+    std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(p.n));
+    const auto chain = [&](auto&& at) {
+      const size_t start = n_;
+      for (size_t k = 0; k < p.n; ++k) {
+        const auto [x, y] = at(k);
+        while (n_ >= start + 2 && cross(x_[n_ - 1] - x_[n_ - 2], y_[n_ - 1] - y_[n_ - 2], x - x_[n_ - 2], y - y_[n_ - 2]) <= 0.0f) --n_;
+        x_[n_] = x, y_[n_] = y;
+        ++n_;
+      }
+      --n_;
+    };
+    chain([&](size_t k) { return sorted[k]; });
+    chain([&](size_t k) { return sorted[p.n - 1 - k]; });
+  }
+  /// The border counts.
+  bool holds(float x, float y) const {
+    for (size_t k = 0, next = 1; k < n_; ++k, next = k + 1 < n_ ? k + 1 : 0)
+      if (cross(x_[next] - x_[k], y_[next] - y_[k], x - x_[k], y - y_[k]) < 0.0f) return false;
+    return true;
   }
 
  private:
-  Bins bins_;
+  std::array<float, 2 * fullest> x_, y_;
+  size_t n_ = 0;
 };
 
+/// The samples of a window: candidates of planes, and all.
 class Window {
  public:
-  Window(const core::Block& b, std::vector<std::uint32_t> rows) : block_(b), rows_(std::move(rows)) {
-    std::sort(rows_.begin(), rows_.end(),
-              [&](std::uint32_t p, std::uint32_t q) { return std::tie(b.x[p], b.y[p], b.z[p]) < std::tie(b.x[q], b.y[q], b.z[q]); });
-    const Vector3d first(b.x[rows_[0]], b.y[rows_[0]], b.z[rows_[0]]);
-    for (const std::uint32_t r : rows_) points_.emplace_back(Vector3d(b.x[r], b.y[r], b.z[r]) - first);
+  Window(const core::Block& b, const Samples& samples, const std::vector<std::uint8_t>& candidate, int i, int j) : block_(b) {
+    const auto side = static_cast<float>(samples.lattice().cell);
+    least_area_ = least_triangle * side * side;
+    const auto add = [&](int di, int dj) {
+      for (const Samples::Sample& s : samples.in(i + di, j + dj)) {
+        const float x = s.x + static_cast<float>(di) * side, y = s.y + static_cast<float>(dj) * side;
+        all_.add(x, y, s.z, s.row);
+        if (candidate[s.row]) left_.add(x, y, s.z, s.row);
+      }
+    };
+    add(0, 0);
+    own_ = left_.n;
+    if (own_ == 0) return;
+    for (int dj = -ring; dj <= ring; ++dj)
+      for (int di = -ring; di <= ring; ++di)
+        if (di != 0 || dj != 0) add(di, dj);
   }
 
-  /// Marks the points of the window's planes.
-  void mark(const GroundPlan& plan, double tolerance, std::vector<std::uint8_t>& planar) {
-    std::vector<size_t> left(rows_.size());
-    for (size_t k = 0; k < left.size(); ++k) left[k] = k;
-    int given_up = 0;
-    while (left.size() >= fewest && given_up < planes_given_up) {
-      const std::vector<size_t> found = largest_plane(left, tolerance);
-      if (found.size() < fewest) break;
-      std::vector<std::uint32_t> rows;
-      for (const size_t k : found) rows.push_back(rows_[k]);
-      if (is_roof(found, rows, plan, tolerance)) {
-        for (const std::uint32_t r : rows) planar[r] = 1;
-      } else {
-        ++given_up;
-      }
-      std::vector<size_t> rest;
-      std::set_difference(left.begin(), left.end(), found.begin(), found.end(), std::back_inserter(rest));
-      left = std::move(rest);
+  bool has_own() const { return own_ > 0; }
+
+  /// The planes of the window that pass through its middle cell.
+  void find(float tolerance, std::vector<Plane>& planes) {
+    for (int k = 0; k < planes_of_window && own_ > 0 && left_.n >= fewest; ++k) {
+      const size_t least = std::max(fewest, static_cast<size_t>(std::ceil(least_share * static_cast<float>(left_.n))));
+      Plane plane;
+      if (!consensus(tolerance, least, plane)) return;
+      Points found = left_.on(plane, tolerance);
+      plane = fit(found);
+      found = left_.on(plane, tolerance);
+      if (found.n < least) return;
+      plane = fit(found);
+      if (is_roof(found, plane, tolerance)) planes.push_back(plane);
+      take_off(plane, tolerance);
     }
   }
 
  private:
-  std::vector<size_t> largest_plane(const std::vector<size_t>& among, double tolerance) const {
-    const auto cloud = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-    for (const size_t k : among) {
-      const Eigen::Vector3f p = points_[k].cast<float>();
-      cloud->emplace_back(p.x(), p.y(), p.z());
+  bool consensus(float tolerance, size_t least, Plane& best) {
+    size_t most = least - 1;
+    std::uint32_t state = 12345;
+    const auto draw = [&state](size_t n) {
+      state = state * 1664525u + 1013904223u;  // Knuth's; the upper half is used
+      return static_cast<size_t>((std::uint64_t{state >> 8} * n) >> 24);
+    };
+    for (int h = 0; h < hypotheses; ++h) {
+      const size_t a = static_cast<size_t>(h) % own_, b = draw(left_.n), c = draw(left_.n);
+      const float bx = left_.x[b] - left_.x[a], by = left_.y[b] - left_.y[a], bz = left_.z[b] - left_.z[a];
+      const float cx = left_.x[c] - left_.x[a], cy = left_.y[c] - left_.y[a], cz = left_.z[c] - left_.z[a];
+      const float area = cross(bx, by, cx, cy);
+      if (std::abs(area) < 2.0f * least_area_) continue;
+      Plane p;
+      p.east = cross(bz, by, cz, cy) / area, p.north = cross(bx, bz, cx, cz) / area;
+      if (p.east * p.east + p.north * p.north > steepest2) continue;
+      p.level = left_.z[a] - p.east * left_.x[a] - p.north * left_.y[a];
+      const size_t n = left_.within(p, tolerance / p.cosine());
+      if (n <= most) continue;
+      most = n, best = p;
     }
-    const auto model = std::make_shared<Model>(cloud);  // its own fixed seed
-    pcl::RandomSampleConsensus<pcl::PointXYZ> ransac(model, tolerance);
-    ransac.setMaxIterations(iterations);
-    ransac.setProbability(certainty);
-    if (!ransac.computeModel()) return {};
-    pcl::Indices inliers;
-    ransac.getInliers(inliers);
-    if (inliers.size() < fewest) return {};
-    std::vector<size_t> rows;
-    for (const auto k : inliers) rows.push_back(among[static_cast<size_t>(k)]);
-    const Plane plane = fit(points_, rows);
-    rows.clear();
-    for (const size_t k : among)
-      if (std::abs(plane.distance(points_[k])) <= tolerance) rows.push_back(k);
-    return rows;
+    return most >= least;
   }
 
-  bool is_roof(const std::vector<size_t>& found, const std::vector<std::uint32_t>& rows, const GroundPlan& plan, double tolerance) const {
-    const Plane plane = fit(points_, found);
-    if (std::abs(plane.normal.z()) < least_upward) return false;
-    double squares = 0.0;
+  bool is_roof(const Points& found, const Plane& plane, float tolerance) const {
+    if (plane.east * plane.east + plane.north * plane.north > steepest2) return false;
+    float squares = 0;
     size_t last = 0;
-    for (const size_t k : found) {
-      squares += plane.distance(points_[k]) * plane.distance(points_[k]);
-      last += core::is_last_return(block_, rows_[k]);
+    for (size_t k = 0; k < found.n; ++k) {
+      const float off = plane.above(found.x[k], found.y[k], found.z[k]) * plane.cosine();
+      squares += off * off;
+      last += core::is_last_return(block_, found.row[k]);
     }
-    const auto n = static_cast<double>(found.size());
-    return std::sqrt(squares / n) <= rms_share * tolerance && static_cast<double>(last) >= last_share * n &&
-           n >= own_share * static_cast<double>(plan.returns_over(block_, rows));
+    const auto n = static_cast<float>(found.n);
+    if (squares > n * rms_share * rms_share * tolerance * tolerance || static_cast<float>(last) < last_share * n) return false;
+    const Hull hull(found);
+    int over = 0;
+    for (size_t k = 0; k < all_.n; ++k) over += hull.holds(all_.x[k], all_.y[k]);
+    return n >= own_share * static_cast<float>(over);
+  }
+
+  void take_off(const Plane& plane, float tolerance) {
+    const float band = tolerance / plane.cosine();
+    Points rest;
+    size_t own = 0;
+    for (size_t k = 0; k < left_.n; ++k) {
+      if (std::abs(plane.above(left_.x[k], left_.y[k], left_.z[k])) <= band) continue;
+      rest.add(left_.x[k], left_.y[k], left_.z[k], left_.row[k]);
+      own += k < own_;
+    }
+    if (rest.n == left_.n) own = 0;  // nothing lies on it: the next round would find the same
+    left_ = rest, own_ = own;
   }
 
   const core::Block& block_;
-  std::vector<std::uint32_t> rows_;
-  std::vector<Vector3d> points_;
+  Points all_, left_;
+  size_t own_ = 0;  ///< the first of left_: those of the middle cell
+  float least_area_ = 0;
+};
+
+/// The planes of the cells of one side, in the districts that have it.
+class Planes {
+ public:
+  Planes(const core::Block& b, const std::vector<std::uint8_t>& candidate, const Districts& where, size_t level, float tolerance,
+         double area)
+      : samples_(b, sample_sides[level]), side_(static_cast<float>(lattice().cell)), start_(lattice().size() + 1, 0) {
+    looked_.assign(lattice().size(), 0);
+    find(b, candidate, where, level, tolerance);
+    wide_.assign(planes_.size(), 0);
+    const int cells = std::max(fewest_cells, static_cast<int>(std::ceil(std::min(area / (lattice().cell * lattice().cell), most_cells))));
+    for (int j = growth; j < lattice().ny - growth; ++j)
+      for (int i = growth; i < lattice().nx - growth; ++i)
+        for (std::uint32_t k = first(i, j); k < last(i, j); ++k) wide_[k] = is_wide(planes_[k], i, j, cells, tolerance);
+  }
+
+  /// Share of the windows around that have a plane through return p, of those that planes were looked for in; and of wide planes.
+  struct Share {
+    float any = 0, wide = 0;
+  };
+  Share share(const core::Block& b, size_t p, float tolerance) const {
+    const core::Lattice& l = lattice();
+    const CellIndex c = cell_of(l, b, p);
+    const auto x = static_cast<float>(b.origin.x() + b.x[p] - l.centre_x(c.i)),
+               y = static_cast<float>(b.origin.y() + b.y[p] - l.centre_y(c.j)), z = static_cast<float>(b.z[p]);
+    int looked = 0, any = 0, wide = 0;
+    for (int dj = -ring; dj <= ring; ++dj)
+      for (int di = -ring; di <= ring; ++di) {
+        looked += looked_[l.at(c.i + di, c.j + dj)];
+        bool is_any = false, is_wide = false;
+        for (std::uint32_t k = first(c.i + di, c.j + dj); k < last(c.i + di, c.j + dj); ++k) {
+          const float above = planes_[k].above(x - static_cast<float>(di) * side_, y - static_cast<float>(dj) * side_, z);
+          if (std::abs(above) * planes_[k].cosine() > tolerance) continue;
+          is_any = true;
+          is_wide = is_wide || wide_[k];
+        }
+        any += is_any, wide += is_wide;
+      }
+    if (looked == 0) return {};
+    return {static_cast<float>(any) / static_cast<float>(looked), static_cast<float>(wide) / static_cast<float>(looked)};
+  }
+
+ private:
+  const core::Lattice& lattice() const { return samples_.lattice(); }
+  std::uint32_t first(int i, int j) const { return start_[lattice().at(i, j)]; }
+  std::uint32_t last(int i, int j) const { return start_[lattice().at(i, j) + 1]; }
+
+  void find(const core::Block& b, const std::vector<std::uint8_t>& candidate, const Districts& where, size_t level, float tolerance) {
+    const core::Lattice& l = lattice();
+    const auto cells = static_cast<std::int64_t>(std::lround(district_side / l.cell));
+    for (int j = 0; j < l.ny; ++j)
+      for (int i = 0; i < l.nx; ++i) {
+        const size_t c = l.at(i, j);
+        start_[c + 1] = static_cast<std::uint32_t>(planes_.size());
+        if (samples_.in(i, j).empty()) continue;
+        const int u = static_cast<int>(core::floor_div(l.i0 + i, cells) - where.lattice.i0),
+                  v = static_cast<int>(core::floor_div(l.j0 + j, cells) - where.lattice.j0);
+        if (where.side[where.lattice.at(u, v)] != level) continue;
+        Window window(b, samples_, candidate, i, j);
+        looked_[c] = window.has_own();
+        window.find(tolerance, planes_);
+        start_[c + 1] = static_cast<std::uint32_t>(planes_.size());
+      }
+  }
+
+  /// Do the planes of enough cells around, connected with (i, j), continue the plane?
+  bool is_wide(const Plane& plane, int i, int j, int enough, float tolerance) const {
+    constexpr int width = 2 * growth + 1;
+    std::array<std::uint8_t, static_cast<size_t>(width) * width> seen{};
+    std::array<CellIndex, static_cast<size_t>(width) * width> found;
+    const auto local = [](int di, int dj) { return static_cast<size_t>(dj + growth) * width + static_cast<size_t>(di + growth); };
+    size_t n = 1;
+    found[0] = {0, 0};
+    seen[local(0, 0)] = 1;
+    for (size_t k = 0; k < n; ++k) {
+      if (static_cast<int>(k) + 1 >= enough) return true;
+      for (int dj = std::max(found[k].j - 1, -growth); dj <= std::min(found[k].j + 1, growth); ++dj)
+        for (int di = std::max(found[k].i - 1, -growth); di <= std::min(found[k].i + 1, growth); ++di) {
+          std::uint8_t& known = seen[local(di, dj)];
+          if (known || !continues(plane, i, j, di, dj, tolerance)) continue;
+          known = 1;
+          found[n++] = {di, dj};
+        }
+    }
+    return false;
+  }
+
+  bool continues(const Plane& plane, int i, int j, int di, int dj, float tolerance) const {
+    for (std::uint32_t k = first(i + di, j + dj); k < last(i + di, j + dj); ++k) {
+      const Plane& next = planes_[k];
+      const float off =
+          next.above(0, 0, plane.level + plane.east * static_cast<float>(di) * side_ + plane.north * static_cast<float>(dj) * side_);
+      const float east = next.east - plane.east, north = next.north - plane.north;
+      const float cosine = plane.cosine();
+      if (std::abs(off) * cosine <= tolerance &&
+          (east * east + north * north) * cosine * cosine * cosine * cosine <= most_turned * most_turned)
+        return true;
+    }
+    return false;
+  }
+
+  Samples samples_;
+  float side_;
+  std::vector<std::uint32_t> start_;  // per cell, of planes_
+  std::vector<std::uint8_t> looked_;  // per cell: it has candidates
+  std::vector<Plane> planes_;
+  std::vector<std::uint8_t> wide_;
 };
 
 }  // namespace
 
-double planar_points_halo() { return 2.0 * step + plan_cell; }
+double planar_points_halo() { return Districts::halo() + (2.0 * ring + growth + 1) * sample_sides.back(); }
 
-std::vector<std::uint8_t> planar_points(const core::Block& b, const std::vector<std::uint8_t>& candidate, double tolerance) {
-  std::vector<std::uint8_t> planar(b.size(), 0);
-  if (b.size() == 0) return planar;
-  silence_pcl();
-  const GroundPlan plan(b);
-  const Bins bins(b, step, 1, [&](size_t p) { return candidate[p] != 0; });
-  const core::Lattice& l = bins.lattice();
-  for (int j = 0; j + 1 < l.ny; ++j)
-    for (int i = 0; i + 1 < l.nx; ++i) {
-      std::vector<std::uint32_t> rows;
-      for (int dj = 0; dj < 2; ++dj)
-        for (int di = 0; di < 2; ++di) {
-          const auto more = bins.rows(i + di, j + dj);
-          rows.insert(rows.end(), more.begin(), more.end());
-        }
-      if (rows.size() >= fewest) Window(b, std::move(rows)).mark(plan, tolerance, planar);
+std::vector<Planar> planar_points(const core::Block& b, const std::vector<std::uint8_t>& candidate, const Districts& where,
+                                  double tolerance, double area) {
+  std::vector<Planar> planar(b.size(), Planar::none);
+  if (std::find(candidate.begin(), candidate.end(), 1) == candidate.end()) return planar;
+  const auto within = static_cast<float>(tolerance);
+  for (size_t level = 0; level < sample_sides.size(); ++level) {
+    if (std::find(where.side.begin(), where.side.end(), level) == where.side.end()) continue;
+    const Planes planes(b, candidate, where, level, within, area);
+    for (size_t p = 0; p < b.size(); ++p) {
+      if (!candidate[p]) continue;
+      const Planes::Share share = planes.share(b, p, within);
+      planar[p] = std::max(planar[p], share.wide >= agreement ? Planar::wide : share.any >= agreement ? Planar::some : Planar::none);
     }
+  }
   return planar;
 }
 

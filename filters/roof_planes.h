@@ -6,15 +6,25 @@
 #include <vector>
 
 #include "core/block.h"
+#include "filters/plane_samples.h"
 
 namespace swath::filters {
+
+enum class Planar : std::uint8_t {
+  none,
+  some,  ///< on a plane of the window around
+  wide,  ///< on one that goes on over the area wanted
+};
 
 /// Metres of points around a place that planar_points depends on there.
 double planar_points_halo();
 
-/// 1 for each of the points with `candidate` that lies on a plane of the window of 6 m around it (windows overlap by half): within
-/// `tolerance` (m) of it, with the window's other returns of the plane's ground plan mostly on it too and mostly last returns: what a beam
-/// goes through is no roof. Planes steeper than 60 deg are not looked for. Does not depend on the order of the points.
-std::vector<std::uint8_t> planar_points(const core::Block& b, const std::vector<std::uint8_t>& candidate, double tolerance);
+/// For each of the points with `candidate`: does it lie on a plane, within `tolerance` (m), in a third at least of the windows of 3 x 3
+/// sample cells around it? The other returns over the plane's ground plan must mostly lie on it too, and those on it must mostly be last
+/// returns: what a beam goes through is no roof. Wide is a plane that the windows around carry on, within `tolerance` and 11 deg, over
+/// `area` (m2, at most 9 x 9 cells count): crowns are smooth over a few square metres only. Planes steeper than 60 deg are not looked for.
+/// Does not depend on the order of the points.
+std::vector<Planar> planar_points(const core::Block& b, const std::vector<std::uint8_t>& candidate, const Districts& where,
+                                  double tolerance, double area);
 
 }  // namespace swath::filters

@@ -8,11 +8,15 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 #include <tuple>
 
 #include "filters/bins.h"
+#include "filters/wire_sieve.h"
 
 namespace swath::filters {
 namespace {
@@ -38,62 +42,118 @@ constexpr double steepest = 0.58;       // rise / run: a span of 150 m up a slop
 constexpr double most_bent = 0.01;      // 1 / m: twice that of a catenary of parameter 200 m; as much downwards, for noise
 constexpr double thinned = 1.0;         // m: of each cube of this side one return takes part in the search for lines
 constexpr size_t most_nearest = 96;     // neighbours looked at
-constexpr size_t crowd = 4;             // within the tube's radius: fewer pass unseen
+constexpr int bins_of_reach = 4;
 
 struct Neighbour {
-  double distance2;
-  Vector3d to;
+  float distance2;
+  std::uint32_t row;
 };
 
-std::vector<Neighbour> within(const Bins& bins, const core::Block& b, size_t p, double radius, size_t most) {
-  std::vector<Neighbour> out;
-  const core::Lattice& l = bins.lattice();
-  const CellIndex c = cell_of(l, b, p);
-  const Vector3d at(b.x[p], b.y[p], b.z[p]);
-  for (int dj = -1; dj <= 1; ++dj)
-    for (int di = -1; di <= 1; ++di)
-      for (const Bins::Point& q : bins.in(c.i + di, c.j + dj)) {
-        const Vector3d to = Vector3d(q.x, q.y, q.z) - at;
-        const double d2 = to.squaredNorm();
-        if (d2 > 0.0 && d2 <= radius * radius) out.push_back({d2, to});
-      }
-  const auto before = [](const Neighbour& a, const Neighbour& o) {
-    return std::make_tuple(a.distance2, a.to.x(), a.to.y(), a.to.z()) < std::make_tuple(o.distance2, o.to.x(), o.to.y(), o.to.z());
-  };
-  if (out.size() > most) {
-    std::nth_element(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(most), out.end(), before);
-    out.resize(most);
-  }
-  std::sort(out.begin(), out.end(), before);
-  return out;
-}
-
-/// Cells of a line's cross-section that hold points.
-class CrossSection {
+/// The nearest returns around a point, seen from it; in any order.
+class Around {
  public:
-  void add(double v, double w) {
-    cells_.emplace_back(static_cast<int>(std::floor(v / cross_cell)), static_cast<int>(std::floor(w / cross_cell)));
+  /// At most most_nearest within `radius` m; `bins` are radius / bins_of_reach wide.
+  void find(const Bins& bins, const core::Block& b, size_t p, double radius) {
+    const CellIndex c = cell_of(bins.lattice(), b, p);
+    near_.clear();
+    for (int ring = 0; ring <= bins_of_reach; ++ring) {
+      add_ring(bins, b, p, c, ring, static_cast<float>(radius * radius));
+      // All up to `ring` bins away are known now.
+      const auto known = static_cast<float>(ring * bins.lattice().cell);
+      if (near_.size() < most_nearest) continue;
+      const auto surely = std::count_if(near_.begin(), near_.end(), [&](const Neighbour& n) { return n.distance2 <= known * known; });
+      if (static_cast<size_t>(surely) >= most_nearest) break;
+    }
+    const auto before = [&b](const Neighbour& a, const Neighbour& o) {
+      if (a.distance2 != o.distance2) return a.distance2 < o.distance2;
+      return std::tie(b.x[a.row], b.y[a.row], b.z[a.row]) < std::tie(b.x[o.row], b.y[o.row], b.z[o.row]);
+    };
+    if (near_.size() > most_nearest) {
+      std::nth_element(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(most_nearest), near_.end(), before);
+      near_.resize(most_nearest);
+    }
+    n_ = near_.size();
+    for (size_t k = 0; k < n_; ++k) {
+      const std::uint32_t row = near_[k].row;
+      x_[k] = static_cast<float>(b.x[row] - b.x[p]), y_[k] = static_cast<float>(b.y[row] - b.y[p]),
+      z_[k] = static_cast<float>(b.z[row] - b.z[p]);
+    }
   }
-  size_t taken() {
-    std::sort(cells_.begin(), cells_.end());
-    return static_cast<size_t>(std::unique(cells_.begin(), cells_.end()) - cells_.begin());
+
+  size_t size() const { return n_; }
+  Vector3d operator[](size_t k) const { return {x_[k], y_[k], z_[k]}; }
+  bool any_within(double distance) const {
+    const auto limit = static_cast<float>(distance * distance);
+    return std::any_of(near_.begin(), near_.end(), [limit](const Neighbour& n) { return n.distance2 <= limit; });
+  }
+
+  /// Can the straight line through the point and its k-th neighbour be a wire's?
+  bool is_line(size_t k) const {
+    const float run2 = x_[k] * x_[k] + y_[k] * y_[k];
+    return run2 >= least_baseline * least_baseline && z_[k] * z_[k] <= steepest * steepest * run2;
+  }
+  /// Do enough neighbours lie near that line, over a stretch that is long enough?
+  bool may_be_wire(size_t k) const {
+    const float run = std::sqrt(x_[k] * x_[k] + y_[k] * y_[k]);
+    const float east = x_[k] / run, north = y_[k] / run, rise = z_[k] / run;
+    int n = 0;
+    float first = 0, last = 0;
+    for (size_t q = 0; q < n_; ++q) {
+      const float u = east * x_[q] + north * y_[q], v = east * y_[q] - north * x_[q], w = z_[q] - rise * u;
+      const bool near = v * v + w * w <= static_cast<float>(near_line * near_line);
+      n += near;
+      const float along = near ? u : 0.0f;
+      first = along < first ? along : first, last = along > last ? along : last;
+    }
+    return n + 1 >= fewest && last - first >= static_cast<float>(shortest - near_line);
+  }
+  /// Do enough neighbours lie near that line?
+  bool may_carry_on(size_t k) const {
+    const float run = std::sqrt(x_[k] * x_[k] + y_[k] * y_[k]);
+    const float east = x_[k] / run, north = y_[k] / run, rise = z_[k] / run;
+    int n = 0;
+    for (size_t q = 0; q < n_; ++q) {
+      const float v = east * y_[q] - north * x_[q], w = z_[q] - rise * (east * x_[q] + north * y_[q]);
+      n += v * v + w * w <= static_cast<float>(near_line * near_line);
+    }
+    return n + 1 >= fewest;
   }
 
  private:
-  std::vector<std::pair<int, int>> cells_;
+  void add_ring(const Bins& bins, const core::Block& b, size_t p, CellIndex c, int ring, float limit) {
+    for (int dj = -ring; dj <= ring; ++dj)
+      for (int di = -ring; di <= ring; di += std::abs(dj) == ring || di == ring ? 1 : 2 * ring) {
+        if (!bins.lattice().holds(c.i + di, c.j + dj)) continue;
+        const auto points = bins.in(c.i + di, c.j + dj);
+        const auto rows = bins.rows(c.i + di, c.j + dj);
+        for (size_t k = 0; k < points.size(); ++k) {
+          const auto x = static_cast<float>(points[k].x - b.x[p]), y = static_cast<float>(points[k].y - b.y[p]),
+                     z = static_cast<float>(points[k].z - b.z[p]);
+          const float d2 = x * x + y * y + z * z;
+          if (d2 > 0.0f && d2 <= limit) near_.push_back({d2, rows[k]});
+        }
+      }
+  }
+
+  std::vector<Neighbour> near_;
+  std::array<float, most_nearest> x_, y_, z_;
+  size_t n_ = 0;
 };
 
-/// Do the points within the tube's radius of the point itself lie on a line with it or on few beside it, as far as they are many?
-bool is_airy(const std::vector<Neighbour>& near) {
-  if (near.size() < crowd) return true;
-  return std::any_of(near.begin(), near.end(), [&](const Neighbour& n) {
-    const Vector3d along = n.to / std::sqrt(n.distance2), across = along.unitOrthogonal(), third = along.cross(across);
-    CrossSection beside;
-    for (const Neighbour& q : near)
-      if (std::sqrt(std::pow(across.dot(q.to), 2) + std::pow(third.dot(q.to), 2)) > on_line) beside.add(across.dot(q.to), third.dot(q.to));
-    return static_cast<double>(beside.taken()) <= most_beside * static_cast<double>(near.size() + 1);
-  });
-}
+/// Cells of a line's cross-section that hold points, within the tube.
+class CrossSection {
+ public:
+  void add(double v, double w) {
+    const auto at = [](double d) { return static_cast<unsigned>(std::floor((d + clear_tube) / cross_cell)); };
+    taken_ |= std::uint64_t{1} << (at(v) * across + at(w));
+  }
+  size_t taken() const { return static_cast<size_t>(std::popcount(taken_)); }
+
+ private:
+  static constexpr unsigned across = 7;  // the tube's width and its rim
+  static_assert(across >= 2.0 * clear_tube / cross_cell + 1.0 && across * across <= 64);
+  std::uint64_t taken_ = 0;
+};
 
 /// u along, v across in plan, both from the point; w = level + rise u + bend u^2 / 2 in height.
 struct Line {
@@ -158,20 +218,24 @@ std::vector<std::uint8_t> thin(const core::Block& b, const std::vector<std::uint
 
 class Search {
  public:
-  Search(const core::Block& b, const std::vector<std::uint8_t>& candidate, const std::vector<std::uint8_t>& surface)
+  Search(const core::Block& b, const std::vector<std::uint8_t>& candidate, const std::vector<std::uint8_t>& surface, const Districts& where)
       : block_(b),
         surface_(surface),
         close_(b, clear_tube, 1, [&](size_t p) { return candidate[p] || surface[p]; }),
-        airy_(airy(candidate)),
-        wide_(b, reach, 1, [few = thin(b, airy_)](size_t p) { return few[p] != 0; }) {}
+        airy_(airy_points(b, candidate, surface, where)),
+        few_(thin(b, airy_)) {}
 
+  /// Of the returns that stand for those of their cubes.
   std::vector<std::uint8_t> in_line() const {
     std::vector<std::uint8_t> out(block_.size(), 0);
+    const Bins wide(block_, reach / bins_of_reach, 0, [this](size_t p) { return few_[p] != 0; });
+    Around around;
     for (size_t p = 0; p < block_.size(); ++p) {
-      if (!airy_[p]) continue;
-      const std::vector<Neighbour> around = within(wide_, block_, p, reach, most_nearest);
+      if (!few_[p]) continue;
+      around.find(wide, block_, p, reach);
       if (around.size() + 1 < fewest) continue;
-      out[p] = std::any_of(around.begin(), around.end(), [&](const Neighbour& n) { return is_wire(p, around, n.to); });
+      for (size_t k = 0; k < around.size() && !out[p]; ++k)
+        out[p] = around.is_line(k) && around.may_be_wire(k) && is_wire(p, around, around[k]);
     }
     return out;
   }
@@ -179,47 +243,58 @@ class Search {
   /// And the airy points that carry on a line of `found` ones.
   std::vector<std::uint8_t> with_ends(const std::vector<std::uint8_t>& found) const {
     std::vector<std::uint8_t> out = found;
-    const Bins lines(block_, reach, 1, [&](size_t p) { return found[p] != 0; });
+    if (std::find(found.begin(), found.end(), 1) == found.end()) return out;
+    const Bins lines(block_, shortest / bins_of_reach, 0, [&](size_t p) { return found[p] != 0; });
+    Around around;
     for (size_t p = 0; p < block_.size(); ++p) {
       if (!airy_[p] || found[p]) continue;
-      const std::vector<Neighbour> around = within(lines, block_, p, shortest, most_nearest);
-      if (around.size() + 1 < fewest || around.front().distance2 > longest_gap * longest_gap) continue;
-      out[p] = std::any_of(around.begin(), around.end(), [&](const Neighbour& n) { return carries_on(around, n.to); });
+      around.find(lines, block_, p, shortest);
+      if (around.size() + 1 < fewest || !around.any_within(longest_gap)) continue;
+      for (size_t k = 0; k < around.size() && !out[p]; ++k)
+        out[p] = around.is_line(k) && around.may_carry_on(k) && carries_on(around, around[k]);
     }
     return out;
   }
 
  private:
-  std::vector<std::uint8_t> airy(const std::vector<std::uint8_t>& candidate) const {
-    std::vector<std::uint8_t> out(block_.size(), 0);
-    for (size_t p = 0; p < block_.size(); ++p) out[p] = candidate[p] && is_airy(within(close_, block_, p, clear_tube, most_nearest));
-    return out;
-  }
-
   /// Those near the straight line through the point and `to`, the point among them.
-  static std::vector<Vector3d> along(const std::vector<Neighbour>& around, const Vector3d& to) {
+  static std::vector<Vector3d> along(const Around& around, const Vector3d& to) {
     std::vector<Vector3d> out;
     const double run = to.head<2>().norm();
-    if (run < least_baseline || std::abs(to.z()) > steepest * run) return out;
     Line line{to.head<2>() / run};
     line.rise = to.z() / run;
     out.emplace_back(Vector3d::Zero());
-    for (const Neighbour& q : around)
-      if (line.off(q.to) <= near_line) out.push_back(q.to);
+    for (size_t k = 0; k < around.size(); ++k)
+      if (line.off(around[k]) <= near_line) out.push_back(around[k]);
+    std::sort(out.begin() + 1, out.end(), [](const Vector3d& a, const Vector3d& b) {
+      return std::make_tuple(a.x(), a.y(), a.z()) < std::make_tuple(b.x(), b.y(), b.z());
+    });
     return out;
   }
 
-  bool is_wire(size_t p, const std::vector<Neighbour>& around, const Vector3d& to) const {
+  bool is_wire(size_t p, const Around& around, const Vector3d& to) const {
     const std::vector<Vector3d> roughly = along(around, to);
     if (roughly.size() < fewest) return false;
+    std::vector<double> on;
+    for (const Vector3d& q : roughly) on.push_back(to.head<2>().normalized().dot(q.head<2>()));
+    if (!has_stretch(on)) return false;
     const auto line = fit(roughly, to.head<2>());
     if (!line || std::abs(line->bend) > most_bent || std::abs(line->rise) > steepest || line->off(Vector3d::Zero()) > on_line) return false;
-    std::vector<double> on;
+    on.clear();
     for (const Vector3d& q : roughly)
       if (line->off(q) <= on_line) on.push_back(line->u(q));
     std::sort(on.begin(), on.end());
     const auto here = std::lower_bound(on.begin(), on.end(), line->u(Vector3d::Zero()));
     return is_clear_stretch(p, *line, on, here, longest_gap, fewest) || is_clear_stretch(p, *line, on, here, widest_gap, fewest_over_gaps);
+  }
+
+  /// May there be a stretch of line around the point itself, the first of the places? Before the line is fitted.
+  static bool has_stretch(std::vector<double>& on) {
+    std::sort(on.begin(), on.end());
+    auto first = std::lower_bound(on.begin(), on.end(), 0.0), last = first;
+    while (first != on.begin() && *first - *(first - 1) <= widest_gap + near_line) --first;
+    while (last + 1 != on.end() && *(last + 1) - *last <= widest_gap + near_line) ++last;
+    return last - first + 1 >= fewest && *last - *first >= shortest - near_line;
   }
 
   /// Are there enough of the places `on` the line, ascending, around `here` without longer gaps, and nearly nothing beside them?
@@ -230,20 +305,15 @@ class Search {
     while (last + 1 != on.end() && *(last + 1) - *last <= gap) ++last;
     const auto n = last - first + 1;
     if (n < least || *last - *first < shortest) return false;
-    const Beside b = beside(p, line, *first, *last);
-    return static_cast<double>(b.cells) <= most_beside * static_cast<double>(n) &&
-           static_cast<double>(b.close) <= most_close * static_cast<double>(n);
+    return is_clear(p, line, *first, *last, most_beside * static_cast<double>(n), most_close * static_cast<double>(n));
   }
 
-  /// What is within the tube around the line from u0 to u1 and not on it.
-  struct Beside {
-    size_t close = 0;  ///< points of the sleeve around the line, and those of surfaces anywhere in the tube
-    size_t cells = 0;  ///< of the cross-section that hold any
-  };
-  Beside beside(size_t p, const Line& line, double u0, double u1) const {
+  /// Do points within the tube around the line from u0 to u1 that are not on it take at most `most_cells` of its cross-section, and are at
+  /// most `most_points` in the sleeve around the line or of surfaces?
+  bool is_clear(size_t p, const Line& line, double u0, double u1, double most_cells, double most_points) const {
     const core::Lattice& l = close_.lattice();
     const Vector3d at(block_.x[p], block_.y[p], block_.z[p]);
-    Beside found;
+    size_t close = 0;
     CrossSection cells;
     const auto steps = static_cast<int>(std::ceil((u1 - u0) / clear_tube));
     for (int k = 0; k <= steps; ++k) {
@@ -262,15 +332,15 @@ class Search {
             const double away = line.off(to);
             if (away <= on_line || away > clear_tube) continue;
             cells.add(line.v(to), line.w(to));
-            found.close += away <= sleeve || surface_[rows[m]] != 0;
+            close += away <= sleeve || surface_[rows[m]] != 0;
           }
         }
+      if (static_cast<double>(cells.taken()) > most_cells || static_cast<double>(close) > most_points) return false;
     }
-    found.cells = cells.taken();
-    return found;
+    return true;
   }
 
-  static bool carries_on(const std::vector<Neighbour>& around, const Vector3d& to) {
+  static bool carries_on(const Around& around, const Vector3d& to) {
     std::vector<Vector3d> roughly = along(around, to);
     if (roughly.size() < fewest) return false;
     roughly.erase(roughly.begin());  // the line must not follow the point
@@ -283,18 +353,17 @@ class Search {
   const core::Block& block_;
   const std::vector<std::uint8_t>& surface_;
   Bins close_;
-  std::vector<std::uint8_t> airy_;
-  Bins wide_;
+  std::vector<std::uint8_t> airy_, few_;
 };
 
 }  // namespace
 
-double wire_points_halo() { return clear_tube + reach + shortest + reach; }
+double wire_points_halo() { return airy_points_halo() + clear_tube + reach + shortest + reach; }
 
 std::vector<std::uint8_t> wire_points(const core::Block& b, const std::vector<std::uint8_t>& candidate,
-                                      const std::vector<std::uint8_t>& surface) {
-  if (b.size() == 0) return {};
-  const Search search(b, candidate, surface);
+                                      const std::vector<std::uint8_t>& surface, const Districts& where) {
+  if (std::find(candidate.begin(), candidate.end(), 1) == candidate.end()) return std::vector<std::uint8_t>(b.size(), 0);
+  const Search search(b, candidate, surface, where);
   return search.with_ends(search.in_line());
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/block.h"
+#include "filters/plane_samples.h"
 
 namespace swath::filters {
 
@@ -18,6 +19,6 @@ double wire_points_halo();
 /// least of all. Wires side by side are told from foliage by the few places of the line's cross-section that they take. Then the candidates
 /// that carry on such lines by up to one gap. Does not depend on the order of the points.
 std::vector<std::uint8_t> wire_points(const core::Block& b, const std::vector<std::uint8_t>& candidate,
-                                      const std::vector<std::uint8_t>& surface);
+                                      const std::vector<std::uint8_t>& surface, const Districts& where);
 
 }  // namespace swath::filters

@@ -69,6 +69,8 @@ class Classify : public OptionStage<filters::ClassifyOptions> {
     tell("building", n.building);
     tell("wire", n.wire);
     tell("bridge deck", n.bridge_deck);
+    tell("low noise", n.low_noise);
+    tell("low noise", n.low_noise);
     tell("unassigned", n.unassigned);
     tell("ground, water or noise, not looked at", n.kept);
   }

@@ -15,7 +15,8 @@ StructureCells valley(const std::function<float(int, int)>& plane, const std::fu
   c.lattice = {1.0, 0, 0, 80, 60};
   const float none = std::numeric_limits<float>::quiet_NaN();
   c.plane.assign(c.lattice.size(), none);
-  c.height = c.ground = c.plane;
+  c.height = c.ground = c.low = c.plane;
+  c.kind.assign(c.lattice.size(), Planar::none);
   for (int j = 0; j < 60; ++j)
     for (int i = 0; i < 80; ++i) {
       const size_t at = c.lattice.at(i, j);
@@ -24,6 +25,8 @@ StructureCells valley(const std::function<float(int, int)>& plane, const std::fu
         c.height[at] = c.plane[at] - ground(i, j);
       else
         c.ground[at] = ground(i, j);
+      c.kind[at] = c.has_plane(at) ? Planar::wide : Planar::none;
+      c.low[at] = c.has_plane(at) ? c.plane[at] : c.ground[at];
     }
   return c;
 }
@@ -34,31 +37,53 @@ float slopes(int i, int) { return std::abs(i - 40) < 15 ? -8.0f : 0.0f; }
 TEST(Bridges, ADeckFromBankToBankIsOneAndARoofInTheValleyIsNot) {
   const auto deck = [](int i, int j) { return std::abs(i - 40) < 15 && std::abs(j - 30) < 4 ? 0.0f : empty; };
   const StructureCells bridge = valley(deck, slopes);
-  const std::vector<Deck> found = deck_cells(bridge, 60.0, 2.0, 2.0);
-  for (size_t c = 0; c < found.size(); ++c) EXPECT_EQ(found[c], bridge.has_plane(c) ? Deck::deck : Deck::none) << c % 80 << " " << c / 80;
+  const std::vector<std::uint8_t> found = deck_cells(bridge, {});
+  for (size_t c = 0; c < found.size(); ++c) EXPECT_EQ(found[c], bridge.has_plane(c)) << c % 80 << " " << c / 80;
   // As high as the banks, but it ends in the air on both sides.
   const StructureCells house = valley([](int i, int j) { return std::abs(i - 40) < 8 && std::abs(j - 30) < 8 ? 0.0f : empty; }, slopes);
-  for (const Deck d : deck_cells(house, 60.0, 2.0, 2.0)) EXPECT_EQ(d, Deck::none);
+  for (const std::uint8_t d : deck_cells(house, {})) EXPECT_FALSE(d);
 }
 
 TEST(Bridges, LongerThanTheLongestIsNotLookedFor) {
   const StructureCells bridge = valley([](int i, int j) { return std::abs(i - 40) < 15 && std::abs(j - 30) < 4 ? 0.0f : empty; }, slopes);
-  for (const Deck d : deck_cells(bridge, 20.0, 2.0, 2.0)) EXPECT_NE(d, Deck::deck);
+  for (const std::uint8_t d : deck_cells(bridge, {.longest = 20.0})) EXPECT_FALSE(d);
 }
 
 TEST(Bridges, ARoofOnASlopeThatTouchesTheGroundAboveIsNone) {
   const auto hillside = [](int i, int) { return 0.3f * static_cast<float>(i); };
   const StructureCells house = valley([](int i, int j) { return i >= 30 && i < 40 && std::abs(j - 30) < 6 ? 13.8f : empty; }, hillside);
-  for (const Deck d : deck_cells(house, 60.0, 2.0, 2.0)) EXPECT_EQ(d, Deck::none);
+  for (const std::uint8_t d : deck_cells(house, {})) EXPECT_FALSE(d);
 }
 
-TEST(Bridges, AMoundThatTheGroundFilterLeftOutIsTerrain) {
+TEST(Bridges, AMoundThatTheGroundFilterLeftOutIsNone) {
   const auto mound = [](int i, int j) { return std::max(0.0f, 3.0f - 0.14f * static_cast<float>(std::hypot(i - 40.0, j - 30.0))); };
   StructureCells c = valley([&](int i, int j) { return mound(i, j) > 1.0f ? mound(i, j) : empty; }, mound);
   for (size_t at = 0; at < c.height.size(); ++at)
     if (c.has_plane(at)) c.height[at] = c.plane[at];
-  const std::vector<Deck> found = deck_cells(c, 60.0, 2.0, 2.0);
-  EXPECT_EQ(found[c.lattice.at(40, 30)], Deck::terrain);
+  for (const std::uint8_t d : deck_cells(c, {})) EXPECT_FALSE(d);
+}
+
+/// A canal between quays at one level; interpolated across it, the ground is as high as the deck.
+StructureCells canal(float water) {
+  StructureCells c = valley([](int i, int j) { return std::abs(i - 40) < 8 && std::abs(j - 30) < 4 ? 0.3f : empty; },
+                            [&](int i, int) { return std::abs(i - 40) < 8 ? empty : 0.0f; });
+  for (int j = 0; j < 60; ++j)
+    for (int i = 33; i < 48; ++i) {
+      const size_t at = c.lattice.at(i, j);
+      if (c.has_plane(at))
+        c.height[at] = 0.3f;
+      else
+        c.low[at] = water;
+    }
+  return c;
+}
+
+TEST(Bridges, ALowDeckOverWaterIsFoundByWhatIsBesideIt) {
+  const StructureCells over_water = canal(-1.5f);
+  const std::vector<std::uint8_t> found = deck_cells(over_water, {});
+  for (size_t c = 0; c < found.size(); ++c) EXPECT_EQ(found[c], over_water.has_plane(c)) << c % 80 << " " << c / 80;
+  for (const std::uint8_t d : deck_cells(canal(-0.5f), {})) EXPECT_FALSE(d);  // a path between beds
+  for (const std::uint8_t d : deck_cells(canal(empty), {})) EXPECT_FALSE(d);  // nothing shows how high it is
 }
 
 }  // namespace

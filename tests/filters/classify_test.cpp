@@ -106,6 +106,31 @@ TEST(Classify, SmallOrLowPlanesAreNoBuildings) {
   EXPECT_EQ(n.high_vegetation, 0u);  // smooth: no vegetation either
 }
 
+TEST(Classify, ReturnsScatteredBelowTheGroundAreLowNoiseAndAPitIsNot) {
+  test::Scene s = test::make_scene("flat");
+  core::Block b = prepared(s);
+  size_t noise = 0, pit = 0;
+  std::vector<std::uint8_t> expected(b.size(), 0);
+  for (size_t p = 0; p < b.size(); ++p) {
+    const bool group = std::hypot(b.x[p] - 50.0, b.y[p] - 50.0) < 2.0 && p % 2 == 0;      // echoes on detours, among the ground's
+    const bool deep = std::abs(b.x[p] - 120.0) < 12.0 && std::abs(b.y[p] - 60.0) < 12.0;  // an excavation that the ground filter refused
+    if (!group && !deep) continue;
+    b.z[p] -= 3.0, b.height[p] -= 3.0f, b.classification[p] = cls::unassigned;
+    expected[p] = group ? cls::low_noise : cls::unassigned;
+    noise += group, pit += deep;
+  }
+  ASSERT_GT(noise, 3u);
+  const ClassifyCounts n = classify(b, b.size(), {});
+  size_t found = 0, taken = 0;
+  for (size_t p = 0; p < b.size(); ++p) {
+    found += expected[p] == cls::low_noise && b.classification[p] == cls::low_noise && (b.flags[p] & core::flag::low_point);
+    taken += expected[p] == cls::unassigned && b.classification[p] == cls::low_noise;
+  }
+  EXPECT_GE(found, noise - 1);
+  EXPECT_LE(static_cast<double>(taken), 0.2 * static_cast<double>(pit));  // at its edge
+  EXPECT_EQ(n.low_noise, found + taken);
+}
+
 TEST(Classify, AWireOverAFieldAndNoiseWaterAndHaloStay) {
   test::Scene s = test::make_scene("flat");
   const size_t before = s.block.size();

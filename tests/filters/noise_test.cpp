@@ -174,5 +174,32 @@ TEST(Noise, TwoMillionPointsAreFast) {
 #endif
 }
 
+/// A return on 16 m2: two of three on roofs or crowns, 5 to 15 m high.
+core::Block thin_town() {
+  core::Block b;
+  unsigned k = 0;
+  for (double y = 2.0; y < 400.0; y += 4.0)
+    for (double x = 2.0; x < 400.0; x += 4.0, k = k * 1664525u + 1013904223u)
+      test::add_point(b, x + (k >> 8) % 100 * 0.02, y + (k >> 16) % 100 * 0.02, (k >> 24) % 3 == 0 ? 0.0 : 5.0 + (k >> 12) % 100 * 0.1);
+  return b;
+}
+
+TEST(Noise, ThinGroundBetweenRoofsAndCrownsIsNotLow) {
+  core::Block b = thin_town();
+  const NoiseCounts n = flag_noise(b, b.size(), {});
+  EXPECT_EQ(n.low_point, 0u);
+  EXPECT_LE(n.isolated, b.size() / 100);
+}
+
+TEST(Noise, AReturnAloneIsIsolatedInThinCloudsToo) {
+  core::Block b = thin_town();
+  const size_t bird = b.size(), far = bird + 1;
+  test::add_point(b, 200.0, 200.0, 90.0);
+  test::add_point(b, 900.0, 900.0, 0.0);
+  flag_noise(b, b.size(), {});
+  EXPECT_EQ(b.classification[bird], core::point_class::high_noise);
+  EXPECT_EQ(b.classification[far], core::point_class::high_noise);
+}
+
 }  // namespace
 }  // namespace swath::filters

@@ -3,20 +3,25 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/world/scene.h"
 
 namespace swath::filters {
 namespace {
 
+constexpr double tolerance = 0.15, area = 9.0;
+
 /// Share of the scene's returns of one class that lie on planes.
-double planar_share(const test::Scene& s, std::uint8_t kind) {
+double planar_share(const test::Scene& s, std::uint8_t kind, Planar least = Planar::some) {
   std::vector<std::uint8_t> candidate(s.block.size());
   for (size_t p = 0; p < candidate.size(); ++p) candidate[p] = s.truth[p] != core::point_class::ground;
-  const std::vector<std::uint8_t> planar = planar_points(s.block, candidate, 0.15);
+  const std::vector<Planar> planar = planar_points(s.block, candidate, districts(s.block), tolerance, area);
   double all = 0, found = 0;
   for (size_t p = 0; p < candidate.size(); ++p) {
-    EXPECT_TRUE(!planar[p] || candidate[p]);
-    if (s.truth[p] == kind) ++all, found += planar[p];
+    EXPECT_TRUE(planar[p] == Planar::none || candidate[p]);
+    if (s.truth[p] == kind) ++all, found += planar[p] >= least;
   }
   EXPECT_GT(all, 0);
   return found / all;
@@ -26,6 +31,7 @@ TEST(RoofPlanes, RoofsAndDecksArePlanesAndCrownsAreNot) {
   constexpr double nearly_all = 0.97, nearly_none = 0.01;
   EXPECT_GE(planar_share(test::make_scene("town"), core::point_class::building), nearly_all);
   EXPECT_GE(planar_share(test::make_scene("bridge"), core::point_class::bridge_deck), nearly_all);
+  EXPECT_GE(planar_share(test::make_scene("town"), core::point_class::building, Planar::wide), 0.9);
   EXPECT_LE(planar_share(test::make_scene("forest"), core::point_class::high_vegetation), nearly_none);
 }
 
@@ -35,7 +41,55 @@ TEST(RoofPlanes, APlaneThatBeamsPassIsNoRoof) {
   EXPECT_EQ(planar_share(s, core::point_class::building), 0.0);
 }
 
-TEST(RoofPlanes, NoPointsNoPlanes) { EXPECT_TRUE(planar_points({}, {}, 0.1).empty()); }
+/// Returns on a dome, `spacing` apart.
+std::vector<Planar> on_dome(double radius, double spacing) {
+  core::Block b;
+  const double half = 0.7 * radius;
+  for (double y = -half; y < half; y += spacing)
+    for (double x = -half; x < half; x += spacing)
+      test::add_point(b, 50.0 + x, 50.0 + y, 20.0 + std::sqrt(radius * radius - x * x - y * y));
+  return planar_points(b, std::vector<std::uint8_t>(b.size(), 1), districts(b), tolerance, area);
+}
+
+TEST(RoofPlanes, ASmoothCrownHasNoWidePlane) {
+  const std::vector<Planar> crown = on_dome(4.0, 0.25), gasometer = on_dome(60.0, 0.5);
+  EXPECT_EQ(std::count(crown.begin(), crown.end(), Planar::wide), 0);
+  EXPECT_GT(static_cast<double>(std::count(gasometer.begin(), gasometer.end(), Planar::wide)), 0.9 * static_cast<double>(gasometer.size()));
+}
+
+TEST(RoofPlanes, ThinReturnsShowRoofsInWiderWindows) {
+  test::Scene s = test::make_scene("town");
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t p = 0; p < s.block.size(); p += 4) rows.push_back(p);  // one return on 4 m2
+  test::Scene thin = s;
+  thin.block = core::select(s.block, rows);
+  thin.truth.clear();
+  for (const std::uint32_t p : rows) thin.truth.push_back(s.truth[p]);
+  EXPECT_GE(planar_share(thin, core::point_class::building), 0.75);
+}
+
+TEST(RoofPlanes, DoNotDependOnTheOrderOrOnWhatIsFar) {
+  const test::Scene s = test::make_scene("town");
+  const auto planes = [](const core::Block& b) {
+    return planar_points(b, std::vector<std::uint8_t>(b.size(), 1), districts(b), tolerance, area);
+  };
+  const std::vector<Planar> whole = planes(s.block);
+  std::vector<std::uint32_t> rows;
+  const std::vector<Planar> again = planes(test::shuffled(s.block, 3, rows));
+  for (size_t k = 0; k < rows.size(); ++k) EXPECT_EQ(again[k], whole[rows[k]]);
+  rows.clear();
+  for (std::uint32_t p = 0; p < s.block.size(); ++p)
+    if (std::abs(s.block.x[p] - 100.0) <= planar_points_halo() + 5.0) rows.push_back(p);
+  ASSERT_LT(rows.size(), s.block.size());
+  const core::Block part = core::select(s.block, rows);
+  const std::vector<Planar> local = planes(part);
+  for (size_t k = 0; k < rows.size(); ++k)
+    if (std::abs(part.x[k] - 100.0) <= 5.0) {
+      EXPECT_EQ(local[k], whole[rows[k]]) << k;
+    }
+}
+
+TEST(RoofPlanes, NoPointsNoPlanes) { EXPECT_TRUE(planar_points({}, {}, {}, tolerance, area).empty()); }
 
 }  // namespace
 }  // namespace swath::filters
