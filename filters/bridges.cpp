@@ -21,6 +21,7 @@ constexpr double roughness = 0.3;          // m: step from cell to cell beside t
 constexpr int widest_gap = 3;              // cells without any return that a way crosses
 constexpr int bank = 10;                   // cells from a deck's end to ground at its level
 constexpr double ends_of_clearance = 0.4;  // at most
+constexpr int open_gap = 5;                // cells without any return beside a deck
 constexpr int half_width = 25;             // cells to the side of a deck
 constexpr double fall = 1.0;               // m beside a deck
 constexpr int deck_growth = 5;             // links
@@ -106,10 +107,13 @@ class Decks {
       if (!one) continue;
       const auto other = way(i, j, d + directions / 2);
       if (!other || one->length + other->length > limits_.longest) continue;
-      // Hedges and sheds are as high at their ends as between them.
       const double clearance = std::max(one->clearance, other->clearance);
-      if (std::max(one->drop, other->drop) > std::max(limits_.step, ends_of_clearance * clearance)) continue;
-      if (right == Side::falls || left == Side::falls || clearance >= limits_.clearance) return true;
+      // Hedges and sheds are as high at their ends as between them.
+      const bool arches = std::max(one->drop, other->drop) <= std::max(limits_.step, ends_of_clearance * clearance);
+      const bool falls = right == Side::falls || left == Side::falls;
+      if (arches && (falls || clearance >= limits_.clearance)) return true;
+      // No beam comes back from the water on both sides; there may be stairs at one end.
+      if (!falls && clearance >= fall && std::min(one->drop, other->drop) <= limits_.step) return true;
     }
     return false;
   }
@@ -155,9 +159,9 @@ class Decks {
     const core::Lattice& l = cells_.lattice;
     float z = cells_.plane[l.at(i, j)];
     int last = 0;
-    for (int k = 1; k <= std::min(half_width + widest_gap, reach_); ++k) {
+    for (int k = 1; k <= std::min(half_width + open_gap, reach_); ++k) {
       const CellIndex to = ahead_[static_cast<size_t>(direction)][static_cast<size_t>(k)];
-      if (!l.holds(i + to.i, j + to.j)) return Side::open;
+      if (!l.holds(i + to.i, j + to.j)) return Side::level;  // unknown
       const double may = roughness + grade * structure_cell * (k - last);
       if (const auto next = nearest_level(l, cells_.plane, i + to.i, j + to.j, z); next && std::abs(cells_.plane[*next] - z) <= may) {
         z = cells_.plane[*next];
@@ -170,7 +174,7 @@ class Decks {
       if (const auto ground = nearest_level(l, cells_.ground, i + to.i, j + to.j, z);
           ground && std::abs(cells_.ground[*ground] - z) <= limits_.step)
         return Side::level;
-      if (k - last > widest_gap) return Side::open;
+      if (k - last > open_gap) return Side::open;
     }
     return Side::level;
   }

@@ -20,7 +20,7 @@ namespace {
 namespace cls = core::point_class;
 
 constexpr float least_plane_height = 1.0f;  // m above ground: a deck near its ends
-constexpr float above_roof = 1.0f;          // m: chimneys and what else stands on a roof
+constexpr float above_roof = 1.5f;          // m: chimneys, parapets and what else stands on a roof
 constexpr float beside_deck = 0.5f;         // m above or below a deck: kerbs, rails
 constexpr float part_link = 0.4f;           // m from cell to cell where small planes join large ones
 constexpr float roof_link = 2.0f;           // m from cell to cell of one roof

@@ -64,14 +64,14 @@ TEST(Bridges, AMoundThatTheGroundFilterLeftOutIsNone) {
 }
 
 /// A canal between quays at one level; interpolated across it, the ground is as high as the deck.
-StructureCells canal(float water) {
-  StructureCells c = valley([](int i, int j) { return std::abs(i - 40) < 8 && std::abs(j - 30) < 4 ? 0.3f : empty; },
+StructureCells canal(float water, float deck = 0.3f) {
+  StructureCells c = valley([deck](int i, int j) { return std::abs(i - 40) < 8 && std::abs(j - 30) < 4 ? deck : empty; },
                             [&](int i, int) { return std::abs(i - 40) < 8 ? empty : 0.0f; });
   for (int j = 0; j < 60; ++j)
     for (int i = 33; i < 48; ++i) {
       const size_t at = c.lattice.at(i, j);
       if (c.has_plane(at))
-        c.height[at] = 0.3f;
+        c.height[at] = deck;
       else
         c.low[at] = water;
     }
@@ -84,6 +84,15 @@ TEST(Bridges, ALowDeckOverWaterIsFoundByWhatIsBesideIt) {
   for (size_t c = 0; c < found.size(); ++c) EXPECT_EQ(found[c], over_water.has_plane(c)) << c % 80 << " " << c / 80;
   for (const std::uint8_t d : deck_cells(canal(-0.5f), {})) EXPECT_FALSE(d);  // a path between beds
   for (const std::uint8_t d : deck_cells(canal(empty), {})) EXPECT_FALSE(d);  // nothing shows how high it is
+}
+
+TEST(Bridges, StairsAtOneEndOfADeckOverBlackWater) {
+  StructureCells c = canal(empty, 1.2f);
+  for (const std::uint8_t d : deck_cells(c, {})) EXPECT_FALSE(d);  // a pontoon: it joins no bank
+  for (int j = 0; j < 60; ++j)
+    for (int i = 48; i < 80; ++i) c.ground[c.lattice.at(i, j)] = 1.0f;
+  const std::vector<std::uint8_t> found = deck_cells(c, {});
+  for (size_t at = 0; at < found.size(); ++at) EXPECT_EQ(found[at], c.has_plane(at)) << at % 80 << " " << at / 80;
 }
 
 }  // namespace
