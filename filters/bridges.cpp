@@ -108,12 +108,13 @@ class Decks {
       const auto other = way(i, j, d + directions / 2);
       if (!other || one->length + other->length > limits_.longest) continue;
       const double clearance = std::max(one->clearance, other->clearance);
+      if (clearance < fall) continue;  // crops beside a ditch
       // Hedges and sheds are as high at their ends as between them.
       const bool arches = std::max(one->drop, other->drop) <= std::max(limits_.step, ends_of_clearance * clearance);
       const bool falls = right == Side::falls || left == Side::falls;
       if (arches && (falls || clearance >= limits_.clearance)) return true;
       // No beam comes back from the water on both sides; there may be stairs at one end.
-      if (!falls && clearance >= fall && std::min(one->drop, other->drop) <= limits_.step) return true;
+      if (!falls && std::min(one->drop, other->drop) <= limits_.step) return true;
     }
     return false;
   }

@@ -231,7 +231,7 @@ class Search {
     const Bins wide(block_, reach / bins_of_reach, 0, [this](size_t p) { return few_[p] != 0; });
     Around around;
     for (size_t p = 0; p < block_.size(); ++p) {
-      if (!few_[p]) continue;
+      if (!airy_[p]) continue;
       around.find(wide, block_, p, reach);
       if (around.size() + 1 < fewest) continue;
       for (size_t k = 0; k < around.size() && !out[p]; ++k)
