@@ -21,11 +21,11 @@ enum class ErrorShape {
 /// trajectory's errors. Groups of ties must be ordered by plane. The result does not depend on the number of threads.
 ///
 /// The delivered sigma of a value is the formal one - from the inverse of the normal equations of all unknowns, the trajectory's errors
-/// correlated as `covariance` says and scaled by the variances found - or the jackknife's over lines (four at least) where that is larger, or more where
-/// leaving out regions moves the value significantly more than these covariances allow (calib/jackknife.h); with what the sigmas of `noise`
-/// for the calibration values that are held (the lever arm, as a rule) do to it. A value that the flight does not determine
-/// (Finding::refuses) is delivered as it started, with its a-priori sigma; it stays an unknown, so that the others' sigmas hold its
-/// uncertainty. A start value that the flight contradicts (calib/start_sigmas.h) counts for nothing.
+/// correlated as `covariance` says and scaled by the variances found - or the jackknife's over lines (four at least) where that is larger,
+/// or more where leaving out regions moves the value significantly more than these covariances allow (calib/jackknife.h); with what the
+/// sigmas of `noise` for the calibration values that are held (the lever arm, as a rule) do to it. A value that the flight does not
+/// determine (Finding::refuses) is delivered as it started, with its a-priori sigma; it stays an unknown, so that the others' sigmas hold
+/// its uncertainty. A start value that the flight contradicts (calib/start_sigmas.h) counts for nothing.
 Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::Calibration& start, const core::SensorSigma& noise,
                   const trajectory::Trajectory& trajectory, const ErrorCovariance& covariance, const AdjustOptions& options,
                   int threads = 1, ErrorShape shape = ErrorShape::known);

@@ -260,7 +260,8 @@ Survey read_survey(const std::filesystem::path& file);
 Survey read_survey(const core::Value& tree, const std::filesystem::path& folder);
 
 /// Replaces the values that a calibration file states. The file is a table with the tables `calibration` (keys as [calibration]) and
-/// `sigma` (as [sigma]) and the correlations of their errors (`correlation`), further keys passed over; or the keys of [calibration] themselves beside `sigma`. Throws Error with all faults.
+/// `sigma` (as [sigma]) and the correlations of their errors (`correlation`), further keys passed over; or the keys of [calibration]
+/// themselves beside `sigma`. Throws Error with all faults.
 void load_calibration(const std::filesystem::path& file, core::Calibration& calibration, core::SensorSigma& sigma);
 /// The tree that load_calibration() reads back.
 core::Value calibration_tree(const core::Calibration& calibration, const core::SensorSigma& sigma);

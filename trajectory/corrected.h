@@ -16,7 +16,7 @@ struct CorrectionSeries {
   struct Knot {
     double time = 0.0;  ///< GPS time, s
     Six value{};
-    std::optional<Six> sigma;                                   ///< of the trajectory with the correction, where it is known
+    std::optional<Six> sigma;                                     ///< of the trajectory with the correction, where it is known
     std::optional<core::CalibrationResponse::Matrix> response{};  ///< of `value` to the calibration that was held, where it is known
   };
   std::vector<Knot> knots;  ///< rising in time, one at least

@@ -31,7 +31,8 @@ TEST(TiePlaneOptions, ASmallOnesAt40Metres) {
   const TiePlaneOptions o = sized({}, scale_of(40.0, 200.0, two_centimetres()));
   EXPECT_EQ(o.piece->value, 4.0);
   EXPECT_EQ(o.extent->value, 0.5);
-  EXPECT_NEAR(o.roughness->value, 2.5 * std::hypot(0.02, 0.005), 1e-9);  // two and a half times the noise, which is more than the piece would have
+  EXPECT_NEAR(o.roughness->value, 2.5 * std::hypot(0.02, 0.005),
+              1e-9);  // two and a half times the noise, which is more than the piece would have
   EXPECT_EQ(o.margin->value, 0.1);
   EXPECT_EQ(o.cell->value, 0.25);
   core::SensorSigma fine = two_centimetres();
