@@ -98,7 +98,7 @@ class RecordChecks {
       return;  // the reader names the record
     }
     for (size_t i = 0; i < records.angle.size(); ++i)
-      if (std::abs(records.angle[i] * unit) > full_turn)
+      if (std::isfinite(records.angle[i]) && std::abs(records.angle[i] * unit) > full_turn)
         return fault(
             key + ".angle_unit",
             core::Error("a scan angle of " + core::format_number(records.angle[i]) + " in " +

@@ -120,4 +120,33 @@ std::vector<std::filesystem::path> write_docs(const std::filesystem::path& docs,
   return differing;
 }
 
+core::Value schema() {
+  Value out = Value::object();
+  out["$schema"] = "https://json-schema.org/draft/2020-12/schema";
+  out["title"] = "swath pipeline";
+  out["type"] = "object";
+  out["additionalProperties"] = false;
+  out["required"].push("stage");
+  RunOptions run;
+  out["properties"]["run"] = core::schema_of(core::described(run));
+  Value any = Value::array();
+  for (const auto& e : stages::registry()) {
+    const auto stage = e.make();
+    Value one = core::schema_of([&](core::Visitor& v) { stage->visit(v); });
+    Value type = Value::object();
+    type["const"] = e.name;
+    one["properties"]["type"] = std::move(type);
+    one["required"] = Value::array();
+    one["required"].push("type");
+    one["description"] = stage->info().summary;
+    any.push(std::move(one));
+  }
+  Value& list = out["properties"]["stage"];
+  list["type"] = "array";
+  list["items"]["anyOf"] = std::move(any);
+  io::Survey survey;
+  out["$defs"]["survey"] = core::schema_of(core::described(survey));
+  return out;
+}
+
 }  // namespace swath::pipeline

@@ -6,12 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "core/value.h"
+
 namespace swath::pipeline {
 
 /// One line per stage, in the order of the chain.
 std::string stage_list();
 /// Everything a stage says of itself. Throws core::Error (usage) for an unknown name, naming the nearest.
 std::string stage_help(const std::string& name);
+
+/// JSON Schema of pipelines and, under "$defs", of surveys.
+core::Value schema();
 
 /// Writes the generated part of every page in `docs` (between "<!-- generated -->" and "<!-- end -->"): stages/NAME.md,
 /// survey.md, lever-arm.md, run.md, simulate.md. With `only_check` nothing is written. Returns the pages that differ (or differed).

@@ -98,7 +98,7 @@ void add_implied(const stages::Stage& stage, const core::Location& where, const 
     if (s.stage->info().name == name) return;
   Value table = Value::object();
   table.where = where;
-  plan.stages.push_back({stages::make_stage(name), std::move(table), path});
+  plan.stages.push_back({stages::make_stage(name), std::move(table), path, true});
 }
 
 void read_stages(const Value& tree, Plan& plan, std::vector<Fault>& faults) {
@@ -371,35 +371,6 @@ core::Value explain(Plan& plan) {
     one["options"] = with_origin(s.describe(), s.table);
     list.push(std::move(one));
   }
-  return out;
-}
-
-core::Value schema() {
-  Value out = Value::object();
-  out["$schema"] = "https://json-schema.org/draft/2020-12/schema";
-  out["title"] = "swath pipeline";
-  out["type"] = "object";
-  out["additionalProperties"] = false;
-  out["required"].push("stage");
-  RunOptions run;
-  out["properties"]["run"] = core::schema_of(core::described(run));
-  Value any = Value::array();
-  for (const auto& e : stages::registry()) {
-    const auto stage = e.make();
-    Value one = core::schema_of([&](core::Visitor& v) { stage->visit(v); });
-    Value type = Value::object();
-    type["const"] = e.name;
-    one["properties"]["type"] = std::move(type);
-    one["required"] = Value::array();
-    one["required"].push("type");
-    one["description"] = stage->info().summary;
-    any.push(std::move(one));
-  }
-  Value& list = out["properties"]["stage"];
-  list["type"] = "array";
-  list["items"]["anyOf"] = std::move(any);
-  io::Survey survey;
-  out["$defs"]["survey"] = core::schema_of(core::described(survey));
   return out;
 }
 

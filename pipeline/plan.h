@@ -45,8 +45,9 @@ struct Request {
 
 struct PlannedStage {
   std::unique_ptr<stages::Stage> stage;
-  core::Value table;  ///< as written, for the origin of values
-  std::string path;   ///< "stage[3]"
+  core::Value table;     ///< as written, for the origin of values
+  std::string path;      ///< "stage[3]"
+  bool implied = false;  ///< not named in the config: a stage after it uses it
   core::Describe describe() const {
     return [s = stage.get()](core::Visitor& v) { s->visit(v); };
   }
@@ -81,8 +82,5 @@ void set_option(core::Value& table, const std::string& set);
 /// The effective options with where each comes from, for `explain` and the report:
 /// {"run": {"tile": {"value": "500 m", "from": "default"}}, "stages": [{"type": ..., "options": {...}}]}.
 core::Value explain(Plan& plan);
-
-/// JSON Schema of pipelines and, under "$defs", of surveys.
-core::Value schema();
 
 }  // namespace swath::pipeline

@@ -60,7 +60,7 @@ class Arrays(Case):
 
     def test_missing_column(self):
         substitute(self.toml, 'range = "range"', 'range = "rnge"')
-        self.assert_bad_data(self.toml, r"laser\.npy: no field 'rnge'", "did you mean 'range'")
+        self.assert_bad_usage(self.toml, r"survey\.toml:\d+:\d+: laser\[1\]\.columns\.range: .*laser\.npy: no field 'rnge'", "did you mean 'range'")
 
     def test_missing_file(self):
         os.remove(self.file)
@@ -81,7 +81,7 @@ class Text(Case):
 
     def test_missing_column(self):
         substitute(self.toml, '"range_m"', '"rnge_m"')
-        self.assert_bad_data(self.toml, r"laser\.csv: no column 'rnge_m'", "did you mean 'range_m'")
+        self.assert_bad_usage(self.toml, r"survey\.toml:\d+:\d+: laser\[1\]\.columns\.range: .*laser\.csv: no column 'rnge_m'", "did you mean 'range_m'")
         substitute(self.toml, '"rnge_m"', '"range_m"')
         substitute(self.toml, '"roll_deg"', '"rol_deg"')
         self.assert_bad_data(self.toml, r"trajectory\.csv: no column 'rol_deg'", "did you mean 'roll_deg'")

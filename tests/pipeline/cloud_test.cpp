@@ -269,7 +269,7 @@ TEST(Cloud, HeightsOfAnUnknownSystemAreNotShifted) {
   EXPECT_FALSE(fs::exists(c.folder / "out 500 m"));
 
   CloudCase same;  // stated: nothing is to be done
-  same.survey = c.survey;
+  same.survey = "crs = \"EPSG:32632+5773\"\n";
   same.add(square(100, easting, northing, 100, 300), "level.las", "EPSG:32632+5773");
   const fs::path out = same.run(copy_stages, "500 m");
   for (const double z : points_of(out).z) EXPECT_EQ(z, 300.0);

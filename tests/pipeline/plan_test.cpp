@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "io/las_writer.h"
 #include "io/value_file.h"
+#include "pipeline/describe.h"
 #include "tests/world/support.h"
 
 namespace swath::pipeline {
