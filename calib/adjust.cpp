@@ -326,7 +326,7 @@ class Results {
       double larger = 1.0;
       if (lines.replicates > 0) {
         e.jackknife_lines = lines.sigma[i];
-        larger = std::max(larger, enlargement(lines.ratio[i], lines.freedom[i], significance));
+        if (lines.replicates >= least_jackknifed) larger = std::max(larger, enlargement(lines.ratio[i], lines.freedom[i], significance));
       }
       if (regions.replicates > 0) {
         e.jackknife_planes = regions.sigma[i];

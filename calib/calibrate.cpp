@@ -45,7 +45,8 @@ Move largest_move(const core::Calibration& from, const Adjustment& to) {
   for (const Estimate& e : to.estimates) {
     if (!e.estimated) continue;
     const double sigmas = std::abs(e.found - value_of(from, e.parameter)) / std::max(e.found_sigma, 1e-15);
-    if (!(sigmas <= out.sigmas)) out = {e.parameter, sigmas};
+    if (std::isnan(sigmas)) return {e.parameter, std::numeric_limits<double>::infinity()};
+    if (sigmas >= out.sigmas) out = {e.parameter, sigmas};
   }
   return out;
 }
@@ -164,7 +165,7 @@ Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& op
   Calibrated out;
   core::Calibration now = flight.start;
   const SurfaceMatchOptions match = sized(options.match, flight.scale.height);
-  double mismatch = first_mismatch(options.planes.mismatch.value, flight.scale.height);
+  double mismatch = options.coarse ? first_mismatch(options.planes.mismatch.value, flight.scale.height) : options.planes.mismatch.value;
   if (options.coarse) {
     tell("matching surfaces");
     out.match = match_surfaces(flight.shots, flight.scanner, flight.start, *flight.trajectory, flight.frame, match);

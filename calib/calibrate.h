@@ -33,7 +33,7 @@ void describe(CalibrateOptions& o, V& v) {
       "coarse", o.coarse,
       "Find the boresight's first values by matching the surfaces of the lines; otherwise those of the survey are taken, and the surfaces "
       "are looked at for the sign of the scan angle alone.");
-  v.option("rounds", o.rounds, core::within(1, 20),
+  v.option("rounds", o.rounds, core::within(3, 20),
            "Maximum of rounds, planes sought and adjusted in each; they end where no value moves by half of its sigma.");
   v.table("match", o.match, "The surfaces' matching.");
   v.table("planes", o.planes, "The search for planes; `mismatch` is that of the first round, 1/800 of the height at most.");

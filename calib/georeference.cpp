@@ -158,7 +158,7 @@ void propagate_correlated(const ShotGeometry& g, const core::SensorSigma& sensor
     PointVariance s = variance_of(p, here.errors, here.down);
     add_records(v, g.calibration(), pointing, factor * factor, recorded, p, c.cosine[i], here.down, s.total, s.down);
     c.sigma_h[i] = static_cast<float>(std::sqrt(std::max(s.total - s.down, 0.0)));
-    c.sigma_v[i] = static_cast<float>(std::sqrt(s.down));
+    c.sigma_v[i] = static_cast<float>(std::sqrt(std::max(s.down, 0.0)));
   }
 }
 

@@ -173,6 +173,8 @@ std::array<double, ground_terms> terms_of(const GroundEvidence& e, double noise)
           single * std::max(second, 0.0)};
 }
 
+constexpr size_t sunken_term = 26;  // of terms_of()
+
 float ground_probability(const GroundEvidence& e, double noise, Grass grass) {
   if (std::isnan(e.above) || std::abs(e.above) > far) return 0.0F;
   const std::array<double, ground_terms> terms = terms_of(e, noise);
@@ -180,6 +182,8 @@ float ground_probability(const GroundEvidence& e, double noise, Grass grass) {
   const std::array<double, ground_terms>& weights = grass == Grass::mown ? mown_weights : bare_earth_weights;
   double sum = 0.0;
   for (size_t k = 0; k < ground_terms; ++k) sum += weights[k] * terms[k];
+  // Returns deep below say that the surface lies too high: no reason to take what is above it.
+  if (e.above > 0.0F) sum -= std::max(0.0, weights[sunken_term]) * terms[sunken_term];
   return static_cast<float>(1.0 / (1.0 + std::exp(-std::clamp(sum, -most_certain, most_certain))));
 }
 

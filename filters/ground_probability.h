@@ -37,7 +37,7 @@ std::array<double, ground_terms> terms_of(const GroundEvidence& e, double noise)
 /// Which vegetation is ground: grass that is mown counts as ground, as makers of clouds commonly count it, or bare earth alone.
 enum class Grass { mown, bare_earth };
 
-/// 0 to 1, 0 where not judged. Neither end is reached: no evidence is certain.
+/// 0.0025 to 0.9975, as no evidence is certain; 0 where not judged, beyond 3 m, or deeper than ground can lie.
 float ground_probability(const GroundEvidence& e, double noise, Grass grass);
 
 /// m below the surface that ground may lie.

@@ -21,7 +21,13 @@ std::uint64_t mixed(std::uint64_t v) {  // the finalizer of splitmix64 (Steele, 
 
 std::uint64_t hash_of(const core::Block& b, std::size_t p) {
   const std::uint64_t x = std::bit_cast<std::uint64_t>(b.x[p]), y = std::bit_cast<std::uint64_t>(b.y[p]);
-  return mixed(x * 0x9e3779b97f4a7c15u ^ std::rotl(y * 0xc2b2ae3d27d4eb4fu, 23) ^ std::rotl(std::bit_cast<std::uint64_t>(b.z[p]), 41));
+  std::uint64_t kind = 0;  // of returns at one place
+  if (!b.return_number.empty()) kind |= b.return_number[p];
+  if (!b.return_count.empty()) kind |= std::uint64_t{b.return_count[p]} << 8;
+  if (!b.classification.empty()) kind |= std::uint64_t{b.classification[p]} << 16;
+  const std::uint64_t place =
+      mixed(x * 0x9e3779b97f4a7c15u ^ std::rotl(y * 0xc2b2ae3d27d4eb4fu, 23) ^ std::rotl(std::bit_cast<std::uint64_t>(b.z[p]), 41));
+  return kind == 0 ? place : mixed(place + kind * 0x165667b19e3779f9u);
 }
 
 }  // namespace

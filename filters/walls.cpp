@@ -38,7 +38,8 @@ constexpr std::array<Ray, 8> rays{
 /// The border of one surface.
 struct Border {
   int cells = 0, west = 0, east = 0, south = 0, north = 0;
-  int walls = 0, open = 0, higher = 0, rim = 0;  ///< rays that leave it
+  int walls = 0, open = 0, higher = 0, rim = 0, pits = 0;  ///< rays that leave it
+  bool any = false;
 };
 
 class Surfaces {
@@ -145,7 +146,7 @@ void Surfaces::leave(Border& b, int i, int j, size_t c, const Ray& r) const {
     if (!z_.holds(i + k * r.i, j + k * r.j)) break;
     const size_t other = z_.at(i + k * r.i, j + k * r.j);
     if (z_.value[c] - z_.value[other] > wall + wall_per_run * k * r.run) {
-      b.walls += on_[other] != none;  // not into a pit
+      ++(on_[other] != none ? b.walls : b.pits);
       return;
     }
   }
@@ -158,7 +159,7 @@ std::vector<Border> Surfaces::borders() const {
   for_each([&](int i, int j, size_t c) {
     if (on_[c] == none) return;
     Border& b = all[on_[c]];
-    if (b.cells + b.walls + b.open + b.higher + b.rim == 0) b.west = b.east = i, b.south = b.north = j;
+    if (!b.any) b.any = true, b.west = b.east = i, b.south = b.north = j;
     b.west = std::min(b.west, i), b.east = std::max(b.east, i), b.south = std::min(b.south, j), b.north = std::max(b.north, j);
     b.cells += leads_[c];
     for (const Ray& r : rays) leave(b, i, j, c, r);
@@ -168,7 +169,9 @@ std::vector<Border> Surfaces::borders() const {
 
 bool is_object(const Border& b, const WallOptions& o) {
   const int across = std::max(b.east - b.west, b.north - b.south) + 1, seen = b.walls + b.open;
-  if (b.cells < fewest || across > o.longest || b.walls < walled * seen || b.walls < beside_higher * b.higher) return false;
+  if (b.walls == 0 || b.pits > 3 * b.walls || b.cells < fewest || across > o.longest || b.walls < walled * seen ||
+      b.walls < beside_higher * b.higher)
+    return false;
   return b.rim <= cut * (seen + b.rim) || (b.walls >= walled_at_rim * (seen + b.rim) && across <= 2 * o.widest);
 }
 

@@ -51,7 +51,7 @@ class Voxels {
     return lattice_.at(c.i, c.j);
   }
   std::int32_t level_of(const core::Block& b, size_t p) const {
-    return static_cast<std::int32_t>(std::floor((b.origin.z() + b.z[p]) / side_));
+    return static_cast<std::int32_t>(std::clamp(std::floor((b.origin.z() + b.z[p]) / side_), -1e9, 1e9));
   }
 
   bool few_columns(size_t c, std::int32_t k) const {

@@ -72,7 +72,9 @@ bool first_line_is_cut(const std::vector<std::vector<std::string>>& lines, bool 
   if (!is.plain || std::any_of(forms.begin() + 1, forms.end(),
                                [&](const Form& f) { return !f.plain || f.after != next.after || f.point != next.point; }))
     return false;
-  if (is.after != next.after || is.point != next.point) return true;
+  // A cut takes leading characters: a number that still has its point has all of its decimals.
+  if (is.point != next.point) return !is.point && is.before <= next.after;
+  if (is.after != next.after) return false;
   if (is.before == 0 && std::all_of(forms.begin() + 1, forms.end(), [](const Form& f) { return f.before > 0; })) return true;
   return lacks_leading_digits(values, is, next);
 }

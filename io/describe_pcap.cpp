@@ -29,7 +29,7 @@ std::pair<int, int> udp_of(const unsigned char* p, size_t n) {
   size_t at = 12;
   if (n < 34) return {0, 0};
   while (at + 4 < n && p[at] == 0x81 && p[at + 1] == 0x00) at += 4;  // VLAN tags
-  if (p[at] != 0x08 || p[at + 1] != 0x00) return {0, 0};
+  if (at + 22 > n || p[at] != 0x08 || p[at + 1] != 0x00) return {0, 0};
   const size_t ip = at + 2, header = 4u * (p[ip] & 0x0f);
   if (ip + 20 > n || p[ip] >> 4 != 4 || p[ip + 9] != 17 || ip + header + 8 > n) return {0, 0};
   const unsigned char* udp = p + ip + header;
@@ -107,7 +107,8 @@ class Capture {
       const std::uint32_t length = got >= 12 ? load<std::uint32_t>(&head[4], big) : 0;
       if (length < 12 || length % 4 != 0 || at + length > file_.size()) return cut(at);
       if (load<std::uint32_t>(head.data(), big) == enhanced && got == head.size()) {
-        const auto n = std::min(load<std::uint32_t>(&head[20], big), length - 28);
+        if (length < 32) return cut(at);
+        const auto n = std::min({load<std::uint32_t>(&head[20], big), length - 32, longest_packet});
         packet.resize(n);
         file_.read(at + 28, packet.data(), n);
         take(packet.data(), n, true);

@@ -51,7 +51,7 @@ std::vector<double> las_gps_times(const std::vector<double>& recorded, const Las
       break;
     case TimeScale::gps_week:
       each([&](double t, std::uint64_t row) {
-        if (!(t >= 0.0 && t <= core::seconds_per_week)) fail_value(t, "a second of a week", where, row);
+        if (!(t >= 0.0 && t <= longest_week)) fail_value(t, "a second of a week", where, row);
         return *time.week * core::seconds_per_week + t + turns(t, first_time, core::seconds_per_week);
       });
       break;

@@ -89,6 +89,7 @@ class RecordChecks {
 
   /// The first scan angles in the unit stated.
   void angles(const LaserFile& f, const std::string& key) {
+    if (model_of(survey_, f) == core::ScannerModel::profile && survey_.scanner.model != core::ScannerModel::profile) return;
     const double unit = radians_per(f.angle_unit);
     if (f.columns.scan_angle.empty() || unit == 0.0) return;
     LaserRecords records;

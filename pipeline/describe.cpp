@@ -121,6 +121,7 @@ std::vector<std::filesystem::path> write_docs(const std::filesystem::path& docs,
 }
 
 core::Value schema() {
+  using core::Value;
   Value out = Value::object();
   out["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   out["title"] = "swath pipeline";

@@ -40,7 +40,7 @@ Value judged(const Limits& limits, const Measured& measured) {
       one["held"] = "not judged: no stage of this run measures it";
     else
       one["held"] = *value <= limit;
-    if (value && *value > limit) one["excess"] = *value - limit;
+    if (value && !(*value <= limit)) one["excess"] = *value - limit;
     list.push(std::move(one));
   };
   judge(kinds[0], measured.outside, limits.outside, none.outside);

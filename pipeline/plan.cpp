@@ -253,8 +253,8 @@ void settle_tile(Plan& plan) {
   if (plan.run_table.find("tile") || !works_on_the_map(plan)) return;
   const std::string definition = plan.survey.crs.empty() ? crs_of_source(plan) : plan.survey.crs;
   const double unit = definition.empty() ? 1.0 : core::Crs(definition).metres_per_unit();
-  if (unit == 1.0) return;
   const double hundred = 100.0 * unit;
+  if (unit == 1.0 || hundred > plan.run.tile.value) return;
   plan.run.tile = core::Metres(std::floor(plan.run.tile.value / hundred) * hundred);
 }
 

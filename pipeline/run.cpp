@@ -580,6 +580,8 @@ void Engine::run_tile_stages() {
 
 /// A late stage failed: the products of those before it are whole and stay, with the work that the same command goes on from.
 void Engine::keep_finished(const core::Error& e) {
+  std::error_code absent;
+  fs::remove(output_ / "report.json", absent);  // of an earlier run: it says nothing of these products
   for (const fs::path& made : context_.earlier) deliver(made, output_, true);
   throw core::Error(e.what(), e.where(),
                     (e.hint().empty() ? std::string() : e.hint() + "; ") + "the products of the stages before it are in " +

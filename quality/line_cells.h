@@ -23,7 +23,7 @@ void describe(LineOptions& o, V& v) {
            "Side of the cells in which lines are compared; without it the narrowest of 2, 4 and 8 m that the density allows.");
   v.option("roughness", o.roughness, core::within(0.005, 1.0),
            "A cell is compared where the single returns of each line lie about a plane of their own with no more than this rms.");
-  v.option("least", o.least, core::within(5, 1000), "... and are at least this many.");
+  v.option("least", o.least, core::within(5, 1000), "Least number of single returns of a line in a cell that is compared.");
 }
 
 /// Two lines on the smooth cells that they share in one block of 16 x 16 of the narrowest cells.

@@ -18,17 +18,15 @@ namespace swath::stages {
 
 namespace {
 
-/// Row by row; empty where nothing is correlated.
+/// Row by row.
 std::vector<double> correlation_of(const Eigen::MatrixXd& covariance) {
   std::vector<double> out;
-  bool any = false;
   for (Eigen::Index i = 0; i < covariance.rows(); ++i)
     for (Eigen::Index j = 0; j < covariance.cols(); ++j) {
       const double scale = std::sqrt(std::max(0.0, covariance(i, i)) * std::max(0.0, covariance(j, j)));
       out.push_back(i == j ? 1.0 : scale > 0.0 ? std::clamp(covariance(i, j) / scale, -1.0, 1.0) : 0.0);
-      any = any || (i != j && out.back() != 0.0);
     }
-  return any ? out : std::vector<double>{};
+  return out;
 }
 
 }  // namespace
@@ -47,7 +45,11 @@ DeliveredCalibration delivered(const calib::Adjustment& a, const core::SensorSig
     }
     const double value = good ? e.value : e.start;
     // A start value that was to be estimated and could not: it is known as well as was stated for it.
-    const auto known = [&](double stated) { return good ? e.sigma : std::isfinite(e.apriori) ? std::max(e.apriori, stated) : stated; };
+    const auto known = [&](double stated) {
+      return good                       ? e.sigma
+             : std::isfinite(e.apriori) ? std::max(e.apriori, stated)
+                                        : std::max(stated, std::hypot(e.found - e.start, e.found_sigma));
+    };
     switch (parameter_at(k)) {
       case calib::boresight_roll:
         c.roll.value = value;

@@ -119,7 +119,7 @@ void give_sigmas(core::Block& b, double vertical, double horizontal) {
   for (size_t p = 0; p < b.size(); ++p)
     if (b.sigma_v[p] == 0.0F) {
       b.sigma_v[p] = static_cast<float>(vertical);
-      b.sigma_h[p] = static_cast<float>(horizontal);
+      if (b.sigma_h[p] == 0.0F) b.sigma_h[p] = static_cast<float>(horizontal);
     }
 }
 

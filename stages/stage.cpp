@@ -40,8 +40,8 @@ std::filesystem::path Context::made(const std::filesystem::path& name) const {
 std::string Context::label(TileKey k) const {
   const auto part = [this](int i) {
     const double corner = i * (tile_side / unit);
-    // A tile is at least 10 m wide: rounded corners stay apart.
-    if (unit != 1.0 || corner == std::round(corner)) return std::to_string(std::llround(corner));
+    // Rounded corners of tiles that are wider than a unit stay apart.
+    if (corner == std::round(corner) || (unit != 1.0 && tile_side >= 2.0 * unit)) return std::to_string(std::llround(corner));
     return std::to_string(std::llround(corner * 1000)) + "mm";
   };
   return part(k.ix) + "_" + part(k.iy);

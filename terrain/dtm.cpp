@@ -5,10 +5,9 @@
 //     s_k^2 = sigma_v^2 + (|slope| sigma_h)^2 / 2 (sigma_h is radial: half its variance lies along the slope);
 //   what they do not share (ranging, vegetation taken for ground): noise (sum w_k^2). Smoothing leaves a share l_k of it, in common: noise
 //     (sum w_k sqrt(l_k))^2; only of what the points' own sigmas explain;
-//   scatter beyond that, as smoothing finds it near by: it is one-sided (echoes of low plants merged with that of
-//   the
-//     ground), no mean takes it out, and of a quantity that only adds, exponentially distributed, the mean is as large as the standard
-//     deviation: sum w_k (scatter_k - explained). Without smoothing (noise - explained) (sum w_k^2);
+//   scatter beyond that, as smoothing finds it near by: it is one-sided (echoes of low plants merged with that
+//     of the ground), no mean takes it out, and of a quantity that only adds, exponentially distributed, the mean is as large as the
+//     standard deviation: sum w_k (scatter_k - explained). Without smoothing (noise - explained) (sum w_k^2);
 //   the terrain between them: uneven s + curved s^2 / 4.
 // Points without a sigma of their own get s_k^2 = noise.
 // Where too few triangles stand around a place to tell these, noise is 0 and the terrain may bend by the option unknown_bend b between a

@@ -205,6 +205,7 @@ TimeOffset refine(const std::vector<ClockWindow>& windows, double coarse, double
       solve_window(windows[w], offset, scale, prior, i == 0 ? std::vector<Vector3d>{} : round.left[w], next);
     round = std::move(next);
     scale = scale_of(round.left);
+    if (!std::isfinite(round.step())) break;
     const double step = std::clamp(round.step(), -2 * clock_grid, 2 * clock_grid);
     offset = std::clamp(offset + step, -search, search);
     if (i > 2 && std::abs(step) < 1e-5) break;

@@ -58,7 +58,7 @@ struct ClockFindings {
 
   bool apart() const { return imu.is_significant(0.002); }
   /// The velocities lag so much that they contradict the positions: 2 cm/s at 1 m/s^2.
-  bool velocities_lag() const { return velocity.is_significant(0.02); }
+  bool velocities_lag() const { return velocity.value > 0.0 && velocity.is_significant(0.02); }
   /// The offset and the values to state that take it out, in words.
   std::string advice() const;
   core::Value to_value() const;

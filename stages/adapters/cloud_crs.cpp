@@ -101,6 +101,8 @@ std::string heights_of_clouds(const io::Survey& survey) {
 
 double height_unit(const io::Survey& survey, const io::PointFile& file, const core::Crs& crs, double stated) {
   if (file.height_unit && crs.heights() != Heights::vertical) return file.height_unit->value;
+  // Keys that give ellipsoidal heights a unit of their own.
+  if (stated > 0.0 && file.crs.empty() && crs.heights() == Heights::ellipsoidal) return stated;
   if (crs.has_height_unit()) return crs.vertical_metres_per_unit();
   if (stated > 0.0) return stated;
   if (survey.height_unit) return survey.height_unit->value;

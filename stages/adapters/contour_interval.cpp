@@ -65,8 +65,8 @@ void judge_interval(const Context& context, const SurfaceFacts& f, double interv
                     terrain::usual_interval(terrain::smallest_interval(terrain::map_classes[c], sigma) / context.vertical_unit));
       };
       words.push("contours every " + told(interval) + " say more than the model knows: its sigma of " +
-                 told(std::round(sigma * 1e3) / 1e3) + " (rms) carries " + carried(0) + " as class A, " + carried(1) + " as class B, " +
-                 carried(2) + " as class C");
+                 core::format_number(std::round(sigma / context.vertical_unit * 1e3) / 1e3) + unit + " (rms) carries " + carried(0) +
+                 " as class A, " + carried(1) + " as class B, " + carried(2) + " as class C");
     }
   }
   if (!words.items().empty()) findings["findings"] = std::move(words);

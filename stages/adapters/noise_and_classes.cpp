@@ -51,16 +51,17 @@ class Classify : public OptionStage<Keeping<filters::ClassifyOptions>> {
                            "Classes of what is not ground: low, medium and high vegetation, buildings, wires, bridge decks.",
                            {Grain::tile},
                            {Column::flags, Column::classification, Column::height},
-                           {Column::classification},
+                           {Column::flags, Column::classification},
                            {Product::points},
                            {}};
     return info;
   }
   core::ColumnSet also_reads() const override { return {Column::return_number, Column::return_count}; }
   double halo() const override { return filters::halo(options); }
-  // Measured 2026-11-22 with tests/stages/memory_test.cpp, tile 200 m: 22 bytes per cell of 1 m; up to 177 per point where none is ground.
+  // Measured 2026-11-22 with tests/stages/memory_test.cpp, tile 200 m: up to 177 bytes per point where none is ground. Counted
+  // 2026-11-23: samples of four returns with their hashes, planes and rasters per cell of 1 m.
   double bytes_per_point() const override { return 180.0; }
-  std::vector<Raster> rasters(const Context& c) const override { return {{"", 1.0, c.tile_side + 2.0 * halo(), 24.0}}; }
+  std::vector<Raster> rasters(const Context& c) const override { return {{"", 1.0, c.tile_side + 2.0 * halo(), 130.0}}; }
   void run_tile(const Context&, TileJob& job) const override {
     const KeptClasses kept(job.block, options.keep_classes);
     const filters::ClassifyCounts n = filters::classify(job.block, job.own, options);
@@ -74,7 +75,6 @@ class Classify : public OptionStage<Keeping<filters::ClassifyOptions>> {
     tell("building", n.building);
     tell("wire", n.wire);
     tell("bridge deck", n.bridge_deck);
-    tell("low noise", n.low_noise);
     tell("low noise", n.low_noise);
     tell("unassigned", n.unassigned);
     tell("ground, water or noise, not looked at", n.kept);

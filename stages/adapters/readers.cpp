@@ -122,7 +122,7 @@ bool has_weekless_times(const io::Survey& survey) {
     std::vector<std::string> ignored;
     const fs::path file = io::resolve(survey, f.file);
     const io::LasHeader header = io::read_las_header(file, ignored);
-    if (!io::las_layout(header.point_format)->gps) continue;
+    if (header.point_count == 0 || !io::las_layout(header.point_format)->gps) continue;
     (io::las_time_scale(header, times_of(f)) == core::TimeScale::unstated ? weekless : dated).push_back(file);
   }
   if (!weekless.empty() && !dated.empty())
@@ -234,13 +234,16 @@ class LasCloud : public OptionStage<NoOptions> {
   }
   void locate(Context& context) const override {
     std::vector<std::string> ignored;
-    const io::PointFile& first = context.survey.points.front();
-    const io::LasHeader header = io::read_las_header(io::resolve(context.survey, first.file), ignored);
     context.weekless = has_weekless_times(context.survey);
-    const core::Crs crs = cloud_crs(context.survey, first);
-    Eigen::Vector3d corner = header.min;
-    if (!is_same_crs(crs, context.crs)) corner = core::Transform(crs, context.crs)(corner);
-    context.origin = origin_near(context, corner);
+    for (const io::PointFile& f : context.survey.points) {  // the first file with points
+      const io::LasHeader header = io::read_las_header(io::resolve(context.survey, f.file), ignored);
+      if (header.point_count == 0 || !header.min.allFinite()) continue;
+      const core::Crs crs = cloud_crs(context.survey, f);
+      Eigen::Vector3d corner = header.min;
+      if (!is_same_crs(crs, context.crs)) corner = core::Transform(crs, context.crs)(corner);
+      context.origin = origin_near(context, corner);
+      break;
+    }
     if (context.crs.heights() == core::Heights::unknown) context.heights = heights_of_clouds(context.survey);
   }
   std::vector<Strip> strips(const Context& context, core::Tally&) const override {
@@ -296,7 +299,7 @@ bool keeps_crs(const Context& context, const std::vector<io::LasSource>& sources
     const std::string stated = io::las_crs(s.header).definition;
     if (!s.same_places || stated.empty()) return false;
     try {
-      return core::Crs(stated).key() == context.crs.key();
+      return is_same_crs(core::Crs(stated), context.crs);
     } catch (const core::Error&) {  // not known to PROJ: the survey states another
       return false;
     }

@@ -87,20 +87,38 @@ class Strips : public OptionStage<StripStageOptions> {
       const bool apart = std::any_of(lines.pairs.begin(), lines.pairs.end(),
                                      [this](const calib::PairAgreement& p) { return p.rms > options.tolerance.value; });
       findings["adjusted"] = lines.exceeded() || apart;
+      if (lines.exceeded() || apart || (lines.pairs.empty() && prepared.lines.size() > 1)) reversed_scan(prepared);
       if (lines.exceeded() || apart) return adjust(context, prepared, tally, findings);
-      left("",
-           lines.pairs.empty() ? "no plane was found that two lines have seen" : "the lines agree within their sigmas and the tolerance");
+      if (!lines.pairs.empty())
+        left("", "the lines agree within their sigmas and the tolerance");
+      else if (prepared.lines.size() < 2)
+        left("", "there is one flight line");
+      else
+        left("flight lines without a common plane: not compared, the trajectory is left as it is",
+             "no plane was found that two lines have seen: no overlap, or lines farther apart than planes.mismatch");
       found["adjusted"] = false;
       found["reason"] = *findings.find("reason");
       io::write_text_file(context.output / "strips.json", io::to_json(found));
     } catch (const core::SystemError&) {
       throw;
     } catch (const core::Error& e) {
+      if (e.code() == core::Exit::bad_usage) throw;
       left("flight lines that could not be compared or adjusted: the trajectory is left as it is", e.what());
     }
   }
 
  private:
+  /// A scan angle of the wrong sign is a fault of the survey's description, not of its lines.
+  static void reversed_scan(const PreparedFlight& prepared) {
+    try {
+      calib::refuse_reversed_scan(prepared.flight);
+    } catch (const core::SystemError&) {
+      throw;
+    } catch (const core::Error& e) {
+      throw core::Error(e.what(), e.where(), e.hint(), core::Exit::bad_usage);
+    }
+  }
+
   calib::LineAgreement agreement(const PreparedFlight& prepared) const {
     const calib::CalibrationFlight& f = prepared.flight;
     if (prepared.lines.size() < 2) return {};

@@ -115,11 +115,14 @@ class LasTiles : public OptionStage<LasOptions> {
     std::call_once(sources_read_, [&] {
       std::vector<io::LasSource> files = cloud_sources(context);
       const bool same_places = std::all_of(files.begin(), files.end(), [](const io::LasSource& s) { return s.same_places; });
-      const bool same_offsets =
-          std::all_of(files.begin(), files.end(), [&](const io::LasSource& s) { return s.header.offset == files[0].header.offset; });
-      const bool to_extended = options.point_format && *options.point_format >= 6 && files[0].header.point_format < 6;
-      const bool keep_crs = !to_extended && keeps_crs(context, files);
+      const bool same_steps = std::all_of(files.begin(), files.end(), [&](const io::LasSource& s) {
+        return s.header.offset == files[0].header.offset && s.header.scale == files[0].header.scale;
+      });
+      const bool has_legacy = std::any_of(files.begin(), files.end(), [](const io::LasSource& s) { return s.header.point_format < 6; });
+      const bool keeps = keeps_crs(context, files);
       auto all = std::make_shared<const io::LasSources>(std::move(files), options.times == WrittenTimes::recorded);
+      const bool to_extended = has_legacy && options.point_format.value_or(all->header(false).point_format) >= 6;
+      const bool keep_crs = keeps && !to_extended;
       header_ = all->header(keep_crs);
       if (!all->same_project()) {
         header_.guid = context.project;
@@ -127,7 +130,7 @@ class LasTiles : public OptionStage<LasOptions> {
         header_.creation_day = static_cast<std::uint16_t>(context.creation_day);
       }
       if (options.scale || !same_places) header_.scale = Eigen::Vector3d::Constant(options.scale.value_or(finest_default));
-      if (options.scale || !same_places || !same_offsets) header_.offset = offset_near(context);
+      if (options.scale || !same_places || !same_steps) header_.offset = offset_near(context);
       if (options.point_format) header_.point_format = *options.point_format;
       if (!keep_crs) io::add_las_wkt(header_, core::Crs(context.product_crs).wkt1());
       if (!keep_crs || options.point_format) header_.version_minor = 4;

@@ -36,6 +36,16 @@ TEST(GroundProbability, IsHighOnTheSurfaceAndFallsWithHeight) {
   }
 }
 
+TEST(GroundProbability, ASurfaceOverDeepReturnsIsNoReasonToTakeWhatStandsAboveIt) {
+  for (const Grass grass : {Grass::mown, Grass::bare_earth})
+    for (const float sunken : {0.1F, 0.2F, 0.3F})
+      for (const float height : {0.3F, 0.6F, 1.2F}) {
+        GroundEvidence e = plant(height);
+        e.sunken = sunken, e.spread = e.narrowed = 0.05F;
+        EXPECT_LT(ground_probability(e, 0.03, grass), 0.5F) << height << " m, " << sunken;
+      }
+}
+
 TEST(GroundProbability, WhatStandsBesideItsLikeIsMoreProbable) {
   GroundEvidence kerb = plant(0.15F);
   kerb.standing = 0.1F;

@@ -88,6 +88,16 @@ TEST(Walls, GroundBesideAWallStays) {
   }
 }
 
+TEST(Walls, AParcelBetweenDeepDitchesStays) {
+  const Raster before = heights([](int i, int j) {
+    const bool ring = within(i, j, 98, 98, 162, 162) && !within(i, j, 100, 100, 160, 160);
+    return ring ? level - 3.0F : level;
+  });
+  Raster after = before;
+  remove_walled(after, {});
+  EXPECT_EQ(voided(before, after, 100, 100, 160, 160), 0.0);
+}
+
 TEST(Walls, NothingBeyondTheSupportMatters) {
   const WallOptions o{.longest = 40, .widest = 20};
   const Raster before = heights(
