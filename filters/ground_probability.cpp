@@ -182,8 +182,8 @@ float ground_probability(const GroundEvidence& e, double noise, Grass grass) {
   const std::array<double, ground_terms>& weights = grass == Grass::mown ? mown_weights : bare_earth_weights;
   double sum = 0.0;
   for (size_t k = 0; k < ground_terms; ++k) sum += weights[k] * terms[k];
-  // Returns deep below say that the surface lies too high: no reason to take what is above it.
-  if (e.above > 0.0F) sum -= std::max(0.0, weights[sunken_term]) * terms[sunken_term];
+  // Returns deep below say that the surface lies too high: no reason to take what is above it. The weights of mown grass have it small.
+  if (grass == Grass::bare_earth && e.above > 0.0F) sum -= std::max(0.0, weights[sunken_term]) * terms[sunken_term];
   return static_cast<float>(1.0 / (1.0 + std::exp(-std::clamp(sum, -most_certain, most_certain))));
 }
 

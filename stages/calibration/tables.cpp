@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Over 400 lines: one table after another, each a few lines, which share their helpers.
 #include "stages/calibration/tables.h"
 
 #include <algorithm>
