@@ -221,7 +221,7 @@ ClassifyCounts classify(core::Block& b, size_t own, const ClassifyOptions& o) {
     if (sides[p] || (raised[p] && z - roofs.height()[c] <= above_roof)) return cls::building;  // NaN: no roof there
     if (wires[p]) return cls::wire;
     if (below.is_noise(p)) return cls::low_noise;
-    return surface[p] ? cls::unassigned : vegetation(b.height[p], o);
+    return surface[p] && planar[p] == Planar::wide ? cls::unassigned : vegetation(b.height[p], o);
   };
   std::vector<std::uint32_t> noise;  // set last: it changes who is usable
   for (std::uint32_t p = 0; p < own; ++p) {
