@@ -160,6 +160,7 @@ class Decks {
     const core::Lattice& l = cells_.lattice;
     float z = cells_.plane[l.at(i, j)];
     int last = 0;
+    bool seen = false;  // returns beside it, lower by less than a fall: crops
     for (int k = 1; k <= std::min(half_width + open_gap, reach_); ++k) {
       const CellIndex to = ahead_[static_cast<size_t>(direction)][static_cast<size_t>(k)];
       if (!l.holds(i + to.i, j + to.j)) return Side::level;  // unknown
@@ -167,15 +168,17 @@ class Decks {
       if (const auto next = nearest_level(l, cells_.plane, i + to.i, j + to.j, z); next && std::abs(cells_.plane[*next] - z) <= may) {
         z = cells_.plane[*next];
         last = k;
+        seen = false;
         if (last >= half_width) return Side::level;
         continue;
       }
       const size_t c = l.at(i + to.i, j + to.j);
+      seen = seen || !std::isnan(cells_.low[c]);
       if (static_cast<double>(z - cells_.low[c]) >= fall) return Side::falls;
       if (const auto ground = nearest_level(l, cells_.ground, i + to.i, j + to.j, z);
           ground && std::abs(cells_.ground[*ground] - z) <= limits_.step)
         return Side::level;
-      if (k - last > open_gap) return Side::open;
+      if (k - last > open_gap) return seen ? Side::level : Side::open;
     }
     return Side::level;
   }

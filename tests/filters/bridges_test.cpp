@@ -97,5 +97,12 @@ TEST(Bridges, StairsAtOneEndOfADeckOverBlackWater) {
   for (size_t at = 0; at < found.size(); ++at) EXPECT_EQ(found[at], c.has_plane(at)) << at % 80 << " " << at / 80;
 }
 
+TEST(Bridges, ReturnsALittleLowerOnBothSidesAreACropAndNotBlackWater) {
+  StructureCells c = canal(0.4f, 1.2f);
+  for (int j = 0; j < 60; ++j)
+    for (int i = 48; i < 80; ++i) c.ground[c.lattice.at(i, j)] = 1.0f;
+  for (const std::uint8_t d : deck_cells(c, {})) EXPECT_FALSE(d);
+}
+
 }  // namespace
 }  // namespace swath::filters
