@@ -98,7 +98,7 @@ void add_implied(const stages::Stage& stage, const core::Location& where, const 
     if (s.stage->info().name == name) return;
   Value table = Value::object();
   table.where = where;
-  plan.stages.push_back({stages::make_stage(name), std::move(table), path, true});
+  plan.stages.push_back({stages::make_stage(name), std::move(table), path});
 }
 
 void read_stages(const Value& tree, Plan& plan, std::vector<Fault>& faults) {

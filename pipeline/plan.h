@@ -45,9 +45,8 @@ struct Request {
 
 struct PlannedStage {
   std::unique_ptr<stages::Stage> stage;
-  core::Value table;     ///< as written, for the origin of values
-  std::string path;      ///< "stage[3]"
-  bool implied = false;  ///< not named in the config: a stage after it uses it
+  core::Value table;  ///< as written, for the origin of values
+  std::string path;   ///< "stage[3]"
   core::Describe describe() const {
     return [s = stage.get()](core::Visitor& v) { s->visit(v); };
   }

@@ -574,7 +574,8 @@ void Engine::run_tile_stages() {
     for (const stages::Product p : stage(i).info().gives_products) grids_.add(p, folder(i));
     if (works_on(i, Grain::merge)) run_merge(i);
     if (!works_on(i, Grain::survey)) context_.earlier.push_back(context_.output);
-    has_products_ = has_products_ || (!plan_.stages[i].implied && fs::exists(context_.output));
+    // What a comparison alone says of data that are refused is not kept.
+    has_products_ = has_products_ || (!stage(i).info().name.starts_with("quality.") && fs::exists(context_.output));
   }
 }
 
