@@ -426,7 +426,8 @@ TEST(Cloud, ASquareWithBothItsRimsHasNoTilesAndCellsOfRimPointsAlone) {
       EXPECT_EQ(files, tiles) << product << " " << tile;
     }
     std::string cells;
-    for (const core::Value& s : io::read_value_file(out / "report.json").find("stages")->items())
+    const core::Value report = io::read_value_file(out / "report.json");
+    for (const core::Value& s : report.find("stages")->items())
       if (const core::Value* tally = s.find("tally"); tally && tally->find("cells with a height"))
         cells += std::to_string(tally->find("cells with a height")->find("count")->as_int()) + " ";
     return cells;
