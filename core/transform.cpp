@@ -172,7 +172,7 @@ Transform::Transform(const Crs& from, const Crs& to) : state_(std::make_unique<S
   Pj target = s.flat ? parse_crs(c, facts_of(to).horizontal_wkt) : three_dimensional(c, to);
   const std::vector<Candidate> candidates = candidates_between(c, source.get(), target.get());
   refuse_where_worse(candidates, s.what);
-  // Where it has a choice PROJ goes by the point's place, and reads geocentric coordinates as if they were longitude and latitude: it is
+  // Where it has a choice PROJ follows the point's place, and reads geocentric coordinates as if they were longitude and latitude: it is
   // given these. (With no choice it stays one operation: through a null shift in degrees heights would keep the wrong ellipsoid, 0.1 mm.)
   const bool choice = std::count_if(candidates.begin(), candidates.end(), [](const Candidate& k) { return k.missing.empty(); }) > 1;
   Pj last;

@@ -133,7 +133,7 @@ class FirstLines {
  public:
   explicit FirstLines(const std::filesystem::path& path) : file_(path), chunk_(1 << 14) {}
 
-  /// The next line without its end; false at the end of the file and before a stretch that is no text, which `broken` tells of.
+  /// The next line without its end; false at the end of the file and before a stretch that is no text, which `broken` reports.
   bool next(std::string& line) {
     line.clear();
     begin_ = loaded_ - (fill_ - used_);

@@ -423,7 +423,7 @@ void Engine::keep_surface_tiles(size_t number, const std::set<TileKey>& fringe) 
   }
 }
 
-/// Tells what it takes to work on tiles with a stage.
+/// What it takes to work on tiles with a stage.
 Measure Engine::measure_of(size_t number) const {
   const Stage& s = stage(number);
   const core::ColumnSet columns = columns_of_tiles(s);
