@@ -13,7 +13,7 @@
 namespace swath::io {
 
 BinaryFile::BinaryFile(std::filesystem::path file) : path_(std::move(file)) {
-  fd_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  fd_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe without a writer would keep us waiting
   if (fd_ < 0) throw_system_error("cannot open", path_, errno);
   struct stat info {};
   const int failed = ::fstat(fd_, &info) ? errno : 0;

@@ -4,10 +4,13 @@
 #include <cpl_conv.h>
 #include <cpl_error.h>
 #include <gdal.h>
+#include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
 #include <cmath>
+#include <fstream>
 #include <mutex>
+#include <string>
 
 #include "core/crs.h"
 #include "core/error.h"
@@ -27,6 +30,29 @@ std::string short_unit(const std::string& name, double si) {
   if (std::abs(si - 0.3048) < 1e-12) return "ft";
   if (std::abs(si - 1200.0 / 3937.0) < 1e-12) return "US survey foot";
   return name;
+}
+
+constexpr const char* raster_drivers[] = {"GTiff", "COG", "VRT",     "AAIGrid", "GSBG", "GS7BG", "GTX",  "EHdr", "ENVI", "HFA",
+                                          "NTv2",  "XYZ", "SRTMHGT", "USGSDEM", "DTED", "BIL",   "GPKG", "PNG",  "JPEG", nullptr};
+constexpr const char* vector_drivers[] = {"GPKG", "ESRI Shapefile", "GeoJSON",      "GeoJSONSeq", "DXF", "CSV",
+                                          "KML",  "FlatGeobuf",     "MapInfo File", nullptr};
+
+/// Whether a virtual raster names a source that is no plain file: an address, or one of GDAL's file systems.
+bool names_elsewhere(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string text(std::size_t{1} << 16, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.find("<VRTDataset") == std::string::npos) return false;
+  in.clear();
+  text.append(std::istreambuf_iterator<char>(in), {});
+  return text.find("/vsi") != std::string::npos || text.find("://") != std::string::npos || text.find("<GDAL_") != std::string::npos;
+}
+
+GDALDataset* open_plain(const std::filesystem::path& file, unsigned kind, const char* const* drivers) {
+  std::error_code ec;
+  if (!std::filesystem::is_regular_file(file, ec) || names_elsewhere(file)) return nullptr;
+  return GDALDataset::Open(file.c_str(), kind | GDAL_OF_READONLY, drivers);
 }
 
 std::string wkt2(const OGRSpatialReference& srs) {
@@ -66,6 +92,9 @@ void GdalMessages::fail(const std::string& doing, const std::filesystem::path& f
 void GdalMessages::check(const std::string& doing, const std::filesystem::path& file) const {
   if (failed_) fail(doing, file);
 }
+
+GDALDataset* open_raster(const std::filesystem::path& file) { return open_plain(file, GDAL_OF_RASTER, raster_drivers); }
+GDALDataset* open_vector(const std::filesystem::path& file) { return open_plain(file, GDAL_OF_VECTOR, vector_drivers); }
 
 GdalSetting::GdalSetting(const char* key, const char* value) : key_(key) {
   if (const char* before = CPLGetThreadLocalConfigOption(key, nullptr)) {

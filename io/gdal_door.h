@@ -7,6 +7,8 @@
 
 #include "core/crs.h"
 
+class GDALDataset;
+
 namespace swath::io {
 
 /// Catches GDAL's messages on this thread as long as it lives (nothing is printed) and registers GDAL's drivers.
@@ -30,6 +32,11 @@ class GdalMessages {
   bool failed_ = false;
   std::string text_;
 };
+
+/// A file of a format that this program reads, opened for reading, or nothing. GDAL's other drivers are left out: some take any text for
+/// a request to a server, or read files that the text names.
+GDALDataset* open_raster(const std::filesystem::path& file);
+GDALDataset* open_vector(const std::filesystem::path& file);
 
 /// A setting of GDAL on this thread as long as the object lives.
 class GdalSetting {

@@ -75,7 +75,7 @@ std::vector<float> north_first(const core::Lattice& l, const std::vector<float>&
 }
 
 GDALDataset* open(const std::filesystem::path& file, const GdalMessages& messages) {
-  auto* d = GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY);
+  GDALDataset* d = open_raster(file);
   if (!d) messages.fail("cannot read the raster", file, std::filesystem::exists(file) ? "" : "check the name");
   return d;
 }

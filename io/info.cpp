@@ -22,6 +22,7 @@
 #include "io/describe_pcap.h"
 #include "io/describe_trajectory.h"
 #include "io/describe_vector.h"
+#include "io/gdal_door.h"
 #include "io/geotiff.h"
 #include "io/nmea.h"
 #include "io/npy.h"
@@ -241,7 +242,7 @@ struct CloseDataset {
 Value describe_raster(const Path& path) {
   GDALAllRegister();
   CPLPushErrorHandler(CPLQuietErrorHandler);
-  const std::unique_ptr<GDALDataset, CloseDataset> data(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+  const std::unique_ptr<GDALDataset, CloseDataset> data(open_raster(path));
   Value out;
   if (data) {
     Value warnings = Value::array();

@@ -17,7 +17,9 @@ namespace {
 
 using core::Value;
 
-constexpr size_t longest_header = 1 << 24;
+constexpr size_t longest_header = 1 << 16;     // NumPy writes a few hundred bytes
+constexpr size_t longest_record = 1 << 20;     // bytes
+constexpr size_t most_read_at_once = 1 << 24;  // bytes
 
 /// Reads the part of Python's literals that .npy headers use: texts, integers, True, False, None, lists, tuples, dicts.
 class PythonLiteral {
@@ -144,8 +146,12 @@ void read_fields(const Value& descr, NpyHeader& out, const std::string& where) {
       if (!names->items()[i].is_text() || !formats->items()[i].is_text()) throw bad("holds nested fields");
       NpyField f = field_from(formats->items()[i].as_text(), names->items()[i].as_text(), where);
       f.offset = at;
-      if (offsets && offsets->is_array() && i < offsets->items().size() && offsets->items()[i].is_int())
-        f.offset = static_cast<std::uint64_t>(offsets->items()[i].as_int());
+      if (offsets && offsets->is_array() && i < offsets->items().size() && offsets->items()[i].is_int()) {
+        const std::int64_t stated = offsets->items()[i].as_int();
+        if (stated < 0 || stated > static_cast<std::int64_t>(longest_record))
+          throw bad("places the field '" + f.name + "' outside the record");
+        f.offset = static_cast<std::uint64_t>(stated);
+      }
       at = f.offset + f.bytes;
       out.row_stride = std::max<std::uint64_t>(out.row_stride, at);
       out.fields.push_back(std::move(f));
@@ -241,7 +247,8 @@ NpyHeader read_npy_header(const std::filesystem::path& path) {
   if (version < 1 || version > 3) throw core::Error("version " + std::to_string(version) + " of the .npy format is not known", where);
   const size_t before = version == 1 ? 10 : 12;
   const size_t length = version == 1 ? load<std::uint16_t>(start + 8) : load<std::uint32_t>(start + 8);
-  if (length > longest_header) throw core::Error("the header of the .npy file is longer than 16 MB", where);
+  if (length > longest_header)
+    throw core::Error("the header of the .npy file is longer than 64 kB", where, "save the array with fewer or shorter field names");
   std::string text(length, ' ');
   file.read(before, text.data(), length);
   const Value tree = PythonLiteral(text, where).value();
@@ -278,6 +285,8 @@ NpyHeader read_npy_header(const std::filesystem::path& path) {
     if (!descr->is_array() && !descr->is_object()) throw core::Error("the dtype of the .npy file is not understood", where);
     read_fields(*descr, out, where);
     if (out.fields.empty() || out.row_stride == 0) throw core::Error("the dtype of the .npy file has no fields", where);
+    if (out.row_stride > longest_record)
+      throw core::Error("a record of the .npy file has " + std::to_string(out.row_stride) + " bytes; at most 1 MB are read", where);
     if (out.rows > most / out.row_stride) throw core::Error("the shape of the .npy file is not possible", where);
     data_bytes = out.rows * out.row_stride;
   }
@@ -295,11 +304,13 @@ NpyHeader read_npy_header(const std::filesystem::path& path) {
 size_t field_of(const NpyHeader& header, const std::string& field, const std::filesystem::path& file) {
   std::vector<std::string> names;
   std::string list;
+  constexpr size_t listed = 30;
   for (const NpyField& f : header.fields) {
     if (f.name == field) return names.size();
     names.push_back(f.name);
-    list += (list.empty() ? "" : ", ") + f.name;
+    if (names.size() <= listed) list += (list.empty() ? "" : ", ") + f.name;
   }
+  if (names.size() > listed) list += " and " + std::to_string(names.size() - listed) + " more";
   size_t number = 0;
   const auto [at, ec] = std::from_chars(field.data(), field.data() + field.size(), number);
   if (ec == std::errc() && at == field.data() + field.size() && number >= 1 && number <= names.size()) return number - 1;
@@ -319,14 +330,19 @@ NpyReader::NpyReader(const std::filesystem::path& file, std::vector<size_t> fiel
 
 void NpyReader::read(std::uint64_t first, size_t n, std::vector<std::vector<double>>& columns) {
   columns.resize(fields_.size());
+  for (std::vector<double>& column : columns) column.resize(n);
   const std::uint64_t stride = header_.row_stride;
-  bytes_.resize(n * stride);
-  if (!header_.by_column) file_.read(header_.data_begin + first * stride, bytes_.data(), bytes_.size());
-  for (size_t i = 0; i < fields_.size(); ++i) {
-    const NpyField& f = header_.fields[fields_[i]];
-    columns[i].resize(n);
-    if (header_.by_column) file_.read(header_.data_begin + f.offset + first * stride, bytes_.data(), bytes_.size());
-    if (n > 0) convert_field(f, bytes_.data() + (header_.by_column ? 0 : f.offset), stride, n, columns[i].data());
+  const size_t step = std::max<size_t>(1, most_read_at_once / stride);
+  for (size_t done = 0; done < n; done += step) {
+    const size_t some = std::min(step, n - done);
+    bytes_.resize(some * stride);
+    const std::uint64_t begin = header_.data_begin + (first + done) * stride;
+    if (!header_.by_column) file_.read(begin, bytes_.data(), bytes_.size());
+    for (size_t i = 0; i < fields_.size(); ++i) {
+      const NpyField& f = header_.fields[fields_[i]];
+      if (header_.by_column) file_.read(begin + f.offset, bytes_.data(), bytes_.size());
+      convert_field(f, bytes_.data() + (header_.by_column ? 0 : f.offset), stride, some, columns[i].data() + done);
+    }
   }
 }
 

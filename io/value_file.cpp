@@ -81,6 +81,8 @@ class Places {
 
 class TreeBuilder {
  public:
+  static constexpr size_t deepest = 200;
+
   TreeBuilder(const std::string& text, const std::string& file, rapidjson::MemoryStream& stream)
       : text_(text), places_(text, file), stream_(stream) {}
 
@@ -100,14 +102,22 @@ class TreeBuilder {
     open_.back()->members().emplace_back(std::string(s, n), Value{});
     return true;
   }
-  bool EndObject(rapidjson::SizeType) { return close(); }
+  bool EndObject(rapidjson::SizeType) {
+    std::vector<std::string_view> keys;
+    for (const auto& [key, value] : open_.back()->members()) keys.push_back(key);
+    std::sort(keys.begin(), keys.end());
+    if (const auto twice = std::adjacent_find(keys.begin(), keys.end()); twice != keys.end())
+      throw core::usage_error("the key '" + std::string(*twice) + "' is stated twice", here().text());
+    return close();
+  }
   bool StartArray() { return open(Value::array()); }
   bool EndArray(rapidjson::SizeType) { return close(); }
 
  private:
   // The stream stands just behind the value; for scalars this is near enough to point a person to the line.
+  Location here() { return places_.at(stream_.Tell() > 0 ? stream_.Tell() - 1 : 0); }
   Value& place(Value v) {
-    v.where = places_.at(stream_.Tell() > 0 ? stream_.Tell() - 1 : 0);
+    v.where = here();
     if (open_.empty()) return root = std::move(v);
     Value& parent = *open_.back();
     if (parent.is_array()) return parent.push(std::move(v));
@@ -118,6 +128,7 @@ class TreeBuilder {
     return true;
   }
   bool open(Value v) {
+    if (open_.size() >= deepest) throw core::usage_error("more than " + std::to_string(deepest) + " levels of nesting", here().text());
     open_.push_back(&place(std::move(v)));
     return true;
   }
@@ -192,6 +203,8 @@ void write(const Value& v, int depth, std::string& out) {
 std::string read_text_file(const std::filesystem::path& file) {
   std::error_code ec;
   if (std::filesystem::is_directory(file, ec)) throw core::Error("is a folder, not a file", file.string());
+  if (std::filesystem::exists(file, ec) && !std::filesystem::is_regular_file(file, ec))
+    throw core::Error("is not a regular file", file.string());
   errno = 0;
   std::ifstream in(file, std::ios::binary);
   if (!in) throw_system_error("cannot open", file, errno);

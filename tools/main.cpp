@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -291,7 +293,10 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   keep_freed_memory();
   try {
-    return command_line(argc, argv);
+    const int code = command_line(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+      throw swath::core::Error(std::string("cannot write to the standard output: ") + std::strerror(errno), "", "the disk may be full");
+    return code;
   } catch (const swath::core::Error& e) {
     std::fprintf(stderr, "swath: error: %s\n", e.text().c_str());
     return static_cast<int>(e.code());

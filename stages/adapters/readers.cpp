@@ -37,7 +37,7 @@ class TrajectoryReader : public OptionStage<trajectory::TrajectoryOptions> {
   }
   std::vector<fs::path> inputs(const io::Survey& survey) const override {
     std::vector<fs::path> out;
-    for (const io::TrajectoryFile& f : survey.trajectory) {
+    for (const io::TrajectoryFile& f : io::trajectory_files(survey)) {
       out.push_back(io::resolve(survey, f.file));
       if (f.accuracy) out.push_back(io::resolve(survey, *f.accuracy));
     }
@@ -55,7 +55,7 @@ class TrajectoryReader : public OptionStage<trajectory::TrajectoryOptions> {
     checks.max_gap = options.max_gap;
     findings = trajectory::check_trajectory(data, checks).value();
     context.trajectory =
-        std::make_shared<trajectory::Trajectory>(std::move(data), options, context.survey.trajectory.front().file.string());
+        std::make_shared<trajectory::Trajectory>(std::move(data), options, io::trajectory_files(context.survey).front().file.string());
     place_on_map(context, tally);
   }
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/binary_file.h"
 
+#include <sys/stat.h>
+
 #include "core/error.h"
 #include "tests/world/support.h"
 
@@ -56,6 +58,13 @@ TEST(BinaryAppender, AppendsAndRewrites) {
   out.close();
   EXPECT_EQ(test::read_bytes(folder / "a.bin"), "aXcdef");
   EXPECT_THROW(BinaryAppender(folder / "none", folder / "none"), core::Error);
+}
+
+TEST(BinaryFile, APipeIsRefusedAndNotWaitedFor) {
+  const test::TemporaryFolder folder;
+  const auto pipe = folder / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(BinaryFile{pipe}, core::Error);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
+#include <gdal_priv.h>
 
 #include "core/crs.h"
 #include "core/error.h"
@@ -74,6 +75,36 @@ TEST(GdalDoor, FactsOfProjectedCompoundFeetAndDegrees) {
   EXPECT_TRUE(crs_facts("").empty);
   EXPECT_THROW(crs_facts("EPSG:1"), core::Error);
   EXPECT_THROW(crs_facts("somewhere"), core::Error);
+}
+
+TEST(GdalDoor, OnlyFilesOfKnownFormatsAreOpened) {
+  const test::TemporaryFolder folder;
+  const GdalMessages messages;
+  const std::string grid = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 4\n";
+  test::write_bytes(folder / "a.asc", grid);
+  const auto vrt = [&](const char* name, const std::string& source) {
+    test::write_bytes(folder / name,
+                      "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><VRTRasterBand dataType=\"Float32\" band=\"1\">"
+                      "<SimpleSource><SourceFilename relativeToVRT=\"1\">" +
+                          source + "</SourceFilename></SimpleSource></VRTRasterBand></VRTDataset>");
+    return folder / name;
+  };
+  const auto opens = [](const std::filesystem::path& file) {
+    GDALDataset* d = open_raster(file);
+    if (d) GDALClose(d);
+    return d != nullptr;
+  };
+  EXPECT_TRUE(opens(folder / "a.asc"));
+  EXPECT_TRUE(opens(vrt("own.vrt", "a.asc")));
+  EXPECT_FALSE(opens(vrt("far.vrt", "/vsicurl/http://127.0.0.1:9/a.tif")));
+  EXPECT_FALSE(opens(vrt("near.vrt", "/vsimem/a.tif")));
+  test::write_bytes(folder / "wms.xml",
+                    "<GDAL_WMS><Service name=\"TMS\"><ServerUrl>http://127.0.0.1:9/${z}/${x}/${y}.png</ServerUrl></Service><DataWindow>"
+                    "<UpperLeftX>0</UpperLeftX><UpperLeftY>1</UpperLeftY><LowerRightX>1</LowerRightX><LowerRightY>0</LowerRightY>"
+                    "<TileLevel>1</TileLevel></DataWindow></GDAL_WMS>");
+  EXPECT_FALSE(opens(folder / "wms.xml"));
+  EXPECT_FALSE(opens(folder.path()));
+  EXPECT_EQ(open_vector(folder / "a.asc"), nullptr);
 }
 
 }  // namespace

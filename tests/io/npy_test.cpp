@@ -146,6 +146,31 @@ TEST_F(Npy, WrittenArraysReadBack) {
   EXPECT_THROW(NpyWriter(folder_ / "y.npy", {{"n", "O"}}), core::Error);
 }
 
+TEST_F(Npy, FieldsOutsideTheRecordAndEndlessHeadersAreRefused) {
+  const auto placed = [](const std::string& offsets) {
+    return npy("{'descr': {'names': ['a', 'b'], 'formats': ['<f8', '<f8'], 'offsets': [" + offsets +
+                   "]}, 'fortran_order': False, 'shape': (2,), }",
+               std::string(32, '\0'));
+  };
+  EXPECT_EQ(read_npy_header(made(placed("8, 0"))).row_stride, 16u);
+  EXPECT_THROW(read_npy_header(made(placed("-800000, 8"))), core::Error);
+  EXPECT_THROW(read_npy_header(made(placed("0, -8"))), core::Error);
+  EXPECT_THROW(read_npy_header(made(placed("0, 9223372036854775807"))), core::Error);
+  EXPECT_THROW(read_npy_header(made(npy(std::string(70000, ' ') + "{}", "", 2))), core::Error);
+}
+
+TEST_F(Npy, LongRecordsAreReadInParts) {
+  constexpr size_t rows = 40, length = 1000000;
+  std::string data(rows * length, '\0');
+  for (size_t i = 0; i < rows; ++i) data[i * length] = static_cast<char>(i);
+  const std::string dict = "{'descr': [('n', '|u1'), ('', '|V999999')], 'fortran_order': False, 'shape': (40,), }";
+  const Columns back = read(npy(dict, data), {"n"});
+  for (size_t i = 0; i < rows; ++i) EXPECT_EQ(back[0][i], static_cast<double>(i));
+  EXPECT_THROW(read_npy_header(made(npy("{'descr': [('n', '|u1'), ('', '|V1048576')], 'fortran_order': False, 'shape': (1,), }",
+                                        std::string(1048577, '\0')))),
+               core::Error);
+}
+
 TEST(NpyReference, TinySurvey) {
   SWATH_SHARED_OR_SKIP(file, "data/tiny_survey/laser.npy");
   const NpyHeader header = read_npy_header(file);

@@ -60,5 +60,17 @@ TEST(ValueFile, MissingFileIsOneClearError) {
   EXPECT_THROW(read_value_file(folder.path()), core::Error);
 }
 
+TEST(ValueFile, JsonThatNestsWithoutEndOrRepeatsAKeyIsRefused) {
+  const auto nested = [](size_t n) { return std::string(n, '[') + std::string(n, ']'); };
+  EXPECT_NO_THROW(parse_json(nested(200), "x"));
+  for (const std::string& text : {nested(201), nested(1000000), std::string("{\"a\": 1, \"b\": 2,\n \"a\": 3}")}) try {
+      parse_json(text, "x");
+      FAIL();
+    } catch (const core::Error& e) {
+      EXPECT_EQ(e.code(), core::Exit::bad_usage);
+      EXPECT_EQ(e.where().rfind("x:", 0), 0u);
+    }
+}
+
 }  // namespace
 }  // namespace swath::io
