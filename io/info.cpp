@@ -14,6 +14,7 @@
 #include "core/crs.h"
 #include "core/error.h"
 #include "core/option_visitors.h"
+#include "core/printable.h"
 #include "core/time.h"
 #include "io/csd.h"
 #include "io/delimited.h"
@@ -378,7 +379,7 @@ std::string info_text(const core::Value& told) {
   render(told, "", out);
   if (const Value* warnings = told.find("warnings"))
     for (const Value& w : warnings->items()) out += "warning: " + w.as_text() + "\n";
-  return out;
+  return core::printable(out);
 }
 
 }  // namespace swath::io

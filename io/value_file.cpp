@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/printable.h"
 #include "core/units.h"
 #include "io/output_file.h"
 
@@ -143,7 +144,9 @@ class TreeBuilder {
   std::vector<Value*> open_;
 };
 
-void quote(const std::string& s, std::string& out) {
+void quote(const std::string& text, std::string& out) {
+  const bool plain = std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+  const std::string s = plain ? text : core::printable(text);  // JSON is UTF-8
   static const char* digits = "0123456789abcdef";
   out += '"';
   for (const char c : s) {

@@ -17,6 +17,7 @@
 
 #include "core/error.h"
 #include "core/option_visitors.h"
+#include "core/printable.h"
 #include "io/info.h"
 #include "io/value_file.h"
 #include "pipeline/describe.h"
@@ -298,13 +299,13 @@ int main(int argc, char** argv) {
       throw swath::core::Error(std::string("cannot write to the standard output: ") + std::strerror(errno), "", "the disk may be full");
     return code;
   } catch (const swath::core::Error& e) {
-    std::fprintf(stderr, "swath: error: %s\n", e.text().c_str());
+    std::fprintf(stderr, "swath: error: %s\n", swath::core::printable(e.text()).c_str());
     return static_cast<int>(e.code());
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "swath: error: out of memory\n  hint: a smaller run.memory or run.tile needs less\n");
     return static_cast<int>(swath::core::Exit::bad_data);
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "swath: error: %s\n", e.what());
+    std::fprintf(stderr, "swath: error: %s\n", swath::core::printable(e.what()).c_str());
     return static_cast<int>(swath::core::Exit::bad_data);
   }
 }

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/printable.h"
+
+#include <cstddef>
+
+namespace swath::core {
+namespace {
+
+unsigned byte_at(std::string_view text, std::size_t i) { return static_cast<unsigned char>(text[i]); }
+
+/// Bytes of the UTF-8 character (RFC 3629) that begins at `i`; 0 where none does.
+std::size_t length_of(std::string_view text, std::size_t i) {
+  const unsigned first = byte_at(text, i);
+  if (first < 0x80) return 1;
+  const std::size_t n = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4 || i + n > text.size()) return 0;
+  for (std::size_t k = 1; k < n; ++k)
+    if ((byte_at(text, i + k) & 0xc0U) != 0x80U) return 0;
+  const unsigned second = byte_at(text, i + 1);
+  // Longer than need be, halves of pairs, beyond the last code point, and the control characters U+0080 to U+009F.
+  const bool refused = (first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) || (first == 0xf0 && second < 0x90) ||
+                       (first == 0xf4 && second > 0x8f) || (first == 0xc2 && second < 0xa0);
+  return refused ? 0 : n;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned c = byte_at(text, i);
+    const bool control = (c < 0x20 && c != '\n' && c != '\t') || c == 0x7f;
+    if (const std::size_t n = control ? 0 : length_of(text, i)) {
+      out += text.substr(i, n);
+      i += n;
+    } else {
+      out += "\\x";
+      out += digits[c >> 4U];
+      out += digits[c & 15U];
+      ++i;
+    }
+  }
+  return out;
+}
+
+}  // namespace swath::core
