@@ -3,18 +3,20 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <thread>
 
 #include "core/error.h"
+#include "core/units.h"
 #include "io/output_file.h"
-
-extern char** environ;
 
 namespace swath::io {
 namespace {
@@ -26,22 +28,51 @@ bool may_run(const fs::path& file) {
   return fs::is_regular_file(file, ec) && ::access(file.c_str(), X_OK) == 0;
 }
 
-/// Actions and attributes of posix_spawn, freed at the end.
-class Spawn {
- public:
-  Spawn() {
-    posix_spawn_file_actions_init(&actions);
-    posix_spawnattr_init(&attributes);
-  }
-  ~Spawn() {
-    posix_spawn_file_actions_destroy(&actions);
-    posix_spawnattr_destroy(&attributes);
-  }
-  Spawn(const Spawn&) = delete;
-  Spawn& operator=(const Spawn&) = delete;
-  posix_spawn_file_actions_t actions{};
-  posix_spawnattr_t attributes{};
+constexpr auto poll_step = std::chrono::milliseconds(20);
+
+/// What the child does between fork and exec, where only system calls are allowed: its errors go to `report`.
+struct Start {
+  const char* program;
+  const char* folder;
+  const char* log;
+  char* const* argv;
+  pid_t parent;
+  int report;  ///< closed by a successful exec
 };
+
+[[noreturn]] void become(const Start& s) {
+  // The child starts with no signal blocked or ignored, whatever this program does with them, and does not outlive it.
+  sigset_t none;
+  sigemptyset(&none);
+  for (int signal = 1; signal < NSIG; ++signal) ::signal(signal, SIG_DFL);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != s.parent) ::_exit(127);
+  const int in = ::open("/dev/null", O_RDONLY), out = ::open(s.log, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  if (in >= 0 && out >= 0 && ::dup2(in, 0) >= 0 && ::dup2(out, 1) >= 0 && ::dup2(out, 2) >= 0 && ::chdir(s.folder) == 0)
+    ::execv(s.program, s.argv);
+  const int failed = errno;
+  static_cast<void>(!::write(s.report, &failed, sizeof failed));
+  ::_exit(127);
+}
+
+/// Waits for the child's end, and ends it where it takes longer than `limit` (s; 0: no limit).
+int wait_for(pid_t child, const fs::path& program, double limit) {
+  const auto start = std::chrono::steady_clock::now();
+  int status = 0;
+  while (true) {
+    const pid_t ended = ::waitpid(child, &status, limit > 0 ? WNOHANG : 0);
+    if (ended == child) return status;
+    if (ended < 0 && errno != EINTR) throw_system_error("cannot wait for the program", program, errno);
+    if (ended != 0) continue;
+    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > limit) {
+      ::kill(child, SIGKILL);
+      while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+      throw core::Error("the program was ended: it took longer than " + core::format_number(limit) + " s", program.string());
+    }
+    std::this_thread::sleep_for(poll_step);
+  }
+}
 
 }  // namespace
 
@@ -64,7 +95,8 @@ std::string ProcessEnd::text() const {
   return "exit code " + std::to_string(code);
 }
 
-ProcessEnd run_program(const fs::path& program, const std::vector<std::string>& arguments, const fs::path& folder, const fs::path& log) {
+ProcessEnd run_program(const fs::path& program, const std::vector<std::string>& arguments, const fs::path& folder, const fs::path& log,
+                       double limit) {
   std::vector<std::string> words = {program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -72,26 +104,26 @@ ProcessEnd run_program(const fs::path& program, const std::vector<std::string>& 
   for (std::string& w : words) argv.push_back(w.data());
   argv.push_back(nullptr);
 
-  Spawn spawn;
-  const std::string log_name = fs::absolute(log).string(), folder_name = folder.string();
-  posix_spawn_file_actions_addopen(&spawn.actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&spawn.actions, 1, log_name.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  posix_spawn_file_actions_adddup2(&spawn.actions, 1, 2);
-  posix_spawn_file_actions_addchdir_np(&spawn.actions, folder_name.c_str());
-  // The child starts with no signal blocked or ignored, whatever this program does with them.
-  sigset_t none, all;
-  sigemptyset(&none);
-  sigfillset(&all);
-  posix_spawnattr_setsigmask(&spawn.attributes, &none);
-  posix_spawnattr_setsigdefault(&spawn.attributes, &all);
-  posix_spawnattr_setflags(&spawn.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-
-  pid_t child = 0;
-  const int failed = ::posix_spawn(&child, program.c_str(), &spawn.actions, &spawn.attributes, argv.data(), environ);
-  if (failed) throw_system_error("cannot start the program", program, failed);
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) throw_system_error("cannot wait for the program", program, errno);
+  const std::string program_name = program.string(), log_name = fs::absolute(log).string(), folder_name = folder.string();
+  int report[2] = {-1, -1};
+  if (::pipe2(report, O_CLOEXEC) != 0) throw_system_error("cannot start the program", program, errno);
+  const Start start{program_name.c_str(), folder_name.c_str(), log_name.c_str(), argv.data(), ::getpid(), report[1]};
+  const pid_t child = ::fork();
+  if (child == 0) become(start);
+  const int not_forked = errno;
+  ::close(report[1]);
+  int failed = child < 0 ? not_forked : 0;
+  if (child > 0) {
+    ssize_t got = 0;
+    while ((got = ::read(report[0], &failed, sizeof failed)) < 0 && errno == EINTR) continue;
+    if (got != sizeof failed) failed = 0;
+  }
+  ::close(report[0]);
+  if (failed) {
+    if (child > 0) ::waitpid(child, nullptr, 0);
+    throw_system_error("cannot start the program", program, failed);
+  }
+  const int status = wait_for(child, program, limit);
   if (WIFSIGNALED(status)) return {-1, WTERMSIG(status)};
   return {WEXITSTATUS(status), 0};
 }

@@ -20,9 +20,9 @@ struct ProcessEnd {
   std::string text() const;
 };
 
-/// Runs a program to its end, without a shell: working folder `folder`, nothing to read, what it writes goes to `log`. Throws Error where
-/// it cannot be started.
+/// Runs a program to its end, without a shell: working folder `folder`, nothing to read, what it writes goes to `log`. It ends with this
+/// program. Throws Error where it cannot be started, and where it takes longer than `limit` (s; 0: no limit), which ends it.
 ProcessEnd run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-                       const std::filesystem::path& log);
+                       const std::filesystem::path& log, double limit = 0);
 
 }  // namespace swath::io

@@ -58,14 +58,16 @@ struct Log {
   std::string rejected;  ///< first complaint about the configuration
 };
 
+/// Of a log without end the first part, and its last line.
 Log read_log(const fs::path& file) {
+  constexpr size_t longest_line = 4096, longest_log = 1 << 20;
   Log log;
   std::ifstream in(file, std::ios::binary);
   std::string line;
   const auto take = [&] {
     while (!line.empty() && (line.back() == ' ' || line.back() == '\t')) line.pop_back();
     if (!line.empty() && !line.starts_with("processing :") && !line.starts_with("reading")) {
-      log.text += line + "\n";
+      if (log.text.size() < longest_log) log.text += line + "\n";
       log.last = line;
       if (log.rejected.empty() && line.starts_with("invalid option")) log.rejected = line;
     }
@@ -74,7 +76,7 @@ Log read_log(const fs::path& file) {
   for (char c = 0; in.get(c);) {
     if (c == '\n' || c == '\r')
       take();
-    else
+    else if (line.size() < longest_line)
       line += c;
   }
   take();
@@ -113,7 +115,7 @@ fs::path run_rtklib(const RtklibJob& job) {
     scratch.link(job.navigation[i], name);
     arguments.push_back(name);
   }
-  const ProcessEnd end = run_program(job.program, arguments, scratch.path, scratch.path / "log");
+  const ProcessEnd end = run_program(job.program, arguments, scratch.path, scratch.path / "log", job.time_limit);
   const Log log = read_log(scratch.path / "log");
   std::string command = job.program.string();
   for (const std::string& a : arguments) command += " " + a;

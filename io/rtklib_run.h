@@ -17,7 +17,8 @@ struct RtklibJob {
   std::string name;
   std::vector<std::filesystem::path> rover, base, navigation;  ///< `base` empty: the rover alone
   std::optional<std::filesystem::path> antenna_file;
-  double every = 0;  ///< s; only epochs at its multiples; 0: all
+  double time_limit = 0;  ///< s; 0: none
+  double every = 0;       ///< s; only epochs at its multiples; 0: all
   RtklibOptions options;
   RtklibSetup setup;  ///< its `antenna_file` is set by run_rtklib
 };

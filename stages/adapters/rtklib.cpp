@@ -33,6 +33,7 @@ struct RtklibStageOptions : io::RtklibOptions {
   std::string bases = "nearest";
   double agreement = 5.0;
   core::Metres base_tolerance{50.0};
+  core::Seconds time_limit{7200.0};
 };
 
 /// "nearest" is 1, "all" any number; 0 where the text is neither, nor a number above 0.
@@ -52,6 +53,7 @@ void describe(RtklibStageOptions& o, V& v) {
            "Several bases: fixed solutions of one epoch agree within so many sigmas of their difference, and are averaged.");
   v.option("base_tolerance", o.base_tolerance, core::above(0),
            "Farthest that a base's own code solution may lie from its stated position.");
+  v.option("time_limit", o.time_limit, core::above(0), "Longest time for one run of rnx2rtkp, which is ended then.");
   describe(static_cast<io::RtklibOptions&>(o), v);
   v.check(number_of_bases(o.bases) > 0, "bases is \"nearest\", \"all\" or a number from \"1\"");
 }
@@ -126,6 +128,7 @@ class Rtklib : public OptionStage<RtklibStageOptions> {
     job.program = io::find_program(options.program);
     job.products = products;
     job.options = options;
+    job.time_limit = options.time_limit.value;
     const Receiver rover = scan_receiver(context.survey, context.survey.rinex.rover);
     job.rover = rover.files;
     prepare(context, rover, job, tally);

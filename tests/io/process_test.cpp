@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/process.h"
 
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdlib>
 
@@ -51,6 +55,41 @@ TEST_F(Process, TellsHowItEnded) {
 TEST_F(Process, WhatCannotBeStartedIsAnError) {
   EXPECT_THROW(run_program(folder_ / "none", {}, folder_.path(), folder_ / "log"), core::Error);
   EXPECT_THROW(run_program(script("ok", "exit 0\n"), {}, folder_ / "no folder", folder_ / "log"), core::Error);
+}
+
+TEST_F(Process, WhatTakesTooLongIsEnded) {
+  const fs::path endless = script("endless", "echo $$; exec sleep 600\n");
+  try {
+    run_program(endless, {}, folder_.path(), folder_ / "log", 0.3);
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_NE(e.text().find("longer than 0.3 s"), std::string::npos) << e.text();
+  }
+  EXPECT_NE(::kill(std::stoi(log()), 0), 0) << "it still runs";
+  EXPECT_TRUE(run_program(script("quick", "exit 0\n"), {}, folder_.path(), folder_ / "log", 60.0).well());
+}
+
+TEST_F(Process, AProgramDoesNotOutliveItsCaller) {
+  const fs::path endless = script("endless", "echo $$; exec sleep 600\n");
+  const pid_t caller = ::fork();
+  if (caller == 0) {
+    run_program(endless, {}, folder_.path(), folder_ / "log");
+    ::_exit(0);
+  }
+  const auto logged = [&] { return fs::exists(folder_ / "log") ? log() : std::string(); };
+  for (int tries = 0; tries < 500 && logged().find('\n') == std::string::npos; ++tries) ::usleep(10000);
+  const pid_t program = std::stoi(logged());
+  ASSERT_EQ(::kill(program, 0), 0);
+  ::kill(caller, SIGKILL);
+  ::waitpid(caller, nullptr, 0);
+  // A program without a parent is nobody's to wait for here: it is gone, or dead and not yet collected.
+  const auto runs = [&] {
+    const std::string state =
+        fs::exists("/proc/" + std::to_string(program)) ? test::read_bytes("/proc/" + std::to_string(program) + "/stat") : "";
+    return !state.empty() && state.find(") Z") == std::string::npos;
+  };
+  for (int tries = 0; tries < 500 && runs(); ++tries) ::usleep(10000);
+  EXPECT_FALSE(runs());
 }
 
 TEST_F(Process, ProgramsAreFoundOnPath) {
