@@ -64,22 +64,30 @@ bool within_reach(const core::Lattice& l, const core::Block& b, size_t p) {
   return c.i > 0 && c.j > 0 && c.i < l.nx - 1 && c.j < l.ny - 1;
 }
 
-}  // namespace
+// m about the own points in which returns are judged.
+double judged_around() { return std::max(ground_chance_reach + ground_populations_reach, ground_probability_reach); }
 
-double halo(const GroundOptions& o) {
-  const double around = std::max(ground_chance_reach + ground_populations_reach, ground_probability_reach);
-  return std::ceil((surface_reach(surface_options(o)) + 2) * ground_cell + around);
+/// The points of `rows`, with the columns that are looked at.
+core::Block points_of(const core::Block& b, const std::vector<std::uint32_t>& rows) {
+  core::Block out;
+  out.origin = b.origin;
+  const auto take = [&](const auto& from, auto& to) {
+    if (from.empty()) return;
+    to.resize(rows.size());
+    for (size_t k = 0; k < rows.size(); ++k) to[k] = from[rows[k]];
+  };
+  take(b.x, out.x), take(b.y, out.y), take(b.z, out.z);
+  take(b.return_number, out.return_number), take(b.return_count, out.return_count), take(b.strip, out.strip);
+  take(b.flags, out.flags), take(b.classification, out.classification);
+  return out;
 }
 
-std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, const GroundOptions& o) {
+/// Of the own points; `b` holds what lies near them.
+std::vector<GroundEvidence> evidence_on(const core::Block& b, size_t own, GroundBase base, const GroundOptions& o) {
   GroundEvidence unknown;
   unknown.above = not_judged;
   std::vector<GroundEvidence> evidence(own, unknown);
-  bool any = false;
-  for (size_t p = 0; p < b.size() && !any; ++p) any = may_be_ground(b, p);
-  if (own == 0 || !any) return evidence;
-  const GroundSurface g =
-      ground_surface(b, own, std::max(ground_chance_reach + ground_populations_reach, ground_probability_reach), surface_options(o));
+  const GroundSurface g = ground_surface(b, std::move(base), surface_options(o));
   std::vector<ReturnOverGround> returns(b.size(), {not_judged, 0, 0, false});
   for (size_t p = 0; p < b.size(); ++p) {
     if (!may_be_ground(b, p) || !within_reach(g.lattice, b, p)) continue;
@@ -105,6 +113,22 @@ std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, co
   std::vector<ReturnOverGround>().swap(returns);
   look_around(b, above, evidence);
   return evidence;
+}
+
+}  // namespace
+
+double halo(const GroundOptions& o) { return std::ceil((surface_reach(surface_options(o)) + 2) * ground_cell + judged_around()); }
+
+std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, const GroundOptions& o) {
+  GroundEvidence unknown;
+  unknown.above = not_judged;
+  bool any = false;
+  for (size_t p = 0; p < b.size() && !any; ++p) any = may_be_ground(b, p);
+  if (own == 0 || !any) return std::vector<GroundEvidence>(own, unknown);
+  GroundBase base = ground_base(b, own, judged_around(), surface_options(o));
+  const core::Block near = own < b.size() ? points_of(b, base.rows) : core::Block{};
+  std::vector<std::uint32_t>().swap(base.rows);
+  return evidence_on(own < b.size() ? near : b, own, std::move(base), o);
 }
 
 GroundChances classify_ground(core::Block& b, size_t own, const GroundOptions& o) {
