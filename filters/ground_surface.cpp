@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "core/floor_div.h"
+#include "core/wide.h"
 #include "filters/bins.h"
 #include "filters/ground_labels.h"
 #include "filters/moving_planes.h"
@@ -85,21 +86,26 @@ RasterSample sample(const Raster& r, const Place& at, double cell) {
 
 double steepness(const RasterSample& s) { return std::sqrt(s.east * s.east + s.north * s.north); }
 
-/// A return that makes the surface.
+/// A return that makes the surface: in cells from the lattice's corner, and its height.
 struct Maker {
-  Place place;
-  size_t cell;
-  double z;
+  double x, y, z;
+  size_t cell(int nx) const { return static_cast<size_t>(y) * static_cast<size_t>(nx) + static_cast<size_t>(x); }
+  Place place(int nx) const {
+    const double u = x - 0.5, v = y - 0.5;
+    const auto i = static_cast<std::uint32_t>(u), j = static_cast<std::uint32_t>(v);
+    return {static_cast<size_t>(j) * static_cast<size_t>(nx) + i, u - i, v - j};
+  }
 };
 
 /// Those within the lattice but for its outermost cells.
 std::vector<Maker> makers_of(const core::Block& b, const core::Lattice& l) {
   std::vector<Maker> makers;
+  makers.reserve(b.size());
+  const auto west = static_cast<double>(l.i0), south = static_cast<double>(l.j0);
   for (size_t p = 0; p < b.size(); ++p) {
     if (!may_be_ground(b, p)) continue;
-    const CellIndex at = cell_of(l, b, p);
-    if (at.i < 1 || at.j < 1 || at.i >= l.nx - 1 || at.j >= l.ny - 1) continue;
-    makers.push_back({place_of(l, b.origin.x() + b.x[p], b.origin.y() + b.y[p]), l.at(at.i, at.j), b.z[p]});
+    const Maker m{(b.origin.x() + b.x[p]) / ground_cell - west, (b.origin.y() + b.y[p]) / ground_cell - south, b.z[p]};
+    if (m.x >= 1.0 && m.y >= 1.0 && m.x < l.nx - 1 && m.y < l.ny - 1) makers.push_back(m);
   }
   return makers;
 }
@@ -118,14 +124,16 @@ void refine(GroundSurface& g, const Raster& base, const std::vector<Maker>& make
   for (float& v : open.value) v = static_cast<float>(arm_open) * std::exp(-v / static_cast<float>(arm_fading));
   Sums sums(l), lower(l);
   for (const Maker& m : makers) {
-    const RasterSample s = sample(g.height, m.place, l.cell);
+    const Place place = m.place(l.nx);
+    const size_t cell = m.cell(l.nx);
+    const RasterSample s = sample(g.height, place, l.cell);
     if (std::isnan(s.height)) continue;
     const double r = m.z - s.height;
-    const double above = arm_per_spread * g.spread.value[m.cell] + open.value[m.cell] + arm_per_slope * steepness(s);
+    const double above = arm_per_spread * g.spread.value[cell] + open.value[cell] + arm_per_slope * steepness(s);
     const double w = weight_of(r, above);
     if (w == 0.0) continue;
-    sums.add(m.cell, w, &base == &g.height ? r : m.z - sample(base, m.place, l.cell).height);
-    if (r < 0) lower.add(m.cell, w, r);
+    sums.add(cell, w, &base == &g.height ? r : m.z - sample(base, place, l.cell).height);
+    if (r < 0) lower.add(cell, w, r);
   }
   const CellSums data = sums.by_cell();
   PlaneField planes = fit_planes(data, sigma, prior_weight);
@@ -154,11 +162,12 @@ Shares shares_of(const GroundSurface& g, const std::vector<Maker>& makers) {
   Raster all(l.nx, l.ny, 0.0F);
   Shares s{all, all};
   for (const Maker& m : makers) {
-    const RasterSample at = sample(g.height, m.place, l.cell);
+    const RasterSample at = sample(g.height, m.place(l.nx), l.cell);
+    const size_t cell = m.cell(l.nx);
     const double r = m.z - at.height;
-    all.value[m.cell] += 1.0F;
-    if (r > knee_low + knee_low_per_slope * steepness(at) && r < knee_high) s.standing.value[m.cell] += 1.0F;
-    if (r < -sunken_depth) s.sunken.value[m.cell] += 1.0F;
+    all.value[cell] += 1.0F;
+    if (r > knee_low + knee_low_per_slope * steepness(at) && r < knee_high) s.standing.value[cell] += 1.0F;
+    if (r < -sunken_depth) s.sunken.value[cell] += 1.0F;
   }
   all = blur(all, share_sigma);
   for (Raster* r : {&s.standing, &s.sunken}) {
@@ -190,21 +199,33 @@ core::Lattice fine_lattice(const core::Block& b, size_t own, const core::Lattice
   return {l.cell, l.i0 + i0, l.j0 + j0, i1 - i0, j1 - j0};
 }
 
-/// The lowest of the returns that may be ground in each cell of `all`; and into `rows` the points near `own`.
+/// Indices of cells, from `first`, of some coordinates.
+SWATH_WIDE void cells_of(const double* v, double origin, double first, std::int32_t* cell, size_t n) {
+  for (size_t k = 0; k < n; ++k) cell[k] = static_cast<std::int32_t>(std::floor((origin + v[k]) / ground_cell) - first);
+}
+
+/// The lowest of the returns that may be ground in each cell of `all`; and into `rows` the own points and others that may be, in `part`.
 Raster lowest_returns(const core::Block& b, size_t own, const core::Lattice& all, const core::Lattice& part,
                       std::vector<std::uint32_t>& rows) {
   Raster r(all.nx, all.ny, std::numeric_limits<float>::quiet_NaN());
-  const std::int64_t west = part.i0 - all.i0, south = part.j0 - all.j0;
-  for (size_t p = 0; p < b.size(); ++p) {
-    const bool may = may_be_ground(b, p);
-    if (!may && p >= own) continue;
-    const std::int64_t i = core::cell_index(b.origin.x() + b.x[p], ground_cell) - all.i0;
-    const std::int64_t j = core::cell_index(b.origin.y() + b.y[p], ground_cell) - all.j0;
-    if (p < own || (i >= west && j >= south && i < west + part.nx && j < south + part.ny)) rows.push_back(static_cast<std::uint32_t>(p));
-    if (!may) continue;
-    float& lowest = r.value[all.at(static_cast<int>(i), static_cast<int>(j))];
-    const auto z = static_cast<float>(b.z[p]);
-    if (!(lowest <= z)) lowest = z;
+  const auto west = static_cast<std::int32_t>(part.i0 - all.i0), south = static_cast<std::int32_t>(part.j0 - all.j0);
+  constexpr size_t together = 1024;
+  std::array<std::int32_t, together> column{}, row{};
+  std::array<char, together> may{};
+  for (size_t first = 0; first < b.size(); first += together) {
+    const size_t n = std::min(together, b.size() - first);
+    cells_of(b.x.data() + first, b.origin.x(), static_cast<double>(all.i0), column.data(), n);
+    cells_of(b.y.data() + first, b.origin.y(), static_cast<double>(all.j0), row.data(), n);
+    for (size_t k = 0; k < n; ++k) may[k] = may_be_ground(b, first + k);
+    for (size_t k = 0; k < n; ++k) {
+      if (may[k]) {
+        float& lowest = r.value[all.at(column[k], row[k])];
+        const auto z = static_cast<float>(b.z[first + k]);
+        if (!(lowest <= z)) lowest = z;
+      }
+      const bool inside = column[k] >= west && row[k] >= south && column[k] < west + part.nx && row[k] < south + part.ny;
+      if (first + k < own || (may[k] && inside)) rows.push_back(static_cast<std::uint32_t>(first + k));
+    }
   }
   return r;
 }
