@@ -26,11 +26,9 @@ GroundSurfaceOptions surface_options(const GroundOptions& o) {
   return {o.widest.value, o.longest.value, std::tan(o.steepest.value), o.noise.value};
 }
 
-/// A point beside the surface; above NaN where no surface is.
-GroundEvidence beside(const GroundSurface& g, const core::Block& b, size_t p) {
+/// A point in cell `at` beside the surface; above NaN where no surface is.
+GroundEvidence beside(const GroundSurface& g, const core::Block& b, size_t p, size_t at) {
   const RasterSample s = sample(g.height, g.lattice, b.origin.x() + b.x[p], b.origin.y() + b.y[p]);
-  const CellIndex c = cell_of(g.lattice, b, p);
-  const size_t at = g.lattice.at(c.i, c.j);
   return {.above = static_cast<float>(b.z[p] - s.height),
           .spread = g.spread.value[at],
           .slope = static_cast<float>(std::sqrt(s.east * s.east + s.north * s.north)),
@@ -43,7 +41,8 @@ GroundEvidence beside(const GroundSurface& g, const core::Block& b, size_t p) {
 
 ReturnOverGround judged(const GroundEvidence& e) {
   const double spread = std::max<double>(least_spread, e.spread);
-  const double doubt = std::hypot(2.0 * spread, sparse_error(e.slope, 0.0, sparseness(e.support)));
+  const double off = sparse_error(e.slope, 0.0, sparseness(e.support));
+  const double doubt = std::sqrt(4.0 * spread * spread + off * off);
   return {e.above, static_cast<float>(spread), static_cast<float>(doubt), e.above < -deepest_ground(e.slope)};
 }
 
@@ -58,11 +57,6 @@ void move_to_lower(ReturnOverGround& r, const LowerPopulations& lower, const cor
   r.spread = spread;
 }
 
-/// Halo points beyond the surface have no influence.
-bool within_reach(const core::Lattice& l, const core::Block& b, size_t p) {
-  const CellIndex c = cell_of(l, b, p);
-  return c.i > 0 && c.j > 0 && c.i < l.nx - 1 && c.j < l.ny - 1;
-}
 
 // m about the own points in which returns are judged.
 double judged_around() { return std::max(ground_chance_reach + ground_populations_reach, ground_probability_reach); }
@@ -88,10 +82,15 @@ std::vector<GroundEvidence> evidence_on(const core::Block& b, size_t own, Ground
   unknown.above = not_judged;
   std::vector<GroundEvidence> evidence(own, unknown);
   const GroundSurface g = ground_surface(b, std::move(base), surface_options(o));
+  // Points farther from the own ones have no influence.
+  const core::Lattice l = grown(lattice_around(b, own, ground_cell, judged_around(), 0), 0, grown(g.lattice, -1, g.lattice));
   std::vector<ReturnOverGround> returns(b.size(), {not_judged, 0, 0, false});
   for (size_t p = 0; p < b.size(); ++p) {
-    if (!may_be_ground(b, p) || !within_reach(g.lattice, b, p)) continue;
-    const GroundEvidence e = beside(g, b, p);
+    if (!may_be_ground(b, p)) continue;
+    const CellIndex c = cell_of(l, b, p);
+    if (!l.holds(c.i, c.j)) continue;
+    const GroundEvidence e =
+        beside(g, b, p, g.lattice.at(c.i + static_cast<int>(l.i0 - g.lattice.i0), c.j + static_cast<int>(l.j0 - g.lattice.j0)));
     if (!std::isnan(e.above)) returns[p] = judged(e);
     if (p < own) evidence[p] = e;
   }
