@@ -43,6 +43,11 @@ Inpainting terrain_filling(int window) { return {.reach = 2 * window, .relax = 4
 WallOptions walls_of(const GroundSurfaceOptions& o) {
   return {.longest = static_cast<int>(std::ceil(o.longest / ground_cell)), .widest = static_cast<int>(o.widest / ground_cell)};
 }
+/// The same in cells twice as wide, where the flank of a bank looks like a wall.
+WallOptions doubled(const WallOptions& o) {
+  return {.longest = (o.longest + 1) / 2, .widest = o.widest / 2, .cell = 2.0 * o.cell, .walled_at_rim = 0.35};
+}
+int walls_support(const WallOptions& o) { return std::max(wall_support(o), 2 * wall_support(doubled(o)) + 1); }
 // So that the country's slope reaches no farther than the widest opening.
 int country_window(int window) { return std::max(1, window - (reach(country_sigma) + 1) / 2); }
 int opening_support(int window) { return std::max(2 * window, 2 * country_window(window) + reach(country_sigma) + 1); }
@@ -152,7 +157,7 @@ Needs needs_of(const GroundSurfaceOptions& o) {
   n.objects = n.decks + deck_support;
   n.gaps = n.objects + opening_support(window);
   n.walls = n.gaps + gap_filling.support();
-  n.pits = n.walls + wall_support(walls_of(o));
+  n.pits = n.walls + walls_support(walls_of(o));
   n.all = n.pits + 4 * pit_radius + pit_filling.support() + 2 * std::min(window, pit_window) + gap_filling.support();
   return n;
 }
@@ -164,12 +169,37 @@ Raster cropped(const Raster& r, const core::Lattice& of, const core::Lattice& to
   return out;
 }
 
+/// The lowest value in cells twice as wide, which lie on even cells of the survey's lattice.
+Raster halved(const Raster& r, const core::Lattice& l) {
+  const auto odd_i = static_cast<int>(l.i0 & 1), odd_j = static_cast<int>(l.j0 & 1);
+  Raster out((r.nx + odd_i + 1) / 2, (r.ny + odd_j + 1) / 2, void_value);
+  for (int j = 0; j < r.ny; ++j)
+    for (int i = 0; i < r.nx; ++i) {
+      const float v = r.value[r.at(i, j)];
+      float& to = out.value[out.at((i + odd_i) / 2, (j + odd_j) / 2)];
+      if (!std::isnan(v) && !(to <= v)) to = v;
+    }
+  return out;
+}
+
+/// Walls at two scales: with few returns, and where gardens and dormers break a roof up, only wide cells have neighbours.
+void remove_walled(Raster& lowest, const core::Lattice& l, const WallOptions& o) {
+  if (o.longest == 0) return;
+  Raster wide = halved(lowest, l);
+  remove_walled(wide, doubled(o));
+  remove_walled(lowest, o);
+  const auto odd_i = static_cast<int>(l.i0 & 1), odd_j = static_cast<int>(l.j0 & 1);
+  for (int j = 0; j < lowest.ny; ++j)
+    for (int i = 0; i < lowest.nx; ++i)
+      if (std::isnan(wide.value[wide.at((i + odd_i) / 2, (j + odd_j) / 2)])) lowest.value[lowest.at(i, j)] = void_value;
+}
+
 /// The lowest returns without those in pits and on what walls surround.
-void remove_pits_and_walled(Raster& lowest, const GroundSurfaceOptions& o) {
+void remove_pits_and_walled(Raster& lowest, const core::Lattice& l, const GroundSurfaceOptions& o) {
   Raster ground = lowest;
   remove_objects(ground, inpaint(lowest, gap_filling), Raster(lowest.nx, lowest.ny, 0.0F), o, std::min(window_of(o), pit_window));
   remove_pits(lowest, inpaint(ground, pit_filling));
-  remove_walled(lowest, walls_of(o));
+  remove_walled(lowest, l, walls_of(o));
 }
 
 }  // namespace
@@ -193,7 +223,7 @@ Raster coarse_ground(Raster lowest, const core::Lattice& all, const core::Lattic
     for (Raster* r : rasters) *r = cropped(*r, at, to);
     at = to;
   };
-  remove_pits_and_walled(lowest, o);
+  remove_pits_and_walled(lowest, all, o);
   crop(needs.walls, {&lowest});
   Raster ground = lowest, filled = inpaint(lowest, gap_filling), opened;
   {

@@ -24,14 +24,13 @@ constexpr int beyond_rim = 10;                    // cells without return: the r
 constexpr double link = 0.6, link_per_run = 0.6;  // m, m per m: step on one surface
 constexpr double wall = 1.2, wall_per_run = 0.6;  // m, m per m: what falls by more falls along a wall
 constexpr double walled = 0.7;                    // share of walls in the border that is seen
-constexpr double walled_at_rim = 0.35;            // share of walls in all of the border, of surfaces that the rim cuts
 constexpr double cut = 0.1;                       // share of the border at the rim from which the rim cuts it
 constexpr double beside_higher = 0.3;             // walls per ray that ends at something higher: what stands beside it decides nothing
 constexpr int fewest = 4;                         // cells that lead on
 
 struct Ray {
   int i, j;
-  double run;  ///< m per step
+  double run;  ///< cells per step
 };
 constexpr double diagonal = 1.4142135623730951;
 constexpr std::array<Ray, 8> rays{
@@ -44,10 +43,10 @@ float float_up_to(double v) {
   return static_cast<double>(f) > v ? std::nextafter(f, 0.0F) : f;
 }
 
-/// 1 where a cell's step to all eight cells around is small; 0 where one of them has no value. Rows of n + 2 cells, from the one before.
-SWATH_WIDE void linked_all_around(const float* south, const float* row, const float* north, std::int32_t* all, int n) {
-  static const float straight = float_up_to(tolerance(1.0)), across = float_up_to(tolerance(diagonal));
-  const float side = straight, corner = across;
+/// 1 where a cell's step to all eight cells around is at most `side`, `corner`; 0 where one of them has no value. Rows of n + 2 cells, from
+/// the one before.
+SWATH_WIDE void linked_all_around(const float* south, const float* row, const float* north, std::int32_t* all, int n, float side,
+                                  float corner) {
   for (int i = 0; i < n; ++i) {
     const float z = row[i + 1];
     const auto near = [z](float v, float step) { return static_cast<std::int32_t>(std::abs(v - z) <= step); };
@@ -75,11 +74,12 @@ struct Border {
 
 class Surfaces {
  public:
-  explicit Surfaces(const Raster& lowest)
-      : z_(lowest), parent_(lowest.value.size()), leads_(lowest.value.size(), 0), on_(lowest.value.size(), none) {
+  Surfaces(const Raster& lowest, double cell)
+      : cell_(cell), z_(lowest), parent_(lowest.value.size()), leads_(lowest.value.size(), 0), on_(lowest.value.size(), none) {
     std::iota(parent_.begin(), parent_.end(), 0U);
+    const float side = float_up_to(tolerance(cell)), corner = float_up_to(tolerance(diagonal * cell));
     const auto linked = [&](size_t south, size_t row, size_t north, std::int32_t* all, int n) {
-      linked_all_around(z_.value.data() + south, z_.value.data() + row, z_.value.data() + north, all, n);
+      linked_all_around(z_.value.data() + south, z_.value.data() + row, z_.value.data() + north, all, n, side, corner);
     };
     for_each(linked, [&](int i, int j, size_t c, bool all) { leads_[c] = all || leads(i, j, c); });
     for_each([&](int i, int j, size_t c) { join(i, j, c); });
@@ -129,11 +129,11 @@ class Surfaces {
       const std::ptrdiff_t step = std::ptrdiff_t{r.j} * z_.nx + r.i;
       const float* at = z_.value.data() + z_.at(i, j);
       for (int k = 1; k <= within; ++k)
-        if (!std::isnan(at[k * step])) return {z_.at(i + k * r.i, j + k * r.j), k * r.run};
+        if (!std::isnan(at[k * step])) return {z_.at(i + k * r.i, j + k * r.j), k * r.run * cell_};
       return {0, 0.0};
     }
     for (int k = 1; k <= within && z_.holds(i + k * r.i, j + k * r.j); ++k)
-      if (const size_t c = z_.at(i + k * r.i, j + k * r.j); !std::isnan(z_.value[c])) return {c, k * r.run};
+      if (const size_t c = z_.at(i + k * r.i, j + k * r.j); !std::isnan(z_.value[c])) return {c, k * r.run * cell_};
     return {0, 0.0};
   }
 
@@ -180,6 +180,7 @@ class Surfaces {
 
   void leave(Border& b, int i, int j, size_t c, const Ray& r) const;
 
+  double cell_;  ///< m
   const Raster& z_;
   std::vector<std::uint32_t> parent_;
   std::vector<char> leads_;
@@ -195,16 +196,20 @@ void Surfaces::leave(Border& b, int i, int j, size_t c, const Ray& r) const {
     return;
   }
   if (on_[n.cell] == on_[c]) return;
-  for (int k = 1; k <= std::max(facade, static_cast<int>(n.run / r.run + 0.5)); ++k) {
+  for (int k = 1; k <= std::max(facade, static_cast<int>(n.run / (r.run * cell_) + 0.5)); ++k) {
     if (!z_.holds(i + k * r.i, j + k * r.j)) break;
     const size_t other = z_.at(i + k * r.i, j + k * r.j);
-    if (z_.value[c] - z_.value[other] > wall + wall_per_run * k * r.run) {
+    if (z_.value[c] - z_.value[other] > wall + wall_per_run * k * r.run * cell_) {
       ++(on_[other] != none ? b.walls : b.pits);
       return;
     }
   }
   const double rise = z_.value[n.cell] - z_.value[c];
-  ++(rise > tolerance(n.run) ? b.higher : b.open);
+  // A cell on no surface is an edge, a chimney or a bush: it leads nowhere.
+  if (rise > tolerance(n.run))
+    ++b.higher;
+  else
+    b.open += on_[n.cell] != none;
 }
 
 std::vector<Border> Surfaces::borders() const {
@@ -229,7 +234,7 @@ bool is_object(const Border& b, const WallOptions& o) {
   if (b.walls == 0 || b.pits > 3 * b.walls || b.cells < fewest || across > o.longest || b.walls < walled * seen ||
       b.walls < beside_higher * b.higher)
     return false;
-  return b.rim <= cut * (seen + b.rim) || (b.walls >= walled_at_rim * (seen + b.rim) && across <= 2 * o.widest);
+  return b.rim <= cut * (seen + b.rim) || (b.walls >= o.walled_at_rim * (seen + b.rim) && across <= 2 * o.widest);
 }
 
 }  // namespace
@@ -238,7 +243,7 @@ int wall_support(const WallOptions& o) { return o.longest > 0 ? o.longest + 2 * 
 
 void remove_walled(Raster& lowest, const WallOptions& o) {
   if (o.longest == 0) return;
-  const Surfaces surfaces(lowest);
+  const Surfaces surfaces(lowest, o.cell);
   const std::vector<Border> borders = surfaces.borders();
   for (size_t c = 0; c < lowest.value.size(); ++c)
     if (const std::uint32_t on = surfaces.of(c); on != Surfaces::none && is_object(borders[on], o)) lowest.value[c] = std::nanf("");

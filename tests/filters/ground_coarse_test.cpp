@@ -52,6 +52,20 @@ TEST(CoarseGround, BuildingsAndLowPointsAreOff) {
   EXPECT_LT(off, 0.01 * side * side);
 }
 
+TEST(CoarseGround, ARaggedRoofAtTheRimIsOffInWiderCells) {
+  // Returns on the roof alternate with those on dormers and in light wells, so that no cell of 1 m goes on to the next.
+  const GroundSurfaceOptions o{};
+  const int rim = coarse_ground_rim(o), side = 140;
+  Raster inner(side, side, 0.0F);
+  for (int j = 0; j < 14; ++j)
+    for (int i = 50; i < 80; ++i) inner.value[inner.at(i, j)] = (i + j) % 2 == 0 ? 6.0F : 8.5F;
+  const Raster all = with_rim(inner, rim);
+  const core::Lattice l{1.0, 0, 0, all.nx, all.ny};
+  const Raster ground = coarse_ground(all, l, l, o);
+  for (int j = 0; j < 12; ++j)
+    for (int i = 52; i < 78; ++i) EXPECT_LT(ground.value[ground.at(i + rim, j + rim)], 0.5F) << i << " " << j;
+}
+
 TEST(CoarseGround, APartIsWhatItIsInTheWhole) {
   const GroundSurfaceOptions o = small();
   const int rim = coarse_ground_rim(o), reach = coarse_ground_reach(o), side = 2 * reach + 60;

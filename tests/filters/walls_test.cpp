@@ -68,6 +68,20 @@ TEST(Walls, ARoofThatTheRimCutsIsNotGround) {
   EXPECT_EQ(voided(before, after, 0, 20, size, 280), 0.0);
 }
 
+TEST(Walls, ALowRoofAtTheRimBesideAHigherOneIsNotGround) {
+  // Chimneys and gutters break the eaves up: their cells lie on no surface, and say nothing about where the roof ends.
+  const Raster before = heights([](int i, int j) {
+    if (within(i, j, 108, 0, 130, 14)) return level + 7.0F;
+    if (!within(i, j, 96, 0, 108, 10)) return level;
+    const bool edge = i == 96 || j == 9;
+    return level + (edge && (i + j) % 2 == 0 ? 2.4F : 4.0F);
+  });
+  Raster after = before;
+  remove_walled(after, {});
+  EXPECT_GT(voided(before, after, 98, 0, 107, 8), 0.99);
+  EXPECT_EQ(voided(before, after, 0, 20, size, size), 0.0);
+}
+
 TEST(Walls, GroundBesideAWallStays) {
   // A terrace above a retaining wall, an embankment, a hill, a courtyard and a slope of 40 degrees.
   const std::function<float(int, int)> grounds[] = {
