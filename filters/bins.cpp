@@ -3,7 +3,32 @@
 
 #include <algorithm>
 
+#include "core/wide.h"
+
 namespace swath::filters {
+namespace {
+
+struct Extent {
+  double low, high;
+};
+
+/// Of the first n values; there must be one.
+SWATH_WIDE Extent extent_of(const double* v, size_t n) {
+  constexpr size_t lanes = 8;
+  double low[lanes], high[lanes];
+  for (size_t k = 0; k < lanes; ++k) low[k] = high[k] = v[0];
+  size_t i = 0;
+  for (; i + lanes <= n; i += lanes)
+    for (size_t k = 0; k < lanes; ++k) {
+      low[k] = v[i + k] < low[k] ? v[i + k] : low[k];
+      high[k] = v[i + k] > high[k] ? v[i + k] : high[k];
+    }
+  Extent e{*std::min_element(low, low + lanes), *std::max_element(high, high + lanes)};
+  for (; i < n; ++i) e.low = std::min(e.low, v[i]), e.high = std::max(e.high, v[i]);
+  return e;
+}
+
+}  // namespace
 
 core::Lattice lattice_around(const core::Block& b, double cell, int border) {
   if (b.size() == 0) return {cell, 0, 0, 0, 0};
@@ -11,12 +36,12 @@ core::Lattice lattice_around(const core::Block& b, double cell, int border) {
 }
 
 core::Lattice lattice_around(const core::Block& b, size_t own, double cell, double around, int border) {
-  const auto [west, east] = std::minmax_element(b.x.begin(), b.x.begin() + static_cast<std::ptrdiff_t>(own));
-  const auto [south, north] = std::minmax_element(b.y.begin(), b.y.begin() + static_cast<std::ptrdiff_t>(own));
-  const std::int64_t i0 = core::cell_index(b.origin.x() + *west - around, cell) - border;
-  const std::int64_t j0 = core::cell_index(b.origin.y() + *south - around, cell) - border;
-  const std::int64_t i1 = core::cell_index(b.origin.x() + *east + around, cell) + border;
-  const std::int64_t j1 = core::cell_index(b.origin.y() + *north + around, cell) + border;
+  const auto [west, east] = extent_of(b.x.data(), own);
+  const auto [south, north] = extent_of(b.y.data(), own);
+  const std::int64_t i0 = core::cell_index(b.origin.x() + west - around, cell) - border;
+  const std::int64_t j0 = core::cell_index(b.origin.y() + south - around, cell) - border;
+  const std::int64_t i1 = core::cell_index(b.origin.x() + east + around, cell) + border;
+  const std::int64_t j1 = core::cell_index(b.origin.y() + north + around, cell) + border;
   return {cell, i0, j0, static_cast<int>(i1 - i0) + 1, static_cast<int>(j1 - j0) + 1};
 }
 

@@ -26,11 +26,9 @@ GroundSurfaceOptions surface_options(const GroundOptions& o) {
   return {o.widest.value, o.longest.value, std::tan(o.steepest.value), o.noise.value};
 }
 
-/// A point beside the surface; above NaN where no surface is.
-GroundEvidence beside(const GroundSurface& g, const core::Block& b, size_t p) {
+/// A point in cell `at` beside the surface; above NaN where no surface is.
+GroundEvidence beside(const GroundSurface& g, const core::Block& b, size_t p, size_t at) {
   const RasterSample s = sample(g.height, g.lattice, b.origin.x() + b.x[p], b.origin.y() + b.y[p]);
-  const CellIndex c = cell_of(g.lattice, b, p);
-  const size_t at = g.lattice.at(c.i, c.j);
   return {.above = static_cast<float>(b.z[p] - s.height),
           .spread = g.spread.value[at],
           .slope = static_cast<float>(std::sqrt(s.east * s.east + s.north * s.north)),
@@ -43,7 +41,8 @@ GroundEvidence beside(const GroundSurface& g, const core::Block& b, size_t p) {
 
 ReturnOverGround judged(const GroundEvidence& e) {
   const double spread = std::max<double>(least_spread, e.spread);
-  const double doubt = std::hypot(2.0 * spread, sparse_error(e.slope, 0.0, sparseness(e.support)));
+  const double off = sparse_error(e.slope, 0.0, sparseness(e.support));
+  const double doubt = std::sqrt(4.0 * spread * spread + off * off);
   return {e.above, static_cast<float>(spread), static_cast<float>(doubt), e.above < -deepest_ground(e.slope)};
 }
 
@@ -58,32 +57,40 @@ void move_to_lower(ReturnOverGround& r, const LowerPopulations& lower, const cor
   r.spread = spread;
 }
 
-/// Halo points beyond the surface have no influence.
-bool within_reach(const core::Lattice& l, const core::Block& b, size_t p) {
-  const CellIndex c = cell_of(l, b, p);
-  return c.i > 0 && c.j > 0 && c.i < l.nx - 1 && c.j < l.ny - 1;
+
+// m about the own points in which returns are judged.
+double judged_around() { return std::max(ground_chance_reach + ground_populations_reach, ground_probability_reach); }
+
+/// The points of `rows`, with the columns that are looked at.
+core::Block points_of(const core::Block& b, const std::vector<std::uint32_t>& rows) {
+  core::Block out;
+  out.origin = b.origin;
+  const auto take = [&](const auto& from, auto& to) {
+    if (from.empty()) return;
+    to.resize(rows.size());
+    for (size_t k = 0; k < rows.size(); ++k) to[k] = from[rows[k]];
+  };
+  take(b.x, out.x), take(b.y, out.y), take(b.z, out.z);
+  take(b.return_number, out.return_number), take(b.return_count, out.return_count), take(b.strip, out.strip);
+  take(b.flags, out.flags), take(b.classification, out.classification);
+  return out;
 }
 
-}  // namespace
-
-double halo(const GroundOptions& o) {
-  const double around = std::max(ground_chance_reach + ground_populations_reach, ground_probability_reach);
-  return std::ceil((surface_reach(surface_options(o)) + 2) * ground_cell + around);
-}
-
-std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, const GroundOptions& o) {
+/// Of the own points; `b` holds what lies near them.
+std::vector<GroundEvidence> evidence_on(const core::Block& b, size_t own, GroundBase base, const GroundOptions& o) {
   GroundEvidence unknown;
   unknown.above = not_judged;
   std::vector<GroundEvidence> evidence(own, unknown);
-  bool any = false;
-  for (size_t p = 0; p < b.size() && !any; ++p) any = may_be_ground(b, p);
-  if (own == 0 || !any) return evidence;
-  const GroundSurface g =
-      ground_surface(b, own, std::max(ground_chance_reach + ground_populations_reach, ground_probability_reach), surface_options(o));
+  const GroundSurface g = ground_surface(b, std::move(base), surface_options(o));
+  // Points farther from the own ones have no influence.
+  const core::Lattice l = grown(lattice_around(b, own, ground_cell, judged_around(), 0), 0, grown(g.lattice, -1, g.lattice));
   std::vector<ReturnOverGround> returns(b.size(), {not_judged, 0, 0, false});
   for (size_t p = 0; p < b.size(); ++p) {
-    if (!may_be_ground(b, p) || !within_reach(g.lattice, b, p)) continue;
-    const GroundEvidence e = beside(g, b, p);
+    if (!may_be_ground(b, p)) continue;
+    const CellIndex c = cell_of(l, b, p);
+    if (!l.holds(c.i, c.j)) continue;
+    const GroundEvidence e =
+        beside(g, b, p, g.lattice.at(c.i + static_cast<int>(l.i0 - g.lattice.i0), c.j + static_cast<int>(l.j0 - g.lattice.j0)));
     if (!std::isnan(e.above)) returns[p] = judged(e);
     if (p < own) evidence[p] = e;
   }
@@ -105,6 +112,22 @@ std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, co
   std::vector<ReturnOverGround>().swap(returns);
   look_around(b, above, evidence);
   return evidence;
+}
+
+}  // namespace
+
+double halo(const GroundOptions& o) { return std::ceil((surface_reach(surface_options(o)) + 2) * ground_cell + judged_around()); }
+
+std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, const GroundOptions& o) {
+  GroundEvidence unknown;
+  unknown.above = not_judged;
+  bool any = false;
+  for (size_t p = 0; p < b.size() && !any; ++p) any = may_be_ground(b, p);
+  if (own == 0 || !any) return std::vector<GroundEvidence>(own, unknown);
+  GroundBase base = ground_base(b, own, judged_around(), surface_options(o));
+  const core::Block near = own < b.size() ? points_of(b, base.rows) : core::Block{};
+  std::vector<std::uint32_t>().swap(base.rows);
+  return evidence_on(own < b.size() ? near : b, own, std::move(base), o);
 }
 
 GroundChances classify_ground(core::Block& b, size_t own, const GroundOptions& o) {

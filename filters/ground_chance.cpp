@@ -40,9 +40,11 @@ double density(double t) { return 0.79788456080286536 * std::exp(-0.5 * t * t); 
 double width(int k) { return edges[static_cast<size_t>(k) + 1] - edges[static_cast<size_t>(k)]; }
 double middle(int k) { return 0.5 * (edges[static_cast<size_t>(k) + 1] + edges[static_cast<size_t>(k)]); }
 
+/// Of t > 0.
 int class_of(double t) {
-  const auto after = std::upper_bound(edges.begin(), edges.end(), t);
-  return std::min(classes - 1, static_cast<int>(after - edges.begin()) - 1);
+  int k = -1;
+  for (int e = 0; e < classes; ++e) k += t >= edges[static_cast<size_t>(e)];
+  return k;
 }
 
 double spread_of(const ReturnOverGround& r) { return r.spread; }
@@ -89,16 +91,24 @@ Counts count(const core::Block& b, const core::Lattice& l, const std::vector<Ret
 /// Ground's returns on one side of the surface.
 double ground_of(const Counts& n, size_t c) { return std::max(n.below.value[c], n.core.value[c]); }
 
+std::array<double, classes + 1> within_edges(double spread) {
+  std::array<double, classes + 1> shares{};
+  for (size_t k = 0; k < shares.size(); ++k) shares[k] = within(edges[k] / spread);
+  return shares;
+}
+
 /// Objects per spread of height, by class.
 using Objects = std::array<float, classes>;
 
 Objects objects_of(const Counts& n, size_t c) {
-  const double ground = ground_of(n, c), wide = std::max(2.0F, n.doubt.value[c]);
+  static const std::array<double, classes + 1> narrow = within_edges(1.0);  // shares of a normal distribution up to each edge
+  const double ground = ground_of(n, c);
+  const std::array<double, classes + 1> wide = within_edges(std::max(2.0F, n.doubt.value[c]));
   Objects o{};
   double low = 0.0, low_wide = 0.0;
   for (int k = 0; k < classes; ++k) {
-    const double from = edges[static_cast<size_t>(k)], to = edges[static_cast<size_t>(k) + 1];
-    const double explained = ground * ((1 - missed) * (within(to) - within(from)) + missed * (within(to / wide) - within(from / wide)));
+    const auto at = static_cast<size_t>(k);
+    const double explained = ground * ((1 - missed) * (narrow[at + 1] - narrow[at]) + missed * (wide[at + 1] - wide[at]));
     const double more = n.above[static_cast<size_t>(k)].value[c] - explained - chance_excess * std::sqrt(explained);
     o[static_cast<size_t>(k)] = static_cast<float>(std::max(0.0, more) / width(k));
     if (k >= drowned && k < next_to_drowned) low += std::max(0.0, more), low_wide += width(k);

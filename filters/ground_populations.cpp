@@ -161,15 +161,15 @@ TwoPopulations populations_of(const Histogram& h, double noise) {
     return 0.0;
   };
   const double about_surface = std::clamp(std::sqrt(core.second / core.n), narrowest, 0.05);
-  const Mixture one = fitted(h, total, {{Normal{0.9, 0.0, about_surface}, Normal{}}});
   const Mixture two = fitted(h, total, {{Normal{0.5, quantile(0.15), 0.02}, Normal{0.4, quantile(0.8), 0.04}}});
   const Normal& lower = two.part[0];
   const Normal& upper = two.part[1];
   const double gap = upper.mean - lower.mean;
-  const bool believed = two.log_likelihood - one.log_likelihood > likelier && gap > apart * std::hypot(lower.spread, upper.spread) &&
-                        gap > beyond_noise * noise && lower.share > least_ground && upper.share > 0.0 && lower.mean < 0.0 &&
-                        lower.mean > -deepest;
-  return believed ? TwoPopulations{lower, gap} : TwoPopulations{};
+  const bool apart_enough = gap > apart * std::hypot(lower.spread, upper.spread) && gap > beyond_noise * noise &&
+                            lower.share > least_ground && upper.share > 0.0 && lower.mean < 0.0 && lower.mean > -deepest;
+  if (!apart_enough) return {};
+  const Mixture one = fitted(h, total, {{Normal{0.9, 0.0, about_surface}, Normal{}}});
+  return two.log_likelihood - one.log_likelihood > likelier ? TwoPopulations{lower, gap} : TwoPopulations{};
 }
 
 }  // namespace

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two passes.
-// The coarse one is Pingel, Clarke & McBride 2013 (ISPRS J. 77): lowest last return per cell, holes filled, objects where an opening by a
-// growing disk drops. Deviations: the drop that is allowed per radius grows with the slope of the country (as Sithole 2001 adapts the
-// slope filter), and is never more than the steepest ground can fall within a cell and half a metre, so that low halls are taken off by
-// large disks too; halls wider than the disk, and roofs at the rim of the data, go by their walls (walls.h); low outliers are looked for in
-// the surface that a small opening leaves and not in the lowest returns, where ground seen through a gap of the canopy looks the same.
-// Bridge decks are taken off to their ends, and crests put back (decks.h, crests.h). The fine one is robust interpolation (Kraus & Pfeifer
-// 1998, ISPRS J. 53): a surface through all last returns with weights by their distance from the surface before. Deviations: moving planes
+// Two passes. The coarse one (ground_coarse.h) takes objects off the lowest returns of the cells. The fine one is robust interpolation
+// (Kraus & Pfeifer 1998, ISPRS J. 53): a surface through all last returns with weights by their distance from the surface before.
+// Deviations: moving planes
 // stand for linear prediction (moving_planes.h) and breaks are kept by taking the smoother side; the weight's arm follows the spread of the
 // returns under the surface and shrinks where many stand knee-high, which does what Kraus & Pfeifer's eccentric weights do, and keeps the
 // surface in the middle of the ground's returns in the open. A plane under a kernel of sigma s lies 0.5 s^2 f'' off a curved surface f;
@@ -24,30 +19,16 @@
 #include <vector>
 
 #include "core/floor_div.h"
+#include "core/wide.h"
 #include "filters/bins.h"
-#include "filters/crests.h"
-#include "filters/decks.h"
 #include "filters/ground_labels.h"
-#include "filters/inpaint.h"
 #include "filters/moving_planes.h"
-#include "filters/walls.h"
 
 namespace swath::filters {
 namespace {
 
 constexpr float void_value = std::numeric_limits<float>::quiet_NaN();
-constexpr Inpainting gap_filling{.reach = 10, .relax = 2, .extrapolate = true};
-constexpr Inpainting pit_filling{.reach = 6, .relax = 0, .extrapolate = true};
-constexpr double growth = 0.12;           // rise / run: drop of an opening allowed per radius on level ground (Pingel's slope)
-constexpr double growth_per_slope = 0.3;  // further drop per slope of the country
-constexpr double country_sigma = 5.0;     // cells
-constexpr int every_radius = 8;           // cells: up to here, and then every second one
-constexpr double step_left = 0.5;         // m, beyond the steepest ground within one cell
-constexpr int pit_window = 6;             // cells
-constexpr int pit_radius = 2;             // cells
-constexpr double pit_depth = 0.8;         // m
-constexpr double prior_weight = 0.2;      // returns that the smoothed coarse surface stands for
-constexpr double smoothing = 1.0;         // of the coarse surface, cells
+constexpr double prior_weight = 0.2;                     // returns that the smoothed coarse surface stands for
 constexpr std::array<double, 3> kernels{3.0, 2.0, 2.0};  // of the rounds of the fine pass, cells
 constexpr int break_step = 2;                            // cells
 constexpr double fine_kernel = 1.0;                      // cells, beside them from the second round on
@@ -60,109 +41,6 @@ constexpr double stated_returns = 2.0;  // that the stated noise stands for in t
 constexpr double knee_low = 0.12, knee_low_per_slope = 0.5, knee_high = 2.0;  // m above the surface
 constexpr double sunken_depth = 0.4;                                          // m below the surface
 constexpr double share_sigma = 3.0;                                           // cells, of the shares
-
-int window_of(const GroundSurfaceOptions& o) { return static_cast<int>(std::ceil(0.5 * o.widest / ground_cell - 1e-9)) + 1; }
-Inpainting terrain_filling(int window) { return {.reach = 2 * window, .relax = 4, .extrapolate = true}; }
-WallOptions walls_of(const GroundSurfaceOptions& o) {
-  return {.longest = static_cast<int>(std::ceil(o.longest / ground_cell)), .widest = static_cast<int>(o.widest / ground_cell)};
-}
-// So that the country's slope reaches no farther than the widest opening.
-int country_window(int window) { return std::max(1, window - (reach(country_sigma) + 1) / 2); }
-
-Raster lowest_returns(const core::Block& b, const core::Lattice& l) {
-  Raster r(l.nx, l.ny, void_value);
-  for (size_t p = 0; p < b.size(); ++p) {
-    if (!may_be_ground(b, p)) continue;
-    const CellIndex at = cell_of(l, b, p);
-    float& lowest = r.value[l.at(at.i, at.j)];
-    const auto z = static_cast<float>(b.z[p]);
-    if (std::isnan(lowest) || z < lowest) lowest = z;
-  }
-  return r;
-}
-
-/// The mean under the Gaussian of the cells that have a value.
-Raster smoothed(const Raster& r, double sigma) {
-  Raster weight(r.nx, r.ny, 0.0F), value = weight;
-  for (size_t c = 0; c < r.value.size(); ++c)
-    if (!std::isnan(r.value[c])) weight.value[c] = 1.0F, value.value[c] = r.value[c];
-  weight = blur(weight, sigma);
-  value = blur(value, sigma);
-  for (size_t c = 0; c < r.value.size(); ++c) value.value[c] = std::isnan(r.value[c]) ? void_value : value.value[c] / weight.value[c];
-  return value;
-}
-
-/// Rise / run of a smooth surface, 0 where it is not known.
-Raster slope_of(const Raster& r) {
-  Raster out(r.nx, r.ny, 0.0F);
-  for (int j = 1; j + 1 < r.ny; ++j)
-    for (int i = 1; i + 1 < r.nx; ++i) {
-      const float v = std::hypot(r.value[r.at(i + 1, j)] - r.value[r.at(i - 1, j)], r.value[r.at(i, j + 1)] - r.value[r.at(i, j - 1)]);
-      if (!std::isnan(v)) out.value[out.at(i, j)] = std::min(1.0F, v / static_cast<float>(2.0 * ground_cell));
-    }
-  return out;
-}
-
-/// Voids in `terrain` the cells that drop by more than ground can when the disk grows by a cell. `slope`: of the country. Returns the
-/// opened surface.
-Raster remove_objects(Raster& terrain, const Raster& filled, const Raster& slope, const GroundSurfaceOptions& o, int window) {
-  const double cap = o.steepest * ground_cell + step_left;
-  Raster last = filled;
-  for (int radius = 1; radius <= window; radius += radius < every_radius ? 1 : 2) {
-    const Raster opened = open_disk(filled, radius);
-    for (size_t c = 0; c < terrain.value.size(); ++c) {
-      const double tolerance = std::min((growth + growth_per_slope * slope.value[c]) * ground_cell * radius, cap);
-      if (last.value[c] - opened.value[c] > tolerance) terrain.value[c] = void_value;
-      last.value[c] = std::min(last.value[c], opened.value[c]);
-    }
-  }
-  return last;
-}
-
-/// Closing along a line of 2 half + 1 cells in the direction (di, dj). Cells without value take no part.
-Raster close_line(const Raster& r, int di, int dj, int half) {
-  const auto pass = [&](const Raster& in, bool highest) {
-    Raster out = in;
-    for (int j = 0; j < r.ny; ++j)
-      for (int i = 0; i < r.nx; ++i) {
-        float& v = out.value[r.at(i, j)];
-        for (int k = -half; k <= half; ++k) {
-          if (!r.holds(i + k * di, j + k * dj)) continue;
-          const float other = in.value[r.at(i + k * di, j + k * dj)];
-          v = highest ? (other > v ? other : v) : (other < v ? other : v);
-        }
-      }
-    return out;
-  };
-  return pass(pass(r, true), false);
-}
-
-/// Voids the cells of `ground` where the surface through them has a pit: deeper than pit_depth along all four lines and at most
-/// 2 pit_radius wide.
-void remove_pits(Raster& ground, const Raster& surface) {
-  Raster closed = close_line(surface, 1, 0, pit_radius);
-  for (const auto& [di, dj] : {std::pair{0, 1}, std::pair{1, 1}, std::pair{-1, 1}}) {
-    const Raster other = close_line(surface, di, dj, pit_radius);
-    for (size_t c = 0; c < closed.value.size(); ++c) closed.value[c] = std::min(closed.value[c], other.value[c]);
-  }
-  for (size_t c = 0; c < ground.value.size(); ++c)
-    if (closed.value[c] - surface.value[c] > pit_depth) ground.value[c] = void_value;
-}
-
-Raster coarse_surface(const core::Block& b, const core::Lattice& l, const GroundSurfaceOptions& o, int window) {
-  Raster lowest = lowest_returns(b, l);
-  Raster ground = lowest;
-  remove_objects(ground, inpaint(lowest, gap_filling), Raster(l.nx, l.ny, 0.0F), o, std::min(window, pit_window));
-  remove_pits(lowest, inpaint(ground, pit_filling));
-  remove_walled(lowest, walls_of(o));
-  ground = lowest;
-  const Raster filled = inpaint(lowest, gap_filling);
-  const Raster country = smoothed(open_disk(filled, country_window(window)), country_sigma);
-  const Raster opened = remove_objects(ground, filled, slope_of(country), o, window);
-  remove_decks(ground, lowest, {.steepest = o.steepest, .step = step_left});
-  restore_crests(ground, {lowest, filled, opened, window - 1});
-  return inpaint(ground, terrain_filling(window));
-}
 
 /// Sums in whole units, so that they do not depend on the order of the points.
 class Sums {
@@ -208,21 +86,26 @@ RasterSample sample(const Raster& r, const Place& at, double cell) {
 
 double steepness(const RasterSample& s) { return std::sqrt(s.east * s.east + s.north * s.north); }
 
-/// A return that makes the surface.
+/// A return that makes the surface: in cells from the lattice's corner, and its height.
 struct Maker {
-  Place place;
-  size_t cell;
-  double z;
+  double x, y, z;
+  size_t cell(int nx) const { return static_cast<size_t>(y) * static_cast<size_t>(nx) + static_cast<size_t>(x); }
+  Place place(int nx) const {
+    const double u = x - 0.5, v = y - 0.5;
+    const auto i = static_cast<std::uint32_t>(u), j = static_cast<std::uint32_t>(v);
+    return {static_cast<size_t>(j) * static_cast<size_t>(nx) + i, u - i, v - j};
+  }
 };
 
 /// Those within the lattice but for its outermost cells.
 std::vector<Maker> makers_of(const core::Block& b, const core::Lattice& l) {
   std::vector<Maker> makers;
+  makers.reserve(b.size());
+  const auto west = static_cast<double>(l.i0), south = static_cast<double>(l.j0);
   for (size_t p = 0; p < b.size(); ++p) {
     if (!may_be_ground(b, p)) continue;
-    const CellIndex at = cell_of(l, b, p);
-    if (at.i < 1 || at.j < 1 || at.i >= l.nx - 1 || at.j >= l.ny - 1) continue;
-    makers.push_back({place_of(l, b.origin.x() + b.x[p], b.origin.y() + b.y[p]), l.at(at.i, at.j), b.z[p]});
+    const Maker m{(b.origin.x() + b.x[p]) / ground_cell - west, (b.origin.y() + b.y[p]) / ground_cell - south, b.z[p]};
+    if (m.x >= 1.0 && m.y >= 1.0 && m.x < l.nx - 1 && m.y < l.ny - 1) makers.push_back(m);
   }
   return makers;
 }
@@ -241,14 +124,16 @@ void refine(GroundSurface& g, const Raster& base, const std::vector<Maker>& make
   for (float& v : open.value) v = static_cast<float>(arm_open) * std::exp(-v / static_cast<float>(arm_fading));
   Sums sums(l), lower(l);
   for (const Maker& m : makers) {
-    const RasterSample s = sample(g.height, m.place, l.cell);
+    const Place place = m.place(l.nx);
+    const size_t cell = m.cell(l.nx);
+    const RasterSample s = sample(g.height, place, l.cell);
     if (std::isnan(s.height)) continue;
     const double r = m.z - s.height;
-    const double above = arm_per_spread * g.spread.value[m.cell] + open.value[m.cell] + arm_per_slope * steepness(s);
+    const double above = arm_per_spread * g.spread.value[cell] + open.value[cell] + arm_per_slope * steepness(s);
     const double w = weight_of(r, above);
     if (w == 0.0) continue;
-    sums.add(m.cell, w, &base == &g.height ? r : m.z - sample(base, m.place, l.cell).height);
-    if (r < 0) lower.add(m.cell, w, r);
+    sums.add(cell, w, &base == &g.height ? r : m.z - sample(base, place, l.cell).height);
+    if (r < 0) lower.add(cell, w, r);
   }
   const CellSums data = sums.by_cell();
   PlaneField planes = fit_planes(data, sigma, prior_weight);
@@ -277,11 +162,12 @@ Shares shares_of(const GroundSurface& g, const std::vector<Maker>& makers) {
   Raster all(l.nx, l.ny, 0.0F);
   Shares s{all, all};
   for (const Maker& m : makers) {
-    const RasterSample at = sample(g.height, m.place, l.cell);
+    const RasterSample at = sample(g.height, m.place(l.nx), l.cell);
+    const size_t cell = m.cell(l.nx);
     const double r = m.z - at.height;
-    all.value[m.cell] += 1.0F;
-    if (r > knee_low + knee_low_per_slope * steepness(at) && r < knee_high) s.standing.value[m.cell] += 1.0F;
-    if (r < -sunken_depth) s.sunken.value[m.cell] += 1.0F;
+    all.value[cell] += 1.0F;
+    if (r > knee_low + knee_low_per_slope * steepness(at) && r < knee_high) s.standing.value[cell] += 1.0F;
+    if (r < -sunken_depth) s.sunken.value[cell] += 1.0F;
   }
   all = blur(all, share_sigma);
   for (Raster* r : {&s.standing, &s.sunken}) {
@@ -313,33 +199,56 @@ core::Lattice fine_lattice(const core::Block& b, size_t own, const core::Lattice
   return {l.cell, l.i0 + i0, l.j0 + j0, i1 - i0, j1 - j0};
 }
 
-Raster cropped(const Raster& r, const core::Lattice& of, const core::Lattice& to) {
-  Raster out(to.nx, to.ny, void_value);
-  const auto i0 = static_cast<int>(to.i0 - of.i0), j0 = static_cast<int>(to.j0 - of.j0);
-  for (int j = 0; j < to.ny; ++j) std::copy_n(r.value.data() + r.at(i0, j0 + j), to.nx, out.value.data() + out.at(0, j));
-  return out;
+/// Indices of cells, from `first`, of some coordinates.
+SWATH_WIDE void cells_of(const double* v, double origin, double first, std::int32_t* cell, size_t n) {
+  for (size_t k = 0; k < n; ++k) cell[k] = static_cast<std::int32_t>(std::floor((origin + v[k]) / ground_cell) - first);
+}
+
+/// The lowest of the returns that may be ground in each cell of `all`; and into `rows` the own points and others that may be, in `part`.
+Raster lowest_returns(const core::Block& b, size_t own, const core::Lattice& all, const core::Lattice& part,
+                      std::vector<std::uint32_t>& rows) {
+  Raster r(all.nx, all.ny, std::numeric_limits<float>::quiet_NaN());
+  const auto west = static_cast<std::int32_t>(part.i0 - all.i0), south = static_cast<std::int32_t>(part.j0 - all.j0);
+  constexpr size_t together = 1024;
+  std::array<std::int32_t, together> column{}, row{};
+  std::array<char, together> may{};
+  for (size_t first = 0; first < b.size(); first += together) {
+    const size_t n = std::min(together, b.size() - first);
+    cells_of(b.x.data() + first, b.origin.x(), static_cast<double>(all.i0), column.data(), n);
+    cells_of(b.y.data() + first, b.origin.y(), static_cast<double>(all.j0), row.data(), n);
+    for (size_t k = 0; k < n; ++k) may[k] = may_be_ground(b, first + k);
+    for (size_t k = 0; k < n; ++k) {
+      if (may[k]) {
+        float& lowest = r.value[all.at(column[k], row[k])];
+        const auto z = static_cast<float>(b.z[first + k]);
+        if (!(lowest <= z)) lowest = z;
+      }
+      const bool inside = column[k] >= west && row[k] >= south && column[k] < west + part.nx && row[k] < south + part.ny;
+      if (first + k < own || (may[k] && inside)) rows.push_back(static_cast<std::uint32_t>(first + k));
+    }
+  }
+  return r;
 }
 
 }  // namespace
 
 RasterSample sample(const Raster& r, const core::Lattice& l, double x, double y) { return sample(r, place_of(l, x, y), l.cell); }
 
-int surface_reach(const GroundSurfaceOptions& o) {
-  const int window = window_of(o);
-  int cells = gap_filling.support() + 2 * std::min(window, pit_window) + pit_filling.support() + 4 * pit_radius + wall_support(walls_of(o));
-  const int country = 2 * country_window(window) + reach(country_sigma) + 1;
-  cells += gap_filling.support() + std::max(2 * window, country) + deck_support + crest_support + terrain_filling(window).support();
-  return cells + reach(smoothing) + fine_reach();
+int surface_reach(const GroundSurfaceOptions& o) { return coarse_ground_reach(o) + fine_reach(); }
+
+GroundBase ground_base(const core::Block& b, size_t own, double around, const GroundSurfaceOptions& o) {
+  if (own == 0) return {};
+  GroundBase base;
+  const core::Lattice all = lattice_around(b, ground_cell, coarse_ground_rim(o));
+  base.lattice = fine_lattice(b, own, all, around);
+  base.height = coarse_ground(lowest_returns(b, own, all, base.lattice, base.rows), all, base.lattice, o);
+  return base;
 }
 
-GroundSurface ground_surface(const core::Block& b, size_t own, double around, const GroundSurfaceOptions& o) {
-  if (own == 0) return {};
-  const int window = window_of(o);
-  // The rim holds the centres of all disks that touch a filled cell.
-  const core::Lattice all = lattice_around(b, ground_cell, gap_filling.support() + window + 1);
-  const core::Lattice l = fine_lattice(b, own, all, around);
-  const Raster smooth = cropped(smoothed(coarse_surface(b, all, o, window), smoothing), all, l);
-  const std::vector<Maker> makers = makers_of(b, l);
+GroundSurface ground_surface(const core::Block& near, GroundBase base, const GroundSurfaceOptions& o) {
+  const core::Lattice& l = base.lattice;
+  const Raster smooth = std::move(base.height);
+  const std::vector<Maker> makers = makers_of(near, l);
   GroundSurface g{l, smooth, Raster(l.nx, l.ny, static_cast<float>(2.0 * o.noise)), {}, {}, {}};
   g.standing = shares_of(g, makers).standing;
   // What the first round's planes cannot follow, the later ones get from the residuals about it ("twicing": Tukey 1977).
@@ -348,6 +257,10 @@ GroundSurface ground_surface(const core::Block& b, size_t own, double around, co
   g.standing = std::move(shares.standing);
   g.sunken = std::move(shares.sunken);
   return g;
+}
+
+GroundSurface ground_surface(const core::Block& b, size_t own, double around, const GroundSurfaceOptions& o) {
+  return own == 0 ? GroundSurface{} : ground_surface(b, ground_base(b, own, around, o), o);
 }
 
 }  // namespace swath::filters

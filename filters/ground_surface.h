@@ -2,19 +2,15 @@
 // The bare ground as a surface on a raster, from the last returns.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "core/block.h"
 #include "core/grid.h"
+#include "filters/ground_coarse.h"
 #include "filters/morphology.h"
 
 namespace swath::filters {
-
-/// What the surface is built with.
-struct GroundSurfaceOptions {
-  double widest = 50.0;    ///< m, across the largest building that is found by its width
-  double longest = 180.0;  ///< m, the longest building that is found by its walls
-  double steepest = 1.43;  ///< rise / run of the steepest ground
-  double noise = 0.03;     ///< m, standard deviation of a height on hard level ground
-};
 
 /// Rasters of one size on `lattice` (cells of ground_cell).
 struct GroundSurface {
@@ -26,7 +22,16 @@ struct GroundSurface {
   Raster sunken;    ///< 0 to 1: share of them that lie deep below it
 };
 
-constexpr double ground_cell = 1.0;  ///< m
+/// What the surface starts from.
+struct GroundBase {
+  core::Lattice lattice;
+  Raster height;                    ///< m, by cells (ground_coarse.h)
+  std::vector<std::uint32_t> rows;  ///< own points, and others within the lattice that may_be_ground(); ascending
+};
+/// For the first `own` points and `around` metres about them; empty where own is 0.
+GroundBase ground_base(const core::Block& b, size_t own, double around, const GroundSurfaceOptions& o);
+/// `near` holds the points of base.rows at least.
+GroundSurface ground_surface(const core::Block& near, GroundBase base, const GroundSurfaceOptions& o);
 
 /// From the points that may_be_ground(), for the first `own` points and `around` metres about them (the rasters may hold more, which is not
 /// for use). The result at a place depends on the points within surface_reach() and not on their order.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace swath::filters {
@@ -23,6 +24,11 @@ struct Raster {
 /// the largest, over all disks with centre in the raster that contain it, of the smallest value in the disk; cells without keep NaN.
 /// Support: 2 radius cells. The raster must reach `radius` cells beyond its outermost values, or disks with centres outside are missed.
 Raster open_disk(const Raster& surface, int radius);
+
+/// Part of a row of an opening: take(j, i, values, n) gets those of cells (i, j) to (i + n - 1, j).
+using OpenedRow = std::function<void(int j, int i, const float* values, int n)>;
+/// The same, given row by row; every cell comes once.
+void open_disk(const Raster& surface, int radius, const OpenedRow& take);
 
 /// Closing: the opening of the surface turned upside down.
 Raster close_disk(const Raster& surface, int radius);

@@ -13,6 +13,8 @@
 #include <numeric>
 #include <vector>
 
+#include "core/wide.h"
+
 namespace swath::filters {
 namespace {
 
@@ -22,18 +24,46 @@ constexpr int beyond_rim = 10;                    // cells without return: the r
 constexpr double link = 0.6, link_per_run = 0.6;  // m, m per m: step on one surface
 constexpr double wall = 1.2, wall_per_run = 0.6;  // m, m per m: what falls by more falls along a wall
 constexpr double walled = 0.7;                    // share of walls in the border that is seen
-constexpr double walled_at_rim = 0.35;            // share of walls in all of the border, of surfaces that the rim cuts
 constexpr double cut = 0.1;                       // share of the border at the rim from which the rim cuts it
 constexpr double beside_higher = 0.3;             // walls per ray that ends at something higher: what stands beside it decides nothing
 constexpr int fewest = 4;                         // cells that lead on
 
 struct Ray {
   int i, j;
-  double run;  ///< m per step
+  double run;  ///< cells per step
 };
 constexpr double diagonal = 1.4142135623730951;
 constexpr std::array<Ray, 8> rays{
     {{1, 0, 1.0}, {0, 1, 1.0}, {1, 1, diagonal}, {1, -1, diagonal}, {-1, 0, 1.0}, {0, -1, 1.0}, {-1, -1, diagonal}, {-1, 1, diagonal}}};
+
+double tolerance(double run) { return link + link_per_run * run; }
+/// No float lies between this and the value.
+float float_up_to(double v) {
+  const auto f = static_cast<float>(v);
+  return static_cast<double>(f) > v ? std::nextafter(f, 0.0F) : f;
+}
+
+/// 1 where a cell's step to all eight cells around is at most `side`, `corner`; 0 where one of them has no value. Rows of n + 2 cells, from
+/// the one before.
+SWATH_WIDE void linked_all_around(const float* south, const float* row, const float* north, std::int32_t* all, int n, float side,
+                                  float corner) {
+  for (int i = 0; i < n; ++i) {
+    const float z = row[i + 1];
+    const auto near = [z](float v, float step) { return static_cast<std::int32_t>(std::abs(v - z) <= step); };
+    all[i] = near(row[i], side) & near(row[i + 2], side) & near(south[i + 1], side) & near(north[i + 1], side) & near(south[i], corner) &
+             near(south[i + 2], corner) & near(north[i], corner) & near(north[i + 2], corner);
+  }
+}
+
+/// 1 where all eight cells around lie on the cell's surface.
+SWATH_WIDE void alike_all_around(const std::uint32_t* south, const std::uint32_t* row, const std::uint32_t* north, std::int32_t* all,
+                                 int n) {
+  for (int i = 0; i < n; ++i) {
+    const std::uint32_t on = row[i + 1];
+    all[i] = (row[i] == on) & (row[i + 2] == on) & (south[i] == on) & (south[i + 1] == on) & (south[i + 2] == on) & (north[i] == on) &
+             (north[i + 1] == on) & (north[i + 2] == on);
+  }
+}
 
 /// The border of one surface.
 struct Border {
@@ -44,10 +74,14 @@ struct Border {
 
 class Surfaces {
  public:
-  explicit Surfaces(const Raster& lowest)
-      : z_(lowest), parent_(lowest.value.size()), leads_(lowest.value.size(), 0), on_(lowest.value.size(), none) {
+  Surfaces(const Raster& lowest, double cell)
+      : cell_(cell), z_(lowest), parent_(lowest.value.size()), leads_(lowest.value.size(), 0), on_(lowest.value.size(), none) {
     std::iota(parent_.begin(), parent_.end(), 0U);
-    for_each([&](int i, int j, size_t c) { leads_[c] = leads(i, j, c); });
+    const float side = float_up_to(tolerance(cell)), corner = float_up_to(tolerance(diagonal * cell));
+    const auto linked = [&](size_t south, size_t row, size_t north, std::int32_t* all, int n) {
+      linked_all_around(z_.value.data() + south, z_.value.data() + row, z_.value.data() + north, all, n, side, corner);
+    };
+    for_each(linked, [&](int i, int j, size_t c, bool all) { leads_[c] = all || leads(i, j, c); });
     for_each([&](int i, int j, size_t c) { join(i, j, c); });
     for_each([&](int, int, size_t c) {
       if (!leads_[c]) return;
@@ -78,13 +112,32 @@ class Surfaces {
         if (const size_t c = z_.at(i, j); !std::isnan(z_.value[c])) take(i, j, c);
   }
 
+  /// The same with take(i, j, c, all); `all`: what flag(south, row, north, all, n) finds of the cells with all eight around them.
+  template <class Flag, class Take>
+  void for_each(const Flag& flag, const Take& take) const {
+    std::vector<std::int32_t> all(static_cast<size_t>(z_.nx), 0);
+    for (int j = 0; j < z_.ny; ++j) {
+      const bool inside = j > 0 && j + 1 < z_.ny && z_.nx > 2;
+      if (inside) flag(z_.at(0, j - 1), z_.at(0, j), z_.at(0, j + 1), all.data() + 1, z_.nx - 2);
+      for (int i = 0; i < z_.nx; ++i)
+        if (const size_t c = z_.at(i, j); !std::isnan(z_.value[c])) take(i, j, c, inside && all[static_cast<size_t>(i)]);
+    }
+  }
+
   Next next(int i, int j, const Ray& r, int within = gap) const {
+    if (i >= within && j >= within && i + within < z_.nx && j + within < z_.ny) {
+      const std::ptrdiff_t step = std::ptrdiff_t{r.j} * z_.nx + r.i;
+      const float* at = z_.value.data() + z_.at(i, j);
+      for (int k = 1; k <= within; ++k)
+        if (!std::isnan(at[k * step])) return {z_.at(i + k * r.i, j + k * r.j), k * r.run * cell_};
+      return {0, 0.0};
+    }
     for (int k = 1; k <= within && z_.holds(i + k * r.i, j + k * r.j); ++k)
-      if (const size_t c = z_.at(i + k * r.i, j + k * r.j); !std::isnan(z_.value[c])) return {c, k * r.run};
+      if (const size_t c = z_.at(i + k * r.i, j + k * r.j); !std::isnan(z_.value[c])) return {c, k * r.run * cell_};
     return {0, 0.0};
   }
 
-  bool linked(size_t a, const Next& b) const { return std::abs(z_.value[a] - z_.value[b.cell]) <= link + link_per_run * b.run; }
+  bool linked(size_t a, const Next& b) const { return std::abs(z_.value[a] - z_.value[b.cell]) <= tolerance(b.run); }
 
   bool leads(int i, int j, size_t c) const {
     int seen = 0;
@@ -127,6 +180,7 @@ class Surfaces {
 
   void leave(Border& b, int i, int j, size_t c, const Ray& r) const;
 
+  double cell_;  ///< m
   const Raster& z_;
   std::vector<std::uint32_t> parent_;
   std::vector<char> leads_;
@@ -142,26 +196,34 @@ void Surfaces::leave(Border& b, int i, int j, size_t c, const Ray& r) const {
     return;
   }
   if (on_[n.cell] == on_[c]) return;
-  for (int k = 1; k <= std::max(facade, static_cast<int>(n.run / r.run + 0.5)); ++k) {
+  for (int k = 1; k <= std::max(facade, static_cast<int>(n.run / (r.run * cell_) + 0.5)); ++k) {
     if (!z_.holds(i + k * r.i, j + k * r.j)) break;
     const size_t other = z_.at(i + k * r.i, j + k * r.j);
-    if (z_.value[c] - z_.value[other] > wall + wall_per_run * k * r.run) {
+    if (z_.value[c] - z_.value[other] > wall + wall_per_run * k * r.run * cell_) {
       ++(on_[other] != none ? b.walls : b.pits);
       return;
     }
   }
   const double rise = z_.value[n.cell] - z_.value[c];
-  ++(rise > link + link_per_run * n.run ? b.higher : b.open);
+  // A cell on no surface is an edge, a chimney or a bush: it leads nowhere.
+  if (rise > tolerance(n.run))
+    ++b.higher;
+  else
+    b.open += on_[n.cell] != none;
 }
 
 std::vector<Border> Surfaces::borders() const {
   std::vector<Border> all(count_);
-  for_each([&](int i, int j, size_t c) {
+  const auto alike = [&](size_t south, size_t row, size_t north, std::int32_t* flags, int n) {
+    alike_all_around(on_.data() + south, on_.data() + row, on_.data() + north, flags, n);
+  };
+  for_each(alike, [&](int i, int j, size_t c, bool inside) {
     if (on_[c] == none) return;
     Border& b = all[on_[c]];
     if (!b.any) b.any = true, b.west = b.east = i, b.south = b.north = j;
     b.west = std::min(b.west, i), b.east = std::max(b.east, i), b.south = std::min(b.south, j), b.north = std::max(b.north, j);
     b.cells += leads_[c];
+    if (inside) return;
     for (const Ray& r : rays) leave(b, i, j, c, r);
   });
   return all;
@@ -172,7 +234,7 @@ bool is_object(const Border& b, const WallOptions& o) {
   if (b.walls == 0 || b.pits > 3 * b.walls || b.cells < fewest || across > o.longest || b.walls < walled * seen ||
       b.walls < beside_higher * b.higher)
     return false;
-  return b.rim <= cut * (seen + b.rim) || (b.walls >= walled_at_rim * (seen + b.rim) && across <= 2 * o.widest);
+  return b.rim <= cut * (seen + b.rim) || (b.walls >= o.walled_at_rim * (seen + b.rim) && across <= 2 * o.widest);
 }
 
 }  // namespace
@@ -181,7 +243,7 @@ int wall_support(const WallOptions& o) { return o.longest > 0 ? o.longest + 2 * 
 
 void remove_walled(Raster& lowest, const WallOptions& o) {
   if (o.longest == 0) return;
-  const Surfaces surfaces(lowest);
+  const Surfaces surfaces(lowest, o.cell);
   const std::vector<Border> borders = surfaces.borders();
   for (size_t c = 0; c < lowest.value.size(); ++c)
     if (const std::uint32_t on = surfaces.of(c); on != Surfaces::none && is_object(borders[on], o)) lowest.value[c] = std::nanf("");

@@ -6,10 +6,11 @@
 
 namespace swath::filters {
 
-/// Cells of 1 m.
 struct WallOptions {
-  int longest = 180;  ///< cells: larger surfaces are ground; 0: none is looked for
-  int widest = 50;    ///< cells: the same half of surfaces that the rim of the data cuts, whose other walls are not known
+  int longest = 180;            ///< cells: larger surfaces are ground; 0: none is looked for
+  int widest = 50;              ///< cells: the same half of surfaces that the rim of the data cuts, whose other walls are not known
+  double cell = 1.0;            ///< m
+  double walled_at_rim = 0.25;  ///< share of walls in all of the border, of surfaces that the rim of the data cuts
 };
 
 /// Voids in `lowest` (the lowest returns, NaN where none) the surfaces that end at walls wherever their end is seen: halls, and roofs of

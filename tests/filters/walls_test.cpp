@@ -68,6 +68,19 @@ TEST(Walls, ARoofThatTheRimCutsIsNotGround) {
   EXPECT_EQ(voided(before, after, 0, 20, size, 280), 0.0);
 }
 
+TEST(Walls, ALowRoofAtTheRimBesideAHigherOneIsNotGround) {
+  // Dormers and light wells break one side up: their cells lie on no surface, and say nothing about where the roof ends.
+  const Raster before = heights([](int i, int j) {
+    if (within(i, j, 108, 0, 130, 24)) return level + 9.0F;
+    if (within(i, j, 96, 16, 108, 20)) return level + ((i + j) % 2 == 0 ? 2.5F : 4.9F);
+    return within(i, j, 96, 0, 108, 16) ? level + 4.0F : level;
+  });
+  Raster after = before;
+  remove_walled(after, {});
+  EXPECT_EQ(voided(before, after, 97, 0, 107, 14), 1.0);
+  EXPECT_EQ(voided(before, after, 0, 26, size, size), 0.0);
+}
+
 TEST(Walls, GroundBesideAWallStays) {
   // A terrace above a retaining wall, an embankment, a hill, a courtyard and a slope of 40 degrees.
   const std::function<float(int, int)> grounds[] = {

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "filters/ground_coarse.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace swath::filters {
+namespace {
+
+constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
+
+GroundSurfaceOptions small() { return {.widest = 12.0, .longest = 20.0}; }
+
+/// Hills with buildings, bushes, low points and holes.
+Raster country(int nx, int ny) {
+  Raster r(nx, ny, 0.0F);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      double z = 8.0 * std::sin(i / 25.0) * std::cos(j / 31.0) + 0.05 * part(random);
+      if (i % 40 < 10 && j % 33 < 9) z += 6.0;
+      if (part(random) < 0.1) z += 3.0 * part(random);
+      if (part(random) < 0.002) z -= 4.0;
+      r.value[r.at(i, j)] = part(random) < 0.15 ? nothing : static_cast<float>(z);
+    }
+  return r;
+}
+
+/// Of the country, within a rim without returns.
+Raster with_rim(const Raster& inner, int rim) {
+  Raster r(inner.nx + 2 * rim, inner.ny + 2 * rim, nothing);
+  for (int j = 0; j < inner.ny; ++j)
+    for (int i = 0; i < inner.nx; ++i) r.value[r.at(i + rim, j + rim)] = inner.value[inner.at(i, j)];
+  return r;
+}
+
+TEST(CoarseGround, BuildingsAndLowPointsAreOff) {
+  const GroundSurfaceOptions o = small();
+  const int rim = coarse_ground_rim(o), side = 160;
+  const Raster all = with_rim(country(side, side), rim);
+  const core::Lattice l{1.0, 0, 0, all.nx, all.ny};
+  const Raster ground = coarse_ground(all, l, l, o);
+  constexpr double tolerance = 1.5;  // m: half of a building's height and more than a bush between gaps
+  int off = 0;
+  for (int j = 5; j < side - 5; ++j)
+    for (int i = 5; i < side - 5; ++i)
+      off += !(std::abs(ground.value[ground.at(i + rim, j + rim)] - 8.0 * std::sin(i / 25.0) * std::cos(j / 31.0)) < tolerance);
+  EXPECT_LT(off, 0.01 * side * side);
+}
+
+TEST(CoarseGround, ARaggedRoofAtTheRimIsOffInWiderCells) {
+  // Returns on the roof alternate with those on dormers and in light wells, so that no cell of 1 m goes on to the next.
+  const GroundSurfaceOptions o{};
+  const int rim = coarse_ground_rim(o), side = 140;
+  Raster inner(side, side, 0.0F);
+  for (int j = 0; j < 14; ++j)
+    for (int i = 50; i < 80; ++i) inner.value[inner.at(i, j)] = (i + j) % 2 == 0 ? 6.0F : 8.5F;
+  const Raster all = with_rim(inner, rim);
+  const core::Lattice l{1.0, 0, 0, all.nx, all.ny};
+  const Raster ground = coarse_ground(all, l, l, o);
+  for (int j = 0; j < 12; ++j)
+    for (int i = 52; i < 78; ++i) EXPECT_LT(ground.value[ground.at(i + rim, j + rim)], 0.5F) << i << " " << j;
+}
+
+TEST(CoarseGround, APartIsWhatItIsInTheWhole) {
+  const GroundSurfaceOptions o = small();
+  const int rim = coarse_ground_rim(o), reach = coarse_ground_reach(o), side = 2 * reach + 60;
+  const Raster all = with_rim(country(side, side), rim);
+  const core::Lattice l{1.0, 0, 0, all.nx, all.ny};
+  const Raster whole = coarse_ground(all, l, l, o);
+  const core::Lattice part{1.0, rim + reach + 7, rim + reach + 3, 40, 45};
+  const Raster cut = coarse_ground(all, l, part, o);
+  // Without what lies beyond the reach.
+  Raster near = all;
+  for (int j = 0; j < all.ny; ++j)
+    for (int i = 0; i < all.nx; ++i)
+      if (i < part.i0 - reach || j < part.j0 - reach || i >= part.i0 + part.nx + reach || j >= part.j0 + part.ny + reach)
+        near.value[near.at(i, j)] = nothing;
+  const Raster alone = coarse_ground(near, l, part, o);
+  for (int j = 0; j < part.ny; ++j)
+    for (int i = 0; i < part.nx; ++i) {
+      const float expected = whole.value[whole.at(static_cast<int>(part.i0) + i, static_cast<int>(part.j0) + j)];
+      ASSERT_EQ(cut.value[cut.at(i, j)], expected) << i << " " << j;
+      ASSERT_EQ(alone.value[alone.at(i, j)], expected) << i << " " << j;
+    }
+}
+
+TEST(CoarseGround, AGrownLatticeEndsWhereTheWholeDoes) {
+  const core::Lattice whole{1.0, -10, 20, 50, 40}, part{1.0, -5, 30, 10, 10};
+  EXPECT_EQ(grown(part, 3, whole), (core::Lattice{1.0, -8, 27, 16, 16}));
+  EXPECT_EQ(grown(part, 100, whole), whole);
+}
+
+}  // namespace
+}  // namespace swath::filters
