@@ -263,34 +263,20 @@ core::Lattice fine_lattice(const core::Block& b, size_t own, const core::Lattice
   return {l.cell, l.i0 + i0, l.j0 + j0, i1 - i0, j1 - j0};
 }
 
-/// Indices of cells, from `first`, of some coordinates.
-SWATH_WIDE void cells_of(const double* v, double origin, double first, std::int32_t* cell, size_t n) {
-  for (size_t k = 0; k < n; ++k) cell[k] = static_cast<std::int32_t>(std::floor((origin + v[k]) / ground_cell) - first);
-}
-
 /// The lowest of the returns that may be ground in each cell of `all`; and into `rows` the own points and others that may be, in `part`.
 Raster lowest_returns(const core::Block& b, size_t own, const core::Lattice& all, const core::Lattice& part,
                       std::vector<std::uint32_t>& rows) {
   Raster r(all.nx, all.ny, std::numeric_limits<float>::quiet_NaN());
   const auto west = static_cast<std::int32_t>(part.i0 - all.i0), south = static_cast<std::int32_t>(part.j0 - all.j0);
-  constexpr size_t together = 1024;
-  std::array<std::int32_t, together> column{}, row{};
-  std::array<char, together> may{};
-  for (size_t first = 0; first < b.size(); first += together) {
-    const size_t n = std::min(together, b.size() - first);
-    cells_of(b.x.data() + first, b.origin.x(), static_cast<double>(all.i0), column.data(), n);
-    cells_of(b.y.data() + first, b.origin.y(), static_cast<double>(all.j0), row.data(), n);
-    for (size_t k = 0; k < n; ++k) may[k] = may_be_ground(b, first + k);
-    for (size_t k = 0; k < n; ++k) {
-      if (may[k]) {
-        float& lowest = r.value[all.at(column[k], row[k])];
-        const auto z = static_cast<float>(b.z[first + k]);
-        if (!(lowest <= z)) lowest = z;
-      }
-      const bool inside = column[k] >= west && row[k] >= south && column[k] < west + part.nx && row[k] < south + part.ny;
-      if (first + k < own || (may[k] && inside)) rows.push_back(static_cast<std::uint32_t>(first + k));
+  for_each_cell(b, all, [&](size_t p, std::int32_t i, std::int32_t j, bool may) {
+    if (may) {
+      float& lowest = r.value[all.at(i, j)];
+      const auto z = static_cast<float>(b.z[p]);
+      if (!(lowest <= z)) lowest = z;
     }
-  }
+    const bool inside = i >= west && j >= south && i < west + part.nx && j < south + part.ny;
+    if (p < own || (may && inside)) rows.push_back(static_cast<std::uint32_t>(p));
+  });
   return r;
 }
 
