@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -127,17 +126,20 @@ std::vector<std::uint32_t> needed_around(const core::Block& b, const Bounds& til
   const core::Lattice l = lattice_around(b, ground_cell, 0);
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> lowest(l.size(), none);
+  std::vector<std::uint8_t> needed(b.size(), 0);
   for_each_cell(b, l, [&](size_t p, std::int32_t i, std::int32_t j, bool may) {
     const double x = b.origin.x() + b.x[p], y = b.origin.y() + b.y[p];
     if (x >= tile.west - near && x < tile.east + near && y >= tile.south - near && y < tile.north + near) {
-      rows.push_back(static_cast<std::uint32_t>(p));
+      needed[p] = 1;
     } else if (may) {
       std::uint32_t& row = lowest[l.at(i, j)];
       if (row == none || b.z[p] < b.z[row]) row = static_cast<std::uint32_t>(p);
     }
   });
-  std::copy_if(lowest.begin(), lowest.end(), std::back_inserter(rows), [](std::uint32_t row) { return row != none; });
-  std::sort(rows.begin(), rows.end());
+  for (const std::uint32_t row : lowest)
+    if (row != none) needed[row] = 1;
+  for (size_t p = 0; p < needed.size(); ++p)
+    if (needed[p]) rows.push_back(static_cast<std::uint32_t>(p));
   return rows;
 }
 
