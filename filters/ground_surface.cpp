@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two passes. The coarse one (ground_coarse.h) takes objects off the lowest returns of the cells. The fine one is robust interpolation
 // (Kraus & Pfeifer 1998, ISPRS J. 53): a surface through all last returns with weights by their distance from the surface before.
-// Deviations: moving planes
-// stand for linear prediction (moving_planes.h) and breaks are kept by taking the smoother side; the weight's arm follows the spread of the
-// returns under the surface and shrinks where many stand knee-high, which does what Kraus & Pfeifer's eccentric weights do, and keeps the
-// surface in the middle of the ground's returns in the open. A plane under a kernel of sigma s lies 0.5 s^2 f'' off a curved surface f;
-// planes of a finer kernel, where the data favour them, and residuals fitted again take most of that away: on a scarp of 55 degrees 45 mm
-// in rms in place of 68 mm, of which 42 mm are the returns' own.
+// Deviations: moving planes stand for linear prediction (moving_planes.h) and breaks are kept by taking the smoother side; the weight's arm
+// follows the spread of the returns under the surface and shrinks where many stand knee-high, which does what Kraus & Pfeifer's eccentric
+// weights do, and keeps the surface in the middle of the ground's returns in the open. A plane under a kernel of sigma s lies 0.5 s^2 f''
+// off a curved surface f; planes of a finer kernel, where the data favour them, and residuals fitted again take most of that away: on a
+// scarp of 55 degrees 45 mm in rms in place of 68 mm, of which 42 mm are the returns' own.
 #include "filters/ground_surface.h"
 
 #include <algorithm>
@@ -122,12 +121,8 @@ struct Batch {
   std::array<double, most> r, slope;  ///< m over the surface, NaN where it is not known; rise / run
   std::array<double, most> weight;    ///< 1 on the surface, a half at `arm` and arm_per_slope from it
   std::array<float, most> arm;
-
- private:
-  friend void place(Batch&, const Raster&, std::span<const Maker>);
-  friend void measure(Batch&);
-  std::array<double, most> east, north, z;
-  std::array<float, most> south_west, south_east, north_west, north_east;
+  std::array<double, most> east, north, z;  ///< in cells from the south-western of the four centres around; m
+  std::array<float, most> south_west, south_east, north_west, north_east;  ///< m, the surface there
 };
 
 SWATH_WIDE void measure(Batch& b) {
