@@ -49,8 +49,8 @@ int main(int argc, char** argv) {
     took.push_back(bench::processor_seconds() - began);
   }
   std::printf("filters.ground: %zu returns of %zu, halo %.0f m: %.2f s, %.3f M returns/s; ground %llu, doubtful %llu\n", mine, own.size(),
-              halo, bench::median(took), static_cast<double>(mine) / bench::median(took) / 1e6,
-              static_cast<unsigned long long>(n.ground), static_cast<unsigned long long>(n.doubtful));
+              halo, bench::median(took), static_cast<double>(mine) / bench::median(took) / 1e6, static_cast<unsigned long long>(n.ground),
+              static_cast<unsigned long long>(n.doubtful));
   if (const char* to = std::getenv("OUT")) {
     std::FILE* f = std::fopen(to, "wb");
     std::fwrite(own.ground_probability.data(), sizeof(float), mine, f);

@@ -2,6 +2,7 @@
 #include "filters/bins.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/wide.h"
 
@@ -28,7 +29,16 @@ SWATH_WIDE Extent extent_of(const double* v, size_t n) {
   return e;
 }
 
+SWATH_WIDE void cells_of(const double* v, double origin, double cell, double first, std::int32_t* out, size_t n) {
+  for (size_t k = 0; k < n; ++k) out[k] = static_cast<std::int32_t>(std::floor((origin + v[k]) / cell) - first);
+}
+
 }  // namespace
+
+void cells_of(const core::Lattice& l, const core::Block& b, size_t first, size_t n, std::int32_t* column, std::int32_t* row) {
+  cells_of(b.x.data() + first, b.origin.x(), l.cell, static_cast<double>(l.i0), column, n);
+  cells_of(b.y.data() + first, b.origin.y(), l.cell, static_cast<double>(l.j0), row, n);
+}
 
 core::Lattice lattice_around(const core::Block& b, double cell, int border) {
   if (b.size() == 0) return {cell, 0, 0, 0, 0};

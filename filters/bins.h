@@ -27,6 +27,9 @@ inline CellIndex cell_of(const core::Lattice& l, const core::Block& b, size_t p)
           static_cast<int>(core::cell_index(b.origin.y() + b.y[p], l.cell) - l.j0)};
 }
 
+/// Column and row in the lattice of n points from `first` on; those outside get what is outside.
+void cells_of(const core::Lattice& l, const core::Block& b, size_t first, size_t n, std::int32_t* column, std::int32_t* row);
+
 /// Points sorted by cell (counting sort). Within a cell they stand in the order of the block: users must not let that order decide.
 /// Memory: 28 bytes per point and 4 per cell of the block's extent.
 class Bins {

@@ -104,13 +104,21 @@ void restore_crests(Raster& ground, const OpenedReturns& r) {
   std::vector<size_t> off;
   for (size_t c = 0; c < ground.value.size(); ++c)
     if (std::isnan(ground.value[c]) && r.lowest.value[c] - r.opened.value[c] > shallow) off.push_back(c);
+  const auto cell_at = [&](size_t c) {
+    return CellIndex{static_cast<int>(c % static_cast<size_t>(ground.nx)), static_cast<int>(c / static_cast<size_t>(ground.nx))};
+  };
+  std::vector<char> changed(ground.value.size(), 1);  // ground around the cell, since it was looked at
   for (int round = 0; round < rounds; ++round) {
-    const auto crest = std::partition(off.begin(), off.end(), [&](size_t c) {
-      return !is_crest(ground, r,
-                       {static_cast<int>(c % static_cast<size_t>(ground.nx)), static_cast<int>(c / static_cast<size_t>(ground.nx))});
-    });
+    const auto crest = std::partition(off.begin(), off.end(), [&](size_t c) { return !changed[c] || !is_crest(ground, r, cell_at(c)); });
     if (crest == off.end()) break;
-    for (auto c = crest; c != off.end(); ++c) ground.value[*c] = r.lowest.value[*c];
+    std::fill(changed.begin(), changed.end(), char{0});
+    for (auto c = crest; c != off.end(); ++c) {
+      ground.value[*c] = r.lowest.value[*c];
+      const CellIndex at = cell_at(*c);
+      const int west = std::max(0, at.i - 2 * far), east = std::min(ground.nx - 1, at.i + 2 * far);
+      for (int j = std::max(0, at.j - 2 * far); j <= std::min(ground.ny - 1, at.j + 2 * far); ++j)
+        std::fill_n(changed.begin() + static_cast<std::ptrdiff_t>(ground.at(west, j)), east - west + 1, char{1});
+    }
     off.erase(crest, off.end());
   }
 }

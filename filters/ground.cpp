@@ -57,7 +57,6 @@ void move_to_lower(ReturnOverGround& r, const LowerPopulations& lower, const cor
   r.spread = spread;
 }
 
-
 // m about the own points in which returns are judged.
 double judged_around() { return std::max(ground_chance_reach + ground_populations_reach, ground_probability_reach); }
 
@@ -78,10 +77,10 @@ core::Block points_of(const core::Block& b, const std::vector<std::uint32_t>& ro
 
 /// Of the own points; `b` holds what lies near them.
 std::vector<GroundEvidence> evidence_on(const core::Block& b, size_t own, GroundBase base, const GroundOptions& o) {
+  const GroundSurface g = ground_surface(b, std::move(base), surface_options(o));
   GroundEvidence unknown;
   unknown.above = not_judged;
   std::vector<GroundEvidence> evidence(own, unknown);
-  const GroundSurface g = ground_surface(b, std::move(base), surface_options(o));
   // Points farther from the own ones have no influence.
   const core::Lattice l = grown(lattice_around(b, own, ground_cell, judged_around(), 0), 0, grown(g.lattice, -1, g.lattice));
   std::vector<ReturnOverGround> returns(b.size(), {not_judged, 0, 0, false});
@@ -117,6 +116,32 @@ std::vector<GroundEvidence> evidence_on(const core::Block& b, size_t own, Ground
 }  // namespace
 
 double halo(const GroundOptions& o) { return std::ceil((surface_reach(surface_options(o)) + 2) * ground_cell + judged_around()); }
+
+double near_halo(const GroundOptions&) { return std::ceil(judged_around() + (fine_surface_reach() + 1) * ground_cell); }
+
+std::vector<std::uint32_t> needed_around(const core::Block& b, const Bounds& tile, const GroundOptions& o) {
+  std::vector<std::uint32_t> rows;
+  if (b.size() == 0) return rows;
+  const double near = near_halo(o);
+  const core::Lattice l = lattice_around(b, ground_cell, 0);
+  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> lowest(l.size(), none);
+  std::vector<std::uint8_t> needed(b.size(), 0);
+  for_each_cell(b, l, [&](size_t p, std::int32_t i, std::int32_t j, bool may) {
+    const double x = b.origin.x() + b.x[p], y = b.origin.y() + b.y[p];
+    if (x >= tile.west - near && x < tile.east + near && y >= tile.south - near && y < tile.north + near) {
+      needed[p] = 1;
+    } else if (may) {
+      std::uint32_t& row = lowest[l.at(i, j)];
+      if (row == none || b.z[p] < b.z[row]) row = static_cast<std::uint32_t>(p);
+    }
+  });
+  for (const std::uint32_t row : lowest)
+    if (row != none) needed[row] = 1;
+  for (size_t p = 0; p < needed.size(); ++p)
+    if (needed[p]) rows.push_back(static_cast<std::uint32_t>(p));
+  return rows;
+}
 
 std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, const GroundOptions& o) {
   GroundEvidence unknown;

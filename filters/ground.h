@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -44,6 +45,15 @@ struct GroundChances : GroundCounts {
 
 /// Metres of points around a tile that its result depends on.
 double halo(const GroundOptions& o);
+/// Metres within which it depends on all of them; farther off on the lowest that may be ground of each cell of 1 m alone.
+double near_halo(const GroundOptions& o);
+
+/// A box of map coordinates, half open.
+struct Bounds {
+  double west, south, east, north;
+};
+/// Rows, ascending, of the points that the result of a tile depends on: all of those near it, and of the others the lowest of their cells.
+std::vector<std::uint32_t> needed_around(const core::Block& b, const Bounds& tile, const GroundOptions& o);
 
 /// Sets class ground or unassigned and the column ground_probability of the usable points among the first `own`; those after are the halo
 /// and keep theirs. Ground is what has a probability of at least 0.5. Only the

@@ -2,10 +2,13 @@
 // What every ground filter does at its end: the class of each own point from the verdict on it.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "core/block.h"
+#include "filters/bins.h"
 
 namespace swath::filters {
 
@@ -24,6 +27,23 @@ struct GroundCounts {
 /// True for the points that ground filters look at: usable last and only returns. An earlier return has one of the same pulse behind it:
 /// the beam went on, so the ground is not there.
 inline bool may_be_ground(const core::Block& b, size_t p) { return core::is_usable(b, p) && core::is_last_return(b, p); }
+
+/// The same of n points from `first` on: 1 or 0 each.
+void may_be_ground(const core::Block& b, size_t first, size_t n, std::uint8_t* may);
+
+/// Calls take(point, column, row, may_be_ground) for all points of the block, with their cells in the lattice.
+template <class Take>
+void for_each_cell(const core::Block& b, const core::Lattice& l, const Take& take) {
+  constexpr size_t together = 1024;
+  std::array<std::int32_t, together> column{}, row{};
+  std::array<std::uint8_t, together> may{};
+  for (size_t first = 0; first < b.size(); first += together) {
+    const size_t n = std::min(together, b.size() - first);
+    cells_of(l, b, first, n, column.data(), row.data());
+    may_be_ground(b, first, n, may.data());
+    for (size_t k = 0; k < n; ++k) take(first + k, column[k], row[k], may[k] != 0);
+  }
+}
 
 /// Sets class ground or unassigned on the usable points among the first `own`; verdicts on points that may not be ground do not count.
 /// `verdicts` has one entry per point of the block.

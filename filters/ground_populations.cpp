@@ -172,6 +172,52 @@ TwoPopulations populations_of(const Histogram& h, double noise) {
   return two.log_likelihood - one.log_likelihood > likelier ? TwoPopulations{lower, gap} : TwoPopulations{};
 }
 
+using Counts = std::vector<std::array<std::uint16_t, classes>>;
+
+/// Histograms under the Gaussian, asked for row after row: first summed along the rows, then across.
+class Histograms {
+ public:
+  Histograms(const core::Lattice& l, const Counts& counts, const std::vector<double>& weight)
+      : l_(l),
+        counts_(counts),
+        weight_(weight),
+        border_(static_cast<int>(weight.size()) / 2),
+        along_(weight.size() * static_cast<size_t>(l.nx)),
+        done_(along_.size(), -1) {}
+
+  Histogram at(int i, int j) {
+    Histogram h{};
+    for (int d = -border_; d <= border_; ++d) {
+      const Histogram& row = along(i, j + d);
+      const double w = weight_[static_cast<size_t>(d + border_)];
+      for (size_t k = 0; k < classes; ++k) h[k] += w * row[k];
+    }
+    return h;
+  }
+
+ private:
+  const Histogram& along(int i, int j) {
+    const size_t at = static_cast<size_t>(j % static_cast<int>(weight_.size())) * static_cast<size_t>(l_.nx) + static_cast<size_t>(i);
+    Histogram& h = along_[at];
+    if (done_[at] == j) return h;
+    h = {};
+    for (int d = -border_; d <= border_; ++d) {
+      const auto& of_cell = counts_[l_.at(i + d, j)];
+      const double w = weight_[static_cast<size_t>(d + border_)];
+      for (size_t k = 0; k < classes; ++k) h[k] += w * of_cell[k];
+    }
+    done_[at] = j;
+    return h;
+  }
+
+  const core::Lattice& l_;
+  const Counts& counts_;
+  const std::vector<double>& weight_;
+  int border_;
+  std::vector<Histogram> along_;  ///< a ring of rows
+  std::vector<int> done_;         ///< the row that each holds
+};
+
 }  // namespace
 
 const double ground_populations_reach = (reach(sigma) + 1) * cell;
@@ -183,7 +229,7 @@ LowerPopulations lower_populations(const core::Block& b, size_t own, double arou
   const Raster none(l.nx, l.ny, std::numeric_limits<float>::quiet_NaN());
   LowerPopulations out{l, none, none};
 
-  std::vector<std::array<std::uint16_t, classes>> counts(l.size(), std::array<std::uint16_t, classes>{});
+  Counts counts(l.size(), Counts::value_type{});
   std::vector<char> suspect(l.size(), 0);
   for (size_t p = 0; p < b.size(); ++p) {
     const double k = std::floor((static_cast<double>(returns[p].above) - lowest) / width);
@@ -203,16 +249,14 @@ LowerPopulations lower_populations(const core::Block& b, size_t own, double arou
         take(weight[static_cast<size_t>(di + border)] * weight[static_cast<size_t>(dj + border)],
              static_cast<size_t>(static_cast<std::ptrdiff_t>(c) + std::ptrdiff_t{dj} * l.nx + di));
   };
+  Histograms histograms(l, counts, weight);
   std::vector<std::pair<size_t, TwoPopulations>> found;
   std::vector<char> near_found(l.size(), 0);
   for (int j = border; j + border < l.ny; ++j)
     for (int i = border; i + border < l.nx; ++i) {
       const size_t c = l.at(i, j);
       if (!suspect[c]) continue;
-      Histogram h{};
-      around_cell(c, [&](double w, size_t near) {
-        for (size_t k = 0; k < classes; ++k) h[k] += w * counts[near][k];
-      });
+      const Histogram h = histograms.at(i, j);
       const TwoPopulations two = populations_of(h, noise);
       if (two.gap <= 0.0) continue;
       found.emplace_back(c, two);

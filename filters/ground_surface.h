@@ -37,6 +37,9 @@ GroundSurface ground_surface(const core::Block& near, GroundBase base, const Gro
 /// for use). The result at a place depends on the points within surface_reach() and not on their order.
 GroundSurface ground_surface(const core::Block& b, size_t own, double around, const GroundSurfaceOptions& o);
 
+/// Cells around a point within which its surface depends on every return, with the rims of rasters; farther off on the lowest of each cell.
+int fine_surface_reach();
+
 /// Cells around a point that its surface depends on.
 int surface_reach(const GroundSurfaceOptions& o);
 

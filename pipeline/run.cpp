@@ -436,12 +436,14 @@ Measure Engine::measure_of(size_t number) const {
   return [this, &s, row_bytes, wide = context_](std::vector<TileKey> tiles) mutable {
     const TileBox box(tiles);
     const TileStore::Load load = store_->load_with_halo(tiles, s.halo());
-    const auto points = static_cast<double>(load.points);
+    const double left = s.left_per_area() * TileBox(tiles).metres(context_.tile_side).grown(s.halo()).area();
+    const auto near = static_cast<double>(store_->load_with_halo(tiles, s.near_halo()).points);
+    const auto points = static_cast<double>(load.points), rows = std::min(points, near + left);
     wide.tile_side = context_.tile_side * 0.5 * (box.across() + box.up());  // the square of the same perimeter is not smaller
     double bytes =
-        (row_bytes + s.bytes_per_point() * s.share_of_points(wide.tile_side)) * points + row_bytes * static_cast<double>(load.neighbour);
+        row_bytes * (rows + static_cast<double>(load.neighbour)) + s.bytes_per_point() * s.share_of_points(wide.tile_side) * points;
     for (const stages::Raster& r : s.rasters(wide)) bytes += r.total(points);
-    TileGroup group{std::move(tiles), 0, load.points, static_cast<std::uint64_t>(bytes)};
+    TileGroup group{std::move(tiles), 0, static_cast<std::uint64_t>(rows), static_cast<std::uint64_t>(bytes)};
     for (const TileKey k : group.tiles)
       if (const auto at = store_->tiles().find(k); at != store_->tiles().end()) group.own += at->second;
     return group;
@@ -478,7 +480,9 @@ Value Engine::run_group(size_t number, const TileGroup& group, bool has_water) {
   const fs::path mine = folder(number), done = done_file(number, group);
   stages::TileJob job{group.tiles[0], TileBox(group.tiles).metres(context_.tile_side), mine, {}, 0, {}};
   const auto start = Clock::now();
-  job.block = store_->read_with_halo(group.tiles, s.halo(), columns_of_tiles(s), job.own);
+  std::function<void(core::Block&)> thin;
+  if (std::isfinite(s.left_per_area())) thin = [&](core::Block& around) { s.thin(context_, job.box, around); };
+  job.block = store_->read_with_halo(group.tiles, s.halo(), columns_of_tiles(s), job.own, thin);
   core::add_columns(job.block, info.gives);
   const size_t before = job.block.size();
   if (before > 0 || !has_surface(info.gives_products) || has_water) s.run_tile(context_, job);

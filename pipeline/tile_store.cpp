@@ -420,7 +420,8 @@ int apart(int i, int low, int high) { return std::max({low - i, i - high, 0}); }
 
 }  // namespace
 
-Block TileStore::read_with_halo(const std::vector<TileKey>& keys, double halo, ColumnSet columns, size_t& own) const {
+Block TileStore::read_with_halo(const std::vector<TileKey>& keys, double halo, ColumnSet columns, size_t& own,
+                                const std::function<void(Block&)>& thin) const {
   Block around;
   around.origin = origin_;
   const TileBox tiles(keys);
@@ -428,7 +429,17 @@ Block TileStore::read_with_halo(const std::vector<TileKey>& keys, double halo, C
   const stages::Box box = tiles.metres(side_).grown(halo);
   for (int iy = tiles.low.iy - reach; iy <= tiles.high.iy + reach; ++iy)
     for (int ix = tiles.low.ix - reach; ix <= tiles.high.ix + reach; ++ix)
-      if (!tiles.holds({ix, iy}) && tiles_.contains({ix, iy})) append_within(around, {ix, iy}, columns, box);
+      if (!tiles.holds({ix, iy}) && tiles_.contains({ix, iy})) {
+        if (!thin) {
+          append_within(around, {ix, iy}, columns, box);
+          continue;
+        }
+        Block part;
+        part.origin = origin_;
+        append_within(part, {ix, iy}, columns, box);
+        thin(part);
+        core::append(around, part);
+      }
   size_t more = around.size();
   for (size_t k = 1; k < keys.size(); ++k) more += tiles_.at(keys[k]);
   Block out = read(keys[0], columns, more);

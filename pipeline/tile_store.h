@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 #include <vector>
@@ -68,8 +69,10 @@ class TileStore {
   /// The columns of one tile's points (x, y, z always).
   core::Block read(TileKey key, core::ColumnSet columns) const;
   /// The points of tiles, one tile after the other, then those of their neighbours within `halo` metres of the box around them, in order
-  /// of tiles; `own` receives the number of the former. `keys`: all with points of a box of tiles, or one.
-  core::Block read_with_halo(const std::vector<TileKey>& keys, double halo, core::ColumnSet columns, size_t& own) const;
+  /// of tiles; `own` receives the number of the former. `keys`: all with points of a box of tiles, or one. `thin`: takes out of one
+  /// neighbour's points those that are not needed.
+  core::Block read_with_halo(const std::vector<TileKey>& keys, double halo, core::ColumnSet columns, size_t& own,
+                             const std::function<void(core::Block&)>& thin = {}) const;
   /// What read_with_halo loads, estimated to the safe side: the points it gives, and those of the largest neighbour, which it holds for a
   /// moment.
   struct Load {

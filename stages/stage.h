@@ -7,6 +7,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -73,6 +74,7 @@ struct Box {
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   Box grown(double by) const { return {x0 - by, y0 - by, x1 + by, y1 + by}; }
   bool holds(double x, double y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+  double area() const { return (x1 - x0) * (y1 - y0); }
 };
 
 /// The cells whose centres lie in the box.
@@ -222,6 +224,12 @@ class Stage {
   virtual core::ColumnSet also_reads() const { return {}; }
   /// Metres of points around a tile that its result depends on.
   virtual double halo() const { return 0.0; }
+  /// Metres within which it depends on every point; of those farther off, on the ones that thin() leaves.
+  virtual double near_halo() const { return halo(); }
+  /// Takes out of points around the box `tiles` those that the result does not depend on; keeps the order of the others.
+  virtual void thin(const Context&, const Box& /*tiles*/, core::Block& /*around*/) const {}
+  /// Points per square metre beyond near_halo() that thin() leaves at most; infinite where it leaves all.
+  virtual double left_per_area() const { return std::numeric_limits<double>::infinity(); }
   /// Bytes of working memory per point of tile and halo, beside the columns.
   virtual double bytes_per_point() const { return 64.0; }
   /// Share of the points of tile and halo that these bytes are for: less than 1 where a stage leaves the halo's far points out. `side`: m,

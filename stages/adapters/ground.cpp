@@ -2,7 +2,10 @@
 #include "filters/ground.h"
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/kept_classes.h"
@@ -28,11 +31,24 @@ class Ground : public OptionStage<Keeping<filters::GroundOptions>> {
   core::ColumnSet also_reads() const override { return {Column::return_number, Column::return_count, Column::strip}; }
   std::string_view implied(bool) const override { return "quality.lines"; }
   double halo() const override { return filters::halo(options); }
-  // Measured 2026-11-22 with tests/stages/memory_test.cpp, tiles of 200 to 1500 m, points 0.7 m and 3 m apart; of the points, counted
-  // 2026-11-23: evidence 64, nearest returns 32.
+  double near_halo() const override { return filters::near_halo(options); }
+  double left_per_area() const override { return 1.0; }
+  void thin(const Context& context, const Box& tiles, core::Block& around) const override {
+    std::vector<double> heights = around.z;
+    if (const std::optional<KnownLines> lines = known_lines(context)) take_offsets(around, *lines);
+    const std::vector<std::uint32_t> rows = filters::needed_around(around, {tiles.x0, tiles.y0, tiles.x1, tiles.y1}, options);
+    around.z.swap(heights);
+    around = core::select(around, rows);
+  }
+  // Measured 2026-11-23 with tests/stages/memory_test.cpp, tiles of 200 to 1500 m, points 0.7 m and 3 m apart; of the near points, counted:
+  // columns 30, evidence 64, nearest returns 40.
   double bytes_per_point() const override { return 100.0; }
+  double share_of_points(double side) const override {
+    const double near = (side + 2.0 * near_halo()) / (side + 2.0 * halo());
+    return near * near;
+  }
   std::vector<Raster> rasters(const Context& c) const override {
-    return {{"", 1.0, c.tile_side + 2.0 * halo(), 90.0}, {"", 1.0, c.tile_side, 70.0}};
+    return {{"", 1.0, c.tile_side + 2.0 * halo(), 52.0}, {"", 1.0, c.tile_side + 2.0 * near_halo(), 15.0}};
   }
   void run_tile(const Context& context, TileJob& job) const override {
     filters::GroundOptions o = options;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace swath::filters {
 namespace {
 
@@ -22,6 +24,18 @@ TEST(Bins, CellsLieOnWholeMultiplesInMapCoordinates) {
   EXPECT_EQ(l.nx, 250002 - 249998 + 1 + 2);
   EXPECT_EQ(l.ny, 2500000 - 2499996 + 1 + 2);
   EXPECT_EQ(lattice_around({}, 2.0, 3).size(), 0u);
+}
+
+TEST(Bins, CellsOfManyPointsAreThoseOfEach) {
+  const core::Block b = some_points();
+  const core::Lattice l = lattice_around(b, 2.0, 1);
+  std::array<std::int32_t, 3> column{}, row{};
+  cells_of(l, b, 1, 3, column.data(), row.data());
+  for (size_t k = 0; k < 3; ++k) {
+    const CellIndex c = cell_of(l, b, k + 1);
+    EXPECT_EQ(column[k], c.i);
+    EXPECT_EQ(row[k], c.j);
+  }
 }
 
 TEST(Bins, EveryPointIsInItsCellOnce) {

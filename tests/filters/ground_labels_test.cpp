@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace swath::filters {
 namespace {
 
@@ -21,6 +23,21 @@ TEST(GroundLabels, OnlyOwnUsableLastReturnsAreSet) {
   EXPECT_EQ(n.early, 1u);
   EXPECT_EQ(n.untouched, 1u);
   EXPECT_EQ(n.no_surface, 1u);
+}
+
+TEST(GroundLabels, ManyPointsAtOnceAreJudgedAsEach) {
+  core::Block b;
+  for (int p = 0; p < 24; ++p) {
+    b.x.push_back(p), b.y.push_back(0), b.z.push_back(0);
+    b.return_count.push_back(2), b.return_number.push_back(static_cast<std::uint8_t>(1 + p % 2));
+    b.flags.push_back(p % 3 == 0 ? core::flag::withheld : 0);
+    b.classification.push_back(p % 5 == 0   ? core::point_class::low_noise
+                               : p % 7 == 0 ? core::point_class::high_noise
+                                            : core::point_class::unassigned);
+  }
+  std::array<std::uint8_t, 20> may{};
+  may_be_ground(b, 4, may.size(), may.data());
+  for (size_t k = 0; k < may.size(); ++k) EXPECT_EQ(may[k] != 0, may_be_ground(b, k + 4)) << k;
 }
 
 TEST(GroundLabels, PointsOfUnknownReturnMayBeGround) {

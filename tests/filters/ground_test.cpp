@@ -7,9 +7,11 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <vector>
 
+#include "filters/bins.h"
 #include "tests/filters/ground_truth.h"
 
 namespace swath::filters {
@@ -144,6 +146,39 @@ TEST(Ground, LabelsDependNeitherOnTilesNorOnOrder) {
   const core::Block expected = core::select(whole, rows);
   EXPECT_EQ(mixed.classification, expected.classification);
   EXPECT_EQ(mixed.ground_probability, expected.ground_probability);
+}
+
+TEST(Ground, OfTheFarHaloTheLowestReturnOfEachCellSuffices) {
+  GroundOptions o;
+  o.widest = core::Metres(8.0);
+  o.longest = core::Metres(16.0);
+  ASSERT_GT(halo(o), near_halo(o) + 50.0);
+  const core::Block start = six_scenes();
+  size_t left_out = 0;
+  const auto filter = [&](core::Block& b, size_t own, bool thin) {
+    if (!thin || own == b.size()) {
+      classify_ground(b, own, o);
+      return;
+    }
+    const core::Lattice box = lattice_around(b, own, 1.0, 0.0, 0);
+    std::vector<std::uint32_t> around(b.size() - own);
+    std::iota(around.begin(), around.end(), static_cast<std::uint32_t>(own));
+    std::vector<std::uint32_t> rows(own);
+    std::iota(rows.begin(), rows.end(), 0U);
+    for (const std::uint32_t row : needed_around(core::select(b, around), {box.west(), box.south(), box.east(), box.north()}, o))
+      rows.push_back(around[row]);
+    left_out += b.size() - rows.size();
+    core::Block thinned = core::select(b, rows);
+    classify_ground(thinned, own, o);
+    core::add_columns(b, {core::Column::classification, core::Column::ground_probability});
+    std::copy_n(thinned.classification.begin(), own, b.classification.begin());
+    std::copy_n(thinned.ground_probability.begin(), own, b.ground_probability.begin());
+  };
+  const core::Block whole = test::run_tiled(start, 150.0, halo(o), [&](core::Block& b, size_t own) { filter(b, own, false); });
+  const core::Block thinned = test::run_tiled(start, 150.0, halo(o), [&](core::Block& b, size_t own) { filter(b, own, true); });
+  EXPECT_GT(left_out, 1000u);
+  EXPECT_EQ(thinned.classification, whole.classification);
+  EXPECT_EQ(thinned.ground_probability, whole.ground_probability);
 }
 
 TEST(Ground, NoiseEarlyReturnsAndHaloKeepOut) { test::expect_only_own_last_returns_judged(run); }

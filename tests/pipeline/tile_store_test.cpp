@@ -164,6 +164,29 @@ TEST(TileStore, JoinedTilesComeOneAfterTheOtherWithOneHalo) {
   EXPECT_GE(s.store.load_with_halo(keys, halo).points * 10, b.size() * 8);
 }
 
+TEST(TileStore, AStageMayTakePointsOutOfTheHalo) {
+  const Store s;
+  const TileKey key = s.store.tiles().begin()->first;
+  size_t own = 0, thinned_own = 0;
+  const Block all = s.store.read_with_halo({key}, 130.0, {Column::record}, own);
+  const Block b = s.store.read_with_halo({key}, 130.0, {Column::record}, thinned_own, [](Block& part) {
+    std::vector<std::uint32_t> rows;
+    for (std::uint32_t i = 0; i < part.size(); ++i)
+      if (part.record[i] % 2 == 0) rows.push_back(i);
+    part = core::select(part, rows);
+  });
+  EXPECT_EQ(thinned_own, own);
+  size_t at = 0;
+  for (size_t i = 0; i < all.size(); ++i)
+    if (i < own || all.record[i] % 2 == 0) {
+      ASSERT_LT(at, b.size());
+      EXPECT_EQ(b.record[at], all.record[i]);
+      EXPECT_EQ(b.x[at++], all.x[i]);
+    }
+  EXPECT_EQ(b.size(), at);
+  EXPECT_LT(b.size(), all.size());
+}
+
 TEST(TileStore, OverlaysReplaceColumns) {
   Store s;
   std::filesystem::create_directories(s.folder / "overlay");
