@@ -12,6 +12,7 @@ import json
 import sys
 
 import numpy as np
+from scipy import spatial
 
 import common
 
@@ -20,6 +21,7 @@ KIND = {3: "low vegetation", 4: "medium", 5: "high", 6: "building", 7: "low outl
 GEOREFERENCE = [{"type": "readers.trajectory"}, {"type": "readers.laser"}, {"type": "georeference"}, {"type": "filters.returns"}]
 PRODUCTS = [{"type": "terrain.dtm", "cell": "1 m"}, {"type": "writers.las", "compress": False, "scale": 0.0001}, {"type": "writers.gdal"}]
 TRUE_LABELS, TRUE_PLACES = "true labels", "true labels and places"
+LAWN = 0.15   # m: vegetation lower than that is mown grass, which filters.ground takes for ground unless told to find bare earth
 MARGIN = 5.0  # m: cells nearer to the area's edge are not judged
 
 
@@ -39,12 +41,12 @@ class Found:
     """What one chain made of all seeds: columns of returns and of the terrain's cells."""
 
     def __init__(self):
-        self.kind, self.cover, self.said, self.probability = [], [], [], []  # by return
+        self.kind, self.cover, self.said, self.probability, self.lawn = [], [], [], [], []  # by return
         self.error, self.sigma, self.under = [], [], []                      # by cell
         self.without_height = dict.fromkeys(COVER, 0)
 
     def join(self):
-        for name in ("kind", "cover", "said", "probability", "error", "sigma", "under"):
+        for name in ("kind", "cover", "said", "probability", "lawn", "error", "sigma", "under"):
             parts = getattr(self, name)
             setattr(self, name, np.concatenate(parts) if parts else np.array([]))
 
@@ -59,6 +61,7 @@ class Survey:
         self.cover, _ = common.raster(self.folder / "truth/cover.tif")
         self.return_cover = np.nan_to_num(common.nearest(self.cover, self.place, self.truth["e"], self.truth["n"])).astype(int)
         self.kind = self.truth["cls"].astype(int)
+        self.lawn = self.lawns()
         # The truth's raster is centred on the area.
         used = json.loads((self.folder / "truth/simulation.json").read_text())["options"]
         length, width, bearing = metres(used["world"]["length"]), metres(used["world"]["width"]), degrees(used["flight"]["direction"])
@@ -66,6 +69,17 @@ class Survey:
         east, north = np.meshgrid((np.arange(columns) + 0.5 - columns / 2) * self.place.a, (np.arange(rows) + 0.5 - rows / 2) * self.place.e)
         along, across = east * np.sin(bearing) + north * np.cos(bearing), east * np.cos(bearing) - north * np.sin(bearing)
         self.area = (np.abs(along) < length / 2 - MARGIN) & (np.abs(across) < width / 2 - MARGIN)
+
+
+    def lawns(self):
+        """True where low vegetation is lower than LAWN over the true ground returns around."""
+        places = np.stack([self.truth[a] for a in ("e", "n")], axis=1)
+        ground, low = self.kind == 2, np.flatnonzero(self.kind == 3)
+        out = np.zeros(len(places), bool)
+        if len(low):
+            near = spatial.cKDTree(places[ground]).query(places[low], k=6)[1]
+            out[low] = self.truth["h"][low] - np.median(self.truth["h"][ground][near], axis=1) < LAWN
+        return out
 
 
 def metres(text):
@@ -103,6 +117,7 @@ def judge(found, survey, chain, folder):
     found.said.append(points["classification"][order] == 2)
     if "ground_probability" in points:
         found.probability.append(points["ground_probability"][order].astype(float))
+        found.lawn.append(survey.lawn)
     add_terrain(found, survey, output)
     return points, order
 
@@ -164,17 +179,19 @@ def probability_table(all_found):
             continue
         judged = np.isfinite(f.probability) & (f.probability >= 0) & (f.probability <= 1)
         p, ground = f.probability[judged], f.kind[judged] == 2
+        mown = ground | f.lawn[judged]
         decile = np.minimum((10 * p).astype(int), 9)
         off = 0.0
         for k in range(10):
             here = decile == k
             if here.any():
-                rows.append([name, f"{k / 10:.1f}-{(k + 1) / 10:.1f}", here.sum(), f"{100 * p[here].mean():.1f}", f"{100 * ground[here].mean():.1f}"])
+                rows.append([name, f"{k / 10:.1f}-{(k + 1) / 10:.1f}", here.sum(), f"{100 * p[here].mean():.1f}", f"{100 * ground[here].mean():.1f}",
+                             f"{100 * mown[here].mean():.1f}"])
                 off += here.mean() * abs(p[here].mean() - ground[here].mean())
         summary.append([name, f"{100 * judged.mean():.1f}", f"{100 * off:.1f}", f"{np.mean((p - ground) ** 2):.4f}", f"{ground.mean() * (1 - ground.mean()):.4f}"])
     if rows:
         print("Stated probability of ground\n")
-        common.table(["chain", "stated", "returns", "mean stated %", "truly ground %"], rows)
+        common.table(["chain", "stated", "returns", "mean stated %", "truly ground %", "with vegetation under 0.15 m %"], rows)
         common.table(["chain", "judged %", "mean distance of the deciles, points of %", "Brier score", "that of the share alone"], summary)
 
 
