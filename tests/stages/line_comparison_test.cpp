@@ -50,6 +50,13 @@ TEST(LineComparison, LaterStagesReadWhatAnEarlierOneWrote) {
   EXPECT_EQ(known->offsets.at(7), -0.05);
   EXPECT_TRUE(std::isnan(known->common));
   EXPECT_EQ(known->sigma(), 0.03);
+  EXPECT_EQ(known->horizontal_sigma(), 0.0);
+  c.common = 0.02;
+  for (const double along : {std::nan(""), 0.05}) {  // as the heights where slopes do not show it
+    c.common_horizontal = along;
+    test::write_bytes(folder / "lines.json", io::to_json(value_of(c)));
+    EXPECT_NEAR(known_lines(context)->horizontal_sigma(), std::sqrt(2.0) * (std::isnan(along) ? 0.02 : along), 1e-9);
+  }
 
   core::Block b;
   b.z = {1.0, 2.0, 3.0};
@@ -62,12 +69,12 @@ TEST(LineComparison, LaterStagesReadWhatAnEarlierOneWrote) {
 TEST(LineComparison, OnlyPointsWithoutASigmaGetOne) {
   core::Block b;
   b.x = b.y = b.z = {1.0, 2.0};
-  give_sigmas(b, 0.03, 0.04);
+  EXPECT_EQ(give_sigmas(b, 0.03, 0.04), 2u);
   EXPECT_EQ(b.sigma_v, (std::vector<float>{0.03F, 0.03F}));
   EXPECT_EQ(b.sigma_h, (std::vector<float>{0.04F, 0.04F}));
   b.sigma_v = {0.0F, 0.1F};
   b.sigma_h = {0.0F, 0.2F};
-  give_sigmas(b, 0.05, 0.06);
+  EXPECT_EQ(give_sigmas(b, 0.05, 0.06), 1u);
   EXPECT_EQ(b.sigma_v, (std::vector<float>{0.05F, 0.1F}));
   EXPECT_EQ(b.sigma_h, (std::vector<float>{0.06F, 0.2F}));
 }
