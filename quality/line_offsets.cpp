@@ -55,14 +55,19 @@ struct Overlap {
   int a = 0, b = 0;
   std::vector<LineDifference> blocks;  ///< without outliers
 
+  /// Stretches within which the lines' errors stay the same.
+  int places() const {
+    std::set<std::pair<std::int32_t, std::int32_t>> out;
+    for (const LineDifference& d : blocks) out.insert({core::floor_div(d.i, blocks_alike), core::floor_div(d.j, blocks_alike)});
+    return static_cast<int>(out.size());
+  }
+
   LinePair pair() const {
     LinePair p{a, b};
     std::vector<double> values, apart;
     double white = 0.0;
-    std::set<std::pair<std::int32_t, std::int32_t>> places;
     for (const LineDifference& d : blocks) {
       values.push_back(d.difference);
-      places.insert({core::floor_div(d.i, blocks_alike), core::floor_div(d.j, blocks_alike)});
       p.cells += d.cells;
       white += white_variance(d);
     }
@@ -71,7 +76,7 @@ struct Overlap {
     for (const double v : values) apart.push_back(std::abs(v - p.difference));
     const auto n = static_cast<double>(blocks.size());
     const double drift = per_mad * core::median(apart);
-    p.sigma = std::sqrt(drift * drift / static_cast<double>(places.size()) + white / (n * n) + least_sigma * least_sigma);
+    p.sigma = std::sqrt(drift * drift / static_cast<double>(places()) + white / (n * n) + least_sigma * least_sigma);
     return p;
   }
 };
@@ -239,6 +244,7 @@ LineComparison compare_lines(LineCells cells, const LineOptions& o) {
   const std::vector<Overlap> overlaps = overlaps_of(cells.differences, level, false);
   for (const Overlap& overlap : overlaps) {
     c.pairs.push_back(overlap.pair());
+    c.places += overlap.places();
     ++c.lines[at.at(overlap.a)].pairs;
     ++c.lines[at.at(overlap.b)].pairs;
   }
@@ -248,7 +254,9 @@ LineComparison compare_lines(LineCells cells, const LineOptions& o) {
                                            })->group;
   for (int g = 1; g <= groups; ++g) adjust(c, at, g);
   judge_errors(c, overlaps, at);
-  judge_place(c, SharedSums(overlaps), SharedSums(overlaps_of(cells.differences, level, true)));
+  const std::vector<Overlap> steep = overlaps_of(cells.differences, level, true);
+  for (const Overlap& overlap : steep) c.steep_places += overlap.places();
+  judge_place(c, SharedSums(overlaps), SharedSums(steep));
   return c;
 }
 
@@ -259,8 +267,8 @@ std::vector<std::string> not_shown(const LineComparison& c) {
       "where they are known."};
   if (std::isnan(c.common))
     out.push_back(
-        "No two lines are seen on the same smooth ground: the error that neighbouring points share is unknown, and the sigma "
-        "that terrain.dtm gives to points without one holds their scatter alone.");
+        "No two lines are seen on the same smooth ground: the error that neighbouring points share is unknown; terrain.dtm takes "
+        "it to be as large as their scatter.");
   else if (std::isnan(c.common_horizontal))
     out.push_back("No steep ground is seen by two lines: along each axis the error of place is taken to be as large as that of height.");
   return out;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/line_comparison.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -47,6 +48,8 @@ core::Value value_of(const quality::LineComparison& c) {
   v["common_m"] = c.common;
   v["common_horizontal_m"] = c.common_horizontal;
   v["residual_m"] = c.residual;
+  v["places"] = c.places;
+  v["steep_places"] = c.steep_places;
   core::Value& lines = v["lines"] = core::Value::array();
   for (const quality::LineOffset& l : c.lines) {
     core::Value one = core::Value::object();
@@ -94,6 +97,8 @@ std::optional<KnownLines> known_lines(const Context& context) {
   if (file.empty()) return std::nullopt;
   const core::Value v = io::read_value_file(file);
   KnownLines out{{}, number(v, "scatter_m"), number(v, "common_m"), number(v, "residual_m"), number(v, "common_horizontal_m")};
+  out.places = static_cast<int>(v.find("places")->as_int());
+  out.steep_places = static_cast<int>(v.find("steep_places")->as_int());
   for (const core::Value& l : v.find("lines")->items())
     out.offsets[static_cast<int>(l.find("line")->as_int())] = l.find("offset_m")->as_number();
   return out;
@@ -113,11 +118,16 @@ void take_offsets(core::Block& b, const KnownLines& lines) {
   }
 }
 
-double KnownLines::sigma() const { return std::hypot(scatter, std::isnan(common) ? 0.0 : common); }
+double KnownLines::shared() const {
+  const double least = scatter / std::sqrt(std::max(1, places));
+  return std::isnan(common) ? least : std::max(common, least);
+}
+
+double KnownLines::sigma() const { return std::hypot(scatter, shared()); }
 
 double KnownLines::horizontal_sigma() const {
-  const double along = std::isnan(common_horizontal) ? common : common_horizontal;
-  return std::isnan(along) ? 0.0 : std::sqrt(2.0) * along;
+  const double n = std::isnan(common_horizontal) ? 0.0 : steep_places, seen = n > 0.0 ? n * common_horizontal * common_horizontal : 0.0;
+  return std::sqrt(2.0 * (seen + shared() * shared()) / (n + 1.0));
 }
 
 std::uint64_t give_sigmas(core::Block& b, double vertical, double horizontal) {
