@@ -156,10 +156,12 @@ class BlockAtLevel {
 
   void give(LineCells& out, std::int32_t level, const BlockKey& key) const {
     const auto i = static_cast<std::int32_t>(key.i), j = static_cast<std::int32_t>(key.j);
-    for (const auto& [line, sigmas] : sigmas_)
+    for (const auto& [line, all] : sigmas_) {
+      const std::vector<double>& sigmas = all[0].size() >= least_cells ? all[0] : all[1];
       if (sigmas.size() >= least_cells)
         out.scatters.push_back(
             {level, i, j, line, static_cast<std::uint32_t>(sigmas.size()), static_cast<float>(core::quantile(sigmas, 0.25))});
+    }
     for (const auto& [pair, compared] : compared_) {
       const auto& [a, b, aspect] = pair;
       if (compared.differences.size() < least_cells) continue;
@@ -181,7 +183,7 @@ class BlockAtLevel {
       if (m.n < options_.least) continue;
       const std::optional<Plane> plane = plane_of(m, cx, cy, cell_);
       if (!plane || plane->rms > options_.roughness.value) continue;
-      if (aspect_of(*plane) == 0) sigmas_[m.line].push_back(plane->rms / quartile_of(m.n - 3.0));
+      sigmas_[m.line][aspect_of(*plane) == 0 ? 0 : 1].push_back(plane->rms / quartile_of(m.n - 3.0));
       smooth_.emplace_back(m.line, *plane);
     }
     for (size_t a = 0; a < smooth_.size(); ++a)
@@ -197,7 +199,7 @@ class BlockAtLevel {
   const LineOptions& options_;
   double cell_;
   int across_;
-  std::map<int, std::vector<double>> sigmas_;
+  std::map<int, std::array<std::vector<double>, 2>> sigmas_;  ///< by line: on level ground, on steep ground
   struct Compared {
     std::vector<double> differences;
     double slopes_squared = 0.0;

@@ -45,7 +45,8 @@ struct LineScatter {
   std::int32_t i = 0, j = 0;
   std::int32_t line = 0;
   std::uint32_t cells = 0;
-  float sigma = 0.0F;  ///< m, standard deviation of one return: of the smoothest quarter of the cells, allowing for that choice
+  float sigma = 0.0F;  ///< m, standard deviation of one return's height: of the smoothest quarter of the cells, allowing for that
+                       ///< choice; of level cells, or of steep ones where the block has too few of those
   auto operator<=>(const LineScatter&) const = default;
 };
 

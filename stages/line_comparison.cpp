@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/line_comparison.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -97,7 +96,6 @@ std::optional<KnownLines> known_lines(const Context& context) {
   if (file.empty()) return std::nullopt;
   const core::Value v = io::read_value_file(file);
   KnownLines out{{}, number(v, "scatter_m"), number(v, "common_m"), number(v, "residual_m"), number(v, "common_horizontal_m")};
-  out.places = static_cast<int>(v.find("places")->as_int());
   out.steep_places = static_cast<int>(v.find("steep_places")->as_int());
   for (const core::Value& l : v.find("lines")->items())
     out.offsets[static_cast<int>(l.find("line")->as_int())] = l.find("offset_m")->as_number();
@@ -118,10 +116,7 @@ void take_offsets(core::Block& b, const KnownLines& lines) {
   }
 }
 
-double KnownLines::shared() const {
-  const double least = scatter / std::sqrt(std::max(1, places));
-  return std::isnan(common) ? least : std::max(common, least);
-}
+double KnownLines::shared() const { return std::isnan(common) ? scatter : common; }
 
 double KnownLines::sigma() const { return std::hypot(scatter, shared()); }
 

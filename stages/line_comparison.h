@@ -23,11 +23,9 @@ void read_line_cells(const std::filesystem::path& file, quality::LineCells& cell
 struct KnownLines {
   std::map<int, double> offsets;  ///< m, by line
   double scatter = 0, common = 0, residual = 0, common_horizontal = 0;
-  int places = 0, steep_places = 0;
-  /// m, of what neighbours share of their errors of height. n independent places may agree by chance: no less than the scatter over the
-  /// root of n; the scatter where no lines are compared.
-  double shared() const;
-  double sigma() const;  ///< m, of one point's height
+  int steep_places = 0;
+  double shared() const;  ///< m, of what neighbours share of their errors of height; the scatter where no lines are compared
+  double sigma() const;   ///< m, of one point's height
   /// m, radial. That it is as large along each axis as shared() counts as one steep place beside those that were compared.
   double horizontal_sigma() const;
 };
