@@ -416,7 +416,7 @@ class Results {
     worse(f.control, "control points", "look at their residuals");
     if (out_.waves_between)
       tell("what is left on the planes waves along the lines: the trajectory errs faster than corrections " + number(out_.knot_spacing) +
-               " s apart can follow, and the sigmas are too small",
+               " s apart can follow; sigmas of the corrections may be too small",
            "narrow corrections.spacing, raise corrections.most");
     if (r_.snooping_full)
       tell("more planes or control points are displaced than may be left out",

@@ -23,16 +23,8 @@ enum Shared { turn = 0, shift = 3, of_range = 6, of_range_scale = 7, of_angle = 
 
 CorrelatedErrors::CorrelatedErrors(const ShotGeometry& g, const core::SensorSigma& sensor, const core::CalibrationResponse& response)
     : response_(&response), lever_arm_(g.lever_arm()) {
-  constexpr int n = latency + 1;
-  const bool correlated = sensor.correlation.size() == static_cast<size_t>(n * n);
-  any_ = correlated || !response.empty();
-  const Variances v = variances(sensor, {});
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j)
-      calibration_(i, j) = std::sqrt(v[static_cast<size_t>(i)] * v[static_cast<size_t>(j)]) *
-                           (i == j       ? 1.0
-                            : correlated ? sensor.correlation[static_cast<size_t>(i * n + j)]
-                                         : 0.0);
+  any_ = !sensor.correlation.empty() || !response.empty();
+  calibration_ = calibration_covariance(sensor);
   columns_.setZero();
   for (int k = 0; k < 3; ++k) {
     columns_.block<3, 1>(turn, boresight_roll + k) = g.boresight_axes().col(k);

@@ -76,10 +76,8 @@ MatrixXd covariance_of(const std::vector<Difference>& all, const core::SensorSig
     times.push_back(a->time);
     times.push_back(b->time);
   }
-  const Variances stated = variances(sensor, {});
-  VectorXd calibration(latency + 1);
-  for (int p = 0; p <= latency; ++p) calibration[p] = stated[static_cast<size_t>(p)];
-  MatrixXd out = by_errors * errors(times) * by_errors.transpose() + by_calibration * calibration.asDiagonal() * by_calibration.transpose();
+  MatrixXd out =
+      by_errors * errors(times) * by_errors.transpose() + by_calibration * calibration_covariance(sensor) * by_calibration.transpose();
   out.diagonal() += noise;
   return out;
 }

@@ -30,9 +30,9 @@ struct LineAgreement {
 };
 
 /// The differences with the trajectory and calibration as they are. Predicted variances: errors of the trajectory with their correlation in
-/// time (`errors`), those of the calibration (sigmas of `sensor`, uncorrelated), and the scatter of the returns. Up to 25 planes of a pair,
-/// evenly chosen, are judged together: their sum of squares, by trace and trace of the square of its covariance, is a scaled chi-square
-/// (Satterthwaite 1946), whose cube root is normal (Wilson and Hilferty 1931). No pair where no plane is shared.
+/// time (`errors`), those of the calibration (sigmas and correlations of `sensor`), and the scatter of the returns. Up to 25 planes of a
+/// pair, evenly chosen, are judged together: their sum of squares, by trace and trace of the square of its covariance, is a scaled
+/// chi-square (Satterthwaite 1946), whose cube root is normal (Wilson and Hilferty 1931). No pair where no plane is shared.
 LineAgreement line_agreement(const TieSet& ties, const core::Scanner& scanner, const core::Calibration& calibration,
                              const core::SensorSigma& sensor, const trajectory::Trajectory& trajectory, const ErrorCovariance& errors);
 

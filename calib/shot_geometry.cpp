@@ -96,6 +96,19 @@ Variances variances(const core::SensorSigma& s, const trajectory::PoseSigma& p) 
   return v;
 }
 
+CalibrationCovariance calibration_covariance(const core::SensorSigma& sensor) {
+  constexpr int n = latency + 1;
+  const bool correlated = sensor.correlation.size() == static_cast<size_t>(n * n);
+  const Variances v = variances(sensor, {});
+  CalibrationCovariance out = CalibrationCovariance::Zero();
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      if (i == j || correlated)
+        out(i, j) = std::sqrt(v[static_cast<size_t>(i)] * v[static_cast<size_t>(j)]) *
+                    (i == j ? 1.0 : sensor.correlation[static_cast<size_t>(i * n + j)]);
+  return out;
+}
+
 Matrix3d covariance(const Jacobian& by, const Variances& v, const Vector3d& beam, double beam_divergence) {
   const double pointing = beam_divergence / 4.0;
   Matrix3d C = pointing * pointing * (beam.squaredNorm() * Matrix3d::Identity() - beam * beam.transpose());

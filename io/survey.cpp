@@ -148,6 +148,17 @@ Value correlation_tree(const std::vector<double>& correlation) {
   return out;
 }
 
+/// Noise of single records is the survey's matter where it states it: the calibration's records were others.
+void keep_stated_noise(const core::SensorSigma& stated, core::SensorSigma& sigma) {
+  const auto keep = [&](const char* key, auto core::SensorSigma::*value) {
+    if (std::find(stated.stated.begin(), stated.stated.end(), key) != stated.stated.end()) sigma.*value = stated.*value;
+  };
+  keep("range", &core::SensorSigma::range);
+  keep("scan_angle", &core::SensorSigma::scan_angle);
+  keep("time", &core::SensorSigma::time);
+  keep("beam_divergence", &core::SensorSigma::beam_divergence);
+}
+
 }  // namespace
 
 void load_calibration(const std::filesystem::path& file, core::Calibration& calibration, core::SensorSigma& sigma) {
@@ -195,7 +206,11 @@ Survey read_survey(const core::Value& tree, const std::filesystem::path& folder)
   });
   core::throw_if_any(faults);
   if (const Value* stated = tree.find("sigma")) note_stated(*stated, survey.sigma);
-  if (survey.calibration_file) load_calibration(resolve(survey, *survey.calibration_file), survey.calibration, survey.sigma);
+  if (survey.calibration_file) {
+    const core::SensorSigma stated = survey.sigma;
+    load_calibration(resolve(survey, *survey.calibration_file), survey.calibration, survey.sigma);
+    keep_stated_noise(stated, survey.sigma);
+  }
   return survey;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A plane by least squares through the single returns of each line in each cell; where two lines have one that fits, they are compared at
-// the cell's centre. Steep cells are left out: there an error of place passes for one of height. A cell's rms is divided by the root of the
+// the cell's centre. Steep cells are compared apart, for there an error of place passes for one of height, and by the side to which they
+// fall, for on opposite sides it has opposite signs. A cell's rms is divided by the root of the
 // lower quartile of chi square over its degrees of freedom (Wilson and Hilferty 1931), so that the lower quartile over cells on planes is
 // the standard deviation of a return, and rough cells, up to half of them, hardly raise it.
 // Returns are summed in an order that their coordinates alone decide, so that tiles that share a block agree to the last bit.
@@ -20,7 +21,8 @@ namespace swath::quality {
 namespace {
 
 constexpr int block_side = 16;         // narrowest cells
-constexpr double steepest = 0.35;      // rise / run
+constexpr double steep = 0.35;         // rise / run: level ground up to this
+constexpr double steepest = 1.5;       // rise / run: farther up, a plane of heights says little
 constexpr double least_spread = 0.15;  // of a cell, rms about the mean along the worse direction: 0.29 for an even spread
 constexpr double farthest = 0.35;      // of a cell, from the mean of the returns to the centre
 constexpr size_t least_cells = 3;      // of a block
@@ -55,8 +57,15 @@ struct Moments {
 };
 
 struct Plane {
-  double height, rms;
+  double height, rms, east, north;  ///< east, north: rise / run
+  double slope_squared() const { return east * east + north * north; }
 };
+
+int aspect_of(const Plane& p) {
+  if (p.slope_squared() <= steep * steep) return 0;
+  if (std::abs(p.east) >= std::abs(p.north)) return p.east < 0.0 ? 1 : 3;
+  return p.north < 0.0 ? 2 : 4;
+}
 
 /// Nothing where the returns do not span the cell: the height at its centre would be a guess. `cx`, `cy`: the cell's centre.
 std::optional<Plane> plane_of(const Moments& m, double cx, double cy, double cell) {
@@ -68,7 +77,7 @@ std::optional<Plane> plane_of(const Moments& m, double cx, double cy, double cel
   const double det = xx * yy - xy * xy, bx = (yy * xz - xy * yz) / det, by = (xx * yz - xy * xz) / det;
   if (!(bx * bx + by * by <= steepest * steepest)) return std::nullopt;
   const double rest = std::max(0.0, zz - bx * xz - by * yz) * m.n / (m.n - 3);
-  return Plane{mz + bx * (cx - mx) + by * (cy - my), std::sqrt(rest)};
+  return Plane{mz + bx * (cx - mx) + by * (cy - my), std::sqrt(rest), bx, by};
 }
 
 /// Root of the lower quartile of chi square over its degrees of freedom.
@@ -147,17 +156,21 @@ class BlockAtLevel {
 
   void give(LineCells& out, std::int32_t level, const BlockKey& key) const {
     const auto i = static_cast<std::int32_t>(key.i), j = static_cast<std::int32_t>(key.j);
-    for (const auto& [line, sigmas] : sigmas_)
+    for (const auto& [line, all] : sigmas_) {
+      const std::vector<double>& sigmas = all[0].size() >= least_cells ? all[0] : all[1];
       if (sigmas.size() >= least_cells)
         out.scatters.push_back(
             {level, i, j, line, static_cast<std::uint32_t>(sigmas.size()), static_cast<float>(core::quantile(sigmas, 0.25))});
-    for (const auto& [pair, differences] : differences_) {
-      if (differences.size() < least_cells) continue;
-      const double middle = core::median(differences);
+    }
+    for (const auto& [pair, compared] : compared_) {
+      const auto& [a, b, aspect] = pair;
+      if (compared.differences.size() < least_cells) continue;
+      const auto count = static_cast<std::uint32_t>(compared.differences.size());
+      const double middle = core::median(compared.differences);
       std::vector<double> apart;
-      for (const double d : differences) apart.push_back(std::abs(d - middle));
-      out.differences.push_back({level, i, j, pair.first, pair.second, static_cast<std::uint32_t>(differences.size()),
-                                 static_cast<float>(middle), static_cast<float>(per_mad * core::median(apart))});
+      for (const double d : compared.differences) apart.push_back(std::abs(d - middle));
+      out.differences.push_back({level, i, j, a, b, count, static_cast<float>(middle), static_cast<float>(per_mad * core::median(apart)),
+                                 static_cast<float>(std::sqrt(compared.slopes_squared / count)), aspect});
     }
   }
 
@@ -170,20 +183,29 @@ class BlockAtLevel {
       if (m.n < options_.least) continue;
       const std::optional<Plane> plane = plane_of(m, cx, cy, cell_);
       if (!plane || plane->rms > options_.roughness.value) continue;
-      sigmas_[m.line].push_back(plane->rms / quartile_of(m.n - 3.0));
-      smooth_.emplace_back(m.line, plane->height);
+      sigmas_[m.line][aspect_of(*plane) == 0 ? 0 : 1].push_back(plane->rms / quartile_of(m.n - 3.0));
+      smooth_.emplace_back(m.line, *plane);
     }
     for (size_t a = 0; a < smooth_.size(); ++a)
-      for (size_t b = a + 1; b < smooth_.size(); ++b)
-        differences_[{smooth_[a].first, smooth_[b].first}].push_back(smooth_[a].second - smooth_[b].second);
+      for (size_t b = a + 1; b < smooth_.size(); ++b) {
+        const Plane &p = smooth_[a].second, &q = smooth_[b].second;
+        const Plane mean{0.0, 0.0, 0.5 * (p.east + q.east), 0.5 * (p.north + q.north)};
+        Compared& of_pair = compared_[{smooth_[a].first, smooth_[b].first, aspect_of(mean)}];
+        of_pair.differences.push_back(p.height - q.height);
+        of_pair.slopes_squared += mean.slope_squared();
+      }
   }
 
   const LineOptions& options_;
   double cell_;
   int across_;
-  std::map<int, std::vector<double>> sigmas_;
-  std::map<std::pair<int, int>, std::vector<double>> differences_;
-  std::vector<std::pair<int, double>> smooth_;
+  std::map<int, std::array<std::vector<double>, 2>> sigmas_;  ///< by line: on level ground, on steep ground
+  struct Compared {
+    std::vector<double> differences;
+    double slopes_squared = 0.0;
+  };
+  std::map<std::tuple<int, int, int>, Compared> compared_;  ///< by lines and aspect
+  std::vector<std::pair<int, Plane>> smooth_;
 };
 
 }  // namespace

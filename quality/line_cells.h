@@ -26,7 +26,7 @@ void describe(LineOptions& o, V& v) {
   v.option("least", o.least, core::within(5, 1000), "Least number of single returns of a line in a cell that is compared.");
 }
 
-/// Two lines on the smooth cells that they share in one block of 16 x 16 of the narrowest cells.
+/// Two lines on the smooth cells that they share in one block of 16 x 16 of the narrowest cells: level ones, or those of one aspect.
 struct LineDifference {
   std::int32_t level = 0;     ///< the cells' sides are the narrowest, doubled this many times
   std::int32_t i = 0, j = 0;  ///< block of the absolute lattice
@@ -34,6 +34,8 @@ struct LineDifference {
   std::uint32_t cells = 0;
   float difference = 0.0F;  ///< m, height of a minus b, median of the cells
   float spread = 0.0F;      ///< m, standard deviation of a cell's difference, from the median absolute deviation
+  float slope = 0.0F;       ///< rise / run, rms of the cells
+  std::int32_t aspect = 0;  ///< 0: level ground; 1 to 4: steep ground that falls to the east, north, west, south
   auto operator<=>(const LineDifference&) const = default;
 };
 
@@ -43,7 +45,8 @@ struct LineScatter {
   std::int32_t i = 0, j = 0;
   std::int32_t line = 0;
   std::uint32_t cells = 0;
-  float sigma = 0.0F;  ///< m, standard deviation of one return: of the smoothest quarter of the cells, allowing for that choice
+  float sigma = 0.0F;  ///< m, standard deviation of one return's height: of the smoothest quarter of the cells, allowing for that
+                       ///< choice; of level cells, or of steep ones where the block has too few of those
   auto operator<=>(const LineScatter&) const = default;
 };
 

@@ -3,6 +3,8 @@
 // within 256 m of one another as one, since the errors of a trajectory stay for seconds.
 // Two lines err independently: a difference's variance, less its white part, is twice that of one line's error. The part that all lines
 // share (of the base station, of the geoid) no overlap shows.
+// On a slope g an error h of place, the same along each axis, moves heights by g h: the variance of a difference is 2 (c^2 + g^2 h^2), c
+// the error of height. Level and steep ground give two equations for the two.
 #include "quality/line_offsets.h"
 
 #include <Eigen/Cholesky>
@@ -23,11 +25,12 @@ constexpr int blocks_alike = 8;        // blocks along a side within which the l
 constexpr double least_sigma = 0.002;  // m, of a pair's difference: what rounding of the files leaves
 constexpr double outlying = 5.0;       // standard deviations
 constexpr double per_mad = 1.4826, median_loss = 1.2533;
+constexpr size_t least_steep = 3;  // blocks, for an error of place
 
 /// Sums of one level's cells, for the choice of the level.
 double area(const LineCells& c, std::int32_t level, double side) {
   double pairs = 0.0, planes = 0.0;
-  for (const LineDifference& d : c.differences) pairs += d.level == level ? d.cells : 0.0;
+  for (const LineDifference& d : c.differences) pairs += d.level == level && d.aspect == 0 ? d.cells : 0.0;
   for (const LineScatter& s : c.scatters) planes += s.level == level ? s.cells : 0.0;
   return (c.differences.empty() ? planes : pairs) * side * side;
 }
@@ -52,14 +55,19 @@ struct Overlap {
   int a = 0, b = 0;
   std::vector<LineDifference> blocks;  ///< without outliers
 
+  /// Stretches within which the lines' errors stay the same.
+  int places() const {
+    std::set<std::pair<std::int32_t, std::int32_t>> out;
+    for (const LineDifference& d : blocks) out.insert({core::floor_div(d.i, blocks_alike), core::floor_div(d.j, blocks_alike)});
+    return static_cast<int>(out.size());
+  }
+
   LinePair pair() const {
     LinePair p{a, b};
     std::vector<double> values, apart;
     double white = 0.0;
-    std::set<std::pair<std::int32_t, std::int32_t>> places;
     for (const LineDifference& d : blocks) {
       values.push_back(d.difference);
-      places.insert({core::floor_div(d.i, blocks_alike), core::floor_div(d.j, blocks_alike)});
       p.cells += d.cells;
       white += white_variance(d);
     }
@@ -68,15 +76,15 @@ struct Overlap {
     for (const double v : values) apart.push_back(std::abs(v - p.difference));
     const auto n = static_cast<double>(blocks.size());
     const double drift = per_mad * core::median(apart);
-    p.sigma = std::sqrt(drift * drift / static_cast<double>(places.size()) + white / (n * n) + least_sigma * least_sigma);
+    p.sigma = std::sqrt(drift * drift / static_cast<double>(places()) + white / (n * n) + least_sigma * least_sigma);
     return p;
   }
 };
 
-std::vector<Overlap> overlaps_of(const std::vector<LineDifference>& differences, std::int32_t level) {
+std::vector<Overlap> overlaps_of(const std::vector<LineDifference>& differences, std::int32_t level, bool steep) {
   std::map<std::pair<int, int>, std::vector<LineDifference>> by_pair;
   for (const LineDifference& d : differences)
-    if (d.level == level) by_pair[{d.line_a, d.line_b}].push_back(d);
+    if (d.level == level && (d.aspect != 0) == steep) by_pair[{d.line_a, d.line_b}].push_back(d);
   std::vector<Overlap> out;
   for (const auto& [pair, blocks] : by_pair) {
     std::vector<double> values, apart;
@@ -187,6 +195,32 @@ void judge_errors(LineComparison& c, const std::vector<Overlap>& overlaps, const
   c.residual = std::sqrt(std::max(0.0, 0.5 * after / n));
 }
 
+/// Sums over blocks: of twice the variance of what a line's neighbours share, and of the slopes that made it.
+struct SharedSums {
+  double count = 0.0, squares = 0.0, slopes = 0.0;
+  explicit SharedSums(const std::vector<Overlap>& overlaps) {
+    for (const Overlap& o : overlaps)
+      for (const LineDifference& d : o.blocks) {
+        count += 1.0;
+        squares += 0.5 * (double{d.difference} * double{d.difference} - white_variance(d));
+        slopes += double{d.slope} * double{d.slope};
+      }
+  }
+};
+
+/// Errors of height and of place from level and steep ground: squares = count c^2 + slopes h^2 of each.
+void judge_place(LineComparison& c, const SharedSums& level, const SharedSums& steep) {
+  if (steep.count < least_steep) return;
+  const double det = level.count * steep.slopes - steep.count * level.slopes;
+  double height = det > 0.0 ? (steep.slopes * level.squares - level.slopes * steep.squares) / det : 0.0;
+  double place = det > 0.0 ? (level.count * steep.squares - steep.count * level.squares) / det : 0.0;
+  if (level.count == 0.0) height = place = steep.squares / (steep.count + steep.slopes);  // not to be told apart: alike
+  if (place < 0.0) height = (level.squares + steep.squares) / (level.count + steep.count), place = 0.0;
+  if (height < 0.0) place = (level.squares + steep.squares) / (level.slopes + steep.slopes), height = 0.0;
+  c.common = std::sqrt(std::max(0.0, height));
+  c.common_horizontal = std::sqrt(std::max(0.0, place));
+}
+
 template <class T>
 void once(std::vector<T>& records) {
   std::sort(records.begin(), records.end());
@@ -205,10 +239,12 @@ LineComparison compare_lines(LineCells cells, const LineOptions& o) {
   c.scatter = scatter_of(cells.scatters, level);
   std::map<int, size_t> at;
   for (const LineScatter& s : cells.scatters) at[s.line] = 0;
+  for (const LineDifference& d : cells.differences) at[d.line_a] = at[d.line_b] = 0;
   for (auto& [line, number] : at) number = c.lines.size(), c.lines.push_back({line});
-  const std::vector<Overlap> overlaps = overlaps_of(cells.differences, level);
+  const std::vector<Overlap> overlaps = overlaps_of(cells.differences, level, false);
   for (const Overlap& overlap : overlaps) {
     c.pairs.push_back(overlap.pair());
+    c.places += overlap.places();
     ++c.lines[at.at(overlap.a)].pairs;
     ++c.lines[at.at(overlap.b)].pairs;
   }
@@ -218,7 +254,24 @@ LineComparison compare_lines(LineCells cells, const LineOptions& o) {
                                            })->group;
   for (int g = 1; g <= groups; ++g) adjust(c, at, g);
   judge_errors(c, overlaps, at);
+  const std::vector<Overlap> steep = overlaps_of(cells.differences, level, true);
+  for (const Overlap& overlap : steep) c.steep_places += overlap.places();
+  judge_place(c, SharedSums(overlaps), SharedSums(steep));
   return c;
+}
+
+std::vector<std::string> not_shown(const LineComparison& c) {
+  std::vector<std::string> out{
+      "Errors that all lines share (base station, geoid, calibration, a GNSS error that stays over a short survey) do not show where lines "
+      "are compared: they are in neither common_m nor the sigma that terrain.dtm gives to points without one. State its assumed_sigma "
+      "where they are known."};
+  if (std::isnan(c.common))
+    out.push_back(
+        "No two lines are seen on the same smooth ground: the error that neighbouring points share is unknown; terrain.dtm takes "
+        "it to be as large as their scatter.");
+  else if (std::isnan(c.common_horizontal))
+    out.push_back("No steep ground is seen by two lines: along each axis the error of place is taken to be as large as that of height.");
+  return out;
 }
 
 }  // namespace swath::quality

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "quality/line_cells.h"
@@ -32,10 +33,17 @@ struct LineComparison {
   double cell = 0.0;  ///< m, side of the cells that were compared
   std::vector<LineOffset> lines;
   std::vector<LinePair> pairs;
-  double scatter = std::numeric_limits<double>::quiet_NaN();   ///< m, standard deviation of one return about a plane of its line
-  double common = std::numeric_limits<double>::quiet_NaN();    ///< m, of the error that neighbouring returns of a line share
+  double scatter = std::numeric_limits<double>::quiet_NaN();  ///< m, standard deviation of one return about a plane of its line
+  double common = std::numeric_limits<double>::quiet_NaN();   ///< m, of the error of height that neighbouring returns of a line share
+  /// m, of the error of place along each axis that they share; NaN where no steep ground is seen by two lines.
+  double common_horizontal = std::numeric_limits<double>::quiet_NaN();
   double residual = std::numeric_limits<double>::quiet_NaN();  ///< m, the same behind the offsets
+  /// Stretches of 256 m where overlaps are compared, which err independently: level, steep.
+  int places = 0, steep_places = 0;
 };
+
+/// What a comparison cannot show, and what this one lacks, as sentences for the report.
+std::vector<std::string> not_shown(const LineComparison& c);
 
 /// The answer does not depend on the order, and what is there twice counts once.
 LineComparison compare_lines(LineCells cells, const LineOptions& o);

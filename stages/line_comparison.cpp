@@ -45,7 +45,10 @@ core::Value value_of(const quality::LineComparison& c) {
   v["cell_m"] = c.cell;
   v["scatter_m"] = c.scatter;
   v["common_m"] = c.common;
+  v["common_horizontal_m"] = c.common_horizontal;
   v["residual_m"] = c.residual;
+  v["places"] = c.places;
+  v["steep_places"] = c.steep_places;
   core::Value& lines = v["lines"] = core::Value::array();
   for (const quality::LineOffset& l : c.lines) {
     core::Value one = core::Value::object();
@@ -68,6 +71,8 @@ core::Value value_of(const quality::LineComparison& c) {
     one["rms_after_m"] = p.rms_after;
     pairs.push(std::move(one));
   }
+  core::Value& not_shown = v["not_shown"] = core::Value::array();
+  for (const std::string& sentence : quality::not_shown(c)) not_shown.push(sentence);
   return v;
 }
 
@@ -90,7 +95,8 @@ std::optional<KnownLines> known_lines(const Context& context) {
   const std::filesystem::path file = context.made(file_name);
   if (file.empty()) return std::nullopt;
   const core::Value v = io::read_value_file(file);
-  KnownLines out{{}, number(v, "scatter_m"), number(v, "common_m"), number(v, "residual_m")};
+  KnownLines out{{}, number(v, "scatter_m"), number(v, "common_m"), number(v, "residual_m"), number(v, "common_horizontal_m")};
+  out.steep_places = static_cast<int>(v.find("steep_places")->as_int());
   for (const core::Value& l : v.find("lines")->items())
     out.offsets[static_cast<int>(l.find("line")->as_int())] = l.find("offset_m")->as_number();
   return out;
@@ -110,17 +116,25 @@ void take_offsets(core::Block& b, const KnownLines& lines) {
   }
 }
 
-double KnownLines::sigma() const { return std::hypot(scatter, std::isnan(common) ? 0.0 : common); }
+double KnownLines::shared() const { return std::isnan(common) ? scatter : common; }
 
-double KnownLines::horizontal_sigma() const { return std::isnan(common) ? 0.0 : std::sqrt(2.0) * common; }
+double KnownLines::sigma() const { return std::hypot(scatter, shared()); }
 
-void give_sigmas(core::Block& b, double vertical, double horizontal) {
+double KnownLines::horizontal_sigma() const {
+  const double n = std::isnan(common_horizontal) ? 0.0 : steep_places, seen = n > 0.0 ? n * common_horizontal * common_horizontal : 0.0;
+  return std::sqrt(2.0 * (seen + shared() * shared()) / (n + 1.0));
+}
+
+std::uint64_t give_sigmas(core::Block& b, double vertical, double horizontal) {
+  std::uint64_t given = 0;
   core::add_columns(b, {core::Column::sigma_v, core::Column::sigma_h});
   for (size_t p = 0; p < b.size(); ++p)
     if (b.sigma_v[p] == 0.0F) {
+      ++given;
       b.sigma_v[p] = static_cast<float>(vertical);
       if (b.sigma_h[p] == 0.0F) b.sigma_h[p] = static_cast<float>(horizontal);
     }
+  return given;
 }
 
 }  // namespace swath::stages

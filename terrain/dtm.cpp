@@ -6,8 +6,9 @@
 //   what they do not share (ranging, vegetation taken for ground): noise (sum w_k^2). Smoothing leaves a share l_k of it, in common: noise
 //     (sum w_k sqrt(l_k))^2; only of what the points' own sigmas explain;
 //   scatter beyond that, as smoothing finds it near by: it is one-sided (echoes of low plants merged with that
-//     of the ground), no mean takes it out, and of a quantity that only adds, exponentially distributed, the mean is as large as the
-//     standard deviation: sum w_k (scatter_k - explained). Without smoothing (noise - explained) (sum w_k^2);
+//     of the ground), no mean takes it out. Of a quantity that only adds, whose density falls evenly to nothing where the ground filter
+//     refuses, the mean's square is twice the variance: sum w_k 2 (scatter_k - explained). (An exponential density: once; an even one:
+//     three times.) Without smoothing (noise - explained) (sum w_k^2);
 //   the terrain between them: uneven s + curved s^2 / 4.
 // Points without a sigma of their own get s_k^2 = noise.
 // Where too few triangles stand around a place to tell these, noise is 0 and the terrain may bend by the option unknown_bend b between a
@@ -36,6 +37,7 @@ double roughness_block(const DtmOptions& o) { return o.max_edge.value / 6.0; }
 
 /// The scatter around a vertex is told by some fifteen points: within a standard deviation of that more is nothing.
 constexpr double by_chance = 1.4;
+constexpr double one_sided = 2.0;  // mean square over variance
 
 /// Sigma at places of a TIN, by the terms above.
 class SigmaModel {
@@ -81,7 +83,7 @@ class SigmaModel {
   /// m^2: of a vertex's scatter beyond what its own sigma explains.
   double beyond(size_t v, double w, double noise, double explained) const {
     const double scatter = smoothed_.scatter.empty() ? std::nan("") : static_cast<double>(smoothed_.scatter[v]);
-    return std::isnan(scatter) ? w * w * (noise - explained) : w * std::max(0.0, scatter - by_chance * explained);
+    return std::isnan(scatter) ? w * w * (noise - explained) : w * one_sided * std::max(0.0, scatter - by_chance * explained);
   }
 
   const Tin& tin_;

@@ -29,7 +29,7 @@ struct DtmOptions {
   bool key_points = false;
   double correlation = 0.05;
   double unknown_bend = 0.1;
-  std::optional<core::Metres> assumed_sigma;
+  std::optional<core::Metres> assumed_sigma, assumed_horizontal;
 };
 
 template <class V>
@@ -53,6 +53,9 @@ void describe(DtmOptions& o, V& v) {
            "Change of slope (rise / run) that terrain may hide under a triangle where too few stand around it to tell.");
   v.option("assumed_sigma", o.assumed_sigma, core::within(0.0, 100.0),
            "Standard deviation of the heights of points that carry none; without it estimated from the points.");
+  v.option("assumed_horizontal", o.assumed_horizontal, core::within(0.0, 100.0),
+           "Standard deviation of their place along each axis; without it that of the heights (assumed_sigma).");
+  v.check(!o.assumed_horizontal || o.assumed_sigma, "assumed_horizontal needs assumed_sigma beside it");
   v.check(o.max_edge >= o.cell, "max_edge must span at least one cell");
 }
 

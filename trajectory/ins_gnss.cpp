@@ -241,8 +241,11 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
   std::vector<Estimate> reference(nodes.size());
   const auto about = [&](const SmoothedNode& at) {
     const bool attitude = start.attitude_given && &at == &run.nodes.front();  // what is given is that of the beginning
-    return InsFilter(problem, at.estimate, stated_mean(start.estimate, at.estimate, layout, attitude),
-                     widened(start.covariance, at.sigma, attitude), &reference);
+    StateMatrix stated = start.covariance;
+    // At the other end nothing is stated of the attitude: 1 rad is more than any error.
+    if (start.attitude_given && !attitude) stated.block<3, 3>(Layout::attitude, Layout::attitude).setIdentity();
+    return InsFilter(problem, at.estimate, stated_mean(start.estimate, at.estimate, layout, attitude), widened(stated, at.sigma, attitude),
+                     &reference);
   };
   const auto refer = [&] {
     for (size_t k = 0; k < nodes.size(); ++k) reference[k] = run.nodes[k].estimate;

@@ -3,11 +3,12 @@
 
 Every flight has a boresight, a range offset and a scan scale drawn by its seed; IMU and GNSS records go through the smoother.
 Parts: roof (its plane is surveyed), strips (no control), no_cross, one_direction, one_line, flat, mems, uav (32 beams from 40 m over a town, two
-lines to and fro, no cross lines, MEMS). "unsettled" counts flights whose values still moved. $PRF is the laser's pulse rate ("30 kHz");
-with $RESUME flights done before by the same program are not flown again."""
+lines to and fro, no cross lines, MEMS). "unsettled" counts flights whose values still moved. $PRF is the laser's pulse rate ("30 kHz"), $LENGTH that
+of a line ("800 m"); with $RESUME flights done before by the same program are not flown again."""
 import concurrent.futures
 import json
 import os
+import re
 import shutil
 import sys
 
@@ -28,6 +29,7 @@ PARTS = {
              "flight.cross_lines": 0, "flight.overlap": 0.7, "flight.height": "40 m", "flight.speed": "6 m/s", "scanner.pattern": "multibeam",
              "scanner.half_angle": "45 deg", "scanner.forward_tilt": "20 deg", "scanner.frequency": "10 Hz", "scanner.prf": "40 kHz",
              "scanner.divergence": "3 mrad", "scanner.max_returns": 2, "noise.range": "2 cm", "imu.grade": "mems", "mounting.deliver": "nominal",
+             **{f"mounting.truth.{k}": v for k, v in {"roll": "0 deg", "pitch": "0 deg", "heading": "0 deg", "range_offset": "0 m", "scan_scale": 1.0}.items()},
              "mounting.random_boresight": "0.5 deg", "mounting.random_range_offset": "2 cm", "mounting.random_scan_scale": 1e-4}, {}),
 }
 ARCSEC = np.degrees(1) * 3600
@@ -45,15 +47,16 @@ def number(value):
 
 def fly(part, seed):
     """One flight: start error, error, sigma and whether it was delivered, per value; findings; the flat target's readings: error, sigma,
-    difference from the adjustment over the joint sigma. Its folder is deleted."""
+    difference from the adjustment over the joint sigma; by how many sigmas the last round moved a value. Its folder is deleted."""
     kept = common.SCRATCH / "calibration" / f"{part}_{seed}.json"
     if os.environ.get("RESUME") and kept.exists():
         done = json.loads(kept.read_text())
-        return np.array(done["rows"]), done["findings"], done.get("readings", {})
+        return np.array(done["rows"]), done["findings"], done.get("readings", {}), done.get("move", np.nan)
     folder = common.scratch(f"calibration/{part}_{seed}")
     options, settings = PARTS[part]
-    if "PRF" in os.environ:
-        options = {**options, "scanner.prf": os.environ["PRF"]}
+    for name, option in {"PRF": "scanner.prf", "LENGTH": "flight.line_length"}.items():
+        if name in os.environ:
+            options = {**options, option: os.environ[name]}
     common.call("simulate", folder / "survey", "--quiet", *common.sets({**FLIGHT, **options, "seed": seed}))
     output = folder / "out"
     common.call("run", common.ROOT / "configs/calibrate.toml", "--survey", folder / "survey/survey.toml", "--output", output, "--quiet",
@@ -78,8 +81,10 @@ def fly(part, seed):
         scale = {k: s for k, _, s in VALUES}.get(key)
         if scale and "difference" in r:
             readings[key] = [scale * (r["value"] - number(truth[key])), scale * r["sigma"], r["difference"] / r["joint_sigma"]]
-    kept.write_text(json.dumps({"rows": rows, "findings": findings, "readings": readings}))
-    return np.array(rows), findings, readings
+    moves = [re.search(r"no value by more than (\S+) of its sigmas", note) for note in found["notes"]]
+    move = next((float(m.group(1)) for m in moves if m), np.nan)
+    kept.write_text(json.dumps({"rows": rows, "findings": findings, "readings": readings, "move": move}))
+    return np.array(rows), findings, readings, move
 
 
 def main():
@@ -87,7 +92,7 @@ def main():
     for part in sys.argv[2:] or ["roof", "strips", "no_cross", "one_direction", "one_line", "flat", "mems", "uav"]:
         with concurrent.futures.ThreadPoolExecutor(int(os.environ.get("WORKERS", "2"))) as pool:
             done = list(pool.map(lambda seed: fly(part, seed), range(1, seeds + 1)))
-        rows = np.stack([r for r, _, _ in done])
+        rows = np.stack([r for r, *_ in done])
         print(f"## {part}, {seeds} seeds")
         table = []
         for k, (key, unit, _) in enumerate(VALUES):
@@ -104,17 +109,18 @@ def main():
                       "error/white", "delivered"], table)
         target = []
         for key, unit, _ in VALUES:
-            told = np.array([readings[key] for _, _, readings in done if key in readings])
+            told = np.array([readings[key] for _, _, readings, _ in done if key in readings])
             if len(told):
                 error, sigma, apart = told.T
                 target.append([f"{key} ({unit})", len(told), f"{common.rms(error):.2f}", f"{common.rms(sigma):.2f}",
                                f"{common.rms(error / sigma):.2f}", f"{common.rms(apart):.2f}", f"{np.abs(apart).max():.2f}"])
         if target:
             common.table(["flat target's", "flights", "error rms", "sigma", "error/sigma", "difference from the adjustment/joint sigma", "largest"], target)
-        unsettled = sum(any("did not settle" in w for w in words) for _, words, _ in done)
-        print(f"- unsettled: {unsettled} of {seeds}")
-        for what in sorted({w for _, words, _ in done for w in words}):
-            print(f"- {sum(what in words for _, words, _ in done)} of {seeds}: {what}")
+        unsettled = sum(any("did not settle" in w for w in words) for _, words, *_ in done)
+        calibrated = [move for rows_of, _, _, move in done if rows_of[:, 6].all()]
+        print(f"- unsettled: {unsettled} of {seeds}; largest last move of those delivered, in sigmas: {max(calibrated, default=np.nan):.2f}")
+        for what in sorted({w for _, words, *_ in done for w in words}):
+            print(f"- {sum(what in words for _, words, *_ in done)} of {seeds}: {what}")
 
 
 if __name__ == "__main__":

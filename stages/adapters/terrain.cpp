@@ -84,7 +84,7 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
   void run_tile(const Context& context, TileJob& job) const override {
     const terrain::Breaklines* lines = lines_.get(context);
     std::uint64_t shared = 0;
-    complete_sigmas(context, job.block);
+    complete_sigmas(context, job);
     core::Grid grid = terrain::dtm(job.block, lattice_in(options.cell.value, job.box), options, lines, &shared);
     if (shared > 0) job.tally.count("ground points at the same place as a lower or equal one", shared);
     mark_never_seen(context, job, grid);
@@ -103,11 +103,14 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
 
  private:
   /// To points that carry none.
-  void complete_sigmas(const Context& context, core::Block& block) const {
-    if (options.assumed_sigma)
-      give_sigmas(block, options.assumed_sigma->value, 0.0);
-    else if (const std::optional<KnownLines> lines = known_lines(context); lines && !std::isnan(lines->scatter))
-      give_sigmas(block, lines->sigma(), lines->horizontal_sigma());
+  void complete_sigmas(const Context& context, TileJob& job) const {
+    if (options.assumed_sigma) {
+      const core::Metres along = options.assumed_horizontal.value_or(*options.assumed_sigma);
+      give_sigmas(job.block, options.assumed_sigma->value, std::sqrt(2.0) * along.value);
+    } else if (const std::optional<KnownLines> lines = known_lines(context); lines && !std::isnan(lines->scatter)) {
+      if (give_sigmas(job.block, lines->sigma(), lines->horizontal_sigma()) > 0)
+        job.tally.count("tiles whose points carry no sigma: that of the model leaves out the errors that all lines share");
+    }
   }
   static constexpr double room = 10.0;  // m: for triangles that reach beyond the border
   BreaklinesOfRun lines_;

@@ -80,6 +80,26 @@ TEST(LineAgreement, AMisalignmentWithinItsStatedSigmaIsAllowedFor) {
   EXPECT_FALSE(block().flown(3, 1.0, off, stated).exceeded());
 }
 
+TEST(LineAgreement, CorrelationsOfTheCalibrationCount) {
+  core::SensorSigma apart = block().sensor;
+  apart.roll = apart.pitch = apart.heading = core::degrees(0.02);
+  constexpr int n = latency + 1;
+  core::SensorSigma together = apart;
+  together.correlation.assign(n * n, 0.0);
+  for (int i = 0; i < n; ++i) together.correlation[static_cast<size_t>(i * (n + 1))] = 1.0;
+  const double none = block().flown(1, 1.0, block().world.truth, together).predicted;
+  EXPECT_DOUBLE_EQ(none, block().flown(1, 1.0, block().world.truth, apart).predicted);
+  // A roll turns the beam of a scanner that scans across one way and a scan offset the other way: together they cancel.
+  apart.scan_offset = apart.roll;
+  together.scan_offset = together.roll;
+  together.correlation[boresight_roll * n + scan_offset] = together.correlation[scan_offset * n + boresight_roll] = 1.0;
+  core::SensorSigma without = apart;
+  without.roll = without.scan_offset = core::Radians(0);
+  const double cancelled = block().flown(1, 1.0, block().world.truth, without).predicted;
+  EXPECT_NEAR(block().flown(1, 1.0, block().world.truth, together).predicted, cancelled, 0.01 * cancelled);
+  EXPECT_GT(block().flown(1, 1.0, block().world.truth, apart).predicted, 1.2 * cancelled);
+}
+
 TEST(LineAgreement, LinesApartHaveNoPair) {
   TieSet ties = test::ties_of(block().world, nullptr);
   std::erase_if(ties.groups, [](const TieGroup& g) { return g.line != 0; });

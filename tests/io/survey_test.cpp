@@ -67,6 +67,14 @@ TEST_F(SurveyFile, WhichSigmasAreStatedIsKept) {
   EXPECT_EQ(c.sigma.stated, (std::vector<std::string>{"roll", "pitch"}));
 }
 
+TEST_F(SurveyFile, TheNoiseOfRecordsIsTheSurveysOwn) {
+  test::write_bytes(folder_ / "c.json", R"({"calibration": {}, "sigma": {"roll": "0.01 deg", "range": "2 cm", "scan_angle": "0.02 deg"}})");
+  const Survey s = read("calibration_file = \"c.json\"\n" + good + "[sigma]\nroll = \"0.3 deg\"\nrange = \"1.5 cm\"\n");
+  EXPECT_DOUBLE_EQ(s.sigma.range.value, 0.015);
+  EXPECT_DOUBLE_EQ(s.sigma.scan_angle.value, 0.02 * core::degree);  // the survey does not say
+  EXPECT_DOUBLE_EQ(s.sigma.roll.value, 0.01 * core::degree);        // the calibration's
+}
+
 TEST_F(SurveyFile, CorrelationsOfACalibrationAreRead) {
   const auto with_correlation = [&](const std::string& table) {
     test::write_bytes(folder_ / "c.json", R"({"calibration": {"roll": "1 deg"}, "correlation": )" + table + "}");

@@ -519,22 +519,39 @@ TEST(Cloud, GroundIsNotLostBetweenLinesThatLieApart) {
   EXPECT_LT(ground_of(0.15, "[[stage]]\ntype = \"quality.lines\"\nleast = 1000\n"), together - 0.02);  // nothing compared: why it does
 }
 
+/// Median sigma of the terrain model of a cloud of ground points.
+double model_sigma(CloudCase& c, const std::string& option) {
+  const fs::path out = c.run(
+      "[[stage]]\ntype = \"readers.las\"\n[[stage]]\ntype = \"terrain.dtm\"\n" + option + "[[stage]]\ntype = \"writers.gdal\"\n", "500 m");
+  std::vector<double> values;
+  for (const double v : io::read_raster(out / "dtm_quality.vrt").values)
+    if (!std::isnan(v)) values.push_back(v);
+  return core::median(values);
+}
+
 TEST(Cloud, AModelOfPointsWithoutASigmaHasOne) {
   CloudCase c;
   Block b = plain(3, [](int line) { return line == 2 ? 0.12 : 0.0; });
   b.classification.assign(b.size(), core::point_class::ground);
   c.add(b, "lines.las", "EPSG:32632");
-  const auto sigma = [&c](const std::string& before, const std::string& option) {
-    const fs::path out = c.run("[[stage]]\ntype = \"readers.las\"\n" + before + "[[stage]]\ntype = \"terrain.dtm\"\n" + option +
-                                   "[[stage]]\ntype = \"writers.gdal\"\n",
-                               "500 m");
-    std::vector<double> values;
-    for (const double v : io::read_raster(out / "dtm_quality.vrt").values)
-      if (!std::isnan(v)) values.push_back(v);
-    return core::median(values);
-  };
-  EXPECT_NEAR(sigma("", ""), 0.12 / std::sqrt(2.0), 0.02);
-  EXPECT_NEAR(sigma("", "assumed_sigma = \"0.25 m\"\n"), 0.25, 0.02);
+  EXPECT_NEAR(model_sigma(c, ""), 0.12 / std::sqrt(2.0), 0.02);
+  EXPECT_NEAR(model_sigma(c, "assumed_sigma = \"0.25 m\"\n"), 0.25, 0.02);
+}
+
+TEST(Cloud, ErrorsOfPlaceCountOnSlopes) {
+  constexpr double slope = 0.6, aside = 0.2;
+  CloudCase apart, together;  // in one of them the second line lies to the west by so much
+  for (CloudCase* c : {&apart, &together}) {
+    Block b = plain(3, [&](int line) { return c == &apart && line == 2 ? slope * aside : 0.0; });
+    for (size_t i = 0; i < b.size(); ++i) b.z[i] += slope * b.x[i];
+    b.classification.assign(b.size(), core::point_class::ground);
+    c->add(b, "lines.las", "EPSG:32632");
+  }
+  EXPECT_GT(model_sigma(apart, ""), 0.5 * slope * aside);
+  const std::string assumed = "assumed_sigma = \"0.1 m\"\n", farther = "assumed_horizontal = \"0.4 m\"\n";
+  EXPECT_NEAR(model_sigma(together, assumed), std::hypot(0.1, slope * 0.1), 0.01);  // as large along each axis
+  EXPECT_NEAR(model_sigma(together, assumed + farther), std::hypot(0.1, slope * 0.4), 0.01);
+  EXPECT_THROW(model_sigma(together, farther), core::Error);
 }
 
 }  // namespace

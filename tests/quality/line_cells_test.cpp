@@ -66,13 +66,28 @@ TEST(LineCells, ScatterIsTheReturnsOwnError) {
   }
 }
 
-TEST(LineCells, RoughAndSteepGroundIsNotCompared) {
+TEST(LineCells, RoughGroundAndCliffsAreNotCompared) {
   Flown rough;
   rough.noise = 0.5;
   EXPECT_TRUE(compare_cells(rough.points(), rough.points().size(), {}).differences.empty());
-  Flown steep;
-  steep.slope = 0.6;
-  EXPECT_TRUE(compare_cells(steep.points(), steep.points().size(), {}).differences.empty());
+  Flown cliff;
+  cliff.slope = 2.0;
+  EXPECT_TRUE(compare_cells(cliff.points(), cliff.points().size(), {}).differences.empty());
+}
+
+TEST(LineCells, SteepGroundIsComparedApart) {
+  for (const double slope : {0.6, -0.6, 0.1}) {
+    Flown f;
+    f.slope = slope;
+    const LineCells c = compare_cells(f.points(), f.points().size(), {});
+    ASSERT_FALSE(c.differences.empty());
+    for (const LineDifference& d : c.differences) {
+      EXPECT_EQ(d.aspect, slope == 0.1 ? 0 : slope < 0.0 ? 1 : 3);  // falls east, west
+      EXPECT_NEAR(d.slope, std::abs(slope), 0.05);
+    }
+    ASSERT_FALSE(c.scatters.empty());
+    EXPECT_NEAR(c.scatters.front().sigma, f.noise, 0.3 * f.noise);
+  }
 }
 
 TEST(LineCells, SparseLinesAreComparedInWiderCells) {

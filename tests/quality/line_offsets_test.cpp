@@ -92,6 +92,38 @@ TEST(LineOffsets, TheErrorOfALineIsADifferencesOverRootTwo) {
   EXPECT_NEAR(c.scatter, 0.02, 1e-6);
 }
 
+TEST(LineOffsets, ErrorsOfPlaceShowOnSlopes) {
+  // Many lines, each off in height and, farther, to the east and north; level ground, and slopes to all sides.
+  std::mt19937 random(5);
+  std::normal_distribution<double> height(0.0, 0.03), place(0.0, 0.06);
+  struct Line {
+    double up, east, north;
+  };
+  std::vector<Line> lines;
+  for (int line = 0; line < 300; ++line) lines.push_back({height(random), place(random), place(random)});
+  LineCells level, both;
+  for (int line = 1; line < 300; ++line) {
+    const Line &a = lines[static_cast<size_t>(line) - 1], &b = lines[static_cast<size_t>(line)];
+    const auto see = [&](LineCells& c, int i, double east, double north, int aspect) {
+      const double d = a.up - b.up - east * (a.east - b.east) - north * (a.north - b.north);
+      c.differences.push_back(
+          {0, i, line, line, line + 1, 100, static_cast<float>(d), 0.0F, static_cast<float>(std::hypot(east, north)), aspect});
+    };
+    for (LineCells* c : {&level, &both}) see(*c, 0, 0.1, 0.0, 0);
+    see(both, 0, -0.7, 0.0, 1), see(both, 1, 0.0, 0.5, 4), see(both, 2, 0.6, 0.0, 3), see(both, 3, 0.0, -0.4, 2);
+  }
+  const LineComparison c = compare_lines(both, {});
+  EXPECT_NEAR(c.common, 0.03, 0.003);
+  EXPECT_NEAR(c.common_horizontal, 0.06, 0.006);
+  EXPECT_EQ(not_shown(c).size(), 1u);
+  const LineComparison flat = compare_lines(level, {});
+  EXPECT_TRUE(std::isnan(flat.common_horizontal));
+  EXPECT_NE(not_shown(flat).back().find("steep ground"), std::string::npos);
+  EXPECT_NE(not_shown(compare_lines({}, {})).back().find("No two lines"), std::string::npos);
+  // Offsets are those of level ground.
+  for (size_t k = 0; k < flat.lines.size(); ++k) EXPECT_EQ(flat.lines[k].offset, c.lines[k].offset);
+}
+
 TEST(LineOffsets, CellsAsNarrowAsTheDensityAllows) {
   LineCells cells;
   for (std::int32_t level = 0; level < 3; ++level)
