@@ -172,6 +172,13 @@ TwoPopulations populations_of(const Histogram& h, double noise) {
   return two.log_likelihood - one.log_likelihood > likelier ? TwoPopulations{lower, gap} : TwoPopulations{};
 }
 
+/// Of distances from -border to border.
+std::vector<double> gaussian(int border) {
+  std::vector<double> weight;
+  for (int d = -border; d <= border; ++d) weight.push_back(std::exp(-0.5 * d * d / (sigma * sigma)));
+  return weight;
+}
+
 using Counts = std::vector<std::array<std::uint16_t, classes>>;
 
 /// Histograms under the Gaussian, asked for row after row: first summed along the rows, then across.
@@ -241,8 +248,7 @@ LowerPopulations lower_populations(const core::Block& b, size_t own, double arou
     if (n < std::numeric_limits<std::uint16_t>::max()) ++n;
     if (returns[p].spread > rough * noise) suspect[c] = 1;
   }
-  std::vector<double> weight(static_cast<size_t>(2 * border + 1));
-  for (int d = -border; d <= border; ++d) weight[static_cast<size_t>(d + border)] = std::exp(-0.5 * d * d / (sigma * sigma));
+  const std::vector<double> weight = gaussian(border);
   const auto around_cell = [&](size_t c, const auto& take) {
     for (int dj = -border; dj <= border; ++dj)
       for (int di = -border; di <= border; ++di)
