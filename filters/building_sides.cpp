@@ -100,13 +100,13 @@ class Surroundings {
 double building_sides_halo() { return rim_reach; }
 
 std::vector<std::uint8_t> building_sides(const core::Block& b, const std::vector<std::uint8_t>& roof,
-                                         const std::vector<std::uint8_t>& candidate, double tolerance) {
+                                         const std::vector<std::uint8_t>& candidate, double tolerance, size_t own) {
   std::vector<std::uint8_t> out(b.size(), 0);
   if (b.size() == 0) return out;
   const Bins roofs(b, wall_reach, 0, [&](size_t p) { return roof[p] != 0; });
   Surroundings around(roofs, b);
   std::vector<Vector3d> plane;
-  for (size_t p = 0; p < b.size(); ++p) {
+  for (size_t p = 0; p < own; ++p) {
     if (!candidate[p] || roof[p] || !core::is_last_return(b, p)) continue;
     out[p] = around.under_eaves(p) || (around.nearest_of(p, plane) && on_plane(plane, tolerance));
   }

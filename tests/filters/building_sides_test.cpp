@@ -16,7 +16,9 @@ constexpr double tolerance = 0.15;  // m
 struct House {
   core::Block block;
   std::vector<std::uint8_t> roof;
-  std::vector<std::uint8_t> sides() const { return building_sides(block, roof, std::vector<std::uint8_t>(block.size(), 1), tolerance); }
+  std::vector<std::uint8_t> sides() const {
+    return building_sides(block, roof, std::vector<std::uint8_t>(block.size(), 1), tolerance, block.size());
+  }
   size_t add(double x, double y, double z) {
     test::add_point(block, x, y, z);
     roof.push_back(0);
