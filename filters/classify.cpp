@@ -10,6 +10,7 @@
 
 #include "filters/bridges.h"
 #include "filters/building_sides.h"
+#include "filters/ground_decks.h"
 #include "filters/roof_planes.h"
 #include "filters/roofs.h"
 #include "filters/structure_cells.h"
@@ -85,85 +86,130 @@ class Below {
   Bins last_;
 };
 
+/// What the points are, by steps of which each uses those before it.
+class Structures {
+ public:
+  Structures(const core::Block& b, size_t own, const ClassifyOptions& o)
+      : block_(b), options_(o), where_(districts(b)), available_(b.size(), 0), raised_(b.size(), 0), below_(b, where_) {
+    const OwnBox needed(b, own, halo(o) - Districts::halo());
+    for (size_t p = 0; p < b.size(); ++p) {
+      available_[p] = is_free(b, p) && needed.holds(b, p);
+      raised_[p] = available_[p] && b.height[p] >= least_plane_height;
+    }
+    planar_ = planar_points(b, available_, where_, o.roughness.value, wide_area(o));
+    find_decks(own);
+    find_roofs(own);
+    find_wires(own);
+  }
+
+  bool is_wire(size_t p) const { return wires_[p] != 0; }
+  bool is_deck(size_t p) const {
+    const size_t c = cell(p);
+    return ground_decks_[p] || (decks_[c] && std::abs(static_cast<float>(block_.z[p]) - cells_.plane[c]) <= beside_deck);
+  }
+  /// Of a point that is neither ground, water, noise nor withheld.
+  std::uint8_t class_of(size_t p) const {
+    if (is_deck(p)) return cls::bridge_deck;
+    if (sides_[p] || (raised_[p] && static_cast<float>(block_.z[p]) - roofs_[cell(p)] <= above_roof)) return cls::building;  // NaN: no roof
+    if (wires_[p]) return cls::wire;
+    if (below_.is_noise(p)) return cls::low_noise;
+    return is_surface(p) && planar_[p] == Planar::wide ? cls::unassigned : vegetation(block_.height[p], options_);
+  }
+
+ private:
+  size_t cell(size_t p) const {
+    const CellIndex at = cell_of(cells_.lattice, block_, p);
+    return cells_.lattice.at(at.i, at.j);
+  }
+  bool is_surface(size_t p) const { return raised_[p] && planar_[p] != Planar::none; }
+
+  void find_decks(size_t own) {
+    cells_ = structure_cells(block_, planar_);
+    decks_.assign(cells_.lattice.size(), 0);
+    ground_decks_.assign(block_.size(), 0);
+    const double longest = options_.bridge_length.value;
+    if (longest <= 0.0) return;
+    decks_ = deck_cells(cells_, {longest, options_.building_height.value});
+    std::vector<std::uint8_t> solid(block_.size(), 0);
+    for (size_t p = 0; p < block_.size(); ++p) solid[p] = planar_[p] != Planar::none;
+    ground_decks_ = ground_decks(block_, solid, where_, longest, own);
+  }
+
+  void find_roofs(size_t own) {
+    std::vector<std::uint8_t> standing(cells_.lattice.size(), 0);  // cells with returns off the ground
+    for (size_t p = 0; p < block_.size(); ++p)
+      if (raised_[p]) standing[cell(p)] = 1;
+    roofs_ = roof_cells(cells_, standing, decks_, where_, {options_.building_height.value, options_.building_side.value});
+    std::vector<std::uint8_t> roof(block_.size(), 0), free(block_.size(), 0);
+    for (size_t p = 0; p < block_.size(); ++p) {
+      if (!available_[p]) continue;
+      const size_t c = cell(p);
+      roof[p] = is_surface(p) && roofs_[c] == roofs_[c];
+      free[p] = !decks_[c];
+    }
+    sides_ = building_sides(block_, roof, free, options_.roughness.value, own);
+  }
+
+  void find_wires(size_t own) {
+    std::vector<std::uint8_t> high(block_.size(), 0), surface(block_.size(), 0);
+    for (size_t p = 0; p < block_.size(); ++p) {
+      surface[p] = is_surface(p);
+      const bool alone = (raised_[p] && !surface[p]) || is_isolated(block_, p);
+      high[p] = alone && static_cast<double>(block_.height[p]) >= options_.wire_height.value;
+    }
+    wires_ = wire_points(block_, high, surface, where_, own);
+  }
+
+  const core::Block& block_;
+  const ClassifyOptions& options_;
+  Districts where_;
+  std::vector<std::uint8_t> available_, raised_;
+  Below below_;
+  std::vector<Planar> planar_;
+  StructureCells cells_;
+  std::vector<std::uint8_t> decks_, ground_decks_;  // per cell; per point
+  std::vector<float> roofs_;                        // per cell
+  std::vector<std::uint8_t> sides_, wires_;         // per point
+};
+
+void count(ClassifyCounts& n, std::uint8_t c) {
+  n.low_vegetation += c == cls::low_vegetation;
+  n.medium_vegetation += c == cls::medium_vegetation;
+  n.high_vegetation += c == cls::high_vegetation;
+  n.building += c == cls::building;
+  n.wire += c == cls::wire;
+  n.bridge_deck += c == cls::bridge_deck;
+  n.low_noise += c == cls::low_noise;
+  n.unassigned += c == cls::unassigned;
+}
+
 }  // namespace
 
 double halo(const ClassifyOptions& o) {
   const double decks = o.bridge_length.value > 0.0 ? deck_cells_halo(o.bridge_length.value) : 0.0;
   const double structures = planar_points_halo() + decks + roof_cells_halo(o.building_side.value);
-  return std::max(structures + building_sides_halo(), planar_points_halo() + wire_points_halo());
+  const double on_ground = o.bridge_length.value > 0.0 ? planar_points_halo() + ground_decks_halo(o.bridge_length.value) : 0.0;
+  return std::max({structures + building_sides_halo(), planar_points_halo() + wire_points_halo(), on_ground});
 }
 
 ClassifyCounts classify(core::Block& b, size_t own, const ClassifyOptions& o) {
   ClassifyCounts n;
-  std::vector<std::uint8_t> available(b.size(), 0), raised(b.size(), 0), high(b.size(), 0), surface(b.size(), 0);
-  const OwnBox needed(b, own, halo(o) - Districts::halo());
-  for (size_t p = 0; p < b.size(); ++p) {
-    available[p] = is_free(b, p) && needed.holds(b, p);
-    raised[p] = available[p] && b.height[p] >= least_plane_height;
-  }
-  const Districts where = districts(b);
-  const std::vector<Planar> planar = planar_points(b, available, where, o.roughness.value, wide_area(o));
-  const StructureCells cells = structure_cells(b, planar);
-  const std::vector<std::uint8_t> decks = o.bridge_length.value > 0.0 ? deck_cells(cells, {o.bridge_length.value, o.building_height.value})
-                                                                      : std::vector<std::uint8_t>(cells.lattice.size(), 0);
-  std::vector<std::uint8_t> standing(cells.lattice.size(), 0);  // cells with returns off the ground
-  for (size_t p = 0; p < b.size(); ++p)
-    if (raised[p]) standing[cells.lattice.at(cell_of(cells.lattice, b, p).i, cell_of(cells.lattice, b, p).j)] = 1;
-  const std::vector<float> roofs = roof_cells(cells, standing, decks, where, {o.building_height.value, o.building_side.value});
-  for (size_t p = 0; p < b.size(); ++p) {
-    surface[p] = raised[p] && planar[p] != Planar::none;
-    high[p] = ((raised[p] && planar[p] == Planar::none) || is_isolated(b, p)) && static_cast<double>(b.height[p]) >= o.wire_height.value;
-  }
-  const std::vector<std::uint8_t> wires = wire_points(b, high, surface, where, own);
-
-  std::vector<std::uint8_t> roof(b.size(), 0), free(b.size(), 0);
-  for (size_t p = 0; p < b.size(); ++p) {
-    if (!available[p]) continue;
-    const CellIndex at = cell_of(cells.lattice, b, p);
-    const size_t c = cells.lattice.at(at.i, at.j);
-    roof[p] = surface[p] && roofs[c] == roofs[c];
-    free[p] = !decks[c];
-  }
-  const std::vector<std::uint8_t> sides = building_sides(b, roof, free, o.roughness.value, own);
-
-  const Below below(b, where);
-  const auto class_of = [&](size_t p) {
-    const CellIndex at = cell_of(cells.lattice, b, p);
-    const size_t c = cells.lattice.at(at.i, at.j);
-    const auto z = static_cast<float>(b.z[p]);
-    if (decks[c] && std::abs(z - cells.plane[c]) <= beside_deck) return cls::bridge_deck;
-    if (sides[p] || (raised[p] && z - roofs[c] <= above_roof)) return cls::building;  // NaN: no roof there
-    if (wires[p]) return cls::wire;
-    if (below.is_noise(p)) return cls::low_noise;
-    return surface[p] && planar[p] == Planar::wide ? cls::unassigned : vegetation(b.height[p], o);
-  };
-  std::vector<std::uint32_t> noise;  // set last: it changes who is usable
-  for (std::uint32_t p = 0; p < own; ++p) {
-    if (wires[p] && is_isolated(b, p)) {
-      b.flags[p] = static_cast<std::uint16_t>(b.flags[p] & ~core::flag::isolated);
-    } else if (!is_free(b, p)) {
-      ++n.kept;
-      continue;
-    }
-    const std::uint8_t c = class_of(p);
-    if (c == cls::low_noise)
-      noise.push_back(p);
+  std::vector<std::uint8_t> found(own, cls::never_classified);  // set last: it changes who is usable
+  const Structures structures(b, own, o);
+  for (size_t p = 0; p < own; ++p) {
+    const bool on_deck = core::is_usable(b, p) && b.classification[p] == cls::ground && structures.is_deck(p);
+    if (on_deck || is_free(b, p) || (structures.is_wire(p) && is_isolated(b, p)))
+      count(n, found[p] = on_deck ? cls::bridge_deck : structures.class_of(p));
     else
-      b.classification[p] = c;
-    n.low_vegetation += c == cls::low_vegetation;
-    n.medium_vegetation += c == cls::medium_vegetation;
-    n.high_vegetation += c == cls::high_vegetation;
-    n.building += c == cls::building;
-    n.wire += c == cls::wire;
-    n.bridge_deck += c == cls::bridge_deck;
-    n.unassigned += c == cls::unassigned;
+      ++n.kept;
   }
-  if (!noise.empty()) core::add_columns(b, {core::Column::flags});
-  for (const std::uint32_t p : noise) {
-    b.classification[p] = cls::low_noise;
-    b.flags[p] = static_cast<std::uint16_t>(b.flags[p] | core::flag::low_point);
+  if (n.low_noise > 0) core::add_columns(b, {core::Column::flags});
+  for (size_t p = 0; p < own; ++p) {
+    if (found[p] == cls::never_classified) continue;
+    if (is_isolated(b, p)) b.flags[p] = static_cast<std::uint16_t>(b.flags[p] & ~core::flag::isolated);
+    if (found[p] == cls::low_noise) b.flags[p] = static_cast<std::uint16_t>(b.flags[p] | core::flag::low_point);
+    b.classification[p] = found[p];
   }
-  n.low_noise = noise.size();
   return n;
 }
 
