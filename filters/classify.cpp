@@ -11,6 +11,7 @@
 #include "filters/bridges.h"
 #include "filters/building_sides.h"
 #include "filters/ground_decks.h"
+#include "filters/missing_heights.h"
 #include "filters/roof_planes.h"
 #include "filters/roofs.h"
 #include "filters/structure_cells.h"
@@ -91,7 +92,7 @@ class Structures {
  public:
   Structures(const core::Block& b, size_t own, const ClassifyOptions& o)
       : block_(b), options_(o), where_(districts(b)), available_(b.size(), 0), raised_(b.size(), 0), below_(b, where_) {
-    const OwnBox needed(b, own, halo(o) - Districts::halo());
+    const OwnBox needed(b, own, halo(o) - Districts::halo() - missing_heights_halo());
     for (size_t p = 0; p < b.size(); ++p) {
       available_[p] = is_free(b, p) && needed.holds(b, p);
       raised_[p] = available_[p] && b.height[p] >= least_plane_height;
@@ -147,7 +148,7 @@ class Structures {
       roof[p] = is_surface(p) && roofs_[c] == roofs_[c];
       free[p] = !decks_[c];
     }
-    sides_ = building_sides(block_, roof, free, options_.roughness.value, own);
+    sides_ = building_sides(block_, roof, free, options_.roughness.value, options_.building_height.value, own);
   }
 
   void find_wires(size_t own) {
@@ -189,13 +190,15 @@ double halo(const ClassifyOptions& o) {
   const double decks = o.bridge_length.value > 0.0 ? deck_cells_halo(o.bridge_length.value) : 0.0;
   const double structures = planar_points_halo() + decks + roof_cells_halo(o.building_side.value);
   const double on_ground = o.bridge_length.value > 0.0 ? planar_points_halo() + ground_decks_halo(o.bridge_length.value) : 0.0;
-  return std::max({structures + building_sides_halo(), planar_points_halo() + wire_points_halo(), on_ground});
+  return missing_heights_halo() + std::max({structures + building_sides_halo(), planar_points_halo() + wire_points_halo(), on_ground});
 }
 
 ClassifyCounts classify(core::Block& b, size_t own, const ClassifyOptions& o) {
   ClassifyCounts n;
   std::vector<std::uint8_t> found(own, cls::never_classified);  // set last: it changes who is usable
+  const std::vector<std::uint32_t> unknown = fill_missing_heights(b);
   const Structures structures(b, own, o);
+  for (const std::uint32_t p : unknown) b.height[p] = std::numeric_limits<float>::quiet_NaN();
   for (size_t p = 0; p < own; ++p) {
     const bool on_deck = core::is_usable(b, p) && b.classification[p] == cls::ground && structures.is_deck(p);
     if (on_deck || is_free(b, p) || (structures.is_wire(p) && is_isolated(b, p)))
