@@ -131,9 +131,7 @@ class Structures {
     const double longest = options_.bridge_length.value;
     if (longest <= 0.0) return;
     decks_ = deck_cells(cells_, {longest, options_.building_height.value});
-    std::vector<std::uint8_t> solid(block_.size(), 0);
-    for (size_t p = 0; p < block_.size(); ++p) solid[p] = planar_[p] != Planar::none;
-    ground_decks_ = ground_decks(block_, solid, where_, longest, own);
+    ground_decks_ = ground_decks(block_, where_, longest, own);
   }
 
   void find_roofs(size_t own) {
@@ -189,7 +187,7 @@ void count(ClassifyCounts& n, std::uint8_t c) {
 double halo(const ClassifyOptions& o) {
   const double decks = o.bridge_length.value > 0.0 ? deck_cells_halo(o.bridge_length.value) : 0.0;
   const double structures = planar_points_halo() + decks + roof_cells_halo(o.building_side.value);
-  const double on_ground = o.bridge_length.value > 0.0 ? planar_points_halo() + ground_decks_halo(o.bridge_length.value) : 0.0;
+  const double on_ground = o.bridge_length.value > 0.0 ? ground_decks_halo(o.bridge_length.value) : 0.0;
   return missing_heights_halo() + std::max({structures + building_sides_halo(), planar_points_halo() + wire_points_halo(), on_ground});
 }
 

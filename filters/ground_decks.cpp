@@ -25,6 +25,7 @@ constexpr double sheer = 0.75;                   // rise / run from anywhere in 
 constexpr double wide_open = 5.0;                // m without returns beside a deck, and at least
 constexpr int open_cells = 5;                    // so many cells
 constexpr double hidden = 12.0;                  // m beside a deck that are looked at; too few for voids where cells are 3 m
+constexpr double banks = 40.0;                   // m from the void beside a deck to returns on both sides of it
 constexpr double widest = 30.0, narrowest = 2.0;
 constexpr double shortest = 3.0;  // m of deck
 constexpr double bank = 5.0;      // m of ground beyond its ends
@@ -34,8 +35,8 @@ constexpr double stairs = 2.0;    // m from a deck down to the ground at one of 
 constexpr int bare = 2;           // cells without return between a deck and what is below
 constexpr double wedge = 1.2;     // of the least width of the deck
 constexpr double oblique = 1.15;  // of the least width of all axes
-constexpr int growth = 3;         // cells
-constexpr int fewest_beside = 2, around = 5;  // of 8 cells around one, of a deck
+constexpr int growth = 5;         // cells
+constexpr int fewest_beside = 2, around = 6;  // of 8 cells around one, of a deck
 constexpr double share_open = 0.7;            // of its length that must show both sides
 constexpr float near_deck = 0.5f;             // m above or below: kerbs, rails
 
@@ -51,23 +52,24 @@ CellIndex ahead(int direction, int k) {
 /// The cells of one side, in the districts that have it.
 class Cells {
  public:
-  Cells(const core::Block& b, const std::vector<std::uint8_t>& solid, double side, double longest)
+  Cells(const core::Block& b, double side, double longest)
       : lattice_(lattice_around(b, side, 0)),
         top_(lattice_.size(), std::numeric_limits<float>::quiet_NaN()),
         low_(top_),
         ground_(lattice_.size(), 0),
-        roof_(lattice_.size(), 0),
         known_(lattice_.size(), 0),
         open_(lattice_.size(), 0),
+        axes_(lattice_.size(), 0),
         strip_(lattice_.size(), 0),
         width_(lattice_.size(), 0.0f),
         narrow_(lattice_.size(), 0.0f),
         half_(in_cells(widest)),
         reach_(in_cells(longest + bank)) {
     for (size_t p = 0; p < b.size(); ++p)
-      if (core::is_usable(b, p)) add(b, p, solid[p] != 0);
+      if (core::is_usable(b, p)) add(b, p);
     for (int d = 0; d < directions; ++d)
-      for (int k = 0; k <= std::max(reach_, half_ + in_cells(hidden)); ++k) ahead_[static_cast<size_t>(d)].push_back(ahead(d, k));
+      for (int k = 0; k <= std::max({reach_, half_ + in_cells(hidden), in_cells(banks)}); ++k)
+        ahead_[static_cast<size_t>(d)].push_back(ahead(d, k));
   }
 
   const core::Lattice& lattice() const { return lattice_; }
@@ -90,16 +92,15 @@ class Cells {
  private:
   int in_cells(double metres) const { return static_cast<int>(std::ceil(metres / lattice_.cell - 1e-9)); }
 
-  void add(const core::Block& b, size_t p, bool solid) {
+  /// Ground decides on the level where there is any; its highest, as the water below may be ground too.
+  void add(const core::Block& b, size_t p) {
     const CellIndex at = cell_of(lattice_, b, p);
     const size_t c = lattice_.at(at.i, at.j);
     const auto z = static_cast<float>(b.z[p]);
     if (!(z >= low_[c])) low_[c] = z;
     const bool ground = b.classification[p] == core::point_class::ground;
-    if (!ground && !solid) return;
-    roof_[c] = roof_[c] || !ground;
-    if (ground < ground_[c]) return;  // ground decides on the level where there is any
-    if (ground > ground_[c] || !(z <= top_[c])) top_[c] = z;
+    if (ground < ground_[c]) return;
+    if (ground > ground_[c] || (ground ? !(z <= top_[c]) : !(z >= top_[c]))) top_[c] = z;
     ground_[c] = ground;
   }
 
@@ -151,6 +152,7 @@ class Cells {
       for (int i = 1; i + 1 < lattice_.nx; ++i) {
         const size_t c = lattice_.at(i, j);
         int beside = 0;
+        std::uint8_t axes = 0;
         float level = std::numeric_limits<float>::quiet_NaN(), narrow = 0.0f;
         for (int v = j - 1; v <= j + 1; ++v)
           for (int u = i - 1; u <= i + 1; ++u) {
@@ -159,14 +161,28 @@ class Cells {
             ++beside;
             if (!(top_[near] >= level)) level = top_[near];
             narrow = std::max(narrow, narrow_[near]);
+            axes = static_cast<std::uint8_t>(axes | axes_[near]);
           }
         if (decks[c]) out[c] = beside >= fewest_beside;
-        if (decks[c] || beside < fewest_beside || (ground_[c] && beside < around && (open_[c] == 0 || is_wider(c, narrow)))) continue;
+        if (decks[c] || beside < fewest_beside || (ground_[c] && beside < around && ((open_[c] & axes) == 0 || is_wider(c, narrow))))
+          continue;
         out[c] = 1;
-        narrow_[c] = narrow;
+        narrow_[c] = narrow, axes_[c] = axes;
         top_[c] = level;
       }
     return out;
+  }
+
+  /// Are there returns on both sides of a void, seen in the direction? Beyond the rim of the data there are not.
+  bool is_between_banks(int i, int j, int direction) const {
+    for (const int across_it : {directions / 4, 3 * directions / 4}) {
+      const std::vector<CellIndex>& to = ahead_[static_cast<size_t>((direction + across_it) % directions)];
+      bool found = false;
+      for (size_t k = 1; k <= static_cast<size_t>(in_cells(banks)) && !found; ++k)
+        found = lattice_.holds(i + to[k].i, j + to[k].j) && !std::isnan(low_[lattice_.at(i + to[k].i, j + to[k].j)]);
+      if (!found) return false;
+    }
+    return true;
   }
 
   /// What is beside the surface in a direction once it ends, and how many cells on that is.
@@ -186,14 +202,15 @@ class Cells {
         continue;
       }
       if (std::isnan(low_[c])) {
-        if (++void_cells >= std::max(open_cells, in_cells(wide_open))) return Side::open;
+        if (++void_cells >= std::max(open_cells, in_cells(wide_open)))
+          return is_between_banks(i + to.i, j + to.j, direction) ? Side::open : Side::level;
         continue;
       }
       // Where nothing came back in between there is no bank.
       const double least = void_cells >= bare && lattice_.cell <= finest ? fall : std::max(fall, sheer * (run + lattice_.cell));
       if (static_cast<double>(z - low_[c]) >= least) return Side::falls;
       const bool sliver = k == last + 1 && ground_[c] && top_[c] < z && lattice_.cell <= finest;
-      if ((ground_[c] || roof_[c]) && !sliver) return Side::level;
+      if (ground_[c] && !sliver) return Side::level;
     }
     return Side::level;
   }
@@ -284,6 +301,7 @@ class Cells {
       if (length < shortest || length > reach_ * lattice_.cell - bank || strips < share_open * cells || is_wider(lattice_.at(i, j), narrow))
         continue;
       narrow_[lattice_.at(i, j)] = narrow;
+      axes_[lattice_.at(i, j)] = static_cast<std::uint8_t>(1u << axis);
       return true;
     }
     return false;
@@ -292,9 +310,9 @@ class Cells {
   core::Lattice lattice_;
   std::vector<float> top_, low_;      ///< m, as in the block; NaN where none
   std::vector<std::uint8_t> ground_;  ///< per cell: its top is ground
-  std::vector<std::uint8_t> roof_;    ///< per cell: it holds planes
   std::vector<std::uint8_t> known_;   ///< per cell: 1 strip_ is known, 2 and the surface falls off to returns below
   std::vector<std::uint8_t> open_;    ///< per cell: bits of the axes on both sides of which the surface ends
+  std::vector<std::uint8_t> axes_;    ///< per cell of a deck: the bit of its axis
   std::vector<std::uint8_t> strip_;   ///< per cell: bits of the axes along which it is a strip
   std::vector<float> width_;          ///< m, per cell: least between its edges
   std::vector<float> narrow_;         ///< m, per cell of a deck: least of the deck
@@ -305,15 +323,14 @@ class Cells {
 }  // namespace
 
 double ground_decks_halo(double longest) {
-  return Districts::halo() + longest + bank + widest + hidden + (growth + 3) * sample_sides.back();
+  return Districts::halo() + std::hypot(longest + bank + banks, widest + hidden) + (growth + 3) * sample_sides.back();
 }
 
-std::vector<std::uint8_t> ground_decks(const core::Block& b, const std::vector<std::uint8_t>& solid, const Districts& where, double longest,
-                                       size_t own) {
+std::vector<std::uint8_t> ground_decks(const core::Block& b, const Districts& where, double longest, size_t own) {
   std::vector<std::uint8_t> out(b.size(), 0);
   for (size_t level = 0; level < sample_sides.size(); ++level) {
     if (std::find(where.side.begin(), where.side.end(), level) == where.side.end()) continue;
-    Cells cells(b, solid, sample_sides[level], longest);
+    Cells cells(b, sample_sides[level], longest);
     const core::Lattice& l = cells.lattice();
     const OwnBox needed(b, own, 2.0 * l.cell);
     const auto has_side = [&](int i, int j) { return where.side_at(l.centre_x(i), l.centre_y(j)) == level; };

@@ -17,9 +17,7 @@ double ground_decks_halo(double longest);
 /// which, on both sides, the returns lie lower by a metre and more steeply than banks fall, or no beam came back over 5 m or more, while
 /// lengthwise it goes on over ground at both ends. Banks, dikes and dams whose sides slope are not decks, nor is ground beside a wall, nor
 /// ground between buildings or under trees: what hides the ground says nothing. Where returns are so thin that
-/// cells are 3 m wide a void says nothing either. `solid` marks returns of planes, which may carry on a deck.
-/// Needs column classification (with ground); does not depend on the order of the points.
-std::vector<std::uint8_t> ground_decks(const core::Block& b, const std::vector<std::uint8_t>& solid, const Districts& where, double longest,
-                                       size_t own);
+/// cells are 3 m wide a void says nothing either. Needs column classification (with ground); does not depend on the order of the points.
+std::vector<std::uint8_t> ground_decks(const core::Block& b, const Districts& where, double longest, size_t own);
 
 }  // namespace swath::filters

@@ -39,9 +39,7 @@ core::Block returns(const Scene& scene, double density = 5.0) {
   return b;
 }
 
-std::vector<std::uint8_t> decks(const core::Block& b) {
-  return ground_decks(b, std::vector<std::uint8_t>(b.size(), 0), districts(b), 60.0, b.size());
-}
+std::vector<std::uint8_t> decks(const core::Block& b) { return ground_decks(b, districts(b), 60.0, b.size()); }
 size_t count(const std::vector<std::uint8_t>& found) {
   size_t n = 0;
   for (const std::uint8_t d : found) n += d;
@@ -114,6 +112,17 @@ TEST(GroundDecks, TerracesQuaysAndPiersStayGround) {
   EXPECT_EQ(count(decks(returns(pier))), 0u);
 }
 
+TEST(GroundDecks, ATerraceAtTheRimOfTheDataStaysGround) {
+  const Scene rim = [](double x, double y) {
+    return y > 20.0 + 0.3 * x ? std::optional<Return>{{x > 20.0 + 0.5 * y ? 3.0 : 0.0}} : std::nullopt;
+  };
+  EXPECT_EQ(count(decks(returns(rim))), 0u);
+  const Scene strip = [](double x, double y) {  // the data of one flight line
+    return std::abs(y - 50.0 - 0.3 * (x - 60.0)) < 8.0 ? std::optional<Return>{{0.0}} : std::nullopt;
+  };
+  EXPECT_EQ(count(decks(returns(strip))), 0u);
+}
+
 TEST(GroundDecks, GroundThatBuildingsOrCrownsHideOnBothSidesStays) {
   const auto alley = [](double high, double crown) {
     return [=](double x, double y) -> std::optional<Return> {
@@ -135,7 +144,7 @@ TEST(GroundDecks, DoNotDependOnTheOrderOrOnTiles) {
   const std::vector<std::uint8_t> again = decks(test::shuffled(b, 5, rows));
   for (size_t k = 0; k < rows.size(); ++k) EXPECT_EQ(again[k], whole[rows[k]]);
   const auto filter = [](core::Block& tile, size_t own) {
-    const std::vector<std::uint8_t> found = ground_decks(tile, std::vector<std::uint8_t>(tile.size(), 0), districts(tile), 30.0, own);
+    const std::vector<std::uint8_t> found = ground_decks(tile, districts(tile), 30.0, own);
     for (size_t p = 0; p < own; ++p)
       if (found[p]) tile.classification[p] = cls::bridge_deck;
   };
