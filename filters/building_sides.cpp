@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The windows in which planes are looked for end within a roof, so that slivers of it have too few returns of their own; and walls are too
-// steep for airborne beams to show a plane. Both are told by the roof beside them. A hedge along a wall, within a metre, is taken with it.
+// steep for airborne beams to show a plane. Both are recognised by the roof beside them. A hedge along a wall, within a metre, is taken
+// with it.
 #include "filters/building_sides.h"
 
 #include <Eigen/Dense>
@@ -22,7 +23,7 @@ constexpr double foot_reach = 0.7;  // m: the same for the foot of a wall
 constexpr float wall_room = 0.5f;   // m that a roof is higher than the lowest ones, above the foot of a wall
 constexpr size_t fewest = 6;
 constexpr size_t nearest = 12;    // returns of the roof that make the plane
-constexpr double flattest = 0.1;  // rms across over rms along the lesser axis of these: less tells a plane
+constexpr double flattest = 0.1;  // rms across over rms along the lesser axis of these: less is a plane
 
 /// Is the origin on the plane through the points?
 bool on_plane(const std::vector<Vector3d>& points, double tolerance) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // After Melzer & Briese 2004, "Extraction and modeling of power lines from ALS point clouds" (28th OEAGM workshop): lines in plan, then
 // catenaries in their vertical planes; and McLaughlin 2006, "Extracting transmission lines from airborne LIDAR data", IEEE GRSL 3: foliage
-// and surfaces told from wires by what is beside the line. Deviations: in place of a Hough transform of the whole scene, lines through the
+// and surfaces differ from wires by what is beside the line. Deviations: in place of a Hough transform of the whole scene, lines through the
 // point and each of its neighbours are tried, so that the reach is bounded; a parabola stands for the catenary (1 mm off over 40 m where
 // its parameter is 300 m).
 #include "filters/wires.h"
@@ -257,14 +257,24 @@ class Search {
     Around around;
     WireDirections directions(static_cast<float>(near_line), static_cast<float>(steepest),
                               static_cast<float>(0.5 * (shortest - near_line)));
-    for (size_t p = 0; p < block_.size(); ++p) {
-      if (!few_[p] || !needed.holds(block_, p)) continue;
+    const auto is_in_line = [&](size_t p) {
       around.find(wide, block_, p, reach);
-      if (around.size() + 1 < fewest) continue;
+      if (around.size() + 1 < fewest) return false;
       around.vote(directions);
-      if (!directions.any()) continue;
-      for (size_t k = 0; k < around.size() && !out[p]; ++k)
-        out[p] = around.is_line(k) && around.lies_in(directions, k) && around.may_be_wire(k) && is_wire(p, around, around[k]);
+      if (!directions.any()) return false;
+      for (size_t k = 0; k < around.size(); ++k)
+        if (around.is_line(k) && around.lies_in(directions, k) && around.may_be_wire(k) && is_wire(p, around, around[k])) return true;
+      return false;
+    };
+    for (size_t p = 0; p < block_.size(); ++p) out[p] = few_[p] && needed.holds(block_, p) && is_in_line(p);
+    if (std::find(out.begin(), out.end(), 1) == out.end()) return out;
+    // The others of their cubes.
+    const std::vector<std::uint8_t> seeds = out;
+    const Bins found(block_, thinned, 0, [&](size_t p) { return seeds[p] != 0; });
+    for (size_t p = 0; p < block_.size(); ++p) {
+      if (!airy_[p] || few_[p] || !needed.holds(block_, p)) continue;
+      const CellIndex c = cell_of(found.lattice(), block_, p);
+      if (!found.in(c.i, c.j).empty()) out[p] = is_in_line(p);
     }
     return out;
   }
