@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Directions in which several neighbours of a point lie in line with it: a vote by bits that replaces most tests of pairs.
+// Directions in which several neighbours of a point lie in line with it, a vote by bits that replaces most tests of pairs; and what lies
+// beside a line.
 #pragma once
 
 #include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 namespace swath::filters {
@@ -31,6 +35,24 @@ class WireDirections {
 
   float near_, steepest_, far_;
   std::array<Word, slopes> ones_{}, twos_{}, fours_{}, reach_{};  ///< counts of neighbours in binary, ending at four; of far ones
+};
+
+constexpr double clear_tube = 1.5;  // m around the line
+constexpr double cross_cell = 0.5;  // m, raster of the tube's cross-section
+
+/// Cells of a line's cross-section that hold points, within the tube.
+class CrossSection {
+ public:
+  void add(double v, double w) {
+    const auto at = [](double d) { return static_cast<unsigned>(std::floor((d + clear_tube) / cross_cell)); };
+    taken_ |= std::uint64_t{1} << (at(v) * across + at(w));
+  }
+  std::size_t taken() const { return static_cast<std::size_t>(std::popcount(taken_)); }
+
+ private:
+  static constexpr unsigned across = 7;  // the tube's width and its rim
+  static_assert(across >= 2.0 * clear_tube / cross_cell + 1.0 && across * across <= 64);
+  std::uint64_t taken_ = 0;
 };
 
 }  // namespace swath::filters

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // After Melzer & Briese 2004, "Extraction and modeling of power lines from ALS point clouds" (28th OEAGM workshop): lines in plan, then
 // catenaries in their vertical planes; and McLaughlin 2006, "Extracting transmission lines from airborne LIDAR data", IEEE GRSL 3: foliage
-// and surfaces differ from wires by what is beside the line. Deviations: in place of a Hough transform of the whole scene, lines through the
-// point and each of its neighbours are tried, so that the reach is bounded; a parabola stands for the catenary (1 mm off over 40 m where
-// its parameter is 300 m).
+// and surfaces differ from wires by what is beside the line. Deviations: in place of a Hough transform of the whole scene, lines through
+// the point and each of its neighbours are tried, so that the reach is bounded; a parabola stands for the catenary (1 mm off over 40 m
+// where its parameter is 300 m).
 #include "filters/wires.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
@@ -33,11 +32,9 @@ constexpr int fewest_over_gaps = 7;     // returns on the line with such gaps
 constexpr double least_baseline = 7.0;  // m from the point to the one that gives the direction: half of the shortest line
 constexpr double near_line = 0.5;       // m from the line through two returns, each off the wire by up to half the beam's width
 constexpr double on_line = 0.4;         // m from the line through all; holds a bundle of conductors together
-constexpr double clear_tube = 1.5;      // m around the line
 constexpr double tube_bin = 1.7;        // m: holds what is within the tube and half a step of it along the line
 constexpr double sleeve = 0.5;          // m around the line: empty beside a wire, not beside the edge of a surface
 constexpr double most_close = 0.1;      // points in it, of the returns on the line
-constexpr double cross_cell = 0.5;      // m, raster of the tube's cross-section
 constexpr double most_beside = 0.25;    // cells of it beside the line, of the returns on the line
 constexpr double fit_off = 0.3;         // m from the straight line through two returns to the line through all,
 constexpr double fit_length = 7.0;      // m: so near to the point
@@ -48,21 +45,6 @@ constexpr double most_bent = 0.01;      // 1 / m: twice that of a catenary of pa
 constexpr double thinned = 1.0;         // m: of each cube of this side one return takes part in the search for lines
 constexpr size_t most_nearest = 96;     // neighbours looked at
 constexpr int bins_of_reach = 4;
-
-/// Cells of a line's cross-section that hold points, within the tube.
-class CrossSection {
- public:
-  void add(double v, double w) {
-    const auto at = [](double d) { return static_cast<unsigned>(std::floor((d + clear_tube) / cross_cell)); };
-    taken_ |= std::uint64_t{1} << (at(v) * across + at(w));
-  }
-  size_t taken() const { return static_cast<size_t>(std::popcount(taken_)); }
-
- private:
-  static constexpr unsigned across = 7;  // the tube's width and its rim
-  static_assert(across >= 2.0 * clear_tube / cross_cell + 1.0 && across * across <= 64);
-  std::uint64_t taken_ = 0;
-};
 
 struct Neighbour {
   float distance2;

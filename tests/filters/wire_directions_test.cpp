@@ -74,5 +74,16 @@ TEST(WireDirections, ALineAlongTheEndOfTheHalfTurnCountsOnBothSides) {
   EXPECT_FALSE(directions.holds(directions.add(0.1f, 8.0f, 3.2f)));
 }
 
+TEST(CrossSection, CountsEachCellOnceAndHoldsTheRimOfTheTube) {
+  CrossSection cells;
+  EXPECT_EQ(cells.taken(), 0u);
+  cells.add(0.6, 0.1);
+  cells.add(0.9, 0.4);
+  EXPECT_EQ(cells.taken(), 1u);
+  cells.add(-clear_tube, clear_tube);
+  cells.add(clear_tube, clear_tube);
+  EXPECT_EQ(cells.taken(), 3u);
+}
+
 }  // namespace
 }  // namespace swath::filters
