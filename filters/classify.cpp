@@ -42,6 +42,13 @@ bool is_isolated(const core::Block& b, size_t p) {
 
 double wide_area(const ClassifyOptions& o) { return std::min(o.building_side.value * o.building_side.value, widest_needed); }
 
+/// Metres of points around a tile that the planes and what follows from them depend on.
+double planes_halo(const ClassifyOptions& o) {
+  const double decks = o.bridge_length.value > 0.0 ? deck_cells_halo(o.bridge_length.value) : 0.0;
+  const double structures = decks + roof_cells_halo(o.building_side.value) + building_sides_halo();
+  return planar_points_halo() + std::max(structures, wire_points_halo());
+}
+
 std::uint8_t vegetation(float height, const ClassifyOptions& o) {
   if (!(height > 0.0f)) return cls::unassigned;
   const auto h = static_cast<double>(height);
@@ -92,7 +99,7 @@ class Structures {
  public:
   Structures(const core::Block& b, size_t own, const ClassifyOptions& o)
       : block_(b), options_(o), where_(districts(b)), available_(b.size(), 0), raised_(b.size(), 0), below_(b, where_) {
-    const OwnBox needed(b, own, halo(o) - Districts::halo() - missing_heights_halo());
+    const OwnBox needed(b, own, planes_halo(o) - Districts::halo());
     for (size_t p = 0; p < b.size(); ++p) {
       available_[p] = is_free(b, p) && needed.holds(b, p);
       raised_[p] = available_[p] && b.height[p] >= least_plane_height;
@@ -185,10 +192,8 @@ void count(ClassifyCounts& n, std::uint8_t c) {
 }  // namespace
 
 double halo(const ClassifyOptions& o) {
-  const double decks = o.bridge_length.value > 0.0 ? deck_cells_halo(o.bridge_length.value) : 0.0;
-  const double structures = planar_points_halo() + decks + roof_cells_halo(o.building_side.value);
   const double on_ground = o.bridge_length.value > 0.0 ? ground_decks_halo(o.bridge_length.value) : 0.0;
-  return missing_heights_halo() + std::max({structures + building_sides_halo(), planar_points_halo() + wire_points_halo(), on_ground});
+  return missing_heights_halo() + std::max(planes_halo(o), on_ground);
 }
 
 ClassifyCounts classify(core::Block& b, size_t own, const ClassifyOptions& o) {
