@@ -73,7 +73,7 @@ class Cells {
   }
 
   const core::Lattice& lattice() const { return lattice_; }
-  float top(size_t c) const { return top_[c]; }
+  float top(size_t c) const { return level_[c]; }
 
   /// Marks the cells of decks among those that `taken` lets through.
   template <class Taken>
@@ -85,6 +85,7 @@ class Cells {
         const size_t c = lattice_.at(i, j);
         if (ground_[c] && near[c] && taken(i, j)) out[c] = is_deck(i, j);
       }
+    level_ = top_;
     for (int round = 0; round < growth; ++round) out = with_edges(out);
     return out;
   }
@@ -159,16 +160,17 @@ class Cells {
             const size_t near = lattice_.at(u, v);
             if (near == c || !decks[near]) continue;
             ++beside;
-            if (!(top_[near] >= level)) level = top_[near];
+            if (!(level_[near] >= level)) level = level_[near];
             narrow = std::max(narrow, narrow_[near]);
             axes = static_cast<std::uint8_t>(axes | axes_[near]);
           }
         if (decks[c]) out[c] = beside >= fewest_beside;
-        if (decks[c] || beside < fewest_beside || (ground_[c] && beside < around && ((open_[c] & axes) == 0 || is_wider(c, narrow))))
-          continue;
+        if (decks[c] || beside < fewest_beside) continue;
+        if (ground_[c]) is_strip(i, j, 0);  // makes open_ known
+        if ((ground_[c] && beside < around && ((open_[c] & axes) == 0 || is_wider(c, narrow)))) continue;
         out[c] = 1;
         narrow_[c] = narrow, axes_[c] = axes;
-        top_[c] = level;
+        level_[c] = level;
       }
     return out;
   }
@@ -309,6 +311,7 @@ class Cells {
 
   core::Lattice lattice_;
   std::vector<float> top_, low_;      ///< m, as in the block; NaN where none
+  std::vector<float> level_;          ///< m, as top_, and in the cells beside a deck its level
   std::vector<std::uint8_t> ground_;  ///< per cell: its top is ground
   std::vector<std::uint8_t> known_;   ///< per cell: 1 strip_ is known, 2 and the surface falls off to returns below
   std::vector<std::uint8_t> open_;    ///< per cell: bits of the axes on both sides of which the surface ends
@@ -332,7 +335,7 @@ std::vector<std::uint8_t> ground_decks(const core::Block& b, const Districts& wh
     if (std::find(where.side.begin(), where.side.end(), level) == where.side.end()) continue;
     Cells cells(b, sample_sides[level], longest);
     const core::Lattice& l = cells.lattice();
-    const OwnBox needed(b, own, 2.0 * l.cell);
+    const OwnBox needed(b, own, (growth + 2) * l.cell);
     const auto has_side = [&](int i, int j) { return where.side_at(l.centre_x(i), l.centre_y(j)) == level; };
     const std::vector<std::uint8_t> deck = cells.decks([&](int i, int j) { return needed.touches(l, i, j) && has_side(i, j); });
     if (std::find(deck.begin(), deck.end(), 1) == deck.end()) continue;
