@@ -55,6 +55,19 @@ core::Lattice lattice_around(const core::Block& b, size_t own, double cell, doub
   return {cell, i0, j0, static_cast<int>(i1 - i0) + 1, static_cast<int>(j1 - j0) + 1};
 }
 
+OwnBox::OwnBox(const core::Block& b, size_t own, double around) : origin_(b.origin), west_(1), east_(0), south_(1), north_(0) {
+  if (own == 0) return;
+  const auto end = static_cast<std::ptrdiff_t>(own);
+  const auto [west, east] = std::minmax_element(b.x.begin(), b.x.begin() + end);
+  const auto [south, north] = std::minmax_element(b.y.begin(), b.y.begin() + end);
+  west_ = *west - around, east_ = *east + around, south_ = *south - around, north_ = *north + around;
+}
+
+bool OwnBox::touches(const core::Lattice& l, int i, int j) const {
+  const double x = l.centre_x(i) - origin_.x(), y = l.centre_y(j) - origin_.y(), half = 0.5 * l.cell;
+  return x + half >= west_ && x - half <= east_ && y + half >= south_ && y - half <= north_;
+}
+
 Bins::Bins(const core::Block& b, double cell, int border, const std::function<bool(size_t)>& takes_part)
     : lattice_(lattice_around(b, cell, border)) {
   constexpr std::uint32_t left_out = 0xffffffffu;

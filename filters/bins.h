@@ -30,6 +30,19 @@ inline CellIndex cell_of(const core::Lattice& l, const core::Block& b, size_t p)
 /// Column and row in the lattice of n points from `first` on; those outside get what is outside.
 void cells_of(const core::Lattice& l, const core::Block& b, size_t first, size_t n, std::int32_t* column, std::int32_t* row);
 
+/// The box in plan of the first `own` points, grown by `around` (CRS units): what is outside has no say in what is asked of them.
+class OwnBox {
+ public:
+  OwnBox(const core::Block& b, size_t own, double around);
+  bool holds(const core::Block& b, size_t p) const { return b.x[p] >= west_ && b.x[p] <= east_ && b.y[p] >= south_ && b.y[p] <= north_; }
+  /// Does any part of the cell lie in it?
+  bool touches(const core::Lattice& l, int i, int j) const;
+
+ private:
+  Eigen::Vector3d origin_;
+  double west_, east_, south_, north_;  ///< as in the block
+};
+
 /// Points sorted by cell (counting sort). Within a cell they stand in the order of the block: users must not let that order decide.
 /// Memory: 28 bytes per point and 4 per cell of the block's extent.
 class Bins {

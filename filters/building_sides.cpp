@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The windows in which planes are looked for end within a roof, so that slivers of it have too few returns of their own; and walls are too
-// steep for airborne beams to show a plane. Both are told by the roof beside them. A hedge along a wall, within a metre, is taken with it.
+// steep for airborne beams to show a plane. Both are recognised by the roof beside them. A hedge along a wall, within a metre, is taken
+// with it.
 #include "filters/building_sides.h"
 
 #include <Eigen/Dense>
@@ -18,9 +19,11 @@ using Eigen::Vector3d;
 
 constexpr double rim_reach = 3.0;   // m: half a window
 constexpr double wall_reach = 1.0;  // m: overhang of eaves and half the distance of returns
+constexpr double foot_reach = 0.7;  // m: the same for the foot of a wall
+constexpr float wall_room = 0.5f;   // m that a roof is higher than the lowest ones, above the foot of a wall
 constexpr size_t fewest = 6;
 constexpr size_t nearest = 12;    // returns of the roof that make the plane
-constexpr double flattest = 0.1;  // rms across over rms along the lesser axis of these: less tells a plane
+constexpr double flattest = 0.1;  // rms across over rms along the lesser axis of these: less is a plane
 
 /// Is the origin on the plane through the points?
 bool on_plane(const std::vector<Vector3d>& points, double tolerance) {
@@ -38,15 +41,19 @@ class Surroundings {
  public:
   Surroundings(const Bins& roofs, const core::Block& b) : roofs_(roofs), block_(b) {}
 
-  /// Is there a higher one within wall_reach in plan?
-  bool under_eaves(size_t p) const {
+  /// Is there a higher one within wall_reach in plan? What is itself lower than a roof can be must stand closer, under a roof that leaves
+  /// room for a wall: hedges, bicycles and cars stand along houses too.
+  bool under_eaves(size_t p, float lowest_roof) const {
+    const bool low = block_.height[p] < lowest_roof;
+    const double reach = low ? foot_reach : wall_reach,
+                 least = block_.z[p] + (low ? static_cast<double>(lowest_roof + wall_room - block_.height[p]) : 0.0);
     const CellIndex c = cell_of(roofs_.lattice(), block_, p);
     for (int dj = -1; dj <= 1; ++dj)
       for (int di = -1; di <= 1; ++di) {
         if (!roofs_.lattice().holds(c.i + di, c.j + dj)) continue;
         for (const Bins::Point& q : roofs_.in(c.i + di, c.j + dj)) {
           const double x = q.x - block_.x[p], y = q.y - block_.y[p];
-          if (q.z > block_.z[p] && x * x + y * y <= wall_reach * wall_reach) return true;
+          if (q.z > block_.z[p] && q.z >= least && x * x + y * y <= reach * reach) return true;
         }
       }
     return false;
@@ -100,15 +107,15 @@ class Surroundings {
 double building_sides_halo() { return rim_reach; }
 
 std::vector<std::uint8_t> building_sides(const core::Block& b, const std::vector<std::uint8_t>& roof,
-                                         const std::vector<std::uint8_t>& candidate, double tolerance) {
+                                         const std::vector<std::uint8_t>& candidate, double tolerance, double lowest_roof, size_t own) {
   std::vector<std::uint8_t> out(b.size(), 0);
   if (b.size() == 0) return out;
   const Bins roofs(b, wall_reach, 0, [&](size_t p) { return roof[p] != 0; });
   Surroundings around(roofs, b);
   std::vector<Vector3d> plane;
-  for (size_t p = 0; p < b.size(); ++p) {
+  for (size_t p = 0; p < own; ++p) {
     if (!candidate[p] || roof[p] || !core::is_last_return(b, p)) continue;
-    out[p] = around.under_eaves(p) || (around.nearest_of(p, plane) && on_plane(plane, tolerance));
+    out[p] = around.under_eaves(p, static_cast<float>(lowest_roof)) || (around.nearest_of(p, plane) && on_plane(plane, tolerance));
   }
   return out;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The property that tells a deck is that of Sithole & Vosselman 2006 (ISPRS J. 61): its cross-section drops at both sides while lengthwise
+// What marks a deck is the property of Sithole & Vosselman 2006 (ISPRS J. 61): its cross-section drops at both sides while lengthwise
 // it joins the ground. Embankments are not decks: their sides fall no more steeply than ground can.
 #include "filters/decks.h"
 

@@ -23,8 +23,8 @@ constexpr int chords_pardoned = 1;      // that another group of low points, lyi
 constexpr int sparse = 8;               // times `neighbours` in plan
 constexpr int wider = 2;                // balls where points are sparser
 constexpr int district = 4;             // cells of radius on each side, whose returns say how many neighbours are usual
-constexpr double usual_of_group = 2.0;  // times low_group: returns usual within low_radius where a low group can be told
-constexpr double usual_alone = 2.0;     // times `neighbours`: those usual within the wider ball where a return can be told to be isolated
+constexpr double usual_of_group = 2.0;  // times low_group: returns usual within low_radius where a low group can be recognised
+constexpr double usual_alone = 2.0;     // times `neighbours`: those usual within the wider ball where a return can be found isolated
 
 /// Number of points in the cells up to `ring` away for which `counts` holds, or `enough` where there are that many. The point's own column
 /// comes first.

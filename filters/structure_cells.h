@@ -58,32 +58,44 @@ void spread(const StructureCells& cells, std::vector<std::uint8_t>& marked, int 
   }
 }
 
-/// Cells that are linked to cell (i, j) by links from a cell to one up to `link` away for which `linked(from, to)` holds,
-/// within the square of `radius` cells around (i, j); the search ends with the cell for which `enough(cell, count so far)` holds. True
-/// where there was one. (i, j) itself counts. The result depends on nothing outside the square.
-template <class Linked, class Enough>
-bool grow(const core::Lattice& l, int i, int j, int radius, int link, Linked&& linked, Enough&& enough) {
-  const int side = 2 * radius + 1;
-  std::vector<std::uint8_t> seen(static_cast<size_t>(side) * static_cast<size_t>(side), 0);
-  const auto local = [&](int di, int dj) {
-    return static_cast<size_t>(dj + radius) * static_cast<size_t>(side) + static_cast<size_t>(di + radius);
-  };
-  std::vector<CellIndex> found{{0, 0}};
-  seen[local(0, 0)] = 1;
-  for (size_t n = 0; n < found.size(); ++n) {
-    const CellIndex from = found[n];
-    const size_t cell = l.at(i + from.i, j + from.j);
-    if (enough(cell, static_cast<int>(n) + 1)) return true;
-    for (int dj = -link; dj <= link; ++dj)
-      for (int di = -link; di <= link; ++di) {
-        const CellIndex to{from.i + di, from.j + dj};
-        if (std::max(std::abs(to.i), std::abs(to.j)) > radius || !l.holds(i + to.i, j + to.j) || seen[local(to.i, to.j)]) continue;
-        if (!linked(cell, l.at(i + to.i, j + to.j))) continue;
-        seen[local(to.i, to.j)] = 1;
-        found.push_back(to);
-      }
+/// Region growing by cells within a square; keeps its memory from one region to the next.
+class Growth {
+ public:
+  Growth(const core::Lattice& l, int radius) : lattice_(l), radius_(radius), seen_(static_cast<size_t>(side()) * side(), 0) {}
+
+  /// Offsets of the cells that are linked to cell (i, j) by links from a cell to one up to `link` away for which `linked(from, to)` holds,
+  /// within the square of `radius` cells around (i, j), (i, j) first; it ends with as many cells as `wanted`. Depends on nothing outside
+  /// the square.
+  template <class Linked>
+  const std::vector<CellIndex>& from(int i, int j, int link, size_t wanted, Linked&& linked) {
+    for (const CellIndex& c : found_) seen_[local(c)] = 0;
+    found_.assign(1, {0, 0});
+    seen_[local({0, 0})] = 1;
+    for (size_t n = 0; n < found_.size(); ++n) {
+      const CellIndex at = found_[n];
+      const size_t cell = lattice_.at(i + at.i, j + at.j);
+      const int west = std::max({at.i - link, -radius_, -i}), east = std::min({at.i + link, radius_, lattice_.nx - 1 - i});
+      const int south = std::max({at.j - link, -radius_, -j}), north = std::min({at.j + link, radius_, lattice_.ny - 1 - j});
+      for (int dj = south; dj <= north; ++dj)
+        for (int di = west; di <= east; ++di) {
+          if (found_.size() >= wanted) return found_;
+          const CellIndex to{di, dj};
+          if (!linked(cell, lattice_.at(i + di, j + dj)) || seen_[local(to)]) continue;
+          seen_[local(to)] = 1;
+          found_.push_back(to);
+        }
+    }
+    return found_;
   }
-  return false;
-}
+
+ private:
+  int side() const { return 2 * radius_ + 1; }
+  size_t local(CellIndex c) const { return static_cast<size_t>(c.j + radius_) * side() + static_cast<size_t>(c.i + radius_); }
+
+  const core::Lattice& lattice_;
+  int radius_;
+  std::vector<std::uint8_t> seen_;
+  std::vector<CellIndex> found_;
+};
 
 }  // namespace swath::filters

@@ -9,7 +9,7 @@
 // 3. It is water where enough sparse returns lie in it, those there lie in one plane, the plane is level, and what is around is not lower
 //    (a dark flat roof's surroundings are). The plane's slope has a prior of 0.001, that of rivers: where the returns say little, it is
 //    level.
-// 4. Near the nadir all pulses come back. A water that lies there altogether is told by its form: ground's returns in one plane, level
+// 4. Near the nadir all pulses come back. A water that lies there altogether shows by its form: ground's returns in one plane, level
 //    within 0.001, with rising ground all around. Squares whose plots lie at one level start it.
 // 5. Returns in the plots within three sigma of the plane are water; in the plots of the shore, which rises, those above one and a half are
 //    not.
@@ -49,7 +49,7 @@ constexpr double known_share = 0.9;       // of the plots 4 to 12 m beyond the s
 constexpr double rising_share = 0.7;      // of these that must lie above the water: a shore may be marshy
 constexpr double outlet_share = 0.25;     // of these that may lie below it: behind a dam, one side
 constexpr double lowest_share = 0.1;      // of a plot's last returns that may be low outliers
-constexpr size_t fewest_on_land = 3;      // returns of a plot that tells whether the land rises
+constexpr size_t fewest_on_land = 3;      // returns of a plot that shows whether the land rises
 constexpr double dense = 0.5;             // of the usual density
 constexpr double dense_distance = 0.05;   // m: mean and rms of a dense plot's returns about the plane
 

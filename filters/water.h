@@ -20,7 +20,7 @@ void describe(WaterOptions& o, V& v) {
   v.option("sparse", o.sparse, core::within(0.01, 0.2),
            "A return is a sparse one where its flight line has at most this share of its usual density around it. The corner of a field of "
            "returns has a quarter.");
-  v.option("returns", o.returns, core::within(3, 1000), "Least number of sparse returns at one level that tell water.");
+  v.option("returns", o.returns, core::within(3, 1000), "Least number of sparse returns at one level that make a water.");
   v.option("slope", o.slope, core::within(0.0, 0.02),
            "Largest slope (rise / run) of a water surface; paved ground falls by 0.005 or more, so that it drains.");
   v.option("level", o.level, core::above(0.0), "Largest distance of a return from its water's level: waves, differences between lines.");

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // After Melzer & Briese 2004, "Extraction and modeling of power lines from ALS point clouds" (28th OEAGM workshop): lines in plan, then
 // catenaries in their vertical planes; and McLaughlin 2006, "Extracting transmission lines from airborne LIDAR data", IEEE GRSL 3: foliage
-// and surfaces told from wires by what is beside the line. Deviations: in place of a Hough transform of the whole scene, lines through the
-// point and each of its neighbours are tried, so that the reach is bounded; a parabola stands for the catenary (1 mm off over 40 m where
-// its parameter is 300 m).
+// and surfaces differ from wires by what is beside the line. Deviations: in place of a Hough transform of the whole scene, lines through
+// the point and each of its neighbours are tried, so that the reach is bounded; a parabola stands for the catenary (1 mm off over 40 m
+// where its parameter is 300 m).
 #include "filters/wires.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
 #include <tuple>
 
 #include "filters/bins.h"
+#include "filters/wire_directions.h"
 #include "filters/wire_sieve.h"
 
 namespace swath::filters {
@@ -29,14 +29,16 @@ constexpr double shortest = 15.0;       // m of line
 constexpr double longest_gap = 7.0;     // m between returns of one wire
 constexpr double widest_gap = 16.0;     // m between groups of returns where lines of scan run nearly along it
 constexpr int fewest_over_gaps = 7;     // returns on the line with such gaps
-constexpr double least_baseline = 4.0;  // m from the point to the one that gives the direction
+constexpr double least_baseline = 7.0;  // m from the point to the one that gives the direction: half of the shortest line
 constexpr double near_line = 0.5;       // m from the line through two returns, each off the wire by up to half the beam's width
 constexpr double on_line = 0.4;         // m from the line through all; holds a bundle of conductors together
-constexpr double clear_tube = 1.5;      // m around the line
+constexpr double tube_bin = 1.7;        // m: holds what is within the tube and half a step of it along the line
 constexpr double sleeve = 0.5;          // m around the line: empty beside a wire, not beside the edge of a surface
 constexpr double most_close = 0.1;      // points in it, of the returns on the line
-constexpr double cross_cell = 0.5;      // m, raster of the tube's cross-section
 constexpr double most_beside = 0.25;    // cells of it beside the line, of the returns on the line
+constexpr double fit_off = 0.3;         // m from the straight line through two returns to the line through all,
+constexpr double fit_length = 7.0;      // m: so near to the point
+constexpr double cells_of_fit = 2.0;    // that one return may take in place of one
 constexpr int fewest = 5;               // returns on the line
 constexpr double steepest = 0.58;       // rise / run: a span of 150 m up a slope of 30 degrees
 constexpr double most_bent = 0.01;      // 1 / m: twice that of a catenary of parameter 200 m; as much downwards, for noise
@@ -92,6 +94,12 @@ class Around {
     const float run2 = x_[k] * x_[k] + y_[k] * y_[k];
     return run2 >= least_baseline * least_baseline && z_[k] * z_[k] <= steepest * steepest * run2;
   }
+  /// Counts the neighbours by direction.
+  void vote(WireDirections& directions) {
+    directions.clear();
+    for (size_t q = 0; q < n_; ++q) bin_[q] = directions.add(x_[q], y_[q], z_[q]);
+  }
+  bool lies_in(const WireDirections& directions, size_t k) const { return directions.holds(bin_[k]); }
   /// Do enough neighbours lie near that line, over a stretch that is long enough?
   bool may_be_wire(size_t k) const {
     const float run = std::sqrt(x_[k] * x_[k] + y_[k] * y_[k]);
@@ -105,7 +113,7 @@ class Around {
       const float along = near ? u : 0.0f;
       first = along < first ? along : first, last = along > last ? along : last;
     }
-    return n + 1 >= fewest && last - first >= static_cast<float>(shortest - near_line);
+    return n + 1 >= fewest && last - first >= static_cast<float>(shortest - near_line) && is_bare(east, north, rise, n + 1);
   }
   /// Do enough neighbours lie near that line?
   bool may_carry_on(size_t k) const {
@@ -135,24 +143,23 @@ class Around {
       }
   }
 
+  /// Do those beside the straight line, so far from its `n` that no fit brings them onto it, take few enough of its cross-section?
+  bool is_bare(float east, float north, float rise, int n) const {
+    constexpr auto least = static_cast<float>(on_line + fit_off), most = static_cast<float>(clear_tube - fit_off);
+    CrossSection cells;
+    for (size_t q = 0; q < n_; ++q) {
+      const float u = east * x_[q] + north * y_[q], v = east * y_[q] - north * x_[q], w = z_[q] - rise * u;
+      const float off2 = v * v + w * w;
+      if (std::abs(u) <= static_cast<float>(fit_length) && off2 >= least * least && off2 <= most * most)
+        cells.add(static_cast<double>(v), static_cast<double>(w));
+    }
+    return static_cast<double>(cells.taken()) <= most_beside * static_cast<double>(n) + cells_of_fit;
+  }
+
   std::vector<Neighbour> near_;
   std::array<float, most_nearest> x_, y_, z_;
+  std::array<std::uint16_t, most_nearest> bin_;  ///< of directions, since the last vote
   size_t n_ = 0;
-};
-
-/// Cells of a line's cross-section that hold points, within the tube.
-class CrossSection {
- public:
-  void add(double v, double w) {
-    const auto at = [](double d) { return static_cast<unsigned>(std::floor((d + clear_tube) / cross_cell)); };
-    taken_ |= std::uint64_t{1} << (at(v) * across + at(w));
-  }
-  size_t taken() const { return static_cast<size_t>(std::popcount(taken_)); }
-
- private:
-  static constexpr unsigned across = 7;  // the tube's width and its rim
-  static_assert(across >= 2.0 * clear_tube / cross_cell + 1.0 && across * across <= 64);
-  std::uint64_t taken_ = 0;
 };
 
 /// u along, v across in plan, both from the point; w = level + rise u + bend u^2 / 2 in height.
@@ -221,32 +228,46 @@ class Search {
   Search(const core::Block& b, const std::vector<std::uint8_t>& candidate, const std::vector<std::uint8_t>& surface, const Districts& where)
       : block_(b),
         surface_(surface),
-        close_(b, clear_tube, 1, [&](size_t p) { return candidate[p] || surface[p]; }),
+        close_(b, tube_bin, 1, [&](size_t p) { return candidate[p] || surface[p]; }),
         airy_(airy_points(b, candidate, surface, where)),
         few_(thin(b, airy_)) {}
 
   /// Of the returns that stand for those of their cubes.
-  std::vector<std::uint8_t> in_line() const {
+  std::vector<std::uint8_t> in_line(const OwnBox& needed) const {
     std::vector<std::uint8_t> out(block_.size(), 0);
     const Bins wide(block_, reach / bins_of_reach, 0, [this](size_t p) { return few_[p] != 0; });
     Around around;
-    for (size_t p = 0; p < block_.size(); ++p) {
-      if (!airy_[p]) continue;
+    WireDirections directions(static_cast<float>(near_line), static_cast<float>(steepest),
+                              static_cast<float>(0.5 * (shortest - near_line)));
+    const auto is_in_line = [&](size_t p) {
       around.find(wide, block_, p, reach);
-      if (around.size() + 1 < fewest) continue;
-      for (size_t k = 0; k < around.size() && !out[p]; ++k)
-        out[p] = around.is_line(k) && around.may_be_wire(k) && is_wire(p, around, around[k]);
+      if (around.size() + 1 < fewest) return false;
+      around.vote(directions);
+      if (!directions.any()) return false;
+      for (size_t k = 0; k < around.size(); ++k)
+        if (around.is_line(k) && around.lies_in(directions, k) && around.may_be_wire(k) && is_wire(p, around, around[k])) return true;
+      return false;
+    };
+    for (size_t p = 0; p < block_.size(); ++p) out[p] = few_[p] && needed.holds(block_, p) && is_in_line(p);
+    if (std::find(out.begin(), out.end(), 1) == out.end()) return out;
+    // The others of their cubes.
+    const std::vector<std::uint8_t> seeds = out;
+    const Bins found(block_, thinned, 0, [&](size_t p) { return seeds[p] != 0; });
+    for (size_t p = 0; p < block_.size(); ++p) {
+      if (!airy_[p] || few_[p] || !needed.holds(block_, p)) continue;
+      const CellIndex c = cell_of(found.lattice(), block_, p);
+      if (!found.in(c.i, c.j).empty()) out[p] = is_in_line(p);
     }
     return out;
   }
 
   /// And the airy points that carry on a line of `found` ones.
-  std::vector<std::uint8_t> with_ends(const std::vector<std::uint8_t>& found) const {
+  std::vector<std::uint8_t> with_ends(const std::vector<std::uint8_t>& found, size_t own) const {
     std::vector<std::uint8_t> out = found;
     if (std::find(found.begin(), found.end(), 1) == found.end()) return out;
     const Bins lines(block_, shortest / bins_of_reach, 0, [&](size_t p) { return found[p] != 0; });
     Around around;
-    for (size_t p = 0; p < block_.size(); ++p) {
+    for (size_t p = 0; p < own; ++p) {
       if (!airy_[p] || found[p]) continue;
       around.find(lines, block_, p, shortest);
       if (around.size() + 1 < fewest || !around.any_within(longest_gap)) continue;
@@ -317,7 +338,7 @@ class Search {
     CrossSection cells;
     const auto steps = static_cast<int>(std::ceil((u1 - u0) / clear_tube));
     for (int k = 0; k <= steps; ++k) {
-      const double middle = std::min(u0 + k * clear_tube, u1);
+      const double middle = u0 + k * clear_tube;
       const Vector2d place = at.head<2>() + middle * line.along + line.across * Vector2d(-line.along.y(), line.along.x());
       const int i = static_cast<int>(core::cell_index(block_.origin.x() + place.x(), l.cell) - l.i0),
                 j = static_cast<int>(core::cell_index(block_.origin.y() + place.y(), l.cell) - l.j0);
@@ -328,7 +349,8 @@ class Search {
           const auto rows = close_.rows(i + di, j + dj);
           for (size_t m = 0; m < points.size(); ++m) {
             const Vector3d to = Vector3d(points[m].x, points[m].y, points[m].z) - at;
-            if (const double u = line.u(to); u < u0 || u > u1) continue;
+            const double u = line.u(to);
+            if (u < u0 || u > u1 || static_cast<int>(std::lround((u - u0) / clear_tube)) != k) continue;  // each counts once
             const double away = line.off(to);
             if (away <= on_line || away > clear_tube) continue;
             cells.add(line.v(to), line.w(to));
@@ -361,10 +383,10 @@ class Search {
 double wire_points_halo() { return airy_points_halo() + clear_tube + reach + shortest + reach; }
 
 std::vector<std::uint8_t> wire_points(const core::Block& b, const std::vector<std::uint8_t>& candidate,
-                                      const std::vector<std::uint8_t>& surface, const Districts& where) {
+                                      const std::vector<std::uint8_t>& surface, const Districts& where, size_t own) {
   if (std::find(candidate.begin(), candidate.end(), 1) == candidate.end()) return std::vector<std::uint8_t>(b.size(), 0);
   const Search search(b, candidate, surface, where);
-  return search.with_ends(search.in_line());
+  return search.with_ends(search.in_line(OwnBox(b, own, shortest)), own);
 }
 
 }  // namespace swath::filters

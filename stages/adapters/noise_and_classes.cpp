@@ -61,23 +61,23 @@ class Classify : public OptionStage<Keeping<filters::ClassifyOptions>> {
   // Measured 2026-11-22 with tests/stages/memory_test.cpp, tile 200 m: up to 177 bytes per point where none is ground. Counted
   // 2026-11-23: samples of four returns with their hashes, planes and rasters per cell of 1 m.
   double bytes_per_point() const override { return 180.0; }
-  std::vector<Raster> rasters(const Context& c) const override { return {{"", 1.0, c.tile_side + 2.0 * halo(), 130.0}}; }
+  std::vector<Raster> rasters(const Context& c) const override { return {{"", 1.0, c.tile_side + 2.0 * halo(), 165.0}}; }
   void run_tile(const Context&, TileJob& job) const override {
     const KeptClasses kept(job.block, options.keep_classes);
     const filters::ClassifyCounts n = filters::classify(job.block, job.own, options);
     kept.put_back(job.block, job.own, false, job.tally);
-    const auto tell = [&](const char* name, std::uint64_t count) {
+    const auto report = [&](const char* name, std::uint64_t count) {
       if (count) job.tally.count(name, count);
     };
-    tell("low vegetation", n.low_vegetation);
-    tell("medium vegetation", n.medium_vegetation);
-    tell("high vegetation", n.high_vegetation);
-    tell("building", n.building);
-    tell("wire", n.wire);
-    tell("bridge deck", n.bridge_deck);
-    tell("low noise", n.low_noise);
-    tell("unassigned", n.unassigned);
-    tell("ground, water or noise, not looked at", n.kept);
+    report("low vegetation", n.low_vegetation);
+    report("medium vegetation", n.medium_vegetation);
+    report("high vegetation", n.high_vegetation);
+    report("building", n.building);
+    report("wire", n.wire);
+    report("bridge deck", n.bridge_deck);
+    report("low noise", n.low_noise);
+    report("unassigned", n.unassigned);
+    report("ground, water or noise, not looked at", n.kept);
   }
 };
 

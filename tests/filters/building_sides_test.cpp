@@ -10,13 +10,17 @@
 namespace swath::filters {
 namespace {
 
-constexpr double tolerance = 0.15;  // m
+constexpr double tolerance = 0.15, lowest_roof = 2.0;  // m
 
-/// A roof of 10 m by 8 m that rises by a half, its last 2 m in x not told to be roof.
+/// A roof of 10 m by 8 m that rises by a half, its last 2 m in x not known to be roof; the ground lies at 0.
 struct House {
   core::Block block;
   std::vector<std::uint8_t> roof;
-  std::vector<std::uint8_t> sides() const { return building_sides(block, roof, std::vector<std::uint8_t>(block.size(), 1), tolerance); }
+  std::vector<std::uint8_t> sides() const {
+    core::Block b = block;
+    b.height.assign(b.z.begin(), b.z.end());
+    return building_sides(b, roof, std::vector<std::uint8_t>(b.size(), 1), tolerance, lowest_roof, b.size());
+  }
   size_t add(double x, double y, double z) {
     test::add_point(block, x, y, z);
     roof.push_back(0);
@@ -49,6 +53,19 @@ TEST(BuildingSides, WhatStandsOverBesideOrFarIsNot) {
   h.block.return_number[first] = 1, h.block.return_count[first] = 2;
   const std::vector<std::uint8_t> sides = h.sides();
   for (const size_t p : {over, beside, far, under, first}) EXPECT_FALSE(sides[p]) << p;
+}
+
+TEST(BuildingSides, TheFootOfAWallLiesCloseAndUnderAHighRoof) {
+  House h = house();
+  const size_t foot = h.add(3.0, -0.5, 0.8), hedge = h.add(5.0, -0.9, 0.8), wall = h.add(6.5, -0.9, 3.0);
+  const std::vector<std::uint8_t> sides = h.sides();
+  EXPECT_TRUE(sides[foot]);
+  EXPECT_FALSE(sides[hedge]);
+  EXPECT_TRUE(sides[wall]);
+  House shed = house();
+  for (double& z : shed.block.z) z = 2.2;
+  const size_t beside = shed.add(3.0, -0.3, 0.8);
+  EXPECT_FALSE(shed.sides()[beside]);
 }
 
 TEST(BuildingSides, DoNotDependOnTheOrder) {

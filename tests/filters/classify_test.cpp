@@ -55,6 +55,30 @@ TEST(Classify, TownForestAndBridgeComeOutAsTheyAre) {
   }
 }
 
+TEST(Classify, ADeckThatIsGroundBecomesABridgeAndTheBankStays) {
+  test::Scene s = test::make_scene("flat");
+  core::Block b = prepared(s);
+  std::vector<std::uint32_t> rows;  // a canal without returns, with a road across it
+  for (std::uint32_t p = 0; p < b.size(); ++p)
+    if (std::abs(b.x[p] - 100.0) > 8.0 || std::abs(b.y[p] - 80.0) < 6.0) rows.push_back(p);
+  b = core::select(b, rows);
+  const ClassifyCounts n = classify(b, b.size(), {});
+  double found = 0, all = 0;
+  for (size_t p = 0; p < b.size(); ++p) {
+    const bool on = std::abs(b.x[p] - 100.0) < 8.0;
+    all += on, found += on && b.classification[p] == cls::bridge_deck;
+    if (std::abs(b.x[p] - 100.0) > 12.0) {
+      EXPECT_EQ(b.classification[p], cls::ground) << b.x[p] << " " << b.y[p];
+    }
+  }
+  EXPECT_GE(found, 0.8 * all);
+  EXPECT_EQ(n.kept + n.bridge_deck, b.size());
+  ClassifyOptions o;
+  o.bridge_length = core::Metres(0.0);
+  b.classification.assign(b.size(), cls::ground);
+  EXPECT_EQ(classify(b, b.size(), o).bridge_deck, 0u);
+}
+
 TEST(Classify, DecksDoNotDependOnTiles) {
   const core::Block start = prepared(test::make_scene("bridge"));
   core::Block whole = start;

@@ -28,24 +28,18 @@ TEST(StructureCells, HighestPlanarPointAndLowestGround) {
 
 TEST(StructureCells, GrowingCrossesOneEmptyCellAndStaysInItsSquare) {
   const core::Lattice l{1.0, 0, 0, 40, 3};
-  const auto cells_from = [&](int start, int radius, auto&& is) {
-    int most = 0;
-    grow(
-        l, start, 1, radius, structure_link, [&](size_t, size_t to) { return is(static_cast<int>(to % 40), static_cast<int>(to / 40)); },
-        [&](size_t, int n) {
-          most = n;
-          return false;
-        });
-    return most;
+  const auto cells_from = [&](int start, int radius, size_t wanted, auto&& is) {
+    Growth growth(l, radius);
+    const auto linked = [&](size_t, size_t to) { return is(static_cast<int>(to % 40), static_cast<int>(to / 40)); };
+    growth.from(7, 1, structure_link, 100, linked);  // what went before does not matter
+    return growth.from(start, 1, structure_link, wanted, linked).size();
   };
   const auto every_second = [](int i, int j) { return j == 1 && i % 2 == 0; };
-  EXPECT_EQ(cells_from(20, 10, every_second), 11);
-  EXPECT_EQ(cells_from(0, 100, every_second), 20);
-  EXPECT_EQ(cells_from(0, 100, [](int i, int j) { return j == 1 && i % 3 == 0; }), 1);
-  EXPECT_TRUE(grow(
-      l, 0, 1, 5, structure_link, [](size_t, size_t) { return true; }, [](size_t, int n) { return n >= 9; }));
-  EXPECT_FALSE(grow(
-      l, 0, 1, 5, structure_link, [](size_t, size_t) { return false; }, [](size_t, int n) { return n >= 2; }));
+  EXPECT_EQ(cells_from(20, 10, 1000, every_second), 11u);
+  EXPECT_EQ(cells_from(0, 100, 1000, every_second), 20u);
+  EXPECT_EQ(cells_from(0, 100, 1000, [](int i, int j) { return j == 1 && i % 3 == 0; }), 1u);
+  EXPECT_EQ(cells_from(0, 5, 9, [](int, int) { return true; }), 9u);
+  EXPECT_EQ(cells_from(0, 5, 1000, [](int, int) { return true; }), 18u);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ using test::add_point;
 
 std::vector<std::uint8_t> all(const core::Block& b) { return std::vector<std::uint8_t>(b.size(), 1); }
 std::vector<std::uint8_t> wires(const core::Block& b) {
-  return wire_points(b, all(b), std::vector<std::uint8_t>(b.size(), 0), districts(b));
+  return wire_points(b, all(b), std::vector<std::uint8_t>(b.size(), 0), districts(b), b.size());
 }
 
 /// A span of 120 m, its returns `spacing` apart on average and up to 10 cm off.
@@ -61,7 +61,9 @@ TEST(Wires, CrownsMastsEavesAndSinglePointsAreNone) {
   std::vector<std::uint8_t> candidate(s.block.size());
   for (size_t p = 0; p < candidate.size(); ++p) candidate[p] = s.truth[p] != core::point_class::ground;
   double found = 0;
-  for (const std::uint8_t w : wire_points(s.block, candidate, std::vector<std::uint8_t>(s.block.size(), 0), districts(s.block))) found += w;
+  for (const std::uint8_t w :
+       wire_points(s.block, candidate, std::vector<std::uint8_t>(s.block.size(), 0), districts(s.block), s.block.size()))
+    found += w;
   constexpr double bearable = 0.0005;  // of the returns from thin crowns
   EXPECT_LE(found, bearable * static_cast<double>(s.block.size()));
 
@@ -82,8 +84,9 @@ TEST(Wires, CrownsMastsEavesAndSinglePointsAreNone) {
       edge.push_back(y == 0.0);
       plane.push_back(y != 0.0);
     }
-  EXPECT_EQ(share(wire_points(roof, edge, plane, districts(roof))), 0.0);
-  EXPECT_GT(share(wire_points(roof, edge, std::vector<std::uint8_t>(roof.size(), 0), districts(roof))), 0.0);  // without the roof beside it
+  EXPECT_EQ(share(wire_points(roof, edge, plane, districts(roof), roof.size())), 0.0);
+  EXPECT_GT(share(wire_points(roof, edge, std::vector<std::uint8_t>(roof.size(), 0), districts(roof), roof.size())),
+            0.0);  // without the roof beside it
 }
 
 TEST(Wires, DoNotDependOnTheOrderOrOnWhatIsFar) {
