@@ -17,32 +17,40 @@ std::size_t length_of(std::string_view text, std::size_t i) {
   for (std::size_t k = 1; k < n; ++k)
     if ((byte_at(text, i + k) & 0xc0U) != 0x80U) return 0;
   const unsigned second = byte_at(text, i + 1);
-  // Longer than need be, halves of pairs, beyond the last code point, and the control characters U+0080 to U+009F.
+  // Longer than need be, halves of pairs, and beyond the last code point.
   const bool refused = (first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) || (first == 0xf0 && second < 0x90) ||
-                       (first == 0xf4 && second > 0x8f) || (first == 0xc2 && second < 0xa0);
+                       (first == 0xf4 && second > 0x8f);
   return refused ? 0 : n;
 }
 
-}  // namespace
+/// A character that moves the cursor or begins a control sequence: C0 but for tab and line feed, delete, and C1.
+bool is_control(std::string_view text, std::size_t i) {
+  const unsigned c = byte_at(text, i);
+  return (c < 0x20 && c != '\n' && c != '\t') || c == 0x7f || (c == 0xc2 && i + 1 < text.size() && byte_at(text, i + 1) < 0xa0);
+}
 
-std::string printable(std::string_view text) {
+std::string written_out(std::string_view text, bool controls) {
   constexpr std::string_view digits = "0123456789abcdef";
   std::string out;
   out.reserve(text.size());
   for (std::size_t i = 0; i < text.size();) {
-    const unsigned c = byte_at(text, i);
-    const bool control = (c < 0x20 && c != '\n' && c != '\t') || c == 0x7f;
-    if (const std::size_t n = control ? 0 : length_of(text, i)) {
+    if (const std::size_t n = controls && is_control(text, i) ? 0 : length_of(text, i)) {
       out += text.substr(i, n);
       i += n;
     } else {
       out += "\\x";
-      out += digits[c >> 4U];
-      out += digits[c & 15U];
+      out += digits[byte_at(text, i) >> 4U];
+      out += digits[byte_at(text, i) & 15U];
       ++i;
     }
   }
   return out;
 }
+
+}  // namespace
+
+std::string printable(std::string_view text) { return written_out(text, true); }
+
+std::string utf8(std::string_view text) { return written_out(text, false); }
 
 }  // namespace swath::core

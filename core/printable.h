@@ -11,4 +11,7 @@ namespace swath::core {
 /// cursor, change colours or break the encoding of what is printed.
 std::string printable(std::string_view text);
 
+/// `text` with bytes that are not UTF-8 written as \xNN, control characters as they are.
+std::string utf8(std::string_view text);
+
 }  // namespace swath::core

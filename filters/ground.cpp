@@ -131,7 +131,7 @@ std::vector<std::uint32_t> needed_around(const core::Block& b, const Bounds& til
     const double x = b.origin.x() + b.x[p], y = b.origin.y() + b.y[p];
     if (x >= tile.west - near && x < tile.east + near && y >= tile.south - near && y < tile.north + near) {
       needed[p] = 1;
-    } else if (may) {
+    } else if (may && b.z[p] == b.z[p]) {
       std::uint32_t& row = lowest[l.at(i, j)];
       if (row == none || b.z[p] < b.z[row]) row = static_cast<std::uint32_t>(p);
     }

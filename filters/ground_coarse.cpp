@@ -154,7 +154,7 @@ Needs needs_of(const GroundSurfaceOptions& o) {
   n.filled = reach(smoothing);
   n.crests = n.filled + terrain_filling(window).support();
   n.decks = n.crests + crest_support;
-  n.objects = n.decks + deck_support;
+  n.objects = std::max(n.decks + deck_support, n.decks + window);  // crests ask how the filled surface falls within the widest disk
   n.gaps = n.objects + opening_support(window);
   n.walls = n.gaps + gap_filling.support();
   n.pits = n.walls + walls_support(walls_of(o));
@@ -232,7 +232,7 @@ Raster coarse_ground(Raster lowest, const core::Lattice& all, const core::Lattic
   }
   crop(needs.objects, {&ground, &lowest, &filled, &opened});
   remove_decks(ground, lowest, {.steepest = o.steepest, .step = step_left});
-  crop(std::min(needs.objects, needs.decks + window), {&ground, &lowest, &filled, &opened});
+  crop(needs.decks + window, {&ground, &lowest, &filled, &opened});
   restore_crests(ground, {lowest, filled, opened, window - 1});
   crop(needs.crests, {&ground});
   ground = smoothed(inpaint(ground, terrain_filling(window)), smoothing);

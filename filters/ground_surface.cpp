@@ -267,7 +267,7 @@ Raster lowest_returns(const core::Block& b, size_t own, const core::Lattice& all
     if (may) {
       float& lowest = r.value[all.at(i, j)];
       const auto z = static_cast<float>(b.z[p]);
-      if (!(lowest <= z)) lowest = z;
+      if (z == z && !(lowest <= z)) lowest = z;
     }
     const bool inside = i >= west && j >= south && i < west + part.nx && j < south + part.ny;
     if (p < own || (may && inside)) rows.push_back(static_cast<std::uint32_t>(p));

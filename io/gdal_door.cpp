@@ -3,14 +3,17 @@
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
+#include <cpl_minixml.h>
 #include <gdal.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 
 #include "core/crs.h"
 #include "core/error.h"
@@ -32,27 +35,77 @@ std::string short_unit(const std::string& name, double si) {
   return name;
 }
 
-constexpr const char* raster_drivers[] = {"GTiff", "COG", "VRT",     "AAIGrid", "GSBG", "GS7BG", "GTX",  "EHdr", "ENVI", "HFA",
-                                          "NTv2",  "XYZ", "SRTMHGT", "USGSDEM", "DTED", "BIL",   "GPKG", "PNG",  "JPEG", nullptr};
+constexpr const char* raster_drivers[] = {"GTiff", "VRT", "AAIGrid", "GSBG",    "GS7BG", "GTX",  "EHdr", "ENVI", "HFA",
+                                          "NTv2",  "XYZ", "SRTMHGT", "USGSDEM", "DTED",  "GPKG", "PNG",  "JPEG", nullptr};
 constexpr const char* vector_drivers[] = {"GPKG", "ESRI Shapefile", "GeoJSON",      "GeoJSONSeq", "DXF", "CSV",
                                           "KML",  "FlatGeobuf",     "MapInfo File", nullptr};
+constexpr const char* other_drivers[] = {"COG", "MEM", "Memory", nullptr};  // for writing
+constexpr const char* formats_read =
+    "GeoTIFF, VRT of local files, Arc/Info ASCII grid, GTX, EHdr, ENVI, Erdas Imagine, XYZ, SRTM, DTED, GeoPackage, shapefile, GeoJSON, "
+    "DXF, "
+    "CSV, KML, FlatGeobuf and MapInfo are read";
+
+bool listed(const char* const* names, const char* name) {
+  for (; *names; ++names)
+    if (EQUAL(*names, name)) return true;
+  return false;
+}
+
+/// GDAL with the drivers of known formats alone, whatever a file that it opens names, and without fetching.
+void register_drivers() {
+  GDALAllRegister();
+  GDALDriverManager& manager = *GetGDALDriverManager();
+  for (int i = manager.GetDriverCount() - 1; i >= 0; --i) {
+    GDALDriver* driver = manager.GetDriver(i);
+    const char* name = driver->GetDescription();
+    if (listed(raster_drivers, name) || listed(vector_drivers, name) || listed(other_drivers, name)) continue;
+    manager.DeregisterDriver(driver);
+    delete driver;
+  }
+  CPLSetConfigOption("CPL_VSIL_CURL_ALLOWED_EXTENSIONS", ".none");
+}
+
+bool names_elsewhere(const CPLXMLNode* node, int depth = 0) {
+  constexpr int deepest = 100;
+  if (depth > deepest) return true;
+  for (; node; node = node->psNext) {
+    const bool source = node->eType == CXT_Element && (EQUAL(node->pszValue, "SourceFilename") || EQUAL(node->pszValue, "SourceDataset"));
+    const std::string_view name = source ? CPLGetXMLValue(node, nullptr, "") : "";
+    if (name.starts_with("/vsi") || name.find("://") != std::string_view::npos || name.starts_with('<')) return true;
+    if (names_elsewhere(node->psChild, depth + 1)) return true;
+  }
+  return false;
+}
 
 /// Whether a virtual raster names a source that is no plain file: an address, or one of GDAL's file systems.
 bool names_elsewhere(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
-  std::string text(std::size_t{1} << 16, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (text.find("<VRTDataset") == std::string::npos) return false;
-  in.clear();
-  text.append(std::istreambuf_iterator<char>(in), {});
-  return text.find("/vsi") != std::string::npos || text.find("://") != std::string::npos || text.find("<GDAL_") != std::string::npos;
+  std::string start(std::size_t{1} << 12, '\0');
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (start.find("<VRTDataset") == std::string::npos) return false;
+  const std::unique_ptr<CPLXMLNode, decltype(&CPLDestroyXMLNode)> tree(CPLParseXMLFile(file.c_str()), &CPLDestroyXMLNode);
+  return names_elsewhere(tree.get());
+}
+
+/// Why the file is not to be opened; empty where it may.
+std::string refusal_of(const std::filesystem::path& file) {
+  std::error_code ec;
+  if (std::filesystem::is_directory(file, ec)) return "it is a folder";
+  if (!std::filesystem::exists(file, ec)) return "no such file";
+  if (!std::filesystem::is_regular_file(file, ec)) return "it is not a regular file";
+  return names_elsewhere(file) ? "the virtual raster names sources that are no local files" : "";
 }
 
 GDALDataset* open_plain(const std::filesystem::path& file, unsigned kind, const char* const* drivers) {
-  std::error_code ec;
-  if (!std::filesystem::is_regular_file(file, ec) || names_elsewhere(file)) return nullptr;
-  return GDALDataset::Open(file.c_str(), kind | GDAL_OF_READONLY, drivers);
+  GDALDataset* opened = nullptr;
+  std::string fault = refusal_of(file);
+  if (fault.empty()) {
+    const GdalMessages messages;
+    opened = GDALDataset::Open(file.c_str(), kind | GDAL_OF_READONLY, drivers);
+    fault = messages.text().empty() ? std::string("the format is not known; ") + formats_read : messages.text();
+  }
+  if (!opened) CPLError(CE_Failure, CPLE_OpenFailed, "%s", fault.c_str());
+  return opened;
 }
 
 std::string wkt2(const OGRSpatialReference& srs) {
@@ -68,7 +121,7 @@ std::string wkt2(const OGRSpatialReference& srs) {
 
 GdalMessages::GdalMessages() {
   static std::once_flag once;
-  std::call_once(once, [] { GDALAllRegister(); });
+  std::call_once(once, register_drivers);
   CPLPushErrorHandlerEx(catch_message, this);
 }
 

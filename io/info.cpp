@@ -241,8 +241,7 @@ struct CloseDataset {
 
 /// What GDAL sees in a raster; nothing where it is none.
 Value describe_raster(const Path& path) {
-  GDALAllRegister();
-  CPLPushErrorHandler(CPLQuietErrorHandler);
+  const GdalMessages quiet;
   const std::unique_ptr<GDALDataset, CloseDataset> data(open_raster(path));
   Value out;
   if (data) {
@@ -289,7 +288,6 @@ Value describe_raster(const Path& path) {
     }
     out["warnings"] = std::move(warnings);
   }
-  CPLPopErrorHandler();
   return out;
 }
 

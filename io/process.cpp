@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <thread>
+#include <utility>
 
 #include "core/error.h"
 #include "core/units.h"
@@ -47,8 +48,9 @@ struct Start {
   for (int signal = 1; signal < NSIG; ++signal) ::signal(signal, SIG_DFL);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::setpgid(0, 0);
   if (::getppid() != s.parent) ::_exit(127);
-  const int in = ::open("/dev/null", O_RDONLY), out = ::open(s.log, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  const int in = ::open("/dev/null", O_RDONLY | O_CLOEXEC), out = ::open(s.log, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (in >= 0 && out >= 0 && ::dup2(in, 0) >= 0 && ::dup2(out, 1) >= 0 && ::dup2(out, 2) >= 0 && ::chdir(s.folder) == 0)
     ::execv(s.program, s.argv);
   const int failed = errno;
@@ -56,19 +58,19 @@ struct Start {
   ::_exit(127);
 }
 
-/// Waits for the child's end, and ends it where it takes longer than `limit` (s; 0: no limit).
-int wait_for(pid_t child, const fs::path& program, double limit) {
+/// Waits for the child's end, and ends its group where it takes longer than `limit` (s; 0: no limit).
+ProcessEnd wait_for(pid_t child, const fs::path& program, double limit) {
   const auto start = std::chrono::steady_clock::now();
   int status = 0;
   while (true) {
     const pid_t ended = ::waitpid(child, &status, limit > 0 ? WNOHANG : 0);
-    if (ended == child) return status;
+    if (ended == child) return WIFSIGNALED(status) ? ProcessEnd{-1, WTERMSIG(status)} : ProcessEnd{WEXITSTATUS(status), 0};
     if (ended < 0 && errno != EINTR) throw_system_error("cannot wait for the program", program, errno);
     if (ended != 0) continue;
     if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > limit) {
-      ::kill(child, SIGKILL);
+      ::kill(-child, SIGKILL);
       while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
-      throw core::Error("the program was ended: it took longer than " + core::format_number(limit) + " s", program.string());
+      return {-1, SIGKILL, true};
     }
     std::this_thread::sleep_for(poll_step);
   }
@@ -91,6 +93,7 @@ fs::path find_program(const fs::path& program) {
 }
 
 std::string ProcessEnd::text() const {
+  if (too_long) return "its time limit";
   if (signal) return "signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
   return "exit code " + std::to_string(code);
 }
@@ -107,6 +110,7 @@ ProcessEnd run_program(const fs::path& program, const std::vector<std::string>& 
   const std::string program_name = program.string(), log_name = fs::absolute(log).string(), folder_name = folder.string();
   int report[2] = {-1, -1};
   if (::pipe2(report, O_CLOEXEC) != 0) throw_system_error("cannot start the program", program, errno);
+  if (const int above = ::fcntl(report[1], F_DUPFD_CLOEXEC, 3); above >= 0) ::close(std::exchange(report[1], above));  // not 0 to 2
   const Start start{program_name.c_str(), folder_name.c_str(), log_name.c_str(), argv.data(), ::getpid(), report[1]};
   const pid_t child = ::fork();
   if (child == 0) become(start);
@@ -123,9 +127,7 @@ ProcessEnd run_program(const fs::path& program, const std::vector<std::string>& 
     if (child > 0) ::waitpid(child, nullptr, 0);
     throw_system_error("cannot start the program", program, failed);
   }
-  const int status = wait_for(child, program, limit);
-  if (WIFSIGNALED(status)) return {-1, WTERMSIG(status)};
-  return {WEXITSTATUS(status), 0};
+  return wait_for(child, program, limit);
 }
 
 }  // namespace swath::io

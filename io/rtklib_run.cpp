@@ -122,6 +122,9 @@ fs::path run_rtklib(const RtklibJob& job) {
   write_text_file(log_file, command + "\n" + log.text + end.text() + "\n", false);
 
   const std::string told = log.last.empty() ? "" : "; it says: " + log.last;
+  if (end.too_long)
+    throw core::Error("rnx2rtkp took longer than " + core::format_number(job.time_limit) + " s and was ended" + told, log_file.string(),
+                      "raise time_limit of gnss.rtklib, or split the observations");
   if (!end.well())
     throw core::Error("rnx2rtkp failed with " + end.text() + told, log_file.string(),
                       end.signal ? "run the command in the log by hand; another version of RTKLIB may do better" : "");

@@ -146,7 +146,7 @@ class TreeBuilder {
 
 void quote(const std::string& text, std::string& out) {
   const bool plain = std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
-  const std::string s = plain ? text : core::printable(text);  // JSON is UTF-8
+  const std::string s = plain ? text : core::utf8(text);  // JSON is UTF-8
   static const char* digits = "0123456789abcdef";
   out += '"';
   for (const char c : s) {

@@ -440,8 +440,8 @@ Measure Engine::measure_of(size_t number) const {
     const auto near = static_cast<double>(store_->load_with_halo(tiles, s.near_halo()).points);
     const auto points = static_cast<double>(load.points), rows = std::min(points, near + left);
     wide.tile_side = context_.tile_side * 0.5 * (box.across() + box.up());  // the square of the same perimeter is not smaller
-    double bytes =
-        row_bytes * (rows + static_cast<double>(load.neighbour)) + s.bytes_per_point() * s.share_of_points(wide.tile_side) * points;
+    const double judged = std::min(points, near) * s.share_of_points(wide.tile_side);
+    double bytes = row_bytes * (rows + static_cast<double>(load.neighbour)) + s.bytes_per_point() * judged;
     for (const stages::Raster& r : s.rasters(wide)) bytes += r.total(points);
     TileGroup group{std::move(tiles), 0, static_cast<std::uint64_t>(rows), static_cast<std::uint64_t>(bytes)};
     for (const TileKey k : group.tiles)

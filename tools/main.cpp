@@ -34,6 +34,10 @@ namespace {
 
 using namespace swath;
 
+/// For a person: texts of files as a terminal can show them.
+void print(const std::string& text) { std::fputs(core::printable(text).c_str(), stdout); }
+void print_json(const core::Value& v) { std::fputs(io::to_json(v).c_str(), stdout); }
+
 struct Arguments {
   pipeline::Request request;
   pipeline::VolumeRequest volumes;
@@ -48,10 +52,10 @@ int run(Arguments& a, const std::string& command) {
   pipeline::Plan plan = pipeline::make_plan(a.request);
   pipeline::Progress progress(a.voice());
   const pipeline::Outcome outcome = pipeline::run(plan, progress, command);
-  if (!a.quiet && !a.json_log) std::fputs(pipeline::summary(outcome.report, plan.run.output).c_str(), stdout);
+  if (!a.quiet && !a.json_log) print(pipeline::summary(outcome.report, plan.run.output));
   if (outcome.code == core::Exit::quality_missed)
     for (const std::string& limit : pipeline::missed_limits(*outcome.report.find("limits")))
-      std::fprintf(stderr, "swath: done, but a quality limit was missed: %s\n", limit.c_str());
+      std::fprintf(stderr, "swath: done, but a quality limit was missed: %s\n", core::printable(limit).c_str());
   return static_cast<int>(outcome.code);
 }
 
@@ -71,7 +75,7 @@ int check(Arguments& a) {
 int explain(Arguments& a) {
   pipeline::Plan plan = pipeline::make_plan(a.request);
   const core::Value told = pipeline::explain(plan);
-  std::fputs(a.json ? io::to_json(told).c_str() : pipeline::explanation_text(told).c_str(), stdout);
+  a.json ? print_json(told) : print(pipeline::explanation_text(told));
   return 0;
 }
 
@@ -94,7 +98,7 @@ int simulate_survey(Arguments& a) {
 
 int info(const Arguments& a) {
   const core::Value told = io::describe_file(a.name);
-  std::fputs(a.json ? io::to_json(told).c_str() : io::info_text(told).c_str(), stdout);
+  a.json ? print_json(told) : print(io::info_text(told));
   return 0;
 }
 
@@ -102,7 +106,7 @@ int volumes(const Arguments& a) {
   if (a.volumes.after.empty() == !a.volumes.design)
     throw core::usage_error("volumes need a second surface or a design height", "swath volumes", "give AFTER or --design, one of them");
   const core::Value told = pipeline::volumes_of(a.volumes);
-  std::fputs(a.json ? io::to_json(told).c_str() : pipeline::volume_text(told).c_str(), stdout);
+  a.json ? print_json(told) : print(pipeline::volume_text(told));
   return 0;
 }
 
@@ -295,8 +299,11 @@ int main(int argc, char** argv) {
   keep_freed_memory();
   try {
     const int code = command_line(argc, argv);
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-      throw swath::core::Error(std::string("cannot write to the standard output: ") + std::strerror(errno), "", "the disk may be full");
+    errno = 0;
+    if (const bool failed = std::fflush(stdout) != 0; failed || std::ferror(stdout) != 0) {
+      const std::string why = failed && errno ? std::string(": ") + std::strerror(errno) : "";
+      throw swath::core::Error("cannot write to the standard output" + why, "", errno == ENOSPC ? "the disk is full" : "");
+    }
     return code;
   } catch (const swath::core::Error& e) {
     std::fprintf(stderr, "swath: error: %s\n", swath::core::printable(e.text()).c_str());

@@ -43,10 +43,6 @@ class Ground : public OptionStage<Keeping<filters::GroundOptions>> {
   // Measured 2026-11-23 with tests/stages/memory_test.cpp, tiles of 200 to 1500 m, points 0.7 m and 3 m apart; of the near points, counted:
   // columns 30, evidence 64, nearest returns 40.
   double bytes_per_point() const override { return 100.0; }
-  double share_of_points(double side) const override {
-    const double near = (side + 2.0 * near_halo()) / (side + 2.0 * halo());
-    return near * near;
-  }
   std::vector<Raster> rasters(const Context& c) const override {
     return {{"", 1.0, c.tile_side + 2.0 * halo(), 52.0}, {"", 1.0, c.tile_side + 2.0 * near_halo(), 15.0}};
   }

@@ -23,5 +23,10 @@ TEST(Printable, ControlCharactersAndForeignBytesAreWrittenOut) {
   EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");             // beyond the last code point
 }
 
+TEST(Utf8, OnlyForeignBytesAreWrittenOut) {
+  EXPECT_EQ(utf8("\x01ü\xc2\x9b\n"), "\x01ü\xc2\x9b\n");
+  EXPECT_EQ(utf8("Z\xfcrich"), "Z\\xfcrich");
+}
+
 }  // namespace
 }  // namespace swath::core

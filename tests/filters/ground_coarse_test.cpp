@@ -66,27 +66,33 @@ TEST(CoarseGround, ARaggedRoofAtTheRimIsOffInWiderCells) {
     for (int i = 52; i < 78; ++i) EXPECT_LT(ground.value[ground.at(i + rim, j + rim)], 0.5F) << i << " " << j;
 }
 
-TEST(CoarseGround, APartIsWhatItIsInTheWhole) {
-  const GroundSurfaceOptions o = small();
+/// `i0`, `j0`: of the whole raster in the survey's lattice.
+void expect_part_of_whole(const GroundSurfaceOptions& o, int i0, int j0) {
   const int rim = coarse_ground_rim(o), reach = coarse_ground_reach(o), side = 2 * reach + 60;
   const Raster all = with_rim(country(side, side), rim);
-  const core::Lattice l{1.0, 0, 0, all.nx, all.ny};
+  const core::Lattice l{1.0, i0, j0, all.nx, all.ny};
   const Raster whole = coarse_ground(all, l, l, o);
-  const core::Lattice part{1.0, rim + reach + 7, rim + reach + 3, 40, 45};
+  const core::Lattice part{1.0, i0 + rim + reach + 7, j0 + rim + reach + 3, 40, 45};
   const Raster cut = coarse_ground(all, l, part, o);
-  // Without what lies beyond the reach.
-  Raster near = all;
-  for (int j = 0; j < all.ny; ++j)
-    for (int i = 0; i < all.nx; ++i)
-      if (i < part.i0 - reach || j < part.j0 - reach || i >= part.i0 + part.nx + reach || j >= part.j0 + part.ny + reach)
-        near.value[near.at(i, j)] = nothing;
-  const Raster alone = coarse_ground(near, l, part, o);
+  // A raster of its own without what lies beyond the reach.
+  const core::Lattice own{1.0, part.i0 - reach, part.j0 - reach, part.nx + 2 * reach, part.ny + 2 * reach};
+  Raster near(own.nx, own.ny, nothing);
+  for (int j = 0; j < own.ny; ++j)
+    for (int i = 0; i < own.nx; ++i)
+      near.value[near.at(i, j)] = all.value[all.at(static_cast<int>(own.i0) - i0 + i, static_cast<int>(own.j0) - j0 + j)];
+  const Raster alone = coarse_ground(near, own, part, o);
   for (int j = 0; j < part.ny; ++j)
     for (int i = 0; i < part.nx; ++i) {
-      const float expected = whole.value[whole.at(static_cast<int>(part.i0) + i, static_cast<int>(part.j0) + j)];
+      const float expected = whole.value[whole.at(static_cast<int>(part.i0) - i0 + i, static_cast<int>(part.j0) - j0 + j)];
       ASSERT_EQ(cut.value[cut.at(i, j)], expected) << i << " " << j;
       ASSERT_EQ(alone.value[alone.at(i, j)], expected) << i << " " << j;
     }
+}
+
+TEST(CoarseGround, APartIsWhatItIsInTheWhole) {
+  expect_part_of_whole(small(), 0, 0);
+  expect_part_of_whole(small(), -7, 13);
+  expect_part_of_whole({.widest = 120.0, .longest = 20.0}, 5, -8);
 }
 
 TEST(CoarseGround, AGrownLatticeEndsWhereTheWholeDoes) {

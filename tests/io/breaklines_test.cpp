@@ -6,6 +6,7 @@
 
 #include "core/crs.h"
 #include "core/error.h"
+#include "io/gdal_door.h"
 #include "io/survey.h"
 #include "tests/world/support.h"
 
@@ -25,7 +26,7 @@ struct Shape {
 
 void make(const std::filesystem::path& file, const char* driver, const std::string& crs, const std::vector<Shape>& shapes,
           const char* layer_name = "edges") {
-  GDALAllRegister();
+  const GdalMessages registered;
   const bool dxf = std::string(driver) == "DXF";
   GDALDataset* set = GetGDALDriverManager()->GetDriverByName(driver)->Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr);
   ASSERT_NE(set, nullptr);

@@ -7,6 +7,7 @@
 #include "core/crs.h"
 #include "core/error.h"
 #include "core/geodesy.h"
+#include "io/gdal_door.h"
 #include "io/survey.h"
 #include "tests/world/support.h"
 
@@ -143,7 +144,7 @@ struct Shape {
   double sigma_h;
 };
 void make_geopackage(const std::filesystem::path& file, const std::string& crs, const std::vector<Shape>& shapes) {
-  GDALAllRegister();
+  const GdalMessages registered;
   GDALDataset* set = GetGDALDriverManager()->GetDriverByName("GPKG")->Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr);
   OGRSpatialReference srs;
   if (!crs.empty()) srs.SetFromUserInput(crs.c_str());

@@ -103,6 +103,19 @@ TEST(GdalDoor, OnlyFilesOfKnownFormatsAreOpened) {
                     "<UpperLeftX>0</UpperLeftX><UpperLeftY>1</UpperLeftY><LowerRightX>1</LowerRightX><LowerRightY>0</LowerRightY>"
                     "<TileLevel>1</TileLevel></DataWindow></GDAL_WMS>");
   EXPECT_FALSE(opens(folder / "wms.xml"));
+  EXPECT_NE(messages.text().find("no local files"), std::string::npos) << messages.text();
+  // Escapes, a service beside the file, and a site whose name begins like GDAL's file systems.
+  EXPECT_FALSE(opens(vrt("escaped.vrt", "&#47;vsicurl&#47;http:&#47;&#47;127.0.0.1:9&#47;a.tif")));
+  const std::filesystem::path service = vrt("service.vrt", "wms.xml");
+  if (GDALDataset* d = open_raster(service)) {
+    float v = 0.0F;
+    EXPECT_NE(d->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, 1, 1, &v, 1, 1, GDT_Float32, 0, 0), CE_None);
+    GDALClose(d);
+  }
+  EXPECT_EQ(GetGDALDriverManager()->GetDriverByName("WMS"), nullptr);
+  std::filesystem::create_directory(folder / "vsite");
+  test::write_bytes(folder / "vsite/a.asc", grid);
+  EXPECT_TRUE(opens(vrt("site.vrt", "vsite/a.asc")));
   EXPECT_FALSE(opens(folder.path()));
   EXPECT_EQ(open_vector(folder / "a.asc"), nullptr);
 }

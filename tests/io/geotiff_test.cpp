@@ -9,6 +9,7 @@
 
 #include "core/crs.h"
 #include "core/error.h"
+#include "io/gdal_door.h"
 #include "io/info.h"
 #include "tests/io/file_size_limit.h"
 #include "tests/world/support.h"
@@ -68,7 +69,7 @@ TEST(GeoTiff, IsACogThatStatesUnitsNodataAndOrientation) {
   const core::Grid g = made_grid(1300, 700);
   const auto file = folder / "a.tif";
   write_grid(file, g, "EPSG:25832+7837");
-  GDALAllRegister();
+  const GdalMessages registered;
   auto* d = GDALDataset::Open(file.c_str());
   ASSERT_NE(d, nullptr);
   EXPECT_STREQ(d->GetMetadataItem("LAYOUT", "IMAGE_STRUCTURE"), "COG");
@@ -192,7 +193,7 @@ TEST(GeoTiff, TrueTerrainOfTheSharedSurveyIsRead) {
 
 void write_plain(const std::filesystem::path& file, std::array<double, 6> geotransform, GDALDataType type = GDT_Float32, double value = 1,
                  std::optional<double> nodata = {}) {
-  GDALAllRegister();
+  const GdalMessages registered;
   auto* d = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(file.c_str(), 4, 3, 1, type, nullptr);
   d->SetGeoTransform(geotransform.data());
   if (nodata) d->GetRasterBand(1)->SetNoDataValue(*nodata);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "io/gdal_door.h"
 #include "tests/io/file_size_limit.h"
 #include "tests/world/support.h"
 
@@ -58,7 +59,7 @@ TEST(Vector, GeoPackageReturnsEveryBit) {
   expect_same(got.lines, made_lines(), 0.0);
   EXPECT_NE(got.crs_wkt.find("25832"), std::string::npos);
 
-  GDALAllRegister();
+  const GdalMessages registered;
   auto* d = GDALDataset::Open((folder / "a.gpkg").c_str(), GDAL_OF_VECTOR);
   ASSERT_NE(d, nullptr);
   OGRLayer* layer = d->GetLayerByName("contours");
@@ -94,7 +95,7 @@ TEST(Vector, GeoJsonIsInWgs84) {
   write_contours({folder / "a.geojson"}, made_lines(), "EPSG:25832+7837");
   VectorLines got = read_lines(folder / "a.geojson");
   ASSERT_EQ(got.lines.size(), made_lines().size());
-  GDALAllRegister();
+  const GdalMessages registered;
   OGRSpatialReference wgs84, utm;
   wgs84.SetFromUserInput("EPSG:4326");
   utm.SetFromUserInput("EPSG:25832");
@@ -177,7 +178,7 @@ TEST(Vector, DepressionsLabelsAndSpotHeights) {
     ASSERT_EQ(got.lines.size(), lines.size()) << name;
     for (size_t k = 0; k < lines.size(); ++k) EXPECT_EQ(got.lines[k].depression, lines[k].depression) << name << " " << k;
   }
-  GDALAllRegister();
+  const GdalMessages registered;
   auto* d = GDALDataset::Open((folder / "a.gpkg").c_str(), GDAL_OF_VECTOR);
   ASSERT_NE(d, nullptr);
   OGRLayer* labels = d->GetLayerByName("labels");

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "io/gdal_door.h"
 #include "io/geotiff.h"
 #include "tests/world/support.h"
 
@@ -63,7 +64,7 @@ TEST(Vrt, AxisOrderOfTheCrsIsKept) {
   const test::TemporaryFolder folder;
   write_grid(folder / "a.tif", piece(100, 200, 5, 5, 0.001), "EPSG:4326");
   write_vrt(folder / "a.vrt", {folder / "a.tif"});
-  GDALAllRegister();
+  const GdalMessages registered;
   auto* d = GDALDataset::Open((folder / "a.vrt").c_str());
   ASSERT_NE(d, nullptr);
   auto* t = GDALDataset::Open((folder / "a.tif").c_str());

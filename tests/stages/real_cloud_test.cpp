@@ -72,6 +72,8 @@ TEST_P(RealCloud, GroundAgreesWithItsMakerUpToTheRim) {
     const auto decile = std::min<size_t>(9, static_cast<size_t>(10.0 * chance));
     ++count[decile], ground[decile] += cloud.is_ground[p], stated[decile] += chance;
   }
+  ASSERT_GT(judged, 10000u);
+  ASSERT_GT(objects_at_rim, 1000u);
   const double total = percent(wrong, judged), at_rim = percent(taken_at_rim, objects_at_rim);
   double gap = 0.0;
   for (size_t k = 0; k < count.size(); ++k)
