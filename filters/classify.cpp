@@ -138,7 +138,7 @@ class Structures {
     const double longest = options_.bridge_length.value;
     if (longest <= 0.0) return;
     decks_ = deck_cells(cells_, {longest, options_.building_height.value});
-    ground_decks_ = ground_decks(block_, where_, longest, own);
+    if (options_.decks_in_ground) ground_decks_ = ground_decks(block_, where_, longest, own);
   }
 
   void find_roofs(size_t own) {
@@ -192,7 +192,7 @@ void count(ClassifyCounts& n, std::uint8_t c) {
 }  // namespace
 
 double halo(const ClassifyOptions& o) {
-  const double on_ground = o.bridge_length.value > 0.0 ? ground_decks_halo(o.bridge_length.value) : 0.0;
+  const double on_ground = o.decks_in_ground && o.bridge_length.value > 0.0 ? ground_decks_halo(o.bridge_length.value) : 0.0;
   return missing_heights_halo() + std::max(planes_halo(o), on_ground);
 }
 

@@ -14,6 +14,7 @@ struct ClassifyOptions {
   core::Metres building_side{3.0};
   core::Metres roughness{0.15};
   core::Metres bridge_length{60.0};
+  bool decks_in_ground = true;
   core::Metres wire_height{5.0};
 };
 
@@ -31,6 +32,8 @@ void describe(ClassifyOptions& o, V& v) {
   v.option("roughness", o.roughness, core::above(0.0), "Largest distance of a roof's or deck's return from its plane.");
   v.option("bridge_length", o.bridge_length, core::within(0.0, 500.0),
            "Longest bridge whose deck (17) is looked for; its points are needed around each tile. 0 looks for none.");
+  v.option("decks_in_ground", o.decks_in_ground,
+           "Decks are also looked for among ground points, which then are 17 and not 2. A dam or ramp between sheer walls looks like one.");
   v.option("wire_height", o.wire_height, core::at_least(1.0), "Least height of a wire (14) above ground.");
   v.check(o.high_vegetation >= o.medium_vegetation, "high_vegetation must not be less than medium_vegetation");
 }

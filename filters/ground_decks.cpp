@@ -27,15 +27,17 @@ constexpr int open_cells = 5;                    // so many cells
 constexpr double hidden = 12.0;                  // m beside a deck that are looked at; too few for voids where cells are 3 m
 constexpr double banks = 40.0;                   // m from the void beside a deck to returns on both sides of it
 constexpr double widest = 30.0, narrowest = 2.0;
-constexpr double shortest = 3.0;  // m of deck
-constexpr double bank = 5.0;      // m of ground beyond its ends
-constexpr double gap = 3.0;       // m without ground on it: a vehicle
-constexpr double finest = 1.5;    // m: cells so small may hold the foot of a deck's edge beside it, lower ground, and say nothing
-constexpr double stairs = 2.0;    // m from a deck down to the ground at one of its ends
-constexpr int bare = 2;           // cells without return between a deck and what is below
-constexpr double wedge = 1.2;     // of the least width of the deck
-constexpr double oblique = 1.15;  // of the least width of all axes
-constexpr int growth = 5;         // cells
+constexpr double shortest = 3.0;   // m of deck
+constexpr double bank = 5.0;       // m of ground beyond its ends
+constexpr double gap = 3.0;        // m without ground on it: a vehicle
+constexpr double finest = 1.5;     // m: cells so small may hold the foot of a deck's edge beside it, lower ground, and say nothing
+constexpr double stairs = 2.0;     // m from a deck down to the ground at one of its ends
+constexpr int edge_cells = 3;      // before a void, of the surface
+constexpr float edge_fall = 0.2f;  // m down from there: a bank
+constexpr int bare = 2;            // cells without return between a deck and what is below
+constexpr double wedge = 1.2;      // of the least width of the deck
+constexpr double oblique = 1.15;   // of the least width of all axes
+constexpr int growth = 5;          // cells
 constexpr int fewest_beside = 2, around = 6;  // of 8 cells around one, of a deck
 constexpr double share_open = 0.7;            // of its length that must show both sides
 constexpr float near_deck = 0.5f;             // m above or below: kerbs, rails
@@ -187,6 +189,18 @@ class Cells {
     return true;
   }
 
+  /// Is the surface level up to its end, `last` cells on? Before the end of a bank it falls.
+  bool is_sharp(int i, int j, int direction, int last) const {
+    const auto cell = [&](int k) {
+      const CellIndex to = ahead_[static_cast<size_t>(direction)][static_cast<size_t>(k)];
+      return lattice_.at(i + to.i, j + to.j);
+    };
+    const float level = top_[cell(std::max(0, last - edge_cells))];
+    for (int k = std::max(0, last - edge_cells + 1); k <= last; ++k)
+      if (level - low_[cell(k)] > edge_fall) return false;
+    return true;
+  }
+
   /// What is beside the surface in a direction once it ends, and how many cells on that is.
   Side side(int i, int j, int direction, int& last) const {
     float z = top_[lattice_.at(i, j)];
@@ -205,7 +219,7 @@ class Cells {
       }
       if (std::isnan(low_[c])) {
         if (++void_cells >= std::max(open_cells, in_cells(wide_open)))
-          return is_between_banks(i + to.i, j + to.j, direction) ? Side::open : Side::level;
+          return is_sharp(i, j, direction, last) && is_between_banks(i + to.i, j + to.j, direction) ? Side::open : Side::level;
         continue;
       }
       // Where nothing came back in between there is no bank.
@@ -213,6 +227,7 @@ class Cells {
       if (static_cast<double>(z - low_[c]) >= least) return Side::falls;
       const bool sliver = k == last + 1 && ground_[c] && top_[c] < z && lattice_.cell <= finest;
       if (ground_[c] && !sliver) return Side::level;
+      void_cells = 0;
     }
     return Side::level;
   }

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double cell = 4.0;  // m
 constexpr int rings = 6;
+constexpr float steep = 2.0f;  // m between levels of one ring: no level to go on with
 
 /// Level of the ground by cells: the lowest that the heights of their points state; NaN where none has a height.
 struct Levels {
@@ -30,17 +31,19 @@ struct Levels {
     }
   }
 
-  /// In the nearest ring of cells that has any.
+  /// In the nearest ring of cells that has any, where these agree.
   float around(CellIndex at) const {
     for (int ring = 0; ring <= rings; ++ring) {
-      float lowest = std::numeric_limits<float>::quiet_NaN();
+      float lowest = std::numeric_limits<float>::quiet_NaN(), highest = lowest;
       for (int dj = -ring; dj <= ring; ++dj)
         for (int di = -ring; di <= ring; di += std::abs(dj) == ring || di == ring ? 1 : 2 * ring) {
           if (!lattice.holds(at.i + di, at.j + dj)) continue;
           const float l = level[lattice.at(at.i + di, at.j + dj)];
-          if (!std::isnan(l) && !(lowest <= l)) lowest = l;
+          if (std::isnan(l)) continue;
+          if (!(lowest <= l)) lowest = l;
+          if (!(highest >= l)) highest = l;
         }
-      if (!std::isnan(lowest)) return lowest;
+      if (!std::isnan(lowest)) return highest - lowest <= steep ? lowest : std::numeric_limits<float>::quiet_NaN();
     }
     return std::numeric_limits<float>::quiet_NaN();
   }

@@ -380,13 +380,13 @@ class Search {
 
 }  // namespace
 
-double wire_points_halo() { return airy_points_halo() + clear_tube + reach + shortest + reach; }
+double wire_points_halo() { return airy_points_halo() + clear_tube + reach + shortest + thinned + reach; }
 
 std::vector<std::uint8_t> wire_points(const core::Block& b, const std::vector<std::uint8_t>& candidate,
                                       const std::vector<std::uint8_t>& surface, const Districts& where, size_t own) {
   if (std::find(candidate.begin(), candidate.end(), 1) == candidate.end()) return std::vector<std::uint8_t>(b.size(), 0);
   const Search search(b, candidate, surface, where);
-  return search.with_ends(search.in_line(OwnBox(b, own, shortest)), own);
+  return search.with_ends(search.in_line(OwnBox(b, own, shortest + thinned)), own);
 }
 
 }  // namespace swath::filters

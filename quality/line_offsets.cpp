@@ -208,6 +208,8 @@ struct SharedSums {
   }
 };
 
+constexpr double least_of_height = 0.5;  // of the variance that level ground shows
+
 /// Errors of height and of place from level and steep ground: squares = count c^2 + slopes h^2 of each.
 void judge_place(LineComparison& c, const SharedSums& level, const SharedSums& steep) {
   if (steep.count < least_steep) return;
@@ -217,6 +219,9 @@ void judge_place(LineComparison& c, const SharedSums& level, const SharedSums& s
   if (level.count == 0.0) height = place = steep.squares / (steep.count + steep.slopes);  // not to be told apart: alike
   if (place < 0.0) height = (level.squares + steep.squares) / (level.count + steep.count), place = 0.0;
   if (height < 0.0) place = (level.squares + steep.squares) / (level.slopes + steep.slopes), height = 0.0;
+  // A few steep places, one of them a shrub, must not explain away what much level ground shows.
+  const double least = level.count > 0.0 && c.common > 0.0 ? least_of_height * c.common * c.common : 0.0;
+  if (height < least) height = least, place = std::max(0.0, (steep.squares - steep.count * least) / steep.slopes);
   c.common = std::sqrt(std::max(0.0, height));
   c.common_horizontal = std::sqrt(std::max(0.0, place));
 }

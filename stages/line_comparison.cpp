@@ -96,7 +96,7 @@ std::optional<KnownLines> known_lines(const Context& context) {
   if (file.empty()) return std::nullopt;
   const core::Value v = io::read_value_file(file);
   KnownLines out{{}, number(v, "scatter_m"), number(v, "common_m"), number(v, "residual_m"), number(v, "common_horizontal_m")};
-  out.steep_places = static_cast<int>(v.find("steep_places")->as_int());
+  if (const double steep = number(v, "steep_places"); std::isfinite(steep)) out.steep_places = static_cast<int>(steep);
   for (const core::Value& l : v.find("lines")->items())
     out.offsets[static_cast<int>(l.find("line")->as_int())] = l.find("offset_m")->as_number();
   return out;

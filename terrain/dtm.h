@@ -32,8 +32,9 @@ struct DtmOptions {
   std::optional<core::Metres> assumed_sigma, assumed_horizontal;
 };
 
+/// Those of the surface, without what its sigmas take for granted.
 template <class V>
-void describe(DtmOptions& o, V& v) {
+void describe_surface(DtmOptions& o, V& v) {
   v.option("cell", o.cell, core::above(0.0), "Side of one cell.");
   v.option("max_edge", o.max_edge, core::above(0.0),
            "Longest triangle bridged: a triangle counts where its circumcircle's diameter is at most this, so no edge is longer and no gap "
@@ -51,12 +52,17 @@ void describe(DtmOptions& o, V& v) {
            "points' scatter leaves is taken where it is larger.");
   v.option("unknown_bend", o.unknown_bend, core::at_least(0.0),
            "Change of slope (rise / run) that terrain may hide under a triangle where too few stand around it to tell.");
+  v.check(o.max_edge >= o.cell, "max_edge must span at least one cell");
+}
+
+template <class V>
+void describe(DtmOptions& o, V& v) {
+  describe_surface(o, v);
   v.option("assumed_sigma", o.assumed_sigma, core::within(0.0, 100.0),
            "Standard deviation of the heights of points that carry none; without it estimated from the points.");
   v.option("assumed_horizontal", o.assumed_horizontal, core::within(0.0, 100.0),
            "Standard deviation of their place along each axis; without it that of the heights (assumed_sigma).");
   v.check(!o.assumed_horizontal || o.assumed_sigma, "assumed_horizontal needs assumed_sigma beside it");
-  v.check(o.max_edge >= o.cell, "max_edge must span at least one cell");
 }
 
 /// Width of the border of points around a window that dtm() needs, m: max_edge, one cell, and what roughness (5/12 of max_edge), smoothing

@@ -48,10 +48,17 @@ constexpr size_t page_bytes = size_t{64} << 20,
                  least_page_bytes = size_t{8} << 20;  ///< of the surface, held while lines are drawn; of a thread
 constexpr size_t drawn_bytes = size_t{256} << 20;     ///< of the levels that are drawn at once
 
+/// Of the surface alone: contours have no sigma from assumed ones.
+struct TinOptions : terrain::DtmOptions {};
+template <class V>
+void describe(TinOptions& o, V& v) {
+  describe_surface(o, v);
+}
+
 struct ContourWriteOptions : terrain::ContourOptions {
   std::string name = "contours";
   ContourSource source = ContourSource::grid;
-  terrain::DtmOptions tin;
+  TinOptions tin;
   terrain::LabelOptions labels;
   terrain::SpotOptions spots;
 
