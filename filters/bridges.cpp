@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The property in which a deck differs from a roof is that of Sithole & Vosselman 2006, "Bridge detection in airborne laser scanner data", ISPRS
-// J. 61: its profile joins the ground at both ends and drops at both sides. Deviation: profiles are taken from each cell in 16 directions,
-// not across the whole scene, so that the reach is bounded; a deck that curves so much that no straight way stays on it is not found.
+// The property in which a deck differs from a roof is that of Sithole & Vosselman 2006, "Bridge detection in airborne laser scanner data",
+// ISPRS J. 61: its profile joins the ground at both ends and drops at both sides. Deviation: profiles are taken from each cell in 16
+// directions, not across the whole scene, so that the reach is bounded; a deck that curves so much that no straight way stays on it is not
+// found.
 #include "filters/bridges.h"
 
 #include <algorithm>
