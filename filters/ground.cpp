@@ -143,16 +143,93 @@ std::vector<std::uint32_t> needed_around(const core::Block& b, const Bounds& til
   return rows;
 }
 
-std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, const GroundOptions& o) {
-  GroundEvidence unknown;
-  unknown.above = not_judged;
-  bool any = false;
-  for (size_t p = 0; p < b.size() && !any; ++p) any = may_be_ground(b, p);
-  if (own == 0 || !any) return std::vector<GroundEvidence>(own, unknown);
+namespace {
+
+/// Rows of the first `own` points that may be ground and have another such point within `beside` cells of 10 m. Where a return is alone
+/// nothing tells ground from objects.
+std::vector<std::uint32_t> in_company(const core::Block& b, size_t own) {
+  constexpr double side = 10.0;  // m
+  constexpr int beside = 3;
+  const core::Lattice l = lattice_around(b, side, beside);
+  std::vector<std::uint32_t> count(l.size(), 0), rows;
+  for_each_cell(b, l, [&](size_t, std::int32_t i, std::int32_t j, bool may) { count[l.at(i, j)] += may; });
+  for (size_t p = 0; p < own; ++p) {
+    if (!may_be_ground(b, p)) continue;
+    const CellIndex at = cell_of(l, b, p);
+    bool others = count[l.at(at.i, at.j)] > 1;
+    for (int j = at.j - beside; j <= at.j + beside && !others; ++j)
+      for (int i = at.i - beside; i <= at.i + beside && !others; ++i) others = (i != at.i || j != at.j) && count[l.at(i, j)] > 0;
+    if (others) rows.push_back(static_cast<std::uint32_t>(p));
+  }
+  return rows;
+}
+
+/// Few rows in groups farther apart than `apart` (m).
+std::vector<std::vector<std::uint32_t>> groups_of(const core::Block& b, std::vector<std::uint32_t> rows, double apart) {
+  std::vector<std::vector<std::uint32_t>> groups;
+  while (!rows.empty()) {
+    std::vector<std::uint32_t> group{rows.back()};
+    rows.pop_back();
+    for (size_t k = 0; k < group.size(); ++k) {
+      const auto near = std::stable_partition(
+          rows.begin(), rows.end(), [&](std::uint32_t r) { return std::hypot(b.x[r] - b.x[group[k]], b.y[r] - b.y[group[k]]) > apart; });
+      group.insert(group.end(), near, rows.end());
+      rows.erase(near, rows.end());
+    }
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+std::vector<GroundEvidence> evidence_of(const core::Block& b, size_t own, const GroundOptions& o) {
   GroundBase base = ground_base(b, own, judged_around(), surface_options(o));
   const core::Block near = own < b.size() ? points_of(b, base.rows) : core::Block{};
   std::vector<std::uint32_t>().swap(base.rows);
   return evidence_on(own < b.size() ? near : b, own, std::move(base), o);
+}
+
+/// Of the rows of one group, in its order, from the points within the halo alone.
+std::vector<GroundEvidence> evidence_of(const core::Block& b, const std::vector<std::uint32_t>& group, const GroundOptions& o) {
+  const auto x = [&](std::uint32_t p, std::uint32_t q) { return b.x[p] < b.x[q]; };
+  const auto y = [&](std::uint32_t p, std::uint32_t q) { return b.y[p] < b.y[q]; };
+  const auto [west, east] = std::minmax_element(group.begin(), group.end(), x);
+  const auto [south, north] = std::minmax_element(group.begin(), group.end(), y);
+  const double around = halo(o), x0 = b.x[*west] - around, x1 = b.x[*east] + around, y0 = b.y[*south] - around, y1 = b.y[*north] + around;
+  std::vector<std::uint8_t> taken(b.size(), 0);
+  for (const std::uint32_t p : group) taken[p] = 1;
+  std::vector<std::uint32_t> rows = group;
+  for (std::uint32_t p = 0; p < b.size(); ++p)
+    if (!taken[p] && b.x[p] >= x0 && b.x[p] <= x1 && b.y[p] >= y0 && b.y[p] <= y1) rows.push_back(p);
+  return evidence_of(core::select(b, rows), group.size(), o);
+}
+
+/// Are these rows so few and so far apart that groups of them take less than one surface over all?
+bool is_scattered(const core::Block& b, const std::vector<std::uint32_t>& rows, const GroundOptions& o) {
+  constexpr size_t few = 64;
+  if (rows.size() > few) return false;
+  const core::Lattice l = lattice_around(b, halo(o), 0);
+  return static_cast<double>(l.size()) > 6.0 * static_cast<double>(rows.size());
+}
+
+}  // namespace
+
+std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, const GroundOptions& o) {
+  GroundEvidence unknown;
+  unknown.above = not_judged;
+  if (own == 0) return {};
+  const std::vector<std::uint32_t> judged = in_company(b, own);
+  std::vector<GroundEvidence> evidence(own, unknown);
+  if (judged.empty()) return evidence;
+  if (is_scattered(b, judged, o)) {
+    for (const std::vector<std::uint32_t>& group : groups_of(b, judged, halo(o))) {
+      const std::vector<GroundEvidence> found = evidence_of(b, group, o);
+      for (size_t k = 0; k < group.size(); ++k) evidence[group[k]] = found[k];
+    }
+    return evidence;
+  }
+  const std::vector<GroundEvidence> found = evidence_of(b, own, o);
+  for (const std::uint32_t p : judged) evidence[p] = found[p];
+  return evidence;
 }
 
 GroundChances classify_ground(core::Block& b, size_t own, const GroundOptions& o) {

@@ -89,6 +89,47 @@ TEST(Ground, LowPointsAreNotGroundNorDoTheyTakeTheirSurroundingsAlong) {
   EXPECT_LT(e.type_1(), 0.3);
 }
 
+TEST(Ground, AReturnWithoutAnotherFarAroundIsNotJudged) {
+  core::Block b;
+  core::add_columns(b, {core::Column::flags});
+  // Seven over 40 km2, and a hundred that lie together.
+  for (int k = 0; k < 7; ++k) b.x.push_back(900.0 * k), b.y.push_back(1000.0 * (k % 3)), b.z.push_back(100.0);
+  core::Block wide = b;
+  core::resize(wide, wide.x.size());
+  const GroundChances none = classify_ground(wide, wide.size(), {});
+  EXPECT_EQ(none.ground, 0u);
+  EXPECT_EQ(none.no_surface, 7u);
+  for (int k = 0; k < 100; ++k) b.x.push_back(50.0 + k % 10), b.y.push_back(50.0 + k / 10), b.z.push_back(100.0 + 0.01 * (k % 3));
+  core::resize(b, b.x.size());
+  const GroundChances some = classify_ground(b, b.size(), {});
+  EXPECT_EQ(some.no_surface, 7u);
+  EXPECT_EQ(some.ground, 100u);
+}
+
+TEST(Ground, FewReturnsFarApartAreJudgedAsInTheWhole) {
+  // Four groups of five with a low and a high return each, 2 km apart, and the same groups one by one.
+  const auto group = [](core::Block& b, double x, double y) {
+    for (int k = 0; k < 5; ++k) b.x.push_back(x + 3.0 * k), b.y.push_back(y + 2.0 * (k % 2)), b.z.push_back(100.0 + (k == 3 ? 4.0 : 0.0));
+  };
+  core::Block all;
+  std::vector<core::Block> apart(4);
+  for (int k = 0; k < 4; ++k) {
+    const double x = 2000.0 * (k % 2) + 0.5, y = 2000.0 * (k / 2) + 0.5;
+    group(all, x, y);
+    group(apart[static_cast<size_t>(k)], x, y);
+  }
+  core::resize(all, all.x.size());
+  classify_ground(all, all.size(), {});
+  for (size_t k = 0; k < apart.size(); ++k) {
+    core::resize(apart[k], 5);
+    classify_ground(apart[k], 5, {});
+    for (size_t p = 0; p < 5; ++p) {
+      EXPECT_EQ(all.classification[5 * k + p], apart[k].classification[p]) << k << " " << p;
+      EXPECT_EQ(all.ground_probability[5 * k + p], apart[k].ground_probability[p]) << k << " " << p;
+    }
+  }
+}
+
 TEST(Ground, CropsAreTakenOff) {
   test::Scene s = test::make_scene("flat");
   for (size_t p = 0; p < s.block.size(); ++p)
