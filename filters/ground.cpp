@@ -217,18 +217,22 @@ std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, co
   GroundEvidence unknown;
   unknown.above = not_judged;
   if (own == 0) return {};
-  const std::vector<std::uint32_t> judged = in_company(b, own);
-  std::vector<GroundEvidence> evidence(own, unknown);
-  if (judged.empty()) return evidence;
+  std::vector<std::uint32_t> judged = in_company(b, own);
+  if (judged.empty()) return std::vector<GroundEvidence>(own, unknown);
   if (is_scattered(b, judged, o)) {
+    std::vector<GroundEvidence> evidence(own, unknown);
     for (const std::vector<std::uint32_t>& group : groups_of(b, judged, halo(o))) {
       const std::vector<GroundEvidence> found = evidence_of(b, group, o);
       for (size_t k = 0; k < group.size(); ++k) evidence[group[k]] = found[k];
     }
     return evidence;
   }
-  const std::vector<GroundEvidence> found = evidence_of(b, own, o);
-  for (const std::uint32_t p : judged) evidence[p] = found[p];
+  std::vector<bool> is_judged(own, false);
+  for (const std::uint32_t p : judged) is_judged[p] = true;
+  std::vector<std::uint32_t>().swap(judged);
+  std::vector<GroundEvidence> evidence = evidence_of(b, own, o);
+  for (size_t p = 0; p < own; ++p)
+    if (!is_judged[p]) evidence[p] = unknown;
   return evidence;
 }
 
