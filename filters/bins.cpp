@@ -57,10 +57,9 @@ core::Lattice lattice_around(const core::Block& b, size_t own, double cell, doub
 
 OwnBox::OwnBox(const core::Block& b, size_t own, double around) : origin_(b.origin), west_(1), east_(0), south_(1), north_(0) {
   if (own == 0) return;
-  const auto end = static_cast<std::ptrdiff_t>(own);
-  const auto [west, east] = std::minmax_element(b.x.begin(), b.x.begin() + end);
-  const auto [south, north] = std::minmax_element(b.y.begin(), b.y.begin() + end);
-  west_ = *west - around, east_ = *east + around, south_ = *south - around, north_ = *north + around;
+  const auto [west, east] = extent_of(b.x.data(), own);
+  const auto [south, north] = extent_of(b.y.data(), own);
+  west_ = west - around, east_ = east + around, south_ = south - around, north_ = north + around;
 }
 
 bool OwnBox::touches(const core::Lattice& l, int i, int j) const {

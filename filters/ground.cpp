@@ -146,7 +146,7 @@ std::vector<std::uint32_t> needed_around(const core::Block& b, const Bounds& til
 namespace {
 
 /// Rows of the first `own` points that may be ground and have another such point within `beside` cells of 10 m. Where a return is alone
-/// nothing tells ground from objects.
+/// nothing distinguishes ground from objects.
 std::vector<std::uint32_t> in_company(const core::Block& b, size_t own) {
   constexpr double side = 10.0;  // m
   constexpr int beside = 3;
@@ -190,16 +190,12 @@ std::vector<GroundEvidence> evidence_of(const core::Block& b, size_t own, const 
 
 /// Of the rows of one group, in its order, from the points within the halo alone.
 std::vector<GroundEvidence> evidence_of(const core::Block& b, const std::vector<std::uint32_t>& group, const GroundOptions& o) {
-  const auto x = [&](std::uint32_t p, std::uint32_t q) { return b.x[p] < b.x[q]; };
-  const auto y = [&](std::uint32_t p, std::uint32_t q) { return b.y[p] < b.y[q]; };
-  const auto [west, east] = std::minmax_element(group.begin(), group.end(), x);
-  const auto [south, north] = std::minmax_element(group.begin(), group.end(), y);
-  const double around = halo(o), x0 = b.x[*west] - around, x1 = b.x[*east] + around, y0 = b.y[*south] - around, y1 = b.y[*north] + around;
+  const OwnBox around(core::select(b, group), group.size(), halo(o));
   std::vector<std::uint8_t> taken(b.size(), 0);
   for (const std::uint32_t p : group) taken[p] = 1;
   std::vector<std::uint32_t> rows = group;
   for (std::uint32_t p = 0; p < b.size(); ++p)
-    if (!taken[p] && b.x[p] >= x0 && b.x[p] <= x1 && b.y[p] >= y0 && b.y[p] <= y1) rows.push_back(p);
+    if (!taken[p] && around.holds(b, p)) rows.push_back(p);
   return evidence_of(core::select(b, rows), group.size(), o);
 }
 
@@ -218,7 +214,6 @@ std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, co
   unknown.above = not_judged;
   if (own == 0) return {};
   std::vector<std::uint32_t> judged = in_company(b, own);
-  if (judged.empty()) return std::vector<GroundEvidence>(own, unknown);
   if (is_scattered(b, judged, o)) {
     std::vector<GroundEvidence> evidence(own, unknown);
     for (const std::vector<std::uint32_t>& group : groups_of(b, judged, halo(o))) {

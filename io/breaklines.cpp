@@ -162,8 +162,7 @@ std::vector<Breakline> read_breaklines(const Survey& survey, const std::string& 
   for (const BreaklineFile& f : survey.breaklines) {
     const std::filesystem::path path = resolve(survey, f.file);
     const GdalMessages messages;
-    const auto close = [](GDALDataset* d) { GDALClose(d); };
-    const std::unique_ptr<GDALDataset, decltype(close)> set(open_vector(path), close);
+    const Dataset set = open_vector(path);
     if (!set) messages.fail("cannot read the breaklines", path, std::filesystem::exists(path) ? "" : "check the name");
     size_t taken = 0;
     std::string layers;

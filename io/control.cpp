@@ -156,8 +156,7 @@ void add_feature(OGRFeature& feature, const Attributes& fields, const ControlFil
 
 std::vector<RawLayer> read_geopackage(const std::filesystem::path& path, const ControlFile& f, core::Tally& tally) {
   const GdalMessages messages;
-  const auto close = [](GDALDataset* d) { GDALClose(d); };
-  const std::unique_ptr<GDALDataset, decltype(close)> set(open_vector(path), close);
+  const Dataset set = open_vector(path);
   if (!set) messages.fail("cannot read the GeoPackage", path, std::filesystem::exists(path) ? "" : "check the name");
   const ControlFile usual;
   std::vector<RawLayer> out;

@@ -109,8 +109,7 @@ Value comments_of(const std::filesystem::path& path) {
 
 core::Value describe_vector(const std::filesystem::path& file) {
   const GdalMessages messages;
-  const auto close = [](GDALDataset* d) { GDALClose(d); };
-  const std::unique_ptr<GDALDataset, decltype(close)> set(open_vector(file), close);
+  const Dataset set = open_vector(file);
   if (!set) return {};
   const std::string driver = set->GetDriverName();
   if (driver == "CSV") return {};  // GDAL takes any text with commas for one

@@ -42,8 +42,7 @@ constexpr const char* vector_drivers[] = {"GPKG", "ESRI Shapefile", "GeoJSON",  
 constexpr const char* other_drivers[] = {"COG", "MEM", "Memory", nullptr};  // for writing
 constexpr const char* formats_read =
     "GeoTIFF, VRT of local files, Arc/Info ASCII grid, GTX, EHdr, ENVI, Erdas Imagine, XYZ, SRTM, DTED, GeoPackage, shapefile, GeoJSON, "
-    "DXF, "
-    "CSV, KML, FlatGeobuf and MapInfo are read";
+    "DXF, CSV, KML, FlatGeobuf and MapInfo are read";
 
 bool listed(const char* const* names, const char* name) {
   for (; *names; ++names)
@@ -96,12 +95,12 @@ std::string refusal_of(const std::filesystem::path& file) {
   return names_elsewhere(file) ? "the virtual raster names sources that are no local files" : "";
 }
 
-GDALDataset* open_plain(const std::filesystem::path& file, unsigned kind, const char* const* drivers) {
-  GDALDataset* opened = nullptr;
+Dataset open_plain(const std::filesystem::path& file, unsigned kind, const char* const* drivers) {
+  Dataset opened;
   std::string fault = refusal_of(file);
   if (fault.empty()) {
     const GdalMessages messages;
-    opened = GDALDataset::Open(file.c_str(), kind | GDAL_OF_READONLY, drivers);
+    opened.reset(GDALDataset::Open(file.c_str(), kind | GDAL_OF_READONLY, drivers));
     fault = messages.text().empty() ? std::string("the format is not known; ") + formats_read : messages.text();
   }
   if (!opened) CPLError(CE_Failure, CPLE_OpenFailed, "%s", fault.c_str());
@@ -146,8 +145,10 @@ void GdalMessages::check(const std::string& doing, const std::filesystem::path& 
   if (failed_) fail(doing, file);
 }
 
-GDALDataset* open_raster(const std::filesystem::path& file) { return open_plain(file, GDAL_OF_RASTER, raster_drivers); }
-GDALDataset* open_vector(const std::filesystem::path& file) { return open_plain(file, GDAL_OF_VECTOR, vector_drivers); }
+void CloseDataset::operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+
+Dataset open_raster(const std::filesystem::path& file) { return open_plain(file, GDAL_OF_RASTER, raster_drivers); }
+Dataset open_vector(const std::filesystem::path& file) { return open_plain(file, GDAL_OF_VECTOR, vector_drivers); }
 
 GdalSetting::GdalSetting(const char* key, const char* value) : key_(key) {
   if (const char* before = CPLGetThreadLocalConfigOption(key, nullptr)) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "core/crs.h"
@@ -33,10 +34,15 @@ class GdalMessages {
   std::string text_;
 };
 
+struct CloseDataset {
+  void operator()(GDALDataset* dataset) const;
+};
+using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
+
 /// A file of a format that this program reads, opened for reading, or nothing. GDAL's other drivers are left out: some take any text for
 /// a request to a server, or read files that the text names.
-GDALDataset* open_raster(const std::filesystem::path& file);
-GDALDataset* open_vector(const std::filesystem::path& file);
+Dataset open_raster(const std::filesystem::path& file);
+Dataset open_vector(const std::filesystem::path& file);
 
 /// A setting of GDAL on this thread as long as the object lives.
 class GdalSetting {

@@ -19,11 +19,6 @@
 namespace swath::io {
 namespace {
 
-struct Close {
-  void operator()(GDALDataset* d) const { GDALClose(d); }
-};
-using Dataset = std::unique_ptr<GDALDataset, Close>;
-
 /// Largest distance of a raster's corner from a whole multiple of its cell, in cells.
 constexpr double lattice_tolerance = 1e-3;
 /// Relative difference of pixel width and height that still counts as square (text formats print few digits).
@@ -74,8 +69,8 @@ std::vector<float> north_first(const core::Lattice& l, const std::vector<float>&
   return out;
 }
 
-GDALDataset* open(const std::filesystem::path& file, const GdalMessages& messages) {
-  GDALDataset* d = open_raster(file);
+Dataset open(const std::filesystem::path& file, const GdalMessages& messages) {
+  Dataset d = open_raster(file);
   if (!d) messages.fail("cannot read the raster", file, std::filesystem::exists(file) ? "" : "check the name");
   return d;
 }
@@ -194,13 +189,13 @@ void write_grid(const std::filesystem::path& file, const core::Grid& grid, const
 
 RasterInfo read_raster_info(const std::filesystem::path& file) {
   const GdalMessages messages;
-  const Dataset d(open(file, messages));
+  const Dataset d = open(file, messages);
   return info_of(*d);
 }
 
 Raster read_raster(const std::filesystem::path& file, int band_number) {
   const GdalMessages messages;
-  const Dataset d(open(file, messages));
+  const Dataset d = open(file, messages);
   const RasterInfo info = info_of(*d);
   Raster r{info.geotransform, info.nx, info.ny, d->GetRasterCount(), {}, {}, {}, info.crs_wkt};
   if (band_number < 1 || band_number > r.bands)
@@ -235,7 +230,7 @@ core::Lattice lattice_of(const RasterInfo& info, const std::filesystem::path& fi
 
 core::Grid read_grid(const std::filesystem::path& file, const std::optional<core::Lattice>& window) {
   const GdalMessages messages;
-  const Dataset d(open(file, messages));
+  const Dataset d = open(file, messages);
   const RasterInfo info = info_of(*d);
   const core::Lattice whole = lattice_of(info, file);
   const core::Lattice l = window.value_or(whole);

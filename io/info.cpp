@@ -14,7 +14,6 @@
 #include "core/crs.h"
 #include "core/error.h"
 #include "core/option_visitors.h"
-#include "core/printable.h"
 #include "core/time.h"
 #include "io/csd.h"
 #include "io/delimited.h"
@@ -235,14 +234,10 @@ Value describe_tree(const Path& path) {
   return out;
 }
 
-struct CloseDataset {
-  void operator()(GDALDataset* d) const { GDALClose(d); }
-};
-
 /// What GDAL sees in a raster; nothing where it is none.
 Value describe_raster(const Path& path) {
   const GdalMessages quiet;
-  const std::unique_ptr<GDALDataset, CloseDataset> data(open_raster(path));
+  const Dataset data = open_raster(path);
   Value out;
   if (data) {
     Value warnings = Value::array();
@@ -377,7 +372,7 @@ std::string info_text(const core::Value& told) {
   render(told, "", out);
   if (const Value* warnings = told.find("warnings"))
     for (const Value& w : warnings->items()) out += "warning: " + w.as_text() + "\n";
-  return core::printable(out);
+  return out;
 }
 
 }  // namespace swath::io

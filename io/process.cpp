@@ -16,7 +16,6 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/units.h"
 #include "io/output_file.h"
 
 namespace swath::io {

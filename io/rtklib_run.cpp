@@ -121,18 +121,18 @@ fs::path run_rtklib(const RtklibJob& job) {
   for (const std::string& a : arguments) command += " " + a;
   write_text_file(log_file, command + "\n" + log.text + end.text() + "\n", false);
 
-  const std::string told = log.last.empty() ? "" : "; it says: " + log.last;
+  const std::string last_line = log.last.empty() ? "" : "; it says: " + log.last;
   if (end.too_long)
-    throw core::Error("rnx2rtkp took longer than " + core::format_number(job.time_limit) + " s and was ended" + told, log_file.string(),
-                      "raise time_limit of gnss.rtklib, or split the observations");
+    throw core::Error("rnx2rtkp took longer than " + core::format_number(job.time_limit) + " s and was ended" + last_line,
+                      log_file.string(), "raise time_limit of gnss.rtklib, or split the observations");
   if (!end.well())
-    throw core::Error("rnx2rtkp failed with " + end.text() + told, log_file.string(),
+    throw core::Error("rnx2rtkp failed with " + end.text() + last_line, log_file.string(),
                       end.signal ? "run the command in the log by hand; another version of RTKLIB may do better" : "");
   if (!log.rejected.empty())
     throw core::Error("rnx2rtkp does not know a value of its configuration: " + log.rejected, configuration.string(),
                       "the configuration is written for RTKLIB 2.4.2 and 2.4.3");
   if (!has_solution(scratch.path / "solution.pos"))
-    throw core::Error("rnx2rtkp found no solution for " + job.name + told, log_file.string(),
+    throw core::Error("rnx2rtkp found no solution for " + job.name + last_line, log_file.string(),
                       "do the navigation files cover the day and the satellite systems? is the base's position that of its marker, and "
                       "do both receivers record carrier phases (mode = \"dgps\" needs code alone)?");
   std::error_code ec;

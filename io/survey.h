@@ -233,8 +233,7 @@ void describe(Survey& s, V& v) {
   v.table("sigma", s.sigma, "How well calibration and records are known.");
   v.option("calibration_file", s.calibration_file,
            "Calibration whose values replace those of [calibration] and [sigma], but for the noise of single records that [sigma] states: "
-           ".json or "
-           ".toml as the adjustment writes it, or the Optech .csd whose header holds the boresight.");
+           ".json or .toml as the adjustment writes it, or the Optech .csd whose header holds the boresight.");
   v.tables("laser", s.laser, "Raw laser records.");
   v.tables("trajectory", s.trajectory, "Trajectory.");
   v.tables("imu", s.imu, "IMU records.");

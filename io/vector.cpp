@@ -130,8 +130,7 @@ void write_contours(const std::vector<std::filesystem::path>& files, const std::
 
 VectorLines read_lines(const std::filesystem::path& file) {
   const GdalMessages messages;
-  const auto close = [](GDALDataset* d) { GDALClose(d); };
-  const std::unique_ptr<GDALDataset, decltype(close)> set(open_vector(file), close);
+  const Dataset set = open_vector(file);
   if (!set) messages.fail("cannot read the vector file", file, std::filesystem::exists(file) ? "" : "check the name");
   VectorLines out;
   for (OGRLayer* layer : set->GetLayers()) {

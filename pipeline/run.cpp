@@ -436,9 +436,10 @@ Measure Engine::measure_of(size_t number) const {
   return [this, &s, row_bytes, wide = context_](std::vector<TileKey> tiles) mutable {
     const TileBox box(tiles);
     const TileStore::Load load = store_->load_with_halo(tiles, s.halo());
-    const double left = s.left_per_area() * TileBox(tiles).metres(context_.tile_side).grown(s.halo()).area();
-    const auto near = static_cast<double>(store_->load_with_halo(tiles, s.near_halo()).points);
-    const auto points = static_cast<double>(load.points), rows = std::min(points, near + left);
+    const double left = s.left_per_area() * box.metres(context_.tile_side).grown(s.halo()).area();
+    const auto points = static_cast<double>(load.points);
+    const double near = s.near_halo() < s.halo() ? static_cast<double>(store_->load_with_halo(tiles, s.near_halo()).points) : points;
+    const double rows = std::min(points, near + left);
     wide.tile_side = context_.tile_side * 0.5 * (box.across() + box.up());  // the square of the same perimeter is not smaller
     const double judged = std::min(points, near) * s.share_of_points(wide.tile_side);
     double bytes = row_bytes * (rows + static_cast<double>(load.neighbour)) + s.bytes_per_point() * judged;

@@ -74,8 +74,8 @@ int check(Arguments& a) {
 
 int explain(Arguments& a) {
   pipeline::Plan plan = pipeline::make_plan(a.request);
-  const core::Value told = pipeline::explain(plan);
-  a.json ? print_json(told) : print(pipeline::explanation_text(told));
+  const core::Value found = pipeline::explain(plan);
+  a.json ? print_json(found) : print(pipeline::explanation_text(found));
   return 0;
 }
 
@@ -97,16 +97,16 @@ int simulate_survey(Arguments& a) {
 }
 
 int info(const Arguments& a) {
-  const core::Value told = io::describe_file(a.name);
-  a.json ? print_json(told) : print(io::info_text(told));
+  const core::Value found = io::describe_file(a.name);
+  a.json ? print_json(found) : print(io::info_text(found));
   return 0;
 }
 
 int volumes(const Arguments& a) {
   if (a.volumes.after.empty() == !a.volumes.design)
     throw core::usage_error("volumes need a second surface or a design height", "swath volumes", "give AFTER or --design, one of them");
-  const core::Value told = pipeline::volumes_of(a.volumes);
-  a.json ? print_json(told) : print(pipeline::volume_text(told));
+  const core::Value found = pipeline::volumes_of(a.volumes);
+  a.json ? print_json(found) : print(pipeline::volume_text(found));
   return 0;
 }
 
@@ -118,10 +118,10 @@ int profile(Arguments& a) {
     throw core::usage_error("'" + a.width + "' is no width" + (fault.empty() ? "" : ": " + fault), "--half-width",
                             "write a length with its unit: \"2 m\"");
   a.profile.half_width = width->as_number();
-  const core::Value told = pipeline::write_profiles(a.profile);
-  if (a.json) std::fputs(io::to_json(told).c_str(), stdout);
-  for (size_t k = 0; !a.json && !a.quiet && k < told.items().size(); ++k) {
-    const core::Value& one = told.items()[k];
+  const core::Value found = pipeline::write_profiles(a.profile);
+  if (a.json) std::fputs(io::to_json(found).c_str(), stdout);
+  for (size_t k = 0; !a.json && !a.quiet && k < found.items().size(); ++k) {
+    const core::Value& one = found.items()[k];
     std::printf("%s: %.1f long, %lld points, %lld places of the terrain model; .csv, .svg and .png in %s\n",
                 one.find("name")->as_text().c_str(), one.find("length")->as_number(), static_cast<long long>(one.find("points")->as_int()),
                 static_cast<long long>(one.find("terrain_samples")->as_int()), a.profile.folder.c_str());

@@ -109,10 +109,10 @@ def main():
                       "error/white", "delivered"], table)
         target = []
         for key, unit, _ in VALUES:
-            told = np.array([readings[key] for _, _, readings, _ in done if key in readings])
-            if len(told):
-                error, sigma, apart = told.T
-                target.append([f"{key} ({unit})", len(told), f"{common.rms(error):.2f}", f"{common.rms(sigma):.2f}",
+            found = np.array([readings[key] for _, _, readings, _ in done if key in readings])
+            if len(found):
+                error, sigma, apart = found.T
+                target.append([f"{key} ({unit})", len(found), f"{common.rms(error):.2f}", f"{common.rms(sigma):.2f}",
                                f"{common.rms(error / sigma):.2f}", f"{common.rms(apart):.2f}", f"{np.abs(apart).max():.2f}"])
         if target:
             common.table(["flat target's", "flights", "error rms", "sigma", "error/sigma", "difference from the adjustment/joint sigma", "largest"], target)

@@ -89,11 +89,7 @@ TEST(GdalDoor, OnlyFilesOfKnownFormatsAreOpened) {
                           source + "</SourceFilename></SimpleSource></VRTRasterBand></VRTDataset>");
     return folder / name;
   };
-  const auto opens = [](const std::filesystem::path& file) {
-    GDALDataset* d = open_raster(file);
-    if (d) GDALClose(d);
-    return d != nullptr;
-  };
+  const auto opens = [](const std::filesystem::path& file) { return open_raster(file) != nullptr; };
   EXPECT_TRUE(opens(folder / "a.asc"));
   EXPECT_TRUE(opens(vrt("own.vrt", "a.asc")));
   EXPECT_FALSE(opens(vrt("far.vrt", "/vsicurl/http://127.0.0.1:9/a.tif")));
@@ -107,10 +103,9 @@ TEST(GdalDoor, OnlyFilesOfKnownFormatsAreOpened) {
   // Escapes, a service beside the file, and a site whose name begins like GDAL's file systems.
   EXPECT_FALSE(opens(vrt("escaped.vrt", "&#47;vsicurl&#47;http:&#47;&#47;127.0.0.1:9&#47;a.tif")));
   const std::filesystem::path service = vrt("service.vrt", "wms.xml");
-  if (GDALDataset* d = open_raster(service)) {
+  if (const Dataset d = open_raster(service)) {
     float v = 0.0F;
     EXPECT_NE(d->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, 1, 1, &v, 1, 1, GDT_Float32, 0, 0), CE_None);
-    GDALClose(d);
   }
   EXPECT_EQ(GetGDALDriverManager()->GetDriverByName("WMS"), nullptr);
   std::filesystem::create_directory(folder / "vsite");
