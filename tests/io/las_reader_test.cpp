@@ -58,6 +58,33 @@ TEST(LasReader, ManyChunksInBatchesOfAnySize) {
   }
 }
 
+TEST(LasReader, DamagedTimesAreAnErrorAndNoEndlessRecursion) {
+  // A layer of GPS times that is all ones means a switch of sequence after another: hundreds of thousands before its bytes are used up.
+  const test::TemporaryFolder folder;
+  const LasHeader h = test::sample_header(6);
+  constexpr std::size_t n = 20000;
+  const LasPoints p = test::sample_points(h, n);
+  test::write_sample(folder / "a.laz", h, p);
+  ASSERT_TRUE(test::read_all(folder / "a.laz") == p);
+  std::string bytes = test::read_bytes(folder / "a.laz");
+  const auto number = [&](std::size_t at) {
+    std::uint32_t v = 0;
+    std::memcpy(&v, bytes.data() + at, sizeof v);
+    return std::size_t{v};
+  };
+  // A chunk: the first point whole, the count, the sizes of the nine layers, the layers, GPS times last.
+  constexpr std::size_t offset_of_points = 96, point = 30, layers = 9;
+  const std::size_t sizes = number(offset_of_points) + sizeof(std::uint64_t) + point + sizeof(std::uint32_t);
+  std::size_t at = sizes + layers * sizeof(std::uint32_t);
+  for (std::size_t k = 0; k + 1 < layers; ++k) at += number(sizes + k * sizeof(std::uint32_t));
+  const std::size_t size = number(sizes + (layers - 1) * sizeof(std::uint32_t));
+  ASSERT_LT(at + size, bytes.size());
+  ASSERT_GT(size, 10000u);
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), size, '\xff');
+  std::ofstream(folder / "a.laz", std::ios::binary) << bytes;
+  EXPECT_THROW(test::read_all(folder / "a.laz"), core::Error);
+}
+
 /// Cut anywhere, the file is refused or, where the last bytes say nothing, read whole: never something else.
 void every_cut_is_an_error(const std::string& ending, int format) {
   const test::TemporaryFolder folder;
