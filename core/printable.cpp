@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/printable.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cstddef>
 
 namespace swath::core {
@@ -47,9 +49,49 @@ std::string written_out(std::string_view text, bool controls) {
   return out;
 }
 
+bool is_number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return fault == std::errc() && end == text.data() + text.size();
+}
+
 }  // namespace
 
 std::string printable(std::string_view text) { return written_out(text, true); }
+
+std::string shortened(std::string_view text) {
+  constexpr std::size_t longest_word = 400, kept_before = 150, kept_after = 50, most_lines = 60;
+  std::string out;
+  std::size_t lines = 0;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(" \t\n", i), text.size());
+    const std::string_view word = text.substr(i, end - i);
+    if (word.size() <= longest_word)
+      out += word;
+    else
+      out.append(word.substr(0, kept_before))
+          .append("...(" + std::to_string(word.size() - kept_before - kept_after) + " characters)...")
+          .append(word.substr(word.size() - kept_after));
+    if (end < text.size()) out += text[end];
+    i = end + 1;
+    if (end < text.size() && text[end] == '\n' && ++lines == most_lines && i < text.size()) {
+      const auto left = std::count(text.begin() + static_cast<std::ptrdiff_t>(i), text.end(), '\n') + (text.back() != '\n');
+      return out + "... and " + std::to_string(left) + " more lines";
+    }
+  }
+  return out;
+}
+
+std::string csv_field(std::string_view text) {
+  const bool signed_text = !text.empty() && std::string_view("=+-@\t").find(text.front()) != std::string_view::npos;
+  std::string field(signed_text && !is_number(text) ? "'" : "");
+  field += text;
+  if (field.find_first_of(",\"\n\r") == std::string::npos) return field;
+  std::string quoted = "\"";
+  for (const char c : field) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
 
 std::string utf8(std::string_view text) { return written_out(text, false); }
 

@@ -20,6 +20,8 @@
 namespace swath::io {
 namespace {
 
+constexpr int deepest = 200;  // levels of tables and lists in a file
+
 using core::Location;
 using core::Value;
 
@@ -82,8 +84,6 @@ class Places {
 
 class TreeBuilder {
  public:
-  static constexpr size_t deepest = 200;
-
   TreeBuilder(const std::string& text, const std::string& file, rapidjson::MemoryStream& stream)
       : text_(text), places_(text, file), stream_(stream) {}
 
@@ -129,7 +129,8 @@ class TreeBuilder {
     return true;
   }
   bool open(Value v) {
-    if (open_.size() >= deepest) throw core::usage_error("more than " + std::to_string(deepest) + " levels of nesting", here().text());
+    if (open_.size() >= size_t{deepest})
+      throw core::usage_error("more than " + std::to_string(deepest) + " levels of nesting", here().text());
     open_.push_back(&place(std::move(v)));
     return true;
   }
@@ -201,6 +202,30 @@ void write(const Value& v, int depth, std::string& out) {
   }
 }
 
+/// The parser bounds nested values, but not the tables that one dotted key opens.
+void refuse_deep_keys(const std::string& text, const std::string& name) {
+  int line = 1, dots = 0;
+  char quote = 0;
+  bool comment = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') ++line, dots = 0, comment = false;
+    if (comment) continue;
+    if (quote) {
+      if (c == '\\' && quote == '"') ++i;
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '#') {
+      comment = true;
+    } else if (c == '=' || c == ',' || c == '{') {
+      dots = 0;
+    } else if (c == '.' && ++dots > deepest) {
+      throw core::usage_error("a key of more than " + std::to_string(deepest) + " levels", Location{name, line, 1}.text());
+    }
+  }
+}
+
 }  // namespace
 
 std::string read_text_file(const std::filesystem::path& file) {
@@ -217,6 +242,7 @@ std::string read_text_file(const std::filesystem::path& file) {
 }
 
 core::Value parse_toml(const std::string& text, const std::string& name) {
+  refuse_deep_keys(text, name);
   try {
     return from_toml(toml::parse(text, name), name);
   } catch (const toml::parse_error& e) {

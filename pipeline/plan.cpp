@@ -46,12 +46,19 @@ void set_member(Value& table, const std::string& path, const Value& value, const
   table[path] = value;
 }
 
+void refuse_deep_key(const std::string& path, const std::string& set) {
+  constexpr auto deepest = 20;
+  if (std::count(path.begin(), path.end(), '.') > deepest)
+    throw core::usage_error("a key of more than " + std::to_string(deepest) + " levels", "--set " + set);
+}
+
 void apply_set(Value& tree, const std::string& set) {
   const size_t equals = set.find('=');
   const std::string path = set.substr(0, equals);
   const size_t dot = path.rfind('.');
   if (equals == std::string::npos || dot == std::string::npos)
     throw core::usage_error("'" + set + "' is not stage.key=value", "--set", "for example --set smrf.cell=\"50 cm\"");
+  refuse_deep_key(path, set);
   const Value value = set_value(set.substr(equals + 1));
   if (path.rfind("run.", 0) == 0) {
     return set_member(tree["run"], path.substr(4), value, set);
@@ -356,6 +363,7 @@ void set_option(core::Value& table, const std::string& set) {
   const size_t equals = set.find('=');
   if (equals == std::string::npos || equals == 0)
     throw core::usage_error("'" + set + "' is not key=value", "--set", "for example --set flight.speed=\"60 m/s\"");
+  refuse_deep_key(set.substr(0, equals), set);
   set_member(table, set.substr(0, equals), set_value(set.substr(equals + 1)), set);
 }
 

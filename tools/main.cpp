@@ -306,13 +306,13 @@ int main(int argc, char** argv) {
     }
     return code;
   } catch (const swath::core::Error& e) {
-    std::fprintf(stderr, "swath: error: %s\n", swath::core::printable(e.text()).c_str());
+    std::fprintf(stderr, "swath: error: %s\n", swath::core::printable(swath::core::shortened(e.text())).c_str());
     return static_cast<int>(e.code());
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "swath: error: out of memory\n  hint: a smaller run.memory or run.tile needs less\n");
     return static_cast<int>(swath::core::Exit::bad_data);
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "swath: error: %s\n", swath::core::printable(e.what()).c_str());
+    std::fprintf(stderr, "swath: error: %s\n", swath::core::printable(swath::core::shortened(e.what())).c_str());
     return static_cast<int>(swath::core::Exit::bad_data);
   }
 }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/printable.h"
 #include "io/output_file.h"
 #include "io/png.h"
 #include "io/value_file.h"
@@ -66,14 +67,6 @@ std::string numbers(const Eigen::Vector3d& v, int decimals) {
   return number(v[0], decimals) + "," + number(v[1], decimals) + "," + number(v[2], decimals);
 }
 
-/// A field of a CSV file, quoted where it has to be.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
-}
-
 std::string flags_of(const EventPosition& e, bool doubtful) {
   std::string out;
   const auto add = [&](const char* flag) { out += (out.empty() ? "" : ";") + std::string(flag); };
@@ -105,11 +98,11 @@ std::string table(const Context& context, const core::EventData& events, const E
     // What the time's own error moves the antenna along its path.
     const double along = events.sigma[i] > 0.0 ? events.sigma[i] * e.velocity.norm() : std::nan("");
     const Eigen::Vector3d empirical = reached(e.reach) ? solved.empirical : e.position;
-    out += field(events.id[i]) + "," + (events.strip[i] ? std::to_string(events.strip[i]) : "") + "," + field(events.technique[i]) + "," +
-           number(events.time[i], 7) + "," + number(map.x(), decimals) + "," + number(map.y(), decimals) + "," + number(map.z(), 4) + "," +
-           numbers(e.position, 4) + "," + numbers(e.velocity, 4) + "," + numbers(e.sigma, 4) + "," + numbers(empirical, 4) + "," +
-           numbers(e.velocity_sigma, 4) + "," + number(along, 4) + "," + std::to_string(e.fixes) + "," + flags_of(e, events.doubtful[i]) +
-           "\n";
+    out += core::csv_field(events.id[i]) + "," + (events.strip[i] ? std::to_string(events.strip[i]) : "") + "," +
+           core::csv_field(events.technique[i]) + "," + number(events.time[i], 7) + "," + number(map.x(), decimals) + "," +
+           number(map.y(), decimals) + "," + number(map.z(), 4) + "," + numbers(e.position, 4) + "," + numbers(e.velocity, 4) + "," +
+           numbers(e.sigma, 4) + "," + numbers(empirical, 4) + "," + numbers(e.velocity_sigma, 4) + "," + number(along, 4) + "," +
+           std::to_string(e.fixes) + "," + flags_of(e, events.doubtful[i]) + "\n";
   }
   return out;
 }

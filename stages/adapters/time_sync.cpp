@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/printable.h"
 #include "core/statistics.h"
 #include "core/time.h"
 #include "io/clock_log.h"
@@ -65,13 +66,6 @@ std::string number(const char* form, double v) {
   return text;
 }
 
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
-}
-
 /// One row per event. Seconds of week are told to 0.1 us, which one double of GPS seconds would not hold.
 std::string table(const std::vector<Technique>& techniques) {
   std::string out = "id,strip,technique,gps_week,gps_second_of_week,utc,sigma_s,correction_s,flags\n";
@@ -90,9 +84,9 @@ std::string table(const std::vector<Technique>& techniques) {
         if (!t.readings[i].inside) flags += flags.empty() ? "outside_log" : ";outside_log";
         correction = number("%.9f", t.readings[i].offset);
       }
-      out += field(t.timed.id[i]) + "," + (t.timed.strip[i] ? std::to_string(t.timed.strip[i]) : "") + "," + field(t.timed.technique) +
-             "," + std::to_string(week) + "," + number("%.7f", second) + "," + core::utc_text(gps) + "," +
-             (t.timed.sigma[i] > 0 ? number("%.9f", t.timed.sigma[i]) : "") + "," + correction + "," + flags + "\n";
+      out += core::csv_field(t.timed.id[i]) + "," + (t.timed.strip[i] ? std::to_string(t.timed.strip[i]) : "") + "," +
+             core::csv_field(t.timed.technique) + "," + std::to_string(week) + "," + number("%.7f", second) + "," + core::utc_text(gps) +
+             "," + (t.timed.sigma[i] > 0 ? number("%.9f", t.timed.sigma[i]) : "") + "," + correction + "," + flags + "\n";
     }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/frames.h"
+#include "core/printable.h"
 #include "core/units.h"
 #include "io/survey.h"
 #include "stages/calibration/agreement.h"
@@ -24,12 +25,7 @@ class Csv {
   Csv& operator<<(double v) { return put(std::isfinite(v) ? core::format_number(v) : ""); }
   Csv& operator<<(std::uint64_t v) { return put(std::to_string(v)); }
   Csv& operator<<(int v) { return put(std::to_string(v)); }
-  Csv& operator<<(std::string_view v) {
-    if (v.find_first_of(",\"\n\r") == std::string_view::npos) return put(std::string(v));
-    std::string quoted = "\"";
-    for (const char c : v) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return put(quoted + "\"");
-  }
+  Csv& operator<<(std::string_view v) { return put(core::csv_field(v)); }
   void end() {
     text_ += "\n";
     first_ = true;

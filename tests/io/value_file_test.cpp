@@ -72,5 +72,21 @@ TEST(ValueFile, JsonThatNestsWithoutEndOrRepeatsAKeyIsRefused) {
     }
 }
 
+TEST(ValueFile, TomlThatNestsWithoutEndIsRefused) {
+  std::string dotted = "a";
+  for (int i = 0; i < 100000; ++i) dotted += ".a";
+  for (const std::string& text : {"x = 1\n" + dotted + " = 1\n", "x = 1\n[" + dotted + "]\n", "x = 1\nv = {" + dotted + " = 1}\n",
+                                  "x = 1\nv = " + std::string(100000, '[') + std::string(100000, ']') + "\n"})
+    try {
+      parse_toml(text, "deep.toml");
+      FAIL();
+    } catch (const core::Error& e) {
+      EXPECT_EQ(e.code(), core::Exit::bad_usage);
+      EXPECT_EQ(e.where().rfind("deep.toml:2", 0), 0u) << e.where();
+    }
+  const std::string dots(1000, '.');
+  EXPECT_EQ(parse_toml("a.b.c = \"" + dots + "\" # it's " + dots + "\n", "x").find("a")->find("b")->find("c")->as_text(), dots);
+}
+
 }  // namespace
 }  // namespace swath::io

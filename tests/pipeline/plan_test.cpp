@@ -157,6 +157,10 @@ TEST(Plan, ASetThatFitsNothingIsAFault) {
   EXPECT_NE(c.fault().find("no stage 'smfr'"), std::string::npos);
   c.request.sets = {"slope"};
   EXPECT_NE(c.fault().find("is not stage.key=value"), std::string::npos);
+  std::string deep = "smrf";
+  for (int i = 0; i < 50000; ++i) deep += ".a";
+  c.request.sets = {deep + "=1"};
+  EXPECT_THROW(make_plan(c.request), core::Error);
   c.request.sets = {"smrf.slope=steep"};
   EXPECT_NE(c.fault().find("--set"), std::string::npos);
 }
