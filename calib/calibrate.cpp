@@ -17,6 +17,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double swinging = 0.25;  // of the move before, turned back
+// For the progress: what the coarse match and the planes of a round take, in rounds, and how many rounds there usually are.
+constexpr double coarse_rounds = 1.0, planes_part = 0.5, usual_rounds = 6.0;
 
 /// What a change of the calibration moves the returns by at the tie planes, rms over the groups, m: for the reader.
 double moved(const core::Calibration& from, const core::Calibration& to, const Adjustment& at, const trajectory::Trajectory& trajectory) {
@@ -158,16 +160,13 @@ trajectory::LocalFrame frame_of(const std::vector<std::pair<double, double>>& li
 }
 
 Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& options, core::Tally& tally,
-                     const std::function<void(const std::string&)>& told) {
-  const auto tell = [&](const std::string& text) {
-    if (told) told(text);
-  };
+                     const core::OnProgress& progress) {
   Calibrated out;
   core::Calibration now = flight.start;
   const SurfaceMatchOptions match = sized(options.match, flight.scale.height);
   double mismatch = options.coarse ? first_mismatch(options.planes.mismatch.value, flight.scale.height) : options.planes.mismatch.value;
   if (options.coarse) {
-    tell("matching surfaces");
+    progress(0.0, "matching surfaces");
     out.match = match_surfaces(flight.shots, flight.scanner, flight.start, *flight.trajectory, flight.frame, match);
     if (out.match->scan_reversed) throw_reversed_scan();
     now = out.match->calibration;
@@ -194,11 +193,12 @@ Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& op
       adjusted.jackknife.blocks = 0;
     }
     const std::string round = "round " + std::to_string(out.rounds);
+    const double done = coarse_rounds + out.rounds - 1;
     of_round = {};
-    tell(round + ": planes");
+    progress(core::usual_share(done, usual_rounds), round + ": planes");
     out.ties = find_tie_planes(flight.shots, flight.scanner, now, *flight.trajectory, flight.frame, targets, planes, of_round);
     refuse_without_ties(out.ties, of_round);
-    tell(round + ": adjustment");
+    progress(core::usual_share(done + planes_part, usual_rounds), round + ": adjustment");
     out.adjustment =
         adjust(out.ties, flight.scanner, flight.start, flight.sensor, *flight.trajectory, *flight.errors, adjusted, flight.threads);
     const Move move = largest_move(now, out.adjustment);

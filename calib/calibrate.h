@@ -2,7 +2,6 @@
 // A whole calibration: coarse boresight from surfaces, planes, adjustment, and planes again until nothing changes.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "calib/shot_stream.h"
 #include "calib/surface_match.h"
 #include "calib/tie_planes.h"
+#include "core/on_progress.h"
 #include "trajectory/error_model.h"
 #include "trajectory/trajectory.h"
 
@@ -74,8 +74,7 @@ void refuse_reversed_scan(const CalibrationFlight& flight, const SurfaceMatchOpt
 
 /// Throws core::Error where the flight cannot be calibrated at all: no two lines that see the same planes (and no target), or records of
 /// the scan angle with the wrong sign. Values that still move by more than half of their sigma after the last round are not delivered.
-/// `told`: a sentence on each step, as it is done.
 Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& options, core::Tally& tally,
-                     const std::function<void(const std::string&)>& told = {});
+                     const core::OnProgress& progress = core::unwatched);
 
 }  // namespace swath::calib

@@ -17,6 +17,8 @@ namespace {
 
 // Planes are found the same way with returns that have moved by less than their own noise.
 constexpr double steady = 0.02, closest = 0.05;  // m
+// For the progress: how many rounds there usually are, and what of one the planes take.
+constexpr double usual_rounds = 4.0, planes_part = 0.5;
 
 std::vector<trajectory::CorrectionSeries> series_of(const std::vector<LineCorrection>& corrections) {
   std::vector<trajectory::CorrectionSeries> out;
@@ -129,15 +131,12 @@ trajectory::Trajectory with_corrections(const trajectory::Trajectory& t, const s
 }
 
 AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions& options, core::Tally& tally,
-                             const std::function<void(const std::string&)>& told) {
-  const auto tell = [&](const std::string& text) {
-    if (told) told(text);
-  };
+                             const core::OnProgress& progress) {
   std::vector<SurveyedTarget> targets;
   std::copy_if(survey.targets.begin(), survey.targets.end(), std::back_inserter(targets),
                [](const SurveyedTarget& t) { return t.use == io::ControlUse::control; });
   AdjustedStrips out;
-  tell("sign of the scan angle");
+  progress(0.0, "sign of the scan angle");
   refuse_reversed_scan(survey);
   TiePlaneOptions planes = sized(options.planes, survey.scale);
   AdjustOptions how = options.adjust;
@@ -146,10 +145,11 @@ AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions
   for (out.rounds = 1; out.rounds <= options.rounds; ++out.rounds) {
     of_round = {};
     const trajectory::Trajectory& now = out.trajectory ? *out.trajectory : *survey.trajectory;
-    tell("round " + std::to_string(out.rounds) + ": planes");
+    const std::string round = "round " + std::to_string(out.rounds);
+    progress(core::usual_share(out.rounds - 1, usual_rounds), round + ": planes");
     out.ties = find_tie_planes(survey.shots, survey.scanner, survey.start, now, survey.frame, targets, planes, of_round);
     refuse_without_overlap(out.ties, of_round);
-    tell("round " + std::to_string(out.rounds) + ": adjustment");
+    progress(core::usual_share(out.rounds - 1 + planes_part, usual_rounds), round + ": adjustment");
     const std::vector<LineCorrection> before = std::move(out.adjustment.corrections);
     for (;;) {
       out.adjustment =

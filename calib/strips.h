@@ -2,7 +2,6 @@
 // Strip adjustment: the lines of a survey are brought onto one another by corrections of the trajectory, the calibration held.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -67,7 +66,7 @@ struct AdjustedStrips {
 /// tells. Throws core::Error where no two lines see the same planes, where the lines do not agree with one another at all, or only with the
 /// sign of the scan angle turned.
 AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions& options, core::Tally& tally,
-                             const std::function<void(const std::string&)>& told = {});
+                             const core::OnProgress& progress = core::unwatched);
 
 /// The trajectory with corrections of its lines; gaps stay gaps.
 trajectory::Trajectory with_corrections(const trajectory::Trajectory& trajectory, const std::vector<LineCorrection>& corrections);

@@ -82,6 +82,7 @@ void Progress::begin(const std::string& what, std::uint64_t total, const std::st
   const std::lock_guard lock(mutex_);
   what_ = what;
   unit_ = unit;
+  now_.clear();
   total_ = total;
   work_ = work;
   done_ = skipped_ = 0;
@@ -109,8 +110,9 @@ void Progress::count(std::uint64_t n, double work, bool skipped) {
   if (Clock::now() - shown_ >= pause_of(voice_)) show(false);
 }
 
-void Progress::share(double done) {
+void Progress::share(double done, std::string_view now) {
   const std::lock_guard lock(mutex_);
+  now_ = now;
   share_ = std::max(share_, std::clamp(done, 0.0, 1.0));
   if (Clock::now() - shown_ >= pause_of(voice_)) show(false);
 }
@@ -201,6 +203,7 @@ void Progress::show_json(bool last) {
   line["per_second"] = time > 0 ? static_cast<double>(done_ - skipped_) / time : 0.0;
   line["seconds"] = time;
   if (share >= 0.0) line["share"] = share;
+  if (!last && !now_.empty()) line["now"] = now_;
   if (steps_ > 0) {
     line["step"] = begun_;
     line["steps"] = steps_;
@@ -231,6 +234,7 @@ void Progress::show_text(bool last) {
   if (total_ > 0)
     text += count_text(static_cast<double>(done_)) + " " + unit_ + ", " +
             count_text(time > 0 ? static_cast<double>(done_ - skipped_) / time : 0.0) + "/s, ";
+  if (!last && !now_.empty()) text += now_ + ", ";
   if (last || l.step < 0.0)
     text += duration_text(time);
   else

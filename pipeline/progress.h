@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -33,8 +34,8 @@ class Progress {
   void advance(std::uint64_t n, double work = 0.0);
   /// As advance(), for what an earlier run has done: it says nothing of the rate.
   void skip(std::uint64_t n, double work = 0.0);
-  /// Of a step without a total: how far it is, 0 to 1.
-  void share(double done);
+  /// Of a step without a total: how far it is, 0 to 1, and what it is at (may be empty).
+  void share(double done, std::string_view now = {});
   void end();
   /// A line for the person (not when quiet).
   void say(const std::string& text);
@@ -56,7 +57,7 @@ class Progress {
 
   Voice voice_;
   std::mutex mutex_;
-  std::string what_, unit_;
+  std::string what_, unit_, now_;
   std::uint64_t total_ = 0, done_ = 0, skipped_ = 0;
   double work_ = 0.0, work_done_ = 0.0, work_skipped_ = 0.0, share_ = -1.0;
   std::vector<double> expected_;               ///< of the steps to come

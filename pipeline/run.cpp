@@ -162,7 +162,7 @@ void Engine::prepare() {
   context_.tile_side = plan_.run.tile.value;
   context_.grids = &grids_;
   context_.threads = threads_;
-  context_.share = [this](double done) { progress_.share(done); };
+  context_.progress = [this](double share, std::string_view now) { progress_.share(share, now); };
   if (works_on_the_map(plan_) || !plan_.survey.crs.empty()) prepare_map();
   inputs_ = inputs_of(plan_);
   fingerprints_ = fingerprints(plan_, inputs_);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -19,6 +18,7 @@
 #include "core/gnss_data.h"
 #include "core/grid.h"
 #include "core/imu_data.h"
+#include "core/on_progress.h"
 #include "core/option.h"
 #include "core/report.h"
 #include "core/shot.h"
@@ -140,8 +140,7 @@ struct Context {
   double tile_side = 500.0;                      ///< m
   std::filesystem::path output{};                ///< where the stage at work puts its products, laid out as in the output folder
   std::vector<std::filesystem::path> earlier{};  ///< the same of the stages before it
-  /// How far the survey stage or merge at work is, 0 to 1; from any thread, as often as it likes.
-  std::function<void(double)> share = [](double) {};
+  core::OnProgress progress = core::unwatched;   ///< of the survey stage or merge at work
   const Grids* grids = nullptr;
   const Stage* source = nullptr;  ///< of the plan; null where it has none
   std::vector<Strip> strips{};    ///< of the source, in the order of the work

@@ -46,6 +46,7 @@ Estimate InsFilter::estimate() const {
 }
 
 void InsFilter::predict(size_t number, NodeRecord* record) {
+  problem_->at_node();
   const Layout& l = problem_->layout;
   const Node& node = problem_->nodes[number];
   Propagation propagation(l, estimate_);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/gnss_data.h"
@@ -55,6 +56,8 @@ struct Problem {
   double variance = 1.0;   ///< factor on the fixes' stated covariances
   double roughness = 1.0;  ///< factor on the IMU's stated noise: what vibration adds
   double gate = 21.1;      ///< NIS of three degrees of freedom beyond which a fix is down-weighted
+  /// Called at every node that a pass comes to, for the progress.
+  std::function<void()> at_node = [] {};
 };
 
 /// Without a reference the filter feeds each correction back at once and linearises about its own estimate. With one, a trajectory near

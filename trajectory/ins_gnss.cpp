@@ -212,9 +212,26 @@ double moved(const SmootherRun& now, const std::vector<Estimate>& before, const 
   return most;
 }
 
+/// Counts the nodes that the passes come to. How many passes it takes shows only at the end; most records take so many.
+class PassCount {
+ public:
+  PassCount(size_t nodes, const core::OnProgress& progress) : usual_(usual_passes * static_cast<double>(nodes)), progress_(progress) {}
+  void operator()() {
+    constexpr int at_once = 256;
+    if (++done_ % at_once == 0) progress_(core::usual_share(static_cast<double>(done_), usual_), "filter and smoother");
+  }
+
+ private:
+  static constexpr double usual_passes = 9.0;
+  double usual_;
+  std::uint64_t done_ = 0;
+  const core::OnProgress& progress_;
+};
+
 /// The smoother over records that are in order.
 InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const core::ImuErrorModel& spec, const Vector3d& lever_arm,
-                          double lever_arm_sigma, const InsGnssOptions& options, const ClockFindings& clocks) {
+                          double lever_arm_sigma, const InsGnssOptions& options, const ClockFindings& clocks,
+                          const core::OnProgress& progress) {
   const std::vector<Span> standstills =
       options.zero_velocity || options.alignment != AlignmentMethod::given ? find_standstills(path, gnss, spec) : std::vector<Span>{};
   const std::vector<Node> nodes = nodes_of(path, gnss, options.zero_velocity ? standstills : std::vector<Span>{});
@@ -227,6 +244,8 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
   const Start start = start_of(path, gnss, alignment, spec, layout, lever_arm, lever_arm_sigma, options);
 
   problem.share = options.correlated_share.value_or(usual_share);
+  PassCount count(nodes.size(), progress);
+  problem.at_node = [&count] { count(); };
 
   // Repeated about the smoothed trajectory until it stays.
   problem.gate = first_gate;
@@ -284,7 +303,8 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
 }  // namespace
 
 InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core::ImuErrorModel& spec, const Vector3d& lever_arm,
-                     double lever_arm_sigma, const InsGnssOptions& stated_options, const StatedClocks& stated) {
+                     double lever_arm_sigma, const InsGnssOptions& stated_options, const StatedClocks& stated,
+                     const core::OnProgress& progress) {
   require_plausible(imu_records);
   require_finite(fixes);
   InsGnssOptions options = stated_options;
@@ -293,12 +313,13 @@ InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core
   ClockFindings clocks;
   clocks.stated = stated;
   clocks.imu.reason = clocks.velocity.reason = "not looked for";
+  progress(0.0, "clocks");
   if (options.clock_search.value > 0)
     clocks.imu = imu_clock_offset(path, records.gnss, spec, lever_arm, lever_arm_sigma, options.clock_search.value);
   if (records.gnss.has_velocity()) clocks.velocity = velocity_lag(records.gnss);
   options.use_velocity = options.use_velocity && !clocks.velocities_lag();
   try {
-    return smooth_path(path, records.gnss, spec, lever_arm, lever_arm_sigma, options, clocks);
+    return smooth_path(path, records.gnss, spec, lever_arm, lever_arm_sigma, options, clocks, progress);
   } catch (const core::Error& e) {
     if (!clocks.apart()) throw;
     throw core::Error(e.what(), e.where(), clocks.advice() + (e.hint().empty() ? "" : "; otherwise " + e.hint()), e.code());

@@ -11,6 +11,7 @@
 #include "core/gnss_data.h"
 #include "core/imu_data.h"
 #include "core/imu_spec.h"
+#include "core/on_progress.h"
 #include "core/option.h"
 #include "core/trajectory_data.h"
 #include "core/value.h"
@@ -115,7 +116,8 @@ struct InsGnssResult {
 /// read with, for the advice on them. Throws core::Error: no overlap in time, every fix rejected, attitude not to be found, a gap longer
 /// than max_gap, an IMU whose values cannot be (units, axes); with the clocks' offset in the hint where that may be the reason.
 InsGnssResult smooth(core::ImuData imu, core::GnssData gnss, const core::ImuErrorModel& spec, const Eigen::Vector3d& lever_arm,
-                     double lever_arm_sigma, const InsGnssOptions& options = {}, const StatedClocks& stated = {});
+                     double lever_arm_sigma, const InsGnssOptions& options = {}, const StatedClocks& stated = {},
+                     const core::OnProgress& progress = core::unwatched);
 
 }  // namespace swath::trajectory
 

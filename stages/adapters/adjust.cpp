@@ -75,7 +75,7 @@ class Adjust : public OptionStage<AdjustStageOptions> {
     const PreparedFlight prepared(context, options.errors, tally);
     calib::CalibrateOptions how = options;
     how.adjust.apriori = calib::start_sigmas(survey.sigma);
-    const calib::Calibrated calibrated = calib::calibrate(prepared.flight, how, tally);
+    const calib::Calibrated calibrated = calib::calibrate(prepared.flight, how, tally, context.progress);
     CalibrationReport report = report_on(context, prepared.lines);
     report.adjustment = calibrated.adjustment;
     report.ties = calibrated.ties;

@@ -326,7 +326,7 @@ class Contours : public OptionStage<ContourWriteOptions> {
     };
     size_t finished = 0;
     const auto write = [&](const Lines& lines) {
-      context.share(static_cast<double>(++finished) / static_cast<double>(levels.size()));
+      context.progress(static_cast<double>(++finished) / static_cast<double>(levels.size()), {});
       for (const terrain::ContourLine& line : *lines) {
         metres += terrain::length(line.vertices);
         closed += line.closed ? 1 : 0;

@@ -97,8 +97,9 @@ class InsGnss : public OptionStage<InsGnssStageOptions> {
     const Eigen::Vector3d lever_arm(antenna.lever_arm[0].value, antenna.lever_arm[1].value, antenna.lever_arm[2].value);
     core::ImuData imu = *context.imu;
     context.imu.reset();  // a record of hours is large, and no stage after this one reads it
-    trajectory::InsGnssResult result = trajectory::smooth(std::move(imu), *context.gnss, context.survey.imu_spec.model(), lever_arm,
-                                                          antenna.lever_arm_sigma.value, options, clocks_of(context.survey));
+    trajectory::InsGnssResult result =
+        trajectory::smooth(std::move(imu), *context.gnss, context.survey.imu_spec.model(), lever_arm, antenna.lever_arm_sigma.value,
+                           options, clocks_of(context.survey), context.progress);
     for (const auto& [key, value] : result.report.members())
       if (key != "warnings") findings[key] = value;
     if (const core::Value* warnings = result.report.find("warnings"); warnings && warnings->is_array())

@@ -150,7 +150,7 @@ class Strips : public OptionStage<StripStageOptions> {
   }
 
   void adjust(Context& context, const PreparedFlight& prepared, core::Tally& tally, core::Value& findings) const {
-    calib::AdjustedStrips strips = calib::adjust_strips(prepared.flight, options, tally);
+    calib::AdjustedStrips strips = calib::adjust_strips(prepared.flight, options, tally, context.progress);
     const auto corrected = std::make_shared<const trajectory::Trajectory>(std::move(*strips.trajectory));
 
     CalibrationReport report = report_on(context, prepared.lines);

@@ -43,7 +43,7 @@ Cover cover_of(const Context& context, const MergeJob& job) {
   Cover c;
   size_t done = 0;
   for (const TileKey key : job.tiles) {
-    context.share(static_cast<double>(done++) / static_cast<double>(job.tiles.size()));
+    context.progress(static_cast<double>(done++) / static_cast<double>(job.tiles.size()), {});
     const core::Grid grid = read_grid_tile(grid_file(job.folder, key));
     c.known += static_cast<std::uint64_t>(std::count(grid.reason.begin(), grid.reason.end(), core::Void::none));
     for (const core::Void hole : {core::Void::long_edge, core::Void::never_seen})

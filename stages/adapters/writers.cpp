@@ -207,7 +207,7 @@ class GridTiles : public OptionStage<NoOptions> {
     for (const Surface& s : made(context)) {
       const fs::path folder = context.output / name_of(s.product);
       std::vector<std::string> files;
-      context.share(static_cast<double>(done++) / static_cast<double>(surfaces().size()));
+      context.progress(static_cast<double>(done++) / static_cast<double>(surfaces().size()), {});
       for (const char* kind : {"", "_quality"}) {
         if (*kind && !s.has_quality) continue;
         std::vector<fs::path> tiles;

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "core/error.h"
 #include "tests/calib/tie_world.h"
@@ -57,7 +60,15 @@ struct Survey {
 TEST(Strips, LinesMeetAfterwards) {
   const Survey s(small_world(), crossed_lines());
   core::Tally tally;
-  const AdjustedStrips out = adjust_strips(s.flight, {}, tally);
+  std::vector<double> shares;
+  std::set<std::string, std::less<>> steps;
+  const AdjustedStrips out = adjust_strips(s.flight, {}, tally, [&](double share, std::string_view now) {
+    shares.push_back(share);
+    steps.emplace(now);
+  });
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_LT(shares.back(), 1.0);
+  EXPECT_TRUE(steps.contains("round 1: planes") && steps.contains("round 2: adjustment"));
   ASSERT_EQ(out.differences.pairs.size(), 3u);
   EXPECT_GT(out.differences.all.rms_before, 0.03);
   // Means of some hundred returns of 2 cm.

@@ -59,7 +59,7 @@ TEST(Progress, AStepWithoutCountsSaysThatItIsAtWorkAndHowFarItIs) {
     p.expect({0.0, 0.0});
     p.begin("trajectory.ins_gnss", 0, "");
     pass(pause);
-    p.share(0.5);
+    p.share(0.5, "round 2");
     pass(pause);
     p.end();
   });
@@ -68,6 +68,8 @@ TEST(Progress, AStepWithoutCountsSaysThatItIsAtWorkAndHowFarItIs) {
   EXPECT_EQ(lines[0].find("step")->as_int(), 1);
   EXPECT_EQ(lines[0].find("steps")->as_int(), 2);
   EXPECT_DOUBLE_EQ(lines[1].find("share")->as_number(), 0.5);
+  EXPECT_EQ(lines[1].find("now")->as_text(), "round 2");
+  EXPECT_EQ(lines[2].find("now"), nullptr);
   EXPECT_DOUBLE_EQ(lines[2].find("share")->as_number(), 1.0);
 }
 
