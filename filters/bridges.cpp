@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/floor_div.h"
@@ -37,15 +38,18 @@ enum class Side : std::uint8_t { level, open, falls };  ///< open: no returns be
 
 /// Among the cells up to `ring` around, the value nearest to z; nothing where there is none.
 std::optional<size_t> nearest_level(const core::Lattice& l, const std::vector<float>& level, int i, int j, float z, int ring = 1) {
-  std::optional<size_t> best;
-  for (int dj = -ring; dj <= ring; ++dj)
-    for (int di = -ring; di <= ring; ++di) {
-      if (!l.holds(i + di, j + dj)) continue;
-      const size_t c = l.at(i + di, j + dj);
-      if (std::isnan(level[c])) continue;
-      if (!best || std::abs(level[c] - z) < std::abs(level[*best] - z)) best = c;
+  size_t best = 0;
+  float least = std::numeric_limits<float>::infinity();  // NaN is not nearer
+  const int west = std::max(i - ring, 0), east = std::min(i + ring, l.nx - 1);
+  const int south = std::max(j - ring, 0), north = std::min(j + ring, l.ny - 1);
+  for (int v = south; v <= north; ++v) {
+    const size_t row = l.at(0, v);
+    for (int u = west; u <= east; ++u) {
+      const float off = std::abs(level[row + static_cast<size_t>(u)] - z);
+      if (off < least) least = off, best = row + static_cast<size_t>(u);
     }
-  return best;
+  }
+  return least < std::numeric_limits<float>::infinity() ? std::optional(best) : std::nullopt;
 }
 
 CellIndex ahead(int direction, int k) {

@@ -13,6 +13,7 @@
 #include <cmath>
 
 #include "core/floor_div.h"
+#include "core/wide.h"
 #include "filters/bins.h"
 #include "filters/plane_samples.h"
 
@@ -43,6 +44,12 @@ struct Plane {
   float cosine() const { return 1.0f / std::sqrt(1.0f + east * east + north * north); }
 };
 
+SWATH_WIDE size_t count_within(const float* x, const float* y, const float* z, size_t n, const Plane& plane, float band) {
+  std::int32_t count = 0;
+  for (size_t k = 0; k < n; ++k) count += std::abs(plane.above(x[k], y[k], z[k])) <= band ? 1 : 0;
+  return static_cast<size_t>(count);
+}
+
 struct Points {
   std::array<float, fullest> x, y, z;
   std::array<std::uint32_t, fullest> row;
@@ -51,11 +58,7 @@ struct Points {
     x[n] = px, y[n] = py, z[n] = pz, row[n] = r;
     ++n;
   }
-  size_t within(const Plane& plane, float band) const {
-    int count = 0;
-    for (size_t k = 0; k < n; ++k) count += std::abs(plane.above(x[k], y[k], z[k])) <= band;
-    return static_cast<size_t>(count);
-  }
+  size_t within(const Plane& plane, float band) const { return count_within(x.data(), y.data(), z.data(), n, plane, band); }
   Points on(const Plane& plane, float tolerance, bool is_on = true) const {
     Points out;
     const float band = tolerance / plane.cosine();

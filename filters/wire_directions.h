@@ -15,23 +15,25 @@ namespace swath::filters {
 /// that a neighbour touches count it whole: no line with enough neighbours is missed, some without are kept.
 class WireDirections {
  public:
+  static constexpr int slopes = 16, azimuths = 64;  ///< bins
+  struct Batch;
+
   /// Lines no steeper than `steepest` (rise / run) with at least three other neighbours of which one is at least `far` (m) away in plan.
   WireDirections(float near, float steepest, float far) : near_(near), steepest_(steepest), far_(far) {}
 
   void clear();
-  /// A neighbour at x, y, z from the point, m; returns the bin of the direction to it.
-  std::uint16_t add(float x, float y, float z);
+  /// `n` neighbours at x, y, z from the point, m; writes the bins of the directions to them.
+  void add(const float* x, const float* y, const float* z, std::size_t n, std::uint16_t* bin);
   /// Are there enough neighbours in any direction?
   bool any() const;
   /// ... in this bin?
   bool holds(std::uint16_t bin) const { return (fours_[bin / azimuths] & reach_[bin / azimuths]) >> bin % azimuths & 1u; }
 
  private:
-  static constexpr int slopes = 16, azimuths = 64;
   using Word = std::uint64_t;  ///< one bit for each bin of azimuth
-  int slope_bin(float slope) const;
   static Word bits(int first, int last);
-  void vote(Word azimuths, float lowest, float highest, bool is_far);
+  std::uint16_t add(const Batch& b, std::size_t k);
+  void vote(Word azimuths, int lowest, int highest, bool is_far);  ///< bins of slope
 
   float near_, steepest_, far_;
   std::array<Word, slopes> ones_{}, twos_{}, fours_{}, reach_{};  ///< counts of neighbours in binary, ending at four; of far ones

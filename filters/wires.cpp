@@ -16,6 +16,7 @@
 
 #include "filters/bins.h"
 #include "filters/wire_directions.h"
+#include "filters/wire_neighbours.h"
 #include "filters/wire_sieve.h"
 
 namespace swath::filters {
@@ -23,144 +24,17 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using namespace wire;
 
-constexpr double reach = 25.0;          // m from the point
-constexpr double shortest = 15.0;       // m of line
-constexpr double longest_gap = 7.0;     // m between returns of one wire
-constexpr double widest_gap = 16.0;     // m between groups of returns where lines of scan run nearly along it
-constexpr int fewest_over_gaps = 7;     // returns on the line with such gaps
-constexpr double least_baseline = 7.0;  // m from the point to the one that gives the direction: half of the shortest line
-constexpr double near_line = 0.5;       // m from the line through two returns, each off the wire by up to half the beam's width
-constexpr double on_line = 0.4;         // m from the line through all; holds a bundle of conductors together
-constexpr double tube_bin = 1.7;        // m: holds what is within the tube and half a step of it along the line
-constexpr double sleeve = 0.5;          // m around the line: empty beside a wire, not beside the edge of a surface
-constexpr double most_close = 0.1;      // points in it, of the returns on the line
-constexpr double most_beside = 0.25;    // cells of it beside the line, of the returns on the line
-constexpr double fit_off = 0.3;         // m from the straight line through two returns to the line through all,
-constexpr double fit_length = 7.0;      // m: so near to the point
-constexpr double cells_of_fit = 2.0;    // that one return may take in place of one
-constexpr int fewest = 5;               // returns on the line
-constexpr double steepest = 0.58;       // rise / run: a span of 150 m up a slope of 30 degrees
-constexpr double most_bent = 0.01;      // 1 / m: twice that of a catenary of parameter 200 m; as much downwards, for noise
-constexpr double thinned = 1.0;         // m: of each cube of this side one return takes part in the search for lines
-constexpr size_t most_nearest = 96;     // neighbours looked at
-constexpr int bins_of_reach = 4;
-
-struct Neighbour {
-  float distance2;
-  std::uint32_t row;
-};
-
-/// The nearest returns around a point, seen from it; in any order.
-class Around {
- public:
-  /// At most most_nearest within `radius` m; `bins` are radius / bins_of_reach wide.
-  void find(const Bins& bins, const core::Block& b, size_t p, double radius) {
-    const CellIndex c = cell_of(bins.lattice(), b, p);
-    near_.clear();
-    for (int ring = 0; ring <= bins_of_reach; ++ring) {
-      add_ring(bins, b, p, c, ring, static_cast<float>(radius * radius));
-      // All up to `ring` bins away are known now.
-      const auto known = static_cast<float>(ring * bins.lattice().cell);
-      if (near_.size() < most_nearest) continue;
-      const auto surely = std::count_if(near_.begin(), near_.end(), [&](const Neighbour& n) { return n.distance2 <= known * known; });
-      if (static_cast<size_t>(surely) >= most_nearest) break;
-    }
-    const auto before = [&b](const Neighbour& a, const Neighbour& o) {
-      if (a.distance2 != o.distance2) return a.distance2 < o.distance2;
-      return std::tie(b.x[a.row], b.y[a.row], b.z[a.row]) < std::tie(b.x[o.row], b.y[o.row], b.z[o.row]);
-    };
-    if (near_.size() > most_nearest) {
-      std::nth_element(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(most_nearest), near_.end(), before);
-      near_.resize(most_nearest);
-    }
-    n_ = near_.size();
-    for (size_t k = 0; k < n_; ++k) {
-      const std::uint32_t row = near_[k].row;
-      x_[k] = static_cast<float>(b.x[row] - b.x[p]), y_[k] = static_cast<float>(b.y[row] - b.y[p]),
-      z_[k] = static_cast<float>(b.z[row] - b.z[p]);
-    }
-  }
-
-  size_t size() const { return n_; }
-  Vector3d operator[](size_t k) const { return {x_[k], y_[k], z_[k]}; }
-  bool any_within(double distance) const {
-    const auto limit = static_cast<float>(distance * distance);
-    return std::any_of(near_.begin(), near_.end(), [limit](const Neighbour& n) { return n.distance2 <= limit; });
-  }
-
-  /// Can the straight line through the point and its k-th neighbour be a wire's?
-  bool is_line(size_t k) const {
-    const float run2 = x_[k] * x_[k] + y_[k] * y_[k];
-    return run2 >= least_baseline * least_baseline && z_[k] * z_[k] <= steepest * steepest * run2;
-  }
-  /// Counts the neighbours by direction.
-  void vote(WireDirections& directions) {
-    directions.clear();
-    for (size_t q = 0; q < n_; ++q) bin_[q] = directions.add(x_[q], y_[q], z_[q]);
-  }
-  bool lies_in(const WireDirections& directions, size_t k) const { return directions.holds(bin_[k]); }
-  /// Do enough neighbours lie near that line, over a stretch that is long enough?
-  bool may_be_wire(size_t k) const {
-    const float run = std::sqrt(x_[k] * x_[k] + y_[k] * y_[k]);
-    const float east = x_[k] / run, north = y_[k] / run, rise = z_[k] / run;
-    int n = 0;
-    float first = 0, last = 0;
-    for (size_t q = 0; q < n_; ++q) {
-      const float u = east * x_[q] + north * y_[q], v = east * y_[q] - north * x_[q], w = z_[q] - rise * u;
-      const bool near = v * v + w * w <= static_cast<float>(near_line * near_line);
-      n += near;
-      const float along = near ? u : 0.0f;
-      first = along < first ? along : first, last = along > last ? along : last;
-    }
-    return n + 1 >= fewest && last - first >= static_cast<float>(shortest - near_line) && is_bare(east, north, rise, n + 1);
-  }
-  /// Do enough neighbours lie near that line?
-  bool may_carry_on(size_t k) const {
-    const float run = std::sqrt(x_[k] * x_[k] + y_[k] * y_[k]);
-    const float east = x_[k] / run, north = y_[k] / run, rise = z_[k] / run;
-    int n = 0;
-    for (size_t q = 0; q < n_; ++q) {
-      const float v = east * y_[q] - north * x_[q], w = z_[q] - rise * (east * x_[q] + north * y_[q]);
-      n += v * v + w * w <= static_cast<float>(near_line * near_line);
-    }
-    return n + 1 >= fewest;
-  }
-
- private:
-  void add_ring(const Bins& bins, const core::Block& b, size_t p, CellIndex c, int ring, float limit) {
-    for (int dj = -ring; dj <= ring; ++dj)
-      for (int di = -ring; di <= ring; di += std::abs(dj) == ring || di == ring ? 1 : 2 * ring) {
-        if (!bins.lattice().holds(c.i + di, c.j + dj)) continue;
-        const auto points = bins.in(c.i + di, c.j + dj);
-        const auto rows = bins.rows(c.i + di, c.j + dj);
-        for (size_t k = 0; k < points.size(); ++k) {
-          const auto x = static_cast<float>(points[k].x - b.x[p]), y = static_cast<float>(points[k].y - b.y[p]),
-                     z = static_cast<float>(points[k].z - b.z[p]);
-          const float d2 = x * x + y * y + z * z;
-          if (d2 > 0.0f && d2 <= limit) near_.push_back({d2, rows[k]});
-        }
-      }
-  }
-
-  /// Do those beside the straight line, so far from its `n` that no fit brings them onto it, take few enough of its cross-section?
-  bool is_bare(float east, float north, float rise, int n) const {
-    constexpr auto least = static_cast<float>(on_line + fit_off), most = static_cast<float>(clear_tube - fit_off);
-    CrossSection cells;
-    for (size_t q = 0; q < n_; ++q) {
-      const float u = east * x_[q] + north * y_[q], v = east * y_[q] - north * x_[q], w = z_[q] - rise * u;
-      const float off2 = v * v + w * w;
-      if (std::abs(u) <= static_cast<float>(fit_length) && off2 >= least * least && off2 <= most * most)
-        cells.add(static_cast<double>(v), static_cast<double>(w));
-    }
-    return static_cast<double>(cells.taken()) <= most_beside * static_cast<double>(n) + cells_of_fit;
-  }
-
-  std::vector<Neighbour> near_;
-  std::array<float, most_nearest> x_, y_, z_;
-  std::array<std::uint16_t, most_nearest> bin_;  ///< of directions, since the last vote
-  size_t n_ = 0;
-};
+constexpr double reach = 25.0;       // m from the point
+constexpr double longest_gap = 7.0;  // m between returns of one wire
+constexpr double widest_gap = 16.0;  // m between groups of returns where lines of scan run nearly along it
+constexpr int fewest_over_gaps = 7;  // returns on the line with such gaps
+constexpr double tube_bin = 1.7;     // m: holds what is within the tube and half a step of it along the line
+constexpr double sleeve = 0.5;       // m around the line: empty beside a wire, not beside the edge of a surface
+constexpr double most_close = 0.1;   // points in it, of the returns on the line
+constexpr double most_bent = 0.01;   // 1 / m: twice that of a catenary of parameter 200 m; as much downwards, for noise
+constexpr double thinned = 1.0;      // m: of each cube of this side one return takes part in the search for lines
 
 /// u along, v across in plan, both from the point; w = level + rise u + bend u^2 / 2 in height.
 struct Line {
@@ -236,7 +110,7 @@ class Search {
   std::vector<std::uint8_t> in_line(const OwnBox& needed) const {
     std::vector<std::uint8_t> out(block_.size(), 0);
     const Bins wide(block_, reach / bins_of_reach, 0, [this](size_t p) { return few_[p] != 0; });
-    Around around;
+    WireNeighbours around;
     WireDirections directions(static_cast<float>(near_line), static_cast<float>(steepest),
                               static_cast<float>(0.5 * (shortest - near_line)));
     const auto is_in_line = [&](size_t p) {
@@ -266,7 +140,7 @@ class Search {
     std::vector<std::uint8_t> out = found;
     if (std::find(found.begin(), found.end(), 1) == found.end()) return out;
     const Bins lines(block_, shortest / bins_of_reach, 0, [&](size_t p) { return found[p] != 0; });
-    Around around;
+    WireNeighbours around;
     for (size_t p = 0; p < own; ++p) {
       if (!airy_[p] || found[p]) continue;
       around.find(lines, block_, p, shortest);
@@ -279,7 +153,7 @@ class Search {
 
  private:
   /// Those near the straight line through the point and `to`, the point among them.
-  static std::vector<Vector3d> along(const Around& around, const Vector3d& to) {
+  static std::vector<Vector3d> along(const WireNeighbours& around, const Vector3d& to) {
     std::vector<Vector3d> out;
     const double run = to.head<2>().norm();
     Line line{to.head<2>() / run};
@@ -293,7 +167,7 @@ class Search {
     return out;
   }
 
-  bool is_wire(size_t p, const Around& around, const Vector3d& to) const {
+  bool is_wire(size_t p, const WireNeighbours& around, const Vector3d& to) const {
     const std::vector<Vector3d> roughly = along(around, to);
     if (roughly.size() < fewest) return false;
     std::vector<double> on;
@@ -362,7 +236,7 @@ class Search {
     return true;
   }
 
-  static bool carries_on(const Around& around, const Vector3d& to) {
+  static bool carries_on(const WireNeighbours& around, const Vector3d& to) {
     std::vector<Vector3d> roughly = along(around, to);
     if (roughly.size() < fewest) return false;
     roughly.erase(roughly.begin());  // the line must not follow the point

@@ -28,6 +28,12 @@ std::pair<int, float> in_line(const std::vector<Place>& around, const Place& to)
   return {n, far};
 }
 
+std::uint16_t add(WireDirections& directions, float x, float y, float z) {
+  std::uint16_t bin = 0;
+  directions.add(&x, &y, &z, 1, &bin);
+  return bin;
+}
+
 TEST(WireDirections, NoLineWithEnoughNeighboursIsMissedAndMostOthersAreDropped) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> across(-20.0f, 20.0f), up(-6.0f, 6.0f);
@@ -40,8 +46,11 @@ TEST(WireDirections, NoLineWithEnoughNeighboursIsMissedAndMostOthersAreDropped) 
       for (size_t axis = 0; axis < 3; ++axis) around[k][axis] = (0.4f * static_cast<float>(k) - 1.1f) * end[axis] + 0.01f * across(random);
     WireDirections directions(near_line, steepest, far_away);
     directions.clear();
-    std::vector<std::uint16_t> bins;
-    for (const Place& q : around) bins.push_back(directions.add(q[0], q[1], q[2]));
+    std::array<std::vector<float>, 3> places;
+    for (const Place& q : around)
+      for (size_t axis = 0; axis < 3; ++axis) places[axis].push_back(q[axis]);
+    std::vector<std::uint16_t> bins(around.size());
+    directions.add(places[0].data(), places[1].data(), places[2].data(), around.size(), bins.data());
     for (size_t k = 0; k < around.size(); ++k) {
       const Place& q = around[k];
       const float run = std::hypot(q[0], q[1]);
@@ -65,13 +74,13 @@ TEST(WireDirections, ALineAlongTheEndOfTheHalfTurnCountsOnBothSides) {
   WireDirections directions(near_line, steepest, far_away);
   directions.clear();
   std::vector<std::uint16_t> bins;
-  for (const float x : {-9.0f, -6.0f, 5.0f, 8.0f}) bins.push_back(directions.add(x, x > 0.0f ? 0.1f : -0.1f, 0.4f * x));
+  for (const float x : {-9.0f, -6.0f, 5.0f, 8.0f}) bins.push_back(add(directions, x, x > 0.0f ? 0.1f : -0.1f, 0.4f * x));
   EXPECT_TRUE(directions.any());
   EXPECT_TRUE(directions.holds(bins[0]));
   EXPECT_TRUE(directions.holds(bins[3]));
-  EXPECT_TRUE(directions.holds(directions.add(8.0f, -0.05f, 3.2f)));  // the other end of the half turn
-  EXPECT_FALSE(directions.holds(directions.add(8.0f, 0.1f, -3.2f)));
-  EXPECT_FALSE(directions.holds(directions.add(0.1f, 8.0f, 3.2f)));
+  EXPECT_TRUE(directions.holds(add(directions, 8.0f, -0.05f, 3.2f)));  // the other end of the half turn
+  EXPECT_FALSE(directions.holds(add(directions, 8.0f, 0.1f, -3.2f)));
+  EXPECT_FALSE(directions.holds(add(directions, 0.1f, 8.0f, 3.2f)));
 }
 
 TEST(CrossSection, CountsEachCellOnceAndHoldsTheRimOfTheTube) {
