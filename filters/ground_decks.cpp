@@ -40,7 +40,9 @@ constexpr double oblique = 1.15;   // of the least width of all axes
 constexpr int growth = 5;          // cells
 constexpr int fewest_beside = 2, around = 6;  // of 8 cells around one, of a deck
 constexpr double share_open = 0.7;            // of its length that must show both sides
-constexpr float near_deck = 0.5f;             // m above or below: kerbs, rails
+constexpr float near_deck = 0.5f;             // m above or below: kerbs
+constexpr float near_rail = 1.3f;             // m above, at the edges: railings and parapets
+constexpr double void_at_end = 2.0;           // m without returns beside the end of a deck: banks come near there
 
 constexpr double closed = std::numeric_limits<double>::infinity();
 
@@ -169,12 +171,27 @@ class Cells {
         if (decks[c]) out[c] = beside >= fewest_beside;
         if (decks[c] || beside < fewest_beside) continue;
         if (ground_[c]) is_strip(i, j, 0);  // makes open_ known
-        if ((ground_[c] && beside < around && ((open_[c] & axes) == 0 || is_wider(c, narrow)))) continue;
+        if (ground_[c] && beside < around && ((open_[c] & axes) == 0 || is_wider(c, narrow)) && !is_end(i, j, axes, narrow)) continue;
         out[c] = 1;
         narrow_[c] = narrow, axes_[c] = axes;
         level_[c] = level;
       }
     return out;
+  }
+
+  /// Does a deck of these axes, `narrow` m wide, go on here between voids too narrow to begin one?
+  bool is_end(int i, int j, std::uint8_t axes, float narrow) const {
+    if (lattice_.cell > finest) return false;
+    const int least = std::max(bare, in_cells(void_at_end));
+    for (int axis = 0; axis < directions / 2; ++axis) {
+      if (!(axes >> axis & 1u)) continue;
+      int right = 0, left = 0;
+      if (side(i, j, (axis + directions / 4) % directions, right, least) != Side::level &&
+          side(i, j, (axis + 3 * directions / 4) % directions, left, least) != Side::level &&
+          (right + left + 1) * lattice_.cell <= static_cast<double>(narrow) + lattice_.cell)
+        return true;
+    }
+    return false;
   }
 
   /// Are there returns on both sides of a void, seen in the direction? Beyond the rim of the data there are not.
@@ -201,8 +218,8 @@ class Cells {
     return true;
   }
 
-  /// What is beside the surface in a direction once it ends, and how many cells on that is.
-  Side side(int i, int j, int direction, int& last) const {
+  /// What is beside the surface in a direction once it ends, and how many cells on that is. Open are `least_void` cells without returns.
+  Side side(int i, int j, int direction, int& last, int least_void) const {
     float z = top_[lattice_.at(i, j)];
     int void_cells = 0;
     last = 0;
@@ -218,7 +235,7 @@ class Cells {
         continue;
       }
       if (std::isnan(low_[c])) {
-        if (++void_cells >= std::max(open_cells, in_cells(wide_open)))
+        if (++void_cells >= least_void)
           return is_sharp(i, j, direction, last) && is_between_banks(i + to.i, j + to.j, direction) ? Side::open : Side::level;
         continue;
       }
@@ -253,8 +270,9 @@ class Cells {
   /// `closed` where the surface goes on.
   double width(int i, int j, int axis, bool& falls) const {
     int right = 0, left = 0;
-    const Side one = side(i, j, (axis + directions / 4) % directions, right);
-    const Side other = one == Side::level ? one : side(i, j, (axis + 3 * directions / 4) % directions, left);
+    const int least = std::max(open_cells, in_cells(wide_open));
+    const Side one = side(i, j, (axis + directions / 4) % directions, right, least);
+    const Side other = one == Side::level ? one : side(i, j, (axis + 3 * directions / 4) % directions, left, least);
     if (other == Side::level) return closed;
     falls = falls || one == Side::falls || other == Side::falls;
     return (right + left + 1) * lattice_.cell;
@@ -338,6 +356,14 @@ class Cells {
   std::array<std::vector<CellIndex>, directions> ahead_;
 };
 
+/// Is a cell around none of the deck's?
+bool is_edge(const core::Lattice& l, const std::vector<std::uint8_t>& deck, const CellIndex& at) {
+  for (int v = at.j - 1; v <= at.j + 1; ++v)
+    for (int u = at.i - 1; u <= at.i + 1; ++u)
+      if (!l.holds(u, v) || !deck[l.at(u, v)]) return true;
+  return false;
+}
+
 }  // namespace
 
 double ground_decks_halo(double longest) {
@@ -357,7 +383,10 @@ std::vector<std::uint8_t> ground_decks(const core::Block& b, const Districts& wh
     for (size_t p = 0; p < own; ++p) {
       const CellIndex at = cell_of(l, b, p);
       const size_t c = l.at(at.i, at.j);
-      if (deck[c]) out[p] = out[p] || std::abs(static_cast<float>(b.z[p]) - cells.top(c)) <= near_deck;
+      if (!deck[c]) continue;
+      const float above = static_cast<float>(b.z[p]) - cells.top(c);
+      const bool rail = b.classification[p] != core::point_class::ground && above <= near_rail && is_edge(l, deck, at);
+      out[p] = out[p] || (above >= -near_deck && (above <= near_deck || rail));
     }
   }
   return out;
