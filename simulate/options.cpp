@@ -2,6 +2,7 @@
 #include "simulate/options.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace swath::simulate {
 
@@ -82,6 +83,8 @@ core::ScannerModel model_of(Pattern p) {
   return core::ScannerModel::mirror;
 }
 
+double least_side_with_hall(const WorldOptions& w) { return std::hypot(w.hall_length.value, w.hall_width.value) + 10.0; }
+
 Features features_of(const WorldOptions& w) {
   Features f;
   switch (w.scene) {
@@ -159,7 +162,7 @@ Features features_of(const WorldOptions& w) {
   if (w.water) f.water = *w.water;
   if (w.power_line) f.power_line = *w.power_line;
   // Without room for it, or a ditch to cross, the scene goes without.
-  f.hall = w.hall.value_or(f.hall) && std::min(w.length.value, w.width.value) >= least_side_with_hall;
+  f.hall = w.hall.value_or(f.hall) && std::min(w.length.value, w.width.value) >= least_side_with_hall(w);
   f.bridge = w.bridge.value_or(f.bridge) && f.ditch > 0.0;
   return f;
 }

@@ -21,7 +21,7 @@ struct WorldOptions {
   std::optional<core::Metres> relief{}, scarp{}, embankment{}, ditch{};
   std::optional<double> scarp_slope{};
   std::optional<double> buildings{}, trees{}, woodland{}, foliage{}, low_vegetation{}, crops{};
-  core::Metres low_vegetation_height{0.8}, crop_height{1.6};
+  core::Metres low_vegetation_height{0.8}, crop_height{1.6}, hall_length{80.0}, hall_width{40.0};
   std::optional<bool> water{}, power_line{}, hall{}, bridge{};
 };
 
@@ -37,7 +37,8 @@ struct Features {
 };
 Features features_of(const WorldOptions& w);
 
-constexpr double least_side_with_hall = 100.0;  ///< m
+/// m: the shortest side of an area that has room for its hall, however that lies.
+double least_side_with_hall(const WorldOptions& w);
 
 template <class V>
 void describe(WorldOptions& w, V& v) {
@@ -68,10 +69,12 @@ void describe(WorldOptions& w, V& v) {
   v.option("crop_height", w.crop_height, core::within(0.1, 2), "Height of the tallest crops (from 0.1 m).");
   v.option("water", w.water, "A lake.");
   v.option("power_line", w.power_line, "A power line.");
-  v.option("hall", w.hall, "A flat-roofed hall of 80 m by 40 m, 12 m high, in the built-up part (airfield: has its own).");
+  v.option("hall", w.hall, "A flat-roofed hall, 12 m high, in the built-up part (airfield: has its own).");
+  v.option("hall_length", w.hall_length, core::within(10, 1000), "Length of the hall, nearly along the flight lines.");
+  v.option("hall_width", w.hall_width, core::within(10, 1000), "Width of the hall.");
   v.option("bridge", w.bridge, "A bridge over the ditch (class 17); the ground below it is seen from the sides.");
-  v.check(!w.hall.value_or(false) || std::min(w.length.value, w.width.value) >= least_side_with_hall,
-          "a hall needs an area of 100 m by 100 m");
+  v.check(!w.hall.value_or(false) || std::min(w.length.value, w.width.value) >= least_side_with_hall(w),
+          "a hall needs an area whose sides are 10 m longer than the hall's diagonal");
   v.check(!w.bridge.value_or(false) || features_of(w).ditch > 0.0, "a bridge needs a ditch to cross: set `ditch`");
 }
 

@@ -13,10 +13,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double hall_half_length = 40.0, hall_half_width = 20.0, hall_height = 12.0;  // m
-constexpr double deck_half_width = 5.0, deck_thickness = 0.8;                          // m
-constexpr double parcel_length = 50.0, parcel_width = 30.0, headland = 1.0;            // m
-constexpr double steepest_field = 0.25;                                                // rise / run
+constexpr double hall_height = 12.0;                                         // m
+constexpr double deck_half_width = 5.0, deck_thickness = 0.8;                // m
+constexpr double parcel_length = 50.0, parcel_width = 30.0, headland = 1.0;  // m
+constexpr double steepest_field = 0.25;                                      // rise / run
 constexpr int most_trees_in_field = 25;
 constexpr double steep_cover = 0.577350269;  // tan 30 degrees
 
@@ -28,9 +28,10 @@ Vector2d right_of(const Vector2d& along) { return {along.y(), -along.x()}; }
 void World::plan_hall(const WorldOptions& options, const Features& f, std::int64_t seed, core::Radians direction) {
   Random random = random_of(seed, Stream::structures, 0);
   const Vector2d along = unit(direction.value), across = right_of(along);
-  const double length = options.length.value, width = options.width.value, radius = std::hypot(hall_half_length, hall_half_width);
+  const double half_length = 0.5 * options.hall_length.value, half_width = 0.5 * options.hall_width.value;
+  const double length = options.length.value, width = options.width.value, radius = std::hypot(half_length, half_width);
   // In the built-up end of the area, whole within it; the driest of some places.
-  const double near = -0.5 * length + hall_half_length, far = std::max(near, -0.5 * length + f.built_up * length - hall_half_length);
+  const double near = -0.5 * length + half_length, far = std::max(near, -0.5 * length + f.built_up * length - half_length);
   const double side = std::max(0.0, 0.5 * width - radius);
   Vector2d place = Vector2d::Zero();
   for (int attempt = 0; attempt < 200; ++attempt) {
@@ -43,8 +44,8 @@ void World::plan_hall(const WorldOptions& options, const Features& f, std::int64
     if (dry) break;
   }
   const Vector2d ridge = unit(direction.value + random.uniform(-0.3, 0.3));
-  const double base = highest_corner(place, ridge, hall_half_length, hall_half_width);
-  add_building(place, ridge, hall_half_length, hall_half_width, base + hall_height, 0.0, core::point_class::building);
+  const double base = highest_corner(place, ridge, half_length, half_width);
+  add_building(place, ridge, half_length, half_width, base + hall_height, 0.0, core::point_class::building);
 }
 
 void World::plan_bridge(const WorldOptions& options, std::int64_t seed, core::Radians direction) {

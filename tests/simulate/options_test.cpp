@@ -41,6 +41,10 @@ TEST(SimulateOptions, ABridgeNeedsADitchAndAHallNeedsRoom) {
   EXPECT_TRUE(faults_of(o).empty());
   o.world.width = core::Metres(90);
   EXPECT_EQ(faults_of(o).size(), 1u);
+  o.world.width = core::Metres(250);
+  EXPECT_TRUE(faults_of(o).empty());
+  o.world.hall_length = core::Metres(240);
+  EXPECT_EQ(faults_of(o).size(), 1u);
   // What the scene alone would have, it goes without.
   WorldOptions zoo{.scene = Scene::zoo};
   EXPECT_TRUE(features_of(zoo).hall);
