@@ -26,6 +26,7 @@ constexpr double wall = 1.2, wall_per_run = 0.6;  // m, m per m: what falls by m
 constexpr double walled = 0.7;                    // share of walls in the border that is seen
 constexpr double cut = 0.1;                       // share of the border at the rim from which the rim cuts it
 constexpr double beside_higher = 0.3;             // walls per ray that ends at something higher: what stands beside it decides nothing
+constexpr double most_walled = 0.45;              // share of walls in all of the border; a straight rim leaves a hall more than a half
 constexpr int fewest = 4;                         // cells that lead on
 
 struct Ray {
@@ -234,7 +235,8 @@ bool is_object(const Border& b, const WallOptions& o) {
   if (b.walls == 0 || b.pits > 3 * b.walls || b.cells < fewest || across > o.longest || b.walls < walled * seen ||
       b.walls < beside_higher * b.higher)
     return false;
-  return b.rim <= cut * (seen + b.rim) || (b.walls >= o.walled_at_rim * (seen + b.rim) && across <= 2 * o.widest);
+  const int all = seen + b.rim;
+  return b.rim <= cut * all || b.walls >= most_walled * all || (b.walls >= o.walled_at_rim * all && across <= 2 * o.widest);
 }
 
 }  // namespace

@@ -32,13 +32,18 @@ def value_noise(seed, x, y, scale):
     return (grid[i, j] * (1 - a) + grid[i + 1, j] * a) * (1 - b) + (grid[i, j + 1] * (1 - a) + grid[i + 1, j + 1] * a) * b
 
 
-def cloud(name):
-    """Rows of easting, northing, height, return number, number of returns, strip; true where a return is from the ground."""
-    seed, density, slope, to_ground, to_low, patch, (lowest, highest), top_only = SCENES[name]
+def terrain(seed, slope, x, y):
+    return 100 + slope * x + 3 * value_noise(seed + 77, x, y, 60) + 0.03 * value_noise(seed + 78, x, y, 3)
+
+
+def cloud(name, seed=None):
+    """Rows of easting, northing, height, return number, number of returns, strip; true where a return is from the ground. `seed`: of another draw."""
+    own_seed, density, slope, to_ground, to_low, patch, (lowest, highest), top_only = SCENES[name]
+    seed = own_seed if seed is None else seed
     random = np.random.default_rng(seed)
     count = int(density * SIDE * SIDE)
     x, y = random.uniform(0, SIDE, (2, count))
-    ground = 100 + slope * x + 3 * value_noise(seed + 77, x, y, 60) + 0.03 * value_noise(seed + 78, x, y, 3)
+    ground = terrain(seed, slope, x, y)
     top = np.clip(lowest + (highest - lowest) * (0.5 + 0.35 * value_noise(seed + 6, x, y, 4)), lowest, highest)
     low = top * random.uniform(0.8, 1, count) if top_only else lowest + (top - lowest) * random.random(count) ** 0.7
     share, grows = random.random(count), value_noise(seed + 5, x, y, patch) > -0.5

@@ -100,7 +100,8 @@ TEST(Structures, AHallOfAnySizeIsWithinTheArea) {
   WorldOptions wide = zoo();
   wide.hall_length = core::Metres(150), wide.hall_width = core::Metres(90);
   for (int seed = 1; seed < 10; ++seed) {
-    const Building& hall = zoo_of(seed, wide).buildings().front();
+    const World world = zoo_of(seed, wide);
+    const Building& hall = world.buildings().front();
     EXPECT_NEAR(hall.planes[0][3] + hall.planes[1][3], 150.0, 1e-9);
     EXPECT_NEAR(hall.planes[2][3] + hall.planes[3][3], 90.0, 1e-9);
     const Vector2d across(std::cos(core::pi / 3), -std::sin(core::pi / 3));
