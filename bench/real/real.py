@@ -16,6 +16,7 @@ import numpy as np
 
 import clouds
 from clouds import common
+from peaks import peaks
 
 BLANK = 1  # class of every point that the program is given
 CHAIN = [{"type": "filters.noise"}, {"type": "filters.ground"}, {"type": "filters.water"}]
@@ -74,6 +75,8 @@ def judge(cloud, chain):
     found = {"name": cloud.name, "points": len(labels), "agreement": common.agreement(ground[judged], said[judged] == 2), **cost,
              "ground": ground[judged], "said": said[judged], "labels": labels[judged], "rim": rim(x, y)[judged], "error": error, "far": far,
              "probability": points["ground_probability"][judged].astype(float) if "ground_probability" in points else np.array([])}
+    groups, falls = peaks(x, y, np.asarray(source.z), said == 2)
+    found["peaks"] = [len(groups), sum(map(len, groups)), int(sum(ground[g].sum() for g in groups)), max(falls, default=0.0)]
     found["rates"] = {s["type"]: s["counts"]["in"] / max(s["seconds"], 1e-9) / 1e6 for s in report["stages"] if "counts" in s and "seconds" in s}
     return found
 
@@ -107,6 +110,11 @@ def terrain_table(found):
                              f"{100 * np.mean(np.abs(known) > 0.5):.2f}"])
     print("Terrain model minus that of the maker's ground, cells of 1 m by distance from the rim\n")
     common.table(["cloud", "from the rim m", "cells", "without height", "median m", "rms m", "off by > 0.5 m %"], rows)
+
+
+def peak_table(found):
+    print("Ground points alone high above all ground around\n")
+    common.table(["cloud", "groups", "points", "of them the maker's ground", "highest m"], [[f["name"], *f["peaks"][:3], f"{f['peaks'][3]:.1f}"] for f in found])
 
 
 def class_table(found):
@@ -163,6 +171,7 @@ def main():
         found.append(judge(cloud, chain))
     label_table(found)
     terrain_table(found)
+    peak_table(found)
     class_table(found)
     probability_tables(found)
     rates = sorted({name for f in found for name in f["rates"] if name.startswith(("filters.", "terrain."))})
