@@ -181,22 +181,24 @@ std::vector<std::vector<std::uint32_t>> groups_of(const core::Block& b, std::vec
   return groups;
 }
 
-std::vector<GroundEvidence> evidence_of(const core::Block& b, size_t own, const GroundOptions& o) {
+std::vector<GroundEvidence> evidence_of(const core::Block& b, size_t own, const GroundOptions& o, std::vector<RaisedSurface>& raised) {
   GroundBase base = ground_base(b, own, judged_around(), surface_options(o));
+  raised.insert(raised.end(), base.raised.begin(), base.raised.end());
   const core::Block near = own < b.size() ? points_of(b, base.rows) : core::Block{};
   std::vector<std::uint32_t>().swap(base.rows);
   return evidence_on(own < b.size() ? near : b, own, std::move(base), o);
 }
 
 /// Of the rows of one group, in its order, from the points within the halo alone.
-std::vector<GroundEvidence> evidence_of(const core::Block& b, const std::vector<std::uint32_t>& group, const GroundOptions& o) {
+std::vector<GroundEvidence> evidence_of(const core::Block& b, const std::vector<std::uint32_t>& group, const GroundOptions& o,
+                                        std::vector<RaisedSurface>& raised) {
   const OwnBox around(core::select(b, group), group.size(), halo(o));
   std::vector<std::uint8_t> taken(b.size(), 0);
   for (const std::uint32_t p : group) taken[p] = 1;
   std::vector<std::uint32_t> rows = group;
   for (std::uint32_t p = 0; p < b.size(); ++p)
     if (!taken[p] && around.holds(b, p)) rows.push_back(p);
-  return evidence_of(core::select(b, rows), group.size(), o);
+  return evidence_of(core::select(b, rows), group.size(), o, raised);
 }
 
 /// Are these rows so few and so far apart that groups of them take less than one surface over all?
@@ -207,9 +209,9 @@ bool is_scattered(const core::Block& b, const std::vector<std::uint32_t>& rows, 
   return static_cast<double>(l.size()) > 6.0 * static_cast<double>(rows.size());
 }
 
-}  // namespace
-
-std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, const GroundOptions& o) {
+/// As ground_evidence().
+std::vector<GroundEvidence> evidence_and_raised(const core::Block& b, size_t own, const GroundOptions& o,
+                                                std::vector<RaisedSurface>& raised) {
   GroundEvidence unknown;
   unknown.above = not_judged;
   if (own == 0) return {};
@@ -217,7 +219,7 @@ std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, co
   if (is_scattered(b, judged, o)) {
     std::vector<GroundEvidence> evidence(own, unknown);
     for (const std::vector<std::uint32_t>& group : groups_of(b, judged, halo(o))) {
-      const std::vector<GroundEvidence> found = evidence_of(b, group, o);
+      const std::vector<GroundEvidence> found = evidence_of(b, group, o, raised);
       for (size_t k = 0; k < group.size(); ++k) evidence[group[k]] = found[k];
     }
     return evidence;
@@ -225,17 +227,24 @@ std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, co
   std::vector<bool> is_judged(own, false);
   for (const std::uint32_t p : judged) is_judged[p] = true;
   std::vector<std::uint32_t>().swap(judged);
-  std::vector<GroundEvidence> evidence = evidence_of(b, own, o);
+  std::vector<GroundEvidence> evidence = evidence_of(b, own, o, raised);
   for (size_t p = 0; p < own; ++p)
     if (!is_judged[p]) evidence[p] = unknown;
   return evidence;
+}
+
+}  // namespace
+
+std::vector<GroundEvidence> ground_evidence(const core::Block& b, size_t own, const GroundOptions& o) {
+  std::vector<RaisedSurface> raised;
+  return evidence_and_raised(b, own, o, raised);
 }
 
 GroundChances classify_ground(core::Block& b, size_t own, const GroundOptions& o) {
   GroundChances n;
   core::add_columns(b, {core::Column::classification, core::Column::ground_probability});
   if (own == 0) return n;
-  const std::vector<GroundEvidence> evidence = ground_evidence(b, own, o);
+  const std::vector<GroundEvidence> evidence = evidence_and_raised(b, own, o, n.raised);
   std::vector<Verdict> verdicts(b.size(), Verdict::object);
   for (size_t p = 0; p < own; ++p) {
     const GroundEvidence& e = evidence[p];

@@ -9,6 +9,7 @@
 
 #include "core/block.h"
 #include "core/option.h"
+#include "filters/ground_coarse.h"
 #include "filters/ground_labels.h"
 #include "filters/ground_probability.h"
 
@@ -40,7 +41,8 @@ std::vector<GroundEvidence> ground_evidence(const core::Block& block, size_t own
 
 /// What one call did, counted over the own points.
 struct GroundChances : GroundCounts {
-  std::uint64_t doubtful = 0;  ///< probability between 0.25 and 0.75
+  std::uint64_t doubtful = 0;         ///< probability between 0.25 and 0.75
+  std::vector<RaisedSurface> raised;  ///< on and around the own points; wider ones than halo() are not known
 };
 
 /// Metres of points around a tile that its result depends on.

@@ -183,23 +183,39 @@ Raster halved(const Raster& r, const core::Lattice& l) {
 }
 
 /// Walls at two scales: with few returns, and where gardens and dormers break a roof up, only wide cells have neighbours.
-void remove_walled(Raster& lowest, const core::Lattice& l, const WallOptions& o) {
-  if (o.longest == 0) return;
+std::vector<WalledHill> remove_walled(Raster& lowest, const core::Lattice& l, const WallOptions& o) {
+  if (o.longest == 0) return {};
   Raster wide = halved(lowest, l);
   remove_walled(wide, doubled(o));
-  remove_walled(lowest, o);
+  std::vector<WalledHill> hills = remove_walled(lowest, o);
   const auto odd_i = static_cast<int>(l.i0 & 1), odd_j = static_cast<int>(l.j0 & 1);
   for (int j = 0; j < lowest.ny; ++j)
     for (int i = 0; i < lowest.nx; ++i)
       if (std::isnan(wide.value[wide.at((i + odd_i) / 2, (j + odd_j) / 2)])) lowest.value[lowest.at(i, j)] = void_value;
+  return hills;
 }
 
-/// The lowest returns without those in pits and on what walls surround.
-void remove_pits_and_walled(Raster& lowest, const core::Lattice& l, const GroundSurfaceOptions& o) {
+/// The lowest returns without those in pits and on what walls surround; what stays of that.
+std::vector<WalledHill> remove_pits_and_walled(Raster& lowest, const core::Lattice& l, const GroundSurfaceOptions& o) {
   Raster ground = lowest;
   remove_objects(ground, inpaint(lowest, gap_filling), Raster(lowest.nx, lowest.ny, 0.0F), o, std::min(window_of(o), pit_window));
   remove_pits(lowest, inpaint(ground, pit_filling));
-  remove_walled(lowest, l, walls_of(o));
+  WallOptions walls = walls_of(o);
+  walls.farthest = coarse_ground_reach(o);
+  return remove_walled(lowest, l, walls);
+}
+
+/// The hills of `all` that are still hills in the finished surface.
+std::vector<RaisedSurface> raised_in(const Raster& ground, const std::vector<WalledHill>& hills, const core::Lattice& all,
+                                     const core::Lattice& part) {
+  std::vector<RaisedSurface> out;
+  for (const WalledHill& h : hills) {
+    const auto i = static_cast<int>(h.i + all.i0 - part.i0), j = static_cast<int>(h.j + all.j0 - part.j0);
+    if (!part.holds(i, j) || !(static_cast<double>(ground.value[ground.at(i, j)]) > static_cast<double>(h.height) - 0.5 * h.rise)) continue;
+    out.push_back({all.centre_x(h.i), all.centre_y(h.j), (static_cast<double>(all.i0) + h.east) * all.cell,
+                   (static_cast<double>(all.j0) + h.north) * all.cell, h.length * all.cell, h.width * all.cell, h.rise});
+  }
+  return out;
 }
 
 }  // namespace
@@ -214,7 +230,8 @@ int coarse_ground_reach(const GroundSurfaceOptions& o) { return needs_of(o).all;
 
 int coarse_ground_rim(const GroundSurfaceOptions& o) { return gap_filling.support() + window_of(o) + 1; }
 
-Raster coarse_ground(Raster lowest, const core::Lattice& all, const core::Lattice& part, const GroundSurfaceOptions& o) {
+Raster coarse_ground(Raster lowest, const core::Lattice& all, const core::Lattice& part, const GroundSurfaceOptions& o,
+                     std::vector<RaisedSurface>* raised) {
   const int window = window_of(o);
   const Needs needs = needs_of(o);
   core::Lattice at = all;
@@ -223,7 +240,7 @@ Raster coarse_ground(Raster lowest, const core::Lattice& all, const core::Lattic
     for (Raster* r : rasters) *r = cropped(*r, at, to);
     at = to;
   };
-  remove_pits_and_walled(lowest, all, o);
+  const std::vector<WalledHill> hills = remove_pits_and_walled(lowest, all, o);
   crop(needs.walls, {&lowest});
   Raster ground = lowest, filled = inpaint(lowest, gap_filling), opened;
   {
@@ -235,8 +252,9 @@ Raster coarse_ground(Raster lowest, const core::Lattice& all, const core::Lattic
   crop(needs.decks + window, {&ground, &lowest, &filled, &opened});
   restore_crests(ground, {lowest, filled, opened, window - 1});
   crop(needs.crests, {&ground});
-  ground = smoothed(inpaint(ground, terrain_filling(window)), smoothing);
-  return cropped(ground, at, part);
+  ground = cropped(smoothed(inpaint(ground, terrain_filling(window)), smoothing), at, part);
+  if (raised) *raised = raised_in(ground, hills, all, part);
+  return ground;
 }
 
 }  // namespace swath::filters

@@ -2,6 +2,8 @@
 // The bare ground by cells, from the lowest return of each: objects are taken off and holes filled.
 #pragma once
 
+#include <vector>
+
 #include "core/grid.h"
 #include "filters/morphology.h"
 
@@ -17,10 +19,19 @@ struct GroundSurfaceOptions {
 
 constexpr double ground_cell = 1.0;  ///< m
 
+/// A surface wider than the widest building, most of whose border is walls, that stays in the ground. Map coordinates, m.
+struct RaisedSurface {
+  double x, y;           ///< a place on it, next to the middle
+  double east, north;    ///< the middle
+  double length, width;  ///< m
+  double rise;           ///< m, mean over its walls
+};
+
 /// Heights at the cells of `part`, which lies within `all`. `lowest`: the lowest return of each cell of `all`, m; NaN where none is. The
 /// result depends on the returns within coarse_ground_reach() cells; `all` must go on for coarse_ground_rim() cells beyond its outermost
-/// return, or for that reach around `part`.
-Raster coarse_ground(Raster lowest, const core::Lattice& all, const core::Lattice& part, const GroundSurfaceOptions& o);
+/// return, or for that reach around `part`. `raised` gets those surfaces whose place lies in `part`.
+Raster coarse_ground(Raster lowest, const core::Lattice& all, const core::Lattice& part, const GroundSurfaceOptions& o,
+                     std::vector<RaisedSurface>* raised = nullptr);
 
 int coarse_ground_reach(const GroundSurfaceOptions& o);
 int coarse_ground_rim(const GroundSurfaceOptions& o);

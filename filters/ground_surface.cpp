@@ -288,7 +288,7 @@ GroundBase ground_base(const core::Block& b, size_t own, double around, const Gr
   GroundBase base;
   const core::Lattice all = lattice_around(b, ground_cell, coarse_ground_rim(o));
   base.lattice = fine_lattice(b, own, all, around);
-  base.height = coarse_ground(lowest_returns(b, own, all, base.lattice, base.rows), all, base.lattice, o);
+  base.height = coarse_ground(lowest_returns(b, own, all, base.lattice, base.rows), all, base.lattice, o, &base.raised);
   return base;
 }
 

@@ -27,6 +27,7 @@ struct GroundBase {
   core::Lattice lattice;
   Raster height;                    ///< m, by cells (ground_coarse.h)
   std::vector<std::uint32_t> rows;  ///< own points, and others within the lattice that may_be_ground(); ascending
+  std::vector<RaisedSurface> raised;
 };
 /// For the first `own` points and `around` metres about them; empty where own is 0.
 GroundBase ground_base(const core::Block& b, size_t own, double around, const GroundSurfaceOptions& o);

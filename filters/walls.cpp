@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -18,16 +19,18 @@
 namespace swath::filters {
 namespace {
 
-constexpr int gap = 4;                            // cells without return to the next on a surface: one return per 5 m2 suffices
-constexpr int facade = 3;                         // cells within which a wall comes down
-constexpr int beyond_rim = 10;                    // cells without return: the rim of the data
-constexpr double link = 0.6, link_per_run = 0.6;  // m, m per m: step on one surface
-constexpr double wall = 1.2, wall_per_run = 0.6;  // m, m per m: what falls by more falls along a wall
-constexpr double walled = 0.7;                    // share of walls in the border that is seen
-constexpr double cut = 0.1;                       // share of the border at the rim from which the rim cuts it
-constexpr double beside_higher = 0.3;             // walls per ray that ends at something higher: what stands beside it decides nothing
-constexpr double most_walled = 0.45;              // share of walls in all of the border; a straight rim leaves a hall more than a half
-constexpr int fewest = 4;                         // cells that lead on
+constexpr int gap = 4;                             // cells without return to the next on a surface: one return per 5 m2 suffices
+constexpr int facade = 3;                          // cells within which a wall comes down
+constexpr int beyond_rim = 10;                     // cells without return: the rim of the data
+constexpr double link = 0.6, link_per_run = 0.6;   // m, m per m: step on one surface
+constexpr double wall = 1.2, wall_per_run = 0.6;   // m, m per m: what falls by more falls along a wall
+constexpr double walled = 0.7;                     // share of walls in the border that is seen
+constexpr double cut = 0.1;                        // share of the border at the rim from which the rim cuts it
+constexpr double beside_higher = 0.3;              // walls per ray that ends at something higher: what stands beside it decides nothing
+constexpr double most_walled = 0.45;               // share of walls in all of the border; a straight rim leaves a hall more than a half
+constexpr double doubtful = 0.5;                   // the same of a surface that stays and is reported
+constexpr double one_sided = 0.7, opposite = 0.8;  // of a terrace: the mean of its walls' directions, and how far uphill is against it
+constexpr int fewest = 4;                          // cells that lead on
 
 struct Ray {
   int i, j;
@@ -66,11 +69,19 @@ SWATH_WIDE void alike_all_around(const std::uint32_t* south, const std::uint32_t
   }
 }
 
+/// Rays in each direction.
+using Directions = std::array<int, rays.size()>;
+
 /// The border of one surface.
 struct Border {
   int cells = 0, west = 0, east = 0, south = 0, north = 0;
   int walls = 0, open = 0, higher = 0, rim = 0, pits = 0;  ///< rays that leave it
+  Directions walls_to{}, higher_to{};
   bool any = false;
+  double falls = 0;                                          ///< m, sum over the walls
+  std::int64_t n = 0, i = 0, j = 0, ii = 0, jj = 0, ij = 0;  ///< sums over all its cells
+  void add(std::int64_t x, std::int64_t y) { ++n, i += x, j += y, ii += x * x, jj += y * y, ij += x * y; }
+  int across() const { return std::max(east - west, north - south) + 1; }
 };
 
 class Surfaces {
@@ -97,6 +108,8 @@ class Surfaces {
   /// Number of the surface that a cell lies on; `none` where it lies on none.
   std::uint32_t of(size_t c) const { return on_[c]; }
   std::vector<Border> borders() const;
+  /// The cell of surface `on` next to the hill's middle; the southernmost, then westernmost of those as near.
+  void find_middle(WalledHill& hill, std::uint32_t on, const Border& b) const;
 
   static constexpr std::uint32_t none = 0xffffffffU;
 
@@ -179,7 +192,7 @@ class Surfaces {
     return best;
   }
 
-  void leave(Border& b, int i, int j, size_t c, const Ray& r) const;
+  void leave(Border& b, int i, int j, size_t c, size_t direction) const;
 
   double cell_;  ///< m
   const Raster& z_;
@@ -190,7 +203,8 @@ class Surfaces {
 };
 
 /// One ray from a cell of the surface.
-void Surfaces::leave(Border& b, int i, int j, size_t c, const Ray& r) const {
+void Surfaces::leave(Border& b, int i, int j, size_t c, size_t direction) const {
+  const Ray& r = rays[direction];
   const Next n = next(i, j, r, beyond_rim);
   if (n.run == 0.0) {
     ++b.rim;
@@ -201,14 +215,19 @@ void Surfaces::leave(Border& b, int i, int j, size_t c, const Ray& r) const {
     if (!z_.holds(i + k * r.i, j + k * r.j)) break;
     const size_t other = z_.at(i + k * r.i, j + k * r.j);
     if (z_.value[c] - z_.value[other] > wall + wall_per_run * k * r.run * cell_) {
-      ++(on_[other] != none ? b.walls : b.pits);
+      if (on_[other] == none) {
+        ++b.pits;
+        return;
+      }
+      ++b.walls, ++b.walls_to[direction];
+      b.falls += static_cast<double>(z_.value[c] - z_.value[other]);
       return;
     }
   }
   const double rise = z_.value[n.cell] - z_.value[c];
   // A cell on no surface is an edge, a chimney or a bush: it leads nowhere.
   if (rise > tolerance(n.run))
-    ++b.higher;
+    ++b.higher, ++b.higher_to[direction];
   else
     b.open += on_[n.cell] != none;
 }
@@ -224,31 +243,83 @@ std::vector<Border> Surfaces::borders() const {
     if (!b.any) b.any = true, b.west = b.east = i, b.south = b.north = j;
     b.west = std::min(b.west, i), b.east = std::max(b.east, i), b.south = std::min(b.south, j), b.north = std::max(b.north, j);
     b.cells += leads_[c];
+    b.add(i, j);
     if (inside) return;
-    for (const Ray& r : rays) leave(b, i, j, c, r);
+    for (size_t k = 0; k < rays.size(); ++k) leave(b, i, j, c, k);
   });
   return all;
 }
 
+/// The mean of the rays' directions: of length 1 where all are the same.
+std::array<double, 2> mean(const Directions& to) {
+  double n = 0, east = 0, north = 0;
+  for (size_t k = 0; k < to.size(); ++k) n += to[k], east += to[k] * rays[k].i / rays[k].run, north += to[k] * rays[k].j / rays[k].run;
+  return {east / n, north / n};
+}
+
+/// A step of a slope: it falls along walls to one side, and on the opposite one the slope goes on above it, along as much of its border.
+bool is_terrace(const Border& b) {
+  if (b.higher < b.walls || b.rim > cut * (b.walls + b.open + b.rim)) return false;
+  const auto [east, north] = mean(b.walls_to);
+  const auto [up_east, up_north] = mean(b.higher_to);
+  const double steep = std::hypot(east, north);
+  return steep >= one_sided && -(east * up_east + north * up_north) >= opposite * steep * std::hypot(up_east, up_north);
+}
+
+bool may_be_object(const Border& b) {
+  return b.walls > 0 && b.pits <= 3 * b.walls && b.cells >= fewest && b.walls >= beside_higher * b.higher && !is_terrace(b);
+}
+
 bool is_object(const Border& b, const WallOptions& o) {
-  const int across = std::max(b.east - b.west, b.north - b.south) + 1, seen = b.walls + b.open;
-  if (b.walls == 0 || b.pits > 3 * b.walls || b.cells < fewest || across > o.longest || b.walls < walled * seen ||
-      b.walls < beside_higher * b.higher)
-    return false;
-  const int all = seen + b.rim;
-  return b.rim <= cut * all || b.walls >= most_walled * all || (b.walls >= o.walled_at_rim * all && across <= 2 * o.widest);
+  const int seen = b.walls + b.open, all = seen + b.rim;
+  if (!may_be_object(b) || b.across() > o.longest || b.walls < walled * seen) return false;
+  return b.rim <= cut * all || b.walls >= most_walled * all || (b.walls >= o.walled_at_rim * all && b.across() <= 2 * o.widest);
+}
+
+/// The rectangle with the surface's moments; its cell next to the middle is still to be found.
+WalledHill hill_of(const Border& b) {
+  const auto n = static_cast<double>(b.n);
+  const double east = static_cast<double>(b.i) / n, north = static_cast<double>(b.j) / n;
+  const double ii = static_cast<double>(b.ii) / n - east * east, jj = static_cast<double>(b.jj) / n - north * north,
+               ij = static_cast<double>(b.ij) / n - east * north;
+  const double middle = 0.5 * (ii + jj), off = std::hypot(0.5 * (ii - jj), ij);
+  const auto side = [](double variance) { return std::sqrt(12.0 * std::max(0.0, variance)); };
+  return {-1, -1, 0.0F, b.falls / b.walls, east + 0.5, north + 0.5, side(middle + off), side(middle - off)};
+}
+
+bool is_doubtful(const Border& b, const WallOptions& o) {
+  const int seen = b.walls + b.open;
+  return may_be_object(b) && b.across() <= o.farthest && b.walls >= doubtful * seen && b.walls >= most_walled * (seen + b.rim);
+}
+
+void Surfaces::find_middle(WalledHill& hill, std::uint32_t on, const Border& b) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int j = b.south; j <= b.north; ++j)
+    for (int i = b.west; i <= b.east; ++i) {
+      if (on_[z_.at(i, j)] != on) continue;
+      const double d = std::hypot(i + 0.5 - hill.east, j + 0.5 - hill.north);
+      if (d < nearest) nearest = d, hill.i = i, hill.j = j, hill.height = z_.value[z_.at(i, j)];
+    }
 }
 
 }  // namespace
 
 int wall_support(const WallOptions& o) { return o.longest > 0 ? o.longest + 2 * gap + beyond_rim : 0; }
 
-void remove_walled(Raster& lowest, const WallOptions& o) {
-  if (o.longest == 0) return;
+std::vector<WalledHill> remove_walled(Raster& lowest, const WallOptions& o) {
+  if (o.longest == 0) return {};
   const Surfaces surfaces(lowest, o.cell);
   const std::vector<Border> borders = surfaces.borders();
+  std::vector<WalledHill> hills;
+  std::vector<std::uint32_t> number;
+  for (std::uint32_t k = 0; k < borders.size(); ++k) {
+    if (is_object(borders[k], o) || !is_doubtful(borders[k], o)) continue;
+    if (const WalledHill hill = hill_of(borders[k]); hill.width > 0.5 * o.widest) hills.push_back(hill), number.push_back(k);
+  }
+  for (size_t k = 0; k < hills.size(); ++k) surfaces.find_middle(hills[k], number[k], borders[number[k]]);
   for (size_t c = 0; c < lowest.value.size(); ++c)
     if (const std::uint32_t on = surfaces.of(c); on != Surfaces::none && is_object(borders[on], o)) lowest.value[c] = std::nanf("");
+  return hills;
 }
 
 }  // namespace swath::filters

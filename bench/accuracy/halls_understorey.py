@@ -82,7 +82,7 @@ def judge_halls(length, width, seeds):
             for cut, held in cuts.items():
                 said, report = labelled(common.scratch("halls/run"), cloud[held])
                 beside = np.all((along > -BESIDE) & (along < size + BESIDE), axis=1)[held] & (survey.kind[held] == 2)
-                warned = any("raised" in w for w in report.get("warnings", []) for w in [str(w)])
+                warned = any("between walls" in what for what in common.stage_of(report, "filters.ground").get("tally", {}))
                 found.setdefault(cut, []).append((said[roof[held]], ~said[beside], warned))
         for cut, parts in found.items():
             taken, lost = np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts])

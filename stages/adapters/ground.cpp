@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "stages/adapters/adapters.h"
@@ -15,6 +16,13 @@ namespace swath::stages {
 namespace {
 
 using core::Column;
+
+/// "middle 500123 5300456, 300 m x 200 m, walls of 12 m".
+std::string text_of(const filters::RaisedSurface& r, const Context& context) {
+  const auto whole = [](double v) { return std::to_string(std::llround(v)); };
+  return "middle " + whole(r.east / context.unit) + " " + whole(r.north / context.unit) + ", " + whole(r.length) + " m x " +
+         whole(r.width) + " m, walls of " + whole(r.rise) + " m";
+}
 
 class Ground : public OptionStage<Keeping<filters::GroundOptions>> {
  public:
@@ -62,6 +70,10 @@ class Ground : public OptionStage<Keeping<filters::GroundOptions>> {
     if (n.early) job.tally.count("not a last return, not ground", n.early);
     if (n.untouched) job.tally.count("withheld or noise, not looked at", n.untouched);
     if (n.no_surface) job.tally.count("no ground within reach", n.no_surface);
+    for (const filters::RaisedSurface& r : n.raised)
+      if (r.x >= job.box.x0 && r.x < job.box.x1 && r.y >= job.box.y0 && r.y < job.box.y1)
+        job.tally.count("warning: wide surfaces between walls kept as ground; buildings among them need a larger longest",
+                        text_of(r, context));
   }
 };
 

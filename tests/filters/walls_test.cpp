@@ -46,6 +46,61 @@ TEST(Walls, AHallOf150By90MetresIsNotGround) {
   }
 }
 
+TEST(Walls, AStraightRimThroughAHallOf150By90MetresDoesNotKeepIt) {
+  struct Part {
+    int i0, j0, width, height;
+  };
+  // Cut along its length and along its width: a quarter, a half and three quarters of it are in the data.
+  for (const Part& p : {Part{60, 0, 150, 22}, Part{60, 0, 150, 45}, Part{60, 0, 150, 68}, Part{0, 100, 38, 90}, Part{0, 100, 75, 90},
+                        Part{0, 100, 112, 90}}) {
+    const Raster before =
+        heights([&](int i, int j) { return within(i, j, p.i0, p.j0, p.i0 + p.width, p.j0 + p.height) ? level + 9.0F : level; });
+    Raster after = before;
+    remove_walled(after, {});
+    EXPECT_EQ(voided(before, after, p.i0, p.j0, p.i0 + p.width, p.j0 + p.height), 1.0) << p.width << " x " << p.height;
+    EXPECT_EQ(voided(before, after, 220, 0, size, size), 0.0);
+  }
+}
+
+TEST(Walls, ATerraceThatTheRimCutsStays) {
+  // Two of its sides are the rim of the data.
+  const Raster before = heights([](int i, int j) { return i + j < 150 ? level + 5.0F : level; });
+  Raster after = before;
+  EXPECT_TRUE(remove_walled(after, {.farthest = 250}).empty());
+  EXPECT_EQ(voided(before, after, 0, 0, size, size), 0.0);
+}
+
+TEST(Walls, TerracesOfASlopeStay) {
+  // Steps of 3 m every 12 m, 40 m long, set off from those beside by half a step. Of those at the rim too little is seen.
+  const Raster before = heights([](int i, int j) {
+    const int odd = i / 40 % 2;
+    const double step = 3.0 * std::floor((j + 6 * odd) / 12.0) - 1.5 * odd;
+    return level + static_cast<float>(j < 60 || j > 240 ? 0.25 * j : step);
+  });
+  Raster after = before;
+  EXPECT_TRUE(remove_walled(after, {.farthest = 250}).empty());
+  EXPECT_EQ(voided(before, after, 40, 0, 280, size), 0.0);
+}
+
+TEST(Walls, WhatIsTooLongStaysAndIsReportedWithPlaceAndSize) {
+  const Raster before = heights([](int i, int j) { return within(i, j, 40, 100, 260, 220) ? level + 9.0F : level; });
+  Raster after = before;
+  EXPECT_TRUE(remove_walled(after, {}).empty());  // it is not asked for
+  const std::vector<WalledHill> hills = remove_walled(after, {.farthest = 250});
+  EXPECT_EQ(voided(before, after, 0, 0, size, size), 0.0);
+  ASSERT_EQ(hills.size(), 1u);
+  EXPECT_NEAR(hills[0].east, 150.0, 0.1);
+  EXPECT_NEAR(hills[0].north, 160.0, 0.1);
+  EXPECT_NEAR(hills[0].length, 220.0, 0.5);
+  EXPECT_NEAR(hills[0].width, 120.0, 0.5);
+  EXPECT_NEAR(hills[0].rise, 9.0, 1e-6);
+  EXPECT_EQ(hills[0].height, level + 9.0F);
+  EXPECT_NEAR(hills[0].i + 0.5, hills[0].east, 1.0);
+  EXPECT_TRUE(remove_walled(after, {.farthest = 200}).empty());
+  EXPECT_TRUE(remove_walled(after, {.longest = 230, .farthest = 250}).empty());
+  EXPECT_EQ(voided(before, after, 40, 100, 260, 220), 1.0);
+}
+
 TEST(Walls, GableRoofsAndHedgesAtTheirEavesChangeNothing) {
   const Raster before = heights([](int i, int j) {
     if (within(i, j, 60, 60, 120, 84)) return level + 4.0F + 0.5F * static_cast<float>(12 - std::abs(j - 72));
