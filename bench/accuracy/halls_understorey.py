@@ -43,7 +43,7 @@ def write(folder, rows):
 
 
 def labelled(folder, rows, products=()):
-    """True where a row is taken for ground; the report's warnings."""
+    """True where a row is taken for ground; the report."""
     write(folder, rows)
     report = common.run([{"type": "readers.las"}, *FILTERS, *products, *WRITE], folder / "survey.toml", folder / "out")
     points = common.points_of(folder / "out")
@@ -55,7 +55,7 @@ def labelled(folder, rows, products=()):
 def hall_of(survey):
     """Rows of the largest building's returns, and two axes with the hall between 0 and its size."""
     parts, _ = ndimage.label(survey.cover == 4)
-    largest = 1 + np.argmax(np.bincount(parts[parts > 0]) [1:])
+    largest = 1 + np.argmax(np.bincount(parts[parts > 0])[1:])
     part = common.nearest(ndimage.binary_dilation(parts == largest).astype(float), survey.place, survey.truth["e"], survey.truth["n"])
     roof = (part == 1) & (survey.kind == 6)
     at = np.stack([survey.truth["e"], survey.truth["n"]], axis=1)
