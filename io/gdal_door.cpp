@@ -17,6 +17,7 @@
 
 #include "core/crs.h"
 #include "core/error.h"
+#include "io/output_file.h"
 
 namespace swath::io {
 namespace {
@@ -132,17 +133,19 @@ void GdalMessages::note(bool failure, const char* message) {
 }
 
 void GdalMessages::fail(const std::string& doing, const std::filesystem::path& file, std::string hint) const {
-  std::error_code ec;
-  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-  const auto space = std::filesystem::space(folder, ec);
-  constexpr std::uintmax_t nearly_nothing = 1u << 20;  // bytes
-  const bool full = text_.find("No space left") != std::string::npos || (!ec && space.available < nearly_nothing);
-  if (full && hint.empty()) hint = "the disk is full: free space there, then run the same command again; what is finished is kept";
   throw core::Error(text_.empty() ? doing : doing + ": " + text_, file.string(), hint);
 }
 
 void GdalMessages::check(const std::string& doing, const std::filesystem::path& file) const {
   if (failed_) fail(doing, file);
+}
+
+void GdalMessages::fail_writing(const std::filesystem::path& file, const std::string& why) const {
+  throw_write_error("cannot write" + (why.empty() ? "" : ": " + why) + (text_.empty() ? "" : ": " + text_), file);
+}
+
+void GdalMessages::check_written(const std::filesystem::path& file) const {
+  if (failed_) fail_writing(file);
 }
 
 void CloseDataset::operator()(GDALDataset* dataset) const { GDALClose(dataset); }

@@ -24,10 +24,14 @@ class GdalMessages {
   /// The first failure's text, or the first warning's; empty where GDAL said nothing.
   const std::string& text() const { return text_; }
   void note(bool failure, const char* message);
-  /// Throws core::Error "doing: GDAL's text" for `file`, with a hint where the disk is full.
+  /// Throws core::Error "doing: GDAL's text" for `file`.
   [[noreturn]] void fail(const std::string& doing, const std::filesystem::path& file, std::string hint = {}) const;
   /// fail() where GDAL reported a failure.
   void check(const std::string& doing, const std::filesystem::path& file) const;
+  /// For a file that is being written: throws core::SystemError, with a hint where the disk is full.
+  [[noreturn]] void fail_writing(const std::filesystem::path& file, const std::string& why = {}) const;
+  /// fail_writing() where GDAL reported a failure.
+  void check_written(const std::filesystem::path& file) const;
 
  private:
   bool failed_ = false;

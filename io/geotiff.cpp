@@ -26,7 +26,7 @@ constexpr double square_tolerance = 1e-6;
 /// What a truncated file cannot pass: every block lies within the file. Only libraries' final flush could lose data unseen.
 void check_blocks(const std::filesystem::path& file, const std::filesystem::path& final_name, const GdalMessages& messages) {
   const Dataset made(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER));
-  if (!made) messages.fail("cannot write", final_name);
+  if (!made) messages.fail_writing(final_name);
   const auto size = std::filesystem::file_size(file);
   GDALRasterBand* band = made->GetRasterBand(1);
   int bx = 0, by = 0;
@@ -37,7 +37,7 @@ void check_blocks(const std::filesystem::path& file, const std::filesystem::path
       const char* offset = band->GetMetadataItem(("BLOCK_OFFSET_" + at).c_str(), "TIFF");
       const char* length = band->GetMetadataItem(("BLOCK_SIZE_" + at).c_str(), "TIFF");
       if (!offset || !length || std::stoull(offset) + std::stoull(length) > size)
-        messages.fail("cannot write: the file was cut short", final_name);
+        messages.fail_writing(final_name, "the file was cut short");
     }
 }
 
@@ -158,9 +158,9 @@ void write_raster(const std::filesystem::path& file, const core::Lattice& lattic
   if (!cog) throw core::Error("this GDAL has no COG driver", file.string(), "GDAL 3.1 or later is needed");
   {
     const Dataset made(cog->CreateCopy(out.temporary().c_str(), memory.get(), false, const_cast<char**>(options), nullptr, nullptr));
-    if (!made) messages.fail("cannot write", file);
+    if (!made) messages.fail_writing(file);
   }
-  messages.check("cannot write", file);
+  messages.check_written(file);
   check_blocks(out.temporary(), file, messages);
   out.commit();
 }

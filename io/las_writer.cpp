@@ -54,10 +54,7 @@ struct LasRawWriter::State {
 
   void laz_check(int code, const std::array<char, 512>& message) const {
     if (code == SWATH_LAZ_OK) return;
-    const std::string what = message.data();
-    throw core::Error(
-        "cannot write compressed points: " + what, file.string(),
-        what.find("os error 28") != std::string::npos ? "the disk is full: free space there, then run the same command again" : "");
+    throw_write_error("cannot write compressed points: " + std::string(message.data()), file);
   }
 
   void open() {

@@ -2,6 +2,7 @@
 #include "io/output_file.h"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -12,16 +13,50 @@
 #include "core/error.h"
 
 namespace swath::io {
+namespace {
+
+thread_local FinishedFiles* innermost = nullptr;
+
+}  // namespace
+
+FinishedFiles::FinishedFiles(std::function<void(const std::filesystem::path&)> then) : outer_(innermost), then_(std::move(then)) {
+  innermost = this;
+}
+FinishedFiles::~FinishedFiles() { innermost = outer_; }
+
+namespace {
+
+constexpr const char *full_hint = "the disk is full: free space there, then run the same command again; what is finished is kept",
+                     *limit_hint =
+                         "the file size limit is reached: raise it (ulimit -f), then run the same command again; what is finished is kept";
+
+}  // namespace
 
 void throw_system_error(std::string_view doing, const std::filesystem::path& file, int code) {
   std::string hint;
-  if (code == ENOSPC || code == EDQUOT)
-    hint = "the disk is full: free space there, then run the same command again; what is finished is kept";
-  if (code == EFBIG)
-    hint = "the file size limit is reached: raise it (ulimit -f), then run the same command again; what is finished is kept";
+  if (code == ENOSPC || code == EDQUOT) hint = full_hint;
+  if (code == EFBIG) hint = limit_hint;
   if (code == EACCES || code == EPERM || code == EROFS) hint = "choose a folder that you may write to";
   if (code == ENOENT) hint = "check the name; names in a survey are relative to its survey.toml";
+  if (code == ENAMETOOLONG) hint = "choose a folder with a shorter path, or shorter names";
   throw core::SystemError(std::string(doing) + ": " + (code ? std::strerror(code) : "unknown reason"), file.string(), hint);
+}
+
+void throw_write_error(const std::string& what, const std::filesystem::path& file) {
+  const auto says = [&](int code) {
+    return what.find(std::strerror(code)) != std::string::npos || what.find("os error " + std::to_string(code) + ")") != std::string::npos;
+  };
+  std::error_code ec;
+  const auto space = std::filesystem::space(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."), ec);
+  constexpr std::uintmax_t nearly_nothing = 1u << 20;  // bytes
+  if (says(ENOSPC) || says(EDQUOT) || (!ec && space.available < nearly_nothing)) {
+    const std::string reason = says(ENOSPC) || says(EDQUOT) ? "" : std::string(": ") + std::strerror(ENOSPC);
+    throw core::SystemError(what + reason, file.string(), full_hint);
+  }
+  struct rlimit limit {};
+  if (says(EFBIG) || (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY))
+    throw core::SystemError(what, file.string(), limit_hint);
+  throw core::SystemError(what, file.string(), "does the disk work, and is the folder still there? The same command goes on from here");
 }
 
 OutputFile::OutputFile(std::filesystem::path final_name) : final_(std::move(final_name)) {
@@ -45,17 +80,24 @@ OutputFile::~OutputFile() {
   std::filesystem::remove(temporary_, ignored);
 }
 
-void OutputFile::commit(bool flush) {
-  const int fd = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) throw_system_error("cannot finish", final_, errno);
-  const int failed = flush && ::fsync(fd) ? errno : 0;
+void flush_to_disk(const std::filesystem::path& file) {
+  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) throw_system_error("cannot finish", file, errno);
+  const int failed = ::fsync(fd) ? errno : 0;
   ::close(fd);
-  if (failed) throw_system_error("cannot finish", final_, failed);
-  if (std::rename(temporary_.c_str(), final_.c_str())) throw_system_error("cannot finish", final_, errno);
-  committed_ = true;
+  if (failed && failed != EINVAL) throw_system_error("cannot finish", file, failed);  // file systems without it say so
 }
 
-void write_text_file(const std::filesystem::path& file, std::string_view text, bool flush) {
+void OutputFile::commit() {
+  flush_to_disk(temporary_);
+  if (std::rename(temporary_.c_str(), final_.c_str())) throw_system_error("cannot finish", final_, errno);
+  committed_ = true;
+  if (!innermost) return;
+  innermost->files_.push_back(final_);
+  if (innermost->then_) innermost->then_(final_);
+}
+
+void write_text_file(const std::filesystem::path& file, std::string_view text) {
   OutputFile out(file);
   const int fd = ::open(out.temporary().c_str(), O_WRONLY | O_CLOEXEC);
   if (fd < 0) throw_system_error("cannot write", file, errno);
@@ -70,7 +112,7 @@ void write_text_file(const std::filesystem::path& file, std::string_view text, b
     done += static_cast<size_t>(n);
   }
   ::close(fd);
-  out.commit(flush);
+  out.commit();
 }
 
 }  // namespace swath::io

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace swath::io {
 
@@ -18,9 +21,8 @@ class OutputFile {
 
   /// The name to write to, for libraries that open files themselves.
   const std::filesystem::path& temporary() const { return temporary_; }
-  /// Flushes to disk and renames. Throws core::Error. Intermediate results pass `flush` = false: they survive a killed
-  /// process, not a power failure, and a run can make them again.
-  void commit(bool flush = true);
+  /// Flushes to disk and renames. Throws core::Error.
+  void commit();
 
  private:
   std::filesystem::path final_, temporary_;
@@ -28,7 +30,31 @@ class OutputFile {
 };
 
 /// Writes a small file through OutputFile.
-void write_text_file(const std::filesystem::path& file, std::string_view text, bool flush = true);
+void write_text_file(const std::filesystem::path& file, std::string_view text);
+
+/// A file, or a folder's list of names, as the disk keeps it. Throws core::SystemError.
+void flush_to_disk(const std::filesystem::path& file);
+
+/// The files that OutputFile finishes on this thread while the object lives; of nested ones the innermost gets them.
+class FinishedFiles {
+ public:
+  /// `then`: called with each, once it has its name.
+  explicit FinishedFiles(std::function<void(const std::filesystem::path&)> then = {});
+  ~FinishedFiles();
+  FinishedFiles(const FinishedFiles&) = delete;
+  FinishedFiles& operator=(const FinishedFiles&) = delete;
+
+  const std::vector<std::filesystem::path>& files() const { return files_; }
+
+ private:
+  friend class OutputFile;
+  FinishedFiles* outer_;
+  std::function<void(const std::filesystem::path&)> then_;
+  std::vector<std::filesystem::path> files_;
+};
+
+/// core::SystemError where a library could not write `file` and says why in words alone, with the same hints.
+[[noreturn]] void throw_write_error(const std::string& what, const std::filesystem::path& file);
 
 /// core::Error for a failed system call on `file` by errno: names the reason, with a hint for a full disk or missing rights.
 [[noreturn]] void throw_system_error(std::string_view doing, const std::filesystem::path& file, int code);

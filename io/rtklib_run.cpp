@@ -119,7 +119,7 @@ fs::path run_rtklib(const RtklibJob& job) {
   const Log log = read_log(scratch.path / "log");
   std::string command = job.program.string();
   for (const std::string& a : arguments) command += " " + a;
-  write_text_file(log_file, command + "\n" + log.text + end.text() + "\n", false);
+  write_text_file(log_file, command + "\n" + log.text + end.text() + "\n");
 
   const std::string last_line = log.last.empty() ? "" : "; it says: " + log.last;
   if (end.too_long)

@@ -26,7 +26,7 @@ class GpkgSink : public ContourSink {
     if (!driver) throw core::Error("this GDAL has no GeoPackage driver", file.string());
     const char* const creation[] = {"VERSION=1.2", nullptr};
     set_ = driver->Create(out_.temporary().c_str(), 0, 0, 0, GDT_Unknown, const_cast<char**>(creation));
-    if (!set_) scope.messages.fail("cannot write", file_);
+    if (!set_) scope.messages.fail_writing(file_);
     try {
       make_layers(crs, scope);
     } catch (...) {
@@ -75,10 +75,10 @@ class GpkgSink : public ContourSink {
 
   void close() override {
     const Scope scope;
-    if (set_->CommitTransaction() != OGRERR_NONE) scope.messages.fail("cannot write", file_);
+    if (set_->CommitTransaction() != OGRERR_NONE) scope.messages.fail_writing(file_);
     GDALClose(std::exchange(set_, nullptr));
     remove_side_files();
-    scope.messages.check("cannot write", file_);
+    scope.messages.check_written(file_);
     out_.commit();
   }
 
@@ -90,9 +90,9 @@ class GpkgSink : public ContourSink {
   };
 
   void write(OGRLayer& layer, OGRFeature& feature, const Scope& scope) {
-    if (layer.CreateFeature(&feature) != OGRERR_NONE) scope.messages.fail("cannot write", file_);
+    if (layer.CreateFeature(&feature) != OGRERR_NONE) scope.messages.fail_writing(file_);
     if (++pending_ < features_per_transaction) return;
-    if (set_->CommitTransaction() != OGRERR_NONE || set_->StartTransaction() != OGRERR_NONE) scope.messages.fail("cannot write", file_);
+    if (set_->CommitTransaction() != OGRERR_NONE || set_->StartTransaction() != OGRERR_NONE) scope.messages.fail_writing(file_);
     pending_ = 0;
   }
 
@@ -110,11 +110,11 @@ class GpkgSink : public ContourSink {
     const std::string description = "DESCRIPTION=" + about + "; heights in " + crs.vertical_unit + ", " + crs.vertical_name;
     const char* const options[] = {"GEOMETRY_NAME=geom", "FID=fid", "SPATIAL_INDEX=YES", description.c_str(), nullptr};
     OGRLayer* layer = set_->CreateLayer(name, crs.empty ? nullptr : &srs, type, const_cast<char**>(options));
-    if (!layer) scope.messages.fail("cannot write", file_);
+    if (!layer) scope.messages.fail_writing(file_);
     for (const FieldKind& kind : fields) {
       OGRFieldDefn field(kind.name, kind.type);
       field.SetSubType(kind.subtype);
-      if (layer->CreateField(&field) != OGRERR_NONE) scope.messages.fail("cannot write", file_);
+      if (layer->CreateField(&field) != OGRERR_NONE) scope.messages.fail_writing(file_);
     }
     return layer;
   }
@@ -128,7 +128,7 @@ class GpkgSink : public ContourSink {
     labels_ = make_layer("labels", "Heights along index contours, rotation in degrees counter-clockwise from east", wkbPoint,
                          {text("text"), real("height"), real("rotation"), real("text_height")}, crs, scope);
     spots_ = make_layer("spot_heights", "Tops and pits", wkbPoint, {real("height"), text("text"), text("kind")}, crs, scope);
-    if (set_->StartTransaction() != OGRERR_NONE) scope.messages.fail("cannot write", file_);
+    if (set_->StartTransaction() != OGRERR_NONE) scope.messages.fail_writing(file_);
   }
 
   /// Lets go of an unfinished file.

@@ -4,20 +4,24 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 namespace swath::pipeline {
+
+/// Called with each file that a delivery writes or removes; throws where it is to stay.
+using Allowed = std::function<void(const std::filesystem::path&)>;
+
+/// Throws where a file below `made` could not get its name below `output`, before anything is touched.
+void check_delivery(const std::filesystem::path& made, const std::filesystem::path& output, const Allowed& allowed = {});
 
 /// Puts every file below `made` to the same place below `output`, each whole or not at all, in the order of their names. Products
 /// that a tiles.json of an earlier run lists and the new one does not are removed. With `keep` the files of `made` stay apart
 /// from the delivered ones (copies); otherwise both are one file where the file system allows. A delivery that was cut short may be
-/// repeated. Throws core::SystemError.
+/// repeated. Nothing temporary lies in `output` meanwhile, but where a part of it is another disk. Throws core::SystemError.
 void deliver(const std::filesystem::path& made, const std::filesystem::path& output, bool keep);
 
 /// Removes a folder under the name `as` beside it, so that one whose removal was cut short is not taken for a whole one. Failures are
 /// passed over: what is left is under that name.
 void discard(const std::filesystem::path& folder, const std::filesystem::path& as);
-
-/// Removes temporary files (see io::OutputFile) that a killed run left below `folder`.
-void remove_temporary_files(const std::filesystem::path& folder);
 
 }  // namespace swath::pipeline

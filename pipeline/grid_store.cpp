@@ -11,11 +11,12 @@ core::Grid GridStore::window(stages::Product product, const core::Lattice& latti
   core::Grid out(lattice);
   const auto at = folders_.find(product);
   if (at == folders_.end()) return out;
+  const std::set<std::filesystem::path>& there = files_.at(product);
   const auto first = [this](double edge) { return static_cast<int>(std::floor(edge / tile_side_)); };
   for (int iy = first(lattice.south()); iy <= first(lattice.north()); ++iy)
     for (int ix = first(lattice.west()); ix <= first(lattice.east()); ++ix) {
       const auto file = stages::grid_file(at->second, {ix, iy});
-      if (std::filesystem::exists(file)) stages::paste(stages::read_grid_tile(file), out);
+      if (there.contains(file)) stages::paste(stages::read_grid_tile(file), out);
     }
   return out;
 }
@@ -29,11 +30,11 @@ double GridStore::cell(stages::Product product) const {
 void GridStore::add(stages::Product product, std::filesystem::path folder) {
   // Of a stage that gives several grids each has a folder of its own.
   if (std::filesystem::is_directory(folder / stages::name_of(product))) folder /= stages::name_of(product);
+  std::set<std::filesystem::path>& files = files_[product];
+  files.clear();
   for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() == ".grid") {
-      cells_[product] = stages::read_grid_tile(entry.path()).lattice.cell;
-      break;
-    }
+    if (entry.path().extension() == ".grid") files.insert(entry.path());
+  if (!files.empty()) cells_[product] = stages::read_grid_tile(*files.begin()).lattice.cell;
   folders_[product] = std::move(folder);
 }
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "stages/grid_tile.h"
 #include "stages/stage.h"
@@ -13,7 +14,7 @@ namespace swath::pipeline {
 class GridStore : public stages::Grids {
  public:
   explicit GridStore(double tile_side) : tile_side_(tile_side) {}
-  /// From now on the product's tiles are in `folder`.
+  /// From now on the product's tiles are in `folder`, those that are there now: one that is gone later is an error, not a void.
   void add(stages::Product product, std::filesystem::path folder);
 
   bool has(stages::Product product) const override { return folders_.contains(product); }
@@ -25,6 +26,7 @@ class GridStore : public stages::Grids {
  private:
   double tile_side_;
   std::map<stages::Product, std::filesystem::path> folders_;
+  std::map<stages::Product, std::set<std::filesystem::path>> files_;
   std::map<stages::Product, double> cells_;
 };
 

@@ -1,44 +1,77 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/provenance.h"
 
-#include <xxhash.h>
-
 #include <tbb/version.h>
 #include <Eigen/Core>
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
-#include <fstream>
+#include <set>
 
+#include "core/proj_grids.h"
 #include "io/output_file.h"
+#include "io/side_files.h"
 #include "io/value_file.h"
 #include "io/versions.h"
+#include "pipeline/work/checksum.h"
 
 namespace swath::pipeline {
 
 std::string_view program_version() { return SWATH_VERSION; }
 
-std::string hash_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) io::throw_system_error("cannot open", file, errno);
-  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), &XXH3_freeState);
-  XXH3_64bits_reset(state.get());
-  std::vector<char> buffer(1 << 20);
-  while (in.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || in.gcount() > 0)
-    XXH3_64bits_update(state.get(), buffer.data(), static_cast<size_t>(in.gcount()));
-  return core::hex(XXH3_64bits_digest(state.get()));
+namespace {
+
+/// Every value of a key `crs` in the survey's tree.
+void add_crs(const core::Value& v, std::vector<std::string>& out) {
+  if (v.is_array())
+    for (const core::Value& one : v.items()) add_crs(one, out);
+  if (!v.is_object()) return;
+  for (const auto& [key, one] : v.members()) {
+    if (key == "crs" && one.is_text() && !one.as_text().empty()) out.push_back(one.as_text());
+    add_crs(one, out);
+  }
 }
+
+/// The grids of PROJ that the survey's coordinates may go through.
+std::vector<std::filesystem::path> grids_of(const Plan& plan) {
+  io::Survey survey = plan.survey;
+  std::vector<std::string> definitions;
+  add_crs(core::effective_values(core::described(survey)), definitions);
+  for (const PlannedStage& s : plan.stages)
+    if (s.stage->is_source())
+      if (const std::string own = s.stage->own_crs(plan.survey); !own.empty()) definitions.push_back(own);
+  std::vector<core::Crs> all{core::wgs84_geodetic()};
+  std::sort(definitions.begin(), definitions.end());
+  definitions.erase(std::unique(definitions.begin(), definitions.end()), definitions.end());
+  for (const std::string& definition : definitions) all.emplace_back(definition);
+  std::set<std::filesystem::path> out;
+  for (size_t i = 0; i < all.size(); ++i)
+    for (size_t k = 0; k < i; ++k)
+      for (const std::filesystem::path& file : core::grid_files_between(all[k], all[i])) out.insert(file);
+  return {out.begin(), out.end()};
+}
+
+}  // namespace
 
 std::vector<Input> inputs_of(const Plan& plan) {
   std::vector<Input> out;
+  std::set<std::filesystem::path> known;
+  const auto add = [&](const std::filesystem::path& file) {
+    if (!known.insert(file).second) return false;
+    std::error_code ec;
+    const auto bytes = std::filesystem::file_size(file, ec);
+    if (ec) io::throw_system_error("cannot open", file, ec.value());
+    out.push_back({file, bytes, checksum_of_file(file)});
+    return true;
+  };
   for (const PlannedStage& s : plan.stages)
-    for (const std::filesystem::path& file : s.stage->inputs(plan.survey)) {
-      std::error_code ec;
-      const auto bytes = std::filesystem::file_size(file, ec);
-      if (ec) io::throw_system_error("cannot open", file, ec.value());
-      out.push_back({file, bytes, hash_file(file)});
-    }
+    for (const std::filesystem::path& file : s.stage->inputs(plan.survey))
+      if (add(file))
+        for (const std::filesystem::path& beside : io::side_files(file)) add(beside);
+  if (plan.survey.calibration_file) add(io::resolve(plan.survey, *plan.survey.calibration_file));
+  for (const std::filesystem::path& grid : grids_of(plan)) add(grid);
   return out;
 }
 

@@ -15,16 +15,14 @@ namespace swath::pipeline {
 
 std::string_view program_version();
 
-/// XXH3 (64 bit) of a file's content, 16 hex digits. Throws core::Error where it cannot be read.
-std::string hash_file(const std::filesystem::path& file);
-
 struct Input {
   std::filesystem::path file;
   std::uint64_t bytes = 0;
   std::string hash;
 };
 
-/// Every file the plan reads, hashed, in the order of the survey.
+/// Every file the plan reads, hashed, in the order of the stages: each once, with those that lie beside it and are read with it (index
+/// and attributes of a Shapefile, georeference of a raster), the calibration file, and the grids that PROJ has for the survey's CRSs.
 std::vector<Input> inputs_of(const Plan& plan);
 
 /// One fingerprint per stage; each holds those before it, the inputs, the survey and the tiling, so that a stage's

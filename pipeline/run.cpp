@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Work folder: OUTPUT/.swath/<nn>-<stage>-<fingerprint>/. A folder's name says what it was made from, so a folder that is
-// there is still valid; within it a strip's strip.json or a tile's .done says that the piece is whole. Products wait in its
-// products/ until the run is done.
+// there is still valid; within it a strip's strip.json or a tile's .done (piece_record.h) says that the piece is whole, which is checked
+// before a run goes on from it. Products wait in its products/ until the run is done.
 // Over 400 lines: the engine is one class whose steps share its state; the steps stand in the order of a run.
 #include "pipeline/run.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <cmath>
 #include <set>
 #include <thread>
@@ -24,12 +20,16 @@
 #include "pipeline/delivery.h"
 #include "pipeline/expected_time.h"
 #include "pipeline/grid_store.h"
+#include "pipeline/input_guard.h"
 #include "pipeline/limits.h"
 #include "pipeline/provenance.h"
 #include "pipeline/pulse_border.h"
 #include "pipeline/tile_groups.h"
 #include "pipeline/tile_queue.h"
 #include "pipeline/tile_store.h"
+#include "pipeline/work/handed_on.h"
+#include "pipeline/work/piece_record.h"
+#include "pipeline/work/work_folder.h"
 #include "stages/waters.h"
 
 namespace swath::pipeline {
@@ -43,6 +43,7 @@ using stages::Stage;
 using Clock = std::chrono::steady_clock;
 
 constexpr size_t batch_points = 1 << 17;
+constexpr const char *discarded_name = ".swath-discarded", *products_name = "products";
 
 bool has_surface(const std::vector<stages::Product>& products) {
   return std::any_of(products.begin(), products.end(),
@@ -50,25 +51,6 @@ bool has_surface(const std::vector<stages::Product>& products) {
 }
 
 double since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
-
-/// One run at a time in one output folder.
-class Lock {
- public:
-  explicit Lock(const fs::path& file) : fd_(::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666)) {
-    if (fd_ < 0) io::throw_system_error("cannot write", file, errno);
-    if (::flock(fd_, LOCK_EX | LOCK_NB)) {
-      ::close(fd_);
-      throw core::usage_error("another run is at work in this output folder", file.parent_path().parent_path().string(),
-                              "wait for it to end, or choose another --output");
-    }
-  }
-  ~Lock() { ::close(fd_); }
-  Lock(const Lock&) = delete;
-  Lock& operator=(const Lock&) = delete;
-
- private:
-  int fd_;
-};
 
 /// What the report says of one stage.
 struct Account {
@@ -78,7 +60,8 @@ struct Account {
   double seconds = 0;
 };
 
-constexpr const char* groups_file = "groups.json";
+constexpr const char *groups_file = "groups.done", *survey_record = "survey.done", *partial_record = "files.done",
+                     *handed_on_file = "handed_on.bin";
 
 /// What a group takes to work on, for the progress: its memory holds the points around it and its rasters, and so one point alone in a tile
 /// is not taken for next to nothing.
@@ -98,7 +81,8 @@ class Engine {
         tbb_threads_(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads_)),
         grids_(plan.run.tile.value),
         context_{plan.survey},
-        accounts_(plan.stages.size()) {}
+        accounts_(plan.stages.size()),
+        made_(plan.stages.size()) {}
 
   Outcome run(const std::string& command);
 
@@ -106,6 +90,9 @@ class Engine {
   void prepare();
   void prepare_map();
   void find_strips();
+  bool is_resumed(size_t number) const;
+  void resume_survey_stage(size_t number);
+  void run_survey_stage(size_t number);
   void run_survey_stages();
   void run_strips();
   void stream_strip(const stages::Strip& strip, const fs::path& folder);
@@ -116,14 +103,18 @@ class Engine {
   Measure measure_of(size_t number) const;
   fs::path done_file(size_t number, const TileGroup& group) const;
   std::vector<TileGroup> groups_of(size_t number, const std::vector<TileKey>& keys, std::uint64_t budget) const;
-  Value run_group(size_t number, const TileGroup& group, bool has_water);
+  PieceRecord run_group(size_t number, const TileGroup& group, bool has_water);
   void run_tiles(size_t number);
   void keep_surface_tiles(size_t number, const std::set<TileKey>& fringe);
   void run_merge(size_t number);
   void begin_products(size_t number);
   void compose_report(const std::string& command);
+  Allowed outside_inputs() const;
+  void deliver_all(const WorkLock& lock);
   Measured measured() const;
-  void say_what_is_done();
+  void keep_whole();
+  void expect_made(size_t number) const;
+  bool is_void_fringe(size_t number, const TileGroup& group) const;
   size_t steps() const;
   void expect_times(std::uint64_t returns);
   fs::path folder(size_t number) const {
@@ -142,6 +133,7 @@ class Engine {
   GridStore grids_;
   stages::Context context_;
   std::vector<Account> accounts_;
+  std::vector<std::vector<PieceFile>> made_;  ///< by each stage
   std::vector<Input> inputs_;
   std::vector<std::string> fingerprints_;
   size_t source_ = 0;  ///< the stage that is the plan's source; as many as there are stages where it has none
@@ -149,7 +141,7 @@ class Engine {
   std::unique_ptr<TileStore> store_;
   std::set<TileKey> surface_tiles_;  ///< without a point of their own, but a surface reaches into them from their neighbours
   bool has_products_ = false;        ///< of a tile stage that is finished
-  std::uint64_t resumed_ = 0;
+  std::uint64_t resumed_ = 0, damaged_ = 0;
   Value report_;
 };
 
@@ -204,7 +196,7 @@ void Engine::begin_products(size_t number) {
   std::error_code ec;
   fs::create_directories(folder(number), ec);
   if (ec) io::throw_system_error("cannot make the folder", folder(number), ec.value());
-  context_.output = folder(number) / "products";
+  context_.output = folder(number) / products_name;
 }
 
 void Engine::find_strips() {
@@ -240,18 +232,78 @@ void Engine::expect_times(std::uint64_t returns) {
 }
 
 /// Of an earlier run of this plan that was killed, or whose work was kept.
-void Engine::say_what_is_done() {
-  size_t lines = 0, pieces = 0;
-  for (size_t i = 0; i < plan_.stages.size(); ++i) {
-    if (!fs::is_directory(folder(i))) continue;
-    for (const auto& entry : fs::directory_iterator(folder(i))) {
-      lines += TileStore::is_committed(entry.path());
-      pieces += entry.path().extension() == ".done";
-    }
+void Engine::keep_whole() {
+  std::set<std::string> valid;
+  for (size_t i = 0; i < plan_.stages.size(); ++i) valid.insert(folder(i).filename().string());
+  sweep(work_, valid);
+  std::error_code absent;
+  fs::remove_all(output_ / discarded_name, absent);
+  if (std::none_of(valid.begin(), valid.end(), [this](const std::string& name) { return fs::exists(work_ / name); })) return;
+  progress_.begin("check of earlier work", 0, "");
+  const EarlierWork earlier = keep_whole_work(work_, [this](double done) { progress_.share(done); });
+  progress_.end();
+  damaged_ = earlier.damaged;
+  if (damaged_ > 0)
+    progress_.say("damaged: " + std::to_string(damaged_) + " pieces of an earlier run are not what they were and are done again");
+  if (earlier.lines + earlier.pieces > 0)
+    progress_.say("resumed: " + std::to_string(earlier.lines) + " flight lines or files and " + std::to_string(earlier.pieces) +
+                  " pieces of other stages were done by an earlier run and are not done again");
+}
+
+/// Is what an earlier run has kept of a survey stage enough? IMU records are not kept: they are read again where a stage that takes them is
+/// not done.
+bool Engine::is_resumed(size_t number) const {
+  const auto is_done = [this](size_t i) { return fs::exists(folder(i) / survey_record); };
+  if (!is_done(number)) return false;
+  if (!stage(number).info().makes(stages::Product::imu)) return true;
+  for (size_t i = number + 1; i < plan_.stages.size(); ++i)
+    if (works_on(i, Grain::survey) && stage(i).info().takes(stages::Product::imu) && !is_done(i)) return false;
+  return true;
+}
+
+void Engine::resume_survey_stage(size_t number) {
+  const fs::path file = folder(number) / survey_record;
+  std::optional<PieceRecord> record = read_record(file);
+  if (!record) throw damaged_work(file);
+  read_handed_on(folder(number) / handed_on_file, HandedOn::of(context_)).give(context_);
+  Account& account = accounts_[number];
+  account.tally.add(Tally::from(*record->note.find("tally")));
+  account.findings = *record->note.find("findings");
+  account.seconds += record->note.find("seconds")->as_number();
+  made_[number] = std::move(record->files);
+  ++resumed_;
+}
+
+/// What the stage has finished so far is kept as it goes: a stage may take hours, and look for its own files.
+void Engine::run_survey_stage(size_t number) {
+  const fs::path mine = folder(number);
+  Account& account = accounts_[number];
+  const HandedOn before = HandedOn::of(context_);
+  const auto start = Clock::now();
+  {
+    PieceRecord so_far;
+    const io::FinishedFiles watch([&](const fs::path& file) {
+      const io::FinishedFiles apart;  // the record is none of the stage's files
+      so_far.files.push_back(piece_file(mine, file));
+      write_record(mine / partial_record, so_far);
+    });
+    stage(number).run_survey(context_, account.tally, account.findings);
   }
-  if (lines + pieces > 0)
-    progress_.say("resumed: " + std::to_string(lines) + " flight lines or files and " + std::to_string(pieces) +
-                  " pieces of tile stages were done by an earlier run and are not done again");
+  const double seconds = since(start);
+  account.seconds += seconds;
+  const bool kept = write_handed_on(mine / handed_on_file, before, HandedOn::of(context_));
+  std::error_code absent;
+  fs::remove(mine / partial_record, absent);
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(mine))
+    if (entry.is_regular_file() && entry.path() != mine / survey_record) files.push_back(entry.path());
+  made_[number] = piece_files(mine, std::move(files));
+  if (!kept) return;
+  Value note = Value::object();
+  note["tally"] = account.tally.value();
+  note["findings"] = account.findings;
+  note["seconds"] = seconds;
+  write_record(mine / survey_record, {made_[number], std::move(note)});
 }
 
 void Engine::run_survey_stages() {
@@ -259,11 +311,9 @@ void Engine::run_survey_stages() {
     if (!works_on(i, Grain::survey)) continue;
     if (stage(i).info().takes(stages::Product::shots)) find_strips();
     begin_products(i);
-    const auto start = Clock::now();
     progress_.begin(std::string(stage(i).info().name), 0, "");
-    stage(i).run_survey(context_, accounts_[i].tally, accounts_[i].findings);
+    is_resumed(i) ? resume_survey_stage(i) : run_survey_stage(i);
     progress_.end();
-    accounts_[i].seconds += since(start);
     context_.earlier.push_back(context_.output);
   }
 }
@@ -410,17 +460,19 @@ std::set<TileKey> Engine::tiles_of_water() const {
   return out;
 }
 
+/// A tile without points in which the surface says nothing: it is none of the survey.
+bool Engine::is_void_fringe(size_t number, const TileGroup& group) const {
+  const TileKey key = group.tiles[0];
+  const fs::path file = stages::grid_file(folder(number), key);
+  if (store_->tiles().contains(key) || surface_tiles_.contains(key) || !fs::exists(file)) return false;
+  const core::Grid grid = stages::read_grid_tile(file);
+  return std::all_of(grid.reason.begin(), grid.reason.end(), [](core::Void r) { return r == core::Void::no_data; });
+}
+
 /// Of the tiles without points only those stay in which the surface says anything.
 void Engine::keep_surface_tiles(size_t number, const std::set<TileKey>& fringe) {
-  for (const TileKey key : fringe) {
-    const fs::path file = stages::grid_file(folder(number), key);
-    if (surface_tiles_.contains(key) || !fs::exists(file)) continue;
-    const core::Grid grid = stages::read_grid_tile(file);
-    if (std::all_of(grid.reason.begin(), grid.reason.end(), [](core::Void r) { return r == core::Void::no_data; }))
-      fs::remove(file);
-    else
-      surface_tiles_.insert(key);
-  }
+  for (const TileKey key : fringe)
+    if (fs::exists(stages::grid_file(folder(number), key))) surface_tiles_.insert(key);
 }
 
 /// What it takes to work on tiles with a stage.
@@ -475,11 +527,12 @@ std::vector<TileGroup> Engine::groups_of(size_t number, const std::vector<TileKe
 }
 
 /// Runs the stage on a group and keeps what it did: the tally and seconds.
-Value Engine::run_group(size_t number, const TileGroup& group, bool has_water) {
+PieceRecord Engine::run_group(size_t number, const TileGroup& group, bool has_water) {
   const Stage& s = stage(number);
   const stages::Info& info = s.info();
   const fs::path mine = folder(number), done = done_file(number, group);
   stages::TileJob job{group.tiles[0], TileBox(group.tiles).metres(context_.tile_side), mine, {}, 0, {}};
+  const io::FinishedFiles finished;
   const auto start = Clock::now();
   std::function<void(core::Block&)> thin;
   if (std::isfinite(s.left_per_area())) thin = [&](core::Block& around) { s.thin(context_, job.box, around); };
@@ -497,14 +550,13 @@ Value Engine::run_group(size_t number, const TileGroup& group, bool has_water) {
       first += count;
     }
   }
+  if (is_void_fringe(number, group)) fs::remove(stages::grid_file(mine, group.tiles[0]));
   Value note = Value::object();
   note["tally"] = job.tally.value();
   note["seconds"] = since(start);
-  fs::path fresh = done;
-  fresh.replace_extension(".json");
-  io::write_text_file(fresh, io::to_json(note), false);
-  fs::rename(fresh, done);
-  return note;
+  PieceRecord record{piece_files(mine, finished.files()), std::move(note)};
+  write_record(done, record);
+  return record;
 }
 
 void Engine::run_tiles(size_t number) {
@@ -518,7 +570,7 @@ void Engine::run_tiles(size_t number) {
 
   const auto budget = static_cast<std::uint64_t>(plan_.run.memory.value * 0.8);
   const std::vector<TileGroup> groups = groups_of(number, keys, budget);
-  std::vector<Value> notes(groups.size());
+  std::vector<PieceRecord> notes(groups.size());
   std::vector<std::uint64_t> bytes;
   double work = 0.0;
   for (const TileGroup& g : groups) {
@@ -534,9 +586,11 @@ void Engine::run_tiles(size_t number) {
         for (size_t turn = range.begin(); turn < range.end(); ++turn) {
           const TileQueue::Piece piece = queue.take();
           const TileGroup& group = groups[piece.number()];
-          Value& note = notes[piece.number()];
+          PieceRecord& note = notes[piece.number()];
           if (const fs::path done = done_file(number, group); fs::exists(done)) {
-            note = io::parse_json(io::read_text_file(done), done.string());
+            std::optional<PieceRecord> read = read_record(done);
+            if (!read) throw damaged_work(done);
+            note = std::move(*read);
             ++again;
             progress_.skip(group.own, work_of(group));
           } else {
@@ -553,10 +607,22 @@ void Engine::run_tiles(size_t number) {
   keep_surface_tiles(number, fringe);
   for (size_t i = 0; i < notes.size(); ++i) {
     const TileKey first = groups[i].tiles[0];
-    account.seconds += notes[i].find("seconds")->as_number();
-    if (store_->tiles().contains(first) || surface_tiles_.contains(first)) account.tally.add(Tally::from(*notes[i].find("tally")));
+    account.seconds += notes[i].note.find("seconds")->as_number();
+    if (store_->tiles().contains(first) || surface_tiles_.contains(first)) account.tally.add(Tally::from(*notes[i].note.find("tally")));
+    for (PieceFile& f : notes[i].files) made_[number].push_back(std::move(f));
   }
   if (!info.gives.empty()) store_->add_overlay(folder(number), info.gives);
+  for (const stages::Product p : info.gives_products) grids_.add(p, folder(number));
+  expect_made(number);
+}
+
+/// Whatever the stage has finished is there.
+void Engine::expect_made(size_t number) const {
+  for (const PieceFile& f : made_[number]) {
+    std::error_code ec;
+    const fs::path file = folder(number) / f.name;
+    if (fs::file_size(file, ec) != f.bytes || ec) throw damaged_work(file);
+  }
 }
 
 void Engine::run_merge(size_t number) {
@@ -564,7 +630,9 @@ void Engine::run_merge(size_t number) {
   job.tiles = tiles_of(number);
   const auto start = Clock::now();
   progress_.begin(std::string(stage(number).info().name) + " merge", 0, "");
+  const io::FinishedFiles finished;
   stage(number).run_merge(context_, job);
+  for (const PieceFile& f : piece_files(job.folder, finished.files())) made_[number].push_back(f);
   progress_.end();
   accounts_[number].tally.add(job.tally);
   for (auto& [key, value] : job.findings.members()) accounts_[number].findings[key] = std::move(value);
@@ -575,8 +643,10 @@ void Engine::run_tile_stages() {
   for (size_t i = last_strip_stage_ + 1; i < plan_.stages.size(); ++i) {
     if (!works_on(i, Grain::tile) && !works_on(i, Grain::merge)) continue;
     begin_products(i);
-    if (works_on(i, Grain::tile)) run_tiles(i);
-    for (const stages::Product p : stage(i).info().gives_products) grids_.add(p, folder(i));
+    if (works_on(i, Grain::tile))
+      run_tiles(i);
+    else
+      for (const stages::Product p : stage(i).info().gives_products) grids_.add(p, folder(i));
     if (works_on(i, Grain::merge)) run_merge(i);
     if (!works_on(i, Grain::survey)) context_.earlier.push_back(context_.output);
     // What a comparison alone says of data that are refused is not kept.
@@ -588,7 +658,13 @@ void Engine::run_tile_stages() {
 void Engine::keep_finished(const core::Error& e) {
   std::error_code absent;
   fs::remove(output_ / "report.json", absent);  // of an earlier run: it says nothing of these products
-  for (const fs::path& made : context_.earlier) deliver(made, output_, true);
+  try {
+    const Allowed allowed = outside_inputs();
+    for (const fs::path& made : context_.earlier) check_delivery(made, output_, allowed);
+    for (const fs::path& made : context_.earlier) deliver(made, output_, true);
+  } catch (const core::Error&) {
+    throw e;
+  }
   throw core::Error(e.what(), e.where(),
                     (e.hint().empty() ? std::string() : e.hint() + "; ") + "the products of the stages before it are in " +
                         output_.string() + ", and the same command goes on from there",
@@ -647,38 +723,60 @@ void Engine::compose_report(const std::string& command) {
   report_["versions"] = versions();
 }
 
-/// Whatever lies in the work folder and is no part of this plan goes, as do pieces that a kill left half written.
-void sweep(const fs::path& work, const std::set<std::string>& valid) {
-  std::vector<fs::path> gone;
-  for (const auto& entry : fs::directory_iterator(work)) {
-    const std::string name = entry.path().filename().string();
-    if (name != "lock" && !valid.contains(name)) gone.push_back(entry.path());
-  }
-  for (const fs::path& folder : gone) discard(folder, work / "discarded");
-  remove_temporary_files(work);
-}
-
 /// Removes folders that hold nothing, upwards to `top` itself.
 void remove_if_empty(const fs::path& top) {
   std::error_code ec;
   if (fs::is_directory(top, ec) && fs::is_empty(top, ec)) fs::remove(top, ec);
 }
 
+/// No file of the survey is written over, whatever name a stage gave its product.
+Allowed Engine::outside_inputs() const {
+  return [guard = InputGuard(files_of(plan_))](const fs::path& file) {
+    try {
+      guard.expect_apart(file);
+    } catch (const core::Error& e) {
+      throw core::SystemError(e.what(), e.where(), e.hint());  // the work stays
+    }
+  };
+}
+
+/// All products go to the output folder, and the report behind them.
+void Engine::deliver_all(const WorkLock& lock) {
+  const fs::path report = folder(plan_.stages.size() - 1) / "report";
+  io::write_text_file(report / "report.json", io::to_json(report_));
+  std::vector<fs::path> all = context_.earlier;
+  all.push_back(report);
+  lock.expect_there();
+  for (size_t i = 0; i < plan_.stages.size(); ++i) expect_made(i);
+  const Allowed allowed = outside_inputs();
+  for (const fs::path& made : all) check_delivery(made, output_, allowed);
+  for (const fs::path& made : all) deliver(made, output_, plan_.run.keep_work);
+  for (const std::vector<PieceFile>& of_stage : made_)
+    for (const PieceFile& f : of_stage) {
+      if (f.name.begin()->string() != products_name) continue;
+      std::error_code ec;
+      const fs::path file = output_ / f.name.lexically_relative(products_name);
+      if (fs::file_size(file, ec) != f.bytes || ec)
+        throw core::SystemError("the product was removed or changed while the run was at work", file.string(),
+                                "run the same command again");
+    }
+  lock.expect_there();
+}
+
 Outcome Engine::run(const std::string& command) {
   const auto start = Clock::now();
+  expect_own(work_);
+  expect_own(output_ / discarded_name);
+  if (!plan_.survey_file.empty()) check_output(plan_);
   prepare();
   const bool made_output = !fs::exists(output_);
   std::error_code ec;
   fs::create_directories(work_, ec);
   if (ec) io::throw_system_error("cannot make the output folder", output_, ec.value());
-  const fs::path discarded = output_ / ".swath-discarded";
-  const Lock lock(work_ / "lock");
+  const fs::path discarded = output_ / discarded_name;
+  const WorkLock lock(work_);
   try {
-    std::set<std::string> valid;
-    for (size_t i = 0; i < plan_.stages.size(); ++i) valid.insert(folder(i).filename().string());
-    sweep(work_, valid);
-    fs::remove_all(discarded, ec);
-    say_what_is_done();
+    keep_whole();
     progress_.expect(std::vector<double>(steps(), 0.0));
     run_survey_stages();
     if (makes_points(plan_)) {
@@ -688,15 +786,19 @@ Outcome Engine::run(const std::string& command) {
     compose_report(command);
     report_["limits"] = judged(plan_.run.limits, measured());
     const bool held = missed_limits(report_["limits"]).empty();
-    for (const fs::path& made : context_.earlier) deliver(made, output_, plan_.run.keep_work);
     report_["pieces_resumed"] = resumed_;
+    report_["pieces_damaged"] = damaged_;
     report_["seconds"] = since(start);
     report_["threads"] = threads_;
-    io::write_text_file(output_ / "report.json", io::to_json(report_));
+    deliver_all(lock);
     if (!plan_.run.keep_work) discard(work_, discarded);
     return {held ? core::Exit::done : core::Exit::quality_missed, report_};
   } catch (const core::SystemError&) {
     throw;  // the work done so far stays, for the same command once the cause is repaired
+  } catch (const fs::filesystem_error& e) {
+    io::throw_system_error("cannot work on the file", e.path1(), e.code().value());
+  } catch (const std::bad_alloc&) {
+    throw;  // as for a full disk
   } catch (const core::Error& e) {
     if (has_products_) keep_finished(e);
     discard(work_, discarded);

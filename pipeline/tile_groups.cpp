@@ -10,8 +10,7 @@
 #include <utility>
 
 #include "core/value.h"
-#include "io/output_file.h"
-#include "io/value_file.h"
+#include "pipeline/work/piece_record.h"
 
 namespace swath::pipeline {
 namespace {
@@ -78,14 +77,14 @@ void write_boxes(const std::filesystem::path& file, const std::vector<TileGroup>
     for (const int k : {box.low.ix, box.low.iy, box.high.ix, box.high.iy}) one.push(std::int64_t{k});
     boxes.push(std::move(one));
   }
-  io::write_text_file(file, io::to_json(boxes), false);
+  write_record(file, {{}, std::move(boxes)});
 }
 
 std::vector<TileBox> read_boxes(const std::filesystem::path& file) {
   std::vector<TileBox> boxes;
-  if (!std::filesystem::exists(file)) return boxes;
-  const core::Value all = io::parse_json(io::read_text_file(file), file.string());
-  for (const core::Value& one : all.items()) {
+  const std::optional<PieceRecord> record = read_record(file);
+  if (!record) return boxes;
+  for (const core::Value& one : record->note.items()) {
     const auto at = [&](size_t k) { return static_cast<int>(one.items().at(k).as_int()); };
     boxes.push_back({{at(0), at(1)}, {at(2), at(3)}});
   }

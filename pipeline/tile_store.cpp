@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Over 400 lines: the one format of the store, written and read side by side.
-// File of a strip's points in one tile: chunks of {u32 points, u32 column bits, u32 bytes of a row of the column `source`, columns in the
-// order of the enum}.
-// File of an overlay: one such chunk. Numbers in the machine's own byte order: the store is never carried elsewhere.
+// File of a strip's points in one tile: chunks (store_file.h), one after the other. File of an overlay: one chunk.
 #include "pipeline/tile_store.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <set>
 #include <type_traits>
@@ -19,8 +12,9 @@
 #include "core/floor_div.h"
 #include "core/value.h"
 #include "io/output_file.h"
-#include "io/value_file.h"
 #include "pipeline/tile_groups.h"
+#include "pipeline/work/piece_record.h"
+#include "pipeline/work/store_file.h"
 
 namespace swath::pipeline {
 namespace {
@@ -30,117 +24,25 @@ using core::Block;
 using core::Column;
 using core::ColumnSet;
 
-struct ChunkHead {
-  std::uint32_t points, columns, source_width;
-};
-
-class File {
- public:
-  File(const fs::path& name, int mode) : name_(name), fd_(::open(name.c_str(), mode | O_CLOEXEC, 0666)) {
-    if (fd_ < 0) io::throw_system_error("cannot open", name_, errno);
-  }
-  ~File() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-
-  void write(const void* data, size_t n) {
-    const char* at = static_cast<const char*>(data);
-    while (n > 0) {
-      const ssize_t done = ::write(fd_, at, n);
-      if (done < 0 && errno == EINTR) continue;
-      if (done <= 0) io::throw_system_error("cannot write", name_, errno);
-      at += done;
-      n -= static_cast<size_t>(done);
-    }
-  }
-  /// False at the end of the file.
-  bool read(void* data, size_t n) {
-    char* at = static_cast<char*>(data);
-    for (size_t left = n; left > 0;) {
-      const ssize_t done = ::read(fd_, at, left);
-      if (done < 0 && errno == EINTR) continue;
-      if (done < 0) io::throw_system_error("cannot read", name_, errno);
-      if (done == 0) {
-        if (left == n) return false;
-        throw core::Error("the point store is cut short", name_.string(), "remove the .swath folder beside the products and run again");
-      }
-      at += done;
-      left -= static_cast<size_t>(done);
-    }
-    return true;
-  }
-  void skip(size_t n) {
-    if (::lseek(fd_, static_cast<off_t>(n), SEEK_CUR) < 0) io::throw_system_error("cannot read", name_, errno);
-  }
-  void sync() {
-    if (::fsync(fd_)) io::throw_system_error("cannot finish", name_, errno);
-  }
-
- private:
-  fs::path name_;
-  int fd_;
-};
-
-std::uint32_t bits_of(ColumnSet set) {
-  std::uint32_t bits = 0;
-  for (int c = 0; c < core::column_count; ++c)
-    if (set.has(static_cast<Column>(c))) bits |= 1u << c;
-  return bits;
-}
-
-ColumnSet set_of(std::uint32_t bits) {
-  ColumnSet set;
-  for (int c = 0; c < core::column_count; ++c)
-    if ((bits >> c) & 1u) set.add(static_cast<Column>(c));
-  return set;
-}
-
-void write_chunk(File& file, const Block& b, size_t first, size_t n, ColumnSet columns) {
-  const ChunkHead head{static_cast<std::uint32_t>(n), bits_of(columns), static_cast<std::uint32_t>(b.source.width)};
-  file.write(&head, sizeof head);
-  core::for_each_column([&](Column c, std::string_view, auto member) {
-    if (columns.has(c)) file.write((b.*member).data() + first, n * sizeof((b.*member)[0]));
-  });
-  if (columns.has(Column::source)) file.write(b.source.row(first), n * b.source.width);
-}
-
-/// The rows of the chunk's column `source`, behind its other columns, to row `row` of `to`; passed over where they are not wanted.
-void read_source(File& file, const ChunkHead& head, bool wanted, core::ByteRows& to, size_t row) {
-  const size_t bytes = size_t{head.points} * head.source_width;
-  if (!wanted) return file.skip(bytes);
-  to.resize(std::max(to.size(), row + head.points), head.source_width);
-  if (to.width == head.source_width) {
-    if (bytes > 0) file.read(to.row(row), bytes);
-    return;
-  }
-  std::vector<std::uint8_t> narrow(bytes);
-  if (bytes > 0) file.read(narrow.data(), bytes);
-  for (size_t i = 0; i < head.points; ++i) std::copy_n(narrow.data() + i * head.source_width, head.source_width, to.row(row + i));
-}
-
-/// Appends the wanted columns of the next chunk to `to` at row `row`; false at the end of the file.
-bool read_chunk(File& file, Block& to, size_t& row, ColumnSet wanted, ColumnSet& seen) {
-  ChunkHead head{};
-  if (!file.read(&head, sizeof head)) return false;
-  const ColumnSet there = set_of(head.columns);
-  seen = seen | there;
-  core::for_each_column([&](Column c, std::string_view, auto member) {
-    if (!there.has(c)) return;
-    auto& column = to.*member;
-    const size_t bytes = head.points * sizeof(column[0]);
-    if (!wanted.has(c)) return file.skip(bytes);
-    if (column.size() < row + head.points) column.resize(row + head.points);
-    if (bytes > 0) file.read(column.data() + row, bytes);
-  });
-  if (there.has(Column::source)) read_source(file, head, wanted.has(Column::source), to.source, row);
-  row += head.points;
-  return true;
-}
-
 constexpr double farthest = 1e8;  // m; beyond every map projection, and tile numbers stay in range
 constexpr ColumnSet always{Column::x, Column::y, Column::z};
+constexpr const char* record_name = "strip.json";
+
+std::string points_file(TileKey key) { return file_label(key) + ".pts"; }
+
+core::Value strip_note(const fs::path& strip_folder) {
+  std::optional<PieceRecord> record = read_record(strip_folder / record_name);
+  if (!record) throw damaged_work(strip_folder / record_name);
+  return std::move(record->note);
+}
+
+/// The columns `mine` of an overlay's `rows` points.
+void read_overlay(const fs::path& name, Block& to, ColumnSet mine, size_t rows) {
+  StoreFile file(name, StoreFile::Mode::read);
+  size_t row = 0;
+  ColumnSet seen;
+  if (!read_chunk(file, to, row, mine, seen) || row != rows || !(mine - seen).empty()) throw damaged_work(name);
+}
 
 }  // namespace
 
@@ -202,9 +104,11 @@ void StripWriter::write(const Block& block) {
 
 void StripWriter::flush(TileKey key, Block& points) {
   if (points.size() == 0) return;
-  File file(part_ / (file_label(key) + ".pts"), O_WRONLY | O_CREAT | O_APPEND);
+  Written& written = written_[key];
+  StoreFile file(part_ / points_file(key), StoreFile::Mode::append, &written.checksum);
   write_chunk(file, points, 0, points.size(), core::columns_of(points));
-  counts_[key] += points.size();
+  written.points += points.size();
+  written.bytes += file.written();
   core::Block fresh;
   fresh.origin = points.origin;
   points = std::move(fresh);
@@ -213,17 +117,19 @@ void StripWriter::flush(TileKey key, Block& points) {
 void StripWriter::commit(const std::string& note) {
   for (auto& [key, points] : pending_) flush(key, points);
   pending_.clear();
-  core::Value index = core::Value::object();
-  index["note"] = note;
-  core::Value& tiles = index["tiles"] = core::Value::array();
-  for (const auto& [key, n] : counts_) {
+  PieceRecord record;
+  record.note["note"] = note;
+  core::Value& tiles = record.note["tiles"] = core::Value::array();
+  for (const auto& [key, written] : written_) {
     core::Value one = core::Value::array();
     one.push(key.ix);
     one.push(key.iy);
-    one.push(n);
+    one.push(written.points);
     tiles.push(std::move(one));
+    record.files.push_back({points_file(key), written.bytes, written.checksum.text()});
+    StoreFile(part_ / points_file(key), StoreFile::Mode::read).flush();
   }
-  io::write_text_file(part_ / "strip.json", io::to_json(index), false);
+  write_record(part_ / record_name, final_ / record_name, record);
   std::error_code ec;
   fs::remove_all(final_, ec);
   fs::rename(part_, final_, ec);
@@ -234,27 +140,25 @@ void StripWriter::commit(const std::string& note) {
 TileStore::TileStore(fs::path strips, double tile_side, Eigen::Vector3d origin)
     : strips_(std::move(strips)), side_(tile_side), origin_(origin) {}
 
-bool TileStore::is_committed(const fs::path& strip_folder) { return fs::exists(strip_folder / "strip.json"); }
+bool TileStore::is_committed(const fs::path& strip_folder) { return fs::exists(strip_folder / record_name); }
 
-std::string TileStore::note(const fs::path& strip_folder) {
-  return io::read_value_file(strip_folder / "strip.json").find("note")->as_text();
-}
+std::string TileStore::note(const fs::path& strip_folder) { return strip_note(strip_folder).find("note")->as_text(); }
 
 void TileStore::open(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
-    const core::Value index = io::read_value_file(strips_ / name / "strip.json");
+    const core::Value index = strip_note(strips_ / name);
     for (const core::Value& one : index.find("tiles")->items()) {
       const TileKey key{static_cast<int>(one.items()[0].as_int()), static_cast<int>(one.items()[1].as_int())};
       const auto n = static_cast<std::uint64_t>(one.items()[2].as_int());
-      const fs::path file = strips_ / name / (file_label(key) + ".pts");
+      const fs::path file = strips_ / name / points_file(key);
       segments_[key].push_back({file, n});
       tiles_[key] += n;
       points_ += n;
       // Strips of several files need not have the same columns.
-      File f(file, O_RDONLY);
+      StoreFile f(file, StoreFile::Mode::read);
       ChunkHead head{};
-      if (!f.read(&head, sizeof head)) continue;
-      columns_ = columns_ | set_of(head.columns);
+      if (!f.next(head)) throw damaged_work(file);
+      columns_ = columns_ | head.set();
       source_width_ = std::max<size_t>(source_width_, head.source_width);
     }
   }
@@ -279,10 +183,10 @@ void TileStore::write_overlay(const fs::path& folder, TileKey key, const Block& 
                               ColumnSet columns) const {
   io::OutputFile out(folder / (file_label(key) + ".cols"));
   {
-    File file(out.temporary(), O_WRONLY);
+    StoreFile file(out.temporary(), StoreFile::Mode::append);
     write_chunk(file, block, first, count, columns);
   }
-  out.commit(false);
+  out.commit();
 }
 
 TileStore::Overlays TileStore::overlays_of(TileKey key, ColumnSet columns) const {
@@ -301,9 +205,7 @@ TileStore::Overlays TileStore::overlays_of(TileKey key, ColumnSet columns) const
 }
 
 void TileStore::expect_whole(TileKey key, size_t rows) const {
-  if (rows != tiles_.at(key))
-    throw core::Error("the point store is cut short", (strips_ / file_label(key)).string(),
-                      "remove the .swath folder beside the products and run again");
+  if (rows != tiles_.at(key)) throw damaged_work(strips_ / file_label(key));
 }
 
 Block TileStore::read(TileKey key, ColumnSet columns) const { return read(key, columns, 0); }
@@ -323,16 +225,13 @@ Block TileStore::read(TileKey key, ColumnSet columns, size_t more) const {
   ColumnSet seen;
   size_t row = 0;
   for (const Segment& s : segments_.at(key)) {
-    File file(s.file, O_RDONLY);
+    StoreFile file(s.file, StoreFile::Mode::read);
     while (read_chunk(file, out, row, from_strips, seen)) {
     }
   }
   expect_whole(key, row);
   for (const auto& [file_name, mine] : overlays.files) {
-    File file(file_name, O_RDONLY);
-    size_t overlay_row = 0;
-    ColumnSet ignored;
-    read_chunk(file, out, overlay_row, mine, ignored);
+    read_overlay(file_name, out, mine, row);
   }
   // A column that only some of the strips have is zero in the others.
   core::for_each_column([&](Column c, std::string_view, auto member) {
@@ -362,10 +261,10 @@ void TileStore::append_within(Block& out, TileKey key, ColumnSet columns, const 
     for (size_t i = 0; i < which.size(); ++i) to[at + i] = from[which[i]];
   };
   for (const Segment& s : segments_.at(key)) {
-    File file(s.file, O_RDONLY);
-    for (ChunkHead head{}; file.read(&head, sizeof head); row += head.points) {
+    StoreFile file(s.file, StoreFile::Mode::read);
+    for (ChunkHead head{}; file.next(head); row += head.points) {
       const size_t at = before + chosen.size(), n = head.points;
-      const ColumnSet there = set_of(head.columns);
+      const ColumnSet there = head.set();
       size_t beyond = 0;  // bytes to pass over
       core::for_each_column([&](Column c, std::string_view, auto member) {
         using T = typename std::remove_reference_t<decltype(out.*member)>::value_type;
@@ -398,11 +297,8 @@ void TileStore::append_within(Block& out, TileKey key, ColumnSet columns, const 
   expect_whole(key, row);
   for (const auto& [file_name, mine] : overlays.files) {
     if (chosen.empty()) break;
-    File file(file_name, O_RDONLY);
     Block all;
-    size_t overlay_row = 0;
-    ColumnSet ignored;
-    read_chunk(file, all, overlay_row, mine, ignored);
+    read_overlay(file_name, all, mine, row);
     core::for_each_column([&](Column c, std::string_view, auto member) {
       if (mine.has(c)) gather(out.*member, before, all.*member, chosen);
     });

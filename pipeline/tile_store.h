@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/block.h"
+#include "pipeline/work/checksum.h"
 #include "stages/stage.h"
 
 namespace swath::pipeline {
@@ -37,7 +38,12 @@ class StripWriter {
   double tile_side_;
   size_t buffer_bytes_, buffered_ = 0;
   std::map<TileKey, core::Block> pending_;
-  std::map<TileKey, std::uint64_t> counts_;
+  /// What went to the file of one tile.
+  struct Written {
+    std::uint64_t points = 0, bytes = 0;
+    Checksum checksum;
+  };
+  std::map<TileKey, Written> written_;
   bool committed_ = false;
 };
 

@@ -28,8 +28,7 @@ void put(std::string& out, const std::vector<T>& v) {
 
 template <class T>
 void take(const std::string& in, size_t& at, std::vector<T>& v, size_t n, const std::filesystem::path& file) {
-  if (in.size() < at + n * sizeof(T))
-    throw core::Error("the intermediate grid is cut short", file.string(), "remove the .swath folder beside the products and run again");
+  if (in.size() < at + n * sizeof(T)) cut_short(file);
   v.resize(n);
   if (n > 0) std::memcpy(v.data(), in.data() + at, n * sizeof(T));
   at += n * sizeof(T);
@@ -38,7 +37,8 @@ void take(const std::string& in, size_t& at, std::vector<T>& v, size_t n, const 
 }  // namespace
 
 void cut_short(const std::filesystem::path& file) {
-  throw core::Error("the intermediate result is cut short", file.string(), "remove the .swath folder beside the products and run again");
+  throw core::SystemError("the intermediate result was changed or damaged while the run was at work", file.string(),
+                          "run the same command again: what is damaged is made anew");
 }
 
 std::filesystem::path grid_file(const std::filesystem::path& folder, TileKey key) {
@@ -57,15 +57,15 @@ void write_grid_tile(const std::filesystem::path& folder, TileKey key, const cor
   put(out, grid.sigma);
   put(out, grid.count);
   put(out, grid.reason);
-  io::write_text_file(grid_file(folder, key), out, false);
+  io::write_text_file(grid_file(folder, key), out);
 }
 
 core::Grid read_grid_tile(const std::filesystem::path& file) {
   const std::string in = io::read_text_file(file);
   Head head{};
-  if (in.size() < sizeof head || std::memcmp(in.data(), magic, sizeof magic) != 0)
-    throw core::Error("no intermediate grid", file.string(), "remove the .swath folder beside the products and run again");
+  if (in.size() < sizeof head || std::memcmp(in.data(), magic, sizeof magic) != 0) cut_short(file);
   std::memcpy(&head, in.data(), sizeof head);
+  if (head.lattice.nx < 0 || head.lattice.ny < 0 || head.lattice.size() > in.size()) cut_short(file);
   core::Grid grid(head.lattice);
   const size_t n = head.lattice.size();
   size_t at = sizeof head;

@@ -80,7 +80,7 @@ void write_line_cells(const std::filesystem::path& file, const quality::LineCell
   std::string bytes;
   put(bytes, cells.differences);
   put(bytes, cells.scatters);
-  io::write_text_file(file, bytes, false);
+  io::write_text_file(file, bytes);
 }
 
 void read_line_cells(const std::filesystem::path& file, quality::LineCells& cells) {

@@ -21,6 +21,7 @@
 #include "io/info.h"
 #include "io/value_file.h"
 #include "pipeline/describe.h"
+#include "pipeline/input_guard.h"
 #include "pipeline/limits.h"
 #include "pipeline/plan.h"
 #include "pipeline/profile.h"
@@ -61,6 +62,7 @@ int run(Arguments& a, const std::string& command) {
 
 int check(Arguments& a) {
   const pipeline::Plan plan = pipeline::make_plan(a.request);
+  if (!plan.survey_file.empty()) pipeline::check_output(plan);
   if (a.quiet) return 0;
   std::printf("%s: %zu stages fit one another\n", a.request.config.c_str(), plan.stages.size());
   if (plan.survey_file.empty())

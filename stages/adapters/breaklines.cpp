@@ -79,7 +79,7 @@ class BreaklineStage : public OptionStage<SettleOptions> {
         terrain::shore_points(job.block, terrain::terrain_rows(job.block, ground), job.own, features(context), options.water);
     job.tally.count("ground points at shores", shores.size());
     io::write_text_file(shore_file(job.folder, job.key),
-                        {reinterpret_cast<const char*>(shores.data()), shores.size() * sizeof(terrain::ShorePoint)}, false);
+                        {reinterpret_cast<const char*>(shores.data()), shores.size() * sizeof(terrain::ShorePoint)});
   }
   void run_merge(const Context& context, MergeJob& job) const override {
     std::vector<core::Breakline> all = features_of(context, job.tally);
@@ -109,9 +109,9 @@ class BreaklineStage : public OptionStage<SettleOptions> {
     const terrain::Breaklines ready(settled, options, context.origin);  // tells lines that meet at different heights
     job.findings["features"] = settled.size();
     job.findings["edges"] = ready.network().edges.size();
-    io::write_text_file(job.folder / settled_file, terrain::pack(settled), false);
+    io::write_text_file(job.folder / settled_file, terrain::pack(settled));
     terrain::BreaklineOptions mine = options;
-    io::write_text_file(job.folder / options_file, io::to_json(core::effective_values(core::described(mine))), false);
+    io::write_text_file(job.folder / options_file, io::to_json(core::effective_values(core::described(mine))));
   }
 
  private:

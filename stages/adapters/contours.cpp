@@ -196,10 +196,10 @@ class Contours : public OptionStage<ContourWriteOptions> {
     const auto segments = terrain::trace(terrain::contour_surface(std::move(grid), terrain::vertical_tolerance(drawn)), own, drawn);
     job.tally.count("contour segments", segments.size());
     io::write_text_file(segment_file(job.folder, job.key),
-                        {reinterpret_cast<const char*>(segments.data()), segments.size() * sizeof(terrain::Segment)}, false);
+                        {reinterpret_cast<const char*>(segments.data()), segments.size() * sizeof(terrain::Segment)});
     std::string bytes(reinterpret_cast<const char*>(&facts), sizeof facts);
     bytes.append(reinterpret_cast<const char*>(spots.data()), spots.size() * sizeof(terrain::SpotHeight));
-    io::write_text_file(facts_file(job.folder, job.key), bytes, false);
+    io::write_text_file(facts_file(job.folder, job.key), bytes);
   }
 
   void run_merge(const Context& context, MergeJob& job) const override {

@@ -63,7 +63,7 @@ class Penetration : public OptionStage<PenetrationOptions> {
                                    std::accumulate(p.ground_pulses.begin(), p.ground_pulses.end(), std::uint64_t{0})};
     job.tally.count("pulses", sums[0]);
     job.tally.count("pulses that reached the ground", sums[1]);
-    io::write_text_file(job.folder / (context.label(job.key) + ".sums"), {reinterpret_cast<const char*>(sums), sizeof sums}, false);
+    io::write_text_file(job.folder / (context.label(job.key) + ".sums"), {reinterpret_cast<const char*>(sums), sizeof sums});
   }
 
   void run_merge(const Context& context, MergeJob& job) const override {

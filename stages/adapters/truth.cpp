@@ -78,7 +78,7 @@ class Truth : public OptionStage<NoOptions> {
   void run_tile(const Context& context, TileJob& job) const override {
     Sums sums;
     if (context.survey.truth.returns) sums = compare(context, job.block, job.own);
-    io::write_text_file(sums_file(job.folder, job.key), {reinterpret_cast<const char*>(&sums), sizeof sums}, false);
+    io::write_text_file(sums_file(job.folder, job.key), {reinterpret_cast<const char*>(&sums), sizeof sums});
   }
 
   void run_merge(const Context& context, MergeJob& job) const override {

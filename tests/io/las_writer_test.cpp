@@ -9,6 +9,7 @@
 #include "core/crs.h"
 #include "core/error.h"
 #include "io/laz/swath_laz.h"
+#include "tests/io/file_size_limit.h"
 #include "tests/io/las_sample.h"
 #include "tests/world/support.h"
 
@@ -198,6 +199,27 @@ TEST(LasWriter, AWriterThatNeverFinishesLeavesNothing) {
     w.write(sample_block(100));
   }
   EXPECT_EQ(test::entries(folder.path()), 0u);
+}
+
+TEST(LasWriter, AWriteThatIsCutShortAnywhereLeavesNothingAndIsTheSystemsFault) {
+  const test::TemporaryFolder folder;
+  const core::Block block = sample_block(20000);
+  for (const char* name : {"a.las", "a.laz"}) {
+    const auto write = [&] {
+      LasWriter writer(folder / name, {});
+      writer.write(block);
+      writer.finish();
+    };
+    write();
+    const auto whole = std::filesystem::file_size(folder / name);
+    std::filesystem::remove(folder / name);
+    constexpr unsigned steps = 8;
+    for (unsigned s = 0; s < steps; ++s) {
+      const test::FileSizeLimit limit(s + 1 == steps ? whole - 1 : whole * s / steps);
+      EXPECT_THROW(write(), core::SystemError) << name << s;
+      EXPECT_EQ(test::entries(folder.path()), 0u) << name << s;
+    }
+  }
 }
 
 TEST(LasWriter, CoordinatesAreRoundedToTheNearest) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/output_file.h"
 
+#include <thread>
+
 #include "core/error.h"
 #include "tests/world/support.h"
 
@@ -36,6 +38,36 @@ TEST(OutputFile, AFullDiskIsNamedWithWhatToDo) {
     EXPECT_NE(e.text().find("disk is full"), std::string::npos);
     EXPECT_EQ(e.where(), "out.las");
   }
+}
+
+TEST(OutputFile, ALibrarysWordsForAFullDiskAreKnown) {
+  const test::TemporaryFolder folder;
+  for (const char* what : {"No space left on device", "failed to write whole buffer: No space left on device (os error 28)"}) {
+    try {
+      throw_write_error(what, folder / "a.tif");
+      FAIL();
+    } catch (const core::SystemError& e) {
+      EXPECT_NE(e.hint().find("disk is full"), std::string::npos);
+    }
+  }
+  EXPECT_THROW(throw_write_error("TIFFAppendToStrip: write error", folder / "a.tif"), core::SystemError);
+}
+
+TEST(FinishedFiles, AreThoseOfThisThreadAndTheInnermostScope) {
+  const test::TemporaryFolder folder;
+  std::vector<std::filesystem::path> seen;
+  const FinishedFiles outer([&](const std::filesystem::path& file) { seen.push_back(file); });
+  write_text_file(folder / "a", "a");
+  {
+    const FinishedFiles inner;
+    write_text_file(folder / "b", "b");
+    std::thread([&] { write_text_file(folder / "c", "c"); }).join();
+    EXPECT_EQ(inner.files(), std::vector<std::filesystem::path>{folder / "b"});
+  }
+  { const OutputFile never(folder / "d"); }
+  write_text_file(folder / "e", "e");
+  EXPECT_EQ(outer.files(), (std::vector<std::filesystem::path>{folder / "a", folder / "e"}));
+  EXPECT_EQ(seen, outer.files());
 }
 
 }  // namespace

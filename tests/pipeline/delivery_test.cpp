@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/delivery.h"
 
+#include "core/error.h"
 #include "tests/world/support.h"
 
 namespace swath::pipeline {
@@ -67,13 +68,23 @@ TEST(Discard, LeavesNothingUnderEitherName) {
   EXPECT_EQ(test::entries(folder.path()), 0u);
 }
 
-TEST(TemporaryFiles, GoAndNothingElse) {
+TEST(DeliveryCheck, AFolderUnderAProductsNameIsFoundBeforeAnythingIsTouched) {
   const test::TemporaryFolder folder;
-  test::write_bytes(folder / "a/b/.part-1-2-x.laz", "half");
-  test::write_bytes(folder / "a/b/part-1.laz", "whole");
-  remove_temporary_files(folder.path());
-  EXPECT_FALSE(fs::exists(folder / "a/b/.part-1-2-x.laz"));
-  EXPECT_TRUE(fs::exists(folder / "a/b/part-1.laz"));
+  test::write_bytes(folder / "made/a", "a");
+  test::write_bytes(folder / "made/b", "b");
+  fs::create_directories(folder / "out/b");
+  EXPECT_THROW(check_delivery(folder / "made", folder / "out"), core::SystemError);
+  EXPECT_FALSE(fs::exists(folder / "out/a"));
+}
+
+TEST(DeliveryCheck, WhatItWouldWriteAndRemoveIsAskedFor) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "out/points/tiles.json", "[\"old.laz\"]");
+  test::write_bytes(folder / "made/points/tiles.json", "[\"a.laz\"]");
+  test::write_bytes(folder / "made/points/a.laz", "new");
+  std::vector<std::string> asked;
+  check_delivery(folder / "made", folder / "out", [&](const fs::path& file) { asked.push_back(file.filename().string()); });
+  EXPECT_EQ(asked, (std::vector<std::string>{"a.laz", "tiles.json", "old.laz"}));
 }
 
 }  // namespace

@@ -27,6 +27,8 @@ TEST(GridStore, AWindowIsPutTogetherFromTiles) {
   for (int j = 0; j < 8; ++j)
     for (int i = 0; i < 8; ++i) EXPECT_EQ(w.height[w.lattice.at(i, j)], static_cast<float>(100 * (1 + i) + 1 + j));
   EXPECT_THROW(store.cell(stages::Product::dsm), core::Error);
+  std::filesystem::remove(stages::grid_file(folder.path(), {1, 1}));
+  EXPECT_THROW(store.window(stages::Product::dtm, {cell, 1, 1, 8, 8}), core::Error) << "a tile that is gone is no void";
 }
 
 }  // namespace

@@ -23,16 +23,43 @@ void set(Plan& plan, size_t stage, const char* key, core::Value value) {
   ASSERT_TRUE(faults.empty());
 }
 
-TEST(Provenance, HashesContent) {
+/// An empty Shapefile of lines.
+void write_shapefile(const std::filesystem::path& stem) {
+  std::string head(100, '\0');
+  head[2] = 0x27, head[3] = 0x0a;                    // 9994
+  head[27] = 50;                                     // 16-bit words
+  head[28] = static_cast<char>(0xe8), head[29] = 3;  // version 1000
+  head[32] = 3;                                      // lines
+  test::write_bytes(stem.string() + ".shp", head);
+  test::write_bytes(stem.string() + ".shx", head);
+  std::string table(65, '\0');  // one field
+  table[0] = 3, table[1] = 26, table[2] = 1, table[3] = 1, table[8] = 65, table[10] = 11;
+  table[32] = 'a', table[43] = 'C', table[48] = 10, table[64] = '\r';
+  test::write_bytes(stem.string() + ".dbf", table);
+}
+
+TEST(Provenance, FilesBesideAnInputAndTheCalibrationFileAreInputsToo) {
   const test::TemporaryFolder folder;
-  test::write_bytes(folder / "a", "one");
-  test::write_bytes(folder / "b", "one");
-  test::write_bytes(folder / "c", "two");
-  EXPECT_EQ(hash_file(folder / "a"), hash_file(folder / "b"));
-  EXPECT_NE(hash_file(folder / "a"), hash_file(folder / "c"));
-  EXPECT_THROW(hash_file(folder / "none"), core::Error);
-  test::write_bytes(folder / "empty", "");
-  EXPECT_EQ(hash_file(folder / "empty"), "2d06800538d394c2");  // XXH3 of nothing, as its specification prints it
+  write_shapefile(folder / "lines");
+  test::write_bytes(folder / "calibration.json", "{}");
+  Plan plan;
+  plan.stages.push_back({stages::make_stage("terrain.breaklines"), {}, ""});
+  plan.survey.folder = folder.path();
+  plan.survey.breaklines.emplace_back();
+  plan.survey.breaklines[0].file = "lines.shp";
+  plan.survey.calibration_file = "calibration.json";
+  std::vector<Input> inputs = inputs_of(plan);
+  std::vector<std::string> names;
+  for (const Input& i : inputs) names.push_back(i.file.filename().string());
+  EXPECT_EQ(names, (std::vector<std::string>{"lines.shp", "lines.dbf", "lines.shx", "calibration.json"}));
+  const auto before = fingerprints(plan, inputs);
+  test::write_bytes(folder / "lines.prj", "LOCAL_CS[\"x\"]");
+  const auto with_crs = fingerprints(plan, inputs_of(plan));
+  EXPECT_NE(with_crs, before);
+  std::string table = test::read_bytes(folder / "lines.dbf");
+  table[1] = 25;
+  test::write_bytes(folder / "lines.dbf", table);
+  EXPECT_NE(fingerprints(plan, inputs_of(plan)), with_crs);
 }
 
 TEST(Provenance, TheProjectFollowsFromTheFingerprint) {

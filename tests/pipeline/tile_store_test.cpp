@@ -4,6 +4,7 @@
 #include <random>
 
 #include "core/error.h"
+#include "pipeline/work/piece_record.h"
 
 #include "tests/world/support.h"
 
@@ -221,6 +222,42 @@ TEST(TileStore, ACutFileIsAnError) {
   const std::string bytes = test::read_bytes(file);
   test::write_bytes(file, bytes.substr(0, bytes.size() - 5));
   EXPECT_THROW(s.store.read(key, {Column::record, Column::classification}), core::Error);
+}
+
+TEST(TileStore, AnOverlayThatIsEmptyCutOrGoneIsAnError) {
+  Store s;
+  std::filesystem::create_directories(s.folder / "overlay");
+  for (const auto& [key, n] : s.store.tiles()) {
+    const Block b = s.store.read(key, {Column::classification});
+    s.store.write_overlay(s.folder / "overlay", key, b, 0, n, {Column::classification});
+  }
+  s.store.add_overlay(s.folder / "overlay", {Column::classification});
+  const auto key = s.store.tiles().begin()->first;
+  const auto file = s.folder / ("overlay/" + file_label(key) + ".cols");
+  const auto expect_error = [&] {
+    size_t own = 0;
+    EXPECT_THROW(s.store.read(key, {Column::classification}), core::SystemError);
+    EXPECT_THROW(s.store.read_with_halo({{key.ix + 1, key.iy}}, 50, {Column::classification}, own), core::SystemError);
+  };
+  const std::string bytes = test::read_bytes(file);
+  test::write_bytes(file, "");
+  expect_error();
+  test::write_bytes(file, bytes.substr(0, bytes.size() - 1));
+  expect_error();
+  std::filesystem::remove(file);
+  expect_error();
+}
+
+TEST(TileStore, AStripsRecordKnowsItsFiles) {
+  Store s;
+  const auto strip = s.folder / "strips/strip_1";
+  const auto record = read_record(strip / "strip.json");
+  ASSERT_TRUE(record);
+  EXPECT_TRUE(is_whole(*record, strip));
+  std::string bytes = test::read_bytes(strip / record->files[0].name);
+  bytes[bytes.size() / 2] ^= 1;
+  test::write_bytes(strip / record->files[0].name, bytes);
+  EXPECT_FALSE(is_whole(*record, strip));
 }
 
 }  // namespace

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Columns one after the other, each with its length, in the machine's own byte order: the work folder is never carried elsewhere. A
+// trajectory goes as its records and the longest step within its spans, from which the same spans follow.
+#include "pipeline/work/handed_on.h"
+
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+
+#include "io/output_file.h"
+#include "io/value_file.h"
+#include "pipeline/work/piece_record.h"
+
+namespace swath::pipeline {
+namespace {
+
+template <class T>
+constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+class Packer {
+ public:
+  template <class T>
+  void operator()(const T& v) {
+    static_assert(is_plain<T>);
+    raw(&v, sizeof v);
+  }
+  void operator()(const std::string& s) { (*this)(s.size()), raw(s.data(), s.size()); }
+  template <class T>
+  void operator()(const std::vector<T>& v) {
+    (*this)(v.size());
+    if constexpr (std::is_same_v<T, std::string>)
+      for (const T& one : v) (*this)(one);
+    else if (!v.empty())
+      raw(v.data(), v.size() * sizeof(T));  // numbers, arrays of them, or Eigen's of fixed size
+  }
+  std::string bytes;
+
+ private:
+  void raw(const void* from, size_t n) { bytes.append(static_cast<const char*>(from), n); }
+};
+
+class Unpacker {
+ public:
+  Unpacker(std::string bytes, const std::filesystem::path& file) : bytes_(std::move(bytes)), file_(file) {}
+  template <class T>
+  void operator()(T& v) {
+    static_assert(is_plain<T>);
+    raw(&v, sizeof v);
+  }
+  void operator()(std::string& s) {
+    s.resize(length(1));
+    raw(s.data(), s.size());
+  }
+  template <class T>
+  void operator()(std::vector<T>& v) {
+    if constexpr (std::is_same_v<T, std::string>) {
+      v.resize(length(1));
+      for (T& one : v) (*this)(one);
+    } else {
+      v.resize(length(sizeof(T)));
+      if (!v.empty()) raw(v.data(), v.size() * sizeof(T));
+    }
+  }
+  void expect_end() const {
+    if (at_ != bytes_.size()) throw damaged_work(file_);
+  }
+
+ private:
+  size_t length(size_t item) {
+    size_t n = 0;
+    (*this)(n);
+    if (n > (bytes_.size() - at_) / item) throw damaged_work(file_);
+    return n;
+  }
+  void raw(void* to, size_t n) {
+    if (n > bytes_.size() - at_) throw damaged_work(file_);
+    if (n > 0) std::memcpy(to, bytes_.data() + at_, n);
+    at_ += n;
+  }
+  std::string bytes_;
+  std::filesystem::path file_;
+  size_t at_ = 0;
+};
+
+template <class F, class G>
+void visit_gnss(F& f, G& d) {
+  f(d.time), f(d.position), f(d.covariance), f(d.velocity), f(d.velocity_covariance), f(d.quality), f(d.satellites);
+}
+
+template <class F, class E>
+void visit_events(F& f, E& d) {
+  f(d.time), f(d.sigma), f(d.id), f(d.strip), f(d.technique), f(d.doubtful);
+}
+
+template <class F, class T>
+void visit_trajectory(F& f, T& d) {
+  f(d.time), f(d.latitude), f(d.longitude), f(d.height), f(d.roll), f(d.pitch), f(d.heading);
+  f(d.v_north), f(d.v_east), f(d.v_down);
+  f(d.sigma_north), f(d.sigma_east), f(d.sigma_down), f(d.sigma_roll), f(d.sigma_pitch), f(d.sigma_heading);
+  f(d.covariance.time), f(d.covariance.upper);
+  f(d.errors.states), f(d.errors.time), f(d.errors.lefts), f(d.errors.rights), f(d.errors.links);
+  f(d.response.time), f(d.response.per_unit);
+}
+
+/// A max_gap with which the same records make the same spans.
+double longest_step(const trajectory::Trajectory& t) {
+  const std::vector<double>& time = t.data().time;
+  double longest = 0.0;
+  for (const trajectory::Span& s : t.spans()) {
+    const auto first = std::lower_bound(time.begin(), time.end(), s.first), last = std::lower_bound(time.begin(), time.end(), s.last);
+    for (auto at = first; at != last; ++at) longest = std::max(longest, *(at + 1) - *at);
+  }
+  return longest;
+}
+
+trajectory::Trajectory made_of(core::TrajectoryData data, double max_gap, const std::filesystem::path& file) {
+  trajectory::TrajectoryOptions options;
+  options.max_gap = core::Seconds(max_gap);
+  return trajectory::Trajectory(std::move(data), options, file.string());
+}
+
+}  // namespace
+
+HandedOn HandedOn::of(const stages::Context& context) { return {context.gnss, context.events, context.trajectory, context.origin}; }
+
+void HandedOn::give(stages::Context& context) const {
+  context.gnss = gnss;
+  context.events = events;
+  context.trajectory = trajectory;
+  context.origin = origin;
+}
+
+bool write_handed_on(const std::filesystem::path& file, const HandedOn& before, const HandedOn& after) {
+  const bool gnss = after.gnss && after.gnss != before.gnss, events = after.events && after.events != before.events,
+             trajectory = after.trajectory && after.trajectory != before.trajectory;
+  if ((!after.gnss && before.gnss) || (!after.events && before.events) || (!after.trajectory && before.trajectory)) return false;
+  Packer pack;
+  pack(gnss), pack(events), pack(trajectory);
+  if (gnss) visit_gnss(pack, *after.gnss);
+  if (events) visit_events(pack, *after.events);
+  if (trajectory) {
+    const double gap = longest_step(*after.trajectory);
+    if (made_of(after.trajectory->data(), gap, file).spans() != after.trajectory->spans()) return false;
+    pack(gap);
+    visit_trajectory(pack, after.trajectory->data());
+  }
+  for (int k = 0; k < 3; ++k) pack(after.origin[k]);
+  io::write_text_file(file, pack.bytes);
+  return true;
+}
+
+HandedOn read_handed_on(const std::filesystem::path& file, const HandedOn& before) {
+  HandedOn out = before;
+  Unpacker unpack(io::read_text_file(file), file);
+  bool gnss = false, events = false, trajectory = false;
+  unpack(gnss), unpack(events), unpack(trajectory);
+  if (gnss) {
+    auto data = std::make_shared<core::GnssData>();
+    visit_gnss(unpack, *data);
+    out.gnss = std::move(data);
+  }
+  if (events) {
+    auto data = std::make_shared<core::EventData>();
+    visit_events(unpack, *data);
+    out.events = std::move(data);
+  }
+  if (trajectory) {
+    double gap = 0.0;
+    unpack(gap);
+    core::TrajectoryData data;
+    visit_trajectory(unpack, data);
+    out.trajectory = std::make_shared<const trajectory::Trajectory>(made_of(std::move(data), gap, file));
+  }
+  for (int k = 0; k < 3; ++k) unpack(out.origin[k]);
+  unpack.expect_end();
+  return out;
+}
+
+}  // namespace swath::pipeline

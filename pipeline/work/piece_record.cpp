@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Format: JSON, a line feed, "xxh3 ", the checksum of what stands before it, a line feed.
+#include "pipeline/work/piece_record.h"
+
+#include <algorithm>
+
+#include "io/output_file.h"
+#include "io/value_file.h"
+#include "pipeline/work/checksum.h"
+
+namespace swath::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Value;
+
+constexpr std::string_view seal = "\nxxh3 ";
+
+/// "03-strips-0123456789abcdef/strip_0001/strip.json": what tells pieces of a work folder apart.
+std::string identity_of(const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  return (folder.parent_path().filename() / folder.filename() / file.filename()).generic_string();
+}
+
+bool stays_within(const fs::path& name) {
+  return !name.empty() && name.is_relative() && std::find(name.begin(), name.end(), "..") == name.end();
+}
+
+/// The text before the seal; nothing where it is not the one that was written.
+std::optional<std::string> sealed_text(const fs::path& file) {
+  std::error_code ec;
+  if (!fs::is_regular_file(fs::symlink_status(file, ec))) return std::nullopt;
+  std::string text = io::read_text_file(file);
+  const size_t at = text.rfind(seal);
+  if (at == std::string::npos) return std::nullopt;
+  const std::string sum = text.substr(at + seal.size());
+  text.resize(at);
+  if (sum != checksum_of(text) + "\n") return std::nullopt;
+  return text;
+}
+
+}  // namespace
+
+PieceFile piece_file(const fs::path& folder, const fs::path& file) {
+  return {file.lexically_relative(folder), fs::file_size(file), checksum_of_file(file)};
+}
+
+std::vector<PieceFile> piece_files(const fs::path& folder, std::vector<fs::path> files) {
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  std::vector<PieceFile> out;
+  for (const fs::path& f : files)
+    if (fs::exists(f)) out.push_back(piece_file(folder, f));
+  return out;
+}
+
+void write_record(const fs::path& at, const fs::path& named, const PieceRecord& record) {
+  Value all = Value::object();
+  all["piece"] = identity_of(named);
+  Value& files = all["files"] = Value::array();
+  for (const PieceFile& f : record.files) {
+    Value one = Value::array();
+    one.push(f.name.generic_string());
+    one.push(f.bytes);
+    one.push(f.checksum);
+    files.push(std::move(one));
+  }
+  all["note"] = record.note;
+  std::string text = io::to_json(all);
+  const std::string sum = checksum_of(text);
+  io::write_text_file(at, text.append(seal) + sum + "\n");
+}
+
+std::optional<PieceRecord> read_record(const fs::path& file) {
+  const std::optional<std::string> text = sealed_text(file);
+  if (!text) return std::nullopt;
+  Value all = io::parse_json(*text, file.string());
+  const Value* piece = all.find("piece");
+  const Value* files = all.find("files");
+  Value* note = all.find("note");
+  if (!piece || !files || !note || piece->as_text() != identity_of(file)) return std::nullopt;
+  PieceRecord out;
+  for (const Value& one : files->items()) {
+    const std::vector<Value>& f = one.items();
+    out.files.push_back({f.at(0).as_text(), static_cast<std::uint64_t>(f.at(1).as_int()), f.at(2).as_text()});
+    if (!stays_within(out.files.back().name)) return std::nullopt;
+  }
+  out.note = std::move(*note);
+  return out;
+}
+
+bool is_whole(const PieceRecord& record, const fs::path& folder) {
+  return std::all_of(record.files.begin(), record.files.end(), [&](const PieceFile& f) {
+    const fs::path file = folder / f.name;
+    std::error_code ec;
+    if (!fs::is_regular_file(fs::symlink_status(file, ec)) || fs::file_size(file, ec) != f.bytes || ec) return false;
+    return checksum_of_file(file) == f.checksum;
+  });
+}
+
+core::SystemError damaged_work(const fs::path& file) {
+  return core::SystemError("the work of an earlier stage was changed or damaged while the run was at work", file.string(),
+                           "run the same command again: what is damaged is made anew, what is whole is kept");
+}
+
+}  // namespace swath::pipeline

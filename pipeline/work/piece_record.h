@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A finished piece of the work folder: a record beside its files names each of them with its length and checksum, and holds a note. The
+// record is written last, and has a checksum of its own: a piece is whole where its record is and every file is as it says.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/value.h"
+
+namespace swath::pipeline {
+
+/// A file of a piece as it was finished.
+struct PieceFile {
+  std::filesystem::path name;  ///< relative to the record's folder
+  std::uint64_t bytes = 0;
+  std::string checksum;
+};
+
+/// The file as it is now. Throws core::Error where it cannot be read.
+PieceFile piece_file(const std::filesystem::path& folder, const std::filesystem::path& file);
+/// Those of the files that are there, each once.
+std::vector<PieceFile> piece_files(const std::filesystem::path& folder, std::vector<std::filesystem::path> files);
+
+struct PieceRecord {
+  std::vector<PieceFile> files;
+  core::Value note;
+};
+
+/// Writes the record under `at`; `named`: the name under which it will be read, which is part of it so that another piece's record is
+/// not taken for it.
+void write_record(const std::filesystem::path& at, const std::filesystem::path& named, const PieceRecord& record);
+inline void write_record(const std::filesystem::path& file, const PieceRecord& record) { write_record(file, file, record); }
+
+/// Nothing where there is no record, or it is damaged or another piece's. Does not look at the files.
+std::optional<PieceRecord> read_record(const std::filesystem::path& file);
+
+/// Are all files of the record in `folder` there, plain files of the length and checksum that it says?
+bool is_whole(const PieceRecord& record, const std::filesystem::path& folder);
+
+/// For a file of the work folder that was whole at the start of the run and is not: the next run makes it anew.
+core::SystemError damaged_work(const std::filesystem::path& file);
+
+}  // namespace swath::pipeline

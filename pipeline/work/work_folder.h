@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The folder of the work in progress, OUTPUT/.swath: that it is ours, that one run alone is at work in it, and that what it holds of an
+// earlier run is whole.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <set>
+#include <string>
+
+namespace swath::pipeline {
+
+/// Throws core::Error (usage) where the folder is a link or no folder, or holds anything that no run makes: it would be emptied.
+void expect_own(const std::filesystem::path& folder);
+
+/// One run at a time in one output folder.
+class WorkLock {
+ public:
+  /// `work`: the folder. Throws core::Error (usage) where another run is at work in it.
+  explicit WorkLock(const std::filesystem::path& work);
+  ~WorkLock();
+  WorkLock(const WorkLock&) = delete;
+  WorkLock& operator=(const WorkLock&) = delete;
+
+  /// Throws core::SystemError where the folder was removed or replaced meanwhile.
+  void expect_there() const;
+
+ private:
+  std::filesystem::path file_;
+  int fd_;
+};
+
+/// Whatever lies in the work folder and is not one of the `valid` folders goes.
+void sweep(const std::filesystem::path& work, const std::set<std::string>& valid);
+
+/// What an earlier run has left.
+struct EarlierWork {
+  std::uint64_t lines = 0, pieces = 0;  ///< whole: flight lines or files; pieces of the other stages
+  std::uint64_t damaged = 0;            ///< pieces that were finished and are not what they were
+};
+
+/// Reads every piece of the work folder (piece_record.h) and removes whatever belongs to none that is whole, as do files that a kill left
+/// half written: what stays is valid. `share`: how far it is, 0 to 1, from any thread.
+EarlierWork keep_whole_work(const std::filesystem::path& work, const std::function<void(double)>& share = {});
+
+}  // namespace swath::pipeline

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/work/piece_record.h"
+
+#include "tests/world/support.h"
+
+namespace swath::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Piece : public ::testing::Test {
+ protected:
+  Piece() {
+    test::write_bytes(folder_ / "stage/a.cols", "the columns of a");
+    test::write_bytes(folder_ / "stage/products/a.laz", "the points of a");
+    core::Value note = core::Value::object();
+    note["seconds"] = 1.5;
+    write_record(record_, {piece_files(stage_, {stage_ / "a.cols", stage_ / "gone", stage_ / "products/a.laz", stage_ / "a.cols"}), note});
+  }
+  bool whole() const {
+    const auto read = read_record(record_);
+    return read && is_whole(*read, stage_);
+  }
+  test::TemporaryFolder folder_;
+  fs::path stage_ = folder_ / "stage", record_ = stage_ / "a.done";
+};
+
+TEST_F(Piece, ComesBackWithItsFilesAndNote) {
+  const auto read = read_record(record_);
+  ASSERT_TRUE(read);
+  ASSERT_EQ(read->files.size(), 2u) << "each file once, and none that was removed again";
+  EXPECT_EQ(read->files[1].name, fs::path("products/a.laz"));
+  EXPECT_EQ(read->files[1].bytes, 15u);
+  EXPECT_EQ(read->note.find("seconds")->as_number(), 1.5);
+  EXPECT_TRUE(whole());
+}
+
+TEST_F(Piece, AFileThatIsNotAsItWasIsSeen) {
+  const fs::path file = stage_ / "a.cols";
+  const std::string bytes = test::read_bytes(file);
+  for (const std::string& damaged : {std::string(), bytes.substr(1), bytes + "x", "The columns of a" + std::string()}) {
+    test::write_bytes(file, damaged);
+    EXPECT_FALSE(whole()) << damaged;
+  }
+  fs::remove(file);
+  EXPECT_FALSE(whole());
+  test::write_bytes(stage_ / "elsewhere", bytes);
+  fs::create_symlink("elsewhere", file);
+  EXPECT_FALSE(whole()) << "a link is no file of ours";
+  fs::remove(file);
+  fs::create_directory(file);
+  EXPECT_FALSE(whole());
+}
+
+TEST_F(Piece, EveryFlippedBitOfARecordIsSeen) {
+  const std::string bytes = test::read_bytes(record_);
+  for (size_t i = 0; i < bytes.size(); ++i) {
+    std::string damaged = bytes;
+    damaged[i] = static_cast<char>(damaged[i] ^ (1 << (i % 8)));
+    test::write_bytes(record_, damaged);
+    EXPECT_FALSE(read_record(record_)) << "byte " << i;
+  }
+  for (size_t n = 0; n < bytes.size(); ++n) {
+    test::write_bytes(record_, bytes.substr(0, n));
+    EXPECT_FALSE(read_record(record_)) << n << " bytes";
+  }
+  fs::remove(record_);
+  EXPECT_FALSE(read_record(record_));
+}
+
+TEST_F(Piece, AnothersRecordIsNotTakenForIt) {
+  test::write_bytes(folder_ / "other/a.cols", "the columns of a");
+  test::write_bytes(folder_ / "other/products/a.laz", "the points of a");
+  fs::copy_file(record_, folder_ / "other/a.done");
+  EXPECT_FALSE(read_record(folder_ / "other/a.done"));
+  fs::copy_file(record_, stage_ / "b.done");
+  EXPECT_FALSE(read_record(stage_ / "b.done"));
+}
+
+}  // namespace
+}  // namespace swath::pipeline
