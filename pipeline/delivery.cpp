@@ -82,8 +82,6 @@ std::vector<fs::path> outdated(const fs::path& now, const fs::path& before) {
   return out;
 }
 
-}  // namespace
-
 void check_delivery(const fs::path& made, const fs::path& output, const Allowed& allowed) {
   for (const fs::path& file : files_below(made)) {
     std::error_code ec;
@@ -97,7 +95,7 @@ void check_delivery(const fs::path& made, const fs::path& output, const Allowed&
   }
 }
 
-void deliver(const fs::path& made, const fs::path& output, bool keep) {
+void deliver_one(const fs::path& made, const fs::path& output, bool keep) {
   const std::vector<fs::path> files = files_below(made);
   const fs::path spare = made.parent_path() / ".part-delivery";
   std::set<fs::path> folders;
@@ -114,6 +112,19 @@ void deliver(const fs::path& made, const fs::path& output, bool keep) {
     deliver_file(made / file, output / file, spare, keep);
   }
   for (const fs::path& folder : folders) io::flush_to_disk(folder);
+}
+
+}  // namespace
+
+void deliver(const std::vector<fs::path>& made, const fs::path& output, bool keep, const Allowed& allowed) {
+  for (const fs::path& one : made) check_delivery(one, output, allowed);
+  for (const fs::path& one : made) deliver_one(one, output, keep);
+}
+
+void expect_delivered(const fs::path& file, std::uint64_t bytes) {
+  std::error_code ec;
+  if (fs::file_size(file, ec) == bytes && !ec) return;
+  throw core::SystemError("the product was removed or changed while the run was at work", file.string(), "run the same command again");
 }
 
 void discard(const fs::path& folder, const fs::path& as) {

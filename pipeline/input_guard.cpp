@@ -103,6 +103,16 @@ void InputGuard::expect_apart(const fs::path& product) const {
     expect_other(at->path(), product);
 }
 
+std::function<void(const fs::path&)> outside_inputs(const Plan& plan) {
+  return [guard = InputGuard(files_of(plan))](const fs::path& file) {
+    try {
+      guard.expect_apart(file);
+    } catch (const core::Error& e) {
+      throw core::SystemError(e.what(), e.where(), e.hint());
+    }
+  };
+}
+
 void check_output(const Plan& plan) {
   const fs::path output = fs::absolute(plan.run.output).lexically_normal();
   std::vector<fs::path> products{"report.json", ".swath", ".swath-discarded"};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <utility>
 #include <vector>
@@ -27,6 +28,9 @@ class InputGuard {
   std::vector<std::pair<std::filesystem::path, std::filesystem::path>> files_;  ///< canonical, as named
   std::map<std::pair<std::uint64_t, std::uint64_t>, std::filesystem::path> ids_;
 };
+
+/// For a delivery: throws core::SystemError (the work stays) for a file of the plan, whatever name a stage gave its product.
+std::function<void(const std::filesystem::path&)> outside_inputs(const Plan& plan);
 
 /// Whether the products of the plan can get their names in its output folder: core::Error (usage) where one would take the place of a file
 /// of the plan, a folder has the name of a file or the other way around, or a path is longer than the system takes.

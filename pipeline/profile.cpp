@@ -19,6 +19,7 @@
 #include "io/las_reader.h"
 #include "io/output_file.h"
 #include "io/png.h"
+#include "pipeline/input_guard.h"
 #include "pipeline/line_file.h"
 #include "pipeline/surface_file.h"
 #include "report/chart.h"
@@ -314,6 +315,18 @@ std::vector<ProfileLine> profile_lines(const ProfileRequest& request, const core
   return out;
 }
 
+namespace {
+
+/// No file that is read is written over.
+void check_names(const ProfileRequest& request, std::vector<fs::path> read, const std::vector<ProfileLine>& lines) {
+  read.insert(read.end(), {request.dtm, request.lines});
+  const InputGuard guard(read);
+  for (const ProfileLine& line : lines)
+    for (const char* ending : {".csv", ".svg", ".png"}) guard.expect_apart(request.folder / (line.name + ending));
+}
+
+}  // namespace
+
 core::Value write_profiles(const ProfileRequest& request) {
   const std::vector<fs::path> files = las_files(request.points);
   if (files.empty() && request.dtm.empty())
@@ -326,6 +339,7 @@ core::Value write_profiles(const ProfileRequest& request) {
     crs = core::Crs(stated);
   }
   const std::vector<ProfileLine> lines = profile_lines(request, crs);
+  check_names(request, files, lines);
   const bool metric = crs.empty() || crs.metres_per_unit() == 0.0;
   const double half_width = request.half_width / (metric ? 1.0 : crs.metres_per_unit());
   const auto short_unit = [](double metres) { return std::string(metres == 1.0 ? "m" : "ft"); };

@@ -27,8 +27,8 @@
 #include "pipeline/tile_groups.h"
 #include "pipeline/tile_queue.h"
 #include "pipeline/tile_store.h"
-#include "pipeline/work/handed_on.h"
 #include "pipeline/work/piece_record.h"
+#include "pipeline/work/survey_piece.h"
 #include "pipeline/work/work_folder.h"
 #include "stages/waters.h"
 
@@ -60,8 +60,7 @@ struct Account {
   double seconds = 0;
 };
 
-constexpr const char *groups_file = "groups.done", *survey_record = "survey.done", *partial_record = "files.done",
-                     *handed_on_file = "handed_on.bin";
+constexpr const char* groups_file = "groups.done";
 
 /// What a group takes to work on, for the progress: its memory holds the points around it and its rasters, and so one point alone in a tile
 /// is not taken for next to nothing.
@@ -90,9 +89,8 @@ class Engine {
   void prepare();
   void prepare_map();
   void find_strips();
+  bool is_read_again(size_t number) const;
   bool is_resumed(size_t number) const;
-  void resume_survey_stage(size_t number);
-  void run_survey_stage(size_t number);
   void run_survey_stages();
   void run_strips();
   void stream_strip(const stages::Strip& strip, const fs::path& folder);
@@ -109,7 +107,6 @@ class Engine {
   void run_merge(size_t number);
   void begin_products(size_t number);
   void compose_report(const std::string& command);
-  Allowed outside_inputs() const;
   void deliver_all(const WorkLock& lock);
   Measured measured() const;
   void keep_whole();
@@ -250,60 +247,16 @@ void Engine::keep_whole() {
                   " pieces of other stages were done by an earlier run and are not done again");
 }
 
-/// Is what an earlier run has kept of a survey stage enough? IMU records are not kept: they are read again where a stage that takes them is
-/// not done.
+/// What readers hand on is as large as their files, and read as fast from these.
+bool Engine::is_read_again(size_t number) const { return stage(number).info().name.starts_with("readers."); }
+
+/// Is what an earlier run has kept of a survey stage enough? IMU records are not needed where the stages that take them are done.
 bool Engine::is_resumed(size_t number) const {
-  const auto is_done = [this](size_t i) { return fs::exists(folder(i) / survey_record); };
-  if (!is_done(number)) return false;
-  if (!stage(number).info().makes(stages::Product::imu)) return true;
+  if (!is_survey_piece_done(folder(number))) return false;
+  if (!is_read_again(number)) return true;
   for (size_t i = number + 1; i < plan_.stages.size(); ++i)
-    if (works_on(i, Grain::survey) && stage(i).info().takes(stages::Product::imu) && !is_done(i)) return false;
+    if (works_on(i, Grain::survey) && stage(i).info().takes(stages::Product::imu) && !is_survey_piece_done(folder(i))) return false;
   return true;
-}
-
-void Engine::resume_survey_stage(size_t number) {
-  const fs::path file = folder(number) / survey_record;
-  std::optional<PieceRecord> record = read_record(file);
-  if (!record) throw damaged_work(file);
-  read_handed_on(folder(number) / handed_on_file, HandedOn::of(context_)).give(context_);
-  Account& account = accounts_[number];
-  account.tally.add(Tally::from(*record->note.find("tally")));
-  account.findings = *record->note.find("findings");
-  account.seconds += record->note.find("seconds")->as_number();
-  made_[number] = std::move(record->files);
-  ++resumed_;
-}
-
-/// What the stage has finished so far is kept as it goes: a stage may take hours, and look for its own files.
-void Engine::run_survey_stage(size_t number) {
-  const fs::path mine = folder(number);
-  Account& account = accounts_[number];
-  const HandedOn before = HandedOn::of(context_);
-  const auto start = Clock::now();
-  {
-    PieceRecord so_far;
-    const io::FinishedFiles watch([&](const fs::path& file) {
-      const io::FinishedFiles apart;  // the record is none of the stage's files
-      so_far.files.push_back(piece_file(mine, file));
-      write_record(mine / partial_record, so_far);
-    });
-    stage(number).run_survey(context_, account.tally, account.findings);
-  }
-  const double seconds = since(start);
-  account.seconds += seconds;
-  const bool kept = write_handed_on(mine / handed_on_file, before, HandedOn::of(context_));
-  std::error_code absent;
-  fs::remove(mine / partial_record, absent);
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(mine))
-    if (entry.is_regular_file() && entry.path() != mine / survey_record) files.push_back(entry.path());
-  made_[number] = piece_files(mine, std::move(files));
-  if (!kept) return;
-  Value note = Value::object();
-  note["tally"] = account.tally.value();
-  note["findings"] = account.findings;
-  note["seconds"] = seconds;
-  write_record(mine / survey_record, {made_[number], std::move(note)});
 }
 
 void Engine::run_survey_stages() {
@@ -312,8 +265,16 @@ void Engine::run_survey_stages() {
     if (stage(i).info().takes(stages::Product::shots)) find_strips();
     begin_products(i);
     progress_.begin(std::string(stage(i).info().name), 0, "");
-    is_resumed(i) ? resume_survey_stage(i) : run_survey_stage(i);
+    const bool resumed = is_resumed(i);
+    SurveyPiece piece =
+        resumed ? resume_survey_piece(context_, folder(i))
+                : run_survey_piece(stage(i), context_, folder(i), !is_read_again(i) || stage(i).info().makes(stages::Product::imu));
     progress_.end();
+    resumed_ += resumed;
+    accounts_[i].tally.add(piece.tally);
+    accounts_[i].findings = std::move(piece.findings);
+    accounts_[i].seconds += piece.seconds;
+    made_[i] = std::move(piece.files);
     context_.earlier.push_back(context_.output);
   }
 }
@@ -632,7 +593,10 @@ void Engine::run_merge(size_t number) {
   progress_.begin(std::string(stage(number).info().name) + " merge", 0, "");
   const io::FinishedFiles finished;
   stage(number).run_merge(context_, job);
-  for (const PieceFile& f : piece_files(job.folder, finished.files())) made_[number].push_back(f);
+  for (PieceFile& f : piece_files(job.folder, finished.files())) {
+    std::erase_if(made_[number], [&](const PieceFile& before) { return before.name == f.name; });
+    made_[number].push_back(std::move(f));
+  }
   progress_.end();
   accounts_[number].tally.add(job.tally);
   for (auto& [key, value] : job.findings.members()) accounts_[number].findings[key] = std::move(value);
@@ -659,9 +623,7 @@ void Engine::keep_finished(const core::Error& e) {
   std::error_code absent;
   fs::remove(output_ / "report.json", absent);  // of an earlier run: it says nothing of these products
   try {
-    const Allowed allowed = outside_inputs();
-    for (const fs::path& made : context_.earlier) check_delivery(made, output_, allowed);
-    for (const fs::path& made : context_.earlier) deliver(made, output_, true);
+    deliver(context_.earlier, output_, true, outside_inputs(plan_));
   } catch (const core::Error&) {
     throw e;
   }
@@ -729,17 +691,6 @@ void remove_if_empty(const fs::path& top) {
   if (fs::is_directory(top, ec) && fs::is_empty(top, ec)) fs::remove(top, ec);
 }
 
-/// No file of the survey is written over, whatever name a stage gave its product.
-Allowed Engine::outside_inputs() const {
-  return [guard = InputGuard(files_of(plan_))](const fs::path& file) {
-    try {
-      guard.expect_apart(file);
-    } catch (const core::Error& e) {
-      throw core::SystemError(e.what(), e.where(), e.hint());  // the work stays
-    }
-  };
-}
-
 /// All products go to the output folder, and the report behind them.
 void Engine::deliver_all(const WorkLock& lock) {
   const fs::path report = folder(plan_.stages.size() - 1) / "report";
@@ -748,18 +699,10 @@ void Engine::deliver_all(const WorkLock& lock) {
   all.push_back(report);
   lock.expect_there();
   for (size_t i = 0; i < plan_.stages.size(); ++i) expect_made(i);
-  const Allowed allowed = outside_inputs();
-  for (const fs::path& made : all) check_delivery(made, output_, allowed);
-  for (const fs::path& made : all) deliver(made, output_, plan_.run.keep_work);
+  deliver(all, output_, plan_.run.keep_work, outside_inputs(plan_));
   for (const std::vector<PieceFile>& of_stage : made_)
-    for (const PieceFile& f : of_stage) {
-      if (f.name.begin()->string() != products_name) continue;
-      std::error_code ec;
-      const fs::path file = output_ / f.name.lexically_relative(products_name);
-      if (fs::file_size(file, ec) != f.bytes || ec)
-        throw core::SystemError("the product was removed or changed while the run was at work", file.string(),
-                                "run the same command again");
-    }
+    for (const PieceFile& f : of_stage)
+      if (f.name.begin()->string() == products_name) expect_delivered(output_ / f.name.lexically_relative(products_name), f.bytes);
   lock.expect_there();
 }
 

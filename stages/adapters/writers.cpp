@@ -176,8 +176,10 @@ class GridTiles : public OptionStage<NoOptions> {
   }
   std::vector<std::string> products() const override {
     std::vector<std::string> out;
-    for (const Surface& s : surfaces())
+    for (const Surface& s : surfaces()) {
       for (const char* ending : {"", ".vrt"}) out.push_back(std::string(name_of(s.product)) + ending);
+      if (s.has_quality) out.push_back(std::string(name_of(s.product)) + "_quality.vrt");
+    }
     return out;
   }
   void run_tile(const Context& context, TileJob& job) const override {

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A full disk is one clear error; with space there, the same command finishes."""
+import json
 import os
 import resource
 import shutil
@@ -37,7 +38,7 @@ class Disk(Case):
         if not may_mount(disk):
             self.skipTest("needs the right to mount a small disk")
         # Sizes at which strips, overlays, grids, contours, rasters and the picture are the first that do not fit.
-        full = 0
+        full = resumed = 0
         for kilobytes in (64, 400, 1200, 2400, 4000, 6000, 8000):
             with self.subTest(kilobytes=kilobytes):
                 subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "tmpfs", disk], check=True)
@@ -47,14 +48,17 @@ class Disk(Case):
                         full += 1
                         self.assert_error(done, 1, "No space left on device", "hint: the disk is full")
                         self.assertFalse((disk / "out" / "report.json").exists())
+                        self.assertEqual([p for p in (disk / "out").rglob(".part*")], [], "a file half written stays")
                         subprocess.run(["mount", "-o", "remount,size=200m", disk], check=True)
                         done = swath(*self.arguments(disk / "out"))
+                        resumed += json.loads((disk / "out" / "report.json").read_text())["pieces_resumed"] > 0
                     self.assertEqual((done.returncode, done.stderr), (0, ""))
                     self.assertEqual(products(disk / "out"), products(self.reference))
                     self.assertFalse((disk / "out" / ".swath").exists())
                 finally:
                     subprocess.run(["umount", disk], check=True)
         self.assertGreaterEqual(full, 4, "the disks were too large to fill")
+        self.assertGreaterEqual(resumed, full - 1, "finished work was thrown away")
 
     def test_read_only_disk(self):
         disk = self.folder / "disk"
@@ -77,6 +81,7 @@ class Disk(Case):
                 done = swath(*self.arguments(out),
                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (kilobytes * 1024, kilobytes * 1024)))
                 self.assert_error(done, 1, "(?i)file too large|cannot")
+                self.assertTrue((out / ".swath").exists(), "finished work was thrown away")
                 done = swath(*self.arguments(out))
                 self.assertEqual((done.returncode, done.stderr), (0, ""))
                 self.assertEqual(products(out), products(self.reference))

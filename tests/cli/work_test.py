@@ -244,12 +244,12 @@ class SurveyStages(Case):
         found = {name: data for name, data in products(self.out).items() if not name.startswith(".swath")}
         self.assertEqual([name for name in products(whole) if found.get(name) != products(whole)[name]], [])
         a, b = (json.loads((f / "report.json").read_text()) for f in (whole, self.out))
-        self.assertGreaterEqual(b["pieces_resumed"], 4)
+        self.assertGreaterEqual(b["pieces_resumed"], 3)
         for one, other in zip(a["stages"], b["stages"]):
             self.assertEqual((one.get("tally"), one.get("findings")), (other.get("tally"), other.get("findings")), one["type"])
         # Once more, with all of them done, and with one of them damaged.
         records = {p: p.stat().st_mtime_ns for p in self.out.glob(".swath/*/survey.done")}
-        self.assertGreaterEqual(len(records), 5)
+        self.assertGreaterEqual(len(records), 4)
         subprocess.run(self.command(self.out, "run.keep_work=true"), check=True)
         self.assertEqual({p: p.stat().st_mtime_ns for p in records}, records)
         state = next(self.out.glob(".swath/*trajectory.ins_gnss*/handed_on.bin"))

@@ -40,7 +40,7 @@ TEST(SideFiles, OfAVirtualRasterWithItsSourcesAndWhatLiesBesideThem) {
   const test::TemporaryFolder folder;
   const core::Lattice lattice{1.0, 0, 0, 4, 4};
   const std::vector<float> values(lattice.size(), 1.0f);
-  write_raster(folder / "tiles/a.tif", lattice, {{"height", "m", &values}}, "EPSG:32632");
+  write_raster(folder / "tiles/a.tif", lattice, {{"height", "m", &values}}, "EPSG:32632", false);
   write_vrt(folder / "all.vrt", {folder / "tiles/a.tif"});
   EXPECT_EQ(names(folder / "all.vrt"), std::vector<std::string>{"a.tif"});
   test::write_bytes(folder / "tiles/a.tif.aux.xml", "<PAMDataset></PAMDataset>");

@@ -20,7 +20,7 @@ TEST_P(Delivery, EveryFileComesToItsPlaceAndCanComeAgain) {
   make("made/points/a.laz", "points");
   make("made/relief.png", "picture");
   make("made/points/.part-7-a.laz", "half");
-  for (int times = 0; times < 2; ++times) deliver(folder_ / "made", folder_ / "out", GetParam());
+  for (int times = 0; times < 2; ++times) deliver({folder_ / "made"}, folder_ / "out", GetParam());
   EXPECT_EQ(delivered("points/a.laz"), "points");
   EXPECT_EQ(delivered("relief.png"), "picture");
   int files = 0;
@@ -35,7 +35,7 @@ TEST_P(Delivery, TilesThatAreNoLongerListedGo) {
   make("out/points/mine.txt", "a file of the user's");
   make("made/points/tiles.json", "[\"a.laz\"]");
   make("made/points/a.laz", "new");
-  deliver(folder_ / "made", folder_ / "out", GetParam());
+  deliver({folder_ / "made"}, folder_ / "out", GetParam());
   EXPECT_FALSE(fs::exists(folder_ / "out/points/old.laz"));
   EXPECT_EQ(delivered("points/a.laz"), "new");
   EXPECT_EQ(delivered("points/mine.txt"), "a file of the user's");
@@ -44,7 +44,7 @@ TEST_P(Delivery, TilesThatAreNoLongerListedGo) {
 TEST_P(Delivery, ATemporaryFileOfAKilledDeliveryIsWrittenOver) {
   make("made/relief.png", "picture");
   make("out/.part-relief.png", "half a pict");
-  deliver(folder_ / "made", folder_ / "out", GetParam());
+  deliver({folder_ / "made"}, folder_ / "out", GetParam());
   EXPECT_EQ(delivered("relief.png"), "picture");
   EXPECT_FALSE(fs::exists(folder_ / "out/.part-relief.png"));
 }
@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(Keep, Delivery, ::testing::Bool());
 TEST(DeliveryCopies, WhatIsKeptIsApartFromWhatIsDelivered) {
   const test::TemporaryFolder folder;
   test::write_bytes(folder / "made/a", "a");
-  deliver(folder / "made", folder / "out", true);
+  deliver({folder / "made"}, folder / "out", true);
   EXPECT_FALSE(fs::equivalent(folder / "made/a", folder / "out/a"));
 }
 
@@ -70,21 +70,34 @@ TEST(Discard, LeavesNothingUnderEitherName) {
 
 TEST(DeliveryCheck, AFolderUnderAProductsNameIsFoundBeforeAnythingIsTouched) {
   const test::TemporaryFolder folder;
-  test::write_bytes(folder / "made/a", "a");
-  test::write_bytes(folder / "made/b", "b");
+  test::write_bytes(folder / "first/a", "a");
+  test::write_bytes(folder / "second/b", "b");
   fs::create_directories(folder / "out/b");
-  EXPECT_THROW(check_delivery(folder / "made", folder / "out"), core::SystemError);
+  EXPECT_THROW(deliver({folder / "first", folder / "second"}, folder / "out", false), core::SystemError);
   EXPECT_FALSE(fs::exists(folder / "out/a"));
 }
 
 TEST(DeliveryCheck, WhatItWouldWriteAndRemoveIsAskedFor) {
   const test::TemporaryFolder folder;
   test::write_bytes(folder / "out/points/tiles.json", "[\"old.laz\"]");
+  test::write_bytes(folder / "out/points/old.laz", "old");
   test::write_bytes(folder / "made/points/tiles.json", "[\"a.laz\"]");
   test::write_bytes(folder / "made/points/a.laz", "new");
   std::vector<std::string> asked;
-  check_delivery(folder / "made", folder / "out", [&](const fs::path& file) { asked.push_back(file.filename().string()); });
+  const Allowed note = [&](const fs::path& file) { asked.push_back(file.filename().string()); };
+  deliver({folder / "made"}, folder / "out", false, note);
   EXPECT_EQ(asked, (std::vector<std::string>{"a.laz", "tiles.json", "old.laz"}));
+  const Allowed refuse = [&](const fs::path&) { throw core::SystemError("an input"); };
+  test::write_bytes(folder / "made/points/a.laz", "newer");
+  EXPECT_THROW(deliver({folder / "made"}, folder / "out", false, refuse), core::SystemError);
+}
+
+TEST(DeliveryCheck, WhatIsNotThereAfterItIsAnError) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "out/a", "abc");
+  EXPECT_NO_THROW(expect_delivered(folder / "out/a", 3));
+  EXPECT_THROW(expect_delivered(folder / "out/a", 4), core::SystemError);
+  EXPECT_THROW(expect_delivered(folder / "out/b", 3), core::SystemError);
 }
 
 }  // namespace

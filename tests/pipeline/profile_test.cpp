@@ -174,6 +174,19 @@ TEST(Profile, ALongLineAcrossAModelHoldsOnlyWhatLiesAlongIt) {
   EXPECT_GE(there, 190u);
 }
 
+TEST(Profile, TheFileOfTheLinesIsNotWrittenOver) {
+  const test::TemporaryFolder folder;
+  make(folder);
+  const std::string lines = "profile,x,y\naxis,600005,5300005\naxis,600045,5300005\n";
+  test::write_bytes(folder / "axis.csv", lines);
+  ProfileRequest r;
+  r.dtm = folder / "dtm.tif";
+  r.lines = folder / "axis.csv";
+  r.folder = folder.path();
+  EXPECT_THROW(write_profiles(r), core::Error);
+  EXPECT_EQ(test::read_bytes(folder / "axis.csv"), lines);
+}
+
 TEST(Profile, WhatIsNotThereIsAnError) {
   const test::TemporaryFolder folder;
   make(folder);

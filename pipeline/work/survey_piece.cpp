@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/work/survey_piece.h"
+
+#include <chrono>
+#include <utility>
+
+#include "io/output_file.h"
+#include "pipeline/work/handed_on.h"
+
+namespace swath::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr const char *record_name = "survey.done", *partial_name = "files.done", *handed_on_name = "handed_on.bin";
+
+}  // namespace
+
+bool is_survey_piece_done(const fs::path& folder) { return fs::exists(folder / record_name); }
+
+SurveyPiece run_survey_piece(const stages::Stage& stage, stages::Context& context, const fs::path& folder, bool keep) {
+  SurveyPiece piece;
+  const HandedOn before = HandedOn::of(context);
+  const auto start = Clock::now();
+  {
+    PieceRecord so_far;
+    const io::FinishedFiles watch([&](const fs::path& file) {
+      const io::FinishedFiles apart;  // the record is none of the stage's files
+      so_far.files.push_back(piece_file(folder, file));
+      write_record(folder / partial_name, so_far);
+    });
+    stage.run_survey(context, piece.tally, piece.findings);
+  }
+  piece.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  const bool kept = keep && write_handed_on(folder / handed_on_name, before, HandedOn::of(context));
+  std::error_code absent;
+  fs::remove(folder / partial_name, absent);
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file() && entry.path() != folder / record_name) files.push_back(entry.path());
+  piece.files = piece_files(folder, std::move(files));
+  if (!kept) return piece;
+  core::Value note = core::Value::object();
+  note["tally"] = piece.tally.value();
+  note["findings"] = piece.findings;
+  note["seconds"] = piece.seconds;
+  write_record(folder / record_name, {piece.files, std::move(note)});
+  return piece;
+}
+
+SurveyPiece resume_survey_piece(stages::Context& context, const fs::path& folder) {
+  std::optional<PieceRecord> record = read_record(folder / record_name);
+  if (!record) throw damaged_work(folder / record_name);
+  read_handed_on(folder / handed_on_name, HandedOn::of(context)).give(context);
+  const core::Value& note = record->note;
+  return {core::Tally::from(*note.find("tally")), *note.find("findings"), note.find("seconds")->as_number(), std::move(record->files)};
+}
+
+}  // namespace swath::pipeline
