@@ -21,13 +21,14 @@ TEST(GdalDoor, FailuresAreCaughtAndNamed) {
   CPLError(CE_Failure, CPLE_FileIO, "a second failure");
   ASSERT_TRUE(messages.failed());
   try {
-    messages.check("cannot write", "a.tif");
+    messages.check_written("a.tif");
     FAIL();
-  } catch (const core::Error& e) {
+  } catch (const core::SystemError& e) {
     EXPECT_EQ(e.where(), "a.tif");
     EXPECT_EQ(std::string(e.what()), "cannot write: write: No space left on device");
     EXPECT_NE(e.hint().find("disk is full"), std::string::npos);
   }
+  EXPECT_THROW(messages.check("cannot read", "a.tif"), core::Error);
 }
 
 TEST(GdalDoor, SettingsLastAsLongAsTheirObject) {
