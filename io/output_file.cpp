@@ -16,6 +16,7 @@ namespace swath::io {
 namespace {
 
 thread_local FinishedFiles* innermost = nullptr;
+thread_local int unflushed = 0;
 
 }  // namespace
 
@@ -23,6 +24,9 @@ FinishedFiles::FinishedFiles(std::function<void(const std::filesystem::path&)> t
   innermost = this;
 }
 FinishedFiles::~FinishedFiles() { innermost = outer_; }
+
+UnflushedFiles::UnflushedFiles() { ++unflushed; }
+UnflushedFiles::~UnflushedFiles() { --unflushed; }
 
 namespace {
 
@@ -89,7 +93,7 @@ void flush_to_disk(const std::filesystem::path& file) {
 }
 
 void OutputFile::commit() {
-  flush_to_disk(temporary_);
+  if (unflushed == 0) flush_to_disk(temporary_);
   if (std::rename(temporary_.c_str(), final_.c_str())) throw_system_error("cannot finish", final_, errno);
   committed_ = true;
   if (!innermost) return;
@@ -111,7 +115,7 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
     }
     done += static_cast<size_t>(n);
   }
-  ::close(fd);
+  if (::close(fd) && errno != EINTR) throw_system_error("cannot write", file, errno);  // a network disk may fail only here
   out.commit();
 }
 

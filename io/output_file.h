@@ -11,7 +11,7 @@ namespace swath::io {
 
 /// An output that appears whole or not at all: written under a temporary name in the same folder, flushed to disk,
 /// renamed by commit(). Without commit() the temporary file is removed. Any failure is one clear core::Error
-/// (folder not writable, disk full) that names the final file.
+/// (folder not writable, disk full) that names the final file. Not flushed while an UnflushedFiles lives on this thread.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path final_name);
@@ -21,7 +21,7 @@ class OutputFile {
 
   /// The name to write to, for libraries that open files themselves.
   const std::filesystem::path& temporary() const { return temporary_; }
-  /// Flushes to disk and renames. Throws core::Error.
+  /// Flushes to disk (see UnflushedFiles) and renames. Throws core::Error.
   void commit();
 
  private:
@@ -34,6 +34,15 @@ void write_text_file(const std::filesystem::path& file, std::string_view text);
 
 /// A file, or a folder's list of names, as the disk keeps it. Throws core::SystemError.
 void flush_to_disk(const std::filesystem::path& file);
+
+/// While it lives, OutputFile on this thread leaves the flush to the system: for files that are checked before they are used again.
+class UnflushedFiles {
+ public:
+  UnflushedFiles();
+  ~UnflushedFiles();
+  UnflushedFiles(const UnflushedFiles&) = delete;
+  UnflushedFiles& operator=(const UnflushedFiles&) = delete;
+};
 
 /// The files that OutputFile finishes on this thread while the object lives; of nested ones the innermost gets them.
 class FinishedFiles {

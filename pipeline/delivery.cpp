@@ -51,7 +51,10 @@ void deliver_file(const fs::path& from, const fs::path& to, const fs::path& spar
   fs::remove(spare, ec);
   if (fs::equivalent(from, to, ec)) return;
   if (!keep) fs::create_hard_link(from, spare, ec);
-  if (keep || ec) copy_whole(from, spare, to);
+  if (keep || ec)
+    copy_whole(from, spare, to);
+  else
+    io::flush_to_disk(spare);
   fs::rename(spare, to, ec);
   if (ec == std::errc::cross_device_link) {  // a folder of the output is a link to another disk
     copy_whole(spare, beside, to);

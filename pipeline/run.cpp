@@ -494,6 +494,7 @@ PieceRecord Engine::run_group(size_t number, const TileGroup& group, bool has_wa
   const fs::path mine = folder(number), done = done_file(number, group);
   stages::TileJob job{group.tiles[0], TileBox(group.tiles).metres(context_.tile_side), mine, {}, 0, {}};
   const io::FinishedFiles finished;
+  const io::UnflushedFiles checked_when_resumed;
   const auto start = Clock::now();
   std::function<void(core::Block&)> thin;
   if (std::isfinite(s.left_per_area())) thin = [&](core::Block& around) { s.thin(context_, job.box, around); };
@@ -592,6 +593,7 @@ void Engine::run_merge(size_t number) {
   const auto start = Clock::now();
   progress_.begin(std::string(stage(number).info().name) + " merge", 0, "");
   const io::FinishedFiles finished;
+  const io::UnflushedFiles flushed_when_delivered;
   stage(number).run_merge(context_, job);
   for (PieceFile& f : piece_files(job.folder, finished.files())) {
     std::erase_if(made_[number], [&](const PieceFile& before) { return before.name == f.name; });

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/value.h"
+#include "io/output_file.h"
 #include "pipeline/work/piece_record.h"
 
 namespace swath::pipeline {
@@ -77,6 +78,7 @@ void write_boxes(const std::filesystem::path& file, const std::vector<TileGroup>
     for (const int k : {box.low.ix, box.low.iy, box.high.ix, box.high.iy}) one.push(std::int64_t{k});
     boxes.push(std::move(one));
   }
+  const io::UnflushedFiles checked_when_resumed;
   write_record(file, {{}, std::move(boxes)});
 }
 

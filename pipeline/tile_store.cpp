@@ -107,6 +107,7 @@ void StripWriter::flush(TileKey key, Block& points) {
   Written& written = written_[key];
   StoreFile file(part_ / points_file(key), StoreFile::Mode::append, &written.checksum);
   write_chunk(file, points, 0, points.size(), core::columns_of(points));
+  file.close();
   written.points += points.size();
   written.bytes += file.written();
   core::Block fresh;
@@ -127,8 +128,8 @@ void StripWriter::commit(const std::string& note) {
     one.push(written.points);
     tiles.push(std::move(one));
     record.files.push_back({points_file(key), written.bytes, written.checksum.text()});
-    StoreFile(part_ / points_file(key), StoreFile::Mode::read).flush();
   }
+  const io::UnflushedFiles checked_when_resumed;
   write_record(part_ / record_name, final_ / record_name, record);
   std::error_code ec;
   fs::remove_all(final_, ec);
@@ -185,6 +186,7 @@ void TileStore::write_overlay(const fs::path& folder, TileKey key, const Block& 
   {
     StoreFile file(out.temporary(), StoreFile::Mode::append);
     write_chunk(file, block, first, count, columns);
+    file.close();
   }
   out.commit();
 }

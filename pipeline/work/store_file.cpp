@@ -54,7 +54,9 @@ StoreFile::StoreFile(std::filesystem::path name, Mode mode, Checksum* checksum) 
   if (mode == Mode::read && ::fstat(fd_, &info) == 0) size_ = static_cast<std::uint64_t>(info.st_size);
 }
 
-StoreFile::~StoreFile() { ::close(fd_); }
+StoreFile::~StoreFile() {
+  if (fd_ >= 0) ::close(fd_);
+}
 
 void StoreFile::write(const void* data, size_t n) {
   const char* at = static_cast<const char*>(data);
@@ -100,8 +102,8 @@ void StoreFile::skip(size_t n) {
   at_ += n;
 }
 
-void StoreFile::flush() {
-  if (::fsync(fd_)) io::throw_system_error("cannot finish", name_, errno);
+void StoreFile::close() {
+  if (::close(std::exchange(fd_, -1)) && errno != EINTR) io::throw_system_error("cannot write", name_, errno);
 }
 
 void write_chunk(StoreFile& file, const Block& b, size_t first, size_t n, ColumnSet columns) {

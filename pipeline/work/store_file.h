@@ -32,8 +32,8 @@ class StoreFile {
   bool next(ChunkHead& head);
   void read(void* data, size_t n);
   void skip(size_t n);
-  /// To the disk.
-  void flush();
+  /// Of a file that was written: a network disk may fail only here.
+  void close();
 
  private:
   size_t read_some(void* data, size_t n);

@@ -1,8 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/delivery.h"
 
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <set>
+
 #include "core/error.h"
+#include "io/output_file.h"
 #include "tests/world/support.h"
+
+namespace {
+
+std::set<ino_t> flushed;
+
+}  // namespace
+
+/// In place of the C library's: which files were flushed to the disk.
+extern "C" int fsync(int fd) {
+  struct stat info {};
+  if (::fstat(fd, &info) == 0) flushed.insert(info.st_ino);
+  return static_cast<int>(::syscall(SYS_fsync, fd));
+}
 
 namespace swath::pipeline {
 namespace {
@@ -47,6 +67,25 @@ TEST_P(Delivery, ATemporaryFileOfAKilledDeliveryIsWrittenOver) {
   deliver({folder_ / "made"}, folder_ / "out", GetParam());
   EXPECT_EQ(delivered("relief.png"), "picture");
   EXPECT_FALSE(fs::exists(folder_ / "out/.part-relief.png"));
+}
+
+TEST_P(Delivery, OnlyWhatIsDeliveredIsFlushed) {
+  const auto is_flushed = [&](const fs::path& name) {
+    struct stat info {};
+    EXPECT_EQ(::stat((folder_ / name).c_str(), &info), 0);
+    return flushed.contains(info.st_ino);
+  };
+  flushed.clear();
+  {
+    const io::UnflushedFiles work;
+    io::write_text_file(folder_ / "made/points/a.laz", "points");
+  }
+  EXPECT_FALSE(is_flushed("made/points/a.laz"));
+  deliver({folder_ / "made"}, folder_ / "out", GetParam());
+  EXPECT_TRUE(is_flushed("out/points/a.laz"));
+  EXPECT_TRUE(is_flushed("out/points"));
+  io::write_text_file(folder_ / "own.json", "{}");
+  EXPECT_TRUE(is_flushed("own.json"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Keep, Delivery, ::testing::Bool());
