@@ -504,11 +504,13 @@ PieceRecord Engine::run_group(size_t number, const TileGroup& group, bool has_wa
   if (before > 0 || !has_surface(info.gives_products) || has_water) s.run_tile(context_, job);
   if (job.block.size() != before)
     throw core::Error("the stage changed the number of points of a tile", std::string(info.name), "this is a fault of the program");
+  const std::vector<fs::path> by_stage = finished.files();
+  std::vector<PieceFile> overlays;
   if (!info.gives.empty()) {
     size_t first = 0;
     for (const TileKey k : group.tiles) {
       const size_t count = group.tiles.size() == 1 ? job.own : store_->tiles().at(k);
-      store_->write_overlay(mine, k, job.block, first, count, info.gives);
+      overlays.push_back(store_->write_overlay(mine, k, job.block, first, count, info.gives));
       first += count;
     }
   }
@@ -516,7 +518,8 @@ PieceRecord Engine::run_group(size_t number, const TileGroup& group, bool has_wa
   Value note = Value::object();
   note["tally"] = job.tally.value();
   note["seconds"] = since(start);
-  PieceRecord record{piece_files(mine, finished.files()), std::move(note)};
+  PieceRecord record{piece_files(mine, by_stage), std::move(note)};
+  replace_files(record.files, std::move(overlays));
   write_record(done, record);
   return record;
 }
@@ -595,10 +598,7 @@ void Engine::run_merge(size_t number) {
   const io::FinishedFiles finished;
   const io::UnflushedFiles flushed_when_delivered;
   stage(number).run_merge(context_, job);
-  for (PieceFile& f : piece_files(job.folder, finished.files())) {
-    std::erase_if(made_[number], [&](const PieceFile& before) { return before.name == f.name; });
-    made_[number].push_back(std::move(f));
-  }
+  replace_files(made_[number], files_without_checksum(job.folder, finished.files()));
   progress_.end();
   accounts_[number].tally.add(job.tally);
   for (auto& [key, value] : job.findings.members()) accounts_[number].findings[key] = std::move(value);

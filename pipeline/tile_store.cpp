@@ -13,7 +13,6 @@
 #include "core/value.h"
 #include "io/output_file.h"
 #include "pipeline/tile_groups.h"
-#include "pipeline/work/piece_record.h"
 #include "pipeline/work/store_file.h"
 
 namespace swath::pipeline {
@@ -180,15 +179,16 @@ void TileStore::add_overlay(fs::path folder, ColumnSet columns) {
   columns_ = columns_ | columns;
 }
 
-void TileStore::write_overlay(const fs::path& folder, TileKey key, const Block& block, size_t first, size_t count,
-                              ColumnSet columns) const {
-  io::OutputFile out(folder / (file_label(key) + ".cols"));
-  {
-    StoreFile file(out.temporary(), StoreFile::Mode::append);
-    write_chunk(file, block, first, count, columns);
-    file.close();
-  }
+PieceFile TileStore::write_overlay(const fs::path& folder, TileKey key, const Block& block, size_t first, size_t count,
+                                   ColumnSet columns) const {
+  const std::string name = file_label(key) + ".cols";
+  io::OutputFile out(folder / name);
+  Checksum sum;
+  StoreFile file(out.temporary(), StoreFile::Mode::append, &sum);
+  write_chunk(file, block, first, count, columns);
+  file.close();
   out.commit();
+  return {name, file.written(), sum.text()};
 }
 
 TileStore::Overlays TileStore::overlays_of(TileKey key, ColumnSet columns) const {
@@ -271,7 +271,7 @@ void TileStore::append_within(Block& out, TileKey key, ColumnSet columns, const 
       core::for_each_column([&](Column c, std::string_view, auto member) {
         using T = typename std::remove_reference_t<decltype(out.*member)>::value_type;
         if (!there.has(c)) return;
-        // x and y come first and tell which rows are wanted.
+        // x and y come first and decide which rows are wanted.
         const bool is_place = c == Column::x || c == Column::y;
         if (!is_place && (rows.empty() || !from_strips.has(c))) {
           beyond += n * sizeof(T);

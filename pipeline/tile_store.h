@@ -13,6 +13,7 @@
 
 #include "core/block.h"
 #include "pipeline/work/checksum.h"
+#include "pipeline/work/piece_record.h"
 #include "stages/stage.h"
 
 namespace swath::pipeline {
@@ -68,9 +69,9 @@ class TileStore {
 
   /// From now on these columns of a tile are read from overlays in `folder`.
   void add_overlay(std::filesystem::path folder, core::ColumnSet columns);
-  /// Writes the overlay of one tile: `count` points of the block from `first` on.
-  void write_overlay(const std::filesystem::path& folder, TileKey key, const core::Block& block, size_t first, size_t count,
-                     core::ColumnSet columns) const;
+  /// Writes the overlay of one tile, `count` points of the block from `first` on, and gives its file, named relative to `folder`.
+  PieceFile write_overlay(const std::filesystem::path& folder, TileKey key, const core::Block& block, size_t first, size_t count,
+                          core::ColumnSet columns) const;
 
   /// The columns of one tile's points (x, y, z always).
   core::Block read(TileKey key, core::ColumnSet columns) const;

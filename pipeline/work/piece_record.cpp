@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Format: JSON, a line feed, "xxh3 ", the checksum of what stands before it, a line feed.
+// Format: JSON, a line feed, "xxh3 ", the checksum of what precedes it, a line feed.
 #include "pipeline/work/piece_record.h"
 
 #include <algorithm>
+#include <map>
 
 #include "io/output_file.h"
 #include "io/value_file.h"
@@ -16,7 +17,7 @@ using core::Value;
 
 constexpr std::string_view seal = "\nxxh3 ";
 
-/// "03-strips-0123456789abcdef/strip_0001/strip.json": what tells pieces of a work folder apart.
+/// "03-strips-0123456789abcdef/strip_0001/strip.json": names a piece of a work folder.
 std::string identity_of(const fs::path& file) {
   const fs::path folder = file.parent_path();
   return (folder.parent_path().filename() / folder.filename() / file.filename()).generic_string();
@@ -24,6 +25,13 @@ std::string identity_of(const fs::path& file) {
 
 bool stays_within(const fs::path& name) {
   return !name.empty() && name.is_relative() && std::find(name.begin(), name.end(), "..") == name.end();
+}
+
+std::vector<fs::path> present_once(std::vector<fs::path> files) {
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  std::erase_if(files, [](const fs::path& f) { return !fs::exists(f); });
+  return files;
 }
 
 /// The text before the seal; nothing where it is not the one that was written.
@@ -46,12 +54,26 @@ PieceFile piece_file(const fs::path& folder, const fs::path& file) {
 }
 
 std::vector<PieceFile> piece_files(const fs::path& folder, std::vector<fs::path> files) {
-  std::sort(files.begin(), files.end());
-  files.erase(std::unique(files.begin(), files.end()), files.end());
   std::vector<PieceFile> out;
-  for (const fs::path& f : files)
-    if (fs::exists(f)) out.push_back(piece_file(folder, f));
+  for (const fs::path& f : present_once(std::move(files))) out.push_back(piece_file(folder, f));
   return out;
+}
+
+std::vector<PieceFile> files_without_checksum(const fs::path& folder, std::vector<fs::path> files) {
+  std::vector<PieceFile> out;
+  for (const fs::path& f : present_once(std::move(files))) out.push_back({f.lexically_relative(folder), fs::file_size(f), {}});
+  return out;
+}
+
+void replace_files(std::vector<PieceFile>& files, std::vector<PieceFile> by) {
+  std::map<fs::path, PieceFile> named;
+  for (std::vector<PieceFile>* of : {&files, &by})
+    for (PieceFile& f : *of) {
+      fs::path name = f.name;
+      named.insert_or_assign(std::move(name), std::move(f));
+    }
+  files.clear();
+  for (auto& [name, f] : named) files.push_back(std::move(f));
 }
 
 void write_record(const fs::path& at, const fs::path& named, const PieceRecord& record) {

@@ -25,6 +25,10 @@ struct PieceFile {
 PieceFile piece_file(const std::filesystem::path& folder, const std::filesystem::path& file);
 /// Those of the files that are there, each once.
 std::vector<PieceFile> piece_files(const std::filesystem::path& folder, std::vector<std::filesystem::path> files);
+/// The same for files that no record names, which may be large: they are not read, and their checksums are empty.
+std::vector<PieceFile> files_without_checksum(const std::filesystem::path& folder, std::vector<std::filesystem::path> files);
+/// Adds the files of `by`, each in place of one of the same name, in order of names.
+void replace_files(std::vector<PieceFile>& files, std::vector<PieceFile> by);
 
 struct PieceRecord {
   std::vector<PieceFile> files;

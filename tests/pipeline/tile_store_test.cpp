@@ -195,7 +195,10 @@ TEST(TileStore, OverlaysReplaceColumns) {
     size_t own = 0;
     Block b = s.store.read_with_halo({key}, 50, {Column::classification}, own);
     for (auto& c : b.classification) c = 2;
-    s.store.write_overlay(s.folder / "overlay", key, b, 0, own, {Column::classification});
+    const PieceFile made = s.store.write_overlay(s.folder / "overlay", key, b, 0, own, {Column::classification});
+    const PieceFile read = piece_file(s.folder / "overlay", s.folder / "overlay" / made.name);
+    EXPECT_EQ(made.bytes, read.bytes);
+    EXPECT_EQ(made.checksum, read.checksum);
   }
   s.store.add_overlay(s.folder / "overlay", {Column::classification});
   for (const auto& [key, n] : s.store.tiles()) {

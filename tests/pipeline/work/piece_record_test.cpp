@@ -35,6 +35,22 @@ TEST_F(Piece, ComesBackWithItsFilesAndNote) {
   EXPECT_TRUE(whole());
 }
 
+TEST_F(Piece, FilesWithoutChecksumAreNotReadAndTakeThePlaceOfTheirNames) {
+  auto files = read_record(record_)->files;
+  test::write_bytes(stage_ / "products/a.laz", "all points");
+  test::write_bytes(stage_ / "products/b.gpkg", "lines");
+  const auto merged = files_without_checksum(stage_, {stage_ / "products/b.gpkg", stage_ / "gone", stage_ / "products/a.laz"});
+  ASSERT_EQ(merged.size(), 2u);
+  for (const PieceFile& f : merged) EXPECT_EQ(f.checksum, "");
+  replace_files(files, merged);
+  ASSERT_EQ(files.size(), 3u);
+  EXPECT_EQ(files[0].name, fs::path("a.cols"));
+  EXPECT_NE(files[0].checksum, "");
+  EXPECT_EQ(files[1].name, fs::path("products/a.laz"));
+  EXPECT_EQ(files[1].bytes, 10u);
+  EXPECT_EQ(files[2].bytes, 5u);
+}
+
 TEST_F(Piece, AFileThatIsNotAsItWasIsSeen) {
   const fs::path file = stage_ / "a.cols";
   const std::string bytes = test::read_bytes(file);
@@ -46,7 +62,7 @@ TEST_F(Piece, AFileThatIsNotAsItWasIsSeen) {
   EXPECT_FALSE(whole());
   test::write_bytes(stage_ / "elsewhere", bytes);
   fs::create_symlink("elsewhere", file);
-  EXPECT_FALSE(whole()) << "a link is no file of ours";
+  EXPECT_FALSE(whole()) << "a link is not a file of ours";
   fs::remove(file);
   fs::create_directory(file);
   EXPECT_FALSE(whole());
