@@ -720,6 +720,7 @@ Outcome Engine::run(const std::string& command) {
   if (ec) io::throw_system_error("cannot make the output folder", output_, ec.value());
   const fs::path discarded = output_ / discarded_name;
   const WorkLock lock(work_);
+  expect_own(work_);  // again: whatever came to lie there before the lock is not emptied
   try {
     keep_whole();
     progress_.expect(std::vector<double>(steps(), 0.0));
@@ -745,11 +746,13 @@ Outcome Engine::run(const std::string& command) {
   } catch (const std::bad_alloc&) {
     throw;  // as for a full disk
   } catch (const core::Error& e) {
+    if (!lock.is_there()) throw;  // what is there now is another run's
     if (has_products_) keep_finished(e);
     discard(work_, discarded);
     if (made_output) remove_if_empty(output_);
     throw;
   } catch (...) {
+    if (!lock.is_there()) throw;
     discard(work_, discarded);
     if (made_output) remove_if_empty(output_);
     throw;

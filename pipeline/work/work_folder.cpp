@@ -84,7 +84,7 @@ void expect_own(const fs::path& folder) {
   const std::string name = folder.filename().string();
   const std::string hint = "swath empties the folder " + name + " of its output: move what is there away, or choose another --output";
   if (!fs::is_directory(status))
-    throw core::usage_error(fs::is_symlink(status) ? "it is a link" : "it is no folder", folder.string(), hint);
+    throw core::usage_error(fs::is_symlink(status) ? "it is a link" : "it is not a folder", folder.string(), hint);
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string file = entry.path().filename().string();
     if (file == lock_name && entry.is_regular_file() && !entry.is_symlink()) continue;
@@ -96,7 +96,8 @@ void expect_own(const fs::path& folder) {
 WorkLock::WorkLock(const fs::path& work)
     : file_(work / lock_name), fd_(::open(file_.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0666)) {
   if (fd_ < 0) io::throw_system_error("cannot write", file_, errno);
-  if (::flock(fd_, LOCK_EX | LOCK_NB)) {
+  // Between the two calls the run that had the lock may have ended and removed the file, and another may have made it anew.
+  if (::flock(fd_, LOCK_EX | LOCK_NB) || !is_there()) {
     ::close(fd_);
     throw core::usage_error("another run is at work in this output folder", work.parent_path().string(),
                             "wait for it to end, or choose another --output");
@@ -105,10 +106,14 @@ WorkLock::WorkLock(const fs::path& work)
 
 WorkLock::~WorkLock() { ::close(fd_); }
 
-void WorkLock::expect_there() const {
+bool WorkLock::is_there() const {
   struct stat mine {
   }, there{};
-  if (::fstat(fd_, &mine) == 0 && ::stat(file_.c_str(), &there) == 0 && mine.st_ino == there.st_ino && mine.st_dev == there.st_dev) return;
+  return ::fstat(fd_, &mine) == 0 && ::lstat(file_.c_str(), &there) == 0 && mine.st_ino == there.st_ino && mine.st_dev == there.st_dev;
+}
+
+void WorkLock::expect_there() const {
+  if (is_there()) return;
   throw core::SystemError("the output folder was removed or replaced while the run was at work", file_.parent_path().parent_path().string(),
                           "run the same command again");
 }

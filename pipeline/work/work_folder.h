@@ -11,7 +11,7 @@
 
 namespace swath::pipeline {
 
-/// Throws core::Error (usage) where the folder is a link or no folder, or holds anything that no run makes: it would be emptied.
+/// Throws core::Error (usage) where it is a link or not a folder, or holds anything that no run makes: it would be emptied.
 void expect_own(const std::filesystem::path& folder);
 
 /// One run at a time in one output folder.
@@ -23,7 +23,9 @@ class WorkLock {
   WorkLock(const WorkLock&) = delete;
   WorkLock& operator=(const WorkLock&) = delete;
 
-  /// Throws core::SystemError where the folder was removed or replaced meanwhile.
+  /// Is the folder still the one that was locked?
+  bool is_there() const;
+  /// Throws core::SystemError where it was removed or replaced meanwhile.
   void expect_there() const;
 
  private:

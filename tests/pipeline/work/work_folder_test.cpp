@@ -1,8 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/work/work_folder.h"
 
+#include <sys/file.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <functional>
+
+#include "core/error.h"
 #include "pipeline/work/piece_record.h"
 #include "tests/world/support.h"
+
+namespace {
+
+std::function<void()> at_flock;
+
+}  // namespace
+
+/// In place of the C library's: something may happen between the opening of the lock's file and this call.
+extern "C" int flock(int fd, int operation) noexcept {
+  if (at_flock) at_flock();
+  return static_cast<int>(::syscall(SYS_flock, fd, operation));
+}
 
 namespace swath::pipeline {
 namespace {
@@ -47,6 +66,21 @@ TEST(WorkFolder, OneRunAtATimeAndThatItsFolderWentIsSeen) {
   EXPECT_THROW(lock.expect_there(), core::SystemError);
   test::write_bytes(work / "lock", "");
   EXPECT_THROW(lock.expect_there(), core::SystemError) << "another's";
+}
+
+TEST(WorkFolder, ALockOnAFileThatIsNoLongerThereIsNone) {
+  const test::TemporaryFolder folder;
+  fs::create_directories(folder / "work");
+  at_flock = [&] {  // the run that had the lock ends, and another one begins
+    fs::remove(folder / "work/lock");
+    test::write_bytes(folder / "work/lock", "");
+  };
+  EXPECT_THROW(WorkLock{folder / "work"}, core::Error);
+  at_flock = [&] { fs::remove_all(folder / "work"); };
+  EXPECT_THROW(WorkLock{folder / "work"}, core::Error);
+  at_flock = {};
+  fs::create_directories(folder / "work");
+  EXPECT_TRUE(WorkLock(folder / "work").is_there());
 }
 
 TEST(WorkFolder, ALockThatIsALinkIsNotFollowed) {
