@@ -54,7 +54,9 @@ struct LasRawWriter::State {
 
   void laz_check(int code, const std::array<char, 512>& message) const {
     if (code == SWATH_LAZ_OK) return;
-    throw_write_error("cannot write compressed points: " + std::string(message.data()), file);
+    const std::string what = "cannot write compressed points: " + std::string(message.data());
+    if (code == SWATH_LAZ_FILE) throw_write_error(what, file);
+    throw core::Error(what, file.string());
   }
 
   void open() {

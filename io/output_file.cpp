@@ -34,6 +34,24 @@ constexpr const char *full_hint = "the disk is full: free space there, then run 
                      *limit_hint =
                          "the file size limit is reached: raise it (ulimit -f), then run the same command again; what is finished is kept";
 
+std::string temporary_start() { return ".part-" + std::to_string(getpid()) + "-"; }
+
+/// Is a temporary file beside `file` as long as the process may write one? Libraries do not always give the reason.
+bool is_at_size_limit(const std::filesystem::path& file) {
+  constexpr std::uintmax_t page = 4096;  // bytes; a library may write in whole pages
+  struct rlimit limit {};
+  if (::getrlimit(RLIMIT_FSIZE, &limit) || limit.rlim_cur == RLIM_INFINITY) return false;
+  std::error_code ec;
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  for (auto at = std::filesystem::directory_iterator(folder, ec); !ec && at != std::filesystem::directory_iterator(); at.increment(ec)) {
+    if (!at->path().filename().string().starts_with(temporary_start())) continue;
+    std::error_code gone;
+    const std::uintmax_t bytes = at->file_size(gone);
+    if (!gone && bytes + page > limit.rlim_cur) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void throw_system_error(std::string_view doing, const std::filesystem::path& file, int code) {
@@ -57,17 +75,14 @@ void throw_write_error(const std::string& what, const std::filesystem::path& fil
     const std::string reason = says(ENOSPC) || says(EDQUOT) ? "" : std::string(": ") + std::strerror(ENOSPC);
     throw core::SystemError(what + reason, file.string(), full_hint);
   }
-  struct rlimit limit {};
-  if (says(EFBIG) || (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY))
-    throw core::SystemError(what, file.string(), limit_hint);
+  if (says(EFBIG) || is_at_size_limit(file)) throw core::SystemError(what, file.string(), limit_hint);
   throw core::SystemError(what, file.string(), "does the disk work, and is the folder still there? The same command goes on from here");
 }
 
 OutputFile::OutputFile(std::filesystem::path final_name) : final_(std::move(final_name)) {
   static std::atomic<unsigned> serial{0};
   // The ending stays last: libraries choose formats by it.
-  temporary_ =
-      final_.parent_path() / (".part-" + std::to_string(getpid()) + "-" + std::to_string(serial++) + "-" + final_.filename().string());
+  temporary_ = final_.parent_path() / (temporary_start() + std::to_string(serial++) + "-" + final_.filename().string());
   if (!final_.parent_path().empty()) {
     std::error_code ec;
     std::filesystem::create_directories(final_.parent_path(), ec);

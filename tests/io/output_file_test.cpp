@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/output_file.h"
 
+#include <sys/resource.h>
+
 #include <thread>
 
 #include "core/error.h"
@@ -51,6 +53,29 @@ TEST(OutputFile, ALibrarysWordsForAFullDiskAreKnown) {
     }
   }
   EXPECT_THROW(throw_write_error("TIFFAppendToStrip: write error", folder / "a.tif"), core::SystemError);
+}
+
+TEST(OutputFile, AFileSizeLimitIsNamedOnlyWhereItIsReached) {
+  const test::TemporaryFolder folder;
+  const OutputFile out(folder / "a.tif");
+  test::write_bytes(out.temporary(), std::string(100000, 'x'));
+  struct rlimit before {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto hint_at = [&](rlim_t bytes) {
+    struct rlimit limited = before;
+    limited.rlim_cur = bytes;
+    EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &limited), 0);
+    std::string hint;
+    try {
+      throw_write_error("TIFFAppendToStrip: write error", folder / "a.tif");
+    } catch (const core::SystemError& e) {
+      hint = e.hint();
+    }
+    EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+    return hint;
+  };
+  EXPECT_NE(hint_at(100000).find("file size limit"), std::string::npos);
+  EXPECT_EQ(hint_at(1000000).find("file size limit"), std::string::npos);
 }
 
 TEST(FinishedFiles, AreThoseOfThisThreadAndTheInnermostScope) {
