@@ -72,7 +72,7 @@ std::vector<fs::path> files_of(const Plan& plan) {
 InputGuard::InputGuard(const std::vector<fs::path>& files) {
   for (const fs::path& file : files) {
     std::error_code ec;
-    if (fs::path canonical = fs::canonical(file, ec); !ec) files_.emplace_back(std::move(canonical), file);
+    if (fs::path canonical = fs::canonical(file, ec); !ec) files_.try_emplace(std::move(canonical), file);
     struct stat info {};
     if (::stat(file.c_str(), &info) == 0) ids_.try_emplace({info.st_dev, info.st_ino}, file);
   }
@@ -91,11 +91,10 @@ void InputGuard::expect_apart(const fs::path& product) const {
   std::error_code ec;
   const fs::path place = fs::weakly_canonical(product, ec);
   if (!ec)
-    for (const auto& [canonical, named] : files_)
-      if (holds(place, canonical))
-        throw core::usage_error(place == canonical ? "the run would overwrite a file that it reads, as its product " + product.string()
-                                                   : "the run reads a file in the folder of its own product " + product.string(),
-                                named.string(), "choose another --output, or another name of the product");
+    if (const auto first = files_.lower_bound(place); first != files_.end() && holds(place, first->first))
+      throw core::usage_error(place == first->first ? "the run would overwrite a file that it reads, as its product " + product.string()
+                                                    : "the run reads a file in the folder of its own product " + product.string(),
+                              first->second.string(), "choose another --output, or another name of the product");
   expect_other(product, product);
   if (!fs::is_directory(product, ec)) return;
   for (auto at = fs::recursive_directory_iterator(product, fs::directory_options::skip_permission_denied, ec);

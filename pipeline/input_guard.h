@@ -25,7 +25,7 @@ class InputGuard {
 
  private:
   void expect_other(const std::filesystem::path& there, const std::filesystem::path& product) const;
-  std::vector<std::pair<std::filesystem::path, std::filesystem::path>> files_;  ///< canonical, as named
+  std::map<std::filesystem::path, std::filesystem::path> files_;  ///< canonical, as named; what a folder holds follows its name
   std::map<std::pair<std::uint64_t, std::uint64_t>, std::filesystem::path> ids_;
 };
 

@@ -36,6 +36,16 @@ TEST_F(Guard, AFileAndAFolderOfInputsAreRefusedByName) {
   EXPECT_FALSE(refused("out/trajectory.csv"));
 }
 
+TEST_F(Guard, AFolderWhoseNameBeginsAnothersIsApart) {
+  test::write_bytes(folder_ / "survey/points.old/cloud.laz", "o");
+  test::write_bytes(folder_ / "survey/points-2/cloud.laz", "p");
+  const InputGuard guard({folder_ / "survey/points.old/cloud.laz", folder_ / "survey/points-2/cloud.laz"});
+  EXPECT_NO_THROW(guard.expect_apart(folder_ / "survey/points"));
+  EXPECT_THROW(guard.expect_apart(folder_ / "survey/points-2"), core::Error);
+  EXPECT_THROW(guard.expect_apart(folder_ / "survey/points.old/cloud.laz"), core::Error);
+  EXPECT_THROW(guard.expect_apart(folder_ / "survey"), core::Error);
+}
+
 TEST_F(Guard, LinksOfEitherKindAreSeenThrough) {
   fs::create_directories(folder_ / "out/dtm");
   fs::create_symlink("../survey/trajectory.csv", folder_ / "out/trajectory.csv");
