@@ -34,7 +34,8 @@ void add_crs(const core::Value& v, std::vector<std::string>& out) {
   }
 }
 
-/// The grids of PROJ that the survey's coordinates may go through.
+/// The grids of PROJ that the survey's coordinates may go through: between the CRSs that survey.toml states, the first cloud's, and WGS84.
+/// CRSs that only files state (a control table, breaklines, other clouds) are not looked at: a grid that only these need is not found.
 std::vector<std::filesystem::path> grids_of(const Plan& plan) {
   io::Survey survey = plan.survey;
   std::vector<std::string> definitions;

@@ -22,7 +22,8 @@ struct Input {
 };
 
 /// Every file the plan reads, hashed, in the order of the stages: each once, with those that lie beside it and are read with it (index
-/// and attributes of a Shapefile, georeference of a raster), the calibration file, and the grids that PROJ has for the survey's CRSs.
+/// and attributes of a Shapefile, georeference of a raster), the calibration file, and the grids that PROJ has between
+/// the CRSs that survey.toml states, the first cloud's and WGS84; not those of CRSs that only other files state.
 std::vector<Input> inputs_of(const Plan& plan);
 
 /// One fingerprint per stage; each holds those before it, the inputs, the survey and the tiling, so that a stage's
