@@ -206,7 +206,7 @@ core::GnssData read_pos(const std::filesystem::path& path, const GnssFile& f, do
         if (std::abs(latitude) > 90 || std::abs(longitude) > 360)
           throw core::Error(
               "latitude " + core::format_number(latitude) + ", longitude " + core::format_number(longitude) + " are no degrees",
-              lines.place(), "the file's header does not tell what its columns hold");
+              lines.place(), "the file's header does not name its columns");
         g = {latitude * core::degree, longitude * core::degree, c[coordinates - 1]};
         fix.position = core::ecef_of(g);
         break;

@@ -250,7 +250,8 @@ void Engine::keep_whole() {
 /// What readers hand on is as large as their files, and read as fast from these.
 bool Engine::is_read_again(size_t number) const { return stage(number).info().name.starts_with("readers."); }
 
-/// Is what an earlier run has kept of a survey stage enough? IMU records are not needed where the stages that take them are done.
+/// Is what an earlier run has kept of a survey stage enough? IMU records are not needed where the stages that take them are done; their
+/// piece is, for what the report says of them.
 bool Engine::is_resumed(size_t number) const {
   if (!is_survey_piece_done(folder(number))) return false;
   if (!is_read_again(number)) return true;
@@ -421,7 +422,7 @@ std::set<TileKey> Engine::tiles_of_water() const {
   return out;
 }
 
-/// A tile without points in which the surface says nothing: it is none of the survey.
+/// A tile without points in which the surface says nothing: it is not part of the survey.
 bool Engine::is_void_fringe(size_t number, const TileGroup& group) const {
   const TileKey key = group.tiles[0];
   const fs::path file = stages::grid_file(folder(number), key);

@@ -26,7 +26,7 @@ SurveyPiece run_survey_piece(const stages::Stage& stage, stages::Context& contex
   {
     PieceRecord so_far;
     const io::FinishedFiles watch([&](const fs::path& file) {
-      const io::FinishedFiles apart;  // the record is none of the stage's files
+      const io::FinishedFiles apart;  // the record is not one of the stage's files
       so_far.files.push_back(piece_file(folder, file));
       write_record(folder / partial_name, so_far);
     });

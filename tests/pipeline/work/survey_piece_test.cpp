@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Hands on fixes, makes two files and fails before the second where it is told to.
+/// Hands on fixes, makes two files and fails before the second with `fails`.
 class Solver : public stages::Stage {
  public:
   explicit Solver(bool fails = false) : fails_(fails) {}
