@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -12,6 +13,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+constexpr double farthest = 5e5;           // m: half of a long corridor
 constexpr double off_plane = 4.0;          // sigmas
 constexpr double least_redundancy = 1e-6;  // of a corner that the others check
 constexpr int rounds = 3;                  // weights follow the normal, which they hardly move
@@ -120,6 +122,14 @@ std::vector<SurveyedTarget> surveyed_targets(const std::vector<io::ControlPoint>
       sigma_h.push_back(points[k].sigma_h);
       sigma_v.push_back(points[k].sigma_v);
       places.push_back(points[k].place);
+    }
+    const auto far = std::find_if(target.corners.begin(), target.corners.end(), [](const Vector3d& c) { return !(c.norm() < farthest); });
+    if (far != target.corners.end()) {
+      char text[64];
+      std::snprintf(text, sizeof text, ": %.0f km from the survey", 1e-3 * far->norm());
+      tally.count("surveyed targets and points over 500 km from the survey, left out",
+                  places[static_cast<size_t>(far - target.corners.begin())] + text);
+      continue;
     }
     target.centre = target.corners[0];
     if (target.is_point) target.sigma_h = sigma_h[0];

@@ -6,6 +6,7 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -57,12 +58,11 @@ class Reader {
                         "breaklines are lines; boundaries and water are areas or closed lines");
   }
 
-  std::vector<Vector3d> vertices(const OGRSimpleCurve& line, const std::string& place) const {
+  std::vector<Vector3d> vertices(const OGRSimpleCurve& line) const {
     std::vector<Vector3d> out;
     for (int k = 0; k < line.getNumPoints(); ++k) {
       const Vector3d p(line.getX(k), line.getY(k), line.Is3D() ? line.getZ(k) : height_.value_or(0.0));
-      if (!p.allFinite()) throw core::Error("a coordinate is not finite", place, "correct the vertex, or leave the feature out");
-      if (out.empty() || (p - out.back()).head<2>().norm() > 0.0) out.push_back(p);
+      if (out.empty() || p.head<2>() != out.back().head<2>()) out.push_back(p);
     }
     return out;
   }
@@ -73,10 +73,10 @@ class Reader {
 
   void add_line(const OGRLineString& line, const std::string& place) {
     Breakline f = feature_of(line, place);
-    f.parts.push_back(vertices(line, place));
+    f.parts.push_back(vertices(line));
     std::vector<Vector3d>& v = f.parts.front();
     if (f.is_area()) {
-      if (v.size() < 4 || (v.front() - v.back()).head<2>().norm() > 0.0)
+      if (v.size() < 4 || v.front().head<2>() != v.back().head<2>())
         throw core::Error("the line is not closed, while an area is needed", place, "close it, or export it as a polygon");
       v.pop_back();
     } else {
@@ -88,7 +88,7 @@ class Reader {
   void add_polygon(const OGRPolygon& polygon, const std::string& place) {
     Breakline f = feature_of(polygon, place);
     for (const OGRLinearRing* ring : polygon) {
-      std::vector<Vector3d> v = vertices(*ring, place);
+      std::vector<Vector3d> v = vertices(*ring);
       if (file_.kind == BreaklineKind::breakline) {  // each ring is a line of its own
         Breakline line = f;
         line.parts = {std::move(v)};
@@ -144,9 +144,14 @@ void transform(std::vector<Breakline>& features, const BreaklineFile& f, const s
   for (Breakline& b : features)
     for (auto& part : b.parts)
       for (Vector3d& v : part) {
-        const Vector3d moved = operation({v.x(), v.y(), v.z() * unit(from)});
-        v.head<2>() = moved.head<2>();
-        if (b.has_height) v.z() = moved.z() / unit(to);
+        if (!v.allFinite()) continue;
+        try {
+          const Vector3d moved = operation({v.x(), v.y(), v.z() * unit(from)});
+          v.head<2>() = moved.head<2>();
+          if (b.has_height) v.z() = moved.z() / unit(to);
+        } catch (const core::Error&) {  // beyond the projection
+          v.setConstant(std::numeric_limits<double>::quiet_NaN());
+        }
       }
 }
 

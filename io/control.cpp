@@ -26,6 +26,7 @@ using Eigen::Vector3d;
 
 /// Corners nearer than this to one line, or than three sigmas, do not tell a plane.
 constexpr double least_width = 0.01;  // m
+constexpr double farthest = 1e9;      // m or feet: no map projection and no place on the globe reaches it
 constexpr double width_sigmas = 3.0;
 
 /// A point as its file states it.
@@ -61,7 +62,7 @@ RawLayer read_table(const std::filesystem::path& path, const ControlFile& f) {
     RawPoint p;
     if (name) p.name = table.text(row, *name);
     if (target) p.target = table.text(row, *target);
-    for (int k = 0; k < 3; ++k) p.at[k] = table.number(row, xyz[static_cast<size_t>(k)]);
+    for (int k = 0; k < 3; ++k) p.at[k] = table.coordinate(row, xyz[static_cast<size_t>(k)]);
     const auto sigma = [&](const std::optional<size_t>& column, core::Metres otherwise) {
       return column && !table.text(row, *column).empty() ? table.number(row, *column) : otherwise.value;
     };
@@ -234,20 +235,32 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
                                     const std::string& file, core::Tally& tally) {
   std::vector<std::vector<ControlPoint>> groups;  // a target or a single point each
   std::map<std::string, size_t> targets;
+  std::set<std::string> lost;  // targets of which a corner is
   for (const RawLayer& layer : layers) {
     if (layer.points.empty()) continue;
     const core::Crs crs = crs_of(survey, f, layer, file);
     const core::Transform to_ecef(crs, core::wgs84_ecef());
     const double height_unit = survey.height_unit && !crs.has_height_unit() ? survey.height_unit->value : 1.0;
+    // A target without one of its corners is another plane: all of it goes.
+    const auto leave_out = [&](const RawPoint& raw, const std::string& why) {
+      tally.count("control points and targets with an impossible coordinate, left out", raw.place + ": " + why);
+      if (!raw.target.empty()) lost.insert(raw.target);
+    };
     for (const RawPoint& raw : layer.points) {
-      if (!raw.at.allFinite()) throw core::Error("a coordinate is not finite", raw.place, "correct the point, or leave it out");
+      if (!raw.at.allFinite() || !(raw.at.cwiseAbs().maxCoeff() < farthest)) {
+        leave_out(raw, "a coordinate is not finite");
+        continue;
+      }
       hold_sigma(raw.sigma_h, "easting and northing", raw.place);
       hold_sigma(raw.sigma_v, "height", raw.place);
       ControlPoint p{raw.name, raw.target, Vector3d::Zero(), raw.sigma_h, raw.sigma_v, f.use, raw.place};
       try {
         p.ecef = to_ecef({raw.at.x(), raw.at.y(), raw.at.z() * height_unit});
-      } catch (const core::Error& e) {
-        throw core::Error(e.what(), raw.place, e.hint());
+      } catch (const core::Error&) {
+        const auto number = [](double v) { return core::format_number(v); };
+        leave_out(raw, "x " + number(raw.at.x()) + ", y " + number(raw.at.y()) + ", z " + number(raw.at.z()) + " is not a place of " +
+                           crs.name());
+        continue;
       }
       const auto [at, fresh] = raw.target.empty() ? std::pair{targets.end(), true} : targets.try_emplace(raw.target, groups.size());
       if (fresh) groups.emplace_back();
@@ -260,6 +273,7 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
   }
   std::vector<ControlPoint> out;
   for (std::vector<ControlPoint>& group : groups) {
+    if (lost.contains(group[0].target)) continue;
     if (!group[0].target.empty()) {
       if (group.size() > 3 && group.front().ecef == group.back().ecef) group.pop_back();  // a ring that was closed
       hold_target(group);

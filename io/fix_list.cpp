@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "core/error.h"
 #include "core/geodesy.h"
 #include "core/statistics.h"
 #include "io/record_times.h"
+#include "io/wild_records.h"
 
 namespace swath::io {
 namespace {
@@ -19,9 +21,10 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double most_not_finite = 0.03, most_back = 0.03;
-constexpr double most_repeated = 0.2;  // two talkers of one receiver repeat each other for a while
-constexpr double near_ground = 1e5;    // m
-constexpr double fastest = 500.0;      // m/s
+constexpr double most_repeated = 0.2;       // two talkers of one receiver repeat each other for a while
+constexpr double near_ground = 1e5;         // m
+constexpr double fastest = 500.0;           // m/s
+constexpr double near_one_another = 100.0;  // m: errors of single positions
 constexpr double gap_steps = 1.5;
 constexpr double least_variance = 1e-10;  // m^2 or (m/s)^2; less is a zero that went through rotations
 
@@ -82,17 +85,59 @@ Matrix3d FixList::settled(const Matrix3d& covariance, const Matrix3d& R, const V
   return R * variances.asDiagonal() * R.transpose();
 }
 
-void FixList::add(Fix f, const std::string& place) {
-  ++read_;
-  if (!std::isfinite(f.time) || !f.position.allFinite()) {
-    ++not_finite_;
-    tally_.count("GNSS fixes with a value that is empty or not finite, left out", place);
-    return;
-  }
+void FixList::leave_out_not_finite() {
+  all_ = read_.size();
+  std::optional<core::Error> first;
+  std::uint64_t far = 0;
+  std::erase_if(read_, [&](const Read& r) {
+    const Fix& f = r.fix;
+    std::string fault = f.fault, hint = f.hint;
+    if (fault.empty() && (!std::isfinite(f.time) || !f.position.allFinite())) {
+      ++not_finite_;
+      tally_.count("GNSS fixes with a value that is empty or not finite, left out", r.place);
+      return true;
+    }
+    if (fault.empty()) {
+      const double height = core::geodetic_of(f.position).height;
+      if (f.position.norm() >= 0.5 * core::wgs84::b && std::abs(height) <= near_ground) return false;
+      fault = "the position is not near the ground: height " + core::format_number(std::round(height)) + " m";
+      hint = "check the columns and their units";
+    }
+    ++far;
+    tally_.count("GNSS fixes with an impossible position, left out", r.place + ": " + fault);
+    if (!first) first.emplace(fault, r.place, hint);
+    return true;
+  });
+  if (far > 0 && !are_few(far, all_)) throw *first;
+}
+
+void FixList::leave_out_wild() {
+  const auto leave_out = [&](const std::vector<size_t>& wild, const char* what) {
+    if (wild.empty() || !are_few(wild.size(), all_)) return;
+    size_t kept = 0;
+    for (size_t k = 0, next = 0; k < read_.size(); ++k) {
+      if (next < wild.size() && wild[next] == k) {
+        ++next;
+        tally_.count(what, read_[k].place + ": " + core::utc_text(read_[k].fix.time));
+      } else if (kept++ != k) {
+        read_[kept - 1] = std::move(read_[k]);
+      }
+    }
+    read_.resize(kept);
+  };
+  std::vector<double> times;
+  for (const Read& r : read_) times.push_back(r.fix.time);
+  leave_out(wild_times(times), "GNSS fixes with an impossible time, left out");
+  leave_out(contradicted(read_.size(),
+                         [&](size_t i, size_t j) {
+                           const Fix &a = read_[i].fix, &b = read_[j].fix;
+                           return (a.position - b.position).norm() > near_one_another + fastest * std::abs(a.time - b.time);
+                         }),
+            "GNSS fixes far from those around them, left out");
+}
+
+void FixList::take(const Fix& f, const std::string& place) {
   const core::Geodetic g = core::geodetic_of(f.position);
-  if (f.position.norm() < 0.5 * core::wgs84::b || std::abs(g.height) > near_ground)
-    throw core::Error("the position is not near the ground: height " + core::format_number(std::round(g.height)) + " m", place,
-                      "check the columns and their units");
   const double t = f.time + latency_;
   if (!out_.time.empty() && t < out_.time.back()) {
     if (!may_go_back_)
@@ -130,9 +175,12 @@ void FixList::add(Fix f, const std::string& place) {
 }
 
 core::GnssData FixList::finish() {
+  leave_out_not_finite();
+  leave_out_wild();
+  for (const Read& r : read_) take(r.fix, r.place);
   const auto refuse = [&](std::uint64_t n, double most, const char* what, const char* hint) {
-    if (static_cast<double>(n) > most * static_cast<double>(read_))
-      throw core::Error(std::to_string(n) + " of " + std::to_string(read_) + " fixes " + what, name_, hint);
+    if (static_cast<double>(n) > most * static_cast<double>(all_))
+      throw core::Error(std::to_string(n) + " of " + std::to_string(all_) + " fixes " + what, name_, hint);
   };
   refuse(not_finite_, most_not_finite, "have a value that is empty or not finite", "check the columns, or export again");
   refuse(repeated_, most_repeated, "are at the time of the fix before", "the times are too coarse: export them with more digits");

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/gnss_data.h"
 #include "core/report.h"
@@ -21,6 +23,7 @@ struct Fix {
   Eigen::Matrix3d velocity_covariance = Eigen::Matrix3d::Constant(none);  ///< ecef axes, (m/s)^2
   core::FixQuality quality = core::FixQuality::unknown;
   double satellites = 0;
+  std::string fault = {}, hint = {};  ///< why the position cannot be one, where its reader knows
 };
 
 /// The kind of solution by RTKLIB's number (1 fixed, 2 float, 3 SBAS, 4 DGPS, 5 single, 6 PPP); unknown for others.
@@ -38,15 +41,23 @@ class FixList {
   /// clock), up to 3 % of them; otherwise they are an error.
   FixList(const GnssFile& file, std::string name, double latency, bool may_go_back, core::Tally& tally);
 
-  /// Takes a fix. Left out and counted: time or position not finite, a repeated time. Where the covariance is missing it comes from the
-  /// survey's sigmas and the quality: stated for fixed and unknown, at least 0.1 m (PPP), 0.3 m (float), 1 m (differential, SBAS), 3 m
-  /// (single) horizontally and twice that in height. One that is not positive definite is replaced by its diagonal or by those; counted.
-  /// Throws Error with the place: a position not within 100 km of the ground, time going back.
-  void add(Fix fix, const std::string& place);
-  /// The fixes. Counts them by quality, gaps, and steps faster than 500 m/s. Throws Error: no fix, over 3 % not finite, over 20 % repeated.
+  void add(Fix fix, std::string place) { read_.push_back({std::move(fix), std::move(place)}); }
+  /// The fixes. Left out and counted: time or position not finite, a repeated time, a position not within 100 km of the ground, a time over
+  /// an hour or a position over 500 m/s and 100 m from most fixes around it. Where the covariance is missing it comes from the survey's
+  /// sigmas and the quality: stated for fixed and unknown, at least 0.1 m (PPP), 0.3 m (float), 1 m (differential, SBAS), 3 m (single)
+  /// horizontally and twice that in height. One that is not positive definite is replaced by its diagonal or by those; counted. Counts
+  /// fixes by quality, gaps, and steps faster than 500 m/s. Throws Error: no fix, time going back, over 3 % not finite or not near the
+  /// ground, over 20 % repeated.
   core::GnssData finish();
 
  private:
+  struct Read {
+    Fix fix;
+    std::string place;
+  };
+  void leave_out_not_finite();
+  void leave_out_wild();
+  void take(const Fix& fix, const std::string& place);
   Eigen::Matrix3d settled(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& ecef_R_neu, const Eigen::Vector3d& otherwise,
                           const char* of, const std::string& place);
 
@@ -57,7 +68,8 @@ class FixList {
   core::Tally& tally_;
   core::GnssData out_;
   bool velocities_ = false, own_sigmas_ = false, lent_sigmas_ = false;
-  std::uint64_t read_ = 0, not_finite_ = 0, repeated_ = 0, back_ = 0;
+  std::vector<Read> read_;
+  std::uint64_t all_ = 0, not_finite_ = 0, repeated_ = 0, back_ = 0;
 };
 
 }  // namespace swath::io

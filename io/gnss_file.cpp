@@ -13,6 +13,7 @@
 #include "io/record_times.h"
 #include "io/rtklib_pos.h"
 #include "io/table_rows.h"
+#include "io/wild_records.h"
 
 namespace swath::io {
 namespace {
@@ -66,23 +67,26 @@ core::GnssData read_text(const std::filesystem::path& path, const GnssFile& f, d
   if (geodetic && unit == 0) throw core::usage_error("the unit of angles is not stated", name, "angle_unit = \"deg\", \"rad\" or \"gon\"");
   const auto rows = open_table(path, RecordFormat::text, f.delimiter, v.names());
   count_cut_line(rows->cut_line(), path, tally);
-  core::TimeReader clock = reader_of(f.time, name, !c.week.empty());
-  FixList fixes(f, name, latency, false, tally);
+  struct Row {
+    Fix fix;
+    std::uint64_t number;
+  };
+  std::vector<Row> read;
+  std::vector<double> times, weeks;
   double farthest_north = 0, farthest_east = 0;
   while (v.next(*rows)) {
     Fix fix;
-    const double weeks = v[week];
-    if (std::isfinite(v[time]) && (week == NamedColumns::none || std::isfinite(weeks)))
-      fix.time = time_of_row(clock, v[time], week == NamedColumns::none ? nullptr : &weeks, *rows);
     core::Geodetic g;
     if (geodetic) {
       const Vector3d p = v.three(place);
-      if (std::abs(p[0] * unit) > core::pi / 2 || std::abs(p[1] * unit) > 2 * core::pi)
-        throw core::Error("latitude " + core::format_number(p[0]) + ", longitude " + core::format_number(p[1]) + " are no " +
-                              std::string(core::Choices<AngleUnit>::names[static_cast<size_t>(f.angle_unit)]),
-                          rows->place(), f.angle_unit == AngleUnit::rad ? "state angle_unit = \"deg\"?" : "check columns and angle_unit");
-      farthest_north = std::max(farthest_north, std::abs(p[0]));
-      farthest_east = std::max(farthest_east, std::abs(p[1]));
+      if (std::abs(p[0] * unit) > core::pi / 2 || std::abs(p[1] * unit) > 2 * core::pi) {
+        fix.fault = "latitude " + core::format_number(p[0]) + ", longitude " + core::format_number(p[1]) + " are no " +
+                    std::string(core::Choices<AngleUnit>::names[static_cast<size_t>(f.angle_unit)]);
+        fix.hint = f.angle_unit == AngleUnit::rad ? "state angle_unit = \"deg\"?" : "check columns and angle_unit";
+      } else {
+        farthest_north = std::max(farthest_north, std::abs(p[0]));
+        farthest_east = std::max(farthest_east, std::abs(p[1]));
+      }
       g = {p[0] * unit, p[1] * unit, p[2]};
       fix.position = core::ecef_of(g);
     } else {
@@ -98,7 +102,16 @@ core::GnssData read_text(const std::filesystem::path& path, const GnssFile& f, d
     if (sigma_v[0] != NamedColumns::none) fix.velocity_covariance = ecef_covariance(diagonal(v.three(sigma_v)), g.latitude, g.longitude);
     fix.quality = quality_of_rtklib(v[quality]);
     fix.satellites = v[satellites];
-    fixes.add(fix, rows->place());
+    read.push_back({std::move(fix), rows->number()});
+    times.push_back(v[time]);
+    if (week != NamedColumns::none) weeks.push_back(v[week]);
+  }
+  FixList fixes(f, name, latency, false, tally);
+  const auto place_of = [&](size_t k) { return rows->place_of(read[k].number); };
+  const std::vector<double> gps = gps_times(f.time, name, times, weeks, "GNSS fixes with an impossible time, left out", tally, place_of);
+  for (size_t k = 0; k < read.size(); ++k) {
+    read[k].fix.time = gps[k];
+    if (!std::isnan(gps[k])) fixes.add(std::move(read[k].fix), place_of(k));
   }
   core::GnssData out = fixes.finish();
   if (geodetic && f.angle_unit != AngleUnit::rad && farthest_north <= core::pi / 2 && farthest_east <= core::pi)

@@ -8,10 +8,12 @@
 
 #include "core/error.h"
 #include "core/frames.h"
+#include "core/statistics.h"
 #include "io/cut_line.h"
 #include "io/imu_checks.h"
 #include "io/record_times.h"
 #include "io/table_rows.h"
+#include "io/wild_records.h"
 
 namespace swath::io {
 namespace {
@@ -20,11 +22,23 @@ using Eigen::Vector3d;
 
 constexpr double most_not_finite = 0.03, most_repeated = 0.05;  // of the records
 constexpr const char* gap_count = "IMU gaps";
+constexpr double fastest_turn = 100.0, largest_force = 1000.0;  // rad/s, m/s2: twice what the widest sensors measure
 
 /// Records as recorded, in the record's axes and units.
 struct Raw {
   std::vector<double> time;
   std::vector<Vector3d> gyro, accelerometer;
+
+  void move(size_t from, size_t to) {
+    time[to] = time[from];
+    gyro[to] = gyro[from];
+    accelerometer[to] = accelerometer[from];
+  }
+  void resize(size_t n) {
+    time.resize(n);
+    gyro.resize(n);
+    accelerometer.resize(n);
+  }
 };
 
 void refuse_share(std::uint64_t n, std::uint64_t of, double most, const char* what, const std::string& name, const char* hint) {
@@ -32,47 +46,107 @@ void refuse_share(std::uint64_t n, std::uint64_t of, double most, const char* wh
     throw core::Error(std::to_string(n) + " of " + std::to_string(of) + " IMU records " + what, name, hint);
 }
 
+/// Takes out the records with rates or forces that no IMU measures, counted with the place and the values; leaves all where they are not
+/// few: then the units are others than stated, which check_imu() says.
+void leave_out_impossible(Raw& raw, const ImuFile& f, const std::vector<std::uint64_t>& numbers, const TableRows& rows,
+                          core::Tally& tally) {
+  const double step = f.rate ? 1.0 / f.rate->value : core::median_step(raw.time);
+  if (!(step > 0)) return;
+  const double per_second = f.kind == ImuKind::rates ? 1.0 : 1.0 / step;
+  const double gyro = radians_per(f.angle_unit) * std::abs(f.gyro_factor) * per_second;
+  const double force = mps2_per(f.acceleration_unit) * std::abs(f.accelerometer_factor) * per_second;
+  const auto is_bad = [&](size_t k) {
+    return raw.gyro[k].cwiseAbs().maxCoeff() * gyro > fastest_turn || raw.accelerometer[k].cwiseAbs().maxCoeff() * force > largest_force;
+  };
+  std::vector<size_t> bad;
+  for (size_t k = 0; k < raw.time.size(); ++k)
+    if (is_bad(k)) bad.push_back(k);
+  if (bad.empty() || !are_few(bad.size(), raw.time.size())) return;
+  size_t kept = 0;
+  for (size_t k = 0, next = 0; k < raw.time.size(); ++k) {
+    if (next < bad.size() && bad[next] == k) {
+      ++next;
+      tally.count("IMU records with rates or forces that no IMU measures, left out",
+                  rows.place_of(numbers[k]) + ": " + core::format_number(raw.gyro[k].cwiseAbs().maxCoeff() * gyro) + " rad/s, " +
+                      core::format_number(raw.accelerometer[k].cwiseAbs().maxCoeff() * force) + " m/s2");
+      continue;
+    }
+    raw.move(k, kept++);
+  }
+  raw.resize(kept);
+}
+
+/// The records as they are, but for those with a value or time that cannot be.
+struct Recorded {
+  Raw raw;
+  std::vector<std::uint64_t> numbers;  ///< of the rows
+  std::uint64_t read = 0;
+};
+
+Recorded read_rows(TableRows& rows, const ImuFile& f, size_t columns, const std::string& name, core::Tally& tally) {
+  Recorded out;
+  std::vector<double> v(columns), weeks;
+  std::uint64_t not_finite = 0;
+  Raw& raw = out.raw;
+  while (rows.next(v.data())) {
+    ++out.read;
+    if (!std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); })) {
+      ++not_finite;
+      tally.count("IMU records with a value that is empty or not finite, left out", rows.place());
+      continue;
+    }
+    raw.time.push_back(v[0]);
+    raw.gyro.emplace_back(v[1], v[2], v[3]);
+    raw.accelerometer.emplace_back(v[4], v[5], v[6]);
+    out.numbers.push_back(rows.number());
+    if (!f.columns.week.empty()) weeks.push_back(v.back());
+  }
+  refuse_share(not_finite, out.read, most_not_finite, "have a value that is empty or not finite", name,
+               "check the columns, or export again");
+  raw.time = gps_times(f.time, name, raw.time, weeks, "IMU records with an impossible time, left out", tally,
+                       [&](size_t k) { return rows.place_of(out.numbers[k]); });
+  size_t kept = 0;
+  for (size_t k = 0; k < raw.time.size(); ++k) {
+    if (std::isnan(raw.time[k])) continue;
+    raw.move(k, kept);
+    out.numbers[kept++] = out.numbers[k];
+  }
+  raw.resize(kept);
+  return out;
+}
+
 Raw read_raw(const std::filesystem::path& path, const ImuFile& f, core::Tally& tally) {
   const std::string name = path.string();
   const ImuColumns& c = f.columns;
-  const bool weeks = !c.week.empty();
   std::vector<std::string> columns{c.time, c.gyro_x, c.gyro_y, c.gyro_z, c.accelerometer_x, c.accelerometer_y, c.accelerometer_z};
-  if (weeks) columns.push_back(c.week);
+  if (!c.week.empty()) columns.push_back(c.week);
   const std::unique_ptr<TableRows> rows = open_table(path, format_of(f), f.delimiter, columns);
   count_cut_line(rows->cut_line(), path, tally);
-  core::TimeReader clock = reader_of(f.time, name, weeks);
-  Raw out;
-  std::vector<double> v(columns.size());
-  std::uint64_t read = 0, not_finite = 0, repeated = 0, same = 0;
-  while (rows->next(v.data())) {
-    ++read;
-    if (!std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); })) {
-      ++not_finite;
-      tally.count("IMU records with a value that is empty or not finite, left out", rows->place());
-      continue;
-    }
-    const double t = time_of_row(clock, v[0], weeks ? &v.back() : nullptr, *rows);
-    if (!out.time.empty() && t < out.time.back())
-      throw core::Error("time goes back by " + core::format_number(out.time.back() - t) + " s", rows->place(),
+  Recorded all = read_rows(*rows, f, columns.size(), name, tally);
+  Raw& raw = all.raw;
+  std::uint64_t repeated = 0, same = 0;
+  size_t kept = 0;
+  for (size_t k = 0; k < raw.time.size(); ++k) {
+    if (kept > 0 && raw.time[k] < raw.time[kept - 1])
+      throw core::Error("time goes back by " + core::format_number(raw.time[kept - 1] - raw.time[k]) + " s", rows->place_of(all.numbers[k]),
                         "export the records in the order of time");
-    if (!out.time.empty() && t == out.time.back()) {
+    if (kept > 0 && raw.time[k] == raw.time[kept - 1]) {
       ++repeated;
-      tally.count("IMU records at a repeated time, left out", rows->place());
+      tally.count("IMU records at a repeated time, left out", rows->place_of(all.numbers[k]));
       continue;
     }
-    const Vector3d gyro(v[1], v[2], v[3]), accelerometer(v[4], v[5], v[6]);
-    if (!out.time.empty() && gyro == out.gyro.back() && accelerometer == out.accelerometer.back()) ++same;
-    out.time.push_back(t);
-    out.gyro.push_back(gyro);
-    out.accelerometer.push_back(accelerometer);
+    if (kept > 0 && raw.gyro[k] == raw.gyro[kept - 1] && raw.accelerometer[k] == raw.accelerometer[kept - 1]) ++same;
+    raw.move(k, kept);
+    all.numbers[kept++] = all.numbers[k];
   }
-  refuse_share(not_finite, read, most_not_finite, "have a value that is empty or not finite", name, "check the columns, or export again");
-  refuse_share(repeated, read, most_repeated, "are at the time of the record before", name,
+  raw.resize(kept);
+  refuse_share(repeated, all.read, most_repeated, "are at the time of the record before", name,
                "the times are too coarse for the rate: export them with more digits");
-  if (out.time.empty()) throw core::Error("the file has no IMU records", name);
+  if (raw.time.empty()) throw core::Error("the file has no IMU records", name);
+  leave_out_impossible(raw, f, all.numbers, *rows, tally);
   if (same > 0)
-    tally.count("IMU records that repeat the values of the one before (kept)", name + ": of " + std::to_string(out.time.size()), same);
-  return out;
+    tally.count("IMU records that repeat the values of the one before (kept)", name + ": of " + std::to_string(raw.time.size()), same);
+  return std::move(raw);
 }
 
 /// Moves the times to the ends of the intervals.

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 #include "core/value.h"
+#include "io/wild_records.h"
 
 namespace swath::io {
 namespace {
@@ -27,6 +29,16 @@ double turns(double t, double first_time, double period) {
                     "the file's times are on another scale: state it as points.time_scale in the survey");
 }
 
+/// Makes times NaN that are not within 0 to `longest`, which is an error where they are not few.
+void keep_times(std::vector<double>& times, double longest, const char* what, const std::string& where, std::uint64_t first) {
+  const auto is_none = [&](double t) { return !(t >= 0.0 && t <= longest); };
+  const auto none = static_cast<std::uint64_t>(std::count_if(times.begin(), times.end(), is_none));
+  if (none == 0) return;
+  const auto at = std::find_if(times.begin(), times.end(), is_none);
+  if (!are_few(none, times.size())) fail_value(*at, what, where, first + static_cast<std::uint64_t>(at - times.begin()));
+  std::replace_if(times.begin(), times.end(), is_none, std::numeric_limits<double>::quiet_NaN());
+}
+
 }  // namespace
 
 TimeScale las_time_scale(const LasHeader& header, const LasTime& time) {
@@ -41,31 +53,28 @@ std::vector<double> las_gps_times(const std::vector<double>& recorded, const Las
                                   const std::string& where, std::uint64_t first) {
   std::vector<double> out = recorded;
   const auto each = [&](auto&& f) {
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = f(out[i], first + i);
+    for (double& t : out)
+      if (std::isfinite(t)) t = f(t);
   };
   switch (las_time_scale(header, time)) {
     case TimeScale::gps:
       break;
     case TimeScale::gps_adjusted:
-      each([](double t, std::uint64_t) { return t + core::adjusted_offset; });
+      each([](double t) { return t + core::adjusted_offset; });
       break;
     case TimeScale::gps_week:
-      each([&](double t, std::uint64_t row) {
-        if (!(t >= 0.0 && t <= longest_week)) fail_value(t, "a second of a week", where, row);
-        return *time.week * core::seconds_per_week + t + turns(t, first_time, core::seconds_per_week);
-      });
+      keep_times(out, longest_week, "a second of a week", where, first);
+      each([&](double t) { return *time.week * core::seconds_per_week + t + turns(t, first_time, core::seconds_per_week); });
       break;
     case TimeScale::unix_utc:
-      each([](double t, std::uint64_t) { return core::from_unix(t); });
+      each([](double t) { return core::from_unix(t); });
       break;
     case TimeScale::utc_day: {
       const std::optional<double> midnight = core::unix_of_date(time.date);
       if (!midnight)
         throw core::Error("times are UTC seconds of a day that is not stated", where, "state the date of the first point as points.date");
-      each([&](double t, std::uint64_t row) {
-        if (!(t >= 0.0 && t <= 2.0 * seconds_per_day)) fail_value(t, "a second of a day", where, row);
-        return core::from_unix(*midnight + t + turns(t, first_time, seconds_per_day));
-      });
+      keep_times(out, 2.0 * seconds_per_day, "a second of a day", where, first);
+      each([&](double t) { return core::from_unix(*midnight + t + turns(t, first_time, seconds_per_day)); });
       break;
     }
     default:

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "core/error.h"
 #include "io/cut_line.h"
 #include "io/delimited.h"
+#include "io/laser_times.h"
+#include "io/wild_records.h"
 
 namespace swath::io {
 namespace {
@@ -36,10 +39,12 @@ class Clock {
       return reader_.in_week(static_cast<int>(r.week[i]), r.time[i]);
     }
     try {
-      return reader_(r.time[i]);
+      const double time = reader_(r.time[i]);
+      if (is_instant(time)) return time;
     } catch (const core::Error& e) {
-      throw core::Error(e.what(), place(), e.hint());
+      throw core::Error(e.what(), place(), e.hint(), e.code());
     }
+    throw core::Error("the time " + core::format_number(r.time[i]) + " is not between 1980 and 2100", place(), "check the time scale");
   }
 
  private:
@@ -90,12 +95,12 @@ class LineRule {
   std::optional<int> stated_;
 };
 
-/// Throws: an angle beyond a full turn is none of a scanner, in the unit that is stated.
-[[noreturn]] void hold_angle_unit(double recorded, AngleUnit unit, const std::string& place) {
+/// An angle beyond a full turn is none of a scanner, in the unit that is stated.
+core::Error angle_fault(double recorded, AngleUnit unit, const std::string& place) {
   const bool radians = unit == AngleUnit::rad;
-  throw core::Error("a scan angle of " + core::format_number(recorded) + (radians ? " rad" : "") + " is more than a full turn", place,
-                    radians ? "are the angles in degrees? State angle_unit = \"deg\" in this [[laser]]"
-                            : "check angle_unit and columns.scan_angle of this [[laser]]");
+  return core::Error("a scan angle of " + core::format_number(recorded) + (radians ? " rad" : "") + " is more than a full turn", place,
+                     radians ? "are the angles in degrees? State angle_unit = \"deg\" in this [[laser]]"
+                             : "check angle_unit and columns.scan_angle of this [[laser]]");
 }
 
 /// A number as an unsigned field of the shot: cut to its range (`cut`) or 0 where it is none; counted.
@@ -113,35 +118,66 @@ std::string StripInfo::name(const Survey& survey) const {
   return "line " + std::to_string(line) + " of " + survey.laser[file].file.filename().string();
 }
 
-std::vector<StripInfo> scan(const Survey& survey, size_t file, core::Tally& tally) {
+namespace {
+
+/// What one pass over a file finds.
+struct Pass {
+  std::vector<StripInfo> strips;
+  std::vector<std::uint64_t> bad;  ///< rows without a time or line that can be theirs
+  std::uint64_t records = 0, unreadable = 0, wild = 0;
+  std::optional<core::Error> first;  ///< that is not readable
+  core::Tally tally;
+};
+
+/// `judge`: are records left out whose time lies far from those around them?
+Pass pass_over(const Survey& survey, size_t file, bool judge) {
   const LaserFile& f = survey.laser[file];
   const std::string name = resolve(survey, f.file).string();
   const LineRule rule(survey, file);
   Clock clock(clock_of(survey, f), name);
-  const auto reader = open_laser_records(survey, f, Wanted::plan);
-  if (format_of(f) == LaserFormat::text) count_cut_line(inspect_delimited(name, f.delimiter).cut_line, name, tally);
-  std::vector<StripInfo> out;
+  LaserTimes reader(open_laser_records(survey, f, Wanted::plan), time_of(survey, f));
+  Pass out;
   std::map<int, size_t> strip_of;
   size_t last = 0;  // strip of the record before
   LaserRecords r;
-  while (reader->next(r, chunk)) {
+  std::vector<std::uint8_t> wild;
+  while (reader.next(r, wild, chunk)) {
+    out.records += r.size();
     for (size_t i = 0; i < r.size(); ++i) {
-      const double time = clock(r, i);
-      const int line = rule.of(r, i, time);
-      if (line < 0) {
-        tally.count("records outside every line", f.file.filename().string() + ": " + record_text(r.record[i]));
+      const auto bad = [&](const char* what, const std::string& example) {
+        out.tally.count(what, f.file.filename().string() + ": " + record_text(r.record[i]) + ": " + example);
+        if (out.bad.empty() || out.bad.back() != r.record[i]) out.bad.push_back(r.record[i]);
+      };
+      if (judge && wild[i]) {
+        ++out.wild;
+        bad("records with an impossible time, left out", "time " + core::format_number(r.time[i]));
         continue;
       }
-      if (out.empty() || out[last].line != line) {
-        const auto [at, fresh] = strip_of.try_emplace(line, out.size());
+      double time = 0;
+      int line = -1;
+      try {
+        time = clock(r, i);
+        line = rule.of(r, i, time);
+      } catch (const core::Error& e) {
+        ++out.unreadable;
+        if (!out.first) out.first = e;
+        bad("records whose time or line is none, left out", e.what());
+        continue;
+      }
+      if (line < 0) {
+        out.tally.count("records outside every line", f.file.filename().string() + ": " + record_text(r.record[i]));
+        continue;
+      }
+      if (out.strips.empty() || out.strips[last].line != line) {
+        const auto [at, fresh] = strip_of.try_emplace(line, out.strips.size());
         last = at->second;
         if (fresh) {
           const bool text = !r.byte.empty();
           const LaserPlace place{r.record[i], text ? r.byte[i] : 0, text ? r.text_line[i] : 0};
-          out.push_back({file, line, r.record[i], 0, 0, std::nan(""), std::nan(""), place, clock.reader()});
+          out.strips.push_back({file, line, r.record[i], 0, 0, std::nan(""), std::nan(""), place, clock.reader()});
         }
       }
-      StripInfo& s = out[last];
+      StripInfo& s = out.strips[last];
       s.last = r.record[i] + 1;
       ++s.records;
       if (std::isnan(s.first_time)) s.first_time = time;
@@ -151,10 +187,29 @@ std::vector<StripInfo> scan(const Survey& survey, size_t file, core::Tally& tall
   return out;
 }
 
+}  // namespace
+
+std::vector<StripInfo> scan(const Survey& survey, size_t file, core::Tally& tally) {
+  const LaserFile& f = survey.laser[file];
+  const std::string name = resolve(survey, f.file).string();
+  if (format_of(f) == LaserFormat::text) count_cut_line(inspect_delimited(name, f.delimiter).cut_line, name, tally);
+  Pass pass = pass_over(survey, file, true);
+  if (pass.wild > 0 && !are_few(pass.wild, pass.records)) pass = pass_over(survey, file, false);
+  if (pass.first && !are_few(pass.unreadable, pass.records)) throw *pass.first;
+  tally.add(pass.tally);
+  if (pass.bad.empty()) return std::move(pass.strips);
+  const auto bad = std::make_shared<const std::vector<std::uint64_t>>(std::move(pass.bad));
+  for (StripInfo& s : pass.strips) s.bad = bad;
+  return std::move(pass.strips);
+}
+
 std::vector<StripInfo> scan(const Survey& survey, core::Tally& tally) {
   std::vector<StripInfo> out;
   for (size_t i = 0; i < survey.laser.size(); ++i)
     for (StripInfo& s : scan(survey, i, tally)) out.push_back(std::move(s));
+  std::vector<LineSpan> spans;
+  for (const StripInfo& s : out) spans.push_back({s.line, s.first_time, s.last_time});
+  count_cut_lines(line_windows(survey), spans, tally);
   return out;
 }
 
@@ -166,6 +221,8 @@ struct LaserSource::State {
         rule(survey, strip.file),
         clock(strip.clock, name),
         reader(open_laser_records(survey, file, Wanted::all, strip.begin, strip.last)),
+        records(strip.records),
+        bad(strip.bad),
         angle_unit((format_of(file) == LaserFormat::csd ? 1.0 : radians_per(file.angle_unit)) * (file.angle_to_port ? -1.0 : 1.0)) {
     is_profile = file.model == core::ScannerModel::profile && survey.scanner.model != core::ScannerModel::profile;
     if (angle_unit == 0 && !file.columns.scan_angle.empty())
@@ -178,6 +235,8 @@ struct LaserSource::State {
   LineRule rule;
   Clock clock;
   std::unique_ptr<LaserRecordReader> reader;
+  std::uint64_t records;
+  std::shared_ptr<const std::vector<std::uint64_t>> bad;  // rows to pass over; may be null
   double angle_unit;
   bool is_profile = false;  // beside a mirror, whose beam at angle 0 is the profile's
   core::Tally tally;
@@ -185,6 +244,15 @@ struct LaserSource::State {
   size_t at = 0;
   double last_time = -std::numeric_limits<double>::infinity();
   double last_recorded = std::nan("");  // of the record passed last, in the file's scale
+  std::uint64_t damaged_records = 0;
+
+  bool is_bad(std::uint64_t record) const { return bad && std::binary_search(bad->begin(), bad->end(), record); }
+
+  /// Leaves a record out whose value cannot be, or throws where these are not few.
+  void leave_out(const core::Error& e, std::uint64_t record) {
+    if (!are_few(++damaged_records, records)) throw core::Error(e);
+    tally.count("records with a range or angle that is none, left out", record_text(record) + ": " + e.what());
+  }
 
   /// Appends record i of the chunk to the batch, or counts why not.
   void take(size_t i, double time, core::Shots& out) {
@@ -201,12 +269,15 @@ struct LaserSource::State {
       if (!raw.angle.empty() && !is_profile) angle = raw.angle[i] * angle_unit;
     }
     if (!std::isfinite(range))
-      throw core::Error("the range is missing or not finite", name + ": " + record_text(record),
-                        "export the records again; a pulse without a return is written with range 0");
+      return leave_out(core::Error("the range is missing or not finite", name + ": " + record_text(record),
+                                   "export the records again; a pulse without a return is written with range 0"),
+                       record);
     if (!(range > 0)) return drop("records with a range not positive, left out");
     if (!(range * file.range_unit.value <= farthest)) return drop("records with a range over 100 km, left out");
-    if (!std::isfinite(angle)) throw core::Error("the scan angle is missing or not finite", name + ": " + record_text(record), damaged);
-    if (std::abs(angle) > full_turn) hold_angle_unit(raw.angle[i], file.angle_unit, name + ": " + record_text(record));
+    if (!std::isfinite(angle))
+      return leave_out(core::Error("the scan angle is missing or not finite", name + ": " + record_text(record), damaged), record);
+    if (std::abs(angle) > full_turn)
+      return leave_out(angle_fault(raw.angle[i], file.angle_unit, name + ": " + record_text(record)), record);
     if (time < last_time)
       throw core::Error("time goes back by " + core::format_number(last_time - time) + " s inside line " + std::to_string(line),
                         name + ": " + record_text(record), "records of a line must be in the order of their time");
@@ -253,6 +324,7 @@ bool LaserSource::next(core::Shots& batch, size_t most) {
     for (; s.at < s.raw.size(); ++s.at) {
       // A batch ends before the first record of a new pulse, judged by the time as recorded.
       const size_t i = s.at;
+      if (s.is_bad(s.raw.record[i])) continue;
       const bool full = batch.size() >= most && (s.raw.time[i] != s.last_recorded || batch.size() >= most + most_of_a_pulse);
       if (full) return true;
       const double time = s.clock(s.raw, i);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/record_checks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "io/laser_records.h"
 #include "io/npy.h"
 #include "io/survey_checks.h"
+#include "io/wild_records.h"
 
 namespace swath::io {
 namespace {
@@ -98,8 +100,11 @@ class RecordChecks {
     } catch (const core::Error&) {
       return;  // the reader names the record
     }
+    const auto is_beyond = [&](double angle) { return std::isfinite(angle) && std::abs(angle * unit) > full_turn; };
+    const auto beyond = static_cast<std::uint64_t>(std::count_if(records.angle.begin(), records.angle.end(), is_beyond));
+    if (are_few(beyond, records.angle.size())) return;  // of single records: those are left out
     for (size_t i = 0; i < records.angle.size(); ++i)
-      if (std::isfinite(records.angle[i]) && std::abs(records.angle[i] * unit) > full_turn)
+      if (is_beyond(records.angle[i]))
         return fault(
             key + ".angle_unit",
             core::Error("a scan angle of " + core::format_number(records.angle[i]) + " in " +

@@ -203,10 +203,10 @@ core::GnssData read_pos(const std::filesystem::path& path, const GnssFile& f, do
       case PosHeader::Place::geodetic: {
         const double latitude = h.degrees_minutes ? degrees_of(c, words[2].starts_with("-")) : c[0];
         const double longitude = h.degrees_minutes ? degrees_of(c + 3, words[5].starts_with("-")) : c[1];
-        if (std::abs(latitude) > 90 || std::abs(longitude) > 360)
-          throw core::Error(
-              "latitude " + core::format_number(latitude) + ", longitude " + core::format_number(longitude) + " are no degrees",
-              lines.place(), "the file's header does not name its columns");
+        if (std::abs(latitude) > 90 || std::abs(longitude) > 360) {
+          fix.fault = "latitude " + core::format_number(latitude) + ", longitude " + core::format_number(longitude) + " are no degrees";
+          fix.hint = "the file's header does not name its columns";
+        }
         g = {latitude * core::degree, longitude * core::degree, c[coordinates - 1]};
         fix.position = core::ecef_of(g);
         break;
@@ -228,7 +228,7 @@ core::GnssData read_pos(const std::filesystem::path& path, const GnssFile& f, do
       fix.velocity = ecef_vector(velocity, g.latitude, g.longitude);
       fix.velocity_covariance = ecef_covariance(columns.covariance("sdv", 'n', 'e', 'u'), g.latitude, g.longitude);
     }
-    fixes.add(fix, lines.place());
+    fixes.add(fix, lines.number());
   }
   if (static_cast<double>(junk) > 1 + most_junk * static_cast<double>(read))
     throw core::Error(std::to_string(junk) + " of " + std::to_string(read) + " lines are no solution of RTKLIB", name,

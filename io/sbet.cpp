@@ -6,12 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/error.h"
 #include "core/frames.h"
 #include "core/geodesy.h"
 #include "core/time.h"
 #include "io/output_file.h"
+#include "io/trajectory_faults.h"
+#include "io/wild_records.h"
 
 namespace swath::io {
 namespace {
@@ -97,16 +100,29 @@ void add_accuracy(core::TrajectoryData& t, const std::filesystem::path& path, co
   const SmrmsgFile file(path);
   std::vector<SmrmsgRecord> rows;
   file.read(0, static_cast<size_t>(file.records()), rows);
-  core::TimeReader clock = reader_of(tags, path.string());
+  std::vector<double> times;
+  for (const SmrmsgRecord& r : rows) times.push_back(r.time);
+  times = gps_times(tags, path.string(), times, {}, "smrmsg records with an impossible time, left out", tally);
+  const auto where = [&](size_t i) { return path.string() + ": record " + std::to_string(i); };
+  std::vector<size_t> bad;
+  size_t kept = 0;
   for (size_t i = 0; i < rows.size(); ++i) {
-    SmrmsgRecord& r = rows[i];
-    const std::string where = path.string() + ": record " + std::to_string(i);
-    for (size_t k = 0; k < 3; ++k)
-      if (!(r.position[k] >= 0) || !(r.attitude[k] >= 0) || !std::isfinite(r.position[k] + r.attitude[k] + r.time))
-        throw core::Error("a standard deviation or time is negative or not finite", where, "the file is damaged: export it again");
-    r.time = clock(r.time);
-    if (i > 0 && r.time < rows[i - 1].time) throw core::Error("time goes back", where, "sort the file by time");
+    SmrmsgRecord r = rows[i];
+    r.time = times[i];
+    if (std::isnan(r.time)) continue;
+    bool good = true;
+    for (size_t k = 0; k < 3; ++k) good = good && r.position[k] >= 0 && r.attitude[k] >= 0 && std::isfinite(r.position[k] + r.attitude[k]);
+    if (!good) {
+      bad.push_back(i);
+      continue;
+    }
+    if (kept > 0 && r.time < rows[kept - 1].time) throw core::Error("time goes back", where(i), "sort the file by time");
+    rows[kept++] = r;
   }
+  if (!are_few(bad.size(), rows.size()))
+    throw core::Error("a standard deviation is negative or not finite", where(bad[0]), "the file is damaged: export it again");
+  for (const size_t i : bad) tally.count("smrmsg records with a sigma that is negative or not finite, left out", where(i));
+  rows.resize(kept);
   for (auto* c : {&t.sigma_north, &t.sigma_east, &t.sigma_down, &t.sigma_roll, &t.sigma_pitch, &t.sigma_heading}) c->resize(t.size());
   size_t at = 0;
   for (size_t i = 0; i < t.size(); ++i) {
@@ -186,32 +202,35 @@ template class RecordFile<SmrmsgRecord>;
 core::TrajectoryData read_sbet(const std::filesystem::path& path, const TimeTags& tags, bool wander, VelocityAxes axes,
                                const std::optional<std::filesystem::path>& accuracy, core::Tally& tally) {
   const SbetFile file(path);
-  core::TimeReader clock = reader_of(tags, path.string());
   core::TrajectoryData out;
   std::vector<VelocityAxes> candidates;
   if (axes == VelocityAxes::automatic) candidates = {VelocityAxes::ned, VelocityAxes::nwu};
   if (axes == VelocityAxes::ned || axes == VelocityAxes::nwu) candidates = {axes};
   std::vector<Velocities> velocities(candidates.size());
   std::vector<SbetRecord> rows;
+  std::vector<double> recorded;
+  std::optional<core::Error> degrees;
+  std::uint64_t no_radians = 0;
   for (std::uint64_t first = 0; first < file.records(); first += chunk) {
     file.read(first, static_cast<size_t>(std::min<std::uint64_t>(chunk, file.records() - first)), rows);
     for (size_t i = 0; i < rows.size(); ++i) {
       const SbetRecord& r = rows[i];
-      const auto where = [&] { return path.string() + ": record " + std::to_string(first + i); };
-      if (!std::isfinite(r.time + r.latitude + r.longitude + r.altitude + r.roll + r.pitch + r.platform_heading + r.wander_angle))
-        throw core::Error("a value is not finite", where(), "the file is damaged: export it again");
-      if (std::abs(r.latitude) > core::pi / 2 || std::abs(r.longitude) > 2 * core::pi)
-        throw core::Error(
-            "latitude " + core::format_number(r.latitude) + ", longitude " + core::format_number(r.longitude) + " are no radians", where(),
-            "SBET angles are radians; is this an SBET, or one written in degrees?");
+      if (std::abs(r.latitude) > core::pi / 2 || std::abs(r.longitude) > 2 * core::pi) {
+        ++no_radians;
+        if (!degrees)
+          degrees.emplace(
+              "latitude " + core::format_number(r.latitude) + ", longitude " + core::format_number(r.longitude) + " are no radians",
+              path.string() + ": record " + std::to_string(first + i),
+              "SBET angles are radians; is this an SBET, or one written in degrees?");
+      }
       const double turn = wander ? r.wander_angle : 0.0;
-      out.time.push_back(clock(r.time));
+      recorded.push_back(r.time);
       out.latitude.push_back(r.latitude);
-      out.longitude.push_back(core::wrap_pi(r.longitude));
+      out.longitude.push_back(r.longitude);
       out.height.push_back(r.altitude);
-      out.roll.push_back(core::wrap_pi(r.roll));
+      out.roll.push_back(r.roll);
       out.pitch.push_back(r.pitch);
-      out.heading.push_back(core::wrap_two_pi(r.platform_heading - turn));
+      out.heading.push_back(r.platform_heading - turn);
       for (size_t c = 0; c < candidates.size(); ++c) {
         double ned[3];
         turned(candidates[c], r, turn, ned);
@@ -220,6 +239,21 @@ core::TrajectoryData read_sbet(const std::filesystem::path& path, const TimeTags
         velocities[c].down.push_back(ned[2]);
       }
     }
+  }
+  if (degrees && !are_few(no_radians, file.records())) throw *degrees;
+  out.time = gps_times(tags, path.string(), recorded, {}, impossible_times, tally);
+  if (const std::vector<std::uint8_t> marked = leave_out_faults(out, path.string(), tally); !marked.empty())
+    for (Velocities& v : velocities)
+      for (auto* c : {&v.north, &v.east, &v.down}) {
+        size_t kept = 0;
+        for (size_t i = 0; i < marked.size(); ++i)
+          if (!marked[i]) (*c)[kept++] = (*c)[i];
+        c->resize(kept);
+      }
+  for (size_t i = 0; i < out.size(); ++i) {
+    out.longitude[i] = core::wrap_pi(out.longitude[i]);
+    out.roll[i] = core::wrap_pi(out.roll[i]);
+    out.heading[i] = core::wrap_two_pi(out.heading[i]);
   }
   if (!candidates.empty()) choose_velocities(out, axes, candidates, velocities, tally);
   if (accuracy) add_accuracy(out, *accuracy, tags, tally);

@@ -164,6 +164,25 @@ void describe(PointFile& f, V& v) {
   v.check(f.time_scale != core::TimeScale::utc_day || !f.date.empty(), "time_scale utc_day needs the date of the first point");
 }
 
+/// Where the survey lies. What is not stated is not limited by it.
+struct SurveyArea {
+  std::optional<double> west, south, east, north;
+  std::optional<core::Metres> lowest, highest;
+};
+
+template <class V>
+void describe(SurveyArea& a, V& v) {
+  v.option("west", a.west, "Western border, in units of the survey's CRS.");
+  v.option("south", a.south, "Southern border.");
+  v.option("east", a.east, "Eastern border.");
+  v.option("north", a.north, "Northern border.");
+  v.option("lowest", a.lowest, "Lowest height of a point, in the survey's height system.");
+  v.option("highest", a.highest, "Highest height of a point.");
+  v.check(!a.west || !a.east || *a.east > *a.west, "east must be larger than west");
+  v.check(!a.south || !a.north || *a.north > *a.south, "north must be larger than south");
+  v.check(!a.lowest || !a.highest || *a.highest > *a.lowest, "highest must be larger than lowest");
+}
+
 /// A stretch of the flight. Records outside every line are counted and left out.
 struct FlightLine {
   int id = 1;
@@ -197,6 +216,7 @@ struct Survey {
   std::string name = "survey";
   std::string crs;
   std::optional<core::Metres> height_unit;
+  SurveyArea area;
   core::Scanner scanner;
   core::Calibration calibration;
   core::SensorSigma sigma;
@@ -228,6 +248,9 @@ void describe(Survey& s, V& v) {
   v.option("height_unit", s.height_unit, core::above(0.0),
            "One unit of heights where the CRS has no vertical part, for example \"1 ft\"; without it the metre, and for point clouds the "
            "unit of the horizontal axes.");
+  v.table("area", s.area,
+          "Area of the survey: points outside it are left out and counted; without it that of the trajectory and 40 km around, or of the "
+          "clouds without points that lie alone far away (docs/records.md).");
   v.table("scanner", s.scanner, "Scanner model.");
   v.table("calibration", s.calibration, "Calibration and mounting.");
   v.table("sigma", s.sigma, "How well calibration and records are known.");

@@ -18,7 +18,8 @@ class TextRows : public TableRows {
       : name_(file.string()), cut_(layout.cut_line), reader_(file, layout, std::move(columns)) {}
   std::uint64_t cut_line() const override { return cut_; }
   bool next(double* values) override { return reader_.next(values); }
-  std::string place() const override { return name_ + ":" + std::to_string(reader_.line()); }
+  std::uint64_t number() const override { return reader_.line(); }
+  std::string place_of(std::uint64_t line) const override { return name_ + ":" + std::to_string(line); }
 
  private:
   std::string name_;
@@ -38,7 +39,8 @@ class NpyRows : public TableRows {
     ++at_;
     return true;
   }
-  std::string place() const override { return name_ + ": record " + std::to_string(at_ - 1); }
+  std::uint64_t number() const override { return at_ - 1; }
+  std::string place_of(std::uint64_t record) const override { return name_ + ": record " + std::to_string(record); }
 
  private:
   std::string name_;
@@ -67,20 +69,6 @@ std::unique_ptr<TableRows> open_table(const std::filesystem::path& file, RecordF
       break;
   }
   throw core::usage_error("the name does not tell the format of the records", file.string(), "state format = \"text\" or \"npy\"");
-}
-
-double time_of_row(core::TimeReader& clock, double recorded, const double* week, const TableRows& rows) {
-  if (week) {
-    if (!(*week >= 0 && *week <= 10000))
-      throw core::Error("the GPS week is " + core::format_number(*week) + ", which is none from 0 to 10000", rows.place(),
-                        "check the column of weeks");
-    return clock.in_week(static_cast<int>(*week), recorded);
-  }
-  try {
-    return clock(recorded);
-  } catch (const core::Error& e) {
-    throw core::Error(e.what(), rows.place(), e.hint());
-  }
 }
 
 }  // namespace swath::io

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "core/time.h"
 #include "io/navigation.h"
 
 namespace swath::io {
@@ -19,8 +18,11 @@ class TableRows {
   virtual ~TableRows() = default;
   /// The next row's values in the order of the columns; false at the end. An empty field of a text is NaN.
   virtual bool next(double* values) = 0;
-  /// "file:line" or "file: record N" (from 0) of the row that next() gave last.
-  virtual std::string place() const = 0;
+  /// Line, or number from 0, of the row that next() gave last.
+  virtual std::uint64_t number() const = 0;
+  /// "file:line" or "file: record N" of a row's number.
+  virtual std::string place_of(std::uint64_t number) const = 0;
+  std::string place() const { return place_of(number()); }
   /// Number of a line before the first row that is cut off and left out; 0: none.
   virtual std::uint64_t cut_line() const { return 0; }
 };
@@ -28,8 +30,5 @@ class TableRows {
 /// Opens a table. `columns`: names, or numbers from 1. Throws Error: a column that is not there, a format that is not known.
 std::unique_ptr<TableRows> open_table(const std::filesystem::path& file, RecordFormat format, const std::string& delimiter,
                                       const std::vector<std::string>& columns);
-
-/// The instant of a row; `week`: the value of its week column, or null. Throws Error with the row's place.
-double time_of_row(core::TimeReader& clock, double recorded, const double* week, const TableRows& rows);
 
 }  // namespace swath::io

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 #include "io/value_file.h"
@@ -52,15 +53,24 @@ std::optional<size_t> TextTable::column_if_there(const std::string& name, const 
   return column(name);
 }
 
-double TextTable::number(size_t row, size_t column) const {
+double TextTable::coordinate(size_t row, size_t column) const {
   const std::string& field = text(row, column);
   const char *begin = field.data() + (field.size() > 1 && field[0] == '+' ? 1 : 0), *stop = field.data() + field.size();
   double value = 0;
   const auto [end, bad] = std::from_chars(begin, stop, value);
-  if (bad != std::errc{} || end != stop || !std::isfinite(value))
-    throw core::Error((field.empty() ? "the field is empty" : "'" + field + "' is no finite number") + std::string(" in column '") +
-                          layout_.names[column] + "'",
-                      place(row), "correct the line, or name another column");
+  if (bad == std::errc::result_out_of_range && end == stop) return std::numeric_limits<double>::infinity();
+  if (bad != std::errc{} || end != stop)
+    throw core::Error(
+        (field.empty() ? "the field is empty" : "'" + field + "' is no number") + std::string(" in column '") + layout_.names[column] + "'",
+        place(row), "correct the line, or name another column");
+  return value;
+}
+
+double TextTable::number(size_t row, size_t column) const {
+  const double value = coordinate(row, column);
+  if (!std::isfinite(value))
+    throw core::Error("'" + text(row, column) + "' is no finite number in column '" + layout_.names[column] + "'", place(row),
+                      "correct the line, or name another column");
   return value;
 }
 

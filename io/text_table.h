@@ -31,6 +31,8 @@ class TextTable {
   const std::string& text(size_t row, size_t column) const { return rows_[row][column]; }
   /// Throws Error with "file:line" where the field is empty or no finite number.
   double number(size_t row, size_t column) const;
+  /// The same of a number that may be infinite or none ("nan").
+  double coordinate(size_t row, size_t column) const;
 
  private:
   std::filesystem::path file_;

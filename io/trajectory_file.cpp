@@ -12,6 +12,8 @@
 #include "io/cut_line.h"
 #include "io/delimited.h"
 #include "io/sbet.h"
+#include "io/trajectory_faults.h"
+#include "io/wild_records.h"
 
 namespace swath::io {
 namespace {
@@ -19,15 +21,6 @@ namespace {
 using core::TrajectoryData;
 
 constexpr double gap_steps = 5.0, gap_seconds = 0.05;
-
-/// Calls f(column) for every column that is there; their element types differ.
-template <class F>
-void for_each_column(TrajectoryData& t, F&& f) {
-  for (auto* c : {&t.time, &t.latitude, &t.longitude, &t.height, &t.roll, &t.pitch, &t.heading, &t.v_north, &t.v_east, &t.v_down})
-    if (!c->empty()) f(*c);
-  for (auto* c : {&t.sigma_north, &t.sigma_east, &t.sigma_down, &t.sigma_roll, &t.sigma_pitch, &t.sigma_heading})
-    if (!c->empty()) f(*c);
-}
 
 /// Calls f(column of a, column of b) for every pair of columns.
 template <class F>
@@ -50,7 +43,7 @@ void to_geodetic(const std::string& crs, const std::string& name, double unit, s
     for (auto* c : {&east, &north})
       for (double& v : *c) v = core::to_degrees(v * unit);
   const core::Transform transform(from, core::wgs84_geodetic());
-  if (const size_t lost = transform.apply(east.data(), north.data(), height.data(), east.size()))
+  if (const size_t lost = transform.apply(east.data(), north.data(), height.data(), east.size()); lost > 0 && !are_few(lost, east.size()))
     throw core::Error(std::to_string(lost) + " positions lie outside the domain of " + from.name(), name, "check crs and the columns");
   for (auto* c : {&east, &north})
     for (double& v : *c) v *= core::degree;
@@ -93,19 +86,13 @@ TrajectoryData read_text(const std::filesystem::path& path, const TrajectoryFile
     at.push_back(column_of(layout, *column, path));
     floats.emplace_back(to, factor);
   }
-  const bool weeks = !c.week.empty();
-  core::TimeReader clock = reader_of(f.time, name, weeks);
   DelimitedReader reader(path, layout, at);
   std::vector<double> row(at.size());
   while (reader.next(row.data())) {
-    for (const double v : row)
-      if (!std::isfinite(v))
-        throw core::Error("a value is empty or not finite", name + ":" + std::to_string(reader.line()),
-                          "the file is damaged: export the trajectory again");
     for (size_t i = 0; i < doubles.size(); ++i) doubles[i].first->push_back(row[i] * doubles[i].second);
     for (size_t i = 0; i < floats.size(); ++i) floats[i].first->push_back(static_cast<float>(row[doubles.size() + i] * floats[i].second));
-    out.time.back() = weeks ? clock.in_week(static_cast<int>(week.back()), out.time.back()) : clock(out.time.back());
   }
+  out.time = gps_times(f.time, name, out.time, week, impossible_times, tally);
   if (f.crs.empty()) {
     for (auto* angles : {&out.latitude, &out.longitude})
       for (double& v : *angles) v *= unit;
@@ -147,19 +134,10 @@ void fill_sigmas(TrajectoryData& t, const TrajectoryFile& f, core::Tally& tally)
 void check_trajectory(TrajectoryData& t, const std::string& name, core::Tally& tally) {
   const auto where = [&](size_t i) { return name + ": record " + std::to_string(i); };
   if (t.size() == 0) throw core::Error("the trajectory has no records", name);
-  for_each_column(t, [&](const auto& column) {
-    for (size_t i = 0; i < column.size(); ++i)
-      if (!std::isfinite(column[i]))
-        throw core::Error("a value is not finite", where(i), "the file is damaged: export the trajectory again");
-  });
-  std::vector<std::uint32_t> repeated;
+  leave_out_faults(t, name, tally);
+  std::vector<std::uint8_t> repeated(t.size(), 0);
   std::vector<double> steps;
   for (size_t i = 0; i < t.size(); ++i) {
-    if (std::abs(t.latitude[i]) > core::pi / 2)
-      throw core::Error("latitude " + core::format_number(core::to_degrees(t.latitude[i])) + " deg", where(i),
-                        "check the angle unit and crs");
-    if (std::abs(t.pitch[i]) > core::pi / 2)
-      throw core::Error("pitch " + core::format_number(core::to_degrees(t.pitch[i])) + " deg", where(i), "check the angle unit");
     t.longitude[i] = core::wrap_pi(t.longitude[i]);
     t.roll[i] = core::wrap_pi(t.roll[i]);
     t.heading[i] = core::wrap_two_pi(t.heading[i]);
@@ -167,10 +145,8 @@ void check_trajectory(TrajectoryData& t, const std::string& name, core::Tally& t
     const double step = t.time[i] - t.time[i - 1];
     if (step < 0)
       throw core::Error("time goes back by " + core::format_number(-step) + " s", where(i), "export the trajectory sorted by time");
-    if (step == 0)
-      repeated.push_back(static_cast<std::uint32_t>(i));
-    else
-      steps.push_back(step);
+    repeated[i] = step == 0;
+    if (step > 0) steps.push_back(step);
   }
   if (!steps.empty()) {
     const double gap = std::max(gap_steps * core::median(std::move(steps)), gap_seconds);
@@ -178,18 +154,9 @@ void check_trajectory(TrajectoryData& t, const std::string& name, core::Tally& t
       if (const double step = t.time[i] - t.time[i - 1]; step > gap)
         tally.count("trajectory gaps", where(i) + ": " + core::format_number(std::round(step * 1e3) / 1e3) + " s before it");
   }
-  if (repeated.empty()) return;
-  for (const std::uint32_t i : repeated) tally.count("trajectory records at a repeated time, dropped", where(i));
-  for_each_column(t, [&](auto& column) {
-    size_t kept = 0, next = 0;
-    for (size_t i = 0; i < column.size(); ++i) {
-      if (next < repeated.size() && repeated[next] == i)
-        ++next;
-      else
-        column[kept++] = column[i];
-    }
-    column.resize(kept);
-  });
+  for (size_t i = 0; i < t.size(); ++i)
+    if (repeated[i]) tally.count("trajectory records at a repeated time, dropped", where(i));
+  leave_out(t, repeated);
 }
 
 TrajectoryData read_trajectory(const Survey& survey, const TrajectoryFile& f, core::Tally& tally) {

@@ -32,6 +32,7 @@ namespace fs = std::filesystem;
 using Point = Eigen::Vector2d;
 
 constexpr size_t batch = 1 << 17;
+constexpr double farthest = 1e8;          // m or feet: no map projection reaches it
 constexpr size_t window_cells = 1 << 20;  // of the terrain model that is held at a time
 
 struct Sample {
@@ -173,28 +174,64 @@ void take_points(const fs::path& file, double half_width, std::vector<Section>& 
     }
 }
 
-/// The model along the line, every half cell, read in windows of at most `window_cells` cells.
+/// The share of the way from p to q, first and last, that lies within low and high; first above last: none does.
+std::pair<double, double> within(const Point& p, const Point& q, const Point& low, const Point& high) {
+  double first = 0.0, last = 1.0;
+  for (int k = 0; k < 2; ++k) {
+    const double d = q[k] - p[k];
+    if (d == 0.0) {
+      if (p[k] < low[k] || p[k] > high[k]) return {1.0, 0.0};
+      continue;
+    }
+    const double a = (low[k] - p[k]) / d, b = (high[k] - p[k]) / d;
+    first = std::max(first, std::min(a, b));
+    last = std::min(last, std::max(a, b));
+  }
+  return {first, last};
+}
+
+/// The model along the line, every half cell and at the line's end, where the line is over it; read in windows of at most `window_cells`
+/// cells. Beside the model lies one sample without a height, so that a chart shows the gap.
 void take_terrain(const fs::path& file, Section& s) {
   const core::Lattice whole = io::lattice_of(io::read_raster_info(file), file);
-  const auto steps = static_cast<size_t>(std::ceil(s.length() / (0.5 * whole.cell)));
-  size_t piece = 1;
-  for (size_t n = 0; n <= steps; ++n) {
-    Sample one;
-    one.station = std::min(0.5 * whole.cell * static_cast<double>(n), s.length());
-    while (piece + 1 < s.start.size() && s.start[piece] < one.station) ++piece;
+  const double step = 0.5 * whole.cell;
+  const Point low_corner(whole.west() - whole.cell, whole.south() - whole.cell),
+      high_corner(whole.east() + whole.cell, whole.north() + whole.cell);
+  for (size_t piece = 1; piece < s.start.size(); ++piece) {
+    const Point &p = s.line->vertices[piece - 1], &q = s.line->vertices[piece];
     const double span = s.start[piece] - s.start[piece - 1];
-    const double share = span > 0.0 ? (one.station - s.start[piece - 1]) / span : 0.0;
-    const Point p = s.line->vertices[piece - 1] + share * (s.line->vertices[piece] - s.line->vertices[piece - 1]);
-    one.x = p.x();
-    one.y = p.y();
-    s.terrain.push_back(one);
+    const bool is_last = piece + 1 == s.start.size();
+    const auto sample_at = [&](double station, bool known) {
+      const Point at = p + (station - s.start[piece - 1]) / span * (q - p);
+      Sample one;
+      one.station = station;
+      one.x = at.x();
+      one.y = at.y();
+      if (!known) one.x = one.y = std::numeric_limits<double>::quiet_NaN();
+      s.terrain.push_back(one);
+    };
+    if (!(span > 0.0)) continue;
+    const auto [first, last] = within(p, q, low_corner, high_corner);
+    if (!(first <= last)) continue;
+    // Stations are whole steps from the line's start, so that they do not depend on its vertices.
+    const double begin = s.start[piece - 1] + first * span, end = s.start[piece - 1] + last * span;
+    if (first > 0.0) sample_at(begin, false);
+    for (double n = std::ceil(begin / step); n * step <= end; ++n)
+      if (piece == 1 || n * step > s.start[piece - 1]) sample_at(n * step, true);
+    if (is_last && last == 1.0 && (s.terrain.empty() || s.terrain.back().station < s.start[piece])) sample_at(s.start[piece], true);
+    if (last < 1.0) sample_at(end, false);
   }
   const auto around = [&](const Point& low, const Point& high) {
     return core::lattice_of(whole.cell, low.x() - whole.cell, low.y() - whole.cell, high.x() + whole.cell, high.y() + whole.cell);
   };
   for (size_t first = 0, last; first < s.terrain.size(); first = last) {
     Point low(s.terrain[first].x, s.terrain[first].y), high = low;
-    for (last = first + 1; last < s.terrain.size(); ++last) {
+    last = first + 1;
+    if (std::isnan(low.x())) {  // beside the model
+      s.terrain[first].z = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
+    for (; last < s.terrain.size() && !std::isnan(s.terrain[last].x); ++last) {
       const Point p(s.terrain[last].x, s.terrain[last].y), new_low = low.cwiseMin(p), new_high = high.cwiseMax(p);
       if (around(new_low, new_high).size() > window_cells) break;
       low = new_low;
@@ -302,6 +339,8 @@ std::vector<ProfileLine> profile_lines(const ProfileRequest& request, const core
     throw core::usage_error("no line to cut along is named", "swath profile", "give --line FILE, or --from x,y and --to x,y");
   }
   if (out.empty()) throw core::Error("the file holds no line", request.lines.string());
+  for (ProfileLine& line : out)
+    line.left_out = std::erase_if(line.vertices, [](const Point& p) { return !(p.cwiseAbs().maxCoeff() < farthest); });
   std::map<std::string, int> seen;
   for (ProfileLine& line : out) {
     for (char& c : line.name)
@@ -369,6 +408,7 @@ core::Value write_profiles(const ProfileRequest& request) {
     core::Value one = core::Value::object();
     one["name"] = s.line->name;
     one["length"] = s.length();
+    if (s.line->left_out > 0) one["vertices_left_out"] = static_cast<std::uint64_t>(s.line->left_out);
     one["points"] = s.points.size();
     one["terrain_samples"] = static_cast<std::uint64_t>(known);
     told.push(std::move(one));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ namespace swath::pipeline {
 struct ProfileLine {
   std::string name;
   std::vector<Eigen::Vector2d> vertices;
+  std::size_t left_out = 0;  ///< vertices that were not finite or beyond every map
 };
 
 struct ProfileRequest {

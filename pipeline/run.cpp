@@ -30,6 +30,7 @@
 #include "pipeline/work/piece_record.h"
 #include "pipeline/work/survey_piece.h"
 #include "pipeline/work/work_folder.h"
+#include "stages/area.h"
 #include "stages/waters.h"
 
 namespace swath::pipeline {
@@ -184,6 +185,7 @@ void Engine::prepare_map() {
   }
   // What comes from the records of a flight has ellipsoidal heights; a cloud's source knows about its own.
   if (context_.crs.heights() == core::Heights::unknown) context_.heights = core::ellipsoidal_heights;
+  stages::set_area(context_, context_.area.box, 0.0);
   for (const PlannedStage& s : plan_.stages)
     if (s.stage->is_source()) s.stage->locate(context_);
 }
@@ -353,6 +355,7 @@ void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_fold
 void Engine::run_strips() {
   find_strips();
   const size_t source = source_;
+  const std::uint64_t without_strip = accounts_[source].tally.left_out();  // records that no strip holds
   const std::vector<stages::Strip>& strips = context_.strips;
   const fs::path strips_folder = folder(last_strip_stage_);
   std::uint64_t records = 0;
@@ -386,6 +389,7 @@ void Engine::run_strips() {
   if (in == 0)
     throw core::Error("no laser return to work on", plan_.survey_file.string(),
                       "are the lines' times those of the records? see `swath info` of the laser file");
+  accounts_[source].in += without_strip;
   store_ = std::make_unique<TileStore>(strips_folder, plan_.run.tile.value, context_.origin);
   store_->open(names);
   if (store_->points() == 0)
@@ -639,14 +643,15 @@ void Engine::keep_finished(const core::Error& e) {
 Measured Engine::measured() const {
   const auto finding = [&](std::string_view key) -> std::optional<double> {
     for (const Account& a : accounts_)
-      if (const Value* v = a.findings.find(key); v && v->is_number()) return v->as_number();
+      for (const Value* in : {&a.findings, a.findings.find("geometry")})
+        if (const Value* v = in ? in->find(key) : nullptr; v && v->is_number()) return v->as_number();
     return std::nullopt;
   };
   std::optional<double> outside;
   for (size_t i = 0; i < accounts_.size(); ++i)
     if (stage(i).info().name == "georeference" && accounts_[i].in > 0)
       outside = static_cast<double>(accounts_[i].tally.of("outside the trajectory, left out")) / static_cast<double>(accounts_[i].in);
-  return {outside, finding("void_share"), finding("rms_3d")};
+  return {outside, finding("void_share"), finding("rms_3d"), finding("line_difference"), finding("contradictions")};
 }
 
 void Engine::compose_report(const std::string& command) {
@@ -669,6 +674,7 @@ void Engine::compose_report(const std::string& command) {
   }
   const Value options = explain(plan_);
   report_["run"] = *options.find("run");
+  Value judged_geometry;
   Value& list = report_["stages"] = Value::array();
   for (size_t i = 0; i < accounts_.size(); ++i) {
     const Account& a = accounts_[i];
@@ -681,10 +687,16 @@ void Engine::compose_report(const std::string& command) {
     }
     if (!a.tally.empty()) one["tally"] = a.tally.value();
     if (!a.findings.members().empty()) one["findings"] = a.findings;
+    if (const Value* geometry = a.findings.find("geometry")) {
+      judged_geometry = *geometry;
+      one["findings"] = Value::object();
+      one["findings"]["verdict"] = *geometry->find("verdict");
+    }
     one["options"] = *options.find("stages")->items()[i].find("options");
     one["seconds"] = a.seconds;
     list.push(std::move(one));
   }
+  if (!judged_geometry.is_null()) report_["geometry"] = std::move(judged_geometry);
   report_["versions"] = versions();
 }
 

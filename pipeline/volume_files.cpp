@@ -17,12 +17,19 @@ namespace {
 
 constexpr std::int64_t band_cells = 1 << 22;  // of the surfaces that are held at a time
 
-std::vector<report::Ring> rings_of(const std::filesystem::path& file, const core::Crs& crs) {
+constexpr double farthest = 1e8;  // m or feet: no map projection reaches it
+
+/// `left_out`: vertices that are not finite, or farther off than any map reaches.
+std::vector<report::Ring> rings_of(const std::filesystem::path& file, const core::Crs& crs, std::uint64_t& left_out) {
   std::vector<report::Ring> out;
   for (const io::VectorLine& line : read_lines_in(file, crs)) {
     if (!line.closed) continue;
     report::Ring ring;
-    for (size_t k = 0; k + 1 < line.x.size(); ++k) ring.emplace_back(line.x[k], line.y[k]);
+    for (size_t k = 0; k + 1 < line.x.size(); ++k)
+      if (std::abs(line.x[k]) < farthest && std::abs(line.y[k]) < farthest)
+        ring.emplace_back(line.x[k], line.y[k]);
+      else
+        ++left_out;
     if (ring.size() >= 3) out.push_back(std::move(ring));
   }
   if (out.empty()) throw core::Error("the file holds no polygon and no closed line", file.string());
@@ -103,8 +110,9 @@ core::Value volumes_of(const VolumeRequest& request) {
   const double metre = crs.empty() ? 1.0 : crs.metres_per_unit(), vertical = crs.empty() ? 1.0 : before.vertical_unit;
   if (metre == 0.0) throw core::Error("the surface is in degrees", request.before.string(), "volumes need a projected CRS");
   std::vector<report::Ring> polygon;
+  std::uint64_t vertices_left_out = 0;
   if (!request.polygon.empty()) {
-    polygon = rings_of(request.polygon, crs);
+    polygon = rings_of(request.polygon, crs, vertices_left_out);
     lattice = around(lattice, polygon);
   }
   report::VolumeSum sum(vertical / metre, request.correlation, polygon);
@@ -126,6 +134,7 @@ core::Value volumes_of(const VolumeRequest& request) {
   else
     out["after"] = request.after.generic_string();
   if (!polygon.empty()) out["polygon"] = request.polygon.generic_string();
+  if (vertices_left_out > 0) out["polygon_vertices_left_out"] = vertices_left_out;
   out["units"] = crs.empty() ? "those of the file, which states no CRS" : "m";
   out["cell"] = lattice.cell * metre;
   out["cut"] = v.cut * volume;
@@ -167,6 +176,11 @@ std::string volume_text(const core::Value& told) {
   std::snprintf(line, sizeof line, "%-9s %14.2f%s in %lld cells where a surface is void\n", "left out", number("area_left_out"),
                 metres ? " m2" : "", static_cast<long long>(told.find("cells_left_out")->as_int()));
   out += line;
+  if (const core::Value* vertices = told.find("polygon_vertices_left_out")) {
+    std::snprintf(line, sizeof line, "polygon: %lld vertices that are not finite or beyond every map, left out\n",
+                  static_cast<long long>(vertices->as_int()));
+    out += line;
+  }
   if (told.find("sigma_net")) {
     std::snprintf(line, sizeof line, "sigmas: errors of any two cells of a model correlated by %g\n", number("correlation"));
     out += line;

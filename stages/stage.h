@@ -77,6 +77,14 @@ struct Box {
   double area() const { return (x1 - x0) * (y1 - y0); }
 };
 
+/// Where the points of a run may lie: map metres.
+struct Area {
+  static constexpr double none = std::numeric_limits<double>::infinity();
+  Box box{-none, -none, none, none};
+  double lowest = -12e3, highest = 20e3;  ///< by default between the deepest sea floor and what flies with a laser
+  bool has_height(double z) const { return z >= lowest && z <= highest; }
+};
+
 /// The cells whose centres lie in the box.
 core::Lattice lattice_in(double cell, const Box& box);
 
@@ -133,6 +141,7 @@ struct Context {
   double unit = 1.0;                           ///< metres per horizontal unit of the CRS
   double vertical_unit = 1.0;                  ///< metres per vertical unit of the CRS
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of every Block of the run, m
+  Area area{};                                       ///< of the run: what lies outside is left out
   bool weekless = false;                             ///< times are seconds of a GPS week that no file names: written on as such
   std::array<std::uint8_t, 16> project{};            ///< identifier of all files of the run
   int creation_year = 0, creation_day = 0;           ///< UTC, day of year from 1; 0 0: not stated

@@ -127,6 +127,8 @@ int profile(Arguments& a) {
     std::printf("%s: %.1f long, %lld points, %lld places of the terrain model; .csv, .svg and .png in %s\n",
                 one.find("name")->as_text().c_str(), one.find("length")->as_number(), static_cast<long long>(one.find("points")->as_int()),
                 static_cast<long long>(one.find("terrain_samples")->as_int()), a.profile.folder.c_str());
+    if (const core::Value* left_out = one.find("vertices_left_out"))
+      std::printf("  %lld of its vertices are not finite or beyond every map, left out\n", static_cast<long long>(left_out->as_int()));
   }
   return 0;
 }

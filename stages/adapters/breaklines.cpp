@@ -11,6 +11,8 @@
 #include "io/output_file.h"
 #include "io/value_file.h"
 #include "stages/adapters/adapters.h"
+#include "stages/area.h"
+#include "stages/breakline_area.h"
 #include "stages/grid_tile.h"
 #include "stages/waters.h"
 #include "terrain/dtm.h"
@@ -36,6 +38,11 @@ std::vector<core::Breakline> features_of(const Context& context, core::Tally& ta
         v = Eigen::Vector3d(v.x() * context.unit, v.y() * context.unit, v.z() * context.vertical_unit) - context.origin;
         if (!b.has_height) v.z() = 0.0;
       }
+  Area area = context.area;  // lines reach beyond the points
+  area.box = area.box.grown(around_clouds);
+  area.box = {area.box.x0 - context.origin.x(), area.box.y0 - context.origin.y(), area.box.x1 - context.origin.x(),
+              area.box.y1 - context.origin.y()};
+  keep_in_area(out, area, context.origin, tally);
   return out;
 }
 

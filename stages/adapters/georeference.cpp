@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "stages/adapters/adapters.h"
+#include "stages/area.h"
 
 namespace swath::stages {
 namespace {
@@ -41,6 +42,7 @@ class Georeference : public OptionStage<Options> {
     to_metres(context, block);
     block.strip.assign(block.size(), static_cast<std::uint16_t>(batch.line));
     block.classification.resize(block.size(), core::point_class::never_classified);
+    keep_in_area(context, block, "line " + std::to_string(batch.line), tally);
     batch.block = std::move(block);
     batch.shots = {};
   }

@@ -3,11 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/error.h"
+#include "stages/area.h"
 
 namespace swath::stages {
 namespace {
+
+/// Degrees, from 0 to less than 360.
+double turned(double degrees) {
+  const double v = std::fmod(degrees, 360.0);
+  return v < 0.0 ? v + 360.0 : v;
+}
 
 void check_area(const Context& context, const core::TrajectoryData& d, core::Tally& tally) {
   double west = 0, south = 0, east = 0, north = 0;
@@ -16,7 +24,9 @@ void check_area(const Context& context, const core::TrajectoryData& d, core::Tal
   std::uint64_t outside = 0;
   for (size_t i = 0; i < d.size(); ++i) {
     const double lon = core::to_degrees(d.longitude[i]), lat = core::to_degrees(d.latitude[i]);
-    const double beside_lon = west <= east ? std::max({west - lon, lon - east, 0.0}) : std::max(0.0, std::min(west - lon, lon - east));
+    // Around the globe: longitude 180 is longitude -180.
+    const double width = east - west >= 360.0 ? 360.0 : turned(east - west), from_west = turned(lon - west);
+    const double beside_lon = from_west <= width ? 0.0 : std::min(from_west - width, 360.0 - from_west);
     const double beside = std::max({beside_lon, south - lat, lat - north, 0.0});
     if (beside > margin)
       throw core::usage_error("the trajectory lies " + core::format_number(std::round(beside * 10) / 10) +
@@ -41,6 +51,22 @@ void place_on_map(Context& context, core::Tally& tally) {
   const core::Transform to_map(core::wgs84_geodetic(), context.crs);
   context.origin = origin_near(context, to_map({core::to_degrees(d.longitude[0]), core::to_degrees(d.latitude[0]), d.height[0]}));
   check_area(context, d, tally);
+  // Some records are enough: the margin is far wider.
+  const size_t step = std::max<size_t>(1, d.size() / 100000);
+  std::vector<double> x, y, z;
+  for (size_t i = 0; i < d.size(); i += step) {
+    x.push_back(core::to_degrees(d.longitude[i]));
+    y.push_back(core::to_degrees(d.latitude[i]));
+    z.push_back(d.height[i]);
+  }
+  to_map.apply(x.data(), y.data(), z.data(), x.size());
+  Box places{Area::none, Area::none, -Area::none, -Area::none};
+  for (size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(x[i] + y[i])) continue;
+    const double east = x[i] * context.unit, north = y[i] * context.unit;
+    places = {std::min(places.x0, east), std::min(places.y0, north), std::max(places.x1, east), std::max(places.y1, north)};
+  }
+  if (places.x0 <= places.x1) set_area(context, places, around_trajectory);
 }
 
 }  // namespace swath::stages

@@ -12,9 +12,9 @@ namespace swath::stages {
 /// whole kilometres; height 0.
 Eigen::Vector3d origin_near(const Context& context, const Eigen::Vector3d& position);
 
-/// For every stage that sets context.trajectory: sets context.origin by its first record. A survey beside the CRS's area of use is told;
-/// one far outside is refused (scale and convergence would be absurd): core::Error. A run without a map (no projected CRS) is left as it
-/// is.
+/// For every stage that sets context.trajectory: sets context.origin by its first record, and context.area. A survey beside the CRS's area
+/// of use is told; one far outside is refused (scale and convergence would be absurd): core::Error. A run without a map (no projected CRS)
+/// is left as it is.
 void place_on_map(Context& context, core::Tally& tally);
 
 }  // namespace swath::stages

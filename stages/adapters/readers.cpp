@@ -2,18 +2,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "core/error.h"
 #include "core/time.h"
+#include "io/cloud_extent.h"
 #include "io/las_reader.h"
 #include "io/laser_file.h"
 #include "io/trajectory_file.h"
+#include "io/wild_records.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/cloud_crs.h"
 #include "stages/adapters/clouds.h"
 #include "stages/adapters/place.h"
 #include "stages/adapters/units.h"
+#include "stages/area.h"
 #include "stages/cloud_rim.h"
 #include "trajectory/checks.h"
 
@@ -134,13 +138,14 @@ bool has_weekless_times(const io::Survey& survey) {
 /// Reads a point cloud in map coordinates, converted to the CRS and metres of the run.
 class CloudReader : public StripReader {
  public:
-  /// `rim`: largest coordinates of the survey's files.
-  CloudReader(const Context& context, const Strip& strip, const Eigen::Vector2d& rim)
+  /// `rim`: largest coordinates of the survey's files; `extent`: of this one.
+  CloudReader(const Context& context, const Strip& strip, const Eigen::Vector2d& rim, const io::CloudExtent& extent)
       : context_(context),
         file_(context.survey.points[strip.source]),
         number_(static_cast<std::uint32_t>(strip.source + 1)),
         reader_(io::resolve(context.survey, file_.file)),
         rim_(rim),
+        extent_(extent),
         place_(place_of(context, file_, reader_.crs())),
         time_(times_of(file_)) {
     has_unknown_times_ =
@@ -158,14 +163,18 @@ class CloudReader : public StripReader {
         tally.count("times contradict the file's GPS time bit, kept as they are", file_.file.string() + ": " + fault);
       return false;
     }
+    keep_near(block, tally);
+    set_unknown_times(block, tally);
     if (!place_.transform) keep_rim_inside(block, rim_, reader_.header().scale.head<2>());
     if (place_.file_height_unit != 1.0)
       for (double& z : block.z) z *= place_.file_height_unit;
     if (place_.transform) convert(block, tally);
     scale_block(context_, block, false);
     block.origin = context_.origin;
+    keep_in_area(context_, block, file_.file.string(), tally);
     if (file_.line) block.strip.assign(block.size(), static_cast<std::uint16_t>(*file_.line));
-    if (has_unknown_times_) tally.count("times of no stated week or scale (points.week, points.time_scale), kept as they are", n);
+    if (has_unknown_times_ && block.size() > 0)
+      tally.count("times of no stated week or scale (points.week, points.time_scale), kept as they are", block.size());
     core::add_columns(block, {Column::time, Column::intensity, Column::return_number, Column::return_count, Column::classification,
                               Column::flags, Column::scan_angle, Column::strip, Column::record});
     batch.block = std::move(block);
@@ -173,6 +182,24 @@ class CloudReader : public StripReader {
   }
 
  private:
+  /// Points that lie alone, far from all others of the file; block in the file's coordinates.
+  void keep_near(core::Block& block, core::Tally& tally) const {
+    const auto is_far = [&](size_t i) { return !extent_.holds(block.x[i] + block.origin.x(), block.y[i] + block.origin.y()); };
+    for (size_t i = 0; i < block.size(); ++i)
+      if (is_far(i))
+        return leave_out(block, is_far, "points alone far from all others of their file, left out", file_.file.string(), tally);
+  }
+  /// A time that is none is 0 for the stages; the file's own goes to the product.
+  void set_unknown_times(core::Block& block, core::Tally& tally) const {
+    constexpr double most_weekless = 1e10;
+    for (size_t i = 0; i < block.time.size(); ++i) {
+      const double t = block.time[i];
+      if (has_unknown_times_ ? std::abs(t) < most_weekless : io::is_instant(t)) continue;
+      tally.count("points with an impossible time, taken as unknown",
+                  file_.file.string() + ": record " + std::to_string(block.record[i]) + ": " + core::format_number(t) + " s");
+      block.time[i] = 0.0;
+    }
+  }
   void convert(core::Block& block, core::Tally& tally) {
     for (size_t i = 0; i < block.size(); ++i) {
       block.x[i] += block.origin.x();
@@ -199,6 +226,7 @@ class CloudReader : public StripReader {
   std::uint32_t number_;
   io::LasReader reader_;
   Eigen::Vector2d rim_;
+  const io::CloudExtent& extent_;
   CloudPlace place_;
   io::LasTime time_;
   bool has_unknown_times_ = false;
@@ -233,17 +261,25 @@ class LasCloud : public OptionStage<NoOptions> {
     return survey.points.empty() ? std::string() : cloud_definition(survey, survey.points.front());
   }
   void locate(Context& context) const override {
-    std::vector<std::string> ignored;
     context.weekless = has_weekless_times(context.survey);
-    for (const io::PointFile& f : context.survey.points) {  // the first file with points
-      const io::LasHeader header = io::read_las_header(io::resolve(context.survey, f.file), ignored);
-      if (header.point_count == 0 || !header.min.allFinite()) continue;
+    extents_.clear();
+    bool has_origin = false;
+    Box places{Area::none, Area::none, -Area::none, -Area::none};
+    for (const io::PointFile& f : context.survey.points) {
       const core::Crs crs = cloud_crs(context.survey, f);
-      Eigen::Vector3d corner = header.min;
-      if (!is_same_crs(crs, context.crs)) corner = core::Transform(crs, context.crs)(corner);
-      context.origin = origin_near(context, corner);
-      break;
+      const double unit = crs.is_geographic() ? metres_per_degree : crs.metres_per_unit();
+      const io::CloudExtent& e = extents_.emplace_back(io::extent_of_cloud(io::resolve(context.survey, f.file), 1000.0 / unit));
+      if (e.points() == 0) continue;
+      std::optional<core::Transform> transform;
+      if (!is_same_crs(crs, context.crs)) transform.emplace(crs, context.crs);
+      if (!has_origin) {  // of the first file with points
+        const Eigen::Vector3d corner(e.low().x(), e.low().y(), 0.0);
+        context.origin = origin_near(context, transform ? (*transform)(corner) : corner);
+        has_origin = true;
+      }
+      add_places(places, context, e, transform);
     }
+    if (places.x0 <= places.x1) set_area(context, places, around_clouds);
     if (context.crs.heights() == core::Heights::unknown) context.heights = heights_of_clouds(context.survey);
   }
   std::vector<Strip> strips(const Context& context, core::Tally&) const override {
@@ -254,16 +290,37 @@ class LasCloud : public OptionStage<NoOptions> {
       std::vector<std::string> ignored;
       const io::LasHeader header = io::read_las_header(io::resolve(context.survey, f.file), ignored);
       out.push_back({i, 0, f.line.value_or(0), f.file.string(), header.point_count});
-      if (header.point_count > 0) rim_ = rim_.cwiseMax(header.max.head<2>());
+      if (extents_[i].points() > 0) rim_ = rim_.cwiseMax(extents_[i].high());
     }
     return out;
   }
   std::unique_ptr<StripReader> open(const Context& context, const Strip& strip) const override {
-    return std::make_unique<CloudReader>(context, strip, rim_);
+    return std::make_unique<CloudReader>(context, strip, rim_, extents_[strip.source]);
   }
 
  private:
-  mutable Eigen::Vector2d rim_;  // of the run, found once before the files are read
+  static constexpr double metres_per_degree = 111e3;
+
+  /// Widens `places` (map metres) by points along the border of a file's points.
+  static void add_places(Box& places, const Context& context, const io::CloudExtent& e, const std::optional<core::Transform>& transform) {
+    constexpr int steps = 8;
+    std::vector<double> x, y, z;
+    for (int j = 0; j <= steps; ++j)
+      for (int i = 0; i <= steps; ++i) {
+        x.push_back(e.low().x() + (e.high().x() - e.low().x()) * i / steps);
+        y.push_back(e.low().y() + (e.high().y() - e.low().y()) * j / steps);
+        z.push_back(0.0);
+      }
+    if (transform) transform->apply(x.data(), y.data(), z.data(), x.size());
+    for (size_t k = 0; k < x.size(); ++k) {
+      const double east = x[k] * context.unit, north = y[k] * context.unit;
+      if (!std::isfinite(east + north)) continue;
+      places = {std::min(places.x0, east), std::min(places.y0, north), std::max(places.x1, east), std::max(places.y1, north)};
+    }
+  }
+
+  mutable std::vector<io::CloudExtent> extents_;  // of the run's files
+  mutable Eigen::Vector2d rim_;                   // of the run, found once before the files are read
 };
 
 }  // namespace

@@ -40,6 +40,15 @@ TEST_F(ControlTargets, SigmaAlongADirection) {
   EXPECT_DOUBLE_EQ(sigma_along(Vector3d(0, 0.6, -0.8), 3, 4), std::hypot(1.8, 3.2));
 }
 
+TEST_F(ControlTargets, WhatLiesFarAwayIsLeftOutAndCounted) {
+  const std::vector<io::ControlPoint> points{point("1", "", {0, 0, 10}),    point("2", "", {0, 0, 1e6}),  point("3", "r", {0, 0, 10}),
+                                             point("4", "r", {2e6, 0, 10}), point("5", "r", {0, 30, 10}), point("6", "", {9e4, 0, 10})};
+  const auto targets = surveyed_targets(points, frame_, tally_);
+  ASSERT_EQ(targets.size(), 2u);
+  EXPECT_EQ(targets[1].name, "6");
+  EXPECT_EQ(tally_.of("surveyed targets and points over 500 km from the survey, left out"), 2u);
+}
+
 TEST_F(ControlTargets, PlanesAndPoints) {
   // A roof that falls to the south by 1 in 2, a wall and two points.
   std::vector<io::ControlPoint> points{point("1", "roof", {0, 0, 10}),  point("2", "roof", {30, 0, 10}), point("3", "roof", {30, 10, 15}),

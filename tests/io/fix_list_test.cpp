@@ -110,20 +110,43 @@ TEST_F(Fixes, WhatIsLeftOutAndWhatIsRefused) {
 
   FixList strict = list();
   strict.add(fix_at(1.4e9), "a:1");
+  strict.add(fix_at(1.4e9 - 2), "a:2");
   try {
-    strict.add(fix_at(1.4e9 - 2), "a:2");
+    strict.finish();
     FAIL();
   } catch (const core::Error& e) {
     EXPECT_EQ(e.where(), "a:2");
     EXPECT_NE(std::string(e.what()).find("back by 2 s"), std::string::npos);
   }
-  Fix centre = fix_at(1.4e9 + 1);
-  centre.position /= 1000;  // kilometres
-  EXPECT_THROW(strict.add(centre, "a:3"), core::Error);
+  FixList kilometres = list();
+  for (int i = 0; i < 20; ++i) {
+    Fix f = fix_at(1.4e9 + i);
+    f.position /= 1000;
+    kilometres.add(f, "a:3");
+  }
+  EXPECT_THROW(kilometres.finish(), core::Error);
   EXPECT_THROW(list().finish(), core::Error);
   FixList bad = list();
   for (int i = 0; i < 20; ++i) bad.add(i % 5 ? fix_at(1.4e9 + i) : nowhere, "a:1");
   EXPECT_THROW(bad.finish(), core::Error);
+}
+
+TEST_F(Fixes, OneWildFixIsLeftOutAndCounted) {
+  for (const size_t at : {size_t{0}, size_t{50}, size_t{99}})
+    for (int kind = 0; kind < 4; ++kind) {
+      tally_ = {};
+      FixList l = list();
+      for (size_t i = 0; i < 100; ++i) {
+        Fix f = fix_at(1.4e9 + 0.2 * static_cast<double>(i));
+        if (i == at && kind == 0) f.position.x() = 1e9;
+        if (i == at && kind == 1) f.position.x() = -f.position.x();
+        if (i == at && kind == 2) f.position *= 1.001;
+        if (i == at && kind == 3) f.time += 1e5;
+        l.add(f, "a:" + std::to_string(i));
+      }
+      EXPECT_EQ(l.finish().size(), 99u) << at << ' ' << kind;
+      EXPECT_EQ(tally_.left_out(), 1u) << at << ' ' << kind;
+    }
 }
 
 TEST_F(Fixes, JumpsAndVelocities) {

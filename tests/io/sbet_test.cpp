@@ -151,13 +151,19 @@ TEST_F(Sbet, EveryTruncationNamesItsByte) {
 
 TEST_F(Sbet, BadValuesNameTheRecord) {
   for (const auto& [record, field, value] :
-       {std::tuple<size_t, size_t, double>{17, 1, NAN}, {3, 0, INFINITY}, {199, 9, NAN}, {5, 1, 47.9}}) {
-    try {
-      read(with(record, field, value));
-      FAIL();
-    } catch (const core::Error& e) {
-      EXPECT_NE(e.where().find("record " + std::to_string(record)), std::string::npos) << e.text();
-    }
+       {std::tuple<size_t, size_t, double>{17, 1, NAN}, {3, 0, INFINITY}, {199, 9, NAN}, {5, 1, 47.9}, {60, 0, 1e9}, {70, 3, 1e9}}) {
+    tally_ = {};
+    EXPECT_EQ(read(with(record, field, value)).size(), 199u) << record;
+    EXPECT_EQ(tally_.left_out(), 1u) << record;
+  }
+  std::string bytes = test::read_bytes(file_);
+  for (size_t i = 10; i < 200; i += 20) store(reinterpret_cast<unsigned char*>(bytes.data()) + i * sbet_bytes + 8 * 3, std::nan(""));
+  test::write_bytes(folder_ / "many.out", bytes);
+  try {
+    read(folder_ / "many.out");
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_NE(e.where().find("record 10"), std::string::npos) << e.text();
   }
   EXPECT_THROW(read_sbet(file_, TimeTags{}, true, VelocityAxes::ignore, std::nullopt, tally_), core::Error);
 }

@@ -29,16 +29,6 @@ TEST(TableRows, TextAndNumpyGiveTheSameRows) {
     EXPECT_EQ(v[0], 6);
     EXPECT_TRUE(std::isnan(v[2]));
     EXPECT_NE(rows->place().find(place), std::string::npos) << rows->place();
-    core::TimeReader weeks(core::TimeScale::gps_week, 0, "", "a"), clock(core::TimeScale::gps_week, 2317, "", "a");
-    const double week = 2000, none = std::nan("");
-    EXPECT_EQ(time_of_row(weeks, 5, &week, *rows), 2000 * core::seconds_per_week + 5);
-    EXPECT_THROW(time_of_row(weeks, 5, &none, *rows), core::Error);
-    try {
-      time_of_row(clock, -1, nullptr, *rows);
-      FAIL();
-    } catch (const core::Error& e) {
-      EXPECT_NE(e.where().find(place), std::string::npos);
-    }
     EXPECT_FALSE(rows->next(v));
     EXPECT_THROW(open_table(folder / name, format, "", {"t", "z"}), core::Error);
   }

@@ -51,7 +51,7 @@ TEST_F(Tables, FaultsNameTheirLine) {
   const TextTable t = table("name|x\na|nan\nb|\nc|1m\n", "|");
   EXPECT_EQ(fault([&] { t.number(0, 1); }), "a.csv:2: 'nan' is no finite number in column 'x'");
   EXPECT_EQ(fault([&] { t.number(1, 1); }), "a.csv:3: the field is empty in column 'x'");
-  EXPECT_EQ(fault([&] { t.number(2, 1); }), "a.csv:4: '1m' is no finite number in column 'x'");
+  EXPECT_EQ(fault([&] { t.number(2, 1); }), "a.csv:4: '1m' is no number in column 'x'");
   EXPECT_EQ(fault([&] { table(std::string("a\0b\n1\n", 6)); }), "a.csv: is not delimited text");
 }
 

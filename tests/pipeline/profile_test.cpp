@@ -187,6 +187,21 @@ TEST(Profile, TheFileOfTheLinesIsNotWrittenOver) {
   EXPECT_EQ(test::read_bytes(folder / "axis.csv"), lines);
 }
 
+TEST(Profile, AVertexFarAwayCostsNothing) {
+  const test::TemporaryFolder folder;
+  make(folder);
+  test::write_bytes(folder / "lines.csv",
+                    "profile,x,y\nfar,600010,5300040\nfar,90000000,5300040\nwild,600010,5300040\nwild,1e12,5300040\nwild,600050,5300040\n");
+  ProfileRequest r;
+  r.dtm = folder / "dtm.tif";
+  r.lines = folder / "lines.csv";
+  r.folder = folder / "out";
+  const core::Value told = write_profiles(r);
+  EXPECT_NEAR(told.items()[0].find("terrain_samples")->as_number(), 140.0, 2.0);  // 70 m by half metres
+  EXPECT_EQ(told.items()[1].find("vertices_left_out")->as_int(), 1);
+  EXPECT_EQ(told.items()[1].find("terrain_samples")->as_int(), 81);
+}
+
 TEST(Profile, WhatIsNotThereIsAnError) {
   const test::TemporaryFolder folder;
   make(folder);

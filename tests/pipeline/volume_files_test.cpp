@@ -66,6 +66,20 @@ TEST(VolumeFiles, DesignHeightInsideAPolygon) {
   EXPECT_NEAR(number(v, "sigma_net"), 0.03 * std::sqrt(1800.0), 1e-4);
 }
 
+TEST(VolumeFiles, WildVerticesOfAPolygonAreLeftOutAndCounted) {
+  const test::TemporaryFolder folder;
+  write(folder.path(), "a", heap({1.0, 600000, 5300000, 60, 60}, 5.0), "EPSG:32632");
+  for (const char* wild : {"[1e300,5300000]", "[600030,1e12]", "[NaN,5300000]"}) {
+    test::write_bytes(folder / "half.geojson",
+                      R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"EPSG:32632"}},"features":[{"type":"Feature",
+"properties":{},"geometry":{"type":"Polygon","coordinates":[[[600000,5300000],)" +
+                          std::string(wild) + R"(,[600030,5300000],[600030,5300060],[600000,5300060],[600000,5300000]]]}}]})");
+    const core::Value v = volumes_of({folder / "a.tif", {}, 100.0, folder / "half.geojson", 0.0});
+    EXPECT_NEAR(number(v, "area"), 1800.0, 1e-6) << wild;
+    EXPECT_EQ(number(v, "polygon_vertices_left_out"), 1.0) << wild;
+  }
+}
+
 TEST(VolumeFiles, APolygonInAnotherCrsIsBroughtToThatOfTheModel) {
   const test::TemporaryFolder folder;
   write(folder.path(), "a", heap({1.0, 600000, 5300000, 60, 60}, 5.0), "EPSG:32632");

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/cloud_extent.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "io/las_reader.h"
+
+namespace swath::io {
+namespace {
+
+constexpr double farthest = 1e9;             // cells and metres alike: no map projection reaches it
+constexpr size_t most_cells = 1u << 20;      // then cells are joined by fours
+constexpr double least_margin = 30.0;        // cells
+constexpr double margin = 3.0;               // sides of the box of the middle half
+constexpr std::uint64_t group_points = 100;  // that count as a part of the cloud wherever they lie
+constexpr double one_place = 1e-3;           // of a cell
+constexpr std::uint64_t least_points = 20;   // of a cloud that is judged
+constexpr size_t batch = 1u << 17;
+
+/// Cells that a quarter of the points lies below, and above.
+std::pair<std::int64_t, std::int64_t> middle_half(std::vector<std::pair<std::int64_t, std::uint64_t>> cells, std::uint64_t points) {
+  std::sort(cells.begin(), cells.end());
+  std::pair<std::int64_t, std::int64_t> out{cells.front().first, cells.back().first};
+  std::uint64_t below = 0;
+  bool has_low = false;
+  for (const auto& [at, n] : cells) {
+    below += n;
+    if (!has_low && 4 * below > points) out.first = at, has_low = true;
+    if (4 * below >= 3 * points) {
+      out.second = at;
+      break;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+void CloudExtent::Cell::add(const Cell& o) {
+  points += o.points;
+  x0 = std::min(x0, o.x0);
+  y0 = std::min(y0, o.y0);
+  x1 = std::max(x1, o.x1);
+  y1 = std::max(y1, o.y1);
+}
+
+CloudExtent::Key CloudExtent::key(double x, double y) const {
+  return {static_cast<std::int64_t>(std::floor(x / cell_)), static_cast<std::int64_t>(std::floor(y / cell_))};
+}
+
+void CloudExtent::add(double x, double y) {
+  if (!(std::abs(x) < farthest && std::abs(y) < farthest)) return;
+  const Key k = key(x, y);
+  if (!last_ || last_->first != k) {
+    last_ = &*cells_.try_emplace(k).first;
+    if (cells_.size() > most_cells) {
+      while (cells_.size() > most_cells) coarsen();
+      last_ = &*cells_.try_emplace(key(x, y)).first;
+    }
+  }
+  last_->second.add({1, x, y, x, y});
+}
+
+void CloudExtent::coarsen() {
+  cell_ *= 2.0;
+  std::map<Key, Cell> coarse;
+  for (const auto& [k, c] : cells_) coarse[{k.first >> 1, k.second >> 1}].add(c);
+  cells_ = std::move(coarse);
+}
+
+void CloudExtent::find_box() {
+  std::uint64_t points = 0;
+  std::vector<std::pair<std::int64_t, std::uint64_t>> across, up;
+  for (const auto& [k, c] : cells_) {
+    points += c.points;
+    across.emplace_back(k.first, c.points);
+    up.emplace_back(k.second, c.points);
+  }
+  std::tie(i0_, i1_) = middle_half(std::move(across), points);
+  std::tie(j0_, j1_) = middle_half(std::move(up), points);
+  const auto side = static_cast<double>(std::max(i1_ - i0_, j1_ - j0_) + 1);
+  auto grown = static_cast<std::int64_t>(std::ceil(std::max(least_margin, margin * side)));
+  if (points < least_points) grown = static_cast<std::int64_t>(2.0 * farthest / cell_) + 1;
+  i0_ -= grown;
+  i1_ += grown;
+  j0_ -= grown;
+  j1_ += grown;
+}
+
+void CloudExtent::judge_groups() {
+  std::set<Key> open;
+  for (const auto& [k, c] : cells_)
+    if (!in_box(k)) open.insert(k);
+  while (!open.empty()) {
+    std::vector<Key> group{*open.begin()};
+    open.erase(open.begin());
+    Cell whole;
+    bool joins_box = false;
+    for (size_t at = 0; at < group.size(); ++at) {
+      const Key k = group[at];
+      whole.add(cells_.at(k));
+      for (std::int64_t dj = -1; dj <= 1; ++dj)
+        for (std::int64_t di = -1; di <= 1; ++di) {
+          const Key next{k.first + di, k.second + dj};
+          joins_box = joins_box || (in_box(next) && cells_.contains(next));
+          if (open.erase(next) > 0) group.push_back(next);
+        }
+    }
+    const bool many = whole.points >= group_points && std::max(whole.x1 - whole.x0, whole.y1 - whole.y0) > one_place * cell_;
+    if (many || joins_box) continue;
+    for (const Key& k : group) cells_.erase(k);
+  }
+}
+
+void CloudExtent::settle() {
+  last_ = nullptr;
+  if (cells_.empty()) return;
+  find_box();
+  judge_groups();
+  for (const auto& [k, c] : cells_) {
+    points_ += c.points;
+    low_ = low_.cwiseMin(Eigen::Vector2d(c.x0, c.y0));
+    high_ = high_.cwiseMax(Eigen::Vector2d(c.x1, c.y1));
+  }
+}
+
+bool CloudExtent::holds(double x, double y) const {
+  if (!(std::abs(x) < farthest && std::abs(y) < farthest)) return false;
+  const Key k = key(x, y);
+  return in_box(k) || cells_.contains(k);
+}
+
+CloudExtent extent_of_cloud(const std::filesystem::path& file, double cell) {
+  CloudExtent out(cell);
+  LasReader reader(file);
+  LasPoints points;
+  while (reader.read(points, batch) > 0)
+    for (size_t i = 0; i < points.size(); ++i) out.add(points.x[i], points.y[i]);
+  out.settle();
+  return out;
+}
+
+}  // namespace swath::io

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the points of a cloud lie: a header's box can be wrong, and single points far away.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <utility>
+
+namespace swath::io {
+
+/// Places are counted in cells, about 1 km wide. The middle half of the points in each direction gives a box, which is grown by three times
+/// its longer side, and at least by 30 cells. Every place in it counts as one of the cloud. Outside it a group of adjoining cells does
+/// where it has 100 points or more that are not all at one place. The answer does not depend on the order of the points.
+class CloudExtent {
+ public:
+  /// `cell`: units of the coordinates.
+  explicit CloudExtent(double cell) : cell_(cell) {}
+
+  void add(double x, double y);
+  /// Must be called once, behind the last add().
+  void settle();
+
+  bool holds(double x, double y) const;
+  std::uint64_t points() const { return points_; }  ///< held
+  /// Corners of the box around the points that are held; not finite where there are none.
+  const Eigen::Vector2d& low() const { return low_; }
+  const Eigen::Vector2d& high() const { return high_; }
+
+ private:
+  using Key = std::pair<std::int64_t, std::int64_t>;
+  struct Cell {
+    std::uint64_t points = 0;
+    double x0 = std::numeric_limits<double>::infinity(), y0 = x0, x1 = -x0, y1 = -x0;
+    void add(const Cell& o);
+  };
+  Key key(double x, double y) const;
+  void coarsen();
+  void find_box();
+  void judge_groups();
+  bool in_box(const Key& k) const { return k.first >= i0_ && k.first <= i1_ && k.second >= j0_ && k.second <= j1_; }
+
+  double cell_;
+  std::map<Key, Cell> cells_;  ///< settled: only those that are held
+  std::pair<const Key, Cell>* last_ = nullptr;
+  std::int64_t i0_ = 0, i1_ = 0, j0_ = 0, j1_ = 0;
+  std::uint64_t points_ = 0;
+  Eigen::Vector2d low_ = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity()), high_ = -low_;
+};
+
+/// Of all points of a LAS or LAZ file, in its own coordinates.
+CloudExtent extent_of_cloud(const std::filesystem::path& file, double cell);
+
+}  // namespace swath::io

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/cloud_extent.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace swath::io {
+namespace {
+
+using Points = std::vector<Eigen::Vector2d>;
+
+Points field(size_t n, double side, double x0 = 500000.0, double y0 = 5400000.0) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(0.0, side);
+  Points out;
+  for (size_t i = 0; i < n; ++i) {
+    const double x = place(random);
+    out.emplace_back(x0 + x, y0 + place(random));
+  }
+  return out;
+}
+
+CloudExtent extent(const Points& points) {
+  CloudExtent e(1000.0);
+  for (const auto& p : points) e.add(p.x(), p.y());
+  e.settle();
+  return e;
+}
+
+size_t left_out(const Points& points) {
+  const CloudExtent e = extent(points);
+  return static_cast<size_t>(std::count_if(points.begin(), points.end(), [&](const auto& p) { return !e.holds(p.x(), p.y()); }));
+}
+
+TEST(CloudExtent, SinglePointsFarAwayAreNotHeld) {
+  for (const double off : {1e5, 1e6, 2e7, 5e8, 1e12, 1e300, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Points points = field(5000, 200.0);
+    points[10] = {500000.0 + off, 5400000.0 - off};
+    const CloudExtent e = extent(points);
+    EXPECT_FALSE(e.holds(points[10].x(), points[10].y())) << off;
+    EXPECT_EQ(left_out(points), 1u) << off;
+    EXPECT_EQ(e.points(), 4999u);
+    EXPECT_LT(e.high().x(), 500200.0);
+    EXPECT_GT(e.low().y(), 5400000.0);
+  }
+}
+
+TEST(CloudExtent, ManyScatteredAndManyAtOnePlaceAreNotHeld) {
+  Points points = field(5000, 200.0);
+  for (const auto& p : field(300, 1e6, 0.0, 5e6)) points.push_back(p);
+  EXPECT_GE(left_out(points), 290u);
+  points = field(5000, 200.0);
+  points.insert(points.end(), 500, Eigen::Vector2d(0.0, 0.0));
+  EXPECT_EQ(left_out(points), 500u);
+}
+
+TEST(CloudExtent, RareButRightPointsAreHeld) {
+  EXPECT_EQ(left_out(field(6280, 5000.0)), 0u);
+  EXPECT_EQ(left_out(field(30, 25000.0)), 0u);
+  EXPECT_EQ(left_out(field(1000, 400000.0)), 0u);
+  EXPECT_EQ(left_out(field(3, 1e6)), 0u);  // too few to say
+  Points corridor;
+  for (int i = 0; i < 20000; ++i) corridor.emplace_back(5.0 * i, 0.02 * (i % 100));
+  EXPECT_EQ(left_out(corridor), 0u);
+  Points village = field(20000, 1000.0);  // and a few points in the hills around
+  for (const auto& p : field(20, 50000.0, 475000.0, 5375000.0)) village.push_back(p);
+  EXPECT_EQ(left_out(village), 0u);
+}
+
+TEST(CloudExtent, IslandsOfManyPointsAreHeldHoweverFar) {
+  Points islands = field(20000, 500.0);
+  for (const auto& p : field(150, 300.0, 900000.0, 5000000.0)) islands.push_back(p);
+  EXPECT_EQ(left_out(islands), 0u);
+}
+
+TEST(CloudExtent, TheOrderOfPointsChangesNothing) {
+  Points points = field(20000, 3000.0);
+  for (const auto& p : field(300, 1e6, 0.0, 5e6)) points.push_back(p);
+  const CloudExtent first = extent(points);
+  std::shuffle(points.begin(), points.end(), std::mt19937(3));
+  const CloudExtent second = extent(points);
+  EXPECT_EQ(first.low(), second.low());
+  EXPECT_EQ(first.high(), second.high());
+  for (const auto& p : points) EXPECT_EQ(first.holds(p.x(), p.y()), second.holds(p.x(), p.y()));
+}
+
+TEST(CloudExtent, OfNoPointsHoldsNone) {
+  const CloudExtent e = extent({});
+  EXPECT_EQ(e.points(), 0u);
+  EXPECT_FALSE(std::isfinite(e.low().x()));
+}
+
+}  // namespace
+}  // namespace swath::io
