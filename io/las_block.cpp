@@ -55,7 +55,7 @@ std::vector<LasExtra> las_extras_of(core::ColumnSet columns) {
   return out;
 }
 
-void las_points_to_block(const LasPoints& p, const LasHeader& header, std::uint64_t first, const LasTime& time, double first_time,
+void las_points_to_block(const LasPoints& p, const LasHeader& header, std::uint64_t first, const LasTime& time, LasTimesRead& read,
                          const std::string& where, core::Block& block) {
   const LasLayout l = *las_layout(header.point_format);
   const std::size_t n = p.size();
@@ -70,7 +70,7 @@ void las_points_to_block(const LasPoints& p, const LasHeader& header, std::uint6
     block.y[i] = p.raw_y[i] * header.scale.y() + shift.y();
     block.z[i] = p.raw_z[i] * header.scale.z() + shift.z();
   }
-  if (l.gps) block.time = las_gps_times(p.gps_time, header, time, first_time, where, first);
+  if (l.gps) block.time = las_gps_times(p.gps_time, header, time, read, where, first);
   block.intensity = p.intensity;
   block.return_number = p.return_number;
   block.return_count = p.return_count;

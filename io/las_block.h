@@ -40,10 +40,10 @@ constexpr std::uint8_t legacy_overlap_class = 12;
 /// cost nothing.
 std::vector<LasExtra> las_extras_of(core::ColumnSet columns);
 
-/// Points to a Block with the block's origin kept; `first` is the file's row of the first point. Class 12 of formats 0 to 5 becomes the
-/// overlap flag and class 1 (R15, table 9 note). Columns without a field stay empty; time is 0 in formats without it.
-/// Throws core::Error where the times need a week and none is given, see las_gps_times().
-void las_points_to_block(const LasPoints& points, const LasHeader& header, std::uint64_t first, const LasTime& time, double first_time,
+/// Points to a Block with the block's origin kept; `first` is the file's row of the first point, `read` what las_gps_times() carries. Class
+/// 12 of formats 0 to 5 becomes the overlap flag and class 1 (R15, table 9 note). Columns without a field stay empty; time is 0 in formats
+/// without it. Throws core::Error where the times need a week and none is given, see las_gps_times().
+void las_points_to_block(const LasPoints& points, const LasHeader& header, std::uint64_t first, const LasTime& time, LasTimesRead& read,
                          const std::string& where, core::Block& block);
 
 /// A Block to points of the header's format. Times are written as adjusted standard GPS time where the header's bit says so, else as they

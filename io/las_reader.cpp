@@ -30,7 +30,7 @@ struct LasReader::State {
   std::ifstream in;
   std::unique_ptr<swath_laz_reader, CloseLaz> laz;
   std::uint64_t position = 0, outside = 0;
-  std::optional<double> first_time;
+  LasTimesRead times_read;
   LasTimeCheck times;
   std::vector<std::uint8_t> records;
   LasPoints points;
@@ -87,7 +87,6 @@ struct LasReader::State {
     decode_las_points(records, header, points);
     count_outside();
     times.add(points.gps_time);
-    if (!first_time && !points.gps_time.empty()) first_time = points.gps_time.front();
     position += n;
     if (position == header.point_count && !ended) {
       ended = true;
@@ -100,6 +99,7 @@ struct LasReader::State {
 LasReader::LasReader(std::filesystem::path file, unsigned threads) : state_(std::make_unique<State>()) {
   state_->file = std::move(file);
   state_->header = read_las_header(state_->file, state_->warnings);
+  state_->times_read.points = state_->header.point_count;
   state_->open(threads);
 }
 LasReader::~LasReader() = default;
@@ -120,7 +120,7 @@ std::size_t LasReader::read(LasPoints& out, std::size_t most) {
 std::size_t LasReader::read(core::Block& out, std::size_t most, const LasTime& time, std::uint32_t number) {
   const std::uint64_t first = state_->position;
   const std::size_t n = state_->next(most);
-  las_points_to_block(state_->points, state_->header, first, time, state_->first_time.value_or(0.0), state_->file.string(), out);
+  las_points_to_block(state_->points, state_->header, first, time, state_->times_read, state_->file.string(), out);
   if (number > 0) keep_source(state_->records, state_->header.record_length, number, out.source);
   return n;
 }

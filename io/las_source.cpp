@@ -141,7 +141,8 @@ void LasSources::each_part(const core::Block& block, F&& f) const {
     decode_las_points(records, part.source.header, part.points);
     LasTime any;
     any.keep_unknown = true;
-    las_points_to_block(part.points, part.source.header, 0, any, 0.0, part.source.file.string(), part.block);
+    LasTimesRead none;
+    las_points_to_block(part.points, part.source.header, 0, any, none, part.source.file.string(), part.block);
     f(part);
   }
 }

@@ -24,19 +24,22 @@ double turns(double t, double first_time, double period) {
   return t < first_time - period / 2 ? period : t > first_time + period / 2 ? -period : 0.0;
 }
 
-[[noreturn]] void fail_value(double t, const char* what, const std::string& where, std::uint64_t row) {
-  throw core::Error("the time " + core::format_number(t) + " s is not " + what, where + ": point " + std::to_string(row),
-                    "the file's times are on another scale: state it as points.time_scale in the survey");
-}
-
-/// Makes times NaN that are not within 0 to `longest`, which is an error where they are not few.
-void keep_times(std::vector<double>& times, double longest, const char* what, const std::string& where, std::uint64_t first) {
-  const auto is_none = [&](double t) { return !(t >= 0.0 && t <= longest); };
-  const auto none = static_cast<std::uint64_t>(std::count_if(times.begin(), times.end(), is_none));
-  if (none == 0) return;
-  const auto at = std::find_if(times.begin(), times.end(), is_none);
-  if (!are_few(none, times.size())) fail_value(*at, what, where, first + static_cast<std::uint64_t>(at - times.begin()));
-  std::replace_if(times.begin(), times.end(), is_none, std::numeric_limits<double>::quiet_NaN());
+/// Makes times NaN that are not within 0 to `longest`, which is an error where they are not few in the file.
+void keep_times(std::vector<double>& times, double longest, const char* what, LasTimesRead& read, const std::string& where,
+                std::uint64_t first) {
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    double& t = times[i];
+    if (t >= 0.0 && t <= longest) {
+      if (!read.first) read.first = t;
+      continue;
+    }
+    ++read.impossible;
+    if (!read.fault)
+      read.fault.emplace("the time " + core::format_number(t) + " s is not " + what, where + ": point " + std::to_string(first + i),
+                         "the file's times are on another scale: state it as points.time_scale in the survey");
+    t = std::numeric_limits<double>::quiet_NaN();
+  }
+  if (read.impossible > 0 && !are_few(read.impossible, std::max<std::uint64_t>(read.points, times.size()))) throw core::Error(*read.fault);
 }
 
 }  // namespace
@@ -49,7 +52,7 @@ TimeScale las_time_scale(const LasHeader& header, const LasTime& time) {
   return time.scale;
 }
 
-std::vector<double> las_gps_times(const std::vector<double>& recorded, const LasHeader& header, const LasTime& time, double first_time,
+std::vector<double> las_gps_times(const std::vector<double>& recorded, const LasHeader& header, const LasTime& time, LasTimesRead& read,
                                   const std::string& where, std::uint64_t first) {
   std::vector<double> out = recorded;
   const auto each = [&](auto&& f) {
@@ -63,8 +66,8 @@ std::vector<double> las_gps_times(const std::vector<double>& recorded, const Las
       each([](double t) { return t + core::adjusted_offset; });
       break;
     case TimeScale::gps_week:
-      keep_times(out, longest_week, "a second of a week", where, first);
-      each([&](double t) { return *time.week * core::seconds_per_week + t + turns(t, first_time, core::seconds_per_week); });
+      keep_times(out, longest_week, "a second of a week", read, where, first);
+      each([&](double t) { return *time.week * core::seconds_per_week + t + turns(t, *read.first, core::seconds_per_week); });
       break;
     case TimeScale::unix_utc:
       each([](double t) { return core::from_unix(t); });
@@ -73,8 +76,8 @@ std::vector<double> las_gps_times(const std::vector<double>& recorded, const Las
       const std::optional<double> midnight = core::unix_of_date(time.date);
       if (!midnight)
         throw core::Error("times are UTC seconds of a day that is not stated", where, "state the date of the first point as points.date");
-      keep_times(out, 2.0 * seconds_per_day, "a second of a day", where, first);
-      each([&](double t) { return core::from_unix(*midnight + t + turns(t, first_time, seconds_per_day)); });
+      keep_times(out, 2.0 * seconds_per_day, "a second of a day", read, where, first);
+      each([&](double t) { return core::from_unix(*midnight + t + turns(t, *read.first, seconds_per_day)); });
       break;
     }
     default:

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "core/time.h"
 #include "io/las_header.h"
 
@@ -20,13 +21,22 @@ struct LasTime {
   std::string date = {};                              ///< UTC date of the first point, YYYY-MM-DD (scale utc_day)
 };
 
+/// What the points of a file that were read so far say of its times.
+struct LasTimesRead {
+  std::uint64_t points = 0;               ///< of the whole file; 0: those of one call
+  std::optional<double> first = {};       ///< recorded time of the first point whose time the scale can hold
+  std::uint64_t impossible = 0;           ///< points whose time the scale cannot hold
+  std::optional<core::Error> fault = {};  ///< that of the first of them
+};
+
 /// The scale that the file's times are on: the one stated, or by the file's GPS time bit. `unstated` where they are seconds of a week that
 /// nothing names, and in formats without time.
 core::TimeScale las_time_scale(const LasHeader& header, const LasTime& time);
 
-/// Recorded times as GPS time. `first_time`: recorded time of the file's first point; `first`: row of the first of `recorded`.
-/// Throws core::Error for a time that its scale cannot have, and where the scale is unknown and not to be kept.
-std::vector<double> las_gps_times(const std::vector<double>& recorded, const LasHeader& header, const LasTime& time, double first_time,
+/// Recorded times as GPS time. `read`: carried from call to call through a file; `first`: row of the first of `recorded`. A time that the
+/// scale cannot hold becomes NaN. Throws core::Error where the file has more of these than are few (io/wild_records.h), and where the scale
+/// is unknown and not to be kept.
+std::vector<double> las_gps_times(const std::vector<double>& recorded, const LasHeader& header, const LasTime& time, LasTimesRead& read,
                                   const std::string& where, std::uint64_t first);
 
 /// Counts times that contradict what the file's GPS time bit says of them.

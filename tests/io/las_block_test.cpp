@@ -30,7 +30,8 @@ TEST(LasBlock, LegacyClassesAndFlagsBecomeOurs) {
   p.point_source_id = {3, 4};
   core::Block b;
   b.origin = {500000.0, 5400000.0, 0.0};
-  las_points_to_block(p, h, 40, {}, 100.0, "test", b);
+  LasTimesRead read;
+  las_points_to_block(p, h, 40, {}, read, "test", b);
   EXPECT_EQ(b.classification, (std::vector<std::uint8_t>{1, 2}));
   EXPECT_EQ(b.flags, (std::vector<std::uint16_t>{core::flag::overlap, core::flag::key_point}));
   EXPECT_EQ(b.record, (std::vector<std::uint32_t>{40, 41}));
@@ -48,14 +49,15 @@ TEST(LasBlock, SecondsOfWeekNeedTheirWeek) {
   resize(p, h, 3);
   p.gps_time = {604790.0, 604799.0, 5.0};
   core::Block b;
-  EXPECT_THROW(las_points_to_block(p, h, 0, {}, 604790.0, "test", b), core::Error);
-  las_points_to_block(p, h, 0, {2000, false}, 604790.0, "test", b);
+  LasTimesRead read;
+  EXPECT_THROW(las_points_to_block(p, h, 0, {}, read, "test", b), core::Error);
+  las_points_to_block(p, h, 0, {2000, false}, read, "test", b);
   EXPECT_EQ(b.time[0], 2000 * 604800.0 + 604790.0);
   EXPECT_EQ(b.time[2], 2001 * 604800.0 + 5.0);  // over the end of the week
-  las_points_to_block(p, h, 0, {std::nullopt, true}, 604790.0, "test", b);
+  las_points_to_block(p, h, 0, {std::nullopt, true}, read, "test", b);
   EXPECT_EQ(b.time[2], 5.0);
   p.gps_time[1] = 3.0e8;
-  EXPECT_THROW(las_points_to_block(p, h, 0, {2000, false}, 604790.0, "test", b), core::Error);
+  EXPECT_THROW(las_points_to_block(p, h, 0, {2000, false}, read, "test", b), core::Error);
 }
 
 }  // namespace
