@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 
 #include "core/error.h"
 #include "io/cut_line.h"
 #include "io/delimited.h"
+#include "io/las_header.h"
 #include "io/laser_times.h"
 #include "io/wild_records.h"
 
@@ -129,6 +132,16 @@ struct Pass {
   core::Tally tally;
 };
 
+/// Records that the file can hold at most: each has at least two fields of text and what parts them.
+std::uint64_t most_records(const Survey& survey, const LaserFile& f) {
+  const std::filesystem::path path = resolve(survey, f.file);
+  std::vector<std::string> ignored;
+  if (format_of(f) == LaserFormat::las) return read_las_header(path, ignored).point_count;
+  std::error_code unknown;
+  const auto bytes = std::filesystem::file_size(path, unknown);
+  return unknown ? std::numeric_limits<std::uint64_t>::max() : bytes / 4;
+}
+
 /// `judge`: are records left out whose time lies far from those around them?
 Pass pass_over(const Survey& survey, size_t file, bool judge) {
   const LaserFile& f = survey.laser[file];
@@ -136,6 +149,7 @@ Pass pass_over(const Survey& survey, size_t file, bool judge) {
   const LineRule rule(survey, file);
   Clock clock(clock_of(survey, f), name);
   LaserTimes reader(open_laser_records(survey, f, Wanted::plan), time_of(survey, f));
+  const std::uint64_t most = most_records(survey, f);
   Pass out;
   std::map<int, size_t> strip_of;
   size_t last = 0;  // strip of the record before
@@ -161,6 +175,7 @@ Pass pass_over(const Survey& survey, size_t file, bool judge) {
       } catch (const core::Error& e) {
         ++out.unreadable;
         if (!out.first) out.first = e;
+        if (out.unreadable > most_looked_at && !are_few(out.unreadable, most)) throw core::Error(*out.first);
         bad("records whose time or line is none, left out", e.what());
         continue;
       }

@@ -57,6 +57,7 @@ std::vector<double> gps_times(const TimeTags& tags, const std::string& name, con
   if (!are_few(wild.size(), n)) wild.clear();
   std::vector<double> out(n, std::nan(""));
   std::optional<core::Error> first;
+  std::uint64_t thrown = 0;
   for (size_t k = 0, next = 0; k < rows.size(); ++k) {
     if (next < wild.size() && wild[next] == k) {
       ++next;
@@ -70,6 +71,7 @@ std::vector<double> gps_times(const TimeTags& tags, const std::string& name, con
       out[i] = t;
     } catch (const core::Error& e) {
       if (!first) first.emplace(e.what(), at(i), e.hint(), e.code());
+      if (++thrown > most_looked_at && !are_few(thrown, n)) throw *first;
     }
   }
   std::uint64_t left_out = 0;

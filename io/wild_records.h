@@ -18,6 +18,9 @@ namespace swath::io {
 /// what the survey says of it.
 bool are_few(std::uint64_t left_out, std::uint64_t records);
 
+/// A reader that has met more impossible records than this stops at once where they cannot be few.
+constexpr std::uint64_t most_looked_at = 300;
+
 /// Numbers of the records that contradict more than half of the 5 before and the 5 after them in the file; none in a series of fewer than
 /// five records. `contradict(i, j)`: symmetric.
 template <class F>
