@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/error.h"
+
 namespace swath::calib {
 namespace {
 
@@ -106,6 +108,7 @@ CornerPlane corner_plane(const std::vector<Vector3d>& corners, const std::vector
 std::vector<SurveyedTarget> surveyed_targets(const std::vector<io::ControlPoint>& points, const trajectory::LocalFrame& frame,
                                              core::Tally& tally) {
   std::vector<SurveyedTarget> out;
+  std::string far_place;  // of the first that is left out
   for (size_t first = 0, end = 0; first < points.size(); first = end) {
     const io::ControlPoint& p = points[first];
     end = first + 1;
@@ -127,6 +130,7 @@ std::vector<SurveyedTarget> surveyed_targets(const std::vector<io::ControlPoint>
     if (far != target.corners.end()) {
       char text[64];
       std::snprintf(text, sizeof text, ": %.0f km from the survey", 1e-3 * far->norm());
+      if (far_place.empty()) far_place = places[static_cast<size_t>(far - target.corners.begin())];
       tally.count("surveyed targets and points over 500 km from the survey, left out",
                   places[static_cast<size_t>(far - target.corners.begin())] + text);
       continue;
@@ -143,6 +147,9 @@ std::vector<SurveyedTarget> surveyed_targets(const std::vector<io::ControlPoint>
     }
     out.push_back(std::move(target));
   }
+  if (out.empty() && !far_place.empty())
+    throw core::Error("all surveyed targets and points lie over 500 km from the survey", far_place,
+                      "check the CRS of the [[control]], and the order of easting and northing");
   return out;
 }
 

@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "io/gdal_door.h"
 #include "io/survey.h"
+#include "io/wild_records.h"
 
 namespace swath::io {
 namespace {
@@ -155,6 +156,24 @@ void transform(std::vector<Breakline>& features, const BreaklineFile& f, const s
       }
 }
 
+/// Throws where more vertices than a few are not finite, in the file or in the CRS of the survey.
+void hold_vertices(const std::vector<Breakline>& features, size_t first) {
+  std::uint64_t all = 0, impossible = 0;
+  const Breakline* where = nullptr;
+  for (size_t i = first; i < features.size(); ++i)
+    for (const auto& part : features[i].parts)
+      for (const Vector3d& v : part) {
+        ++all;
+        if (v.allFinite()) continue;
+        ++impossible;
+        if (!where) where = &features[i];
+      }
+  if (impossible > 0 && !are_few(impossible, all))
+    throw core::Error(
+        std::to_string(impossible) + " of the file's " + std::to_string(all) + " vertices are not finite, or no places of its CRS",
+        where->place, "check the file, and crs in this [[breaklines]]");
+}
+
 bool is_of_layer(OGRFeature& feature, const std::string& layer) {
   const int field = feature.GetFieldIndex("Layer");
   return field >= 0 && layer == feature.GetFieldAsString(field);
@@ -169,7 +188,7 @@ std::vector<Breakline> read_breaklines(const Survey& survey, const std::string& 
     const GdalMessages messages;
     const Dataset set = open_vector(path);
     if (!set) messages.fail("cannot read the breaklines", path, std::filesystem::exists(path) ? "" : "check the name");
-    size_t taken = 0;
+    const size_t first = out.size();
     std::string layers;
     for (OGRLayer* layer : set->GetLayers()) {
       if (layer->GetLayerDefn()->GetGeomFieldCount() == 0) continue;
@@ -181,11 +200,11 @@ std::vector<Breakline> read_breaklines(const Survey& survey, const std::string& 
         reader.add(*feature, place + ", feature " + std::to_string(feature->GetFID()), tally);
       }
       transform(reader.features, f, own_crs(*layer), survey, crs, place);
-      taken += reader.features.size();
       out.insert(out.end(), std::make_move_iterator(reader.features.begin()), std::make_move_iterator(reader.features.end()));
     }
     messages.check("cannot read the breaklines", path);
-    if (taken == 0)
+    hold_vertices(out, first);
+    if (out.size() == first)
       throw core::Error(f.layer.empty() ? "no lines in the file" : "no lines of layer '" + f.layer + "'", path.string(),
                         "layers: " + (layers.empty() ? "none" : layers));
   }

@@ -18,6 +18,7 @@
 #include "io/gdal_door.h"
 #include "io/survey.h"
 #include "io/text_table.h"
+#include "io/wild_records.h"
 
 namespace swath::io {
 namespace {
@@ -236,13 +237,18 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
   std::vector<std::vector<ControlPoint>> groups;  // a target or a single point each
   std::map<std::string, size_t> targets;
   std::set<std::string> lost;  // targets of which a corner is
+  std::uint64_t all = 0, impossible = 0;
+  std::optional<core::Error> fault;  // of the first that is impossible
   for (const RawLayer& layer : layers) {
     if (layer.points.empty()) continue;
     const core::Crs crs = crs_of(survey, f, layer, file);
     const core::Transform to_ecef(crs, core::wgs84_ecef());
     const double height_unit = survey.height_unit && !crs.has_height_unit() ? survey.height_unit->value : 1.0;
     // A target without one of its corners is another plane: all of it goes.
+    all += layer.points.size();
     const auto leave_out = [&](const RawPoint& raw, const std::string& why) {
+      ++impossible;
+      if (!fault) fault.emplace(why, raw.place, "check the columns and the CRS of this [[control]]");
       tally.count("control points and targets with an impossible coordinate, left out", raw.place + ": " + why);
       if (!raw.target.empty()) lost.insert(raw.target);
     };
@@ -271,6 +277,7 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
       group.push_back(std::move(p));
     }
   }
+  if (impossible > 0 && !are_few(impossible, all)) throw core::Error(*fault);
   std::vector<ControlPoint> out;
   for (std::vector<ControlPoint>& group : groups) {
     if (lost.contains(group[0].target)) continue;

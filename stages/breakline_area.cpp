@@ -5,12 +5,17 @@
 #include <cmath>
 #include <string>
 
+#include "core/error.h"
+#include "io/wild_records.h"
+
 namespace swath::stages {
 namespace {
 
 using core::Breakline;
 using Eigen::Vector3d;
 using Ring = std::vector<Vector3d>;
+
+constexpr const char* outside = "breakline vertices outside the survey's area, left out";
 
 class Cut {
  public:
@@ -32,7 +37,7 @@ class Cut {
           piece.push_back(v);
           continue;
         }
-        count("breakline vertices outside the survey's area, left out", line, v);
+        count(outside, line, v);
         end_piece();
       }
       end_piece();
@@ -83,15 +88,20 @@ class Cut {
       if (is_possible(feature, v))
         possible.push_back(v);
       else
-        count("breakline vertices outside the survey's area, left out", feature, v);
+        count(outside, feature, v);
     const size_t n = possible.size();
     for (size_t k = 0; k < n; ++k) {
       const bool single = !in_box(possible[k]) && in_box(possible[(k + n - 1) % n]) && in_box(possible[(k + 1) % n]);
       if (single)
-        count("breakline vertices outside the survey's area, left out", feature, possible[k]);
+        count(outside, feature, possible[k]);
       else
         out.push_back(possible[k]);
     }
+    // An area without one of its corners may still be that area; without many it is another.
+    if (const size_t lost = ring.size() - out.size(); lost > 1 && lost < ring.size() && !io::are_few(lost, ring.size()))
+      throw core::Error(std::to_string(lost) + " of the area's " + std::to_string(ring.size()) +
+                            " vertices are not finite or lie alone outside the survey's area",
+                        feature.place, "correct the feature, or state [area] in the survey as wide as it is");
     return out;
   }
 
@@ -132,6 +142,9 @@ void keep_in_area(std::vector<Breakline>& features, const Area& area, const Vect
     if (kept.empty()) tally.count("breakline features with nothing in the survey's area, left out", f.place);
     for (Breakline& one : kept) out.push_back(std::move(one));
   }
+  if (out.empty() && !features.empty())
+    throw core::Error("none of the breaklines lies in the survey's area", features.front().place,
+                      "check the CRS and units of the [[breaklines]], or state [area] in the survey");
   features = std::move(out);
 }
 

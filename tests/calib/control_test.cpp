@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/error.h"
 #include "core/geodesy.h"
 
 namespace swath::calib {
@@ -47,6 +48,7 @@ TEST_F(ControlTargets, WhatLiesFarAwayIsLeftOutAndCounted) {
   ASSERT_EQ(targets.size(), 2u);
   EXPECT_EQ(targets[1].name, "6");
   EXPECT_EQ(tally_.of("surveyed targets and points over 500 km from the survey, left out"), 2u);
+  EXPECT_THROW(surveyed_targets({points[1]}, frame_, tally_), core::Error);  // all of them
 }
 
 TEST_F(ControlTargets, PlanesAndPoints) {

@@ -110,15 +110,31 @@ TEST_F(Control, HeightsFollowTheCrs) {
   EXPECT_NEAR(g.height, 480, exact);
 }
 
-TEST_F(Control, CoordinatesThatCannotBeAreLeftOutAndCounted) {
+/// A table with `n` right points.
+std::string right_points(int n) {
+  std::string out = "x,y,z,target\n";
+  for (int i = 0; i < n; ++i) out += std::to_string(500100 + i) + ",5300200,480,\n";
+  return out;
+}
+
+TEST_F(Control, ImpossibleCoordinatesAreLeftOutAndCounted) {
   constexpr const char* what = "control points and targets with an impossible coordinate, left out";
-  for (const char* bad : {"500100,5300200,nan", "inf,5300200,480", "1e9,5300200,480", "500100,1e300,480", "500100,1e400,480"}) {
+  for (const char* bad : {"500100,5300200,nan,", "inf,5300200,480,", "1e9,5300200,480,", "500100,1e300,480,", "500100,1e400,480,"}) {
     tally_ = {};
-    EXPECT_EQ(read("x,y,z\n500100,5300200,480\n" + std::string(bad) + "\n").size(), 1u) << bad;
+    EXPECT_EQ(read(right_points(9) + bad + "\n").size(), 9u) << bad;
     EXPECT_EQ(tally_.of(what), 1u) << bad;
   }
   // The plane of a target needs all of its corners.
-  EXPECT_TRUE(read("x,y,z,target\n500100,5300200,480,r\n500110,5300200,480,r\n500110,5300210,480,r\n500100,nan,480,r\n").empty());
+  EXPECT_EQ(read(right_points(9) + "500100,5300200,480,r\n500110,5300200,480,r\n500110,5300210,480,r\n500100,nan,480,r\n").size(), 9u);
+}
+
+TEST_F(Control, AFileOfImpossibleCoordinatesIsRefused) {
+  std::string text = right_points(9);
+  for (int i = 0; i < 4; ++i) text += "500100,nan,480,\n";
+  EXPECT_EQ(fault(text), "control.csv:11: a coordinate is not finite");
+  file().crs = "EPSG:4326";
+  EXPECT_NE(fault(right_points(20)).find("control.csv:2: x 500100, y 5300200, z 480 is not a place of WGS 84"), std::string::npos)
+      << fault(right_points(20));
 }
 
 TEST_F(Control, FaultsNameTheirLine) {

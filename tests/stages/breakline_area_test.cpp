@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "core/error.h"
+
 namespace swath::stages {
 namespace {
 
@@ -67,11 +69,24 @@ TEST(BreaklineArea, AWideAreaIsCutAtTheBorder) {
   EXPECT_EQ(tally.of(vertices), 0u);
 }
 
+TEST(BreaklineArea, AnAreaThatLosesMoreThanAFewVerticesIsRefused) {
+  core::Tally tally;
+  const Vector3d nan(std::nan(""), 0, 1), far(1e9, 1e9, 1);
+  EXPECT_THROW(kept({BreaklineKind::lake, "f", {{{0, 0, 1}, nan, {100, 0, 1}, nan, {100, 100, 1}, {0, 100, 1}}}}, tally), core::Error);
+  EXPECT_THROW(kept({BreaklineKind::lake, "f", {{{0, 0, 1}, far, {100, 0, 1}, far, {100, 100, 1}, {0, 100, 1}}}}, tally), core::Error);
+}
+
 TEST(BreaklineArea, WhatLiesElsewhereIsLeftOutAndCounted) {
   core::Tally tally;
-  EXPECT_TRUE(kept({BreaklineKind::breakline, "f", {{{1e6, 0, 1}, {1e6, 5, 1}}}}, tally).empty());
-  EXPECT_TRUE(kept({BreaklineKind::lake, "g", {{{1e6, 0, 1}, {1e6, 5, 1}, {2e6, 5, 1}}}}, tally).empty());
+  const Breakline here{BreaklineKind::breakline, "e", {{{0, 0, 1}, {0, 5, 1}}}};
+  const Breakline line{BreaklineKind::breakline, "f", {{{1e6, 0, 1}, {1e6, 5, 1}}}};
+  const Breakline lake{BreaklineKind::lake, "g", {{{1e6, 0, 1}, {1e6, 5, 1}, {2e6, 5, 1}}}};
+  std::vector<Breakline> all{here, line, lake};
+  keep_in_area(all, area, origin, tally);
+  EXPECT_EQ(all.size(), 1u);
   EXPECT_EQ(tally.of("breakline features with nothing in the survey's area, left out"), 2u);
+  all = {line, lake};
+  EXPECT_THROW(keep_in_area(all, area, origin, tally), core::Error);
 }
 
 }  // namespace
