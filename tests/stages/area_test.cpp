@@ -46,5 +46,18 @@ TEST(Area, PointsOutsideAreLeftOutAndCountedWithExamples) {
             "a.las: record 72: x 501000.5, y 5400000, z 300");
 }
 
+TEST(Area, ManyPointsOutsideAreCountedWithTheFirstThree) {
+  const io::Survey survey;
+  Context context{survey};
+  set_area(context, {500000, 5400000, 501000, 5401000}, 0.0);
+  core::Block b = block_of(std::vector<Eigen::Vector3d>(50, {1e9, 0, 300}));
+  core::Tally tally;
+  keep_in_area(context, b, "a.las", tally);
+  const core::Value told = tally.value();
+  const core::Value* one = told.find("points outside the survey's area, left out");
+  EXPECT_EQ(one->find("count")->as_int(), 50);
+  EXPECT_EQ(one->find("examples")->items().size(), 3u);
+}
+
 }  // namespace
 }  // namespace swath::stages
