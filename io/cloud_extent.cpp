@@ -19,7 +19,7 @@ constexpr double margin = 3.0;               // sides of the box of the middle h
 constexpr std::uint64_t group_points = 100;  // that count as a part of the cloud wherever they lie
 constexpr double one_place = 1e-3;           // of a cell
 constexpr std::uint64_t least_points = 20;   // of a cloud that is judged
-constexpr size_t batch = 1u << 17;
+constexpr size_t batch = 1u << 16;
 
 /// Cells that a quarter of the points lies below, and above.
 std::pair<std::int64_t, std::int64_t> middle_half(std::vector<std::pair<std::int64_t, std::uint64_t>> cells, std::uint64_t points) {
@@ -134,12 +134,48 @@ bool CloudExtent::holds(double x, double y) const {
   return in_box(k) || cells_.contains(k);
 }
 
-CloudExtent extent_of_cloud(const std::filesystem::path& file, double cell) {
+CloudExtent CloudExtent::of_box(double cell, const Eigen::Vector2d& low, const Eigen::Vector2d& high, std::uint64_t points) {
   CloudExtent out(cell);
-  LasReader reader(file);
+  constexpr auto around = static_cast<std::int64_t>(least_margin);
+  const Key first = out.key(low.x(), low.y()), last = out.key(high.x(), high.y());
+  out.i0_ = first.first - around;
+  out.j0_ = first.second - around;
+  out.i1_ = last.first + around;
+  out.j1_ = last.second + around;
+  out.points_ = points;
+  out.is_stated_ = true;
+  out.low_ = low;
+  out.high_ = high;
+  return out;
+}
+
+namespace {
+
+/// Is the header's box so narrow that none of its points can be far from the others, and are these points in it?
+bool is_plausible_box(const LasHeader& h, double cell, const LasPoints& points) {
+  const Eigen::Array2d low = h.min.head<2>(), high = h.max.head<2>();
+  if (!(low.abs().maxCoeff() < farthest && high.abs().maxCoeff() < farthest)) return false;
+  if (!((high - low).minCoeff() >= 0.0 && (high - low).maxCoeff() <= least_margin * cell)) return false;
+  const Eigen::Array2d slack = h.scale.head<2>().array().abs();
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Array2d p(points.x[i], points.y[i]);
+    if (!((p >= low - slack).all() && (p <= high + slack).all())) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+CloudExtent extent_of_cloud(const std::filesystem::path& file, double cell, unsigned threads) {
+  CloudExtent out(cell);
+  LasReader reader(file, threads);
   LasPoints points;
-  while (reader.read(points, batch) > 0)
+  if (reader.read(points, batch) == 0) return out;
+  const LasHeader& h = reader.header();
+  if (is_plausible_box(h, cell, points)) return CloudExtent::of_box(cell, h.min.head<2>(), h.max.head<2>(), h.point_count);
+  do {
     for (size_t i = 0; i < points.size(); ++i) out.add(points.x[i], points.y[i]);
+  } while (reader.read(points, batch) > 0);
   out.settle();
   return out;
 }

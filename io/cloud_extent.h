@@ -19,12 +19,16 @@ class CloudExtent {
   /// `cell`: units of the coordinates.
   explicit CloudExtent(double cell) : cell_(cell) {}
 
+  /// Of `points` points that all lie in a box, as its file states.
+  static CloudExtent of_box(double cell, const Eigen::Vector2d& low, const Eigen::Vector2d& high, std::uint64_t points);
+
   void add(double x, double y);
   /// Must be called once, behind the last add().
   void settle();
 
   bool holds(double x, double y) const;
   std::uint64_t points() const { return points_; }  ///< held
+  bool is_stated() const { return is_stated_; }     ///< is it a box that was stated, whose points nobody has looked at?
   /// Corners of the box around the points that are held; not finite where there are none.
   const Eigen::Vector2d& low() const { return low_; }
   const Eigen::Vector2d& high() const { return high_; }
@@ -47,10 +51,12 @@ class CloudExtent {
   std::pair<const Key, Cell>* last_ = nullptr;
   std::int64_t i0_ = 0, i1_ = 0, j0_ = 0, j1_ = 0;
   std::uint64_t points_ = 0;
+  bool is_stated_ = false;
   Eigen::Vector2d low_ = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity()), high_ = -low_;
 };
 
-/// Of all points of a LAS or LAZ file, in its own coordinates.
-CloudExtent extent_of_cloud(const std::filesystem::path& file, double cell);
+/// Of a LAS or LAZ file, in its own coordinates. A header's box of at most 30 cells a side, in which the first points of the file lie, is
+/// taken as it is: no point in it could be far from the others. Otherwise all points are looked at, by so many threads.
+CloudExtent extent_of_cloud(const std::filesystem::path& file, double cell, unsigned threads);
 
 }  // namespace swath::io

@@ -183,11 +183,16 @@ class CloudReader : public StripReader {
 
  private:
   /// Points that lie alone, far from all others of the file; block in the file's coordinates.
-  void keep_near(core::Block& block, core::Tally& tally) const {
+  void keep_near(core::Block& block, core::Tally& tally) {
     const auto is_far = [&](size_t i) { return !extent_.holds(block.x[i] + block.origin.x(), block.y[i] + block.origin.y()); };
-    for (size_t i = 0; i < block.size(); ++i)
-      if (is_far(i))
-        return leave_out(block, is_far, "points alone far from all others of their file, left out", file_.file.string(), tally);
+    std::uint64_t far = 0;
+    for (size_t i = 0; i < block.size(); ++i) far += is_far(i);
+    if (far == 0) return;
+    far_ += far;
+    leave_out(block, is_far, "points alone far from all others of their file, left out", file_.file.string(), tally);
+    if (extent_.is_stated() && !io::are_few(far_, reader_.header().point_count))
+      throw core::Error("points lie far from the box that the file's header states", file_.file.string(),
+                        "the header is wrong: write the file again with a tool that makes its box from the points");
   }
   /// A time that is none is 0 for the stages; the file's own goes to the product.
   void set_unknown_times(core::Block& block, core::Tally& tally) const {
@@ -230,6 +235,7 @@ class CloudReader : public StripReader {
   CloudPlace place_;
   io::LasTime time_;
   bool has_unknown_times_ = false;
+  std::uint64_t far_ = 0;  // points far from the others so far
 };
 
 class LasCloud : public OptionStage<NoOptions> {
@@ -263,12 +269,13 @@ class LasCloud : public OptionStage<NoOptions> {
   void locate(Context& context) const override {
     context.weekless = has_weekless_times(context.survey);
     extents_.clear();
+    const auto threads = static_cast<unsigned>(context.threads);
     bool has_origin = false;
     Box places{Area::none, Area::none, -Area::none, -Area::none};
     for (const io::PointFile& f : context.survey.points) {
       const core::Crs crs = cloud_crs(context.survey, f);
       const double unit = crs.is_geographic() ? metres_per_degree : crs.metres_per_unit();
-      const io::CloudExtent& e = extents_.emplace_back(io::extent_of_cloud(io::resolve(context.survey, f.file), 1000.0 / unit));
+      const io::CloudExtent& e = extents_.emplace_back(io::extent_of_cloud(io::resolve(context.survey, f.file), 1000.0 / unit, threads));
       if (e.points() == 0) continue;
       std::optional<core::Transform> transform;
       if (!is_same_crs(crs, context.crs)) transform.emplace(crs, context.crs);

@@ -8,6 +8,9 @@
 #include <random>
 #include <vector>
 
+#include "tests/io/las_sample.h"
+#include "tests/world/support.h"
+
 namespace swath::io {
 namespace {
 
@@ -92,6 +95,30 @@ TEST(CloudExtent, OfNoPointsHoldsNone) {
   const CloudExtent e = extent({});
   EXPECT_EQ(e.points(), 0u);
   EXPECT_FALSE(std::isfinite(e.low().x()));
+}
+
+TEST(CloudExtent, AFilesBoxIsTakenOnlyWhereItCanBeRight) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "a.las";
+  const LasHeader h = test::sample_header(6);
+  const LasPoints p = test::sample_points(h, 2000);
+  test::write_sample(file, h, p);
+  const CloudExtent right = extent_of_cloud(file, 1000.0, 1);
+  EXPECT_TRUE(right.is_stated());
+  EXPECT_EQ(right.points(), 2000u);
+  EXPECT_TRUE(right.holds(p.x[0], p.y[0]));
+  EXPECT_FALSE(right.holds(p.x[0] + 1e5, p.y[0]));
+  const std::string bytes = test::read_bytes(file);
+  for (const auto& [high_x, low_x] : {std::pair{1e8, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {p.x[0], p.x[0]}, {std::nan(""), 0.0}, {2e9, 1.9e9}}) {
+    std::string wrong = bytes;
+    const double box[] = {high_x, low_x};
+    wrong.replace(179, sizeof box, reinterpret_cast<const char*>(box), sizeof box);
+    test::write_bytes(file, wrong);
+    const CloudExtent looked_at = extent_of_cloud(file, 1000.0, 1);
+    EXPECT_FALSE(looked_at.is_stated()) << high_x;
+    EXPECT_EQ(looked_at.points(), 2000u) << high_x;
+    EXPECT_LT((looked_at.low() - right.low()).norm() + (looked_at.high() - right.high()).norm(), 1e-6) << high_x;
+  }
 }
 
 }  // namespace
