@@ -370,13 +370,8 @@ core::Value write_profiles(const ProfileRequest& request) {
   const std::vector<fs::path> files = las_files(request.points);
   if (files.empty() && request.dtm.empty())
     throw core::usage_error("neither points nor a terrain model are named", "swath profile", "name LAS files or folders, or --dtm FILE");
-  core::Crs crs;
-  if (!request.dtm.empty()) {
-    const std::string wkt = io::read_raster_info(request.dtm).crs_wkt;
-    if (!wkt.empty()) crs = core::Crs(wkt);
-  } else if (const std::string stated = io::LasReader(files[0]).crs().definition; !stated.empty()) {
-    crs = core::Crs(stated);
-  }
+  const std::string wkt = request.dtm.empty() ? io::LasReader(files[0]).crs().definition : io::read_raster_info(request.dtm).crs_wkt;
+  const core::Crs crs = wkt.empty() ? core::Crs() : core::Crs(wkt);
   const std::vector<ProfileLine> lines = profile_lines(request, crs);
   check_names(request, files, lines);
   const bool metric = crs.empty() || crs.metres_per_unit() == 0.0;

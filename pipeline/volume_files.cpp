@@ -129,10 +129,8 @@ core::Value volumes_of(const VolumeRequest& request) {
   const double area = metre * metre, volume = area * metre;
   core::Value out = core::Value::object();
   out["before"] = request.before.generic_string();
-  if (request.design)
-    out["design_height"] = *request.design;
-  else
-    out["after"] = request.after.generic_string();
+  if (request.design) out["design_height"] = *request.design;
+  if (!request.design) out["after"] = request.after.generic_string();
   if (!polygon.empty()) out["polygon"] = request.polygon.generic_string();
   if (vertices_left_out > 0) out["polygon_vertices_left_out"] = vertices_left_out;
   out["units"] = crs.empty() ? "those of the file, which states no CRS" : "m";
