@@ -72,16 +72,15 @@ Vector3d ecef_vector(const Vector3d& neu, double latitude, double longitude) { r
 FixList::FixList(const GnssFile& file, std::string name, double latency, bool may_go_back, core::Tally& tally)
     : file_(file), name_(std::move(name)), latency_(latency), may_go_back_(may_go_back), tally_(tally) {}
 
-Matrix3d FixList::settled(const Matrix3d& covariance, const Matrix3d& R, const Vector3d& otherwise, const char* of,
-                          const std::string& place) {
+Matrix3d FixList::settled(const Matrix3d& covariance, const Matrix3d& R, const Vector3d& otherwise, const char* of, const Read& read) {
   const Matrix3d local = R.transpose() * covariance * R;
   const Vector3d variances = local.diagonal();
   if (!local.allFinite() || variances.minCoeff() < least_variance) {
-    tally_.count(std::string("GNSS ") + of + " sigmas missing, zero or less: those of the survey are taken", place);
+    tally_.count(std::string("GNSS ") + of + " sigmas missing, zero or less: those of the survey are taken", place(read));
     return R * otherwise.asDiagonal() * R.transpose();
   }
   if (Eigen::LLT<Matrix3d>(local).info() == Eigen::Success) return covariance;
-  tally_.count(std::string("GNSS ") + of + " covariances that are not positive definite: their variances alone are taken", place);
+  tally_.count(std::string("GNSS ") + of + " covariances that are not positive definite: their variances alone are taken", place(read));
   return R * variances.asDiagonal() * R.transpose();
 }
 
@@ -94,7 +93,7 @@ void FixList::leave_out_not_finite() {
     std::string fault = f.fault, hint = f.hint;
     if (fault.empty() && (!std::isfinite(f.time) || !f.position.allFinite())) {
       ++not_finite_;
-      tally_.count("GNSS fixes with a value that is empty or not finite, left out", r.place);
+      tally_.count("GNSS fixes with a value that is empty or not finite, left out", place(r));
       return true;
     }
     if (fault.empty()) {
@@ -104,11 +103,16 @@ void FixList::leave_out_not_finite() {
       hint = "check the columns and their units";
     }
     ++far;
-    tally_.count("GNSS fixes with an impossible position, left out", r.place + ": " + fault);
-    if (!first) first.emplace(fault, r.place, hint);
+    tally_.count("GNSS fixes with an impossible position, left out", place(r) + ": " + fault);
+    if (!first) first.emplace(fault, place(r), hint);
     return true;
   });
   if (far > 0 && !are_few(far, all_)) throw *first;
+}
+
+void FixList::set_times(const std::vector<double>& times) {
+  for (size_t k = 0; k < read_.size(); ++k) read_[k].fix.time = times[k];
+  std::erase_if(read_, [](const Read& r) { return std::isnan(r.fix.time); });
 }
 
 void FixList::leave_out_wild() {
@@ -118,7 +122,7 @@ void FixList::leave_out_wild() {
     for (size_t k = 0, next = 0; k < read_.size(); ++k) {
       if (next < wild.size() && wild[next] == k) {
         ++next;
-        tally_.count(what, read_[k].place + ": " + core::utc_text(read_[k].fix.time));
+        tally_.count(what, place_of(k) + ": " + core::utc_text(read_[k].fix.time));
       } else if (kept++ != k) {
         read_[kept - 1] = std::move(read_[k]);
       }
@@ -136,20 +140,21 @@ void FixList::leave_out_wild() {
             "GNSS fixes far from those around them, left out");
 }
 
-void FixList::take(const Fix& f, const std::string& place) {
+void FixList::take(const Read& read) {
+  const Fix& f = read.fix;
   const core::Geodetic g = core::geodetic_of(f.position);
   const double t = f.time + latency_;
   if (!out_.time.empty() && t < out_.time.back()) {
     if (!may_go_back_)
-      throw core::Error("time goes back by " + core::format_number(out_.time.back() - t) + " s", place,
+      throw core::Error("time goes back by " + core::format_number(out_.time.back() - t) + " s", place(read),
                         "export the fixes in the order of time");
     ++back_;
-    tally_.count("GNSS fixes whose time goes back, left out", place);
+    tally_.count("GNSS fixes whose time goes back, left out", place(read));
     return;
   }
   if (!out_.time.empty() && t == out_.time.back()) {
     ++repeated_;
-    tally_.count("GNSS fixes at a repeated time, left out", place);
+    tally_.count("GNSS fixes at a repeated time, left out", place(read));
     return;
   }
   const double least = least_sigma(f.quality);
@@ -160,7 +165,7 @@ void FixList::take(const Fix& f, const std::string& place) {
   (own ? own_sigmas_ : lent_sigmas_) = true;
   out_.time.push_back(t);
   out_.position.push_back(f.position);
-  out_.covariance.push_back(own ? settled(f.covariance, R, variances, "position", place)
+  out_.covariance.push_back(own ? settled(f.covariance, R, variances, "position", read)
                                 : Matrix3d(R * variances.asDiagonal() * R.transpose()));
   const double v = file_.sigma_velocity.value;
   const Vector3d velocity_variances = Vector3d::Constant(v * v);
@@ -168,7 +173,7 @@ void FixList::take(const Fix& f, const std::string& place) {
   velocities_ = velocities_ || moves;
   out_.velocity.push_back(moves ? f.velocity : Vector3d(Vector3d::Constant(Fix::none)));
   const bool own_velocity = moves && !f.velocity_covariance.array().isNaN().all();
-  out_.velocity_covariance.push_back(own_velocity ? settled(f.velocity_covariance, R, velocity_variances, "velocity", place)
+  out_.velocity_covariance.push_back(own_velocity ? settled(f.velocity_covariance, R, velocity_variances, "velocity", read)
                                                   : Matrix3d(velocity_variances.asDiagonal()));
   out_.quality.push_back(f.quality);
   out_.satellites.push_back(static_cast<std::uint8_t>(f.satellites >= 0 ? std::min(f.satellites, 255.0) : 0.0));
@@ -177,7 +182,7 @@ void FixList::take(const Fix& f, const std::string& place) {
 core::GnssData FixList::finish() {
   leave_out_not_finite();
   leave_out_wild();
-  for (const Read& r : read_) take(r.fix, r.place);
+  for (const Read& r : read_) take(r);
   const auto refuse = [&](std::uint64_t n, double most, const char* what, const char* hint) {
     if (static_cast<double>(n) > most * static_cast<double>(all_))
       throw core::Error(std::to_string(n) + " of " + std::to_string(all_) + " fixes " + what, name_, hint);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
@@ -41,7 +42,12 @@ class FixList {
   /// clock), up to 3 % of them; otherwise they are an error.
   FixList(const GnssFile& file, std::string name, double latency, bool may_go_back, core::Tally& tally);
 
-  void add(Fix fix, std::string place) { read_.push_back({std::move(fix), std::move(place)}); }
+  /// `line`: of the file.
+  void add(Fix fix, std::uint64_t line) { read_.push_back({std::move(fix), line}); }
+  /// "file:line" of the fix that was added as the k-th, from 0.
+  std::string place_of(size_t k) const { return place(read_[k]); }
+  /// Times of all fixes, where they were added without; those of which it is NaN are left out.
+  void set_times(const std::vector<double>& times);
   /// The fixes. Left out and counted: time or position not finite, a repeated time, a position not within 100 km of the ground, a time over
   /// an hour or a position over 500 m/s and 100 m from most fixes around it. Where the covariance is missing it comes from the survey's
   /// sigmas and the quality: stated for fixed and unknown, at least 0.1 m (PPP), 0.3 m (float), 1 m (differential, SBAS), 3 m (single)
@@ -53,13 +59,14 @@ class FixList {
  private:
   struct Read {
     Fix fix;
-    std::string place;
+    std::uint64_t line;
   };
+  std::string place(const Read& r) const { return name_ + ":" + std::to_string(r.line); }
   void leave_out_not_finite();
   void leave_out_wild();
-  void take(const Fix& fix, const std::string& place);
+  void take(const Read& read);
   Eigen::Matrix3d settled(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& ecef_R_neu, const Eigen::Vector3d& otherwise,
-                          const char* of, const std::string& place);
+                          const char* of, const Read& read);
 
   const GnssFile& file_;
   std::string name_;

@@ -51,73 +51,98 @@ Matrix3d diagonal(const Vector3d& sigma) {
   return signed_squares.asDiagonal();
 }
 
-core::GnssData read_text(const std::filesystem::path& path, const GnssFile& f, double latency, core::Tally& tally) {
-  const std::string name = path.string();
-  const GnssColumns& c = f.columns;
-  NamedColumns v;
-  const size_t time = v.add(c.time), week = v.add(c.week);
-  const std::array place{v.add(c.latitude), v.add(c.longitude), v.add(c.height)}, ecef{v.add(c.x), v.add(c.y), v.add(c.z)};
-  const std::array cov{v.add(c.cov_xx), v.add(c.cov_xy), v.add(c.cov_xz), v.add(c.cov_yy), v.add(c.cov_yz), v.add(c.cov_zz)};
-  const std::array sigma{v.add(c.sigma_north), v.add(c.sigma_east), v.add(c.sigma_up)};
-  const std::array velocity{v.add(c.v_north), v.add(c.v_east), v.add(c.v_up)};
-  const std::array sigma_v{v.add(c.sigma_v_north), v.add(c.sigma_v_east), v.add(c.sigma_v_up)};
-  const size_t quality = v.add(c.quality), satellites = v.add(c.satellites);
-  const bool geodetic = ecef[0] == NamedColumns::none;
-  const double unit = radians_per(f.angle_unit);
-  if (geodetic && unit == 0) throw core::usage_error("the unit of angles is not stated", name, "angle_unit = \"deg\", \"rad\" or \"gon\"");
-  const auto rows = open_table(path, RecordFormat::text, f.delimiter, v.names());
-  count_cut_line(rows->cut_line(), path, tally);
-  struct Row {
-    Fix fix;
-    std::uint64_t number;
-  };
-  std::vector<Row> read;
-  std::vector<double> times, weeks;
-  double farthest_north = 0, farthest_east = 0;
-  while (v.next(*rows)) {
+/// Fixes out of the columns that a text file has.
+class TextFixes {
+ public:
+  TextFixes(const GnssFile& f, const std::string& name) : file_(f), name_(name), unit_(radians_per(f.angle_unit)) {
+    if (geodetic() && unit_ == 0)
+      throw core::usage_error("the unit of angles is not stated", name, "angle_unit = \"deg\", \"rad\" or \"gon\"");
+  }
+  NamedColumns& columns() { return v_; }
+  double time() const { return v_[time_]; }
+  bool has_week() const { return week_ != NamedColumns::none; }
+  double week() const { return v_[week_]; }
+
+  /// Of the row that was read last, without its time.
+  Fix fix() {
     Fix fix;
     core::Geodetic g;
-    if (geodetic) {
-      const Vector3d p = v.three(place);
-      if (std::abs(p[0] * unit) > core::pi / 2 || std::abs(p[1] * unit) > 2 * core::pi) {
-        fix.fault = "latitude " + core::format_number(p[0]) + ", longitude " + core::format_number(p[1]) + " are no " +
-                    std::string(core::Choices<AngleUnit>::names[static_cast<size_t>(f.angle_unit)]);
-        fix.hint = f.angle_unit == AngleUnit::rad ? "state angle_unit = \"deg\"?" : "check columns and angle_unit";
-      } else {
-        farthest_north = std::max(farthest_north, std::abs(p[0]));
-        farthest_east = std::max(farthest_east, std::abs(p[1]));
-      }
-      g = {p[0] * unit, p[1] * unit, p[2]};
+    if (geodetic()) {
+      g = geodetic_place(fix);
       fix.position = core::ecef_of(g);
     } else {
-      fix.position = v.three(ecef);
+      fix.position = v_.three(ecef_);
       if (fix.position.allFinite()) g = core::geodetic_of(fix.position);
     }
-    if (cov[0] != NamedColumns::none) {
-      fix.covariance << v[cov[0]], v[cov[1]], v[cov[2]], v[cov[1]], v[cov[3]], v[cov[4]], v[cov[2]], v[cov[4]], v[cov[5]];
-    } else if (sigma[0] != NamedColumns::none) {
-      fix.covariance = ecef_covariance(diagonal(v.three(sigma)), g.latitude, g.longitude);
+    if (cov_[0] != NamedColumns::none) {
+      const auto c = [&](size_t k) { return v_[cov_[k]]; };
+      fix.covariance << c(0), c(1), c(2), c(1), c(3), c(4), c(2), c(4), c(5);
+    } else if (sigma_[0] != NamedColumns::none) {
+      fix.covariance = ecef_covariance(diagonal(v_.three(sigma_)), g.latitude, g.longitude);
     }
-    if (velocity[0] != NamedColumns::none) fix.velocity = ecef_vector(v.three(velocity), g.latitude, g.longitude);
-    if (sigma_v[0] != NamedColumns::none) fix.velocity_covariance = ecef_covariance(diagonal(v.three(sigma_v)), g.latitude, g.longitude);
-    fix.quality = quality_of_rtklib(v[quality]);
-    fix.satellites = v[satellites];
-    read.push_back({std::move(fix), rows->number()});
-    times.push_back(v[time]);
-    if (week != NamedColumns::none) weeks.push_back(v[week]);
+    if (velocity_[0] != NamedColumns::none) fix.velocity = ecef_vector(v_.three(velocity_), g.latitude, g.longitude);
+    if (sigma_v_[0] != NamedColumns::none) fix.velocity_covariance = ecef_covariance(diagonal(v_.three(sigma_v_)), g.latitude, g.longitude);
+    fix.quality = quality_of_rtklib(v_[quality_]);
+    fix.satellites = v_[satellites_];
+    return fix;
   }
+
+  void count_radians(core::Tally& tally) const {
+    if (geodetic() && file_.angle_unit != AngleUnit::rad && farthest_north_ <= core::pi / 2 && farthest_east_ <= core::pi)
+      tally.count("GNSS files whose latitudes and longitudes would all be radians: radians stated as degrees?",
+                  name_ + ": |latitude| up to " + core::format_number(farthest_north_) + ", |longitude| up to " +
+                      core::format_number(farthest_east_));
+  }
+
+ private:
+  using Three = std::array<size_t, 3>;
+  bool geodetic() const { return ecef_[0] == NamedColumns::none; }
+
+  core::Geodetic geodetic_place(Fix& fix) {
+    const Vector3d p = v_.three(place_);
+    if (std::abs(p[0] * unit_) > core::pi / 2 || std::abs(p[1] * unit_) > 2 * core::pi) {
+      fix.fault = "latitude " + core::format_number(p[0]) + ", longitude " + core::format_number(p[1]) + " are no " +
+                  std::string(core::Choices<AngleUnit>::names[static_cast<size_t>(file_.angle_unit)]);
+      fix.hint = file_.angle_unit == AngleUnit::rad ? "state angle_unit = \"deg\"?" : "check columns and angle_unit";
+    } else {
+      farthest_north_ = std::max(farthest_north_, std::abs(p[0]));
+      farthest_east_ = std::max(farthest_east_, std::abs(p[1]));
+    }
+    return {p[0] * unit_, p[1] * unit_, p[2]};
+  }
+
+  const GnssFile& file_;
+  const std::string& name_;
+  const GnssColumns& c_ = file_.columns;
+  NamedColumns v_;
+  size_t time_ = v_.add(c_.time), week_ = v_.add(c_.week);
+  Three place_{v_.add(c_.latitude), v_.add(c_.longitude), v_.add(c_.height)}, ecef_{v_.add(c_.x), v_.add(c_.y), v_.add(c_.z)};
+  std::array<size_t, 6> cov_{v_.add(c_.cov_xx), v_.add(c_.cov_xy), v_.add(c_.cov_xz),
+                             v_.add(c_.cov_yy), v_.add(c_.cov_yz), v_.add(c_.cov_zz)};
+  Three sigma_{v_.add(c_.sigma_north), v_.add(c_.sigma_east), v_.add(c_.sigma_up)};
+  Three velocity_{v_.add(c_.v_north), v_.add(c_.v_east), v_.add(c_.v_up)};
+  Three sigma_v_{v_.add(c_.sigma_v_north), v_.add(c_.sigma_v_east), v_.add(c_.sigma_v_up)};
+  size_t quality_ = v_.add(c_.quality), satellites_ = v_.add(c_.satellites);
+  double unit_;
+  double farthest_north_ = 0, farthest_east_ = 0;
+};
+
+core::GnssData read_text(const std::filesystem::path& path, const GnssFile& f, double latency, core::Tally& tally) {
+  const std::string name = path.string();
+  TextFixes text(f, name);
+  const auto rows = open_table(path, RecordFormat::text, f.delimiter, text.columns().names());
+  count_cut_line(rows->cut_line(), path, tally);
   FixList fixes(f, name, latency, false, tally);
-  const auto place_of = [&](size_t k) { return rows->place_of(read[k].number); };
-  const std::vector<double> gps = gps_times(f.time, name, times, weeks, "GNSS fixes with an impossible time, left out", tally, place_of);
-  for (size_t k = 0; k < read.size(); ++k) {
-    read[k].fix.time = gps[k];
-    if (!std::isnan(gps[k])) fixes.add(std::move(read[k].fix), place_of(k));
+  std::vector<double> times, weeks;
+  while (text.columns().next(*rows)) {
+    fixes.add(text.fix(), rows->number());
+    times.push_back(text.time());
+    if (text.has_week()) weeks.push_back(text.week());
   }
+  fixes.set_times(gps_times(f.time, name, times, weeks, "GNSS fixes with an impossible time, left out", tally,
+                            [&](size_t k) { return fixes.place_of(k); }));
   core::GnssData out = fixes.finish();
-  if (geodetic && f.angle_unit != AngleUnit::rad && farthest_north <= core::pi / 2 && farthest_east <= core::pi)
-    tally.count(
-        "GNSS files whose latitudes and longitudes would all be radians: radians stated as degrees?",
-        name + ": |latitude| up to " + core::format_number(farthest_north) + ", |longitude| up to " + core::format_number(farthest_east));
+  text.count_radians(tally);
   return out;
 }
 

@@ -19,6 +19,8 @@ class LineReader {
   bool next(std::string_view& line);
   /// "file:line" of the line that next() gave last, from 1.
   std::string place() const;
+  /// Its number.
+  std::uint64_t number() const { return line_; }
 
  private:
   BinaryFile file_;

@@ -284,7 +284,7 @@ core::GnssData read_nmea(const std::filesystem::path& path, const GnssFile& f, d
     if (sigma.allFinite()) fix.covariance = ecef_covariance(sigma.cwiseAbs2().asDiagonal(), latitude, longitude);
     fix.quality = quality_of(n.quality);
     fix.satellites = n.satellites;
-    fixes.add(fix, name + ":" + std::to_string(n.line));
+    fixes.add(fix, n.line);
   }
   return fixes.finish();
 }

@@ -33,7 +33,7 @@ Matrix3d neu_of(const Matrix3d& ecef) {
 
 class Fixes : public ::testing::Test {
  protected:
-  FixList list(bool may_go_back = false) { return {file_, "a.pos", 0.5, may_go_back, tally_}; }
+  FixList list(bool may_go_back = false) { return {file_, "a", 0.5, may_go_back, tally_}; }
   GnssFile file_;
   core::Tally tally_;
 };
@@ -55,7 +55,7 @@ TEST_F(Fixes, LatencyAndSigmasByQuality) {
     Fix f = fix_at(t++);
     f.quality = q;
     f.satellites = 300;
-    l.add(f, "a:1");
+    l.add(f, 1);
   }
   const core::GnssData g = l.finish();
   EXPECT_EQ(g.time[0], 1.4e9 + 0.5);
@@ -82,7 +82,7 @@ TEST_F(Fixes, CovariancesThatAreNone) {
   for (const Matrix3d& m : {good, zero, crossed}) {
     Fix f = fix_at(t++);
     f.covariance = ecef_covariance(m * 1e-4, latitude, longitude);
-    l.add(f, "a:7");
+    l.add(f, 7);
   }
   const core::GnssData g = l.finish();
   EXPECT_NEAR((neu_of(g.covariance[0]) - 1e-4 * good).norm(), 0, rounding);
@@ -94,13 +94,13 @@ TEST_F(Fixes, CovariancesThatAreNone) {
 
 TEST_F(Fixes, WhatIsLeftOutAndWhatIsRefused) {
   FixList l = list(true);
-  for (int i = 0; i < 100; ++i) l.add(fix_at(1.4e9 + i + (i > 60 ? 5 : 0)), "a:1");
+  for (int i = 0; i < 100; ++i) l.add(fix_at(1.4e9 + i + (i > 60 ? 5 : 0)), 1);
   Fix nowhere = fix_at(1.4e9 + 200);
   nowhere.position.x() = std::nan("");
-  l.add(nowhere, "a:101");
-  l.add(fix_at(1.4e9 + 104), "a:102");
-  l.add(fix_at(1.4e9 + 99), "a:103");
-  l.add(fix_at(1.4e9 + 106, 900), "a:104");
+  l.add(nowhere, 101);
+  l.add(fix_at(1.4e9 + 104), 102);
+  l.add(fix_at(1.4e9 + 99), 103);
+  l.add(fix_at(1.4e9 + 106, 900), 104);
   const core::GnssData g = l.finish();
   EXPECT_EQ(g.size(), 101u);
   EXPECT_EQ(tally_.of("GNSS fixes with a value that is empty or not finite, left out"), 1u);
@@ -109,8 +109,8 @@ TEST_F(Fixes, WhatIsLeftOutAndWhatIsRefused) {
   EXPECT_EQ(tally_.of("GNSS gaps"), 2u);
 
   FixList strict = list();
-  strict.add(fix_at(1.4e9), "a:1");
-  strict.add(fix_at(1.4e9 - 2), "a:2");
+  strict.add(fix_at(1.4e9), 1);
+  strict.add(fix_at(1.4e9 - 2), 2);
   try {
     strict.finish();
     FAIL();
@@ -122,12 +122,12 @@ TEST_F(Fixes, WhatIsLeftOutAndWhatIsRefused) {
   for (int i = 0; i < 20; ++i) {
     Fix f = fix_at(1.4e9 + i);
     f.position /= 1000;
-    kilometres.add(f, "a:3");
+    kilometres.add(f, 3);
   }
   EXPECT_THROW(kilometres.finish(), core::Error);
   EXPECT_THROW(list().finish(), core::Error);
   FixList bad = list();
-  for (int i = 0; i < 20; ++i) bad.add(i % 5 ? fix_at(1.4e9 + i) : nowhere, "a:1");
+  for (int i = 0; i < 20; ++i) bad.add(i % 5 ? fix_at(1.4e9 + i) : nowhere, 1);
   EXPECT_THROW(bad.finish(), core::Error);
 }
 
@@ -142,7 +142,7 @@ TEST_F(Fixes, OneWildFixIsLeftOutAndCounted) {
         if (i == at && kind == 1) f.position.x() = -f.position.x();
         if (i == at && kind == 2) f.position *= 1.001;
         if (i == at && kind == 3) f.time += 1e5;
-        l.add(f, "a:" + std::to_string(i));
+        l.add(f, static_cast<std::uint64_t>(i));
       }
       EXPECT_EQ(l.finish().size(), 99u) << at << ' ' << kind;
       EXPECT_EQ(tally_.left_out(), 1u) << at << ' ' << kind;
@@ -154,7 +154,7 @@ TEST_F(Fixes, JumpsAndVelocities) {
   for (int i = 0; i < 10; ++i) {
     Fix f = fix_at(1.4e9 + i, i == 5 ? 2000 : 500);
     if (i == 3) f.velocity = ecef_vector({1, 2, 3}, latitude, longitude);
-    l.add(f, "a:1");
+    l.add(f, 1);
   }
   const core::GnssData g = l.finish();
   EXPECT_EQ(tally_.of("GNSS fixes farther from the one before than 500 m/s make"), 2u);
