@@ -13,12 +13,12 @@ namespace swath::io {
 namespace {
 
 constexpr double farthest = 1e9;             // cells and metres alike: no map projection reaches it
-constexpr size_t most_cells = 1u << 20;      // then cells are joined by fours
-constexpr double least_margin = 30.0;        // cells
+constexpr size_t max_cells = 1u << 20;       // then cells are joined by fours
+constexpr double min_margin = 30.0;          // cells
 constexpr double margin = 3.0;               // sides of the box of the middle half
 constexpr std::uint64_t group_points = 100;  // that count as a part of the cloud wherever they lie
 constexpr double one_place = 1e-3;           // of a cell
-constexpr std::uint64_t least_points = 20;   // of a cloud that is judged
+constexpr std::uint64_t min_points = 20;     // of a cloud that is judged
 constexpr size_t batch = 1u << 16;
 
 /// Cells that a quarter of the points lies below, and above.
@@ -57,8 +57,8 @@ void CloudExtent::add(double x, double y) {
   const Key k = key(x, y);
   if (!last_ || last_->first != k) {
     last_ = &*cells_.try_emplace(k).first;
-    if (cells_.size() > most_cells) {
-      while (cells_.size() > most_cells) coarsen();
+    if (cells_.size() > max_cells) {
+      while (cells_.size() > max_cells) coarsen();
       last_ = &*cells_.try_emplace(key(x, y)).first;
     }
   }
@@ -83,8 +83,8 @@ void CloudExtent::find_box() {
   std::tie(i0_, i1_) = middle_half(std::move(across), points);
   std::tie(j0_, j1_) = middle_half(std::move(up), points);
   const auto side = static_cast<double>(std::max(i1_ - i0_, j1_ - j0_) + 1);
-  auto grown = static_cast<std::int64_t>(std::ceil(std::max(least_margin, margin * side)));
-  if (points < least_points) grown = static_cast<std::int64_t>(2.0 * farthest / cell_) + 1;
+  auto grown = static_cast<std::int64_t>(std::ceil(std::max(min_margin, margin * side)));
+  if (points < min_points) grown = static_cast<std::int64_t>(2.0 * farthest / cell_) + 1;
   i0_ -= grown;
   i1_ += grown;
   j0_ -= grown;
@@ -136,7 +136,7 @@ bool CloudExtent::holds(double x, double y) const {
 
 CloudExtent CloudExtent::of_box(double cell, const Eigen::Vector2d& low, const Eigen::Vector2d& high, std::uint64_t points) {
   CloudExtent out(cell);
-  constexpr auto around = static_cast<std::int64_t>(least_margin);
+  constexpr auto around = static_cast<std::int64_t>(min_margin);
   const Key first = out.key(low.x(), low.y()), last = out.key(high.x(), high.y());
   out.i0_ = first.first - around;
   out.j0_ = first.second - around;
@@ -155,7 +155,7 @@ namespace {
 bool is_plausible_box(const LasHeader& h, double cell, const LasPoints& points) {
   const Eigen::Array2d low = h.min.head<2>(), high = h.max.head<2>();
   if (!(low.abs().maxCoeff() < farthest && high.abs().maxCoeff() < farthest)) return false;
-  if (!((high - low).minCoeff() >= 0.0 && (high - low).maxCoeff() <= least_margin * cell)) return false;
+  if (!((high - low).minCoeff() >= 0.0 && (high - low).maxCoeff() <= min_margin * cell)) return false;
   const Eigen::Array2d slack = h.scale.head<2>().array().abs();
   for (size_t i = 0; i < points.size(); ++i) {
     const Eigen::Array2d p(points.x[i], points.y[i]);

@@ -133,7 +133,7 @@ struct Pass {
 };
 
 /// Records that the file can hold at most: each has at least two fields of text and what parts them.
-std::uint64_t most_records(const Survey& survey, const LaserFile& f) {
+std::uint64_t max_records(const Survey& survey, const LaserFile& f) {
   const std::filesystem::path path = resolve(survey, f.file);
   std::vector<std::string> ignored;
   if (format_of(f) == LaserFormat::las) return read_las_header(path, ignored).point_count;
@@ -149,7 +149,7 @@ Pass pass_over(const Survey& survey, size_t file, bool judge) {
   const LineRule rule(survey, file);
   Clock clock(clock_of(survey, f), name);
   LaserTimes reader(open_laser_records(survey, f, Wanted::plan), time_of(survey, f));
-  const std::uint64_t most = most_records(survey, f);
+  const std::uint64_t all = max_records(survey, f);
   Pass out;
   std::map<int, size_t> strip_of;
   size_t last = 0;  // strip of the record before
@@ -175,8 +175,8 @@ Pass pass_over(const Survey& survey, size_t file, bool judge) {
       } catch (const core::Error& e) {
         ++out.unreadable;
         if (!out.first) out.first = e;
-        if (out.unreadable > most_looked_at && !are_few(out.unreadable, most)) throw core::Error(*out.first);
-        bad("records whose time or line is none, left out", e.what());
+        if (out.unreadable > max_looked_at && !are_few(out.unreadable, all)) throw core::Error(*out.first);
+        bad("records without a valid time or line, left out", e.what());
         continue;
       }
       if (line < 0) {
@@ -263,10 +263,10 @@ struct LaserSource::State {
 
   bool is_bad(std::uint64_t record) const { return bad && std::binary_search(bad->begin(), bad->end(), record); }
 
-  /// Leaves a record out whose value cannot be, or throws where these are not few.
+  /// Leaves out a record with an impossible value, or throws where these are not few.
   void leave_out(const core::Error& e, std::uint64_t record) {
     if (!are_few(++damaged_records, records)) throw core::Error(e);
-    tally.count("records with a range or angle that is none, left out", record_text(record) + ": " + e.what());
+    tally.count("records with an invalid range or angle, left out", record_text(record) + ": " + e.what());
   }
 
   /// Appends record i of the chunk to the batch, or counts why not.

@@ -13,8 +13,8 @@
 namespace swath::io {
 namespace {
 
-constexpr size_t around = 5;                                                  // records on either side
-constexpr double least_share = 0.01, least_missing = 0.1, usual_times = 4.0;  // of the line; s
+constexpr size_t around = 5;                                              // records on either side
+constexpr double min_share = 0.01, min_missing = 0.1, usual_times = 4.0;  // of the line; s
 
 }  // namespace
 
@@ -67,7 +67,7 @@ void count_cut_lines(const std::vector<LineWindow>& windows, const std::vector<L
   for (const LineWindow& w : windows) {
     const auto at = spans.find(w.id);
     if (at == spans.end()) continue;
-    const double limit = std::max({least_missing, least_share * (w.end - w.start), usual_times * usual});
+    const double limit = std::max({min_missing, min_share * (w.end - w.start), usual_times * usual});
     const std::array ends{std::pair{at->second.first - w.start, "begin"}, std::pair{w.end - at->second.last, "end"}};
     for (const auto& [seconds, which] : ends)
       if (seconds > limit)

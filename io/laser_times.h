@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The times of laser records among one another: those that cannot be, and lines whose records end too early.
+// The times of laser records among one another: impossible ones, and lines whose records end too early.
 #pragma once
 
 #include <memory>

@@ -16,12 +16,12 @@
 namespace swath::io {
 namespace {
 
-constexpr double most_apart = 3600.0;          // s
+constexpr double max_apart = 3600.0;           // s
 constexpr double highest_flight = 100e3;       // m
 constexpr double fastest = 500.0;              // m/s
 constexpr double near = 100.0;                 // m: what a position may be off by
 constexpr double impossible_speed = 1000.0;    // m/s
-constexpr double most_turns = 4 * core::pi;    // rad: angles are written within one turn, by some within two
+constexpr double max_turns = 4 * core::pi;     // rad: angles are written within one turn, by some within two
 constexpr double turn = 0.5, turn_rate = 3.0;  // rad, rad/s
 constexpr double steep = core::pi / 3;         // rad: pitch beyond which roll and heading are not well determined
 
@@ -44,7 +44,7 @@ bool all_finite(const core::TrajectoryData& t, size_t i) {
 }
 
 bool is_possible(const core::TrajectoryData& t, size_t i) {
-  const auto angle = [&](const std::vector<double>& a) { return std::abs(a[i]) <= most_turns; };
+  const auto angle = [&](const std::vector<double>& a) { return std::abs(a[i]) <= max_turns; };
   const bool slow = !t.has_velocity() || std::hypot(t.v_north[i], t.v_east[i], t.v_down[i]) < impossible_speed;
   return std::abs(t.latitude[i]) <= core::pi / 2 && std::abs(t.pitch[i]) <= core::pi / 2 && t.height[i] > lowest_height &&
          t.height[i] < highest_flight && angle(t.longitude) && angle(t.roll) && angle(t.heading) && slow;
@@ -94,7 +94,7 @@ std::vector<PoseFault> pose_faults(const core::TrajectoryData& t) {
     std::erase_if(good, [&](size_t i) { return out[i] != PoseFault::none; });
   };
   const auto apart = [&](size_t i, size_t j) { return std::abs(t.time[i] - t.time[j]); };
-  judge(PoseFault::time, [&](size_t i, size_t j) { return apart(i, j) > most_apart; });
+  judge(PoseFault::time, [&](size_t i, size_t j) { return apart(i, j) > max_apart; });
   std::vector<Eigen::Vector3d> ecef(t.size());
   for (const size_t i : good) ecef[i] = core::ecef_of({t.latitude[i], t.longitude[i], t.height[i]});
   judge(PoseFault::place, [&](size_t i, size_t j) { return (ecef[i] - ecef[j]).norm() > near + fastest * apart(i, j); });

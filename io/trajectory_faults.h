@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Records of a trajectory that cannot be.
+// Impossible records of a trajectory.
 #pragma once
 
 #include <cstdint>

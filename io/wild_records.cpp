@@ -11,10 +11,10 @@
 namespace swath::io {
 namespace {
 
-constexpr double most_left_out = 0.03;   // of the records
-constexpr std::uint64_t always_few = 3;  // of at least `least_records`
-constexpr std::uint64_t least_records = 10;
-constexpr double most_apart = 3600.0;  // s
+constexpr double max_left_out = 0.03;    // of the records
+constexpr std::uint64_t always_few = 3;  // of at least `min_records`
+constexpr std::uint64_t min_records = 10;
+constexpr double max_apart = 3600.0;  // s
 constexpr double latest_week = 10000.0;
 constexpr const char* check_scale = "check the time column, its unit and scale";
 constexpr double year_2100 = 3786912000.0;  // GPS time
@@ -22,14 +22,14 @@ constexpr double year_2100 = 3786912000.0;  // GPS time
 }  // namespace
 
 bool are_few(std::uint64_t left_out, std::uint64_t records) {
-  if (static_cast<double>(left_out) <= most_left_out * static_cast<double>(records)) return true;
-  return left_out <= always_few && records >= least_records;
+  if (static_cast<double>(left_out) <= max_left_out * static_cast<double>(records)) return true;
+  return left_out <= always_few && records >= min_records;
 }
 
 std::vector<size_t> wild_times(const std::vector<double>& time, double period) {
   return contradicted(time.size(), [&](size_t i, size_t j) {
     const double apart = std::abs(time[i] - time[j]);
-    return std::min(apart, std::abs(apart - period)) > most_apart;
+    return std::min(apart, std::abs(apart - period)) > max_apart;
   });
 }
 
@@ -71,7 +71,7 @@ std::vector<double> gps_times(const TimeTags& tags, const std::string& name, con
       out[i] = t;
     } catch (const core::Error& e) {
       if (!first) first.emplace(e.what(), at(i), e.hint(), e.code());
-      if (++thrown > most_looked_at && !are_few(thrown, n)) throw *first;
+      if (++thrown > max_looked_at && !are_few(thrown, n)) throw *first;
     }
   }
   std::uint64_t left_out = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Records of a series that cannot be: their numbers, and how many of them a file may have.
+// Impossible records of a series: their numbers, and how many of them a file may have.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace swath::io {
 bool are_few(std::uint64_t left_out, std::uint64_t records);
 
 /// A reader that has met more impossible records than this stops at once where they cannot be few.
-constexpr std::uint64_t most_looked_at = 300;
+constexpr std::uint64_t max_looked_at = 300;
 
 /// Numbers of the records that contradict more than half of the 5 before and the 5 after them in the file; none in a series of fewer than
 /// five records. `contradict(i, j)`: symmetric.

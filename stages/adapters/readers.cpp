@@ -194,12 +194,12 @@ class CloudReader : public StripReader {
       throw core::Error("points lie far from the box that the file's header states", file_.file.string(),
                         "the header is wrong: write the file again with a tool that makes its box from the points");
   }
-  /// A time that is none is 0 for the stages; the file's own goes to the product.
+  /// An impossible time is 0 for the stages; the file's own goes to the product.
   void set_unknown_times(core::Block& block, core::Tally& tally) const {
-    constexpr double most_weekless = 1e10;
+    constexpr double max_weekless = 1e10;
     for (size_t i = 0; i < block.time.size(); ++i) {
       const double t = block.time[i];
-      if (has_unknown_times_ ? std::abs(t) < most_weekless : io::is_instant(t)) continue;
+      if (has_unknown_times_ ? std::abs(t) < max_weekless : io::is_instant(t)) continue;
       tally.count("points with an impossible time, taken as unknown",
                   file_.file.string() + ": record " + std::to_string(block.record[i]) + ": " + core::format_number(t) + " s");
       block.time[i] = 0.0;

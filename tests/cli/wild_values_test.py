@@ -61,7 +61,7 @@ class WildClouds(Wild):
                 self.run_timed(wrong, "--set", "writers.las.compress=false", config=CLOUD, out=self.folder / "out2")
                 self.assertEqual(las_records(self.folder / "out2" / "points"), records)
 
-    def test_times_that_cannot_be_are_taken_as_unknown(self):
+    def test_impossible_times_are_taken_as_unknown(self):
         for value in (1e18, -5e9, math.nan, math.inf):
             with self.subTest(value=value):
                 survey = cloud_survey(self.folder / "c", ground())
@@ -139,10 +139,10 @@ class WildRecords(Wild):
 
     def test_laser(self):
         for column, value, what in ((0, "1000000000", "records with an impossible time"), (0, "-5", "records with an impossible time"),
-                                    (0, "600000", "records with an impossible time"), (0, "nan", "records whose time or line is none"),
-                                    (1, "nan", "records whose time or line is none"), (2, "nan", "records with a range or angle that is none"),
-                                    (2, "1e9", "records with a range or angle that is none"),
-                                    (3, "inf", "records with a range or angle that is none"), (3, "1e30", "records with a range over 100 km")):
+                                    (0, "600000", "records with an impossible time"), (0, "nan", "records without a valid time or line"),
+                                    (1, "nan", "records without a valid time or line"), (2, "nan", "records with an invalid range or angle"),
+                                    (2, "1e9", "records with an invalid range or angle"),
+                                    (3, "inf", "records with an invalid range or angle"), (3, "1e30", "records with a range over 100 km")):
             for row in (1, 500, -2) if value in ("1000000000", "nan") and column == 0 else (500,):
                 with self.subTest(column=column, value=value, row=row):
                     folder = self.copy()

@@ -46,7 +46,7 @@ TEST(WildRecords, NeitherGapsNorTheWeeksEndAreWild) {
   EXPECT_TRUE(wild_times(week, core::seconds_per_week).empty());
 }
 
-TEST(WildRecords, TimesThatCannotBeBecomeNaNAndAreCounted) {
+TEST(WildRecords, ImpossibleTimesBecomeNaNAndAreCounted) {
   TimeTags tags;
   tags.scale = core::TimeScale::gps_week;
   tags.week = 2317;

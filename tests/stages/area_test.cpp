@@ -41,8 +41,8 @@ TEST(Area, PointsOutsideAreLeftOutAndCountedWithExamples) {
   EXPECT_EQ(tally.left_out(), 4u);
   EXPECT_EQ(tally.of("points outside the survey's area, left out"), 2u);
   EXPECT_EQ(tally.of("points outside the survey's heights, left out"), 2u);
-  const core::Value told = tally.value();
-  EXPECT_EQ(told.find("points outside the survey's area, left out")->find("examples")->items()[0].as_text(),
+  const core::Value counts = tally.value();
+  EXPECT_EQ(counts.find("points outside the survey's area, left out")->find("examples")->items()[0].as_text(),
             "a.las: record 72: x 501000.5, y 5400000, z 300");
 }
 
@@ -53,8 +53,8 @@ TEST(Area, ManyPointsOutsideAreCountedWithTheFirstThree) {
   core::Block b = block_of(std::vector<Eigen::Vector3d>(50, {1e9, 0, 300}));
   core::Tally tally;
   keep_in_area(context, b, "a.las", tally);
-  const core::Value told = tally.value();
-  const core::Value* one = told.find("points outside the survey's area, left out");
+  const core::Value counts = tally.value();
+  const core::Value* one = counts.find("points outside the survey's area, left out");
   EXPECT_EQ(one->find("count")->as_int(), 50);
   EXPECT_EQ(one->find("examples")->items().size(), 3u);
 }
