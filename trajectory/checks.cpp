@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "core/frames.h"
-#include "core/geodesy.h"
 #include "core/statistics.h"
+#include "trajectory/ground_velocity.h"
 
 namespace swath::trajectory {
 
@@ -52,20 +52,6 @@ void check_times(const core::TrajectoryData& d, const CheckOptions& o, Trajector
   if (const double step = core::median(std::move(steps), 0.0); step > 0.0) out.rate = 1.0 / step;
 }
 
-struct Ground {
-  double north = 0.0, east = 0.0;  // m/s
-};
-
-// Mean velocity over the ground from record i to j, from positions.
-Ground between(const core::TrajectoryData& d, size_t i, size_t j) {
-  const double dt = d.time[j] - d.time[i];
-  const double latitude = 0.5 * (d.latitude[i] + d.latitude[j]);
-  const double north = (core::meridian_radius(latitude) + d.height[i]) * (d.latitude[j] - d.latitude[i]);
-  const double east =
-      (core::prime_vertical_radius(latitude) + d.height[i]) * std::cos(latitude) * core::wrap_pi(d.longitude[j] - d.longitude[i]);
-  return {north / dt, east / dt};
-}
-
 void check_track(const core::TrajectoryData& d, const CheckOptions& o, TrajectoryChecks& out) {
   std::vector<double> crab, speed, difference;
   size_t j = 0, k = 0;
@@ -76,12 +62,12 @@ void check_track(const core::TrajectoryData& d, const CheckOptions& o, Trajector
     while (k + 1 < d.size() && d.time[k] - d.time[i] < 0.5 * track_base) ++k;
     const double before = d.time[i] - d.time[j], after = d.time[k] - d.time[i];
     if (!finite(d, i) || !finite(d, j) || !finite(d, k) || before <= 0.0 || after <= 0.0 || before + after > 2.0 * track_base) continue;
-    const Ground v = between(d, j, k);
+    const GroundVelocity v = ground_velocity(d, j, k);
     const double v_ground = std::hypot(v.north, v.east);
     speed.push_back(v_ground);
     if (d.has_velocity()) difference.push_back(std::hypot(d.v_north[i] - v.north, d.v_east[i] - v.east));
     if (v_ground < o.min_speed.value || std::abs(d.roll[i]) > o.level_roll.value) continue;
-    const Ground v1 = between(d, j, i), v2 = between(d, i, k);
+    const GroundVelocity v1 = ground_velocity(d, j, i), v2 = ground_velocity(d, i, k);
     const double turn = core::wrap_pi(std::atan2(v2.east, v2.north) - std::atan2(v1.east, v1.north)) / (0.5 * (before + after));
     if (std::abs(turn) > o.straight_rate.value) continue;
     crab.push_back(core::wrap_pi(d.heading[i] - std::atan2(v.east, v.north)));
@@ -118,6 +104,7 @@ TrajectoryChecks check_trajectory(const core::TrajectoryData& d, const CheckOpti
   check_times(d, o, out);
   check_track(d, o, out);
   check_angles(d, out);
+  out.motion = check_motion(d, o.min_speed);
 
   const auto degrees = [](double a) { return core::format_number(std::round(core::to_degrees(a) * 100.0) / 100.0) + " deg"; };
   if (out.duplicates) out.warnings.push_back(std::to_string(out.duplicates) + " records repeat the time of the one before");
@@ -133,6 +120,7 @@ TrajectoryChecks check_trajectory(const core::TrajectoryData& d, const CheckOpti
   if (out.velocity_difference > velocity_limit)
     out.warnings.push_back("recorded velocity differs from that of the positions by " + core::format_number(out.velocity_difference) +
                            " m/s (median): wander frame, or other axes?");
+  out.warnings.insert(out.warnings.end(), out.motion.warnings.begin(), out.motion.warnings.end());
   return out;
 }
 
@@ -156,6 +144,10 @@ core::Value TrajectoryChecks::value() const {
   v["heading_minus_track_spread_deg"] = core::to_degrees(crab_spread);
   v["speed_median_m_s"] = speed_median;
   v["velocity_difference_m_s"] = velocity_difference;
+  v["turning_s"] = motion.turning;
+  v["roll_per_bank"] = motion.roll_per_bank;
+  v["pitch_per_bank"] = motion.pitch_per_bank;
+  v["climb_per_recorded_climb"] = motion.climb_ratio;
   v["warnings"] = core::Value::array();
   for (const std::string& w : warnings) v["warnings"].push(w);
   return v;

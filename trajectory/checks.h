@@ -8,6 +8,7 @@
 #include "core/option.h"
 #include "core/trajectory_data.h"
 #include "core/value.h"
+#include "trajectory/motion_checks.h"
 
 namespace swath::trajectory {
 
@@ -44,7 +45,8 @@ struct TrajectoryChecks {
   double crab_spread = 0.0;          ///< 1.4826 median absolute deviation, rad
   double speed_median = 0.0;         ///< m/s over the ground
   double velocity_difference = 0.0;  ///< median of |recorded - differenced horizontal velocity|, m/s; 0 where none is recorded
-  std::vector<std::string> warnings;
+  MotionChecks motion;
+  std::vector<std::string> warnings;  ///< those of `motion` among them
 
   core::Value value() const;
 };

@@ -43,6 +43,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 CONFIGS = {"raw": "survey.toml", "sbet": "survey_sbet.toml"}
 SURVEY = {"world.length": "400 m", "world.width": "300 m", "flight.lines": 2, "flight.cross_lines": 1, "scanner.prf": "6 kHz",
           "scanner.frequency": "15 Hz", "control.targets": 3, "control.points": 15}
+GATE = "quality.geometry"
 LEFT_OUT = ("filters.ground", "terrain.", "filters.hag_dem", "writers.gdal", "writers.picture", "report.truth")  # by --short
 
 
@@ -60,6 +61,7 @@ def arguments():
     p.add_argument("--first", type=int, default=0, help="number of the first right survey")
     p.add_argument("--set", action="append", default=[], help="option of every run, as of `swath run`")
     p.add_argument("--short", action="store_true")
+    p.add_argument("--gate", action="store_true", help=f"put {GATE} behind readers.laser in configs without it")
     p.add_argument("--jobs", type=int, default=1)
     p.add_argument("--timeout", type=float, default=120.0, help="s, after which a run hangs")
     p.add_argument("--json", type=pathlib.Path, help="results, one record for each run")
@@ -80,10 +82,14 @@ class Bench:
 
     def config(self, chain):
         file = self.o.configs / CONFIGS[chain]
-        if not self.o.short:
+        if not self.o.short and not self.o.gate:
             return file
         tree = tomllib.loads(file.read_text())
-        tree["stage"] = [s for s in tree["stage"] if not s["type"].startswith(LEFT_OUT)]
+        if self.o.short:
+            tree["stage"] = [s for s in tree["stage"] if not s["type"].startswith(LEFT_OUT)]
+        if self.o.gate and not any(s["type"] == GATE for s in tree["stage"]):
+            behind = next(k for k, s in enumerate(tree["stage"]) if s["type"] == "readers.laser")
+            tree["stage"].insert(behind + 1, {"type": GATE})
         short = self.scratch / file.name
         short.write_text(toml_text(tree))
         return short
