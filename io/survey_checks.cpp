@@ -2,6 +2,7 @@
 #include "io/survey_checks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "core/crs.h"
@@ -52,6 +53,9 @@ class Checks {
     for (size_t i = 0; i < survey_.breaklines.size(); ++i) exists(survey_.breaklines[i].file, numbered("breaklines", i) + ".file");
     if (survey_.hangar) exists(*survey_.hangar, "hangar");
     for (size_t i = 0; i < survey_.points.size(); ++i) exists(survey_.points[i].file, numbered("points", i) + ".file");
+    repeated();
+    lever_arm(survey_.calibration.lever_arm_scanner, "calibration.lever_arm_scanner");
+    lever_arm(survey_.antenna.lever_arm, "antenna.lever_arm");
     lines();
     const TruthFiles& t = survey_.truth;
     for (const auto& [name, file] :
@@ -322,6 +326,34 @@ class Checks {
     for (size_t k = 1; k < order.size(); ++k)
       if (survey_.lines[order[k]].start < survey_.lines[order[k - 1]].end)
         fault(numbered("line", order[k]) + ".start", "the line starts before " + numbered("line", order[k - 1]) + " ends");
+  }
+
+  /// Records that would be read twice. One text file may serve two tables with other columns, or other lines.
+  void repeated() {
+    const auto same_columns = [](const LaserColumns& a, const LaserColumns& b) {
+      return a.range == b.range && a.scan_angle == b.scan_angle && a.x == b.x;
+    };
+    for (size_t i = 0; i < survey_.laser.size(); ++i)
+      for (size_t j = 0; j < i; ++j) {
+        const LaserFile &a = survey_.laser[j], &b = survey_.laser[i];
+        if (same_file(a.file, b.file) && a.line == b.line && a.model == b.model && same_columns(a.columns, b.columns))
+          fault(numbered("laser", i) + ".file", "the file is that of " + numbered("laser", j) + ": its records would be read twice");
+      }
+    for (size_t i = 0; i < survey_.points.size(); ++i)
+      for (size_t j = 0; j < i; ++j)
+        if (same_file(survey_.points[j].file, survey_.points[i].file))
+          fault(numbered("points", i) + ".file", "the file is that of " + numbered("points", j) + ": its points would be read twice");
+  }
+
+  bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) const {
+    return !a.empty() && resolve(survey_, a).lexically_normal() == resolve(survey_, b).lexically_normal();
+  }
+
+  void lever_arm(const std::array<core::Metres, 3>& arm, const std::string& key) {
+    constexpr double longest = 100.0;  // m: the longest aircraft has 84
+    for (const core::Metres part : arm)
+      if (std::abs(part.value) > longest)
+        return fault(key, core::format_number(part.value) + " m is farther than any aircraft is long", "millimetres stated as metres?");
   }
 
   bool tree_at(const std::string& key) const {

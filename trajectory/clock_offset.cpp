@@ -19,6 +19,7 @@
 #include "core/frames.h"
 #include "core/geodesy.h"
 #include "core/statistics.h"
+#include "core/time.h"
 #include "trajectory/clock_windows.h"
 #include "trajectory/latency.h"
 
@@ -42,6 +43,8 @@ constexpr double sure_sigmas = 4.0;
 constexpr double alike = 5.0;  // difference of log likelihoods below which two offsets fit alike
 constexpr double apart = 0.5;  // s: nearer minima are one
 constexpr int rounds = 15;
+constexpr double leap_search = 0.5;      // s about the leap seconds: clocks that one receiver set
+constexpr double leap_contrast = 0.8;    // records that fit have 0.95
 constexpr double velocity_search = 1.0;  // s
 
 /// What the IMU senses at an offset between the grid's, by the cubic through the four around; and its derivative by the offset.
@@ -271,6 +274,21 @@ TimeOffset imu_clock_offset(const ImuPath& path, const core::GnssData& gnss, con
     if (!out.determinable && out.used == 0) out = found;
   }
   return out;
+}
+
+std::string leap_seconds_between(const ImuPath& path, const core::GnssData& gnss, const core::ImuErrorModel& spec,
+                                 const Vector3d& lever_arm, double lever_arm_sigma) {
+  if (gnss.time.empty()) return {};
+  const int leap = core::gps_minus_utc_at_gps(gnss.time.front());
+  for (const int by : {leap, -leap}) {
+    core::GnssData moved = gnss;
+    for (double& t : moved.time) t += by;
+    const TimeOffset rest = imu_clock_offset(path, moved, spec, lever_arm, lever_arm_sigma, leap_search);
+    if (!rest.determinable || rest.contrast < leap_contrast) continue;
+    return std::string("they fit with the fixes ") + std::to_string(leap) + " s " + (by > 0 ? "later" : "earlier") +
+           ": are the times of the " + (by > 0 ? "GNSS" : "IMU") + " records UTC (" + std::to_string(leap) + " leap seconds)?";
+  }
+  return {};
 }
 
 TimeOffset velocity_lag(const core::GnssData& gnss) {

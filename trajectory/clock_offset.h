@@ -41,6 +41,11 @@ struct TimeOffset {
 TimeOffset imu_clock_offset(const ImuPath& path, const core::GnssData& gnss, const core::ImuErrorModel& spec,
                             const Eigen::Vector3d& lever_arm, double lever_arm_sigma, double search);
 
+/// Do the fixes fit the IMU's records only when their times are moved by the leap seconds of their date? In words, for a hint; empty where
+/// not.
+std::string leap_seconds_between(const ImuPath& path, const core::GnssData& gnss, const core::ImuErrorModel& spec,
+                                 const Eigen::Vector3d& lever_arm, double lever_arm_sigma);
+
 /// How late the velocities are against the positions of the same fixes (positive: late): means of neighbouring velocities against
 /// differences of positions.
 TimeOffset velocity_lag(const core::GnssData& gnss);

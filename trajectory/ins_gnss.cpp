@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/frames.h"
 #include "core/geodesy.h"
+#include "core/time_gap.h"
 #include "trajectory/alignment.h"
 #include "trajectory/ins_output.h"
 #include "trajectory/ins_report.h"
@@ -106,10 +107,12 @@ Trimmed trim(core::ImuData imu, core::GnssData gnss) {
     throw core::Error("only " + std::to_string(last - first) + " fixes lie within the IMU's record from " + seconds(begin) + " to " +
                           seconds(end) + " s GPS time, four are the least",
                       "trajectory.ins_gnss", "give longer records");
+  const double apart = 0.5 * (begin + end - gnss.time.front() - gnss.time.back());
+  const std::string gap = core::usual_time_gap(apart, end - begin + gnss.time.back() - gnss.time.front());
   if (last <= first)
     throw core::Error("IMU and GNSS do not overlap: IMU from " + seconds(begin) + " to " + seconds(end) + ", fixes from " +
                           seconds(gnss.time.front()) + " to " + seconds(gnss.time.back()) + " s GPS time",
-                      "trajectory.ins_gnss", "check the time scales, weeks and dates of both");
+                      "trajectory.ins_gnss", gap.empty() ? "check the time scales, weeks and dates of both" : gap);
   keep(gnss.time, first, last);
   keep(gnss.position, first, last);
   keep(gnss.covariance, first, last);
@@ -321,7 +324,11 @@ InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core
   try {
     return smooth_path(path, records.gnss, spec, lever_arm, lever_arm_sigma, options, clocks, progress);
   } catch (const core::Error& e) {
-    if (!clocks.apart()) throw;
+    if (!clocks.apart()) {
+      const std::string leap = leap_seconds_between(path, records.gnss, spec, lever_arm, lever_arm_sigma);
+      if (leap.empty()) throw;
+      throw core::Error(e.what(), e.where(), leap + (e.hint().empty() ? "" : " Otherwise " + e.hint()), e.code());
+    }
     throw core::Error(e.what(), e.where(), clocks.advice() + (e.hint().empty() ? "" : "; otherwise " + e.hint()), e.code());
   }
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mistakes in laser records, calibration, flight lines, control and CRS. navigation_cases.py holds those of trajectory, IMU and GNSS."""
+"""Mistakes in laser records, calibration, flight lines, control and CRS. trajectory_cases.py and navigation_cases.py hold the others."""
 from dataclasses import dataclass
 from typing import Callable
 
@@ -75,9 +75,12 @@ def _(s, factor):
     s["calibration"]["scan_scale"] = factor
 
 
-@each([("model_conical", "wrong scanner model: conical", "conical", "scanner_model"), ("model_palmer", "wrong scanner model: palmer", "palmer", "scanner_model"),
-       ("model_profile", "wrong scanner model: profile", "profile", "scanner_model"), ("model_mirror", "wrong scanner model: mirror", "mirror", "scanner_model"),
-       ("model_polygon", "wrong scanner model: polygon for an oscillating mirror", "polygon", "scanner_model")], cause=r"scanner\.model|scanner model|another model")
+@each([("model_conical", "wrong scanner model: conical", "conical", "scanner_model"),
+       ("model_palmer", "wrong scanner model: palmer", "palmer", "scanner_model"),
+       ("model_profile", "wrong scanner model: profile", "profile", "scanner_model"), ("model_mirror", "wrong scanner model: mirror", "mirror",
+                                                                                       "scanner_model"),
+       ("model_polygon", "wrong scanner model: polygon for an oscillating mirror", "polygon",
+        "scanner_model")], cause=r"scanner\.model|scanner model|another model")
 def _(s, model):
     if s["scanner"]["model"] == model:
         raise NotApplicable("the right one")
@@ -96,7 +99,8 @@ def _(s, unit):
        ("range_cm", "ranges in centimetres stated as metres", 100.0, "range_centimetres range_scale"),
        ("range_km", "ranges in kilometres stated as metres", 1e-3, "range_kilometres range_scale"),
        ("range_two_way", "two-way ranges", 2.0, "range_two_way"), ("range_half", "ranges halved twice", 0.5, "range_two_way"),
-       ("range_300_ppm", "air's 300 ppm applied twice", 1.0003, "", {"reason": "0.1 m of height for all lines at this height, unless control shows it"})],
+       ("range_300_ppm", "air's 300 ppm applied twice", 1.0003, "",
+        {"reason": "0.1 m of height for all lines at this height, unless control shows it"})],
       cause="range_unit|range scale|ranges? .*(unit|twice|half|long|short|factor)")
 def _(s, factor):
     s.scale_ranges(factor)
@@ -145,7 +149,8 @@ def later(s, seconds):
 
 
 @each([(f"laser_time_{t}", f"laser times {t} s late", t, ids, {"shift": t})
-       for t, ids in ((0.01, "time_offset"), (0.1, "time_offset"), (-0.1, "time_offset"), (1.0, "time_offset"), (18.0, "leap_seconds"), (-18.0, "leap_seconds"))],
+       for t, ids in ((0.01, "time_offset"), (0.1, "time_offset"), (-0.1, "time_offset"), (1.0, "time_offset"), (18.0, "leap_seconds"),
+                      (-18.0, "leap_seconds"))],
       cause=TIME_WORDS)
 def _(s, seconds):
     later(s, seconds)
@@ -224,8 +229,10 @@ def _(s):
 @each([("mount_rolled_90", "scanner mounted on its side: roll 90 deg too much", ("roll", 90), "mount_rolled"),
        ("mount_rolled_180", "scanner stated upside down: roll 180 deg too much", ("roll", 180), "mount_rolled"),
        ("mount_pitched_90", "mount pitched by 90 deg", ("pitch", 90), "mount_rolled mount_pitched axes_swapped"),
-       ("mount_turned_180", "scanner stated backwards: heading 180 deg too much", ("heading", 180), "mount_turned mount_rotated scan_angle_sign axes_swapped"),
-       ("mount_turned_90", "scanner stated across: heading 90 deg too much", ("heading", 90), "mount_turned mount_rotated axes_swapped")], cause="mount|upside|boresight")
+       ("mount_turned_180", "scanner stated backwards: heading 180 deg too much", ("heading", 180),
+        "mount_turned mount_rotated scan_angle_sign axes_swapped"),
+       ("mount_turned_90", "scanner stated across: heading 90 deg too much", ("heading", 90),
+        "mount_turned mount_rotated axes_swapped")], cause="mount|upside|boresight")
 def _(s, turn):
     axis, degrees = turn
     s["calibration"][axis] = f"{number(s['calibration'][axis]) + degrees} deg"
@@ -255,7 +262,8 @@ def _(s, change):
     lever(s, change)
 
 
-@each([("windows_20_s", "flight lines' windows 20 s late", 20.0, "line_windows"), ("windows_2_s", "flight lines' windows 2 s late", 2.0, "line_windows")],
+@each([("windows_20_s", "flight lines' windows 20 s late", 20.0, "line_windows"),
+       ("windows_2_s", "flight lines' windows 2 s late", 2.0, "line_windows")],
       cause=WINDOW_WORDS)
 def _(s, seconds):
     shifted_windows(s, seconds)
@@ -318,7 +326,8 @@ def _(s):
         control["crs"] = neighbour(s.tree["crs"])
 
 
-@add("control_sigma", "control's sigmas in millimetres stated as metres", reason="a sigma that is too large hides nothing but its own weight", cause="control|sigma")
+@add("control_sigma", "control's sigmas in millimetres stated as metres", reason="a sigma that is too large hides nothing but its own weight",
+     cause="control|sigma")
 def _(s):
     s.control_rows(lambda row: row.update(sigma_h=str(float(row["sigma_h"]) * 1000), sigma_v=str(float(row["sigma_v"]) * 1000)))
 
@@ -337,7 +346,8 @@ def _(s, change):
     s.tree["crs"] = change(s.tree["crs"])
 
 
-@add("crs_datum", "products' CRS in another datum (ETRS89 for WGS84)", reason="WGS84 and ETRS89 are the same to PROJ; the records state no frame", other_crs=True)
+@add("crs_datum", "products' CRS in another datum (ETRS89 for WGS84)", reason="WGS84 and ETRS89 are the same to PROJ; the records state no frame",
+     other_crs=True)
 def _(s):
     if not s.tree["crs"].startswith("EPSG:326"):
         raise NotApplicable("not in Europe's zones")

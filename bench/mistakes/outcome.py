@@ -103,15 +103,17 @@ def sentences(findings, inside=False):
         yield findings
 
 
-def messages(done):
-    """{message without its numbers: message} of a run that ended, without the counts of what was done."""
+def messages(done, of_gate=True):
+    """{message without its numbers: message} of a run that ended, without the counts of what was done; `of_gate`: with those of geometry."""
     found = done.stderr.splitlines()
     for stage in done.report.get("stages", []):
+        if "geometry" in stage["type"] and not of_gate:
+            continue
         judged = geometry({"stages": [stage]}) if "geometry" in stage["type"] else stage.get("findings")
         if not RUN_COUNTS.match(stage["type"]) or "geometry" in stage["type"]:
             found += sentences(judged)
             found += [w for w in stage.get("tally") or {} if not PLAIN_COUNTS.match(w)]
-    found += sentences(done.report.get("geometry"))
+    found += sentences(done.report.get("geometry")) if of_gate else []
     found += sentences({k: v for k, v in done.report.items() if k in ("warnings", "notes")})
     found = [FOLDERS.sub("", text) for text in found]
     return {re.sub(r"-?[\d.]+(e[-+]?\d+)?", "#", text): text for text in found}

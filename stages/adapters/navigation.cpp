@@ -9,6 +9,7 @@
 #include "io/gnss_file.h"
 #include "io/imu_file.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/place.h"
 
 namespace swath::stages {
 namespace {
@@ -80,6 +81,7 @@ class GnssReader : public OptionStage<NoOptions> {
       findings["with_velocity"] =
           std::count_if(gnss->velocity.begin(), gnss->velocity.end(), [](const Eigen::Vector3d& v) { return v.allFinite(); });
     context.gnss = std::move(gnss);
+    check_place_of_fixes(context);
   }
 };
 

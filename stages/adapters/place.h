@@ -12,6 +12,9 @@ namespace swath::stages {
 /// whole kilometres; height 0.
 Eigen::Vector3d origin_near(const Context& context, const Eigen::Vector3d& position);
 
+/// Throws core::Error where the median of context.gnss lies far outside the CRS's area of use, before anything is computed from the fixes.
+void check_place_of_fixes(const Context& context);
+
 /// For every stage that sets context.trajectory: sets context.origin by its first record, and context.area. A survey beside the CRS's area
 /// of use is told; one far outside is refused (scale and convergence would be absurd): core::Error. A run without a map (no projected CRS)
 /// is left as it is.

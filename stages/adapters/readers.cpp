@@ -9,6 +9,7 @@
 #include "core/time.h"
 #include "io/cloud_extent.h"
 #include "io/las_reader.h"
+#include "io/laser_checks.h"
 #include "io/laser_file.h"
 #include "io/trajectory_file.h"
 #include "io/wild_records.h"
@@ -102,12 +103,15 @@ class LaserReader : public OptionStage<NoOptions> {
   }
   std::vector<Strip> strips(const Context& context, core::Tally& tally) const override {
     strips_ = io::scan(context.survey, tally);
+    io::check_laser(context.survey, strips_, tally);
     std::vector<Strip> out;
     for (size_t i = 0; i < strips_.size(); ++i)
-      out.push_back({strips_[i].file, i, strips_[i].line, strips_[i].name(context.survey), strips_[i].records});
+      out.push_back({strips_[i].file, i, strips_[i].line, strips_[i].name(context.survey), strips_[i].records, strips_[i].first_time,
+                     strips_[i].last_time});
     return out;
   }
   std::unique_ptr<StripReader> open(const Context& context, const Strip& strip) const override {
+    if (context.trajectory) io::hold_common_times(context.survey, strips_, context.trajectory->data().time);
     return std::make_unique<LaserStrip>(context.survey, strips_[strip.index]);
   }
   void check(const Context& context) const override {

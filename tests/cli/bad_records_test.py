@@ -243,7 +243,7 @@ class Trajectories(Case):
 
     def test_no_return_covered(self):
         substitute(self.toml, "week = 2317\n\n[line_time]", "week = 2318\n\n[line_time]")
-        self.assert_bad_data(self.toml, "the trajectory covers none of them", "time scales")
+        self.assert_bad_data(self.toml, "the trajectory covers no laser record", "1 week apart")
 
     def test_returns_that_are_not_covered_are_left_out_and_counted(self):
         whole = stage(self.run_ok(self.toml, out=self.folder / "whole"), "georeference")["counts"]["in"]

@@ -93,6 +93,21 @@ const std::string given =
 
 TEST_F(NavigationChecks, ATrajectoryMayBeAllThatASurveyHas) { EXPECT_EQ(fault_of(given), ""); }
 
+TEST_F(NavigationChecks, TheSameRecordsTwiceAreRefused) {
+  const std::string again = "[[laser]]\nfile = \"./laser.csv\"\nangle_unit = \"deg\"\ntime = {scale = \"gps\"}\n";
+  const std::string columns = "columns = {time = \"t\", range = \"r\", scan_angle = \"a\"}\n";
+  EXPECT_NE(fault_of(laser + again + columns + given).find("laser[2].file"), std::string::npos);
+  EXPECT_EQ(fault_of(laser + again + with("\"r\"", "\"r2\"", columns) + given), "") << "a second return of the same rows";
+  EXPECT_EQ(fault_of(laser + again + columns + "line = 2\n" + given), "");
+}
+
+TEST_F(NavigationChecks, ALeverArmInMillimetresIsRefused) {
+  const std::string text =
+      fault_of(navigation.substr(0, navigation.find(antenna)) + "[antenna]\nlever_arm = [\"0 m\", \"0 m\", \"-1236 m\"]\n");
+  EXPECT_NE(text.find("antenna.lever_arm"), std::string::npos) << text;
+  EXPECT_NE(text.find("millimetres"), std::string::npos) << text;
+}
+
 TEST_F(NavigationChecks, AProfileLineInASurveyByAMirror) {
   const std::string lines = laser + "[[laser]]\nfile = \"laser.csv\"\ntime = {scale = \"gps\"}\ncolumns = {time = \"t\", range = \"r\"}\n";
   const std::string text = fault_of(lines + given);

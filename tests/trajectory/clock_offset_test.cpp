@@ -157,6 +157,24 @@ TEST(ClockOffset, NamedByTheSmootherAndInItsRefusal) {
   EXPECT_EQ(test::warning_with(run.on(lines_and_turns()), "clocks"), "");
 }
 
+TEST(ClockOffset, LeapSecondsAreNamed) {
+  const test::Course& course = lines_and_turns();
+  for (const ImuGrade grade : {ImuGrade::tactical, ImuGrade::mems}) {
+    const core::ImuErrorModel spec = core::error_model_of(grade);
+    const core::ImuData imu = test::with_errors(course.exact.imu, spec, 3);
+    const core::GnssData gnss = test::with_errors(course.exact.gnss, {}, 3);
+    const auto named = [&](double imu_late, double gnss_late) {
+      core::GnssData moved = gnss;
+      for (double& t : moved.time) t += gnss_late;
+      return leap_seconds_between(make_path(late(imu, imu_late), 10), moved, spec, course.sensors.lever, 0.02);
+    };
+    EXPECT_NE(named(0, -18.0).find("GNSS records UTC"), std::string::npos) << named(0, -18.0);
+    EXPECT_NE(named(-18.0, 0).find("IMU records UTC"), std::string::npos) << named(-18.0, 0);
+    EXPECT_EQ(named(0, 0), "");
+    EXPECT_EQ(named(0, 5.0), "");
+  }
+}
+
 TEST(VelocityLag, LeavesTheVelocitiesOutAndSaysSo) {
   Trial run = trial_of(ImuGrade::mems, 4);
   run.fixes.velocity = true;

@@ -326,7 +326,7 @@ TEST(InsGnss, NoOverlap) {
   run.change_gnss = [](core::GnssData& g) {
     for (double& t : g.time) t -= 18 + 604800;
   };
-  expect_error(run, {"do not overlap", "IMU from 1401", "fixes from 1400", "hint", "weeks"});
+  expect_error(run, {"do not overlap", "IMU from 1401", "fixes from 1400", "hint", "1 week apart"});
 }
 
 TEST(InsGnss, TooFewRecords) {

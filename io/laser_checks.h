@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a surveyor sees of laser records at a glance: lines without records, angles and ranges that no scanner has.
+#pragma once
+
+#include <vector>
+
+#include "core/report.h"
+#include "io/laser_file.h"
+
+namespace swath::io {
+
+/// Counts flight lines that look wrong, with first examples; changes nothing. `strips`: all of the survey, as scan() gives them. Of each
+/// the first records are read, and with them what LaserSource throws.
+void check_laser(const Survey& survey, const std::vector<StripInfo>& strips, core::Tally& tally);
+
+}  // namespace swath::io

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/laser_checks.h"
+
+#include <cmath>
+#include <string>
+
+#include "tests/world/support.h"
+
+namespace swath::io {
+namespace {
+
+class LaserChecks : public ::testing::Test {
+ protected:
+  LaserChecks() {
+    LaserFile& f = survey_.laser.emplace_back();
+    f.file = folder_ / "a.csv";
+    f.time = {core::TimeScale::gps, {}, ""};
+    f.angle_unit = AngleUnit::deg;
+    f.columns.time = "t";
+    f.columns.range = "r";
+    f.columns.scan_angle = "a";
+    f.columns.line = "line";
+    survey_.line_time.scale = core::TimeScale::gps;
+    survey_.lines = {{1, "", core::Seconds(0), core::Seconds(100)}, {2, "", core::Seconds(200), core::Seconds(300)}};
+  }
+  /// Records once a second: line 1 as long as stated, line 2 until `last`; a swath of `half` deg, ranges about `range` m.
+  std::string told(double half, double range, int last = 300) {
+    std::string rows = "t,line,r,a\n";
+    for (int t = 0; t <= last; ++t)
+      if (t <= 100 || t >= 200)
+        rows += std::to_string(t) + (t <= 100 ? ",1," : ",2,") + std::to_string(range + t % 7) + "," + std::to_string(half * std::sin(t)) +
+                "\n";
+    test::write_bytes(folder_ / "a.csv", rows);
+    core::Tally tally;
+    check_laser(survey_, scan(survey_, tally), tally);
+    std::string names;
+    for (const auto& [what, entry] : tally.value().members()) names += what + "\n";
+    return names;
+  }
+  test::TemporaryFolder folder_;
+  Survey survey_;
+};
+
+TEST_F(LaserChecks, RightRecordsSayNothing) {
+  EXPECT_EQ(told(20, 350), "");
+  EXPECT_EQ(told(0.003, 350), "") << "a mirror that is parked";
+  EXPECT_EQ(told(20, 350, 280), "") << "a window of some seconds more";
+}
+
+TEST_F(LaserChecks, ALineWithoutRecordsIsCounted) {
+  EXPECT_NE(told(20, 350, 150).find("without a record"), std::string::npos);
+  EXPECT_NE(told(20, 350, 250).find("fill less"), std::string::npos);
+}
+
+TEST_F(LaserChecks, RadiansReadAsDegreesAreCounted) { EXPECT_NE(told(0.35, 350).find("radians stated as degrees"), std::string::npos); }
+
+TEST_F(LaserChecks, RangesOfNoSurveyAreCounted) {
+  EXPECT_NE(told(20, 35000).find("range_unit"), std::string::npos);
+  EXPECT_EQ(told(20, 8000), "");
+}
+
+}  // namespace
+}  // namespace swath::io
