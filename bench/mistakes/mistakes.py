@@ -144,6 +144,8 @@ def judge(case, done, right_run, error, right_error):
 def mistakes(bench):
     o = bench.o
     options = {"seed": o.seed, "world.scene": o.scene, "scanner.pattern": o.scanner, "imu.file": "true", "gnss.file": "true", **SURVEY}
+    if o.scene not in right.BUILT:
+        options["control.targets"] = 0
     folder = bench.simulate("right", options)
     truth = np.load(folder / "truth/returns.npy")
     other = []

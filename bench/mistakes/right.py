@@ -5,6 +5,7 @@ import numpy as np
 PATTERNS = ("triangle", "sine", "polygon", "profile", "beam", "multibeam", "conical", "palmer")
 SCENES = ("flat", "hills", "steep", "forest", "town", "mixed", "airfield", "zoo")
 PLACES = ((47.906, 10.512, 32632), (-33.9, 18.5, 32734), (60.2, 24.9, 32635), (1.3, 103.8, 32648), (-41.2, 174.8, 32760), (40.0, -105.2, 32613))
+BUILT = ("town", "mixed", "airfield")  # scenes with roofs to survey
 RETURNS = 40000  # pulses of a line
 
 
@@ -32,7 +33,7 @@ def options(index):
            "mounting.deliver": str(draw.choice(["truth", "drawn"])), "noise.line_shift": f"{draw.uniform(0, 4):.1f} cm",
            "noise.line_attitude": f"{draw.uniform(0, 0.006):.4f} deg", "output.truth_returns": "true"}
     if draw.integers(2):
-        out.update({"control.points": 12, "control.targets": 2 if scene in ("town", "mixed", "airfield") else 0})
+        out.update({"control.points": 12, "control.targets": 2 if scene in BUILT else 0})
     if draw.integers(3) == 0:
         out["flight.still"] = "60 s"
     if draw.integers(3) == 0:

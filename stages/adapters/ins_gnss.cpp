@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "core/error.h"
@@ -11,6 +12,7 @@
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/place.h"
 #include "stages/trajectory_charts.h"
+#include "trajectory/checks.h"
 #include "trajectory/compare.h"
 #include "trajectory/ins_gnss.h"
 
@@ -104,6 +106,10 @@ class InsGnss : public OptionStage<InsGnssStageOptions> {
       if (key != "warnings") findings[key] = value;
     if (const core::Value* warnings = result.report.find("warnings"); warnings && warnings->is_array())
       for (const core::Value& w : warnings->items()) tally.count(w.as_text());
+    // Axes that are turned fit the fixes, but not the way the aircraft flies.
+    trajectory::CheckOptions motion_alone;
+    motion_alone.max_gap.value = std::numeric_limits<double>::infinity();
+    for (const std::string& w : trajectory::check_trajectory(result.trajectory, motion_alone).warnings) tally.count(w);
 
     const auto errors = compare_with_truth(context, result.trajectory, result.report, findings);
     write_products(context, result, errors);
