@@ -21,6 +21,7 @@ heights, IMU grades and places and counts false alarms. The gate's share of the 
   mistakes.py --short                without terrain and pictures: a third of the time
 """
 import argparse
+import collections
 import concurrent.futures
 import json
 import os
@@ -245,7 +246,7 @@ def right_surveys(bench):
             records.append(dict(index=index, chain=chain, code=done.code, alarm=alarm, verdict=gate.get("verdict", ""),
                                 ids=outcome.identifiers(gate.get("named")),
                                 error=error, cpu=done.cpu, gate=outcome.gate_seconds(done.report), stderr=done.stderr[-500:], returns=len(truth),
-                                messages=list(outcome.messages(done).values()), options=options))
+                                messages=outcome.messages(done), options=options))
             r = records[-1]
             print(f"| {index} | {chain} | {options['world.scene']} | {options['scanner.pattern']} | {options['flight.lines']} + {options['flight.cross_lines']} | "
                   f"{options['flight.height']} | {options['imu.grade']} | {len(truth)} | {error:.2f} | {done.code} | {r['verdict'] or '-'} | "
@@ -254,7 +255,9 @@ def right_surveys(bench):
             shutil.rmtree(folder)
             shutil.rmtree(bench.scratch / f"right_copy_{index}")
     print(f"\n{len(records)} runs of {bench.o.right} right surveys: {sum(r['alarm'] for r in records)} false alarms, "
-          f"{sum(r['code'] not in (0, 3) for r in records)} did not end well")
+          f"{sum(r['code'] not in (0, 3) for r in records)} did not end well; what they say:")
+    for text, count in collections.Counter(text for r in records for text in r["messages"]).most_common():
+        print(f"- {count} times: {text[:200]}")
     return records
 
 

@@ -49,7 +49,7 @@ def _(s):
     s.sbet()[:, COLUMN["height"]] -= UNDULATION
 
 
-ATTITUDE_WORDS = r"roll or pitch reaches|degrees|radians|roll and pitch .*swap|axes"
+ATTITUDE_WORDS = r"roll or pitch reaches|angle unit|degrees|radians|roll and pitch .*swap|axes"
 
 
 @each([("sbet_roll", "SBET: sign of roll", ("roll",), "roll_sign"), ("sbet_pitch", "SBET: sign of pitch", ("pitch",), "pitch_sign"),
