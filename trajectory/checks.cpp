@@ -4,6 +4,7 @@
 #include "trajectory/checks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/frames.h"
@@ -14,12 +15,14 @@ namespace swath::trajectory {
 
 namespace {
 
-constexpr double track_base = 1.0;                   // s over which the track is differenced
-constexpr double crab_limit = 20.0 * core::degree;   // wind of 22 m/s across at 60 m/s
-constexpr double spread_limit = 5.0 * core::degree;  // gusts move the crab angle by 1-2 deg
-constexpr double tilt_limit = 80.0 * core::degree;   // no survey aircraft flies so
-constexpr double tiny_angle = 0.1 * core::degree;    // the tilt of every aircraft exceeds it somewhere
-constexpr double velocity_limit = 1.0;               // m/s between recorded and differenced velocity
+constexpr double track_base = 1.0;                    // s over which the track is differenced
+constexpr double crab_limit = 20.0 * core::degree;    // wind of 22 m/s across at 60 m/s
+constexpr double spread_limit = 5.0 * core::degree;   // gusts move the crab angle by 1-2 deg
+constexpr double turned_limit = 40.0 * core::degree;  // over all courses: crab of 20 deg to either side makes 30
+constexpr size_t courses = 12;                        // of 30 deg
+constexpr double tilt_limit = 80.0 * core::degree;    // no survey aircraft flies so
+constexpr double tiny_angle = 0.1 * core::degree;     // the tilt of every aircraft exceeds it somewhere
+constexpr double velocity_limit = 1.0;                // m/s between recorded and differenced velocity
 constexpr double mad_to_sigma = 1.4826;
 
 // Median of angles about their mean direction.
@@ -33,6 +36,23 @@ double median_angle(const std::vector<double>& angles, double& spread) {
   for (double& a : about) a = std::abs(a - m);
   spread = mad_to_sigma * core::median(about, 0.0);
   return core::wrap_pi(mean + m);
+}
+
+// Scatter about the median of each course: wind turns the nose to one side on a line and to the other on the line back.
+double spread_by_course(const std::vector<double>& angles, const std::vector<double>& course) {
+  std::array<std::vector<double>, courses> of;
+  for (size_t i = 0; i < angles.size(); ++i) {
+    const auto at = static_cast<size_t>(core::wrap_two_pi(course[i]) / (2.0 * core::pi) * static_cast<double>(courses));
+    of[std::min(at, courses - 1)].push_back(angles[i]);
+  }
+  std::vector<double> about;
+  for (const std::vector<double>& some : of) {
+    if (some.empty()) continue;
+    double ignored = 0.0;
+    const double middle = median_angle(some, ignored);
+    for (const double a : some) about.push_back(std::abs(core::wrap_pi(a - middle)));
+  }
+  return mad_to_sigma * core::median(std::move(about), 0.0);
 }
 
 bool finite(const core::TrajectoryData& d, size_t i) {
@@ -53,7 +73,7 @@ void check_times(const core::TrajectoryData& d, const CheckOptions& o, Trajector
 }
 
 void check_track(const core::TrajectoryData& d, const CheckOptions& o, TrajectoryChecks& out) {
-  std::vector<double> crab, speed, difference;
+  std::vector<double> crab, course, speed, difference;
   size_t j = 0, k = 0;
   for (size_t i = 0; i < d.size(); ++i) {
     // Records half a base before and after i; the time may stand still or jump in data that Trajectory would refuse.
@@ -70,12 +90,15 @@ void check_track(const core::TrajectoryData& d, const CheckOptions& o, Trajector
     const GroundVelocity v1 = ground_velocity(d, j, i), v2 = ground_velocity(d, i, k);
     const double turn = core::wrap_pi(std::atan2(v2.east, v2.north) - std::atan2(v1.east, v1.north)) / (0.5 * (before + after));
     if (std::abs(turn) > o.straight_rate.value) continue;
-    crab.push_back(core::wrap_pi(d.heading[i] - std::atan2(v.east, v.north)));
+    course.push_back(std::atan2(v.east, v.north));
+    crab.push_back(core::wrap_pi(d.heading[i] - course.back()));
   }
   out.straight = crab.size();
   out.speed_median = core::median(std::move(speed));
   out.velocity_difference = core::median(std::move(difference), 0.0);
-  if (!crab.empty()) out.crab_median = median_angle(crab, out.crab_spread);
+  if (crab.empty()) return;
+  out.crab_median = median_angle(crab, out.crab_range);
+  out.crab_spread = spread_by_course(crab, course);
 }
 
 void check_angles(const core::TrajectoryData& d, TrajectoryChecks& out) {
@@ -117,6 +140,9 @@ TrajectoryChecks check_trajectory(const core::TrajectoryData& d, const CheckOpti
                            " in straight flight: wander angle not removed (or removed twice), IMU axes turned, or another north?");
   if (out.straight > 0 && out.crab_spread > spread_limit)
     out.warnings.push_back("heading scatters about the track by " + degrees(out.crab_spread) + " in straight flight");
+  else if (out.straight > 0 && out.crab_range > turned_limit)
+    out.warnings.push_back("heading differs from the track by another angle on each course (spread " + degrees(out.crab_range) +
+                           "): sign of heading, or another unit?");
   if (out.velocity_difference > velocity_limit)
     out.warnings.push_back("recorded velocity differs from that of the positions by " + core::format_number(out.velocity_difference) +
                            " m/s (median): wander frame, or other axes?");

@@ -47,6 +47,36 @@ TEST(TrajectoryChecks, CrabAngleIsMeasured) {
   EXPECT_LT(c.velocity_difference, 0.05);
 }
 
+// Line and line back.
+core::TrajectoryData there_and_back(double track, double crab) {
+  core::TrajectoryData d = line(track, crab);
+  const core::TrajectoryData back = line(track + core::pi, -crab);
+  const double later = d.time.back() - d.time.front() + 60.0;
+  const auto add = [](std::vector<double>& to, const std::vector<double>& from) { to.insert(to.end(), from.begin(), from.end()); };
+  add(d.time, back.time);
+  for (size_t i = d.size() - back.size(); i < d.size(); ++i) d.time[i] += later;
+  add(d.latitude, back.latitude), add(d.longitude, back.longitude), add(d.height, back.height);
+  add(d.roll, back.roll), add(d.pitch, back.pitch), add(d.heading, back.heading);
+  add(d.v_north, back.v_north), add(d.v_east, back.v_east), add(d.v_down, back.v_down);
+  return d;
+}
+
+TEST(TrajectoryChecks, WindOnALineAndTheLineBackIsNoScatter) {
+  const TrajectoryChecks c = check_trajectory(there_and_back(60.0 * deg, 12.0 * deg));
+  ASSERT_EQ(c.warnings.size(), 1u) << "the gap between the lines alone";
+  EXPECT_NE(c.warnings[0].find("gaps"), std::string::npos);
+  EXPECT_LT(core::to_degrees(c.crab_spread), 0.5);
+  EXPECT_GT(core::to_degrees(c.crab_range), 10.0);
+}
+
+TEST(TrajectoryChecks, HeadingWithTheWrongSignIsSeen) {
+  core::TrajectoryData d = there_and_back(60.0 * deg, 2.0 * deg);
+  for (double& h : d.heading) h = core::wrap_two_pi(-h);
+  bool heading = false;
+  for (const std::string& w : check_trajectory(d).warnings) heading = heading || w.find("heading") != std::string::npos;
+  EXPECT_TRUE(heading);
+}
+
 TEST(TrajectoryChecks, WanderAngleLeftInIsSeen) {
   const TrajectoryChecks c = check_trajectory(line(90.0 * deg, 103.0 * deg));
   ASSERT_EQ(c.warnings.size(), 1u);
