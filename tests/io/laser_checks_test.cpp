@@ -34,7 +34,8 @@ class LaserChecks : public ::testing::Test {
     core::Tally tally;
     check_laser(survey_, scan(survey_, tally), tally);
     std::string names;
-    for (const auto& [what, entry] : tally.value().members()) names += what + "\n";
+    const core::Value counted = tally.value();
+    for (const auto& [what, entry] : counted.members()) names += what + "\n";
     return names;
   }
   test::TemporaryFolder folder_;
