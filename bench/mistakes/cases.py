@@ -230,9 +230,9 @@ def _(s):
        ("mount_rolled_180", "scanner stated upside down: roll 180 deg too much", ("roll", 180), "mount_rolled"),
        ("mount_pitched_90", "mount pitched by 90 deg", ("pitch", 90), "mount_rolled mount_pitched axes_swapped"),
        ("mount_turned_180", "scanner stated backwards: heading 180 deg too much", ("heading", 180),
-        "mount_turned mount_rotated scan_angle_sign axes_swapped"),
+        "mount_turned mount_rolled scan_angle_sign axes_swapped"),
        ("mount_turned_90", "scanner stated across: heading 90 deg too much", ("heading", 90),
-        "mount_turned mount_rotated axes_swapped")], cause="mount|upside|boresight")
+        "mount_turned mount_rolled axes_swapped")], cause="mount|upside|boresight")
 def _(s, turn):
     axis, degrees = turn
     s["calibration"][axis] = f"{number(s['calibration'][axis]) + degrees} deg"
