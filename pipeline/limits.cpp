@@ -15,13 +15,15 @@ struct Kind {
   double scale;
   const char* unit;
 };
-constexpr std::array<Kind, 3> kinds{{{"outside", "returns that the trajectory does not cover", 100.0, "%"},
+constexpr std::array<Kind, 5> kinds{{{"outside", "returns that the trajectory does not cover", 100.0, "%"},
                                      {"voids", "holes in the DTM", 100.0, "%"},
-                                     {"truth_rms", "3D rms of the points against truth", 1.0, "m"}}};
+                                     {"truth_rms", "3D rms of the points against truth", 1.0, "m"},
+                                     {"line_difference", "difference of two lines on smooth ground", 1.0, "m"},
+                                     {"contradictions", "warnings of the flight's geometry", 1.0, ""}}};
 
 std::string text_of(double value, const Kind& kind) {
   char text[48];
-  std::snprintf(text, sizeof text, "%.4g %s", kind.scale * value, kind.unit);
+  std::snprintf(text, sizeof text, *kind.unit ? "%.4g %s" : "%.4g", kind.scale * value, kind.unit);
   return text;
 }
 
@@ -45,6 +47,8 @@ Value judged(const Limits& limits, const Measured& measured) {
   };
   judge(kinds[0], measured.outside, limits.outside, none.outside);
   judge(kinds[1], measured.voids, limits.voids, none.voids);
+  judge(kinds[3], measured.line_difference, limits.line_difference.value, none.line_difference.value);
+  judge(kinds[4], measured.contradictions, limits.contradictions, none.contradictions);
   judge(kinds[2], measured.truth_rms, limits.truth_rms.value, none.truth_rms.value);
   return list;
 }

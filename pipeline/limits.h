@@ -16,6 +16,8 @@ struct Limits {
   double outside = 1.0;
   double voids = 1.0;
   core::Metres truth_rms{1e9};
+  core::Metres line_difference{1e9};
+  double contradictions = 1e9;
 };
 
 template <class V>
@@ -24,11 +26,16 @@ void describe(Limits& l, V& v) {
   v.option("voids", l.voids, core::within(0, 1),
            "Largest share of holes in the DTM: cells without a height that have ground on all sides.");
   v.option("truth_rms", l.truth_rms, core::at_least(0), "Largest 3D rms of the points against truth, where truth is present.");
+  v.option("line_difference", l.line_difference, core::at_least(0),
+           "Largest difference of two lines on smooth ground before any adjustment, robust rms (quality.geometry).");
+  v.option("contradictions", l.contradictions, core::at_least(0),
+           "Largest number of warnings of quality.geometry; 0: exit code 3 where the flight's geometry is inconsistent.");
 }
 
 /// What a run measured of what the limits judge, in their units; nothing where no stage measures it.
 struct Measured {
   std::optional<double> outside, voids, truth_rms;
+  std::optional<double> line_difference{}, contradictions{};
 };
 
 /// For report.json: every limit that the config sets or the run measured, with `name`, `value`, `limit` and `held`, and `excess` where the

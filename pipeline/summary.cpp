@@ -70,6 +70,8 @@ std::string summary(const Value& report, const std::filesystem::path& output) {
   }
   if (const Value* resumed = report.find("pieces_resumed"); resumed && resumed->as_int() > 0)
     out += "\nresumed: " + std::to_string(resumed->as_int()) + " pieces were done by an earlier run\n";
+  if (const Value* geometry = report.find("geometry"))
+    for (const Value& warning : geometry->find("warnings")->items()) out += "\nwarning: " + warning.as_text() + "\n";
   if (const Value* limits = report.find("limits"))
     for (const std::string& limit : missed_limits(*limits)) out += "\nlimit missed: " + limit + "\n";
   out += "\nproducts in " + output.generic_string() + ", report in " + (output / "report.json").generic_string() + " (" +

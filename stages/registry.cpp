@@ -20,6 +20,7 @@ const std::vector<Entry>& registry() {
       {"calib.adjust", make_adjust},
       {"calib.flat_target", make_flat_target},
       {"calib.strips", make_strips},
+      {"quality.geometry", make_geometry},
       {"georeference", make_georeference},
       {"filters.returns", make_returns},
       {"filters.noise", make_noise},

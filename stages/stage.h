@@ -108,6 +108,8 @@ struct Strip {
   int line = 0;       ///< flight line id
   std::string name;   ///< "line 3 of flight.las", for messages
   std::uint64_t records = 0;
+  /// Times of its first and last record as recorded, GPS time s; not a number where they are not known.
+  double first_time = std::numeric_limits<double>::quiet_NaN(), last_time = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// A raster that a stage works on, for the memory that it takes.

@@ -26,6 +26,7 @@ std::unique_ptr<Stage> make_las_reader();
 std::unique_ptr<Stage> make_adjust();
 std::unique_ptr<Stage> make_flat_target();
 std::unique_ptr<Stage> make_strips();
+std::unique_ptr<Stage> make_geometry();
 std::unique_ptr<Stage> make_georeference();
 std::unique_ptr<Stage> make_returns();
 std::unique_ptr<Stage> make_noise();

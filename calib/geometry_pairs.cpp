@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// No published source: planes by least squares in the cells of a lattice. A cell whose returns do not lie in a plane is left out, so that
+// vegetation, edges and walls take no part.
+#include "calib/geometry_pairs.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "calib/shot_geometry.h"
+#include "core/statistics.h"
+
+namespace swath::calib {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr std::uint32_t fewest = 6;  // returns of a cell
+constexpr double narrowest = 0.12;   // of the cell's side: smallest standard deviation of its returns in any direction
+constexpr double steepest = 1.5;     // rise / run
+constexpr size_t judged = 40;        // cells whose sigma is computed
+constexpr double loose = 2.0;        // variance of a plane's height off its centre, in that at its centre
+
+/// Cell of a return; its number.
+using Placed = std::pair<std::uint64_t, std::uint32_t>;
+
+std::uint64_t key_of_cell(double x, double y, double side) {
+  const auto index = [side](double v) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v / side)) + (1ll << 31)); };
+  return index(x) << 32 | (index(y) & 0xffffffffu);
+}
+
+bool fit(const PointColumns& p, const Placed* begin, const Placed* end, const GroundOptions& o, GroundCell& out) {
+  const auto n = static_cast<double>(end - begin);
+  const Vector3d base(p.x[begin->second], p.y[begin->second], p.z[begin->second]);
+  Vector3d sum = Vector3d::Zero();
+  for (const Placed* k = begin; k != end; ++k) sum += Vector3d(p.x[k->second], p.y[k->second], p.z[k->second]) - base;
+  const Vector3d mean = sum / n;
+  Eigen::Matrix3d S = Eigen::Matrix3d::Zero();
+  for (const Placed* k = begin; k != end; ++k) {
+    const Vector3d v = Vector3d(p.x[k->second], p.y[k->second], p.z[k->second]) - base - mean;
+    S += v * v.transpose();
+  }
+  const double xx = S(0, 0) / n, xy = S(0, 1) / n, yy = S(1, 1) / n;
+  const double determinant = xx * yy - xy * xy, half = 0.5 * (xx + yy);
+  const double least = half - std::sqrt(std::max(half * half - determinant, 0.0));
+  if (!(least > std::pow(narrowest * o.cell, 2))) return false;
+  const double xz = S(0, 2) / n, yz = S(1, 2) / n, zz = S(2, 2) / n;
+  out.slope = Vector2d(yy * xz - xy * yz, xx * yz - xy * xz) / determinant;
+  out.rms = std::sqrt(std::max(0.0, (zz - out.slope.x() * xz - out.slope.y() * yz) * n / (n - 3)));
+  out.n = static_cast<std::uint32_t>(end - begin);
+  out.mean = base + mean;
+  out.sample = begin[out.n / 2].second;
+  return out.rms / std::sqrt(1 + out.slope.squaredNorm()) < o.smooth && out.slope.norm() < steepest;
+}
+
+Vector3d normal_of(const GroundCell& a, const GroundCell& b) {
+  const Vector2d slope = 0.5 * (a.slope + b.slope);
+  return Vector3d(-slope.x(), -slope.y(), 1.0).normalized();
+}
+
+}  // namespace
+
+std::vector<PassGround> ground_of(const GeometrySample& sample, LocalPoints& points, const GroundOptions& o) {
+  std::vector<PassGround> out;
+  PointColumns p;
+  std::vector<Placed> placed;
+  for (const PassSample& s : sample.surfaces) {
+    points.run(s.shots, p);
+    placed.clear();
+    for (std::uint32_t i = 0; i < p.x.size(); ++i)
+      if (std::abs(p.x[i]) < 1e6 && std::abs(p.y[i]) < 1e6) placed.emplace_back(key_of_cell(p.x[i], p.y[i], o.cell), i);
+    std::sort(placed.begin(), placed.end());
+    PassGround& g = out.emplace_back();
+    g.pass = s.pass;
+    for (size_t first = 0, end = 0; first < placed.size(); first = end) {
+      for (end = first; end < placed.size() && placed[end].first == placed[first].first;) ++end;
+      if (end - first < fewest) continue;
+      ++g.cells;
+      GroundCell cell;
+      cell.i = static_cast<std::int32_t>(static_cast<std::int64_t>(placed[first].first >> 32) - (1ll << 31));
+      cell.j = static_cast<std::int32_t>(static_cast<std::int64_t>(placed[first].first & 0xffffffffu) - (1ll << 31));
+      if (fit(p, placed.data() + first, placed.data() + end, o, cell)) g.smooth.push_back(cell);
+    }
+  }
+  return out;
+}
+
+std::vector<SharedCell> shared_cells(const PassGround& a, const PassGround& b, double side) {
+  std::vector<SharedCell> out;
+  const auto before = [](const GroundCell& x, const GroundCell& y) { return std::pair(x.i, x.j) < std::pair(y.i, y.j); };
+  for (size_t i = 0, j = 0; i < a.smooth.size() && j < b.smooth.size();) {
+    const GroundCell &x = a.smooth[i], &y = b.smooth[j];
+    if (before(x, y)) {
+      ++i;
+    } else if (before(y, x)) {
+      ++j;
+    } else {
+      ++i, ++j;
+      const Vector2d between = 0.5 * (x.mean + y.mean).head<2>();
+      if ((x.mean - y.mean).head<2>().norm() > 0.4 * side) continue;
+      const double za = x.mean.z() + x.slope.dot(between - x.mean.head<2>()), zb = y.mean.z() + y.slope.dot(between - y.mean.head<2>());
+      out.push_back({&x, &y, (za - zb) * normal_of(x, y).z()});
+    }
+  }
+  return out;
+}
+
+double predicted_difference(const std::vector<SharedCell>& shared, const core::Shots& a, const core::Shots& b, const ShotGeometry& geometry,
+                            const core::SensorSigma& sensor, const trajectory::Trajectory& trajectory,
+                            const trajectory::LocalFrame& frame) {
+  using Row = Eigen::Matrix<double, 1, parameter_count>;
+  trajectory::Cursor cursor(trajectory);
+  const CalibrationCovariance C = calibration_covariance(sensor);
+  const auto by = [&](const core::Shots& s, const GroundCell& c, const Vector3d& normal, Row& row, double& own) {
+    const double t = geometry.time(s.time[c.sample]);
+    if (!cursor.seek(t)) return false;
+    Jacobian J;
+    const Return r{s.angle[c.sample], s.forward.empty() ? 0.0 : s.forward[c.sample], s.range[c.sample]};
+    const trajectory::Pose pose = cursor.pose(t);
+    geometry.ecef_point(pose, r, J);
+    row = (normal.transpose() * frame.local_R_ecef) * J;
+    const Variances v = variances(sensor, cursor.sigma(t));
+    own = loose * (c.rms * c.rms) / c.n;
+    for (int k = position_north; k <= attitude_heading; ++k) own += v[static_cast<size_t>(k)] * row[k] * row[k];
+    return row.allFinite();
+  };
+  double squares = 0, n = 0;
+  const size_t step = std::max<size_t>(1, shared.size() / judged);
+  for (size_t k = 0; k < shared.size(); k += step) {
+    const Vector3d normal = normal_of(*shared[k].a, *shared[k].b);
+    Row ra, rb;
+    double va = 0, vb = 0;
+    if (!by(a, *shared[k].a, normal, ra, va) || !by(b, *shared[k].b, normal, rb, vb)) continue;
+    const Eigen::Matrix<double, 1, latency + 1> d = (ra - rb).head<latency + 1>();
+    squares += va + vb + d * C * d.transpose();
+    n += 1;
+  }
+  return n > 0 ? std::sqrt(squares / n) : 0.0;
+}
+
+}  // namespace swath::calib

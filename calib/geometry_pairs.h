@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far the passes of a sample lie apart on smooth ground, and how far their stated errors let them.
+#pragma once
+
+#include <vector>
+
+#include "calib/geometry_sample.h"
+#include "calib/local_points.h"
+#include "core/sensor.h"
+
+namespace swath::calib {
+
+/// A smooth piece of ground as one pass sees it: z = mean.z + slope . (p - mean).
+struct GroundCell {
+  std::int32_t i = 0, j = 0;
+  std::uint32_t n = 0;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();   ///< local, m
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< rise / run, east and north
+  double rms = 0.0;                                 ///< of its returns about the plane, m
+  std::uint32_t sample = 0;                         ///< one of its returns
+};
+
+struct PassGround {
+  size_t pass = 0;
+  std::uint64_t cells = 0;         ///< with enough returns
+  std::vector<GroundCell> smooth;  ///< by i, j
+};
+
+/// Side of cells and rms up to which one is smooth, m.
+struct GroundOptions {
+  double cell = 3.0, smooth = 0.15;
+};
+
+std::vector<PassGround> ground_of(const GeometrySample& sample, LocalPoints& points, const GroundOptions& options);
+
+/// Cells that two passes share.
+struct SharedCell {
+  const GroundCell *a = nullptr, *b = nullptr;
+  double apart = 0.0;  ///< a minus b along the normal, m
+};
+std::vector<SharedCell> shared_cells(const PassGround& a, const PassGround& b, double cell);
+
+/// Two lines on the smooth ground that both have seen.
+struct LinePair {
+  int line_a = 0, line_b = 0;
+  size_t pass_a = 0, pass_b = 0;
+  std::uint64_t cells = 0;
+  double median = 0.0;     ///< a minus b along the normal, m
+  double rms = 0.0;        ///< about zero, robust: 1.4826 of the median size, m
+  double predicted = 0.0;  ///< what the sigmas make one expect, m
+  double outside = 0.0;    ///< share of cells that differ by more than five times that
+};
+
+/// Sigma of the difference of two passes on shared cells, rms over up to 40 of them, m.
+double predicted_difference(const std::vector<SharedCell>& shared, const core::Shots& a, const core::Shots& b, const ShotGeometry& geometry,
+                            const core::SensorSigma& sensor, const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame);
+
+}  // namespace swath::calib

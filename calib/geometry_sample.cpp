@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// No published source. A place is chosen where two passes lie nearest to one another; of each pass the stretch that lies beside it is kept.
+#include "calib/geometry_sample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "calib/local_points.h"
+#include "calib/plane_cells.h"
+#include "core/frames.h"
+
+namespace swath::calib {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double track_step = 0.5;                // s
+constexpr double straight = 40.0 * core::degree;  // a pass ends where its course has turned by this
+constexpr double shortest_pass = 2.0;             // s
+constexpr double swath_share = 1.2;               // of the range: no usual swath is wider
+constexpr double profile_length = 20.0;           // s
+constexpr double profile_rate = 500.0;            // returns/s
+constexpr size_t most_profiles = 12;
+constexpr double returns_of_a_cell = 10.0;
+
+/// Half the length of a stretch, m: wide enough that signs of pitch do not part two stretches of one place.
+double half_length(double range) { return std::clamp(8.0 + 0.06 * range, 10.0, 80.0); }
+
+void close(Pass& pass, std::vector<Pass>& out) {
+  if (pass.time.size() >= 2) {
+    const Vector2d way = pass.track.back() - pass.track.front();
+    const double taken = pass.time.back() - pass.time.front();
+    pass.first = pass.time.front();
+    pass.last = pass.time.back();
+    pass.speed = way.norm() / taken;
+    pass.course = std::atan2(way.x(), way.y());
+    if (taken >= shortest_pass && pass.speed > 1.0) out.push_back(pass);
+  }
+  pass.time.clear();
+  pass.track.clear();
+}
+
+void fly(const RecordedLine& line, const trajectory::Trajectory& t, const trajectory::LocalFrame& frame, double shift,
+         std::vector<Pass>& out, double& seconds, double& covered) {
+  Pass pass;
+  pass.line = line.line;
+  const double taken = line.last - line.first;
+  pass.rate = static_cast<double>(line.records) / std::max(taken, 1e-3);
+  const auto steps = static_cast<size_t>(std::clamp(std::ceil(taken / track_step), 1.0, 1e6));
+  trajectory::Cursor cursor(t);
+  double course = 0.0;
+  for (size_t k = 0; k <= steps; ++k) {
+    const double time = line.first + taken * static_cast<double>(k) / static_cast<double>(steps);
+    seconds += 1;
+    if (!cursor.seek(time + shift)) {
+      close(pass, out);
+      continue;
+    }
+    covered += 1;
+    const Eigen::Vector3d p = frame.local_R_ecef * (cursor.pose(time + shift).position - frame.origin);
+    const Vector2d here = p.head<2>();
+    if (!pass.track.empty()) {
+      const Vector2d way = here - pass.track.back();
+      const double now = std::atan2(way.x(), way.y());
+      if (pass.track.size() == 1) course = now;
+      if (std::abs(core::wrap_pi(now - course)) > straight) close(pass, out), course = now;
+    }
+    pass.time.push_back(time);
+    pass.track.push_back(here);
+  }
+  close(pass, out);
+}
+
+/// Where two passes come near: time on each, and how far apart.
+struct Site {
+  double distance = 0.0, time_a = 0.0, time_b = 0.0;
+};
+
+std::vector<Site> sites_of(const Pass& a, const Pass& b, double reach, int most) {
+  std::vector<Site> near;
+  for (size_t i = 0; i < a.track.size(); ++i) {
+    Site best{reach, 0, 0};
+    bool found = false;
+    for (size_t j = 0; j < b.track.size(); ++j)
+      if (const double d = (a.track[i] - b.track[j]).norm(); d < best.distance) best = {d, a.time[i], b.time[j]}, found = true;
+    if (found) near.push_back(best);
+  }
+  if (near.empty()) return near;
+  // The nearer half, so that a crossing is looked at where both swaths are.
+  const auto nearest = std::min_element(near.begin(), near.end(), [](const Site& x, const Site& y) { return x.distance < y.distance; });
+  const double limit = nearest->distance + 0.35 * (reach - nearest->distance);
+  std::erase_if(near, [&](const Site& s) { return s.distance > limit; });
+  std::vector<Site> out;
+  const auto n = std::min<size_t>(static_cast<size_t>(most), near.size());
+  for (size_t k = 0; k < n; ++k) out.push_back(near[(2 * k + 1) * near.size() / (2 * n)]);
+  return out;
+}
+
+/// Boxes of tracks, so that few pairs are looked at closely.
+struct TrackBox {
+  Vector2d low = Vector2d::Constant(1e300), high = Vector2d::Constant(-1e300);
+  explicit TrackBox(const Pass& p) {
+    for (const Vector2d& v : p.track) low = low.cwiseMin(v), high = high.cwiseMax(v);
+  }
+  bool near(const TrackBox& o, double reach) const {
+    return (low.array() - reach < o.high.array()).all() && (o.low.array() - reach < high.array()).all();
+  }
+};
+
+struct PairSites {
+  size_t a = 0, b = 0;
+  double distance = 0.0;
+  std::vector<Site> sites;
+};
+
+std::vector<PairSites> near_pairs(const std::vector<Pass>& passes, double reach, int most) {
+  std::vector<TrackBox> boxes;
+  for (const Pass& p : passes) boxes.emplace_back(p);
+  std::vector<PairSites> out;
+  for (size_t a = 0; a < passes.size(); ++a)
+    for (size_t b = a + 1; b < passes.size(); ++b) {
+      if (!boxes[a].near(boxes[b], reach)) continue;
+      PairSites p{a, b, reach, sites_of(passes[a], passes[b], reach, most)};
+      for (const Site& s : p.sites) p.distance = std::min(p.distance, s.distance);
+      if (!p.sites.empty()) out.push_back(std::move(p));
+    }
+  // Every pass once before any twice; nearer pairs first.
+  std::stable_sort(out.begin(), out.end(), [](const PairSites& x, const PairSites& y) { return x.distance < y.distance; });
+  std::map<size_t, int> used;
+  std::vector<std::pair<int, size_t>> order;
+  for (size_t i = 0; i < out.size(); ++i) order.emplace_back(std::min(used[out[i].a]++, used[out[i].b]++), i);
+  std::stable_sort(order.begin(), order.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+  std::vector<PairSites> sorted;
+  for (const auto& [round, i] : order) sorted.push_back(std::move(out[i]));
+  return sorted;
+}
+
+/// Stretches of one pass that overlap become one.
+void join(std::vector<Stretch>& s) {
+  std::sort(s.begin(), s.end(),
+            [](const Stretch& x, const Stretch& y) { return std::tie(x.profile, x.pass, x.first) < std::tie(y.profile, y.pass, y.first); });
+  std::vector<Stretch> out;
+  for (const Stretch& k : s) {
+    if (!out.empty() && out.back().pass == k.pass && out.back().profile == k.profile && k.first <= out.back().last)
+      out.back().last = std::max(out.back().last, k.last);
+    else
+      out.push_back(k);
+  }
+  s = std::move(out);
+}
+
+}  // namespace
+
+SamplePlan plan_sample(const std::vector<RecordedLine>& lines, const trajectory::Trajectory& t, const trajectory::LocalFrame& frame,
+                       double shift, double range, const SampleSize& size) {
+  SamplePlan plan;
+  double seconds = 0, covered = 0;
+  for (const RecordedLine& l : lines) fly(l, t, frame, shift, plan.passes, seconds, covered);
+  plan.covered = seconds > 0 ? covered / seconds : 0.0;
+  const double half = half_length(range), reach = swath_share * range;
+  plan.cell = std::clamp(std::sqrt(returns_of_a_cell * 2 * half * 0.75 * range / size.returns), 0.75, 12.0);
+  const auto add = [&](size_t number, double time) {
+    const Pass& p = plan.passes[number];
+    const double reach_s = half / p.speed, expected = p.rate * 2 * reach_s;
+    plan.stretches.push_back({number, std::max(p.first, time - reach_s), std::min(p.last, time + reach_s),
+                              static_cast<std::uint32_t>(std::max(1.0, std::round(expected / size.returns))), false});
+  };
+  for (const PairSites& pair : near_pairs(plan.passes, reach, size.sites)) {
+    plan.nearest = std::min(plan.nearest, pair.distance);
+    for (const Site& s : pair.sites) add(pair.a, s.time_a), add(pair.b, s.time_b);
+    join(plan.stretches);
+    if (plan.stretches.size() >= size.most_stretches) break;
+  }
+  const size_t step = std::max<size_t>(1, plan.passes.size() / most_profiles);
+  for (size_t k = 0; k < plan.passes.size(); k += step) {
+    const Pass& p = plan.passes[k];
+    const double middle = 0.5 * (p.first + p.last), reach_s = 0.5 * std::min(profile_length, p.last - p.first);
+    plan.stretches.push_back(
+        {k, middle - reach_s, middle + reach_s, static_cast<std::uint32_t>(std::max(1.0, std::round(p.rate / profile_rate))), true});
+  }
+  join(plan.stretches);
+  return plan;
+}
+
+GeometrySample collect_sample(const SamplePlan& plan, const ShotStream& stream) {
+  GeometrySample out;
+  std::map<int, std::vector<std::pair<Stretch, core::Shots*>>> of_line;
+  std::map<std::pair<bool, size_t>, core::Shots> shots;
+  for (const Stretch& s : plan.stretches) of_line[plan.passes[s.pass].line].emplace_back(s, &shots[{s.profile, s.pass}]);
+  stream([&](int line, const core::Shots& batch) {
+    const auto at = of_line.find(line);
+    if (at == of_line.end()) return;
+    for (const auto& [s, into] : at->second) {
+      const auto begin = std::lower_bound(batch.time.begin(), batch.time.end(), s.first) - batch.time.begin();
+      const auto end = std::upper_bound(batch.time.begin(), batch.time.end(), s.last) - batch.time.begin();
+      for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+        if (!is_last_return(batch, i)) continue;
+        const std::uint64_t number = batch.record.empty() ? i : batch.record[i];
+        if (s.every > 1 && mixed(number) % s.every != 0) continue;
+        into->time.push_back(batch.time[i]);
+        into->angle.push_back(batch.angle[i]);
+        into->range.push_back(batch.range[i]);
+        if (!batch.forward.empty()) into->forward.push_back(batch.forward[i]);
+      }
+    }
+  });
+  for (auto& [key, kept] : shots)
+    if (kept.size() > 0) (key.first ? out.profiles : out.surfaces).push_back({key.second, std::move(kept)});
+  return out;
+}
+
+core::TrajectoryData cut_trajectory(const core::TrajectoryData& d, const SamplePlan& plan, double shift, double margin) {
+  std::vector<std::pair<double, double>> windows;
+  for (const Stretch& s : plan.stretches) windows.emplace_back(s.first + shift - margin, s.last + shift + margin);
+  std::sort(windows.begin(), windows.end());
+  core::TrajectoryData out;
+  size_t from = 0;
+  const auto copy = [&](const auto& column, auto& into, size_t a, size_t b) {
+    if (!column.empty())
+      into.insert(into.end(), column.begin() + static_cast<std::ptrdiff_t>(a), column.begin() + static_cast<std::ptrdiff_t>(b));
+  };
+  for (const auto& [first, last] : windows) {
+    const auto a = std::max(from, static_cast<size_t>(std::lower_bound(d.time.begin(), d.time.end(), first) - d.time.begin()));
+    const auto b = static_cast<size_t>(std::upper_bound(d.time.begin(), d.time.end(), last) - d.time.begin());
+    if (b <= a) continue;
+    using D = core::TrajectoryData;
+    for (const auto c :
+         {&D::time, &D::latitude, &D::longitude, &D::height, &D::roll, &D::pitch, &D::heading, &D::v_north, &D::v_east, &D::v_down})
+      copy(d.*c, out.*c, a, b);
+    for (const auto c : {&D::sigma_north, &D::sigma_east, &D::sigma_down, &D::sigma_roll, &D::sigma_pitch, &D::sigma_heading})
+      copy(d.*c, out.*c, a, b);
+    from = b;
+  }
+  return out;
+}
+
+}  // namespace swath::calib

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A sample of a flight's returns that shows whether its lines fit together: short stretches of lines that pass near one another.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "calib/shot_stream.h"
+#include "core/shot.h"
+#include "trajectory/fix_window.h"
+#include "trajectory/trajectory.h"
+
+namespace swath::calib {
+
+/// Records of one flight line in one file, as they are known before any is read.
+struct RecordedLine {
+  int line = 0;
+  double first = 0.0, last = 0.0;  ///< time as recorded, s
+  std::uint64_t records = 0;
+};
+
+/// A straight piece of a flight line.
+struct Pass {
+  int line = 0;
+  double first = 0.0, last = 0.0;      ///< time as recorded, s
+  double rate = 0.0;                   ///< records per second
+  double speed = 0.0;                  ///< m/s
+  double course = 0.0;                 ///< over ground from local north, rad
+  std::vector<double> time;            ///< of the track's points, as recorded, s
+  std::vector<Eigen::Vector2d> track;  ///< local east, north, m
+};
+
+/// What is kept of a pass.
+struct Stretch {
+  size_t pass = 0;
+  double first = 0.0, last = 0.0;  ///< time as recorded, s
+  std::uint32_t every = 1;         ///< one in so many returns
+  bool profile = false;            ///< long and thin: for the motion of the aircraft, not for the comparison of lines
+};
+
+struct SampleSize {
+  double returns = 12000;      ///< of a stretch
+  size_t most_stretches = 64;  ///< of the survey
+  int sites = 3;               ///< places of a pair of passes that are compared
+};
+
+struct SamplePlan {
+  std::vector<Pass> passes;
+  std::vector<Stretch> stretches;
+  double cell = 0.0;                                         ///< side of a square that holds about ten returns of a stretch, m
+  double covered = 0.0;                                      ///< share of the lines' time within the trajectory
+  double nearest = std::numeric_limits<double>::infinity();  ///< distance of the two tracks nearest to one another, m
+};
+
+/// Stretches of passes that come nearer to one another than their swaths are wide, judged by the trajectory alone: no unit, sign or angle
+/// of the laser takes part. `shift`: s, added to recorded times. `range`: m, of a usual return.
+SamplePlan plan_sample(const std::vector<RecordedLine>& lines, const trajectory::Trajectory& trajectory,
+                       const trajectory::LocalFrame& frame, double shift, double range, const SampleSize& size);
+
+/// The returns of a pass, last ones alone, by time.
+struct PassSample {
+  size_t pass = 0;
+  core::Shots shots;
+};
+struct GeometrySample {
+  std::vector<PassSample> surfaces;  ///< by pass
+  std::vector<PassSample> profiles;
+};
+
+/// Reads the stream once. Which returns are kept depends on the plan and the records' numbers alone.
+GeometrySample collect_sample(const SamplePlan& plan, const ShotStream& stream);
+
+/// The records of a trajectory within the times of a sample (shifted), with a margin, s.
+core::TrajectoryData cut_trajectory(const core::TrajectoryData& data, const SamplePlan& plan, double shift, double margin);
+
+}  // namespace swath::calib

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The geometry of a flight judged before anything is made of it.
+#include <algorithm>
+#include <cmath>
+
+#include "calib/geometry_gate.h"
+#include "core/error.h"
+#include "core/statistics.h"
+#include "stages/adapters/adapters.h"
+#include "stages/shot_source.h"
+
+namespace swath::stages {
+namespace {
+
+constexpr size_t looked_at = 4096;  // returns of a line for the usual range
+
+double usual_range(const Context& context) {
+  std::vector<double> ranges;
+  core::Tally told_elsewhere;
+  for (const Strip& strip : context.strips) {
+    StripBatch batch;
+    if (context.source->open(context, strip)->next(batch, looked_at, told_elsewhere))
+      ranges.insert(ranges.end(), batch.shots.range.begin(), batch.shots.range.end());
+  }
+  return core::median(std::move(ranges), 0.0);
+}
+
+/// Grid north of the map clockwise from true north at the trajectory's middle, rad.
+double convergence_of(const Context& context) {
+  if (context.crs.empty() || !context.crs.is_projected()) return 0.0;
+  const core::TrajectoryData& d = context.trajectory->data();
+  const size_t i = d.size() / 2;
+  const double latitude = core::to_degrees(d.latitude[i]), longitude = core::to_degrees(d.longitude[i]);
+  const core::Transform to_map(core::wgs84_geodetic(), context.crs);
+  const Eigen::Vector3d way = to_map({longitude, latitude + 5e-4, d.height[i]}) - to_map({longitude, latitude - 5e-4, d.height[i]});
+  return -std::atan2(way.x(), way.y());
+}
+
+core::Value value_of(const calib::Fit& f) {
+  core::Value v = core::Value::object();
+  v["cells"] = f.cells;
+  v["rms_m"] = f.rms;
+  v["outside"] = f.outside;
+  v["cost"] = f.cost;
+  v["smooth"] = f.smooth;
+  return v;
+}
+
+core::Value value_of(const calib::LinePair& p) {
+  core::Value v = core::Value::object();
+  v["lines"].push(p.line_a);
+  v["lines"].push(p.line_b);
+  v["n"] = p.cells;
+  v["median_m"] = p.median;
+  v["rms_m"] = p.rms;
+  v["predicted_m"] = p.predicted;
+  v["outside"] = p.outside;
+  return v;
+}
+
+class Geometry : public OptionStage<calib::GeometryOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{
+        "quality.geometry",
+        "Judges the geometry of a flight on a sample of its returns: lines against one another, heights, headings, roll; "
+        "where they do not fit, the usual mistakes are tried.",
+        {Grain::survey},
+        {},
+        {},
+        {Product::trajectory, Product::shots},
+        {}};
+    return info;
+  }
+
+  void run_survey(Context& context, core::Tally&, core::Value& findings) const override {
+    calib::GeometryInput in;
+    in.shots = stream_shots(context);
+    for (const Strip& s : context.strips)
+      if (std::isfinite(s.first_time)) in.lines.push_back({s.line, s.first_time, s.last_time, s.records});
+    in.chain = {context.survey.scanner, context.survey.calibration};
+    in.sensor = context.survey.sigma;
+    in.trajectory = context.trajectory.get();
+    in.range = usual_range(context);
+    in.convergence = convergence_of(context);
+    const calib::GeometryFigures found = calib::judge_geometry(in, options);
+    constexpr const char* verdicts[] = {"not judged", "consistent", "inconsistent"};
+    core::Value& out = findings["geometry"];
+    out["verdict"] = verdicts[static_cast<size_t>(found.verdict)];
+    core::Value& named = out["named"] = core::Value::array();
+    for (const calib::TriedMistake& t : found.named) named.push(t.name);
+    double largest = 0.0;
+    for (const calib::LinePair& p : found.lines.pairs)
+      if (p.cells >= static_cast<std::uint64_t>(options.least)) largest = std::max(largest, p.rms);
+    if (largest > 0) out["line_difference"] = largest;
+    out["contradictions"] = found.warnings.size();
+    out["covered"] = found.covered;
+    out["predicted_m"] = found.lines.predicted;
+    out["fit"] = value_of(found.lines.fit);
+    core::Value& pairs = out["pairs"] = core::Value::array();
+    for (const calib::LinePair& p : found.lines.pairs) pairs.push(value_of(p));
+    core::Value& checks = out["checks"] = core::Value::object();
+    for (const calib::GeometryCheck& c : found.checks) {
+      checks[c.name]["value"] = c.value;
+      checks[c.name]["held"] = c.held;
+    }
+    core::Value& tried = out["tried"] = core::Value::array();
+    for (const calib::TriedMistake& t : found.tried) {
+      core::Value one = value_of(t.fit);
+      one["name"] = t.name;
+      one["what"] = t.what;
+      one["contradictions"] = t.contradictions;
+      tried.push(std::move(one));
+    }
+    core::Value& warnings = out["warnings"] = core::Value::array();
+    for (const std::string& w : found.warnings) warnings.push(w);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> make_geometry() { return std::make_unique<Geometry>(); }
+
+}  // namespace swath::stages

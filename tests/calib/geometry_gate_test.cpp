@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calib/geometry_gate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/calib/gate_flight.h"
+
+namespace swath::calib {
+namespace {
+
+using test::GateFlight;
+constexpr double deg = core::degree;
+
+const GateFlight& flight() {
+  static const GateFlight f;
+  return f;
+}
+
+void scale(std::vector<double>& v, double by) {
+  for (double& x : v) x *= by;
+}
+void shift(std::vector<double>& v, double by) {
+  for (double& x : v) x += by;
+}
+
+/// A mistake put into a right flight.
+struct Case {
+  const char* name;
+  std::function<void(GateFlight&)> make;
+  double convergence = 0.0;
+};
+
+std::vector<Case> cases() {
+  const auto angles = [](double by) {
+    return [by](GateFlight& f) {
+      for (core::Shots& s : f.shots) scale(s.angle, by);
+    };
+  };
+  const auto ranges = [](double by) {
+    return [by](GateFlight& f) {
+      for (core::Shots& s : f.shots) scale(s.range, by);
+    };
+  };
+  const auto calibration = [](auto change) { return [change](GateFlight& f) { change(f.chain.calibration); }; };
+  return {
+      {"scan_angle_sign", angles(-1)},
+      {"scan_angle_degrees_as_radians", angles(1 / 57.29578)},
+      {"scan_angle_gon", angles(1 / 0.9)},
+      {"scan_scale", angles(0.5)},
+      {"range_feet", ranges(1 / 0.3048)},
+      {"range_two_way", ranges(2)},
+      {"scanner_model", [](GateFlight& f) { f.chain.scanner.model = core::ScannerModel::conical; }},
+      {"trajectory_height_feet", [](GateFlight& f) { scale(f.data.height, 1 / 0.3048); }},
+      {"roll_sign", [](GateFlight& f) { scale(f.data.roll, -1); }},
+      {"pitch_sign", [](GateFlight& f) { scale(f.data.pitch, -1); }},
+      {"heading_sign", [](GateFlight& f) { scale(f.data.heading, -1); }},
+      {"heading_grid_north", [](GateFlight& f) { shift(f.data.heading, -2 * deg); }, 2 * deg},
+      {"axes_swapped", [](GateFlight& f) { std::swap(f.data.roll, f.data.pitch); }},
+      {"axes_swapped", [](GateFlight& f) { shift(f.data.heading, 90 * deg); }},
+      {"boresight_roll_sign", calibration([](core::Calibration& c) { c.roll.value *= -1; })},
+      {"boresight_pitch_sign", calibration([](core::Calibration& c) { c.pitch.value *= -1; })},
+      {"boresight_heading_sign", calibration([](core::Calibration& c) { c.heading.value *= -1; })},
+      {"lever_arm_sign", calibration([](core::Calibration& c) { c.lever_arm_scanner[0].value *= -1; })},
+      {"lever_arm_millimetres", calibration([](core::Calibration& c) {
+         for (core::Metres& m : c.lever_arm_scanner) m.value *= 1000;
+       })},
+      {"time_offset", calibration([](core::Calibration& c) { c.latency.value += 0.15; })},
+      {"mount_rolled", calibration([](core::Calibration& c) { c.roll.value += 180 * deg; })},
+  };
+}
+
+std::string text_of(const GeometryFigures& g) {
+  std::string out;
+  for (const std::string& w : g.warnings) out += w + "\n";
+  for (const TriedMistake& t : g.tried)
+    out += t.name + " cells " + std::to_string(t.fit.cells) + " cost " + std::to_string(t.fit.cost) + " " + t.what + "\n";
+  return out;
+}
+
+TEST(GeometryGate, ARightFlightIsConsistent) {
+  const GeometryFigures g = flight().judged(2 * deg);
+  EXPECT_EQ(g.verdict, Verdict::consistent) << text_of(g);
+  EXPECT_TRUE(g.named.empty());
+  EXPECT_TRUE(g.warnings.empty());
+  ASSERT_GE(g.lines.pairs.size(), 3u);
+  EXPECT_LT(g.lines.fit.cost, 2 * g.lines.predicted);
+}
+
+TEST(GeometryGate, EachUsualMistakeIsNamed) {
+  for (const Case& c : cases()) {
+    GateFlight f = flight();
+    c.make(f);
+    const GeometryFigures g = f.judged(c.convergence);
+    EXPECT_EQ(g.verdict, Verdict::inconsistent) << c.name;
+    ASSERT_FALSE(g.named.empty()) << c.name << "\n" << text_of(g);
+    EXPECT_EQ(g.named.front().name, c.name) << text_of(g);
+    EXPECT_GE(g.warnings.size(), 2u) << c.name;
+  }
+}
+
+TEST(GeometryGate, OneLineIsNotJudgedAndNotBlamed) {
+  const GeometryFigures g = GateFlight(false, 1).judged(2 * deg);
+  EXPECT_EQ(g.verdict, Verdict::not_judged) << text_of(g);
+  EXPECT_TRUE(g.warnings.empty());
+}
+
+TEST(GeometryGate, AFlatSceneIsNotBlamed) {
+  const GeometryFigures g = GateFlight(true).judged(2 * deg);
+  EXPECT_EQ(g.verdict, Verdict::consistent) << text_of(g);
+  EXPECT_TRUE(g.warnings.empty());
+}
+
+TEST(GeometryGate, TimesOfAnotherWeekAreNamed) {
+  GateFlight f = flight();
+  shift(f.data.time, 604800.0);
+  const GeometryFigures g = f.judged();
+  ASSERT_FALSE(g.named.empty());
+  EXPECT_EQ(g.named.front().name, "gps_week");
+}
+
+TEST(GeometryGate, ReturnsInOtherBatchesGiveTheSameFigures) {
+  const trajectory::Trajectory t(flight().data);
+  GeometryInput in = flight().input(t);
+  const GeometryFigures once = judge_geometry(in, {});
+  in.shots = [&](const std::function<void(int, const core::Shots&)>& work) {
+    for (size_t k = 0; k < flight().shots.size(); ++k) {
+      const core::Shots& all = flight().shots[k];
+      for (size_t first = 0; first < all.size(); first += 1000) {
+        core::Shots part;
+        const auto cut = [&](const auto& from, auto& to) {
+          if (!from.empty())
+            to.assign(from.begin() + static_cast<std::ptrdiff_t>(first),
+                      from.begin() + static_cast<std::ptrdiff_t>(std::min(first + 1000, all.size())));
+        };
+        core::for_each_column(all, part, cut);
+        work(flight().lines[k].line, part);
+      }
+    }
+  };
+  const GeometryFigures cut = judge_geometry(in, {});
+  EXPECT_EQ(once.lines.fit.cells, cut.lines.fit.cells);
+  EXPECT_EQ(once.lines.fit.cost, cut.lines.fit.cost);
+}
+
+}  // namespace
+}  // namespace swath::calib

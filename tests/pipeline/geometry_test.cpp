@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Mistakes of a user in a given trajectory's survey, as a run reports them.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "io/output_file.h"
+#include "pipeline/run.h"
+#include "simulate/simulate.h"
+#include "tests/world/support.h"
+
+namespace swath::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Geometry : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<test::TemporaryFolder>();
+    simulate::Options o = simulate::preset(simulate::Scene::town);
+    o.world.length.value = 400;
+    o.world.width.value = 350;
+    o.flight.lines = 2;
+    o.flight.cross_lines = 1;
+    o.scanner.prf.value = 20000;
+    simulate::run(o, folder_->path());
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  /// Runs configs/georeference.toml with `from` in survey.toml replaced.
+  static Outcome run_with(const std::string& from, const std::string& to, std::vector<std::string> sets = {}) {
+    std::string text = test::read_bytes(folder_->path() / "survey.toml");
+    if (!from.empty()) {
+      const size_t at = text.find(from);
+      if (at == std::string::npos) throw std::runtime_error("no " + from);
+      text.replace(at, from.size(), to);
+    }
+    io::write_text_file(folder_->path() / "changed.toml", text);
+    const test::TemporaryFolder out;
+    Request r;
+    r.config = test::source_folder() / "configs/georeference.toml";
+    r.survey = folder_->path() / "changed.toml";
+    r.output = out / "out";
+    r.sets = std::move(sets);
+    r.threads = 2;
+    Plan plan = make_plan(r);
+    Progress progress(Voice::quiet);
+    return run(plan, progress, "test");
+  }
+  static std::string named(const Outcome& o) {
+    const core::Value& names = *o.report.find("geometry")->find("named");
+    return names.items().empty() ? "" : names.items().front().as_text();
+  }
+  static std::string verdict(const Outcome& o) { return o.report.find("geometry")->find("verdict")->as_text(); }
+
+ private:
+  static std::unique_ptr<test::TemporaryFolder> folder_;
+};
+std::unique_ptr<test::TemporaryFolder> Geometry::folder_;
+
+TEST_F(Geometry, ARightSurveyIsConsistent) {
+  const Outcome o = run_with("", "", {"run.limits.contradictions=0", "run.limits.line_difference=\"20 cm\""});
+  EXPECT_EQ(verdict(o), "consistent");
+  EXPECT_EQ(named(o), "");
+  EXPECT_TRUE(o.report.find("geometry")->find("warnings")->items().empty());
+  EXPECT_EQ(o.code, core::Exit::done);
+}
+
+TEST_F(Geometry, AnglesToPortAreNamedAndTheLimitIsMissed) {
+  const Outcome o = run_with("angle_unit = \"deg\"", "angle_unit = \"deg\"\nangle_to_port = true", {"run.limits.contradictions=0"});
+  EXPECT_EQ(verdict(o), "inconsistent");
+  EXPECT_EQ(named(o), "scan_angle_sign");
+  EXPECT_EQ(o.code, core::Exit::quality_missed);
+}
+
+TEST_F(Geometry, AnotherUnitOfAnglesIsNamed) {
+  EXPECT_EQ(named(run_with("angle_unit = \"deg\"", "angle_unit = \"gon\"")), "scan_angle_gon");
+}
+
+TEST_F(Geometry, LateTimesAreNamed) {
+  const Outcome o = run_with("latency = \"0 s\"", "latency = \"0.2 s\"");
+  EXPECT_EQ(verdict(o), "inconsistent");
+  EXPECT_EQ(named(o), "time_offset");
+}
+
+}  // namespace
+}  // namespace swath::pipeline
