@@ -25,6 +25,7 @@ constexpr double factor_limit = 0.5, climb_limit = 0.3;  // off 1
 // Slopes of the terrain move the tilt by 0.3 to 0.6 of the roll: only a sign is sure.
 constexpr double lowest_tilt = -0.4, lowest_correlation = -0.3;
 constexpr double clear = 0.7, clearly_more = 0.35;  // correlations of tilt and roll
+constexpr size_t fewest_bins = 300;                 // for the time of the roll: fewer agree somewhere by chance
 constexpr double longest_offset = 20.0;             // s
 constexpr double sure = 5.0;                        // sigmas
 
@@ -133,7 +134,7 @@ std::vector<GeometryCheck> check_returns(const SampledFlight& f, const Chain& ch
   if (!roll) return out;
   out.push_back({"ground_tilt", roll->factor, roll->factor > lowest_tilt || roll->correlation > lowest_correlation,
                  text_of("the ground tilts across the swath by %.2f of the aircraft's roll (1 is expected)", roll->factor)});
-  if (roll->correlation > clear) return out;
+  if (roll->correlation > clear || roll->bins < fewest_bins || f.sample.profiles.size() < 2) return out;
   const auto sought = roll_signal(f.sample.profiles, geometry, data, longest_offset);
   out.push_back({"roll_time", sought->offset, sought->best < clear || sought->best < roll->correlation + clearly_more,
                  text_of("the tilt of the ground follows the aircraft's roll with the laser's times %.2f s later", sought->offset)});

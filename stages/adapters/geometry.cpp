@@ -73,7 +73,7 @@ class Geometry : public OptionStage<calib::GeometryOptions> {
     return info;
   }
 
-  void run_survey(Context& context, core::Tally&, core::Value& findings) const override {
+  void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
     calib::GeometryInput in;
     in.shots = stream_shots(context);
     for (const Strip& s : context.strips)
@@ -83,7 +83,15 @@ class Geometry : public OptionStage<calib::GeometryOptions> {
     in.trajectory = context.trajectory.get();
     in.range = usual_range(context);
     in.convergence = convergence_of(context);
-    const calib::GeometryFigures found = calib::judge_geometry(in, options);
+    calib::GeometryFigures found;
+    try {
+      found = calib::judge_geometry(in, options);
+    } catch (const core::SystemError&) {
+      throw;
+    } catch (const core::Error& e) {
+      // Whatever keeps the flight from being judged is found by the stages that need it, or does not matter to them.
+      tally.count("the geometry could not be judged", e.what());
+    }
     constexpr const char* verdicts[] = {"not judged", "consistent", "inconsistent"};
     core::Value& out = findings["geometry"];
     out["verdict"] = verdicts[static_cast<size_t>(found.verdict)];
