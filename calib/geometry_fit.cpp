@@ -132,12 +132,14 @@ std::vector<GeometryCheck> check_returns(const SampledFlight& f, const Chain& ch
   const ShotGeometry geometry(chain.scanner, chain.calibration);
   const auto roll = roll_signal(f.sample.profiles, geometry, data, 0.0);
   if (!roll) return out;
-  out.push_back({"ground_tilt", roll->factor, roll->factor > lowest_tilt || roll->correlation > lowest_correlation,
+  const bool tilts = roll->factor + sure * roll->sigma > lowest_tilt || roll->correlation > lowest_correlation;
+  out.push_back({"ground_tilt", roll->factor, tilts,
                  text_of("the ground tilts across the swath by %.2f of the aircraft's roll (1 is expected)", roll->factor)});
   if (roll->correlation > clear || roll->bins < fewest_bins || f.sample.profiles.size() < 2) return out;
   const auto sought = roll_signal(f.sample.profiles, geometry, data, longest_offset);
   out.push_back({"roll_time", sought->offset, sought->best < clear || sought->best < roll->correlation + clearly_more,
-                 text_of("the tilt of the ground follows the aircraft's roll with the laser's times %.2f s later", sought->offset)});
+                 text_of("the tilt of the ground follows the aircraft's roll with the laser's times %.2f s ", std::abs(sought->offset)) +
+                     (sought->offset > 0 ? "later" : "earlier")});
   return out;
 }
 

@@ -19,8 +19,9 @@ constexpr double narrowest = 0.05;  // standard deviation of y in the mean dista
 constexpr int half_window = 20;     // bins on each side of the mean that is taken out
 constexpr size_t fewest_bins = 60;
 constexpr double least_roll = 0.05 * core::degree;
-constexpr double lag_step = 0.02;    // s
-constexpr double independent = 3.0;  // bins after which the terrain is new
+constexpr double lag_step = 0.02;     // s
+constexpr double independent = 15.0;  // bins after which slopes of terrain and canopy are new
+constexpr double least_shared = 0.9;  // of the bins: fewer agree somewhere by chance
 constexpr double mad_to_sigma = 1.4826;
 
 struct Tilt {
@@ -149,7 +150,7 @@ std::optional<RollSignal> roll_signal(const std::vector<PassSample>& profiles, c
   const long most = std::lround(search / lag_step);
   for (long lag = -most; lag <= most; ++lag) {
     const Sums s = sums_at(all, lag, limit);
-    if (2 * s.n < now.n || s.correlation() <= out.best) continue;
+    if (static_cast<double>(s.n) < least_shared * static_cast<double>(now.n) || s.correlation() <= out.best) continue;
     out.best = s.correlation();
     out.offset = static_cast<double>(lag) * lag_step;
   }

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/calib/gate_flight.h"
 
 namespace swath::calib {
@@ -45,6 +47,26 @@ TEST(RollSignal, LateTimesAreFound) {
   ASSERT_TRUE(s);
   EXPECT_NEAR(s->offset, -0.5, 0.05);
   EXPECT_GT(s->best, s->correlation + 0.2);
+}
+
+TEST(RollSignal, AShortLineOverRoughSlopesIsUnsure) {
+  // One line of 8 s whose ground tilts by chance against the roll: slopes that last for a second and a half.
+  GateFlight f(true, 1);
+  core::Shots& s = f.shots[0];
+  for (size_t i = 0; i < s.size(); ++i) {
+    const double piece = std::floor((s.time[i] - s.time[0]) / 1.5), slope = 0.09 * std::sin(2.1 * (s.time[0] + 1.5 * piece + 0.75));
+    s.range[i] *= 1 + slope * std::tan(s.angle[i]);
+  }
+  const auto either = [&](double sign) {
+    GateFlight g = f;
+    for (double& r : g.data.roll) r *= sign;
+    return *signal(g, 0.0);
+  };
+  for (const double sign : {1.0, -1.0}) {
+    const RollSignal r = either(sign);
+    EXPECT_GT(r.sigma, 0.08);
+    EXPECT_LT(r.sigma, 2.0);
+  }
 }
 
 TEST(RollSignal, NoneWithoutRoll) {
