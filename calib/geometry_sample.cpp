@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -26,6 +27,8 @@ constexpr double profile_length = 20.0;           // s
 constexpr double profile_rate = 500.0;            // returns/s
 constexpr size_t most_profiles = 12;
 constexpr double returns_of_a_cell = 10.0;
+constexpr double at_once = 5.0;      // s between two pieces of one line that are not compared
+constexpr double seam = track_step;  // s between the files of one line
 
 /// Half the length of a stretch, m: wide enough that signs of pitch do not part two stretches of one place.
 double half_length(double range) { return std::clamp(8.0 + 0.06 * range, 10.0, 80.0); }
@@ -82,10 +85,16 @@ struct Site {
 
 std::vector<Site> sites_of(const Pass& a, const Pass& b, double reach, int most) {
   std::vector<Site> near;
+  // A pass advances along its course throughout: what lies within reach of a point lies within reach along the course.
+  const Vector2d ahead(std::sin(b.course), std::cos(b.course));
+  std::vector<double> along;
+  for (const Vector2d& p : b.track) along.push_back(p.dot(ahead));
   for (size_t i = 0; i < a.track.size(); ++i) {
     Site best{reach, 0, 0};
     bool found = false;
-    for (size_t j = 0; j < b.track.size(); ++j)
+    const double here = a.track[i].dot(ahead);
+    const auto first = std::lower_bound(along.begin(), along.end(), here - reach) - along.begin();
+    for (auto j = static_cast<size_t>(first); j < b.track.size() && along[j] <= here + reach; ++j)
       if (const double d = (a.track[i] - b.track[j]).norm(); d < best.distance) best = {d, a.time[i], b.time[j]}, found = true;
     if (found) near.push_back(best);
   }
@@ -100,16 +109,45 @@ std::vector<Site> sites_of(const Pass& a, const Pass& b, double reach, int most)
   return out;
 }
 
-/// Boxes of tracks, so that few pairs are looked at closely.
-struct TrackBox {
-  Vector2d low = Vector2d::Constant(1e300), high = Vector2d::Constant(-1e300);
-  explicit TrackBox(const Pass& p) {
-    for (const Vector2d& v : p.track) low = low.cwiseMin(v), high = high.cwiseMax(v);
+/// Pairs of passes with tracks that may come within reach, by number: those with points in neighbouring cells of a lattice.
+std::vector<std::pair<size_t, size_t>> candidates(const std::vector<Pass>& passes, double reach) {
+  double longest = 0.0;  // m between two points of a track
+  for (const Pass& p : passes)
+    for (size_t i = 1; i < p.track.size(); ++i) longest = std::max(longest, (p.track[i] - p.track[i - 1]).norm());
+  // Points further apart than half the reach, or neighbours: each point of a track lies within this of one of them.
+  const double off = std::max(0.5 * reach, longest), side = reach + 2 * off;
+  std::map<std::pair<std::int64_t, std::int64_t>, std::vector<size_t>> cells;
+  const auto cell_of = [side](const Vector2d& v) {
+    return std::pair(static_cast<std::int64_t>(std::floor(v.x() / side)), static_cast<std::int64_t>(std::floor(v.y() / side)));
+  };
+  for (size_t k = 0; k < passes.size(); ++k) {
+    Vector2d last = Vector2d::Constant(1e300);
+    for (const Vector2d& v : passes[k].track) {
+      if ((v - last).norm() < off) continue;
+      last = v;
+      std::vector<size_t>& in = cells[cell_of(v)];
+      if (in.empty() || in.back() != k) in.push_back(k);
+    }
   }
-  bool near(const TrackBox& o, double reach) const {
-    return (low.array() - reach < o.high.array()).all() && (o.low.array() - reach < high.array()).all();
-  }
-};
+  std::vector<std::pair<size_t, size_t>> out;
+  for (const auto& [at, in] : cells)
+    for (const std::int64_t dx : {-1, 0, 1})
+      for (const std::int64_t dy : {-1, 0, 1}) {
+        const auto beside = cells.find({at.first + dx, at.second + dy});
+        if (beside == cells.end()) continue;
+        for (const size_t a : in)
+          for (const size_t b : beside->second)
+            if (a < b) out.emplace_back(a, b);
+      }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+/// Two pieces of one line, the second flown at once after the first: where they meet nothing is compared.
+bool follow_at_once(const Pass& a, const Pass& b) {
+  return a.line == b.line && std::max(a.first, b.first) - std::min(a.last, b.last) < at_once;
+}
 
 struct PairSites {
   size_t a = 0, b = 0;
@@ -118,16 +156,13 @@ struct PairSites {
 };
 
 std::vector<PairSites> near_pairs(const std::vector<Pass>& passes, double reach, int most) {
-  std::vector<TrackBox> boxes;
-  for (const Pass& p : passes) boxes.emplace_back(p);
   std::vector<PairSites> out;
-  for (size_t a = 0; a < passes.size(); ++a)
-    for (size_t b = a + 1; b < passes.size(); ++b) {
-      if (!boxes[a].near(boxes[b], reach)) continue;
-      PairSites p{a, b, reach, sites_of(passes[a], passes[b], reach, most)};
-      for (const Site& s : p.sites) p.distance = std::min(p.distance, s.distance);
-      if (!p.sites.empty()) out.push_back(std::move(p));
-    }
+  for (const auto& [a, b] : candidates(passes, reach)) {
+    if (follow_at_once(passes[a], passes[b])) continue;
+    PairSites p{a, b, reach, sites_of(passes[a], passes[b], reach, most)};
+    for (const Site& s : p.sites) p.distance = std::min(p.distance, s.distance);
+    if (!p.sites.empty()) out.push_back(std::move(p));
+  }
   // Every pass once before any twice; nearer pairs first.
   std::stable_sort(out.begin(), out.end(), [](const PairSites& x, const PairSites& y) { return x.distance < y.distance; });
   std::map<size_t, int> used;
@@ -137,6 +172,22 @@ std::vector<PairSites> near_pairs(const std::vector<Pass>& passes, double reach,
   std::vector<PairSites> sorted;
   for (const auto& [round, i] : order) sorted.push_back(std::move(out[i]));
   return sorted;
+}
+
+/// Of files that were read one after the other.
+void sort_by_time(core::Shots& s) {
+  if (std::is_sorted(s.time.begin(), s.time.end())) return;
+  std::vector<size_t> order(s.time.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::sort(order.begin(), order.end(), [&](size_t x, size_t y) {
+    return std::tie(s.time[x], s.angle[x], s.range[x], x) < std::tie(s.time[y], s.angle[y], s.range[y], y);
+  });
+  for (auto* column : {&s.time, &s.angle, &s.range, &s.forward}) {
+    if (column->empty()) continue;
+    std::vector<double> sorted;
+    for (const size_t i : order) sorted.push_back((*column)[i]);
+    *column = std::move(sorted);
+  }
 }
 
 /// Stretches of one pass that overlap become one.
@@ -155,11 +206,27 @@ void join(std::vector<Stretch>& s) {
 
 }  // namespace
 
+std::vector<RecordedLine> whole_lines(std::vector<RecordedLine> lines) {
+  std::stable_sort(lines.begin(), lines.end(),
+                   [](const RecordedLine& x, const RecordedLine& y) { return std::tie(x.line, x.first) < std::tie(y.line, y.first); });
+  std::vector<RecordedLine> out;
+  for (const RecordedLine& l : lines) {
+    if (!out.empty() && out.back().line == l.line && l.first <= out.back().last + seam) {
+      out.back().last = std::max(out.back().last, l.last);
+      out.back().records += l.records;
+    } else {
+      out.push_back(l);
+    }
+  }
+  std::stable_sort(out.begin(), out.end(), [](const RecordedLine& x, const RecordedLine& y) { return x.first < y.first; });
+  return out;
+}
+
 SamplePlan plan_sample(const std::vector<RecordedLine>& lines, const trajectory::Trajectory& t, const trajectory::LocalFrame& frame,
                        double shift, double range, const SampleSize& size) {
   SamplePlan plan;
   double seconds = 0, covered = 0;
-  for (const RecordedLine& l : lines) fly(l, t, frame, shift, plan.passes, seconds, covered);
+  for (const RecordedLine& l : whole_lines(lines)) fly(l, t, frame, shift, plan.passes, seconds, covered);
   plan.covered = seconds > 0 ? covered / seconds : 0.0;
   const double half = half_length(range), reach = swath_share * range;
   plan.cell = std::clamp(std::sqrt(returns_of_a_cell * 2 * half * 0.75 * range / size.returns), 0.75, 12.0);
@@ -204,12 +271,16 @@ GeometrySample collect_sample(const SamplePlan& plan, const ShotStream& stream) 
         into->time.push_back(batch.time[i]);
         into->angle.push_back(batch.angle[i]);
         into->range.push_back(batch.range[i]);
-        if (!batch.forward.empty()) into->forward.push_back(batch.forward[i]);
+        if (batch.forward.empty() && into->forward.empty()) continue;
+        into->forward.resize(into->time.size(), 0.0);  // a file without that angle may come first, or last
+        if (!batch.forward.empty()) into->forward.back() = batch.forward[i];
       }
     }
   });
-  for (auto& [key, kept] : shots)
+  for (auto& [key, kept] : shots) {
+    sort_by_time(kept);
     if (kept.size() > 0) (key.first ? out.profiles : out.surfaces).push_back({key.second, std::move(kept)});
+  }
   return out;
 }
 

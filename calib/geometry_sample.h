@@ -54,6 +54,9 @@ struct SamplePlan {
   double nearest = std::numeric_limits<double>::infinity();  ///< distance of the two tracks nearest to one another, m
 };
 
+/// Records of one line in several files, beside one another (channels) or one after the other, become one; by time.
+std::vector<RecordedLine> whole_lines(std::vector<RecordedLine> lines);
+
 /// Stretches of passes that come nearer to one another than their swaths are wide, judged by the trajectory alone: no unit, sign or angle
 /// of the laser takes part. `shift`: s, added to recorded times. `range`: m, of a usual return.
 SamplePlan plan_sample(const std::vector<RecordedLine>& lines, const trajectory::Trajectory& trajectory,
