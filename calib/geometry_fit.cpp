@@ -14,14 +14,16 @@ namespace swath::calib {
 namespace {
 
 constexpr double mad_to_sigma = 1.4826;
-constexpr double far_off = 5.0, cut = 20.0;              // sigmas
-constexpr double finest = 0.03;                          // m: ground itself differs by this from pass to pass
-constexpr double lowest_land = -230.0;                   // m, ellipsoidal: Turfan; the Dead Sea is asked for by its place
-constexpr double highest_land = 7500.0;                  // m
-constexpr double least_down = 0.9;                       // share of returns below the aircraft
-constexpr double heading_limit = 5.0 * core::degree;     // sideslip and changing winds make up to three degrees
-constexpr double misfit_limit = 0.35;                    // of the airspeed
-constexpr double factor_limit = 0.5, climb_limit = 0.3;  // off 1
+constexpr double far_off = 5.0, cut = 20.0;           // sigmas
+constexpr double finest = 0.03;                       // m: ground itself differs by this from pass to pass
+constexpr double lowest_land = -230.0;                // m, ellipsoidal: Turfan; the Dead Sea is asked for by its place
+constexpr double highest_land = 7500.0;               // m
+constexpr double least_down = 0.9;                    // share of returns below the aircraft
+constexpr double heading_limit = 5.0 * core::degree;  // sideslip and changing winds make up to three degrees
+constexpr double misfit_limit = 0.35;                 // of the airspeed
+constexpr double climb_limit = 0.3;                   // off 1
+// Turns: cars, boats and stabilised mounts lean little or outwards; a reversed sign or another axis leans as much as an aircraft.
+constexpr double leaning = 0.5, clearly_leaning = 0.8;  // factor and correlation
 // Slopes of the terrain move the tilt by 0.3 to 0.6 of the roll: only a sign is sure.
 constexpr double lowest_tilt = -0.4, lowest_correlation = -0.3;
 constexpr double clear = 0.7, clearly_more = 0.35;  // correlations of tilt and roll
@@ -67,11 +69,16 @@ void add_heights(const SampledFlight& f, const Chain& chain, const trajectory::T
        text_of("the ground lies %.0f m above the ellipsoid, where no land is: heights of the trajectory or ranges are wrong", height)});
 }
 
-void add_factor(const std::optional<trajectory::FactorFit>& f, const char* name, double expected, double limit, const char* format,
-                std::vector<GeometryCheck>& out) {
-  if (!f) return;
-  const double off = std::abs(f->factor - expected);
-  out.push_back({name, f->factor, off < limit || off < sure * f->sigma, text_of(format, f->factor)});
+void add_turns(const trajectory::FlightChecks& c, std::vector<GeometryCheck>& out) {
+  if (const auto& roll = c.roll_turns)
+    out.push_back({"roll_in_turns", roll->factor, roll->factor > -leaning || roll->correlation > -clearly_leaning,
+                   text_of("in turns the roll is %.2f of that of a coordinated turn (1 is expected)", roll->factor)});
+  if (const auto& pitch = c.pitch_turns) {
+    const bool rolls = c.roll_turns && std::abs(c.roll_turns->factor) > leaning;
+    out.push_back({"pitch_in_turns", pitch->factor,
+                   rolls || std::abs(pitch->factor) < leaning || std::abs(pitch->correlation) < clearly_leaning,
+                   text_of("in turns the pitch is %.2f of the roll of a coordinated turn (0 is expected)", pitch->factor)});
+  }
 }
 
 }  // namespace
@@ -153,11 +160,12 @@ std::vector<GeometryCheck> check_motion(const trajectory::FlightChecks& c) {
     out.push_back({"heading_misfit", h.misfit, h.misfit < misfit_limit,
                    text_of("the heading does not follow the track: %.0f %% of the speed is left with any wind", 100 * h.misfit)});
   }
-  add_factor(c.roll_turns, "roll_in_turns", 1.0, factor_limit, "in turns the roll is %.2f of that of a coordinated turn (1 is expected)",
-             out);
-  add_factor(c.pitch_turns, "pitch_in_turns", 0.0, factor_limit,
-             "in turns the pitch is %.2f of the roll of a coordinated turn (0 is expected)", out);
-  add_factor(c.climb, "climb", 1.0, climb_limit, "the heights change by %.2f of what the vertical velocities say (1 is expected)", out);
+  add_turns(c, out);
+  if (c.climb) {
+    const double off = std::abs(c.climb->factor - 1.0);
+    out.push_back({"climb", c.climb->factor, off < climb_limit || off < sure * c.climb->sigma,
+                   text_of("the heights change by %.2f of what the vertical velocities say (1 is expected)", c.climb->factor)});
+  }
   return out;
 }
 

@@ -123,12 +123,13 @@ std::optional<HeadingFit> heading_of(const std::vector<Sample>& all) {
 /// y = factor * x.
 std::optional<FactorFit> factor_of(const std::vector<std::pair<double, double>>& xy, double smallest) {
   if (xy.size() < fewest_samples) return std::nullopt;
-  double xx = 0, xyz = 0;
-  for (const auto& [x, y] : xy) xx += x * x, xyz += x * y;
+  double xx = 0, product = 0, yy = 0;
+  for (const auto& [x, y] : xy) xx += x * x, product += x * y, yy += y * y;
   const auto n = static_cast<double>(xy.size());
   if (std::sqrt(xx / n) < smallest) return std::nullopt;
   FactorFit out;
-  out.factor = xyz / xx;
+  out.factor = product / xx;
+  out.correlation = yy > 0 ? product / std::sqrt(xx * yy) : 0.0;
   out.samples = xy.size();
   double left = 0;
   for (const auto& [x, y] : xy) left += std::pow(y - out.factor * x, 2);

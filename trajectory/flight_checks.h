@@ -22,6 +22,7 @@ struct HeadingFit {
 struct FactorFit {
   double factor = 0.0, sigma = 0.0;
   size_t samples = 0;
+  double correlation = 0.0;
 };
 
 struct FlightChecks {

@@ -45,7 +45,7 @@ TEST(GeometryFit, ReturnsContradictARolledMountAndWrongHeights) {
 TEST(GeometryFit, MotionThatNoAircraftMakesIsNotHeld) {
   trajectory::FlightChecks c;
   c.heading = trajectory::HeadingFit{90 * core::degree, 1 * core::degree, 0.02, 50, 5};
-  c.roll_turns = trajectory::FactorFit{-1.0, 0.02, 100};
+  c.roll_turns = trajectory::FactorFit{-1.0, 0.02, 100, -0.95};
   c.climb = trajectory::FactorFit{1.02, 0.01, 100};
   const auto checks = check_motion(c);
   EXPECT_FALSE(held(checks, "heading_bias"));
@@ -53,6 +53,21 @@ TEST(GeometryFit, MotionThatNoAircraftMakesIsNotHeld) {
   EXPECT_FALSE(held(checks, "roll_in_turns"));
   EXPECT_TRUE(held(checks, "climb"));
   EXPECT_TRUE(check_motion({}).empty());
+}
+
+TEST(GeometryFit, AStabilisedMountAndACarAreNotBlamed) {
+  const auto turns = [](double roll, double roll_correlation, double pitch, double pitch_correlation) {
+    trajectory::FlightChecks c;
+    c.roll_turns = trajectory::FactorFit{roll, 0.01, 100, roll_correlation};
+    c.pitch_turns = trajectory::FactorFit{pitch, 0.01, 100, pitch_correlation};
+    return check_motion(c);
+  };
+  EXPECT_TRUE(held(turns(0.02, 0.1, 0.0, 0.0), "roll_in_turns")) << "stabilised";
+  EXPECT_TRUE(held(turns(-0.2, -0.9, 0.0, 0.0), "roll_in_turns")) << "leans outwards";
+  EXPECT_TRUE(held(turns(-0.7, -0.5, 0.0, 0.0), "roll_in_turns")) << "gusts";
+  EXPECT_FALSE(held(turns(-0.7, -0.9, 0.0, 0.0), "roll_in_turns"));
+  EXPECT_TRUE(held(turns(1.0, 0.95, 0.6, 0.9), "pitch_in_turns")) << "pulls up in turns";
+  EXPECT_FALSE(held(turns(0.0, 0.1, -0.9, -0.9), "pitch_in_turns")) << "exchanged";
 }
 
 }  // namespace
