@@ -36,12 +36,15 @@ struct Sample {
 std::vector<size_t> nodes_of(const core::TrajectoryData& d) {
   std::vector<size_t> out;
   if (d.size() == 0) return out;
-  const double length = d.time.back() - d.time.front(), every = std::max(step, length / most_samples);
-  // Spans of one step, `every` apart.
+  double covered = 0.0;
+  for (size_t i = 1; i < d.size(); ++i)
+    if (const double dt = d.time[i] - d.time[i - 1]; dt <= longest_step) covered += dt;
+  const double every = std::max(step, covered / most_samples);
+  // Spans of one step, `every` apart; a gap is passed over.
   size_t at = 0;
-  for (double t = d.time.front(); t + step <= d.time.back(); t += every) {
+  for (double t = d.time.front(); t + step <= d.time.back(); t = std::max(t + every, d.time[at] + 0.5 * every)) {
     at = static_cast<size_t>(std::lower_bound(d.time.begin() + static_cast<std::ptrdiff_t>(at), d.time.end(), t) - d.time.begin());
-    out.push_back(at);
+    if (out.empty() || out.back() != at) out.push_back(at);
   }
   return out;
 }
@@ -91,9 +94,14 @@ double wind_fit(const std::vector<Sample>& all, double bias, Eigen::Vector3d& x)
 
 std::optional<HeadingFit> heading_of(const std::vector<Sample>& all) {
   if (all.size() < fewest_samples) return std::nullopt;
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const Sample& s : all) mean += Eigen::Vector2d(s.north, s.east).normalized();
-  if (1 - (mean / static_cast<double>(all.size())).norm() < least_spread) return std::nullopt;
+  // A heading that stays while the track turns is that of a craft that flies sideways: no wind and no bias come of it.
+  Eigen::Vector2d track = Eigen::Vector2d::Zero(), heading = Eigen::Vector2d::Zero();
+  for (const Sample& s : all) {
+    track += Eigen::Vector2d(s.north, s.east).normalized();
+    heading += Eigen::Vector2d(std::cos(s.heading), std::sin(s.heading));
+  }
+  for (const Eigen::Vector2d& mean : {track, heading})
+    if (1 - (mean / static_cast<double>(all.size())).norm() < least_spread) return std::nullopt;
   Eigen::Vector3d x;
   double best = 0, least = 1e300;
   const auto look = [&](double bias) {

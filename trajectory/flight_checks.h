@@ -26,7 +26,7 @@ struct FactorFit {
 };
 
 struct FlightChecks {
-  std::optional<HeadingFit> heading;     ///< none where the flight goes one way alone
+  std::optional<HeadingFit> heading;     ///< none where track or heading go one way alone
   std::optional<FactorFit> roll_turns;   ///< roll against the bank of a coordinated turn; none without turns
   std::optional<FactorFit> pitch_turns;  ///< pitch against the same: near 0 but where the axes are exchanged
   std::optional<FactorFit> climb;        ///< changes of height against the recorded vertical velocity; none without velocities

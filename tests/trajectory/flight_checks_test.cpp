@@ -66,6 +66,27 @@ TEST(FlightChecks, EachMistakeShowsInItsOwnFigure) {
   EXPECT_NEAR(check_flight(d).climb->factor, 1 / 0.3048, 0.1);
 }
 
+TEST(FlightChecks, AGapIsNotManySamples) {
+  // A day between two flights; the first records after it differ from the rest.
+  core::TrajectoryData d = race_track(), later = race_track();
+  const size_t turns = check_flight(d).climb->samples;
+  for (size_t i = 0; i < later.size(); ++i) {
+    using D = core::TrajectoryData;
+    d.time.push_back(later.time[i] + 86400);
+    for (const auto c : {&D::latitude, &D::longitude, &D::height, &D::roll, &D::pitch, &D::heading, &D::v_north, &D::v_east, &D::v_down})
+      (d.*c).push_back((later.*c)[i]);
+  }
+  const FlightChecks c = check_flight(d);
+  EXPECT_NEAR(static_cast<double>(c.climb->samples), 2.0 * static_cast<double>(turns), 4.0);
+  EXPECT_NEAR(c.heading->bias, 0.0, 1 * deg);
+}
+
+TEST(FlightChecks, AFixedHeadingDeterminesNoBias) {
+  core::TrajectoryData d = race_track();
+  for (double& h : d.heading) h = 0.7;
+  EXPECT_FALSE(check_flight(d).heading);
+}
+
 TEST(FlightChecks, AStraightFlightDeterminesNeither) {
   const FlightChecks c = check_flight(race_track(0.45));
   EXPECT_FALSE(c.heading);
