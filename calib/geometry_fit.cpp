@@ -16,9 +16,9 @@ namespace {
 constexpr double mad_to_sigma = 1.4826;
 constexpr double far_off = 5.0, cut = 20.0;           // sigmas
 constexpr double finest = 0.03;                       // m: ground itself differs by this from pass to pass
-constexpr double lowest_land = -230.0;                // m, ellipsoidal: Turfan; the Dead Sea is asked for by its place
-constexpr double highest_land = 7500.0;               // m
-constexpr double least_down = 0.9;                    // share of returns below the aircraft
+constexpr double lowest_land = -480.0;                // m, ellipsoidal: the shore of the Dead Sea
+constexpr double highest_land = 9000.0;               // m
+constexpr double least_down = 0.5;                    // share of returns below the aircraft: gorges and streets have walls
 constexpr double heading_limit = 5.0 * core::degree;  // sideslip and changing winds make up to three degrees
 constexpr double misfit_limit = 0.35;                 // of the airspeed
 constexpr double climb_limit = 0.3;                   // off 1
@@ -35,11 +35,6 @@ std::string text_of(const char* format, double a, double b = 0.0) {
   char text[256];
   std::snprintf(text, sizeof text, format, a, b);
   return text;
-}
-
-bool is_dead_sea(const core::Geodetic& g) {
-  const double latitude = core::to_degrees(g.latitude), longitude = core::to_degrees(g.longitude);
-  return latitude > 30 && latitude < 33.5 && longitude > 35 && longitude < 36;
 }
 
 void add_heights(const SampledFlight& f, const Chain& chain, const trajectory::Trajectory& t, std::vector<GeometryCheck>& out) {
@@ -62,10 +57,8 @@ void add_heights(const SampledFlight& f, const Chain& chain, const trajectory::T
   if (n < 100) return;
   const double share = down / n, height = core::median(std::move(heights), 0.0);
   out.push_back({"beams_down", share, share >= least_down, text_of("only %.0f %% of the returns lie below the aircraft", 100 * share)});
-  const core::Geodetic place = core::geodetic_of(f.frame.origin);
-  const double lowest = is_dead_sea(place) ? -480.0 : lowest_land;
   out.push_back(
-      {"ground_height", height, height > lowest && height < highest_land,
+      {"ground_height", height, height > lowest_land && height < highest_land,
        text_of("the ground lies %.0f m above the ellipsoid, where no land is: heights of the trajectory or ranges are wrong", height)});
 }
 
