@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <limits>
 
+#include "core/error.h"
 #include "core/statistics.h"
+#include "core/time.h"
+#include "core/time_gap.h"
 
 namespace swath::io {
 namespace {
@@ -14,36 +17,9 @@ constexpr size_t looked_at = 20000;                   // returns of a line: some
 constexpr double shortest = 1.0, farthest = 15000.0;  // m, median ranges of a survey
 constexpr double still = 0.05 * core::degree;         // a mirror that is parked at nadir stays within
 constexpr double narrow = 1.2 * core::degree;         // no mirror sweeps so little; 60 deg read as radians stay within
-constexpr double filled = 0.75;                       // share of its window that a line's records span
-constexpr double margin = 1.0;                        // s that a window may be longer in any case
+constexpr double least_span = 0.5;                    // s of records, in which each mirror has swept its swath
 
 std::string shown(double value, const char* unit) { return core::format_number(std::round(value * 1000) / 1000) + unit; }
-
-struct Span {
-  double first = std::numeric_limits<double>::infinity(), last = -std::numeric_limits<double>::infinity();
-};
-
-void check_windows(const Survey& survey, const std::vector<StripInfo>& strips, core::Tally& tally) {
-  std::map<int, Span> spans;
-  for (const StripInfo& s : strips)
-    if (std::isfinite(s.first_time)) {
-      Span& span = spans[s.line];
-      span.first = std::min(span.first, s.first_time);
-      span.last = std::max(span.last, s.last_time);
-    }
-  for (const LineWindow& w : line_windows(survey)) {
-    const auto found = spans.find(w.id);
-    const std::string line = "line " + std::to_string(w.id);
-    if (found == spans.end()) {
-      tally.count("flight lines without a record: is a file missing or cut?", line);
-      continue;
-    }
-    const double length = w.end - w.start, spanned = found->second.last - found->second.first;
-    if (spanned < filled * length && length - spanned > margin)
-      tally.count("flight lines whose records fill less than three quarters of their time window: cut?",
-                  line + ": " + shown(spanned, " s of ") + shown(length, " s"));
-  }
-}
 
 void check_beams(const Survey& survey, const StripInfo& strip, core::Tally& tally) {
   LaserSource source(survey, strip);
@@ -55,7 +31,11 @@ void check_beams(const Survey& survey, const StripInfo& strip, core::Tally& tall
     tally.count("flight lines whose ranges are those of no survey: check range_unit",
                 strip.name(survey) + ": median " + shown(range, " m"));
   const core::ScannerModel model = file.model.value_or(survey.scanner.model);
-  if (file.columns.scan_angle.empty() || (model != core::ScannerModel::mirror && model != core::ScannerModel::polygon)) return;
+  if (shots.angle.empty() || file.columns.scan_angle.empty() ||
+      (model != core::ScannerModel::mirror && model != core::ScannerModel::polygon))
+    return;
+  const auto [first, last] = std::minmax_element(shots.time.begin(), shots.time.end());
+  if (*last - *first < least_span) return;
   double widest = 0.0;
   for (const double a : shots.angle) widest = std::max(widest, std::abs(a));
   if (widest > still && widest < narrow)
@@ -66,8 +46,25 @@ void check_beams(const Survey& survey, const StripInfo& strip, core::Tally& tall
 }  // namespace
 
 void check_laser(const Survey& survey, const std::vector<StripInfo>& strips, core::Tally& tally) {
-  check_windows(survey, strips, tally);
   for (const StripInfo& strip : strips) check_beams(survey, strip, tally);
+}
+
+void hold_common_times(const Survey& survey, const std::vector<StripInfo>& strips, const std::vector<double>& flown) {
+  const double latency = survey.calibration.latency.value;
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (const StripInfo& s : strips) {
+    if (!std::isfinite(s.first_time)) continue;
+    const double from = s.first_time + latency, to = s.last_time + latency;
+    if (from <= flown.back() && to >= flown.front()) return;
+    first = std::min(first, from), last = std::max(last, to);
+  }
+  if (!(first <= last)) return;
+  const std::string gap =
+      core::usual_time_gap(0.5 * (first + last - flown.front() - flown.back()), last - first + flown.back() - flown.front());
+  throw core::Error("the trajectory covers no laser record: records from " + core::utc_text(first) + " to " + core::utc_text(last) +
+                        (latency == 0.0 ? "" : " (latency added)") + ", trajectory from " + core::utc_text(flown.front()) + " to " +
+                        core::utc_text(flown.back()),
+                    survey.name, gap.empty() ? "compare the time scales with `swath info` of the laser and trajectory files" : gap);
 }
 
 }  // namespace swath::io

@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
+#include "core/error.h"
 #include "tests/world/support.h"
 
 namespace swath::io {
@@ -24,7 +26,7 @@ class LaserChecks : public ::testing::Test {
     survey_.lines = {{1, "", core::Seconds(0), core::Seconds(100)}, {2, "", core::Seconds(200), core::Seconds(300)}};
   }
   /// Records once a second: line 1 as long as stated, line 2 until `last`; a swath of `half` deg, ranges about `range` m.
-  std::string told(double half, double range, int last = 300) {
+  std::string counted(double half, double range, int last = 300) {
     std::string rows = "t,line,r,a\n";
     for (int t = 0; t <= last; ++t)
       if (t <= 100 || t >= 200)
@@ -34,8 +36,8 @@ class LaserChecks : public ::testing::Test {
     core::Tally tally;
     check_laser(survey_, scan(survey_, tally), tally);
     std::string names;
-    const core::Value counted = tally.value();
-    for (const auto& [what, entry] : counted.members()) names += what + "\n";
+    const core::Value all = tally.value();
+    for (const auto& [what, entry] : all.members()) names += what + "\n";
     return names;
   }
   test::TemporaryFolder folder_;
@@ -43,21 +45,38 @@ class LaserChecks : public ::testing::Test {
 };
 
 TEST_F(LaserChecks, RightRecordsSayNothing) {
-  EXPECT_EQ(told(20, 350), "");
-  EXPECT_EQ(told(0.003, 350), "") << "a mirror that is parked";
-  EXPECT_EQ(told(20, 350, 280), "") << "a window of some seconds more";
+  EXPECT_EQ(counted(20, 350), "");
+  EXPECT_EQ(counted(0.003, 350), "") << "a mirror that is parked";
+  EXPECT_EQ(counted(20, 350, 280), "") << "a window of some seconds more";
 }
 
-TEST_F(LaserChecks, ALineWithoutRecordsIsCounted) {
-  EXPECT_NE(told(20, 350, 150).find("without a record"), std::string::npos);
-  EXPECT_NE(told(20, 350, 250).find("fill less"), std::string::npos);
+TEST_F(LaserChecks, RadiansReadAsDegreesAreCounted) { EXPECT_NE(counted(0.35, 350).find("radians stated as degrees"), std::string::npos); }
+
+TEST_F(LaserChecks, AMomentOfASweepIsNotCalledRadians) {
+  std::string rows = "t,line,r,a\n";
+  for (int i = 0; i < 200; ++i) rows += std::to_string(10 + 0.002 * i) + ",1,350," + std::to_string(0.35 * std::sin(0.1 * i)) + "\n";
+  test::write_bytes(folder_ / "a.csv", rows);
+  core::Tally tally;
+  check_laser(survey_, scan(survey_, tally), tally);
+  EXPECT_EQ(tally.value().find("flight lines whose scan angles are tiny: radians stated as degrees?"), nullptr);
 }
 
-TEST_F(LaserChecks, RadiansReadAsDegreesAreCounted) { EXPECT_NE(told(0.35, 350).find("radians stated as degrees"), std::string::npos); }
+TEST_F(LaserChecks, CommonTimesAreThoseWithTheLatencyAdded) {
+  const std::vector<StripInfo> strips = [&] {
+    counted(20, 350);
+    core::Tally tally;
+    return scan(survey_, tally);
+  }();
+  EXPECT_NO_THROW(hold_common_times(survey_, strips, {290, 320}));
+  EXPECT_THROW(hold_common_times(survey_, strips, {305, 320}), core::Error);
+  survey_.calibration.latency = core::Seconds(18);
+  EXPECT_NO_THROW(hold_common_times(survey_, strips, {305, 320}));
+  EXPECT_THROW(hold_common_times(survey_, strips, {0, 10}), core::Error);
+}
 
 TEST_F(LaserChecks, RangesOfNoSurveyAreCounted) {
-  EXPECT_NE(told(20, 35000).find("range_unit"), std::string::npos);
-  EXPECT_EQ(told(20, 8000), "");
+  EXPECT_NE(counted(20, 35000).find("range_unit"), std::string::npos);
+  EXPECT_EQ(counted(20, 8000), "");
 }
 
 }  // namespace
