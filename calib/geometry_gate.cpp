@@ -10,22 +10,25 @@
 #include <tuple>
 #include <utility>
 
+#include "core/error.h"
 #include "core/geodesy.h"
+#include "core/time.h"
 
 namespace swath::calib {
 namespace {
 
 constexpr double far_better = 0.5;      // of the cost as described
-constexpr double as_good = 1.12;        // of the best cost: not told apart
+constexpr double as_good = 1.12;        // of the best cost: the same
 constexpr double fewer_cells = 0.1;     // of the largest number of cells that any assumption gives
 constexpr double near_predicted = 2.5;  // of the predicted sigma
 constexpr double few_outside = 0.1;
 constexpr double less = 0.8, much_less = 0.67;  // of the cost as described, where lines differ by little
 constexpr double more_than_predicted = 1.15;    // cost beside the predicted sigma from which small mistakes are looked for
 constexpr size_t most_named = 3;
-constexpr double margin = 0.6;           // s of the trajectory around a stretch
+constexpr double margin = 0.6;           // s of the trajectory around a stretch ...
+constexpr double steps_around = 2.5;     // ... and steps of it, for the cubic through four records
 constexpr double longest_offset = 20.0;  // s
-constexpr double least_covered = 0.5;
+constexpr double least_covered = 0.5, nearly_all = 0.95;
 constexpr double crossing = 0.15, meeting = 0.5;  // of the range: tracks so near share ground
 
 std::string text_of(const char* format, double a, double b = 0.0) {
@@ -66,13 +69,29 @@ size_t not_held(const std::vector<GeometryCheck>& checks) {
 }
 
 /// Longest step between records that is interpolated over.
-double longest_step(const trajectory::Trajectory& t, const core::TrajectoryData& piece) {
+double longest_step(const trajectory::Trajectory& t) {
+  const std::vector<double>& time = t.data().time;
   double out = 1e-6;
-  for (size_t k = 1; k < piece.size(); ++k) {
-    const double step = piece.time[k] - piece.time[k - 1];
-    if (step > out && step < 2 * margin && t.covers(0.5 * (piece.time[k] + piece.time[k - 1]))) out = step;
+  long hint = -1;
+  for (size_t k = 1; k < time.size(); ++k) {
+    const double step = time[k] - time[k - 1];
+    if (step <= out) continue;
+    if (const long at = t.interval_at(0.5 * (time[k] + time[k - 1]), hint); at >= 0) out = step, hint = at;
   }
   return out;
+}
+
+/// An error within one assumption leaves the others, and the flight as described, as they are; one of the system ends the run.
+template <class F>
+bool could(F&& work) {
+  try {
+    work();
+    return true;
+  } catch (const core::SystemError&) {
+    throw;
+  } catch (const core::Error&) {
+    return false;
+  }
 }
 
 /// The motion of a trajectory, up to 50 records a second: no sigmas, no covariances.
@@ -92,12 +111,16 @@ core::TrajectoryData motion_of(const core::TrajectoryData& d) {
   return out;
 }
 
+/// GPS less UTC at the flight's date, s.
+double leap_seconds(const GeometryInput& in) { return core::gps_minus_utc_at_gps(in.lines.front().first); }
+
 class Trial {
  public:
   Trial(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight, const GeometryFigures& found)
       : in_(in), options_(o), flight_(flight), found_(found), shift_(in.chain.calibration.latency.value) {
-    piece_ = cut_trajectory(in.trajectory->data(), flight.plan, shift_, margin);
-    how_.max_gap.value = longest_step(*in.trajectory, piece_) * 1.01;
+    const double step = longest_step(*in.trajectory);
+    piece_ = cut_trajectory(in.trajectory->data(), flight.plan, shift_, std::max(margin, steps_around * step));
+    how_.max_gap.value = 1.01 * step;
     whole_ = motion_of(in.trajectory->data());
     motion_ = not_held(check_motion(trajectory::check_flight(whole_)));
   }
@@ -109,16 +132,15 @@ class Trial {
       if (m.kind == UsualMistake::Kind::ranges || (small && m.kind != UsualMistake::Kind::small)) continue;
       if (m.chain) m.chain(chain);
       TriedMistake tried{std::string(m.name), m.what, m.cure, {}, 0};
-      if (m.trajectory) {
+      const bool judged = could([&] {
+        if (!m.trajectory) return judge(flight_, chain, *in_.trajectory, whole_, motion_, tried);
         core::TrajectoryData part = piece_, whole = whole_;
         m.trajectory(part);
         m.trajectory(whole);
         judge(flight_, chain, trajectory::Trajectory(std::move(part), how_, "sample"), whole,
               not_held(check_motion(trajectory::check_flight(whole))), tried);
-      } else {
-        judge(flight_, chain, *in_.trajectory, whole_, motion_, tried);
-      }
-      out.push_back(std::move(tried));
+      });
+      if (judged) out.push_back(std::move(tried));
     }
   }
 
@@ -130,24 +152,28 @@ class Trial {
       m.chain(wide.chain);
       wide.range *= wide.chain.calibration.range_scale / in_.chain.calibration.range_scale;
       TriedMistake tried{std::string(m.name), m.what, m.cure, {}, 0};
-      judge(sampled(wide, options_, flight_.frame, shift_), wide.chain, *in_.trajectory, whole_, motion_, tried);
-      out.push_back(std::move(tried));
+      if (could([&] { judge(sampled(wide, options_, flight_.frame, shift_), wide.chain, *in_.trajectory, whole_, motion_, tried); }))
+        out.push_back(std::move(tried));
     }
   }
 
   /// Offsets of the laser's times near none, and near the one that the roll shows.
   void offsets(bool large, std::vector<TriedMistake>& out) const {
-    follow(flight_, 0.0, large, out);
+    could([&] { follow(flight_, 0.0, large, out); });
     if (!large) return;
+    const double leap = leap_seconds(in_);
     const auto roll = roll_signal(flight_.sample.profiles, ShotGeometry(in_.chain.scanner, in_.chain.calibration), whole_, longest_offset);
-    if (roll && std::abs(roll->offset) > 0.3 && roll->best > roll->correlation + 0.15 && std::abs(std::abs(roll->offset) - 18) > 0.2)
-      follow(sampled(in_, options_, flight_.frame, shift_ + roll->offset), roll->offset, true, out);
-    for (const double offset : {18.0, -18.0})
-      out.push_back(offset_of(sampled(in_, options_, flight_.frame, shift_ + offset), "leap_seconds", offset));
+    if (roll && std::abs(roll->offset) > 0.3 && roll->best > roll->correlation + 0.15 && std::abs(std::abs(roll->offset) - leap) > 0.2)
+      could([&] { follow(sampled(in_, options_, flight_.frame, shift_ + roll->offset), roll->offset, true, out); });
+    for (const double offset : {leap, -leap})
+      if (leap > 0)
+        could([&] { out.push_back(offset_of(sampled(in_, options_, flight_.frame, shift_ + offset), "leap_seconds", offset)); });
   }
 
  private:
-  std::uint64_t enough() const { return std::max<std::uint64_t>(static_cast<std::uint64_t>(options_.least), found_.lines.fit.cells / 4); }
+  std::uint64_t enough() const {
+    return std::max<std::uint64_t>(static_cast<std::uint64_t>(options_.min_cells), found_.lines.fit.cells / 4);
+  }
   Chain later(double offset) const {
     Chain chain = in_.chain;
     chain.calibration.latency.value += offset;
@@ -249,24 +275,36 @@ bool is_of_beams(const std::string& name, double nearest, double range) {
 }
 
 bool is_apart(const LinePair& p, const GeometryOptions& o) {
-  if (p.cells < static_cast<std::uint64_t>(o.least)) return false;
+  if (p.cells < static_cast<std::uint64_t>(o.min_cells)) return false;
   return (p.rms > o.ratio * p.predicted && p.rms > o.tolerance.value) || p.outside > o.outside;
 }
 
+/// Share of the lines' time, shifted, that a trajectory covers.
+double covered_share(const std::vector<RecordedLine>& lines, const trajectory::Trajectory& t, double shift) {
+  double all = 0, in = 0;
+  for (const RecordedLine& l : lines) {
+    all += l.last - l.first;
+    for (const trajectory::Span& s : t.spans()) in += std::max(0.0, std::min(l.last + shift, s.last) - std::max(l.first + shift, s.first));
+  }
+  return all > 0 ? in / all : 0.0;
+}
+
 /// Time that the trajectory does not cover: would whole weeks or the leap seconds help?
-void uncovered(const GeometryInput& in, const trajectory::LocalFrame& frame, GeometryFigures& out) {
+void uncovered(const GeometryInput& in, GeometryFigures& out) {
   out.verdict = Verdict::inconsistent;
   out.warnings.push_back("the trajectory covers " + text_of("%.0f %%", 100 * out.covered) + " of the time of the flight lines");
   constexpr double week = 604800.0;
   const double middle = 0.5 * (in.trajectory->data().time.front() + in.trajectory->data().time.back());
   const double weeks = std::round((middle - in.lines.front().first) / week) * week;
-  const double hours = std::round((middle - in.lines.front().first) / 3600) * 3600;
-  const double shift = in.chain.calibration.latency.value;
-  for (const auto& [name, offset, cure] : {std::tuple{"gps_week", weeks, "state the week of laser and trajectory"},
-                                           std::tuple{"leap_seconds", 18.0, "state the time scale of laser and trajectory, GPS or UTC"},
-                                           std::tuple{"leap_seconds", -18.0, "state the time scale of laser and trajectory, GPS or UTC"},
-                                           std::tuple{"time_offset", hours, "state the time scale: local time and UTC differ by hours"}}) {
-    if (offset == 0.0 || plan_sample(in.lines, *in.trajectory, frame, shift + offset, in.range, {}).covered < 0.95) continue;
+  const double shift = in.chain.calibration.latency.value, leap = leap_seconds(in);
+  const char* const scale = "state the time scale of laser and trajectory, GPS or UTC";
+  const char* const zone = "state the time scale: local time and UTC differ by hours";
+  std::vector<std::tuple<const char*, double, const char*>> offsets{
+      {"gps_week", weeks, "state the week of laser and trajectory"}, {"leap_seconds", leap, scale}, {"leap_seconds", -leap, scale}};
+  for (int half_hours = 1; half_hours <= 28; ++half_hours)
+    for (const double sign : {1.0, -1.0}) offsets.emplace_back("time_offset", sign * 1800.0 * half_hours, zone);
+  for (const auto& [name, offset, cure] : offsets) {
+    if (offset == 0.0 || covered_share(in.lines, *in.trajectory, shift + offset) < nearly_all) continue;
     out.named.push_back(
         {name, "with the laser's times " + text_of("%.0f s ", std::abs(offset)) + (offset > 0 ? "later" : "earlier"), cure, {}, 0});
     return;
@@ -312,7 +350,7 @@ GeometryFigures judge_geometry(const GeometryInput& in, const GeometryOptions& o
   const SampledFlight flight = sampled(in, o, frame, in.chain.calibration.latency.value);
   out.covered = flight.plan.covered;
   if (out.covered < least_covered) {
-    uncovered(in, frame, out);
+    uncovered(in, out);
     for (const TriedMistake& t : out.named) out.warnings.push_back(t.what + " it covers them: " + t.cure);
     return out;
   }
@@ -321,7 +359,7 @@ GeometryFigures judge_geometry(const GeometryInput& in, const GeometryOptions& o
   for (GeometryCheck& c : check_motion(trajectory::check_flight(in.trajectory->data()))) out.checks.push_back(std::move(c));
   bool apart = false;
   for (const LinePair& p : out.lines.pairs) {
-    if (p.cells >= static_cast<std::uint64_t>(o.least)) out.verdict = Verdict::consistent;
+    if (p.cells >= static_cast<std::uint64_t>(o.min_cells)) out.verdict = Verdict::consistent;
     apart = apart || is_apart(p, o);
   }
   const bool sound = !apart && not_held(out.checks) == 0;
@@ -335,7 +373,7 @@ GeometryFigures judge_geometry(const GeometryInput& in, const GeometryOptions& o
   trial.offsets(!little, tried);
   if (!little) trial.ranges(tried);
   out.tried = std::move(tried);
-  const auto least = static_cast<std::uint64_t>(o.least);
+  const auto least = static_cast<std::uint64_t>(o.min_cells);
   if (unmet && sound)
     std::erase_if(out.tried,
                   [&](const TriedMistake& t) { return t.fit.cells < 4 * least || !is_of_beams(t.name, flight.plan.nearest, in.range); });

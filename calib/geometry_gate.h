@@ -16,7 +16,7 @@ struct GeometryOptions {
   double ratio = 4.0;
   core::Metres tolerance{0.2};
   double outside = 0.15;
-  int least = 30;
+  int min_cells = 30;
   int returns = 12000;
   int stretches = 64;
 };
@@ -26,7 +26,7 @@ void describe(GeometryOptions& o, V& v) {
   v.option("ratio", o.ratio, core::above(1), "Lines are inconsistent where they differ by more than this many predicted sigmas ...");
   v.option("tolerance", o.tolerance, core::at_least(0), "... and by more than this distance.");
   v.option("outside", o.outside, core::within(0, 1), "Or where more than this share of their common ground is off by five such sigmas.");
-  v.option("least", o.least, core::within(5, 100000), "Smallest number of common smooth cells that a pair of lines is judged by.");
+  v.option("min_cells", o.min_cells, core::within(5, 100000), "Smallest number of common smooth cells that a pair of lines is judged by.");
   v.option("returns", o.returns, core::within(1000, 1000000), "Returns of one stretch of a line that are looked at.");
   v.option("stretches", o.stretches, core::within(4, 1000), "Maximum number of stretches in a survey.");
 }

@@ -16,10 +16,10 @@ constexpr size_t looked_at = 4096;  // returns of a line for the usual range
 
 double usual_range(const Context& context) {
   std::vector<double> ranges;
-  core::Tally told_elsewhere;
+  core::Tally of_the_reader;
   for (const Strip& strip : context.strips) {
     StripBatch batch;
-    if (context.source->open(context, strip)->next(batch, looked_at, told_elsewhere))
+    if (context.source->open(context, strip)->next(batch, looked_at, of_the_reader))
       ranges.insert(ranges.end(), batch.shots.range.begin(), batch.shots.range.end());
   }
   return core::median(std::move(ranges), 0.0);
@@ -99,7 +99,7 @@ class Geometry : public OptionStage<calib::GeometryOptions> {
     for (const calib::TriedMistake& t : found.named) named.push(t.name);
     double largest = 0.0;
     for (const calib::LinePair& p : found.lines.pairs)
-      if (p.cells >= static_cast<std::uint64_t>(options.least)) largest = std::max(largest, p.rms);
+      if (p.cells >= static_cast<std::uint64_t>(options.min_cells)) largest = std::max(largest, p.rms);
     if (largest > 0) out["line_difference"] = largest;
     out["contradictions"] = found.warnings.size();
     out["covered"] = found.covered;

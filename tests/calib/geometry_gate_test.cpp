@@ -120,6 +120,45 @@ TEST(GeometryGate, TimesOfAnotherWeekAreNamed) {
   EXPECT_EQ(g.named.front().name, "gps_week");
 }
 
+TEST(GeometryGate, TimesOfAnotherZoneAreNamed) {
+  GateFlight f = flight();
+  shift(f.data.time, -5.5 * 3600);
+  const GeometryFigures g = f.judged();
+  ASSERT_FALSE(g.named.empty());
+  EXPECT_EQ(g.named.front().name, "time_offset");
+  EXPECT_NE(g.warnings.back().find("19800 s earlier"), std::string::npos) << g.warnings.back();
+}
+
+TEST(GeometryGate, LeapSecondsAreThoseOfTheDate) {
+  GateFlight f = flight();
+  constexpr double in_2011 = 1e9;  // GPS less UTC was 15 s
+  shift(f.data.time, in_2011 + 15);
+  for (RecordedLine& l : f.lines) l.first += in_2011, l.last += in_2011;
+  for (core::Shots& s : f.shots) shift(s.time, in_2011);
+  const GeometryFigures g = f.judged();
+  ASSERT_FALSE(g.named.empty());
+  EXPECT_EQ(g.named.front().name, "leap_seconds");
+  EXPECT_NE(g.warnings.back().find("15 s later"), std::string::npos) << g.warnings.back();
+}
+
+TEST(GeometryGate, ASlowTrajectoryWithLongStepsIsJudged) {
+  GateFlight f = flight();
+  core::TrajectoryData slow;
+  for (size_t i = 0; i < f.data.size(); ++i) {
+    if (i % 150 != 0 && (i + 1 == f.data.size() || f.data.time[i + 1] - f.data.time[i] < 1)) continue;
+    using D = core::TrajectoryData;
+    for (const auto c : {&D::time, &D::latitude, &D::longitude, &D::height, &D::roll, &D::pitch, &D::heading})
+      (slow.*c).push_back((f.data.*c)[i]);
+  }
+  scale(slow.roll, -1);
+  trajectory::TrajectoryOptions how;
+  how.max_gap = core::Seconds(2);
+  const trajectory::Trajectory t(std::move(slow), how);
+  GeometryFigures g;
+  ASSERT_NO_THROW(g = judge_geometry(f.input(t), {}));
+  EXPECT_EQ(std::count_if(g.tried.begin(), g.tried.end(), [](const TriedMistake& m) { return m.name == "roll_sign"; }), 1) << text_of(g);
+}
+
 TEST(GeometryGate, ReturnsInOtherBatchesGiveTheSameFigures) {
   const trajectory::Trajectory t(flight().data);
   GeometryInput in = flight().input(t);
