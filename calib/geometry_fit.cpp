@@ -143,7 +143,7 @@ std::vector<GeometryCheck> check_returns(const SampledFlight& f, const Chain& ch
   return out;
 }
 
-std::vector<GeometryCheck> check_motion(const trajectory::FlightChecks& c) {
+std::vector<GeometryCheck> check_motion(const trajectory::FlightChecks& c, const trajectory::MotionChecks& said) {
   std::vector<GeometryCheck> out;
   if (c.heading) {
     const trajectory::HeadingFit& h = *c.heading;
@@ -159,6 +159,8 @@ std::vector<GeometryCheck> check_motion(const trajectory::FlightChecks& c) {
     out.push_back({"climb", c.climb->factor, off < climb_limit || off < sure * c.climb->sigma,
                    text_of("the heights change by %.2f of what the vertical velocities say (1 is expected)", c.climb->factor)});
   }
+  for (GeometryCheck& k : out)
+    k.said = (said.turns_contradict && k.name.ends_with("_in_turns")) || (said.heights_contradict && k.name == "climb");
   return out;
 }
 

@@ -12,6 +12,7 @@
 #include "calib/usual_mistakes.h"
 #include "core/sensor.h"
 #include "trajectory/flight_checks.h"
+#include "trajectory/motion_checks.h"
 #include "trajectory/trajectory.h"
 
 namespace swath::calib {
@@ -30,7 +31,8 @@ struct GeometryCheck {
   std::string name;    ///< "ground_height"
   double value = 0.0;  ///< in the unit of the text
   bool held = true;
-  std::string text;  ///< a sentence with figures, where it is not held
+  std::string text;   ///< a sentence with figures, where it is not held
+  bool said = false;  ///< trajectory::MotionChecks warns of the same
 };
 
 /// The fixed part: what the flight gave.
@@ -54,7 +56,7 @@ LineFit fit_lines(const SampledFlight& flight, const Chain& chain, const traject
 /// Of returns: do the beams point down, is the ground at a height where land is, does the ground tilt with the roll.
 std::vector<GeometryCheck> check_returns(const SampledFlight& flight, const Chain& chain, const trajectory::Trajectory& trajectory,
                                          const core::TrajectoryData& data);
-/// Of the trajectory alone.
-std::vector<GeometryCheck> check_motion(const trajectory::FlightChecks& checks);
+/// Of the trajectory alone. `said`: what its reader has warned of.
+std::vector<GeometryCheck> check_motion(const trajectory::FlightChecks& checks, const trajectory::MotionChecks& said = {});
 
 }  // namespace swath::calib

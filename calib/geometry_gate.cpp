@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/geodesy.h"
 #include "core/time.h"
+#include "trajectory/checks.h"
 
 namespace swath::calib {
 namespace {
@@ -326,7 +327,7 @@ void say(const SampledFlight& flight, const GeometryOptions& o, bool sound, Geom
                            text_of(" on smooth ground, %.0f %% of it by more than five times that", 100 * worst->outside) +
                            (apart > 1 ? text_of("; %.0f pairs of lines disagree", static_cast<double>(apart)) : ""));
   for (const GeometryCheck& c : out.checks)
-    if (!c.held) out.warnings.push_back(c.text);
+    if (!c.held && !c.said) out.warnings.push_back(c.text);
   if (sound && out.lines.fit.cells > 0 && !worst)
     out.warnings.push_back("lines differ by " + text_of("%.3f m rms (predicted %.3f m)", out.lines.fit.cost, out.lines.predicted) +
                            " where they overlap, more than need be");
@@ -356,7 +357,8 @@ GeometryFigures judge_geometry(const GeometryInput& in, const GeometryOptions& o
   }
   out.lines = fit_lines(flight, in.chain, *in.trajectory, 0.0);
   out.checks = check_returns(flight, in.chain, *in.trajectory, in.trajectory->data());
-  for (GeometryCheck& c : check_motion(trajectory::check_flight(in.trajectory->data()))) out.checks.push_back(std::move(c));
+  const trajectory::MotionChecks said = trajectory::check_motion(in.trajectory->data(), trajectory::CheckOptions{}.min_speed);
+  for (GeometryCheck& c : check_motion(trajectory::check_flight(in.trajectory->data()), said)) out.checks.push_back(std::move(c));
   bool apart = false;
   for (const LinePair& p : out.lines.pairs) {
     if (p.cells >= static_cast<std::uint64_t>(o.min_cells)) out.verdict = Verdict::consistent;

@@ -105,7 +105,10 @@ MotionChecks check_motion(const core::TrajectoryData& d, core::MetresPerSecond m
   MotionChecks out;
   const Sums s = sums_of(d, min_speed.value);
   judge_turns(s, out);
+  out.turns_contradict = !out.warnings.empty();
+  const size_t before = out.warnings.size();
   judge_heights(s, out);
+  out.heights_contradict = out.warnings.size() > before;
   return out;
 }
 

@@ -16,6 +16,7 @@ struct MotionChecks {
   double roll_per_bank = 0.0;   ///< slope of roll on the bank of a coordinated turn (no side force in the aircraft): 1 in flight
   double pitch_per_bank = 0.0;  ///< the same of pitch: 0 in flight
   double climb_ratio = 0.0;     ///< change of height per metre of climb by the recorded vertical velocity; 0 where none is known
+  bool turns_contradict = false, heights_contradict = false;  ///< `warnings` says so
   std::vector<std::string> warnings;
 };
 

@@ -101,7 +101,9 @@ class Geometry : public OptionStage<calib::GeometryOptions> {
     for (const calib::LinePair& p : found.lines.pairs)
       if (p.cells >= static_cast<std::uint64_t>(options.min_cells)) largest = std::max(largest, p.rms);
     if (largest > 0) out["line_difference"] = largest;
-    out["contradictions"] = found.warnings.size();
+    // What the trajectory's reader has warned of is not said again, but counts.
+    const auto said = std::count_if(found.checks.begin(), found.checks.end(), [](const auto& c) { return !c.held && c.said; });
+    out["contradictions"] = found.warnings.size() + static_cast<size_t>(said);
     out["covered"] = found.covered;
     out["predicted_m"] = found.lines.predicted;
     out["fit"] = value_of(found.lines.fit);

@@ -159,6 +159,24 @@ TEST(GeometryGate, ASlowTrajectoryWithLongStepsIsJudged) {
   EXPECT_EQ(std::count_if(g.tried.begin(), g.tried.end(), [](const TriedMistake& m) { return m.name == "roll_sign"; }), 1) << text_of(g);
 }
 
+TEST(GeometryGate, WhatTheReaderOfTheTrajectoryWarnsOfIsNotSaidAgain) {
+  GateFlight f = flight();
+  for (size_t i = 0; i < f.data.size(); ++i) {
+    const size_t a = i > 0 && f.data.time[i] - f.data.time[i - 1] < 1 ? i - 1 : i, b = a + 1;
+    f.data.v_down.push_back(-(f.data.height[b] - f.data.height[a]) / (f.data.time[b] - f.data.time[a]));
+    f.data.v_north.push_back(0), f.data.v_east.push_back(0);
+  }
+  scale(f.data.height, 1 / 0.3048);
+  const GeometryFigures g = f.judged();
+  const auto climb = std::find_if(g.checks.begin(), g.checks.end(), [](const GeometryCheck& c) { return c.name == "climb"; });
+  ASSERT_NE(climb, g.checks.end());
+  EXPECT_FALSE(climb->held);
+  EXPECT_TRUE(climb->said);
+  ASSERT_FALSE(g.named.empty());
+  EXPECT_EQ(g.named.front().name, "trajectory_height_feet");
+  for (const std::string& w : g.warnings) EXPECT_EQ(w.find("vertical velocities"), std::string::npos) << w;
+}
+
 TEST(GeometryGate, ReturnsInOtherBatchesGiveTheSameFigures) {
   const trajectory::Trajectory t(flight().data);
   GeometryInput in = flight().input(t);
