@@ -190,6 +190,34 @@ void add_trajectory(double convergence, std::vector<UsualMistake>& out) {
   });
 }
 
+void add_lever_arm(const core::Calibration& c, std::vector<UsualMistake>& out) {
+  const auto lever = [&](const char* name, std::string what, std::string cure, Eigen::Vector3d by, Kind kind) {
+    out.push_back({name,
+                   std::move(what),
+                   std::move(cure),
+                   [by](Chain& k) {
+                     for (size_t i = 0; i < 3; ++i) k.calibration.lever_arm_scanner[i].value *= by[static_cast<Eigen::Index>(i)];
+                   },
+                   {},
+                   kind});
+  };
+  double longest = 0;
+  for (const core::Metres& m : c.lever_arm_scanner) longest = std::max(longest, std::abs(m.value));
+  if (longest > 0.02) {
+    const std::string cure = "reverse it in lever_arm_scanner of [calibration]";
+    lever("lever_arm_sign", "with the lever arm's forward part reversed", cure, {-1, 1, 1}, Kind::small);
+    lever("lever_arm_sign", "with the lever arm's right part reversed", cure, {1, -1, 1}, Kind::small);
+    lever("lever_arm_sign", "with the lever arm's down part reversed", cure, {1, 1, -1}, Kind::small);
+    lever("lever_arm_sign", "with the whole lever arm reversed", cure, {-1, -1, -1}, Kind::small);
+  }
+  if (longest > 3.0) {
+    lever("lever_arm_millimetres", "with the lever arm in millimetres", "state lever_arm_scanner of [calibration] in mm",
+          Eigen::Vector3d::Constant(1e-3), Kind::gross);
+    lever("lever_arm_millimetres", "with the lever arm in centimetres", "state lever_arm_scanner of [calibration] in cm",
+          Eigen::Vector3d::Constant(1e-2), Kind::gross);
+  }
+}
+
 void add_mounting(const Chain& stated, std::vector<UsualMistake>& out) {
   const core::Calibration& c = stated.calibration;
   using Angle = core::Radians core::Calibration::*;
@@ -220,31 +248,6 @@ void add_mounting(const Chain& stated, std::vector<UsualMistake>& out) {
                    },
                    {},
                    Kind::small});
-  const auto lever = [&](const char* name, std::string what, std::string cure, Eigen::Vector3d by, Kind kind) {
-    out.push_back({name,
-                   std::move(what),
-                   std::move(cure),
-                   [by](Chain& k) {
-                     for (size_t i = 0; i < 3; ++i) k.calibration.lever_arm_scanner[i].value *= by[static_cast<Eigen::Index>(i)];
-                   },
-                   {},
-                   kind});
-  };
-  double longest = 0;
-  for (const core::Metres& m : c.lever_arm_scanner) longest = std::max(longest, std::abs(m.value));
-  if (longest > 0.02) {
-    const std::string cure = "reverse it in lever_arm_scanner of [calibration]";
-    lever("lever_arm_sign", "with the lever arm's forward part reversed", cure, {-1, 1, 1}, Kind::small);
-    lever("lever_arm_sign", "with the lever arm's right part reversed", cure, {1, -1, 1}, Kind::small);
-    lever("lever_arm_sign", "with the lever arm's down part reversed", cure, {1, 1, -1}, Kind::small);
-    lever("lever_arm_sign", "with the whole lever arm reversed", cure, {-1, -1, -1}, Kind::small);
-  }
-  if (longest > 3.0) {
-    lever("lever_arm_millimetres", "with the lever arm in millimetres", "state lever_arm_scanner of [calibration] in mm",
-          Eigen::Vector3d::Constant(1e-3), Kind::gross);
-    lever("lever_arm_millimetres", "with the lever arm in centimetres", "state lever_arm_scanner of [calibration] in cm",
-          Eigen::Vector3d::Constant(1e-2), Kind::gross);
-  }
   const std::string mount = "state how the scanner is mounted by the angles of [calibration]";
   for (const double a : {right_angle, -right_angle, core::pi}) {
     turn("mount_rolled", "with the scanner rolled by " + degrees_text(a), mount, &core::Calibration::roll, 1, a, Kind::gross);
@@ -261,6 +264,7 @@ std::vector<UsualMistake> usual_mistakes(const Chain& stated, double convergence
   add_ranges(out);
   add_model(stated, out);
   add_trajectory(convergence, out);
+  add_lever_arm(stated.calibration, out);
   add_mounting(stated, out);
   return out;
 }

@@ -27,9 +27,9 @@ void describe(Limits& l, V& v) {
            "Largest share of holes in the DTM: cells without a height that have ground on all sides.");
   v.option("truth_rms", l.truth_rms, core::at_least(0), "Largest 3D rms of the points against truth, where truth is present.");
   v.option("line_difference", l.line_difference, core::at_least(0),
-           "Largest difference of two lines on smooth ground before any adjustment, robust rms (quality.geometry).");
+           "Largest rms difference of two lines on smooth ground before adjustment (quality.geometry).");
   v.option("contradictions", l.contradictions, core::at_least(0),
-           "Largest number of warnings of quality.geometry; 0: exit code 3 where the flight's geometry is inconsistent.");
+           "Largest number of warnings of quality.geometry; 0: any makes exit code 3.");
 }
 
 /// What a run measured of what the limits judge, in their units; nothing where no stage measures it.
