@@ -87,16 +87,17 @@ LineFit fit_lines(const SampledFlight& f, const Chain& chain, const trajectory::
   for (size_t a = 0; a < ground.size(); ++a) {
     cells += static_cast<double>(ground[a].cells), smooth += static_cast<double>(ground[a].smooth.size());
     for (size_t b = a + 1; b < ground.size(); ++b) {
-      const std::vector<SharedCell> shared = shared_cells(ground[a], ground[b], f.ground.cell);
+      std::vector<SharedCell> shared = shared_cells(ground[a], ground[b], f.ground.cell);
       if (shared.empty()) continue;
       LinePair p;
       p.pass_a = ground[a].pass, p.pass_b = ground[b].pass;
       p.line_a = f.plan.passes[p.pass_a].line, p.line_b = f.plan.passes[p.pass_b].line;
-      p.cells = shared.size();
       p.predicted = predicted > 0
                         ? predicted
                         : predicted_difference(shared, *shots[p.pass_a], *shots[p.pass_b], points.geometry(), f.sensor, t, f.frame);
       const double sigma = std::max(p.predicted, finest);
+      p.water = take_out_water(shared, sigma).value_or(0.0);
+      p.cells = shared.size();
       std::vector<double> d, size;
       double off = 0;
       for (const SharedCell& s : shared) {

@@ -107,6 +107,39 @@ std::vector<SharedCell> shared_cells(const PassGround& a, const PassGround& b, d
   return out;
 }
 
+std::optional<double> take_out_water(std::vector<SharedCell>& shared, double sigma) {
+  constexpr double far_off = 5.0, near = 2.5, constant = 1.5;  // sigmas
+  constexpr double level = 0.05, one_height = 0.1;             // rise / run, m
+  constexpr double most = 0.9;                                 // of the cells far off are water
+  constexpr size_t fewest_cells = 10;
+  constexpr double mad_to_sigma = 1.4826;
+  const auto is_off = [&](const SharedCell& s) { return std::abs(s.apart) > far_off * sigma; };
+  std::vector<double> apart, height, rest;
+  size_t off = 0;
+  for (const SharedCell& s : shared) {
+    if (!is_off(s)) {
+      rest.push_back(std::abs(s.apart));
+      continue;
+    }
+    ++off;
+    if (s.a->slope.norm() < level && s.b->slope.norm() < level) apart.push_back(s.apart), height.push_back(s.a->mean.z());
+  }
+  if (apart.size() < fewest_cells || rest.size() < std::max(fewest_cells, shared.size() / 10)) return std::nullopt;
+  if (static_cast<double>(apart.size()) < most * static_cast<double>(off)) return std::nullopt;
+  if (mad_to_sigma * core::median(std::move(rest), 0.0) > near * sigma) return std::nullopt;
+  const auto spread = [&](std::vector<double>& v) {
+    const double middle = core::median(std::vector<double>(v), 0.0);
+    for (double& x : v) x = std::abs(x - middle);
+    return std::pair(middle, mad_to_sigma * core::median(std::move(v), 0.0));
+  };
+  const auto [difference, varies] = spread(apart);
+  if (varies > constant * sigma || spread(height).second > one_height + near * sigma) return std::nullopt;
+  std::erase_if(shared, [&, middle = difference](const SharedCell& s) {
+    return is_off(s) && s.a->slope.norm() < level && s.b->slope.norm() < level && std::abs(s.apart - middle) < far_off * sigma;
+  });
+  return difference;
+}
+
 double predicted_difference(const std::vector<SharedCell>& shared, const core::Shots& a, const core::Shots& b, const ShotGeometry& geometry,
                             const core::SensorSigma& sensor, const trajectory::Trajectory& trajectory,
                             const trajectory::LocalFrame& frame) {

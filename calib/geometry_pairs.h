@@ -2,6 +2,7 @@
 // How far the passes of a sample lie apart on smooth ground, and how far their stated errors let them.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "calib/geometry_sample.h"
@@ -40,6 +41,10 @@ struct SharedCell {
 };
 std::vector<SharedCell> shared_cells(const PassGround& a, const PassGround& b, double cell);
 
+/// Takes out level cells of one height that differ by one constant while all others agree within a few sigmas: water, at another level for
+/// each pass. That difference, m; nothing where there is no such.
+std::optional<double> take_out_water(std::vector<SharedCell>& shared, double sigma);
+
 /// Two lines on the smooth ground that both have seen.
 struct LinePair {
   int line_a = 0, line_b = 0;
@@ -49,6 +54,7 @@ struct LinePair {
   double rms = 0.0;        ///< about zero, robust: 1.4826 of the median size, m
   double predicted = 0.0;  ///< what the sigmas make one expect, m
   double outside = 0.0;    ///< share of cells that differ by more than five times that
+  double water = 0.0;      ///< difference of the water's level, m; its cells are not among `cells`
 };
 
 /// Sigma of the difference of two passes on shared cells, rms over up to 40 of them, m.

@@ -55,6 +55,7 @@ core::Value value_of(const calib::LinePair& p) {
   v["rms_m"] = p.rms;
   v["predicted_m"] = p.predicted;
   v["outside"] = p.outside;
+  if (p.water != 0.0) v["water_m"] = p.water;
   return v;
 }
 
@@ -102,6 +103,11 @@ class Geometry : public OptionStage<calib::GeometryOptions> {
       if (p.cells >= static_cast<std::uint64_t>(options.min_cells)) largest = std::max(largest, p.rms);
     if (largest > 0) out["line_difference"] = largest;
     // What the trajectory's reader has warned of is not said again, but counts.
+    for (const calib::LinePair& p : found.lines.pairs)
+      if (p.water != 0.0)
+        tally.count("pairs of lines whose level ground alone differs, by one height: water?",
+                    "lines " + std::to_string(p.line_a) + " and " + std::to_string(p.line_b) + ": " +
+                        core::format_number(std::round(p.water * 100) / 100) + " m");
     const auto said = std::count_if(found.checks.begin(), found.checks.end(), [](const auto& c) { return !c.held && c.said; });
     out["contradictions"] = found.warnings.size() + static_cast<size_t>(said);
     out["covered"] = found.covered;

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
+#include <vector>
 
 #include "tests/calib/gate_flight.h"
 
@@ -66,6 +68,41 @@ TEST(GeometryPairs, ThePredictedDifferenceFollowsTheSigmas) {
   EXPECT_GT(predicted(s.flight.sensor), 0.02);
   EXPECT_LT(predicted(s.flight.sensor), 0.12);
   EXPECT_GT(predicted(loose), 3 * predicted(s.flight.sensor));
+}
+
+/// Sloped cells that agree, and level ones of one height that differ by `tide`, more so by `tilt` per cell.
+std::vector<SharedCell> shore(std::vector<GroundCell>& cells, double tide, double tilt, double slope_apart) {
+  cells.assign(60, {});
+  std::vector<SharedCell> out;
+  for (int i = 0; i < 60; ++i) {
+    GroundCell& c = cells[static_cast<size_t>(i)];
+    const bool land = i < 30;
+    c.mean = {3.0 * i, 0.0, land ? 0.3 * i : -1.0};
+    c.slope = {land ? 0.1 : 0.0, 0.0};
+    out.push_back({&c, &c, (land ? slope_apart : tide + tilt * i) + 0.01 * std::sin(7.0 * i)});
+  }
+  return out;
+}
+
+TEST(GeometryPairs, WaterAtAnotherLevelIsTakenOut) {
+  std::vector<GroundCell> cells;
+  auto shared = shore(cells, 0.7, 0.0, 0.0);
+  const auto tide = take_out_water(shared, 0.04);
+  ASSERT_TRUE(tide);
+  EXPECT_NEAR(*tide, 0.7, 0.02);
+  EXPECT_EQ(shared.size(), 30u);
+}
+
+TEST(GeometryPairs, LandThatDiffersIsNotWater) {
+  std::vector<GroundCell> cells;
+  for (const auto& [tide, tilt, land] : {std::tuple{0.7, 0.0, 0.7}, std::tuple{0.3, 0.02, 0.0}, std::tuple{0.05, 0.0, 0.0}}) {
+    auto shared = shore(cells, tide, tilt, land);
+    EXPECT_FALSE(take_out_water(shared, 0.04)) << tide << " " << tilt;
+    EXPECT_EQ(shared.size(), 60u);
+  }
+  auto shared = shore(cells, 0.7, 0.0, 0.0);
+  for (int i = 30; i < 60; ++i) cells[static_cast<size_t>(i)].mean.z() = i;  // terraces
+  EXPECT_FALSE(take_out_water(shared, 0.04));
 }
 
 }  // namespace
