@@ -33,7 +33,7 @@ double median_angle(const std::vector<double>& angles, double& spread) {
   std::vector<double> about(angles.size());
   std::transform(angles.begin(), angles.end(), about.begin(), [&](double a) { return core::wrap_pi(a - mean); });
   const double m = core::median(about, 0.0);
-  for (double& a : about) a = std::abs(a - m);
+  for (double& a : about) a = std::abs(a);
   spread = mad_to_sigma * core::median(about, 0.0);
   return core::wrap_pi(mean + m);
 }

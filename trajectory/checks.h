@@ -43,7 +43,7 @@ struct TrajectoryChecks {
   size_t straight = 0;               ///< records of straight level flight that the comparison used
   double crab_median = 0.0;          ///< median of heading - track over these, rad: wind, or a wrong heading
   double crab_spread = 0.0;          ///< 1.4826 median absolute deviation about the median of each course (30 deg), rad
-  double crab_range = 0.0;           ///< the same about crab_median: with the wind's change from course to course
+  double crab_range = 0.0;           ///< the same about the mean of all: with the wind's change from course to course
   double speed_median = 0.0;         ///< m/s over the ground
   double velocity_difference = 0.0;  ///< median of |recorded - differenced horizontal velocity|, m/s; 0 where none is recorded
   MotionChecks motion;

@@ -17,6 +17,8 @@ def options(index):
     half, speed = draw.uniform(10, 32), draw.uniform(30, 75)
     height = 10 ** draw.uniform(np.log10(150), np.log10(1300))
     lines, overlap, length = 1 if index % 20 == 3 else int(draw.integers(2, 5)), draw.uniform(0.1, 0.7), draw.uniform(250, 600)
+    if index % 20 == 13:  # a single short line over ground whose slopes look like roll
+        lines, scene, length = 1, ("steep", "forest")[index // 20 % 2], speed * draw.uniform(6, 10)
     swath = max(2 * height * np.tan(np.radians(min(half, 15) if pattern == "palmer" else half)), 20)
     width = float(np.clip(swath * (1 + (lines - 1) * (1 - overlap)), 120, 1500))
     prf = float(np.clip(RETURNS * speed / length, 500, 2e5))
