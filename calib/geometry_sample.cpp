@@ -144,9 +144,9 @@ std::vector<std::pair<size_t, size_t>> candidates(const std::vector<Pass>& passe
   return out;
 }
 
-/// Two pieces of one line, the second flown at once after the first: where they meet nothing is compared.
+/// Two files of one line, the second recorded at once after the first: where they meet nothing is compared.
 bool follow_at_once(const Pass& a, const Pass& b) {
-  return a.line == b.line && std::max(a.first, b.first) - std::min(a.last, b.last) < at_once;
+  return a.line == b.line && a.recorded != b.recorded && std::max(a.first, b.first) - std::min(a.last, b.last) < at_once;
 }
 
 struct PairSites {
@@ -226,7 +226,12 @@ SamplePlan plan_sample(const std::vector<RecordedLine>& lines, const trajectory:
                        double shift, double range, const SampleSize& size) {
   SamplePlan plan;
   double seconds = 0, covered = 0;
-  for (const RecordedLine& l : whole_lines(lines)) fly(l, t, frame, shift, plan.passes, seconds, covered);
+  const std::vector<RecordedLine> whole = whole_lines(lines);
+  for (size_t k = 0; k < whole.size(); ++k) {
+    const size_t before = plan.passes.size();
+    fly(whole[k], t, frame, shift, plan.passes, seconds, covered);
+    for (size_t p = before; p < plan.passes.size(); ++p) plan.passes[p].recorded = k;
+  }
   plan.covered = seconds > 0 ? covered / seconds : 0.0;
   const double half = half_length(range), reach = swath_share * range;
   plan.cell = std::clamp(std::sqrt(returns_of_a_cell * 2 * half * 0.75 * range / size.returns), 0.75, 12.0);

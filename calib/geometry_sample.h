@@ -24,6 +24,7 @@ struct RecordedLine {
 /// A straight piece of a flight line.
 struct Pass {
   int line = 0;
+  size_t recorded = 0;                 ///< number of its whole_lines()
   double first = 0.0, last = 0.0;      ///< time as recorded, s
   double rate = 0.0;                   ///< records per second
   double speed = 0.0;                  ///< m/s
