@@ -360,14 +360,16 @@ GeometryFigures judge_geometry(const GeometryInput& in, const GeometryOptions& o
   const trajectory::MotionChecks said = trajectory::check_motion(in.trajectory->data(), trajectory::CheckOptions{}.min_speed);
   for (GeometryCheck& c : check_motion(trajectory::check_flight(in.trajectory->data()), said)) out.checks.push_back(std::move(c));
   bool apart = false;
+  size_t judged = 0;  // pairs
   for (const LinePair& p : out.lines.pairs) {
-    if (p.cells >= static_cast<std::uint64_t>(o.min_cells)) out.verdict = Verdict::consistent;
+    if (p.cells >= static_cast<std::uint64_t>(o.min_cells)) out.verdict = Verdict::consistent, ++judged;
     apart = apart || is_apart(p, o);
   }
   const bool sound = !apart && not_held(out.checks) == 0;
   const bool unmet = out.verdict == Verdict::not_judged && flight.plan.nearest < meeting * in.range;
   const Fit& fit = out.lines.fit;
-  const bool little = sound && out.verdict == Verdict::consistent && fit.cost > more_than_predicted * out.lines.predicted;
+  // The small difference of a single pair is one figure, which many a small mistake explains.
+  const bool little = sound && judged > 1 && fit.cost > more_than_predicted * out.lines.predicted;
   if (sound && !unmet && !little) return out;
   const Trial trial(in, o, flight, out);
   std::vector<TriedMistake> tried;
