@@ -102,6 +102,11 @@ void visit_trajectory(F& f, T& d) {
   f(d.response.time), f(d.response.per_unit);
 }
 
+template <class F, class A>
+void visit_area(F& f, A& a) {
+  f(a.box.x0), f(a.box.y0), f(a.box.x1), f(a.box.y1), f(a.lowest), f(a.highest);
+}
+
 /// A max_gap with which the same records make the same spans.
 double longest_step(const trajectory::Trajectory& t) {
   const std::vector<double>& time = t.data().time;
@@ -121,13 +126,16 @@ trajectory::Trajectory made_of(core::TrajectoryData data, double max_gap, const 
 
 }  // namespace
 
-HandedOn HandedOn::of(const stages::Context& context) { return {context.gnss, context.events, context.trajectory, context.origin}; }
+HandedOn HandedOn::of(const stages::Context& context) {
+  return {context.gnss, context.events, context.trajectory, context.origin, context.area};
+}
 
 void HandedOn::give(stages::Context& context) const {
   context.gnss = gnss;
   context.events = events;
   context.trajectory = trajectory;
   context.origin = origin;
+  context.area = area;
 }
 
 bool write_handed_on(const std::filesystem::path& file, const HandedOn& before, const HandedOn& after) {
@@ -145,6 +153,7 @@ bool write_handed_on(const std::filesystem::path& file, const HandedOn& before, 
     visit_trajectory(pack, after.trajectory->data());
   }
   for (int k = 0; k < 3; ++k) pack(after.origin[k]);
+  visit_area(pack, after.area);
   io::write_text_file(file, pack.bytes);
   return true;
 }
@@ -172,6 +181,7 @@ HandedOn read_handed_on(const std::filesystem::path& file, const HandedOn& befor
     out.trajectory = std::make_shared<const trajectory::Trajectory>(made_of(std::move(data), gap, file));
   }
   for (int k = 0; k < 3; ++k) unpack(out.origin[k]);
+  visit_area(unpack, out.area);
   unpack.expect_end();
   return out;
 }

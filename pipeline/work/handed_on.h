@@ -15,6 +15,7 @@ struct HandedOn {
   std::shared_ptr<const core::EventData> events;
   std::shared_ptr<const trajectory::Trajectory> trajectory;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  stages::Area area{};
 
   static HandedOn of(const stages::Context& context);
   void give(stages::Context& context) const;

@@ -46,6 +46,8 @@ HandedOn everything() {
   h.events = std::move(events);
   h.trajectory = flight();
   h.origin = {652000, 5310000, 0};
+  h.area.box = {612000, 5270000, 692000, 5350000};
+  h.area.highest = 900;
   return h;
 }
 
@@ -61,6 +63,10 @@ TEST(HandedOn, ComesBackAsItWas) {
   EXPECT_EQ(back.events->id, given.events->id);
   EXPECT_EQ(back.events->doubtful, given.events->doubtful);
   EXPECT_EQ(back.origin, given.origin);
+  EXPECT_EQ(back.area.box.x0, given.area.box.x0);
+  EXPECT_EQ(back.area.box.y1, given.area.box.y1);
+  EXPECT_EQ(back.area.lowest, given.area.lowest);
+  EXPECT_EQ(back.area.highest, given.area.highest);
   const core::TrajectoryData &a = given.trajectory->data(), &b = back.trajectory->data();
   EXPECT_EQ(a.time, b.time);
   EXPECT_EQ(a.latitude, b.latitude);
