@@ -223,7 +223,9 @@ std::vector<StripInfo> scan(const Survey& survey, core::Tally& tally) {
   for (size_t i = 0; i < survey.laser.size(); ++i)
     for (StripInfo& s : scan(survey, i, tally)) out.push_back(std::move(s));
   std::vector<LineSpan> spans;
-  for (const StripInfo& s : out) spans.push_back({s.line, s.first_time, s.last_time});
+  // A line may be stated by its records' times or by the instants they were measured at.
+  const double late = survey.calibration.latency.value;
+  for (const StripInfo& s : out) spans.push_back({s.line, s.first_time + std::min(0.0, late), s.last_time + std::max(0.0, late)});
   count_cut_lines(line_windows(survey), spans, tally);
   return out;
 }
