@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Over 400 lines: one command from its arguments to its files, in small steps that nothing else calls.
 // Points are taken by the nearest piece of the line at right angles to which they lie; the terrain is read bilinearly every half cell.
 #include "pipeline/profile.h"
 

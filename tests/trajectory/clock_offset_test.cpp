@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/statistics.h"
+#include "core/time.h"
 #include "io/gnss_file.h"
 #include "io/imu_file.h"
 #include "tests/trajectory/ins_run.h"
@@ -159,17 +160,20 @@ TEST(ClockOffset, NamedByTheSmootherAndInItsRefusal) {
 
 TEST(ClockOffset, LeapSecondsAreNamed) {
   const test::Course& course = lines_and_turns();
-  for (const ImuGrade grade : {ImuGrade::tactical, ImuGrade::mems}) {
+  for (const ImuGrade grade : {ImuGrade::navigation, ImuGrade::tactical}) {
     const core::ImuErrorModel spec = core::error_model_of(grade);
-    const core::ImuData imu = test::with_errors(course.exact.imu, spec, 3);
-    const core::GnssData gnss = test::with_errors(course.exact.gnss, {}, 3);
+    constexpr double since_1980 = 1.4e9;  // s: a day with leap seconds
+    const core::ImuData imu = late(test::with_errors(course.exact.imu, spec, 3), since_1980);
+    core::GnssData gnss = test::with_errors(course.exact.gnss, {}, 3);
+    for (double& time : gnss.time) time += since_1980;
+    const double leap = core::gps_minus_utc_at_gps(gnss.time.front());
     const auto named = [&](double imu_late, double gnss_late) {
       core::GnssData moved = gnss;
       for (double& t : moved.time) t += gnss_late;
       return leap_seconds_between(make_path(late(imu, imu_late), 10), moved, spec, course.sensors.lever, 0.02);
     };
-    EXPECT_NE(named(0, -18.0).find("GNSS records UTC"), std::string::npos) << named(0, -18.0);
-    EXPECT_NE(named(-18.0, 0).find("IMU records UTC"), std::string::npos) << named(-18.0, 0);
+    EXPECT_NE(named(0, -leap).find("GNSS records UTC"), std::string::npos) << named(0, -leap);
+    EXPECT_NE(named(-leap, 0).find("IMU records UTC"), std::string::npos) << named(-leap, 0);
     EXPECT_EQ(named(0, 0), "");
     EXPECT_EQ(named(0, 5.0), "");
   }
