@@ -18,6 +18,7 @@ constexpr double min_margin = 30.0;          // cells
 constexpr double margin = 3.0;               // sides of the box of the middle half
 constexpr std::uint64_t group_points = 100;  // that count as a part of the cloud wherever they lie
 constexpr double one_place = 1e-3;           // of a cell
+constexpr double max_wild = 0.25;            // of the points: where more are far from the others, none is known to be wrong
 constexpr std::uint64_t min_points = 20;     // of a cloud that is judged
 constexpr size_t batch = 1u << 16;
 
@@ -93,8 +94,12 @@ void CloudExtent::find_box() {
 
 void CloudExtent::judge_groups() {
   std::set<Key> open;
-  for (const auto& [k, c] : cells_)
+  double points = 0, far = 0;
+  for (const auto& [k, c] : cells_) {
+    points += static_cast<double>(c.points);
     if (!in_box(k)) open.insert(k);
+  }
+  std::vector<Key> single;
   while (!open.empty()) {
     std::vector<Key> group{*open.begin()};
     open.erase(open.begin());
@@ -112,8 +117,11 @@ void CloudExtent::judge_groups() {
     }
     const bool many = whole.points >= group_points && std::max(whole.x1 - whole.x0, whole.y1 - whole.y0) > one_place * cell_;
     if (many || joins_box) continue;
-    for (const Key& k : group) cells_.erase(k);
+    far += static_cast<double>(whole.points);
+    single.insert(single.end(), group.begin(), group.end());
   }
+  if (far > max_wild * points) return;
+  for (const Key& k : single) cells_.erase(k);
 }
 
 void CloudExtent::settle() {
@@ -166,17 +174,24 @@ bool is_plausible_box(const LasHeader& h, double cell, const LasPoints& points) 
 
 }  // namespace
 
-CloudExtent extent_of_cloud(const std::filesystem::path& file, double cell, unsigned threads) {
-  CloudExtent out(cell);
+FileExtent extent_of_cloud(const std::filesystem::path& file, double cell, double lowest, double highest, unsigned threads) {
+  FileExtent out{CloudExtent(cell)};
   LasReader reader(file, threads);
   LasPoints points;
   if (reader.read(points, batch) == 0) return out;
   const LasHeader& h = reader.header();
-  if (is_plausible_box(h, cell, points)) return CloudExtent::of_box(cell, h.min.head<2>(), h.max.head<2>(), h.point_count);
+  if (is_plausible_box(h, cell, points) && h.min.z() >= lowest && h.max.z() <= highest)
+    return {CloudExtent::of_box(cell, h.min.head<2>(), h.max.head<2>(), h.point_count)};
+  double beyond = 0, all = 0;
   do {
-    for (size_t i = 0; i < points.size(); ++i) out.add(points.x[i], points.y[i]);
+    for (size_t i = 0; i < points.size(); ++i) {
+      out.places.add(points.x[i], points.y[i]);
+      beyond += !(points.z[i] >= lowest && points.z[i] <= highest);
+    }
+    all += static_cast<double>(points.size());
   } while (reader.read(points, batch) > 0);
-  out.settle();
+  out.places.settle();
+  out.has_few_wild_heights = beyond <= max_wild * all;
   return out;
 }
 

@@ -13,7 +13,8 @@ namespace swath::io {
 
 /// Places are counted in cells, about 1 km wide. The middle half of the points in each direction gives a box, which is grown by three times
 /// its longer side, and at least by 30 cells. Every place in it counts as one of the cloud. Outside it a group of adjoining cells does
-/// where it has 100 points or more that are not all at one place. The answer does not depend on the order of the points.
+/// where it has 100 points or more that are not all at one place. Where more than a quarter of the points would lie outside, none is known
+/// to be a wrong one, and all are of the cloud. The answer does not depend on the order of the points.
 class CloudExtent {
  public:
   /// `cell`: units of the coordinates.
@@ -55,8 +56,14 @@ class CloudExtent {
   Eigen::Vector2d low_ = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity()), high_ = -low_;
 };
 
-/// Of a LAS or LAZ file, in its own coordinates. A header's box of at most 30 cells a side, in which the first points of the file lie, is
-/// taken as it is: no point in it could be far from the others. Otherwise all points are looked at, by so many threads.
-CloudExtent extent_of_cloud(const std::filesystem::path& file, double cell, unsigned threads);
+struct FileExtent {
+  CloudExtent places;
+  bool has_few_wild_heights = true;  ///< does a quarter of the points at most lie beyond the heights asked for?
+};
+
+/// Of a LAS or LAZ file, in its own coordinates and heights. A header's box of at most 30 cells a side and within the heights, in which the
+/// first points of the file lie, is taken as it is: no point in it could be far from the others. Otherwise all points are looked at, by so
+/// many threads.
+FileExtent extent_of_cloud(const std::filesystem::path& file, double cell, double lowest, double highest, unsigned threads);
 
 }  // namespace swath::io

@@ -274,12 +274,17 @@ class LasCloud : public OptionStage<NoOptions> {
     context.weekless = has_weekless_times(context.survey);
     extents_.clear();
     const auto threads = static_cast<unsigned>(context.threads);
-    bool has_origin = false;
+    bool has_origin = false, any_height = false;
     Box places{Area::none, Area::none, -Area::none, -Area::none};
     for (const io::PointFile& f : context.survey.points) {
       const core::Crs crs = cloud_crs(context.survey, f);
       const double unit = crs.is_geographic() ? metres_per_degree : crs.metres_per_unit();
-      const io::CloudExtent& e = extents_.emplace_back(io::extent_of_cloud(io::resolve(context.survey, f.file), 1000.0 / unit, threads));
+      io::FileExtent found =
+          io::extent_of_cloud(io::resolve(context.survey, f.file), 1000.0 / unit, context.area.lowest / context.vertical_unit,
+                              context.area.highest / context.vertical_unit, threads);
+      // Geocentric coordinates, or a maker's own: none of them is known to be wrong.
+      any_height = any_height || !found.has_few_wild_heights;
+      const io::CloudExtent& e = extents_.emplace_back(std::move(found.places));
       if (e.points() == 0) continue;
       std::optional<core::Transform> transform;
       if (!is_same_crs(crs, context.crs)) transform.emplace(crs, context.crs);
@@ -290,6 +295,7 @@ class LasCloud : public OptionStage<NoOptions> {
       }
       add_places(places, context, e, transform);
     }
+    if (any_height) context.area.lowest = -Area::none, context.area.highest = Area::none;
     if (places.x0 <= places.x1) set_area(context, places, around_clouds);
     if (context.crs.heights() == core::Heights::unknown) context.heights = heights_of_clouds(context.survey);
   }

@@ -80,6 +80,24 @@ TEST(CloudExtent, IslandsOfManyPointsAreHeldHoweverFar) {
   EXPECT_EQ(left_out(islands), 0u);
 }
 
+TEST(CloudExtent, WhereManyLieFarNoneIsKnownToBeWrong) {
+  // More than a quarter: numbers over the whole range of the file's integers, or a maker's own coordinates.
+  Points points = field(2000, 1000.0);
+  for (const auto& p : field(1000, 1e8, 0.0, 0.0)) points.push_back(p);
+  EXPECT_EQ(left_out(points), 0u);
+}
+
+TEST(CloudExtent, HeightsBeyondThoseAskedForAreFewOrNot) {
+  const test::TemporaryFolder folder;
+  const LasHeader h = test::sample_header(6);
+  LasPoints p = test::sample_points(h, 2000);  // three of them at heights of the whole range of the file's integers
+  test::write_sample(folder / "a.las", h, p);
+  EXPECT_TRUE(extent_of_cloud(folder / "a.las", 1000.0, -12e3, 20e3, 1).has_few_wild_heights);
+  for (size_t i = 0; i < p.size(); ++i) p.raw_z[i] = 1900000000;  // geocentric: 4,750 km
+  test::write_sample(folder / "b.las", h, p);
+  EXPECT_FALSE(extent_of_cloud(folder / "b.las", 1000.0, -12e3, 20e3, 1).has_few_wild_heights);
+}
+
 TEST(CloudExtent, TheOrderOfPointsChangesNothing) {
   Points points = field(20000, 3000.0);
   for (const auto& p : field(300, 1e6, 0.0, 5e6)) points.push_back(p);
@@ -103,7 +121,7 @@ TEST(CloudExtent, AFilesBoxIsTakenOnlyWhereItCanBeRight) {
   const LasHeader h = test::sample_header(6);
   const LasPoints p = test::sample_points(h, 2000);
   test::write_sample(file, h, p);
-  const CloudExtent right = extent_of_cloud(file, 1000.0, 1);
+  const CloudExtent right = extent_of_cloud(file, 1000.0, -1e7, 1e7, 1).places;
   EXPECT_TRUE(right.is_stated());
   EXPECT_EQ(right.points(), 2000u);
   EXPECT_TRUE(right.holds(p.x[0], p.y[0]));
@@ -114,7 +132,7 @@ TEST(CloudExtent, AFilesBoxIsTakenOnlyWhereItCanBeRight) {
     const double box[] = {high_x, low_x};
     wrong.replace(179, sizeof box, reinterpret_cast<const char*>(box), sizeof box);
     test::write_bytes(file, wrong);
-    const CloudExtent looked_at = extent_of_cloud(file, 1000.0, 1);
+    const CloudExtent looked_at = extent_of_cloud(file, 1000.0, -1e7, 1e7, 1).places;
     EXPECT_FALSE(looked_at.is_stated()) << high_x;
     EXPECT_EQ(looked_at.points(), 2000u) << high_x;
     EXPECT_LT((looked_at.low() - right.low()).norm() + (looked_at.high() - right.high()).norm(), 1e-6) << high_x;
