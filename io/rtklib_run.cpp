@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The program ends with code 0 whatever comes of its work (2.4.3 b34), and reports what it did on stderr, so its log is read and its solution
-// counted.
+// The program ends with code 0 whatever comes of its work (2.4.3 b34), and reports what it did on stderr, so its log is read and its
+// solution counted.
 #include "io/rtklib_run.h"
 
 #include <cerrno>
