@@ -13,6 +13,7 @@
 #include "calib/local_points.h"
 #include "calib/plane_cells.h"
 #include "core/frames.h"
+#include "core/trajectory_columns.h"
 
 namespace swath::calib {
 namespace {
@@ -295,20 +296,16 @@ core::TrajectoryData cut_trajectory(const core::TrajectoryData& d, const SampleP
   std::sort(windows.begin(), windows.end());
   core::TrajectoryData out;
   size_t from = 0;
-  const auto copy = [&](const auto& column, auto& into, size_t a, size_t b) {
-    if (!column.empty())
-      into.insert(into.end(), column.begin() + static_cast<std::ptrdiff_t>(a), column.begin() + static_cast<std::ptrdiff_t>(b));
-  };
   for (const auto& [first, last] : windows) {
     const auto a = std::max(from, static_cast<size_t>(std::lower_bound(d.time.begin(), d.time.end(), first) - d.time.begin()));
     const auto b = static_cast<size_t>(std::upper_bound(d.time.begin(), d.time.end(), last) - d.time.begin());
     if (b <= a) continue;
-    using D = core::TrajectoryData;
-    for (const auto c :
-         {&D::time, &D::latitude, &D::longitude, &D::height, &D::roll, &D::pitch, &D::heading, &D::v_north, &D::v_east, &D::v_down})
-      copy(d.*c, out.*c, a, b);
-    for (const auto c : {&D::sigma_north, &D::sigma_east, &D::sigma_down, &D::sigma_roll, &D::sigma_pitch, &D::sigma_heading})
-      copy(d.*c, out.*c, a, b);
+    core::for_each_trajectory_column([&](auto member, const char*) {
+      const auto& column = d.*member;
+      if (!column.empty())
+        (out.*member)
+            .insert((out.*member).end(), column.begin() + static_cast<std::ptrdiff_t>(a), column.begin() + static_cast<std::ptrdiff_t>(b));
+    });
     from = b;
   }
   return out;

@@ -32,6 +32,13 @@ const Crs::State& facts_of(const Crs& crs) {
   return *crs.state();
 }
 
+Pj three_dimensional(PJ_CONTEXT* c, const Crs& crs) {
+  Pj plain = parse_crs(c, facts_of(crs).definition);
+  if (!plain || facts_of(crs).vertical || facts_of(crs).geocentric) return plain;
+  Pj promoted(proj_crs_promote_to_3D(c, nullptr, plain.get()));
+  return promoted ? std::move(promoted) : std::move(plain);
+}
+
 namespace {
 
 constexpr std::string_view ellipsoidal_suffix = "ellipsoidal";

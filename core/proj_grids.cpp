@@ -1,28 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/proj_grids.h"
 
-#include <proj_experimental.h>  // proj_crs_promote_to_3D
-
 #include <set>
 
 #include "core/proj_handles.h"
 
 namespace swath::core {
 namespace {
-
-struct ListEnd {
-  void operator()(PJ_OBJ_LIST* l) const { proj_list_destroy(l); }
-};
-struct FactoryEnd {
-  void operator()(PJ_OPERATION_FACTORY_CONTEXT* f) const { proj_operation_factory_context_destroy(f); }
-};
-
-Pj with_heights(PJ_CONTEXT* c, const Crs& crs) {
-  Pj plain = parse_crs(c, facts_of(crs).definition);
-  if (!plain || facts_of(crs).vertical || facts_of(crs).geocentric) return plain;
-  Pj promoted(proj_crs_promote_to_3D(c, nullptr, plain.get()));
-  return promoted ? std::move(promoted) : std::move(plain);
-}
 
 void add_grids(PJ_CONTEXT* c, const PJ* operation, std::set<std::filesystem::path>& to) {
   for (int i = 0; i < proj_coordoperation_get_grid_used_count(c, operation); ++i) {
@@ -39,12 +23,12 @@ std::vector<std::filesystem::path> grid_files_between(const Crs& from, const Crs
   if (from.empty() || to.empty()) return {};
   const ProjContext context = new_proj_context();
   PJ_CONTEXT* c = context.get();
-  const Pj source = with_heights(c, from), target = with_heights(c, to);
+  const Pj source = three_dimensional(c, from), target = three_dimensional(c, to);
   if (!source || !target) return {};
-  const std::unique_ptr<PJ_OPERATION_FACTORY_CONTEXT, FactoryEnd> f(proj_create_operation_factory_context(c, nullptr));
+  const PjFactory f(proj_create_operation_factory_context(c, nullptr));
   proj_operation_factory_context_set_spatial_criterion(c, f.get(), PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION);
   proj_operation_factory_context_set_use_proj_alternative_grid_names(c, f.get(), 1);
-  const std::unique_ptr<PJ_OBJ_LIST, ListEnd> list(proj_create_operations(c, source.get(), target.get(), f.get()));
+  const PjList list(proj_create_operations(c, source.get(), target.get(), f.get()));
   std::set<std::filesystem::path> out;
   for (int i = 0; list && i < proj_list_get_count(list.get()); ++i) {
     const Pj operation(proj_list_get(c, list.get(), i));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Transformations between coordinate reference systems through PROJ's C interface (core/crs.h).
-#include <proj_experimental.h>  // proj_crs_promote_to_3D, proj_create_geographic_crs_from_datum
+#include <proj_experimental.h>  // proj_create_geographic_crs_from_datum
 
 #include <algorithm>
 #include <cmath>
@@ -15,25 +15,9 @@ namespace swath::core {
 
 namespace {
 
-struct ListEnd {
-  void operator()(PJ_OBJ_LIST* l) const { proj_list_destroy(l); }
-};
-struct FactoryEnd {
-  void operator()(PJ_OPERATION_FACTORY_CONTEXT* f) const { proj_operation_factory_context_destroy(f); }
-};
-using List = std::unique_ptr<PJ_OBJ_LIST, ListEnd>;
-
 // The best EPSG states for any operation to or from WGS 84. A missing grid whose operation states no better than this cannot be told from
 // the vagueness of WGS 84 itself (ensemble accuracy 2 m), so its absence is no reason to refuse.
 constexpr double finest_stated_accuracy = 1.0;
-
-// The third axis of a CRS without a vertical part: ellipsoidal heights in metres, or PROJ would drop them.
-Pj three_dimensional(PJ_CONTEXT* c, const Crs& crs) {
-  Pj plain = parse_crs(c, facts_of(crs).definition);
-  if (facts_of(crs).vertical || facts_of(crs).geocentric) return plain;
-  Pj promoted(proj_crs_promote_to_3D(c, nullptr, plain.get()));
-  return promoted ? std::move(promoted) : std::move(plain);
-}
 
 std::string shown(const Crs& crs) {
   const Crs::State& s = facts_of(crs);
@@ -97,12 +81,12 @@ Candidate candidate_of(PJ_CONTEXT* c, const PJ* operation) {
 }
 
 std::vector<Candidate> candidates_between(PJ_CONTEXT* c, const PJ* from, const PJ* to) {
-  const std::unique_ptr<PJ_OPERATION_FACTORY_CONTEXT, FactoryEnd> f(proj_create_operation_factory_context(c, nullptr));
+  const PjFactory f(proj_create_operation_factory_context(c, nullptr));
   proj_operation_factory_context_set_spatial_criterion(c, f.get(), PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION);
   proj_operation_factory_context_set_grid_availability_use(c, f.get(), PROJ_GRID_AVAILABILITY_USED_FOR_SORTING);
   proj_operation_factory_context_set_allow_ballpark_transformations(c, f.get(), 0);
   proj_operation_factory_context_set_use_proj_alternative_grid_names(c, f.get(), 1);
-  const List list(proj_create_operations(c, from, to, f.get()));
+  const PjList list(proj_create_operations(c, from, to, f.get()));
   std::vector<Candidate> out;
   for (int i = 0; list && i < proj_list_get_count(list.get()); ++i) {
     const Pj operation(proj_list_get(c, list.get(), i));

@@ -10,6 +10,7 @@
 #include "core/frames.h"
 #include "core/geodesy.h"
 #include "core/time.h"
+#include "core/trajectory_columns.h"
 #include "core/units.h"
 #include "io/wild_records.h"
 
@@ -25,22 +26,14 @@ constexpr double max_turns = 4 * core::pi;     // rad: angles are written within
 constexpr double turn = 0.5, turn_rate = 3.0;  // rad, rad/s
 constexpr double steep = core::pi / 3;         // rad: pitch beyond which roll and heading are not well determined
 
-/// Calls f(column) for every column that is there; their element types differ.
-template <class F>
-void for_each_column(core::TrajectoryData& t, F&& f) {
-  for (auto* c : {&t.time, &t.latitude, &t.longitude, &t.height, &t.roll, &t.pitch, &t.heading, &t.v_north, &t.v_east, &t.v_down})
-    if (!c->empty()) f(*c);
-  for (auto* c : {&t.sigma_north, &t.sigma_east, &t.sigma_down, &t.sigma_roll, &t.sigma_pitch, &t.sigma_heading})
-    if (!c->empty()) f(*c);
-}
-
-bool all_finite(const core::TrajectoryData& t, size_t i) {
-  double sum = 0;
-  for (const auto* c : {&t.time, &t.latitude, &t.longitude, &t.height, &t.roll, &t.pitch, &t.heading, &t.v_north, &t.v_east, &t.v_down})
-    if (!c->empty()) sum += std::isfinite((*c)[i]) ? 0.0 : 1.0;
-  for (const auto* c : {&t.sigma_north, &t.sigma_east, &t.sigma_down, &t.sigma_roll, &t.sigma_pitch, &t.sigma_heading})
-    if (!c->empty()) sum += std::isfinite((*c)[i]) ? 0.0 : 1.0;
-  return sum == 0.0;
+/// Name of the first column whose value is not finite; empty where all are.
+std::string not_finite(const core::TrajectoryData& t, size_t i) {
+  std::string first;
+  core::for_each_trajectory_column([&](auto member, const char* name) {
+    const auto& column = t.*member;
+    if (first.empty() && !column.empty() && !std::isfinite(column[i])) first = name;
+  });
+  return first;
 }
 
 bool is_possible(const core::TrajectoryData& t, size_t i) {
@@ -52,20 +45,7 @@ bool is_possible(const core::TrajectoryData& t, size_t i) {
 
 /// "roll 1e+300 deg": what pose_faults() found impossible or not finite.
 std::string value_text(const core::TrajectoryData& t, size_t i) {
-  constexpr std::array<const char*, 16> names{"time",         "latitude",   "longitude",   "height",       "roll",        "pitch",
-                                              "heading",      "v_north",    "v_east",      "v_down",       "sigma north", "sigma east",
-                                              "sigma height", "sigma roll", "sigma pitch", "sigma heading"};
-  size_t k = 0;
-  std::string not_finite;
-  for (const auto c : {&t.time, &t.latitude, &t.longitude, &t.height, &t.roll, &t.pitch, &t.heading, &t.v_north, &t.v_east, &t.v_down}) {
-    if (not_finite.empty() && !c->empty() && !std::isfinite((*c)[i])) not_finite = names[k];
-    ++k;
-  }
-  for (const auto c : {&t.sigma_north, &t.sigma_east, &t.sigma_down, &t.sigma_roll, &t.sigma_pitch, &t.sigma_heading}) {
-    if (not_finite.empty() && !c->empty() && !std::isfinite((*c)[i])) not_finite = names[k];
-    ++k;
-  }
-  if (!not_finite.empty()) return not_finite + " is not finite";
+  if (const std::string name = not_finite(t, i); !name.empty()) return name + " is not finite";
   const auto degrees = [](double v) { return core::format_number(std::round(core::to_degrees(v) * 1e6) / 1e6) + " deg"; };
   std::string text = "latitude " + degrees(t.latitude[i]) + ", longitude " + degrees(t.longitude[i]) + ", height " +
                      core::format_number(t.height[i]) + " m, roll " + degrees(t.roll[i]) + ", pitch " + degrees(t.pitch[i]) + ", heading " +
@@ -80,7 +60,7 @@ std::vector<PoseFault> pose_faults(const core::TrajectoryData& t) {
   std::vector<PoseFault> out(t.size(), PoseFault::none);
   std::vector<size_t> good;
   for (size_t i = 0; i < t.size(); ++i) {
-    if (!all_finite(t, i))
+    if (!not_finite(t, i).empty())
       out[i] = PoseFault::not_finite;
     else if (!is_possible(t, i))
       out[i] = PoseFault::impossible;
@@ -108,7 +88,8 @@ std::vector<PoseFault> pose_faults(const core::TrajectoryData& t) {
 }
 
 void leave_out(core::TrajectoryData& t, const std::vector<std::uint8_t>& dropped) {
-  for_each_column(t, [&](auto& column) {
+  core::for_each_trajectory_column([&](auto member, const char*) {
+    auto& column = t.*member;
     size_t kept = 0;
     for (size_t i = 0; i < column.size(); ++i)
       if (!dropped[i]) column[kept++] = column[i];

@@ -153,13 +153,13 @@ core::Value volumes_of(const VolumeRequest& request) {
   return out;
 }
 
-std::string volume_text(const core::Value& told) {
-  const auto number = [&](const char* key) { return told.find(key)->as_number(); };
-  const bool metres = told.find("units")->as_text() == "m";
+std::string volume_text(const core::Value& found) {
+  const auto number = [&](const char* key) { return found.find(key)->as_number(); };
+  const bool metres = found.find("units")->as_text() == "m";
   std::string out;
   char line[200];
   const auto volume = [&](const char* name, const char* key, const char* sigma) {
-    if (told.find(sigma))
+    if (found.find(sigma))
       std::snprintf(line, sizeof line, "%-9s %14.2f%s  +- %.2f\n", name, number(key), metres ? " m3" : "", number(sigma));
     else
       std::snprintf(line, sizeof line, "%-9s %14.2f%s  (no sigma known)\n", name, number(key), metres ? " m3" : "");
@@ -169,17 +169,17 @@ std::string volume_text(const core::Value& told) {
   volume("fill", "fill", "sigma_fill");
   volume("net", "net", "sigma_net");
   std::snprintf(line, sizeof line, "%-9s %14.2f%s in %lld cells; lowered %.2f, raised %.2f\n", "area", number("area"), metres ? " m2" : "",
-                static_cast<long long>(told.find("cells")->as_int()), number("cut_area"), number("fill_area"));
+                static_cast<long long>(found.find("cells")->as_int()), number("cut_area"), number("fill_area"));
   out += line;
   std::snprintf(line, sizeof line, "%-9s %14.2f%s in %lld cells where a surface is void\n", "left out", number("area_left_out"),
-                metres ? " m2" : "", static_cast<long long>(told.find("cells_left_out")->as_int()));
+                metres ? " m2" : "", static_cast<long long>(found.find("cells_left_out")->as_int()));
   out += line;
-  if (const core::Value* vertices = told.find("polygon_vertices_left_out")) {
+  if (const core::Value* vertices = found.find("polygon_vertices_left_out")) {
     std::snprintf(line, sizeof line, "polygon: %lld vertices that are not finite or beyond every map, left out\n",
                   static_cast<long long>(vertices->as_int()));
     out += line;
   }
-  if (told.find("sigma_net")) {
+  if (found.find("sigma_net")) {
     std::snprintf(line, sizeof line, "sigmas: errors of any two cells of a model correlated by %g\n", number("correlation"));
     out += line;
   }

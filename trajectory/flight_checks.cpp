@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/frames.h"
-#include "core/geodesy.h"
 #include "core/units.h"
+#include "trajectory/ground_velocity.h"
 
 namespace swath::trajectory {
 namespace {
@@ -58,21 +58,15 @@ std::vector<Sample> samples_of(const core::TrajectoryData& d) {
   for (const size_t a : nodes_of(d)) {
     const size_t m = record_at(d, a, d.time[a] + 0.5 * step), b = record_at(d, m, d.time[a] + step);
     if (b >= d.size() || m == a || b == m || d.time[b] - d.time[a] > longest_step) continue;
-    const auto between = [&](size_t i, size_t j) {
-      const double dt = d.time[j] - d.time[i], latitude = d.latitude[i];
-      return Eigen::Vector2d(
-          (core::meridian_radius(latitude) + d.height[i]) * (d.latitude[j] - d.latitude[i]) / dt,
-          (core::prime_vertical_radius(latitude) + d.height[i]) * std::cos(latitude) * core::wrap_pi(d.longitude[j] - d.longitude[i]) / dt);
-    };
-    const Eigen::Vector2d v = between(a, b), v1 = between(a, m), v2 = between(m, b);
+    const GroundVelocity v = ground_velocity(d, a, b), v1 = ground_velocity(d, a, m), v2 = ground_velocity(d, m, b);
     Sample s;
-    s.north = v.x(), s.east = v.y();
-    s.turn = core::wrap_pi(std::atan2(v2.y(), v2.x()) - std::atan2(v1.y(), v1.x())) / (0.5 * (d.time[b] - d.time[a]));
+    s.north = v.north, s.east = v.east;
+    s.turn = core::wrap_pi(std::atan2(v2.east, v2.north) - std::atan2(v1.east, v1.north)) / (0.5 * (d.time[b] - d.time[a]));
     s.heading = d.heading[m], s.roll = d.roll[m], s.pitch = d.pitch[m];
     s.rise = d.height[b] - d.height[a];
     if (d.has_velocity())
       for (size_t i = a; i < b; ++i) s.recorded_rise -= 0.5 * (d.v_down[i] + d.v_down[i + 1]) * (d.time[i + 1] - d.time[i]);
-    if (v.norm() > slowest && std::isfinite(s.heading + s.roll + s.pitch + s.rise)) out.push_back(s);
+    if (std::hypot(v.north, v.east) > slowest && std::isfinite(s.heading + s.roll + s.pitch + s.rise)) out.push_back(s);
   }
   return out;
 }

@@ -117,8 +117,8 @@ class Bench:
 
 def judge(case, done, right_run, error, right_error):
     """Outcome, whether the cause is named, and the new messages."""
-    told = outcome.messages(done)
-    new = [text for key, text in told.items() if key not in outcome.messages(right_run)]
+    messages = outcome.messages(done)
+    new = [text for key, text in messages.items() if key not in outcome.messages(right_run)]
     gate = outcome.geometry(done.report)
     ids = outcome.identifiers(gate.get("named"))
     by_gate = bool(set(ids) & set(case.ids))

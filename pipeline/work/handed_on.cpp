@@ -7,6 +7,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "core/trajectory_columns.h"
 #include "io/output_file.h"
 #include "io/value_file.h"
 #include "pipeline/work/piece_record.h"
@@ -94,9 +95,7 @@ void visit_events(F& f, E& d) {
 
 template <class F, class T>
 void visit_trajectory(F& f, T& d) {
-  f(d.time), f(d.latitude), f(d.longitude), f(d.height), f(d.roll), f(d.pitch), f(d.heading);
-  f(d.v_north), f(d.v_east), f(d.v_down);
-  f(d.sigma_north), f(d.sigma_east), f(d.sigma_down), f(d.sigma_roll), f(d.sigma_pitch), f(d.sigma_heading);
+  core::for_each_trajectory_column([&](auto member, const char*) { f(d.*member); });
   f(d.covariance.time), f(d.covariance.upper);
   f(d.errors.states), f(d.errors.time), f(d.errors.lefts), f(d.errors.rights), f(d.errors.links);
   f(d.response.time), f(d.response.per_unit);
