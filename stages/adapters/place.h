@@ -16,8 +16,8 @@ Eigen::Vector3d origin_near(const Context& context, const Eigen::Vector3d& posit
 void check_place_of_fixes(const Context& context);
 
 /// For every stage that sets context.trajectory: sets context.origin by its first record, and context.area. A survey beside the CRS's area
-/// of use is reported; one far outside is refused (scale and convergence would be absurd): core::Error. A run without a map (no projected CRS)
-/// is left as it is.
+/// of use is reported; one far outside is refused (scale and convergence would be absurd): core::Error. A run without a map (no projected
+/// CRS) is left as it is.
 void place_on_map(Context& context, core::Tally& tally);
 
 }  // namespace swath::stages
