@@ -509,7 +509,7 @@ PieceRecord Engine::run_group(size_t number, const TileGroup& group, bool has_wa
   if (before > 0 || !has_surface(info.gives_products) || has_water) s.run_tile(context_, job);
   if (job.block.size() != before)
     throw core::Error("the stage changed the number of points of a tile", std::string(info.name), "this is a fault of the program");
-  const std::vector<fs::path> by_stage = finished.files();
+  std::vector<fs::path> by_stage = finished.files();
   std::vector<PieceFile> overlays;
   if (!info.gives.empty()) {
     size_t first = 0;
@@ -519,7 +519,11 @@ PieceRecord Engine::run_group(size_t number, const TileGroup& group, bool has_wa
       first += count;
     }
   }
-  if (is_void_fringe(number, group)) fs::remove(stages::grid_file(mine, group.tiles[0]));
+  if (is_void_fringe(number, group)) {
+    const fs::path empty = stages::grid_file(mine, group.tiles[0]);
+    std::erase(by_stage, empty);
+    fs::remove(empty);
+  }
   Value note = Value::object();
   note["tally"] = job.tally.value();
   note["seconds"] = since(start);

@@ -27,11 +27,18 @@ bool stays_within(const fs::path& name) {
   return !name.empty() && name.is_relative() && std::find(name.begin(), name.end(), "..") == name.end();
 }
 
-std::vector<fs::path> present_once(std::vector<fs::path> files) {
+std::vector<fs::path> once(std::vector<fs::path> files) {
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());
-  std::erase_if(files, [](const fs::path& f) { return !fs::exists(f); });
   return files;
+}
+
+/// Of a file that was finished: one that is gone was removed by others, and a record that left it out would call the piece whole.
+std::uint64_t bytes_of(const fs::path& file) {
+  std::error_code ec;
+  const std::uint64_t bytes = fs::file_size(file, ec);
+  if (ec) throw damaged_work(file);
+  return bytes;
 }
 
 /// The text before the seal; nothing where it is not the one that was written.
@@ -50,18 +57,18 @@ std::optional<std::string> sealed_text(const fs::path& file) {
 }  // namespace
 
 PieceFile piece_file(const fs::path& folder, const fs::path& file) {
-  return {file.lexically_relative(folder), fs::file_size(file), checksum_of_file(file)};
+  return {file.lexically_relative(folder), bytes_of(file), checksum_of_file(file)};
 }
 
 std::vector<PieceFile> piece_files(const fs::path& folder, std::vector<fs::path> files) {
   std::vector<PieceFile> out;
-  for (const fs::path& f : present_once(std::move(files))) out.push_back(piece_file(folder, f));
+  for (const fs::path& f : once(std::move(files))) out.push_back(piece_file(folder, f));
   return out;
 }
 
 std::vector<PieceFile> files_without_checksum(const fs::path& folder, std::vector<fs::path> files) {
   std::vector<PieceFile> out;
-  for (const fs::path& f : present_once(std::move(files))) out.push_back({f.lexically_relative(folder), fs::file_size(f), {}});
+  for (const fs::path& f : once(std::move(files))) out.push_back({f.lexically_relative(folder), bytes_of(f), {}});
   return out;
 }
 

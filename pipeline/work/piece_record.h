@@ -21,9 +21,9 @@ struct PieceFile {
   std::string checksum;
 };
 
-/// The file as it is now. Throws core::Error where it cannot be read.
+/// The file as it is now. Throws core::SystemError where it is gone or cannot be read.
 PieceFile piece_file(const std::filesystem::path& folder, const std::filesystem::path& file);
-/// Those of the files that are there, each once.
+/// The same for each of the files, once.
 std::vector<PieceFile> piece_files(const std::filesystem::path& folder, std::vector<std::filesystem::path> files);
 /// The same for files that no record names, which may be large: they are not read, and their checksums are empty.
 std::vector<PieceFile> files_without_checksum(const std::filesystem::path& folder, std::vector<std::filesystem::path> files);

@@ -23,8 +23,8 @@ SurveyPiece run_survey_piece(const stages::Stage& stage, stages::Context& contex
   SurveyPiece piece;
   const HandedOn before = HandedOn::of(context);
   const auto start = Clock::now();
+  PieceRecord so_far;
   {
-    PieceRecord so_far;
     const io::FinishedFiles watch([&](const fs::path& file) {
       const io::FinishedFiles apart;  // the record is not one of the stage's files
       so_far.files.push_back(piece_file(folder, file));
@@ -34,6 +34,8 @@ SurveyPiece run_survey_piece(const stages::Stage& stage, stages::Context& contex
   }
   piece.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   const bool kept = keep && write_handed_on(folder / handed_on_name, before, HandedOn::of(context));
+  for (const PieceFile& f : so_far.files)
+    if (!fs::exists(folder / f.name)) throw damaged_work(folder / f.name);
   std::error_code absent;
   fs::remove(folder / partial_name, absent);
   std::vector<fs::path> files;

@@ -15,7 +15,7 @@ class Piece : public ::testing::Test {
     test::write_bytes(folder_ / "stage/products/a.laz", "the points of a");
     core::Value note = core::Value::object();
     note["seconds"] = 1.5;
-    write_record(record_, {piece_files(stage_, {stage_ / "a.cols", stage_ / "gone", stage_ / "products/a.laz", stage_ / "a.cols"}), note});
+    write_record(record_, {piece_files(stage_, {stage_ / "a.cols", stage_ / "products/a.laz", stage_ / "a.cols"}), note});
   }
   bool whole() const {
     const auto read = read_record(record_);
@@ -28,7 +28,7 @@ class Piece : public ::testing::Test {
 TEST_F(Piece, ComesBackWithItsFilesAndNote) {
   const auto read = read_record(record_);
   ASSERT_TRUE(read);
-  ASSERT_EQ(read->files.size(), 2u) << "each file once, and none that was removed again";
+  ASSERT_EQ(read->files.size(), 2u) << "each file once";
   EXPECT_EQ(read->files[1].name, fs::path("products/a.laz"));
   EXPECT_EQ(read->files[1].bytes, 15u);
   EXPECT_EQ(read->note.find("seconds")->as_number(), 1.5);
@@ -39,7 +39,7 @@ TEST_F(Piece, FilesWithoutChecksumAreNotReadAndTakeThePlaceOfTheirNames) {
   auto files = read_record(record_)->files;
   test::write_bytes(stage_ / "products/a.laz", "all points");
   test::write_bytes(stage_ / "products/b.gpkg", "lines");
-  const auto merged = files_without_checksum(stage_, {stage_ / "products/b.gpkg", stage_ / "gone", stage_ / "products/a.laz"});
+  const auto merged = files_without_checksum(stage_, {stage_ / "products/b.gpkg", stage_ / "products/a.laz"});
   ASSERT_EQ(merged.size(), 2u);
   for (const PieceFile& f : merged) EXPECT_EQ(f.checksum, "");
   replace_files(files, merged);
@@ -49,6 +49,12 @@ TEST_F(Piece, FilesWithoutChecksumAreNotReadAndTakeThePlaceOfTheirNames) {
   EXPECT_EQ(files[1].name, fs::path("products/a.laz"));
   EXPECT_EQ(files[1].bytes, 10u);
   EXPECT_EQ(files[2].bytes, 5u);
+}
+
+TEST_F(Piece, IsNotFinishedWithoutAFileThatWasMade) {
+  const std::vector<fs::path> made = {stage_ / "a.cols", stage_ / "gone"};
+  EXPECT_THROW(piece_files(stage_, made), core::SystemError);
+  EXPECT_THROW(files_without_checksum(stage_, made), core::SystemError);
 }
 
 TEST_F(Piece, AFileThatIsNotAsItWasIsSeen) {
