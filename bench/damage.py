@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a run makes of a damaged work folder, of kills and of full disks: the products must be the same bytes, or the run refused.
+"""What a run makes of a damaged work folder, of kills, of an output folder that is removed, of many starts in one folder and of full disks:
+the products must be the same bytes, or the run refused.
 
-  python3 bench/damage.py --program build/release/tools/swath                    240 damages, 20 kills, 6 disk sizes
-  python3 bench/damage.py --program ... --damages 1000 --kills 100 --disks 33 --seed 2
+  python3 bench/damage.py --program build/release/tools/swath         240 damages, 100 kills, 30 removals, 120 starts, 33 disk sizes
+  python3 bench/damage.py --program ... --damages 1000 --seed 2
 
 A damage flips a bit, cuts a file short, empties it, fills it with zeros, deletes it, swaps it with another, or deletes a folder. Disks are
 small tmpfs mounts and need the right to mount; without it they are left out, and the program says so.
@@ -112,7 +113,7 @@ class Bench:
                 outcomes["refused"] += 1
             else:
                 faults.append(f"{what}: exit {done.returncode} {done.stderr[:300]}")
-        self.tell(f"{count} damages", outcomes, faults)
+        self.say(f"{count} damages", outcomes, faults)
         return faults
 
     # --- kills
@@ -144,7 +145,67 @@ class Bench:
             else:
                 outcomes["finished with the same bytes"] += 1
             shutil.rmtree(out, ignore_errors=True)
-        self.tell(f"{count} kills", outcomes, faults)
+        self.say(f"{count} kills", outcomes, faults)
+        return faults
+
+    # --- removals
+
+    def removals(self, count):
+        """The output folder is removed at a random moment; neither the run, unless it was just ending, nor the next one may end with exit 0
+        and fewer products."""
+        expected = products(self.folder / "whole")
+        start = time.monotonic()
+        out = self.folder / "removed"
+        self.run(out)
+        takes = time.monotonic() - start
+        outcomes, faults = Counter(), []
+        for number in range(count):
+            shutil.rmtree(out, ignore_errors=True)
+            run = subprocess.Popen(self.command(out), stderr=subprocess.PIPE, text=True)
+            time.sleep(self.random.uniform(0.02, takes))
+            ended_before = run.poll() is not None
+            removed = time.monotonic()
+            shutil.rmtree(out, ignore_errors=True)
+            _, error = run.communicate()
+            if ended_before:
+                outcomes["ended before"] += 1
+                continue
+            if run.returncode == 0 and products(out) != expected and time.monotonic() - removed > 0.2:
+                faults.append(f"removal {number}: exit 0 without the products, {time.monotonic() - removed:.3f} s after it")
+            elif run.returncode not in (0, 1, 2) or (run.returncode and error.count("error:") != 1):
+                faults.append(f"removal {number}: exit {run.returncode} {error[:300]}")
+            else:
+                outcomes["begun anew" if run.returncode == 0 else "seen"] += 1
+            done = self.run(out)
+            if done.returncode != 0 or products(out) != expected:
+                faults.append(f"removal {number}: the next run: exit {done.returncode}, or other products {done.stderr[:300]}")
+        self.say(f"{count} removals", outcomes, faults)
+        return faults
+
+    # --- starts
+
+    def starts(self, count, at_once=6):
+        """Several starts of one command at almost the same time: one works, the others are refused or find the products made."""
+        expected = products(self.folder / "whole")
+        outcomes, faults = Counter(), []
+        out = self.folder / "shared"
+        for first in range(0, count, at_once):
+            shutil.rmtree(out, ignore_errors=True)
+            runs = []
+            for _ in range(min(at_once, count - first)):
+                runs.append(subprocess.Popen(self.command(out), stderr=subprocess.PIPE, text=True))
+                time.sleep(self.random.choice((0, 0, 0.01, 0.1, 0.5)))
+            for run in runs:
+                _, error = run.communicate()
+                if run.returncode == 0:
+                    outcomes["done"] += 1
+                elif run.returncode == 2 and error.count("error:") == 1 and "another run is at work" in error:
+                    outcomes["refused"] += 1
+                else:
+                    faults.append(f"start {first}: exit {run.returncode} {error[:300]}")
+            if products(out) != expected or [p for p in out.rglob(".*")]:
+                faults.append(f"start {first}: other products, or stray files")
+        self.say(f"{count} starts, {at_once} at once", outcomes, faults)
         return faults
 
     # --- disks
@@ -182,11 +243,11 @@ class Bench:
                     faults.append(f"{kilobytes} kB: exit {done.returncode} with space, or other products")
             finally:
                 subprocess.run(["umount", mount], check=True)
-        self.tell(f"{count} disk sizes", outcomes, faults)
+        self.say(f"{count} disk sizes", outcomes, faults)
         return faults
 
     @staticmethod
-    def tell(what, outcomes, faults):
+    def say(what, outcomes, faults):
         print(f"{what}: " + ", ".join(f"{n} {outcome}" for outcome, n in sorted(outcomes.items())) + f"; {len(faults)} faults", flush=True)
         for fault in faults:
             print("  " + fault, flush=True)
@@ -196,8 +257,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", required=True)
     parser.add_argument("--damages", type=int, default=240)
-    parser.add_argument("--kills", type=int, default=20)
-    parser.add_argument("--disks", type=int, default=6)
+    parser.add_argument("--kills", type=int, default=100)
+    parser.add_argument("--removals", type=int, default=30)
+    parser.add_argument("--starts", type=int, default=120)
+    parser.add_argument("--disks", type=int, default=33)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--full", action="store_true", help="from IMU and GNSS, with configs/survey.toml")
     arguments = parser.parse_args()
@@ -205,6 +268,8 @@ def main():
     try:
         faults = bench.damages(arguments.damages)
         faults += bench.kills(arguments.kills)
+        faults += bench.removals(arguments.removals)
+        faults += bench.starts(arguments.starts)
         faults += bench.disks(arguments.disks)
     finally:
         shutil.rmtree(bench.folder, ignore_errors=True)

@@ -109,6 +109,8 @@ class Engine {
   void begin_products(size_t number);
   void compose_report(const std::string& command);
   void deliver_all(const WorkLock& lock);
+  /// At the very end, when the work is discarded too.
+  void expect_all_delivered() const;
   Measured measured() const;
   void keep_whole();
   void expect_made(size_t number) const;
@@ -719,10 +721,14 @@ void Engine::deliver_all(const WorkLock& lock) {
   lock.expect_there();
   for (size_t i = 0; i < plan_.stages.size(); ++i) expect_made(i);
   deliver(all, output_, plan_.run.keep_work, outside_inputs(plan_));
+  lock.expect_there();
+}
+
+void Engine::expect_all_delivered() const {
   for (const std::vector<PieceFile>& of_stage : made_)
     for (const PieceFile& f : of_stage)
       if (f.name.begin()->string() == products_name) expect_delivered(output_ / f.name.lexically_relative(products_name), f.bytes);
-  lock.expect_there();
+  expect_delivered(output_ / "report.json", io::to_json(report_).size());
 }
 
 Outcome Engine::run(const std::string& command) {
@@ -755,6 +761,7 @@ Outcome Engine::run(const std::string& command) {
     report_["threads"] = threads_;
     deliver_all(lock);
     if (!plan_.run.keep_work) discard(work_, discarded);
+    expect_all_delivered();
     return {held ? core::Exit::done : core::Exit::quality_missed, report_};
   } catch (const core::SystemError&) {
     throw;  // the work done so far stays, for the same command once the cause is repaired
