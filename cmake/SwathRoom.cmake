@@ -18,7 +18,7 @@ if(SWATH_SANITIZE)
   # With sanitizers GCC 12 sees uninitialised members in std::optional and std::regex (GCC bugs 80635, 105562).
   # Checks of every pointer before its use treble the time to compile Eigen; the address sanitizer sees those faults where they happen.
   target_compile_options(swath_settings INTERFACE -fsanitize=${SWATH_SANITIZE}
-    -fno-sanitize=null,alignment,object-size,vptr,pointer-overflow -fno-omit-frame-pointer -Wno-maybe-uninitialized)
+    -fno-sanitize=null,alignment,object-size,vptr,pointer-overflow -fno-omit-frame-pointer $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   # With the address sanitizer Eigen's headers free by another way than PCL's library, built without it, allocates. Both are 16-byte aligned.
   target_compile_definitions(swath_settings INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
   target_link_options(swath_settings INTERFACE -fsanitize=${SWATH_SANITIZE})

@@ -9,8 +9,10 @@
 #include <cmath>
 #include <cstdio>
 #include <iterator>
+#include <limits>
 
 #include "core/error.h"
+#include "core/units.h"
 
 namespace swath::core {
 
@@ -18,6 +20,9 @@ namespace {
 
 constexpr double seconds_per_day = 86400.0;
 constexpr double gps_epoch_unix = 315964800.0;  // 1980-01-06T00:00:00 UTC
+
+// Between them civil dates have four digits.
+constexpr double year_0 = -62167219200.0, year_10000 = 253402300800.0;
 
 struct LeapSecond {
   double unix_start;  // POSIX time from which the offset holds
@@ -66,7 +71,11 @@ GpsTime from_unix(double unix_seconds) { return unix_seconds - gps_epoch_unix + 
 double to_unix(GpsTime t) { return t + gps_epoch_unix - gps_minus_utc_at_gps(t); }
 
 GpsTime from_week(int week, double seconds) { return week * seconds_per_week + seconds; }
-int week_of(GpsTime t) { return static_cast<int>(std::floor(t / seconds_per_week)); }
+int week_of(GpsTime t) {
+  constexpr double most = std::numeric_limits<int>::max();
+  const double week = std::floor(t / seconds_per_week);
+  return std::isnan(week) ? 0 : static_cast<int>(std::clamp(week, -most, most));
+}
 double seconds_of_week(GpsTime t) { return t - week_of(t) * seconds_per_week; }
 
 std::optional<double> unix_of_date(std::string_view date) {
@@ -86,6 +95,7 @@ std::optional<double> unix_of_date(std::string_view date) {
 
 std::string utc_text(GpsTime t) {
   if (!std::isfinite(t)) return "no time";
+  if (to_unix(t) < year_0 || to_unix(t) >= year_10000) return format_number(t) + " s GPS";
   const double rounded = std::round(t * 1000.0) / 1000.0;
   const bool leap = in_leap_second(rounded);  // told as second 60 of the day that ends
   const double unix_seconds = to_unix(rounded) - (leap ? 1.0 : 0.0);

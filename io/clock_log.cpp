@@ -193,8 +193,9 @@ std::vector<Record> read_pulses(const std::filesystem::path& file) {
           const size_t dot = std::min(line.fields[0].find('.'), line.fields[0].size());
           const Line parts{line.where, {line.fields[0].substr(0, dot), "0" + line.fields[0].substr(dot)}};
           const double whole = parts.number(0);
-          if (whole < (mjd_of_gps - mjd_of_1970) * day_seconds || whole != std::floor(whole))
-            line.fault("'" + line.fields[0] + "' is no POSIX time since 1980",
+          if (whole < (mjd_of_gps - mjd_of_1970) * day_seconds || whole > (latest_mjd - mjd_of_1970) * day_seconds ||
+              whole != std::floor(whole))
+            line.fault("'" + line.fields[0] + "' is no POSIX time between 1980 and 2200",
                        "one column: POSIX seconds; two columns: MJD and seconds of the day");
           r.day = std::floor(whole / day_seconds);
           r.second = whole - r.day * day_seconds + parts.number(1);

@@ -13,6 +13,7 @@
 #include <memory>
 
 #include "core/error.h"
+#include "core/units.h"
 #include "io/gdal_door.h"
 #include "io/output_file.h"
 
@@ -23,6 +24,8 @@ namespace {
 constexpr double lattice_tolerance = 1e-3;
 /// Relative difference of pixel width and height that still counts as square (text formats print few digits).
 constexpr double square_tolerance = 1e-6;
+// Number of a cell: beyond it a corner could not be told from its neighbour's in a double.
+constexpr double farthest_cell = 1e12;
 /// What a truncated file cannot pass: every block lies within the file. Only libraries' final flush could lose data unseen.
 void check_blocks(const std::filesystem::path& file, const std::filesystem::path& final_name, const GdalMessages& messages) {
   const Dataset made(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER));
@@ -214,6 +217,8 @@ Raster read_raster(const std::filesystem::path& file, int band_number) {
 
 core::Lattice lattice_of(const RasterInfo& info, const std::filesystem::path& file) {
   const auto& g = info.geotransform;
+  if (!std::all_of(g.begin(), g.end(), [](double v) { return std::isfinite(v); }))
+    throw core::Error("the raster's corner or cell is not finite", file.string(), "the georeference is damaged");
   if (g[2] != 0 || g[4] != 0 || g[1] <= 0 || g[5] >= 0)
     throw core::Error("the raster is not north up", file.string(), "warp it to the survey's CRS first (gdalwarp)");
   if (std::abs(g[1] + g[5]) > square_tolerance * g[1])
@@ -221,6 +226,9 @@ core::Lattice lattice_of(const RasterInfo& info, const std::filesystem::path& fi
                       "resample it to square pixels (gdalwarp -tr)");
   const double cell = g[1];
   const double west = g[0] / cell, south = (g[3] + info.ny * g[5]) / cell;
+  if (std::max(std::abs(west), std::abs(south)) > farthest_cell)
+    throw core::Error("the raster's corner lies " + core::format_number(std::max(std::abs(west), std::abs(south))) +
+                          " cells from the origin of its coordinates", file.string(), "the georeference is damaged");
   const double shift = std::max(std::abs(west - std::round(west)), std::abs(south - std::round(south)));
   if (shift > lattice_tolerance)
     throw core::Error("the raster's corner is " + std::to_string(shift) + " cells off the whole multiples of its cell", file.string(),

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "core/error.h"
 #include "core/printable.h"
@@ -94,7 +95,8 @@ class TreeBuilder {
   bool Int(int i) { return put(static_cast<std::int64_t>(i)); }
   bool Uint(unsigned i) { return put(static_cast<std::int64_t>(i)); }
   bool Int64(std::int64_t i) { return put(i); }
-  bool Uint64(std::uint64_t i) { return put(static_cast<double>(i)); }
+  // The reader calls every positive integer above 32 bits so.
+  bool Uint64(std::uint64_t i) { return std::in_range<std::int64_t>(i) ? put(static_cast<std::int64_t>(i)) : put(static_cast<double>(i)); }
   bool Double(double d) { return put(d); }
   bool RawNumber(const char* s, rapidjson::SizeType n, bool) { return put(std::string(s, n)); }
   bool String(const char* s, rapidjson::SizeType n, bool) { return put(std::string(s, n)); }

@@ -27,6 +27,11 @@ bool stays_within(const fs::path& name) {
   return !name.empty() && name.is_relative() && std::find(name.begin(), name.end(), "..") == name.end();
 }
 
+/// Name, length, checksum.
+bool is_file(const Value& v) {
+  return v.is_array() && v.items().size() == 3 && v.items()[0].is_text() && v.items()[1].is_int() && v.items()[2].is_text();
+}
+
 std::vector<fs::path> once(std::vector<fs::path> files) {
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());
@@ -107,7 +112,8 @@ std::optional<PieceRecord> read_record(const fs::path& file) {
   const Value* piece = all.find("piece");
   const Value* files = all.find("files");
   Value* note = all.find("note");
-  if (!piece || !files || !note || piece->as_text() != identity_of(file)) return std::nullopt;
+  if (!piece || !files || !note || !piece->is_text() || piece->as_text() != identity_of(file)) return std::nullopt;
+  if (!files->is_array() || !std::all_of(files->items().begin(), files->items().end(), is_file)) return std::nullopt;
   PieceRecord out;
   for (const Value& one : files->items()) {
     const std::vector<Value>& f = one.items();
