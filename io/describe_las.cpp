@@ -32,6 +32,12 @@ struct Extent {
   Value value() const { return Value(Value::Array{low, high}); }
 };
 
+/// Number of a coordinate's cell, whose lowest 32 bits suffice: header and points may state places beyond any map.
+std::uint64_t index_of(double coordinate) {
+  constexpr double period = 4294967296.0;
+  return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::fmod(std::floor(coordinate / cell), period))) & 0xffffffff;
+}
+
 /// What one pass over the points gathers.
 struct Sums {
   std::array<Extent, 3> xyz;
@@ -56,9 +62,7 @@ struct Sums {
       returns_inconsistent += p.return_number[i] == 0 || p.return_number[i] > p.return_count[i];
       withheld += (p.flags[i] & core::flag::withheld) != 0;
       overlap += (p.flags[i] & core::flag::overlap) != 0;
-      const auto column = static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(p.x[i] / cell)) & 0xffffffff);
-      const auto row = static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(p.y[i] / cell)) & 0xffffffff);
-      cells.insert(column << 32 | row);
+      cells.insert(index_of(p.x[i]) << 32 | index_of(p.y[i]));
       if (p.gps_time.empty()) continue;
       time.add(p.gps_time[i]);
       time_zero += p.gps_time[i] == 0;

@@ -40,6 +40,7 @@ constexpr const char* raster_drivers[] = {"GTiff", "VRT", "AAIGrid", "GSBG",    
                                           "NTv2",  "XYZ", "SRTMHGT", "USGSDEM", "DTED",  "GPKG", "PNG",  "JPEG", nullptr};
 constexpr const char* vector_drivers[] = {"GPKG", "ESRI Shapefile", "GeoJSON",      "GeoJSONSeq", "DXF", "CSV",
                                           "KML",  "FlatGeobuf",     "MapInfo File", nullptr};
+constexpr double megabyte = 1048576, largest_block = 256 * megabyte;
 constexpr const char* other_drivers[] = {"COG", "MEM", "Memory", nullptr};  // for writing
 constexpr const char* formats_read =
     "GeoTIFF, VRT of local files, Arc/Info ASCII grid, GTX, EHdr, ENVI, Erdas Imagine, XYZ, SRTM, DTED, GeoPackage, shapefile, GeoJSON, "
@@ -108,6 +109,20 @@ Dataset open_plain(const std::filesystem::path& file, unsigned kind, const char*
   return opened;
 }
 
+/// Bytes of the largest block, which GDAL holds whole to read one value; where bands are interleaved by pixel it holds those of all.
+double block_bytes(GDALDataset& raster) {
+  const char* order = raster.GetMetadataItem("INTERLEAVE", "IMAGE_STRUCTURE");
+  const bool together = order && EQUAL(order, "PIXEL");
+  double largest = 0;
+  for (int b = 1; b <= raster.GetRasterCount(); ++b) {
+    GDALRasterBand& band = *raster.GetRasterBand(b);
+    int nx = 0, ny = 0;
+    band.GetBlockSize(&nx, &ny);
+    largest = std::max(largest, static_cast<double>(nx) * ny * GDALGetDataTypeSizeBytes(band.GetRasterDataType()));
+  }
+  return together ? largest * raster.GetRasterCount() : largest;
+}
+
 std::string wkt2(const OGRSpatialReference& srs) {
   const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
   char* text = nullptr;
@@ -150,7 +165,15 @@ void GdalMessages::check_written(const std::filesystem::path& file) const {
 
 void CloseDataset::operator()(GDALDataset* dataset) const { GDALClose(dataset); }
 
-Dataset open_raster(const std::filesystem::path& file) { return open_plain(file, GDAL_OF_RASTER, raster_drivers); }
+Dataset open_raster(const std::filesystem::path& file) {
+  Dataset opened = open_plain(file, GDAL_OF_RASTER, raster_drivers);
+  if (const double bytes = opened ? block_bytes(*opened) : 0; bytes > largest_block) {
+    CPLError(CE_Failure, CPLE_OpenFailed, "one block of the raster takes %.0f MB in memory, at most %.0f MB are read", bytes / megabyte,
+             largest_block / megabyte);
+    opened.reset();
+  }
+  return opened;
+}
 Dataset open_vector(const std::filesystem::path& file) { return open_plain(file, GDAL_OF_VECTOR, vector_drivers); }
 
 GdalSetting::GdalSetting(const char* key, const char* value) : key_(key) {

@@ -89,7 +89,8 @@ size_t StoreFile::read_some(void* data, size_t n) {
 bool StoreFile::next(ChunkHead& head) {
   const size_t got = read_some(&head, sizeof head);
   if (got == 0) return false;
-  if (got != sizeof head || bytes_of(head) > size_ - std::min(size_, at_)) throw damaged_work(name_);
+  const std::uint64_t bytes = bytes_of(head);
+  if (got != sizeof head || bytes > size_ - std::min(size_, at_) || bytes < head.points) throw damaged_work(name_);
   return true;
 }
 

@@ -214,5 +214,13 @@ TEST(Time, UnitOffsetAndADevicesZero) {
   EXPECT_NE(refusal([] { TimeReader(TimeScale::device, {}, "", "a.csv", {1, 0, "yesterday", 0}); }).find("no instant"), std::string::npos);
 }
 
+// A damaged file may state any number as a time: none may leave the calendar's integers.
+TEST(Time, NumbersThatAreNoDateStayNumbers) {
+  EXPECT_EQ(utc_text(1e300), "1e+300 s GPS");
+  EXPECT_EQ(utc_text(-1e17), "-1e+17 s GPS");
+  EXPECT_EQ(week_of(1e300), std::numeric_limits<int>::max());
+  EXPECT_EQ(week_of(-1e300), -std::numeric_limits<int>::max());
+}
+
 }  // namespace
 }  // namespace swath::core

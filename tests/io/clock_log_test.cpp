@@ -139,6 +139,8 @@ TEST_F(ClockLogs, DailyLogsAreJoined) {
   EXPECT_THROW(read_clock_logs(survey, tally_), core::Error);
 }
 
+TEST_F(ClockLogs, APulseBeyondTheYear2200IsNoTime) { EXPECT_EQ(where_of("1238544000.5\n2720854402085\n", ClockFormat::pps), "log:2"); }
+
 TEST(ClockLogReference, LoopstatsWithAHeader) {
   SWATH_SHARED_OR_SKIP(file, "vectors/p003_loopstats.csv");
   core::Tally tally;

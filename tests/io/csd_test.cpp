@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "io/survey.h"
 #include "tests/world/support.h"
 
 namespace swath::io {
@@ -86,6 +87,18 @@ TEST_F(Csd, PosesAreThinnedAndChecked) {
   store(reinterpret_cast<unsigned char*>(bad.data()) + 2048 + 3 * 69 + 37, std::nanf(""));
   CsdReader holes(made(bad));
   EXPECT_THROW(read_csd_trajectory(holes, core::Seconds(0), tally), core::Error);
+}
+
+TEST_F(Csd, ABoresightThatIsNoAngleIsRefused) {
+  core::Calibration calibration;
+  core::SensorSigma sigma;
+  load_calibration(made(made_csd(3)), calibration, sigma);
+  EXPECT_DOUBLE_EQ(calibration.heading.value, 0.09);
+  for (const double wrong : {4e37, std::nan("")}) {
+    std::string bytes = made_csd(3);
+    store(reinterpret_cast<unsigned char*>(bytes.data()) + 1154 + 8, wrong);
+    EXPECT_THROW(load_calibration(made(bytes), calibration, sigma), core::Error) << wrong;
+  }
 }
 
 TEST_F(Csd, TruncatedAndForeignFilesAreErrors) {

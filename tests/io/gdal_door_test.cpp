@@ -116,5 +116,20 @@ TEST(GdalDoor, OnlyFilesOfKnownFormatsAreOpened) {
   EXPECT_EQ(open_vector(folder / "a.asc"), nullptr);
 }
 
+// 25 000 bands interleaved by pixel: a file of 2 kB of which GDAL would hold blocks of 26 GB.
+TEST(GdalDoor, ARasterOfHugeBlocksIsNotOpened) {
+  const test::TemporaryFolder folder;
+  const GdalMessages messages;
+  const auto make = [&](const char* name, int bands) {
+    const char* const options[] = {"TILED=YES", "BLOCKXSIZE=512", "BLOCKYSIZE=512", "INTERLEAVE=PIXEL", "SPARSE_OK=YES", nullptr};
+    const std::filesystem::path file = folder / name;
+    GDALClose(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(file.c_str(), 6, 5, bands, GDT_Float32, const_cast<char**>(options)));
+    return file;
+  };
+  EXPECT_NE(open_raster(make("few.tif", 4)), nullptr);
+  EXPECT_EQ(open_raster(make("many.tif", 2000)), nullptr);
+  EXPECT_NE(messages.text().find("one block of the raster takes 2000 MB"), std::string::npos) << messages.text();
+}
+
 }  // namespace
 }  // namespace swath::io

@@ -277,5 +277,19 @@ TEST(GeoTiff, AProjectionWithEllipsoidalHeightsKeepsItsCrs) {
   EXPECT_EQ(describe_file(folder / "a.tif").find("heights")->as_text(), "ellipsoidal height");
 }
 
+TEST(GeoTiff, ALatticeOfDamagedNumbersIsRefused) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  RasterInfo info;
+  info.nx = info.ny = 3;
+  for (const double wrong : {nan, std::numeric_limits<double>::infinity(), 1e300})
+    for (const size_t k : {0u, 1u, 3u, 5u}) {
+      info.geotransform = {0, 1, 0, 3, 0, -1};
+      info.geotransform[k] = wrong;
+      EXPECT_THROW(lattice_of(info, "a.tif"), core::Error) << wrong << " at " << k;
+    }
+  info.geotransform = {0, 1e-300, 0, 3, 0, -1e-300};
+  EXPECT_THROW(lattice_of(info, "a.tif"), core::Error);
+}
+
 }  // namespace
 }  // namespace swath::io

@@ -88,5 +88,13 @@ TEST(ValueFile, TomlThatNestsWithoutEndIsRefused) {
   EXPECT_EQ(parse_toml("a.b.c = \"" + dots + "\" # it's " + dots + "\n", "x").find("a")->find("b")->find("c")->as_text(), dots);
 }
 
+TEST(ValueFile, IntegersAbove32BitsStayIntegers) {
+  const std::string text = "[4294967296, 9223372036854775807, -9223372036854775808]";
+  const core::Value tree = parse_json(text, "x");
+  for (const core::Value& v : tree.items()) ASSERT_TRUE(v.is_int());
+  EXPECT_EQ(to_json(tree), text + "\n");
+  EXPECT_EQ(parse_json("9223372036854775808", "x").as_number(), 9223372036854775808.0) << "what 64 bits do not hold is a number";
+}
+
 }  // namespace
 }  // namespace swath::io

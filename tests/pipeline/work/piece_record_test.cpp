@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/work/piece_record.h"
 
+#include "pipeline/work/checksum.h"
 #include "tests/world/support.h"
 
 namespace swath::pipeline {
@@ -72,6 +73,27 @@ TEST_F(Piece, AFileThatIsNotAsItWasIsSeen) {
   fs::remove(file);
   fs::create_directory(file);
   EXPECT_FALSE(whole());
+}
+
+TEST_F(Piece, AFileBeyond4GigabytesComesBack) {
+  constexpr std::uint64_t large = 5'000'000'000;
+  write_record(record_, {{{"a.laz", large, "0123456789abcdef"}}, {}});
+  const auto read = read_record(record_);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->files.at(0).bytes, large);
+}
+
+// As one could make it who hands his output folder on.
+TEST_F(Piece, AForgedRecordOfAnotherFormIsNone) {
+  for (const std::string files : {"3", "[3]", "[[]]", "[[\"a\"]]", "[[\"a\", \"b\", \"c\"]]", "[[\"a\", 1.5, \"c\"]]", "[[\"a\", 1, 2]]"}) {
+    const std::string text = "{\"piece\": \"" + (stage_.parent_path().filename() / "stage/a.done").generic_string() +
+                             "\", \"files\": " + files + ", \"note\": {}}\n";
+    test::write_bytes(record_, text + "\nxxh3 " + checksum_of(text) + "\n");
+    EXPECT_FALSE(read_record(record_)) << files;
+  }
+  const std::string text = "{\"piece\": 3, \"files\": [], \"note\": {}}\n";
+  test::write_bytes(record_, text + "\nxxh3 " + checksum_of(text) + "\n");
+  EXPECT_FALSE(read_record(record_));
 }
 
 TEST_F(Piece, EveryFlippedBitOfARecordIsSeen) {
