@@ -22,6 +22,12 @@ if(SWATH_SANITIZE)
   # With the address sanitizer Eigen's headers free by another way than PCL's library, built without it, allocates. Both are 16-byte aligned.
   target_compile_definitions(swath_settings INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
   target_link_options(swath_settings INTERFACE -fsanitize=${SWATH_SANITIZE})
+else()
+  # What is left of a fault in a reader, should one be there: the program stops instead of running on (docs/hardening.md; tests/cli/hardening.py).
+  # Some systems' compilers define _FORTIFY_SOURCE themselves, and it needs optimization.
+  target_compile_options(swath_settings INTERFACE -fstack-protector-strong -fstack-clash-protection -fPIE
+    $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3>)
+  target_link_options(swath_settings INTERFACE -pie -Wl,-z,relro,-z,now,-z,noexecstack)
 endif()
 
 function(swath_room room)

@@ -10,6 +10,7 @@
 #include "core/time.h"
 #include "io/delimited.h"
 #include "io/value_file.h"
+#include "io/wild_records.h"
 
 namespace swath::io {
 namespace {
@@ -114,6 +115,9 @@ core::EventTags read_event_file(const Survey& survey, const EventFile& file, cor
     } catch (const core::Error& e) {
       throw core::Error(e.what(), row.where, e.hint());
     }
+    if (!is_instant(gps))
+      throw core::Error("the time " + row.at(time) + " is not between 1980 and 2100", row.where,
+                        "correct the line, or the time scale and unit that the survey states for the file");
     if (out.time.empty()) out.epoch = gps;
     out.time.push_back(gps - out.epoch + (seconds - whole) + offset);
     if (out.size() > 1 && out.time.back() < out.time[out.size() - 2]) tally.count("events whose time is before the one before", row.where);

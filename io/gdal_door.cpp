@@ -8,8 +8,11 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -88,12 +91,32 @@ bool names_elsewhere(const std::filesystem::path& file) {
   return names_elsewhere(tree.get());
 }
 
+/// What GDAL takes for a DXF: by the name's ending, or by "0", "SECTION".
+bool looks_like_dxf(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::ifstream in(file, std::ios::binary);
+  std::string code, value;
+  in >> std::setw(2) >> code >> std::setw(8) >> value;
+  return ending == ".dxf" || (code == "0" && value.starts_with("SECTION"));
+}
+
+/// A text never has such a byte, and GDAL's reader of DXF may read on for ever where it meets one.
+bool holds_zero_byte(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string part(std::size_t{1} << 16, '\1');
+  while (in.read(part.data(), static_cast<std::streamsize>(part.size())), in.gcount() > 0)
+    if (part.find('\0') < static_cast<std::size_t>(in.gcount())) return true;
+  return false;
+}
+
 /// Why the file is not to be opened; empty where it may.
 std::string refusal_of(const std::filesystem::path& file) {
   std::error_code ec;
   if (std::filesystem::is_directory(file, ec)) return "it is a folder";
   if (!std::filesystem::exists(file, ec)) return "no such file";
   if (!std::filesystem::is_regular_file(file, ec)) return "it is not a regular file";
+  if (looks_like_dxf(file) && holds_zero_byte(file)) return "a DXF is text, and this file has bytes of 0: it is damaged, or a binary DXF";
   return names_elsewhere(file) ? "the virtual raster names sources that are no local files" : "";
 }
 

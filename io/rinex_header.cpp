@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/time.h"
 #include "io/output_file.h"
+#include "io/wild_records.h"
 
 namespace swath::io {
 namespace {
@@ -204,6 +205,7 @@ bool next_epoch(Lines& lines, std::string& line, Found& f, double& time) {
       const double second = new_form ? number(lines, line, 18, 11) : number(lines, line, 15, 11);
       time = f.clock(lines, year, whole(lines, line, month, 2), whole(lines, line, month + 3, 2), whole(lines, line, month + 6, 2),
                      whole(lines, line, month + 9, 2), second);
+      if (!is_instant(time)) lines.fail("the epoch is not between 1980 and 2100");
     }
     int pass = new_form && measured ? 0 : count;  // version 3 marks its epochs: what lies between them need not be counted
     if (!new_form && measured) {

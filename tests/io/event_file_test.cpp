@@ -120,7 +120,10 @@ TEST_F(EventFiles, FaultsNameTheirLine) {
   EXPECT_EQ(where_of(file("t,name,strip\n-5,a,1\n")), "events.csv:2");
   EXPECT_EQ(where_of(file("time,name,strip\n1,a,1\n")), "events.csv");
   EXPECT_EQ(where_of(file("t,name,strip\n")), "events.csv");
-  EventFile f = file("t,name,strip\n1,a,1\n");
+  EventFile f = file("t,name,strip\n1717400000,a,1\n1717400001000,a,1\n");
+  f.time.scale = core::TimeScale::unix_utc;
+  EXPECT_EQ(where_of(f), "events.csv:3") << "milliseconds are no time of this century";
+  f = file("t,name,strip\n1,a,1\n");
   f.time.scale = core::TimeScale::unstated;
   EXPECT_EQ(where_of(f), "events.csv");
   f = file("t,name,strip\n1,a,1\n");

@@ -131,5 +131,22 @@ TEST(GdalDoor, ARasterOfHugeBlocksIsNotOpened) {
   EXPECT_NE(messages.text().find("one block of the raster takes 2000 MB"), std::string::npos) << messages.text();
 }
 
+// GDAL 3.6 read such a file for ever.
+TEST(GdalDoor, ADxfWithBytesOfZeroIsNotOpened) {
+  const test::TemporaryFolder folder;
+  const GdalMessages messages;
+  std::string text = "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\ne\n10\n500000\n20\n5400000\n11\n500010\n21\n5400000\n0\nENDSEC\n0\nEOF\n";
+  test::write_bytes(folder / "a.dxf", text);
+  test::write_bytes(folder / "a", text);
+  EXPECT_NE(open_vector(folder / "a.dxf"), nullptr);
+  EXPECT_NE(open_vector(folder / "a"), nullptr);
+  text[text.find("500010")] = '\0';
+  test::write_bytes(folder / "b.dxf", text);
+  test::write_bytes(folder / "b", text);
+  EXPECT_EQ(open_vector(folder / "b.dxf"), nullptr);
+  EXPECT_EQ(open_vector(folder / "b"), nullptr);
+  EXPECT_NE(messages.text().find("bytes of 0"), std::string::npos) << messages.text();
+}
+
 }  // namespace
 }  // namespace swath::io

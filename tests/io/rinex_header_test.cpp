@@ -175,5 +175,10 @@ TEST(Rinex, AnHourOfTwoStations) {
   EXPECT_EQ(rinex_kind(data / "07590920.05n"), RinexKind::navigation);
 }
 
+TEST_F(RinexFile, AnEpochOfNoSurveyIsRefused) {
+  const std::string text = header_3("G") + "> 2020 03 18 10 00  0.0000000  0  0\n> 5520 03 18 10 00  1.0000000  0  0\n";
+  EXPECT_NE(fault(text).find("between 1980 and 2100"), std::string::npos) << fault(text);
+}
+
 }  // namespace
 }  // namespace swath::io
