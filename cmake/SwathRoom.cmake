@@ -22,12 +22,15 @@ if(SWATH_SANITIZE)
   # With the address sanitizer Eigen's headers free by another way than PCL's library, built without it, allocates. Both are 16-byte aligned.
   target_compile_definitions(swath_settings INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
   target_link_options(swath_settings INTERFACE -fsanitize=${SWATH_SANITIZE})
-else()
-  # What is left of a fault in a reader, should one be there: the program stops instead of running on (docs/hardening.md; tests/cli/hardening.py).
-  # Some systems' compilers define _FORTIFY_SOURCE themselves, and it needs optimization.
-  target_compile_options(swath_settings INTERFACE -fstack-protector-strong -fstack-clash-protection -fPIE
+endif()
+
+# For the rooms and the program: a fault in a reader, should one be left, stops the program instead of running on (docs/security.md;
+# tests/cli/hardening.py). Some systems' compilers define _FORTIFY_SOURCE themselves, and it needs optimization.
+add_library(swath_hardening INTERFACE)
+if(NOT SWATH_SANITIZE)
+  target_compile_options(swath_hardening INTERFACE -fstack-protector-strong -fstack-clash-protection -fPIE
     $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3>)
-  target_link_options(swath_settings INTERFACE -pie -Wl,-z,relro,-z,now,-z,noexecstack)
+  target_link_options(swath_hardening INTERFACE -pie -Wl,-z,relro,-z,now,-z,noexecstack)
 endif()
 
 function(swath_room room)
@@ -50,7 +53,8 @@ function(swath_room room)
   foreach(used IN LISTS R_USES)
     target_link_libraries(swath_${room} PUBLIC swath::${used})
   endforeach()
-  target_link_libraries(swath_${room} PUBLIC ${R_PUBLIC_LIBRARIES} PRIVATE ${R_LIBRARIES} $<BUILD_INTERFACE:swath_settings>)
+  target_link_libraries(swath_${room} PUBLIC ${R_PUBLIC_LIBRARIES} PRIVATE ${R_LIBRARIES} $<BUILD_INTERFACE:swath_settings>
+    $<BUILD_INTERFACE:swath_hardening>)
   set_property(GLOBAL PROPERTY swath_tests_${room} ${tests})
 endfunction()
 

@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/units.h"
 #include "io/las_bytes.h"
 #include "io/output_file.h"
 
@@ -91,11 +92,12 @@ void parse_geometry(LasHeader& h, const std::vector<std::uint8_t>& b, const std:
     h.offset[i] = get<double>(&b[155 + 8 * k]);
     h.max[i] = get<double>(&b[179 + 16 * k]);
     h.min[i] = get<double>(&b[187 + 16 * k]);
-    if (!std::isfinite(h.scale[i]) || h.scale[i] == 0.0)
-      throw core::Error("the scale factor of " + std::string(1, "xyz"[i]) + " is " + std::to_string(h.scale[i]), at_byte(file, 131 + 8 * k),
+    // The largest raw coordinate must stay a number, too.
+    if (!std::isfinite(h.scale[i] * 0x1p33) || h.scale[i] == 0.0)
+      throw core::Error("the scale factor of " + std::string(1, "xyz"[i]) + " is " + core::format_number(h.scale[i]), at_byte(file, 131 + 8 * k),
                         "the header is damaged: export the file again");
-    if (!std::isfinite(h.offset[i]))
-      throw core::Error("the offset of " + std::string(1, "xyz"[i]) + " is " + std::to_string(h.offset[i]), at_byte(file, 155 + 8 * k),
+    if (!std::isfinite(h.offset[i] * 2))
+      throw core::Error("the offset of " + std::string(1, "xyz"[i]) + " is " + core::format_number(h.offset[i]), at_byte(file, 155 + 8 * k),
                         "the header is damaged: export the file again");
   }
 }

@@ -89,6 +89,8 @@ TEST(LasHeader, EveryFaultIsNamedWithItsByte) {
   EXPECT_NE(fault(folder, with(good, 131, std::numeric_limits<double>::quiet_NaN())).find("byte 131: the scale factor of x"),
             std::string::npos);
   EXPECT_NE(fault(folder, with(good, 139, 0.0)).find("scale factor of y"), std::string::npos);
+  EXPECT_NE(fault(folder, with(good, 147, -1e305)).find("the scale factor of z is -1e+305"), std::string::npos);
+  EXPECT_NE(fault(folder, with(good, 155, 1e308)).find("the offset of x is 1e+308"), std::string::npos);
   EXPECT_NE(fault(folder, with(good, 171, std::numeric_limits<double>::infinity())).find("byte 171: the offset of z"), std::string::npos);
   EXPECT_NE(fault(folder, with(good, 247, std::uint64_t{11})).find("counts 11 points, the file holds 10"), std::string::npos);
   EXPECT_NE(fault(folder, with(good, 247, ~std::uint64_t{0})).find("the file holds 10"), std::string::npos);
