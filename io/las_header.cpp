@@ -94,8 +94,8 @@ void parse_geometry(LasHeader& h, const std::vector<std::uint8_t>& b, const std:
     h.min[i] = get<double>(&b[187 + 16 * k]);
     // The largest raw coordinate must stay a number, too.
     if (!std::isfinite(h.scale[i] * 0x1p33) || h.scale[i] == 0.0)
-      throw core::Error("the scale factor of " + std::string(1, "xyz"[i]) + " is " + core::format_number(h.scale[i]), at_byte(file, 131 + 8 * k),
-                        "the header is damaged: export the file again");
+      throw core::Error("the scale factor of " + std::string(1, "xyz"[i]) + " is " + core::format_number(h.scale[i]),
+                        at_byte(file, 131 + 8 * k), "the header is damaged: export the file again");
     if (!std::isfinite(h.offset[i] * 2))
       throw core::Error("the offset of " + std::string(1, "xyz"[i]) + " is " + core::format_number(h.offset[i]), at_byte(file, 155 + 8 * k),
                         "the header is damaged: export the file again");

@@ -50,7 +50,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::reading([&] { read_blocks(file); });
   fuzz::reading([&] { io::extent_of_cloud(file, 1000, -1000, 9000, 1); });
   fuzz::reading([&] { io::describe_las(file); });
-  static const io::Survey survey = fuzz::survey_of("[[laser]]\nfile = \"cloud.laz\"\nformat = \"las\"\ntime = { scale = \"gps_adjusted\" }\n");
+  static const io::Survey survey =
+      fuzz::survey_of("[[laser]]\nfile = \"cloud.laz\"\nformat = \"las\"\ntime = { scale = \"gps_adjusted\" }\n");
   fuzz::reading([&] { fuzz::read_shots(survey); });
   return 0;
 }

@@ -106,11 +106,13 @@ void sbet(const Path& folder) {
 void npy(const Path& folder) {
   const std::vector<double> rising{474000.0, 474000.005, 474000.01, 474000.015, 474000.02}, small{0.1, 0.2, 0.1, 0.2, 0.1},
       ranges{500, 501, 502, 503, 504}, ones{1, 1, 1, 1, 1};
-  io::NpyWriter laser(folder / "laser.npy", {{"time", "f8"}, {"scan_angle", "f4"}, {"range", "f4"}, {"line", "u2"}, {"return_number", "u1"}});
+  io::NpyWriter laser(folder / "laser.npy",
+                      {{"time", "f8"}, {"scan_angle", "f4"}, {"range", "f4"}, {"line", "u2"}, {"return_number", "u1"}});
   laser.append({rising.data(), small.data(), ranges.data(), ones.data(), ones.data()}, rising.size());
   laser.commit();
-  io::NpyWriter places(folder / "places.npy", {{"time", "f8"}, {"line", "i4"}, {"x", "f8"}, {"y", "f4"}, {"z", "f4"}, {"intensity", "u4"},
-                                               {"return_number", "i1"}});
+  io::NpyWriter places(
+      folder / "places.npy",
+      {{"time", "f8"}, {"line", "i4"}, {"x", "f8"}, {"y", "f4"}, {"z", "f4"}, {"intensity", "u4"}, {"return_number", "i1"}});
   places.append({rising.data(), ones.data(), small.data(), small.data(), ranges.data(), ones.data(), ones.data()}, rising.size());
   places.commit();
   for (const char* order : {"False", "True"}) {
@@ -190,7 +192,8 @@ int main(int argc, char** argv) try {
     return 2;
   }
   const Path into = argv[1];
-  for (const char* target : {"las", "csd", "sbet", "npy", "pcap", "raster", "vector", "work"}) std::filesystem::create_directories(into / target);
+  for (const char* target : {"las", "csd", "sbet", "npy", "pcap", "raster", "vector", "work"})
+    std::filesystem::create_directories(into / target);
   clouds(into / "las");
   csd(into / "csd" / "flight.csd");
   sbet(into / "sbet");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The work folder: a piece's record behind a right checksum, as one who forges it could make it, and chunks of points as they are read back.
+// The work folder: a piece's record behind a right checksum, as one who forges it could make it, and chunks of points as they are read
+// back.
 #include "pipeline/work/checksum.h"
 #include "pipeline/work/piece_record.h"
 #include "pipeline/work/store_file.h"

@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "core/error.h"
-#include "tests/io/las_sample.h"
 #include "tests/world/support.h"
 
 namespace swath::io {
@@ -46,15 +45,6 @@ TEST(DescribeLasReference, WrongBoundsAndWeeklessTimesAreToldOf) {
   std::memcpy(bytes.data() + 179, &wrong, sizeof wrong);  // max x of the header
   test::write_bytes(folder / "a.las", bytes);
   EXPECT_TRUE(warns(describe_las(folder / "a.las"), "the header states x"));
-}
-
-// A cell of such a point has no number in 64 bits.
-TEST(DescribeLas, PlacesBeyondAnyMapAreDescribed) {
-  const test::TemporaryFolder folder;
-  LasHeader header = test::sample_header(1);
-  header.scale.x() = 1e92;
-  test::write_sample(folder / "a.las", header, test::sample_points(header, 10), 1);
-  EXPECT_EQ(describe_las(folder / "a.las").find("points")->as_int(), 10);
 }
 
 }  // namespace

@@ -123,7 +123,8 @@ TEST(GdalDoor, ARasterOfHugeBlocksIsNotOpened) {
   const auto make = [&](const char* name, int bands) {
     const char* const options[] = {"TILED=YES", "BLOCKXSIZE=512", "BLOCKYSIZE=512", "INTERLEAVE=PIXEL", "SPARSE_OK=YES", nullptr};
     const std::filesystem::path file = folder / name;
-    GDALClose(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(file.c_str(), 6, 5, bands, GDT_Float32, const_cast<char**>(options)));
+    GDALClose(
+        GetGDALDriverManager()->GetDriverByName("GTiff")->Create(file.c_str(), 6, 5, bands, GDT_Float32, const_cast<char**>(options)));
     return file;
   };
   EXPECT_NE(open_raster(make("few.tif", 4)), nullptr);
@@ -131,7 +132,7 @@ TEST(GdalDoor, ARasterOfHugeBlocksIsNotOpened) {
   EXPECT_NE(messages.text().find("one block of the raster takes 2000 MB"), std::string::npos) << messages.text();
 }
 
-// GDAL 3.6 read such a file for ever.
+// On some of these GDAL 3.6 reads for ever.
 TEST(GdalDoor, ADxfWithBytesOfZeroIsNotOpened) {
   const test::TemporaryFolder folder;
   const GdalMessages messages;
