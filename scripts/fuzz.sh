@@ -71,6 +71,7 @@ run_target() {
     return 1
   fi
 }
+export UBSAN_OPTIONS="print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}"
 export -f run_target
 export programs corpus findings logs seeds seconds
 

@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "io/cloud_extent.h"
-#include "io/describe_las.h"
 #include "io/las_reader.h"
 #include "tests/fuzz/target.h"
 
@@ -49,7 +48,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::reading([&] { read_points(file); });
   fuzz::reading([&] { read_blocks(file); });
   fuzz::reading([&] { io::extent_of_cloud(file, 1000, -1000, 9000, 1); });
-  fuzz::reading([&] { io::describe_las(file); });
   static const io::Survey survey =
       fuzz::survey_of("[[laser]]\nfile = \"cloud.laz\"\nformat = \"las\"\ntime = { scale = \"gps_adjusted\" }\n");
   fuzz::reading([&] { fuzz::read_shots(survey); });
