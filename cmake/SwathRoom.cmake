@@ -24,8 +24,10 @@ if(SWATH_SANITIZE)
   target_link_options(swath_settings INTERFACE -fsanitize=${SWATH_SANITIZE})
 endif()
 
-# For the rooms and the program: a fault in a reader, should one be left, stops the program instead of running on (docs/security.md;
-# tests/cli/hardening.py). Some systems' compilers define _FORTIFY_SOURCE themselves, and it needs optimization.
+# A fault in a reader, should one be left, stops the program instead of running on (docs/security.md; tests/cli/hardening_test.py). The code of
+# the rooms that meet the bytes of files is guarded; what the linker does holds for the whole program. Some systems' compilers define
+# _FORTIFY_SOURCE themselves, and it needs optimization.
+set(SWATH_HARDENED core io pipeline CACHE STRING "Rooms whose code is guarded against overrun stacks and buffers")
 add_library(swath_hardening INTERFACE)
 if(NOT SWATH_SANITIZE)
   target_compile_options(swath_hardening INTERFACE -fstack-protector-strong -fstack-clash-protection -fPIE
@@ -53,8 +55,10 @@ function(swath_room room)
   foreach(used IN LISTS R_USES)
     target_link_libraries(swath_${room} PUBLIC swath::${used})
   endforeach()
-  target_link_libraries(swath_${room} PUBLIC ${R_PUBLIC_LIBRARIES} PRIVATE ${R_LIBRARIES} $<BUILD_INTERFACE:swath_settings>
-    $<BUILD_INTERFACE:swath_hardening>)
+  target_link_libraries(swath_${room} PUBLIC ${R_PUBLIC_LIBRARIES} PRIVATE ${R_LIBRARIES} $<BUILD_INTERFACE:swath_settings>)
+  if(room IN_LIST SWATH_HARDENED)
+    target_link_libraries(swath_${room} PRIVATE $<BUILD_INTERFACE:swath_hardening>)
+  endif()
   set_property(GLOBAL PROPERTY swath_tests_${room} ${tests})
 endfunction()
 

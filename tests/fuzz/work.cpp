@@ -26,9 +26,11 @@ void read_chunks(const std::filesystem::path& file) {
   core::ColumnSet wanted, seen;
   for (int c = 0; c < core::column_count; ++c) wanted.add(static_cast<core::Column>(c));
   pipeline::StoreFile store(file, pipeline::StoreFile::Mode::read);
-  core::Block block;
-  std::size_t row = 0;
-  while (row < fuzz::most_values && pipeline::read_chunk(store, block, row, wanted, seen)) {
+  // Each chunk into a block of its own: in one block all rows of the column `source` take the width of the widest.
+  for (bool more = true; more;) {
+    core::Block block;
+    std::size_t row = 0;
+    more = pipeline::read_chunk(store, block, row, wanted, seen);
   }
 }
 
