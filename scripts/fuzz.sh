@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # fuzz.sh [SECONDS [TARGET...]]: builds the fuzz targets of tests/fuzz and runs each for SECONDS (60), as many at a time as there are
-# processors (FUZZ_JOBS; FUZZ_SEED: of the mutations). One line per target; exit 1 on any finding, whose input lies in build/fuzz/findings. What covers new code is
+# processors (FUZZ_JOBS; FUZZ_SEED: of the mutations; FUZZ_RUNS: most executions). One line per target; exit 1 on any finding, whose input lies in build/fuzz/findings. What covers new code is
 # kept in build/fuzz/corpus, and the next run starts from it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -59,7 +59,7 @@ run_target() {
   [ "$target" = vector ] && longest=160000
   mkdir -p "$corpus/$target"
   nice "$programs/fuzz_$target" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=1024 -malloc_limit_mb=256 -max_len="$longest" \
-    -print_final_stats=1 -seed="${FUZZ_SEED:-0}" -artifact_prefix="$findings/$target-" "$corpus/$target" "$seeds/$target" >"$log" 2>&1 || status=$?
+    -print_final_stats=1 -seed="${FUZZ_SEED:-0}" -runs="${FUZZ_RUNS:--1}" -artifact_prefix="$findings/$target-" "$corpus/$target" "$seeds/$target" >"$log" 2>&1 || status=$?
   local executions coverage
   executions="$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")"
   coverage="$(grep -o 'cov: [0-9]*' "$log" | tail -n 1 | cut -d' ' -f2)"
