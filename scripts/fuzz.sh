@@ -35,7 +35,7 @@ if ! clang="$(find_clang)"; then
 fi
 
 # --- build: core, io and the targets alone
-cmake --preset fuzz -DCMAKE_CXX_COMPILER="$clang" >/dev/null
+cmake --preset fuzz -DCMAKE_CXX_COMPILER="$clang" >/dev/null 2>&1 || { echo "fuzz: cmake fails: cmake --preset fuzz -DCMAKE_CXX_COMPILER=$clang" >&2; exit 1; }
 cmake --build build/fuzz >build/fuzz/build.log 2>&1 || { tail -n 40 build/fuzz/build.log; exit 1; }
 programs=build/fuzz/tests/fuzz
 corpus=build/fuzz/corpus
