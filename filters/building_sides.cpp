@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <tuple>
 
+#include "core/parallel.h"
 #include "filters/bins.h"
 
 namespace swath::filters {
@@ -22,8 +23,9 @@ constexpr double wall_reach = 1.0;  // m: overhang of eaves and half the distanc
 constexpr double foot_reach = 0.7;  // m: the same for the foot of a wall
 constexpr float wall_room = 0.5f;   // m that a roof is higher than the lowest ones, above the foot of a wall
 constexpr size_t fewest = 6;
-constexpr size_t nearest = 12;    // returns of the roof that make the plane
-constexpr double flattest = 0.1;  // rms across over rms along the lesser axis of these: less is a plane
+constexpr size_t nearest = 12;           // returns of the roof that make the plane
+constexpr size_t points_at_once = 2048;  // of one thread
+constexpr double flattest = 0.1;         // rms across over rms along the lesser axis of these: less is a plane
 
 /// Is the origin on the plane through the points?
 bool on_plane(const std::vector<Vector3d>& points, double tolerance) {
@@ -111,12 +113,14 @@ std::vector<std::uint8_t> building_sides(const core::Block& b, const std::vector
   std::vector<std::uint8_t> out(b.size(), 0);
   if (b.size() == 0) return out;
   const Bins roofs(b, wall_reach, 0, [&](size_t p) { return roof[p] != 0; });
-  Surroundings around(roofs, b);
-  std::vector<Vector3d> plane;
-  for (size_t p = 0; p < own; ++p) {
-    if (!candidate[p] || roof[p] || !core::is_last_return(b, p)) continue;
-    out[p] = around.under_eaves(p, static_cast<float>(lowest_roof)) || (around.nearest_of(p, plane) && on_plane(plane, tolerance));
-  }
+  core::in_parallel(own, points_at_once, [&](size_t from, size_t to) {
+    Surroundings around(roofs, b);
+    std::vector<Vector3d> plane;
+    for (size_t p = from; p < to; ++p) {
+      if (!candidate[p] || roof[p] || !core::is_last_return(b, p)) continue;
+      out[p] = around.under_eaves(p, static_cast<float>(lowest_roof)) || (around.nearest_of(p, plane) && on_plane(plane, tolerance));
+    }
+  });
   return out;
 }
 

@@ -13,6 +13,7 @@
 #include <cmath>
 
 #include "core/floor_div.h"
+#include "core/parallel.h"
 #include "core/wide.h"
 #include "filters/bins.h"
 #include "filters/plane_samples.h"
@@ -34,8 +35,9 @@ constexpr float last_share = 0.7f;    // of its returns that are last ones
 constexpr float steepest2 = 3.0f;     // squared rise / run: 60 deg
 constexpr int hypotheses = 24;
 constexpr int planes_of_window = 3;
-constexpr float rms_share = 0.6f;       // of the tolerance: points evenly spread within it have 0.58
-constexpr float least_triangle = 0.1f;  // area in plan, of a cell's
+constexpr float rms_share = 0.6f;                          // of the tolerance: points evenly spread within it have 0.58
+constexpr size_t rows_at_once = 4, points_at_once = 4096;  // of one thread
+constexpr float least_triangle = 0.1f;                     // area in plan, of a cell's
 
 /// z = level + east x + north y about the window's centre.
 struct Plane {
@@ -226,9 +228,11 @@ class Planes {
     find(b, candidate, where, level, tolerance);
     wide_.assign(planes_.size(), 0);
     const int cells = std::max(fewest_cells, static_cast<int>(std::ceil(std::min(area / (lattice().cell * lattice().cell), most_cells))));
-    for (int j = growth; j < lattice().ny - growth; ++j)
-      for (int i = growth; i < lattice().nx - growth; ++i)
-        for (std::uint32_t k = first(i, j); k < last(i, j); ++k) wide_[k] = is_wide(planes_[k], i, j, cells, tolerance);
+    core::in_parallel(static_cast<size_t>(lattice().ny), rows_at_once, [&](size_t from, size_t to) {
+      for (int j = std::max(static_cast<int>(from), growth); j < std::min(static_cast<int>(to), lattice().ny - growth); ++j)
+        for (int i = growth; i < lattice().nx - growth; ++i)
+          for (std::uint32_t k = first(i, j); k < last(i, j); ++k) wide_[k] = is_wide(planes_[k], i, j, cells, tolerance);
+    });
   }
 
   /// Share of the windows around that have a plane through return p, of those that planes were looked for in; and of wide planes.
@@ -265,19 +269,24 @@ class Planes {
   void find(const core::Block& b, const std::vector<std::uint8_t>& candidate, const Districts& where, size_t level, float tolerance) {
     const core::Lattice& l = lattice();
     const auto cells = static_cast<std::int64_t>(std::lround(district_side / l.cell));
-    for (int j = 0; j < l.ny; ++j)
-      for (int i = 0; i < l.nx; ++i) {
-        const size_t c = l.at(i, j);
-        start_[c + 1] = static_cast<std::uint32_t>(planes_.size());
-        if (samples_.in(i, j).empty()) continue;
-        const int u = static_cast<int>(core::floor_div(l.i0 + i, cells) - where.lattice.i0),
-                  v = static_cast<int>(core::floor_div(l.j0 + j, cells) - where.lattice.j0);
-        if (where.side[where.lattice.at(u, v)] != level) continue;
-        Window window(b, samples_, candidate, i, j);
-        looked_[c] = window.has_own();
-        window.find(tolerance, planes_);
-        start_[c + 1] = static_cast<std::uint32_t>(planes_.size());
-      }
+    std::vector<std::vector<Plane>> of_row(static_cast<size_t>(l.ny));
+    core::in_parallel(of_row.size(), rows_at_once, [&](size_t from, size_t to) {
+      for (int j = static_cast<int>(from); j < static_cast<int>(to); ++j)
+        for (int i = 0; i < l.nx; ++i) {
+          if (samples_.in(i, j).empty()) continue;
+          const int u = static_cast<int>(core::floor_div(l.i0 + i, cells) - where.lattice.i0),
+                    v = static_cast<int>(core::floor_div(l.j0 + j, cells) - where.lattice.j0);
+          if (where.side[where.lattice.at(u, v)] != level) continue;
+          std::vector<Plane>& planes = of_row[static_cast<size_t>(j)];
+          const size_t before = planes.size();
+          Window window(b, samples_, candidate, i, j);
+          looked_[l.at(i, j)] = window.has_own();
+          window.find(tolerance, planes);
+          start_[l.at(i, j) + 1] = static_cast<std::uint32_t>(planes.size() - before);
+        }
+    });
+    for (size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
+    for (const std::vector<Plane>& planes : of_row) planes_.insert(planes_.end(), planes.begin(), planes.end());
   }
 
   /// Do the planes of enough cells around, connected with (i, j), continue the plane?
@@ -336,11 +345,13 @@ std::vector<Planar> planar_points(const core::Block& b, const std::vector<std::u
   for (size_t level = 0; level < sample_sides.size(); ++level) {
     if (std::find(where.side.begin(), where.side.end(), level) == where.side.end()) continue;
     const Planes planes(b, candidate, where, level, within, area);
-    for (size_t p = 0; p < b.size(); ++p) {
-      if (!candidate[p]) continue;
-      const Planes::Share share = planes.share(b, p, within);
-      planar[p] = std::max(planar[p], share.wide >= agreement ? Planar::wide : share.any >= agreement ? Planar::some : Planar::none);
-    }
+    core::in_parallel(b.size(), points_at_once, [&](size_t from, size_t to) {
+      for (size_t p = from; p < to; ++p) {
+        if (!candidate[p]) continue;
+        const Planes::Share share = planes.share(b, p, within);
+        planar[p] = std::max(planar[p], share.wide >= agreement ? Planar::wide : share.any >= agreement ? Planar::some : Planar::none);
+      }
+    });
   }
   return planar;
 }

@@ -14,6 +14,7 @@
 #include <optional>
 #include <tuple>
 
+#include "core/parallel.h"
 #include "filters/bins.h"
 #include "filters/wire_directions.h"
 #include "filters/wire_neighbours.h"
@@ -26,15 +27,16 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using namespace wire;
 
-constexpr double reach = 25.0;       // m from the point
-constexpr double longest_gap = 7.0;  // m between returns of one wire
-constexpr double widest_gap = 16.0;  // m between groups of returns where lines of scan run nearly along it
-constexpr int fewest_over_gaps = 7;  // returns on the line with such gaps
-constexpr double tube_bin = 1.7;     // m: holds what is within the tube and half a step of it along the line
-constexpr double sleeve = 0.5;       // m around the line: empty beside a wire, not beside the edge of a surface
-constexpr double most_close = 0.1;   // points in it, of the returns on the line
-constexpr double most_bent = 0.01;   // 1 / m: twice that of a catenary of parameter 200 m; as much downwards, for noise
-constexpr double thinned = 1.0;      // m: of each cube of this side one return takes part in the search for lines
+constexpr double reach = 25.0;           // m from the point
+constexpr double longest_gap = 7.0;      // m between returns of one wire
+constexpr double widest_gap = 16.0;      // m between groups of returns where lines of scan run nearly along it
+constexpr int fewest_over_gaps = 7;      // returns on the line with such gaps
+constexpr double tube_bin = 1.7;         // m: holds what is within the tube and half a step of it along the line
+constexpr double sleeve = 0.5;           // m around the line: empty beside a wire, not beside the edge of a surface
+constexpr double most_close = 0.1;       // points in it, of the returns on the line
+constexpr double most_bent = 0.01;       // 1 / m: twice that of a catenary of parameter 200 m; as much downwards, for noise
+constexpr size_t points_at_once = 1024;  // of one thread
+constexpr double thinned = 1.0;          // m: of each cube of this side one return takes part in the search for lines
 
 /// u along, v across in plan, both from the point; w = level + rise u + bend u^2 / 2 in height.
 struct Line {
@@ -110,28 +112,23 @@ class Search {
   std::vector<std::uint8_t> in_line(const OwnBox& needed) const {
     std::vector<std::uint8_t> out(block_.size(), 0);
     const Bins wide(block_, reach / bins_of_reach, 0, [this](size_t p) { return few_[p] != 0; });
-    WireNeighbours around;
-    WireDirections directions(static_cast<float>(near_line), static_cast<float>(steepest),
-                              static_cast<float>(0.5 * (shortest - near_line)));
-    const auto is_in_line = [&](size_t p) {
-      around.find(wide, block_, p, reach);
-      if (around.size() + 1 < fewest) return false;
-      around.vote(directions);
-      if (!directions.any()) return false;
-      for (size_t k = 0; k < around.size(); ++k)
-        if (around.is_line(k) && around.lies_in(directions, k) && around.may_be_wire(k) && is_wire(p, around, around[k])) return true;
-      return false;
+    const auto mark = [&](const auto& may_be) {
+      core::in_parallel(block_.size(), points_at_once, [&](size_t from, size_t to) {
+        LinesThrough lines(*this, wide);
+        for (size_t p = from; p < to; ++p)
+          if (needed.holds(block_, p) && may_be(p)) out[p] = lines.any(p);
+      });
     };
-    for (size_t p = 0; p < block_.size(); ++p) out[p] = few_[p] && needed.holds(block_, p) && is_in_line(p);
+    mark([this](size_t p) { return few_[p] != 0; });
     if (std::find(out.begin(), out.end(), 1) == out.end()) return out;
     // The others of their cubes.
     const std::vector<std::uint8_t> seeds = out;
     const Bins found(block_, thinned, 0, [&](size_t p) { return seeds[p] != 0; });
-    for (size_t p = 0; p < block_.size(); ++p) {
-      if (!airy_[p] || few_[p] || !needed.holds(block_, p)) continue;
+    mark([&](size_t p) {
+      if (!airy_[p] || few_[p]) return false;
       const CellIndex c = cell_of(found.lattice(), block_, p);
-      if (!found.in(c.i, c.j).empty()) out[p] = is_in_line(p);
-    }
+      return !found.in(c.i, c.j).empty();
+    });
     return out;
   }
 
@@ -140,18 +137,44 @@ class Search {
     std::vector<std::uint8_t> out = found;
     if (std::find(found.begin(), found.end(), 1) == found.end()) return out;
     const Bins lines(block_, shortest / bins_of_reach, 0, [&](size_t p) { return found[p] != 0; });
-    WireNeighbours around;
-    for (size_t p = 0; p < own; ++p) {
-      if (!airy_[p] || found[p]) continue;
-      around.find(lines, block_, p, shortest);
-      if (around.size() + 1 < fewest || !around.any_within(longest_gap)) continue;
-      for (size_t k = 0; k < around.size() && !out[p]; ++k)
-        out[p] = around.is_line(k) && around.may_carry_on(k) && carries_on(around, around[k]);
-    }
+    core::in_parallel(own, points_at_once, [&](size_t from, size_t to) {
+      WireNeighbours around;
+      for (size_t p = from; p < to; ++p) {
+        if (!airy_[p] || found[p]) continue;
+        around.find(lines, block_, p, shortest);
+        if (around.size() + 1 < fewest || !around.any_within(longest_gap)) continue;
+        for (size_t k = 0; k < around.size() && !out[p]; ++k)
+          out[p] = around.is_line(k) && around.may_carry_on(k) && carries_on(around, around[k]);
+      }
+    });
     return out;
   }
 
  private:
+  /// Searches wires through points, one after the other.
+  class LinesThrough {
+   public:
+    LinesThrough(const Search& search, const Bins& wide) : search_(search), wide_(wide) {}
+
+    bool any(size_t p) {
+      around_.find(wide_, search_.block_, p, reach);
+      if (around_.size() + 1 < fewest) return false;
+      around_.vote(directions_);
+      if (!directions_.any()) return false;
+      for (size_t k = 0; k < around_.size(); ++k)
+        if (around_.is_line(k) && around_.lies_in(directions_, k) && around_.may_be_wire(k) && search_.is_wire(p, around_, around_[k]))
+          return true;
+      return false;
+    }
+
+   private:
+    const Search& search_;
+    const Bins& wide_;
+    WireNeighbours around_;
+    WireDirections directions_{static_cast<float>(near_line), static_cast<float>(steepest),
+                               static_cast<float>(0.5 * (shortest - near_line))};
+  };
+
   /// Those near the straight line through the point and `to`, the point among them.
   static std::vector<Vector3d> along(const WireNeighbours& around, const Vector3d& to) {
     std::vector<Vector3d> out;

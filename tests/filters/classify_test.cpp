@@ -2,6 +2,7 @@
 #include "filters/classify.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <cmath>
 #include <limits>
@@ -52,6 +53,19 @@ TEST(Classify, TownForestAndBridgeComeOutAsTheyAre) {
     EXPECT_GE(m.recall, good) << bar.scene;
     EXPECT_GE(m.precision, good) << bar.scene;
     for (size_t p = 0; p < b.size(); ++p) EXPECT_EQ(b.classification[p] == cls::ground, s.truth[p] == cls::ground);
+  }
+}
+
+TEST(Classify, ThreadsWithinATileChangeNothing) {
+  for (const char* scene : {"town", "forest", "bridge"}) {
+    std::vector<std::uint8_t> by_one;
+    for (const size_t threads : {1u, 2u, 5u}) {
+      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      core::Block b = prepared(test::make_scene(scene));
+      classify(b, b.size(), {});
+      if (threads == 1) by_one = b.classification;
+      EXPECT_EQ(b.classification, by_one) << scene << ", " << threads << " threads";
+    }
   }
 }
 
