@@ -27,22 +27,18 @@ constexpr int open_cells = 5;                    // so many cells
 constexpr double hidden = 12.0;                  // m beside a deck that are looked at; too few for voids where cells are 3 m
 constexpr double banks = 40.0;                   // m from the void beside a deck to returns on both sides of it
 constexpr double widest = 30.0, narrowest = 2.0;
-constexpr double shortest = 3.0;   // m of deck
-constexpr double bank = 5.0;       // m of ground beyond its ends
-constexpr double gap = 3.0;        // m without ground on it: a vehicle
-constexpr double finest = 1.5;     // m: cells so small may hold the foot of a deck's edge beside it, lower ground, and say nothing
-constexpr double stairs = 2.0;     // m from a deck down to the ground at one of its ends
-constexpr int edge_cells = 3;      // before a void, of the surface
-constexpr float edge_fall = 0.2f;  // m down from there: a bank
-constexpr int bare = 2;            // cells without return between a deck and what is below
-constexpr double wedge = 1.2;      // of the least width of the deck
-constexpr double oblique = 1.15;   // of the least width of all axes
-constexpr int growth = 5;          // cells
-constexpr int fewest_beside = 2, around = 6;  // of 8 cells around one, of a deck
-constexpr double share_open = 0.7;            // of its length that must show both sides
-constexpr float near_deck = 0.5f;             // m above or below: kerbs
-constexpr float near_rail = 1.3f;             // m above, at the edges: railings and parapets
-constexpr double void_at_end = 2.0;           // m without returns beside the end of a deck: banks come near there
+constexpr double shortest = 3.0, bank = 5.0;  // m: of deck; of ground beyond its ends
+constexpr double finest = 1.5;             // m: cells so small may hold the foot of a deck's edge beside it, lower ground, and say nothing
+constexpr double gap = 3.0, stairs = 2.0;  // m without ground on it: a vehicle; m down to the ground at one of its ends
+constexpr int edge_cells = 3;              // before a void, of the surface
+constexpr float edge_fall = 0.2f;          // m down from there: a bank
+constexpr int bare = 2;                    // cells without return between a deck and what is below
+constexpr double wedge = 1.2, oblique = 1.15;             // of the least width of the deck; of all axes
+constexpr int growth = 5, fewest_beside = 2, around = 6;  // cells; of 8 cells around one, of a deck
+constexpr double share_open = 0.7;                        // of its length that must show both sides
+constexpr float near_deck = 0.5f, near_rail = 1.3f;       // m above or below: kerbs; above at the edges: railings and parapets
+constexpr double rail_reach = 1.0;                        // m from the deck's cells: these stand over what is beside them
+constexpr double void_at_end = 2.0;                       // m without returns beside the end of a deck: banks come near there
 
 constexpr double closed = std::numeric_limits<double>::infinity();
 
@@ -78,6 +74,14 @@ class Cells {
 
   const core::Lattice& lattice() const { return lattice_; }
   float top(size_t c) const { return level_[c]; }
+  bool has_ground(size_t c) const { return ground_[c] != 0; }
+  /// Are there returns a fall below that level in the cell or beside it, or none at all?
+  bool is_edge(const CellIndex& at, float level) const {
+    for (int v = std::max(at.j - 1, 0); v <= std::min(at.j + 1, lattice_.ny - 1); ++v)
+      for (int u = std::max(at.i - 1, 0); u <= std::min(at.i + 1, lattice_.nx - 1); ++u)
+        if (const float low = low_[lattice_.at(u, v)]; std::isnan(low) || static_cast<double>(level - low) >= fall) return true;
+    return false;
+  }
 
   /// Marks the cells of decks among those that `taken` lets through.
   template <class Taken>
@@ -134,16 +138,10 @@ class Cells {
     std::vector<std::uint8_t> line(static_cast<size_t>(n));
     for (int k = 0; k < lines; ++k) {
       std::uint8_t* at = cells.data() + static_cast<size_t>(k) * next;
-      int last = -half_ - 1;
-      for (int q = 0; q < n; ++q) {
-        if (at[static_cast<size_t>(q) * step]) last = q;
-        line[static_cast<size_t>(q)] = q - last <= half_;
-      }
-      last = n + half_;
-      for (int q = n - 1; q >= 0; --q) {
-        if (at[static_cast<size_t>(q) * step]) last = q;
-        if (last - q <= half_) line[static_cast<size_t>(q)] = 1;
-      }
+      std::fill(line.begin(), line.end(), std::uint8_t{0});
+      for (int q = 0, to = 0; q < n; ++q)
+        if (at[static_cast<size_t>(q) * step])
+          for (to = std::max(to, q - half_); to <= std::min(q + half_, n - 1); ++to) line[static_cast<size_t>(to)] = 1;
       for (int q = 0; q < n; ++q) at[static_cast<size_t>(q) * step] = line[static_cast<size_t>(q)];
     }
   }
@@ -239,6 +237,7 @@ class Cells {
           return is_sharp(i, j, direction, last) && is_between_banks(i + to.i, j + to.j, direction) ? Side::open : Side::level;
         continue;
       }
+      if (!ground_[c] && low_[c] - z > near_rail) continue;  // a crown that overhangs shows neither bank nor water
       // Where nothing came back in between there is no bank.
       const double least = void_cells >= bare && lattice_.cell <= finest ? fall : std::max(fall, sheer * (run + lattice_.cell));
       if (static_cast<double>(z - low_[c]) >= least) return Side::falls;
@@ -356,11 +355,19 @@ class Cells {
   std::array<std::vector<CellIndex>, directions> ahead_;
 };
 
-/// Is a cell around none of the deck's?
-bool is_edge(const core::Lattice& l, const std::vector<std::uint8_t>& deck, const CellIndex& at) {
-  for (int v = at.j - 1; v <= at.j + 1; ++v)
-    for (int u = at.i - 1; u <= at.i + 1; ++u)
-      if (!l.holds(u, v) || !deck[l.at(u, v)]) return true;
+/// Is return p a railing or parapet at the side of a deck?
+bool is_rail(const Cells& cells, const std::vector<std::uint8_t>& deck, const core::Block& b, size_t p, const CellIndex& at) {
+  const core::Lattice& l = cells.lattice();
+  if (b.classification[p] == core::point_class::ground) return false;
+  for (int v = std::max(at.j - 1, 0); v <= std::min(at.j + 1, l.ny - 1); ++v)
+    for (int u = std::max(at.i - 1, 0); u <= std::min(at.i + 1, l.nx - 1); ++u) {
+      const size_t near = l.at(u, v);
+      if (!deck[near] || !cells.has_ground(near)) continue;
+      const double east = std::abs(b.origin.x() + b.x[p] - l.centre_x(u)), north = std::abs(b.origin.y() + b.y[p] - l.centre_y(v));
+      const float level = cells.top(near), above = static_cast<float>(b.z[p]) - level;
+      if (std::max(east, north) <= 0.5 * l.cell + rail_reach && above >= -near_deck && above <= near_rail && cells.is_edge(at, level))
+        return true;
+    }
   return false;
 }
 
@@ -377,16 +384,14 @@ std::vector<std::uint8_t> ground_decks(const core::Block& b, const Districts& wh
     Cells cells(b, sample_sides[level], longest);
     const core::Lattice& l = cells.lattice();
     const OwnBox needed(b, own, (growth + 2) * l.cell);
-    const auto has_side = [&](int i, int j) { return where.side_at(l.centre_x(i), l.centre_y(j)) == level; };
-    const std::vector<std::uint8_t> deck = cells.decks([&](int i, int j) { return needed.touches(l, i, j) && has_side(i, j); });
+    const std::vector<std::uint8_t> deck =
+        cells.decks([&](int i, int j) { return needed.touches(l, i, j) && where.side_at(l.centre_x(i), l.centre_y(j)) == level; });
     if (std::find(deck.begin(), deck.end(), 1) == deck.end()) continue;
     for (size_t p = 0; p < own; ++p) {
       const CellIndex at = cell_of(l, b, p);
       const size_t c = l.at(at.i, at.j);
-      if (!deck[c]) continue;
-      const float above = static_cast<float>(b.z[p]) - cells.top(c);
-      const bool rail = b.classification[p] != core::point_class::ground && above <= near_rail && is_edge(l, deck, at);
-      out[p] = out[p] || (above >= -near_deck && (above <= near_deck || rail));
+      const bool on = deck[c] && std::abs(static_cast<float>(b.z[p]) - cells.top(c)) <= near_deck;
+      out[p] = out[p] || on || is_rail(cells, deck, b, p, at);
     }
   }
   return out;

@@ -80,6 +80,35 @@ TEST(GroundDecks, BridgesOverACanalWithAndWithoutReturnsOfItsWater) {
     }
 }
 
+TEST(GroundDecks, RailingsOverTheWaterAreOfTheDeckAndBushesOnTheBankAreNot) {
+  constexpr double half = 3.0;
+  const auto rail = [](double x, double y) { return std::abs(std::abs(y - 50.0) - half - 0.3) < 0.2 && std::abs(x - 60.0) < 6.0; };
+  const auto bush = [](double x, double y) { return std::abs(y - 50.0) < half && x > 75.0 && x < 77.0; };
+  const auto crown = [](double x, double y) { return std::abs(x - 60.0) < 7.0 && y > 55.0 && y < 58.0; };
+  const Scene deck = bridge(2.0 * half, std::nullopt);
+  const core::Block b = returns(
+      [&](double x, double y) -> std::optional<Return> {
+        if (rail(x, y)) return Return{1.4, cls::unassigned};
+        if (bush(x, y)) return Return{0.8, cls::unassigned};
+        if (crown(x, y)) return Return{4.0, cls::unassigned};
+        return deck(x, y);
+      },
+      14.0);
+  const std::vector<std::uint8_t> found = decks(b);
+  double rails = 0, all = 0, on = 0, deck_points = 0;
+  for (size_t p = 0; p < b.size(); ++p) {
+    if (rail(b.x[p], b.y[p])) {
+      ++all, rails += found[p];
+    } else if (b.classification[p] != cls::ground) {
+      EXPECT_FALSE(found[p]) << b.x[p] << " " << b.y[p];
+    } else if (in_canal(b.x[p])) {
+      ++deck_points, on += found[p];
+    }
+  }
+  EXPECT_GE(rails, 0.9 * all);
+  EXPECT_GE(on, 0.9 * deck_points);
+}
+
 TEST(GroundDecks, ABridgeOfThinReturns) {
   const auto [share, others] = found_of(returns(bridge(14.0, std::nullopt), 1.2), 14.0);
   EXPECT_GE(share, 0.4);
