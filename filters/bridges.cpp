@@ -28,6 +28,11 @@ constexpr int half_width = 25;             // cells to the side of a deck
 constexpr double fall = 1.0;               // m beside a deck
 constexpr int deck_growth = 5;             // links
 constexpr double level_link = 0.5;         // m between cells of one deck
+constexpr float seen_under = 0.5f;         // m from a plane down to other returns in the same cell: beams passed through it
+constexpr float oblique_below = 2.0f;      // m above ground: from the side, beams reach ground below higher planes
+constexpr int through_ring = 3;            // cells around
+constexpr int fewest_inner = 5;            // planes among them with planes on all sides
+constexpr double through_share = 0.25;     // of these
 
 /// A way that came to the ground's level.
 struct Way {
@@ -76,7 +81,7 @@ class Decks {
         // One cell in each square of 2 x 2 is judged, the first that may be a deck.
         const int west = is_second(l.i0 + i) ? i - 1 : i, south = is_second(l.j0 + j) ? j - 1 : j;
         if (!may_be(i, j) || (i > west && may_be(west, j)) || (j > south && (may_be(west, south) || may_be(west + 1, south)))) continue;
-        deck[l.at(i, j)] = is_deck(i, j);
+        deck[l.at(i, j)] = !is_seen_through(i, j) && is_deck(i, j);
       }
     spread(
         cells_, deck, deck_growth, [](size_t) { return structure_link; },
@@ -100,6 +105,22 @@ class Decks {
         cells_, out, reach_ / structure_link, [](size_t) { return structure_link; },
         [&](size_t from, size_t to, int run) { return std::abs(cells_.plane[from] - cells_.plane[to]) <= roughness + grade * run; });
     return out;
+  }
+
+  /// Crops: low planes with returns below them in the middle of the field too.
+  bool is_seen_through(int i, int j) const {
+    const core::Lattice& l = cells_.lattice;
+    int inner = 0, through = 0;
+    for (int v = std::max(j - through_ring, 1); v <= std::min(j + through_ring, l.ny - 2); ++v)
+      for (int u = std::max(i - through_ring, 1); u <= std::min(i + through_ring, l.nx - 2); ++u) {
+        const size_t c = l.at(u, v);
+        const bool all = cells_.has_plane(c) && cells_.has_plane(l.at(u - 1, v)) && cells_.has_plane(l.at(u + 1, v)) &&
+                         cells_.has_plane(l.at(u, v - 1)) && cells_.has_plane(l.at(u, v + 1));
+        if (!all || cells_.height[c] >= oblique_below) continue;
+        ++inner;
+        through += cells_.plane[c] - cells_.low[c] >= seen_under;
+      }
+    return inner >= fewest_inner && through >= through_share * inner;
   }
 
   bool is_deck(int i, int j) const {

@@ -44,6 +44,16 @@ TEST(Bridges, ADeckFromBankToBankIsOneAndARoofInTheValleyIsNot) {
   for (const std::uint8_t d : deck_cells(house, {})) EXPECT_FALSE(d);
 }
 
+TEST(Bridges, CropsThatBeamsPassThroughAreNone) {
+  StructureCells c = valley([](int i, int j) { return std::abs(i - 40) < 15 && std::abs(j - 30) < 5 ? 0.0f : empty; },
+                            [](int i, int) { return std::abs(i - 40) < 15 ? -1.2f : 0.0f; });
+  const std::vector<std::uint8_t> opaque = deck_cells(c, {});
+  for (size_t at = 0; at < opaque.size(); ++at) EXPECT_EQ(opaque[at], c.has_plane(at)) << at % 80 << " " << at / 80;
+  for (size_t at = 0; at < opaque.size(); at += 3)
+    if (c.has_plane(at)) c.low[at] = -1.2f;
+  for (const std::uint8_t d : deck_cells(c, {})) EXPECT_FALSE(d);
+}
+
 TEST(Bridges, LongerThanTheLongestIsNotLookedFor) {
   const StructureCells bridge = valley([](int i, int j) { return std::abs(i - 40) < 15 && std::abs(j - 30) < 4 ? 0.0f : empty; }, slopes);
   for (const std::uint8_t d : deck_cells(bridge, {.longest = 20.0})) EXPECT_FALSE(d);
