@@ -9,10 +9,12 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "core/floor_div.h"
 #include "core/units.h"
 #include "filters/bins.h"
+#include "filters/deck_heights.h"
 
 namespace swath::filters {
 namespace {
@@ -26,6 +28,7 @@ constexpr double wide_open = 5.0;                // m without returns beside a d
 constexpr int open_cells = 5;                    // so many cells
 constexpr double hidden = 12.0;                  // m beside a deck that are looked at; too few for voids where cells are 3 m
 constexpr double banks = 40.0;                   // m from the void beside a deck to returns on both sides of it
+constexpr double parting = 1.5;                  // m by which the sides of water part per metre, at most
 constexpr double widest = 30.0, narrowest = 2.0;
 constexpr double shortest = 3.0, bank = 5.0;  // m: of deck; of ground beyond its ends
 constexpr double finest = 1.5;             // m: cells so small may hold the foot of a deck's edge beside it, lower ground, and say nothing
@@ -53,20 +56,11 @@ CellIndex ahead(int direction, int k) {
 class Cells {
  public:
   Cells(const core::Block& b, double side, double longest)
-      : lattice_(lattice_around(b, side, 0)),
-        top_(lattice_.size(), std::numeric_limits<float>::quiet_NaN()),
-        low_(top_),
-        ground_(lattice_.size(), 0),
-        known_(lattice_.size(), 0),
-        open_(lattice_.size(), 0),
-        axes_(lattice_.size(), 0),
-        strip_(lattice_.size(), 0),
-        width_(lattice_.size(), 0.0f),
-        narrow_(lattice_.size(), 0.0f),
-        half_(in_cells(widest)),
-        reach_(in_cells(longest + bank)) {
-    for (size_t p = 0; p < b.size(); ++p)
-      if (core::is_usable(b, p)) add(b, p);
+      : lattice_(lattice_around(b, side, 0)), half_(in_cells(widest)), reach_(in_cells(longest + bank)) {
+    DeckHeights heights = deck_heights(b, lattice_);
+    known_ = open_ = axes_ = strip_ = std::vector<std::uint8_t>(lattice_.size(), 0);
+    width_ = narrow_ = std::vector<float>(lattice_.size(), 0.0f);
+    top_ = std::move(heights.top), low_ = std::move(heights.low), ground_ = std::move(heights.ground);
     for (int d = 0; d < directions; ++d)
       for (int k = 0; k <= std::max({reach_, half_ + in_cells(hidden), in_cells(banks)}); ++k)
         ahead_[static_cast<size_t>(d)].push_back(ahead(d, k));
@@ -100,18 +94,6 @@ class Cells {
 
  private:
   int in_cells(double metres) const { return static_cast<int>(std::ceil(metres / lattice_.cell - 1e-9)); }
-
-  /// Ground decides on the level where there is any; its highest, as the water below may be ground too.
-  void add(const core::Block& b, size_t p) {
-    const CellIndex at = cell_of(lattice_, b, p);
-    const size_t c = lattice_.at(at.i, at.j);
-    const auto z = static_cast<float>(b.z[p]);
-    if (!(z >= low_[c])) low_[c] = z;
-    const bool ground = b.classification[p] == core::point_class::ground;
-    if (ground < ground_[c]) return;
-    if (ground > ground_[c] || (ground ? !(z <= top_[c]) : !(z >= top_[c]))) top_[c] = z;
-    ground_[c] = ground;
-  }
 
   /// Cells around which the surface may end: within the widest deck of a void of 3 x 3 cells or of a sheer fall.
   std::vector<std::uint8_t> near_edges() const {
@@ -192,16 +174,29 @@ class Cells {
     return false;
   }
 
-  /// Are there returns on both sides of a void, seen in the direction? Beyond the rim of the data there are not.
-  bool is_between_banks(int i, int j, int direction) const {
-    for (const int across_it : {directions / 4, 3 * directions / 4}) {
-      const std::vector<CellIndex>& to = ahead_[static_cast<size_t>((direction + across_it) % directions)];
-      bool found = false;
-      for (size_t k = 1; k <= static_cast<size_t>(in_cells(banks)) && !found; ++k)
-        found = lattice_.holds(i + to[k].i, j + to[k].j) && !std::isnan(low_[lattice_.at(i + to[k].i, j + to[k].j)]);
-      if (!found) return false;
+  /// Cells from a place to returns in the direction; 0 where none are within `banks`.
+  int to_returns(int i, int j, int direction) const {
+    const std::vector<CellIndex>& to = ahead_[static_cast<size_t>(direction % directions)];
+    for (int k = 1; k <= in_cells(banks); ++k) {
+      const CellIndex at = to[static_cast<size_t>(k)];
+      if (lattice_.holds(i + at.i, j + at.j) && !std::isnan(low_[lattice_.at(i + at.i, j + at.j)])) return k;
     }
-    return true;
+    return 0;
+  }
+  /// Is a void that begins at `first` cells in the direction and goes on to the `last` between two banks? Beyond the rim of the data are no
+  /// returns, or beyond a corner of it the sides part.
+  bool is_between_banks(int i, int j, int direction, int first, int last) const {
+    const auto apart = [&](int k) {
+      const CellIndex at = ahead_[static_cast<size_t>(direction)][static_cast<size_t>(k)];
+      const int right = to_returns(i + at.i, j + at.j, direction + directions / 4);
+      const int left = to_returns(i + at.i, j + at.j, direction + 3 * directions / 4);
+      return right > 0 && left > 0 ? right + left : 0;
+    };
+    const int there = apart(last);
+    if (there == 0) return false;
+    for (int k = first; 2 * k <= first + last; ++k)  // railings may stand in the first
+      if (there <= apart(k) + parting * (last - k)) return true;
+    return false;
   }
 
   /// Is the surface level up to its end, `last` cells on? Before the end of a bank it falls.
@@ -219,7 +214,7 @@ class Cells {
   /// What is beside the surface in a direction once it ends, and how many cells on that is. Open are `least_void` cells without returns.
   Side side(int i, int j, int direction, int& last, int least_void) const {
     float z = top_[lattice_.at(i, j)];
-    int void_cells = 0;
+    int void_cells = 0, first_void = 0;
     last = 0;
     for (int k = 1; k <= last + in_cells(hidden); ++k) {
       const CellIndex to = ahead_[static_cast<size_t>(direction)][static_cast<size_t>(k)];
@@ -233,8 +228,9 @@ class Cells {
         continue;
       }
       if (std::isnan(low_[c])) {
-        if (++void_cells >= least_void)
-          return is_sharp(i, j, direction, last) && is_between_banks(i + to.i, j + to.j, direction) ? Side::open : Side::level;
+        if (void_cells++ == 0) first_void = k;
+        if (void_cells >= least_void)
+          return is_sharp(i, j, direction, last) && is_between_banks(i, j, direction, first_void, k) ? Side::open : Side::level;
         continue;
       }
       if (!ground_[c] && low_[c] - z > near_rail) continue;  // a crown that overhangs shows neither bank nor water
@@ -374,7 +370,9 @@ bool is_rail(const Cells& cells, const std::vector<std::uint8_t>& deck, const co
 }  // namespace
 
 double ground_decks_halo(double longest) {
-  return Districts::halo() + std::hypot(longest + bank + banks, widest + hidden) + (growth + 3) * sample_sides.back();
+  return Districts::halo() +
+         std::max(std::hypot(longest + bank + banks, widest + hidden), std::hypot(longest + bank, widest + hidden + banks)) +
+         (growth + 3 + deck_heights_reach) * sample_sides.back();
 }
 
 std::vector<std::uint8_t> ground_decks(const core::Block& b, const Districts& where, double longest, size_t own) {

@@ -109,6 +109,14 @@ TEST(GroundDecks, RailingsOverTheWaterAreOfTheDeckAndBushesOnTheBankAreNot) {
   EXPECT_GE(on, 0.9 * deck_points);
 }
 
+TEST(GroundDecks, LandBetweenAScarpAndACornerOfTheDataIsNone) {
+  const Scene corner = [](double x, double y) -> std::optional<Return> {
+    if (y < 50.0 - std::abs(x - 60.0) / 1.5) return std::nullopt;  // beyond the rim, which opens by 113 degrees
+    return y > 58.0 ? Return{std::max(-8.0, 3.0 * (58.0 - y))} : Return{0.0};
+  };
+  EXPECT_EQ(count(decks(returns(corner))), 0u);
+}
+
 TEST(GroundDecks, ABridgeOfThinReturns) {
   const auto [share, others] = found_of(returns(bridge(14.0, std::nullopt), 1.2), 14.0);
   EXPECT_GE(share, 0.4);
