@@ -297,5 +297,49 @@ TEST(LasWriter, ChunksOfVariableSizeThroughTheStreams) {
   }
 }
 
+TEST(LazStream, AChunkOfManyMegabytesIsReadPieceByPiece) {
+  constexpr std::uint64_t points = 400'000;  // 8 MB and more are not decompressed whole
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "large.laz";
+  std::array<char, 256> message{};
+  for (const int format : {1, 6}) {
+    LasHeader h = test::sample_header(format);
+    las_header_bytes(h, 0, "test");
+    const LasPoints p = test::sample_points(h, 1000);
+    std::vector<std::uint8_t> some(p.size() * h.record_length), records, vlr(256);
+    encode_las_points(p, 0, p.size(), h, some, "test");
+    while (records.size() < (points + 10) * h.record_length) records.insert(records.end(), some.begin(), some.end());
+    records.resize((points + 10) * h.record_length);
+    std::size_t size = 0;
+    const auto f = static_cast<std::uint8_t>(format);
+    ASSERT_EQ(swath_laz_vlr(f, 0, 0, vlr.data(), vlr.size(), &size, message.data(), message.size()), SWATH_LAZ_OK);
+    test::write_bytes(file, "");
+    swath_laz_writer* w = nullptr;
+    ASSERT_EQ(swath_laz_writer_open(file.c_str(), 0, vlr.data(), size, 1, &w, message.data(), message.size()), SWATH_LAZ_OK);
+    const std::array<std::uint64_t, 3> counts{4, points, 6};
+    std::array<std::uint64_t, 3> offsets{}, bytes{};
+    ASSERT_EQ(
+        swath_laz_writer_write_chunks(w, records.data(), counts.data(), 3, offsets.data(), bytes.data(), message.data(), message.size()),
+        SWATH_LAZ_OK)
+        << message.data();
+    std::uint64_t end = 0;
+    ASSERT_EQ(swath_laz_writer_finish(w, &end, message.data(), message.size()), SWATH_LAZ_OK);
+    swath_laz_writer_close(w);
+    swath_laz_reader* r = nullptr;
+    ASSERT_EQ(
+        swath_laz_reader_open(file.c_str(), 0, vlr.data(), size, f, h.record_length, points + 10, 2, &r, message.data(), message.size()),
+        SWATH_LAZ_OK);
+    std::vector<std::uint8_t> back(records.size());
+    for (std::uint64_t at = 0; at < points + 10;) {
+      const std::uint64_t n = std::min<std::uint64_t>(77'777, points + 10 - at);
+      ASSERT_EQ(swath_laz_reader_read(r, back.data() + at * h.record_length, n, message.data(), message.size()), SWATH_LAZ_OK)
+          << message.data();
+      at += n;
+    }
+    EXPECT_TRUE(back == records);
+    swath_laz_reader_close(r);
+  }
+}
+
 }  // namespace
 }  // namespace swath::io

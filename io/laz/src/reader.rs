@@ -15,6 +15,9 @@ use crate::threads::Threads;
 /// Decompressed bytes held at once, unless one chunk alone is larger.
 const BATCH_BYTES: usize = 64 << 20;
 const LARGEST_CHUNK_BYTES: u64 = 1 << 30;
+/// Decompressed bytes beyond which a chunk is decompressed piece by piece: a few kilobytes may hold a gigabyte of points.
+const WHOLE_CHUNK_BYTES: usize = 8 << 20;
+const PIECE_BYTES: usize = 2 << 20;
 
 struct Chunk {
     offset: u64,
@@ -29,8 +32,17 @@ enum Source {
     Stream(Box<LasZipDecompressor<'static, BufReader<File>>>),
 }
 
+/// A chunk of which the first points are decompressed.
+struct Large {
+    decompressor: Box<dyn RecordDecompressor<Cursor<Vec<u8>>>>,
+    number: usize,
+    offset: u64,
+    left: usize,
+}
+
 pub struct Reader {
     source: Source,
+    large: Option<Large>,
     vlr: LazVlr,
     record_length: usize,
     left: u64,
@@ -159,19 +171,32 @@ fn check_layers(chunk: &[u8], points: usize, vlr: &LazVlr, record_length: usize)
     Ok(())
 }
 
-fn decompress_chunk(chunk: &[u8], out: &mut [u8], vlr: &LazVlr, record_length: usize) -> Result<()> {
+fn decompressor_of<'a, S>(chunk: S, points: usize, vlr: &LazVlr, record_length: usize) -> Result<Box<dyn RecordDecompressor<Cursor<S>> + 'a>>
+where
+    S: AsRef<[u8]> + Send + 'a,
+{
     let layered = vlr.items()[0].version() >= 3;
+    if layered {
+        check_layers(chunk.as_ref(), points, vlr, record_length)?;
+    }
     let source = Cursor::new(chunk);
-    let mut decompressor: Box<dyn RecordDecompressor<Cursor<&[u8]>>> = if layered {
-        check_layers(chunk, out.len() / record_length, vlr, record_length)?;
+    let mut decompressor: Box<dyn RecordDecompressor<Cursor<S>> + 'a> = if layered {
         Box::new(LayeredPointRecordDecompressor::new(source))
     } else {
         Box::new(SequentialPointRecordDecompressor::new(source))
     };
     decompressor.set_fields_from(vlr.items())?;
     decompressor.set_selection(laz::DecompressionSelection::all());
-    decompressor.decompress_many(out)?;
+    Ok(decompressor)
+}
+
+fn decompress_chunk(chunk: &[u8], out: &mut [u8], vlr: &LazVlr, record_length: usize) -> Result<()> {
+    decompressor_of(chunk, out.len() / record_length, vlr, record_length)?.decompress_many(out)?;
     Ok(())
+}
+
+fn in_chunk(number: usize, offset: u64, e: Error) -> Error {
+    Error::new(e.code, format!("chunk {} at byte {}: {}", number, offset, e.message))
 }
 
 impl Reader {
@@ -206,15 +231,52 @@ impl Reader {
             }
         };
         let threads = Threads::new(threads)?;
-        Ok(Self { source, vlr, record_length, left: points, threads, ready: Vec::new(), position: 0 })
+        Ok(Self { source, large: None, vlr, record_length, left: points, threads, ready: Vec::new(), position: 0 })
     }
 
     pub fn record_length(&self) -> usize {
         self.record_length
     }
 
-    /// Decompresses the next few chunks into `ready`.
+    /// Decompresses the next points of a large chunk into `ready`.
+    fn next_piece(&mut self) -> Result<()> {
+        let Some(large) = &mut self.large else { return Ok(()) };
+        let points = large.left.min((PIECE_BYTES / self.record_length).max(1));
+        self.ready.resize(points * self.record_length, 0);
+        self.position = 0;
+        large.decompressor.decompress_many(&mut self.ready).map_err(|e| in_chunk(large.number, large.offset, e.into()))?;
+        large.left -= points;
+        if large.left == 0 {
+            self.large = None;
+        }
+        Ok(())
+    }
+
+    /// Begins with the next chunk where it is a large one.
+    fn open_large(&mut self) -> Result<()> {
+        let Source::Chunks { file, chunks, next } = &mut self.source else { return Ok(()) };
+        let Some(chunk) = chunks.get(*next) else { return Ok(()) };
+        if chunk.points * self.record_length <= WHOLE_CHUNK_BYTES {
+            return Ok(());
+        }
+        let mut compressed = vec![0u8; chunk.bytes];
+        file.seek(SeekFrom::Start(chunk.offset))?;
+        file.read_exact(&mut compressed)?;
+        let decompressor =
+            decompressor_of(compressed, chunk.points, &self.vlr, self.record_length).map_err(|e| in_chunk(*next, chunk.offset, e))?;
+        self.large = Some(Large { decompressor, number: *next, offset: chunk.offset, left: chunk.points });
+        *next += 1;
+        Ok(())
+    }
+
+    /// Decompresses the next few chunks, or a piece of a large one, into `ready`.
     fn next_batch(&mut self) -> Result<()> {
+        if self.large.is_none() {
+            self.open_large()?;
+        }
+        if self.large.is_some() {
+            return self.next_piece();
+        }
         let (file, chunks, next) = match &mut self.source {
             Source::Chunks { file, chunks, next } => (file, chunks, next),
             Source::Stream(_) => return Ok(()),
@@ -224,7 +286,7 @@ impl Reader {
         let (mut bytes_in, mut bytes_out) = (0, 0);
         while last < chunks.len() && last - first < self.threads.count() {
             let more = chunks[last].points * self.record_length;
-            if last > first && bytes_out + more > BATCH_BYTES {
+            if last > first && (bytes_out + more > BATCH_BYTES || more > WHOLE_CHUNK_BYTES) {
                 break;
             }
             bytes_in += chunks[last].bytes;
@@ -255,7 +317,7 @@ impl Reader {
         let (vlr, record_length) = (&self.vlr, self.record_length);
         self.threads.map(jobs, |(i, offset, chunk_in, chunk_out)| {
             decompress_chunk(chunk_in, chunk_out, vlr, record_length)
-                .map_err(|e| Error::new(e.code, format!("chunk {} at byte {}: {}", i, offset, e.message)))
+                .map_err(|e| in_chunk(i, offset, e))
         })?;
         *next = last;
         Ok(())
