@@ -281,4 +281,6 @@ core::Grid read_grid(const std::filesystem::path& file, const std::optional<core
   return grid;
 }
 
+void limit_raster_cache(std::int64_t bytes) { GDALSetCacheMax64(bytes); }
+
 }  // namespace swath::io

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -80,5 +81,8 @@ core::Lattice lattice_of(const RasterInfo& info, const std::filesystem::path& fi
 /// `window`: a lattice of the same cell; what of it lies outside the file has no data. Throws core::Error as lattice_of, and where the
 /// window's cell is another.
 core::Grid read_grid(const std::filesystem::path& file, const std::optional<core::Lattice>& window = std::nullopt);
+
+/// Memory in which blocks of rasters wait to be written or are kept once read; GDAL's default is 5 % of the machine's.
+void limit_raster_cache(std::int64_t bytes);
 
 }  // namespace swath::io

@@ -164,6 +164,7 @@ struct LasWriter::State {
   LasWriteOptions options;
   std::optional<LasRawWriter> raw;
   core::ColumnSet extras, carried;
+  std::optional<core::ColumnSet> unchanged;  ///< of the blocks looked at
   bool has_sources = false;
   std::uint64_t overlap_lost = 0;
   LasPoints points;
@@ -188,7 +189,7 @@ struct LasWriter::State {
   /// The sources' header, with the extra fields that the block's columns need besides; columns that are as read keep their fields.
   LasHeader header_of_sources(const core::Block& first) {
     LasHeader h = options.header;
-    carried = options.sources->unchanged(first);
+    carried = unchanged.value_or(options.sources->unchanged(first));
     core::ColumnSet added = extras;
     for_each_extra_column([&](core::Column c, const char* name, auto) {
       for (LasExtra& e : h.extras) {
@@ -242,6 +243,13 @@ LasWriter::LasWriter(std::filesystem::path file, LasWriteOptions options) : stat
 LasWriter::~LasWriter() = default;
 LasWriter::LasWriter(LasWriter&&) noexcept = default;
 LasWriter& LasWriter::operator=(LasWriter&&) noexcept = default;
+
+void LasWriter::look_at(const core::Block& block) {
+  State& s = *state_;
+  if (!s.options.sources || block.source.empty()) return;
+  const core::ColumnSet here = s.options.sources->unchanged(block);
+  s.unchanged = s.unchanged ? *s.unchanged - (*s.unchanged - here) : here;
+}
 
 void LasWriter::write(const core::Block& block) {
   State& s = *state_;

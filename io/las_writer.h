@@ -72,6 +72,8 @@ class LasWriter {
   LasWriter(LasWriter&&) noexcept;
   LasWriter& operator=(LasWriter&&) noexcept;
 
+  /// A block that is to be written, before the first write(): fields of a file that is written in several blocks follow from all of them.
+  void look_at(const core::Block& block);
   /// Throws core::Error with the point's number where a coordinate does not fit the 32 bits of scale and offset, a value does not fit
   /// its field, or the block lacks a column that the first one had (or has another extra one).
   void write(const core::Block& block);

@@ -22,8 +22,10 @@
 #include "pipeline/grid_store.h"
 #include "pipeline/input_guard.h"
 #include "pipeline/limits.h"
+#include "pipeline/memory.h"
 #include "pipeline/provenance.h"
 #include "pipeline/pulse_border.h"
+#include "pipeline/stage_memory.h"
 #include "pipeline/tile_groups.h"
 #include "pipeline/tile_queue.h"
 #include "pipeline/tile_store.h"
@@ -43,7 +45,9 @@ using stages::Grain;
 using stages::Stage;
 using Clock = std::chrono::steady_clock;
 
-constexpr size_t batch_points = 1 << 17;
+constexpr size_t most_in_batch = 1 << 17, least_in_batch = 1 << 12;  // points
+constexpr double batch_bytes_per_point = 600.0;                      // of pulses, points, and what a strip stage makes of them
+constexpr double share_of_batches = 0.4, share_of_buffers = 0.2;     // of free memory, while strips are read
 constexpr const char *discarded_name = ".swath-discarded", *products_name = "products";
 
 bool has_surface(const std::vector<stages::Product>& products) {
@@ -67,9 +71,6 @@ constexpr const char* groups_file = "groups.done";
 /// is not taken for next to nothing.
 double work_of(const TileGroup& g) { return 1.0 + static_cast<double>(g.bytes); }
 
-/// What a tile stage reads and changes.
-core::ColumnSet columns_of_tiles(const Stage& s) { return s.info().needs | s.info().gives | s.also_reads(); }
-
 class Engine {
  public:
   Engine(Plan& plan, Progress& progress)
@@ -79,6 +80,7 @@ class Engine {
         work_(output_ / ".swath"),
         threads_(plan.run.threads > 0 ? plan.run.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))),
         tbb_threads_(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads_)),
+        memory_(plan.run.memory.value),
         grids_(plan.run.tile.value),
         context_{plan.survey},
         accounts_(plan.stages.size()),
@@ -99,10 +101,15 @@ class Engine {
   [[noreturn]] void keep_finished(const core::Error& e);
   std::vector<TileKey> tiles_of(size_t number) const;
   std::set<TileKey> tiles_of_water() const;
-  Measure measure_of(size_t number) const;
+  void expect_room_for_strips() const;
+  void expect_room_for_tiles();
   fs::path done_file(size_t number, const TileGroup& group) const;
-  std::vector<TileGroup> groups_of(size_t number, const std::vector<TileKey>& keys, std::uint64_t budget) const;
+  std::vector<TileGroup> groups_of(size_t number, const std::vector<TileKey>& keys, std::uint64_t budget);
   PieceRecord run_group(size_t number, const TileGroup& group, bool has_water);
+  void work_on(size_t number, const TileGroup& group, stages::TileJob& job, bool has_water) const;
+  void run_stage(const Stage& s, stages::TileJob& job, bool has_water) const;
+  void work_on_parts(size_t number, const TileGroup& group, stages::TileJob& job, bool has_water) const;
+  std::function<void(core::Block&)> thinner(const Stage& s, const stages::Box& box) const;
   void run_tiles(size_t number);
   void keep_surface_tiles(size_t number, const std::set<TileKey>& fringe);
   void run_merge(size_t number);
@@ -130,6 +137,7 @@ class Engine {
   fs::path output_, work_;
   int threads_;
   tbb::global_control tbb_threads_;
+  MemoryBudget memory_;
   GridStore grids_;
   stages::Context context_;
   std::vector<Account> accounts_;
@@ -139,6 +147,7 @@ class Engine {
   size_t source_ = 0;  ///< the stage that is the plan's source; as many as there are stages where it has none
   size_t last_strip_stage_ = 0;
   std::unique_ptr<TileStore> store_;
+  std::unique_ptr<SquareCounts> squares_;
   std::set<TileKey> surface_tiles_;  ///< without a point of their own, but a surface reaches into them from their neighbours
   bool has_products_ = false;        ///< of a tile stage that is finished
   std::uint64_t resumed_ = 0, damaged_ = 0;
@@ -271,6 +280,7 @@ void Engine::run_survey_stages() {
     begin_products(i);
     progress_.begin(std::string(stage(i).info().name), 0, "");
     const bool resumed = is_resumed(i);
+    context_.memory = memory_.free();
     SurveyPiece piece =
         resumed ? resume_survey_piece(context_, folder(i))
                 : run_survey_piece(stage(i), context_, folder(i), !is_read_again(i) || stage(i).info().makes(stages::Product::imu));
@@ -292,7 +302,11 @@ void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_fold
   };
   const size_t n = plan_.stages.size(), source = source_;
   const auto reader = stage(source).open(context_, strip);
-  StripWriter writer(strip_folder, plan_.run.tile.value, static_cast<size_t>(plan_.run.memory.value / 8));
+  // Where memory is little, batches are small; then they are few.
+  const double free = memory_.free(), points_at_once = share_of_batches * free / batch_bytes_per_point;
+  const auto batches = std::clamp(static_cast<size_t>(points_at_once) / least_in_batch, size_t{1}, static_cast<size_t>(threads_) + 1);
+  const size_t batch_points = std::clamp(static_cast<size_t>(points_at_once / static_cast<double>(batches)), least_in_batch, most_in_batch);
+  StripWriter writer(strip_folder, plan_.run.tile.value, static_cast<size_t>(share_of_buffers * free / 2.0));  // columns grow by doubling
   std::vector<Account> accounts(n);
   PulseBorder border;
   bool more = true;
@@ -336,10 +350,9 @@ void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_fold
     }
     progress_.advance(parcel->read);
   };
-  tbb::parallel_pipeline(static_cast<size_t>(threads_) + 1,
-                         tbb::make_filter<void, std::shared_ptr<Parcel>>(tbb::filter_mode::serial_in_order, read) &
-                             tbb::make_filter<std::shared_ptr<Parcel>, std::shared_ptr<Parcel>>(tbb::filter_mode::parallel, work) &
-                             tbb::make_filter<std::shared_ptr<Parcel>, void>(tbb::filter_mode::serial_in_order, write));
+  tbb::parallel_pipeline(batches, tbb::make_filter<void, std::shared_ptr<Parcel>>(tbb::filter_mode::serial_in_order, read) &
+                                      tbb::make_filter<std::shared_ptr<Parcel>, std::shared_ptr<Parcel>>(tbb::filter_mode::parallel, work) &
+                                      tbb::make_filter<std::shared_ptr<Parcel>, void>(tbb::filter_mode::serial_in_order, write));
 
   accounts[source].in = accounts[source].out + accounts[source].tally.left_out();
   Value note = Value::array();
@@ -354,7 +367,32 @@ void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_fold
   writer.commit(io::to_json(note));
 }
 
+/// One small batch of points must be at work.
+void Engine::expect_room_for_strips() const {
+  const double least = static_cast<double>(least_in_batch) * batch_bytes_per_point / share_of_batches;
+  memory_.require(least, memory_.free(), "reading the points");
+}
+
+/// Every tile stage has a way to work on every tile; otherwise the one that takes most is named.
+void Engine::expect_room_for_tiles() {
+  const double free = memory_.free();
+  double most = 0.0;
+  std::string what;
+  for (size_t i = last_strip_stage_ + 1; i < plan_.stages.size(); ++i) {
+    if (!works_on(i, Grain::tile)) continue;
+    const StageMemory memory(*store_, stage(i), context_);
+    for (const auto& [key, n] : store_->tiles()) {
+      const auto bytes = static_cast<double>(memory.cut(memory.of({key}), static_cast<std::uint64_t>(free), *squares_).bytes);
+      if (bytes <= most) continue;
+      most = bytes;
+      what = std::string(stage(i).info().name) + " on the tile " + context_.label(key) + " of " + std::to_string(n) + " points";
+    }
+  }
+  memory_.require(most, free, what);
+}
+
 void Engine::run_strips() {
+  expect_room_for_strips();
   find_strips();
   const size_t source = source_;
   const std::uint64_t without_strip = accounts_[source].tally.left_out();  // records that no strip holds
@@ -397,6 +435,8 @@ void Engine::run_strips() {
   if (store_->points() == 0)
     throw core::Error("no return could be georeferenced: the trajectory covers none of them", plan_.survey_file.string(),
                       "compare the time scales with `swath info` of the laser and trajectory files");
+  squares_ = std::make_unique<SquareCounts>(*store_);
+  expect_room_for_tiles();
 }
 
 /// The tiles with points, and for what is made of surfaces also those that triangles of their neighbours' points reach into: the surface
@@ -443,44 +483,21 @@ void Engine::keep_surface_tiles(size_t number, const std::set<TileKey>& fringe) 
     if (fs::exists(stages::grid_file(folder(number), key))) surface_tiles_.insert(key);
 }
 
-/// What it takes to work on tiles with a stage.
-Measure Engine::measure_of(size_t number) const {
-  const Stage& s = stage(number);
-  const core::ColumnSet columns = columns_of_tiles(s);
-  double row_bytes = 0.0;
-  core::for_each_column([&](core::Column c, std::string_view, auto member) {
-    using T = typename std::remove_reference_t<decltype(std::declval<core::Block>().*member)>::value_type;
-    if (columns.has(c) || c == core::Column::x || c == core::Column::y || c == core::Column::z) row_bytes += sizeof(T);
-  });
-  if (columns.has(core::Column::source)) row_bytes += static_cast<double>(store_->source_width());
-  return [this, &s, row_bytes, wide = context_](std::vector<TileKey> tiles) mutable {
-    const TileBox box(tiles);
-    const TileStore::Load load = store_->load_with_halo(tiles, s.halo());
-    const double left = s.left_per_area() * box.metres(context_.tile_side).grown(s.halo()).area();
-    const auto points = static_cast<double>(load.points);
-    const double near = s.near_halo() < s.halo() ? static_cast<double>(store_->load_with_halo(tiles, s.near_halo()).points) : points;
-    const double rows = std::min(points, near + left);
-    wide.tile_side = context_.tile_side * 0.5 * (box.across() + box.up());  // the square of the same perimeter is not smaller
-    const double judged = std::min(points, near) * s.share_of_points(wide.tile_side);
-    double bytes = row_bytes * (rows + static_cast<double>(load.neighbour)) + s.bytes_per_point() * judged;
-    for (const stages::Raster& r : s.rasters(wide)) bytes += r.total(points);
-    TileGroup group{std::move(tiles), 0, static_cast<std::uint64_t>(rows), static_cast<std::uint64_t>(bytes)};
-    for (const TileKey k : group.tiles)
-      if (const auto at = store_->tiles().find(k); at != store_->tiles().end()) group.own += at->second;
-    return group;
-  };
-}
-
 fs::path Engine::done_file(size_t number, const TileGroup& group) const {
   const TileBox box(group.tiles);
   return folder(number) / (file_label(box.low) + (group.tiles.size() > 1 ? "_to_" + file_label(box.high) : "") + ".done");
 }
 
-/// Tiles are joined only where nothing but points' columns comes of them.
-std::vector<TileGroup> Engine::groups_of(size_t number, const std::vector<TileKey>& keys, std::uint64_t budget) const {
+/// Tiles are joined only where nothing but points' columns comes of them. A tile that does not fit is cut into parts.
+std::vector<TileGroup> Engine::groups_of(size_t number, const std::vector<TileKey>& keys, std::uint64_t budget) {
   const stages::Info& info = stage(number).info();
-  const Measure measure = measure_of(number);
-  if (info.gives.empty() || !info.gives_products.empty() || works_on(number, Grain::merge)) return single_tiles(keys, measure);
+  const StageMemory memory(*store_, stage(number), context_);
+  const Measure measure = [&](std::vector<TileKey> tiles) { return memory.of(std::move(tiles)); };
+  const auto fitted = [&](std::vector<TileGroup> groups) {
+    for (TileGroup& g : groups) g = memory.cut(std::move(g), budget, *squares_);
+    return groups;
+  };
+  if (info.gives.empty() || !info.gives_products.empty() || works_on(number, Grain::merge)) return fitted(single_tiles(keys, measure));
   // Those of a run that was killed, so that what it has done counts.
   const fs::path file = folder(number) / groups_file;
   std::vector<TileGroup> groups = grouped_tiles(keys, read_boxes(file), measure), open;
@@ -491,26 +508,79 @@ std::vector<TileGroup> Engine::groups_of(size_t number, const std::vector<TileKe
   if (held == keys.size() && most_bytes(open, threads_) <= budget) return groups;
   groups = joined_tiles(keys, threads_, budget, measure);
   write_boxes(file, groups);
-  return groups;
+  return fitted(std::move(groups));
+}
+
+std::function<void(core::Block&)> Engine::thinner(const Stage& s, const stages::Box& box) const {
+  if (!std::isfinite(s.left_per_area())) return {};
+  return [&s, box, this](core::Block& around) { s.thin(context_, box, around); };
+}
+
+void Engine::work_on(size_t number, const TileGroup& group, stages::TileJob& job, bool has_water) const {
+  const Stage& s = stage(number);
+  if (s.is_streamed()) {
+    job.own = group.own;
+    job.stream = [&, this](const std::function<void(core::Block&)>& f) { store_->each_rows(job.key, columns_of_tiles(s), f); };
+    return s.run_tile(context_, job);
+  }
+  job.block = store_->read_with_halo(group.tiles, s.halo(), columns_of_tiles(s), job.own, thinner(s, job.box), group.with_halo);
+  core::add_columns(job.block, s.info().gives);
+  run_stage(s, job, has_water);
+}
+
+void Engine::run_stage(const Stage& s, stages::TileJob& job, bool has_water) const {
+  const size_t before = job.block.size();
+  if (before > 0 || !has_surface(s.info().gives_products) || has_water) s.run_tile(context_, job);
+  if (job.block.size() != before)
+    throw core::Error("the stage changed the number of points of a tile", std::string(s.info().name), "this is a fault of the program");
+}
+
+/// The parts one after the other: what they give is put together in the order of the tile's points, and what they made by the stage.
+void Engine::work_on_parts(size_t number, const TileGroup& group, stages::TileJob& job, bool has_water) const {
+  const Stage& s = stage(number);
+  const core::ColumnSet gives = s.info().gives;
+  core::Block whole;
+  if (!gives.empty()) {
+    whole.x.resize(group.own);
+    core::add_columns(whole, gives);
+    whole.x = {};
+  }
+  const fs::path folder_of_parts = job.folder / ("parts_" + file_label(job.key));
+  std::vector<fs::path> folders;
+  for (int k = 0; k < group.parts * group.parts; ++k) {
+    const TilePart part{job.key, group.parts, k % group.parts, k / group.parts};
+    folders.push_back(folder_of_parts / std::to_string(k));
+    fs::create_directories(folders.back());
+    stages::TileJob mine{job.key, part.metres(context_.tile_side), folders.back(), {}, 0, {}};
+    std::vector<std::uint32_t> rows;
+    mine.block = store_->read_part(part, s.halo(), columns_of_tiles(s), rows, thinner(s, mine.box), group.with_halo);
+    mine.own = rows.size();
+    core::add_columns(mine.block, gives);
+    run_stage(s, mine, has_water);
+    job.tally.add(mine.tally);
+    core::for_each_column([&](core::Column c, std::string_view, auto member) {
+      if (gives.has(c))
+        for (size_t i = 0; i < rows.size(); ++i) (whole.*member)[rows[i]] = (mine.block.*member)[i];
+    });
+  }
+  s.join_parts(context_, job, folders);
+  fs::remove_all(folder_of_parts);
+  job.block = std::move(whole);
+  job.own = group.own;
 }
 
 /// Runs the stage on a group and keeps what it did: the tally and seconds.
 PieceRecord Engine::run_group(size_t number, const TileGroup& group, bool has_water) {
-  const Stage& s = stage(number);
-  const stages::Info& info = s.info();
+  const stages::Info& info = stage(number).info();
   const fs::path mine = folder(number), done = done_file(number, group);
   stages::TileJob job{group.tiles[0], TileBox(group.tiles).metres(context_.tile_side), mine, {}, 0, {}};
   const io::FinishedFiles finished;
   const io::UnflushedFiles checked_when_resumed;
   const auto start = Clock::now();
-  std::function<void(core::Block&)> thin;
-  if (std::isfinite(s.left_per_area())) thin = [&](core::Block& around) { s.thin(context_, job.box, around); };
-  job.block = store_->read_with_halo(group.tiles, s.halo(), columns_of_tiles(s), job.own, thin);
-  core::add_columns(job.block, info.gives);
-  const size_t before = job.block.size();
-  if (before > 0 || !has_surface(info.gives_products) || has_water) s.run_tile(context_, job);
-  if (job.block.size() != before)
-    throw core::Error("the stage changed the number of points of a tile", std::string(info.name), "this is a fault of the program");
+  if (group.parts > 1)
+    work_on_parts(number, group, job, has_water);
+  else
+    work_on(number, group, job, has_water);
   std::vector<fs::path> by_stage = finished.files();
   std::vector<PieceFile> overlays;
   if (!info.gives.empty()) {
@@ -544,8 +614,13 @@ void Engine::run_tiles(size_t number) {
   for (const TileKey key : fringe)
     if (!surface_tiles_.contains(key)) keys.push_back(key);
 
-  const auto budget = static_cast<std::uint64_t>(plan_.run.memory.value * 0.8);
+  const double free = memory_.free();
+  const auto budget = static_cast<std::uint64_t>(free);
   const std::vector<TileGroup> groups = groups_of(number, keys, budget);
+  for (const TileGroup& g : groups)
+    if (!fs::exists(done_file(number, g)))
+      memory_.require(static_cast<double>(g.bytes), free + memory_.reserve(),
+                      std::string(info.name) + " on the tile " + context_.label(g.tiles[0]));
   std::vector<PieceRecord> notes(groups.size());
   std::vector<std::uint64_t> bytes;
   double work = 0.0;
@@ -570,6 +645,7 @@ void Engine::run_tiles(size_t number) {
             ++again;
             progress_.skip(group.own, work_of(group));
           } else {
+            memory_.make_room(group.bytes);
             note = run_group(number, group, wet.contains(group.tiles[0]));
             progress_.advance(group.own, work_of(group));
           }
@@ -605,6 +681,7 @@ void Engine::run_merge(size_t number) {
   stages::MergeJob job{folder(number), {}, {}};
   job.tiles = tiles_of(number);
   const auto start = Clock::now();
+  context_.memory = memory_.free();
   progress_.begin(std::string(stage(number).info().name) + " merge", 0, "");
   const io::FinishedFiles finished;
   const io::UnflushedFiles flushed_when_delivered;
@@ -733,6 +810,7 @@ void Engine::expect_all_delivered() const {
 
 Outcome Engine::run(const std::string& command) {
   const auto start = Clock::now();
+  fit_memory(memory_.bytes());
   expect_own(work_);
   expect_own(output_ / discarded_name);
   if (!plan_.survey_file.empty()) check_output(plan_);

@@ -3,6 +3,7 @@
 #include "pipeline/tile_groups.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -52,6 +53,16 @@ TileBox::TileBox(const std::vector<TileKey>& tiles) : low(tiles[0]), high(tiles[
     low = {std::min(low.ix, k.ix), std::min(low.iy, k.iy)};
     high = {std::max(high.ix, k.ix), std::max(high.iy, k.iy)};
   }
+}
+
+std::pair<int, int> TilePart::square_of(TileKey tile, int n, double x, double y, double side) {
+  const auto at = [&](double v, int k) { return std::clamp(static_cast<int>(std::floor((v / side - k) * n)), 0, n - 1); };
+  return {at(x, tile.ix), at(y, tile.iy)};
+}
+
+stages::Box TilePart::metres(double side) const {
+  const auto edge = [&](int tile_number, int k) { return (tile_number + static_cast<double>(k) / n) * side; };
+  return {edge(tile.ix, i), edge(tile.iy, j), edge(tile.ix, i + 1), edge(tile.iy, j + 1)};
 }
 
 std::vector<TileGroup> single_tiles(const std::vector<TileKey>& tiles, const Measure& measure) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "stages/stage.h"
@@ -25,11 +26,23 @@ struct TileBox {
   int up() const { return high.iy - low.iy + 1; }
 };
 
+/// One of n x n squares of a tile, n a power of 2: the number `i` of them from the west, `j` from the south.
+struct TilePart {
+  TileKey tile;
+  int n = 1, i = 0, j = 0;
+  /// The square that a point of the tile (map metres) lies in.
+  static std::pair<int, int> square_of(TileKey tile, int n, double x, double y, double side);
+  /// Is a point of the tile one of this part's?
+  bool holds(double x, double y, double side) const { return square_of(tile, n, x, y, side) == std::pair(i, j); }
+  stages::Box metres(double side) const;
+};
+
 struct TileGroup {
   std::vector<TileKey> tiles;   ///< all there are in their box, ascending
   std::uint64_t own = 0;        ///< points of the tiles
   std::uint64_t with_halo = 0;  ///< points to work on, those around with them
   std::uint64_t bytes = 0;      ///< needed
+  int parts = 1;                ///< along a side of the tile, which is worked on part by part where it is more than 1
 };
 
 /// Counts own, with_halo and bytes of the tiles.

@@ -12,7 +12,6 @@
 #include "core/floor_div.h"
 #include "core/value.h"
 #include "io/output_file.h"
-#include "pipeline/tile_groups.h"
 #include "pipeline/work/store_file.h"
 
 namespace swath::pipeline {
@@ -24,7 +23,6 @@ using core::Column;
 using core::ColumnSet;
 
 constexpr double farthest = 1e8;  // m; beyond every map projection, and tile numbers stay in range
-constexpr ColumnSet always{Column::x, Column::y, Column::z};
 constexpr const char* record_name = "strip.json";
 
 std::string points_file(TileKey key) { return file_label(key) + ".pts"; }
@@ -33,14 +31,6 @@ core::Value strip_note(const fs::path& strip_folder) {
   std::optional<PieceRecord> record = read_record(strip_folder / record_name);
   if (!record) throw damaged_work(strip_folder / record_name);
   return std::move(record->note);
-}
-
-/// The columns `mine` of an overlay's `rows` points.
-void read_overlay(const fs::path& name, Block& to, ColumnSet mine, size_t rows) {
-  StoreFile file(name, StoreFile::Mode::read);
-  size_t row = 0;
-  ColumnSet seen;
-  if (!read_chunk(file, to, row, mine, seen) || row != rows || !(mine - seen).empty()) throw damaged_work(name);
 }
 
 }  // namespace
@@ -105,7 +95,7 @@ void StripWriter::flush(TileKey key, Block& points) {
   if (points.size() == 0) return;
   Written& written = written_[key];
   StoreFile file(part_ / points_file(key), StoreFile::Mode::append, &written.checksum);
-  write_chunk(file, points, 0, points.size(), core::columns_of(points));
+  write_chunks(file, points, 0, points.size(), core::columns_of(points));
   file.close();
   written.points += points.size();
   written.bytes += file.written();
@@ -185,7 +175,7 @@ PieceFile TileStore::write_overlay(const fs::path& folder, TileKey key, const Bl
   io::OutputFile out(folder / name);
   Checksum sum;
   StoreFile file(out.temporary(), StoreFile::Mode::append, &sum);
-  write_chunk(file, block, first, count, columns);
+  write_chunks(file, block, first, count, columns);
   file.close();
   out.commit();
   return {name, file.written(), sum.text()};
@@ -210,105 +200,15 @@ void TileStore::expect_whole(TileKey key, size_t rows) const {
   if (rows != tiles_.at(key)) throw damaged_work(strips_ / file_label(key));
 }
 
-Block TileStore::read(TileKey key, ColumnSet columns) const { return read(key, columns, 0); }
-
-Block TileStore::read(TileKey key, ColumnSet columns, size_t more) const {
-  Block out;
-  out.origin = origin_;
-  const auto at = tiles_.find(key);
-  if (at == tiles_.end()) return out;
-  columns = columns | always;
-  const Overlays overlays = overlays_of(key, columns);
-  const ColumnSet from_strips = columns - overlays.columns;
-  core::for_each_column([&](Column c, std::string_view, auto member) {
-    if (columns.has(c) && columns_.has(c)) (out.*member).reserve(at->second + more);
-  });
-  if (columns.has(Column::source)) out.source.bytes.reserve((at->second + more) * source_width_);
-  ColumnSet seen;
-  size_t row = 0;
-  for (const Segment& s : segments_.at(key)) {
-    StoreFile file(s.file, StoreFile::Mode::read);
-    while (read_chunk(file, out, row, from_strips, seen)) {
+std::vector<std::uint32_t> TileStore::counts_of(TileKey key, int n) const {
+  std::vector<std::uint32_t> counts(static_cast<size_t>(n) * static_cast<size_t>(n), 0);
+  each_rows(key, {}, [&](Block& b) {
+    for (size_t i = 0; i < b.size(); ++i) {
+      const auto [across, up] = TilePart::square_of(key, n, origin_.x() + b.x[i], origin_.y() + b.y[i], side_);
+      ++counts[static_cast<size_t>(up) * static_cast<size_t>(n) + static_cast<size_t>(across)];
     }
-  }
-  expect_whole(key, row);
-  for (const auto& [file_name, mine] : overlays.files) {
-    read_overlay(file_name, out, mine, row);
-  }
-  // A column that only some of the strips have is zero in the others.
-  core::for_each_column([&](Column c, std::string_view, auto member) {
-    if (columns.has(c) && columns_.has(c) && ((seen.has(c) && from_strips.has(c)) || overlays.columns.has(c))) (out.*member).resize(row);
   });
-  if (!out.source.empty()) out.source.resize(row, 0);
-  return out;
-}
-
-void TileStore::append_within(Block& out, TileKey key, ColumnSet columns, const stages::Box& box) const {
-  columns = columns | always;
-  const Overlays overlays = overlays_of(key, columns);
-  const ColumnSet from_strips = columns - overlays.columns;
-  std::vector<std::uint32_t> chosen, rows;  // within the tile, within the chunk
-  // Rows of the files that points came from go to writers, which have no halo.
-  if (overlays.columns.has(Column::x) || overlays.columns.has(Column::y) || (columns.has(Column::source) && source_width_ > 0)) {
-    const Block all = read(key, columns);
-    for (std::uint32_t i = 0; i < all.size(); ++i)
-      if (box.holds(origin_.x() + all.x[i], origin_.y() + all.y[i])) rows.push_back(i);
-    return core::append(out, all, rows);
-  }
-  const size_t before = out.size();
-  size_t row = 0;
-  std::vector<double> x, y;
-  const auto gather = [](auto& to, size_t at, const auto& from, const std::vector<std::uint32_t>& which) {
-    to.resize(at + which.size());
-    for (size_t i = 0; i < which.size(); ++i) to[at + i] = from[which[i]];
-  };
-  for (const Segment& s : segments_.at(key)) {
-    StoreFile file(s.file, StoreFile::Mode::read);
-    for (ChunkHead head{}; file.next(head); row += head.points) {
-      const size_t at = before + chosen.size(), n = head.points;
-      const ColumnSet there = head.set();
-      size_t beyond = 0;  // bytes to pass over
-      core::for_each_column([&](Column c, std::string_view, auto member) {
-        using T = typename std::remove_reference_t<decltype(out.*member)>::value_type;
-        if (!there.has(c)) return;
-        // x and y come first and decide which rows are wanted.
-        const bool is_place = c == Column::x || c == Column::y;
-        if (!is_place && (rows.empty() || !from_strips.has(c))) {
-          beyond += n * sizeof(T);
-          return;
-        }
-        if (beyond > 0) file.skip(std::exchange(beyond, 0));
-        std::vector<T> own;
-        std::vector<T>* column = &own;
-        if constexpr (std::is_same_v<T, double>) column = c == Column::x ? &x : c == Column::y ? &y : &own;
-        column->resize(n);
-        if (n > 0) file.read(column->data(), n * sizeof(T));
-        if (c == Column::y) {
-          rows.clear();
-          for (std::uint32_t i = 0; i < n; ++i)
-            if (box.holds(origin_.x() + x[i], origin_.y() + y[i])) rows.push_back(i);
-          gather(out.x, at, x, rows);
-        }
-        if (c != Column::x) gather(out.*member, at, *column, rows);
-      });
-      if (there.has(Column::source)) beyond += n * head.source_width;
-      if (beyond > 0) file.skip(beyond);
-      for (const std::uint32_t i : rows) chosen.push_back(static_cast<std::uint32_t>(row) + i);
-    }
-  }
-  expect_whole(key, row);
-  for (const auto& [file_name, mine] : overlays.files) {
-    if (chosen.empty()) break;
-    Block all;
-    read_overlay(file_name, all, mine, row);
-    core::for_each_column([&](Column c, std::string_view, auto member) {
-      if (mine.has(c)) gather(out.*member, before, all.*member, chosen);
-    });
-  }
-  // A column that only some of the points have is zero in the others.
-  core::for_each_column([&](Column, std::string_view, auto member) {
-    if (!(out.*member).empty()) (out.*member).resize(out.size());
-  });
+  return counts;
 }
 
 namespace {
@@ -317,35 +217,6 @@ namespace {
 int apart(int i, int low, int high) { return std::max({low - i, i - high, 0}); }
 
 }  // namespace
-
-Block TileStore::read_with_halo(const std::vector<TileKey>& keys, double halo, ColumnSet columns, size_t& own,
-                                const std::function<void(Block&)>& thin) const {
-  Block around;
-  around.origin = origin_;
-  const TileBox tiles(keys);
-  const int reach = halo > 0.0 ? static_cast<int>(std::ceil(halo / side_)) : 0;
-  const stages::Box box = tiles.metres(side_).grown(halo);
-  for (int iy = tiles.low.iy - reach; iy <= tiles.high.iy + reach; ++iy)
-    for (int ix = tiles.low.ix - reach; ix <= tiles.high.ix + reach; ++ix)
-      if (!tiles.holds({ix, iy}) && tiles_.contains({ix, iy})) {
-        if (!thin) {
-          append_within(around, {ix, iy}, columns, box);
-          continue;
-        }
-        Block part;
-        part.origin = origin_;
-        append_within(part, {ix, iy}, columns, box);
-        thin(part);
-        core::append(around, part);
-      }
-  size_t more = around.size();
-  for (size_t k = 1; k < keys.size(); ++k) more += tiles_.at(keys[k]);
-  Block out = read(keys[0], columns, more);
-  for (size_t k = 1; k < keys.size(); ++k) core::append(out, read(keys[k], columns));
-  own = out.size();
-  core::append(out, around);
-  return out;
-}
 
 TileStore::Load TileStore::load_with_halo(const std::vector<TileKey>& keys, double halo) const {
   Load load;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/block.h"
+#include "pipeline/tile_groups.h"
 #include "pipeline/work/checksum.h"
 #include "pipeline/work/piece_record.h"
 #include "stages/stage.h"
@@ -77,9 +78,18 @@ class TileStore {
   core::Block read(TileKey key, core::ColumnSet columns) const;
   /// The points of tiles, one tile after the other, then those of their neighbours within `halo` metres of the box around them, in order
   /// of tiles; `own` receives the number of the former. `keys`: all with points of a box of tiles, or one. `thin`: takes out of one
-  /// neighbour's points those that are not needed.
+  /// neighbour's points those that are not needed. `rows`: there is room for so many points from the start.
   core::Block read_with_halo(const std::vector<TileKey>& keys, double halo, core::ColumnSet columns, size_t& own,
-                             const std::function<void(core::Block&)>& thin = {}) const;
+                             const std::function<void(core::Block&)>& thin = {}, std::uint64_t rows = 0) const;
+  /// The points of a part of a tile, then all others within `halo` metres of it. `rows`: gets the numbers of the former within the tile;
+  /// `expected`: there is room for so many points from the start.
+  core::Block read_part(const TilePart& part, double halo, core::ColumnSet columns, std::vector<std::uint32_t>& rows,
+                        const std::function<void(core::Block&)>& thin = {}, std::uint64_t expected = 0) const;
+  /// The columns of one tile's points from the first to the last, at most rows_at_once of them at a time.
+  void each_rows(TileKey key, core::ColumnSet columns, const std::function<void(core::Block&)>& f) const;
+  static constexpr size_t rows_at_once = 1u << 17;
+  /// Counts a tile's points in n x n squares of it, row by row from the south-west.
+  std::vector<std::uint32_t> counts_of(TileKey key, int n) const;
   /// What read_with_halo loads, estimated to the safe side: the points it gives, and those of the largest neighbour, which it holds for a
   /// moment.
   struct Load {
@@ -97,8 +107,18 @@ class TileStore {
   void expect_whole(TileKey key, size_t rows) const;
   /// As read(), with room for `more` points.
   core::Block read(TileKey key, core::ColumnSet columns, size_t more) const;
-  /// Appends those of a tile's points that the box holds; of chunks without one only places are read.
-  void append_within(core::Block& out, TileKey key, core::ColumnSet columns, const stages::Box& box) const;
+  /// The points at x, y (map metres) that lie in the box and are chosen.
+  struct Wanted {
+    stages::Box box;
+    std::function<bool(double, double)> chosen{};  ///< all, without it
+    bool operator()(double x, double y) const { return box.holds(x, y) && (!chosen || chosen(x, y)); }
+  };
+  /// Appends the wanted ones of a tile's points; of chunks without one only places are read. `rows`: gets their numbers within the tile.
+  void append_where(core::Block& out, TileKey key, core::ColumnSet columns, const Wanted& wanted,
+                    std::vector<std::uint32_t>* rows = nullptr) const;
+  /// Appends the points of a box: of `tiles` those that are not `own`, none without it.
+  void append_around(core::Block& out, const TileBox& tiles, const stages::Box& box, core::ColumnSet columns,
+                     const std::function<void(core::Block&)>& thin, const std::function<bool(double, double)>& own) const;
 
   std::filesystem::path strips_;
   double side_;

@@ -5,7 +5,7 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build ccache git ca-certificates
   libeigen3-dev libcgal-dev libpcl-dev liboctomap-dev libtbb-dev libgdal-dev libproj-dev proj-data libpng-dev
-  libtomlplusplus-dev rapidjson-dev libcli11-dev libxxhash-dev libgtest-dev
+  libtomlplusplus-dev rapidjson-dev libcli11-dev libxxhash-dev libzstd-dev libgtest-dev
   python3 python3-venv clang-format
   rtklib # runs, it is not linked: raw GNSS observations go through its rnx2rtkp
 )

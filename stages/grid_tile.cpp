@@ -76,6 +76,18 @@ core::Grid read_grid_tile(const std::filesystem::path& file) {
   return grid;
 }
 
+void join_grid_parts(const std::filesystem::path& folder, TileKey key, const std::vector<std::filesystem::path>& parts,
+                     const core::Lattice& lattice) {
+  core::Grid whole(lattice);
+  bool any = false;
+  for (const std::filesystem::path& part : parts)
+    if (const std::filesystem::path file = grid_file(part, key); std::filesystem::exists(file)) {
+      paste(read_grid_tile(file), whole);
+      any = true;
+    }
+  if (any) write_grid_tile(folder, key, whole);
+}
+
 void paste(const core::Grid& tile, core::Grid& window) {
   const core::Lattice& from = tile.lattice;
   const core::Lattice& to = window.lattice;

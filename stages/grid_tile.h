@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "core/grid.h"
 #include "stages/stage.h"
@@ -17,6 +18,10 @@ void write_grid_tile(const std::filesystem::path& folder, TileKey key, const cor
 
 /// Reads it back; throws core::Error where it is damaged.
 core::Grid read_grid_tile(const std::filesystem::path& file);
+
+/// The grid that a tile's parts made under the tile's key in folders of their own, as the tile's; nothing where none made one.
+void join_grid_parts(const std::filesystem::path& folder, TileKey key, const std::vector<std::filesystem::path>& parts,
+                     const core::Lattice& lattice);
 
 /// An intermediate file of a stage is not as long as it must be: throws core::Error.
 [[noreturn]] void cut_short(const std::filesystem::path& file);

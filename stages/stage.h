@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -148,6 +149,7 @@ struct Context {
   std::array<std::uint8_t, 16> project{};            ///< identifier of all files of the run
   int creation_year = 0, creation_day = 0;           ///< UTC, day of year from 1; 0 0: not stated
   int threads = 1;
+  double memory = 2e9;                           ///< bytes that a survey stage or merge may take
   double tile_side = 500.0;                      ///< m
   std::filesystem::path output{};                ///< where the stage at work puts its products, laid out as in the output folder
   std::vector<std::filesystem::path> earlier{};  ///< the same of the stages before it
@@ -183,6 +185,9 @@ class StripReader {
   virtual bool next(StripBatch& batch, size_t most, core::Tally& tally) = 0;
 };
 
+/// Calls a function with all points of a tile, some at a time, in their order.
+using PointStream = std::function<void(const std::function<void(core::Block&)>&)>;
+
 /// One tile at work: its own points first, then those of the halo. `own` counts the former.
 struct TileJob {
   TileKey key;                   ///< of the first, where a filter gets several tiles at once
@@ -191,6 +196,7 @@ struct TileJob {
   core::Block block;
   size_t own = 0;
   core::Tally tally;
+  PointStream stream{};  ///< the points of a stage that is_streamed(); `block` is empty then
 };
 
 /// The merge of one stage: all tiles, in order.
@@ -252,6 +258,12 @@ class Stage {
   /// grids needs them with the same cells.
   virtual double cell() const { return 0.0; }
   virtual void run_tile(const Context&, TileJob&) const {}
+  /// Does a tile's work take its points from TileJob::stream, some at a time?
+  virtual bool is_streamed() const { return false; }
+  /// Can a tile that does not fit into memory be worked on in parts, each with its own halo and folder, with the same result?
+  virtual bool is_divisible() const { return !info().gives.empty() && info().gives_products.empty(); }
+  /// Makes of the files in the folders of a tile's parts those of the tile in `whole.folder`. `whole` has no points.
+  virtual void join_parts(const Context&, const TileJob& /*whole*/, const std::vector<std::filesystem::path>& /*parts*/) const {}
 
   virtual void run_merge(const Context&, MergeJob&) const {}
 

@@ -7,9 +7,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "core/error.h"
 #include "io/output_file.h"
 #include "pipeline/work/piece_record.h"
 
@@ -27,14 +30,10 @@ std::uint32_t bits_of(ColumnSet set) {
   return bits;
 }
 
-/// Of all columns of a chunk.
-std::uint64_t bytes_of(const ChunkHead& head) {
-  const ColumnSet there = head.set();
-  std::uint64_t row = there.has(Column::source) ? head.source_width : 0;
-  core::for_each_column([&](Column c, std::string_view, auto member) {
-    if (there.has(c)) row += sizeof((std::declval<Block>().*member)[0]);
-  });
-  return row * head.points;
+/// The axis of a coordinate's column; nothing for others.
+std::optional<int> axis_of(Column c) {
+  if (c == Column::x || c == Column::y || c == Column::z) return static_cast<int>(c);
+  return std::nullopt;
 }
 
 }  // namespace
@@ -89,13 +88,28 @@ size_t StoreFile::read_some(void* data, size_t n) {
 bool StoreFile::next(ChunkHead& head) {
   const size_t got = read_some(&head, sizeof head);
   if (got == 0) return false;
-  const std::uint64_t bytes = bytes_of(head);
-  if (got != sizeof head || bytes > size_ - std::min(size_, at_) || bytes < head.points) throw damaged_work(name_);
+  if (got != sizeof head || head.points > chunk_rows || head.source_width > widest_row) throw damaged_work(name_);
   return true;
 }
 
 void StoreFile::read(void* data, size_t n) {
   if (read_some(data, n) != n) throw damaged_work(name_);
+}
+
+void StoreFile::read_packed(void* values, size_t n, size_t width, double origin) {
+  PackedHead head;
+  read(&head, sizeof head);
+  if (head.bytes > size_ - std::min(size_, at_)) throw damaged_work(name_);
+  packed_.resize(head.bytes);
+  read(packed_.data(), packed_.size());
+  if (!unpack(head, packed_.data(), values, n, width, origin)) throw damaged_work(name_);
+}
+
+void StoreFile::skip_packed() {
+  PackedHead head;
+  read(&head, sizeof head);
+  if (head.bytes > size_ - std::min(size_, at_)) throw damaged_work(name_);
+  skip(head.bytes);
 }
 
 void StoreFile::skip(size_t n) {
@@ -107,28 +121,47 @@ void StoreFile::close() {
   if (::close(std::exchange(fd_, -1)) && errno != EINTR) io::throw_system_error("cannot write", name_, errno);
 }
 
-void write_chunk(StoreFile& file, const Block& b, size_t first, size_t n, ColumnSet columns) {
-  const ChunkHead head{static_cast<std::uint32_t>(n), bits_of(columns), static_cast<std::uint32_t>(b.source.width)};
-  file.write(&head, sizeof head);
-  core::for_each_column([&](Column c, std::string_view, auto member) {
-    if (columns.has(c)) file.write((b.*member).data() + first, n * sizeof((b.*member)[0]));
-  });
-  if (columns.has(Column::source)) file.write(b.source.row(first), n * b.source.width);
+void write_chunks(StoreFile& file, const Block& b, size_t first, size_t n, ColumnSet columns) {
+  if (columns.has(Column::source) && b.source.width > widest_row)
+    throw core::Error("records of " + std::to_string(b.source.width) + " bytes are longer than any format's", "");
+  for (const size_t end = first + n; first < end || n == 0; first += n) {
+    n = std::min(end - first, chunk_rows);
+    ChunkHead head{static_cast<std::uint32_t>(n), bits_of(columns), static_cast<std::uint32_t>(b.source.width)};
+    if (columns.has(Column::x) && columns.has(Column::y) && n > 0) {
+      const auto at = [&](const std::vector<double>& v) { return v.begin() + static_cast<std::ptrdiff_t>(first); };
+      const auto count = static_cast<std::ptrdiff_t>(n);
+      const auto [west, east] = std::minmax_element(at(b.x), at(b.x) + count);
+      const auto [south, north] = std::minmax_element(at(b.y), at(b.y) + count);
+      head.x0 = *west, head.y0 = *south, head.x1 = *east, head.y1 = *north;
+    }
+    std::string bytes(reinterpret_cast<const char*>(&head), sizeof head);
+    core::for_each_column([&](Column c, std::string_view, auto member) {
+      if (!columns.has(c)) return;
+      const auto* values = (b.*member).data() + first;
+      if constexpr (std::is_same_v<decltype(values), const double*>)
+        if (const std::optional<int> axis = axis_of(c)) return pack_coordinates(values, n, b.origin[*axis], bytes);
+      pack(values, n, sizeof *values, bytes);
+    });
+    if (columns.has(Column::source)) pack(b.source.row(first), n, b.source.width, bytes);
+    file.write(bytes.data(), bytes.size());
+    if (n == 0) return;
+  }
+}
+
+void read_column(StoreFile& file, const Block& of, Column c, void* values, size_t n, size_t width) {
+  const std::optional<int> axis = axis_of(c);
+  file.read_packed(values, n, width, axis ? of.origin[*axis] : 0.0);
 }
 
 namespace {
 
 /// The rows of the chunk's column `source`, behind its other columns, to row `row` of `to`; passed over where they are not wanted.
 void read_source(StoreFile& file, const ChunkHead& head, bool wanted, core::ByteRows& to, size_t row) {
-  const size_t bytes = size_t{head.points} * head.source_width;
-  if (!wanted) return file.skip(bytes);
+  if (!wanted) return file.skip_packed();
   to.resize(std::max(to.size(), row + head.points), head.source_width);
-  if (to.width == head.source_width) {
-    if (bytes > 0) file.read(to.row(row), bytes);
-    return;
-  }
-  std::vector<std::uint8_t> narrow(bytes);
-  if (bytes > 0) file.read(narrow.data(), bytes);
+  if (to.width == head.source_width) return file.read_packed(to.row(row), head.points, head.source_width);
+  std::vector<std::uint8_t> narrow(size_t{head.points} * head.source_width);
+  file.read_packed(narrow.data(), head.points, head.source_width);
   for (size_t i = 0; i < head.points; ++i) std::copy_n(narrow.data() + i * head.source_width, head.source_width, to.row(row + i));
 }
 
@@ -141,15 +174,20 @@ bool read_chunk(StoreFile& file, Block& to, size_t& row, ColumnSet wanted, Colum
   seen = seen | there;
   core::for_each_column([&](Column c, std::string_view, auto member) {
     if (!there.has(c)) return;
+    if (!wanted.has(c)) return file.skip_packed();
     auto& column = to.*member;
-    const size_t bytes = head.points * sizeof(column[0]);
-    if (!wanted.has(c)) return file.skip(bytes);
     if (column.size() < row + head.points) column.resize(row + head.points);
-    if (bytes > 0) file.read(column.data() + row, bytes);
+    read_column(file, to, c, column.data() + row, head.points, sizeof column[0]);
   });
   if (there.has(Column::source)) read_source(file, head, wanted.has(Column::source), to.source, row);
   row += head.points;
   return true;
+}
+
+void skip_chunk(StoreFile& file, const ChunkHead& head) {
+  const ColumnSet there = head.set();
+  for (int c = 0; c < core::column_count; ++c)
+    if (there.has(static_cast<Column>(c))) file.skip_packed();
 }
 
 }  // namespace swath::pipeline

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one format of points in the work folder: chunks of {u32 points, u32 column bits, u32 bytes of a row of the column `source`, columns
-// in the order of the enum}, in the machine's own byte order: the store is never carried elsewhere.
+// The one format of points in the work folder: chunks of {ChunkHead, columns in the order of the enum, each packed (packed_column.h)}, in
+// the machine's own byte order: the store is never carried elsewhere.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,16 @@
 
 #include "core/block.h"
 #include "pipeline/work/checksum.h"
+#include "pipeline/work/packed_column.h"
 
 namespace swath::pipeline {
 
+constexpr size_t chunk_rows = 1u << 16;  ///< of a chunk at most: what a reader holds at once is small whatever is in the file
+constexpr size_t widest_row = 1u << 17;  ///< bytes, of the column `source`
+
 struct ChunkHead {
-  std::uint32_t points = 0, columns = 0, source_width = 0;
+  std::uint32_t points = 0, columns = 0, source_width = 0, unused = 0;
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< around the points, where there are columns x and y
   core::ColumnSet set() const;
 };
 
@@ -28,10 +33,13 @@ class StoreFile {
 
   void write(const void* data, size_t n);
   std::uint64_t written() const { return written_; }
-  /// The head of the next chunk, of which the whole is there; false at the end of the file.
+  /// The head of the next chunk; false at the end of the file.
   bool next(ChunkHead& head);
   void read(void* data, size_t n);
   void skip(size_t n);
+  /// The next column: `n` values of `width` bytes.
+  void read_packed(void* values, size_t n, size_t width, double origin = 0.0);
+  void skip_packed();
   /// Of a file that was written: a network disk may fail only here.
   void close();
 
@@ -40,12 +48,20 @@ class StoreFile {
   std::filesystem::path name_;
   int fd_;
   Checksum* checksum_;
+  std::string packed_;
   std::uint64_t written_ = 0, size_ = 0, at_ = 0;
 };
 
-void write_chunk(StoreFile& file, const core::Block& block, size_t first, size_t count, core::ColumnSet columns);
+/// Writes rows as one chunk or several; one without points where there are none.
+void write_chunks(StoreFile& file, const core::Block& block, size_t first, size_t count, core::ColumnSet columns);
 
 /// Appends the wanted columns of the next chunk to `to` at row `row`; false at the end of the file. `seen`: gets the chunk's columns.
 bool read_chunk(StoreFile& file, core::Block& to, size_t& row, core::ColumnSet wanted, core::ColumnSet& seen);
+
+/// The next column of a chunk, which is `c`, of a block with the origin of `of`.
+void read_column(StoreFile& file, const core::Block& of, core::Column c, void* values, size_t n, size_t width);
+
+/// Passes over the columns behind a head.
+void skip_chunk(StoreFile& file, const ChunkHead& head);
 
 }  // namespace swath::pipeline

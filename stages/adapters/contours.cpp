@@ -44,9 +44,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t page_bytes = size_t{64} << 20,
-                 least_page_bytes = size_t{8} << 20;  ///< of the surface, held while lines are drawn; of a thread
-constexpr size_t drawn_bytes = size_t{256} << 20;     ///< of the levels that are drawn at once
+constexpr size_t page_bytes = size_t{64} << 20, least_page_bytes = size_t{8} << 20;  ///< of the surface, while lines are drawn; of a thread
+constexpr size_t drawn_bytes = size_t{256} << 20;                                    ///< of the levels that are drawn at once
 
 /// Of the surface alone: contours have no sigma from assumed ones.
 struct TinOptions : terrain::DtmOptions {};
@@ -280,10 +279,11 @@ class Contours : public OptionStage<ContourWriteOptions> {
         ++stretches.back().count;
       }
     }
+    const auto share = static_cast<size_t>(context.memory / 8.0);  // a byte of segments takes eight until it is written
     tbb::enumerable_thread_specific<terrain::Facets> surfaces([&] {
       return terrain::Facets(
           cell(context), [&](const core::Lattice& window) { return surface(context, job.folder, window); },
-          std::max(least_page_bytes, page_bytes / static_cast<size_t>(context.threads)));
+          std::max(least_page_bytes, std::min(page_bytes, share) / static_cast<size_t>(context.threads)));
     });
     terrain::Labeller labeller(options.labels);
     const int decimals =
@@ -299,7 +299,7 @@ class Contours : public OptionStage<ContourWriteOptions> {
     std::sort(bytes.begin(), bytes.end(), std::greater<>());
     size_t at_once = 0;
     for (size_t sum = 0; at_once < std::min(bytes.size(), 2 * static_cast<size_t>(context.threads)); ++at_once)
-      if ((sum += bytes[at_once]) > drawn_bytes) break;
+      if ((sum += bytes[at_once]) > std::min(drawn_bytes, share)) break;
     at_once = std::max<size_t>(at_once, 1);
     using Segments = std::shared_ptr<std::vector<terrain::Segment>>;
     using Lines = std::shared_ptr<std::vector<terrain::ContourLine>>;

@@ -28,6 +28,12 @@ class Lines : public OptionStage<quality::LineOptions> {
   double bytes_per_point() const override { return 48.0; }
   std::vector<std::string> products() const override { return {"lines.json"}; }
 
+  bool is_divisible() const override { return true; }
+  void join_parts(const Context& context, const TileJob& whole, const std::vector<std::filesystem::path>& parts) const override {
+    quality::LineCells cells;  // blocks that parts share are the same in each
+    for (const std::filesystem::path& part : parts) read_line_cells(file_of(context, part, whole.key), cells);
+    write_line_cells(file_of(context, whole.folder, whole.key), cells);
+  }
   void run_tile(const Context& context, TileJob& job) const override {
     write_line_cells(file_of(context, job.folder, job.key), quality::compare_cells(job.block, job.own, options));
   }

@@ -83,6 +83,15 @@ class Density : public OptionStage<terrain::DensityOptions> {
   std::vector<Raster> rasters(const Context& c) const override {
     return {{"cell", options.cell.value, c.tile_side, 32.0}, {"cell", options.cell.value, c.tile_side + 2.0 * halo(), 8.0}};
   }
+  bool is_divisible() const override { return true; }
+  void join_parts(const Context&, const TileJob& whole, const std::vector<fs::path>& parts) const override {
+    for (const Product p : {Product::pulse_density, Product::return_density}) {
+      std::vector<fs::path> of_parts;
+      for (const fs::path& part : parts) of_parts.push_back(part / name_of(p));
+      fs::create_directories(whole.folder / name_of(p));
+      join_grid_parts(whole.folder / name_of(p), whole.key, of_parts, lattice_in(options.cell.value, whole.box));
+    }
+  }
   void run_tile(const Context&, TileJob& job) const override {
     const core::Lattice own = lattice_in(options.cell.value, job.box);
     keep(job, Product::pulse_density, terrain::density(job.block, own, options, true));
@@ -110,6 +119,10 @@ class Intensity : public OptionStage<terrain::IntensityOptions> {
     std::vector<Raster> out = window_of(c, Product::dtm, 0);
     out.push_back({"cell", options.cell.value, c.tile_side, 36.0});
     return out;
+  }
+  bool is_divisible() const override { return true; }
+  void join_parts(const Context&, const TileJob& whole, const std::vector<fs::path>& parts) const override {
+    join_grid_parts(whole.folder, whole.key, parts, lattice_in(options.cell.value, whole.box));
   }
   void run_tile(const Context& context, TileJob& job) const override {
     meet_terrain(context, job);

@@ -81,6 +81,10 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
     return {{"cell", options.cell.value, c.tile_side, 26.0}, {"cell", options.cell.value, c.tile_side + 2.0 * options.max_edge.value, 8.0}};
   }
   double cell() const override { return options.cell.value; }
+  bool is_divisible() const override { return true; }
+  void join_parts(const Context&, const TileJob& whole, const std::vector<std::filesystem::path>& parts) const override {
+    join_grid_parts(whole.folder, whole.key, parts, lattice_in(options.cell.value, whole.box));
+  }
   void run_tile(const Context& context, TileJob& job) const override {
     const terrain::Breaklines* lines = lines_.get(context);
     std::uint64_t shared = 0;
@@ -134,6 +138,10 @@ class Dsm : public OptionStage<terrain::DsmOptions> {
   // Measured as above, cells of 0.5 m: 42 bytes per cell.
   std::vector<Raster> rasters(const Context& c) const override { return {{"cell", options.cell.value, c.tile_side + 2.0 * halo(), 46.0}}; }
   double cell() const override { return options.cell.value; }
+  bool is_divisible() const override { return true; }
+  void join_parts(const Context&, const TileJob& whole, const std::vector<std::filesystem::path>& parts) const override {
+    join_grid_parts(whole.folder, whole.key, parts, lattice_in(options.cell.value, whole.box));
+  }
   void run_tile(const Context&, TileJob& job) const override {
     const core::Grid grid = terrain::dsm(job.block, lattice_in(options.cell.value, job.box), options);
     count_voids(grid, job.tally);

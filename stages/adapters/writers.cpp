@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <mutex>
+#include <optional>
 
 #include "core/error.h"
 #include "io/geotiff.h"
@@ -66,6 +67,7 @@ class LasTiles : public OptionStage<LasOptions> {
     for (int c = 0; c < core::column_count; ++c) all.add(static_cast<Column>(c));
     return all;
   }
+  bool is_streamed() const override { return true; }
   double bytes_per_point() const override { return 120.0; }
   std::vector<std::string> products() const override { return {options.folder}; }
   void run_tile(const Context& context, TileJob& job) const override {
@@ -79,19 +81,24 @@ class LasTiles : public OptionStage<LasOptions> {
     o.creation_year = static_cast<std::uint16_t>(context.creation_year);
     o.creation_day = static_cast<std::uint16_t>(context.creation_day);
     o.threads = 1;
-    if (!job.block.source.empty()) {
-      o.sources = sources(context);
-      o.header = header_;
-    }
-    core::Block block = std::move(job.block);
-    job.block = {};
-    scale_block(context, block, true);
-    io::LasWriter writer(context.output / options.folder / name(context, job.key), o);
-    writer.write(block);
-    if (writer.overlap_lost() > 0)
-      job.tally.count("overlap flags that the point format cannot hold (point_format = 6 keeps them)", writer.overlap_lost());
-    writer.finish();
-    job.block = std::move(block);
+    std::optional<io::LasWriter> writer;
+    const auto open = [&](bool has_sources) {
+      if (has_sources) o.sources = sources(context), o.header = header_;
+      writer.emplace(context.output / options.folder / name(context, job.key), o);
+    };
+    // Fields hang on all of the points, so that these are gone through twice.
+    job.stream([&](core::Block& block) {
+      if (!writer) open(!block.source.empty());
+      writer->look_at(block);
+    });
+    if (!writer) open(false);
+    job.stream([&](core::Block& block) {
+      scale_block(context, block, true);
+      writer->write(block);
+    });
+    if (writer->overlap_lost() > 0)
+      job.tally.count("overlap flags that the point format cannot hold (point_format = 6 keeps them)", writer->overlap_lost());
+    writer->finish();
   }
   void run_merge(const Context& context, MergeJob& job) const override {
     std::vector<std::string> files;

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is declared is a little more than what is taken (tests/stages/memory_test.cpp); what the allocator rounds up and what nobody counts
+// (stacks, file buffers, lists of tiles) has a share of its own.
+#include "pipeline/memory.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+#include "core/error.h"
+#include "core/option.h"
+#include "core/units.h"
+#include "io/geotiff.h"
+
+namespace swath::pipeline {
+namespace {
+
+constexpr double uncounted = 0.05;  // of the budget
+constexpr double megabyte = 1e6;
+
+}  // namespace
+
+std::uint64_t resident_bytes() {
+  std::ifstream in("/proc/self/statm");
+  std::uint64_t all = 0, resident = 0;
+  if (!(in >> all >> resident)) return 0;
+  return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+void return_freed_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
+void fit_memory(double bytes) {
+#ifdef __GLIBC__
+  // Larger pieces are fetched from the system and go back at once: slower (a fifth of the time at 2 GB), but nothing of them is kept.
+  constexpr double plenty = 2e9, share = 1.0 / 256.0;
+  if (bytes < plenty) {
+    mallopt(M_MMAP_THRESHOLD, static_cast<int>(std::max(256e3, bytes * share)));
+    mallopt(M_TRIM_THRESHOLD, static_cast<int>(bytes * share));
+    mallopt(M_ARENA_MAX, 1);
+  }
+#endif
+  io::limit_raster_cache(static_cast<std::int64_t>(bytes / 32.0));
+}
+
+double MemoryBudget::free() const {
+  return_freed_memory();
+  return std::max(0.0, (1.0 - uncounted) * bytes_ - static_cast<double>(resident_bytes()));
+}
+
+double MemoryBudget::reserve() const { return uncounted * bytes_; }
+
+void MemoryBudget::make_room(std::uint64_t bytes) const {
+  if (static_cast<double>(resident_bytes() + bytes) > bytes_) return_freed_memory();
+}
+
+void MemoryBudget::require(double bytes, double free, std::string_view what) const {
+  if (bytes <= free) return;
+  const auto text = [](double b) { return core::format_quantity(core::Dimension::memory, std::ceil(b / megabyte) * megabyte); };
+  const double works = bytes_ + (bytes - free) / (1.0 - uncounted);
+  throw core::usage_error("run.memory = " + text(bytes_) + " is too little: " + std::string(what) + " needs " + text(bytes) + " and " +
+                              text(free) + " are free",
+                          "run.memory", "--set run.memory=\"" + text(works) + "\" is the least that works here");
+}
+
+}  // namespace swath::pipeline

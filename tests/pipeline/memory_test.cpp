@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/memory.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+
+namespace swath::pipeline {
+namespace {
+
+TEST(MemoryBudget, WhatIsFreeIsTheBudgetLessWhatTheProcessHolds) {
+  if (resident_bytes() == 0) GTEST_SKIP() << "this system does not say what a process holds";
+  const MemoryBudget budget(2e9);
+  const double free = budget.free();
+  EXPECT_LT(free, 2e9 - budget.reserve());
+  EXPECT_GT(free, 1e9);
+  EXPECT_EQ(MemoryBudget(1e6).free(), 0.0);
+}
+
+TEST(MemoryBudget, ARefusalNamesTheBudgetThatWorks) {
+  const MemoryBudget budget(200e6);
+  EXPECT_NO_THROW(budget.require(50e6, 50e6, "a tile"));
+  try {
+    budget.require(145e6, 50e6, "filters.ground on the tile 1_2");
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_EQ(e.code(), core::Exit::bad_usage);
+    EXPECT_EQ(e.where(), "run.memory");
+    EXPECT_NE(std::string(e.what()).find("filters.ground on the tile 1_2 needs 145 MB and 50 MB are free"), std::string::npos) << e.what();
+    EXPECT_NE(e.hint().find("300 MB"), std::string::npos) << e.hint();  // 200 + 95 / 0.95
+  }
+}
+
+}  // namespace
+}  // namespace swath::pipeline

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/work/packed_column.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace swath::pipeline {
+namespace {
+
+PackedHead head_of(const std::string& packed) {
+  PackedHead head;
+  std::memcpy(&head, packed.data(), sizeof head);
+  return head;
+}
+
+template <class T>
+void expect_back(const std::vector<T>& values, const std::string& packed, double origin = 0.0) {
+  const PackedHead head = head_of(packed);
+  ASSERT_EQ(head.bytes + sizeof head, packed.size());
+  std::vector<T> back(values.size());
+  ASSERT_TRUE(unpack(head, packed.data() + sizeof head, back.data(), back.size(), sizeof(T), origin));
+  EXPECT_TRUE(values.empty() || std::memcmp(values.data(), back.data(), values.size() * sizeof(T)) == 0);
+}
+
+template <class T>
+std::vector<T> random_values(size_t n) {
+  std::mt19937_64 random(3);
+  std::vector<T> out(n);
+  for (T& v : out) v = std::bit_cast<T>(static_cast<std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>>(random()));
+  return out;
+}
+
+TEST(PackedColumn, EveryBitComesBackWhateverTheValuesAre) {
+  for (const size_t n : {0u, 1u, 2u, 1000u, 70000u}) {
+    std::string packed;
+    const auto doubles = random_values<double>(n);
+    pack(doubles.data(), n, 8, packed);
+    expect_back(doubles, packed);
+    packed.clear();
+    const auto floats = random_values<float>(n);
+    pack(floats.data(), n, 4, packed);
+    expect_back(floats, packed);
+    packed.clear();
+    pack_coordinates(doubles.data(), n, 500000.0, packed);
+    expect_back(doubles, packed, 500000.0);
+  }
+}
+
+TEST(PackedColumn, CoordinatesOfAFileTakeFewBytesAndComeBackToTheLastBit) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> step(0.0, 0.5);
+  for (const double scale : {0.001, 0.01, 1.0 / 3.0}) {
+    std::vector<double> values;
+    double at = 612345.678;
+    for (int i = 0; i < 50000; ++i) values.push_back(std::round((at += step(random)) / scale) * scale + 0.0 - 612000.0);
+    std::string packed;
+    pack_coordinates(values.data(), values.size(), 612000.0, packed);
+    expect_back(values, packed, 612000.0);
+    if (scale == 0.001) {
+      EXPECT_LT(packed.size(), 3 * values.size());
+    }
+  }
+}
+
+TEST(PackedColumn, ValuesThatAreNoDecimalsOrNotFiniteComeBack) {
+  const std::vector<double> values{0.0, -0.0, 1.0 / 3.0, std::numeric_limits<double>::infinity(), std::nan(""), 1e300, -5e-324};
+  std::string packed;
+  pack_coordinates(values.data(), values.size(), 1e6, packed);
+  expect_back(values, packed, 1e6);
+}
+
+TEST(PackedColumn, DamagedBytesAreNoticedOrGiveOtherValuesButNeverMoreOfThem) {
+  std::vector<std::uint16_t> values(1000);
+  for (size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::uint16_t>(i * i);
+  std::string packed;
+  pack(values.data(), values.size(), 2, packed);
+  std::vector<std::uint16_t> back(values.size());
+  PackedHead head = head_of(packed);
+  EXPECT_FALSE(unpack(head, packed.data() + sizeof head, back.data(), back.size() - 1, 2));
+  head.bytes -= 1;
+  EXPECT_FALSE(unpack(head, packed.data() + sizeof head, back.data(), back.size(), 2));
+  head = head_of(packed);
+  head.way = 77;
+  EXPECT_FALSE(unpack(head, packed.data() + sizeof head, back.data(), back.size(), 2));
+}
+
+}  // namespace
+}  // namespace swath::pipeline
