@@ -71,7 +71,7 @@ class Disk(Case):
         for ending in ("laz", "las"):
             config.write_text(f'[[stage]]\ntype = "readers.las"\n\n[[stage]]\ntype = "writers.las"\ncompress = {str(ending == "laz").lower()}\n')
             arguments = ["run", config, "--survey", survey, "--output", disk / "out", "--quiet"]
-            for kilobytes in range(1200, 2600, 40):
+            for kilobytes in range(40, 2600, 20):
                 subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "tmpfs", disk], check=True)
                 try:
                     done = swath(*arguments)
