@@ -85,6 +85,10 @@ if [ "${#targets[@]}" -eq 0 ]; then
 fi
 echo "fuzzing ${#targets[@]} targets, ${seconds} s each, with $clang"
 printf '%s\n' "${targets[@]}" | xargs -P "${FUZZ_JOBS:-$(nproc)}" -I{} bash -c 'run_target {} || touch build/fuzz/found' || true
+# A target that crashed leaves its folder.
+for left in /dev/shm/swath-fuzz-*; do
+  [ ! -d "$left" ] || [ -d "/proc/${left##*-}" ] || rm -rf "$left"
+done
 if [ -e build/fuzz/found ]; then
   rm build/fuzz/found
   echo "fuzz: findings; again by: $programs/fuzz_TARGET FILE" >&2
