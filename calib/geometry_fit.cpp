@@ -76,44 +76,55 @@ void add_turns(const trajectory::FlightChecks& c, std::vector<GeometryCheck>& ou
 
 }  // namespace
 
-LineFit fit_lines(const SampledFlight& f, const Chain& chain, const trajectory::Trajectory& t, double predicted) {
+LineCells line_cells(const SampledFlight& f, const Chain& chain, const trajectory::Trajectory& t) {
   LocalPoints points(chain.scanner, chain.calibration, t, f.frame);
-  const std::vector<PassGround> ground = ground_of(f.sample, points, f.ground);
+  LineCells out;
+  out.ground = ground_of(f.sample, points, f.ground);
+  for (size_t a = 0; a < out.ground.size(); ++a) {
+    for (size_t b = a + 1; b < out.ground.size(); ++b)
+      if (std::vector<SharedCell> shared = shared_cells(out.ground[a], out.ground[b], f.ground.cell); !shared.empty())
+        out.pairs.push_back({a, b, std::move(shared)});
+    for (size_t k = 0; k < f.control.size(); ++k)
+      if (const GroundCell* c = cell_beside(out.ground[a], f.control[k].place, f.ground.cell)) {
+        const Eigen::Vector2d off = (f.control[k].place - c->mean).head<2>();
+        out.control.push_back({a, c, c->mean.z() + c->slope.dot(off) - f.control[k].place.z(), f.control[k].sigma, k});
+      }
+  }
+  return out;
+}
+
+LineFit fit_lines(const SampledFlight& f, LineCells& of, const Chain& chain, const trajectory::Trajectory& t, double predicted) {
+  const ShotGeometry geometry(chain.scanner, chain.calibration);
   std::map<size_t, const core::Shots*> shots;
   for (const PassSample& s : f.sample.surfaces) shots[s.pass] = &s.shots;
   LineFit out;
   std::vector<double> all;
   double outside = 0, squares = 0, expected = 0, cells = 0, smooth = 0;
-  for (size_t a = 0; a < ground.size(); ++a) {
-    cells += static_cast<double>(ground[a].cells), smooth += static_cast<double>(ground[a].smooth.size());
-    for (size_t b = a + 1; b < ground.size(); ++b) {
-      std::vector<SharedCell> shared = shared_cells(ground[a], ground[b], f.ground.cell);
-      if (shared.empty()) continue;
-      LinePair p;
-      p.pass_a = ground[a].pass, p.pass_b = ground[b].pass;
-      p.line_a = f.plan.passes[p.pass_a].line, p.line_b = f.plan.passes[p.pass_b].line;
-      p.predicted = predicted > 0
-                        ? predicted
-                        : predicted_difference(shared, *shots[p.pass_a], *shots[p.pass_b], points.geometry(), f.sensor, t, f.frame);
-      const double sigma = std::max(p.predicted, finest);
-      p.water = take_out_water(shared, sigma).value_or(0.0);
-      p.cells = shared.size();
-      std::vector<double> d, size;
-      double off = 0;
-      for (const SharedCell& s : shared) {
-        d.push_back(s.apart), size.push_back(std::abs(s.apart));
-        off += size.back() > far_off * sigma;
-        squares += std::pow(std::min(size.back(), cut * sigma), 2);
-      }
-      all.insert(all.end(), size.begin(), size.end());
-      const auto n = static_cast<double>(shared.size());
-      outside += off;
-      p.outside = off / n;
-      expected += n * p.predicted * p.predicted;
-      p.median = core::median(std::move(d), 0.0);
-      p.rms = mad_to_sigma * core::median(std::move(size), 0.0);
-      out.pairs.push_back(p);
+  for (const PassGround& g : of.ground) cells += static_cast<double>(g.cells), smooth += static_cast<double>(g.smooth.size());
+  for (auto& [a, b, shared] : of.pairs) {
+    LinePair p;
+    p.pass_a = of.ground[a].pass, p.pass_b = of.ground[b].pass;
+    p.line_a = f.plan.passes[p.pass_a].line, p.line_b = f.plan.passes[p.pass_b].line;
+    p.predicted =
+        predicted > 0 ? predicted : predicted_difference(shared, *shots[p.pass_a], *shots[p.pass_b], geometry, f.sensor, t, f.frame);
+    const double sigma = std::max(p.predicted, finest);
+    p.water = take_out_water(shared, sigma).value_or(0.0);
+    p.cells = shared.size();
+    std::vector<double> d, size;
+    double off = 0;
+    for (const SharedCell& s : shared) {
+      d.push_back(s.apart), size.push_back(std::abs(s.apart));
+      off += size.back() > far_off * sigma;
+      squares += std::pow(std::min(size.back(), cut * sigma), 2);
     }
+    all.insert(all.end(), size.begin(), size.end());
+    const auto n = static_cast<double>(shared.size());
+    outside += off;
+    p.outside = off / n;
+    expected += n * p.predicted * p.predicted;
+    p.median = core::median(std::move(d), 0.0);
+    p.rms = mad_to_sigma * core::median(std::move(size), 0.0);
+    out.pairs.push_back(p);
   }
   out.fit.smooth = cells > 0 ? smooth / cells : 0.0;
   out.fit.cells = all.size();

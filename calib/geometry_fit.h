@@ -9,6 +9,7 @@
 #include "calib/geometry_pairs.h"
 #include "calib/geometry_sample.h"
 #include "calib/roll_signal.h"
+#include "calib/small_errors.h"
 #include "calib/usual_mistakes.h"
 #include "core/sensor.h"
 #include "trajectory/flight_checks.h"
@@ -35,8 +36,15 @@ struct GeometryCheck {
   bool said = false;  ///< trajectory::MotionChecks warns of the same
 };
 
+/// A surveyed height on the ground.
+struct SurveyedHeight {
+  Eigen::Vector3d place;  ///< local frame of the flight, m
+  double sigma = 0.0;     ///< of the height, m
+};
+
 /// The fixed part: what the flight gave.
 struct SampledFlight {
+  std::vector<SurveyedHeight> control;
   SamplePlan plan;
   GeometrySample sample;
   trajectory::LocalFrame frame;
@@ -50,8 +58,18 @@ struct LineFit {
   Fit fit;
   double predicted = 0.0;  ///< m, over all pairs
 };
-/// `predicted`: taken for all pairs where it is not 0; else it is computed.
-LineFit fit_lines(const SampledFlight& flight, const Chain& chain, const trajectory::Trajectory& trajectory, double predicted);
+
+/// The smooth ground of a sample under one set of assumptions.
+struct LineCells {
+  std::vector<PassGround> ground;
+  std::vector<PairCells> pairs;
+  std::vector<ControlCell> control;
+};
+LineCells line_cells(const SampledFlight& flight, const Chain& chain, const trajectory::Trajectory& trajectory);
+
+/// `predicted`: taken for all pairs where it is not 0; else it is computed. Takes water out of the cells.
+LineFit fit_lines(const SampledFlight& flight, LineCells& cells, const Chain& chain, const trajectory::Trajectory& trajectory,
+                  double predicted);
 
 /// Of returns: do the beams point down, is the ground at a height where land is, does the ground tilt with the roll.
 std::vector<GeometryCheck> check_returns(const SampledFlight& flight, const Chain& chain, const trajectory::Trajectory& trajectory,

@@ -10,9 +10,9 @@
 #include <tuple>
 #include <utility>
 
-#include "core/error.h"
+#include "calib/geometry_control.h"
+#include "calib/geometry_trial.h"
 #include "core/geodesy.h"
-#include "core/time.h"
 #include "trajectory/checks.h"
 
 namespace swath::calib {
@@ -23,32 +23,16 @@ constexpr double as_good = 1.12;        // of the best cost: the same
 constexpr double fewer_cells = 0.1;     // of the largest number of cells that any assumption gives
 constexpr double near_predicted = 2.5;  // of the predicted sigma
 constexpr double few_outside = 0.1;
-constexpr double less = 0.8, much_less = 0.67;  // of the cost as described, where lines differ by little
-constexpr double more_than_predicted = 1.15;    // cost beside the predicted sigma from which small mistakes are looked for
+constexpr double no_worse = 1.02;       // of the cost as described, with a small mistake undone
 constexpr size_t most_named = 3;
-constexpr double margin = 0.6;           // s of the trajectory around a stretch ...
-constexpr double steps_around = 2.5;     // ... and steps of it, for the cubic through four records
-constexpr double longest_offset = 20.0;  // s
-constexpr double least_covered = 0.5, nearly_all = 0.95;
+constexpr double least_covered = 0.5, nearly_all = 0.95, all_covered = 0.995;
+constexpr double leap_fit = 1.0;  // m: lines that are flown a kilometre apart do not come near this
 constexpr double crossing = 0.15, meeting = 0.5;  // of the range: tracks so near share ground
 
 std::string text_of(const char* format, double a, double b = 0.0) {
   char text[200];
   std::snprintf(text, sizeof text, format, a, b);
   return text;
-}
-
-SampledFlight sampled(const GeometryInput& in, const GeometryOptions& o, const trajectory::LocalFrame& frame, double shift) {
-  SampledFlight f;
-  f.frame = frame;
-  f.sensor = in.sensor;
-  SampleSize size;
-  size.returns = o.returns;
-  size.most_stretches = static_cast<size_t>(o.stretches);
-  f.plan = plan_sample(in.lines, *in.trajectory, frame, shift, in.range, size);
-  f.sample = collect_sample(f.plan, in.shots);
-  f.ground = {f.plan.cell, 0.10 + 1e-4 * in.range};
-  return f;
 }
 
 /// At the ground below the first line that the trajectory covers, or below its middle.
@@ -65,183 +49,8 @@ trajectory::LocalFrame frame_of(const GeometryInput& in) {
   return trajectory::local_frame(core::ecef_of(place));
 }
 
-size_t not_held(const std::vector<GeometryCheck>& checks) {
-  return static_cast<size_t>(std::count_if(checks.begin(), checks.end(), [](const GeometryCheck& c) { return !c.held; }));
-}
-
-/// Longest step between records that is interpolated over.
-double longest_step(const trajectory::Trajectory& t) {
-  const std::vector<double>& time = t.data().time;
-  double out = 1e-6;
-  long hint = -1;
-  for (size_t k = 1; k < time.size(); ++k) {
-    const double step = time[k] - time[k - 1];
-    if (step <= out) continue;
-    if (const long at = t.interval_at(0.5 * (time[k] + time[k - 1]), hint); at >= 0) out = step, hint = at;
-  }
-  return out;
-}
-
-/// An error within one assumption leaves the others, and the flight as described, as they are; one of the system ends the run.
-template <class F>
-bool could(F&& work) {
-  try {
-    work();
-    return true;
-  } catch (const core::SystemError&) {
-    throw;
-  } catch (const core::Error&) {
-    return false;
-  }
-}
-
-/// The motion of a trajectory, up to 50 records a second: no sigmas, no covariances.
-core::TrajectoryData motion_of(const core::TrajectoryData& d) {
-  constexpr double least_step = 0.0195;  // s
-  using D = core::TrajectoryData;
-  D out;
-  double last = -1e300;
-  for (size_t i = 0; i < d.size(); ++i) {
-    if (d.time[i] - last < least_step) continue;
-    last = d.time[i];
-    for (const auto c : {&D::time, &D::latitude, &D::longitude, &D::height, &D::roll, &D::pitch, &D::heading})
-      (out.*c).push_back((d.*c)[i]);
-    if (!d.has_velocity()) continue;
-    for (const auto c : {&D::v_north, &D::v_east, &D::v_down}) (out.*c).push_back((d.*c)[i]);
-  }
-  return out;
-}
-
-/// GPS less UTC at the flight's date, s.
-double leap_seconds(const GeometryInput& in) { return core::gps_minus_utc_at_gps(in.lines.front().first); }
-
-class Trial {
- public:
-  Trial(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight, const GeometryFigures& found)
-      : in_(in), options_(o), flight_(flight), found_(found), shift_(in.chain.calibration.latency.value) {
-    const double step = longest_step(*in.trajectory);
-    piece_ = cut_trajectory(in.trajectory->data(), flight.plan, shift_, std::max(margin, steps_around * step));
-    how_.max_gap.value = 1.01 * step;
-    whole_ = motion_of(in.trajectory->data());
-    motion_ = not_held(check_motion(trajectory::check_flight(whole_)));
-  }
-
-  /// `small`: those alone that move returns by little.
-  void usual(bool small, std::vector<TriedMistake>& out) const {
-    for (const UsualMistake& m : usual_mistakes(in_.chain, in_.convergence)) {
-      Chain chain = in_.chain;
-      if (m.kind == UsualMistake::Kind::ranges || (small && m.kind != UsualMistake::Kind::small)) continue;
-      if (m.chain) m.chain(chain);
-      TriedMistake tried{std::string(m.name), m.what, m.cure, {}, 0};
-      const bool judged = could([&] {
-        if (!m.trajectory) return judge(flight_, chain, *in_.trajectory, whole_, motion_, tried);
-        core::TrajectoryData part = piece_, whole = whole_;
-        m.trajectory(part);
-        m.trajectory(whole);
-        judge(flight_, chain, trajectory::Trajectory(std::move(part), how_, "sample"), whole,
-              not_held(check_motion(trajectory::check_flight(whole))), tried);
-      });
-      if (judged) out.push_back(std::move(tried));
-    }
-  }
-
-  /// Mistakes of the ranges: another sample is read for each, as where lines lie beside one another depends on their widths.
-  void ranges(std::vector<TriedMistake>& out) const {
-    for (const UsualMistake& m : usual_mistakes(in_.chain, in_.convergence)) {
-      if (m.kind != UsualMistake::Kind::ranges) continue;
-      GeometryInput wide = in_;
-      m.chain(wide.chain);
-      wide.range *= wide.chain.calibration.range_scale / in_.chain.calibration.range_scale;
-      TriedMistake tried{std::string(m.name), m.what, m.cure, {}, 0};
-      if (could([&] { judge(sampled(wide, options_, flight_.frame, shift_), wide.chain, *in_.trajectory, whole_, motion_, tried); }))
-        out.push_back(std::move(tried));
-    }
-  }
-
-  /// Offsets of the laser's times near none, and near the one that the roll shows.
-  void offsets(bool large, std::vector<TriedMistake>& out) const {
-    could([&] { follow(flight_, 0.0, large, out); });
-    if (!large) return;
-    const double leap = leap_seconds(in_);
-    const auto roll = roll_signal(flight_.sample.profiles, ShotGeometry(in_.chain.scanner, in_.chain.calibration), whole_, longest_offset);
-    if (roll && std::abs(roll->offset) > 0.3 && roll->best > roll->correlation + 0.15 && std::abs(std::abs(roll->offset) - leap) > 0.2)
-      could([&] { follow(sampled(in_, options_, flight_.frame, shift_ + roll->offset), roll->offset, true, out); });
-    for (const double offset : {leap, -leap})
-      if (leap > 0)
-        could([&] { out.push_back(offset_of(sampled(in_, options_, flight_.frame, shift_ + offset), "leap_seconds", offset)); });
-  }
-
- private:
-  std::uint64_t enough() const {
-    return std::max<std::uint64_t>(static_cast<std::uint64_t>(options_.min_cells), found_.lines.fit.cells / 4);
-  }
-  Chain later(double offset) const {
-    Chain chain = in_.chain;
-    chain.calibration.latency.value += offset;
-    return chain;
-  }
-
-  /// The best offset near one for which a sample was read; where it lies at the sample's rim another one is read.
-  void follow(SampledFlight flight, double centre, bool again, std::vector<TriedMistake>& out) const {
-    constexpr int most_samples = 4;
-    constexpr double rim = 0.3;  // s
-    double best = centre, width = 0.0;
-    for (int round = 0; round < most_samples; ++round) {
-      const auto cost = [&](double offset) {
-        const Fit f = fit_lines(flight, later(offset), *in_.trajectory, found_.lines.predicted).fit;
-        return f.cells >= enough() ? f.cost : 1e9;
-      };
-      double least = cost(centre);
-      best = centre;
-      for (const double size : {0.003, 0.006, 0.012, 0.025, 0.05, 0.1, 0.2, 0.4})
-        for (const double offset : {centre + size, centre - size})
-          if (const double c = cost(offset); c < least) least = c, best = offset, width = 0.5 * size;
-      for (int k = 0; k < 6; ++k, width *= 0.5)
-        for (const double offset : {best - width, best + width})
-          if (const double c = cost(offset); c < least) least = c, best = offset;
-      if (!again || std::abs(best - centre) < rim) break;
-      centre = best;
-      flight = sampled(in_, options_, flight_.frame, shift_ + centre);
-    }
-    if (best != 0.0) out.push_back(offset_of(flight, "time_offset", best));
-  }
-
-  TriedMistake offset_of(const SampledFlight& flight, const char* name, double offset) const {
-    TriedMistake tried{name,
-                       "with the laser's times " + text_of("%.4g s ", std::abs(offset)) + (offset > 0 ? "later" : "earlier"),
-                       std::string(name) == "leap_seconds"
-                           ? "state the time scale of laser and trajectory, GPS or UTC"
-                           : "state latency = \"" + text_of("%.4g s", shift_ + offset) + "\" in [calibration]",
-                       {},
-                       0};
-    judge(flight, later(offset), *in_.trajectory, whole_, motion_, tried);
-    return tried;
-  }
-
-  void judge(const SampledFlight& flight, const Chain& chain, const trajectory::Trajectory& t, const core::TrajectoryData& whole,
-             size_t motion, TriedMistake& out) const {
-    out.fit = fit_lines(flight, chain, t, found_.lines.predicted).fit;
-    out.contradictions = motion + not_held(check_returns(flight, chain, t, whole));
-  }
-
-  const GeometryInput& in_;
-  const GeometryOptions& options_;
-  const SampledFlight& flight_;
-  const GeometryFigures& found_;
-  double shift_;
-  core::TrajectoryData piece_, whole_;
-  trajectory::TrajectoryOptions how_;
-  size_t motion_ = 0;
-};
-
-/// Lines that differ by little: fewer cells are off by far, and the others by less.
-bool is_clearly_less(const Fit& with, const Fit& without) {
-  const double off = without.outside * static_cast<double>(without.cells), left = with.outside * static_cast<double>(with.cells);
-  return with.cost < less * without.cost && (with.cost < much_less * without.cost || (off >= 8 && 4 * left <= off));
-}
-
 /// The mistakes that explain what was found, the best first.
-std::vector<TriedMistake> explain(const GeometryFigures& found, std::uint64_t least, bool lines_apart, bool is_little) {
+std::vector<TriedMistake> explain(const GeometryFigures& found, std::uint64_t least, bool lines_apart) {
   const size_t now = not_held(found.checks);
   size_t fewest = now;
   std::uint64_t most = found.lines.fit.cells;
@@ -257,11 +66,15 @@ std::vector<TriedMistake> explain(const GeometryFigures& found, std::uint64_t le
   for (const TriedMistake& t : found.tried) {
     const bool near =
         !by_lines || (found.lines.predicted > 0 ? t.fit.cost < near_predicted * sigma && t.fit.outside < few_outside : t.fit.rms < 0.3);
-    const bool better = near && (cost(t.fit) < far_better * now_cost || (is_little && is_clearly_less(t.fit, found.lines.fit)));
+    const bool better = near && cost(t.fit) < far_better * now_cost;
     const bool resolves = t.contradictions < now && (!lines_apart || better) && cost(t.fit) <= as_good * now_cost;
     if (t.contradictions == fewest && (resolves || (lines_apart && better))) out.push_back(t);
   }
   std::stable_sort(out.begin(), out.end(), [&](const TriedMistake& x, const TriedMistake& y) { return cost(x.fit) < cost(y.fit); });
+  // One offset of the times is one, however it was found.
+  const auto is_offset = [](const TriedMistake& t) { return t.name == "time_offset"; };
+  if (const auto first = std::find_if(out.begin(), out.end(), is_offset); first != out.end())
+    out.erase(std::remove_if(first + 1, out.end(), is_offset), out.end());
   if (!out.empty()) {
     const double best = cost(out.front().fit);
     std::erase_if(out, [&](const TriedMistake& t) { return cost(t.fit) > as_good * best; });
@@ -328,9 +141,12 @@ void say(const SampledFlight& flight, const GeometryOptions& o, bool sound, Geom
                            (apart > 1 ? text_of("; %.0f pairs of lines disagree", static_cast<double>(apart)) : ""));
   for (const GeometryCheck& c : out.checks)
     if (!c.held && !c.said) out.warnings.push_back(c.text);
-  if (sound && out.lines.fit.cells > 0 && !worst)
-    out.warnings.push_back("lines differ by " + text_of("%.3f m rms (predicted %.3f m)", out.lines.fit.cost, out.lines.predicted) +
-                           " where they overlap, more than need be");
+  if (sound && out.covered < nearly_all)
+    out.warnings.push_back("the trajectory covers " + text_of("%.0f %%", 100 * out.covered) + " of the time of the flight lines");
+  else if (sound && out.lines.fit.cells > 0 && !worst)
+    out.warnings.push_back("the differences of lines where they overlap" +
+                           text_of(" (%.3f m rms, predicted %.3f m) have the pattern of an error of calibration", out.lines.fit.cost,
+                                   out.lines.predicted));
   else if (sound && !worst)
     out.warnings.push_back("no ground was found that two lines have seen, though their tracks come within " +
                            text_of("%.0f m", flight.plan.nearest));
@@ -342,46 +158,104 @@ void say(const SampledFlight& flight, const GeometryOptions& o, bool sound, Geom
   }
 }
 
+/// Small mistakes that the lines' and the control's differences show; confirmed on the sample.
+std::vector<TriedMistake> small_mistakes(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight,
+                                         const LineCells& cells, const GeometryFigures& found) {
+  const bool heights = found.control.compared >= 3;
+  if (found.verdict == Verdict::not_judged && !heights) return {};
+  const ShotGeometry geometry(in.chain.scanner, in.chain.calibration);
+  const SmallErrors errors =
+      small_errors({flight.sample, cells.ground, cells.pairs, cells.control, geometry, in.sensor, *in.trajectory, flight.frame});
+  double speed = 0;
+  for (const Pass& p : flight.plan.passes) speed = std::max(speed, p.speed);
+  const std::vector<SmallExplanation> all =
+      explain_small(errors, in.chain, usual_mistakes(in.chain, in.convergence, in.antenna), {in.range, speed}, heights);
+  std::vector<TriedMistake> out;
+  if (all.empty()) return out;
+  const Trial trial(in, o, flight, found);
+  for (const SmallExplanation& e : all)
+    if (TriedMistake t = trial.judged(e); t.fit.cost <= no_worse * found.lines.fit.cost && t.contradictions <= not_held(found.checks))
+      out.push_back(std::move(t));
+  return out;
+}
+
+/// A flight whose lines do not fit, or whose records contradict one another.
+void try_mistakes(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight, bool apart, bool sound,
+                  GeometryFigures& out) {
+  const Trial trial(in, o, flight, out);
+  const auto least = static_cast<std::uint64_t>(o.min_cells);
+  std::vector<TriedMistake> tried;
+  trial.usual(tried);
+  trial.sampled_anew(tried);
+  out.tried = std::move(tried);
+  if (sound)
+    std::erase_if(out.tried,
+                  [&](const TriedMistake& t) { return t.fit.cells < 4 * least || !is_of_beams(t.name, flight.plan.nearest, in.range); });
+  out.named = explain(out, least, apart || sound);
+  if (!out.named.empty() || sound) return;
+  tried.clear();
+  trial.fitted(tried);
+  out.tried.insert(out.tried.end(), tried.begin(), tried.end());
+  out.named = explain(out, least, apart);
+}
+
+/// The trajectory covers part of the lines alone: would leap seconds make it cover them all, and the lines fit?
+void try_leap(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight, GeometryFigures& out) {
+  const Trial trial(in, o, flight, out);
+  trial.leap(out.tried);
+  const double shift = in.chain.calibration.latency.value;
+  for (const TriedMistake& t : out.tried) {
+    const double leap = t.what.ends_with("later") ? leap_seconds(in) : -leap_seconds(in);
+    if (covered_share(in.lines, *in.trajectory, shift + leap) > all_covered && t.fit.cells >= static_cast<std::uint64_t>(o.min_cells) &&
+        t.fit.rms < leap_fit && t.contradictions <= not_held(out.checks))
+      out.named.push_back(t);
+  }
+}
+
+void add_control(const GeometryOptions& o, const ControlFigures& c, GeometryFigures& out) {
+  out.control = {c.points, c.near, c.compared, c.nearest, c.median, c.predicted};
+  if (const auto check = check_control(c, o.ratio, o.tolerance.value)) out.checks.push_back(*check);
+}
+
+/// The lines fit and nothing but control is off.
+bool is_of_heights(const GeometryFigures& found) {
+  return not_held(found.checks) > 0 && std::all_of(found.checks.begin(), found.checks.end(), [](const GeometryCheck& c) {
+           return c.held || c.name == "control_height";
+         });
+}
+
 }  // namespace
 
 GeometryFigures judge_geometry(const GeometryInput& in, const GeometryOptions& o) {
   GeometryFigures out;
   if (in.lines.empty() || !(in.range > 0)) return out;
-  const trajectory::LocalFrame frame = frame_of(in);
-  const SampledFlight flight = sampled(in, o, frame, in.chain.calibration.latency.value);
+  const SampledFlight flight =
+      std::move(sampled(in, o, frame_of(in), {{in.chain.calibration.latency.value, in.range}}).front());
   out.covered = flight.plan.covered;
   if (out.covered < least_covered) {
     uncovered(in, out);
     for (const TriedMistake& t : out.named) out.warnings.push_back(t.what + " it covers them: " + t.cure);
     return out;
   }
-  out.lines = fit_lines(flight, in.chain, *in.trajectory, 0.0);
+  LineCells cells = line_cells(flight, in.chain, *in.trajectory);
+  out.lines = fit_lines(flight, cells, in.chain, *in.trajectory, 0.0);
   out.checks = check_returns(flight, in.chain, *in.trajectory, in.trajectory->data());
   const trajectory::MotionChecks said = trajectory::check_motion(in.trajectory->data(), trajectory::CheckOptions{}.min_speed);
   for (GeometryCheck& c : check_motion(trajectory::check_flight(in.trajectory->data()), said)) out.checks.push_back(std::move(c));
+  const ControlFigures control = compare_control(flight, cells, in.chain, *in.trajectory);
+  add_control(o, control, out);
   bool apart = false;
-  size_t judged = 0;  // pairs
   for (const LinePair& p : out.lines.pairs) {
-    if (p.cells >= static_cast<std::uint64_t>(o.min_cells)) out.verdict = Verdict::consistent, ++judged;
+    if (p.cells >= static_cast<std::uint64_t>(o.min_cells)) out.verdict = Verdict::consistent;
     apart = apart || is_apart(p, o);
   }
-  const bool sound = !apart && not_held(out.checks) == 0;
+  const bool sound = !apart && not_held(out.checks) == 0, of_heights = !apart && is_of_heights(out);
   const bool unmet = out.verdict == Verdict::not_judged && flight.plan.nearest < meeting * in.range;
-  const Fit& fit = out.lines.fit;
-  // The small difference of a single pair is one figure, which many a small mistake explains.
-  const bool little = sound && judged > 1 && fit.cost > more_than_predicted * out.lines.predicted;
-  if (sound && !unmet && !little) return out;
-  const Trial trial(in, o, flight, out);
-  std::vector<TriedMistake> tried;
-  trial.usual(little, tried);
-  trial.offsets(!little, tried);
-  if (!little) trial.ranges(tried);
-  out.tried = std::move(tried);
-  const auto least = static_cast<std::uint64_t>(o.min_cells);
-  if (unmet && sound)
-    std::erase_if(out.tried,
-                  [&](const TriedMistake& t) { return t.fit.cells < 4 * least || !is_of_beams(t.name, flight.plan.nearest, in.range); });
-  out.named = explain(out, least, apart || sound, little);
+  if (sound || of_heights) out.named = small_mistakes(in, o, flight, cells, out);
+  if (of_heights && out.named.empty())
+    if (const auto h = height_mistake(control, in.undulation ? in.undulation() : std::nan(""))) out.named.push_back({h->name, h->what, h->cure, {}, 0});
+  if (sound && out.named.empty() && out.covered < nearly_all) try_leap(in, o, flight, out);
+  if (out.named.empty() && !of_heights && (unmet || !sound)) try_mistakes(in, o, flight, apart, sound, out);
   if (sound && out.named.empty()) {
     out.tried.clear();
     return out;

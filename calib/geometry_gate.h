@@ -2,6 +2,8 @@
 // Does the geometry of a flight hold together, before products are made of it? And if it does not: which usual mistake explains it?
 #pragma once
 
+#include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,12 @@ void describe(GeometryOptions& o, V& v) {
   v.option("stretches", o.stretches, core::within(4, 1000), "Maximum number of stretches in a survey.");
 }
 
+/// A surveyed height on the ground or a roof.
+struct SurveyedPlace {
+  Eigen::Vector3d ecef;  ///< m
+  double sigma = 0.0;    ///< of the height, m
+};
+
 /// What is judged. The trajectory must outlive the call.
 struct GeometryInput {
   ShotStream shots;
@@ -40,6 +48,9 @@ struct GeometryInput {
   const trajectory::Trajectory* trajectory = nullptr;
   double range = 0.0;        ///< m, median of some returns
   double convergence = 0.0;  ///< rad, as usual_mistakes()
+  Eigen::Vector3d antenna = Eigen::Vector3d::Zero();  ///< m, its lever arm, as usual_mistakes()
+  std::vector<SurveyedPlace> control;
+  std::function<double()> undulation;  ///< of the geoid above the ellipsoid, m; NaN, or empty: not known
 };
 
 enum class Verdict { not_judged, consistent, inconsistent };
@@ -51,11 +62,19 @@ struct TriedMistake {
   size_t contradictions = 0;  ///< checks that are not held with it
 };
 
+/// Control near the lines.
+struct ControlNear {
+  size_t points = 0, near = 0, compared = 0;
+  double nearest = 0.0;                      ///< m, from a track
+  double median = 0.0, predicted = 0.0;      ///< ground less control, m
+};
+
 struct GeometryFigures {
   Verdict verdict = Verdict::not_judged;
   LineFit lines;
   double covered = 0.0;  ///< share of the lines' time within the trajectory
   std::vector<GeometryCheck> checks;
+  ControlNear control;
   std::vector<TriedMistake> tried;
   std::vector<TriedMistake> named;    ///< those that explain what was found, the best first
   std::vector<std::string> warnings;  ///< sentences with figures

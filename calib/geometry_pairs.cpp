@@ -87,6 +87,19 @@ std::vector<PassGround> ground_of(const GeometrySample& sample, LocalPoints& poi
   return out;
 }
 
+const GroundCell* cell_beside(const PassGround& ground, const Vector3d& place, double side) {
+  const auto i = static_cast<std::int32_t>(std::floor(place.x() / side)), j = static_cast<std::int32_t>(std::floor(place.y() / side));
+  const GroundCell* out = nullptr;
+  double nearest = side;
+  for (std::int32_t x = i - 1; x <= i + 1; ++x) {
+    auto at = std::lower_bound(ground.smooth.begin(), ground.smooth.end(), std::pair(x, j - 1),
+                               [](const GroundCell& c, const std::pair<std::int32_t, std::int32_t>& key) { return std::pair(c.i, c.j) < key; });
+    for (; at != ground.smooth.end() && at->i == x && at->j <= j + 1; ++at)
+      if (const double off = (at->mean - place).head<2>().norm(); off < nearest) nearest = off, out = &*at;
+  }
+  return out;
+}
+
 std::vector<SharedCell> shared_cells(const PassGround& a, const PassGround& b, double side) {
   std::vector<SharedCell> out;
   const auto before = [](const GroundCell& x, const GroundCell& y) { return std::pair(x.i, x.j) < std::pair(y.i, y.j); };
@@ -140,34 +153,42 @@ std::optional<double> take_out_water(std::vector<SharedCell>& shared, double sig
   return difference;
 }
 
+Vector3d normal_of(const SharedCell& cells) { return normal_of(*cells.a, *cells.b); }
+
+std::optional<CellLook> look_at(const GroundCell& c, const core::Shots& s, const Vector3d& direction, const ShotGeometry& geometry,
+                                trajectory::Cursor& cursor, const trajectory::LocalFrame& frame) {
+  const double t = geometry.time(s.time[c.sample]);
+  if (!cursor.seek(t)) return std::nullopt;
+  Jacobian J;
+  geometry.ecef_point(cursor.pose(t), {s.angle[c.sample], s.forward.empty() ? 0.0 : s.forward[c.sample], s.range[c.sample]}, J);
+  CellLook out;
+  out.by = (direction.transpose() * frame.local_R_ecef) * J;
+  out.own = loose * (c.rms * c.rms) / c.n;
+  out.sigma = cursor.sigma(t);
+  if (!out.by.allFinite()) return std::nullopt;
+  return out;
+}
+
 double predicted_difference(const std::vector<SharedCell>& shared, const core::Shots& a, const core::Shots& b, const ShotGeometry& geometry,
                             const core::SensorSigma& sensor, const trajectory::Trajectory& trajectory,
                             const trajectory::LocalFrame& frame) {
-  using Row = Eigen::Matrix<double, 1, parameter_count>;
   trajectory::Cursor cursor(trajectory);
   const CalibrationCovariance C = calibration_covariance(sensor);
-  const auto by = [&](const core::Shots& s, const GroundCell& c, const Vector3d& normal, Row& row, double& own) {
-    const double t = geometry.time(s.time[c.sample]);
-    if (!cursor.seek(t)) return false;
-    Jacobian J;
-    const Return r{s.angle[c.sample], s.forward.empty() ? 0.0 : s.forward[c.sample], s.range[c.sample]};
-    const trajectory::Pose pose = cursor.pose(t);
-    geometry.ecef_point(pose, r, J);
-    row = (normal.transpose() * frame.local_R_ecef) * J;
-    const Variances v = variances(sensor, cursor.sigma(t));
-    own = loose * (c.rms * c.rms) / c.n;
-    for (int k = position_north; k <= attitude_heading; ++k) own += v[static_cast<size_t>(k)] * row[k] * row[k];
-    return row.allFinite();
+  const auto variance_of = [&](const CellLook& look) {
+    const Variances v = variances(sensor, look.sigma);
+    double out = look.own;
+    for (int k = position_north; k <= attitude_heading; ++k) out += v[static_cast<size_t>(k)] * look.by[k] * look.by[k];
+    return out;
   };
   double squares = 0, n = 0;
   const size_t step = std::max<size_t>(1, shared.size() / judged);
   for (size_t k = 0; k < shared.size(); k += step) {
-    const Vector3d normal = normal_of(*shared[k].a, *shared[k].b);
-    Row ra, rb;
-    double va = 0, vb = 0;
-    if (!by(a, *shared[k].a, normal, ra, va) || !by(b, *shared[k].b, normal, rb, vb)) continue;
-    const Eigen::Matrix<double, 1, latency + 1> d = (ra - rb).head<latency + 1>();
-    squares += va + vb + d * C * d.transpose();
+    const Vector3d normal = normal_of(shared[k]);
+    const auto la = look_at(*shared[k].a, a, normal, geometry, cursor, frame);
+    const auto lb = look_at(*shared[k].b, b, normal, geometry, cursor, frame);
+    if (!la || !lb) continue;
+    const Eigen::Matrix<double, 1, latency + 1> d = (la->by - lb->by).head<latency + 1>();
+    squares += variance_of(*la) + variance_of(*lb) + d * C * d.transpose();
     n += 1;
   }
   return n > 0 ? std::sqrt(squares / n) : 0.0;

@@ -7,6 +7,7 @@
 
 #include "calib/geometry_sample.h"
 #include "calib/local_points.h"
+#include "calib/shot_geometry.h"
 #include "core/sensor.h"
 
 namespace swath::calib {
@@ -34,6 +35,9 @@ struct GroundOptions {
 
 std::vector<PassGround> ground_of(const GeometrySample& sample, LocalPoints& points, const GroundOptions& options);
 
+/// The smooth cell that holds a place or lies nearest beside it; null where there is none within a cell's side. The pointer is into `ground`.
+const GroundCell* cell_beside(const PassGround& ground, const Eigen::Vector3d& place, double side);
+
 /// Cells that two passes share.
 struct SharedCell {
   const GroundCell *a = nullptr, *b = nullptr;
@@ -56,6 +60,18 @@ struct LinePair {
   double outside = 0.0;    ///< share of cells that differ by more than five times that
   double water = 0.0;      ///< difference of the water's level, m; its cells are not among `cells`
 };
+
+/// How a cell's place along a direction depends on what a point depends on.
+struct CellLook {
+  Eigen::Matrix<double, 1, parameter_count> by = Eigen::Matrix<double, 1, parameter_count>::Zero();  ///< m per unit of each
+  double own = 0.0;                                                                                  ///< variance by the scatter of its returns, m2
+  trajectory::PoseSigma sigma;                   ///< of the trajectory at its return
+};
+/// `cursor`: of the flight's trajectory. Nothing where that has no pose.
+std::optional<CellLook> look_at(const GroundCell& cell, const core::Shots& shots, const Eigen::Vector3d& direction,
+                                const ShotGeometry& geometry, trajectory::Cursor& cursor, const trajectory::LocalFrame& frame);
+/// Upwards, of both cells.
+Eigen::Vector3d normal_of(const SharedCell& cells);
 
 /// Sigma of the difference of two passes on shared cells, rms over up to 40 of them, m.
 double predicted_difference(const std::vector<SharedCell>& shared, const core::Shots& a, const core::Shots& b, const ShotGeometry& geometry,

@@ -26,6 +26,7 @@ constexpr double shortest_pass = 2.0;             // s
 constexpr double swath_share = 1.2;               // of the range: no usual swath is wider
 constexpr double profile_length = 20.0;           // s
 constexpr double profile_rate = 500.0;            // returns/s
+constexpr double spot_share = 0.4;                // of the reach: within most swaths
 constexpr size_t most_profiles = 12;
 constexpr double returns_of_a_cell = 10.0;
 constexpr double at_once = 5.0;      // s between two pieces of one line that are not compared
@@ -175,6 +176,35 @@ std::vector<PairSites> near_pairs(const std::vector<Pass>& passes, double reach,
   return sorted;
 }
 
+/// How near the tracks come to places, and the two passes nearest to each of some of them: number and time.
+std::vector<std::pair<size_t, double>> passes_at(const std::vector<Vector2d>& spots, double reach, size_t most, SamplePlan& plan) {
+  std::vector<std::vector<std::pair<size_t, double>>> found;
+  for (const Vector2d& spot : spots) {
+    std::vector<std::tuple<double, size_t, double>> near;  // distance, pass, time
+    for (size_t k = 0; k < plan.passes.size(); ++k) {
+      const Pass& p = plan.passes[k];
+      std::tuple<double, size_t, double> best{std::numeric_limits<double>::infinity(), k, 0.0};
+      for (size_t i = 0; i < p.track.size(); ++i)
+        if (const double d = (p.track[i] - spot).norm(); d < std::get<0>(best)) best = {d, k, p.time[i]};
+      near.push_back(best);
+    }
+    std::sort(near.begin(), near.end());
+    if (near.empty()) continue;
+    const double distance = std::get<0>(near.front());
+    plan.nearest_spot = std::min(plan.nearest_spot, distance);
+    plan.near_spots += distance < reach;
+    std::vector<std::pair<size_t, double>>& at = found.emplace_back();
+    for (size_t k = 0; k < std::min<size_t>(2, near.size()) && std::get<0>(near[k]) < spot_share * reach; ++k)
+      at.emplace_back(std::get<1>(near[k]), std::get<2>(near[k]));
+    if (at.empty()) found.pop_back();
+  }
+  std::vector<std::pair<size_t, double>> out;
+  const size_t n = std::min(most, found.size());
+  for (size_t k = 0; k < n; ++k)
+    for (const auto& one : found[k * found.size() / n]) out.push_back(one);
+  return out;
+}
+
 /// Of files that were read one after the other.
 void sort_by_time(core::Shots& s) {
   if (std::is_sorted(s.time.begin(), s.time.end())) return;
@@ -188,6 +218,23 @@ void sort_by_time(core::Shots& s) {
     std::vector<double> sorted;
     for (const size_t i : order) sorted.push_back((*column)[i]);
     *column = std::move(sorted);
+  }
+}
+
+/// The returns of a batch that lie in a stretch.
+void keep(const Stretch& s, const core::Shots& batch, core::Shots& into) {
+  const auto begin = std::lower_bound(batch.time.begin(), batch.time.end(), s.first) - batch.time.begin();
+  const auto end = std::upper_bound(batch.time.begin(), batch.time.end(), s.last) - batch.time.begin();
+  for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+    if (!is_last_return(batch, i)) continue;
+    const std::uint64_t number = batch.record.empty() ? i : batch.record[i];
+    if (s.every > 1 && mixed(number) % s.every != 0) continue;
+    into.time.push_back(batch.time[i]);
+    into.angle.push_back(batch.angle[i]);
+    into.range.push_back(batch.range[i]);
+    if (batch.forward.empty() && into.forward.empty()) continue;
+    into.forward.resize(into.time.size(), 0.0);  // a file without that angle may come first, or last
+    if (!batch.forward.empty()) into.forward.back() = batch.forward[i];
   }
 }
 
@@ -224,7 +271,7 @@ std::vector<RecordedLine> whole_lines(std::vector<RecordedLine> lines) {
 }
 
 SamplePlan plan_sample(const std::vector<RecordedLine>& lines, const trajectory::Trajectory& t, const trajectory::LocalFrame& frame,
-                       double shift, double range, const SampleSize& size) {
+                       double shift, double range, const SampleSize& size, const std::vector<Vector2d>& spots) {
   SamplePlan plan;
   double seconds = 0, covered = 0;
   const std::vector<RecordedLine> whole = whole_lines(lines);
@@ -248,6 +295,7 @@ SamplePlan plan_sample(const std::vector<RecordedLine>& lines, const trajectory:
     join(plan.stretches);
     if (plan.stretches.size() >= size.most_stretches) break;
   }
+  for (const auto& [pass, time] : passes_at(spots, reach, size.most_spots, plan)) add(pass, time);
   const size_t step = std::max<size_t>(1, plan.passes.size() / most_profiles);
   for (size_t k = 0; k < plan.passes.size(); k += step) {
     const Pass& p = plan.passes[k];
@@ -259,35 +307,28 @@ SamplePlan plan_sample(const std::vector<RecordedLine>& lines, const trajectory:
   return plan;
 }
 
-GeometrySample collect_sample(const SamplePlan& plan, const ShotStream& stream) {
-  GeometrySample out;
+std::vector<GeometrySample> collect_samples(const std::vector<const SamplePlan*>& plans, const ShotStream& stream) {
   std::map<int, std::vector<std::pair<Stretch, core::Shots*>>> of_line;
-  std::map<std::pair<bool, size_t>, core::Shots> shots;
-  for (const Stretch& s : plan.stretches) of_line[plan.passes[s.pass].line].emplace_back(s, &shots[{s.profile, s.pass}]);
+  std::vector<std::map<std::pair<bool, size_t>, core::Shots>> shots(plans.size());
+  for (size_t k = 0; k < plans.size(); ++k)
+    for (const Stretch& s : plans[k]->stretches)
+      of_line[plans[k]->passes[s.pass].line].emplace_back(s, &shots[k][{s.profile, s.pass}]);
   stream([&](int line, const core::Shots& batch) {
     const auto at = of_line.find(line);
     if (at == of_line.end()) return;
-    for (const auto& [s, into] : at->second) {
-      const auto begin = std::lower_bound(batch.time.begin(), batch.time.end(), s.first) - batch.time.begin();
-      const auto end = std::upper_bound(batch.time.begin(), batch.time.end(), s.last) - batch.time.begin();
-      for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
-        if (!is_last_return(batch, i)) continue;
-        const std::uint64_t number = batch.record.empty() ? i : batch.record[i];
-        if (s.every > 1 && mixed(number) % s.every != 0) continue;
-        into->time.push_back(batch.time[i]);
-        into->angle.push_back(batch.angle[i]);
-        into->range.push_back(batch.range[i]);
-        if (batch.forward.empty() && into->forward.empty()) continue;
-        into->forward.resize(into->time.size(), 0.0);  // a file without that angle may come first, or last
-        if (!batch.forward.empty()) into->forward.back() = batch.forward[i];
-      }
-    }
+    for (const auto& [s, into] : at->second) keep(s, batch, *into);
   });
-  for (auto& [key, kept] : shots) {
-    sort_by_time(kept);
-    if (kept.size() > 0) (key.first ? out.profiles : out.surfaces).push_back({key.second, std::move(kept)});
-  }
+  std::vector<GeometrySample> out(plans.size());
+  for (size_t k = 0; k < plans.size(); ++k)
+    for (auto& [key, kept] : shots[k]) {
+      sort_by_time(kept);
+      if (kept.size() > 0) (key.first ? out[k].profiles : out[k].surfaces).push_back({key.second, std::move(kept)});
+    }
   return out;
+}
+
+GeometrySample collect_sample(const SamplePlan& plan, const ShotStream& stream) {
+  return std::move(collect_samples({&plan}, stream).front());
 }
 
 core::TrajectoryData cut_trajectory(const core::TrajectoryData& d, const SamplePlan& plan, double shift, double margin) {

@@ -45,6 +45,7 @@ struct SampleSize {
   double returns = 12000;      ///< of a stretch
   size_t most_stretches = 64;  ///< of the survey
   int sites = 3;               ///< places of a pair of passes that are compared
+  size_t most_spots = 12;
 };
 
 struct SamplePlan {
@@ -53,15 +54,19 @@ struct SamplePlan {
   double cell = 0.0;                                         ///< side of a square that holds about ten returns of a stretch, m
   double covered = 0.0;                                      ///< share of the lines' time within the trajectory
   double nearest = std::numeric_limits<double>::infinity();  ///< distance of the two tracks nearest to one another, m
+  size_t near_spots = 0;                                     ///< of those asked for, within reach of a track
+  double nearest_spot = std::numeric_limits<double>::infinity();  ///< m, distance of one from a track
 };
 
 /// Records of one line in several files, beside one another (channels) or one after the other, become one; by time.
 std::vector<RecordedLine> whole_lines(std::vector<RecordedLine> lines);
 
 /// Stretches of passes that come nearer to one another than their swaths are wide, judged by the trajectory alone: no unit, sign or angle
-/// of the laser takes part. `shift`: s, added to recorded times. `range`: m, of a usual return.
+/// of the laser takes part. `shift`: s, added to recorded times. `range`: m, of a usual return. `spots`: places, local, m, that are looked at
+/// as well, each by the two passes nearest to it.
 SamplePlan plan_sample(const std::vector<RecordedLine>& lines, const trajectory::Trajectory& trajectory,
-                       const trajectory::LocalFrame& frame, double shift, double range, const SampleSize& size);
+                       const trajectory::LocalFrame& frame, double shift, double range, const SampleSize& size,
+                       const std::vector<Eigen::Vector2d>& spots = {});
 
 /// The returns of a pass, last ones alone, by time.
 struct PassSample {
@@ -75,6 +80,8 @@ struct GeometrySample {
 
 /// Reads the stream once. Which returns are kept depends on the plan and the records' numbers alone.
 GeometrySample collect_sample(const SamplePlan& plan, const ShotStream& stream);
+/// Several plans of one flight, the stream read once.
+std::vector<GeometrySample> collect_samples(const std::vector<const SamplePlan*>& plans, const ShotStream& stream);
 
 /// The records of a trajectory within the times of a sample (shifted), with a margin, s.
 core::TrajectoryData cut_trajectory(const core::TrajectoryData& data, const SamplePlan& plan, double shift, double margin);

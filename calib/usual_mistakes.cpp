@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/usual_mistakes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 #include <utility>
 
 #include "core/units.h"
@@ -91,7 +93,7 @@ void add_angles(std::vector<UsualMistake>& out) {
                  Kind::gross});
 }
 
-void add_ranges(std::vector<UsualMistake>& out) {
+void add_ranges(double offset, std::vector<UsualMistake>& out) {
   const auto range = [](double by) { return [by](Chain& c) { c.calibration.range_scale *= by; }; };
   out.push_back({"range_feet", "with ranges in feet", "state range_unit = \"1 ft\" in [[laser]]", range(foot), {}, Kind::ranges});
   out.push_back({"range_feet",
@@ -112,6 +114,20 @@ void add_ranges(std::vector<UsualMistake>& out) {
                  range(2.0),
                  {},
                  Kind::ranges});
+  for (const auto& [by, name, unit] : {std::tuple(0.01, "centimetres", "1 cm"), std::tuple(1e-3, "millimetres", "1 mm")})
+    out.push_back({"range_centimetres",
+                   std::string("with ranges in ") + name,
+                   std::string("state range_unit = \"") + unit + "\" in [[laser]]",
+                   range(by),
+                   {},
+                   Kind::ranges});
+  if (std::abs(offset) > 3.0)
+    out.push_back({"range_offset",
+                   "with the range offset in millimetres",
+                   "state range_offset of [calibration] in mm",
+                   [](Chain& c) { c.calibration.range_offset.value *= 1e-3; },
+                   {},
+                   Kind::gross});
 }
 
 void add_model(const Chain& stated, std::vector<UsualMistake>& out) {
@@ -164,7 +180,8 @@ void add_trajectory(double convergence, std::vector<UsualMistake>& out) {
                    "export the trajectory with headings from true north",
                    {},
                    added(&D::heading, convergence),
-                   Kind::small});
+                   Kind::small,
+                   convergence});
   const std::string axes = "export the trajectory with roll, pitch and heading of forward, right, down axes";
   const auto swapped = [&](std::string what, std::function<void(D&)> how) {
     out.push_back({"axes_swapped", std::move(what), axes, {}, std::move(how), Kind::gross});
@@ -190,31 +207,40 @@ void add_trajectory(double convergence, std::vector<UsualMistake>& out) {
   });
 }
 
-void add_lever_arm(const core::Calibration& c, std::vector<UsualMistake>& out) {
-  const auto lever = [&](const char* name, std::string what, std::string cure, Eigen::Vector3d by, Kind kind) {
+void add_lever_arm(const core::Calibration& c, const Eigen::Vector3d& antenna, std::vector<UsualMistake>& out) {
+  using Eigen::Vector3d;
+  const Vector3d stated(c.lever_arm_scanner[0].value, c.lever_arm_scanner[1].value, c.lever_arm_scanner[2].value);
+  const auto lever = [&](const char* name, std::string what, std::string cure, const Vector3d& right, Kind kind) {
+    if ((right - stated).norm() < 0.02) return;
     out.push_back({name,
                    std::move(what),
                    std::move(cure),
-                   [by](Chain& k) {
-                     for (size_t i = 0; i < 3; ++i) k.calibration.lever_arm_scanner[i].value *= by[static_cast<Eigen::Index>(i)];
+                   [right](Chain& k) {
+                     for (size_t i = 0; i < 3; ++i) k.calibration.lever_arm_scanner[i].value = right[static_cast<Eigen::Index>(i)];
                    },
                    {},
                    kind});
   };
-  double longest = 0;
-  for (const core::Metres& m : c.lever_arm_scanner) longest = std::max(longest, std::abs(m.value));
-  if (longest > 0.02) {
-    const std::string cure = "reverse it in lever_arm_scanner of [calibration]";
-    lever("lever_arm_sign", "with the lever arm's forward part reversed", cure, {-1, 1, 1}, Kind::small);
-    lever("lever_arm_sign", "with the lever arm's right part reversed", cure, {1, -1, 1}, Kind::small);
-    lever("lever_arm_sign", "with the lever arm's down part reversed", cure, {1, 1, -1}, Kind::small);
-    lever("lever_arm_sign", "with the whole lever arm reversed", cure, {-1, -1, -1}, Kind::small);
-  }
-  if (longest > 3.0) {
+  const auto times = [&](double x, double y, double z) { return Vector3d(stated.cwiseProduct(Vector3d(x, y, z))); };
+  const std::string sign = "reverse it in lever_arm_scanner of [calibration]";
+  lever("lever_arm_sign", "with the lever arm's forward part reversed", sign, times(-1, 1, 1), Kind::small);
+  lever("lever_arm_sign", "with the lever arm's right part reversed", sign, times(1, -1, 1), Kind::small);
+  lever("lever_arm_sign", "with the lever arm's down part reversed", sign, times(1, 1, -1), Kind::small);
+  lever("lever_arm_sign", "with the whole lever arm reversed", sign, times(-1, -1, -1), Kind::small);
+  const std::string axes = "state lever_arm_scanner of [calibration] as forward, right, down";
+  lever("lever_arm_axes", "with the lever arm taken as forward, left, up", axes, times(1, -1, -1), Kind::small);
+  lever("lever_arm_axes", "with the lever arm taken as right, forward, down", axes, {stated.y(), stated.x(), stated.z()}, Kind::small);
+  lever("lever_arm_axes", "with the lever arm taken as forward, down, right", axes, {stated.x(), stated.z(), stated.y()}, Kind::small);
+  lever("lever_arm_axes", "with the lever arm taken as right, forward, up", axes, {stated.y(), stated.x(), -stated.z()}, Kind::small);
+  lever("lever_arm_feet", "with the lever arm in feet", "state lever_arm_scanner of [calibration] in ft", times(foot, foot, foot), Kind::small);
+  if (!antenna.isZero())
+    lever("trajectory_antenna", "with the trajectory taken as the antenna's, not the IMU's",
+          "export the trajectory for the IMU's centre, or state the lever arm from the antenna to the scanner", stated - antenna, Kind::small);
+  if (stated.lpNorm<Eigen::Infinity>() > 3.0) {
     lever("lever_arm_millimetres", "with the lever arm in millimetres", "state lever_arm_scanner of [calibration] in mm",
-          Eigen::Vector3d::Constant(1e-3), Kind::gross);
+          times(1e-3, 1e-3, 1e-3), Kind::gross);
     lever("lever_arm_millimetres", "with the lever arm in centimetres", "state lever_arm_scanner of [calibration] in cm",
-          Eigen::Vector3d::Constant(1e-2), Kind::gross);
+          times(1e-2, 1e-2, 1e-2), Kind::gross);
   }
 }
 
@@ -248,9 +274,34 @@ void add_mounting(const Chain& stated, std::vector<UsualMistake>& out) {
                    },
                    {},
                    Kind::small});
+  const double largest = std::max({std::abs(c.roll.value), std::abs(c.pitch.value), std::abs(c.heading.value)});
+  const auto all_times = [&](const char* name, const char* what, const char* cure, double by) {
+    out.push_back({name, what, cure,
+                   [by](Chain& k) {
+                     for (const Angle a : {&core::Calibration::roll, &core::Calibration::pitch, &core::Calibration::heading})
+                       (k.calibration.*a).value *= by;
+                   },
+                   {},
+                   Kind::gross});
+  };
+  if (largest > 0.02)
+    all_times("boresight_degrees_as_radians", "with boresight angles 57.3 times smaller (degrees were read as radians)",
+              "state roll, pitch and heading of [calibration] in deg", core::degree);
+  else if (largest > least)
+    all_times("boresight_degrees_as_radians", "with boresight angles 57.3 times larger (radians were read as degrees)",
+              "state roll, pitch and heading of [calibration] in rad", 1 / core::degree);
+  if (std::abs(c.roll.value - c.pitch.value) > least)
+    out.push_back({"boresight_axes_swapped",
+                   "with boresight roll and pitch exchanged",
+                   "exchange roll and pitch in [calibration]",
+                   [](Chain& k) { std::swap(k.calibration.roll.value, k.calibration.pitch.value); },
+                   {},
+                   Kind::small});
   const std::string mount = "state how the scanner is mounted by the angles of [calibration]";
   for (const double a : {right_angle, -right_angle, core::pi}) {
     turn("mount_rolled", "with the scanner rolled by " + degrees_text(a), mount, &core::Calibration::roll, 1, a, Kind::gross);
+    if (a != core::pi)
+      turn("mount_pitched", "with the scanner pitched by " + degrees_text(a), mount, &core::Calibration::pitch, 1, a, Kind::gross);
     turn("mount_rolled", "with the scanner turned by " + degrees_text(a) + " in heading", mount, &core::Calibration::heading, 1, a,
          Kind::gross);
   }
@@ -258,13 +309,13 @@ void add_mounting(const Chain& stated, std::vector<UsualMistake>& out) {
 
 }  // namespace
 
-std::vector<UsualMistake> usual_mistakes(const Chain& stated, double convergence) {
+std::vector<UsualMistake> usual_mistakes(const Chain& stated, double convergence, const Eigen::Vector3d& antenna) {
   std::vector<UsualMistake> out;
   add_angles(out);
-  add_ranges(out);
+  add_ranges(stated.calibration.range_offset.value, out);
   add_model(stated, out);
   add_trajectory(convergence, out);
-  add_lever_arm(stated.calibration, out);
+  add_lever_arm(stated.calibration, antenna, out);
   add_mounting(stated, out);
   return out;
 }

@@ -2,6 +2,7 @@
 // What usually goes wrong between the records of a flight and its description: signs, units, axes, models.
 #pragma once
 
+#include <Eigen/Core>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -31,9 +32,11 @@ struct UsualMistake {
   std::function<void(Chain&)> chain;                      ///< may be empty
   std::function<void(core::TrajectoryData&)> trajectory;  ///< may be empty
   Kind kind = Kind::gross;
+  double heading = 0.0;  ///< rad, that it adds to all headings of the trajectory
 };
 
-/// All that change anything. `convergence`: rad, grid north of the survey's map clockwise from true north; 0 where there is none.
-std::vector<UsualMistake> usual_mistakes(const Chain& stated, double convergence);
+/// All that change anything. `convergence`: rad, grid north of the survey's map clockwise from true north; 0 where there is none. `antenna`:
+/// lever arm of the antenna in the body, m; 0 where it is not known.
+std::vector<UsualMistake> usual_mistakes(const Chain& stated, double convergence, const Eigen::Vector3d& antenna = Eigen::Vector3d::Zero());
 
 }  // namespace swath::calib

@@ -4,9 +4,13 @@
 #include <cmath>
 
 #include "calib/geometry_gate.h"
+#include "calib/control.h"
 #include "core/error.h"
+#include "core/geodesy.h"
 #include "core/statistics.h"
+#include "io/control.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/calibration_flight.h"
 #include "stages/shot_source.h"
 
 namespace swath::stages {
@@ -36,6 +40,51 @@ double convergence_of(const Context& context) {
   return -std::atan2(way.x(), way.y());
 }
 
+/// Of the geoid above the ellipsoid at the trajectory's middle, m; NaN where PROJ has no grid of one.
+double undulation_of(const Context& context) {
+  const core::TrajectoryData& d = context.trajectory->data();
+  const size_t i = d.size() / 2;
+  const Eigen::Vector3d place(core::to_degrees(d.longitude[i]), core::to_degrees(d.latitude[i]), d.height[i]);
+  try {
+    return place.z() - core::Transform(core::wgs84_geodetic(), core::Crs("EPSG:4326+5773"))(place).z();
+  } catch (const core::SystemError&) {
+    throw;
+  } catch (const core::Error&) {
+    return std::nan("");
+  }
+}
+
+/// Points and roofs; walls have no height.
+std::vector<calib::SurveyedPlace> control_of(const Context& context, core::Tally& tally) {
+  constexpr double level = 0.5;  // up part of a roof's normal
+  std::vector<calib::SurveyedPlace> out;
+  try {
+    core::Tally of_others;  // stages that use control count what is wrong with its planes
+    const core::TrajectoryData& d = context.trajectory->data();
+    const size_t i = d.size() / 2;
+    const trajectory::LocalFrame frame = trajectory::local_frame(core::ecef_of({d.latitude[i], d.longitude[i], d.height[i]}));
+    for (const calib::SurveyedTarget& t : calib::surveyed_targets(io::read_control(context.survey, of_others), frame, of_others))
+      if (t.normal.z() > level) out.push_back({frame.to_ecef(t.centre), t.control.empty() ? 0.0 : t.control.front().sigma});
+  } catch (const core::SystemError&) {
+    throw;
+  } catch (const core::Error& e) {
+    tally.count("control that could not be used: heights are not judged by it", e.what());
+  }
+  return out;
+}
+
+core::Value value_of(const calib::ControlNear& c) {
+  core::Value v = core::Value::object();
+  v["points"] = c.points;
+  v["near"] = c.near;
+  v["compared"] = c.compared;
+  v["nearest_m"] = c.nearest;
+  if (c.compared == 0) return v;
+  v["median_m"] = c.median;
+  v["predicted_m"] = c.predicted;
+  return v;
+}
+
 core::Value value_of(const calib::Fit& f) {
   core::Value v = core::Value::object();
   v["cells"] = f.cells;
@@ -59,7 +108,7 @@ core::Value value_of(const calib::LinePair& p) {
   return v;
 }
 
-class Geometry : public OptionStage<calib::GeometryOptions> {
+class GeometryJudge : public OptionStage<calib::GeometryOptions> {
  public:
   const Info& info() const override {
     static const Info info{
@@ -74,6 +123,8 @@ class Geometry : public OptionStage<calib::GeometryOptions> {
     return info;
   }
 
+  std::vector<std::filesystem::path> inputs(const io::Survey& survey) const override { return control_files(survey); }
+
   void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
     calib::GeometryInput in;
     in.shots = stream_shots(context);
@@ -84,6 +135,10 @@ class Geometry : public OptionStage<calib::GeometryOptions> {
     in.trajectory = context.trajectory.get();
     in.range = usual_range(context);
     in.convergence = convergence_of(context);
+    if (!context.imu)  // the trajectory was given: whose place it states is not known here
+      for (size_t k = 0; k < 3; ++k) in.antenna[static_cast<Eigen::Index>(k)] = context.survey.antenna.lever_arm[k].value;
+    in.control = control_of(context, tally);
+    in.undulation = [&context] { return undulation_of(context); };
     calib::GeometryFigures found;
     try {
       found = calib::judge_geometry(in, options);
@@ -109,6 +164,13 @@ class Geometry : public OptionStage<calib::GeometryOptions> {
                     "lines " + std::to_string(p.line_a) + " and " + std::to_string(p.line_b) + ": " +
                         core::format_number(std::round(p.water * 100) / 100) + " m");
     const auto said = std::count_if(found.checks.begin(), found.checks.end(), [](const auto& c) { return !c.held && c.said; });
+    if (found.control.points > 0) {
+      out["control"] = value_of(found.control);
+      if (found.control.near == 0)
+        tally.count("control of which no point lies near a flight line: its CRS, its axes?",
+                    std::to_string(found.control.points) + " points, the nearest " +
+                        core::format_number(std::round(found.control.nearest / 100) / 10) + " km from a track");
+    }
     out["contradictions"] = found.warnings.size() + static_cast<size_t>(said);
     out["covered"] = found.covered;
     out["predicted_m"] = found.lines.predicted;
@@ -135,6 +197,6 @@ class Geometry : public OptionStage<calib::GeometryOptions> {
 
 }  // namespace
 
-std::unique_ptr<Stage> make_geometry() { return std::make_unique<Geometry>(); }
+std::unique_ptr<Stage> make_geometry() { return std::make_unique<GeometryJudge>(); }
 
 }  // namespace swath::stages

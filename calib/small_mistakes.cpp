@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// No published source. A usual mistake has no free value and is preferred to a fitted one that explains little more.
+#include "calib/small_mistakes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/units.h"
+
+namespace swath::calib {
+namespace {
+
+constexpr double sure_usual = 20.0, sure_fitted = 32.0;  // gains: 4.5 and, with the choice among several, 5 sigmas
+constexpr double per_value = 4.0;                        // of the gain, for each value that was fitted
+constexpr double as_good = 6.0;                          // of the gain
+constexpr double smallest = 0.08;                        // m on the ground
+constexpr double surely = 4.0;                           // sigmas of a fitted value that is said
+constexpr size_t most = 3;
+
+SmallVector values_of(const core::Calibration& c) {
+  SmallVector v;
+  v << c.roll.value, c.pitch.value, c.heading.value, c.lever_arm_scanner[0].value, c.lever_arm_scanner[1].value,
+      c.lever_arm_scanner[2].value, c.range_offset.value, c.range_scale, c.scan_offset.value, c.scan_scale, c.latency.value;
+  return v;
+}
+
+core::Calibration calibration_of(const SmallVector& v) {
+  core::Calibration c;
+  c.roll.value = v[boresight_roll], c.pitch.value = v[boresight_pitch], c.heading.value = v[boresight_heading];
+  for (size_t i = 0; i < 3; ++i) c.lever_arm_scanner[i].value = v[lever_forward + static_cast<int>(i)];
+  c.range_offset.value = v[range_offset], c.range_scale = v[range_scale];
+  c.scan_offset.value = v[scan_offset], c.scan_scale = v[scan_scale], c.latency.value = v[latency];
+  return c;
+}
+
+/// Metres on the ground that an error moves returns by, about.
+double moved_by(const SmallVector& e, const FlownAt& f) {
+  constexpr double edge = 0.35;  // rad, from nadir to the swath's edge
+  const double angles = (std::abs(e[boresight_roll]) + std::abs(e[boresight_pitch]) + edge * std::abs(e[boresight_heading]) +
+                         std::abs(e[scan_offset]) + edge * std::abs(e[scan_scale]) + std::abs(e[range_scale])) *
+                        f.range;
+  return angles + e.segment<3>(lever_forward).norm() + std::abs(e[range_offset]) + std::abs(e[latency]) * f.speed;
+}
+
+struct Group {
+  const char *name, *what, *cure;
+  std::vector<Parameter> free;
+  bool needs_heights = false;
+};
+
+const std::vector<Group>& groups() {
+  static const std::vector<Group> all{
+      {"height_offset", "with all heights", "compare the height systems of trajectory and control", {lever_down}, true},
+      {"boresight", "with a boresight of", "calibrate the boresight, or state it in [calibration]", {boresight_roll}},
+      {"boresight", "with a boresight of", "calibrate the boresight, or state it in [calibration]", {boresight_pitch}},
+      {"heading_offset", "with headings of trajectory or boresight changed:",
+       "compare the trajectory's headings with true north, or state the boresight heading in [calibration]", {boresight_heading}},
+      {"boresight", "with a boresight of", "calibrate the boresight, or state it in [calibration]",
+       {boresight_roll, boresight_pitch, boresight_heading}},
+      {"lever_arm", "with a lever arm of", "measure it again, or compare its signs, axes and unit with lever_arm_scanner of [calibration]",
+       {lever_forward, lever_right}},
+      {"time_offset", "with a", "state the laser's latency in [calibration]", {latency}},
+      {"scan_scale", "with a", "state scan_scale in [calibration]", {scan_scale}},
+      {"range_scale", "with a", "state range_scale in [calibration]", {range_scale}},
+      {"range_offset", "with a", "state range_offset in [calibration]", {range_offset}, true},
+  };
+  return all;
+}
+
+/// "roll 0.0504 deg" of a value.
+std::string value_text(Parameter p, double value) {
+  static const char* const names[small_count] = {"roll",    "pitch", "heading", "forward", "right",      "down",
+                                                 "range_offset", "range_scale", "scan_offset", "scan_scale", "latency"};
+  const bool angle = p <= boresight_heading || p == scan_offset;
+  const char* const unit = angle ? " deg" : p == latency ? " s" : p == range_scale || p == scan_scale ? "" : " m";
+  char text[64];
+  const char* const format = unit[0] == '\0' ? " %.5f" : angle ? " %.3f" : p == latency ? " %.4f" : " %.2f";
+  std::snprintf(text, sizeof text, format, angle ? core::to_degrees(value) : value);
+  return std::string(names[p]) + text + unit;
+}
+
+std::string words(const Group& g, const SmallVector& right, const SmallVector& error) {
+  std::string out = g.what;
+  if (g.free.front() == lever_down) {
+    char text[64];
+    std::snprintf(text, sizeof text, " %.2f m %s", std::abs(error[lever_down]), error[lever_down] > 0 ? "higher" : "lower");
+    return out + text;
+  }
+  for (size_t k = 0; k < g.free.size(); ++k) out += (k == 0 ? " " : ", ") + value_text(g.free[k], right[g.free[k]]);
+  return out + " (fitted)";
+}
+
+}  // namespace
+
+std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Chain& stated, const std::vector<UsualMistake>& usual,
+                                            const FlownAt& flown, bool heights) {
+  std::vector<SmallExplanation> all;
+  const SmallVector values = values_of(stated.calibration);
+  const double now = errors.with(SmallVector::Zero()).squares;
+  const auto add = [&](const SmallVector& known, double gain, SmallExplanation e) {
+    if (gain < (e.usual ? sure_usual : sure_fitted) || moved_by(known, flown) < smallest) return;
+    e.chain = stated;
+    e.chain.calibration = calibration_of(values - known);
+    e.gain = gain;
+    all.push_back(std::move(e));
+  };
+  for (const UsualMistake& m : usual) {
+    if (m.kind != UsualMistake::Kind::small) continue;
+    SmallVector known = SmallVector::Zero();
+    if (m.chain) {
+      Chain right = stated;
+      m.chain(right);
+      known = values - values_of(right.calibration);
+    }
+    known[boresight_heading] -= m.heading;
+    add(known, now - errors.with(known).squares, {std::string(m.name), m.what, m.cure, {}, 0, true});
+  }
+  for (const Group& g : groups()) {
+    if (g.needs_heights && !heights) continue;
+    const SmallErrors::Solution s = errors.with(SmallVector::Zero(), g.free);
+    SmallVector known = SmallVector::Zero();
+    bool clear = false;
+    for (const Parameter p : g.free) known[p] = s.error[p], clear = clear || std::abs(s.error[p]) > surely * s.sigma[p];
+    if (!clear) continue;
+    add(known, now - s.squares - per_value * static_cast<double>(g.free.size()),
+        {g.name, words(g, values - known, known), g.cure, {}, 0, false});
+  }
+  const auto best = [&](bool of_usual) {
+    double out = 0;
+    for (const SmallExplanation& e : all)
+      if (e.usual || !of_usual) out = std::max(out, e.gain);
+    return out;
+  };
+  const double least = best(false) - as_good;
+  const bool by_usual = best(true) >= least;
+  std::erase_if(all, [&](const SmallExplanation& e) { return e.gain < least || (by_usual && !e.usual); });
+  std::stable_sort(all.begin(), all.end(), [](const SmallExplanation& x, const SmallExplanation& y) { return x.gain > y.gain; });
+  if (all.size() > most) all.resize(most);
+  return all;
+}
+
+size_t fitted_groups() { return groups().size(); }
+
+SmallExplanation fit_small(const SmallErrors& errors, const Chain& stated, const Chain& at, size_t group) {
+  const Group& g = groups()[group];
+  SmallExplanation out;
+  out.chain = at;
+  if (g.needs_heights || g.free.front() == latency) return out;
+  const SmallErrors::Solution s = errors.with(SmallVector::Zero(), g.free);
+  SmallVector right = values_of(at.calibration);
+  for (const Parameter p : g.free) right[p] -= s.error[p];
+  out.chain.calibration = calibration_of(right);
+  out.name = g.name;
+  out.what = words(g, right, values_of(stated.calibration) - right);
+  out.cure = g.cure;
+  return out;
+}
+
+}  // namespace swath::calib
