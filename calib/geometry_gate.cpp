@@ -26,6 +26,7 @@ constexpr double few_outside = 0.1;
 constexpr double no_worse = 1.02;       // of the cost as described, with a small mistake undone
 constexpr size_t most_named = 3;
 constexpr double least_covered = 0.5, nearly_all = 0.95, all_covered = 0.995;
+constexpr double gross = 1.0;     // m: no trajectory that is worth adjusting is so far off
 constexpr double leap_fit = 1.0;  // m: lines that are flown a kilometre apart do not come near this
 constexpr double crossing = 0.15, meeting = 0.5;  // of the range: tracks so near share ground
 
@@ -158,20 +159,39 @@ void say(const SampledFlight& flight, const GeometryOptions& o, bool sound, Geom
   }
 }
 
+/// A named mistake and a gross contradiction are set right where they were made: an adjustment would bend the trajectory to hide them.
+std::string doubt_of(const GeometryFigures& g, const GeometryOptions& o) {
+  if (!g.named.empty()) return g.named.front().what + " the flight fits: " + g.named.front().cure;
+  for (const GeometryCheck& c : g.checks)
+    if (!c.held && c.name != "control_height") return c.text;
+  for (const LinePair& p : g.lines.pairs)
+    if (p.cells >= static_cast<std::uint64_t>(o.min_cells) && p.rms > gross)
+      return lines_of(p) + " disagree by " + text_of("%.2f m", p.rms) + " on smooth ground";
+  return {};
+}
+
 /// Small mistakes that the lines' and the control's differences show; confirmed on the sample.
 std::vector<TriedMistake> small_mistakes(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight,
                                          const LineCells& cells, const GeometryFigures& found) {
   const bool heights = found.control.compared >= 3;
   if (found.verdict == Verdict::not_judged && !heights) return {};
-  const ShotGeometry geometry(in.chain.scanner, in.chain.calibration);
-  const SmallErrors errors =
-      small_errors({flight.sample, cells.ground, cells.pairs, cells.control, geometry, in.sensor, *in.trajectory, flight.frame});
   double speed = 0;
   for (const Pass& p : flight.plan.passes) speed = std::max(speed, p.speed);
-  const std::vector<SmallExplanation> all =
-      explain_small(errors, in.chain, usual_mistakes(in.chain, in.convergence, in.antenna), {in.range, speed}, heights);
+  const std::vector<UsualMistake> usual = usual_mistakes(in.chain, in.convergence, in.antenna);
+  const auto explained = [&](const LineCells& of, const Chain& at) {
+    const ShotGeometry geometry(at.scanner, at.calibration);
+    const SmallErrors errors =
+        small_errors({flight.sample, of.ground, of.pairs, of.control, geometry, in.sensor, *in.trajectory, flight.frame});
+    return explain_small(errors, at, in.chain, usual, {in.range, speed}, heights);
+  };
+  std::vector<SmallExplanation> all = explained(cells, in.chain);
   std::vector<TriedMistake> out;
   if (all.empty()) return out;
+  // Where planes lie over one another, they show more truly what is left.
+  const Chain nearer = all.front().chain;
+  LineCells anew = line_cells(flight, nearer, *in.trajectory);
+  fit_lines(flight, anew, nearer, *in.trajectory, found.lines.predicted);
+  all = explained(anew, nearer);
   const Trial trial(in, o, flight, found);
   for (const SmallExplanation& e : all)
     if (TriedMistake t = trial.judged(e); t.fit.cost <= no_worse * found.lines.fit.cost && t.contradictions <= not_held(found.checks))
@@ -249,11 +269,13 @@ GeometryFigures judge_geometry(const GeometryInput& in, const GeometryOptions& o
     if (p.cells >= static_cast<std::uint64_t>(o.min_cells)) out.verdict = Verdict::consistent;
     apart = apart || is_apart(p, o);
   }
-  const bool sound = !apart && not_held(out.checks) == 0, of_heights = !apart && is_of_heights(out);
+  const bool sound = !apart && not_held(out.checks) == 0;
   const bool unmet = out.verdict == Verdict::not_judged && flight.plan.nearest < meeting * in.range;
-  if (sound || of_heights) out.named = small_mistakes(in, o, flight, cells, out);
-  if (of_heights && out.named.empty())
-    if (const auto h = height_mistake(control, in.undulation ? in.undulation() : std::nan(""))) out.named.push_back({h->name, h->what, h->cure, {}, 0});
+  const bool of_heights = !apart && !unmet && is_of_heights(out);
+  if (of_heights)
+    if (const auto h = height_mistake(control, in.undulation ? in.undulation() : std::nan("")))
+      out.named.push_back({h->name, h->what, h->cure, {}, 0});
+  if (out.named.empty() && (sound || of_heights)) out.named = small_mistakes(in, o, flight, cells, out);
   if (sound && out.named.empty() && out.covered < nearly_all) try_leap(in, o, flight, out);
   if (out.named.empty() && !of_heights && (unmet || !sound)) try_mistakes(in, o, flight, apart, sound, out);
   if (sound && out.named.empty()) {
@@ -262,6 +284,7 @@ GeometryFigures judge_geometry(const GeometryInput& in, const GeometryOptions& o
   }
   out.verdict = Verdict::inconsistent;
   say(flight, o, sound, out);
+  out.doubt = doubt_of(out, o);
   return out;
 }
 

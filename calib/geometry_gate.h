@@ -78,6 +78,7 @@ struct GeometryFigures {
   std::vector<TriedMistake> tried;
   std::vector<TriedMistake> named;    ///< those that explain what was found, the best first
   std::vector<std::string> warnings;  ///< sentences with figures
+  std::string doubt;                  ///< why lines are not to be adjusted as they are: the cause lies elsewhere; empty: nothing
 };
 
 GeometryFigures judge_geometry(const GeometryInput& input, const GeometryOptions& options);

@@ -175,7 +175,8 @@ void Trial::leap(std::vector<TriedMistake>& out) const {
 
 void Trial::fitted(std::vector<TriedMistake>& out) const {
   could([&] { follow(flight_, 0.0, 1, out); });
-  constexpr int rounds = 3;
+  constexpr int rounds = 8;
+  constexpr double settled = 0.02;  // of the first step: planes that do not yet lie over one another pull too little
   for (size_t group = 0; group < fitted_groups(); ++group) {
     SmallExplanation found;
     found.chain = in_.chain;
@@ -188,6 +189,7 @@ void Trial::fitted(std::vector<TriedMistake>& out) const {
             {flight_.sample, cells.ground, cells.pairs, {}, geometry, flight_.sensor, *in_.trajectory, flight_.frame});
         if (errors.differences < static_cast<size_t>(options_.min_cells)) return;
         found = fit_small(errors, in_.chain, found.chain, group);
+        if (found.name.empty() || found.step < settled) break;
       }
       if (!found.name.empty()) out.push_back(judged(found));
     });

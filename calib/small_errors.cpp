@@ -25,10 +25,10 @@ constexpr double count_of_pair = 120;   // and what they count as: their errors 
 constexpr int rounds = 6;
 constexpr double full_weight = 2.5;  // sigmas
 constexpr double mad_to_sigma = 1.4826;
-constexpr int common = 3, of_pass = 6;  // unknowns: position of all passes; position and attitude of each
+constexpr int common = 6, of_pass = 6;  // unknowns: position and attitude of all passes, and of each
 // No trajectory is better over minutes, whatever it states: m, rad.
 constexpr double least_position = 0.04, least_attitude = 0.005 * core::degree, least_heading = 0.01 * core::degree;
-constexpr double common_position = 0.05;
+constexpr double common_position = 0.05;  // m: of a base station, of a datum
 
 struct Row {
   double apart = 0.0, variance = 0.0, share = 1.0, weight = 1.0;
@@ -119,7 +119,17 @@ System system_of(const std::vector<Row>& rows, size_t grounds) {
   std::map<size_t, trajectory::PoseSigma> sigma;
   for (const Row& row : rows) sigma[row.a] = row.of_a.sigma, sigma[row.b] = row.a == row.b ? row.of_a.sigma : row.of_b.sigma;
   const auto weight = [](double stated, double least) { return 1 / (stated * stated + least * least); };
-  for (int i = 0; i < common; ++i) s.N(small_count + i, small_count + i) += 1 / (common_position * common_position);
+  trajectory::PoseSigma largest;
+  for (const auto& [g, p] : sigma) {
+    largest.north = std::max(largest.north, p.north), largest.east = std::max(largest.east, p.east);
+    largest.down = std::max(largest.down, p.down), largest.roll = std::max(largest.roll, p.roll);
+    largest.pitch = std::max(largest.pitch, p.pitch), largest.heading = std::max(largest.heading, p.heading);
+  }
+  // What alignment and base station leave is the same for all passes.
+  const double all[common] = {weight(largest.north, common_position), weight(largest.east, common_position),
+                              weight(largest.down, common_position),  weight(largest.roll, least_attitude),
+                              weight(largest.pitch, least_attitude),  weight(largest.heading, least_heading)};
+  for (int i = 0; i < common; ++i) s.N(small_count + i, small_count + i) += all[i];
   for (size_t g = 0; g < grounds; ++g) {
     const trajectory::PoseSigma& p = sigma[g];
     const double w[of_pass] = {weight(p.north, least_position),   weight(p.east, least_position),   weight(p.down, least_position),

@@ -60,6 +60,8 @@ const std::vector<Group>& groups() {
        {boresight_roll, boresight_pitch, boresight_heading}},
       {"lever_arm", "with a lever arm of", "measure it again, or compare its signs, axes and unit with lever_arm_scanner of [calibration]",
        {lever_forward, lever_right}},
+      {"lever_arm", "with a lever arm of", "measure it again, or compare its signs, axes and unit with lever_arm_scanner of [calibration]",
+       {lever_forward, lever_right, lever_down}, true},
       {"time_offset", "with a", "state the laser's latency in [calibration]", {latency}},
       {"scan_scale", "with a", "state scan_scale in [calibration]", {scan_scale}},
       {"range_scale", "with a", "state range_scale in [calibration]", {range_scale}},
@@ -93,38 +95,37 @@ std::string words(const Group& g, const SmallVector& right, const SmallVector& e
 
 }  // namespace
 
-std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Chain& stated, const std::vector<UsualMistake>& usual,
-                                            const FlownAt& flown, bool heights) {
+std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Chain& at, const Chain& stated,
+                                            const std::vector<UsualMistake>& usual, const FlownAt& flown, bool heights) {
   std::vector<SmallExplanation> all;
-  const SmallVector values = values_of(stated.calibration);
-  const double now = errors.with(SmallVector::Zero()).squares;
-  const auto add = [&](const SmallVector& known, double gain, SmallExplanation e) {
-    if (gain < (e.usual ? sure_usual : sure_fitted) || moved_by(known, flown) < smallest) return;
+  const SmallVector values = values_of(stated.calibration), here = values_of(at.calibration);
+  const double now = errors.with(here - values).squares;
+  const auto add = [&](const SmallVector& right, double gain, SmallExplanation e) {
+    if (gain < (e.usual ? sure_usual : sure_fitted) || moved_by(values - right, flown) < smallest) return;
     e.chain = stated;
-    e.chain.calibration = calibration_of(values - known);
+    e.chain.calibration = calibration_of(right);
     e.gain = gain;
     all.push_back(std::move(e));
   };
   for (const UsualMistake& m : usual) {
     if (m.kind != UsualMistake::Kind::small) continue;
-    SmallVector known = SmallVector::Zero();
-    if (m.chain) {
-      Chain right = stated;
-      m.chain(right);
-      known = values - values_of(right.calibration);
-    }
-    known[boresight_heading] -= m.heading;
-    add(known, now - errors.with(known).squares, {std::string(m.name), m.what, m.cure, {}, 0, true});
+    Chain chain = stated;
+    if (m.chain) m.chain(chain);
+    SmallVector right = values_of(chain.calibration);
+    right[boresight_heading] += m.heading;
+    add(right, now - errors.with(here - right).squares, {std::string(m.name), m.what, m.cure, {}, 0, true});
   }
   for (const Group& g : groups()) {
     if (g.needs_heights && !heights) continue;
-    const SmallErrors::Solution s = errors.with(SmallVector::Zero(), g.free);
-    SmallVector known = SmallVector::Zero();
+    const SmallErrors::Solution s = errors.with(here - values, g.free);
+    SmallVector right = values;
     bool clear = false;
-    for (const Parameter p : g.free) known[p] = s.error[p], clear = clear || std::abs(s.error[p]) > surely * s.sigma[p];
-    if (!clear) continue;
-    add(known, now - s.squares - per_value * static_cast<double>(g.free.size()),
-        {g.name, words(g, values - known, known), g.cure, {}, 0, false});
+    for (const Parameter p : g.free) {
+      right[p] = here[p] - s.error[p];
+      clear = clear || std::abs(values[p] - right[p]) > surely * s.sigma[p];
+    }
+    if (clear)
+      add(right, now - s.squares - per_value * static_cast<double>(g.free.size()), {g.name, words(g, right, values - right), g.cure, {}, 0, false});
   }
   const auto best = [&](bool of_usual) {
     double out = 0;
@@ -149,7 +150,9 @@ SmallExplanation fit_small(const SmallErrors& errors, const Chain& stated, const
   if (g.needs_heights || g.free.front() == latency) return out;
   const SmallErrors::Solution s = errors.with(SmallVector::Zero(), g.free);
   SmallVector right = values_of(at.calibration);
+  const SmallVector before = right, values = values_of(stated.calibration);
   for (const Parameter p : g.free) right[p] -= s.error[p];
+  out.step = (right - before).norm() / std::max(1e-12, (right - values).norm());
   out.chain.calibration = calibration_of(right);
   out.name = g.name;
   out.what = words(g, right, values_of(stated.calibration) - right);

@@ -16,6 +16,7 @@ struct SmallExplanation {
   Chain chain;          ///< with it undone
   double gain = 0.0;    ///< of the weighted squares: a chi-square of as many degrees of freedom as values were found
   bool usual = false;   ///< a sign, a unit, an axis: nothing was fitted
+  double step = 0.0;    ///< of fit_small(): change by this call beside that since the values stated
 };
 
 /// How a flight is flown, for the size of an error on the ground.
@@ -23,10 +24,11 @@ struct FlownAt {
   double range = 0.0, speed = 0.0;  ///< m, m/s
 };
 
-/// Those that explain the differences far better than the values as stated, the best first, and those as good; usually none. `heights`: there
-/// is control, which shows errors that lift all lines alike.
-std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Chain& stated, const std::vector<UsualMistake>& usual,
-                                            const FlownAt& flown, bool heights);
+/// Those that explain the differences far better than the values as stated, the best first, and those as good; usually none. `errors`: of
+/// the values of `at`, which may be nearer to the right ones than the stated. `heights`: there is control, which shows errors that lift all
+/// lines alike.
+std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Chain& at, const Chain& stated,
+                                            const std::vector<UsualMistake>& usual, const FlownAt& flown, bool heights);
 
 /// Groups of values that are fitted to lines alone, whatever the gain.
 size_t fitted_groups();

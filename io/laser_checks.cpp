@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "core/error.h"
 #include "core/statistics.h"
@@ -15,11 +16,25 @@ namespace {
 
 constexpr size_t looked_at = 20000;                   // returns of a line: some sweeps of the mirror
 constexpr double shortest = 1.0, farthest = 15000.0;  // m, median ranges of a survey
+constexpr double coarse = 0.1;                        // m
+constexpr size_t enough_ranges = 200, different = 12;
 constexpr double still = 0.05 * core::degree;         // a mirror that is parked at nadir stays within
 constexpr double narrow = 1.2 * core::degree;         // no mirror sweeps so little; 60 deg read as radians stay within
 constexpr double least_span = 0.5;                    // s of records, in which each mirror has swept its swath
 
 std::string shown(double value, const char* unit) { return core::format_number(std::round(value * 1000) / 1000) + unit; }
+
+/// Ranges are measured to centimetres: whole numbers of a coarse unit are intensities, counts or numbers of returns.
+bool are_whole(const std::vector<double>& ranges, double unit) {
+  if (unit < coarse || ranges.size() < enough_ranges) return false;
+  std::set<double> seen;
+  for (const double r : ranges) {
+    const double n = r / unit;
+    if (std::abs(n - std::round(n)) > 1e-6 * std::max(1.0, std::abs(n))) return false;
+    if (seen.size() < different) seen.insert(std::round(n));
+  }
+  return seen.size() >= different;
+}
 
 void check_beams(const Survey& survey, const StripInfo& strip, core::Tally& tally) {
   LaserSource source(survey, strip);
@@ -30,6 +45,9 @@ void check_beams(const Survey& survey, const StripInfo& strip, core::Tally& tall
   if (range < shortest || range > farthest)
     tally.count("flight lines whose ranges are those of no survey: check range_unit",
                 strip.name(survey) + ": median " + shown(range, " m"));
+  if (!file.columns.range.empty() && are_whole(shots.range, file.range_unit.value))
+    tally.count("flight lines whose ranges are whole numbers of coarse units: another column read as columns.range?",
+                strip.name(survey) + ": steps of " + shown(file.range_unit.value, " m"));
   const core::ScannerModel model = file.model.value_or(survey.scanner.model);
   if (shots.angle.empty() || file.columns.scan_angle.empty() ||
       (model != core::ScannerModel::mirror && model != core::ScannerModel::polygon))

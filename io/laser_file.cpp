@@ -10,6 +10,8 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/time.h"
+#include "core/time_gap.h"
 #include "io/cut_line.h"
 #include "io/delimited.h"
 #include "io/las_header.h"
@@ -47,7 +49,7 @@ class Clock {
     } catch (const core::Error& e) {
       throw core::Error(e.what(), place(), e.hint(), e.code());
     }
-    throw core::Error("the time " + core::format_number(r.time[i]) + " is not between 1980 and 2100", place(), "check the time scale");
+    throw core::Error("the time " + core::format_number(r.time[i]) + " is not between 1980 and 2100", place(), scale_hint(r.time[i]));
   }
 
  private:
@@ -128,6 +130,7 @@ struct Pass {
   std::vector<StripInfo> strips;
   std::vector<std::uint64_t> bad;  ///< rows without a time or line that can be theirs
   std::uint64_t records = 0, unreadable = 0, wild = 0;
+  double first_outside = std::numeric_limits<double>::infinity(), last_outside = -first_outside;  ///< times of records outside every line
   std::optional<core::Error> first;  ///< that is not readable
   core::Tally tally;
 };
@@ -181,6 +184,7 @@ Pass pass_over(const Survey& survey, size_t file, bool judge) {
       }
       if (line < 0) {
         out.tally.count("records outside every line", f.file.filename().string() + ": " + record_text(r.record[i]));
+        out.first_outside = std::min(out.first_outside, time), out.last_outside = std::max(out.last_outside, time);
         continue;
       }
       if (out.strips.empty() || out.strips[last].line != line) {
@@ -204,7 +208,10 @@ Pass pass_over(const Survey& survey, size_t file, bool judge) {
 
 }  // namespace
 
-std::vector<StripInfo> scan(const Survey& survey, size_t file, core::Tally& tally) {
+namespace {
+
+/// The strips of a file; times of its records outside every line are added to `outside`.
+std::vector<StripInfo> strips_of(const Survey& survey, size_t file, core::Tally& tally, LineSpan& outside) {
   const LaserFile& f = survey.laser[file];
   const std::string name = resolve(survey, f.file).string();
   if (format_of(f) == LaserFormat::text) count_cut_line(inspect_delimited(name, f.delimiter).cut_line, name, tally);
@@ -212,16 +219,42 @@ std::vector<StripInfo> scan(const Survey& survey, size_t file, core::Tally& tall
   if (pass.wild > 0 && !are_few(pass.wild, pass.records)) pass = pass_over(survey, file, false);
   if (pass.first && !are_few(pass.unreadable, pass.records)) throw *pass.first;
   tally.add(pass.tally);
+  outside.first = std::min(outside.first, pass.first_outside), outside.last = std::max(outside.last, pass.last_outside);
   if (pass.bad.empty()) return std::move(pass.strips);
   const auto bad = std::make_shared<const std::vector<std::uint64_t>>(std::move(pass.bad));
   for (StripInfo& s : pass.strips) s.bad = bad;
   return std::move(pass.strips);
 }
 
+/// Every record lies outside the flight lines: by how much says why.
+void refuse_outside(const Survey& survey, const LineSpan& records) {
+  const std::vector<LineWindow> lines = line_windows(survey);
+  if (lines.empty() || !(records.first <= records.last)) return;
+  double last = lines.front().end;
+  for (const LineWindow& l : lines) last = std::max(last, l.end);
+  const double first = lines.front().start;
+  const std::string gap = core::usual_time_gap(0.5 * (records.first + records.last - first - last), records.last - records.first + last - first);
+  throw core::Error("no laser return to work on: records from " + core::utc_text(records.first) + " to " + core::utc_text(records.last) +
+                        ", flight lines from " + core::utc_text(first) + " to " + core::utc_text(last),
+                    survey.name,
+                    gap.empty() ? "are the lines' times those of the records? see `swath info` of the laser file" : gap);
+}
+
+constexpr LineSpan no_time{0, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+
+}  // namespace
+
+std::vector<StripInfo> scan(const Survey& survey, size_t file, core::Tally& tally) {
+  LineSpan outside = no_time;
+  return strips_of(survey, file, tally, outside);
+}
+
 std::vector<StripInfo> scan(const Survey& survey, core::Tally& tally) {
   std::vector<StripInfo> out;
+  LineSpan outside = no_time;
   for (size_t i = 0; i < survey.laser.size(); ++i)
-    for (StripInfo& s : scan(survey, i, tally)) out.push_back(std::move(s));
+    for (StripInfo& s : strips_of(survey, i, tally, outside)) out.push_back(std::move(s));
+  if (out.empty()) refuse_outside(survey, outside);
   std::vector<LineSpan> spans;
   // A line may be stated by its records' times or by the instants they were measured at.
   const double late = survey.calibration.latency.value;

@@ -37,6 +37,12 @@ double period_of(core::TimeScale scale) {
   return scale == core::TimeScale::gps_week ? core::seconds_per_week : scale == core::TimeScale::utc_day ? 86400.0 : 0.0;
 }
 
+std::string scale_hint(double recorded) {
+  return recorded >= 0 && recorded < core::seconds_per_week
+             ? std::string(check_scale) + ": it looks like seconds of the GPS week, scale = \"gps_week\" with the week"
+             : check_scale;
+}
+
 bool is_instant(double t) { return t >= 0.0 && t < year_2100; }
 
 std::vector<double> gps_times(const TimeTags& tags, const std::string& name, const std::vector<double>& recorded,
@@ -67,7 +73,7 @@ std::vector<double> gps_times(const TimeTags& tags, const std::string& name, con
     try {
       const double t = weeks.empty() ? clock(recorded[i]) : clock.in_week(static_cast<int>(weeks[i]), recorded[i]);
       if (!is_instant(t))
-        throw core::Error("the time " + core::format_number(recorded[i]) + " is not between 1980 and 2100", name, check_scale);
+        throw core::Error("the time " + core::format_number(recorded[i]) + " is not between 1980 and 2100", name, scale_hint(recorded[i]));
       out[i] = t;
     } catch (const core::Error& e) {
       if (!first) first.emplace(e.what(), at(i), e.hint(), e.code());

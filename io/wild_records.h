@@ -51,6 +51,8 @@ double period_of(core::TimeScale scale);
 
 /// Is it an instant between 1980-01-06 and 2100?
 bool is_instant(double gps_time);
+/// A hint for a time that is not one, by its size as recorded.
+std::string scale_hint(double recorded);
 
 /// GPS times of a file's records, whose weeks may have a column of their own (else empty). A time that is not finite, lies more than an
 /// hour from those around it or is not of the stated scale becomes NaN and is counted as `what` with its place and value. Throws Error

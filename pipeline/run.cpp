@@ -26,6 +26,7 @@
 #include "pipeline/provenance.h"
 #include "pipeline/pulse_border.h"
 #include "pipeline/stage_memory.h"
+#include "pipeline/summary.h"
 #include "pipeline/tile_groups.h"
 #include "pipeline/tile_queue.h"
 #include "pipeline/tile_store.h"
@@ -99,6 +100,7 @@ class Engine {
   void stream_strip(const stages::Strip& strip, const fs::path& folder);
   void run_tile_stages();
   [[noreturn]] void keep_finished(const core::Error& e);
+  const Value* judged_geometry() const;
   std::vector<TileKey> tiles_of(size_t number) const;
   std::set<TileKey> tiles_of_water() const;
   void expect_room_for_strips() const;
@@ -291,6 +293,8 @@ void Engine::run_survey_stages() {
     accounts_[i].seconds += piece.seconds;
     made_[i] = std::move(piece.files);
     context_.earlier.push_back(context_.output);
+    if (const Value* geometry = accounts_[i].findings.find("geometry"))
+      if (const Value* doubt = geometry->find("doubt")) context_.geometry_doubt = doubt->as_text();
   }
 }
 
@@ -737,6 +741,12 @@ Measured Engine::measured() const {
   return {outside, finding("void_share"), finding("rms_3d"), finding("line_difference"), finding("contradictions")};
 }
 
+const Value* Engine::judged_geometry() const {
+  for (const Account& a : accounts_)
+    if (const Value* geometry = a.findings.find("geometry")) return geometry;
+  return nullptr;
+}
+
 void Engine::compose_report(const std::string& command) {
   report_ = Value::object();
   report_["program"] = "swath " + std::string(program_version());
@@ -849,10 +859,11 @@ Outcome Engine::run(const std::string& command) {
     throw;  // as for a full disk
   } catch (const core::Error& e) {
     if (!lock.is_there()) throw;  // what is there now is another run's
-    if (has_products_) keep_finished(e);
+    const core::Error told = with_geometry(e, judged_geometry());
+    if (has_products_) keep_finished(told);
     discard(work_, discarded);
     if (made_output) remove_if_empty(output_);
-    throw;
+    throw told;
   } catch (...) {
     if (!lock.is_there()) throw;
     discard(work_, discarded);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/summary.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "io/value_file.h"
@@ -77,6 +78,18 @@ std::string summary(const Value& report, const std::filesystem::path& output) {
   out += "\nproducts in " + output.generic_string() + ", report in " + (output / "report.json").generic_string() + " (" +
          duration_text(report.find("seconds")->as_number()) + ")\n";
   return out;
+}
+
+core::Error with_geometry(const core::Error& e, const Value* geometry) {
+  const Value* named = geometry ? geometry->find("named") : nullptr;
+  const Value* warnings = geometry ? geometry->find("warnings") : nullptr;
+  if (!named || named->items().empty() || !warnings || warnings->items().empty()) return e;
+  // The sentences of what is named stand last.
+  const size_t count = std::min(named->items().size(), warnings->items().size());
+  std::string hint = e.hint();
+  for (size_t k = warnings->items().size() - count; k < warnings->items().size(); ++k)
+    hint += (hint.empty() ? "" : "; ") + std::string("quality.geometry: ") + warnings->items()[k].as_text();
+  return core::Error(e.what(), e.where(), hint, e.code());
 }
 
 std::string explanation_text(const Value& explanation) {

@@ -162,6 +162,8 @@ struct Context {
   std::shared_ptr<const core::GnssData> gnss{};
   std::shared_ptr<const core::EventData> events{};
   std::shared_ptr<const trajectory::Trajectory> trajectory{};
+  /// Why the geometry of the flight is not to be adjusted, as quality.geometry found it; empty: nothing stands against it.
+  std::string geometry_doubt{};
 
   Box box_of(TileKey k) const { return {k.ix * tile_side, k.iy * tile_side, (k.ix + 1) * tile_side, (k.iy + 1) * tile_side}; }
   /// The file that a stage before this one made under `name`; empty where none did.

@@ -61,7 +61,7 @@ def _(s, unit):
     s["laser"]["angle_unit"] = unit
 
 
-@each([("radians_as_degrees", "radians stated as degrees", np.pi / 180, "scan_angle_radians_as_degrees scan_scale"),
+@each([("radians_as_degrees", "radians stated as degrees", np.pi / 180, "scan_angle_radians_as_degrees scan_angle_degrees_as_radians scan_scale"),
        ("gon_as_degrees", "gon stated as degrees", 1 / 0.9, "scan_angle_gon scan_scale"),
        ("angle_of_mirror", "mirror's angle taken for the beam's", 0.5, "scan_scale"),
        ("angle_1_percent_wide", "angles 1 % too large", 1.01, "scan_scale")], cause=ANGLE_WORDS + "|scan_scale")
@@ -245,18 +245,18 @@ def lever(s, change):
     s["calibration"]["lever_arm_scanner"] = [f"{v} m" for v in arm]
 
 
-@each([("lever_forward", "sign of the scanner's lever arm forward", (-1, 1, 1), "lever_arm_sign"),
-       ("lever_right", "sign of the scanner's lever arm to the right", (1, -1, 1), "lever_arm_sign"),
+@each([("lever_forward", "sign of the scanner's lever arm forward", (-1, 1, 1), "lever_arm_sign lever_arm"),
+       ("lever_right", "sign of the scanner's lever arm to the right", (1, -1, 1), "lever_arm_sign lever_arm"),
        ("lever_down", "sign of the scanner's lever arm down", (1, 1, -1), "lever_arm_sign",
         {"reason": "height of all lines, 0.65 m: not observable between lines of one height, unless control shows it"}),
        ("lever_all", "signs of the whole lever arm of the scanner", (-1, -1, -1), "lever_arm_sign"),
        ("lever_mm", "scanner's lever arm in millimetres stated as metres", (1e3, 1e3, 1e3), "lever_arm_millimetres"),
        ("lever_cm", "scanner's lever arm in centimetres stated as metres", (1e2, 1e2, 1e2), "lever_arm_millimetres lever_arm_centimetres"),
-       ("lever_feet", "scanner's lever arm in feet stated as metres", (1 / FOOT,) * 3, "lever_arm_feet"),
-       ("lever_missing", "scanner's lever arm left out", (0, 0, 0), "lever_arm_missing lever_arm_sign"),
-       ("lever_flu", "scanner's lever arm forward, left, up", (1, -1, -1), "lever_arm_sign axes_swapped"),
-       ("lever_x_y", "scanner's lever arm right, forward, down", lambda a: [a[1], a[0], a[2]], "axes_swapped lever_arm_axes lever_arm_sign"),
-       ("lever_y_z", "scanner's lever arm forward, down, right", lambda a: [a[0], a[2], a[1]], "axes_swapped lever_arm_axes lever_arm_sign")],
+       ("lever_feet", "scanner's lever arm in feet stated as metres", (1 / FOOT,) * 3, "lever_arm_feet lever_arm"),
+       ("lever_missing", "scanner's lever arm left out", (0, 0, 0), "lever_arm_missing lever_arm"),
+       ("lever_flu", "scanner's lever arm forward, left, up", (1, -1, -1), "lever_arm_axes lever_arm_sign axes_swapped"),
+       ("lever_x_y", "scanner's lever arm right, forward, down", lambda a: [a[1], a[0], a[2]], "lever_arm_axes axes_swapped lever_arm"),
+       ("lever_y_z", "scanner's lever arm forward, down, right", lambda a: [a[0], a[2], a[1]], "lever_arm_axes axes_swapped lever_arm")],
       cause="lever")
 def _(s, change):
     lever(s, change)

@@ -54,7 +54,7 @@ ATTITUDE_WORDS = r"roll or pitch reaches|angle unit|degrees|radians|roll and pit
 
 @each([("sbet_roll", "SBET: sign of roll", ("roll",), "roll_sign"), ("sbet_pitch", "SBET: sign of pitch", ("pitch",), "pitch_sign"),
        ("sbet_heading", "SBET: sign of heading", ("heading",), "heading_sign"), ("sbet_pitch_heading", "SBET: attitude forward, left, up",
-                                                                                 ("pitch", "heading"), "heading_sign pitch_sign"),
+                                                                                 ("pitch", "heading"), "axes_swapped heading_sign pitch_sign"),
        ("sbet_attitude", "SBET: signs of all angles", ("roll", "pitch", "heading"),
         "heading_sign roll_sign pitch_sign")], chains=GIVEN, cause="sign of|heading (differs|scatters)|axes")
 def _(s, names):
@@ -67,11 +67,11 @@ def _(s):
     s.sbet()[:, COLUMN["heading"]] -= convergence(s)
 
 
-@each([("sbet_heading_east", "SBET: heading counter-clockwise from east", lambda h: np.pi / 2 - h, "heading_sign"),
+@each([("sbet_heading_east", "SBET: heading counter-clockwise from east", lambda h: np.pi / 2 - h, "axes_swapped heading_sign"),
        ("sbet_heading_90", "SBET: heading 90 deg off", lambda h: h + np.pi / 2, "heading_turned axes_swapped"),
        ("sbet_heading_180", "SBET: heading 180 deg off", lambda h: h + np.pi, "heading_turned axes_swapped scan_angle_sign"),
        ("sbet_heading_magnetic", "SBET: heading from magnetic north (3.5 deg)", lambda h: h - np.radians(3.5),
-        "heading_grid_north")], chains=GIVEN, cause="heading (differs|scatters)|grid north")
+        "heading_offset heading_grid_north")], chains=GIVEN, cause="heading (differs|scatters)|grid north")
 def _(s, change):
     s.sbet()[:, COLUMN["heading"]] = change(s.sbet("heading"))
 
@@ -96,7 +96,7 @@ def _(s):
     s.sbet()[:, 1:3] = s.sbet()[:, 2:0:-1].copy()
 
 
-@add("sbet_wander", "SBET: platform heading taken for true heading (wander angle 3 deg)", "heading_grid_north heading_wander", chains=GIVEN,
+@add("sbet_wander", "SBET: platform heading taken for true heading (wander angle 3 deg)", "heading_wander heading_offset heading_grid_north", chains=GIVEN,
      cause="wander|heading (differs|scatters)")
 def _(s):
     s.sbet()[:, [COLUMN["heading"], COLUMN["wander"]]] += np.radians(3.0)

@@ -190,6 +190,7 @@ class GeometryJudge : public OptionStage<calib::GeometryOptions> {
       one["contradictions"] = t.contradictions;
       tried.push(std::move(one));
     }
+    if (!found.doubt.empty()) out["doubt"] = found.doubt;
     core::Value& warnings = out["warnings"] = core::Value::array();
     for (const std::string& w : found.warnings) warnings.push(w);
   }

@@ -72,13 +72,22 @@ class Strips : public OptionStage<StripStageOptions> {
   std::vector<fs::path> inputs(const io::Survey& survey) const override { return control_files(survey); }
 
   void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
-    if (options.when == AdjustWhen::always) return adjust(context, PreparedFlight(context, options.errors, tally), tally, findings);
+    const std::string& doubt = context.geometry_doubt;
+    if (options.when == AdjustWhen::always) {
+      if (!doubt.empty()) {
+        tally.count("adjusted although quality.geometry found a cause that lies elsewhere: not to be trusted", doubt);
+        findings["doubt"] = doubt;
+      }
+      return adjust(context, PreparedFlight(context, options.errors, tally), tally, findings);
+    }
     // Whatever stands against it, the survey goes on with its trajectory as it is, and says why.
     const auto left = [&](const std::string& why, const std::string& what) {
       findings["adjusted"] = false;
       findings["reason"] = what;
       if (!why.empty()) tally.count(why, what);
     };
+    if (!doubt.empty())
+      return left("not adjusted: quality.geometry found a cause that an adjustment would hide in the trajectory", doubt);
     try {
       const PreparedFlight prepared(context, options.errors, tally);
       const calib::LineAgreement lines = agreement(prepared);

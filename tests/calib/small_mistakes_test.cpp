@@ -29,7 +29,7 @@ Chain stated() {
 }
 
 std::vector<SmallExplanation> explained(const SmallVector& error, bool heights = false) {
-  return explain_small(errors_of(error), stated(), usual_mistakes(stated(), 0.0, {-0.4, 0.1, -1.2}), flown, heights);
+  return explain_small(errors_of(error), stated(), stated(), usual_mistakes(stated(), 0.0, {-0.4, 0.1, -1.2}), flown, heights);
 }
 
 TEST(SmallMistakes, NothingIsSaidOfARightCalibration) { EXPECT_TRUE(explained(SmallVector::Zero()).empty()); }

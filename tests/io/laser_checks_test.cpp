@@ -78,5 +78,20 @@ TEST_F(LaserChecks, RangesOfNoSurveyAreCounted) {
   EXPECT_EQ(counted(20, 8000), "");
 }
 
+TEST_F(LaserChecks, WholeNumbersAreNoRanges) {
+  const auto counted_with = [&](double step, const char* unit_of) {
+    std::string rows = "t,line,r,a\n";
+    for (int t = 0; t <= 300; ++t) rows += std::to_string(0.3 * t) + ",1," + std::to_string(350 + step * (t % 40)) + "," + std::to_string(20 * std::sin(t)) + "\n";
+    test::write_bytes(folder_ / "a.csv", rows);
+    survey_.laser.front().range_unit = core::Metres(std::stod(unit_of));
+    core::Tally tally;
+    check_laser(survey_, scan(survey_, tally), tally);
+    return tally.of("flight lines whose ranges are whole numbers of coarse units: another column read as columns.range?");
+  };
+  EXPECT_EQ(counted_with(1, "1"), 1u);
+  EXPECT_EQ(counted_with(0.25, "1"), 0u);
+  EXPECT_EQ(counted_with(1, "0.001"), 0u) << "millimetres";
+}
+
 }  // namespace
 }  // namespace swath::io

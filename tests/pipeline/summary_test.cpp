@@ -18,5 +18,16 @@ TEST(Summary, TellsCountsTalliesAndFindings) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
 }
 
+TEST(Summary, AnErrorBehindAJudgedGeometryHintsAtWhatIsNamed) {
+  const core::Value geometry = io::parse_json(
+      R"({"named": ["range_centimetres"], "warnings": ["lines disagree", "with ranges in centimetres: state range_unit"]})", "report");
+  const core::Error e("no return could be georeferenced", "survey.toml", "compare the times", core::Exit::bad_data);
+  EXPECT_EQ(with_geometry(e, &geometry).hint(), "compare the times; quality.geometry: with ranges in centimetres: state range_unit");
+  EXPECT_EQ(with_geometry(e, &geometry).code(), core::Exit::bad_data);
+  EXPECT_EQ(with_geometry(e, nullptr).hint(), "compare the times");
+  const core::Value sound = io::parse_json(R"({"named": [], "warnings": []})", "report");
+  EXPECT_EQ(with_geometry(e, &sound).hint(), "compare the times");
+}
+
 }  // namespace
 }  // namespace swath::pipeline
