@@ -182,7 +182,7 @@ std::vector<TriedMistake> small_mistakes(const GeometryInput& in, const Geometry
     const ShotGeometry geometry(at.scanner, at.calibration);
     const SmallErrors errors =
         small_errors({flight.sample, of.ground, of.pairs, of.control, geometry, in.sensor, *in.trajectory, flight.frame});
-    return explain_small(errors, at, in.chain, usual, {in.range, speed}, heights);
+    return explain_small(errors, at, in.chain, usual, {in.range, speed}, heights, not_held(found.checks) > 0);
   };
   std::vector<SmallExplanation> all = explained(cells, in.chain);
   std::vector<TriedMistake> out;

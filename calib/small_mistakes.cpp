@@ -12,8 +12,11 @@ namespace swath::calib {
 namespace {
 
 constexpr double sure_usual = 20.0, sure_fitted = 32.0;  // gains: 4.5 and, with the choice among several, 5 sigmas
-constexpr double per_value = 4.0;                        // of the gain, for each value that was fitted
-constexpr double as_good = 6.0;                          // of the gain
+constexpr double less = 0.4;                             // of those, where something is known to be wrong
+constexpr double per_value = 4.0;                        // of the gain, for each value that was fitted ...
+constexpr double per_unstated = 1.0;                     // ... and of those that are stated as zero: they were left out
+constexpr double as_good = 6.0, share_as_good = 0.05;    // of the gain: planes that lie apart do not show it more truly
+constexpr double longest_lever = 3.0;                    // m: no scanner is farther from its IMU
 constexpr double smallest = 0.08;                        // m on the ground
 constexpr double surely = 4.0;                           // sigmas of a fitted value that is said
 constexpr size_t most = 3;
@@ -82,6 +85,13 @@ std::string value_text(Parameter p, double value) {
   return std::string(names[p]) + text + unit;
 }
 
+/// All three angles, or parts of the lever arm, of a group are stated as zero.
+bool is_left_out(const Group& g, const SmallVector& stated) {
+  if (g.free.size() < 2) return false;
+  const int first = g.free.front() == boresight_roll ? boresight_roll : lever_forward;
+  return stated.segment<3>(first).isZero();
+}
+
 std::string words(const Group& g, const SmallVector& right, const SmallVector& error) {
   std::string out = g.what;
   if (g.free.front() == lever_down) {
@@ -96,12 +106,12 @@ std::string words(const Group& g, const SmallVector& right, const SmallVector& e
 }  // namespace
 
 std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Chain& at, const Chain& stated,
-                                            const std::vector<UsualMistake>& usual, const FlownAt& flown, bool heights) {
+                                            const std::vector<UsualMistake>& usual, const FlownAt& flown, bool heights, bool alarmed) {
   std::vector<SmallExplanation> all;
   const SmallVector values = values_of(stated.calibration), here = values_of(at.calibration);
   const double now = errors.with(here - values).squares;
   const auto add = [&](const SmallVector& right, double gain, SmallExplanation e) {
-    if (gain < (e.usual ? sure_usual : sure_fitted) || moved_by(values - right, flown) < smallest) return;
+    if (gain < (alarmed ? less : 1.0) * (e.usual ? sure_usual : sure_fitted) || moved_by(values - right, flown) < smallest) return;
     e.chain = stated;
     e.chain.calibration = calibration_of(right);
     e.gain = gain;
@@ -124,8 +134,10 @@ std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Cha
       right[p] = here[p] - s.error[p];
       clear = clear || std::abs(values[p] - right[p]) > surely * s.sigma[p];
     }
-    if (clear)
-      add(right, now - s.squares - per_value * static_cast<double>(g.free.size()), {g.name, words(g, right, values - right), g.cure, {}, 0, false});
+    if (!clear || (g.free.front() == lever_forward && right.segment<3>(lever_forward).norm() > longest_lever)) continue;
+    const bool unstated = is_left_out(g, values);
+    const double cost = (unstated ? per_unstated : per_value) * static_cast<double>(g.free.size());
+    add(right, now - s.squares - cost, {g.name + std::string(unstated ? "_missing" : ""), words(g, right, values - right), g.cure, {}, 0, false});
   }
   const auto best = [&](bool of_usual) {
     double out = 0;
@@ -133,7 +145,7 @@ std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Cha
       if (e.usual || !of_usual) out = std::max(out, e.gain);
     return out;
   };
-  const double least = best(false) - as_good;
+  const double least = best(false) - std::max(as_good, share_as_good * best(false));
   const bool by_usual = best(true) >= least;
   std::erase_if(all, [&](const SmallExplanation& e) { return e.gain < least || (by_usual && !e.usual); });
   std::stable_sort(all.begin(), all.end(), [](const SmallExplanation& x, const SmallExplanation& y) { return x.gain > y.gain; });
@@ -154,8 +166,8 @@ SmallExplanation fit_small(const SmallErrors& errors, const Chain& stated, const
   for (const Parameter p : g.free) right[p] -= s.error[p];
   out.step = (right - before).norm() / std::max(1e-12, (right - values).norm());
   out.chain.calibration = calibration_of(right);
-  out.name = g.name;
-  out.what = words(g, right, values_of(stated.calibration) - right);
+  out.name = g.name + std::string(is_left_out(g, values) ? "_missing" : "");
+  out.what = words(g, right, values - right);
   out.cure = g.cure;
   return out;
 }

@@ -26,9 +26,9 @@ struct FlownAt {
 
 /// Those that explain the differences far better than the values as stated, the best first, and those as good; usually none. `errors`: of
 /// the values of `at`, which may be nearer to the right ones than the stated. `heights`: there is control, which shows errors that lift all
-/// lines alike.
+/// lines alike. `alarmed`: something is known to be wrong, less is enough to say what.
 std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Chain& at, const Chain& stated,
-                                            const std::vector<UsualMistake>& usual, const FlownAt& flown, bool heights);
+                                            const std::vector<UsualMistake>& usual, const FlownAt& flown, bool heights, bool alarmed = false);
 
 /// Groups of values that are fitted to lines alone, whatever the gain.
 size_t fitted_groups();

@@ -71,7 +71,7 @@ def _(s):
        ("sbet_heading_90", "SBET: heading 90 deg off", lambda h: h + np.pi / 2, "heading_turned axes_swapped"),
        ("sbet_heading_180", "SBET: heading 180 deg off", lambda h: h + np.pi, "heading_turned axes_swapped scan_angle_sign"),
        ("sbet_heading_magnetic", "SBET: heading from magnetic north (3.5 deg)", lambda h: h - np.radians(3.5),
-        "heading_offset heading_grid_north")], chains=GIVEN, cause="heading (differs|scatters)|grid north")
+        "heading_offset heading_grid_north boresight")], chains=GIVEN, cause="heading (differs|scatters)|grid north")
 def _(s, change):
     s.sbet()[:, COLUMN["heading"]] = change(s.sbet("heading"))
 
@@ -96,7 +96,7 @@ def _(s):
     s.sbet()[:, 1:3] = s.sbet()[:, 2:0:-1].copy()
 
 
-@add("sbet_wander", "SBET: platform heading taken for true heading (wander angle 3 deg)", "heading_wander heading_offset heading_grid_north", chains=GIVEN,
+@add("sbet_wander", "SBET: platform heading taken for true heading (wander angle 3 deg)", "heading_wander heading_offset heading_grid_north boresight", chains=GIVEN,
      cause="wander|heading (differs|scatters)")
 def _(s):
     s.sbet()[:, [COLUMN["heading"], COLUMN["wander"]]] += np.radians(3.0)

@@ -61,6 +61,15 @@ TEST(SmallMistakes, ATrajectoryOfTheAntennaIsNamed) {
   EXPECT_EQ(found.front().name, "trajectory_antenna");
 }
 
+TEST(SmallMistakes, ALeverArmThatIsLeftOutIsNamed) {
+  Chain none;
+  SmallVector error = SmallVector::Zero();
+  error.segment<3>(lever_forward) << -0.4, 0.2, -0.3;
+  const auto found = explain_small(errors_of(error), none, none, usual_mistakes(none, 0.0), flown, true);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found.front().name, "lever_arm_missing");
+}
+
 TEST(SmallMistakes, MillimetresAreNotSaid) {
   SmallVector error = SmallVector::Zero();
   error[lever_forward] = 0.06;

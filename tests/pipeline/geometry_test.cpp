@@ -31,7 +31,8 @@ class Geometry : public testing::Test {
   static void TearDownTestSuite() { folder_.reset(); }
 
   /// Runs configs/georeference.toml with `from` in survey.toml replaced.
-  static Outcome run_with(const std::string& from, const std::string& to, std::vector<std::string> sets = {}) {
+  static Outcome run_with(const std::string& from, const std::string& to, std::vector<std::string> sets = {},
+                          const fs::path& config = test::source_folder() / "configs/georeference.toml") {
     std::string text = test::read_bytes(folder_->path() / "survey.toml");
     if (!from.empty()) {
       const size_t at = text.find(from);
@@ -41,7 +42,7 @@ class Geometry : public testing::Test {
     io::write_text_file(folder_->path() / "changed.toml", text);
     const test::TemporaryFolder out;
     Request r;
-    r.config = test::source_folder() / "configs/georeference.toml";
+    r.config = config;
     r.survey = folder_->path() / "changed.toml";
     r.output = out / "out";
     r.sets = std::move(sets);
@@ -49,6 +50,16 @@ class Geometry : public testing::Test {
     Plan plan = make_plan(r);
     Progress progress(Voice::quiet);
     return run(plan, progress, "test");
+  }
+  /// configs/georeference.toml with the lines adjusted where needed.
+  static fs::path adjusting() {
+    std::string text = test::read_bytes(test::source_folder() / "configs/georeference.toml");
+    const std::string before = "[[stage]]\ntype = \"georeference\"";
+    const size_t at = text.find(before);
+    if (at == std::string::npos) throw std::runtime_error("no georeference");
+    text.insert(at, "[[stage]]\ntype = \"calib.strips\"\nwhen = \"needed\"\n\n");
+    io::write_text_file(folder_->path() / "adjusting.toml", text);
+    return folder_->path() / "adjusting.toml";
   }
   static std::string named(const Outcome& o) {
     const core::Value& names = *o.report.find("geometry")->find("named");
@@ -84,6 +95,27 @@ TEST_F(Geometry, LateTimesAreNamed) {
   const Outcome o = run_with("latency = \"0 s\"", "latency = \"0.2 s\"");
   EXPECT_EQ(verdict(o), "inconsistent");
   EXPECT_EQ(named(o), "time_offset");
+}
+
+TEST_F(Geometry, ANamedMistakeIsNotHiddenByAnAdjustment) {
+  const Outcome o = run_with("latency = \"0 s\"", "latency = \"0.02 s\"", {}, adjusting());
+  EXPECT_EQ(named(o), "time_offset");
+  for (const core::Value& stage : o.report.find("stages")->items()) {
+    if (stage.find("type")->as_text() != "calib.strips") continue;
+    const core::Value& findings = *stage.find("findings");
+    EXPECT_FALSE(findings.find("adjusted")->as_bool());
+    EXPECT_NE(findings.find("reason")->as_text().find("latency"), std::string::npos) << findings.find("reason")->as_text();
+    EXPECT_NE(stage.find("tally"), nullptr);
+  }
+}
+
+TEST_F(Geometry, ARefusalNamesTheMistakeThatTheGateFound) {
+  try {
+    run_with("angle_unit = \"deg\"", "angle_unit = \"deg\"\nrange_unit = \"100 m\"");
+    FAIL() << "ranges of 40 km";
+  } catch (const core::Error& e) {
+    EXPECT_NE(e.hint().find("with ranges in centimetres"), std::string::npos) << e.hint();
+  }
 }
 
 }  // namespace
