@@ -43,8 +43,7 @@ ControlFigures compare_control(const SampledFlight& f, const LineCells& cells, c
   std::vector<double> variance;
   for (const ControlCell& c : cells.control) {
     of_point[c.point].push_back(c.apart);
-    const auto look =
-        look_at(*c.cell, *shots[cells.ground[c.ground].pass], Eigen::Vector3d::UnitZ(), geometry, cursor, f.frame);
+    const auto look = look_at(*c.cell, *shots[cells.ground[c.ground].pass], Eigen::Vector3d::UnitZ(), geometry, cursor, f.frame);
     if (!look) continue;
     const Variances v = variances(f.sensor, look->sigma);
     const Eigen::Matrix<double, 1, latency + 1> by = look->by.head<latency + 1>();
@@ -93,13 +92,15 @@ std::optional<HeightMistake> height_mistake(const ControlFigures& c, double undu
     return std::nullopt;
   // Heights above the geoid are less than those above the ellipsoid by the undulation.
   const bool of_trajectory = c.median * undulation < 0;
-  const std::string whose =
-      !known ? "heights of trajectory or control" : of_trajectory ? "the trajectory's heights" : "the control's heights";
-  return HeightMistake{"height_geoid", "with " + whose + " above the geoid in place of the ellipsoid" +
-                                           (known ? text_of(" (the geoid lies at %.0f m there)", undulation) : ""),
+  const std::string whose = !known          ? "heights of trajectory or control"
+                            : of_trajectory ? "the trajectory's heights"
+                                            : "the control's heights";
+  return HeightMistake{"height_geoid",
+                       "with " + whose + " above the geoid in place of the ellipsoid" +
+                           (known ? text_of(" (the geoid lies at %.0f m there)", undulation) : ""),
                        known && of_trajectory ? "export the trajectory with ellipsoidal heights"
                        : known                ? "state the CRS of [[control]] with its height system"
-                                              : "export the trajectory with ellipsoidal heights, state the CRS of [[control]] with its heights"};
+                               : "export the trajectory with ellipsoidal heights, state the CRS of [[control]] with its heights"};
 }
 
 }  // namespace swath::calib

@@ -12,12 +12,12 @@ namespace swath::calib {
 
 /// How far the ground lies from control.
 struct ControlFigures {
-  size_t points = 0, near = 0;       ///< surveyed, and within reach of a track
-  double nearest = 0.0;              ///< m, from a track
+  size_t points = 0, near = 0;  ///< surveyed, and within reach of a track
+  double nearest = 0.0;         ///< m, from a track
   size_t compared = 0;
-  double median = 0.0;               ///< ground less control, m
-  double spread = 0.0;               ///< about that, robust, m
-  double predicted = 0.0;            ///< what the sigmas make one expect, m
+  double median = 0.0;                 ///< ground less control, m
+  double spread = 0.0;                 ///< about that, robust, m
+  double predicted = 0.0;              ///< what the sigmas make one expect, m
   double ground = 0.0, control = 0.0;  ///< median ellipsoidal heights, m
 };
 

@@ -23,11 +23,11 @@ constexpr double as_good = 1.12;        // of the best cost: the same
 constexpr double fewer_cells = 0.1;     // of the largest number of cells that any assumption gives
 constexpr double near_predicted = 2.5;  // of the predicted sigma
 constexpr double few_outside = 0.1;
-constexpr double no_worse = 1.02;       // of the cost as described, with a small mistake undone
+constexpr double no_worse = 1.02;  // of the cost as described, with a small mistake undone
 constexpr size_t most_named = 3;
 constexpr double least_covered = 0.5, nearly_all = 0.95, all_covered = 0.995;
-constexpr double gross = 1.0;     // m: no trajectory that is worth adjusting is so far off
-constexpr double leap_fit = 1.0;  // m: lines that are flown a kilometre apart do not come near this
+constexpr double gross = 1.0;                     // m: no trajectory that is worth adjusting is so far off
+constexpr double leap_fit = 1.0;                  // m: lines that are flown a kilometre apart do not come near this
 constexpr double crossing = 0.15, meeting = 0.5;  // of the range: tracks so near share ground
 
 std::string text_of(const char* format, double a, double b = 0.0) {
@@ -145,9 +145,9 @@ void say(const SampledFlight& flight, const GeometryOptions& o, bool sound, Geom
   if (sound && out.covered < nearly_all)
     out.warnings.push_back("the trajectory covers " + text_of("%.0f %%", 100 * out.covered) + " of the time of the flight lines");
   else if (sound && out.lines.fit.cells > 0 && !worst)
-    out.warnings.push_back("the differences of lines where they overlap" +
-                           text_of(" (%.3f m rms, predicted %.3f m) have the pattern of an error of calibration", out.lines.fit.cost,
-                                   out.lines.predicted));
+    out.warnings.push_back(
+        "the differences of lines where they overlap" +
+        text_of(" (%.3f m rms, predicted %.3f m) have the pattern of an error of calibration", out.lines.fit.cost, out.lines.predicted));
   else if (sound && !worst)
     out.warnings.push_back("no ground was found that two lines have seen, though their tracks come within " +
                            text_of("%.0f m", flight.plan.nearest));
@@ -239,9 +239,8 @@ void add_control(const GeometryOptions& o, const ControlFigures& c, GeometryFigu
 
 /// The lines fit and nothing but control is off.
 bool is_of_heights(const GeometryFigures& found) {
-  return not_held(found.checks) > 0 && std::all_of(found.checks.begin(), found.checks.end(), [](const GeometryCheck& c) {
-           return c.held || c.name == "control_height";
-         });
+  return not_held(found.checks) > 0 &&
+         std::all_of(found.checks.begin(), found.checks.end(), [](const GeometryCheck& c) { return c.held || c.name == "control_height"; });
 }
 
 }  // namespace
@@ -249,8 +248,7 @@ bool is_of_heights(const GeometryFigures& found) {
 GeometryFigures judge_geometry(const GeometryInput& in, const GeometryOptions& o) {
   GeometryFigures out;
   if (in.lines.empty() || !(in.range > 0)) return out;
-  const SampledFlight flight =
-      std::move(sampled(in, o, frame_of(in), {{in.chain.calibration.latency.value, in.range}}).front());
+  const SampledFlight flight = std::move(sampled(in, o, frame_of(in), {{in.chain.calibration.latency.value, in.range}}).front());
   out.covered = flight.plan.covered;
   if (out.covered < least_covered) {
     uncovered(in, out);

@@ -46,8 +46,8 @@ struct GeometryInput {
   Chain chain;
   core::SensorSigma sensor;
   const trajectory::Trajectory* trajectory = nullptr;
-  double range = 0.0;        ///< m, median of some returns
-  double convergence = 0.0;  ///< rad, as usual_mistakes()
+  double range = 0.0;                                 ///< m, median of some returns
+  double convergence = 0.0;                           ///< rad, as usual_mistakes()
   Eigen::Vector3d antenna = Eigen::Vector3d::Zero();  ///< m, its lever arm, as usual_mistakes()
   std::vector<SurveyedPlace> control;
   std::function<double()> undulation;  ///< of the geoid above the ellipsoid, m; NaN, or empty: not known
@@ -65,8 +65,8 @@ struct TriedMistake {
 /// Control near the lines.
 struct ControlNear {
   size_t points = 0, near = 0, compared = 0;
-  double nearest = 0.0;                      ///< m, from a track
-  double median = 0.0, predicted = 0.0;      ///< ground less control, m
+  double nearest = 0.0;                  ///< m, from a track
+  double median = 0.0, predicted = 0.0;  ///< ground less control, m
 };
 
 struct GeometryFigures {

@@ -92,8 +92,9 @@ const GroundCell* cell_beside(const PassGround& ground, const Vector3d& place, d
   const GroundCell* out = nullptr;
   double nearest = side;
   for (std::int32_t x = i - 1; x <= i + 1; ++x) {
-    auto at = std::lower_bound(ground.smooth.begin(), ground.smooth.end(), std::pair(x, j - 1),
-                               [](const GroundCell& c, const std::pair<std::int32_t, std::int32_t>& key) { return std::pair(c.i, c.j) < key; });
+    auto at =
+        std::lower_bound(ground.smooth.begin(), ground.smooth.end(), std::pair(x, j - 1),
+                         [](const GroundCell& c, const std::pair<std::int32_t, std::int32_t>& key) { return std::pair(c.i, c.j) < key; });
     for (; at != ground.smooth.end() && at->i == x && at->j <= j + 1; ++at)
       if (const double off = (at->mean - place).head<2>().norm(); off < nearest) nearest = off, out = &*at;
   }

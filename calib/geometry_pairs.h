@@ -35,7 +35,8 @@ struct GroundOptions {
 
 std::vector<PassGround> ground_of(const GeometrySample& sample, LocalPoints& points, const GroundOptions& options);
 
-/// The smooth cell that holds a place or lies nearest beside it; null where there is none within a cell's side. The pointer is into `ground`.
+/// The smooth cell that holds a place or lies nearest beside it; null where there is none within a cell's side. The pointer is into
+/// `ground`.
 const GroundCell* cell_beside(const PassGround& ground, const Eigen::Vector3d& place, double side);
 
 /// Cells that two passes share.
@@ -64,8 +65,8 @@ struct LinePair {
 /// How a cell's place along a direction depends on what a point depends on.
 struct CellLook {
   Eigen::Matrix<double, 1, parameter_count> by = Eigen::Matrix<double, 1, parameter_count>::Zero();  ///< m per unit of each
-  double own = 0.0;                                                                                  ///< variance by the scatter of its returns, m2
-  trajectory::PoseSigma sigma;                   ///< of the trajectory at its return
+  double own = 0.0;             ///< variance by the scatter of its returns, m2
+  trajectory::PoseSigma sigma;  ///< of the trajectory at its return
 };
 /// `cursor`: of the flight's trajectory. Nothing where that has no pose.
 std::optional<CellLook> look_at(const GroundCell& cell, const core::Shots& shots, const Eigen::Vector3d& direction,

@@ -311,8 +311,7 @@ std::vector<GeometrySample> collect_samples(const std::vector<const SamplePlan*>
   std::map<int, std::vector<std::pair<Stretch, core::Shots*>>> of_line;
   std::vector<std::map<std::pair<bool, size_t>, core::Shots>> shots(plans.size());
   for (size_t k = 0; k < plans.size(); ++k)
-    for (const Stretch& s : plans[k]->stretches)
-      of_line[plans[k]->passes[s.pass].line].emplace_back(s, &shots[k][{s.profile, s.pass}]);
+    for (const Stretch& s : plans[k]->stretches) of_line[plans[k]->passes[s.pass].line].emplace_back(s, &shots[k][{s.profile, s.pass}]);
   stream([&](int line, const core::Shots& batch) {
     const auto at = of_line.find(line);
     if (at == of_line.end()) return;

@@ -51,10 +51,10 @@ struct SampleSize {
 struct SamplePlan {
   std::vector<Pass> passes;
   std::vector<Stretch> stretches;
-  double cell = 0.0;                                         ///< side of a square that holds about ten returns of a stretch, m
-  double covered = 0.0;                                      ///< share of the lines' time within the trajectory
-  double nearest = std::numeric_limits<double>::infinity();  ///< distance of the two tracks nearest to one another, m
-  size_t near_spots = 0;                                     ///< of those asked for, within reach of a track
+  double cell = 0.0;                                              ///< side of a square that holds about ten returns of a stretch, m
+  double covered = 0.0;                                           ///< share of the lines' time within the trajectory
+  double nearest = std::numeric_limits<double>::infinity();       ///< distance of the two tracks nearest to one another, m
+  size_t near_spots = 0;                                          ///< of those asked for, within reach of a track
   double nearest_spot = std::numeric_limits<double>::infinity();  ///< m, distance of one from a track
 };
 
@@ -62,8 +62,8 @@ struct SamplePlan {
 std::vector<RecordedLine> whole_lines(std::vector<RecordedLine> lines);
 
 /// Stretches of passes that come nearer to one another than their swaths are wide, judged by the trajectory alone: no unit, sign or angle
-/// of the laser takes part. `shift`: s, added to recorded times. `range`: m, of a usual return. `spots`: places, local, m, that are looked at
-/// as well, each by the two passes nearest to it.
+/// of the laser takes part. `shift`: s, added to recorded times. `range`: m, of a usual return. `spots`: places, local, m, that are looked
+/// at as well, each by the two passes nearest to it.
 SamplePlan plan_sample(const std::vector<RecordedLine>& lines, const trajectory::Trajectory& trajectory,
                        const trajectory::LocalFrame& frame, double shift, double range, const SampleSize& size,
                        const std::vector<Eigen::Vector2d>& spots = {});

@@ -185,8 +185,8 @@ void Trial::fitted(std::vector<TriedMistake>& out) const {
         LineCells cells = line_cells(flight_, found.chain, *in_.trajectory);
         fit_lines(flight_, cells, found.chain, *in_.trajectory, found_.lines.predicted);
         const ShotGeometry geometry(found.chain.scanner, found.chain.calibration);
-        const SmallErrors errors = small_errors(
-            {flight_.sample, cells.ground, cells.pairs, {}, geometry, flight_.sensor, *in_.trajectory, flight_.frame});
+        const SmallErrors errors =
+            small_errors({flight_.sample, cells.ground, cells.pairs, {}, geometry, flight_.sensor, *in_.trajectory, flight_.frame});
         if (errors.differences < static_cast<size_t>(options_.min_cells)) return;
         found = fit_small(errors, in_.chain, found.chain, group);
         if (found.name.empty() || found.step < settled) break;
@@ -242,8 +242,9 @@ void Trial::follow(SampledFlight flight, double centre, int samples, std::vector
 TriedMistake Trial::offset_of(const SampledFlight& flight, const char* name, double offset) const {
   TriedMistake tried{name,
                      "with the laser's times " + text_of("%.4g s ", std::abs(offset)) + (offset > 0 ? "later" : "earlier"),
-                     std::string(name) == "leap_seconds" ? "state the time scale of laser and trajectory, GPS or UTC"
-                                                         : "state latency = \"" + text_of("%.4g s", shift_ + offset) + "\" in [calibration]",
+                     std::string(name) == "leap_seconds"
+                         ? "state the time scale of laser and trajectory, GPS or UTC"
+                         : "state latency = \"" + text_of("%.4g s", shift_ + offset) + "\" in [calibration]",
                      {},
                      0};
   judge(flight, later(offset), *in_.trajectory, whole_, motion_, tried);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// No published source: Gauss-Markov with prior sigmas for each pass (position and attitude), weights after Huber from the residuals that the
-// freest model leaves. Deviation: the error of a pass is constant along it; what varies is taken for scatter, and the cells of one place
-// count as few.
+// No published source: Gauss-Markov with prior sigmas for each pass (position and attitude), weights after Huber from the residuals that
+// the freest model leaves. Deviation: the error of a pass is constant along it; what varies is taken for scatter, and the cells of one
+// place count as few.
 #include "calib/small_errors.h"
 
 #include <Eigen/Cholesky>
@@ -132,8 +132,8 @@ System system_of(const std::vector<Row>& rows, size_t grounds) {
   for (int i = 0; i < common; ++i) s.N(small_count + i, small_count + i) += all[i];
   for (size_t g = 0; g < grounds; ++g) {
     const trajectory::PoseSigma& p = sigma[g];
-    const double w[of_pass] = {weight(p.north, least_position),   weight(p.east, least_position),   weight(p.down, least_position),
-                               weight(p.roll, least_attitude), weight(p.pitch, least_attitude), weight(p.heading, least_heading)};
+    const double w[of_pass] = {weight(p.north, least_position), weight(p.east, least_position),  weight(p.down, least_position),
+                               weight(p.roll, least_attitude),  weight(p.pitch, least_attitude), weight(p.heading, least_heading)};
     for (int i = 0; i < of_pass; ++i) s.N(first_of(g) + i, first_of(g) + i) += w[i];
   }
   return s;

@@ -27,18 +27,18 @@ struct PairCells {
 
 /// A cell of a pass beside a surveyed height.
 struct ControlCell {
-  size_t ground = 0;         ///< number in the grounds
+  size_t ground = 0;  ///< number in the grounds
   const GroundCell* cell = nullptr;
-  double apart = 0.0;        ///< height of the cell's plane at the point less the point's, m
-  double sigma = 0.0;        ///< of the point's height, m
-  size_t point = 0;          ///< number of the point
+  double apart = 0.0;  ///< height of the cell's plane at the point less the point's, m
+  double sigma = 0.0;  ///< of the point's height, m
+  size_t point = 0;    ///< number of the point
 };
 
 /// Normal equations of the calibration's errors; those of the passes are eliminated.
 struct SmallErrors {
   SmallMatrix normal = SmallMatrix::Zero();
   SmallVector right = SmallVector::Zero();
-  double squares = 0.0;        ///< weighted, with no error of calibration
+  double squares = 0.0;  ///< weighted, with no error of calibration
   size_t differences = 0;
   SmallMatrix prior = SmallMatrix::Zero();  ///< covariance of the calibration's values as stated, none smaller than what is always there
 

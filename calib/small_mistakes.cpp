@@ -57,14 +57,23 @@ const std::vector<Group>& groups() {
       {"height_offset", "with all heights", "compare the height systems of trajectory and control", {lever_down}, true},
       {"boresight", "with a boresight of", "calibrate the boresight, or state it in [calibration]", {boresight_roll}},
       {"boresight", "with a boresight of", "calibrate the boresight, or state it in [calibration]", {boresight_pitch}},
-      {"heading_offset", "with headings of trajectory or boresight changed:",
-       "compare the trajectory's headings with true north, or state the boresight heading in [calibration]", {boresight_heading}},
-      {"boresight", "with a boresight of", "calibrate the boresight, or state it in [calibration]",
+      {"heading_offset",
+       "with headings of trajectory or boresight changed:",
+       "compare the trajectory's headings with true north, or state the boresight heading in [calibration]",
+       {boresight_heading}},
+      {"boresight",
+       "with a boresight of",
+       "calibrate the boresight, or state it in [calibration]",
        {boresight_roll, boresight_pitch, boresight_heading}},
-      {"lever_arm", "with a lever arm of", "measure it again, or compare its signs, axes and unit with lever_arm_scanner of [calibration]",
+      {"lever_arm",
+       "with a lever arm of",
+       "measure it again, or compare its signs, axes and unit with lever_arm_scanner of [calibration]",
        {lever_forward, lever_right}},
-      {"lever_arm", "with a lever arm of", "measure it again, or compare its signs, axes and unit with lever_arm_scanner of [calibration]",
-       {lever_forward, lever_right, lever_down}, true},
+      {"lever_arm",
+       "with a lever arm of",
+       "measure it again, or compare its signs, axes and unit with lever_arm_scanner of [calibration]",
+       {lever_forward, lever_right, lever_down},
+       true},
       {"time_offset", "with a", "state the laser's latency in [calibration]", {latency}},
       {"scan_scale", "with a", "state scan_scale in [calibration]", {scan_scale}},
       {"range_scale", "with a", "state range_scale in [calibration]", {range_scale}},
@@ -75,7 +84,7 @@ const std::vector<Group>& groups() {
 
 /// "roll 0.0504 deg" of a value.
 std::string value_text(Parameter p, double value) {
-  static const char* const names[small_count] = {"roll",    "pitch", "heading", "forward", "right",      "down",
+  static const char* const names[small_count] = {"roll",         "pitch",       "heading",     "forward",    "right",  "down",
                                                  "range_offset", "range_scale", "scan_offset", "scan_scale", "latency"};
   const bool angle = p <= boresight_heading || p == scan_offset;
   const char* const unit = angle ? " deg" : p == latency ? " s" : p == range_scale || p == scan_scale ? "" : " m";
@@ -137,7 +146,8 @@ std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Cha
     if (!clear || (g.free.front() == lever_forward && right.segment<3>(lever_forward).norm() > longest_lever)) continue;
     const bool unstated = is_left_out(g, values);
     const double cost = (unstated ? per_unstated : per_value) * static_cast<double>(g.free.size());
-    add(right, now - s.squares - cost, {g.name + std::string(unstated ? "_missing" : ""), words(g, right, values - right), g.cure, {}, 0, false});
+    add(right, now - s.squares - cost,
+        {g.name + std::string(unstated ? "_missing" : ""), words(g, right, values - right), g.cure, {}, 0, false});
   }
   const auto best = [&](bool of_usual) {
     double out = 0;

@@ -13,10 +13,10 @@ namespace swath::calib {
 
 struct SmallExplanation {
   std::string name, what, cure;
-  Chain chain;          ///< with it undone
-  double gain = 0.0;    ///< of the weighted squares: a chi-square of as many degrees of freedom as values were found
-  bool usual = false;   ///< a sign, a unit, an axis: nothing was fitted
-  double step = 0.0;    ///< of fit_small(): change by this call beside that since the values stated
+  Chain chain;         ///< with it undone
+  double gain = 0.0;   ///< of the weighted squares: a chi-square of as many degrees of freedom as values were found
+  bool usual = false;  ///< a sign, a unit, an axis: nothing was fitted
+  double step = 0.0;   ///< of fit_small(): change by this call beside that since the values stated
 };
 
 /// How a flight is flown, for the size of an error on the ground.
@@ -28,7 +28,8 @@ struct FlownAt {
 /// the values of `at`, which may be nearer to the right ones than the stated. `heights`: there is control, which shows errors that lift all
 /// lines alike. `alarmed`: something is known to be wrong, less is enough to say what.
 std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Chain& at, const Chain& stated,
-                                            const std::vector<UsualMistake>& usual, const FlownAt& flown, bool heights, bool alarmed = false);
+                                            const std::vector<UsualMistake>& usual, const FlownAt& flown, bool heights,
+                                            bool alarmed = false);
 
 /// Groups of values that are fitted to lines alone, whatever the gain.
 size_t fitted_groups();

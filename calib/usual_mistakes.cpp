@@ -232,16 +232,49 @@ void add_lever_arm(const core::Calibration& c, const Eigen::Vector3d& antenna, s
   lever("lever_arm_axes", "with the lever arm taken as right, forward, down", axes, {stated.y(), stated.x(), stated.z()}, Kind::small);
   lever("lever_arm_axes", "with the lever arm taken as forward, down, right", axes, {stated.x(), stated.z(), stated.y()}, Kind::small);
   lever("lever_arm_axes", "with the lever arm taken as right, forward, up", axes, {stated.y(), stated.x(), -stated.z()}, Kind::small);
-  lever("lever_arm_feet", "with the lever arm in feet", "state lever_arm_scanner of [calibration] in ft", times(foot, foot, foot), Kind::small);
+  lever("lever_arm_feet", "with the lever arm in feet", "state lever_arm_scanner of [calibration] in ft", times(foot, foot, foot),
+        Kind::small);
   if (!antenna.isZero())
     lever("trajectory_antenna", "with the trajectory taken as the antenna's, not the IMU's",
-          "export the trajectory for the IMU's centre, or state the lever arm from the antenna to the scanner", stated - antenna, Kind::small);
+          "export the trajectory for the IMU's centre, or state the lever arm from the antenna to the scanner", stated - antenna,
+          Kind::small);
   if (stated.lpNorm<Eigen::Infinity>() > 3.0) {
     lever("lever_arm_millimetres", "with the lever arm in millimetres", "state lever_arm_scanner of [calibration] in mm",
           times(1e-3, 1e-3, 1e-3), Kind::gross);
     lever("lever_arm_millimetres", "with the lever arm in centimetres", "state lever_arm_scanner of [calibration] in cm",
           times(1e-2, 1e-2, 1e-2), Kind::gross);
   }
+}
+
+/// Units and axes of the boresight.
+void add_boresight(const core::Calibration& c, std::vector<UsualMistake>& out) {
+  using Angle = core::Radians core::Calibration::*;
+  constexpr double least = 1e-6;
+  const double largest = std::max({std::abs(c.roll.value), std::abs(c.pitch.value), std::abs(c.heading.value)});
+  const auto all_times = [&](const char* name, const char* what, const char* cure, double by) {
+    out.push_back({name,
+                   what,
+                   cure,
+                   [by](Chain& k) {
+                     for (const Angle a : {&core::Calibration::roll, &core::Calibration::pitch, &core::Calibration::heading})
+                       (k.calibration.*a).value *= by;
+                   },
+                   {},
+                   Kind::gross});
+  };
+  if (largest > 0.02)
+    all_times("boresight_degrees_as_radians", "with boresight angles 57.3 times smaller (degrees were read as radians)",
+              "state roll, pitch and heading of [calibration] in deg", core::degree);
+  else if (largest > least)
+    all_times("boresight_degrees_as_radians", "with boresight angles 57.3 times larger (radians were read as degrees)",
+              "state roll, pitch and heading of [calibration] in rad", 1 / core::degree);
+  if (std::abs(c.roll.value - c.pitch.value) > least)
+    out.push_back({"boresight_axes_swapped",
+                   "with boresight roll and pitch exchanged",
+                   "exchange roll and pitch in [calibration]",
+                   [](Chain& k) { std::swap(k.calibration.roll.value, k.calibration.pitch.value); },
+                   {},
+                   Kind::small});
 }
 
 void add_mounting(const Chain& stated, std::vector<UsualMistake>& out) {
@@ -274,29 +307,6 @@ void add_mounting(const Chain& stated, std::vector<UsualMistake>& out) {
                    },
                    {},
                    Kind::small});
-  const double largest = std::max({std::abs(c.roll.value), std::abs(c.pitch.value), std::abs(c.heading.value)});
-  const auto all_times = [&](const char* name, const char* what, const char* cure, double by) {
-    out.push_back({name, what, cure,
-                   [by](Chain& k) {
-                     for (const Angle a : {&core::Calibration::roll, &core::Calibration::pitch, &core::Calibration::heading})
-                       (k.calibration.*a).value *= by;
-                   },
-                   {},
-                   Kind::gross});
-  };
-  if (largest > 0.02)
-    all_times("boresight_degrees_as_radians", "with boresight angles 57.3 times smaller (degrees were read as radians)",
-              "state roll, pitch and heading of [calibration] in deg", core::degree);
-  else if (largest > least)
-    all_times("boresight_degrees_as_radians", "with boresight angles 57.3 times larger (radians were read as degrees)",
-              "state roll, pitch and heading of [calibration] in rad", 1 / core::degree);
-  if (std::abs(c.roll.value - c.pitch.value) > least)
-    out.push_back({"boresight_axes_swapped",
-                   "with boresight roll and pitch exchanged",
-                   "exchange roll and pitch in [calibration]",
-                   [](Chain& k) { std::swap(k.calibration.roll.value, k.calibration.pitch.value); },
-                   {},
-                   Kind::small});
   const std::string mount = "state how the scanner is mounted by the angles of [calibration]";
   for (const double a : {right_angle, -right_angle, core::pi}) {
     turn("mount_rolled", "with the scanner rolled by " + degrees_text(a), mount, &core::Calibration::roll, 1, a, Kind::gross);
@@ -316,6 +326,7 @@ std::vector<UsualMistake> usual_mistakes(const Chain& stated, double convergence
   add_model(stated, out);
   add_trajectory(convergence, out);
   add_lever_arm(stated.calibration, antenna, out);
+  add_boresight(stated.calibration, out);
   add_mounting(stated, out);
   return out;
 }

@@ -35,8 +35,8 @@ struct UsualMistake {
   double heading = 0.0;  ///< rad, that it adds to all headings of the trajectory
 };
 
-/// All that change anything. `convergence`: rad, grid north of the survey's map clockwise from true north; 0 where there is none. `antenna`:
-/// lever arm of the antenna in the body, m; 0 where it is not known.
+/// All that change anything. `convergence`: rad, grid north of the survey's map clockwise from true north; 0 where there is none.
+/// `antenna`: lever arm of the antenna in the body, m; 0 where it is not known.
 std::vector<UsualMistake> usual_mistakes(const Chain& stated, double convergence, const Eigen::Vector3d& antenna = Eigen::Vector3d::Zero());
 
 }  // namespace swath::calib

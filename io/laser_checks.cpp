@@ -18,9 +18,9 @@ constexpr size_t looked_at = 20000;                   // returns of a line: some
 constexpr double shortest = 1.0, farthest = 15000.0;  // m, median ranges of a survey
 constexpr double coarse = 0.1;                        // m
 constexpr size_t enough_ranges = 200, different = 12;
-constexpr double still = 0.05 * core::degree;         // a mirror that is parked at nadir stays within
-constexpr double narrow = 1.2 * core::degree;         // no mirror sweeps so little; 60 deg read as radians stay within
-constexpr double least_span = 0.5;                    // s of records, in which each mirror has swept its swath
+constexpr double still = 0.05 * core::degree;  // a mirror that is parked at nadir stays within
+constexpr double narrow = 1.2 * core::degree;  // no mirror sweeps so little; 60 deg read as radians stay within
+constexpr double least_span = 0.5;             // s of records, in which each mirror has swept its swath
 
 std::string shown(double value, const char* unit) { return core::format_number(std::round(value * 1000) / 1000) + unit; }
 

@@ -131,7 +131,7 @@ struct Pass {
   std::vector<std::uint64_t> bad;  ///< rows without a time or line that can be theirs
   std::uint64_t records = 0, unreadable = 0, wild = 0;
   double first_outside = std::numeric_limits<double>::infinity(), last_outside = -first_outside;  ///< times of records outside every line
-  std::optional<core::Error> first;  ///< that is not readable
+  std::optional<core::Error> first;                                                               ///< that is not readable
   core::Tally tally;
 };
 
@@ -233,11 +233,11 @@ void refuse_outside(const Survey& survey, const LineSpan& records) {
   double last = lines.front().end;
   for (const LineWindow& l : lines) last = std::max(last, l.end);
   const double first = lines.front().start;
-  const std::string gap = core::usual_time_gap(0.5 * (records.first + records.last - first - last), records.last - records.first + last - first);
+  const std::string gap =
+      core::usual_time_gap(0.5 * (records.first + records.last - first - last), records.last - records.first + last - first);
   throw core::Error("no laser return to work on: records from " + core::utc_text(records.first) + " to " + core::utc_text(records.last) +
                         ", flight lines from " + core::utc_text(first) + " to " + core::utc_text(last),
-                    survey.name,
-                    gap.empty() ? "are the lines' times those of the records? see `swath info` of the laser file" : gap);
+                    survey.name, gap.empty() ? "are the lines' times those of the records? see `swath info` of the laser file" : gap);
 }
 
 constexpr LineSpan no_time{0, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/geometry_gate.h"
 #include "calib/control.h"
+#include "calib/geometry_gate.h"
 #include "core/error.h"
 #include "core/geodesy.h"
 #include "core/statistics.h"
@@ -78,7 +78,7 @@ core::Value value_of(const calib::ControlNear& c) {
   v["points"] = c.points;
   v["near"] = c.near;
   v["compared"] = c.compared;
-  v["nearest_m"] = c.nearest;
+  if (std::isfinite(c.nearest)) v["nearest_m"] = c.nearest;
   if (c.compared == 0) return v;
   v["median_m"] = c.median;
   v["predicted_m"] = c.predicted;
@@ -135,8 +135,7 @@ class GeometryJudge : public OptionStage<calib::GeometryOptions> {
     in.trajectory = context.trajectory.get();
     in.range = usual_range(context);
     in.convergence = convergence_of(context);
-    if (!context.imu)  // the trajectory was given: whose place it states is not known here
-      for (size_t k = 0; k < 3; ++k) in.antenna[static_cast<Eigen::Index>(k)] = context.survey.antenna.lever_arm[k].value;
+    for (size_t k = 0; k < 3; ++k) in.antenna[static_cast<Eigen::Index>(k)] = context.survey.antenna.lever_arm[k].value;
     in.control = control_of(context, tally);
     in.undulation = [&context] { return undulation_of(context); };
     calib::GeometryFigures found;
@@ -148,8 +147,25 @@ class GeometryJudge : public OptionStage<calib::GeometryOptions> {
       // Whatever keeps the flight from being judged is found by the stages that need it, or does not matter to them.
       tally.count("the geometry could not be judged", e.what());
     }
+    count(found, tally);
+    tell(found, findings["geometry"]);
+  }
+
+ private:
+  static void count(const calib::GeometryFigures& found, core::Tally& tally) {
+    for (const calib::LinePair& p : found.lines.pairs)
+      if (p.water != 0.0)
+        tally.count("pairs of lines whose level ground alone differs, by one height: water?",
+                    "lines " + std::to_string(p.line_a) + " and " + std::to_string(p.line_b) + ": " +
+                        core::format_number(std::round(p.water * 100) / 100) + " m");
+    if (found.control.points > 0 && found.control.near == 0 && std::isfinite(found.control.nearest))
+      tally.count("control of which no point lies near a flight line: its CRS, its axes?",
+                  std::to_string(found.control.points) + " points, the nearest " +
+                      core::format_number(std::round(found.control.nearest / 100) / 10) + " km from a track");
+  }
+
+  void tell(const calib::GeometryFigures& found, core::Value& out) const {
     constexpr const char* verdicts[] = {"not judged", "consistent", "inconsistent"};
-    core::Value& out = findings["geometry"];
     out["verdict"] = verdicts[static_cast<size_t>(found.verdict)];
     core::Value& named = out["named"] = core::Value::array();
     for (const calib::TriedMistake& t : found.named) named.push(t.name);
@@ -158,19 +174,8 @@ class GeometryJudge : public OptionStage<calib::GeometryOptions> {
       if (p.cells >= static_cast<std::uint64_t>(options.min_cells)) largest = std::max(largest, p.rms);
     if (largest > 0) out["line_difference"] = largest;
     // What the trajectory's reader has warned of is not said again, but counts.
-    for (const calib::LinePair& p : found.lines.pairs)
-      if (p.water != 0.0)
-        tally.count("pairs of lines whose level ground alone differs, by one height: water?",
-                    "lines " + std::to_string(p.line_a) + " and " + std::to_string(p.line_b) + ": " +
-                        core::format_number(std::round(p.water * 100) / 100) + " m");
     const auto said = std::count_if(found.checks.begin(), found.checks.end(), [](const auto& c) { return !c.held && c.said; });
-    if (found.control.points > 0) {
-      out["control"] = value_of(found.control);
-      if (found.control.near == 0)
-        tally.count("control of which no point lies near a flight line: its CRS, its axes?",
-                    std::to_string(found.control.points) + " points, the nearest " +
-                        core::format_number(std::round(found.control.nearest / 100) / 10) + " km from a track");
-    }
+    if (found.control.points > 0) out["control"] = value_of(found.control);
     out["contradictions"] = found.warnings.size() + static_cast<size_t>(said);
     out["covered"] = found.covered;
     out["predicted_m"] = found.lines.predicted;

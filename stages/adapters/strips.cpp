@@ -86,8 +86,7 @@ class Strips : public OptionStage<StripStageOptions> {
       findings["reason"] = what;
       if (!why.empty()) tally.count(why, what);
     };
-    if (!doubt.empty())
-      return left("not adjusted: quality.geometry found a cause that an adjustment would hide in the trajectory", doubt);
+    if (!doubt.empty()) return left("not adjusted: quality.geometry found a cause that an adjustment would hide in the trajectory", doubt);
     try {
       const PreparedFlight prepared(context, options.errors, tally);
       const calib::LineAgreement lines = agreement(prepared);

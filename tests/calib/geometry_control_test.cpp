@@ -26,8 +26,7 @@ GeometryFigures judged_with(double off, double undulation = std::nan(""), double
   GeometryInput in = f.input(t);
   const trajectory::LocalFrame frame = GateFlight::local();
   for (const double x : {-70.0, -30.0, 0.0, 35.0, 70.0})
-    for (const double y : {-5.0, 15.0})
-      in.control.push_back({frame.to_ecef({x + east, y, GateFlight::ground(x, y, false) + off}), 0.02});
+    for (const double y : {-5.0, 15.0}) in.control.push_back({frame.to_ecef({x + east, y, GateFlight::ground(x, y, false) + off}), 0.02});
   in.undulation = [undulation] { return undulation; };
   return judge_geometry(in, {});
 }

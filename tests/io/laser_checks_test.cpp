@@ -81,7 +81,8 @@ TEST_F(LaserChecks, RangesOfNoSurveyAreCounted) {
 TEST_F(LaserChecks, WholeNumbersAreNoRanges) {
   const auto counted_with = [&](double step, const char* unit_of) {
     std::string rows = "t,line,r,a\n";
-    for (int t = 0; t <= 300; ++t) rows += std::to_string(0.3 * t) + ",1," + std::to_string(350 + step * (t % 40)) + "," + std::to_string(20 * std::sin(t)) + "\n";
+    for (int t = 0; t <= 300; ++t)
+      rows += std::to_string(0.3 * t) + ",1," + std::to_string(350 + step * (t % 40)) + "," + std::to_string(20 * std::sin(t)) + "\n";
     test::write_bytes(folder_ / "a.csv", rows);
     survey_.laser.front().range_unit = core::Metres(std::stod(unit_of));
     core::Tally tally;
