@@ -54,19 +54,23 @@ trajectory::LocalFrame frame_of(const GeometryInput& in) {
 std::vector<TriedMistake> explain(const GeometryFigures& found, std::uint64_t least, bool lines_apart) {
   const size_t now = not_held(found.checks);
   size_t fewest = now;
-  std::uint64_t most = found.lines.fit.cells;
-  for (const TriedMistake& t : found.tried) most = std::max(most, t.fit.cells);
-  const auto enough = std::max(least, static_cast<std::uint64_t>(fewer_cells * static_cast<double>(most)));
-  const bool by_lines = std::any_of(found.tried.begin(), found.tried.end(), [&](const TriedMistake& t) { return t.fit.cells >= enough; });
   // Lines that fit must fit as their sigmas say.
   const double sigma = std::max(found.lines.predicted, 0.03);
+  const auto fits = [&](const Fit& f) {
+    return found.lines.predicted > 0 ? f.cost < near_predicted * sigma && f.outside < few_outside : f.rms < 0.3;
+  };
+  // Wider swaths share more ground, so that cells are counted of assumptions that fit, and of the flight as described.
+  std::uint64_t most = found.lines.fit.cells;
+  for (const TriedMistake& t : found.tried)
+    if (fits(t.fit)) most = std::max(most, t.fit.cells);
+  const auto enough = std::max(least, static_cast<std::uint64_t>(fewer_cells * static_cast<double>(most)));
+  const bool by_lines = std::any_of(found.tried.begin(), found.tried.end(), [&](const TriedMistake& t) { return t.fit.cells >= enough; });
   const auto cost = [&](const Fit& f) { return !by_lines ? 1.0 : f.cells >= enough ? f.cost : 1e9; };
   double now_cost = cost(found.lines.fit);
   for (const TriedMistake& t : found.tried) fewest = std::min(fewest, t.contradictions);
   std::vector<TriedMistake> out;
   for (const TriedMistake& t : found.tried) {
-    const bool near =
-        !by_lines || (found.lines.predicted > 0 ? t.fit.cost < near_predicted * sigma && t.fit.outside < few_outside : t.fit.rms < 0.3);
+    const bool near = !by_lines || fits(t.fit);
     const bool better = near && cost(t.fit) < far_better * now_cost;
     const bool resolves = t.contradictions < now && (!lines_apart || better) && cost(t.fit) <= as_good * now_cost;
     if (t.contradictions == fewest && (resolves || (lines_apart && better))) out.push_back(t);
