@@ -18,6 +18,8 @@ constexpr double per_unstated = 1.0;                     // ... and of those tha
 constexpr double as_good = 6.0, share_as_good = 0.05;    // of the gain: planes that lie apart do not show it more truly
 constexpr double longest_lever = 3.0;                    // m: no scanner is farther from its IMU
 constexpr double smallest = 0.08;                        // m on the ground
+constexpr double largest = 20.0;                         // m on the ground: beyond, another mistake is at work
+constexpr double largest_scale = 0.05;                   // off 1: beyond, it is a unit
 constexpr double surely = 4.0;                           // sigmas of a fitted value that is said
 constexpr size_t most = 3;
 
@@ -44,6 +46,11 @@ double moved_by(const SmallVector& e, const FlownAt& f) {
                          std::abs(e[scan_offset]) + edge * std::abs(e[scan_scale]) + std::abs(e[range_scale])) *
                         f.range;
   return angles + e.segment<3>(lever_forward).norm() + std::abs(e[range_offset]) + std::abs(e[latency]) * f.speed;
+}
+
+bool is_plausible(const SmallVector& error, const FlownAt& flown) {
+  const double moved = moved_by(error, flown);
+  return moved > smallest && moved < largest && std::abs(error[range_scale]) < largest_scale;
 }
 
 struct Group {
@@ -120,7 +127,7 @@ std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Cha
   const SmallVector values = values_of(stated.calibration), here = values_of(at.calibration);
   const double now = errors.with(here - values).squares;
   const auto add = [&](const SmallVector& right, double gain, SmallExplanation e) {
-    if (gain < (alarmed ? less : 1.0) * (e.usual ? sure_usual : sure_fitted) || moved_by(values - right, flown) < smallest) return;
+    if (gain < (alarmed ? less : 1.0) * (e.usual ? sure_usual : sure_fitted) || !is_plausible(values - right, flown)) return;
     e.chain = stated;
     e.chain.calibration = calibration_of(right);
     e.gain = gain;
@@ -174,6 +181,7 @@ SmallExplanation fit_small(const SmallErrors& errors, const Chain& stated, const
   SmallVector right = values_of(at.calibration);
   const SmallVector before = right, values = values_of(stated.calibration);
   for (const Parameter p : g.free) right[p] -= s.error[p];
+  if (std::abs(right[range_scale] - values[range_scale]) > largest_scale) return out;
   out.step = (right - before).norm() / std::max(1e-12, (right - values).norm());
   out.chain.calibration = calibration_of(right);
   out.name = g.name + std::string(is_left_out(g, values) ? "_missing" : "");

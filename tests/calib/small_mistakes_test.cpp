@@ -70,6 +70,12 @@ TEST(SmallMistakes, ALeverArmThatIsLeftOutIsNamed) {
   EXPECT_EQ(found.front().name, "lever_arm_missing");
 }
 
+TEST(SmallMistakes, WhatIsFarTooLargeIsNotSaid) {
+  SmallVector error = SmallVector::Zero();
+  error[range_scale] = 2;
+  EXPECT_TRUE(explained(error, true).empty());
+}
+
 TEST(SmallMistakes, MillimetresAreNotSaid) {
   SmallVector error = SmallVector::Zero();
   error[lever_forward] = 0.06;

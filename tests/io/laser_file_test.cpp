@@ -98,6 +98,14 @@ TEST_F(LaserFiles, TimeWindowsMakeStripsAndLeaveTheTurnsOut) {
   EXPECT_EQ(strips().at(0).records, 11u);
 }
 
+TEST_F(LaserFiles, RecordsAWeekFromAllLinesAreRefusedWithTheGap) {
+  survey_.line_time.scale = core::TimeScale::gps;
+  survey_.lines = {{1, "", core::Seconds(604810), core::Seconds(604830)}};
+  const core::Error e = error_of("10,0,100,0,9,1,1\n20,0,100,0,9,1,1\n");
+  EXPECT_NE(std::string(e.what()).find("no laser return to work on: records from"), std::string::npos) << e.what();
+  EXPECT_NE(e.hint().find("1 week apart"), std::string::npos) << e.hint();
+}
+
 TEST_F(LaserFiles, UnitsAndSigns) {
   LaserFile& f = survey_.laser[0];
   f.angle_unit = AngleUnit::gon;
