@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/statistics.h"
 #include "core/time.h"
+#include "io/output_file.h"
 #include "io/pos_writer.h"
 #include "io/process.h"
 #include "io/rinex_header.h"
@@ -204,6 +205,7 @@ class Rtklib : public OptionStage<RtklibStageOptions> {
 
   /// A receiver's own solution by code, an epoch per half minute. The files of it do not stay.
   static core::GnssData alone(const io::RtklibJob& shared, const Receiver& receiver) {
+    const io::FinishedFiles removed_again;
     io::RtklibJob job = shared;
     job.products /= ".alone";
     job.name = "alone";

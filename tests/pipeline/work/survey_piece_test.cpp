@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/work/survey_piece.h"
 
+#include <optional>
+
 #include "core/error.h"
 #include "io/output_file.h"
 #include "pipeline/work/work_folder.h"
@@ -59,6 +61,33 @@ TEST_F(Survey, IsTakenUpWithWhatItHandedOn) {
   EXPECT_EQ(back.findings.find("rate_hz")->as_number(), 1.0);
   EXPECT_EQ(back.files.size(), made.files.size());
   EXPECT_EQ(back.files.size(), 3u) << "two products, and what is handed on";
+}
+
+/// Makes a product and another file, which it removes: one of its own, or one that it counts as made.
+class Trier : public Solver {
+ public:
+  explicit Trier(bool apart) : apart_(apart) {}
+  void run_survey(stages::Context& context, core::Tally& tally, core::Value& findings) const override {
+    const fs::path trial = context.output / "trial.pos";
+    std::optional<io::FinishedFiles> own;
+    if (apart_) own.emplace();
+    io::write_text_file(trial, "of seconds");
+    own.reset();
+    fs::remove(trial);
+    Solver::run_survey(context, tally, findings);
+  }
+
+ private:
+  bool apart_;
+};
+
+TEST_F(Survey, AFileThatGoesMeanwhileIsSeenUnlessItIsTheStagesOwn) {
+  stages::Context c = context();
+  EXPECT_EQ(run_survey_piece(Trier(true), c, stage_).files.size(), 3u);
+  fs::remove_all(stage_);
+  stages::Context again = context();
+  EXPECT_THROW(run_survey_piece(Trier(false), again, stage_), core::SystemError);
+  EXPECT_FALSE(is_survey_piece_done(stage_));
 }
 
 TEST_F(Survey, WhatWasFinishedBeforeAKillIsKeptWhereItIsWhole) {
