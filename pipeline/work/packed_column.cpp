@@ -18,6 +18,7 @@ namespace swath::pipeline {
 namespace {
 
 constexpr int level = 1;
+constexpr size_t rows_at_once = 256;
 constexpr size_t sampled = 4096;  // values, for the choice of the way
 constexpr double per_unit = 1000.0;
 
@@ -44,17 +45,27 @@ void with_width(size_t width, F&& f) {
   f(width);
 }
 
+/// Calls f(first, last) for rows that stay in the nearest cache: planes lie apart by powers of two, which fall on the same lines of it.
+template <class F>
+void by_rows(size_t n, F&& f) {
+  for (size_t first = 0; first < n; first += rows_at_once) f(first, std::min(n, first + rows_at_once));
+}
+
 void to_planes(const std::uint8_t* from, size_t n, size_t row, std::uint8_t* to) {
   with_width(row, [=](auto width) {
-    for (size_t i = 0; i < n; ++i)
-      for (size_t k = 0; k < width; ++k) to[k * n + i] = from[i * width + k];
+    by_rows(n, [=](size_t first, size_t last) {
+      for (size_t k = 0; k < width; ++k)
+        for (size_t i = first; i < last; ++i) to[k * n + i] = from[i * width + k];
+    });
   });
 }
 
 void from_planes(const std::uint8_t* from, size_t n, size_t row, std::uint8_t* to) {
   with_width(row, [=](auto width) {
-    for (size_t i = 0; i < n; ++i)
-      for (size_t k = 0; k < width; ++k) to[i * width + k] = from[k * n + i];
+    by_rows(n, [=](size_t first, size_t last) {
+      for (size_t k = 0; k < width; ++k)
+        for (size_t i = first; i < last; ++i) to[i * width + k] = from[k * n + i];
+    });
   });
 }
 
