@@ -40,13 +40,21 @@ DeckHeights deck_heights(const core::Block& b, const core::Lattice& l) {
     if (ground > out.ground[c] || (ground ? !(z <= out.top[c]) : !(z >= out.top[c]))) out.top[c] = z;
     out.ground[c] = ground;
   }
+  std::vector<float> limit(l.size(), none);  // of low outliers, in the cells that hold some
   for (int j = 0; j < l.ny; ++j)
     for (int i = 0; i < l.nx; ++i) {
-      float& low = out.low[l.at(i, j)];
-      const float here = bottom[l.at(i, j)];
-      if (!(low < here || here != here)) continue;
-      if (low <= lowest_around(l, bottom, i, j) - outlier_depth) low = here;
+      const size_t c = l.at(i, j);
+      const float here = bottom[c];
+      if (!(out.low[c] < here || here != here)) continue;
+      if (const float below = lowest_around(l, bottom, i, j) - outlier_depth; out.low[c] <= below) limit[c] = below, out.low[c] = none;
     }
+  for (size_t p = 0; p < b.size(); ++p) {
+    if (!core::is_usable(b, p)) continue;
+    const CellIndex at = cell_of(l, b, p);
+    const size_t c = l.at(at.i, at.j);
+    const auto z = static_cast<float>(b.z[p]);
+    if (z > limit[c] && !(z >= out.low[c])) out.low[c] = z;
+  }
   return out;
 }
 

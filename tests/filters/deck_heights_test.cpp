@@ -20,6 +20,7 @@ TEST(DeckHeights, GroundGivesTheLevelAndLowOutliersAreNotWhatIsBelow) {
   add(1, 4.0, cls::unassigned);                                                      // beside it
   add(2, 3.4, cls::unassigned);                                                      // deeper than all ground by 1.6 m
   add(3, 5.0, cls::ground), add(3, 3.0, cls::unassigned);                            // the same below ground
+  add(4, 3.2, cls::unassigned), add(4, 9.0, cls::high_vegetation);                   // under a crown
   add(9, 3.0, cls::unassigned);                                                      // no ground is near
   b.classification = kinds;
   const core::Lattice l{1.0, 0, 0, 10, 1};
@@ -32,6 +33,7 @@ TEST(DeckHeights, GroundGivesTheLevelAndLowOutliersAreNotWhatIsBelow) {
   EXPECT_EQ(h.ground[1], 0);
   EXPECT_TRUE(std::isnan(h.low[2]));
   EXPECT_FLOAT_EQ(h.low[3], 5.0f);
+  EXPECT_FLOAT_EQ(h.low[4], 9.0f);
   EXPECT_TRUE(std::isnan(h.top[5]) && std::isnan(h.low[5]));
   EXPECT_FLOAT_EQ(h.low[9], 3.0f);
 }
