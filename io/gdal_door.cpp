@@ -93,15 +93,18 @@ bool names_elsewhere(const std::filesystem::path& file) {
 
 /// What GDAL takes for a DXF: by the name's ending, or by "0", "SECTION".
 bool looks_like_dxf(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const auto lower = [](std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+  };
+  if (lower(file.extension().string()) == ".dxf") return true;
+  std::string start(1024, '\0');
   std::ifstream in(file, std::ios::binary);
-  std::string code, value;
-  in >> std::setw(2) >> code >> std::setw(8) >> value;
-  return ending == ".dxf" || (code == "0" && value.starts_with("SECTION"));
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return lower(start).find("section") != std::string::npos && start.find('0') != std::string::npos;
 }
 
-/// A text never has such a byte, and GDAL's reader of DXF may read on for ever where it meets one.
+/// No text has such a byte, and GDAL's reader of DXF may read on for ever where it meets one.
 bool holds_zero_byte(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string part(std::size_t{1} << 16, '\1');

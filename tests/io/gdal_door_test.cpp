@@ -147,6 +147,10 @@ TEST(GdalDoor, ADxfWithBytesOfZeroIsNotOpened) {
   EXPECT_EQ(open_vector(folder / "b.dxf"), nullptr);
   EXPECT_EQ(open_vector(folder / "b"), nullptr);
   EXPECT_NE(messages.text().find("bytes of 0"), std::string::npos) << messages.text();
+  const GdalMessages of_others;
+  test::write_bytes(folder / "c", "999\nmade by hand\n" + text);  // a comment comes first
+  EXPECT_EQ(open_vector(folder / "c"), nullptr);
+  EXPECT_NE(of_others.text().find("bytes of 0"), std::string::npos) << of_others.text();
 }
 
 }  // namespace
