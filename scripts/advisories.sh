@@ -32,7 +32,7 @@ while read -r name version; do
 done <<<"$crates"
 if cargo generate-lockfile --quiet --manifest-path "$scratch/Cargo.toml" 2>"$scratch/resolver"; then
   echo "withdrawn: none of $number crates"
-elif grep -qE 'is yanked|failed to select a version' "$scratch/resolver"; then
+elif grep -q 'yanked' "$scratch/resolver"; then
   echo "withdrawn:"
   sed 's/^/  /' "$scratch/resolver"
   faults=1

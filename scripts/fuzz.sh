@@ -26,11 +26,12 @@ if ! clang="$(find_clang)"; then
   as_root=()
   [ "$(id -u)" -eq 0 ] || as_root=(sudo -n)
   echo "installing: clang-$version libclang-rt-$version-dev"
-  { "${as_root[@]}" apt-get update -q && "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends \
-      "clang-$version" "libclang-rt-$version-dev"; } >/dev/null 2>&1 || true
+  installed="$({ "${as_root[@]}" apt-get update -q && "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y \
+      --no-install-recommends "clang-$version" "libclang-rt-$version-dev"; } 2>&1)" || true
   if ! clang="$(find_clang)"; then
     echo "fuzz: SKIPPED, nothing was fuzzed: clang 16 or newer with libFuzzer is not here and cannot be installed" >&2
-    exit 0
+    tail -n 5 <<<"$installed" >&2
+    exit 3
   fi
 fi
 
@@ -83,6 +84,7 @@ if [ "${#targets[@]}" -eq 0 ]; then
     [ "$name" = fuzz_seeds ] || { [ -x "$program" ] && [ -f "$program" ] && targets+=("${name#fuzz_}"); }
   done
 fi
+rm -f build/fuzz/found
 echo "fuzzing ${#targets[@]} targets, ${seconds} s each, with $clang"
 printf '%s\n' "${targets[@]}" | xargs -P "${FUZZ_JOBS:-$(nproc)}" -I{} bash -c 'run_target {} || touch build/fuzz/found' || true
 # A target that crashed leaves its folder.

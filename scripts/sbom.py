@@ -40,6 +40,8 @@ def crates(build):
     components, edges = [], {}
     packages = tomllib.loads(LOCK.read_text())["package"]
     reference = {p["name"]: f"pkg:cargo/{p['name']}@{p['version']}" for p in packages}
+    if len(reference) < len(packages):
+        sys.exit(f"{LOCK}: a crate is locked in two versions, and this script keeps one alone")
     for p in packages:
         wanted = sorted(reference[d.split()[0]] for d in p.get("dependencies", []))
         if "source" not in p:
@@ -123,11 +125,12 @@ def licence_of(package):
 def debian(packages):
     form = "${Package}\\t${Version}\\t${Architecture}\\n"
     reference, components = {}, []
+    system = re.search(r'^ID="?([^"\n]+)', Path("/etc/os-release").read_text(), re.MULTILINE)[1]
     for line in sorted(set(run("dpkg-query", "-W", "-f", form, *sorted(packages)).splitlines())):
         name, version, architecture = line.split("\t")
         if name in reference:
             continue  # installed for two architectures
-        reference[name] = f"pkg:deb/debian/{name}@{version.replace('+', '%2B').replace(':', '%3A')}?arch={architecture}"
+        reference[name] = f"pkg:deb/{system}/{name}@{version.replace('+', '%2B').replace(':', '%3A')}?arch={architecture}"
         c = {"type": "library", "bom-ref": reference[name], "name": name, "version": version, "purl": reference[name]}
         if licences := licence_of(name):
             c["licenses"] = licences
