@@ -178,8 +178,8 @@ void work(const Path& folder) {
   core::ColumnSet columns = core::columns_of(block);
   columns.add(core::Column::source);
   pipeline::StoreFile file(folder / "points.cols", pipeline::StoreFile::Mode::append);
-  pipeline::write_chunk(file, block, 0, 3, columns);
-  pipeline::write_chunk(file, block, 3, 1, columns);
+  pipeline::write_chunks(file, block, 0, 3, columns);
+  pipeline::write_chunks(file, block, 3, 1, columns);
   file.close();
   write(folder / "record", R"({"piece": "a/b/piece.json", "files": [["points.cols", 3, "0123456789abcdef"]], "note": {"points": 3}})");
 }
