@@ -64,6 +64,7 @@ struct Account {
   Tally tally;
   Value findings = Value::object();
   double seconds = 0;
+  std::uint64_t cut = 0;  ///< tiles that were worked on in parts
 };
 
 constexpr const char* groups_file = "groups.done";
@@ -552,6 +553,7 @@ void Engine::work_on_parts(size_t number, const TileGroup& group, stages::TileJo
   const fs::path folder_of_parts = job.folder / ("parts_" + file_label(job.key));
   std::vector<fs::path> folders;
   for (int k = 0; k < group.parts * group.parts; ++k) {
+    const io::FinishedFiles of_part;  // they go once they are joined: the tile's record must not name them
     const TilePart part{job.key, group.parts, k % group.parts, k / group.parts};
     folders.push_back(folder_of_parts / std::to_string(k));
     fs::create_directories(folders.back());
@@ -603,6 +605,7 @@ PieceRecord Engine::run_group(size_t number, const TileGroup& group, bool has_wa
   Value note = Value::object();
   note["tally"] = job.tally.value();
   note["seconds"] = since(start);
+  note["cut"] = group.parts > 1;
   PieceRecord record{piece_files(mine, by_stage), std::move(note)};
   replace_files(record.files, std::move(overlays));
   write_record(done, record);
@@ -664,6 +667,7 @@ void Engine::run_tiles(size_t number) {
   for (size_t i = 0; i < notes.size(); ++i) {
     const TileKey first = groups[i].tiles[0];
     account.seconds += notes[i].note.find("seconds")->as_number();
+    account.cut += static_cast<std::uint64_t>(notes[i].note.find("cut")->as_bool());
     if (store_->tiles().contains(first) || surface_tiles_.contains(first)) account.tally.add(Tally::from(*notes[i].note.find("tally")));
     for (PieceFile& f : notes[i].files) made_[number].push_back(std::move(f));
   }
@@ -778,6 +782,7 @@ void Engine::compose_report(const std::string& command) {
       one["counts"]["in"] = a.in;
       one["counts"]["out"] = a.out;
     }
+    if (a.cut > 0) one["tiles_cut_to_fit_memory"] = a.cut;
     if (!a.tally.empty()) one["tally"] = a.tally.value();
     if (!a.findings.members().empty()) one["findings"] = a.findings;
     if (const Value* geometry = a.findings.find("geometry")) {
