@@ -23,6 +23,9 @@ std::string_view program_version() { return SWATH_VERSION; }
 
 namespace {
 
+/// Counted up whenever what lies in the work folder is written otherwise: work of another format is not gone on from.
+constexpr int work_format = 2;
+
 /// Every value of a key `crs` in the survey's tree.
 void add_crs(const core::Value& v, std::vector<std::string>& out) {
   if (v.is_array())
@@ -79,8 +82,8 @@ std::vector<Input> inputs_of(const Plan& plan) {
 std::vector<std::string> fingerprints(const Plan& plan, const std::vector<Input>& inputs) {
   io::Survey survey = plan.survey;
   survey.name.clear();
-  std::string text = std::string(program_version()) + "\n" + core::fingerprint_of(core::described(survey)) + "\n" +
-                     core::format_number(plan.run.tile.value) + "\n";
+  std::string text = std::string(program_version()) + "\nwork " + std::to_string(work_format) + "\n" +
+                     core::fingerprint_of(core::described(survey)) + "\n" + core::format_number(plan.run.tile.value) + "\n";
   for (const Input& i : inputs) text += i.hash + "\n";
   std::uint64_t chain = core::fnv1a(text);
   std::vector<std::string> out;
