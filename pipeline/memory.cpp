@@ -53,9 +53,11 @@ void fit_memory(double bytes) {
   io::limit_raster_cache(static_cast<std::int64_t>(bytes / 32.0));
 }
 
-double MemoryBudget::free() const {
+double MemoryBudget::free() const { return std::max(0.0, left()); }
+
+double MemoryBudget::left() const {
   return_freed_memory();
-  return std::max(0.0, (1.0 - uncounted) * bytes_ - static_cast<double>(resident_bytes()));
+  return (1.0 - uncounted) * bytes_ - static_cast<double>(resident_bytes());
 }
 
 double MemoryBudget::reserve() const { return uncounted * bytes_; }
@@ -64,13 +66,14 @@ void MemoryBudget::make_room(std::uint64_t bytes) const {
   if (static_cast<double>(resident_bytes() + bytes) > bytes_) return_freed_memory();
 }
 
-void MemoryBudget::require(double bytes, double free, std::string_view what) const {
-  if (bytes <= free) return;
+void MemoryBudget::require(double bytes, double left, std::string_view what) const {
+  if (bytes <= left) return;
   const auto text = [](double b) { return core::format_quantity(core::Dimension::memory, std::ceil(b / megabyte) * megabyte); };
-  const double works = bytes_ + (bytes - free) / (1.0 - uncounted);
-  throw core::usage_error("run.memory = " + text(bytes_) + " is too little: " + std::string(what) + " needs " + text(bytes) + " and " +
-                              text(free) + " are free",
-                          "run.memory", "--set run.memory=\"" + text(works) + "\" is the least that works here");
+  const double works = bytes_ + (bytes - left) / (1.0 - uncounted);
+  throw TooLittleMemory("run.memory = " + text(bytes_) + " is too little: " + std::string(what) + " needs " + text(bytes) + " and " +
+                            text(std::max(0.0, left)) + " are free",
+                        "run.memory", "--set run.memory=\"" + text(works) + "\" is the least that works here; what is finished is kept",
+                        core::Exit::bad_usage);
 }
 
 }  // namespace swath::pipeline

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "io/output_file.h"
 #include "io/value_file.h"
@@ -106,7 +107,8 @@ class Engine {
   std::set<TileKey> tiles_of_water() const;
   void expect_room_for_strips() const;
   void expect_room_for_tiles();
-  fs::path done_file(size_t number, const TileGroup& group) const;
+  fs::path done_file(size_t number, const TileBox& box) const;
+  fs::path done_file(size_t number, const TileGroup& group) const { return done_file(number, TileBox(group.tiles)); }
   std::vector<TileGroup> groups_of(size_t number, const std::vector<TileKey>& keys, std::uint64_t budget);
   PieceRecord run_group(size_t number, const TileGroup& group, bool has_water);
   void work_on(size_t number, const TileGroup& group, stages::TileJob& job, bool has_water) const;
@@ -375,29 +377,32 @@ void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_fold
 /// One small batch of points must be at work.
 void Engine::expect_room_for_strips() const {
   const double least = static_cast<double>(least_in_batch) * batch_bytes_per_point / share_of_batches;
-  memory_.require(least, memory_.free(), "reading the points");
+  memory_.require(least, memory_.left(), "reading the points");
 }
 
-/// Every tile stage has a way to work on every tile; otherwise the one that takes most is named.
+/// Every tile stage has a way to work on every tile that is not done; otherwise the one that takes most is named.
 void Engine::expect_room_for_tiles() {
-  const double free = memory_.free();
+  const double left = memory_.left(), free = std::max(0.0, left);
   double most = 0.0;
   std::string what;
   for (size_t i = last_strip_stage_ + 1; i < plan_.stages.size(); ++i) {
     if (!works_on(i, Grain::tile)) continue;
     const StageMemory memory(*store_, stage(i), context_);
+    std::vector<TileBox> done = read_boxes(folder(i) / groups_file);
+    std::erase_if(done, [&](const TileBox& box) { return !fs::exists(done_file(i, box)); });
     for (const auto& [key, n] : store_->tiles()) {
+      const auto holds = [k = key](const TileBox& box) { return box.holds(k); };
+      if (fs::exists(done_file(i, TileBox(key, key))) || std::any_of(done.begin(), done.end(), holds)) continue;
       const auto bytes = static_cast<double>(memory.cut(memory.of({key}), static_cast<std::uint64_t>(free), *squares_).bytes);
       if (bytes <= most) continue;
       most = bytes;
       what = std::string(stage(i).info().name) + " on the tile " + context_.label(key) + " of " + std::to_string(n) + " points";
     }
   }
-  memory_.require(most, free, what);
+  if (most > 0.0) memory_.require(most, left, what);
 }
 
 void Engine::run_strips() {
-  expect_room_for_strips();
   find_strips();
   const size_t source = source_;
   const std::uint64_t without_strip = accounts_[source].tally.left_out();  // records that no strip holds
@@ -409,6 +414,7 @@ void Engine::run_strips() {
   progress_.begin("strips", records, "returns");
   std::vector<std::string> names;
   std::uint64_t in = 0;
+  bool has_room = false;  // for those that are not done
   for (size_t i = 0; i < strips.size(); ++i) {
     char name[32];
     std::snprintf(name, sizeof name, "strip_%04zu", i + 1);
@@ -418,6 +424,7 @@ void Engine::run_strips() {
       ++resumed_;
       progress_.skip(strips[i].records);
     } else {
+      if (!std::exchange(has_room, true)) expect_room_for_strips();
       stream_strip(strips[i], strip_folder);
     }
     const Value note = io::parse_json(TileStore::note(strip_folder), strip_folder.string());
@@ -488,9 +495,8 @@ void Engine::keep_surface_tiles(size_t number, const std::set<TileKey>& fringe) 
     if (fs::exists(stages::grid_file(folder(number), key))) surface_tiles_.insert(key);
 }
 
-fs::path Engine::done_file(size_t number, const TileGroup& group) const {
-  const TileBox box(group.tiles);
-  return folder(number) / (file_label(box.low) + (group.tiles.size() > 1 ? "_to_" + file_label(box.high) : "") + ".done");
+fs::path Engine::done_file(size_t number, const TileBox& box) const {
+  return folder(number) / (file_label(box.low) + (box.low == box.high ? "" : "_to_" + file_label(box.high)) + ".done");
 }
 
 /// Tiles are joined only where nothing but points' columns comes of them. A tile that does not fit is cut into parts.
@@ -621,12 +627,12 @@ void Engine::run_tiles(size_t number) {
   for (const TileKey key : fringe)
     if (!surface_tiles_.contains(key)) keys.push_back(key);
 
-  const double free = memory_.free();
+  const double left = memory_.left(), free = std::max(0.0, left);
   const auto budget = static_cast<std::uint64_t>(free);
   const std::vector<TileGroup> groups = groups_of(number, keys, budget);
   for (const TileGroup& g : groups)
     if (!fs::exists(done_file(number, g)))
-      memory_.require(static_cast<double>(g.bytes), free + memory_.reserve(),
+      memory_.require(static_cast<double>(g.bytes), left + memory_.reserve(),
                       std::string(info.name) + " on the tile " + context_.label(g.tiles[0]));
   std::vector<PieceRecord> notes(groups.size());
   std::vector<std::uint64_t> bytes;

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """run.memory holds as the peak of the whole process, whatever a tile asks for; tiles that are cut give the same products."""
+import json
 import os
 import subprocess
 import sys
@@ -47,6 +48,29 @@ class Memory(Case):
         self.assertIn("run.memory = 200 MB", said)
         self.assertLessEqual(peak, TOLERANCE * 200e6)
         self.assertFalse((out / "points").exists())
+
+    def test_files_of_tiles_that_are_cut_are_the_same(self):
+        fine = ["--set", "dtm.cell=25 cm", "--set", "dsm.cell=25 cm", "--set", "density.cell=25 cm"]
+        code, _, cut, said = self.run_within(200, "cut", *fine)
+        self.assertEqual(code, 0, said)
+        stages = json.loads((cut / "report.json").read_text())["stages"]
+        self.assertIn("terrain.dtm", [s["type"] for s in stages if s.get("tiles_cut_to_fit_memory", 0) > 0])
+        code, _, whole, said = self.run_within(2000, "whole", *fine)
+        self.assertEqual(code, 0, said)
+        stages = json.loads((whole / "report.json").read_text())["stages"]
+        self.assertEqual([s["type"] for s in stages if "tiles_cut_to_fit_memory" in s], [])
+        self.assertEqual(products(cut), products(whole))
+
+    def test_a_refusal_keeps_what_an_earlier_run_has_done(self):
+        keep = ["--set", "run.keep_work=true"]
+        code, _, out, said = self.run_within(1000, "kept", *keep)
+        self.assertEqual(code, 0, said)
+        code, _, _, said = self.run_within(200, "kept", "--set", "dtm.cell=5 cm", *keep)
+        self.assertEqual(code, 2, said)
+        self.assertIn("run.memory = 200 MB", said)
+        code, _, _, said = self.run_within(1000, "kept", *keep)
+        self.assertEqual(code, 0, said)
+        self.assertGreaterEqual(json.loads((out / "report.json").read_text())["pieces_resumed"], 3)
 
 
 if __name__ == "__main__":

@@ -23,11 +23,25 @@ TEST(MemoryBudget, ARefusalNamesTheBudgetThatWorks) {
   try {
     budget.require(145e6, 50e6, "filters.ground on the tile 1_2");
     FAIL();
-  } catch (const core::Error& e) {
+  } catch (const core::SystemError& e) {  // work done so far stays
     EXPECT_EQ(e.code(), core::Exit::bad_usage);
     EXPECT_EQ(e.where(), "run.memory");
     EXPECT_NE(std::string(e.what()).find("filters.ground on the tile 1_2 needs 145 MB and 50 MB are free"), std::string::npos) << e.what();
     EXPECT_NE(e.hint().find("300 MB"), std::string::npos) << e.hint();  // 200 + 95 / 0.95
+  }
+}
+
+TEST(MemoryBudget, WhatTheProcessHoldsBeyondTheBudgetCounts) {
+  if (resident_bytes() == 0) GTEST_SKIP() << "this system does not say what a process holds";
+  const MemoryBudget budget(1e6);
+  EXPECT_EQ(budget.free(), 0.0);
+  EXPECT_LT(budget.left(), 0.0);
+  try {
+    budget.require(95e6, 95e6 - 190e6, "a tile");  // twice as much is missing as with 0 bytes left
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_NE(e.hint().find("201 MB"), std::string::npos) << e.hint();  // 1 + 190 / 0.95
+    EXPECT_NE(std::string(e.what()).find("0 MB are free"), std::string::npos) << e.what();
   }
 }
 
