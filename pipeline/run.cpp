@@ -363,7 +363,8 @@ void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_fold
 
   accounts[source].in = accounts[source].out + accounts[source].tally.left_out();
   Value note = Value::array();
-  for (const Account& a : accounts) {
+  for (size_t i = 0; i <= last_strip_stage_; ++i) {  // what comes after them may be another stage in the run that reads this
+    const Account& a = accounts[i];
     Value one = Value::object();
     one["in"] = a.in;
     one["out"] = a.out;
@@ -428,7 +429,8 @@ void Engine::run_strips() {
       stream_strip(strips[i], strip_folder);
     }
     const Value note = io::parse_json(TileStore::note(strip_folder), strip_folder.string());
-    for (size_t k = 0; k < accounts_.size(); ++k) {
+    if (!note.is_array() || note.items().size() != last_strip_stage_ + 1) throw damaged_work(strip_folder);
+    for (size_t k = 0; k <= last_strip_stage_; ++k) {
       const Value& one = note.items()[k];
       accounts_[k].in += static_cast<std::uint64_t>(one.find("in")->as_int());
       accounts_[k].out += static_cast<std::uint64_t>(one.find("out")->as_int());
