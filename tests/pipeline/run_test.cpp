@@ -108,6 +108,25 @@ TEST(Run, KeptWorkIsNotDoneAgainAndChangedLateStagesAlone) {
   EXPECT_LT(changed.find("pieces_resumed")->as_int(), again.find("pieces_resumed")->as_int());
 }
 
+TEST(Run, KeptStripsServeAPlanWithOtherStagesBehindThem) {
+  const test::TemporaryFolder out;
+  const std::string strips =
+      "[[stage]]\ntype = \"readers.trajectory\"\n[[stage]]\ntype = \"readers.laser\"\n"
+      "[[stage]]\ntype = \"georeference\"\n";
+  const std::string noise = "[[stage]]\ntype = \"filters.noise\"\n", las = "[[stage]]\ntype = \"writers.las\"\n";
+  Request r = request(out / "out", {"run.keep_work=true"});
+  r.config = out / "p.toml";
+  std::int64_t resumed = 0;
+  for (const std::string& stages : {strips + las, strips + noise + las, strips + las}) {
+    test::write_bytes(r.config, stages);
+    const core::Value report = run_quietly(r);
+    EXPECT_EQ(stage_of(report, "georeference").find("counts")->find("out")->as_int(),
+              stage_of(report, "writers.las").find("counts")->find("in")->as_int());
+    resumed = report.find("pieces_resumed")->as_int();
+  }
+  EXPECT_GE(resumed, 2);  // the flight lines
+}
+
 TEST(Run, TilesOfAnEarlierTilingGo) {
   const test::TemporaryFolder out;
   run_quietly(request(out / "out", {"run.tile=120 m"}));
