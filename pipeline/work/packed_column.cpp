@@ -122,11 +122,12 @@ Way smaller_way(const void* values, size_t n, size_t width) {
 }
 
 double decimal(std::int64_t thousandths, std::int64_t last_places, double origin) {
-  const auto bits = std::bit_cast<std::int64_t>(static_cast<double>(thousandths) / per_unit);
-  return std::bit_cast<double>(bits + last_places) - origin;
+  const auto bits = std::bit_cast<std::uint64_t>(static_cast<double>(thousandths) / per_unit);
+  return std::bit_cast<double>(bits + static_cast<std::uint64_t>(last_places)) - origin;
 }
 
 bool inflate(const char* bytes, size_t size, void* values, size_t n, size_t width, bool summed) {
+  if (ZSTD_getFrameContentSize(bytes, size) != n * width) return false;  // nor where the frame does not say
   Codec& c = codec();
   c.planes.resize(n * width);
   const size_t got = ZSTD_decompressDCtx(c.unpack.get(), c.planes.data(), c.planes.size(), bytes, size);
@@ -183,7 +184,11 @@ bool unpack(const PackedHead& head, const char* bytes, void* values, size_t n, s
     return true;
   };
   if (!part(steps.data(), 4) || !part(places.data(), 1) || at != head.bytes) return false;
-  for (size_t i = 0; i < n; ++i) static_cast<double*>(values)[i] = decimal(first + steps[i], places[i], origin);
+  // Unsigned: numbers that nobody has written may not fit.
+  const auto sum = [first](std::int32_t step) {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(std::int64_t{step}));
+  };
+  for (size_t i = 0; i < n; ++i) static_cast<double*>(values)[i] = decimal(sum(steps[i]), places[i], origin);
   return true;
 }
 

@@ -85,9 +85,20 @@ TEST(PackedColumn, DamagedBytesAreNoticedOrGiveOtherValuesButNeverMoreOfThem) {
   EXPECT_FALSE(unpack(head, packed.data() + sizeof head, back.data(), back.size() - 1, 2));
   head.bytes -= 1;
   EXPECT_FALSE(unpack(head, packed.data() + sizeof head, back.data(), back.size(), 2));
+  EXPECT_FALSE(unpack(head_of(packed), packed.data() + sizeof head, back.data(), back.size() / 2, 2));
   head = head_of(packed);
   head.way = 77;
   EXPECT_FALSE(unpack(head, packed.data() + sizeof head, back.data(), back.size(), 2));
+}
+
+TEST(PackedColumn, AFirstCoordinateThatNobodyHasWrittenGivesOtherValues) {
+  const std::vector<double> values{1.0, 2.0, 3.0};
+  std::string packed;
+  pack_coordinates(values.data(), values.size(), 0.0, packed);
+  const std::int64_t first = std::numeric_limits<std::int64_t>::max();  // the sanitizers see where it is added to
+  std::memcpy(packed.data() + sizeof(PackedHead), &first, sizeof first);
+  std::vector<double> back(values.size());
+  EXPECT_TRUE(unpack(head_of(packed), packed.data() + sizeof(PackedHead), back.data(), back.size(), 8, 0.0));
 }
 
 }  // namespace
