@@ -553,6 +553,7 @@ void Engine::work_on_parts(size_t number, const TileGroup& group, stages::TileJo
   const Stage& s = stage(number);
   const core::ColumnSet gives = s.info().gives;
   core::Block whole;
+  whole.origin = context_.origin;
   if (!gives.empty()) {
     whole.x.resize(group.own);
     core::add_columns(whole, gives);

@@ -30,12 +30,13 @@ void read_overlay(const fs::path& name, Block& to, ColumnSet mine, size_t rows) 
   if (row != rows || !(mine - seen).empty()) throw damaged_work(name);
 }
 
-/// Calls f(rows of the chunk, number of the first of them) for each chunk of an overlay of `rows` points.
+/// Calls f(rows of the chunk, number of the first of them) for each chunk of an overlay of `rows` points from `origin`.
 template <class F>
-void each_chunk(const fs::path& name, ColumnSet mine, size_t rows, F&& f) {
+void each_chunk(const fs::path& name, const Eigen::Vector3d& origin, ColumnSet mine, size_t rows, F&& f) {
   StoreFile file(name, StoreFile::Mode::read);
   for (size_t first = 0;;) {
     Block part;
+    part.origin = origin;
     size_t n = 0;
     ColumnSet seen;
     if (!read_chunk(file, part, n, mine, seen)) {
@@ -59,7 +60,7 @@ void gather(V& to, size_t at, const V& from, const std::vector<std::uint32_t>& w
 void append_chosen(const fs::path& name, ColumnSet mine, size_t rows, const std::vector<std::uint32_t>& chosen, size_t before, Block& out) {
   size_t next = 0;
   std::vector<std::uint32_t> here;
-  each_chunk(name, mine, rows, [&](const Block& part, size_t first, size_t n) {
+  each_chunk(name, out.origin, mine, rows, [&](const Block& part, size_t first, size_t n) {
     here.clear();
     const size_t at = before + next;
     for (; next < chosen.size() && chosen[next] < first + n; ++next) here.push_back(chosen[next] - static_cast<std::uint32_t>(first));
@@ -109,7 +110,10 @@ namespace {
 /// The rows of an overlay one after the other.
 class OverlayRows {
  public:
-  OverlayRows(fs::path name, ColumnSet columns) : name_(std::move(name)), columns_(columns), file_(name_, StoreFile::Mode::read) {}
+  OverlayRows(fs::path name, const Eigen::Vector3d& origin, ColumnSet columns)
+      : name_(std::move(name)), columns_(columns), file_(name_, StoreFile::Mode::read) {
+    chunk_.origin = origin;
+  }
   /// The next `n` rows become those of `to` from `row` on.
   void take(size_t n, Block& to, size_t row) {
     for (size_t left = n; left > 0;) {
@@ -156,7 +160,7 @@ void TileStore::each_rows(TileKey key, ColumnSet columns, const std::function<vo
     }
   }
   std::list<OverlayRows> rows_of_overlays;
-  for (const auto& [name, mine] : overlays.files) rows_of_overlays.emplace_back(name, mine);
+  for (const auto& [name, mine] : overlays.files) rows_of_overlays.emplace_back(name, origin_, mine);
   Block part;
   size_t rows = 0, all = 0;
   const auto give = [&] {

@@ -252,6 +252,30 @@ TEST(TileStore, OverlaysReplaceColumns) {
   }
 }
 
+TEST(TileStore, AnOverlayOfHeightsIsTheSameHoweverItIsRead) {
+  const test::TemporaryFolder folder;
+  const Eigen::Vector3d origin{1000, 2000, 400};
+  TileStore store(folder / "strips", 100.0, origin);
+  Block points;
+  points.origin = origin;
+  for (int i = 0; i < 100; ++i) points.x.push_back(i + 0.25), points.y.push_back(i + 0.25), points.z.push_back(0.001 * i);
+  StripWriter writer(folder / "strips/strip_1", 100.0, 1 << 20);
+  writer.write(points);
+  writer.commit("");
+  store.open({"strip_1"});
+  const TileKey key = store.tiles().begin()->first;
+  for (double& z : points.z) z += 7.0;
+  std::filesystem::create_directories(folder / "overlay");
+  store.write_overlay(folder / "overlay", key, points, 0, points.size(), {Column::z});
+  store.add_overlay(folder / "overlay", {Column::z});
+  EXPECT_EQ(store.read(key, {Column::z}).z, points.z);
+  std::vector<double> rows;
+  store.each_rows(key, {Column::z}, [&](Block& b) { rows.insert(rows.end(), b.z.begin(), b.z.end()); });
+  EXPECT_EQ(rows, points.z);
+  std::vector<std::uint32_t> numbers;
+  EXPECT_EQ(store.read_part({key, 1, 0, 0}, 0.0, {Column::z}, numbers).z, points.z);
+}
+
 TEST(TileStore, AnUncommittedStripLeavesNothing) {
   const test::TemporaryFolder folder;
   {
