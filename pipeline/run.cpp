@@ -49,7 +49,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr size_t most_in_batch = 1 << 17, least_in_batch = 1 << 12;  // points
 constexpr double batch_bytes_per_point = 600.0;                      // of pulses, points, and what a strip stage makes of them
-constexpr double share_of_batches = 0.4, share_of_buffers = 0.2;     // of free memory, while strips are read
+constexpr double share_of_batches = 0.1;                             // of the budget, while strips are read
+constexpr double share_of_buffers = 0.2;                             // of free memory, then
 constexpr const char *discarded_name = ".swath-discarded", *products_name = "products";
 
 bool has_surface(const std::vector<stages::Product>& products) {
@@ -309,11 +310,12 @@ void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_fold
   };
   const size_t n = plan_.stages.size(), source = source_;
   const auto reader = stage(source).open(context_, strip);
-  // Where memory is little, batches are small; then they are few.
-  const double free = memory_.free(), points_at_once = share_of_batches * free / batch_bytes_per_point;
+  // Where the budget is little, batches are small, and the same in each run; then they are few.
+  const double points_at_once = share_of_batches * memory_.bytes() / batch_bytes_per_point;
   const auto batches = std::clamp(static_cast<size_t>(points_at_once) / least_in_batch, size_t{1}, static_cast<size_t>(threads_) + 1);
   const size_t batch_points = std::clamp(static_cast<size_t>(points_at_once / static_cast<double>(batches)), least_in_batch, most_in_batch);
-  StripWriter writer(strip_folder, plan_.run.tile.value, static_cast<size_t>(share_of_buffers * free / 2.0));  // columns grow by doubling
+  StripWriter writer(strip_folder, plan_.run.tile.value,
+                     static_cast<size_t>(share_of_buffers * memory_.free() / 2.0));  // columns grow by doubling
   std::vector<Account> accounts(n);
   PulseBorder border;
   bool more = true;
@@ -375,10 +377,11 @@ void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_fold
   writer.commit(io::to_json(note));
 }
 
-/// One small batch of points must be at work.
+/// The batches must fit beside what the process holds. They grow with the budget: what is needed are those of the least that works.
 void Engine::expect_room_for_strips() const {
-  const double least = static_cast<double>(least_in_batch) * batch_bytes_per_point / share_of_batches;
-  memory_.require(least, memory_.left(), "reading the points");
+  const double left = memory_.left(), counted = memory_.bytes() - memory_.reserve(), held = counted - left;
+  const double least = held / (counted / memory_.bytes() - share_of_batches);
+  memory_.require(share_of_batches * least, left, "reading the points");
 }
 
 /// Every tile stage has a way to work on every tile that is not done; otherwise the one that takes most is named.
