@@ -28,7 +28,7 @@ template <class V>
 void describe(RunOptions& r, V& v) {
   v.option("survey", r.survey, "The survey.toml, relative to the config; usually given on the command line.");
   v.option("output", r.output, "Folder of the products, relative to the working folder.");
-  v.option("memory", r.memory, core::at_least(2e8), "Budget of working memory.");
+  v.option("memory", r.memory, core::at_least(2e8), "Peak memory of the whole process.");
   v.option("tile", r.tile, core::within(10.0, 1e5), "Side of the tiles in which the survey is worked on and delivered.");
   v.option("threads", r.threads, core::within(0, 4096), "Threads; 0: one per processor.");
   v.option("keep_work", r.keep_work, "Keep the intermediate point store after a finished run, so that changed late stages are done alone.");
