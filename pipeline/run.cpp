@@ -31,6 +31,7 @@
 #include "pipeline/tile_groups.h"
 #include "pipeline/tile_queue.h"
 #include "pipeline/tile_store.h"
+#include "pipeline/tile_work.h"
 #include "pipeline/work/piece_record.h"
 #include "pipeline/work/survey_piece.h"
 #include "pipeline/work/work_folder.h"
@@ -52,11 +53,6 @@ constexpr double batch_bytes_per_point = 600.0;                      // of pulse
 constexpr double share_of_batches = 0.1;                             // of the budget, while strips are read
 constexpr double share_of_buffers = 0.2;                             // of free memory, then
 constexpr const char *discarded_name = ".swath-discarded", *products_name = "products";
-
-bool has_surface(const std::vector<stages::Product>& products) {
-  return std::any_of(products.begin(), products.end(),
-                     [](stages::Product p) { return p == stages::Product::dtm || p == stages::Product::dsm; });
-}
 
 double since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
@@ -112,10 +108,6 @@ class Engine {
   fs::path done_file(size_t number, const TileGroup& group) const { return done_file(number, TileBox(group.tiles)); }
   std::vector<TileGroup> groups_of(size_t number, const std::vector<TileKey>& keys, std::uint64_t budget);
   PieceRecord run_group(size_t number, const TileGroup& group, bool has_water);
-  void work_on(size_t number, const TileGroup& group, stages::TileJob& job, bool has_water) const;
-  void run_stage(const Stage& s, stages::TileJob& job, bool has_water) const;
-  void work_on_parts(size_t number, const TileGroup& group, stages::TileJob& job, bool has_water) const;
-  std::function<void(core::Block&)> thinner(const Stage& s, const stages::Box& box) const;
   void run_tiles(size_t number);
   void keep_surface_tiles(size_t number, const std::set<TileKey>& fringe);
   void run_merge(size_t number);
@@ -527,66 +519,6 @@ std::vector<TileGroup> Engine::groups_of(size_t number, const std::vector<TileKe
   return fitted(std::move(groups));
 }
 
-std::function<void(core::Block&)> Engine::thinner(const Stage& s, const stages::Box& box) const {
-  if (!std::isfinite(s.left_per_area())) return {};
-  return [&s, box, this](core::Block& around) { s.thin(context_, box, around); };
-}
-
-void Engine::work_on(size_t number, const TileGroup& group, stages::TileJob& job, bool has_water) const {
-  const Stage& s = stage(number);
-  if (s.is_streamed()) {
-    job.own = group.own;
-    job.stream = [&, this](const std::function<void(core::Block&)>& f) { store_->each_rows(job.key, columns_of_tiles(s), f); };
-    return s.run_tile(context_, job);
-  }
-  job.block = store_->read_with_halo(group.tiles, s.halo(), columns_of_tiles(s), job.own, thinner(s, job.box), group.with_halo);
-  core::add_columns(job.block, s.info().gives);
-  run_stage(s, job, has_water);
-}
-
-void Engine::run_stage(const Stage& s, stages::TileJob& job, bool has_water) const {
-  const size_t before = job.block.size();
-  if (before > 0 || !has_surface(s.info().gives_products) || has_water) s.run_tile(context_, job);
-  if (job.block.size() != before)
-    throw core::Error("the stage changed the number of points of a tile", std::string(s.info().name), "this is a fault of the program");
-}
-
-/// The parts one after the other: what they give is put together in the order of the tile's points, and what they made by the stage.
-void Engine::work_on_parts(size_t number, const TileGroup& group, stages::TileJob& job, bool has_water) const {
-  const Stage& s = stage(number);
-  const core::ColumnSet gives = s.info().gives;
-  core::Block whole;
-  whole.origin = context_.origin;
-  if (!gives.empty()) {
-    whole.x.resize(group.own);
-    core::add_columns(whole, gives);
-    whole.x = {};
-  }
-  const fs::path folder_of_parts = job.folder / ("parts_" + file_label(job.key));
-  std::vector<fs::path> folders;
-  for (int k = 0; k < group.parts * group.parts; ++k) {
-    const io::FinishedFiles of_part;  // they go once they are joined: the tile's record must not name them
-    const TilePart part{job.key, group.parts, k % group.parts, k / group.parts};
-    folders.push_back(folder_of_parts / std::to_string(k));
-    fs::create_directories(folders.back());
-    stages::TileJob mine{job.key, part.metres(context_.tile_side), folders.back(), {}, 0, {}};
-    std::vector<std::uint32_t> rows;
-    mine.block = store_->read_part(part, s.halo(), columns_of_tiles(s), rows, thinner(s, mine.box), group.with_halo);
-    mine.own = rows.size();
-    core::add_columns(mine.block, gives);
-    run_stage(s, mine, has_water);
-    job.tally.add(mine.tally);
-    core::for_each_column([&](core::Column c, std::string_view, auto member) {
-      if (gives.has(c))
-        for (size_t i = 0; i < rows.size(); ++i) (whole.*member)[rows[i]] = (mine.block.*member)[i];
-    });
-  }
-  s.join_parts(context_, job, folders);
-  fs::remove_all(folder_of_parts);
-  job.block = std::move(whole);
-  job.own = group.own;
-}
-
 /// Runs the stage on a group and keeps what it did: the tally and seconds.
 PieceRecord Engine::run_group(size_t number, const TileGroup& group, bool has_water) {
   const stages::Info& info = stage(number).info();
@@ -595,10 +527,7 @@ PieceRecord Engine::run_group(size_t number, const TileGroup& group, bool has_wa
   const io::FinishedFiles finished;
   const io::UnflushedFiles checked_when_resumed;
   const auto start = Clock::now();
-  if (group.parts > 1)
-    work_on_parts(number, group, job, has_water);
-  else
-    work_on(number, group, job, has_water);
+  TileWork(*store_, context_, stage(number)).run(group, job, has_water);
   std::vector<fs::path> by_stage = finished.files();
   std::vector<PieceFile> overlays;
   if (!info.gives.empty()) {
