@@ -163,9 +163,11 @@ void say(const SampledFlight& flight, const GeometryOptions& o, bool sound, Geom
   }
 }
 
-/// A named mistake and a gross contradiction are set right where they were made: an adjustment would bend the trajectory to hide them.
+/// A usual mistake and a gross contradiction are set right where they were made: an adjustment would bend the trajectory to hide them. A
+/// value that was fitted is what calibration and adjustment are for.
 std::string doubt_of(const GeometryFigures& g, const GeometryOptions& o) {
-  if (!g.named.empty()) return g.named.front().what + " the flight fits: " + g.named.front().cure;
+  for (const TriedMistake& t : g.named)
+    if (t.usual) return t.what + " the flight fits: " + t.cure;
   for (const GeometryCheck& c : g.checks)
     if (!c.held && c.name != "control_height") return c.text;
   for (const LinePair& p : g.lines.pairs)

@@ -60,6 +60,7 @@ struct TriedMistake {
   std::string name, what, cure;
   Fit fit;
   size_t contradictions = 0;  ///< checks that are not held with it
+  bool usual = true;          ///< a sign, a unit, an axis, whole seconds: no value was fitted
 };
 
 /// Control near the lines.

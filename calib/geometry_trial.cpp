@@ -198,7 +198,7 @@ void Trial::fitted(std::vector<TriedMistake>& out) const {
 }
 
 TriedMistake Trial::judged(const SmallExplanation& m) const {
-  TriedMistake tried{m.name, m.what, m.cure, {}, 0};
+  TriedMistake tried{m.name, m.what, m.cure, {}, 0, m.usual};
   judge(flight_, m.chain, *in_.trajectory, whole_, motion_, tried);
   return tried;
 }
@@ -246,7 +246,8 @@ TriedMistake Trial::offset_of(const SampledFlight& flight, const char* name, dou
                          ? "state the time scale of laser and trajectory, GPS or UTC"
                          : "state latency = \"" + text_of("%.4g s", shift_ + offset) + "\" in [calibration]",
                      {},
-                     0};
+                     0,
+                     std::string(name) == "leap_seconds"};
   judge(flight, later(offset), *in_.trajectory, whole_, motion_, tried);
   return tried;
 }

@@ -86,11 +86,20 @@ class Strips : public OptionStage<StripStageOptions> {
       findings["reason"] = what;
       if (!why.empty()) tally.count(why, what);
     };
-    if (!doubt.empty()) return left("not adjusted: quality.geometry found a cause that an adjustment would hide in the trajectory", doubt);
+    const auto write = [&](core::Value found) {
+      found["adjusted"] = false;
+      found["reason"] = *findings.find("reason");
+      io::write_text_file(context.output / "strips.json", io::to_json(found));
+    };
+    if (!doubt.empty()) {
+      refuse_if_reversed(context);
+      left("not adjusted: quality.geometry found a cause that an adjustment would hide in the trajectory", doubt);
+      return write(core::Value::object());
+    }
     try {
       const PreparedFlight prepared(context, options.errors, tally);
       const calib::LineAgreement lines = agreement(prepared);
-      core::Value found = lines.pairs.empty() ? core::Value::object() : tree_of(lines);
+      const core::Value found = lines.pairs.empty() ? core::Value::object() : tree_of(lines);
       findings["agreement"] = found;
       const bool apart = std::any_of(lines.pairs.begin(), lines.pairs.end(),
                                      [this](const calib::PairAgreement& p) { return p.rms > options.tolerance.value; });
@@ -104,9 +113,7 @@ class Strips : public OptionStage<StripStageOptions> {
       else
         left("flight lines without a common plane: not compared, the trajectory is left as it is",
              "no plane was found that two lines have seen: no overlap, or lines farther apart than planes.mismatch");
-      found["adjusted"] = false;
-      found["reason"] = *findings.find("reason");
-      io::write_text_file(context.output / "strips.json", io::to_json(found));
+      write(found);
     } catch (const core::SystemError&) {
       throw;
     } catch (const core::Error& e) {
@@ -124,6 +131,18 @@ class Strips : public OptionStage<StripStageOptions> {
       throw;
     } catch (const core::Error& e) {
       throw core::Error(e.what(), e.where(), e.hint(), core::Exit::bad_usage);
+    }
+  }
+
+  /// Of a flight that is not adjusted in any case: whatever else keeps it from being compared does not matter.
+  void refuse_if_reversed(const Context& context) const {
+    core::Tally ignored;
+    try {
+      reversed_scan(PreparedFlight(context, options.errors, ignored));
+    } catch (const core::SystemError&) {
+      throw;
+    } catch (const core::Error& e) {
+      if (e.code() == core::Exit::bad_usage) throw;
     }
   }
 

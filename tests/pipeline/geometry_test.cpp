@@ -97,15 +97,33 @@ TEST_F(Geometry, LateTimesAreNamed) {
   EXPECT_EQ(named(o), "time_offset");
 }
 
-TEST_F(Geometry, ANamedMistakeIsNotHiddenByAnAdjustment) {
+/// What calib.strips found.
+const core::Value& strips_of(const Outcome& o) {
+  for (const core::Value& stage : o.report.find("stages")->items())
+    if (stage.find("type")->as_text() == "calib.strips") return *stage.find("findings");
+  throw std::runtime_error("no calib.strips");
+}
+
+TEST_F(Geometry, AUsualMistakeIsNotHiddenByAnAdjustment) {
+  const Outcome o = run_with("angle_unit = \"deg\"", "angle_unit = \"gon\"", {}, adjusting());
+  EXPECT_EQ(named(o), "scan_angle_gon");
+  EXPECT_FALSE(strips_of(o).find("adjusted")->as_bool());
+  EXPECT_NE(strips_of(o).find("reason")->as_text().find("gon"), std::string::npos) << strips_of(o).find("reason")->as_text();
+}
+
+TEST_F(Geometry, LinesThatAFittedValueExplainsAreAdjusted) {
   const Outcome o = run_with("latency = \"0 s\"", "latency = \"0.02 s\"", {}, adjusting());
   EXPECT_EQ(named(o), "time_offset");
-  for (const core::Value& stage : o.report.find("stages")->items()) {
-    if (stage.find("type")->as_text() != "calib.strips") continue;
-    const core::Value& findings = *stage.find("findings");
-    EXPECT_FALSE(findings.find("adjusted")->as_bool());
-    EXPECT_NE(findings.find("reason")->as_text().find("latency"), std::string::npos) << findings.find("reason")->as_text();
-    EXPECT_NE(stage.find("tally"), nullptr);
+  EXPECT_EQ(o.report.find("geometry")->find("doubt"), nullptr);
+  EXPECT_TRUE(strips_of(o).find("adjusted")->as_bool());
+}
+
+TEST_F(Geometry, AReversedScanIsRefusedBeforeAnAdjustment) {
+  try {
+    run_with("angle_unit = \"deg\"", "angle_unit = \"deg\"\nangle_to_port = true", {}, adjusting());
+    FAIL() << "a reversed scan";
+  } catch (const core::Error& e) {
+    EXPECT_EQ(e.code(), core::Exit::bad_usage);
   }
 }
 
