@@ -180,6 +180,7 @@ std::string doubt_of(const GeometryFigures& g, const GeometryOptions& o) {
 std::vector<TriedMistake> small_mistakes(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight,
                                          const LineCells& cells, const GeometryFigures& found) {
   const bool heights = found.control.compared >= 3;
+  const std::vector<ControlCell> none;
   if (found.verdict == Verdict::not_judged && !heights) return {};
   double speed = 0;
   for (const Pass& p : flight.plan.passes) speed = std::max(speed, p.speed);
@@ -187,7 +188,7 @@ std::vector<TriedMistake> small_mistakes(const GeometryInput& in, const Geometry
   const auto explained = [&](const LineCells& of, const Chain& at) {
     const ShotGeometry geometry(at.scanner, at.calibration);
     const SmallErrors errors =
-        small_errors({flight.sample, of.ground, of.pairs, of.control, geometry, in.sensor, *in.trajectory, flight.frame});
+        small_errors({flight.sample, of.ground, of.pairs, heights ? of.control : none, geometry, in.sensor, *in.trajectory, flight.frame});
     return explain_small(errors, at, in.chain, usual, {in.range, speed}, heights, not_held(found.checks) > 0);
   };
   std::vector<SmallExplanation> all = explained(cells, in.chain);
@@ -198,6 +199,11 @@ std::vector<TriedMistake> small_mistakes(const GeometryInput& in, const Geometry
   LineCells anew = line_cells(flight, nearer, *in.trajectory);
   fit_lines(flight, anew, nearer, *in.trajectory, found.lines.predicted);
   all = explained(anew, nearer);
+  // The small difference of a single pair is one figure, to which many a value can be fitted.
+  const auto judged = std::count_if(found.lines.pairs.begin(), found.lines.pairs.end(),
+                                    [&](const LinePair& p) { return p.cells >= static_cast<std::uint64_t>(o.min_cells); });
+  const bool little = judged < 2 && not_held(found.checks) == 0 && found.lines.fit.cost < near_predicted * found.lines.predicted;
+  if (little) std::erase_if(all, [](const SmallExplanation& e) { return !e.usual; });
   const Trial trial(in, o, flight, found);
   for (const SmallExplanation& e : all)
     if (TriedMistake t = trial.judged(e); t.fit.cost <= no_worse * found.lines.fit.cost && t.contradictions <= not_held(found.checks))
