@@ -33,10 +33,11 @@ void describe(GeometryOptions& o, V& v) {
   v.option("stretches", o.stretches, core::within(4, 1000), "Maximum number of stretches in a survey.");
 }
 
-/// A surveyed height on the ground or a roof.
+/// A surveyed height on the ground.
 struct SurveyedPlace {
-  Eigen::Vector3d ecef;  ///< m
-  double sigma = 0.0;    ///< of the height, m
+  Eigen::Vector3d ecef;     ///< m
+  double sigma = 0.0;       ///< of the height, m
+  double horizontal = 0.0;  ///< sigma of each horizontal coordinate, m
 };
 
 /// What is judged. The trajectory must outlive the call.

@@ -54,9 +54,8 @@ double undulation_of(const Context& context) {
   }
 }
 
-/// Points and roofs; walls have no height.
+/// Points on the ground. The smooth cell beside a roof's centre may lie on the ground below.
 std::vector<calib::SurveyedPlace> control_of(const Context& context, core::Tally& tally) {
-  constexpr double level = 0.5;  // up part of a roof's normal
   std::vector<calib::SurveyedPlace> out;
   try {
     core::Tally of_others;  // stages that use control count what is wrong with its planes
@@ -64,7 +63,7 @@ std::vector<calib::SurveyedPlace> control_of(const Context& context, core::Tally
     const size_t i = d.size() / 2;
     const trajectory::LocalFrame frame = trajectory::local_frame(core::ecef_of({d.latitude[i], d.longitude[i], d.height[i]}));
     for (const calib::SurveyedTarget& t : calib::surveyed_targets(io::read_control(context.survey, of_others), frame, of_others))
-      if (t.normal.z() > level) out.push_back({frame.to_ecef(t.centre), t.control.empty() ? 0.0 : t.control.front().sigma});
+      if (t.is_point) out.push_back({frame.to_ecef(t.centre), t.control.empty() ? 0.0 : t.control.front().sigma, t.sigma_h});
   } catch (const core::SystemError&) {
     throw;
   } catch (const core::Error& e) {
