@@ -231,7 +231,8 @@ void try_mistakes(const GeometryInput& in, const GeometryOptions& o, const Sampl
   out.named = explain(out, least, apart);
 }
 
-/// The trajectory covers part of the lines alone: would leap seconds make it cover them all, and the lines fit?
+/// The trajectory covers part of the lines alone, and none fit one another as described: would leap seconds make it cover them all, and the
+/// lines fit?
 void try_leap(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight, GeometryFigures& out) {
   const Trial trial(in, o, flight, out);
   trial.leap(out.tried);
@@ -286,7 +287,7 @@ GeometryFigures judge_geometry(const GeometryInput& in, const GeometryOptions& o
     if (const auto h = height_mistake(control, in.undulation ? in.undulation() : std::nan("")))
       out.named.push_back({h->name, h->what, h->cure, {}, 0});
   if (out.named.empty() && (sound || of_heights)) out.named = small_mistakes(in, o, flight, cells, out);
-  if (sound && out.named.empty() && out.covered < nearly_all) try_leap(in, o, flight, out);
+  if (sound && out.named.empty() && out.verdict != Verdict::consistent && out.covered < nearly_all) try_leap(in, o, flight, out);
   if (out.named.empty() && !of_heights && (unmet || !sound)) try_mistakes(in, o, flight, apart, sound, out);
   if (sound && out.named.empty()) {
     out.tried.clear();
