@@ -162,10 +162,14 @@ std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Cha
       if (e.usual || !of_usual) out = std::max(out, e.gain);
     return out;
   };
+  const auto is_common = [&](const SmallExplanation& e) { return alarmed && e.name == "height_offset"; };
   const double least = best(false) - std::max(as_good, share_as_good * best(false));
   const bool by_usual = best(true) >= least;
-  std::erase_if(all, [&](const SmallExplanation& e) { return e.gain < least || (by_usual && !e.usual); });
+  std::erase_if(all, [&](const SmallExplanation& e) { return e.gain < least || (by_usual && !e.usual && !is_common(e)); });
   std::stable_sort(all.begin(), all.end(), [](const SmallExplanation& x, const SmallExplanation& y) { return x.gain > y.gain; });
+  // Many a usual mistake lifts all lines alike: that they are named by chance does not hide the plain difference of heights.
+  if (const auto plain = std::find_if(all.begin(), all.end(), is_common); plain != all.end() && plain != all.begin())
+    std::rotate(all.begin() + 1, plain, plain + 1);
   if (all.size() > most) all.resize(most);
   return all;
 }

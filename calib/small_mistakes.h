@@ -26,7 +26,8 @@ struct FlownAt {
 
 /// Those that explain the differences far better than the values as stated, the best first, and those as good; usually none. `errors`: of
 /// the values of `at`, which may be nearer to the right ones than the stated. `heights`: there is control, which shows errors that lift all
-/// lines alike. `alarmed`: something is known to be wrong, less is enough to say what.
+/// lines alike. `alarmed`: control alone is off; less is enough to say what, and a height common to all lines is named beside the usual
+/// mistakes.
 std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Chain& at, const Chain& stated,
                                             const std::vector<UsualMistake>& usual, const FlownAt& flown, bool heights,
                                             bool alarmed = false);
