@@ -43,7 +43,7 @@ ControlFigures compare_control(const SampledFlight& f, const LineCells& cells, c
   std::vector<double> variance;
   for (const ControlCell& c : cells.control) {
     of_point[c.point].push_back(c.apart);
-    const auto look = look_at(*c.cell, *shots[cells.ground[c.ground].pass], Eigen::Vector3d::UnitZ(), geometry, cursor, f.frame);
+    const auto look = look_at(*c.cell, *shots[cells.ground[c.ground].pass], height_direction(*c.cell), geometry, cursor, f.frame);
     if (!look) continue;
     const Variances v = variances(f.sensor, look->sigma);
     const Eigen::Matrix<double, 1, latency + 1> by = look->by.head<latency + 1>();

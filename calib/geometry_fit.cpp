@@ -87,7 +87,8 @@ LineCells line_cells(const SampledFlight& f, const Chain& chain, const trajector
     for (size_t k = 0; k < f.control.size(); ++k)
       if (const GroundCell* c = cell_beside(out.ground[a], f.control[k].place, f.ground.cell)) {
         const Eigen::Vector2d off = (f.control[k].place - c->mean).head<2>();
-        out.control.push_back({a, c, c->mean.z() + c->slope.dot(off) - f.control[k].place.z(), f.control[k].sigma, k});
+        out.control.push_back({a, c, c->mean.z() + c->slope.dot(off) - f.control[k].place.z(),
+                               std::hypot(f.control[k].sigma, c->slope.norm() * f.control[k].horizontal), k});
       }
   }
   return out;

@@ -38,8 +38,9 @@ struct GeometryCheck {
 
 /// A surveyed height on the ground.
 struct SurveyedHeight {
-  Eigen::Vector3d place;  ///< local frame of the flight, m
-  double sigma = 0.0;     ///< of the height, m
+  Eigen::Vector3d place;    ///< local frame of the flight, m
+  double sigma = 0.0;       ///< of the height, m
+  double horizontal = 0.0;  ///< sigma of each horizontal coordinate, m
 };
 
 /// The fixed part: what the flight gave.

@@ -154,6 +154,8 @@ std::optional<double> take_out_water(std::vector<SharedCell>& shared, double sig
   return difference;
 }
 
+Vector3d height_direction(const GroundCell& c) { return {-c.slope.x(), -c.slope.y(), 1.0}; }
+
 Vector3d normal_of(const SharedCell& cells) { return normal_of(*cells.a, *cells.b); }
 
 std::optional<CellLook> look_at(const GroundCell& c, const core::Shots& s, const Vector3d& direction, const ShotGeometry& geometry,

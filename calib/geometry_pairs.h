@@ -71,6 +71,8 @@ struct CellLook {
 /// `cursor`: of the flight's trajectory. Nothing where that has no pose.
 std::optional<CellLook> look_at(const GroundCell& cell, const core::Shots& shots, const Eigen::Vector3d& direction,
                                 const ShotGeometry& geometry, trajectory::Cursor& cursor, const trajectory::LocalFrame& frame);
+/// Along this the height of a cell's plane at a fixed place follows a shift of the cell.
+Eigen::Vector3d height_direction(const GroundCell& cell);
 /// Upwards, of both cells.
 Eigen::Vector3d normal_of(const SharedCell& cells);
 

@@ -76,7 +76,7 @@ std::vector<SampledFlight> sampled(const GeometryInput& in, const GeometryOption
   std::vector<SurveyedHeight> control;
   std::vector<Eigen::Vector2d> spots;
   for (const SurveyedPlace& p : in.control) {
-    control.push_back({frame.local_R_ecef * (p.ecef - frame.origin), p.sigma});
+    control.push_back({frame.local_R_ecef * (p.ecef - frame.origin), p.sigma, p.horizontal});
     spots.push_back(control.back().place.head<2>());
   }
   for (const SampleFor& w : wanted) {

@@ -68,7 +68,7 @@ std::vector<Row> rows_of(const SmallErrorsInput& in) {
     for (size_t k = first; k < out.size(); ++k) out[k].share = std::min(1.0, count_of_pair / static_cast<double>(out.size() - first));
   }
   for (const ControlCell& c : in.control)
-    if (const auto a = look(c.ground, *c.cell, Vector3d::UnitZ()))
+    if (const auto a = look(c.ground, *c.cell, height_direction(*c.cell)))
       out.push_back({c.apart, a->own + ground_varies * ground_varies + c.sigma * c.sigma, 1, 1, c.ground, c.ground, *a, {}});
   return out;
 }

@@ -30,7 +30,7 @@ struct ControlCell {
   size_t ground = 0;  ///< number in the grounds
   const GroundCell* cell = nullptr;
   double apart = 0.0;  ///< height of the cell's plane at the point less the point's, m
-  double sigma = 0.0;  ///< of the point's height, m
+  double sigma = 0.0;  ///< of the point's height and, where the ground slopes, of its place, m
   size_t point = 0;    ///< number of the point
 };
 
