@@ -18,6 +18,7 @@ constexpr double foot = 0.3048, like_feet = 0.03;  // of the ratio
 // Geoids lie up to 107 m below and 86 m above the ellipsoid; where they are near to it the difference has other causes as well.
 constexpr double highest_geoid = 110.0, lowest_geoid = 15.0, like_geoid = 2.5;
 constexpr double one_height = 0.5;  // m, and a hundredth of the difference: spread about it
+constexpr double relief = 0.1;      // of the difference
 
 std::string text_of(const char* format, double a, double b = 0.0, double c = 0.0) {
   char text[300];
@@ -78,18 +79,23 @@ std::optional<GeometryCheck> check_control(const ControlFigures& c, double ratio
                            text_of(" the control (median of %.0f points, predicted %.2f m)", static_cast<double>(c.compared), c.predicted)};
 }
 
-std::optional<HeightMistake> height_mistake(const ControlFigures& c, double undulation) {
+std::optional<HeightMistake> height_mistake(const ControlFigures& c, double undulation, double range) {
   if (c.compared < fewest_points) return std::nullopt;
   const double size = std::abs(c.median);
-  if (c.control != 0 && size > 5 && std::abs(c.ground / c.control / foot - 1) < like_feet)
-    return HeightMistake{"control_feet", "with the control's heights in feet",
-                         "state the CRS of [[control]] with its height unit, or heights in metres"};
-  if (c.ground != 0 && size > 5 && std::abs(c.control / c.ground / foot - 1) < like_feet)
-    return HeightMistake{"trajectory_height_feet", "with the trajectory's heights in feet", "export the trajectory with heights in metres"};
-  if (c.spread > one_height + 0.01 * size) return std::nullopt;
-  const bool known = std::isfinite(undulation);
-  if (known ? std::abs(size - std::abs(undulation)) > like_geoid || size < 2 * like_geoid : size < lowest_geoid || size > highest_geoid)
-    return std::nullopt;
+  const bool known = std::isfinite(undulation), one = c.spread < one_height + 0.01 * size;
+  const bool is_known = known && one && std::abs(size - std::abs(undulation)) < like_geoid && size > 2 * like_geoid;
+  if (!is_known && size > 5) {
+    const auto in_feet = [](double metres, double feet) { return feet != 0 && std::abs(metres / feet / foot - 1) < like_feet; };
+    // Heights of control in feet are off by more where the ground is higher.
+    if (c.spread < relief * size && in_feet(c.ground, c.control))
+      return HeightMistake{"control_feet", "with the control's heights in feet",
+                           "state the CRS of [[control]] with its height unit, or heights in metres"};
+    // The ranges below a trajectory in feet are metres.
+    if (one && in_feet(c.control + range, c.ground + range))
+      return HeightMistake{"trajectory_height_feet", "with the trajectory's heights in feet",
+                           "export the trajectory with heights in metres"};
+  }
+  if (!one || (known ? !is_known : size < lowest_geoid || size > highest_geoid)) return std::nullopt;
   // Heights above the geoid are less than those above the ellipsoid by the undulation.
   const bool of_trajectory = c.median * undulation < 0;
   const std::string whose = !known          ? "heights of trajectory or control"

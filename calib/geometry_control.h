@@ -27,10 +27,10 @@ ControlFigures compare_control(const SampledFlight& flight, const LineCells& cel
 std::optional<GeometryCheck> check_control(const ControlFigures& figures, double ratio, double tolerance);
 
 /// What a difference common to all points is by its size: heights above a geoid, or in feet. `undulation`: of the geoid there, m, NaN where
-/// it is not known.
+/// it is not known. `range`: from the ground to the trajectory, m.
 struct HeightMistake {
   std::string name, what, cure;
 };
-std::optional<HeightMistake> height_mistake(const ControlFigures& figures, double undulation);
+std::optional<HeightMistake> height_mistake(const ControlFigures& figures, double undulation, double range);
 
 }  // namespace swath::calib
