@@ -149,9 +149,10 @@ void say(const SampledFlight& flight, const GeometryOptions& o, bool sound, Geom
   if (sound && out.covered < nearly_all)
     out.warnings.push_back("the trajectory covers " + text_of("%.0f %%", 100 * out.covered) + " of the time of the flight lines");
   else if (sound && out.lines.fit.cells > 0 && !worst)
-    out.warnings.push_back(
-        "the differences of lines where they overlap" +
-        text_of(" (%.3f m rms, predicted %.3f m) have the pattern of an error of calibration", out.lines.fit.cost, out.lines.predicted));
+    out.warnings.push_back("the differences of lines where they overlap" +
+                           text_of(" (%.3f m rms, predicted %.3f m)", out.lines.fit.cost, out.lines.predicted) +
+                           (out.control.compared >= 3 ? text_of(" and of the ground from control (%.3f m)", out.control.median) : "") +
+                           " have the pattern of an error of calibration");
   else if (sound && !worst)
     out.warnings.push_back("no ground was found that two lines have seen, though their tracks come within " +
                            text_of("%.0f m", flight.plan.nearest));
@@ -204,9 +205,11 @@ std::vector<TriedMistake> small_mistakes(const GeometryInput& in, const Geometry
                                     [&](const LinePair& p) { return p.cells >= static_cast<std::uint64_t>(o.min_cells); });
   const bool little = judged < 2 && not_held(found.checks) == 0 && found.lines.fit.cost < near_predicted * found.lines.predicted;
   if (little) std::erase_if(all, [](const SmallExplanation& e) { return !e.usual; });
+  // Where control alone is off, a mistake that does not set it right explains nothing.
+  const size_t now = not_held(found.checks), most = now > 0 ? now - 1 : 0;
   const Trial trial(in, o, flight, found);
   for (const SmallExplanation& e : all)
-    if (TriedMistake t = trial.judged(e); t.fit.cost <= no_worse * found.lines.fit.cost && t.contradictions <= not_held(found.checks))
+    if (TriedMistake t = trial.judged(e); t.fit.cost <= no_worse * found.lines.fit.cost && t.contradictions <= most)
       out.push_back(std::move(t));
   return out;
 }
@@ -288,7 +291,7 @@ GeometryFigures judge_geometry(const GeometryInput& in, const GeometryOptions& o
       out.named.push_back({h->name, h->what, h->cure, {}, 0});
   if (out.named.empty() && (sound || of_heights)) out.named = small_mistakes(in, o, flight, cells, out);
   if (sound && out.named.empty() && out.verdict != Verdict::consistent && out.covered < nearly_all) try_leap(in, o, flight, out);
-  if (out.named.empty() && !of_heights && (unmet || !sound)) try_mistakes(in, o, flight, apart, sound, out);
+  if (out.named.empty() && (unmet || !sound)) try_mistakes(in, o, flight, apart, sound, out);
   if (sound && out.named.empty()) {
     out.tried.clear();
     return out;

@@ -180,7 +180,7 @@ void Trial::fitted(std::vector<TriedMistake>& out) const {
   for (size_t group = 0; group < fitted_groups(); ++group) {
     SmallExplanation found;
     found.chain = in_.chain;
-    const bool could_fit = could([&] {
+    could([&] {
       for (int round = 0; round < rounds; ++round) {
         LineCells cells = line_cells(flight_, found.chain, *in_.trajectory);
         fit_lines(flight_, cells, found.chain, *in_.trajectory, found_.lines.predicted);
@@ -193,7 +193,6 @@ void Trial::fitted(std::vector<TriedMistake>& out) const {
       }
       if (!found.name.empty()) out.push_back(judged(found));
     });
-    if (!could_fit) continue;
   }
 }
 
@@ -259,6 +258,9 @@ void Trial::judge(const SampledFlight& flight, const Chain& chain, const traject
   out.contradictions = motion + not_held(check_returns(flight, chain, t, whole));
   if (const auto control = check_control(compare_control(flight, cells, chain, t), options_.ratio, options_.tolerance.value))
     out.contradictions += !control->held;
+  else  // a swath that no longer reaches the control does not set right what is off there
+    out.contradictions += static_cast<size_t>(std::count_if(found_.checks.begin(), found_.checks.end(),
+                                                            [](const GeometryCheck& c) { return !c.held && c.name == "control_height"; }));
 }
 
 }  // namespace swath::calib

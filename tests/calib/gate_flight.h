@@ -25,8 +25,10 @@ struct GateFlight {
   std::vector<core::Shots> shots;  ///< by line
   Chain chain;                     ///< the true one
   core::SensorSigma sensor;
+  double motions = 1.0;
 
-  explicit GateFlight(bool flat = false, int count = 3) {
+  /// `waves`: size of the aircraft's motions.
+  explicit GateFlight(bool flat = false, int count = 3, double waves = 1.0) : motions(waves) {
     core::Calibration& c = chain.calibration;
     c.roll = core::degrees(0.3);
     c.pitch = core::degrees(-0.4);
@@ -75,13 +77,13 @@ struct GateFlight {
     const double start = 1000 + k * (seconds + apart);
     for (int i = 0; i <= static_cast<int>((seconds + 2) * 100); ++i) {
       const double s = i * 0.01 - 1, t = start + s;
-      const Eigen::Vector3d p(x + speed * s * std::sin(course), y + speed * s * std::cos(course), height + 3 * std::sin(0.4 * t));
+      const Eigen::Vector3d p(x + speed * s * std::sin(course), y + speed * s * std::cos(course), height + motions * 3 * std::sin(0.4 * t));
       const core::Geodetic g = core::geodetic_of(frame.to_ecef(p));
       data.time.push_back(t);
       data.latitude.push_back(g.latitude), data.longitude.push_back(g.longitude), data.height.push_back(g.height);
-      data.roll.push_back(2.0 * deg * std::sin(2.1 * t));
-      data.pitch.push_back(2.0 * deg + 0.7 * deg * std::cos(1.3 * t));
-      data.heading.push_back(core::wrap_two_pi(course + 1.5 * deg + 0.5 * deg * std::sin(0.9 * t)));
+      data.roll.push_back(motions * 2.0 * deg * std::sin(2.1 * t));
+      data.pitch.push_back(2.0 * deg + motions * 0.7 * deg * std::cos(1.3 * t));
+      data.heading.push_back(core::wrap_two_pi(course + 1.5 * deg + motions * 0.5 * deg * std::sin(0.9 * t)));
       for (auto c : {&core::TrajectoryData::sigma_north, &core::TrajectoryData::sigma_east, &core::TrajectoryData::sigma_down})
         (data.*c).push_back(0.02f);
       for (auto c : {&core::TrajectoryData::sigma_roll, &core::TrajectoryData::sigma_pitch, &core::TrajectoryData::sigma_heading})

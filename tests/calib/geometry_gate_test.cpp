@@ -141,6 +141,44 @@ TEST(GeometryGate, LeapSecondsAreThoseOfTheDate) {
   EXPECT_NE(g.warnings.back().find("15 s later"), std::string::npos) << g.warnings.back();
 }
 
+TEST(GeometryGate, LeapSecondsThatNothingShowsAreNotNamed) {
+  GateFlight f(true, 3, 0.0);
+  constexpr double in_1981 = 5e7;  // GPS less UTC was 1 s
+  shift(f.data.time, in_1981);
+  for (RecordedLine& l : f.lines) l.first += in_1981, l.last += in_1981;
+  for (core::Shots& s : f.shots) shift(s.time, in_1981);
+  // A trajectory without the last second of each line would cover all of it with times 1 s earlier.
+  core::TrajectoryData cut;
+  for (size_t i = 0; i < f.data.size(); ++i) {
+    using D = core::TrajectoryData;
+    const bool in = std::any_of(f.lines.begin(), f.lines.end(),
+                                [t = f.data.time[i]](const RecordedLine& l) { return t > l.first - 2 && t < l.last - 0.9; });
+    if (!in) continue;
+    for (const auto c : {&D::time, &D::latitude, &D::longitude, &D::height, &D::roll, &D::pitch, &D::heading})
+      (cut.*c).push_back((f.data.*c)[i]);
+  }
+  f.data = std::move(cut);
+  const GeometryFigures g = f.judged();
+  EXPECT_LT(g.covered, 0.95);
+  EXPECT_TRUE(g.named.empty()) << text_of(g);
+}
+
+TEST(GeometryGate, AFittedValueIsLeftToAnAdjustment) {
+  GateFlight f = flight();
+  f.chain.calibration.roll.value += 0.1 * deg, f.chain.calibration.pitch.value -= 0.08 * deg;  // about 0.15 m
+  const GeometryFigures g = f.judged();
+  ASSERT_FALSE(g.named.empty()) << text_of(g);
+  EXPECT_EQ(g.named.front().name, "boresight") << text_of(g);
+  EXPECT_FALSE(g.named.front().usual);
+  EXPECT_EQ(g.doubt, "");
+}
+
+TEST(GeometryGate, AUsualMistakeStopsAnAdjustment) {
+  GateFlight f = flight();
+  scale(f.data.roll, -1);
+  EXPECT_NE(f.judged().doubt.find("sign of roll"), std::string::npos);
+}
+
 TEST(GeometryGate, ASlowTrajectoryWithLongStepsIsJudged) {
   GateFlight f = flight();
   core::TrajectoryData slow;

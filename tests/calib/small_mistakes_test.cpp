@@ -70,6 +70,15 @@ TEST(SmallMistakes, ALeverArmThatIsLeftOutIsNamed) {
   EXPECT_EQ(found.front().name, "lever_arm_missing");
 }
 
+TEST(SmallMistakes, ADifferenceOfHeightsStandsBesideSignsThatMatchIt) {
+  SmallVector error = SmallVector::Zero();
+  error[lever_down] = 0.4;  // stated 0.2: reversed it would be as good
+  const auto found = explain_small(errors_of(error), stated(), stated(), usual_mistakes(stated(), 0.0), flown, true, true);
+  ASSERT_GE(found.size(), 2u);
+  EXPECT_EQ(found[0].name, "lever_arm_sign");
+  EXPECT_EQ(found[1].name, "height_offset");
+}
+
 TEST(SmallMistakes, WhatIsFarTooLargeIsNotSaid) {
   SmallVector error = SmallVector::Zero();
   error[range_scale] = 2;
