@@ -90,7 +90,7 @@ const std::vector<Group>& groups() {
 }
 
 /// "roll 0.0504 deg" of a value.
-std::string value_text(Parameter p, double value) {
+std::string value_text(Parameter p, double value, const char* between = "") {
   static const char* const names[small_count] = {"roll",         "pitch",       "heading",     "forward",    "right",  "down",
                                                  "range_offset", "range_scale", "scan_offset", "scan_scale", "latency"};
   const bool angle = p <= boresight_heading || p == scan_offset;
@@ -98,7 +98,7 @@ std::string value_text(Parameter p, double value) {
   char text[64];
   const char* const format = unit[0] == '\0' ? " %.5f" : angle ? " %.3f" : p == latency ? " %.4f" : " %.2f";
   std::snprintf(text, sizeof text, format, angle ? core::to_degrees(value) : value);
-  return std::string(names[p]) + text + unit;
+  return std::string(names[p]) + between + text + unit;
 }
 
 /// All three angles, or parts of the lever arm, of a group are stated as zero.
@@ -115,7 +115,9 @@ std::string words(const Group& g, const SmallVector& right, const SmallVector& e
     std::snprintf(text, sizeof text, " %.2f m %s", std::abs(error[lever_down]), error[lever_down] > 0 ? "higher" : "lower");
     return out + text;
   }
-  for (size_t k = 0; k < g.free.size(); ++k) out += (k == 0 ? " " : ", ") + value_text(g.free[k], right[g.free[k]]);
+  const bool is_article = out.ends_with(" a");
+  for (size_t k = 0; k < g.free.size(); ++k)
+    out += (k == 0 ? " " : ", ") + value_text(g.free[k], right[g.free[k]], is_article ? " of" : "");
   return out + " (fitted)";
 }
 
