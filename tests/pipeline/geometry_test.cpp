@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -26,6 +27,7 @@ class Geometry : public testing::Test {
     o.flight.lines = 2;
     o.flight.cross_lines = 1;
     o.scanner.prf.value = 20000;
+    o.control.targets = 4;
     simulate::run(o, folder_->path());
   }
   static void TearDownTestSuite() { folder_.reset(); }
@@ -61,6 +63,7 @@ class Geometry : public testing::Test {
     io::write_text_file(folder_->path() / "adjusting.toml", text);
     return folder_->path() / "adjusting.toml";
   }
+  static const fs::path& folder() { return folder_->path(); }
   static std::string named(const Outcome& o) {
     const core::Value& names = *o.report.find("geometry")->find("named");
     return names.items().empty() ? "" : names.items().front().as_text();
@@ -102,6 +105,23 @@ const core::Value& strips_of(const Outcome& o) {
   for (const core::Value& stage : o.report.find("stages")->items())
     if (stage.find("type")->as_text() == "calib.strips") return *stage.find("findings");
   throw std::runtime_error("no calib.strips");
+}
+
+TEST_F(Geometry, HeightsAreNotJudgedByRoofs) {
+  // 5 m too high: what the ground beside a roof looks like from its centre.
+  std::istringstream lines(test::read_bytes(folder() / "control.csv"));
+  std::string out, line;
+  for (size_t n = 0; std::getline(lines, line); ++n) {
+    size_t z = 0;
+    for (int commas = 0; commas < 4; ++commas) z = line.find(',', z) + 1;
+    const size_t end = line.find(',', z);
+    out += n == 0 ? line : line.substr(0, z) + std::to_string(std::stod(line.substr(z, end - z)) + 5) + line.substr(end);
+    out += "\n";
+  }
+  io::write_text_file(folder() / "high.csv", out);
+  const Outcome o = run_with("file = \"control.csv\"", "file = \"high.csv\"");
+  EXPECT_EQ(verdict(o), "consistent");
+  EXPECT_EQ(o.report.find("geometry")->find("control"), nullptr);
 }
 
 TEST_F(Geometry, AUsualMistakeIsNotHiddenByAnAdjustment) {
