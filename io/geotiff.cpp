@@ -24,7 +24,7 @@ namespace {
 constexpr double lattice_tolerance = 1e-3;
 /// Relative difference of pixel width and height that still counts as square (text formats print few digits).
 constexpr double square_tolerance = 1e-6;
-// Number of a cell: beyond it a corner could not be told from its neighbour's in a double.
+// Number of a cell: beyond it a corner could not be distinguished from its neighbour's in a double.
 constexpr double farthest_cell = 1e12;
 /// What a truncated file cannot pass: every block lies within the file. Only libraries' final flush could lose data unseen.
 void check_blocks(const std::filesystem::path& file, const std::filesystem::path& final_name, const GdalMessages& messages) {
