@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
 #include "core/geodesy.h"
@@ -12,19 +11,12 @@
 namespace swath::calib {
 namespace {
 
-constexpr size_t fewest_points = 3;
 constexpr double mad_to_sigma = 1.4826;
 constexpr double foot = 0.3048, like_feet = 0.03;  // of the ratio
 // Geoids lie up to 107 m below and 86 m above the ellipsoid; where they are near to it the difference has other causes as well.
 constexpr double highest_geoid = 110.0, lowest_geoid = 15.0, like_geoid = 2.5;
 constexpr double one_height = 0.5;  // m, and a hundredth of the difference: spread about it
 constexpr double relief = 0.1;      // of the difference
-
-std::string text_of(const char* format, double a, double b = 0.0, double c = 0.0) {
-  char text[300];
-  std::snprintf(text, sizeof text, format, a, b, c);
-  return text;
-}
 
 double height_of(const SampledFlight& f, const Eigen::Vector3d& p) { return core::geodetic_of(f.frame.to_ecef(p)).height; }
 
@@ -70,7 +62,7 @@ ControlFigures compare_control(const SampledFlight& f, const LineCells& cells, c
 }
 
 std::optional<GeometryCheck> check_control(const ControlFigures& c, double ratio, double tolerance) {
-  if (c.compared < fewest_points) return std::nullopt;
+  if (c.compared < fewest_control_points) return std::nullopt;
   const double off = std::abs(c.median);
   // Points scatter as well: roofs that are missed, trees that were cut.
   const double sigma = std::hypot(c.predicted, c.spread / std::sqrt(static_cast<double>(c.compared)));
@@ -80,7 +72,7 @@ std::optional<GeometryCheck> check_control(const ControlFigures& c, double ratio
 }
 
 std::optional<HeightMistake> height_mistake(const ControlFigures& c, double undulation, double range) {
-  if (c.compared < fewest_points) return std::nullopt;
+  if (c.compared < fewest_control_points) return std::nullopt;
   const double size = std::abs(c.median);
   const bool known = std::isfinite(undulation), one = c.spread < one_height + 0.01 * size;
   const bool is_known = known && one && std::abs(size - std::abs(undulation)) < like_geoid && size > 2 * like_geoid;

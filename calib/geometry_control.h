@@ -10,6 +10,9 @@
 
 namespace swath::calib {
 
+/// Fewer surveyed points may each be wrong by themselves: nothing is judged by them.
+constexpr size_t fewest_control_points = 3;
+
 /// How far the ground lies from control.
 struct ControlFigures {
   size_t points = 0, near = 0;  ///< surveyed, and within reach of a track

@@ -31,12 +31,6 @@ constexpr size_t fewest_bins = 300;                 // for the time of the roll:
 constexpr double longest_offset = 20.0;             // s
 constexpr double sure = 5.0;                        // sigmas
 
-std::string text_of(const char* format, double a, double b = 0.0) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, a, b);
-  return text;
-}
-
 void add_heights(const SampledFlight& f, const Chain& chain, const trajectory::Trajectory& t, std::vector<GeometryCheck>& out) {
   LocalPoints points(chain.scanner, chain.calibration, t, f.frame);
   PointColumns p;
@@ -75,6 +69,12 @@ void add_turns(const trajectory::FlightChecks& c, std::vector<GeometryCheck>& ou
 }
 
 }  // namespace
+
+std::string text_of(const char* format, double a, double b, double c) {
+  char text[300];
+  std::snprintf(text, sizeof text, format, a, b, c);
+  return text;
+}
 
 LineCells line_cells(const SampledFlight& f, const Chain& chain, const trajectory::Trajectory& t) {
   LocalPoints points(chain.scanner, chain.calibration, t, f.frame);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -29,12 +28,6 @@ constexpr double least_covered = 0.5, nearly_all = 0.95, all_covered = 0.995;
 constexpr double gross = 1.0;                     // m: no trajectory that is worth adjusting is so far off
 constexpr double leap_fit = 1.0;                  // m: lines that are flown a kilometre apart do not come near this
 constexpr double crossing = 0.15, meeting = 0.5;  // of the range: tracks so near share ground
-
-std::string text_of(const char* format, double a, double b = 0.0) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, a, b);
-  return text;
-}
 
 /// At the ground below the first line that the trajectory covers, or below its middle.
 trajectory::LocalFrame frame_of(const GeometryInput& in) {
@@ -149,10 +142,11 @@ void say(const SampledFlight& flight, const GeometryOptions& o, bool sound, Geom
   if (sound && out.covered < nearly_all)
     out.warnings.push_back("the trajectory covers " + text_of("%.0f %%", 100 * out.covered) + " of the time of the flight lines");
   else if (sound && out.lines.fit.cells > 0 && !worst)
-    out.warnings.push_back("the differences of lines where they overlap" +
-                           text_of(" (%.3f m rms, predicted %.3f m)", out.lines.fit.cost, out.lines.predicted) +
-                           (out.control.compared >= 3 ? text_of(" and of the ground from control (%.3f m)", out.control.median) : "") +
-                           " have the pattern of an error of calibration");
+    out.warnings.push_back(
+        "the differences of lines where they overlap" +
+        text_of(" (%.3f m rms, predicted %.3f m)", out.lines.fit.cost, out.lines.predicted) +
+        (out.control.compared >= fewest_control_points ? text_of(" and of the ground from control (%.3f m)", out.control.median) : "") +
+        " have the pattern of an error of calibration");
   else if (sound && !worst)
     out.warnings.push_back("no ground was found that two lines have seen, though their tracks come within " +
                            text_of("%.0f m", flight.plan.nearest));
@@ -180,7 +174,7 @@ std::string doubt_of(const GeometryFigures& g, const GeometryOptions& o) {
 /// Small mistakes that the lines' and the control's differences show; confirmed on the sample.
 std::vector<TriedMistake> small_mistakes(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight,
                                          const LineCells& cells, const GeometryFigures& found) {
-  const bool heights = found.control.compared >= 3;
+  const bool heights = found.control.compared >= fewest_control_points;
   const std::vector<ControlCell> none;
   if (found.verdict == Verdict::not_judged && !heights) return {};
   double speed = 0;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -18,12 +17,6 @@ constexpr double margin = 0.6;           // s of the trajectory around a stretch
 constexpr double steps_around = 2.5;     // ... and steps of it, for the cubic through four records
 constexpr double longest_offset = 20.0;  // s
 constexpr int fewer_stretches = 2;       // of samples that are read for one assumption: a share of the flight's own
-
-std::string text_of(const char* format, double a, double b = 0.0) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, a, b);
-  return text;
-}
 
 /// Longest step between records that is interpolated over.
 double longest_step(const trajectory::Trajectory& t) {

@@ -206,10 +206,6 @@ Pass pass_over(const Survey& survey, size_t file, bool judge) {
   return out;
 }
 
-}  // namespace
-
-namespace {
-
 /// The strips of a file; times of its records outside every line are added to `outside`.
 std::vector<StripInfo> strips_of(const Survey& survey, size_t file, core::Tally& tally, LineSpan& outside) {
   const LaserFile& f = survey.laser[file];
