@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Source: Tukey's jackknife (Efron & Tibshirani, "An Introduction to the Bootstrap", 11). Deviation: the classical sigma is read against
+// Source: Tukey's jackknife (Efron & Tibshirani 1993, 11). Deviation: the classical sigma is read against
 // its own expectation. Lines weigh unequally and come in correlated pairs, so that sqrt((J - 1) / J sum (x_j - x)^2) is no sigma of x:
 // under the model var(x_j - x) = var(x_j) - var(x) (least squares), and only its ratio to the sum of these says whether the covariances are
 // true.

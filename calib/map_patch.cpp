@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Source: discrete least squares on Chebyshev nodes (Mason & Handscomb, Chebyshev Polynomials, 2003, 4.6 and 6.3), here in three variables
+// Source: discrete least squares on Chebyshev nodes (Mason & Handscomb 2003, 4.6 and 6.3), here in three variables
 // with total degree 3. Deviation: PROJ is replaced by the polynomial; its fourth-order rest in a cube of 2048 m is below 1e-8 m for a
 // conformal projection, and no patch is used that is off by more than 0.02 mm at any of 125 check points. A kink between check points can
 // exceed that, by less than five times: the check points include the corners, where a kink that cuts the cube shows most.

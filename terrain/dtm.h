@@ -42,7 +42,7 @@ void describe_surface(DtmOptions& o, V& v) {
   v.option("smoothing", o.smoothing, core::within(0.0, 20.0),
            "Neighbours of the triangulation within this distance even out one another's random errors, breaks kept; 0: the surface passes "
            "through every point. Points of breaklines and key points stay where they are.",
-           "JonesDurandDesbrun2003, with planes judged by their misfit");
+           "Jones2003, with planes judged by their misfit");
   v.option("interpolation", o.interpolation, "Between the points: linear on the triangles, or natural_neighbour, smooth but at the points.",
            "Sibson1981");
   v.option("classes", o.classes, core::within(0, 255), "ASPRS classes that are terrain.");

@@ -85,7 +85,7 @@ void describe(InsGnssOptions& o, V& v) {
       "error_spacing", o.error_spacing, core::within(0, 60),
       "Spacing of the instants at which the trajectory keeps how its errors hang together in time, for calibration and strip adjustment "
       "(30 MB per hour at 1 s); 0 keeps nothing.",
-      "deJong1988");
+      "Jong1988");
 }
 
 /// Numbers over time for the report and its plots. Vectors of one group have one length.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Source: cubic Lagrange interpolation in Newton's form (Press et al., Numerical Recipes, 3.2); rotation vectors and their rates after
+// Source: cubic Lagrange interpolation in Newton's form (Press et al. 2007, 3.2); rotation vectors and their rates after
 // Sola, "Quaternion kinematics for the error-state Kalman filter" (2017), eqs. 101 and 184 (right Jacobian).
 // Deviation: none beyond the cubic's own error (header): rotation vectors about a neighbouring record are a smooth chart of the rotations.
 #include "trajectory/trajectory.h"
