@@ -57,7 +57,7 @@ void apply_set(Value& tree, const std::string& set) {
   const std::string path = set.substr(0, equals);
   const size_t dot = path.rfind('.');
   if (equals == std::string::npos || dot == std::string::npos)
-    throw core::usage_error("'" + set + "' is not stage.key=value", "--set", "for example --set smrf.cell=\"50 cm\"");
+    throw core::usage_error("'" + set + "' is not stage.key=value", "--set", "for example --set dtm.cell=\"50 cm\"");
   refuse_deep_key(path, set);
   const Value value = set_value(set.substr(equals + 1));
   if (path.rfind("run.", 0) == 0) {

@@ -167,7 +167,7 @@ void add_request(CLI::App* c, Arguments& a) {
   c->add_option("CONFIG", a.request.config, "Pipeline, .toml or .json")->required();
   c->add_option("--survey", a.request.survey, "survey.toml, in place of the config's");
   c->add_option("--output", a.request.output, "Folder of the products, in place of the config's");
-  c->add_option("--set", a.request.sets, "One option of one stage: smrf.cell=\"50 cm\", run.tile=\"250 m\"")->allow_extra_args(false);
+  c->add_option("--set", a.request.sets, "One option of one stage: dtm.cell=\"50 cm\", run.tile=\"250 m\"")->allow_extra_args(false);
 }
 
 int command_line(int argc, char** argv) {
@@ -176,7 +176,7 @@ int command_line(int argc, char** argv) {
       "Examples\n"
       "  swath simulate demo                                   a small survey with its truth, in demo/\n"
       "  swath run configs/survey.toml --survey demo/survey.toml --output out\n"
-      "  swath run configs/survey.toml --survey demo/survey.toml --set smrf.cell=\"50 cm\"\n"
+      "  swath run configs/survey.toml --survey demo/survey.toml --set dtm.cell=\"50 cm\"\n"
       "  swath info flight.laz                                 what a file holds, and what looks wrong in it\n"
       "  swath stages filters.smrf                             a stage and its options\n"
       "\n"
@@ -189,26 +189,27 @@ int command_line(int argc, char** argv) {
 
   auto* c = app.add_subcommand(
       "run",
-      "Examples\n  swath run configs/survey.toml --survey demo/survey.toml --output out\n  swath run configs/survey.toml --set "
-      "run.memory=\"4 GB\" --threads 8 --json-log\n\nRun a pipeline on a survey; the same command continues a run that was killed.");
+      "Examples\n  swath run configs/survey.toml --survey demo/survey.toml --output out\n  swath run configs/survey.toml --survey "
+      "demo/survey.toml --set run.memory=\"4 GB\" --threads 8 --json-log\n\nRun a pipeline on a survey; the same command continues a run "
+      "that was killed.");
   add_request(c, a);
   c->add_option("--threads", a.request.threads, "Threads, in place of the config's (0: one per processor)");
   c->add_flag("--quiet", a.quiet, "Nothing but errors");
   c->add_flag("--json-log", a.json_log, "Progress as one JSON object per line on standard error");
 
   c = app.add_subcommand("check",
-                         "Examples\n  swath check configs/survey.toml --survey demo/survey.toml\n\nTell every fault of a config and its "
+                         "Examples\n  swath check configs/survey.toml --survey demo/survey.toml\n\nReport every fault of a config and its "
                          "survey, without reading data.");
   add_request(c, a);
   c->add_flag("--quiet", a.quiet, "Nothing but faults");
 
   c = app.add_subcommand("explain",
-                         "Examples\n  swath explain configs/survey.toml --survey demo/survey.toml --set smrf.slope=0.3\n\nShow every "
+                         "Examples\n  swath explain configs/survey.toml --survey demo/survey.toml --set dtm.cell=\"50 cm\"\n\nShow every "
                          "effective option and where its value comes from.");
   add_request(c, a);
   c->add_flag("--json", a.json, "As JSON");
 
-  c = app.add_subcommand("stages", "Examples\n  swath stages\n  swath stages filters.smrf\n\nList the stages, or tell of one.");
+  c = app.add_subcommand("stages", "Examples\n  swath stages\n  swath stages filters.smrf\n\nList the stages, or describe one.");
   c->add_option("NAME", a.name, "Stage");
 
   app.add_subcommand("schema", "Examples\n  swath schema > swath.schema.json\n\nPrint the JSON Schema of pipelines and surveys.");
