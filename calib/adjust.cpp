@@ -286,7 +286,7 @@ class Results {
     }
   }
 
-  // What the data alone tell of the global unknowns, and what they would tell if all positions could be shifted together.
+  // What the data alone show of the global unknowns, and what they would show if all positions could be shifted together.
   void separate() {
     sep_.information = eliminated(r_.data.N, globals_);
     sep_.formal = r_.solution.covariance.diagonal().head(globals_).cwiseSqrt();

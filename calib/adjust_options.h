@@ -25,9 +25,7 @@ void describe(EstimateOptions& o, V& v) {
   v.option("lever_down", o.lever_down, "Scanner's lever arm, down.");
   v.option("range_offset", o.range_offset, "Offset of the ranges.");
   v.option("range_scale", o.range_scale, "Factor of the ranges.");
-  v.option("scan_offset", o.scan_offset,
-           "Offset of the scan angle. Held where it is the same turn as one that is estimated: for scanners that scan across the boresight "
-           "roll, for conical ones the heading.");
+  v.option("scan_offset", o.scan_offset, "Offset of the scan angle; fixed where it equals the boresight roll (conical scanners: heading).");
   v.option("scan_scale", o.scan_scale, "Factor of the scan angle.");
   v.option("latency", o.latency, "Latency of the records' times.");
 }
@@ -68,17 +66,12 @@ struct CorrectionOptions {
 
 template <class V>
 void describe(CorrectionOptions& o, V& v) {
-  v.option("position", o.position, "Correction of the position along each line: none, shift, drift (a0 + a1 t) or spline (knots by time).",
+  v.option("position", o.position, "Position correction along each line: none, shift, drift (a0 + a1 t) or spline (knots by time).",
            "Ackermann eq 1");
   v.option("attitude", o.attitude, "Correction of the attitude along each line.");
-  v.option(
-      "spacing", o.spacing, core::above(0),
-      "Longest time between two knots of a spline; shifts and drifts are fitted to this grid. What the trajectory errs by between knots "
-      "is taken for an error of single planes: too wide a spacing makes sigmas too small.");
+  v.option("spacing", o.spacing, core::above(0), "Maximum time between two knots of a spline; too wide a spacing makes sigmas too small.");
   v.option("most", o.most, core::within(12, 6000), "Most unknowns of all lines' corrections: the spacing is widened to keep it.");
-  v.option("prior", o.prior,
-           "Where the corrections' covariance comes from: the trajectory, or the stated sigmas below where those of the trajectory cannot "
-           "be believed.");
+  v.option("prior", o.prior, "Covariance of the corrections: the trajectory's, or the stated sigmas below.");
   v.option("stated_position", o.stated_position, core::above(0), "Sigma of each component of the position.");
   v.option("stated_roll_pitch", o.stated_roll_pitch, core::above(0), "Sigma of roll and of pitch.");
   v.option("stated_heading", o.stated_heading, core::above(0), "Sigma of the heading.");
@@ -126,8 +119,7 @@ void describe(ComponentOptions& o, V& v) {
   v.option("attitude", o.attitude, "Estimate the factor of the trajectory's attitude sigmas.");
   v.option("control", o.control, "Estimate the factor of the control's sigmas.");
   v.option("surface_sigma", o.surface_sigma, core::above(0), "Start value of the surfaces' sigma.");
-  v.option("freedom", o.freedom, core::at_least(1),
-           "Degrees of freedom that the stated sigmas of trajectory and control are worth: few lines move their factors little.");
+  v.option("freedom", o.freedom, core::at_least(1), "Degrees of freedom of the stated sigmas of trajectory and control.");
 }
 
 struct JackknifeOptions {
@@ -141,8 +133,7 @@ void describe(JackknifeOptions& o, V& v) {
   v.option("lines", o.lines, "Repeat the adjustment without each line in turn.");
   v.option("blocks", o.blocks, core::within(0, 200), "Repeat it without each of so many regions of planes in turn; 0: not.");
   v.option("significance", o.significance, core::within(1e-6, 0.5),
-           "Besides being at least the jackknife's over lines, the delivered sigma is enlarged where a jackknife's is larger than chance "
-           "would make it with this probability.");
+           "Enlarge a sigma where a jackknife's is larger than chance gives with this probability.");
 }
 
 /// A value whose sigma is larger is graded coarse; one that is not determined is not delivered.

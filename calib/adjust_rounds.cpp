@@ -21,7 +21,7 @@ constexpr double steady_step = 0.01;    // of an unknown's sigma
 constexpr double steady_factor = 0.03;  // of a sigma's factor
 constexpr double least_range = 1e-3;    // m: a sigma of zero would leave nothing to weigh by
 constexpr int snooping_rounds = 6, batches = 8;
-// What holds a free unknown that nothing tells, in useful sigmas: the equations stay solvable, the value is refused.
+// What holds a free unknown that nothing determines, in useful sigmas: the equations stay solvable, the value is refused.
 constexpr double free_sigma = 1e4;
 
 }  // namespace

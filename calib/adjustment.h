@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Result of the rigorous adjustment: what was estimated, how well, and what could not be told.
+// Result of the rigorous adjustment: what was estimated, how well, and what could not be determined.
 #pragma once
 
 #include <Eigen/Core>
@@ -96,7 +96,7 @@ struct ResidualSample {
   double sigma = 0.0;                           ///< of that distance by ranges, angles and roughness, m
 };
 
-/// One thing that the flight does not tell, or that looks wrong, in words.
+/// One thing that the flight does not show, or that looks wrong, in words.
 struct Finding {
   std::string what;                   ///< "pitch and along-track shift cannot be told apart: only one line direction"
   std::string cure;                   ///< "fly one line in the opposite direction ..."

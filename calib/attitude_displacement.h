@@ -55,7 +55,7 @@ core::Attitude inverse(const core::Attitude& a);
 
 /// Error of eq 9 to 11 for a displacement of this size: formulas less exact geometry, rad.
 core::Attitude small_angle_error(const core::Attitude& displacement, double z, double y, SideDistance side = SideDistance::computed);
-/// Says so where the formulas err by more than `most` for this displacement; empty where they do not.
+/// Says so where the formulas are off by more than `most` for this displacement; empty where they do not.
 std::string small_angle_warning(const core::Attitude& displacement, double z, double y, double most = 1e-4,
                                 SideDistance side = SideDistance::computed);
 

@@ -29,12 +29,8 @@ struct CalibrateOptions {
 
 template <class V>
 void describe(CalibrateOptions& o, V& v) {
-  v.option(
-      "coarse", o.coarse,
-      "Find the boresight's first values by matching the surfaces of the lines; otherwise those of the survey are taken, and the surfaces "
-      "are looked at for the sign of the scan angle alone.");
-  v.option("rounds", o.rounds, core::within(3, 20),
-           "Maximum of rounds, planes sought and adjusted in each; they end where no value moves by half of its sigma.");
+  v.option("coarse", o.coarse, "Find first boresight values by matching surfaces; otherwise take those of the survey.");
+  v.option("rounds", o.rounds, core::within(3, 20), "Maximum number of rounds; they end where no value moves by half of its sigma.");
   v.table("match", o.match, "The surfaces' matching.");
   v.table("planes", o.planes, "The search for planes; `mismatch` is that of the first round, 1/800 of the height at most.");
   describe(o.adjust, v);

@@ -17,7 +17,7 @@ constexpr double shortest_line = 0.05;  // s
 // Sigmas that no error falls below: exact trajectories state zeros, which cannot be inverted.
 constexpr double least_position = 1e-6;  // m
 constexpr double least_attitude = 1e-9;  // rad
-// Independent part added to each unknown's variance so that nearly equal ones can be told apart by the arithmetic: a thousandth of its
+// Independent part added to each unknown's variance so that nearly equal ones can be distinguished by the arithmetic: a thousandth of its
 // sigma.
 constexpr double own_share = 1e-6;
 
@@ -65,7 +65,7 @@ std::vector<double> knots_of(CorrectionForm form, const std::vector<double>& gri
   return grid;
 }
 
-// The inverse of a covariance, scaled to correlations; what cannot be told apart is given a small part of its own.
+// The inverse of a covariance, scaled to correlations; what cannot be distinguished is given a small part of its own.
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& covariance) {
   if (covariance.rows() == 0) return covariance;
   const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();

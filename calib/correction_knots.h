@@ -51,7 +51,7 @@ class CorrectionKnots {
   /// 6 x (up to 12) matrix of its derivatives as columns with their numbers: for variances.
   Eigen::MatrixXd derivatives(size_t line, double t, std::vector<int>& numbers) const;
 
-  /// Times at which the line's corrections are told: the finer of its two sets of knots, or its two ends.
+  /// Times at which the line's corrections are given: the finer of its two sets of knots, or its two ends.
   const std::vector<double>& times(size_t line) const { return lines_[line].told; }
   bool is_position(int unknown) const { return is_position_[static_cast<size_t>(unknown)]; }
 

@@ -18,7 +18,7 @@ class CorrelatedErrors {
   /// `response`: of the trajectory; must outlive this object.
   CorrelatedErrors(const ShotGeometry& geometry, const core::SensorSigma& sensor, const core::CalibrationResponse& response);
 
-  /// False where calibration and trajectory err independently: sums of squares are enough.
+  /// False where calibration and trajectory have independent errors: sums of squares are enough.
   bool any() const { return any_; }
   /// Covariance of the shared errors at an instant; frames as the base of calib/georeference.cpp: `base_R_ned` turns north, east, down into
   /// it. `sigma`: of the trajectory, what its calibration does to it included.

@@ -24,7 +24,7 @@ constexpr double sloping_from = 10.0 * core::degree;
 constexpr double beside_from = 12.0 * core::degree;  // difference of the scan angles at which two parallel lines see a plane
 constexpr double height_ratio = 1.2;
 constexpr double part_of_combination = 0.15;  // share of an eigenvector's square that makes a value a part of it
-constexpr double rests_on_position = 3.0;     // limits: a value is told by the trajectory's positions alone beyond
+constexpr double rests_on_position = 3.0;     // limits: a value is determined by the trajectory's positions alone beyond
 
 struct Words {
   std::string what, cure;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a calibration flight cannot tell, in words, with the flight that would cure it.
+// What a calibration flight cannot determine, in words, with the flight that would cure it.
 #pragma once
 
 #include <string>

@@ -15,7 +15,7 @@ struct EdgePulse {
     off,      ///< all returns off the roof
     both,     ///< first return on the roof, last one off it
     on,       ///< all returns on the roof
-    first_on  ///< first return on the roof; whether a last one lies off it is not told (walls too near behind it)
+    first_on  ///< first return on the roof; whether a last one lies off it is not known (walls too near behind it)
   } outcome = off;
 };
 
@@ -26,7 +26,7 @@ struct SideView {
   double offset = 0.0;                                   ///< of the edge from where it was expected, outward, m
   double slope = 0.0;                                    ///< its growth along the side
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of offset and slope, by the pulses alone
-  std::uint32_t pulses = 0;                              ///< that told of it
+  std::uint32_t pulses = 0;                              ///< that contributed
 };
 
 /// What is known of an edge before it is looked for.

@@ -163,7 +163,7 @@ class Analysis {
     bool steady = false;
     for (out_.rounds = 1; out_.rounds <= options_.rounds; ++out_.rounds) {
       const bool coarse = out_.rounds <= coarse_rounds;
-      // Profiles cannot tell it: with the roll of the other lines it is small.
+      // Profiles cannot determine it: with the roll of the other lines it is small.
       constexpr double left_after_roll = 0.3;  // m
       const double across = angles.roll.determined ? left_after_roll : 0.0;
       now = views(cal, coarse, across);
@@ -215,7 +215,7 @@ class Analysis {
       const Vector2d x(std::sin(v.heading), std::cos(v.heading)), y(x.y(), -x.x());
       for (size_t k = 0; k < t.sides(); ++k) {
         const double px = x.dot(t.corners[k] - v.centre), py = y.dot(t.corners[k] - v.centre);
-        // Edges that lie along the flight tell how the roof is turned; those across it are turned by the heading's error as well.
+        // Edges that lie along the flight show how the roof is turned; those across it are turned by the heading's error as well.
         corners[k] += t.corners[k] + (v.displacement.x() - v.turn * py + v.strain_along * px) * x +
                       (v.displacement.y() + v.turn * px + v.strain_across * py) * y;
       }

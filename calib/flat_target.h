@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The calibration flight over a flat roof, after Brandalize: how far each line has displaced the roof, what each pass tells of roll, pitch
+// The calibration flight over a flat roof, after Brandalize: how far each line has displaced the roof, what each pass shows of roll, pitch
 // and heading, of the range and of the scan's scale, and whether the values in force should be changed.
 #pragma once
 
@@ -36,15 +36,14 @@ void describe(FlatTargetOptions& o, V& v) {
            "How far the mounting may be wrong at the start, about each axis.");
   v.option("rounds", o.rounds, core::within(1, 20), "Most rounds of measuring the target, correcting and measuring again.");
   v.option("tolerance", o.tolerance, core::at_least(0),
-           "An angle gets a new value only where it differs by more than this from the one in force; without a value: by tolerance_sigmas.",
-           "Brandalize");
+           "An angle is replaced where it differs by more than this; without a value: tolerance_sigmas.", "Brandalize");
   v.option("tolerance_sigmas", o.tolerance_sigmas, core::at_least(0), "The tolerance in sigmas of the mean reading.");
   v.option("nadir_share", o.nadir_share, core::within(0.05, 0.9), "A target within this share of the half swath counts as at nadir.");
   v.option("edge_share", o.edge_share, core::within(0.1, 1.0), "A target beyond this share of the half swath counts as at the edge.");
   v.option("stands_out", o.stands_out, core::above(0), "A roof found in the data stands this far above its surroundings.");
   v.option("shortest_side", o.shortest_side, core::above(0), "Least length of the sides of a roof found in the data.");
   v.option("single_growth", o.single_growth, core::within(-0.5, 0.5),
-           "Scanners that record one return of a pulse: the roof looks larger at each edge by this share of the footprint's diameter.");
+           "Scanners with one return per pulse: growth of the roof at each edge, share of the footprint.");
   v.option("single_growth_sigma", o.single_growth_sigma, core::within(0.0, 1.0), "How well that share is known.");
   v.check(o.nadir_share < o.edge_share, "nadir_share must be below edge_share");
 }
@@ -59,7 +58,7 @@ struct TargetAngle {
   double tolerance = 0.0;
   bool beyond = false;          ///< mean and present differ by more than the tolerance
   double value = 0.0;           ///< new value: the mean where `beyond`, else the present one
-  bool of_two_heights = false;  ///< the mean is that of angle and lever arm told apart by two flying heights
+  bool of_two_heights = false;  ///< the mean is that of angle and lever arm distinguished by two flying heights
 };
 
 /// One line's part.

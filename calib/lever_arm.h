@@ -15,7 +15,7 @@ Eigen::Vector3d point_from_antenna(const Eigen::Vector3d& antenna_ned, const cor
 /// What a tilt moves the far end of a lever arm by, against level flight: |(R - 1) lever|, m.
 double tilt_shift(const Eigen::Vector3d& lever, const core::Attitude& tilt);
 
-/// Attitude of a body that photogrammetry tells as omega about x (forward), then phi about y (left), z up: R = Rx(omega) Ry(phi), rad.
+/// Attitude of a body that photogrammetry states as omega about x (forward), then phi about y (left), z up: R = Rx(omega) Ry(phi), rad.
 /// Heading comes out as the forward axis' own, a product of omega and phi.
 core::Attitude attitude_of_tilt(double omega, double phi);
 

@@ -23,9 +23,9 @@ struct LineHeightOptions {
 template <class V>
 void describe(LineHeightOptions& o, V& v) {
   v.option("cell", o.cell, core::within(0.2, 100),
-           "Side of the cells in which the heights of two lines are compared; without it wide enough for twelve returns of a line.");
+           "Side of the cells in which two lines' heights are compared; by default for 12 returns of a line.");
   v.option("roughness", o.roughness, core::above(0),
-           "A cell is compared where the single returns of each line lie about a plane of their own with no more than this rms.");
+           "Compare a cell where each line's single returns fit a plane of their own within this rms.");
   v.option("least", o.least, core::within(4, 1000), "... and are at least this many.");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The returns of a flight as moments of small cubes: enough to tell whether what a line saw in a cube is plane.
+// The returns of a flight as moments of small cubes: enough to decide whether what a line saw in a cube is plane.
 #pragma once
 
 #include <Eigen/Core>

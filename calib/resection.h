@@ -38,7 +38,7 @@ struct Resection {
   double mirror_variance_factor = 0.0;
   bool decided_by_start = false;     ///< both fit equally well; the one nearer to the start value was taken
   bool start_led_to_mirror = false;  ///< from the start value alone the mirror would have been found
-  /// Factor on the distances that makes them fit, from six distances on; 1 for distances in the targets' unit. NaN where it is not told.
+  /// Factor on the distances that makes them fit, from six distances on; 1 for distances in the targets' unit. NaN where it is not known.
   double scale = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -47,8 +47,8 @@ struct Resection {
 /// nearer to `start`.
 Resection resect(const std::vector<TargetDistance>& distances, const std::optional<Eigen::Vector3d>& start = {});
 
-/// By how many of its sigmas a position may move by what distances bend over one sigma of its least known direction. Distances tell the
-/// square of a height h over the plane of their targets; with s its sigma this is s / (4 h^2): sign and sigma of a height are told from
+/// By how many of its sigmas a position may move by what distances bend over one sigma of its least known direction. Distances show the
+/// square of a height h over the plane of their targets; with s its sigma this is s / (4 h^2): sign and sigma of a height are known from
 /// three s on.
 constexpr double largest_bend = 1.0 / 12.0;
 

@@ -30,14 +30,14 @@ struct LineErrors {
 struct ShiftFit3 {
   Eigen::Vector3d error = Eigen::Vector3d::Zero();       ///< of roll, pitch, heading as used, rad: to be subtracted; 0 where not determined
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< 0 for those not determined
-  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();       ///< of all; infinite where there is nothing to tell
+  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();       ///< of all; infinite where there is nothing to determine it
   std::array<bool, 3> determined{};
   double rms = 0.0;  ///< of horizontal residuals, weighted, m
 };
 
 /// shift = (by_b - by_a) error + errors of both lines, by robust least squares (Tukey's weights). An angle whose sigma exceeds
 /// `undetermined` is held, the worst first; what its error (of that sigma, `largest` at most) would do to the others is in their
-/// covariance. Heights tell roll alone: with fewer than four shifts of relief pitch and heading are held.
+/// covariance. Heights determine roll alone: with fewer than four shifts of relief pitch and heading are held.
 ShiftFit3 fit_shifts(std::vector<ObservedShift>& shifts, const LineErrors& lines, double undetermined, double largest);
 
 }  // namespace swath::calib

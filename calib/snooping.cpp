@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 constexpr double least_redundancy = 1e-3;
 // A shift of control smaller than this is left to the tests of single points.
 constexpr double least_shift = 0.3;          // m
-constexpr double known_sigma = 0.5;          // m: of a component of the shift that is told
+constexpr double known_sigma = 0.5;          // m: of a component of the shift that is known
 constexpr double shift_significance = 30.0;  // chi-square of three: 1e-6
 constexpr double majority = 0.6;
 
@@ -140,7 +140,7 @@ ControlShift control_shift(const TieSystem& system, const std::vector<TiePlane>&
   const Eigen::LDLT<MatrixXd> weight(C);
   const Eigen::Matrix3d N = normals.transpose() * weight.solve(normals);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(N);
-  // Only along directions that the planes tell.
+  // Only along directions that the planes determine.
   const Vector3d right = normals.transpose() * weight.solve(misfit);
   Eigen::Matrix3d told = Eigen::Matrix3d::Zero();
   for (int k = 0; k < 3; ++k) {

@@ -31,7 +31,7 @@ int reject_worst(const TieSystem& system, const TieTests& tests, const SnoopingO
 struct ControlShift {
   bool shifted = false;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< east, north, up: control less planes, m
-  std::array<bool, 3> known{};                     ///< the planes' directions tell this component
+  std::array<bool, 3> known{};                     ///< the planes' directions determine this component
 };
 ControlShift control_shift(const TieSystem& system, const std::vector<TiePlane>& planes, const TieSolution& solution,
                            const std::vector<PlaneRest>& rests);

@@ -29,8 +29,7 @@ void describe(StripOptions& o, V& v) {
   v.option("rounds", o.rounds, core::within(1, 20),
            "Most times that planes are sought and adjusted; it ends before where the corrections stay the same.");
   v.option("least_spacing", o.least_spacing, core::above(0),
-           "Where what is left on the planes shows that the trajectory errs faster than the knots of corrections.spacing can follow, that "
-           "is halved, and again, though not below this, nor to more unknowns than corrections.most.");
+           "Minimum knot spacing to which corrections.spacing is halved where the trajectory moves faster.");
   v.table("planes", o.planes, "The search for planes; `mismatch` is that of the first round.");
   v.table("corrections", o.adjust.corrections, "Corrections to the trajectory along each line.");
   v.table("robust", o.adjust.robust, "Weights of single returns.");
@@ -63,7 +62,7 @@ struct AdjustedStrips {
 };
 
 /// Planes are sought with the trajectory as corrected so far; the adjustment starts from the one that was given, whose errors `errors`
-/// tells. Throws core::Error where no two lines see the same planes, where the lines do not agree with one another at all, or only with the
+/// shows. Throws core::Error where no two lines see the same planes, where the lines do not agree with one another at all, or only with the
 /// sign of the scan angle turned.
 AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions& options, core::Tally& tally,
                              const core::OnProgress& progress = core::unwatched);

@@ -61,7 +61,7 @@ struct SurfaceMatch {
   Eigen::Vector3d change = Eigen::Vector3d::Zero();      ///< of roll, pitch, heading against the start, rad
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the change; 0 for angles left as they were, rad^2
   Eigen::Vector3d sigma =
-      Eigen::Vector3d::Zero();       ///< of the determined ones its root; of the others what the flight allows (infinite: nothing told)
+      Eigen::Vector3d::Zero();       ///< of the determined ones its root; of the others what the flight allows (infinite: nothing known)
   std::array<bool, 3> determined{};  ///< roll, pitch, heading
   std::vector<MatchedWindow> windows;
   double agreement = 0.0;  ///< share of the squares with relief whose surfaces meet at the solution of the first round
@@ -80,8 +80,8 @@ SurfaceMatch match_surfaces(const ShotStream& stream, const core::Scanner& scann
                             const SurfaceMatchOptions& options = {});
 
 /// Do the surfaces meet with the sign of the scan angle turned, and not as recorded? The test of match_surfaces() by itself, for flights
-/// whose boresight is known. False too where nothing tells: no overlap, hardly any relief, or lines on one and the same track alone (each
-/// mirrors the ground about it alike). Reads the stream once, a second time where the surfaces do not meet.
+/// whose boresight is known. False too where nothing determines: no overlap, hardly any relief, or lines on one and the same track alone
+/// (each mirrors the ground about it alike). Reads the stream once, a second time where the surfaces do not meet.
 bool scan_is_reversed(const ShotStream& stream, const core::Scanner& scanner, const core::Calibration& start,
                       const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame,
                       const SurfaceMatchOptions& options = {});

@@ -48,7 +48,7 @@ std::vector<Pierced> pierce(const std::vector<Beamline>& beams, const Vector3d& 
   const Vector3d normal(-plane[1], -plane[2], 1.0);
   for (const Beamline& b : beams) {
     const double above = normal.dot(b.first) - plane[0], rise = normal.dot(b.back);
-    if (rise < 0.1) continue;  // beams nearly level tell nothing of a flat roof
+    if (rise < 0.1) continue;  // beams nearly level show nothing of a flat roof
     const Vector3d at = b.first - above / rise * b.back;
     out.push_back({at.head<2>(), -b.back.head<2>() / b.back.z(), above, above - rise * b.further, b.pulse});
   }

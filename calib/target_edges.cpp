@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Over 400 lines: one likelihood with its model, its derivatives and its search, which share their terms.
 // A pulse that passes the edge hits ground or wall beyond and below: its return lies elsewhere than where it pierced the roof's plane (3.6
-// m for 20 deg and a height of 10 m). Pulses are therefore told apart by their returns' heights, but placed where their beam pierces the
+// m for 20 deg and a height of 10 m). Pulses are therefore distinguished by their returns' heights, but placed where their beam pierces the
 // plane. A return on the wall less than the tolerance below the roof counts as on the roof: the edge of a wall that faces the scanner is
 // corrected for it (tolerance times the beam's horizontal way per metre down: 2 cm at 20 deg).
 #include "calib/target_edges.h"
@@ -84,7 +84,7 @@ PlaneFit fit_plane(const std::vector<Pierced>& pulses, const std::vector<Beamlin
   fit.value[0] = core::median(heights);
   double cut = coarse_tolerance;
   constexpr int rounds = 6;
-  constexpr double flat = 1e-6;  // of the tilts' prior: profiles tell one of them alone
+  constexpr double flat = 1e-6;  // of the tilts' prior: profiles determine one of them alone
   for (int i = 0; i < rounds; ++i) {
     Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
     N(1, 1) = N(2, 2) = flat;

@@ -17,7 +17,7 @@ namespace swath::calib {
 /// What the analysis knows beforehand.
 struct EdgeOptions {
   double search = 10.0;        ///< m: how far the target may appear from its place
-  double across = 10.0;        ///< m, sigma of the displacement across the flight: profiles see edges askew and cannot tell it
+  double across = 10.0;        ///< m, sigma of the displacement across the flight: profiles see edges askew and cannot determine it
   double shear = 0.015;        ///< sigma of the turn of the edges that lie across the flight (heading), rad
   double turn = 0.004;         ///< sigma of the turn of the edges that lie along the flight, rad
   double strain_along = 2e-3;  ///< sigma of the target's relative growth along the flight

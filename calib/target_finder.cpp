@@ -24,7 +24,7 @@ constexpr float step = 0.3f;          // m between neighbouring cells of one pat
 constexpr double roughest = 0.15;     // m, rms of the cells about the patch's plane
 constexpr double fills = 0.8;         // of the rectangle
 constexpr double surrounded = 0.85;   // of the cells around that hold returns are lower
-constexpr double per_cell = 3.0;      // returns: one cell in twenty is empty then, and patches hang together
+constexpr double per_cell = 3.0;      // returns: one cell in twenty is empty then, and patches are connected
 constexpr double coarse_cell = 10.0;  // m, in which returns are counted for their density
 constexpr double known_around = 0.6;  // of the cells around hold returns: a roof at the swath's edge is not known to end there
 

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 constexpr double margin = 5.0;    // m of surroundings beyond where the target may appear
 constexpr double steepest = 2.2;  // tangent of the widest beams: farther targets are out of reach
-constexpr size_t sampled = 16;    // every so many returns tell the swath's width
+constexpr size_t sampled = 16;    // every so many returns show the swath's width
 
 class Collector {
  public:

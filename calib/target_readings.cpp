@@ -31,7 +31,7 @@ constexpr double same_height = 0.15;       // relative difference of heights wit
 constexpr double too_vague = 0.5;          // m: a displacement of larger sigma is none
 constexpr double two_heights_apart = 1.2;  // ratio
 constexpr double profile_tangent = 0.01;   // of a line's widest beam over the target
-constexpr double along_free = 1.0;         // m, a-priori sigma of lever arms where two heights tell them from angles
+constexpr double along_free = 1.0;         // m, a-priori sigma of lever arms where two heights separate them from angles
 constexpr double datum_free = 10.0;        // m
 constexpr double scale_free = 0.02;
 
@@ -242,7 +242,7 @@ AngleReadings read_angles(const TargetMeasures& given) {
       Reading r = reading(i, i);
       r.second = -1;
       const bool plan = known(m, i, 0) && known(m, i, 1);
-      // Without its place in plan, the height alone tells of the range.
+      // Without its place in plan, the height alone shows the error of the range.
       if (plan) {
         r.value = u.dot(m.lines[i].delta) / u.squaredNorm();
         r.by.segment<3>(row_of(i, 0)) = u.transpose() / u.squaredNorm();
@@ -319,7 +319,7 @@ JointTarget solve_jointly(const TargetMeasures& m, const core::SensorSigma& sigm
   const double freedom = static_cast<double>(rows) - static_cast<double>(count) + 4.0;  // four of the priors decide
   out.chi2 = v.dot(inverse * v) / std::max(1.0, freedom);
   const auto one = [&](int k, bool free) { return JointTarget::One{free, x[k], std::sqrt(covariance(k, k))}; };
-  constexpr double known_angle = 0.01;  // rad: sigma below which an angle is told at all
+  constexpr double known_angle = 0.01;  // rad: sigma below which an angle is known at all
   for (const auto& [k, into] :
        {std::pair{int{roll}, &out.roll}, std::pair{int{pitch}, &out.pitch}, std::pair{int{heading}, &out.heading}}) {
     *into = one(k, true);

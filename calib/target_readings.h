@@ -82,7 +82,7 @@ struct AngleReadings {
 };
 AngleReadings read_angles(const TargetMeasures& m);
 
-/// All at once, by least squares: what the passes tell of each parameter when all are free. Errors of the calibration in force.
+/// All at once, by least squares: what the passes show of each parameter when all are free. Errors of the calibration in force.
 struct JointTarget {
   struct One {
     bool free = false;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Source: Foerstner, "Ein Verfahren zur Schaetzung von Varianz- und Kovarianzkomponenten" (1979): variance = v^T P v / redundancy of the
 // component, repeated until steady. For ranges and angles, which share every condition, the pair of equations (Helmert's estimator) is
-// solved at once. Deviation: the trajectory's and the control's factors carry stated degrees of freedom, for a few lines would tell them
-// badly: with r degrees of freedom the estimated factor itself has the relative sigma 1 / sqrt(2 r). Where the prior's correlation in time
-// is a guess, the mean of a line, its drift and what is left within it have factors of their own: one for all would follow the many
+// solved at once. Deviation: the trajectory's and the control's factors carry stated degrees of freedom, for a few lines would determine
+// them badly: with r degrees of freedom the estimated factor itself has the relative sigma 1 / sqrt(2 r). Where the prior's correlation in
+// time is a guess, the mean of a line, its drift and what is left within it have factors of their own: one for all would follow the many
 // corrections within the lines and be untrue for the few means.
 #include "calib/variance_components.h"
 

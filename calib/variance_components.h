@@ -10,7 +10,7 @@ namespace swath::calib {
 /// Factor on a stated sigma.
 struct SigmaFactor {
   double factor = 1.0;
-  double redundancy = 0.0;  ///< degrees of freedom that tell it
+  double redundancy = 0.0;  ///< degrees of freedom that determine it
   bool estimated = false;
 };
 struct SigmaFactors {
@@ -22,7 +22,7 @@ struct SigmaFactors {
   ScaleFactors of_attitude() const { return {attitude[0].factor, attitude[1].factor, attitude[2].factor}; }
 };
 
-/// Ranges and angles, from deviations of single returns within their groups. A component is told where its variance comes out to a
+/// Ranges and angles, from deviations of single returns within their groups. A component is known where its variance comes out to a
 /// quarter of itself; angles that are not are held as stated. Steps are between a half and twice the sigma.
 void update_white(const std::vector<GroupBlock>& blocks, const TieSelection& use, const ComponentOptions& options, SigmaFactors& factors);
 

@@ -9,12 +9,12 @@
 namespace swath::core {
 
 /// How far a computer's clock stood from UTC. Columns of one length; `jitter` may be empty.
-/// The clock's own time is told in the count of GPS: what GPS time would be if the clock were right.
+/// The clock's own time is given in the count of GPS: what GPS time would be if the clock were right.
 struct ClockData {
   double epoch = 0.0;          ///< GPS time, whole seconds
   std::vector<double> time;    ///< by the clock, s since epoch, rising
   std::vector<double> offset;  ///< UTC - clock, s: to be added to what the clock shows
-  std::vector<double> jitter;  ///< scatter of the offset as the log tells it, s
+  std::vector<double> jitter;  ///< scatter of the offset as the log shows it, s
   bool steered = false;        ///< by these very records: the clock then answers to their errors (ntpd)
 
   size_t size() const { return time.size(); }
@@ -30,7 +30,7 @@ struct EventTags {
   std::vector<double> sigma;           ///< of the time, s; 0: not known
   std::vector<std::string> id;         ///< name, or number from 1
   std::vector<std::int32_t> strip;     ///< 0: none
-  std::vector<std::uint8_t> doubtful;  ///< 1: timed before its clock had settled, or where its log tells nothing
+  std::vector<std::uint8_t> doubtful;  ///< 1: timed before its clock had settled, or where its log shows nothing
 
   size_t size() const { return time.size(); }
 };

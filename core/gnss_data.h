@@ -26,7 +26,7 @@ struct GnssData {
   std::vector<Eigen::Vector3d> velocity;             ///< ecef axes, m/s; NaN where a fix has none
   std::vector<Eigen::Matrix3d> velocity_covariance;  ///< ecef, (m/s)^2
   std::vector<FixQuality> quality;
-  std::vector<std::uint8_t> satellites;  ///< 0: not told
+  std::vector<std::uint8_t> satellites;  ///< 0: not known
 
   size_t size() const { return time.size(); }
   bool has_velocity() const { return !velocity.empty(); }

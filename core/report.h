@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What algorithms and readers tell besides their result: named counts with first examples.
+// What algorithms and readers report besides their result: named counts with first examples.
 #pragma once
 
 #include <cstdint>

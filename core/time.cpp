@@ -97,7 +97,7 @@ std::string utc_text(GpsTime t) {
   if (!std::isfinite(t)) return "no time";
   if (to_unix(t) < year_0 || to_unix(t) >= year_10000) return format_number(t) + " s GPS";
   const double rounded = std::round(t * 1000.0) / 1000.0;
-  const bool leap = in_leap_second(rounded);  // told as second 60 of the day that ends
+  const bool leap = in_leap_second(rounded);  // reported as second 60 of the day that ends
   const double unix_seconds = to_unix(rounded) - (leap ? 1.0 : 0.0);
   const long long thousandths = std::llround(unix_seconds * 1000.0);
   const long long per_day = 86400000;

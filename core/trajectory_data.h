@@ -24,7 +24,7 @@ struct CovarianceSeries {
   Matrix9 at(double t) const;
 };
 
-/// How the errors of a smoothed trajectory at some of its instants hang together, exactly as the smoother has them. The smoother's whole
+/// How the errors of a smoothed trajectory at some of its instants are correlated, exactly as the smoother has them. The smoother's whole
 /// error state (navigation, biases, fixes' errors ...) is a Markov chain; with its n numbers normalised by what the filter knew (no unit),
 ///   Cov(e_i, e_j) = left_i * (link_j * ... * link_{i+1})^T * right_j   for i <= j (de Jong and Mackinnon 1988),
 /// e: north, east, down (m), roll, pitch, heading (rad), estimated minus true or its opposite. Links are contractions: products of any

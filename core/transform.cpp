@@ -15,8 +15,8 @@ namespace swath::core {
 
 namespace {
 
-// The best EPSG states for any operation to or from WGS 84. A missing grid whose operation states no better than this cannot be told from
-// the vagueness of WGS 84 itself (ensemble accuracy 2 m), so its absence is no reason to refuse.
+// The best EPSG states for any operation to or from WGS 84. A missing grid whose operation states no better than this cannot be
+// distinguished from the vagueness of WGS 84 itself (ensemble accuracy 2 m), so its absence is no reason to refuse.
 constexpr double finest_stated_accuracy = 1.0;
 
 std::string shown(const Crs& crs) {

@@ -28,12 +28,11 @@ void describe(ClassifyOptions& o, V& v) {
            "LAS 1.4 R15 names the classes, not their heights");
   v.option("building_height", o.building_height, core::at_least(1.0), "Least height of a roof (6) above ground.");
   v.option("building_side", o.building_side, core::within(1.0, 30.0),
-           "A roof's returns hang together over at least the area of a square of this side.");
+           "Minimum area of connected returns of a roof, as the side of a square.");
   v.option("roughness", o.roughness, core::above(0.0), "Largest distance of a roof's or deck's return from its plane.");
   v.option("bridge_length", o.bridge_length, core::within(0.0, 500.0),
-           "Longest bridge whose deck (17) is looked for; its points are needed around each tile. 0 looks for none.");
-  v.option("decks_in_ground", o.decks_in_ground,
-           "Decks are also looked for among ground points, which then are 17 and not 2. A dam or ramp between sheer walls looks like one.");
+           "Longest bridge deck (17) looked for; its points are needed around each tile. 0: none.");
+  v.option("decks_in_ground", o.decks_in_ground, "Look for decks among ground points, too. A dam between sheer walls looks like a deck.");
   v.option("wire_height", o.wire_height, core::at_least(1.0), "Least height of a wire (14) above ground.");
   v.check(o.high_vegetation >= o.medium_vegetation, "high_vegetation must not be less than medium_vegetation");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An opening cuts off a roof, and a crest on which no disk comes to rest. What tells them apart: the ground beside a crest leads up to it
+// An opening cuts off a roof, and a crest on which no disk comes to rest. The difference: the ground beside a crest leads up to it
 // without a step. That is how triangulations climb (Axelsson 2000, "DEM generation from laser scanner data using adaptive TIN models",
 // IAPRS 33); here a cell that lies on the plane through the ground beside it is ground too, and the next ones are foretold from it. A
 // deck goes on from its banks in the same way, but there the surface falls off the plane on both sides.
@@ -27,7 +27,7 @@ constexpr double smoothest = 0.05;     // m: where it comes out as less, by chan
 constexpr double sigmas = 2.0;         // of the plane's error at the cell, in the depth of the cut
 constexpr double tolerance = 0.3;      // m from the plane, beyond the ground's own deviation
 constexpr double shallow = cut - tolerance - roughest;  // m: what was cut by less is not looked at, on rough slopes a little too early
-// m, and m per m to the side: below the plane, where the surface falls off it. Planes through the roughest ground err by as much.
+// m, and m per m to the side: below the plane, where the surface falls off it. Planes through the roughest ground are off by as much.
 constexpr double fall = 0.5, fall_per_run = 0.1;
 
 constexpr std::array<std::pair<int, int>, 8> directions{{{1, 0}, {0, 1}, {1, 1}, {1, -1}, {-1, 0}, {0, -1}, {-1, -1}, {-1, 1}}};

@@ -21,18 +21,15 @@ struct CsfOptions {
 template <class V>
 void describe(CsfOptions& o, V& v) {
   v.option("resolution", o.resolution, core::above(0.0), "Distance between the cloth's particles.", "Zhang2016, GR");
-  v.option(
-      "rigidness", o.rigidness, core::within(1, 10),
-      "How often the inner forces act in each step: 1 for steep terrain, 2 for relief with few buildings, 3 for flat and built-up terrain.",
-      "Zhang2016, RI");
+  v.option("rigidness", o.rigidness, core::within(1, 10),
+           "Inner forces per step: 1 steep terrain, 2 relief with few buildings, 3 flat or built-up terrain.", "Zhang2016, RI");
   v.option("step", o.step, core::within(0.2, 2.0), "Time step: gravity moves the free cloth by 0.2 step^2 metres more in each step.",
            "Zhang2016, dT");
   v.option("iterations", o.iterations, core::within(1, 10000), "Most steps; the cloth may come to rest earlier.", "Zhang2016");
   v.option("threshold", o.threshold, core::above(0.0), "Largest distance of a ground point from the cloth.", "Zhang2016, h_cc");
   v.option("smooth", o.smooth, "Lay the cloth down on slopes beside what it lies on: the post-processing for steep slopes.",
            "Zhang2016, ST");
-  v.option("span", o.span, core::above(0.0),
-           "Width of the widest building or void: the cloth is cut into squares of twice this side, each worked with this much around it.");
+  v.option("span", o.span, core::above(0.0), "Width of the widest building or void: the cloth is cut into squares of twice this side.");
   v.check(o.span >= o.resolution, "span must hold at least one particle");
 }
 

@@ -12,7 +12,7 @@ namespace swath::filters {
 struct ReturnOverGround {
   float above;   ///< m over the surface; NaN: not judged
   float spread;  ///< m, standard deviation of the ground's returns about the surface there
-  float doubt;   ///< m, what the surface may err by where it does, at least twice `spread`
+  float doubt;   ///< m, what the surface may be off by where it does, at least twice `spread`
   bool deep;     ///< below all that can be ground
 };
 

@@ -19,18 +19,14 @@ struct PtdOptions {
 template <class V>
 void describe(PtdOptions& o, V& v) {
   v.option("building", o.building, core::above(0.0),
-           "Width of the widest building: the lowest point of every square of this side is taken for ground and starts the TIN.",
-           "Axelsson2000, seed points");
+           "Width of the widest building: each square of this side gives its lowest point to the first TIN.", "Axelsson2000, seed points");
   v.option("distance", o.distance, core::above(0.0), "Largest distance of a new ground point from the facet below or above it.",
            "Axelsson2000, distance to facet");
   v.option("angle", o.angle, core::above_to(0.0, core::degrees(90.0).value),
            "Largest angle between a facet and the lines from its vertices to a new ground point.", "Axelsson2000, angles to nodes");
   v.option("scatter", o.scatter, core::at_least(0.0),
-           "Scatter of the heights: taken off the distance before the angles are computed, so that small facets keep their ground.");
-  v.option("mirror", o.mirror,
-           "Judge a point that lies too high over a steep facet again at its place mirrored in the facet's highest vertex, for the upper "
-           "edges of "
-           "breaks.",
+           "Scatter of the heights, subtracted from the distance before the angles are computed.");
+  v.option("mirror", o.mirror, "Test a point too high over a steep facet again, mirrored in the facet's highest vertex.",
            "Axelsson2000, discontinuities");
 }
 

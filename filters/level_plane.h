@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plane that is level as far as its points can tell: water.
+// A plane that is level as far as its points can show: water.
 #pragma once
 
 #include <Eigen/Core>

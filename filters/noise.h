@@ -22,7 +22,7 @@ struct NoiseOptions {
 template <class V>
 void describe(NoiseOptions& o, V& v) {
   v.option("radius", o.radius, core::above(0.0),
-           "Radius of the ball in which an isolated point's neighbours are counted, and of one twice as wide where points are sparse.");
+           "Radius of the ball in which an isolated point's neighbours are counted; twice it where sparse.");
   v.option("neighbours", o.neighbours, core::within(0, 1000), "A point with fewer neighbours is isolated; 0 keeps all.");
   v.option("low_depth", o.low_depth, core::above(0.0), "A low point lies at least this far below the ground around it.");
   v.option("low_radius", o.low_radius, core::above(0.0), "Horizontal radius in which a group of low points must stand alone.");

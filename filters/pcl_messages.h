@@ -3,7 +3,7 @@
 
 namespace swath::filters {
 
-/// From the first call on PCL prints nothing (its messages tell of samples that fit no model, which is no fault here). Its level is one
+/// From the first call on PCL prints nothing (its messages report samples that fit no model, which is no fault here). Its level is one
 /// variable of the process, unguarded, so it is written once however many threads call.
 void silence_pcl();
 

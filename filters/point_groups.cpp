@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Euclidean clusters (Rusu 2010, "Semantic 3D object maps for everyday manipulation", 6.2) on the survey's own lattice of cubes: whether
-// two points hang together differs from a radius of `gap` by up to sqrt(12) of it, and in return no result depends on a tile's extent.
+// two points are connected differs from a radius of `gap` by up to sqrt(12) of it, and in return no result depends on a tile's extent.
 #include "filters/point_groups.h"
 
 #include <algorithm>
@@ -88,7 +88,7 @@ class Cubes {
     return at == index_.end() ? nothing : at->second;
   }
 
-  /// All cubes that hang together with `start`; empty where they are too many, too wide, or known to be.
+  /// All cubes that are connected with `start`; empty where they are too many, too wide, or known to be.
   std::vector<std::uint32_t> group_of(std::uint32_t start, int most) {
     std::vector<std::uint32_t> group{start};
     content_[start].seen = true;

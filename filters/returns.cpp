@@ -64,7 +64,7 @@ bool has_gap_only(const core::Block& b, Pulse p) {
   return count > p.size() && counts_are(b, p, count) && numbers_within_counts(b, p) && order_agrees(b, p);
 }
 
-/// The pulse's rows from its first return to its last; empty where that cannot be told.
+/// The pulse's rows from its first return to its last; empty where that cannot be determined.
 std::vector<size_t> order_of(const core::Block& b, Pulse p) {
   std::vector<size_t> rows(p.size());
   std::iota(rows.begin(), rows.end(), p.begin);

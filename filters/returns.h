@@ -22,7 +22,7 @@ struct ReturnsOptions {
 
 template <class V>
 void describe(ReturnsOptions& o, V& v) {
-  v.option("gaps", o.gaps, "Pulses with absent returns: renumber those that are there, or keep the numbers and flag them as inconsistent.");
+  v.option("gaps", o.gaps, "Pulses with absent returns: renumber those present, or keep the numbers and flag them.");
 }
 
 /// Most returns of one pulse (LAS 1.4 R15: four bits); a larger group under one time is no pulse.
@@ -36,8 +36,8 @@ inline bool is_intermediate_return(const core::Block& b, size_t p) { return !is_
 /// Row after the last of the pulse that starts at `begin`: adjacent rows of one strip and one time. Without times every row is a pulse.
 size_t end_of_pulse(const core::Block& b, size_t begin);
 
-/// Do the times tell the pulses apart? Not where points have none, and not where they are so coarse that pulses share them: more rows under
-/// one time than a pulse has returns, or two first returns, in more than one of a hundred.
+/// Do the times distinguish the pulses? Not where points have none, and not where they are so coarse that pulses share them: more rows
+/// under one time than a pulse has returns, or two first returns, in more than one of a hundred.
 bool tells_pulses(const core::Block& b);
 
 struct RepairCounts {
@@ -46,11 +46,11 @@ struct RepairCounts {
   bool operator==(const RepairCounts&) const = default;
 };
 
-/// Mends return numbers and counts, pulse by pulse; adds the columns where they are missing. A pulse of n returns is sound where its
+/// Repairs return numbers and counts, pulse by pulse; adds the columns where they are missing. A pulse of n returns is sound where its
 /// numbers are 1 ... n, each once, all counts are n, and ranges (where the block has them) grow with the number. Any other pulse is
 /// numbered anew: by range where all ranges are positive and different; without a range column by the numbers where these are different,
-/// else in the order of the rows. Its changed returns get flag returns_repaired. A pulse that cannot be mended (range missing or twice the
-/// same, more than 15 returns, no times to tell pulses apart, gaps that are to be kept) keeps its numbers, and its returns get flag
+/// else in the order of the rows. Its changed returns get flag returns_repaired. A pulse that cannot be repaired (range missing or twice
+/// the same, more than 15 returns, no times to distinguish pulses, gaps that are to be kept) keeps its numbers, and its returns get flag
 /// returns_inconsistent. The block must begin and end on borders of pulses.
 RepairCounts repair_returns(core::Block& b, const ReturnsOptions& o);
 

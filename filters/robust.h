@@ -21,11 +21,10 @@ template <class V>
 void describe(RobustOptions& o, V& v) {
   v.option("cell", o.cell, core::above(0.0), "Side of the cells that hold one point each at the finest level.", "Pfeifer2001, thinning");
   v.option("levels", o.levels, core::within(1, 6),
-           "Number of levels; the cells of each are three times as wide as those of the next. The widest must be wider than a building.",
-           "Pfeifer2001, data pyramid");
+           "Number of levels, each with cells three times as wide; the widest wider than a building.", "Pfeifer2001, data pyramid");
   v.option("sigma", o.sigma, core::above(0.0), "Standard deviation of the heights of ground points.", "Kraus1998 eq 3");
   v.option("roughness", o.roughness, core::at_least(0.0),
-           "Further standard deviation of ground points about a smooth surface, per metre between the points of a level.");
+           "Additional standard deviation of ground points per metre between the points of a level.");
   v.option("tolerance", o.tolerance, core::above(0.0), "Largest distance of a ground point from the finest surface.",
            "Pfeifer2001, classification");
 }

@@ -11,7 +11,7 @@
 namespace swath::filters {
 namespace {
 
-constexpr int district = 8;             // cells, a side of the squares that the usual number is told for
+constexpr int district = 8;             // cells, a side of the squares that the usual number is counted for
 constexpr int districts_around = 2;     // on each side
 constexpr double usual_returns = 50.0;  // in the circle
 
@@ -93,7 +93,7 @@ SparseReturns sparse_returns(const core::Block& b, const Bins& bins, double shar
         if (of_line[c] == 0 || usual[c] <= 0.0) continue;
         const double radius = std::min(l.cell * std::sqrt(usual_returns / (core::pi * usual[c])), l.cell * sparse_circle);
         const double most = share * usual[c] * core::pi * radius * radius / (l.cell * l.cell);
-        if (most < 1.0) continue;  // too thin to tell
+        if (most < 1.0) continue;  // too thin to judge
         const auto points = bins.in(i, j);
         const auto rows = bins.rows(i, j);
         for (size_t k = 0; k < points.size(); ++k)

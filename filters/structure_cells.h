@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Planes and ground by cells of 1 m of the survey's lattice: what hangs together, and how large it is.
+// Planes and ground by cells of 1 m of the survey's lattice: what is connected, and how large it is.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct StructureCells {
 };
 
 constexpr double structure_cell = 1.0;  ///< m
-constexpr int structure_link = 2;       ///< cells: those up to so far apart hang together, so that one empty cell parts nothing
+constexpr int structure_link = 2;       ///< cells: those up to so far apart are connected, so that one empty cell parts nothing
 
 /// Cells of the planar points (planar_points) and of the points of class ground; needs columns classification and height.
 StructureCells structure_cells(const core::Block& b, const std::vector<Planar>& planar);

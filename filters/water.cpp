@@ -138,7 +138,7 @@ class Plots {
                                std::lower_bound(h.begin(), h.end(), z - options_.level.value));
   }
 
-  /// The plots around (i, j) that hang together at one level, and those beside them. Indices are relative to (i, j).
+  /// The plots around (i, j) that are connected at one level, and those beside them. Indices are relative to (i, j).
   struct Region {
     int i = 0, j = 0, radius = 0;
     double level = 0;

@@ -18,14 +18,12 @@ struct WaterOptions {
 template <class V>
 void describe(WaterOptions& o, V& v) {
   v.option("sparse", o.sparse, core::within(0.01, 0.2),
-           "A return is a sparse one where its flight line has at most this share of its usual density around it. The corner of a field of "
-           "returns has a quarter.");
+           "A return is sparse where its flight line has at most this share of its usual density.");
   v.option("returns", o.returns, core::within(3, 1000), "Least number of sparse returns at one level that make a water.");
   v.option("slope", o.slope, core::within(0.0, 0.02),
-           "Largest slope (rise / run) of a water surface; paved ground falls by 0.005 or more, so that it drains.");
+           "Largest slope (rise / run) of a water surface; drained pavement falls by 0.005 or more.");
   v.option("level", o.level, core::above(0.0), "Largest distance of a return from its water's level: waves, differences between lines.");
-  v.option("reach", o.reach, core::within(20.0, 500.0),
-           "Level returns up to so far from sparse ones belong to the same water; its points are needed around each tile.");
+  v.option("reach", o.reach, core::within(20.0, 500.0), "Level returns within this distance of sparse ones belong to the same water.");
 }
 
 struct WaterCounts {

@@ -27,12 +27,10 @@ struct BreaklineFile {
 template <class V>
 void describe(BreaklineFile& f, V& v) {
   v.option("file", f.file, "GeoPackage, Shapefile, DXF or GeoJSON, relative to survey.toml.");
-  v.option("kind", f.kind,
-           "breakline: the terrain passes through the line; boundary: area of the terrain model; lake: area of still water; river: area "
-           "between the banks of running water.");
+  v.option("kind", f.kind, "breakline; boundary (of the model); lake (still water); river (area between its banks).");
   v.option("layer", f.layer, "Layer of the file that is read; empty: all.");
   v.option("crs", f.crs, "CRS of its coordinates; empty: the file's own, or that of the survey where it states none.");
-  v.option("z", f.z, "Attribute that holds the height of a feature whose geometry has none, in the unit of the CRS's heights.");
+  v.option("z", f.z, "Attribute with the height of features without one in their geometry, in the CRS's height unit.");
   v.option("sigma", f.sigma, core::at_least(0), "Sigma of the heights.");
 }
 

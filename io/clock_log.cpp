@@ -74,7 +74,7 @@ void read_instant(const Line& line, const Columns& c, Record& r) {
   r.day = mjd - mjd_of_1970;
 }
 
-/// The columns that a line of names tells.
+/// The columns that a line of names gives.
 Columns named(const Line& line) {
   const auto find = [&](std::initializer_list<std::string_view> beginnings) -> std::optional<size_t> {
     for (const std::string_view b : beginnings)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Logs that tell how far a computer's clock stood from UTC.
+// Logs that show how far a computer's clock stood from UTC.
 #pragma once
 
 #include <filesystem>

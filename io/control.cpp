@@ -25,7 +25,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Corners nearer than this to one line, or than three sigmas, do not tell a plane.
+/// Corners nearer than this to one line, or than three sigmas, do not define a plane.
 constexpr double least_width = 0.01;  // m
 constexpr double farthest = 1e9;      // m or feet: no map projection and no place on the globe reaches it
 constexpr double width_sigmas = 3.0;

@@ -36,9 +36,7 @@ void describe(ControlFile& f, V& v) {
   v.option("crs", f.crs, "CRS of its coordinates; empty: that of the survey (GeoPackage: its own).");
   v.option("use", f.use, "control: takes part in the adjustment; check: is compared with its result alone.");
   v.option("name", f.name, "Column of the points' names.");
-  v.option(
-      "target", f.target,
-      "Column that names the plane a point is a corner of, in their order around it; empty in a row: a point of its own on the ground.");
+  v.option("target", f.target, "Column with the plane a point is a corner of, in order around it; empty: a single ground point.");
   v.option("x", f.x, "Column of eastings.");
   v.option("y", f.y, "Column of northings.");
   v.option("z", f.z, "Column of heights.");

@@ -7,8 +7,8 @@
 
 namespace swath::io {
 
-/// What `describe_file` tells of a GNSS file: solutions of RTKLIB and NMEA logs with their fixes by quality, times, rate, gaps and extent;
-/// time tags of RTKLIB with the start of the recording.
+/// What `describe_file` reports of a GNSS file: solutions of RTKLIB and NMEA logs with their fixes by quality, times, rate, gaps and
+/// extent; time tags of RTKLIB with the start of the recording.
 core::Value describe_pos(const std::filesystem::path& file);
 core::Value describe_nmea(const std::filesystem::path& file);
 core::Value describe_tag(const std::filesystem::path& file);

@@ -16,7 +16,7 @@ namespace {
 
 using core::Value;
 
-constexpr double slow = 5.0;                 // m/s; below it the track tells nothing of the heading
+constexpr double slow = 5.0;                 // m/s; below it the track shows nothing of the heading
 constexpr double odd_crab = 30.0;            // deg between heading and track
 constexpr double steep = 60 * core::degree;  // roll or pitch no survey flight has
 

@@ -68,10 +68,8 @@ struct HangarPoint {
 template <class V>
 void describe(HangarPoint& p, V& v) {
   v.option("name", p.name, "Name.");
-  v.option("role", p.role,
-           "What it stands for: imu (its centre), scanner (origin of the beam), antenna (phase centre), fore and aft (marks along the "
-           "fuselage that give the heading), or a mark for control alone.");
-  v.option("at", p.at, "Its coordinates in the hangar's frame, where they are known (levelled, say); otherwise from the sights at it.");
+  v.option("role", p.role, "imu, scanner (beam origin), antenna (phase centre), fore and aft (heading marks), or control mark.");
+  v.option("at", p.at, "Coordinates in the hangar's frame, where known; otherwise from the sights at it.");
   v.option("sigma", p.sigma, core::above(0), "Sigmas of `at`; of a coordinate that is not known: a large one.");
   v.option("start", p.start, "Start value, needed only where the sights leave two positions.");
   v.option("offset", p.offset, "From the point sighted to the point meant: forward, right, down, in body axes.");
@@ -166,11 +164,8 @@ void describe(HangarSurvey& h, V& v) {
   v.option("name", h.name, "Name of aircraft and hangar, for reports.");
   v.table("instrument", h.instrument, "Precision of the instrument.");
   v.option("vertical_from", h.vertical_from, "Vertical angles count from the horizon, positive upwards, or from the zenith.");
-  v.option(
-      "elevation_signs", h.elevation_signs,
-      "Vertical angles give heights with their sign, by their tangent. False: they enter by their cosine alone, which does not know above "
-      "from below.",
-      "Jubanski et al., eq 4-8");
+  v.option("elevation_signs", h.elevation_signs,
+           "Use the tangent of vertical angles, which keeps the sign; false: their cosine, which has none.", "Jubanski et al., eq 4-8");
   v.tables("target", h.targets, "Targets with known coordinates.");
   v.tables("station", h.stations, "Stations of the instrument.");
   v.tables("point", h.points, "Points of the aircraft.");

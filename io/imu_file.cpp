@@ -243,7 +243,7 @@ core::ImuData read_imu(const Survey& survey, const ImuFile& f, core::Tally& tall
   const std::filesystem::path path = resolve(survey, f.file);
   const std::string name = path.string();
   require_units(f, name);
-  body_R_record(f);  // a wrong map is told before the file is read
+  body_R_record(f);  // a wrong map is reported before the file is read
   Raw raw = read_raw(path, f, tally);
   note_date(raw.time.front(), name, tally);
   CadenceRule rule;

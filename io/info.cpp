@@ -323,7 +323,7 @@ std::string scalar(const Value& v) {
   return text.data();
 }
 
-/// `names`: the keys are names of the file's own (columns), and are told as they are written there.
+/// `names`: the keys are names of the file's own (columns), and are reported as they are written there.
 void render(const Value& table, const std::string& indent, std::string& out, bool names = false) {
   size_t width = 0;
   for (const auto& [key, value] : table.members())

@@ -73,12 +73,9 @@ void describe(ImuFile& f, V& v) {
   v.option("accelerometer_factor", f.accelerometer_factor, core::above(0), "Units per recorded number of the accelerometers.");
   v.option("sample", f.sample, "Rates: the mean since the record before, or the value at the instant.");
   v.option("stamp", f.stamp, "Which instant of the record's interval its time names.");
-  v.option("even_times", f.even_times,
-           "Times that jitter by over 1 % of the step (stamps rounded, or given on reception) are smoothed over 101 records; false: the "
-           "records were taken when they say.");
+  v.option("even_times", f.even_times, "Smooth times that jitter by over 1 % of the step, over 101 records; false: keep them.");
   v.option("rate", f.rate, core::within(1, 1e4), "Records per second; without it from the median step.");
-  v.option("axes", f.axes,
-           "Axes of the record that point forward, right and down, each x, y, z or -x, -y, -z; before the mounting rotation.");
+  v.option("axes", f.axes, "Axes of the record that point forward, right and down (x, y, z, -x, -y, -z), before the mounting.");
   v.option("roll", f.roll, "Mounting: the rotation sensor to body after `axes`, body_R_sensor = Rz(heading) Ry(pitch) Rx(roll).");
   v.option("pitch", f.pitch, "Pitch of the mounting.");
   v.option("heading", f.heading, "Heading of the mounting.");
@@ -153,7 +150,7 @@ void describe(GnssFile& f, V& v) {
            "Sigma of north and of east, where the file states none: of fixed solutions and of those of unknown kind; others have at least "
            "0.1 m (PPP), 0.3 m (float), 1 m (differential, SBAS), 3 m (single).");
   v.option("sigma_vertical", f.sigma_vertical, core::above(0),
-           "Sigma of height, where the file states none; others than fixed solutions have at least twice the values of sigma_horizontal.");
+           "Sigma of height where the file states none; not fixed: at least twice sigma_horizontal's.");
   v.option("sigma_velocity", f.sigma_velocity, core::above(0), "Sigma of each velocity component, where the file states none.");
 }
 
@@ -205,13 +202,12 @@ void describe(Rinex& r, V& v) {
   v.tables("base", r.bases, "Base stations.");
   v.option("antenna_file", r.antenna_file, "Phase centre file (ANTEX) for both ends.");
   v.option("antenna_type", r.antenna_type, "The rover's antenna type; empty: none; \"*\": the RINEX header's.");
-  v.option("antenna_offset", r.antenna_offset,
-           "From the point whose position is wanted up to the rover's antenna: east, north, up; zero for an aircraft.");
+  v.option("antenna_offset", r.antenna_offset, "East, north, up from the wanted point to the rover's antenna; zero for an aircraft.");
 }
 
 enum class ClockFormat { loopstats, peerstats, pps };
 
-/// A log that tells how far a computer's clock stood from UTC.
+/// A log that shows how far a computer's clock stood from UTC.
 struct ClockLog {
   std::filesystem::path file;
   ClockFormat format = ClockFormat::loopstats;
@@ -220,8 +216,7 @@ struct ClockLog {
 template <class V>
 void describe(ClockLog& c, V& v) {
   v.option("file", c.file, "File, relative to survey.toml.");
-  v.option("format", c.format,
-           "loopstats and peerstats of ntpd (offset = reference - clock), or a log of PPS pulses (time of the pulse by the clock).");
+  v.option("format", c.format, "loopstats and peerstats of ntpd (offset = reference - clock), or a log of PPS pulses.");
 }
 
 struct EventColumns {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a RINEX observation file (versions 2, 3 and 4) tells before its measurements are used: station, antenna, epochs.
+// What a RINEX observation file (versions 2, 3 and 4) shows before its measurements are used: station, antenna, epochs.
 #pragma once
 
 #include <Eigen/Core>

@@ -48,8 +48,7 @@ bool are_satellites(const std::vector<std::string>& names);
 
 template <class V>
 void describe(RtklibOptions& o, V& v) {
-  v.option("mode", o.mode,
-           "kinematic: the rover moves; static: it stands still over the whole record; dgps: differential code ranges alone.",
+  v.option("mode", o.mode, "kinematic: the rover moves; static: it stands still; dgps: differential code ranges alone.",
            "RTKLIB pos1-posmode");
   v.option("direction", o.direction, "Through the record forward, backward, or both ways combined.", "RTKLIB pos1-soltype");
   v.option("frequencies", o.frequencies, core::within(1, 3), "Frequencies used: 1 L1, 2 L1 and L2, 3 L1, L2 and L5.",
@@ -67,20 +66,13 @@ void describe(RtklibOptions& o, V& v) {
            "Satellites below are not used to fix integers.", "RTKLIB pos2-arelmask");
   v.option("lock", o.lock, core::within(0, 10000), "Epochs that a satellite is tracked before its integer is fixed.",
            "RTKLIB pos2-arlockcnt");
-  v.option(
-      "ionosphere", o.ionosphere,
-      "Model of the ionosphere: broadcast (bases up to some 20 km away), two_frequencies (ionosphere-free combination) or estimated by "
-      "satellite for long distances.",
-      "RTKLIB pos1-ionoopt");
-  v.option("troposphere", o.troposphere,
-           "Model of the troposphere: a standard atmosphere, or zenith delays (with gradients) estimated beside it, for long distances and "
-           "great differences of height.",
+  v.option("ionosphere", o.ionosphere, "broadcast (bases within 20 km), two_frequencies (ionosphere-free) or estimated (long distances).",
+           "RTKLIB pos1-ionoopt");
+  v.option("troposphere", o.troposphere, "Standard atmosphere, or estimated zenith delays (long distances, large height differences).",
            "RTKLIB pos1-tropopt");
   v.option("orbits", o.orbits, "Orbits and clocks of the satellites; automatic: precise where the survey names SP3 files.",
            "RTKLIB pos1-sateph");
-  v.option("dynamics", o.dynamics,
-           "Predict position, velocity and acceleration from epoch to epoch. Off, since fixes for an INS/GNSS smoother should not be "
-           "smoothed before; on, the rover needs an epoch per 2 s or more.",
+  v.option("dynamics", o.dynamics, "Predict position, velocity and acceleration between epochs; off for an INS/GNSS smoother's fixes.",
            "RTKLIB pos1-dynamics");
   v.option("acceleration_horizontal", o.acceleration_horizontal, core::above(0),
            "Random walk of the acceleration in 1 s, with dynamics: horizontal.", "RTKLIB stats-prnaccelh");
@@ -88,8 +80,7 @@ void describe(RtklibOptions& o, V& v) {
   v.option("max_age", o.max_age, core::above(0), "Oldest observation of the base that is used for an epoch of the rover.",
            "RTKLIB pos2-maxage");
   v.option("interpolate_base", o.interpolate_base, "Interpolate a base that records less often than the rover.", "RTKLIB misc-timeinterp");
-  v.option("keep_single", o.keep_single,
-           "Where no differential solution exists take the rover's own, good to metres; otherwise such epochs have no fix.",
+  v.option("keep_single", o.keep_single, "Take the rover's own solution (metres) where no differential one exists; otherwise no fix.",
            "RTKLIB out-outsingle");
   v.option("coordinates", o.coordinates, "Form of the positions in the .pos files; both with their full covariance.",
            "RTKLIB out-solformat");

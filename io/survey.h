@@ -62,7 +62,7 @@ void describe(LaserFile& f, V& v) {
   v.option("range_unit", f.range_unit, core::above(0.0), "Length of one unit of recorded ranges (text and NumPy files).");
   v.option("angle_to_port", f.angle_to_port, "True where the file counts scan angles positive to port.");
   v.option("line", f.line, core::within(0, 65535), "Flight line id of all records, where the file has no column of lines.");
-  v.option("model", f.model, "Scanner model of this file, where it is not scanner.model: profile, mirror or polygon beside one another.");
+  v.option("model", f.model, "Scanner model of this file, where it is not scanner.model (several scanners in one survey).");
   v.option("delimiter", f.delimiter, "Delimiter of a text file; empty: comma, semicolon, tab or blanks, found in its first line.");
   v.table("columns", f.columns, "Columns of a text or NumPy file.");
 }
@@ -120,11 +120,8 @@ void describe(TrajectoryFile& f, V& v) {
   v.option("accuracy", f.accuracy, "smrmsg file with the SBET's standard deviations.");
   v.table("time", f.time, "Time scale.");
   v.option("angle_unit", f.angle_unit, "Unit of angles in a text file.");
-  v.option("wander", f.wander,
-           "SBET: the platform heading counts from the wander azimuth, which is subtracted (heading = platform heading - wander angle).");
-  v.option("velocity_axes", f.velocity_axes,
-           "SBET: axes of the velocities, turned by the wander angle: ned or nwu (north, west, up); automatic: those that agree with the "
-           "positions, or none; ignore: velocities are not used.");
+  v.option("wander", f.wander, "SBET: subtract the wander angle from the platform heading.");
+  v.option("velocity_axes", f.velocity_axes, "SBET: velocity axes: ned, nwu, automatic (those that agree with the positions) or ignore.");
   v.option("spacing", f.spacing, core::at_least(0), "CSD, which holds a pose per pulse: least time between two poses that are kept.");
   v.option("crs", f.crs,
            "CRS of a text file's horizontal coordinates where they are projected; empty: geodetic WGS84. Headings stay from true north.");
@@ -157,8 +154,7 @@ void describe(PointFile& f, V& v) {
            "height_unit, then the unit of the file's horizontal axes.");
   v.option("line", f.line, core::within(0, 65535), "Flight line id of all points; otherwise the points' source ids.");
   v.option("time_scale", f.time_scale, "Scale of the file's times, where its GPS time bit is wrong; unstated: as that bit says.");
-  v.option("week", f.week, core::within(0, 10000),
-           "GPS week of the first point, where the file's times are seconds of week; without it they are kept as they are.");
+  v.option("week", f.week, core::within(0, 10000), "GPS week of the first point, for times in seconds of week; without it they are kept.");
   v.option("date", f.date, "UTC date of the first point, YYYY-MM-DD (time_scale utc_day).");
   v.check(f.time_scale != core::TimeScale::device, "the times of a point cloud cannot be on a device's own scale");
   v.check(f.time_scale != core::TimeScale::utc_day || !f.date.empty(), "time_scale utc_day needs the date of the first point");
@@ -255,8 +251,7 @@ void describe(Survey& s, V& v) {
   v.table("calibration", s.calibration, "Calibration and mounting.");
   v.table("sigma", s.sigma, "How well calibration and records are known.");
   v.option("calibration_file", s.calibration_file,
-           "Calibration whose values replace those of [calibration] and [sigma], but for the noise of single records that [sigma] states: "
-           ".json or .toml as the adjustment writes it, or the Optech .csd whose header holds the boresight.");
+           "Calibration in place of [calibration] and [sigma]: .json or .toml of calib.adjust, or Optech .csd.");
   v.tables("laser", s.laser, "Raw laser records.");
   v.tables("trajectory", s.trajectory, "Trajectory.");
   v.tables("imu", s.imu, "IMU records.");
@@ -268,8 +263,7 @@ void describe(Survey& s, V& v) {
   v.tables("event", s.events, "Events to be placed on the time scale and the trajectory.");
   v.tables("control", s.control, "Surveyed points and targets.");
   v.tables("breaklines", s.breaklines, "Breaklines, boundaries and water lines of the terrain.");
-  v.option("hangar", s.hangar,
-           "What was measured in a hangar for the aircraft's lever arms (docs/lever-arm.md); may be all that a survey has.");
+  v.option("hangar", s.hangar, "Measurements in a hangar for the lever arms (docs/lever-arm.md); may be the survey's only entry.");
   v.tables("points", s.points, "Point clouds in map coordinates, in place of raw records.");
   v.table("line_time", s.line_time, "Time scale of the lines' start and end.");
   v.tables("line", s.lines, "Flight lines.");

@@ -29,10 +29,7 @@ void describe(TimeTags& t, V& v) {
   v.option("week", t.week, core::within(0, 10000), "GPS week of the first record (scale gps_week).");
   v.option("date", t.date, "UTC date of the first record, YYYY-MM-DD (scale utc_day).");
   v.option("unit", t.unit, core::above(0), "Length of one recorded unit of time, for files that do not count seconds (\"1 ms\").");
-  v.option(
-      "origin", t.origin,
-      "Instant of the device's zero, or of `origin_at` (scale device): \"YYYY-MM-DDThh:mm:ss.sss GPS\" or the same in UTC. `swath info` "
-      "tells when the recording of an RTKLIB .tag file began.");
+  v.option("origin", t.origin, "Instant of the device's zero or of `origin_at`: \"YYYY-MM-DDThh:mm:ss.sss GPS\" or UTC.");
   v.option("origin_at", t.origin_at, "Number that the device recorded at `origin`.");
   v.option("offset", t.offset, "Added to every time of the file.");
 }

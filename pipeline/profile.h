@@ -34,7 +34,7 @@ struct ProfileRequest {
 std::vector<ProfileLine> profile_lines(const ProfileRequest& request, const core::Crs& crs = {});
 
 /// For each line FOLDER/NAME.csv, NAME.svg and NAME.png: every usable point within the half width by its class, and the terrain model every
-/// half cell with its sigma. Tells of each what it found. Throws core::Error; a line that meets neither points nor terrain is one.
+/// half cell with its sigma. Reports what it found on each. Throws core::Error; a line that meets neither points nor terrain is one.
 core::Value write_profiles(const ProfileRequest& request);
 
 }  // namespace swath::pipeline

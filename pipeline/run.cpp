@@ -496,7 +496,7 @@ fs::path Engine::done_file(size_t number, const TileBox& box) const {
   return folder(number) / (file_label(box.low) + (box.low == box.high ? "" : "_to_" + file_label(box.high)) + ".done");
 }
 
-/// Tiles are joined only where nothing but points' columns comes of them. A tile that does not fit is cut into parts.
+/// Tiles are joined only where they give nothing but points' columns. A tile that does not fit is cut into parts.
 std::vector<TileGroup> Engine::groups_of(size_t number, const std::vector<TileKey>& keys, std::uint64_t budget) {
   const stages::Info& info = stage(number).info();
   const StageMemory memory(*store_, stage(number), context_);

@@ -19,10 +19,9 @@ struct LineOptions {
 
 template <class V>
 void describe(LineOptions& o, V& v) {
-  v.option("cell", o.cell, core::within(0.5, 20.0),
-           "Side of the cells in which lines are compared; without it the narrowest of 2, 4 and 8 m that the density allows.");
+  v.option("cell", o.cell, core::within(0.5, 20.0), "Side of the cells in which lines are compared; by default 2, 4 or 8 m by density.");
   v.option("roughness", o.roughness, core::within(0.005, 1.0),
-           "A cell is compared where the single returns of each line lie about a plane of their own with no more than this rms.");
+           "Compare a cell where each line's single returns fit a plane of their own within this rms.");
   v.option("least", o.least, core::within(5, 1000), "Least number of single returns of a line in a cell that is compared.");
 }
 

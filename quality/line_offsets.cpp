@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Offsets by least squares, d_ab = o_a - o_b, with a mean of zero in every group of lines that overlaps join. A pair's sigma counts blocks
 // within 256 m of one another as one, since the errors of a trajectory stay for seconds.
-// Two lines err independently: a difference's variance, less its white part, is twice that of one line's error. The part that all lines
-// share (of the base station, of the geoid) no overlap shows.
-// On a slope g an error h of place, the same along each axis, moves heights by g h: the variance of a difference is 2 (c^2 + g^2 h^2), c
-// the error of height. Level and steep ground give two equations for the two.
+// Two lines have independent errors: a difference's variance, less its white part, is twice that of one line's error. The part that all
+// lines share (of the base station, of the geoid) no overlap shows. On a slope g an error h of place, the same along each axis, moves
+// heights by g h: the variance of a difference is 2 (c^2 + g^2 h^2), c the error of height. Level and steep ground give two equations for
+// the two.
 #include "quality/line_offsets.h"
 
 #include <Eigen/Cholesky>
@@ -216,7 +216,7 @@ void judge_place(LineComparison& c, const SharedSums& level, const SharedSums& s
   const double det = level.count * steep.slopes - steep.count * level.slopes;
   double height = det > 0.0 ? (steep.slopes * level.squares - level.slopes * steep.squares) / det : 0.0;
   double place = det > 0.0 ? (level.count * steep.squares - steep.count * level.squares) / det : 0.0;
-  if (level.count == 0.0) height = place = steep.squares / (steep.count + steep.slopes);  // not to be told apart: alike
+  if (level.count == 0.0) height = place = steep.squares / (steep.count + steep.slopes);  // not to be distinguished: alike
   if (place < 0.0) height = (level.squares + steep.squares) / (level.count + steep.count), place = 0.0;
   if (height < 0.0) place = (level.squares + steep.squares) / (level.slopes + steep.slopes), height = 0.0;
   // A few steep places, one of them a shrub, must not explain away what much level ground shows.

@@ -38,7 +38,7 @@ struct LineComparison {
   /// m, of the error of place along each axis that they share; NaN where no steep ground is seen by two lines.
   double common_horizontal = std::numeric_limits<double>::quiet_NaN();
   double residual = std::numeric_limits<double>::quiet_NaN();  ///< m, the same behind the offsets
-  /// Stretches of 256 m where overlaps are compared, which err independently: level, steep.
+  /// Stretches of 256 m where overlaps are compared, which have independent errors: level, steep.
   int places = 0, steep_places = 0;
 };
 

@@ -41,7 +41,7 @@ std::string tick_text(double v, double step) {
   return {text, end};
 }
 
-/// A round number below both ends, where ticks would need too many digits to be told apart; else 0.
+/// A round number below both ends, where ticks would need too many digits to be distinguished; else 0.
 double offset_of(double low, double high, double step) {
   constexpr double many_digits = 1e5;  // the sixth
   constexpr double near = 10.0;        // lengths of the axis; closer to zero an offset would save no digit
@@ -129,7 +129,7 @@ Axis make_axis(const Reach& reach, const std::string& label, int most, double ma
     return a;
   }
   if (!reach.empty()) {
-    // Room for a tick on both sides of a constant, above what a double can tell apart.
+    // Room for a tick on both sides of a constant, above what a double can distinguish.
     const double size = std::max(std::abs(reach.low), std::abs(reach.high));
     const double least = size > 0.0 ? size * 1e-12 : 1.0;
     const double widen =

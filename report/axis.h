@@ -32,8 +32,8 @@ struct Reach {
 
 /// The axis over a reach, grown by `margin` (share of its length) on both sides; an empty one becomes 0 to 1, one without length gets some.
 /// `most`: number of ticks that have room. Ticks are 1, 2 or 5 times a power of ten apart; on a logarithmic axis powers of ten, with 2 and
-/// 5 times them where there are few. Values that would need six or more digits to tell one tick from the next are shown relative to a round
-/// offset, which the label then names: "time (s)" becomes "time since 474000 s (s)", "northing (m)" "northing from 5321000 m (m)".
+/// 5 times them where there are few. Values that would need six or more digits to distinguish one tick from the next are shown relative to
+/// a round offset, which the label then names: "time (s)" becomes "time since 474000 s (s)", "northing (m)" "northing from 5321000 m (m)".
 Axis make_axis(const Reach& reach, const std::string& label, int most, double margin, bool log = false);
 
 }  // namespace swath::report

@@ -36,7 +36,7 @@ struct Panel {
   /// that share x have the same names.
   std::vector<std::string> x_names{};
   /// Below 1: the range of y goes by this share of the values, half as much again on both sides, so that a few far ones do not flatten the
-  /// rest. Dots beyond it stand at the frame, lines leave it, and the title tells how many there are.
+  /// rest. Dots beyond it stand at the frame, lines leave it, and the title shows how many there are.
   double y_share = 1.0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The alphabet is drawn here, row after row, so that it can be read and mended where it stands.
+// The alphabet is drawn here, row after row, so that it can be read and corrected here.
 #include "report/font.h"
 
 namespace swath::report {

@@ -39,7 +39,7 @@ void describe(PictureOptions& o, V& v) {
 core::Picture relief_picture(const core::Grid& grid, const std::vector<core::ContourLine>& contours = {},
                              const PictureOptions& options = {});
 
-/// The grid averaged by blocks of `factor` cells from its south-west corner; what a block's height and void reason are is told above.
+/// The grid averaged by blocks of `factor` cells from its south-west corner; what a block's height and void reason are is said above.
 /// The lattice's indices are no longer those of the survey: only its cell and size count.
 core::Grid averaged(const core::Grid& grid, int factor);
 

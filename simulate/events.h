@@ -26,7 +26,7 @@ struct UtcDay {
   std::int64_t mjd;  ///< modified Julian date
   double second;     ///< of that day
 };
-/// The instant `t` seconds after `start`; a clock that stands wrong by `offset` tells that much more.
+/// The instant `t` seconds after `start`; a clock that stands wrong by `offset` reads that much more.
 UtcDay utc_day(core::GpsTime start, double t, double offset = 0.0);
 
 /// Files of a flight's events:

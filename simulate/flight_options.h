@@ -43,17 +43,16 @@ struct FlightOptions {
 template <class V>
 void describe(FlightOptions& f, V& v) {
   v.option("pattern", f.pattern,
-           "block: parallel lines and lines across; calibration: pairs of lines over the area's middle, along, across, past it at the "
+           "block: parallel lines and cross lines; calibration: pairs of lines over the area's middle, along, across, past it at the "
            "swath's edge, without scan, and at a second height.");
   v.option("height", f.height, core::within(20, 5000), "Flying height above the ground in the middle of the area.");
   v.option("second_height", f.second_height, core::within(0, 8000),
-           "Second flying height of a calibration flight, 0: none; without a value 11/7 of the first (1100 m over 700 m).");
+           "Second height of a calibration flight, 0: none; default 11/7 of the first (1100 m over 700 m).");
   v.option("speed", f.speed, core::within(5, 120), "Ground speed.");
   v.option("lines", f.lines, core::within(1, 200),
-           "Parallel flight lines, flown to and fro (without a value 3); of a calibration flight the first so many lines of all (without a "
-           "value all).");
+           "Parallel flight lines (without a value 3); calibration: the first of all (without a value all).");
   v.option("line_length", f.line_length, core::within(20, 1e5),
-           "Length of a flight line; without a value the area's length (calibration: its longer side plus 0.7 of the flying height).");
+           "Length of a flight line; default the area's (calibration: longer side plus 0.7 of the height).");
   v.option("overlap", f.overlap, core::within(-1.0, 0.95), "Share of the swath that neighbouring lines have in common (block).");
   v.option("cross_lines", f.cross_lines, core::within(0, 50), "Lines flown across the others (calibration: at each height).");
   v.option("edge_lines", f.edge_lines, "Calibration: two lines that pass the middle at the swath's edge, one on each side.");
@@ -62,8 +61,7 @@ void describe(FlightOptions& f, V& v) {
   v.option("direction", f.direction, core::within(0, 2 * core::pi), "Direction of the first line, clockwise from grid north.");
   v.option("bank", f.bank, core::within(0.05, 1.0), "Bank of turns between lines.");
   v.option("lead", f.lead, core::within(1, 300), "Straight flight before and after each line.");
-  v.option("still", f.still, core::within(0, 3600),
-           "Stand on the ground before take-off and climb; 0: the flight begins in the air, before its first line.");
+  v.option("still", f.still, core::within(0, 3600), "Stand on the ground before take-off and climb; 0: the flight begins in the air.");
   v.option("turbulence", f.turbulence, core::within(0, 5), "Factor on the amplitudes of turbulence (1: about 1 deg of roll, 0.3 m).");
   v.option("wind", f.wind, core::within(0, 40), "Wind, which the aircraft meets by crabbing.");
   v.option("wind_from", f.wind_from, core::within(0, 2 * core::pi), "Direction the wind comes from, clockwise from grid north.");
@@ -71,7 +69,7 @@ void describe(FlightOptions& f, V& v) {
            "Trajectory files to fly along, in place of lines: as in survey.toml, relative to the working folder; their time holds. Without "
            "laser.");
   v.option("along_knots", f.along_knots, core::within(0.01, 10),
-           "Spacing of the knots of the splines that follow that trajectory: motion faster than two of them is smoothed away.");
+           "Spacing of the knots of the splines along that trajectory; faster motion is smoothed away.");
   v.check(f.wind.value < 0.8 * f.speed.value, "the wind must be well below the aircraft's speed");
   v.check(!f.second_height || f.second_height->value == 0.0 || f.second_height->value >= 20.0, "the second height is 0 or at least 20 m");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A calibration flight, after the use of flat targets: opposite lines along the target's long wall tell roll, opposite profiles pitch,
+// A calibration flight, after the use of flat targets: opposite lines along the target's long wall determine roll, opposite profiles pitch,
 // lines that have the target at the swath's edge heading, a second height lever arm and range offset from the angles (docs/simulate.md).
 #include "simulate/line_plan.h"
 

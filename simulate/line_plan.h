@@ -19,7 +19,7 @@ struct LinePlan {
 };
 
 /// The lines of the options about the area's middle, in the order of flight. `convergence`: bearing of grid north from true north, rad.
-/// The names of a calibration flight's lines tell their part: "along 1", "across 2", "edge right 1" (the middle lies at the swath's right
+/// The names of a calibration flight's lines state their part: "along 1", "across 2", "edge right 1" (the middle lies at the swath's right
 /// edge), "profile 1", "high along 1".
 std::vector<LinePlan> plan_lines(const FlightOptions& flight, const WorldOptions& world, double half_angle, double convergence);
 

@@ -80,7 +80,7 @@ void describe(GnssOptions& o, V& v) {
   v.option("file", o.file, "Writes gnss.csv, positions of the antenna.");
   v.option("rate", o.rate, core::within(0.1, 100), "Fixes per second.");
   v.option("sigma_horizontal", o.sigma_horizontal, core::within(1e-4, 100),
-           "Sigma of a fix, north and east each, its white and its correlated part together (root mean square over 10 to 16 satellites).");
+           "Sigma of a fix, north and east each, white and correlated part together (root mean square).");
   v.option("sigma_vertical", o.sigma_vertical, core::within(1e-4, 100), "Sigma of a fix's height.");
   v.option("correlated_share", o.correlated_share, core::within(0, 1),
            "Share of the variance that is a first-order Gauss-Markov process, independent north, east and down.");

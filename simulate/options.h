@@ -50,8 +50,7 @@ void describe(ScannerOptions& s, V& v) {
   v.option("shaft_angle", s.shaft_angle, core::within(0.1, 1.5), "Between the mirror's shaft and the nadir axis (palmer).");
   v.option("mirror_tilt", s.mirror_tilt, core::above_to(0.0, 0.3), "Between the mirror's normal and its shaft (palmer).");
   v.option("divergence", s.divergence, core::within(0, 0.01),
-           "Full divergence of the beam (1/e2); the echo lies anywhere in the footprint, with a quarter of it as sigma along and across.",
-           "Schaer2007");
+           "Full divergence of the beam (1/e2); a quarter of it is the sigma of the echo along and across.", "Schaer2007");
   v.option("max_returns", s.max_returns, core::within(1, 4), "Returns recorded of one pulse: the first ones and the last.");
   v.option("separation", s.separation, core::within(0, 20), "A return nearer than this behind another is lost.");
   v.option("range_resolution", s.range_resolution, core::within(0, 1), "Step of recorded ranges (0: none).");
@@ -82,7 +81,7 @@ void describe(NoiseOptions& n, V& v) {
   v.option("heading", n.heading, core::within(0, 0.02), "Sigma of the delivered heading.");
   v.option("correlation", n.correlation, core::within(0.5, 3600), "Correlation time of the delivered trajectory's errors.");
   v.option("line_shift", n.line_shift, core::within(0, 10),
-           "Sigma of an offset that the delivered trajectory has on the whole of a line, drawn for each line and axis.");
+           "Sigma of the delivered trajectory's offset on a whole line, sampled for each line and axis.");
   v.option("line_drift", n.line_drift, core::within(0, 10), "Sigma of its linear change from the line's start to its end, for each axis.");
   v.option("line_attitude", n.line_attitude, core::within(0, 0.02), "Sigma of such an offset of roll, pitch and heading.");
   v.option("line_attitude_drift", n.line_attitude_drift, core::within(0, 0.02), "Sigma of the change of that offset along the line.");
@@ -90,10 +89,8 @@ void describe(NoiseOptions& n, V& v) {
   v.option("low_points", n.low_points, core::within(0, 0.1),
            "Share of pulses whose last return is an isolated low point, 3 to 25 m late (class 7).");
   v.option("multipath", n.multipath, core::within(0, 0.1), "Share of pulses whose last return comes 0.5 to 3 m late (class 7).");
-  v.option(
-      "low_groups", n.low_groups, core::within(0, 100),
-      "Places per hectare with a group of low points (class 7): within 1.5 m of it 60 % of the ground's returns come late by one depth "
-      "of 1 to 6 m, to 0.1 m.");
+  v.option("low_groups", n.low_groups, core::within(0, 100),
+           "Groups of low points (class 7) per hectare, within 1.5 m of a place, 1 to 6 m deep.");
 }
 
 /// What survey.toml says of the calibration.
@@ -144,7 +141,7 @@ struct MountingOptions {
 template <class V>
 void describe(MountingOptions& m, V& v) {
   v.table("truth", m.truth, "True calibration.");
-  v.option("deliver", m.deliver, "Which calibration survey.toml states: truth, drawn (with errors from `sigma`), nominal (uncalibrated).");
+  v.option("deliver", m.deliver, "Calibration in survey.toml: truth, drawn (errors from `sigma`) or nominal (uncalibrated).");
   v.table("sigma", m.sigma, "Sigmas that errors are drawn from and that survey.toml states (drawn; lever arm also for nominal).");
   v.table("nominal_sigma", m.nominal_sigma,
           "Sigmas that survey.toml states for a nominal calibration; for what is drawn by a random_ option the sigma of that draw.");
@@ -172,13 +169,9 @@ struct OutputOptions {
 template <class V>
 void describe(OutputOptions& o, V& v) {
   v.option("laser", o.laser, "Laser records and their world; without them navigation records are written alone, in seconds.");
-  v.option("formats", o.formats,
-           "Formats of the raw laser records; survey.toml names the first, survey_FORMAT.toml each further one. LAS and LAZ hold "
-           "coordinates in the scanner's frame.");
-  v.option("trajectory", o.trajectory,
-           "Format of the delivered trajectory: SBET with smrmsg, or text; none: the survey begins with IMU and GNSS records.");
-  v.option("time", o.time,
-           "Time scale of laser and text records (SBET, imu.csv and gnss.csv: seconds of week; LAS: seconds of week or adjusted).");
+  v.option("formats", o.formats, "Formats of the raw laser records; survey.toml names the first, survey_FORMAT.toml the others.");
+  v.option("trajectory", o.trajectory, "Format of the delivered trajectory: SBET with smrmsg, or text; none: IMU and GNSS only.");
+  v.option("time", o.time, "Time scale of laser and text records (SBET, imu.csv and gnss.csv: always seconds of week).");
   v.option("week", o.week, core::within(0, 5000), "GPS week of the start (flights along a trajectory: that of its first record).");
   v.option("start", o.start, core::within(0, core::seconds_per_week - 1),
            "Seconds of week of the start (flights along a trajectory: its first record).");

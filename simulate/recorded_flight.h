@@ -11,7 +11,7 @@
 namespace swath::simulate {
 
 /// A flight along a recorded trajectory: splines through its position (in a local plane) and attitude. Records and truth come from the
-/// splines, so that they agree exactly; departure() tells how far they are from the file.
+/// splines, so that they agree exactly; departure() returns how far they are from the file.
 class RecordedFlight : public Flight {
  public:
   /// Checked records (rising times, finite values) and the splines' knot spacing, s. The flight begins at the first record and ends a

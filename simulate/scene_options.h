@@ -57,7 +57,7 @@ void describe(WorldOptions& w, V& v) {
   v.option("embankment", w.embankment, core::within(0, 50), "Height of an embankment through the area (0: none).");
   v.option("ditch", w.ditch, core::within(0, 50), "Depth of a ditch through the area (0: none).");
   v.option("buildings", w.buildings, core::within(0, 30),
-           "Buildings per hectare of built-up ground (airfield: halls per hectare of the area; 0: no building at all).");
+           "Buildings per hectare of built-up ground (airfield: halls per hectare of the area; 0: none).");
   v.option("trees", w.trees, core::within(0, 1000), "Trees per hectare of woodland (airfield: of the area, all at its rim).");
   v.option("woodland", w.woodland, core::within(0, 1), "Share of the area that is woodland.");
   v.option("foliage", w.foliage, core::within(0.05, 5), "Density of the crowns: 1 in leaf, less where more pulses shall come through.");
@@ -65,7 +65,7 @@ void describe(WorldOptions& w, V& v) {
            "Share of open ground under low vegetation, a third of whose pulses it stops.");
   v.option("low_vegetation_height", w.low_vegetation_height, core::within(0.1, 2), "Height of the tallest low vegetation (from 0.1 m).");
   v.option("crops", w.crops, core::within(0, 1),
-           "Share of the open fields under crops. Each field has one height of its own and stops 40 to 80 % of the pulses.");
+           "Share of open fields under crops, which have one height each and stop 40 to 80 % of the pulses.");
   v.option("crop_height", w.crop_height, core::within(0.1, 2), "Height of the tallest crops (from 0.1 m).");
   v.option("water", w.water, "A lake.");
   v.option("power_line", w.power_line, "A power line.");
@@ -94,8 +94,7 @@ struct ControlOptions {
 
 template <class V>
 void describe(ControlOptions& c, V& v) {
-  v.option("roof", c.roof,
-           "Surveys the corners of the flat roof in the middle, a target of control.csv (scene airfield, where it has buildings).");
+  v.option("roof", c.roof, "Survey the corners of the flat roof in the middle as a target of control.csv (scene airfield).");
   v.option("targets", c.targets, core::within(0, 1000),
            "Further roof facets whose corners are surveyed, spread over the area, targets of control.csv.");
   v.option("points", c.points, core::within(0, 1e5), "Points surveyed on open ground, for comparison alone: check.csv.");

@@ -91,7 +91,7 @@ Value fallback_of(const std::string& list) {
   if (list == "imu") return effective(io::ImuFile{});
   if (list == "gnss") return effective(io::GnssFile{});
   if (list == "clock") {
-    // The format of a log cannot be told from its name: it is always stated.
+    // The format of a log cannot be derived from its name: it is always stated.
     Value v = effective(io::ClockLog{});
     v["format"] = Value{};
     return v;

@@ -55,7 +55,7 @@ void World::plan_airfield(const WorldOptions& options, const Features& f, std::i
     const BuildingSize s = airfield_building(options);
     const double base = highest_corner(Vector2d::Zero(), along, s.half_length, s.half_width);
     add_building(Vector2d::Zero(), along, s.half_length, s.half_width, base + s.height, 0.0, core::point_class::building);
-    // The roof falls a little, to where the seed tells; it stays a plane.
+    // The roof falls a little, in a direction of the seed's; it stays a plane.
     const Vector2d fall = random.uniform(0.0, roof_fall) * unit(random.uniform(0, 2 * core::pi));
     const Vector3d normal = Vector3d(fall.x(), fall.y(), 1.0).normalized();
     Building& b = buildings_.back();

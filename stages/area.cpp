@@ -24,7 +24,7 @@ void leave_out(core::Block& block, const std::function<bool(size_t)>& is_out, co
       good.push_back(i);
       continue;
     }
-    if (tally.of(what) >= core::Tally::examples_kept) {  // texts are dear where most points go
+    if (tally.of(what) >= core::Tally::examples_kept) {  // texts are expensive where most points go
       tally.count(what);
       continue;
     }

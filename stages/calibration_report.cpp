@@ -99,7 +99,7 @@ std::vector<std::string> write_calibration_report(const CalibrationReport& repor
   std::vector<std::string> written;
   const auto named = [&](const std::string& name) {
     written.push_back(name);
-    std::error_code failed;  // what cannot be made is told by the file that has no place
+    std::error_code failed;  // what cannot be made is reported by the file that has no place
     std::filesystem::create_directories((folder / name).parent_path(), failed);
     return folder / name;
   };

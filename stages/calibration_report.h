@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a calibration tells its surveyor: calibration.json for the survey's run, report.html to be read, and the numbers behind every
+// What a calibration reports to its surveyor: calibration.json for the survey's run, report.html to be read, and the numbers behind every
 // figure in it.
 #pragma once
 

@@ -10,8 +10,8 @@
 
 namespace swath::stages {
 
-/// Everything: target, lines before and after, readings, angles, range, what all tell jointly, findings. SI units, angles in deg and arcsec
-/// where the key says so.
+/// Everything: target, lines before and after, readings, angles, range, what all determine jointly, findings. SI units, angles in deg and
+/// arcsec where the key says so.
 core::Value value_of(const calib::FlatTarget& t);
 
 /// The part for the run's report: angles with sigmas, range offset, scan scale, findings.

@@ -16,7 +16,7 @@ calib::ShotStream stream_shots(const Context& context) {
   if (!context.source)
     throw core::usage_error("no stage gives raw shots", context.survey.name, "readers.laser comes before the stages of calibration");
   return [&context](const std::function<void(int, const core::Shots&)>& work) {
-    // What readers tell of their files is told once, where the strips are worked on or were first scanned.
+    // What readers report of their files is reported once, where the strips are worked on or were first scanned.
     core::Tally told_elsewhere;
     for (const Strip& strip : context.strips) {
       const std::unique_ptr<StripReader> reader = context.source->open(context, strip);

@@ -285,7 +285,7 @@ Chart Charts::errors(const trajectory::TrajectoryErrors& e, bool of_position) co
   Chart c;
   c.title = of_position ? "Errors of position against truth" : "Errors of attitude against truth";
   const double unit = of_position ? 1.0 : arc_second;
-  // As for the attitude: no more records than a picture can tell apart by far.
+  // As for the attitude: no more records than a picture can distinguish by far.
   constexpr size_t most = 200000;
   const size_t every = e.size() / most + 1;
   const auto thinned = [every](const auto& rows) {

@@ -28,7 +28,7 @@ template <class V>
 void describe(BreaklineOptions& o, V& v) {
   describe(o.network, v);
   v.option("buffer", o.buffer, core::at_least(0.0),
-           "Ground points nearer to a line than this give way to it: beside a line their noise would make steep slivers.", "Heidemann2018");
+           "Ground points closer to a line than this are left out of the model: they make steep slivers.", "Heidemann2018");
   describe(o.water, v);
 }
 

@@ -40,10 +40,8 @@ void describe(ContourOptions& o, V& v) {
   v.option("interval", o.interval, core::above(0.0), "Height between contours; left out: 1 m, or 2 ft where heights are in feet.");
   v.option("base", o.base, "Height from which levels are counted.");
   v.option("index", o.index, core::at_least(0), "Every so many levels is an index contour; 0 for none.");
-  v.option(
-      "tolerance", o.tolerance, core::at_least(0.0),
-      "Farthest in height that smoothing and thinning may take any place of a line off the surface; 0 keeps lines as traced; left out: "
-      "a twentieth of the interval.");
+  v.option("tolerance", o.tolerance, core::at_least(0.0),
+           "Maximum height error of smoothing and thinning; 0: as traced; default 1/20 of the interval.");
   v.option("min_length", o.min_length, core::at_least(0.0), "Lines shorter than this are left out.");
   v.option("min_area", o.min_area, "Rings that enclose less than this are left out: m2, ft2 or ha.");
   v.check(square_metres(o.min_area).has_value(), "min_area must be an area with its unit, such as \"20 m2\"");

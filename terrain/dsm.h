@@ -27,14 +27,11 @@ struct DsmOptions {
 
 template <class V>
 void describe(DsmOptions& o, V& v) {
-  v.option(
-      "method", o.method,
-      "highest: the highest first return of each cell; spike_free: a TIN of the first returns without the pits of pulses that found their "
-      "way into a crown, read at the cell's centre.",
-      "Khosravipour2016");
+  v.option("method", o.method, "highest: highest first return of each cell; spike_free: TIN of first returns without pits.",
+           "Khosravipour2016");
   v.option("cell", o.cell, core::above(0.0), "Side of one cell.");
   v.option("max_gap", o.max_gap, core::at_least(0.0),
-           "Widest gap filled from the cells around it (diameter of the empty circle); 0 leaves empty cells empty.");
+           "Widest gap filled from the cells around it (diameter of the empty circle); 0: none.");
   describe(o.spike_free, v);
   v.check(o.method == SurfaceMethod::highest || o.max_gap.value > 0.0, "a spike_free surface needs a max_gap above 0");
 }

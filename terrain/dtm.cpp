@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sigma of a cell is the root of a sum of variances, at barycentric weights w in a triangle, with the terms and the reach s of
-// terrain/roughness.h, which the points around the cell tell:
+// terrain/roughness.h, which the points around the cell show:
 //   what neighbouring points share: (sum w_k c_k)^2, c_k^2 = s_k^2 - noise, at least correlation s_k^2, from the points' own
 //     s_k^2 = sigma_v^2 + (|slope| sigma_h)^2 / 2 (sigma_h is radial: half its variance lies along the slope);
 //   what they do not share (ranging, vegetation taken for ground): noise (sum w_k^2). Smoothing leaves a share l_k of it, in common: noise
@@ -11,8 +11,8 @@
 //     three times.) Without smoothing (noise - explained) (sum w_k^2);
 //   the terrain between them: uneven s + curved s^2 / 4.
 // Points without a sigma of their own get s_k^2 = noise.
-// Where too few triangles stand around a place to tell these, noise is 0 and the terrain may bend by the option unknown_bend b between a
-// triangle and the next: (b (r^2 - d^2) / (2 r))^2, circumradius r, d from its centre, the bound of Waldron 1998, "The error in linear
+// Where too few triangles stand around a place to estimate these, noise is 0 and the terrain may bend by the option unknown_bend b between
+// a triangle and the next: (b (r^2 - d^2) / (2 r))^2, circumradius r, d from its centre, the bound of Waldron 1998, "The error in linear
 // interpolation at the vertices of a simplex".
 #include "terrain/dtm.h"
 
@@ -32,10 +32,10 @@
 namespace swath::terrain {
 namespace {
 
-/// Side of the blocks on which roughness is told.
+/// Side of the blocks on which roughness is estimated.
 double roughness_block(const DtmOptions& o) { return o.max_edge.value / 6.0; }
 
-/// The scatter around a vertex is told by some fifteen points: within a standard deviation of that more is nothing.
+/// The scatter around a vertex is estimated from some fifteen points: within a standard deviation of that more is nothing.
 constexpr double by_chance = 1.4;
 constexpr double one_sided = 2.0;  // mean square over variance
 
@@ -94,7 +94,7 @@ class SigmaModel {
 
 bool smooths(const DtmOptions& o) { return o.smoothing.value > 0.0 && !o.key_points; }
 
-/// Metres about the window where triangles have a say: where roughness is told, natural neighbours are, and heights are smoothed.
+/// Metres about the window where triangles have a say: where roughness is estimated, natural neighbours are, and heights are smoothed.
 double around_window(const DtmOptions& o) {
   const double read = o.interpolation == Interpolation::natural_neighbour ? o.max_edge.value : 0.0;
   return std::max(RoughnessMap::reach(roughness_block(o)), read + (smooths(o) ? smoothing_reach(o.smoothing.value) : 0.0));

@@ -37,21 +37,18 @@ template <class V>
 void describe_surface(DtmOptions& o, V& v) {
   v.option("cell", o.cell, core::above(0.0), "Side of one cell.");
   v.option("max_edge", o.max_edge, core::above(0.0),
-           "Longest triangle bridged: a triangle counts where its circumcircle's diameter is at most this, so no edge is longer and no gap "
-           "wider.");
+           "Longest triangle bridged: largest diameter of its circumcircle, so no longer edge or wider gap.");
   v.option("smoothing", o.smoothing, core::within(0.0, 20.0),
-           "Neighbours of the triangulation within this distance even out one another's random errors, breaks kept; 0: the surface passes "
-           "through every point. Points of breaklines and key points stay where they are.",
+           "Distance over which neighbours average random errors, breaks kept; 0: through every point.",
            "Jones2003, with planes judged by their misfit");
   v.option("interpolation", o.interpolation, "Between the points: linear on the triangles, or natural_neighbour, smooth but at the points.",
            "Sibson1981");
   v.option("classes", o.classes, core::within(0, 255), "ASPRS classes that are terrain.");
   v.option("key_points", o.key_points, "Only the points that filters.key_points has flagged.");
   v.option("correlation", o.correlation, core::within(0.0, 1.0),
-           "Least share of the variance of a point's height that its neighbours have in common (trajectory, boresight); the share that the "
-           "points' scatter leaves is taken where it is larger.");
+           "Minimum share of a point's height variance that its neighbours share (trajectory, boresight).");
   v.option("unknown_bend", o.unknown_bend, core::at_least(0.0),
-           "Change of slope (rise / run) that terrain may hide under a triangle where too few stand around it to tell.");
+           "Change of slope (rise / run) assumed within a triangle where too few are around to estimate it.");
   v.check(o.max_edge >= o.cell, "max_edge must span at least one cell");
 }
 

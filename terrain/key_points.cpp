@@ -6,7 +6,7 @@
 // a radius of at most R. Kept, as fixed, are the vertices of every t that reaches over the border of a cell, and of every t that has no
 // neighbour across one of its edges (the rim of what is covered). The disc of a fixed t holds no point of P, so none of K: t is a triangle
 // of K's triangulation whatever else is in K. A triangle of K within a cell is shut in by fixed ones: the part of its disc beyond an edge
-// that it shares with a fixed triangle lies in the disc of that one, which is empty. So what the interior of a cell needs is told from the
+// that it shares with a fixed triangle lies in the disc of that one, which is empty. So what the interior of a cell needs is known from the
 // points in it and the fixed vertices around it alone, and t is known from the points within 2 R. Coverage: a triangle of K wider than R
 // whose disc holds a point of P is broken up by it; the others are triangles of P too.
 #include "terrain/key_points.h"
@@ -64,7 +64,7 @@ class Thinning {
   }
 
  private:
-  /// Where a point lies: the face, its vertices when that was told, and what it lacks.
+  /// Where a point lies: the face, its vertices when that was stated, and what it lacks.
   struct Seat {
     std::int32_t face = -1;
     std::array<std::int32_t, 3> of{-1, -1, -1};

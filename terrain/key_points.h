@@ -20,11 +20,8 @@ struct KeyPointOptions {
 template <class V>
 void describe(KeyPointOptions& o, V& v) {
   v.option("tolerance", o.tolerance, core::above(0.0),
-           "Farthest in height that a point may lie from the triangulation of the key points: 0.1 m suits contours of 0.5 m.",
-           "Heller1990");
-  v.option(
-      "cell", o.cell, core::above(0.0),
-      "Side of the squares that are thinned each by itself; the points along their borders are kept, so that smaller squares keep more.");
+           "Maximum height from the triangulation of the key points; 0.1 m suits contours of 0.5 m.", "Heller1990");
+  v.option("cell", o.cell, core::above(0.0), "Side of the squares thinned separately; border points are kept, so small squares keep more.");
   v.option("max_edge", o.max_edge, core::above(0.0), "As in terrain.dtm: no gap wider than this is bridged, before or after.");
   v.option("classes", o.classes, core::within(0, 255), "ASPRS classes that are terrain.");
 }

@@ -20,7 +20,7 @@ template <class V>
 void describe(NetworkOptions& o, V& v) {
   v.option("spacing", o.spacing, core::above(0.0), "Longest edge: lines are divided into pieces of at most this length.");
   v.option("tolerance", o.tolerance, core::at_least(0.0),
-           "Lines that meet or cross must agree in height within this; otherwise both are named and the run ends.");
+           "Lines that meet or cross must agree in height within this; otherwise the run ends.");
 }
 
 /// A line of the network. Heights that were derived from points yield to surveyed ones where lines meet.

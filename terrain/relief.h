@@ -17,7 +17,7 @@ template <class V>
 void describe(ReliefOptions& o, V& v) {
   v.option("azimuth", o.azimuth, core::within(0.0, 6.283185307179586), "Direction that the light comes from, from grid north, clockwise.");
   v.option("altitude", o.altitude, core::above_to(0.0, 1.5707963267948966), "Height of the light above the horizon.");
-  v.option("exaggeration", o.exaggeration, core::above(0.0), "Factor on heights before shading; slopes are told without it.");
+  v.option("exaggeration", o.exaggeration, core::above(0.0), "Factor on heights before shading; slopes are without it.");
 }
 
 /// Rise per metre eastward and northward at the cells of `own` from `model`, which holds a border of one cell around them (the 3 x 3

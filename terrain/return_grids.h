@@ -19,10 +19,8 @@ struct DensityOptions {
 template <class V>
 void describe(DensityOptions& o, V& v) {
   v.option("cell", o.cell, core::above(0.0), "Side of one cell.");
-  v.option(
-      "max_gap", o.max_gap, core::at_least(0.0),
-      "A cell without a return has density 0 where returns lie on all sides within this; otherwise it lies beyond the survey's edge and "
-      "is void.");
+  v.option("max_gap", o.max_gap, core::at_least(0.0),
+           "An empty cell has density 0 where returns lie on all sides within this; otherwise it is void.");
 }
 
 /// Width of the border of points around a window that density() needs, m.

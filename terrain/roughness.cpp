@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every edge of the TIN is an experiment: the vertex beyond it against the plane on this side. Its misfit has the same form as the error of
-// interpolation within the triangle, so what it tells of the terrain holds there. Isotropic Gaussian terrain: E[H11^2] = E[H22^2] = 3 c,
+// interpolation within the triangle, so what it shows of the terrain holds there. Isotropic Gaussian terrain: E[H11^2] = E[H22^2] = 3 c,
 // E[H11 H22] = E[H12^2] = c (Longuet-Higgins 1957, "The statistical analysis of a random, moving surface"), hence E[(H:M)^2] =
 // c ((tr M)^2 + 2 |M|^2). Terms are fitted by least squares with weights 1 / (1 + s / s0)^2, none negative, as all are variances.
 // Sums are of integers, so that they do not depend on the order of the triangles, which differs from tile to tile.

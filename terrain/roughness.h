@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How rough a TIN's terrain and points are, told from the points themselves.
+// How rough a TIN's terrain and points are, estimated from the points themselves.
 #pragma once
 
 #include <Eigen/Core>

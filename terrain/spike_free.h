@@ -17,10 +17,8 @@ struct SpikeFreeOptions {
 
 template <class V>
 void describe(SpikeFreeOptions& o, V& v) {
-  v.option(
-      "freeze", o.freeze, core::above(0.0),
-      "spike_free: a triangle whose edges are all shorter than this is closed to lower points; about three times the spacing of pulses.",
-      "Khosravipour2016");
+  v.option("freeze", o.freeze, core::above(0.0), "spike_free: triangles with all edges shorter than this stay; about three pulse spacings.",
+           "Khosravipour2016");
   v.option("buffer", o.buffer, core::at_least(0.0), "spike_free: a point this little below a closed triangle's lowest corner still enters.",
            "Khosravipour2016");
 }

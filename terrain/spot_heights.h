@@ -20,8 +20,7 @@ template <class V>
 void describe(SpotOptions& o, V& v) {
   v.option("radius", o.radius, core::at_least(0.0),
            "A top is the highest cell within this radius, a pit the lowest; 0 for no spot heights.");
-  v.option("relief", o.relief, core::at_least(0.0),
-           "Least height of a top above the mean ground within the radius, and of a pit below it: what is less is noise of the model.");
+  v.option("relief", o.relief, core::at_least(0.0), "Minimum height of a top above the mean ground within the radius, and depth of a pit.");
 }
 
 /// A cell's height at its centre. Plain data without padding: may be written to a file as it is.

@@ -10,7 +10,7 @@
 
 namespace swath::terrain {
 
-/// Tells which points a triangulation needs so that its faces that touch a rectangle are those of all points, but for faces whose
+/// Finds which points a triangulation needs so that its faces that touch a rectangle are those of all points, but for faces whose
 /// circumradius is over `max_radius` (proof in terrain/tin.cpp).
 class Surroundings {
  public:

@@ -2,7 +2,7 @@
 // Hydro-flattening in the sense of Heidemann 2018, "Lidar base specification" (USGS TM 11-B4): still water level, double-line streams level
 // from bank to bank and falling. Deviation: heights may come from the shore's own ground points.
 // Sigma of a level from n shore points: their median sigma_v, and the half width between the quantiles q/2 and 2q, which says how well the
-// shore tells where the water stands.
+// shore shows where the water stands.
 #include "terrain/water.h"
 
 #include <algorithm>

@@ -22,7 +22,7 @@ struct WaterOptions {
 template <class V>
 void describe(WaterOptions& o, V& v) {
   v.option("shore", o.shore, core::above(0.0),
-           "Water without heights: width of the strip of ground points outside its line that tells them.");
+           "Water without heights: width of the strip of ground points outside its line that gives them.");
   v.option("quantile", o.quantile, core::within(0.0, 0.5),
            "Water without heights: the share of shore points below its level; low, as banks rise from the water.");
   v.option("stretch", o.stretch, core::above(0.0), "Rivers without heights: length of the stretch whose shore points give a level.");
@@ -42,7 +42,7 @@ std::vector<ShorePoint> shore_points(const core::Block& block, const std::vector
                                      const std::vector<core::Breakline>& features, const WaterOptions& options);
 
 /// The water with the heights of its surface at every vertex of its rings: lakes flat, rivers falling from one end to the other.
-/// Own heights: a lake takes their median, a river its own vertices, mended where they rise (each bank by itself). From shore points:
+/// Own heights: a lake takes their median, a river its own vertices, repaired where they rise (each bank by itself). From shore points:
 /// a lake their `quantile`; a river that of each stretch, level from bank to bank, monotone by least squares. The rings of a river come
 /// back sampled. Without heights and shore points has_height stays false. Anomalies go to the tally.
 core::Breakline with_heights(const core::Breakline& water, std::vector<ShorePoint> shores, const WaterOptions& options, core::Tally& tally);

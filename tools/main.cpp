@@ -139,7 +139,7 @@ int docs(const Arguments& a) {
   return a.check && !differing.empty() ? static_cast<int>(core::Exit::bad_data) : 0;
 }
 
-/// Help that opens with examples; the overview tells of each command in its last sentence alone.
+/// Help that opens with examples; the overview shows of each command in its last sentence alone.
 class HelpText : public CLI::Formatter {
  public:
   std::string make_subcommand(const CLI::App* c) const override {
@@ -151,7 +151,7 @@ class HelpText : public CLI::Formatter {
   }
 };
 
-/// A fault of the command line as every other error is told.
+/// A fault of the command line in the form of every other error.
 core::Error usage_fault(const CLI::App& app, const CLI::ParseError& e, int argc, char** argv) {
   std::vector<std::string> names;
   for (const CLI::App* c : app.get_subcommands({})) names.push_back(c->get_name());

@@ -19,7 +19,7 @@ constexpr double step_limit = 12.0;      // times the scatter: a step of less is
 constexpr double smallest_step = 1e-6;   // s
 constexpr size_t wide = 25, narrow = 9;  // records of a running median: for steps and spikes, for the time to settle
 constexpr int sustained = 10;            // calm records that make a settled clock
-constexpr double calmest = 1e-7;         // s, scatter below which no log is told apart
+constexpr double calmest = 1e-7;         // s, scatter below which logs are not distinguished
 
 /// Records behind which the clock steps, with the step's size. A step is a jump between two neighbours that the level keeps afterwards:
 /// an outlier of the log comes back, a steered clock runs over several records.

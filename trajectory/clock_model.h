@@ -26,19 +26,14 @@ struct ClockOptions {
 
 template <class V>
 void describe(ClockOptions& o, V& v) {
-  v.option("model", o.model,
-           "literal: the log's offset, linear between its records; robust: a smoothed offset and drift with sigma, outliers of the log "
-           "down-weighted, steps of the clock kept apart.",
-           "Reis2011");
-  v.option("convergence", o.convergence,
-           "When the clock has settled after the log's start and after every step. detect: when offset and jitter have settled; fixed: "
-           "after convergence_time; none: at once.");
+  v.option("model", o.model, "literal: linear between the log's records; robust: smoothed, with sigma, outliers and steps.", "Reis2011");
+  v.option("convergence", o.convergence, "detect: settled when offset and jitter have; fixed: after convergence_time; none: at once.");
   v.option("convergence_time", o.convergence_time, core::at_least(0), "Time to settle (convergence fixed).", "Reis2011");
   v.option("settled_factor", o.settled_factor, core::above(1),
-           "The clock has settled when the scatter of its offset stays within this many times the log's calm part (convergence detect).");
+           "The clock has settled when its scatter is within this factor of the log's calm part (detect).");
   v.option("max_gap", o.max_gap, core::above(0), "Events between two records of the log farther apart than this are doubtful.");
   v.option("tag_sigma", o.tag_sigma, core::at_least(0),
-           "Sigma of the computer's own reading of an event (interrupt latency), added to that of its clock (model robust).");
+           "Sigma of the computer's reading of an event (interrupt latency), added to its clock's (robust).");
 }
 
 /// The clock at one instant.

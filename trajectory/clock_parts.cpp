@@ -23,7 +23,8 @@ constexpr int weight_rounds = 5;
 constexpr double answer = 1.0 / 16.0;
 
 // Grids of log10 of walk / noise for a median step dt and noise r: drift walk dt^3 / r^2, offset walk dt / r^2. Below the lowest a window
-// cannot tell the walk from none (memory of the drift's: 1e-7^(-1/4) = 56 records); above the highest records are followed to the digit.
+// cannot distinguish the walk from none (memory of the drift's: 1e-7^(-1/4) = 56 records); above the highest records are followed to the
+// digit.
 constexpr double drift_low = -7.0, drift_step = 0.75, offset_low = -4.5, offset_step = 0.75;
 constexpr size_t drift_states = 13, offset_states = 9, states = drift_states * offset_states;
 constexpr double spread = 0.5, jump_share = 0.05;  // from window to window: decades; share of blocks that are not alike at all
@@ -288,7 +289,7 @@ std::vector<std::uint8_t> spikes_of(std::span<const double> time, std::span<cons
       const double middle = 0.5 * (before.level + after.level), off = std::abs(offset[i] - middle);
       out[i] = off > limit && std::abs(before.level - after.level) < 0.3 * off;
     } else {
-      // At an end only one line tells, and it is carried on: twice the distance, and the slopes' own spread.
+      // At an end only one line is known, and it is carried on: twice the distance, and the slopes' own spread.
       const Line& line = has_before ? before : after;
       out[i] = std::abs(offset[i] - line.level) > 2 * limit + 3 * line.spread * std::abs(t - time[has_before ? i - beside : i + beside]);
     }
@@ -321,7 +322,7 @@ State smoothed_back(const State& here, const State& later, double dt, const Walk
 Strengths strengths_of(const Records& r) {
   const size_t n = r.time.size();
   Strengths out;
-  if (n < 4) {  // too short to tell: as noisy as the log says, the drift unknown
+  if (n < 4) {  // too short to judge: as noisy as the log says, the drift unknown
     for (size_t i = 0; i < n; ++i) out.noise.push_back(r.shape[i] == 1.0 ? 1e-3 : r.shape[i]);
     out.walk.assign(n, {});
     return out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the errors of a smoothed trajectory at different instants hang together.
+// How the errors of a smoothed trajectory at different instants are correlated.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,7 +23,7 @@ struct ErrorModelOptions {
 template <class V>
 void describe(ErrorModelOptions& o, V& v) {
   v.option("position_correlation", o.position_correlation, core::above(0),
-           "Correlation time of the trajectory's errors of position, where it has sigmas alone (a file, not the smoother).");
+           "Correlation time of position errors, for a trajectory with sigmas alone (a file).");
   v.option("roll_correlation", o.roll_correlation, core::above(0), "The same of roll.");
   v.option("pitch_correlation", o.pitch_correlation, core::above(0), "The same of pitch.");
   v.option("heading_correlation", o.heading_correlation, core::above(0), "The same of heading.");

@@ -88,7 +88,7 @@ double wind_fit(const std::vector<Sample>& all, double bias, Eigen::Vector3d& x)
 
 std::optional<HeadingFit> heading_of(const std::vector<Sample>& all) {
   if (all.size() < fewest_samples) return std::nullopt;
-  // A heading that stays while the track turns is that of a craft that flies sideways: no wind and no bias come of it.
+  // A heading that stays while the track turns is that of a craft that flies sideways: neither wind nor bias follows from it.
   Eigen::Vector2d track = Eigen::Vector2d::Zero(), heading = Eigen::Vector2d::Zero();
   for (const Sample& s : all) {
     track += Eigen::Vector2d(s.north, s.east).normalized();

@@ -30,7 +30,7 @@ constexpr double longest_lead = 120.0;  // s of IMU records kept before the firs
 constexpr double most_rate = 2.0;       // rad/s, rms over the record
 constexpr int most_iterations = 8;
 constexpr double settled = 0.05;                         // sigmas by which the trajectory may still move
-constexpr double least_share = 0.02, usual_share = 0.4;  // of the GNSS variance that is correlated, where nothing tells
+constexpr double least_share = 0.02, usual_share = 0.4;  // of the GNSS variance that is correlated, where nothing determines it
 constexpr double least_fixes = 100;                      // from which noise is estimated
 constexpr double too_large = 1.5, too_alike = 0.25;      // normalised innovations: mean square, correlation of neighbours
 constexpr double most_roughness = 64;
@@ -167,7 +167,7 @@ bool adapt_fixes(Problem& problem, const std::vector<FixOutcome>& outcomes) {
     const FixOutcome& o = outcomes[k];
     if (problem.nodes[k].fix < 0 || o.weight < 1) continue;
     const double expected = o.innovation_sigma.squaredNorm() / problem.gnss.covariance[static_cast<size_t>(problem.nodes[k].fix)].trace();
-    if (expected > 4 * problem.variance) continue;  // after an outage the innovations tell of the IMU
+    if (expected > 4 * problem.variance) continue;  // after an outage the innovations depend on the IMU
     nis += o.nis / 3;
     all += expected;
     n += 1;
@@ -183,7 +183,7 @@ bool adapt_fixes(Problem& problem, const std::vector<FixOutcome>& outcomes) {
   return std::abs(shown - white) > std::max(0.03 * white, 2 * noise);
 }
 
-/// Doubles the IMU's noise where the innovations are too large and follow one another: more motion than the IMU tells of, as under
+/// Doubles the IMU's noise where the innovations are too large and follow one another: more motion than the IMU shows, as under
 /// vibration. (White noise of the fixes makes them large too, but not alike.) True where it did.
 bool adapt_imu(Problem& problem, const std::vector<FixOutcome>& outcomes) {
   if (problem.noise.angle == 0 && problem.noise.velocity == 0) return false;  // stated as perfect

@@ -57,16 +57,13 @@ struct InsGnssOptions {
 
 template <class V>
 void describe(InsGnssOptions& o, V& v) {
-  v.option("alignment", o.alignment,
-           "Attitude to begin with: given; still (levelling and gyrocompassing on the ground); moving (from GNSS in motion); automatic.");
+  v.option("alignment", o.alignment, "Initial attitude: given, still (levelling, gyrocompassing), moving (GNSS in motion) or automatic.");
   v.table("given", o.given, "Attitude to begin with (alignment given), used with its sigmas.");
   v.option("scale_factors", o.scale_factors, "Estimate scale factors of gyros and accelerometers.");
   v.option("lever_arm", o.lever_arm, "Estimate the antenna's lever arm about its stated value and sigma.");
   v.option("gnss_latency", o.gnss_latency, "Estimate a constant time offset of the GNSS fixes.");
-  v.option(
-      "correlated_share", o.correlated_share, core::within(0, 0.95),
-      "Share of the stated GNSS variance that is correlated in time; without a value it is estimated: what the innovations do not show as "
-      "white noise is taken as correlated, and sigmas that are stated too small are raised.");
+  v.option("correlated_share", o.correlated_share, core::within(0, 0.95),
+           "Share of the stated GNSS variance that is correlated in time; without a value: estimated.");
   v.option("correlation_time", o.correlation_time, core::above(0), "Correlation time of that part.");
   v.option("latency_sigma", o.latency_sigma, core::above(0), "Sigma of the time offset before it is estimated.");
   v.option("clock_search", o.clock_search, core::within(0, 30),
@@ -79,13 +76,9 @@ void describe(InsGnssOptions& o, V& v) {
   v.option("non_holonomic_sigma", o.non_holonomic_sigma, core::above(0), "Sigma of the velocities across and up (non_holonomic).");
   v.option("wheel_point", o.wheel_point, "IMU centre to the point that does not slip sideways, the rear axle: forward, right, down.");
   v.option("max_gap", o.max_gap, core::within(0, 30), "Longest gap in the IMU records that is bridged; a longer one is an error.");
-  v.option("output_rate", o.output_rate, core::within(20, 2000),
-           "Records per second of the trajectory, where the IMU has more; georeferencing interpolates between these.");
-  v.option(
-      "error_spacing", o.error_spacing, core::within(0, 60),
-      "Spacing of the instants at which the trajectory keeps how its errors hang together in time, for calibration and strip adjustment "
-      "(30 MB per hour at 1 s); 0 keeps nothing.",
-      "Jong1988");
+  v.option("output_rate", o.output_rate, core::within(20, 2000), "Records per second of the trajectory, where the IMU has more.");
+  v.option("error_spacing", o.error_spacing, core::within(0, 60),
+           "Spacing at which error correlations in time are kept, for adjustments (0.03 GB/h at 1 s); 0: none.", "Jong1988");
 }
 
 /// Numbers over time for the report and its plots. Vectors of one group have one length.

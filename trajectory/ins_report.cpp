@@ -19,7 +19,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double arcsec = core::degree / 3600, deg_per_hour = core::degree / 3600, micro_g = 9.80665e-6;
-constexpr double nis_tolerance = 0.3;   // the mean NIS per degree of freedom may leave 1 by this before it is told
+constexpr double nis_tolerance = 0.3;   // the mean NIS per degree of freedom may leave 1 by this before it is reported
 constexpr double sure_sigmas = 4.0;     // of a constant against its stated sigma
 constexpr double observed_share = 0.5;  // a constant counts as observed when its sigma has fallen below this share
 constexpr double outlier_share = 0.02;

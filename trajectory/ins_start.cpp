@@ -107,7 +107,7 @@ Start start_of(const ImuPath& path, const core::GnssData& gnss, const Alignment&
   const double tilt = std::max(1 * core::degree, alignment.worst_sigma());
   put(Layout::position, 10.0 + 0.5 * 9.8 * tilt * away * away);
   put(Layout::velocity, 3.0 + 9.8 * tilt * away);
-  constexpr double slack = 1.0 * core::degree;  // what the alignment does not tell of itself
+  constexpr double slack = 1.0 * core::degree;  // what the alignment does not report of itself
   const double widest = core::pi / 3;
   out.attitude_given = options.alignment == AlignmentMethod::given;
   P.block<3, 3>(Layout::attitude, Layout::attitude) =

@@ -32,20 +32,20 @@ template <class V>
 void describe(KinematicOptions& o, V& v) {
   v.option("epochs", o.epochs, core::within(2, 1000), "Fixes of the window before the event, and as many after it.", "Jubanski2005");
   v.option("gap_steps", o.gap_steps, core::within(2.1, 1000),
-           "A step between fixes longer than this many median steps is a gap: windows end there, events within it are flagged.");
+           "A step between fixes of more than this many median steps is a gap, at which windows end.");
   v.option("axes", o.axes, "Each axis for itself, or the three at once with the full covariance of each fix.", "Jubanski2005 eq 2-20");
-  v.option("line_weights", o.line_weights,
-           "Start values: straight line through the window, weighted by the fixes' variances or with unit weights.", "Jubanski2005 eq 1");
+  v.option("line_weights", o.line_weights, "Start values: straight line with weights of the fixes' variances, or with unit weights.",
+           "Jubanski2005 eq 1");
   v.option("start_covariance", o.start_covariance,
-           "Covariance of the start values: that of the line before or after its residuals are seen, or so large that they do not count.");
+           "Covariance of the start values: of the line before or after its residuals, or very large.");
   v.option("update_first", o.update_first, "The window's first fix updates the start values too.");
-  v.option("noise", o.noise, "The speed whose share is the noise: each axis's own (the literal rule), or the speed vector's length.",
+  v.option("noise", o.noise, "Speed whose share is the noise: each axis's own (literal), or the length of the vector.",
            "Jubanski2005 eq 7");
   v.option("noise_share", o.noise_share, core::above_to(0.0, 1.0), "Standard deviation of the velocity's noise as a share of that speed.",
            "Jubanski2005 eq 7");
   v.option("noise_floor", o.noise_floor, core::at_least(0.0), "Least standard deviation of the velocity's noise.");
   v.option("noise_grows_with_time", o.noise_grows_with_time,
-           "The noise is that of one second and its variance grows with the step's length; otherwise it is that of any step.");
+           "The noise is that of one second and its variance grows with the step; false: that of any step.");
 }
 
 /// Position and velocity of a point with their covariance; order: three of position (m), three of velocity (m/s).

@@ -36,10 +36,9 @@ struct LatencyOptions {
 template <class V>
 void describe(LatencyOptions& o, V& v) {
   v.option("search", o.search, core::above(0), "Greatest latency, either way.");
-  v.option("shift", o.shift,
-           "Constant difference estimated beside the latency: none; axes: along the axes of the values; track: along, across, up.");
+  v.option("shift", o.shift, "Constant difference estimated as well: none, axes (of the values), track (along, across, up).");
   v.option("smoothing", o.smoothing, core::at_least(0),
-           "Both records are averaged over this time first; for turn rates, whose noise would weaken their own derivative.");
+           "Average both records over this time first; for turn rates, whose noise weakens derivatives.");
 }
 
 struct LatencyResult {

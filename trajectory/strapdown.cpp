@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The position is the trapezoid of the velocities: over 5 ms and a vibration of 1 m/s^2 at 10 Hz it errs by 2e-6 m, not growing.
+// The position is the trapezoid of the velocities: over 5 ms and a vibration of 1 m/s^2 at 10 Hz it is off by 2e-6 m, not growing.
 #include "trajectory/strapdown.h"
 
 #include <Eigen/Geometry>

@@ -113,7 +113,7 @@ class BreaklineStage : public OptionStage<SettleOptions> {
       }
       settled.push_back({std::move(all[f]), derived});
     }
-    const terrain::Breaklines ready(settled, options, context.origin);  // tells lines that meet at different heights
+    const terrain::Breaklines ready(settled, options, context.origin);  // reports lines that meet at different heights
     job.findings["features"] = settled.size();
     job.findings["edges"] = ready.network().edges.size();
     io::write_text_file(job.folder / settled_file, terrain::pack(settled));
@@ -124,7 +124,7 @@ class BreaklineStage : public OptionStage<SettleOptions> {
  private:
   const std::vector<core::Breakline>& features(const Context& context) const {
     std::call_once(once_, [&] {
-      core::Tally unheard;  // the merge reads the same files and tells
+      core::Tally unheard;  // the merge reads the same files and reports
       features_ = features_of(context, unheard);
     });
     return features_;

@@ -31,7 +31,7 @@ struct PreparedFlight {
 /// Side of cells wide enough for a plane through one line's returns, in whole half metres.
 double cell_for(const std::vector<calib::FlownLine>& lines);
 
-/// A report that tells of survey and lines so far.
+/// A report that shows survey and lines so far.
 CalibrationReport report_on(const Context& context, const std::vector<calib::FlownLine>& lines);
 /// Adds sections, maps of differences and check points.
 void add_views(CalibrationReport& report, CalibrationViews views);

@@ -68,8 +68,7 @@ template <class V>
 void describe(ContourWriteOptions& o, V& v) {
   describe(static_cast<terrain::ContourOptions&>(o), v);
   v.option("name", o.name, "Name of the files: NAME.gpkg, NAME.dxf, NAME.geojson.");
-  v.option("source", o.source,
-           "grid: the DTM's cells are traced; tin: the TIN of the ground points, read on the lattice of the table `tin`.");
+  v.option("source", o.source, "grid: the DTM's cells; tin: the TIN of the ground points, read on the lattice of the table `tin`.");
   v.table("tin", o.tin, "With source tin: how the TIN is made and read, as terrain.dtm does.");
   v.table("labels", o.labels, "Heights along index contours.");
   v.table("spots", o.spots, "Spot heights.");

@@ -52,7 +52,7 @@ struct ReturnsStageOptions : filters::ReturnsOptions {
 template <class V>
 void describe(ReturnsStageOptions& o, V& v) {
   describe(static_cast<filters::ReturnsOptions&>(o), v);
-  v.option("repair_clouds", o.repair_clouds, "Repair numbers of point clouds, too, where the points' times tell the pulses apart.");
+  v.option("repair_clouds", o.repair_clouds, "Repair numbers of point clouds, too, where the points' times distinguish the pulses.");
 }
 
 class Returns : public OptionStage<ReturnsStageOptions> {
@@ -60,7 +60,7 @@ class Returns : public OptionStage<ReturnsStageOptions> {
   const Info& info() const override {
     static const Info info{
         "filters.returns",
-        "First, last, only and intermediate returns: missing or inconsistent numbers mended or flagged, returns per pulse by line.",
+        "First, last, only and intermediate returns: missing or inconsistent numbers repaired or flagged, returns per pulse by line.",
         {Grain::strip},
         {Column::time, Column::return_number, Column::return_count},
         {Column::return_number, Column::return_count, Column::flags},

@@ -31,14 +31,9 @@ struct KinematicStageOptions : trajectory::KinematicOptions {
 
 template <class V>
 void describe(KinematicStageOptions& o, V& v) {
-  v.option(
-      "method", o.method,
-      "What gives the positions: the Kalman filter of the window; for comparison a straight line or a polynomial of 2nd degree through it, "
-      "or a smoother over the whole pass (RTS).",
-      "Jubanski2005");
+  v.option("method", o.method, "Kalman filter of the window; or, to compare, line, 2nd-degree polynomial or RTS smoother.", "Jubanski2005");
   v.option("file", o.file, "Name of the table of events within the output.");
-  v.option("leave_one_out", o.leave_one_out,
-           "Write the leave-one-out test of all four as a table (leave_one_out.txt) and as a drawing (leave_one_out.png, .svg).");
+  v.option("leave_one_out", o.leave_one_out, "Write the leave-one-out test of all four methods (leave_one_out.txt, .png, .svg).");
   describe(static_cast<trajectory::KinematicOptions&>(o), v);
 }
 

@@ -51,7 +51,7 @@ void describe(RtklibStageOptions& o, V& v) {
   v.option("max_distance", o.max_distance, core::above(0), "Farthest base from the rover's approximate position.");
   v.option("bases", o.bases, "Bases within max_distance that are used: \"nearest\", \"all\", or the number of the nearest, \"2\".");
   v.option("agreement", o.agreement, core::above(0),
-           "Several bases: fixed solutions of one epoch agree within so many sigmas of their difference, and are averaged.");
+           "Several bases: fixed solutions of one epoch within this many sigmas agree and are averaged.");
   v.option("base_tolerance", o.base_tolerance, core::above(0),
            "Farthest that a base's own code solution may lie from its stated position.");
   v.option("time_limit", o.time_limit, core::above(0), "Longest time for one run of rnx2rtkp, which is ended then.");

@@ -42,7 +42,7 @@ void describe(TimeSyncOptions& o, V& v) {
   describe(static_cast<trajectory::ClockOptions&>(o), v);
   v.option("match", o.match, "How events of two techniques are paired: by their names, or the nearest in time.");
   v.option("tolerance", o.tolerance, core::above(0), "Events of two techniques farther apart than this are no pair.");
-  v.option("speed", o.speed, core::above(0), "Speed that tells differences in metres where no trajectory was read before.");
+  v.option("speed", o.speed, core::above(0), "Speed that turns differences of time into metres where no trajectory was read.");
   v.option("technique", o.technique, "Technique whose events are handed on; empty: all.");
   v.option("file", o.file, "Name of the table of events within the output.");
 }
@@ -66,7 +66,7 @@ std::string number(const char* form, double v) {
   return text;
 }
 
-/// One row per event. Seconds of week are told to 0.1 us, which one double of GPS seconds would not hold.
+/// One row per event. Seconds of week are written to 0.1 us, which one double of GPS seconds would not hold.
 std::string table(const std::vector<Technique>& techniques) {
   std::string out = "id,strip,technique,gps_week,gps_second_of_week,utc,sigma_s,correction_s,flags\n";
   for (const Technique& t : techniques)

@@ -24,7 +24,7 @@ constexpr size_t most_outliers = 40;  ///< rows; all are in residuals.csv
 
 std::string headed(const char* name, const char* unit) { return std::string(name) + " (" + unit + ")"; }
 
-/// Decimals that tell one end of a bin from the other.
+/// Decimals that distinguish one end of a bin from the other.
 int decimals_of(double step) { return std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9))); }
 
 /// The measures of a bin, from "groups" on.

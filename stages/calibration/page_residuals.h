@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts of a calibration's report that tell what was observed, and what is left of it.
+// The parts of a calibration's report that show what was observed, and what is left of it.
 #pragma once
 
 #include "stages/calibration/page.h"

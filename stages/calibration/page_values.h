@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts of a calibration's report that tell what was found and how well.
+// The parts of a calibration's report that show what was found and how well.
 #pragma once
 
 #include "stages/calibration/page.h"

@@ -10,7 +10,7 @@ namespace swath::stages {
 
 /// flat_target.json as the calibration page shows it: the angles with their tolerances (id target-angles), every reading (target-readings)
 /// and the target's displacement in each line before and after (target-lines). Tables without a row are left out; so is what the tree does
-/// not tell.
+/// not show.
 std::vector<report::Table> target_tables(const core::Value& flat_target);
 
 }  // namespace swath::stages
