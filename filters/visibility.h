@@ -24,7 +24,7 @@ void describe(VisibilityOptions& o, V& v) {
   v.option("voxel", o.voxel, core::above(0.0), "Side of one voxel.", "Hornung2013");
   v.option("reach", o.reach, core::above(0.0), "Length of each beam, counted upwards from its return, that is followed.");
   v.option("solid", o.solid, core::within(0.0, 1.0),
-           "A return is noise where fewer of the beams through its 27 voxels ended there; 0 keeps all.");
+           "Share of the beams through a return's 27 voxels that must end there, else it is noise; 0 keeps all.");
   v.option("group", o.group, core::within(1, 1000), "Most returns in these 27 voxels that can be noise together; wires have more.");
   v.option("cell", o.cell, core::above(0.0), "Side of one cell of the rasters.");
   v.check(o.reach >= o.voxel, "reach must span at least one voxel");
