@@ -3,7 +3,7 @@
 // the place, and the nearest returns: a crest or kerb that the surface missed has its like on its own level, a plant has ground below it.
 // Where no pulse around is split the record has single echoes alone, and what stands knee-high is less often a plant.
 // The weights: bench/accuracy/ground_calibration.py, on simulated surveys of several densities and echo models and on labelled real
-// clouds, 2026-11-23. How true they are on clouds held out of the fit: docs/accuracy.md.
+// clouds, 2026-11-23. How true they are on clouds held out of the fit: docs/accuracy/ground.md.
 #include "filters/ground_probability.h"
 
 #include <algorithm>

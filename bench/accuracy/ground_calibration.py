@@ -15,7 +15,7 @@ import common
 import echo_scenes
 import ground
 
-# Seeds other than those of docs/accuracy.md, but for 2; options of swath simulate.
+# Seeds other than those of docs/accuracy/ground.md, but for 2; options of swath simulate.
 ZOO = {"zoo 2": (2, {}), "zoo 13": (13, {"scanner.prf": "20 kHz", "flight.height": "900 m"}), "zoo 21": (21, {"scanner.prf": "40 kHz"}),
        "zoo 16": (16, {"scanner.prf": "20 kHz", "flight.height": "600 m"})}
 ISPRS = {f"ISPRS {sample}": f"isprs/samp{sample}-utm.las" for sample in (11, 21, 24, 41, 52, 54, 71)}
