@@ -24,7 +24,8 @@ WORDS = {
 }
 DOCS_ONLY = {
     r"tally|tallies": "count",  # but for the name of the type in docs/add-a-stage.md
-    r"(?:heavy|inner|own) doors?|behind (?:its|their) doors?|at the doors?": "readers and writers",
+    r"doors?": "readers and writers",
+    r"rooms?": "folders, modules",
     r"lines across": "cross lines",
 }
 OPTION_NAMES = r"(?:most|least)_\w+"
