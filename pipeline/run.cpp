@@ -91,6 +91,7 @@ class Engine {
  private:
   void prepare();
   void prepare_map();
+  core::ColumnSet kept_columns() const;
   void find_strips();
   bool is_read_again(size_t number) const;
   bool is_resumed(size_t number) const;
@@ -125,7 +126,7 @@ class Engine {
   fs::path folder(size_t number) const {
     char digits[8];
     std::snprintf(digits, sizeof digits, "%02zu-", number);
-    return work_ / (digits + std::string(plan_.stages[number].stage->info().name) + "-" + fingerprints_[number]);
+    return work_ / (digits + std::string(plan_.stages[number].stage->info().name) + "-" + folders_[number]);
   }
   const Stage& stage(size_t number) const { return *plan_.stages[number].stage; }
   bool works_on(size_t number, Grain g) const { return stage(number).works_on(g); }
@@ -141,8 +142,9 @@ class Engine {
   std::vector<Account> accounts_;
   std::vector<std::vector<PieceFile>> made_;  ///< by each stage
   std::vector<Input> inputs_;
-  std::vector<std::string> fingerprints_;
-  size_t source_ = 0;  ///< the stage that is the plan's source; as many as there are stages where it has none
+  std::vector<std::string> fingerprints_, folders_;  ///< of each stage; of the work that its folder holds
+  core::ColumnSet kept_;                             ///< of the strips' points
+  size_t source_ = 0;                                ///< the stage that is the plan's source; as many as there are stages where it has none
   size_t last_strip_stage_ = 0;
   std::unique_ptr<TileStore> store_;
   std::unique_ptr<SquareCounts> squares_;
@@ -172,6 +174,22 @@ void Engine::prepare() {
   while (source_ < plan_.stages.size() && !stage(source_).is_source()) ++source_;
   for (size_t i = 0; i < plan_.stages.size(); ++i)
     if (works_on(i, Grain::strip)) last_strip_stage_ = i;
+  folders_ = fingerprints_;
+  if (!makes_points(plan_)) return;
+  kept_ = kept_columns();
+  std::string text = fingerprints_[last_strip_stage_];
+  for (int c = 0; c < core::column_count; ++c) text += kept_.has(static_cast<core::Column>(c)) ? '1' : '0';
+  folders_[last_strip_stage_] = core::hex(core::fnv1a(text));
+}
+
+/// The columns of the strips' points that the tile stages need or read. All, where the store is kept for other stages than these.
+core::ColumnSet Engine::kept_columns() const {
+  using core::Column;
+  core::ColumnSet kept{Column::x, Column::y, Column::z, Column::strip, Column::record};
+  for (size_t i = last_strip_stage_ + 1; i < plan_.stages.size(); ++i)
+    if (works_on(i, Grain::tile)) kept = kept | columns_of_tiles(stage(i));
+  for (int c = 0; plan_.run.keep_work && c < core::column_count; ++c) kept.add(static_cast<Column>(c));
+  return kept;
 }
 
 void Engine::prepare_map() {
@@ -339,6 +357,7 @@ void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_fold
         throw core::Error("returns were lost on the way", std::string(stage(i).info().name), "this is a fault of the program");
       parcel->accounts[i].seconds = since(start);
     }
+    keep_columns(parcel->batch.block, kept_);
     return parcel;
   };
   const auto write = [&](const std::shared_ptr<Parcel>& parcel) {

@@ -37,6 +37,13 @@ core::Value strip_note(const fs::path& strip_folder) {
 
 std::string file_label(TileKey k) { return std::to_string(k.ix) + "_" + std::to_string(k.iy); }
 
+void keep_columns(Block& block, ColumnSet kept) {
+  core::for_each_column([&](Column c, std::string_view, auto member) {
+    if (!kept.has(c)) (block.*member) = {};
+  });
+  if (!kept.has(Column::source)) block.source = {};
+}
+
 StripWriter::StripWriter(fs::path folder, double tile_side, size_t buffer_bytes)
     : final_(std::move(folder)), part_(final_), tile_side_(tile_side), buffer_bytes_(buffer_bytes) {
   part_ += ".part";

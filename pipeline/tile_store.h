@@ -49,6 +49,9 @@ class StripWriter {
   bool committed_ = false;
 };
 
+/// Empties all columns but these.
+void keep_columns(core::Block& block, core::ColumnSet kept);
+
 class TileStore {
  public:
   /// `strips`: the folder that holds one folder per committed strip.

@@ -223,7 +223,7 @@ void TileStore::append_where(Block& out, TileKey key, ColumnSet columns, const W
         std::vector<T>* column = &own;
         if constexpr (std::is_same_v<T, double>) column = c == Column::x ? &x : c == Column::y ? &y : &own;
         column->resize(n);
-        read_column(file, out, c, column->data(), n, sizeof(T));
+        file.read_packed(column->data(), n, sizeof(T));
         if (c == Column::y) {
           rows.clear();
           for (std::uint32_t i = 0; i < n; ++i)

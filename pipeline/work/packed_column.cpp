@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A decimal coordinate is the whole number of thousandths next to it, and the few last places of a double by which its file's own
-// rounding differs from that.
+// A coordinate of a file is a whole number of its steps, rounded to the places of a double twice: as the file's own number, and where the
+// file's offset was taken from it. The second leaves multiples of one power of two: the number of steps, rounded to that, is the
+// coordinate or lies a place beside it.
 #include "pipeline/work/packed_column.h"
 
 #include <zstd.h>
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -20,7 +22,6 @@ namespace {
 constexpr int level = 1;
 constexpr size_t rows_at_once = 256;
 constexpr size_t sampled = 4096;  // values, for the choice of the way
-constexpr double per_unit = 1000.0;
 
 enum Way : std::uint32_t { plain, differences, decimals };
 
@@ -69,14 +70,18 @@ void from_planes(const std::uint8_t* from, size_t n, size_t row, std::uint8_t* t
   });
 }
 
+/// Small ones of both signs have only low bits.
 template <class T>
 void difference(T* v, size_t n) {
-  for (size_t i = n; i-- > 1;) v[i] = static_cast<T>(v[i] - v[i - 1]);
+  for (size_t i = n; i-- > 1;) {
+    const auto d = static_cast<T>(v[i] - v[i - 1]);
+    v[i] = static_cast<T>(static_cast<T>(d << 1) ^ static_cast<T>(0 - (d >> (8 * sizeof(T) - 1))));
+  }
 }
 
 template <class T>
 void add_up(T* v, size_t n) {
-  for (size_t i = 1; i < n; ++i) v[i] = static_cast<T>(v[i] + v[i - 1]);
+  for (size_t i = 1; i < n; ++i) v[i] = static_cast<T>(v[i - 1] + static_cast<T>((v[i] >> 1) ^ static_cast<T>(0 - (v[i] & 1))));
 }
 
 /// Calls f(pointer) with the bytes as numbers of their width.
@@ -121,9 +126,52 @@ Way smaller_way(const void* values, size_t n, size_t width) {
   return compress(values, n, width, differences) < compress(values, n, width, plain) ? differences : plain;
 }
 
-double decimal(std::int64_t thousandths, std::int64_t last_places, double origin) {
-  const auto bits = std::bit_cast<std::uint64_t>(static_cast<double>(thousandths) / per_unit);
-  return std::bit_cast<double>(bits + static_cast<std::uint64_t>(last_places)) - origin;
+/// The unit of the last place of a number.
+double last_place(double v) {
+  const std::uint64_t exponent = (std::bit_cast<std::uint64_t>(v) >> 52) & 0x7ff;
+  return exponent > 52 ? std::bit_cast<double>((exponent - 52) << 52) : 0.0;
+}
+
+/// The largest power of two that all values are multiples of; 0: there is none.
+double common_place(const double* values, size_t n) {
+  double out = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < n; ++i) {
+    if (values[i] == 0.0) continue;
+    const std::uint64_t fraction = std::bit_cast<std::uint64_t>(values[i]) | (std::uint64_t{1} << 52);
+    out = std::min(out, last_place(values[i]) * static_cast<double>(fraction & (~fraction + 1)));
+  }
+  return std::isfinite(out) && out > 1e-100 ? out : 0.0;
+}
+
+/// Coordinates as numbers of steps.
+struct Steps {
+  std::int64_t first = 0;
+  double per_metre = 0.0;
+  double place = 1.0;  ///< a power of two that all are multiples of
+
+  double rounded(std::int64_t steps) const {
+    const double v = static_cast<double>(steps) / per_metre, whole = v / place;
+    if (!(std::abs(whole) < 0x1p52)) return v;
+    const double shift = std::copysign(0x1p52, whole);  // what is added to it keeps no places behind the point
+    return ((whole + shift) - shift) * place;
+  }
+  double unit(double v) const { return std::max(place, last_place(v)); }
+};
+
+bool to_steps(const double* values, size_t n, Steps& s, std::vector<std::int32_t>& steps, std::vector<std::int8_t>& rests) {
+  constexpr double most = 2e9;  // fit into 32 bits as differences from the first
+  for (size_t i = 0; i < n; ++i) {
+    const double v = values[i], scaled = v * s.per_metre;
+    if (!(std::abs(scaled) < 1e15)) return false;
+    const auto number = static_cast<std::int64_t>(scaled + std::copysign(0.5, scaled));
+    if (i == 0) s.first = number;
+    const double rounded = s.rounded(number), unit = s.unit(rounded), rest = (v - rounded) / unit;
+    if (!(std::abs(rest) <= 127.0) || std::abs(static_cast<double>(number - s.first)) > most) return false;
+    steps[i] = static_cast<std::int32_t>(number - s.first);
+    rests[i] = static_cast<std::int8_t>(rest);
+    if (std::bit_cast<std::int64_t>(rounded + rests[i] * unit) != std::bit_cast<std::int64_t>(v)) return false;
+  }
+  return true;
 }
 
 bool inflate(const char* bytes, size_t size, void* values, size_t n, size_t width, bool summed) {
@@ -141,39 +189,34 @@ bool inflate(const char* bytes, size_t size, void* values, size_t n, size_t widt
 
 void pack(const void* values, size_t n, size_t width, std::string& out) { put(values, n, width, smaller_way(values, n, width), out); }
 
-void pack_coordinates(const double* values, size_t n, double origin, std::string& out) {
-  constexpr double most = 2e9;  // thousandths fit into 32 bits as differences from the first
+void pack_coordinates(const double* values, size_t n, std::string& out) {
   std::vector<std::int32_t> steps(n);
-  std::vector<std::int8_t> places(n);
-  std::int64_t first = 0;
-  for (size_t i = 0; i < n; ++i) {
-    const double v = values[i] + origin;
-    if (!(std::abs(v) < 1e12)) return pack(values, n, 8, out);
-    const std::int64_t thousandths = std::llround(v * per_unit);
-    if (i == 0) first = thousandths;
-    const std::int64_t rest = std::bit_cast<std::int64_t>(v) - std::bit_cast<std::int64_t>(static_cast<double>(thousandths) / per_unit);
-    if (std::abs(static_cast<double>(thousandths - first)) > most || rest < -127 || rest > 127 ||
-        std::bit_cast<std::int64_t>(decimal(thousandths, rest, origin)) != std::bit_cast<std::int64_t>(values[i]))
-      return pack(values, n, 8, out);
-    steps[i] = static_cast<std::int32_t>(thousandths - first);
-    places[i] = static_cast<std::int8_t>(rest);
-  }
-  std::string parts(reinterpret_cast<const char*>(&first), sizeof first);
+  std::vector<std::int8_t> rests(n);
+  Steps s;
+  s.place = common_place(values, n);
+  bool found = false;
+  if (s.place > 0.0)
+    for (const double per_metre : {1e3, 1e4, 1e5}) {
+      s.per_metre = per_metre;
+      if ((found = to_steps(values, n, s, steps, rests))) break;
+    }
+  if (!found) return pack(values, n, 8, out);
+  std::string parts(reinterpret_cast<const char*>(&s), sizeof s);
   pack(steps.data(), n, 4, parts);
-  pack(places.data(), n, 1, parts);
+  pack(rests.data(), n, 1, parts);
   put_head(decimals, parts.size(), out);
   out += parts;
 }
 
-bool unpack(const PackedHead& head, const char* bytes, void* values, size_t n, size_t width, double origin) {
+bool unpack(const PackedHead& head, const char* bytes, void* values, size_t n, size_t width) {
   if (head.way == plain || head.way == differences) return inflate(bytes, head.bytes, values, n, width, head.way == differences);
   if (head.way != decimals || width != 8) return false;
-  std::int64_t first = 0;
-  if (head.bytes < sizeof first) return false;
-  std::memcpy(&first, bytes, sizeof first);
+  Steps s;
+  if (head.bytes < sizeof s) return false;
+  std::memcpy(&s, bytes, sizeof s);
   std::vector<std::int32_t> steps(n);
-  std::vector<std::int8_t> places(n);
-  size_t at = sizeof first;
+  std::vector<std::int8_t> rests(n);
+  size_t at = sizeof s;
   const auto part = [&](void* to, size_t size) {
     PackedHead h;
     if (head.bytes - at < sizeof h) return false;
@@ -183,12 +226,15 @@ bool unpack(const PackedHead& head, const char* bytes, void* values, size_t n, s
     at += h.bytes;
     return true;
   };
-  if (!part(steps.data(), 4) || !part(places.data(), 1) || at != head.bytes) return false;
+  if (!part(steps.data(), 4) || !part(rests.data(), 1) || at != head.bytes) return false;
   // Unsigned: numbers that nobody has written may not fit.
-  const auto sum = [first](std::int32_t step) {
-    return static_cast<std::int64_t>(static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(std::int64_t{step}));
+  const auto sum = [&s](std::int32_t step) {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(s.first) + static_cast<std::uint64_t>(std::int64_t{step}));
   };
-  for (size_t i = 0; i < n; ++i) static_cast<double*>(values)[i] = decimal(sum(steps[i]), places[i], origin);
+  for (size_t i = 0; i < n; ++i) {
+    const double rounded = s.rounded(sum(steps[i]));
+    static_cast<double*>(values)[i] = rounded + rests[i] * s.unit(rounded);
+  }
   return true;
 }
 

@@ -17,10 +17,10 @@ struct PackedHead {
 /// Appends head and bytes of `n` values of `width` bytes each (1, 2, 4 or 8: numbers, of which differences may be smaller; others: rows).
 void pack(const void* values, size_t n, size_t width, std::string& out);
 
-/// The same of coordinates. Those that are decimals with three places beside `origin`, as files have them, take the fewest.
-void pack_coordinates(const double* values, size_t n, double origin, std::string& out);
+/// The same of coordinates. Those that are decimals with at most five places, as files have them, take the fewest.
+void pack_coordinates(const double* values, size_t n, std::string& out);
 
-/// The values back; false where the bytes are not what pack() gave for so many. `origin`: the one given, where there was one.
-[[nodiscard]] bool unpack(const PackedHead& head, const char* bytes, void* values, size_t n, size_t width, double origin = 0.0);
+/// The values back; false where the bytes are not what pack() gave for so many.
+[[nodiscard]] bool unpack(const PackedHead& head, const char* bytes, void* values, size_t n, size_t width);
 
 }  // namespace swath::pipeline

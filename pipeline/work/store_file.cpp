@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -30,11 +29,7 @@ std::uint32_t bits_of(ColumnSet set) {
   return bits;
 }
 
-/// The axis of a coordinate's column; nothing for others.
-std::optional<int> axis_of(Column c) {
-  if (c == Column::x || c == Column::y || c == Column::z) return static_cast<int>(c);
-  return std::nullopt;
-}
+bool is_coordinate(Column c) { return c == Column::x || c == Column::y || c == Column::z; }
 
 }  // namespace
 
@@ -96,13 +91,13 @@ void StoreFile::read(void* data, size_t n) {
   if (read_some(data, n) != n) throw damaged_work(name_);
 }
 
-void StoreFile::read_packed(void* values, size_t n, size_t width, double origin) {
+void StoreFile::read_packed(void* values, size_t n, size_t width) {
   PackedHead head;
   read(&head, sizeof head);
   if (head.bytes > size_ - std::min(size_, at_)) throw damaged_work(name_);
   packed_.resize(head.bytes);
   read(packed_.data(), packed_.size());
-  if (!unpack(head, packed_.data(), values, n, width, origin)) throw damaged_work(name_);
+  if (!unpack(head, packed_.data(), values, n, width)) throw damaged_work(name_);
 }
 
 void StoreFile::skip_packed() {
@@ -139,18 +134,13 @@ void write_chunks(StoreFile& file, const Block& b, size_t first, size_t n, Colum
       if (!columns.has(c)) return;
       const auto* values = (b.*member).data() + first;
       if constexpr (std::is_same_v<decltype(values), const double*>)
-        if (const std::optional<int> axis = axis_of(c)) return pack_coordinates(values, n, b.origin[*axis], bytes);
+        if (is_coordinate(c)) return pack_coordinates(values, n, bytes);
       pack(values, n, sizeof *values, bytes);
     });
     if (columns.has(Column::source)) pack(b.source.row(first), n, b.source.width, bytes);
     file.write(bytes.data(), bytes.size());
     if (n == 0) return;
   }
-}
-
-void read_column(StoreFile& file, const Block& of, Column c, void* values, size_t n, size_t width) {
-  const std::optional<int> axis = axis_of(c);
-  file.read_packed(values, n, width, axis ? of.origin[*axis] : 0.0);
 }
 
 namespace {
@@ -177,7 +167,7 @@ bool read_chunk(StoreFile& file, Block& to, size_t& row, ColumnSet wanted, Colum
     if (!wanted.has(c)) return file.skip_packed();
     auto& column = to.*member;
     if (column.size() < row + head.points) column.resize(row + head.points);
-    read_column(file, to, c, column.data() + row, head.points, sizeof column[0]);
+    file.read_packed(column.data() + row, head.points, sizeof column[0]);
   });
   if (there.has(Column::source)) read_source(file, head, wanted.has(Column::source), to.source, row);
   row += head.points;

@@ -38,7 +38,7 @@ class StoreFile {
   void read(void* data, size_t n);
   void skip(size_t n);
   /// The next column: `n` values of `width` bytes.
-  void read_packed(void* values, size_t n, size_t width, double origin = 0.0);
+  void read_packed(void* values, size_t n, size_t width);
   void skip_packed();
   /// Of a file that was written: a network disk may fail only here.
   void close();
@@ -57,9 +57,6 @@ void write_chunks(StoreFile& file, const core::Block& block, size_t first, size_
 
 /// Appends the wanted columns of the next chunk to `to` at row `row`; false at the end of the file. `seen`: gets the chunk's columns.
 bool read_chunk(StoreFile& file, core::Block& to, size_t& row, core::ColumnSet wanted, core::ColumnSet& seen);
-
-/// The next column of a chunk, which is `c`, of a block with the origin of `of`.
-void read_column(StoreFile& file, const core::Block& of, core::Column c, void* values, size_t n, size_t width);
 
 /// Passes over the columns behind a head.
 void skip_chunk(StoreFile& file, const ChunkHead& head);
