@@ -4,7 +4,7 @@
 // slope filter), and is never more than the steepest ground can fall within a cell and half a metre, so that low halls are taken off by
 // large disks too; halls wider than the disk, and roofs at the rim of the data, go by their walls (walls.h); low outliers are looked for in
 // the surface that a small opening leaves and not in the lowest returns, where ground seen through a gap of the canopy looks the same.
-// Bridge decks are taken off to their ends, and crests put back (decks.h, crests.h).
+// Bridge decks are taken off to their ends, crests put back, and pieces of roofs at the rim taken off (decks.h, crests.h, rim_islands.h).
 // Each step works on what the ones after it need: the part asked for, grown by their reach.
 #include "filters/ground_coarse.h"
 
@@ -20,6 +20,7 @@
 #include "filters/decks.h"
 #include "filters/inpaint.h"
 #include "filters/moving_planes.h"
+#include "filters/rim_islands.h"
 #include "filters/walls.h"
 
 namespace swath::filters {
@@ -146,13 +147,15 @@ void remove_pits(Raster& ground, const Raster& surface) {
 
 /// Where a step's result is needed, in cells around the part asked for.
 struct Needs {
-  int filled, crests, decks, objects, gaps, walls, pits, all;
+  int filled, islands, crests, decks, objects, gaps, walls, pits, all;
 };
-Needs needs_of(const GroundSurfaceOptions& o) {
+/// `rim`: are there cells at the rim of the data near the part? Elsewhere are no islands.
+Needs needs_of(const GroundSurfaceOptions& o, bool rim) {
   const int window = window_of(o);
   Needs n{};
   n.filled = reach(smoothing);
-  n.crests = n.filled + terrain_filling(window).support();
+  n.islands = n.filled + terrain_filling(window).support();
+  n.crests = n.islands + (rim ? rim_island_support : 0);
   n.decks = n.crests + crest_support;
   n.objects = std::max(n.decks + deck_support, n.decks + window);  // crests ask how the filled surface falls within the widest disk
   n.gaps = n.objects + opening_support(window);
@@ -201,8 +204,16 @@ std::vector<WalledHill> remove_pits_and_walled(Raster& lowest, const core::Latti
   remove_objects(ground, inpaint(lowest, gap_filling), Raster(lowest.nx, lowest.ny, 0.0F), o, std::min(window_of(o), pit_window));
   remove_pits(lowest, inpaint(ground, pit_filling));
   WallOptions walls = walls_of(o);
-  walls.farthest = coarse_ground_reach(o);
+  walls.farthest = needs_of(o, false).all;
   return remove_walled(lowest, l, walls);
+}
+
+/// rim_cells() where islands ask for them; empty where none of them can reach the part.
+Raster rim_around(const Raster& lowest, const core::Lattice& all, const core::Lattice& part, const Needs& needs) {
+  const core::Lattice wide = grown(part, needs.crests + rim_support, all), near = grown(part, needs.islands + rim_island_across, all);
+  const Raster rim = rim_cells(cropped(lowest, all, wide)), reached = cropped(rim, wide, near);
+  if (std::none_of(reached.value.begin(), reached.value.end(), [](float v) { return v > 0.0F; })) return {};
+  return cropped(rim, wide, grown(part, needs.crests, all));
 }
 
 /// The hills of `all` that are still hills in the finished surface.
@@ -226,21 +237,24 @@ core::Lattice grown(const core::Lattice& l, int cells, const core::Lattice& with
   return {l.cell, i0, j0, static_cast<int>(i1 - i0), static_cast<int>(j1 - j0)};
 }
 
-int coarse_ground_reach(const GroundSurfaceOptions& o) { return needs_of(o).all; }
+int coarse_ground_reach(const GroundSurfaceOptions& o) { return needs_of(o, true).all; }
 
 int coarse_ground_rim(const GroundSurfaceOptions& o) { return gap_filling.support() + window_of(o) + 1; }
 
 Raster coarse_ground(Raster lowest, const core::Lattice& all, const core::Lattice& part, const GroundSurfaceOptions& o,
                      std::vector<RaisedSurface>* raised) {
   const int window = window_of(o);
-  const Needs needs = needs_of(o);
+  const Raster rim = rim_around(lowest, all, part, needs_of(o, true));
+  const Needs needs = needs_of(o, rim.nx > 0);
   core::Lattice at = all;
   const auto crop = [&](int needed, std::initializer_list<Raster*> rasters) {
     const core::Lattice to = grown(part, needed, all);
     for (Raster* r : rasters) *r = cropped(*r, at, to);
     at = to;
   };
-  const std::vector<WalledHill> hills = remove_pits_and_walled(lowest, all, o);
+  crop(needs.all, {&lowest});
+  const core::Lattice reached = at;
+  const std::vector<WalledHill> hills = remove_pits_and_walled(lowest, at, o);
   crop(needs.walls, {&lowest});
   Raster ground = lowest, filled = inpaint(lowest, gap_filling), opened;
   {
@@ -252,8 +266,10 @@ Raster coarse_ground(Raster lowest, const core::Lattice& all, const core::Lattic
   crop(needs.decks + window, {&ground, &lowest, &filled, &opened});
   restore_crests(ground, {lowest, filled, opened, window - 1});
   crop(needs.crests, {&ground});
+  if (rim.nx > 0) remove_rim_islands(ground, rim);
+  crop(needs.islands, {&ground});
   ground = cropped(smoothed(inpaint(ground, terrain_filling(window)), smoothing), at, part);
-  if (raised) *raised = raised_in(ground, hills, all, part);
+  if (raised) *raised = raised_in(ground, hills, reached, part);
   return ground;
 }
 

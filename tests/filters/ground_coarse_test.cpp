@@ -30,6 +30,17 @@ Raster country(int nx, int ny) {
   return r;
 }
 
+/// The same with level land at the western rim, houses on it, and before each a roof that the rim cuts.
+Raster country_with_annexes(int nx, int ny) {
+  Raster r = country(nx, ny);
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < 90; ++i) {
+      const bool house = i < 16 && j % 50 >= 10 && j % 50 < 28;
+      r.value[r.at(i, j)] = 0.03F * static_cast<float>((7 * i + 3 * j) % 5) + (!house ? 0.0F : i < 3 ? 3.0F : 11.0F);
+    }
+  return r;
+}
+
 /// Of the country, within a rim without returns.
 Raster with_rim(const Raster& inner, int rim) {
   Raster r(inner.nx + 2 * rim, inner.ny + 2 * rim, nothing);
@@ -66,16 +77,16 @@ TEST(CoarseGround, ARaggedRoofAtTheRimIsOffInWiderCells) {
     for (int i = 52; i < 78; ++i) EXPECT_LT(ground.value[ground.at(i + rim, j + rim)], 0.5F) << i << " " << j;
 }
 
-/// `i0`, `j0`: of the whole raster in the survey's lattice.
-void expect_part_of_whole(const GroundSurfaceOptions& o, int i0, int j0) {
+/// `i0`, `j0`: of the whole raster in the survey's lattice. `east`: of the part, in cells from the rim.
+void expect_part_of_whole(const GroundSurfaceOptions& o, int i0, int j0, int east) {
   const int rim = coarse_ground_rim(o), reach = coarse_ground_reach(o), side = 2 * reach + 60;
-  const Raster all = with_rim(country(side, side), rim);
+  const Raster all = with_rim(country_with_annexes(side, side), rim);
   const core::Lattice l{1.0, i0, j0, all.nx, all.ny};
   const Raster whole = coarse_ground(all, l, l, o);
-  const core::Lattice part{1.0, i0 + rim + reach + 7, j0 + rim + reach + 3, 40, 45};
+  const core::Lattice part{1.0, i0 + rim + east, j0 + rim + reach + 3, 40, 45};
   const Raster cut = coarse_ground(all, l, part, o);
   // A raster of its own without what lies beyond the reach.
-  const core::Lattice own{1.0, part.i0 - reach, part.j0 - reach, part.nx + 2 * reach, part.ny + 2 * reach};
+  const core::Lattice own = grown(part, reach, l);
   Raster near(own.nx, own.ny, nothing);
   for (int j = 0; j < own.ny; ++j)
     for (int i = 0; i < own.nx; ++i)
@@ -90,9 +101,25 @@ void expect_part_of_whole(const GroundSurfaceOptions& o, int i0, int j0) {
 }
 
 TEST(CoarseGround, APartIsWhatItIsInTheWhole) {
-  expect_part_of_whole(small(), 0, 0);
-  expect_part_of_whole(small(), -7, 13);
-  expect_part_of_whole({.widest = 120.0, .longest = 20.0}, 5, -8);
+  const int inside = coarse_ground_reach(small()) + 7;
+  expect_part_of_whole(small(), 0, 0, inside);
+  expect_part_of_whole(small(), -7, 13, inside);
+  const GroundSurfaceOptions wide{.widest = 120.0, .longest = 20.0};
+  expect_part_of_whole(wide, 5, -8, coarse_ground_reach(wide) + 7);
+  for (const int east : {-3, 20, 60, 110, 180}) expect_part_of_whole(small(), 3, 4, east);
+}
+
+TEST(CoarseGround, ARoofThatTheRimCutsIsOffThoughAHouseHidesItsWalls) {
+  const GroundSurfaceOptions o{};
+  const int rim = coarse_ground_rim(o), side = 140;
+  Raster inner(side, side, 0.0F);
+  for (int j = 50; j < 74; ++j)
+    for (int i = 0; i < 20; ++i) inner.value[inner.at(i, j)] = i < 3 ? 3.0F : 9.0F;
+  const Raster all = with_rim(inner, rim);
+  const core::Lattice l{1.0, 0, 0, all.nx, all.ny};
+  const Raster ground = coarse_ground(all, l, l, o);
+  for (int j = 50; j < 74; ++j)
+    for (int i = 0; i < 20; ++i) EXPECT_LT(ground.value[ground.at(i + rim, j + rim)], 0.5F) << i << " " << j;
 }
 
 TEST(CoarseGround, AGrownLatticeEndsWhereTheWholeDoes) {
