@@ -24,7 +24,7 @@ double height_of(const SampledFlight& f, const Eigen::Vector3d& p) { return core
 
 ControlFigures compare_control(const SampledFlight& f, const LineCells& cells, const Chain& chain, const trajectory::Trajectory& t) {
   ControlFigures out;
-  out.points = f.control.size();
+  out.points = f.plan.spots;
   out.near = f.plan.near_spots;
   out.nearest = f.plan.nearest_spot;
   std::map<size_t, const core::Shots*> shots;

@@ -173,13 +173,12 @@ std::string doubt_of(const GeometryFigures& g, const GeometryOptions& o) {
 
 /// Small mistakes that the lines' and the control's differences show; confirmed on the sample.
 std::vector<TriedMistake> small_mistakes(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight,
-                                         const LineCells& cells, const GeometryFigures& found) {
+                                         const std::vector<UsualMistake>& usual, const LineCells& cells, const GeometryFigures& found) {
   const bool heights = found.control.compared >= fewest_control_points;
   const std::vector<ControlCell> none;
   if (found.verdict == Verdict::not_judged && !heights) return {};
   double speed = 0;
   for (const Pass& p : flight.plan.passes) speed = std::max(speed, p.speed);
-  const std::vector<UsualMistake> usual = usual_mistakes(in.chain, in.convergence, in.antenna);
   const auto explained = [&](const LineCells& of, const Chain& at) {
     const ShotGeometry geometry(at.scanner, at.calibration);
     const SmallErrors errors =
@@ -201,7 +200,7 @@ std::vector<TriedMistake> small_mistakes(const GeometryInput& in, const Geometry
   if (little) std::erase_if(all, [](const SmallExplanation& e) { return !e.usual; });
   // Where control alone is off, a mistake that does not set it right explains nothing.
   const size_t now = not_held(found.checks), most = now > 0 ? now - 1 : 0;
-  const Trial trial(in, o, flight, found);
+  const Trial trial(in, o, flight, found, usual);
   for (const SmallExplanation& e : all)
     if (TriedMistake t = trial.judged(e); t.fit.cost <= no_worse * found.lines.fit.cost && t.contradictions <= most)
       out.push_back(std::move(t));
@@ -209,9 +208,9 @@ std::vector<TriedMistake> small_mistakes(const GeometryInput& in, const Geometry
 }
 
 /// A flight whose lines do not fit, or whose records contradict one another.
-void try_mistakes(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight, bool apart, bool sound,
-                  GeometryFigures& out) {
-  const Trial trial(in, o, flight, out);
+void try_mistakes(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight, const std::vector<UsualMistake>& usual,
+                  bool apart, bool sound, GeometryFigures& out) {
+  const Trial trial(in, o, flight, out, usual);
   const auto least = static_cast<std::uint64_t>(o.min_cells);
   std::vector<TriedMistake> tried;
   trial.usual(tried);
@@ -230,8 +229,9 @@ void try_mistakes(const GeometryInput& in, const GeometryOptions& o, const Sampl
 
 /// The trajectory covers part of the lines alone, and none fit one another as described: would leap seconds make it cover them all, and the
 /// lines fit?
-void try_leap(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight, GeometryFigures& out) {
-  const Trial trial(in, o, flight, out);
+void try_leap(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight, const std::vector<UsualMistake>& usual,
+              GeometryFigures& out) {
+  const Trial trial(in, o, flight, out, usual);
   trial.leap(out.tried);
   const double shift = in.chain.calibration.latency.value;
   for (const TriedMistake& t : out.tried) {
@@ -279,13 +279,14 @@ GeometryFigures judge_geometry(const GeometryInput& in, const GeometryOptions& o
   }
   const bool sound = !apart && not_held(out.checks) == 0;
   const bool unmet = out.verdict == Verdict::not_judged && flight.plan.nearest < meeting * in.range;
+  const std::vector<UsualMistake> usual = usual_mistakes(in.chain, in.convergence, in.antenna);
   const bool of_heights = !apart && !unmet && is_of_heights(out);
   if (of_heights)
     if (const auto h = height_mistake(control, in.undulation ? in.undulation() : std::nan(""), in.range))
       out.named.push_back({h->name, h->what, h->cure, {}, 0});
-  if (out.named.empty() && (sound || of_heights)) out.named = small_mistakes(in, o, flight, cells, out);
-  if (sound && out.named.empty() && out.verdict != Verdict::consistent && out.covered < nearly_all) try_leap(in, o, flight, out);
-  if (out.named.empty() && (unmet || !sound)) try_mistakes(in, o, flight, apart, sound, out);
+  if (out.named.empty() && (sound || of_heights)) out.named = small_mistakes(in, o, flight, usual, cells, out);
+  if (sound && out.named.empty() && out.verdict != Verdict::consistent && out.covered < nearly_all) try_leap(in, o, flight, usual, out);
+  if (out.named.empty() && (unmet || !sound)) try_mistakes(in, o, flight, usual, apart, sound, out);
   if (sound && out.named.empty()) {
     out.tried.clear();
     return out;

@@ -176,32 +176,35 @@ std::vector<PairSites> near_pairs(const std::vector<Pass>& passes, double reach,
   return sorted;
 }
 
+/// At most so many of them, at even steps.
+template <class T>
+std::vector<T> evenly(const std::vector<T>& all, size_t most) {
+  std::vector<T> out;
+  const size_t n = std::min(most, all.size());
+  for (size_t k = 0; k < n; ++k) out.push_back(all[k * all.size() / n]);
+  return out;
+}
+
 /// How near the tracks come to places, and the two passes nearest to each of some of them: number and time.
 std::vector<std::pair<size_t, double>> passes_at(const std::vector<Vector2d>& spots, double reach, size_t most, SamplePlan& plan) {
+  const std::vector<CourseBox> boxes(plan.passes.begin(), plan.passes.end());
   std::vector<std::vector<std::pair<size_t, double>>> found;
   for (const Vector2d& spot : spots) {
     std::vector<std::tuple<double, size_t, double>> near;  // distance, pass, time
-    for (size_t k = 0; k < plan.passes.size(); ++k) {
-      const Pass& p = plan.passes[k];
-      std::tuple<double, size_t, double> best{std::numeric_limits<double>::infinity(), k, 0.0};
-      for (size_t i = 0; i < p.track.size(); ++i)
-        if (const double d = (p.track[i] - spot).norm(); d < std::get<0>(best)) best = {d, k, p.time[i]};
-      near.push_back(best);
-    }
+    for (size_t k = 0; k < boxes.size(); ++k)
+      if (const auto best = boxes[k].nearest(spot, std::max(reach, plan.nearest_spot))) near.emplace_back(best->first, k, best->second);
     std::sort(near.begin(), near.end());
     if (near.empty()) continue;
     const double distance = std::get<0>(near.front());
     plan.nearest_spot = std::min(plan.nearest_spot, distance);
     plan.near_spots += distance < reach;
-    std::vector<std::pair<size_t, double>>& at = found.emplace_back();
+    std::vector<std::pair<size_t, double>> at;
     for (size_t k = 0; k < std::min<size_t>(2, near.size()) && std::get<0>(near[k]) < spot_share * reach; ++k)
       at.emplace_back(std::get<1>(near[k]), std::get<2>(near[k]));
-    if (at.empty()) found.pop_back();
+    if (!at.empty()) found.push_back(std::move(at));
   }
   std::vector<std::pair<size_t, double>> out;
-  const size_t n = std::min(most, found.size());
-  for (size_t k = 0; k < n; ++k)
-    for (const auto& one : found[k * found.size() / n]) out.push_back(one);
+  for (const auto& at : evenly(found, most)) out.insert(out.end(), at.begin(), at.end());
   return out;
 }
 
@@ -281,6 +284,7 @@ SamplePlan plan_sample(const std::vector<RecordedLine>& lines, const trajectory:
     for (size_t p = before; p < plan.passes.size(); ++p) plan.passes[p].recorded = k;
   }
   plan.covered = seconds > 0 ? covered / seconds : 0.0;
+  plan.spots = spots.size();
   const double half = half_length(range), reach = swath_share * range;
   plan.cell = std::clamp(std::sqrt(returns_of_a_cell * 2 * half * 0.75 * range / size.returns), 0.75, 12.0);
   const auto add = [&](size_t number, double time) {
@@ -305,6 +309,25 @@ SamplePlan plan_sample(const std::vector<RecordedLine>& lines, const trajectory:
   }
   join(plan.stretches);
   return plan;
+}
+
+std::vector<size_t> spots_seen(const SamplePlan& plan, double range, const std::vector<Vector2d>& spots, size_t most) {
+  std::vector<Pass> pieces;
+  for (const Stretch& s : plan.stretches) {
+    if (s.profile) continue;
+    const Pass& whole = plan.passes[s.pass];
+    Pass& piece = pieces.emplace_back();
+    piece.course = whole.course;
+    for (size_t i = 0; i < whole.time.size(); ++i)
+      if (std::abs(whole.time[i] - std::clamp(whole.time[i], s.first, s.last)) <= track_step)
+        piece.time.push_back(whole.time[i]), piece.track.push_back(whole.track[i]);
+  }
+  const std::vector<CourseBox> boxes(pieces.begin(), pieces.end());
+  std::vector<size_t> seen;
+  for (size_t k = 0; k < spots.size(); ++k)
+    if (std::any_of(boxes.begin(), boxes.end(), [&](const CourseBox& b) { return b.nearest(spots[k], swath_share * range); }))
+      seen.push_back(k);
+  return evenly(seen, most);
 }
 
 std::vector<GeometrySample> collect_samples(const std::vector<const SamplePlan*>& plans, const ShotStream& stream) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "calib/geometry_pass.h"
 #include "calib/shot_stream.h"
 #include "core/shot.h"
 #include "trajectory/fix_window.h"
@@ -19,18 +20,6 @@ struct RecordedLine {
   int line = 0;
   double first = 0.0, last = 0.0;  ///< time as recorded, s
   std::uint64_t records = 0;
-};
-
-/// A straight piece of a flight line.
-struct Pass {
-  int line = 0;
-  size_t recorded = 0;                 ///< number of its whole_lines()
-  double first = 0.0, last = 0.0;      ///< time as recorded, s
-  double rate = 0.0;                   ///< records per second
-  double speed = 0.0;                  ///< m/s
-  double course = 0.0;                 ///< over ground from local north, rad
-  std::vector<double> time;            ///< of the track's points, as recorded, s
-  std::vector<Eigen::Vector2d> track;  ///< local east, north, m
 };
 
 /// What is kept of a pass.
@@ -54,7 +43,7 @@ struct SamplePlan {
   double cell = 0.0;                                              ///< side of a square that holds about ten returns of a stretch, m
   double covered = 0.0;                                           ///< share of the lines' time within the trajectory
   double nearest = std::numeric_limits<double>::infinity();       ///< distance of the two tracks nearest to one another, m
-  size_t near_spots = 0;                                          ///< of those asked for, within reach of a track
+  size_t spots = 0, near_spots = 0;                               ///< asked for, and of those within reach of a track
   double nearest_spot = std::numeric_limits<double>::infinity();  ///< m, distance of one from a track
 };
 
@@ -67,6 +56,9 @@ std::vector<RecordedLine> whole_lines(std::vector<RecordedLine> lines);
 SamplePlan plan_sample(const std::vector<RecordedLine>& lines, const trajectory::Trajectory& trajectory,
                        const trajectory::LocalFrame& frame, double shift, double range, const SampleSize& size,
                        const std::vector<Eigen::Vector2d>& spots = {});
+
+/// Numbers of the spots that the stretches of a plan may have seen: at most `most`, evenly among them.
+std::vector<size_t> spots_seen(const SamplePlan& plan, double range, const std::vector<Eigen::Vector2d>& spots, size_t most);
 
 /// The returns of a pass, last ones alone, by time.
 struct PassSample {

@@ -16,7 +16,9 @@ namespace {
 constexpr double margin = 0.6;           // s of the trajectory around a stretch ...
 constexpr double steps_around = 2.5;     // ... and steps of it, for the cubic through four records
 constexpr double longest_offset = 20.0;  // s
-constexpr int fewer_stretches = 2;       // of samples that are read for one assumption: a share of the flight's own
+constexpr size_t most_control = 500;     // surveyed places that are compared
+// Of samples that are in memory together, in units of the flight's own: each, and all of them.
+constexpr double largest_share = 0.5, largest_sum = 2.0;
 
 /// Longest step between records that is interpolated over.
 double longest_step(const trajectory::Trajectory& t) {
@@ -72,16 +74,18 @@ std::vector<SampledFlight> sampled(const GeometryInput& in, const GeometryOption
     control.push_back({frame.local_R_ecef * (p.ecef - frame.origin), p.sigma, p.horizontal});
     spots.push_back(control.back().place.head<2>());
   }
+  const double share = wanted.size() > 1 ? std::min(largest_share, largest_sum / static_cast<double>(wanted.size())) : 1.0;
+  const auto stretches = static_cast<size_t>(std::max(4.0, share * o.stretches));
   for (const SampleFor& w : wanted) {
     SampledFlight& f = out.emplace_back();
-    f.control = control;
     f.frame = frame;
     f.sensor = in.sensor;
     SampleSize size;
     size.returns = o.returns;
-    size.most_stretches = static_cast<size_t>(o.stretches) / (wanted.size() > 1 ? fewer_stretches : 1);
+    size.most_stretches = stretches;
     f.plan = plan_sample(in.lines, *in.trajectory, frame, w.shift, w.range, size, spots);
     f.ground = {f.plan.cell, 0.10 + 1e-4 * w.range};
+    for (const size_t k : spots_seen(f.plan, w.range, spots, most_control)) f.control.push_back(control[k]);
   }
   std::vector<const SamplePlan*> plans;
   for (const SampledFlight& f : out) plans.push_back(&f.plan);
@@ -96,8 +100,9 @@ size_t not_held(const std::vector<GeometryCheck>& checks) {
 
 double leap_seconds(const GeometryInput& in) { return core::gps_minus_utc_at_gps(in.lines.front().first); }
 
-Trial::Trial(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight, const GeometryFigures& found)
-    : in_(in), options_(o), flight_(flight), found_(found), shift_(in.chain.calibration.latency.value) {
+Trial::Trial(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight, const GeometryFigures& found,
+             const std::vector<UsualMistake>& mistakes)
+    : in_(in), options_(o), flight_(flight), found_(found), mistakes_(mistakes), shift_(in.chain.calibration.latency.value) {
   const double step = longest_step(*in.trajectory);
   piece_ = cut_trajectory(in.trajectory->data(), flight.plan, shift_, std::max(margin, steps_around * step));
   how_.max_gap.value = 1.01 * step;
@@ -106,9 +111,9 @@ Trial::Trial(const GeometryInput& in, const GeometryOptions& o, const SampledFli
 }
 
 void Trial::usual(std::vector<TriedMistake>& out) const {
-  for (const UsualMistake& m : usual_mistakes(in_.chain, in_.convergence, in_.antenna)) {
-    Chain chain = in_.chain;
+  for (const UsualMistake& m : mistakes_) {
     if (m.kind == UsualMistake::Kind::ranges) continue;
+    Chain chain = in_.chain;
     if (m.chain) m.chain(chain);
     TriedMistake tried{std::string(m.name), m.what, m.cure, {}, 0};
     const bool judged = could([&] {
@@ -124,12 +129,13 @@ void Trial::usual(std::vector<TriedMistake>& out) const {
 }
 
 void Trial::sampled_anew(std::vector<TriedMistake>& out) const {
-  std::vector<UsualMistake> ranges = usual_mistakes(in_.chain, in_.convergence, in_.antenna);
-  std::erase_if(ranges, [](const UsualMistake& m) { return m.kind != UsualMistake::Kind::ranges; });
+  std::vector<const UsualMistake*> ranges;
+  for (const UsualMistake& m : mistakes_)
+    if (m.kind == UsualMistake::Kind::ranges) ranges.push_back(&m);
   std::vector<SampleFor> wanted;
   std::vector<Chain> chains;
-  for (const UsualMistake& m : ranges) {
-    m.chain(chains.emplace_back(in_.chain));
+  for (const UsualMistake* m : ranges) {
+    m->chain(chains.emplace_back(in_.chain));
     wanted.push_back({shift_, in_.range * chains.back().calibration.range_scale / in_.chain.calibration.range_scale});
   }
   const double leap = leap_seconds(in_);
@@ -143,7 +149,7 @@ void Trial::sampled_anew(std::vector<TriedMistake>& out) const {
   std::vector<SampledFlight> flights;
   if (!could([&] { flights = sampled(in_, options_, flight_.frame, wanted); })) return;
   for (size_t k = 0; k < ranges.size(); ++k) {
-    TriedMistake tried{std::string(ranges[k].name), ranges[k].what, ranges[k].cure, {}, 0};
+    TriedMistake tried{std::string(ranges[k]->name), ranges[k]->what, ranges[k]->cure, {}, 0};
     if (could([&] { judge(flights[k], chains[k], *in_.trajectory, whole_, motion_, tried); })) out.push_back(std::move(tried));
   }
   for (size_t k = 0; k < offsets.size(); ++k) {

@@ -13,7 +13,7 @@ namespace swath::calib {
 struct SampleFor {
   double shift = 0.0, range = 0.0;
 };
-/// The shots are read once for all.
+/// The shots are read once for all; samples for several assumptions are smaller, two flights' own at most in all.
 std::vector<SampledFlight> sampled(const GeometryInput& input, const GeometryOptions& options, const trajectory::LocalFrame& frame,
                                    const std::vector<SampleFor>& wanted);
 
@@ -21,10 +21,11 @@ size_t not_held(const std::vector<GeometryCheck>& checks);
 /// GPS less UTC at the flight's date, s.
 double leap_seconds(const GeometryInput& input);
 
-/// Input, options, flight and figures must outlive it.
+/// Input, options, flight, figures and `mistakes`, the usual ones, must outlive it.
 class Trial {
  public:
-  Trial(const GeometryInput& input, const GeometryOptions& options, const SampledFlight& flight, const GeometryFigures& found);
+  Trial(const GeometryInput& input, const GeometryOptions& options, const SampledFlight& flight, const GeometryFigures& found,
+        const std::vector<UsualMistake>& mistakes);
 
   /// All usual mistakes but those of the ranges.
   void usual(std::vector<TriedMistake>& out) const;
@@ -50,6 +51,7 @@ class Trial {
   const GeometryOptions& options_;
   const SampledFlight& flight_;
   const GeometryFigures& found_;
+  const std::vector<UsualMistake>& mistakes_;
   double shift_;
   core::TrajectoryData piece_, whole_;
   trajectory::TrajectoryOptions how_;
