@@ -29,7 +29,8 @@ struct LasReader::State {
   std::vector<std::string> warnings;
   std::ifstream in;
   std::unique_ptr<swath_laz_reader, CloseLaz> laz;
-  std::uint64_t position = 0, outside = 0;
+  std::uint64_t position = 0;
+  LasBox box;
   LasTimesRead times_read;
   LasTimeCheck times;
   std::vector<std::uint8_t> records;
@@ -72,25 +73,17 @@ struct LasReader::State {
     }
   }
 
-  void count_outside() {
-    const Eigen::Vector3d slack = header.scale.cwiseAbs() * 0.5, low = header.min - slack, high = header.max + slack;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (!(points.x[i] >= low.x() && points.x[i] <= high.x() && points.y[i] >= low.y() && points.y[i] <= high.y() &&
-            points.z[i] >= low.z() && points.z[i] <= high.z()))
-        ++outside;
-  }
-
   /// The next points into `points`.
   std::size_t next(std::size_t most) {
     const std::size_t n = static_cast<std::size_t>(std::min<std::uint64_t>(most, header.point_count - position));
     read_records(n);
     decode_las_points(records, header, points);
-    count_outside();
+    box.add(points, header, position);
     times.add(points.gps_time);
     position += n;
     if (position == header.point_count && !ended) {
       ended = true;
-      if (outside > 0) warnings.push_back(std::to_string(outside) + " points lie outside the bounds of the header");
+      if (box.outside() > 0) warnings.push_back(box.fault());
     }
     return n;
   }
@@ -109,6 +102,7 @@ LasReader& LasReader::operator=(LasReader&&) noexcept = default;
 const LasHeader& LasReader::header() const { return state_->header; }
 LasCrs LasReader::crs() const { return las_crs(state_->header); }
 const std::vector<std::string>& LasReader::warnings() const { return state_->warnings; }
+const LasBox& LasReader::box() const { return state_->box; }
 std::uint64_t LasReader::position() const { return state_->position; }
 
 std::size_t LasReader::read(LasPoints& out, std::size_t most) {

@@ -9,6 +9,7 @@
 
 #include "core/block.h"
 #include "io/las_block.h"
+#include "io/las_box.h"
 #include "io/las_crs.h"
 #include "io/las_header.h"
 #include "io/las_points.h"
@@ -30,6 +31,8 @@ class LasReader {
   LasCrs crs() const;
   /// What is odd and harmless; complete once the last point is read (points outside the stated bounds are counted while reading).
   const std::vector<std::string>& warnings() const;
+  /// The points read so far against the box of the header; what it finds is the last of the warnings.
+  const LasBox& box() const;
   /// Points read so far.
   std::uint64_t position() const;
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "core/time.h"
@@ -291,6 +292,7 @@ struct LaserSource::State {
   double last_time = -std::numeric_limits<double>::infinity();
   double last_recorded = std::nan("");  // of the record passed last, in the file's scale
   std::uint64_t damaged_records = 0;
+  bool ended = false;
 
   bool is_bad(std::uint64_t record) const { return bad && std::binary_search(bad->begin(), bad->end(), record); }
 
@@ -363,6 +365,7 @@ bool LaserSource::next(core::Shots& batch, size_t most) {
     if (s.at == s.raw.size()) {
       s.at = 0;
       if (!s.reader->next(s.raw, chunk)) {
+        if (!std::exchange(s.ended, true)) s.reader->count_oddities(s.file.file.string(), s.tally);
         s.raw.clear();
         return batch.size() > 0;
       }

@@ -10,6 +10,7 @@
 #include "io/binary_file.h"
 #include "io/csd.h"
 #include "io/delimited.h"
+#include "io/las_box.h"
 #include "io/las_reader.h"
 #include "io/npy.h"
 
@@ -184,6 +185,7 @@ class LasRecords : public LaserRecordReader {
     }
     out.record.resize(n);
     std::iota(out.record.begin(), out.record.end(), record_);
+    if (wanted_ == Wanted::all) box_.add(points_, header_, record_);
     record_ += n;
     if (wanted_ == Wanted::plan && !reader_) return true;
     const LasPoints& p = points_;
@@ -203,10 +205,15 @@ class LasRecords : public LaserRecordReader {
     return true;
   }
 
+  void count_oddities(const std::string& name, core::Tally& tally) const override {
+    if (box_.outside() > 0) tally.count(outside_box, name + ": " + box_.fault(), box_.outside());
+  }
+
  private:
   std::vector<std::string> ignored_;
   Wanted wanted_;
   LasHeader header_;
+  LasBox box_;
   std::unique_ptr<BinaryFile> file_;
   std::unique_ptr<LasReader> reader_;
   LasPoints points_;

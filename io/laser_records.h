@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "core/report.h"
 #include "io/survey.h"
 
 namespace swath::io {
@@ -42,6 +44,8 @@ class LaserRecordReader {
   virtual ~LaserRecordReader() = default;
   /// Replaces `out` by the next records, about `most` (a CSD pulse is not cut); false at the end.
   virtual bool next(LaserRecords& out, size_t most) = 0;
+  /// Counts what is odd of the records read so far; `name`: of the file.
+  virtual void count_oddities(const std::string&, core::Tally&) const {}
 };
 
 /// Opens a file of the survey at `from`; records from row `end` on are not read. Throws Error: missing column or field, wrong format.

@@ -58,8 +58,7 @@ std::vector<fs::path> files_of(const Plan& plan) {
   std::set<fs::path> out;
   io::Survey survey = plan.survey;
   add_named(core::effective_values(core::described(survey)), plan.survey.folder, out);
-  for (const PlannedStage& s : plan.stages)
-    for (const fs::path& file : s.stage->inputs(plan.survey)) out.insert(file);
+  for (const fs::path& file : input_files(plan)) out.insert(file);
   for (const fs::path& file : std::set<fs::path>(out))
     for (const fs::path& beside : io::side_files(file)) out.insert(beside);
   out.insert(plan.config);
@@ -100,6 +99,13 @@ void InputGuard::expect_apart(const fs::path& product) const {
   for (auto at = fs::recursive_directory_iterator(product, fs::directory_options::skip_permission_denied, ec);
        !ec && at != fs::recursive_directory_iterator(); at.increment(ec))
     expect_other(at->path(), product);
+}
+
+std::vector<fs::path> input_files(const Plan& plan) {
+  std::vector<fs::path> out;
+  for (const PlannedStage& s : plan.stages)
+    for (const fs::path& file : s.stage->inputs(plan.survey)) out.push_back(file);
+  return out;
 }
 
 std::function<void(const fs::path&)> outside_inputs(const Plan& plan) {

@@ -32,6 +32,9 @@ class InputGuard {
 /// For a delivery: throws core::SystemError (the work stays) for a file of the plan, whatever name a stage gave its product.
 std::function<void(const std::filesystem::path&)> outside_inputs(const Plan& plan);
 
+/// The files that the plan's stages read.
+std::vector<std::filesystem::path> input_files(const Plan& plan);
+
 /// Whether the products of the plan can get their names in its output folder: core::Error (usage) where one would take the place of a file
 /// of the plan, a folder has the name of a file or the other way around, or a path is longer than the system takes.
 void check_output(const Plan& plan);

@@ -824,7 +824,7 @@ Outcome Engine::run(const std::string& command) {
     throw;  // as for a full disk
   } catch (const core::Error& e) {
     if (!lock.is_there()) throw;  // what is there now is another run's
-    const core::Error reported = with_geometry(e, judged_geometry());
+    const core::Error reported = with_geometry(e, judged_geometry(), input_files(plan_));
     if (has_products_) keep_finished(reported);
     discard(work_, discarded);
     if (made_output) remove_if_empty(output_);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "io/las_box.h"
 #include "io/value_file.h"
 #include "pipeline/limits.h"
 #include "pipeline/progress.h"
@@ -71,6 +72,10 @@ std::string summary(const Value& report, const std::filesystem::path& output) {
   }
   if (const Value* resumed = report.find("pieces_resumed"); resumed && resumed->as_int() > 0)
     out += "\nresumed: " + std::to_string(resumed->as_int()) + " pieces were done by an earlier run\n";
+  for (const Value& stage : report.find("stages")->items())
+    if (const Value* tally = stage.find("tally"))
+      if (const Value* outside = tally->find(io::outside_box))
+        for (const Value& example : outside->find("examples")->items()) out += "\nwarning: " + example.as_text() + "\n";
   if (const Value* geometry = report.find("geometry"))
     for (const Value& warning : geometry->find("warnings")->items()) out += "\nwarning: " + warning.as_text() + "\n";
   if (const Value* limits = report.find("limits"))
@@ -80,7 +85,11 @@ std::string summary(const Value& report, const std::filesystem::path& output) {
   return out;
 }
 
-core::Error with_geometry(const core::Error& e, const Value* geometry) {
+core::Error with_geometry(const core::Error& e, const Value* geometry, const std::vector<std::filesystem::path>& inputs) {
+  const auto is_within = [&](const std::filesystem::path& file) {
+    return e.where().starts_with(file.string()) || e.where().starts_with(file.filename().string());
+  };
+  if (e.code() != core::Exit::bad_data || std::any_of(inputs.begin(), inputs.end(), is_within)) return e;
   const Value* named = geometry ? geometry->find("named") : nullptr;
   const Value* warnings = geometry ? geometry->find("warnings") : nullptr;
   if (!named || named->items().empty() || !warnings || warnings->items().empty()) return e;

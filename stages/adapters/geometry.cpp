@@ -134,7 +134,8 @@ class GeometryJudge : public OptionStage<calib::GeometryOptions> {
     in.trajectory = context.trajectory.get();
     in.range = usual_range(context);
     in.convergence = convergence_of(context);
-    for (size_t k = 0; k < 3; ++k) in.antenna[static_cast<Eigen::Index>(k)] = context.survey.antenna.lever_arm[k].value;
+    // What is computed from GNSS fixes here is the IMU's, or the antenna's by its lever arm.
+    for (size_t k = 0; k < 3 && !context.gnss; ++k) in.antenna[static_cast<Eigen::Index>(k)] = context.survey.antenna.lever_arm[k].value;
     in.control = control_of(context, tally);
     in.undulation = [&context] { return undulation_of(context); };
     calib::GeometryFigures found;

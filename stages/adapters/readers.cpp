@@ -162,7 +162,10 @@ class CloudReader : public StripReader {
     scale_block(context_, block, true);
     const size_t n = reader_.read(block, most, time_, number_);
     if (n == 0) {
-      for (const std::string& w : reader_.warnings()) tally.count("oddities of the file", w);
+      const std::string outside = reader_.box().fault();
+      if (!outside.empty()) tally.count(io::outside_box, file_.file.string() + ": " + outside, reader_.box().outside());
+      for (const std::string& w : reader_.warnings())
+        if (w != outside) tally.count("oddities of the file", w);
       if (const std::string fault = reader_.time_fault(file_.time_scale); !fault.empty())
         tally.count("times contradict the file's GPS time bit, kept as they are", file_.file.string() + ": " + fault);
       return false;

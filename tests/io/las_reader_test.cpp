@@ -161,6 +161,25 @@ TEST(LasReader, ACountThatTheChunksDoNotHoldIsAnError) {
   }
 }
 
+TEST(LasReader, AHeaderThatLeavesChunksOutIsAnError) {
+  const test::TemporaryFolder folder;
+  for (const int format : {1, 6}) {
+    const LasHeader h = test::sample_header(format, 4);
+    test::write_sample(folder / "a.laz", h, test::sample_points(h, 120000));  // three chunks
+    for (const std::uint64_t lie : {std::uint64_t{0}, std::uint64_t{50000}, std::uint64_t{100000}}) {
+      std::string bytes = test::read_bytes(folder / "a.laz");
+      std::memcpy(&bytes[247], &lie, 8);
+      std::memset(&bytes[107], 0, 4);
+      test::write_bytes(folder / "b.laz", bytes);
+      EXPECT_THROW(test::read_all(folder / "b.laz"), core::Error) << format << " " << lie;
+    }
+    test::write_sample(folder / "none.laz", h, test::sample_points(h, 0));
+    EXPECT_EQ(test::read_all(folder / "none.laz").size(), 0u);
+    test::write_sample(folder / "whole.laz", h, test::sample_points(h, 100000));  // the last chunk is full
+    EXPECT_EQ(test::read_all(folder / "whole.laz").size(), 100000u);
+  }
+}
+
 TEST(LasReader, PointsOutsideTheStatedBoundsAreAWarning) {
   const test::TemporaryFolder folder;
   const LasHeader h = test::sample_header(6);
@@ -174,7 +193,7 @@ TEST(LasReader, PointsOutsideTheStatedBoundsAreAWarning) {
   LasPoints p;
   r.read(p, 100);
   ASSERT_EQ(r.warnings().size(), 1u);
-  EXPECT_NE(r.warnings()[0].find("100 points lie outside"), std::string::npos);
+  EXPECT_NE(r.warnings()[0].find("100 of 100 points (100 %) lie outside"), std::string::npos);
 }
 
 TEST(LasReader, ACompressedReferenceFileEqualsItsTwin) {

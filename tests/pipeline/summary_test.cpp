@@ -22,11 +22,32 @@ TEST(Summary, AnErrorBehindAJudgedGeometryHintsAtWhatIsNamed) {
   const core::Value geometry = io::parse_json(
       R"({"named": ["range_centimetres"], "warnings": ["lines disagree", "with ranges in centimetres: state range_unit"]})", "report");
   const core::Error e("no return could be georeferenced", "survey.toml", "compare the times", core::Exit::bad_data);
-  EXPECT_EQ(with_geometry(e, &geometry).hint(), "compare the times; quality.geometry: with ranges in centimetres: state range_unit");
-  EXPECT_EQ(with_geometry(e, &geometry).code(), core::Exit::bad_data);
-  EXPECT_EQ(with_geometry(e, nullptr).hint(), "compare the times");
+  EXPECT_EQ(with_geometry(e, &geometry, {}).hint(), "compare the times; quality.geometry: with ranges in centimetres: state range_unit");
+  EXPECT_EQ(with_geometry(e, &geometry, {}).code(), core::Exit::bad_data);
+  EXPECT_EQ(with_geometry(e, nullptr, {}).hint(), "compare the times");
   const core::Value sound = io::parse_json(R"({"named": [], "warnings": []})", "report");
-  EXPECT_EQ(with_geometry(e, &sound).hint(), "compare the times");
+  EXPECT_EQ(with_geometry(e, &sound, {}).hint(), "compare the times");
+}
+
+TEST(Summary, AnErrorOfAnotherFileOrOfTheConfigHasAnotherCause) {
+  const core::Value geometry =
+      io::parse_json(R"({"named": ["range_feet"], "warnings": ["with ranges in feet: state range_unit"]})", "report");
+  const std::vector<std::filesystem::path> inputs{"/survey/laser.npy", "/survey/edges.geojson"};
+  const auto hint = [&](const std::string& where, core::Exit code) {
+    return with_geometry(core::Error("a fault", where, "", code), &geometry, inputs).hint();
+  };
+  EXPECT_EQ(hint("/survey/edges.geojson: feature 3", core::Exit::bad_data), "");
+  EXPECT_EQ(hint("edges.geojson: feature 3", core::Exit::bad_data), "");
+  EXPECT_EQ(hint("pipeline.toml:3:1", core::Exit::bad_usage), "");
+  EXPECT_EQ(hint("simulated", core::Exit::bad_data), "quality.geometry: with ranges in feet: state range_unit");
+}
+
+TEST(Summary, PointsOutsideTheBoxOfTheirFilesHeaderAreAWarning) {
+  const core::Value report = io::parse_json(
+      R"({"seconds": 72, "stages": [{"type": "readers.las", "tally": {"points outside the box of their file's header":
+          {"count": 4, "examples": ["a.las: 4 of 100 points (4 %) lie outside"]}}}]})",
+      "report");
+  EXPECT_NE(summary(report, "out").find("\nwarning: a.las: 4 of 100 points (4 %) lie outside\n"), std::string::npos);
 }
 
 }  // namespace

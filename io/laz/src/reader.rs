@@ -120,7 +120,10 @@ fn read_table(file: &mut File, data_start: u64, vlr: &LazVlr, record_length: usi
     let (mut offset, mut left) = (data_start + 8, points);
     for (i, entry) in table.as_ref().iter().enumerate() {
         let n = if variable { entry.point_count } else { chunk_points.min(left) };
-        if n == 0 && points > 0 && !variable {
+        if n == 0 && !variable {
+            if entry.byte_count >= record_length as u64 {
+                return Err(bad(format!("the header says {} points, {} more chunks follow the last of them", points, table.len() - i)));
+            }
             break; // an empty last chunk, as some writers add
         }
         if n > left || entry.byte_count > table_start - offset {
@@ -139,6 +142,14 @@ fn read_table(file: &mut File, data_start: u64, vlr: &LazVlr, record_length: usi
         return Err(bad(format!("the chunks hold {} points, the header says {}", points - left, points)));
     }
     Ok(Some(chunks))
+}
+
+/// Does at least one whole record lie before the chunk table? False where there is no table.
+fn holds_chunks(file: &mut File, data_start: u64, record_length: usize) -> bool {
+    let mut b = [0u8; 8];
+    let table_start = file.seek(SeekFrom::Start(data_start)).and_then(|_| file.read_exact(&mut b)).map(|_| u64::from_le_bytes(b));
+    let size = file.metadata().map(|m| m.len()).unwrap_or(0);
+    table_start.is_ok_and(|at| at <= size && at.saturating_sub(data_start) >= 8 + record_length as u64)
 }
 
 /// A layered chunk: first record, point count, size of every layer, layers. Its sizes must fit before memory is taken for them.
@@ -213,6 +224,9 @@ impl Reader {
         let mut file = File::open(path)?;
         let record_length = usize::from(record_length);
         let table = if points == 0 {
+            if holds_chunks(&mut file, data_start, record_length) {
+                return Err(bad("the header says 0 points, chunks of points follow".to_string()));
+            }
             Some(Vec::new())
         } else if vlr_is_pointwise(&vlr) {
             None
