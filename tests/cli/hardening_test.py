@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import unittest
@@ -10,7 +11,14 @@ from pathlib import Path
 
 PROGRAM = Path(os.environ["SWATH_PROGRAM"])
 SOURCE = Path(os.environ["SWATH_SOURCE"])
+BUILD = PROGRAM.parent.parent
 SPDX_ID = re.compile(r"[A-Za-z0-9.+-]+")
+
+
+def is_optimized():
+    """By what CMake keeps of the build; true where it keeps nothing."""
+    cache = BUILD / "CMakeCache.txt"
+    return not cache.exists() or "CMAKE_BUILD_TYPE:STRING=Debug" not in cache.read_text()
 
 
 def readelf(*options):
@@ -37,8 +45,11 @@ class Elf(unittest.TestCase):
     def test_no_stack_is_executable(self):
         self.expect(r"GNU_STACK.*\sRW\s", "-l")
 
-    def test_stacks_and_buffers_are_guarded(self):
+    def test_stacks_are_guarded(self):
         self.expect(r"\b__stack_chk_fail\b", "--dyn-syms")
+
+    @unittest.skipUnless(is_optimized(), "_FORTIFY_SOURCE needs optimization")
+    def test_buffers_are_guarded(self):
         self.expect(r"\b__(memcpy|snprintf|vsnprintf|read|pread64|fread)_chk\b", "--dyn-syms")
 
 
@@ -90,8 +101,9 @@ class Bill(unittest.TestCase):
             self.assertEqual((by_name[name]["version"], by_name[name]["hashes"][0]["content"]), (version, checksum))
         for package in ("libc6", "libgdal", "libproj", "libpng16"):
             self.assertTrue([n for n in by_name if n.startswith(package)], f"{package} is linked and not listed")
-        for headers in ("libeigen3-dev", "libcli11-dev", "rapidjson-dev"):
-            self.assertIn(headers, by_name, "headers are built in, too")
+        if shutil.which("ninja") and (BUILD / ".ninja_deps").exists():  # else nothing says which headers were compiled
+            for headers in ("libeigen3-dev", "libcli11-dev", "rapidjson-dev"):
+                self.assertIn(headers, by_name, "headers are built in, too")
         self.assertTrue(all(c.get("licenses") for c in self.bill["components"] if c["purl"].startswith("pkg:cargo/")))
 
 

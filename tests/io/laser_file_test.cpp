@@ -2,8 +2,11 @@
 #include "io/laser_file.h"
 
 #include <cmath>
+#include <cstring>
 
 #include "core/error.h"
+#include "io/las_box.h"
+#include "tests/io/las_sample.h"
 #include "tests/world/support.h"
 
 namespace swath::io {
@@ -62,6 +65,33 @@ class LaserFiles : public ::testing::Test {
   Survey survey_;
   core::Tally tally_;
 };
+
+TEST_F(LaserFiles, ReturnsOutsideTheBoxOfTheHeaderAreCounted) {
+  LasHeader h = test::sample_header(6);
+  h.offset.setZero();
+  h.scale.setConstant(0.001);
+  LasPoints p;
+  resize(p, h, 100);
+  for (size_t i = 0; i < p.size(); ++i) {
+    p.raw_y[i] = static_cast<int>(i) * 1000 - 50000, p.raw_z[i] = 300000;  // -50 to 49 m to the right, 300 m down
+    p.gps_time[i] = 1e6 + 0.01 * static_cast<double>(i), p.point_source_id[i] = 1;
+  }
+  survey_.laser[0] = {};
+  for (const char* name : {"a.las", "a.laz"}) {
+    test::write_sample(folder_ / name, h, p);
+    survey_.laser[0].file = folder_ / name;
+    survey_.laser[0].format = LaserFormat::las;
+    tally_ = {};
+    EXPECT_EQ(shots().size(), 100u);
+    EXPECT_EQ(tally_.of(outside_box), 0u);
+    std::string bytes = test::read_bytes(folder_ / name);
+    const double largest = 39.5;
+    std::memcpy(&bytes[195], &largest, sizeof largest);  // y
+    test::write_bytes(folder_ / name, bytes);
+    EXPECT_EQ(shots().size(), 100u);
+    EXPECT_EQ(tally_.of(outside_box), 10u) << name;
+  }
+}
 
 TEST_F(LaserFiles, AColumnOfLinesMakesStripsEvenInterleaved) {
   survey_.laser[0].columns.line = "line";
