@@ -121,7 +121,7 @@ fn read_table(file: &mut File, data_start: u64, vlr: &LazVlr, record_length: usi
     for (i, entry) in table.as_ref().iter().enumerate() {
         let n = if variable { entry.point_count } else { chunk_points.min(left) };
         if n == 0 && !variable {
-            if entry.byte_count >= record_length as u64 {
+            if entry.byte_count >= smallest_chunk(vlr, record_length) {
                 return Err(bad(format!("the header says {} points, {} more chunks follow the last of them", points, table.len() - i)));
             }
             break; // an empty last chunk, as some writers add
@@ -144,18 +144,17 @@ fn read_table(file: &mut File, data_start: u64, vlr: &LazVlr, record_length: usi
     Ok(Some(chunks))
 }
 
-/// Does at least one whole record lie before the chunk table? False where there is no table.
-fn holds_chunks(file: &mut File, data_start: u64, record_length: usize) -> bool {
+/// Do chunks of points lie before the chunk table? False where there is no table.
+fn holds_chunks(file: &mut File, data_start: u64, smallest: u64) -> bool {
     let mut b = [0u8; 8];
     let table_start = file.seek(SeekFrom::Start(data_start)).and_then(|_| file.read_exact(&mut b)).map(|_| u64::from_le_bytes(b));
     let size = file.metadata().map(|m| m.len()).unwrap_or(0);
-    table_start.is_ok_and(|at| at <= size && at.saturating_sub(data_start) >= 8 + record_length as u64)
+    table_start.is_ok_and(|at| at <= size && at.saturating_sub(data_start) >= 8 + smallest)
 }
 
-/// A layered chunk: first record, point count, size of every layer, layers. Its sizes must fit before memory is taken for them.
-fn check_layers(chunk: &[u8], points: usize, vlr: &LazVlr, record_length: usize) -> Result<()> {
-    let layers: usize = vlr
-        .items()
+/// Layers of a layered chunk.
+fn layers_of(vlr: &LazVlr) -> usize {
+    vlr.items()
         .iter()
         .map(|item| match item.item_type() {
             LazItemType::Point14 => 9,
@@ -163,7 +162,17 @@ fn check_layers(chunk: &[u8], points: usize, vlr: &LazVlr, record_length: usize)
             LazItemType::Byte14(n) => n as usize,
             _ => 1,
         })
-        .sum();
+        .sum()
+}
+
+/// Bytes of a chunk of one point at least; one of none may have a count and the sizes of its layers.
+fn smallest_chunk(vlr: &LazVlr, record_length: usize) -> u64 {
+    (record_length + if vlr_is_layered(vlr) { 4 + 4 * layers_of(vlr) } else { 0 }) as u64
+}
+
+/// A layered chunk: first record, point count, size of every layer, layers. Its sizes must fit before memory is taken for them.
+fn check_layers(chunk: &[u8], points: usize, vlr: &LazVlr, record_length: usize) -> Result<()> {
+    let layers = layers_of(vlr);
     let word = |i: usize| -> Result<u64> {
         let at = record_length + 4 * i;
         let b = chunk.get(at..at + 4).ok_or_else(|| bad("the data end too early"))?;
@@ -224,7 +233,7 @@ impl Reader {
         let mut file = File::open(path)?;
         let record_length = usize::from(record_length);
         let table = if points == 0 {
-            if holds_chunks(&mut file, data_start, record_length) {
+            if holds_chunks(&mut file, data_start, smallest_chunk(&vlr, record_length)) {
                 return Err(bad("the header says 0 points, chunks of points follow".to_string()));
             }
             Some(Vec::new())
