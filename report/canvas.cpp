@@ -1,152 +1,291 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A line covers of a pixel what the strip of its width, laid through the line's nearest point, cuts out of the pixel's square: exact along
-// a straight line; at ends and bends an end is taken as round, at most a few hundredths of a pixel wrong.
 #include "report/canvas.h"
 
-#include <algorithm>
-#include <cmath>
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+#include <cairo.h>
 
-#include "report/font.h"
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "core/error.h"
+#include "report/html.h"
 
 namespace swath::report {
-
-void mix(core::Picture& p, int x, int y, core::Rgb colour, double share) {
-  if (!p.holds(x, y) || share <= 0.0) return;
-  std::uint8_t* c = p.at(x, y);
-  for (size_t k = 0; k < 3; ++k) c[k] = static_cast<std::uint8_t>(std::lround(c[k] + std::min(share, 1.0) * (colour[k] - c[k])));
-}
-
-void fill(core::Picture& p, const Box& b, core::Rgb colour) {
-  for (int y = b.y; y < b.y + b.height; ++y)
-    for (int x = b.x; x < b.x + b.width; ++x) mix(p, x, y, colour, 1.0);
-}
-
-void frame(core::Picture& p, const Box& b, core::Rgb colour) {
-  fill(p, {b.x, b.y, b.width, 1}, colour);
-  fill(p, {b.x, b.y + b.height - 1, b.width, 1}, colour);
-  fill(p, {b.x, b.y, 1, b.height}, colour);
-  fill(p, {b.x + b.width - 1, b.y, 1, b.height}, colour);
-}
-
-Pen::Pen(core::Picture& p, const Box& clip)
-    : picture_(&p), clip_(clip), share_(static_cast<size_t>(clip.width) * static_cast<size_t>(clip.height), 0.0f) {}
-
 namespace {
 
-/// The part of a unit square around the origin that lies below distance t along the unit normal (nx, ny).
-double square_below(double t, double nx, double ny) {
-  const double a = std::max(std::abs(nx), std::abs(ny)), b = std::min(std::abs(nx), std::abs(ny));
-  const double corner = (a + b) / 2.0, flat = (a - b) / 2.0;
-  if (t <= -corner) return 0.0;
-  if (t >= corner) return 1.0;
-  if (std::abs(t) <= flat) return 0.5 + t / a;
-  const double rest = corner - std::abs(t);
-  const double cut = rest * rest / (2.0 * a * b);
-  return t > 0 ? 1.0 - cut : cut;
-}
+constexpr const char* typeface = "DejaVu Sans";
+constexpr double capitals = 0.73;          // of the em square
+constexpr double halo_width = 0.32;        // of the em square
+constexpr double far_away = 1e5;           // pixels; nothing is seen there, and Cairo's coordinates end at 8e6
+constexpr double fineness = 8.0;           // of coordinates, 1/pixel: finer than any eye sees, and files stay small
+constexpr double points_per_pixel = 0.75;  // 72 points or 96 pixels to an inch
 
-}  // namespace
-
-void Pen::cover(double x0, double y0, double x1, double y1, double half) {
-  const double reach = half + 1.0;
-  // Doubles first: a line may lie far outside of the box.
-  const auto bound = [](double v, int low, int high) {
-    return static_cast<int>(std::clamp(v, static_cast<double>(low), static_cast<double>(high)));
-  };
-  const int left = bound(std::floor(std::min(x0, x1) - reach), clip_.x, clip_.x + clip_.width);
-  const int right = bound(std::ceil(std::max(x0, x1) + reach), clip_.x, clip_.x + clip_.width);
-  const int top = bound(std::floor(std::min(y0, y1) - reach), clip_.y, clip_.y + clip_.height);
-  const int bottom = bound(std::ceil(std::max(y0, y1) + reach), clip_.y, clip_.y + clip_.height);
-  const double dx = x1 - x0, dy = y1 - y0, length = std::hypot(dx, dy);
-  for (int y = top; y < bottom; ++y)
-    for (int x = left; x < right; ++x) {
-      const double px = x + 0.5 - x0, py = y + 0.5 - y0;
-      const double along = length > 0 ? std::clamp((px * dx + py * dy) / (length * length), 0.0, 1.0) : 0.0;
-      const double away_x = px - along * dx, away_y = py - along * dy;
-      const double distance = std::hypot(away_x, away_y);
-      constexpr double on_the_line = 1e-9;
-      const bool on = distance < on_the_line;
-      const double nx = on ? (length > 0 ? -dy / length : 1.0) : away_x / distance;
-      const double ny = on ? (length > 0 ? dx / length : 0.0) : away_y / distance;
-      const double share = square_below(half - distance, nx, ny) - square_below(-half - distance, nx, ny);
-      if (share <= 0.0) continue;
-      const size_t at = static_cast<size_t>(y - clip_.y) * static_cast<size_t>(clip_.width) + static_cast<size_t>(x - clip_.x);
-      if (share_[at] == 0.0f) touched_.push_back(at);
-      share_[at] = std::max(share_[at], static_cast<float>(share));
-    }
-}
-
-void Pen::line(const std::vector<double>& x, const std::vector<double>& y, double width, core::Rgb colour, double opacity) {
-  for (size_t k = 1; k < x.size(); ++k) cover(x[k - 1], y[k - 1], x[k], y[k], width / 2.0);
-  const auto columns = static_cast<size_t>(clip_.width);
-  for (const size_t at : touched_) {
-    mix(*picture_, clip_.x + static_cast<int>(at % columns), clip_.y + static_cast<int>(at / columns), colour, opacity * share_[at]);
-    share_[at] = 0.0f;
-  }
-  touched_.clear();
-}
-
-namespace {
-
-/// A text as dots with an empty rim of two, and the same grown by one dot on all sides.
-struct Dots {
-  static constexpr int rim = 2;
-  int width, height;
-  std::vector<bool> ink, grown;
-
-  explicit Dots(std::string_view text)
-      : width(text_dots(text) + 2 * rim), height(glyph_height + 2 * rim), ink(static_cast<size_t>(width * height)), grown(ink) {
-    int left = rim;
-    for (const char32_t code : code_points(text)) {
-      const Glyph& g = glyph_of(code);
-      for (int row = 0; row < glyph_height; ++row)
-        for (int dot = 0; dot < glyph_width; ++dot)
-          if (g[static_cast<size_t>(row)] >> (glyph_width - 1 - dot) & 1) put(left + dot, rim + row);
-      left += glyph_advance;
-    }
-  }
-  size_t at(int u, int v) const { return static_cast<size_t>(v * width + u); }
-  void put(int u, int v) {
-    ink[at(u, v)] = true;
-    for (int dv = -1; dv <= 1; ++dv)
-      for (int du = -1; du <= 1; ++du) grown[at(u + du, v + dv)] = true;
-  }
-  bool holds(int u, int v) const { return u >= 0 && v >= 0 && u < width && v < height; }
+template <auto destroy>
+struct Destroy {
+  void operator()(auto* p) const { destroy(p); }
 };
+using Surface = std::unique_ptr<cairo_surface_t, Destroy<cairo_surface_destroy>>;
+using Context = std::unique_ptr<cairo_t, Destroy<cairo_destroy>>;
+using FontOptions = std::unique_ptr<cairo_font_options_t, Destroy<cairo_font_options_destroy>>;
+
+void set_colour(cairo_t* c, core::Rgb colour, double opacity) {
+  cairo_set_source_rgba(c, colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0, opacity);
+}
+
+void set_font(cairo_t* c, double size, bool bold) {
+  const FontOptions options(cairo_font_options_create());
+  cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
+  cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
+  cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
+  cairo_set_font_options(c, options.get());
+  cairo_select_font_face(c, typeface, CAIRO_FONT_SLANT_NORMAL, bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(c, size);
+}
+
+double snapped(double v) { return std::round(std::clamp(v, -far_away, far_away) * fineness) / fineness; }
+
+bool has_pixels(cairo_t* c) { return cairo_surface_get_type(cairo_get_target(c)) == CAIRO_SURFACE_TYPE_IMAGE; }
+
+/// A decimal at most.
+std::string number(double v) {
+  char text[64];
+  auto end = std::to_chars(text, text + sizeof text, v, std::chars_format::fixed, 1).ptr;
+  if (end - text > 2 && end[-1] == '0') end -= 2;
+  return std::string(text, end) == "-0" ? "0" : std::string(text, end);
+}
 
 }  // namespace
 
-void draw_text(core::Picture& p, double cx, double cy, std::string_view text, double scale, double angle, core::Rgb colour,
-               std::optional<core::Rgb> halo) {
-  const Dots dots(text);
-  // The glyphs' middle is that of capitals and digits, seven rows tall.
-  const double middle_u = dots.width / 2.0, middle_v = Dots::rim + glyph_baseline / 2.0;
-  const double reach = scale * std::hypot(dots.width, dots.height) / 2.0 + 2.0;
-  const double cosine = std::cos(angle) / scale, sine = std::sin(angle) / scale;
-  constexpr int samples = 4;  // along each side of a pixel
-  for (int y = static_cast<int>(cy - reach); y <= static_cast<int>(cy + reach); ++y)
-    for (int x = static_cast<int>(cx - reach); x <= static_cast<int>(cx + reach); ++x) {
-      if (!p.holds(x, y)) continue;
-      int ink = 0, grown = 0;
-      for (int sy = 0; sy < samples; ++sy)
-        for (int sx = 0; sx < samples; ++sx) {
-          const double dx = x + (sx + 0.5) / samples - cx, dy = y + (sy + 0.5) / samples - cy;
-          const int u = static_cast<int>(std::floor(middle_u + dx * cosine + dy * sine));
-          const int v = static_cast<int>(std::floor(middle_v - dx * sine + dy * cosine));
-          if (!dots.holds(u, v)) continue;
-          ink += dots.ink[dots.at(u, v)];
-          grown += dots.grown[dots.at(u, v)];
-        }
-      constexpr double all = samples * samples;
-      if (halo) mix(p, x, y, *halo, grown / all);
-      mix(p, x, y, colour, ink / all);
-    }
+double text_width(std::string_view utf8, double size, bool bold) {
+  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
+  const Context c(cairo_create(surface.get()));
+  constexpr double measured = 64.0;  // the same at every size
+  set_font(c.get(), measured, bold);
+  cairo_text_extents_t extents{};
+  cairo_text_extents(c.get(), plain(utf8).c_str(), &extents);
+  return extents.x_advance * size / measured;
 }
 
-int draw_label(core::Picture& p, int left, int top, std::string_view text, int scale, core::Rgb colour) {
-  const int width = text_dots(text) * scale;
-  draw_text(p, left + width / 2.0, top + glyph_baseline * scale / 2.0, text, scale, 0.0, colour);
-  return width;
+void Canvas::clip(const std::optional<Box>& box) {
+  cairo_reset_clip(cairo_);
+  if (!box) return;
+  cairo_rectangle(cairo_, box->x, box->y, box->width, box->height);
+  cairo_clip(cairo_);
+}
+
+void Canvas::fill(const Box& b, core::Rgb colour, double opacity) {
+  set_colour(cairo_, colour, opacity);
+  cairo_rectangle(cairo_, b.x, b.y, b.width, b.height);
+  cairo_fill(cairo_);
+}
+
+void Canvas::frame(const Box& b, core::Rgb colour) {
+  cairo_rectangle(cairo_, b.x + 0.5, b.y + 0.5, b.width - 1.0, b.height - 1.0);
+  cairo_set_line_join(cairo_, CAIRO_LINE_JOIN_MITER);
+  set_colour(cairo_, colour, 1.0);
+  cairo_set_line_width(cairo_, 1.0);
+  cairo_stroke(cairo_);
+}
+
+void Canvas::path(const std::vector<double>& x, const std::vector<double>& y) {
+  for (size_t k = 0; k < x.size(); ++k)
+    if (std::isfinite(x[k]) && std::isfinite(y[k]))
+      cairo_line_to(cairo_, snapped(x[k]), snapped(y[k]));
+    else
+      cairo_new_sub_path(cairo_);
+}
+
+void Canvas::stroke(double width, core::Rgb colour, double opacity) {
+  set_colour(cairo_, colour, opacity);
+  cairo_set_line_width(cairo_, width);
+  cairo_set_line_join(cairo_, CAIRO_LINE_JOIN_ROUND);
+  cairo_stroke(cairo_);
+}
+
+void Canvas::line(const std::vector<double>& x, const std::vector<double>& y, double width, core::Rgb colour, double opacity) {
+  path(x, y);
+  cairo_set_line_cap(cairo_, CAIRO_LINE_CAP_BUTT);
+  stroke(width, colour, opacity);
+}
+
+/// Points with round ends: a fraction of the bytes of as many circles.
+void Canvas::dots(const std::vector<double>& x, const std::vector<double>& y, double radius, core::Rgb colour) {
+  for (size_t k = 0; k < x.size(); ++k) {
+    cairo_new_sub_path(cairo_);
+    path({x[k], x[k]}, {y[k], y[k]});
+  }
+  cairo_set_line_cap(cairo_, CAIRO_LINE_CAP_ROUND);
+  stroke(2.0 * radius, colour, 1.0);
+}
+
+void Canvas::area(const std::vector<double>& x, const std::vector<double>& upper, const std::vector<double>& lower, core::Rgb colour,
+                  double opacity) {
+  path(x, upper);
+  path({x.rbegin(), x.rend()}, {lower.rbegin(), lower.rend()});
+  set_colour(cairo_, colour, opacity);
+  cairo_fill(cairo_);
+}
+
+void Canvas::text(double x, double y, std::string_view utf8, const TextStyle& style) {
+  const std::string text = plain(utf8);
+  if (text.empty()) return;
+  TextStyle s = style;
+  double width = text_width(text, s.size, s.bold);
+  if (width > s.room) {
+    s.size *= std::max(s.room, 1.0) / width;
+    width = std::max(s.room, 1.0);
+  }
+  const double along = s.anchor == Anchor::start ? 0.0 : s.anchor == Anchor::middle ? -width / 2.0 : -width, down = capitals * s.size / 2.0;
+  const double cosine = std::cos(s.angle), sine = std::sin(s.angle);
+  const double left = x + along * cosine - down * sine, base = y + along * sine + down * cosine;
+  labels_.push_back({text, left, base, width, s.size, s.angle});
+  cairo_save(cairo_);
+  cairo_translate(cairo_, left, base);
+  cairo_rotate(cairo_, s.angle);
+  set_font(cairo_, s.size, s.bold);
+  cairo_move_to(cairo_, 0.0, 0.0);
+  if (s.halo) {
+    cairo_text_path(cairo_, text.c_str());
+    stroke(halo_width * s.size, *s.halo, 1.0);
+    cairo_move_to(cairo_, 0.0, 0.0);
+  }
+  set_colour(cairo_, s.colour, 1.0);
+  // As a path a letter lies where it belongs, not on the nearest pixel.
+  if (has_pixels(cairo_)) {
+    cairo_text_path(cairo_, text.c_str());
+    cairo_fill(cairo_);
+  } else {
+    cairo_show_text(cairo_, text.c_str());
+  }
+  cairo_restore(cairo_);
+  cairo_new_path(cairo_);
+}
+
+void Canvas::pixels(const Box& b, const std::function<core::Rgb(int, int)>& colour) {
+  if (b.width <= 0 || b.height <= 0) return;
+  const int band = has_pixels(cairo_) ? std::min(b.height, 256) : b.height;  // rows at once
+  for (int top = 0; top < b.height; top += band) {
+    const int rows = std::min(band, b.height - top);
+    const Surface image(cairo_image_surface_create(CAIRO_FORMAT_RGB24, b.width, rows));
+    unsigned char* data = cairo_image_surface_get_data(image.get());
+    if (!data) throw core::Error("a map of " + std::to_string(b.width) + " x " + std::to_string(b.height) + " pixels is too large to draw");
+    for (int y = 0; y < rows; ++y) {
+      auto* out = reinterpret_cast<std::uint32_t*>(data + static_cast<std::ptrdiff_t>(y) * cairo_image_surface_get_stride(image.get()));
+      for (int x = 0; x < b.width; ++x) {
+        const core::Rgb c = colour(x, top + y);
+        out[x] = static_cast<std::uint32_t>(c[0]) << 16 | static_cast<std::uint32_t>(c[1]) << 8 | c[2];
+      }
+    }
+    cairo_surface_mark_dirty(image.get());
+    cairo_set_source_surface(cairo_, image.get(), b.x, b.y + top);
+    cairo_pattern_set_filter(cairo_get_source(cairo_), CAIRO_FILTER_NEAREST);
+    cairo_rectangle(cairo_, b.x, b.y + top, b.width, rows);
+    cairo_fill(cairo_);
+  }
+}
+
+namespace {
+
+void check(cairo_status_t status, const Drawing& d) {
+  if (status != CAIRO_STATUS_SUCCESS)
+    throw core::Error("cannot draw a picture of " + std::to_string(d.width) + " x " + std::to_string(d.height) +
+                          " pixels: " + cairo_status_to_string(status),
+                      {}, "a side has at most 32767 pixels");
+}
+
+/// Draws and closes the file, where it is one. Returns the texts.
+std::vector<Canvas::Label> paint(cairo_surface_t* surface, const Drawing& d, double scale = 1.0) {
+  check(cairo_surface_status(surface), d);
+  const Context c(cairo_create(surface));
+  cairo_scale(c.get(), scale, scale);
+  set_colour(c.get(), {255, 255, 255}, 1.0);
+  cairo_paint(c.get());
+  Canvas canvas(c.get());
+  d.paint(canvas);
+  check(cairo_status(c.get()), d);
+  if (!has_pixels(c.get())) cairo_surface_finish(surface);
+  cairo_surface_flush(surface);
+  check(cairo_surface_status(surface), d);
+  return canvas.labels();
+}
+
+cairo_status_t append(void* out, const unsigned char* data, unsigned int length) {
+  static_cast<std::string*>(out)->append(reinterpret_cast<const char*>(data), length);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+/// Names counted in the order of the file: Cairo counts its surfaces through the whole run.
+std::string with_counted_names(const std::string& text) {
+  std::map<std::string, std::string> names;
+  constexpr std::string_view mark = " id=\"";
+  for (size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + 1)) {
+    const size_t from = at + mark.size();
+    names.emplace(text.substr(from, text.find('"', from) - from), "d" + std::to_string(names.size() + 1));
+  }
+  std::string out;
+  for (size_t at = 0; at < text.size();) {
+    size_t from = std::string::npos;
+    for (const std::string_view m : {mark, std::string_view("url(#"), std::string_view("href=\"#")})
+      if (const size_t found = text.find(m, at); found != std::string::npos) from = std::min(from, found + m.size());
+    if (from == std::string::npos) return out.append(text, at);
+    const size_t end = text.find_first_of("\")", from);
+    const auto name = names.find(text.substr(from, end - from));
+    out.append(text, at, from - at).append(name == names.end() ? text.substr(from, end - from) : name->second);
+    at = end;
+  }
+  return out;
+}
+
+std::string unseen(const std::vector<Canvas::Label>& labels) {
+  std::string out = "<g fill=\"none\" font-family=\"sans-serif\">\n";
+  for (const Canvas::Label& l : labels) {
+    out += "<text font-size=\"" + number(l.size) + "\" textLength=\"" + number(l.width) + "\" lengthAdjust=\"spacingAndGlyphs\"";
+    const std::string at = number(l.x), base = number(l.y);
+    out += l.angle == 0.0 ? " x=\"" + at + "\" y=\"" + base + "\">"
+                          : " transform=\"translate(" + at + "," + base + ") rotate(" + number(l.angle * 180.0 / M_PI) + ")\">";
+    out += escaped(l.text) + "</text>\n";
+  }
+  return out + "</g>\n";
+}
+
+}  // namespace
+
+core::Picture draw(const Drawing& d) {
+  if (d.width <= 0 || d.height <= 0) return core::Picture();
+  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, d.width, d.height));
+  paint(surface.get(), d);
+  core::Picture out(d.width, d.height);
+  const unsigned char* data = cairo_image_surface_get_data(surface.get());
+  for (int y = 0; y < d.height; ++y) {
+    const auto* row =
+        reinterpret_cast<const std::uint32_t*>(data + static_cast<std::ptrdiff_t>(y) * cairo_image_surface_get_stride(surface.get()));
+    for (int x = 0; x < d.width; ++x)
+      for (int k = 0; k < 3; ++k) out.at(x, y)[k] = static_cast<std::uint8_t>(row[x] >> (16 - 8 * k));
+  }
+  return out;
+}
+
+std::string svg(const Drawing& d) {
+  std::string out;
+  if (d.width <= 0 || d.height <= 0) return out;
+  const Surface surface(cairo_svg_surface_create_for_stream(append, &out, d.width, d.height));
+  cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_USER);
+  const auto labels = paint(surface.get(), d);
+  out = with_counted_names(out.substr(out.find("<svg")));  // without <?xml?>: it is also put into pages
+  return out.insert(out.rfind("</svg>"), unseen(labels));
+}
+
+std::string pdf(const Drawing& d) {
+  std::string out;
+  if (d.width <= 0 || d.height <= 0) return out;
+  const Surface surface(cairo_pdf_surface_create_for_stream(append, &out, d.width * points_per_pixel, d.height * points_per_pixel));
+  cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
+  paint(surface.get(), d, points_per_pixel);
+  return out;
 }
 
 }  // namespace swath::report

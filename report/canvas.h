@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Drawing on a core::Picture: pixel coordinates, x to the right, y down, the centre of the first pixel at (0.5, 0.5).
+// Drawings by Cairo: one description becomes pixels, SVG or PDF. Coordinates are pixels of 1/96 inch, x to the right, y down, the centre of
+// the first pixel at (0.5, 0.5). Texts are set in DejaVu Sans without hinting, so that they are as wide in every kind of file; where that
+// typeface is not installed fontconfig takes the nearest one, and without any fonts Cairo draws its own plain letters.
 #pragma once
 
+#include <concepts>
+#include <functional>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/picture.h"
+
+struct _cairo;  // Cairo's context, known to canvas.cpp alone
 
 namespace swath::report {
 
@@ -15,33 +22,88 @@ struct Box {
   bool overlaps(const Box& o) const { return x < o.x + o.width && o.x < x + width && y < o.y + o.height && o.y < y + height; }
 };
 
-/// Mixes a colour into a pixel; share 0 to 1. Pixels outside the picture are passed over.
-void mix(core::Picture& p, int x, int y, core::Rgb colour, double share);
-void fill(core::Picture& p, const Box& box, core::Rgb colour);
-/// The outline of a box, one pixel wide.
-void frame(core::Picture& p, const Box& box, core::Rgb colour);
+enum class Anchor { start, middle, end };
 
-/// Draws smooth lines inside a box: a pixel's share is how much of it the line covers, and a line
-/// never darkens where its own segments meet or cross.
-class Pen {
- public:
-  Pen(core::Picture& p, const Box& clip);
-  /// Width in pixels; opacity 0 to 1.
-  void line(const std::vector<double>& x, const std::vector<double>& y, double width, core::Rgb colour, double opacity = 1.0);
-
- private:
-  void cover(double x0, double y0, double x1, double y1, double half_width);
-  core::Picture* picture_;
-  Box clip_;
-  std::vector<float> share_;  // of each pixel of the clip box
-  std::vector<size_t> touched_;
+struct TextStyle {
+  double size = 14.0;  ///< of the em square, pixels
+  core::Rgb colour{40, 40, 40};
+  Anchor anchor = Anchor::start;
+  double angle = 0.0;  ///< clockwise, rad
+  bool bold = false;
+  std::optional<core::Rgb> halo{};  ///< a rim of that colour around the letters
+  double room = 1e9;                ///< pixels; a wider text is set smaller
 };
 
-/// Text around its centre (x, y), turned clockwise by `angle` (rad), `scale` pixels per dot; with `halo`, one dot of that colour around
-/// it. Uses report/font.h.
-void draw_text(core::Picture& p, double x, double y, std::string_view text, double scale, double angle, core::Rgb colour,
-               std::optional<core::Rgb> halo = std::nullopt);
-/// Level text from its upper left corner; returns its width in pixels.
-int draw_label(core::Picture& p, int left, int top, std::string_view text, int scale, core::Rgb colour);
+inline constexpr double upward = -1.5707963267948966;  ///< angle of a text that is read from below
+
+/// Width of a text on every canvas, pixels; in proportion to its size.
+double text_width(std::string_view utf8, double size, bool bold = false);
+
+class Canvas {
+ public:
+  /// A text as it was drawn, from its baseline's left end.
+  struct Label {
+    std::string text;
+    double x, y, width, size, angle;
+  };
+
+  explicit Canvas(_cairo* context) : cairo_(context) {}
+  /// What follows is drawn inside the box alone; nothing: everywhere.
+  void clip(const std::optional<Box>& box);
+  void fill(const Box& box, core::Rgb colour, double opacity = 1.0);
+  /// The outline of a box, one pixel wide, inside of it.
+  void frame(const Box& box, core::Rgb colour);
+  /// A line does not darken where it meets or crosses itself. A point without finite coordinates breaks it.
+  void line(const std::vector<double>& x, const std::vector<double>& y, double width, core::Rgb colour, double opacity = 1.0);
+  /// Discs.
+  void dots(const std::vector<double>& x, const std::vector<double>& y, double radius, core::Rgb colour);
+  /// Between two edges over rising x.
+  void area(const std::vector<double>& x, const std::vector<double>& upper, const std::vector<double>& lower, core::Rgb colour,
+            double opacity);
+  /// (x, y): the anchor, at half the height of capitals. Damaged UTF-8 becomes U+FFFD, control characters blanks.
+  void text(double x, double y, std::string_view utf8, const TextStyle& style);
+  /// Pixel by pixel; `colour` takes column and row within the box.
+  void pixels(const Box& box, const std::function<core::Rgb(int, int)>& colour);
+
+  const std::vector<Label>& labels() const { return labels_; }
+
+ private:
+  void path(const std::vector<double>& x, const std::vector<double>& y);
+  void stroke(double width, core::Rgb colour, double opacity);
+  _cairo* cairo_;
+  std::vector<Label> labels_;
+};
+
+/// A drawing on white, for every kind of file.
+struct Drawing {
+  int width = 0, height = 0;
+  std::function<void(Canvas&)> paint;
+};
+
+/// The same drawing gives the same picture and the same bytes. One without width or height gives an empty picture or text. Throw
+/// core::Error where Cairo cannot make it: a side has at most 32767 pixels.
+core::Picture draw(const Drawing& drawing);
+/// Letters are outlines, so that they look the same everywhere; an unseen text over each of them can be searched and copied.
+std::string svg(const Drawing& drawing);
+/// One page with its typeface, without dates.
+std::string pdf(const Drawing& drawing);
+
+/// The same of everything that has a drawing(): charts, correlations.
+template <class T>
+concept Drawn = requires(const T& what) {
+  { drawing(what) } -> std::same_as<Drawing>;
+};
+template <Drawn T>
+core::Picture draw(const T& what) {
+  return draw(drawing(what));
+}
+template <Drawn T>
+std::string svg(const T& what) {
+  return svg(drawing(what));
+}
+template <Drawn T>
+std::string pdf(const T& what) {
+  return pdf(drawing(what));
+}
 
 }  // namespace swath::report

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rows of numbers become marks. Colours: Okabe and Ito, "Color universal design", 2008 (yellow left out: too pale for lines on white).
+#include "report/chart_marks.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <set>
-
-#include "report/chart_parts.h"
 
 namespace swath::report {
 namespace {
 
 constexpr double line_width = 1.5, stem_width = 1.2, dot_radius = 2.0, band_opacity = 0.25;
-/// Beyond this distance from the plot nothing is seen, and Pen and SVG need no larger numbers.
+/// Beyond this distance from the plot nothing is seen, and files need no larger numbers.
 constexpr double far_away = 1e5;
 
 double near(double pixel) { return std::clamp(pixel, -far_away, far_away); }
@@ -63,7 +64,7 @@ class Column {
   std::vector<double> x_, y_, lower_;
 };
 
-void draw_dots(const Series& s, core::Rgb colour, const Plot& plot, Sheet& sheet) {
+void draw_dots(const Series& s, core::Rgb colour, const Plot& plot, Canvas& canvas) {
   // Dots within half a pixel of one another cover the same.
   std::set<std::pair<long, long>> taken;
   std::vector<double> x, y;
@@ -75,10 +76,10 @@ void draw_dots(const Series& s, core::Rgb colour, const Plot& plot, Sheet& sheet
     x.push_back(near(column));
     y.push_back(near(row));
   }
-  sheet.dots(x, y, dot_radius, colour);
+  canvas.dots(x, y, dot_radius, colour);
 }
 
-void draw_stems(const Series& s, core::Rgb colour, const Plot& plot, Sheet& sheet) {
+void draw_stems(const Series& s, core::Rgb colour, const Plot& plot, Canvas& canvas) {
   // Per pixel column the longest stem upwards and the longest downwards.
   struct Ends {
     double top, bottom;
@@ -92,10 +93,14 @@ void draw_stems(const Series& s, core::Rgb colour, const Plot& plot, Sheet& shee
     e.top = std::min(e.top, near(row));
     e.bottom = std::max(e.bottom, near(row));
   }
+  std::vector<double> x, y;
   for (size_t c = 0; c < ends.size(); ++c) {
-    const double x = plot.box.x + static_cast<double>(c) + 0.5;
-    if (ends[c].top < ends[c].bottom) sheet.line({x, x}, {ends[c].top, ends[c].bottom}, stem_width, colour);
+    if (ends[c].top >= ends[c].bottom) continue;
+    const double column = plot.box.x + static_cast<double>(c) + 0.5;
+    x.insert(x.end(), {column, column, column});
+    y.insert(y.end(), {ends[c].top, ends[c].bottom, std::numeric_limits<double>::quiet_NaN()});
   }
+  canvas.line(x, y, stem_width, colour);
 }
 
 }  // namespace
@@ -153,39 +158,39 @@ std::vector<Stretch> stretches(const Series& s, const Plot& plot) {
   return out;
 }
 
-void draw_series(const Series& s, core::Rgb colour, const Plot& plot, Sheet& sheet) {
+void draw_series(const Series& s, core::Rgb colour, const Plot& plot, Canvas& canvas) {
   switch (s.mark) {
     case Mark::dots:
-      draw_dots(s, colour, plot, sheet);
+      draw_dots(s, colour, plot, canvas);
       break;
     case Mark::stems:
-      draw_stems(s, colour, plot, sheet);
+      draw_stems(s, colour, plot, canvas);
       break;
     case Mark::band:
-      for (const Stretch& one : stretches(s, plot)) sheet.area(one.x, one.y, one.lower, colour, band_opacity);
+      for (const Stretch& one : stretches(s, plot)) canvas.area(one.x, one.y, one.lower, colour, band_opacity);
       break;
     case Mark::line:
       for (const Stretch& one : stretches(s, plot)) {
         if (one.x.size() > 1)
-          sheet.line(one.x, one.y, line_width, colour);
+          canvas.line(one.x, one.y, line_width, colour);
         else
-          sheet.dots(one.x, one.y, line_width / 2.0, colour);  // a lone value between breaks is seen too
+          canvas.dots(one.x, one.y, dot_radius, colour);  // a lone value between breaks
       }
       break;
   }
 }
 
-void draw_sample(Mark mark, core::Rgb colour, double x, double y, double width, Sheet& sheet) {
+void draw_sample(Mark mark, core::Rgb colour, double x, double y, double width, Canvas& canvas) {
   switch (mark) {
     case Mark::dots:
-      sheet.dots({x + width / 2.0}, {y}, dot_radius * 1.5, colour);
+      canvas.dots({x + width / 2.0}, {y}, dot_radius * 1.5, colour);
       break;
     case Mark::band:
-      sheet.fill({static_cast<int>(x), static_cast<int>(y) - 5, static_cast<int>(width), 11}, colour, band_opacity);
+      canvas.fill({static_cast<int>(x), static_cast<int>(y) - 5, static_cast<int>(width), 11}, colour, band_opacity);
       break;
     case Mark::stems:
     case Mark::line:
-      sheet.line({x, x + width}, {y, y}, 2.0 * line_width, colour);
+      canvas.line({x, x + width}, {y, y}, 2.0 * line_width, colour);
       break;
   }
 }

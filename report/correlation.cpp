@@ -4,21 +4,20 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <memory>
 
 #include "core/error.h"
-#include "report/chart_parts.h"
 #include "report/difference_map.h"
-#include "report/font.h"
 
 namespace swath::report {
 namespace {
 
 constexpr core::Rgb ink{40, 40, 40}, white{255, 255, 255};
 constexpr int pad = 12, gap = 8, row = 34, least_cell = 66;
-constexpr double text_scale = 1.5, title_scale = 2.0;
+constexpr double text_size = 13.0, title_size = 18.0;
 constexpr double dark = 0.75;  // white letters from here on
 
-int width_of(const std::string& text, double scale) { return static_cast<int>(std::ceil(text_dots(text) * scale)); }
+int width_of(const std::string& text, double size, bool bold = false) { return static_cast<int>(std::ceil(text_width(text, size, bold))); }
 
 /// Two decimals; the diagonal without any.
 std::string coefficient(double v, bool diagonal) {
@@ -33,29 +32,29 @@ struct Layout {
     if (c.values.size() != c.names.size() * c.names.size())
       throw core::Error("a correlation matrix needs as many rows and columns as it has names", c.title, "this is a fault of the program");
     int longest = 0;
-    for (const std::string& name : c.names) longest = std::max(longest, width_of(name, text_scale));
+    for (const std::string& name : c.names) longest = std::max(longest, width_of(name, text_size));
     // Names stand before their rows, and upwards below their columns.
     left = pad + longest + gap;
-    top = pad + (c.title.empty() ? 0 : static_cast<int>(glyph_height * title_scale) + 2 * gap);
-    width = std::max(left + n * least_cell + pad, c.title.empty() ? 0 : width_of(c.title, title_scale) + 2 * pad);
+    top = pad + (c.title.empty() ? 0 : static_cast<int>(title_size) + 2 * gap);
+    width = std::max(left + n * least_cell + pad, c.title.empty() ? 0 : width_of(c.title, title_size, true) + 2 * pad);
     height = top + n * row + gap + longest + pad;
   }
-  void draw(Sheet& sheet) const {
-    if (!chart.title.empty()) sheet.text(pad, pad + glyph_height * title_scale / 2.0, chart.title, title_scale, Anchor::start, false, ink);
+  void draw(Canvas& canvas) const {
+    canvas.text(pad, pad + title_size / 2.0, chart.title, {.size = title_size, .bold = true});
     for (int r = 0; r < n; ++r) {
       const double y = top + (r + 0.5) * row;
-      sheet.text(left - gap, y, chart.names[static_cast<size_t>(r)], text_scale, Anchor::end, false, ink);
+      canvas.text(left - gap, y, chart.names[static_cast<size_t>(r)], {.size = text_size, .anchor = Anchor::end});
       for (int c = 0; c <= r; ++c) {
         const double v = chart.values[static_cast<size_t>(r) * static_cast<size_t>(n) + static_cast<size_t>(c)];
         if (!std::isfinite(v)) continue;
-        sheet.fill({left + c * least_cell + 1, top + r * row + 1, least_cell - 2, row - 2}, diverging_colour(v), 1.0);
-        sheet.text(left + (c + 0.5) * least_cell, y, coefficient(v, r == c), text_scale, Anchor::middle, false,
-                   std::abs(v) > dark ? white : ink);
+        canvas.fill({left + c * least_cell + 1, top + r * row + 1, least_cell - 2, row - 2}, diverging_colour(v));
+        canvas.text(left + (c + 0.5) * least_cell, y, coefficient(v, r == c),
+                    {.size = text_size, .colour = std::abs(v) > dark ? white : ink, .anchor = Anchor::middle});
       }
     }
     for (int c = 0; c < n; ++c)
-      sheet.text(left + (c + 0.5) * least_cell, top + n * row + gap, chart.names[static_cast<size_t>(c)], text_scale, Anchor::end, true,
-                 ink);
+      canvas.text(left + (c + 0.5) * least_cell, top + n * row + gap, chart.names[static_cast<size_t>(c)],
+                  {.size = text_size, .anchor = Anchor::end, .angle = upward});
   }
   const CorrelationChart& chart;
   int n, left = 0, top = 0, width = 0, height = 0;
@@ -63,14 +62,9 @@ struct Layout {
 
 }  // namespace
 
-core::Picture draw(const CorrelationChart& chart) {
-  const Layout layout(chart);
-  return paint(layout.width, layout.height, [&](Sheet& s) { layout.draw(s); });
-}
-
-std::string svg(const CorrelationChart& chart) {
-  const Layout layout(chart);
-  return paint_svg(layout.width, layout.height, [&](Sheet& s) { layout.draw(s); });
+Drawing drawing(const CorrelationChart& chart) {
+  const auto layout = std::make_shared<const Layout>(chart);
+  return {layout->width, layout->height, [layout](Canvas& canvas) { layout->draw(canvas); }};
 }
 
 }  // namespace swath::report

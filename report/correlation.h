@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A correlation matrix as a picture: every coefficient as a number on its colour.
+// A correlation matrix as a drawing: every coefficient as a number on its colour.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "core/picture.h"
+#include "report/canvas.h"
 
 namespace swath::report {
 
@@ -16,7 +16,7 @@ struct CorrelationChart {
 };
 
 /// The lower triangle with its diagonal, colours as report::diverging_colour. Throws core::Error where the sizes do not fit.
-core::Picture draw(const CorrelationChart& chart);
-std::string svg(const CorrelationChart& chart);
+/// The chart must live until it is drawn.
+Drawing drawing(const CorrelationChart& chart);
 
 }  // namespace swath::report

@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "core/statistics.h"
-#include "report/canvas.h"
-#include "report/font.h"
 #include "report/map_parts.h"
 #include "report/picture.h"
 
@@ -15,7 +14,6 @@ namespace swath::report {
 namespace {
 
 constexpr double shown_share = 0.98, least_range = 0.001;
-constexpr int margin = 14, text_scale = 2, narrowest = 760, largest_cell = 16;
 
 /// 1, 2 or 5 times a power of ten, at least `v`.
 double round_up(double v) {
@@ -33,61 +31,21 @@ std::vector<double> sizes(const core::Grid& g) {
   return out;
 }
 
-struct Legend {
-  double range = 0.0;
-  std::string beyond;  ///< empty: nothing is
-  bool voids = false;
-};
-
-Legend legend_of(const core::Grid& g, double range) {
-  Legend out{range, {}, false};
+std::vector<MapItem> legend_of(const core::Grid& g, double range) {
+  const bool fine = range < 1.0;
+  const std::string unit = fine ? " cm" : " m", end = short_number(range * (fine ? 100.0 : 1.0));
+  MapItem bar = bar_item("-" + end, "+" + end + unit, 181, [](double t) { return diverging_colour(2.0 * t - 1.0); });
+  bar.sample = [draw = bar.sample](Canvas& canvas, const Box& b) {
+    draw(canvas, b);
+    canvas.fill({b.x + b.width / 2, b.y, 1, b.height}, ink_colour);
+  };
+  std::vector<MapItem> out{bar};
   const std::vector<double> values = sizes(g);
   const auto n = std::count_if(values.begin(), values.end(), [&](double v) { return v > range; });
   const double percent = values.empty() ? 0.0 : 100.0 * static_cast<double>(n) / static_cast<double>(values.size());
-  if (n > 0) out.beyond = (percent < 0.01 ? "< 0.01" : short_number(percent)) + " % beyond";
-  out.voids = values.size() < g.height.size();
+  if (n > 0) out.push_back({"", (percent < 0.01 ? "< 0.01" : short_number(percent)) + " % beyond", 0});
+  if (values.size() < g.height.size()) out.push_back(void_item(core::Void::no_data, "no difference"));
   return out;
-}
-
-/// Returns the row below the last line; on an empty picture it only measures.
-int draw_difference_legend(core::Picture& p, int left, int top, int right, const Legend& legend) {
-  constexpr int bar = 90 * text_scale, tall = 8 * text_scale, sample = 18 * text_scale, line_step = 14 * text_scale, gap = 12 * text_scale;
-  const bool fine = legend.range < 1.0;
-  const std::string unit = fine ? " cm" : " m", end = short_number(legend.range * (fine ? 100.0 : 1.0));
-  int x = left, y = top;
-  const auto room_for = [&](int width) {
-    if (x == left || x + width <= right) return;
-    x = left;
-    y += line_step;
-  };
-  const auto label = [&](const std::string& text) { return draw_label(p, x, y, text, text_scale, ink_colour); };
-  x += label("-" + end) + 4 * text_scale;
-  for (int k = 0; k < bar; ++k) fill(p, {x + k, y, 1, tall}, diverging_colour(2.0 * k / (bar - 1.0) - 1.0));
-  frame(p, {x, y, bar, tall}, ink_colour);
-  fill(p, {x + bar / 2, y, 1, tall}, ink_colour);
-  x += bar + 4 * text_scale;
-  x += label("+" + end + unit) + gap;
-  if (!legend.beyond.empty()) {
-    room_for(text_dots(legend.beyond) * text_scale);
-    x += label(legend.beyond) + gap;
-  }
-  if (legend.voids) {
-    const std::string text = "no difference";
-    room_for(sample + (4 + text_dots(text)) * text_scale);
-    for (int dy = 0; dy < tall; ++dy)
-      for (int dx = 0; dx < sample; ++dx) mix(p, x + dx, y + dy, void_colour(core::Void::no_data, dx, dy), 1.0);
-    frame(p, {x, y, sample, tall}, {120, 120, 120});
-    x += sample + 4 * text_scale;
-    label(text);
-  }
-  return y + line_step;
-}
-
-/// Title at a size that has room.
-int title_scale(const std::string& title, int width) {
-  for (int scale = text_scale + 1; scale > 1; --scale)
-    if (text_dots(title) * scale + 2 * margin <= width) return scale;
-  return 1;
 }
 
 }  // namespace
@@ -109,40 +67,23 @@ double difference_range(const core::Grid& grid) {
   return round_up(std::max(core::quantile(sizes(grid), shown_share, least_range), least_range));
 }
 
-core::Picture difference_picture(const core::Grid& grid, const DifferenceMapOptions& o) {
+Drawing difference_map(const core::Grid& grid, const DifferenceMapOptions& o) {
   const core::Lattice& l = grid.lattice;
-  if (l.nx <= 0 || l.ny <= 0) return core::Picture();
+  if (l.nx <= 0 || l.ny <= 0) return {};
   const int side = std::max(l.nx, l.ny), limit = std::max(o.max_side, 1), factor = (side + limit - 1) / limit;
-  const core::Grid shown = averaged(grid, factor);
-  const int size = std::clamp(limit / std::max(shown.lattice.nx, shown.lattice.ny), 1, largest_cell);
+  const auto shown = std::make_shared<const core::Grid>(averaged(grid, factor));
+  const int nx = shown->lattice.nx, ny = shown->lattice.ny, size = std::clamp(limit / std::max(nx, ny), 1, largest_cell);
   const double range = o.range > 0 ? o.range : difference_range(grid);
-  const Legend legend = legend_of(grid, range);
-
-  View view;
-  view.map.width = shown.lattice.nx * size;
-  view.map.height = shown.lattice.ny * size;
-  const int width = std::max(view.map.width + 2 * margin, narrowest), scale = title_scale(o.title, width);
-  view.map.x = (width - view.map.width) / 2;
-  view.map.y = margin + (o.title.empty() ? 0 : (glyph_height + 4) * scale);
-  view.pixel = l.cell * factor / size;
-
-  const int below = view.map.y + view.map.height + margin, bar_room = margin + std::max(180, view.map.width / 4 + 20);
-  const int legend_left = bar_room + 60;
-  core::Picture unseen;
-  const int foot = draw_difference_legend(unseen, legend_left, below, width - margin, legend);
-  core::Picture p(width, std::max(foot, below + 16 * text_scale) + margin);
-  for (int y = 0; y < view.map.height; ++y)
-    for (int x = 0; x < view.map.width; ++x) {
-      const float h = shown.height[shown.lattice.at(x / size, shown.lattice.ny - 1 - y / size)];
-      const core::Rgb c = std::isfinite(h) ? diverging_colour(static_cast<double>(h) / range) : void_colour(core::Void::no_data, x, y);
-      std::copy(c.begin(), c.end(), p.at(view.map.x + x, view.map.y + y));
-    }
-  frame(p, {view.map.x - 1, view.map.y - 1, view.map.width + 2, view.map.height + 2}, ink_colour);
-  if (!o.title.empty()) draw_label(p, margin, margin, o.title, scale, ink_colour);
-  draw_scale_bar(p, view, margin, below, text_scale, o.unit);
-  draw_north_arrow(p, bar_room, below, text_scale);
-  draw_difference_legend(p, legend_left, below, width - margin, legend);
-  return p;
+  const auto layout =
+      std::make_shared<const MapLayout>(nx * size, ny * size, l.cell * factor / size, o.title, o.unit, legend_of(grid, range));
+  return {layout->width, layout->height, [shown, layout, range, size](Canvas& canvas) {
+            canvas.pixels(layout->view.map, [&](int x, int y) {
+              const core::Lattice& cells = shown->lattice;
+              const float h = shown->height[cells.at(x / size, cells.ny - 1 - y / size)];
+              return std::isfinite(h) ? diverging_colour(static_cast<double>(h) / range) : void_colour(core::Void::no_data, x, y);
+            });
+            layout->draw(canvas);
+          }};
 }
 
 }  // namespace swath::report

@@ -6,6 +6,7 @@
 
 #include "core/grid.h"
 #include "core/picture.h"
+#include "report/canvas.h"
 
 namespace swath::report {
 
@@ -21,8 +22,8 @@ double difference_range(const core::Grid& grid);
 
 /// A map of height differences (Grid::height, m), north up: the palette around zero over a range that the legend states in cm (m from 1 m
 /// on), with the share of cells beyond it; cells without a difference hatched in grey; title, scale bar, north arrow. A grid larger than
-/// max_side is averaged by whole blocks, a small one enlarged, as in report/picture.h. An empty grid gives an empty picture.
-core::Picture difference_picture(const core::Grid& grid, const DifferenceMapOptions& options = {});
+/// max_side is averaged by whole blocks, a small one enlarged, as in report/picture.h. An empty grid gives an empty drawing.
+Drawing difference_map(const core::Grid& grid, const DifferenceMapOptions& options = {});
 
 /// Blue at -1, white at 0, red at 1; beyond as at the ends.
 core::Rgb diverging_colour(double t);

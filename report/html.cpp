@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-
-#include "report/font.h"
+#include <vector>
 
 namespace swath::report {
 namespace {
@@ -31,6 +30,26 @@ void append_utf8(std::string& out, char32_t c) {
 
 constexpr char32_t replacement = 0xFFFD;
 bool is_scalar(char32_t c) { return c < 0xD800 || (c > 0xDFFF && c <= 0x10FFFF); }
+
+/// The code points of UTF-8 text, U+FFFD for a damaged byte; blanks for control characters.
+std::vector<char32_t> code_points(std::string_view text) {
+  std::vector<char32_t> out;
+  for (size_t k = 0; k < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[k++]);
+    const int more = lead < 0x80                   ? 0
+                     : lead >= 0xF0 && lead < 0xF8 ? 3
+                     : lead >= 0xE0 && lead < 0xF0 ? 2
+                     : lead >= 0xC2 && lead < 0xE0 ? 1
+                                                   : -1;
+    char32_t code = more == 0 ? lead : lead & (0x3Fu >> std::max(more, 0));
+    int got = 0;
+    for (; got < more && k < text.size() && (static_cast<unsigned char>(text[k]) & 0xC0u) == 0x80u; ++got, ++k)
+      code = (code << 6) | (static_cast<unsigned char>(text[k]) & 0x3Fu);
+    const bool whole = got == more && is_scalar(code), control = (code < 0x20 && code != '\n') || code == 0x7F;
+    out.push_back(!whole ? replacement : control ? U' ' : code);
+  }
+  return out;
+}
 
 /// Thin blanks that no line breaks at, counted from the decimal point.
 std::string grouped(const std::string& digits) {
@@ -65,8 +84,14 @@ std::string escaped(std::string_view text) {
         out += "&#39;";
         break;
       default:
-        append_utf8(out, (c < 0x20 && c != '\n') || c == 0x7F ? U' ' : is_scalar(c) ? c : replacement);
+        append_utf8(out, c);
     }
+  return out;
+}
+
+std::string plain(std::string_view text) {
+  std::string out;
+  for (const char32_t c : code_points(text)) append_utf8(out, c == '\n' ? U' ' : c);
   return out;
 }
 

@@ -12,6 +12,9 @@ namespace swath::report {
 /// blanks, damaged UTF-8 U+FFFD.
 std::string escaped(std::string_view text);
 
+/// Text for one line of a drawing: control characters become blanks, damaged UTF-8 U+FFFD.
+std::string plain(std::string_view text);
+
 /// Base64 (RFC 4648, with padding).
 std::string base64(std::string_view bytes);
 

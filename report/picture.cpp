@@ -4,23 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <memory>
 
-#include "report/canvas.h"
-#include "report/font.h"
 #include "report/map_parts.h"
 
 namespace swath::report {
 namespace {
 
-constexpr core::Rgb paper{255, 255, 255}, level_grey{180, 180, 180};
-constexpr int margin = 14, text_scale = 2;  // pixels; pixels per dot of the letters
-constexpr int narrowest = 760;              // of the whole picture, so that the legend has room
-constexpr int enlarged_side = 1000;         // a small grid is enlarged to about this many pixels
-constexpr int largest_cell = 16;            // pixels
-constexpr double darkest = 0.15;            // brightness of a cell without any light, level ground being 1
-constexpr double contrast = 1.4;            // exponent of the brightness: flat country needs more than Lambert's law gives
-constexpr double densest = 1.0 / 3.0;       // share of the map that ordinary contours may cover
+constexpr core::Rgb level_grey{180, 180, 180};
+constexpr int enlarged_side = 1000;    // a small grid is enlarged to about this many pixels
+constexpr double darkest = 0.15;       // brightness of a cell without any light, level ground being 1
+constexpr double contrast = 1.4;       // exponent of the brightness: flat country needs more than Lambert's law gives
+constexpr double densest = 1.0 / 3.0;  // share of the map that ordinary contours may cover
 
 /// 2nd and 98th percentile of the heights.
 Span height_span(const core::Grid& g) {
@@ -39,45 +34,44 @@ Span height_span(const core::Grid& g) {
 
 /// Tint times brightness, relative to level ground.
 std::vector<std::array<float, 3>> ground_colours(const core::Grid& g, const Span& span, const PictureOptions& o) {
-  const std::vector<float> shade = hillshade(g.lattice, g.height, o.light);
+  const std::vector<float> shade = core::hillshade(g, g.lattice, o.light).height;
   const double level = std::max(std::sin(o.light.altitude.value), 0.05);
   std::vector<std::array<float, 3>> out(g.lattice.size());
   for (size_t k = 0; k < out.size(); ++k) {
     if (std::isnan(g.height[k])) continue;
     const double t = span.high > span.low ? (g.height[k] - span.low) / (span.high - span.low) : 0.5;
     const core::Rgb base = o.tint ? tint_of(t) : level_grey;
-    const double brightness = darkest + (1.0 - darkest) * std::pow(shade[k] / level, contrast);
+    const double brightness = darkest + (1.0 - darkest) * std::pow(shade[k] / 255.0 / level, contrast);
     for (size_t c = 0; c < 3; ++c) out[k][c] = static_cast<float>(std::min(255.0, base[c] * brightness));
   }
   return out;
 }
 
-/// The cells onto the map, `size` pixels each: voids as they are, ground with soft passages between cells.
-void paint_ground(core::Picture& p, const View& view, const core::Grid& g, int size, const std::vector<std::array<float, 3>>& colours) {
-  const core::Lattice& l = g.lattice;
-  for (int y = 0; y < view.map.height; ++y)
-    for (int x = 0; x < view.map.width; ++x) {
-      const int i = x / size, j = l.ny - 1 - y / size;
-      std::uint8_t* c = p.at(view.map.x + x, view.map.y + y);
-      if (std::isnan(g.height[l.at(i, j)])) {
-        const core::Rgb v = void_colour(g.reason[l.at(i, j)], x, y);
-        std::copy(v.begin(), v.end(), c);
-        continue;
+/// The ground of a map, `size` pixels per cell: voids as they are, ground with soft passages between cells.
+struct Ground {
+  core::Grid grid;
+  int size;
+  std::vector<std::array<float, 3>> colours;
+
+  core::Rgb at(int x, int y) const {
+    const core::Lattice& l = grid.lattice;
+    if (const size_t k = l.at(x / size, l.ny - 1 - y / size); std::isnan(grid.height[k])) return void_colour(grid.reason[k], x, y);
+    const double u = (x + 0.5) / size - 0.5, v = l.ny - (y + 0.5) / size - 0.5;
+    const int i0 = static_cast<int>(std::floor(u)), j0 = static_cast<int>(std::floor(v));
+    std::array<double, 3> sum{};
+    double weight = 0.0;
+    for (int dj = 0; dj <= 1; ++dj)
+      for (int di = 0; di <= 1; ++di) {
+        if (!l.holds(i0 + di, j0 + dj) || std::isnan(grid.height[l.at(i0 + di, j0 + dj)])) continue;
+        const double w = (di ? u - i0 : 1 - u + i0) * (dj ? v - j0 : 1 - v + j0);
+        for (size_t k = 0; k < 3; ++k) sum[k] += w * static_cast<double>(colours[l.at(i0 + di, j0 + dj)][k]);
+        weight += w;
       }
-      const double u = (x + 0.5) / size - 0.5, v = l.ny - (y + 0.5) / size - 0.5;
-      const int i0 = static_cast<int>(std::floor(u)), j0 = static_cast<int>(std::floor(v));
-      std::array<double, 3> sum{};
-      double weight = 0.0;
-      for (int dj = 0; dj <= 1; ++dj)
-        for (int di = 0; di <= 1; ++di) {
-          if (!l.holds(i0 + di, j0 + dj) || std::isnan(g.height[l.at(i0 + di, j0 + dj)])) continue;
-          const double w = (di ? u - i0 : 1 - u + i0) * (dj ? v - j0 : 1 - v + j0);
-          for (size_t k = 0; k < 3; ++k) sum[k] += w * static_cast<double>(colours[l.at(i0 + di, j0 + dj)][k]);
-          weight += w;
-        }
-      for (size_t k = 0; k < 3; ++k) c[k] = static_cast<std::uint8_t>(std::lround(sum[k] / weight));
-    }
-}
+    core::Rgb out{};
+    for (size_t k = 0; k < 3; ++k) out[k] = static_cast<std::uint8_t>(std::lround(sum[k] / weight));
+    return out;
+  }
+};
 
 std::vector<PixelLine> to_pixels(const std::vector<core::ContourLine>& contours, const View& view) {
   std::vector<PixelLine> out;
@@ -107,16 +101,42 @@ double interval_of(const std::vector<PixelLine>& lines, bool index_only) {
 }
 
 /// What of the lines is drawn, and their intervals.
-void describe_lines(const std::vector<PixelLine>& lines, const Box& map, Shown& shown) {
+struct Shown {
+  bool ordinary = false, index = false, thinned = false;
+  double interval = 0.0, index_interval = 0.0;
+};
+
+Shown shown_of(const std::vector<PixelLine>& lines, double map_pixels) {
+  Shown shown;
   double ordinary_length = 0.0;
   for (const PixelLine& line : lines) {
     shown.index = shown.index || line.index;
     if (!line.index) ordinary_length += length_of(line);
   }
-  shown.thinned = shown.index && ordinary_length > densest * map.width * map.height;
+  shown.thinned = shown.index && ordinary_length > densest * map_pixels;
   shown.ordinary = ordinary_length > 0 && !shown.thinned;
   shown.interval = interval_of(lines, false);
   shown.index_interval = interval_of(lines, true);
+  return shown;
+}
+
+std::vector<MapItem> legend_of(const core::Grid& g, const Span& span, const Shown& shown, const PictureOptions& o) {
+  std::vector<MapItem> out;
+  const auto rounded = [](double v) { return short_number(std::round(v * 10.0) / 10.0); };
+  if (span.any && o.tint) out.push_back(bar_item(rounded(span.low), rounded(span.high) + " " + o.height_unit, 140, tint_of));
+  const auto every = [&](const char* what, double step) {
+    return step > 0 ? std::string(what) + " " + short_number(step) + " " + o.height_unit : std::string(what);
+  };
+  if (shown.ordinary) out.push_back(line_item(every("contours", shown.interval), 2.0, contour_colour));
+  if (shown.index)
+    out.push_back(line_item(every(shown.thinned ? "index contours only" : "index contours", shown.index_interval), 4.0, index_colour));
+  std::array<bool, void_reasons> voids{};
+  for (size_t k = 0; k < g.height.size(); ++k)
+    if (std::isnan(g.height[k])) voids[static_cast<size_t>(g.reason[k])] = true;
+  static constexpr std::array<const char*, void_reasons> names{"", "no data", "edge too long", "water", "never seen"};
+  for (size_t v = 1; v < names.size(); ++v)
+    if (voids[v]) out.push_back(void_item(static_cast<core::Void>(v), names[v]));
+  return out;
 }
 
 }  // namespace
@@ -152,54 +172,42 @@ core::Grid averaged(const core::Grid& g, int factor) {
   return out;
 }
 
-core::Picture relief_picture(const core::Grid& grid, const std::vector<core::ContourLine>& contours, const PictureOptions& o) {
+Drawing relief_map(const core::Grid& grid, const std::vector<core::ContourLine>& contours, const PictureOptions& o) {
   const core::Lattice& l = grid.lattice;
-  if (l.nx <= 0 || l.ny <= 0) return core::Picture();
+  if (l.nx <= 0 || l.ny <= 0) return {};
   const int side = std::max(l.nx, l.ny), limit = std::max(o.max_side, 1);
   const int factor = (side + limit - 1) / limit;
-  const core::Grid shown_grid = averaged(grid, factor);
-  const int cells = std::max(shown_grid.lattice.nx, shown_grid.lattice.ny);
-  const int size = std::clamp(std::min(enlarged_side, limit) / cells, 1, largest_cell);  // pixels per cell
+  auto ground = std::make_shared<Ground>();
+  ground->grid = averaged(grid, factor);
+  const core::Lattice& shown_lattice = ground->grid.lattice;
+  const int cells = std::max(shown_lattice.nx, shown_lattice.ny);
+  ground->size = std::clamp(std::min(enlarged_side, limit) / cells, 1, largest_cell);
+  const Span span = height_span(ground->grid);
+  ground->colours = ground_colours(ground->grid, span, o);
 
-  Shown shown;
-  shown.tint = o.tint;
-  shown.height_unit = o.height_unit;
-  shown.span = height_span(shown_grid);
-  for (size_t k = 0; k < shown_grid.height.size(); ++k)
-    if (std::isnan(shown_grid.height[k])) shown.voids[static_cast<size_t>(shown_grid.reason[k])] = true;
-
-  View view;
-  view.map = {0, o.title.empty() ? margin : margin + (glyph_height + 4) * (text_scale + 1), shown_grid.lattice.nx * size,
-              shown_grid.lattice.ny * size};
-  const int width = std::max({view.map.width + 2 * margin, text_dots(o.title) * (text_scale + 1) + 2 * margin, narrowest});
-  view.map.x = (width - view.map.width) / 2;
+  const int map_width = shown_lattice.nx * ground->size, map_height = shown_lattice.ny * ground->size;
+  View view;  // the lines' lengths do not depend on the map's place
+  view.pixel = l.cell * factor / ground->size;
   view.west = l.west();
-  view.pixel = l.cell * factor / size;
-  view.north = l.south() + view.pixel * view.map.height;
-
-  const std::vector<PixelLine> lines = to_pixels(contours, view);
-  describe_lines(lines, view.map, shown);
-
-  const int below = view.map.y + view.map.height + margin;
-  const int bar_room = margin + std::max(180, view.map.width / 4 + 20), legend_left = bar_room + 60;
-  core::Picture unseen;
-  const int foot = draw_legend(unseen, legend_left, below, width - margin, text_scale, shown);
-  core::Picture p(width, std::max(foot, below + 16 * text_scale) + margin, paper);
-  paint_ground(p, view, shown_grid, size, ground_colours(shown_grid, shown.span, o));
-  Pen pen(p, view.map);
-  if (shown.ordinary)
-    for (const PixelLine& line : lines)
-      if (!line.index) pen.line(line.x, line.y, 1.0, contour_colour, 0.75);
-  for (const PixelLine& line : lines)
-    if (line.index) pen.line(line.x, line.y, 2.0, index_colour, 0.9);
-  if (o.labels) draw_height_labels(p, lines, view.map, 1.5);
-  frame(p, {view.map.x - 1, view.map.y - 1, view.map.width + 2, view.map.height + 2}, ink_colour);
-
-  if (!o.title.empty()) draw_label(p, margin, margin, o.title, text_scale + 1, ink_colour);
-  draw_scale_bar(p, view, margin, below, text_scale, o.unit);
-  draw_north_arrow(p, bar_room, below, text_scale);
-  draw_legend(p, legend_left, below, width - margin, text_scale, shown);
-  return p;
+  view.north = l.south() + view.pixel * map_height;
+  const Shown shown = shown_of(to_pixels(contours, view), static_cast<double>(map_width) * map_height);
+  auto layout = std::make_shared<MapLayout>(map_width, map_height, view.pixel, o.title, o.unit, legend_of(ground->grid, span, shown, o));
+  layout->view.west = view.west;
+  layout->view.north = view.north;
+  return {layout->width, layout->height,
+          [ground, layout, shown, labels = o.labels, lines = to_pixels(contours, layout->view)](Canvas& canvas) {
+            const Box& map = layout->view.map;
+            canvas.pixels(map, [&](int x, int y) { return ground->at(x, y); });
+            canvas.clip(map);
+            if (shown.ordinary)
+              for (const PixelLine& line : lines)
+                if (!line.index) canvas.line(line.x, line.y, 1.0, contour_colour, 0.75);
+            for (const PixelLine& line : lines)
+              if (line.index) canvas.line(line.x, line.y, 2.0, index_colour, 0.9);
+            if (labels) draw_height_labels(canvas, lines, map);
+            canvas.clip(std::nullopt);
+            layout->draw(canvas);
+          }};
 }
 
 }  // namespace swath::report

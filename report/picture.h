@@ -7,8 +7,8 @@
 #include "core/contour_line.h"
 #include "core/grid.h"
 #include "core/option.h"
-#include "core/picture.h"
-#include "report/hillshade.h"
+#include "core/relief.h"
+#include "report/canvas.h"
 
 namespace swath::report {
 
@@ -19,7 +19,7 @@ struct PictureOptions {
   int max_side = 1600;            ///< of the map, pixels
   bool tint = true;               ///< colours by height; otherwise grey
   bool labels = true;             ///< heights along the index contours
-  HillshadeOptions light;
+  core::Light light = {.multidirectional = true};
 };
 
 template <class V>
@@ -35,11 +35,10 @@ void describe(PictureOptions& o, V& v) {
 /// their heights), voids hatched (water blue), title, scale bar, north arrow and legend. A grid larger than max_side is averaged by
 /// whole blocks (a block with fewer than half of its heights is void); a small one is enlarged. Where ordinary contours would cover more
 /// than a third of the map only index contours are drawn, and the legend says so.
-/// `contours` in the coordinates of the grid. An empty grid gives an empty picture.
-core::Picture relief_picture(const core::Grid& grid, const std::vector<core::ContourLine>& contours = {},
-                             const PictureOptions& options = {});
+/// `contours` in the coordinates of the grid. An empty grid gives an empty drawing.
+Drawing relief_map(const core::Grid& grid, const std::vector<core::ContourLine>& contours = {}, const PictureOptions& options = {});
 
-/// The grid averaged by blocks of `factor` cells from its south-west corner; what a block's height and void reason are is said above.
+/// The grid averaged by blocks of `factor` cells from its south-west corner; a block's height and void reason as above.
 /// The lattice's indices are no longer those of the survey: only its cell and size count.
 core::Grid averaged(const core::Grid& grid, int factor);
 

@@ -5,6 +5,7 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build ccache git ca-certificates
   libeigen3-dev libcgal-dev libpcl-dev liboctomap-dev libtbb-dev libgdal-dev libproj-dev proj-data libpng-dev
+  libcairo2-dev fonts-dejavu-core # charts and maps, and their typeface
   libtomlplusplus-dev rapidjson-dev libcli11-dev libxxhash-dev libzstd-dev libgtest-dev
   python3 python3-venv clang-format
   rtklib # runs, it is not linked: raw GNSS observations go through its rnx2rtkp
@@ -16,7 +17,7 @@ if [ "${minor:-0}" -lt 66 ]; then
   if grep -q '^VERSION_CODENAME=bookworm' /etc/os-release; then packages+=(cargo-web rustc-web); else packages+=(cargo rustc); fi
 fi
 # Reports are opened in a browser. Debian 12 has one without a screen; Ubuntu's package is a stub for a snap, and the test says that it is left out.
-if grep -q '^VERSION_CODENAME=bookworm' /etc/os-release; then packages+=(chromium-headless-shell fonts-dejavu-core); fi
+if grep -q '^VERSION_CODENAME=bookworm' /etc/os-release; then packages+=(chromium-headless-shell); fi
 missing=()
 for p in "${packages[@]}"; do
   dpkg-query -W -f='${db:Status-Status}' "$p" 2>/dev/null | grep -qx installed || missing+=("$p")

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "terrain/relief.h"
+#include "core/relief.h"
 #include "terrain/voids.h"
 
 namespace swath::terrain {
@@ -55,7 +55,7 @@ void set_incidence(core::Block& b, const core::Grid& terrain, const std::vector<
   core::Lattice inner = terrain.lattice;
   ++inner.i0, ++inner.j0, inner.nx -= 2, inner.ny -= 2;
   if (inner.nx <= 0 || inner.ny <= 0) return;
-  const Gradients g = gradients(terrain, inner);
+  const core::Gradients g = core::gradients(terrain, inner);
   core::add_columns(b, {core::Column::incidence});
   for (size_t r = 0; r < b.size(); ++r) {
     const Eigen::Vector3d beam = scanner[r] - Eigen::Vector3d(b.x[r], b.y[r], b.z[r]);

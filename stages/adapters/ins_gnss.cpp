@@ -6,11 +6,11 @@
 #include "core/error.h"
 #include "core/time.h"
 #include "io/output_file.h"
-#include "io/png.h"
 #include "io/sbet.h"
 #include "io/value_file.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/place.h"
+#include "stages/drawing_file.h"
 #include "stages/trajectory_charts.h"
 #include "trajectory/checks.h"
 #include "trajectory/compare.h"
@@ -18,14 +18,14 @@
 
 namespace swath::stages {
 
-enum class PlotFormat { png, svg };
+enum class PlotFormat { png, svg, pdf };
 
 }  // namespace swath::stages
 
 namespace swath::core {
 template <>
 struct Choices<stages::PlotFormat> {
-  static constexpr std::array<std::string_view, 2> names{"png", "svg"};
+  static constexpr std::array<std::string_view, 3> names{"png", "svg", "pdf"};
 };
 }  // namespace swath::core
 
@@ -142,11 +142,11 @@ class InsGnss : public OptionStage<InsGnssStageOptions> {
                       const std::optional<trajectory::TrajectoryErrors>& errors) const {
     io::write_text_file(context.output / "trajectory.json", io::to_json(result.report));
     if (options.plots.empty()) return;
-    const auto wants = [this](PlotFormat f) { return std::find(options.plots.begin(), options.plots.end(), f) != options.plots.end(); };
-    for (const NamedChart& c : trajectory_charts(result, *context.gnss, errors)) {
-      if (wants(PlotFormat::png)) io::write_png(context.output / "plots" / (c.name + ".png"), report::draw(c.chart));
-      if (wants(PlotFormat::svg)) io::write_text_file(context.output / "plots" / (c.name + ".svg"), report::svg(c.chart));
-    }
+    for (const NamedChart& c : trajectory_charts(result, *context.gnss, errors))
+      for (const PlotFormat f : options.plots) {
+        const std::string ending(core::Choices<PlotFormat>::names[static_cast<size_t>(f)]);
+        write_drawing(context.output / "plots" / (c.name + "." + ending), report::drawing(c.chart));
+      }
   }
 };
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grids beside the models of terrain and surface.
 #include "core/error.h"
+#include "core/relief.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/scanner.h"
 #include "stages/grid_tile.h"
-#include "terrain/relief.h"
 #include "terrain/return_grids.h"
 
 namespace swath::stages {
@@ -19,7 +19,7 @@ void keep(const TileJob& job, Product product, const core::Grid& grid) {
   write_grid_tile(folder, job.key, grid);
 }
 
-class Relief : public OptionStage<terrain::ReliefOptions> {
+class Relief : public OptionStage<core::Light> {
  public:
   const Info& info() const override {
     static const Info info{"terrain.relief", "Slope and hillshade of the DTM.",   {Grain::tile}, {}, {},
@@ -31,8 +31,8 @@ class Relief : public OptionStage<terrain::ReliefOptions> {
   void run_tile(const Context& context, TileJob& job) const override {
     const core::Lattice own = lattice_in(context.grids->cell(Product::dtm), job.box);
     const core::Grid model = context.grids->window(Product::dtm, {own.cell, own.i0 - 1, own.j0 - 1, own.nx + 2, own.ny + 2});
-    keep(job, Product::slope, terrain::slope(model, own));
-    keep(job, Product::hillshade, terrain::hillshade(model, own, options));
+    keep(job, Product::slope, core::slope(model, own));
+    keep(job, Product::hillshade, core::hillshade(model, own, options));
   }
 };
 

@@ -7,7 +7,6 @@
 #include "core/error.h"
 #include "io/geotiff.h"
 #include "io/las_writer.h"
-#include "io/png.h"
 #include "io/vector.h"
 #include "io/vrt.h"
 #include "report/picture.h"
@@ -15,6 +14,7 @@
 #include "stages/adapters/clouds.h"
 #include "stages/adapters/tile_list.h"
 #include "stages/adapters/units.h"
+#include "stages/drawing_file.h"
 #include "stages/surfaces.h"
 
 namespace swath::stages {
@@ -290,16 +290,22 @@ struct PictureWriteOptions : report::PictureOptions {
 
 template <class V>
 void describe(PictureWriteOptions& o, V& v) {
-  v.option("file", o.file, "Name of the picture within the output.");
+  v.option("file", o.file, "Name of the picture within the output: .png, .svg or .pdf.");
   v.option("contours", o.contours, "The run's contours to draw over it; empty for none.");
   describe(static_cast<report::PictureOptions&>(o), v);
+  v.check(names_drawing(o.file), "file ends in .png, .svg or .pdf");
 }
 
 class PictureWriter : public OptionStage<PictureWriteOptions> {
  public:
   const Info& info() const override {
-    static const Info info{
-        "writers.picture", "Picture of the terrain: hillshade with contours, as PNG.", {Grain::merge}, {}, {}, {Product::dtm}, {}};
+    static const Info info{"writers.picture",
+                           "Picture of the terrain: hillshade with contours, as PNG, SVG or PDF.",
+                           {Grain::merge},
+                           {},
+                           {},
+                           {Product::dtm},
+                           {}};
     return info;
   }
   std::vector<std::string> products() const override { return {options.file}; }
@@ -326,7 +332,7 @@ class PictureWriter : public OptionStage<PictureWriteOptions> {
         lines.push_back({std::move(line.x), std::move(line.y), line.height, line.index, line.closed});
       }
     }
-    io::write_png(context.output / options.file, report::relief_picture(grid, lines, o));
+    write_drawing(context.output / options.file, report::relief_map(grid, lines, o));
     job.findings["file"] = options.file;
   }
 };

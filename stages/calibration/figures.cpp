@@ -174,7 +174,7 @@ Chart section_chart(const CalibrationReport& report, const CrossSection& section
 core::Picture difference_map(const LineDifference& d, bool before) {
   report::DifferenceMapOptions o;
   o.title = "Line " + std::to_string(d.line_a) + " minus line " + std::to_string(d.line_b) + (before ? ", before" : ", after");
-  return report::difference_picture(before ? d.before : d.after, o);
+  return report::draw(report::difference_map(before ? d.before : d.after, o));
 }
 
 }  // namespace swath::stages

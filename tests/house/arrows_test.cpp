@@ -39,6 +39,7 @@ const std::vector<std::pair<std::regex, std::regex>> doors = {
     {std::regex("(gdal|ogr|cpl|vrt).*\\.h"), std::regex("io/.*\\.cpp|io/gdal_door\\.h")},
     {std::regex("proj.*\\.h"), std::regex("core/geodesy\\.cpp|core/crs\\.cpp|core/transform\\.cpp|core/proj_.*|io/versions\\.cpp")},
     {std::regex("toml\\+\\+/.*|rapidjson/.*|png\\.h"), std::regex("io/.*\\.cpp")},
+    {std::regex("cairo.*\\.h"), std::regex("report/canvas\\.cpp")},
     {std::regex("ceres/.*"), std::regex("calib/.*\\.cpp")},
     {std::regex("tbb/.*|oneapi/.*"), std::regex("(pipeline|simulate|io|stages/adapters)/.*\\.cpp|core/parallel\\.cpp")},
     {std::regex("CLI/.*"), std::regex("tools/.*")},

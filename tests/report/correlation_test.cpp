@@ -34,7 +34,7 @@ TEST(Correlation, EveryCoefficientOfTheLowerTriangleStandsThereOnce) {
   EXPECT_EQ(occurrences(s, ">1<"), 3u);
   EXPECT_EQ(occurrences(s, ">-0.99<") + occurrences(s, ">-1.00<"), 1u);
   EXPECT_EQ(occurrences(s, ">pitch &amp; yaw<"), 2u);
-  EXPECT_EQ(occurrences(s, "nan"), 0u);
+  EXPECT_EQ(occurrences(s, ">nan<"), 0u);
 }
 
 TEST(Correlation, ColoursFollowTheCoefficients) {

@@ -19,6 +19,8 @@ core::Grid halves(float west, float east, int nx = 60, int ny = 40) {
   return g;
 }
 
+core::Picture difference_picture(const core::Grid& g, const DifferenceMapOptions& o = {}) { return draw(difference_map(g, o)); }
+
 bool is(const std::uint8_t* c, core::Rgb colour) { return std::equal(colour.begin(), colour.end(), c); }
 
 TEST(DifferenceMap, PaletteIsWhiteAtZeroBlueBelowRedAbove) {

@@ -12,15 +12,9 @@
 namespace swath::report {
 namespace {
 
-size_t occurrences(const std::string& text, const std::string& what) {
-  size_t n = 0;
-  for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
-  return n;
-}
-
 bool holds(const std::string& text, const std::string& what) { return text.find(what) != std::string::npos; }
 
-std::vector<std::string> matches(const std::string& text, const char* pattern) {
+std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
   const std::regex r(pattern);
   std::vector<std::string> out;
   for (std::sregex_iterator it(text.begin(), text.end(), r), end; it != end; ++it) out.push_back((*it)[1]);
@@ -77,7 +71,7 @@ TEST(Page, ContentsAndFootnotesLeadSomewhere) {
   const auto ids = matches(html, " id=\"([^\"]*)\"");
   const std::set<std::string> distinct(ids.begin(), ids.end());
   EXPECT_EQ(ids.size(), distinct.size()) << "an id stands twice";
-  const auto links = matches(html, "href=\"#([^\"]*)\"");
+  const auto links = matches(html, "<a href=\"#([^\"]*)\"");
   EXPECT_EQ(links.size(), 3u + 2u);
   for (const std::string& link : links) EXPECT_TRUE(distinct.contains(link)) << link;
   EXPECT_TRUE(distinct.contains("section-values") && distinct.contains("section-values-2"));
@@ -87,10 +81,17 @@ TEST(Page, ContentsAndFootnotesLeadSomewhere) {
 
 TEST(Page, DrawingsShareNoNames) {
   const std::string html = full_page().html();
-  // Two panels each, and each panel clips by its own box.
-  for (const char* id : {"figure-1-plot1", "figure-1-plot2", "figure-2-plot1", "figure-2-plot2"}) {
-    EXPECT_EQ(occurrences(html, std::string("id=\"") + id + "\""), 1u) << id;
-    EXPECT_EQ(occurrences(html, std::string("url(#") + id + ")"), 1u) << id;
+  const auto ids = matches(html, " id=\"(figure-[^\"]*)\"");
+  const std::set<std::string> distinct(ids.begin(), ids.end());
+  EXPECT_EQ(ids.size(), distinct.size());
+  // Two panels each, and each panel clips by its own box; letters are drawn once and used.
+  for (const char* figure : {"figure-1-", "figure-2-"}) {
+    const auto clips = matches(html, "url\\(#(" + std::string(figure) + "[^)]*)\\)"),
+               letters = matches(html, "xlink:href=\"#(" + std::string(figure) + "[^\"]*)\"");
+    EXPECT_GE(clips.size(), 2u);
+    EXPECT_GT(letters.size(), 10u);
+    for (const auto& used : {clips, letters})
+      for (const std::string& id : used) EXPECT_TRUE(distinct.contains(id)) << id;
   }
 }
 

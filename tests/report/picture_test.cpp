@@ -23,6 +23,10 @@ core::Grid two_levels(int nx, int ny) {
   return g;
 }
 
+core::Picture relief_picture(const core::Grid& g, const std::vector<core::ContourLine>& lines = {}, const PictureOptions& o = {}) {
+  return draw(relief_map(g, lines, o));
+}
+
 int brightness(const core::Picture& p, int x, int y) { return p.at(x, y)[0] + p.at(x, y)[1] + p.at(x, y)[2]; }
 
 int differing(const core::Picture& a, const core::Picture& b) {
