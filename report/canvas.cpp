@@ -14,6 +14,16 @@
 #include "core/error.h"
 #include "report/html.h"
 
+#ifdef __SANITIZE_ADDRESS__
+/// fontconfig and Cairo keep two patterns (652 bytes) until the end of the process, whatever is drawn.
+extern "C" {
+const char* __lsan_default_suppressions();
+const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }
+const char* __lsan_default_options();
+const char* __lsan_default_options() { return "print_suppressions=0"; }
+}
+#endif
+
 namespace swath::report {
 namespace {
 
