@@ -10,43 +10,14 @@
 #include <cstdlib>
 
 #include "core/error.h"
+#include "core/printable.h"
 #include "core/proj_handles.h"
 
 namespace swath::core {
 
-ProjContext new_proj_context() {
-  ProjContext c(proj_context_create());
-  proj_log_level(c.get(), PJ_LOG_NONE);
-  proj_context_set_enable_network(c.get(), 0);
-  return c;
-}
-
-std::string proj_text(const char* t) { return t ? t : ""; }
-
-std::string short_form(const std::string& definition) { return definition.size() <= 80 ? definition : definition.substr(0, 77) + "..."; }
-
-Pj parse_crs(PJ_CONTEXT* c, const std::string& definition) { return Pj(proj_create(c, definition.c_str())); }
-
-const Crs::State& facts_of(const Crs& crs) {
-  if (crs.empty()) throw Error("a CRS is needed and none is given", {}, "state it: \"EPSG:32632\", \"EPSG:25832+7837\", WKT or PROJ text");
-  return *crs.state();
-}
-
-Pj three_dimensional(PJ_CONTEXT* c, const Crs& crs) {
-  Pj plain = parse_crs(c, facts_of(crs).definition);
-  if (!plain || facts_of(crs).vertical || facts_of(crs).geocentric) return plain;
-  Pj promoted(proj_crs_promote_to_3D(c, nullptr, plain.get()));
-  return promoted ? std::move(promoted) : std::move(plain);
-}
-
 namespace {
 
 constexpr std::string_view ellipsoidal_suffix = "ellipsoidal";
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 // Trimmed, "EPSG:a+EPSG:b" as "EPSG:a+b", PROJ text marked as a CRS.
 std::string tidy(const std::string& given) {
@@ -86,7 +57,7 @@ std::string hint_for(const std::string& d) {
 
 /// "EPSG:32632+ellipsoidal": takes the suffix off.
 bool take_ellipsoidal(std::string& d) {
-  const std::string small = lower(d);
+  const std::string small = lower_case(d);
   const size_t plus = small.rfind('+');
   if (plus == std::string::npos || plus == 0) return false;
   const size_t word = small.find_first_not_of(' ', plus + 1);
@@ -102,8 +73,8 @@ Pj unbound(PJ_CONTEXT* c, Pj crs) {
 }
 
 // Axis `index` of a CRS; the metre where it has no such axis.
-Axis axis_of(PJ_CONTEXT* c, const PJ* crs, int index) {
-  Axis axis;
+CrsAxis axis_of(PJ_CONTEXT* c, const PJ* crs, int index) {
+  CrsAxis axis;
   const Pj cs(proj_crs_get_coordinate_system(c, crs));
   if (!cs || index >= proj_cs_get_axis_count(c, cs.get())) return axis;
   const char* unit = nullptr;
@@ -149,7 +120,7 @@ Pj without_needless_shift(PJ_CONTEXT* c, const PJ* crs) {
 /// A vertical part that names a unit alone: "unknown" and the like, as GeoTIFF keys without a vertical system are read.
 bool is_unknown_datum(const PJ* vertical, const std::string& datum) {
   if (code_of(vertical) != 0) return false;
-  const std::string name = lower(datum);
+  const std::string name = lower_case(datum);
   return name.empty() || name.starts_with("unknown") || name.starts_with("unnamed") || name.starts_with("undefined") ||
          name.starts_with("not specified");
 }
@@ -160,7 +131,7 @@ std::string wkt_of(PJ_CONTEXT* c, const PJ* crs, PJ_WKT_TYPE type, bool vertical
 }
 
 /// The CRS that a text means, with its needless shift taken off and its third axis put on where ellipsoidal heights are asked for.
-Pj made_from(PJ_CONTEXT* c, Crs::State& s) {
+Pj made_from(PJ_CONTEXT* c, CrsFacts& s) {
   const bool ellipsoidal = take_ellipsoidal(s.definition);
   Pj crs = parse_crs(c, s.definition);
   if (!crs) {
@@ -185,7 +156,7 @@ Pj made_from(PJ_CONTEXT* c, Crs::State& s) {
 }
 
 /// Heights and their axis.
-void read_heights(PJ_CONTEXT* c, const PJ* crs, const PJ* horizontal, Crs::State& s) {
+void read_heights(PJ_CONTEXT* c, const PJ* crs, const PJ* horizontal, CrsFacts& s) {
   s.vertical = proj_get_type(crs) == PJ_TYPE_COMPOUND_CRS;
   if (s.vertical) {
     const Pj part(proj_crs_get_sub_crs(c, crs, 1));
@@ -207,7 +178,7 @@ void read_heights(PJ_CONTEXT* c, const PJ* crs, const PJ* horizontal, Crs::State
 }  // namespace
 
 Crs::Crs(const std::string& given) {
-  auto s = std::make_shared<State>();
+  auto s = std::make_shared<CrsFacts>();
   s->definition = tidy(given);
   const ProjContext context = new_proj_context();
   PJ_CONTEXT* c = context.get();
@@ -241,29 +212,34 @@ Crs::Crs(const std::string& given) {
   double* a = s->area;
   s->has_area = proj_get_area_of_use(c, crs.get(), &a[0], &a[1], &a[2], &a[3], nullptr) && a[0] > -1000.0;
   if (!s->has_area) s->has_area = proj_get_area_of_use(c, horizontal.get(), &a[0], &a[1], &a[2], &a[3], nullptr) && a[0] > -1000.0;
-  state_ = std::move(s);
+  facts_ = std::move(s);
 }
 
-std::string Crs::name() const { return facts_of(*this).name; }
-std::string Crs::wkt() const { return facts_of(*this).wkt; }
-std::string Crs::wkt1() const { return facts_of(*this).wkt1; }
-int Crs::epsg() const { return facts_of(*this).epsg; }
-int Crs::vertical_epsg() const { return facts_of(*this).vertical_epsg; }
-bool Crs::is_geographic() const { return facts_of(*this).geographic; }
-bool Crs::is_projected() const { return facts_of(*this).projected; }
-bool Crs::is_geocentric() const { return facts_of(*this).geocentric; }
-bool Crs::has_vertical() const { return facts_of(*this).vertical; }
-Heights Crs::heights() const { return facts_of(*this).heights; }
+const CrsFacts& Crs::facts() const {
+  if (!facts_) throw Error("a CRS is needed and none is given", {}, "state it: \"EPSG:32632\", \"EPSG:25832+7837\", WKT or PROJ text");
+  return *facts_;
+}
+
+std::string Crs::name() const { return facts().name; }
+std::string Crs::wkt() const { return facts().wkt; }
+std::string Crs::wkt1() const { return facts().wkt1; }
+int Crs::epsg() const { return facts().epsg; }
+int Crs::vertical_epsg() const { return facts().vertical_epsg; }
+bool Crs::is_geographic() const { return facts().geographic; }
+bool Crs::is_projected() const { return facts().projected; }
+bool Crs::is_geocentric() const { return facts().geocentric; }
+bool Crs::has_vertical() const { return facts().vertical; }
+Heights Crs::heights() const { return facts().heights; }
 bool Crs::has_height_unit() const { return has_vertical() || heights() == Heights::ellipsoidal; }
-Crs Crs::horizontal() const { return Crs(facts_of(*this).horizontal_wkt); }
-std::string Crs::vertical_name() const { return facts_of(*this).vertical_name; }
-double Crs::metres_per_unit() const { return facts_of(*this).horizontal_axis.factor; }
-double Crs::vertical_metres_per_unit() const { return facts_of(*this).vertical_axis.factor; }
-std::string Crs::unit_name() const { return facts_of(*this).horizontal_axis.unit; }
-std::string Crs::vertical_unit_name() const { return facts_of(*this).vertical_axis.unit; }
+Crs Crs::horizontal() const { return Crs(facts().horizontal_wkt); }
+std::string Crs::vertical_name() const { return facts().vertical_name; }
+double Crs::metres_per_unit() const { return facts().horizontal_axis.factor; }
+double Crs::vertical_metres_per_unit() const { return facts().vertical_axis.factor; }
+std::string Crs::unit_name() const { return facts().horizontal_axis.unit; }
+std::string Crs::vertical_unit_name() const { return facts().vertical_axis.unit; }
 
 bool Crs::area_of_use(double& west, double& south, double& east, double& north) const {
-  const State& s = facts_of(*this);
+  const CrsFacts& s = facts();
   if (!s.has_area) return false;
   west = s.area[0], south = s.area[1], east = s.area[2], north = s.area[3];
   return true;

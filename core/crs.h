@@ -8,12 +8,9 @@
 #include <string>
 #include <string_view>
 
-namespace swath::core {
+#include "core/crs_facts.h"
 
-/// What a CRS says of heights: nothing (two axes, or a vertical part on an unknown datum, which states a unit alone), that they are
-/// ellipsoidal (three axes, or geocentric), or that they count from a geoid or level (a compound's vertical part).
-enum class Heights { unknown, ellipsoidal, vertical };
-inline constexpr std::string_view unknown_heights = "height system not stated", ellipsoidal_heights = "ellipsoidal height";
+namespace swath::core {
 
 /// A coordinate reference system: "EPSG:32632", compound "EPSG:25832+7837" (also "EPSG:25832+EPSG:7837"), with ellipsoidal heights
 /// "EPSG:25832+ellipsoidal", WKT (WKT2, WKT1 of GDAL, ESRI or LAStools), PROJ text. A shift to WGS 84 (TOWGS84) that WKT holds beside a
@@ -24,7 +21,7 @@ class Crs {
   /// Throws Error where PROJ does not know it; hint names the nearest remedy.
   explicit Crs(const std::string& definition);
 
-  bool empty() const { return !state_; }
+  bool empty() const { return !facts_; }
   std::string name() const;
   std::string wkt() const;    ///< WKT2:2019
   std::string wkt1() const;   ///< WKT1 GDAL form (LAS WKT VLR), falls back to WKT2 where WKT1 cannot hold it
@@ -47,11 +44,11 @@ class Crs {
   /// Text that distinguishes this CRS, for fingerprints.
   std::string key() const { return wkt(); }
 
-  struct State;
-  const std::shared_ptr<const State>& state() const { return state_; }
+  /// Throws Error where the CRS is empty.
+  const CrsFacts& facts() const;
 
  private:
-  std::shared_ptr<const State> state_;
+  std::shared_ptr<const CrsFacts> facts_;
 };
 
 /// ECEF of WGS84, EPSG:4978.

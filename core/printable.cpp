@@ -95,4 +95,10 @@ std::string csv_field(std::string_view text) {
 
 std::string utf8(std::string_view text) { return written_out(text, false); }
 
+std::string lower_case(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
 }  // namespace swath::core

@@ -22,4 +22,7 @@ std::string shortened(std::string_view text);
 /// with = + - @ or a tab, and is no number) gets an apostrophe in front.
 std::string csv_field(std::string_view text);
 
+/// Of the letters A to Z.
+std::string lower_case(std::string text);
+
 }  // namespace swath::core

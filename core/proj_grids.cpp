@@ -23,7 +23,7 @@ std::vector<std::filesystem::path> grid_files_between(const Crs& from, const Crs
   if (from.empty() || to.empty()) return {};
   const ProjContext context = new_proj_context();
   PJ_CONTEXT* c = context.get();
-  const Pj source = three_dimensional(c, from), target = three_dimensional(c, to);
+  const Pj source = three_dimensional(c, from.facts()), target = three_dimensional(c, to.facts());
   if (!source || !target) return {};
   const PjFactory f(proj_create_operation_factory_context(c, nullptr));
   proj_operation_factory_context_set_spatial_criterion(c, f.get(), PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION);

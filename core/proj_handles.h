@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "core/crs.h"
+#include "core/crs_facts.h"
 
 namespace swath::core {
 
@@ -28,21 +28,6 @@ using Pj = std::unique_ptr<PJ, PjEnd>;
 using PjList = std::unique_ptr<PJ_OBJ_LIST, PjListEnd>;
 using PjFactory = std::unique_ptr<PJ_OPERATION_FACTORY_CONTEXT, PjFactoryEnd>;
 
-struct Axis {
-  double factor = 1.0;
-  std::string unit = "metre";
-};
-
-struct Crs::State {
-  std::string definition, name, wkt, wkt1, horizontal_wkt, vertical_name;
-  int epsg = 0, vertical_epsg = 0;
-  bool geographic = false, projected = false, geocentric = false, vertical = false;
-  Heights heights = Heights::unknown;
-  Axis horizontal_axis, vertical_axis;
-  bool has_area = false;
-  double area[4] = {0, 0, 0, 0};
-};
-
 /// Log and network are off.
 ProjContext new_proj_context();
 /// Empty for nullptr.
@@ -50,10 +35,8 @@ std::string proj_text(const char* t);
 /// Null where PROJ does not understand the definition.
 Pj parse_crs(PJ_CONTEXT* c, const std::string& definition);
 /// A CRS without a vertical part gets ellipsoidal heights in metres as its third axis, or PROJ would drop them. Null as parse_crs().
-Pj three_dimensional(PJ_CONTEXT* c, const Crs& crs);
+Pj three_dimensional(PJ_CONTEXT* c, const CrsFacts& crs);
 /// At most 80 characters of a definition, for messages.
 std::string short_form(const std::string& definition);
-/// The facts of a CRS; throws Error where it is empty.
-const Crs::State& facts_of(const Crs& crs);
 
 }  // namespace swath::core

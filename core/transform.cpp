@@ -20,7 +20,7 @@ namespace {
 constexpr double finest_stated_accuracy = 1.0;
 
 std::string shown(const Crs& crs) {
-  const Crs::State& s = facts_of(crs);
+  const CrsFacts& s = crs.facts();
   return "\"" + (s.name.rfind("unknown", 0) == 0 ? short_form(s.definition) : s.name) + "\"";
 }
 
@@ -152,20 +152,20 @@ Transform::Transform(const Crs& from, const Crs& to) : state_(std::make_unique<S
   s.what = shown(from) + " to " + shown(to);
   hold_heights(from, to, s.what);
   s.flat = from.heights() == Heights::unknown && to.heights() == Heights::unknown;
-  Pj source = s.flat ? parse_crs(c, facts_of(from).horizontal_wkt) : three_dimensional(c, from);
-  Pj target = s.flat ? parse_crs(c, facts_of(to).horizontal_wkt) : three_dimensional(c, to);
+  Pj source = s.flat ? parse_crs(c, from.facts().horizontal_wkt) : three_dimensional(c, from.facts());
+  Pj target = s.flat ? parse_crs(c, to.facts().horizontal_wkt) : three_dimensional(c, to.facts());
   const std::vector<Candidate> candidates = candidates_between(c, source.get(), target.get());
   refuse_where_worse(candidates, s.what);
   // Where it has a choice PROJ follows the point's place, and reads geocentric coordinates as if they were longitude and latitude: it is
   // given these. (With no choice it stays one operation: through a null shift in degrees heights would keep the wrong ellipsoid, 0.1 mm.)
   const bool choice = std::count_if(candidates.begin(), candidates.end(), [](const Candidate& k) { return k.missing.empty(); }) > 1;
   Pj last;
-  if (choice && facts_of(from).geocentric) {
+  if (choice && from.facts().geocentric) {
     Pj geographic = geographic_of(c, source.get());
     s.steps.push_back(operation_between(c, source.get(), geographic.get(), s.what));
     source = std::move(geographic);
   }
-  if (choice && facts_of(to).geocentric) {
+  if (choice && to.facts().geocentric) {
     Pj geographic = geographic_of(c, target.get());
     last = operation_between(c, geographic.get(), target.get(), s.what);
     target = std::move(geographic);

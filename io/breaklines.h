@@ -2,37 +2,16 @@
 // Breaklines, boundaries and water lines from any vector file that GDAL reads.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "core/breakline.h"
-#include "core/option.h"
 #include "core/report.h"
+#include "io/breakline_file.h"
 
 namespace swath::io {
 
 struct Survey;
-
-/// One file of lines or areas: GeoPackage, Shapefile, DXF, GeoJSON.
-struct BreaklineFile {
-  std::filesystem::path file;
-  core::BreaklineKind kind = core::BreaklineKind::breakline;
-  std::string layer;
-  std::string crs;
-  std::string z = "z";
-  core::Metres sigma{0.05};
-};
-
-template <class V>
-void describe(BreaklineFile& f, V& v) {
-  v.option("file", f.file, "GeoPackage, Shapefile, DXF or GeoJSON, relative to survey.toml.");
-  v.option("kind", f.kind, "breakline; boundary (of the model); lake (still water); river (area between its banks).");
-  v.option("layer", f.layer, "Layer of the file that is read; empty: all.");
-  v.option("crs", f.crs, "CRS of its coordinates; empty: the file's own, or that of the survey where it states none.");
-  v.option("z", f.z, "Attribute with the height of features without one in their geometry, in the CRS's height unit.");
-  v.option("sigma", f.sigma, core::at_least(0), "Sigma of the heights.");
-}
 
 /// All features of the survey's breakline files, in the files' order, in the survey's CRS (units of its axes; `crs` is the products', for a
 /// survey that states none). Lakes and rivers may have no heights. Throws Error with file and feature: geometries that do not suit the
@@ -41,10 +20,3 @@ void describe(BreaklineFile& f, V& v) {
 std::vector<core::Breakline> read_breaklines(const Survey& survey, const std::string& crs, core::Tally& tally);
 
 }  // namespace swath::io
-
-namespace swath::core {
-template <>
-struct Choices<BreaklineKind> {
-  static constexpr std::array<std::string_view, 4> names{"breakline", "boundary", "lake", "river"};
-};
-}  // namespace swath::core

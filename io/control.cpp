@@ -15,6 +15,7 @@
 
 #include "core/crs.h"
 #include "core/error.h"
+#include "core/printable.h"
 #include "io/gdal_door.h"
 #include "io/survey.h"
 #include "io/text_table.h"
@@ -303,8 +304,7 @@ std::vector<ControlPoint> read_control(const Survey& survey, core::Tally& tally)
   std::set<std::string> names;
   for (const ControlFile& f : survey.control) {
     const std::filesystem::path path = resolve(survey, f.file);
-    std::string ending = path.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string ending = core::lower_case(path.extension().string());
     const std::vector<RawLayer> layers = ending == ".gpkg" ? read_geopackage(path, f, tally) : std::vector<RawLayer>{read_table(path, f)};
     for (ControlPoint& p : points_of(survey, f, layers, path.string(), tally)) {
       if (!p.target.empty()) {

@@ -3,48 +3,15 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/option.h"
 #include "core/report.h"
+#include "io/control_file.h"
 
 namespace swath::io {
 
 struct Survey;
-
-/// What a control file is for.
-enum class ControlUse {
-  control,  ///< takes part in the adjustment
-  check,    ///< is compared with the result only
-};
-
-/// One file of surveyed points: delimited text (CSV) with a header, or GeoPackage (points; or polygons with heights, one target each).
-struct ControlFile {
-  std::filesystem::path file;
-  std::string crs;
-  ControlUse use = ControlUse::control;
-  std::string name = "name", target = "target", x = "x", y = "y", z = "z", sigma_h = "sigma_h", sigma_v = "sigma_v";
-  core::Metres sigma_horizontal{0.02}, sigma_vertical{0.02};
-};
-
-template <class V>
-void describe(ControlFile& f, V& v) {
-  v.option("file", f.file, "CSV or GeoPackage, relative to survey.toml.");
-  v.option("crs", f.crs, "CRS of its coordinates; empty: that of the survey (GeoPackage: its own).");
-  v.option("use", f.use, "control: takes part in the adjustment; check: is compared with its result alone.");
-  v.option("name", f.name, "Column of the points' names.");
-  v.option("target", f.target, "Column with the plane a point is a corner of, in order around it; empty: a single ground point.");
-  v.option("x", f.x, "Column of eastings.");
-  v.option("y", f.y, "Column of northings.");
-  v.option("z", f.z, "Column of heights.");
-  v.option("sigma_h", f.sigma_h, "Column of sigmas of easting and of northing, m, where the file has it.");
-  v.option("sigma_v", f.sigma_v, "Column of sigmas of height, m, where the file has it.");
-  v.option("sigma_horizontal", f.sigma_horizontal, core::above(0), "Sigma of easting and of northing, where the file states none.");
-  v.option("sigma_vertical", f.sigma_vertical, core::above(0), "Sigma of height, where the file states none.");
-}
 
 /// One surveyed point in ecef.
 struct ControlPoint {
@@ -62,10 +29,3 @@ struct ControlPoint {
 std::vector<ControlPoint> read_control(const Survey& survey, core::Tally& tally);
 
 }  // namespace swath::io
-
-namespace swath::core {
-template <>
-struct Choices<io::ControlUse> {
-  static constexpr std::array<std::string_view, 2> names{"control", "check"};
-};
-}  // namespace swath::core

@@ -20,6 +20,7 @@
 
 #include "core/crs.h"
 #include "core/error.h"
+#include "core/printable.h"
 #include "io/output_file.h"
 
 namespace swath::io {
@@ -93,15 +94,11 @@ bool names_elsewhere(const std::filesystem::path& file) {
 
 /// What GDAL takes for a DXF: by the name's ending, or by "0", "SECTION".
 bool looks_like_dxf(const std::filesystem::path& file) {
-  const auto lower = [](std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-  };
-  if (lower(file.extension().string()) == ".dxf") return true;
+  if (core::lower_case(file.extension().string()) == ".dxf") return true;
   std::string start(1024, '\0');
   std::ifstream in(file, std::ios::binary);
   in.read(start.data(), static_cast<std::streamsize>(start.size()));
-  return lower(start).find("section") != std::string::npos && start.find('0') != std::string::npos;
+  return core::lower_case(start).find("section") != std::string::npos && start.find('0') != std::string::npos;
 }
 
 /// No text has such a byte, and GDAL's reader of DXF may read on for ever where it meets one.

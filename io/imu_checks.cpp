@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/statistics.h"
-#include "io/imu_file.h"
+#include "io/imu_axes.h"
 #include "io/record_times.h"
 
 namespace swath::io {

@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <Eigen/Core>
-
 #include "core/imu_data.h"
 #include "core/report.h"
 #include "io/survey.h"
 
 namespace swath::io {
-
-/// m/s2 per unit; 0 where unstated.
-double mps2_per(AccelerationUnit unit);
-
-/// What takes vectors of the record's axes to `body`: the mounting rotation of the axes map. Throws Error where `axes` is no right-handed
-/// set of x, y, z with signs.
-Eigen::Matrix3d body_R_record(const ImuFile& file);
 
 /// Reads one IMU file of the survey as increments in `body`.
 ///

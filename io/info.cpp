@@ -26,9 +26,9 @@
 #include "io/geotiff.h"
 #include "io/nmea.h"
 #include "io/npy.h"
+#include "io/read_survey.h"
 #include "io/rinex_header.h"
 #include "io/rtklib_pos.h"
-#include "io/survey.h"
 #include "io/value_file.h"
 
 namespace swath::io {

@@ -10,8 +10,8 @@
 #include "core/option.h"
 #include "core/sensor.h"
 #include "core/time.h"
-#include "io/breaklines.h"
-#include "io/control.h"
+#include "io/breakline_file.h"
+#include "io/control_file.h"
 #include "io/navigation.h"
 #include "io/time_tags.h"
 
@@ -269,18 +269,6 @@ void describe(Survey& s, V& v) {
   v.tables("line", s.lines, "Flight lines.");
   v.table("truth", s.truth, "Truth of a simulated survey.");
 }
-
-/// Reads and checks a survey.toml (or the same tree as .json), and its calibration_file. Throws Error with all faults.
-Survey read_survey(const std::filesystem::path& file);
-/// The same from a tree already read (and changed by --set); `folder`: what its file names are relative to.
-Survey read_survey(const core::Value& tree, const std::filesystem::path& folder);
-
-/// Replaces the values that a calibration file states. The file is a table with the tables `calibration` (keys as [calibration]) and
-/// `sigma` (as [sigma]) and the correlations of their errors (`correlation`), further keys passed over; or the keys of [calibration]
-/// themselves beside `sigma`. Throws Error with all faults.
-void load_calibration(const std::filesystem::path& file, core::Calibration& calibration, core::SensorSigma& sigma);
-/// The tree that load_calibration() reads back.
-core::Value calibration_tree(const core::Calibration& calibration, const core::SensorSigma& sigma);
 
 /// The scanner model of a file's records: its own, else the survey's.
 inline core::ScannerModel model_of(const Survey& survey, const LaserFile& file) { return file.model.value_or(survey.scanner.model); }

@@ -7,7 +7,7 @@
 
 #include "core/crs.h"
 #include "io/csd.h"
-#include "io/imu_file.h"
+#include "io/imu_axes.h"
 
 namespace swath::io {
 

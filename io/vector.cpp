@@ -11,21 +11,17 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/printable.h"
 #include "io/gdal_door.h"
 #include "io/vector_sink.h"
 
 namespace swath::io {
 namespace {
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 std::unique_ptr<ContourSink> make_sink(const std::filesystem::path& file, const std::string& crs, const std::string& heights) {
   CrsFacts facts = crs_facts(crs);
   if (!heights.empty()) facts.vertical_name = heights;
-  const std::string ending = lower(file.extension().string());
+  const std::string ending = core::lower_case(file.extension().string());
   if (ending == ".gpkg") return make_gpkg_sink(file, facts);
   if (ending == ".dxf") return make_dxf_sink(file, facts);
   if (ending == ".geojson" || ending == ".json") return make_geojson_sink(file, facts);

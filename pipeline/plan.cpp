@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "io/read_survey.h"
 #include "io/record_checks.h"
 #include "io/value_file.h"
 #include "stages/registry.h"

@@ -15,6 +15,7 @@
 
 #include "core/block.h"
 #include "core/error.h"
+#include "core/printable.h"
 #include "io/delimited.h"
 #include "io/geotiff.h"
 #include "io/las_reader.h"
@@ -132,8 +133,7 @@ Sample projected(const Section& s, const Point& p, double half_width) {
 std::vector<fs::path> las_files(const std::vector<fs::path>& given) {
   std::vector<fs::path> out;
   const auto is_las = [](const fs::path& p) {
-    std::string e = p.extension().string();
-    std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string e = core::lower_case(p.extension().string());
     return e == ".las" || e == ".laz";
   };
   for (const fs::path& p : given) {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "terrain/contour_lines.h"
+#include "terrain/contour_line.h"
 #include "terrain/facets.h"
 
 namespace swath::terrain {

@@ -6,7 +6,7 @@
 
 #include "core/block.h"
 #include "terrain/delaunay.h"
-#include "terrain/tin.h"
+#include "terrain/rectangle.h"
 
 namespace swath::terrain {
 

@@ -113,20 +113,6 @@ std::vector<std::uint32_t> finite(const core::Block& b, const std::vector<std::u
   return out;
 }
 
-/// Squares of the sides of a triangle whose vertices ascend, and twice its area (signed).
-struct Measures {
-  double aa, bb, cc, twice_area;
-  Measures(const Place& a, const Place& b, const Place& c) {
-    const double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
-    twice_area = bx * cy - by * cx;
-    bb = bx * bx + by * by;
-    cc = cx * cx + cy * cy;
-    aa = (bx - cx) * (bx - cx) + (by - cy) * (by - cy);
-  }
-  /// Whether the circumradius is over `radius`; not where rounding leaves no area and no limit is set.
-  bool wider_than(double radius) const { return aa * bb * cc > 4.0 * radius * radius * twice_area * twice_area; }
-};
-
 /// Gives tin.triangles and tin.across the faces that come near `where` and whose circles are small enough.
 class Selection {
  public:
@@ -164,7 +150,7 @@ class Selection {
     if (std::max(std::max(p[0].y, p[1].y), p[2].y) < where_.south || std::min(std::min(p[0].y, p[1].y), p[2].y) > where_.north) return -1;
     const int order = is_before(p[1], p[0]) | is_before(p[2], p[0]) << 1 | is_before(p[2], p[1]) << 2;
     const auto [i, j, k] = orders[static_cast<size_t>(order)];
-    if (p[k].x < where_.west || p[i].x > where_.east || Measures(p[i], p[j], p[k]).wider_than(max_radius_)) return -1;
+    if (p[k].x < where_.west || p[i].x > where_.east || TriangleMeasures(p[i], p[j], p[k]).wider_than(max_radius_)) return -1;
     return static_cast<std::int8_t>(order);
   }
 
@@ -187,13 +173,6 @@ bool Tin::is_before(std::int32_t a, std::int32_t b) const {
 Circumcircle circumcircle(const Tin& tin, std::int32_t triangle) {
   const auto [a, b, c] = tin.triangles[static_cast<size_t>(triangle)];
   return circumcircle(tin.place(a), tin.place(b), tin.place(c));
-}
-
-Circumcircle circumcircle(const Place& a, const Place& b, const Place& c) {
-  const Measures m(a, b, c);
-  const double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
-  const double ux = (cy * m.bb - by * m.cc) / (2.0 * m.twice_area), uy = (bx * m.cc - cx * m.bb) / (2.0 * m.twice_area);
-  return {a.x + ux, a.y + uy, std::sqrt(m.aa) * std::sqrt(m.bb) * std::sqrt(m.cc) / (2.0 * std::abs(m.twice_area))};
 }
 
 Tin triangulate(const core::Block& block, const std::vector<std::uint32_t>& rows, double max_radius, const Rectangle& where) {

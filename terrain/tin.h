@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "core/block.h"
+#include "terrain/circumcircle.h"
 #include "terrain/predicates.h"
+#include "terrain/rectangle.h"
 
 namespace swath::terrain {
 
@@ -33,19 +35,7 @@ struct Tin {
   bool is_before(std::int32_t a, std::int32_t b) const;
 };
 
-/// Radius and centre of the circle through a triangle's vertices, m.
-struct Circumcircle {
-  double x = 0.0, y = 0.0, radius = 0.0;
-};
 Circumcircle circumcircle(const Tin& tin, std::int32_t triangle);
-/// Of places that ascend in (x, y).
-Circumcircle circumcircle(const Place& a, const Place& b, const Place& c);
-
-/// A rectangle of the Block's frame, m; its border belongs to it.
-struct Rectangle {
-  double west = -std::numeric_limits<double>::infinity(), south = west;
-  double east = std::numeric_limits<double>::infinity(), north = east;
-};
 
 /// Delaunay triangulation of the points at `rows`, less the triangles whose circumradius is over `max_radius` (m).
 /// Of points at one (x, y) the lowest stands. Where more than three points lie exactly on one empty circle their polygon is cut as a fan

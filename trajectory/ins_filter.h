@@ -8,7 +8,7 @@
 
 #include "core/gnss_data.h"
 #include "trajectory/error_state.h"
-#include "trajectory/ins_gnss.h"
+#include "trajectory/ins_options.h"
 #include "trajectory/measurement.h"
 
 namespace swath::trajectory {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "trajectory/alignment.h"
+#include "trajectory/clock_offset.h"
 #include "trajectory/ins_smoother.h"
+#include "trajectory/smoother_series.h"
 
 namespace swath::trajectory {
 

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "core/trajectory_data.h"
 #include "trajectory/ins_filter.h"
 
 namespace swath::trajectory {

@@ -8,7 +8,7 @@
 #include "core/imu_spec.h"
 #include "trajectory/alignment.h"
 #include "trajectory/error_state.h"
-#include "trajectory/ins_gnss.h"
+#include "trajectory/ins_options.h"
 
 namespace swath::trajectory {
 

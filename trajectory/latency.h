@@ -10,15 +10,9 @@
 #include "core/option.h"
 #include "core/trajectory_data.h"
 #include "core/value.h"
+#include "trajectory/motion.h"
 
 namespace swath::trajectory {
-
-/// Values over time: places (m, Cartesian axes common to both records) or turn rates (rad/s; a single rate in x). Times rise; both records
-/// count from the same instant, best a near one: a double holds GPS seconds to 0.24 us only.
-struct Motion {
-  std::vector<double> time;  ///< s
-  std::vector<Eigen::Vector3d> value;
-};
 
 /// A constant difference between the records that is estimated beside the latency.
 enum class LatencyShift {

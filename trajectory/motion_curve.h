@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "trajectory/latency.h"
+#include "trajectory/motion.h"
 
 namespace swath::trajectory {
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/calibrate.h"
+#include "calib/report/calibration_report.h"
+#include "calib/report/delivered.h"
+#include "calib/report/verdict.h"
 #include "calib/start_sigmas.h"
 #include "core/units.h"
 #include "io/output_file.h"
 #include "io/value_file.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/calibration_flight.h"
-#include "stages/calibration/verdict.h"
-#include "stages/calibration_report.h"
 #include "stages/calibration_views.h"
 
 namespace swath::stages {
@@ -30,9 +31,9 @@ void describe(AdjustStageOptions& o, V& v) {
 }
 
 /// What calib.flat_target found before in this run: flat_target.json, as it wrote it. Empty where it did not run or found no target.
-std::vector<TargetReading> readings_of(const core::Value& tree) {
+std::vector<calib::TargetReading> readings_of(const core::Value& tree) {
   constexpr double arc_second = core::degree / 3600;
-  std::vector<TargetReading> out;
+  std::vector<calib::TargetReading> out;
   for (const auto& [key, parameter] :
        {std::pair{"roll", calib::boresight_roll}, {"pitch", calib::boresight_pitch}, {"heading", calib::boresight_heading}}) {
     const core::Value* angle = tree.find(key);
@@ -76,7 +77,7 @@ class Adjust : public OptionStage<AdjustStageOptions> {
     calib::CalibrateOptions how = options;
     how.adjust.apriori = calib::start_sigmas(survey.sigma);
     const calib::Calibrated calibrated = calib::calibrate(prepared.flight, how, tally, context.progress);
-    CalibrationReport report = report_on(context, prepared.lines);
+    calib::CalibrationReport report = report_on(context, prepared.lines);
     report.adjustment = calibrated.adjustment;
     report.ties = calibrated.ties;
     report.notes = calibrated.notes;
@@ -84,11 +85,11 @@ class Adjust : public OptionStage<AdjustStageOptions> {
       report.flat_target = io::parse_json(io::read_text_file(target), target.string());
       report.readings = readings_of(report.flat_target);
     }
-    const DeliveredCalibration result = delivered(calibrated.adjustment, survey.sigma);
+    const calib::DeliveredCalibration result = calib::delivered(calibrated.adjustment, survey.sigma);
     add_views(report, view_calibration(context, {&survey.calibration, context.trajectory.get()},
                                        {&result.calibration, context.trajectory.get()}, calibrated.ties, prepared.flight.targets,
                                        options.differences, cell_for(prepared.lines), static_cast<size_t>(options.sections)));
-    write_calibration_report(report, context.output);
+    calib::write_calibration_report(report, context.output);
     tell(calibrated, findings);
   }
 
@@ -100,7 +101,7 @@ class Adjust : public OptionStage<AdjustStageOptions> {
       one["value"] = e.value;
       one["sigma"] = e.sigma;
       one["start"] = e.start;
-      one["delivered"] = is_delivered(c.adjustment, e.parameter);
+      one["delivered"] = calib::is_delivered(c.adjustment, e.parameter);
       one["grade"] = calib::name_of(e.grade);
       findings["estimates"][std::string(words_of(e.parameter).key)] = std::move(one);
     }

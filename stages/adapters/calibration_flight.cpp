@@ -45,9 +45,9 @@ core::Grid on_lattice(const core::Grid& from, const core::Lattice& lattice) {
   return out;
 }
 
-ReportOrigin origin_of(const Context& context, const std::vector<calib::FlownLine>& lines) {
+calib::ReportOrigin origin_of(const Context& context, const std::vector<calib::FlownLine>& lines) {
   const io::Survey& survey = context.survey;
-  ReportOrigin out;
+  calib::ReportOrigin out;
   out.program = "swath " SWATH_VERSION;
   if (!lines.empty() && !context.weekless) {
     double first = lines.front().first, last = lines.front().last;
@@ -99,8 +99,8 @@ double cell_for(const std::vector<calib::FlownLine>& lines) {
   return std::max(step, step * std::ceil(calib::side_for(lines, returns) / step));
 }
 
-CalibrationReport report_on(const Context& context, const std::vector<calib::FlownLine>& lines) {
-  CalibrationReport report;
+calib::CalibrationReport report_on(const Context& context, const std::vector<calib::FlownLine>& lines) {
+  calib::CalibrationReport report;
   report.survey = context.survey.name;
   report.crs = context.product_crs;
   report.unit = context.unit;
@@ -116,9 +116,9 @@ CalibrationReport report_on(const Context& context, const std::vector<calib::Flo
   return report;
 }
 
-void add_views(CalibrationReport& report, CalibrationViews views) {
+void add_views(calib::CalibrationReport& report, CalibrationViews views) {
   for (size_t k = 0; k < views.sections.size(); ++k) {
-    CrossSection section{views.sections[k].name, views.sections[k].width, views.sections[k].ends, {}, {}};
+    calib::CrossSection section{views.sections[k].name, views.sections[k].width, views.sections[k].ends, {}, {}};
     for (const auto& [line, r] : views.sections_before[k]) section.before.push_back({line, r.along, r.height});
     for (const auto& [line, r] : views.sections_after[k]) section.after.push_back({line, r.along, r.height});
     report.sections.push_back(std::move(section));
@@ -127,7 +127,7 @@ void add_views(CalibrationReport& report, CalibrationViews views) {
     const auto before = std::find_if(views.before.begin(), views.before.end(), [&](const calib::LineDifferenceMap& m) {
       return m.statistics.line_a == after.statistics.line_a && m.statistics.line_b == after.statistics.line_b;
     });
-    LineDifference both{after.statistics.line_a, after.statistics.line_b, core::Grid(), std::move(after.grid)};
+    calib::LineDifference both{after.statistics.line_a, after.statistics.line_b, core::Grid(), std::move(after.grid)};
     both.before = before == views.before.end() ? core::Grid(both.after.lattice) : on_lattice(before->grid, both.after.lattice);
     report.differences.push_back(std::move(both));
   }

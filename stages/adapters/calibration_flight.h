@@ -8,7 +8,7 @@
 
 #include "calib/calibrate.h"
 #include "calib/flown_lines.h"
-#include "stages/calibration_report.h"
+#include "calib/report/calibration_report.h"
 #include "stages/calibration_views.h"
 #include "stages/stage.h"
 
@@ -32,8 +32,8 @@ struct PreparedFlight {
 double cell_for(const std::vector<calib::FlownLine>& lines);
 
 /// A report that shows survey and lines so far.
-CalibrationReport report_on(const Context& context, const std::vector<calib::FlownLine>& lines);
+calib::CalibrationReport report_on(const Context& context, const std::vector<calib::FlownLine>& lines);
 /// Adds sections, maps of differences and check points.
-void add_views(CalibrationReport& report, CalibrationViews views);
+void add_views(calib::CalibrationReport& report, CalibrationViews views);
 
 }  // namespace swath::stages

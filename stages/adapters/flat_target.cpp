@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/flat_target.h"
 
+#include "calib/report/flat_target_report.h"
 #include "io/control.h"
 #include "io/output_file.h"
 #include "io/png.h"
 #include "io/value_file.h"
 #include "report/chart.h"
 #include "stages/adapters/adapters.h"
-#include "stages/flat_target_report.h"
 #include "stages/shot_source.h"
 #include "trajectory/error_model.h"
 
@@ -52,10 +52,10 @@ class FlatTargetStage : public OptionStage<FlatTargetStageOptions> {
     const calib::FlatTarget result = calib::analyse_flat_target(
         stream_shots(context), survey.scanner, survey.calibration, survey.sigma, *context.trajectory,
         [&errors](const std::vector<double>& times) { return errors.covariance(times); }, io::read_control(survey, tally), options, tally);
-    findings = summary_of(result);
-    io::write_text_file(context.output / "flat_target.json", io::to_json(value_of(result)));
-    io::write_text_file(context.output / "flat_target_readings.csv", readings_csv(result));
-    io::write_png(context.output / "flat_target.png", report::draw(chart_of(result)));
+    findings = calib::summary_of(result);
+    io::write_text_file(context.output / "flat_target.json", io::to_json(calib::value_of(result)));
+    io::write_text_file(context.output / "flat_target_readings.csv", calib::readings_csv(result));
+    io::write_png(context.output / "flat_target.png", report::draw(calib::chart_of(result)));
   }
 };
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "calib/line_agreement.h"
+#include "calib/report/calibration_report.h"
 #include "core/error.h"
 #include "core/units.h"
 #include "io/output_file.h"
 #include "io/value_file.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/calibration_flight.h"
-#include "stages/calibration_report.h"
 #include "stages/calibration_views.h"
 
 namespace swath::stages {
@@ -180,7 +180,7 @@ class Strips : public OptionStage<StripStageOptions> {
     calib::AdjustedStrips strips = calib::adjust_strips(prepared.flight, options, tally, context.progress);
     const auto corrected = std::make_shared<const trajectory::Trajectory>(std::move(*strips.trajectory));
 
-    CalibrationReport report = report_on(context, prepared.lines);
+    calib::CalibrationReport report = report_on(context, prepared.lines);
     report.adjustment = strips.adjustment;
     report.ties = strips.ties;
     report.notes = strips.notes;
@@ -191,7 +191,7 @@ class Strips : public OptionStage<StripStageOptions> {
                          options.differences, cell_for(prepared.lines), static_cast<size_t>(options.sections));
     const double map_before = calib::overall_rms(views.before), map_after = calib::overall_rms(views.after);
     add_views(report, std::move(views));
-    write_calibration_report(report, context.output);
+    calib::write_calibration_report(report, context.output);
     context.trajectory = corrected;
 
     const calib::PairOnPlanes& all = strips.differences.all;

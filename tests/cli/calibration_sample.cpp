@@ -4,14 +4,14 @@
 #include <exception>
 #include <string>
 
-#include "tests/stages/calibration/made_report.h"
+#include "tests/calib/report/made_report.h"
 
 int main(int argc, char** argv) try {
   if (argc != 3) {
     std::fputs("usage: calibration_sample FOLDER whole|refused\n", stderr);
     return 2;
   }
-  swath::stages::write_calibration_report(swath::stages::made_report(std::string(argv[2]) == "refused"), argv[1]);
+  swath::calib::write_calibration_report(swath::calib::made_report(std::string(argv[2]) == "refused"), argv[1]);
   return 0;
 } catch (const std::exception& e) {
   std::fprintf(stderr, "%s\n", e.what());

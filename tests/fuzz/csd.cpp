@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Optech CSD: header, pulses, the carrier's poses, and shots.
 #include "io/csd.h"
+#include "io/calibration_file.h"
 
 #include "io/info.h"
 #include "io/trajectory_file.h"

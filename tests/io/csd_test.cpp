@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "io/calibration_file.h"
 #include "io/survey.h"
 #include "tests/world/support.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/imu_checks.h"
+#include "io/imu_axes.h"
 
 #include <cmath>
 

@@ -2,6 +2,7 @@
 #include "io/record_checks.h"
 
 #include "core/error.h"
+#include "io/read_survey.h"
 #include "io/value_file.h"
 #include "tests/world/support.h"
 

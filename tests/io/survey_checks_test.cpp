@@ -2,6 +2,7 @@
 #include "io/survey_checks.h"
 
 #include "core/error.h"
+#include "io/read_survey.h"
 #include "tests/world/support.h"
 
 namespace swath::io {

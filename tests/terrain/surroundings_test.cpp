@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "terrain/surroundings.h"
 
+#include "terrain/tin.h"
+
 #include <gtest/gtest.h>
 
 #include <set>
