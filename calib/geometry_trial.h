@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "calib/geometry_gate.h"
+#include "calib/geometry_figures.h"
 #include "calib/small_mistakes.h"
 
 namespace swath::calib {

@@ -18,9 +18,9 @@ Agreement agreement_of(const calib::Adjustment& a, const TargetReading& r) {
   return out;
 }
 
-Verdict verdict_of(const CalibrationReport& report) {
+CalibrationVerdict verdict_of(const CalibrationReport& report) {
   if (report.strips) return verdict_of_strips(report.adjustment, *report.strips);
-  Verdict out = verdict_of(report.adjustment);
+  CalibrationVerdict out = verdict_of(report.adjustment);
   std::vector<std::string> apart;
   for (const TargetReading& r : report.readings) {
     const Agreement g = agreement_of(report.adjustment, r);

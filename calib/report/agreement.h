@@ -17,6 +17,6 @@ constexpr double agreement_limit = 2.0;
 Agreement agreement_of(const calib::Adjustment& adjustment, const TargetReading& reading);
 
 /// Of a whole report, a strip adjustment's too: a flat target that disagrees with the adjustment is said, and the banner is not green.
-Verdict verdict_of(const CalibrationReport& report);
+CalibrationVerdict verdict_of(const CalibrationReport& report);
 
 }  // namespace swath::calib

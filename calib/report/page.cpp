@@ -166,7 +166,7 @@ std::string calibration_page(const CalibrationReport& report, const KeepFigure& 
   report::Page page(report.strips ? "Strip adjustment" : "Calibration report",
                     report.survey.empty() ? std::string() : "Survey " + report.survey);
   const PageParts parts{report, keep, page};
-  const Verdict v = verdict_of(report);
+  const CalibrationVerdict v = verdict_of(report);
   page.banner(v.tone, v.text);
   origin(parts);
   findings(parts);

@@ -275,7 +275,7 @@ std::string difference_file(const LineDifference& d, bool before) {
 
 core::Value calibration_report_tree(const CalibrationReport& report) {
   const calib::Adjustment& a = report.adjustment;
-  const Verdict v = verdict_of(report);
+  const CalibrationVerdict v = verdict_of(report);
   Value out;
   if (!report.strips) {
     const DeliveredCalibration d = delivered(a, report.sensor);

@@ -98,8 +98,8 @@ bool is_delivered(const Adjustment& a, Parameter parameter) {
   return e.estimated && std::isfinite(e.value) && std::isfinite(e.sigma) && !is_refused(a, parameter);
 }
 
-Verdict verdict_of(const Adjustment& a) {
-  Verdict out;
+CalibrationVerdict verdict_of(const Adjustment& a) {
+  CalibrationVerdict out;
   const auto groups = groups_of(a);
   bool boresight_lost = false;
   for (int k = calib::boresight_roll; k <= calib::boresight_heading; ++k)
@@ -154,9 +154,9 @@ Verdict verdict_of(const Adjustment& a) {
   return out;
 }
 
-Verdict verdict_of_strips(const Adjustment& a, const calib::PlaneDifferences& d) {
+CalibrationVerdict verdict_of_strips(const Adjustment& a, const calib::PlaneDifferences& d) {
   constexpr double centimetre = 0.01;
-  Verdict out;
+  CalibrationVerdict out;
   out.tone = d.all.rms_after <= d.all.rms_before ? report::Tone::good : report::Tone::bad;
   out.text = "Lines meet within " + report::number_text(d.all.rms_after / centimetre, 1) + " cm on " + report::count_text(d.all.planes) +
              " pairs of looks at planes (" + report::number_text(d.all.rms_before / centimetre, 1) + " cm before; rms)";

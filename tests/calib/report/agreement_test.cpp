@@ -30,7 +30,7 @@ TEST(CalibrationAgreement, AFlatTargetThatDisagreesIsNeverUnderAGreenBanner) {
   r.readings = {{calib::boresight_roll, roll.value + 0.5 * roll.sigma, roll.sigma, 4, ""}};
   EXPECT_EQ(verdict_of(r).tone, report::Tone::good) << verdict_of(r).text;
   r.readings[0].value = roll.value + 6.0 * roll.sigma;
-  const Verdict v = verdict_of(r);
+  const CalibrationVerdict v = verdict_of(r);
   EXPECT_EQ(v.tone, report::Tone::caution);
   EXPECT_TRUE(v.calibrated);
   EXPECT_TRUE(holds(v.text, "The flat target contradicts it: boresight roll by")) << v.text;

@@ -27,7 +27,7 @@ calib::Adjustment boresight_only(double roll, double pitch, double heading) {
 }
 
 TEST(CalibrationVerdict, TellsEachSigmaInOneSentence) {
-  const Verdict v = verdict_of(boresight_only(1.2, 1.9, 3.4));
+  const CalibrationVerdict v = verdict_of(boresight_only(1.2, 1.9, 3.4));
   EXPECT_TRUE(v.calibrated);
   EXPECT_EQ(v.tone, report::Tone::good);
   EXPECT_EQ(v.text, "Calibrated: boresight roll, pitch and heading are known to 1.2, 1.9 and 3.4 arcsec (one sigma).");
@@ -53,7 +53,7 @@ TEST(CalibrationVerdict, ARefusedAngleIsNoCalibration) {
                         "fly one of the lines once more in the opposite direction",
                         {calib::boresight_pitch},
                         true});
-  const Verdict v = verdict_of(a);
+  const CalibrationVerdict v = verdict_of(a);
   EXPECT_FALSE(v.calibrated);
   EXPECT_EQ(v.tone, report::Tone::bad);
   EXPECT_EQ(v.text,
@@ -65,20 +65,20 @@ TEST(CalibrationVerdict, ARefusedAngleIsNoCalibration) {
 TEST(CalibrationVerdict, ARefusalWithoutParametersIsOfAll) {
   calib::Adjustment a = boresight_only(1, 1, 1);
   a.findings.push_back({"no plane is seen by two lines", "fly overlapping lines over buildings", {}, true});
-  const Verdict v = verdict_of(a);
+  const CalibrationVerdict v = verdict_of(a);
   EXPECT_FALSE(v.calibrated);
   EXPECT_TRUE(holds(v.text, "no plane is seen by two lines. Fly overlapping lines over buildings.")) << v.text;
 }
 
 TEST(CalibrationVerdict, NothingEstimatedOrNoSigmaIsNoCalibration) {
   EXPECT_EQ(verdict_of(calib::Adjustment{}).text, "Not calibrated: no parameter was estimated.");
-  const Verdict v = verdict_of(boresight_only(1, std::numeric_limits<double>::quiet_NaN(), 1));
+  const CalibrationVerdict v = verdict_of(boresight_only(1, std::numeric_limits<double>::quiet_NaN(), 1));
   EXPECT_FALSE(v.calibrated);
   EXPECT_EQ(v.text, "Not calibrated: the boresight came out without a sigma.");
 }
 
 TEST(CalibrationVerdict, OtherParametersRefusedAndPointsThatDisagreeAreSaid) {
-  const Verdict v = verdict_of(made_report(true).adjustment);
+  const CalibrationVerdict v = verdict_of(made_report(true).adjustment);
   EXPECT_TRUE(v.calibrated);
   EXPECT_EQ(v.tone, report::Tone::caution);
   EXPECT_TRUE(holds(v.text, "not determined, and left at its start value: the range scale")) << v.text;
