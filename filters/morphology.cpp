@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Serra 1982 ("Image Analysis and Mathematical Morphology"): opening = erosion, then dilation. The disk is exact (no polygon stands for it):
-// it is the union of horizontal chords, so a raster row takes part in 2 r + 1 output rows by its running minimum over the chord's width.
-// Each width is made from the one before: the running minimum of half-width w + d, d <= w, is the smaller of two of half-width w. Four rows
-// at a time; all inner loops run along rows and vectorize. Rows of the erosion go to the dilation as soon as they are there, in strips of
-// columns, so that what is worked on stays in the processor's cache.
+// Serra 1982 ("Image Analysis and Mathematical Morphology"): opening = erosion, then dilation. The disk is exact (no polygon stands for
+// it): it is the union of horizontal chords, so a raster row takes part in 2 r + 1 output rows by its running minimum over the chord's
+// width. Each width is made from the one before: the running minimum of half-width w + d, d <= w, is the smaller of two of half-width w.
+// Four rows at a time; all inner loops run along rows and vectorize. Rows of the erosion go to the dilation as soon as they are there, in
+// strips of columns, so that what is worked on stays in the processor's cache.
 #include "filters/morphology.h"
 
 #include <algorithm>
