@@ -293,6 +293,7 @@ std::string pdf(const Drawing& d) {
   std::string out;
   if (d.width <= 0 || d.height <= 0) return out;
   const Surface surface(cairo_pdf_surface_create_for_stream(append, &out, d.width * points_per_pixel, d.height * points_per_pixel));
+  cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_4);  // the same with every Cairo
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
   paint(surface.get(), d, points_per_pixel);
   return out;
