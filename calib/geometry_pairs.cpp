@@ -158,13 +158,13 @@ Vector3d height_direction(const GroundCell& c) { return {-c.slope.x(), -c.slope.
 
 Vector3d normal_of(const SharedCell& cells) { return normal_of(*cells.a, *cells.b); }
 
-std::optional<CellLook> look_at(const GroundCell& c, const core::Shots& s, const Vector3d& direction, const ShotGeometry& geometry,
-                                trajectory::Cursor& cursor, const trajectory::LocalFrame& frame) {
+std::optional<CellSensitivity> look_at(const GroundCell& c, const core::Shots& s, const Vector3d& direction, const ShotGeometry& geometry,
+                                       trajectory::Cursor& cursor, const trajectory::LocalFrame& frame) {
   const double t = geometry.time(s.time[c.sample]);
   if (!cursor.seek(t)) return std::nullopt;
   Jacobian J;
   geometry.ecef_point(cursor.pose(t), {s.angle[c.sample], s.forward.empty() ? 0.0 : s.forward[c.sample], s.range[c.sample]}, J);
-  CellLook out;
+  CellSensitivity out;
   out.by = (direction.transpose() * frame.local_R_ecef) * J;
   out.own = loose * (c.rms * c.rms) / c.n;
   out.sigma = cursor.sigma(t);
@@ -177,7 +177,7 @@ double predicted_difference(const std::vector<SharedCell>& shared, const core::S
                             const trajectory::LocalFrame& frame) {
   trajectory::Cursor cursor(trajectory);
   const CalibrationCovariance C = calibration_covariance(sensor);
-  const auto variance_of = [&](const CellLook& look) {
+  const auto variance_of = [&](const CellSensitivity& look) {
     const Variances v = variances(sensor, look.sigma);
     double out = look.own;
     for (int k = position_north; k <= attitude_heading; ++k) out += v[static_cast<size_t>(k)] * look.by[k] * look.by[k];

@@ -63,14 +63,14 @@ struct LinePair {
 };
 
 /// How a cell's place along a direction depends on what a point depends on.
-struct CellLook {
+struct CellSensitivity {
   Eigen::Matrix<double, 1, parameter_count> by = Eigen::Matrix<double, 1, parameter_count>::Zero();  ///< m per unit of each
   double own = 0.0;             ///< variance by the scatter of its returns, m2
   trajectory::PoseSigma sigma;  ///< of the trajectory at its return
 };
 /// `cursor`: of the flight's trajectory. Nothing where that has no pose.
-std::optional<CellLook> look_at(const GroundCell& cell, const core::Shots& shots, const Eigen::Vector3d& direction,
-                                const ShotGeometry& geometry, trajectory::Cursor& cursor, const trajectory::LocalFrame& frame);
+std::optional<CellSensitivity> look_at(const GroundCell& cell, const core::Shots& shots, const Eigen::Vector3d& direction,
+                                       const ShotGeometry& geometry, trajectory::Cursor& cursor, const trajectory::LocalFrame& frame);
 /// Along this the height of a cell's plane at a fixed place follows a shift of the cell.
 Eigen::Vector3d height_direction(const GroundCell& cell);
 /// Upwards, of both cells.

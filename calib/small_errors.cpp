@@ -36,7 +36,7 @@ constexpr double between_stretches = 2.0;  // s
 struct Row {
   double apart = 0.0, variance = 0.0, share = 1.0, weight = 1.0;
   size_t a = 0, b = 0;  // numbers of grounds; the same: control
-  CellLook of_a, of_b;
+  CellSensitivity of_a, of_b;
   size_t at_a = 0, at_b = 0;  // numbers of stretches
 };
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <new>
 
 #include "core/error.h"
 #include "report/html.h"
@@ -142,7 +143,7 @@ void Canvas::area(const std::vector<double>& x, const std::vector<double>& upper
 
 void Canvas::text(double x, double y, std::string_view utf8, const TextStyle& style) {
   const std::string text = plain(utf8);
-  if (text.empty()) return;
+  if (text.empty() || !std::isfinite(x) || !std::isfinite(y) || !std::isfinite(style.angle) || !(style.size > 0.0)) return;
   TextStyle s = style;
   double width = text_width(text, s.size, s.bold);
   if (width > s.room) {
@@ -223,9 +224,11 @@ std::vector<Canvas::Label> paint(cairo_surface_t* surface, const Drawing& d, dou
   return canvas.labels();
 }
 
-cairo_status_t append(void* out, const unsigned char* data, unsigned int length) {
+cairo_status_t append(void* out, const unsigned char* data, unsigned int length) try {
   static_cast<std::string*>(out)->append(reinterpret_cast<const char*>(data), length);
   return CAIRO_STATUS_SUCCESS;
+} catch (const std::bad_alloc&) {  // no exception may pass through Cairo's frames
+  return CAIRO_STATUS_NO_MEMORY;
 }
 
 /// Names counted in the order of the file: Cairo counts its surfaces through the whole run.

@@ -7,7 +7,10 @@
 
 namespace swath::stages {
 
-bool names_drawing(std::string_view file) { return file.ends_with(".png") || file.ends_with(".svg") || file.ends_with(".pdf"); }
+bool names_drawing(std::string_view file) {
+  const auto ending = std::filesystem::path(file).extension();
+  return ending == ".png" || ending == ".svg" || ending == ".pdf";
+}
 
 void write_drawing(const std::filesystem::path& file, const report::Drawing& drawing) {
   const auto ending = file.extension();
