@@ -9,6 +9,7 @@
 #include "calib/map_patch.h"
 #include "calib/shot_geometry.h"
 #include "core/block.h"
+#include "core/result.h"
 #include "core/sensor.h"
 #include "core/shot.h"
 #include "trajectory/trajectory.h"
@@ -18,14 +19,23 @@ namespace swath::calib {
 /// What became of the returns: their sum is the number of returns given.
 struct Counts {
   std::uint64_t georeferenced = 0;
-  std::uint64_t outside = 0;   ///< time in no span of the trajectory (or not a number)
-  std::uint64_t no_range = 0;  ///< range not a number, or not above zero (recorded or calibrated)
-  std::uint64_t no_beam = 0;   ///< scan angle not a number, or `forward` beyond +-1
-  std::uint64_t no_map = 0;    ///< no coordinates in the map's CRS
+  core::LeftOut outside;   ///< time in no span of the trajectory (or not a number)
+  core::LeftOut no_range;  ///< range not a number, or not above zero (recorded or calibrated)
+  core::LeftOut no_beam;   ///< scan angle not a number, or `forward` beyond +-1
+  core::LeftOut no_map;    ///< no coordinates in the map's CRS
 
   Counts& operator+=(const Counts& o);
   bool operator==(const Counts&) const = default;
 };
+
+template <class V>
+void describe(const Counts& r, V& v) {
+  using core::if_any;
+  v.result("outside the trajectory, left out", r.outside, if_any(), "Returns at times that the trajectory does not cover.");
+  v.result("range not above zero, left out", r.no_range, if_any(), "Returns whose range is 0, negative or not a number.");
+  v.result("no beam for the scan angle, left out", r.no_beam, if_any(), "Returns whose scan angle the scanner model does not allow.");
+  v.result("no coordinates in the CRS, left out", r.no_map, if_any(), "Returns that the projection cannot map.");
+}
 
 /// Georeferences returns by the equation of calib/shot_geometry.h, positions to map by MapPatches (within 0.1 mm of PROJ).
 /// The trajectory must outlive this object. All functions are const and safe from many threads; the result for a return depends on nothing

@@ -4,6 +4,8 @@
 
 #include "core/block.h"
 #include "core/option.h"
+#include "core/result.h"
+#include "core/tile_columns.h"
 
 namespace swath::filters {
 
@@ -39,10 +41,31 @@ void describe(ClassifyOptions& o, V& v) {
 
 /// Classes set among the own points.
 struct ClassifyCounts {
-  std::uint64_t low_vegetation = 0, medium_vegetation = 0, high_vegetation = 0, building = 0, wire = 0, bridge_deck = 0, unassigned = 0;
-  std::uint64_t low_noise = 0;  ///< scattered among ground returns a metre or more above them
-  std::uint64_t kept = 0;       ///< ground, water, noise and withheld: as they were
+  core::Changed low_vegetation, medium_vegetation, high_vegetation, building, wire, bridge_deck, unassigned, low_noise;
+  core::Kept kept;
 };
+
+template <class V>
+void describe(const ClassifyCounts& r, V& v) {
+  using core::if_any;
+  v.result("low vegetation", r.low_vegetation, if_any(), "Returns of class 3.");
+  v.result("medium vegetation", r.medium_vegetation, if_any(), "Returns of class 4.");
+  v.result("high vegetation", r.high_vegetation, if_any(), "Returns of class 5.");
+  v.result("building", r.building, if_any(), "Returns of class 6.");
+  v.result("wire", r.wire, if_any(), "Returns of class 14.");
+  v.result("bridge deck", r.bridge_deck, if_any(), "Returns of class 17.");
+  v.result("low noise", r.low_noise, if_any(), "Returns of class 7: scattered among ground returns a metre or more above them.");
+  v.result("unassigned", r.unassigned, if_any(), "Returns of class 1.");
+  v.result("ground, water or noise, not looked at", r.kept, if_any(), "Returns that keep their class, withheld ones too.");
+}
+
+/// The columns that it works with.
+inline core::TileColumns columns(const ClassifyOptions&) {
+  using core::Column;
+  return {.needs = {Column::flags, Column::classification, Column::height},
+          .reads = {Column::return_number, Column::return_count},
+          .gives = {Column::flags, Column::classification}};
+}
 
 /// Metres of points around a tile that its result depends on.
 double halo(const ClassifyOptions& o);

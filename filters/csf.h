@@ -33,6 +33,9 @@ void describe(CsfOptions& o, V& v) {
   v.check(o.span >= o.resolution, "span must hold at least one particle");
 }
 
+/// The columns that it works with.
+inline core::TileColumns columns(const CsfOptions&) { return ground_columns; }
+
 /// Metres of points around a tile that its result depends on.
 double halo(const CsfOptions& o);
 

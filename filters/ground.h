@@ -9,6 +9,8 @@
 
 #include "core/block.h"
 #include "core/option.h"
+#include "core/result.h"
+#include "core/tile_columns.h"
 #include "filters/ground_coarse.h"
 #include "filters/ground_labels.h"
 #include "filters/ground_probability.h"
@@ -44,6 +46,24 @@ struct GroundChances : GroundCounts {
   std::uint64_t doubtful = 0;         ///< probability between 0.25 and 0.75
   std::vector<RaisedSurface> raised;  ///< on and around the own points; wider ones than halo() are not known
 };
+
+template <class V>
+void describe(const GroundChances& r, V& v) {
+  v.result("ground", r.ground, "Returns classified as ground.");
+  v.result("not ground", r.object, "Returns classified as unassigned.");
+  v.result("doubtful: probability between 0.25 and 0.75", r.doubtful, "Returns that may be ground or not.");
+  v.result("not a last return, not ground", r.early, core::if_any(), "Of those not ground: a later return of the pulse lies below.");
+  v.result("withheld or noise, not looked at", r.untouched, core::if_any(), "Returns that keep their class.");
+  v.result("no ground within reach", r.no_surface, core::if_any(), "Of those not ground: without ground nearby to compare with.");
+}
+
+/// The columns that it works with.
+inline core::TileColumns columns(const GroundOptions&) {
+  using core::Column;
+  return {.needs = {Column::flags},
+          .reads = {Column::return_number, Column::return_count, Column::strip},
+          .gives = {Column::classification, Column::ground_probability}};
+}
 
 /// Metres of points around a tile that its result depends on.
 double halo(const GroundOptions& o);

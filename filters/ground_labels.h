@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "core/block.h"
+#include "core/result.h"
 #include "filters/bins.h"
+#include "filters/ground_columns.h"
 
 namespace swath::filters {
 
@@ -17,12 +19,20 @@ enum class Verdict : std::uint8_t { object, ground, no_surface };
 
 /// What one call of a ground filter did, counted over the own points.
 struct GroundCounts {
-  std::uint64_t ground = 0;      ///< set to class ground
-  std::uint64_t object = 0;      ///< set to class unassigned
-  std::uint64_t untouched = 0;   ///< withheld or noise
+  core::Changed ground, object;
+  core::Kept untouched;
   std::uint64_t early = 0;       ///< among `object`: a later return of the same pulse lies below
   std::uint64_t no_surface = 0;  ///< among `object`: no ground within reach to compare with
 };
+
+template <class V>
+void describe(const GroundCounts& r, V& v) {
+  v.result("ground", r.ground, "Returns classified as ground.");
+  v.result("not ground", r.object, "Returns classified as unassigned.");
+  v.result("early returns, not ground", r.early, core::if_any(), "Of those not ground: a later return of the pulse lies below.");
+  v.result("withheld or noise, not looked at", r.untouched, core::if_any(), "Returns that keep their class.");
+  v.result("no ground within reach", r.no_surface, core::if_any(), "Of those not ground: without ground nearby to compare with.");
+}
 
 /// True for the points that ground filters look at: usable last and only returns. An earlier return has one of the same pulse behind it:
 /// the beam went on, so the ground is not there.

@@ -30,6 +30,9 @@ void describe(PtdOptions& o, V& v) {
            "Axelsson2000, discontinuities");
 }
 
+/// The columns that it works with.
+inline core::TileColumns columns(const PtdOptions&) { return ground_columns; }
+
 /// Metres of points around a tile that its result depends on.
 double halo(const PtdOptions& o);
 

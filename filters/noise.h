@@ -6,6 +6,8 @@
 
 #include "core/block.h"
 #include "core/option.h"
+#include "core/result.h"
+#include "core/tile_columns.h"
 
 namespace swath::filters {
 
@@ -34,10 +36,29 @@ void describe(NoiseOptions& o, V& v) {
 
 /// What one call did, counted over the own points; a point may count under several.
 struct NoiseCounts {
-  std::uint64_t range_gate = 0, isolated = 0, low_point = 0;
-  std::uint64_t low_noise = 0, high_noise = 0;  ///< classes set
-  std::uint64_t untouched = 0;                  ///< withheld or already noise: neither judged nor anybody's neighbour
+  core::Flagged range_gate, isolated, low_point;
+  core::Changed low_noise, high_noise;
+  core::Kept untouched;  ///< neither judged nor anybody's neighbour
 };
+
+template <class V>
+void describe(const NoiseCounts& r, V& v) {
+  using core::if_any;
+  v.result("low noise", r.low_noise, "Returns of class 7.");
+  v.result("high noise", r.high_noise, "Returns of class 18.");
+  v.result("isolated", r.isolated, if_any(), "Returns with too few neighbours.");
+  v.result("low points", r.low_point, if_any(), "Returns below the ground around them.");
+  v.result("outside the range gate", r.range_gate, if_any(), "Returns whose range is below range_min or above range_max.");
+  v.result("withheld or noise already, not looked at", r.untouched, if_any(), "Returns that keep their class.");
+}
+
+/// The columns that it works with.
+inline core::TileColumns columns(const NoiseOptions& o) {
+  using core::Column;
+  return {.needs = {Column::flags, Column::classification},
+          .reads = o.range_min || o.range_max ? core::ColumnSet{Column::range} : core::ColumnSet{},
+          .gives = {Column::flags, Column::classification}};
+}
 
 /// Metres of points around a tile that its result depends on.
 double halo(const NoiseOptions& o);

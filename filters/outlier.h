@@ -4,6 +4,8 @@
 
 #include "core/block.h"
 #include "core/option.h"
+#include "core/result.h"
+#include "core/tile_columns.h"
 #include "filters/neighbours.h"
 
 namespace swath::filters {
@@ -35,10 +37,26 @@ void describe(OutlierOptions& o, V& v) {
 
 /// What one call did, counted over the own points; a point may count as statistical and of a group.
 struct OutlierCounts {
-  std::uint64_t statistical = 0, grouped = 0;
-  std::uint64_t low_noise = 0, high_noise = 0;  ///< classes set
-  std::uint64_t untouched = 0;                  ///< withheld or already noise: neither judged nor anybody's neighbour
+  core::Flagged statistical, grouped;
+  core::Changed low_noise, high_noise;
+  core::Kept untouched;  ///< neither judged nor anybody's neighbour
 };
+
+template <class V>
+void describe(const OutlierCounts& r, V& v) {
+  using core::if_any;
+  v.result("low noise", r.low_noise, "Returns of class 7.");
+  v.result("high noise", r.high_noise, "Returns of class 18.");
+  v.result("statistical outliers", r.statistical, if_any(), "Returns whose neighbours are farther than is usual around them.");
+  v.result("in groups alone in space", r.grouped, if_any(), "Returns in small groups with empty space around them.");
+  v.result("withheld or noise already, not looked at", r.untouched, if_any(), "Returns that keep their class.");
+}
+
+/// The columns that it works with.
+inline core::TileColumns columns(const OutlierOptions&) {
+  using core::Column;
+  return {.needs = {Column::flags, Column::classification}, .reads = {}, .gives = {Column::flags, Column::classification}};
+}
 
 /// Metres of points around a tile that its result depends on.
 double halo(const OutlierOptions& o);

@@ -30,6 +30,9 @@ void describe(PmfOptions& o, V& v) {
   v.check(o.max_window_size >= o.cell_size, "max_window_size must span at least one cell");
 }
 
+/// The columns that it works with.
+inline core::TileColumns columns(const PmfOptions&) { return ground_columns; }
+
 /// Metres of points around a tile that its result depends on.
 double halo(const PmfOptions& o);
 

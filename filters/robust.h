@@ -29,6 +29,9 @@ void describe(RobustOptions& o, V& v) {
            "Pfeifer2001, classification");
 }
 
+/// The columns that it works with.
+inline core::TileColumns columns(const RobustOptions&) { return ground_columns; }
+
 /// Metres of points around a tile that its result depends on.
 double halo(const RobustOptions& o);
 

@@ -4,6 +4,8 @@
 
 #include "core/block.h"
 #include "core/option.h"
+#include "core/result.h"
+#include "filters/ground_columns.h"
 
 namespace swath::filters {
 
@@ -33,11 +35,21 @@ void describe(SmrfOptions& o, V& v) {
 
 /// What one call did, counted over the own points.
 struct SmrfCounts {
-  std::uint64_t ground = 0;      ///< set to class ground
-  std::uint64_t object = 0;      ///< set to class unassigned
-  std::uint64_t untouched = 0;   ///< withheld or noise
-  std::uint64_t no_surface = 0;  ///< among `object`: no ground within reach to compare with
+  core::Changed ground, object;
+  core::Kept untouched;
+  std::uint64_t no_surface = 0;
 };
+
+template <class V>
+void describe(const SmrfCounts& r, V& v) {
+  v.result("ground", r.ground, "Returns classified as ground.");
+  v.result("not ground", r.object, "Returns classified as unassigned.");
+  v.result("withheld or noise, not looked at", r.untouched, core::if_any(), "Returns that keep their class.");
+  v.result("no ground within reach", r.no_surface, core::if_any(), "Of those not ground: without ground nearby to compare with.");
+}
+
+/// The columns that it works with.
+inline core::TileColumns columns(const SmrfOptions&) { return ground_columns; }
 
 /// Metres of points around a tile that its result depends on.
 double halo(const SmrfOptions& o);

@@ -4,6 +4,8 @@
 
 #include "core/block.h"
 #include "core/option.h"
+#include "core/result.h"
+#include "core/tile_columns.h"
 
 namespace swath::filters {
 
@@ -27,9 +29,23 @@ void describe(WaterOptions& o, V& v) {
 }
 
 struct WaterCounts {
-  std::uint64_t water = 0;   ///< own returns set to class 9
-  std::uint64_t ground = 0;  ///< of these, ground before
+  core::Changed water;
+  std::uint64_t ground = 0;
 };
+
+template <class V>
+void describe(const WaterCounts& r, V& v) {
+  v.result("water", r.water, core::if_any(), "Returns classified as water.");
+  v.result("of these ground before", r.ground, core::if_any(), "Of those: returns that were of class ground.");
+}
+
+/// The columns that it works with.
+inline core::TileColumns columns(const WaterOptions&) {
+  using core::Column;
+  return {.needs = {Column::flags, Column::classification},
+          .reads = {Column::strip, Column::return_number, Column::return_count},
+          .gives = {Column::classification}};
+}
 
 /// Metres of points around a tile that its result depends on.
 double halo(const WaterOptions& o);

@@ -8,6 +8,7 @@
 #include "io/survey.h"
 #include "io/value_file.h"
 #include "pipeline/plan.h"
+#include "pipeline/report_docs.h"
 #include "stages/registry.h"
 
 namespace swath::pipeline {
@@ -115,6 +116,7 @@ std::vector<std::filesystem::path> write_docs(const std::filesystem::path& docs,
   page(docs / "survey.md", "survey.toml", core::option_table_markdown(core::described(survey)));
   io::HangarSurvey hangar;
   page(docs / "lever-arm.md", "hangar.toml", core::option_table_markdown(core::described(hangar)));
+  page(docs / "report.md", "report.json", report_page());
   RunOptions run;
   page(docs / "run.md", "[run]", core::option_table_markdown(core::described(run)));
   return differing;
@@ -147,6 +149,7 @@ core::Value schema() {
   list["items"]["anyOf"] = std::move(any);
   io::Survey survey;
   out["$defs"]["survey"] = core::schema_of(core::described(survey));
+  out["$defs"]["report"] = report_schema();
   return out;
 }
 

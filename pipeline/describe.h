@@ -15,11 +15,11 @@ std::string stage_list();
 /// Everything a stage says of itself. Throws core::Error (usage) for an unknown name, naming the nearest.
 std::string stage_help(const std::string& name);
 
-/// JSON Schema of pipelines and, under "$defs", of surveys.
+/// JSON Schema of pipelines and, under "$defs", of surveys and of report.json.
 core::Value schema();
 
 /// Writes the generated part of every page in `docs` (between "<!-- generated -->" and "<!-- end -->"): stages/NAME.md,
-/// survey.md, lever-arm.md, run.md, simulate.md. With `only_check` nothing is written. Returns the pages that differ (or differed).
+/// survey.md, lever-arm.md, report.md, run.md. With `only_check` nothing is written. Returns the pages that differ (or differed).
 std::vector<std::filesystem::path> write_docs(const std::filesystem::path& docs, bool only_check);
 
 }  // namespace swath::pipeline

@@ -26,6 +26,7 @@
 #include "pipeline/memory.h"
 #include "pipeline/provenance.h"
 #include "pipeline/pulse_border.h"
+#include "pipeline/report_docs.h"
 #include "pipeline/stage_memory.h"
 #include "pipeline/summary.h"
 #include "pipeline/tile_groups.h"
@@ -95,6 +96,7 @@ class Engine {
   void find_strips();
   bool is_read_again(size_t number) const;
   bool is_resumed(size_t number) const;
+  std::vector<stages::Product> last_uses(size_t number) const;
   void run_survey_stages();
   void run_strips();
   void stream_strip(const stages::Strip& strip, const fs::path& folder);
@@ -285,8 +287,20 @@ bool Engine::is_resumed(size_t number) const {
   if (!is_survey_piece_done(folder(number))) return false;
   if (!is_read_again(number)) return true;
   for (size_t i = number + 1; i < plan_.stages.size(); ++i)
-    if (works_on(i, Grain::survey) && stage(i).info().takes(stages::Product::imu) && !is_survey_piece_done(folder(i))) return false;
+    if (works_on(i, Grain::survey) && stage(i).info().takes(stages::Product::of<core::ImuData>()) && !is_survey_piece_done(folder(i)))
+      return false;
   return true;
+}
+
+/// What no stage behind this one has a use for.
+std::vector<stages::Product> Engine::last_uses(size_t number) const {
+  std::vector<stages::Product> last = stage(number).info().needs_products;
+  std::erase_if(last, [&](stages::Product p) {
+    for (size_t i = number + 1; i < plan_.stages.size(); ++i)
+      if (stage(i).info().uses(p)) return true;
+    return false;
+  });
+  return last;
 }
 
 void Engine::run_survey_stages() {
@@ -297,9 +311,10 @@ void Engine::run_survey_stages() {
     progress_.begin(std::string(stage(i).info().name), 0, "");
     const bool resumed = is_resumed(i);
     context_.memory = memory_.free();
-    SurveyPiece piece =
-        resumed ? resume_survey_piece(context_, folder(i))
-                : run_survey_piece(stage(i), context_, folder(i), !is_read_again(i) || stage(i).info().makes(stages::Product::imu));
+    context_.last_uses = last_uses(i);
+    SurveyPiece piece = resumed ? resume_survey_piece(context_, folder(i))
+                                : run_survey_piece(stage(i), context_, folder(i),
+                                                   !is_read_again(i) || stage(i).info().makes(stages::Product::of<core::ImuData>()));
     progress_.end();
     resumed_ += resumed;
     accounts_[i].tally.add(piece.tally);
@@ -308,7 +323,7 @@ void Engine::run_survey_stages() {
     made_[i] = std::move(piece.files);
     context_.earlier.push_back(context_.output);
     if (const Value* geometry = accounts_[i].findings.find("geometry"))
-      if (const Value* doubt = geometry->find("doubt")) context_.geometry_doubt = doubt->as_text();
+      if (const Value* doubt = geometry->find("doubt")) context_.records.put(stages::GeometryDoubt{doubt->as_text()});
   }
 }
 
@@ -692,17 +707,18 @@ void Engine::keep_finished(const core::Error& e) {
 }
 
 Measured Engine::measured() const {
-  const auto finding = [&](std::string_view key) -> std::optional<double> {
-    for (const Account& a : accounts_)
-      for (const Value* in : {&a.findings, a.findings.find("geometry")})
-        if (const Value* v = in ? in->find(key) : nullptr; v && v->is_number()) return v->as_number();
+  const auto finding = [&](std::string_view limit) -> std::optional<double> {
+    for (const LimitedFinding& f : limited_findings())
+      for (size_t i = 0; i < accounts_.size(); ++i)
+        if (f.limit == limit && stage(i).info().name == f.stage)
+          if (const Value* v = value_at(accounts_[i].findings, f.path); v && v->is_number()) return v->as_number();
     return std::nullopt;
   };
   std::optional<double> outside;
   for (size_t i = 0; i < accounts_.size(); ++i)
     if (stage(i).info().name == "georeference" && accounts_[i].in > 0)
       outside = static_cast<double>(accounts_[i].tally.of("outside the trajectory, left out")) / static_cast<double>(accounts_[i].in);
-  return {outside, finding("void_share"), finding("rms_3d"), finding("line_difference"), finding("contradictions")};
+  return {outside, finding("voids"), finding("truth_rms"), finding("line_difference"), finding("contradictions")};
 }
 
 const Value* Engine::judged_geometry() const {

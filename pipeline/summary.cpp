@@ -8,6 +8,7 @@
 #include "io/value_file.h"
 #include "pipeline/limits.h"
 #include "pipeline/progress.h"
+#include "pipeline/report_docs.h"
 
 namespace swath::pipeline {
 namespace {
@@ -26,16 +27,31 @@ std::string scalar(const Value& v) {
   return text;
 }
 
-void indent(const Value& v, const std::string& margin, std::string& out) {
-  for (const auto& [key, value] : v.members()) {
-    if (value.is_object()) {
-      out += margin + key + "\n";
-      indent(value, margin + "  ", out);
-    } else {
-      out += margin + key + ": " + scalar(value) + "\n";
+/// The findings of a stage, those with a declaration as it says: in its unit, and no details.
+class FindingsText {
+ public:
+  explicit FindingsText(std::string_view stage) : declared_(declared_findings(stage)) {}
+
+  std::string of(const Value& tables, const std::string& margin, const std::string& path = {}) const {
+    std::string out;
+    for (const auto& [key, value] : tables.members()) {
+      const std::string at = path.empty() ? key : path + "." + key;
+      if (value.is_object()) {
+        const std::string inner = of(value, margin + "  ", at);
+        if (!inner.empty()) out += margin + key + "\n" + inner;
+        continue;
+      }
+      const auto known = declared_.find(at);
+      if (known != declared_.end() && known->second.form.audience == core::Audience::detail) continue;
+      const bool is_figure = known != declared_.end() && value.is_number();
+      out += margin + key + ": " + (is_figure ? core::shown(value, known->second.form) : scalar(value)) + "\n";
     }
+    return out;
   }
-}
+
+ private:
+  std::map<std::string, core::ResultDoc> declared_;
+};
 
 void options(const Value& table, const std::string& path, std::string& out) {
   for (const auto& [key, value] : table.members()) {
@@ -68,7 +84,7 @@ std::string summary(const Value& report, const std::filesystem::path& output) {
         if (const Value* examples = one.find("examples")) out += "  (" + examples->items().front().as_text() + ")";
         out += "\n";
       }
-    if (const Value* findings = stage.find("findings")) indent(*findings, "    ", out);
+    if (const Value* findings = stage.find("findings")) out += FindingsText(stage.find("type")->as_text()).of(*findings, "    ");
   }
   if (const Value* resumed = report.find("pieces_resumed"); resumed && resumed->as_int() > 0)
     out += "\nresumed: " + std::to_string(resumed->as_int()) + " pieces were done by an earlier run\n";

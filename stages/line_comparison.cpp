@@ -40,42 +40,6 @@ double number(const core::Value& v, std::string_view key) {
 
 }  // namespace
 
-core::Value value_of(const quality::LineComparison& c) {
-  core::Value v = core::Value::object();
-  v["cell_m"] = c.cell;
-  v["scatter_m"] = c.scatter;
-  v["common_m"] = c.common;
-  v["common_horizontal_m"] = c.common_horizontal;
-  v["residual_m"] = c.residual;
-  v["places"] = c.places;
-  v["steep_places"] = c.steep_places;
-  core::Value& lines = v["lines"] = core::Value::array();
-  for (const quality::LineOffset& l : c.lines) {
-    core::Value one = core::Value::object();
-    one["line"] = l.line;
-    one["group"] = l.group;
-    one["overlaps"] = l.pairs;
-    one["offset_m"] = l.offset;
-    one["sigma_m"] = l.sigma;
-    lines.push(std::move(one));
-  }
-  core::Value& pairs = v["pairs"] = core::Value::array();
-  for (const quality::LinePair& p : c.pairs) {
-    core::Value one = core::Value::object();
-    one["line_a"] = p.line_a;
-    one["line_b"] = p.line_b;
-    one["cells"] = p.cells;
-    one["difference_m"] = p.difference;
-    one["sigma_m"] = p.sigma;
-    one["rms_m"] = p.rms;
-    one["rms_after_m"] = p.rms_after;
-    pairs.push(std::move(one));
-  }
-  core::Value& not_shown = v["not_shown"] = core::Value::array();
-  for (const std::string& sentence : quality::not_shown(c)) not_shown.push(sentence);
-  return v;
-}
-
 void write_line_cells(const std::filesystem::path& file, const quality::LineCells& cells) {
   std::string bytes;
   put(bytes, cells.differences);

@@ -11,9 +11,6 @@
 
 namespace swath::stages {
 
-/// lines.json and the report's findings.
-core::Value value_of(const quality::LineComparison& c);
-
 /// One tile's cells as an intermediate file, in the machine's byte order.
 void write_line_cells(const std::filesystem::path& file, const quality::LineCells& cells);
 /// Appends them to `cells`; throws core::Error where the file is damaged.

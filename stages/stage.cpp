@@ -10,13 +10,6 @@ std::string_view name_of(Grain g) {
   return names[static_cast<size_t>(g)];
 }
 
-std::string_view name_of(Product p) {
-  static constexpr std::string_view names[] = {"imu",       "gnss",      "events",        "trajectory",     "shots",     "points",
-                                               "dtm",       "dsm",       "contours",      "breaklines",     "canopy",    "slope",
-                                               "hillshade", "intensity", "pulse_density", "return_density", "visibility"};
-  return names[static_cast<size_t>(p)];
-}
-
 core::Lattice lattice_in(double cell, const Box& box) {
   // Centre (i + 0.5) cell in [x0, x1)  <=>  i in [x0/cell - 0.5, x1/cell - 0.5).
   const auto first = [cell](double edge) { return static_cast<std::int64_t>(std::ceil(edge / cell - 0.5)); };

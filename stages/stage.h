@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -14,17 +15,15 @@
 #include <vector>
 
 #include "core/block.h"
-#include "core/event_data.h"
 #include "core/geodesy.h"
-#include "core/gnss_data.h"
 #include "core/grid.h"
-#include "core/imu_data.h"
 #include "core/on_progress.h"
 #include "core/option.h"
 #include "core/report.h"
+#include "core/result.h"
 #include "core/shot.h"
 #include "io/survey.h"
-#include "trajectory/trajectory.h"
+#include "stages/records.h"
 
 namespace swath::stages {
 
@@ -32,34 +31,14 @@ namespace swath::stages {
 enum class Grain { survey, strip, tile, merge };
 std::string_view name_of(Grain g);
 
-/// What stages hand on besides columns. A plan is refused where a stage needs what none before it gives.
-enum class Product {
-  imu,
-  gnss,
-  events,
-  trajectory,
-  shots,
-  points,
-  dtm,
-  dsm,
-  contours,
-  breaklines,
-  canopy,
-  slope,
-  hillshade,
-  intensity,
-  pulse_density,
-  return_density,
-  visibility
-};
-std::string_view name_of(Product p);
-
 struct Info {
   std::string_view name;
   std::string_view summary;  ///< one sentence
   std::vector<Grain> grains;
   core::ColumnSet needs, gives;
   std::vector<Product> needs_products, gives_products;
+  std::vector<Product> uses_products{};  ///< where they are there, beside those it needs
+  bool uses(Product p) const { return takes(p) || std::find(uses_products.begin(), uses_products.end(), p) != uses_products.end(); }
   bool takes(Product p) const { return std::find(needs_products.begin(), needs_products.end(), p) != needs_products.end(); }
   bool makes(Product p) const { return std::find(gives_products.begin(), gives_products.end(), p) != gives_products.end(); }
 };
@@ -155,15 +134,10 @@ struct Context {
   std::vector<std::filesystem::path> earlier{};  ///< the same of the stages before it
   core::OnProgress progress = core::unwatched;   ///< of the survey stage or merge at work
   const Grids* grids = nullptr;
-  const Stage* source = nullptr;  ///< of the plan; null where it has none
-  std::vector<Strip> strips{};    ///< of the source, in the order of the work
-  // What survey stages hand on.
-  std::shared_ptr<const core::ImuData> imu{};
-  std::shared_ptr<const core::GnssData> gnss{};
-  std::shared_ptr<const core::EventData> events{};
-  std::shared_ptr<const trajectory::Trajectory> trajectory{};
-  /// Why the geometry of the flight is not to be adjusted, as quality.geometry found it; empty: nothing stands against it.
-  std::string geometry_doubt{};
+  const Stage* source = nullptr;     ///< of the plan; null where it has none
+  std::vector<Strip> strips{};       ///< of the source, in the order of the work
+  Records records{};                 ///< that survey stages handed on
+  std::vector<Product> last_uses{};  ///< of records that no stage behind the one at work needs
 
   Box box_of(TileKey k) const { return {k.ix * tile_side, k.iy * tile_side, (k.ix + 1) * tile_side, (k.iy + 1) * tile_side}; }
   /// The file that a stage before this one made under `name`; empty where none did.
@@ -215,6 +189,11 @@ class Stage {
   virtual ~Stage() = default;
   virtual const Info& info() const = 0;
   virtual void visit(core::Visitor& v) = 0;
+
+  /// The results that it declares, of a sample without values: documentation and texts are made from them. What it counts is under `tally`
+  /// in the report, what it finds under `findings`.
+  virtual void visit_counts(core::ResultVisitor&) const {}
+  virtual void visit_findings(core::ResultVisitor&) const {}
 
   /// The stage whose findings this one uses: put in front of it where the plan does not name it; empty: none. `cloud`: the plan's points
   /// come georeferenced.
@@ -279,11 +258,21 @@ class Stage {
   }
 };
 
-/// A stage with a struct of options.
-template <class O>
+/// A stage without options, or without declared results.
+struct NoOptions {};
+template <class V>
+void describe(NoOptions&, V&) {}
+struct NoResults {};
+template <class V>
+void describe(const NoResults&, V&) {}
+
+/// A stage with a struct of options and structs of results: what it counts and what it finds.
+template <class O, class Counts = NoResults, class Findings = NoResults>
 class OptionStage : public Stage {
  public:
   void visit(core::Visitor& v) override { describe(options, v); }
+  void visit_counts(core::ResultVisitor& v) const override { describe(Counts{}, v); }
+  void visit_findings(core::ResultVisitor& v) const override { describe(Findings{}, v); }
   O options;
 };
 

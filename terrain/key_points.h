@@ -7,6 +7,8 @@
 
 #include "core/block.h"
 #include "core/option.h"
+#include "core/result.h"
+#include "core/tile_columns.h"
 
 namespace swath::terrain {
 
@@ -27,9 +29,22 @@ void describe(KeyPointOptions& o, V& v) {
 }
 
 struct KeyPointCounts {
-  std::uint64_t terrain = 0, key = 0;  ///< of the own points
-  double farthest = 0.0;               ///< m: largest distance in height of a point that was left out
+  std::uint64_t terrain = 0;  ///< of the own points
+  core::Flagged key;          ///< of these
+  double farthest = 0.0;      ///< m: largest distance in height of a point that was left out
 };
+
+template <class V>
+void describe(const KeyPointCounts& r, V& v) {
+  v.result("ground points", r.terrain, "Points of the terrain.");
+  v.result("key points", r.key, "Of those: points that the terrain needs.");
+}
+
+/// The columns that it works with.
+inline core::TileColumns columns(const KeyPointOptions&) {
+  using core::Column;
+  return {.needs = {Column::classification, Column::flags}, .reads = {}, .gives = {Column::flags}};
+}
 
 /// Width of the border of points around the own ones, m.
 double halo(const KeyPointOptions& options);

@@ -150,33 +150,4 @@ TrajectoryChecks check_trajectory(const core::TrajectoryData& d, const CheckOpti
   return out;
 }
 
-core::Value TrajectoryChecks::value() const {
-  core::Value v = core::Value::object();
-  v["records"] = static_cast<std::int64_t>(records);
-  v["rate_hz"] = rate;
-  v["duplicates"] = static_cast<std::int64_t>(duplicates);
-  v["backwards"] = static_cast<std::int64_t>(backwards);
-  v["not_finite"] = static_cast<std::int64_t>(not_finite);
-  v["gaps"] = core::Value::array();
-  for (const Gap& g : gaps) {
-    core::Value one = core::Value::object();
-    one["record"] = static_cast<std::int64_t>(g.record);
-    one["time_s"] = g.first;
-    one["length_s"] = g.length;
-    v["gaps"].push(one);
-  }
-  v["straight_records"] = static_cast<std::int64_t>(straight);
-  v["heading_minus_track_median_deg"] = core::to_degrees(crab_median);
-  v["heading_minus_track_spread_deg"] = core::to_degrees(crab_spread);
-  v["speed_median_m_s"] = speed_median;
-  v["velocity_difference_m_s"] = velocity_difference;
-  v["turning_s"] = motion.turning;
-  v["roll_per_bank"] = motion.roll_per_bank;
-  v["pitch_per_bank"] = motion.pitch_per_bank;
-  v["climb_per_recorded_climb"] = motion.climb_ratio;
-  v["warnings"] = core::Value::array();
-  for (const std::string& w : warnings) v["warnings"].push(w);
-  return v;
-}
-
 }  // namespace swath::trajectory

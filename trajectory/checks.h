@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/option.h"
+#include "core/result.h"
 #include "core/trajectory_data.h"
-#include "core/value.h"
 #include "trajectory/motion_checks.h"
 
 namespace swath::trajectory {
@@ -33,6 +33,13 @@ struct Gap {
   double length = 0.0;  ///< s
 };
 
+template <class V>
+void describe(const Gap& r, V& v) {
+  v.result("record", r.record, "Last record before the gap.");
+  v.result("time_s", r.first, core::seconds().always(), "Its GPS time.");
+  v.result("length_s", r.length, core::seconds().always(), "Length of the gap.");
+}
+
 struct TrajectoryChecks {
   size_t records = 0;
   double rate = 0.0;      ///< 1 / median step, Hz
@@ -48,9 +55,34 @@ struct TrajectoryChecks {
   double velocity_difference = 0.0;  ///< median of |recorded - differenced horizontal velocity|, m/s; 0 where none is recorded
   MotionChecks motion;
   std::vector<std::string> warnings;  ///< those of `motion` among them
-
-  core::Value value() const;
 };
+
+template <class V>
+void describe(const TrajectoryChecks& r, V& v) {
+  using core::in_degrees;
+  constexpr core::Form speed{"m/s", 2};
+  v.result("records", r.records, core::plain().in_summary(), "Records.");
+  v.result("rate_hz", r.rate, core::Form{"Hz", 1}.in_summary().always(), "Records per second, by the median step.");
+  v.result("duplicates", r.duplicates, "Records whose time equals the one before.");
+  v.result("backwards", r.backwards, "Records whose time is before the one before.");
+  v.result("not_finite", r.not_finite, "Records with a value that is not a number.");
+  v.tables("gaps", r.gaps, "Steps longer than max_gap.");
+  v.result("straight_records", r.straight, "Records of straight level flight, by which heading and track are compared.");
+  v.result("heading_minus_track_median_deg", core::to_degrees(r.crab_median), in_degrees(2).in_summary().always(),
+           "Median of heading less track over these: wind, or a wrong heading.");
+  v.result("heading_minus_track_spread_deg", core::to_degrees(r.crab_spread), in_degrees(2).always(),
+           "Its robust spread about the median of each course.");
+  v.result("speed_median_m_s", r.speed_median, speed.always(), "Median speed over the ground.");
+  v.result("velocity_difference_m_s", r.velocity_difference, speed.always(),
+           "Median of recorded less differenced velocity; 0 where none is recorded.");
+  v.result("turning_s", r.motion.turning, core::seconds(1).always(), "Time in turns of more than 1 m/s2 across the track.");
+  v.result("roll_per_bank", r.motion.roll_per_bank, core::plain(3).always(),
+           "Slope of roll on the bank of a coordinated turn: 1 in flight.");
+  v.result("pitch_per_bank", r.motion.pitch_per_bank, core::plain(3).always(), "The same of pitch: 0 in flight.");
+  v.result("climb_per_recorded_climb", r.motion.climb_ratio, core::plain(3).always(),
+           "Change of height per metre of climb by the recorded velocity; 0 where none is recorded.");
+  v.result("warnings", r.warnings, core::plain().in_summary(), "What looks wrong, as sentences with figures.");
+}
 
 /// Takes any data, also data that Trajectory refuses. Thresholds of the warnings are named in the .cpp with their reasons.
 TrajectoryChecks check_trajectory(const core::TrajectoryData& data, const CheckOptions& options = {});

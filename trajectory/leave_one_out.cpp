@@ -21,8 +21,6 @@ double median(std::vector<double> v) {
   return 0.5 * (v[(n - 1) / 2] + v[n / 2]);
 }
 
-core::Value in_value(const Eigen::Vector3d& v) { return core::Value::Array{v[0], v[1], v[2]}; }
-
 }  // namespace
 
 std::string_view title_of(Interpolator i) {
@@ -101,25 +99,6 @@ std::string LeaveOneOut::table() const {
     }
   }
   return out;
-}
-
-core::Value LeaveOneOut::value() const {
-  core::Value v = core::Value::object();
-  v["fixes"] = fix.size();
-  v["without_full_window"] = beside_gaps;
-  v["step_s"] = step;
-  static constexpr std::array<const char*, interpolators.size()> keys{"kalman", "straight_line", "parabola", "rts"};
-  for (const Interpolator i : interpolators) {
-    const DifferenceStatistics& s = of(i);
-    core::Value& one = v[keys[static_cast<size_t>(i)]];
-    one["sigma_m"] = in_value(s.sigma);
-    one["mean_m"] = in_value(s.mean);
-    one["rms_m"] = in_value(s.rms);
-    one["largest_m"] = in_value(s.max_abs);
-    one["median_formal_sigma_m"] = in_value(s.median_formal);
-  }
-  v["rts"]["acceleration_m_s2_per_sqrt_hz"] = in_value(acceleration);
-  return v;
 }
 
 }  // namespace swath::trajectory

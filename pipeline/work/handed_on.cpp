@@ -126,13 +126,14 @@ trajectory::Trajectory made_of(core::TrajectoryData data, double max_gap, const 
 }  // namespace
 
 HandedOn HandedOn::of(const stages::Context& context) {
-  return {context.gnss, context.events, context.trajectory, context.origin, context.area};
+  const stages::Records& r = context.records;
+  return {r.find<core::GnssData>(), r.find<core::EventData>(), r.find<trajectory::Trajectory>(), context.origin, context.area};
 }
 
 void HandedOn::give(stages::Context& context) const {
-  context.gnss = gnss;
-  context.events = events;
-  context.trajectory = trajectory;
+  context.records.share<core::GnssData>(gnss);
+  context.records.share<core::EventData>(events);
+  context.records.share<trajectory::Trajectory>(trajectory);
   context.origin = origin;
   context.area = area;
 }

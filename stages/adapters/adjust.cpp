@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calib/calibrate.h"
+#include "stages/adapters/calibrations.h"
+
 #include "calib/report/calibration_report.h"
 #include "calib/report/delivered.h"
 #include "calib/report/verdict.h"
@@ -7,7 +8,6 @@
 #include "core/units.h"
 #include "io/output_file.h"
 #include "io/value_file.h"
-#include "stages/adapters/adapters.h"
 #include "stages/adapters/calibration_flight.h"
 #include "stages/calibration_views.h"
 
@@ -15,20 +15,6 @@ namespace swath::stages {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct AdjustStageOptions : calib::CalibrateOptions {
-  trajectory::ErrorModelOptions errors;
-  calib::LineHeightOptions differences;
-  int sections = 4;
-};
-
-template <class V>
-void describe(AdjustStageOptions& o, V& v) {
-  describe(static_cast<calib::CalibrateOptions&>(o), v);
-  v.table("errors", o.errors, "Errors of trajectories that state no covariances between instants.");
-  v.table("differences", o.differences, "Maps of the differences of overlapping lines.");
-  v.option("sections", o.sections, core::within(0, 50), "Cross sections drawn in the report.");
-}
 
 /// What calib.flat_target found before in this run: flat_target.json, as it wrote it. Empty where it did not run or found no target.
 std::vector<calib::TargetReading> readings_of(const core::Value& tree) {
@@ -52,70 +38,47 @@ std::vector<calib::TargetReading> readings_of(const core::Value& tree) {
   return out;
 }
 
-class Adjust : public OptionStage<AdjustStageOptions> {
- public:
-  const Info& info() const override {
-    static const Info info{"calib.adjust",
-                           "Rigorous adjustment of a calibration flight: boresight, range and scan corrections and the trajectory's line "
-                           "corrections from planes "
-                           "that several lines have seen; calibration.json and report.html.",
-                           {Grain::survey},
-                           {},
-                           {},
-                           {Product::trajectory, Product::shots},
-                           {}};
-    return info;
-  }
-  std::vector<std::string> products() const override {
-    return {"calibration.json", "report.html", "residuals.csv", "corrections.csv", "planes.csv", "sections.csv", "figures", "differences"};
-  }
-  std::vector<fs::path> inputs(const io::Survey& survey) const override { return control_files(survey); }
-
-  void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
-    const io::Survey& survey = context.survey;
-    const PreparedFlight prepared(context, options.errors, tally);
-    calib::CalibrateOptions how = options;
-    how.adjust.apriori = calib::start_sigmas(survey.sigma);
-    const calib::Calibrated calibrated = calib::calibrate(prepared.flight, how, tally, context.progress);
-    calib::CalibrationReport report = report_on(context, prepared.lines);
-    report.adjustment = calibrated.adjustment;
-    report.ties = calibrated.ties;
-    report.notes = calibrated.notes;
-    if (const fs::path target = context.made("flat_target.json"); !target.empty()) {
-      report.flat_target = io::parse_json(io::read_text_file(target), target.string());
-      report.readings = readings_of(report.flat_target);
-    }
-    const calib::DeliveredCalibration result = calib::delivered(calibrated.adjustment, survey.sigma);
-    add_views(report, view_calibration(context, {&survey.calibration, context.trajectory.get()},
-                                       {&result.calibration, context.trajectory.get()}, calibrated.ties, prepared.flight.targets,
-                                       options.differences, cell_for(prepared.lines), static_cast<size_t>(options.sections)));
-    calib::write_calibration_report(report, context.output);
-    tell(calibrated, findings);
-  }
-
- private:
-  static void tell(const calib::Calibrated& c, core::Value& findings) {
-    for (const calib::Estimate& e : c.adjustment.estimates) {
-      if (!e.estimated) continue;
-      core::Value one = core::Value::object();
-      one["value"] = e.value;
-      one["sigma"] = e.sigma;
-      one["start"] = e.start;
-      one["delivered"] = calib::is_delivered(c.adjustment, e.parameter);
-      one["grade"] = calib::name_of(e.grade);
-      findings["estimates"][std::string(words_of(e.parameter).key)] = std::move(one);
-    }
-    findings["planes"] = c.ties.planes.size();
-    findings["tie_returns"] = c.ties.returns.size();
-    findings["rounds"] = c.rounds;
-    findings["sigma0"] = c.adjustment.sigma0;
-    core::Value& words = findings["findings"] = core::Value::array();
-    for (const calib::Finding& f : c.adjustment.findings) words.push(f.what + (f.cure.empty() ? "" : ": " + f.cure));
-  }
-};
+AdjustFindings found_in(const calib::Calibrated& c) {
+  AdjustFindings out;
+  for (const calib::Estimate& e : c.adjustment.estimates)
+    if (e.estimated)
+      out.estimates.emplace_back(
+          std::string(words_of(e.parameter).key),
+          EstimateResult{e.value, e.sigma, e.start, calib::is_delivered(c.adjustment, e.parameter), std::string(calib::name_of(e.grade))});
+  out.planes = c.ties.planes.size();
+  out.tie_returns = c.ties.returns.size();
+  out.rounds = c.rounds;
+  out.sigma0 = c.adjustment.sigma0;
+  for (const calib::Finding& f : c.adjustment.findings) out.findings.push_back(f.what + (f.cure.empty() ? "" : ": " + f.cure));
+  return out;
+}
 
 }  // namespace
 
-std::unique_ptr<Stage> make_adjust() { return std::make_unique<Adjust>(); }
+std::vector<std::string> adjust_products(const AdjustStageOptions&) {
+  return {"calibration.json", "report.html", "residuals.csv", "corrections.csv", "planes.csv", "sections.csv", "figures", "differences"};
+}
+
+AdjustFindings adjust_flight(const Context& context, const trajectory::Trajectory& trajectory, const calib::ShotStream&,
+                             const AdjustStageOptions& o, const Output& to, const core::OnProgress& progress, core::Tally& tally) {
+  const io::Survey& survey = context.survey;
+  const PreparedFlight prepared(context, o.errors, tally);
+  calib::CalibrateOptions how = o;
+  how.adjust.apriori = calib::start_sigmas(survey.sigma);
+  const calib::Calibrated calibrated = calib::calibrate(prepared.flight, how, tally, progress);
+  calib::CalibrationReport report = report_on(context, prepared.lines);
+  report.adjustment = calibrated.adjustment;
+  report.ties = calibrated.ties;
+  report.notes = calibrated.notes;
+  if (const fs::path target = context.made("flat_target.json"); !target.empty()) {
+    report.flat_target = io::parse_json(io::read_text_file(target), target.string());
+    report.readings = readings_of(report.flat_target);
+  }
+  const calib::DeliveredCalibration result = calib::delivered(calibrated.adjustment, survey.sigma);
+  add_views(report, view_calibration(context, {&survey.calibration, &trajectory}, {&result.calibration, &trajectory}, calibrated.ties,
+                                     prepared.flight.targets, o.differences, cell_for(prepared.lines), static_cast<size_t>(o.sections)));
+  calib::write_calibration_report(report, to.folder);
+  return found_in(calibrated);
+}
 
 }  // namespace swath::stages

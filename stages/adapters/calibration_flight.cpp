@@ -76,7 +76,7 @@ std::vector<std::filesystem::path> control_files(const io::Survey& survey) {
 }
 
 PreparedFlight::PreparedFlight(const Context& context, const trajectory::ErrorModelOptions& options, core::Tally& tally)
-    : trajectory(context.trajectory), errors(trajectory->data(), options) {
+    : trajectory(context.records.find<trajectory::Trajectory>()), errors(trajectory->data(), options) {
   const io::Survey& survey = context.survey;
   flight.shots = stream_shots(context);
   flight.scanner = survey.scanner;

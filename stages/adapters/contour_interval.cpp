@@ -12,8 +12,8 @@ namespace {
 
 /// Flying height above the mean terrain, m: NaN where the run has no trajectory on the map.
 double flying_height(const Context& context, double mean_terrain) {
-  if (!context.trajectory || context.crs.empty()) return std::nan("");
-  const core::TrajectoryData& d = context.trajectory->data();
+  if (!context.records.has<trajectory::Trajectory>() || context.crs.empty()) return std::nan("");
+  const core::TrajectoryData& d = context.records.get<trajectory::Trajectory>().data();
   const core::Transform to_map(core::wgs84_geodetic(), context.crs);
   const size_t step = std::max<size_t>(1, d.size() / 1000);
   std::vector<double> heights;

@@ -1,49 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
-
 #include "core/error.h"
+#include "core/result_visitors.h"
 #include "filters/height.h"
-#include "filters/noise.h"
 #include "filters/returns.h"
-#include "filters/smrf.h"
 #include "io/las_block.h"
 #include "io/las_header.h"
 #include "stages/adapters/adapters.h"
-#include "stages/adapters/kept_classes.h"
 
 namespace swath::stages {
 namespace {
 
 using core::Column;
-
-class Smrf : public OptionStage<Keeping<filters::SmrfOptions>> {
- public:
-  const Info& info() const override {
-    static const Info info{"filters.smrf",
-                           "Ground points by the Simple Morphological Filter (Pingel, Clarke and McBride 2013).",
-                           {Grain::tile},
-                           {Column::flags},
-                           {Column::classification},
-                           {Product::points},
-                           {}};
-    return info;
-  }
-  core::ColumnSet also_reads() const override { return {Column::return_number, Column::return_count}; }
-  double halo() const override { return filters::halo(options); }
-  // Measured 2026-11-22 with tests/stages/memory_test.cpp, tile 200 m, cells of 0.25 and 1 m: 62 and 63 bytes per cell of tile and halo,
-  // the same for points 0.7 m and 3 m apart.
-  double bytes_per_point() const override { return 16.0; }
-  std::vector<Raster> rasters(const Context& c) const override { return {{"cell", options.cell.value, c.tile_side + 2.0 * halo(), 66.0}}; }
-  void run_tile(const Context&, TileJob& job) const override {
-    const KeptClasses kept(job.block, options.keep_classes);
-    const filters::SmrfCounts n = filters::classify_ground_smrf(job.block, job.own, options);
-    kept.put_back(job.block, job.own, true, job.tally);
-    job.tally.count("ground", n.ground);
-    job.tally.count("not ground", n.object);
-    if (n.untouched) job.tally.count("withheld or noise, not looked at", n.untouched);
-    if (n.no_surface) job.tally.count("no ground within reach", n.no_surface);
-  }
-};
 
 struct ReturnsStageOptions : filters::ReturnsOptions {
   bool repair_clouds = false;
@@ -102,58 +69,16 @@ class Returns : public OptionStage<ReturnsStageOptions> {
   }
 };
 
-class Noise : public OptionStage<Keeping<filters::NoiseOptions>> {
- public:
-  const Info& info() const override {
-    static const Info info{"filters.noise",
-                           "Isolated points, low points and ranges outside the gate: flagged and classed as noise, never deleted.",
-                           {Grain::tile},
-                           {Column::flags, Column::classification},
-                           {Column::flags, Column::classification},
-                           {Product::points},
-                           {}};
-    return info;
-  }
-  core::ColumnSet also_reads() const override {
-    return options.range_min || options.range_max ? core::ColumnSet{Column::range} : core::ColumnSet{};
-  }
-  void check(const Context& context) const override {
-    // Ranges come from raw records; a cloud has them only where its files say so.
-    if ((!options.range_min && !options.range_max) || !context.source || !context.source->info().makes(Product::points)) return;
-    for (const io::PointFile& f : context.survey.points) {
-      const std::filesystem::path file = io::resolve(context.survey, f.file);
-      std::vector<std::string> ignored;
-      if (!io::read_las_header(file, ignored).extra_offset(io::las_name::range))
-        throw core::usage_error("filters.noise: range_min and range_max need the points' ranges, which the file does not have",
-                                file.string(), "leave the range gate out, or start from raw laser records");
-    }
-  }
-  double halo() const override { return filters::halo(options); }
-  double bytes_per_point() const override { return 96.0; }
-  // Starts and lowest points of the cells of one judgement, starts of the other's. Measured 2026-11-22 with tests/stages/memory_test.cpp,
-  // both radii 0.5 m: 32 bytes per cell.
-  std::vector<Raster> rasters(const Context& c) const override {
-    const double side = c.tile_side + 2.0 * halo();
-    return {{"low_radius", options.low_radius.value, side, 34.0}, {"radius", options.radius.value, side, 8.0}};
-  }
-  void run_tile(const Context&, TileJob& job) const override {
-    const KeptClasses kept(job.block, options.keep_classes);
-    const filters::NoiseCounts n = filters::flag_noise(job.block, job.own, options);
-    kept.put_back(job.block, job.own, false, job.tally);
-    job.tally.count("low noise", n.low_noise);
-    job.tally.count("high noise", n.high_noise);
-    if (n.isolated) job.tally.count("isolated", n.isolated);
-    if (n.low_point) job.tally.count("low points", n.low_point);
-    if (n.range_gate) job.tally.count("outside the range gate", n.range_gate);
-    if (n.untouched) job.tally.count("withheld or noise already, not looked at", n.untouched);
-  }
+struct HeightCounts {
+  std::uint64_t unknown = 0;
 };
 
-struct NoOptions {};
 template <class V>
-void describe(NoOptions&, V&) {}
+void describe(const HeightCounts& r, V& v) {
+  v.result("above a void of the DTM: height unknown", r.unknown, core::if_any(), "Points without a height above ground.");
+}
 
-class HeightAboveGround : public OptionStage<NoOptions> {
+class HeightAboveGround : public OptionStage<NoOptions, HeightCounts> {
  public:
   const Info& info() const override {
     static const Info info{"filters.hag_dem",
@@ -170,16 +95,25 @@ class HeightAboveGround : public OptionStage<NoOptions> {
   void run_tile(const Context& context, TileJob& job) const override {
     const double cell = context.grids->cell(Product::dtm);
     const core::Grid terrain = context.grids->window(Product::dtm, lattice_in(cell, job.box.grown(1.5 * cell)));
-    const std::uint64_t unknown = filters::height_above(terrain, job.block, job.own);
-    if (unknown) job.tally.count("above a void of the DTM: height unknown", unknown);
+    core::count_results(HeightCounts{filters::height_above(terrain, job.block, job.own)}, job.tally);
   }
 };
 
 }  // namespace
 
+void expect_ranges(const Context& context, std::string_view stage, core::TileColumns columns) {
+  // Ranges come from raw records; a cloud has them only where its files say so.
+  if (!columns.reads.has(Column::range) || !context.source || !context.source->info().makes(Product::points)) return;
+  for (const io::PointFile& f : context.survey.points) {
+    const std::filesystem::path file = io::resolve(context.survey, f.file);
+    std::vector<std::string> ignored;
+    if (!io::read_las_header(file, ignored).extra_offset(io::las_name::range))
+      throw core::usage_error(std::string(stage) + ": range_min and range_max need the points' ranges, which the file does not have",
+                              file.string(), "leave the range gate out, or start from raw laser records");
+  }
+}
+
 std::unique_ptr<Stage> make_returns() { return std::make_unique<Returns>(); }
-std::unique_ptr<Stage> make_noise() { return std::make_unique<Noise>(); }
-std::unique_ptr<Stage> make_smrf() { return std::make_unique<Smrf>(); }
 std::unique_ptr<Stage> make_hag_dem() { return std::make_unique<HeightAboveGround>(); }
 
 }  // namespace swath::stages

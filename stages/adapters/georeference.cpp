@@ -4,17 +4,14 @@
 #include <mutex>
 
 #include "core/error.h"
+#include "core/result_visitors.h"
 #include "stages/adapters/adapters.h"
 #include "stages/area.h"
 
 namespace swath::stages {
 namespace {
 
-struct Options {};
-template <class V>
-void describe(Options&, V&) {}
-
-class Georeference : public OptionStage<Options> {
+class Georeference : public OptionStage<NoOptions, calib::Counts> {
  public:
   const Info& info() const override {
     static const Info info{
@@ -25,7 +22,7 @@ class Georeference : public OptionStage<Options> {
         {core::Column::x, core::Column::y, core::Column::z, core::Column::time, core::Column::intensity, core::Column::return_number,
          core::Column::return_count, core::Column::classification, core::Column::flags, core::Column::scan_angle, core::Column::strip,
          core::Column::record, core::Column::range, core::Column::incidence, core::Column::sigma_h, core::Column::sigma_v},
-        {Product::trajectory, Product::shots},
+        {Product::of<trajectory::Trajectory>(), Product::shots},
         {Product::points}};
     return info;
   }
@@ -35,10 +32,7 @@ class Georeference : public OptionStage<Options> {
     core::Block block;
     block.origin = g->origin();
     const calib::Counts n = g->run(batch.shots, block);
-    if (n.outside) tally.count("outside the trajectory, left out", n.outside);
-    if (n.no_range) tally.count("range not above zero, left out", n.no_range);
-    if (n.no_beam) tally.count("no beam for the scan angle, left out", n.no_beam);
-    if (n.no_map) tally.count("no coordinates in the CRS, left out", n.no_map);
+    core::count_results(n, tally);
     to_metres(context, block);
     block.strip.assign(block.size(), static_cast<std::uint16_t>(batch.line));
     block.classification.resize(block.size(), core::point_class::never_classified);
@@ -64,9 +58,9 @@ class Georeference : public OptionStage<Options> {
   std::shared_ptr<const calib::Georeferencer> georeferencer(const Context& context) const {
     const std::lock_guard lock(mutex_);
     if (!georeferencer_)
-      georeferencer_ =
-          std::make_shared<calib::Georeferencer>(context.survey.scanner, context.survey.calibration, context.survey.sigma,
-                                                 *context.trajectory, context.crs, context.origin.cwiseQuotient(units_of(context)));
+      georeferencer_ = std::make_shared<calib::Georeferencer>(context.survey.scanner, context.survey.calibration, context.survey.sigma,
+                                                              context.records.get<trajectory::Trajectory>(), context.crs,
+                                                              context.origin.cwiseQuotient(units_of(context)));
     return georeferencer_;
   }
   mutable std::mutex mutex_;

@@ -9,13 +9,11 @@
 #include <vector>
 
 #include "stages/adapters/adapters.h"
-#include "stages/adapters/kept_classes.h"
 #include "stages/line_comparison.h"
+#include "stages/tile_filter.h"
 
 namespace swath::stages {
 namespace {
-
-using core::Column;
 
 /// "middle 500123 5300456, 300 m x 200 m, walls of 12 m".
 std::string text_of(const filters::RaisedSurface& r, const Context& context) {
@@ -24,21 +22,11 @@ std::string text_of(const filters::RaisedSurface& r, const Context& context) {
          whole(r.width) + " m, walls of " + whole(r.rise) + " m";
 }
 
-class Ground : public OptionStage<Keeping<filters::GroundOptions>> {
+/// filters.ground, with what is known of the run's flight lines.
+class Ground : public ClassFilter<filters::classify_ground, true> {
  public:
-  const Info& info() const override {
-    static const Info info{"filters.ground",
-                           "Ground points by a robust surface through the last returns, with a probability of bare ground for every point.",
-                           {Grain::tile},
-                           {Column::flags},
-                           {Column::classification, Column::ground_probability},
-                           {Product::points},
-                           {}};
-    return info;
-  }
-  core::ColumnSet also_reads() const override { return {Column::return_number, Column::return_count, Column::strip}; }
+  using ClassFilter::ClassFilter;
   std::string_view implied(bool) const override { return "quality.lines"; }
-  double halo() const override { return filters::halo(options); }
   double near_halo() const override { return filters::near_halo(options); }
   double left_per_area() const override { return 1.0; }
   void thin(const Context& context, const Box& tiles, core::Block& around) const override {
@@ -48,12 +36,6 @@ class Ground : public OptionStage<Keeping<filters::GroundOptions>> {
     around.z.swap(heights);
     around = core::select(around, rows);
   }
-  // Measured 2026-11-23 with tests/stages/memory_test.cpp, tiles of 200 to 1500 m, points 0.7 m and 3 m apart; of the near points, counted:
-  // columns 30, evidence 64, nearest returns 40.
-  double bytes_per_point() const override { return 100.0; }
-  std::vector<Raster> rasters(const Context& c) const override {
-    return {{"", 1.0, c.tile_side + 2.0 * halo(), 52.0}, {"", 1.0, c.tile_side + 2.0 * near_halo(), 15.0}};
-  }
   void run_tile(const Context& context, TileJob& job) const override {
     filters::GroundOptions o = options;
     if (const std::optional<KnownLines> lines = known_lines(context)) {
@@ -62,14 +44,10 @@ class Ground : public OptionStage<Keeping<filters::GroundOptions>> {
     }
     const KeptClasses kept(job.block, options.keep_classes);
     const filters::GroundChances n = filters::classify_ground(job.block, job.own, o);
-    kept.put_back(job.block, job.own, true, job.tally,
-                  [&](size_t i) { job.block.ground_probability[i] = std::numeric_limits<float>::quiet_NaN(); });
-    job.tally.count("ground", n.ground);
-    job.tally.count("not ground", n.object);
-    job.tally.count("doubtful: probability between 0.25 and 0.75", n.doubtful);
-    if (n.early) job.tally.count("not a last return, not ground", n.early);
-    if (n.untouched) job.tally.count("withheld or noise, not looked at", n.untouched);
-    if (n.no_surface) job.tally.count("no ground within reach", n.no_surface);
+    core::count_results(kept.put_back(job.block, job.own, true,
+                                      [&](size_t i) { job.block.ground_probability[i] = std::numeric_limits<float>::quiet_NaN(); }),
+                        job.tally);
+    core::count_results(n, job.tally);
     for (const filters::RaisedSurface& r : n.raised)
       if (r.x >= job.box.x0 && r.x < job.box.x1 && r.y >= job.box.y0 && r.y < job.box.y1)
         job.tally.count("warning: wide surfaces between walls kept as ground; buildings among them need a larger longest",
@@ -79,6 +57,9 @@ class Ground : public OptionStage<Keeping<filters::GroundOptions>> {
 
 }  // namespace
 
-std::unique_ptr<Stage> make_ground() { return std::make_unique<Ground>(); }
+std::unique_ptr<Stage> make_ground() {
+  return std::make_unique<Ground>(
+      "filters.ground", "Ground points by a robust surface through the last returns, with a probability of bare ground for every point.");
+}
 
 }  // namespace swath::stages

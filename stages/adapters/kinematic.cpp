@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/adapters/kinematic.h"
+
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -9,8 +11,6 @@
 #include "io/png.h"
 #include "io/value_file.h"
 #include "report/chart.h"
-#include "stages/adapters/adapters.h"
-#include "trajectory/event_positions.h"
 
 namespace swath::stages {
 namespace {
@@ -22,20 +22,6 @@ using trajectory::Interpolator;
 using trajectory::Reach;
 
 constexpr size_t least_fixes = 3;
-
-struct KinematicStageOptions : trajectory::KinematicOptions {
-  Interpolator method = Interpolator::kalman;
-  std::string file = "events.csv";
-  bool leave_one_out = false;
-};
-
-template <class V>
-void describe(KinematicStageOptions& o, V& v) {
-  v.option("method", o.method, "Kalman filter of the window; or, to compare, line, 2nd-degree polynomial or RTS smoother.", "Jubanski2005");
-  v.option("file", o.file, "Name of the table of events within the output.");
-  v.option("leave_one_out", o.leave_one_out, "Write the leave-one-out test of all four methods (leave_one_out.txt, .png, .svg).");
-  describe(static_cast<trajectory::KinematicOptions&>(o), v);
-}
 
 /// The fixes that are of use; the others are counted.
 core::GnssData usable_fixes(const core::GnssData& gnss, core::Tally& tally) {
@@ -135,102 +121,87 @@ report::Chart drawing(const trajectory::LeaveOneOut& test, double start) {
   return chart;
 }
 
-core::Value three(const Eigen::Vector3d& v) { return core::Value::Array{v[0], v[1], v[2]}; }
-
-class Kinematic : public OptionStage<KinematicStageOptions> {
- public:
-  const Info& info() const override {
-    static const Info info{"trajectory.kinematic",
-                           "Positions of the GNSS antenna at events, by a Kalman filter from both sides; leave-one-out test.",
-                           {Grain::survey},
-                           {},
-                           {},
-                           {Product::gnss, Product::events},
-                           {}};
-    return info;
-  }
-  std::vector<std::string> products() const override {
-    std::vector<std::string> out{options.file, "kinematic.json"};
-    if (options.leave_one_out) out.insert(out.end(), {"leave_one_out.txt", "leave_one_out.png", "leave_one_out.svg"});
-    return out;
-  }
-  void check(const Context& context) const override {
-    if (context.survey.crs.empty())
-      throw core::usage_error("trajectory.kinematic: the survey states no CRS for the table of events", context.survey.name,
-                              "state it, for example crs = \"EPSG:32632\"");
-  }
-  void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
-    const core::EventData& events = *context.events;
-    const core::GnssData gnss = usable_fixes(*context.gnss, tally);
-    if (gnss.size() < least_fixes)
-      throw core::Error("trajectory.kinematic: " + std::to_string(gnss.size()) + " GNSS fixes are of use, " + std::to_string(least_fixes) +
-                            " are the least",
-                        context.survey.name, "see the counts of the stage that reads them");
-    const EventPositions solved = trajectory::positions_at(gnss, events.time, options.method, options);
-    count(context, events, gnss, solved, tally);
-    findings = told(events, gnss, solved);
-
-    io::write_text_file(context.output / options.file, table(context, events, solved));
-    io::write_text_file(context.output / "kinematic.json", io::to_json(findings));
-    if (!options.leave_one_out) return;
-    const report::Chart chart = drawing(solved.test, gnss.time.front());
-    io::write_text_file(context.output / "leave_one_out.txt", solved.test.table());
-    io::write_png(context.output / "leave_one_out.png", report::draw(chart));
-    io::write_text_file(context.output / "leave_one_out.svg", report::svg(chart));
-  }
-
- private:
-  static void count(const Context& context, const core::EventData& events, const core::GnssData& gnss, const EventPositions& solved,
-                    core::Tally& tally) {
-    size_t outside = 0;
-    for (size_t i = 0; i < events.size(); ++i) {
-      const std::string event = "event " + events.id[i];
-      switch (solved.events[i].reach) {
-        case Reach::full:
-          break;
-        case Reach::partial:
-          tally.count("events near a gap or an end of the GNSS record: short window", event);
-          break;
-        case Reach::too_few:
-          tally.count("events too close to a gap or an end of the GNSS record, without position", event);
-          break;
-        case Reach::gap:
-          tally.count("events in a gap of the GNSS record, without position", event);
-          break;
-        case Reach::outside:
-          tally.count("events outside the GNSS record, without position", event);
-          ++outside;
-          break;
-      }
-      if (events.doubtful[i]) tally.count("events whose time is doubtful", event);
+void count(const Context& context, const core::EventData& events, const core::GnssData& gnss, const EventPositions& solved,
+           core::Tally& tally) {
+  size_t outside = 0;
+  for (size_t i = 0; i < events.size(); ++i) {
+    const std::string event = "event " + events.id[i];
+    switch (solved.events[i].reach) {
+      case Reach::full:
+        break;
+      case Reach::partial:
+        tally.count("events near a gap or an end of the GNSS record: short window", event);
+        break;
+      case Reach::too_few:
+        tally.count("events too close to a gap or an end of the GNSS record, without position", event);
+        break;
+      case Reach::gap:
+        tally.count("events in a gap of the GNSS record, without position", event);
+        break;
+      case Reach::outside:
+        tally.count("events outside the GNSS record, without position", event);
+        ++outside;
+        break;
     }
-    if (events.size() > 0 && outside == events.size())
-      throw core::Error("trajectory.kinematic: all " + std::to_string(outside) + " events lie outside the GNSS record (events " +
-                            number(events.time.front(), 1) + " to " + number(events.time.back(), 1) + " s, fixes " +
-                            number(gnss.time.front(), 1) + " to " + number(gnss.time.back(), 1) + " s of GPS time)",
-                        context.survey.name, "is the time scale of the events, or of the fixes, stated as it is?");
+    if (events.doubtful[i]) tally.count("events whose time is doubtful", event);
   }
+  if (events.size() > 0 && outside == events.size())
+    throw core::Error("trajectory.kinematic: all " + std::to_string(outside) + " events lie outside the GNSS record (events " +
+                          number(events.time.front(), 1) + " to " + number(events.time.back(), 1) + " s, fixes " +
+                          number(gnss.time.front(), 1) + " to " + number(gnss.time.back(), 1) + " s of GPS time)",
+                      context.survey.name, "is the time scale of the events, or of the fixes, stated as it is?");
+}
 
-  core::Value told(const core::EventData& events, const core::GnssData& gnss, const EventPositions& solved) const {
-    core::Value v = core::Value::object();
-    v["method"] = core::Choices<Interpolator>::names[static_cast<size_t>(options.method)];
-    v["fixes"] = gnss.size();
-    v["gaps"] = solved.gaps;
-    v["longest_step_without_gap_s"] = solved.longest_step;
-    v["events"] = events.size();
-    std::vector<Eigen::Vector3d> formal;
-    for (const EventPosition& e : solved.events)
-      if (reached(e.reach)) formal.push_back(e.sigma);
-    v["events_with_position"] = formal.size();
-    if (!formal.empty()) v["median_formal_sigma_m"] = three(trajectory::statistics_of(formal, formal).median_formal);
-    if (solved.empirical.allFinite()) v["empirical_sigma_m"] = three(solved.empirical);
-    v["leave_one_out"] = solved.test.value();
-    return v;
-  }
-};
+KinematicFindings found_in(const core::EventData& events, const core::GnssData& gnss, const EventPositions& solved, Interpolator method) {
+  KinematicFindings r;
+  r.method = core::Choices<Interpolator>::names[static_cast<size_t>(method)];
+  r.fixes = gnss.size();
+  r.gaps = solved.gaps;
+  r.longest_step = solved.longest_step;
+  r.events = events.size();
+  std::vector<Eigen::Vector3d> formal;
+  for (const EventPosition& e : solved.events)
+    if (reached(e.reach)) formal.push_back(e.sigma);
+  r.with_position = formal.size();
+  if (!formal.empty()) r.formal = trajectory::statistics_of(formal, formal).median_formal;
+  if (solved.empirical.allFinite()) r.empirical = solved.empirical;
+  r.leave_one_out = solved.test;
+  return r;
+}
 
 }  // namespace
 
-std::unique_ptr<Stage> make_kinematic() { return std::make_unique<Kinematic>(); }
+std::vector<std::string> kinematic_products(const KinematicStageOptions& o) {
+  std::vector<std::string> out{o.file, "kinematic.json"};
+  if (o.leave_one_out) out.insert(out.end(), {"leave_one_out.txt", "leave_one_out.png", "leave_one_out.svg"});
+  return out;
+}
+
+void expect_crs(const Context& context, const KinematicStageOptions&) {
+  if (context.survey.crs.empty())
+    throw core::usage_error("trajectory.kinematic: the survey states no CRS for the table of events", context.survey.name,
+                            "state it, for example crs = \"EPSG:32632\"");
+}
+
+KinematicFindings position_events(const core::GnssData& all, const core::EventData& events, const Context& context,
+                                  const KinematicStageOptions& o, const Output& to, core::Tally& tally) {
+  const core::GnssData gnss = usable_fixes(all, tally);
+  if (gnss.size() < least_fixes)
+    throw core::Error("trajectory.kinematic: " + std::to_string(gnss.size()) + " GNSS fixes are of use, " + std::to_string(least_fixes) +
+                          " are the least",
+                      context.survey.name, "see the counts of the stage that reads them");
+  const EventPositions solved = trajectory::positions_at(gnss, events.time, o.method, o);
+  count(context, events, gnss, solved, tally);
+  KinematicFindings findings = found_in(events, gnss, solved, o.method);
+
+  io::write_text_file(to.folder / o.file, table(context, events, solved));
+  io::write_text_file(to.folder / "kinematic.json", io::to_json(core::reported(findings)));
+  if (!o.leave_one_out) return findings;
+  const report::Chart chart = drawing(solved.test, gnss.time.front());
+  io::write_text_file(to.folder / "leave_one_out.txt", solved.test.table());
+  io::write_png(to.folder / "leave_one_out.png", report::draw(chart));
+  io::write_text_file(to.folder / "leave_one_out.svg", report::svg(chart));
+  return findings;
+}
 
 }  // namespace swath::stages

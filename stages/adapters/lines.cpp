@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/result_visitors.h"
 #include "io/output_file.h"
 #include "io/value_file.h"
 #include "quality/line_offsets.h"
@@ -10,7 +11,17 @@ namespace {
 
 using core::Column;
 
-class Lines : public OptionStage<quality::LineOptions> {
+struct OverlapCounts {
+  std::uint64_t overlaps = 0, alone = 0;
+};
+
+template <class V>
+void describe(const OverlapCounts& r, V& v) {
+  v.result("overlaps of two lines", r.overlaps, "Pairs of flight lines that overlap.");
+  v.result("lines that overlap no other on smooth ground: no offset", r.alone, core::if_any(), "Flight lines without an offset.");
+}
+
+class Lines : public OptionStage<quality::LineOptions, OverlapCounts, quality::LineComparison> {
  public:
   const Info& info() const override {
     static const Info info{
@@ -42,13 +53,11 @@ class Lines : public OptionStage<quality::LineOptions> {
     quality::LineCells cells;
     for (const TileKey key : job.tiles) read_line_cells(file_of(context, job.folder, key), cells);
     const quality::LineComparison c = quality::compare_lines(std::move(cells), options);
-    const core::Value v = value_of(c);
-    io::write_text_file(context.output / "lines.json", io::to_json(v));
-    job.findings = v;
-    size_t alone = 0;
-    for (const quality::LineOffset& l : c.lines) alone += l.pairs == 0;
-    job.tally.count("overlaps of two lines", c.pairs.size());
-    if (alone > 0) job.tally.count("lines that overlap no other on smooth ground: no offset", alone);
+    job.findings = core::reported(c);
+    io::write_text_file(context.output / "lines.json", io::to_json(job.findings));
+    OverlapCounts counts{c.pairs.size()};
+    for (const quality::LineOffset& l : c.lines) counts.alone += l.pairs == 0;
+    core::count_results(counts, job.tally);
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/result_visitors.h"
 #include "filters/returns.h"
 #include "io/geotiff.h"
 #include "io/output_file.h"
@@ -29,7 +30,26 @@ void describe(PenetrationOptions& o, V& v) {
   v.option("cell", o.cell, core::above(0.0), "Side of one cell.");
 }
 
-class Penetration : public OptionStage<PenetrationOptions> {
+struct PulseCounts {
+  std::uint64_t pulses = 0, reached = 0;
+};
+
+template <class V>
+void describe(const PulseCounts& r, V& v) {
+  v.result("pulses", r.pulses, "Pulses with a usable last return.");
+  v.result("pulses that reached the ground", r.reached, "Of those: pulses whose last return is of class ground.");
+}
+
+struct PenetrationFindings {
+  double rate = std::numeric_limits<double>::quiet_NaN();
+};
+
+template <class V>
+void describe(const PenetrationFindings& r, V& v) {
+  v.result("penetration_rate", r.rate, core::share().in_summary(), "Share of pulses that reached the ground.");
+}
+
+class Penetration : public OptionStage<PenetrationOptions, PulseCounts, PenetrationFindings> {
  public:
   const Info& info() const override {
     static const Info info{"terrain.penetration",
@@ -61,8 +81,7 @@ class Penetration : public OptionStage<PenetrationOptions> {
                      true);
     const std::uint64_t sums[2] = {std::accumulate(p.pulses.begin(), p.pulses.end(), std::uint64_t{0}),
                                    std::accumulate(p.ground_pulses.begin(), p.ground_pulses.end(), std::uint64_t{0})};
-    job.tally.count("pulses", sums[0]);
-    job.tally.count("pulses that reached the ground", sums[1]);
+    core::count_results(PulseCounts{sums[0], sums[1]}, job.tally);
     io::write_text_file(job.folder / (context.label(job.key) + ".sums"), {reinterpret_cast<const char*>(sums), sizeof sums});
   }
 
@@ -83,7 +102,7 @@ class Penetration : public OptionStage<PenetrationOptions> {
     }
     io::write_vrt(context.output / "penetration.vrt", tiles);
     write_list(context.output / "penetration", files);
-    if (all[0]) job.findings["penetration_rate"] = static_cast<double>(all[1]) / static_cast<double>(all[0]);
+    if (all[0]) job.findings = core::reported(PenetrationFindings{static_cast<double>(all[1]) / static_cast<double>(all[0])});
   }
 
  private:

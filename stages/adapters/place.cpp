@@ -72,7 +72,7 @@ void check_place_of_fixes(const Context& context) {
   if (context.crs.empty() || !context.crs.is_projected()) return;
   const AreaOfUse area(context);
   std::vector<double> beside;
-  for (const Eigen::Vector3d& p : context.gnss->position) {
+  for (const Eigen::Vector3d& p : context.records.get<core::GnssData>().position) {
     const core::Geodetic g = core::geodetic_of(p);
     beside.push_back(area.beside(g.latitude, g.longitude));
   }
@@ -84,7 +84,7 @@ void check_place_of_fixes(const Context& context) {
 
 void place_on_map(Context& context, core::Tally& tally) {
   if (context.crs.empty() || !context.crs.is_projected()) return;
-  const core::TrajectoryData& d = context.trajectory->data();
+  const core::TrajectoryData& d = context.records.get<trajectory::Trajectory>().data();
   const core::Transform to_map(core::wgs84_geodetic(), context.crs);
   context.origin = origin_near(context, to_map({core::to_degrees(d.longitude[0]), core::to_degrees(d.latitude[0]), d.height[0]}));
   check_area(context, d, tally);

@@ -2,6 +2,7 @@
 // Grids beside the models of terrain and surface.
 #include "core/error.h"
 #include "core/relief.h"
+#include "core/result_visitors.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/scanner.h"
 #include "stages/grid_tile.h"
@@ -35,10 +36,6 @@ class Relief : public OptionStage<core::Light> {
     keep(job, Product::hillshade, core::hillshade(model, own, options));
   }
 };
-
-struct NoOptions {};
-template <class V>
-void describe(NoOptions&, V&) {}
 
 class Canopy : public OptionStage<NoOptions> {
  public:
@@ -99,7 +96,22 @@ class Density : public OptionStage<terrain::DensityOptions> {
   }
 };
 
-class Intensity : public OptionStage<terrain::IntensityOptions> {
+/// Returns whose intensity is not brought to one range and to perpendicular incidence.
+struct IntensityCounts {
+  std::uint64_t without_range = 0, without_incidence = 0, without_terrain = 0;
+};
+
+template <class V>
+void describe(const IntensityCounts& r, V& v) {
+  using core::if_any;
+  v.result("returns without a range: intensity as recorded", r.without_range, if_any(), "Returns whose range is unknown.");
+  v.result("returns without an incidence: intensity not brought to perpendicular", r.without_incidence, if_any(),
+           "Returns whose angle of incidence is unknown.");
+  v.result("returns without terrain model or trajectory: incidence to the vertical", r.without_terrain, if_any(),
+           "Returns that are taken to meet level ground.");
+}
+
+class Intensity : public OptionStage<terrain::IntensityOptions, IntensityCounts> {
  public:
   const Info& info() const override {
     static const Info info{"terrain.intensity",
@@ -125,20 +137,20 @@ class Intensity : public OptionStage<terrain::IntensityOptions> {
     join_grid_parts(whole.folder, whole.key, parts, lattice_in(options.cell.value, whole.box));
   }
   void run_tile(const Context& context, TileJob& job) const override {
-    meet_terrain(context, job);
+    IntensityCounts counts;
+    meet_terrain(context, job, counts);
     const core::Grid grid = terrain::intensity(job.block, lattice_in(options.cell.value, job.box), options);
-    if (job.block.range.empty() && job.own > 0) job.tally.count("returns without a range: intensity as recorded", job.own);
+    if (job.block.range.empty()) counts.without_range = job.own;
+    core::count_results(counts, job.tally);
     write_grid_tile(job.folder, job.key, grid);
   }
 
  private:
   /// The column incidence, which is to the vertical, by the terrain model where the run has one and knows where the scanner was.
-  void meet_terrain(const Context& context, TileJob& job) const {
+  void meet_terrain(const Context& context, TileJob& job, IntensityCounts& counts) const {
     if (options.steepest.value == 0.0 || job.own == 0) return;
-    if (!context.trajectory || !context.grids->has(Product::dtm)) {
-      job.tally.count(job.block.incidence.empty() ? "returns without an incidence: intensity not brought to perpendicular"
-                                                  : "returns without terrain model or trajectory: incidence to the vertical",
-                      job.own);
+    if (!context.records.has<trajectory::Trajectory>() || !context.grids->has(Product::dtm)) {
+      (job.block.incidence.empty() ? counts.without_incidence : counts.without_terrain) = job.own;
       return;
     }
     const double cell = context.grids->cell(Product::dtm);

@@ -28,47 +28,6 @@ namespace {
 namespace fs = std::filesystem;
 using core::Column;
 
-class TrajectoryReader : public OptionStage<trajectory::TrajectoryOptions> {
- public:
-  const Info& info() const override {
-    static const Info info{"readers.trajectory",
-                           "Reads the survey's trajectory and judges it: gaps, repeated times, heading against track.",
-                           {Grain::survey},
-                           {},
-                           {},
-                           {},
-                           {Product::trajectory}};
-    return info;
-  }
-  std::vector<fs::path> inputs(const io::Survey& survey) const override {
-    std::vector<fs::path> out;
-    for (const io::TrajectoryFile& f : io::trajectory_files(survey)) {
-      out.push_back(io::resolve(survey, f.file));
-      if (f.accuracy) out.push_back(io::resolve(survey, *f.accuracy));
-    }
-    return out;
-  }
-  void check(const Context& context) const override {
-    if (io::trajectory_files(context.survey).empty())
-      throw core::usage_error(
-          "readers.trajectory: the survey names no [[trajectory]]", context.survey.name,
-          "IMU and GNSS records begin with readers.imu, readers.gnss and trajectory.ins_gnss; point clouds need no trajectory");
-  }
-  void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
-    core::TrajectoryData data = io::read_trajectory(context.survey, tally);
-    trajectory::CheckOptions checks;
-    checks.max_gap = options.max_gap;
-    findings = trajectory::check_trajectory(data, checks).value();
-    context.trajectory =
-        std::make_shared<trajectory::Trajectory>(std::move(data), options, io::trajectory_files(context.survey).front().file.string());
-    place_on_map(context, tally);
-  }
-};
-
-struct NoOptions {};
-template <class V>
-void describe(NoOptions&, V&) {}
-
 class LaserStrip : public StripReader {
  public:
   LaserStrip(const io::Survey& survey, const io::StripInfo& strip) : source_(survey, strip) {}
@@ -111,7 +70,8 @@ class LaserReader : public OptionStage<NoOptions> {
     return out;
   }
   std::unique_ptr<StripReader> open(const Context& context, const Strip& strip) const override {
-    if (context.trajectory) io::hold_common_times(context.survey, strips_, context.trajectory->data().time);
+    if (context.records.has<trajectory::Trajectory>())
+      io::hold_common_times(context.survey, strips_, context.records.get<trajectory::Trajectory>().data().time);
     return std::make_unique<LaserStrip>(context.survey, strips_[strip.index]);
   }
   void check(const Context& context) const override {
@@ -383,7 +343,6 @@ bool keeps_crs(const Context& context, const std::vector<io::LasSource>& sources
   });
 }
 
-std::unique_ptr<Stage> make_trajectory_reader() { return std::make_unique<TrajectoryReader>(); }
 std::unique_ptr<Stage> make_laser_reader() { return std::make_unique<LaserReader>(); }
 std::unique_ptr<Stage> make_las_reader() { return std::make_unique<LasCloud>(); }
 

@@ -86,7 +86,7 @@ class Rtklib : public OptionStage<RtklibStageOptions> {
                            {},
                            {},
                            {},
-                           {Product::gnss}};
+                           {Product::of<core::GnssData>()}};
     return info;
   }
   std::vector<std::string> products() const override { return {folder_name}; }
@@ -170,7 +170,7 @@ class Rtklib : public OptionStage<RtklibStageOptions> {
       list.push(std::move(one));
     }
     if (solutions.empty()) throw *failure;
-    context.gnss = finish(context, std::move(solutions), names, rover, findings, tally);
+    context.records.share<core::GnssData>(finish(context, std::move(solutions), names, rover, findings, tally));
   }
 
  private:

@@ -11,7 +11,7 @@ std::vector<Eigen::Vector3d> ScannerPositions::of(const Context& context, const 
   for (Eigen::Index a = 0; a < 3; ++a) lever[a] = context.survey.calibration.lever_arm_scanner[static_cast<size_t>(a)].value;
   const Eigen::Vector3d unit(context.unit, context.unit, context.crs.vertical_metres_per_unit());
   std::vector<Eigen::Vector3d> out(block.size(), Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
-  trajectory::Cursor cursor(*context.trajectory);
+  trajectory::Cursor cursor(context.records.get<trajectory::Trajectory>());
   for (size_t p = 0; p < block.size(); ++p) {
     if (p > 0 && block.time[p] == block.time[p - 1]) {
       out[p] = out[p - 1];

@@ -62,8 +62,8 @@ class Strips : public OptionStage<StripStageOptions> {
                            {Grain::survey},
                            {},
                            {},
-                           {Product::trajectory, Product::shots},
-                           {Product::trajectory}};
+                           {Product::of<trajectory::Trajectory>(), Product::shots},
+                           {Product::of<trajectory::Trajectory>()}};
     return info;
   }
   std::vector<std::string> products() const override {
@@ -72,7 +72,7 @@ class Strips : public OptionStage<StripStageOptions> {
   std::vector<fs::path> inputs(const io::Survey& survey) const override { return control_files(survey); }
 
   void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
-    const std::string& doubt = context.geometry_doubt;
+    const std::string doubt = context.records.has<GeometryDoubt>() ? context.records.get<GeometryDoubt>().why : std::string();
     if (options.when == AdjustWhen::always) {
       if (!doubt.empty()) {
         tally.count("adjusted although quality.geometry found a cause that lies elsewhere: not to be trusted", doubt);
@@ -192,7 +192,7 @@ class Strips : public OptionStage<StripStageOptions> {
     const double map_before = calib::overall_rms(views.before), map_after = calib::overall_rms(views.after);
     add_views(report, std::move(views));
     calib::write_calibration_report(report, context.output);
-    context.trajectory = corrected;
+    context.records.share<trajectory::Trajectory>(corrected);
 
     const calib::PairOnPlanes& all = strips.differences.all;
     findings["lines"] = strips.ties.lines.size();

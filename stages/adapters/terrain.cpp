@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/error.h"
+#include "core/result_visitors.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/breaklines.h"
 #include "stages/adapters/units.h"
@@ -16,15 +17,49 @@
 namespace swath::stages {
 namespace {
 
-/// Cells by void reason, for the tally of a surface stage.
-void count_voids(const core::Grid& grid, core::Tally& tally) {
+/// Cells of a surface by void reason.
+struct CellCounts {
   std::array<std::uint64_t, 5> n{};
-  for (const core::Void r : grid.reason) ++n[static_cast<size_t>(r)];
-  tally.count("cells with a height", n[0]);
-  if (n[1]) tally.count("void cells: no data", n[1]);
-  if (n[2]) tally.count("void cells: edge too long", n[2]);
-  if (n[3]) tally.count("void cells: water", n[3]);
-  if (n[4]) tally.count("void cells: ground never seen", n[4]);
+};
+
+template <class V>
+void describe(const CellCounts& r, V& v) {
+  using core::if_any;
+  v.result("cells with a height", r.n[0], "Cells of the grid that have a height.");
+  v.result("void cells: no data", r.n[1], if_any(), "Cells without points around them.");
+  v.result("void cells: edge too long", r.n[2], if_any(), "Cells in triangles with an edge longer than max_edge.");
+  v.result("void cells: water", r.n[3], if_any(), "Cells on water that has no height.");
+  v.result("void cells: ground never seen", r.n[4], if_any(), "Cells where beams came, none of which reached the ground.");
+}
+
+CellCounts cells_of(const core::Grid& grid) {
+  CellCounts c;
+  for (const core::Void r : grid.reason) ++c.n[static_cast<size_t>(r)];
+  return c;
+}
+
+struct DtmCounts {
+  CellCounts cells;
+  std::uint64_t shared = 0, tiles_without_sigma = 0;
+};
+
+template <class V>
+void describe(const DtmCounts& r, V& v) {
+  using core::if_any;
+  v.result("ground points at the same place as a lower or equal one", r.shared, if_any(), "Ground points that are not triangulated.");
+  describe(r.cells, v);
+  v.result("tiles whose points carry no sigma: that of the model leaves out the errors that all lines share", r.tiles_without_sigma,
+           if_any(), "Tiles whose sigmas follow from the comparison of flight lines.");
+}
+
+struct DtmFindings {
+  double void_share = std::numeric_limits<double>::quiet_NaN();
+};
+
+template <class V>
+void describe(const DtmFindings& r, V& v) {
+  v.result("void_share", r.void_share, core::share().in_summary().limited_by("voids"),
+           "Share of cells without a height that have ground on all sides.");
 }
 
 /// Where filters.visibility has run: void cells to which beams came of which none reached the ground.
@@ -52,7 +87,7 @@ Cover cover_of(const Context& context, const MergeJob& job) {
   return c;
 }
 
-class Dtm : public OptionStage<terrain::DtmOptions> {
+class Dtm : public OptionStage<terrain::DtmOptions, DtmCounts, DtmFindings> {
  public:
   const Info& info() const override {
     static const Info info{
@@ -87,13 +122,13 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
   }
   void run_tile(const Context& context, TileJob& job) const override {
     const terrain::Breaklines* lines = lines_.get(context);
-    std::uint64_t shared = 0;
-    complete_sigmas(context, job);
-    core::Grid grid = terrain::dtm(job.block, lattice_in(options.cell.value, job.box), options, lines, &shared);
-    if (shared > 0) job.tally.count("ground points at the same place as a lower or equal one", shared);
+    DtmCounts counts;
+    counts.tiles_without_sigma = complete_sigmas(context, job) ? 1 : 0;
+    core::Grid grid = terrain::dtm(job.block, lattice_in(options.cell.value, job.box), options, lines, &counts.shared);
     mark_never_seen(context, job, grid);
     if (lines) lines->cut(grid);  // beyond the boundary nothing is missed
-    count_voids(grid, job.tally);
+    counts.cells = cells_of(grid);
+    core::count_results(counts, job.tally);
     write_grid_tile(job.folder, job.key, grid);
   }
   void run_merge(const Context& context, MergeJob& job) const override {
@@ -102,25 +137,25 @@ class Dtm : public OptionStage<terrain::DtmOptions> {
       throw core::Error("no triangle of ground points is small enough to give any cell of the DTM a height", context.survey.name,
                         "are there three ground points that are not on one line, closer than max_edge = " +
                             core::format_quantity(core::Dimension::length, options.max_edge.value) + "?");
-    job.findings["void_share"] = static_cast<double>(cover.holes) / static_cast<double>(cover.known + cover.holes);
+    job.findings = core::reported(DtmFindings{static_cast<double>(cover.holes) / static_cast<double>(cover.known + cover.holes)});
   }
 
  private:
-  /// To points that carry none.
-  void complete_sigmas(const Context& context, TileJob& job) const {
+  /// Of points that carry none. Do they follow from the comparison of lines?
+  bool complete_sigmas(const Context& context, TileJob& job) const {
     if (options.assumed_sigma) {
       const core::Metres along = options.assumed_horizontal.value_or(*options.assumed_sigma);
       give_sigmas(job.block, options.assumed_sigma->value, std::sqrt(2.0) * along.value);
     } else if (const std::optional<KnownLines> lines = known_lines(context); lines && !std::isnan(lines->scatter)) {
-      if (give_sigmas(job.block, lines->sigma(), lines->horizontal_sigma()) > 0)
-        job.tally.count("tiles whose points carry no sigma: that of the model leaves out the errors that all lines share");
+      return give_sigmas(job.block, lines->sigma(), lines->horizontal_sigma()) > 0;
     }
+    return false;
   }
   static constexpr double room = 10.0;  // m: for triangles that reach beyond the border
   BreaklinesOfRun lines_;
 };
 
-class Dsm : public OptionStage<terrain::DsmOptions> {
+class Dsm : public OptionStage<terrain::DsmOptions, CellCounts> {
  public:
   const Info& info() const override {
     static const Info info{"terrain.dsm",
@@ -144,7 +179,7 @@ class Dsm : public OptionStage<terrain::DsmOptions> {
   }
   void run_tile(const Context&, TileJob& job) const override {
     const core::Grid grid = terrain::dsm(job.block, lattice_in(options.cell.value, job.box), options);
-    count_voids(grid, job.tally);
+    core::count_results(cells_of(grid), job.tally);
     write_grid_tile(job.folder, job.key, grid);
   }
 };

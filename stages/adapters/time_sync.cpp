@@ -126,7 +126,7 @@ class TimeSync : public OptionStage<TimeSyncOptions> {
                            {},
                            {},
                            {},
-                           {Product::events}};
+                           {Product::of<core::EventData>()}};
     return info;
   }
   std::vector<std::string> products() const override { return {options.file, "time_sync.png", "time_sync.svg"}; }
@@ -179,7 +179,7 @@ class TimeSync : public OptionStage<TimeSyncOptions> {
     std::vector<EventTags> given;
     for (const Technique& t : techniques)
       if (options.technique.empty() || t.timed.technique == options.technique) given.push_back(t.timed);
-    context.events = std::make_shared<core::EventData>(io::events_of(given));
+    context.records.put(core::EventData(io::events_of(given)));
   }
 
  private:
@@ -281,8 +281,9 @@ class TimeSync : public OptionStage<TimeSyncOptions> {
       if (!v.find("strips")) v["strips"] = Value::array();
       v["strips"].push(std::move(one));
     }
-    if (context.trajectory) {
-      const trajectory::PlaceComparison p = trajectory::compare_places(c.timed.pairs, c.other->timed, *context.trajectory);
+    if (context.records.has<trajectory::Trajectory>()) {
+      const trajectory::PlaceComparison p =
+          trajectory::compare_places(c.timed.pairs, c.other->timed, context.records.get<trajectory::Trajectory>());
       v["metres"]["along"] = p.axes[0].value();
       v["metres"]["across"] = p.axes[1].value();
       v["metres"]["up"] = p.axes[2].value();

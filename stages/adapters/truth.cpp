@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <optional>
 
 #include "core/error.h"
+#include "core/result_visitors.h"
 #include "io/geotiff.h"
 #include "io/npy.h"
 #include "io/output_file.h"
@@ -43,11 +45,80 @@ fs::path sums_file(const fs::path& folder, TileKey key) {
   return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".sums");
 }
 
-struct NoOptions {};
-template <class V>
-void describe(NoOptions&, V&) {}
+using Figure = std::optional<double>;
 
-class Truth : public OptionStage<NoOptions> {
+struct PointErrors {
+  std::uint64_t compared = 0;
+  std::array<double, 3> mean{}, rms{};
+  double largest = 0.0;
+  Figure error_over_sigma_h{}, error_over_sigma_v{};
+};
+
+template <class V>
+void describe(const PointErrors& r, V& v) {
+  using core::metres;
+  v.result("compared", r.compared, "Points that were compared with their record's truth; outliers are not among them.");
+  v.result("mean_east_m", r.mean[0], metres(), "Mean error to the east.");
+  v.result("rms_east_m", r.rms[0], metres(), "RMS error to the east.");
+  v.result("mean_north_m", r.mean[1], metres(), "Mean error to the north.");
+  v.result("rms_north_m", r.rms[1], metres(), "RMS error to the north.");
+  v.result("mean_up_m", r.mean[2], metres(), "Mean error of the height.");
+  v.result("rms_up_m", r.rms[2], metres(), "RMS error of the height.");
+  v.result("largest_3d_m", r.largest, metres(), "Largest distance of a point from its truth.");
+  v.result("error_over_sigma_h", r.error_over_sigma_h, core::plain(2), "RMS of horizontal error / sigma_h; 1 where the sigmas are right.");
+  v.result("error_over_sigma_v", r.error_over_sigma_v, core::plain(2), "RMS of height error / sigma_v; 1 where the sigmas are right.");
+}
+
+struct LabelErrors {
+  double type_1 = 0, type_2 = 0, total = 0, kappa = 0;
+};
+
+template <class V>
+void describe(const LabelErrors& r, V& v) {
+  using core::percent;
+  v.result("type_1_percent", r.type_1, percent(2).in_summary(), "Ground returns that were rejected.");
+  v.result("type_2_percent", r.type_2, percent(2).in_summary(), "Other returns that were accepted as ground.");
+  v.result("total_error_percent", r.total, percent(2).in_summary(), "Returns with the wrong label.");
+  v.result("kappa_percent", r.kappa, percent(2).in_summary(), "Cohen's kappa.");
+}
+
+struct TerrainErrors {
+  std::uint64_t cells = 0;
+  Figure mean{}, rms{}, median_abs{}, abs_95{}, error_over_sigma{}, truth_without_height{};
+};
+
+template <class V>
+void describe(const TerrainErrors& r, V& v) {
+  using core::metres;
+  v.result("cells", r.cells, "Cells that were compared.");
+  v.result("mean_m", r.mean, metres().in_summary(), "Mean error of the height.");
+  v.result("rms_m", r.rms, metres().in_summary(), "RMS error of the height.");
+  v.result("median_abs_m", r.median_abs, metres(), "Median absolute error.");
+  v.result("abs_95_percent_m", r.abs_95, metres(), "Absolute error that 95 % of the cells do not exceed.");
+  v.result("error_over_sigma", r.error_over_sigma, core::plain(2), "RMS of error / sigma; 1 where the sigmas are right.");
+  v.result("truth_without_height_percent", r.truth_without_height, core::percent(2), "Cells of the truth without a height in the model.");
+}
+
+struct TruthFindings {
+  std::optional<std::string> truth{};
+  Figure rms_3d{};
+  std::optional<PointErrors> points{};
+  std::optional<LabelErrors> ground{};
+  std::optional<std::string> dtm_not_compared{};
+  std::optional<TerrainErrors> dtm{};
+};
+
+template <class V>
+void describe(const TruthFindings& r, V& v) {
+  v.result("truth", r.truth, core::plain().in_summary(), "Why nothing was compared.");
+  v.result("rms_3d", r.rms_3d, core::metres().in_summary().limited_by("truth_rms"), "3D RMS error of the points.");
+  v.table("points", r.points, "Errors of the points.");
+  v.table("ground", r.ground, "Errors of the ground labels.");
+  v.result("dtm", r.dtm_not_compared, core::plain().in_summary(), "Why the terrain model was not compared.");
+  v.table("dtm", r.dtm, "Errors of the terrain model.");
+}
+
+class Truth : public OptionStage<NoOptions, NoResults, TruthFindings> {
  public:
   const Info& info() const override {
     static const Info info{"report.truth",
@@ -83,7 +154,9 @@ class Truth : public OptionStage<NoOptions> {
 
   void run_merge(const Context& context, MergeJob& job) const override {
     if (!context.survey.truth.returns && !context.survey.truth.dtm) {
-      job.findings["truth"] = "none: the survey names no truth";
+      TruthFindings found;
+      found.truth = "none: the survey names no truth";
+      job.findings = core::reported(found);
       return;
     }
     Sums all;
@@ -94,8 +167,10 @@ class Truth : public OptionStage<NoOptions> {
       std::memcpy(&s, bytes.data(), sizeof s);
       all.add(s);
     }
-    if (all.n > 0) tell_points(all, job.findings);
-    if (context.survey.truth.dtm && context.grids->has(Product::dtm)) tell_terrain(context, job);
+    TruthFindings found;
+    if (all.n > 0) tell_points(all, found);
+    if (context.survey.truth.dtm && context.grids->has(Product::dtm)) tell_terrain(context, job.tiles, found);
+    job.findings = core::reported(found);
   }
 
  private:
@@ -144,45 +219,43 @@ class Truth : public OptionStage<NoOptions> {
     return s;
   }
 
-  static void tell_points(const Sums& s, core::Value& findings) {
-    static constexpr const char* axes[] = {"east", "north", "up"};
-    core::Value points = core::Value::object();
-    points["compared"] = static_cast<std::int64_t>(s.n);
+  static void tell_points(const Sums& s, TruthFindings& found) {
+    PointErrors& points = found.points.emplace();
+    points.compared = static_cast<std::uint64_t>(s.n);
     double square = 0;
     for (size_t a = 0; a < 3; ++a) {
-      points["mean_" + std::string(axes[a]) + "_m"] = s.sum[a] / s.n;
-      points["rms_" + std::string(axes[a]) + "_m"] = std::sqrt(s.square[a] / s.n);
+      points.mean[a] = s.sum[a] / s.n;
+      points.rms[a] = std::sqrt(s.square[a] / s.n);
       square += s.square[a];
     }
-    findings["rms_3d"] = std::sqrt(square / s.n);
-    points["largest_3d_m"] = s.largest;
+    found.rms_3d = std::sqrt(square / s.n);
+    points.largest = s.largest;
     if (s.with_sigma > 0) {
-      points["error_over_sigma_h"] = std::sqrt(s.ratio_h / s.with_sigma);
-      points["error_over_sigma_v"] = std::sqrt(s.ratio_v / s.with_sigma);
+      points.error_over_sigma_h = std::sqrt(s.ratio_h / s.with_sigma);
+      points.error_over_sigma_v = std::sqrt(s.ratio_v / s.with_sigma);
     }
-    findings["points"] = std::move(points);
     if (s.ground_kept + s.object_taken == 0) return;
-    core::Value& labels = findings["ground"];
+    LabelErrors& labels = found.ground.emplace();
     const double ground = s.ground_kept + s.ground_lost, object = s.object_kept + s.object_taken, n = ground + object;
-    labels["type_1_percent"] = 100 * s.ground_lost / std::max(ground, 1.0);
-    labels["type_2_percent"] = 100 * s.object_taken / std::max(object, 1.0);
+    labels.type_1 = 100 * s.ground_lost / std::max(ground, 1.0);
+    labels.type_2 = 100 * s.object_taken / std::max(object, 1.0);
     const double agree = (s.ground_kept + s.object_kept) / n;
-    labels["total_error_percent"] = 100 * (1 - agree);
+    labels.total = 100 * (1 - agree);
     const double chance = ((ground * (s.ground_kept + s.object_taken)) + (object * (s.ground_lost + s.object_kept))) / (n * n);
-    labels["kappa_percent"] = chance < 1 ? 100 * (agree - chance) / (1 - chance) : 100.0;
+    labels.kappa = chance < 1 ? 100 * (agree - chance) / (1 - chance) : 100.0;
   }
 
-  static void tell_terrain(const Context& context, MergeJob& job) {
+  static void tell_terrain(const Context& context, const std::vector<TileKey>& tiles, TruthFindings& found) {
     const fs::path file = io::resolve(context.survey, *context.survey.truth.dtm);
     const double cell = context.grids->cell(Product::dtm);
     const io::RasterInfo raster = io::read_raster_info(file);
     if (std::abs(raster.geotransform[1] * context.unit - cell) > 1e-6 * cell) {
-      job.findings["dtm"] = "not compared: the truth has another cell";
+      found.dtm_not_compared = "not compared: the truth has another cell";
       return;
     }
     double n = 0, sum = 0, square = 0, with_sigma = 0, ratio = 0, covered = 0;
     std::map<int, std::uint64_t> histogram;  // |error| in mm
-    for (const TileKey key : job.tiles) {
+    for (const TileKey key : tiles) {
       const core::Lattice own = lattice_in(cell, context.box_of(key));
       const core::Grid mine = context.grids->window(Product::dtm, own);
       core::Lattice in_truth = own;
@@ -201,19 +274,19 @@ class Truth : public OptionStage<NoOptions> {
           ratio += e * e / (static_cast<double>(mine.sigma[k]) * static_cast<double>(mine.sigma[k])), ++with_sigma;
       }
     }
-    core::Value& dtm = job.findings["dtm"];
-    dtm["cells"] = static_cast<std::int64_t>(n);
+    TerrainErrors& dtm = found.dtm.emplace();
+    dtm.cells = static_cast<std::uint64_t>(n);
     if (n == 0) return;
-    dtm["mean_m"] = sum / n;
-    dtm["rms_m"] = std::sqrt(square / n);
+    dtm.mean = sum / n;
+    dtm.rms = std::sqrt(square / n);
     double seen = 0;
     for (const auto& [mm, count] : histogram) {
-      if (seen < 0.5 * n && seen + static_cast<double>(count) >= 0.5 * n) dtm["median_abs_m"] = mm / 1000.0;
-      if (seen < 0.95 * n && seen + static_cast<double>(count) >= 0.95 * n) dtm["abs_95_percent_m"] = mm / 1000.0;
+      if (seen < 0.5 * n && seen + static_cast<double>(count) >= 0.5 * n) dtm.median_abs = mm / 1000.0;
+      if (seen < 0.95 * n && seen + static_cast<double>(count) >= 0.95 * n) dtm.abs_95 = mm / 1000.0;
       seen += static_cast<double>(count);
     }
-    if (with_sigma > 0) dtm["error_over_sigma"] = std::sqrt(ratio / with_sigma);
-    dtm["truth_without_height_percent"] = 100 * (1 - n / covered);
+    if (with_sigma > 0) dtm.error_over_sigma = std::sqrt(ratio / with_sigma);
+    dtm.truth_without_height = 100 * (1 - n / covered);
   }
 };
 

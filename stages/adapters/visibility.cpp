@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "core/result_visitors.h"
 #include "io/geotiff.h"
 #include "io/vrt.h"
 #include "stages/adapters/adapters.h"
@@ -17,7 +18,32 @@ namespace {
 namespace fs = std::filesystem;
 using core::Column;
 
-class Visibility : public OptionStage<filters::VisibilityOptions> {
+struct BeamCounts {
+  core::Flagged noise;
+  core::Kept untouched, no_position;
+  std::uint64_t cells = 0, never_seen = 0;
+};
+
+template <class V>
+void describe(const BeamCounts& r, V& v) {
+  using core::if_any;
+  v.result("high noise", r.noise, "Returns in space that other beams found empty.");
+  v.result("withheld or noise already, not looked at", r.untouched, if_any(), "Returns that keep their class.");
+  v.result("outside the trajectory: beam not followed", r.no_position, if_any(), "Returns at times without a position of the scanner.");
+  v.result("cells with beams", r.cells, "Cells that a beam came to.");
+  v.result("cells whose ground was never seen", r.never_seen, if_any(), "Of those: cells where no beam reached the ground.");
+}
+
+struct VisibilityFindings {
+  double never_seen_share = std::numeric_limits<double>::quiet_NaN();
+};
+
+template <class V>
+void describe(const VisibilityFindings& r, V& v) {
+  v.result("never_seen_share", r.never_seen_share, core::share().in_summary(), "Share of cells with beams whose ground was never seen.");
+}
+
+class Visibility : public OptionStage<filters::VisibilityOptions, BeamCounts, VisibilityFindings> {
  public:
   const Info& info() const override {
     static const Info info{
@@ -28,7 +54,7 @@ class Visibility : public OptionStage<filters::VisibilityOptions> {
         {Grain::tile, Grain::merge},
         {Column::time, Column::strip, Column::return_number, Column::return_count, Column::flags, Column::classification},
         {Column::flags, Column::classification},
-        {Product::trajectory, Product::points},
+        {Product::of<trajectory::Trajectory>(), Product::points},
         {Product::visibility}};
     return info;
   }
@@ -48,14 +74,10 @@ class Visibility : public OptionStage<filters::VisibilityOptions> {
     const core::Lattice lattice = lattice_in(options.cell.value, job.box);
     filters::Visibility v;
     const filters::VisibilityCounts n = filters::trace_visibility(job.block, job.own, scanner_.of(context, job.block), lattice, options, v);
-    job.tally.count("high noise", n.noise);
-    if (n.untouched) job.tally.count("withheld or noise already, not looked at", n.untouched);
-    if (n.no_position) job.tally.count("outside the trajectory: beam not followed", n.no_position);
     const core::Grid seen = v.seen();
-    std::uint64_t cells = 0, never = 0;
-    for (const core::Void r : seen.reason) cells += r != core::Void::no_data, never += r == core::Void::never_seen;
-    job.tally.count("cells with beams", cells);
-    if (never) job.tally.count("cells whose ground was never seen", never);
+    BeamCounts counts{n.noise, n.untouched, n.no_position};
+    for (const core::Void r : seen.reason) counts.cells += r != core::Void::no_data, counts.never_seen += r == core::Void::never_seen;
+    core::count_results(counts, job.tally);
     write_grid_tile(job.folder, job.key, seen);
     write_bands(context, job.key, v);
   }
@@ -72,7 +94,7 @@ class Visibility : public OptionStage<filters::VisibilityOptions> {
     }
     io::write_vrt(context.output / "visibility.vrt", tiles);
     write_list(context.output / "visibility", files);
-    if (cells > 0) job.findings["never_seen_share"] = never / cells;
+    if (cells > 0) job.findings = core::reported(VisibilityFindings{never / cells});
   }
 
  private:

@@ -153,10 +153,6 @@ class LasTiles : public OptionStage<LasOptions> {
   mutable io::LasHeader header_;
 };
 
-struct NoOptions {};
-template <class V>
-void describe(NoOptions&, V&) {}
-
 class GridTiles : public OptionStage<NoOptions> {
  public:
   const Info& info() const override {

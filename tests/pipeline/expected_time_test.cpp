@@ -12,8 +12,9 @@ using stages::Grain;
 
 TEST(ExpectedTime, EveryStageThatWorksOnReturnsHasOne) {
   size_t longer = 0;
-  for (const auto& e : stages::registry())
-    for (const Grain g : e.make()->info().grains) {
+  for (const auto& e : stages::registry()) {
+    const auto stage = e.make();
+    for (const Grain g : stage->info().grains) {
       const double s = expected_seconds(e.name, g);
       if (g == Grain::survey) {
         EXPECT_EQ(s, 0.0) << e.name;
@@ -22,6 +23,7 @@ TEST(ExpectedTime, EveryStageThatWorksOnReturnsHasOne) {
       }
       longer += g == Grain::tile && s != expected_seconds("any other", g);
     }
+  }
   EXPECT_EQ(longer, 9u) << "a name of the list is not a stage";
   EXPECT_GT(expected_seconds("filters.ground", Grain::tile), expected_seconds("filters.noise", Grain::tile));
 }

@@ -18,6 +18,17 @@ TEST(Summary, TellsCountsTalliesAndFindings) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
 }
 
+TEST(Summary, DeclaredFindingsHaveTheirUnitAndDetailsStayInTheReport) {
+  const core::Value report = io::parse_json(
+      R"({"seconds": 72, "stages": [{"type": "report.truth", "findings": {"rms_3d": 0.021234567, "points": {"rms_up_m": 0.5},
+          "dtm": {"cells": 7, "rms_m": 0.0345678}}}]})",
+      "report");
+  const std::string text = summary(report, "out");
+  for (const char* part : {"rms_3d: 0.021 m\n", "rms_m: 0.035 m\n"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
+  for (const char* part : {"rms_up_m", "points", "cells"}) EXPECT_EQ(text.find(part), std::string::npos) << part << " in\n" << text;
+}
+
 TEST(Summary, AnErrorBehindAJudgedGeometryHintsAtWhatIsNamed) {
   const core::Value geometry = io::parse_json(
       R"({"named": ["range_centimetres"], "warnings": ["lines disagree", "with ranges in centimetres: state range_unit"]})", "report");

@@ -38,8 +38,8 @@ struct Trial {
     context.product_crs = crs;
     context.unit = context.crs.metres_per_unit();
     context.output = folder.path();
-    context.gnss = gnss;
-    context.events = events;
+    context.records.share<core::GnssData>(gnss);
+    context.records.share<core::EventData>(events);
     const trajectory::PointFixes fixes = flight.fixes(60, 1.0);
     for (size_t i = 0; i < fixes.size(); ++i) {
       gnss->time.push_back(start + fixes.time[i]);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/result_visitors.h"
 #include "io/value_file.h"
 #include "tests/world/support.h"
 
@@ -44,7 +45,7 @@ TEST(LineComparison, LaterStagesReadWhatAnEarlierOneWrote) {
   quality::LineComparison c;
   c.lines = {{3, 1, 1, 0.05, 0.01}, {7, 1, 1, -0.05, 0.01}};
   c.scatter = 0.03;
-  test::write_bytes(folder / "lines.json", io::to_json(value_of(c)));
+  test::write_bytes(folder / "lines.json", io::to_json(core::reported(c)));
   const auto known = known_lines(context);
   ASSERT_TRUE(known);
   EXPECT_EQ(known->offsets.at(7), -0.05);
@@ -55,7 +56,7 @@ TEST(LineComparison, LaterStagesReadWhatAnEarlierOneWrote) {
   c.steep_places = 3;
   const auto of = [&](double common, double along) {
     c.common = common, c.common_horizontal = along;
-    test::write_bytes(folder / "lines.json", io::to_json(value_of(c)));
+    test::write_bytes(folder / "lines.json", io::to_json(core::reported(c)));
     return *known_lines(context);
   };
   EXPECT_NEAR(of(0.02, 0.05).shared(), 0.02, 1e-9);

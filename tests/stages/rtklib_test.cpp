@@ -109,7 +109,7 @@ class RtklibStage : public testing::Test {
     try {
       run();
     } catch (const core::Error& e) {
-      EXPECT_EQ(context.gnss, nullptr);
+      EXPECT_EQ(context.records.find<core::GnssData>(), nullptr);
       return e.text();
     }
     return "none";
@@ -131,10 +131,10 @@ TEST_F(RtklibStage, TakesTheNearestBaseAndTellsWhatItIsWorth) {
   base("NEAR", 8000,
        solution(place + Eigen::Vector3d(0.1, 0, 0), 0, 70, 1) + solution(place, 75, 15, 2, 0.2) + solution(place, 90, 5, 4, 0.5));
   run();
-  ASSERT_NE(context.gnss, nullptr);
-  EXPECT_EQ(context.gnss->size(), 90u);
-  EXPECT_NEAR((context.gnss->position[0] - place).x(), 0.1, digit);
-  EXPECT_NEAR(context.gnss->time[0], core::from_week(week, start), 1e-6);
+  ASSERT_NE(context.records.find<core::GnssData>(), nullptr);
+  EXPECT_EQ(context.records.get<core::GnssData>().size(), 90u);
+  EXPECT_NEAR((context.records.get<core::GnssData>().position[0] - place).x(), 0.1, digit);
+  EXPECT_NEAR(context.records.get<core::GnssData>().time[0], core::from_week(week, start), 1e-6);
   const core::Value& bases = *findings.find("bases");
   ASSERT_EQ(bases.items().size(), 2u);
   EXPECT_EQ(bases.items()[0].find("not_used")->as_text(), "nearer ones are enough");
@@ -163,7 +163,7 @@ TEST_F(RtklibStage, TheAntennasLatencyIsAdded) {
   base("NEAR", 8000, solution(place, 0, 100, 1));
   survey.antenna.latency = core::Seconds(0.25);
   run();
-  EXPECT_NEAR(context.gnss->time[0], core::from_week(week, start) + 0.25, 1e-6);
+  EXPECT_NEAR(context.records.get<core::GnssData>().time[0], core::from_week(week, start) + 0.25, 1e-6);
 }
 
 TEST_F(RtklibStage, SeveralBasesBecomeOneSolution) {
@@ -174,7 +174,7 @@ TEST_F(RtklibStage, SeveralBasesBecomeOneSolution) {
   base("C", 30000, solution(place, 0, 100, 1));
   set("bases", "2");
   run();
-  ASSERT_EQ(context.gnss->size(), 100u);
+  ASSERT_EQ(context.records.get<core::GnssData>().size(), 100u);
   const core::Value& all = *findings.find("combined");
   EXPECT_EQ(number(all, "averaged"), 50);
   EXPECT_EQ(number(all, "disagreeing"), 10);
@@ -182,8 +182,8 @@ TEST_F(RtklibStage, SeveralBasesBecomeOneSolution) {
   EXPECT_EQ(number(*all.find("taken"), "A"), 80);
   EXPECT_EQ(number(*all.find("taken"), "B"), 20);
   EXPECT_NEAR(number(all, "worst_disagreement_m"), 0.5, digit);
-  EXPECT_NEAR((context.gnss->position[0] - place).x(), 0.005, digit);
-  EXPECT_EQ(context.gnss->quality[70], FixQuality::fixed);
+  EXPECT_NEAR((context.records.get<core::GnssData>().position[0] - place).x(), 0.005, digit);
+  EXPECT_EQ(context.records.get<core::GnssData>().quality[70], FixQuality::fixed);
   EXPECT_EQ(tally.of("epochs at which fixed solutions of several bases disagree"), 10u);
   EXPECT_EQ(io::read_pos(folder / "out" / "gnss" / "combined.pos", {}, 0.0, tally).size(), 100u);
   set("bases", "all");
@@ -196,7 +196,7 @@ TEST_F(RtklibStage, OneBaseOfSeveralMayFail) {
   base("B", 20000, solution(place, 0, 100, 1));
   set("bases", "all");
   run();
-  EXPECT_EQ(context.gnss->size(), 100u);
+  EXPECT_EQ(context.records.get<core::GnssData>().size(), 100u);
   EXPECT_EQ(tally.of("bases without a solution"), 1u);
   EXPECT_SAYS(findings.find("bases")->items()[0].find("failed")->as_text(), "no nav data");
 }
@@ -206,7 +206,7 @@ TEST_F(RtklibStage, ABaseBeyondTheLimitIsAnErrorWithItsDistance) {
   EXPECT_SAYS(fault(), "no base station within 50.0 km of the rover: FAR 60.0 km");
   set("max_distance", "70 km");
   run();
-  EXPECT_EQ(context.gnss->size(), 100u);
+  EXPECT_EQ(context.records.get<core::GnssData>().size(), 100u);
 }
 
 TEST_F(RtklibStage, WithoutAnApproximatePositionTheFirstFixCounts) {
@@ -227,7 +227,7 @@ TEST_F(RtklibStage, BasesThatRecordAtOtherTimesAreNotUsed) {
   EXPECT_SAYS(text, "BEFORE 2015-07-01T11:11:23");
   base("HALF", 9000, solution(place, 50, 50, 1), 50, 400);
   run();
-  EXPECT_EQ(context.gnss->size(), 50u);
+  EXPECT_EQ(context.records.get<core::GnssData>().size(), 50u);
   EXPECT_EQ(tally.of("base that does not record over the whole flight"), 1u);
   EXPECT_NEAR(number(findings.find("bases")->items()[1], "overlap_percent"), 100 * 49 / 99.0, 1e-9);
 }
@@ -248,7 +248,7 @@ TEST_F(RtklibStage, ABaseMayStandWhereItsHeaderSays) {
   run();
   EXPECT_EQ(tally.of("base at the approximate position of its RINEX header: all fixes are wrong by what it is wrong"), 1u);
   test::write_bytes(folder / "NEAR.obs", observations("NEAR", Eigen::Vector3d::Zero(), 0, 100));
-  context.gnss.reset();
+  context.records.drop<core::GnssData>();
   EXPECT_SAYS(fault(), "the base 'NEAR' has no position");
 }
 
@@ -305,7 +305,7 @@ TEST_F(RtklibStage, NavigationFilesAreLookedAt) {
   survey.rinex.navigation = {folder / "orbits.sp3"};
   run();
   EXPECT_SAYS(test::read_bytes(folder / "out" / "gnss" / "NEAR.conf"), "pos1-sateph=precise\n");
-  context.gnss.reset();
+  context.records.drop<core::GnssData>();
   set("orbits", "broadcast");
   EXPECT_SAYS(fault(), "names no RINEX navigation file");
   survey.rinex.navigation = {folder / "day.15n"};
@@ -325,7 +325,7 @@ TEST_F(RtklibStage, AntennasComeFromHeadersAndTheAntennaFile) {
   EXPECT_SAYS(conf, "ant2-anttype=TRM41249.00     NONE\n");
   EXPECT_SAYS(conf, "ant2-antdele=0.1\nant2-antdeln=0.2\nant2-antdelu=0.3\n");
   EXPECT_EQ(tally.of("antenna without a type: its phase centre is not applied"), 1u) << "the rover's";
-  context.gnss.reset();
+  context.records.drop<core::GnssData>();
   survey.rinex.antenna_type = "TRM41249.01";
   EXPECT_SAYS(fault(), "the antenna 'TRM41249.01' is not in this file");
 }
@@ -334,7 +334,7 @@ TEST_F(RtklibStage, DynamicsNeedFrequentEpochs) {
   base("NEAR", 8000, solution(place, 0, 100, 1));
   set("dynamics", true);
   run();
-  context.gnss.reset();
+  context.records.drop<core::GnssData>();
   std::string sparse = observations("AIR", place, 0, 1);
   for (int k = 1; k < 5; ++k) {
     const std::string epoch = observations("AIR", place, 30 * k, 1);
@@ -369,7 +369,8 @@ class RtklibItself : public RtklibStage {
   }
   Eigen::Vector3d mean() const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const Eigen::Vector3d& p : context.gnss->position) sum += p / static_cast<double>(context.gnss->size());
+    for (const Eigen::Vector3d& p : context.records.get<core::GnssData>().position)
+      sum += p / static_cast<double>(context.records.get<core::GnssData>().size());
     return sum;
   }
 };
@@ -382,7 +383,7 @@ TEST_F(RtklibItself, AgreesWithTheProgramCalledByHand) {
   RNX2RTKP_OR_SKIP();
   stations(data);
   run();
-  EXPECT_GE(context.gnss->size(), 115u);
+  EXPECT_GE(context.records.get<core::GnssData>().size(), 115u);
   EXPECT_GT(number(findings, "fixed_percent"), 95);
   // rnx2rtkp -p 2 -c -m 15 -f 2 -e -r (base), 2.4.3 b34. Its settings are not those of an aircraft (mask 15 deg, no mask for fixing), which
   // moves the mean by less than the millimetres of one epoch's sigma.
@@ -397,8 +398,8 @@ TEST_F(RtklibItself, AgreesWithTheProgramCalledByHand) {
                               folder.path(), folder / "hand.log")
                   .well());
   const core::GnssData hand = io::read_pos(folder / "hand.pos", {}, 0.0, tally);
-  ASSERT_EQ(hand.size(), context.gnss->size());
-  for (size_t i = 0; i < hand.size(); ++i) EXPECT_EQ(hand.position[i], context.gnss->position[i]);
+  ASSERT_EQ(hand.size(), context.records.get<core::GnssData>().size());
+  for (size_t i = 0; i < hand.size(); ++i) EXPECT_EQ(hand.position[i], context.records.get<core::GnssData>().position[i]);
 }
 
 TEST_F(RtklibItself, WrongInputsAreOneClearError) {

@@ -95,16 +95,16 @@ TEST(TimeSync, StampsMeetTheMarks) {
   t.made_survey();
   t.set(R"({"speed": "60 m/s"})");
   t.go();
-  ASSERT_EQ(t.context.events->size(), 40u);
+  ASSERT_EQ(t.context.records.get<core::EventData>().size(), 40u);
   // 17 of 20 lie within the log; the last three are flagged and left out of the comparison.
   EXPECT_EQ(t.trusted("n"), 17);
   EXPECT_LT(t.trusted("largest"), log_scatter);
   EXPECT_EQ(t.tally.of("events outside the clock's log"), 3u);
   EXPECT_EQ(t.tally.of("events before the clock had settled"), 0u);
-  EXPECT_EQ(t.context.events->doubtful[19], 1);
-  EXPECT_EQ(t.context.events->doubtful[0], 0);
-  EXPECT_GT(t.context.events->sigma[0], 5e-6);
-  EXPECT_LT(t.context.events->sigma[0], 6e-6);
+  EXPECT_EQ(t.context.records.get<core::EventData>().doubtful[19], 1);
+  EXPECT_EQ(t.context.records.get<core::EventData>().doubtful[0], 0);
+  EXPECT_GT(t.context.records.get<core::EventData>().sigma[0], 5e-6);
+  EXPECT_LT(t.context.records.get<core::EventData>().sigma[0], 6e-6);
   const core::Value& c = t.findings.find("comparisons")->items()[0];
   EXPECT_EQ(c.find("techniques")->as_text(), "pc - marks");
   EXPECT_NEAR(c.find("before_correction")->find("line")->find("drift")->as_number(), 1e-6, 1e-9);
@@ -129,12 +129,12 @@ TEST(TimeSync, EveryOptionHasItsEffect) {
     return t;
   };
   const auto normal = run("{}");
-  EXPECT_EQ(run(R"({"model": "literal"})")->context.events->sigma[0], 0);
+  EXPECT_EQ(run(R"({"model": "literal"})")->context.records.find<core::EventData>()->sigma[0], 0);
   EXPECT_EQ(run(R"({"convergence": "fixed"})")->tally.of("events before the clock had settled"), 2u);
   EXPECT_EQ(run(R"({"convergence": "fixed", "convergence_time": "2000 s"})")->tally.of("events before the clock had settled"), 4u);
   EXPECT_EQ(run(R"({"max_gap": "15 s"})")->tally.of("events outside the clock's log"), 20u);
-  EXPECT_GT(run(R"({"tag_sigma": "50 us"})")->context.events->sigma[0], 5e-5);
-  EXPECT_EQ(run(R"({"technique": "marks"})")->context.events->size(), 20u);
+  EXPECT_GT(run(R"({"tag_sigma": "50 us"})")->context.records.find<core::EventData>()->sigma[0], 5e-5);
+  EXPECT_EQ(run(R"({"technique": "marks"})")->context.records.find<core::EventData>()->size(), 20u);
   EXPECT_EQ(run(R"({"match": "time"})")->trusted("n"), 17);
   EXPECT_EQ(run(R"({"tolerance": "1 us"})")
                 ->findings.find("comparisons")
@@ -171,7 +171,7 @@ TEST(TimeSync, MarksAloneNeedNoClock) {
   Trial t;
   t.events("marks.csv", "t,id,strip\n10,a,1\n20,b,1\n", core::TimeScale::gps_week).latency = core::Seconds(0.25);
   t.go();
-  EXPECT_EQ(t.context.events->time[0], 1525 * 604800.0 + 10.25);
+  EXPECT_EQ(t.context.records.get<core::EventData>().time[0], 1525 * 604800.0 + 10.25);
   EXPECT_EQ(t.findings.find("comparisons"), nullptr);
   EXPECT_FALSE(fs::exists(t.context.output / "time_sync.png"));
 }
@@ -204,7 +204,9 @@ TEST(TimeSyncReference, TheReferenceFlightFromItsFiles) {
     if (std::string(model) == "robust") continue;
     EXPECT_NEAR(t.trusted("largest"), d.find("stats")->find("corrected_max_after_convergence_us")->as_number() * 1e-6, 1e-7);
     for (size_t i = 0; i < events.size(); ++i)
-      EXPECT_NEAR(t.context.events->time[i] - 1525 * 604800.0, events[i].find("corrected_gps_sow")->as_number(), 1e-7) << i;
+      EXPECT_NEAR(t.context.records.get<core::EventData>().time[i] - 1525 * 604800.0, events[i].find("corrected_gps_sow")->as_number(),
+                  1e-7)
+          << i;
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/frames.h"
 #include "core/geodesy.h"
+#include "core/result_visitors.h"
 
 namespace swath::trajectory {
 namespace {
@@ -116,7 +117,7 @@ TEST(TrajectoryChecks, GapsDuplicatesAndJumpsAreCounted) {
   EXPECT_EQ(c.backwards, 1u);
   EXPECT_EQ(c.not_finite, 1u);
   EXPECT_EQ(c.warnings.size(), 4u);
-  EXPECT_EQ(c.value().find("gaps")->items().size(), 1u);
+  EXPECT_EQ(core::reported(c).find("gaps")->items().size(), 1u);
 }
 
 TEST(TrajectoryChecks, TurnsAndStandingAreLeftOut) {

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <string>
 
+#include "core/result_visitors.h"
 #include "io/value_file.h"
 #include "tests/trajectory/kinematic_vectors.h"
 #include "tests/trajectory/made_flight.h"
@@ -154,7 +155,7 @@ TEST(LeaveOneOut, FixesBesideGapsAndEndsAreCountedNotUsed) {
   EXPECT_EQ(l.beside_gaps, 20u);
   EXPECT_EQ(l.fix.front(), 5u);
   EXPECT_EQ(l.fix.back(), 54u);
-  EXPECT_EQ(l.value().find("fixes")->as_int(), 40);
+  EXPECT_EQ(core::reported(l).find("fixes")->as_int(), 40);
   EXPECT_NE(l.table().find("40 fixes"), std::string::npos);
 }
 

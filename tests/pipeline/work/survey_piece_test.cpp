@@ -18,7 +18,7 @@ class Solver : public stages::Stage {
  public:
   explicit Solver(bool fails = false) : fails_(fails) {}
   const stages::Info& info() const override {
-    static const stages::Info info{"gnss.solver", "", {stages::Grain::survey}, {}, {}, {}, {stages::Product::gnss}};
+    static const stages::Info info{"gnss.solver", "", {stages::Grain::survey}, {}, {}, {}, {stages::Product::of<core::GnssData>()}};
     return info;
   }
   void visit(core::Visitor&) override {}
@@ -28,7 +28,7 @@ class Solver : public stages::Stage {
     io::write_text_file(context.output / "base_2.pos", "of hours too");
     auto gnss = std::make_shared<core::GnssData>();
     gnss->time = {1.0, 2.0};
-    context.gnss = std::move(gnss);
+    context.records.share<core::GnssData>(std::move(gnss));
     tally.count("fixes", 2);
     findings["rate_hz"] = 1.0;
   }
@@ -56,7 +56,7 @@ TEST_F(Survey, IsTakenUpWithWhatItHandedOn) {
   ASSERT_TRUE(is_survey_piece_done(stage_));
   EXPECT_EQ(keep_whole_work(work_).pieces, 1u);
   const SurveyPiece back = resume_survey_piece(again, stage_);
-  EXPECT_EQ(again.gnss->time, first.gnss->time);
+  EXPECT_EQ(again.records.get<core::GnssData>().time, first.records.get<core::GnssData>().time);
   EXPECT_EQ(back.tally.of("fixes"), 2u);
   EXPECT_EQ(back.findings.find("rate_hz")->as_number(), 1.0);
   EXPECT_EQ(back.files.size(), made.files.size());

@@ -9,7 +9,7 @@
 
 #include "core/block.h"
 #include "core/option.h"
-#include "core/report.h"
+#include "core/result.h"
 
 namespace swath::stages {
 
@@ -36,6 +36,16 @@ void describe(Keeping<O>& o, V& v) {
   v.option("keep_classes", o.keep_classes, "Classes that stay as they are: none, ground (taken as it is), or all but 0 and 1.");
 }
 
+/// Points whose class a filter would have changed.
+struct KeptCount {
+  core::Kept points;
+};
+
+template <class V>
+void describe(const KeptCount& r, V& v) {
+  v.result("kept the class they had (keep_classes)", r.points, core::if_any(), "Returns that the filter would have given another class.");
+}
+
 /// Puts kept classes, and the flags of their points, back after a filter has run.
 class KeptClasses {
  public:
@@ -48,22 +58,22 @@ class KeptClasses {
   /// `gives_ground`: of a filter that says what is ground; where ground is kept, it changes no class. `own`: points counted.
   /// Calls f(row) for each point that kept its class.
   template <class F>
-  void put_back(core::Block& block, size_t own, bool gives_ground, core::Tally& tally, F&& f) const {
-    std::uint64_t kept = 0;
+  KeptCount put_back(core::Block& block, size_t own, bool gives_ground, F&& f) const {
+    KeptCount kept;
     for (size_t i = 0; i < classes_.size(); ++i) {
       const std::uint8_t before = classes_[i];
       const bool stays =
           keep_ == KeepClasses::ground ? gives_ground || before == core::point_class::ground : before > core::point_class::unassigned;
       if (!stays) continue;
-      kept += i < own && block.classification[i] != before;
+      kept.points += i < own && block.classification[i] != before;
       block.classification[i] = before;
       if (!flags_.empty()) block.flags[i] = flags_[i];
       f(i);
     }
-    if (kept > 0) tally.count("kept the class they had (keep_classes)", kept);
+    return kept;
   }
-  void put_back(core::Block& block, size_t own, bool gives_ground, core::Tally& tally) const {
-    put_back(block, own, gives_ground, tally, [](size_t) {});
+  KeptCount put_back(core::Block& block, size_t own, bool gives_ground) const {
+    return put_back(block, own, gives_ground, [](size_t) {});
   }
 
  private:

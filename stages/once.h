@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A stage that works once on a whole survey is a free function:
+//
+//   Given<core::ImuData, ImuFindings> read_imu(const io::Survey& survey, core::Tally& tally);
+//   TrajectoryFiles write_trajectory(const trajectory::Trajectory& t, const Output& to, const TrajectoryWriteOptions& o, core::Tally&
+//   tally);
+//
+// Its signature says what it needs and gives. Parameters, in any order:
+//   const R&, R, const R*    a record that a stage before it gave; by value: its own, moved on its last use; a pointer: null where there is
+//   none const O&                 its options, a struct with a describe() const io::Survey&, const Output&, core::Tally&, const
+//   core::OnProgress&, const calib::ShotStream& const Context&           for what is left of the run: CRS, tiles, strips
+// It returns a record, a struct of results, both (Given), or nothing. registry.cpp makes a stage of it in one line:
+//
+//   once<read_imu>("readers.imu", "Reads the survey's IMU records as increments in body axes.", {.inputs = imu_files}),
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/result_visitors.h"
+#include "stages/adapters/place.h"
+#include "stages/registry.h"
+#include "stages/shot_source.h"
+#include "stages/stage.h"
+
+namespace swath::stages {
+
+/// A record and what the report says of it.
+template <Record R, class F>
+struct Given {
+  R record;
+  F findings;
+};
+
+/// Where a stage puts its files.
+struct Output {
+  std::filesystem::path folder;
+};
+
+/// A stage at work.
+struct Site {
+  Context& context;
+  core::Tally& tally;
+};
+
+/// How a parameter of type P is found. `declare` adds what it needs to the stage's Info.
+template <class P>
+struct Argument;
+
+template <class P>
+struct PlainArgument {
+  static void declare(Info&) {}
+};
+template <>
+struct Argument<const io::Survey&> : PlainArgument<const io::Survey&> {
+  static const io::Survey& of(Site& s) { return s.context.survey; }
+};
+template <>
+struct Argument<core::Tally&> : PlainArgument<core::Tally&> {
+  static core::Tally& of(Site& s) { return s.tally; }
+};
+template <>
+struct Argument<const core::OnProgress&> : PlainArgument<const core::OnProgress&> {
+  static const core::OnProgress& of(Site& s) { return s.context.progress; }
+};
+template <>
+struct Argument<const Context&> : PlainArgument<const Context&> {
+  static const Context& of(Site& s) { return s.context; }
+};
+template <>
+struct Argument<const Output&> : PlainArgument<const Output&> {
+  static Output of(Site& s) { return {s.context.output}; }
+};
+template <>
+struct Argument<const calib::ShotStream&> {
+  static void declare(Info& info) { info.needs_products.push_back(Product::shots); }
+  static calib::ShotStream of(Site& s) { return stream_shots(s.context); }
+};
+template <Record R>
+struct Argument<const R&> {
+  static void declare(Info& info) { info.needs_products.push_back(Product::of<R>()); }
+  static const R& of(Site& s) { return s.context.records.get<R>(); }
+};
+template <Record R>
+struct Argument<R> {
+  static void declare(Info& info) { info.needs_products.push_back(Product::of<R>()); }
+  static R of(Site& s) { return s.context.records.take<R>(std::ranges::count(s.context.last_uses, Product::of<R>()) > 0); }
+};
+template <Record R>
+struct Argument<const R*> {
+  static void declare(Info& info) { info.uses_products.push_back(Product::of<R>()); }
+  static const R* of(Site& s) { return s.context.records.find<R>().get(); }
+};
+
+/// Is a parameter the stage's options?
+template <class P>
+constexpr bool is_options = core::Described<std::remove_cvref_t<P>> && !std::same_as<std::remove_cvref_t<P>, io::Survey>;
+
+/// Hands a record on. What follows from it is settled: the place on the map follows from the trajectory.
+template <Record R>
+void hand_on(Site& s, R record) {
+  s.context.records.put(std::move(record));
+  if constexpr (std::same_as<R, core::GnssData>) check_place_of_fixes(s.context);
+  if constexpr (std::same_as<R, trajectory::Trajectory>) place_on_map(s.context, s.tally);
+}
+
+/// What a function's result is to the run.
+template <class T>
+struct Returned {
+  using Findings = T;
+  static void declare(Info&) {}
+  static core::Value keep(Site&, T findings) {
+    if constexpr (std::same_as<T, core::Value>)
+      return findings;
+    else
+      return core::reported(findings);
+  }
+};
+template <Record R>
+struct Returned<R> {
+  using Findings = NoResults;
+  static void declare(Info& info) { info.gives_products.push_back(Product::of<R>()); }
+  static core::Value keep(Site& s, R record) {
+    hand_on(s, std::move(record));
+    return core::Value::object();
+  }
+};
+template <Record R, class F>
+struct Returned<Given<R, F>> {
+  using Findings = F;
+  static void declare(Info& info) { Returned<R>::declare(info); }
+  static core::Value keep(Site& s, Given<R, F> given) {
+    core::Value findings = Returned<F>::keep(s, std::move(given.findings));
+    hand_on(s, std::move(given.record));
+    return findings;
+  }
+};
+
+template <class F>
+struct OnceSignature;
+template <class T, class... P>
+struct OnceSignature<T (*)(P...)> {
+  using Result = T;
+  /// The type of the parameter that is the options; NoOptions where there is none.
+  using Options = std::remove_cvref_t<std::tuple_element_t<
+      0, decltype(std::tuple_cat(std::declval<std::conditional_t<is_options<P>, std::tuple<std::remove_cvref_t<P>>, std::tuple<>>>()...,
+                                 std::declval<std::tuple<NoOptions>>()))>>;
+  static void declare(Info& info) {
+    (declare_one<P>(info), ...);
+    Returned<T>::declare(info);
+  }
+  static T call(T (*function)(P...), Site& site, const Options& o) { return function(one<P>(site, o)...); }
+
+ private:
+  template <class Q>
+  static void declare_one(Info& info) {
+    if constexpr (!is_options<Q>) Argument<Q>::declare(info);
+  }
+  template <class Q>
+  static decltype(auto) one(Site& site, const Options& o) {
+    if constexpr (is_options<Q>)
+      return (o);
+    else
+      return Argument<Q>::of(site);
+  }
+};
+
+/// What a function does not say of itself; each may be left out.
+template <class O>
+struct OnceExtras {
+  void (*check)(const Context&, const O&) = nullptr;                          ///< as Stage::check
+  std::vector<std::filesystem::path> (*inputs)(const io::Survey&) = nullptr;  ///< as Stage::inputs
+  std::vector<std::string> (*products)(const O&) = nullptr;                   ///< as Stage::products
+};
+
+template <auto function>
+class OnceStage : public OptionStage<typename OnceSignature<decltype(function)>::Options> {
+ public:
+  using Signature = OnceSignature<decltype(function)>;
+  using Options = typename Signature::Options;
+  using Findings = typename Returned<typename Signature::Result>::Findings;
+
+  OnceStage(std::string_view name, std::string_view summary, OnceExtras<Options> extras)
+      : info_{name, summary, {Grain::survey}, {}, {}, {}, {}}, extras_(extras) {
+    Signature::declare(info_);
+  }
+  const Info& info() const override { return info_; }
+  void visit_findings(core::ResultVisitor& v) const override {
+    if constexpr (!std::same_as<Findings, core::Value>) describe(Findings{}, v);
+  }
+  void check(const Context& c) const override {
+    if (extras_.check) extras_.check(c, this->options);
+  }
+  std::vector<std::filesystem::path> inputs(const io::Survey& s) const override {
+    return extras_.inputs ? extras_.inputs(s) : std::vector<std::filesystem::path>{};
+  }
+  std::vector<std::string> products() const override {
+    return extras_.products ? extras_.products(this->options) : std::vector<std::string>{};
+  }
+  void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
+    Site site{context, tally};
+    findings = Returned<typename Signature::Result>::keep(site, Signature::call(function, site, this->options));
+  }
+
+ private:
+  Info info_;
+  OnceExtras<Options> extras_;
+};
+
+template <auto function>
+Entry once(std::string_view name, std::string_view summary, OnceExtras<typename OnceSignature<decltype(function)>::Options> extras = {}) {
+  return {name, [=] { return std::make_unique<OnceStage<function>>(name, summary, extras); }};
+}
+
+}  // namespace swath::stages

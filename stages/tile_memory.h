@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the filters of points take of memory, measured and counted. The engine plans tiles by it.
+#pragma once
+
+#include <vector>
+
+#include "filters/classify.h"
+#include "filters/csf.h"
+#include "filters/ground.h"
+#include "filters/ground_ptd.h"
+#include "filters/noise.h"
+#include "filters/outlier.h"
+#include "filters/pmf.h"
+#include "filters/robust.h"
+#include "filters/smrf.h"
+#include "filters/water.h"
+#include "stages/stage.h"
+#include "terrain/key_points.h"
+
+namespace swath::stages {
+
+struct TileMemory {
+  double bytes_per_point = 64.0;  ///< of tile and halo, beside the columns
+  std::vector<Raster> rasters{};
+};
+
+/// Of a tile of `side` metres. A filter that is not listed takes 64 bytes per point.
+template <class O>
+TileMemory memory_of(const O&, double /*side*/) {
+  return {};
+}
+TileMemory memory_of(const filters::SmrfOptions& o, double side);
+TileMemory memory_of(const filters::PtdOptions& o, double side);
+TileMemory memory_of(const filters::RobustOptions& o, double side);
+TileMemory memory_of(const filters::PmfOptions& o, double side);
+TileMemory memory_of(const filters::CsfOptions& o, double side);
+TileMemory memory_of(const filters::GroundOptions& o, double side);
+TileMemory memory_of(const filters::NoiseOptions& o, double side);
+TileMemory memory_of(const filters::OutlierOptions& o, double side);
+TileMemory memory_of(const filters::ClassifyOptions& o, double side);
+TileMemory memory_of(const filters::WaterOptions& o, double side);
+TileMemory memory_of(const terrain::KeyPointOptions& o, double side);
+
+}  // namespace swath::stages
