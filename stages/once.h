@@ -27,7 +27,7 @@
 
 #include "core/result_visitors.h"
 #include "stages/adapters/place.h"
-#include "stages/registry.h"
+#include "stages/entry.h"
 #include "stages/shot_source.h"
 #include "stages/stage.h"
 

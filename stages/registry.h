@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string_view>
 #include <vector>
 
-#include "stages/stage.h"
+#include "stages/entry.h"
 
 namespace swath::stages {
-
-struct Entry {
-  std::string_view name;
-  std::function<std::unique_ptr<Stage>()> make;
-};
 
 /// Every stage there is, in the order of the chain.
 const std::vector<Entry>& registry();

@@ -15,8 +15,8 @@
 
 #include "core/result_visitors.h"
 #include "core/tile_columns.h"
+#include "stages/entry.h"
 #include "stages/kept_classes.h"
-#include "stages/registry.h"
 #include "stages/stage.h"
 #include "stages/tile_memory.h"
 
