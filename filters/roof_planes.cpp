@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/floor_div.h"
 #include "core/parallel.h"
@@ -36,12 +37,17 @@ constexpr float steepest2 = 3.0f;     // squared rise / run: 60 deg
 constexpr int hypotheses = 24;
 constexpr int planes_of_window = 3;
 constexpr float rms_share = 0.6f;                          // of the tolerance: points evenly spread within it have 0.58
+constexpr float closeness = 0.65f;                         // of the returns over a wide plane that lie within half the tolerance
+constexpr float glass_rms = 1.0f / 3.0f;                   // of the tolerance: leaves are rougher than glass
+constexpr float glass_share = 0.8f;                        // of the first returns over glass that lie on it
+constexpr size_t glass_fewest = 9;                         // sampled returns
 constexpr size_t rows_at_once = 4, points_at_once = 4096;  // of one thread
 constexpr float least_triangle = 0.1f;                     // area in plan, of a cell's
 
 /// z = level + east x + north y about the window's centre.
 struct Plane {
   float level = 0, east = 0, north = 0;
+  float close = 0;  ///< share of the returns over its ground plan within half the tolerance: of all, or of the first ones if that is more
   float above(float x, float y, float z) const { return z - (level + east * x + north * y); }
   float cosine() const { return 1.0f / std::sqrt(1.0f + east * east + north * north); }
 };
@@ -69,6 +75,8 @@ struct Points {
     return out;
   }
 };
+
+bool is_first_return(const core::Block& b, size_t p) { return b.return_number.empty() || b.return_number[p] <= 1; }
 
 /// By least squares of heights.
 Plane fit(const Points& p) {
@@ -182,7 +190,8 @@ class Window {
     return most >= least;
   }
 
-  bool is_roof(const Points& found, const Plane& plane, float tolerance) const {
+  /// Notes how closely the returns follow the plane.
+  bool is_roof(const Points& found, Plane& plane, float tolerance) const {
     if (plane.east * plane.east + plane.north * plane.north > steepest2) return false;
     float squares = 0;
     size_t last = 0;
@@ -192,11 +201,31 @@ class Window {
       last += core::is_last_return(block_, found.row[k]);
     }
     const auto n = static_cast<float>(found.n);
-    if (squares > n * rms_share * rms_share * tolerance * tolerance || static_cast<float>(last) < last_share * n) return false;
+    const float rms = std::sqrt(squares / n);
+    if (rms > rms_share * tolerance) return false;
+    const auto [all, first] = over(found, plane, tolerance);
+    plane.close = std::max(all.close, first.close);
+    if (static_cast<float>(last) >= last_share * n) return all.on >= own_share;
+    return found.n >= glass_fewest && rms <= glass_rms * tolerance && first.on >= glass_share;
+  }
+
+  /// Shares of sampled returns.
+  struct Over {
+    float on = 0, close = 0;  ///< within the tolerance of the plane, within half of it
+  };
+  /// Of those over the hull of `found`: of all, and of the first ones.
+  std::pair<Over, Over> over(const Points& found, const Plane& plane, float tolerance) const {
     const Hull hull(found);
-    int over = 0;
-    for (size_t k = 0; k < all_.n; ++k) over += hull.holds(all_.x[k], all_.y[k]);
-    return n >= own_share * static_cast<float>(over);
+    const float band = tolerance / plane.cosine();
+    std::array<int, 2> n{}, on{}, close{};  // of later returns, of first ones
+    for (size_t k = 0; k < all_.n; ++k) {
+      if (!hull.holds(all_.x[k], all_.y[k])) continue;
+      const float off = std::abs(plane.above(all_.x[k], all_.y[k], all_.z[k]));
+      const size_t kind = is_first_return(block_, all_.row[k]) ? 1 : 0;
+      ++n[kind], on[kind] += off <= band, close[kind] += off <= 0.5f * band;
+    }
+    const auto share = [](int part, int of) { return of == 0 ? 0.0f : static_cast<float>(part) / static_cast<float>(of); };
+    return {{share(on[0] + on[1], n[0] + n[1]), share(close[0] + close[1], n[0] + n[1])}, {share(on[1], n[1]), share(close[1], n[1])}};
   }
 
   void take_off(const Plane& plane, float tolerance) {
@@ -289,7 +318,7 @@ class Planes {
     for (const std::vector<Plane>& planes : of_row) planes_.insert(planes_.end(), planes.begin(), planes.end());
   }
 
-  /// Do the planes of enough cells around, connected with (i, j), continue the plane?
+  /// Do the planes of enough cells around, connected with (i, j), continue the plane, and do the returns follow them closely on average?
   bool is_wide(const Plane& plane, int i, int j, int enough, float tolerance) const {
     constexpr int width = 2 * growth + 1;
     std::array<std::uint8_t, static_cast<size_t>(width) * width> seen{};
@@ -298,20 +327,24 @@ class Planes {
     size_t n = 1;
     found[0] = {0, 0};
     seen[local(0, 0)] = 1;
+    float close = plane.close;
     for (size_t k = 0; k < n; ++k) {
-      if (static_cast<int>(k) + 1 >= enough) return true;
+      if (static_cast<int>(k) + 1 >= enough) return close >= closeness * static_cast<float>(n);
       for (int dj = std::max(found[k].j - 1, -growth); dj <= std::min(found[k].j + 1, growth); ++dj)
         for (int di = std::max(found[k].i - 1, -growth); di <= std::min(found[k].i + 1, growth); ++di) {
           std::uint8_t& known = seen[local(di, dj)];
-          if (known || !continues(plane, i, j, di, dj, tolerance)) continue;
+          const Plane* const next = known ? nullptr : continued(plane, i, j, di, dj, tolerance);
+          if (next == nullptr) continue;
           known = 1;
+          close += next->close;
           found[n++] = {di, dj};
         }
     }
     return false;
   }
 
-  bool continues(const Plane& plane, int i, int j, int di, int dj, float tolerance) const {
+  /// The plane of cell (i + di, j + dj) that continues one of (i, j); null where there is none.
+  const Plane* continued(const Plane& plane, int i, int j, int di, int dj, float tolerance) const {
     for (std::uint32_t k = first(i + di, j + dj); k < last(i + di, j + dj); ++k) {
       const Plane& next = planes_[k];
       const float off =
@@ -320,9 +353,9 @@ class Planes {
       const float cosine = plane.cosine();
       if (std::abs(off) * cosine <= tolerance &&
           (east * east + north * north) * cosine * cosine * cosine * cosine <= most_turned * most_turned)
-        return true;
+        return &next;
     }
-    return false;
+    return nullptr;
   }
 
   Samples samples_;

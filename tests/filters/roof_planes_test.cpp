@@ -35,10 +35,27 @@ TEST(RoofPlanes, RoofsAndDecksArePlanesAndCrownsAreNot) {
   EXPECT_LE(planar_share(test::make_scene("forest"), core::point_class::high_vegetation), nearly_none);
 }
 
-TEST(RoofPlanes, APlaneThatBeamsPassIsNoRoof) {
-  test::Scene s = test::make_scene("town");
-  s.block.return_count.assign(s.block.size(), 2);  // every beam goes on behind the roof
-  EXPECT_EQ(planar_share(s, core::point_class::building), 0.0);
+/// Pulses `spacing` apart that return from a level plane, off it by up to `rough`, and from the floor below it.
+std::vector<Planar> on_glass(double rough) {
+  constexpr double spacing = 0.3;
+  core::Block b;
+  for (int j = 0; j < 30; ++j)
+    for (int i = 0; i < 30; ++i)
+      for (const bool first : {true, false}) {
+        const double off = rough * std::sin(12.9 * i + 78.2 * j);
+        test::add_point(b, 50.0 + spacing * i, 50.0 + spacing * j, first ? 20.0 + off : 17.0);
+      }
+  b.return_count.assign(b.size(), 2);
+  for (size_t p = 0; p < b.size(); ++p) b.return_number.push_back(p % 2 == 0 ? 1 : 2);
+  std::vector<std::uint8_t> candidate(b.size());
+  for (size_t p = 0; p < b.size(); ++p) candidate[p] = b.z[p] > 18.0;
+  return planar_points(b, candidate, districts(b), tolerance, area);
+}
+
+TEST(RoofPlanes, APlaneThatBeamsPassIsARoofIfItIsAsSmoothAsGlass) {
+  const std::vector<Planar> glass = on_glass(0.02), leaves = on_glass(0.1);
+  EXPECT_GT(std::count(glass.begin(), glass.end(), Planar::wide), 800);
+  EXPECT_EQ(std::count(leaves.begin(), leaves.end(), Planar::wide), 0);
 }
 
 /// Returns on a dome, `spacing` apart.
