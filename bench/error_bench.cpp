@@ -11,8 +11,8 @@
 
 #include "core/error.h"
 #include "tests/world/navigation.h"
-#include "trajectory/error_model.h"
-#include "trajectory/ins_gnss.h"
+#include "trajectory/ins/error_model.h"
+#include "trajectory/ins/ins_gnss.h"
 
 namespace {
 

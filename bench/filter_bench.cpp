@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bench/timing.h"
-#include "filters/outlier.h"
+#include "filters/noise/outlier.h"
 
 namespace {
 

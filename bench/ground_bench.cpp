@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bench/timing.h"
-#include "filters/ground.h"
+#include "filters/ground/ground.h"
 
 int main(int argc, char** argv) {
   using namespace swath;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "filters/ground.h"
+#include "filters/ground/ground.h"
 
 int main() {
   using namespace swath;

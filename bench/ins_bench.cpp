@@ -15,7 +15,7 @@
 #include "core/error.h"
 #include "simulate/inertial.h"
 #include "simulate/planned_flight.h"
-#include "trajectory/ins_gnss.h"
+#include "trajectory/ins/ins_gnss.h"
 
 namespace {
 

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <vector>
 
-#include "calib/georeference.h"
-#include "core/frames.h"
+#include "core/geo/frames.h"
+#include "georef/georeference.h"
 
 namespace {
 
@@ -104,7 +104,7 @@ core::SensorSigma sigmas() {
 
 void measure(const char* name, const trajectory::Trajectory& t, const core::Scanner& scanner, bool with_sigma, int rounds) {
   const core::Crs utm("EPSG:32632");
-  const calib::Georeferencer g(scanner, {}, sigmas(), t, utm, {612000.0, 5300000.0, 0.0}, with_sigma);
+  const georef::Georeferencer g(scanner, {}, sigmas(), t, utm, {612000.0, 5300000.0, 0.0}, with_sigma);
   std::vector<core::Shots> shots;
   for (size_t b = 0; b < batches_of_a_round; ++b) shots.push_back(shots_from(b * batch));
   core::Block out;

@@ -118,7 +118,7 @@ struct Block {
   std::vector<float> ground_probability;             ///< 0 to 1: that the return is from the bare ground; NaN: not judged
   std::vector<std::uint16_t> red, green, blue;       ///< as recorded
   std::vector<std::uint8_t> user_data;               ///< as recorded
-  ByteRows source;                                   ///< the point in the file it came from (io/las_source.h); where it came from one
+  ByteRows source;                                   ///< the point in the file it came from (io/las/las_source.h); where it came from one
 
   size_t size() const { return x.size(); }
 };

@@ -2,9 +2,9 @@
 // Slope and hillshade of a model of heights.
 #pragma once
 
+#include "core/config/option.h"
+#include "core/config/units.h"
 #include "core/grid.h"
-#include "core/option.h"
-#include "core/units.h"
 
 namespace swath::core {
 

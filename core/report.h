@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/value.h"
+#include "core/config/value.h"
 
 namespace swath::core {
 

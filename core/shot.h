@@ -9,7 +9,7 @@ namespace swath::core {
 /// Raw laser records of one flight line, in the order they were recorded; one entry per return, the returns of a
 /// pulse adjacent. Frame `scanner`. The beam of a record is
 ///   mirror:  (forward, w sin a', w cos a'),  w = sqrt(1 - forward^2),  a' = s_a a + a0
-/// (other scanner models make their own vector from `angle`; see core/sensor.h).
+/// (other scanner models make their own vector from `angle`; see core/records/sensor.h).
 struct Shots {
   std::vector<double> time;     ///< GPS time of the record, s, before latency
   std::vector<double> angle;    ///< scan angle (or encoder angle of a conical scanner), rad, as recorded

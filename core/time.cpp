@@ -11,8 +11,8 @@
 #include <iterator>
 #include <limits>
 
+#include "core/config/units.h"
 #include "core/error.h"
-#include "core/units.h"
 
 namespace swath::core {
 

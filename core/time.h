@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/option.h"
+#include "core/config/option.h"
 
 namespace swath::core {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/output_file.h"
-#include "io/value_file.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
 
 namespace swath::pipeline {
 namespace {

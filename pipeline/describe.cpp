@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/describe.h"
 
+#include "core/config/option_visitors.h"
 #include "core/error.h"
-#include "core/option_visitors.h"
-#include "io/hangar_file.h"
-#include "io/output_file.h"
-#include "io/survey.h"
-#include "io/value_file.h"
+#include "io/survey/hangar_file.h"
+#include "io/survey/survey.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
 #include "pipeline/plan.h"
 #include "pipeline/report_docs.h"
 #include "stages/registry.h"

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "io/side_files.h"
+#include "io/vector/side_files.h"
 
 namespace swath::pipeline {
 namespace {

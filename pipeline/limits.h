@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/option.h"
-#include "core/units.h"
-#include "core/value.h"
+#include "core/config/option.h"
+#include "core/config/units.h"
+#include "core/config/value.h"
 
 namespace swath::pipeline {
 

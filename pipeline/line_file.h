@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/crs.h"
-#include "io/vector.h"
+#include "core/geo/crs.h"
+#include "io/vector/vector.h"
 
 namespace swath::pipeline {
 

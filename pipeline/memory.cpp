@@ -14,10 +14,10 @@
 #include <malloc.h>
 #endif
 
+#include "core/config/option.h"
+#include "core/config/units.h"
 #include "core/error.h"
-#include "core/option.h"
-#include "core/units.h"
-#include "io/geotiff.h"
+#include "io/raster/geotiff.h"
 
 namespace swath::pipeline {
 namespace {

@@ -6,9 +6,9 @@
 #include <map>
 
 #include "core/error.h"
-#include "io/read_survey.h"
-#include "io/record_checks.h"
-#include "io/value_file.h"
+#include "io/survey/read_survey.h"
+#include "io/survey/record_checks.h"
+#include "io/text/value_file.h"
 #include "stages/registry.h"
 
 namespace swath::pipeline {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/option_visitors.h"
-#include "io/survey.h"
+#include "core/config/option_visitors.h"
+#include "io/survey/survey.h"
 #include "pipeline/limits.h"
 #include "stages/stage.h"
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/crs.h"
-#include "core/value.h"
+#include "core/config/value.h"
+#include "core/geo/crs.h"
 
 namespace swath::pipeline {
 

@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <numeric>
 
-#include "core/value.h"
-#include "io/value_file.h"
+#include "core/config/value.h"
+#include "io/text/value_file.h"
 
 namespace swath::pipeline {
 namespace {

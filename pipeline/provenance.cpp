@@ -10,11 +10,11 @@
 #include <ctime>
 #include <set>
 
-#include "core/proj_grids.h"
-#include "io/output_file.h"
-#include "io/side_files.h"
-#include "io/value_file.h"
-#include "io/versions.h"
+#include "core/geo/proj_grids.h"
+#include "io/survey/versions.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
+#include "io/vector/side_files.h"
 #include "pipeline/work/checksum.h"
 
 namespace swath::pipeline {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/value.h"
+#include "core/config/value.h"
 #include "pipeline/plan.h"
 
 namespace swath::pipeline {

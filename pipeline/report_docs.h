@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is known of the keys of report.json from the stages' own declarations (core/result.h): their documentation, their JSON Schema, and
-// how a text shows them.
+// What is known of the keys of report.json from the stages' own declarations (core/config/result.h): their documentation, their JSON
+// Schema, and how a text shows them.
 #pragma once
 
 #include <map>
@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/result_visitors.h"
-#include "core/value.h"
+#include "core/config/result_visitors.h"
+#include "core/config/value.h"
 
 namespace swath::pipeline {
 

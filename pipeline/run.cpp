@@ -16,8 +16,8 @@
 #include <thread>
 #include <utility>
 
-#include "io/output_file.h"
-#include "io/value_file.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
 #include "pipeline/delivery.h"
 #include "pipeline/expected_time.h"
 #include "pipeline/grid_store.h"

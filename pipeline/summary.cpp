@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "io/las_box.h"
-#include "io/value_file.h"
+#include "io/las/las_box.h"
+#include "io/text/value_file.h"
 #include "pipeline/limits.h"
 #include "pipeline/progress.h"
 #include "pipeline/report_docs.h"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "io/geotiff.h"
+#include "io/raster/geotiff.h"
 
 namespace swath::pipeline {
 

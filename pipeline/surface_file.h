@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "core/crs.h"
+#include "core/geo/crs.h"
 #include "core/grid.h"
 
 namespace swath::pipeline {

@@ -10,8 +10,8 @@
 #include <numeric>
 #include <utility>
 
-#include "core/value.h"
-#include "io/output_file.h"
+#include "core/config/value.h"
+#include "io/text/output_file.h"
 #include "pipeline/work/piece_record.h"
 
 namespace swath::pipeline {

@@ -8,10 +8,10 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/config/value.h"
 #include "core/error.h"
 #include "core/floor_div.h"
-#include "core/value.h"
-#include "io/output_file.h"
+#include "io/text/output_file.h"
 #include "pipeline/work/store_file.h"
 
 namespace swath::pipeline {

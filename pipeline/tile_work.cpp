@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "io/output_file.h"
+#include "io/text/output_file.h"
 #include "pipeline/stage_memory.h"
 
 namespace swath::pipeline {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/geotiff.h"
+#include "io/raster/geotiff.h"
 #include "pipeline/line_file.h"
 #include "pipeline/surface_file.h"
 #include "report/volumes.h"

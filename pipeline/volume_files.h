@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "core/value.h"
+#include "core/config/value.h"
 
 namespace swath::pipeline {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/block.h"
-#include "core/option.h"
+#include "core/config/option.h"
 
 namespace swath::quality {
 

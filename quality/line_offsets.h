@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/config/result.h"
 #include "quality/line_cells.h"
 
 namespace swath::quality {

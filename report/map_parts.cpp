@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/units.h"
+#include "core/config/units.h"
 
 namespace swath::report {
 namespace {

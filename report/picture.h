@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "core/config/option.h"
 #include "core/contour_line.h"
 #include "core/grid.h"
-#include "core/option.h"
 #include "core/relief.h"
 #include "report/canvas.h"
 

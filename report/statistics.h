@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/value.h"
+#include "core/config/value.h"
 
 namespace swath::report {
 

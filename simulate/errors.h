@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/sensor.h"
+#include "core/records/sensor.h"
 #include "simulate/flight.h"
 #include "simulate/options.h"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/frames.h"
-#include "core/geodesy.h"
+#include "core/geo/frames.h"
+#include "core/geo/geodesy.h"
 
 namespace swath::simulate {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/option.h"
-#include "io/survey.h"
+#include "core/config/option.h"
+#include "io/survey/survey.h"
 
 namespace swath::simulate {
 

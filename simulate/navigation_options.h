@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/imu_spec.h"
-#include "core/option.h"
-#include "io/navigation.h"
+#include "core/config/option.h"
+#include "core/records/imu_spec.h"
+#include "io/survey/navigation.h"
 
 namespace swath::simulate {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "core/option.h"
-#include "core/sensor.h"
+#include "core/config/option.h"
+#include "core/records/sensor.h"
 #include "core/time.h"
-#include "io/survey.h"
+#include "io/survey/survey.h"
 #include "simulate/flight_options.h"
 #include "simulate/navigation_options.h"
 #include "simulate/scene_options.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simulate/preset.h"
 
-#include "core/option_visitors.h"
+#include "core/config/option_visitors.h"
 
 namespace swath::simulate {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "core/value.h"
+#include "core/config/value.h"
 #include "simulate/options.h"
 
 namespace swath::simulate {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/units.h"
 #include "core/error.h"
-#include "core/units.h"
 
 namespace swath::simulate {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "core/trajectory_data.h"
+#include "core/records/trajectory_data.h"
 #include "simulate/flight.h"
 #include "simulate/smooth_spline.h"
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "core/sensor.h"
+#include "core/records/sensor.h"
 #include "simulate/options.h"
 
 namespace swath::simulate {

@@ -6,7 +6,7 @@
 #include <array>
 #include <optional>
 
-#include "core/option.h"
+#include "core/config/option.h"
 
 namespace swath::simulate {
 

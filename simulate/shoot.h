@@ -6,9 +6,9 @@
 
 #include "core/time.h"
 #include "simulate/flight.h"
-#include "simulate/map_patch.h"
 #include "simulate/options.h"
-#include "simulate/world.h"
+#include "simulate/world/map_patch.h"
+#include "simulate/world/world.h"
 
 namespace swath::simulate {
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "core/value.h"
+#include "core/config/value.h"
 #include "simulate/options.h"
 #include "simulate/preset.h"
 

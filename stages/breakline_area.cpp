@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "io/wild_records.h"
+#include "io/survey/wild_records.h"
 
 namespace swath::stages {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/calibration_views.h"
 
-#include "calib/georeference.h"
+#include "georef/georeference.h"
 #include "stages/adapters/units.h"
 #include "stages/shot_source.h"
 
@@ -26,11 +26,11 @@ class Mapper {
     block.origin = context_.origin;
     return block;
   }
-  const calib::MapPatches& map() const { return georeferencer_.map(); }
+  const georef::MapPatches& map() const { return georeferencer_.map(); }
 
  private:
   const Context& context_;
-  calib::Georeferencer georeferencer_;
+  georef::Georeferencer georeferencer_;
 };
 
 }  // namespace

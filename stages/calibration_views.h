@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "calib/check_points.h"
-#include "calib/cross_sections.h"
-#include "calib/line_heights.h"
+#include "calib/ties/check_points.h"
+#include "calib/ties/cross_sections.h"
+#include "calib/ties/line_heights.h"
 #include "stages/stage.h"
 #include "trajectory/trajectory.h"
 

@@ -2,8 +2,8 @@
 #include "stages/drawing_file.h"
 
 #include "core/error.h"
-#include "io/output_file.h"
-#include "io/png.h"
+#include "io/raster/png.h"
+#include "io/text/output_file.h"
 
 namespace swath::stages {
 

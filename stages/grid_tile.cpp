@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "core/error.h"
-#include "io/output_file.h"
-#include "io/value_file.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
 
 namespace swath::stages {
 namespace {

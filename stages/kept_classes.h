@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/block.h"
-#include "core/option.h"
-#include "core/result.h"
+#include "core/config/option.h"
+#include "core/config/result.h"
 
 namespace swath::stages {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "io/output_file.h"
-#include "io/value_file.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
 #include "stages/grid_tile.h"
 
 namespace swath::stages {

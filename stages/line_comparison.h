@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "core/value.h"
+#include "core/config/value.h"
 #include "quality/line_offsets.h"
 #include "stages/stage.h"
 

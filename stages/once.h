@@ -8,7 +8,7 @@
 // Its signature says what it needs and gives. Parameters, in any order:
 //   const R&, R, const R*    a record that a stage before it gave; by value: its own, moved on its last use; a pointer: null where there is
 //   none const O&                 its options, a struct with a describe() const io::Survey&, const Output&, core::Tally&, const
-//   core::OnProgress&, const calib::ShotStream& const Context&           for what is left of the run: CRS, tiles, strips
+//   core::OnProgress&, const georef::ShotStream& const Context&           for what is left of the run: CRS, tiles, strips
 // It returns a record, a struct of results, both (Given), or nothing. registry.cpp makes a stage of it in one line:
 //
 //   once<read_imu>("readers.imu", "Reads the survey's IMU records as increments in body axes.", {.inputs = imu_files}),
@@ -25,8 +25,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/result_visitors.h"
-#include "stages/adapters/place.h"
+#include "core/config/result_visitors.h"
+#include "stages/adapters/flight/place.h"
 #include "stages/entry.h"
 #include "stages/shot_source.h"
 #include "stages/stage.h"
@@ -80,9 +80,9 @@ struct Argument<const Output&> : PlainArgument<const Output&> {
   static Output of(Site& s) { return {s.context.output}; }
 };
 template <>
-struct Argument<const calib::ShotStream&> {
+struct Argument<const georef::ShotStream&> {
   static void declare(Info& info) { info.needs_products.push_back(Product::shots); }
-  static calib::ShotStream of(Site& s) { return stream_shots(s.context); }
+  static georef::ShotStream of(Site& s) { return stream_shots(s.context); }
 };
 template <Record R>
 struct Argument<const R&> {

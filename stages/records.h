@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/event_data.h"
-#include "core/gnss_data.h"
-#include "core/imu_data.h"
+#include "core/records/event_data.h"
+#include "core/records/gnss_data.h"
+#include "core/records/imu_data.h"
 #include "trajectory/trajectory.h"
 
 namespace swath::stages {

@@ -2,13 +2,13 @@
 #include "stages/registry.h"
 
 #include "stages/adapters/adapters.h"
-#include "stages/adapters/calibration_flight.h"
-#include "stages/adapters/calibrations.h"
-#include "stages/adapters/geometry.h"
-#include "stages/adapters/hangar.h"
-#include "stages/adapters/ins_gnss.h"
-#include "stages/adapters/kinematic.h"
-#include "stages/adapters/navigation.h"
+#include "stages/adapters/calibration/calibration_flight.h"
+#include "stages/adapters/calibration/calibrations.h"
+#include "stages/adapters/calibration/geometry.h"
+#include "stages/adapters/flight/hangar.h"
+#include "stages/adapters/flight/ins_gnss.h"
+#include "stages/adapters/flight/kinematic.h"
+#include "stages/adapters/flight/navigation.h"
 #include "stages/tile_filter.h"
 
 namespace swath::stages {

@@ -12,7 +12,7 @@ constexpr size_t batch_returns = 1 << 17;
 
 }  // namespace
 
-calib::ShotStream stream_shots(const Context& context) {
+georef::ShotStream stream_shots(const Context& context) {
   if (!context.source)
     throw core::usage_error("no stage gives raw shots", context.survey.name, "readers.laser comes before the stages of calibration");
   return [&context](const std::function<void(int, const core::Shots&)>& work) {

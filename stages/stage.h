@@ -15,14 +15,14 @@
 #include <vector>
 
 #include "core/block.h"
-#include "core/geodesy.h"
+#include "core/config/option.h"
+#include "core/config/result.h"
+#include "core/geo/geodesy.h"
 #include "core/grid.h"
 #include "core/on_progress.h"
-#include "core/option.h"
 #include "core/report.h"
-#include "core/result.h"
 #include "core/shot.h"
-#include "io/survey.h"
+#include "io/survey/survey.h"
 #include "stages/records.h"
 
 namespace swath::stages {

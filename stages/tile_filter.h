@@ -13,7 +13,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/result_visitors.h"
+#include "core/config/result_visitors.h"
 #include "core/tile_columns.h"
 #include "stages/entry.h"
 #include "stages/kept_classes.h"

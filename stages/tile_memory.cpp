@@ -13,8 +13,8 @@ TileMemory memory_of(const filters::SmrfOptions& o, double side) {
 TileMemory memory_of(const filters::PtdOptions&, double) { return {230.0}; }
 TileMemory memory_of(const filters::RobustOptions&, double) { return {600.0}; }
 
-// A square of filters/patches.h with its margins is 4/3 of the halo wide. Measured 140 bytes per cell (pmf), 56 and 64 (csf, resolution 0.5
-// and 1 m).
+// A square of filters/ground/patches.h with its margins is 4/3 of the halo wide. Measured 140 bytes per cell (pmf), 56 and 64 (csf,
+// resolution 0.5 and 1 m).
 constexpr double patch_per_halo = 4.0 / 3.0;
 TileMemory memory_of(const filters::PmfOptions& o, double) {
   return {80.0, {{"cell_size", o.cell_size.value, patch_per_halo * filters::halo(o), 150.0}}};

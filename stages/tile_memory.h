@@ -4,18 +4,18 @@
 
 #include <vector>
 
-#include "filters/classify.h"
-#include "filters/csf.h"
-#include "filters/ground.h"
-#include "filters/ground_ptd.h"
-#include "filters/noise.h"
-#include "filters/outlier.h"
-#include "filters/pmf.h"
-#include "filters/robust.h"
-#include "filters/smrf.h"
-#include "filters/water.h"
+#include "filters/classes/classify.h"
+#include "filters/classes/water.h"
+#include "filters/ground/csf.h"
+#include "filters/ground/ground.h"
+#include "filters/ground/ground_ptd.h"
+#include "filters/ground/pmf.h"
+#include "filters/ground/robust.h"
+#include "filters/ground/smrf.h"
+#include "filters/noise/noise.h"
+#include "filters/noise/outlier.h"
 #include "stages/stage.h"
-#include "terrain/key_points.h"
+#include "terrain/tin/key_points.h"
 
 namespace swath::stages {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/frames.h"
-#include "core/geodesy.h"
+#include "core/geo/frames.h"
+#include "core/geo/geodesy.h"
 #include "core/statistics.h"
 #include "core/time.h"
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/gnss_data.h"
+#include "core/records/gnss_data.h"
 #include "report/chart.h"
 #include "trajectory/compare.h"
-#include "trajectory/ins_gnss.h"
+#include "trajectory/ins/ins_gnss.h"
 
 namespace swath::stages {
 

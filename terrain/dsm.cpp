@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gaps are filled from a TIN of the highest returns only: a TIN of all first returns would dip into the crowns at every pulse that
-// found its way down. Triangles are bounded by their circumcircle as in terrain/tin.h, so the fill is the same in every tile.
+// found its way down. Triangles are bounded by their circumcircle as in terrain/tin/tin.h, so the fill is the same in every tile.
 #include "terrain/dsm.h"
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 #include <tuple>
 
 #include "core/error.h"
-#include "terrain/tin.h"
-#include "terrain/tin_surface.h"
+#include "terrain/tin/tin.h"
+#include "terrain/tin/tin_surface.h"
 #include "terrain/voids.h"
 
 namespace swath::terrain {

@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "core/block.h"
+#include "core/config/option.h"
 #include "core/grid.h"
-#include "core/option.h"
-#include "terrain/spike_free.h"
+#include "terrain/tin/spike_free.h"
 
 namespace swath::terrain {
 
 enum class SurfaceMethod {
   highest,     ///< the highest first return of a cell
-  spike_free,  ///< a TIN of first returns that closes above deep ones (terrain/spike_free.h)
+  spike_free,  ///< a TIN of first returns that closes above deep ones (terrain/tin/spike_free.h)
 };
 
 struct DsmOptions {

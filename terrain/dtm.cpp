@@ -23,10 +23,10 @@
 #include <optional>
 
 #include "core/error.h"
-#include "terrain/natural_neighbours.h"
 #include "terrain/roughness.h"
-#include "terrain/smoothing.h"
-#include "terrain/tin_surface.h"
+#include "terrain/tin/natural_neighbours.h"
+#include "terrain/tin/smoothing.h"
+#include "terrain/tin/tin_surface.h"
 #include "terrain/voids.h"
 
 namespace swath::terrain {

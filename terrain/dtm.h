@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/block.h"
+#include "core/config/option.h"
 #include "core/grid.h"
-#include "core/option.h"
-#include "terrain/breaklines.h"
-#include "terrain/tin.h"
+#include "terrain/tin/tin.h"
+#include "terrain/water/breaklines.h"
 
 namespace swath::terrain {
 
@@ -78,9 +78,9 @@ std::vector<std::uint32_t> terrain_rows(const core::Block& block, const DtmOptio
 /// sigma: m; NaN where a point's sigma is NaN; see the source for its terms. A Block without sigma_v gets sigmas of the points' scatter
 /// alone, which does not show what neighbours have in common.
 /// reason: none, long_edge or no_data (terrain/voids.h).
-/// With `lines` the terrain passes through the breaklines, water is flat or falling and boundaries cut (terrain/breaklines.h); cells of
-/// water whose height is known have the reason none. `left_out` receives the number of terrain points in the window that share their place
-/// with one that is not higher.
+/// With `lines` the terrain passes through the breaklines, water is flat or falling and boundaries cut (terrain/water/breaklines.h); cells
+/// of water whose height is known have the reason none. `left_out` receives the number of terrain points in the window that share their
+/// place with one that is not higher.
 core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmOptions& options, const Breaklines* lines = nullptr,
                std::uint64_t* left_out = nullptr);
 

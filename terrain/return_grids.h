@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/block.h"
+#include "core/config/option.h"
 #include "core/grid.h"
-#include "core/option.h"
 
 namespace swath::terrain {
 

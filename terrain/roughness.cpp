@@ -11,8 +11,8 @@
 #include <cmath>
 #include <limits>
 
-#include "terrain/delaunay.h"
-#include "terrain/tin_surface.h"
+#include "terrain/tin/delaunay.h"
+#include "terrain/tin/tin_surface.h"
 
 namespace swath::terrain {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/grid.h"
-#include "terrain/tin.h"
+#include "terrain/tin/tin.h"
 
 namespace swath::terrain {
 

@@ -15,11 +15,11 @@
 #include <malloc.h>
 #endif
 
+#include "core/config/option_visitors.h"
 #include "core/error.h"
-#include "core/option_visitors.h"
 #include "core/printable.h"
-#include "io/info.h"
-#include "io/value_file.h"
+#include "io/survey/info.h"
+#include "io/text/value_file.h"
 #include "pipeline/describe.h"
 #include "pipeline/input_guard.h"
 #include "pipeline/limits.h"

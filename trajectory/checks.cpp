@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/frames.h"
+#include "core/geo/frames.h"
 #include "core/statistics.h"
 #include "trajectory/ground_velocity.h"
 

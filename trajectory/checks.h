@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/option.h"
-#include "core/result.h"
-#include "core/trajectory_data.h"
+#include "core/config/option.h"
+#include "core/config/result.h"
+#include "core/records/trajectory_data.h"
 #include "trajectory/motion_checks.h"
 
 namespace swath::trajectory {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/trajectory_data.h"
-#include "core/value.h"
+#include "core/config/value.h"
+#include "core/records/trajectory_data.h"
 #include "trajectory/trajectory.h"
 
 namespace swath::trajectory {

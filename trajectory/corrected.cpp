@@ -6,10 +6,10 @@
 #include <cmath>
 #include <string>
 
+#include "core/config/units.h"
 #include "core/error.h"
-#include "core/frames.h"
-#include "core/geodesy.h"
-#include "core/units.h"
+#include "core/geo/frames.h"
+#include "core/geo/geodesy.h"
 
 namespace swath::trajectory {
 namespace {

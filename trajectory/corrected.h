@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/trajectory_data.h"
+#include "core/records/trajectory_data.h"
 
 namespace swath::trajectory {
 

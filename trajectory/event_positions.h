@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/gnss_data.h"
+#include "core/records/gnss_data.h"
 #include "trajectory/leave_one_out.h"
 
 namespace swath::trajectory {

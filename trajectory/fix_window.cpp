@@ -6,7 +6,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "core/geodesy.h"
+#include "core/geo/geodesy.h"
 
 namespace swath::trajectory {
 

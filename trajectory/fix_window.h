@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/gnss_data.h"
+#include "core/records/gnss_data.h"
 
 namespace swath::trajectory {
 

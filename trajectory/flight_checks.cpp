@@ -9,8 +9,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/frames.h"
-#include "core/units.h"
+#include "core/config/units.h"
+#include "core/geo/frames.h"
 #include "trajectory/ground_velocity.h"
 
 namespace swath::trajectory {

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "core/trajectory_data.h"
+#include "core/records/trajectory_data.h"
 
 namespace swath::trajectory {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/gnss_data.h"
+#include "core/records/gnss_data.h"
 
 namespace swath::trajectory {
 

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "core/frames.h"
-#include "core/geodesy.h"
-#include "core/trajectory_data.h"
+#include "core/geo/frames.h"
+#include "core/geo/geodesy.h"
+#include "core/records/trajectory_data.h"
 
 namespace swath::trajectory {
 

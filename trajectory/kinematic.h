@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/option.h"
+#include "core/config/option.h"
 #include "trajectory/fix_window.h"
 
 namespace swath::trajectory {

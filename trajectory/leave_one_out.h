@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/result.h"
+#include "core/config/result.h"
 #include "trajectory/kinematic.h"
 #include "trajectory/point_smoother.h"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/frames.h"
+#include "core/geo/frames.h"
 #include "trajectory/ground_velocity.h"
 
 namespace swath::trajectory {

@@ -9,8 +9,8 @@
 #include <limits>
 
 #include "core/error.h"
-#include "core/frames.h"
-#include "core/geodesy.h"
+#include "core/geo/frames.h"
+#include "core/geo/geodesy.h"
 
 namespace swath::trajectory {
 

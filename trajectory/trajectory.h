@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/option.h"
-#include "core/trajectory_data.h"
+#include "core/config/option.h"
+#include "core/records/trajectory_data.h"
 
 namespace swath::trajectory {
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The weights of filters/ground_probability.cpp: a logistic regression on what filters.ground knows of the returns of simulated surveys (the zoo at several
+"""The weights of filters/ground/ground_probability.cpp: a logistic regression on what filters.ground knows of the returns of simulated surveys (the zoo at several
 densities and echo_scenes.py) and of labelled real clouds. Prints for each cloud the total error and the deciles with it in the fit and with its
 family held out, then the weights.
 

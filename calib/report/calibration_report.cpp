@@ -6,10 +6,10 @@
 #include "calib/report/page.h"
 #include "calib/report/tables.h"
 #include "core/grid_units.h"
-#include "io/geotiff.h"
-#include "io/output_file.h"
-#include "io/png.h"
-#include "io/value_file.h"
+#include "io/raster/geotiff.h"
+#include "io/raster/png.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
 
 namespace swath::calib {
 

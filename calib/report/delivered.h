@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "calib/adjustment.h"
-#include "core/sensor.h"
+#include "calib/adjust/adjustment.h"
+#include "core/records/sensor.h"
 
 namespace swath::calib {
 

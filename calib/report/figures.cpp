@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "calib/report/verdict.h"
-#include "core/units.h"
+#include "core/config/units.h"
 #include "report/difference_map.h"
 
 namespace swath::calib {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/frames.h"
-#include "core/geodesy.h"
-#include "core/units.h"
+#include "core/config/units.h"
+#include "core/geo/frames.h"
+#include "core/geo/geodesy.h"
 
 namespace swath::calib {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "calib/flat_target.h"
-#include "core/value.h"
+#include "calib/target/flat_target.h"
+#include "core/config/value.h"
 #include "report/chart.h"
 
 namespace swath::calib {

@@ -13,7 +13,7 @@
 #include "calib/report/residual_bins.h"
 #include "calib/report/tables.h"
 #include "calib/report/verdict.h"
-#include "core/units.h"
+#include "core/config/units.h"
 #include "report/html.h"
 
 namespace swath::calib {

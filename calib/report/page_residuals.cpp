@@ -7,8 +7,8 @@
 
 #include "calib/report/figures.h"
 #include "calib/report/residual_bins.h"
-#include "core/frames.h"
-#include "core/units.h"
+#include "core/config/units.h"
+#include "core/geo/frames.h"
 #include "report/html.h"
 
 namespace swath::calib {

@@ -6,7 +6,7 @@
 
 #include "calib/report/figures.h"
 #include "calib/report/verdict.h"
-#include "core/units.h"
+#include "core/config/units.h"
 #include "report/html.h"
 
 namespace swath::calib {

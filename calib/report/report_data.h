@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "calib/adjustment.h"
-#include "calib/strips.h"
-#include "calib/tie_set.h"
+#include "calib/adjust/adjustment.h"
+#include "calib/adjust/strips.h"
+#include "calib/ties/tie_set.h"
+#include "core/config/value.h"
 #include "core/grid.h"
-#include "core/sensor.h"
-#include "core/value.h"
+#include "core/records/sensor.h"
 
 namespace swath::calib {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "core/units.h"
+#include "core/config/units.h"
 
 namespace swath::calib {
 namespace {

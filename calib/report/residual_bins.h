@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "calib/adjustment.h"
+#include "calib/adjust/adjustment.h"
 #include "calib/report/report_data.h"
-#include "calib/tie_set.h"
+#include "calib/ties/tie_set.h"
 #include "report/statistics.h"
 
 namespace swath::calib {

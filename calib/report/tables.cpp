@@ -9,10 +9,10 @@
 #include "calib/report/delivered.h"
 #include "calib/report/residual_bins.h"
 #include "calib/report/verdict.h"
-#include "core/frames.h"
+#include "core/config/units.h"
+#include "core/geo/frames.h"
 #include "core/printable.h"
-#include "core/units.h"
-#include "io/calibration_file.h"
+#include "io/survey/calibration_file.h"
 
 namespace swath::calib {
 namespace {

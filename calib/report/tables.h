@@ -5,7 +5,7 @@
 #include <string>
 
 #include "calib/report/report_data.h"
-#include "core/value.h"
+#include "core/config/value.h"
 
 namespace swath::calib {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/value.h"
+#include "core/config/value.h"
 #include "report/page.h"
 
 namespace swath::calib {

@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "calib/adjustment.h"
-#include "calib/parameter_words.h"
-#include "calib/strips.h"
+#include "calib/adjust/adjustment.h"
+#include "calib/adjust/parameter_words.h"
+#include "calib/adjust/strips.h"
 #include "report/page.h"
 
 namespace swath::calib {

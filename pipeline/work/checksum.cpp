@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <vector>
 
-#include "core/option_visitors.h"
-#include "io/output_file.h"
+#include "core/config/option_visitors.h"
+#include "io/text/output_file.h"
 
 namespace swath::pipeline {
 

@@ -7,9 +7,9 @@
 #include <cstring>
 #include <type_traits>
 
-#include "core/trajectory_columns.h"
-#include "io/output_file.h"
-#include "io/value_file.h"
+#include "core/records/trajectory_columns.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
 #include "pipeline/work/piece_record.h"
 
 namespace swath::pipeline {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "io/output_file.h"
-#include "io/value_file.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
 #include "pipeline/work/checksum.h"
 
 namespace swath::pipeline {

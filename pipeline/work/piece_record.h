@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "core/config/value.h"
 #include "core/error.h"
-#include "core/value.h"
 
 namespace swath::pipeline {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/output_file.h"
+#include "io/text/output_file.h"
 #include "pipeline/work/piece_record.h"
 
 namespace swath::pipeline {

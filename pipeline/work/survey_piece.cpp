@@ -4,7 +4,7 @@
 #include <chrono>
 #include <utility>
 
-#include "io/output_file.h"
+#include "io/text/output_file.h"
 #include "pipeline/work/handed_on.h"
 
 namespace swath::pipeline {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/output_file.h"
+#include "io/text/output_file.h"
 #include "pipeline/delivery.h"
 #include "pipeline/work/piece_record.h"
 

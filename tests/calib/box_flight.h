@@ -8,13 +8,13 @@
 #include <cmath>
 #include <vector>
 
-#include "calib/shot_stream.h"
-#include "calib/target_edges.h"
-#include "calib/target_readings.h"
-#include "core/frames.h"
-#include "core/geodesy.h"
-#include "core/sensor.h"
-#include "io/control.h"
+#include "calib/target/target_edges.h"
+#include "calib/target/target_readings.h"
+#include "core/geo/frames.h"
+#include "core/geo/geodesy.h"
+#include "core/records/sensor.h"
+#include "georef/shot_stream.h"
+#include "io/vector/control.h"
 #include "tests/world/navigation.h"
 #include "trajectory/trajectory.h"
 

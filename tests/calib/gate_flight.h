@@ -9,12 +9,12 @@
 #include <functional>
 #include <vector>
 
-#include "calib/beam.h"
-#include "calib/geometry_gate.h"
-#include "calib/shot_geometry.h"
-#include "core/frames.h"
-#include "core/geodesy.h"
-#include "core/units.h"
+#include "calib/geometry/geometry_gate.h"
+#include "core/config/units.h"
+#include "core/geo/frames.h"
+#include "core/geo/geodesy.h"
+#include "georef/beam.h"
+#include "georef/shot_geometry.h"
 
 namespace swath::calib::test {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
-#include "core/frames.h"
-#include "core/units.h"
-#include "io/hangar_file.h"
+#include "core/config/units.h"
+#include "core/geo/frames.h"
+#include "io/survey/hangar_file.h"
 
 namespace swath::test {
 

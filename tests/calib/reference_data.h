@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "core/frames.h"
-#include "core/trajectory_data.h"
+#include "core/geo/frames.h"
+#include "core/records/trajectory_data.h"
 #include "tests/world/support.h"
 
 namespace swath::calib::test {

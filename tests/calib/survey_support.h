@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "core/frames.h"
-#include "core/geodesy.h"
-#include "core/sensor.h"
+#include "core/geo/frames.h"
+#include "core/geo/geodesy.h"
+#include "core/records/sensor.h"
 #include "core/shot.h"
 #include "trajectory/trajectory.h"
 

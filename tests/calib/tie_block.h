@@ -7,12 +7,12 @@
 #include <cmath>
 #include <vector>
 
-#include "calib/correction_knots.h"
-#include "calib/shot_geometry.h"
-#include "calib/tie_normals.h"
-#include "calib/tie_set.h"
-#include "core/frames.h"
-#include "core/geodesy.h"
+#include "calib/adjust/correction_knots.h"
+#include "calib/adjust/tie_normals.h"
+#include "calib/ties/tie_set.h"
+#include "core/geo/frames.h"
+#include "core/geo/geodesy.h"
+#include "georef/shot_geometry.h"
 #include "tests/calib/survey_support.h"
 #include "tests/world/navigation.h"
 #include "trajectory/trajectory.h"

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "calib/shot_geometry.h"
-#include "calib/shot_stream.h"
-#include "core/frames.h"
-#include "core/geodesy.h"
+#include "core/geo/frames.h"
+#include "core/geo/geodesy.h"
+#include "georef/shot_geometry.h"
+#include "georef/shot_stream.h"
 #include "trajectory/fix_window.h"
 #include "trajectory/trajectory.h"
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "io/geotiff.h"
+#include "io/raster/geotiff.h"
 
 int main(int argc, char** argv) {
   try {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "filters/ground.h"
+#include "filters/ground/ground.h"
 #include "tests/filters/ground_truth.h"
 
 namespace swath::filters {

@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "filters/classify.h"
-#include "filters/csf.h"
-#include "filters/ground_ptd.h"
-#include "filters/noise.h"
-#include "filters/outlier.h"
-#include "filters/pmf.h"
-#include "filters/robust.h"
-#include "filters/smrf.h"
-#include "filters/visibility.h"
+#include "filters/classes/classify.h"
+#include "filters/ground/csf.h"
+#include "filters/ground/ground_ptd.h"
+#include "filters/ground/pmf.h"
+#include "filters/ground/robust.h"
+#include "filters/ground/smrf.h"
+#include "filters/noise/noise.h"
+#include "filters/noise/outlier.h"
+#include "filters/noise/visibility.h"
 #include "tests/world/scene.h"
 
 namespace swath::filters {

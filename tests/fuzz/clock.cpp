@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Logs of a computer's clock.
-#include "io/clock_log.h"
+#include "io/records/clock_log.h"
 
 #include "tests/fuzz/target.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Optech CSD: header, pulses, the carrier's poses, and shots.
-#include "io/csd.h"
-#include "io/calibration_file.h"
+#include "io/records/csd.h"
+#include "io/survey/calibration_file.h"
 
-#include "io/info.h"
-#include "io/trajectory_file.h"
+#include "io/records/trajectory_file.h"
+#include "io/survey/info.h"
 #include "tests/fuzz/target.h"
 
 using namespace swath;

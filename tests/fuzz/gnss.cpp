@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Solutions of RTKLIB, NMEA logs and time tags.
-#include "io/gnss_file.h"
+#include "io/gnss/gnss_file.h"
 
-#include "io/describe_gnss.h"
+#include "io/gnss/describe_gnss.h"
 #include "tests/fuzz/target.h"
 
 using namespace swath;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `swath info`: the kind of any file from its content, packet captures and what no other target reads among them.
-#include "io/info.h"
+#include "io/survey/info.h"
 
 #include "tests/fuzz/target.h"
 

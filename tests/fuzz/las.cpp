@@ -2,8 +2,8 @@
 // LAS, LAZ and COPC: header, records, CRS, points as columns and as blocks, and as raw records in the scanner's frame.
 #include <limits>
 
-#include "io/cloud_extent.h"
-#include "io/las_reader.h"
+#include "io/las/cloud_extent.h"
+#include "io/las/las_reader.h"
 #include "tests/fuzz/target.h"
 
 using namespace swath;

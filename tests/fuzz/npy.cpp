@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // NumPy arrays: as such, as laser records and as IMU records.
-#include "io/npy.h"
+#include "io/text/npy.h"
 
-#include "io/imu_file.h"
-#include "io/info.h"
+#include "io/records/imu_file.h"
+#include "io/survey/info.h"
 #include "tests/fuzz/target.h"
 
 using namespace swath;

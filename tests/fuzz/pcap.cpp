@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Captured network packets, pcap and pcapng.
-#include "io/describe_pcap.h"
+#include "io/records/describe_pcap.h"
 
-#include "io/info.h"
+#include "io/survey/info.h"
 #include "tests/fuzz/target.h"
 
 using namespace swath;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rasters behind GDAL: GeoTIFF, ASCII grids, virtual rasters. GDAL itself reports no coverage.
-#include "io/geotiff.h"
-#include "io/info.h"
-#include "io/side_files.h"
+#include "io/raster/geotiff.h"
+#include "io/survey/info.h"
+#include "io/vector/side_files.h"
 #include "tests/fuzz/target.h"
 
 using namespace swath;

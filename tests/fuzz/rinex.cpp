@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // RINEX observations, other files of GNSS and antenna files.
-#include "io/rinex_header.h"
+#include "io/gnss/rinex_header.h"
 
-#include "io/antex.h"
-#include "io/describe_gnss.h"
+#include "io/gnss/antex.h"
+#include "io/gnss/describe_gnss.h"
 #include "tests/fuzz/target.h"
 
 using namespace swath;

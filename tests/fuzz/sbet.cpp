@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // SBET trajectories and their accuracies. The first byte says how many of the others, in eighths, are the SBET; the rest is the smrmsg.
-#include "io/sbet.h"
+#include "io/records/sbet.h"
 
-#include "io/info.h"
-#include "io/trajectory_file.h"
+#include "io/records/trajectory_file.h"
+#include "io/survey/info.h"
 #include "tests/fuzz/target.h"
 
 using namespace swath;

@@ -8,11 +8,11 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "core/config/option_visitors.h"
+#include "core/config/units.h"
 #include "core/error.h"
-#include "core/option_visitors.h"
-#include "core/units.h"
-#include "io/laser_file.h"
-#include "io/value_file.h"
+#include "io/records/laser_file.h"
+#include "io/text/value_file.h"
 
 namespace swath::fuzz {
 namespace {

@@ -9,10 +9,10 @@
 #include <functional>
 #include <string>
 
-#include "core/gnss_data.h"
-#include "core/imu_data.h"
-#include "core/trajectory_data.h"
-#include "io/survey.h"
+#include "core/records/gnss_data.h"
+#include "core/records/imu_data.h"
+#include "core/records/trajectory_data.h"
+#include "io/survey/survey.h"
 
 namespace swath::fuzz {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Delimited text: laser, IMU, trajectory and GNSS records, events and control, all of the same columns.
-#include "io/control.h"
-#include "io/event_file.h"
-#include "io/gnss_file.h"
-#include "io/imu_file.h"
-#include "io/info.h"
-#include "io/trajectory_file.h"
+#include "io/gnss/gnss_file.h"
+#include "io/records/event_file.h"
+#include "io/records/imu_file.h"
+#include "io/records/trajectory_file.h"
+#include "io/survey/info.h"
+#include "io/vector/control.h"
 #include "tests/fuzz/target.h"
 
 using namespace swath;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // TOML and JSON: surveys, calibrations, hangar surveys, and any other tree, which must come back the same from its own text.
 #include "core/error.h"
-#include "io/calibration_file.h"
-#include "io/hangar_file.h"
-#include "io/info.h"
-#include "io/read_survey.h"
-#include "io/value_file.h"
+#include "io/survey/calibration_file.h"
+#include "io/survey/hangar_file.h"
+#include "io/survey/info.h"
+#include "io/survey/read_survey.h"
+#include "io/text/value_file.h"
 #include "tests/fuzz/target.h"
 
 using namespace swath;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Vector files behind GDAL: breaklines, areas, contour lines, control points. GDAL itself reports no coverage.
-#include "io/vector.h"
+#include "io/vector/vector.h"
 
 #include <cmath>
 
-#include "io/breaklines.h"
-#include "io/describe_vector.h"
-#include "io/side_files.h"
+#include "io/vector/breaklines.h"
+#include "io/vector/describe_vector.h"
+#include "io/vector/side_files.h"
 #include "tests/fuzz/target.h"
 
 using namespace swath;

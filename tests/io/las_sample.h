@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <random>
 
-#include "io/las_points.h"
-#include "io/las_reader.h"
-#include "io/las_writer.h"
+#include "io/las/las_points.h"
+#include "io/las/las_reader.h"
+#include "io/las/las_writer.h"
 
 namespace swath::test {
 

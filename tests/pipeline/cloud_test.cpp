@@ -7,12 +7,12 @@
 #include <numeric>
 #include <set>
 
-#include "core/crs.h"
+#include "core/geo/crs.h"
 #include "core/statistics.h"
-#include "io/geotiff.h"
-#include "io/las_reader.h"
-#include "io/las_writer.h"
-#include "io/value_file.h"
+#include "io/las/las_reader.h"
+#include "io/las/las_writer.h"
+#include "io/raster/geotiff.h"
+#include "io/text/value_file.h"
 #include "pipeline/run.h"
 #include "tests/io/las_sample.h"
 #include "tests/world/support.h"

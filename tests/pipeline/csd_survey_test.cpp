@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "io/binary_file.h"
-#include "io/value_file.h"
+#include "io/text/binary_file.h"
+#include "io/text/value_file.h"
 #include "pipeline/run.h"
 #include "tests/world/support.h"
 

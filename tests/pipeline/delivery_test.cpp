@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/error.h"
-#include "io/output_file.h"
+#include "io/text/output_file.h"
 #include "tests/world/support.h"
 
 namespace {

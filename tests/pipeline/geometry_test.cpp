@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "io/output_file.h"
+#include "io/text/output_file.h"
 #include "pipeline/run.h"
 #include "simulate/simulate.h"
 #include "tests/world/support.h"

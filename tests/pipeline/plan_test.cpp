@@ -2,8 +2,8 @@
 #include "pipeline/plan.h"
 
 #include "core/error.h"
-#include "io/las_writer.h"
-#include "io/value_file.h"
+#include "io/las/las_writer.h"
+#include "io/text/value_file.h"
 #include "pipeline/describe.h"
 #include "tests/world/support.h"
 

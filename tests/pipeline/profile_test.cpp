@@ -8,11 +8,11 @@
 #include <cstdio>
 #include <sstream>
 
-#include "core/crs.h"
 #include "core/error.h"
-#include "io/geotiff.h"
-#include "io/las_writer.h"
-#include "io/vrt.h"
+#include "core/geo/crs.h"
+#include "io/las/las_writer.h"
+#include "io/raster/geotiff.h"
+#include "io/raster/vrt.h"
 #include "tests/world/support.h"
 
 namespace swath::pipeline {

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <thread>
 
-#include "io/value_file.h"
+#include "io/text/value_file.h"
 
 namespace swath::pipeline {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/option_visitors.h"
+#include "core/config/option_visitors.h"
 #include "pipeline/limits.h"
 #include "stages/registry.h"
 

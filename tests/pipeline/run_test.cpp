@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "core/option_visitors.h"
-#include "io/value_file.h"
+#include "core/config/option_visitors.h"
+#include "io/text/value_file.h"
 #include "simulate/simulate.h"
 #include "tests/world/support.h"
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/value_file.h"
+#include "io/text/value_file.h"
 
 namespace swath::pipeline {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/geotiff.h"
+#include "io/raster/geotiff.h"
 #include "tests/world/support.h"
 
 namespace swath::pipeline {

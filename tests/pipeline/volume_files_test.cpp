@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/crs.h"
 #include "core/error.h"
-#include "io/geotiff.h"
-#include "io/vrt.h"
+#include "core/geo/crs.h"
+#include "io/raster/geotiff.h"
+#include "io/raster/vrt.h"
 #include "tests/world/support.h"
 
 namespace swath::pipeline {

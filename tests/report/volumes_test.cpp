@@ -6,8 +6,8 @@
 #include <cmath>
 #include <functional>
 
+#include "core/config/units.h"
 #include "core/error.h"
-#include "core/units.h"
 
 namespace swath::report {
 namespace {

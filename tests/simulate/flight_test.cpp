@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/units.h"
+#include "core/config/units.h"
 
 namespace swath::simulate {
 namespace {

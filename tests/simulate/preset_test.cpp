@@ -11,10 +11,10 @@
 #include <sstream>
 
 #include "core/block.h"
+#include "core/config/option_visitors.h"
 #include "core/error.h"
-#include "core/option_visitors.h"
-#include "io/calibration_file.h"
-#include "io/read_survey.h"
+#include "io/survey/calibration_file.h"
+#include "io/survey/read_survey.h"
 #include "simulate/simulate.h"
 #include "tests/world/npy_columns.h"
 #include "tests/world/support.h"

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "io/trajectory_file.h"
+#include "io/records/trajectory_file.h"
+#include "simulate/files/trajectory_files.h"
 #include "simulate/planned_flight.h"
-#include "simulate/trajectory_files.h"
 #include "tests/world/support.h"
 
 namespace swath::simulate {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/geodesy.h"
+#include "core/geo/geodesy.h"
 #include "tests/calib/tie_world.h"
 
 namespace swath::stages {

@@ -2,8 +2,8 @@
 #include "stages/drawing_file.h"
 
 #include "core/error.h"
-#include "io/png.h"
-#include "io/value_file.h"
+#include "io/raster/png.h"
+#include "io/text/value_file.h"
 #include "tests/world/support.h"
 
 namespace swath::stages {

@@ -6,10 +6,10 @@
 #include <map>
 #include <sstream>
 
+#include "core/config/option_visitors.h"
 #include "core/error.h"
-#include "core/option_visitors.h"
-#include "io/png.h"
-#include "io/value_file.h"
+#include "io/raster/png.h"
+#include "io/text/value_file.h"
 #include "stages/registry.h"
 #include "tests/trajectory/made_flight.h"
 #include "tests/world/support.h"

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "core/config/result_visitors.h"
 #include "core/error.h"
-#include "core/result_visitors.h"
-#include "io/value_file.h"
+#include "io/text/value_file.h"
 #include "tests/world/support.h"
 
 namespace swath::stages {

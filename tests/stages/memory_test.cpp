@@ -12,9 +12,9 @@
 #include <functional>
 #include <random>
 
-#include "core/option_visitors.h"
-#include "filters/visibility.h"
-#include "io/value_file.h"
+#include "core/config/option_visitors.h"
+#include "filters/noise/visibility.h"
+#include "io/text/value_file.h"
 #include "stages/registry.h"
 #include "tests/world/support.h"
 

@@ -8,13 +8,13 @@
 #include <map>
 #include <random>
 
+#include "core/config/option_visitors.h"
 #include "core/error.h"
-#include "core/option_visitors.h"
-#include "io/las_writer.h"
-#include "io/value_file.h"
+#include "io/las/las_writer.h"
+#include "io/text/value_file.h"
 #include "stages/grid_tile.h"
 #include "stages/registry.h"
-#include "terrain/breaklines.h"
+#include "terrain/water/breaklines.h"
 #include "tests/world/support.h"
 
 namespace swath::stages {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "filters/ground.h"
-#include "io/las_reader.h"
+#include "filters/ground/ground.h"
+#include "io/las/las_reader.h"
 #include "tests/world/support.h"
 
 namespace swath::stages {

@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "core/option_visitors.h"
+#include "core/config/option_visitors.h"
 
 namespace swath::stages {
 namespace {

@@ -4,11 +4,11 @@
 #include <Eigen/Geometry>
 #include <cstdio>
 
+#include "core/config/option_visitors.h"
 #include "core/error.h"
-#include "core/option_visitors.h"
 #include "core/time.h"
-#include "io/process.h"
-#include "io/rtklib_pos.h"
+#include "io/gnss/rtklib_pos.h"
+#include "io/text/process.h"
 #include "stages/registry.h"
 #include "tests/world/support.h"
 

@@ -49,7 +49,7 @@ struct Read {
   std::vector<double> time;
 };
 
-Read read_all(const calib::ShotStream& stream) {
+Read read_all(const georef::ShotStream& stream) {
   Read out;
   stream([&](int line, const core::Shots& shots) {
     out.line.push_back(line);
@@ -66,7 +66,7 @@ TEST(ShotSource, ReadsStripsInTheirOrderAsOftenAsAsked) {
   Context context{survey};
   context.source = &source;
   context.strips = {strip(0, 2, 4), strip(1, 1, 0), strip(2, 7, 3)};
-  const calib::ShotStream stream = stream_shots(context);
+  const georef::ShotStream stream = stream_shots(context);
   for (int round = 0; round < 2; ++round) {
     const Read read = read_all(stream);
     EXPECT_EQ(read.line, (std::vector<int>{2, 2, 7}));

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/geodesy.h"
+#include "core/geo/geodesy.h"
 #include "core/time.h"
 
 namespace swath::stages {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/config/option_visitors.h"
 #include "core/error.h"
-#include "core/option_visitors.h"
 #include "tests/terrain/made.h"
 
 namespace swath::terrain {

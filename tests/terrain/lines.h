@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "terrain/contour_lines.h"
-#include "terrain/facets.h"
+#include "terrain/contours/contour_lines.h"
+#include "terrain/contours/facets.h"
 
 namespace swath::test {
 

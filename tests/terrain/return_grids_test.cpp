@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/units.h"
 #include "core/error.h"
-#include "core/units.h"
 #include "tests/terrain/made.h"
 
 namespace swath::terrain {

@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "terrain/tin_surface.h"
+#include "terrain/tin/tin_surface.h"
 #include "tests/terrain/made.h"
 
 namespace swath::terrain {

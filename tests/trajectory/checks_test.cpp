@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "core/frames.h"
-#include "core/geodesy.h"
-#include "core/result_visitors.h"
+#include "core/config/result_visitors.h"
+#include "core/geo/frames.h"
+#include "core/geo/geodesy.h"
 
 namespace swath::trajectory {
 namespace {

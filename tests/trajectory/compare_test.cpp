@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "core/frames.h"
-#include "core/geodesy.h"
+#include "core/geo/frames.h"
+#include "core/geo/geodesy.h"
 
 namespace swath::trajectory {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/geodesy.h"
+#include "core/geo/geodesy.h"
 #include "tests/trajectory/made_flight.h"
 
 namespace swath::trajectory {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/geodesy.h"
+#include "core/geo/geodesy.h"
 #include "tests/trajectory/made_flight.h"
 
 namespace swath::trajectory {

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "core/frames.h"
-#include "core/units.h"
+#include "core/config/units.h"
+#include "core/geo/frames.h"
 
 namespace swath::trajectory {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "core/frames.h"
+#include "core/geo/frames.h"
 #include "tests/world/navigation.h"
-#include "trajectory/ins_filter.h"
+#include "trajectory/ins/ins_filter.h"
 
 namespace swath::trajectory::test {
 

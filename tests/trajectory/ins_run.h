@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "tests/world/navigation.h"
-#include "trajectory/ins_gnss.h"
+#include "trajectory/ins/ins_gnss.h"
 
 namespace swath::trajectory::test {
 

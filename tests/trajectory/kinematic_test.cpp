@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "io/value_file.h"
+#include "io/text/value_file.h"
 #include "tests/trajectory/kinematic_vectors.h"
 #include "tests/trajectory/made_flight.h"
 

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include "core/value.h"
+#include "core/config/value.h"
 #include "tests/world/support.h"
 #include "trajectory/kinematic.h"
 

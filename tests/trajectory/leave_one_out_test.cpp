@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <string>
 
-#include "core/result_visitors.h"
-#include "io/value_file.h"
+#include "core/config/result_visitors.h"
+#include "io/text/value_file.h"
 #include "tests/trajectory/kinematic_vectors.h"
 #include "tests/trajectory/made_flight.h"
 

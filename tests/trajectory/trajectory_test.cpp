@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/frames.h"
-#include "core/geodesy.h"
+#include "core/geo/frames.h"
+#include "core/geo/geodesy.h"
 
 namespace swath::trajectory {
 namespace {

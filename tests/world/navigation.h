@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/gnss_data.h"
-#include "core/imu_data.h"
-#include "core/imu_spec.h"
-#include "core/trajectory_data.h"
+#include "core/records/gnss_data.h"
+#include "core/records/imu_data.h"
+#include "core/records/imu_spec.h"
+#include "core/records/trajectory_data.h"
 #include "simulate/planned_flight.h"
 
 namespace swath::test {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/npy.h"
+#include "io/text/npy.h"
 
 namespace swath::test {
 

@@ -6,11 +6,11 @@
 #include <algorithm>
 
 #include "calib/report/delivered.h"
+#include "core/config/units.h"
 #include "core/error.h"
-#include "core/units.h"
-#include "io/calibration_file.h"
-#include "io/geotiff.h"
-#include "io/value_file.h"
+#include "io/raster/geotiff.h"
+#include "io/survey/calibration_file.h"
+#include "io/text/value_file.h"
 #include "tests/calib/report/made_report.h"
 #include "tests/world/support.h"
 

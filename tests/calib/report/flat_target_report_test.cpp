@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/units.h"
+#include "core/config/units.h"
 
 namespace swath::calib {
 namespace {

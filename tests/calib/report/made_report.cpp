@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "core/units.h"
+#include "core/config/units.h"
 
 namespace swath::calib {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <sstream>
 
-#include "core/units.h"
+#include "core/config/units.h"
 #include "tests/calib/report/made_report.h"
 
 namespace swath::calib {

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "core/units.h"
+#include "core/config/units.h"
 #include "tests/calib/report/made_report.h"
 #include "tests/calib/report/part_of_page.h"
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/error.h"
-#include "io/output_file.h"
+#include "io/text/output_file.h"
 #include "pipeline/work/work_folder.h"
 #include "tests/world/support.h"
 

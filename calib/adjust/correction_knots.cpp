@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Source of shift and drift per line: Ackermann, GNSS-supported block adjustment, eq 1; of knots by time: Glira, Pfeifer & Mandlburger,
+// "Rigorous strip adjustment of UAV-based laserscanning data including time-dependent correction of trajectory errors" (2016).
+// Deviation: errors between knots that are not linear in time are not in this model. They are left to the sigma of the surfaces, which is
+// estimated (calib/adjust/variance_components.h).
+#include "calib/adjust/correction_knots.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace swath::calib {
+namespace {
+
+// A line shorter than this has one constant.
+constexpr double shortest_line = 0.05;  // s
+// Sigmas that no error falls below: exact trajectories state zeros, which cannot be inverted.
+constexpr double least_position = 1e-6;  // m
+constexpr double least_attitude = 1e-9;  // rad
+// Independent part added to each unknown's variance so that nearly equal ones can be distinguished by the arithmetic: a thousandth of its
+// sigma.
+constexpr double own_share = 1e-6;
+
+std::vector<double> grid_of(double first, double last, double spacing) {
+  if (last - first < shortest_line) return {0.5 * (first + last)};
+  const int steps = std::max(1, static_cast<int>(std::ceil((last - first) / spacing - 1e-9)));
+  std::vector<double> out;
+  for (int i = 0; i <= steps; ++i) out.push_back(first + (last - first) * i / steps);
+  return out;
+}
+
+// The stated spacing, or the least wider one that keeps the number of unknowns.
+double spacing_for(const std::vector<TieLine>& lines, const CorrectionOptions& o) {
+  const int splines = (o.position == CorrectionForm::spline) + (o.attitude == CorrectionForm::spline);
+  double spacing = o.spacing.value;
+  const auto unknowns = [&] {
+    size_t n = 0;
+    for (const TieLine& l : lines) n += 3 * splines * grid_of(l.first, l.last, spacing).size();
+    return n;
+  };
+  // Two knots on each line are the least.
+  const size_t most = std::max<size_t>(o.most, 6 * splines * lines.size());
+  while (unknowns() > most) spacing *= 1.1;
+  return spacing;
+}
+
+// Rows: knots of the form; columns: instants of the grid. The least-squares fit of the form to values on the grid.
+Eigen::MatrixXd projection(CorrectionForm form, const std::vector<double>& grid) {
+  const auto n = static_cast<Eigen::Index>(grid.size());
+  if (form == CorrectionForm::none) return Eigen::MatrixXd(0, n);
+  if (n == 1 || form == CorrectionForm::spline) return Eigen::MatrixXd::Identity(n, n);
+  if (form == CorrectionForm::shift) return Eigen::MatrixXd::Constant(1, n, 1.0 / static_cast<double>(n));
+  Eigen::MatrixXd A(n, 2);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double share = (grid[static_cast<size_t>(i)] - grid.front()) / (grid.back() - grid.front());
+    A.row(i) << 1.0 - share, share;
+  }
+  return (A.transpose() * A).ldlt().solve(A.transpose());
+}
+
+std::vector<double> knots_of(CorrectionForm form, const std::vector<double>& grid) {
+  if (form == CorrectionForm::none) return {};
+  if (form == CorrectionForm::shift && grid.size() > 1) return {0.5 * (grid.front() + grid.back())};
+  if (form == CorrectionForm::drift && grid.size() > 1) return {grid.front(), grid.back()};
+  return grid;
+}
+
+// The inverse of a covariance, scaled to correlations; what cannot be distinguished is given a small part of its own.
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& covariance) {
+  if (covariance.rows() == 0) return covariance;
+  const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd correlation = sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
+  for (double own = own_share;; own *= 10.0) {
+    Eigen::MatrixXd C = correlation;
+    C.diagonal().array() += own;
+    const Eigen::LLT<Eigen::MatrixXd> llt(C);
+    if (llt.info() != Eigen::Success && own < 1.0) continue;
+    const Eigen::MatrixXd inverse = llt.solve(Eigen::MatrixXd::Identity(C.rows(), C.cols()));
+    return sigma.cwiseInverse().asDiagonal() * inverse * sigma.cwiseInverse().asDiagonal();
+  }
+}
+
+}  // namespace
+
+ErrorCovariance stated_covariance(const CorrectionOptions& o) {
+  const double p = o.stated_position.value, a = o.stated_roll_pitch.value, h = o.stated_heading.value;
+  const Correction sigma = (Correction() << p, p, p, a, a, h).finished();
+  return [sigma, tau = o.stated_correlation.value](const std::vector<double>& t) {
+    const auto n = static_cast<Eigen::Index>(t.size());
+    Eigen::MatrixXd C = Eigen::MatrixXd::Zero(6 * n, 6 * n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j)
+        C.block<6, 6>(6 * i, 6 * j) = std::exp(-std::abs(t[i] - t[j]) / tau) * Eigen::MatrixXd(sigma.cwiseAbs2().asDiagonal());
+    return C;
+  };
+}
+
+CorrectionKnots::CorrectionKnots(const std::vector<TieLine>& lines, double latency, const CorrectionOptions& o,
+                                 const ErrorCovariance& given, bool scales_apart)
+    : scales_apart_(scales_apart) {
+  std::vector<double> instants;
+  std::vector<Eigen::Index> first_instant;
+  std::vector<std::vector<double>> grids;
+  const auto place = [this](Knots& k, CorrectionForm form, const std::vector<double>& grid, bool position) {
+    k.time = knots_of(form, grid);
+    k.first = size_;
+    size_ += 3 * static_cast<int>(k.time.size());
+    is_position_.resize(static_cast<size_t>(size_), position);
+  };
+  spacing_ = spacing_for(lines, o);
+  for (const TieLine& l : lines) {
+    const std::vector<double> grid = grid_of(l.first + latency, l.last + latency, spacing_);
+    Line line;
+    place(line.position, o.position, grid, true);
+    place(line.attitude, o.attitude, grid, false);
+    line.told = std::max(line.position.time.size(), line.attitude.time.size()) > 1
+                    ? (line.position.time.size() > line.attitude.time.size() ? line.position.time : line.attitude.time)
+                    : std::vector<double>{grid.front(), grid.back()};
+    lines_.push_back(std::move(line));
+    first_instant.push_back(static_cast<Eigen::Index>(instants.size()));
+    instants.insert(instants.end(), grid.begin(), grid.end());
+    grids.push_back(grid);
+  }
+  make_modes();
+  covariance_ = Eigen::MatrixXd::Zero(size_, size_);
+  if (size_ == 0) {
+    information_ = covariance_;
+    return;
+  }
+  const Eigen::MatrixXd errors = given(instants);
+  // The unknowns are P times the errors at the instants.
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(size_, errors.rows());
+  for (size_t l = 0; l < lines_.size(); ++l)
+    for (const int part : {0, 1}) {
+      const Knots& knots = part == 0 ? lines_[l].position : lines_[l].attitude;
+      const Eigen::MatrixXd share = projection(part == 0 ? o.position : o.attitude, grids[l]);
+      for (Eigen::Index k = 0; k < share.rows(); ++k)
+        for (Eigen::Index i = 0; i < share.cols(); ++i)
+          for (int c = 0; c < 3; ++c) P(knots.first + 3 * k + c, 6 * (first_instant[l] + i) + 3 * part + c) = share(k, i);
+    }
+  covariance_ = P * errors * P.transpose();
+  for (int i = 0; i < size_; ++i) {
+    const double least = is_position(i) ? least_position : least_attitude;
+    covariance_(i, i) += least * least;
+  }
+  information_ = inverse_of(covariance_);
+}
+
+CorrectionKnots::Weights CorrectionKnots::weights(const Knots& k, double t) {
+  Weights w;
+  if (k.time.empty()) return w;
+  if (k.time.size() == 1) return {1, {k.first, 0}, {1.0, 0.0}};
+  const double step = (k.time.back() - k.time.front()) / static_cast<double>(k.time.size() - 1);
+  const double place = (std::clamp(t, k.time.front(), k.time.back()) - k.time.front()) / step;
+  const int j = std::min(static_cast<int>(place), static_cast<int>(k.time.size()) - 2);
+  const double share = place - j;
+  return {2, {k.first + 3 * j, k.first + 3 * j + 3}, {1.0 - share, share}};
+}
+
+Correction CorrectionKnots::at(size_t line, double t, const Eigen::VectorXd& x) const {
+  Correction out = Correction::Zero();
+  const Weights p = position(line, t), a = attitude(line, t);
+  for (size_t i = 0; i < static_cast<size_t>(p.count); ++i) out.head<3>() += p.weight[i] * x.segment<3>(p.first[i]);
+  for (size_t i = 0; i < static_cast<size_t>(a.count); ++i) out.tail<3>() += a.weight[i] * x.segment<3>(a.first[i]);
+  return out;
+}
+
+Eigen::MatrixXd CorrectionKnots::derivatives(size_t line, double t, std::vector<int>& numbers) const {
+  numbers.clear();
+  const Weights w[2] = {position(line, t), attitude(line, t)};
+  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(6, 3 * (w[0].count + w[1].count));
+  for (int part = 0; part < 2; ++part)
+    for (size_t i = 0; i < static_cast<size_t>(w[part].count); ++i)
+      for (int c = 0; c < 3; ++c) {
+        D(3 * part + c, static_cast<Eigen::Index>(numbers.size())) = w[part].weight[i];
+        numbers.push_back(w[part].first[i] + c);
+      }
+  return D;
+}
+
+void CorrectionKnots::make_modes() {
+  for (const int part : {0, 1})
+    for (const int scale : {line_mean, line_drift}) {
+      std::vector<Eigen::VectorXd> columns;
+      for (const Line& l : lines_) {
+        const Knots& k = part == 0 ? l.position : l.attitude;
+        const size_t n = k.time.size();
+        if (n < (scale == line_mean ? 1u : 2u)) continue;
+        const double middle = 0.5 * (k.time.front() + k.time.back());  // knots are evenly spaced
+        for (int c = 0; c < 3; ++c) {
+          Eigen::VectorXd v = Eigen::VectorXd::Zero(size_);
+          for (size_t i = 0; i < n; ++i) v[k.first + 3 * static_cast<int>(i) + c] = scale == line_mean ? 1.0 : k.time[i] - middle;
+          columns.push_back(v.normalized());
+        }
+      }
+      Eigen::MatrixXd& m = modes_[static_cast<size_t>(part)][static_cast<size_t>(scale)];
+      m.resize(size_, static_cast<Eigen::Index>(columns.size()));
+      for (size_t i = 0; i < columns.size(); ++i) m.col(static_cast<Eigen::Index>(i)) = columns[i];
+    }
+}
+
+// F = D + M E M^T: D is the factor within the line, M the means and drifts, E what their factors are more.
+Eigen::MatrixXd CorrectionKnots::scaled(const Eigen::MatrixXd& A, const std::array<ScaleFactors, 2>& factor) const {
+  Eigen::VectorXd D(size_);
+  for (int i = 0; i < size_; ++i) D[i] = factor[is_position(i) ? 0 : 1][within_line];
+  Eigen::MatrixXd out = D.asDiagonal() * A * D.asDiagonal();
+  Eigen::Index n = 0;
+  for (const auto& part : modes_)
+    for (const Eigen::MatrixXd& m : part) n += m.cols();
+  Eigen::MatrixXd M(size_, n);
+  Eigen::VectorXd E(n);
+  n = 0;
+  for (const size_t part : {0, 1})
+    for (const size_t scale : {line_mean, line_drift}) {
+      const Eigen::MatrixXd& m = modes_[part][scale];
+      M.middleCols(n, m.cols()) = m;
+      E.segment(n, m.cols()).setConstant(factor[part][scale] - factor[part][within_line]);
+      n += m.cols();
+    }
+  if (n == 0 || E.isZero(0.0)) return out;
+  const Eigen::MatrixXd AM = A * M, ME = M * E.asDiagonal();
+  const Eigen::MatrixXd side = D.asDiagonal() * AM * ME.transpose();
+  out += side + side.transpose() + ME * (M.transpose() * AM) * ME.transpose();
+  return 0.5 * (out + out.transpose());
+}
+
+Eigen::MatrixXd CorrectionKnots::covariance(const ScaleFactors& position, const ScaleFactors& attitude) const {
+  return scaled(covariance_, {position, attitude});
+}
+Eigen::MatrixXd CorrectionKnots::information(const ScaleFactors& position, const ScaleFactors& attitude) const {
+  const auto inverse = [](const ScaleFactors& f) { return ScaleFactors{1.0 / f[0], 1.0 / f[1], 1.0 / f[2]}; };
+  return scaled(information_, {inverse(position), inverse(attitude)});
+}
+
+Eigen::MatrixXd CorrectionKnots::common_shift() const {
+  Eigen::MatrixXd B = Eigen::MatrixXd::Zero(size_, 3);
+  for (const Line& l : lines_)
+    for (int k = 0; k < static_cast<int>(l.position.time.size()); ++k) B.block<3, 3>(l.position.first + 3 * k, 0).setIdentity();
+  return B;
+}
+
+}  // namespace swath::calib

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The normal equations of all groups put together: planes eliminated, priors added, solved, with covariances.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <vector>
+
+#include "calib/adjust/tie_normals.h"
+
+namespace swath::calib {
+
+/// One control observation, linearised: normal . (q - c) - d0 - d1 u - d2 v = 0 within sigma.
+struct ControlRow {
+  std::uint32_t plane = 0;
+  double f = 0.0;                                ///< m, at d = 0
+  Eigen::Vector3d by = Eigen::Vector3d::Zero();  ///< with respect to d0, d1, d2
+  double sigma = 0.0;                            ///< m
+};
+/// All control of the planes, plane after plane.
+std::vector<ControlRow> control_rows(const std::vector<TiePlane>& planes, double factor);
+
+/// What takes part: by group, and by control observation.
+struct TieSelection {
+  std::vector<char> group, control;
+};
+
+/// What a plane leaves behind when it is eliminated.
+struct PlaneRest {
+  std::vector<int> index;                             ///< numbers of the unknowns that its groups touch
+  Eigen::MatrixXd N_xp;                               ///< their normal equations with d0, d1, d2
+  Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();  ///< of the plane's own 3 x 3
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+};
+
+/// A group's block once the group's own departure from the plane (sigma `surface`) is eliminated; `surface` 0: there is none.
+void with_surface(GroupBlock& block, double surface);
+
+/// N x = -b, x = (global unknowns, corrections).
+struct Normals {
+  Eigen::MatrixXd N;
+  Eigen::VectorXd b;
+};
+
+class TieSystem {
+ public:
+  /// Blocks as linearised; `surface`: m.
+  TieSystem(const TieProblem& problem, const std::vector<GroupBlock>& blocks, std::vector<ControlRow> control, double surface);
+
+  /// Adds sign * (one plane's contribution) to the normal equations of size problem.size(). `white`: of the
+  /// global unknowns alone, the corrections held and returns independent of one another.
+  PlaneRest add(std::uint32_t plane, const TieSelection& use, double sign, Normals& into, bool white = false) const;
+  /// All planes.
+  Normals sum(const TieSelection& use, std::vector<PlaneRest>& rests) const;
+
+  const GroupBlock& block(size_t group) const { return blocks_[group]; }  ///< with the surface's departure eliminated
+  const GroupBlock& bare(size_t group) const { return (*bare_)[group]; }  ///< as linearised
+  const std::vector<ControlRow>& control() const { return control_; }
+  /// Numbers of the groups and control observations of a plane: [first, last).
+  std::pair<size_t, size_t> groups_of(std::uint32_t plane) const { return {first_group_[plane], first_group_[plane + 1]}; }
+  std::pair<size_t, size_t> control_of(std::uint32_t plane) const { return {first_control_[plane], first_control_[plane + 1]}; }
+  size_t planes() const { return first_group_.size() - 1; }
+  double surface() const { return surface_; }
+
+ private:
+  const TieProblem* problem_;
+  const std::vector<GroupBlock>* bare_;
+  std::vector<GroupBlock> blocks_;
+  std::vector<ControlRow> control_;
+  std::vector<size_t> first_group_, first_control_;
+  double surface_;
+};
+
+/// What is known beforehand of the unknowns: sum of (x - x0)^T information (x - x0), x counted from the present state.
+struct TiePrior {
+  Eigen::MatrixXd corrections;  ///< information of the corrections
+  Eigen::VectorXd correction;   ///< their present values: x0 = -present
+  Eigen::VectorXd globals;      ///< information of each global unknown; 0: free
+  Eigen::VectorXd departure;    ///< of each global unknown's present value from its start
+};
+void add_prior(const TiePrior& prior, Normals& n, bool of_globals = true);
+
+/// The solution with its covariance.
+struct TieSolution {
+  Eigen::VectorXd x;               ///< steps of the unknowns
+  std::vector<Eigen::Vector3d> d;  ///< of each plane
+  Eigen::MatrixXd covariance;      ///< of x; empty where not asked for
+  bool solved = false;
+};
+TieSolution solve(const TieSystem& system, const Normals& with_prior, const std::vector<PlaneRest>& rests, bool covariance);
+/// Covariance of a plane's d0, d1, d2.
+Eigen::Matrix3d plane_covariance(const PlaneRest& rest, const Eigen::MatrixXd& covariance);
+
+/// A linear function h . (x, d) of the unknowns and one plane's three, with the plane eliminated. h: over the unknowns `of`, then the
+/// three.
+struct PlaneRow {
+  PlaneRow(const Eigen::VectorXd& h, const std::vector<int>& of, const PlaneRest& rest);
+  double variance(const Eigen::MatrixXd& of_unknowns) const { return own_variance + covariance(*this, of_unknowns); }
+  /// Without what the two share of their plane itself.
+  double covariance(const PlaneRow& other, const Eigen::MatrixXd& of_unknowns) const;
+
+  std::vector<int> index;
+  std::vector<double> value;
+  double own_variance = 0.0;
+};
+
+}  // namespace swath::calib

@@ -1,0 +1,422 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Over 400 lines: one analysis, whose steps share the state of its rounds and stand in their order.
+// Source: Brandalize, "Perfilamento a laser", the calibration flight. Deviation: the small-angle formulas are applied, the returns are
+// computed anew and the target is measured again until nothing is left, so that their error (1e-4 rad at half a degree) has gone.
+#include "calib/target/flat_target.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "calib/target/attitude_displacement.h"
+#include "calib/target/target_finder.h"
+#include "calib/target/target_pulses.h"
+#include "core/error.h"
+#include "core/geo/frames.h"
+
+namespace swath::calib {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double steady_angle = 2e-7;  // rad: 0.04 arcsec
+constexpr double steady_range = 5e-4;  // m
+constexpr double significant = 3.0;    // sigmas
+
+template <class... A>
+std::string words(const char* format, A... a) {
+  char text[400];
+  std::snprintf(text, sizeof text, format, a...);
+  return text;
+}
+
+/// The surveyed target of that name, or the largest that is a level roof; `not_used`: what the others are, in words.
+std::optional<RoofTarget> surveyed_target(const std::vector<io::ControlPoint>& control, const std::string& wanted,
+                                          std::vector<std::string>& not_used) {
+  std::map<std::string, std::vector<const io::ControlPoint*>> targets;
+  for (const io::ControlPoint& p : control)
+    if (!p.target.empty() && p.use == io::ControlUse::control) targets[p.target].push_back(&p);
+  std::optional<RoofTarget> best;
+  double largest = 0.0;
+  std::string names;
+  for (const auto& [name, points] : targets) {
+    names += (names.empty() ? "" : ", ") + name;
+    if (!wanted.empty() && name != wanted) continue;
+    std::vector<Vector3d> corners;
+    double sigma_h = 0.0, sigma_v = 0.0;
+    for (const io::ControlPoint* p : points) {
+      corners.push_back(p->ecef);
+      sigma_h = std::max(sigma_h, p->sigma_h);
+      sigma_v = std::max(sigma_v, p->sigma_v);
+    }
+    std::optional<RoofTarget> t;
+    try {
+      t = roof_target(name, corners, sigma_h, sigma_v);
+    } catch (const core::Error& e) {
+      if (!wanted.empty()) throw;
+      not_used.push_back(std::string(e.what()) + "; it takes no part (" + e.hint() + ")");
+      continue;
+    }
+    const double area = t->area();
+    constexpr double level = 0.05;  // rise / run
+    if (wanted.empty() && t->plane.tail<2>().norm() > level) continue;
+    if (area <= largest) continue;
+    largest = area;
+    best = t;
+  }
+  if (!wanted.empty() && !best)
+    throw core::usage_error("no surveyed target '" + wanted + "'", "calib.flat_target.target",
+                            names.empty() ? "the survey's control names no targets" : "the targets are " + names);
+  return best;
+}
+
+class Analysis {
+ public:
+  Analysis(const core::Scanner& scanner, const core::Calibration& calibration, const core::SensorSigma& sigma,
+           const trajectory::Trajectory& trajectory, const TrajectoryCovariance& covariance, const FlatTargetOptions& options)
+      : scanner_(scanner), present_(calibration), sigma_(sigma), trajectory_(trajectory), covariance_(covariance), options_(options) {
+    out_.calibration = out_.measured = calibration;
+    out_.range_present = calibration.range_offset.value;
+  }
+
+  FlatTarget run(const ShotStream& shots, const std::vector<io::ControlPoint>& control, core::Tally& tally) {
+    const ShotGeometry start(scanner_, present_);
+    const double search = std::tan(options_.search.value);
+    auto target = surveyed_target(control, options_.target, out_.findings);
+    if (!target)
+      target = find_roof(shots, start, trajectory_, search, {options_.stands_out.value, options_.shortest_side.value, 0.05, 2.0});
+    if (!target) {
+      say("no target: no surveyed one is a level roof, and no flat level roof of " + words("%.0f m", options_.shortest_side.value) +
+          " that stands out of its surroundings was found in any line");
+      return out_;
+    }
+    out_.target = *target;
+    collected_ = collect_pulses(shots, start, trajectory_, out_.target, search);
+    out_.returns = collected_.returns;
+    if (collected_.outside) tally.count("returns outside the trajectory left out", collected_.outside);
+    for (const LinePulses& l : collected_.lines) {
+      TargetLine line;
+      line.line = l.line;
+      line.kept_one_in = l.kept_one_in;
+      out_.lines.push_back(line);
+    }
+    work();
+    collected_ = {};
+    return out_;
+  }
+
+ private:
+  void say(const std::string& what) { out_.findings.push_back(what); }
+
+  EdgeOptions edge_options(bool coarse) const {
+    EdgeOptions e;
+    e.range_sigma = sigma_.range.value;
+    e.pointing_sigma = sigma_.scan_angle.value;
+    e.beam_divergence = sigma_.beam_divergence.value;
+    e.several_returns = collected_.several_returns;
+    e.single_growth = options_.single_growth;
+    e.single_growth_sigma = options_.single_growth_sigma;
+    e.shear = std::tan(options_.search.value);
+    if (coarse && !out_.target.surveyed) {
+      // The rectangle is known to a cell of the finder's grid.
+      e.strain_along = e.strain_across = 0.05;
+      e.turn = 0.03;
+      e.shear = std::hypot(e.shear, e.turn);
+    }
+    return e;
+  }
+
+  /// `across`: sigma of the displacement across the flight, m, once roll has been found; 0 before.
+  std::vector<TargetView> views(const core::Calibration& calibration, bool coarse, double across) const {
+    const ShotGeometry geometry(scanner_, calibration);
+    std::vector<TargetView> out;
+    for (const LinePulses& l : collected_.lines) {
+      EdgeOptions e = edge_options(coarse);
+      double range = 0.0;
+      for (const double r : l.pulses.first) range = std::max(range, geometry.range(r));
+      constexpr double datum = 2.0;  // m
+      e.search = std::tan(options_.search.value) * range * std::sqrt(2.0) + datum;
+      e.across = across > 0.0 ? across : e.search;
+      out.push_back(view_target(l.pulses, geometry, trajectory_, out_.target, e));
+    }
+    return out;
+  }
+
+  TargetMeasures measures(const std::vector<TargetView>& views, const core::Calibration& calibration) const {
+    std::vector<std::pair<int, const TargetView*>> seen;
+    for (size_t i = 0; i < views.size(); ++i)
+      if (views[i].seen) seen.push_back({out_.lines[i].line, &views[i]});
+    return target_measures(seen, ShotGeometry(scanner_, calibration), trajectory_, covariance_, out_.target, sigma_, collected_.widest,
+                           {options_.nadir_share, options_.edge_share});
+  }
+
+  void work() {
+    std::vector<TargetView> now;
+    core::Calibration& cal = out_.measured;
+    AngleReadings angles;
+    TargetMeasures m;
+    constexpr int coarse_rounds = 2;  // of an unsurveyed target: its rectangle is being found
+    bool steady = false;
+    for (out_.rounds = 1; out_.rounds <= options_.rounds; ++out_.rounds) {
+      const bool coarse = out_.rounds <= coarse_rounds;
+      // Profiles cannot determine it: with the roll of the other lines it is small.
+      constexpr double left_after_roll = 0.3;  // m
+      const double across = angles.roll.determined ? left_after_roll : 0.0;
+      now = views(cal, coarse, across);
+      if (!out_.target.surveyed) {
+        rectangle_of(now);
+        now = views(cal, coarse, across);
+      }
+      m = measures(now, cal);
+      if (out_.rounds == 1) remember(now, m);
+      if (m.lines.empty()) break;
+      angles = read_angles(m);
+      steady = (out_.target.surveyed || !coarse) && std::abs(angles.pitch.value) < steady_angle &&
+               std::abs(angles.roll.value) < steady_angle && std::abs(angles.heading.value) < steady_angle &&
+               std::abs(angles.range.value) < steady_range;
+      if (steady || out_.rounds == options_.rounds) break;
+      apply(angles, cal);
+    }
+    out_.rounds = std::min(out_.rounds, options_.rounds);
+    if (m.lines.empty()) {
+      say("no line sees the target");
+      for (const TargetLine& l : out_.lines)
+        if (!l.before.why_not.empty()) say("line " + std::to_string(l.line) + ": " + l.before.why_not);
+      return;
+    }
+    out_.done = true;
+    out_.joint = solve_jointly(m, sigma_);
+    for (size_t i = 0; i < now.size(); ++i) {
+      out_.lines[i].after = now[i];
+      for (const LineMeasure& l : m.lines)
+        if (l.view == &now[i]) {
+          out_.lines[i].measured = true;
+          out_.lines[i].role = l.role;
+          out_.lines[i].target = l.target;
+          out_.lines[i].scan_angle = std::atan2(l.target.y(), l.target.z());
+        }
+    }
+    conclude(angles, cal);
+    tell(angles, m, steady);
+  }
+
+  /// An unsurveyed target: the mean of the lines that see it whole.
+  void rectangle_of(const std::vector<TargetView>& now) {
+    RoofTarget& t = out_.target;
+    std::vector<Vector2d> corners(t.sides(), Vector2d(0, 0));
+    Vector3d plane = Vector3d::Zero();
+    int n = 0;
+    for (const TargetView& v : now) {
+      if (!v.seen || !v.all_sides()) continue;
+      const Vector2d x(std::sin(v.heading), std::cos(v.heading)), y(x.y(), -x.x());
+      for (size_t k = 0; k < t.sides(); ++k) {
+        const double px = x.dot(t.corners[k] - v.centre), py = y.dot(t.corners[k] - v.centre);
+        // Edges that lie along the flight show how the roof is turned; those across it are turned by the heading's error as well.
+        corners[k] += t.corners[k] + (v.displacement.x() - v.turn * py + v.strain_along * px) * x +
+                      (v.displacement.y() + v.turn * px + v.strain_across * py) * y;
+      }
+      const Vector2d tilt = v.tilt_along * x + v.tilt_across * y;
+      plane += Vector3d(v.height - tilt.dot(v.centre + v.displacement.x() * x + v.displacement.y() * y), tilt.x(), tilt.y());
+      ++n;
+    }
+    if (n == 0) return;
+    for (size_t k = 0; k < t.sides(); ++k) t.corners[k] = corners[k] / n;
+    t.plane += plane / n;
+  }
+
+  void remember(const std::vector<TargetView>& now, const TargetMeasures& m) {
+    for (size_t i = 0; i < now.size(); ++i) {
+      out_.lines[i].before = now[i];
+      for (const LineMeasure& l : m.lines)
+        if (l.view == &now[i]) out_.lines[i].sigma = l.sigma;
+    }
+  }
+
+  static void apply(const AngleReadings& a, core::Calibration& c) {
+    const core::Attitude displacement{a.roll.value, a.pitch.value, a.heading.value};
+    const Eigen::Matrix3d corrected =
+        core::matrix_of(mounting_of(displacement)) * core::matrix_of({c.roll.value, c.pitch.value, c.heading.value});
+    const core::Attitude now = core::attitude_of(corrected);
+    c.roll.value = now.roll;
+    c.pitch.value = now.pitch;
+    c.heading.value = core::wrap_pi(now.heading);
+    c.range_offset.value -= a.range.value;
+  }
+
+  void conclude(const AngleReadings& a, core::Calibration& cal) {
+    const auto angle = [&](TargetAngle& t, const ReadingMean& r, const JointTarget::One& joint, const JointTarget::One* arm, Parameter p,
+                           double present, core::Radians& measured, core::Radians& delivered) {
+      t.parameter = p;
+      t.present = present;
+      t.determined = r.determined;
+      const double current = measured.value;
+      for (Reading one : r.readings) {
+        one.value = current - one.value;
+        t.readings.push_back(one);
+      }
+      t.mean = current - r.value;
+      t.own = r.own;
+      t.scatter = r.scatter;
+      t.sigma = r.sigma;
+      // A displacement that does not grow with the flying height is no angle's.
+      if (t.determined && arm && out_.joint.two_heights && std::abs(arm->value) > significant * arm->sigma) {
+        t.mean = current - joint.value;
+        t.sigma = t.own = joint.sigma;
+        t.of_two_heights = true;
+      }
+      t.tolerance = options_.tolerance ? options_.tolerance->value : options_.tolerance_sigmas * t.sigma;
+      t.beyond = t.determined && std::abs(t.mean - t.present) > t.tolerance;
+      t.value = t.beyond ? t.mean : t.present;
+      measured.value = t.determined ? t.mean : t.present;
+      delivered.value = t.value;
+    };
+    angle(out_.roll, a.roll, out_.joint.roll, &out_.joint.lever_right, boresight_roll, present_.roll.value, cal.roll,
+          out_.calibration.roll);
+    angle(out_.pitch, a.pitch, out_.joint.pitch, &out_.joint.lever_forward, boresight_pitch, present_.pitch.value, cal.pitch,
+          out_.calibration.pitch);
+    angle(out_.heading, a.heading, out_.joint.heading, nullptr, boresight_heading, present_.heading.value, cal.heading,
+          out_.calibration.heading);
+    out_.range_determined = a.range.determined;
+    out_.range_mean = cal.range_offset.value - a.range.value;
+    out_.range_sigma = a.range.sigma;
+    for (Reading one : a.range.readings) {
+      one.value = cal.range_offset.value - one.value;
+      out_.range_readings.push_back(one);
+    }
+    cal.range_offset.value = out_.range_mean;
+    if (out_.range_determined && std::abs(out_.range_mean - out_.range_present) > options_.tolerance_sigmas * out_.range_sigma)
+      out_.calibration.range_offset.value = out_.range_mean;
+    if (out_.joint.scan_scale.free) {
+      out_.scan_scale = present_.scan_scale - out_.joint.scan_scale.value;
+      out_.scan_scale_sigma = out_.joint.scan_scale.sigma;
+    }
+  }
+
+  void tell(const AngleReadings& a, const TargetMeasures& m, bool steady) {
+    if (!out_.target.surveyed)
+      say("the target is not surveyed: it is the mean of the lines; the range offset and the scan's scale by its width are not determined");
+    for (const TargetLine& l : out_.lines) {
+      const std::string line = "line " + std::to_string(l.line);
+      if (!l.after.seen) {
+        say(line + " takes no part: " + (l.after.why_not.empty() ? "the target is not under it" : l.after.why_not));
+        continue;
+      }
+      size_t used = 0;
+      for (const SideView& s : l.after.sides) used += s.used;
+      if (used < out_.target.sides()) say(line + words(" sees %zu of the target's %zu edges", used, out_.target.sides()));
+    }
+    if (!a.pitch.determined)
+      say("pitch is not determined: no two lines in opposite directions pass over the target at one height; fly the target's line once "
+          "more "
+          "in the opposite direction");
+    if (!a.roll.determined)
+      say("roll is not determined: no two lines in opposite directions see both edges along their flight; fly along the target's long wall "
+          "to "
+          "and fro");
+    if (!a.heading.determined)
+      say(a.pitch.determined
+              ? "heading is not determined: no two parallel lines see the target at places of the swath far enough apart; fly "
+                "past it with the target at the swath's edge"
+              : "heading is not determined: it needs pitch, or two lines of one direction with the target at different "
+                "places of the swath");
+    bool edge = false;
+    for (const LineMeasure& l : m.lines) edge = edge || l.role == TargetRole::edge;
+    if (a.heading.determined && !edge) say("no line has the target at the swath's edge: heading is weak");
+    if (!steady) say(words("the rounds ended before the angles were steady (%d rounds)", out_.rounds));
+    tell_sizes(m);
+  }
+
+  void tell_sizes(const TargetMeasures& m) {
+    const JointTarget& j = out_.joint;
+    const core::Attitude moved{present_.roll.value - out_.measured.roll.value, present_.pitch.value - out_.measured.pitch.value,
+                               present_.heading.value - out_.measured.heading.value};
+    double z = 0.0, y = 0.0;
+    for (const LineMeasure& l : m.lines) {
+      z = std::max(z, l.target.z());
+      y = std::max(y, std::abs(l.target.y()));
+    }
+    // What the formulas alone would be wrong by matters where it is more than the readings' own sigma.
+    double most = 1e-4;
+    for (const TargetAngle* t : {&out_.roll, &out_.pitch, &out_.heading})
+      if (t->determined) most = std::min(most, t->sigma);
+    if (const std::string w = small_angle_warning(moved, z, std::max(y, 1.0), most); !w.empty())
+      say(w + "; they were iterated with the exact rotation");
+    if (j.datum_sigma.head<2>().maxCoeff() < 1.0 && m.surveyed) {
+      const double size = j.datum.head<2>().norm(), its = j.datum_sigma.head<2>().maxCoeff();
+      constexpr double worth_telling = 0.05;  // m
+      if (size > significant * its && size > worth_telling)
+        say(words(
+            "the target stands %.2f m east and %.2f m north (+-%.2f m) of its survey in all lines alike: datum or base station, not the "
+            "mounting; it cancels in opposite lines",
+            j.datum.x(), j.datum.y(), its));
+    }
+    if (j.two_heights) {
+      const auto arm = [&](const char* what, const char* angle, const JointTarget::One& one) {
+        const double found = -one.value;
+        if (std::abs(found) > significant * one.sigma)
+          say(words(
+              "two heights (%.0f and %.0f m): a part of the %s displacement stays the same at both: lever arm %+.3f m +-%.3f m from the "
+              "one in force, not %s; %s is taken from what grows with height",
+              j.lowest, j.highest, what, found, one.sigma, angle, angle));
+        else
+          say(words(
+              "two heights (%.0f and %.0f m): the %s displacement grows with height as %s does; a constant part of %+.3f m +-%.3f m shows "
+              "no error of the lever arm",
+              j.lowest, j.highest, what, angle, found, one.sigma));
+      };
+      if (out_.pitch.determined) arm("along-track", "pitch", j.lever_forward);
+      if (out_.roll.determined) arm("across-track", "roll", j.lever_right);
+    } else {
+      say("all lines are of one flying height: an error of the lever arm along or across the flight (or of the latency) would be taken for "
+          "pitch or roll");
+    }
+    if (j.scan_scale.free && std::abs(j.scan_scale.value) > significant * j.scan_scale.sigma)
+      say(words("the target looks too %s across the flight: scan scale off by %.0f +-%.0f ppm", j.scan_scale.value > 0 ? "wide" : "narrow",
+                1e6 * std::abs(j.scan_scale.value), 1e6 * j.scan_scale.sigma));
+    tell_length();
+    constexpr double poor = 3.0;
+    if (j.chi2 > poor)
+      say(
+          words("displacements of the lines disagree by more than their sigmas (chi2 per degree of freedom %.1f): trajectory worse than "
+                "stated, a wrong survey, or a part of the mounting that is not modelled here",
+                j.chi2));
+  }
+
+  void tell_length() {
+    if (!out_.target.surveyed) return;
+    double sum = 0.0, weights = 0.0;
+    for (const TargetLine& l : out_.lines) {
+      if (!l.measured || !l.after.all_sides()) continue;
+      const double w = 1.0 / (l.after.strain_along_sigma * l.after.strain_along_sigma);
+      sum += w * l.after.strain_along;
+      weights += w;
+    }
+    if (weights > 0.0 && std::abs(sum) > significant * std::sqrt(weights))
+      say(words("the target looks too %s along the flight by %.0f +-%.0f ppm: speed of the trajectory or scale of the time tags",
+                sum > 0 ? "long" : "short", 1e6 * std::abs(sum / weights), 1e6 / std::sqrt(weights)));
+  }
+
+  const core::Scanner& scanner_;
+  const core::Calibration present_;
+  const core::SensorSigma& sigma_;
+  const trajectory::Trajectory& trajectory_;
+  const TrajectoryCovariance& covariance_;
+  const FlatTargetOptions& options_;
+  CollectedPulses collected_;
+  FlatTarget out_;
+};
+
+}  // namespace
+
+FlatTarget analyse_flat_target(const ShotStream& shots, const core::Scanner& scanner, const core::Calibration& calibration,
+                               const core::SensorSigma& sigma, const trajectory::Trajectory& trajectory,
+                               const TrajectoryCovariance& trajectory_covariance, const std::vector<io::ControlPoint>& control,
+                               const FlatTargetOptions& options, core::Tally& tally) {
+  return Analysis(scanner, calibration, sigma, trajectory, trajectory_covariance, options).run(shots, control, tally);
+}
+
+}  // namespace swath::calib

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Classes: ASPRS LAS 1.4 R15, table 17. Order of the decisions as in the usual chains of rules (Vosselman & Maas 2010, "Airborne and
+// terrestrial laser scanning", ch. 4): planes first, of these decks before roofs, then lines, and what has neither is vegetation.
+// The steps and their deviations: roof_planes, structure_cells, bridges, building_sides, wires.
+#include "filters/classes/classify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "filters/classes/bridges.h"
+#include "filters/classes/building_sides.h"
+#include "filters/classes/ground_decks.h"
+#include "filters/classes/missing_heights.h"
+#include "filters/classes/roof_planes.h"
+#include "filters/classes/roofs.h"
+#include "filters/classes/structure_cells.h"
+#include "filters/classes/wires.h"
+
+namespace swath::filters {
+namespace {
+
+namespace cls = core::point_class;
+
+constexpr float least_plane_height = 1.0f;  // m above ground: a deck near its ends
+constexpr float above_roof = 1.5f;          // m: chimneys, parapets and what else stands on a roof
+constexpr float beside_deck = 0.5f;         // m above or below a deck: kerbs, rails
+constexpr double widest_needed = 9.0;       // m2 of one plane: larger roofs may have several
+constexpr float below_ground = 1.0f;        // m: returns deeper than this may be noise
+constexpr double below_reach = 2.25;        // m: the widest radius in which ground is looked for beside them
+constexpr double ground_beside = 0.25;      // of the last returns there
+
+bool is_free(const core::Block& b, size_t p) {
+  return core::is_usable(b, p) && b.classification[p] != cls::ground && b.classification[p] != cls::water;
+}
+
+/// A filter found it alone in space; a thin wire's returns may be.
+bool is_isolated(const core::Block& b, size_t p) {
+  return b.classification[p] == cls::high_noise && !b.flags.empty() && (b.flags[p] & core::flag::isolated) &&
+         !(b.flags[p] & core::flag::withheld);
+}
+
+double wide_area(const ClassifyOptions& o) { return std::min(o.building_side.value * o.building_side.value, widest_needed); }
+
+/// Metres of points around a tile that the planes and what follows from them depend on.
+double planes_halo(const ClassifyOptions& o) {
+  const double decks = o.bridge_length.value > 0.0 ? deck_cells_halo(o.bridge_length.value) : 0.0;
+  const double structures = decks + roof_cells_halo(o.building_side.value) + building_sides_halo();
+  return planar_points_halo() + std::max(structures, wire_points_halo());
+}
+
+std::uint8_t vegetation(float height, const ClassifyOptions& o) {
+  if (!(height > 0.0f)) return cls::unassigned;
+  const auto h = static_cast<double>(height);
+  return h < o.medium_vegetation.value ? cls::low_vegetation : h < o.high_vegetation.value ? cls::medium_vegetation : cls::high_vegetation;
+}
+
+/// Returns that lie deep below ground returns among which they are scattered: echoes on detours. In a pit there is no ground beside them.
+class Below {
+ public:
+  Below(const core::Block& b, const Districts& where)
+      : block_(b),
+        where_(where),
+        last_(b, below_reach, 0, [&b, any = any_deep(b)](size_t p) { return any && core::is_usable(b, p) && core::is_last_return(b, p); }) {
+  }
+
+  bool is_noise(size_t p) const {
+    if (!(block_.height[p] <= -below_ground)) return false;
+    const CellIndex d = cell_of(where_.lattice, block_, p), c = cell_of(last_.lattice(), block_, p);
+    const double radius = 0.75 * sample_sides[where_.side[where_.lattice.at(d.i, d.j)]];
+    int all = 0, ground = 0;
+    for (int dj = -1; dj <= 1; ++dj)
+      for (int di = -1; di <= 1; ++di) {
+        if (!last_.lattice().holds(c.i + di, c.j + dj)) continue;
+        const auto points = last_.in(c.i + di, c.j + dj);
+        const auto rows = last_.rows(c.i + di, c.j + dj);
+        for (size_t k = 0; k < points.size(); ++k) {
+          const double x = points[k].x - block_.x[p], y = points[k].y - block_.y[p];
+          if (x * x + y * y > radius * radius || rows[k] == p) continue;
+          ++all;
+          ground += block_.classification[rows[k]] == cls::ground && points[k].z - block_.z[p] >= static_cast<double>(below_ground);
+        }
+      }
+    return ground > 0 && static_cast<double>(ground) >= ground_beside * static_cast<double>(all);
+  }
+
+ private:
+  static bool any_deep(const core::Block& b) {
+    return std::any_of(b.height.begin(), b.height.end(), [](float h) { return h <= -below_ground; });
+  }
+
+  const core::Block& block_;
+  const Districts& where_;
+  Bins last_;
+};
+
+/// What the points are, by steps of which each uses those before it.
+class Structures {
+ public:
+  Structures(const core::Block& b, size_t own, const ClassifyOptions& o)
+      : block_(b), options_(o), where_(districts(b)), available_(b.size(), 0), raised_(b.size(), 0), below_(b, where_) {
+    const OwnBox needed(b, own, planes_halo(o) - Districts::halo());
+    for (size_t p = 0; p < b.size(); ++p) {
+      available_[p] = is_free(b, p) && needed.holds(b, p);
+      raised_[p] = available_[p] && b.height[p] >= least_plane_height;
+    }
+    planar_ = planar_points(b, available_, where_, o.roughness.value, wide_area(o));
+    find_decks(own);
+    find_roofs(own);
+    find_wires(own);
+  }
+
+  bool is_wire(size_t p) const { return wires_[p] != 0; }
+  bool is_deck(size_t p) const {
+    const size_t c = cell(p);
+    return ground_decks_[p] || (decks_[c] && std::abs(static_cast<float>(block_.z[p]) - cells_.plane[c]) <= beside_deck);
+  }
+  /// Of a point that is neither ground, water, noise nor withheld.
+  std::uint8_t class_of(size_t p) const {
+    if (is_deck(p)) return cls::bridge_deck;
+    if (sides_[p] || (raised_[p] && static_cast<float>(block_.z[p]) - roofs_[cell(p)] <= above_roof)) return cls::building;  // NaN: no roof
+    if (wires_[p]) return cls::wire;
+    if (below_.is_noise(p)) return cls::low_noise;
+    return is_surface(p) && planar_[p] == Planar::wide ? cls::unassigned : vegetation(block_.height[p], options_);
+  }
+
+ private:
+  size_t cell(size_t p) const {
+    const CellIndex at = cell_of(cells_.lattice, block_, p);
+    return cells_.lattice.at(at.i, at.j);
+  }
+  bool is_surface(size_t p) const { return raised_[p] && planar_[p] != Planar::none; }
+
+  void find_decks(size_t own) {
+    cells_ = structure_cells(block_, planar_);
+    decks_.assign(cells_.lattice.size(), 0);
+    ground_decks_.assign(block_.size(), 0);
+    const double longest = options_.bridge_length.value;
+    if (longest <= 0.0) return;
+    decks_ = deck_cells(cells_, {longest, options_.building_height.value});
+    if (options_.decks_in_ground) ground_decks_ = ground_decks(block_, where_, longest, own);
+  }
+
+  void find_roofs(size_t own) {
+    std::vector<std::uint8_t> standing(cells_.lattice.size(), 0);  // cells with returns off the ground
+    for (size_t p = 0; p < block_.size(); ++p)
+      if (raised_[p]) standing[cell(p)] = 1;
+    roofs_ = roof_cells(cells_, standing, decks_, where_, {options_.building_height.value, options_.building_side.value});
+    std::vector<std::uint8_t> roof(block_.size(), 0), free(block_.size(), 0);
+    for (size_t p = 0; p < block_.size(); ++p) {
+      if (!available_[p]) continue;
+      const size_t c = cell(p);
+      roof[p] = is_surface(p) && roofs_[c] == roofs_[c];
+      free[p] = !decks_[c];
+    }
+    sides_ = building_sides(block_, roof, free, options_.roughness.value, options_.building_height.value, own);
+  }
+
+  void find_wires(size_t own) {
+    std::vector<std::uint8_t> high(block_.size(), 0), surface(block_.size(), 0);
+    for (size_t p = 0; p < block_.size(); ++p) {
+      surface[p] = is_surface(p);
+      const bool alone = (raised_[p] && !surface[p]) || is_isolated(block_, p);
+      high[p] = alone && static_cast<double>(block_.height[p]) >= options_.wire_height.value;
+    }
+    wires_ = wire_points(block_, high, surface, where_, own);
+  }
+
+  const core::Block& block_;
+  const ClassifyOptions& options_;
+  Districts where_;
+  std::vector<std::uint8_t> available_, raised_;
+  Below below_;
+  std::vector<Planar> planar_;
+  StructureCells cells_;
+  std::vector<std::uint8_t> decks_, ground_decks_;  // per cell; per point
+  std::vector<float> roofs_;                        // per cell
+  std::vector<std::uint8_t> sides_, wires_;         // per point
+};
+
+void count(ClassifyCounts& n, std::uint8_t c) {
+  n.low_vegetation += c == cls::low_vegetation;
+  n.medium_vegetation += c == cls::medium_vegetation;
+  n.high_vegetation += c == cls::high_vegetation;
+  n.building += c == cls::building;
+  n.wire += c == cls::wire;
+  n.bridge_deck += c == cls::bridge_deck;
+  n.low_noise += c == cls::low_noise;
+  n.unassigned += c == cls::unassigned;
+}
+
+}  // namespace
+
+double halo(const ClassifyOptions& o) {
+  const double on_ground = o.decks_in_ground && o.bridge_length.value > 0.0 ? ground_decks_halo(o.bridge_length.value) : 0.0;
+  return missing_heights_halo() + std::max(planes_halo(o), on_ground);
+}
+
+ClassifyCounts classify(core::Block& b, size_t own, const ClassifyOptions& o) {
+  ClassifyCounts n;
+  std::vector<std::uint8_t> found(own, cls::never_classified);  // set last: it changes who is usable
+  const std::vector<std::uint32_t> unknown = fill_missing_heights(b);
+  const Structures structures(b, own, o);
+  for (const std::uint32_t p : unknown) b.height[p] = std::numeric_limits<float>::quiet_NaN();
+  for (size_t p = 0; p < own; ++p) {
+    const bool on_deck = core::is_usable(b, p) && b.classification[p] == cls::ground && structures.is_deck(p);
+    if (on_deck || is_free(b, p) || (structures.is_wire(p) && is_isolated(b, p)))
+      count(n, found[p] = on_deck ? cls::bridge_deck : structures.class_of(p));
+    else
+      ++n.kept;
+  }
+  if (n.low_noise > 0) core::add_columns(b, {core::Column::flags});
+  for (size_t p = 0; p < own; ++p) {
+    if (found[p] == cls::never_classified) continue;
+    if (is_isolated(b, p)) b.flags[p] = static_cast<std::uint16_t>(b.flags[p] & ~core::flag::isolated);
+    if (found[p] == cls::low_noise) b.flags[p] = static_cast<std::uint16_t>(b.flags[p] | core::flag::low_point);
+    b.classification[p] = found[p];
+  }
+  return n;
+}
+
+}  // namespace swath::filters

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Roofs: cells of planes off the ground that are high enough and connected over enough area.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "filters/classes/structure_cells.h"
+
+namespace swath::filters {
+
+struct RoofLimits {
+  double height = 2.0;  ///< m above ground
+  double side = 3.0;    ///< m: side of the square whose area a roof covers at least
+};
+
+/// Metres of cells around a place that roof_cells depends on there.
+double roof_cells_halo(double side);
+
+/// Height of the roof (m, as in `cells`) for every cell of a roof; NaN elsewhere. Wide planes in enough cells make a roof; then the smaller
+/// planes beside it on its level, and the cells with returns off the ground (`standing`) that have roofs nearly all around. Cells of
+/// `decks` are left out.
+std::vector<float> roof_cells(const StructureCells& cells, const std::vector<std::uint8_t>& standing,
+                              const std::vector<std::uint8_t>& decks, const Districts& where, const RoofLimits& limits);
+
+}  // namespace swath::filters

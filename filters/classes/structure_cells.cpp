@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Region growing by cells. A region larger than the square in which it is looked at counts as large as its part in the square, so that
+// a tile need not hold all of it.
+#include "filters/classes/structure_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace swath::filters {
+
+StructureCells structure_cells(const core::Block& b, const std::vector<Planar>& planar) {
+  StructureCells out;
+  out.lattice = lattice_around(b, structure_cell, 0);
+  out.plane.assign(out.lattice.size(), std::numeric_limits<float>::quiet_NaN());
+  out.height = out.ground = out.low = out.plane;
+  out.kind.assign(out.lattice.size(), Planar::none);
+  for (size_t p = 0; p < b.size(); ++p) {
+    if (!core::is_usable(b, p)) continue;
+    const CellIndex at = cell_of(out.lattice, b, p);
+    const size_t c = out.lattice.at(at.i, at.j);
+    const auto z = static_cast<float>(b.z[p]);
+    out.kind[c] = std::max(out.kind[c], planar[p]);
+    if (!(z > out.low[c])) out.low[c] = z;
+    if (planar[p] != Planar::none && !(z < out.plane[c])) {
+      out.height[c] = z > out.plane[c] || !out.has_plane(c) ? b.height[p] : std::max(out.height[c], b.height[p]);
+      out.plane[c] = z;
+    }
+    if (b.classification[p] == core::point_class::ground && !(z > out.ground[c])) out.ground[c] = z;
+  }
+  return out;
+}
+
+}  // namespace swath::filters

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cloud optimised GeoTIFF as described in OGC 21-026, through GDAL's COG driver; GeoTIFF keys as OGC 19-008r4 (compound CRS: 1.1).
+// The driver takes a whole dataset, so the grid is shown to it as a MEM dataset on a copy with north-first rows and numeric nodata.
+#include "io/raster/geotiff.h"
+
+#include <cpl_string.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "core/config/units.h"
+#include "core/error.h"
+#include "io/text/output_file.h"
+#include "io/vector/gdal_door.h"
+
+namespace swath::io {
+namespace {
+
+/// Largest distance of a raster's corner from a whole multiple of its cell, in cells.
+constexpr double lattice_tolerance = 1e-3;
+/// Relative difference of pixel width and height that still counts as square (text formats print few digits).
+constexpr double square_tolerance = 1e-6;
+// Number of a cell: beyond it a corner could not be distinguished from its neighbour's in a double.
+constexpr double farthest_cell = 1e12;
+/// What a truncated file cannot pass: every block lies within the file. Only libraries' final flush could lose data unseen.
+void check_blocks(const std::filesystem::path& file, const std::filesystem::path& final_name, const GdalMessages& messages) {
+  const Dataset made(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER));
+  if (!made) messages.fail_writing(final_name);
+  const auto size = std::filesystem::file_size(file);
+  GDALRasterBand* band = made->GetRasterBand(1);
+  int bx = 0, by = 0;
+  band->GetBlockSize(&bx, &by);
+  for (int j = 0; j * by < made->GetRasterYSize(); ++j)
+    for (int i = 0; i * bx < made->GetRasterXSize(); ++i) {
+      const std::string at = std::to_string(i) + "_" + std::to_string(j);
+      const char* offset = band->GetMetadataItem(("BLOCK_OFFSET_" + at).c_str(), "TIFF");
+      const char* length = band->GetMetadataItem(("BLOCK_SIZE_" + at).c_str(), "TIFF");
+      if (!offset || !length || std::stoull(offset) + std::stoull(length) > size)
+        messages.fail_writing(final_name, "the file was cut short");
+    }
+}
+
+void set_crs(GDALDataset& d, const CrsFacts& facts) {
+  if (facts.empty) return;
+  OGRSpatialReference srs;
+  // GDAL writes no GeoTIFF keys at all for a projection with three axes.
+  const bool flat = facts.ellipsoidal && !facts.geographic;
+  srs.SetFromUserInput(flat ? facts.horizontal_wkt.c_str() : facts.wkt.c_str());
+  if (flat) d.SetMetadataItem(height_system_item, facts.vertical_name.c_str());
+  srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  d.SetSpatialRef(&srs);
+}
+
+std::string pointer_text(const void* p) {
+  char text[64] = {};
+  CPLPrintPointer(text, const_cast<void*>(p), sizeof text - 1);
+  return text;
+}
+
+/// A band's values with rows from the north and raster_nodata for NaN.
+std::vector<float> north_first(const core::Lattice& l, const std::vector<float>& values) {
+  std::vector<float> out(l.size());
+  for (int j = 0; j < l.ny; ++j)
+    for (int i = 0; i < l.nx; ++i) {
+      const float v = values[l.at(i, j)];
+      out[l.at(i, l.ny - 1 - j)] = std::isfinite(v) ? v : static_cast<float>(raster_nodata);
+    }
+  return out;
+}
+
+Dataset open(const std::filesystem::path& file, const GdalMessages& messages) {
+  Dataset d = open_raster(file);
+  if (!d) messages.fail("cannot read the raster", file, std::filesystem::exists(file) ? "" : "check the name");
+  return d;
+}
+
+RasterInfo info_of(GDALDataset& d) {
+  RasterInfo info;
+  d.GetGeoTransform(info.geotransform.data());
+  info.nx = d.GetRasterXSize();
+  info.ny = d.GetRasterYSize();
+  if (d.GetRasterCount() > 0) d.GetRasterBand(1)->GetBlockSize(&info.block_x, &info.block_y);
+  for (int b = 1; b <= d.GetRasterCount(); ++b) {
+    GDALRasterBand* band = d.GetRasterBand(b);
+    info.names.emplace_back(band->GetDescription());
+    info.units.emplace_back(band->GetUnitType());
+    info.types.emplace_back(GDALGetDataTypeName(band->GetRasterDataType()));
+    int has = 0;
+    const double nodata = band->GetNoDataValue(&has);
+    info.nodata.push_back(has ? std::optional<double>(nodata) : std::nullopt);
+  }
+  if (const OGRSpatialReference* srs = d.GetSpatialRef()) {
+    const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
+    char* text = nullptr;
+    if (srs->exportToWkt(&text, options) == OGRERR_NONE && text) info.crs_wkt = text;
+    CPLFree(text);
+  }
+  return info;
+}
+
+/// Columns [col, col + n) of one row: scale and offset applied, NaN where the band's mask says there is no value.
+void read_row(GDALRasterBand& band, int row, int col, int n, std::vector<double>& values, std::vector<unsigned char>& mask,
+              const std::filesystem::path& file, const GdalMessages& messages) {
+  values.resize(static_cast<size_t>(n));
+  mask.assign(static_cast<size_t>(n), 255);
+  CPLErr failed = band.RasterIO(GF_Read, col, row, n, 1, values.data(), n, 1, GDT_Float64, 0, 0, nullptr);
+  if (!failed && !(band.GetMaskFlags() & GMF_ALL_VALID))
+    failed = band.GetMaskBand()->RasterIO(GF_Read, col, row, n, 1, mask.data(), n, 1, GDT_Byte, 0, 0, nullptr);
+  if (failed) messages.fail("cannot read row " + std::to_string(row) + " of the raster", file);
+  const double scale = band.GetScale(), offset = band.GetOffset();
+  for (size_t k = 0; k < values.size(); ++k)
+    values[k] = mask[k] && std::isfinite(values[k]) ? values[k] * scale + offset : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+void write_raster(const std::filesystem::path& file, const core::Lattice& lattice, const std::vector<RasterBand>& bands,
+                  const std::string& crs, bool average) {
+  if (lattice.nx <= 0 || lattice.ny <= 0 || bands.empty()) throw core::Error("an empty grid cannot be written", file.string());
+  for (const RasterBand& b : bands)
+    if (!b.values || b.values->size() != lattice.size())
+      throw core::Error("band '" + b.name + "' does not hold one value per cell", file.string());
+
+  const CrsFacts facts = crs_facts(crs);
+  OutputFile out(file);
+  const GdalMessages messages;
+  GDALDriverManager& drivers = *GetGDALDriverManager();
+  std::vector<std::vector<float>> rows;
+  const Dataset memory(drivers.GetDriverByName("MEM")->Create("", lattice.nx, lattice.ny, 0, GDT_Float32, nullptr));
+  std::array<double, 6> geotransform{lattice.west(), lattice.cell, 0, lattice.north(), 0, -lattice.cell};
+  memory->SetGeoTransform(geotransform.data());
+  set_crs(*memory, facts);
+  memory->SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_AREA);
+  for (const RasterBand& b : bands) {
+    rows.push_back(north_first(lattice, *b.values));
+    CPLStringList options;
+    options.SetNameValue("DATAPOINTER", pointer_text(rows.back().data()).c_str());
+    memory->AddBand(GDT_Float32, options.List());
+    GDALRasterBand* band = memory->GetRasterBand(memory->GetRasterCount());
+    band->SetDescription(b.name.c_str());
+    if (!b.unit.empty()) band->SetUnitType(b.unit.c_str());
+    band->SetNoDataValue(raster_nodata);
+  }
+  const char* const options[] = {"COMPRESS=DEFLATE",
+                                 "PREDICTOR=YES",
+                                 "OVERVIEW_COMPRESS=DEFLATE",
+                                 "OVERVIEW_PREDICTOR=YES",
+                                 "LEVEL=6",
+                                 "BLOCKSIZE=512",
+                                 "NUM_THREADS=1",
+                                 "BIGTIFF=IF_SAFER",
+                                 average ? "OVERVIEW_RESAMPLING=AVERAGE" : "OVERVIEW_RESAMPLING=NEAREST",
+                                 nullptr};
+  const GdalSetting no_side_files("GDAL_PAM_ENABLED", "NO");
+  const GdalSetting one_thread("GDAL_NUM_THREADS", "1");
+  GDALDriver* cog = drivers.GetDriverByName("COG");
+  if (!cog) throw core::Error("this GDAL has no COG driver", file.string(), "GDAL 3.1 or later is needed");
+  {
+    const Dataset made(cog->CreateCopy(out.temporary().c_str(), memory.get(), false, const_cast<char**>(options), nullptr, nullptr));
+    if (!made) messages.fail_writing(file);
+  }
+  messages.check_written(file);
+  check_blocks(out.temporary(), file, messages);
+  out.commit();
+}
+
+void write_grid(const std::filesystem::path& file, const core::Grid& grid, const std::string& crs, GridBands bands) {
+  const size_t n = grid.lattice.size();
+  if ((bands.sigma && grid.sigma.size() != n) || (bands.count && grid.count.size() != n) || (bands.reason && grid.reason.size() != n) ||
+      (bands.height && grid.height.size() != n))
+    throw core::Error("the grid does not hold what the file is to show", file.string());
+  const std::string unit = crs_facts(crs).vertical_unit;
+  std::vector<float> counts, reasons;
+  std::vector<RasterBand> columns;
+  if (bands.height) columns.push_back({"height", unit, &grid.height});
+  if (bands.sigma) columns.push_back({"sigma", unit, &grid.sigma});
+  if (bands.count) {
+    counts.assign(grid.count.begin(), grid.count.end());
+    columns.push_back({"count", "", &counts});
+  }
+  if (bands.reason) {
+    reasons.reserve(n);
+    for (const core::Void r : grid.reason) reasons.push_back(static_cast<float>(r));
+    columns.push_back({"void reason", "", &reasons});
+  }
+  write_raster(file, grid.lattice, columns, crs, bands.height);
+}
+
+RasterInfo read_raster_info(const std::filesystem::path& file) {
+  const GdalMessages messages;
+  const Dataset d = open(file, messages);
+  return info_of(*d);
+}
+
+Raster read_raster(const std::filesystem::path& file, int band_number) {
+  const GdalMessages messages;
+  const Dataset d = open(file, messages);
+  const RasterInfo info = info_of(*d);
+  Raster r{info.geotransform, info.nx, info.ny, d->GetRasterCount(), {}, {}, {}, info.crs_wkt};
+  if (band_number < 1 || band_number > r.bands)
+    throw core::Error("has no band " + std::to_string(band_number), file.string(), "its bands are 1 to " + std::to_string(r.bands));
+  r.name = info.names[static_cast<size_t>(band_number - 1)];
+  r.unit = info.units[static_cast<size_t>(band_number - 1)];
+  r.values.reserve(static_cast<size_t>(r.nx) * static_cast<size_t>(r.ny));
+  std::vector<double> row;
+  std::vector<unsigned char> mask;
+  for (int j = 0; j < r.ny; ++j) {
+    read_row(*d->GetRasterBand(band_number), j, 0, r.nx, row, mask, file, messages);
+    r.values.insert(r.values.end(), row.begin(), row.end());
+  }
+  return r;
+}
+
+core::Lattice lattice_of(const RasterInfo& info, const std::filesystem::path& file) {
+  const auto& g = info.geotransform;
+  if (!std::all_of(g.begin(), g.end(), [](double v) { return std::isfinite(v); }))
+    throw core::Error("the raster's corner or cell is not finite", file.string(), "the georeference is damaged");
+  if (g[2] != 0 || g[4] != 0 || g[1] <= 0 || g[5] >= 0)
+    throw core::Error("the raster is not north up", file.string(), "warp it to the survey's CRS first (gdalwarp)");
+  if (std::abs(g[1] + g[5]) > square_tolerance * g[1])
+    throw core::Error("the raster's pixels are not square (" + std::to_string(g[1]) + " by " + std::to_string(-g[5]) + ")", file.string(),
+                      "resample it to square pixels (gdalwarp -tr)");
+  const double cell = g[1];
+  const double west = g[0] / cell, south = (g[3] + info.ny * g[5]) / cell;
+  if (std::max(std::abs(west), std::abs(south)) > farthest_cell)
+    throw core::Error("the raster's corner lies " + core::format_number(std::max(std::abs(west), std::abs(south))) +
+                          " cells from the origin of its coordinates",
+                      file.string(), "the georeference is damaged");
+  const double shift = std::max(std::abs(west - std::round(west)), std::abs(south - std::round(south)));
+  if (shift > lattice_tolerance)
+    throw core::Error("the raster's corner is " + std::to_string(shift) + " cells off the whole multiples of its cell", file.string(),
+                      "align it (gdalwarp -tap -tr " + std::to_string(cell) + " " + std::to_string(cell) + ")");
+  return {cell, std::llround(west), std::llround(south), info.nx, info.ny};
+}
+
+core::Grid read_grid(const std::filesystem::path& file, const std::optional<core::Lattice>& window) {
+  const GdalMessages messages;
+  const Dataset d = open(file, messages);
+  const RasterInfo info = info_of(*d);
+  const core::Lattice whole = lattice_of(info, file);
+  const core::Lattice l = window.value_or(whole);
+  if (std::abs(l.cell - whole.cell) > square_tolerance * whole.cell)
+    throw core::Error("the raster's cell is " + std::to_string(whole.cell) + ", not " + std::to_string(l.cell), file.string());
+
+  const auto band_named = [&](const char* name) {
+    for (size_t b = 0; b < info.names.size(); ++b)
+      if (info.names[b] == name) return static_cast<int>(b) + 1;
+    return 0;
+  };
+  const int sigma = band_named("sigma"), count = band_named("count"), reason = band_named("void reason");
+  int height = band_named("height");
+  if (!height && !sigma && !count && !reason) height = 1;
+
+  core::Grid grid(l);
+  if (sigma) grid.sigma.assign(l.size(), std::numeric_limits<float>::quiet_NaN());
+  if (count) grid.count.assign(l.size(), 0);
+  const auto col0 = static_cast<int>(std::clamp<std::int64_t>(l.i0 - whole.i0, 0, whole.nx));
+  const auto col1 = static_cast<int>(std::clamp<std::int64_t>(l.i0 + l.nx - whole.i0, 0, whole.nx));
+  std::vector<double> row;
+  std::vector<unsigned char> mask;
+  const auto each = [&](int band, auto&& put) {
+    for (int j = 0; band && col1 > col0 && j < l.ny; ++j) {
+      const std::int64_t row_south = l.j0 + j - whole.j0;
+      if (row_south < 0 || row_south >= whole.ny) continue;
+      read_row(*d->GetRasterBand(band), static_cast<int>(whole.ny - 1 - row_south), col0, col1 - col0, row, mask, file, messages);
+      for (int c = col0; c < col1; ++c) put(l.at(static_cast<int>(whole.i0 + c - l.i0), j), row[static_cast<size_t>(c - col0)]);
+    }
+  };
+  each(height, [&](size_t k, double v) {
+    grid.height[k] = static_cast<float>(v);
+    grid.reason[k] = std::isnan(v) ? core::Void::no_data : core::Void::none;
+  });
+  each(sigma, [&](size_t k, double v) { grid.sigma[k] = static_cast<float>(v); });
+  each(count, [&](size_t k, double v) { grid.count[k] = v > 0 ? static_cast<std::uint32_t>(v) : 0u; });
+  each(reason,
+       [&](size_t k, double v) { grid.reason[k] = v >= 0 && v <= 4 ? static_cast<core::Void>(std::lround(v)) : core::Void::no_data; });
+  return grid;
+}
+
+void limit_raster_cache(std::int64_t bytes) { GDALSetCacheMax64(bytes); }
+
+}  // namespace swath::io

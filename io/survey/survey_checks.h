@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "core/config/option_visitors.h"
+#include "io/survey/survey.h"
+
+namespace swath::io {
+
+/// Adds a fault for every condition between a survey's options, and with the files on disk, that does not hold: files that are not there,
+/// units and time scales not stated, options that would have no effect. `tree`: what the survey was read from, for places. A key that has
+/// a fault already gets no second one.
+void check_survey(const Survey& survey, const core::Value& tree, std::vector<core::Fault>& faults);
+
+/// The place of the deepest table or value on the path "laser[1].time.scale" that the tree has.
+core::Location place_in(const core::Value& tree, const std::string& key);
+
+}  // namespace swath::io

@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/text/delimited.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+#include "core/config/value.h"
+#include "core/error.h"
+#include "io/text/cut_line.h"
+
+namespace swath::io {
+namespace {
+
+constexpr size_t buffer_bytes = 1 << 18;
+constexpr size_t longest_line = 1 << 20;  // a longer one is no text table
+
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+void trim(const char*& begin, const char*& end) {
+  while (begin < end && (is_blank(*begin) || *begin == '\r')) ++begin;
+  while (begin < end && (is_blank(end[-1]) || end[-1] == '\r')) --end;
+}
+
+/// Parses a trimmed field; quotes around it and a leading plus are allowed, an empty field is NaN.
+bool parse_number(const char* begin, const char* end, double& value) {
+  trim(begin, end);
+  if (end - begin >= 2 && *begin == '"' && end[-1] == '"') {
+    ++begin;
+    --end;
+    trim(begin, end);
+  }
+  if (begin == end) {
+    value = std::nan("");
+    return true;
+  }
+  if (*begin == '+' && end - begin > 1 && begin[1] != '-') ++begin;
+  const auto [at, ec] = std::from_chars(begin, end, value);
+  if (ec == std::errc::result_out_of_range && at == end) {
+    // Too small counts as zero, too large as infinity, as strtod has it.
+    value = std::strtod(std::string(begin, end).c_str(), nullptr);
+    return true;
+  }
+  return ec == std::errc() && at == end;
+}
+
+/// The end of the field that starts at `at`; quotes protect delimiters.
+const char* field_end(const char* at, const char* end, char delimiter) {
+  if (delimiter == ' ') {
+    while (at < end && !is_blank(*at)) ++at;
+    return at;
+  }
+  bool quoted = false;
+  for (; at < end; ++at) {
+    if (*at == '"') quoted = !quoted;
+    if (*at == delimiter && !quoted) return at;
+  }
+  return end;
+}
+
+std::vector<std::string> split(const std::string& line, char delimiter) {
+  std::vector<std::string> out;
+  const char* at = line.data();
+  const char* end = at + line.size();
+  trim(at, end);
+  for (;;) {
+    if (delimiter == ' ')
+      while (at < end && is_blank(*at)) ++at;
+    const char* stop = field_end(at, end, delimiter);
+    const char *b = at, *e = stop;
+    trim(b, e);
+    if (e - b >= 2 && *b == '"' && e[-1] == '"') {
+      ++b;
+      --e;
+    }
+    out.emplace_back(b, e);
+    if (stop >= end) return out;
+    at = stop + 1;
+  }
+}
+
+bool all_numbers(const std::vector<std::string>& fields) {
+  bool any = false;
+  for (const std::string& f : fields) {
+    double ignored;
+    if (!parse_number(f.data(), f.data() + f.size(), ignored)) return false;
+    any = any || !f.empty();
+  }
+  return any;
+}
+
+char find_delimiter(const std::string& line) {
+  const char *b = line.data(), *e = b + line.size();
+  trim(b, e);
+  for (const char c : {'\t', ';', ','})
+    if (std::find(b, e, c) != e) return c;
+  return ' ';
+}
+
+char delimiter_of(const std::string& stated, const std::filesystem::path& file) {
+  if (stated == "tab" || stated == "\\t") return '\t';
+  if (stated == "blank" || stated == "space") return ' ';
+  if (stated.size() == 1 && std::strchr(",;\t |:", stated[0])) return stated[0];
+  throw core::usage_error("delimiter '" + stated + "' is not one of , ; tab blank | :", file.string());
+}
+
+bool is_comment(const std::string& line) { return !line.empty() && (line[0] == '#' || line[0] == '%'); }
+
+std::string lower(std::string s) {
+  for (char& c : s)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return s;
+}
+
+std::string list_of(const DelimitedLayout& layout) {
+  if (layout.names.empty()) return "the file has no header; columns are numbered 1 to " + std::to_string(layout.columns);
+  std::string list;
+  for (const std::string& n : layout.names) list += (list.empty() ? "" : ", ") + n;
+  return "columns: " + list;
+}
+
+}  // namespace
+
+std::vector<std::string> split_delimited(const std::string& line, char delimiter) { return split(line, delimiter); }
+char delimiter_in(const std::string& line) { return find_delimiter(line); }
+char delimiter_from(const std::string& stated, const std::filesystem::path& file) { return delimiter_of(stated, file); }
+
+namespace {
+
+/// The lines at the beginning of a file.
+class FirstLines {
+ public:
+  explicit FirstLines(const std::filesystem::path& path) : file_(path), chunk_(1 << 14) {}
+
+  /// The next line without its end; false at the end of the file and before a stretch that is no text, which `broken` reports.
+  bool next(std::string& line) {
+    line.clear();
+    begin_ = loaded_ - (fill_ - used_);
+    for (;;) {
+      if (used_ == fill_) {
+        fill_ = file_.read_some(loaded_, chunk_.data(), chunk_.size());
+        loaded_ += fill_;
+        used_ = 0;
+        if (fill_ == 0) break;
+      }
+      const char* nl = static_cast<const char*>(std::memchr(chunk_.data() + used_, '\n', fill_ - used_));
+      const size_t stop = nl ? static_cast<size_t>(nl - chunk_.data()) : fill_;
+      line.append(chunk_.data() + used_, stop - used_);
+      used_ = stop + (nl ? 1 : 0);
+      broken_ = line.size() > longest_line || line.find('\0') != std::string::npos;
+      if (broken_) return false;
+      if (nl) break;
+    }
+    if (line.empty() && fill_ == 0) return false;
+    ++number_;
+    if (number_ == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0) {
+      line.erase(0, 3);
+      begin_ += 3;
+    }
+    const char *b = line.data(), *e = b + line.size();
+    trim(b, e);
+    line = std::string(b, e);
+    return true;
+  }
+  std::uint64_t begin() const { return begin_; }    ///< byte of the line
+  std::uint64_t number() const { return number_; }  ///< of the line, from 1
+  bool broken() const { return broken_; }
+
+ private:
+  BinaryFile file_;
+  std::vector<char> chunk_;
+  size_t fill_ = 0, used_ = 0;
+  std::uint64_t loaded_ = 0, begin_ = 0, number_ = 0;
+  bool broken_ = false;
+};
+
+/// A line of data with its place.
+struct DataLine {
+  std::vector<std::string> fields;
+  std::uint64_t begin, number;
+};
+
+/// A record whose first number is cut off counts as a header no more than one that is whole.
+bool is_header(const std::vector<std::string>& fields) {
+  if (all_numbers(fields)) return false;
+  const bool rest = fields.size() > 1 && all_numbers({fields.begin() + 1, fields.end()});
+  return !rest || fields[0].find_first_not_of("0123456789+-.eE") != std::string::npos;
+}
+
+}  // namespace
+
+DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::string& delimiter) {
+  FirstLines lines(path);
+  DelimitedLayout out;
+  std::string comment, header, line;
+  bool have_header = false, anything = false;
+  std::vector<DataLine> data;
+  while (data.size() <= cut_line_context && lines.next(line)) {
+    if (line.empty()) continue;
+    if (is_comment(line)) {
+      anything = true;
+      if (data.empty()) comment = line.substr(std::min(line.find_first_not_of("#% \t"), line.size()));
+      continue;
+    }
+    if (data.empty()) out.delimiter = delimiter.empty() ? find_delimiter(line) : delimiter_of(delimiter, path);
+    if (data.size() == 1 && data[0].fields.size() == 1 && delimiter.empty()) out.delimiter = find_delimiter(line);  // a cut line has none
+    std::vector<std::string> fields = split(line, out.delimiter);
+    if (data.empty() && !have_header && is_header(fields)) {
+      have_header = anything = true;
+      header = line;
+      continue;
+    }
+    data.push_back({std::move(fields), lines.begin(), lines.number()});
+  }
+  if (lines.broken() && data.empty()) throw core::Error("is not delimited text", path.string() + ":" + std::to_string(lines.number() + 1));
+  if (data.empty())
+    throw core::Error("no line of numbers", path.string(),
+                      lines.number() == 0 ? "the file is empty" : "the file holds a header or comments only");
+  std::vector<std::vector<std::string>> fields;
+  for (const DataLine& d : data) fields.push_back(d.fields);
+  const bool cut = first_line_is_cut(fields, !anything);
+  const DataLine& first = data[cut ? 1 : 0];
+  if (cut) out.cut_line = data[0].number;
+  out.columns = first.fields.size();
+  out.data_begin = first.begin;
+  out.data_line = first.number;
+  if (have_header) {
+    out.names = split(header, out.delimiter);
+  } else if (!comment.empty()) {
+    const std::vector<std::string> words = split(comment, out.delimiter);
+    if (words.size() == out.columns && !all_numbers(words)) out.names = words;
+  }
+  return out;
+}
+
+size_t column_of(const DelimitedLayout& layout, const std::string& column, const std::filesystem::path& file) {
+  const auto count = [&](const auto& same) { return std::count_if(layout.names.begin(), layout.names.end(), same); };
+  const auto place = [&](const auto& same) {
+    return static_cast<size_t>(std::find_if(layout.names.begin(), layout.names.end(), same) - layout.names.begin());
+  };
+  const auto exact = [&](const std::string& n) { return n == column; };
+  const auto folded = [&](const std::string& n) { return lower(n) == lower(column); };
+  if (count(exact) > 1)
+    throw core::Error("column '" + column + "' stands more than once in the header", file.string(), "name it by number");
+  if (count(exact) == 1) return place(exact);
+  if (count(folded) == 1) return place(folded);
+  size_t number = 0;
+  const auto [at, ec] = std::from_chars(column.data(), column.data() + column.size(), number);
+  if (ec == std::errc() && at == column.data() + column.size() && number >= 1) {
+    if (number <= std::max(layout.columns, layout.names.size())) return number - 1;
+    throw core::Error("no column " + column + "; " + list_of(layout), file.string());
+  }
+  const std::string near = core::nearest(column, layout.names);
+  throw core::Error("no column '" + column + "'; " + list_of(layout), file.string(),
+                    near.empty() ? "name one of the columns, or its number from 1" : "did you mean '" + near + "'?");
+}
+
+DelimitedReader::DelimitedReader(const std::filesystem::path& file, const DelimitedLayout& layout, std::vector<size_t> columns)
+    : DelimitedReader(file, layout, std::move(columns), layout.data_begin, layout.data_line) {}
+
+DelimitedReader::DelimitedReader(const std::filesystem::path& file, const DelimitedLayout& layout, std::vector<size_t> columns,
+                                 std::uint64_t begin, std::uint64_t line, std::uint64_t end)
+    : file_(file),
+      names_(layout.names),
+      delimiter_(layout.delimiter),
+      fields_needed_(columns.empty() ? 0 : *std::max_element(columns.begin(), columns.end()) + 1),
+      slots_(fields_needed_),
+      buffer_(buffer_bytes),
+      file_at_(begin),
+      end_(std::min(end, file_.size())),
+      next_offset_(begin),
+      next_line_(line) {
+  for (size_t i = 0; i < columns.size(); ++i) slots_[columns[i]].push_back(i);
+}
+
+bool DelimitedReader::next_line(const char*& begin, const char*& end) {
+  for (size_t searched = 0;;) {
+    const char* from = buffer_.data() + begin_;
+    const auto* nl = static_cast<const char*>(std::memchr(from + searched, '\n', fill_ - begin_ - searched));
+    const bool last = file_at_ >= end_;
+    if (nl || (last && fill_ > begin_)) {
+      begin = from;
+      end = nl ? nl : buffer_.data() + fill_;
+      const size_t taken = static_cast<size_t>(end - begin) + (nl ? 1 : 0);
+      begin_ += taken;
+      offset_ = next_offset_;
+      line_ = next_line_++;
+      next_offset_ += taken;
+      return true;
+    }
+    if (last) return false;
+    searched = fill_ - begin_;
+    std::memmove(buffer_.data(), from, searched);
+    begin_ = 0;
+    fill_ = searched;
+    if (fill_ == buffer_.size()) {
+      if (fill_ > longest_line)
+        throw core::Error("the line is longer than " + std::to_string(longest_line) + " bytes",
+                          file_.path().string() + ":" + std::to_string(next_line_));
+      buffer_.resize(2 * buffer_.size());
+    }
+    const size_t room = static_cast<size_t>(std::min<std::uint64_t>(buffer_.size() - fill_, end_ - file_at_));
+    const size_t got = file_.read_some(file_at_, buffer_.data() + fill_, room);
+    if (got == 0) end_ = file_at_;  // the file shrank while it was read
+    fill_ += got;
+    file_at_ += got;
+  }
+}
+
+bool DelimitedReader::next(double* values) {
+  const char *at, *end;
+  do {
+    if (!next_line(at, end)) return false;
+    trim(at, end);
+  } while (at == end || *at == '#' || *at == '%');
+  for (size_t field = 0; field < fields_needed_; ++field) {
+    if (delimiter_ == ' ')
+      while (at < end && is_blank(*at)) ++at;
+    if (at > end || (at == end && (delimiter_ == ' ' || field == 0))) short_line(field);
+    const char* stop;
+    if (slots_[field].empty()) {
+      stop = field_end(at, end, delimiter_);
+    } else {
+      double value;
+      const auto [p, ec] = std::from_chars(at, end, value);
+      if (ec == std::errc() && (p == end || *p == delimiter_ || (delimiter_ == ' ' && *p == '\t'))) {
+        stop = p;
+      } else {
+        stop = field_end(at, end, delimiter_);
+        if (!parse_number(at, stop, value)) bad_number(at, stop, field);
+      }
+      for (const size_t slot : slots_[field]) values[slot] = value;
+    }
+    at = stop + 1;
+  }
+  return true;
+}
+
+void DelimitedReader::short_line(size_t fields) const {
+  throw core::Error("the line has " + std::to_string(fields) + " fields, at least " + std::to_string(fields_needed_) + " are needed",
+                    file_.path().string() + ":" + std::to_string(line_),
+                    "the line is cut off or has another delimiter: export the file again");
+}
+
+void DelimitedReader::bad_number(const char* begin, const char* end, size_t column) const {
+  trim(begin, end);
+  const std::string text(begin, std::min(end, begin + 40));
+  const std::string name = column < names_.size() ? "'" + names_[column] + "'" : std::to_string(column + 1);
+  throw core::Error("'" + text + "' in column " + name + " is no number", file_.path().string() + ":" + std::to_string(line_),
+                    text.find(',') != std::string::npos ? "decimal commas are not read: write decimal points"
+                                                        : "correct the line, or export the file again");
+}
+
+}  // namespace swath::io

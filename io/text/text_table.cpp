@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/text/text_table.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "io/text/value_file.h"
+
+namespace swath::io {
+
+TextTable::TextTable(const std::filesystem::path& file, const std::string& delimiter) : file_(file) {
+  const std::string all = read_text_file(file);
+  if (all.find('\0') != std::string::npos) throw core::Error("is not delimited text", file.string(), "check the name of the file");
+  std::uint64_t number = 0;
+  for (size_t at = all.starts_with("\xEF\xBB\xBF") ? 3 : 0; at < all.size();) {
+    const size_t stop = std::min(all.find('\n', at), all.size());
+    std::string line = all.substr(at, stop - at);
+    at = stop + 1;
+    ++number;
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+    const size_t begin = line.find_first_not_of(" \t");
+    if (begin == std::string::npos || line[begin] == '#' || line[begin] == '%') continue;
+    if (layout_.names.empty()) {
+      layout_.delimiter = delimiter.empty() ? delimiter_in(line) : delimiter_from(delimiter, file);
+      layout_.names = split_delimited(line, layout_.delimiter);
+      layout_.columns = layout_.names.size();
+      continue;
+    }
+    std::vector<std::string> fields = split_delimited(line, layout_.delimiter);
+    lines_.push_back(number);
+    if (fields.size() != layout_.columns)
+      throw core::Error(
+          "the line has " + std::to_string(fields.size()) + " fields, the header " + std::to_string(layout_.columns) + " columns",
+          place(lines_.size() - 1), "the line is cut off, or a name holds the delimiter and needs quotes");
+    rows_.push_back(std::move(fields));
+  }
+  if (rows_.empty())
+    throw core::Error("no row of data", file.string(), layout_.names.empty() ? "the file is empty" : "the file holds a header only");
+}
+
+std::optional<size_t> TextTable::column_if_there(const std::string& name, const std::string& usual) const {
+  if (name.empty()) return std::nullopt;
+  const auto folded = [](const std::string& a, const std::string& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+  };
+  const bool there = std::any_of(layout_.names.begin(), layout_.names.end(), [&](const std::string& n) { return folded(n, name); });
+  if (!there && name == usual) return std::nullopt;
+  return column(name);
+}
+
+double TextTable::coordinate(size_t row, size_t column) const {
+  const std::string& field = text(row, column);
+  const char *begin = field.data() + (field.size() > 1 && field[0] == '+' ? 1 : 0), *stop = field.data() + field.size();
+  double value = 0;
+  const auto [end, bad] = std::from_chars(begin, stop, value);
+  if (bad == std::errc::result_out_of_range && end == stop) return std::numeric_limits<double>::infinity();
+  if (bad != std::errc{} || end != stop)
+    throw core::Error(
+        (field.empty() ? "the field is empty" : "'" + field + "' is no number") + std::string(" in column '") + layout_.names[column] + "'",
+        place(row), "correct the line, or name another column");
+  return value;
+}
+
+double TextTable::number(size_t row, size_t column) const {
+  const double value = coordinate(row, column);
+  if (!std::isfinite(value))
+    throw core::Error("'" + text(row, column) + "' is no finite number in column '" + layout_.names[column] + "'", place(row),
+                      "correct the line, or name another column");
+  return value;
+}
+
+}  // namespace swath::io

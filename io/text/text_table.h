@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Short delimited tables whose fields are names as well as numbers (control, lists of observations).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/text/delimited.h"
+
+namespace swath::io {
+
+/// A whole table in memory. Its first line that is neither empty nor a comment (# or %) holds the names of the columns.
+class TextTable {
+ public:
+  /// `delimiter`: as inspect_delimited() takes it. Throws Error: file not readable, no row under the header, a row with more or fewer
+  /// fields than the header (with "file:line").
+  explicit TextTable(const std::filesystem::path& file, const std::string& delimiter = {});
+
+  size_t rows() const { return rows_.size(); }
+  /// "file:line" of a row.
+  std::string place(size_t row) const { return file_.string() + ":" + std::to_string(lines_[row]); }
+
+  /// Index of a column by its name (or its number from 1). Throws Error with the columns that are there.
+  size_t column(const std::string& name) const { return column_of(layout_, name, file_); }
+  /// The same for a column that need not be there; one asked for by another name than `usual` must be. Empty name: none.
+  std::optional<size_t> column_if_there(const std::string& name, const std::string& usual) const;
+
+  const std::string& text(size_t row, size_t column) const { return rows_[row][column]; }
+  /// Throws Error with "file:line" where the field is empty or no finite number.
+  double number(size_t row, size_t column) const;
+  /// The same of a number that may be infinite or none ("nan").
+  double coordinate(size_t row, size_t column) const;
+
+ private:
+  std::filesystem::path file_;
+  DelimitedLayout layout_;
+  std::vector<std::vector<std::string>> rows_;
+  std::vector<std::uint64_t> lines_;
+};
+
+}  // namespace swath::io

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// TOML by toml++; JSON by RapidJSON's event reader, whose stream position gives line and column of each value.
+#include "io/text/value_file.h"
+
+#include <rapidjson/error/en.h>
+#include <rapidjson/memorystream.h>
+#include <rapidjson/reader.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "core/config/units.h"
+#include "core/error.h"
+#include "core/printable.h"
+#include "io/text/output_file.h"
+
+namespace swath::io {
+namespace {
+
+constexpr int deepest = 200;  // levels of tables and lists in a file
+
+using core::Location;
+using core::Value;
+
+Value from_toml(const toml::node& node, const std::string& file) {
+  Value out;
+  if (const auto* table = node.as_table()) {
+    out = Value::object();
+    // toml++ keeps keys sorted; the order of the file is the order of the places.
+    std::vector<std::pair<toml::source_position, Value::Member>> members;
+    for (const auto& [key, value] : *table) members.push_back({key.source().begin, {std::string(key.str()), from_toml(value, file)}});
+    std::stable_sort(members.begin(), members.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (auto& m : members) out.members().push_back(std::move(m.second));
+  } else if (const auto* array = node.as_array()) {
+    out = Value::array();
+    for (const toml::node& item : *array) out.push(from_toml(item, file));
+  } else if (const auto* text = node.as_string()) {
+    out = Value(text->get());
+  } else if (const auto* integer = node.as_integer()) {
+    out = Value(integer->get());
+  } else if (const auto* number = node.as_floating_point()) {
+    out = Value(number->get());
+  } else if (const auto* boolean = node.as_boolean()) {
+    out = Value(boolean->get());
+  } else {
+    std::ostringstream date;
+    if (const auto* d = node.as_date())
+      date << d->get();
+    else if (const auto* t = node.as_time())
+      date << t->get();
+    else if (const auto* dt = node.as_date_time())
+      date << dt->get();
+    out = Value(date.str());
+  }
+  out.where = {file, static_cast<int>(node.source().begin.line), static_cast<int>(node.source().begin.column)};
+  return out;
+}
+
+/// Line and column of a byte offset; asked in rising order, so each byte is passed once.
+class Places {
+ public:
+  Places(const std::string& text, const std::string& file) : text_(text), file_(file) {}
+  Location at(size_t offset) {
+    for (; done_ < offset && done_ < text_.size(); ++done_) {
+      if (text_[done_] == '\n') {
+        ++line_;
+        column_ = 1;
+      } else {
+        ++column_;
+      }
+    }
+    return {file_, line_, column_};
+  }
+
+ private:
+  const std::string& text_;
+  const std::string& file_;
+  size_t done_ = 0;
+  int line_ = 1, column_ = 1;
+};
+
+class TreeBuilder {
+ public:
+  TreeBuilder(const std::string& text, const std::string& file, rapidjson::MemoryStream& stream)
+      : text_(text), places_(text, file), stream_(stream) {}
+
+  Value root;
+
+  bool Null() { return put({}); }
+  bool Bool(bool b) { return put(b); }
+  bool Int(int i) { return put(static_cast<std::int64_t>(i)); }
+  bool Uint(unsigned i) { return put(static_cast<std::int64_t>(i)); }
+  bool Int64(std::int64_t i) { return put(i); }
+  // The reader calls every positive integer above 32 bits so.
+  bool Uint64(std::uint64_t i) { return std::in_range<std::int64_t>(i) ? put(static_cast<std::int64_t>(i)) : put(static_cast<double>(i)); }
+  bool Double(double d) { return put(d); }
+  bool RawNumber(const char* s, rapidjson::SizeType n, bool) { return put(std::string(s, n)); }
+  bool String(const char* s, rapidjson::SizeType n, bool) { return put(std::string(s, n)); }
+  bool StartObject() { return open(Value::object()); }
+  bool Key(const char* s, rapidjson::SizeType n, bool) {
+    open_.back()->members().emplace_back(std::string(s, n), Value{});
+    return true;
+  }
+  bool EndObject(rapidjson::SizeType) {
+    std::vector<std::string_view> keys;
+    for (const auto& [key, value] : open_.back()->members()) keys.push_back(key);
+    std::sort(keys.begin(), keys.end());
+    if (const auto twice = std::adjacent_find(keys.begin(), keys.end()); twice != keys.end())
+      throw core::usage_error("the key '" + std::string(*twice) + "' is stated twice", here().text());
+    return close();
+  }
+  bool StartArray() { return open(Value::array()); }
+  bool EndArray(rapidjson::SizeType) { return close(); }
+
+ private:
+  // The stream stands just behind the value; for scalars this is near enough to point a person to the line.
+  Location here() { return places_.at(stream_.Tell() > 0 ? stream_.Tell() - 1 : 0); }
+  Value& place(Value v) {
+    v.where = here();
+    if (open_.empty()) return root = std::move(v);
+    Value& parent = *open_.back();
+    if (parent.is_array()) return parent.push(std::move(v));
+    return parent.members().back().second = std::move(v);
+  }
+  bool put(Value v) {
+    place(std::move(v));
+    return true;
+  }
+  bool open(Value v) {
+    if (open_.size() >= size_t{deepest})
+      throw core::usage_error("more than " + std::to_string(deepest) + " levels of nesting", here().text());
+    open_.push_back(&place(std::move(v)));
+    return true;
+  }
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+
+  const std::string& text_;
+  Places places_;
+  rapidjson::MemoryStream& stream_;
+  std::vector<Value*> open_;
+};
+
+void quote(const std::string& text, std::string& out) {
+  const bool plain = std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+  const std::string s = plain ? text : core::utf8(text);  // JSON is UTF-8
+  static const char* digits = "0123456789abcdef";
+  out += '"';
+  for (const char c : s) {
+    const auto u = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\')
+      (out += '\\') += c;
+    else if (c == '\n')
+      out += "\\n";
+    else if (c == '\t')
+      out += "\\t";
+    else if (u < 0x20)
+      ((out += "\\u00") += digits[u >> 4]) += digits[u & 15];
+    else
+      out += c;
+  }
+  out += '"';
+}
+
+void write(const Value& v, int depth, std::string& out) {
+  const auto line = [&](int d) { (out += '\n').append(static_cast<size_t>(2 * d), ' '); };
+  if (v.is_null())
+    out += "null";
+  else if (v.is_bool())
+    out += v.as_bool() ? "true" : "false";
+  else if (v.is_int())
+    out += std::to_string(v.as_int());
+  else if (v.is_number())
+    out += std::isfinite(v.as_number()) ? core::format_number(v.as_number()) : "null";
+  else if (v.is_text())
+    quote(v.as_text(), out);
+  else if (v.is_array()) {
+    out += '[';
+    const bool flat = std::all_of(v.items().begin(), v.items().end(), [](const Value& i) { return !i.is_array() && !i.is_object(); });
+    for (size_t i = 0; i < v.items().size(); ++i) {
+      if (i) out += flat ? ", " : ",";
+      if (!flat) line(depth + 1);
+      write(v.items()[i], depth + 1, out);
+    }
+    if (!flat) line(depth);
+    out += ']';
+  } else {
+    out += '{';
+    for (size_t i = 0; i < v.members().size(); ++i) {
+      if (i) out += ',';
+      line(depth + 1);
+      quote(v.members()[i].first, out);
+      out += ": ";
+      write(v.members()[i].second, depth + 1, out);
+    }
+    if (!v.members().empty()) line(depth);
+    out += '}';
+  }
+}
+
+/// The parser bounds nested values, but not the tables that one dotted key opens.
+void refuse_deep_keys(const std::string& text, const std::string& name) {
+  int line = 1, dots = 0;
+  char quote = 0;
+  bool comment = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') ++line, dots = 0, comment = false;
+    if (comment) continue;
+    if (quote) {
+      if (c == '\\' && quote == '"') ++i;
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '#') {
+      comment = true;
+    } else if (c == '=' || c == ',' || c == '{') {
+      dots = 0;
+    } else if (c == '.' && ++dots > deepest) {
+      throw core::usage_error("a key of more than " + std::to_string(deepest) + " levels", Location{name, line, 1}.text());
+    }
+  }
+}
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& file) {
+  std::error_code ec;
+  if (std::filesystem::is_directory(file, ec)) throw core::Error("is a folder, not a file", file.string());
+  if (std::filesystem::exists(file, ec) && !std::filesystem::is_regular_file(file, ec))
+    throw core::Error("is not a regular file", file.string());
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw_system_error("cannot open", file, errno);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return std::move(out).str();
+}
+
+core::Value parse_toml(const std::string& text, const std::string& name) {
+  refuse_deep_keys(text, name);
+  try {
+    return from_toml(toml::parse(text, name), name);
+  } catch (const toml::parse_error& e) {
+    const auto at = e.source().begin;
+    throw core::usage_error(std::string(e.description()), Location{name, static_cast<int>(at.line), static_cast<int>(at.column)}.text());
+  }
+}
+
+core::Value parse_json(const std::string& text, const std::string& name) {
+  rapidjson::MemoryStream stream(text.data(), text.size());
+  rapidjson::Reader reader;
+  TreeBuilder builder(text, name, stream);
+  const rapidjson::ParseResult result = reader.Parse<rapidjson::kParseFullPrecisionFlag | rapidjson::kParseIterativeFlag>(stream, builder);
+  if (!result) {
+    Places places(text, name);
+    throw core::usage_error(rapidjson::GetParseError_En(result.Code()), places.at(result.Offset()).text());
+  }
+  return std::move(builder.root);
+}
+
+core::Value read_value_file(const std::filesystem::path& file) {
+  const std::string text = read_text_file(file);
+  return file.extension() == ".json" ? parse_json(text, file.string()) : parse_toml(text, file.string());
+}
+
+std::string to_json(const core::Value& v) {
+  std::string out;
+  write(v, 0, out);
+  return out += '\n';
+}
+
+}  // namespace swath::io

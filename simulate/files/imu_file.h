@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+
+#include "core/config/value.h"
+#include "core/records/imu_spec.h"
+#include "core/time.h"
+#include "io/survey/navigation.h"
+#include "simulate/flight.h"
+#include "simulate/navigation_options.h"
+#include "simulate/random.h"
+
+namespace swath::simulate {
+
+/// The errors of one IMU in the axes of its record: measured = (1 + scale) true + (bias + drift(t)) step + white noise.
+class ImuErrors {
+ public:
+  /// Bias and scale factor of each axis drawn from the model; the drifts run in `step` seconds, from their stationary state.
+  ImuErrors(const core::ImuErrorModel& model, double step, std::int64_t seed);
+
+  struct Constant {
+    Eigen::Vector3d gyro_bias, gyro_scale, accelerometer_bias, accelerometer_scale;  ///< rad/s, 1, m/s^2, 1
+  };
+  const Constant& constant() const { return constant_; }
+
+  /// The drifts during the present interval, rad/s and m/s^2.
+  Eigen::Vector3d gyro_drift() const;
+  Eigen::Vector3d accelerometer_drift() const;
+  void advance();
+
+  /// Increments of record k (from 1) as measured in the present interval.
+  void measure(std::int64_t k, Eigen::Vector3d& angle, Eigen::Vector3d& velocity) const;
+
+  /// What truth/imu.json states.
+  core::Value value() const;
+
+ private:
+  core::ImuErrorModel model_;
+  double step_;
+  std::int64_t seed_;
+  Constant constant_;
+  std::vector<GaussMarkov> drift_;  ///< gyros x y z, accelerometers x y z
+};
+
+/// Takes vectors of `body` to the axes of the record: the inverse of what survey.toml states by axes, roll, pitch and heading.
+Eigen::Matrix3d record_R_body(const ImuOptions& imu);
+
+/// The model that the errors are drawn from; none where the survey is free of noise.
+core::ImuSpec imu_spec_of(const ImuOptions& imu, bool noise_free);
+
+/// imu.csv: seconds of week (counting on past its end), increments over the step that ends there or their mean rates, in the axes of the
+/// record; and its truth, truth/imu.json (constant errors) and truth/imu_drift.csv (the drifts, once a second). Folders must exist.
+void write_imu(const std::filesystem::path& folder, const Flight& flight, core::GpsTime start, const ImuOptions& imu, bool noise_free,
+               std::int64_t seed);
+
+/// What survey.toml says of imu.csv.
+io::ImuFile describe_imu_file(const ImuOptions& imu, core::GpsTime start);
+
+}  // namespace swath::simulate

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulate/files/survey_file.h"
+
+#include "core/config/option_visitors.h"
+#include "core/error.h"
+
+namespace swath::simulate {
+namespace {
+
+using core::Value;
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (c == '\n')
+      out += "\\n";
+    else
+      out += c;
+  }
+  return out + "\"";
+}
+
+std::string scalar(const Value& v) {
+  if (v.is_bool()) return v.as_bool() ? "true" : "false";
+  if (v.is_int()) return std::to_string(v.as_int());
+  if (v.is_number()) {
+    const std::string text = core::format_number(v.as_number());
+    return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+  }
+  if (v.is_text()) return quoted(v.as_text());
+  if (v.is_array()) {
+    std::string out = "[";
+    for (const Value& item : v.items()) out += (out.size() > 1 ? ", " : "") + scalar(item);
+    return out + "]";
+  }
+  throw core::Error("a value of kind " + std::string(v.kind()) + " has no place in a TOML list");
+}
+
+bool is_table_list(const Value& v) { return v.is_array() && !v.items().empty() && v.items().front().is_object(); }
+
+void write(const Value& table, const std::string& path, std::string& out) {
+  for (const auto& [key, v] : table.members())
+    if (!v.is_null() && !v.is_object() && !is_table_list(v)) out += key + " = " + scalar(v) + "\n";
+  for (const auto& [key, v] : table.members()) {
+    const std::string name = path.empty() ? key : path + "." + key;
+    if (v.is_object()) {
+      if (v.members().empty()) continue;
+      out += "\n[" + name + "]\n";
+      write(v, name, out);
+    } else if (is_table_list(v)) {
+      for (const Value& item : v.items()) {
+        out += "\n[[" + name + "]]\n";
+        write(item, name, out);
+      }
+    }
+  }
+}
+
+bool same(const Value& a, const Value& b) {
+  return a.kind() == b.kind() && !a.is_object() && !is_table_list(a) && (a.is_null() || scalar(a) == scalar(b));
+}
+
+/// Without the values that `fallback` has too.
+Value pruned(const Value& v, const Value& fallback) {
+  Value out = Value::object();
+  for (const auto& [key, item] : v.members()) {
+    const Value* other = fallback.find(key);
+    if (item.is_object()) {
+      Value inner = pruned(item, other ? *other : Value::object());
+      if (!inner.members().empty()) out[key] = std::move(inner);
+    } else if (!other || !same(item, *other)) {
+      out[key] = item;
+    }
+  }
+  return out;
+}
+
+template <class S>
+Value effective(S s) {
+  return core::effective_values(core::described(s));
+}
+
+/// What the accuracy rests on is stated in full, defaults or not.
+bool is_full(const std::string& key) { return key == "calibration" || key == "sigma" || key == "name" || key == "crs" || key == "line"; }
+
+/// The defaults of one table of a list.
+Value fallback_of(const std::string& list) {
+  if (list == "laser") return effective(io::LaserFile{});
+  if (list == "trajectory") return effective(io::TrajectoryFile{});
+  if (list == "imu") return effective(io::ImuFile{});
+  if (list == "gnss") return effective(io::GnssFile{});
+  if (list == "clock") {
+    // The format of a log cannot be derived from its name: it is always stated.
+    Value v = effective(io::ClockLog{});
+    v["format"] = Value{};
+    return v;
+  }
+  if (list == "event") return effective(io::EventFile{});
+  if (list == "control") return effective(io::ControlFile{});
+  if (list == "points") return effective(io::PointFile{});
+  return Value::object();
+}
+
+}  // namespace
+
+std::string toml_of(const Value& tree) {
+  std::string out;
+  write(tree, "", out);
+  return out;
+}
+
+std::string survey_toml(io::Survey survey, const std::string& comment) {
+  const Value all = effective(survey);
+  Value out = pruned(all, effective(io::Survey{}));
+  Value ordered = Value::object();
+  for (const auto& [key, v] : all.members()) {
+    if (is_full(key) || (key == "antenna" && !survey.gnss.empty())) {
+      if (!(v.is_array() && v.items().empty())) ordered[key] = v;
+      continue;
+    }
+    if (key == "scanner") ordered[key]["model"] = *v.find("model");
+    if (const Value* kept = out.find(key)) {
+      if (key == "scanner") {
+        for (const auto& [k, item] : kept->members()) ordered[key][k] = item;
+      } else if (is_table_list(*kept)) {
+        const Value fallback = fallback_of(key);
+        ordered[key] = Value::array();
+        for (const Value& item : kept->items()) ordered[key].push(pruned(item, fallback));
+      } else {
+        ordered[key] = *kept;
+      }
+    }
+  }
+  return comment + toml_of(ordered);
+}
+
+}  // namespace swath::simulate

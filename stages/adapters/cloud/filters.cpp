@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/config/result_visitors.h"
+#include "core/error.h"
+#include "filters/classes/height.h"
+#include "filters/classes/returns.h"
+#include "io/las/las_block.h"
+#include "io/las/las_header.h"
+#include "stages/adapters/adapters.h"
+
+namespace swath::stages {
+namespace {
+
+using core::Column;
+
+struct ReturnsStageOptions : filters::ReturnsOptions {
+  bool repair_clouds = false;
+};
+
+template <class V>
+void describe(ReturnsStageOptions& o, V& v) {
+  describe(static_cast<filters::ReturnsOptions&>(o), v);
+  v.option("repair_clouds", o.repair_clouds, "Repair numbers of point clouds, too, where the points' times distinguish the pulses.");
+}
+
+class Returns : public OptionStage<ReturnsStageOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{
+        "filters.returns",
+        "First, last, only and intermediate returns: missing or inconsistent numbers repaired or flagged, returns per pulse by line.",
+        {Grain::strip},
+        {Column::time, Column::return_number, Column::return_count},
+        {Column::return_number, Column::return_count, Column::flags},
+        {Product::points},
+        {}};
+    return info;
+  }
+  void run_strip(const Context& context, StripBatch& batch, core::Tally& tally) const override {
+    // A cloud may be cropped, thinned or dated to the second: its numbers are its maker's.
+    const bool is_cloud = context.source && context.source->info().makes(Product::points);
+    if (!is_cloud) {
+      repair(batch.block, options, tally);
+    } else if (options.repair_clouds) {
+      filters::ReturnsOptions careful = options;
+      careful.gaps = filters::Gaps::keep;  // returns beyond a crop's rim are absent rightly
+      if (filters::tells_pulses(batch.block))
+        repair(batch.block, careful, tally);
+      else
+        tally.count("times do not tell pulses apart, return numbers left as they are", batch.block.size());
+    }
+    filters::ReturnStatistics statistics;
+    statistics.add(batch.block);
+    for (const auto& [line, s] : statistics.strips()) {
+      const std::string name = "line " + std::to_string(line) + ": ";
+      for (size_t k = 1; k < s.pulses.size(); ++k)
+        if (s.pulses[k]) tally.count(name + "pulses of " + std::to_string(k) + (k == 1 ? " return" : " returns"), s.pulses[k]);
+      tally.count(name + "first returns", s.first);
+      tally.count(name + "last returns", s.last);
+      tally.count(name + "only returns", s.only);
+      if (s.intermediate) tally.count(name + "intermediate returns", s.intermediate);
+    }
+  }
+
+ private:
+  static void repair(core::Block& block, const filters::ReturnsOptions& o, core::Tally& tally) {
+    const filters::RepairCounts n = filters::repair_returns(block, o);
+    if (n.repaired) tally.count("return numbers repaired", n.repaired);
+    if (n.inconsistent) tally.count("return numbers inconsistent, flagged", n.inconsistent);
+  }
+};
+
+struct HeightCounts {
+  std::uint64_t unknown = 0;
+};
+
+template <class V>
+void describe(const HeightCounts& r, V& v) {
+  v.result("above a void of the DTM: height unknown", r.unknown, core::if_any(), "Points without a height above ground.");
+}
+
+class HeightAboveGround : public OptionStage<NoOptions, HeightCounts> {
+ public:
+  const Info& info() const override {
+    static const Info info{"filters.hag_dem",
+                           "Height of every point above the DTM, bilinear between cell centres.",
+                           {Grain::tile},
+                           {},
+                           {Column::height},
+                           {Product::points, Product::dtm},
+                           {}};
+    return info;
+  }
+  double bytes_per_point() const override { return 16.0; }
+  std::vector<Raster> rasters(const Context& c) const override { return window_of(c, Product::dtm, 0); }
+  void run_tile(const Context& context, TileJob& job) const override {
+    const double cell = context.grids->cell(Product::dtm);
+    const core::Grid terrain = context.grids->window(Product::dtm, lattice_in(cell, job.box.grown(1.5 * cell)));
+    core::count_results(HeightCounts{filters::height_above(terrain, job.block, job.own)}, job.tally);
+  }
+};
+
+}  // namespace
+
+void expect_ranges(const Context& context, std::string_view stage, core::TileColumns columns) {
+  // Ranges come from raw records; a cloud has them only where its files say so.
+  if (!columns.reads.has(Column::range) || !context.source || !context.source->info().makes(Product::points)) return;
+  for (const io::PointFile& f : context.survey.points) {
+    const std::filesystem::path file = io::resolve(context.survey, f.file);
+    std::vector<std::string> ignored;
+    if (!io::read_las_header(file, ignored).extra_offset(io::las_name::range))
+      throw core::usage_error(std::string(stage) + ": range_min and range_max need the points' ranges, which the file does not have",
+                              file.string(), "leave the range gate out, or start from raw laser records");
+  }
+}
+
+std::unique_ptr<Stage> make_returns() { return std::make_unique<Returns>(); }
+std::unique_ptr<Stage> make_hag_dem() { return std::make_unique<HeightAboveGround>(); }
+
+}  // namespace swath::stages

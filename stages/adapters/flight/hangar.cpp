@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/adapters/flight/hangar.h"
+
+#include "core/error.h"
+#include "io/survey/hangar_file.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
+
+namespace swath::stages {
+namespace {
+
+namespace fs = std::filesystem;
+
+io::HangarSurvey read(const io::Survey& survey) {
+  if (!survey.hangar)
+    throw core::usage_error("calib.lever_arm: the survey names no hangar file", survey.name,
+                            "state hangar = \"hangar.toml\" in the survey (docs/lever-arm.md)");
+  return io::read_hangar(io::resolve(survey, *survey.hangar));
+}
+
+}  // namespace
+
+std::vector<std::string> lever_arm_files(const LeverArmOptions&) { return {"lever_arm.json", "lever_arm.toml"}; }
+
+std::vector<fs::path> hangar_files(const io::Survey& survey) {
+  const io::HangarSurvey hangar = read(survey);
+  std::vector<fs::path> out = io::hangar_tables(hangar);
+  out.insert(out.begin(), hangar.file);
+  return out;
+}
+
+void expect_hangar(const Context& context, const LeverArmOptions&) { read(context.survey); }
+
+calib::HangarResult survey_hangar(const io::Survey& survey, const LeverArmOptions& o, const Output& to, core::Tally& tally) {
+  calib::HangarResult result = calib::solve_hangar(read(survey), o.hold_stations);
+  if (o.hold_stations) result.warnings.push_back("the stations were held: every sigma is far too small");
+  for (const std::string& w : result.warnings) tally.count("warnings of the hangar survey", w);
+  io::write_text_file(to.folder / "lever_arm.json", io::to_json(core::reported(result)));
+  io::write_text_file(to.folder / "lever_arm.toml", calib::survey_lines(result));
+  return result;
+}
+
+}  // namespace swath::stages

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/adapters/flight/ins_gnss.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "core/error.h"
+#include "core/time.h"
+#include "io/records/sbet.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
+#include "stages/drawing_file.h"
+#include "stages/trajectory_charts.h"
+#include "trajectory/checks.h"
+#include "trajectory/compare.h"
+
+namespace swath::stages {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The true trajectory of a simulated survey: an SBET, whose seconds of week are of the week that the flight begins in.
+std::optional<trajectory::Trajectory> truth_of(const io::Survey& survey, double first) {
+  if (!survey.truth.trajectory) return std::nullopt;
+  const fs::path file = io::resolve(survey, *survey.truth.trajectory);
+  const io::TimeTags time{core::TimeScale::gps_week, core::week_of(first), {}};
+  core::Tally ignored;
+  return trajectory::Trajectory(io::read_sbet(file, time, true, io::VelocityAxes::ignore, std::nullopt, ignored), {}, file.string());
+}
+
+/// The clock offsets that the survey states, where one holds for all IMU files.
+trajectory::StatedClocks clocks_of(const io::Survey& survey) {
+  trajectory::StatedClocks out;
+  out.antenna_latency = survey.antenna.latency.value;
+  if (!survey.imu.empty()) out.imu_offset = survey.imu.front().time.offset.value;
+  for (const io::ImuFile& f : survey.imu)
+    if (out.imu_offset && f.time.offset.value != *out.imu_offset) out.imu_offset.reset();
+  return out;
+}
+
+/// Over all and over the flight lines, into the report and the findings.
+std::optional<trajectory::TrajectoryErrors> compare_with_truth(const io::Survey& survey, const core::TrajectoryData& data,
+                                                               core::Value& report, core::Value& findings) {
+  const auto truth = data.size() ? truth_of(survey, data.time.front()) : std::nullopt;
+  if (!truth) return std::nullopt;
+  trajectory::TrajectoryErrors errors = trajectory::errors_against(data, *truth);
+  core::Value told = core::Value::object();
+  if (errors.outside) told["outside_truth"] = errors.outside;
+  told["all"] = trajectory::compare(errors).value();
+  std::vector<trajectory::Span> lines;
+  for (const io::LineWindow& w : io::line_windows(survey)) lines.push_back({w.start, w.end});
+  if (!lines.empty()) told["lines"] = trajectory::compare(errors, lines).value();
+  report["truth"] = told;
+  findings["truth"] = std::move(told);
+  return errors;
+}
+
+void write_products(const Output& to, const InsGnssStageOptions& o, const trajectory::InsGnssResult& result, const core::GnssData& gnss,
+                    const std::optional<trajectory::TrajectoryErrors>& errors) {
+  io::write_text_file(to.folder / "trajectory.json", io::to_json(result.report));
+  if (o.plots.empty()) return;
+  for (const NamedChart& c : trajectory_charts(result, gnss, errors))
+    for (const PlotFormat f : o.plots) {
+      const std::string ending(core::Choices<PlotFormat>::names[static_cast<size_t>(f)]);
+      write_drawing(to.folder / "plots" / (c.name + "." + ending), report::drawing(c.chart));
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> ins_gnss_products(const InsGnssStageOptions& o) {
+  std::vector<std::string> out{"trajectory.json"};
+  if (!o.plots.empty()) out.push_back("plots");
+  return out;
+}
+
+std::vector<fs::path> true_trajectory(const io::Survey& survey) {
+  if (!survey.truth.trajectory) return {};
+  return {io::resolve(survey, *survey.truth.trajectory)};
+}
+
+void expect_imu_spec(const Context& context, const InsGnssStageOptions&) {
+  const core::ImuSpec& spec = context.survey.imu_spec;
+  if (spec.grade == core::ImuGrade::unstated &&
+      !(spec.angular_random_walk && spec.velocity_random_walk && spec.gyro_bias && spec.accelerometer_bias))
+    throw core::usage_error("trajectory.ins_gnss: the survey does not say how good the IMU is", context.survey.name,
+                            "state imu_spec.grade, or in [imu_spec] at least the two random walks and the two biases of its data sheet");
+}
+
+Given<trajectory::Trajectory, core::Value> smooth_flight(core::ImuData imu, const core::GnssData& gnss, const io::Survey& survey,
+                                                         const InsGnssStageOptions& o, const Output& to, const core::OnProgress& progress,
+                                                         core::Tally& tally) {
+  const io::Antenna& antenna = survey.antenna;
+  const Eigen::Vector3d lever_arm(antenna.lever_arm[0].value, antenna.lever_arm[1].value, antenna.lever_arm[2].value);
+  trajectory::InsGnssResult result = trajectory::smooth(std::move(imu), gnss, survey.imu_spec.model(), lever_arm,
+                                                        antenna.lever_arm_sigma.value, o, clocks_of(survey), progress);
+  core::Value findings = core::Value::object();
+  for (const auto& [key, value] : result.report.members())
+    if (key != "warnings") findings[key] = value;
+  if (const core::Value* warnings = result.report.find("warnings"); warnings && warnings->is_array())
+    for (const core::Value& w : warnings->items()) tally.count(w.as_text());
+  // Axes that are turned fit the fixes, but not the way the aircraft flies.
+  trajectory::CheckOptions motion_alone;
+  motion_alone.max_gap.value = std::numeric_limits<double>::infinity();
+  for (const std::string& w : trajectory::check_trajectory(result.trajectory, motion_alone).warnings) tally.count(w);
+
+  const auto errors = compare_with_truth(survey, result.trajectory, result.report, findings);
+  write_products(to, o, result, gnss, errors);
+  trajectory::TrajectoryOptions interpolation;
+  constexpr double steps = 2.5;  // of the trajectory's records; a longer one is a gap
+  interpolation.max_gap.value = std::max(interpolation.max_gap.value, steps / o.output_rate.value);
+  return {trajectory::Trajectory(std::move(result.trajectory), interpolation, "trajectory.ins_gnss"), std::move(findings)};
+}
+
+}  // namespace swath::stages

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/adapters/terrain/breaklines.h"
+
+#include <algorithm>
+#include <cstring>
+#include <mutex>
+
+#include "core/config/option_visitors.h"
+#include "core/error.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
+#include "io/vector/breaklines.h"
+#include "stages/adapters/adapters.h"
+#include "stages/area.h"
+#include "stages/breakline_area.h"
+#include "stages/grid_tile.h"
+#include "stages/waters.h"
+#include "terrain/dtm.h"
+
+namespace swath::stages {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* settled_file = "breaklines.settled";
+constexpr const char* options_file = "options.json";
+
+fs::path shore_file(const fs::path& folder, TileKey key) {
+  return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".shores");
+}
+
+/// The survey's features in metres of the run's Blocks.
+std::vector<core::Breakline> features_of(const Context& context, core::Tally& tally) {
+  std::vector<core::Breakline> out = io::read_breaklines(context.survey, context.product_crs, tally);
+  for (core::Breakline& b : out)
+    for (auto& part : b.parts)
+      for (Eigen::Vector3d& v : part) {
+        v = Eigen::Vector3d(v.x() * context.unit, v.y() * context.unit, v.z() * context.vertical_unit) - context.origin;
+        if (!b.has_height) v.z() = 0.0;
+      }
+  Area area = context.area;  // lines reach beyond the points
+  area.box = area.box.grown(around_clouds);
+  area.box = {area.box.x0 - context.origin.x(), area.box.y0 - context.origin.y(), area.box.x1 - context.origin.x(),
+              area.box.y1 - context.origin.y()};
+  keep_in_area(out, area, context.origin, tally);
+  return out;
+}
+
+struct SettleOptions : terrain::BreaklineOptions {
+  std::vector<int> classes{core::point_class::ground};
+};
+
+template <class V>
+void describe(SettleOptions& o, V& v) {
+  describe(static_cast<terrain::BreaklineOptions&>(o), v);
+  v.option("classes", o.classes, core::within(0, 255), "ASPRS classes of shore points.");
+}
+
+class BreaklineStage : public OptionStage<SettleOptions> {
+ public:
+  const Info& info() const override {
+    static const Info info{"terrain.breaklines",
+                           "Breaklines, boundaries and water of the survey made ready: lines noded, lakes flat, rivers falling.",
+                           {Grain::tile, Grain::merge},
+                           {core::Column::classification, core::Column::flags},
+                           {},
+                           {Product::points},
+                           {Product::breaklines}};
+    return info;
+  }
+  core::ColumnSet also_reads() const override { return {core::Column::sigma_v}; }
+  std::vector<fs::path> inputs(const io::Survey& survey) const override {
+    std::vector<fs::path> out;
+    for (const io::BreaklineFile& f : survey.breaklines) out.push_back(io::resolve(survey, f.file));
+    return out;
+  }
+  void check(const Context& context) const override {
+    if (context.survey.breaklines.empty())
+      throw core::usage_error("terrain.breaklines: the survey names no [[breaklines]]", context.survey.name,
+                              "name their files in survey.toml, or leave the stage out");
+  }
+  void run_tile(const Context& context, TileJob& job) const override {
+    terrain::DtmOptions ground;
+    ground.classes = options.classes;
+    const auto shores =
+        terrain::shore_points(job.block, terrain::terrain_rows(job.block, ground), job.own, features(context), options.water);
+    job.tally.count("ground points at shores", shores.size());
+    io::write_text_file(shore_file(job.folder, job.key),
+                        {reinterpret_cast<const char*>(shores.data()), shores.size() * sizeof(terrain::ShorePoint)});
+  }
+  void run_merge(const Context& context, MergeJob& job) const override {
+    std::vector<core::Breakline> all = features_of(context, job.tally);
+    std::vector<std::vector<terrain::ShorePoint>> shores(all.size());
+    for (const TileKey key : job.tiles) {
+      const fs::path file = shore_file(job.folder, key);
+      const std::string bytes = io::read_text_file(file);
+      if (bytes.size() % sizeof(terrain::ShorePoint) != 0) cut_short(file);
+      for (size_t at = 0; at + sizeof(terrain::ShorePoint) <= bytes.size(); at += sizeof(terrain::ShorePoint)) {
+        terrain::ShorePoint p;
+        std::memcpy(&p, bytes.data() + at, sizeof p);
+        if (p.feature >= shores.size()) cut_short(file);
+        shores[p.feature].push_back(p);
+      }
+    }
+    std::vector<terrain::SettledLine> settled;
+    core::Value& waters = job.findings["waters"] = core::Value::array();
+    for (size_t f = 0; f < all.size(); ++f) {
+      const bool derived = all[f].is_water() && !all[f].has_height;
+      const auto points = shores[f].size();
+      if (all[f].is_water()) {
+        all[f] = terrain::with_heights(all[f], std::move(shores[f]), options.water, job.tally);
+        waters.push(account(context, all[f], derived, points));
+      }
+      settled.push_back({std::move(all[f]), derived});
+    }
+    const terrain::Breaklines ready(settled, options, context.origin);  // reports lines that meet at different heights
+    job.findings["features"] = settled.size();
+    job.findings["edges"] = ready.network().edges.size();
+    io::write_text_file(job.folder / settled_file, terrain::pack(settled));
+    terrain::BreaklineOptions mine = options;
+    io::write_text_file(job.folder / options_file, io::to_json(core::effective_values(core::described(mine))));
+  }
+
+ private:
+  const std::vector<core::Breakline>& features(const Context& context) const {
+    std::call_once(once_, [&] {
+      core::Tally unheard;  // the merge reads the same files and reports
+      features_ = features_of(context, unheard);
+    });
+    return features_;
+  }
+  static core::Value account(const Context& context, const core::Breakline& b, bool derived, size_t points) {
+    core::Value one = core::Value::object();
+    one["place"] = b.place.substr(b.place.rfind('/') + 1);
+    one["kind"] = b.kind == core::BreaklineKind::lake ? "lake" : "river";
+    if (derived) one["shore_points"] = points;
+    if (!b.has_height) return one;
+    const auto [low, high] = std::minmax_element(b.parts.front().begin(), b.parts.front().end(),
+                                                 [](const Eigen::Vector3d& p, const Eigen::Vector3d& q) { return p.z() < q.z(); });
+    one["lowest_m"] = low->z() + context.origin.z();
+    one["highest_m"] = high->z() + context.origin.z();
+    one["sigma_m"] = b.sigma;
+    return one;
+  }
+  mutable std::once_flag once_;
+  mutable std::vector<core::Breakline> features_;
+};
+
+}  // namespace
+
+std::unique_ptr<terrain::Breaklines> settled_breaklines(const Context& context) {
+  if (!context.grids || !context.grids->has(Product::breaklines)) return nullptr;
+  const fs::path folder = context.grids->folder(Product::breaklines);
+  terrain::BreaklineOptions options;
+  std::vector<core::Fault> faults;
+  core::read_options(core::described(options), io::read_value_file(folder / options_file), "", faults);
+  core::throw_if_any(faults);
+  return std::make_unique<terrain::Breaklines>(terrain::unpack(io::read_text_file(folder / settled_file), (folder / settled_file).string()),
+                                               options, context.origin);
+}
+
+std::vector<Box> waters_of(const Context& context) {
+  std::vector<Box> out;
+  if (!context.grids || !context.grids->has(Product::breaklines)) return out;
+  const fs::path file = context.grids->folder(Product::breaklines) / settled_file;
+  for (const terrain::SettledLine& line : terrain::unpack(io::read_text_file(file), file.string())) {
+    const core::Breakline& b = line.line;
+    if (!b.is_water() || !b.has_height) continue;
+    Box box{1e300, 1e300, -1e300, -1e300};
+    for (const auto& part : b.parts)
+      for (const Eigen::Vector3d& v : part) {
+        const double x = v.x() + context.origin.x(), y = v.y() + context.origin.y();
+        box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x), std::max(box.y1, y)};
+      }
+    if (box.x0 <= box.x1) out.push_back(box);
+  }
+  return out;
+}
+
+std::unique_ptr<Stage> make_breaklines() { return std::make_unique<BreaklineStage>(); }
+
+}  // namespace swath::stages

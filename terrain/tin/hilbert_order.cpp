@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "terrain/tin/hilbert_order.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+namespace swath::terrain {
+namespace {
+
+constexpr int levels = 12;  // 4096 x 4096 cells: two passes of a radix sort
+constexpr std::uint32_t side = 1u << levels;
+
+// Place of a cell on the curve. Each quadrant's curve is its parent's, mirrored in both axes (flip) and in the diagonal (swap).
+std::uint32_t index_of(std::uint32_t x, std::uint32_t y) {
+  std::uint32_t index = 0, flip = 0, swap = 0;
+  for (int level = levels - 1; level >= 0; --level) {
+    const std::uint32_t bx = (x >> level) & 1u, by = (y >> level) & 1u;
+    const std::uint32_t rx = (swap ? by : bx) ^ flip, ry = (swap ? bx : by) ^ flip;
+    index = index << 2 | ((3 * rx) ^ ry);
+    flip ^= rx & ~ry;
+    swap ^= ry ^ 1u;
+  }
+  return index;
+}
+
+}  // namespace
+
+std::vector<OnCurve> along_hilbert_curve(const std::vector<Place>& places) {
+  Place low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()}, high{-low.x, -low.y};
+  for (const Place& p : places) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  const double span = std::max({high.x - low.x, high.y - low.y, std::numeric_limits<double>::min()});
+  const double scale = static_cast<double>(side) / span;
+  const auto cell = [scale](double v) { return std::min(static_cast<std::uint32_t>(v * scale), side - 1); };
+  std::vector<OnCurve> order(places.size()), other(places.size());
+  std::array<std::array<std::uint32_t, side>, 2> start{};
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    order[i] = {index_of(cell(places[i].x - low.x), cell(places[i].y - low.y)), i};
+    ++start[0][order[i].cell % side];
+    ++start[1][order[i].cell / side];
+  }
+  for (auto& digit : start) {
+    std::uint32_t sum = 0;
+    for (std::uint32_t& s : digit) sum += std::exchange(s, sum);
+  }
+  for (const OnCurve& o : order) other[start[0][o.cell % side]++] = o;
+  for (const OnCurve& o : other) order[start[1][o.cell / side]++] = o;
+  return order;
+}
+
+}  // namespace swath::terrain

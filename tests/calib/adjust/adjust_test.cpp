@@ -1,0 +1,519 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Over 400 lines: one adjustment, seen from all sides on the same made block.
+#include "calib/adjust/adjust.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "calib/adjust/parameter_words.h"
+#include "tests/calib/tie_block.h"
+
+namespace swath::calib {
+namespace {
+
+using namespace test;
+using Eigen::Vector3d;
+
+constexpr double arcsec = deg / 3600.0;
+
+AdjustOptions plain() {
+  AdjustOptions o;
+  o.corrections.spacing = core::Seconds(5.0);
+  o.jackknife.lines = false;
+  o.jackknife.blocks = 0;
+  return o;
+}
+
+World pattern_of(std::vector<FlownLine> lines, int buildings = 12, int returns = 12) {
+  World w = make_world(std::move(lines), block_planes(5, buildings, 5));
+  w.returns = returns;
+  return w;
+}
+
+bool says(const Adjustment& a, const std::string& text, bool refuses) {
+  return std::any_of(a.findings.begin(), a.findings.end(),
+                     [&](const Finding& f) { return f.refuses == refuses && f.what.find(text) != std::string::npos; });
+}
+
+TEST(Adjust, ExactRecordsGiveTheExactCalibration) {
+  World w = pattern_of(full_pattern());
+  w.truth.latency = core::Seconds(0.004);
+  w.truth.range_scale = 1.00005;
+  survey(w.planes[3], 0.02, nullptr);
+  survey(w.planes[30], 0.02, nullptr);
+  survey(w.planes[35], 0.02, nullptr);
+  const TieSet ties = ties_of(w, nullptr);
+  const trajectory::Trajectory t(w.exact);
+  AdjustOptions o = plain();
+  o.corrections.position = o.corrections.attitude = CorrectionForm::none;
+  o.estimate.range_scale = o.estimate.latency = true;
+  o.apriori = {};
+  o.apriori.roll = o.apriori.pitch = o.apriori.heading = core::Radians(0.0);  // free: the start counts for nothing
+  o.apriori.range_offset = core::Metres(0.0);
+  o.apriori.range_scale = o.apriori.scan_scale = 0.0;
+  o.apriori.latency = core::Seconds(0.0);
+  core::Calibration start;
+  start.lever_arm_scanner = w.truth.lever_arm_scanner;
+  const Adjustment a = adjust(ties, w.scanner, start, w.noise, t, tactical_errors, o);
+  EXPECT_NEAR(a.calibration.roll.value, w.truth.roll.value, 1e-9);
+  EXPECT_NEAR(a.calibration.pitch.value, w.truth.pitch.value, 1e-9);
+  EXPECT_NEAR(a.calibration.heading.value, w.truth.heading.value, 1e-9);
+  EXPECT_NEAR(a.calibration.range_offset.value, w.truth.range_offset.value, 1e-5);
+  EXPECT_NEAR(a.calibration.scan_scale, w.truth.scan_scale, 1e-8);
+  EXPECT_NEAR(a.calibration.range_scale, w.truth.range_scale, 1e-8);
+  EXPECT_NEAR(a.calibration.latency.value, w.truth.latency.value, 1e-7);
+  EXPECT_TRUE(a.converged);
+  for (const GroupResidual& g : a.groups) EXPECT_LT(std::abs(g.after), 1e-6);
+  EXPECT_GT(std::abs(a.groups[0].before), 0.01);
+  EXPECT_EQ(a.correlation.rows(), 7);
+  EXPECT_EQ(a.corrections.size(), w.lines.size());
+}
+
+// The same from a motion and an equation that know nothing of calib: turbulence, crab, boresight as a product of three turns.
+TEST(Adjust, AgreesWithAnIndependentFlight) {
+  simulate::PlannedFlight flight = swath::test::survey_flight(3);
+  const std::vector<simulate::Line> lines = flight.lines();
+  const core::Geodetic middle = flight.pose(0.5 * (lines[1].start + lines[1].end)).position;
+  const swath::test::MotionAt motion = swath::test::motion_of(flight);
+  const double epoch = swath::test::motion_start;
+  TieSet ties;
+  ties.frame = trajectory::local_frame(core::ecef_of({middle.latitude, middle.longitude, middle.height - 700.0}));
+  core::TrajectoryData data;
+  const double roll = 0.003, pitch = -0.004, heading = 0.006, offset = 0.11, scale = 1.0003;
+  const Vector3d lever(0.3, -0.2, 0.4);
+  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(heading, Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Vector3d::UnitY()) *
+                                Eigen::AngleAxisd(roll, Vector3d::UnitX()))
+                                   .matrix();
+  ties.planes = block_planes(4, 25, 11);
+  std::vector<std::vector<std::array<double, 3>>> found(ties.planes.size() * lines.size());
+  for (size_t l = 0; l < lines.size(); ++l) {
+    ties.lines.push_back({static_cast<int>(l), epoch + lines[l].start, epoch + lines[l].end});
+    for (double s = lines[l].start - 1.0; s <= lines[l].end + 1.0; s += 0.01) {
+      const simulate::Motion m = motion(s);
+      data.time.push_back(epoch + s);
+      data.latitude.push_back(m.pose.position.latitude);
+      data.longitude.push_back(m.pose.position.longitude);
+      data.height.push_back(m.pose.position.height);
+      data.roll.push_back(m.pose.attitude.roll);
+      data.pitch.push_back(m.pose.attitude.pitch);
+      data.heading.push_back(m.pose.attitude.heading);
+    }
+    // Scans of 25 deg either side; a return for every plane that the beam comes across.
+    for (double s = lines[l].start; s < lines[l].end; s += 0.02) {
+      const swath::test::Truth at = swath::test::truth_at(motion, s);
+      for (double a = -25.0 * deg; a < 25.0 * deg; a += 0.25 * deg) {
+        const Vector3d from = ties.frame.local_R_ecef * (at.position + at.ecef_R_body * lever - ties.frame.origin);
+        const double turned = scale * a;
+        const Vector3d beam = ties.frame.local_R_ecef * at.ecef_R_body * turn * Vector3d(0.0, std::sin(turned), std::cos(turned));
+        for (size_t k = 0; k < ties.planes.size(); ++k) {
+          const TiePlane& p = ties.planes[k];
+          const double range = p.normal.dot(p.centre - from) / p.normal.dot(beam);
+          if ((from + range * beam - p.centre).norm() < p.half.x()) found[k * lines.size() + l].push_back({epoch + s, a, range - offset});
+        }
+      }
+    }
+  }
+  for (size_t k = 0; k < ties.planes.size(); ++k)
+    for (size_t l = 0; l < lines.size(); ++l) {
+      const auto& list = found[k * lines.size() + l];
+      if (list.size() < 3) continue;
+      const auto begin = static_cast<std::uint32_t>(ties.returns.size());
+      for (const auto& [t, a, r] : list) {
+        ties.returns.time.push_back(t);
+        ties.returns.angle.push_back(a);
+        ties.returns.forward.push_back(0.0);
+        ties.returns.range.push_back(r);
+      }
+      ties.groups.push_back(
+          {static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(l), begin, static_cast<std::uint32_t>(ties.returns.size())});
+    }
+  ASSERT_GT(ties.groups.size(), 60u);
+  survey(ties.planes[2], 0.02, nullptr);
+  survey(ties.planes[20], 0.02, nullptr);
+  survey(ties.planes[31], 0.02, nullptr);
+  AdjustOptions o = plain();
+  o.corrections.position = o.corrections.attitude = CorrectionForm::none;
+  core::Calibration start;
+  for (int k = 0; k < 3; ++k) start.lever_arm_scanner[k] = core::Metres(lever[k]);
+  o.apriori.roll = o.apriori.pitch = o.apriori.heading = core::Radians(0.0);
+  o.apriori.range_offset = core::Metres(0.0);
+  o.apriori.scan_scale = 0.0;
+  const Adjustment a = adjust(ties, {}, start, {}, trajectory::Trajectory(data), tactical_errors, o);
+  // GPS seconds resolve 2.4e-7 s: 0.015 mm of flight, 2e-8 rad at 700 m; many returns average it.
+  constexpr double of_time = 1e-8;
+  EXPECT_NEAR(a.estimates[boresight_roll].found, roll, of_time);
+  EXPECT_NEAR(a.estimates[boresight_pitch].found, pitch, of_time);
+  EXPECT_NEAR(a.estimates[boresight_heading].found, heading, 3.0 * of_time);
+  EXPECT_NEAR(a.estimates[range_offset].found, offset, 1e-4);
+  EXPECT_NEAR(a.estimates[scan_scale].found, scale, 1e-7);
+}
+
+// Error / sigma over many flights whose trajectories err as their covariance says.
+struct MonteCarlo {
+  std::array<std::vector<double>, latency + 1> standard, white;
+  double rms(Parameter p) const {
+    double s = 0.0;
+    for (const double v : standard[p]) s += v * v;
+    return std::sqrt(s / static_cast<double>(standard[p].size()));
+  }
+};
+MonteCarlo fly(const World& w, int seeds, const AdjustOptions& o, int surveyed) {
+  // Errors linear between the knots: the model is exact, what is tested is the statistics.
+  const ErrorDraw draw(w, tactical_errors, o.corrections.spacing.value);
+  MonteCarlo out;
+  for (int s = 0; s < seeds; ++s) {
+    Dice dice(static_cast<std::uint64_t>(4000 + s));
+    World flown = w;
+    for (int k = 0; k < surveyed; ++k) survey(flown.planes[static_cast<size_t>(9 * k + 3) % flown.planes.size()], 0.02, &dice);
+    const TieSet ties = ties_of(flown, &dice, static_cast<std::uint64_t>(s));
+    const trajectory::Trajectory t(draw.with_errors(w.exact, dice));
+    core::Calibration start = w.truth;  // off by what the a-priori sigmas say
+    start.roll.value += o.apriori.roll.value * dice.normal();
+    start.pitch.value += o.apriori.pitch.value * dice.normal();
+    start.heading.value += o.apriori.heading.value * dice.normal();
+    start.range_offset.value += o.apriori.range_offset.value * dice.normal();
+    start.scan_scale += o.apriori.scan_scale * dice.normal();
+    for (core::Metres& arm : start.lever_arm_scanner) arm.value += w.noise.lever_arm.value * dice.normal();  // held, yet uncertain
+    const Adjustment a = adjust(ties, w.scanner, start, w.noise, t, tactical_errors, o);
+    for (const Estimate& e : a.estimates) {
+      if (!e.estimated) continue;
+      const double sigma = e.delivered ? e.sigma : std::hypot(e.formal, e.held);
+      out.standard[e.parameter].push_back((e.found - value_of(w.truth, e.parameter)) / sigma);
+      out.white[e.parameter].push_back(e.formal / e.white);
+    }
+  }
+  return out;
+}
+
+const std::vector<Parameter> usual = {boresight_roll, boresight_pitch, boresight_heading, range_offset, scan_scale};
+
+// The rms of 60 standardised errors has itself a sigma of 9 %; one in twenty of several is beyond twice that.
+constexpr double low = 0.8, high = 1.2;
+
+TEST(Adjust, SigmasAreTrueOverManyFlights) {
+  const World w =
+      pattern_of({{0.0, 0.0}, {180.0 * deg, 0.0}, {90.0 * deg, 0.0}, {270.0 * deg, 0.0}, {0.0, 230.0}, {180.0 * deg, 230.0}}, 10, 8);
+  const MonteCarlo m = fly(w, 60, plain(), 0);
+  double mean = 0.0;
+  for (const Parameter p : usual) {
+    EXPECT_GT(m.rms(p), low) << words_of(p).name;
+    EXPECT_LT(m.rms(p), high) << words_of(p).name;
+    mean += m.rms(p) / static_cast<double>(usual.size());
+  }
+  EXPECT_NEAR(mean, 1.0, 0.12);
+  // What every return as independent would have said.
+  for (const Parameter p : {boresight_roll, boresight_pitch, boresight_heading})
+    EXPECT_GT(std::accumulate(m.white[p].begin(), m.white[p].end(), 0.0) / static_cast<double>(m.white[p].size()),
+              p == boresight_heading ? 3.0 : 4.0)
+        << words_of(p).name;
+}
+
+TEST(Adjust, SigmasAreTrueWithControlAndWithoutCrossLines) {
+  AdjustOptions o = plain();
+  const MonteCarlo m = fly(pattern_of({{0.0, 0.0}, {180.0 * deg, 0.0}, {0.0, 230.0}, {180.0 * deg, 230.0}}, 8, 6), 40, o, 3);
+  for (const Parameter p : usual) {
+    EXPECT_GT(m.rms(p), 0.75) << words_of(p).name;  // 40 flights: 11 %
+    EXPECT_LT(m.rms(p), 1.25) << words_of(p).name;
+  }
+}
+
+TEST(Adjust, SigmasAreTrueWhereLittleIsDetermined) {
+  // One line, one direction, level ground: what is found and refused is still as uncertain as stated.
+  const FlownLine line{0.0, 0.0};
+  World level = pattern_of({{0.0, 0.0}, {180.0 * deg, 0.0}, {90.0 * deg, 0.0}}, 0, 6);
+  for (TiePlane& p : level.planes) p.normal = Vector3d::UnitZ();
+  for (const World& w : {pattern_of({line}, 6, 6), pattern_of({line, line, {0.0, 150.0}}, 6, 6), level}) {
+    const MonteCarlo m = fly(w, 40, plain(), 0);
+    for (const Parameter p : usual) {
+      EXPECT_GT(m.rms(p), 0.65) << words_of(p).name << ", lines " << w.lines.size();  // 40 flights: 11 %; fifteen of them
+      EXPECT_LT(m.rms(p), 1.35) << words_of(p).name << ", lines " << w.lines.size();
+    }
+  }
+}
+
+Adjustment flown(const World& w, const AdjustOptions& o, std::uint64_t seed, core::Calibration start) {
+  Dice dice(seed);
+  const ErrorDraw draw(w, tactical_errors);
+  const TieSet ties = ties_of(w, &dice);
+  const trajectory::Trajectory t(draw.with_errors(w.exact, dice));
+  return adjust(ties, w.scanner, start, w.noise, t, tactical_errors, o);
+}
+
+core::Calibration near_truth(const World& w) {
+  core::Calibration c = w.truth;
+  c.roll.value += 0.02 * deg;
+  c.pitch.value -= 0.02 * deg;
+  return c;
+}
+
+TEST(Adjust, DegenerateFlightsAreRefusedInWords) {
+  const World one = pattern_of({{0.0, 0.0}});
+  const Adjustment a = flown(one, plain(), 1, near_truth(one));
+  EXPECT_TRUE(says(a, "one line only", true));
+  for (const Parameter p : usual) {
+    EXPECT_FALSE(a.estimates[p].delivered);
+    EXPECT_EQ(a.estimates[p].value, a.estimates[p].start);
+    EXPECT_EQ(a.estimates[p].sigma, a.estimates[p].apriori);
+  }
+  EXPECT_EQ(a.calibration.roll, near_truth(one).roll);
+
+  const World one_way = pattern_of({{0.0, 0.0}, {0.0, 0.0}, {0.0, 50.0}});
+  const Adjustment b = flown(one_way, plain(), 2, near_truth(one_way));
+  EXPECT_TRUE(says(b, "boresight pitch and along-track shift cannot be told apart: only one line direction", false));
+  EXPECT_TRUE(b.estimates[boresight_pitch].delivered);
+  EXPECT_EQ(b.estimates[boresight_pitch].grade, Grade::coarse);
+
+  World level = pattern_of({{0.0, 0.0}, {180.0 * deg, 0.0}, {90.0 * deg, 0.0}, {270.0 * deg, 0.0}}, 0);
+  for (TiePlane& p : level.planes) p.normal = Vector3d::UnitZ();
+  const Adjustment c = flown(level, plain(), 3, near_truth(level));
+  EXPECT_TRUE(says(c, "no sloping planes or walls", false));
+  for (const Parameter p : {boresight_pitch, boresight_heading}) {
+    EXPECT_EQ(c.estimates[p].grade, Grade::coarse);
+    EXPECT_GT(c.estimates[p].sigma, 0.02 * deg);  // by the turns of the attitude alone
+    EXPECT_LT(std::abs(c.estimates[p].value - value_of(level.truth, p)), 4.0 * c.estimates[p].sigma);
+  }
+  EXPECT_TRUE(c.estimates[boresight_roll].delivered);
+
+  const World apart = pattern_of({{0.0, -900.0}, {0.0, 900.0}});
+  const Adjustment d = flown(apart, plain(), 4, near_truth(apart));
+  EXPECT_TRUE(says(d, "no plane is seen by two lines", true));
+}
+
+TEST(Adjust, AStartThatTheFlightContradictsCountsForNothing) {
+  const World w = pattern_of(full_pattern());
+  AdjustOptions o = plain();
+  // Stated to 18 arcsec, and 720 arcsec off.
+  o.apriori.roll = o.apriori.pitch = core::degrees(0.005);
+  core::Calibration start = w.truth;
+  start.roll.value += 0.2 * deg;
+  const Adjustment a = flown(w, o, 1, start);
+  EXPECT_TRUE(says(a, "the start value of boresight roll is off by", false));
+  EXPECT_FALSE(says(a, "the start value of boresight pitch is off by", false));
+  EXPECT_TRUE(a.estimates[boresight_roll].delivered);
+  EXPECT_TRUE(std::isinf(a.estimates[boresight_roll].apriori));
+  EXPECT_LT(std::abs(a.estimates[boresight_roll].value - w.truth.roll.value), 4.0 * a.estimates[boresight_roll].sigma);
+}
+
+TEST(Adjust, TheStartsSigmaDecidesWhatIsDetermined) {
+  // The same flight, of one direction: beside a start known to a degree it determines the pitch, beside one known to 4 arcsec it does not.
+  const World w = pattern_of({{0.0, 0.0}, {0.0, 0.0}, {0.0, 50.0}});
+  AdjustOptions o = plain();
+  EXPECT_TRUE(flown(w, o, 2, w.truth).estimates[boresight_pitch].delivered);
+  o.apriori.pitch = core::Radians(4.0 * arcsec);
+  const Adjustment a = flown(w, o, 2, w.truth);
+  const Estimate& e = a.estimates[boresight_pitch];
+  EXPECT_FALSE(e.delivered);
+  EXPECT_EQ(e.grade, Grade::undetermined);
+  EXPECT_EQ(e.value, e.start);
+  EXPECT_EQ(e.sigma, o.apriori.pitch.value);
+  EXPECT_NE(e.found, e.start);
+  EXPECT_GT(e.found_sigma, 0.0);
+}
+
+TEST(Adjust, ValuesThatAreStillMovingAreNotDelivered) {
+  const World w = pattern_of(full_pattern());
+  AdjustOptions o = plain();
+  o.iterations = 1;  // below what the option allows: one linearisation from far off
+  o.snooping.use = false;
+  o.corrections.position = o.corrections.attitude = CorrectionForm::none;
+  core::Calibration start = w.truth;
+  start.roll.value += 0.8 * deg;
+  start.heading.value += 1.5 * deg;
+  const Adjustment a = flown(w, o, 1, start);
+  ASSERT_GT(a.last_step, settled_step);
+  EXPECT_TRUE(says(a, "did not converge", true));
+  for (const Parameter p : usual) {
+    EXPECT_FALSE(a.estimates[p].delivered);
+    EXPECT_EQ(a.estimates[p].grade, Grade::unsettled);
+  }
+}
+
+TEST(Adjust, TwoLinesAreNotJudgedByLeavingOneOut) {
+  const World two = pattern_of({{0.0, 0.0}, {180.0 * deg, 60.0}});
+  AdjustOptions o = plain();
+  o.jackknife.lines = true;
+  const Adjustment a = flown(two, o, 9, two.truth);
+  const Estimate& e = a.estimates[boresight_roll];
+  EXPECT_GT(e.jackknife_lines, 0.0);
+  EXPECT_LT(e.sigma, 3.0 * e.formal);
+}
+
+TEST(Adjust, AGoodPatternIsDelivered) {
+  World w = pattern_of(full_pattern());
+  Dice dice(77);
+  for (const size_t k : {size_t{3}, size_t{30}, size_t{35}}) survey(w.planes[k], 0.02, &dice);
+  AdjustOptions o = plain();
+  o.jackknife = {};
+  const Adjustment a = flown(w, o, 5, near_truth(w));
+  for (const Parameter p : usual) {
+    const Estimate& e = a.estimates[p];
+    EXPECT_TRUE(e.estimated && e.delivered) << words_of(p).name;
+    EXPECT_LT(std::abs(e.value - value_of(w.truth, p)), 4.0 * e.sigma);
+    EXPECT_GE(e.sigma, e.formal);
+    EXPECT_GT(e.formal, e.white);
+    EXPECT_GT(e.jackknife_lines, 0.0);
+    EXPECT_GT(e.jackknife_planes, 0.0);
+    EXPECT_GT(e.determined, 0.9);
+  }
+  EXPECT_FALSE(a.estimates[latency].estimated);
+  EXPECT_LT(a.estimates[boresight_roll].sigma, 10.0 * arcsec);
+  EXPECT_TRUE(a.findings.empty()) << a.findings[0].what;
+  EXPECT_NEAR(a.sigma0, 1.0, 0.1);
+  EXPECT_LT(a.condition, 100.0);
+  EXPECT_EQ(a.correlation.rows(), 5);
+  EXPECT_EQ(a.control.size(), 12u);
+  for (const ControlResidual& c : a.control) {
+    EXPECT_FALSE(c.rejected);
+    EXPECT_LT(std::abs(c.w), 4.0);
+  }
+  EXPECT_EQ(a.components.size(), 6u);
+  EXPECT_GT(a.samples.size(), 1000u);
+  EXPECT_LE(a.samples.size(), 20000u);
+  ASSERT_EQ(a.corrections.size(), 8u);
+  for (const LineCorrection& c : a.corrections)
+    for (size_t i = 0; i < c.time.size(); ++i)
+      for (size_t k = 0; k < 6; ++k) {
+        EXPECT_LE(c.sigma[i][k], 1.001 * c.apriori[i][k]);
+        EXPECT_LT(std::abs(c.value[i][k]), 5.0 * c.apriori[i][k]);
+      }
+  for (size_t k = 0; k < a.planes.size(); ++k) EXPECT_GT(a.plane_sigma[k][0], 0.0);
+}
+
+TEST(Adjust, ADisplacedFacetAndAWrongControlPointAreLeftOut) {
+  World w = pattern_of(full_pattern());
+  Dice dice(8);
+  for (const size_t k : {size_t{3}, size_t{30}, size_t{35}}) survey(w.planes[k], 0.02, &dice);
+  TieSet ties = ties_of(w, &dice);
+  const size_t facet = ties.groups.size() / 2;
+  for (size_t i = ties.groups[facet].begin; i < ties.groups[facet].end; ++i) ties.returns.range[i] += 0.25;
+  ties.planes[30].control[2].point += 0.6 * ties.planes[30].normal;
+  const trajectory::Trajectory t(ErrorDraw(w, tactical_errors).with_errors(w.exact, dice));
+  const Adjustment a = adjust(ties, w.scanner, near_truth(w), w.noise, t, tactical_errors, plain());
+  EXPECT_TRUE(a.groups[facet].rejected);
+  EXPECT_GT(std::abs(a.groups[facet].w), 5.0);
+  EXPECT_LT(std::count_if(a.groups.begin(), a.groups.end(), [](const GroupResidual& g) { return g.rejected; }),
+            static_cast<std::ptrdiff_t>(a.groups.size() / 50));
+  EXPECT_TRUE(a.control[6].rejected);
+  EXPECT_EQ(std::count_if(a.control.begin(), a.control.end(), [](const ControlResidual& c) { return c.rejected; }), 1);
+  for (const Parameter p : usual) EXPECT_LT(std::abs(a.estimates[p].value - value_of(w.truth, p)), 4.0 * a.estimates[p].sigma);
+}
+
+TEST(Adjust, ControlInAnotherDatumIsNamed) {
+  World w = pattern_of(full_pattern(), 12, 6);
+  Dice dice(9);
+  for (const size_t k : {size_t{3}, size_t{27}, size_t{30}, size_t{35}}) survey(w.planes[k], 0.02, &dice);
+  for (TiePlane& p : w.planes)
+    for (PlaneControl& c : p.control) c.point += Vector3d(3.0, 0.0, -2.0);
+  const Adjustment a = flown(w, plain(), 6, near_truth(w));
+  EXPECT_TRUE(says(a, "control does not fit: mean misfit east 3.0", false));
+  for (const ControlResidual& c : a.control) EXPECT_TRUE(c.rejected);
+}
+
+// Ackermann's model: position = true + a0 + a1 t in every line, boresight held.
+TEST(Adjust, ShiftsAndDriftsOfLinesAreFound) {
+  World w = pattern_of({{0.0, 0.0}, {180.0 * deg, 200.0}, {0.0, -200.0}, {90.0 * deg, 0.0}}, 14, 12);
+  w.noise.roll = w.noise.pitch = w.noise.heading = core::Radians(0.0);  // held at the truth
+  w.noise.lever_arm = core::Metres(0.0);
+  Dice dice(12);
+  for (const size_t k : {size_t{0}, size_t{12}, size_t{24}, size_t{30}, size_t{33}, size_t{36}}) survey(w.planes[k], 0.01, &dice);
+  const TieSet ties = ties_of(w, &dice);
+  std::vector<std::array<Vector3d, 2>> drift;
+  for (size_t l = 0; l < w.lines.size(); ++l) drift.push_back({0.08 * dice.vector(), 0.004 * dice.vector()});
+  const trajectory::Trajectory t(ErrorDraw::add(w.exact, [&](double at) {
+    size_t l = 0;
+    while (l + 1 < w.lines.size() && at > w.first(l + 1) - 0.5 * w.pause) ++l;
+    Correction e = Correction::Zero();
+    e.head<3>() = drift[l][0] + drift[l][1] * (at - w.first(l) - 10.0);
+    return e;
+  }));
+  AdjustOptions o = plain();
+  o.estimate = {false, false, false, false, false, false, false, false, false, false, false};
+  o.corrections.position = CorrectionForm::drift;
+  o.corrections.attitude = CorrectionForm::none;
+  o.corrections.prior = CorrectionPrior::stated;
+  const Adjustment a = adjust(ties, w.scanner, w.truth, w.noise, t, tactical_errors, o);
+  double squares = 0.0, standard = 0.0, n = 0.0;
+  for (size_t l = 0; l < w.lines.size(); ++l) {
+    ASSERT_EQ(a.corrections[l].time.size(), 2u);
+    for (size_t i = 0; i < 2; ++i)
+      for (int c = 0; c < 3; ++c) {
+        const double truth = -(drift[l][0][c] + drift[l][1][c] * (a.corrections[l].time[i] - w.first(l) - 10.0));
+        const double e = a.corrections[l].value[i][c] - truth;
+        squares += e * e;
+        standard += e * e / std::pow(a.corrections[l].sigma[i][c], 2);
+        n += 1.0;
+      }
+  }
+  EXPECT_LT(std::sqrt(squares / n), 0.03);         // of 8 cm and 4 mm/s; along the lines it hangs on a few slopes
+  EXPECT_NEAR(std::sqrt(standard / n), 1.0, 0.4);  // 24 values, hardly independent
+  double before = 0.0, after = 0.0;
+  for (const GroupResidual& g : a.groups) before += g.before * g.before, after += g.after * g.after;
+  EXPECT_LT(after, 0.05 * before);
+}
+
+TEST(Adjust, ScanOffsetIsTheRollOfAScannerAcross) {
+  World w = pattern_of(full_pattern(), 6, 6);
+  AdjustOptions o = plain();
+  o.estimate.scan_offset = true;
+  const Adjustment a = flown(w, o, 3, near_truth(w));
+  EXPECT_FALSE(a.estimates[scan_offset].estimated);
+  EXPECT_TRUE(a.estimates[boresight_roll].delivered);
+  EXPECT_TRUE(says(a, "scan offset and boresight roll are the same turn", true));
+}
+
+TEST(Adjust, HeldValuesAreInTheSigma) {
+  World w = pattern_of({{0.0, 0.0}, {180.0 * deg, 0.0}, {90.0 * deg, 0.0}, {270.0 * deg, 0.0}}, 8, 8);
+  const auto pitch = [&](double lever_arm) {
+    w.noise.lever_arm = core::Metres(lever_arm);
+    return flown(w, plain(), 3, near_truth(w)).estimates[boresight_pitch];
+  };
+  const Estimate without = pitch(0.0), with = pitch(0.02);
+  EXPECT_EQ(without.held, 0.0);
+  EXPECT_EQ(without.sigma, without.formal);
+  EXPECT_EQ(with.found, without.found);
+  EXPECT_EQ(with.formal, without.formal);
+  EXPECT_NEAR(with.held, 0.02 / 700.0, 0.15 * 0.02 / 700.0);  // a lever arm forward looks like pitch from one height
+  EXPECT_DOUBLE_EQ(with.sigma, std::hypot(with.formal, with.held));
+}
+
+TEST(Adjust, ScanOffsetIsTheHeadingOfACone) {
+  World w = pattern_of(full_pattern(), 6, 6);
+  TieSet none;
+  none.frame = w.frame;
+  w.scanner.model = core::ScannerModel::conical;
+  AdjustOptions o = plain();
+  o.estimate.scan_offset = true;
+  const Adjustment a = adjust(none, w.scanner, w.truth, w.noise, trajectory::Trajectory(w.exact), tactical_errors, o);
+  EXPECT_FALSE(a.estimates[scan_offset].estimated);
+  EXPECT_TRUE(a.estimates[boresight_heading].estimated);
+  EXPECT_TRUE(says(a, "scan offset and boresight heading are the same turn", true));
+  o.estimate.heading = false;
+  EXPECT_TRUE(
+      adjust(none, w.scanner, w.truth, w.noise, trajectory::Trajectory(w.exact), tactical_errors, o).estimates[scan_offset].estimated);
+}
+
+TEST(Adjust, NothingToAdjust) {
+  const World w = pattern_of(full_pattern(), 0);
+  TieSet none;
+  none.frame = w.frame;
+  const Adjustment a = adjust(none, w.scanner, w.truth, w.noise, trajectory::Trajectory(w.exact), tactical_errors, plain());
+  EXPECT_TRUE(says(a, "no plane is seen by two lines", true));
+  EXPECT_EQ(a.calibration.roll, w.truth.roll);
+}
+
+TEST(Adjust, TheSameForAnyNumberOfThreads) {
+  const World w = pattern_of(full_pattern(), 6, 6);
+  Dice dice(5);
+  const TieSet ties = ties_of(w, &dice);
+  const trajectory::Trajectory t(w.exact);
+  const Adjustment one = adjust(ties, w.scanner, near_truth(w), w.noise, t, tactical_errors, plain(), 1);
+  const Adjustment four = adjust(ties, w.scanner, near_truth(w), w.noise, t, tactical_errors, plain(), 4);
+  for (const Parameter p : usual) {
+    EXPECT_EQ(one.estimates[p].value, four.estimates[p].value);
+    EXPECT_EQ(one.estimates[p].sigma, four.estimates[p].sigma);
+  }
+}
+
+}  // namespace
+}  // namespace swath::calib

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/config/units.h"
+
+#include <gtest/gtest.h>
+
+namespace swath::core {
+namespace {
+
+TEST(Units, ReadsEveryUnitAndShowsTheFirst) {
+  std::string fault;
+  EXPECT_DOUBLE_EQ(*parse_quantity(Dimension::length, "12.5 cm", fault), 0.125);
+  EXPECT_DOUBLE_EQ(*parse_quantity(Dimension::length, "-3ft", fault), -0.9144);
+  EXPECT_DOUBLE_EQ(*parse_quantity(Dimension::angle, "180 deg", fault), pi);
+  EXPECT_DOUBLE_EQ(*parse_quantity(Dimension::temperature, "15 degC", fault), 288.15);
+  EXPECT_DOUBLE_EQ(*parse_quantity(Dimension::memory, "2 GB", fault), 2e9);
+  EXPECT_EQ(format_quantity(Dimension::angle, 0.11 * degree), "0.11 deg");
+  EXPECT_EQ(format_quantity(Dimension::temperature, 288.15), "15 degC");
+}
+
+TEST(Units, SaysWhatIsWrong) {
+  std::string fault;
+  EXPECT_FALSE(parse_quantity(Dimension::length, "5", fault));
+  EXPECT_NE(fault.find("no unit"), std::string::npos);
+  EXPECT_FALSE(parse_quantity(Dimension::length, "5 deg", fault));
+  EXPECT_NE(fault.find("'deg' is not a unit of length"), std::string::npos);
+  EXPECT_FALSE(parse_quantity(Dimension::length, "wide", fault));
+  EXPECT_FALSE(parse_quantity(Dimension::length, "inf m", fault));
+}
+
+TEST(Units, WhatIsShownReadsBack) {
+  std::string fault;
+  for (const Unit& u : units()) {
+    const double si = 300.0 * u.factor + u.shift;
+    EXPECT_NEAR(*parse_quantity(u.dimension, format_quantity(u.dimension, si), fault), si, std::abs(si) * 1e-13) << u.name;
+  }
+}
+
+}  // namespace
+}  // namespace swath::core

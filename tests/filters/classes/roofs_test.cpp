@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "filters/classes/roofs.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace swath::filters {
+namespace {
+
+constexpr float none = std::numeric_limits<float>::quiet_NaN();
+
+/// Level planes 6 m above the ground in the cells of rectangles.
+struct Planes {
+  StructureCells cells;
+  Districts where;
+  std::vector<std::uint8_t> standing, decks;
+
+  Planes() {
+    cells.lattice = {1.0, 0, 0, 60, 36};
+    cells.plane.assign(cells.lattice.size(), none);
+    cells.height = cells.ground = cells.low = cells.plane;
+    cells.kind.assign(cells.lattice.size(), Planar::none);
+    where.lattice = {district_side, 0, 0, 5, 3};
+    where.side.assign(where.lattice.size(), 0);
+    standing.assign(cells.lattice.size(), 0);
+    decks = standing;
+  }
+  void add(int i0, int j0, int nx, int ny, float z, Planar kind = Planar::wide) {
+    for (int j = j0; j < j0 + ny; ++j)
+      for (int i = i0; i < i0 + nx; ++i) {
+        const size_t c = cells.lattice.at(i, j);
+        cells.plane[c] = cells.low[c] = cells.height[c] = z;
+        cells.kind[c] = kind;
+        standing[c] = 1;
+      }
+  }
+  std::vector<float> roofs() const { return roof_cells(cells, standing, decks, where, {}); }
+};
+
+TEST(Roofs, LargeAndHighPlanesAreRoofsWithTheSmallPartsBesideThem) {
+  Planes p;
+  p.add(2, 2, 3, 3, 6.0f);                 // just large enough
+  p.add(20, 2, 2, 4, 6.0f);                // too small
+  p.add(40, 2, 5, 5, 1.5f);                // too low
+  p.add(2, 20, 5, 5, 6.0f);                // a roof ...
+  p.add(7, 20, 1, 1, 6.2f, Planar::some);  // ... and a part of it
+  const std::vector<float> roofs = p.roofs();
+  const auto is = [&](int i, int j) { return !std::isnan(roofs[p.cells.lattice.at(i, j)]); };
+  EXPECT_TRUE(is(3, 3) && is(2, 2) && is(4, 4));
+  EXPECT_FALSE(is(20, 3));
+  EXPECT_FALSE(is(42, 4));
+  EXPECT_TRUE(is(4, 22) && is(7, 20));
+}
+
+TEST(Roofs, AGapIsFilledWhereSomethingStandsInItAndADeckIsNone) {
+  Planes p;
+  p.add(2, 2, 9, 9, 6.0f);
+  for (const int j : {5, 7}) p.cells.plane[p.cells.lattice.at(5, j)] = none, p.cells.kind[p.cells.lattice.at(5, j)] = Planar::none;
+  p.standing[p.cells.lattice.at(5, 7)] = 0;
+  const std::vector<float> roofs = p.roofs();
+  EXPECT_EQ(roofs[p.cells.lattice.at(5, 5)], 6.0f);
+  EXPECT_TRUE(std::isnan(roofs[p.cells.lattice.at(5, 7)]));
+  p.decks = p.standing;
+  for (const float z : p.roofs()) EXPECT_TRUE(std::isnan(z));
+}
+
+TEST(Roofs, LongRowsOfCellsCountFromEachOfThem) {
+  Planes p;
+  p.add(2, 10, 40, 1, 6.0f);
+  const std::vector<float> roofs = p.roofs();
+  for (int i = 2; i < 42; ++i) EXPECT_EQ(roofs[p.cells.lattice.at(i, 10)], 6.0f) << i;
+}
+
+}  // namespace
+}  // namespace swath::filters

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "georef/optech.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "georef/shot_geometry.h"
+#include "tests/calib/survey_support.h"
+#include "tests/world/support.h"
+
+namespace swath::test {}
+namespace swath::georef {
+namespace test {
+using namespace swath::calib::test;
+using namespace swath::test;
+}  // namespace test
+namespace {
+
+using Eigen::Vector3d;
+using test::deg;
+
+template <class T>
+T at(const std::string& bytes, size_t offset) {
+  T v;
+  std::memcpy(&v, bytes.data() + offset, sizeof v);
+  return v;
+}
+
+// East, north, up of our own chain.
+Vector3d our_vector(const CsdReturn& r, const CsdAlignment& alignment) {
+  const trajectory::Pose pose =
+      test::pose_of({r.latitude, r.longitude, r.height}, {r.roll, r.pitch, r.heading}, Vector3d::Zero(), Vector3d::Zero());
+  const ShotGeometry g(test::scanner_of(core::ScannerModel::mirror, false),
+                       calibration_of_csd(alignment.misalignment, alignment.imu_offsets));
+  const Vector3d ned = ecef_R_ned_at(pose).transpose() * (g.ecef_point(pose, {r.scan_angle, 0.0, r.range}) - pose.position);
+  return {ned.y(), ned.x(), -ned.z()};
+}
+
+TEST(Optech, CalibrationOfCsdIsExact) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  for (int i = 0; i < 200; ++i) {
+    const CsdReturn r{1000.0 + 900.0 * unit(random),
+                      0.6 * unit(random),
+                      0.4 * unit(random),
+                      0.4 * unit(random),
+                      3.1 * unit(random),
+                      1.5 * unit(random),
+                      3.0 * unit(random),
+                      1500.0};
+    const CsdAlignment a{{0.3 * unit(random), 0.3 * unit(random), 0.3 * unit(random)},
+                         {0.1 * unit(random), 0.1 * unit(random), 0.1 * unit(random)}};
+    EXPECT_LT((our_vector(r, a) - csd_local_vector(r, a)).norm(), 5e-9);  // rounding of earth-centred coordinates
+  }
+}
+
+TEST(Optech, LocalLinearisationByHand) {
+  // Level over the equator, heading north, beam 30 deg to the right: 500 m east.
+  const CsdReturn r{1000.0, 30.0 * deg, 0.0, 0.0, 0.0, 0.0, -2.0 * core::pi + 0.1, 1200.0};
+  const core::Geodetic g = csd_point(r, {});
+  EXPECT_NEAR(g.longitude, 0.1 + 500.0 / core::wgs84::a, 1e-15);
+  EXPECT_NEAR(g.latitude, 0.0, 1e-15);
+  EXPECT_NEAR(g.height, 1200.0 - 1000.0 * std::cos(30.0 * deg), 1e-9);
+}
+
+TEST(Optech, FirstReturnOfTheSampleFile) {
+  SWATH_SHARED_OR_SKIP(folder, "data/optech_csd");
+  const std::string bytes = swath::test::read_bytes(folder / "sample.csd");
+  constexpr size_t header = 2048, angles = 1154, record = 69;
+  ASSERT_EQ(bytes.size(), header + 1000 * record);
+  const auto angle = [&](size_t i) { return at<double>(bytes, angles + 8 * i); };
+  const CsdAlignment alignment{{angle(0), angle(1), angle(2)}, {angle(3), angle(4), angle(5)}};
+  const auto f = [&](size_t offset) { return static_cast<double>(at<float>(bytes, header + offset)); };
+  const CsdReturn r{f(9), f(33), f(37), f(41), f(45), at<double>(bytes, header + 49), at<double>(bytes, header + 57), f(65)};
+  EXPECT_NEAR(r.range, 827.3567, 1e-4);
+  EXPECT_NEAR(r.scan_angle / deg, -14.555, 1e-3);
+
+  const core::Geodetic g = csd_point(r, alignment);
+  EXPECT_NEAR(g.longitude / deg, -82.554028877408555, 1e-9);
+  EXPECT_NEAR(g.latitude / deg, 36.534611447321907, 1e-9);
+  EXPECT_NEAR(g.height, 344.80889224602356, 1e-4);
+
+  // The rigorous chain: what the linearisation leaves out.
+  const trajectory::Pose pose =
+      test::pose_of({r.latitude, r.longitude, r.height}, {r.roll, r.pitch, r.heading}, Vector3d::Zero(), Vector3d::Zero());
+  const ShotGeometry ours(test::scanner_of(core::ScannerModel::mirror, false),
+                          calibration_of_csd(alignment.misalignment, alignment.imu_offsets));
+  const core::Geodetic rigorous = core::geodetic_of(ours.ecef_point(pose, {r.scan_angle, 0.0, r.range}));
+  const double north = (g.latitude - rigorous.latitude) * core::meridian_radius(g.latitude);
+  const double east = (g.longitude - rigorous.longitude) * core::prime_vertical_radius(g.latitude) * std::cos(g.latitude);
+  EXPECT_NEAR(std::hypot(north, east), 0.014, 0.001);
+  EXPECT_NEAR(std::abs(g.height - rigorous.height), 0.004, 0.0006);
+  RecordProperty("horizontal_mm", std::to_string(1e3 * std::hypot(north, east)));
+  RecordProperty("vertical_mm", std::to_string(1e3 * (g.height - rigorous.height)));
+}
+
+}  // namespace
+}  // namespace swath::georef

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/las/describe_las.h"
+
+#include <cstring>
+
+#include "core/error.h"
+#include "tests/world/support.h"
+
+namespace swath::io {
+namespace {
+
+bool warns(const core::Value& told, const std::string& words) {
+  for (const core::Value& w : told.find("warnings")->items())
+    if (w.as_text().find(words) != std::string::npos) return true;
+  return false;
+}
+
+TEST(DescribeLas, TruncatedFilesAreErrors) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "a.las", "LASF");
+  EXPECT_THROW(describe_las(folder / "a.las"), core::Error);
+}
+
+TEST(DescribeLasReference, OneStripInFeet) {
+  SWATH_SHARED_OR_SKIP(data, "data/autzen");
+  const core::Value las = describe_las(data / "autzen_trim.las");
+  EXPECT_EQ(las.find("points")->as_int(), 110000);
+  EXPECT_EQ(las.find("lines")->members().size(), 1u);
+  EXPECT_EQ(las.find("lines")->members()[0].first, "7326");
+  EXPECT_EQ(las.find("lines")->members()[0].second.as_int(), 110000);
+  EXPECT_NE(las.find("crs"), nullptr);
+  const core::Value laz = describe_las(data / "autzen_trim.laz");
+  EXPECT_EQ(laz.find("points")->as_int(), 110000);
+  EXPECT_EQ(laz.find("x")->items()[0].as_number(), las.find("x")->items()[0].as_number());
+}
+
+TEST(DescribeLasReference, WrongBoundsAndWeeklessTimesAreToldOf) {
+  SWATH_SHARED_OR_SKIP(data, "data/als_leeward/points.las");
+  const core::Value told = describe_las(data);
+  EXPECT_EQ(told.find("points")->as_int(), 1325);
+  EXPECT_TRUE(warns(told, "seconds of the week"));
+  const test::TemporaryFolder folder;
+  std::string bytes = test::read_bytes(data);
+  const double wrong = 12345678.0;
+  std::memcpy(bytes.data() + 179, &wrong, sizeof wrong);  // max x of the header
+  test::write_bytes(folder / "a.las", bytes);
+  EXPECT_TRUE(warns(describe_las(folder / "a.las"), "the header states x"));
+}
+
+}  // namespace
+}  // namespace swath::io

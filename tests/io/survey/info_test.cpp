@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/survey/info.h"
+
+#include "core/error.h"
+#include "io/text/npy.h"
+#include "tests/world/support.h"
+
+namespace swath::io {
+namespace {
+
+TEST(Info, TextAndNumpy) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "a.csv", "t,r\n1,5\n2,nan\n3,-7\n");
+  core::Value told = describe_file(folder / "a.csv");
+  EXPECT_EQ(told.find("format")->as_text(), "delimited text");
+  EXPECT_EQ(told.find("rows")->as_int(), 3);
+  EXPECT_EQ(told.find("columns")->find("r")->items()[0].as_number(), -7);
+  EXPECT_NE(info_text(told).find("warning: column r holds 1"), std::string::npos) << info_text(told);
+  EXPECT_NE(info_text(told).find("-7 to 5"), std::string::npos) << info_text(told);
+  test::write_bytes(folder / "a.csv", "t,r\n1,5\n2,x\n");
+  EXPECT_NE(info_text(describe_file(folder / "a.csv")).find("reading stopped"), std::string::npos);
+
+  const double v[2] = {1.5, 2.5};
+  NpyWriter w(folder / "a.npy", {{"t", "f8"}});
+  w.append({v}, 2);
+  w.commit();
+  told = describe_file(folder / "a.npy");
+  EXPECT_EQ(told.find("rows")->as_int(), 2);
+  EXPECT_EQ(told.find("columns")->find("t")->items()[1].as_number(), 2.5);
+}
+
+TEST(Info, ASurveyWithItsFaults) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "survey.toml", "name = \"s\"\n[[laser]]\nfile = \"none.csv\"\n");
+  const core::Value told = describe_file(folder / "survey.toml");
+  EXPECT_EQ(told.find("name")->as_text(), "s");
+  EXPECT_NE(info_text(told).find("no such file"), std::string::npos);
+}
+
+TEST(Info, WhatThisProgramWritesAndReads) {
+  const test::TemporaryFolder folder;
+  const auto format = [&](const char* name, const std::string& text) {
+    test::write_bytes(folder / name, text);
+    const core::Value told = describe_file(folder / name);
+    EXPECT_TRUE(told.find("warnings")->items().empty()) << info_text(told);
+    return told.find("format")->as_text();
+  };
+  EXPECT_EQ(format("report.json", R"({"program": "swath 1", "survey": "s", "stages": [{"type": "readers.las"}]})"), "report of a run");
+  EXPECT_NE(info_text(describe_file(folder / "report.json")).find("readers.las"), std::string::npos);
+  EXPECT_EQ(format("calibration.json", R"({"calibration": {"roll": "0.1 deg"}, "sigma": {"roll": "1 arcsec"}})"), "calibration");
+  EXPECT_EQ(format("p.toml", "[[stage]]\ntype = \"readers.las\"\n"), "pipeline");
+  EXPECT_EQ(format("tiles.json", R"(["a.tif", "b.tif"])"), "JSON or TOML");
+  EXPECT_EQ(format("a.geojson", R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": )"
+                                R"({"type": "LineString", "coordinates": [[9, 48], [9.1, 48]]}}]})"),
+            "GeoJSON");
+  std::filesystem::rename(folder / "a.geojson", folder / "a.json");
+  EXPECT_EQ(describe_file(folder / "a.json").find("format")->as_text(), "GeoJSON");
+}
+
+TEST(Info, UnknownFilesAreErrors) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "empty", "");
+  test::write_bytes(folder / "zero", std::string(1000, '\0'));
+  EXPECT_THROW(describe_file(folder / "empty"), core::Error);
+  EXPECT_THROW(describe_file(folder / "zero"), core::Error);
+  EXPECT_THROW(describe_file(folder / "none"), core::Error);
+  EXPECT_THROW(describe_file(folder.path()), core::Error);
+}
+
+TEST(InfoReference, EveryKind) {
+  SWATH_SHARED_OR_SKIP(data, "data");
+  for (const auto& [name, format] : {std::pair{"tiny_survey/laser_socs.las", "LAS"},
+                                     {"autzen/autzen_trim.laz", "LAZ"},
+                                     {"tiny_survey/truth/sbet.out", "SBET"},
+                                     {"optech_csd/sample.csd", "Optech CSD"},
+                                     {"tiny_survey/laser.npy", "NumPy array"},
+                                     {"tiny_survey/gnss.csv", "delimited text"},
+                                     {"tiny_survey/truth/dtm_1m.tif", "GTiff"},
+                                     {"rinex_rtklib/07590920.05o", "RINEX"},
+                                     {"rinex_rtklib/07590920.05n", "RINEX"},
+                                     {"contour_gdal/contour-gdal.geojson", "GeoJSON"},
+                                     {"contour_gdal/input-dem.asc", "AAIGrid"}}) {
+    const core::Value told = describe_file(data / name);
+    EXPECT_EQ(told.find("format")->as_text(), format) << name;
+    EXPECT_GT(info_text(told).size(), 80u);
+  }
+  EXPECT_EQ(describe_file(data / "optech_csd/sample.csd").find("pulses")->as_int(), 1000);
+  EXPECT_EQ(describe_file(data / "rinex_rtklib/07590920.05o").find("interval_s")->as_number(), 30.0);
+}
+
+}  // namespace
+}  // namespace swath::io

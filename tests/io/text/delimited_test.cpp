@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/text/delimited.h"
+
+#include <cmath>
+
+#include "core/error.h"
+#include "tests/world/support.h"
+
+namespace swath::io {
+namespace {
+
+std::vector<std::vector<double>> read_all(const std::filesystem::path& file, const std::vector<std::string>& columns,
+                                          const std::string& delimiter = "") {
+  const DelimitedLayout layout = inspect_delimited(file, delimiter);
+  std::vector<size_t> at;
+  for (const std::string& c : columns) at.push_back(column_of(layout, c, file));
+  DelimitedReader reader(file, layout, at);
+  std::vector<std::vector<double>> out;
+  std::vector<double> row(columns.size());
+  while (reader.next(row.data())) out.push_back(row);
+  return out;
+}
+
+class Delimited : public ::testing::Test {
+ protected:
+  std::filesystem::path made(const std::string& text) {
+    test::write_bytes(folder_ / "a.csv", text);
+    return folder_ / "a.csv";
+  }
+  core::Error error_of(const std::string& text, const std::vector<std::string>& columns) {
+    try {
+      read_all(made(text), columns);
+    } catch (const core::Error& e) {
+      return e;
+    }
+    ADD_FAILURE() << "no error for: " << text;
+    return core::Error("none");
+  }
+  test::TemporaryFolder folder_;
+};
+
+using Rows = std::vector<std::vector<double>>;
+
+TEST_F(Delimited, EveryDelimiterGivesTheSameRows) {
+  const Rows wanted{{3, 1}, {-6.5, 4}};
+  for (const char* text :
+       {"t,a,r\n1,2,3\n4,5,-6.5\n", "t;a;r\r\n1;2;3\r\n4;5;-6.5\r\n", "t\ta\tr\n1\t2\t3\n4\t5\t-6.5", "t a  r\n 1   2 3  \n4 5\t-6.5\n",
+        "\xEF\xBB\xBFt,a,r\n1,2,3\n\n# remark\n4,5,-6.5", "\"t\",\"a\",\"r\"\n1,\"2\",\"3\"\n4, 5 , -6.5\n",
+        "# made by hand\n% t,a,r\n1,2,3\n4,5,-6.5\n", "T,A,R\n+1,2,+3e0\n4,5,-0.65E1\n"})
+    EXPECT_EQ(read_all(made(text), {"r", "t"}), wanted) << text;
+}
+
+TEST_F(Delimited, ColumnsByNumber) {
+  EXPECT_EQ(read_all(made("1,2,3\n4,5,6\n"), {"3", "1", "3"}), (Rows{{3, 1, 3}, {6, 4, 6}}));
+  EXPECT_EQ(read_all(made("a,b,c\n4,5,6\n"), {"3"}), (Rows{{6}}));
+}
+
+TEST_F(Delimited, NonFiniteAndEmptyFieldsAreHandedOver) {
+  const Rows rows = read_all(made("a,b,c\nnan,inf,1\n,-inf,2\n1,2,\n"), {"a", "b", "c"});
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_TRUE(std::isnan(rows[0][0]));
+  EXPECT_TRUE(std::isinf(rows[0][1]));
+  EXPECT_TRUE(std::isnan(rows[1][0]));
+  EXPECT_TRUE(std::isnan(rows[2][2]));
+}
+
+TEST_F(Delimited, AMissingColumnIsNamedWithTheNearest) {
+  const core::Error e = error_of("time,range,angle\n1,2,3\n", {"rnge"});
+  EXPECT_NE(std::string(e.what()).find("time, range, angle"), std::string::npos) << e.text();
+  EXPECT_NE(e.hint().find("'range'"), std::string::npos) << e.text();
+  EXPECT_NE(e.where().find("a.csv"), std::string::npos);
+  error_of("1,2,3\n", {"4"});
+  error_of("a,a,b\n1,2,3\n", {"a"});
+}
+
+TEST_F(Delimited, BadNumbersAndShortLinesNameTheLine) {
+  core::Error e = error_of("a,b\n1,2\n3,x4\n", {"b"});
+  EXPECT_EQ(e.where(), (folder_ / "a.csv").string() + ":3");
+  EXPECT_NE(std::string(e.what()).find("'x4'"), std::string::npos);
+  e = error_of("a,b\n1,2\n\n3\n", {"b"});
+  EXPECT_EQ(e.where(), (folder_ / "a.csv").string() + ":4");
+  e = error_of("a;b\n1,5;2\n", {"a"});
+  error_of("a b\n1 2\n3 4.5.6\n", {"b"});
+  EXPECT_NE(error_of("a b\n1 2\n3\n", {"b"}).where().find(":3"), std::string::npos);
+}
+
+TEST_F(Delimited, EmptyAndBinaryFilesAreErrors) {
+  error_of("", {"1"});
+  error_of("a,b\n", {"a"});
+  error_of("# only\n", {"1"});
+  error_of(std::string("LASF\0\0\0\0", 8), {"1"});
+  EXPECT_THROW(inspect_delimited(folder_ / "none.csv"), core::Error);
+  EXPECT_THROW(inspect_delimited(made("1,2\n"), "xx"), core::Error);
+}
+
+TEST_F(Delimited, EveryTruncationEitherReadsWholeLinesOrNamesTheShortOne) {
+  const std::string text = "a,b\n10,20\n30,40\n";
+  for (size_t n = 0; n <= text.size(); ++n) {
+    const auto file = made(text.substr(0, n));
+    try {
+      EXPECT_LE(read_all(file, {"a", "b"}).size(), 2u) << n;
+    } catch (const core::Error& e) {
+      EXPECT_NE(e.where().find("a.csv"), std::string::npos);
+    }
+  }
+}
+
+TEST_F(Delimited, AStretchOfBytesIsReadOnItsOwn) {
+  std::string text = "a,b\n";
+  for (int i = 0; i < 40000; ++i) text += std::to_string(i) + "," + std::to_string(-i) + "\n";
+  const auto file = made(text);
+  const DelimitedLayout layout = inspect_delimited(file);
+  DelimitedReader all(file, layout, {0, 1});
+  double row[2];
+  std::uint64_t begin = 0, line = 0, end = 0;
+  for (int i = 0; i < 40000; ++i) {
+    ASSERT_TRUE(all.next(row));
+    ASSERT_EQ(row[0], i);
+    ASSERT_EQ(row[1], -i);
+    if (i == 20000) begin = all.offset(), line = all.line();
+    if (i == 30000) end = all.offset();
+  }
+  EXPECT_FALSE(all.next(row));
+  EXPECT_EQ(line, 20002u);
+  DelimitedReader part(file, layout, {0}, begin, line, end);
+  int n = 0;
+  while (part.next(row)) EXPECT_EQ(row[0], 20000 + n++);
+  EXPECT_EQ(n, 10000);
+}
+
+TEST(DelimitedReference, RealFiles) {
+  SWATH_SHARED_OR_SKIP(data, "data");
+  EXPECT_EQ(inspect_delimited(data / "tiny_survey/laser.csv").names.size(), 7u);
+  const auto rows = read_all(data / "sbet_houston/sbet_047_IGS08-UTM15N-Ellipsoid-trim.txt", {"GpsTime", "Azimuth"});
+  EXPECT_EQ(rows.size(), 14600u);
+  EXPECT_EQ(rows.front(), (std::vector<double>{407106.003323, -90.494178}));
+}
+
+}  // namespace
+}  // namespace swath::io

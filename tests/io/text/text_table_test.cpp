@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/text/text_table.h"
+
+#include "core/error.h"
+#include "tests/world/support.h"
+
+namespace swath::io {
+namespace {
+
+class Tables : public ::testing::Test {
+ protected:
+  TextTable table(const std::string& text, const std::string& delimiter = {}) {
+    test::write_bytes(folder_ / "a.csv", text);
+    return TextTable(folder_ / "a.csv", delimiter);
+  }
+  /// "where: what" of the error, without the folder.
+  template <class F>
+  std::string fault(const F& f) {
+    try {
+      f();
+    } catch (const core::Error& e) {
+      return e.where().substr(e.where().rfind('/') + 1) + ": " + e.what();
+    }
+    return "no error";
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Tables, NamesAndNumbers) {
+  const TextTable t = table("\xEF\xBB\xBF# made by hand\n\nname;x;y\r\n\"a;1\"; +1.5 ;2\r\n# between\nb;-3e2;\n");
+  ASSERT_EQ(t.rows(), 2u);
+  EXPECT_EQ(t.text(0, t.column("NAME")), "a;1");
+  EXPECT_EQ(t.number(0, t.column("x")), 1.5);
+  EXPECT_EQ(t.number(1, t.column("2")), -300);
+  EXPECT_EQ(t.text(1, 2), "");
+  EXPECT_TRUE(t.place(1).ends_with("a.csv:6"));
+}
+
+TEST_F(Tables, ColumnsThatNeedNotBeThere) {
+  const TextTable t = table("name,x\na,1\n");
+  EXPECT_EQ(t.column_if_there("Name", "Name"), 0u);
+  EXPECT_FALSE(t.column_if_there("sigma", "sigma"));
+  EXPECT_FALSE(t.column_if_there("", "sigma"));
+  EXPECT_EQ(fault([&] { t.column_if_there("s", "sigma"); }), "a.csv: no column 's'; columns: name, x");
+}
+
+TEST_F(Tables, FaultsNameTheirLine) {
+  EXPECT_EQ(fault([&] { table(""); }), "a.csv: no row of data");
+  EXPECT_EQ(fault([&] { table("name,x\n"); }), "a.csv: no row of data");
+  EXPECT_EQ(fault([&] { table("name,x\na,1\nb\n"); }), "a.csv:3: the line has 1 fields, the header 2 columns");
+  const TextTable t = table("name|x\na|nan\nb|\nc|1m\n", "|");
+  EXPECT_EQ(fault([&] { t.number(0, 1); }), "a.csv:2: 'nan' is no finite number in column 'x'");
+  EXPECT_EQ(fault([&] { t.number(1, 1); }), "a.csv:3: the field is empty in column 'x'");
+  EXPECT_EQ(fault([&] { t.number(2, 1); }), "a.csv:4: '1m' is no number in column 'x'");
+  EXPECT_EQ(fault([&] { table(std::string("a\0b\n1\n", 6)); }), "a.csv: is not delimited text");
+}
+
+}  // namespace
+}  // namespace swath::io

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far the clocks of IMU and GNSS lie apart, and how late a receiver's velocities are, from the records alone.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "core/config/value.h"
+#include "core/records/gnss_data.h"
+#include "core/records/imu_spec.h"
+#include "trajectory/ins/imu_walk.h"
+
+namespace swath::trajectory {
+
+/// An offset with its sigma, or the reason why there is none.
+struct TimeOffset {
+  bool determinable = false;
+  std::string reason;            ///< why not; empty where it is
+  double value = 0.0;            ///< s
+  double sigma = 0.0;            ///< s; 0 where not determinable
+  std::int64_t used = 0;         ///< instants compared
+  double contrast = 0.0;         ///< the misfit falls by this share from its median over the search to its minimum
+  Eigen::Vector3d rms{0, 0, 0};  ///< of what is left, north east down; m/s^2 (clocks), m/s (velocities)
+
+  /// Larger than 4 sigma and `floor` (s).
+  bool is_significant(double floor) const;
+  core::Value to_value() const;
+};
+
+/// What must be added to the fixes' times, or subtracted from those of the IMU, so that both records show the same motion.
+///
+/// Second differences of the fixes over 1, 2 and 4 s on either side, less gravity, are the specific force averaged by a triangle; the same
+/// second differences of the twice integrated increments, lever arm included, are taken at times that lie apart by the offset. The span
+/// whose answer has the smallest sigma is taken: short ones where the vehicle shakes, long ones in flight. Windows of 20 s each have a
+/// rotation, a gyro and an accelerometer bias of their own; the offset is common to all. Coarse: least sum of distances over a grid of
+/// offsets, Wahba's problem solved in each window. Fine: Gauss and Newton with Huber's weights. The sigma is from the scatter of the
+/// windows' own answers (cluster-robust), so that it holds for correlated errors; the lever arm's is added: at one speed an arm along the
+/// track that is off by 1 cm acts as 1 cm / speed. Not determinable: fixes more than 3 s apart, no change of motion (sigma over 20 ms), two
+/// offsets that fit alike, an offset at the search's end. `search`: s, either way.
+TimeOffset imu_clock_offset(const ImuPath& path, const core::GnssData& gnss, const core::ImuErrorModel& spec,
+                            const Eigen::Vector3d& lever_arm, double lever_arm_sigma, double search);
+
+/// Do the fixes fit the IMU's records only when their times are moved by the leap seconds of their date? In words, for a hint; empty where
+/// not.
+std::string leap_seconds_between(const ImuPath& path, const core::GnssData& gnss, const core::ImuErrorModel& spec,
+                                 const Eigen::Vector3d& lever_arm, double lever_arm_sigma);
+
+/// How late the velocities are against the positions of the same fixes (positive: late): means of neighbouring velocities against
+/// differences of positions.
+TimeOffset velocity_lag(const core::GnssData& gnss);
+
+/// Offsets that the survey states already, where they are the same for all files.
+struct StatedClocks {
+  std::optional<double> imu_offset, antenna_latency;  ///< s
+};
+
+/// What the clocks of the records show.
+struct ClockFindings {
+  TimeOffset imu;       ///< imu_clock_offset()
+  TimeOffset velocity;  ///< velocity_lag()
+  StatedClocks stated;
+
+  bool apart() const { return imu.is_significant(0.002); }
+  /// The velocities lag so much that they contradict the positions: 2 cm/s at 1 m/s^2.
+  bool velocities_lag() const { return velocity.value > 0.0 && velocity.is_significant(0.02); }
+  /// The offset and the values to state that take it out, in words.
+  std::string advice() const;
+  core::Value to_value() const;
+};
+
+}  // namespace swath::trajectory

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Error-state filter and smoother after Groves 2013 (chapters 14 and 16) and Bierman 1973; alignment in motion after Wu and Pan 2013.
+// The first pass feeds corrections back; the next ones are linearised about the smoothed trajectory before (Bell 1994: the iterated
+// smoother is Gauss and Newton's method), so that what the filter did not know in its first minutes leaves no trace. Deviation: the bias
+// drift is a random walk (see ProcessNoise).
+// Over 400 lines: the steps from records to the smoothed run stand in one place, each a short function.
+#include "trajectory/ins/ins_gnss.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "core/geo/frames.h"
+#include "core/geo/geodesy.h"
+#include "core/time_gap.h"
+#include "trajectory/ins/alignment.h"
+#include "trajectory/ins/ins_output.h"
+#include "trajectory/ins/ins_report.h"
+#include "trajectory/ins/ins_start.h"
+
+namespace swath::trajectory {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double node_spacing = 0.25;   // s: between nodes residuals of the mechanisation are linear in time
+constexpr double longest_lead = 120.0;  // s of IMU records kept before the first fix and after the last
+constexpr double most_rate = 2.0;       // rad/s, rms over the record
+constexpr int most_iterations = 8;
+constexpr double settled = 0.05;                         // sigmas by which the trajectory may still move
+constexpr double least_share = 0.02, usual_share = 0.4;  // of the GNSS variance that is correlated, where nothing determines it
+constexpr double least_fixes = 100;                      // from which noise is estimated
+constexpr double too_large = 1.5, too_alike = 0.25;      // normalised innovations: mean square, correlation of neighbours
+constexpr double most_roughness = 64;
+constexpr double first_gate = 1e5;  // NIS in the first pass, whose start may be degrees off
+
+std::string seconds(double t) { return core::format_number(std::round(t * 1000) / 1000); }
+
+/// NIS of 3 degrees of freedom that is exceeded with the given probability: Wilson and Hilferty, within 1 % below 1e-2.
+double gate_of(double probability) {
+  // Normal quantile by bisection of erfc.
+  double low = 0, high = 40;
+  for (int i = 0; i < 200; ++i) {
+    const double mid = 0.5 * (low + high);
+    (0.5 * std::erfc(mid / std::sqrt(2.0)) > probability ? low : high) = mid;
+  }
+  const double c = 2.0 / 27.0, root = 1 - c + low * std::sqrt(c);
+  return 3 * root * root * root;
+}
+
+/// An IMU whose numbers cannot be those of a survey: units or axes.
+void require_plausible(const core::ImuData& imu) {
+  Vector3d force = Vector3d::Zero();
+  double turn = 0, length = 0, rate2 = 0;
+  for (size_t k = 0; k < imu.size(); ++k) {
+    if (!imu.angle[k].allFinite() || !imu.velocity[k].allFinite() || !std::isfinite(imu.time[k]))
+      throw core::Error("a value is not finite", "IMU record " + std::to_string(k + 1),
+                        "such records must be left out before the smoother");
+    force += imu.velocity[k];
+    length += imu.step[k];
+    turn += imu.angle[k].norm();
+    rate2 += imu.angle[k].squaredNorm() / imu.step[k];
+  }
+  force /= length;
+  const double rate = std::sqrt(rate2 / length);
+  if (rate > most_rate)
+    throw core::Error("the gyros turn by " + seconds(rate) + " rad/s (rms): no carrier does", "IMU records",
+                      "are the angles in degrees? state imu.angle_unit");
+  if (force.norm() < 5.0 || force.norm() > 15.0)
+    throw core::Error("the mean specific force is " + seconds(force.norm()) + " m/s2, which is not gravity", "IMU records",
+                      "state imu.acceleration_unit and imu.kind");
+  if (-force.z() < 0.5 * force.norm())
+    throw core::Error("gravity lies along (" + seconds(force.x()) + ", " + seconds(force.y()) + ", " + seconds(force.z()) +
+                          ") m/s2 of forward, right, down, where (0, 0, -9.8) is expected",
+                      "IMU records", "state imu.axes or the mounting's roll, pitch and heading");
+}
+
+void require_finite(const core::GnssData& gnss) {
+  for (size_t k = 0; k < gnss.size(); ++k)
+    if (!gnss.position[k].allFinite() || !gnss.covariance[k].allFinite() || !std::isfinite(gnss.time[k]))
+      throw core::Error("a position, covariance or time is not finite", "GNSS fix " + std::to_string(k + 1),
+                        "such fixes must be left out before the smoother");
+}
+
+/// The fixes within the IMU's record; the record cut to their neighbourhood.
+struct Trimmed {
+  core::ImuData imu;
+  core::GnssData gnss;
+};
+
+template <class T>
+void keep(std::vector<T>& v, size_t first, size_t last) {
+  if (v.empty()) return;
+  v.erase(v.begin() + static_cast<std::ptrdiff_t>(last), v.end());
+  v.erase(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
+Trimmed trim(core::ImuData imu, core::GnssData gnss) {
+  if (imu.size() < 10) throw core::Error("too few IMU records: " + std::to_string(imu.size()), "IMU records", "give a longer record");
+  if (gnss.size() < 4) throw core::Error("too few fixes: " + std::to_string(gnss.size()), "GNSS fixes", "four are the least");
+  const double begin = imu.time.front() - imu.step.front(), end = imu.time.back();
+  const auto first = static_cast<size_t>(std::lower_bound(gnss.time.begin(), gnss.time.end(), begin) - gnss.time.begin());
+  const auto last = static_cast<size_t>(std::upper_bound(gnss.time.begin(), gnss.time.end(), end) - gnss.time.begin());
+  if (last > first && last < first + 4)
+    throw core::Error("only " + std::to_string(last - first) + " fixes lie within the IMU's record from " + seconds(begin) + " to " +
+                          seconds(end) + " s GPS time, four are the least",
+                      "trajectory.ins_gnss", "give longer records");
+  const double apart = 0.5 * (begin + end - gnss.time.front() - gnss.time.back());
+  const std::string gap = core::usual_time_gap(apart, end - begin + gnss.time.back() - gnss.time.front());
+  if (last <= first)
+    throw core::Error("IMU and GNSS do not overlap: IMU from " + seconds(begin) + " to " + seconds(end) + ", fixes from " +
+                          seconds(gnss.time.front()) + " to " + seconds(gnss.time.back()) + " s GPS time",
+                      "trajectory.ins_gnss", gap.empty() ? "check the time scales, weeks and dates of both" : gap);
+  keep(gnss.time, first, last);
+  keep(gnss.position, first, last);
+  keep(gnss.covariance, first, last);
+  keep(gnss.velocity, first, last);
+  keep(gnss.velocity_covariance, first, last);
+  keep(gnss.quality, first, last);
+  keep(gnss.satellites, first, last);
+  const auto& t = imu.time;
+  const auto imu_first = static_cast<size_t>(std::lower_bound(t.begin(), t.end(), gnss.time.front() - longest_lead) - t.begin());
+  const auto imu_last = static_cast<size_t>(std::upper_bound(t.begin(), t.end(), gnss.time.back() + longest_lead) - t.begin());
+  keep(imu.time, imu_first, imu_last);
+  keep(imu.step, imu_first, imu_last);
+  keep(imu.angle, imu_first, imu_last);
+  keep(imu.velocity, imu_first, imu_last);
+  return {std::move(imu), std::move(gnss)};
+}
+
+/// The path's ends, every fix, and instants between where they are far apart.
+std::vector<Node> nodes_of(const ImuPath& path, const core::GnssData& gnss, const std::vector<Span>& standstills) {
+  std::vector<Node> out{{path.begin(), -1, false}};
+  const auto fill_to = [&out](double t) {
+    const double from = out.back().time;
+    const double n = std::ceil((t - from) / node_spacing - 1e-6);
+    for (double i = 1; i < n; ++i) out.push_back({from + (t - from) * i / n, -1, false});
+  };
+  constexpr double same = 1e-6;  // s
+  for (size_t k = 0; k < gnss.size(); ++k) {
+    if (gnss.time[k] < out.back().time + same) {
+      if (out.back().fix < 0) out.back().fix = static_cast<std::int32_t>(k);
+      continue;
+    }
+    fill_to(gnss.time[k]);
+    out.push_back({gnss.time[k], static_cast<std::int32_t>(k), false});
+  }
+  if (path.end() > out.back().time + same) {
+    fill_to(path.end());
+    out.push_back({path.end(), -1, false});
+  }
+  size_t s = 0;
+  for (Node& n : out) {
+    while (s < standstills.size() && standstills[s].last < n.time) ++s;
+    n.still = s < standstills.size() && n.time >= standstills[s].first;
+  }
+  return out;
+}
+
+/// Sets share and variance of the fixes to what the innovations show: their excess (nis / 3 - 1) S over what was expected belongs to the
+/// white part R. White noise above the stated variance raises that. True where they changed by more than noise.
+bool adapt_fixes(Problem& problem, const std::vector<FixOutcome>& outcomes) {
+  double nis = 0, all = 0, n = 0;
+  for (size_t k = 0; k < problem.nodes.size(); ++k) {
+    const FixOutcome& o = outcomes[k];
+    if (problem.nodes[k].fix < 0 || o.weight < 1) continue;
+    const double expected = o.innovation_sigma.squaredNorm() / problem.gnss.covariance[static_cast<size_t>(problem.nodes[k].fix)].trace();
+    if (expected > 4 * problem.variance) continue;  // after an outage the innovations depend on the IMU
+    nis += o.nis / 3;
+    all += expected;
+    n += 1;
+  }
+  if (n < least_fixes) return false;
+  const double white = (1 - problem.share) * problem.variance;  // of the stated variance
+  const double shown = std::clamp(white + (nis / n - 1) * (all / n), 0.2 * white, 5 * white);
+  const double noise = std::sqrt(2 / (3 * n)) * (all / n);
+  // Within the stated variance the rest of it is correlated; beyond, the share rises to the usual one as the statement proves worthless.
+  problem.share =
+      shown < 1 ? std::clamp(1 - shown, least_share, 0.95) : std::min(usual_share, least_share + (usual_share - least_share) * (shown - 1));
+  problem.variance = std::max(1.0, shown / (1 - problem.share));
+  return std::abs(shown - white) > std::max(0.03 * white, 2 * noise);
+}
+
+/// Doubles the IMU's noise where the innovations are too large and follow one another: more motion than the IMU shows, as under
+/// vibration. (White noise of the fixes makes them large too, but not alike.) True where it did.
+bool adapt_imu(Problem& problem, const std::vector<FixOutcome>& outcomes) {
+  if (problem.noise.angle == 0 && problem.noise.velocity == 0) return false;  // stated as perfect
+  double alike = 0, squares = 0, n = 0;
+  Vector3d before = Vector3d::Zero();
+  for (size_t k = 0; k < problem.nodes.size(); ++k) {
+    if (problem.nodes[k].fix < 0) continue;
+    const Vector3d z = outcomes[k].innovation.cwiseQuotient(outcomes[k].innovation_sigma);
+    alike += z.dot(before);
+    squares += z.squaredNorm();
+    before = z;
+    n += 1;
+  }
+  if (n < least_fixes || squares / (3 * n) < too_large || alike / squares < too_alike || problem.roughness >= most_roughness) return false;
+  problem.roughness *= 2;
+  for (double* density : {&problem.noise.angle, &problem.noise.velocity, &problem.noise.gyro_drift, &problem.noise.force_drift})
+    *density *= 4;
+  return true;
+}
+
+/// The largest change of position, velocity or attitude between two runs, in sigmas.
+double moved(const SmootherRun& now, const std::vector<Estimate>& before, const Layout& l) {
+  double most = 0;
+  for (size_t k = 0; k < before.size(); ++k) {
+    const StateVector e = now.nodes[k].estimate.minus(before[k], l);
+    if (!e.allFinite()) return std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 9; ++i) most = std::max(most, std::abs(e[i]) / std::max(1e-12, now.nodes[k].sigma[i]));
+  }
+  return most;
+}
+
+/// Counts the nodes that the passes come to. How many passes it takes shows only at the end; most records take so many.
+class PassCount {
+ public:
+  PassCount(size_t nodes, const core::OnProgress& progress) : usual_(usual_passes * static_cast<double>(nodes)), progress_(progress) {}
+  void operator()() {
+    constexpr int at_once = 256;
+    if (++done_ % at_once == 0) progress_(core::usual_share(static_cast<double>(done_), usual_), "filter and smoother");
+  }
+
+ private:
+  static constexpr double usual_passes = 9.0;
+  double usual_;
+  std::uint64_t done_ = 0;
+  const core::OnProgress& progress_;
+};
+
+/// The smoother over records that are in order.
+InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const core::ImuErrorModel& spec, const Vector3d& lever_arm,
+                          double lever_arm_sigma, const InsGnssOptions& options, const ClockFindings& clocks,
+                          const core::OnProgress& progress) {
+  const std::vector<Span> standstills =
+      options.zero_velocity || options.alignment != AlignmentMethod::given ? find_standstills(path, gnss, spec) : std::vector<Span>{};
+  const std::vector<Node> nodes = nodes_of(path, gnss, options.zero_velocity ? standstills : std::vector<Span>{});
+
+  const Layout layout(options.scale_factors, options.lever_arm && lever_arm_sigma > 0, options.correlated_share.value_or(1) > 0,
+                      options.gnss_latency, options.non_holonomic);
+  Problem problem{path, gnss, nodes, layout, ProcessNoise::of(spec, options.correlation_time.value), options};
+
+  const Alignment alignment = align(path, gnss, spec, lever_arm, standstills, options);
+  const Start start = start_of(path, gnss, alignment, spec, layout, lever_arm, lever_arm_sigma, options);
+
+  problem.share = options.correlated_share.value_or(usual_share);
+  PassCount count(nodes.size(), progress);
+  problem.at_node = [&count] { count(); };
+
+  // Repeated about the smoothed trajectory until it stays.
+  problem.gate = first_gate;
+  const auto from_scratch = [&] { return InsFilter(problem, start.estimate, StateVector::Zero(layout.size), start.covariance, nullptr); };
+  SmootherRun run = run_smoother(problem, from_scratch(), false);
+  if (adapt_imu(problem, run.outcomes)) {
+    while (adapt_imu(problem, run_forward(problem, from_scratch()))) {
+    }
+    run = run_smoother(problem, from_scratch(), false);
+  }
+  problem.gate = gate_of(options.outlier_probability);
+  std::vector<Estimate> reference(nodes.size());
+  const auto about = [&](const SmoothedNode& at) {
+    const bool attitude = start.attitude_given && &at == &run.nodes.front();  // what is given is that of the beginning
+    StateMatrix stated = start.covariance;
+    // At the other end nothing is stated of the attitude: 1 rad is more than any error.
+    if (start.attitude_given && !attitude) stated.block<3, 3>(Layout::attitude, Layout::attitude).setIdentity();
+    return InsFilter(problem, at.estimate, stated_mean(start.estimate, at.estimate, layout, attitude), widened(stated, at.sigma, attitude),
+                     &reference);
+  };
+  const auto refer = [&] {
+    for (size_t k = 0; k < nodes.size(); ++k) reference[k] = run.nodes[k].estimate;
+  };
+  refer();
+  if (!options.correlated_share)
+    for (int i = 0; i < most_iterations && adapt_fixes(problem, run_forward(problem, about(run.nodes.front()))); ++i) {
+    }
+  int iterations = 1;
+  double shift = std::numeric_limits<double>::infinity();
+  for (; shift > settled && iterations < most_iterations; ++iterations) {
+    refer();
+    run.errors = {};  // before the next one's: they are large
+    run = run_smoother(problem, about(run.nodes.front()));
+    shift = moved(run, reference, layout);
+  }
+  if (!std::isfinite(shift))
+    throw core::Error("the filter diverged", "trajectory.ins_gnss", "check units, axes, lever arm and time scales");
+  const std::vector<FilterNode> backward = run_backward(problem, about(run.nodes.back()));
+
+  InsGnssResult result;
+  const InsFindings findings{
+      problem, run, backward, spec, alignment, lever_arm, lever_arm_sigma, standstills, iterations, shift > settled ? shift : 0.0, clocks};
+  result.series = series_of(findings);
+  size_t rejected = 0;
+  for (const double w : result.series.weight) rejected += w < 1.0;
+  if (2 * rejected > result.series.weight.size())
+    throw core::Error(std::to_string(rejected) + " of " + std::to_string(result.series.weight.size()) + " fixes contradict the IMU",
+                      "trajectory.ins_gnss", "check the lever arm's sign, the time scales, imu.angle_unit, imu_spec and the fixes' sigmas");
+  result.report = report_of(findings, result.series);
+  result.trajectory = trajectory_of(problem, run.nodes, options.output_rate.value);
+  result.trajectory.errors = std::move(run.errors);
+  return result;
+}
+
+}  // namespace
+
+InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core::ImuErrorModel& spec, const Vector3d& lever_arm,
+                     double lever_arm_sigma, const InsGnssOptions& stated_options, const StatedClocks& stated,
+                     const core::OnProgress& progress) {
+  require_plausible(imu_records);
+  require_finite(fixes);
+  InsGnssOptions options = stated_options;
+  Trimmed records = trim(std::move(imu_records), std::move(fixes));
+  const ImuPath path = make_path(std::move(records.imu), options.max_gap.value);
+  ClockFindings clocks;
+  clocks.stated = stated;
+  clocks.imu.reason = clocks.velocity.reason = "not looked for";
+  progress(0.0, "clocks");
+  if (options.clock_search.value > 0)
+    clocks.imu = imu_clock_offset(path, records.gnss, spec, lever_arm, lever_arm_sigma, options.clock_search.value);
+  if (records.gnss.has_velocity()) clocks.velocity = velocity_lag(records.gnss);
+  options.use_velocity = options.use_velocity && !clocks.velocities_lag();
+  try {
+    return smooth_path(path, records.gnss, spec, lever_arm, lever_arm_sigma, options, clocks, progress);
+  } catch (const core::Error& e) {
+    if (!clocks.apart()) {
+      const std::string leap = leap_seconds_between(path, records.gnss, spec, lever_arm, lever_arm_sigma);
+      if (leap.empty()) throw;
+      throw core::Error(e.what(), e.where(), leap + (e.hint().empty() ? "" : " Otherwise " + e.hint()), e.code());
+    }
+    throw core::Error(e.what(), e.where(), clocks.advice() + (e.hint().empty() ? "" : "; otherwise " + e.hint()), e.code());
+  }
+}
+
+}  // namespace swath::trajectory
