@@ -49,8 +49,7 @@ void describe(FlightOptions& f, V& v) {
   v.option("second_height", f.second_height, core::within(0, 8000),
            "Second height of a calibration flight, 0: none; default 11/7 of the first (1100 m over 700 m).");
   v.option("speed", f.speed, core::within(5, 120), "Ground speed.");
-  v.option("lines", f.lines, core::within(1, 200),
-           "Parallel flight lines (without a value 3); calibration: the first of all (without a value all).");
+  v.option("lines", f.lines, core::within(1, 200), "Parallel flight lines (default 3); calibration: only the first N lines (default all).");
   v.option("line_length", f.line_length, core::within(20, 1e5),
            "Length of a flight line; default the area's (calibration: longer side plus 0.7 of the height).");
   v.option("overlap", f.overlap, core::within(-1.0, 0.95), "Share of the swath that neighbouring lines have in common (block).");

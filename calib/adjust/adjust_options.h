@@ -25,7 +25,8 @@ void describe(EstimateOptions& o, V& v) {
   v.option("lever_down", o.lever_down, "Scanner's lever arm, down.");
   v.option("range_offset", o.range_offset, "Offset of the ranges.");
   v.option("range_scale", o.range_scale, "Factor of the ranges.");
-  v.option("scan_offset", o.scan_offset, "Offset of the scan angle; fixed where it equals the boresight roll (conical scanners: heading).");
+  v.option("scan_offset", o.scan_offset,
+           "Offset of the scan angle; held while boresight roll (conical: heading), the same turn, is estimated.");
   v.option("scan_scale", o.scan_scale, "Factor of the scan angle.");
   v.option("latency", o.latency, "Latency of the records' times.");
 }

@@ -29,7 +29,7 @@ void describe(StripOptions& o, V& v) {
   v.option("rounds", o.rounds, core::within(1, 20),
            "Most times that planes are sought and adjusted; it ends before where the corrections stay the same.");
   v.option("least_spacing", o.least_spacing, core::above(0),
-           "Minimum knot spacing to which corrections.spacing is halved where the trajectory moves faster.");
+           "Minimum to which corrections.spacing is halved where the trajectory's errors vary faster.");
   v.table("planes", o.planes, "The search for planes; `mismatch` is that of the first round.");
   v.table("corrections", o.adjust.corrections, "Corrections to the trajectory along each line.");
   v.table("robust", o.adjust.robust, "Weights of single returns.");

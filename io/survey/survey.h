@@ -62,7 +62,7 @@ void describe(LaserFile& f, V& v) {
   v.option("range_unit", f.range_unit, core::above(0.0), "Length of one unit of recorded ranges (text and NumPy files).");
   v.option("angle_to_port", f.angle_to_port, "True where the file counts scan angles positive to port.");
   v.option("line", f.line, core::within(0, 65535), "Flight line id of all records, where the file has no column of lines.");
-  v.option("model", f.model, "Scanner model of this file, where it is not scanner.model (several scanners in one survey).");
+  v.option("model", f.model, "Scanner model of this file, where not scanner.model; only mirror, polygon and profile may be mixed.");
   v.option("delimiter", f.delimiter, "Delimiter of a text file; empty: comma, semicolon, tab or blanks, found in its first line.");
   v.table("columns", f.columns, "Columns of a text or NumPy file.");
 }
@@ -251,7 +251,7 @@ void describe(Survey& s, V& v) {
   v.table("calibration", s.calibration, "Calibration and mounting.");
   v.table("sigma", s.sigma, "How well calibration and records are known.");
   v.option("calibration_file", s.calibration_file,
-           "Calibration in place of [calibration] and [sigma]: .json or .toml of calib.adjust, or Optech .csd.");
+           "Replaces values of [calibration] and [sigma], not stated record noise; .csd: boresight only.");
   v.tables("laser", s.laser, "Raw laser records.");
   v.tables("trajectory", s.trajectory, "Trajectory.");
   v.tables("imu", s.imu, "IMU records.");

@@ -68,7 +68,7 @@ void describe(InsGnssOptions& o, V& v) {
   v.option("max_gap", o.max_gap, core::within(0, 30), "Longest gap in the IMU records that is bridged; a longer one is an error.");
   v.option("output_rate", o.output_rate, core::within(20, 2000), "Records per second of the trajectory, where the IMU has more.");
   v.option("error_spacing", o.error_spacing, core::within(0, 60),
-           "Spacing at which error correlations in time are kept, for adjustments (0.03 GB/h at 1 s); 0: none.", "Jong1988");
+           "Spacing at which error correlations in time are kept, for adjustments (30 MB/h at 1 s); 0: none.", "Jong1988");
 }
 
 }  // namespace swath::trajectory
