@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every example of --help and every command `swath ...` in README.md and docs/ is one that the program takes.
 
-`run` becomes `check` on a small survey made here, with the same config and options. `simulate` is ended when it begins to write. Commands on files that an
+`run` becomes `check` on a small survey made here, with the same config and options; its flags are those of `swath run --help`. `simulate` is ended when it
+begins to write, and fails where it does not begin. Commands on files that an
 example only names (`flight.laz`) may end with the error that there is no such file. All others run as they are, in a scratch folder.
 """
 import os
@@ -15,6 +16,7 @@ import tempfile
 import time
 import unittest
 from pathlib import Path
+from unittest import mock
 
 SWATH = os.environ.get("SWATH_PROGRAM") or sys.exit("SWATH_PROGRAM names no program")
 ROOT = Path(__file__).resolve().parents[2]
@@ -22,7 +24,7 @@ PLACEHOLDERS = {"SURVEY": "survey", "DIR": "demo", "LENGTH": '"1 km"', "WIDTH": 
 SMALL = ["world.scene=hills", "world.length=300 m", "world.width=200 m", "flight.lines=2", "flight.cross_lines=0", "flight.height=300 m",
          "scanner.prf=2 kHz"]
 SURVEYS = {"cloud": "cloud", "classes": "cloud", "terrain": "cloud", "lever_arm": "hangar"}  # config: what it starts from
-LONGEST = 60  # s that a simulation may take before it begins to write
+LONGEST = 60  # s that a command may take, and a simulation before it begins to write
 
 
 def blocks(text):
@@ -54,7 +56,27 @@ def commands_of(block):
 
 
 def call(*words, cwd=None):
-    return subprocess.run([SWATH, *words], capture_output=True, text=True, timeout=300, cwd=cwd)
+    return subprocess.run([SWATH, *words], capture_output=True, text=True, timeout=LONGEST, cwd=cwd)
+
+
+def flags_of(text):
+    """{flag: takes a value} of a command's help."""
+    lines = re.findall(r"^  ((?:-\w,)?--[\w-]+)( [A-Z]+(?: \.\.\.)?)?(?:  |$)", text.split("Options:")[-1], re.M)
+    return {name: bool(value) for names, value in lines for name in names.split(",")}
+
+
+def fault_of_flags(words, known):
+    """What is wrong with the flags of `run CONFIG FLAGS...`; None where nothing is. The config comes first."""
+    rest = iter(words[2:])
+    for word in rest:
+        flag, has_value, _ = word.partition("=")
+        if flag not in known:
+            return f"{word} is not an option of swath run"
+        if has_value and not known[flag]:
+            return f"{flag} takes no value"
+        if known[flag] and not has_value and next(rest, "--").startswith("--"):
+            return f"{flag} lacks its value"
+    return None
 
 
 def help_examples():
@@ -94,6 +116,7 @@ class Examples(unittest.TestCase):
         shutil.copytree(ROOT / "configs", cls.folder / "configs")
         shutil.copytree(ROOT / "docs", cls.folder / "docs")
         (cls.folder / "bench").mkdir()
+        cls.flags = flags_of(call("run", "--help").stdout)
         for config in (ROOT / "bench").glob("*.toml"):
             shutil.copy(config, cls.folder / "bench")
         done = call("simulate", cls.folder / "kinds/demo", "--quiet", *[f"--set={s}" for s in SMALL])
@@ -114,6 +137,8 @@ class Examples(unittest.TestCase):
         shutil.rmtree(cls.folder, ignore_errors=True)
 
     def judge_run(self, words):
+        if words[0] == "run":
+            self.assertIsNone(fault_of_flags(words, self.flags))
         self.assertIn("--survey", words, "no survey is named")
         survey = self.folder / words[words.index("--survey") + 1]
         kind = SURVEYS.get(Path(words[1]).stem, "demo")
@@ -137,10 +162,11 @@ class Examples(unittest.TestCase):
             end = time.monotonic() + LONGEST
             while program.poll() is None and not list(Path(made).glob("x/*")) and time.monotonic() < end:
                 time.sleep(0.02)
+            begun = bool(list(Path(made).glob("x/*")))
             if program.poll() is None:
                 program.kill()
                 program.communicate()
-                return subprocess.CompletedProcess(words, 0, "", "")
+                return subprocess.CompletedProcess(words, 0 if begun else 1, "", "" if begun else f"nothing was written in {LONGEST} s")
             out, err = program.communicate()
             return subprocess.CompletedProcess(words, program.returncode, out, err)
 
@@ -171,6 +197,23 @@ class Examples(unittest.TestCase):
         self.assertGreater(len(found), 15)
         for where, words in found:
             self.judge(where, words)
+
+    def test_a_simulation_that_hangs_is_a_fault(self):
+        program = self.folder / "hangs"
+        program.write_text("#!/bin/sh\nexec sleep 30\n")
+        program.chmod(0o755)
+        with mock.patch.multiple(sys.modules[__name__], SWATH=str(program), LONGEST=0.3):
+            done = self.judge_simulate(["simulate", "x"])
+            self.assertEqual((done.returncode, done.stderr), (1, "nothing was written in 0.3 s"))
+            self.assertRaises(subprocess.TimeoutExpired, call, "info")
+
+    def test_flags_of_run(self):
+        for flag, takes_value in (("--survey", True), ("--output", True), ("--set", True), ("--threads", True), ("--quiet", False), ("--json-log", False)):
+            self.assertEqual(self.flags.get(flag), takes_value, flag)
+        right = ["run", "a.toml", "--survey", "s.toml", "--set", "a=1", "--threads=8", "--quiet"]
+        self.assertIsNone(fault_of_flags(right, self.flags))
+        for wrong in (["--resume"], ["--outputs", "x"], ["--quiet=1"], ["--output"], ["--output", "--quiet"], ["word"]):
+            self.assertTrue(fault_of_flags(right + wrong, self.flags), wrong)
 
     def test_commands_are_found(self):
         page = 'Text\n\n    swath run a.toml --set x="1 m" \\\n      --set y=2   # why\n\n```sh\nswath info \'b\n c\'\n```\n'

@@ -34,8 +34,8 @@ KNOWN_OPTIONS = 1
 # Strings of code outside option texts that hold WORDS: messages, warnings, keys and names of counts.
 MESSAGES = 32
 OPTION_LENGTH = 100
-# Option texts that are longer: lists of values that need their numbers. May only fall.
-LONG_OPTIONS = 11
+# Texts of options and tables that are longer: lists of values that need their numbers. May only fall.
+LONG_OPTIONS = 15
 # Pages that quote messages or keys as the program writes them.
 QUOTED = re.compile(r"`[^`\n]*`")
 
@@ -60,9 +60,12 @@ def comments(code):
     return "\n".join(re.sub(r'`[^`]*`|"[^"]*"', "", m[2]) for m in COMMENT.finditer(code))
 
 
+DESCRIBED = re.compile(r"\bv\.(?:option|tables?)\((.*?)\);\n", re.S)
+
+
 def option_calls(code):
-    """(name, [texts]) of every v.option(...)."""
-    for call in re.findall(r"\bv\.option\((.*?)\);\n", code, re.S):
+    """(name, [texts]) of every v.option(...), v.table(...) and v.tables(...)."""
+    for call in DESCRIBED.findall(code):
         strings = [s for s in STRING.findall(re.sub(r'"\s*\n?\s*"', "", call))]
         if strings:
             yield strings[0], strings[1:]
@@ -82,7 +85,8 @@ class Words(unittest.TestCase):
         self.assertEqual(len(hits(WORDS, "The report tells it. Mended. They hang together; a reference errs.")), 4)
         self.assertEqual(hits(WORDS, "a hotel, foretold, amend, terrain, errors, deary"), [])
         self.assertEqual(comments('int a;  // it tells "told"\nf("// told");\n').strip(), "it tells")
-        self.assertEqual(list(option_calls('v.option("a", o.a, "One "\n  "two.", "B2000");\n')), [("a", ["One two.", "B2000"])])
+        self.assertEqual(list(option_calls('v.option("a", o.a, "One "\n  "two.", "B2000");\nv.table("t", o.t, "A table.");\nv.tables("u", o.u,\n"Tables.");\n')),
+                         [("a", ["One two.", "B2000"]), ("t", ["A table."]), ("u", ["Tables."])])
 
     def test_docs_and_configs(self):
         for file in pages():
@@ -119,7 +123,7 @@ class Words(unittest.TestCase):
         found = []
         for file in code_files():
             code = COMMENT.sub(lambda m: m[1], file.read_text(encoding="utf-8"))
-            code = re.sub(r"\bv\.option\(.*?\);\n", "", code, flags=re.S)
+            code = DESCRIBED.sub("", code)
             found += [f"{name(file)}: {s}" for s in STRING.findall(code) if hits(WORDS, s)]
         self.assertLessEqual(len(found), MESSAGES, "words of the list in messages:\n" + "\n".join(found))
 
