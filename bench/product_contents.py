@@ -2,7 +2,7 @@
 """Contents of the program's products, read without its own code, and how two files of one kind are compared.
 
 Bytes: LAS, LAZ, GeoTIFF, GeoPackage, SBET, smrmsg, NumPy and whatever is not named below. Contents: JSON, GeoJSON, CSV, DXF, VRT. Drawn files
-(PNG, SVG, HTML) are not compared. What is masked is in MASKED, with the reason.
+(PNG, SVG, PDF, HTML) are not compared. What is masked is in MASKED, with the reason.
 """
 import csv
 import fnmatch

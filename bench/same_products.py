@@ -8,11 +8,12 @@
     bench/same_products.py OLD NEW --configs survey cloud --renamed table.txt
 
 One line per config, exit 1 where a product differs. LAS, LAZ, GeoTIFF, GeoPackage, SBET and smrmsg: the same bytes. JSON (calibration values and
-report.json among them), GeoJSON, CSV, DXF and VRT: the same features and values. PNG, SVG and HTML are drawn: counts and sizes only. --masks lists what is
+report.json among them), GeoJSON, CSV, DXF and VRT: the same features and values. PNG, SVG, PDF and HTML are drawn: counts and sizes only. --masks lists what is
 left out of the comparison and why; the head of bench/product_contents.py's class Renamed says what the table of --renamed holds.
 
-Each program makes its surveys itself (compared as the line "simulate") and takes the configs of the tree it was built in. --full: the demo survey of
-scripts/demo.sh as it is, and all planes; without it fewer pulses, about 2 minutes for a program. Clouds are the points of survey.toml's run.
+Each program makes its surveys itself (compared as the line "simulate") and takes the configs of the tree it was built in, or else this
+tree's; the first lines say which. --full: the demo survey of scripts/demo.sh as it is, and all planes; without it fewer pulses, about 2 minutes for a
+program. Clouds are the points of survey.toml's run.
 Python alone, no packages.
 """
 import argparse
@@ -25,7 +26,8 @@ import sys
 import tempfile
 import time
 
-import product_contents as contents
+sys.dont_write_bytecode = True  # this tree and those of the programs stay as they are
+import product_contents as contents  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DEMO = {"events.file": "true"}
@@ -123,11 +125,13 @@ class Side:
         if self.recorded:
             record = json.loads((path / "hashes.json").read_text())
             self.hashes, self.full = record["hashes"], record["full"]
+            self.configs = record.get("configs", "the record")
             self.names = in_order(n for n in self.hashes if n != "simulate")
             if options.full != self.full:
                 sys.exit(f"{path} was recorded {'with' if self.full else 'without'} --full")
         else:
-            shutil.copytree(configs_of(path), self.folder / "configs")
+            self.configs = str(configs_of(path))
+            shutil.copytree(self.configs, self.folder / "configs")
             self.hashes = {}
             self.names = in_order(f.stem for f in (self.folder / "configs").glob("*.toml"))
 
@@ -205,11 +209,12 @@ def record(options):
     options.record.mkdir(parents=True)
     side = Side((options.old or options.new).resolve(), options.record, options, options_of(options.set_old))
     names = in_order(options.configs or side.names)
+    print(f"{side.path}: configs of {side.configs}", flush=True)
     for name in ["simulate", *names]:
         began = time.monotonic()
         side.make(name, names)
         print(f"{name:20} {len(side.hashes[name])} files, {time.monotonic() - began:.1f} s", flush=True)
-    (options.record / "hashes.json").write_text(json.dumps({"full": options.full, "hashes": side.hashes}, indent=1) + "\n")
+    (options.record / "hashes.json").write_text(json.dumps({"full": options.full, "configs": side.configs, "hashes": side.hashes}, indent=1) + "\n")
 
 
 def main():
@@ -231,6 +236,8 @@ def main():
             f.mkdir()
         old = Side(options.old.resolve(), folders[0], options, options_of(options.set_old))
         new = Side(options.new.resolve(), folders[1], options, options_of(options.set_new))
+        for word, side in (("old", old), ("new", new)):
+            print(f"{word}: {side.path}, configs of {side.configs}", flush=True)
         names = in_order(options.configs or {*old.names, *new.names})
         for name in ["simulate", *names]:
             lacking = [word for side, word in ((old, "old"), (new, "new")) if name != "simulate" and name not in side.names]

@@ -101,8 +101,9 @@ class Citations(unittest.TestCase):
     def test_the_patterns_find_what_code_writes(self):
         for text, key in (("Pingel, Clarke & McBride 2013, \"An improved\"", "Pingel2013"), ("(Höfle, Vetter, Pfeifer & Stötter 2009", "Hofle2009"),
                           ('Julier and Uhlmann, "A non-divergent estimation", ACC 1997.', "Julier1997"), ("Bar-Shalom, Li 2001", "Bar-Shalom2001"),
-                          ("Reis, Camargo, Tommaselli (2011)", "Reis2011"), ("de Jong and Mackinnon 1988", "Jong1988"), ("Glira et al. (2016)", "Glira2016"), ("by Glira 2099", "Glira2099"), ("as Mandlburger (2099) has it", "Mandlburger2099"),
-                          ("source: Nobody2099 eq 3", "Nobody2099"), ("Nobody et al. 2099", "Nobody2099"), ("Nobody, \"A title\", ACC 2099", "Nobody2099")):
+                          ("Reis, Camargo, Tommaselli (2011)", "Reis2011"), ("de Jong and Mackinnon 1988", "Jong1988"), ("Glira et al. (2016)", "Glira2016"),
+                          ("by Glira 2099", "Glira2099"), ("as Mandlburger (2099) has it", "Mandlburger2099"), ("source: Nobody2099 eq 3", "Nobody2099"),
+                          ("Nobody et al. 2099", "Nobody2099"), ("Nobody, \"A title\", ACC 2099", "Nobody2099")):
             self.assertEqual(cited_in(text), {key}, text)
         self.assertEqual(cited_in("Measured 2026-11-22; level of the Baltic Sea 1956; Windows 2000, Debian 2024; May and June 2024; DHHN2016"), set())
         self.assertEqual(authors("| `Hofle2009` | Höfle, B., de Boor, C., Longuet-Higgins, M. S.: Water, E. |\n"), {"Hofle", "Boor", "Longuet-Higgins"})
