@@ -92,7 +92,8 @@ class Engine {
  private:
   void prepare();
   void prepare_map();
-  core::ColumnSet kept_columns() const;
+  core::ColumnSet needed_columns() const;
+  void choose_strips();
   void find_strips();
   bool is_read_again(size_t number) const;
   bool is_resumed(size_t number) const;
@@ -177,21 +178,30 @@ void Engine::prepare() {
   for (size_t i = 0; i < plan_.stages.size(); ++i)
     if (works_on(i, Grain::strip)) last_strip_stage_ = i;
   folders_ = fingerprints_;
-  if (!makes_points(plan_)) return;
-  kept_ = kept_columns();
-  std::string text = fingerprints_[last_strip_stage_];
-  for (int c = 0; c < core::column_count; ++c) text += kept_.has(static_cast<core::Column>(c)) ? '1' : '0';
-  folders_[last_strip_stage_] = core::hex(core::fnv1a(text));
 }
 
-/// The columns of the strips' points that the tile stages need or read. All, where the store is kept for other stages than these.
-core::ColumnSet Engine::kept_columns() const {
+/// The columns of the strips' points that the tile stages need or read.
+core::ColumnSet Engine::needed_columns() const {
   using core::Column;
-  core::ColumnSet kept{Column::x, Column::y, Column::z, Column::strip, Column::record};
+  core::ColumnSet needed{Column::x, Column::y, Column::z, Column::strip, Column::record};
   for (size_t i = last_strip_stage_ + 1; i < plan_.stages.size(); ++i)
-    if (works_on(i, Grain::tile)) kept = kept | columns_of_tiles(stage(i));
-  for (int c = 0; plan_.run.keep_work && c < core::column_count; ++c) kept.add(static_cast<Column>(c));
-  return kept;
+    if (works_on(i, Grain::tile)) needed = needed | columns_of_tiles(stage(i));
+  return needed;
+}
+
+/// The strips' folder is named by the columns of its points, too: all of them, where the store is kept for other stages than these or an
+/// earlier run has kept it so; otherwise those that are needed.
+void Engine::choose_strips() {
+  const auto keep = [this](core::ColumnSet columns) {
+    kept_ = columns;
+    std::string text = fingerprints_[last_strip_stage_];
+    for (int c = 0; c < core::column_count; ++c) text += columns.has(static_cast<core::Column>(c)) ? '1' : '0';
+    folders_[last_strip_stage_] = core::hex(core::fnv1a(text));
+  };
+  core::ColumnSet all;
+  for (int c = 0; c < core::column_count; ++c) all.add(static_cast<core::Column>(c));
+  keep(all);
+  if (!plan_.run.keep_work && !fs::exists(folder(last_strip_stage_))) keep(needed_columns());
 }
 
 void Engine::prepare_map() {
@@ -261,6 +271,7 @@ void Engine::expect_times(std::uint64_t returns) {
 
 /// Of an earlier run of this plan that was killed, or whose work was kept.
 void Engine::keep_whole() {
+  if (makes_points(plan_)) choose_strips();
   std::set<std::string> valid;
   for (size_t i = 0; i < plan_.stages.size(); ++i) valid.insert(folder(i).filename().string());
   sweep(work_, valid);

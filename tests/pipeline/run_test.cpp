@@ -7,6 +7,7 @@
 
 #include "core/config/option_visitors.h"
 #include "io/text/value_file.h"
+#include "pipeline/work/store_file.h"
 #include "simulate/simulate.h"
 #include "tests/world/support.h"
 
@@ -125,6 +126,67 @@ TEST(Run, KeptStripsServeAPlanWithOtherStagesBehindThem) {
     resumed = report.find("pieces_resumed")->as_int();
   }
   EXPECT_GE(resumed, 2);  // the flight lines
+}
+
+const std::string terrain_stages =
+    "[[stage]]\ntype = \"readers.trajectory\"\n[[stage]]\ntype = \"readers.laser\"\n[[stage]]\ntype = \"georeference\"\n"
+    "[[stage]]\ntype = \"filters.ground\"\n[[stage]]\ntype = \"terrain.dtm\"\n[[stage]]\ntype = \"writers.gdal\"\n";
+
+TEST(Run, StripsKeptOnceServeARunThatDoesNotKeepItsWork) {
+  const test::TemporaryFolder out;
+  const auto changed = [&](const std::string& name, std::vector<std::string> sets) {
+    Request r = request(out / name, std::move(sets));
+    r.config = out / "p.toml";
+    r.sets.push_back("terrain.dtm.cell=1 m");
+    return r;
+  };
+  const auto second_of = [&](const std::string& name, const std::vector<std::string>& sets) {
+    Request first = changed(name, {"run.keep_work=true"});
+    first.sets.back() = "terrain.dtm.cell=2 m";
+    run_quietly(first);
+    return run_quietly(changed(name, sets)).find("pieces_resumed")->as_int();
+  };
+  test::write_bytes(out / "p.toml", terrain_stages);
+  const std::int64_t kept_again = second_of("kept", {"run.keep_work=true"});
+  EXPECT_GE(kept_again, 2);  // the flight lines
+  EXPECT_EQ(second_of("once", {}), kept_again);
+  EXPECT_FALSE(fs::exists(out / "once/.swath"));
+  run_quietly(changed("fresh", {}));
+  const auto once = products(out / "once"), fresh = products(out / "fresh");
+  EXPECT_TRUE(fresh.contains("dtm.vrt"));
+  for (const auto& [name, bytes] : fresh) EXPECT_TRUE(once.contains(name) && once.at(name) == bytes) << name;
+}
+
+/// The columns of the points that lie in the work folder's strips.
+core::ColumnSet columns_of_strips(const fs::path& work) {
+  core::ColumnSet out;
+  for (const auto& e : fs::recursive_directory_iterator(work)) {
+    if (e.path().extension() != ".pts") continue;
+    StoreFile file(e.path(), StoreFile::Mode::read);
+    ChunkHead head;
+    if (file.next(head)) out = out | head.set();
+  }
+  return out;
+}
+
+TEST(Run, ColumnsThatOnlyWritersReadAreNotKeptForATerrainModelAlone) {
+  const test::TemporaryFolder out;
+  Request r = request(out / "out");
+  r.config = out / "p.toml";
+  // A late failure leaves the work.
+  test::write_bytes(r.config, terrain_stages + "[[stage]]\ntype = \"writers.picture\"\ncontours = \"dtm.vrt\"\n");
+  EXPECT_THROW(run_quietly(r), core::Error);
+  const core::ColumnSet kept = columns_of_strips(out / "out/.swath");
+  EXPECT_TRUE(kept.contains({core::Column::x, core::Column::y, core::Column::z, core::Column::record}));
+  for (const core::Column c : {core::Column::intensity, core::Column::scan_angle}) EXPECT_FALSE(kept.has(c)) << static_cast<int>(c);
+  // A plan that writes the points as well gets all their columns.
+  test::write_bytes(r.config, terrain_stages + "[[stage]]\ntype = \"writers.las\"\n");
+  run_quietly(r);
+  Request fresh = r;
+  fresh.output = out / "fresh";
+  run_quietly(fresh);
+  EXPECT_TRUE(fs::exists(out / "fresh/points"));
+  EXPECT_EQ(products(out / "out"), products(out / "fresh"));
 }
 
 TEST(Run, TilesOfAnEarlierTilingGo) {
