@@ -17,7 +17,7 @@ constexpr double margin = 0.6;           // s of the trajectory around a stretch
 constexpr double steps_around = 2.5;     // ... and steps of it, for the cubic through four records
 constexpr double longest_offset = 20.0;  // s
 constexpr size_t most_control = 500;     // surveyed places that are compared
-// Of samples that are in memory together, in units of the flight's own: each, and all of them.
+// Stretches between lines of samples that are in memory together, in units of the flight's own: each, and all of them.
 constexpr double largest_share = 0.5, largest_sum = 2.0;
 
 /// Longest step between records that is interpolated over.

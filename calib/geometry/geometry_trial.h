@@ -13,7 +13,8 @@ namespace swath::calib {
 struct SampleFor {
   double shift = 0.0, range = 0.0;
 };
-/// The shots are read once for all; samples for several assumptions are smaller, two flights' own at most in all.
+/// The shots are read once for all. Samples for several assumptions have fewer stretches between lines, about twice the flight's own in
+/// all; each has as many profiles and stretches at control as the flight's.
 std::vector<SampledFlight> sampled(const GeometryInput& input, const GeometryOptions& options, const trajectory::LocalFrame& frame,
                                    const std::vector<SampleFor>& wanted);
 
