@@ -85,15 +85,16 @@ fn vlr_is_pointwise(vlr: &LazVlr) -> bool {
     vlr.write_to(&mut bytes).is_ok() && bytes[0] == CompressorType::PointWise as u8
 }
 
+fn u64_at(file: &mut File, at: u64) -> std::io::Result<u64> {
+    let mut b = [0u8; 8];
+    file.seek(SeekFrom::Start(at))?;
+    file.read_exact(&mut b)?;
+    Ok(u64::from_le_bytes(b))
+}
+
 /// Reads the table and holds every number in it against the file. None: the writer never filled its offset.
 fn read_table(file: &mut File, data_start: u64, vlr: &LazVlr, record_length: usize, points: u64) -> Result<Option<Vec<Chunk>>> {
     let file_size = file.metadata()?.len();
-    let u64_at = |file: &mut File, at: u64| -> Result<u64> {
-        let mut b = [0u8; 8];
-        file.seek(SeekFrom::Start(at))?;
-        file.read_exact(&mut b)?;
-        Ok(u64::from_le_bytes(b))
-    };
     let mut table_start = u64_at(file, data_start)?;
     if (table_start as i64) <= data_start as i64 && file_size >= data_start + 16 {
         table_start = u64_at(file, file_size - 8)?; // a writer that cannot seek puts it last
@@ -144,12 +145,29 @@ fn read_table(file: &mut File, data_start: u64, vlr: &LazVlr, record_length: usi
     Ok(Some(chunks))
 }
 
-/// Do chunks of points lie before the chunk table? False where there is no table.
-fn holds_chunks(file: &mut File, data_start: u64, smallest: u64) -> bool {
-    let mut b = [0u8; 8];
-    let table_start = file.seek(SeekFrom::Start(data_start)).and_then(|_| file.read_exact(&mut b)).map(|_| u64::from_le_bytes(b));
-    let size = file.metadata().map(|m| m.len()).unwrap_or(0);
-    table_start.is_ok_and(|at| at <= size && at.saturating_sub(data_start) >= 8 + smallest)
+/// Where what follows the points begins: waveforms, extended records, or the end of the file.
+fn end_of_points(file: &mut File, data_start: u64) -> std::io::Result<u64> {
+    let mut end = file.metadata()?.len();
+    let minor = u64_at(file, 18)?.to_be_bytes()[0]; // byte 25
+    for (at, since) in [(227, 3), (235, 4)] {
+        let start = u64_at(file, at)?;
+        if minor >= since && start >= data_start {
+            end = end.min(start);
+        }
+    }
+    Ok(end)
+}
+
+/// Do chunks of points follow? Where a killed writer never filled the offset of the chunk table, whatever lies behind it is one.
+fn holds_chunks(file: &mut File, data_start: u64, smallest: u64) -> std::io::Result<bool> {
+    let (size, end) = (file.metadata()?.len(), end_of_points(file, data_start)?);
+    if end < data_start + 8 {
+        return Ok(false); // without even an offset
+    }
+    let is_place = |at: &u64| (data_start + 8..=end).contains(at);
+    // A writer that cannot seek puts the offset last.
+    let table_start = [u64_at(file, data_start)?, u64_at(file, size - 8)?].into_iter().find(is_place).unwrap_or(end);
+    Ok(table_start - data_start >= 8 + smallest)
 }
 
 /// Layers of a layered chunk.
@@ -233,7 +251,7 @@ impl Reader {
         let mut file = File::open(path)?;
         let record_length = usize::from(record_length);
         let table = if points == 0 {
-            if holds_chunks(&mut file, data_start, smallest_chunk(&vlr, record_length)) {
+            if holds_chunks(&mut file, data_start, smallest_chunk(&vlr, record_length))? {
                 return Err(bad("the header says 0 points, chunks of points follow".to_string()));
             }
             Some(Vec::new())

@@ -180,6 +180,46 @@ TEST(LasReader, AHeaderThatLeavesChunksOutIsAnError) {
   }
 }
 
+TEST(LasReader, ChunksThatAKilledWriterLeftWithoutCountAndTableAreAnError) {
+  const test::TemporaryFolder folder;
+  for (const int format : {1, 6}) {
+    const LasHeader h = test::sample_header(format, 4);
+    test::write_sample(folder / "a.laz", h, test::sample_points(h, 100));
+    const std::string whole = test::read_bytes(folder / "a.laz");
+    const auto number = [](const std::string& bytes, std::size_t at, auto n) {
+      std::memcpy(&n, &bytes[at], sizeof n);
+      return n;
+    };
+    const auto start = number(whole, 96, std::uint32_t{0});
+    const auto table = number(whole, start, std::uint64_t{0});
+    ASSERT_GT(table, start + 8u);
+    std::string killed = whole.substr(0, table);
+    std::memset(&killed[247], 0, 8), std::memset(&killed[107], 0, 4);  // counts of points
+    for (const std::uint64_t offset : {~std::uint64_t{0}, std::uint64_t{0}, std::uint64_t{start}}) {
+      std::memcpy(&killed[start], &offset, 8);
+      test::write_bytes(folder / "b.laz", killed);
+      try {
+        test::read_all(folder / "b.laz");
+        ADD_FAILURE() << format << " " << offset << " was read";
+      } catch (const core::Error& e) {
+        EXPECT_NE(e.text().find("the header says 0 points"), std::string::npos) << e.text();
+      }
+    }
+    // Nothing was written before it was killed; an extended record behind it is not a chunk.
+    std::string none = killed.substr(0, start + 8);
+    test::write_bytes(folder / "none.laz", none);
+    EXPECT_EQ(test::read_all(folder / "none.laz").size(), 0u) << format;
+    const std::uint64_t at = none.size(), length = 400;
+    const std::uint32_t records = 1;
+    std::memcpy(&none[235], &at, 8), std::memcpy(&none[243], &records, 4);
+    std::string record(60 + length, '\0');
+    std::memcpy(&record[2], "tests", 5);
+    std::memcpy(&record[20], &length, 8);
+    test::write_bytes(folder / "none.laz", none + record);
+    EXPECT_EQ(test::read_all(folder / "none.laz").size(), 0u) << format;
+  }
+}
+
 TEST(LasReader, PointsOutsideTheStatedBoundsAreAWarning) {
   const test::TemporaryFolder folder;
   const LasHeader h = test::sample_header(6);
