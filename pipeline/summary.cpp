@@ -67,6 +67,14 @@ void options(const Value& table, const std::string& path, std::string& out) {
   }
 }
 
+/// A line for each example, and one for those that the report counts without.
+void box_warnings(const Value& wrong, std::string& out) {
+  const auto& examples = wrong.find("examples")->items();
+  for (const Value& example : examples) out += "\nwarning: " + example.as_text() + "\n";
+  const auto more = wrong.find("count")->as_int() - static_cast<std::int64_t>(examples.size());
+  if (more > 0) out += "\nwarning: and " + std::to_string(more) + " more " + io::wrong_box + ": report.json\n";
+}
+
 }  // namespace
 
 std::string summary(const Value& report, const std::filesystem::path& output) {
@@ -90,8 +98,7 @@ std::string summary(const Value& report, const std::filesystem::path& output) {
     out += "\nresumed: " + std::to_string(resumed->as_int()) + " pieces were done by an earlier run\n";
   for (const Value& stage : report.find("stages")->items())
     if (const Value* tally = stage.find("tally"))
-      if (const Value* outside = tally->find(io::outside_box))
-        for (const Value& example : outside->find("examples")->items()) out += "\nwarning: " + example.as_text() + "\n";
+      if (const Value* wrong = tally->find(io::wrong_box)) box_warnings(*wrong, out);
   if (const Value* geometry = report.find("geometry"))
     for (const Value& warning : geometry->find("warnings")->items()) out += "\nwarning: " + warning.as_text() + "\n";
   if (const Value* limits = report.find("limits"))

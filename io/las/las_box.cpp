@@ -5,21 +5,42 @@
 #include <cstdio>
 
 namespace swath::io {
+namespace {
+
+constexpr double rounded_steps = 10.0;  // of the scale: bounds written with a digit less than the points
+
+/// Does the box hold the point, by so many steps of the scale? A bound that is no number holds nothing.
+bool holds(const LasHeader& header, const Eigen::Vector3d& p, double steps) {
+  const Eigen::Array3d room = steps * header.scale.array().abs();
+  return (p.array() >= header.min.array() - room).all() && (p.array() <= header.max.array() + room).all();
+}
+
+}  // namespace
 
 void LasBox::add(const LasPoints& points, const LasHeader& header, std::uint64_t first) {
-  const Eigen::Vector3d low = header.min - header.scale.cwiseAbs(), high = header.max + header.scale.cwiseAbs();
+  for (std::size_t i = 0; i < points.size(); ++i) add_one(points, header, first, i);
+}
+
+void LasBox::add_one(const LasPoints& points, const LasHeader& header, std::uint64_t first, std::size_t i) {
+  const Eigen::Vector3d p(points.x[i], points.y[i], points.z[i]);
+  ++points_;
+  if (holds(header, p, 1.0)) return;
   has_box_ = !header.min.isZero(0) || !header.max.isZero(0);
-  points_ += points.size();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d p(points.x[i], points.y[i], points.z[i]);
-    if ((p.array() >= low.array()).all() && (p.array() <= high.array()).all()) continue;
-    if (examples_.size() < examples_kept) examples_.push_back(first + i);
-    ++outside_;
-    // A bound that is no number has no distance.
-    const Eigen::Vector3d beyond = (header.min - p).cwiseMax(p - header.max);
-    for (int k = 0; k < 3; ++k)
-      if (std::isfinite(beyond[k]) && beyond[k] > farthest_[k]) farthest_[k] = beyond[k];
-  }
+  wrong_ = wrong_ || !has_box_ || !holds(header, p, rounded_steps);
+  if (examples_.size() < examples_kept) examples_.push_back(first + i);
+  ++outside_;
+  // A bound that is no number has no distance.
+  const Eigen::Vector3d beyond = (header.min - p).cwiseMax(p - header.max);
+  for (int k = 0; k < 3; ++k)
+    if (std::isfinite(beyond[k]) && beyond[k] > farthest_[k]) farthest_[k] = beyond[k];
+}
+
+void LasBox::count(const std::string& name, core::Tally& tally) const {
+  if (outside_ == 0) return;
+  const std::string example = name + ": " + fault();
+  if (!wrong_) return tally.count(outside_box, example, outside_);
+  tally.count(outside_box, outside_);
+  tally.count(wrong_box, example);
 }
 
 std::string LasBox::fault() const {

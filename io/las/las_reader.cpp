@@ -83,7 +83,7 @@ struct LasReader::State {
     position += n;
     if (position == header.point_count && !ended) {
       ended = true;
-      if (box.outside() > 0) warnings.push_back(box.fault());
+      if (box.is_wrong()) warnings.push_back(box.fault());
     }
     return n;
   }

@@ -365,7 +365,7 @@ bool LaserSource::next(core::Shots& batch, size_t most) {
     if (s.at == s.raw.size()) {
       s.at = 0;
       if (!s.reader->next(s.raw, chunk)) {
-        if (!std::exchange(s.ended, true)) s.reader->count_oddities(s.file.file.string(), s.tally);
+        if (!std::exchange(s.ended, true)) s.reader->count_oddities(s.file.file.string() + ": line " + std::to_string(s.line), s.tally);
         s.raw.clear();
         return batch.size() > 0;
       }
@@ -378,7 +378,9 @@ bool LaserSource::next(core::Shots& batch, size_t most) {
       if (full) return true;
       const double time = s.clock(s.raw, i);
       s.last_recorded = s.raw.time[i];
-      if (s.rule.of(s.raw, i, time) == s.line) s.take(i, time, batch);
+      if (s.rule.of(s.raw, i, time) != s.line) continue;
+      s.reader->take(i);
+      s.take(i, time, batch);
     }
   }
 }

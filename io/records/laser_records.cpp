@@ -185,7 +185,6 @@ class LasRecords : public LaserRecordReader {
     }
     out.record.resize(n);
     std::iota(out.record.begin(), out.record.end(), record_);
-    if (wanted_ == Wanted::all) box_.add(points_, header_, record_);
     record_ += n;
     if (wanted_ == Wanted::plan && !reader_) return true;
     const LasPoints& p = points_;
@@ -205,9 +204,8 @@ class LasRecords : public LaserRecordReader {
     return true;
   }
 
-  void count_oddities(const std::string& name, core::Tally& tally) const override {
-    if (box_.outside() > 0) tally.count(outside_box, name + ": " + box_.fault(), box_.outside());
-  }
+  void take(size_t i) override { box_.add_one(points_, header_, record_ - points_.size(), i); }
+  void count_oddities(const std::string& name, core::Tally& tally) const override { box_.count(name, tally); }
 
  private:
   std::vector<std::string> ignored_;

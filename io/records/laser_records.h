@@ -44,7 +44,9 @@ class LaserRecordReader {
   virtual ~LaserRecordReader() = default;
   /// Replaces `out` by the next records, about `most` (a CSD pulse is not cut); false at the end.
   virtual bool next(LaserRecords& out, size_t most) = 0;
-  /// Counts what is odd of the records read so far; `name`: of the file.
+  /// Record `i` of the last next() is one of those that are looked for.
+  virtual void take(size_t /*i*/) {}
+  /// Counts what is odd of the records taken so far; `name`: of the file.
   virtual void count_oddities(const std::string&, core::Tally&) const {}
 };
 

@@ -123,7 +123,7 @@ class CloudReader : public StripReader {
     const size_t n = reader_.read(block, most, time_, number_);
     if (n == 0) {
       const std::string outside = reader_.box().fault();
-      if (!outside.empty()) tally.count(io::outside_box, file_.file.string() + ": " + outside, reader_.box().outside());
+      reader_.box().count(file_.file.string(), tally);
       for (const std::string& w : reader_.warnings())
         if (w != outside) tally.count("oddities of the file", w);
       if (const std::string fault = reader_.time_fault(file_.time_scale); !fault.empty())

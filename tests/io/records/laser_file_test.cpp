@@ -90,6 +90,41 @@ TEST_F(LaserFiles, ReturnsOutsideTheBoxOfTheHeaderAreCounted) {
     test::write_bytes(folder_ / name, bytes);
     EXPECT_EQ(shots().size(), 100u);
     EXPECT_EQ(tally_.of(outside_box), 10u) << name;
+    EXPECT_EQ(tally_.of(wrong_box), 1u) << name;
+  }
+}
+
+TEST_F(LaserFiles, ReturnsOutsideTheBoxAreCountedForTheirOwnLineAlone) {
+  LasHeader h = test::sample_header(6);
+  h.offset.setZero();
+  h.scale.setConstant(0.001);
+  LasPoints p;
+  resize(p, h, 100);
+  for (size_t i = 0; i < p.size(); ++i) {
+    p.raw_y[i] = static_cast<int>(i) * 1000 - 50000, p.raw_z[i] = 300000;  // -50 to 49 m to the right, 300 m down
+    p.gps_time[i] = 1e6 + 0.01 * static_cast<double>(i), p.point_source_id[i] = static_cast<std::uint16_t>(i % 2 ? 8 : 5);
+  }
+  survey_.laser[0] = {};
+  for (const char* name : {"a.las", "a.laz"}) {
+    test::write_sample(folder_ / name, h, p);
+    std::string bytes = test::read_bytes(folder_ / name);
+    const double largest = 39.5;
+    std::memcpy(&bytes[195], &largest, sizeof largest);  // y: rows 90 to 99 lie outside, five of each line
+    test::write_bytes(folder_ / name, bytes);
+    survey_.laser[0].file = folder_ / name;
+    survey_.laser[0].format = LaserFormat::las;
+    tally_ = {};
+    const auto s = strips();
+    ASSERT_EQ(s.size(), 2u);
+    for (const auto& strip : s) {
+      core::Tally tally;
+      EXPECT_EQ(read_strip(survey_, strip, 7, tally).size(), 50u);
+      EXPECT_EQ(tally.of(outside_box), 5u) << name << " line " << strip.line;
+      EXPECT_EQ(tally.of(wrong_box), 1u) << name << " line " << strip.line;
+      const std::string said = tally.value().find(wrong_box)->find("examples")->items().front().as_text();
+      EXPECT_NE(said.find("line " + std::to_string(strip.line) + ": 5 of 50 points (10 %)"), std::string::npos) << said;
+      EXPECT_NE(said.find(strip.line == 5 ? "records 90, 92, 94" : "records 91, 93, 95"), std::string::npos) << said;
+    }
   }
 }
 
