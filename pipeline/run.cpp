@@ -722,7 +722,8 @@ Measured Engine::measured() const {
     for (const LimitedFinding& f : limited_findings())
       for (size_t i = 0; i < accounts_.size(); ++i)
         if (f.limit == limit && stage(i).info().name == f.stage)
-          if (const Value* v = value_at(accounts_[i].findings, f.path); v && v->is_number()) return v->as_number();
+          if (const Value* v = value_at(accounts_[i].findings, f.path))  // null: computed, and not finite
+            return v->is_number() ? v->as_number() : std::numeric_limits<double>::quiet_NaN();
     return std::nullopt;
   };
   std::optional<double> outside;

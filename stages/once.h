@@ -2,14 +2,17 @@
 // A stage that works once on a whole survey is a free function:
 //
 //   Given<core::ImuData, ImuFindings> read_imu(const io::Survey& survey, core::Tally& tally);
-//   TrajectoryFiles write_trajectory(const trajectory::Trajectory& t, const Output& to, const TrajectoryWriteOptions& o, core::Tally&
-//   tally);
+//   TrajectoryFiles write_trajectory(const trajectory::Trajectory& t, const Output& to, const TrajectoryWriteOptions& o,
+//                                    core::Tally& tally);
 //
 // Its signature says what it needs and gives. Parameters, in any order:
-//   const R&, R, const R*    a record that a stage before it gave; by value: its own, moved on its last use; a pointer: null where there is
-//   none const O&                 its options, a struct with a describe() const io::Survey&, const Output&, core::Tally&, const
-//   core::OnProgress&, const georef::ShotStream& const Context&           for what is left of the run: CRS, tiles, strips
-// It returns a record, a struct of results, both (Given), or nothing. registry.cpp makes a stage of it in one line:
+// clang-format off
+//   const R&, R, const R*     a record that a stage before it gave; by value: its own, moved on its last use; a pointer: null where there is none
+//   const O&                  its options, a struct with a describe()
+//   const io::Survey&, const Output&, core::Tally&, const core::OnProgress&, const georef::ShotStream&
+//   const Context&            for what is left of the run: CRS, tiles, strips
+// clang-format on
+// It returns a record, a struct of results, or both (Given). registry.cpp makes a stage of it in one line:
 //
 //   once<read_imu>("readers.imu", "Reads the survey's IMU records as increments in body axes.", {.inputs = imu_files}),
 #pragma once

@@ -147,6 +147,17 @@ struct ResultCodec<Eigen::Matrix<S, R, C, O, MR, MC>> {
   }
 };
 
+/// Is it a number that was computed and is not finite?
+template <class T>
+bool is_not_finite(const T& v) {
+  if constexpr (std::is_floating_point_v<T>) return !std::isfinite(v);
+  return false;
+}
+template <class T>
+bool is_not_finite(const std::optional<T>& v) {
+  return v && is_not_finite(*v);
+}
+
 template <class T>
 constexpr Fate fate_of = Fate::none;
 template <Fate F>
@@ -160,6 +171,7 @@ struct ResultField {
   Shape shape;
   Fate fate = Fate::none;
   std::function<Value()> get;  ///< null where it is left out
+  bool is_unknown = false;     ///< judged by a limit and not finite: null in the report, so that the limit is missed
 };
 
 /// Base of every visitor. `describe` functions call the templates; visitors override the hooks.
@@ -169,12 +181,14 @@ class ResultVisitor {
 
   template <class T>
   void result(std::string_view key, const T& value, Form form, std::string_view doc) {
-    on_result({key, doc, form, ResultCodec<T>::shape(), fate_of<T>, [&value, form] {
+    on_result({key, doc, form, ResultCodec<T>::shape(), fate_of<T>,
+               [&value, form] {
                  if (form.absent) return Value{};
                  Value v = ResultCodec<T>::get(value);
                  if (form.only_if_any && v.is_number() && v.as_number() == 0.0) return Value{};
                  return v;
-               }});
+               },
+               !form.limit.empty() && is_not_finite(value)});
   }
   template <class T>
   void result(std::string_view key, const T& value, std::string_view doc) {

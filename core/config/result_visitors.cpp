@@ -16,7 +16,7 @@ class Reporter : public ResultVisitor {
 
  protected:
   void on_result(ResultField f) override {
-    if (Value v = f.get(); !v.is_null() || (f.form.or_null && !f.form.absent)) out[f.key] = std::move(v);
+    if (Value v = f.get(); !v.is_null() || ((f.form.or_null || f.is_unknown) && !f.form.absent)) out[f.key] = std::move(v);
   }
   void on_table(std::string_view key, std::string_view, bool present, const Inner& inner) override {
     if (present) out[key] = reported(inner);
@@ -102,7 +102,13 @@ class Schemer : public ResultVisitor {
         break;
       case Kind::number:
       case Kind::quantity:
-        one["type"] = "number";
+        // What is not finite is null: in a list in its place, alone where it is always reported or judged by a limit.
+        if (f.form.or_null || !f.form.limit.empty() || f.shape.length != 1) {
+          one["type"].push("number");
+          one["type"].push("null");
+        } else {
+          one["type"] = "number";
+        }
         break;
       case Kind::text:
       case Kind::path:
@@ -120,8 +126,7 @@ class Schemer : public ResultVisitor {
     }
     std::string text(f.doc);
     if (!f.form.unit.empty()) text += " Unit: " + std::string(f.form.unit) + ".";
-    one["description"] = std::move(text);
-    out["properties"][f.key] = std::move(one);
+    add(f.key, std::move(one), text);
   }
   void on_table(std::string_view key, std::string_view doc, bool, const Inner& inner) override { add(key, result_schema(inner), doc); }
   void on_tables(std::string_view key, std::string_view doc, size_t, const Each& each) override {
@@ -140,7 +145,15 @@ class Schemer : public ResultVisitor {
  private:
   void add(std::string_view key, Value one, std::string_view doc) {
     one["description"] = doc;
-    out["properties"][key] = std::move(one);
+    Value& place = out["properties"][key];
+    if (place.is_null()) {
+      place = std::move(one);
+      return;
+    }
+    Value either = Value::object();  // a reason as text where there is no table
+    either["anyOf"].push(std::move(place));
+    either["anyOf"].push(std::move(one));
+    place = std::move(either);
   }
 };
 

@@ -36,17 +36,19 @@ constexpr float last_share = 0.7f;    // of its returns that are last ones
 constexpr float steepest2 = 3.0f;     // squared rise / run: 60 deg
 constexpr int hypotheses = 24;
 constexpr int planes_of_window = 3;
-constexpr float rms_share = 0.6f;                          // of the tolerance: points evenly spread within it have 0.58
-constexpr float closeness = 0.65f;                         // of the returns over a wide plane that lie within half the tolerance
-constexpr float glass_rms = 1.0f / 3.0f;                   // of the tolerance: leaves are rougher than glass
-constexpr float glass_share = 0.8f;                        // of the first returns over glass that lie on it
-constexpr size_t glass_fewest = 9;                         // sampled returns
+constexpr float rms_share = 0.6f;         // of the tolerance: points evenly spread within it have 0.58
+constexpr float closeness = 0.65f;        // of the returns over a wide plane that lie within half the tolerance
+constexpr float glass_rms = 1.0f / 3.0f;  // of the tolerance: leaves are rougher than glass
+constexpr float glass_share = 0.8f;       // of the first returns over glass that lie on it
+constexpr size_t glass_fewest = 9;        // sampled returns
+constexpr double glass_area = 2.0;        // of the area that other planes need: clipped hedges and vans' windows are smaller
 constexpr size_t rows_at_once = 4, points_at_once = 4096;  // of one thread
 constexpr float least_triangle = 0.1f;                     // area in plan, of a cell's
 
 /// z = level + east x + north y about the window's centre.
 struct Plane {
   float level = 0, east = 0, north = 0;
+  bool glass = false;  ///< beams pass it
   float close = 0;  ///< share of the returns over its ground plan within half the tolerance: of all, or of the first ones if that is more
   float above(float x, float y, float z) const { return z - (level + east * x + north * y); }
   float cosine() const { return 1.0f / std::sqrt(1.0f + east * east + north * north); }
@@ -206,6 +208,7 @@ class Window {
     const auto [all, first] = over(found, plane, tolerance);
     plane.close = std::max(all.close, first.close);
     if (static_cast<float>(last) >= last_share * n) return all.on >= own_share;
+    plane.glass = true;
     return found.n >= glass_fewest && rms <= glass_rms * tolerance && first.on >= glass_share;
   }
 
@@ -319,7 +322,8 @@ class Planes {
   }
 
   /// Do the planes of enough cells around, connected with (i, j), continue the plane, and do the returns follow them closely on average?
-  bool is_wide(const Plane& plane, int i, int j, int enough, float tolerance) const {
+  bool is_wide(const Plane& plane, int i, int j, int cells, float tolerance) const {
+    const int enough = plane.glass ? static_cast<int>(std::ceil(std::min(glass_area * cells, most_cells))) : cells;
     constexpr int width = 2 * growth + 1;
     std::array<std::uint8_t, static_cast<size_t>(width) * width> seen{};
     std::array<CellIndex, static_cast<size_t>(width) * width> found;

@@ -69,6 +69,40 @@ TEST(ResultVisitors, AReportHoldsWhatHasAValueInTheOrderOfDeclaration) {
   EXPECT_EQ(reported(made).find("worst")->find("first")->as_int(), 8);
 }
 
+TEST(ResultVisitors, AFigureWithALimitIsNullWhereItIsNotFiniteAndLeftOutWhereItIsNotComputed) {
+  Made made;
+  EXPECT_EQ(reported(made).find("sigma"), nullptr);
+  made.sigma = std::numeric_limits<double>::quiet_NaN();
+  ASSERT_NE(reported(made).find("sigma"), nullptr);
+  EXPECT_TRUE(reported(made).find("sigma")->is_null());
+}
+
+struct Either {
+  std::optional<std::string> why;
+  std::optional<Pair> pair;
+};
+template <class V>
+void describe(const Either& r, V& v) {
+  v.result("pair", r.why, "Why there is none.");
+  v.table("pair", r.pair, "A pair.");
+}
+
+TEST(ResultVisitors, TheSchemaAllowsNullWhereTheReportHasItAndEitherOfTwoForms) {
+  const Value made = result_schema([](ResultVisitor& v) { describe(Made{}, v); });
+  const Value& properties = *made.find("properties");
+  for (const char* key : {"unknown", "sigma"}) {
+    const Value& type = *properties.find(key)->find("type");
+    ASSERT_TRUE(type.is_array()) << key;
+    EXPECT_EQ(type.items()[1].as_text(), "null");
+  }
+  EXPECT_TRUE(properties.find("offset_m")->find("items")->find("type")->is_array());
+  const Value either = result_schema([](ResultVisitor& v) { describe(Either{}, v); });
+  const Value* any = either.find("properties")->find("pair")->find("anyOf");
+  ASSERT_NE(any, nullptr);
+  EXPECT_EQ(any->items()[0].find("type")->as_text(), "string");
+  EXPECT_EQ(any->items()[1].find("type")->as_text(), "object");
+}
+
 TEST(ResultVisitors, CountsOfSeveralTilesAddUp) {
   Made made;
   made.ground = 7;
