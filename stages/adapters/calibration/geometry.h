@@ -67,7 +67,7 @@ namespace swath::stages {
 struct GeometryReport {
   std::string verdict;
   std::vector<std::string> named;
-  double line_difference = std::numeric_limits<double>::quiet_NaN();
+  std::optional<double> line_difference{};
   std::optional<calib::ControlNear> control{};
   std::uint64_t contradictions = 0;
   double covered = 0.0, predicted = 0.0;
