@@ -85,7 +85,8 @@ GeometryReport report_of(const calib::GeometryFigures& found, const calib::Geome
   r.verdict = verdicts[static_cast<size_t>(found.verdict)];
   for (const calib::TriedMistake& t : found.named) r.named.push_back(t.name);
   for (const calib::LinePair& p : found.lines.pairs)
-    if (p.cells >= static_cast<std::uint64_t>(o.min_cells) && p.rms > 0) r.line_difference = std::max(r.line_difference.value_or(0.0), p.rms);
+    if (p.cells >= static_cast<std::uint64_t>(o.min_cells) && p.rms > 0)
+      r.line_difference = std::max(r.line_difference.value_or(0.0), p.rms);
   if (found.control.points > 0) r.control = found.control;
   // What the trajectory's reader has warned of is not said again, but counts.
   const auto said = std::count_if(found.checks.begin(), found.checks.end(), [](const auto& c) { return !c.held && c.said; });
