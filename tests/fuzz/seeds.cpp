@@ -5,12 +5,12 @@
 #include <fstream>
 #include <iostream>
 
-#include "core/crs.h"
 #include "core/error.h"
-#include "io/geotiff.h"
-#include "io/npy.h"
-#include "io/sbet.h"
-#include "io/vector.h"
+#include "core/geo/crs.h"
+#include "io/raster/geotiff.h"
+#include "io/records/sbet.h"
+#include "io/text/npy.h"
+#include "io/vector/vector.h"
 #include "pipeline/work/store_file.h"
 #include "tests/io/las_sample.h"
 
