@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/config/option_visitors.h"
+#include "core/config/shape_schema.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -197,38 +198,17 @@ class Schemer : public Visitor {
 
  protected:
   void on_field(Field f) override {
-    Value one = Value::object();
-    switch (f.shape.kind) {
-      case Kind::boolean:
-        one["type"] = "boolean";
-        break;
-      case Kind::integer:
-        one["type"] = "integer";
-        break;
-      case Kind::number:
-        one["type"] = "number";
-        break;
-      case Kind::quantity: {
-        std::string pattern = "^\\s*[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?\\s*(";
-        bool first = true;
-        for (const Unit& u : units())
-          if (u.dimension == f.shape.dimension) {
-            pattern += (first ? "" : "|") + std::string(u.name);
-            first = false;
-          }
-        one["type"] = "string";
-        one["pattern"] = pattern + ")\\s*$";
-        break;
-      }
-      case Kind::text:
-      case Kind::path:
-        one["type"] = "string";
-        break;
-      case Kind::choice: {
-        Value names = Value::array();
-        for (const std::string& c : f.shape.choices) names.push(c);
-        one["enum"] = std::move(names);
-      }
+    Value one = shape_schema(f.shape);
+    if (f.shape.kind == Kind::quantity) {  // in a config with its unit
+      std::string pattern = "^\\s*[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?\\s*(";
+      bool first = true;
+      for (const Unit& u : units())
+        if (u.dimension == f.shape.dimension) {
+          pattern += (first ? "" : "|") + std::string(u.name);
+          first = false;
+        }
+      one["type"] = "string";
+      one["pattern"] = pattern + ")\\s*$";
     }
     if (f.shape.kind == Kind::integer || f.shape.kind == Kind::number) {
       if (std::isfinite(f.range.lowest)) one[f.range.above_lowest ? "exclusiveMinimum" : "minimum"] = f.range.lowest;

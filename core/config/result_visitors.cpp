@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include "core/config/shape_schema.h"
+
 namespace swath::core {
 namespace {
 
@@ -92,31 +94,13 @@ class Schemer : public ResultVisitor {
 
  protected:
   void on_result(ResultField f) override {
-    Value one = Value::object();
-    switch (f.shape.kind) {
-      case Kind::boolean:
-        one["type"] = "boolean";
-        break;
-      case Kind::integer:
-        one["type"] = "integer";
-        break;
-      case Kind::number:
-      case Kind::quantity:
-        // What is not finite is null: in a list in its place, alone where it is always reported or judged by a limit.
-        if (f.form.or_null || !f.form.limit.empty() || f.shape.length != 1) {
-          one["type"].push("number");
-          one["type"].push("null");
-        } else {
-          one["type"] = "number";
-        }
-        break;
-      case Kind::text:
-      case Kind::path:
-        one["type"] = "string";
-        break;
-      case Kind::choice:
-        one["enum"] = Value::array();
-        for (const std::string& c : f.shape.choices) one["enum"].push(c);
+    Value one = shape_schema(f.shape);
+    // What is not finite is null: in a list in its place, alone where it is always reported or judged by a limit.
+    const bool is_figure = f.shape.kind == Kind::number || f.shape.kind == Kind::quantity;
+    if (is_figure && (f.form.or_null || !f.form.limit.empty() || f.shape.length != 1)) {
+      one["type"] = Value::array();
+      one["type"].push("number");
+      one["type"].push("null");
     }
     if (f.shape.length != 1) {
       Value list = Value::object();

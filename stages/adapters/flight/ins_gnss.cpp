@@ -45,14 +45,14 @@ std::optional<trajectory::TrajectoryErrors> compare_with_truth(const io::Survey&
   const auto truth = data.size() ? truth_of(survey, data.time.front()) : std::nullopt;
   if (!truth) return std::nullopt;
   trajectory::TrajectoryErrors errors = trajectory::errors_against(data, *truth);
-  core::Value told = core::Value::object();
-  if (errors.outside) told["outside_truth"] = errors.outside;
-  told["all"] = trajectory::compare(errors).value();
+  core::Value compared = core::Value::object();
+  if (errors.outside) compared["outside_truth"] = errors.outside;
+  compared["all"] = trajectory::compare(errors).value();
   std::vector<trajectory::Span> lines;
   for (const io::LineWindow& w : io::line_windows(survey)) lines.push_back({w.start, w.end});
-  if (!lines.empty()) told["lines"] = trajectory::compare(errors, lines).value();
-  report["truth"] = told;
-  findings["truth"] = std::move(told);
+  if (!lines.empty()) compared["lines"] = trajectory::compare(errors, lines).value();
+  report["truth"] = compared;
+  findings["truth"] = std::move(compared);
   return errors;
 }
 
