@@ -57,27 +57,6 @@ Statistics statistics(std::vector<double> errors) {
   return s;
 }
 
-core::Value value_of(const Statistics& s) {
-  core::Value v = core::Value::object();
-  v["n"] = s.n;
-  if (s.skipped > 0) v["skipped"] = s.skipped;
-  const auto put = [&](const char* name, double x) {
-    if (std::isfinite(x)) v[name] = x;
-  };
-  put("mean", s.mean);
-  put("std", s.std);
-  put("rms", s.rms);
-  put("median", s.median);
-  put("nmad", s.nmad);
-  put("q68", s.q68);
-  put("q95", s.q95);
-  put("minimum", s.minimum);
-  put("maximum", s.maximum);
-  put("max_abs", s.max_abs);
-  if (s.resolution > 0.0) put("resolution", s.resolution);
-  return v;
-}
-
 StreamingStatistics::StreamingStatistics(double bin, double reach)
     : bin_(bin), reach_(reach), minimum_(std::numeric_limits<double>::infinity()), maximum_(-minimum_) {
   constexpr double most_bins = 1e7;

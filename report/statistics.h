@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/config/value.h"
+#include "core/config/result.h"
 
 namespace swath::report {
 
@@ -29,11 +29,26 @@ struct Statistics {
   double resolution = 0.0;
 };
 
+/// Measures that do not exist are left out.
+template <class V>
+void describe(const Statistics& r, V& v) {
+  v.result("n", r.n, "Errors.");
+  v.result("skipped", r.skipped, core::if_any(), "Errors that are not finite, in no measure.");
+  v.result("mean", r.mean, "Mean.");
+  v.result("std", r.std, "Standard deviation about the mean.");
+  v.result("rms", r.rms, "Root mean square.");
+  v.result("median", r.median, "Median.");
+  v.result("nmad", r.nmad, "1.4826 times the median distance from the median.");
+  v.result("q68", r.q68, "68.3 % of the sizes lie below.");
+  v.result("q95", r.q95, "95 % of the sizes lie below.");
+  v.result("minimum", r.minimum, "Smallest value.");
+  v.result("maximum", r.maximum, "Largest value.");
+  v.result("max_abs", r.max_abs, "Largest size.");
+  v.result("resolution", r.resolution, core::if_any(), "Bin of the histogram that the quantiles come from; exact without.");
+}
+
 /// Exact statistics. Quantiles interpolate linearly between order statistics (type 7 of Hyndman and Fan 1996).
 Statistics statistics(std::vector<double> errors);
-
-/// {"n", "mean", ...}: measures that do not exist are left out, as is "skipped" where 0.
-core::Value value_of(const Statistics& s);
 
 /// Statistics of a stream in constant memory: mean and deviation by Welford's recurrence (merging: Chan, Golub, LeVeque 1983), quantiles
 /// from a histogram of bins of width `bin` over [-reach, reach]. Counts, extremes and histogram do not depend on the order of values or

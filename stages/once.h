@@ -12,7 +12,7 @@
 //   const io::Survey&, const Output&, core::Tally&, const core::OnProgress&, const georef::ShotStream&
 //   const Context&            for what is left of the run: CRS, tiles, strips
 // clang-format on
-// It returns a record, a struct of results, or both (Given). registry.cpp makes a stage of it in one line:
+// It returns a record, a struct of results, or both (Given; Corrected). registry.cpp makes a stage of it in one line:
 //
 //   once<read_imu>("readers.imu", "Reads the survey's IMU records as increments in body axes.", {.inputs = imu_files}),
 #pragma once
@@ -40,6 +40,13 @@ namespace swath::stages {
 template <Record R, class F>
 struct Given {
   R record;
+  F findings;
+};
+
+/// A record that the function has corrected; null: it stays as it is. The place on the map stays, too.
+template <Record R, class F>
+struct Corrected {
+  std::shared_ptr<const R> record;
   F findings;
 };
 
@@ -144,6 +151,15 @@ struct Returned<Given<R, F>> {
     core::Value findings = Returned<F>::keep(s, std::move(given.findings));
     hand_on(s, std::move(given.record));
     return findings;
+  }
+};
+template <Record R, class F>
+struct Returned<Corrected<R, F>> {
+  using Findings = F;
+  static void declare(Info& info) { Returned<R>::declare(info); }
+  static core::Value keep(Site& s, Corrected<R, F> corrected) {
+    if (corrected.record) s.context.records.share<R>(std::move(corrected.record));
+    return Returned<F>::keep(s, std::move(corrected.findings));
   }
 };
 

@@ -5,6 +5,7 @@
 #include "stages/adapters/calibration/calibration_flight.h"
 #include "stages/adapters/calibration/calibrations.h"
 #include "stages/adapters/calibration/geometry.h"
+#include "stages/adapters/calibration/strips.h"
 #include "stages/adapters/flight/hangar.h"
 #include "stages/adapters/flight/ins_gnss.h"
 #include "stages/adapters/flight/kinematic.h"
@@ -47,7 +48,10 @@ const std::vector<Entry>& registry() {
           "Calibration flight over a flat roof: its displacement in each line, and from it pitch, roll, heading and range "
           "offset, each from its own passes.",
           {.inputs = control_files, .products = flat_target_products}),
-      {"calib.strips", make_strips},
+      once<correct_strips>("calib.strips",
+                           "Strip adjustment: corrects the trajectory of a survey along its lines so that they meet on planes that several "
+                           "of them have seen, the calibration held; strips.json and report.html.",
+                           {.inputs = control_files, .products = strip_products}),
       once<judge_flight>("quality.geometry",
                          "Judges the geometry of a flight on a sample of its returns: lines against one another, heights, headings, roll; "
                          "where they do not fit, the usual mistakes are tried.",

@@ -47,6 +47,12 @@ Eigen::MatrixXd delivered_covariance(const Adjustment& a) {
   return out + L * a.held_correlation * L.transpose();
 }
 
+std::vector<std::string> sentences(const std::vector<Finding>& findings) {
+  std::vector<std::string> out;
+  for (const Finding& f : findings) out.push_back(f.what + (f.cure.empty() ? "" : ": " + f.cure));
+  return out;
+}
+
 void withdraw(Adjustment& a, const std::vector<Parameter>& parameters, Grade grade) {
   for (const Parameter p : parameters) {
     Estimate& e = a.estimates[p];

@@ -104,6 +104,8 @@ struct Finding {
   std::vector<Parameter> parameters;  ///< concerned
   bool refuses = false;               ///< true: the values of those parameters are not delivered
 };
+/// "WHAT: CURE", each.
+std::vector<std::string> sentences(const std::vector<Finding>& findings);
 
 struct Adjustment {
   core::Calibration calibration;                  ///< start values with the estimates put in

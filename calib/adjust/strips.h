@@ -2,6 +2,7 @@
 // Strip adjustment: the lines of a survey are brought onto one another by corrections of the trajectory, the calibration held.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "calib/adjust/adjust.h"
 #include "calib/adjust/calibrate.h"
 #include "calib/ties/tie_planes.h"
+#include "core/config/result.h"
 
 namespace swath::calib {
 
@@ -45,10 +47,30 @@ struct PairOnPlanes {
   std::uint64_t planes = 0;
   double mean_before = 0.0, rms_before = 0.0, mean_after = 0.0, rms_after = 0.0;
 };
+
+template <class V>
+void describe(const PairOnPlanes& r, V& v) {
+  const core::Form m = core::metres().always();
+  v.result("lines", std::array<int, 2>{r.line_a, r.line_b}, core::plain().only_if(r.line_a != 0 || r.line_b != 0),
+           "Numbers of the two lines.");
+  v.result("planes", r.planes, "Planes that both have seen.");
+  v.result("mean_before", r.mean_before, m, "Mean difference with the trajectory as it was given.");
+  v.result("rms_before", r.rms_before, m, "RMS of these differences.");
+  v.result("mean_after", r.mean_after, m, "Mean difference with the corrected trajectory.");
+  v.result("rms_after", r.rms_after, m, "RMS of these differences.");
+}
+
 struct PlaneDifferences {
   std::vector<PairOnPlanes> pairs;  ///< by ids; those with a plane in common
   PairOnPlanes all;
 };
+
+template <class V>
+void describe(const PlaneDifferences& r, V& v) {
+  v.table("all", r.all, "All pairs together.");
+  v.tables("pairs", r.pairs, "Pairs of lines with a plane in common.");
+}
+
 /// Groups that data snooping took out are left out.
 PlaneDifferences plane_differences(const TieSet& ties, const Adjustment& adjustment);
 

@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "calib/report/page.h"
+#include "calib/report/report_tree.h"
 #include "calib/report/tables.h"
 #include "core/grid_units.h"
 #include "io/raster/geotiff.h"

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/report/flat_target_report.h"
 
-#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
+#include "core/config/result_visitors.h"
 #include "core/config/units.h"
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
@@ -11,15 +13,13 @@
 namespace swath::calib {
 namespace {
 
-using calib::FlatTarget;
-using calib::Reading;
-using calib::TargetAngle;
-using calib::TargetLine;
-using calib::TargetView;
-using core::Value;
+using core::Form;
+using core::to_degrees;
 using Eigen::Vector2d;
 
 constexpr double arc_second = core::degree / 3600.0;
+constexpr Form ratio = core::plain().always(), metres = core::metres().always(), degrees = core::in_degrees().always(),
+               arc_seconds = Form{"arcsec"}.always(), millionths = Form{"ppm"}.always();
 
 struct Named {
   const char* name;
@@ -27,183 +27,248 @@ struct Named {
 };
 std::vector<Named> angles_of(const FlatTarget& t) { return {{"pitch", t.pitch}, {"roll", t.roll}, {"heading", t.heading}}; }
 
-Value lines_of(const Reading& r) {
-  Value out = Value::array();
-  out.push(r.first);
-  if (r.second >= 0) out.push(r.second);
+template <class S>
+std::optional<S> given(bool holds, S value) {
+  return holds ? std::optional<S>(std::move(value)) : std::nullopt;
+}
+
+struct ReadingRow {
+  Reading of;
+  bool is_angle = true;
+};
+
+template <class V>
+void describe(const ReadingRow& r, V& v) {
+  const std::vector<int> both{r.of.first, r.of.second};
+  v.result("lines", r.of.second >= 0 ? both : std::vector<int>{r.of.first}, "Numbers of the lines.");
+  v.result("value_deg", to_degrees(r.of.value), degrees.only_if(r.is_angle), "Boresight angle that the lines show.");
+  v.result("sigma_arcsec", r.of.sigma / arc_second, arc_seconds.only_if(r.is_angle), "Its standard deviation.");
+  v.result("value_m", r.of.value, metres.only_if(!r.is_angle), "Range offset that the lines show.");
+  v.result("sigma_m", r.of.sigma, metres.only_if(!r.is_angle), "Its standard deviation.");
+}
+
+std::vector<ReadingRow> rows_of(const std::vector<Reading>& readings, bool are_angles) {
+  std::vector<ReadingRow> out;
+  for (const Reading& r : readings) out.push_back({r, are_angles});
   return out;
 }
 
-Value value_of(const TargetView& v) {
-  Value out = Value::object();
-  out["seen"] = v.seen;
-  if (!v.seen) {
-    if (!v.why_not.empty()) out["why_not"] = v.why_not;
-    return out;
-  }
-  out["pulses"] = v.pulses;
-  out["on_roof"] = v.on_roof;
-  out["along_m"] = v.displacement.x();
-  out["along_sigma_of_returns_m"] = std::sqrt(v.covariance(0, 0));
-  out["across_m"] = v.displacement.y();
-  out["across_sigma_of_returns_m"] = std::sqrt(v.covariance(1, 1));
-  out["up_m"] = v.height;
-  out["up_sigma_of_returns_m"] = v.height_sigma;
-  out["tilt_along"] = v.tilt_along;
-  out["tilt_across"] = v.tilt_across;
-  out["shear_deg"] = core::to_degrees(v.shear);
-  out["longer_ppm"] = 1e6 * v.strain_along;
-  out["longer_sigma_ppm"] = 1e6 * v.strain_along_sigma;
-  out["wider_ppm"] = 1e6 * v.strain_across;
-  out["wider_sigma_ppm"] = 1e6 * v.strain_across_sigma;
-  out["growth_at_edges_m"] = v.growth;
-  out["blur_at_edges_m"] = v.blur;
-  out["half_footprint_m"] = v.half_footprint;
-  out["roughness_m"] = v.roughness;
-  out["chi2"] = v.chi2;
-  Value& edges = out["edges"] = Value::array();
-  for (const calib::SideView& s : v.sides) {
-    Value one = Value::object();
-    one["seen"] = s.used;
-    if (s.used) {
-      one["outward_m"] = s.offset;
-      one["sigma_m"] = std::sqrt(s.covariance(0, 0));
-      one["pulses"] = s.pulses;
-    }
-    edges.push(one);
-  }
-  return out;
+struct AngleInDetail {
+  TargetAngle of;
+};
+
+template <class V>
+void describe(const AngleInDetail& r, V& v) {
+  describe(r.of, v);
+  v.tables_if(r.of.determined, "readings", rows_of(r.of.readings, true), "Readings by pairs of lines.");
 }
 
-Value value_of(const TargetLine& l) {
-  Value out = Value::object();
-  out["line"] = l.line;
-  out["takes_part"] = l.measured;
-  if (l.kept_one_in > 1) out["kept_one_pulse_in"] = l.kept_one_in;
-  if (l.measured) {
-    out["role"] = calib::name_of(l.role);
-    out["heading_deg"] = core::to_degrees(core::wrap_two_pi(l.after.heading));
-    out["height_m"] = l.target.z();
-    out["target_to_the_right_m"] = l.target.y();
-    out["scan_angle_deg"] = core::to_degrees(l.scan_angle);
-    out["along_sigma_m"] = l.sigma.x();
-    out["across_sigma_m"] = l.sigma.y();
-    out["up_sigma_m"] = l.sigma.z();
-  }
-  out["before"] = value_of(l.before);
-  out["after"] = value_of(l.after);
-  return out;
+struct RangeOffset {
+  bool is_known = false;
+  double present = 0.0, mean = 0.0, sigma = 0.0, value = 0.0;
+};
+
+template <class V>
+void describe(const RangeOffset& r, V& v) {
+  const Form m = metres.only_if(r.is_known);
+  v.result("present_m", r.present, m, "Range offset in force.");
+  v.result("mean_m", r.mean, m, "Mean of the readings.");
+  v.result("sigma_m", r.sigma, m, "Standard deviation of the mean.");
+  v.result("value_m", r.value, m, "New range offset: the mean where it is beyond the tolerance.");
 }
 
-Value value_of(const TargetAngle& a) {
-  Value out = Value::object();
-  out["determined"] = a.determined;
-  out["present_deg"] = core::to_degrees(a.present);
-  out["value_deg"] = core::to_degrees(a.value);
-  if (!a.determined) return out;
-  out["mean_deg"] = core::to_degrees(a.mean);
-  out["sigma_arcsec"] = a.sigma / arc_second;
-  out["sigma_of_readings_arcsec"] = a.own / arc_second;
-  if (a.scatter > 0.0) out["sigma_by_scatter_arcsec"] = a.scatter / arc_second;
-  out["tolerance_arcsec"] = a.tolerance / arc_second;
-  out["beyond_tolerance"] = a.beyond;
-  if (a.of_two_heights) out["by_two_heights"] = true;
-  Value& readings = out["readings"] = Value::array();
-  for (const Reading& r : a.readings) {
-    Value one = Value::object();
-    one["lines"] = lines_of(r);
-    one["value_deg"] = core::to_degrees(r.value);
-    one["sigma_arcsec"] = r.sigma / arc_second;
-    readings.push(one);
-  }
-  return out;
+RangeOffset range_offset_of(const FlatTarget& t) {
+  return {t.range_determined, t.range_present, t.range_mean, t.range_sigma, t.calibration.range_offset.value};
 }
 
-Value joint_of(const FlatTarget& t) {
-  const calib::JointTarget& j = t.joint;
-  Value out = Value::object();
-  const auto angle = [&](const char* name, const calib::JointTarget::One& one, double measured) {
-    if (!one.free) return;
-    out[name]["value_deg"] = core::to_degrees(measured - one.value);
-    out[name]["sigma_arcsec"] = one.sigma / arc_second;
-  };
+struct RangeInDetail {
+  RangeOffset mean;
+  std::vector<Reading> readings;
+};
+
+template <class V>
+void describe(const RangeInDetail& r, V& v) {
+  describe(r.mean, v);
+  v.tables_if(!r.readings.empty(), "readings", rows_of(r.readings, false), "Readings by line.");
+}
+
+struct ScanScale {
+  double value = 1.0, sigma = 0.0;
+};
+
+template <class V>
+void describe(const ScanScale& r, V& v) {
+  v.result("value", r.value, ratio, "Scale of the scan angles.");
+  v.result("sigma_ppm", 1e6 * r.sigma, millionths, "Its standard deviation.");
+}
+
+std::optional<ScanScale> scan_scale_of(const FlatTarget& t) {
+  return given(t.done && t.joint.scan_scale.free, ScanScale{t.scan_scale, t.scan_scale_sigma});
+}
+
+struct Estimated {
+  double value = 0.0, sigma = 0.0;
+  bool is_angle = true;
+};
+
+template <class V>
+void describe(const Estimated& r, V& v) {
+  v.result("value_deg", to_degrees(r.value), degrees.only_if(r.is_angle), "Boresight angle.");
+  v.result("sigma_arcsec", r.sigma / arc_second, arc_seconds.only_if(r.is_angle), "Its standard deviation.");
+  v.result("value_m", r.value, metres.only_if(!r.is_angle), "Length.");
+  v.result("sigma_m", r.sigma, metres.only_if(!r.is_angle), "Its standard deviation.");
+}
+
+struct Jointly {
+  FlatTarget of;
+};
+
+template <class V>
+void describe(const Jointly& r, V& v) {
+  const JointTarget& j = r.of.joint;
   // What was left after the last round, on top of what the rounds have found.
-  angle("roll", j.roll, t.measured.roll.value);
-  angle("pitch", j.pitch, t.measured.pitch.value);
-  angle("heading", j.heading, t.measured.heading.value);
-  const auto metres = [&](const char* name, double value, double sigma) {
-    out[name]["value_m"] = value;
-    out[name]["sigma_m"] = sigma;
+  const auto angle = [](const JointTarget::One& one, core::Radians measured) {
+    return given(one.free, Estimated{measured.value - one.value, one.sigma});
   };
-  metres("datum_east", j.datum.x(), j.datum_sigma.x());
-  metres("datum_north", j.datum.y(), j.datum_sigma.y());
-  if (j.lever_forward.free) metres("lever_arm_forward_correction", -j.lever_forward.value, j.lever_forward.sigma);
-  if (j.lever_right.free) metres("lever_arm_right_correction", -j.lever_right.value, j.lever_right.sigma);
-  out["lowest_height_m"] = j.lowest;
-  out["highest_height_m"] = j.highest;
-  out["chi2"] = j.chi2;
-  return out;
+  const auto arm = [](const JointTarget::One& one) { return given(one.free, Estimated{-one.value, one.sigma, false}); };
+  v.table("roll", angle(j.roll, r.of.measured.roll), "Boresight roll.");
+  v.table("pitch", angle(j.pitch, r.of.measured.pitch), "Boresight pitch.");
+  v.table("heading", angle(j.heading, r.of.measured.heading), "Boresight heading.");
+  v.table("datum_east", Estimated{j.datum.x(), j.datum_sigma.x(), false}, "Shift common to all lines.");
+  v.table("datum_north", Estimated{j.datum.y(), j.datum_sigma.y(), false}, "Shift common to all lines.");
+  v.table("lever_arm_forward_correction", arm(j.lever_forward), "To be added to the lever arm.");
+  v.table("lever_arm_right_correction", arm(j.lever_right), "To be added to the lever arm.");
+  v.result("lowest_height_m", j.lowest, metres, "Lowest flying height above the target.");
+  v.result("highest_height_m", j.highest, metres, "Highest flying height above the target.");
+  v.result("chi2", j.chi2, ratio, "Per degree of freedom.");
+}
+
+struct Corner {
+  core::Geodetic at;
+};
+
+template <class V>
+void describe(const Corner& r, V& v) {
+  v.result("latitude_deg", to_degrees(r.at.latitude), core::in_degrees(9), "Latitude.");
+  v.result("longitude_deg", to_degrees(r.at.longitude), core::in_degrees(9), "Longitude.");
+  v.result("height_m", r.at.height, core::metres(), "Ellipsoidal height.");
+}
+
+/// What flat_target.json holds.
+struct Details {
+  const FlatTarget& of;
+};
+
+template <class V>
+void describe(const Details& r, V& v) {
+  const FlatTarget& t = r.of;
+  v.result("done", t.done, "True: the target was found and seen.");
+  v.table("target", given(t.done, t.target), "The target.");
+  for (const auto& [name, a] : angles_of(t)) v.table(name, given(t.done, AngleInDetail{a}), "Boresight angle.");
+  v.table("range_offset",
+          given(t.done && (t.range_determined || !t.range_readings.empty()), RangeInDetail{range_offset_of(t), t.range_readings}),
+          "Range offset.");
+  v.table("scan_scale", scan_scale_of(t), "Scale of the scan angles by widths and places of the target.");
+  v.result("findings", t.findings, "What is not determined, as sentences.");
+  v.result("returns", t.returns, "Returns read.");
+  v.result("rounds", t.rounds, core::plain().only_if(t.done), "Rounds of measuring and correcting.");
+  v.table("jointly", given(t.done, Jointly{t}), "All parameters at once, by least squares.");
+  v.tables_if(t.done, "lines", t.lines, "The target in each line.");
 }
 
 }  // namespace
 
-Value summary_of(const FlatTarget& t) {
-  Value out = Value::object();
-  out["done"] = t.done;
-  if (t.done) {
-    out["target"] = t.target.name;
-    for (const auto& [name, a] : angles_of(t)) {
-      Value one = value_of(a);
-      std::erase_if(one.members(), [](const Value::Member& m) { return m.first == "readings"; });
-      out[name] = one;
-    }
-    if (t.range_determined) {
-      out["range_offset"]["present_m"] = t.range_present;
-      out["range_offset"]["mean_m"] = t.range_mean;
-      out["range_offset"]["sigma_m"] = t.range_sigma;
-      out["range_offset"]["value_m"] = t.calibration.range_offset.value;
-    }
-    if (t.joint.scan_scale.free) {
-      out["scan_scale"]["value"] = t.scan_scale;
-      out["scan_scale"]["sigma_ppm"] = 1e6 * t.scan_scale_sigma;
-    }
-  }
-  Value& words = out["findings"] = Value::array();
-  for (const std::string& f : t.findings) words.push(f);
-  return out;
+template <class V>
+void describe(const TargetAngle& a, V& v) {
+  const Form deg = degrees.only_if(a.determined), arcsec = arc_seconds.only_if(a.determined), known = core::plain().only_if(a.determined);
+  v.result("determined", a.determined, "True: lines show it.");
+  v.result("present_deg", to_degrees(a.present), degrees, "Angle in force.");
+  v.result("value_deg", to_degrees(a.value), degrees, "New angle: the mean where it is beyond the tolerance.");
+  v.result("mean_deg", to_degrees(a.mean), deg, "Mean of the readings.");
+  v.result("sigma_arcsec", a.sigma / arc_second, arcsec, "Standard deviation of the mean.");
+  v.result("sigma_of_readings_arcsec", a.own / arc_second, arcsec, "The same by the readings' own covariance.");
+  v.result("sigma_by_scatter_arcsec", a.scatter / arc_second, arcsec.only_if(a.determined && a.scatter > 0.0),
+           "The same by their scatter.");
+  v.result("tolerance_arcsec", a.tolerance / arc_second, arcsec, "Difference up to which the angle in force is kept.");
+  v.result("beyond_tolerance", a.beyond, known, "True: the angle is replaced.");
+  v.result("by_two_heights", true, core::plain().only_if(a.determined && a.of_two_heights), "Angle and lever arm were separated.");
 }
 
-Value value_of(const FlatTarget& t) {
-  Value out = summary_of(t);
-  out["returns"] = t.returns;
-  if (!t.done) return out;
-  out["rounds"] = t.rounds;
-  Value target = Value::object();
-  target["name"] = t.target.name;
-  target["surveyed"] = t.target.surveyed;
-  Value& corners = target["corners"] = Value::array();
-  for (const Vector2d& c : t.target.corners) {
-    const core::Geodetic g = core::geodetic_of(t.target.frame.to_ecef({c.x(), c.y(), t.target.up(c)}));
-    Value one = Value::object();
-    one["latitude_deg"] = core::to_degrees(g.latitude);
-    one["longitude_deg"] = core::to_degrees(g.longitude);
-    one["height_m"] = g.height;
-    corners.push(one);
-  }
-  out["target"] = target;
-  for (const auto& [name, a] : angles_of(t)) out[name] = value_of(a);
-  for (const Reading& r : t.range_readings) {
-    Value one = Value::object();
-    one["lines"] = lines_of(r);
-    one["value_m"] = r.value;
-    one["sigma_m"] = r.sigma;
-    out["range_offset"]["readings"].push(one);
-  }
-  out["jointly"] = joint_of(t);
-  Value& lines = out["lines"] = Value::array();
-  for (const TargetLine& l : t.lines) lines.push(value_of(l));
-  return out;
+template <class V>
+void describe(const SideView& r, V& v) {
+  const Form m = metres.only_if(r.used);
+  v.result("seen", r.used, "True: pulses on and off the roof show it.");
+  v.result("outward_m", r.offset, m, "Distance from its surveyed or mean place.");
+  v.result("sigma_m", std::sqrt(r.covariance(0, 0)), m, "Standard deviation of this distance.");
+  v.result("pulses", r.pulses, core::plain().only_if(r.used), "Pulses that show it.");
 }
+
+template <class V>
+void describe(const TargetView& s, V& v) {
+  const Form n = core::plain().only_if(s.seen), m = metres.only_if(s.seen), number = ratio.only_if(s.seen),
+             in_ppm = millionths.only_if(s.seen);
+  v.result("seen", s.seen, "True: the line sees the target.");
+  v.result("why_not", s.why_not, core::plain().only_if(!s.seen && !s.why_not.empty()), "Why it does not.");
+  v.result("pulses", s.pulses, n, "Pulses near the target.");
+  v.result("on_roof", s.on_roof, n, "Of them on the roof.");
+  v.result("along_m", s.displacement.x(), m, "Displacement of the target along the flight.");
+  v.result("along_sigma_of_returns_m", std::sqrt(s.covariance(0, 0)), m, "Its standard deviation by the returns alone.");
+  v.result("across_m", s.displacement.y(), m, "Displacement to the right.");
+  v.result("across_sigma_of_returns_m", std::sqrt(s.covariance(1, 1)), m, "Its standard deviation by the returns alone.");
+  v.result("up_m", s.height, m, "Height above the surveyed or mean plane.");
+  v.result("up_sigma_of_returns_m", s.height_sigma, m, "Its standard deviation by the returns alone.");
+  v.result("tilt_along", s.tilt_along, number, "Upward slope along the flight.");
+  v.result("tilt_across", s.tilt_across, number, "Upward slope to the right.");
+  v.result("shear_deg", to_degrees(s.shear), degrees.only_if(s.seen), "Turn of the edges across the flight.");
+  v.result("longer_ppm", 1e6 * s.strain_along, in_ppm, "Growth along the flight.");
+  v.result("longer_sigma_ppm", 1e6 * s.strain_along_sigma, in_ppm, "Its standard deviation.");
+  v.result("wider_ppm", 1e6 * s.strain_across, in_ppm, "Growth across the flight.");
+  v.result("wider_sigma_ppm", 1e6 * s.strain_across_sigma, in_ppm, "Its standard deviation.");
+  v.result("growth_at_edges_m", s.growth, m, "Growth outward at every edge.");
+  v.result("blur_at_edges_m", s.blur, m, "Standard deviation of a pulse's place across an edge.");
+  v.result("half_footprint_m", s.half_footprint, m, "Half the band with returns on and off the roof.");
+  v.result("roughness_m", s.roughness, m, "RMS of the roof's returns about their plane.");
+  v.result("chi2", s.chi2, number, "Of the edges' fit per degree of freedom.");
+  v.tables_if(s.seen, "edges", s.sides, "Edges in the order of the corners.");
+}
+
+template <class V>
+void describe(const TargetLine& l, V& v) {
+  const Form m = metres.only_if(l.measured), deg = degrees.only_if(l.measured), used = core::plain().only_if(l.measured);
+  v.result("line", l.line, "Number of the line.");
+  v.result("takes_part", l.measured, "True: the line is part of the readings.");
+  v.result("kept_one_pulse_in", l.kept_one_in, core::plain().only_if(l.kept_one_in > 1), "Pulses were thinned by this.");
+  v.result("role", name_of(l.role), used, "Where the line has the target in its swath.");
+  v.result("heading_deg", to_degrees(core::wrap_two_pi(l.after.heading)), deg, "Heading of the aircraft.");
+  v.result("height_m", l.target.z(), m, "Height of the scanner above the target.");
+  v.result("target_to_the_right_m", l.target.y(), m, "Distance of the target from the scanner to the right.");
+  v.result("scan_angle_deg", to_degrees(l.scan_angle), deg, "Scan angle of the target.");
+  v.result("along_sigma_m", l.sigma.x(), m, "Standard deviation of `before` along the flight.");
+  v.result("across_sigma_m", l.sigma.y(), m, "The same to the right.");
+  v.result("up_sigma_m", l.sigma.z(), m, "The same in height.");
+  v.table("before", l.before, "The target with the calibration in force.");
+  v.table("after", l.after, "The target with what was found.");
+}
+
+template <class V>
+void describe(const RoofTarget& r, V& v) {
+  std::vector<Corner> corners;
+  for (const Vector2d& c : r.corners) corners.push_back({core::geodetic_of(r.frame.to_ecef({c.x(), c.y(), r.up(c)}))});
+  v.result("name", r.name, "Name of the target.");
+  v.result("surveyed", r.surveyed, "False: it was found in the data, and is the mean of the lines.");
+  v.tables("corners", corners, "Corners, counter-clockwise.");
+}
+
+void describe(const FlatTarget& t, core::ResultVisitor& v) {
+  v.result("done", t.done, "True: the target was found and seen.");
+  v.result("target", t.target.name, core::plain().only_if(t.done), "Name of the target.");
+  for (const auto& [name, a] : angles_of(t)) v.table(name, given(t.done, a), "Boresight angle.");
+  v.table("range_offset", given(t.done && t.range_determined, range_offset_of(t)), "Range offset.");
+  v.table("scan_scale", scan_scale_of(t), "Scale of the scan angles by widths and places of the target.");
+  v.result("findings", t.findings, core::plain().in_summary(), "What is not determined, as sentences.");
+}
+
+core::Value value_of(const FlatTarget& t) { return core::reported(Details{t}); }
 
 std::string readings_csv(const FlatTarget& t) {
   std::string out = "quantity,first_line,second_line,value,unit,sigma,sigma_unit\n";
@@ -216,127 +281,6 @@ std::string readings_csv(const FlatTarget& t) {
     for (const Reading& r : a.readings) row(name, r, core::degree, "deg", arc_second, "arcsec");
   for (const Reading& r : t.range_readings) row("range_offset", r, 1.0, "m", 1.0, "m");
   return out;
-}
-
-namespace {
-
-constexpr int grey = 4;  // of the palette
-
-/// Edges of one view in plan, displacements `enlarged`.
-report::Series edges_in_plan(const FlatTarget& t, const TargetView& v, double enlarged, int colour, const std::string& name) {
-  report::Series s{name, {}, {}, {}, report::Mark::line, colour};
-  for (size_t k = 0; k < v.sides.size(); ++k) {
-    const calib::SideView& side = v.sides[k];
-    if (!side.used) continue;
-    const Vector2d a = t.target.corners[k], b = t.target.corners[(k + 1) % t.target.sides()], d = (b - a).normalized();
-    const Vector2d outward(d.y(), -d.x());
-    for (const double at : {-0.45, 0.45}) {
-      const double along = at * (b - a).norm();
-      const Vector2d p = 0.5 * (a + b) + along * d + enlarged * (side.offset + side.slope * (along - side.at)) * outward;
-      s.x.push_back(p.x());
-      s.y.push_back(p.y());
-    }
-    s.x.push_back(std::nan(""));
-    s.y.push_back(std::nan(""));
-  }
-  return s;
-}
-
-/// A power of ten, or two or five of it, by which displacements become some metres long.
-double enlargement(const FlatTarget& t, bool after) {
-  double largest = 1e-3;
-  for (const TargetLine& l : t.lines) {
-    const TargetView& v = after ? l.after : l.before;
-    if (v.seen)
-      for (const calib::SideView& s : v.sides)
-        if (s.used) largest = std::max(largest, std::abs(s.offset));
-  }
-  constexpr double shown = 6.0;  // m on the plan
-  const double ratio = std::max(1.0, shown / largest), ten = std::pow(10.0, std::floor(std::log10(ratio)));
-  return ratio / ten >= 5.0 ? 5.0 * ten : ratio / ten >= 2.0 ? 2.0 * ten : ten;
-}
-
-report::Panel plan(const FlatTarget& t, bool after) {
-  const double enlarged = enlargement(t, after);
-  report::Panel p;
-  p.title = std::string(after ? "Edges after" : "Edges before") + ", displacements enlarged " + core::format_number(enlarged) + " times";
-  p.x_label = after ? "east (m) " : "east (m)";
-  p.y_label = "north (m)";
-  p.equal_scale = true;
-  report::Series outline{t.target.surveyed ? "surveyed" : "mean", {}, {}, {}, report::Mark::line, grey};
-  for (size_t k = 0; k <= t.target.sides(); ++k) {
-    outline.x.push_back(t.target.corners[k % t.target.sides()].x());
-    outline.y.push_back(t.target.corners[k % t.target.sides()].y());
-  }
-  p.series.push_back(outline);
-  int colour = 0;
-  for (const TargetLine& l : t.lines) {
-    if (!l.measured) continue;
-    if (colour == grey) ++colour;
-    p.series.push_back(edges_in_plan(t, after ? l.after : l.before, enlarged, colour++, "line " + std::to_string(l.line)));
-  }
-  return p;
-}
-
-report::Panel readings(const std::string& name, const TargetAngle& a) {
-  report::Panel p;
-  p.title = name + ": readings less the mean, with their sigmas";
-  p.x_label = "reading of " + name;
-  p.y_label = "arcsec";
-  report::Series mean{"sigma of the mean", {0.5, static_cast<double>(a.readings.size()) + 0.5}, {}, {}, report::Mark::band, grey};
-  mean.y.assign(2, a.sigma / arc_second);
-  p.series.push_back(mean);
-  report::Series dots{"", {}, {}, {}, report::Mark::dots, 0}, bars{"", {}, {}, {}, report::Mark::line, 0};
-  for (size_t i = 0; i < a.readings.size(); ++i) {
-    const double x = static_cast<double>(i + 1), y = (a.readings[i].value - a.mean) / arc_second, s = a.readings[i].sigma / arc_second;
-    dots.x.push_back(x);
-    dots.y.push_back(y);
-    for (const double end : {y - s, y + s}) {
-      bars.x.push_back(x);
-      bars.y.push_back(end);
-    }
-    bars.x.push_back(std::nan(""));
-    bars.y.push_back(std::nan(""));
-  }
-  p.series.push_back(bars);
-  p.series.push_back(dots);
-  return p;
-}
-
-report::Panel displacements(const FlatTarget& t) {
-  report::Panel p;
-  p.title = "Displacement of the target in each line, before";
-  p.x_label = "line";
-  p.y_label = "m";
-  report::Series along{"along", {}, {}, {}, report::Mark::dots, 0}, across{"across", {}, {}, {}, report::Mark::dots, 1},
-      up{"up", {}, {}, {}, report::Mark::dots, 2};
-  for (const TargetLine& l : t.lines) {
-    if (!l.before.seen) continue;
-    constexpr double vague = 0.5;  // m
-    const auto add = [&](report::Series& s, double shift, double value) {
-      s.x.push_back(l.line + shift);
-      s.y.push_back(value);
-    };
-    constexpr double beside = 0.1;
-    add(along, -beside, l.before.displacement.x());
-    if (l.before.covariance(1, 1) < vague * vague) add(across, 0.0, l.before.displacement.y());
-    add(up, beside, l.before.height);
-  }
-  p.series = {along, across, up};
-  return p;
-}
-
-}  // namespace
-
-report::Chart chart_of(const FlatTarget& t) {
-  report::Chart c;
-  c.title = "Flat target: " + t.target.name;
-  if (!t.done) return c;
-  c.panels = {displacements(t), plan(t, false), plan(t, true)};
-  for (const auto& [name, a] : angles_of(t))
-    if (a.determined) c.panels.push_back(readings(name, a));
-  c.panel_height = 320;
-  return c;
 }
 
 }  // namespace swath::calib

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "calib/report/figures.h"
+#include "calib/report/flight_design.h"
 #include "calib/report/residual_bins.h"
 #include "core/config/units.h"
-#include "core/geo/frames.h"
 #include "report/html.h"
 
 namespace swath::calib {
@@ -90,10 +90,11 @@ void add_flight(const PageParts& parts) {
   Table t{"lines", "Flight lines", {}, {}, {}};
   t.columns = {{"line"},       {"name", false}, {"heading (deg)"}, {"height (m)"}, {"speed (m/s)"},
                {"length (m)"}, {"start (s)"},   {"duration (s)"},  {"returns"},    {"tie planes"}};
-  for (const ReportedLine& l : parts.report.lines)
+  const FlightDesign flight = flight_design(parts.report);
+  for (const auto& [l, planes] : flight.lines)
     t.rows.push_back({std::to_string(l.id), l.name, number_text(core::to_degrees(l.heading), 1), number_text(l.height, 0),
                       number_text(l.speed, 1), number_text(l.length, 0), number_text(l.first - start, 1), number_text(l.last - l.first, 1),
-                      count_text(l.returns), count_text(planes_of(parts.report.ties, l.id))});
+                      count_text(l.returns), count_text(planes)});
   parts.page.table(t);
   parts.page.paragraph(
       "Heading: mean course over ground, clockwise from true north. Height: of the scanner above the ground. Start: after the first "
@@ -101,26 +102,13 @@ void add_flight(const PageParts& parts) {
 
   Table pairs{"overlaps", "Overlaps: tie planes that two lines share", {}, {}, {}};
   pairs.columns = {{"line"}, {"and line"}, {"angle between their courses (deg)"}, {"tie planes in common"}};
-  for (size_t a = 0; a < parts.report.lines.size(); ++a)
-    for (size_t b = a + 1; b < parts.report.lines.size(); ++b) {
-      const ReportedLine &first = parts.report.lines[a], &second = parts.report.lines[b];
-      const std::uint64_t common = common_planes(parts.report.ties, first.id, second.id);
-      if (common == 0) continue;
-      pairs.rows.push_back({std::to_string(first.id), std::to_string(second.id),
-                            number_text(core::to_degrees(std::abs(core::wrap_pi(second.heading - first.heading))), 1), count_text(common)});
-    }
+  for (const LinesOverlap& p : flight.pairs)
+    pairs.rows.push_back(
+        {std::to_string(p.lines[0]), std::to_string(p.lines[1]), number_text(core::to_degrees(p.turn), 1), count_text(p.planes)});
   parts.page.table(pairs);
 
   Table planes{"planes", "Tie planes", {{"kind", false}, {"planes"}, {"of them surveyed"}}, {}, {}};
-  for (int k = 0; k <= static_cast<int>(calib::TieKind::target); ++k) {
-    const auto kind = static_cast<calib::TieKind>(k);
-    std::uint64_t all = 0, surveyed = 0;
-    for (const calib::TiePlane& p : parts.report.ties.planes) {
-      all += p.kind == kind;
-      surveyed += p.kind == kind && !p.control.empty();
-    }
-    planes.rows.push_back({std::string(calib::name_of(kind)), count_text(all), count_text(surveyed)});
-  }
+  for (const auto& [kind, n] : flight.planes) planes.rows.push_back({kind, count_text(n.planes), count_text(n.surveyed)});
   parts.page.table(planes);
 }
 

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The files of numbers behind a calibration report: its tree and its columns.
+// The files of numbers behind a calibration report.
 #pragma once
 
 #include <string>
 
 #include "calib/report/report_data.h"
-#include "core/config/value.h"
 
 namespace swath::calib {
-
-/// calibration.json: "calibration" and "sigma" as io::load_calibration() reads them, then the report. SI units; times GPS; angles rad.
-core::Value calibration_report_tree(const CalibrationReport& report);
 
 // CSV with a header whose names end in the unit; numbers as short as they can be to read back the same.
 /// One row per group of returns: the plane (index from 0), line id, time since the first line's first return.

@@ -159,26 +159,6 @@ void ReturnStatistics::add(const ReturnStatistics& o) {
   }
 }
 
-core::Value ReturnStatistics::value() const {
-  core::Value out = core::Value::array();
-  for (const auto& [line, s] : strips_) {
-    core::Value one = core::Value::object();
-    one["line"] = static_cast<int>(line);
-    one["pulses"] = std::accumulate(s.pulses.begin(), s.pulses.end(), std::uint64_t{0});
-    core::Value histogram = core::Value::array();
-    size_t most = s.pulses.size() - 1;
-    while (most > 1 && s.pulses[most] == 0) --most;
-    for (size_t k = 1; k <= most; ++k) histogram.push(s.pulses[k]);
-    one["pulses_by_returns"] = histogram;
-    one["first"] = s.first;
-    one["last"] = s.last;
-    one["intermediate"] = s.intermediate;
-    one["only"] = s.only;
-    out.push(one);
-  }
-  return out;
-}
-
 double Penetration::rate(size_t cell) const {
   return pulses[cell] == 0 ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(ground_pulses[cell]) / pulses[cell];
 }

@@ -67,8 +67,6 @@ class ReturnStatistics {
   void add(const core::Block& b);
   void add(const ReturnStatistics& o);
   const std::map<std::uint16_t, StripReturns>& strips() const { return strips_; }
-  /// [{"line", "pulses", "pulses_by_returns": [of one, of two ...], "first", "last", "intermediate", "only"}, ...]
-  core::Value value() const;
 
  private:
   std::map<std::uint16_t, StripReturns> strips_;

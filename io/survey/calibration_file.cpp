@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/survey/calibration_file.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "core/config/option_visitors.h"
+#include "core/config/result_visitors.h"
 #include "core/printable.h"
 #include "io/records/csd.h"
 #include "io/text/value_file.h"
@@ -53,18 +55,15 @@ std::vector<double> read_correlation(const Value& table, const std::filesystem::
 }
 
 /// The table that read_correlation() reads.
-Value correlation_tree(const std::vector<double>& correlation) {
-  constexpr size_t n = core::calibration_keys.size();
-  Value out = Value::object(), names = Value::array(), rows = Value::array();
-  for (size_t i = 0; i < n; ++i) {
-    names.push(core::calibration_keys[i]);
-    Value row = Value::array();
-    for (size_t j = 0; j < n; ++j) row.push(correlation[i * n + j]);
-    rows.push(std::move(row));
-  }
-  out["parameters"] = std::move(names);
-  out["matrix"] = std::move(rows);
-  return out;
+struct Correlation {
+  std::vector<std::string> parameters;
+  Eigen::MatrixXd matrix;
+};
+
+template <class V>
+void describe(const Correlation& r, V& v) {
+  v.result("parameters", r.parameters, "Calibration values, in the order of the matrix.");
+  v.result("matrix", r.matrix, "Correlations of their errors, row by row.");
 }
 
 }  // namespace
@@ -101,13 +100,13 @@ void load_calibration(const std::filesystem::path& file, core::Calibration& cali
 }
 
 core::Value calibration_tree(const core::Calibration& calibration, const core::SensorSigma& sigma) {
+  constexpr size_t n = core::calibration_keys.size();
   core::Calibration c = calibration;
   core::SensorSigma s = sigma;
-  Value out = Value::object();
-  out["calibration"] = core::effective_values(core::described(c));
-  out["sigma"] = core::effective_values(core::described(s));
-  if (s.correlation.size() == core::calibration_keys.size() * core::calibration_keys.size())
-    out["correlation"] = correlation_tree(s.correlation);
+  Value::Object out{{"calibration", core::effective_values(core::described(c))}, {"sigma", core::effective_values(core::described(s))}};
+  if (s.correlation.size() == n * n)
+    out.emplace_back("correlation", core::reported(Correlation{{core::calibration_keys.begin(), core::calibration_keys.end()},
+                                                               Eigen::MatrixXd::Map(s.correlation.data(), n, n).transpose()}));
   return out;
 }
 

@@ -13,7 +13,6 @@ std::unique_ptr<Stage> make_rtklib();
 std::unique_ptr<Stage> make_time_sync();
 std::unique_ptr<Stage> make_laser_reader();
 std::unique_ptr<Stage> make_las_reader();
-std::unique_ptr<Stage> make_strips();
 std::unique_ptr<Stage> make_georeference();
 std::unique_ptr<Stage> make_returns();
 std::unique_ptr<Stage> make_visibility();

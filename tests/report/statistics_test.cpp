@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/config/result_visitors.h"
 #include "core/error.h"
 
 namespace swath::report {
@@ -31,13 +32,13 @@ TEST(Statistics, FewOrNoValues) {
   const Statistics none = statistics({});
   EXPECT_EQ(none.n, 0u);
   EXPECT_TRUE(std::isnan(none.mean));
-  EXPECT_EQ(value_of(none).members().size(), 1u);
+  EXPECT_EQ(core::reported(none).members().size(), 1u);
   const Statistics one = statistics({0.25});
   EXPECT_TRUE(std::isnan(one.std));
   EXPECT_EQ(one.median, 0.25);
   EXPECT_EQ(one.nmad, 0.0);
-  EXPECT_EQ(value_of(one).find("std"), nullptr);
-  EXPECT_DOUBLE_EQ(value_of(one).find("rms")->as_number(), 0.25);
+  EXPECT_EQ(core::reported(one).find("std"), nullptr);
+  EXPECT_DOUBLE_EQ(core::reported(one).find("rms")->as_number(), 0.25);
   EXPECT_EQ(StreamingStatistics().result().n, 0u);
 }
 

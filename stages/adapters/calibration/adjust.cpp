@@ -49,7 +49,7 @@ AdjustFindings found_in(const calib::Calibrated& c) {
   out.tie_returns = c.ties.returns.size();
   out.rounds = c.rounds;
   out.sigma0 = c.adjustment.sigma0;
-  for (const calib::Finding& f : c.adjustment.findings) out.findings.push_back(f.what + (f.cure.empty() ? "" : ": " + f.cure));
+  out.findings = calib::sentences(c.adjustment.findings);
   return out;
 }
 

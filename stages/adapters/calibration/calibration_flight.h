@@ -9,10 +9,26 @@
 #include "calib/adjust/calibrate.h"
 #include "calib/adjust/flown_lines.h"
 #include "calib/report/calibration_report.h"
+#include "calib/ties/line_heights.h"
 #include "stages/calibration_views.h"
 #include "stages/stage.h"
+#include "trajectory/ins/error_model.h"
 
 namespace swath::stages {
+
+/// Options that stages share which adjust a flight and report on it.
+struct FlightStageOptions {
+  trajectory::ErrorModelOptions errors;
+  calib::LineHeightOptions differences;
+  int sections = 4;
+};
+
+template <class V>
+void describe(FlightStageOptions& o, V& v) {
+  v.table("errors", o.errors, "Errors of trajectories that state no covariances between instants.");
+  v.table("differences", o.differences, "Maps of the differences of overlapping lines.");
+  v.option("sections", o.sections, core::within(0, 50), "Cross sections drawn in the report.");
+}
 
 std::vector<std::filesystem::path> control_files(const io::Survey& survey);
 

@@ -8,27 +8,22 @@
 #include <vector>
 
 #include "calib/adjust/calibrate.h"
+#include "calib/report/flat_target_report.h"
 #include "calib/target/flat_target.h"
-#include "calib/ties/line_heights.h"
 #include "core/config/option.h"
 #include "core/config/result.h"
+#include "stages/adapters/calibration/calibration_flight.h"
 #include "stages/once.h"
 #include "trajectory/ins/error_model.h"
 
 namespace swath::stages {
 
-struct AdjustStageOptions : calib::CalibrateOptions {
-  trajectory::ErrorModelOptions errors;
-  calib::LineHeightOptions differences;
-  int sections = 4;
-};
+struct AdjustStageOptions : calib::CalibrateOptions, FlightStageOptions {};
 
 template <class V>
 void describe(AdjustStageOptions& o, V& v) {
   describe(static_cast<calib::CalibrateOptions&>(o), v);
-  v.table("errors", o.errors, "Errors of trajectories that state no covariances between instants.");
-  v.table("differences", o.differences, "Maps of the differences of overlapping lines.");
-  v.option("sections", o.sections, core::within(0, 50), "Cross sections drawn in the report.");
+  describe(static_cast<FlightStageOptions&>(o), v);
 }
 
 struct EstimateResult {
@@ -79,8 +74,8 @@ void describe(FlatTargetStageOptions& o, V& v) {
   v.table("errors", o.errors, "Errors of trajectories that state no covariances between instants.");
 }
 
-core::Value measure_flat_target(const io::Survey& survey, const trajectory::Trajectory& trajectory, const georef::ShotStream& shots,
-                                const FlatTargetStageOptions& o, const Output& to, core::Tally& tally);
+calib::FlatTarget measure_flat_target(const io::Survey& survey, const trajectory::Trajectory& trajectory, const georef::ShotStream& shots,
+                                      const FlatTargetStageOptions& o, const Output& to, core::Tally& tally);
 std::vector<std::string> flat_target_products(const FlatTargetStageOptions&);
 
 }  // namespace swath::stages

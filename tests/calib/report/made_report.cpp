@@ -61,6 +61,9 @@ void add_estimates(calib::Adjustment& a) {
   for (Eigen::Index r = 0; r < 6; ++r)
     for (Eigen::Index c = 0; c < r; ++c) a.correlation(r, c) = a.correlation(c, r) = random.between(-0.4, 0.4);
   a.correlation(3, 4) = a.correlation(4, 3) = -0.91;
+  a.formal = a.held = Eigen::MatrixXd::Zero(calib::latency + 1, calib::latency + 1);
+  a.held_correlation = Eigen::MatrixXd::Identity(calib::latency + 1, calib::latency + 1);
+  for (const calib::Estimate& e : a.estimates) a.formal(e.parameter, e.parameter) = e.formal * e.formal;
   a.calibration.roll.value = a.estimates[calib::boresight_roll].value;
   a.calibration.pitch.value = a.estimates[calib::boresight_pitch].value;
   a.calibration.heading.value = a.estimates[calib::boresight_heading].value;
@@ -271,6 +274,48 @@ CalibrationReport made_report(bool refused) {
   r.flat_target = made_flat_target();
   r.notes = {"The start values were found by matching height grids of the lines.", "Planes were extracted anew 2 times."};
   return r;
+}
+
+FlatTarget made_target() {
+  FlatTarget t;
+  t.done = true;
+  t.target.name = "hall";
+  t.target.frame = trajectory::local_frame({4177000.0, 774000.0, 4710000.0});
+  t.target.corners = {{30, 15}, {-30, 15}, {-30, -15}, {30, -15}};
+  TargetLine l;
+  l.line = 4;
+  l.measured = true;
+  l.role = TargetRole::edge;
+  l.before.seen = l.after.seen = true;
+  l.before.displacement = {1.5, -0.5};
+  l.before.covariance = l.after.covariance = Eigen::Matrix2d::Identity() * 4e-4;
+  for (const double offset : {0.5, 1.5, -0.5, -1.5}) {
+    SideView s;
+    s.used = true;
+    s.offset = offset;
+    l.before.sides.push_back(s);
+    s.offset = 0.01 * offset;
+    l.after.sides.push_back(s);
+  }
+  t.lines.push_back(l);
+  l.line = 5;
+  l.measured = l.before.seen = l.after.seen = false;
+  l.before.why_not = l.after.why_not = "no returns near the target";
+  t.lines.push_back(l);
+  t.pitch.determined = t.pitch.beyond = true;
+  t.pitch.mean = t.pitch.value = 0.1 * core::degree;
+  t.pitch.sigma = t.pitch.own = 2e-5;
+  Reading r;
+  r.first = 1, r.second = 2;
+  r.value = 0.1 * core::degree, r.sigma = 2e-5;
+  t.pitch.readings.push_back(r);
+  r.second = -1;
+  r.value = 0.12, r.sigma = 0.03;
+  t.range_determined = true;
+  t.range_mean = 0.12;
+  t.range_readings.push_back(r);
+  t.findings = {"roll is not determined"};
+  return t;
 }
 
 }  // namespace swath::calib

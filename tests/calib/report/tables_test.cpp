@@ -60,18 +60,5 @@ TEST(CalibrationTables, NumbersReadBackTheSame) {
   EXPECT_EQ(rows_of(residuals_csv(unknown))[1][7], "");
 }
 
-TEST(CalibrationTables, ATreeTellsNoValueOfWhatIsRefused) {
-  const core::Value tree = calibration_report_tree(made_report(true));
-  for (const core::Value& e : tree.find("estimates")->items()) {
-    const bool refused = e.find("parameter")->as_text() == "range_scale";
-    const bool estimated = e.find("estimated")->as_bool();
-    EXPECT_EQ(e.find("delivered")->as_bool(), estimated && !refused) << e.find("name")->as_text();
-    EXPECT_EQ(e.find("value") != nullptr, estimated && !refused) << e.find("name")->as_text();
-  }
-  EXPECT_EQ(tree.find("correlation")->find("matrix")->items().size(), 6u);
-  EXPECT_EQ(tree.find("flight")->find("lines")->items().size(), 6u);
-  EXPECT_EQ(tree.find("differences")->items()[2].find("before")->find("file")->as_text(), "differences/2_5_before.tif");
-}
-
 }  // namespace
 }  // namespace swath::calib

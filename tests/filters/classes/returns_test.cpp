@@ -142,9 +142,6 @@ TEST(Returns, StatisticsOfBatchesAddUp) {
     EXPECT_EQ(r.only, 1u);
     EXPECT_EQ(s->strips().at(4).only, 1u);
   }
-  const core::Value v = whole.value();
-  EXPECT_EQ(v.items()[0].find("pulses")->as_int(), 2);
-  EXPECT_EQ(v.items()[0].find("pulses_by_returns")->items().size(), 3u);
 }
 
 TEST(Returns, PenetrationIsGroundPulsesOverPulses) {
