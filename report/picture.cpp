@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/statistics.h"
 #include "report/map_parts.h"
 
 namespace swath::report {
@@ -19,17 +20,11 @@ constexpr double densest = 1.0 / 3.0;  // share of the map that ordinary contour
 
 /// 2nd and 98th percentile of the heights.
 Span height_span(const core::Grid& g) {
-  std::vector<float> heights;
+  std::vector<double> heights;
   for (const float h : g.height)
-    if (!std::isnan(h)) heights.push_back(h);
+    if (!std::isnan(h)) heights.push_back(static_cast<double>(h));
   if (heights.empty()) return {};
-  const auto at = [&](double share) {
-    const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(heights.size() - 1));
-    std::nth_element(heights.begin(), heights.begin() + k, heights.end());
-    return static_cast<double>(heights[static_cast<size_t>(k)]);
-  };
-  const double low = at(0.02), high = at(0.98);
-  return {low, high, true};
+  return {core::quantile(heights, 0.02), core::quantile(heights, 0.98), true};
 }
 
 /// Tint times brightness, relative to level ground.

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "calib/adjust/parameter_words.h"
 #include "calib/adjust/tie_normals.h"
+#include "calib/words.h"
 #include "core/error.h"
 #include "core/geo/geodesy.h"
 #include "core/statistics.h"
@@ -82,10 +82,8 @@ void refuse_unsettled(Adjustment& a, const Move& move, int rounds) {
   std::vector<Parameter> all;
   for (const Estimate& e : a.estimates)
     if (e.estimated) all.push_back(e.parameter);
-  char sigmas[32];
-  std::snprintf(sigmas, sizeof sigmas, "%.2g", move.sigmas);
   a.findings.push_back({"the values did not settle in " + std::to_string(rounds) + " rounds: the last one still moved " +
-                            std::string(words_of(move.parameter).name) + " by " + sigmas + " of its sigmas",
+                            std::string(words_of(move.parameter).name) + words(" by %.2g of its sigmas", move.sigmas),
                         "allow more rounds, or fly lines that share more planes: opposite lines, cross lines, sloping roofs", all, true});
   withdraw(a, all, Grade::unsettled);
 }
@@ -104,11 +102,7 @@ double mismatch_after(const Adjustment& a) {
   return 3 * 1.4826 * core::median(std::move(sizes), 0.0);
 }
 
-std::string metres(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, v < 0.1 ? "%.3f m" : "%.2f m", v);
-  return text;
-}
+std::string metres(double v) { return words(v < 0.1 ? "%.3f m" : "%.2f m", v); }
 
 [[noreturn]] void throw_reversed_scan() {
   throw core::Error("the surfaces of the lines meet only with the sign of the scan angle turned", "laser records",
@@ -209,10 +203,8 @@ Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& op
     mismatch = std::min(mismatch, mismatch_after(out.adjustment));
     const bool settled = !first && move.sigmas <= settled_step;
     if (settled || out.rounds == options.rounds) {
-      char sigmas[32];
-      std::snprintf(sigmas, sizeof sigmas, "%.2g", move.sigmas);
       out.notes.push_back("Planes were sought " + std::to_string(out.rounds) + " times; the last time moved the returns by " +
-                          metres(change) + ", and no value by more than " + sigmas + " of its sigmas.");
+                          metres(change) + words(", and no value by more than %.2g of its sigmas.", move.sigmas));
       if (!settled) refuse_unsettled(out.adjustment, move, out.rounds);
       break;
     }

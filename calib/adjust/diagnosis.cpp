@@ -6,12 +6,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 
 #include "calib/adjust/parameter_words.h"
 #include "calib/adjust/start_sigmas.h"
+#include "calib/words.h"
 
 namespace swath::calib {
 namespace {
@@ -92,9 +92,7 @@ Words words_for(Parameter p, const FlightShape& s) {
 }
 
 std::string in_words(Parameter p, double sigma) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%.3g %s", sigma / words_of(p).sigma_size, std::string(words_of(p).sigma_unit).c_str());
-  return text;
+  return words("%.3g ", sigma / words_of(p).sigma_size) + std::string(words_of(p).sigma_unit);
 }
 
 std::string joined(const std::vector<Parameter>& list) {

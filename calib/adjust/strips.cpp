@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "calib/words.h"
 #include "core/error.h"
 #include "core/statistics.h"
 #include "trajectory/corrected.h"
@@ -52,17 +53,8 @@ double moved(const std::vector<LineCorrection>& from, const std::vector<LineCorr
   return at.groups.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(at.groups.size()));
 }
 
-std::string metres(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f m", v);
-  return text;
-}
-
-std::string seconds(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g s", v);
-  return text;
-}
+std::string metres(double v) { return words("%.3f m", v); }
+std::string seconds(double v) { return words("%.2g s", v); }
 
 double scatter_after(const Adjustment& a) {
   std::vector<double> sizes;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "calib/words.h"
 #include "core/geo/geodesy.h"
 #include "core/statistics.h"
 
@@ -67,8 +68,8 @@ std::optional<GeometryCheck> check_control(const ControlFigures& c, double ratio
   // Points scatter as well: roofs that are missed, trees that were cut.
   const double sigma = std::hypot(c.predicted, c.spread / std::sqrt(static_cast<double>(c.compared)));
   return GeometryCheck{"control_height", c.median, off <= tolerance || off <= ratio * sigma,
-                       text_of("the ground lies %.2f m ", off) + (c.median > 0 ? "above" : "below") +
-                           text_of(" the control (median of %.0f points, predicted %.2f m)", static_cast<double>(c.compared), c.predicted)};
+                       words("the ground lies %.2f m ", off) + (c.median > 0 ? "above" : "below") +
+                           words(" the control (median of %.0f points, predicted %.2f m)", static_cast<double>(c.compared), c.predicted)};
 }
 
 std::optional<HeightMistake> height_mistake(const ControlFigures& c, double undulation, double range) {
@@ -95,7 +96,7 @@ std::optional<HeightMistake> height_mistake(const ControlFigures& c, double undu
                                             : "the control's heights";
   return HeightMistake{"height_geoid",
                        "with " + whose + " above the geoid in place of the ellipsoid" +
-                           (known ? text_of(" (the geoid lies at %.0f m there)", undulation) : ""),
+                           (known ? words(" (the geoid lies at %.0f m there)", undulation) : ""),
                        known && of_trajectory ? "export the trajectory with ellipsoidal heights"
                        : known                ? "state the CRS of [[control]] with its height system"
                                : "export the trajectory with ellipsoidal heights, state the CRS of [[control]] with its heights"};

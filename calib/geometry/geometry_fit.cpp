@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
+#include "calib/words.h"
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
 #include "core/statistics.h"
@@ -50,31 +50,25 @@ void add_heights(const SampledFlight& f, const Chain& chain, const trajectory::T
   }
   if (n < 100) return;
   const double share = down / n, height = core::median(std::move(heights), 0.0);
-  out.push_back({"beams_down", share, share >= least_down, text_of("only %.0f %% of the returns lie below the aircraft", 100 * share)});
+  out.push_back({"beams_down", share, share >= least_down, words("only %.0f %% of the returns lie below the aircraft", 100 * share)});
   out.push_back(
       {"ground_height", height, height > lowest_land && height < highest_land,
-       text_of("the ground lies %.0f m above the ellipsoid, where no land is: heights of the trajectory or ranges are wrong", height)});
+       words("the ground lies %.0f m above the ellipsoid, where no land is: heights of the trajectory or ranges are wrong", height)});
 }
 
 void add_turns(const trajectory::FlightChecks& c, std::vector<GeometryCheck>& out) {
   if (const auto& roll = c.roll_turns)
     out.push_back({"roll_in_turns", roll->factor, roll->factor > -leaning || roll->correlation > -clearly_leaning,
-                   text_of("in turns the roll is %.2f of that of a coordinated turn (1 is expected)", roll->factor)});
+                   words("in turns the roll is %.2f of that of a coordinated turn (1 is expected)", roll->factor)});
   if (const auto& pitch = c.pitch_turns) {
     const bool rolls = c.roll_turns && std::abs(c.roll_turns->factor) > leaning;
     out.push_back({"pitch_in_turns", pitch->factor,
                    rolls || std::abs(pitch->factor) < leaning || std::abs(pitch->correlation) < clearly_leaning,
-                   text_of("in turns the pitch is %.2f of the roll of a coordinated turn (0 is expected)", pitch->factor)});
+                   words("in turns the pitch is %.2f of the roll of a coordinated turn (0 is expected)", pitch->factor)});
   }
 }
 
 }  // namespace
-
-std::string text_of(const char* format, double a, double b, double c) {
-  char text[300];
-  std::snprintf(text, sizeof text, format, a, b, c);
-  return text;
-}
 
 LineCells line_cells(const SampledFlight& f, const Chain& chain, const trajectory::Trajectory& t) {
   LocalPoints points(chain.scanner, chain.calibration, t, f.frame);
@@ -147,11 +141,11 @@ std::vector<GeometryCheck> check_returns(const SampledFlight& f, const Chain& ch
   if (!roll) return out;
   const bool tilts = roll->factor + sure * roll->sigma > lowest_tilt || roll->correlation > lowest_correlation;
   out.push_back({"ground_tilt", roll->factor, tilts,
-                 text_of("the ground tilts across the swath by %.2f of the aircraft's roll (1 is expected)", roll->factor)});
+                 words("the ground tilts across the swath by %.2f of the aircraft's roll (1 is expected)", roll->factor)});
   if (roll->correlation > clear || roll->bins < fewest_bins || f.sample.profiles.size() < 2) return out;
   const auto sought = roll_signal(f.sample.profiles, geometry, data, longest_offset);
   out.push_back({"roll_time", sought->offset, sought->best < clear || sought->best < roll->correlation + clearly_more,
-                 text_of("the tilt of the ground follows the aircraft's roll with the laser's times %.2f s ", std::abs(sought->offset)) +
+                 words("the tilt of the ground follows the aircraft's roll with the laser's times %.2f s ", std::abs(sought->offset)) +
                      (sought->offset > 0 ? "later" : "earlier")});
   return out;
 }
@@ -162,15 +156,15 @@ std::vector<GeometryCheck> check_motion(const trajectory::FlightChecks& c, const
     const trajectory::HeadingFit& h = *c.heading;
     const double bias = core::to_degrees(h.bias);
     out.push_back({"heading_bias", bias, std::abs(h.bias) < heading_limit || std::abs(h.bias) < sure * h.sigma,
-                   text_of("the heading is %.1f deg off what track and wind allow (wind of %.0f m/s taken into account)", bias, h.wind)});
+                   words("the heading is %.1f deg off what track and wind allow (wind of %.0f m/s taken into account)", bias, h.wind)});
     out.push_back({"heading_misfit", h.misfit, h.misfit < misfit_limit,
-                   text_of("the heading does not follow the track: %.0f %% of the speed is left with any wind", 100 * h.misfit)});
+                   words("the heading does not follow the track: %.0f %% of the speed is left with any wind", 100 * h.misfit)});
   }
   add_turns(c, out);
   if (c.climb) {
     const double off = std::abs(c.climb->factor - 1.0);
     out.push_back({"climb", c.climb->factor, off < climb_limit || off < sure * c.climb->sigma,
-                   text_of("the heights change by %.2f of what the vertical velocities say (1 is expected)", c.climb->factor)});
+                   words("the heights change by %.2f of what the vertical velocities say (1 is expected)", c.climb->factor)});
   }
   for (GeometryCheck& k : out)
     k.said = (said.turns_contradict && k.name.ends_with("_in_turns")) || (said.heights_contradict && k.name == "climb");

@@ -18,9 +18,6 @@
 
 namespace swath::calib {
 
-/// Up to three numbers as a printf format has them, for messages.
-std::string text_of(const char* format, double a, double b = 0.0, double c = 0.0);
-
 /// How the lines fit together.
 struct Fit {
   std::uint64_t cells = 0;

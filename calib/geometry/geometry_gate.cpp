@@ -11,6 +11,7 @@
 
 #include "calib/geometry/geometry_control.h"
 #include "calib/geometry/geometry_trial.h"
+#include "calib/words.h"
 #include "core/geo/geodesy.h"
 #include "trajectory/checks.h"
 
@@ -104,7 +105,7 @@ double covered_share(const std::vector<RecordedLine>& lines, const trajectory::T
 /// Time that the trajectory does not cover: would whole weeks or the leap seconds help?
 void uncovered(const GeometryInput& in, GeometryFigures& out) {
   out.verdict = Verdict::inconsistent;
-  out.warnings.push_back("the trajectory covers " + text_of("%.0f %%", 100 * out.covered) + " of the time of the flight lines");
+  out.warnings.push_back("the trajectory covers " + words("%.0f %%", 100 * out.covered) + " of the time of the flight lines");
   constexpr double week = 604800.0;
   const double middle = 0.5 * (in.trajectory->data().time.front() + in.trajectory->data().time.back());
   const double weeks = std::round((middle - in.lines.front().first) / week) * week;
@@ -118,7 +119,7 @@ void uncovered(const GeometryInput& in, GeometryFigures& out) {
   for (const auto& [name, offset, cure] : offsets) {
     if (offset == 0.0 || covered_share(in.lines, *in.trajectory, shift + offset) < nearly_all) continue;
     out.named.push_back(
-        {name, "with the laser's times " + text_of("%.0f s ", std::abs(offset)) + (offset > 0 ? "later" : "earlier"), cure, {}, 0});
+        {name, "with the laser's times " + words("%.0f s ", std::abs(offset)) + (offset > 0 ? "later" : "earlier"), cure, {}, 0});
     return;
   }
 }
@@ -134,27 +135,26 @@ void say(const SampledFlight& flight, const GeometryOptions& o, bool sound, Geom
       if (!worst || p.rms > worst->rms) worst = &p;
     }
   if (worst)
-    out.warnings.push_back(lines_of(*worst) + " disagree by " + text_of("%.2f m (predicted %.2f m)", worst->rms, worst->predicted) +
-                           text_of(" on smooth ground, %.0f %% of it by more than five times that", 100 * worst->outside) +
-                           (apart > 1 ? text_of("; %.0f pairs of lines disagree", static_cast<double>(apart)) : ""));
+    out.warnings.push_back(lines_of(*worst) + " disagree by " + words("%.2f m (predicted %.2f m)", worst->rms, worst->predicted) +
+                           words(" on smooth ground, %.0f %% of it by more than five times that", 100 * worst->outside) +
+                           (apart > 1 ? words("; %.0f pairs of lines disagree", static_cast<double>(apart)) : ""));
   for (const GeometryCheck& c : out.checks)
     if (!c.held && !c.said) out.warnings.push_back(c.text);
   if (sound && out.covered < nearly_all)
-    out.warnings.push_back("the trajectory covers " + text_of("%.0f %%", 100 * out.covered) + " of the time of the flight lines");
+    out.warnings.push_back("the trajectory covers " + words("%.0f %%", 100 * out.covered) + " of the time of the flight lines");
   else if (sound && out.lines.fit.cells > 0 && !worst)
     out.warnings.push_back(
-        "the differences of lines where they overlap" +
-        text_of(" (%.3f m rms, predicted %.3f m)", out.lines.fit.cost, out.lines.predicted) +
-        (out.control.compared >= fewest_control_points ? text_of(" and of the ground from control (%.3f m)", out.control.median) : "") +
+        "the differences of lines where they overlap" + words(" (%.3f m rms, predicted %.3f m)", out.lines.fit.cost, out.lines.predicted) +
+        (out.control.compared >= fewest_control_points ? words(" and of the ground from control (%.3f m)", out.control.median) : "") +
         " have the pattern of an error of calibration");
   else if (sound && !worst)
     out.warnings.push_back("no ground was found that two lines have seen, though their tracks come within " +
-                           text_of("%.0f m", flight.plan.nearest));
+                           words("%.0f m", flight.plan.nearest));
   for (const TriedMistake& t : out.named) {
     const bool lines = t.fit.cells > 0;
     out.warnings.push_back(
-        t.what + (lines ? ", lines agree to " + text_of(t.fit.cost < 0.1 ? "%.3f m" : "%.2f m", t.fit.cost) : ", this is explained") +
-        ": " + t.cure);
+        t.what + (lines ? ", lines agree to " + words(t.fit.cost < 0.1 ? "%.3f m" : "%.2f m", t.fit.cost) : ", this is explained") + ": " +
+        t.cure);
   }
 }
 
@@ -167,7 +167,7 @@ std::string doubt_of(const GeometryFigures& g, const GeometryOptions& o) {
     if (!c.held && c.name != "control_height") return c.text;
   for (const LinePair& p : g.lines.pairs)
     if (p.cells >= static_cast<std::uint64_t>(o.min_cells) && p.rms > gross)
-      return lines_of(p) + " disagree by " + text_of("%.2f m", p.rms) + " on smooth ground";
+      return lines_of(p) + " disagree by " + words("%.2f m", p.rms) + " on smooth ground";
   return {};
 }
 

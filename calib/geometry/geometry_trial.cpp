@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "calib/geometry/geometry_control.h"
+#include "calib/words.h"
 #include "core/error.h"
 #include "core/time.h"
 
@@ -239,10 +240,9 @@ void Trial::follow(SampledFlight flight, double centre, int samples, std::vector
 
 TriedMistake Trial::offset_of(const SampledFlight& flight, const char* name, double offset) const {
   TriedMistake tried{name,
-                     "with the laser's times " + text_of("%.4g s ", std::abs(offset)) + (offset > 0 ? "later" : "earlier"),
-                     std::string(name) == "leap_seconds"
-                         ? "state the time scale of laser and trajectory, GPS or UTC"
-                         : "state latency = \"" + text_of("%.4g s", shift_ + offset) + "\" in [calibration]",
+                     "with the laser's times " + words("%.4g s ", std::abs(offset)) + (offset > 0 ? "later" : "earlier"),
+                     std::string(name) == "leap_seconds" ? "state the time scale of laser and trajectory, GPS or UTC"
+                                                         : "state latency = \"" + words("%.4g s", shift_ + offset) + "\" in [calibration]",
                      {},
                      0,
                      std::string(name) == "leap_seconds"};

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "calib/words.h"
 #include "core/config/units.h"
 
 namespace swath::calib {
@@ -95,10 +95,8 @@ std::string value_text(Parameter p, double value, const char* between = "") {
                                                  "range_offset", "range_scale", "scan_offset", "scan_scale", "latency"};
   const bool angle = p <= boresight_heading || p == scan_offset;
   const char* const unit = angle ? " deg" : p == latency ? " s" : p == range_scale || p == scan_scale ? "" : " m";
-  char text[64];
   const char* const format = unit[0] == '\0' ? " %.5f" : angle ? " %.3f" : p == latency ? " %.4f" : " %.2f";
-  std::snprintf(text, sizeof text, format, angle ? core::to_degrees(value) : value);
-  return std::string(names[p]) + between + text + unit;
+  return std::string(names[p]) + between + words(format, angle ? core::to_degrees(value) : value) + unit;
 }
 
 /// All three angles, or parts of the lever arm, of a group are stated as zero.
@@ -108,13 +106,10 @@ bool is_left_out(const Group& g, const SmallVector& stated) {
   return stated.segment<3>(first).isZero();
 }
 
-std::string words(const Group& g, const SmallVector& right, const SmallVector& error) {
+std::string sentence(const Group& g, const SmallVector& right, const SmallVector& error) {
   std::string out = g.what;
-  if (g.free.front() == lever_down) {
-    char text[64];
-    std::snprintf(text, sizeof text, " %.2f m %s", std::abs(error[lever_down]), error[lever_down] > 0 ? "higher" : "lower");
-    return out + text;
-  }
+  if (g.free.front() == lever_down)
+    return out + words(" %.2f m %s", std::abs(error[lever_down]), error[lever_down] > 0 ? "higher" : "lower");
   const bool is_article = out.ends_with(" a");
   for (size_t k = 0; k < g.free.size(); ++k)
     out += (k == 0 ? " " : ", ") + value_text(g.free[k], right[g.free[k]], is_article ? " of" : "");
@@ -156,7 +151,7 @@ std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Cha
     const bool unstated = is_left_out(g, values);
     const double cost = (unstated ? per_unstated : per_value) * static_cast<double>(g.free.size());
     add(right, now - s.squares - cost,
-        {g.name + std::string(unstated ? "_missing" : ""), words(g, right, values - right), g.cure, {}, 0, false});
+        {g.name + std::string(unstated ? "_missing" : ""), sentence(g, right, values - right), g.cure, {}, 0, false});
   }
   const auto best = [&](bool of_usual) {
     double out = 0;
@@ -191,7 +186,7 @@ SmallExplanation fit_small(const SmallErrors& errors, const Chain& stated, const
   out.step = (right - before).norm() / std::max(1e-12, (right - values).norm());
   out.chain.calibration = calibration_of(right);
   out.name = g.name + std::string(is_left_out(g, values) ? "_missing" : "");
-  out.what = words(g, right, values - right);
+  out.what = sentence(g, right, values - right);
   out.cure = g.cure;
   return out;
 }

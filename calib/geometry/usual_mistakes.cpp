@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <tuple>
 #include <utility>
 
+#include "calib/words.h"
 #include "core/config/units.h"
 
 namespace swath::calib {
@@ -41,11 +41,7 @@ std::function<void(TrajectoryData&)> exchanged(double roll, double pitch) {
   };
 }
 
-std::string degrees_text(double angle) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g deg", core::to_degrees(angle));
-  return text;
-}
+std::string degrees_text(double angle) { return words("%.4g deg", core::to_degrees(angle)); }
 
 void add_angles(std::vector<UsualMistake>& out) {
   const auto scan = [](double by) { return [by](Chain& c) { c.calibration.scan_scale *= by; }; };

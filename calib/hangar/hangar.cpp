@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Over 400 lines: one survey, whose steps share what was read and stand in their order.
 // Source: Jubanski et al., lever arm by a hangar survey. Beyond the paper: covariances go all the way (stations into points, points into
 // the vector), the aircraft's attitude in the hangar enters with its sigma, and where observations scatter more than their stated
 // sigmas allow, the covariance is multiplied by the variance factor and a warning says so.
@@ -7,9 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
+#include "calib/hangar/refusals.h"
+#include "calib/words.h"
 #include "core/config/units.h"
 #include "core/error.h"
 
@@ -28,18 +28,6 @@ constexpr double far_better = 1e-3;     // variance factor after by before a cha
 constexpr double mirror_apart = 0.001;  // m; nearer than this the mirror image is the point itself
 constexpr double least_base = 0.5;      // m between the means of the marks fore and aft
 
-std::string text(const char* form, double a, double b = 0) {
-  char out[160];
-  std::snprintf(out, sizeof out, form, a, b);
-  return out;
-}
-
-std::string text_of(const Vector3d& v) {
-  char out[96];
-  std::snprintf(out, sizeof out, "(%.3f, %.3f, %.3f)", v.x(), v.y(), v.z());
-  return out;
-}
-
 Vector3d vector_of(const std::array<core::Metres, 3>& a) { return {a[0].value, a[1].value, a[2].value}; }
 std::optional<Vector3d> vector_of(const std::optional<std::array<core::Metres, 3>>& a) {
   return a ? std::optional(vector_of(*a)) : std::nullopt;
@@ -51,55 +39,6 @@ std::map<std::string, size_t> indices(const std::vector<T>& list) {
   std::map<std::string, size_t> out;
   for (size_t i = 0; i < list.size(); ++i) out[list[i].name] = i;
   return out;
-}
-
-void refuse(const Resection& r, const io::HangarStation& s, size_t distances, const std::string& file) {
-  const std::string station = "station '" + s.name + "'";
-  switch (r.state) {
-    case ResectionState::solved:
-      return;
-    case ResectionState::too_few:
-      throw Error(station + " has " + std::to_string(distances) + " distances to targets, 3 are needed and 4 for a check", file,
-                  "measure more distances from it, or state its coordinates with `at` and `sigma`");
-    case ResectionState::in_line:
-      throw Error("the targets of " + station + " lie in one line: it may be anywhere on a circle around it", file,
-                  "measure to targets off that line");
-    case ResectionState::weak:
-      throw Error(station + " lies in the plane of its targets, so that its distance from the plane is not determined", file,
-                  "measure to targets well above or below the instrument");
-    case ResectionState::two_fit:
-      throw Error("the targets of " + station + " lie in one plane: it fits at " + text_of(r.position) + " and, mirrored, at " +
-                      text_of(r.mirror.value_or(r.position)),
-                  file, "state its `start` on the right side, or measure to a target off the plane");
-    case ResectionState::not_found:
-      throw Error("no position of " + station + " fits its distances", file, "check names and units of its distances");
-  }
-}
-
-void refuse(const PointSearch& p, const std::string& name, const std::string& file) {
-  const std::string point = "point '" + name + "'";
-  switch (p.state) {
-    case PointState::solved:
-      return;
-    case PointState::too_few:
-      throw Error(
-          point +
-              " has too few sights: two stations with both angles of their triangle and a vertical angle make one condition each, a "
-              "distance one; 3 are needed and 4 for a check",
-          file, "sight it from three stations, or state its coordinates with `at` and `sigma`");
-    case PointState::not_determined:
-      throw Error("the stations that see " + point + " are fewer than three or stand in one line", file,
-                  "sight it from three stations that make a triangle");
-    case PointState::weak:
-      throw Error("the sights at " + point + " hardly determine it: it lies in the plane of its stations, or they are too close together",
-                  file, "leave elevation_signs at true and measure vertical angles, or sight it from stations at other heights");
-    case PointState::two_fit:
-      throw Error(point + " fits at " + text_of(p.position) + " and, mirrored in the plane of the stations, at " +
-                      text_of(p.mirror.value_or(p.position)),
-                  file, "measure a vertical angle to it, or state its `start` on the right side");
-    case PointState::not_found:
-      throw Error("the adjustment of " + point + " does not converge", file, "check the names and units of its sights");
-  }
 }
 
 /// The steps in their order; each leaves its part in the result.
@@ -139,7 +78,7 @@ class Solver {
       } else {
         one.resection = resect(distances, vector_of(s.start));
         refuse_other_unit(one.resection, "station '" + s.name + "'", distances);
-        refuse(one.resection, s, distances.size(), file_);
+        refuse(one.resection, s.name, distances.size(), file_);
         one.position = one.resection.position;
         settle(one);
       }
@@ -154,7 +93,7 @@ class Solver {
     const Resection other = resect(distances);
     if (other.state != ResectionState::solved && other.state != ResectionState::two_fit) return;
     if (r.state != ResectionState::not_found && !(other.variance_factor < far_better * r.variance_factor)) return;
-    throw Error(station + text(": its distances fit when they are multiplied by %.4f", r.scale), file_,
+    throw Error(station + words(": its distances fit when they are multiplied by %.4f", r.scale), file_,
                 "is their unit right? tables have length_unit; 1 ft is 0.3048 m");
   }
 
@@ -163,17 +102,17 @@ class Solver {
     const std::string station = "station '" + s.name + "'";
     if (scatter_too_large(r.variance_factor, r.redundancy)) {
       s.factor = r.variance_factor;
-      warn(station + text(": its distances scatter %.1f times more than stated; its covariance is enlarged by that", std::sqrt(s.factor)));
+      warn(station + words(": its distances scatter %.1f times more than stated; its covariance is enlarged by that", std::sqrt(s.factor)));
     }
     s.covariance = s.factor * r.covariance;
     if (r.redundancy == 0) warn(station + " has three distances: nothing checks them");
     for (size_t i = 0; i < r.w.size(); ++i)
       if (std::abs(r.w[i]) > doubtful)
         warn(station + ": the distance to '" + s.targets[i] + "' (" + s.places[i] + ") is off by " +
-             text("%.1f mm, w = %.1f", 1e3 * r.residual[i], r.w[i]));
+             words("%.1f mm, w = %.1f", 1e3 * r.residual[i], r.w[i]));
     if (r.start_led_to_mirror)
-      warn(station + ": its start value leads to the mirror image " + text_of(*r.mirror) +
-           text(" (variance factor %.3g); the right side was found without it (%.3g)", r.mirror_variance_factor, r.variance_factor));
+      warn(station + ": its start value leads to the mirror image " + place_text(*r.mirror) +
+           words(" (variance factor %.3g); the right side was found without it (%.3g)", r.mirror_variance_factor, r.variance_factor));
     if (r.decided_by_start) warn(station + ": its targets lie in one plane; the side was decided by its start value alone");
   }
 
@@ -260,11 +199,11 @@ class Solver {
     if (!s.mirror || (*s.mirror - s.position).norm() < mirror_apart) return;
     const std::string point = "point '" + p.name + "'";
     if (s.start_led_to_mirror)
-      warn(point + ": its start value leads to the mirror image " + text_of(*s.mirror) +
-           text(" (variance factor %.3g); the mirrored start finds the right one (%.3g)", s.mirror_variance_factor, s.variance_factor));
+      warn(point + ": its start value leads to the mirror image " + place_text(*s.mirror) +
+           words(" (variance factor %.3g); the mirrored start finds the right one (%.3g)", s.mirror_variance_factor, s.variance_factor));
     if (s.decided_by_elevation)
-      warn(point + ": its mirror image " + text_of(*s.mirror) + " fits as well but for the signs of the vertical angles, which decided");
-    if (s.decided_by_start) warn(point + ": its mirror image " + text_of(*s.mirror) + " fits as well; the start value alone decided");
+      warn(point + ": its mirror image " + place_text(*s.mirror) + " fits as well but for the signs of the vertical angles, which decided");
+    if (s.decided_by_start) warn(point + ": its mirror image " + place_text(*s.mirror) + " fits as well; the start value alone decided");
     if (s.elevations_contradict)
       warn(point + ": the signs of its vertical angles fit the mirror image and not the point: are they positive upwards?");
   }
@@ -273,8 +212,8 @@ class Solver {
   void settle(const PointNetwork& net, const CombinedPoints& a) {
     if (scatter_too_large(a.variance_factor, a.redundancy)) {
       out_.point_factor = a.variance_factor;
-      warn(text("the sights at the points scatter %.1f times more than stated; their covariance is enlarged by that",
-                std::sqrt(a.variance_factor)));
+      warn(words("the sights at the points scatter %.1f times more than stated; their covariance is enlarged by that",
+                 std::sqrt(a.variance_factor)));
     }
     if (a.redundancy == 0) warn("the sights at the points are just enough: nothing checks them");
     std::vector<bool> used(net.angles.size() + net.verticals.size(), false);
@@ -292,7 +231,7 @@ class Solver {
       if (row < static_cast<Index>(used.size()) && !used[static_cast<size_t>(row)])
         warn("the " + what + " (" + place + ") is not used: a triangle needs the angles at both its stations and a vertical angle");
       else if (std::abs(s.w) > doubtful)
-        warn("the " + what + " (" + place + ") is off by " + text("%.1f ", -s.residual * unit) + name + text(", w = %.1f", s.w));
+        warn("the " + what + " (" + place + ") is off by " + words("%.1f ", -s.residual * unit) + name + words(", w = %.1f", s.w));
       out_.sights.push_back(s);
       ++row;
     };
@@ -334,7 +273,7 @@ class Solver {
       for (const size_t f : fore) base += all_.position[f] / static_cast<double>(fore.size());
       for (const size_t b : aft) base -= all_.position[b] / static_cast<double>(aft.size());
       if (base.head<2>().norm() < least_base)
-        throw Error("the marks fore and aft are " + text("%.2f m apart, too little for a heading", base.head<2>().norm()), file_,
+        throw Error("the marks fore and aft are " + words("%.2f m apart, too little for a heading", base.head<2>().norm()), file_,
                     "choose marks far apart along the fuselage");
       out_.axes = axes_of_marks(all_, aft, fore, a.heading_offset.value, level, sigma);
     }
@@ -381,7 +320,7 @@ bool scatter_too_large(double factor, int redundancy) {
 HangarResult solve_hangar(const io::HangarSurvey& hangar, bool hold_stations) { return Solver(hangar, hold_stations).run(); }
 
 std::string survey_lines(const HangarResult& result) {
-  const auto metres = [](double v) { return "\"" + text("%.4f", v) + " m\""; };
+  const auto metres = [](double v) { return "\"" + words("%.4f", v) + " m\""; };
   const auto vector = [&](const Vector3d& v) { return "[" + metres(v.x()) + ", " + metres(v.y()) + ", " + metres(v.z()) + "]"; };
   std::string out;
   for (const LeverArm& l : result.lever_arms) {
@@ -393,7 +332,7 @@ std::string survey_lines(const HangarResult& result) {
   }
   if (out.empty()) {
     const LeverArm& l = result.lever_arms.front();
-    return "# From " + name_of(l.from) + " to " + name_of(l.to) + ", sigma " + text("%.4f m", l.sigma()) +
+    return "# From " + name_of(l.from) + " to " + name_of(l.to) + ", sigma " + words("%.4f m", l.sigma()) +
            ". Add the way from the IMU's centre to the scanner for survey.toml.\n# " + vector(l.value) + "\n";
   }
   return "# Lever arms by a hangar survey: forward, right, down from the IMU's centre; sigma of the least known component.\n\n" + out;

@@ -6,7 +6,8 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <cstdio>
+
+#include "calib/words.h"
 
 namespace swath::calib {
 
@@ -89,10 +90,7 @@ std::string small_angle_warning(const core::Attitude& displacement, double z, do
   const core::Attitude e = small_angle_error(displacement, z, y, side);
   std::string out;
   const auto tell = [&](const char* name, double error) {
-    if (std::abs(error) <= most) return;
-    char text[80];
-    std::snprintf(text, sizeof text, "%s%s by %.2g mrad", out.empty() ? "" : ", ", name, 1e3 * std::abs(error));
-    out += text;
+    if (std::abs(error) > most) out += words("%s%s by %.2g mrad", out.empty() ? "" : ", ", name, 1e3 * std::abs(error));
   };
   tell("roll", e.roll);
   tell("pitch", e.pitch);

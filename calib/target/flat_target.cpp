@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Over 400 lines: one analysis, whose steps share the state of its rounds and stand in their order.
 // Source: Brandalize, "Perfilamento a laser", the calibration flight. Deviation: the small-angle formulas are applied, the returns are
 // computed anew and the target is measured again until nothing is left, so that their error (1e-4 rad at half a degree) has gone.
 #include "calib/target/flat_target.h"
@@ -7,12 +6,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
 #include "calib/target/attitude_displacement.h"
 #include "calib/target/target_finder.h"
+#include "calib/target/target_findings.h"
 #include "calib/target/target_pulses.h"
+#include "calib/words.h"
 #include "core/error.h"
 #include "core/geo/frames.h"
 
@@ -26,13 +26,6 @@ namespace {
 constexpr double steady_angle = 2e-7;  // rad: 0.04 arcsec
 constexpr double steady_range = 5e-4;  // m
 constexpr double significant = 3.0;    // sigmas
-
-template <class... A>
-std::string words(const char* format, A... a) {
-  char text[400];
-  std::snprintf(text, sizeof text, format, a...);
-  return text;
-}
 
 /// The surveyed target of that name, or the largest that is a level roof; `not_used`: what the others are, in words.
 std::optional<RoofTarget> surveyed_target(const std::vector<io::ControlPoint>& control, const std::string& wanted,
@@ -201,7 +194,7 @@ class Analysis {
         }
     }
     conclude(angles, cal);
-    tell(angles, m, steady);
+    for (std::string& f : target_findings(out_, angles, m, present_, steady)) out_.findings.push_back(std::move(f));
   }
 
   /// An unsurveyed target: the mean of the lines that see it whole.
@@ -294,110 +287,6 @@ class Analysis {
       out_.scan_scale = present_.scan_scale - out_.joint.scan_scale.value;
       out_.scan_scale_sigma = out_.joint.scan_scale.sigma;
     }
-  }
-
-  void tell(const AngleReadings& a, const TargetMeasures& m, bool steady) {
-    if (!out_.target.surveyed)
-      say("the target is not surveyed: it is the mean of the lines; the range offset and the scan's scale by its width are not determined");
-    for (const TargetLine& l : out_.lines) {
-      const std::string line = "line " + std::to_string(l.line);
-      if (!l.after.seen) {
-        say(line + " takes no part: " + (l.after.why_not.empty() ? "the target is not under it" : l.after.why_not));
-        continue;
-      }
-      size_t used = 0;
-      for (const SideView& s : l.after.sides) used += s.used;
-      if (used < out_.target.sides()) say(line + words(" sees %zu of the target's %zu edges", used, out_.target.sides()));
-    }
-    if (!a.pitch.determined)
-      say("pitch is not determined: no two lines in opposite directions pass over the target at one height; fly the target's line once "
-          "more "
-          "in the opposite direction");
-    if (!a.roll.determined)
-      say("roll is not determined: no two lines in opposite directions see both edges along their flight; fly along the target's long wall "
-          "to "
-          "and fro");
-    if (!a.heading.determined)
-      say(a.pitch.determined
-              ? "heading is not determined: no two parallel lines see the target at places of the swath far enough apart; fly "
-                "past it with the target at the swath's edge"
-              : "heading is not determined: it needs pitch, or two lines of one direction with the target at different "
-                "places of the swath");
-    bool edge = false;
-    for (const LineMeasure& l : m.lines) edge = edge || l.role == TargetRole::edge;
-    if (a.heading.determined && !edge) say("no line has the target at the swath's edge: heading is weak");
-    if (!steady) say(words("the rounds ended before the angles were steady (%d rounds)", out_.rounds));
-    tell_sizes(m);
-  }
-
-  void tell_sizes(const TargetMeasures& m) {
-    const JointTarget& j = out_.joint;
-    const core::Attitude moved{present_.roll.value - out_.measured.roll.value, present_.pitch.value - out_.measured.pitch.value,
-                               present_.heading.value - out_.measured.heading.value};
-    double z = 0.0, y = 0.0;
-    for (const LineMeasure& l : m.lines) {
-      z = std::max(z, l.target.z());
-      y = std::max(y, std::abs(l.target.y()));
-    }
-    // What the formulas alone would be wrong by matters where it is more than the readings' own sigma.
-    double most = 1e-4;
-    for (const TargetAngle* t : {&out_.roll, &out_.pitch, &out_.heading})
-      if (t->determined) most = std::min(most, t->sigma);
-    if (const std::string w = small_angle_warning(moved, z, std::max(y, 1.0), most); !w.empty())
-      say(w + "; they were iterated with the exact rotation");
-    if (j.datum_sigma.head<2>().maxCoeff() < 1.0 && m.surveyed) {
-      const double size = j.datum.head<2>().norm(), its = j.datum_sigma.head<2>().maxCoeff();
-      constexpr double worth_telling = 0.05;  // m
-      if (size > significant * its && size > worth_telling)
-        say(words(
-            "the target stands %.2f m east and %.2f m north (+-%.2f m) of its survey in all lines alike: datum or base station, not the "
-            "mounting; it cancels in opposite lines",
-            j.datum.x(), j.datum.y(), its));
-    }
-    if (j.two_heights) {
-      const auto arm = [&](const char* what, const char* angle, const JointTarget::One& one) {
-        const double found = -one.value;
-        if (std::abs(found) > significant * one.sigma)
-          say(words(
-              "two heights (%.0f and %.0f m): a part of the %s displacement stays the same at both: lever arm %+.3f m +-%.3f m from the "
-              "one in force, not %s; %s is taken from what grows with height",
-              j.lowest, j.highest, what, found, one.sigma, angle, angle));
-        else
-          say(words(
-              "two heights (%.0f and %.0f m): the %s displacement grows with height as %s does; a constant part of %+.3f m +-%.3f m shows "
-              "no error of the lever arm",
-              j.lowest, j.highest, what, angle, found, one.sigma));
-      };
-      if (out_.pitch.determined) arm("along-track", "pitch", j.lever_forward);
-      if (out_.roll.determined) arm("across-track", "roll", j.lever_right);
-    } else {
-      say("all lines are of one flying height: an error of the lever arm along or across the flight (or of the latency) would be taken for "
-          "pitch or roll");
-    }
-    if (j.scan_scale.free && std::abs(j.scan_scale.value) > significant * j.scan_scale.sigma)
-      say(words("the target looks too %s across the flight: scan scale off by %.0f +-%.0f ppm", j.scan_scale.value > 0 ? "wide" : "narrow",
-                1e6 * std::abs(j.scan_scale.value), 1e6 * j.scan_scale.sigma));
-    tell_length();
-    constexpr double poor = 3.0;
-    if (j.chi2 > poor)
-      say(
-          words("displacements of the lines disagree by more than their sigmas (chi2 per degree of freedom %.1f): trajectory worse than "
-                "stated, a wrong survey, or a part of the mounting that is not modelled here",
-                j.chi2));
-  }
-
-  void tell_length() {
-    if (!out_.target.surveyed) return;
-    double sum = 0.0, weights = 0.0;
-    for (const TargetLine& l : out_.lines) {
-      if (!l.measured || !l.after.all_sides()) continue;
-      const double w = 1.0 / (l.after.strain_along_sigma * l.after.strain_along_sigma);
-      sum += w * l.after.strain_along;
-      weights += w;
-    }
-    if (weights > 0.0 && std::abs(sum) > significant * std::sqrt(weights))
-      say(words("the target looks too %s along the flight by %.0f +-%.0f ppm: speed of the trajectory or scale of the time tags",
-                sum > 0 ? "long" : "short", 1e6 * std::abs(sum / weights), 1e6 / std::sqrt(weights)));
   }
 
   const core::Scanner& scanner_;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Over 400 lines: one likelihood with its model, its derivatives and its search, which share their terms.
 // A pulse that passes the edge hits ground or wall beyond and below: its return lies elsewhere than where it pierced the roof's plane (3.6
 // m for 20 deg and a height of 10 m). Pulses are therefore distinguished by their returns' heights, but placed where their beam pierces the
 // plane. A return on the wall less than the tolerance below the roof counts as on the roof: the edge of a wall that faces the scanner is
@@ -11,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/target/roof_plane.h"
 #include "core/statistics.h"
 
 namespace swath::calib {
@@ -25,89 +25,9 @@ namespace {
 
 constexpr double tolerance_in_sigma = 3.5;
 
-/// Unknowns of a view: displacement along, across; their derivatives; growth.
-enum Unknown : int { along, across, along_by_y, across_by_x, along_by_x, across_by_y, growth, unknowns };
-using Row = Eigen::Matrix<double, 1, unknowns>;
-
-/// Flight axes and the affine displacement in them.
-struct Motion {
-  Vector2d x, y;  // unit vectors along, across: east, north
-  Vector2d centre{0, 0};
-  Eigen::Matrix<double, unknowns, 1> value = Eigen::Matrix<double, unknowns, 1>::Zero();
-
-  /// d(displacement along n at p) / d(unknowns), growth left out.
-  Row along_normal(const Vector2d& p, const Vector2d& n) const {
-    const double px = x.dot(p - centre), py = y.dot(p - centre), nx = x.dot(n), ny = y.dot(n);
-    Row r = Row::Zero();
-    r << nx, ny, nx * py, ny * px, nx * px, ny * py, 0.0;
-    return r;
-  }
-  /// Its derivative along d.
-  Row slope_normal(const Vector2d& d, const Vector2d& n) const { return along_normal(centre + d, n) - along_normal(centre, n); }
-  Vector2d at(const Vector2d& p) const {
-    const double px = x.dot(p - centre), py = y.dot(p - centre);
-    return (value[along] + value[along_by_y] * py + value[along_by_x] * px) * x +
-           (value[across] + value[across_by_x] * px + value[across_by_y] * py) * y;
-  }
-};
-
-/// The roof's plane in one line, relative to an expected one: height at the centre, slopes along x and y of the motion.
-struct PlaneFit {
-  Vector3d value = Vector3d::Zero(), sigma = Vector3d::Zero();
-  double rms = 0.0;
-  size_t n = 0;
-  Vector3d as_plane(const Motion& m) const {
-    const Vector2d slope = value[1] * m.x + value[2] * m.y;
-    return {value[0] - slope.dot(m.centre), slope.x(), slope.y()};
-  }
-};
-
-PlaneFit fit_plane(const std::vector<Pierced>& pulses, const std::vector<Beamline>& beams, const RoofTarget& target, const Motion& m,
-                   double range_sigma) {
-  constexpr double inset = 1.0;  // m, from the edges
-  std::vector<Vector3d> rows;
-  std::vector<double> heights;
-  for (const Pierced& p : pulses) {
-    if (beams[p.pulse].returns > 1) continue;
-    const Vector2d at = p.place - m.at(p.place);
-    bool within = true;
-    for (size_t k = 0; k < target.sides() && within; ++k) {
-      const RoofTarget::Side s = target.side(k);
-      within = s.outward.dot(at - s.middle) < -inset;
-    }
-    if (!within || std::abs(p.first) > 2.0 * coarse_tolerance) continue;
-    rows.push_back({1.0, m.x.dot(at - m.centre), m.y.dot(at - m.centre)});
-    heights.push_back(p.first);
-  }
-  PlaneFit fit;
-  if (rows.size() < 10) return fit;
-  fit.value[0] = core::median(heights);
-  double cut = coarse_tolerance;
-  constexpr int rounds = 6;
-  constexpr double flat = 1e-6;  // of the tilts' prior: profiles determine one of them alone
-  for (int i = 0; i < rounds; ++i) {
-    Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
-    N(1, 1) = N(2, 2) = flat;
-    Vector3d b = Vector3d::Zero();
-    std::vector<double> size;
-    for (size_t k = 0; k < rows.size(); ++k) {
-      const double v = heights[k] - rows[k].dot(fit.value);
-      if (std::abs(v) > cut) continue;
-      N += rows[k] * rows[k].transpose();
-      b += v * rows[k];
-      size.push_back(std::abs(v));
-    }
-    if (size.size() < 10) return {};
-    fit.value += N.ldlt().solve(b);
-    double sum = 0.0;
-    for (const double v : size) sum += v * v;
-    fit.n = size.size();
-    fit.rms = std::sqrt(sum / static_cast<double>(fit.n - 3));
-    fit.sigma = fit.rms * N.inverse().diagonal().cwiseSqrt();
-    cut = std::max(tolerance_in_sigma * 1.4826 * core::median(size), 2.0 * range_sigma);
-  }
-  return fit;
-}
+using enum RoofMotion::Unknown;
+using Row = RoofMotion::Row;
+using Unknown = RoofMotion::Unknown;
 
 /// Places east, north relative to the beams' indices: pulses of `pierced` know their beam by position in `beams`.
 std::vector<Beamline> numbered(std::vector<Beamline> beams, std::vector<size_t>& record) {
@@ -192,7 +112,7 @@ class Viewer {
   void measure_plane() {
     // Twice: the first fit moves the plane, and with it the places where beams pierce it.
     for (int i = 0; i < 2; ++i) {
-      fit_ = fit_plane(pierced_, beams_, target_, motion_, options_.range_sigma);
+      fit_ = fit_roof_plane(pierced_, beams_, target_, motion_, options_.range_sigma);
       if (fit_.n == 0) return;
       plane_ += fit_.as_plane(motion_);
       pierced_ = pierce(beams_, plane_);
@@ -282,7 +202,7 @@ class Viewer {
     const auto previous = motion_.value;
     Vector2d centre(0, 0);
     int used = 0;
-    const Motion before = motion_;
+    const RoofMotion before = motion_;
     for (size_t k = 0; k < target_.sides(); ++k) {
       const RoofTarget::Side side = target_.side(k);
       SideView& v = view_.sides[k];
@@ -441,9 +361,9 @@ class Viewer {
   std::vector<Beamline> beams_;
   std::vector<size_t> record_;
   std::vector<Pierced> pierced_;
-  Motion motion_;
+  RoofMotion motion_;
   Vector3d plane_ = Vector3d::Zero();
-  PlaneFit fit_;
+  RoofPlane fit_;
   EdgeShape shape_{0.05, 0.0};
   bool mixed_ = false;
   double tolerance_ = coarse_tolerance, growth_ = 0.0, growth_sigma_ = 1.0, middle_time_ = 0.0;

@@ -5,8 +5,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "calib/words.h"
 #include "core/error.h"
 
 namespace swath::calib {
@@ -52,9 +52,8 @@ void check_corners(const SurveyedTarget& target, const CornerPlane& plane, const
     }
   }
   if (w_worst <= off_plane) return;
-  char text[96];
-  std::snprintf(text, sizeof text, " lies %.3f m off the plane of the others (%.1f sigmas), ",
-                std::abs(plane.residual[worst]) / plane.redundancy[worst], w_worst);
+  const std::string text =
+      words(" lies %.3f m off the plane of the others (%.1f sigmas), ", std::abs(plane.residual[worst]) / plane.redundancy[worst], w_worst);
   const bool any_of_them = plane.sigma.size() == 4;
   tally.count(off_plane_count,
               target.name + ": " + (any_of_them ? "any one of its corners" : target.control[worst].name) + text + places[worst]);
@@ -128,8 +127,7 @@ std::vector<SurveyedTarget> surveyed_targets(const std::vector<io::ControlPoint>
     }
     const auto far = std::find_if(target.corners.begin(), target.corners.end(), [](const Vector3d& c) { return !(c.norm() < farthest); });
     if (far != target.corners.end()) {
-      char text[64];
-      std::snprintf(text, sizeof text, ": %.0f km from the survey", 1e-3 * far->norm());
+      const std::string text = words(": %.0f km from the survey", 1e-3 * far->norm());
       if (far_place.empty()) far_place = places[static_cast<size_t>(far - target.corners.begin())];
       tally.count("surveyed targets and points over 500 km from the survey, left out",
                   places[static_cast<size_t>(far - target.corners.begin())] + text);

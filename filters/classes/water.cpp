@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "core/floor_div.h"
+#include "core/statistics.h"
 #include "filters/bins.h"
 #include "filters/classes/level_plane.h"
 #include "filters/noise/sparse_returns.h"
@@ -52,11 +53,6 @@ constexpr double lowest_share = 0.1;      // of a plot's last returns that may b
 constexpr size_t fewest_on_land = 3;      // returns of a plot that shows whether the land rises
 constexpr double dense = 0.5;             // of the usual density
 constexpr double dense_distance = 0.05;   // m: mean and rms of a dense plot's returns about the plane
-
-double median(std::vector<double>& v) {
-  std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-  return v[v.size() / 2];
-}
 
 class Plots {
  public:
@@ -104,7 +100,7 @@ class Plots {
             for (int di = -half; di <= half; ++di)
               if (l.holds(i + di, j + dj))
                 for (const Eigen::Vector3d& s : sparse_[l.at(i + di, j + dj)]) z.push_back(s.z());
-          if (!z.empty()) judge_sparse(i, j, median(z));
+          if (!z.empty()) judge_sparse(i, j, core::median(std::move(z)));
         }
         if (is_level(i, j)) judge_closed(i, j, middle(l.at(i, j)));
       }

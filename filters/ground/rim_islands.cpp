@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/statistics.h"
 #include "filters/bins.h"
 
 namespace swath::filters {
@@ -184,9 +185,7 @@ class Islands {
     if (!plane) return false;
     std::vector<double> rise;
     for (const CellIndex c : island) rise.push_back(ground_.value[ground_.at(c.i, c.j)] - plane->at(c.i - middle.i, c.j - middle.j));
-    const auto median = rise.begin() + static_cast<std::ptrdiff_t>(rise.size() / 2);
-    std::nth_element(rise.begin(), median, rise.end());
-    return *median >= std::max(least_rise, sigmas * plane->error);
+    return core::median(std::move(rise)) >= std::max(least_rise, sigmas * plane->error);
   }
 
   Raster& ground_;

@@ -24,6 +24,7 @@
 #include <unordered_map>
 
 #include "core/error.h"
+#include "core/statistics.h"
 
 namespace swath::filters {
 namespace {
@@ -313,10 +314,7 @@ VisibilityCounts trace_visibility(core::Block& b, size_t own, const std::vector<
   if (b.size() == 0) return n;
 
   const Region region = region_of(b, own, lattice, side);
-  std::vector<double> heights = b.z;
-  std::nth_element(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2), heights.end());
-  const Voxel middle{(region.i0 + region.i1) / 2, (region.j0 + region.j1) / 2,
-                     core::cell_index(b.origin.z() + heights[heights.size() / 2], side)};
+  const Voxel middle{(region.i0 + region.i1) / 2, (region.j0 + region.j1) / 2, core::cell_index(b.origin.z() + core::median(b.z), side)};
   if (std::max(region.i1 - region.i0, region.j1 - region.j0) > 2 * key_reach)
     throw core::Error("the tile holds more than " + std::to_string(2 * key_reach) + " voxels along its side", "filters.visibility: voxel",
                       "choose larger voxels or smaller tiles");

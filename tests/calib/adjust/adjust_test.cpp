@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Over 400 lines: one adjustment, seen from all sides on the same made block.
 #include "calib/adjust/adjust.h"
 
 #include <gtest/gtest.h>
@@ -7,34 +6,13 @@
 #include <numeric>
 
 #include "calib/adjust/parameter_words.h"
-#include "tests/calib/tie_block.h"
+#include "tests/calib/adjust_support.h"
 
 namespace swath::calib {
 namespace {
 
 using namespace test;
 using Eigen::Vector3d;
-
-constexpr double arcsec = deg / 3600.0;
-
-AdjustOptions plain() {
-  AdjustOptions o;
-  o.corrections.spacing = core::Seconds(5.0);
-  o.jackknife.lines = false;
-  o.jackknife.blocks = 0;
-  return o;
-}
-
-World pattern_of(std::vector<FlownLine> lines, int buildings = 12, int returns = 12) {
-  World w = make_world(std::move(lines), block_planes(5, buildings, 5));
-  w.returns = returns;
-  return w;
-}
-
-bool says(const Adjustment& a, const std::string& text, bool refuses) {
-  return std::any_of(a.findings.begin(), a.findings.end(),
-                     [&](const Finding& f) { return f.refuses == refuses && f.what.find(text) != std::string::npos; });
-}
 
 TEST(Adjust, ExactRecordsGiveTheExactCalibration) {
   World w = pattern_of(full_pattern());
@@ -186,8 +164,6 @@ MonteCarlo fly(const World& w, int seeds, const AdjustOptions& o, int surveyed) 
   return out;
 }
 
-const std::vector<Parameter> usual = {boresight_roll, boresight_pitch, boresight_heading, range_offset, scan_scale};
-
 // The rms of 60 standardised errors has itself a sigma of 9 %; one in twenty of several is beyond twice that.
 constexpr double low = 0.8, high = 1.2;
 
@@ -232,69 +208,6 @@ TEST(Adjust, SigmasAreTrueWhereLittleIsDetermined) {
   }
 }
 
-Adjustment flown(const World& w, const AdjustOptions& o, std::uint64_t seed, core::Calibration start) {
-  Dice dice(seed);
-  const ErrorDraw draw(w, tactical_errors);
-  const TieSet ties = ties_of(w, &dice);
-  const trajectory::Trajectory t(draw.with_errors(w.exact, dice));
-  return adjust(ties, w.scanner, start, w.noise, t, tactical_errors, o);
-}
-
-core::Calibration near_truth(const World& w) {
-  core::Calibration c = w.truth;
-  c.roll.value += 0.02 * deg;
-  c.pitch.value -= 0.02 * deg;
-  return c;
-}
-
-TEST(Adjust, DegenerateFlightsAreRefusedInWords) {
-  const World one = pattern_of({{0.0, 0.0}});
-  const Adjustment a = flown(one, plain(), 1, near_truth(one));
-  EXPECT_TRUE(says(a, "one line only", true));
-  for (const Parameter p : usual) {
-    EXPECT_FALSE(a.estimates[p].delivered);
-    EXPECT_EQ(a.estimates[p].value, a.estimates[p].start);
-    EXPECT_EQ(a.estimates[p].sigma, a.estimates[p].apriori);
-  }
-  EXPECT_EQ(a.calibration.roll, near_truth(one).roll);
-
-  const World one_way = pattern_of({{0.0, 0.0}, {0.0, 0.0}, {0.0, 50.0}});
-  const Adjustment b = flown(one_way, plain(), 2, near_truth(one_way));
-  EXPECT_TRUE(says(b, "boresight pitch and along-track shift cannot be told apart: only one line direction", false));
-  EXPECT_TRUE(b.estimates[boresight_pitch].delivered);
-  EXPECT_EQ(b.estimates[boresight_pitch].grade, Grade::coarse);
-
-  World level = pattern_of({{0.0, 0.0}, {180.0 * deg, 0.0}, {90.0 * deg, 0.0}, {270.0 * deg, 0.0}}, 0);
-  for (TiePlane& p : level.planes) p.normal = Vector3d::UnitZ();
-  const Adjustment c = flown(level, plain(), 3, near_truth(level));
-  EXPECT_TRUE(says(c, "no sloping planes or walls", false));
-  for (const Parameter p : {boresight_pitch, boresight_heading}) {
-    EXPECT_EQ(c.estimates[p].grade, Grade::coarse);
-    EXPECT_GT(c.estimates[p].sigma, 0.02 * deg);  // by the turns of the attitude alone
-    EXPECT_LT(std::abs(c.estimates[p].value - value_of(level.truth, p)), 4.0 * c.estimates[p].sigma);
-  }
-  EXPECT_TRUE(c.estimates[boresight_roll].delivered);
-
-  const World apart = pattern_of({{0.0, -900.0}, {0.0, 900.0}});
-  const Adjustment d = flown(apart, plain(), 4, near_truth(apart));
-  EXPECT_TRUE(says(d, "no plane is seen by two lines", true));
-}
-
-TEST(Adjust, AStartThatTheFlightContradictsCountsForNothing) {
-  const World w = pattern_of(full_pattern());
-  AdjustOptions o = plain();
-  // Stated to 18 arcsec, and 720 arcsec off.
-  o.apriori.roll = o.apriori.pitch = core::degrees(0.005);
-  core::Calibration start = w.truth;
-  start.roll.value += 0.2 * deg;
-  const Adjustment a = flown(w, o, 1, start);
-  EXPECT_TRUE(says(a, "the start value of boresight roll is off by", false));
-  EXPECT_FALSE(says(a, "the start value of boresight pitch is off by", false));
-  EXPECT_TRUE(a.estimates[boresight_roll].delivered);
-  EXPECT_TRUE(std::isinf(a.estimates[boresight_roll].apriori));
-  EXPECT_LT(std::abs(a.estimates[boresight_roll].value - w.truth.roll.value), 4.0 * a.estimates[boresight_roll].sigma);
-}
-
 TEST(Adjust, TheStartsSigmaDecidesWhatIsDetermined) {
   // The same flight, of one direction: beside a start known to a degree it determines the pitch, beside one known to 4 arcsec it does not.
   const World w = pattern_of({{0.0, 0.0}, {0.0, 0.0}, {0.0, 50.0}});
@@ -311,24 +224,6 @@ TEST(Adjust, TheStartsSigmaDecidesWhatIsDetermined) {
   EXPECT_GT(e.found_sigma, 0.0);
 }
 
-TEST(Adjust, ValuesThatAreStillMovingAreNotDelivered) {
-  const World w = pattern_of(full_pattern());
-  AdjustOptions o = plain();
-  o.iterations = 1;  // below what the option allows: one linearisation from far off
-  o.snooping.use = false;
-  o.corrections.position = o.corrections.attitude = CorrectionForm::none;
-  core::Calibration start = w.truth;
-  start.roll.value += 0.8 * deg;
-  start.heading.value += 1.5 * deg;
-  const Adjustment a = flown(w, o, 1, start);
-  ASSERT_GT(a.last_step, settled_step);
-  EXPECT_TRUE(says(a, "did not converge", true));
-  for (const Parameter p : usual) {
-    EXPECT_FALSE(a.estimates[p].delivered);
-    EXPECT_EQ(a.estimates[p].grade, Grade::unsettled);
-  }
-}
-
 TEST(Adjust, TwoLinesAreNotJudgedByLeavingOneOut) {
   const World two = pattern_of({{0.0, 0.0}, {180.0 * deg, 60.0}});
   AdjustOptions o = plain();
@@ -337,119 +232,6 @@ TEST(Adjust, TwoLinesAreNotJudgedByLeavingOneOut) {
   const Estimate& e = a.estimates[boresight_roll];
   EXPECT_GT(e.jackknife_lines, 0.0);
   EXPECT_LT(e.sigma, 3.0 * e.formal);
-}
-
-TEST(Adjust, AGoodPatternIsDelivered) {
-  World w = pattern_of(full_pattern());
-  Dice dice(77);
-  for (const size_t k : {size_t{3}, size_t{30}, size_t{35}}) survey(w.planes[k], 0.02, &dice);
-  AdjustOptions o = plain();
-  o.jackknife = {};
-  const Adjustment a = flown(w, o, 5, near_truth(w));
-  for (const Parameter p : usual) {
-    const Estimate& e = a.estimates[p];
-    EXPECT_TRUE(e.estimated && e.delivered) << words_of(p).name;
-    EXPECT_LT(std::abs(e.value - value_of(w.truth, p)), 4.0 * e.sigma);
-    EXPECT_GE(e.sigma, e.formal);
-    EXPECT_GT(e.formal, e.white);
-    EXPECT_GT(e.jackknife_lines, 0.0);
-    EXPECT_GT(e.jackknife_planes, 0.0);
-    EXPECT_GT(e.determined, 0.9);
-  }
-  EXPECT_FALSE(a.estimates[latency].estimated);
-  EXPECT_LT(a.estimates[boresight_roll].sigma, 10.0 * arcsec);
-  EXPECT_TRUE(a.findings.empty()) << a.findings[0].what;
-  EXPECT_NEAR(a.sigma0, 1.0, 0.1);
-  EXPECT_LT(a.condition, 100.0);
-  EXPECT_EQ(a.correlation.rows(), 5);
-  EXPECT_EQ(a.control.size(), 12u);
-  for (const ControlResidual& c : a.control) {
-    EXPECT_FALSE(c.rejected);
-    EXPECT_LT(std::abs(c.w), 4.0);
-  }
-  EXPECT_EQ(a.components.size(), 6u);
-  EXPECT_GT(a.samples.size(), 1000u);
-  EXPECT_LE(a.samples.size(), 20000u);
-  ASSERT_EQ(a.corrections.size(), 8u);
-  for (const LineCorrection& c : a.corrections)
-    for (size_t i = 0; i < c.time.size(); ++i)
-      for (size_t k = 0; k < 6; ++k) {
-        EXPECT_LE(c.sigma[i][k], 1.001 * c.apriori[i][k]);
-        EXPECT_LT(std::abs(c.value[i][k]), 5.0 * c.apriori[i][k]);
-      }
-  for (size_t k = 0; k < a.planes.size(); ++k) EXPECT_GT(a.plane_sigma[k][0], 0.0);
-}
-
-TEST(Adjust, ADisplacedFacetAndAWrongControlPointAreLeftOut) {
-  World w = pattern_of(full_pattern());
-  Dice dice(8);
-  for (const size_t k : {size_t{3}, size_t{30}, size_t{35}}) survey(w.planes[k], 0.02, &dice);
-  TieSet ties = ties_of(w, &dice);
-  const size_t facet = ties.groups.size() / 2;
-  for (size_t i = ties.groups[facet].begin; i < ties.groups[facet].end; ++i) ties.returns.range[i] += 0.25;
-  ties.planes[30].control[2].point += 0.6 * ties.planes[30].normal;
-  const trajectory::Trajectory t(ErrorDraw(w, tactical_errors).with_errors(w.exact, dice));
-  const Adjustment a = adjust(ties, w.scanner, near_truth(w), w.noise, t, tactical_errors, plain());
-  EXPECT_TRUE(a.groups[facet].rejected);
-  EXPECT_GT(std::abs(a.groups[facet].w), 5.0);
-  EXPECT_LT(std::count_if(a.groups.begin(), a.groups.end(), [](const GroupResidual& g) { return g.rejected; }),
-            static_cast<std::ptrdiff_t>(a.groups.size() / 50));
-  EXPECT_TRUE(a.control[6].rejected);
-  EXPECT_EQ(std::count_if(a.control.begin(), a.control.end(), [](const ControlResidual& c) { return c.rejected; }), 1);
-  for (const Parameter p : usual) EXPECT_LT(std::abs(a.estimates[p].value - value_of(w.truth, p)), 4.0 * a.estimates[p].sigma);
-}
-
-TEST(Adjust, ControlInAnotherDatumIsNamed) {
-  World w = pattern_of(full_pattern(), 12, 6);
-  Dice dice(9);
-  for (const size_t k : {size_t{3}, size_t{27}, size_t{30}, size_t{35}}) survey(w.planes[k], 0.02, &dice);
-  for (TiePlane& p : w.planes)
-    for (PlaneControl& c : p.control) c.point += Vector3d(3.0, 0.0, -2.0);
-  const Adjustment a = flown(w, plain(), 6, near_truth(w));
-  EXPECT_TRUE(says(a, "control does not fit: mean misfit east 3.0", false));
-  for (const ControlResidual& c : a.control) EXPECT_TRUE(c.rejected);
-}
-
-// Ackermann's model: position = true + a0 + a1 t in every line, boresight held.
-TEST(Adjust, ShiftsAndDriftsOfLinesAreFound) {
-  World w = pattern_of({{0.0, 0.0}, {180.0 * deg, 200.0}, {0.0, -200.0}, {90.0 * deg, 0.0}}, 14, 12);
-  w.noise.roll = w.noise.pitch = w.noise.heading = core::Radians(0.0);  // held at the truth
-  w.noise.lever_arm = core::Metres(0.0);
-  Dice dice(12);
-  for (const size_t k : {size_t{0}, size_t{12}, size_t{24}, size_t{30}, size_t{33}, size_t{36}}) survey(w.planes[k], 0.01, &dice);
-  const TieSet ties = ties_of(w, &dice);
-  std::vector<std::array<Vector3d, 2>> drift;
-  for (size_t l = 0; l < w.lines.size(); ++l) drift.push_back({0.08 * dice.vector(), 0.004 * dice.vector()});
-  const trajectory::Trajectory t(ErrorDraw::add(w.exact, [&](double at) {
-    size_t l = 0;
-    while (l + 1 < w.lines.size() && at > w.first(l + 1) - 0.5 * w.pause) ++l;
-    Correction e = Correction::Zero();
-    e.head<3>() = drift[l][0] + drift[l][1] * (at - w.first(l) - 10.0);
-    return e;
-  }));
-  AdjustOptions o = plain();
-  o.estimate = {false, false, false, false, false, false, false, false, false, false, false};
-  o.corrections.position = CorrectionForm::drift;
-  o.corrections.attitude = CorrectionForm::none;
-  o.corrections.prior = CorrectionPrior::stated;
-  const Adjustment a = adjust(ties, w.scanner, w.truth, w.noise, t, tactical_errors, o);
-  double squares = 0.0, standard = 0.0, n = 0.0;
-  for (size_t l = 0; l < w.lines.size(); ++l) {
-    ASSERT_EQ(a.corrections[l].time.size(), 2u);
-    for (size_t i = 0; i < 2; ++i)
-      for (int c = 0; c < 3; ++c) {
-        const double truth = -(drift[l][0][c] + drift[l][1][c] * (a.corrections[l].time[i] - w.first(l) - 10.0));
-        const double e = a.corrections[l].value[i][c] - truth;
-        squares += e * e;
-        standard += e * e / std::pow(a.corrections[l].sigma[i][c], 2);
-        n += 1.0;
-      }
-  }
-  EXPECT_LT(std::sqrt(squares / n), 0.03);         // of 8 cm and 4 mm/s; along the lines it hangs on a few slopes
-  EXPECT_NEAR(std::sqrt(standard / n), 1.0, 0.4);  // 24 values, hardly independent
-  double before = 0.0, after = 0.0;
-  for (const GroupResidual& g : a.groups) before += g.before * g.before, after += g.after * g.after;
-  EXPECT_LT(after, 0.05 * before);
 }
 
 TEST(Adjust, ScanOffsetIsTheRollOfAScannerAcross) {
