@@ -16,16 +16,19 @@
 #include <thread>
 #include <utility>
 
+#include "io/las/las_source.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "pipeline/delivery.h"
 #include "pipeline/expected_time.h"
+#include "pipeline/fullest_tile.h"
 #include "pipeline/grid_store.h"
 #include "pipeline/input_guard.h"
 #include "pipeline/limits.h"
 #include "pipeline/memory.h"
 #include "pipeline/provenance.h"
 #include "pipeline/pulse_border.h"
+#include "pipeline/released_points.h"
 #include "pipeline/report_docs.h"
 #include "pipeline/stage_memory.h"
 #include "pipeline/summary.h"
@@ -94,6 +97,8 @@ class Engine {
   void prepare_map();
   core::ColumnSet needed_columns() const;
   void choose_strips();
+  size_t last_reader() const;
+  bool releases(size_t number) const;
   void find_strips();
   bool is_read_again(size_t number) const;
   bool is_resumed(size_t number) const;
@@ -107,6 +112,7 @@ class Engine {
   std::vector<TileKey> tiles_of(size_t number) const;
   std::set<TileKey> tiles_of_water() const;
   void expect_room_for_strips() const;
+  void expect_room_for_fullest_tile() const;
   void expect_room_for_tiles();
   fs::path done_file(size_t number, const TileBox& box) const;
   fs::path done_file(size_t number, const TileGroup& group) const { return done_file(number, TileBox(group.tiles)); }
@@ -180,13 +186,35 @@ void Engine::prepare() {
   folders_ = fingerprints_;
 }
 
-/// The columns of the strips' points that the tile stages need or read.
+/// The columns of the strips' points that the tile stages need or read: not those that a stage makes anew for every point before any other
+/// reads them. Writers of a cloud make from its records what no other stage reads.
 core::ColumnSet Engine::needed_columns() const {
   using core::Column;
-  core::ColumnSet needed{Column::x, Column::y, Column::z, Column::strip, Column::record};
-  for (size_t i = last_strip_stage_ + 1; i < plan_.stages.size(); ++i)
-    if (works_on(i, Grain::tile)) needed = needed | columns_of_tiles(stage(i));
+  const bool as_recorded = last_strip_stage_ == source_ && stage(source_).info().makes(stages::Product::points);
+  core::ColumnSet needed{Column::x, Column::y, Column::z, Column::strip, Column::record}, made;
+  for (size_t i = last_strip_stage_ + 1; i < plan_.stages.size(); ++i) {
+    if (!works_on(i, Grain::tile)) continue;
+    const stages::Info& info = stage(i).info();
+    const core::ColumnSet kept_as_read = info.needs | stage(i).also_reads();
+    for (const Column c : {Column::height, Column::ground_probability})
+      if (info.gives.has(c) && !kept_as_read.has(c) && !needed.has(c)) made.add(c);
+    const bool is_writer = as_recorded && stage(i).is_streamed();
+    needed = needed | (columns_of_tiles(stage(i)) - made - (is_writer ? io::held_by_source : core::ColumnSet{}));
+  }
   return needed;
+}
+
+/// The last stage whose tiles depend on points; that of the strips where none does.
+size_t Engine::last_reader() const {
+  size_t last = last_strip_stage_;
+  for (size_t i = last_strip_stage_ + 1; i < plan_.stages.size(); ++i)
+    if (works_on(i, Grain::tile) && reads_points(stage(i))) last = i;
+  return last;
+}
+
+/// Are the points of a tile needed no more once the stage has worked on it?
+bool Engine::releases(size_t number) const {
+  return number == last_reader() && !plan_.run.keep_work && stage(number).halo() <= 0.0 && stage(number).info().gives.empty();
 }
 
 /// The strips' folder is named by the columns of its points, too: all of them, where the store is kept for other stages than these or an
@@ -282,10 +310,15 @@ void Engine::keep_whole() {
   const EarlierWork earlier = keep_whole_work(work_, [this](double done) { progress_.share(done); });
   progress_.end();
   damaged_ = earlier.damaged;
+  std::uint64_t given_up = 0;
+  if (makes_points(plan_))
+    given_up =
+        give_up_strips(folder(last_strip_stage_), [this](TileKey key) { return fs::exists(done_file(last_reader(), TileBox(key, key))); });
+  damaged_ += given_up;
   if (damaged_ > 0)
     progress_.say("damaged: " + std::to_string(damaged_) + " pieces of an earlier run are not what they were and are done again");
-  if (earlier.lines + earlier.pieces > 0)
-    progress_.say("resumed: " + std::to_string(earlier.lines) + " flight lines or files and " + std::to_string(earlier.pieces) +
+  if (earlier.lines - given_up + earlier.pieces > 0)
+    progress_.say("resumed: " + std::to_string(earlier.lines - given_up) + " flight lines or files and " + std::to_string(earlier.pieces) +
                   " pieces of other stages were done by an earlier run and are not done again");
 }
 
@@ -421,6 +454,29 @@ void Engine::expect_room_for_strips() const {
   memory_.require(share_of_batches * least, left, "reading the points");
 }
 
+/// A tile that the clouds' headers show to be too full is refused before any point is read.
+void Engine::expect_room_for_fullest_tile() const {
+  using core::Column;
+  if (!stage(source_).info().makes(stages::Product::points)) return;
+  const std::optional<FullTile> tile = fullest_tile(context_);
+  if (!tile) return;
+  TileStore assumed({}, plan_.run.tile.value, context_.origin);
+  assumed.assume(tile->key, tile->points, needed_columns());
+  SquareCounts squares(assumed);
+  const double left = memory_.left();
+  double most = 0.0;
+  std::string_view what;
+  for (size_t i = last_strip_stage_ + 1; i < plan_.stages.size(); ++i) {
+    if (!works_on(i, Grain::tile)) continue;
+    const StageMemory memory(assumed, stage(i), context_);
+    const auto free = static_cast<std::uint64_t>(std::max(0.0, left));
+    const auto bytes = static_cast<double>(memory.cut(memory.of({tile->key}), free, squares).bytes);
+    if (bytes > most) most = bytes, what = stage(i).info().name;
+  }
+  memory_.require(most, left, std::string(what) + " on a tile of " + std::to_string(tile->points) + " points or more of " + tile->file,
+                  true);
+}
+
 /// Every tile stage has a way to work on every tile that is not done; otherwise the one that takes most is named.
 void Engine::expect_room_for_tiles() {
   const double left = memory_.left(), free = std::max(0.0, left);
@@ -465,7 +521,7 @@ void Engine::run_strips() {
       ++resumed_;
       progress_.skip(strips[i].records);
     } else {
-      if (!std::exchange(has_room, true)) expect_room_for_strips();
+      if (!std::exchange(has_room, true)) expect_room_for_strips(), expect_room_for_fullest_tile();
       stream_strip(strips[i], strip_folder);
     }
     const Value note = io::parse_json(TileStore::note(strip_folder), strip_folder.string());
@@ -621,6 +677,12 @@ void Engine::run_tiles(size_t number) {
     bytes.push_back(fs::exists(done_file(number, g)) ? 0 : g.bytes);
     work += work_of(g);
   }
+  const bool lets_go = releases(number);
+  if (lets_go) {
+    std::vector<fs::path> made;
+    for (size_t i = last_strip_stage_ + 1; i < number; ++i) made.push_back(folder(i));
+    note_release(folder(last_strip_stage_), made);
+  }
   progress_.begin(std::string(info.name), store_->points(), "points", work);
   TileQueue queue(std::move(bytes), budget);
   std::atomic<std::uint64_t> again{0};
@@ -642,6 +704,7 @@ void Engine::run_tiles(size_t number) {
             note = run_group(number, group, wet.contains(group.tiles[0]));
             progress_.advance(group.own, work_of(group));
           }
+          if (lets_go) store_->release(group.tiles[0]);
         }
       },
       tbb::simple_partitioner());

@@ -25,6 +25,15 @@ double bytes_of(core::ColumnSet columns, double source_width) {
 
 core::ColumnSet columns_of_tiles(const stages::Stage& s) { return s.info().needs | s.info().gives | s.also_reads(); }
 
+bool has_surface(const std::vector<stages::Product>& products) {
+  return std::any_of(products.begin(), products.end(),
+                     [](stages::Product p) { return p == stages::Product::dtm || p == stages::Product::dsm; });
+}
+
+bool reads_points(const stages::Stage& s) {
+  return !columns_of_tiles(s).empty() || s.info().takes(stages::Product::points) || has_surface(s.info().gives_products);
+}
+
 const std::vector<std::uint32_t>& SquareCounts::of(TileKey key) {
   const auto [at, is_new] = counts_.try_emplace(key);
   if (is_new) at->second = store_.counts_of(key, across);
@@ -36,7 +45,7 @@ StageMemory::StageMemory(const TileStore& store, const stages::Stage& stage, con
   using core::Column;
   const core::ColumnSet there = store.columns() | stage.info().gives, places{Column::x, Column::y, Column::z};
   const core::ColumnSet read = columns_of_tiles(stage) | places;
-  row_bytes_ = bytes_of(read - (read - there), static_cast<double>(store.source_width()));
+  if (reads_points(stage)) row_bytes_ = bytes_of(read - (read - there), static_cast<double>(store.source_width()));
   given_bytes_ = bytes_of(stage.info().gives, 0.0);
 }
 

@@ -13,6 +13,12 @@ namespace swath::pipeline {
 /// The columns that a tile's work with the stage reads or gives.
 core::ColumnSet columns_of_tiles(const stages::Stage& stage);
 
+/// Is one of the products made of triangles, which reach into tiles without points?
+bool has_surface(const std::vector<stages::Product>& products);
+
+/// Does a tile's work with the stage depend on points?
+bool reads_points(const stages::Stage& stage);
+
 /// Points in small squares of tiles, counted once they are asked for.
 class SquareCounts {
  public:

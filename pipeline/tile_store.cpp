@@ -33,6 +33,9 @@ core::Value strip_note(const fs::path& strip_folder) {
   return std::move(record->note);
 }
 
+/// Of an entry of the note's list of tiles.
+TileKey key_of(const core::Value& tile) { return {static_cast<int>(tile.items()[0].as_int()), static_cast<int>(tile.items()[1].as_int())}; }
+
 }  // namespace
 
 std::string file_label(TileKey k) { return std::to_string(k.ix) + "_" + std::to_string(k.iy); }
@@ -81,6 +84,7 @@ void StripWriter::write(const Block& block) {
     if (present.has(c)) row_bytes += sizeof((block.*member)[0]);
   });
   row_bytes += block.source.width;
+  if (fields_.empty()) fields_ = io::fields_of_rows(block.source.row(0), block.source.size(), block.source.width);
   for (const auto& [key, mine] : rows) {
     Block& pending = pending_[key];
     pending.origin = block.origin;
@@ -102,8 +106,10 @@ void StripWriter::flush(TileKey key, Block& points) {
   if (points.size() == 0) return;
   Written& written = written_[key];
   StoreFile file(part_ / points_file(key), StoreFile::Mode::append, &written.checksum);
-  write_chunks(file, points, 0, points.size(), core::columns_of(points));
+  write_chunks(file, points, 0, points.size(), core::columns_of(points), fields_);
   file.close();
+  columns_ = columns_ | core::columns_of(points);
+  source_width_ = std::max(source_width_, points.source.width);
   written.points += points.size();
   written.bytes += file.written();
   core::Block fresh;
@@ -115,16 +121,13 @@ void StripWriter::commit(const std::string& note) {
   for (auto& [key, points] : pending_) flush(key, points);
   pending_.clear();
   PieceRecord record;
-  record.note["note"] = note;
-  core::Value& tiles = record.note["tiles"] = core::Value::array();
+  core::Value::Array tiles;
   for (const auto& [key, written] : written_) {
-    core::Value one = core::Value::array();
-    one.push(key.ix);
-    one.push(key.iy);
-    one.push(written.points);
-    tiles.push(std::move(one));
+    tiles.emplace_back(core::Value::Array{key.ix, key.iy, written.points});
     record.files.push_back({points_file(key), written.bytes, written.checksum.text()});
   }
+  record.note =
+      core::Value::Object{{"note", note}, {"columns", bits_of(columns_)}, {"source_width", source_width_}, {"tiles", std::move(tiles)}};
   const io::UnflushedFiles checked_when_resumed;
   write_record(part_ / record_name, final_ / record_name, record);
   std::error_code ec;
@@ -141,24 +144,41 @@ bool TileStore::is_committed(const fs::path& strip_folder) { return fs::exists(s
 
 std::string TileStore::note(const fs::path& strip_folder) { return strip_note(strip_folder).find("note")->as_text(); }
 
+std::vector<TileKey> TileStore::released(const fs::path& strip_folder) {
+  std::vector<TileKey> out;
+  const core::Value note = strip_note(strip_folder);
+  for (const core::Value& tile : note.find("tiles")->items())
+    if (const TileKey key = key_of(tile); !fs::exists(strip_folder / points_file(key))) out.push_back(key);
+  return out;
+}
+
+void TileStore::release(TileKey key) const {
+  const auto at = segments_.find(key);
+  if (at == segments_.end()) return;
+  std::error_code stays;
+  for (const Segment& s : at->second) fs::remove(s.file, stays);
+}
+
 void TileStore::open(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     const core::Value index = strip_note(strips_ / name);
+    // Strips of several files need not have the same columns.
+    columns_ = columns_ | ChunkHead{0, static_cast<std::uint32_t>(index.find("columns")->as_int())}.set();
+    source_width_ = std::max(source_width_, static_cast<size_t>(index.find("source_width")->as_int()));
     for (const core::Value& one : index.find("tiles")->items()) {
-      const TileKey key{static_cast<int>(one.items()[0].as_int()), static_cast<int>(one.items()[1].as_int())};
+      const TileKey key = key_of(one);
       const auto n = static_cast<std::uint64_t>(one.items()[2].as_int());
-      const fs::path file = strips_ / name / points_file(key);
-      segments_[key].push_back({file, n});
+      segments_[key].push_back({strips_ / name / points_file(key), n});
       tiles_[key] += n;
       points_ += n;
-      // Strips of several files need not have the same columns.
-      StoreFile f(file, StoreFile::Mode::read);
-      ChunkHead head{};
-      if (!f.next(head)) throw damaged_work(file);
-      columns_ = columns_ | head.set();
-      source_width_ = std::max<size_t>(source_width_, head.source_width);
     }
   }
+}
+
+void TileStore::assume(TileKey key, std::uint64_t points, ColumnSet columns) {
+  tiles_[key] += points;
+  points_ += points;
+  columns_ = columns_ | columns;
 }
 
 std::set<TileKey> TileStore::fringe(double halo) const {
@@ -209,6 +229,10 @@ void TileStore::expect_whole(TileKey key, size_t rows) const {
 
 std::vector<std::uint32_t> TileStore::counts_of(TileKey key, int n) const {
   std::vector<std::uint32_t> counts(static_cast<size_t>(n) * static_cast<size_t>(n), 0);
+  if (const auto at = tiles_.find(key); at != tiles_.end() && !segments_.contains(key)) {
+    counts.assign(counts.size(), static_cast<std::uint32_t>(at->second / counts.size()));
+    return counts;
+  }
   each_rows(key, {}, [&](Block& b) {
     for (size_t i = 0; i < b.size(); ++i) {
       const auto [across, up] = TilePart::square_of(key, n, origin_.x() + b.x[i], origin_.y() + b.y[i], side_);

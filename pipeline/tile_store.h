@@ -40,6 +40,9 @@ class StripWriter {
   double tile_side_;
   size_t buffer_bytes_, buffered_ = 0;
   std::map<TileKey, core::Block> pending_;
+  core::ColumnSet columns_;
+  size_t source_width_ = 0;
+  std::vector<std::uint8_t> fields_;  ///< of the rows of the column `source`, as the first block has them
   /// What went to the file of one tile.
   struct Written {
     std::uint64_t points = 0, bytes = 0;
@@ -60,6 +63,9 @@ class TileStore {
   static bool is_committed(const std::filesystem::path& strip_folder);
   static std::string note(const std::filesystem::path& strip_folder);
 
+  /// The tiles of a committed strip whose points are not there any more.
+  static std::vector<TileKey> released(const std::filesystem::path& strip_folder);
+
   /// Reads the list of tiles after all strips are committed. `names`: the strips' folders, in order.
   void open(const std::vector<std::string>& names);
 
@@ -70,6 +76,11 @@ class TileStore {
   core::ColumnSet columns() const { return columns_; }
   /// Bytes of the widest row of the column `source`; 0 where no strip has it.
   size_t source_width() const { return source_width_; }
+
+  /// Without a file: so many points, evenly spread over the tile, for what work on it would take.
+  void assume(TileKey key, std::uint64_t points, core::ColumnSet columns);
+  /// Removes a tile's points: no stage reads them any more.
+  void release(TileKey key) const;
 
   /// From now on these columns of a tile are read from overlays in `folder`.
   void add_overlay(std::filesystem::path folder, core::ColumnSet columns);

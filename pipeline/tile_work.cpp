@@ -13,11 +13,6 @@ namespace swath::pipeline {
 
 namespace fs = std::filesystem;
 
-bool has_surface(const std::vector<stages::Product>& products) {
-  return std::any_of(products.begin(), products.end(),
-                     [](stages::Product p) { return p == stages::Product::dtm || p == stages::Product::dsm; });
-}
-
 void TileWork::run(const TileGroup& group, stages::TileJob& job, bool has_water) const {
   if (group.parts > 1)
     work_on_parts(group, job, has_water);
@@ -31,6 +26,7 @@ std::function<void(core::Block&)> TileWork::thinner(const stages::Box& box) cons
 }
 
 void TileWork::work_on(const TileGroup& group, stages::TileJob& job, bool has_water) const {
+  if (!reads_points(stage_)) return run_stage(job, has_water);
   if (stage_.is_streamed()) {
     job.own = group.own;
     job.stream = [&, this](const std::function<void(core::Block&)>& f) { store_.each_rows(job.key, columns_of_tiles(stage_), f); };

@@ -11,9 +11,6 @@
 
 namespace swath::pipeline {
 
-/// Is one of the products made of triangles, which reach into tiles without points?
-bool has_surface(const std::vector<stages::Product>& products);
-
 class TileWork {
  public:
   TileWork(const TileStore& store, const stages::Context& context, const stages::Stage& stage)

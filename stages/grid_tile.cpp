@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "io/text/output_file.h"
+#include "io/text/packed_column.h"
 #include "io/text/value_file.h"
 
 namespace swath::stages {
@@ -16,22 +17,24 @@ struct Head {
   core::Lattice lattice;
   std::uint32_t has_sigma, has_count;
 };
-constexpr char magic[8] = {'s', 'w', 'g', 'r', 'i', 'd', '1', 0};
+constexpr char magic[8] = {'s', 'w', 'g', 'r', 'i', 'd', '2', 0};
+constexpr size_t cells_per_byte = size_t{1} << 15;  ///< more than zstd makes of one
 
 template <class T>
 void put(std::string& out, const std::vector<T>& v) {
-  if (v.empty()) return;
-  const size_t at = out.size();
-  out.resize(at + v.size() * sizeof(T));
-  std::memcpy(out.data() + at, v.data(), v.size() * sizeof(T));
+  if (!v.empty()) io::pack(v.data(), v.size(), sizeof(T), out);
 }
 
 template <class T>
 void take(const std::string& in, size_t& at, std::vector<T>& v, size_t n, const std::filesystem::path& file) {
-  if (in.size() < at + n * sizeof(T)) cut_short(file);
   v.resize(n);
-  if (n > 0) std::memcpy(v.data(), in.data() + at, n * sizeof(T));
-  at += n * sizeof(T);
+  if (n == 0) return;
+  io::PackedHead head;
+  if (in.size() - at < sizeof head) cut_short(file);
+  std::memcpy(&head, in.data() + at, sizeof head);
+  at += sizeof head;
+  if (in.size() - at < head.bytes || !io::unpack(head, in.data() + at, v.data(), n, sizeof(T))) cut_short(file);
+  at += head.bytes;
 }
 
 }  // namespace
@@ -65,7 +68,7 @@ core::Grid read_grid_tile(const std::filesystem::path& file) {
   Head head{};
   if (in.size() < sizeof head || std::memcmp(in.data(), magic, sizeof magic) != 0) cut_short(file);
   std::memcpy(&head, in.data(), sizeof head);
-  if (head.lattice.nx < 0 || head.lattice.ny < 0 || head.lattice.size() > in.size()) cut_short(file);
+  if (head.lattice.nx < 0 || head.lattice.ny < 0 || head.lattice.size() / cells_per_byte > in.size()) cut_short(file);
   core::Grid grid(head.lattice);
   const size_t n = head.lattice.size();
   size_t at = sizeof head;

@@ -5,6 +5,11 @@
 #include <limits>
 
 namespace swath::filters {
+namespace {
+
+constexpr double per_metre = 1024.0;  // the steps of files (io/las/las_block.cpp): what is finer takes room and is noise
+
+}  // namespace
 
 std::uint64_t height_above(const core::Grid& terrain, core::Block& block, size_t own) {
   const core::Lattice& l = terrain.lattice;
@@ -26,7 +31,8 @@ std::uint64_t height_above(const core::Grid& terrain, core::Block& block, size_t
         weights += w;
       }
     if (weights > 0.0) {
-      block.height[k] = static_cast<float>(block.origin.z() + block.z[k] - sum / weights);
+      const auto height = static_cast<float>(block.origin.z() + block.z[k] - sum / weights);
+      block.height[k] = static_cast<float>(std::round(static_cast<double>(height) * per_metre) / per_metre);
     } else {
       block.height[k] = std::numeric_limits<float>::quiet_NaN();
       ++unknown;

@@ -23,7 +23,7 @@ using las::put;
 
 namespace {
 
-constexpr std::size_t number_bytes = 4;
+constexpr std::size_t number_bytes = 4, place_bytes = 12;
 constexpr std::uint64_t largest_packets = 64u << 20;
 
 bool is(const LasVlr& v, const char* user, int id) { return v.user_id == user && v.record_id == id; }
@@ -72,6 +72,17 @@ std::vector<std::uint8_t> nothing_of(const LasExtra& e) {
   return out;
 }
 
+/// Columns of held_by_source that points of the file have.
+core::ColumnSet columns_in(const LasHeader& h) {
+  using core::Column;
+  core::ColumnSet out = held_by_source;
+  if (!las_layout(h.point_format)->rgb) out = out - core::ColumnSet{Column::red, Column::green, Column::blue};
+  for_each_extra_column([&](Column c, const char* name, auto) {
+    if (!h.extra_offset(name)) out = out - core::ColumnSet{c};
+  });
+  return out;
+}
+
 /// Data that read_las_header() left in the file.
 void load(LasVlr& v, const std::filesystem::path& file) {
   if (v.data.size() == v.size) return;
@@ -112,7 +123,7 @@ void keep_source(std::span<const std::uint8_t> records, std::size_t record_lengt
   rows.resize(n, number_bytes + record_length);
   for (std::size_t i = 0; i < n; ++i) {
     put(rows.row(i), number);
-    std::copy_n(records.data() + i * record_length, record_length, rows.row(i) + number_bytes);
+    std::copy_n(records.data() + i * record_length + place_bytes, record_length - place_bytes, rows.row(i) + number_bytes + place_bytes);
   }
 }
 
@@ -151,6 +162,7 @@ LasSources::LasSources(std::vector<LasSource> files, bool record_times) : files_
   std::set<core::TimeScale> scales;
   for (LasSource& f : files_) {
     find_packets(f.header, f.file);
+    held_ = held_ | columns_in(f.header);
     std::vector<std::size_t>& where = where_.emplace_back();
     for (const LasExtra& e : f.header.extras) {
       std::size_t at = 0;
@@ -247,14 +259,27 @@ std::vector<std::string> LasSources::left_out() const {
   return out;
 }
 
+void LasSources::complete(core::Block& block) const {
+  const core::ColumnSet missing = held_ - core::columns_of(block);
+  if (missing.empty() || block.source.empty()) return;
+  core::add_columns(block, missing);
+  each_part(block, [&](const Part& part) {
+    core::for_each_column([&](core::Column c, std::string_view, auto member) {
+      const auto& read = part.block.*member;
+      if (!missing.has(c) || read.empty()) return;
+      for (std::size_t k = 0; k < part.rows.size(); ++k) (block.*member)[part.rows[k]] = read[k];
+    });
+  });
+}
+
 core::ColumnSet LasSources::unchanged(const core::Block& block) const {
   core::ColumnSet out;
   for_each_extra_column([&](core::Column c, const char*, auto member) {
-    if (!(block.*member).empty()) out.add(c);
+    if (!(block.*member).empty() || held_.has(c)) out.add(c);
   });
   each_part(block, [&](const Part& part) {
     for_each_extra_column([&](core::Column c, const char*, auto member) {
-      if (!out.has(c)) return;
+      if (!out.has(c) || (block.*member).empty()) return;
       const std::vector<float>&now = block.*member, &read = part.block.*member;
       for (std::size_t k = 0; k < part.rows.size(); ++k) {
         const float a = now[part.rows[k]], b = read.empty() ? 0.0F : read[k];

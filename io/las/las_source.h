@@ -15,8 +15,16 @@
 
 namespace swath::io {
 
-/// Keeps records (header.record_length bytes each) as rows of Block::source: {u32 number of the file from 1, record}.
+/// Keeps records (header.record_length bytes each) as rows of Block::source: {u32 number of the file from 1, record}, with zeros in place
+/// of the coordinates, which are the block's.
 void keep_source(std::span<const std::uint8_t> records, std::size_t record_length, std::uint32_t number, core::ByteRows& rows);
+
+/// Columns that follow from the rows of Block::source, see LasSources::complete().
+constexpr core::ColumnSet held_by_source{
+    core::Column::intensity, core::Column::return_number, core::Column::return_count, core::Column::classification,
+    core::Column::flags,     core::Column::scan_angle,    core::Column::range,        core::Column::incidence,
+    core::Column::sigma_h,   core::Column::sigma_v,       core::Column::height,       core::Column::ground_probability,
+    core::Column::red,       core::Column::green,         core::Column::blue,         core::Column::user_data};
 
 /// A file that points of a run come from.
 struct LasSource {
@@ -41,7 +49,10 @@ class LasSources {
   /// Have all files the same GUID?
   bool same_project() const;
 
-  /// Those of the columns that extra fields carry whose values are all as in the files.
+  /// Gives a block the columns of held_by_source that it lacks and one of the files has, as they were read.
+  void complete(core::Block& block) const;
+
+  /// Those of the columns that extra fields carry whose values are all as in the files, or that the block lacks.
   core::ColumnSet unchanged(const core::Block& block) const;
 
   /// Gives points made from the block what its columns do not hold: scanner channel, near infrared, waveform reference, extra fields, the
@@ -57,6 +68,7 @@ class LasSources {
   std::vector<LasSource> files_;
   std::vector<LasExtra> extras_;                 ///< of all files together
   std::vector<std::vector<std::size_t>> where_;  ///< place in extras_ of each file's extra fields
+  core::ColumnSet held_;                         ///< columns that one of the files has
   bool keeps_times_ = true;
 };
 

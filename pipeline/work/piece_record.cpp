@@ -124,10 +124,11 @@ std::optional<PieceRecord> read_record(const fs::path& file) {
   return out;
 }
 
-bool is_whole(const PieceRecord& record, const fs::path& folder) {
+bool is_whole(const PieceRecord& record, const fs::path& folder, bool may_lack) {
   return std::all_of(record.files.begin(), record.files.end(), [&](const PieceFile& f) {
     const fs::path file = folder / f.name;
     std::error_code ec;
+    if (may_lack && !fs::exists(fs::symlink_status(file, ec))) return true;
     if (!fs::is_regular_file(fs::symlink_status(file, ec)) || fs::file_size(file, ec) != f.bytes || ec) return false;
     return checksum_of_file(file) == f.checksum;
   });

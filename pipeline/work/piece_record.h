@@ -43,8 +43,9 @@ inline void write_record(const std::filesystem::path& file, const PieceRecord& r
 /// Nothing where there is no record, or it is damaged or another piece's. Does not look at the files.
 std::optional<PieceRecord> read_record(const std::filesystem::path& file);
 
-/// Are all files of the record in `folder` there, plain files of the length and checksum that it says?
-bool is_whole(const PieceRecord& record, const std::filesystem::path& folder);
+/// Are all files of the record in `folder` there, plain files of the length and checksum that it says? `may_lack`: those that are there
+/// are.
+bool is_whole(const PieceRecord& record, const std::filesystem::path& folder, bool may_lack = false);
 
 /// For a file of the work folder that was whole at the start of the run and is not: the next run makes it anew.
 core::SystemError damaged_work(const std::filesystem::path& file);

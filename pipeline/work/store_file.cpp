@@ -22,16 +22,16 @@ using core::Block;
 using core::Column;
 using core::ColumnSet;
 
+bool is_coordinate(Column c) { return c == Column::x || c == Column::y || c == Column::z; }
+
+}  // namespace
+
 std::uint32_t bits_of(ColumnSet set) {
   std::uint32_t bits = 0;
   for (int c = 0; c < core::column_count; ++c)
     if (set.has(static_cast<Column>(c))) bits |= 1u << c;
   return bits;
 }
-
-bool is_coordinate(Column c) { return c == Column::x || c == Column::y || c == Column::z; }
-
-}  // namespace
 
 ColumnSet ChunkHead::set() const {
   ColumnSet set;
@@ -92,16 +92,16 @@ void StoreFile::read(void* data, size_t n) {
 }
 
 void StoreFile::read_packed(void* values, size_t n, size_t width) {
-  PackedHead head;
+  io::PackedHead head;
   read(&head, sizeof head);
   if (head.bytes > size_ - std::min(size_, at_)) throw damaged_work(name_);
   packed_.resize(head.bytes);
   read(packed_.data(), packed_.size());
-  if (!unpack(head, packed_.data(), values, n, width)) throw damaged_work(name_);
+  if (!io::unpack(head, packed_.data(), values, n, width)) throw damaged_work(name_);
 }
 
 void StoreFile::skip_packed() {
-  PackedHead head;
+  io::PackedHead head;
   read(&head, sizeof head);
   if (head.bytes > size_ - std::min(size_, at_)) throw damaged_work(name_);
   skip(head.bytes);
@@ -116,7 +116,7 @@ void StoreFile::close() {
   if (::close(std::exchange(fd_, -1)) && errno != EINTR) io::throw_system_error("cannot write", name_, errno);
 }
 
-void write_chunks(StoreFile& file, const Block& b, size_t first, size_t n, ColumnSet columns) {
+void write_chunks(StoreFile& file, const Block& b, size_t first, size_t n, ColumnSet columns, const std::vector<std::uint8_t>& fields) {
   if (columns.has(Column::source) && b.source.width > widest_row)
     throw core::Error("records of " + std::to_string(b.source.width) + " bytes are longer than any format's", "");
   for (const size_t end = first + n; first < end || n == 0; first += n) {
@@ -134,10 +134,10 @@ void write_chunks(StoreFile& file, const Block& b, size_t first, size_t n, Colum
       if (!columns.has(c)) return;
       const auto* values = (b.*member).data() + first;
       if constexpr (std::is_same_v<decltype(values), const double*>)
-        if (is_coordinate(c)) return pack_coordinates(values, n, bytes);
-      pack(values, n, sizeof *values, bytes);
+        if (is_coordinate(c)) return io::pack_coordinates(values, n, bytes);
+      io::pack(values, n, sizeof *values, bytes);
     });
-    if (columns.has(Column::source)) pack(b.source.row(first), n, b.source.width, bytes);
+    if (columns.has(Column::source)) io::pack_rows(b.source.row(first), n, b.source.width, fields, bytes);
     file.write(bytes.data(), bytes.size());
     if (n == 0) return;
   }

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one format of points in the work folder: chunks of {ChunkHead, columns in the order of the enum, each packed (packed_column.h)}, in
-// the machine's own byte order: the store is never carried elsewhere.
+// The one format of points in the work folder: chunks of {ChunkHead, columns in the order of the enum, each packed
+// (io/text/packed_column.h)}, in the machine's own byte order: the store is never carried elsewhere.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 
 #include "core/block.h"
+#include "io/text/packed_column.h"
 #include "pipeline/work/checksum.h"
-#include "pipeline/work/packed_column.h"
 
 namespace swath::pipeline {
 
 constexpr size_t chunk_rows = 1u << 16;  ///< of a chunk at most: what a reader holds at once is small whatever is in the file
 constexpr size_t widest_row = 1u << 17;  ///< bytes, of the column `source`
+
+/// Columns as bits of a ChunkHead.
+std::uint32_t bits_of(core::ColumnSet set);
 
 struct ChunkHead {
   std::uint32_t points = 0, columns = 0, source_width = 0, unused = 0;
@@ -52,8 +55,9 @@ class StoreFile {
   std::uint64_t written_ = 0, size_ = 0, at_ = 0;
 };
 
-/// Writes rows as one chunk or several; one without points where there are none.
-void write_chunks(StoreFile& file, const core::Block& block, size_t first, size_t count, core::ColumnSet columns);
+/// Writes rows as one chunk or several; one without points where there are none. `fields`: of the column `source` (io::fields_of_rows).
+void write_chunks(StoreFile& file, const core::Block& block, size_t first, size_t count, core::ColumnSet columns,
+                  const std::vector<std::uint8_t>& fields = {});
 
 /// Appends the wanted columns of the next chunk to `to` at row `row`; false at the end of the file. `seen`: gets the chunk's columns.
 bool read_chunk(StoreFile& file, core::Block& to, size_t& row, core::ColumnSet wanted, core::ColumnSet& seen);

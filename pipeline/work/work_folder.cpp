@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char *lock_name = "lock", *discarded_name = "discarded", *products_name = "products", *groups_name = "groups.done",
-                     *partial_name = "files.done";
+                     *strip_name = "strip.json", *partial_name = "files.done";
 
 /// "03-filters.ground-0123456789abcdef": the folder of a stage.
 bool is_stage_folder(const fs::directory_entry& entry) {
@@ -33,7 +33,7 @@ bool is_stage_folder(const fs::directory_entry& entry) {
   return entry.is_directory() && !entry.is_symlink() && std::regex_match(entry.path().filename().string(), form);
 }
 
-bool is_record(const fs::path& file) { return file.extension() == ".done" || file.filename() == "strip.json"; }
+bool is_record(const fs::path& file) { return file.extension() == ".done" || file.filename() == strip_name; }
 
 std::vector<fs::path> records_in(const fs::path& stage) {
   std::vector<fs::path> out;
@@ -49,7 +49,9 @@ std::vector<fs::path> files_of_whole(const fs::path& record) {
   try {
     const std::optional<PieceRecord> read = read_record(record);
     const fs::path folder = record.parent_path();
-    if (!read || !is_whole(*read, folder)) return {};
+    // Whether the run can do without points that were released it looks for itself.
+    const bool is_released = record.filename() == strip_name && fs::exists(folder.parent_path() / released_name);
+    if (!read || !is_whole(*read, folder, is_released)) return {};
     std::vector<fs::path> out{record};
     for (const PieceFile& f : read->files) out.push_back(folder / f.name);
     return out;
@@ -146,7 +148,7 @@ EarlierWork keep_whole_work(const fs::path& work, const std::function<void(doubl
   for (size_t i = 0; i < records.size(); ++i) {
     out.damaged += whole[i].empty();
     if (whole[i].empty()) continue;
-    if (records[i].filename() != groups_name && records[i].filename() != partial_name)
+    if (records[i].filename() != groups_name && records[i].filename() != partial_name && records[i].filename() != released_name)
       ++(records[i].extension() == ".done" ? out.pieces : out.lines);
     kept.insert(whole[i].begin(), whole[i].end());
   }

@@ -128,6 +128,20 @@ TEST(TileStore, RowsOfBytesComeBackWithTheirPoints) {
   }
 }
 
+TEST(TileStore, PointsThatAreReleasedAreGoneAndTheOthersStay) {
+  Store s;
+  const auto first = *s.store.tiles().begin(), last = *s.store.tiles().rbegin();
+  s.store.release(first.first);
+  EXPECT_THROW(s.store.read(first.first, {}), core::SystemError);
+  EXPECT_EQ(s.store.read(last.first, {}).size(), last.second);
+  EXPECT_EQ(TileStore::released(s.folder / "strips/strip_1"), std::vector<TileKey>{first.first});
+  TileStore again(s.folder / "strips", 100.0, {1000, 2000, 0});
+  again.open({"strip_1", "strip_2"});
+  EXPECT_EQ(again.points(), s.store.points());
+  EXPECT_EQ(again.tiles(), s.store.tiles());
+  EXPECT_EQ(again.columns(), s.store.columns());
+}
+
 TEST(TileStore, HoldsEveryPointOnceInTheOrderOfRecords) {
   for (const size_t buffer : {size_t{1}, size_t{1} << 20}) {
     const Store s(100.0, buffer);

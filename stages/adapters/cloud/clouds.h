@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "io/las/las_crs.h"
 #include "io/las/las_source.h"
 #include "stages/stage.h"
 

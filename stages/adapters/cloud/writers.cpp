@@ -68,7 +68,7 @@ class LasTiles : public OptionStage<LasOptions> {
     return all;
   }
   bool is_streamed() const override { return true; }
-  double bytes_per_point() const override { return 120.0; }
+  double bytes_per_point() const override { return 170.0; }
   std::vector<std::string> products() const override { return {options.folder}; }
   void run_tile(const Context& context, TileJob& job) const override {
     io::LasWriteOptions o;
@@ -93,6 +93,7 @@ class LasTiles : public OptionStage<LasOptions> {
     });
     if (!writer) open(false);
     job.stream([&](core::Block& block) {
+      if (o.sources) o.sources->complete(block);
       scale_block(context, block, true);
       writer->write(block);
     });

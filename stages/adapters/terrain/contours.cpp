@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "io/text/output_file.h"
+#include "io/text/packed_column.h"
 #include "io/text/value_file.h"
 #include "io/vector/vector.h"
 #include "stages/adapters/adapters.h"
@@ -45,6 +46,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t page_bytes = size_t{64} << 20, least_page_bytes = size_t{8} << 20;  ///< of the surface, while lines are drawn; of a thread
+constexpr size_t segments_per_byte = size_t{1} << 15;                                ///< more than are packed into one
 constexpr size_t drawn_bytes = size_t{256} << 20;                                    ///< of the levels that are drawn at once
 
 /// Of the surface alone: contours have no sigma from assumed ones.
@@ -74,7 +76,12 @@ void describe(ContourWriteOptions& o, V& v) {
   v.table("spots", o.spots, "Spot heights.");
 }
 
-/// A tile's segments on disk: sorted by level, so that a level is one stretch of the file.
+/// A tile's segments on disk, which are sorted by level: {SegmentsHead, packed segments} of each.
+struct SegmentsHead {
+  std::int64_t level = 0;
+  std::uint64_t count = 0;
+  io::PackedHead packed;
+};
 fs::path segment_file(const fs::path& folder, TileKey key) {
   return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".segments");
 }
@@ -193,8 +200,7 @@ class Contours : public OptionStage<ContourWriteOptions> {
     const terrain::ContourOptions drawn = spaced(context);
     const auto segments = terrain::trace(terrain::contour_surface(std::move(grid), terrain::vertical_tolerance(drawn)), own, drawn);
     job.tally.count("contour segments", segments.size());
-    io::write_text_file(segment_file(job.folder, job.key),
-                        {reinterpret_cast<const char*>(segments.data()), segments.size() * sizeof(terrain::Segment)});
+    io::write_text_file(segment_file(job.folder, job.key), packed_levels(segments));
     std::string bytes(reinterpret_cast<const char*>(&facts), sizeof facts);
     bytes.append(reinterpret_cast<const char*>(spots.data()), spots.size() * sizeof(terrain::SpotHeight));
     io::write_text_file(facts_file(job.folder, job.key), bytes);
@@ -232,6 +238,21 @@ class Contours : public OptionStage<ContourWriteOptions> {
     return options.source == ContourSource::grid ? context.grids->cell(Product::dtm) : options.tin.cell.value;
   }
 
+  static std::string packed_levels(const std::vector<terrain::Segment>& segments) {
+    const auto* rows = reinterpret_cast<const std::uint8_t*>(segments.data());
+    const std::vector<std::uint8_t> fields = io::fields_of_rows(rows, segments.size(), sizeof(terrain::Segment));
+    std::string out;
+    for (size_t first = 0, end = 0; first < segments.size(); first = end) {
+      while (end < segments.size() && segments[end].level == segments[first].level) ++end;
+      std::string packed;
+      io::pack_rows(rows + first * sizeof(terrain::Segment), end - first, sizeof(terrain::Segment), fields, packed);
+      SegmentsHead head{segments[first].level, end - first, {}};
+      std::memcpy(&head.packed, packed.data(), sizeof head.packed);
+      out.append(reinterpret_cast<const char*>(&head), sizeof head).append(packed, sizeof head.packed);
+    }
+    return out;
+  }
+
   static void read_facts(const fs::path& folder, TileKey key, SurfaceFacts& facts, std::vector<terrain::SpotHeight>& spots) {
     const fs::path file = facts_file(folder, key);
     const std::string bytes = io::read_text_file(file);
@@ -263,19 +284,23 @@ class Contours : public OptionStage<ContourWriteOptions> {
     // Where each level stands in each tile's file.
     struct Stretch {
       TileKey key;
-      std::uint64_t first, count;
+      std::uint64_t first_byte;
+      SegmentsHead head;
     };
     std::map<std::int64_t, std::vector<Stretch>> levels;
     for (const TileKey key : job.tiles) {
       const fs::path file = segment_file(job.folder, key);
       std::error_code absent;
-      if (const auto size = fs::file_size(file, absent); absent || size % sizeof(terrain::Segment) != 0) cut_short(file);
+      const std::uint64_t size = fs::file_size(file, absent);
+      if (absent) cut_short(file);
       std::ifstream in(file, std::ios::binary);
-      terrain::Segment s;
-      for (std::uint64_t row = 0; in.read(reinterpret_cast<char*>(&s), sizeof s); ++row) {
-        auto& stretches = levels[s.level];
-        if (stretches.empty() || stretches.back().key != key) stretches.push_back({key, row, 0});
-        ++stretches.back().count;
+      for (std::uint64_t at = 0; at < size;) {
+        Stretch s{key, at + sizeof(SegmentsHead), {}};
+        in.seekg(static_cast<std::streamoff>(at));
+        if (!in.read(reinterpret_cast<char*>(&s.head), sizeof s.head)) cut_short(file);
+        at = s.first_byte + s.head.packed.bytes;
+        if (at > size || s.head.count / segments_per_byte > s.head.packed.bytes) cut_short(file);
+        levels[s.head.level].push_back(s);
       }
     }
     const auto share = static_cast<size_t>(context.memory / 8.0);  // a byte of segments takes eight until it is written
@@ -293,7 +318,7 @@ class Contours : public OptionStage<ContourWriteOptions> {
     std::vector<size_t> bytes;
     for (const auto& [level, stretches] : levels) {
       bytes.push_back(0);
-      for (const Stretch& s : stretches) bytes.back() += s.count * sizeof(terrain::Segment);
+      for (const Stretch& s : stretches) bytes.back() += s.head.count * sizeof(terrain::Segment);
     }
     std::sort(bytes.begin(), bytes.end(), std::greater<>());
     size_t at_once = 0;
@@ -311,11 +336,13 @@ class Contours : public OptionStage<ContourWriteOptions> {
       auto segments = std::make_shared<std::vector<terrain::Segment>>();
       for (const Stretch& s : (level++)->second) {
         std::ifstream in(segment_file(job.folder, s.key), std::ios::binary);
-        in.seekg(static_cast<std::streamoff>(s.first * sizeof(terrain::Segment)));
+        in.seekg(static_cast<std::streamoff>(s.first_byte));
+        std::string packed(s.head.packed.bytes, '\0');
+        if (!in.read(packed.data(), static_cast<std::streamsize>(packed.size()))) cut_short(segment_file(job.folder, s.key));
         const size_t before = segments->size();
-        segments->resize(before + s.count);
-        const auto size = static_cast<std::streamsize>(s.count * sizeof(terrain::Segment));
-        if (!in.read(reinterpret_cast<char*>(segments->data() + before), size)) cut_short(segment_file(job.folder, s.key));
+        segments->resize(before + s.head.count);
+        if (!io::unpack(s.head.packed, packed.data(), segments->data() + before, s.head.count, sizeof(terrain::Segment)))
+          cut_short(segment_file(job.folder, s.key));
       }
       return segments;
     };

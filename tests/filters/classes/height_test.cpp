@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace swath::filters {
 namespace {
 
-// Heights are float: 500 m is held to 3e-5 m.
+// Heights are float: 500 m is held to 3e-5 m. They are rounded to 1/1024 m, of which 1.5 m is a multiple.
 constexpr float rounding = 1e-4f;
 
 core::Grid plane() {
@@ -29,6 +31,18 @@ TEST(Height, IsExactOnAPlane) {
   }
   EXPECT_EQ(height_above(plane(), b, b.size()), 0u);
   for (const float h : b.height) EXPECT_NEAR(h, 1.5f, rounding);
+}
+
+TEST(Height, IsRoundedToTheStepsOfFiles) {
+  core::Block b;
+  b.origin = {100, 200, 0};
+  b.x = b.y = {5.0, 6.0, 7.0};
+  for (size_t i = 0; i < 3; ++i) b.z.push_back(500 + 0.5 * (100 + b.x[i]) - 0.25 * (200 + b.y[i]) + 1.2345);
+  height_above(plane(), b, 3);
+  for (const float h : b.height) {
+    EXPECT_EQ(h * 1024.0f, std::round(h * 1024.0f));
+    EXPECT_NEAR(h, 1.2345f, 0.5f / 1024.0f + rounding);
+  }
 }
 
 TEST(Height, VoidsDropOutAndAreCounted) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/work/packed_column.h"
+#include "io/text/packed_column.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace swath::pipeline {
+namespace swath::io {
 namespace {
 
 PackedHead head_of(const std::string& packed) {
@@ -20,11 +20,11 @@ PackedHead head_of(const std::string& packed) {
 }
 
 template <class T>
-void expect_back(const std::vector<T>& values, const std::string& packed) {
+void expect_back(const std::vector<T>& values, const std::string& packed, size_t width = sizeof(T)) {
   const PackedHead head = head_of(packed);
   ASSERT_EQ(head.bytes + sizeof head, packed.size());
   std::vector<T> back(values.size());
-  ASSERT_TRUE(unpack(head, packed.data() + sizeof head, back.data(), back.size(), sizeof(T)));
+  ASSERT_TRUE(unpack(head, packed.data() + sizeof head, back.data(), back.size() * sizeof(T) / width, width));
   EXPECT_TRUE(values.empty() || std::memcmp(values.data(), back.data(), values.size() * sizeof(T)) == 0);
 }
 
@@ -73,6 +73,86 @@ TEST(PackedColumn, CoordinatesOfAFileTakeFewBytesAndComeBackToTheLastBit) {
     }
 }
 
+// A foot CRS: what the file has is converted to metres.
+TEST(PackedColumn, CoordinatesInFeetTakeFewBytes) {
+  for (const double unit : {0.3048, 1200.0 / 3937.0}) {
+    std::vector<double> values;
+    for (int i = 0; i < 50000; ++i) values.push_back(((4000000 + i % 7000 * 13) * 0.01 - 30000.0) * unit);
+    std::string packed;
+    pack_coordinates(values.data(), values.size(), packed);
+    expect_back(values, packed);
+    EXPECT_LT(packed.size(), 4 * values.size()) << unit;
+  }
+}
+
+struct Row {
+  std::uint16_t low = 0;
+  std::uint8_t bits = 0;
+  std::uint8_t time[8]{};  // where no number of 8 bytes would be aligned
+  std::uint8_t level = 0;
+};
+
+std::vector<Row> rows_of(size_t n) {
+  std::mt19937 random(11);
+  std::vector<Row> out(n);
+  for (size_t i = 0; i < n; ++i) {
+    out[i].low = static_cast<std::uint16_t>(random());
+    out[i].bits = static_cast<std::uint8_t>(i % 5 == 0);
+    const double t = 3e8 + 1e-5 * static_cast<double>(i / 2);
+    std::memcpy(out[i].time, &t, sizeof t);
+    out[i].level = static_cast<std::uint8_t>(i / 1000);
+  }
+  return out;
+}
+
+TEST(PackedColumn, RowsComeBackWhateverTheirFieldsAre) {
+  for (const size_t n : {0u, 1u, 2u, 1000u, 70000u}) {
+    const std::vector<Row> rows = rows_of(n);
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(rows.data());
+    const std::vector<std::uint8_t> found = fields_of_rows(bytes, n, sizeof(Row)), ones(sizeof(Row), 1), odd{1, 8, 2, 1}, short_of_it{8};
+    for (const auto& fields : {found, ones, odd, short_of_it, {}}) {
+      std::string packed;
+      pack_rows(bytes, n, sizeof(Row), fields, packed);
+      expect_back(rows, packed);
+    }
+  }
+  const auto noise = random_values<std::uint32_t>(3 * 5000);
+  std::string packed;
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(noise.data());
+  pack_rows(bytes, 5000, 12, fields_of_rows(bytes, 5000, 12), packed);
+  expect_back(noise, packed, 12);
+}
+
+TEST(PackedColumn, RowsTakeFewerBytesByTheirFields) {
+  const std::vector<Row> rows = rows_of(50000);
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(rows.data());
+  std::string whole, by_fields;
+  pack_rows(bytes, rows.size(), sizeof(Row), {}, whole);
+  pack_rows(bytes, rows.size(), sizeof(Row), fields_of_rows(bytes, rows.size(), sizeof(Row)), by_fields);
+  EXPECT_LT(2 * by_fields.size(), whole.size() + 2 * rows.size());  // beside two bytes that nothing makes smaller
+}
+
+TEST(PackedColumn, RowsOfDamagedFieldsAreNoticed) {
+  const std::vector<Row> rows = rows_of(300);
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(rows.data());
+  std::string packed;
+  pack_rows(bytes, rows.size(), sizeof(Row), {2, 1, 8, 1}, packed);
+  std::vector<Row> back(rows.size());
+  const auto is_back = [&](const std::string& of, std::uint32_t size) {
+    PackedHead head = head_of(of);
+    head.bytes = size;
+    return unpack(head, of.data() + sizeof head, back.data(), back.size(), sizeof(Row));
+  };
+  const std::uint32_t whole = head_of(packed).bytes;
+  EXPECT_TRUE(is_back(packed, whole));
+  for (std::uint32_t n = 0; n < whole; ++n) EXPECT_FALSE(is_back(packed, n)) << n;
+  for (const size_t at : {sizeof(PackedHead), sizeof(PackedHead) + 4, sizeof(PackedHead) + 6}) {
+    std::string damaged = packed;
+    damaged[at] = '\x40';  // the number of fields, the width of one
+    EXPECT_FALSE(is_back(damaged, whole)) << at;
+  }
+}
+
 TEST(PackedColumn, ValuesThatAreNoDecimalsOrNotFiniteComeBack) {
   const std::vector<double> values{0.0, -0.0, 1.0 / 3.0, std::numeric_limits<double>::infinity(), std::nan(""), 1e300, -5e-324};
   std::string packed;
@@ -107,4 +187,4 @@ TEST(PackedColumn, AFirstCoordinateThatNobodyHasWrittenGivesOtherValues) {
 }
 
 }  // namespace
-}  // namespace swath::pipeline
+}  // namespace swath::io

@@ -2,7 +2,7 @@
 // A coordinate of a file is a whole number of its steps, rounded to the places of a double twice: as the file's own number, and where the
 // file's offset was taken from it. The second leaves multiples of one power of two: the number of steps, rounded to that, is the
 // coordinate or lies a place beside it.
-#include "pipeline/work/packed_column.h"
+#include "io/text/packed_column.h"
 
 #include <zstd.h>
 
@@ -13,17 +13,19 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <type_traits>
 #include <vector>
 
-namespace swath::pipeline {
+namespace swath::io {
 namespace {
 
 constexpr int level = 1;
 constexpr size_t rows_at_once = 256;
-constexpr size_t sampled = 4096;  // values, for the choice of the way
+constexpr size_t sampled = 4096;                               // values, for the choice of the way
+constexpr size_t sampled_rows = 2048, widest_of_fields = 512;  // bytes; rows that are wider are packed as they are
 
-enum Way : std::uint32_t { plain, differences, decimals };
+enum Way : std::uint32_t { plain, differences, decimals, rows };
 
 struct Codec {
   std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> pack{ZSTD_createCCtx(), &ZSTD_freeCCtx};
@@ -147,10 +149,11 @@ double common_place(const double* values, size_t n) {
 struct Steps {
   std::int64_t first = 0;
   double per_metre = 0.0;
+  double scale = 0.0;  ///< m, that numbers of steps were multiplied by; 0: they were divided by per_metre
   double place = 1.0;  ///< a power of two that all are multiples of
 
   double rounded(std::int64_t steps) const {
-    const double v = static_cast<double>(steps) / per_metre, whole = v / place;
+    const double v = scale > 0.0 ? static_cast<double>(steps) * scale : static_cast<double>(steps) / per_metre, whole = v / place;
     if (!(std::abs(whole) < 0x1p52)) return v;
     const double shift = std::copysign(0x1p52, whole);  // what is added to it keeps no places behind the point
     return ((whole + shift) - shift) * place;
@@ -185,19 +188,94 @@ bool inflate(const char* bytes, size_t size, void* values, size_t n, size_t widt
   return true;
 }
 
+/// The bytes `first` to `first + width` of each row.
+std::vector<std::uint8_t> field_of(const std::uint8_t* from, size_t n, size_t row, size_t first, size_t width) {
+  std::vector<std::uint8_t> out(n * width);
+  with_width(width, [&](auto constant) {
+    for (size_t i = 0; i < n; ++i) std::memcpy(out.data() + i * constant, from + i * row + first, constant);
+  });
+  return out;
+}
+
+/// Takes {head, packed values} off the front of `bytes`; false where they are not of `n` values of `width` bytes.
+bool take_inflated(const char*& bytes, size_t& size, void* values, size_t n, size_t width) {
+  PackedHead head;
+  if (size < sizeof head) return false;
+  std::memcpy(&head, bytes, sizeof head);
+  bytes += sizeof head, size -= sizeof head;
+  if (head.way > differences || head.bytes > size || (head.way == differences && !has_numbers(width))) return false;
+  if (!inflate(bytes, head.bytes, values, n, width, head.way == differences)) return false;
+  bytes += head.bytes, size -= head.bytes;
+  return true;
+}
+
+bool unpack_coordinates(const char* bytes, size_t size, double* values, size_t n) {
+  Steps s;
+  if (size < sizeof s) return false;
+  std::memcpy(&s, bytes, sizeof s);
+  bytes += sizeof s, size -= sizeof s;
+  std::vector<std::int32_t> steps(n);
+  std::vector<std::int8_t> rests(n);
+  if (!take_inflated(bytes, size, steps.data(), n, 4) || !take_inflated(bytes, size, rests.data(), n, 1) || size > 0) return false;
+  // Unsigned: numbers that nobody has written may not fit.
+  const auto sum = [&s](std::int32_t step) {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(s.first) + static_cast<std::uint64_t>(std::int64_t{step}));
+  };
+  for (size_t i = 0; i < n; ++i) {
+    const double rounded = s.rounded(sum(steps[i]));
+    values[i] = rounded + rests[i] * s.unit(rounded);
+  }
+  return true;
+}
+
+bool unpack_rows(const char* bytes, size_t size, std::uint8_t* values, size_t n, size_t width) {
+  std::uint32_t count = 0;
+  if (size < sizeof count) return false;
+  std::memcpy(&count, bytes, sizeof count);
+  bytes += sizeof count, size -= sizeof count;
+  if (count > size) return false;
+  const char* widths = bytes;
+  bytes += count, size -= count;
+  std::vector<std::uint8_t> field;
+  size_t first = 0;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const auto wide = static_cast<std::uint8_t>(widths[k]);
+    if (!has_numbers(wide) || wide > width - first) return false;
+    field.resize(n * wide);
+    if (!take_inflated(bytes, size, field.data(), n, wide)) return false;
+    with_width(wide, [&](auto constant) {
+      for (size_t i = 0; i < n; ++i) std::memcpy(values + i * width + first, field.data() + i * constant, constant);
+    });
+    first += wide;
+  }
+  return first == width && size == 0;
+}
+
 }  // namespace
 
 void pack(const void* values, size_t n, size_t width, std::string& out) { put(values, n, width, smaller_way(values, n, width), out); }
 
 void pack_coordinates(const double* values, size_t n, std::string& out) {
+  constexpr double foot = 0.3048, survey_foot = 1200.0 / 3937.0;
   std::vector<std::int32_t> steps(n);
   std::vector<std::int8_t> rests(n);
   Steps s;
   s.place = common_place(values, n);
   bool found = false;
   if (s.place > 0.0)
-    for (const double per_metre : {1e3, 1e4, 1e5}) {
+    for (const double per_metre : {1e2, 1e3, 1e4, 1e5, 1e2 / foot, 1e3 / foot, 1e2 / survey_foot, 1e3 / survey_foot}) {
       s.per_metre = per_metre;
+      const size_t some = std::min(n, sampled);
+      const auto inexact = [&](double scale) {
+        s.scale = scale;
+        return to_steps(values, some, s, steps, rests)
+                   ? static_cast<size_t>(
+                         std::count_if(rests.begin(), rests.begin() + static_cast<std::ptrdiff_t>(some), [](auto r) { return r != 0; }))
+                   : some + 1;
+      };
+      const size_t divided = inexact(0.0), multiplied = inexact(1.0 / per_metre);
+      if (divided > some && multiplied > some) continue;
+      s.scale = multiplied < divided ? 1.0 / per_metre : 0.0;
       if ((found = to_steps(values, n, s, steps, rests))) break;
     }
   if (!found) return pack(values, n, 8, out);
@@ -208,34 +286,56 @@ void pack_coordinates(const double* values, size_t n, std::string& out) {
   out += parts;
 }
 
-bool unpack(const PackedHead& head, const char* bytes, void* values, size_t n, size_t width) {
-  if (head.way == plain || head.way == differences) return inflate(bytes, head.bytes, values, n, width, head.way == differences);
-  if (head.way != decimals || width != 8) return false;
-  Steps s;
-  if (head.bytes < sizeof s) return false;
-  std::memcpy(&s, bytes, sizeof s);
-  std::vector<std::int32_t> steps(n);
-  std::vector<std::int8_t> rests(n);
-  size_t at = sizeof s;
-  const auto part = [&](void* to, size_t size) {
-    PackedHead h;
-    if (head.bytes - at < sizeof h) return false;
-    std::memcpy(&h, bytes + at, sizeof h);
-    at += sizeof h;
-    if (h.way > differences || h.bytes > head.bytes - at || !inflate(bytes + at, h.bytes, to, n, size, h.way == differences)) return false;
-    at += h.bytes;
-    return true;
+std::vector<std::uint8_t> fields_of_rows(const std::uint8_t* rows, size_t n, size_t width) {
+  if (width > widest_of_fields || n < 2) return {};
+  n = std::min(n, sampled_rows);
+  struct Best {
+    size_t bytes = std::numeric_limits<size_t>::max();
+    std::uint8_t last = 0;  // width of the last field
   };
-  if (!part(steps.data(), 4) || !part(rests.data(), 1) || at != head.bytes) return false;
-  // Unsigned: numbers that nobody has written may not fit.
-  const auto sum = [&s](std::int32_t step) {
-    return static_cast<std::int64_t>(static_cast<std::uint64_t>(s.first) + static_cast<std::uint64_t>(std::int64_t{step}));
-  };
-  for (size_t i = 0; i < n; ++i) {
-    const double rounded = s.rounded(sum(steps[i]));
-    static_cast<double*>(values)[i] = rounded + rests[i] * s.unit(rounded);
-  }
-  return true;
+  std::vector<Best> to(width + 1);  // of the first bytes of a row
+  to[0].bytes = 0;
+  for (size_t first = 0; first < width; ++first)
+    for (const size_t wide : {1u, 2u, 4u, 8u}) {
+      if (first + wide > width) break;
+      const std::vector<std::uint8_t> field = field_of(rows, n, width, first, wide);
+      const size_t packed = std::min(compress(field.data(), n, wide, plain), compress(field.data(), n, wide, differences));
+      const size_t bytes = to[first].bytes + packed + sizeof(PackedHead);
+      if (bytes < to[first + wide].bytes) to[first + wide] = {bytes, static_cast<std::uint8_t>(wide)};
+    }
+  std::vector<std::uint8_t> out;
+  for (size_t at = width; at > 0; at -= to[at].last) out.push_back(to[at].last);
+  std::reverse(out.begin(), out.end());
+  return out;
 }
 
-}  // namespace swath::pipeline
+void pack_rows(const std::uint8_t* values, size_t n, size_t width, const std::vector<std::uint8_t>& fields, std::string& out) {
+  if (std::accumulate(fields.begin(), fields.end(), size_t{0}) != width || width == 0) return pack(values, n, width, out);
+  const auto count = static_cast<std::uint32_t>(fields.size());
+  std::string parts(reinterpret_cast<const char*>(&count), sizeof count);
+  parts.append(reinterpret_cast<const char*>(fields.data()), count);
+  size_t first = 0;
+  for (const std::uint8_t wide : fields) {
+    pack(field_of(values, n, width, first, wide).data(), n, wide, parts);
+    first += wide;
+  }
+  put_head(rows, parts.size(), out);
+  out += parts;
+}
+
+bool unpack(const PackedHead& head, const char* bytes, void* values, size_t n, size_t width) {
+  switch (head.way) {
+    case plain:
+      return inflate(bytes, head.bytes, values, n, width, false);
+    case differences:
+      return has_numbers(width) && inflate(bytes, head.bytes, values, n, width, true);
+    case decimals:
+      return width == 8 && unpack_coordinates(bytes, head.bytes, static_cast<double*>(values), n);
+    case rows:
+      return unpack_rows(bytes, head.bytes, static_cast<std::uint8_t*>(values), n, width);
+    default:
+      return false;
+  }
+}
+
+}  // namespace swath::io
