@@ -4,12 +4,28 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/config/value.h"
 
 namespace swath::core {
+
+/// Records of one kind that a stage found in files, and what became of them: read = kept + left out.
+struct RecordCount {
+  std::string name;
+  std::uint64_t read = 0;
+  std::optional<std::uint64_t> kept{}, left_out{};
+};
+
+template <class V>
+void describe(const RecordCount& r, V& v) {
+  v.result("name", r.name, "Kind of the records.");
+  v.result("read", r.read, "Records that the files hold.");
+  v.result("kept", r.kept, "Those that are handed on; absent where they are read by the stages behind it.");
+  v.result("left_out", r.left_out, "The others; under `tally` by reason, in the entries that begin with the kind and end in \"left out\".");
+}
 
 /// Counts of anomalies and of work done, each with up to `examples_kept` first examples ("record 17: range NaN").
 class Tally {
@@ -22,33 +38,66 @@ class Tally {
     e.n += n;
     if (e.examples.size() < examples_kept) e.examples.push_back(example);
   }
+  /// Records of a kind ("IMU records") that a file holds. Those that are left out are counted under names that begin with the kind and end
+  /// in "left out".
+  void read(const std::string& kind, std::uint64_t n) { records_[kind].read += n; }
+  /// Those of them that are handed on.
+  void keep(const std::string& kind, std::uint64_t n) {
+    std::optional<std::uint64_t>& kept = records_[kind].kept;
+    kept = kept.value_or(0) + n;
+  }
+  std::vector<RecordCount> records() const {
+    std::vector<RecordCount> out;
+    for (const auto& [kind, r] : records_) {
+      out.push_back({kind, r.read, r.kept});
+      if (r.kept) out.back().left_out = left_out(kind + " ");
+    }
+    return out;
+  }
+  /// The first kind of which records are lost; empty where all are accounted for.
+  std::string unbalanced() const {
+    for (const RecordCount& r : records())
+      if (r.kept && r.read != *r.kept + *r.left_out) return r.name;
+    return {};
+  }
   std::uint64_t of(const std::string& what) const {
     const auto at = entries_.find(what);
     return at == entries_.end() ? 0 : at->second.n;
   }
-  /// Sum of what was left out: entries whose name ends in "left out".
-  std::uint64_t left_out() const {
+  /// Sum of what was left out: entries whose name begins with `kind` and ends in "left out".
+  std::uint64_t left_out(const std::string& kind = {}) const {
     std::uint64_t n = 0;
     for (const auto& [what, e] : entries_)
-      if (what.ends_with("left out")) n += e.n;
+      if (what.starts_with(kind) && what.ends_with("left out")) n += e.n;
     return n;
+  }
+  /// The counts of one flight line, by which they are broken down in the report.
+  void add(const Tally& o, int line) {
+    add(o);
+    for (const auto& [what, e] : o.entries_) entries_[what].lines[line] += e.n;
   }
   /// Adds another tally (of a later batch, strip or tile).
   void add(const Tally& o) {
     for (const auto& [what, e] : o.entries_) {
       Entry& mine = entries_[what];
       mine.n += e.n;
+      for (const auto& [line, n] : e.lines) mine.lines[line] += n;
       for (const std::string& x : e.examples)
         if (mine.examples.size() < examples_kept) mine.examples.push_back(x);
     }
+    for (const auto& [kind, r] : o.records_) {
+      read(kind, r.read);
+      if (r.kept) keep(kind, *r.kept);
+    }
   }
   bool empty() const { return entries_.empty(); }
-  /// {"what": {"count": n, "examples": [...]}}, sorted by name.
+  /// {"what": {"count": n, "lines": [{"line": 1, "count": n}, ...], "examples": [...]}}, sorted by name.
   Value value() const {
     Value out = Value::object();
     for (const auto& [what, e] : entries_) {
       Value& one = out[what];
       one["count"] = e.n;
+      for (const auto& [line, n] : e.lines) one["lines"].push(Value(Value::Object{{"line", line}, {"count", n}}));
       if (!e.examples.empty()) {
         one["examples"] = Value::array();
         for (const std::string& x : e.examples) one["examples"].push(x);
@@ -61,6 +110,9 @@ class Tally {
     for (const auto& [what, one] : v.members()) {
       Entry& e = t.entries_[what];
       e.n = static_cast<std::uint64_t>(one.find("count")->as_int());
+      if (const Value* lines = one.find("lines"))
+        for (const Value& l : lines->items())
+          e.lines[static_cast<int>(l.find("line")->as_int())] = static_cast<std::uint64_t>(l.find("count")->as_int());
       if (const Value* x = one.find("examples"))
         for (const Value& item : x->items()) e.examples.push_back(item.as_text());
     }
@@ -70,9 +122,15 @@ class Tally {
  private:
   struct Entry {
     std::uint64_t n = 0;
+    std::map<int, std::uint64_t> lines;
     std::vector<std::string> examples;
   };
+  struct Records {
+    std::uint64_t read = 0;
+    std::optional<std::uint64_t> kept{};
+  };
   std::map<std::string, Entry> entries_;
+  std::map<std::string, Records> records_;
 };
 
 }  // namespace swath::core

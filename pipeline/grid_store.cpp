@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/paste.h"
 
 namespace swath::pipeline {
 
@@ -16,7 +17,7 @@ core::Grid GridStore::window(stages::Product product, const core::Lattice& latti
   for (int iy = first(lattice.south()); iy <= first(lattice.north()); ++iy)
     for (int ix = first(lattice.west()); ix <= first(lattice.east()); ++ix) {
       const auto file = stages::grid_file(at->second, {ix, iy});
-      if (there.contains(file)) stages::paste(stages::read_grid_tile(file), out);
+      if (there.contains(file)) core::paste(io::read_grid_file(file), out);
     }
   return out;
 }
@@ -34,7 +35,7 @@ void GridStore::add(stages::Product product, std::filesystem::path folder) {
   files.clear();
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().extension() == ".grid") files.insert(entry.path());
-  if (!files.empty()) cells_[product] = stages::read_grid_tile(*files.begin()).lattice.cell;
+  if (!files.empty()) cells_[product] = io::read_grid_file(*files.begin()).lattice.cell;
   folders_[product] = std::move(folder);
 }
 

@@ -18,6 +18,8 @@ core::DescribeResults findings_of(const stages::Stage& s) {
 }
 
 /// Under `tally` each count is a table with its examples.
+const core::RecordCount any_records;
+
 Value tally_schema(const stages::Stage& s) {
   Value out = core::result_schema(counts_of(s));
   for (auto& [key, one] : out["properties"].members()) {
@@ -37,12 +39,13 @@ Value tally_schema(const stages::Stage& s) {
 }  // namespace
 
 std::string report_page() {
-  std::string out;
+  std::string out = "## Files\n\nOf every stage that reads records, a list under `records`:\n\n" +
+                    core::result_table_markdown(core::described_results(any_records));
   for (const auto& e : stages::registry()) {
     const auto s = e.make();
     const bool counts = !core::document_results(counts_of(*s)).empty(), findings = !core::document_results(findings_of(*s)).empty();
     if (!counts && !findings) continue;
-    out += (out.empty() ? "## `" : "\n## `") + std::string(e.name) + "`\n";
+    out += "\n## `" + std::string(e.name) + "`\n";
     if (counts) out += "\nUnder `tally`:\n\n" + core::result_table_markdown(counts_of(*s));
     if (findings) out += "\nUnder `findings`:\n\n" + core::result_table_markdown(findings_of(*s));
   }
@@ -52,12 +55,15 @@ std::string report_page() {
 Value report_schema() {
   Value out = Value::object();
   out["type"] = "object";
-  Value any = Value::array();
+  Value any = Value::array(), records = Value::object();
+  records["type"] = "array";
+  records["items"] = core::result_schema(core::described_results(any_records));
   for (const auto& e : stages::registry()) {
     const auto s = e.make();
     Value one = Value::object();
     one["type"] = "object";
     one["properties"]["type"]["const"] = e.name;
+    one["properties"]["records"] = records;
     one["properties"]["tally"] = tally_schema(*s);
     one["properties"]["findings"] = core::result_schema(findings_of(*s));
     one["required"] = Value::array();

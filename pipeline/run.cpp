@@ -433,7 +433,9 @@ void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_fold
                                       tbb::make_filter<std::shared_ptr<Parcel>, std::shared_ptr<Parcel>>(tbb::filter_mode::parallel, work) &
                                       tbb::make_filter<std::shared_ptr<Parcel>, void>(tbb::filter_mode::serial_in_order, write));
 
-  accounts[source].in = accounts[source].out + accounts[source].tally.left_out();
+  accounts[source].in = strip.records;
+  if (strip.records != accounts[source].out + accounts[source].tally.left_out())
+    throw core::Error("records of " + strip.name + " were lost", std::string(stage(source).info().name), "this is a fault of the program");
   Value note = Value::array();
   for (size_t i = 0; i <= last_strip_stage_; ++i) {  // what comes after them may be another stage in the run that reads this
     const Account& a = accounts[i];
@@ -442,6 +444,7 @@ void Engine::stream_strip(const stages::Strip& strip, const fs::path& strip_fold
     one["out"] = a.out;
     one["seconds"] = a.seconds;
     one["tally"] = a.tally.value();
+    one["records"] = records_of(a.tally);
     note.push(std::move(one));
   }
   writer.commit(io::to_json(note));
@@ -532,6 +535,7 @@ void Engine::run_strips() {
       accounts_[k].out += static_cast<std::uint64_t>(one.find("out")->as_int());
       accounts_[k].seconds += one.find("seconds")->as_number();
       accounts_[k].tally.add(Tally::from(*one.find("tally")));
+      add_records(accounts_[k].tally, *one.find("records"));
     }
     in = accounts_[source].in;
   }
@@ -540,6 +544,7 @@ void Engine::run_strips() {
     throw core::Error("no laser return to work on", plan_.survey_file.string(),
                       "are the lines' times those of the records? see `swath info` of the laser file");
   accounts_[source].in += without_strip;
+  expect_balance(accounts_[source].tally, stage(source));
   store_ = std::make_unique<TileStore>(strips_folder, plan_.run.tile.value, context_.origin);
   store_->open(names);
   if (store_->points() == 0)
@@ -583,7 +588,7 @@ bool Engine::is_void_fringe(size_t number, const TileGroup& group) const {
   const TileKey key = group.tiles[0];
   const fs::path file = stages::grid_file(folder(number), key);
   if (store_->tiles().contains(key) || surface_tiles_.contains(key) || !fs::exists(file)) return false;
-  const core::Grid grid = stages::read_grid_tile(file);
+  const core::Grid grid = io::read_grid_file(file);
   return std::all_of(grid.reason.begin(), grid.reason.end(), [](core::Void r) { return r == core::Void::no_data; });
 }
 
@@ -745,6 +750,7 @@ void Engine::run_merge(size_t number) {
   stage(number).run_merge(context_, job);
   replace_files(made_[number], files_without_checksum(job.folder, finished.files()));
   progress_.end();
+  expect_balance(job.tally, stage(number));
   accounts_[number].tally.add(job.tally);
   for (auto& [key, value] : job.findings.members()) accounts_[number].findings[key] = std::move(value);
   accounts_[number].seconds += since(start);
@@ -829,11 +835,12 @@ void Engine::compose_report(const std::string& command) {
     Value one = Value::object();
     one["type"] = stage(i).info().name;
     one["fingerprint"] = fingerprints_[i];
-    if (!works_on(i, Grain::survey)) {
+    if (!works_on(i, Grain::survey) && (i != source_ || store_)) {  // a source that survey stages alone read has its records
       one["counts"]["in"] = a.in;
       one["counts"]["out"] = a.out;
     }
     if (a.cut > 0) one["tiles_cut_to_fit_memory"] = a.cut;
+    if (Value records = records_of(a.tally); !records.items().empty()) one["records"] = std::move(records);
     if (!a.tally.empty()) one["tally"] = a.tally.value();
     if (!a.findings.members().empty()) one["findings"] = a.findings;
     if (const Value* geometry = a.findings.find("geometry")) {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/area.h"
 
-#include <cmath>
-#include <vector>
-
 namespace swath::stages {
 
 void set_area(Context& context, const Box& places, double margin) {
@@ -13,41 +10,6 @@ void set_area(Context& context, const Box& places, double margin) {
   context.area.box = {side(stated.west, box.x0), side(stated.south, box.y0), side(stated.east, box.x1), side(stated.north, box.y1)};
   if (stated.lowest) context.area.lowest = stated.lowest->value;
   if (stated.highest) context.area.highest = stated.highest->value;
-}
-
-void leave_out(core::Block& block, const std::function<bool(size_t)>& is_out, const std::string& what, const std::string& name,
-               core::Tally& tally) {
-  std::vector<std::uint32_t> good;
-  const auto number = [](double v) { return core::format_number(std::round(v * 100.0) / 100.0); };
-  for (std::uint32_t i = 0; i < block.size(); ++i) {
-    if (!is_out(i)) {
-      good.push_back(i);
-      continue;
-    }
-    if (tally.of(what) >= core::Tally::examples_kept) {  // texts are expensive where most points go
-      tally.count(what);
-      continue;
-    }
-    tally.count(what, name + ": record " + std::to_string(block.record.empty() ? i : block.record[i]) + ": x " +
-                          number(block.x[i] + block.origin.x()) + ", y " + number(block.y[i] + block.origin.y()) + ", z " +
-                          number(block.z[i] + block.origin.z()));
-  }
-  if (good.size() < block.size()) block = core::select(block, good);
-}
-
-void keep_in_area(const Context& context, core::Block& block, const std::string& name, core::Tally& tally) {
-  const Box& box = context.area.box;
-  // Both borders are in: a stated area may end where its points do.
-  const auto outside = [&](size_t i) {
-    const double x = block.x[i] + block.origin.x(), y = block.y[i] + block.origin.y();
-    return !(x >= box.x0 && x <= box.x1 && y >= box.y0 && y <= box.y1);
-  };
-  const auto beyond = [&](size_t i) { return !context.area.has_height(block.z[i] + block.origin.z()); };
-  bool any = false;
-  for (size_t i = 0; i < block.size() && !any; ++i) any = outside(i) || beyond(i);
-  if (!any) return;
-  leave_out(block, outside, "points outside the survey's area, left out", name, tally);
-  leave_out(block, beyond, "points outside the survey's heights, left out", name, tally);
 }
 
 }  // namespace swath::stages

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/grid_tile.h"
 
+<<<<<<< HEAD
 #include <algorithm>
 #include <cstring>
 
@@ -43,12 +44,18 @@ void cut_short(const std::filesystem::path& file) {
   throw core::SystemError("the intermediate result was changed or damaged while the run was at work", file.string(),
                           "run the same command again: what is damaged is made anew");
 }
+=======
+#include "core/paste.h"
+
+namespace swath::stages {
+>>>>>>> 2108c61 (Balance of every reader; info as declared results)
 
 std::filesystem::path grid_file(const std::filesystem::path& folder, TileKey key) {
   return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".grid");
 }
 
 void write_grid_tile(const std::filesystem::path& folder, TileKey key, const core::Grid& grid) {
+<<<<<<< HEAD
   Head head{};
   std::memcpy(head.magic, magic, sizeof magic);
   head.lattice = grid.lattice;
@@ -77,6 +84,9 @@ core::Grid read_grid_tile(const std::filesystem::path& file) {
   if (head.has_count) take(in, at, grid.count, n, file);
   take(in, at, grid.reason, n, file);
   return grid;
+=======
+  io::write_grid_file(grid_file(folder, key), grid);
+>>>>>>> 2108c61 (Balance of every reader; info as declared results)
 }
 
 void join_grid_parts(const std::filesystem::path& folder, TileKey key, const std::vector<std::filesystem::path>& parts,
@@ -85,32 +95,10 @@ void join_grid_parts(const std::filesystem::path& folder, TileKey key, const std
   bool any = false;
   for (const std::filesystem::path& part : parts)
     if (const std::filesystem::path file = grid_file(part, key); std::filesystem::exists(file)) {
-      paste(read_grid_tile(file), whole);
+      core::paste(io::read_grid_file(file), whole);
       any = true;
     }
   if (any) write_grid_tile(folder, key, whole);
-}
-
-void paste(const core::Grid& tile, core::Grid& window) {
-  const core::Lattice& from = tile.lattice;
-  const core::Lattice& to = window.lattice;
-  const std::int64_t i0 = std::max(from.i0, to.i0), i1 = std::min(from.i0 + from.nx, to.i0 + to.nx);
-  const std::int64_t j0 = std::max(from.j0, to.j0), j1 = std::min(from.j0 + from.ny, to.j0 + to.ny);
-  if (i0 >= i1 || j0 >= j1) return;
-  if (!tile.sigma.empty() && window.sigma.empty()) window.sigma.assign(to.size(), std::numeric_limits<float>::quiet_NaN());
-  if (!tile.count.empty() && window.count.empty()) window.count.assign(to.size(), 0);
-  for (std::int64_t j = j0; j < j1; ++j) {
-    const size_t a = from.at(static_cast<int>(i0 - from.i0), static_cast<int>(j - from.j0));
-    const size_t b = to.at(static_cast<int>(i0 - to.i0), static_cast<int>(j - to.j0));
-    const auto n = static_cast<std::ptrdiff_t>(i1 - i0);
-    const auto copy = [&](const auto& source, auto& target) {
-      if (!source.empty()) std::copy_n(source.begin() + static_cast<std::ptrdiff_t>(a), n, target.begin() + static_cast<std::ptrdiff_t>(b));
-    };
-    copy(tile.height, window.height);
-    copy(tile.reason, window.reason);
-    copy(tile.sigma, window.sigma);
-    copy(tile.count, window.count);
-  }
 }
 
 }  // namespace swath::stages

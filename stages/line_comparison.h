@@ -2,10 +2,9 @@
 // What quality.lines hands to the stages behind it: lines.json.
 #pragma once
 
-#include <map>
 #include <optional>
 
-#include "core/config/value.h"
+#include "quality/known_lines.h"
 #include "quality/line_offsets.h"
 #include "stages/stage.h"
 
@@ -16,24 +15,7 @@ void write_line_cells(const std::filesystem::path& file, const quality::LineCell
 /// Appends them to `cells`; throws core::Error where the file is damaged.
 void read_line_cells(const std::filesystem::path& file, quality::LineCells& cells);
 
-/// What is known of a run's lines. NaN where the points do not show it.
-struct KnownLines {
-  std::map<int, double> offsets;  ///< m, by line
-  double scatter = 0, common = 0, residual = 0, common_horizontal = 0;
-  int steep_places = 0;
-  double shared() const;  ///< m, of what neighbours share of their errors of height; the scatter where no lines are compared
-  double sigma() const;   ///< m, of one point's height
-  /// m, radial. That it is as large along each axis as shared() counts as one steep place beside those that were compared.
-  double horizontal_sigma() const;
-};
-
 /// Nothing where no stage before this one has compared the lines.
-std::optional<KnownLines> known_lines(const Context& context);
-
-/// Takes its line's offset from the height of every point.
-void take_offsets(core::Block& block, const KnownLines& lines);
-
-/// Gives the points that have no sigma_v (no column, or 0) these sigmas, m, `horizontal` radial; returns how many there were.
-std::uint64_t give_sigmas(core::Block& block, double vertical, double horizontal);
+std::optional<quality::KnownLines> known_lines(const Context& context);
 
 }  // namespace swath::stages

@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/area.h"
 #include "core/block.h"
 #include "core/config/option.h"
 #include "core/config/result.h"
@@ -49,21 +50,8 @@ struct TileKey {
   auto operator<=>(const TileKey&) const = default;
 };
 
-/// A box of map metres, half open.
-struct Box {
-  double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-  Box grown(double by) const { return {x0 - by, y0 - by, x1 + by, y1 + by}; }
-  bool holds(double x, double y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
-  double area() const { return (x1 - x0) * (y1 - y0); }
-};
-
-/// Where the points of a run may lie: map metres.
-struct Area {
-  static constexpr double none = std::numeric_limits<double>::infinity();
-  Box box{-none, -none, none, none};
-  double lowest = -12e3, highest = 20e3;  ///< by default between the deepest sea floor and what flies with a laser
-  bool has_height(double z) const { return z >= lowest && z <= highest; }
-};
+using core::Area;
+using core::Box;
 
 /// The cells whose centres lie in the box.
 core::Lattice lattice_in(double cell, const Box& box);

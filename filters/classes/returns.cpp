@@ -134,10 +134,10 @@ RepairCounts repair_returns(core::Block& b, const ReturnsOptions& o) {
   return n;
 }
 
-void ReturnStatistics::add(const core::Block& b) {
+void count_returns(const core::Block& b, std::map<std::uint16_t, StripReturns>& lines) {
   for (size_t begin = 0, end = 0; begin < b.size(); begin = end) {
     end = end_of_pulse(b, begin);
-    StripReturns& s = strips_[b.strip.empty() ? std::uint16_t{0} : b.strip[begin]];
+    StripReturns& s = lines[b.strip.empty() ? std::uint16_t{0} : b.strip[begin]];
     ++s.pulses[std::min<size_t>(end - begin, most_returns)];
     for (size_t i = begin; i < end; ++i) {
       s.first += is_first_return(b, i);
@@ -148,24 +148,8 @@ void ReturnStatistics::add(const core::Block& b) {
   }
 }
 
-void ReturnStatistics::add(const ReturnStatistics& o) {
-  for (const auto& [line, theirs] : o.strips_) {
-    StripReturns& s = strips_[line];
-    for (size_t k = 0; k < s.pulses.size(); ++k) s.pulses[k] += theirs.pulses[k];
-    s.first += theirs.first;
-    s.last += theirs.last;
-    s.intermediate += theirs.intermediate;
-    s.only += theirs.only;
-  }
-}
-
 double Penetration::rate(size_t cell) const {
   return pulses[cell] == 0 ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(ground_pulses[cell]) / pulses[cell];
-}
-
-double Penetration::total_rate() const {
-  const double all = std::accumulate(pulses.begin(), pulses.end(), 0.0);
-  return all > 0 ? std::accumulate(ground_pulses.begin(), ground_pulses.end(), 0.0) / all : std::numeric_limits<double>::quiet_NaN();
 }
 
 Penetration penetration(const core::Block& b, size_t own, const core::Lattice& l) {

@@ -4,12 +4,13 @@
 
 #include <array>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "core/block.h"
 #include "core/config/option.h"
+#include "core/config/result.h"
 #include "core/grid.h"
-#include "core/report.h"
 
 namespace swath::filters {
 
@@ -60,17 +61,19 @@ struct StripReturns {
   std::uint64_t first = 0, last = 0, intermediate = 0, only = 0;  ///< returns; an only return counts as first and as last, too
 };
 
-/// Statistics by flight line; batches and strips add up.
-class ReturnStatistics {
- public:
-  /// The block must begin and end on borders of pulses.
-  void add(const core::Block& b);
-  void add(const ReturnStatistics& o);
-  const std::map<std::uint16_t, StripReturns>& strips() const { return strips_; }
+template <class V>
+void describe(const StripReturns& r, V& v) {
+  v.result("first returns", r.first, "First returns of their pulses; an only return is among them.");
+  v.result("last returns", r.last, "Last returns of their pulses; an only return is among them.");
+  v.result("only returns", r.only, "Returns that are alone in their pulse.");
+  v.result("intermediate returns", r.intermediate, core::if_any(), "Returns between the first and the last.");
+  for (size_t k = 1; k < r.pulses.size(); ++k)
+    v.result("pulses of " + std::to_string(k) + (k == 1 ? " return" : " returns"), r.pulses[k], core::if_any(),
+             "Pulses with so many returns.");
+}
 
- private:
-  std::map<std::uint16_t, StripReturns> strips_;
-};
+/// Adds the returns of a block to those of their flight lines. The block must begin and end on borders of pulses.
+void count_returns(const core::Block& b, std::map<std::uint16_t, StripReturns>& lines);
 
 /// Pulses by cell; a pulse belongs to the cell of its last return.
 struct Penetration {
@@ -80,7 +83,6 @@ struct Penetration {
 
   /// Ground pulses / pulses, 0 to 1; NaN where there is no pulse.
   double rate(size_t cell) const;
-  double total_rate() const;
 };
 
 /// Counts the usable last returns of the first `own` points on the lattice, and those of class ground (Brandalize: about 0.30 under

@@ -190,6 +190,8 @@ core::GnssData FixList::finish() {
   refuse(not_finite_, most_not_finite, "have a value that is empty or not finite", "check the columns, or export again");
   refuse(repeated_, most_repeated, "are at the time of the fix before", "the times are too coarse: export them with more digits");
   refuse(back_, most_back, "go back in time", "the file holds several sessions: part them, or sort it");
+  tally_.read("GNSS fixes", added_);
+  tally_.keep("GNSS fixes", out_.size());
   if (out_.size() == 0) throw core::Error("the file has no position", name_, "check its format and columns");
   if (!velocities_) {
     out_.velocity.clear();

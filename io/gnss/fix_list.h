@@ -43,7 +43,10 @@ class FixList {
   FixList(const GnssFile& file, std::string name, double latency, bool may_go_back, core::Tally& tally);
 
   /// `line`: of the file.
-  void add(Fix fix, std::uint64_t line) { read_.push_back({std::move(fix), line}); }
+  void add(Fix fix, std::uint64_t line) {
+    ++added_;
+    read_.push_back({std::move(fix), line});
+  }
   /// "file:line" of the fix that was added as the k-th, from 0.
   std::string place_of(size_t k) const { return place(read_[k]); }
   /// Times of all fixes, where they were added without; those of which it is NaN are left out.
@@ -76,7 +79,7 @@ class FixList {
   core::GnssData out_;
   bool velocities_ = false, own_sigmas_ = false, lent_sigmas_ = false;
   std::vector<Read> read_;
-  std::uint64_t all_ = 0, not_finite_ = 0, repeated_ = 0, back_ = 0;
+  std::uint64_t added_ = 0, all_ = 0, not_finite_ = 0, repeated_ = 0, back_ = 0;
 };
 
 }  // namespace swath::io

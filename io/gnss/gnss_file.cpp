@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/geo/geodesy.h"
+#include "core/records/gnss_columns.h"
 #include "io/gnss/fix_list.h"
 #include "io/gnss/nmea.h"
 #include "io/gnss/rtklib_pos.h"
@@ -131,7 +132,7 @@ core::GnssData read_text(const std::filesystem::path& path, const GnssFile& f, d
   const std::string name = path.string();
   TextFixes text(f, name);
   const auto rows = open_table(path, RecordFormat::text, f.delimiter, text.columns().names());
-  count_cut_line(rows->cut_line(), path, tally);
+  count_cut_line(rows->cut_line(), path, "GNSS fixes", tally);
   FixList fixes(f, name, latency, false, tally);
   std::vector<double> times, weeks;
   while (text.columns().next(*rows)) {
@@ -182,14 +183,8 @@ core::GnssData read_gnss(const Survey& survey, core::Tally& tally) {
       throw core::Error(parts[i - 1].second + " and " + parts[i].second + " overlap by " +
                             core::format_number(out.time.back() - part.time.front()) + " s",
                         parts[i].second, "trim one of them: two solutions for one instant have no order");
-    const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-    append(out.time, part.time);
-    append(out.position, part.position);
-    append(out.covariance, part.covariance);
-    append(out.velocity, part.velocity);
-    append(out.velocity_covariance, part.velocity_covariance);
-    append(out.quality, part.quality);
-    append(out.satellites, part.satellites);
+    core::for_each_gnss_column(
+        [&](auto member) { (out.*member).insert((out.*member).end(), (part.*member).begin(), (part.*member).end()); });
   }
   return out;
 }

@@ -118,7 +118,10 @@ class Scanner {
 
   void take(const Sentence& s, const LineReader& at, std::uint64_t line) {
     ++out_.sentences[s.kind];
-    if (s.kind == "GGA") position(s, at, line);
+    if (s.kind == "GGA") {
+      tally_.read("NMEA positions", 1);
+      position(s, at, line);
+    }
     if (s.kind == "GST") sigmas(s);
     if (s.kind != "RMC" && s.kind != "ZDA") return;
     const NmeaDate date = date_of(s);
@@ -246,24 +249,34 @@ bool looks_like_nmea(const std::filesystem::path& path) {
 
 NmeaFile scan_nmea(const std::filesystem::path& path, core::Tally& tally) {
   NmeaFile out;
+  std::uint64_t all_lines = 0, good_lines = 0, sentences = 0, good_sentences = 0;
   Scanner scanner(out, tally);
   LineReader lines(path);
   std::string_view line;
   Sentence s;
   for (std::uint64_t number = 1; lines.next(line); ++number) {
     if (line.empty() || line[0] == '#') continue;
+    ++all_lines;
     bool any = false;
     for (size_t at = line.find('$'); at != std::string_view::npos; at = line.find('$', at + 1)) {
       const Found found = read_sentence(line.substr(at + 1), s);
       if (found == Found::nothing) continue;
       any = true;
+      ++sentences;
+      good_sentences += found == Found::right;
       if (found == Found::right)
         scanner.take(s, lines, number);
       else
         tally.count("NMEA sentences whose checksum is wrong or missing, left out", lines.place());
     }
-    if (!any) tally.count("lines without a NMEA sentence, passed over", lines.place());
+    good_lines += any;
+    if (!any) tally.count("NMEA lines without a sentence, left out", lines.place());
   }
+  tally.read("NMEA lines", all_lines);
+  tally.keep("NMEA lines", good_lines);
+  tally.read("NMEA sentences", sentences);
+  tally.keep("NMEA sentences", good_sentences);
+  tally.keep("NMEA positions", out.fixes.size());
   return out;
 }
 

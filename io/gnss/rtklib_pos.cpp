@@ -177,7 +177,7 @@ core::GnssData read_pos(const std::filesystem::path& path, const GnssFile& f, do
   Columns columns(h.columns);
   LineReader lines(path);
   std::string_view line;
-  std::uint64_t read = 0, junk = 0;
+  std::uint64_t read = 0, junk = 0, good_ones = 0;
   while (lines.next(line)) {
     const Words words = words_of(line);
     if (words.empty() || line.starts_with("%")) continue;
@@ -192,7 +192,7 @@ core::GnssData read_pos(const std::filesystem::path& path, const GnssFile& f, do
       continue;
     }
     if (columns.of("Q") == 0) {
-      tally.count("RTKLIB epochs without a solution, left out", lines.place());
+      tally.count("RTKLIB lines of epochs without a solution, left out", lines.place());
       continue;
     }
     fix.quality = quality_of_rtklib(columns.of("Q"));
@@ -229,7 +229,10 @@ core::GnssData read_pos(const std::filesystem::path& path, const GnssFile& f, do
       fix.velocity_covariance = ecef_covariance(columns.covariance("sdv", 'n', 'e', 'u'), g.latitude, g.longitude);
     }
     fixes.add(fix, lines.number());
+    ++good_ones;
   }
+  tally.read("RTKLIB lines", read);
+  tally.keep("RTKLIB lines", good_ones);
   if (static_cast<double>(junk) > 1 + most_junk * static_cast<double>(read))
     throw core::Error(std::to_string(junk) + " of " + std::to_string(read) + " lines are no solution of RTKLIB", name,
                       "state the format of the file, or write it again");

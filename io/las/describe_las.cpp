@@ -7,30 +7,21 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <unordered_set>
 
+#include "core/config/result_visitors.h"
 #include "core/config/units.h"
 #include "core/error.h"
-#include "core/geo/crs.h"
 #include "core/time.h"
 #include "io/las/las_reader.h"
+#include "io/survey/file_facts.h"
 
 namespace swath::io {
 namespace {
 
-using core::Value;
-
 constexpr size_t batch = 65536;
 constexpr double cell = 2.0;
-
-struct Extent {
-  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
-  void add(double v) {
-    low = std::min(low, v);
-    high = std::max(high, v);
-  }
-  Value value() const { return Value(Value::Array{low, high}); }
-};
 
 /// Number of a coordinate's cell, whose lowest 32 bits suffice: header and points may state places beyond any map.
 std::uint64_t index_of(double coordinate) {
@@ -40,8 +31,8 @@ std::uint64_t index_of(double coordinate) {
 
 /// What one pass over the points gathers.
 struct Sums {
-  std::array<Extent, 3> xyz;
-  Extent time, angle;
+  std::array<core::Interval, 3> xyz;
+  core::Interval time, angle;
   std::map<int, std::uint64_t> by_return, by_count, classes, lines;
   std::uint64_t points = 0, returns_inconsistent = 0, time_zero = 0, time_back = 0, withheld = 0, overlap = 0, first_returns = 0;
   double last_time = -std::numeric_limits<double>::infinity();
@@ -72,121 +63,144 @@ struct Sums {
   }
 };
 
-Value counts(const std::map<int, std::uint64_t>& of) {
-  Value out = Value::object();
-  for (const auto& [key, n] : of) out[std::to_string(key)] = n;
-  return out;
+/// GPS times of the points.
+struct LasTimes {
+  std::string scale;
+  core::Interval span;
+  std::optional<std::string> from, to;
+  std::uint64_t steps_back = 0;
+};
+template <class V>
+void describe(const LasTimes& r, V& v) {
+  v.result("scale", r.scale, "Time scale that the header states.");
+  v.result("span", r.span, "First and last time, in the file's scale.");
+  v.result("from", r.from, "UTC of the first.");
+  v.result("to", r.to, "UTC of the last.");
+  v.result("steps_back", r.steps_back, core::if_any(), "Points whose time is before that of the point before.");
 }
 
-Value three(const Eigen::Vector3d& v) { return Value(Value::Array{v.x(), v.y(), v.z()}); }
+struct LasFacts {
+  const LasHeader& h;
+  const Sums& s;
+  StatedCrs crs;
+  std::optional<LasTimes> time;
+  std::vector<std::string> warnings;
+};
+template <class V>
+void describe(const LasFacts& r, V& v) {
+  const LasHeader& h = r.h;
+  const core::Form where_any = core::Form{}.only_if(r.s.points > 0);
+  const double area = static_cast<double>(r.s.cells.size()) * cell * cell;
+  std::vector<std::string> extras;
+  for (const LasExtra& e : h.extras) extras.push_back(e.name);
+  v.result("format", std::string(h.compressed ? "LAZ" : "LAS"), "Format.");
+  v.result("version", std::to_string(h.version_major) + "." + std::to_string(h.version_minor), "Version of LAS.");
+  v.result("point_format", h.point_format, "Point format.");
+  v.result("points", r.s.points, "Points.");
+  v.result("system", h.system_identifier, "System that the header names.");
+  v.result("software", h.generating_software, "Software that the header names.");
+  v.result("created", std::to_string(h.creation_year) + ", day " + std::to_string(h.creation_day),
+           core::Form{}.only_if(h.creation_year != 0), "Year and day of the file's creation.");
+  v.result("scale", h.scale, "Resolution of the coordinates.");
+  describe(r.crs, v);
+  v.result("x", r.s.xyz[0], "Smallest and largest x of the points.");
+  v.result("y", r.s.xyz[1], "Smallest and largest y.");
+  v.result("z", r.s.xyz[2], "Smallest and largest z.");
+  v.table("time", r.time, "GPS times of the points.");
+  v.tables_if(r.s.points > 0, "returns", counts_of(r.s.by_return), "Points by their return number.");
+  v.tables_if(r.s.points > 0, "returns_per_pulse", counts_of(r.s.by_count), "Points by the number of returns of their pulse.");
+  v.tables_if(r.s.points > 0, "classes", counts_of(r.s.classes), "Points by their ASPRS class.");
+  v.tables_if(r.s.points > 0, "lines", counts_of(r.s.lines), "Points by their point source id.");
+  v.result("scan_angle_deg", r.s.angle, "Smallest and largest scan angle.");
+  v.result("withheld", r.s.withheld, core::if_any(), "Points flagged as withheld.");
+  v.result("overlap", r.s.overlap, core::if_any(), "Points flagged as overlap.");
+  v.result("covered_area", area, where_any, "Area of the cells of 2 units that hold a point, square units of the CRS.");
+  v.result("points_per_square_unit", static_cast<double>(r.s.points) / area, where_any, "Points per square unit of that area.");
+  v.result("first_returns_per_square_unit", static_cast<double>(r.s.first_returns) / area, where_any, "First returns per square unit.");
+  v.result("extra_fields", extras, core::Form{}.only_if(!extras.empty() && r.s.points > 0), "Names of the extra fields.");
+  v.result("warnings", r.warnings, "What looks wrong.");
+}
 
-void describe_crs(const LasReader& reader, Value& out, Value& warnings) {
+void find_crs(const LasReader& reader, LasFacts& out) {
   const LasCrs crs = reader.crs();
-  if (!crs.note.empty()) warnings.push(crs.note);
-  if (crs.definition.empty()) {
-    warnings.push("the file states no CRS");
-    return;
-  }
+  if (!crs.note.empty()) out.warnings.push_back(crs.note);
+  if (crs.definition.empty()) return out.warnings.push_back("the file states no CRS");
   try {
     const core::Crs known(crs.definition);
-    out["crs"] = known.name();
-    if (known.epsg()) out["epsg"] = known.epsg();
-    out["unit"] = known.unit_name();
-    out["heights"] = known.vertical_name();
-    if (known.is_geographic()) warnings.push("coordinates are degrees: density and cells have no meaning");
+    out.crs = StatedCrs(known);
+    if (known.is_geographic()) out.warnings.push_back("coordinates are degrees: density and cells have no meaning");
   } catch (const core::Error& e) {
-    warnings.push("the CRS that the file states is not known: " + std::string(e.what()));
+    out.warnings.push_back("the CRS that the file states is not known: " + std::string(e.what()));
   }
 }
 
-void describe_time(const LasHeader& h, const Sums& s, Value& out, Value& warnings) {
-  if (s.points == 0 || !(s.time.low <= s.time.high)) return;
-  Value& time = out["time"] = Value::object();
-  time["scale"] = h.gps_time_is_adjusted() ? "adjusted standard GPS time (GPS seconds - 1e9)" : "seconds of the GPS week";
-  time["span"] = s.time.value();
-  if (h.gps_time_is_adjusted()) {
-    time["from"] = core::utc_text(s.time.low + core::adjusted_offset);
-    time["to"] = core::utc_text(s.time.high + core::adjusted_offset);
+void judge_times(LasFacts& out) {
+  const Sums& s = out.s;
+  if (s.points == 0 || !s.time.any()) return;
+  LasTimes& time = out.time.emplace(LasTimes{"seconds of the GPS week", s.time, {}, {}, s.time_back});
+  if (out.h.gps_time_is_adjusted()) {
+    time.scale = "adjusted standard GPS time (GPS seconds - 1e9)";
+    time.from = core::utc_text(s.time.low + core::adjusted_offset);
+    time.to = core::utc_text(s.time.high + core::adjusted_offset);
     if (s.time.low >= 0 && s.time.high < core::seconds_per_week && s.time.high > 0)
-      warnings.push("times are said to be adjusted standard GPS time but look like seconds of the week");
+      out.warnings.push_back("times are said to be adjusted standard GPS time but look like seconds of the week");
   } else {
-    warnings.push("GPS time is seconds of the week, and the file does not say of which week");
+    out.warnings.push_back("GPS time is seconds of the week, and the file does not say of which week");
     if (s.time.low < 0 || s.time.high >= 2 * core::seconds_per_week)
-      warnings.push("times lie outside a week: the time scale is stated wrongly");
+      out.warnings.push_back("times lie outside a week: the time scale is stated wrongly");
   }
   if (s.time_zero == s.points)
-    warnings.push("all times are 0");
+    out.warnings.push_back("all times are 0");
   else if (s.time_zero > 0)
-    warnings.push(std::to_string(s.time_zero) + " points have time 0");
-  if (s.time_back > 0) time["steps_back"] = s.time_back;
+    out.warnings.push_back(std::to_string(s.time_zero) + " points have time 0");
+}
+
+/// The header's box and counts against the points.
+void judge_header(LasFacts& out) {
+  const LasHeader& h = out.h;
+  for (int k = 0; k < 3; ++k) {
+    const core::Interval& e = out.s.xyz[static_cast<size_t>(k)];
+    if (std::abs(h.min[k] - e.low) > h.scale[k] || std::abs(h.max[k] - e.high) > h.scale[k])
+      out.warnings.push_back(std::string("the header states ") + "xyz"[k] + " " + core::format_number(h.min[k]) + " to " +
+                             core::format_number(h.max[k]) + ", the points span " + core::format_number(e.low) + " to " +
+                             core::format_number(e.high));
+  }
+}
+
+void judge_returns(LasFacts& out) {
+  const Sums& s = out.s;
+  if (s.by_return.size() == 1 && s.by_return.begin()->first == 0)
+    out.warnings.push_back("no point has a return number");
+  else if (s.returns_inconsistent)
+    out.warnings.push_back(std::to_string(s.returns_inconsistent) + " points have a return number of 0 or above the pulse's count");
+  for (size_t r = 1; r <= out.h.by_return.size(); ++r) {
+    const std::uint64_t stated = out.h.by_return[r - 1];
+    const auto at = s.by_return.find(static_cast<int>(r));
+    const std::uint64_t n = at == s.by_return.end() ? 0 : at->second;
+    if (stated != n && stated != 0)
+      out.warnings.push_back("the header states " + std::to_string(stated) + " points of return " + std::to_string(r) + ", there are " +
+                             std::to_string(n));
+  }
+  if (s.angle.low == s.angle.high) out.warnings.push_back("all scan angles are " + core::format_number(s.angle.low));
 }
 
 }  // namespace
 
 core::Value describe_las(const std::filesystem::path& file) {
   LasReader reader(file);
-  const LasHeader& h = reader.header();
   Sums s;
   LasPoints points;
   while (reader.read(points, batch) > 0) s.add(points);
-
-  Value out = Value::object(), warnings = Value::array();
-  for (const std::string& w : reader.warnings()) warnings.push(w);
-  out["format"] = h.compressed ? "LAZ" : "LAS";
-  out["version"] = std::to_string(h.version_major) + "." + std::to_string(h.version_minor);
-  out["point_format"] = h.point_format;
-  out["points"] = s.points;
-  out["system"] = h.system_identifier;
-  out["software"] = h.generating_software;
-  if (h.creation_year) out["created"] = std::to_string(h.creation_year) + ", day " + std::to_string(h.creation_day);
-  out["scale"] = three(h.scale);
-  describe_crs(reader, out, warnings);
+  LasFacts out{reader.header(), s, {}, {}, reader.warnings()};
+  find_crs(reader, out);
   if (s.points == 0) {
-    warnings.push("the file has no points");
-    out["warnings"] = std::move(warnings);
-    return out;
+    out.warnings.push_back("the file has no points");
+    return core::reported(out);
   }
-  out["x"] = s.xyz[0].value();
-  out["y"] = s.xyz[1].value();
-  out["z"] = s.xyz[2].value();
-  for (int k = 0; k < 3; ++k) {
-    const Extent& e = s.xyz[static_cast<size_t>(k)];
-    if (std::abs(h.min[k] - e.low) > h.scale[k] || std::abs(h.max[k] - e.high) > h.scale[k])
-      warnings.push(std::string("the header states ") + "xyz"[k] + " " + core::format_number(h.min[k]) + " to " +
-                    core::format_number(h.max[k]) + ", the points span " + core::format_number(e.low) + " to " +
-                    core::format_number(e.high));
-  }
-  describe_time(h, s, out, warnings);
-  out["returns"] = counts(s.by_return);
-  out["returns_per_pulse"] = counts(s.by_count);
-  out["classes"] = counts(s.classes);
-  out["lines"] = counts(s.lines);
-  out["scan_angle_deg"] = s.angle.value();
-  if (s.withheld) out["withheld"] = s.withheld;
-  if (s.overlap) out["overlap"] = s.overlap;
-  const double area = static_cast<double>(s.cells.size()) * cell * cell;
-  out["covered_area"] = area;
-  out["points_per_square_unit"] = static_cast<double>(s.points) / area;
-  out["first_returns_per_square_unit"] = static_cast<double>(s.first_returns) / area;
-  if (!h.extras.empty()) {
-    Value names = Value::array();
-    for (const LasExtra& e : h.extras) names.push(e.name);
-    out["extra_fields"] = std::move(names);
-  }
-  if (s.by_return.size() == 1 && s.by_return.begin()->first == 0)
-    warnings.push("no point has a return number");
-  else if (s.returns_inconsistent)
-    warnings.push(std::to_string(s.returns_inconsistent) + " points have a return number of 0 or above the pulse's count");
-  for (size_t r = 1; r <= h.by_return.size(); ++r) {
-    const auto at = s.by_return.find(static_cast<int>(r));
-    const std::uint64_t n = at == s.by_return.end() ? 0 : at->second;
-    if (h.by_return[r - 1] != n && h.by_return[r - 1] != 0)
-      warnings.push("the header states " + std::to_string(h.by_return[r - 1]) + " points of return " + std::to_string(r) + ", there are " +
-                    std::to_string(n));
-  }
-  if (s.angle.low == s.angle.high) warnings.push("all scan angles are " + core::format_number(s.angle.low));
-  out["warnings"] = std::move(warnings);
-  return out;
+  judge_header(out);
+  judge_times(out);
+  judge_returns(out);
+  return core::reported(out);
 }
 
 }  // namespace swath::io

@@ -83,7 +83,6 @@ RasterInfo info_of(GDALDataset& d) {
   d.GetGeoTransform(info.geotransform.data());
   info.nx = d.GetRasterXSize();
   info.ny = d.GetRasterYSize();
-  if (d.GetRasterCount() > 0) d.GetRasterBand(1)->GetBlockSize(&info.block_x, &info.block_y);
   for (int b = 1; b <= d.GetRasterCount(); ++b) {
     GDALRasterBand* band = d.GetRasterBand(b);
     info.names.emplace_back(band->GetDescription());
@@ -93,12 +92,7 @@ RasterInfo info_of(GDALDataset& d) {
     const double nodata = band->GetNoDataValue(&has);
     info.nodata.push_back(has ? std::optional<double>(nodata) : std::nullopt);
   }
-  if (const OGRSpatialReference* srs = d.GetSpatialRef()) {
-    const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
-    char* text = nullptr;
-    if (srs->exportToWkt(&text, options) == OGRERR_NONE && text) info.crs_wkt = text;
-    CPLFree(text);
-  }
+  if (const OGRSpatialReference* srs = d.GetSpatialRef()) info.crs_wkt = wkt2(*srs);
   return info;
 }
 

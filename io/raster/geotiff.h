@@ -66,7 +66,7 @@ Raster read_raster(const std::filesystem::path& file, int band = 1);
 struct RasterInfo {
   std::array<double, 6> geotransform{0, 1, 0, 0, 0, -1};
   int nx = 0, ny = 0;
-  int block_x = 0, block_y = 0;                  ///< size of the blocks it is stored in
+
   std::vector<std::string> names, units, types;  ///< of each band; types as GDAL names them ("Float32")
   std::vector<std::optional<double>> nodata;     ///< of each band
   std::string crs_wkt;

@@ -7,13 +7,16 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "core/time.h"
+#include "io/text/data_lines.h"
 #include "io/text/delimited.h"
-#include "io/text/value_file.h"
+#include "io/text/line_reader.h"
 
 namespace swath::io {
 namespace {
@@ -21,6 +24,7 @@ namespace {
 constexpr double day_seconds = 86400.0;
 constexpr double mjd_of_1970 = 40587.0, mjd_of_gps = 44244.0;
 constexpr double latest_mjd = 124593.0;  // 2200-01-01
+constexpr const char* clock_records = "clock records";
 constexpr int system_peer = 6, pps_peer = 7;
 
 struct Columns {
@@ -34,37 +38,8 @@ struct Record {
   std::uint64_t line = 0;
 };
 
-/// One line on its way, with its place for errors.
-struct Line {
-  std::string where;
-  std::vector<std::string> fields;
-
-  [[noreturn]] void fault(const std::string& what, const std::string& hint) const { throw core::Error(what, where, hint); }
-  const std::string& field(size_t i) const {
-    if (i >= fields.size())
-      fault("the line has " + std::to_string(fields.size()) + " fields, at least " + std::to_string(i + 1) + " are needed",
-            "the line is cut off, or the log is of another format");
-    return fields[i];
-  }
-  double number(size_t i) const {
-    const std::string& text = field(i);
-    const char* begin = text.data() + (text.size() > 1 && text[0] == '+' ? 1 : 0);
-    double value = 0;
-    const auto [end, bad] = std::from_chars(begin, text.data() + text.size(), value);
-    if (bad != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
-      fault("'" + text + "' in column " + std::to_string(i + 1) + " is no number", "correct the line, or state the log's own format");
-    return value;
-  }
-};
-
-bool is_number(const std::string& text) {
-  double value = 0;
-  const auto [end, bad] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return !text.empty() && bad == std::errc{} && end == text.data() + text.size();
-}
-
 /// Day and second from MJD and second of day; a log may count on past midnight.
-void read_instant(const Line& line, const Columns& c, Record& r) {
+void read_instant(const DataLine& line, const Columns& c, Record& r) {
   const double mjd = line.number(c.day);
   r.second = line.number(c.second);
   if (mjd < mjd_of_gps || mjd > latest_mjd || mjd != std::floor(mjd))
@@ -75,7 +50,7 @@ void read_instant(const Line& line, const Columns& c, Record& r) {
 }
 
 /// The columns that a line of names gives.
-Columns named(const Line& line) {
+Columns named(const DataLine& line) {
   const auto find = [&](std::initializer_list<std::string_view> beginnings) -> std::optional<size_t> {
     for (const std::string_view b : beginnings)
       for (size_t i = 0; i < line.fields.size(); ++i) {
@@ -95,39 +70,27 @@ Columns named(const Line& line) {
   return {need("mjd", {"mjd"}), need("sec or utc_sec", {"sec", "utc_sec", "utc sec"}), need("offset", {"offset"}), find({"jitter"})};
 }
 
-/// Calls f(line, number of the line) for every line of data; a first line of names goes to `names`.
-template <class F, class N>
-void for_each_line(const std::filesystem::path& file, N&& names, F&& f) {
-  const std::string text = read_text_file(file);
-  std::uint64_t number = 0;
+/// Calls f for every line of data; a first line of names goes to `names`. Any run of tabs and blanks parts the columns.
+void for_each_line(const std::filesystem::path& file, const std::function<void(DataLine&)>& names,
+                   const std::function<void(DataLine&)>& f) {
   bool first = true;
-  char delimiter = 0;
-  for (size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0; at < text.size();) {
-    const size_t stop = std::min(text.find('\n', at), text.size());
-    std::string one = text.substr(at, stop - at);
-    at = stop + 1;
-    ++number;
-    while (!one.empty() && (one.back() == '\r' || one.back() == ' ' || one.back() == '\t')) one.pop_back();
-    const size_t begin = one.find_first_not_of(" \t");
-    if (begin == std::string::npos || one[begin] == '#' || one[begin] == '%') continue;
-    if (delimiter == 0) delimiter = delimiter_in(one);
-    if (delimiter == '\t') delimiter = ' ';  // any run of tabs and blanks
-    const Line line{file.string() + ":" + std::to_string(number), split_delimited(one, delimiter)};
-    const size_t mark = line.fields[0].find('#');
-    if (first && !is_number(line.fields[0].substr(0, mark)))
-      names(line);
-    else
-      f(line, number);
-    first = false;
-  }
+  const auto parted_by = [](const std::string& line) {
+    const char found = delimiter_in(line);
+    return found == '\t' ? ' ' : found;
+  };
+  for_each_data_line(file, parted_by, [&](DataLine& line) {
+    double value = 0;
+    const bool data = !std::exchange(first, false) || read_number(line.fields[0].substr(0, line.fields[0].find('#')), value);
+    data ? f(line) : names(line);
+  });
 }
 
 std::vector<Record> read_loopstats(const std::filesystem::path& file) {
   std::vector<Record> out;
   std::optional<Columns> columns;
   for_each_line(
-      file, [&](const Line& line) { columns = named(line); },
-      [&](const Line& line, std::uint64_t number) {
+      file, [&](DataLine& line) { columns = named(line); },
+      [&](DataLine& line) {
         if (!columns) {
           columns.emplace();
           if (line.fields.size() >= 6) columns->jitter = 4;
@@ -136,7 +99,7 @@ std::vector<Record> read_loopstats(const std::filesystem::path& file) {
         read_instant(line, *columns, r);
         r.offset = line.number(columns->offset);
         if (columns->jitter) r.jitter = line.number(*columns->jitter);
-        r.line = number;
+        r.line = line.line;
         out.push_back(r);
       });
   return out;
@@ -146,11 +109,11 @@ std::vector<Record> read_peerstats(const std::filesystem::path& file, core::Tall
   std::map<int, std::vector<Record>> by_selection;
   std::map<std::string, size_t> sources;
   const Columns columns{0, 1, 4, {}};
-  const auto read = [&](const Line& line, std::uint64_t number) {
+  const auto read = [&](DataLine& line) {
     Record r;
     read_instant(line, columns, r);
     r.offset = line.number(columns.offset);
-    r.line = number;
+    r.line = line.line;
     if (line.fields.size() >= 7) r.jitter = line.number(std::min<size_t>(7, line.fields.size() - 1));
     const std::string& status = line.field(3);
     unsigned word = 0;
@@ -161,7 +124,7 @@ std::vector<Record> read_peerstats(const std::filesystem::path& file, core::Tall
     by_selection[static_cast<int>(word >> 8 & 7)].push_back(r);
   };
   for_each_line(
-      file, [](const Line&) {}, read);
+      file, [](DataLine&) {}, read);
   std::vector<Record> out;
   size_t all = 0;
   for (const auto& [selection, records] : by_selection) all += records.size();
@@ -174,7 +137,8 @@ std::vector<Record> read_peerstats(const std::filesystem::path& file, core::Tall
   if (out.empty() && all > 0)
     throw core::Error("none of its " + std::to_string(sources.size()) + " sources is ever selected", file.string(),
                       "the clock was not steered: use loopstats, or a file of one source alone");
-  if (out.size() < all) tally.count("peerstats records of sources that did not steer the clock, left out", all - out.size());
+  tally.read(clock_records, all - out.size());
+  if (out.size() < all) tally.count("clock records of sources that did not steer the clock, left out", all - out.size());
   return out;
 }
 
@@ -182,8 +146,8 @@ std::vector<Record> read_pulses(const std::filesystem::path& file) {
   std::vector<Record> out;
   const Columns columns;
   for_each_line(
-      file, [](const Line&) {},
-      [&](Line line, std::uint64_t number) {
+      file, [](DataLine&) {},
+      [&](DataLine& line) {
         line.fields[0] = line.fields[0].substr(0, line.fields[0].find('#'));
         Record r;
         if (line.fields.size() >= 2) {
@@ -191,7 +155,7 @@ std::vector<Record> read_pulses(const std::filesystem::path& file) {
         } else {
           // Whole seconds and their fraction apart: together they do not fit a double to better than 0.24 us.
           const size_t dot = std::min(line.fields[0].find('.'), line.fields[0].size());
-          const Line parts{line.where, {line.fields[0].substr(0, dot), "0" + line.fields[0].substr(dot)}};
+          const DataLine parts{line.place, line.line, {line.fields[0].substr(0, dot), "0" + line.fields[0].substr(dot)}};
           const double whole = parts.number(0);
           if (whole < (mjd_of_gps - mjd_of_1970) * day_seconds || whole > (latest_mjd - mjd_of_1970) * day_seconds ||
               whole != std::floor(whole))
@@ -201,7 +165,7 @@ std::vector<Record> read_pulses(const std::filesystem::path& file) {
           r.second = whole - r.day * day_seconds + parts.number(1);
         }
         r.offset = std::round(r.second) - r.second;
-        r.line = number;
+        r.line = line.line;
         out.push_back(r);
       });
   return out;
@@ -234,13 +198,15 @@ core::ClockData read_clock_log(const std::filesystem::path& file, ClockFormat fo
       tally.count("clock records before the clock was set back, left out", where(r), out.size());
       for (auto* c : {&out.time, &out.offset, &out.jitter}) c->clear();
     } else if (!out.time.empty() && t == out.time.back()) {
-      tally.count("clock records at a repeated time, dropped", where(r));
+      tally.count("clock records at a repeated time, left out", where(r));
       continue;
     }
     out.time.push_back(t);
     out.offset.push_back(r.offset);
     if (with_jitter) out.jitter.push_back(r.jitter);
   }
+  tally.read(clock_records, records.size());
+  tally.keep(clock_records, out.size());
   return out;
 }
 

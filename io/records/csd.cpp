@@ -131,13 +131,16 @@ core::TrajectoryData read_csd_trajectory(CsdReader& file, core::Seconds spacing,
         throw core::Error("time goes back by " + core::format_number(last - p.time) + " s", file.path().string() + ": " + record,
                           "export the records in the order of their time");
       if (p.time == last) {
-        tally.count("CSD poses at a repeated time", record);
+        tally.count("CSD pulses at a repeated time, left out", record);
         continue;
       }
       last = p.time;
       const bool end = first + i + 1 == file.pulses();
       const double since = out.size() ? p.time - out.time.back() : 0.0;
-      if (out.size() && !end && since >= 0 && since < spacing.value) continue;
+      if (out.size() && !end && since >= 0 && since < spacing.value) {
+        tally.count("CSD pulses between the poses that are taken, left out");
+        continue;
+      }
       out.time.push_back(p.time);
       out.latitude.push_back(p.latitude);
       out.longitude.push_back(p.longitude);
@@ -147,6 +150,9 @@ core::TrajectoryData read_csd_trajectory(CsdReader& file, core::Seconds spacing,
       out.heading.push_back(p.heading);
     }
   }
+  tally.read("CSD pulses", file.pulses());
+  tally.keep("CSD pulses", out.size());
+  tally.read("trajectory records", out.size());
   return out;
 }
 

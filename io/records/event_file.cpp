@@ -2,82 +2,44 @@
 #include "io/records/event_file.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "core/time.h"
 #include "io/survey/wild_records.h"
+#include "io/text/data_lines.h"
 #include "io/text/delimited.h"
-#include "io/text/value_file.h"
+#include "io/text/line_reader.h"
 
 namespace swath::io {
 namespace {
 
-bool is_number(const std::string& text) {
-  double value = 0;
-  const auto [end, bad] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return !text.empty() && bad == std::errc{} && end == text.data() + text.size();
-}
-
-struct Row {
-  std::vector<std::string> fields;
-  std::string where;
-  const std::string& at(size_t column) const {
-    if (column >= fields.size())
-      throw core::Error("the line has " + std::to_string(fields.size()) + " fields, at least " + std::to_string(column + 1) + " are needed",
-                        where, "the line is cut off or has another delimiter");
-    return fields[column];
-  }
-  double number(size_t column) const {
-    const std::string& text = at(column);
-    const char *begin = text.data() + (text.size() > 1 && text[0] == '+' ? 1 : 0), *stop = text.data() + text.size();
-    double value = 0;
-    const auto [end, bad] = std::from_chars(begin, stop, value);
-    if (bad != std::errc{} || end != stop || !std::isfinite(value))
-      throw core::Error("'" + text + "' in column " + std::to_string(column + 1) + " is no number", where,
-                        "correct the line, or the columns that the survey states");
-    return value;
-  }
-};
-
 /// The lines of data as texts, since ids need not be numbers; `layout` gets the delimiter and the names of the columns.
-std::vector<Row> rows_of(const std::filesystem::path& path, const EventFile& file, DelimitedLayout& layout) {
-  const std::string text = read_text_file(path);
-  std::vector<Row> out;
-  std::uint64_t number = 0;
+std::vector<DataLine> rows_of(const std::filesystem::path& path, const EventFile& file, DelimitedLayout& layout) {
+  std::vector<DataLine> out;
   bool first = true;
   std::string comment;  // the last one before the data: it may hold the names
-  for (size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0; at < text.size();) {
-    const size_t stop = std::min(text.find('\n', at), text.size());
-    std::string line = text.substr(at, stop - at);
-    at = stop + 1;
-    ++number;
-    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
-    const size_t begin = line.find_first_not_of(" \t");
-    if (begin == std::string::npos) continue;
-    if (line[begin] == '#' || line[begin] == '%') {
-      const size_t word = line.find_first_not_of("#% \t");
-      if (word != std::string::npos) comment = line.substr(word);
-      continue;
-    }
-    if (first) layout.delimiter = file.delimiter.empty() ? delimiter_in(line) : delimiter_from(file.delimiter, path);
-    Row row{split_delimited(line, layout.delimiter), path.string() + ":" + std::to_string(number)};
-    if (first) {
-      first = false;
-      layout.columns = row.fields.size();
+  const auto parted_by = [&](const std::string& line) {
+    return layout.delimiter = file.delimiter.empty() ? delimiter_in(line) : delimiter_from(file.delimiter, path);
+  };
+  const auto take = [&](DataLine& line) {
+    if (std::exchange(first, false)) {
+      layout.columns = line.fields.size();
       const std::vector<std::string> words = split_delimited(comment, layout.delimiter);
       const bool by_number = file.columns.time.find_first_not_of("0123456789") == std::string::npos;
+      double value = 0;
       if (!by_number && std::find(words.begin(), words.end(), file.columns.time) != words.end()) {
         layout.names = words;
-      } else if (!by_number || !is_number(row.fields[std::min(row.fields.size(), size_t(std::stoul(file.columns.time))) - 1])) {
-        layout.names = row.fields;  // columns named by name: the first line must hold them
-        continue;
+      } else if (!by_number || !read_number(line.fields[std::min(layout.columns, size_t(std::stoul(file.columns.time))) - 1], value)) {
+        layout.names = std::move(line.fields);  // columns named by name: the first line must hold them
+        return;
       }
     }
-    out.push_back(std::move(row));
-  }
+    out.push_back(std::move(line));
+  };
+  for_each_data_line(path, parted_by, take, [&](const std::string& words) { comment = words; });
   return out;
 }
 
@@ -88,7 +50,7 @@ core::EventTags read_event_file(const Survey& survey, const EventFile& file, cor
   if (file.columns.time.empty())
     throw core::usage_error("the column of the time is not stated", path.string(), "event.columns.time: a name, or a number from 1");
   DelimitedLayout layout;
-  const std::vector<Row> rows = rows_of(path, file, layout);
+  const std::vector<DataLine> rows = rows_of(path, file, layout);
   if (rows.empty()) throw core::Error("no event", path.string(), "the file is empty, or holds a header only");
   const auto column = [&](const std::string& name) -> std::optional<size_t> {
     if (name.empty()) return std::nullopt;
@@ -106,30 +68,32 @@ core::EventTags read_event_file(const Survey& survey, const EventFile& file, cor
   const double unit = tags.unit.value, offset = tags.offset.value;
   tags.offset = core::Seconds(0);
   core::TimeReader clock = reader_of(tags, path.string());
-  for (const Row& row : rows) {
+  for (const DataLine& row : rows) {
     // Whole seconds and their fraction apart: together they do not fit a double to better than 0.24 us.
     const double seconds = row.number(time) * unit, whole = std::floor(seconds);
     double gps = 0;
     try {
       gps = clock(whole / unit);
     } catch (const core::Error& e) {
-      throw core::Error(e.what(), row.where, e.hint());
+      throw core::Error(e.what(), row.place, e.hint());
     }
     if (!is_instant(gps))
-      throw core::Error("the time " + row.at(time) + " is not between 1980 and 2100", row.where,
+      throw core::Error("the time " + row.field(time) + " is not between 1980 and 2100", row.place,
                         "correct the line, or the time scale and unit that the survey states for the file");
     if (out.time.empty()) out.epoch = gps;
     out.time.push_back(gps - out.epoch + (seconds - whole) + offset);
-    if (out.size() > 1 && out.time.back() < out.time[out.size() - 2]) tally.count("events whose time is before the one before", row.where);
-    out.id.push_back(id ? row.at(*id) : std::to_string(out.size()));
+    if (out.size() > 1 && out.time.back() < out.time[out.size() - 2]) tally.count("events whose time is before the one before", row.place);
+    out.id.push_back(id ? row.field(*id) : std::to_string(out.size()));
     double line = 0;
     if (strip) {
       line = row.number(*strip);
       if (line != std::floor(line) || std::abs(line) > 1e9)
-        throw core::Error("'" + row.at(*strip) + "' is no number of a strip", row.where, "strips are whole numbers");
+        throw core::Error("'" + row.field(*strip) + "' is no number of a strip", row.place, "strips are whole numbers");
     }
     out.strip.push_back(static_cast<std::int32_t>(line));
   }
+  tally.read("events", rows.size());
+  tally.keep("events", out.size());
   out.sigma.assign(out.size(), 0.0);
   out.doubtful.assign(out.size(), 0);
   return out;

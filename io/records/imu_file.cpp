@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/geo/frames.h"
+#include "core/records/imu_columns.h"
 #include "core/statistics.h"
 #include "io/records/imu_axes.h"
 #include "io/records/imu_checks.h"
@@ -22,7 +23,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double most_not_finite = 0.03, most_repeated = 0.05;  // of the records
-constexpr const char* gap_count = "IMU gaps";
+constexpr const char *records = "IMU records", *gap_count = "IMU gaps";
 constexpr double fastest_turn = 100.0, largest_force = 1000.0;  // rad/s, m/s2: twice what the widest sensors measure
 
 /// Records as recorded, in the record's axes and units.
@@ -122,7 +123,7 @@ Raw read_raw(const std::filesystem::path& path, const ImuFile& f, core::Tally& t
   std::vector<std::string> columns{c.time, c.gyro_x, c.gyro_y, c.gyro_z, c.accelerometer_x, c.accelerometer_y, c.accelerometer_z};
   if (!c.week.empty()) columns.push_back(c.week);
   const std::unique_ptr<TableRows> rows = open_table(path, format_of(f), f.delimiter, columns);
-  count_cut_line(rows->cut_line(), path, tally);
+  count_cut_line(rows->cut_line(), path, records, tally);
   Recorded all = read_rows(*rows, f, columns.size(), name, tally);
   Raw& raw = all.raw;
   std::uint64_t repeated = 0, same = 0;
@@ -145,6 +146,8 @@ Raw read_raw(const std::filesystem::path& path, const ImuFile& f, core::Tally& t
                "the times are too coarse for the rate: export them with more digits");
   if (raw.time.empty()) throw core::Error("the file has no IMU records", name);
   leave_out_impossible(raw, f, all.numbers, *rows, tally);
+  tally.read(records, all.read);
+  tally.keep(records, raw.time.size());
   if (same > 0)
     tally.count("IMU records that repeat the values of the one before (kept)", name + ": of " + std::to_string(raw.time.size()), same);
   return std::move(raw);
@@ -255,14 +258,10 @@ core::ImuData read_imu(const Survey& survey, core::Tally& tally) {
         part.velocity.front() *= part.step.front() / step;
       }
     }
-    const auto append = [](auto& to, auto& from) {
-      to.insert(to.end(), from.begin(), from.end());
-      from = {};
-    };
-    append(out.time, part.time);
-    append(out.step, part.step);
-    append(out.angle, part.angle);
-    append(out.velocity, part.velocity);
+    core::for_each_imu_column([&](auto member) {
+      (out.*member).insert((out.*member).end(), (part.*member).begin(), (part.*member).end());
+      part.*member = {};
+    });
   }
   return out;
 }

@@ -23,6 +23,7 @@ namespace swath::io {
 namespace {
 
 constexpr size_t chunk = 1 << 15;  // records decoded at once
+constexpr const char* laser_records = "records";
 constexpr const char* damaged = "the file is damaged: export the records again";
 constexpr double farthest = 1e5;         // m; no airborne laser reaches a tenth of it
 constexpr size_t most_of_a_pulse = 255;  // return numbers are 8-bit
@@ -184,7 +185,7 @@ Pass pass_over(const Survey& survey, size_t file, bool judge) {
         continue;
       }
       if (line < 0) {
-        out.tally.count("records outside every line", f.file.filename().string() + ": " + record_text(r.record[i]));
+        out.tally.count("records outside every line, left out", f.file.filename().string() + ": " + record_text(r.record[i]));
         out.first_outside = std::min(out.first_outside, time), out.last_outside = std::max(out.last_outside, time);
         continue;
       }
@@ -211,10 +212,11 @@ Pass pass_over(const Survey& survey, size_t file, bool judge) {
 std::vector<StripInfo> strips_of(const Survey& survey, size_t file, core::Tally& tally, LineSpan& outside) {
   const LaserFile& f = survey.laser[file];
   const std::string name = resolve(survey, f.file).string();
-  if (format_of(f) == LaserFormat::text) count_cut_line(inspect_delimited(name, f.delimiter).cut_line, name, tally);
+  if (format_of(f) == LaserFormat::text) count_cut_line(inspect_delimited(name, f.delimiter).cut_line, name, laser_records, tally);
   Pass pass = pass_over(survey, file, true);
   if (pass.wild > 0 && !are_few(pass.wild, pass.records)) pass = pass_over(survey, file, false);
   if (pass.first && !are_few(pass.unreadable, pass.records)) throw *pass.first;
+  tally.read(laser_records, pass.records);
   tally.add(pass.tally);
   outside.first = std::min(outside.first, pass.first_outside), outside.last = std::max(outside.last, pass.last_outside);
   if (pass.bad.empty()) return std::move(pass.strips);
@@ -367,6 +369,7 @@ bool LaserSource::next(core::Shots& batch, size_t most) {
       if (!s.reader->next(s.raw, chunk)) {
         if (!std::exchange(s.ended, true)) s.reader->count_oddities(s.file.file.string() + ": line " + std::to_string(s.line), s.tally);
         s.raw.clear();
+        s.tally.keep(laser_records, batch.size());
         return batch.size() > 0;
       }
     }
@@ -375,7 +378,10 @@ bool LaserSource::next(core::Shots& batch, size_t most) {
       const size_t i = s.at;
       if (s.is_bad(s.raw.record[i])) continue;
       const bool full = batch.size() >= most && (s.raw.time[i] != s.last_recorded || batch.size() >= most + most_of_a_pulse);
-      if (full) return true;
+      if (full) {
+        s.tally.keep(laser_records, batch.size());
+        return true;
+      }
       const double time = s.clock(s.raw, i);
       s.last_recorded = s.raw.time[i];
       if (s.rule.of(s.raw, i, time) != s.line) continue;

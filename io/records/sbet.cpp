@@ -122,6 +122,8 @@ void add_accuracy(core::TrajectoryData& t, const std::filesystem::path& path, co
   if (!are_few(bad.size(), rows.size()))
     throw core::Error("a standard deviation is negative or not finite", where(bad[0]), "the file is damaged: export it again");
   for (const size_t i : bad) tally.count("smrmsg records with a sigma that is negative or not finite, left out", where(i));
+  tally.read("smrmsg records", rows.size());
+  tally.keep("smrmsg records", kept);
   rows.resize(kept);
   for (auto* c : {&t.sigma_north, &t.sigma_east, &t.sigma_down, &t.sigma_roll, &t.sigma_pitch, &t.sigma_heading}) c->resize(t.size());
   size_t at = 0;
@@ -241,6 +243,7 @@ core::TrajectoryData read_sbet(const std::filesystem::path& path, const TimeTags
     }
   }
   if (degrees && !are_few(no_radians, file.records())) throw *degrees;
+  tally.read("trajectory records", recorded.size());
   out.time = gps_times(tags, path.string(), recorded, {}, impossible_times, tally);
   if (const std::vector<std::uint8_t> marked = leave_out_faults(out, path.string(), tally); !marked.empty())
     for (Velocities& v : velocities)

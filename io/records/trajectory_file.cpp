@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/geo/crs.h"
 #include "core/geo/frames.h"
+#include "core/records/trajectory_columns.h"
 #include "core/statistics.h"
 #include "io/records/csd.h"
 #include "io/records/sbet.h"
@@ -21,18 +22,7 @@ namespace {
 using core::TrajectoryData;
 
 constexpr double gap_steps = 5.0, gap_seconds = 0.05;
-
-/// Calls f(column of a, column of b) for every pair of columns.
-template <class F>
-void for_each_pair(TrajectoryData& a, TrajectoryData& b, F&& f) {
-  for (auto c :
-       {&TrajectoryData::time, &TrajectoryData::latitude, &TrajectoryData::longitude, &TrajectoryData::height, &TrajectoryData::roll,
-        &TrajectoryData::pitch, &TrajectoryData::heading, &TrajectoryData::v_north, &TrajectoryData::v_east, &TrajectoryData::v_down})
-    f(a.*c, b.*c);
-  for (auto c : {&TrajectoryData::sigma_north, &TrajectoryData::sigma_east, &TrajectoryData::sigma_down, &TrajectoryData::sigma_roll,
-                 &TrajectoryData::sigma_pitch, &TrajectoryData::sigma_heading})
-    f(a.*c, b.*c);
-}
+constexpr const char* trajectory_records = "trajectory records";
 
 /// Projected or geographic coordinates of a stated CRS to geodetic WGS84, in place (x = easting or longitude).
 void to_geodetic(const std::string& crs, const std::string& name, double unit, std::vector<double>& east, std::vector<double>& north,
@@ -52,7 +42,7 @@ void to_geodetic(const std::string& crs, const std::string& name, double unit, s
 TrajectoryData read_text(const std::filesystem::path& path, const TrajectoryFile& f, core::Tally& tally) {
   const std::string name = path.string();
   const DelimitedLayout layout = inspect_delimited(path, f.delimiter);
-  count_cut_line(layout.cut_line, path, tally);
+  count_cut_line(layout.cut_line, path, trajectory_records, tally);
   const double unit = radians_per(f.angle_unit);
   if (unit == 0) throw core::usage_error("the unit of angles is not stated", name, "angle_unit = \"deg\", \"rad\" or \"gon\"");
   const TrajectoryColumns& c = f.columns;
@@ -92,6 +82,7 @@ TrajectoryData read_text(const std::filesystem::path& path, const TrajectoryFile
     for (size_t i = 0; i < doubles.size(); ++i) doubles[i].first->push_back(row[i] * doubles[i].second);
     for (size_t i = 0; i < floats.size(); ++i) floats[i].first->push_back(static_cast<float>(row[doubles.size() + i] * floats[i].second));
   }
+  tally.read(trajectory_records, out.time.size());
   out.time = gps_times(f.time, name, out.time, week, impossible_times, tally);
   if (f.crs.empty()) {
     for (auto* angles : {&out.latitude, &out.longitude})
@@ -155,11 +146,13 @@ void check_trajectory(TrajectoryData& t, const std::string& name, core::Tally& t
         tally.count("trajectory gaps", where(i) + ": " + core::format_number(std::round(step * 1e3) / 1e3) + " s before it");
   }
   for (size_t i = 0; i < t.size(); ++i)
-    if (repeated[i]) tally.count("trajectory records at a repeated time, dropped", where(i));
+    if (repeated[i]) tally.count("trajectory records at a repeated time, left out", where(i));
   leave_out(t, repeated);
 }
 
-TrajectoryData read_trajectory(const Survey& survey, const TrajectoryFile& f, core::Tally& tally) {
+namespace {
+
+TrajectoryData read_file(const Survey& survey, const TrajectoryFile& f, core::Tally& tally) {
   const std::filesystem::path path = resolve(survey, f.file);
   TrajectoryData out;
   switch (format_of(f)) {
@@ -184,11 +177,19 @@ TrajectoryData read_trajectory(const Survey& survey, const TrajectoryFile& f, co
   return out;
 }
 
+}  // namespace
+
+TrajectoryData read_trajectory(const Survey& survey, const TrajectoryFile& f, core::Tally& tally) {
+  TrajectoryData out = read_file(survey, f, tally);
+  tally.keep(trajectory_records, out.size());
+  return out;
+}
+
 TrajectoryData read_trajectory(const Survey& survey, core::Tally& tally) {
   const std::vector<TrajectoryFile> files = trajectory_files(survey);
   if (files.empty()) throw core::usage_error("the survey has no trajectory");
   std::vector<std::pair<TrajectoryData, std::string>> parts;
-  for (const TrajectoryFile& f : files) parts.emplace_back(read_trajectory(survey, f, tally), f.file.string());
+  for (const TrajectoryFile& f : files) parts.emplace_back(read_file(survey, f, tally), f.file.string());
   std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first.time.front() < b.first.time.front(); });
   const bool velocities = std::all_of(parts.begin(), parts.end(), [](const auto& p) { return p.first.has_velocity(); });
   TrajectoryData out;
@@ -202,9 +203,11 @@ TrajectoryData read_trajectory(const Survey& survey, core::Tally& tally) {
       throw core::Error(parts[k - 1].second + " and " + parts[k].second + " overlap by " +
                             core::format_number(out.time.back() - part.time.front()) + " s",
                         parts[k].second, "trim one of them: two solutions for one instant have no order");
-    for_each_pair(out, part, [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); });
+    core::for_each_trajectory_column(
+        [&](auto member, const char*) { (out.*member).insert((out.*member).end(), (part.*member).begin(), (part.*member).end()); });
   }
   if (parts.size() > 1) check_trajectory(out, "joined trajectory", tally);
+  tally.keep(trajectory_records, out.size());
   return out;
 }
 

@@ -7,26 +7,24 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <limits>
-#include <map>
-#include <memory>
+#include <iterator>
 
 #include "core/config/option_visitors.h"
+#include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "core/geo/crs.h"
-#include "core/time.h"
 #include "io/gnss/describe_gnss.h"
 #include "io/gnss/nmea.h"
 #include "io/gnss/rinex_header.h"
 #include "io/gnss/rtklib_pos.h"
 #include "io/las/describe_las.h"
 #include "io/raster/geotiff.h"
-#include "io/records/csd.h"
 #include "io/records/describe_pcap.h"
 #include "io/records/describe_trajectory.h"
+#include "io/survey/describe_tables.h"
+#include "io/survey/file_facts.h"
 #include "io/survey/read_survey.h"
-#include "io/text/delimited.h"
-#include "io/text/npy.h"
+#include "io/text/binary_file.h"
 #include "io/text/value_file.h"
 #include "io/vector/describe_vector.h"
 #include "io/vector/gdal_door.h"
@@ -37,167 +35,72 @@ namespace {
 using core::Value;
 using Path = std::filesystem::path;
 
-constexpr size_t chunk = 16384;
-
-struct Column {
-  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
-  std::uint64_t not_finite = 0;
-  void add(double v) {
-    if (!std::isfinite(v)) {
-      ++not_finite;
-      return;
-    }
-    low = std::min(low, v);
-    high = std::max(high, v);
-  }
-  Value value() const { return low <= high ? Value(Value::Array{low, high}) : Value("no finite value"); }
+struct SurveyFacts {
+  Survey s;
+  std::vector<std::string> warnings;
 };
-
-void put_columns(const std::vector<std::string>& names, const std::vector<Column>& columns, Value& out, Value& warnings) {
-  Value& list = out["columns"] = Value::object();
-  for (size_t c = 0; c < names.size(); ++c) {
-    list[names[c]] = columns[c].value();
-    if (columns[c].not_finite)
-      warnings.push("column " + names[c] + " holds " + std::to_string(columns[c].not_finite) + " values that are empty or not finite");
-  }
-}
-
-Value describe_csd(const Path& path) {
-  CsdReader file(path);
-  const CsdHeader& h = file.header();
-  Value out = Value::object(), warnings = Value::array();
-  Column time, range, angle, latitude, longitude, height;
-  std::map<int, std::uint64_t> returns;
-  std::vector<CsdPulse> pulses;
-  for (std::uint64_t at = 0; at < file.pulses(); at += pulses.size()) {
-    file.read(at, static_cast<size_t>(std::min<std::uint64_t>(chunk, file.pulses() - at)), pulses);
-    for (const CsdPulse& p : pulses) {
-      time.add(p.time);
-      angle.add(core::to_degrees(p.scan_angle));
-      latitude.add(core::to_degrees(p.latitude));
-      longitude.add(core::to_degrees(p.longitude));
-      height.add(p.height);
-      ++returns[p.return_count];
-      for (int k = 0; k < p.return_count; ++k) range.add(p.range[static_cast<size_t>(k)]);
-    }
-  }
-  const core::Calibration boresight = calibration_of(h);
-  out["format"] = "Optech CSD";
-  out["vendor"] = h.vendor;
-  out["software"] = h.software;
-  out["pulses"] = file.pulses();
-  out["gps_week"] = h.gps_week;
-  out["seconds_of_week"] = time.value();
-  if (file.pulses()) out["from"] = core::utc_text(core::from_week(h.gps_week, time.low));
-  Value& by = out["pulses_by_returns"] = Value::object();
-  for (const auto& [n, count] : returns) by[std::to_string(n)] = count;
-  out["range_m"] = range.value();
-  out["scan_angle_deg"] = angle.value();
-  out["carrier_latitude_deg"] = latitude.value();
-  out["carrier_longitude_deg"] = longitude.value();
-  out["carrier_height_m"] = height.value();
-  out["boresight_roll_pitch_heading_deg"] =
-      Value(Value::Array{core::to_degrees(boresight.roll), core::to_degrees(boresight.pitch), core::to_degrees(boresight.heading)});
-  out["temperature_c"] = h.temperature;
-  out["pressure_mbar"] = h.pressure;
-  if (time.low < h.first_time - 1e-3 || time.high > h.last_time + 1e-3)
-    warnings.push("the header states seconds " + core::format_number(h.first_time) + " to " + core::format_number(h.last_time) +
-                  ", the pulses span others");
-  if (time.not_finite + range.not_finite + angle.not_finite + latitude.not_finite + longitude.not_finite + height.not_finite)
-    warnings.push("values that are not finite");
-  if (range.low <= 0) warnings.push("ranges that are not positive");
-  out["warnings"] = std::move(warnings);
-  return out;
-}
-
-Value describe_npy(const Path& path) {
-  const NpyHeader h = read_npy_header(path);
-  Value out = Value::object(), warnings = Value::array();
-  out["format"] = "NumPy array";
-  out["rows"] = h.rows;
-  std::vector<std::string> names;
-  std::vector<size_t> numeric;
-  Value& types = out["types"] = Value::object();
-  for (size_t i = 0; i < h.fields.size(); ++i) {
-    const NpyField& f = h.fields[i];
-    const std::string name = f.name.empty() ? std::to_string(i + 1) : f.name;
-    types[name] = f.type;
-    if (std::string("uifb").find(f.kind) == std::string::npos || f.bytes > 8) continue;
-    names.push_back(name);
-    numeric.push_back(i);
-  }
-  NpyReader reader(path, numeric);
-  std::vector<Column> columns(numeric.size());
-  std::vector<std::vector<double>> values;
-  for (std::uint64_t at = 0; at < h.rows; at += chunk) {
-    reader.read(at, static_cast<size_t>(std::min<std::uint64_t>(chunk, h.rows - at)), values);
-    for (size_t c = 0; c < columns.size(); ++c)
-      for (const double v : values[c]) columns[c].add(v);
-  }
-  put_columns(names, columns, out, warnings);
-  out["warnings"] = std::move(warnings);
-  return out;
-}
-
-Value describe_text(const Path& path) {
-  const DelimitedLayout layout = inspect_delimited(path);
-  Value out = Value::object(), warnings = Value::array();
-  out["format"] = "delimited text";
-  out["delimiter"] = layout.delimiter == '\t' ? "tab" : layout.delimiter == ' ' ? "blanks" : std::string(1, layout.delimiter);
-  out["header"] = !layout.names.empty();
-  std::vector<std::string> names;
-  std::vector<size_t> indices;
-  for (size_t c = 0; c < layout.columns; ++c) {
-    names.push_back(c < layout.names.size() ? layout.names[c] : std::to_string(c + 1));
-    indices.push_back(c);
-  }
-  if (!layout.names.empty() && layout.names.size() != layout.columns)
-    warnings.push("the header names " + std::to_string(layout.names.size()) + " columns, the first line has " +
-                  std::to_string(layout.columns));
-  if (layout.cut_line > 0) warnings.push("line " + std::to_string(layout.cut_line) + " is only the end of a record and is left out");
-  DelimitedReader reader(path, layout, indices);
-  std::vector<Column> columns(indices.size());
-  std::vector<double> row(indices.size());
-  std::uint64_t rows = 0;
-  try {
-    for (; reader.next(row.data()); ++rows)
-      for (size_t c = 0; c < row.size(); ++c) columns[c].add(row[c]);
-  } catch (const core::Error& e) {
-    warnings.push("reading stopped: " + e.text());
-  }
-  out["rows"] = rows;
-  put_columns(names, columns, out, warnings);
-  out["warnings"] = std::move(warnings);
-  return out;
+template <class V>
+void describe(const SurveyFacts& r, V& v) {
+  const auto files = [&](std::string_view key, const auto& list, std::string_view doc) {
+    std::vector<std::string> names;
+    for (const auto& f : list) names.push_back(f.file.generic_string());
+    v.result(key, names, core::Form{}.only_if(!names.empty()), doc);
+  };
+  v.result("format", std::string("survey"), "Format.");
+  v.result("name", r.s.name, "Name of the survey.");
+  v.result("crs", r.s.crs, "CRS of the products.");
+  files("laser", r.s.laser, "Files of laser records.");
+  files("trajectory", r.s.trajectory, "Trajectory files.");
+  files("imu", r.s.imu, "Files of IMU records.");
+  files("gnss", r.s.gnss, "Files of GNSS records.");
+  files("points", r.s.points, "Point clouds.");
+  v.result("lines", r.s.lines.size(), "Flight lines that it lists.");
+  v.result("scanner", r.s.scanner.model, "Model of the scanner.");
+  v.result("warnings", r.warnings, "Faults of the survey.");
 }
 
 Value describe_survey(const Path& path) {
-  Value out = Value::object(), warnings = Value::array();
-  out["format"] = "survey";
-  Survey s;
+  SurveyFacts out;
   std::vector<core::Fault> ignored;
-  core::read_options(core::described(s), read_value_file(path), "", ignored);
-  out["name"] = s.name;
-  out["crs"] = s.crs;
-  const auto files = [&](const char* key, const auto& list) {
-    if (list.empty()) return;
-    Value& names = out[key] = Value::array();
-    for (const auto& f : list) names.push(f.file.generic_string());
-  };
-  files("laser", s.laser);
-  files("trajectory", s.trajectory);
-  files("imu", s.imu);
-  files("gnss", s.gnss);
-  files("points", s.points);
-  out["lines"] = static_cast<std::uint64_t>(s.lines.size());
-  out["scanner"] = core::Codec<core::ScannerModel>::get(s.scanner.model);
+  core::read_options(core::described(out.s), read_value_file(path), "", ignored);
   try {
     read_survey(path);
   } catch (const core::Error& e) {
-    warnings.push(e.text());
+    out.warnings.push_back(e.text());
   }
-  out["warnings"] = std::move(warnings);
-  return out;
+  return core::reported(out);
+}
+
+/// A tree of JSON or TOML by its keys.
+struct TreeFacts {
+  std::string format;
+  const Value& tree;
+  std::string stage_list{};  ///< the key of the list of stages; empty: it has none
+};
+template <class V>
+void describe(const TreeFacts& r, V& v) {
+  const bool report = r.stage_list == "stages";
+  const auto text = [&](const Value* found) {
+    return report && found && found->is_text() ? std::optional(found->as_text()) : std::nullopt;
+  };
+  const Value *crs = r.tree.find("crs"), *seconds = r.tree.find("seconds");
+  std::vector<std::string> stages, keys;
+  if (const Value* list = r.stage_list.empty() ? nullptr : r.tree.find(r.stage_list); list && list->is_array())
+    for (const Value& s : list->items())
+      if (const Value* type = s.is_object() ? s.find("type") : nullptr; type && type->is_text()) stages.push_back(type->as_text());
+  if (r.tree.is_object())
+    for (const auto& [key, value] : r.tree.members()) keys.push_back(key);
+  v.result("format", r.format, "What the file is.");
+  v.result("program", text(r.tree.find("program")), "Program that made the report.");
+  v.result("command", text(r.tree.find("command")), "Command that it ran.");
+  v.result("survey", text(r.tree.find("survey")), "Name of the survey.");
+  v.result("crs", text(crs ? crs->find("name") : nullptr), "CRS of the products.");
+  v.result("seconds", seconds && seconds->is_number() ? seconds->as_number() : 0.0, core::seconds(1).only_if(report),
+           "Time that the run took.");
+  v.result("stages", stages, core::Form{}.only_if(!r.stage_list.empty()), "Stages.");
+  v.result("items", r.tree.is_array() ? r.tree.items().size() : 0, core::Form{}.only_if(r.tree.is_array()), "Items of a list.");
+  v.result("keys", keys, core::Form{}.only_if(r.tree.is_object() && !report), "Keys of a table.");
+  v.result("warnings", std::vector<std::string>{}, "What looks wrong.");
 }
 
 /// JSON and TOML: a survey, a pipeline, or what this program writes.
@@ -206,31 +109,69 @@ Value describe_tree(const Path& path) {
   const auto has = [&](const char* key) { return tree.is_object() && tree.find(key); };
   if (has("type") && tree.find("type")->is_text() && (has("features") || has("coordinates") || has("geometry")))
     if (Value vector = describe_vector(path); !vector.is_null()) return vector;
-  const bool report = has("program") && has("stages"), pipeline = has("stage");
-  const bool calibration = has("calibration") && has("sigma") && !has("laser") && !has("imu");
-  if (!report && !pipeline && !calibration && tree.is_object()) {
-    for (const char* key : {"laser", "trajectory", "imu", "gnss", "points", "event", "hangar", "rinex", "crs", "scanner"})
-      if (has(key)) return describe_survey(path);
+  if (has("program") && has("stages")) return core::reported(TreeFacts{"report of a run", tree, "stages"});
+  if (has("stage")) return core::reported(TreeFacts{"pipeline", tree, "stage"});
+  if (has("calibration") && has("sigma") && !has("laser") && !has("imu")) {
+    Value out = core::reported(TreeFacts{"calibration", tree});
+    out.members().insert(out.members().begin() + 1, {"calibration", *tree.find("calibration")});  // as the file has it
+    return out;
   }
-  Value out = Value::object();
-  out["format"] = report ? "report of a run" : pipeline ? "pipeline" : calibration ? "calibration" : "JSON or TOML";
-  if (report)
-    for (const char* key : {"program", "command", "survey", "crs", "seconds"})
-      if (const Value* v = tree.find(key)) out[key] = *v;
-  if (report || pipeline) {
-    const Value* list = tree.find(report ? "stages" : "stage");
-    Value& names = out["stages"] = Value::array();
-    if (list->is_array())
-      for (const Value& s : list->items())
-        if (const Value* type = s.is_object() ? s.find("type") : nullptr; type && type->is_text()) names.push(*type);
-  }
-  if (calibration) out["calibration"] = *tree.find("calibration");
-  if (tree.is_array()) out["items"] = static_cast<std::uint64_t>(tree.items().size());
-  if (tree.is_object() && !report) {
-    Value& keys = out["keys"] = Value::array();
-    for (const auto& [key, value] : tree.members()) keys.push(key);
-  }
-  out["warnings"] = Value::array();
+  for (const char* key : {"laser", "trajectory", "imu", "gnss", "points", "event", "hangar", "rinex", "crs", "scanner"})
+    if (has(key)) return describe_survey(path);
+  return core::reported(TreeFacts{"JSON or TOML", tree});
+}
+
+struct BandFacts {
+  std::string type, name, unit;
+  std::optional<double> nodata{};
+  core::Interval values{};
+};
+template <class V>
+void describe(const BandFacts& r, V& v) {
+  v.result("type", r.type, "Type of its numbers.");
+  v.result("name", r.name, core::Form{}.only_if(!r.name.empty()), "Description of the band.");
+  v.result("unit", r.unit, core::Form{}.only_if(!r.unit.empty()), "Unit of its values.");
+  if (r.nodata && std::isnan(*r.nodata))
+    v.result("nodata", std::string("nan"), "Value of voids.");
+  else
+    v.result("nodata", r.nodata, "Value of voids.");
+  v.result("values", r.values, "Smallest and largest value.");
+}
+
+struct RasterFacts {
+  std::string format;
+  std::array<int, 2> size{};
+  std::optional<Eigen::Vector2d> cell{};
+  core::Interval x{}, y{};
+  std::optional<std::string> crs{}, heights{};
+  std::vector<BandFacts> bands{};
+  std::vector<std::string> warnings{};
+};
+template <class V>
+void describe(const RasterFacts& r, V& v) {
+  v.result("format", r.format, "Format.");
+  v.result("size", r.size, "Columns and rows.");
+  v.result("cell", r.cell, "Sides of a cell.");
+  v.result("x", r.x, "Western and eastern border.");
+  v.result("y", r.y, "Southern and northern border.");
+  v.result("crs", r.crs, "Name of the CRS.");
+  v.result("heights", r.heights, "What heights count from.");
+  v.tables("bands", r.bands, "Bands.");
+  v.result("warnings", r.warnings, "What looks wrong.");
+}
+
+BandFacts facts_of(GDALRasterBand& band, const std::string& name, std::vector<std::string>& warnings) {
+  BandFacts out{GDALGetDataTypeName(band.GetRasterDataType()), band.GetDescription(), band.GetUnitType()};
+  int has_nodata = 0;
+  const double nodata = band.GetNoDataValue(&has_nodata);
+  if (has_nodata) out.nodata = nodata;
+  double range[2];
+  if (band.ComputeRasterMinMax(FALSE, range) == CE_None)
+    out.values = {range[0], range[1]};
+  else
+    warnings.push_back(name + " has no valid cell or cannot be read");
+  if (!has_nodata && GDALDataTypeIsFloating(band.GetRasterDataType()))
+    warnings.push_back(name + " states no nodata value: voids look like heights");
   return out;
 }
 
@@ -238,52 +179,29 @@ Value describe_tree(const Path& path) {
 Value describe_raster(const Path& path) {
   const GdalMessages quiet;
   const Dataset data = open_raster(path);
-  Value out;
-  if (data) {
-    Value warnings = Value::array();
-    out = Value::object();
-    out["format"] = data->GetDriverName();
-    out["size"] = Value(Value::Array{data->GetRasterXSize(), data->GetRasterYSize()});
-    double t[6];
-    if (data->GetGeoTransform(t) == CE_None) {
-      out["cell"] = Value(Value::Array{t[1], -t[5]});
-      out["x"] = Value(Value::Array{t[0], t[0] + t[1] * data->GetRasterXSize()});
-      out["y"] = Value(Value::Array{t[3] + t[5] * data->GetRasterYSize(), t[3]});
-      if (t[2] != 0 || t[4] != 0) warnings.push("the grid is rotated");
-    } else {
-      warnings.push("the file is not georeferenced");
-    }
-    const char* wkt = data->GetProjectionRef();
-    if (wkt && *wkt) {
-      const core::Crs crs{std::string(wkt)};
-      out["crs"] = crs.name();
-      const char* heights = data->GetMetadataItem(height_system_item);
-      out["heights"] = heights ? std::string(heights) : crs.vertical_name();
-    } else {
-      warnings.push("the file states no CRS");
-    }
-    Value& bands = out["bands"] = Value::array();
-    for (int b = 1; b <= data->GetRasterCount(); ++b) {
-      GDALRasterBand* band = data->GetRasterBand(b);
-      Value one = Value::object();
-      one["type"] = GDALGetDataTypeName(band->GetRasterDataType());
-      if (*band->GetDescription()) one["name"] = band->GetDescription();
-      if (*band->GetUnitType()) one["unit"] = band->GetUnitType();
-      int has_nodata = 0;
-      const double nodata = band->GetNoDataValue(&has_nodata);
-      if (has_nodata) one["nodata"] = std::isnan(nodata) ? Value("nan") : Value(nodata);
-      double range[2];
-      if (band->ComputeRasterMinMax(FALSE, range) == CE_None)
-        one["values"] = Value(Value::Array{range[0], range[1]});
-      else
-        warnings.push("band " + std::to_string(b) + " has no valid cell or cannot be read");
-      if (!has_nodata && GDALDataTypeIsFloating(band->GetRasterDataType()))
-        warnings.push("band " + std::to_string(b) + " states no nodata value: voids cannot be told from heights");
-      bands.push(std::move(one));
-    }
-    out["warnings"] = std::move(warnings);
+  if (!data) return {};
+  RasterFacts out{data->GetDriverName(), {data->GetRasterXSize(), data->GetRasterYSize()}};
+  double t[6];
+  if (data->GetGeoTransform(t) == CE_None) {
+    out.cell.emplace(t[1], -t[5]);
+    out.x = {t[0], t[0] + t[1] * out.size[0]};
+    out.y = {t[3] + t[5] * out.size[1], t[3]};
+    if (t[2] != 0 || t[4] != 0) out.warnings.push_back("the grid is rotated");
+  } else {
+    out.warnings.push_back("the file is not georeferenced");
   }
-  return out;
+  const char* wkt = data->GetProjectionRef();
+  if (wkt && *wkt) {
+    const core::Crs crs{std::string(wkt)};
+    const char* heights = data->GetMetadataItem(height_system_item);
+    out.crs = crs.name();
+    out.heights = heights ? heights : crs.vertical_name();
+  } else {
+    out.warnings.push_back("the file states no CRS");
+  }
+  for (int b = 1; b <= data->GetRasterCount(); ++b)
+    out.bands.push_back(facts_of(*data->GetRasterBand(b), "band " + std::to_string(b), out.warnings));
+  return core::reported(out);
 }
 
 Value describe_content(const Path& path) {
@@ -323,47 +241,64 @@ std::string scalar(const Value& v) {
   return text.data();
 }
 
-/// `names`: the keys are names of the file's own (columns), and are reported as they are written there.
-void render(const Value& table, const std::string& indent, std::string& out, bool names = false) {
+/// A value on one line; a list of two numbers is from one to the other unless `is_pair`.
+std::string on_line(const Value& value, bool is_pair) {
+  if (!value.is_array()) return scalar(value);
+  const auto& items = value.items();
+  const bool interval = items.size() == 2 && items[0].is_number() && !is_pair;
+  std::string out;
+  for (size_t i = 0; i < items.size(); ++i) out += (i == 0 ? "" : interval ? " to " : ", ") + scalar(items[i]);
+  return out;
+}
+
+/// Tables of two or three values whose first names them are lines of a list.
+bool is_list(const Value& tables) {
+  const auto& first = tables.items()[0].members();
+  return first.size() <= 3 && (first[0].first == "name" || first[0].first == "number");
+}
+
+void render_list(const Value& tables, const std::string& indent, std::string& out) {
+  std::vector<std::string> names;
+  size_t width = 0;
+  for (const Value& one : tables.items()) width = std::max(width, names.emplace_back(scalar(one.members()[0].second)).size());
+  for (size_t i = 0; i < names.size(); ++i) {
+    out += indent + names[i] + std::string(width - names[i].size(), ' ');
+    for (size_t k = 1; k < tables.items()[i].members().size(); ++k) out += "  " + on_line(tables.items()[i].members()[k].second, false);
+    out += "\n";
+  }
+}
+
+void render(const Value& table, const std::string& indent, std::string& out) {
   size_t width = 0;
   for (const auto& [key, value] : table.members())
     if (!value.is_object()) width = std::max(width, key.size());
   for (const auto& [key, value] : table.members()) {
     if (key == "warnings") continue;
     std::string name = key;
-    if (!names) std::replace(name.begin(), name.end(), '_', ' ');
+    std::replace(name.begin(), name.end(), '_', ' ');
     if (value.is_object()) {
       out += indent + name + "\n";
-      render(value, indent + "  ", out, key == "columns" || key == "types");
-      continue;
-    }
-    if (value.is_array() && !value.items().empty() && value.items()[0].is_object()) {
+      render(value, indent + "  ", out);
+    } else if (!value.is_array() || value.items().empty() || !value.items()[0].is_object()) {
+      out += indent + name + std::string(width - name.size() + 2, ' ') + on_line(value, key == "size" || key == "cell") + "\n";
+    } else if (is_list(value)) {
+      out += indent + name + "\n";
+      render_list(value, indent + "  ", out);
+    } else {
       for (size_t i = 0; i < value.items().size(); ++i) {
         out += indent + name + " " + std::to_string(i + 1) + "\n";
         render(value.items()[i], indent + "  ", out);
       }
-      continue;
     }
-    out += indent + name + std::string(width - name.size() + 2, ' ');
-    if (value.is_array()) {
-      const auto& items = value.items();
-      const bool interval = items.size() == 2 && items[0].is_number() && key != "size" && key != "cell";
-      for (size_t i = 0; i < items.size(); ++i) out += (i == 0 ? "" : interval ? " to " : ", ") + scalar(items[i]);
-    } else {
-      out += scalar(value);
-    }
-    out += "\n";
   }
 }
 
 }  // namespace
 
 core::Value describe_file(const std::filesystem::path& file) {
-  const Value told = describe_content(file);
-  Value out = Value::object();
-  out["file"] = file.string();
-  out["bytes"] = static_cast<std::uint64_t>(std::filesystem::file_size(file));
-  for (const auto& [key, value] : told.members()) out[key] = value;
+  Value told = describe_content(file);
+  Value out(Value::Object{{"file", file.string()}, {"bytes", static_cast<std::uint64_t>(std::filesystem::file_size(file))}});
+  std::move(told.members().begin(), told.members().end(), std::back_inserter(out.members()));
   return out;
 }
 

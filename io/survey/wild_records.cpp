@@ -11,20 +11,12 @@
 namespace swath::io {
 namespace {
 
-constexpr double max_left_out = 0.03;    // of the records
-constexpr std::uint64_t always_few = 3;  // of at least `min_records`
-constexpr std::uint64_t min_records = 10;
 constexpr double max_apart = 3600.0;  // s
 constexpr double latest_week = 10000.0;
 constexpr const char* check_scale = "check the time column, its unit and scale";
 constexpr double year_2100 = 3786912000.0;  // GPS time
 
 }  // namespace
-
-bool are_few(std::uint64_t left_out, std::uint64_t records) {
-  if (static_cast<double>(left_out) <= max_left_out * static_cast<double>(records)) return true;
-  return left_out <= always_few && records >= min_records;
-}
 
 std::vector<size_t> wild_times(const std::vector<double>& time, double period) {
   return contradicted(time.size(), [&](size_t i, size_t j) {

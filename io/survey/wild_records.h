@@ -8,15 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "core/few.h"
 #include "core/report.h"
 #include "core/time.h"
 #include "io/survey/time_tags.h"
 
 namespace swath::io {
 
-/// So many of a file's records may be left out as impossible (at most 3 %, or 3 of at least 10); where there are more, the file is not
-/// what the survey says of it.
-bool are_few(std::uint64_t left_out, std::uint64_t records);
+using core::are_few;
 
 /// A reader that has met more impossible records than this stops at once where they cannot be few.
 constexpr std::uint64_t max_looked_at = 300;

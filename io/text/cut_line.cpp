@@ -79,8 +79,10 @@ bool first_line_is_cut(const std::vector<std::vector<std::string>>& lines, bool 
   return lacks_leading_digits(values, is, next);
 }
 
-void count_cut_line(std::uint64_t line, const std::filesystem::path& file, core::Tally& tally) {
-  if (line > 0) tally.count("records cut off at the beginning of a file, left out", file.string() + ":" + std::to_string(line));
+void count_cut_line(std::uint64_t line, const std::filesystem::path& file, const std::string& kind, core::Tally& tally) {
+  if (line == 0) return;
+  tally.read(kind, 1);
+  tally.count(kind + " cut off at the beginning of a file, left out", file.string() + ":" + std::to_string(line));
 }
 
 }  // namespace swath::io

@@ -21,7 +21,7 @@ constexpr size_t cut_line_context = 30;
 /// the first is not found.
 bool first_line_is_cut(const std::vector<std::vector<std::string>>& lines, bool opens_file);
 
-/// Counts the line (from 1; 0: none is cut).
-void count_cut_line(std::uint64_t line, const std::filesystem::path& file, core::Tally& tally);
+/// Counts the line (from 1; 0: none is cut) as one of the records of `kind`, left out.
+void count_cut_line(std::uint64_t line, const std::filesystem::path& file, const std::string& kind, core::Tally& tally);
 
 }  // namespace swath::io

@@ -8,36 +8,27 @@
 #include <limits>
 
 #include "core/error.h"
-#include "io/text/value_file.h"
+#include "io/text/data_lines.h"
 
 namespace swath::io {
 
 TextTable::TextTable(const std::filesystem::path& file, const std::string& delimiter) : file_(file) {
-  const std::string all = read_text_file(file);
-  if (all.find('\0') != std::string::npos) throw core::Error("is not delimited text", file.string(), "check the name of the file");
-  std::uint64_t number = 0;
-  for (size_t at = all.starts_with("\xEF\xBB\xBF") ? 3 : 0; at < all.size();) {
-    const size_t stop = std::min(all.find('\n', at), all.size());
-    std::string line = all.substr(at, stop - at);
-    at = stop + 1;
-    ++number;
-    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
-    const size_t begin = line.find_first_not_of(" \t");
-    if (begin == std::string::npos || line[begin] == '#' || line[begin] == '%') continue;
+  const auto parted_by = [&](const std::string& line) {
+    return layout_.delimiter = delimiter.empty() ? delimiter_in(line) : delimiter_from(delimiter, file);
+  };
+  for_each_data_line(file, parted_by, [&](DataLine& line) {
     if (layout_.names.empty()) {
-      layout_.delimiter = delimiter.empty() ? delimiter_in(line) : delimiter_from(delimiter, file);
-      layout_.names = split_delimited(line, layout_.delimiter);
+      layout_.names = std::move(line.fields);
       layout_.columns = layout_.names.size();
-      continue;
+      return;
     }
-    std::vector<std::string> fields = split_delimited(line, layout_.delimiter);
-    lines_.push_back(number);
-    if (fields.size() != layout_.columns)
-      throw core::Error(
-          "the line has " + std::to_string(fields.size()) + " fields, the header " + std::to_string(layout_.columns) + " columns",
-          place(lines_.size() - 1), "the line is cut off, or a name holds the delimiter and needs quotes");
-    rows_.push_back(std::move(fields));
-  }
+    if (line.fields.size() != layout_.columns)
+      line.fault(
+          "the line has " + std::to_string(line.fields.size()) + " fields, the header " + std::to_string(layout_.columns) + " columns",
+          "the line is cut off, or a name holds the delimiter and needs quotes");
+    lines_.push_back(line.line);
+    rows_.push_back(std::move(line.fields));
+  });
   if (rows_.empty())
     throw core::Error("no row of data", file.string(), layout_.names.empty() ? "the file is empty" : "the file holds a header only");
 }

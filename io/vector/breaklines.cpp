@@ -36,12 +36,18 @@ class Reader {
       tally.count("breakline features without a geometry, left out", place);
       return;
     }
+    const size_t before = features.size();
     const std::unique_ptr<OGRGeometry> linear(shape->getLinearGeometry());
     const int field = file_.z.empty() ? -1 : feature.GetFieldIndex(file_.z.c_str());
     height_.reset();
     if (!linear->Is3D() && field >= 0 && feature.IsFieldSetAndNotNull(field)) height_ = feature.GetFieldAsDouble(field);
     add_shape(*linear, place);
+    if (features.size() > before)
+      tally.keep(kind_of_record, 1);
+    else
+      tally.count("breakline features with fewer than two vertices, left out", place);
   }
+  static constexpr const char* kind_of_record = "breakline features";
 
  private:
   void add_shape(const OGRGeometry& shape, const std::string& place) {
@@ -115,18 +121,6 @@ class Reader {
   std::optional<double> height_;
 };
 
-/// WKT of what the layer itself states; empty where it states nothing.
-std::string own_crs(OGRLayer& layer) {
-  const OGRSpatialReference* srs = layer.GetSpatialRef();
-  if (!srs || srs->IsLocal() || std::string(srs->GetName() ? srs->GetName() : "").starts_with("Undefined")) return {};
-  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
-  char* text = nullptr;
-  std::string out;
-  if (srs->exportToWkt(&text, options) == OGRERR_NONE && text) out = text;
-  CPLFree(text);
-  return out;
-}
-
 /// Coordinates of one layer into those of the survey; `products`: the CRS of a survey that states none.
 void transform(std::vector<Breakline>& features, const BreaklineFile& f, const std::string& own, const Survey& survey,
                const std::string& products, const std::string& place) {
@@ -196,10 +190,14 @@ std::vector<Breakline> read_breaklines(const Survey& survey, const std::string& 
       layers += (layers.empty() ? "" : ", ") + name;
       Reader reader(f, f.sigma.value);
       for (const auto& feature : *layer) {
-        if (!f.layer.empty() && f.layer != name && !is_of_layer(*feature, f.layer)) continue;
+        tally.read(Reader::kind_of_record, 1);
+        if (!f.layer.empty() && f.layer != name && !is_of_layer(*feature, f.layer)) {
+          tally.count("breakline features of other layers than the stated, left out");
+          continue;
+        }
         reader.add(*feature, place + ", feature " + std::to_string(feature->GetFID()), tally);
       }
-      transform(reader.features, f, own_crs(*layer), survey, crs, place);
+      transform(reader.features, f, stated_wkt(layer->GetSpatialRef()), survey, crs, place);
       out.insert(out.end(), std::make_move_iterator(reader.features.begin()), std::make_move_iterator(reader.features.end()));
     }
     messages.check("cannot read the breaklines", path);

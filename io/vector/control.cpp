@@ -76,12 +76,6 @@ RawLayer read_table(const std::filesystem::path& path, const ControlFile& f) {
   return out;
 }
 
-/// GeoPackage says "undefined" by a CRS of that name.
-bool states_a_crs(const OGRSpatialReference& srs) {
-  const char* name = srs.GetName();
-  return !srs.IsLocal() && !std::string(name ? name : "").starts_with("Undefined");
-}
-
 /// Fields of a layer by name; -1 where it has none.
 struct Attributes {
   int name, target, z, sigma_h, sigma_v;
@@ -125,6 +119,7 @@ void add_feature(OGRFeature& feature, const Attributes& fields, const ControlFil
     tally.count("control features without a geometry, left out", p.place);
     return;
   }
+  tally.keep("control features", 1);
   const OGRGeometry& shape = single_part(*whole, p.place);
   p.name = text_in(feature, fields.name);
   p.target = text_in(feature, fields.target);
@@ -168,18 +163,14 @@ std::vector<RawLayer> read_geopackage(const std::filesystem::path& path, const C
     OGRFeatureDefn& defn = *layer->GetLayerDefn();
     if (defn.GetGeomFieldCount() == 0) continue;
     RawLayer raw;
-    if (const OGRSpatialReference* srs = layer->GetSpatialRef(); srs && states_a_crs(*srs)) {
-      const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
-      char* text = nullptr;
-      if (srs->exportToWkt(&text, options) == OGRERR_NONE && text) raw.own_crs = text;
-      CPLFree(text);
-    }
+    raw.own_crs = stated_wkt(layer->GetSpatialRef());
     const Attributes fields{field_of(defn, f.name, usual.name, false, place), field_of(defn, f.target, usual.target, false, place),
                             field_of(defn, f.z, usual.z, true, place), field_of(defn, f.sigma_h, usual.sigma_h, true, place),
                             field_of(defn, f.sigma_v, usual.sigma_v, true, place)};
     for (const auto& feature : *layer) {
       RawPoint p;
       p.place = place + ", feature " + std::to_string(feature->GetFID());
+      tally.read("control features", 1);
       add_feature(*feature, fields, f, std::move(p), raw, tally);
     }
     out.push_back(std::move(raw));
@@ -250,7 +241,7 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
     const auto leave_out = [&](const RawPoint& raw, const std::string& why) {
       ++impossible;
       if (!fault) fault.emplace(why, raw.place, "check the columns and the CRS of this [[control]]");
-      tally.count("control points and targets with an impossible coordinate, left out", raw.place + ": " + why);
+      tally.count("control points with an impossible coordinate, left out", raw.place + ": " + why);
       if (!raw.target.empty()) lost.insert(raw.target);
     };
     for (const RawPoint& raw : layer.points) {
@@ -281,9 +272,15 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
   if (impossible > 0 && !are_few(impossible, all)) throw core::Error(*fault);
   std::vector<ControlPoint> out;
   for (std::vector<ControlPoint>& group : groups) {
-    if (lost.contains(group[0].target)) continue;
+    if (lost.contains(group[0].target)) {
+      tally.count("control points of targets that lose another corner, left out", group[0].place, group.size());
+      continue;
+    }
     if (!group[0].target.empty()) {
-      if (group.size() > 3 && group.front().ecef == group.back().ecef) group.pop_back();  // a ring that was closed
+      if (group.size() > 3 && group.front().ecef == group.back().ecef) {  // a ring that was closed
+        tally.count("control points that close the ring of their target, left out", group.back().place);
+        group.pop_back();
+      }
       hold_target(group);
     }
     for (size_t k = 0; k < group.size(); ++k) {
@@ -292,6 +289,8 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
       out.push_back(std::move(p));
     }
   }
+  tally.read("control points", all);
+  tally.keep("control points", out.size());
   if (out.empty()) tally.count("control files without a point", file);
   return out;
 }

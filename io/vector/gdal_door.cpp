@@ -146,15 +146,6 @@ double block_bytes(GDALDataset& raster) {
   return together ? largest * raster.GetRasterCount() : largest;
 }
 
-std::string wkt2(const OGRSpatialReference& srs) {
-  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
-  char* text = nullptr;
-  std::string out;
-  if (srs.exportToWkt(&text, options) == OGRERR_NONE && text) out = text;
-  CPLFree(text);
-  return out;
-}
-
 }  // namespace
 
 GdalMessages::GdalMessages() {
@@ -208,6 +199,20 @@ GdalSetting::GdalSetting(const char* key, const char* value) : key_(key) {
 }
 
 GdalSetting::~GdalSetting() { CPLSetThreadLocalConfigOption(key_.c_str(), had_ ? before_.c_str() : nullptr); }
+
+std::string wkt2(const OGRSpatialReference& srs) {
+  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
+  char* text = nullptr;
+  std::string out;
+  if (srs.exportToWkt(&text, options) == OGRERR_NONE && text) out = text;
+  CPLFree(text);
+  return out;
+}
+
+std::string stated_wkt(const OGRSpatialReference* srs) {
+  const char* name = srs ? srs->GetName() : nullptr;
+  return !srs || srs->IsLocal() || std::string(name ? name : "").starts_with("Undefined") ? std::string() : wkt2(*srs);
+}
 
 CrsFacts crs_facts(const std::string& text) {
   CrsFacts facts;

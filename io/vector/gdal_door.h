@@ -9,6 +9,7 @@
 #include "core/geo/crs.h"
 
 class GDALDataset;
+class OGRSpatialReference;
 
 namespace swath::io {
 
@@ -74,6 +75,11 @@ struct CrsFacts {
   std::string vertical_unit = "m";                   ///< of heights; the metre where the CRS does not say
   std::string vertical_name{core::unknown_heights};  ///< name of the vertical datum, "ellipsoidal height", or that none is stated
 };
+
+/// WKT2:2019; empty where GDAL has none for it.
+std::string wkt2(const OGRSpatialReference& srs);
+/// The same of what a file states; empty where it states nothing, or says so (a local system, GeoPackage's "Undefined").
+std::string stated_wkt(const OGRSpatialReference* srs);
 
 /// Throws core::Error where PROJ does not know the text.
 CrsFacts crs_facts(const std::string& crs);

@@ -116,6 +116,29 @@ void ContourWriter::close() {
   sink->close();
 }
 
+ContourFiles::ContourFiles(const std::filesystem::path& folder, const std::string& name, const std::string& crs, const std::string& heights)
+    : geojson_name_(name + ".geojson") {
+  for (const char* ending : {".gpkg", ".dxf"}) files_.emplace_back(folder / (name + ending), crs, heights);
+  with_geojson([&] { geojson_.emplace(folder / geojson_name_, crs, heights); });
+}
+
+void ContourFiles::with_geojson(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const core::SystemError&) {
+    throw;
+  } catch (const core::Error& e) {
+    geojson_.reset();
+    left_out_ = geojson_name_ + " is left out: " + e.what() + (e.hint().empty() ? std::string() : " (" + e.hint() + ")");
+  }
+}
+
+std::string ContourFiles::close() {
+  for (ContourWriter& f : files_) f.close();
+  if (geojson_) geojson_->close();
+  return left_out_;
+}
+
 void write_contours(const std::vector<std::filesystem::path>& files, const std::vector<core::ContourLine>& lines, const std::string& crs) {
   std::vector<ContourWriter> writers;
   for (const auto& file : files) writers.emplace_back(file, crs);
@@ -130,12 +153,7 @@ VectorLines read_lines(const std::filesystem::path& file) {
   if (!set) messages.fail("cannot read the vector file", file, std::filesystem::exists(file) ? "" : "check the name");
   VectorLines out;
   for (OGRLayer* layer : set->GetLayers()) {
-    if (const OGRSpatialReference* srs = layer->GetSpatialRef(); srs && out.crs_wkt.empty()) {
-      const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
-      char* text = nullptr;
-      if (srs->exportToWkt(&text, options) == OGRERR_NONE && text) out.crs_wkt = text;
-      CPLFree(text);
-    }
+    if (const OGRSpatialReference* srs = layer->GetSpatialRef(); srs && out.crs_wkt.empty()) out.crs_wkt = wkt2(*srs);
     const Fields fields = fields_of(*layer->GetLayerDefn());
     for (const auto& feature : *layer) {
       const OGRGeometry* shape = feature->GetGeometryRef();

@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +50,27 @@ class ContourWriter {
   std::unique_ptr<ContourSink> sink_;
   std::filesystem::path file_;
   std::uint64_t count_ = 0;
+};
+
+/// NAME.gpkg, NAME.dxf and NAME.geojson in a folder. GeoJSON is in WGS84: where the CRS has no way there it is left out.
+class ContourFiles {
+ public:
+  ContourFiles(const std::filesystem::path& folder, const std::string& name, const std::string& crs, const std::string& heights);
+  template <class T>
+  void add(const T& what) {
+    for (ContourWriter& f : files_) f.add(what);
+    if (geojson_) with_geojson([&] { geojson_->add(what); });
+  }
+  /// Lines so far.
+  std::uint64_t count() const { return files_.front().count(); }
+  /// Why the GeoJSON is left out; empty where it is there.
+  std::string close();
+
+ private:
+  void with_geojson(const std::function<void()>& work);
+  std::vector<ContourWriter> files_;
+  std::optional<ContourWriter> geojson_;
+  std::string geojson_name_, left_out_;
 };
 
 /// All lines into each of the files.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // AutoCAD R12 (AC1009) text: the oldest form with layers and polylines, which every CAD and GIS reads and which needs no handles.
 // A contour is a 2D POLYLINE whose elevation stands in group 30 (Autodesk, DXF Reference, POLYLINE and VERTEX).
+// GDAL's driver was weighed: it writes R2000 with handles from template files that must be found at run time, states neither CRS nor units,
+// and takes layers' colours and justified texts from style strings only.
 #include <algorithm>
 #include <array>
 #include <limits>

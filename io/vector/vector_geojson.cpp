@@ -2,6 +2,8 @@
 // RFC 7946: WGS84 longitude and latitude (section 4), lines cut at the antimeridian (section 3.1.9), foreign members allowed (6.1).
 // Only the horizontal part of the CRS is transformed; heights stay in the CRS's own vertical reference, as a property, because the
 // altitude of RFC 7946 is ellipsoidal and a contour's height is not.
+// GDAL's driver was weighed: it cuts at the antimeridian only where it was built with GEOS, takes ballpark transformations between datums
+// without a word and writes points that have no WGS84 coordinates; what refuses both is most of this file.
 #include <ogr_spatialref.h>
 
 #include <cmath>

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "core/records/gnss_columns.h"
 #include "core/records/trajectory_columns.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
@@ -85,7 +86,7 @@ class Unpacker {
 
 template <class F, class G>
 void visit_gnss(F& f, G& d) {
-  f(d.time), f(d.position), f(d.covariance), f(d.velocity), f(d.velocity_covariance), f(d.quality), f(d.satellites);
+  core::for_each_gnss_column([&](auto member) { f(d.*member); });
 }
 
 template <class F, class E>

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <utility>
 
+#include "core/config/result_visitors.h"
+#include "core/error.h"
 #include "io/text/output_file.h"
 #include "pipeline/work/handed_on.h"
 
@@ -16,6 +18,25 @@ using Clock = std::chrono::steady_clock;
 constexpr const char *record_name = "survey.done", *partial_name = "files.done", *handed_on_name = "handed_on.bin";
 
 }  // namespace
+
+core::Value records_of(const core::Tally& tally) {
+  core::Value out = core::Value::array();
+  for (const core::RecordCount& r : tally.records()) out.push(core::reported(r));
+  return out;
+}
+
+void add_records(core::Tally& tally, const core::Value& records) {
+  for (const core::Value& r : records.items()) {
+    const std::string& kind = r.find("name")->as_text();
+    tally.read(kind, static_cast<std::uint64_t>(r.find("read")->as_int()));
+    if (const core::Value* kept = r.find("kept")) tally.keep(kind, static_cast<std::uint64_t>(kept->as_int()));
+  }
+}
+
+void expect_balance(const core::Tally& tally, const stages::Stage& stage) {
+  if (const std::string kind = tally.unbalanced(); !kind.empty())
+    throw core::Error(kind + " of its files were lost", std::string(stage.info().name), "this is a fault of the program");
+}
 
 bool is_survey_piece_done(const fs::path& folder) { return fs::exists(folder / record_name); }
 
@@ -31,6 +52,7 @@ SurveyPiece run_survey_piece(const stages::Stage& stage, stages::Context& contex
       write_record(folder / partial_name, so_far);
     });
     stage.run_survey(context, piece.tally, piece.findings);
+    expect_balance(piece.tally, stage);
   }
   piece.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   const bool kept = keep && write_handed_on(folder / handed_on_name, before, HandedOn::of(context));
@@ -45,6 +67,7 @@ SurveyPiece run_survey_piece(const stages::Stage& stage, stages::Context& contex
   if (!kept) return piece;
   core::Value note = core::Value::object();
   note["tally"] = piece.tally.value();
+  note["records"] = records_of(piece.tally);
   note["findings"] = piece.findings;
   note["seconds"] = piece.seconds;
   write_record(folder / record_name, {piece.files, std::move(note)});
@@ -56,7 +79,9 @@ SurveyPiece resume_survey_piece(stages::Context& context, const fs::path& folder
   if (!record) throw damaged_work(folder / record_name);
   read_handed_on(folder / handed_on_name, HandedOn::of(context)).give(context);
   const core::Value& note = record->note;
-  return {core::Tally::from(*note.find("tally")), *note.find("findings"), note.find("seconds")->as_number(), std::move(record->files)};
+  core::Tally tally = core::Tally::from(*note.find("tally"));
+  add_records(tally, *note.find("records"));
+  return {std::move(tally), *note.find("findings"), note.find("seconds")->as_number(), std::move(record->files)};
 }
 
 }  // namespace swath::pipeline

@@ -3,6 +3,13 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config/result.h"
+#include "core/grid.h"
 
 namespace swath::terrain {
 
@@ -24,5 +31,46 @@ double smallest_interval(const MapClass& c, double sigma);
 
 /// The smallest interval of the usual series 1, 2, 2.5, 5 times a power of ten that is not less than `interval`.
 double usual_interval(double interval);
+
+/// Sums over a model's cells, plain data: those of several tiles add up.
+struct SurfaceFacts {
+  double sum_of_heights = 0.0, sum_of_variances = 0.0;
+  std::uint64_t heights = 0, sigmas = 0;
+  std::uint64_t beyond = 0;  ///< cells whose own sigma keeps no class of maps at the interval
+  SurfaceFacts& operator+=(const SurfaceFacts& o);
+};
+/// Of the cells of `own`, a part of the grid's lattice.
+SurfaceFacts facts_of(const core::Grid& grid, const core::Lattice& own, double interval);
+
+/// The smallest interval of each class, m.
+struct ClassIntervals {
+  double of[map_classes.size()] = {};
+};
+template <class V>
+void describe(const ClassIntervals& r, V& v) {
+  for (size_t k = 0; k < map_classes.size(); ++k)
+    v.result({&map_classes[k].name, 1}, r.of[k], core::metres(), "Smallest interval that the model carries in this class.");
+}
+
+/// The interval of contours against the model that they are drawn from.
+struct CarriedInterval {
+  std::optional<double> c_factor{}, model_sigma{}, beyond_class_c{};
+  std::optional<std::string> map_class{};
+  std::optional<ClassIntervals> smallest{};
+  std::vector<std::string> findings{};
+};
+template <class V>
+void describe(const CarriedInterval& r, V& v) {
+  v.result("c_factor", r.c_factor, core::plain(0), "Flying height above the mean terrain over the interval; absent without a trajectory.");
+  v.result("model_sigma_m", r.model_sigma, core::metres().in_summary(), "Sigma of the model, rms over its cells.");
+  v.result("map_class", r.map_class, core::plain().in_summary(), "Class of maps that the interval keeps: A, B, C or none.");
+  v.table("smallest_interval_m", r.smallest, "Smallest interval by class of maps.");
+  v.result("share_of_cells_below_class_c", r.beyond_class_c, core::share(), "Cells whose own sigma keeps no class at the interval.");
+  v.result("findings", r.findings, core::Form{}.only_if(!r.findings.empty()), "What speaks against the contours.");
+}
+
+/// `flying_height`: above the ellipsoid or level that heights count from, m; NaN where it is not known. `unit`: metres of the product's
+/// unit of heights, for words.
+CarriedInterval judge_interval(const SurfaceFacts& facts, double interval, double flying_height, double unit);
 
 }  // namespace swath::terrain

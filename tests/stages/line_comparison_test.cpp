@@ -50,39 +50,7 @@ TEST(LineComparison, LaterStagesReadWhatAnEarlierOneWrote) {
   ASSERT_TRUE(known);
   EXPECT_EQ(known->offsets.at(7), -0.05);
   EXPECT_TRUE(std::isnan(known->common));
-  // Nothing compared: what neighbours share is taken to be as large as their scatter.
-  EXPECT_NEAR(known->sigma(), std::sqrt(2.0) * 0.03, 1e-9);
-  EXPECT_NEAR(known->horizontal_sigma(), std::sqrt(2.0) * 0.03, 1e-9);
-  c.steep_places = 3;
-  const auto of = [&](double common, double along) {
-    c.common = common, c.common_horizontal = along;
-    test::write_bytes(folder / "lines.json", io::to_json(core::reported(c)));
-    return *known_lines(context);
-  };
-  EXPECT_NEAR(of(0.02, 0.05).shared(), 0.02, 1e-9);
-  // Three steep places, and as a fourth that the place is as good as the height.
-  EXPECT_NEAR(of(0.02, 0.05).horizontal_sigma(), std::sqrt(2.0 * (3 * 0.05 * 0.05 + 0.02 * 0.02) / 4), 1e-9);
-  EXPECT_NEAR(of(0.02, std::nan("")).horizontal_sigma(), std::sqrt(2.0) * 0.02, 1e-9);  // no steep ground: as the heights
-
-  core::Block b;
-  b.z = {1.0, 2.0, 3.0};
-  b.x = b.y = b.z;
-  b.strip = {3, 7, 9};
-  take_offsets(b, *known);
-  EXPECT_EQ(b.z, (std::vector<double>{0.95, 2.05, 3.0}));
-}
-
-TEST(LineComparison, OnlyPointsWithoutASigmaGetOne) {
-  core::Block b;
-  b.x = b.y = b.z = {1.0, 2.0};
-  EXPECT_EQ(give_sigmas(b, 0.03, 0.04), 2u);
-  EXPECT_EQ(b.sigma_v, (std::vector<float>{0.03F, 0.03F}));
-  EXPECT_EQ(b.sigma_h, (std::vector<float>{0.04F, 0.04F}));
-  b.sigma_v = {0.0F, 0.1F};
-  b.sigma_h = {0.0F, 0.2F};
-  EXPECT_EQ(give_sigmas(b, 0.05, 0.06), 1u);
-  EXPECT_EQ(b.sigma_v, (std::vector<float>{0.05F, 0.1F}));
-  EXPECT_EQ(b.sigma_h, (std::vector<float>{0.06F, 0.2F}));
+  EXPECT_EQ(known->scatter, 0.03);
 }
 
 }  // namespace

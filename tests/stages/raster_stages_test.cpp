@@ -10,6 +10,7 @@
 
 #include "core/config/option_visitors.h"
 #include "core/error.h"
+#include "core/paste.h"
 #include "io/las/las_writer.h"
 #include "io/text/value_file.h"
 #include "stages/grid_tile.h"
@@ -105,10 +106,10 @@ void expect_the_tiling_changes_nothing(const std::string& type, const std::vecto
   for (int iy = 0; iy < 4; ++iy)
     for (int ix = 0; ix < 4; ++ix) w.run(*stage, all, ix, iy, w.folder / "parts");
   for (const std::string& grid : grids) {
-    const core::Grid whole = read_grid_tile(grid_file(w.folder / ("whole/" + grid), {0, 0}));
+    const core::Grid whole = io::read_grid_file(grid_file(w.folder / ("whole/" + grid), {0, 0}));
     core::Grid parts(whole.lattice);
     for (int iy = 0; iy < 4; ++iy)
-      for (int ix = 0; ix < 4; ++ix) paste(read_grid_tile(grid_file(w.folder / ("parts/" + grid), {ix, iy})), parts);
+      for (int ix = 0; ix < 4; ++ix) core::paste(io::read_grid_file(grid_file(w.folder / ("parts/" + grid), {ix, iy})), parts);
     EXPECT_EQ(parts.height, whole.height) << grid;
     EXPECT_EQ(parts.reason, whole.reason) << grid;
   }
@@ -134,7 +135,7 @@ TEST(RasterStages, CellsOutsideTheBoundaryAreNoHolesOfTheVisibility) {
   test::write_bytes(w.folder / "breaklines/options.json", io::to_json(core::effective_values(core::described(options))));
   w.grids.made[Product::visibility] = [](double, double, float&, core::Void& reason) { reason = core::Void::never_seen; };
   w.run(*stage_with("terrain.dtm", "max_edge = \"6 m\""), all, 0, 0, w.folder / "dtm");
-  const core::Grid g = read_grid_tile(grid_file(w.folder / "dtm", {0, 0}));
+  const core::Grid g = io::read_grid_file(grid_file(w.folder / "dtm", {0, 0}));
   EXPECT_EQ(g.reason[g.lattice.at(10, 30)], core::Void::none);
   EXPECT_EQ(g.reason[g.lattice.at(35, 30)], core::Void::never_seen);
   EXPECT_EQ(g.reason[g.lattice.at(50, 30)], core::Void::no_data);  // beyond the boundary

@@ -13,6 +13,8 @@
 #include "core/error.h"
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
+#include "core/records/gnss_columns.h"
+#include "core/records/imu_columns.h"
 #include "core/time_gap.h"
 #include "trajectory/ins/alignment.h"
 #include "trajectory/ins/ins_output.h"
@@ -113,20 +115,11 @@ Trimmed trim(core::ImuData imu, core::GnssData gnss) {
     throw core::Error("IMU and GNSS do not overlap: IMU from " + seconds(begin) + " to " + seconds(end) + ", fixes from " +
                           seconds(gnss.time.front()) + " to " + seconds(gnss.time.back()) + " s GPS time",
                       "trajectory.ins_gnss", gap.empty() ? "check the time scales, weeks and dates of both" : gap);
-  keep(gnss.time, first, last);
-  keep(gnss.position, first, last);
-  keep(gnss.covariance, first, last);
-  keep(gnss.velocity, first, last);
-  keep(gnss.velocity_covariance, first, last);
-  keep(gnss.quality, first, last);
-  keep(gnss.satellites, first, last);
+  core::for_each_gnss_column([&](auto member) { keep(gnss.*member, first, last); });
   const auto& t = imu.time;
   const auto imu_first = static_cast<size_t>(std::lower_bound(t.begin(), t.end(), gnss.time.front() - longest_lead) - t.begin());
   const auto imu_last = static_cast<size_t>(std::upper_bound(t.begin(), t.end(), gnss.time.back() + longest_lead) - t.begin());
-  keep(imu.time, imu_first, imu_last);
-  keep(imu.step, imu_first, imu_last);
-  keep(imu.angle, imu_first, imu_last);
-  keep(imu.velocity, imu_first, imu_last);
+  core::for_each_imu_column([&](auto member) { keep(imu.*member, imu_first, imu_last); });
   return {std::move(imu), std::move(gnss)};
 }
 

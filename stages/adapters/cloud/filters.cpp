@@ -12,6 +12,8 @@ namespace {
 
 using core::Column;
 
+constexpr const char* coarse_times = "times do not distinguish pulses, return numbers left as they are";
+
 struct ReturnsStageOptions : filters::ReturnsOptions {
   bool repair_clouds = false;
 };
@@ -22,7 +24,21 @@ void describe(ReturnsStageOptions& o, V& v) {
   v.option("repair_clouds", o.repair_clouds, "Repair numbers of point clouds, too, where the points' times distinguish the pulses.");
 }
 
-class Returns : public OptionStage<ReturnsStageOptions> {
+struct ReturnCounts {
+  std::uint64_t repaired = 0, inconsistent = 0, as_they_are = 0;
+  filters::StripReturns returns{};  ///< broken down by flight line
+};
+
+template <class V>
+void describe(const ReturnCounts& r, V& v) {
+  using core::if_any;
+  v.result("return numbers repaired", r.repaired, if_any(), "Returns whose number or count was changed.");
+  v.result("return numbers inconsistent, flagged", r.inconsistent, if_any(), "Returns that keep numbers which cannot be.");
+  v.result(coarse_times, r.as_they_are, if_any(), "Returns of such clouds.");
+  describe(r.returns, v);
+}
+
+class Returns : public OptionStage<ReturnsStageOptions, ReturnCounts> {
  public:
   const Info& info() const override {
     static const Info info{
@@ -46,18 +62,14 @@ class Returns : public OptionStage<ReturnsStageOptions> {
       if (filters::tells_pulses(batch.block))
         repair(batch.block, careful, tally);
       else
-        tally.count("times do not tell pulses apart, return numbers left as they are", batch.block.size());
+        tally.count(coarse_times, batch.block.size());
     }
-    filters::ReturnStatistics statistics;
-    statistics.add(batch.block);
-    for (const auto& [line, s] : statistics.strips()) {
-      const std::string name = "line " + std::to_string(line) + ": ";
-      for (size_t k = 1; k < s.pulses.size(); ++k)
-        if (s.pulses[k]) tally.count(name + "pulses of " + std::to_string(k) + (k == 1 ? " return" : " returns"), s.pulses[k]);
-      tally.count(name + "first returns", s.first);
-      tally.count(name + "last returns", s.last);
-      tally.count(name + "only returns", s.only);
-      if (s.intermediate) tally.count(name + "intermediate returns", s.intermediate);
+    std::map<std::uint16_t, filters::StripReturns> lines;
+    filters::count_returns(batch.block, lines);
+    for (const auto& [line, returns] : lines) {
+      core::Tally of_line;
+      core::count_results(returns, of_line);
+      tally.add(of_line, line);
     }
   }
 

@@ -6,7 +6,6 @@
 #include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "stages/adapters/adapters.h"
-#include "stages/area.h"
 
 namespace swath::stages {
 namespace {
@@ -36,7 +35,7 @@ class Georeference : public OptionStage<NoOptions, georef::Counts> {
     to_metres(context, block);
     block.strip.assign(block.size(), static_cast<std::uint16_t>(batch.line));
     block.classification.resize(block.size(), core::point_class::never_classified);
-    keep_in_area(context, block, "line " + std::to_string(batch.line), tally);
+    core::keep_in_area(context.area, block, "line " + std::to_string(batch.line), tally);
     batch.block = std::move(block);
     batch.shots = {};
   }

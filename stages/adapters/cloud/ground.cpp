@@ -31,15 +31,15 @@ class Ground : public ClassFilter<filters::classify_ground, true> {
   double left_per_area() const override { return 1.0; }
   void thin(const Context& context, const Box& tiles, core::Block& around) const override {
     std::vector<double> heights = around.z;
-    if (const std::optional<KnownLines> lines = known_lines(context)) take_offsets(around, *lines);
+    if (const std::optional<quality::KnownLines> lines = known_lines(context)) quality::take_offsets(around, *lines);
     const std::vector<std::uint32_t> rows = filters::needed_around(around, {tiles.x0, tiles.y0, tiles.x1, tiles.y1}, options);
     around.z.swap(heights);
     around = core::select(around, rows);
   }
   void run_tile(const Context& context, TileJob& job) const override {
     filters::GroundOptions o = options;
-    if (const std::optional<KnownLines> lines = known_lines(context)) {
-      take_offsets(job.block, *lines);  // of this copy: heights are not among what the stage gives
+    if (const std::optional<quality::KnownLines> lines = known_lines(context)) {
+      quality::take_offsets(job.block, *lines);  // of this copy: heights are not among what the stage gives
       if (!std::isnan(lines->residual)) o.noise.value = std::hypot(o.noise.value, lines->residual);
     }
     const KeptClasses kept(job.block, options.keep_classes);

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/time.h"
 #include "io/las/cloud_extent.h"
+#include "io/las/cloud_rim.h"
 #include "io/las/las_reader.h"
 #include "io/records/laser_checks.h"
 #include "io/records/laser_file.h"
@@ -19,7 +20,6 @@
 #include "stages/adapters/flight/place.h"
 #include "stages/adapters/units.h"
 #include "stages/area.h"
-#include "stages/cloud_rim.h"
 #include "trajectory/checks.h"
 
 namespace swath::stages {
@@ -51,7 +51,8 @@ class LaserReader : public OptionStage<NoOptions> {
         {},
         {},
         {},
-        {Product::shots}};
+        {Product::shots},
+        {Product::of<trajectory::Trajectory>()}};
     return info;
   }
   bool is_source() const override { return true; }
@@ -132,13 +133,14 @@ class CloudReader : public StripReader {
     }
     keep_near(block, tally);
     set_unknown_times(block, tally);
-    if (!place_.transform) keep_rim_inside(block, rim_, reader_.header().scale.head<2>());
+    if (!place_.transform) io::keep_rim_inside(block, rim_, reader_.header().scale.head<2>());
     if (place_.file_height_unit != 1.0)
       for (double& z : block.z) z *= place_.file_height_unit;
     if (place_.transform) convert(block, tally);
     scale_block(context_, block, false);
     block.origin = context_.origin;
-    keep_in_area(context_, block, file_.file.string(), tally);
+    core::keep_in_area(context_.area, block, file_.file.string(), tally);
+    tally.keep("points", block.size());
     if (file_.line) block.strip.assign(block.size(), static_cast<std::uint16_t>(*file_.line));
     if (has_unknown_times_ && block.size() > 0)
       tally.count("times of no stated week or scale (points.week, points.time_scale), kept as they are", block.size());
@@ -156,7 +158,7 @@ class CloudReader : public StripReader {
     for (size_t i = 0; i < block.size(); ++i) far += is_far(i);
     if (far == 0) return;
     far_ += far;
-    leave_out(block, is_far, "points alone far from all others of their file, left out", file_.file.string(), tally);
+    core::leave_out(block, is_far, "points alone far from all others of their file, left out", file_.file.string(), tally);
     if (extent_.is_stated() && !io::are_few(far_, reader_.header().point_count))
       throw core::Error("points lie far from the box that the file's header states", file_.file.string(),
                         "the header is wrong: write the file again with a tool that makes its box from the points");
@@ -262,7 +264,7 @@ class LasCloud : public OptionStage<NoOptions> {
     if (places.x0 <= places.x1) set_area(context, places, around_clouds);
     if (context.crs.heights() == core::Heights::unknown) context.heights = heights_of_clouds(context.survey);
   }
-  std::vector<Strip> strips(const Context& context, core::Tally&) const override {
+  std::vector<Strip> strips(const Context& context, core::Tally& tally) const override {
     std::vector<Strip> out;
     rim_.setConstant(-std::numeric_limits<double>::infinity());
     for (size_t i = 0; i < context.survey.points.size(); ++i) {
@@ -270,6 +272,7 @@ class LasCloud : public OptionStage<NoOptions> {
       std::vector<std::string> ignored;
       const io::LasHeader header = io::read_las_header(io::resolve(context.survey, f.file), ignored);
       out.push_back({i, 0, f.line.value_or(0), f.file.string(), header.point_count});
+      tally.read("points", header.point_count);
       if (extents_[i].points() > 0) rim_ = rim_.cwiseMax(extents_[i].high());
     }
     return out;

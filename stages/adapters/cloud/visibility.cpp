@@ -89,7 +89,7 @@ class Visibility : public OptionStage<filters::VisibilityOptions, BeamCounts, Vi
     for (const TileKey key : job.tiles) {
       files.push_back(name(context, key));
       tiles.push_back(context.output / "visibility" / files.back());
-      for (const core::Void r : read_grid_tile(grid_file(job.folder, key)).reason)
+      for (const core::Void r : io::read_grid_file(grid_file(job.folder, key)).reason)
         cells += r != core::Void::no_data, never += r == core::Void::never_seen;
     }
     io::write_vrt(context.output / "visibility.vrt", tiles);

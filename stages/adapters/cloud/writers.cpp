@@ -4,6 +4,7 @@
 #include <mutex>
 #include <optional>
 
+#include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "io/las/las_writer.h"
 #include "io/raster/geotiff.h"
@@ -50,7 +51,15 @@ void describe(LasOptions& o, V& v) {
   v.option("times", o.times, "Times of clouds: as recorded, or adjusted (adjusted standard GPS time).");
 }
 
-class LasTiles : public OptionStage<LasOptions> {
+struct TileFindings {
+  std::uint64_t tiles = 0;
+};
+template <class V>
+void describe(const TileFindings& r, V& v) {
+  v.result("tiles", r.tiles, core::plain().in_summary(), "Tiles that were written.");
+}
+
+class LasTiles : public OptionStage<LasOptions, NoResults, TileFindings> {
  public:
   const Info& info() const override {
     static const Info info{"writers.las",
@@ -105,7 +114,7 @@ class LasTiles : public OptionStage<LasOptions> {
     std::vector<std::string> files;
     for (const TileKey key : job.tiles) files.push_back(name(context, key));
     write_list(context.output / options.folder, files);
-    job.findings["tiles"] = files.size();
+    job.findings = core::reported(TileFindings{files.size()});
     if (sources_)
       for (const std::string& what : sources_->left_out()) job.tally.count("not carried from the cloud's files", what);
   }
@@ -154,7 +163,7 @@ class LasTiles : public OptionStage<LasOptions> {
   mutable io::LasHeader header_;
 };
 
-class GridTiles : public OptionStage<NoOptions> {
+class GridTiles : public OptionStage<NoOptions, NoResults, TileFindings> {
  public:
   const Info& info() const override {
     static const Info info{
@@ -225,7 +234,7 @@ class GridTiles : public OptionStage<NoOptions> {
       }
       write_list(folder, files);
     }
-    job.findings["tiles"] = job.tiles.size();
+    job.findings = core::reported(TileFindings{job.tiles.size()});
   }
 
  private:
@@ -293,7 +302,15 @@ void describe(PictureWriteOptions& o, V& v) {
   v.check(names_drawing(o.file), "file ends in .png, .svg or .pdf");
 }
 
-class PictureWriter : public OptionStage<PictureWriteOptions> {
+struct PictureFindings {
+  std::string file{};
+};
+template <class V>
+void describe(const PictureFindings& r, V& v) {
+  v.result("file", r.file, "Name of the picture within the output.");
+}
+
+class PictureWriter : public OptionStage<PictureWriteOptions, NoResults, PictureFindings> {
  public:
   const Info& info() const override {
     static const Info info{"writers.picture",
@@ -330,7 +347,7 @@ class PictureWriter : public OptionStage<PictureWriteOptions> {
       }
     }
     write_drawing(context.output / options.file, report::relief_map(grid, lines, o));
-    job.findings["file"] = options.file;
+    job.findings = core::reported(PictureFindings{options.file});
   }
 };
 

@@ -163,7 +163,7 @@ class Truth : public OptionStage<NoOptions, NoResults, TruthFindings> {
     for (const TileKey key : job.tiles) {
       const std::string bytes = io::read_text_file(sums_file(job.folder, key));
       Sums s;
-      if (bytes.size() != sizeof s) cut_short(sums_file(job.folder, key));
+      if (bytes.size() != sizeof s) io::cut_short(sums_file(job.folder, key));
       std::memcpy(&s, bytes.data(), sizeof s);
       all.add(s);
     }

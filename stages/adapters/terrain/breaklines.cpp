@@ -6,16 +6,17 @@
 #include <mutex>
 
 #include "core/config/option_visitors.h"
+#include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "io/vector/breaklines.h"
 #include "stages/adapters/adapters.h"
 #include "stages/area.h"
-#include "stages/breakline_area.h"
 #include "stages/grid_tile.h"
 #include "stages/waters.h"
 #include "terrain/dtm.h"
+#include "terrain/water/breakline_area.h"
 
 namespace swath::stages {
 namespace {
@@ -42,7 +43,7 @@ std::vector<core::Breakline> features_of(const Context& context, core::Tally& ta
   area.box = area.box.grown(around_clouds);
   area.box = {area.box.x0 - context.origin.x(), area.box.y0 - context.origin.y(), area.box.x1 - context.origin.x(),
               area.box.y1 - context.origin.y()};
-  keep_in_area(out, area, context.origin, tally);
+  terrain::keep_in_area(out, area, context.origin, tally);
   return out;
 }
 
@@ -56,7 +57,42 @@ void describe(SettleOptions& o, V& v) {
   v.option("classes", o.classes, core::within(0, 255), "ASPRS classes of shore points.");
 }
 
-class BreaklineStage : public OptionStage<SettleOptions> {
+/// A lake or river as it was settled.
+struct SettledWater {
+  std::string place{}, kind{};
+  std::optional<std::uint64_t> shore_points{};
+  std::optional<double> lowest{}, highest{}, sigma{};
+};
+template <class V>
+void describe(const SettledWater& r, V& v) {
+  v.result("place", r.place, "File, layer and feature.");
+  v.result("kind", r.kind, "lake or river.");
+  v.result("shore_points", r.shore_points, "Points of the shore that its height comes from; absent where the feature states it.");
+  v.result("lowest_m", r.lowest, core::metres(), "Lowest height.");
+  v.result("highest_m", r.highest, core::metres(), "Highest height.");
+  v.result("sigma_m", r.sigma, core::metres(), "Sigma of its heights.");
+}
+
+struct BreaklineCounts {
+  std::uint64_t at_shores = 0;
+};
+template <class V>
+void describe(const BreaklineCounts& r, V& v) {
+  v.result("ground points at shores", r.at_shores, "Points near the shores of water without heights.");
+}
+
+struct BreaklineFindings {
+  std::vector<SettledWater> waters{};
+  std::uint64_t features = 0, edges = 0;
+};
+template <class V>
+void describe(const BreaklineFindings& r, V& v) {
+  v.tables("waters", r.waters, "Lakes and rivers.");
+  v.result("features", r.features, core::plain().in_summary(), "Breaklines, boundaries and waters.");
+  v.result("edges", r.edges, "Edges of the network that they make.");
+}
+
+class BreaklineStage : public OptionStage<SettleOptions, BreaklineCounts, BreaklineFindings> {
  public:
   const Info& info() const override {
     static const Info info{"terrain.breaklines",
@@ -84,7 +120,7 @@ class BreaklineStage : public OptionStage<SettleOptions> {
     ground.classes = options.classes;
     const auto shores =
         terrain::shore_points(job.block, terrain::terrain_rows(job.block, ground), job.own, features(context), options.water);
-    job.tally.count("ground points at shores", shores.size());
+    core::count_results(BreaklineCounts{shores.size()}, job.tally);
     io::write_text_file(shore_file(job.folder, job.key),
                         {reinterpret_cast<const char*>(shores.data()), shores.size() * sizeof(terrain::ShorePoint)});
   }
@@ -94,28 +130,29 @@ class BreaklineStage : public OptionStage<SettleOptions> {
     for (const TileKey key : job.tiles) {
       const fs::path file = shore_file(job.folder, key);
       const std::string bytes = io::read_text_file(file);
-      if (bytes.size() % sizeof(terrain::ShorePoint) != 0) cut_short(file);
+      if (bytes.size() % sizeof(terrain::ShorePoint) != 0) io::cut_short(file);
       for (size_t at = 0; at + sizeof(terrain::ShorePoint) <= bytes.size(); at += sizeof(terrain::ShorePoint)) {
         terrain::ShorePoint p;
         std::memcpy(&p, bytes.data() + at, sizeof p);
-        if (p.feature >= shores.size()) cut_short(file);
+        if (p.feature >= shores.size()) io::cut_short(file);
         shores[p.feature].push_back(p);
       }
     }
     std::vector<terrain::SettledLine> settled;
-    core::Value& waters = job.findings["waters"] = core::Value::array();
+    BreaklineFindings found;
     for (size_t f = 0; f < all.size(); ++f) {
       const bool derived = all[f].is_water() && !all[f].has_height;
       const auto points = shores[f].size();
       if (all[f].is_water()) {
         all[f] = terrain::with_heights(all[f], std::move(shores[f]), options.water, job.tally);
-        waters.push(account(context, all[f], derived, points));
+        found.waters.push_back(account(context, all[f], derived, points));
       }
       settled.push_back({std::move(all[f]), derived});
     }
     const terrain::Breaklines ready(settled, options, context.origin);  // reports lines that meet at different heights
-    job.findings["features"] = settled.size();
-    job.findings["edges"] = ready.network().edges.size();
+    found.features = settled.size();
+    found.edges = ready.network().edges.size();
+    job.findings = core::reported(found);
     io::write_text_file(job.folder / settled_file, terrain::pack(settled));
     terrain::BreaklineOptions mine = options;
     io::write_text_file(job.folder / options_file, io::to_json(core::effective_values(core::described(mine))));
@@ -129,17 +166,15 @@ class BreaklineStage : public OptionStage<SettleOptions> {
     });
     return features_;
   }
-  static core::Value account(const Context& context, const core::Breakline& b, bool derived, size_t points) {
-    core::Value one = core::Value::object();
-    one["place"] = b.place.substr(b.place.rfind('/') + 1);
-    one["kind"] = b.kind == core::BreaklineKind::lake ? "lake" : "river";
-    if (derived) one["shore_points"] = points;
+  static SettledWater account(const Context& context, const core::Breakline& b, bool derived, size_t points) {
+    SettledWater one{b.place.substr(b.place.rfind('/') + 1), b.kind == core::BreaklineKind::lake ? "lake" : "river"};
+    if (derived) one.shore_points = points;
     if (!b.has_height) return one;
     const auto [low, high] = std::minmax_element(b.parts.front().begin(), b.parts.front().end(),
                                                  [](const Eigen::Vector3d& p, const Eigen::Vector3d& q) { return p.z() < q.z(); });
-    one["lowest_m"] = low->z() + context.origin.z();
-    one["highest_m"] = high->z() + context.origin.z();
-    one["sigma_m"] = b.sigma;
+    one.lowest = low->z() + context.origin.z();
+    one.highest = high->z() + context.origin.z();
+    one.sigma = b.sigma;
     return one;
   }
   mutable std::once_flag once_;

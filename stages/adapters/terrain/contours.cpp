@@ -11,20 +11,23 @@
 #include <memory>
 #include <optional>
 
-#include "core/error.h"
+#include "core/config/result_visitors.h"
+#include "core/geo/crs.h"
+#include "core/paste.h"
+#include "core/statistics.h"
 #include "io/text/output_file.h"
 #include "io/text/packed_column.h"
 #include "io/text/value_file.h"
 #include "io/vector/vector.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/terrain/breaklines.h"
-#include "stages/adapters/terrain/contour_interval.h"
 #include "stages/adapters/units.h"
 #include "stages/grid_tile.h"
 #include "terrain/contours/contour_labels.h"
 #include "terrain/contours/contour_lines.h"
 #include "terrain/contours/contour_surface.h"
 #include "terrain/contours/contours.h"
+#include "terrain/contours/map_class.h"
 #include "terrain/contours/spot_heights.h"
 #include "terrain/dtm.h"
 
@@ -102,47 +105,48 @@ std::string height_text(double height, int decimals) {
   return text;
 }
 
-/// The files of contours. GeoJSON is in WGS84: where the CRS has no way there it is left out, and the findings say why.
-class ContourFiles {
- public:
-  ContourFiles(const Context& context, const std::string& name) : geojson_name_(name + ".geojson") {
-    for (const char* ending : {".gpkg", ".dxf"})
-      files_.emplace_back(context.output / (name + ending), context.product_crs, context.heights);
-    with_geojson([&] { geojson_.emplace(context.output / geojson_name_, context.product_crs, context.heights); });
-  }
-  template <class T>
-  void add(const T& what) {
-    for (io::ContourWriter& f : files_) f.add(what);
-    if (geojson_) with_geojson([&] { geojson_->add(what); });
-  }
-  std::uint64_t count() const { return files_.front().count(); }
-  void close(core::Value& findings) {
-    for (io::ContourWriter& f : files_) f.close();
-    if (geojson_) geojson_->close();
-    if (left_out_.empty()) return;
-    core::Value& words = findings["findings"];
-    if (!words.is_array()) words = core::Value::array();
-    words.push(geojson_name_ + " is left out: " + left_out_);
-  }
+struct ContourCounts {
+  std::uint64_t segments = 0;
+};
+template <class V>
+void describe(const ContourCounts& r, V& v) {
+  v.result("contour segments", r.segments, "Pieces of lines within cells.");
+}
 
- private:
-  template <class F>
-  void with_geojson(const F& work) {
-    try {
-      work();
-    } catch (const core::SystemError&) {
-      throw;
-    } catch (const core::Error& e) {
-      geojson_.reset();
-      left_out_ = e.what() + (e.hint().empty() ? std::string() : " (" + e.hint() + ")");
-    }
-  }
-  std::vector<io::ContourWriter> files_;
-  std::optional<io::ContourWriter> geojson_;
-  std::string geojson_name_, left_out_;
+/// What is written, and how it fits the model.
+struct ContourFindings {
+  std::uint64_t lines = 0, closed = 0, depressions = 0;
+  double metres = 0.0;
+  std::uint64_t labels = 0, tops = 0, pits = 0;
+  terrain::CarriedInterval interval{};
 };
 
-class Contours : public OptionStage<ContourWriteOptions> {
+template <class V>
+void describe(const ContourFindings& r, V& v) {
+  v.result("lines", r.lines, core::plain().in_summary(), "Contour lines.");
+  v.result("closed", r.closed, "Lines that close.");
+  v.result("depressions", r.depressions, "Lines around lower ground.");
+  v.result("length_m", r.metres, core::metres(0), "Length of all lines.");
+  v.result("labels", r.labels, "Heights written along index contours.");
+  v.result("tops", r.tops, "Spot heights of tops.");
+  v.result("pits", r.pits, "Spot heights of pits.");
+  describe(r.interval, v);
+}
+
+/// Flying height, m: NaN where the run has no trajectory on the map.
+double flying_height(const Context& context) {
+  const auto trajectory = context.records.find<trajectory::Trajectory>();
+  if (!trajectory || context.crs.empty()) return std::nan("");
+  const core::TrajectoryData& d = trajectory->data();
+  const core::Transform to_map(core::wgs84_geodetic(), context.crs);
+  const size_t step = std::max<size_t>(1, d.size() / 1000);
+  std::vector<double> heights;
+  for (size_t k = 0; k < d.size(); k += step)
+    heights.push_back(to_map({core::to_degrees(d.longitude[k]), core::to_degrees(d.latitude[k]), d.height[k]}).z() * context.vertical_unit);
+  return core::median(std::move(heights));
+}
+
+class Contours : public OptionStage<ContourWriteOptions, ContourCounts, ContourFindings> {
  public:
   const Info& info() const override {
     static const Info info{"terrain.contours",
@@ -152,7 +156,8 @@ class Contours : public OptionStage<ContourWriteOptions> {
                            {},
                            {},
                            {Product::dtm},
-                           {Product::contours}};
+                           {Product::contours},
+                           {Product::of<trajectory::Trajectory>()}};
     return info;
   }
   core::ColumnSet also_reads() const override {
@@ -192,14 +197,14 @@ class Contours : public OptionStage<ContourWriteOptions> {
     }
     if (options.source == ContourSource::tin) {
       core::Grid mine(own);
-      paste(grid, mine);
+      core::paste(grid, mine);
       write_grid_tile(job.folder, job.key, mine);
     }
-    const SurfaceFacts facts = facts_of(grid, own, interval(context));
+    const terrain::SurfaceFacts facts = terrain::facts_of(grid, own, interval(context));
     const auto spots = terrain::spot_heights(grid, own, options.spots);
     const terrain::ContourOptions drawn = spaced(context);
     const auto segments = terrain::trace(terrain::contour_surface(std::move(grid), terrain::vertical_tolerance(drawn)), own, drawn);
-    job.tally.count("contour segments", segments.size());
+    core::count_results(ContourCounts{segments.size()}, job.tally);
     io::write_text_file(segment_file(job.folder, job.key), packed_levels(segments));
     std::string bytes(reinterpret_cast<const char*>(&facts), sizeof facts);
     bytes.append(reinterpret_cast<const char*>(spots.data()), spots.size() * sizeof(terrain::SpotHeight));
@@ -207,14 +212,16 @@ class Contours : public OptionStage<ContourWriteOptions> {
   }
 
   void run_merge(const Context& context, MergeJob& job) const override {
-    ContourFiles writers(context, options.name);
-    SurfaceFacts facts;
+    io::ContourFiles files(context.output, options.name, context.product_crs, context.heights);
+    terrain::SurfaceFacts facts;
     std::vector<terrain::SpotHeight> spots;
     for (const TileKey key : job.tiles) read_facts(job.folder, key, facts, spots);
-    write_lines(context, job, writers);
-    write_spots(context, std::move(spots), writers, job.findings);
-    judge_interval(context, facts, interval(context), job.findings);
-    writers.close(job.findings);
+    ContourFindings found;
+    write_lines(context, job, files, found);
+    write_spots(context, std::move(spots), files, found);
+    found.interval = terrain::judge_interval(facts, interval(context), flying_height(context), context.vertical_unit);
+    if (const std::string left_out = files.close(); !left_out.empty()) found.interval.findings.push_back(left_out);
+    job.findings = core::reported(found);
   }
 
  private:
@@ -253,17 +260,13 @@ class Contours : public OptionStage<ContourWriteOptions> {
     return out;
   }
 
-  static void read_facts(const fs::path& folder, TileKey key, SurfaceFacts& facts, std::vector<terrain::SpotHeight>& spots) {
+  static void read_facts(const fs::path& folder, TileKey key, terrain::SurfaceFacts& facts, std::vector<terrain::SpotHeight>& spots) {
     const fs::path file = facts_file(folder, key);
     const std::string bytes = io::read_text_file(file);
-    if (bytes.size() < sizeof(SurfaceFacts) || (bytes.size() - sizeof(SurfaceFacts)) % sizeof(terrain::SpotHeight) != 0) cut_short(file);
-    SurfaceFacts one;
+    if (bytes.size() < sizeof facts || (bytes.size() - sizeof facts) % sizeof(terrain::SpotHeight) != 0) io::cut_short(file);
+    terrain::SurfaceFacts one;
     std::memcpy(&one, bytes.data(), sizeof one);
-    facts.sum_of_heights += one.sum_of_heights;
-    facts.sum_of_variances += one.sum_of_variances;
-    facts.heights += one.heights;
-    facts.sigmas += one.sigmas;
-    facts.beyond += one.beyond;
+    facts += one;
     const size_t before = spots.size();
     spots.resize(before + (bytes.size() - sizeof one) / sizeof(terrain::SpotHeight));
     if (spots.size() > before) std::memcpy(spots.data() + before, bytes.data() + sizeof one, bytes.size() - sizeof one);
@@ -276,11 +279,11 @@ class Contours : public OptionStage<ContourWriteOptions> {
     const auto tile = [&](double edge) { return static_cast<int>(std::floor(edge / context.tile_side)); };
     for (int iy = tile(window.south()); iy <= tile(window.north()); ++iy)
       for (int ix = tile(window.west()); ix <= tile(window.east()); ++ix)
-        if (const fs::path file = grid_file(folder, {ix, iy}); fs::exists(file)) paste(read_grid_tile(file), out);
+        if (const fs::path file = grid_file(folder, {ix, iy}); fs::exists(file)) core::paste(io::read_grid_file(file), out);
     return out;
   }
 
-  void write_lines(const Context& context, MergeJob& job, ContourFiles& writers) const {
+  void write_lines(const Context& context, const MergeJob& job, io::ContourFiles& files, ContourFindings& found) const {
     // Where each level stands in each tile's file.
     struct Stretch {
       TileKey key;
@@ -292,14 +295,14 @@ class Contours : public OptionStage<ContourWriteOptions> {
       const fs::path file = segment_file(job.folder, key);
       std::error_code absent;
       const std::uint64_t size = fs::file_size(file, absent);
-      if (absent) cut_short(file);
+      if (absent) io::cut_short(file);
       std::ifstream in(file, std::ios::binary);
       for (std::uint64_t at = 0; at < size;) {
         Stretch s{key, at + sizeof(SegmentsHead), {}};
         in.seekg(static_cast<std::streamoff>(at));
-        if (!in.read(reinterpret_cast<char*>(&s.head), sizeof s.head)) cut_short(file);
+        if (!in.read(reinterpret_cast<char*>(&s.head), sizeof s.head)) io::cut_short(file);
         at = s.first_byte + s.head.packed.bytes;
-        if (at > size || s.head.count / segments_per_byte > s.head.packed.bytes) cut_short(file);
+        if (at > size || s.head.count / segments_per_byte > s.head.packed.bytes) io::cut_short(file);
         levels[s.head.level].push_back(s);
       }
     }
@@ -312,8 +315,6 @@ class Contours : public OptionStage<ContourWriteOptions> {
     terrain::Labeller labeller(options.labels);
     const int decimals =
         std::max(decimals_of(interval(context) / context.vertical_unit), decimals_of(options.base.value / context.vertical_unit));
-    double metres = 0.0;
-    std::uint64_t closed = 0, depressions = 0, labels = 0;
     // Levels do not know of one another: several are drawn at once, as many as their bytes allow, and written in their order.
     std::vector<size_t> bytes;
     for (const auto& [level, stretches] : levels) {
@@ -338,11 +339,11 @@ class Contours : public OptionStage<ContourWriteOptions> {
         std::ifstream in(segment_file(job.folder, s.key), std::ios::binary);
         in.seekg(static_cast<std::streamoff>(s.first_byte));
         std::string packed(s.head.packed.bytes, '\0');
-        if (!in.read(packed.data(), static_cast<std::streamsize>(packed.size()))) cut_short(segment_file(job.folder, s.key));
+        if (!in.read(packed.data(), static_cast<std::streamsize>(packed.size()))) io::cut_short(segment_file(job.folder, s.key));
         const size_t before = segments->size();
         segments->resize(before + s.head.count);
         if (!io::unpack(s.head.packed, packed.data(), segments->data() + before, s.head.count, sizeof(terrain::Segment)))
-          cut_short(segment_file(job.folder, s.key));
+          io::cut_short(segment_file(job.folder, s.key));
       }
       return segments;
     };
@@ -354,39 +355,34 @@ class Contours : public OptionStage<ContourWriteOptions> {
     const auto write = [&](const Lines& lines) {
       context.progress(static_cast<double>(++finished) / static_cast<double>(levels.size()), {});
       for (const terrain::ContourLine& line : *lines) {
-        metres += terrain::length(line.vertices);
-        closed += line.closed ? 1 : 0;
-        depressions += line.depression ? 1 : 0;
+        found.metres += terrain::length(line.vertices);
+        found.closed += line.closed ? 1 : 0;
+        found.depressions += line.depression ? 1 : 0;
         const core::ContourLine out = in_crs_units(context, line);
-        writers.add(out);
+        files.add(out);
         if (!line.is_index) continue;
         const std::string text = height_text(out.height, decimals);
         for (const terrain::ContourLabel& label : labeller.add(line, text.size())) {
-          ++labels;
+          ++found.labels;
           const core::ContourLabel written{label.at.x() / context.unit,
                                            label.at.y() / context.unit,
                                            text,
                                            label.angle,
                                            options.labels.height.value / context.unit,
                                            out.height};
-          writers.add(written);
+          files.add(written);
         }
       }
     };
     tbb::parallel_pipeline(at_once, tbb::make_filter<void, Segments>(tbb::filter_mode::serial_in_order, read) &
                                         tbb::make_filter<Segments, Lines>(tbb::filter_mode::parallel, draw) &
                                         tbb::make_filter<Lines, void>(tbb::filter_mode::serial_in_order, write));
-    job.findings["lines"] = writers.count();
-    job.findings["closed"] = closed;
-    job.findings["depressions"] = depressions;
-    job.findings["length_m"] = metres;
-    job.findings["labels"] = labels;
+    found.lines = files.count();
   }
 
-  void write_spots(const Context& context, std::vector<terrain::SpotHeight> spots, ContourFiles& writers, core::Value& findings) const {
+  void write_spots(const Context& context, std::vector<terrain::SpotHeight> spots, io::ContourFiles& files, ContourFindings& found) const {
     std::sort(spots.begin(), spots.end());
     const int decimals = std::min(3, decimals_of(interval(context) / context.vertical_unit) + 1);
-    std::uint64_t tops = 0;
     for (const terrain::SpotHeight& s : spots) {
       core::SpotHeight out;
       out.x = (static_cast<double>(s.i) + 0.5) * cell(context) / context.unit;
@@ -395,11 +391,9 @@ class Contours : public OptionStage<ContourWriteOptions> {
       out.text = height_text(out.height, decimals);
       out.top = s.top != 0;
       out.text_height = options.labels.height.value / context.unit;
-      tops += out.top ? 1 : 0;
-      writers.add(out);
+      ++(out.top ? found.tops : found.pits);
+      files.add(out);
     }
-    findings["tops"] = tops;
-    findings["pits"] = spots.size() - tops;
   }
 
   // 0.1 um of rounding hides the last bits of the conversion to feet.

@@ -95,7 +95,7 @@ class Penetration : public OptionStage<PenetrationOptions, PulseCounts, Penetrat
       std::uint64_t sums[2];
       const fs::path file = job.folder / (context.label(key) + ".sums");
       const std::string bytes = io::read_text_file(file);
-      if (bytes.size() != sizeof sums) cut_short(file);
+      if (bytes.size() != sizeof sums) io::cut_short(file);
       std::memcpy(sums, bytes.data(), sizeof sums);
       all[0] += sums[0];
       all[1] += sums[1];

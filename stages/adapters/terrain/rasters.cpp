@@ -120,7 +120,8 @@ class Intensity : public OptionStage<terrain::IntensityOptions, IntensityCounts>
                            {core::Column::time, core::Column::intensity, core::Column::return_count, core::Column::flags},
                            {},
                            {Product::points},
-                           {Product::intensity}};
+                           {Product::intensity},
+                           {Product::of<trajectory::Trajectory>()}};
     return info;
   }
   core::ColumnSet also_reads() const override { return {core::Column::classification, core::Column::range, core::Column::incidence}; }

@@ -79,7 +79,7 @@ Cover cover_of(const Context& context, const MergeJob& job) {
   size_t done = 0;
   for (const TileKey key : job.tiles) {
     context.progress(static_cast<double>(done++) / static_cast<double>(job.tiles.size()), {});
-    const core::Grid grid = read_grid_tile(grid_file(job.folder, key));
+    const core::Grid grid = io::read_grid_file(grid_file(job.folder, key));
     c.known += static_cast<std::uint64_t>(std::count(grid.reason.begin(), grid.reason.end(), core::Void::none));
     for (const core::Void hole : {core::Void::long_edge, core::Void::never_seen})
       c.holes += static_cast<std::uint64_t>(std::count(grid.reason.begin(), grid.reason.end(), hole));
@@ -145,9 +145,9 @@ class Dtm : public OptionStage<terrain::DtmOptions, DtmCounts, DtmFindings> {
   bool complete_sigmas(const Context& context, TileJob& job) const {
     if (options.assumed_sigma) {
       const core::Metres along = options.assumed_horizontal.value_or(*options.assumed_sigma);
-      give_sigmas(job.block, options.assumed_sigma->value, std::sqrt(2.0) * along.value);
-    } else if (const std::optional<KnownLines> lines = known_lines(context); lines && !std::isnan(lines->scatter)) {
-      return give_sigmas(job.block, lines->sigma(), lines->horizontal_sigma()) > 0;
+      quality::give_sigmas(job.block, options.assumed_sigma->value, std::sqrt(2.0) * along.value);
+    } else if (const std::optional<quality::KnownLines> lines = known_lines(context); lines && !std::isnan(lines->scatter)) {
+      return quality::give_sigmas(job.block, lines->sigma(), lines->horizontal_sigma()) > 0;
     }
     return false;
   }

@@ -123,7 +123,7 @@ TEST_F(Nmea, WhatIsLeftOut) {
   EXPECT_EQ(tally_.of("NMEA positions estimated, entered by hand or simulated, left out"), 1u);
   EXPECT_EQ(tally_.of("NMEA positions without a geoid separation, left out"), 1u);
   EXPECT_EQ(tally_.of("NMEA sentences whose checksum is wrong or missing, left out"), 2u);
-  EXPECT_EQ(tally_.of("lines without a NMEA sentence, passed over"), 2u);
+  EXPECT_EQ(tally_.of("NMEA lines without a sentence, left out"), 2u);
   EXPECT_NE(refusal("nothing here\n").find("is it a NMEA log?"), std::string::npos);
   EXPECT_NE(refusal(gga("100001.00", 0)).find("had no solution"), std::string::npos);
 }

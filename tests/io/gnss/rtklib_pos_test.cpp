@@ -138,7 +138,7 @@ TEST_F(PosFiles, JunkIsCountedAndTooMuchIsRefused) {
   const core::GnssData g = read(text + binary + "\n2374 243400 40.5 -105.\n");
   EXPECT_EQ(g.size(), 99u);
   EXPECT_EQ(tally_.of("RTKLIB lines that are no solution, left out"), 2u);
-  EXPECT_EQ(tally_.of("RTKLIB epochs without a solution, left out"), 1u);
+  EXPECT_EQ(tally_.of("RTKLIB lines of epochs without a solution, left out"), 1u);
   EXPECT_NE(refusal("a b c d e f g\na b c d e f g\n").find("2 of 2 lines are no solution"), std::string::npos);
   EXPECT_NE(refusal("%  GPST latitude(deg) longitude(deg) height(m) Q ns\n").find("no position"), std::string::npos);
   EXPECT_NE(refusal("2374 243258 400.5 -105.25 1600" + tail + "\n").find("a.pos:1"), std::string::npos);

@@ -25,9 +25,9 @@ TEST(DescribeLasReference, OneStripInFeet) {
   SWATH_SHARED_OR_SKIP(data, "data/autzen");
   const core::Value las = describe_las(data / "autzen_trim.las");
   EXPECT_EQ(las.find("points")->as_int(), 110000);
-  EXPECT_EQ(las.find("lines")->members().size(), 1u);
-  EXPECT_EQ(las.find("lines")->members()[0].first, "7326");
-  EXPECT_EQ(las.find("lines")->members()[0].second.as_int(), 110000);
+  ASSERT_EQ(las.find("lines")->items().size(), 1u);
+  EXPECT_EQ(las.find("lines")->items()[0].find("number")->as_int(), 7326);
+  EXPECT_EQ(las.find("lines")->items()[0].find("count")->as_int(), 110000);
   EXPECT_NE(las.find("crs"), nullptr);
   const core::Value laz = describe_las(data / "autzen_trim.laz");
   EXPECT_EQ(laz.find("points")->as_int(), 110000);

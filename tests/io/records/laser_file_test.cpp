@@ -157,7 +157,7 @@ TEST_F(LaserFiles, TimeWindowsMakeStripsAndLeaveTheTurnsOut) {
   EXPECT_EQ(s[0].records, 10u);  // 10 to 19; 20 begins the next line
   EXPECT_EQ(s[1].line, 9);
   EXPECT_EQ(s[1].records, 11u);
-  EXPECT_EQ(tally_.of("records outside every line"), 14u);
+  EXPECT_EQ(tally_.of("records outside every line, left out"), 14u);
   EXPECT_EQ(read_strip(survey_, s[1], 3, tally_).time.front(), 20);
   survey_.laser[0].line = 9;  // a stated line keeps to its window
   EXPECT_EQ(strips().at(0).records, 11u);

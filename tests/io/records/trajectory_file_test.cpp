@@ -96,7 +96,7 @@ TEST_F(TrajectoryFiles, RepeatedTimesAndGapsAreCounted) {
   ASSERT_EQ(t.size(), 20u);
   EXPECT_EQ(t.height[5], 5);
   EXPECT_EQ(t.sigma_roll.size(), 20u);
-  EXPECT_EQ(tally_.of("trajectory records at a repeated time, dropped"), 1u);
+  EXPECT_EQ(tally_.of("trajectory records at a repeated time, left out"), 1u);
   EXPECT_EQ(tally_.of("trajectory gaps"), 1u);
 }
 

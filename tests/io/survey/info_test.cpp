@@ -2,32 +2,10 @@
 #include "io/survey/info.h"
 
 #include "core/error.h"
-#include "io/text/npy.h"
 #include "tests/world/support.h"
 
 namespace swath::io {
 namespace {
-
-TEST(Info, TextAndNumpy) {
-  const test::TemporaryFolder folder;
-  test::write_bytes(folder / "a.csv", "t,r\n1,5\n2,nan\n3,-7\n");
-  core::Value told = describe_file(folder / "a.csv");
-  EXPECT_EQ(told.find("format")->as_text(), "delimited text");
-  EXPECT_EQ(told.find("rows")->as_int(), 3);
-  EXPECT_EQ(told.find("columns")->find("r")->items()[0].as_number(), -7);
-  EXPECT_NE(info_text(told).find("warning: column r holds 1"), std::string::npos) << info_text(told);
-  EXPECT_NE(info_text(told).find("-7 to 5"), std::string::npos) << info_text(told);
-  test::write_bytes(folder / "a.csv", "t,r\n1,5\n2,x\n");
-  EXPECT_NE(info_text(describe_file(folder / "a.csv")).find("reading stopped"), std::string::npos);
-
-  const double v[2] = {1.5, 2.5};
-  NpyWriter w(folder / "a.npy", {{"t", "f8"}});
-  w.append({v}, 2);
-  w.commit();
-  told = describe_file(folder / "a.npy");
-  EXPECT_EQ(told.find("rows")->as_int(), 2);
-  EXPECT_EQ(told.find("columns")->find("t")->items()[1].as_number(), 2.5);
-}
 
 TEST(Info, ASurveyWithItsFaults) {
   const test::TemporaryFolder folder;

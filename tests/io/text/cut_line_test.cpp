@@ -86,8 +86,8 @@ TEST_F(CutLine, ACutOfAnImuLogIsCounted) {
   };
   core::Tally whole, cut;
   const core::ImuData all = read(rows(0, 200), whole), without = read(row(0).substr(4) + rows(1, 200), cut);
-  EXPECT_EQ(whole.of("records cut off at the beginning of a file, left out"), 0u);
-  EXPECT_EQ(cut.of("records cut off at the beginning of a file, left out"), 1u);
+  EXPECT_EQ(whole.of("IMU records cut off at the beginning of a file, left out"), 0u);
+  EXPECT_EQ(cut.of("IMU records cut off at the beginning of a file, left out"), 1u);
   EXPECT_EQ(without.size() + 1, all.size());
   EXPECT_EQ(without.time.back(), all.time.back());
   EXPECT_EQ(cut.of("IMU gaps"), 0u);

@@ -118,7 +118,7 @@ std::string right_points(int n) {
 }
 
 TEST_F(Control, ImpossibleCoordinatesAreLeftOutAndCounted) {
-  constexpr const char* what = "control points and targets with an impossible coordinate, left out";
+  constexpr const char* what = "control points with an impossible coordinate, left out";
   for (const char* bad : {"500100,5300200,nan,", "inf,5300200,480,", "1e9,5300200,480,", "500100,1e300,480,", "500100,1e400,480,"}) {
     tally_ = {};
     EXPECT_EQ(read(right_points(9) + bad + "\n").size(), 9u) << bad;

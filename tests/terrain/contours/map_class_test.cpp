@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 namespace swath::terrain {
 namespace {
 
@@ -32,6 +35,32 @@ TEST(MapClass, SmallestAndUsualIntervals) {
   EXPECT_DOUBLE_EQ(usual_interval(0.5), 0.5);
   EXPECT_DOUBLE_EQ(usual_interval(6.0), 10.0);
   EXPECT_DOUBLE_EQ(usual_interval(1.0), 1.0);
+}
+
+TEST(MapClass, AModelsSigmaJudgesTheInterval) {
+  core::Grid grid(core::Lattice{1.0, 0, 0, 4, 3});
+  grid.height.assign(12, 100.0f);
+  grid.sigma.assign(12, 0.3f);
+  grid.sigma[5] = 0.9f;                                         // cell (1, 1)
+  grid.height[11] = std::numeric_limits<float>::quiet_NaN();    // cell (3, 2)
+  SurfaceFacts facts = facts_of(grid, {1.0, 1, 1, 3, 2}, 1.0);  // one of them beyond, one void
+  EXPECT_EQ(facts.heights, 5u);
+  EXPECT_EQ(facts.beyond, 1u);
+  facts += facts_of(grid, {1.0, 0, 0, 4, 1}, 1.0);
+  EXPECT_EQ(facts.sigmas, 9u);
+  const double sigma = std::sqrt((8 * 0.09 + 0.81) / 9);
+  const CarriedInterval carried = judge_interval(facts, 1.0, 1100.0, 1.0);
+  EXPECT_NEAR(*carried.c_factor, 1000.0, 1e-9);
+  EXPECT_NEAR(*carried.model_sigma, sigma, 1e-6);
+  EXPECT_EQ(*carried.map_class, "C");
+  EXPECT_NEAR(carried.smallest->of[0], 3 * sigma, 1e-6);
+  EXPECT_NEAR(*carried.beyond_class_c, 1.0 / 9.0, 1e-12);
+  EXPECT_TRUE(carried.findings.empty());
+  const CarriedInterval finer = judge_interval(facts, 0.5, std::nan(""), 1.0);
+  EXPECT_FALSE(finer.c_factor);
+  EXPECT_EQ(*finer.map_class, "none");
+  ASSERT_EQ(finer.findings.size(), 1u);
+  EXPECT_NE(finer.findings[0].find("contours every 0.5 m say more"), std::string::npos) << finer.findings[0];
 }
 
 }  // namespace

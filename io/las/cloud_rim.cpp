@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/cloud_rim.h"
+#include "io/las/cloud_rim.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace swath::stages {
+namespace swath::io {
 namespace {
 
 void keep_inside(std::vector<double>& values, double origin, double rim, double step) {
@@ -23,4 +23,4 @@ void keep_rim_inside(core::Block& block, const Eigen::Vector2d& rim, const Eigen
   keep_inside(block.y, block.origin.y(), rim.y(), step.y());
 }
 
-}  // namespace swath::stages
+}  // namespace swath::io

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Areas are cut by the four borders in turn (Sutherland and Hodgman 1974); what this leaves along a border encloses nothing.
-#include "stages/breakline_area.h"
+#include "terrain/water/breakline_area.h"
 
 #include <cmath>
 #include <string>
 
+#include "core/config/units.h"
 #include "core/error.h"
-#include "io/survey/wild_records.h"
+#include "core/few.h"
 
-namespace swath::stages {
+namespace swath::terrain {
 namespace {
 
+using core::Area;
+using core::Box;
 using core::Breakline;
 using Eigen::Vector3d;
 using Ring = std::vector<Vector3d>;
@@ -98,7 +101,7 @@ class Cut {
         out.push_back(possible[k]);
     }
     // An area without one of its corners may still be that area; without many it is another.
-    if (const size_t lost = ring.size() - out.size(); lost > 1 && lost < ring.size() && !io::are_few(lost, ring.size()))
+    if (const size_t lost = ring.size() - out.size(); lost > 1 && lost < ring.size() && !core::are_few(lost, ring.size()))
       throw core::Error(std::to_string(lost) + " of the area's " + std::to_string(ring.size()) +
                             " vertices are not finite or lie alone outside the survey's area",
                         feature.place, "correct the feature, or state [area] in the survey as wide as it is");
@@ -139,7 +142,7 @@ void keep_in_area(std::vector<Breakline>& features, const Area& area, const Vect
   std::vector<Breakline> out;
   for (const Breakline& f : features) {
     std::vector<Breakline> kept = f.is_area() ? cut.areas_of(f) : cut.lines_of(f);
-    if (kept.empty()) tally.count("breakline features with nothing in the survey's area, left out", f.place);
+    if (kept.empty()) tally.count("breaklines with nothing in the survey's area, left out", f.place);
     for (Breakline& one : kept) out.push_back(std::move(one));
   }
   if (out.empty() && !features.empty())
@@ -148,4 +151,4 @@ void keep_in_area(std::vector<Breakline>& features, const Area& area, const Vect
   features = std::move(out);
 }
 
-}  // namespace swath::stages
+}  // namespace swath::terrain

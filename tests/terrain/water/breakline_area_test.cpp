@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/breakline_area.h"
+#include "terrain/water/breakline_area.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,11 @@
 
 #include "core/error.h"
 
-namespace swath::stages {
+namespace swath::terrain {
 namespace {
 
+using core::Area;
+using core::Box;
 using core::Breakline;
 using core::BreaklineKind;
 using Eigen::Vector3d;
@@ -84,10 +86,10 @@ TEST(BreaklineArea, WhatLiesElsewhereIsLeftOutAndCounted) {
   std::vector<Breakline> all{here, line, lake};
   keep_in_area(all, area, origin, tally);
   EXPECT_EQ(all.size(), 1u);
-  EXPECT_EQ(tally.of("breakline features with nothing in the survey's area, left out"), 2u);
+  EXPECT_EQ(tally.of("breaklines with nothing in the survey's area, left out"), 2u);
   all = {line, lake};
   EXPECT_THROW(keep_in_area(all, area, origin, tally), core::Error);
 }
 
 }  // namespace
-}  // namespace swath::stages
+}  // namespace swath::terrain

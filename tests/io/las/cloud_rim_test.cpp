@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/cloud_rim.h"
+#include "io/las/cloud_rim.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/grid.h"
 
-namespace swath::stages {
+namespace swath::io {
 namespace {
 
 core::Block points(const Eigen::Vector3d& origin, std::initializer_list<std::pair<double, double>> places) {
@@ -52,4 +52,4 @@ TEST(CloudRim, PointsBeyondAWrongRimStay) {
 }
 
 }  // namespace
-}  // namespace swath::stages
+}  // namespace swath::io

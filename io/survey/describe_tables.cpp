@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/survey/describe_tables.h"
+
+#include <array>
+#include <cmath>
+
+#include "core/config/result_visitors.h"
+#include "core/error.h"
+#include "core/time.h"
+#include "io/records/csd.h"
+#include "io/survey/file_facts.h"
+#include "io/text/delimited.h"
+#include "io/text/npy.h"
+
+namespace swath::io {
+namespace {
+
+using Path = std::filesystem::path;
+
+constexpr size_t chunk = 16384;
+
+/// A column and how many of its values are not finite.
+struct Column {
+  core::Interval span;
+  std::uint64_t not_finite = 0;
+  void add(double v) {
+    if (std::isfinite(v))
+      span.add(v);
+    else
+      ++not_finite;
+  }
+};
+
+struct CsdFacts {
+  const CsdHeader& h;
+  std::uint64_t pulses = 0;
+  Column time{}, range{}, angle{}, latitude{}, longitude{}, height{};
+  std::map<int, std::uint64_t> returns{};
+  std::vector<std::string> warnings{};
+};
+template <class V>
+void describe(const CsdFacts& r, V& v) {
+  const core::Calibration boresight = calibration_of(r.h);
+  const Eigen::Vector3d angles(core::to_degrees(boresight.roll), core::to_degrees(boresight.pitch), core::to_degrees(boresight.heading));
+  v.result("format", std::string("Optech CSD"), "Format.");
+  v.result("vendor", r.h.vendor, "Vendor that the header names.");
+  v.result("software", r.h.software, "Software that the header names.");
+  v.result("pulses", r.pulses, "Pulses.");
+  v.result("gps_week", r.h.gps_week, "GPS week that the header states.");
+  v.result("seconds_of_week", r.time.span, core::seconds(), "First and last time of a pulse.");
+  if (r.pulses) v.result("from", core::utc_text(core::from_week(r.h.gps_week, r.time.span.low)), "UTC of the first.");
+  v.tables("pulses_by_returns", counts_of(r.returns), "Pulses by the number of their returns.");
+  v.result("range_m", r.range.span, core::metres(), "Smallest and largest range.");
+  v.result("scan_angle_deg", r.angle.span, core::in_degrees(), "Smallest and largest scan angle.");
+  v.result("carrier_latitude_deg", r.latitude.span, core::in_degrees(), "Smallest and largest latitude of the carrier.");
+  v.result("carrier_longitude_deg", r.longitude.span, core::in_degrees(), "Smallest and largest longitude.");
+  v.result("carrier_height_m", r.height.span, core::metres(), "Smallest and largest height.");
+  v.result("boresight_roll_pitch_heading_deg", angles, core::in_degrees(), "Boresight that the header states.");
+  v.result("temperature_c", r.h.temperature, "Temperature that the header states, degrees Celsius.");
+  v.result("pressure_mbar", r.h.pressure, "Air pressure that the header states.");
+  v.result("warnings", r.warnings, "What looks wrong.");
+}
+
+/// A column of a table of numbers.
+struct NamedColumn {
+  std::string name;
+  std::optional<std::string> type{};
+  Column values{};
+};
+template <class V>
+void describe(const NamedColumn& r, V& v) {
+  v.result("name", r.name, "Name as the file has it, or the column's number from 1.");
+  v.result("type", r.type, "Type as NumPy writes it.");
+  v.result("span", r.values.span, core::Form{}.always(), "Smallest and largest finite value; null where there is none.");
+}
+
+struct TableFacts {
+  std::string format;
+  std::optional<std::string> delimiter{};
+  std::optional<bool> header{};
+  std::uint64_t rows = 0;
+  std::vector<NamedColumn> columns{};
+  std::vector<std::string> warnings{};
+};
+template <class V>
+void describe(const TableFacts& r, V& v) {
+  v.result("format", r.format, "Format.");
+  v.result("delimiter", r.delimiter, "What parts the columns.");
+  v.result("header", r.header, "Does a line name the columns?");
+  v.result("rows", r.rows, "Rows.");
+  v.tables("columns", r.columns, "Columns.");
+  v.result("warnings", r.warnings, "What looks wrong.");
+}
+
+core::Value reported(TableFacts& t) {
+  for (const NamedColumn& c : t.columns)
+    if (c.values.not_finite)
+      t.warnings.push_back("column " + c.name + " holds " + std::to_string(c.values.not_finite) + " values that are empty or not finite");
+  return core::reported(t);
+}
+
+}  // namespace
+
+core::Value describe_csd(const Path& path) {
+  CsdReader file(path);
+  const CsdHeader& h = file.header();
+  CsdFacts out{h, file.pulses()};
+  std::vector<CsdPulse> pulses;
+  for (std::uint64_t at = 0; at < file.pulses(); at += pulses.size()) {
+    file.read(at, static_cast<size_t>(std::min<std::uint64_t>(chunk, file.pulses() - at)), pulses);
+    for (const CsdPulse& p : pulses) {
+      out.time.add(p.time);
+      out.angle.add(core::to_degrees(p.scan_angle));
+      out.latitude.add(core::to_degrees(p.latitude));
+      out.longitude.add(core::to_degrees(p.longitude));
+      out.height.add(p.height);
+      ++out.returns[p.return_count];
+      for (int k = 0; k < p.return_count; ++k) out.range.add(p.range[static_cast<size_t>(k)]);
+    }
+  }
+  if (out.time.span.low < h.first_time - 1e-3 || out.time.span.high > h.last_time + 1e-3)
+    out.warnings.push_back("the header states seconds " + core::format_number(h.first_time) + " to " + core::format_number(h.last_time) +
+                           ", the pulses span others");
+  std::uint64_t not_finite = 0;
+  for (const Column* c : {&out.time, &out.range, &out.angle, &out.latitude, &out.longitude, &out.height}) not_finite += c->not_finite;
+  if (not_finite) out.warnings.push_back("values that are not finite");
+  if (out.range.span.low <= 0) out.warnings.push_back("ranges that are not positive");
+  return core::reported(out);
+}
+
+core::Value describe_npy(const Path& path) {
+  const NpyHeader h = read_npy_header(path);
+  TableFacts out{"NumPy array"};
+  out.rows = h.rows;
+  std::vector<size_t> numeric;
+  for (size_t i = 0; i < h.fields.size(); ++i) {
+    const NpyField& f = h.fields[i];
+    out.columns.push_back({f.name.empty() ? std::to_string(i + 1) : f.name, f.type});
+    if (std::string("uifb").find(f.kind) != std::string::npos && f.bytes <= 8) numeric.push_back(i);
+  }
+  NpyReader reader(path, numeric);
+  std::vector<std::vector<double>> values;
+  for (std::uint64_t at = 0; at < h.rows; at += chunk) {
+    reader.read(at, static_cast<size_t>(std::min<std::uint64_t>(chunk, h.rows - at)), values);
+    for (size_t c = 0; c < numeric.size(); ++c)
+      for (const double v : values[c]) out.columns[numeric[c]].values.add(v);
+  }
+  return reported(out);
+}
+
+core::Value describe_text(const Path& path) {
+  const DelimitedLayout layout = inspect_delimited(path);
+  TableFacts out{"delimited text"};
+  out.delimiter = layout.delimiter == '\t' ? "tab" : layout.delimiter == ' ' ? "blanks" : std::string(1, layout.delimiter);
+  out.header = !layout.names.empty();
+  std::vector<size_t> indices;
+  for (size_t c = 0; c < layout.columns; ++c) {
+    out.columns.push_back({c < layout.names.size() ? layout.names[c] : std::to_string(c + 1)});
+    indices.push_back(c);
+  }
+  if (!layout.names.empty() && layout.names.size() != layout.columns)
+    out.warnings.push_back("the header names " + std::to_string(layout.names.size()) + " columns, the first line has " +
+                           std::to_string(layout.columns));
+  if (layout.cut_line > 0)
+    out.warnings.push_back("line " + std::to_string(layout.cut_line) + " is only the end of a record and is left out");
+  DelimitedReader reader(path, layout, indices);
+  std::vector<double> row(indices.size());
+  try {
+    for (; reader.next(row.data()); ++out.rows)
+      for (size_t c = 0; c < row.size(); ++c) out.columns[c].values.add(row[c]);
+  } catch (const core::Error& e) {
+    out.warnings.push_back("reading stopped: " + e.text());
+  }
+  return reported(out);
+}
+
+}  // namespace swath::io

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/text/data_lines.h"
+
+#include <cmath>
+
+#include "core/error.h"
+#include "io/text/delimited.h"
+#include "io/text/line_reader.h"
+#include "io/text/value_file.h"
+
+namespace swath::io {
+
+void DataLine::fault(const std::string& what, const std::string& hint) const { throw core::Error(what, place, hint); }
+
+const std::string& DataLine::field(size_t column) const {
+  if (column >= fields.size())
+    fault("the line has " + std::to_string(fields.size()) + " fields, at least " + std::to_string(column + 1) + " are needed",
+          "the line is cut off, has another delimiter, or the file is of another format");
+  return fields[column];
+}
+
+double DataLine::number(size_t column) const {
+  double value = 0;
+  if (!read_number(field(column), value) || !std::isfinite(value))
+    fault("'" + fields[column] + "' in column " + std::to_string(column + 1) + " is no number",
+          "correct the line, or the columns or format that the survey states");
+  return value;
+}
+
+void for_each_data_line(const std::filesystem::path& file, const std::function<char(const std::string&)>& delimiter,
+                        const std::function<void(DataLine&)>& f, const std::function<void(const std::string&)>& comment) {
+  const std::string text = read_text_file(file);
+  if (text.find('\0') != std::string::npos) throw core::Error("is not delimited text", file.string(), "check the name of the file");
+  DataLine out;
+  char parted_by = 0;
+  for (size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0; at < text.size();) {
+    const size_t stop = std::min(text.find('\n', at), text.size());
+    std::string line = text.substr(at, stop - at);
+    at = stop + 1;
+    ++out.line;
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+    const size_t begin = line.find_first_not_of(" \t");
+    if (begin == std::string::npos) continue;
+    if (line[begin] == '#' || line[begin] == '%') {
+      const size_t word = line.find_first_not_of("#% \t");
+      if (comment && word != std::string::npos) comment(line.substr(word));
+      continue;
+    }
+    if (parted_by == 0) parted_by = delimiter(line);
+    out.fields = split_delimited(line, parted_by);
+    out.place = file.string() + ":" + std::to_string(out.line);
+    f(out);
+  }
+}
+
+}  // namespace swath::io

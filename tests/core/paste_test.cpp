@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/paste.h"
+
+#include <gtest/gtest.h>
+
+namespace swath::core {
+namespace {
+
+Grid numbered(Lattice l) {
+  Grid g(l);
+  g.sigma.resize(l.size());
+  for (int j = 0; j < l.ny; ++j)
+    for (int i = 0; i < l.nx; ++i) {
+      g.height[l.at(i, j)] = static_cast<float>((l.i0 + i) * 1000 + l.j0 + j);
+      g.sigma[l.at(i, j)] = 0.5f;
+      g.reason[l.at(i, j)] = Void::none;
+    }
+  return g;
+}
+
+TEST(Paste, PastesWhereTheyOverlap) {
+  Grid window(Lattice{1.0, 2, 2, 3, 3});
+  paste(numbered({1.0, 0, 0, 4, 4}), window);
+  EXPECT_EQ(window.height[0], 2002.0f);
+  EXPECT_EQ(window.height[window.lattice.at(1, 1)], 3003.0f);
+  EXPECT_EQ(window.reason[window.lattice.at(2, 2)], Void::no_data);
+  EXPECT_EQ(window.sigma[0], 0.5f);
+}
+
+}  // namespace
+}  // namespace swath::core
