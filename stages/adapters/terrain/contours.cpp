@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 
@@ -16,11 +13,11 @@
 #include "core/paste.h"
 #include "core/statistics.h"
 #include "io/text/output_file.h"
-#include "io/text/packed_column.h"
 #include "io/text/value_file.h"
 #include "io/vector/vector.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/terrain/breaklines.h"
+#include "stages/adapters/terrain/contour_segments.h"
 #include "stages/adapters/units.h"
 #include "stages/grid_tile.h"
 #include "terrain/contours/contour_labels.h"
@@ -49,7 +46,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t page_bytes = size_t{64} << 20, least_page_bytes = size_t{8} << 20;  ///< of the surface, while lines are drawn; of a thread
-constexpr size_t segments_per_byte = size_t{1} << 15;                                ///< more than are packed into one
 constexpr size_t drawn_bytes = size_t{256} << 20;                                    ///< of the levels that are drawn at once
 
 /// Of the surface alone: contours have no sigma from assumed ones.
@@ -79,15 +75,6 @@ void describe(ContourWriteOptions& o, V& v) {
   v.table("spots", o.spots, "Spot heights.");
 }
 
-/// A tile's segments on disk, which are sorted by level: {SegmentsHead, packed segments} of each.
-struct SegmentsHead {
-  std::int64_t level = 0;
-  std::uint64_t count = 0;
-  io::PackedHead packed;
-};
-fs::path segment_file(const fs::path& folder, TileKey key) {
-  return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".segments");
-}
 fs::path facts_file(const fs::path& folder, TileKey key) {
   return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".facts");
 }
@@ -205,7 +192,7 @@ class Contours : public OptionStage<ContourWriteOptions, ContourCounts, ContourF
     const terrain::ContourOptions drawn = spaced(context);
     const auto segments = terrain::trace(terrain::contour_surface(std::move(grid), terrain::vertical_tolerance(drawn)), own, drawn);
     core::count_results(ContourCounts{segments.size()}, job.tally);
-    io::write_text_file(segment_file(job.folder, job.key), packed_levels(segments));
+    write_segments(job.folder, job.key, segments);
     std::string bytes(reinterpret_cast<const char*>(&facts), sizeof facts);
     bytes.append(reinterpret_cast<const char*>(spots.data()), spots.size() * sizeof(terrain::SpotHeight));
     io::write_text_file(facts_file(job.folder, job.key), bytes);
@@ -245,21 +232,6 @@ class Contours : public OptionStage<ContourWriteOptions, ContourCounts, ContourF
     return options.source == ContourSource::grid ? context.grids->cell(Product::dtm) : options.tin.cell.value;
   }
 
-  static std::string packed_levels(const std::vector<terrain::Segment>& segments) {
-    const auto* rows = reinterpret_cast<const std::uint8_t*>(segments.data());
-    const std::vector<std::uint8_t> fields = io::fields_of_rows(rows, segments.size(), sizeof(terrain::Segment));
-    std::string out;
-    for (size_t first = 0, end = 0; first < segments.size(); first = end) {
-      while (end < segments.size() && segments[end].level == segments[first].level) ++end;
-      std::string packed;
-      io::pack_rows(rows + first * sizeof(terrain::Segment), end - first, sizeof(terrain::Segment), fields, packed);
-      SegmentsHead head{segments[first].level, end - first, {}};
-      std::memcpy(&head.packed, packed.data(), sizeof head.packed);
-      out.append(reinterpret_cast<const char*>(&head), sizeof head).append(packed, sizeof head.packed);
-    }
-    return out;
-  }
-
   static void read_facts(const fs::path& folder, TileKey key, terrain::SurfaceFacts& facts, std::vector<terrain::SpotHeight>& spots) {
     const fs::path file = facts_file(folder, key);
     const std::string bytes = io::read_text_file(file);
@@ -284,28 +256,7 @@ class Contours : public OptionStage<ContourWriteOptions, ContourCounts, ContourF
   }
 
   void write_lines(const Context& context, const MergeJob& job, io::ContourFiles& files, ContourFindings& found) const {
-    // Where each level stands in each tile's file.
-    struct Stretch {
-      TileKey key;
-      std::uint64_t first_byte;
-      SegmentsHead head;
-    };
-    std::map<std::int64_t, std::vector<Stretch>> levels;
-    for (const TileKey key : job.tiles) {
-      const fs::path file = segment_file(job.folder, key);
-      std::error_code absent;
-      const std::uint64_t size = fs::file_size(file, absent);
-      if (absent) io::cut_short(file);
-      std::ifstream in(file, std::ios::binary);
-      for (std::uint64_t at = 0; at < size;) {
-        Stretch s{key, at + sizeof(SegmentsHead), {}};
-        in.seekg(static_cast<std::streamoff>(at));
-        if (!in.read(reinterpret_cast<char*>(&s.head), sizeof s.head)) io::cut_short(file);
-        at = s.first_byte + s.head.packed.bytes;
-        if (at > size || s.head.count / segments_per_byte > s.head.packed.bytes) io::cut_short(file);
-        levels[s.head.level].push_back(s);
-      }
-    }
+    LevelSegments levels(job.folder, job.tiles);
     const auto share = static_cast<size_t>(context.memory / 8.0);  // a byte of segments takes eight until it is written
     tbb::enumerable_thread_specific<terrain::Facets> surfaces([&] {
       return terrain::Facets(
@@ -316,36 +267,17 @@ class Contours : public OptionStage<ContourWriteOptions, ContourCounts, ContourF
     const int decimals =
         std::max(decimals_of(interval(context) / context.vertical_unit), decimals_of(options.base.value / context.vertical_unit));
     // Levels do not know of one another: several are drawn at once, as many as their bytes allow, and written in their order.
-    std::vector<size_t> bytes;
-    for (const auto& [level, stretches] : levels) {
-      bytes.push_back(0);
-      for (const Stretch& s : stretches) bytes.back() += s.head.count * sizeof(terrain::Segment);
-    }
-    std::sort(bytes.begin(), bytes.end(), std::greater<>());
+    const std::vector<size_t> bytes = levels.bytes();
     size_t at_once = 0;
     for (size_t sum = 0; at_once < std::min(bytes.size(), 2 * static_cast<size_t>(context.threads)); ++at_once)
       if ((sum += bytes[at_once]) > std::min(drawn_bytes, share)) break;
     at_once = std::max<size_t>(at_once, 1);
     using Segments = std::shared_ptr<std::vector<terrain::Segment>>;
     using Lines = std::shared_ptr<std::vector<terrain::ContourLine>>;
-    auto level = levels.begin();
     const auto read = [&](tbb::flow_control& flow) -> Segments {
-      if (level == levels.end()) {
-        flow.stop();
-        return nullptr;
-      }
-      auto segments = std::make_shared<std::vector<terrain::Segment>>();
-      for (const Stretch& s : (level++)->second) {
-        std::ifstream in(segment_file(job.folder, s.key), std::ios::binary);
-        in.seekg(static_cast<std::streamoff>(s.first_byte));
-        std::string packed(s.head.packed.bytes, '\0');
-        if (!in.read(packed.data(), static_cast<std::streamsize>(packed.size()))) io::cut_short(segment_file(job.folder, s.key));
-        const size_t before = segments->size();
-        segments->resize(before + s.head.count);
-        if (!io::unpack(s.head.packed, packed.data(), segments->data() + before, s.head.count, sizeof(terrain::Segment)))
-          io::cut_short(segment_file(job.folder, s.key));
-      }
-      return segments;
+      if (!levels.done()) return std::make_shared<std::vector<terrain::Segment>>(levels.next());
+      flow.stop();
+      return nullptr;
     };
     const terrain::ContourOptions drawn = spaced(context);
     const auto draw = [&](const Segments& segments) -> Lines {
@@ -353,7 +285,7 @@ class Contours : public OptionStage<ContourWriteOptions, ContourCounts, ContourF
     };
     size_t finished = 0;
     const auto write = [&](const Lines& lines) {
-      context.progress(static_cast<double>(++finished) / static_cast<double>(levels.size()), {});
+      context.progress(static_cast<double>(++finished) / static_cast<double>(bytes.size()), {});
       for (const terrain::ContourLine& line : *lines) {
         found.metres += terrain::length(line.vertices);
         found.closed += line.closed ? 1 : 0;
