@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -19,5 +20,8 @@ struct FullTile {
 /// The tile that must hold most: a file's points lie in the tiles of its box, and one of these holds no fewer than their share. Nothing
 /// where no file lies in the run's own coordinates.
 std::optional<FullTile> fullest_tile(const stages::Context& context);
+
+/// Points by tile where each file's lie evenly over its box; of files that fullest_tile() knows.
+std::map<stages::TileKey, std::uint64_t> even_tiles(const stages::Context& context);
 
 }  // namespace swath::pipeline

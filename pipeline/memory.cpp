@@ -66,7 +66,7 @@ void MemoryBudget::make_room(std::uint64_t bytes) const {
   if (static_cast<double>(resident_bytes() + bytes) > bytes_) return_freed_memory();
 }
 
-void MemoryBudget::require(double bytes, double left, std::string_view what, bool at_least) const {
+void MemoryBudget::require(double bytes, double left, std::string_view what, bool about) const {
   if (bytes <= left) return;
   const auto text = [](double b) { return core::format_quantity(core::Dimension::memory, std::ceil(b / megabyte) * megabyte); };
   const double works = bytes_ + (bytes - left) / (1.0 - uncounted);
@@ -74,7 +74,7 @@ void MemoryBudget::require(double bytes, double left, std::string_view what, boo
                             text(std::max(0.0, left)) + " are free",
                         "run.memory",
                         "--set run.memory=\"" + text(works) + "\" " +
-                            (at_least ? "at least is needed" : "is the least that works here; what is finished is kept"),
+                            (about ? "is about the least that works here" : "is the least that works here; what is finished is kept"),
                         core::Exit::bad_usage);
 }
 

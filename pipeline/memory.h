@@ -36,9 +36,9 @@ class MemoryBudget {
   double reserve() const;
   /// Before `bytes` are taken: returns freed memory where they would not fit beside it.
   void make_room(std::uint64_t bytes) const;
-  /// Throws TooLittleMemory, "WHAT needs ...", with the budget that works, where `bytes` are more than what is `left`. `at_least`: it may
-  /// need more than that.
-  void require(double bytes, double left, std::string_view what, bool at_least = false) const;
+  /// Throws TooLittleMemory, "WHAT needs ...", with the budget that works, where `bytes` are more than what is `left`. `about`: as far as
+  /// can be known yet.
+  void require(double bytes, double left, std::string_view what, bool about = false) const;
 
  private:
   double bytes_;

@@ -457,27 +457,34 @@ void Engine::expect_room_for_strips() const {
   memory_.require(share_of_batches * least, left, "reading the points");
 }
 
-/// A tile that the clouds' headers show to be too full is refused before any point is read.
+/// A tile that the clouds' headers show to be too full is refused before any point is read: with the budget for points that lie evenly over
+/// their files' boxes, as the next ones around it do.
 void Engine::expect_room_for_fullest_tile() const {
-  using core::Column;
   if (!stage(source_).info().makes(stages::Product::points)) return;
   const std::optional<FullTile> tile = fullest_tile(context_);
   if (!tile) return;
-  TileStore assumed({}, plan_.run.tile.value, context_.origin);
-  assumed.assume(tile->key, tile->points, needed_columns());
-  SquareCounts squares(assumed);
   const double left = memory_.left();
-  double most = 0.0;
-  std::string_view what;
-  for (size_t i = last_strip_stage_ + 1; i < plan_.stages.size(); ++i) {
-    if (!works_on(i, Grain::tile)) continue;
-    const StageMemory memory(assumed, stage(i), context_);
-    const auto free = static_cast<std::uint64_t>(std::max(0.0, left));
-    const auto bytes = static_cast<double>(memory.cut(memory.of({tile->key}), free, squares).bytes);
-    if (bytes > most) most = bytes, what = stage(i).info().name;
-  }
-  memory_.require(most, left, std::string(what) + " on a tile of " + std::to_string(tile->points) + " points or more of " + tile->file,
-                  true);
+  const auto needed = [&](const std::map<TileKey, std::uint64_t>& points) {
+    TileStore assumed({}, plan_.run.tile.value, context_.origin);
+    for (const auto& [key, n] : points) assumed.assume(key, n, needed_columns());
+    SquareCounts squares(assumed);
+    std::pair<double, std::string_view> most;
+    for (size_t i = last_strip_stage_ + 1; i < plan_.stages.size(); ++i) {
+      if (!works_on(i, Grain::tile)) continue;
+      const StageMemory memory(assumed, stage(i), context_);
+      TileGroup largest;
+      for (const auto& [key, n] : points)
+        if (TileGroup g = memory.of({key}); g.bytes > largest.bytes) largest = std::move(g);
+      const TileGroup cut = memory.cut(std::move(largest), static_cast<std::uint64_t>(std::max(0.0, left)), squares);
+      most = std::max(most, {static_cast<double>(cut.bytes), stage(i).info().name});
+    }
+    return most;
+  };
+  if (needed({{tile->key, tile->points}}).first <= left) return;
+  std::map<TileKey, std::uint64_t> even = even_tiles(context_);
+  even[tile->key] = std::max(even[tile->key], tile->points);
+  const auto [bytes, what] = needed(even);
+  memory_.require(bytes, left, std::string(what) + " on the fullest tile of " + tile->file, true);
 }
 
 /// Every tile stage has a way to work on every tile that is not done; otherwise the one that takes most is named.

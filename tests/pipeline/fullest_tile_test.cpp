@@ -41,6 +41,12 @@ TEST(FullestTile, HoldsItsShareOfAFilesPoints) {
   EXPECT_EQ(tile->key, (stages::TileKey{1000, 10600}));
 }
 
+TEST(FullestTile, PointsAreSpreadEvenlyOverTheirBox) {
+  const Cloud c(3000, 500250.0, 501250.0);
+  const std::map<stages::TileKey, std::uint64_t> expected{{{1000, 10600}, 750}, {{1001, 10600}, 1500}, {{1002, 10600}, 750}};
+  EXPECT_EQ(even_tiles(c.context), expected);
+}
+
 TEST(FullestTile, PointsOnTheRimAreInTheTileWithin) {
   const Cloud c(3000, 500000.0, 500500.0);
   EXPECT_EQ(fullest_tile(c.context)->points, 3000u);
