@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <optional>
 
 #include "core/config/option_visitors.h"
+#include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "core/grid.h"
 #include "io/raster/geotiff.h"
@@ -194,26 +194,19 @@ std::vector<float> cover_of(const Scenery& s, const core::Lattice& on) {
   return cover;
 }
 
-struct Counts {
-  std::int64_t pulses = 0, returns = 0;
-  std::map<int, std::int64_t> by_class, by_number, by_line;
-  core::GpsTime first = 0.0;
-
-  void add(const Returns& r) {
-    for (size_t i = 0; i < r.size(); ++i) {
-      ++by_class[static_cast<int>(r.kind[i])];
-      ++by_number[static_cast<int>(r.number[i])];
-      ++by_line[static_cast<int>(r.line[i])];
-    }
-    returns += static_cast<std::int64_t>(r.size());
+void count(const Returns& r, LaserMade& made) {
+  for (size_t i = 0; i < r.size(); ++i) {
+    ++made.by_class[static_cast<int>(r.kind[i])];
+    ++made.by_number[static_cast<int>(r.number[i])];
+    ++made.by_line[static_cast<int>(r.line[i])];
   }
-};
+  made.returns += r.size();
+}
 
 /// All lines in batches of tasks; the batches are written in order, so files do not depend on threads.
-Counts fire(const Scenery& s, const Options& o, std::vector<std::unique_ptr<LaserFileWriter>>& files, TruthFile* truth,
-            const Progress& progress) {
+void fire(const Scenery& s, const Options& o, std::vector<std::unique_ptr<LaserFileWriter>>& files, TruthFile* truth, LaserMade& made,
+          const Progress& progress) {
   const Shooter shooter(o, *s.world, *s.map, *s.flight, s.start);
-  Counts counts;
   std::int64_t total = 0;
   for (const Line& line : s.flight->lines()) total += shooter.pulses(line);
   std::vector<Returns> parts(static_cast<size_t>(tasks_per_batch));
@@ -231,18 +224,11 @@ Counts fire(const Scenery& s, const Options& o, std::vector<std::unique_ptr<Lase
       for (const Returns& part : parts) append(batch, part);
       for (auto& file : files) file->append(batch);
       if (truth) truth->append(batch);
-      counts.add(batch);
-      counts.pulses += end - begin;
-      if (progress) progress(static_cast<double>(counts.pulses) / static_cast<double>(std::max<std::int64_t>(1, total)));
+      count(batch, made);
+      made.pulses += static_cast<std::uint64_t>(end - begin);
+      if (progress) progress(static_cast<double>(made.pulses) / static_cast<double>(std::max<std::int64_t>(1, total)));
     }
   }
-  return counts;
-}
-
-Value counted(const std::map<int, std::int64_t>& counts) {
-  Value v = Value::object();
-  for (const auto& [key, n] : counts) v[std::to_string(key)] = n;
-  return v;
 }
 
 template <class S>
@@ -250,44 +236,40 @@ Value effective(S options) {
   return core::effective_values(core::described(options));
 }
 
-void write_navigation(const Scenery& s, const Options& o, const fs::path& folder, Value& made) {
+void write_navigation(const Scenery& s, const Options& o, const fs::path& folder, Made& made) {
   const bool noise_free = o.noise.noise_free;
   if (o.imu.file) write_imu(folder, *s.flight, s.start, o.imu, noise_free, o.seed);
-  if (o.gnss.file) made["fixes"] = write_gnss(folder, *s.flight, s.start, o.gnss, o.mounting.lever_arm_antenna, noise_free, o.seed);
-  if (o.events.file) made["events"] = write_events(folder, *s.flight, s.start, o.events, noise_free, o.seed);
+  if (o.gnss.file) made.fixes = write_gnss(folder, *s.flight, s.start, o.gnss, o.mounting.lever_arm_antenna, noise_free, o.seed);
+  if (o.events.file) made.events = write_events(folder, *s.flight, s.start, o.events, noise_free, o.seed);
 }
 
 /// Returns and the terrain's truth.
-void write_laser(const Scenery& s, const Options& o, const fs::path& folder, const Progress& progress, Value& made) {
+void write_laser(const Scenery& s, const Options& o, const fs::path& folder, const Progress& progress, LaserMade& made) {
   std::vector<std::unique_ptr<LaserFileWriter>> files;
   for (const Format f : o.output.formats) files.push_back(open_laser_file(folder, f, o));
   std::unique_ptr<TruthFile> truth;
   if (o.output.truth_returns) truth = std::make_unique<TruthFile>(folder / "truth" / "returns.npy");
-  const Counts counts = fire(s, o, files, truth.get(), progress);
+  fire(s, o, files, truth.get(), made, progress);
   for (auto& file : files) file->finish();
   if (truth) truth->finish();
   const core::Grid dtm = dtm_of(s, o);
   io::write_grid(folder / "truth" / "dtm.tif", dtm, o.crs);
   const std::vector<float> cover = cover_of(s, dtm.lattice);
   io::write_raster(folder / "truth" / "cover.tif", dtm.lattice, {{"cover", "", &cover}}, o.crs, false);
-  made["pulses"] = counts.pulses;
-  made["returns"] = counts.returns;
-  made["returns_by_class"] = counted(counts.by_class);
-  made["returns_by_number"] = counted(counts.by_number);
-  made["returns_by_line"] = counted(counts.by_line);
-  made["buildings"] = static_cast<std::int64_t>(s.world->buildings().size());
-  made["trees"] = static_cast<std::int64_t>(s.world->trees().size());
-  made["wires"] = static_cast<std::int64_t>(s.world->wires().size());
-  made["fields"] = std::count_if(s.world->fields().begin(), s.world->fields().end(), [](const Field& f) { return f.height > 0.0; });
-  made["largest_map_error_m"] = s.map->worst();
+  made.buildings = s.world->buildings().size();
+  made.trees = s.world->trees().size();
+  made.wires = s.world->wires().size();
+  made.fields = static_cast<std::uint64_t>(
+      std::count_if(s.world->fields().begin(), s.world->fields().end(), [](const Field& f) { return f.height > 0.0; }));
+  made.largest_map_error = s.map->worst();
 }
 
 /// Facets of the buildings, and what was surveyed of them and of the ground. Returns what survey.toml says of it.
-std::vector<io::ControlFile> write_ground_truth(const Scenery& s, const Options& o, const fs::path& folder, Value& made) {
+std::vector<io::ControlFile> write_ground_truth(const Scenery& s, const Options& o, const fs::path& folder, LaserMade& made) {
   const std::vector<Facet> facets = facets_of(*s.world);
   write_planes(folder / "truth" / "planes.csv", facets, *s.map);
   const std::vector<SurveyedPoint> points = survey_points(o, *s.world, facets);
-  made["surveyed_points"] = static_cast<std::int64_t>(points.size());
+  made.surveyed_points = points.size();
   return write_control(folder, points, o.control, *s.map);
 }
 
@@ -304,21 +286,9 @@ void write_surveys(const Scenery& s, const Options& o, const io::Survey& survey,
   }
 }
 
-/// How far the flight is from the trajectory it follows.
-Value departure_value(const RecordedFlight::Departure& d) {
-  Value v = Value::object();
-  const char* names[] = {"north_m", "east_m", "up_m", "roll_deg", "pitch_deg", "heading_deg"};
-  for (size_t i = 0; i < 6; ++i) {
-    const double unit = i < 3 ? 1.0 : core::degree;
-    v["rms"][names[i]] = d.rms[i] / unit;
-    v["worst"][names[i]] = d.worst[i] / unit;
-  }
-  return v;
-}
-
 }  // namespace
 
-Value run(const Options& given, const fs::path& folder, const Progress& progress) {
+Made run(const Options& given, const fs::path& folder, const Progress& progress) {
   check(given);
   Options options = given;
   options.mounting.truth = true_calibration(given.mounting, given.seed);
@@ -329,11 +299,11 @@ Value run(const Options& given, const fs::path& folder, const Progress& progress
   fs::create_directories(folder / "truth", ec);
   if (ec) throw core::SystemError("cannot make the folder: " + ec.message(), (folder / "truth").string());
 
-  Value made = Value::object();
+  Made made;
   io::Survey survey = describe_survey(scenery, options);
   if (options.output.laser) {
-    survey.control = write_ground_truth(scenery, options, folder, made);
-    write_laser(scenery, options, folder, progress, made);
+    survey.control = write_ground_truth(scenery, options, folder, made.laser.emplace());
+    write_laser(scenery, options, folder, progress, *made.laser);
   }
   write_navigation(scenery, options, folder, made);
   if (options.output.trajectory != TrajectoryOutput::none)
@@ -342,13 +312,10 @@ Value run(const Options& given, const fs::path& folder, const Progress& progress
   io::write_text_file(folder / "truth" / "calibration.json", io::to_json(effective(options.mounting.truth)));
   write_surveys(scenery, options, survey, folder);
 
-  made["seconds"] = scenery.flight->duration();
-  made["lines"] = static_cast<std::int64_t>(scenery.flight->lines().size());
-  if (const auto* along = dynamic_cast<const RecordedFlight*>(scenery.flight.get()))
-    made["splines_minus_trajectory"] = departure_value(along->departure());
-  Value all = Value::object();
-  all["made"] = made;
-  all["options"] = effective(given);
+  made.seconds = scenery.flight->duration();
+  made.lines = scenery.flight->lines().size();
+  if (const auto* along = dynamic_cast<const RecordedFlight*>(scenery.flight.get())) made.departure = along->departure();
+  const Value all(Value::Object{{"made", core::reported(made)}, {"options", effective(given)}});
   io::write_text_file(folder / "truth" / "simulation.json", io::to_json(all));
   if (progress) progress(1.0);
   return made;

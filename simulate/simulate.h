@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "core/config/value.h"
+#include "simulate/made.h"
 #include "simulate/options.h"
 #include "simulate/preset.h"
 
@@ -24,7 +24,7 @@ using Progress = std::function<void(double)>;
 ///   simulation.json (options and what was made).
 /// The same options give the same bytes, whatever the number of threads. Memory is bounded whatever the number of returns (the
 /// trajectory, 100 bytes per 5 ms, and the truth's grid are held whole).
-/// Returns counts, sizes and the map's error. Throws Error where the options do not go together or a file cannot be written.
-core::Value run(const Options& options, const std::filesystem::path& out_folder, const Progress& progress = {});
+/// Throws Error where the options do not go together or a file cannot be written.
+Made run(const Options& options, const std::filesystem::path& out_folder, const Progress& progress = {});
 
 }  // namespace swath::simulate

@@ -16,6 +16,7 @@
 #endif
 
 #include "core/config/option_visitors.h"
+#include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "core/printable.h"
 #include "io/survey/info.h"
@@ -88,13 +89,13 @@ int simulate_survey(Arguments& a) {
   pipeline::Progress progress(a.voice());
   progress.begin("simulate", 1000, "per mille");
   std::uint64_t told = 0;
-  const core::Value made = simulate::run(options, a.folder, [&](double share) {
+  const simulate::Made made = simulate::run(options, a.folder, [&](double share) {
     const auto now = static_cast<std::uint64_t>(share * 1000);
     if (now > told) progress.advance(now - told);
     told = std::max(told, now);
   });
   progress.end();
-  if (!a.quiet) std::fputs(io::to_json(made).c_str(), stdout);
+  if (!a.quiet) std::fputs(io::to_json(core::reported(made)).c_str(), stdout);
   return 0;
 }
 

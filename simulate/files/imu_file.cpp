@@ -9,6 +9,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/config/result_visitors.h"
 #include "io/text/output_file.h"
 #include "io/text/text_rows.h"
 #include "io/text/value_file.h"
@@ -60,24 +61,6 @@ void ImuErrors::measure(std::int64_t k, Vector3d& angle, Vector3d& velocity) con
           white(model_.angular_random_walk.value);
   velocity = velocity.cwiseProduct(one + constant_.accelerometer_scale) + step_ * (constant_.accelerometer_bias + accelerometer_drift()) +
              white(model_.velocity_random_walk.value);
-}
-
-core::Value ImuErrors::value() const {
-  core::Value v = core::Value::object();
-  v["axes"] = "of the record";
-  const auto put = [&v](const char* name, const Vector3d& a) {
-    for (const double x : a) v[name].push(x);
-  };
-  put("gyro_bias_rad_per_s", constant_.gyro_bias);
-  put("gyro_scale_factor", constant_.gyro_scale);
-  put("accelerometer_bias_m_per_s2", constant_.accelerometer_bias);
-  put("accelerometer_scale_factor", constant_.accelerometer_scale);
-  v["gyro_drift_sigma_rad_per_s"] = model_.gyro_drift.value;
-  v["accelerometer_drift_sigma_m_per_s2"] = model_.accelerometer_drift.value;
-  v["drift_time_s"] = model_.drift_time.value;
-  v["angular_random_walk_rad_per_sqrt_s"] = model_.angular_random_walk.value;
-  v["velocity_random_walk_m_per_s_per_sqrt_s"] = model_.velocity_random_walk.value;
-  return v;
 }
 
 Matrix3d record_R_body(const ImuOptions& imu) {
@@ -134,7 +117,7 @@ void write_imu(const std::filesystem::path& folder, const Flight& flight, core::
   }
   rows.commit();
   drift.commit();
-  io::write_text_file(folder / "truth" / "imu.json", io::to_json(errors.value()));
+  io::write_text_file(folder / "truth" / "imu.json", io::to_json(core::reported(errors)));
 }
 
 io::ImuFile describe_imu_file(const ImuOptions& imu, core::GpsTime start) {

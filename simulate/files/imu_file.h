@@ -34,8 +34,7 @@ class ImuErrors {
   /// Increments of record k (from 1) as measured in the present interval.
   void measure(std::int64_t k, Eigen::Vector3d& angle, Eigen::Vector3d& velocity) const;
 
-  /// What truth/imu.json states.
-  core::Value value() const;
+  const core::ImuErrorModel& model() const { return model_; }
 
  private:
   core::ImuErrorModel model_;
@@ -44,6 +43,23 @@ class ImuErrors {
   Constant constant_;
   std::vector<GaussMarkov> drift_;  ///< gyros x y z, accelerometers x y z
 };
+
+/// truth/imu.json.
+template <class V>
+void describe(const ImuErrors& r, V& v) {
+  const auto& [gyro_bias, gyro_scale, accelerometer_bias, accelerometer_scale] = r.constant();
+  const core::ImuErrorModel& m = r.model();
+  v.result("axes", std::string_view("of the record"), "Axes of the vectors.");
+  v.result("gyro_bias_rad_per_s", gyro_bias, "Bias of the gyroscopes.");
+  v.result("gyro_scale_factor", gyro_scale, "Error of their scale.");
+  v.result("accelerometer_bias_m_per_s2", accelerometer_bias, "Bias of the accelerometers.");
+  v.result("accelerometer_scale_factor", accelerometer_scale, "Error of their scale.");
+  v.result("gyro_drift_sigma_rad_per_s", m.gyro_drift.value, "Sigma of the gyroscopes' drift.");
+  v.result("accelerometer_drift_sigma_m_per_s2", m.accelerometer_drift.value, "Sigma of the accelerometers' drift.");
+  v.result("drift_time_s", m.drift_time.value, "Correlation time of the drifts.");
+  v.result("angular_random_walk_rad_per_sqrt_s", m.angular_random_walk.value, "White noise of the gyroscopes.");
+  v.result("velocity_random_walk_m_per_s_per_sqrt_s", m.velocity_random_walk.value, "White noise of the accelerometers.");
+}
 
 /// Takes vectors of `body` to the axes of the record: the inverse of what survey.toml states by axes, roll, pitch and heading.
 Eigen::Matrix3d record_R_body(const ImuOptions& imu);

@@ -93,7 +93,7 @@ Value fallback_of(const std::string& list) {
   if (list == "clock") {
     // The format of a log cannot be derived from its name: it is always stated.
     Value v = effective(io::ClockLog{});
-    v["format"] = Value{};
+    *v.find("format") = Value{};
     return v;
   }
   if (list == "event") return effective(io::EventFile{});
@@ -112,18 +112,17 @@ std::string toml_of(const Value& tree) {
 
 std::string survey_toml(io::Survey survey, const std::string& comment) {
   const Value all = effective(survey);
-  Value out = pruned(all, effective(io::Survey{}));
+  Value defaults = effective(io::Survey{});
+  *defaults.find("scanner")->find("model") = Value{};  // stated always
+  const Value out = pruned(all, defaults);
   Value ordered = Value::object();
   for (const auto& [key, v] : all.members()) {
     if (is_full(key) || (key == "antenna" && !survey.gnss.empty())) {
       if (!(v.is_array() && v.items().empty())) ordered[key] = v;
       continue;
     }
-    if (key == "scanner") ordered[key]["model"] = *v.find("model");
     if (const Value* kept = out.find(key)) {
-      if (key == "scanner") {
-        for (const auto& [k, item] : kept->members()) ordered[key][k] = item;
-      } else if (is_table_list(*kept)) {
+      if (is_table_list(*kept)) {
         const Value fallback = fallback_of(key);
         ordered[key] = Value::array();
         for (const Value& item : kept->items()) ordered[key].push(pruned(item, fallback));

@@ -164,8 +164,8 @@ TEST(Simulate, EveryPatternAndFormatGivesASurveyThatReads) {
     if (pattern != Pattern::conical && pattern != Pattern::palmer)
       o.output.formats.insert(o.output.formats.end(), {Format::las, Format::laz});
     if (pattern == Pattern::sine) o.output.trajectory = TrajectoryOutput::text;
-    const core::Value made = run(o, folder.path());
-    EXPECT_GT(made.find("returns")->as_int(), 2000);
+    const Made made = run(o, folder.path());
+    EXPECT_GT(made.laser->returns, 2000u);
     for (const char* name : {"survey.toml", "survey_npy.toml"}) {
       const io::Survey survey = io::read_survey(folder / name);
       EXPECT_EQ(survey.lines.size(), 1u);
@@ -258,13 +258,12 @@ TEST(Simulate, TheZooHasEveryClassAndEveryCover) {
   const test::TemporaryFolder folder;
   Options o = preset(Scene::zoo);
   o.scanner.prf = core::Hertz(15000);
-  const core::Value made = run(o, folder.path());
-  const core::Value& by_class = *made.find("returns_by_class");
-  for (const char* kind : {"2", "3", "4", "5", "6", "7", "9", "14", "17", "18"}) {
-    ASSERT_NE(by_class.find(kind), nullptr) << kind;
-    EXPECT_GT(by_class.find(kind)->as_int(), 5) << kind;
+  const Made made = run(o, folder.path());
+  for (const int kind : {2, 3, 4, 5, 6, 7, 9, 14, 17, 18}) {
+    ASSERT_TRUE(made.laser->by_class.contains(kind)) << kind;
+    EXPECT_GT(made.laser->by_class.at(kind), 5u) << kind;
   }
-  EXPECT_GT(made.find("fields")->as_int(), 10);
+  EXPECT_GT(made.laser->fields, 10u);
   const io::Raster cover = io::read_raster(folder / "truth/cover.tif"), dtm = io::read_raster(folder / "truth/dtm.tif");
   EXPECT_EQ(cover.geotransform, dtm.geotransform);
   ASSERT_EQ(cover.values.size(), dtm.values.size());
@@ -286,13 +285,13 @@ TEST(Simulate, NavigationAloneNeedsNoWorld) {
   o.imu.spec.grade = core::ImuGrade::mems;
   o.imu.spec.gyro_drift = core::RadiansPerSecond(1e-5);
   o.world.length = core::Metres(1e4);  // a world of this size would take minutes
-  const core::Value made = run(o, folder.path());
+  const Made made = run(o, folder.path());
   for (const char* file : {"laser.npy", "sbet.out", "smrmsg.out", "truth/returns.npy", "truth/dtm.tif"})
     EXPECT_FALSE(std::filesystem::exists(folder / file)) << file;
   for (const char* file : {"imu.csv", "gnss.csv", "events_pc.csv", "events_marks.csv", "loopstats", "pps.log", "truth/sbet.out",
                            "truth/imu.json", "truth/imu_drift.csv", "truth/gnss.csv", "truth/events.csv", "truth/simulation.json"})
     EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
-  EXPECT_EQ(made.find("fixes")->as_int(), 1 + static_cast<std::int64_t>(5 * made.find("seconds")->as_number()));
+  EXPECT_EQ(made.fixes, 1 + static_cast<std::int64_t>(5 * made.seconds));
   const io::Survey survey = stated(folder / "survey.toml");
   EXPECT_TRUE(survey.laser.empty());
   EXPECT_TRUE(survey.trajectory.empty());
@@ -328,8 +327,8 @@ TEST(Simulate, FliesAlongAGivenTrajectory) {
   file.time.scale = core::TimeScale::gps_week;
   file.time.week = o.output.week;
   along.flight.along = {file};
-  const core::Value made = run(along, folder / "second");
-  EXPECT_LT(made.find("splines_minus_trajectory")->find("worst")->find("north_m")->as_number(), 1e-3);
+  const Made made = run(along, folder / "second");
+  EXPECT_LT(made.departure->worst[0], 1e-3);
   EXPECT_EQ(stated(folder / "second/survey.toml").imu_spec.grade, core::ImuGrade::perfect);  // noise-free
   // The same instants, and nearly the same records.
   const std::string one = test::read_bytes(folder / "first/gnss.csv"), two = test::read_bytes(folder / "second/gnss.csv");
@@ -372,15 +371,19 @@ TEST(Simulate, TrajectoryErrorsAreOfTheirSigmas) {
 TEST(Simulate, ReportsProgressAndCounts) {
   const test::TemporaryFolder folder;
   double last = 0;
-  const core::Value made = run(preset(Scene::forest), folder.path(), [&](double share) {
+  const Made made = run(preset(Scene::forest), folder.path(), [&](double share) {
     EXPECT_GE(share, last);
     last = share;
   });
   EXPECT_EQ(last, 1.0);
   const io::NpyHeader header = io::read_npy_header(folder / "truth/returns.npy");
-  EXPECT_EQ(static_cast<std::uint64_t>(made.find("returns")->as_int()), header.rows);
-  EXPECT_GT(made.find("returns_by_class")->find("5")->as_int(), 1000);
-  EXPECT_GT(made.find("returns_by_number")->find("2")->as_int(), 500);
+  EXPECT_EQ(made.laser->returns, header.rows);
+  EXPECT_GT(made.laser->by_class.at(5), 1000u);
+  EXPECT_GT(made.laser->by_number.at(2), 500u);
+  const core::Value file = io::read_value_file(folder / "truth/simulation.json");
+  const core::Value& classes = *file.find("made")->find("returns_by_class");
+  EXPECT_EQ(classes.items().size(), made.laser->by_class.size());
+  EXPECT_EQ(classes.items().front().find("number")->as_int(), made.laser->by_class.begin()->first);
 }
 
 TEST(Simulate, RefusesWhatDoesNotGoTogetherBeforeItWrites) {
