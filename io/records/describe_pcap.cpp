@@ -5,19 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "core/config/interval.h"
+#include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "core/time.h"
 #include "io/text/binary_file.h"
 
 namespace swath::io {
 namespace {
-
-using core::Value;
 
 constexpr std::uint32_t micro = 0xa1b2c3d4, nano = 0xa1b23c4d, next_generation = 0x0a0d0d0a;
 constexpr std::uint32_t longest_packet = 1u << 18;  // bytes, libpcap's own limit
@@ -36,50 +35,66 @@ std::pair<int, int> udp_of(const unsigned char* p, size_t n) {
   return {load<std::uint16_t>(udp + 2, true), load<std::uint16_t>(udp + 4, true) - 8};
 }
 
+struct PortFacts {
+  int port = 0, payload = 0;
+  std::uint64_t packets = 0;
+};
+template <class V>
+void describe(const PortFacts& r, V& v) {
+  v.result("port", r.port, "Port that they are sent to.");
+  v.result("payload_bytes", r.payload, "Bytes of each.");
+  v.result("packets", r.packets, "How many there are.");
+}
+
+struct CaptureFacts {
+  std::string format;
+  std::uint64_t packets = 0;
+  core::Interval time{};  ///< Unix, s
+  std::vector<PortFacts> udp{};
+  std::vector<std::string> warnings{};
+};
+template <class V>
+void describe(const CaptureFacts& r, V& v) {
+  const auto timed = [&r](core::Form f = {}) { return f.only_if(r.time.any()); };
+  const auto utc = [&r](double t) { return r.time.any() ? core::utc_text(core::from_unix(t)) : std::string(); };
+  v.result("format", r.format, "Format.");
+  v.result("packets", r.packets, "Packets.");
+  v.result("from", utc(r.time.low), timed(), "UTC of the first.");
+  v.result("to", utc(r.time.high), timed(), "UTC of the last.");
+  v.result("seconds", r.time.high - r.time.low, timed(core::seconds()), "Time from the first to the last.");
+  v.tables("udp", r.udp, "UDP packets by port and length.");
+  v.result("warnings", r.warnings, "What looks wrong.");
+}
+
 class Capture {
  public:
   explicit Capture(const std::filesystem::path& path) : file_(path) {}
 
-  Value describe() {
+  CaptureFacts facts() {
     std::array<unsigned char, 24> head{};
     file_.read(0, head.data(), head.size());
     const auto magic = load<std::uint32_t>(head.data());
-    Value out = Value::object();
     if (magic == next_generation) {
-      out["format"] = "pcapng capture";
+      out_.format = "pcapng capture";
       blocks(load<std::uint32_t>(&head[8]) != 0x1a2b3c4d);
     } else {
-      out["format"] = "pcap capture";
+      out_.format = "pcap capture";
       const bool big = swapped(magic) == micro || swapped(magic) == nano;
       records(big, magic == nano || swapped(magic) == nano ? 1e-9 : 1e-6, load<std::uint32_t>(&head[20], big) == 1);
     }
-    out["packets"] = packets_;
-    if (first_ <= last_) {
-      out["from"] = core::utc_text(core::from_unix(first_));
-      out["to"] = core::utc_text(core::from_unix(last_));
-      out["seconds"] = last_ - first_;
-    }
-    Value& list = out["udp"] = Value::array();
-    for (const auto& [key, n] : ports_) {
-      Value one = Value::object();
-      one["port"] = key.first;
-      one["payload_bytes"] = key.second;
-      one["packets"] = n;
-      list.push(std::move(one));
-    }
-    if (list.items().empty()) warnings_.push("no UDP packet: no lidar's data");
-    warnings_.push("packets of a sensor are not read as they are: export its points or ranges with the maker's software");
-    out["warnings"] = std::move(warnings_);
-    return out;
+    for (const auto& [key, n] : ports_) out_.udp.push_back({key.first, key.second, n});
+    if (out_.udp.empty()) out_.warnings.push_back("no UDP packet: no lidar's data");
+    out_.warnings.push_back("packets of a sensor are not read as they are: export its points or ranges with the maker's software");
+    return std::move(out_);
   }
 
  private:
   void take(const unsigned char* p, size_t n, bool ethernet) {
-    ++packets_;
+    ++out_.packets;
     if (const auto [port, payload] = udp_of(p, n); ethernet && port != 0) ++ports_[{port, payload}];
   }
 
-  void cut(std::uint64_t at) { warnings_.push("the file ends inside the packet at byte " + std::to_string(at)); }
+  void cut(std::uint64_t at) { out_.warnings.push_back("the file ends inside the packet at byte " + std::to_string(at)); }
 
   void records(bool big, double unit, bool ethernet) {
     std::array<unsigned char, 16> head{};
@@ -91,8 +106,7 @@ class Capture {
       if (n > longest_packet || at + 16 + n > file_.size()) return cut(at);
       packet.resize(n);
       file_.read(at + 16, packet.data(), n);
-      first_ = std::min(first_, time);
-      last_ = std::max(last_, time);
+      out_.time.add(time);
       take(packet.data(), n, ethernet);
       at += 16 + n;
     }
@@ -118,10 +132,8 @@ class Capture {
   }
 
   BinaryFile file_;
-  std::uint64_t packets_ = 0;
-  double first_ = std::numeric_limits<double>::infinity(), last_ = -std::numeric_limits<double>::infinity();
+  CaptureFacts out_;
   std::map<std::pair<int, int>, std::uint64_t> ports_;
-  Value warnings_ = Value::array();
 };
 
 }  // namespace
@@ -132,6 +144,6 @@ bool looks_like_pcap(std::string_view start) {
   return magic == next_generation || magic == micro || magic == nano || swapped(magic) == micro || swapped(magic) == nano;
 }
 
-core::Value describe_pcap(const std::filesystem::path& file) { return Capture(file).describe(); }
+core::Value describe_pcap(const std::filesystem::path& file) { return core::reported(Capture(file).facts()); }
 
 }  // namespace swath::io

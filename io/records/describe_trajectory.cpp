@@ -4,7 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "core/config/interval.h"
+#include "core/config/result_visitors.h"
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
 #include "core/statistics.h"
@@ -14,20 +19,9 @@
 namespace swath::io {
 namespace {
 
-using core::Value;
-
 constexpr double slow = 5.0;                 // m/s; below it the track shows nothing of the heading
 constexpr double odd_crab = 30.0;            // deg between heading and track
 constexpr double steep = 60 * core::degree;  // roll or pitch no survey flight has
-
-struct Extent {
-  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
-  void add(double v) {
-    low = std::min(low, v);
-    high = std::max(high, v);
-  }
-  Value value(double factor = 1.0) const { return Value(Value::Array{low * factor, high * factor}); }
-};
 
 template <class Record>
 std::vector<Record> all_of(const std::filesystem::path& path) {
@@ -57,8 +51,20 @@ bool looks_like(const std::filesystem::path& path, Plausible plausible) {
   return 2 * back < rows.size();
 }
 
-/// Median step of the times, gaps and steps back.
-void describe_times(const std::vector<double>& time, Value& out, Value& warnings) {
+struct TimeFacts {
+  core::Interval span{};
+  std::optional<double> rate{};
+};
+template <class V>
+void describe(const TimeFacts& r, V& v) {
+  v.result("time", r.span, "First and last time, as recorded.");
+  v.result("duration_s", r.span.high - r.span.low, core::seconds().only_if(r.span.any()), "Time from the first to the last.");
+  v.result("rate_hz", r.rate, core::Form{"Hz"}, "Records per second, by the median step.");
+}
+
+/// Median step of the times; gaps and steps back are warned of.
+TimeFacts times_of(const std::vector<double>& time, std::vector<std::string>& warnings) {
+  TimeFacts out;
   std::vector<double> steps;
   size_t back = 0, repeated = 0;
   for (size_t i = 1; i < time.size(); ++i) {
@@ -67,15 +73,14 @@ void describe_times(const std::vector<double>& time, Value& out, Value& warnings
     repeated += step == 0;
     if (step > 0) steps.push_back(step);
   }
-  out["time"] = Value(Value::Array{time.front(), time.back()});
-  out["duration_s"] = time.back() - time.front();
-  if (back) warnings.push("time goes back " + std::to_string(back) + " times: the file is not sorted");
-  if (repeated) warnings.push(std::to_string(repeated) + " records repeat the time before them");
+  out.span = {time.front(), time.back()};
+  if (back) warnings.push_back("time goes back " + std::to_string(back) + " times: the file is not sorted");
+  if (repeated) warnings.push_back(std::to_string(repeated) + " records repeat the time before them");
   if (time.front() >= 0 && time.back() < 2 * core::seconds_per_week)
-    warnings.push("times look like seconds of the GPS week (or of a day); the file does not say of which");
-  if (steps.empty()) return;
+    warnings.push_back("times look like seconds of the GPS week (or of a day); the file does not say of which");
+  if (steps.empty()) return out;
   const double median = core::median(steps);
-  out["rate_hz"] = std::round(1e3 / median) / 1e3;
+  out.rate = std::round(1e3 / median) / 1e3;
   size_t gaps = 0;
   double longest = 0;
   for (const double s : steps)
@@ -83,7 +88,8 @@ void describe_times(const std::vector<double>& time, Value& out, Value& warnings
       ++gaps;
       longest = std::max(longest, s);
     }
-  if (gaps) warnings.push(std::to_string(gaps) + " gaps, the longest " + core::format_number(std::round(longest * 1e3) / 1e3) + " s");
+  if (gaps) warnings.push_back(std::to_string(gaps) + " gaps, the longest " + core::format_number(std::round(longest * 1e3) / 1e3) + " s");
+  return out;
 }
 
 /// Mean angle from track to heading, deg, and the mean speed; NaN where the carrier hardly moves.
@@ -108,6 +114,81 @@ std::pair<double, double> crab(const std::vector<SbetRecord>& rows, double wande
   return {moved ? core::to_degrees(std::atan2(sum_sin, sum_cos)) : std::nan(""), time > 0 ? path / time : 0};
 }
 
+struct SbetFacts {
+  std::uint64_t records = 0;
+  TimeFacts times{};
+  core::Interval latitude{}, longitude{}, height{}, roll{}, pitch{}, wander{};  ///< rad, or what the file has in its place
+  bool in_degrees = false;
+  std::optional<double> speed{}, crab{};
+  std::optional<std::string> velocity_axes{};
+  std::vector<std::string> warnings{};
+};
+template <class V>
+void describe(const SbetFacts& r, V& v) {
+  const auto angle = [&r](const core::Interval& i) {
+    const double unit = r.in_degrees ? 1.0 : 1.0 / core::degree;
+    return core::Interval{i.low * unit, i.high * unit};
+  };
+  v.result("format", std::string("SBET"), "Format.");
+  v.result("records", r.records, "Records.");
+  describe(r.times, v);
+  v.result("latitude_deg", angle(r.latitude), "Smallest and largest latitude.");
+  v.result("longitude_deg", angle(r.longitude), "Smallest and largest longitude.");
+  v.result("height_m", r.height, "Smallest and largest height.");
+  v.result("roll_deg", angle(r.roll), "Smallest and largest roll.");
+  v.result("pitch_deg", angle(r.pitch), "Smallest and largest pitch.");
+  v.result("wander_deg", angle(r.wander), "Smallest and largest wander angle.");
+  v.result("mean_speed_m_s", r.speed, core::Form{"m/s"}, "Mean speed over the ground.");
+  v.result("heading_minus_track_deg", r.crab, core::in_degrees(), "Mean of heading less track.");
+  v.result("velocity_axes", r.velocity_axes, "Axes of the velocities that fit the positions.");
+  v.result("warnings", r.warnings, "What looks wrong.");
+}
+
+struct SmrmsgFacts {
+  std::uint64_t records = 0;
+  TimeFacts times{};
+  core::Interval horizontal{}, down{}, roll_pitch{}, heading{};  ///< m, deg
+  std::vector<std::string> warnings{};
+};
+template <class V>
+void describe(const SmrmsgFacts& r, V& v) {
+  v.result("format", std::string("smrmsg"), "Format.");
+  v.result("records", r.records, "Records.");
+  describe(r.times, v);
+  v.result("sigma_north_east_m", r.horizontal, "Smallest and largest sigma of north or east.");
+  v.result("sigma_down_m", r.down, "Smallest and largest sigma of the height.");
+  v.result("sigma_roll_pitch_deg", r.roll_pitch, "Smallest and largest sigma of roll or pitch.");
+  v.result("sigma_heading_deg", r.heading, "Smallest and largest sigma of the heading.");
+  v.result("warnings", r.warnings, "What looks wrong.");
+}
+
+/// The angles, and the velocities against the positions.
+void judge(const std::vector<SbetRecord>& rows, const std::filesystem::path& path, bool is_finite, SbetFacts& out) {
+  const auto largest = [](const core::Interval& i) { return std::max(std::abs(i.low), std::abs(i.high)); };
+  out.in_degrees = largest(out.latitude) > core::pi / 2 || largest(out.longitude) > 2 * core::pi;
+  if (out.in_degrees) out.warnings.push_back("positions are in degrees; an SBET holds radians");
+  if (!out.in_degrees && std::max(largest(out.roll), largest(out.pitch)) > steep)
+    out.warnings.push_back("roll or pitch beyond 60 deg: are the attitudes in degrees?");
+  if (out.in_degrees || !is_finite) return;
+  const auto [with, speed] = crab(rows, -1.0);
+  const double without = crab(rows, 0.0).first;
+  out.speed = speed;
+  if (std::isfinite(with)) {
+    out.crab = with;
+    if (std::abs(with) > odd_crab)
+      out.warnings.push_back("heading - wander angle differs from the track by " + core::format_number(std::round(with * 10) / 10) +
+                             " deg in the mean; without the wander angle by " + core::format_number(std::round(without * 10) / 10) +
+                             " deg");
+  }
+  core::Tally tally;
+  TimeTags any;
+  any.scale = core::TimeScale::gps;
+  if (read_sbet(path, any, true, VelocityAxes::automatic, std::nullopt, tally).has_velocity())
+    out.velocity_axes = tally.of("SBET files with velocities north, west, up") ? "north, west, up" : "north, east, down";
+  else
+    out.warnings.push_back("velocities disagree with the positions in every known choice of axes");
+}
+
 }  // namespace
 
 bool looks_like_sbet(const std::filesystem::path& path) {
@@ -130,8 +211,7 @@ bool looks_like_smrmsg(const std::filesystem::path& path) {
 
 core::Value describe_sbet(const std::filesystem::path& path) {
   const std::vector<SbetRecord> rows = all_of<SbetRecord>(path);
-  Value out = Value::object(), warnings = Value::array();
-  Extent latitude, longitude, height, roll, pitch, wander;
+  SbetFacts out{rows.size()};
   std::vector<double> time;
   size_t not_finite = 0;
   for (const SbetRecord& r : rows) {
@@ -140,78 +220,36 @@ core::Value describe_sbet(const std::filesystem::path& path) {
       continue;
     }
     time.push_back(r.time);
-    latitude.add(r.latitude);
-    longitude.add(r.longitude);
-    height.add(r.altitude);
-    roll.add(r.roll);
-    pitch.add(r.pitch);
-    wander.add(r.wander_angle);
+    out.latitude.add(r.latitude);
+    out.longitude.add(r.longitude);
+    out.height.add(r.altitude);
+    out.roll.add(r.roll);
+    out.pitch.add(r.pitch);
+    out.wander.add(r.wander_angle);
   }
-  out["format"] = "SBET";
-  out["records"] = static_cast<std::uint64_t>(rows.size());
-  if (not_finite) warnings.push(std::to_string(not_finite) + " records hold values that are not finite");
+  if (not_finite) out.warnings.push_back(std::to_string(not_finite) + " records hold values that are not finite");
   if (!time.empty()) {
-    describe_times(time, out, warnings);
-    const bool degrees = std::max(std::abs(latitude.low), std::abs(latitude.high)) > core::pi / 2 ||
-                         std::max(std::abs(longitude.low), std::abs(longitude.high)) > 2 * core::pi;
-    const double unit = degrees ? 1.0 : 1.0 / core::degree;
-    if (degrees) warnings.push("positions are in degrees; an SBET holds radians");
-    out["latitude_deg"] = latitude.value(unit);
-    out["longitude_deg"] = longitude.value(unit);
-    out["height_m"] = height.value();
-    out["roll_deg"] = roll.value(unit);
-    out["pitch_deg"] = pitch.value(unit);
-    out["wander_deg"] = wander.value(unit);
-    if (!degrees && std::max({std::abs(roll.low), std::abs(roll.high), std::abs(pitch.low), std::abs(pitch.high)}) > steep)
-      warnings.push("roll or pitch beyond 60 deg: are the attitudes in degrees?");
-    if (!degrees && not_finite == 0) {
-      const auto [with, speed] = crab(rows, -1.0);
-      const double without = crab(rows, 0.0).first;
-      out["mean_speed_m_s"] = speed;
-      if (std::isfinite(with)) {
-        out["heading_minus_track_deg"] = with;
-        if (std::abs(with) > odd_crab)
-          warnings.push("heading - wander angle differs from the track by " + core::format_number(std::round(with * 10) / 10) +
-                        " deg in the mean; without the wander angle by " + core::format_number(std::round(without * 10) / 10) + " deg");
-      }
-      core::Tally tally;
-      TimeTags any;
-      any.scale = core::TimeScale::gps;
-      const core::TrajectoryData t = read_sbet(path, any, true, VelocityAxes::automatic, std::nullopt, tally);
-      if (!t.has_velocity())
-        warnings.push("velocities disagree with the positions in every known choice of axes");
-      else
-        out["velocity_axes"] = tally.of("SBET files with velocities north, west, up") ? "north, west, up" : "north, east, down";
-    }
+    out.times = times_of(time, out.warnings);
+    judge(rows, path, not_finite == 0, out);
   }
-  out["warnings"] = std::move(warnings);
-  return out;
+  return core::reported(out);
 }
 
 core::Value describe_smrmsg(const std::filesystem::path& path) {
   const std::vector<SmrmsgRecord> rows = all_of<SmrmsgRecord>(path);
-  Value out = Value::object(), warnings = Value::array();
-  Extent horizontal, down, roll_pitch, heading;
+  SmrmsgFacts out{rows.size()};
   std::vector<double> time;
   for (const SmrmsgRecord& r : rows) {
     time.push_back(r.time);
-    horizontal.add(r.position[0]);
-    horizontal.add(r.position[1]);
-    down.add(r.position[2]);
-    roll_pitch.add(r.attitude[0]);
-    roll_pitch.add(r.attitude[1]);
-    heading.add(r.attitude[2]);
+    for (const double sigma : {r.position[0], r.position[1]}) out.horizontal.add(sigma);
+    out.down.add(r.position[2]);
+    for (const double sigma : {r.attitude[0], r.attitude[1]}) out.roll_pitch.add(sigma * (1.0 / 60));
+    out.heading.add(r.attitude[2] * (1.0 / 60));
   }
-  out["format"] = "smrmsg";
-  out["records"] = static_cast<std::uint64_t>(rows.size());
-  describe_times(time, out, warnings);
-  out["sigma_north_east_m"] = horizontal.value();
-  out["sigma_down_m"] = down.value();
-  out["sigma_roll_pitch_deg"] = roll_pitch.value(1.0 / 60);
-  out["sigma_heading_deg"] = heading.value(1.0 / 60);
-  if (down.high > 1.0 || horizontal.high > 1.0) warnings.push("positions are worse than 1 m at times: no fixed solution there?");
-  out["warnings"] = std::move(warnings);
-  return out;
+  out.times = times_of(time, out.warnings);
+  if (out.down.high > 1.0 || out.horizontal.high > 1.0)
+    out.warnings.push_back("positions are worse than 1 m at times: no fixed solution there?");
+  return core::reported(out);
 }
 
 }  // namespace swath::io

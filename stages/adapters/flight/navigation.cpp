@@ -52,7 +52,7 @@ Given<core::GnssData, GnssFindings> read_gnss(const io::Survey& survey, core::Ta
   GnssFindings found{gnss.size(), span_of(gnss.time)};
   for (const core::FixQuality q : gnss.quality) {
     if (!found.quality) found.quality.emplace();
-    ++found.quality->n[static_cast<size_t>(q)];
+    found.quality->add(q);
   }
   if (gnss.has_velocity())
     found.with_velocity = std::count_if(gnss.velocity.begin(), gnss.velocity.end(), [](const Eigen::Vector3d& v) { return v.allFinite(); });

@@ -10,6 +10,7 @@
 
 #include "core/config/option.h"
 #include "core/config/result.h"
+#include "core/records/fix_counts.h"
 #include "core/time.h"
 #include "io/survey/survey.h"
 #include "stages/once.h"
@@ -43,22 +44,10 @@ void describe(const ImuFindings& r, V& v) {
   describe(r.span, v);
 }
 
-/// Fixes by how they were computed.
-struct FixCounts {
-  static constexpr size_t kinds = core::Choices<core::FixQuality>::names.size();
-  std::array<std::uint64_t, kinds> n{};
-};
-
-template <class V>
-void describe(const FixCounts& r, V& v) {
-  for (size_t k = 0; k < FixCounts::kinds; ++k)
-    v.result(core::Choices<core::FixQuality>::names[k], r.n[k], core::if_any(), "Fixes of this quality.");
-}
-
 struct GnssFindings {
   std::uint64_t fixes = 0;
   TimeSpan span{};
-  std::optional<FixCounts> quality{};
+  std::optional<core::FixCounts> quality{};
   std::optional<std::uint64_t> with_velocity{};
 };
 
