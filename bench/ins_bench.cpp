@@ -109,9 +109,9 @@ int main(int argc, char** argv) try {
   const double cpu_seconds = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
   const double wall = std::chrono::duration<double>(Clock::now() - a).count();
   const double allowed = limit_seconds * hours, peak = peak_gb();
-  const core::Value& span = *result.report.find("span");
-  std::printf("%.2f h: %zu IMU records, %zu fixes, %lld nodes, %lld passes\n", hours, records, fixes,
-              static_cast<long long>(span.find("nodes")->as_int()), static_cast<long long>(span.find("iterations")->as_int()));
+  const trajectory::SmootherSpan& span = result.report.figures.span;
+  std::printf("%.2f h: %zu IMU records, %zu fixes, %lld nodes, %lld passes\n", hours, records, fixes, static_cast<long long>(span.nodes),
+              static_cast<long long>(span.iterations));
   std::printf("cpu %.2f s, wall %.2f s of %.0f s allowed: %.2f and %.2f of it\n", cpu_seconds, wall, allowed, cpu_seconds / allowed,
               wall / allowed);
   std::printf("peak memory %.3f GB (%.3f GB before, of the records): %.2f of the %.0f GB for an hour\n", peak, before, peak / limit_gb,

@@ -10,13 +10,17 @@
 #include "stages/adapters/flight/ins_gnss.h"
 #include "stages/adapters/flight/kinematic.h"
 #include "stages/adapters/flight/navigation.h"
+#include "stages/adapters/flight/rtklib.h"
+#include "stages/adapters/flight/time_sync.h"
 #include "stages/tile_filter.h"
 
 namespace swath::stages {
 
 const std::vector<Entry>& registry() {
   static const std::vector<Entry> list = {
-      {"gnss.rtklib", make_rtklib},
+      once<solve_baselines>("gnss.rtklib",
+                            "Antenna positions from raw GNSS observations of the aircraft and of base stations, by RTKLIB's rnx2rtkp.",
+                            {.check = expect_rinex, .inputs = rinex_files, .products = rtklib_products}),
       once<read_trajectory>("readers.trajectory",
                             "Reads the survey's trajectory and judges it: gaps, repeated times, heading against track.",
                             {.check = expect_trajectory, .inputs = trajectory_inputs}),
@@ -29,7 +33,10 @@ const std::vector<Entry>& registry() {
           "Smoothed trajectory from IMU and GNSS records: strapdown mechanisation, error-state Kalman filter, smoother; with "
           "its covariances, estimates of the sensors' errors and plots.",
           {.check = expect_imu_spec, .inputs = true_trajectory, .products = ins_gnss_products}),
-      {"time.sync", make_time_sync},
+      once<sync_times>("time.sync",
+                       "Brings events to GPS time: corrects those of the computer's clock by its logs, flags doubtful ones, compares "
+                       "techniques.",
+                       {.check = expect_events, .inputs = event_files, .products = time_sync_products}),
       once<position_events>("trajectory.kinematic",
                             "Positions of the GNSS antenna at events, by a Kalman filter from both sides; leave-one-out test.",
                             {.check = expect_crs, .products = kinematic_products}),

@@ -10,8 +10,8 @@
 
 namespace swath::trajectory {
 
-TrajectoryErrors errors_against(const core::TrajectoryData& t, const Trajectory& truth) {
-  TrajectoryErrors out;
+core::TrajectoryErrors errors_against(const core::TrajectoryData& t, const Trajectory& truth) {
+  core::TrajectoryErrors out;
   Cursor cursor(truth);
   for (std::size_t i = 0; i < t.size(); ++i) {
     if (!cursor.seek(t.time[i])) {
@@ -33,7 +33,7 @@ TrajectoryErrors errors_against(const core::TrajectoryData& t, const Trajectory&
   return out;
 }
 
-Comparison compare(const TrajectoryErrors& errors, const std::vector<Span>& within) {
+Comparison compare(const core::TrajectoryErrors& errors, const std::vector<Span>& within) {
   Comparison out;
   const bool has_sigma = !errors.position_sigma.empty();
   std::array<double, 6> sum{}, square{}, ratio{}, with_sigma{};
@@ -60,22 +60,6 @@ Comparison compare(const TrajectoryErrors& errors, const std::vector<Span>& with
     out.component[c].mean = sum[c] / n;
     out.component[c].rms = std::sqrt(square[c] / n);
     if (with_sigma[c] > 0.0) out.component[c].over_sigma = std::sqrt(ratio[c] / with_sigma[c]);
-  }
-  return out;
-}
-
-core::Value Comparison::value() const {
-  core::Value out = core::Value::object();
-  out["compared"] = compared;
-  if (compared == 0) return out;
-  for (std::size_t c = 0; c < component.size(); ++c) {
-    const std::string unit = c < 3 ? "_m" : "_arcsec";
-    const double factor = c < 3 ? 1.0 : core::to_degrees(1.0) * 3600.0;
-    core::Value& one = out[names[c]];
-    one["mean" + unit] = component[c].mean * factor;
-    one["rms" + unit] = component[c].rms * factor;
-    one["max" + unit] = component[c].largest * factor;
-    if (component[c].over_sigma > 0.0) one["error_over_sigma"] = component[c].over_sigma;
   }
   return out;
 }

@@ -4,28 +4,21 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string_view>
 #include <vector>
 
-#include "core/config/value.h"
+#include "core/config/result.h"
+#include "core/geo/frames.h"
 #include "core/records/trajectory_data.h"
+#include "core/records/trajectory_errors.h"
 #include "trajectory/trajectory.h"
 
 namespace swath::trajectory {
 
-/// Trajectory minus truth at the trajectory's own records. Vectors of one length; the sigmas are empty where the trajectory has none.
-struct TrajectoryErrors {
-  std::vector<double> time;                                     ///< GPS time, s
-  std::vector<Eigen::Vector3d> position, attitude;              ///< north east down, m; roll pitch heading, rad
-  std::vector<Eigen::Vector3d> position_sigma, attitude_sigma;  ///< of the trajectory, the same axes
-  std::size_t outside = 0;                                      ///< records that the truth does not cover
-
-  std::size_t size() const { return time.size(); }
-};
-
 /// Truth is interpolated to the time of each record (Trajectory::pose_at); axes are those of the true position; angles are differences
 /// brought to (-pi, pi].
-TrajectoryErrors errors_against(const core::TrajectoryData& trajectory, const Trajectory& truth);
+core::TrajectoryErrors errors_against(const core::TrajectoryData& trajectory, const Trajectory& truth);
 
 /// Of one component; m or rad.
 struct ErrorMeasures {
@@ -39,11 +32,52 @@ struct Comparison {
   std::array<ErrorMeasures, 6> component;  ///< north, east, down, roll, pitch, heading
 
   static constexpr std::array<std::string_view, 6> names{"north", "east", "down", "roll", "pitch", "heading"};
-  /// {"compared": n, "north": {"mean_m", "rms_m", "max_m", "error_over_sigma"}, ... "roll": {"mean_arcsec", ...}}.
-  core::Value value() const;
 };
 
+/// Of one component as a report shows it: metres or arc seconds.
+template <bool is_angle>
+struct ErrorsIn {
+  ErrorMeasures measures{};
+};
+
+template <bool is_angle, class V>
+void describe(const ErrorsIn<is_angle>& r, V& v) {
+  const auto& [mean, rms, largest, over_sigma] = r.measures;
+  const core::Form form = (is_angle ? core::Form{"arcsec", 1} : core::metres()).always();
+  const double factor = is_angle ? core::to_degrees(1.0) * 3600.0 : 1.0;
+  v.result(is_angle ? "mean_arcsec" : "mean_m", mean * factor, form, "Mean error.");
+  v.result(is_angle ? "rms_arcsec" : "rms_m", rms * factor, form, "RMS error.");
+  v.result(is_angle ? "max_arcsec" : "max_m", largest * factor, form, "Largest absolute error.");
+  v.result("error_over_sigma", over_sigma, core::plain(2).only_if(over_sigma > 0.0),
+           "RMS of error / sigma: 1 where the sigmas are right; absent where there are none.");
+}
+
+template <class V>
+void describe(const Comparison& r, V& v) {
+  v.result("compared", r.compared, "Records that were compared.");
+  const auto one = [&]<bool is_angle>(size_t c, ErrorsIn<is_angle> e, const char* doc) {
+    e.measures = r.component[c];
+    v.table(Comparison::names[c], r.compared > 0 ? std::optional(e) : std::nullopt, doc);
+  };
+  for (size_t c = 0; c < 3; ++c) one(c, ErrorsIn<false>(), "Error of the position along this axis.");
+  for (size_t c = 3; c < 6; ++c) one(c, ErrorsIn<true>(), "Error of this angle.");
+}
+
+/// A trajectory against the truth of a simulated survey.
+struct TruthComparison {
+  std::size_t outside = 0;
+  Comparison all;
+  std::optional<Comparison> lines{};
+};
+
+template <class V>
+void describe(const TruthComparison& r, V& v) {
+  v.result("outside_truth", r.outside, core::if_any(), "Records that the truth does not cover.");
+  v.table("all", r.all, "Errors of all records.");
+  v.table("lines", r.lines, "Errors within the flight lines.");
+}
+
 /// Measures of the errors within spans of time; no spans: of all.
-Comparison compare(const TrajectoryErrors& errors, const std::vector<Span>& within = {});
+Comparison compare(const core::TrajectoryErrors& errors, const std::vector<Span>& within = {});
 
 }  // namespace swath::trajectory

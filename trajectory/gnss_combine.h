@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/config/result.h"
 #include "core/records/gnss_data.h"
+#include "core/time.h"
 
 namespace swath::trajectory {
 
@@ -22,6 +24,23 @@ struct GnssAccount {
     return fixes ? static_cast<double>(by_quality[static_cast<size_t>(q)]) / static_cast<double>(fixes) : 0.0;
   }
 };
+
+template <class V>
+void describe(const GnssAccount& r, V& v) {
+  using core::FixQuality;
+  const auto known = [&r](core::Form f) { return f.only_if(r.fixes > 0); };
+  v.result("epochs", r.fixes, known(core::plain().in_summary()), "Epochs with a fix.");
+  for (size_t q = 0; q < r.by_quality.size(); ++q) {
+    const bool always = q == static_cast<size_t>(FixQuality::fixed) || q == static_cast<size_t>(FixQuality::float_ambiguity);
+    v.result(core::Choices<FixQuality>::names[q], r.by_quality[q], always ? known(core::plain()) : core::if_any(),
+             "Fixes of this quality.");
+  }
+  v.result("fixed_percent", 100 * r.share(FixQuality::fixed), known(core::percent().in_summary()), "Share of the epochs that are fixed.");
+  v.result("first", core::utc_text(r.first), known(core::plain()), "UTC of the first fix.");
+  v.result("last", core::utc_text(r.last), known(core::plain()), "UTC of the last fix.");
+  v.result("gaps", r.gaps, known(core::plain()), "Steps of more than 1.5 intervals.");
+  v.result("longest_gap_s", r.longest_gap, known(core::seconds(1)), "Longest step between fixes.");
+}
 
 /// `interval`: the usual step between epochs, s.
 GnssAccount account_of(const core::GnssData& fixes, double interval);

@@ -9,8 +9,6 @@
 
 namespace swath::stages {
 
-std::unique_ptr<Stage> make_rtklib();
-std::unique_ptr<Stage> make_time_sync();
 std::unique_ptr<Stage> make_laser_reader();
 std::unique_ptr<Stage> make_las_reader();
 std::unique_ptr<Stage> make_georeference();

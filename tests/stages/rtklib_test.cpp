@@ -103,6 +103,7 @@ class RtklibStage : public testing::Test {
   void run() {
     tally = {};
     findings = core::Value::object();
+    stage->check(context);
     stage->run_survey(context, tally, findings);
   }
   std::string fault() {
@@ -179,8 +180,10 @@ TEST_F(RtklibStage, SeveralBasesBecomeOneSolution) {
   EXPECT_EQ(number(all, "averaged"), 50);
   EXPECT_EQ(number(all, "disagreeing"), 10);
   EXPECT_EQ(number(all, "fixed"), 80);
-  EXPECT_EQ(number(*all.find("taken"), "A"), 80);
-  EXPECT_EQ(number(*all.find("taken"), "B"), 20);
+  const core::Value::Array& taken = all.find("taken")->items();
+  EXPECT_EQ(taken[0].find("name")->as_text(), "A");
+  EXPECT_EQ(number(taken[0], "epochs"), 80);
+  EXPECT_EQ(number(taken[1], "epochs"), 20);
   EXPECT_NEAR(number(all, "worst_disagreement_m"), 0.5, digit);
   EXPECT_NEAR((context.records.get<core::GnssData>().position[0] - place).x(), 0.005, digit);
   EXPECT_EQ(context.records.get<core::GnssData>().quality[70], FixQuality::fixed);

@@ -107,6 +107,9 @@ TEST(TimeSync, StampsMeetTheMarks) {
   EXPECT_LT(t.context.records.get<core::EventData>().sigma[0], 6e-6);
   const core::Value& c = t.findings.find("comparisons")->items()[0];
   EXPECT_EQ(c.find("techniques")->as_text(), "pc - marks");
+  const core::Value& pc = t.findings.find("events")->items()[0];
+  EXPECT_EQ(pc.find("name")->as_text(), "pc");
+  EXPECT_EQ(pc.find("outside_log")->as_int(), 3);
   EXPECT_NEAR(c.find("before_correction")->find("line")->find("drift")->as_number(), 1e-6, 1e-9);
   EXPECT_NEAR(c.find("before_correction")->find("line")->find("shift_s")->as_number(), -0.004595, 1e-6);
   EXPECT_EQ(c.find("strips")->items().size(), 2u);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/config/result_visitors.h"
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
 
@@ -65,7 +66,7 @@ TEST(Compare, AKnownErrorIsFoundInItsComponentAtAnyRate) {
   const Vector3d shift(0.02, -0.03, 0.05), turn(10 * arc_second, -20 * arc_second, 90 * arc_second);
   core::TrajectoryData d = disturbed(flight(37.0, 0.013), shift, turn);
   state(d, {0.01, 0.03, 0.1}, Vector3d(10, 10, 30) * arc_second);
-  const TrajectoryErrors errors = errors_against(d, truth);
+  const core::TrajectoryErrors errors = errors_against(d, truth);
   ASSERT_EQ(errors.size(), d.size());
   EXPECT_EQ(errors.outside, 0u);
   const Comparison c = compare(errors);
@@ -79,7 +80,7 @@ TEST(Compare, AKnownErrorIsFoundInItsComponentAtAnyRate) {
     EXPECT_NEAR(c.component[k].largest, std::abs(want), 2 * tolerance) << Comparison::names[k];
     EXPECT_NEAR(c.component[k].over_sigma, over[k], 0.003) << Comparison::names[k];
   }
-  const core::Value v = c.value();
+  const core::Value v = core::reported(c);
   EXPECT_NEAR(v.find("heading")->find("rms_arcsec")->as_number(), 90.0, 0.01);
   EXPECT_NEAR(v.find("down")->find("mean_m")->as_number(), 0.05, 1e-4);
 }
@@ -91,7 +92,7 @@ TEST(Compare, OnlyTheSpansCountAndRecordsOutsideTruthAreCounted) {
     d.time[i] += 10.0;  // the same motion later: an error along track everywhere
     if (i >= 2500 && i < 3000) d.height[i] += 70.0;
   }
-  const TrajectoryErrors errors = errors_against(d, truth);
+  const core::TrajectoryErrors errors = errors_against(d, truth);
   EXPECT_EQ(errors.outside, 500u);
   EXPECT_EQ(errors.size() + errors.outside, d.size());
   const Comparison c = compare(errors, {{start + 60.0, start + 69.99}, {start + 80.0, start + 80.5}});
@@ -99,13 +100,13 @@ TEST(Compare, OnlyTheSpansCountAndRecordsOutsideTruthAreCounted) {
   EXPECT_GT(c.component[2].rms, 60.0);
   EXPECT_NEAR(c.component[0].mean, -500.0, 5.0);
   EXPECT_EQ(c.component[0].over_sigma, 0.0);
-  EXPECT_EQ(c.value().find("north")->find("error_over_sigma"), nullptr);
+  EXPECT_EQ(core::reported(c).find("north")->find("error_over_sigma"), nullptr);
   EXPECT_EQ(compare(errors, {{start - 20.0, start - 10.0}}).compared, 0u);
 }
 
 TEST(Compare, HeadingErrorsCrossNorth) {
   const Trajectory truth(flight(100.0));
-  const TrajectoryErrors errors = errors_against(disturbed(flight(100.0), Vector3d::Zero(), {0, 0, -0.01}), truth);
+  const core::TrajectoryErrors errors = errors_against(disturbed(flight(100.0), Vector3d::Zero(), {0, 0, -0.01}), truth);
   for (const Vector3d& e : errors.attitude) EXPECT_NEAR(e[2], -0.01, angle_tolerance);
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <string>
 
+#include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "tests/world/navigation.h"
 #include "trajectory/ins/ins_gnss.h"
@@ -96,18 +97,15 @@ struct Statistics {
   }
 };
 
-inline std::vector<std::string> warnings(const InsGnssResult& r) {
-  std::vector<std::string> out;
-  for (const core::Value& w : r.report.find("warnings")->items()) out.push_back(w.as_text());
-  return out;
-}
 /// The first warning that holds the text, or "".
 inline std::string warning_with(const InsGnssResult& r, const std::string& part) {
-  for (const std::string& w : warnings(r))
+  for (const std::string& w : r.report.warnings)
     if (w.find(part) != std::string::npos) return w;
   return "";
 }
-inline double number(const InsGnssResult& r, const char* group, const char* name) { return r.report.find(group)->find(name)->as_number(); }
+inline double number(const InsGnssResult& r, const char* group, const char* name) {
+  return core::reported(r.report).find(group)->find(name)->as_number();
+}
 
 /// The text of the error that a run ends with; "" where it ends well.
 inline std::string error_of_run(const Trial& run, const Course& course) {

@@ -166,9 +166,10 @@ ClockReading ClockModel::at(double t) const {
 
 CorrectedEvents correct(core::EventTags events, const ClockModel& clock, const ClockOptions& options) {
   CorrectedEvents out;
+  out.raw = events;
   const double shift = events.epoch - clock.log().epoch;
   for (size_t i = 0; i < events.size(); ++i) {
-    const ClockReading r = clock.at(shift + events.time[i]);
+    const ClockReading r = out.readings.emplace_back(clock.at(shift + events.time[i]));
     events.time[i] += r.offset;
     events.sigma[i] = r.sigma > 0 ? std::hypot(r.sigma, options.tag_sigma.value) : 0.0;
     events.doubtful[i] = !r.settled || !r.inside;

@@ -85,9 +85,10 @@ class ClockModel {
   size_t outliers_ = 0;
 };
 
-/// Events on GPS time, latency not applied yet.
+/// Events of one technique on GPS time, latency not applied yet.
 struct CorrectedEvents {
-  core::EventTags events;
+  core::EventTags raw, events;
+  std::vector<ClockReading> readings;          ///< of the clock at each; empty where it needs none
   size_t before_settled = 0, outside_log = 0;  ///< of these `doubtful` is 1
 };
 

@@ -237,19 +237,6 @@ TimeOffset refine(const std::vector<ClockWindow>& windows, double coarse, double
 
 bool TimeOffset::is_significant(double floor) const { return determinable && std::abs(value) > std::max(sure_sigmas * sigma, floor); }
 
-core::Value TimeOffset::to_value() const {
-  core::Value v = core::Value::object();
-  v["determinable"] = determinable;
-  if (!reason.empty()) v["reason"] = reason;
-  if (determinable) {
-    v["value_s"] = value;
-    v["sigma_s"] = sigma;
-  }
-  v["used"] = used;
-  v["contrast"] = contrast;
-  return v;
-}
-
 TimeOffset imu_clock_offset(const ImuPath& path, const core::GnssData& gnss, const core::ImuErrorModel& spec, const Vector3d& lever_arm,
                             double lever_arm_sigma, double search) {
   TimeOffset out;
@@ -326,16 +313,6 @@ std::string ClockFindings::advice() const {
                                                      : "antenna.latency greater by " + quoted(imu.value);
   return "the clocks of IMU and GNSS are " + seconds(std::abs(imu.value)) + " apart (sigma " + seconds(imu.sigma) + "; the IMU's is " +
          (imu.value > 0 ? "ahead" : "behind") + "): " + imu_time + ", or " + antenna + " where the laser runs on the IMU's clock";
-}
-
-core::Value ClockFindings::to_value() const {
-  core::Value v = core::Value::object();
-  v["imu_ahead_of_gnss"] = imu.to_value();
-  if (imu.determinable && stated.imu_offset) v["imu_ahead_of_gnss"]["imu_time_offset_to_state_s"] = *stated.imu_offset - imu.value;
-  if (imu.determinable && stated.antenna_latency)
-    v["imu_ahead_of_gnss"]["antenna_latency_to_state_s"] = *stated.antenna_latency + imu.value;
-  v["velocities_late"] = velocity.to_value();
-  return v;
 }
 
 }  // namespace swath::trajectory

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "core/config/value.h"
+#include "core/config/result.h"
 #include "core/records/gnss_data.h"
 #include "core/records/imu_spec.h"
 #include "trajectory/ins/imu_walk.h"
@@ -25,8 +25,18 @@ struct TimeOffset {
 
   /// Larger than 4 sigma and `floor` (s).
   bool is_significant(double floor) const;
-  core::Value to_value() const;
 };
+
+template <class V>
+void describe(const TimeOffset& r, V& v) {
+  const auto known = [&r](core::Form f) { return f.always().only_if(r.determinable); };
+  v.result("determinable", r.determinable, "False: the records do not show it.");
+  v.result("reason", r.reason, core::plain().only_if(!r.reason.empty()), "Why not, or what the answer rests on.");
+  v.result("value_s", r.value, known(core::seconds(4)), "The offset.");
+  v.result("sigma_s", r.sigma, known(core::seconds(4)), "Its sigma.");
+  v.result("used", r.used, "Instants that were compared.");
+  v.result("contrast", r.contrast, core::share(3).always(), "Share by which the misfit falls from its median to its minimum.");
+}
 
 /// What must be added to the fixes' times, or subtracted from those of the IMU, so that both records show the same motion.
 ///
@@ -66,7 +76,27 @@ struct ClockFindings {
   bool velocities_lag() const { return velocity.value > 0.0 && velocity.is_significant(0.02); }
   /// The offset and the values to state that take it out, in words.
   std::string advice() const;
-  core::Value to_value() const;
 };
+
+/// With the values that take it out where they are stated in the survey.
+struct ImuClock {
+  const ClockFindings& clocks;
+};
+
+template <class V>
+void describe(const ImuClock& r, V& v) {
+  const auto& [imu, velocity, stated] = r.clocks;
+  describe(imu, v);
+  v.result("imu_time_offset_to_state_s", stated.imu_offset.value_or(0.0) - imu.value,
+           core::seconds(4).only_if(imu.determinable && stated.imu_offset), "Offset in the time of [[imu]] that takes it out.");
+  v.result("antenna_latency_to_state_s", stated.antenna_latency.value_or(0.0) + imu.value,
+           core::seconds(4).only_if(imu.determinable && stated.antenna_latency), "Or: antenna.latency that takes it out.");
+}
+
+template <class V>
+void describe(const ClockFindings& r, V& v) {
+  v.table("imu_ahead_of_gnss", ImuClock{r}, "Offset of the IMU's clock against that of the fixes.");
+  v.table("velocities_late", r.velocity, "Delay of the fixes' velocities against their positions.");
+}
 
 }  // namespace swath::trajectory

@@ -311,21 +311,6 @@ LatencyResult latency_of_rates(const Motion& reference, const Motion& device, co
   return estimate(reference, device, options, false);
 }
 
-core::Value LatencyResult::value() const {
-  core::Value v = core::Value::object();
-  v["determinable"] = determinable;
-  if (!reason.empty()) v["reason"] = reason;
-  v["latency_s"] = latency;
-  if (determinable) v["sigma_s"] = sigma;
-  v["coarse_s"] = coarse;
-  v["correlation"] = correlation;
-  v["used"] = static_cast<std::int64_t>(used);
-  v["outliers"] = static_cast<std::int64_t>(outliers);
-  v["axes_inflation"] = axes_inflation;
-  v["track_inflation"] = track_inflation;
-  return v;
-}
-
 Motion places_of(const core::TrajectoryData& t, const Vector3d& origin, double epoch) {
   const core::Geodetic g = core::geodetic_of(origin);
   const Eigen::Matrix3d ned_R_ecef = core::ecef_R_ned(g.latitude, g.longitude).transpose();

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/config/option.h"
-#include "core/config/value.h"
 #include "core/records/trajectory_data.h"
 #include "trajectory/clock/motion.h"
 
@@ -49,8 +48,6 @@ struct LatencyResult {
   /// How many times the variance of the latency would grow if a shift along the axes, or along the track, were estimated too. Large:
   /// such a shift, where there is one, reads as latency (straight flight at one speed).
   double axes_inflation = 1.0, track_inflation = 1.0;
-
-  core::Value value() const;
 };
 
 /// Coarse by the cross-correlation of speed, then robust least squares on the places (Huber, one scale per axis), the reference

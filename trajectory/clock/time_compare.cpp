@@ -101,18 +101,6 @@ Spread spread_of(const std::vector<double>& d, const std::vector<double>& sigmas
   return out;
 }
 
-core::Value Spread::value() const {
-  core::Value v = core::Value::object();
-  v["n"] = static_cast<std::int64_t>(n);
-  if (n == 0) return v;
-  v["bias"] = bias;
-  v["rms"] = rms;
-  if (n > 1) v["standard_deviation"] = standard;
-  v["largest"] = largest;
-  if (error_ratio > 0) v["error_over_sigma"] = error_ratio;
-  return v;
-}
-
 ShiftDrift shift_and_drift(const std::vector<TimePair>& pairs, const core::EventTags& first) {
   ShiftDrift out;
   if (pairs.empty()) return out;
@@ -174,11 +162,14 @@ PlaceComparison compare_places(const std::vector<TimePair>& pairs, const core::E
   return out;
 }
 
-Eigen::Vector3d place_on_line(const std::vector<double>& time, const std::vector<Eigen::Vector3d>& place, double t) {
-  const auto after = std::upper_bound(time.begin(), time.end(), t);
-  const size_t k = std::min(time.size() - 2, static_cast<size_t>(std::max<std::ptrdiff_t>(0, after - time.begin() - 1)));
-  const double w = (t - time[k]) / (time[k + 1] - time[k]);
-  return place[k] + w * (place[k + 1] - place[k]);
+PlaceComparison compare_places(const std::vector<TimePair>& pairs, double speed) {
+  PlaceComparison out;
+  out.is_along_alone = true;
+  std::vector<double> along;
+  for (const TimePair& p : pairs)
+    if (!p.doubtful) along.push_back(p.difference * speed);
+  out.axes[0] = spread_of(along);
+  return out;
 }
 
 }  // namespace swath::trajectory

@@ -4,22 +4,21 @@
 
 #include <Eigen/Core>
 
-#include "core/config/value.h"
 #include "core/on_progress.h"
 #include "core/records/gnss_data.h"
 #include "core/records/imu_data.h"
 #include "core/records/imu_spec.h"
+#include "core/records/smoother_series.h"
 #include "core/records/trajectory_data.h"
-#include "trajectory/clock/clock_offset.h"
 #include "trajectory/ins/ins_options.h"
-#include "trajectory/ins/smoother_series.h"
+#include "trajectory/ins/ins_results.h"
 
 namespace swath::trajectory {
 
 struct InsGnssResult {
   core::TrajectoryData trajectory;  ///< of the IMU centre, with sigmas, covariances at the nodes and error links
-  core::Value report;               ///< trajectory.json: estimates with sigmas, counts, NIS, separation, warnings
-  SmootherSeries series;
+  InsReport report;                 ///< estimates with sigmas, counts, NIS, separation, warnings
+  core::SmootherSeries series;
 };
 
 /// `lever_arm`: IMU centre to antenna, body, m, with the sigma of each component. `stated`: offsets of the clocks that the records were

@@ -14,7 +14,6 @@
 namespace swath::trajectory {
 namespace {
 
-using core::Value;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
@@ -31,50 +30,40 @@ std::string text(const char* form, double a, double b = 0, double c = 0, double 
   return out.data();
 }
 
-Value list(const Vector3d& v, double unit) {
-  Value out = Value::array();
-  for (Eigen::Index i = 0; i < 3; ++i) out.push(v[i] / unit);
-  return out;
-}
+using Warnings = std::vector<std::string>;
 
-/// A sensor constant at the middle of the record, with the sigma it was stated with.
-struct Constant {
-  const char* name;
-  const char* unit_name;
-  double unit;
-  Vector3d value, sigma;
-  double stated;
-};
-
-std::vector<Constant> constants(const InsFindings& f) {
+InsEstimates sensor_constants(const InsFindings& f) {
   const SmoothedNode& node = f.run.nodes[f.run.nodes.size() / 2];
   const Estimate& e = node.estimate;
   const Layout& l = f.problem.layout;
   const auto sigma = [&node](int row) -> Vector3d { return row < 0 ? Vector3d::Zero() : Vector3d(node.sigma.segment<3>(row)); };
-  std::vector<Constant> out;
-  out.push_back({"gyro_bias", "deg_per_h", deg_per_hour, e.gyro_bias, sigma(l.gyro_bias),
-                 std::hypot(f.spec.gyro_bias.value, f.spec.gyro_drift.value)});
-  out.push_back({"accelerometer_bias", "ug", micro_g, e.force_bias, sigma(l.force_bias),
-                 std::hypot(f.spec.accelerometer_bias.value, f.spec.accelerometer_drift.value)});
-  if (l.gyro_scale >= 0) out.push_back({"gyro_scale", "ppm", 1e-6, e.gyro_scale, sigma(l.gyro_scale), f.spec.gyro_scale.value});
+  InsEstimates out;
+  out.gyro_bias = {"gyro_bias", "deg_per_h",        deg_per_hour,
+                   e.gyro_bias, sigma(l.gyro_bias), std::hypot(f.spec.gyro_bias.value, f.spec.gyro_drift.value)};
+  out.accelerometer_bias = {"accelerometer_bias",
+                            "ug",
+                            micro_g,
+                            e.force_bias,
+                            sigma(l.force_bias),
+                            std::hypot(f.spec.accelerometer_bias.value, f.spec.accelerometer_drift.value)};
+  if (l.gyro_scale >= 0) out.gyro_scale = {"gyro_scale", "ppm", 1e-6, e.gyro_scale, sigma(l.gyro_scale), f.spec.gyro_scale.value};
   if (l.force_scale >= 0)
-    out.push_back({"accelerometer_scale", "ppm", 1e-6, e.force_scale, sigma(l.force_scale), f.spec.accelerometer_scale.value});
+    out.accelerometer_scale = {"accelerometer_scale", "ppm", 1e-6, e.force_scale, sigma(l.force_scale), f.spec.accelerometer_scale.value};
   return out;
 }
 
 /// What the clocks show. With gnss_latency the filter has allowed for a small offset.
-void judge_clocks(const InsFindings& f, Value& v, Value& warnings) {
-  v["clocks"] = f.clocks.to_value();
+void judge_clocks(const InsFindings& f, Warnings& warnings) {
   const InsGnssOptions& o = f.problem.options;
   if (f.clocks.apart() && !(o.gnss_latency && std::abs(f.clocks.imu.value) < sure_sigmas * o.latency_sigma.value))
-    warnings.push(f.clocks.advice());
+    warnings.push_back(f.clocks.advice());
   if (f.clocks.velocities_lag())
-    warnings.push(text("the GNSS velocities are %.3f s late (sigma %.4f s) against the positions of the same fixes and are not used",
-                       f.clocks.velocity.value, f.clocks.velocity.sigma));
+    warnings.push_back(text("the GNSS velocities are %.3f s late (sigma %.4f s) against the positions of the same fixes and are not used",
+                            f.clocks.velocity.value, f.clocks.velocity.sigma));
 }
 
 /// A given attitude against the smoothed one, which it is part of: the difference has the variance given^2 - smoothed^2.
-void judge_given(const InsFindings& f, Value& alignment, Value& warnings) {
+void judge_given(const InsFindings& f, AlignmentFound& alignment, Warnings& warnings) {
   if (f.alignment.method != "given") return;
   const SmoothedNode& first = f.run.nodes.front();
   const core::Geodetic g = core::geodetic_of(first.estimate.nav.position);
@@ -84,52 +73,185 @@ void judge_given(const InsFindings& f, Value& alignment, Value& warnings) {
   const Vector3d off(core::wrap_pi(given.roll - is.roll), core::wrap_pi(given.pitch - is.pitch), core::wrap_pi(given.heading - is.heading));
   const Vector3d stated = (ned.transpose() * f.alignment.covariance * ned).diagonal().cwiseSqrt();
   const Vector3d smoothed = core::CovarianceSeries::unpack(first.covariance).diagonal().tail<3>().cwiseMax(0.0).cwiseSqrt();
-  alignment["given_minus_smoothed_deg"] = list(off, core::degree);
-  alignment["given_sigma_deg"] = list(stated, core::degree);
+  alignment.given_minus_smoothed = off / core::degree;
+  alignment.given_sigma = stated / core::degree;
   constexpr double least = 1.0 / 16;  // records that show little themselves contradict nothing
   for (Eigen::Index i = 0; i < 3; ++i) {
     const double spread = std::sqrt(std::max(least * stated[i] * stated[i], stated[i] * stated[i] - smoothed[i] * smoothed[i]));
     if (std::abs(off[i]) > sure_sigmas * spread)
-      warnings.push(std::string("the given ") + std::array{"roll", "pitch", "heading"}[static_cast<size_t>(i)] +
-                    text(" contradicts the records by %.3f deg, %.1f times its sigma of %.3f deg: check trajectory.ins_gnss.given",
-                         std::abs(off[i]) / core::degree, std::abs(off[i]) / spread, stated[i] / core::degree));
+      warnings.push_back(std::string("the given ") + std::array{"roll", "pitch", "heading"}[static_cast<size_t>(i)] +
+                         text(" contradicts the records by %.3f deg, %.1f times its sigma of %.3f deg: check trajectory.ins_gnss.given",
+                              std::abs(off[i]) / core::degree, std::abs(off[i]) / spread, stated[i] / core::degree));
   }
 }
 
 /// Are the constants as large as their stated sigmas say? The estimate minus nothing has variance stated^2 - sigma^2 if the data sheet is
 /// true.
-void judge_constants(const std::vector<Constant>& all, Value& warnings) {
+void judge_constants(const InsEstimates& e, Warnings& warnings) {
   double sum = 0, n = 0;
-  for (const Constant& c : all)
+  std::vector<SensorConstant> all{e.gyro_bias, e.accelerometer_bias};
+  if (e.gyro_scale) all.push_back(*e.gyro_scale);
+  if (e.accelerometer_scale) all.push_back(*e.accelerometer_scale);
+  for (const SensorConstant& c : all)
     for (Eigen::Index i = 0; i < 3; ++i) {
       if (c.stated <= 0 || c.sigma[i] > observed_share * c.stated) continue;
       const double z = c.value[i] / std::sqrt(c.stated * c.stated - c.sigma[i] * c.sigma[i]);
       sum += z * z;
       n += 1;
       if (std::abs(z) > sure_sigmas)
-        warnings.push(std::string(c.name) + " " + "xyz"[i] + " is " + text("%.4g ", c.value[i] / c.unit) + c.unit_name +
-                      text(", %.1f times its stated sigma of %.4g", std::abs(z), c.stated / c.unit) +
-                      ": the IMU is worse than stated (imu_spec), or its axes or units are wrong");
+        warnings.push_back(std::string(c.name) + " " + "xyz"[i] + " is " + text("%.4g ", c.value[i] / c.unit) + std::string(c.unit_name) +
+                           text(", %.1f times its stated sigma of %.4g", std::abs(z), c.stated / c.unit) +
+                           ": the IMU is worse than stated (imu_spec), or its axes or units are wrong");
     }
   // Chi-square by Wilson and Hilferty: standard normal of the cube root.
   if (n < 3) return;
   const double z = (std::cbrt(sum / n) - (1 - 2 / (9 * n))) / std::sqrt(2 / (9 * n));
   if (z > 5.0)  // estimates that lean on one another scatter more than independent ones
-    warnings.push(
+    warnings.push_back(
         text("the %.0f observed IMU constants are %.2f times their stated sigmas (rms): the IMU is worse than stated (imu_spec); "
              "printed sigmas of the trajectory are too small",
              n, std::sqrt(sum / n)));
   if (z < -3.5)
-    warnings.push(
+    warnings.push_back(
         text("the %.0f observed IMU constants are only %.3f of their stated sigmas (rms): the IMU is better than stated (imu_spec); "
              "printed sigmas of the trajectory are too large",
              n, std::sqrt(sum / n)));
 }
 
+std::vector<Interruption> judged_gaps(const std::vector<BridgedGap>& gaps, Warnings& warnings) {
+  std::vector<Interruption> out;
+  double longest = 0;
+  for (const BridgedGap& g : gaps) {
+    out.push_back({g.start, g.length});
+    longest = std::max(longest, g.length);
+  }
+  if (!gaps.empty())
+    warnings.push_back(text("%.0f gaps in the IMU records, the longest of %.4g s, are bridged; those over 0.1 s hold no trajectory",
+                            static_cast<double>(gaps.size()), longest));
+  return out;
+}
+
+FixesUsed judged_fixes(const Problem& problem, const core::SmootherSeries& s, Warnings& warnings) {
+  FixesUsed out{s.fix_time.size(), 0, problem.share, problem.variance};
+  for (const double w : s.weight) out.down_weighted += w < 1.0;
+  const auto fixes = static_cast<double>(out.used), weighted = static_cast<double>(out.down_weighted);
+  if (weighted > outlier_share * fixes + 3)
+    warnings.push_back(text("%.0f of %.0f fixes contradict the trajectory and are down-weighted", weighted, fixes));
+  if (problem.variance > 1.3)
+    warnings.push_back(text("the fixes scatter %.2f times more than stated; their sigmas are raised by that", std::sqrt(problem.variance)));
+  return out;
+}
+
+std::vector<Interruption> outages_of(const std::vector<double>& fix_time, double first, double last) {
+  std::vector<Interruption> out;
+  const auto until = [&](double t) {
+    if (t - first >= long_outage) out.push_back({first, t - first});
+    first = t;
+  };
+  for (const double t : fix_time) until(t);
+  until(last);
+  return out;
+}
+
+/// NIS of 3 degrees of freedom; the mean of n has the variance 6 / n.
+InnovationFigures judged_innovations(const core::SmootherSeries& s, Warnings& warnings) {
+  InnovationFigures out;
+  Vector3d squares = Vector3d::Zero(), residual = Vector3d::Zero(), lag = Vector3d::Zero();
+  double sum = 0, clean = 0;
+  for (size_t k = 0; k < s.fix_time.size(); ++k) {
+    squares += s.innovation[k].cwiseAbs2();
+    residual += s.residual[k].cwiseAbs2();
+    if (k) lag += s.innovation[k].cwiseProduct(s.innovation[k - 1]);
+    if (s.weight[k] < 1.0) continue;
+    sum += s.nis[k];
+    ++clean;
+  }
+  out.mean = clean > 0 ? sum / clean : std::nan("");
+  out.band = clean > 0 ? 1.96 * std::sqrt(6 / clean) : std::nan("");
+  const double n = static_cast<double>(std::max<size_t>(1, s.fix_time.size()));
+  out.rms = (squares / n).cwiseSqrt();
+  out.correlation = lag.cwiseQuotient(squares.cwiseMax(1e-30));
+  out.residual_rms = (residual / n).cwiseSqrt();
+  if (std::abs(out.mean / 3 - 1) > nis_tolerance + out.band)
+    warnings.push_back(text("the innovations are %.2f times what the stated sigmas of IMU and GNSS say (mean NIS %.2f of 3): ",
+                            std::sqrt(out.mean / 3), out.mean) +
+                       (out.mean > 3 ? "a sensor is worse than stated, the lever arm or a time offset is wrong"
+                                     : "the fixes are better than stated, printed sigmas are too large"));
+  return out;
+}
+
+/// Of the forward and the backward pass.
+SeparationFigures separation_of(const core::SmootherSeries& s) {
+  SeparationFigures out;
+  Vector3d squared = Vector3d::Zero(), normed = Vector3d::Zero(), turned = Vector3d::Zero();
+  std::vector<double> size;
+  for (size_t k = 0; k < s.time.size(); ++k) {
+    squared += s.separation[k].cwiseAbs2();
+    normed += s.separation[k].cwiseQuotient(s.separation_sigma[k]).cwiseAbs2();
+    turned += s.attitude_separation[k].cwiseAbs2();
+    size.push_back(s.separation[k].norm());
+  }
+  const auto count = static_cast<double>(size.size());
+  out.rms = (squared / count).cwiseSqrt();
+  out.by_sigma = (normed / count).cwiseSqrt();
+  out.attitude_rms = (turned / count).cwiseSqrt() / arcsec;
+  out.median = core::median(size);
+  out.largest = *std::max_element(size.begin(), size.end());
+  return out;
+}
+
+/// What was estimated of antenna and vehicle, with what contradicts the survey.
+void judge_mounting(const InsFindings& f, InsEstimates& out, Warnings& warnings) {
+  const SmoothedNode& last = f.run.nodes.back();
+  const Estimate& e = last.estimate;
+  const Layout& l = f.problem.layout;
+  if (l.lever >= 0) {
+    const Vector3d change = e.lever - f.lever_arm, sigma = last.sigma.segment<3>(l.lever);
+    out.lever_arm = {f.lever_arm, e.lever, sigma, f.lever_arm_sigma};
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const double spread = std::sqrt(std::max(1e-12, f.lever_arm_sigma * f.lever_arm_sigma - sigma[i] * sigma[i]));
+      if (sigma[i] < 0.95 * f.lever_arm_sigma && std::abs(change[i]) > 3.3 * spread)
+        warnings.push_back(
+            std::string("the antenna's lever arm ") + std::array{"forward", "right", "down"}[static_cast<size_t>(i)] +
+            text(" is estimated at %.3f m (sigma %.3f m) but stated as %.3f m: check antenna.lever_arm, its sign and its sigma", e.lever[i],
+                 sigma[i], f.lever_arm[i]));
+    }
+  }
+  if (l.latency >= 0) {
+    out.latency = {e.latency, last.sigma[l.latency]};
+    const double stated = f.problem.options.latency_sigma.value;
+    if (std::abs(e.latency) > sure_sigmas * stated)
+      warnings.push_back(
+          text("the fixes' times are off by %.4f s, %.1f times latency_sigma: state antenna.latency or the IMU's time.offset", e.latency,
+               std::abs(e.latency) / stated));
+  }
+  if (l.track >= 0) out.axis = {e.track.x(), e.track.y(), last.sigma[l.track]};
+}
+
+/// Of the product: bridged gaps hold none.
+SigmaFigures sigmas_of(const InsFindings& f) {
+  SigmaFigures out;
+  double count = 0;
+  for (size_t k = 0; k < f.problem.nodes.size(); ++k) {
+    const double t = f.problem.nodes[k].time;
+    if (f.problem.path.bridged_within(t - 1e-6, t + 1e-6).seconds > 0) continue;
+    ++count;
+    const auto c = core::CovarianceSeries::unpack(f.run.nodes[k].covariance).diagonal().cwiseMax(0.0).eval();
+    out.position += c.head<3>();
+    out.attitude += c.tail<3>();
+    out.worst_position = out.worst_position.cwiseMax(c.head<3>().cwiseSqrt());
+    out.worst_attitude = out.worst_attitude.cwiseMax(c.tail<3>().cwiseSqrt());
+  }
+  out.position = (out.position / count).cwiseSqrt();
+  out.attitude = (out.attitude / count).cwiseSqrt() / arcsec;
+  out.worst_attitude /= arcsec;
+  return out;
+}
+
 }  // namespace
 
-SmootherSeries series_of(const InsFindings& f) {
-  SmootherSeries s;
+core::SmootherSeries series_of(const InsFindings& f) {
+  core::SmootherSeries s;
   const auto& nodes = f.problem.nodes;
   const Vector3d none = Vector3d::Constant(std::nan(""));
   for (size_t k = 0; k < nodes.size(); ++k) {
@@ -171,203 +293,44 @@ SmootherSeries series_of(const InsFindings& f) {
   return s;
 }
 
-core::Value report_of(const InsFindings& f, const SmootherSeries& s) {
-  Value v = Value::object(), warnings = Value::array();
+InsReport report_of(const InsFindings& f, const core::SmootherSeries& s) {
+  InsReport report;
+  InsFigures& r = report.figures;
+  Warnings& warnings = report.warnings;
   const auto& nodes = f.problem.nodes;
-  const size_t fixes = s.fix_time.size();
-
-  Value& span = v["span"];
-  span["first_gps_s"] = nodes.front().time;
-  span["last_gps_s"] = nodes.back().time;
-  span["imu_records"] = static_cast<std::int64_t>(f.problem.path.imu.size());
-  span["nodes"] = static_cast<std::int64_t>(nodes.size());
-  span["iterations"] = f.iterations;
-  v["imu_gaps_bridged"] = Value::array();
-  for (const BridgedGap& g : f.problem.path.gaps) {
-    Value one = Value::object();
-    one["start_gps_s"] = g.start;
-    one["length_s"] = g.length;
-    v["imu_gaps_bridged"].push(std::move(one));
-  }
-  if (!f.problem.path.gaps.empty()) {
-    double longest = 0;
-    for (const BridgedGap& g : f.problem.path.gaps) longest = std::max(longest, g.length);
-    warnings.push(text("%.0f gaps in the IMU records, the longest of %.4g s, are bridged; those over 0.1 s hold no trajectory",
-                       static_cast<double>(f.problem.path.gaps.size()), longest));
-  }
-
-  judge_clocks(f, v, warnings);
-  Value& alignment = v["alignment"];
-  alignment["method"] = f.alignment.method;
-  alignment["at_gps_s"] = f.alignment.time;
-  alignment["worst_sigma_deg"] = f.alignment.worst_sigma() / core::degree;
-  judge_given(f, alignment, warnings);
-  double still = 0;
-  for (const Span& span_still : f.standstills) still += span_still.last - span_still.first;
-  v["standstill_s"] = still;
-
-  // Fixes and outages.
-  Value& gnss = v["fixes"];
-  std::int64_t weighted = 0;
-  double sum = 0, clean = 0;
-  for (size_t k = 0; k < fixes; ++k) {
-    weighted += s.weight[k] < 1.0;
-    if (s.weight[k] < 1.0) continue;
-    sum += s.nis[k];
-    ++clean;
-  }
-  gnss["used"] = static_cast<std::int64_t>(fixes);
-  gnss["down_weighted"] = weighted;
-  if (static_cast<double>(weighted) > outlier_share * static_cast<double>(fixes) + 3)
-    warnings.push(text("%.0f of %.0f fixes contradict the trajectory and are down-weighted", static_cast<double>(weighted),
-                       static_cast<double>(fixes)));
-  gnss["correlated_share"] = f.problem.share;
-  gnss["white_share"] = 1 - f.problem.share;
-  gnss["variance_factor"] = f.problem.variance;
-  if (f.problem.variance > 1.3)
-    warnings.push(text("the fixes scatter %.2f times more than stated; their sigmas are raised by that", std::sqrt(f.problem.variance)));
-  v["imu_noise_factor"] = f.problem.roughness;
+  r.span = {nodes.front().time, nodes.back().time, f.problem.path.imu.size(), nodes.size(), f.iterations};
+  r.gaps = judged_gaps(f.problem.path.gaps, warnings);
+  r.clocks = f.clocks;
+  judge_clocks(f, warnings);
+  r.alignment = {f.alignment.method, f.alignment.time, f.alignment.worst_sigma()};
+  judge_given(f, r.alignment, warnings);
+  for (const Span& still : f.standstills) r.standstill += still.last - still.first;
+  r.fixes = judged_fixes(f.problem, s, warnings);
+  r.imu_noise_factor = f.problem.roughness;
   if (f.problem.roughness > 1)
-    warnings.push(
+    warnings.push_back(
         text("the IMU's records hold %.0f times the stated noise, which is allowed for: vibration, a better grade stated than flown "
              "(imu_spec), or a wrong time offset",
              f.problem.roughness));
-  v["outages"] = Value::array();
-  double before = nodes.front().time;
-  const auto outage = [&](double until) {
-    if (until - before < long_outage) return;
-    Value one = Value::object();
-    one["start_gps_s"] = before;
-    one["length_s"] = until - before;
-    v["outages"].push(std::move(one));
-  };
-  for (const double t : s.fix_time) {
-    outage(t);
-    before = t;
-  }
-  outage(nodes.back().time);
-
-  // Innovations: NIS of 3 degrees of freedom; mean of n has the variance 6 / n.
-  Value& nis = v["innovations"];
-  const double mean = clean > 0 ? sum / clean : std::nan("");
-  const double band = clean > 0 ? 1.96 * std::sqrt(6 / clean) : std::nan("");
-  nis["mean_nis"] = mean;
-  nis["degrees_of_freedom"] = 3;
-  nis["band_95"].push(3 - band);
-  nis["band_95"].push(3 + band);
-  Vector3d squares = Vector3d::Zero(), residual = Vector3d::Zero(), lag = Vector3d::Zero();
-  for (size_t k = 0; k < fixes; ++k) {
-    squares += s.innovation[k].cwiseAbs2();
-    residual += s.residual[k].cwiseAbs2();
-    if (k) lag += s.innovation[k].cwiseProduct(s.innovation[k - 1]);
-  }
-  const double n = static_cast<double>(std::max<size_t>(1, fixes));
-  nis["rms_ned_m"] = list((squares / n).cwiseSqrt(), 1);
-  nis["correlation_lag_1_ned"] = list(lag.cwiseQuotient(squares.cwiseMax(1e-30)), 1);
-  nis["residual_rms_ned_m"] = list((residual / n).cwiseSqrt(), 1);
-  if (std::abs(mean / 3 - 1) > nis_tolerance + band)
-    warnings.push(text("the innovations are %.2f times what the stated sigmas of IMU and GNSS say (mean NIS %.2f of 3): ",
-                       std::sqrt(mean / 3), mean) +
-                  (mean > 3 ? "a sensor is worse than stated, the lever arm or a time offset is wrong"
-                            : "the fixes are better than stated, printed sigmas are too large"));
-
-  // Separation of the forward and the backward pass.
-  if (!f.backward.empty()) {
-    Vector3d squared = Vector3d::Zero(), normed = Vector3d::Zero(), turned = Vector3d::Zero();
-    double count = 0;
-    std::vector<double> size;
-    for (size_t k = 0; k < s.time.size(); ++k) {
-      squared += s.separation[k].cwiseAbs2();
-      normed += s.separation[k].cwiseQuotient(s.separation_sigma[k]).cwiseAbs2();
-      turned += s.attitude_separation[k].cwiseAbs2();
-      size.push_back(s.separation[k].norm());
-      ++count;
-    }
-    Value& separation = v["separation"];
-    separation["rms_ned_m"] = list((squared / count).cwiseSqrt(), 1);
-    separation["by_its_sigma_ned"] = list((normed / count).cwiseSqrt(), 1);
-    separation["median_m"] = core::median(size);
-    separation["largest_m"] = *std::max_element(size.begin(), size.end());
-    separation["rms_roll_pitch_heading_arcsec"] = list((turned / count).cwiseSqrt(), arcsec);
-  }
-
-  // Estimates.
-  const std::vector<Constant> all = constants(f);
-  for (const Constant& c : all) {
-    Value& one = v["estimates"][c.name];
-    one["unit"] = c.unit_name;
-    one["value"] = list(c.value, c.unit);
-    one["sigma"] = list(c.sigma, c.unit);
-    one["stated_sigma"] = c.stated / c.unit;
-  }
-  judge_constants(all, warnings);
-  const SmoothedNode& last = f.run.nodes.back();
-  const Layout& l = f.problem.layout;
-  if (l.lever >= 0) {
-    Value& one = v["estimates"]["lever_arm"];
-    const Vector3d change = last.estimate.lever - f.lever_arm, sigma = last.sigma.segment<3>(l.lever);
-    one["unit"] = "m";
-    one["stated"] = list(f.lever_arm, 1);
-    one["stated_sigma"] = f.lever_arm_sigma;
-    one["value"] = list(last.estimate.lever, 1);
-    one["sigma"] = list(sigma, 1);
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      const double spread = std::sqrt(std::max(1e-12, f.lever_arm_sigma * f.lever_arm_sigma - sigma[i] * sigma[i]));
-      if (sigma[i] < 0.95 * f.lever_arm_sigma && std::abs(change[i]) > 3.3 * spread)
-        warnings.push(std::string("the antenna's lever arm ") + std::array{"forward", "right", "down"}[static_cast<size_t>(i)] +
-                      text(" is estimated at %.3f m (sigma %.3f m) but stated as %.3f m: check antenna.lever_arm, its sign and its sigma",
-                           last.estimate.lever[i], sigma[i], f.lever_arm[i]));
-    }
-  }
-  if (l.latency >= 0) {
-    Value& one = v["estimates"]["gnss_latency"];
-    one["unit"] = "s";
-    one["value"] = last.estimate.latency;
-    one["sigma"] = last.sigma[l.latency];
-    one["meaning"] = "to be added to the fixes' times";
-    const double stated = f.problem.options.latency_sigma.value;
-    if (std::abs(last.estimate.latency) > sure_sigmas * stated)
-      warnings.push(text("the fixes' times are off by %.4f s, %.1f times latency_sigma: state antenna.latency or the IMU's time.offset",
-                         last.estimate.latency, std::abs(last.estimate.latency) / stated));
-  }
-  if (l.track >= 0) {
-    Value& one = v["estimates"]["vehicle_axis"];
-    one["unit"] = "deg";
-    one["azimuth"] = last.estimate.track.x() / core::degree;
-    one["elevation"] = last.estimate.track.y() / core::degree;
-    one["sigma"] = last.sigma[l.track] / core::degree;
-  }
-
-  // Sigmas of the product.
-  Vector3d position = Vector3d::Zero(), attitude = Vector3d::Zero(), worst_position = Vector3d::Zero(), worst_attitude = Vector3d::Zero();
-  double count = 0;
-  for (size_t k = 0; k < nodes.size(); ++k) {
-    if (f.problem.path.bridged_within(nodes[k].time - 1e-6, nodes[k].time + 1e-6).seconds > 0) continue;  // no trajectory there
-    const SmoothedNode& node = f.run.nodes[k];
-    ++count;
-    const auto c = core::CovarianceSeries::unpack(node.covariance).diagonal().cwiseMax(0.0).eval();
-    position += c.head<3>();
-    attitude += c.tail<3>();
-    worst_position = worst_position.cwiseMax(c.head<3>().cwiseSqrt());
-    worst_attitude = worst_attitude.cwiseMax(c.tail<3>().cwiseSqrt());
-  }
-  Value& sigma = v["sigma"];
-  sigma["rms_ned_m"] = list((position / count).cwiseSqrt(), 1);
-  sigma["largest_ned_m"] = list(worst_position, 1);
-  sigma["rms_roll_pitch_heading_arcsec"] = list((attitude / count).cwiseSqrt(), arcsec);
-  sigma["largest_roll_pitch_heading_arcsec"] = list(worst_attitude, arcsec);
+  r.outages = outages_of(s.fix_time, nodes.front().time, nodes.back().time);
+  r.innovations = judged_innovations(s, warnings);
+  if (!f.backward.empty()) r.separation = separation_of(s);
+  r.estimates = sensor_constants(f);
+  judge_constants(r.estimates, warnings);
+  judge_mounting(f, r.estimates, warnings);
+  r.sigma = sigmas_of(f);
   // Heading: what smoothing took away.
   double heading = 0;
   for (const double h : s.heading_forward) heading += h * h;
-  v["heading_smoothed_away_rms_arcsec"] = std::sqrt(heading / static_cast<double>(nodes.size())) / arcsec;
-  if (std::sqrt(attitude.z() / count) > 0.2 * core::degree)
-    warnings.push(text("the heading is known to %.2f deg only (rms sigma): the flight has too few changes of speed or course for this IMU",
-                       std::sqrt(attitude.z() / count) / core::degree));
+  r.heading_smoothed_away = std::sqrt(heading / static_cast<double>(nodes.size())) / arcsec;
+  if (const double sigma = r.sigma.attitude.z() * arcsec; sigma > 0.2 * core::degree)
+    warnings.push_back(
+        text("the heading is known to %.2f deg only (rms sigma): the flight has too few changes of speed or course for this IMU",
+             sigma / core::degree));
   if (f.unsettled > 0)
-    warnings.push(text("the smoother had not settled after %.0f rounds: the trajectory still moved by %.2f sigmas",
-                       static_cast<double>(f.iterations), f.unsettled));
-  v["warnings"] = std::move(warnings);
-  return v;
+    warnings.push_back(text("the smoother had not settled after %.0f rounds: the trajectory still moved by %.2f sigmas",
+                            static_cast<double>(f.iterations), f.unsettled));
+  return report;
 }
 
 }  // namespace swath::trajectory

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the smoother found, as numbers, series and warnings.
+// From what the smoother found to numbers, series and warnings.
 #pragma once
 
-#include "trajectory/clock/clock_offset.h"
+#include "core/records/smoother_series.h"
 #include "trajectory/ins/alignment.h"
+#include "trajectory/ins/ins_results.h"
 #include "trajectory/ins/ins_smoother.h"
-#include "trajectory/ins/smoother_series.h"
 
 namespace swath::trajectory {
 
@@ -24,8 +24,7 @@ struct InsFindings {
   const ClockFindings& clocks;
 };
 
-SmootherSeries series_of(const InsFindings& findings);
-/// trajectory.json. Under "warnings": what a surveyor must look at, each with its numbers.
-core::Value report_of(const InsFindings& findings, const SmootherSeries& series);
+core::SmootherSeries series_of(const InsFindings& findings);
+InsReport report_of(const InsFindings& findings, const core::SmootherSeries& series);
 
 }  // namespace swath::trajectory

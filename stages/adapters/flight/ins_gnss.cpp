@@ -10,8 +10,8 @@
 #include "io/records/sbet.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
+#include "report/flight_charts.h"
 #include "stages/drawing_file.h"
-#include "stages/trajectory_charts.h"
 #include "trajectory/checks.h"
 #include "trajectory/compare.h"
 
@@ -39,28 +39,20 @@ trajectory::StatedClocks clocks_of(const io::Survey& survey) {
   return out;
 }
 
-/// Over all and over the flight lines, into the report and the findings.
-std::optional<trajectory::TrajectoryErrors> compare_with_truth(const io::Survey& survey, const core::TrajectoryData& data,
-                                                               core::Value& report, core::Value& findings) {
-  const auto truth = data.size() ? truth_of(survey, data.time.front()) : std::nullopt;
-  if (!truth) return std::nullopt;
-  trajectory::TrajectoryErrors errors = trajectory::errors_against(data, *truth);
-  core::Value compared = core::Value::object();
-  if (errors.outside) compared["outside_truth"] = errors.outside;
-  compared["all"] = trajectory::compare(errors).value();
+/// Over all and over the flight lines.
+trajectory::TruthComparison compare_with_truth(const io::Survey& survey, const core::TrajectoryErrors& errors) {
+  trajectory::TruthComparison out{errors.outside, trajectory::compare(errors)};
   std::vector<trajectory::Span> lines;
   for (const io::LineWindow& w : io::line_windows(survey)) lines.push_back({w.start, w.end});
-  if (!lines.empty()) compared["lines"] = trajectory::compare(errors, lines).value();
-  report["truth"] = compared;
-  findings["truth"] = std::move(compared);
-  return errors;
+  if (!lines.empty()) out.lines = trajectory::compare(errors, lines);
+  return out;
 }
 
 void write_products(const Output& to, const InsGnssStageOptions& o, const trajectory::InsGnssResult& result, const core::GnssData& gnss,
-                    const std::optional<trajectory::TrajectoryErrors>& errors) {
-  io::write_text_file(to.folder / "trajectory.json", io::to_json(result.report));
+                    const std::optional<core::TrajectoryErrors>& errors) {
+  io::write_text_file(to.folder / "trajectory.json", io::to_json(core::reported(result.report)));
   if (o.plots.empty()) return;
-  for (const NamedChart& c : trajectory_charts(result, gnss, errors))
+  for (const report::NamedChart& c : report::flight_charts(result.trajectory, result.series, gnss, errors))
     for (const PlotFormat f : o.plots) {
       const std::string ending(core::Choices<PlotFormat>::names[static_cast<size_t>(f)]);
       write_drawing(to.folder / "plots" / (c.name + "." + ending), report::drawing(c.chart));
@@ -88,29 +80,29 @@ void expect_imu_spec(const Context& context, const InsGnssStageOptions&) {
                             "state imu_spec.grade, or in [imu_spec] at least the two random walks and the two biases of its data sheet");
 }
 
-Given<trajectory::Trajectory, core::Value> smooth_flight(core::ImuData imu, const core::GnssData& gnss, const io::Survey& survey,
-                                                         const InsGnssStageOptions& o, const Output& to, const core::OnProgress& progress,
-                                                         core::Tally& tally) {
+Given<trajectory::Trajectory, trajectory::InsFigures> smooth_flight(core::ImuData imu, const core::GnssData& gnss, const io::Survey& survey,
+                                                                    const InsGnssStageOptions& o, const Output& to,
+                                                                    const core::OnProgress& progress, core::Tally& tally) {
   const io::Antenna& antenna = survey.antenna;
   const Eigen::Vector3d lever_arm(antenna.lever_arm[0].value, antenna.lever_arm[1].value, antenna.lever_arm[2].value);
   trajectory::InsGnssResult result = trajectory::smooth(std::move(imu), gnss, survey.imu_spec.model(), lever_arm,
                                                         antenna.lever_arm_sigma.value, o, clocks_of(survey), progress);
-  core::Value findings = core::Value::object();
-  for (const auto& [key, value] : result.report.members())
-    if (key != "warnings") findings[key] = value;
-  if (const core::Value* warnings = result.report.find("warnings"); warnings && warnings->is_array())
-    for (const core::Value& w : warnings->items()) tally.count(w.as_text());
+  for (const std::string& w : result.report.warnings) tally.count(w);
   // Axes that are turned fit the fixes, but not the way the aircraft flies.
   trajectory::CheckOptions motion_alone;
   motion_alone.max_gap.value = std::numeric_limits<double>::infinity();
   for (const std::string& w : trajectory::check_trajectory(result.trajectory, motion_alone).warnings) tally.count(w);
 
-  const auto errors = compare_with_truth(survey, result.trajectory, result.report, findings);
+  std::optional<core::TrajectoryErrors> errors;
+  if (const auto truth = result.trajectory.size() ? truth_of(survey, result.trajectory.time.front()) : std::nullopt) {
+    errors = trajectory::errors_against(result.trajectory, *truth);
+    result.report.figures.truth = compare_with_truth(survey, *errors);
+  }
   write_products(to, o, result, gnss, errors);
   trajectory::TrajectoryOptions interpolation;
   constexpr double steps = 2.5;  // of the trajectory's records; a longer one is a gap
   interpolation.max_gap.value = std::max(interpolation.max_gap.value, steps / o.output_rate.value);
-  return {trajectory::Trajectory(std::move(result.trajectory), interpolation, "trajectory.ins_gnss"), std::move(findings)};
+  return {trajectory::Trajectory(std::move(result.trajectory), interpolation, "trajectory.ins_gnss"), std::move(result.report.figures)};
 }
 
 }  // namespace swath::stages

@@ -38,9 +38,9 @@ void describe(InsGnssStageOptions& o, V& v) {
   v.option("plots", o.plots, "Formats of the plots in the folder plots; an empty list makes none.");
 }
 
-Given<trajectory::Trajectory, core::Value> smooth_flight(core::ImuData imu, const core::GnssData& gnss, const io::Survey& survey,
-                                                         const InsGnssStageOptions& o, const Output& to, const core::OnProgress& progress,
-                                                         core::Tally& tally);
+Given<trajectory::Trajectory, trajectory::InsFigures> smooth_flight(core::ImuData imu, const core::GnssData& gnss, const io::Survey& survey,
+                                                                    const InsGnssStageOptions& o, const Output& to,
+                                                                    const core::OnProgress& progress, core::Tally& tally);
 void expect_imu_spec(const Context& context, const InsGnssStageOptions&);
 std::vector<std::filesystem::path> true_trajectory(const io::Survey& survey);
 std::vector<std::string> ins_gnss_products(const InsGnssStageOptions& o);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/config/result_visitors.h"
 #include "core/statistics.h"
 #include "core/time.h"
 #include "io/gnss/gnss_file.h"
@@ -138,7 +139,7 @@ TEST(ClockFindings, NameTheValueToState) {
   EXPECT_NE(f.advice().find("offset = \"-0.685 s\" in the time of [[imu]]"), std::string::npos) << f.advice();
   EXPECT_NE(f.advice().find("antenna.latency = \"0.560 s\""), std::string::npos) << f.advice();
   EXPECT_TRUE(f.apart());
-  EXPECT_NEAR(f.to_value().find("imu_ahead_of_gnss")->find("imu_time_offset_to_state_s")->as_number(), -0.685, 1e-12);
+  EXPECT_NEAR(core::reported(f).find("imu_ahead_of_gnss")->find("imu_time_offset_to_state_s")->as_number(), -0.685, 1e-12);
   f.stated = {};
   EXPECT_NE(f.advice().find("by \"-0.560 s\""), std::string::npos) << f.advice();
 }

@@ -73,13 +73,12 @@ TEST(InsGnss, AnOutageIsBridgedWithATrueSigma) {
       const InsGnssResult r = run.on(lines_and_turns());
       in.add(r, lines_and_turns(), 110, 130);
       all.add(r, lines_and_turns());
-      const core::Value& outages = *r.report.find("outages");
-      ASSERT_EQ(outages.items().size(), 1u);
-      EXPECT_NEAR(outages.items()[0].find("length_s")->as_number(), 20.2, 0.01);
+      ASSERT_EQ(r.report.figures.outages.size(), 1u);
+      EXPECT_NEAR(r.report.figures.outages[0].length, 20.2, 0.01);
       // The correlated part of the fixes governs both: a tactical IMU carries 20 s with hardly any loss.
       const float least = grade == ImuGrade::mems ? 1.02f : 0.99f;
       EXPECT_GT(r.trajectory.sigma_north[12000], least * r.trajectory.sigma_north[9000]);
-      EXPECT_TRUE(test::warnings(r).empty());
+      EXPECT_TRUE(r.report.warnings.empty());
     }
     in.print("outage of 20 s");
     EXPECT_LT(in.rms().head<3>().maxCoeff(), grade == ImuGrade::tactical ? 0.05 : 0.12);
@@ -102,7 +101,7 @@ TEST(InsGnss, BeginsAndEndsInTheMiddleOfAnOutage) {
     last.add(r, lines_and_turns(), 220, 240);
     middle.add(r, lines_and_turns(), 20, 220);
     EXPECT_GT(r.trajectory.sigma_north.front(), 1.3f * r.trajectory.sigma_north[10000]);
-    EXPECT_EQ(r.report.find("outages")->items().size(), 2u);
+    EXPECT_EQ(r.report.figures.outages.size(), 2u);
   }
   first.print("before the first fix");
   last.print("after the last fix");
@@ -131,7 +130,7 @@ TEST(InsGnss, OutliersAreDownWeightedAndCounted) {
     EXPECT_GT(stray, 10u);
     EXPECT_EQ(caught, stray);
     EXPECT_LE(wrongly, 4u);
-    EXPECT_EQ(static_cast<size_t>(r.report.find("fixes")->find("down_weighted")->as_int()), stray + wrongly);
+    EXPECT_EQ(r.report.figures.fixes.down_weighted, stray + wrongly);
   }
   clean.print("clean");
   dirty.print("2 % of 1 m");
@@ -148,8 +147,7 @@ TEST(InsGnss, TheLatencyOfTheFixesIsFound) {
       for (double& t : g.time) t -= 0.005;  // they were taken 5 ms later than they say
     };
     const InsGnssResult r = run.on(lines_and_turns());
-    const core::Value& found = *r.report.find("estimates")->find("gnss_latency");
-    const double value = found.find("value")->as_number(), sigma = found.find("sigma")->as_number();
+    const auto [value, sigma] = r.report.figures.estimates.latency.value();
     std::printf("latency %.3f ms, sigma %.3f ms\n", value * 1e3, sigma * 1e3);
     EXPECT_NEAR(value, 0.005, 3 * sigma);
     EXPECT_LT(sigma, 0.0005);
@@ -162,14 +160,14 @@ TEST(InsGnss, TheLatencyOfTheFixesIsFound) {
 TEST(InsGnss, AlignmentAsItIsTold) {
   Trial run;
   const InsGnssResult moving = run.on(lines_and_turns());
-  EXPECT_EQ(moving.report.find("alignment")->find("method")->as_text(), "moving");
+  EXPECT_EQ(moving.report.figures.alignment.method, "moving");
   run.options.alignment = AlignmentMethod::given;
   const simulate::Pose pose = lines_and_turns().motion(0).pose;
   run.options.given.roll = core::Radians(pose.attitude.roll + 0.01);
   run.options.given.pitch = core::Radians(pose.attitude.pitch - 0.01);
   run.options.given.heading = core::Radians(pose.attitude.heading + 0.06);
   const InsGnssResult given = run.on(lines_and_turns());
-  EXPECT_EQ(given.report.find("alignment")->find("method")->as_text(), "given");
+  EXPECT_EQ(given.report.figures.alignment.method, "given");
   // Repeated about its own trajectory the smoother forgets where it began.
   for (size_t k = 0; k < given.trajectory.size(); k += 1000) {
     EXPECT_NEAR(given.trajectory.heading[k], moving.trajectory.heading[k], 2 * arcsec) << k;
@@ -183,8 +181,8 @@ TEST(InsGnss, StandstillGivesTheHeadingOfANavigationGrade) {
   const test::Course drive(test::Drive({{60, 1}, {110, 0}}), 0, 130);
   Trial run = trial_of(ImuGrade::navigation);
   const InsGnssResult r = run.on(drive);
-  EXPECT_EQ(r.report.find("alignment")->find("method")->as_text(), "still");
-  EXPECT_NEAR(r.report.find("standstill_s")->as_number(), 74, 5);
+  EXPECT_EQ(r.report.figures.alignment.method, "still");
+  EXPECT_NEAR(r.report.figures.standstill, 74, 5);
   Statistics s;
   s.add(r, drive);
   s.print("drive");
@@ -239,9 +237,9 @@ TEST(InsGnss, WheelsHoldACarThroughAnOutage) {
     run.options.non_holonomic_sigma = core::MetresPerSecond(0.05);
     const InsGnssResult r = run.on(drive);
     with.add(r, drive, 130, 160);
-    const core::Value& axis = *r.report.find("estimates")->find("vehicle_axis");
-    EXPECT_NEAR(axis.find("azimuth")->as_number(), 0.02 / core::degree, 0.2);
-    EXPECT_NEAR(axis.find("elevation")->as_number(), -0.01 / core::degree, 0.2);
+    const VehicleAxis axis = r.report.figures.estimates.axis.value();
+    EXPECT_NEAR(axis.azimuth, 0.02, 0.2 * core::degree);
+    EXPECT_NEAR(axis.elevation, -0.01, 0.2 * core::degree);
   }
   with.print("with wheels");
   without.print("without");

@@ -17,7 +17,7 @@ using test::warning_with;
 std::string outcry(const Trial& run, const test::Course& course, const std::string& part) {
   try {
     const InsGnssResult r = run.on(course);
-    for (const std::string& w : test::warnings(r)) std::printf("  %s\n", w.c_str());
+    for (const std::string& w : r.report.warnings) std::printf("  %s\n", w.c_str());
     return warning_with(r, part);
   } catch (const core::Error& e) {
     std::printf("  error: %s\n", e.text().c_str());
@@ -28,7 +28,7 @@ std::string outcry(const Trial& run, const test::Course& course, const std::stri
 TEST(InsReport, ACleanFlightRaisesNoAlarm) {
   for (const ImuGrade grade : {ImuGrade::navigation, ImuGrade::tactical, ImuGrade::mems})
     for (std::uint64_t seed = 11; seed <= 20; ++seed)
-      for (const std::string& w : test::warnings(trial_of(grade, seed).on(lines_and_turns())))
+      for (const std::string& w : trial_of(grade, seed).on(lines_and_turns()).report.warnings)
         ADD_FAILURE() << "seed " << seed << ", grade " << static_cast<int>(grade) << ": " << w;
 }
 
@@ -98,7 +98,7 @@ TEST(InsReport, FixesThatScatterMoreThanStated) {
   };
   EXPECT_NE(outcry(run, lines_and_turns(), "times more than stated"), "");
   const InsGnssResult r = run.on(lines_and_turns());
-  EXPECT_NEAR(r.report.find("fixes")->find("variance_factor")->as_number(), 4.0, 0.5);
+  EXPECT_NEAR(r.report.figures.fixes.variance_factor, 4.0, 0.5);
 }
 
 TEST(InsReport, AHeadingThatIsNotKnown) {
@@ -116,10 +116,10 @@ TEST(InsReport, Gaps) {
   };
   const InsGnssResult r = run.on(lines_and_turns());
   EXPECT_NE(warning_with(r, "2 gaps in the IMU records, the longest of 1.5 s"), "");
-  const core::Value::Array& gaps = r.report.find("imu_gaps_bridged")->items();
+  const std::vector<Interruption>& gaps = r.report.figures.gaps;
   ASSERT_EQ(gaps.size(), 2u);
-  EXPECT_NEAR(gaps[0].find("start_gps_s")->as_number(), test::motion_start + 30, 1e-3);
-  EXPECT_NEAR(gaps[1].find("length_s")->as_number(), 1.5, 1e-3);
+  EXPECT_NEAR(gaps[0].start, test::motion_start + 30, 1e-3);
+  EXPECT_NEAR(gaps[1].length, 1.5, 1e-3);
 }
 
 TEST(InsReport, SeriesAndNumbersAgree) {
@@ -129,8 +129,8 @@ TEST(InsReport, SeriesAndNumbersAgree) {
   Trial run;
   run.change_imu = [&](core::ImuData& imu) { imu = dirty; };
   const InsGnssResult r = run.on(lines_and_turns());
-  const SmootherSeries& s = r.series;
-  const size_t nodes = static_cast<size_t>(r.report.find("span")->find("nodes")->as_int());
+  const core::SmootherSeries& s = r.series;
+  const size_t nodes = r.report.figures.span.nodes;
   EXPECT_EQ(s.time.size(), nodes);
   for (const size_t n : {s.separation.size(), s.separation_sigma.size(), s.attitude_separation.size(), s.heading_forward.size(),
                          s.gyro_bias.size(), s.gyro_bias_sigma.size(), s.accelerometer_bias.size(), s.accelerometer_bias_sigma.size()})
@@ -147,10 +147,10 @@ TEST(InsReport, SeriesAndNumbersAgree) {
     ++clean;
   }
   EXPECT_NEAR(test::number(r, "innovations", "mean_nis"), nis / clean, 1e-12);
-  EXPECT_NEAR(r.report.find("innovations")->find("rms_ned_m")->items()[1].as_number(), std::sqrt(squares[1] / 1201), 1e-12);
-  EXPECT_EQ(r.report.find("fixes")->find("used")->as_int(), 1201);
+  EXPECT_NEAR(r.report.figures.innovations.rms[1], std::sqrt(squares[1] / 1201), 1e-12);
+  EXPECT_EQ(r.report.figures.fixes.used, 1201u);
   // The bias that is printed is the one that was put in, within its sigma.
-  const core::Value& bias = *r.report.find("estimates")->find("gyro_bias");
+  const core::Value bias = *core::reported(r.report).find("estimates")->find("gyro_bias");
   EXPECT_EQ(bias.find("unit")->as_text(), "deg_per_h");
   EXPECT_NEAR(bias.find("stated_sigma")->as_number(), std::hypot(0.1, 0.03), 1e-9);
   Vector3d sum = Vector3d::Zero();
@@ -161,10 +161,10 @@ TEST(InsReport, SeriesAndNumbersAgree) {
     // The mean error holds white noise of 0.01 deg/sqrt(h) over 240 s, 0.04 deg/h.
     EXPECT_NEAR(value, sum[i] / 240 / core::degree * 3600, 4 * std::hypot(sigma, 0.06)) << i;
   }
-  const core::Value& separation = *r.report.find("separation");
-  EXPECT_LT(separation.find("median_m")->as_number(), 0.1);
-  EXPECT_GE(separation.find("largest_m")->as_number(), separation.find("median_m")->as_number());
-  const double heading = r.report.find("sigma")->find("rms_roll_pitch_heading_arcsec")->items()[2].as_number();
+  const SeparationFigures separation = r.report.figures.separation.value();
+  EXPECT_LT(separation.median, 0.1);
+  EXPECT_GE(separation.largest, separation.median);
+  const double heading = r.report.figures.sigma.attitude[2];
   double mean = 0;
   for (const auto& c : r.trajectory.covariance.upper) mean += core::CovarianceSeries::unpack(c)(8, 8) / static_cast<double>(nodes);
   EXPECT_NEAR(heading, std::sqrt(mean) / core::degree * 3600, 1e-6 * heading);

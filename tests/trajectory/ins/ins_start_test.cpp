@@ -56,7 +56,7 @@ TEST(InsStart, ALooseStatementGivesWayToTheRecords) {
 TEST(InsStart, AGivenAttitudeThatContradictsTheRecordsIsNamed) {
   const InsGnssResult r = given(3 * core::degree, 0.1 * core::degree).on(straight_line());
   EXPECT_NE(test::warning_with(r, "the given heading contradicts"), "");
-  EXPECT_NEAR(r.report.find("alignment")->find("given_sigma_deg")->items()[2].as_number(), 0.1, 1e-9);
+  EXPECT_NEAR(r.report.figures.alignment.given_sigma.value()[2], 0.1, 1e-9);
 }
 
 TEST(InsStart, WhatIsGivenAtTheBeginningIsNotKnownAtTheEnd) {
@@ -68,9 +68,9 @@ TEST(InsStart, WhatIsGivenAtTheBeginningIsNotKnownAtTheEnd) {
     Trial run = given(0, 0.0005 * core::degree, static_cast<std::uint64_t>(seed));
     run.options.given.sigma_roll_pitch = core::degrees(0.0005);
     const InsGnssResult r = run.on(straight_line());
-    const core::Value& separation = *r.report.find("separation");
-    squares += std::pow(separation.find("rms_roll_pitch_heading_arcsec")->items()[2].as_number() / 3600, 2);
-    for (const core::Value& v : separation.find("by_its_sigma_ned")->items()) EXPECT_LT(v.as_number(), 1.0) << seed;
+    const SeparationFigures separation = r.report.figures.separation.value();
+    squares += std::pow(separation.attitude_rms[2] / 3600, 2);
+    EXPECT_LT(separation.by_sigma.maxCoeff(), 1.0) << seed;
   }
   EXPECT_GT(std::sqrt(squares / seeds), 0.4);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/trajectory_charts.h"
+#include "report/flight_charts.h"
 
 #include <algorithm>
 #include <array>
@@ -11,14 +11,10 @@
 #include "core/statistics.h"
 #include "core/time.h"
 
-namespace swath::stages {
+namespace swath::report {
 namespace {
 
 using Eigen::Vector3d;
-using report::Chart;
-using report::Mark;
-using report::Panel;
-using report::Series;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double arc_second = core::degree / 3600.0, degree_per_hour = core::degree / 3600.0, micro_g = 9.80665e-6;
@@ -38,8 +34,8 @@ std::vector<double> component(const std::vector<Vector3d>& rows, Eigen::Index k,
 
 class Charts {
  public:
-  Charts(const trajectory::InsGnssResult& result, const core::GnssData& gnss)
-      : result_(result), series_(result.series), gnss_(gnss), week_(core::week_of(first_time())) {}
+  Charts(const core::TrajectoryData& trajectory, const core::SmootherSeries& series, const core::GnssData& gnss)
+      : trajectory_(trajectory), series_(series), gnss_(gnss), week_(core::week_of(first_time())) {}
 
   Chart track() const;
   Chart sigma() const;
@@ -50,10 +46,10 @@ class Charts {
   Chart attitude() const;
   Chart biases() const;
   Chart heading() const;
-  Chart errors(const trajectory::TrajectoryErrors& e, bool of_position) const;
+  Chart errors(const core::TrajectoryErrors& e, bool of_position) const;
 
  private:
-  double first_time() const { return result_.trajectory.size() ? result_.trajectory.time.front() : 0.0; }
+  double first_time() const { return trajectory_.size() ? trajectory_.time.front() : 0.0; }
   std::vector<double> seconds(const std::vector<double>& times) const {
     std::vector<double> out;
     out.reserve(times.size());
@@ -67,8 +63,8 @@ class Charts {
     p.y_label = std::move(y_label);
     return p;
   }
-  const trajectory::InsGnssResult& result_;
-  const trajectory::SmootherSeries& series_;
+  const core::TrajectoryData& trajectory_;
+  const core::SmootherSeries& series_;
   const core::GnssData& gnss_;
   int week_;
 };
@@ -81,7 +77,7 @@ Chart Charts::track() const {
   p.x_label = "east (m)";
   p.y_label = "north (m)";
   p.equal_scale = true;
-  const core::TrajectoryData& t = result_.trajectory;
+  const core::TrajectoryData& t = trajectory_;
   if (t.size() == 0) return c;
   const Vector3d origin = core::ecef_of({t.latitude[0], t.longitude[0], t.height[0]});
   const Eigen::Matrix3d ned_R_ecef = core::ecef_R_ned(t.latitude[0], t.longitude[0]).transpose();
@@ -118,7 +114,7 @@ Chart Charts::track() const {
 Chart Charts::sigma() const {
   Chart c;
   c.title = "Standard deviations of the smoothed trajectory";
-  const core::CovarianceSeries& nodes = result_.trajectory.covariance;
+  const core::CovarianceSeries& nodes = trajectory_.covariance;
   Panel position = panel("Position", "sigma (m)"), attitude = panel("Attitude", "sigma (arcsec)");
   position.log_y = attitude.log_y = true;
   const std::vector<double> time = seconds(nodes.time);
@@ -214,7 +210,7 @@ Chart Charts::residuals() const {
 Chart Charts::attitude() const {
   Chart c;
   c.title = "Attitude";
-  const core::TrajectoryData& t = result_.trajectory;
+  const core::TrajectoryData& t = trajectory_;
   // Far more records than the picture has columns need not be held twice.
   constexpr size_t most = 200000;
   const size_t every = t.size() / most + 1;
@@ -281,7 +277,7 @@ Chart Charts::heading() const {
   return c;
 }
 
-Chart Charts::errors(const trajectory::TrajectoryErrors& e, bool of_position) const {
+Chart Charts::errors(const core::TrajectoryErrors& e, bool of_position) const {
   Chart c;
   c.title = of_position ? "Errors of position against truth" : "Errors of attitude against truth";
   const double unit = of_position ? 1.0 : arc_second;
@@ -307,9 +303,9 @@ Chart Charts::errors(const trajectory::TrajectoryErrors& e, bool of_position) co
 
 }  // namespace
 
-std::vector<NamedChart> trajectory_charts(const trajectory::InsGnssResult& result, const core::GnssData& gnss,
-                                          const std::optional<trajectory::TrajectoryErrors>& errors) {
-  const Charts c(result, gnss);
+std::vector<NamedChart> flight_charts(const core::TrajectoryData& trajectory, const core::SmootherSeries& series,
+                                      const core::GnssData& gnss, const std::optional<core::TrajectoryErrors>& errors) {
+  const Charts c(trajectory, series, gnss);
   std::vector<NamedChart> out{{"track", c.track()},
                               {"sigma", c.sigma()},
                               {"separation", c.separation()},
@@ -326,4 +322,4 @@ std::vector<NamedChart> trajectory_charts(const trajectory::InsGnssResult& resul
   return out;
 }
 
-}  // namespace swath::stages
+}  // namespace swath::report

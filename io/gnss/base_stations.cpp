@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/adapters/flight/rtklib_bases.h"
+#include "io/gnss/base_stations.h"
 
 #include <algorithm>
 #include <cctype>
@@ -9,7 +9,7 @@
 #include "core/time.h"
 #include "io/gnss/antex.h"
 
-namespace swath::stages {
+namespace swath::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,11 +33,11 @@ std::string as_file_name(std::string name, std::set<std::string>& used) {
 
 }  // namespace
 
-Receiver scan_receiver(const io::Survey& survey, const std::vector<fs::path>& files) {
+Receiver scan_receiver(const Survey& survey, const std::vector<fs::path>& files) {
   Receiver r;
   for (const fs::path& name : files) {
-    r.files.push_back(io::resolve(survey, name));
-    const io::RinexObservations o = io::scan_rinex(r.files.back());
+    r.files.push_back(resolve(survey, name));
+    const RinexObservations o = scan_rinex(r.files.back());
     if (r.epochs == 0) r.header = o.header;
     if (!r.header.position) r.header.position = o.header.position;
     if (r.header.antenna_type.empty()) r.header.antenna_type = o.header.antenna_type;
@@ -55,19 +55,19 @@ std::string antenna_type(const std::optional<fs::path>& antenna_file, const std:
   const std::string type = stated == "*" ? receiver.header.antenna_type : stated;
   if (type.empty())
     throw core::Error("the RINEX header names no antenna type for " + whose, receiver.files.front().string(), "state antenna_type");
-  return io::find_antenna(io::antex_types(*antenna_file), type, *antenna_file);
+  return find_antenna(antex_types(*antenna_file), type, *antenna_file);
 }
 
-std::vector<Base> read_bases(const io::Survey& survey, const Receiver& rover, const Eigen::Vector3d& place, core::Tally& tally) {
+std::vector<Base> read_bases(const Survey& survey, const Receiver& rover, const Eigen::Vector3d& place, core::Tally& tally) {
   std::vector<Base> out;
   std::set<std::string> used = {"combined"};
-  const io::Rinex& r = survey.rinex;
+  const Rinex& r = survey.rinex;
   std::optional<fs::path> antenna_file;
-  if (r.antenna_file) antenna_file = io::resolve(survey, *r.antenna_file);
-  for (const io::BaseStation& stated : r.bases) {
+  if (r.antenna_file) antenna_file = resolve(survey, *r.antenna_file);
+  for (const BaseStation& stated : r.bases) {
     Base b;
     b.receiver = scan_receiver(survey, stated.observations);
-    const io::RinexHeader& header = b.receiver.header;
+    const RinexHeader& header = b.receiver.header;
     b.name = !stated.name.empty() ? stated.name : !header.marker.empty() ? header.marker : "base " + std::to_string(out.size() + 1);
     b.file_name = as_file_name(b.name, used);
     if (stated.position) {
@@ -93,42 +93,35 @@ std::vector<Base> read_bases(const io::Survey& survey, const Receiver& rover, co
   return out;
 }
 
-std::vector<Base> choose_bases(const std::vector<Base>& bases, const Receiver& rover, double farthest, size_t most, core::Value& list) {
-  std::vector<Base> out;
+std::vector<std::string> reasons_against(const std::vector<Base>& bases, const Receiver& rover, double farthest, size_t most) {
+  std::vector<std::string> out;
   std::string distances, spans;
-  size_t reached = 0;
+  size_t reached = 0, chosen = 0;
   for (const Base& b : bases) {
-    std::string reason;
+    std::string& reason = out.emplace_back();
     if (b.distance > farthest) {
       reason = "farther than max_distance";
       distances += (distances.empty() ? "" : ", ") + b.name + " " + kilometres(b.distance);
-    } else {
-      ++reached;
-      const bool one_epoch = rover.last == rover.first;
-      if (one_epoch ? b.overlap < 0 : b.overlap <= 0) {
-        reason = "records at other times than the rover";
-        spans += (spans.empty() ? "" : "; ") + b.name + " " + span_text(b.receiver);
-      } else if (out.size() >= most) {
-        reason = "nearer ones are enough";
-      }
-    }
-    if (reason.empty()) {
-      out.push_back(b);
       continue;
     }
-    core::Value one = core::Value::object();
-    one["name"] = b.name;
-    one["distance_m"] = b.distance;
-    one["not_used"] = reason;
-    list.push(std::move(one));
+    ++reached;
+    const bool one_epoch = rover.last == rover.first;
+    if (one_epoch ? b.overlap < 0 : b.overlap <= 0) {
+      reason = "records at other times than the rover";
+      spans += (spans.empty() ? "" : "; ") + b.name + " " + span_text(b.receiver);
+    } else if (chosen >= most) {
+      reason = "nearer ones are enough";
+    } else {
+      ++chosen;
+    }
   }
   if (reached == 0)
     throw core::Error("no base station within " + kilometres(farthest) + " of the rover: " + distances, rover.files.front().string(),
                       "is the base's position in ECEF metres? take a nearer base, or raise max_distance (fixes grow worse)");
-  if (out.empty())
+  if (chosen == 0)
     throw core::Error("no base station records while the rover does (" + span_text(rover) + "): " + spans, rover.files.front().string(),
                       "name the base's observations of the flight");
   return out;
 }
 
-}  // namespace swath::stages
+}  // namespace swath::io

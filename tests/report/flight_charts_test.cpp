@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/trajectory_charts.h"
+#include "report/flight_charts.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "core/geo/geodesy.h"
 #include "core/time.h"
 
-namespace swath::stages {
+namespace swath::report {
 namespace {
 
 using Eigen::Vector3d;
@@ -17,8 +17,12 @@ using Eigen::Vector3d;
 constexpr double arc_second = core::degree / 3600.0;
 
 /// Ten minutes north at 50 m/s with a heading that sways through north; every number of a series is known.
-trajectory::InsGnssResult made(double start) {
-  trajectory::InsGnssResult r;
+struct Made {
+  core::TrajectoryData trajectory;
+  core::SmootherSeries series;
+};
+Made made(double start) {
+  Made r;
   core::TrajectoryData& t = r.trajectory;
   for (int i = 0; i <= 6000; ++i) {
     const double s = 0.1 * i;
@@ -30,7 +34,7 @@ trajectory::InsGnssResult made(double start) {
     t.pitch.push_back(0.05);
     t.heading.push_back(std::fmod(0.02 * std::sin(0.1 * s) + 2 * core::pi, 2 * core::pi));
   }
-  trajectory::SmootherSeries& s = r.series;
+  core::SmootherSeries& s = r.series;
   for (int k = 0; k <= 600; ++k) {
     core::CovarianceSeries::Matrix9 m = core::CovarianceSeries::Matrix9::Zero();
     m.diagonal() << 1e-4, 4e-4, 9e-4, 1e-4, 1e-4, 1e-4, 1e-8, 1e-8, 4e-8;
@@ -55,7 +59,7 @@ trajectory::InsGnssResult made(double start) {
   return r;
 }
 
-core::GnssData fixes(const trajectory::InsGnssResult& r) {
+core::GnssData fixes(const Made& r) {
   core::GnssData g;
   for (size_t i = 0; i < r.trajectory.size(); i += 10) {
     g.time.push_back(r.trajectory.time[i]);
@@ -66,15 +70,15 @@ core::GnssData fixes(const trajectory::InsGnssResult& r) {
   return g;
 }
 
-std::map<std::string, report::Chart> charts(const std::optional<trajectory::TrajectoryErrors>& errors = std::nullopt) {
+std::map<std::string, Chart> charts(const std::optional<core::TrajectoryErrors>& errors = std::nullopt) {
   const auto r = made(core::from_week(2317, 474000.0));
-  std::map<std::string, report::Chart> out;
-  for (NamedChart& c : trajectory_charts(r, fixes(r), errors)) out[c.name] = std::move(c.chart);
+  std::map<std::string, Chart> out;
+  for (NamedChart& c : flight_charts(r.trajectory, r.series, fixes(r), errors)) out[c.name] = std::move(c.chart);
   return out;
 }
 
-TEST(TrajectoryCharts, TheTrackIsInLocalMetresWithItsFixesByQuality) {
-  const report::Panel p = charts()["track"].panels.at(0);
+TEST(FlightCharts, TheTrackIsInLocalMetresWithItsFixesByQuality) {
+  const Panel p = charts()["track"].panels.at(0);
   EXPECT_TRUE(p.equal_scale);
   ASSERT_EQ(p.series.size(), 3u);
   EXPECT_EQ(p.series[2].name, "trajectory");
@@ -88,21 +92,21 @@ TEST(TrajectoryCharts, TheTrackIsInLocalMetresWithItsFixesByQuality) {
   EXPECT_NE(p.series[0].colour, p.series[1].colour);
 }
 
-TEST(TrajectoryCharts, UnitsAndTimesAreThoseOfTheLabels) {
+TEST(FlightCharts, UnitsAndTimesAreThoseOfTheLabels) {
   auto all = charts();
-  const report::Chart sigma = all["sigma"];
+  const Chart sigma = all["sigma"];
   EXPECT_NEAR(sigma.panels[0].series[2].y[5], 0.03, 1e-7);
   EXPECT_EQ(sigma.panels[0].y_label, "sigma (m)");
   EXPECT_NEAR(sigma.panels[1].series[2].y[5], 2e-4 / arc_second, 1e-3);
   EXPECT_EQ(sigma.panels[1].x_label, "time in GPS week 2317 (s)");
   EXPECT_NEAR(sigma.panels[1].series[2].x[5], 474005.0, 1e-6);
-  const report::Chart separation = all["separation"];
+  const Chart separation = all["separation"];
   ASSERT_EQ(separation.panels.size(), 3u);
-  EXPECT_EQ(separation.panels[2].series[0].mark, report::Mark::band);
+  EXPECT_EQ(separation.panels[2].series[0].mark, Mark::band);
   EXPECT_NEAR(separation.panels[2].series[0].y[0], 0.04, 1e-12);
   EXPECT_NEAR(separation.panels[2].series[1].y[0], 0.03, 1e-12);
   EXPECT_NEAR(all["separation_attitude"].panels[2].series[0].y[0], 3.0, 1e-9);
-  const report::Chart biases = all["biases"];
+  const Chart biases = all["biases"];
   ASSERT_EQ(biases.panels.size(), 6u);
   EXPECT_EQ(biases.panels[1].y_label, "deg/h");
   EXPECT_NEAR(biases.panels[1].series[1].y[0], 2.0, 1e-9);
@@ -112,8 +116,8 @@ TEST(TrajectoryCharts, UnitsAndTimesAreThoseOfTheLabels) {
   EXPECT_NEAR(all["residuals"].panels[2].series[0].y[0], 0.02, 1e-12);
 }
 
-TEST(TrajectoryCharts, DownWeightedFixesAreMarked) {
-  const report::Chart c = charts()["innovations"];
+TEST(FlightCharts, DownWeightedFixesAreMarked) {
+  const Chart c = charts()["innovations"];
   ASSERT_EQ(c.panels.size(), 4u);
   const auto& series = c.panels[2].series;
   EXPECT_EQ(series[2].name, "down-weighted");
@@ -123,7 +127,7 @@ TEST(TrajectoryCharts, DownWeightedFixesAreMarked) {
   EXPECT_TRUE(c.panels[3].log_y);
 }
 
-TEST(TrajectoryCharts, HeadingBreaksAtNorthAndIsSeenAfterItsAlignment) {
+TEST(FlightCharts, HeadingBreaksAtNorthAndIsSeenAfterItsAlignment) {
   auto all = charts();
   const auto& heading = all["attitude"].panels[1].series[0].y;
   int breaks = 0;
@@ -139,8 +143,8 @@ TEST(TrajectoryCharts, HeadingBreaksAtNorthAndIsSeenAfterItsAlignment) {
   EXPECT_LT(all["heading"].panels[1].y_share, 0.9);  // the first tenth of the flight is its alignment
 }
 
-TEST(TrajectoryCharts, ErrorsAppearWhereTruthIsKnownAndEveryChartDraws) {
-  trajectory::TrajectoryErrors e;
+TEST(FlightCharts, ErrorsAppearWhereTruthIsKnownAndEveryChartDraws) {
+  core::TrajectoryErrors e;
   for (int i = 0; i < 1000; ++i) {
     e.time.push_back(core::from_week(2317, 474000.0) + i);
     e.position.emplace_back(0.01, 0.02, -0.03);
@@ -154,14 +158,14 @@ TEST(TrajectoryCharts, ErrorsAppearWhereTruthIsKnownAndEveryChartDraws) {
   EXPECT_NEAR(all["errors_attitude"].panels[2].series[1].y[0], 30.0, 1e-9);
   EXPECT_NEAR(all["errors_position"].panels[2].series[0].y[0], 0.04, 1e-12);
   for (const auto& [name, chart] : all) {
-    EXPECT_GT(report::draw(chart).height, 200) << name;
-    EXPECT_NE(report::svg(chart).find(chart.title), std::string::npos);
+    EXPECT_GT(draw(chart).height, 200) << name;
+    EXPECT_NE(svg(chart).find(chart.title), std::string::npos);
   }
 }
 
-TEST(TrajectoryCharts, AnEmptyResultStillDraws) {
-  for (const NamedChart& c : trajectory_charts({}, {})) EXPECT_GT(report::draw(c.chart).height, 0) << c.name;
+TEST(FlightCharts, AnEmptyResultStillDraws) {
+  for (const NamedChart& c : flight_charts({}, {}, {})) EXPECT_GT(draw(c.chart).height, 0) << c.name;
 }
 
 }  // namespace
-}  // namespace swath::stages
+}  // namespace swath::report

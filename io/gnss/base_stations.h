@@ -9,31 +9,30 @@
 #include <string>
 #include <vector>
 
-#include "core/config/value.h"
 #include "core/report.h"
 #include "io/gnss/rinex_header.h"
 #include "io/gnss/rtklib_config.h"
 #include "io/survey/survey.h"
 
-namespace swath::stages {
+namespace swath::io {
 
 /// Observations of one receiver in one or several files.
 struct Receiver {
   std::vector<std::filesystem::path> files;
-  io::RinexHeader header;  ///< of the first file; position and antenna of the first that states them
+  RinexHeader header;  ///< of the first file; position and antenna of the first that states them
   double first = std::numeric_limits<double>::infinity(), last = -std::numeric_limits<double>::infinity();
   double interval = 0;
   std::uint64_t epochs = 0;
 };
 
 /// Looks through all files of a receiver; throws core::Error.
-Receiver scan_receiver(const io::Survey& survey, const std::vector<std::filesystem::path>& files);
+Receiver scan_receiver(const Survey& survey, const std::vector<std::filesystem::path>& files);
 
 struct Base {
   std::string name, file_name;
   Receiver receiver;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  io::RtklibAntenna antenna;
+  RtklibAntenna antenna;
   double distance = 0;  ///< from the rover's approximate position, m
   double overlap = 0;   ///< s of the rover's span; below 0: none
 
@@ -45,10 +44,10 @@ std::string antenna_type(const std::optional<std::filesystem::path>& antenna_fil
                          const std::string& whose);
 
 /// The survey's bases, nearest to `place` (ecef) first. Throws core::Error where a file cannot be read or a base has no position.
-std::vector<Base> read_bases(const io::Survey& survey, const Receiver& rover, const Eigen::Vector3d& place, core::Tally& tally);
+std::vector<Base> read_bases(const Survey& survey, const Receiver& rover, const Eigen::Vector3d& place, core::Tally& tally);
 
-/// At most `most` bases within `farthest` (m) that record while the rover does, nearest first; the others go to `list` with the reason.
-/// Throws core::Error with distances, or times, where none is left.
-std::vector<Base> choose_bases(const std::vector<Base>& bases, const Receiver& rover, double farthest, size_t most, core::Value& list);
+/// Why each of the bases, nearest first, is not used: empty for at most `most` of them within `farthest` (m) that record while the rover
+/// does. Throws core::Error with distances, or times, where none is left.
+std::vector<std::string> reasons_against(const std::vector<Base>& bases, const Receiver& rover, double farthest, size_t most);
 
-}  // namespace swath::stages
+}  // namespace swath::io

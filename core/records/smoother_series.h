@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace swath::trajectory {
+namespace swath::core {
 
 /// Numbers over time for the report and its plots. Vectors of one group have one length.
 struct SmootherSeries {
@@ -24,4 +24,4 @@ struct SmootherSeries {
   std::vector<double> weight;                                 ///< 1, or less where it was down-weighted
 };
 
-}  // namespace swath::trajectory
+}  // namespace swath::core

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trajectory/event_table.h"
+
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "core/error.h"
+#include "core/printable.h"
+
+namespace swath::trajectory {
+namespace {
+
+std::string number(double v, int decimals) {
+  if (!std::isfinite(v)) return {};
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*f", decimals, v);
+  return text;
+}
+std::string numbers(const Eigen::Vector3d& v, int decimals) {
+  return number(v[0], decimals) + "," + number(v[1], decimals) + "," + number(v[2], decimals);
+}
+
+std::string flags_of(const EventPosition& e, bool doubtful) {
+  std::string out;
+  const auto add = [&](const char* flag) { out += (out.empty() ? "" : ";") + std::string(flag); };
+  if (e.reach == Reach::outside) add("outside_gnss");
+  if (e.reach == Reach::gap) add("gnss_gap");
+  if (e.reach == Reach::too_few) add("too_few_fixes");
+  if (e.reach == Reach::partial) add("short_window");
+  if (doubtful) add("doubtful_time");
+  return out;
+}
+
+constexpr const char* header =
+    "id,strip,technique,gps_time,easting,northing,height,x,y,z,v_east,v_north,v_up,sigma_east,sigma_north,sigma_up,"
+    "empirical_east,empirical_north,empirical_up,sigma_v_east,sigma_v_north,sigma_v_up,sigma_time,fixes,flags\n";
+
+}  // namespace
+
+core::GnssData usable_fixes(const core::GnssData& gnss, core::Tally& tally) {
+  core::GnssData out;
+  for (size_t i = 0; i < gnss.size(); ++i) {
+    if (!usable(gnss, i)) {
+      tally.count("GNSS fixes without a position or a covariance, left out", "fix " + std::to_string(i + 1));
+      continue;
+    }
+    out.time.push_back(gnss.time[i]);
+    out.position.push_back(gnss.position[i]);
+    out.covariance.push_back(gnss.covariance[i]);
+  }
+  return out;
+}
+
+std::string table_of(const core::EventData& events, const EventPositions& solved, const core::Crs& crs, double vertical_unit) {
+  const core::Transform to_map(core::wgs84_ecef(), crs);
+  const double height_unit = crs.has_height_unit() ? 1.0 : vertical_unit;
+  const int decimals = crs.is_geographic() ? 10 : 4;
+  std::string out = header;
+  for (size_t i = 0; i < events.size(); ++i) {
+    const EventPosition& e = solved.events[i];
+    Eigen::Vector3d map = e.position;
+    if (reached(e.reach)) {
+      map = to_map(e.position);
+      map.z() /= height_unit;
+    }
+    // What the time's own error moves the antenna along its path.
+    const double along = events.sigma[i] > 0.0 ? events.sigma[i] * e.velocity.norm() : std::nan("");
+    const Eigen::Vector3d empirical = reached(e.reach) ? solved.empirical : e.position;
+    out += core::csv_field(events.id[i]) + "," + (events.strip[i] ? std::to_string(events.strip[i]) : "") + "," +
+           core::csv_field(events.technique[i]) + "," + number(events.time[i], 7) + "," + number(map.x(), decimals) + "," +
+           number(map.y(), decimals) + "," + number(map.z(), 4) + "," + numbers(e.position, 4) + "," + numbers(e.velocity, 4) + "," +
+           numbers(e.sigma, 4) + "," + numbers(empirical, 4) + "," + numbers(e.velocity_sigma, 4) + "," + number(along, 4) + "," +
+           std::to_string(e.fixes) + "," + flags_of(e, events.doubtful[i]) + "\n";
+  }
+  return out;
+}
+
+void count_events(const core::EventData& events, const core::GnssData& gnss, const EventPositions& solved, const std::string& survey,
+                  core::Tally& tally) {
+  size_t outside = 0;
+  for (size_t i = 0; i < events.size(); ++i) {
+    const std::string event = "event " + events.id[i];
+    switch (solved.events[i].reach) {
+      case Reach::full:
+        break;
+      case Reach::partial:
+        tally.count("events near a gap or an end of the GNSS record: short window", event);
+        break;
+      case Reach::too_few:
+        tally.count("events too close to a gap or an end of the GNSS record, without position", event);
+        break;
+      case Reach::gap:
+        tally.count("events in a gap of the GNSS record, without position", event);
+        break;
+      case Reach::outside:
+        tally.count("events outside the GNSS record, without position", event);
+        ++outside;
+        break;
+    }
+    if (events.doubtful[i]) tally.count("events whose time is doubtful", event);
+  }
+  if (events.size() > 0 && outside == events.size())
+    throw core::Error("trajectory.kinematic: all " + std::to_string(outside) + " events lie outside the GNSS record (events " +
+                          number(events.time.front(), 1) + " to " + number(events.time.back(), 1) + " s, fixes " +
+                          number(gnss.time.front(), 1) + " to " + number(gnss.time.back(), 1) + " s of GPS time)",
+                      survey, "is the time scale of the events, or of the fixes, stated as it is?");
+}
+
+EventFigures figures_of(const core::EventData& events, const core::GnssData& gnss, const EventPositions& solved, Interpolator method) {
+  EventFigures r;
+  r.method = core::Choices<Interpolator>::names[static_cast<size_t>(method)];
+  r.fixes = gnss.size();
+  r.gaps = solved.gaps;
+  r.longest_step = solved.longest_step;
+  r.events = events.size();
+  std::vector<Eigen::Vector3d> formal;
+  for (const EventPosition& e : solved.events)
+    if (reached(e.reach)) formal.push_back(e.sigma);
+  r.with_position = formal.size();
+  if (!formal.empty()) r.formal = statistics_of(formal, formal).median_formal;
+  if (solved.empirical.allFinite()) r.empirical = solved.empirical;
+  r.leave_one_out = solved.test;
+  return r;
+}
+
+}  // namespace swath::trajectory

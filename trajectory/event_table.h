@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The positions of events as a table, and what the report says of them.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/config/result.h"
+#include "core/geo/crs.h"
+#include "core/records/event_data.h"
+#include "core/records/gnss_data.h"
+#include "core/report.h"
+#include "trajectory/event_positions.h"
+
+namespace swath::trajectory {
+
+/// The fixes that are of use; the others are counted.
+core::GnssData usable_fixes(const core::GnssData& gnss, core::Tally& tally);
+
+/// CSV, one row per event, metres and m/s (easting, northing and height: units of the CRS); fields without a value are empty.
+std::string table_of(const core::EventData& events, const EventPositions& solved, const core::Crs& crs, double vertical_unit);
+
+/// Counts events without a position, and doubtful ones. Throws core::Error where all lie outside the fixes.
+void count_events(const core::EventData& events, const core::GnssData& gnss, const EventPositions& solved, const std::string& survey,
+                  core::Tally& tally);
+
+struct EventFigures {
+  std::string method;
+  std::uint64_t fixes = 0, gaps = 0;
+  double longest_step = 0.0;
+  std::uint64_t events = 0, with_position = 0;
+  std::optional<Eigen::Vector3d> formal{}, empirical{};
+  std::optional<LeaveOneOut> leave_one_out{};
+};
+
+template <class V>
+void describe(const EventFigures& r, V& v) {
+  using core::metres;
+  v.result("method", r.method, core::plain().in_summary(), "What gave the positions.");
+  v.result("fixes", r.fixes, "GNSS fixes that were used.");
+  v.result("gaps", r.gaps, "Gaps of the GNSS record.");
+  v.result("longest_step_without_gap_s", r.longest_step, core::seconds().always(), "Longest step between fixes that is not a gap.");
+  v.result("events", r.events, core::plain().in_summary(), "Events.");
+  v.result("events_with_position", r.with_position, core::plain().in_summary(), "Of those: events with a position.");
+  v.result("median_formal_sigma_m", r.formal, metres(4), "Median of the filter's own sigmas: east, north, height.");
+  v.result("empirical_sigma_m", r.empirical, metres(4), "Sigmas by the leave-one-out test: east, north, height.");
+  v.table("leave_one_out", r.leave_one_out, "Each fix against what the others say of it.");
+}
+
+EventFigures figures_of(const core::EventData& events, const core::GnssData& gnss, const EventPositions& solved, Interpolator method);
+
+}  // namespace swath::trajectory
