@@ -42,6 +42,11 @@ std::string grains_text(const Stage& s) {
   return out;
 }
 
+/// What it uses beside what it needs; nothing where that is nothing.
+std::string used_by(const Stage& s, const std::string& head) {
+  return s.info().uses_products.empty() ? std::string() : head + products_text(s.info().uses_products);
+}
+
 core::Describe describe_of(Stage& s) {
   return [&s](core::Visitor& v) { s.visit(v); };
 }
@@ -49,7 +54,7 @@ core::Describe describe_of(Stage& s) {
 std::string stage_page(Stage& s) {
   std::string out = std::string(s.info().summary) + "\n\n";
   out += "- works on: " + grains_text(s) + "\n- needs: " + both(s.info().needs, s.info().needs_products) +
-         "\n- gives: " + both(s.info().gives, s.info().gives_products) + "\n\n";
+         used_by(s, "\n- uses where it is there: ") + "\n- gives: " + both(s.info().gives, s.info().gives_products) + "\n\n";
   if (core::document_options(describe_of(s)).empty()) return out + "It has no options.\n";
   return out + core::option_table_markdown(describe_of(s));
 }
@@ -91,8 +96,8 @@ std::string stage_help(const std::string& name) {
     throw core::usage_error("'" + name + "' is no stage", "", near.empty() ? "`swath stages` lists them" : "did you mean '" + near + "'?");
   }
   return std::string(s->info().name) + ": " + std::string(s->info().summary) + "\n\n  works on  " + grains_text(*s) + "\n  needs     " +
-         both(s->info().needs, s->info().needs_products) + "\n  gives     " + both(s->info().gives, s->info().gives_products) +
-         "\n\nOptions\n" + core::option_table_text(describe_of(*s));
+         both(s->info().needs, s->info().needs_products) + used_by(*s, "\n  uses      ") + "\n  gives     " +
+         both(s->info().gives, s->info().gives_products) + "\n\nOptions\n" + core::option_table_text(describe_of(*s));
 }
 
 std::vector<std::filesystem::path> write_docs(const std::filesystem::path& docs, bool only_check) {

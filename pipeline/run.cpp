@@ -325,13 +325,13 @@ void Engine::keep_whole() {
 /// What readers hand on is as large as their files, and read as fast from these.
 bool Engine::is_read_again(size_t number) const { return stage(number).info().name.starts_with("readers."); }
 
-/// Is what an earlier run has kept of a survey stage enough? IMU records are not needed where the stages that take them are done; their
+/// Is what an earlier run has kept of a survey stage enough? IMU records are not needed where the stages that use them are done; their
 /// piece is, for what the report says of them.
 bool Engine::is_resumed(size_t number) const {
   if (!is_survey_piece_done(folder(number))) return false;
   if (!is_read_again(number)) return true;
   for (size_t i = number + 1; i < plan_.stages.size(); ++i)
-    if (works_on(i, Grain::survey) && stage(i).info().takes(stages::Product::of<core::ImuData>()) && !is_survey_piece_done(folder(i)))
+    if (works_on(i, Grain::survey) && stage(i).info().uses(stages::Product::of<core::ImuData>()) && !is_survey_piece_done(folder(i)))
       return false;
   return true;
 }

@@ -20,7 +20,7 @@
 #include <algorithm>
 #include <concepts>
 #include <filesystem>
-#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -43,10 +43,10 @@ struct Given {
   F findings;
 };
 
-/// A record that the function has corrected; null: it stays as it is. The place on the map stays, too.
+/// A record that the function has corrected; none: it stays as it is. The place on the map stays, too.
 template <Record R, class F>
 struct Corrected {
-  std::shared_ptr<const R> record;
+  std::optional<R> record;
   F findings;
 };
 
@@ -107,7 +107,7 @@ struct Argument<R> {
 template <Record R>
 struct Argument<const R*> {
   static void declare(Info& info) { info.uses_products.push_back(Product::of<R>()); }
-  static const R* of(Site& s) { return s.context.records.find<R>().get(); }
+  static const R* of(Site& s) { return s.context.records.find<R>(); }
 };
 
 /// Is a parameter the stage's options?
@@ -117,9 +117,9 @@ constexpr bool is_options = core::Described<std::remove_cvref_t<P>> && !std::sam
 /// Hands a record on. What follows from it is settled: the place on the map follows from the trajectory.
 template <Record R>
 void hand_on(Site& s, R record) {
+  if constexpr (std::same_as<R, core::GnssData>) check_place_of_fixes(s.context, record);
+  if constexpr (std::same_as<R, trajectory::Trajectory>) place_on_map(s.context, record, s.tally);
   s.context.records.put(std::move(record));
-  if constexpr (std::same_as<R, core::GnssData>) check_place_of_fixes(s.context);
-  if constexpr (std::same_as<R, trajectory::Trajectory>) place_on_map(s.context, s.tally);
 }
 
 /// What a function's result is to the run.
@@ -158,7 +158,7 @@ struct Returned<Corrected<R, F>> {
   using Findings = F;
   static void declare(Info& info) { Returned<R>::declare(info); }
   static core::Value keep(Site& s, Corrected<R, F> corrected) {
-    if (corrected.record) s.context.records.share<R>(std::move(corrected.record));
+    if (corrected.record) s.context.records.put(std::move(*corrected.record));
     return Returned<F>::keep(s, std::move(corrected.findings));
   }
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <compare>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -74,35 +75,42 @@ inline constexpr Product Product::shots{"shots"}, Product::points{"points"}, Pro
     Product::return_density{"return_density"}, Product::visibility{"visibility"};
 constexpr std::string_view name_of(Product p) { return p.name(); }
 
-/// The records of a run, one of each type. A stage that gives a record again replaces it.
+/// The records of a run, one of each type. A stage that gives a record again replaces it. Copies of the store share their records.
 class Records {
  public:
+  /// Which records there are, without holding them: one that is put in the place of another has another number.
+  using Marks = std::map<std::type_index, std::uint64_t>;
+  Marks marks() const {
+    Marks out;
+    for (const auto& [type, kept] : at_) out[type] = kept.number;
+    return out;
+  }
+  template <Record R>
+  static std::uint64_t mark_of(const Marks& marks) {
+    const auto at = marks.find(typeid(R));
+    return at == marks.end() ? 0 : at->second;
+  }
+
   template <Record R>
   bool has() const {
     return at_.contains(typeid(R));
   }
-  /// Null where there is none.
+  /// Null where there is none. It holds until the record is replaced or taken.
   template <Record R>
-  std::shared_ptr<const R> find() const {
+  const R* find() const {
     const auto at = at_.find(typeid(R));
-    return at == at_.end() ? nullptr : std::static_pointer_cast<const R>(at->second);
+    return at == at_.end() ? nullptr : static_cast<const R*>(at->second.record.get());
   }
   /// A plan has checked that it is there.
   template <Record R>
   const R& get() const {
-    const auto at = at_.find(typeid(R));
-    if (at == at_.end()) throw core::Error("no " + std::string(RecordName<R>::value) + " was given", "", "this is a fault of the program");
-    return *static_cast<const R*>(at->second.get());
+    const R* record = find<R>();
+    if (!record) throw core::Error("no " + std::string(RecordName<R>::value) + " was given", "", "this is a fault of the program");
+    return *record;
   }
   template <Record R>
   void put(R record) {
-    at_[typeid(R)] = std::make_shared<R>(std::move(record));
-  }
-  /// Null: as drop().
-  template <Record R>
-  void share(std::shared_ptr<const R> record) {
-    if (!record) return drop<R>();
-    at_[typeid(R)] = std::move(record);
+    at_[typeid(R)] = {std::make_shared<R>(std::move(record)), ++given_};
   }
   template <Record R>
   void drop() {
@@ -111,15 +119,21 @@ class Records {
   /// A copy; or, where it is the `last_use`, the record itself, which is not there any more then.
   template <Record R>
   R take(bool last_use) {
-    std::shared_ptr<const R> record = find<R>();
     if (!last_use) return get<R>();
-    drop<R>();
-    // It was made as an R that is not const.
-    return record.use_count() == 1 ? R(std::move(const_cast<R&>(*record))) : *record;
+    get<R>();
+    const std::shared_ptr<void> record = std::move(at_.extract(typeid(R)).mapped().record);
+    R& kept = *static_cast<R*>(record.get());
+    if (record.use_count() > 1) return kept;  // a copy of the store has it, too
+    return std::move(kept);
   }
 
  private:
-  std::map<std::type_index, std::shared_ptr<const void>> at_;
+  struct Kept {
+    std::shared_ptr<void> record;
+    std::uint64_t number = 0;  ///< of all that were put, from 1
+  };
+  std::map<std::type_index, Kept> at_;
+  std::uint64_t given_ = 0;
 };
 
 }  // namespace swath::stages

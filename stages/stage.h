@@ -239,6 +239,15 @@ class Stage {
   /// Names within the output folder of the files and folders that the stage makes; each belongs to one stage of a plan.
   virtual std::vector<std::string> products() const { return {}; }
 
+  /// A record that the stage declares; null where there is none.
+  template <Record R>
+  const R* record(const Context& context) const {
+    if (!info().uses(Product::of<R>()))
+      throw core::Error("uses the " + std::string(RecordName<R>::value) + ", which it does not declare", std::string(info().name),
+                        "this is a fault of the program");
+    return context.records.find<R>();
+  }
+
   bool works_on(Grain g) const {
     for (const Grain mine : info().grains)
       if (mine == g) return true;

@@ -124,67 +124,77 @@ trajectory::Trajectory made_of(core::TrajectoryData data, double max_gap, const 
   return trajectory::Trajectory(std::move(data), options, file.string());
 }
 
+/// What became of a record.
+enum class Fate : std::uint8_t { as_before, given, gone };
+
+template <stages::Record R>
+Fate fate_of(const stages::Records::Marks& before, const stages::Context& context) {
+  const std::uint64_t was = stages::Records::mark_of<R>(before), is = stages::Records::mark_of<R>(context.records.marks());
+  return was == is ? Fate::as_before : is == 0 ? Fate::gone : Fate::given;
+}
+
+template <stages::Record R, class Visit>
+void pack_record(Packer& pack, const stages::Records::Marks& before, const stages::Context& context, Visit visit) {
+  const Fate fate = fate_of<R>(before, context);
+  pack(fate);
+  if (fate == Fate::given) visit(context.records.get<R>());
+}
+
+template <stages::Record R, class Visit>
+void unpack_record(Unpacker& unpack, stages::Context& context, Visit read) {
+  Fate fate{};
+  unpack(fate);
+  if (fate == Fate::gone) context.records.drop<R>();
+  if (fate == Fate::given) context.records.put<R>(read());
+}
+
+template <class F, class C>
+void visit_place(F& f, C& context) {
+  for (int k = 0; k < 3; ++k) f(context.origin[k]);
+  visit_area(f, context.area);
+}
+
 }  // namespace
 
-HandedOn HandedOn::of(const stages::Context& context) {
-  const stages::Records& r = context.records;
-  return {r.find<core::GnssData>(), r.find<core::EventData>(), r.find<trajectory::Trajectory>(), context.origin, context.area};
-}
-
-void HandedOn::give(stages::Context& context) const {
-  context.records.share<core::GnssData>(gnss);
-  context.records.share<core::EventData>(events);
-  context.records.share<trajectory::Trajectory>(trajectory);
-  context.origin = origin;
-  context.area = area;
-}
-
-bool write_handed_on(const std::filesystem::path& file, const HandedOn& before, const HandedOn& after) {
-  const bool gnss = after.gnss && after.gnss != before.gnss, events = after.events && after.events != before.events,
-             trajectory = after.trajectory && after.trajectory != before.trajectory;
-  if ((!after.gnss && before.gnss) || (!after.events && before.events) || (!after.trajectory && before.trajectory)) return false;
+bool write_handed_on(const std::filesystem::path& file, const stages::Records::Marks& before, const stages::Context& context) {
+  using trajectory::Trajectory;
   Packer pack;
-  pack(gnss), pack(events), pack(trajectory);
-  if (gnss) visit_gnss(pack, *after.gnss);
-  if (events) visit_events(pack, *after.events);
-  if (trajectory) {
-    const double gap = longest_step(*after.trajectory);
-    if (made_of(after.trajectory->data(), gap, file).spans() != after.trajectory->spans()) return false;
+  bool comes_back = true;
+  pack_record<core::GnssData>(pack, before, context, [&](const core::GnssData& d) { visit_gnss(pack, d); });
+  pack_record<core::EventData>(pack, before, context, [&](const core::EventData& d) { visit_events(pack, d); });
+  pack_record<Trajectory>(pack, before, context, [&](const Trajectory& t) {
+    const double gap = longest_step(t);
+    comes_back = made_of(t.data(), gap, file).spans() == t.spans();
     pack(gap);
-    visit_trajectory(pack, after.trajectory->data());
-  }
-  for (int k = 0; k < 3; ++k) pack(after.origin[k]);
-  visit_area(pack, after.area);
+    visit_trajectory(pack, t.data());
+  });
+  if (!comes_back) return false;
+  visit_place(pack, context);
   io::write_text_file(file, pack.bytes);
   return true;
 }
 
-HandedOn read_handed_on(const std::filesystem::path& file, const HandedOn& before) {
-  HandedOn out = before;
+void read_handed_on(const std::filesystem::path& file, stages::Context& context) {
   Unpacker unpack(io::read_text_file(file), file);
-  bool gnss = false, events = false, trajectory = false;
-  unpack(gnss), unpack(events), unpack(trajectory);
-  if (gnss) {
-    auto data = std::make_shared<core::GnssData>();
-    visit_gnss(unpack, *data);
-    out.gnss = std::move(data);
-  }
-  if (events) {
-    auto data = std::make_shared<core::EventData>();
-    visit_events(unpack, *data);
-    out.events = std::move(data);
-  }
-  if (trajectory) {
+  unpack_record<core::GnssData>(unpack, context, [&] {
+    core::GnssData d;
+    visit_gnss(unpack, d);
+    return d;
+  });
+  unpack_record<core::EventData>(unpack, context, [&] {
+    core::EventData d;
+    visit_events(unpack, d);
+    return d;
+  });
+  unpack_record<trajectory::Trajectory>(unpack, context, [&] {
     double gap = 0.0;
     unpack(gap);
-    core::TrajectoryData data;
-    visit_trajectory(unpack, data);
-    out.trajectory = std::make_shared<const trajectory::Trajectory>(made_of(std::move(data), gap, file));
-  }
-  for (int k = 0; k < 3; ++k) unpack(out.origin[k]);
-  visit_area(unpack, out.area);
+    core::TrajectoryData d;
+    visit_trajectory(unpack, d);
+    return made_of(std::move(d), gap, file);
+  });
+  visit_place(unpack, context);
   unpack.expect_end();
-  return out;
 }
 
 }  // namespace swath::pipeline

@@ -3,28 +3,16 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 
 #include "stages/stage.h"
 
 namespace swath::pipeline {
 
-/// The parts of a stages::Context that survey stages set. IMU records are as large as their file and are read again instead.
-struct HandedOn {
-  std::shared_ptr<const core::GnssData> gnss;
-  std::shared_ptr<const core::EventData> events;
-  std::shared_ptr<const trajectory::Trajectory> trajectory;
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  stages::Area area{};
+/// Writes what the context has and had not at `before`, and what it has no more: records, origin and area. IMU records are as large as
+/// their file and are read again instead. False, and no file, where it could not be read back the same.
+bool write_handed_on(const std::filesystem::path& file, const stages::Records::Marks& before, const stages::Context& context);
 
-  static HandedOn of(const stages::Context& context);
-  void give(stages::Context& context) const;
-};
-
-/// Writes what `after` has and `before` has not. False, and no file, where it could not be read back the same.
-bool write_handed_on(const std::filesystem::path& file, const HandedOn& before, const HandedOn& after);
-
-/// `before` with what the file gives. Throws core::SystemError where it is not what was written.
-HandedOn read_handed_on(const std::filesystem::path& file, const HandedOn& before);
+/// Gives the context what the file holds. Throws core::SystemError where it is not what was written.
+void read_handed_on(const std::filesystem::path& file, stages::Context& context);
 
 }  // namespace swath::pipeline

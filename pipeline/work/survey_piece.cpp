@@ -42,7 +42,7 @@ bool is_survey_piece_done(const fs::path& folder) { return fs::exists(folder / r
 
 SurveyPiece run_survey_piece(const stages::Stage& stage, stages::Context& context, const fs::path& folder, bool keep) {
   SurveyPiece piece;
-  const HandedOn before = HandedOn::of(context);
+  const stages::Records::Marks before = context.records.marks();
   const auto start = Clock::now();
   PieceRecord so_far;
   {
@@ -55,7 +55,7 @@ SurveyPiece run_survey_piece(const stages::Stage& stage, stages::Context& contex
     expect_balance(piece.tally, stage);
   }
   piece.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  const bool kept = keep && write_handed_on(folder / handed_on_name, before, HandedOn::of(context));
+  const bool kept = keep && write_handed_on(folder / handed_on_name, before, context);
   for (const PieceFile& f : so_far.files)
     if (!fs::exists(folder / f.name)) throw damaged_work(folder / f.name);
   std::error_code absent;
@@ -77,7 +77,7 @@ SurveyPiece run_survey_piece(const stages::Stage& stage, stages::Context& contex
 SurveyPiece resume_survey_piece(stages::Context& context, const fs::path& folder) {
   std::optional<PieceRecord> record = read_record(folder / record_name);
   if (!record) throw damaged_work(folder / record_name);
-  read_handed_on(folder / handed_on_name, HandedOn::of(context)).give(context);
+  read_handed_on(folder / handed_on_name, context);
   const core::Value& note = record->note;
   core::Tally tally = core::Tally::from(*note.find("tally"));
   add_records(tally, *note.find("records"));

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -150,6 +151,18 @@ TEST(House, HeavyLibrariesStayBehindTheirDoors) {
             EXPECT_TRUE(std::regex_match(i.file.generic_string(), door))
                 << i.file << ":" << i.line << " includes <" << i.what << "> outside its door";
           }
+}
+
+/// Stages ask for records by Stage::record or as parameters of a function: both know what the stage declares, by which the engine knows a
+/// record's last use.
+TEST(House, StagesUseNoRecordThatTheyDoNotDeclare) {
+  const std::regex asked("records\\.(get|has|find|take)<");
+  const std::set<std::string> allowed{"stages/stage.h", "stages/once.h"};
+  for (const fs::path& file : sources("stages")) {
+    std::ifstream in(file);
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    EXPECT_TRUE(allowed.contains(fs::relative(file, root).generic_string()) || !std::regex_search(text, asked)) << file;
+  }
 }
 
 TEST(House, EveryFileStatesItsLicenceAndStaysShort) {

@@ -26,8 +26,8 @@ struct Trial {
   Context context{survey};
   trajectory::test::MadeFlight flight{1};
   trajectory::LocalFrame frame = trajectory::local_frame(core::ecef_of({48 * core::degree, 9 * core::degree, 1000.0}));
-  std::shared_ptr<core::GnssData> gnss = std::make_shared<core::GnssData>();
-  std::shared_ptr<core::EventData> events = std::make_shared<core::EventData>();
+  core::GnssData gnss;
+  core::EventData events;
   std::unique_ptr<Stage> stage = make_stage("trajectory.kinematic");
   core::Tally tally;
   core::Value findings;
@@ -38,31 +38,33 @@ struct Trial {
     context.product_crs = crs;
     context.unit = context.crs.metres_per_unit();
     context.output = folder.path();
-    context.records.share<core::GnssData>(gnss);
-    context.records.share<core::EventData>(events);
     const trajectory::PointFixes fixes = flight.fixes(60, 1.0);
     for (size_t i = 0; i < fixes.size(); ++i) {
-      gnss->time.push_back(start + fixes.time[i]);
-      gnss->position.push_back(frame.to_ecef(fixes.position[i]));
-      gnss->covariance.push_back(frame.local_R_ecef.transpose() * fixes.covariance[i] * frame.local_R_ecef);
-      gnss->quality.push_back(core::FixQuality::fixed);
-      gnss->satellites.push_back(9);
+      gnss.time.push_back(start + fixes.time[i]);
+      gnss.position.push_back(frame.to_ecef(fixes.position[i]));
+      gnss.covariance.push_back(frame.local_R_ecef.transpose() * fixes.covariance[i] * frame.local_R_ecef);
+      gnss.quality.push_back(core::FixQuality::fixed);
+      gnss.satellites.push_back(9);
     }
   }
   void event(double seconds, const std::string& id, double sigma = 0.0, bool doubtful = false) {
-    events->time.push_back(start + seconds);
-    events->sigma.push_back(sigma);
-    events->id.push_back(id);
-    events->strip.push_back(7);
-    events->technique.push_back("pc");
-    events->doubtful.push_back(doubtful);
+    events.time.push_back(start + seconds);
+    events.sigma.push_back(sigma);
+    events.id.push_back(id);
+    events.strip.push_back(7);
+    events.technique.push_back("pc");
+    events.doubtful.push_back(doubtful);
   }
   void set(const std::string& json) {
     std::vector<core::Fault> faults;
     core::read_options([&](core::Visitor& v) { stage->visit(v); }, io::parse_json(json, "options"), "", faults);
     for (const auto& f : faults) ADD_FAILURE() << f.text();
   }
-  void go() { stage->run_survey(context, tally, findings); }
+  void go() {
+    context.records.put(gnss);
+    context.records.put(events);
+    stage->run_survey(context, tally, findings);
+  }
   /// Rows of the table by column name.
   std::vector<std::map<std::string, std::string>> rows(const std::string& name = "events.csv") const {
     std::istringstream in(test::read_bytes(folder / name));
@@ -133,7 +135,7 @@ TEST(KinematicStage, WritesPositionsVelocitiesAndSigmas) {
 TEST(KinematicStage, EventsWithoutFixesAroundThemAreFlaggedAndCounted) {
   Trial run;
   const auto drop = [](auto& column) { column.erase(column.begin() + 30, column.begin() + 40); };
-  drop(run.gnss->time), drop(run.gnss->position), drop(run.gnss->covariance);
+  drop(run.gnss.time), drop(run.gnss.position), drop(run.gnss.covariance);
   for (const auto& [t, id] : {std::pair{-3.0, "outside"}, {0.5, "end"}, {2.5, "short"}, {20.5, "good"}, {35.0, "gap"}})
     run.event(t, id, 0.0, std::string(id) == "gap" || std::string(id) == "good");
   run.go();
@@ -199,8 +201,8 @@ TEST(KinematicStage, CoordinatesAreInUnitsOfTheCrs) {
 TEST(KinematicStage, FixesOfNoUseAreLeftOutAndTold) {
   Trial run;
   run.event(20.4, "1");
-  run.gnss->covariance[40].setZero();
-  run.gnss->position[50].setConstant(std::nan(""));
+  run.gnss.covariance[40].setZero();
+  run.gnss.position[50].setConstant(std::nan(""));
   run.go();
   EXPECT_EQ(run.tally.of("GNSS fixes without a position or a covariance, left out"), 2u);
   EXPECT_EQ(run.findings.find("fixes")->as_int(), 58);
@@ -226,13 +228,13 @@ TEST(KinematicStage, TimesOfAnotherScaleAndTooFewFixesAreErrors) {
   EXPECT_EQ(test::entries(run.folder.path()), 0u);
   Trial few;
   few.event(0.5, "1");
-  for (size_t i = 2; i < few.gnss->size(); ++i) few.gnss->covariance[i].setZero();
+  for (size_t i = 2; i < few.gnss.size(); ++i) few.gnss.covariance[i].setZero();
   EXPECT_THROW(few.go(), core::Error);
 }
 
 TEST(KinematicStage, ARecordTooShortForTheTestHasNoEmpiricalSigma) {
   Trial run;
-  for (size_t i = 8; i < run.gnss->size(); ++i) run.gnss->covariance[i].setZero();
+  for (size_t i = 8; i < run.gnss.size(); ++i) run.gnss.covariance[i].setZero();
   run.event(3.5, "1");
   run.set(R"({"leave_one_out": true})");
   run.go();

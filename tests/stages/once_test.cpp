@@ -90,6 +90,29 @@ TEST(Once, TakingTheLastUseMovesTheRecord) {
   EXPECT_THROW(records.get<core::ImuData>(), core::Error);
 }
 
+TEST(Once, ACopyOfTheStoreKeepsItsRecord) {
+  Records records;
+  core::EventData events;
+  events.time = {1.0};
+  records.put(events);
+  const Records copy = records;
+  const Records::Marks before = records.marks();
+  EXPECT_EQ(records.take<core::EventData>(true).time.size(), 1u);
+  EXPECT_EQ(copy.get<core::EventData>().time.size(), 1u);
+  EXPECT_NE(Records::mark_of<core::EventData>(before), 0u);
+  EXPECT_EQ(Records::mark_of<core::EventData>(records.marks()), 0u);
+}
+
+TEST(Once, ARecordThatIsNotDeclaredIsAFaultOfTheProgram) {
+  const io::Survey survey;
+  Context context{survey};
+  context.records.put(core::EventData());
+  const auto stage = shift_stage();
+  EXPECT_NE(stage->record<core::EventData>(context), nullptr);
+  EXPECT_EQ(stage->record<core::ImuData>(context), nullptr);
+  EXPECT_THROW(stage->record<core::GnssData>(context), core::Error) << "given, but neither needed nor used";
+}
+
 struct MarkCounts {
   core::Flagged marked;
 };

@@ -62,7 +62,7 @@ std::vector<std::string> adjust_products(const AdjustStageOptions&) {
 AdjustFindings adjust_flight(const Context& context, const trajectory::Trajectory& trajectory, const georef::ShotStream&,
                              const AdjustStageOptions& o, const Output& to, const core::OnProgress& progress, core::Tally& tally) {
   const io::Survey& survey = context.survey;
-  const PreparedFlight prepared(context, o.errors, tally);
+  const PreparedFlight prepared(context, trajectory, o.errors, tally);
   calib::CalibrateOptions how = o;
   how.adjust.apriori = calib::start_sigmas(survey.sigma);
   const calib::Calibrated calibrated = calib::calibrate(prepared.flight, how, tally, progress);

@@ -75,21 +75,22 @@ std::vector<std::filesystem::path> control_files(const io::Survey& survey) {
   return out;
 }
 
-PreparedFlight::PreparedFlight(const Context& context, const trajectory::ErrorModelOptions& options, core::Tally& tally)
-    : trajectory(context.records.find<trajectory::Trajectory>()), errors(trajectory->data(), options) {
+PreparedFlight::PreparedFlight(const Context& context, const trajectory::Trajectory& flown, const trajectory::ErrorModelOptions& options,
+                               core::Tally& tally)
+    : errors(flown.data(), options) {
   const io::Survey& survey = context.survey;
   flight.shots = stream_shots(context);
   flight.scanner = survey.scanner;
   flight.start = survey.calibration;
   flight.sensor = survey.sigma;
-  flight.trajectory = trajectory.get();
+  flight.trajectory = &flown;
   flight.errors = &errors;
   flight.threads = context.threads;
   lines = fly(flight, tally);
   std::vector<std::pair<double, double>> times;
   for (const calib::FlownLine& l : lines) times.emplace_back(l.first, l.last);
   const double height = metres_down(lines), side = calib::side_for(lines, 1.0);
-  flight.frame = calib::frame_of(times, height, *trajectory);
+  flight.frame = calib::frame_of(times, height, flown);
   flight.scale = calib::scale_of(height, side > 0.0 ? 1.0 / (side * side) : 0.0, survey.sigma);
   flight.targets = calib::surveyed_targets(io::read_control(survey, tally), flight.frame, tally);
 }

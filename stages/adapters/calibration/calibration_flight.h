@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <vector>
 
 #include "calib/adjust/calibrate.h"
@@ -32,12 +31,12 @@ void describe(FlightStageOptions& o, V& v) {
 
 std::vector<std::filesystem::path> control_files(const io::Survey& survey);
 
-/// The flight of a context as calib/ takes it. It must not outlive the context or the context's trajectory.
+/// The flight of a context as calib/ takes it. It must not outlive the context or the trajectory.
 struct PreparedFlight {
   /// Reads the flight and its control once; what looks wrong with the lines is counted, or refused (core::Error).
-  PreparedFlight(const Context& context, const trajectory::ErrorModelOptions& options, core::Tally& tally);
+  PreparedFlight(const Context& context, const trajectory::Trajectory& flown, const trajectory::ErrorModelOptions& options,
+                 core::Tally& tally);
 
-  std::shared_ptr<const trajectory::Trajectory> trajectory;
   trajectory::ErrorModel errors;
   std::vector<calib::FlownLine> lines;
   calib::CalibrationFlight flight;  ///< points at the members above

@@ -51,6 +51,7 @@ calib::LineAgreement agreement(const PreparedFlight& prepared, const calib::TieP
 
 struct StripStage {
   const Context& context;
+  const trajectory::Trajectory& flown;
   const StripStageOptions& options;
   const std::filesystem::path& folder;
   const core::OnProgress& progress;
@@ -59,7 +60,7 @@ struct StripStage {
 
   void adjust(const PreparedFlight& prepared) {
     calib::AdjustedStrips strips = calib::adjust_strips(prepared.flight, options, tally, progress);
-    const auto corrected = std::make_shared<const trajectory::Trajectory>(std::move(*strips.trajectory));
+    trajectory::Trajectory corrected = std::move(*strips.trajectory);
 
     calib::CalibrationReport report = report_on(context, prepared.lines);
     report.adjustment = strips.adjustment;
@@ -68,7 +69,7 @@ struct StripStage {
     report.strips = strips.differences;
     const core::Calibration& held = context.survey.calibration;
     CalibrationViews views =
-        view_calibration(context, {&held, prepared.trajectory.get()}, {&held, corrected.get()}, strips.ties, prepared.flight.targets,
+        view_calibration(context, {&held, prepared.flight.trajectory}, {&held, &corrected}, strips.ties, prepared.flight.targets,
                          options.differences, cell_for(prepared.lines), static_cast<size_t>(options.sections));
     const BeforeAndAfter on_surfaces{calib::overall_rms(views.before), calib::overall_rms(views.after)};
     add_views(report, std::move(views));
@@ -86,7 +87,7 @@ struct StripStage {
     f.on_planes = {strips.differences.pairs.size(), {all.rms_before, all.rms_after}};
     f.on_surfaces = on_surfaces;
     f.findings = calib::sentences(strips.adjustment.findings);
-    out.record = corrected;
+    out.record = std::move(corrected);
   }
 
   // Whatever stands against it, the survey goes on with its trajectory as it is, and the report has the reason.
@@ -103,7 +104,7 @@ struct StripStage {
   void leave_doubtful(const std::string& doubt) {
     try {
       core::Tally ignored;
-      refuse_reversed_scan(PreparedFlight(context, options.errors, ignored));
+      refuse_reversed_scan(PreparedFlight(context, flown, options.errors, ignored));
     } catch (const core::SystemError&) {
       throw;
     } catch (const core::Error& e) {
@@ -114,7 +115,7 @@ struct StripStage {
   }
 
   void adjust_where_needed() {
-    const PreparedFlight prepared(context, options.errors, tally);
+    const PreparedFlight prepared(context, flown, options.errors, tally);
     const calib::LineAgreement lines = agreement(prepared, options.planes);
     const bool none = lines.pairs.empty(), one = prepared.lines.size() < 2;
     const bool apart = lines.exceeded() ||
@@ -140,16 +141,17 @@ std::vector<std::string> strip_products(const StripStageOptions&) {
   return {"strips.json", "report.html", "residuals.csv", "corrections.csv", "planes.csv", "sections.csv", "figures", "differences"};
 }
 
-Corrections correct_strips(const Context& context, const trajectory::Trajectory&, const georef::ShotStream&, const GeometryDoubt* doubt,
-                           const StripStageOptions& o, const Output& to, const core::OnProgress& progress, core::Tally& tally) {
-  StripStage stage{context, o, to.folder, progress, tally};
+Corrections correct_strips(const Context& context, const trajectory::Trajectory& flown, const georef::ShotStream&,
+                           const GeometryDoubt* doubt, const StripStageOptions& o, const Output& to, const core::OnProgress& progress,
+                           core::Tally& tally) {
+  StripStage stage{context, flown, o, to.folder, progress, tally};
   const std::string why = doubt ? doubt->why : std::string();
   if (o.when == AdjustWhen::always) {
     if (!why.empty()) {
       tally.count("adjusted although quality.geometry found a cause that lies elsewhere: not to be trusted", why);
       stage.out.findings.doubt = why;
     }
-    stage.adjust(PreparedFlight(context, o.errors, tally));
+    stage.adjust(PreparedFlight(context, flown, o.errors, tally));
     return std::move(stage.out);
   }
   try {

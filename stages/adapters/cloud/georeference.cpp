@@ -58,7 +58,7 @@ class Georeference : public OptionStage<NoOptions, georef::Counts> {
     const std::lock_guard lock(mutex_);
     if (!georeferencer_)
       georeferencer_ = std::make_shared<georef::Georeferencer>(context.survey.scanner, context.survey.calibration, context.survey.sigma,
-                                                               context.records.get<trajectory::Trajectory>(), context.crs,
+                                                               *record<trajectory::Trajectory>(context), context.crs,
                                                                context.origin.cwiseQuotient(units_of(context)));
     return georeferencer_;
   }

@@ -71,8 +71,7 @@ class LaserReader : public OptionStage<NoOptions> {
     return out;
   }
   std::unique_ptr<StripReader> open(const Context& context, const Strip& strip) const override {
-    if (context.records.has<trajectory::Trajectory>())
-      io::hold_common_times(context.survey, strips_, context.records.get<trajectory::Trajectory>().data().time);
+    if (const auto* flown = record<trajectory::Trajectory>(context)) io::hold_common_times(context.survey, strips_, flown->data().time);
     return std::make_unique<LaserStrip>(context.survey, strips_[strip.index]);
   }
   void check(const Context& context) const override {

@@ -12,12 +12,11 @@
 
 namespace swath::stages {
 
-/// Positions of the scanner from the run's trajectory, for the tiles of a stage that work at the same time.
+/// Positions of the scanner from a trajectory, for the tiles of a stage that work at the same time.
 class ScannerPositions {
  public:
-  /// At each point's time, relative to the block's origin, m; NaN where the trajectory does not reach. Needs context.trajectory and column
-  /// time.
-  std::vector<Eigen::Vector3d> of(const Context& context, const core::Block& block) const;
+  /// At each point's time, relative to the block's origin, m; NaN where the trajectory does not reach. Needs column time.
+  std::vector<Eigen::Vector3d> of(const Context& context, const trajectory::Trajectory& trajectory, const core::Block& block) const;
 
  private:
   std::shared_ptr<const georef::MapPatches> patches(const Context& context) const;

@@ -73,7 +73,8 @@ class Visibility : public OptionStage<filters::VisibilityOptions, BeamCounts, Vi
   void run_tile(const Context& context, TileJob& job) const override {
     const core::Lattice lattice = lattice_in(options.cell.value, job.box);
     filters::Visibility v;
-    const filters::VisibilityCounts n = filters::trace_visibility(job.block, job.own, scanner_.of(context, job.block), lattice, options, v);
+    const std::vector<Eigen::Vector3d> scanner = scanner_.of(context, *record<trajectory::Trajectory>(context), job.block);
+    const filters::VisibilityCounts n = filters::trace_visibility(job.block, job.own, scanner, lattice, options, v);
     const core::Grid seen = v.seen();
     BeamCounts counts{n.noise, n.untouched, n.no_position};
     for (const core::Void r : seen.reason) counts.cells += r != core::Void::no_data, counts.never_seen += r == core::Void::never_seen;

@@ -68,11 +68,11 @@ Eigen::Vector3d origin_near(const Context& context, const Eigen::Vector3d& posit
   return {to_kilometres(position.x() * context.unit), to_kilometres(position.y() * context.unit), 0.0};
 }
 
-void check_place_of_fixes(const Context& context) {
+void check_place_of_fixes(const Context& context, const core::GnssData& fixes) {
   if (context.crs.empty() || !context.crs.is_projected()) return;
   const AreaOfUse area(context);
   std::vector<double> beside;
-  for (const Eigen::Vector3d& p : context.records.get<core::GnssData>().position) {
+  for (const Eigen::Vector3d& p : fixes.position) {
     const core::Geodetic g = core::geodetic_of(p);
     beside.push_back(area.beside(g.latitude, g.longitude));
   }
@@ -82,9 +82,9 @@ void check_place_of_fixes(const Context& context) {
         "choose the CRS of the survey's place; are columns swapped (latitude and longitude, x and y), or has a longitude lost its sign?");
 }
 
-void place_on_map(Context& context, core::Tally& tally) {
+void place_on_map(Context& context, const trajectory::Trajectory& trajectory, core::Tally& tally) {
   if (context.crs.empty() || !context.crs.is_projected()) return;
-  const core::TrajectoryData& d = context.records.get<trajectory::Trajectory>().data();
+  const core::TrajectoryData& d = trajectory.data();
   const core::Transform to_map(core::wgs84_geodetic(), context.crs);
   context.origin = origin_near(context, to_map({core::to_degrees(d.longitude[0]), core::to_degrees(d.latitude[0]), d.height[0]}));
   check_area(context, d, tally);

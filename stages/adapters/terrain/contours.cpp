@@ -121,10 +121,9 @@ void describe(const ContourFindings& r, V& v) {
 }
 
 /// Flying height, m: NaN where the run has no trajectory on the map.
-double flying_height(const Context& context) {
-  const auto trajectory = context.records.find<trajectory::Trajectory>();
-  if (!trajectory || context.crs.empty()) return std::nan("");
-  const core::TrajectoryData& d = trajectory->data();
+double flying_height(const Context& context, const trajectory::Trajectory* flown) {
+  if (!flown || context.crs.empty()) return std::nan("");
+  const core::TrajectoryData& d = flown->data();
   const core::Transform to_map(core::wgs84_geodetic(), context.crs);
   const size_t step = std::max<size_t>(1, d.size() / 1000);
   std::vector<double> heights;
@@ -206,7 +205,8 @@ class Contours : public OptionStage<ContourWriteOptions, ContourCounts, ContourF
     ContourFindings found;
     write_lines(context, job, files, found);
     write_spots(context, std::move(spots), files, found);
-    found.interval = terrain::judge_interval(facts, interval(context), flying_height(context), context.vertical_unit);
+    found.interval = terrain::judge_interval(facts, interval(context), flying_height(context, record<trajectory::Trajectory>(context)),
+                                             context.vertical_unit);
     if (const std::string left_out = files.close(); !left_out.empty()) found.interval.findings.push_back(left_out);
     job.findings = core::reported(found);
   }

@@ -150,14 +150,15 @@ class Intensity : public OptionStage<terrain::IntensityOptions, IntensityCounts>
   /// The column incidence, which is to the vertical, by the terrain model where the run has one and knows where the scanner was.
   void meet_terrain(const Context& context, TileJob& job, IntensityCounts& counts) const {
     if (options.steepest.value == 0.0 || job.own == 0) return;
-    if (!context.records.has<trajectory::Trajectory>() || !context.grids->has(Product::dtm)) {
+    const trajectory::Trajectory* flown = record<trajectory::Trajectory>(context);
+    if (!flown || !context.grids->has(Product::dtm)) {
       (job.block.incidence.empty() ? counts.without_incidence : counts.without_terrain) = job.own;
       return;
     }
     const double cell = context.grids->cell(Product::dtm);
     const double border = halo() + 2.0 * cell;
     const core::Grid model = context.grids->window(Product::dtm, lattice_in(cell, job.box.grown(border)));
-    terrain::set_incidence(job.block, model, scanner_.of(context, job.block));
+    terrain::set_incidence(job.block, model, scanner_.of(context, *flown, job.block));
   }
   ScannerPositions scanner_;
 };

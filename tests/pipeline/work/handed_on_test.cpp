@@ -7,7 +7,7 @@
 namespace swath::pipeline {
 namespace {
 
-std::shared_ptr<const trajectory::Trajectory> flight() {
+trajectory::Trajectory flight() {
   core::TrajectoryData d;
   for (int i = 0; i < 400; ++i) {
     d.time.push_back(100.0 + 0.005 * i + (i >= 200 ? 3.0 : 0.0));  // two spans
@@ -24,50 +24,56 @@ std::shared_ptr<const trajectory::Trajectory> flight() {
   d.errors.links[17] = 0.5;
   d.response.time = {100.0};
   d.response.per_unit.assign(1, core::CalibrationResponse::Matrix::Constant(0.25));
-  return std::make_shared<const trajectory::Trajectory>(std::move(d));
+  return trajectory::Trajectory(std::move(d));
 }
 
-HandedOn everything() {
-  HandedOn h;
-  auto gnss = std::make_shared<core::GnssData>();
-  gnss->time = {1.0, 2.0};
-  gnss->position = {{1, 2, 3}, {4, 5, 6}};
-  gnss->covariance.assign(2, Eigen::Matrix3d::Identity() * 0.5);
-  gnss->quality = {core::FixQuality::fixed, core::FixQuality::single};
-  gnss->satellites = {9, 10};
-  auto events = std::make_shared<core::EventData>();
-  events->time = {1.5};
-  events->sigma = {0.0};
-  events->id = {"photo 7"};
-  events->strip = {0};
-  events->technique = {""};
-  events->doubtful = {1};
-  h.gnss = std::move(gnss);
-  h.events = std::move(events);
-  h.trajectory = flight();
-  h.origin = {652000, 5310000, 0};
-  h.area.box = {612000, 5270000, 692000, 5350000};
-  h.area.highest = 900;
-  return h;
+const io::Survey survey;
+
+stages::Context everything() {
+  stages::Context c{survey};
+  core::GnssData gnss;
+  gnss.time = {1.0, 2.0};
+  gnss.position = {{1, 2, 3}, {4, 5, 6}};
+  gnss.covariance.assign(2, Eigen::Matrix3d::Identity() * 0.5);
+  gnss.quality = {core::FixQuality::fixed, core::FixQuality::single};
+  gnss.satellites = {9, 10};
+  core::EventData events;
+  events.time = {1.5};
+  events.sigma = {0.0};
+  events.id = {"photo 7"};
+  events.strip = {0};
+  events.technique = {""};
+  events.doubtful = {1};
+  c.records.put(std::move(gnss));
+  c.records.put(std::move(events));
+  c.records.put(flight());
+  c.origin = {652000, 5310000, 0};
+  c.area.box = {612000, 5270000, 692000, 5350000};
+  c.area.highest = 900;
+  return c;
 }
 
 TEST(HandedOn, ComesBackAsItWas) {
   const test::TemporaryFolder folder;
-  const HandedOn given = everything();
+  const stages::Context given = everything();
   ASSERT_TRUE(write_handed_on(folder / "a", {}, given));
-  const HandedOn back = read_handed_on(folder / "a", {});
-  EXPECT_EQ(back.gnss->position[1], given.gnss->position[1]);
-  EXPECT_EQ(back.gnss->covariance[1], given.gnss->covariance[1]);
-  EXPECT_EQ(back.gnss->quality, given.gnss->quality);
-  EXPECT_TRUE(back.gnss->velocity.empty());
-  EXPECT_EQ(back.events->id, given.events->id);
-  EXPECT_EQ(back.events->doubtful, given.events->doubtful);
+  stages::Context back{survey};
+  read_handed_on(folder / "a", back);
+  const auto &gnss = back.records.get<core::GnssData>(), &of_gnss = given.records.get<core::GnssData>();
+  const auto &events = back.records.get<core::EventData>(), &of_events = given.records.get<core::EventData>();
+  const auto &flown = back.records.get<trajectory::Trajectory>(), &of_flown = given.records.get<trajectory::Trajectory>();
+  EXPECT_EQ(gnss.position[1], of_gnss.position[1]);
+  EXPECT_EQ(gnss.covariance[1], of_gnss.covariance[1]);
+  EXPECT_EQ(gnss.quality, of_gnss.quality);
+  EXPECT_TRUE(gnss.velocity.empty());
+  EXPECT_EQ(events.id, of_events.id);
+  EXPECT_EQ(events.doubtful, of_events.doubtful);
   EXPECT_EQ(back.origin, given.origin);
   EXPECT_EQ(back.area.box.x0, given.area.box.x0);
   EXPECT_EQ(back.area.box.y1, given.area.box.y1);
   EXPECT_EQ(back.area.lowest, given.area.lowest);
   EXPECT_EQ(back.area.highest, given.area.highest);
-  const core::TrajectoryData &a = given.trajectory->data(), &b = back.trajectory->data();
+  const core::TrajectoryData &a = of_flown.data(), &b = flown.data();
   EXPECT_EQ(a.time, b.time);
   EXPECT_EQ(a.latitude, b.latitude);
   EXPECT_EQ(a.sigma_heading, b.sigma_heading);
@@ -75,21 +81,27 @@ TEST(HandedOn, ComesBackAsItWas) {
   EXPECT_EQ(a.errors.states, b.errors.states);
   EXPECT_EQ(a.errors.links, b.errors.links);
   EXPECT_EQ(a.response.per_unit[0], b.response.per_unit[0]);
-  ASSERT_EQ(back.trajectory->spans().size(), 2u);
-  EXPECT_EQ(back.trajectory->spans(), given.trajectory->spans());
-  EXPECT_EQ(back.trajectory->pose_at(100.5123)->position, given.trajectory->pose_at(100.5123)->position);
+  ASSERT_EQ(flown.spans().size(), 2u);
+  EXPECT_EQ(flown.spans(), of_flown.spans());
+  EXPECT_EQ(flown.pose_at(100.5123)->position, of_flown.pose_at(100.5123)->position);
 }
 
-TEST(HandedOn, WhatTheStageDidNotChangeComesFromBefore) {
+TEST(HandedOn, WhatTheStageDidNotChangeIsLeftAndWhatItTookIsGone) {
   const test::TemporaryFolder folder;
-  const HandedOn before = everything();
-  HandedOn after = before;
-  after.trajectory = flight();
-  ASSERT_TRUE(write_handed_on(folder / "a", before, after));
-  const HandedOn back = read_handed_on(folder / "a", before);
-  EXPECT_EQ(back.gnss, before.gnss);
-  EXPECT_NE(back.trajectory, before.trajectory);
-  EXPECT_FALSE(write_handed_on(folder / "b", before, {})) << "a stage that takes something away is done again";
+  stages::Context context = everything();
+  const stages::Records::Marks before = context.records.marks();
+  context.records.put(flight());
+  context.records.drop<core::EventData>();
+  ASSERT_TRUE(write_handed_on(folder / "a", before, context));
+  stages::Context back = everything();
+  const core::GnssData* gnss = back.records.find<core::GnssData>();
+  const trajectory::Trajectory* flown = back.records.find<trajectory::Trajectory>();
+  const stages::Records::Marks were = back.records.marks();
+  read_handed_on(folder / "a", back);
+  EXPECT_EQ(back.records.find<core::GnssData>(), gnss);
+  EXPECT_FALSE(back.records.has<core::EventData>());
+  EXPECT_NE(back.records.find<trajectory::Trajectory>(), flown);
+  EXPECT_NE(back.records.mark_of<trajectory::Trajectory>(back.records.marks()), back.records.mark_of<trajectory::Trajectory>(were));
 }
 
 TEST(HandedOn, AFileThatIsNotWholeIsAnError) {
@@ -98,10 +110,12 @@ TEST(HandedOn, AFileThatIsNotWholeIsAnError) {
   const std::string bytes = test::read_bytes(folder / "a");
   for (size_t n = 0; n < bytes.size(); n += 97) {
     test::write_bytes(folder / "a", bytes.substr(0, n));
-    EXPECT_THROW(read_handed_on(folder / "a", {}), core::Error) << n;
+    stages::Context back{survey};
+    EXPECT_THROW(read_handed_on(folder / "a", back), core::Error) << n;
   }
   test::write_bytes(folder / "a", bytes + "x");
-  EXPECT_THROW(read_handed_on(folder / "a", {}), core::SystemError);
+  stages::Context back{survey};
+  EXPECT_THROW(read_handed_on(folder / "a", back), core::SystemError);
 }
 
 }  // namespace

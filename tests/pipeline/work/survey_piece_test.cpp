@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "io/text/output_file.h"
 #include "pipeline/work/work_folder.h"
+#include "stages/once.h"
 #include "tests/world/support.h"
 
 namespace swath::pipeline {
@@ -26,9 +27,9 @@ class Solver : public stages::Stage {
     io::write_text_file(context.output / "base_1.pos", "of hours");
     if (fails_) throw core::SystemError("killed");
     io::write_text_file(context.output / "base_2.pos", "of hours too");
-    auto gnss = std::make_shared<core::GnssData>();
-    gnss->time = {1.0, 2.0};
-    context.records.share<core::GnssData>(std::move(gnss));
+    core::GnssData gnss;
+    gnss.time = {1.0, 2.0};
+    context.records.put(std::move(gnss));
     tally.count("fixes", 2);
     findings["rate_hz"] = 1.0;
   }
@@ -61,6 +62,32 @@ TEST_F(Survey, IsTakenUpWithWhatItHandedOn) {
   EXPECT_EQ(back.findings.find("rate_hz")->as_number(), 1.0);
   EXPECT_EQ(back.files.size(), made.files.size());
   EXPECT_EQ(back.files.size(), 3u) << "two products, and what is handed on";
+}
+
+const double* taken = nullptr;  // where the fixes lay that came()
+core::EventData came(core::GnssData gnss) {
+  taken = gnss.time.data();
+  core::EventData out;
+  out.time = gnss.time;
+  return out;
+}
+
+TEST_F(Survey, AStageThatUsesARecordUpTakesItAndIsNotDoneAgain) {
+  stages::Context first = context(), again = context();
+  for (stages::Context* c : {&first, &again}) {
+    core::GnssData gnss;
+    gnss.time = {1.0, 2.0};
+    c->records.put(std::move(gnss));
+    c->last_uses = {stages::Product::of<core::GnssData>()};
+  }
+  const double* place = first.records.get<core::GnssData>().time.data();
+  run_survey_piece(*stages::once<came>("test.came", "").make(), first, stage_);
+  EXPECT_EQ(taken, place) << "moved, not copied";
+  EXPECT_FALSE(first.records.has<core::GnssData>());
+  ASSERT_TRUE(is_survey_piece_done(stage_));
+  resume_survey_piece(again, stage_);
+  EXPECT_FALSE(again.records.has<core::GnssData>());
+  EXPECT_EQ(again.records.get<core::EventData>().time, (std::vector<double>{1.0, 2.0}));
 }
 
 /// Makes a product and another file, which it removes: one of its own, or one that it counts as made.
