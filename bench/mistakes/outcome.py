@@ -15,7 +15,7 @@ ADDRESS_SPACE = 12 << 30  # bytes: a run that wants more ends, not the machine
 OUTLIERS = (7, 18)
 RUN_COUNTS = re.compile(r"^(filters|terrain|writers|report|quality)\.")  # counts of what was done, no judgement of the records
 FOLDERS = re.compile(r"(?<!\w)/(?:[^\s/:]+/)+")  # of absolute paths: they hold the mistake's own name
-PLAIN_COUNTS = re.compile(r"^(GNSS fixes: |SBET files with velocities|line \d|(cells|facets|planes)\b)")
+PLAIN_COUNTS = re.compile(r"^(GNSS fixes: |SBET files with velocities|((first|last|only|intermediate) returns|pulses of \d+ returns?)$|CSD pulses between|(cells|facets|planes)\b)")
 
 
 @dataclass
