@@ -77,6 +77,35 @@ TEST(Once, ARecordIsMovedOnItsLastUseAndCopiedBeforeIt) {
   EXPECT_TRUE(findings.find("has_events")->as_bool());
 }
 
+Corrected<core::EventData, ShiftFindings> corrected(const core::EventData& events, const ShiftOptions& o) {
+  if (o.by == 0) return {std::nullopt, {}};
+  core::EventData out = events;
+  for (double& t : out.time) t += o.by;
+  return {std::move(out), {1, true}};
+}
+
+TEST(Once, ARecordIsCorrectedOrStays) {
+  const io::Survey survey;
+  Context context{survey};
+  const auto stage = once<corrected>("test.correct", "Corrects.").make();
+  EXPECT_EQ(stage->info().gives_products, (std::vector<Product>{Product::of<core::EventData>()}));
+  core::EventData events;
+  events.time = {1.0};
+  context.records.put(events);
+  const core::EventData* before = &context.records.get<core::EventData>();
+  core::Tally tally;
+  core::Value findings;
+  auto& options = dynamic_cast<OnceStage<corrected>&>(*stage).options;
+  options.by = 0;
+  stage->run_survey(context, tally, findings);
+  EXPECT_EQ(&context.records.get<core::EventData>(), before);
+  EXPECT_EQ(findings.find("fixes")->as_int(), 0);
+  options.by = 2;
+  stage->run_survey(context, tally, findings);
+  EXPECT_EQ(context.records.get<core::EventData>().time, (std::vector<double>{3.0}));
+  EXPECT_EQ(findings.find("fixes")->as_int(), 1);
+}
+
 TEST(Once, TakingTheLastUseMovesTheRecord) {
   Records records;
   core::ImuData imu;
