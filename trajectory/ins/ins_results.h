@@ -185,9 +185,9 @@ struct SigmaFigures {
 template <class V>
 void describe(const SigmaFigures& r, V& v) {
   constexpr core::Form arcsec{"arcsec", 1};
-  v.result("rms_ned_m", r.position, core::metres().in_summary(), "RMS sigma of the position: north, east, down.");
+  v.result("rms_ned_m", r.position, core::metres(), "RMS sigma of the position: north, east, down.");
   v.result("largest_ned_m", r.worst_position, core::metres(), "Largest sigmas.");
-  v.result("rms_roll_pitch_heading_arcsec", r.attitude, core::Form(arcsec).in_summary(), "RMS sigma of the attitude.");
+  v.result("rms_roll_pitch_heading_arcsec", r.attitude, arcsec, "RMS sigma of the attitude.");
   v.result("largest_roll_pitch_heading_arcsec", r.worst_attitude, arcsec, "Largest sigmas.");
 }
 
