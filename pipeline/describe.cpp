@@ -9,6 +9,7 @@
 #include "io/text/value_file.h"
 #include "pipeline/plan.h"
 #include "pipeline/report_docs.h"
+#include "pipeline/warnings.h"
 #include "stages/registry.h"
 
 namespace swath::pipeline {
@@ -122,6 +123,7 @@ std::vector<std::filesystem::path> write_docs(const std::filesystem::path& docs,
   io::HangarSurvey hangar;
   page(docs / "lever-arm.md", "hangar.toml", core::option_table_markdown(core::described(hangar)));
   page(docs / "report.md", "report.json", report_page());
+  page(docs / "warnings.md", "Warnings", warning_page());
   RunOptions run;
   page(docs / "run.md", "[run]", core::option_table_markdown(core::described(run)));
   return differing;
@@ -129,33 +131,27 @@ std::vector<std::filesystem::path> write_docs(const std::filesystem::path& docs,
 
 core::Value schema() {
   using core::Value;
-  Value out = Value::object();
-  out["$schema"] = "https://json-schema.org/draft/2020-12/schema";
-  out["title"] = "swath pipeline";
-  out["type"] = "object";
-  out["additionalProperties"] = false;
-  out["required"].push("stage");
-  RunOptions run;
-  out["properties"]["run"] = core::schema_of(core::described(run));
+  const auto table = [](Value::Object members) { return Value(std::move(members)); };
   Value any = Value::array();
   for (const auto& e : stages::registry()) {
     const auto stage = e.make();
     Value one = core::schema_of([&](core::Visitor& v) { stage->visit(v); });
-    Value type = Value::object();
-    type["const"] = e.name;
-    one["properties"]["type"] = std::move(type);
-    one["required"] = Value::array();
-    one["required"].push("type");
-    one["description"] = stage->info().summary;
+    Value& options = *one.find("properties");
+    options.members().emplace_back("type", table({{"const", e.name}}));
+    one.members().emplace_back("required", Value(Value::Array{"type"}));
+    one.members().emplace_back("description", stage->info().summary);
     any.push(std::move(one));
   }
-  Value& list = out["properties"]["stage"];
-  list["type"] = "array";
-  list["items"]["anyOf"] = std::move(any);
+  RunOptions run;
   io::Survey survey;
-  out["$defs"]["survey"] = core::schema_of(core::described(survey));
-  out["$defs"]["report"] = report_schema();
-  return out;
+  Value stages = table({{"type", "array"}, {"items", table({{"anyOf", std::move(any)}})}});
+  return table({{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                {"title", "swath pipeline"},
+                {"type", "object"},
+                {"additionalProperties", false},
+                {"required", Value(Value::Array{"stage"})},
+                {"properties", table({{"run", core::schema_of(core::described(run))}, {"stage", std::move(stages)}})},
+                {"$defs", table({{"survey", core::schema_of(core::described(survey))}, {"report", report_schema()}})}});
 }
 
 }  // namespace swath::pipeline

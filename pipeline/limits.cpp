@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/limits.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <limits>
 #include <string_view>
 
 namespace swath::pipeline {
@@ -27,23 +29,16 @@ std::string text_of(double value, const Kind& kind) {
   return text;
 }
 
+/// Null: computed, and not finite.
+double number_of(const Value& v) { return v.is_number() ? v.as_number() : std::numeric_limits<double>::quiet_NaN(); }
+
 }  // namespace
 
-Value judged(const Limits& limits, const Measured& measured) {
+std::vector<JudgedLimit> judged(const Limits& limits, const Measured& measured) {
   const Limits none;
-  Value list = Value::array();
+  std::vector<JudgedLimit> list;
   const auto judge = [&](const Kind& kind, std::optional<double> value, double limit, double no_limit) {
-    if (!value && limit >= no_limit) return;
-    Value one = Value::object();
-    one["name"] = kind.name;
-    if (value) one["value"] = *value;
-    one["limit"] = limit;
-    if (!value)
-      one["held"] = "not judged: no stage of this run measures it";
-    else
-      one["held"] = *value <= limit;
-    if (value && !(*value <= limit)) one["excess"] = *value - limit;
-    list.push(std::move(one));
+    if (value || limit < no_limit) list.push_back({kind.name, value, limit});
   };
   judge(kinds[0], measured.outside, limits.outside, none.outside);
   judge(kinds[1], measured.voids, limits.voids, none.voids);
@@ -53,18 +48,21 @@ Value judged(const Limits& limits, const Measured& measured) {
   return list;
 }
 
-std::vector<std::string> missed_limits(const Value& judged) {
-  std::vector<std::string> lines;
+std::vector<Warning> missed_limits(const Value& judged) {
+  std::vector<Warning> out;
   for (const Value& one : judged.items()) {
-    const Value* excess = one.find("excess");
-    if (!excess) continue;
-    for (const Kind& kind : kinds)
-      if (one.find("name")->as_text() == kind.name)
-        lines.push_back("run.limits." + std::string(kind.name) + " = " + text_of(one.find("limit")->as_number(), kind) +
-                        " is exceeded by " + text_of(excess->as_number(), kind) + ": " + std::string(kind.what) + " " +
-                        text_of(one.find("value")->as_number(), kind));
+    const Value* over = one.find("excess");
+    if (!over) continue;
+    const std::string& name = one.find("name")->as_text();
+    const Kind& kind = *std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return k.name == name; });
+    const double value = number_of(*one.find("value")), limit = one.find("limit")->as_number(), excess = number_of(*over);
+    out.push_back(
+        {"limit." + name,
+         "run.limits." + name + " = " + text_of(limit, kind) + " is exceeded by " + text_of(excess, kind) + ": " + std::string(kind.what) +
+             " " + text_of(value, kind),
+         {{"value", kind.scale * value, kind.unit}, {"limit", kind.scale * limit, kind.unit}, {"excess", kind.scale * excess, kind.unit}}});
   }
-  return lines;
+  return out;
 }
 
 }  // namespace swath::pipeline

@@ -4,11 +4,14 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/config/option.h"
+#include "core/config/result.h"
 #include "core/config/units.h"
 #include "core/config/value.h"
+#include "pipeline/warnings.h"
 
 namespace swath::pipeline {
 
@@ -38,11 +41,29 @@ struct Measured {
   std::optional<double> line_difference{}, contradictions{};
 };
 
-/// For report.json: every limit that the config sets or the run measured, with `name`, `value`, `limit` and `held`, and `excess` where the
-/// value is over the limit.
-core::Value judged(const Limits& limits, const Measured& measured);
+/// A limit that the config sets or the run measured.
+struct JudgedLimit {
+  std::string_view name;
+  std::optional<double> value;  ///< not finite: computed, and missed
+  double limit = 0.0;
+  bool is_held() const { return value && *value <= limit; }
+};
 
-/// One line for each limit that was missed: which, the value, the limit and by how much. Empty where all are held.
-std::vector<std::string> missed_limits(const core::Value& judged);
+template <class V>
+void describe(const JudgedLimit& l, V& v) {
+  v.result("name", l.name, "Key of [run.limits].");
+  v.result("value", l.value, core::plain().always().only_if(l.value.has_value()), "What the run measured.");
+  v.result("limit", l.limit, "The limit.");
+  v.result("held", l.is_held(), core::plain().only_if(l.value.has_value()), "Is the value within the limit?");
+  v.result("held", std::string_view("not judged: no stage of this run measures it"), core::plain().only_if(!l.value),
+           "Why the limit is not judged.");
+  v.result("excess", l.value ? *l.value - l.limit : 0.0, core::plain().always().only_if(l.value && !l.is_held()),
+           "By how much the value is over the limit.");
+}
+
+std::vector<JudgedLimit> judged(const Limits& limits, const Measured& measured);
+
+/// Of the limits in report.json, a warning for each that was missed: which, the value, the limit and by how much. Empty where all are held.
+std::vector<Warning> missed_limits(const core::Value& judged);
 
 }  // namespace swath::pipeline

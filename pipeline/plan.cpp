@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "io/survey/read_survey.h"
 #include "io/survey/record_checks.h"
@@ -266,6 +267,18 @@ void settle_tile(Plan& plan) {
   plan.run.tile = core::Metres(std::floor(plan.run.tile.value / hundred) * hundred);
 }
 
+/// The value of an option and where it was set.
+struct Origin {
+  Value value;
+  std::string from;
+};
+
+template <class V>
+void describe(const Origin& o, V& v) {
+  v.other("value", o.value, "The value as a config would write it.");
+  v.result("from", o.from, "Where it was set; default: nowhere.");
+}
+
 /// Sets {"key": {"value", "from"}} for each effective option of a table.
 Value with_origin(const core::Describe& d, const Value& written) {
   const std::function<Value(const Value&, const Value*)> walk = [&](const Value& effective, const Value* given) {
@@ -276,9 +289,7 @@ Value with_origin(const core::Describe& d, const Value& written) {
         out[key] = walk(value, mine);
         continue;
       }
-      Value& one = out[key];
-      one["value"] = value;
-      one["from"] = mine ? mine->where.text() : std::string("default");
+      out[key] = core::reported(Origin{value, mine ? mine->where.text() : "default"});
     }
     return out;
   };
@@ -368,18 +379,9 @@ void set_option(core::Value& table, const std::string& set) {
   set_member(table, set.substr(0, equals), set_value(set.substr(equals + 1)), set);
 }
 
-core::Value explain(Plan& plan) {
-  Value out = Value::object();
-  out["config"] = plan.config.string();
-  out["survey"] = plan.survey_file.string();
-  out["run"] = with_origin(core::described(plan.run), plan.run_table);
-  Value& list = out["stages"] = Value::array();
-  for (const PlannedStage& s : plan.stages) {
-    Value one = Value::object();
-    one["type"] = s.stage->info().name;
-    one["options"] = with_origin(s.describe(), s.table);
-    list.push(std::move(one));
-  }
+Explanation explain(Plan& plan) {
+  Explanation out{plan.config.string(), plan.survey_file.string(), with_origin(core::described(plan.run), plan.run_table)};
+  for (const PlannedStage& s : plan.stages) out.stages.push_back({s.stage->info().name, with_origin(s.describe(), s.table)});
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/config/option_visitors.h"
+#include "core/config/result.h"
 #include "io/survey/survey.h"
 #include "pipeline/limits.h"
 #include "stages/stage.h"
@@ -78,8 +79,32 @@ void require_projected(const core::Crs& crs, const std::filesystem::path& survey
 /// Sets one option of a table of options from "key=value" or "table.key=value", as --set does. Throws core::Error (usage).
 void set_option(core::Value& table, const std::string& set);
 
-/// The effective options with where each comes from, for `explain` and the report:
-/// {"run": {"tile": {"value": "500 m", "from": "default"}}, "stages": [{"type": ..., "options": {...}}]}.
-core::Value explain(Plan& plan);
+struct ExplainedStage {
+  std::string_view type;
+  core::Value options;
+};
+
+template <class V>
+void describe(const ExplainedStage& s, V& v) {
+  v.result("type", s.type, "The stage.");
+  v.other("options", s.options, "Every option: its value, and where it was set.");
+}
+
+/// The effective options with where each comes from: {"tile": {"value": "500 m", "from": "default"}}.
+struct Explanation {
+  std::string config, survey;
+  core::Value run;
+  std::vector<ExplainedStage> stages{};
+};
+
+template <class V>
+void describe(const Explanation& e, V& v) {
+  v.result("config", e.config, "The config.");
+  v.result("survey", e.survey, "The survey; empty where none was named.");
+  v.other("run", e.run, "Every option of [run]: its value, and where it was set.");
+  v.tables("stages", e.stages, "The stages in their order.");
+}
+
+Explanation explain(Plan& plan);
 
 }  // namespace swath::pipeline

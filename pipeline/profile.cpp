@@ -34,7 +34,7 @@ namespace fs = std::filesystem;
 using Point = Eigen::Vector2d;
 
 constexpr size_t batch = 1 << 17;
-constexpr double farthest = 1e8;          // m or feet: no map projection reaches it
+constexpr double farthest_vertex = 1e8;   // m or feet: no map projection reaches it
 constexpr size_t window_cells = 1 << 20;  // of the terrain model that is held at a time
 
 struct Sample {
@@ -341,7 +341,7 @@ std::vector<ProfileLine> profile_lines(const ProfileRequest& request, const core
   }
   if (out.empty()) throw core::Error("the file holds no line", request.lines.string());
   for (ProfileLine& line : out)
-    line.left_out = std::erase_if(line.vertices, [](const Point& p) { return !(p.cwiseAbs().maxCoeff() < farthest); });
+    line.left_out = std::erase_if(line.vertices, [](const Point& p) { return !(p.cwiseAbs().maxCoeff() < farthest_vertex); });
   std::map<std::string, int> seen;
   for (ProfileLine& line : out) {
     for (char& c : line.name)
@@ -367,7 +367,7 @@ void check_names(const ProfileRequest& request, std::vector<fs::path> read, cons
 
 }  // namespace
 
-core::Value write_profiles(const ProfileRequest& request) {
+std::vector<ProfileFound> write_profiles(const ProfileRequest& request) {
   const std::vector<fs::path> files = las_files(request.points);
   if (files.empty() && request.dtm.empty())
     throw core::usage_error("neither points nor a terrain model are named", "swath profile", "name LAS files or folders, or --dtm FILE");
@@ -386,7 +386,7 @@ core::Value write_profiles(const ProfileRequest& request) {
   std::vector<Section> sections;
   for (const ProfileLine& line : lines) sections.push_back(section_of(line, half_width));
   for (const fs::path& file : files) take_points(file, half_width, sections);
-  core::Value told = core::Value::array();
+  std::vector<ProfileFound> found;
   for (Section& s : sections) {
     if (!request.dtm.empty()) take_terrain(request.dtm, s);
     const auto known = std::count_if(s.terrain.begin(), s.terrain.end(), [](const Sample& t) { return !std::isnan(t.z); });
@@ -401,15 +401,9 @@ core::Value write_profiles(const ProfileRequest& request) {
     io::write_text_file(request.folder / (s.line->name + ".csv"), table_of(s));
     io::write_text_file(request.folder / (s.line->name + ".svg"), report::svg(chart));
     io::write_png(request.folder / (s.line->name + ".png"), report::draw(chart));
-    core::Value one = core::Value::object();
-    one["name"] = s.line->name;
-    one["length"] = s.length();
-    if (s.line->left_out > 0) one["vertices_left_out"] = static_cast<std::uint64_t>(s.line->left_out);
-    one["points"] = s.points.size();
-    one["terrain_samples"] = static_cast<std::uint64_t>(known);
-    told.push(std::move(one));
+    found.push_back({s.line->name, s.length(), s.line->left_out, s.points.size(), static_cast<size_t>(known)});
   }
-  return told;
+  return found;
 }
 
 }  // namespace swath::pipeline

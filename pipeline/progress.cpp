@@ -7,8 +7,9 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <optional>
 
-#include "core/config/value.h"
+#include "core/config/result_visitors.h"
 #include "io/text/value_file.h"
 
 namespace swath::pipeline {
@@ -17,6 +18,42 @@ namespace {
 constexpr double least_share = 0.02;  // of a step, from which its speed says how long the rest takes
 
 std::chrono::milliseconds pause_of(Voice voice) { return std::chrono::milliseconds(voice == Voice::bar ? 100 : 3000); }
+
+/// A line of --json-log: what a run says.
+struct Message {
+  std::string text;
+};
+
+template <class V>
+void describe(const Message& m, V& v) {
+  v.result("message", m.text, "A sentence.");
+}
+
+/// A line of --json-log: how far a step is.
+struct Moment {
+  std::string stage, unit, now;
+  std::optional<std::uint64_t> done, total, step, steps;
+  double per_second = 0.0, seconds = 0.0;
+  std::optional<double> share, seconds_left, run_seconds_left;
+  bool finished = false;
+};
+
+template <class V>
+void describe(const Moment& m, V& v) {
+  v.result("stage", m.stage, "The step at work.");
+  v.result("done", m.done, "What it has worked on.");
+  v.result("total", m.total, "What there is to work on.");
+  v.result("unit", m.unit, core::plain().only_if(m.total.has_value()), "Unit of both.");
+  v.result("per_second", m.per_second, "Rate of this run's work.");
+  v.result("seconds", m.seconds, core::seconds(), "Time since it began.");
+  v.result("share", m.share, core::share(), "How far it is.");
+  v.result("now", m.now, core::plain().only_if(!m.now.empty()), "What it is at.");
+  v.result("step", m.step, "Number of the step in the run.");
+  v.result("steps", m.steps, "Steps of the run.");
+  v.result("seconds_left", m.seconds_left, core::seconds(), "Expected time to the end of the step.");
+  v.result("run_seconds_left", m.run_seconds_left, core::seconds(), "Expected time to the end of the run.");
+  v.result("finished", m.finished, core::plain().only_if(m.finished), "True at the end of a step.");
+}
 
 /// JSON on one line.
 std::string one_line(const core::Value& v) {
@@ -137,9 +174,7 @@ void Progress::say(const std::string& text) {
   const std::lock_guard lock(mutex_);
   if (voice_ == Voice::quiet) return;
   if (voice_ == Voice::json) {
-    core::Value line;
-    line["message"] = text;
-    std::fprintf(stderr, "%s\n", one_line(line).c_str());
+    std::fprintf(stderr, "%s\n", one_line(core::reported(Message{text})).c_str());
     return;
   }
   if (open_ && voice_ == Voice::bar) std::fputs("\r\033[K", stderr);
@@ -193,25 +228,18 @@ void Progress::show(bool last) {
 void Progress::show_json(bool last) {
   const double time = seconds(), share = last ? 1.0 : done_share();
   const Left l = left();
-  core::Value line;
-  line["stage"] = what_;
-  if (total_ > 0) {
-    line["done"] = done_;
-    line["total"] = total_;
-    line["unit"] = unit_;
-  }
-  line["per_second"] = time > 0 ? static_cast<double>(done_ - skipped_) / time : 0.0;
-  line["seconds"] = time;
-  if (share >= 0.0) line["share"] = share;
-  if (!last && !now_.empty()) line["now"] = now_;
-  if (steps_ > 0) {
-    line["step"] = begun_;
-    line["steps"] = steps_;
-  }
-  if (!last && l.step >= 0.0) line["seconds_left"] = l.step;
-  if (!last && l.run >= 0.0) line["run_seconds_left"] = l.run;
-  if (last) line["finished"] = true;
-  std::fprintf(stderr, "%s\n", one_line(line).c_str());
+  Moment m;
+  m.stage = what_;
+  if (total_ > 0) m.done = done_, m.total = total_, m.unit = unit_;
+  m.per_second = time > 0 ? static_cast<double>(done_ - skipped_) / time : 0.0;
+  m.seconds = time;
+  if (share >= 0.0) m.share = share;
+  if (!last) m.now = now_;
+  if (steps_ > 0) m.step = begun_, m.steps = steps_;
+  if (!last && l.step >= 0.0) m.seconds_left = l.step;
+  if (!last && l.run >= 0.0) m.run_seconds_left = l.run;
+  m.finished = last;
+  std::fprintf(stderr, "%s\n", one_line(core::reported(m)).c_str());
 }
 
 void Progress::show_text(bool last) {

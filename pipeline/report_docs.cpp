@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "pipeline/run_report.h"
 #include "stages/registry.h"
 
 namespace swath::pipeline {
@@ -17,30 +18,33 @@ core::DescribeResults findings_of(const stages::Stage& s) {
   return [&s](core::ResultVisitor& v) { s.visit_findings(v); };
 }
 
-/// Under `tally` each count is a table with its examples.
-const core::RecordCount any_records;
+/// A count under `tally`.
+struct CountedSample {};
 
+template <class V>
+void describe(const CountedSample&, V& v) {
+  v.result("count", std::uint64_t{0}, "Number of records.");
+  v.result("examples", std::vector<std::string>{}, "The first of them.");
+}
+
+/// Under `tally` each count is a table with its examples.
 Value tally_schema(const stages::Stage& s) {
   Value out = core::result_schema(counts_of(s));
-  for (auto& [key, one] : out["properties"].members()) {
-    Value entry = Value::object();
-    entry["type"] = "object";
-    entry["description"] = *one.find("description");
-    entry["properties"]["count"]["type"] = "integer";
-    Value examples = Value::object();
-    examples["type"] = "array";
-    examples["items"]["type"] = "string";
-    entry["properties"]["examples"] = std::move(examples);
+  for (auto& [key, one] : out.find("properties")->members()) {
+    Value entry = core::result_schema(core::described_results(CountedSample{}));
+    entry.members().emplace_back("description", *one.find("description"));
     one = std::move(entry);
   }
   return out;
 }
 
+/// Its place in the schema of what holds it.
+Value& property(Value& schema, std::string_view key) { return *schema.find("properties")->find(key); }
+
 }  // namespace
 
 std::string report_page() {
-  std::string out = "## Files\n\nOf every stage that reads records, a list under `records`:\n\n" +
-                    core::result_table_markdown(core::described_results(any_records));
+  std::string out = "## The run\n\n" + core::result_table_markdown(core::described_results(RunReport{}));
   for (const auto& e : stages::registry()) {
     const auto s = e.make();
     const bool counts = !core::document_results(counts_of(*s)).empty(), findings = !core::document_results(findings_of(*s)).empty();
@@ -53,26 +57,25 @@ std::string report_page() {
 }
 
 Value report_schema() {
-  Value out = Value::object();
-  out["type"] = "object";
-  Value any = Value::array(), records = Value::object();
-  records["type"] = "array";
-  records["items"] = core::result_schema(core::described_results(any_records));
+  Value out = core::result_schema(core::described_results(RunReport{}));
+  Value any = Value::array();
   for (const auto& e : stages::registry()) {
     const auto s = e.make();
-    Value one = Value::object();
-    one["type"] = "object";
-    one["properties"]["type"]["const"] = e.name;
-    one["properties"]["records"] = records;
-    one["properties"]["tally"] = tally_schema(*s);
-    one["properties"]["findings"] = core::result_schema(findings_of(*s));
-    one["required"] = Value::array();
-    one["required"].push("type");
+    Value one = core::result_schema(core::described_results(StageReport{}));
+    property(one, "type") = Value(Value::Object{{"const", e.name}});
+    property(one, "tally") = tally_schema(*s);
+    Value findings = core::result_schema(findings_of(*s));
+    Value& found = *findings.find("properties");
+    if (Value* geometry = found.find("geometry")) {  // lies beside the stages; the stage has its verdict alone
+      Value verdict = property(*geometry, "verdict");
+      property(out, "geometry") = std::move(*geometry);
+      found = Value(Value::Object{{"verdict", std::move(verdict)}});
+    }
+    property(one, "findings") = std::move(findings);
+    one.members().emplace_back("required", Value(Value::Array{"type"}));
     any.push(std::move(one));
   }
-  Value& list = out["properties"]["stages"];
-  list["type"] = "array";
-  list["items"]["anyOf"] = std::move(any);
+  property(out, "stages") = Value(Value::Object{{"type", "array"}, {"items", Value(Value::Object{{"anyOf", std::move(any)}})}});
   return out;
 }
 

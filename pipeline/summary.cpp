@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "io/las/las_box.h"
 #include "io/text/value_file.h"
-#include "pipeline/limits.h"
 #include "pipeline/progress.h"
 #include "pipeline/report_docs.h"
+#include "pipeline/warnings.h"
 
 namespace swath::pipeline {
 namespace {
@@ -27,6 +26,8 @@ std::string scalar(const Value& v) {
   return text;
 }
 
+constexpr size_t tables_shown = 6;  // of a list; the report has them all
+
 /// The findings of a stage, those with a declaration as it says: in its unit, and no details.
 class FindingsText {
  public:
@@ -39,17 +40,47 @@ class FindingsText {
       if (value.is_object()) {
         const std::string inner = of(value, margin + "  ", at);
         if (!inner.empty()) out += margin + key + "\n" + inner;
-        continue;
+      } else if (is_list_of_tables(value)) {
+        out += list(value, key, margin, at + "[]");
+      } else if (!is_detail(at)) {
+        out += margin + key + ":" + figure(value, at, margin + "  ") + "\n";
       }
-      const auto known = declared_.find(at);
-      if (known != declared_.end() && known->second.form.audience == core::Audience::detail) continue;
-      const bool is_figure = known != declared_.end() && value.is_number();
-      out += margin + key + ": " + (is_figure ? core::shown(value, known->second.form) : scalar(value)) + "\n";
     }
     return out;
   }
 
  private:
+  static bool is_list_of_tables(const Value& v) { return v.is_array() && !v.items().empty() && v.items()[0].is_object(); }
+  bool is_detail(const std::string& at) const {
+    const auto known = declared_.find(at);
+    return known != declared_.end() && known->second.form.audience == core::Audience::detail;
+  }
+  /// A text of several lines starts on a line of its own.
+  std::string figure(const Value& v, const std::string& at, const std::string& margin) const {
+    const auto known = declared_.find(at);
+    if (known != declared_.end() && v.is_number()) return " " + core::shown(v, known->second.form);
+    std::string text = scalar(v);
+    if (!v.is_text() || text.find('\n') == std::string::npos) return " " + text;
+    if (text.back() == '\n') text.pop_back();
+    for (size_t k = text.find('\n'); k != std::string::npos; k = text.find('\n', k + 1)) text.insert(k + 1, margin);
+    return "\n" + margin + text;
+  }
+  /// A line for each table: its figures that are no details.
+  std::string list(const Value& tables, const std::string& key, const std::string& margin, const std::string& at) const {
+    std::string out;
+    const size_t count = tables.items().size();
+    for (size_t k = 0; k < std::min(count, tables_shown); ++k) {
+      std::string line;
+      for (const auto& [name, value] : tables.items()[k].members())
+        if (!value.is_object() && !is_list_of_tables(value) && !is_detail(at + "." + name))
+          line += (line.empty() ? "" : ", ") + name + figure(value, at + "." + name, "");
+      if (!line.empty()) out += margin + "  " + line + "\n";
+    }
+    if (out.empty()) return {};
+    if (count > tables_shown) out += margin + "  and " + std::to_string(count - tables_shown) + " more: report.json\n";
+    return margin + key + "\n" + out;
+  }
+
   std::map<std::string, core::ResultDoc> declared_;
 };
 
@@ -65,14 +96,6 @@ void options(const Value& table, const std::string& path, std::string& out) {
     line.resize(std::max<size_t>(line.size() + 2, 46), ' ');
     out += line + from->as_text() + "\n";
   }
-}
-
-/// A line for each example, and one for those that the report counts without.
-void box_warnings(const Value& wrong, std::string& out) {
-  const auto& examples = wrong.find("examples")->items();
-  for (const Value& example : examples) out += "\nwarning: " + example.as_text() + "\n";
-  const auto more = wrong.find("count")->as_int() - static_cast<std::int64_t>(examples.size());
-  if (more > 0) out += "\nwarning: and " + std::to_string(more) + " more " + io::wrong_box + ": report.json\n";
 }
 
 }  // namespace
@@ -96,13 +119,7 @@ std::string summary(const Value& report, const std::filesystem::path& output) {
   }
   if (const Value* resumed = report.find("pieces_resumed"); resumed && resumed->as_int() > 0)
     out += "\nresumed: " + std::to_string(resumed->as_int()) + " pieces were done by an earlier run\n";
-  for (const Value& stage : report.find("stages")->items())
-    if (const Value* tally = stage.find("tally"))
-      if (const Value* wrong = tally->find(io::wrong_box)) box_warnings(*wrong, out);
-  if (const Value* geometry = report.find("geometry"))
-    for (const Value& warning : geometry->find("warnings")->items()) out += "\nwarning: " + warning.as_text() + "\n";
-  if (const Value* limits = report.find("limits"))
-    for (const std::string& limit : missed_limits(*limits)) out += "\nlimit missed: " + limit + "\n";
+  for (const Warning& w : warnings_in(report)) out += "\nwarning [" + w.code + "]: " + w.text + "\n";
   out += "\nproducts in " + output.generic_string() + ", report in " + (output / "report.json").generic_string() + " (" +
          duration_text(report.find("seconds")->as_number()) + ")\n";
   return out;
@@ -124,12 +141,12 @@ core::Error with_geometry(const core::Error& e, const Value* geometry, const std
   return core::Error(e.what(), e.where(), hint, e.code());
 }
 
-std::string explanation_text(const Value& explanation) {
+std::string explanation_text(const Explanation& e) {
   std::string out = "[run]\n";
-  options(*explanation.find("run"), "", out);
-  for (const Value& stage : explanation.find("stages")->items()) {
-    out += "\n[[stage]] " + stage.find("type")->as_text() + "\n";
-    options(*stage.find("options"), "", out);
+  options(e.run, "", out);
+  for (const ExplainedStage& stage : e.stages) {
+    out += "\n[[stage]] " + std::string(stage.type) + "\n";
+    options(stage.options, "", out);
   }
   return out;
 }

@@ -8,6 +8,7 @@
 
 #include "core/config/value.h"
 #include "core/error.h"
+#include "pipeline/plan.h"
 
 namespace swath::pipeline {
 
@@ -19,6 +20,6 @@ std::string summary(const core::Value& report, const std::filesystem::path& outp
 core::Error with_geometry(const core::Error& error, const core::Value* geometry, const std::vector<std::filesystem::path>& inputs);
 
 /// `explain` as text: one line per option, value and origin.
-std::string explanation_text(const core::Value& explanation);
+std::string explanation_text(const Explanation& explanation);
 
 }  // namespace swath::pipeline

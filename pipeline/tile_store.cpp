@@ -22,14 +22,14 @@ using core::Block;
 using core::Column;
 using core::ColumnSet;
 
-constexpr double farthest = 1e8;  // m; beyond every map projection, and tile numbers stay in range
-constexpr const char* record_name = "strip.json";
+constexpr double farthest_tile = 1e8;  // m; beyond every map projection, and tile numbers stay in range
+constexpr const char* strip_record = "strip.json";
 
 std::string points_file(TileKey key) { return file_label(key) + ".pts"; }
 
 core::Value strip_note(const fs::path& strip_folder) {
-  std::optional<PieceRecord> record = read_record(strip_folder / record_name);
-  if (!record) throw damaged_work(strip_folder / record_name);
+  std::optional<PieceRecord> record = read_record(strip_folder / strip_record);
+  if (!record) throw damaged_work(strip_folder / strip_record);
   return std::move(record->note);
 }
 
@@ -68,7 +68,7 @@ void StripWriter::write(const Block& block) {
   std::vector<std::uint32_t>* at = nullptr;
   for (std::uint32_t i = 0; i < block.size(); ++i) {
     const double east = block.origin.x() + block.x[i], north = block.origin.y() + block.y[i];
-    if (!(std::abs(east) < farthest && std::abs(north) < farthest && std::isfinite(block.z[i])))
+    if (!(std::abs(east) < farthest_tile && std::abs(north) < farthest_tile && std::isfinite(block.z[i])))
       throw core::Error("a point lies at east " + core::format_number(east) + " m, north " + core::format_number(north) + " m, height " +
                             core::format_number(block.origin.z() + block.z[i]) + " m",
                         "line " + std::to_string(block.strip.empty() ? 0 : block.strip[i]) + ", record " +
@@ -129,7 +129,7 @@ void StripWriter::commit(const std::string& note) {
   record.note =
       core::Value::Object{{"note", note}, {"columns", bits_of(columns_)}, {"source_width", source_width_}, {"tiles", std::move(tiles)}};
   const io::UnflushedFiles checked_when_resumed;
-  write_record(part_ / record_name, final_ / record_name, record);
+  write_record(part_ / strip_record, final_ / strip_record, record);
   std::error_code ec;
   fs::remove_all(final_, ec);
   fs::rename(part_, final_, ec);
@@ -140,7 +140,7 @@ void StripWriter::commit(const std::string& note) {
 TileStore::TileStore(fs::path strips, double tile_side, Eigen::Vector3d origin)
     : strips_(std::move(strips)), side_(tile_side), origin_(origin) {}
 
-bool TileStore::is_committed(const fs::path& strip_folder) { return fs::exists(strip_folder / record_name); }
+bool TileStore::is_committed(const fs::path& strip_folder) { return fs::exists(strip_folder / strip_record); }
 
 std::string TileStore::note(const fs::path& strip_folder) { return strip_note(strip_folder).find("note")->as_text(); }
 

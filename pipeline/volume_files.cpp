@@ -92,7 +92,7 @@ core::Grid level(const core::Lattice& l, double height) {
 
 }  // namespace
 
-core::Value volumes_of(const VolumeRequest& request) {
+VolumesFound volumes_of(const VolumeRequest& request) {
   const Surface before(request.before);
   std::optional<Surface> after;
   core::Lattice lattice = before.lattice;
@@ -121,66 +121,43 @@ core::Value volumes_of(const VolumeRequest& request) {
     const core::Lattice band{lattice.cell, lattice.i0, lattice.j0 + j, lattice.nx, std::min(rows, lattice.ny - j)};
     sum.add(before.on(band), after ? after->on(band) : level(band, *request.design));
   }
-  const report::Volumes v = sum.result();
+  report::Volumes v = sum.result();
   if (v.cells == 0)
     throw core::Error("the two surfaces have no cell in common" + std::string(polygon.empty() ? "" : " inside the polygon"),
                       request.before.string());
 
   const double area = metre * metre, volume = area * metre;
-  core::Value out = core::Value::object();
-  out["before"] = request.before.generic_string();
-  if (request.design) out["design_height"] = *request.design;
-  if (!request.design) out["after"] = request.after.generic_string();
-  if (!polygon.empty()) out["polygon"] = request.polygon.generic_string();
-  if (vertices_left_out > 0) out["polygon_vertices_left_out"] = vertices_left_out;
-  out["units"] = crs.empty() ? "those of the file, which states no CRS" : "m";
-  out["cell"] = lattice.cell * metre;
-  out["cut"] = v.cut * volume;
-  out["fill"] = v.fill * volume;
-  out["net"] = v.net * volume;
-  out["area"] = v.area * area;
-  out["cut_area"] = v.cut_area * area;
-  out["fill_area"] = v.fill_area * area;
-  out["correlation"] = request.correlation;
-  if (std::isfinite(v.sigma_net)) {
-    out["sigma_cut"] = v.sigma_cut * volume;
-    out["sigma_fill"] = v.sigma_fill * volume;
-    out["sigma_net"] = v.sigma_net * volume;
-  }
-  out["cells"] = v.cells;
-  out["cells_left_out"] = v.left_out;
-  out["area_left_out"] = v.area_left_out * area;
-  return out;
+  for (double* one : {&v.cut, &v.fill, &v.net, &v.sigma_cut, &v.sigma_fill, &v.sigma_net}) *one *= volume;
+  for (double* one : {&v.area, &v.cut_area, &v.fill_area, &v.area_left_out}) *one *= area;
+  return {request, vertices_left_out, !crs.empty(), lattice.cell * metre, v};
 }
 
-std::string volume_text(const core::Value& found) {
-  const auto number = [&](const char* key) { return found.find(key)->as_number(); };
-  const bool metres = found.find("units")->as_text() == "m";
+std::string volume_text(const VolumesFound& found) {
+  const report::Volumes& v = found.volumes;
+  const bool has_sigma = std::isfinite(v.sigma_net);
   std::string out;
   char line[200];
-  const auto volume = [&](const char* name, const char* key, const char* sigma) {
-    if (found.find(sigma))
-      std::snprintf(line, sizeof line, "%-9s %14.2f%s  +- %.2f\n", name, number(key), metres ? " m3" : "", number(sigma));
+  const auto volume = [&](const char* name, double value, double sigma) {
+    if (has_sigma)
+      std::snprintf(line, sizeof line, "%-9s %14.2f%s  +- %.2f\n", name, value, found.has_crs ? " m3" : "", sigma);
     else
-      std::snprintf(line, sizeof line, "%-9s %14.2f%s  (no sigma known)\n", name, number(key), metres ? " m3" : "");
+      std::snprintf(line, sizeof line, "%-9s %14.2f%s  (no sigma known)\n", name, value, found.has_crs ? " m3" : "");
     out += line;
   };
-  volume("cut", "cut", "sigma_cut");
-  volume("fill", "fill", "sigma_fill");
-  volume("net", "net", "sigma_net");
-  std::snprintf(line, sizeof line, "%-9s %14.2f%s in %lld cells; lowered %.2f, raised %.2f\n", "area", number("area"), metres ? " m2" : "",
-                static_cast<long long>(found.find("cells")->as_int()), number("cut_area"), number("fill_area"));
+  volume("cut", v.cut, v.sigma_cut);
+  volume("fill", v.fill, v.sigma_fill);
+  volume("net", v.net, v.sigma_net);
+  const char* square = found.has_crs ? " m2" : "";
+  std::snprintf(line, sizeof line, "%-9s %14.2f%s in %llu cells; lowered %.2f, raised %.2f\n", "area", v.area, square,
+                static_cast<unsigned long long>(v.cells), v.cut_area, v.fill_area);
   out += line;
-  std::snprintf(line, sizeof line, "%-9s %14.2f%s in %lld cells where a surface is void\n", "left out", number("area_left_out"),
-                metres ? " m2" : "", static_cast<long long>(found.find("cells_left_out")->as_int()));
+  std::snprintf(line, sizeof line, "%-9s %14.2f%s in %llu cells where a surface is void\n", "left out", v.area_left_out, square,
+                static_cast<unsigned long long>(v.left_out));
   out += line;
-  if (const core::Value* vertices = found.find("polygon_vertices_left_out")) {
-    std::snprintf(line, sizeof line, "polygon: %lld vertices that are not finite or beyond every map, left out\n",
-                  static_cast<long long>(vertices->as_int()));
-    out += line;
-  }
-  if (found.find("sigma_net")) {
-    std::snprintf(line, sizeof line, "sigmas: errors of any two cells of a model correlated by %g\n", number("correlation"));
+  if (found.vertices_left_out > 0)
+    out += "polygon: " + std::to_string(found.vertices_left_out) + " vertices that are not finite or beyond every map, left out\n";
+  if (has_sigma) {
+    std::snprintf(line, sizeof line, "sigmas: errors of any two cells of a model correlated by %g\n", found.request.correlation);
     out += line;
   }
   return out;

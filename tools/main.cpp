@@ -56,8 +56,8 @@ int run(Arguments& a, const std::string& command) {
   const pipeline::Outcome outcome = pipeline::run(plan, progress, command);
   if (!a.quiet && !a.json_log) print(pipeline::summary(outcome.report, plan.run.output));
   if (outcome.code == core::Exit::quality_missed)
-    for (const std::string& limit : pipeline::missed_limits(*outcome.report.find("limits")))
-      std::fprintf(stderr, "swath: done, but a quality limit was missed: %s\n", core::printable(limit).c_str());
+    for (const pipeline::Warning& w : pipeline::missed_limits(*outcome.report.find("limits")))
+      std::fprintf(stderr, "swath: done, but a quality limit was missed: %s\n", core::printable(w.text).c_str());
   return static_cast<int>(outcome.code);
 }
 
@@ -77,8 +77,8 @@ int check(Arguments& a) {
 
 int explain(Arguments& a) {
   pipeline::Plan plan = pipeline::make_plan(a.request);
-  const core::Value found = pipeline::explain(plan);
-  a.json ? print_json(found) : print(pipeline::explanation_text(found));
+  const pipeline::Explanation found = pipeline::explain(plan);
+  a.json ? print_json(core::reported(found)) : print(pipeline::explanation_text(found));
   return 0;
 }
 
@@ -108,8 +108,8 @@ int info(const Arguments& a) {
 int volumes(const Arguments& a) {
   if (a.volumes.after.empty() == !a.volumes.design)
     throw core::usage_error("volumes need a second surface or a design height", "swath volumes", "give AFTER or --design, one of them");
-  const core::Value found = pipeline::volumes_of(a.volumes);
-  a.json ? print_json(found) : print(pipeline::volume_text(found));
+  const pipeline::VolumesFound found = pipeline::volumes_of(a.volumes);
+  a.json ? print_json(core::reported(found)) : print(pipeline::volume_text(found));
   return 0;
 }
 
@@ -121,16 +121,16 @@ int profile(Arguments& a) {
     throw core::usage_error("'" + a.width + "' is no width" + (fault.empty() ? "" : ": " + fault), "--half-width",
                             "write a length with its unit: \"2 m\"");
   a.profile.half_width = width->as_number();
-  const core::Value found = pipeline::write_profiles(a.profile);
-  if (a.json) std::fputs(io::to_json(found).c_str(), stdout);
-  for (size_t k = 0; !a.json && !a.quiet && k < found.items().size(); ++k) {
-    const core::Value& one = found.items()[k];
-    std::printf("%s: %.1f long, %lld points, %lld places of the terrain model; .csv, .svg and .png in %s\n",
-                one.find("name")->as_text().c_str(), one.find("length")->as_number(), static_cast<long long>(one.find("points")->as_int()),
-                static_cast<long long>(one.find("terrain_samples")->as_int()), a.profile.folder.c_str());
-    if (const core::Value* left_out = one.find("vertices_left_out"))
-      std::printf("  %lld of its vertices are not finite or beyond every map, left out\n", static_cast<long long>(left_out->as_int()));
+  core::Value list = core::Value::array();
+  for (const pipeline::ProfileFound& one : pipeline::write_profiles(a.profile)) {
+    list.push(core::reported(one));
+    if (a.json || a.quiet) continue;
+    std::printf("%s: %.1f long, %zu points, %zu places of the terrain model; .csv, .svg and .png in %s\n", one.name.c_str(), one.length,
+                one.points, one.terrain_samples, a.profile.folder.c_str());
+    if (one.vertices_left_out > 0)
+      std::printf("  %zu of its vertices are not finite or beyond every map, left out\n", one.vertices_left_out);
   }
+  if (a.json) print_json(list);
   return 0;
 }
 
@@ -213,6 +213,10 @@ int command_line(int argc, char** argv) {
   c = app.add_subcommand("stages", "Examples\n  swath stages\n  swath stages filters.smrf\n\nList the stages, or describe one.");
   c->add_option("NAME", a.name, "Stage");
 
+  c = app.add_subcommand("warnings",
+                         "Examples\n  swath warnings\n  swath warnings limit.voids\n\nList the codes of warnings, or explain one.");
+  c->add_option("CODE", a.name, "Code of a warning");
+
   app.add_subcommand("schema", "Examples\n  swath schema > swath.schema.json\n\nPrint the JSON Schema of pipelines and surveys.");
 
   c = app.add_subcommand("simulate",
@@ -276,6 +280,7 @@ int command_line(int argc, char** argv) {
   if (name == "run") return run(a, command);
   if (name == "check") return check(a);
   if (name == "explain") return explain(a);
+  if (name == "warnings") return print(pipeline::warning_help(a.name)), 0;
   if (name == "simulate") return simulate_survey(a);
   if (name == "info") return info(a);
   if (name == "volumes") return volumes(a);

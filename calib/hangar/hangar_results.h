@@ -125,7 +125,7 @@ void describe(const HangarResult& r, V& v) {
   std::optional<PointAdjustment> adjustment;
   if (r.adjusted) adjustment = PointAdjustment{r.adjusted->redundancy, r.adjusted->iterations, r.adjusted->variance_factor, r.point_factor};
   v.tables("lever_arms", r.lever_arms, "Lever arms that the survey needs.");
-  v.result("survey_toml", r.lever_arms.empty() ? std::string() : survey_lines(r), "The lines for survey.toml.");
+  v.result("survey_toml", r.lever_arms.empty() ? std::string() : survey_lines(r), core::plain().in_summary(), "The lines for survey.toml.");
   v.table("axes", AxesResult{r.axes, r.heading_sigma}, "Attitude of the body in the hangar.");
   v.tables("points", r.points, "Points of the aircraft.");
   v.table("adjustment", adjustment, "Adjustment of the points that were sighted.");

@@ -59,7 +59,7 @@ struct Form {
   Audience audience = Audience::detail;
   std::string_view limit{};  ///< key of [run.limits] that judges it
   bool only_if_any = false;  ///< left out of the report where it is 0
-  bool may_be_absent = false, absent = false;
+  bool absent = false;
   bool or_null = false;  ///< null in the report where it has no value, in place of being left out
 
   constexpr Form in_summary() const {
@@ -76,7 +76,6 @@ struct Form {
   constexpr Form only_if(bool holds) const {
     Form f = *this;
     f.absent = !holds;
-    f.may_be_absent = true;
     return f;
   }
   constexpr Form limited_by(std::string_view key) const {
@@ -208,6 +207,8 @@ class ResultVisitor {
       describe(S{}, v);
     });
   }
+  /// What others declare or know: a configuration's own values, the findings of a stage. Left out of the report where it is null.
+  void other(std::string_view key, const Value& value, std::string_view doc) { on_other(key, doc, value); }
   /// A list of tables.
   template <class S>
   void tables(std::string_view key, const std::vector<S>& sections, std::string_view doc) {
@@ -240,6 +241,7 @@ class ResultVisitor {
   using Each = std::function<void(size_t, ResultVisitor&)>;
   virtual void on_result(ResultField field) = 0;
   virtual void on_table(std::string_view key, std::string_view doc, bool present, const Inner& inner) = 0;
+  virtual void on_other(std::string_view, std::string_view, const Value&) {}
   virtual void on_tables(std::string_view key, std::string_view doc, size_t count, const Each& each) = 0;
   virtual void on_named_tables(std::string_view key, std::string_view doc, const std::vector<std::string>& names, const Each& each) = 0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/config/result_visitors.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include "core/config/shape_schema.h"
@@ -10,7 +11,9 @@ namespace {
 
 constexpr size_t sample = std::numeric_limits<size_t>::max();
 
-std::string join(const std::string& path, std::string_view key) { return path.empty() ? std::string(key) : path + "." + std::string(key); }
+std::string path_to(const std::string& path, std::string_view key) {
+  return path.empty() ? std::string(key) : path + "." + std::string(key);
+}
 
 class Reporter : public ResultVisitor {
  public:
@@ -22,6 +25,9 @@ class Reporter : public ResultVisitor {
   }
   void on_table(std::string_view key, std::string_view, bool present, const Inner& inner) override {
     if (present) out[key] = reported(inner);
+  }
+  void on_other(std::string_view key, std::string_view, const Value& value) override {
+    if (!value.is_null()) out[key] = value;
   }
   void on_tables(std::string_view key, std::string_view, size_t count, const Each& each) override {
     if (count == absent) return;
@@ -52,42 +58,43 @@ class Counter : public ResultVisitor {
   Tally& tally_;
 };
 
-class Documenter : public ResultVisitor {
+class ResultDocumenter : public ResultVisitor {
  public:
-  Documenter(std::string path, std::vector<ResultDoc>& out) : path_(std::move(path)), out_(out) {}
+  ResultDocumenter(std::string path, std::vector<ResultDoc>& out) : path_(std::move(path)), out_(out) {}
 
  protected:
   void on_result(ResultField f) override {
-    const bool may_be_absent =
-        f.shape.optional || f.form.only_if_any || f.form.may_be_absent || (f.shape.kind == Kind::number && f.shape.length == 1);
-    out_.push_back({join(path_, f.key), f.shape.text(), f.form, f.fate, std::string(f.doc), false, may_be_absent});
+    out_.push_back({path_to(path_, f.key), f.shape.text(), f.form, f.fate, std::string(f.doc), false});
   }
   void on_table(std::string_view key, std::string_view doc, bool, const Inner& inner) override {
-    add(join(path_, key), "table", doc, join(path_, key), inner);
+    add(path_to(path_, key), "table", doc, path_to(path_, key), inner);
+  }
+  void on_other(std::string_view key, std::string_view doc, const Value&) override {
+    out_.push_back({path_to(path_, key), "table", {}, Fate::none, std::string(doc), true});
   }
   void on_tables(std::string_view key, std::string_view doc, size_t, const Each& each) override {
-    const std::string path = join(path_, key) + "[]";
+    const std::string path = path_to(path_, key) + "[]";
     add(path, "list of tables", doc, path, [&](ResultVisitor& v) { each(sample, v); });
   }
   void on_named_tables(std::string_view key, std::string_view doc, const std::vector<std::string>&, const Each& each) override {
-    add(join(path_, key), "tables by name", doc, join(path_, key) + ".*", [&](ResultVisitor& v) { each(sample, v); });
+    add(path_to(path_, key), "tables by name", doc, path_to(path_, key) + ".*", [&](ResultVisitor& v) { each(sample, v); });
   }
 
  private:
   void add(const std::string& path, std::string shape, std::string_view doc, const std::string& inside, const Inner& inner) {
-    out_.push_back({path, std::move(shape), {}, Fate::none, std::string(doc), true, false});
-    Documenter d(inside, out_);
+    out_.push_back({path, std::move(shape), {}, Fate::none, std::string(doc), true});
+    ResultDocumenter d(inside, out_);
     inner(d);
   }
   std::string path_;
   std::vector<ResultDoc>& out_;
 };
 
-class Schemer : public ResultVisitor {
+class ResultSchemer : public ResultVisitor {
  public:
   Value out = Value::object();
 
-  Schemer() {
+  ResultSchemer() {
     out["type"] = "object";
     out["properties"] = Value::object();
   }
@@ -113,6 +120,7 @@ class Schemer : public ResultVisitor {
     add(f.key, std::move(one), text);
   }
   void on_table(std::string_view key, std::string_view doc, bool, const Inner& inner) override { add(key, result_schema(inner), doc); }
+  void on_other(std::string_view key, std::string_view doc, const Value&) override { add(key, Value::object(), doc); }
   void on_tables(std::string_view key, std::string_view doc, size_t, const Each& each) override {
     Value list = Value::object();
     list["type"] = "array";
@@ -161,7 +169,7 @@ void count_results(const DescribeResults& d, Tally& tally) {
 
 std::vector<ResultDoc> document_results(const DescribeResults& d) {
   std::vector<ResultDoc> out;
-  Documenter documenter("", out);
+  ResultDocumenter documenter("", out);
   d(documenter);
   return out;
 }
@@ -177,17 +185,20 @@ std::string result_table_markdown(const DescribeResults& d) {
 }
 
 Value result_schema(const DescribeResults& d) {
-  Schemer schemer;
+  ResultSchemer schemer;
   d(schemer);
   return std::move(schemer.out);
 }
 
 std::string shown(const Value& number, const Form& form) {
   char text[64];
+  const bool is_part = form.unit == "share" || form.unit == "%";
   if (number.is_int())
     std::snprintf(text, sizeof text, "%lld", static_cast<long long>(number.as_int()));
   else if (form.decimals < 0)
     std::snprintf(text, sizeof text, "%.4g", number.as_number());
+  else if (is_part && number.as_number() != 0.0 && std::abs(number.as_number()) < 5.0 * std::pow(10.0, -form.decimals))
+    std::snprintf(text, sizeof text, "%.2g", number.as_number());  // a small share is not none
   else
     std::snprintf(text, sizeof text, "%.*f", form.decimals, number.as_number());
   std::string out = text;

@@ -42,7 +42,6 @@ struct ResultDoc {
   Fate fate = Fate::none;
   std::string doc;
   bool is_table = false;
-  bool may_be_absent = false;
 };
 std::vector<ResultDoc> document_results(const DescribeResults& d);
 

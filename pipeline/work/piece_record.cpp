@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/config/result_visitors.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "pipeline/work/checksum.h"
@@ -27,9 +28,22 @@ bool stays_within(const fs::path& name) {
   return !name.empty() && name.is_relative() && std::find(name.begin(), name.end(), "..") == name.end();
 }
 
-/// Name, length, checksum.
+/// A record as its file holds it.
+struct Sealed {
+  std::string piece;
+  const PieceRecord& record;
+};
+
+template <class V>
+void describe(const Sealed& s, V& v) {
+  v.result("piece", s.piece, "Which piece this is the record of.");
+  v.tables("files", s.record.files, "Its files.");
+  v.other("note", s.record.note, "What the run says of it.");
+}
+
 bool is_file(const Value& v) {
-  return v.is_array() && v.items().size() == 3 && v.items()[0].is_text() && v.items()[1].is_int() && v.items()[2].is_text();
+  const Value *name = v.find("name"), *bytes = v.find("bytes"), *checksum = v.find("checksum");
+  return name && bytes && checksum && name->is_text() && bytes->is_int() && checksum->is_text();
 }
 
 std::vector<fs::path> once(std::vector<fs::path> files) {
@@ -89,18 +103,7 @@ void replace_files(std::vector<PieceFile>& files, std::vector<PieceFile> by) {
 }
 
 void write_record(const fs::path& at, const fs::path& named, const PieceRecord& record) {
-  Value all = Value::object();
-  all["piece"] = identity_of(named);
-  Value& files = all["files"] = Value::array();
-  for (const PieceFile& f : record.files) {
-    Value one = Value::array();
-    one.push(f.name.generic_string());
-    one.push(f.bytes);
-    one.push(f.checksum);
-    files.push(std::move(one));
-  }
-  all["note"] = record.note;
-  std::string text = io::to_json(all);
+  std::string text = io::to_json(core::reported(Sealed{identity_of(named), record}));
   const std::string sum = checksum_of(text);
   io::write_text_file(at, text.append(seal) + sum + "\n");
 }
@@ -112,15 +115,15 @@ std::optional<PieceRecord> read_record(const fs::path& file) {
   const Value* piece = all.find("piece");
   const Value* files = all.find("files");
   Value* note = all.find("note");
-  if (!piece || !files || !note || !piece->is_text() || piece->as_text() != identity_of(file)) return std::nullopt;
+  if (!piece || !files || !piece->is_text() || piece->as_text() != identity_of(file)) return std::nullopt;
   if (!files->is_array() || !std::all_of(files->items().begin(), files->items().end(), is_file)) return std::nullopt;
   PieceRecord out;
   for (const Value& one : files->items()) {
-    const std::vector<Value>& f = one.items();
-    out.files.push_back({f.at(0).as_text(), static_cast<std::uint64_t>(f.at(1).as_int()), f.at(2).as_text()});
+    out.files.push_back(
+        {one.find("name")->as_text(), static_cast<std::uint64_t>(one.find("bytes")->as_int()), one.find("checksum")->as_text()});
     if (!stays_within(out.files.back().name)) return std::nullopt;
   }
-  out.note = std::move(*note);
+  if (note) out.note = std::move(*note);
   return out;
 }
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/config/value.h"
+#include "core/config/result.h"
 #include "core/error.h"
 
 namespace swath::pipeline {
@@ -20,6 +20,13 @@ struct PieceFile {
   std::uint64_t bytes = 0;
   std::string checksum;
 };
+
+template <class V>
+void describe(const PieceFile& f, V& v) {
+  v.result("name", f.name, "Relative to the record's folder.");
+  v.result("bytes", f.bytes, "Its length.");
+  v.result("checksum", f.checksum, "XXH3 of 128 bits; empty where it was not taken.");
+}
 
 /// The file as it is now. Throws core::SystemError where it is gone or cannot be read.
 PieceFile piece_file(const std::filesystem::path& folder, const std::filesystem::path& file);

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char *lock_name = "lock", *discarded_name = "discarded", *products_name = "products", *groups_name = "groups.done",
-                     *strip_name = "strip.json", *partial_name = "files.done";
+                     *strip_name = "strip.json", *unfinished_name = "files.done";
 
 /// "03-filters.ground-0123456789abcdef": the folder of a stage.
 bool is_stage_folder(const fs::directory_entry& entry) {
@@ -148,7 +148,7 @@ EarlierWork keep_whole_work(const fs::path& work, const std::function<void(doubl
   for (size_t i = 0; i < records.size(); ++i) {
     out.damaged += whole[i].empty();
     if (whole[i].empty()) continue;
-    if (records[i].filename() != groups_name && records[i].filename() != partial_name && records[i].filename() != released_name)
+    if (records[i].filename() != groups_name && records[i].filename() != unfinished_name && records[i].filename() != released_name)
       ++(records[i].extension() == ".done" ? out.pieces : out.lines);
     kept.insert(whole[i].begin(), whole[i].end());
   }

@@ -6,7 +6,7 @@ import tomllib
 import unittest
 from pathlib import Path
 
-from support import CLOUD, CONFIG, SMALL, SMALLEST, SOURCE, Case, products, stage, swath
+from support import CLOUD, CONFIG, SMALL, SMALLEST, SOURCE, Case, products, schema_faults, stage, swath
 
 COMMANDS = ["run", "check", "explain", "stages", "schema", "simulate", "info", "volumes", "profile", "docs"]
 CONFIGS = sorted((SOURCE / "configs").glob("*.toml"))
@@ -175,6 +175,16 @@ class Runs(Case):
                 self.assertEqual(one["counts"]["in"], one["counts"]["out"] + left_out, one["type"])
         self.assertEqual({Path(i["file"]).name for i in report["inputs"]}, {"laser.npy", "sbet.out", "smrmsg.out", "returns.npy", "dtm.tif"})
         self.assertEqual(stage(report, "terrain.dtm")["options"]["cell"]["value"], "1 m")
+
+    def test_the_report_is_as_the_schema_says(self):
+        report = self.run_ok(self.survey / "survey.toml")
+        schema = json.loads(swath("schema").stdout)["$defs"]["report"]
+        self.assertEqual(schema_faults(report, schema), [])
+        for spoil in (lambda r: r.update(seconds="long"), lambda r: r["stages"][0].update(type="no.stage"), lambda r: r.update(unknown=1),
+                      lambda r: r["inputs"][0].update(bytes=None)):
+            spoilt = json.loads(json.dumps(report))
+            spoil(spoilt)
+            self.assertNotEqual(schema_faults(spoilt, schema), [])
 
     def test_a_missed_limit_is_code_3(self):
         done = swath(*self.arguments("--quiet", "--set", "run.limits.truth_rms=1 mm"))

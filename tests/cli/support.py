@@ -48,6 +48,44 @@ def products(folder):
             if p.is_file() and p.name != "report.json"}
 
 
+TYPES = {"object": dict, "array": list, "string": str, "boolean": bool, "integer": int, "number": (int, float), "null": type(None)}
+
+
+def is_of(value, name):
+    return isinstance(value, TYPES[name]) and (name == "boolean" or not isinstance(value, bool))
+
+
+def schema_faults(value, schema, at="report"):
+    """What of JSON Schema the value breaks, as far as `swath schema` uses it; and keys of results that it does not declare."""
+    if "anyOf" in schema:
+        found = [schema_faults(value, one, at) for one in schema["anyOf"]]
+        named = [f for f, one in zip(found, schema["anyOf"])
+                 if isinstance(value, dict) and one.get("properties", {}).get("type", {}).get("const") == value.get("type")]
+        return min(named or found, key=len)
+    faults = [f"{at}: {value!r} is not {schema['const']!r}"] if "const" in schema and value != schema["const"] else []
+    if "enum" in schema and value not in schema["enum"]:
+        faults.append(f"{at}: {value!r} is not in {schema['enum']}")
+    if "type" in schema:
+        names = schema["type"] if isinstance(schema["type"], list) else [schema["type"]]
+        if not any(is_of(value, name) for name in names):
+            return [*faults, f"{at}: {value!r} is no {names}"]
+    if isinstance(value, dict) and schema.get("properties"):  # a stage that declares no findings may have any
+        faults += [f"{at}: {key} is not there" for key in schema.get("required", []) if key not in value]
+        for key, one in value.items():
+            inner = schema["properties"].get(key, schema.get("additionalProperties"))
+            if inner is not None:
+                faults += schema_faults(one, inner, f"{at}.{key}")
+            elif not at.endswith(".tally"):  # readers count what they meet under names that no list has
+                faults.append(f"{at}.{key} is not declared")
+    if isinstance(value, dict) and isinstance(schema.get("additionalProperties"), dict) and "properties" not in schema:
+        for key, one in value.items():
+            faults += schema_faults(one, schema["additionalProperties"], f"{at}.{key}")
+    if isinstance(value, list) and "items" in schema:
+        for k, one in enumerate(value):
+            faults += schema_faults(one, schema["items"], f"{at}[{k}]")
+    return faults
+
+
 def stage(report, name):
     return next(s for s in report["stages"] if s["type"] == name)
 

@@ -44,12 +44,12 @@ TEST(Plan, ReadsConfigSurveyAndSets) {
   Plan plan = make_plan(c.request);
   ASSERT_EQ(plan.stages.size(), 4u);  // with quality.lines, which the terrain model of a cloud uses
   EXPECT_EQ(plan.run.tile.value, 250.0);
-  const core::Value told = explain(plan);
-  const core::Value& smrf = told.find("stages")->items()[1];
-  EXPECT_EQ(smrf.find("options")->find("slope")->find("value")->as_number(), 0.3);
-  EXPECT_EQ(smrf.find("options")->find("slope")->find("from")->as_text(), "--set");
-  EXPECT_EQ(smrf.find("options")->find("window")->find("from")->as_text(), "default");
-  EXPECT_EQ(told.find("stages")->items()[3].find("options")->find("cell")->find("value")->as_text(), "0.5 m");
+  const Explanation found = explain(plan);
+  const core::Value& smrf = found.stages[1].options;
+  EXPECT_EQ(smrf.find("slope")->find("value")->as_number(), 0.3);
+  EXPECT_EQ(smrf.find("slope")->find("from")->as_text(), "--set");
+  EXPECT_EQ(smrf.find("window")->find("from")->as_text(), "default");
+  EXPECT_EQ(found.stages[3].options.find("cell")->find("value")->as_text(), "0.5 m");
 }
 
 TEST(Plan, AStageThatAnotherUsesIsPutInFrontOfIt) {
@@ -107,8 +107,7 @@ TEST(Plan, ACanopyNeedsItsModelsOnTheSameCells) {
 TEST(Plan, TellsWhereAValueCameFrom) {
   Case c(good);
   Plan plan = make_plan(c.request);
-  const core::Value told = explain(plan);
-  EXPECT_TRUE(told.find("stages")->items()[1].find("options")->find("slope")->find("from")->as_text().ends_with("p.toml:5:9"));
+  EXPECT_TRUE(explain(plan).stages[1].options.find("slope")->find("from")->as_text().ends_with("p.toml:5:9"));
 }
 
 TEST(Plan, AllFaultsAtOnceWithTheirPlaces) {

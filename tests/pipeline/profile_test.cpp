@@ -82,8 +82,8 @@ TEST(Profile, PointsWithinTheWidthByTheirClassAndTheTerrain) {
   r.to = "600065,5300055";  // 75 m in the direction (0.8, 0.6)
   r.half_width = 2.0;
   r.folder = folder / "out";
-  const core::Value found = write_profiles(r);
-  ASSERT_EQ(found.items().size(), 1u);
+  const std::vector<ProfileFound> found = write_profiles(r);
+  ASSERT_EQ(found.size(), 1u);
   const auto rows = rows_of(folder / "out/profile.csv");
   size_t points = 0, roofs = 0, terrain = 0;
   for (const Row& row : rows) {
@@ -122,10 +122,10 @@ TEST(Profile, SeveralLinesOfATextAndBends) {
   r.points = {folder / "points.laz"};
   r.lines = folder / "lines.csv";
   r.folder = folder / "out";
-  const core::Value found = write_profiles(r);
-  ASSERT_EQ(found.items().size(), 2u);
-  EXPECT_EQ(found.items()[0].find("name")->as_text(), "road");
-  EXPECT_NEAR(found.items()[0].find("length")->as_number(), 70.0, 1e-9);
+  const std::vector<ProfileFound> found = write_profiles(r);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].name, "road");
+  EXPECT_NEAR(found[0].length, 70.0, 1e-9);
   for (const Row& row : rows_of(folder / "out/road.csv"))
     EXPECT_NEAR(row.station, row.station <= 40.0 ? row.x - 600005.0 : 40.0 + row.y - 5300005.0, 1e-3);
   EXPECT_TRUE(std::filesystem::exists(folder / "out/ditch.png"));
@@ -144,10 +144,10 @@ TEST(Profile, ALineInAnotherCrsIsBroughtToThatOfTheData) {
   r.dtm = folder / "dtm.tif";
   r.lines = folder / "axis.geojson";
   r.folder = folder / "out";
-  const core::Value found = write_profiles(r);
-  ASSERT_EQ(found.items().size(), 1u);
-  EXPECT_NEAR(found.items()[0].find("length")->as_number(), 75.0, 1e-3);
-  EXPECT_GE(found.items()[0].find("terrain_samples")->as_int(), 150);
+  const std::vector<ProfileFound> found = write_profiles(r);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].length, 75.0, 1e-3);
+  EXPECT_GE(found[0].terrain_samples, 150);
 }
 
 TEST(Profile, ALongLineAcrossAModelHoldsOnlyWhatLiesAlongIt) {
@@ -196,10 +196,10 @@ TEST(Profile, AVertexFarAwayCostsNothing) {
   r.dtm = folder / "dtm.tif";
   r.lines = folder / "lines.csv";
   r.folder = folder / "out";
-  const core::Value found = write_profiles(r);
-  EXPECT_NEAR(found.items()[0].find("terrain_samples")->as_number(), 140.0, 2.0);  // 70 m by half metres
-  EXPECT_EQ(found.items()[1].find("vertices_left_out")->as_int(), 1);
-  EXPECT_EQ(found.items()[1].find("terrain_samples")->as_int(), 81);
+  const std::vector<ProfileFound> found = write_profiles(r);
+  EXPECT_NEAR(static_cast<double>(found[0].terrain_samples), 140.0, 2.0);  // 70 m by half metres
+  EXPECT_EQ(found[1].vertices_left_out, 1);
+  EXPECT_EQ(found[1].terrain_samples, 81);
 }
 
 TEST(Profile, WhatIsNotThereIsAnError) {

@@ -29,6 +29,26 @@ TEST(Summary, DeclaredFindingsHaveTheirUnitAndDetailsStayInTheReport) {
   for (const char* part : {"rms_up_m", "points", "cells"}) EXPECT_EQ(text.find(part), std::string::npos) << part << " in\n" << text;
 }
 
+TEST(Summary, AListOfTablesIsALineForEachAndNoJson) {
+  std::string pairs;
+  for (int k = 0; k < 8; ++k)
+    pairs += (k ? ", " : "") + std::string(R"({"name": "line )") + std::to_string(k) + R"(", "rms": 0.021234567})";
+  const core::Value report =
+      io::parse_json(R"({"seconds": 72, "stages": [{"type": "a stage", "findings": {"pairs": [)" + pairs + "]}}]}", "report");
+  const std::string text = summary(report, "out");
+  EXPECT_NE(text.find("    pairs\n      name line 0, rms 0.02123\n      name line 1"), std::string::npos) << text;
+  EXPECT_NE(text.find("      and 2 more: report.json\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find('{'), std::string::npos) << text;
+}
+
+TEST(Summary, LinesForAnotherFileAreShownAsLines) {
+  const core::Value report = io::parse_json(
+      R"({"seconds": 72, "stages": [{"type": "calib.lever_arm", "findings": {"survey_toml": "[mounting]\nlever_arm = [1, 2, 3]\n"}}]})",
+      "report");
+  const std::string text = summary(report, "out");
+  EXPECT_NE(text.find("    survey_toml:\n      [mounting]\n      lever_arm = [1, 2, 3]\n"), std::string::npos) << text;
+}
+
 TEST(Summary, AnErrorBehindAJudgedGeometryHintsAtWhatIsNamed) {
   const core::Value geometry = io::parse_json(
       R"({"named": ["range_centimetres"], "warnings": ["lines disagree", "with ranges in centimetres: state range_unit"]})", "report");
@@ -60,7 +80,7 @@ TEST(Summary, PointsOutsideTheBoxOfTheirFilesHeaderAreAWarning) {
           {"count": 1, "examples": ["a.las: 4 of 100 points (4 %) lie outside"]}}}]})",
       "report");
   const std::string text = summary(report, "out");
-  EXPECT_NE(text.find("\nwarning: a.las: 4 of 100 points (4 %) lie outside\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nwarning [points.outside_box]: a.las: 4 of 100 points (4 %) lie outside\n"), std::string::npos) << text;
   EXPECT_EQ(text.find("more"), std::string::npos) << text;
 }
 
@@ -71,7 +91,9 @@ TEST(Summary, FilesWithAWrongBoxThatAreNotNamedAreCounted) {
           {"count": 12, "examples": ["a.las: 4 of 100", "b.las: 3 of 100", "c.las: 2 of 100"]}}}]})",
       "report");
   const std::string text = summary(report, "out");
-  EXPECT_NE(text.find("\nwarning: c.las: 2 of 100\n\nwarning: and 9 more flight lines or files"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nwarning [points.outside_box]: c.las: 2 of 100\n\nwarning [points.outside_box]: and 9 more flight lines or files"),
+            std::string::npos)
+      << text;
 }
 
 TEST(Summary, BoundsRoundedToFewerDigitsAreNoWarning) {

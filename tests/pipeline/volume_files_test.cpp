@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "core/geo/crs.h"
 #include "io/raster/geotiff.h"
@@ -33,7 +34,7 @@ core::Grid heap(const core::Lattice& l, double height) {
 const double cone = M_PI * 400.0 * 5.0 / 3.0;
 constexpr double tolerance = 2e-3;  // of the midpoint rule at the rim and the tip, cells of 0.5 and 1
 
-double number(const core::Value& v, const char* key) { return v.find(key)->as_number(); }
+double number(const VolumesFound& v, const char* key) { return core::reported(v).find(key)->as_number(); }
 
 void write(const std::filesystem::path& folder, const std::string& name, const core::Grid& g, const std::string& crs) {
   io::write_grid(folder / (name + ".tif"), g, crs);
@@ -44,12 +45,12 @@ TEST(VolumeFiles, TwoModelsOnDifferentLattices) {
   const test::TemporaryFolder folder;
   write(folder.path(), "a", heap({1.0, 600000, 5300000, 60, 60}, 0.0), "EPSG:32632");
   write(folder.path(), "b", heap({0.5, 1200000, 10600000, 120, 120}, 5.0), "EPSG:32632");
-  const core::Value v = volumes_of({folder / "a.tif", folder / "b.tif", {}, {}, 1.0});
+  const VolumesFound v = volumes_of({folder / "a.tif", folder / "b.tif", {}, {}, 1.0});
   EXPECT_NEAR(number(v, "fill"), cone, tolerance * cone);
   EXPECT_EQ(number(v, "cut"), 0.0);
   EXPECT_EQ(number(v, "cell"), 0.5);
   EXPECT_NEAR(number(v, "sigma_net"), number(v, "area") * 0.03 * std::sqrt(2.0), 1e-3 * number(v, "area"));
-  EXPECT_GT(v.find("cells_left_out")->as_int(), 0);  // the border of half a coarse cell
+  EXPECT_GT(v.volumes.left_out, 0u);  // the border of half a coarse cell
   EXPECT_NE(volume_text(v).find("m3"), std::string::npos);
 }
 
@@ -60,7 +61,7 @@ TEST(VolumeFiles, DesignHeightInsideAPolygon) {
                     R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"EPSG:32632"}},"features":[{"type":"Feature",
 "properties":{},"geometry":{"type":"Polygon","coordinates":[[[600000,5300000],[600030,5300000],[600030,5300060],[600000,5300060],
 [600000,5300000]]]}}]})");
-  const core::Value v = volumes_of({folder / "a.tif", {}, 100.0, folder / "half.geojson", 0.0});
+  const VolumesFound v = volumes_of({folder / "a.tif", {}, 100.0, folder / "half.geojson", 0.0});
   EXPECT_NEAR(number(v, "cut"), 0.5 * cone, tolerance * cone);
   EXPECT_NEAR(number(v, "area"), 1800.0, 1e-6);
   EXPECT_NEAR(number(v, "sigma_net"), 0.03 * std::sqrt(1800.0), 1e-4);
@@ -74,7 +75,7 @@ TEST(VolumeFiles, WildVerticesOfAPolygonAreLeftOutAndCounted) {
                       R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"EPSG:32632"}},"features":[{"type":"Feature",
 "properties":{},"geometry":{"type":"Polygon","coordinates":[[[600000,5300000],)" +
                           std::string(wild) + R"(,[600030,5300000],[600030,5300060],[600000,5300060],[600000,5300000]]]}}]})");
-    const core::Value v = volumes_of({folder / "a.tif", {}, 100.0, folder / "half.geojson", 0.0});
+    const VolumesFound v = volumes_of({folder / "a.tif", {}, 100.0, folder / "half.geojson", 0.0});
     EXPECT_NEAR(number(v, "area"), 1800.0, 1e-6) << wild;
     EXPECT_EQ(number(v, "polygon_vertices_left_out"), 1.0) << wild;
   }
@@ -95,7 +96,7 @@ TEST(VolumeFiles, APolygonInAnotherCrsIsBroughtToThatOfTheModel) {
       folder / "half.geojson",
       R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":[[)" + ring +
           "]]}}]}");
-  const core::Value v = volumes_of({folder / "a.tif", {}, 100.0, folder / "half.geojson", 0.0});
+  const VolumesFound v = volumes_of({folder / "a.tif", {}, 100.0, folder / "half.geojson", 0.0});
   EXPECT_NEAR(number(v, "area"), 1800.0, 1e-3);
   EXPECT_NEAR(number(v, "cut"), 0.5 * cone, tolerance * cone);
 }
@@ -117,7 +118,7 @@ TEST(VolumeFiles, FeetBecomeCubicMetres) {
   const test::TemporaryFolder folder;
   write(folder.path(), "a", heap({1.0, 600000, 300000, 60, 60}, 0.0), "EPSG:2263+6360");
   write(folder.path(), "b", heap({1.0, 600000, 300000, 60, 60}, 5.0), "EPSG:2263+6360");
-  const core::Value v = volumes_of({folder / "a.tif", folder / "b.tif", {}, {}, 1.0});
+  const VolumesFound v = volumes_of({folder / "a.tif", folder / "b.tif", {}, {}, 1.0});
   const double foot = 1200.0 / 3937.0;
   EXPECT_NEAR(number(v, "fill"), cone * foot * foot * foot, tolerance * cone * foot * foot * foot);
 }

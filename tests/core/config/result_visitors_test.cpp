@@ -144,6 +144,10 @@ TEST(ResultVisitors, TextsRoundAndNameTheUnit) {
   EXPECT_EQ(shown(Value(0.021234567), plain()), "0.02123");
   EXPECT_EQ(shown(Value(12345), Form{}), "12345");
   EXPECT_EQ(shown(Value(0.25), share(2)), "0.25");
+  EXPECT_EQ(shown(Value(0.0000123), share(4)), "1.2e-05");  // a small share is not none
+  EXPECT_EQ(shown(Value(0.00021), share(4)), "0.00021");
+  EXPECT_EQ(shown(Value(0.0), share(4)), "0.0000");
+  EXPECT_EQ(shown(Value(0.012), percent(1)), "0.012 %");
 }
 
 }  // namespace

@@ -85,7 +85,9 @@ TEST_F(Piece, AFileBeyond4GigabytesComesBack) {
 
 // As one could make it who hands his output folder on.
 TEST_F(Piece, AForgedRecordOfAnotherFormIsNone) {
-  for (const std::string files : {"3", "[3]", "[[]]", "[[\"a\"]]", "[[\"a\", \"b\", \"c\"]]", "[[\"a\", 1.5, \"c\"]]", "[[\"a\", 1, 2]]"}) {
+  for (const std::string files :
+       {"3", "[3]", "[[]]", "[[\"a\"]]", "[[\"a\", \"b\", \"c\"]]", "[[\"a\", 1.5, \"c\"]]", "[{}]", "[{\"name\": \"a\"}]",
+        "[{\"name\": \"a\", \"bytes\": 1.5, \"checksum\": \"c\"}]", "[{\"name\": \"a\", \"bytes\": 1, \"checksum\": 2}]"}) {
     const std::string text = "{\"piece\": \"" + (stage_.parent_path().filename() / "stage/a.done").generic_string() +
                              "\", \"files\": " + files + ", \"note\": {}}\n";
     test::write_bytes(record_, text + "\nxxh3 " + checksum_of(text) + "\n");

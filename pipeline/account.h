@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run says of one stage, and what the work folder keeps of it with every finished piece.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include "core/config/result.h"
+#include "core/report.h"
+
+namespace swath::pipeline {
+
+struct Account {
+  std::uint64_t in = 0, out = 0;
+  std::uint64_t cut = 0;  ///< tiles that were worked on in parts
+  double seconds = 0;
+  core::Tally tally;
+  core::Value findings = core::Value::object();
+
+  /// Adds a piece: counts, time and tally.
+  void add(const Account& o) {
+    in += o.in, out += o.out, cut += o.cut, seconds += o.seconds;
+    tally.add(o.tally);
+  }
+};
+
+template <class V>
+void describe(const Account& a, V& v) {
+  v.result("in", a.in, "Points that came in.");
+  v.result("out", a.out, "Points that went on.");
+  v.result("cut", a.cut, "Tiles that were worked on in parts.");
+  v.result("seconds", a.seconds, core::seconds(), "Time that the piece took.");
+  v.tables("records", a.tally.records(), "Records that the stage found in files.");
+  v.other("tally", a.tally.value(), "Counts with first examples.");
+  v.other("findings", a.findings, "What a stage found that works once on the survey.");
+}
+
+/// From what a work folder kept; nothing where a part is missing.
+std::optional<Account> account_of(const core::Value& note);
+
+inline double seconds_since(std::chrono::steady_clock::time_point t) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count();
+}
+
+}  // namespace swath::pipeline

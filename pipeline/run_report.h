@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// report.json: what a run says of itself around what its stages declare.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/config/result.h"
+#include "core/report.h"
+#include "pipeline/limits.h"
+#include "pipeline/provenance.h"
+
+namespace swath::pipeline {
+
+struct CrsReport {
+  std::string name, definition, heights;
+};
+
+template <class V>
+void describe(const CrsReport& r, V& v) {
+  v.result("name", r.name, "Its name.");
+  v.result("definition", r.definition, "As survey.toml or the cloud states it.");
+  v.result("heights", r.heights, "What heights count from.");
+}
+
+template <class V>
+void describe(const Input& i, V& v) {
+  v.result("file", i.file, "The file.");
+  v.result("bytes", i.bytes, "Its length.");
+  v.result("xxh3", i.hash, "Its checksum, XXH3 of 128 bits.");
+}
+
+struct PointCounts {
+  std::uint64_t in = 0, out = 0;
+};
+
+template <class V>
+void describe(const PointCounts& c, V& v) {
+  v.result("in", c.in, "Points or pulses that came in.");
+  v.result("out", c.out, "Those that went on.");
+}
+
+struct StageReport {
+  std::string_view type;
+  std::string fingerprint;
+  std::optional<PointCounts> counts{};  ///< of stages that work on strips or tiles
+  std::uint64_t cut = 0;
+  std::vector<core::RecordCount> records{};
+  core::Value tally{}, findings{}, options{};
+  double seconds = 0.0;
+};
+
+template <class V>
+void describe(const StageReport& s, V& v) {
+  v.result("type", s.type, "The stage.");
+  v.result("fingerprint", s.fingerprint, "Of the stage, its options, the inputs and the stages before it: equal where the result is.");
+  v.table("counts", s.counts, "Points in and out.");
+  v.result("tiles_cut_to_fit_memory", s.cut, core::if_any(), "Tiles that were worked on in parts.");
+  v.tables_if(!s.records.empty(), "records", s.records, "Records that the stage found in files.");
+  v.other("tally", s.tally, "Counts, each with its first examples.");
+  v.other("findings", s.findings, "What the stage found.");
+  v.other("options", s.options, "Every option: its value, and where it was set.");
+  v.result("seconds", s.seconds, core::seconds(), "Time of its work, summed over threads.");
+}
+
+struct RunReport {
+  std::string program, command, survey;
+  std::optional<CrsReport> crs;
+  std::vector<Input> inputs;
+  core::Value run, geometry, versions;
+  std::vector<StageReport> stages;
+  std::vector<JudgedLimit> limits;
+  std::vector<Warning> warnings;
+  std::uint64_t pieces_resumed = 0, pieces_damaged = 0;
+  double seconds = 0.0;
+  int threads = 0;
+};
+
+template <class V>
+void describe(const RunReport& r, V& v) {
+  v.result("program", r.program, "Program and version.");
+  v.result("command", r.command, "The command line.");
+  v.result("survey", r.survey, "Name of the survey.");
+  v.table("crs", r.crs, "Coordinate reference system of the products; absent where none was needed.");
+  v.tables("inputs", r.inputs, "Every file that was read.");
+  v.other("run", r.run, "Every option of [run]: its value, and where it was set.");
+  v.tables("stages", r.stages, "The stages in their order.");
+  v.other("geometry", r.geometry, "What quality.geometry found; absent where it did not run.");
+  v.other("versions", r.versions, "Versions of the libraries.");
+  v.tables("limits", r.limits, "Limits that [run.limits] sets or the run measured.");
+  v.tables("warnings", r.warnings, "What a person should look at.");
+  v.result("pieces_resumed", r.pieces_resumed, "Pieces of work that an earlier run had done.");
+  v.result("pieces_damaged", r.pieces_damaged, "Pieces of an earlier run that were damaged and made again.");
+  v.result("seconds", r.seconds, core::seconds(), "Time of the run.");
+  v.result("threads", r.threads, "Threads in use.");
+}
+
+}  // namespace swath::pipeline

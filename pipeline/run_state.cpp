@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/run_state.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <thread>
+
+#include "core/error.h"
+#include "io/text/output_file.h"
+#include "pipeline/work/survey_piece.h"
+
+namespace swath::pipeline {
+
+namespace fs = std::filesystem;
+
+std::optional<Account> account_of(const core::Value& note) {
+  const core::Value *in = note.find("in"), *out = note.find("out"), *cut = note.find("cut"), *seconds = note.find("seconds");
+  const core::Value *tally = note.find("tally"), *findings = note.find("findings"), *records = note.find("records");
+  if (!in || !out || !cut || !seconds || !tally || !findings || !records) return std::nullopt;
+  const auto count = [](const core::Value* v) { return static_cast<std::uint64_t>(v->as_int()); };
+  Account a{count(in), count(out), count(cut), seconds->as_number(), core::Tally::from(*tally), *findings};
+  add_records(a.tally, *records);
+  return a;
+}
+
+RunState::RunState(Plan& p, Progress& shown)
+    : plan(p),
+      progress(shown),
+      output(fs::absolute(p.run.output)),
+      work(output / ".swath"),
+      threads(p.run.threads > 0 ? p.run.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))),
+      tbb_threads(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads)),
+      memory(p.run.memory.value),
+      grids(p.run.tile.value),
+      context{p.survey},
+      accounts(p.stages.size()),
+      made(p.stages.size()) {}
+
+fs::path RunState::folder(size_t number) const {
+  char digits[8];
+  std::snprintf(digits, sizeof digits, "%02zu-", number);
+  return work / (digits + std::string(stage(number).info().name) + "-" + folders[number]);
+}
+
+void begin_products(RunState& run, size_t number) {
+  std::error_code ec;
+  fs::create_directories(run.folder(number), ec);
+  if (ec) io::throw_system_error("cannot make the folder", run.folder(number), ec.value());
+  run.context.output = run.folder(number) / products_name;
+}
+
+void expect_made(const RunState& run, size_t number) {
+  for (const PieceFile& f : run.made[number]) {
+    std::error_code ec;
+    const fs::path file = run.folder(number) / f.name;
+    if (fs::file_size(file, ec) != f.bytes || ec) throw damaged_work(file);
+  }
+}
+
+}  // namespace swath::pipeline

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/tiles.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/config/result_visitors.h"
+#include "io/raster/grid_file.h"
+#include "io/text/output_file.h"
+#include "pipeline/released_points.h"
+#include "pipeline/stage_memory.h"
+#include "pipeline/tile_queue.h"
+#include "pipeline/tile_work.h"
+#include "pipeline/work/survey_piece.h"
+#include "stages/waters.h"
+
+namespace swath::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using stages::Grain;
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* groups_file = "groups.done";
+
+/// What a group takes to work on, for the progress: its memory holds the points around it and its rasters, and so one point alone in a tile
+/// is not taken for next to nothing.
+double work_of(const TileGroup& g) { return 1.0 + static_cast<double>(g.bytes); }
+
+fs::path done_file(const RunState& run, size_t number, const TileBox& box) {
+  return run.folder(number) / (file_label(box.low) + (box.low == box.high ? "" : "_to_" + file_label(box.high)) + ".done");
+}
+
+fs::path done_file(const RunState& run, size_t number, const TileGroup& group) { return done_file(run, number, TileBox(group.tiles)); }
+
+/// The tiles with points, and for what is made of surfaces also those that triangles of their neighbours' points reach into: the surface
+/// does not depend on where the tiles' borders lie.
+std::vector<TileKey> tiles_of(const RunState& run, size_t number) {
+  const stages::Info& info = run.stage(number).info();
+  std::set<TileKey> keys;
+  if (info.gives.empty() && (has_surface(info.gives_products) || has_surface(info.needs_products))) keys = run.surface_tiles;
+  for (const auto& [key, n] : run.store->tiles()) keys.insert(key);
+  return {keys.begin(), keys.end()};
+}
+
+/// Tiles without points that water of known height lies in, between the survey's own tiles.
+std::set<TileKey> tiles_of_water(const RunState& run) {
+  std::set<TileKey> out;
+  if (run.store->tiles().empty()) return out;
+  std::vector<TileKey> keys;
+  for (const auto& [key, n] : run.store->tiles()) keys.push_back(key);
+  const auto [low, high] = TileBox(keys);
+  const auto tile = [&](double edge) { return std::floor(edge / run.context.tile_side); };
+  for (const stages::Box& water : stages::waters_of(run.context)) {
+    // As numbers: water may reach far beyond the survey.
+    const double x0 = std::max<double>(low.ix, tile(water.x0)), x1 = std::min<double>(high.ix, tile(water.x1));
+    const double y0 = std::max<double>(low.iy, tile(water.y0)), y1 = std::min<double>(high.iy, tile(water.y1));
+    for (double iy = y0; iy <= y1; ++iy)
+      for (double ix = x0; ix <= x1; ++ix)
+        if (const TileKey key{static_cast<int>(ix), static_cast<int>(iy)}; !run.store->tiles().contains(key)) out.insert(key);
+  }
+  return out;
+}
+
+/// A tile without points in which the surface says nothing: it is not part of the survey.
+bool is_void_fringe(const RunState& run, size_t number, const TileGroup& group) {
+  const TileKey key = group.tiles[0];
+  const fs::path file = stages::grid_file(run.folder(number), key);
+  if (run.store->tiles().contains(key) || run.surface_tiles.contains(key) || !fs::exists(file)) return false;
+  const core::Grid grid = io::read_grid_file(file);
+  return std::all_of(grid.reason.begin(), grid.reason.end(), [](core::Void r) { return r == core::Void::no_data; });
+}
+
+/// Of the tiles without points only those stay in which the surface says anything.
+void keep_surface_tiles(RunState& run, size_t number, const std::set<TileKey>& fringe) {
+  for (const TileKey key : fringe)
+    if (fs::exists(stages::grid_file(run.folder(number), key))) run.surface_tiles.insert(key);
+}
+
+/// Tiles are joined only where they give nothing but points' columns. A tile that does not fit is cut into parts.
+std::vector<TileGroup> groups_of(RunState& run, size_t number, const std::vector<TileKey>& keys, std::uint64_t budget) {
+  const stages::Info& info = run.stage(number).info();
+  const StageMemory memory(*run.store, run.stage(number), run.context);
+  const Measure measure = [&](std::vector<TileKey> tiles) { return memory.of(std::move(tiles)); };
+  const auto fitted = [&](std::vector<TileGroup> groups) {
+    for (TileGroup& g : groups) g = memory.cut(std::move(g), budget, *run.squares);
+    return groups;
+  };
+  if (info.gives.empty() || !info.gives_products.empty() || run.works_on(number, Grain::merge)) return fitted(single_tiles(keys, measure));
+  // Those of a run that was killed, so that what it has done counts.
+  const fs::path file = run.folder(number) / groups_file;
+  std::vector<TileGroup> groups = grouped_tiles(keys, read_boxes(file), measure), open;
+  std::copy_if(groups.begin(), groups.end(), std::back_inserter(open),
+               [&](const TileGroup& g) { return !fs::exists(done_file(run, number, g)); });
+  size_t held = 0;
+  for (const TileGroup& g : groups) held += g.tiles.size();
+  if (held == keys.size() && most_bytes(open, run.threads) <= budget) return groups;
+  groups = joined_tiles(keys, run.threads, budget, measure);
+  write_boxes(file, groups);
+  return fitted(std::move(groups));
+}
+
+/// Runs the stage on a group and keeps what it did: the tally and seconds.
+PieceRecord run_group(RunState& run, size_t number, const TileGroup& group, bool has_water) {
+  const stages::Info& info = run.stage(number).info();
+  const fs::path mine = run.folder(number), done = done_file(run, number, group);
+  stages::TileJob job{group.tiles[0], TileBox(group.tiles).metres(run.context.tile_side), mine, {}, 0, {}};
+  const io::FinishedFiles finished;
+  const io::UnflushedFiles checked_when_resumed;
+  const auto start = Clock::now();
+  TileWork(*run.store, run.context, run.stage(number)).run(group, job, has_water);
+  std::vector<fs::path> by_stage = finished.files();
+  std::vector<PieceFile> overlays;
+  if (!info.gives.empty()) {
+    size_t first = 0;
+    for (const TileKey k : group.tiles) {
+      const size_t count = group.tiles.size() == 1 ? job.own : run.store->tiles().at(k);
+      overlays.push_back(run.store->write_overlay(mine, k, job.block, first, count, info.gives));
+      first += count;
+    }
+  }
+  if (is_void_fringe(run, number, group)) {
+    const fs::path empty = stages::grid_file(mine, group.tiles[0]);
+    std::erase(by_stage, empty);
+    fs::remove(empty);
+  }
+  Account account;
+  account.tally = std::move(job.tally);
+  account.seconds = seconds_since(start);
+  account.cut = group.parts > 1;
+  PieceRecord record{piece_files(mine, by_stage), core::reported(account)};
+  replace_files(record.files, std::move(overlays));
+  write_record(done, record);
+  return record;
+}
+
+/// Are the points of a tile needed no more once the stage has worked on it?
+bool releases(const RunState& run, size_t number) {
+  return number == last_reader(run) && !run.plan.run.keep_work && run.stage(number).halo() <= 0.0 && run.stage(number).info().gives.empty();
+}
+
+void run_tiles(RunState& run, size_t number) {
+  const stages::Info& info = run.stage(number).info();
+  std::set<TileKey> fringe = has_surface(info.gives_products) ? run.store->fringe(run.stage(number).halo()) : std::set<TileKey>{};
+  const std::set<TileKey> wet = info.makes(stages::Product::dtm) ? tiles_of_water(run) : std::set<TileKey>{};
+  fringe.insert(wet.begin(), wet.end());
+  std::vector<TileKey> keys = tiles_of(run, number);
+  for (const TileKey key : fringe)
+    if (!run.surface_tiles.contains(key)) keys.push_back(key);
+
+  const double left = run.memory.left(), free = std::max(0.0, left);
+  const auto budget = static_cast<std::uint64_t>(free);
+  const std::vector<TileGroup> groups = groups_of(run, number, keys, budget);
+  for (const TileGroup& g : groups)
+    if (!fs::exists(done_file(run, number, g)))
+      run.memory.require(static_cast<double>(g.bytes), left + run.memory.reserve(),
+                         std::string(info.name) + " on the tile " + run.context.label(g.tiles[0]));
+  std::vector<PieceRecord> notes(groups.size());
+  std::vector<std::uint64_t> bytes;
+  double work = 0.0;
+  for (const TileGroup& g : groups) {
+    bytes.push_back(fs::exists(done_file(run, number, g)) ? 0 : g.bytes);
+    work += work_of(g);
+  }
+  const bool lets_go = releases(run, number);
+  if (lets_go) {
+    std::vector<fs::path> made;
+    for (size_t i = run.last_strip_stage + 1; i < number; ++i) made.push_back(run.folder(i));
+    note_release(run.folder(run.last_strip_stage), made);
+  }
+  run.progress.begin(std::string(info.name), run.store->points(), "points", work);
+  TileQueue queue(std::move(bytes), budget);
+  std::atomic<std::uint64_t> again{0};
+  tbb::parallel_for(
+      tbb::blocked_range<size_t>(0, groups.size(), 1),
+      [&](const tbb::blocked_range<size_t>& range) {
+        for (size_t turn = range.begin(); turn < range.end(); ++turn) {
+          const TileQueue::Piece piece = queue.take();
+          const TileGroup& group = groups[piece.number()];
+          PieceRecord& note = notes[piece.number()];
+          if (const fs::path done = done_file(run, number, group); fs::exists(done)) {
+            std::optional<PieceRecord> read = read_record(done);
+            if (!read) throw damaged_work(done);
+            note = std::move(*read);
+            ++again;
+            run.progress.skip(group.own, work_of(group));
+          } else {
+            run.memory.make_room(group.bytes);
+            note = run_group(run, number, group, wet.contains(group.tiles[0]));
+            run.progress.advance(group.own, work_of(group));
+          }
+          if (lets_go) run.store->release(group.tiles[0]);
+        }
+      },
+      tbb::simple_partitioner());
+  run.progress.end();
+  run.resumed += again;
+  Account& account = run.accounts[number];
+  account.in = account.out = run.store->points();
+  keep_surface_tiles(run, number, fringe);
+  for (size_t i = 0; i < notes.size(); ++i) {
+    const TileKey first = groups[i].tiles[0];
+    std::optional<Account> one = account_of(notes[i].note);
+    if (!one) throw damaged_work(done_file(run, number, groups[i]));
+    if (!run.store->tiles().contains(first) && !run.surface_tiles.contains(first)) one->tally = {};
+    account.add(*one);
+    for (PieceFile& f : notes[i].files) run.made[number].push_back(std::move(f));
+  }
+  if (!info.gives.empty()) run.store->add_overlay(run.folder(number), info.gives);
+  for (const stages::Product p : info.gives_products) run.grids.add(p, run.folder(number));
+  expect_made(run, number);
+}
+
+void run_merge(RunState& run, size_t number) {
+  stages::MergeJob job{run.folder(number), {}, {}};
+  job.tiles = tiles_of(run, number);
+  const auto start = Clock::now();
+  run.context.memory = run.memory.free();
+  run.progress.begin(std::string(run.stage(number).info().name) + " merge", 0, "");
+  const io::FinishedFiles finished;
+  const io::UnflushedFiles flushed_when_delivered;
+  run.stage(number).run_merge(run.context, job);
+  replace_files(run.made[number], files_without_checksum(job.folder, finished.files()));
+  run.progress.end();
+  expect_balance(job.tally, run.stage(number));
+  run.accounts[number].tally.add(job.tally);
+  for (auto& [key, value] : job.findings.members()) run.accounts[number].findings[key] = std::move(value);
+  run.accounts[number].seconds += seconds_since(start);
+}
+
+}  // namespace
+
+size_t last_reader(const RunState& run) {
+  size_t last = run.last_strip_stage;
+  for (size_t i = run.last_strip_stage + 1; i < run.plan.stages.size(); ++i)
+    if (run.works_on(i, Grain::tile) && reads_points(run.stage(i))) last = i;
+  return last;
+}
+
+bool is_tile_done(const RunState& run, size_t number, TileKey key) { return fs::exists(done_file(run, number, TileBox(key, key))); }
+
+void expect_room_for_tiles(RunState& run) {
+  const double left = run.memory.left(), free = std::max(0.0, left);
+  double most = 0.0;
+  std::string what;
+  for (size_t i = run.last_strip_stage + 1; i < run.plan.stages.size(); ++i) {
+    if (!run.works_on(i, Grain::tile)) continue;
+    const StageMemory memory(*run.store, run.stage(i), run.context);
+    std::vector<TileBox> done = read_boxes(run.folder(i) / groups_file);
+    std::erase_if(done, [&](const TileBox& box) { return !fs::exists(done_file(run, i, box)); });
+    for (const auto& [key, n] : run.store->tiles()) {
+      const auto holds = [k = key](const TileBox& box) { return box.holds(k); };
+      if (fs::exists(done_file(run, i, TileBox(key, key))) || std::any_of(done.begin(), done.end(), holds)) continue;
+      const auto bytes = static_cast<double>(memory.cut(memory.of({key}), static_cast<std::uint64_t>(free), *run.squares).bytes);
+      if (bytes <= most) continue;
+      most = bytes;
+      what = std::string(run.stage(i).info().name) + " on the tile " + run.context.label(key) + " of " + std::to_string(n) + " points";
+    }
+  }
+  if (most > 0.0) run.memory.require(most, left, what);
+}
+
+void run_tile_stages(RunState& run) {
+  for (size_t i = run.last_strip_stage + 1; i < run.plan.stages.size(); ++i) {
+    if (!run.works_on(i, Grain::tile) && !run.works_on(i, Grain::merge)) continue;
+    begin_products(run, i);
+    if (run.works_on(i, Grain::tile))
+      run_tiles(run, i);
+    else
+      for (const stages::Product p : run.stage(i).info().gives_products) run.grids.add(p, run.folder(i));
+    if (run.works_on(i, Grain::merge)) run_merge(run, i);
+    if (!run.works_on(i, Grain::survey)) run.context.earlier.push_back(run.context.output);
+    // What a comparison alone says of data that are refused is not kept.
+    run.has_products = run.has_products || (!run.stage(i).info().name.starts_with("quality.") && fs::exists(run.context.output));
+  }
+}
+
+}  // namespace swath::pipeline

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/warnings.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/error.h"
+#include "io/text/value_file.h"
+
+namespace swath::pipeline {
+namespace {
+
+TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
+  const core::Value report = io::parse_json(
+      R"({"pieces_damaged": 2, "stages": [{"type": "readers.las", "tally": {
+          "flight lines or files with points well outside the box of a header": {"count": 4, "examples": ["a.las: 4 of 100"]}}}],
+          "geometry": {"named": ["range_feet"], "warnings": ["lines disagree", "with ranges in feet: state range_unit"]},
+          "limits": [{"name": "outside", "value": 0.3, "limit": 0.1, "held": false, "excess": 0.2},
+                     {"name": "voids", "value": null, "limit": 0.1, "held": false, "excess": null},
+                     {"name": "truth_rms", "value": 1, "limit": 0.1, "held": false, "excess": 0.9},
+                     {"name": "line_difference", "value": 1, "limit": 0.1, "held": false, "excess": 0.9},
+                     {"name": "contradictions", "value": 1, "limit": 0, "held": false, "excess": 1}]})",
+      "report");
+  std::set<std::string> codes;
+  for (const Warning& w : warnings_in(report)) {
+    codes.insert(w.code);
+    EXPECT_FALSE(w.text.empty());
+    EXPECT_NE(warning_help(w.code).find(w.code + ": "), std::string::npos);
+  }
+  EXPECT_EQ(codes.size(), warning_kinds().size());
+}
+
+TEST(Warnings, AnUnknownCodeNamesTheNearest) {
+  try {
+    warning_help("limit.void");
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_EQ(e.hint(), "did you mean 'limit.voids'?");
+    EXPECT_EQ(e.code(), core::Exit::bad_usage);
+  }
+}
+
+TEST(Warnings, TheListNamesEveryCode) {
+  const std::string list = warning_help("");
+  for (const WarningKind& k : warning_kinds()) EXPECT_NE(list.find(k.code), std::string::npos) << k.code;
+}
+
+}  // namespace
+}  // namespace swath::pipeline
