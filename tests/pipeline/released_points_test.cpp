@@ -25,6 +25,7 @@ class ReleasedPoints : public ::testing::Test {
       b.x.push_back(0.5 * (i % 100));
       b.y.push_back(0.5 * (i / 100));
       b.z.push_back(0.01 * (i % 100) + (i % 97 == 0 ? 5.0 : 0.0));
+      b.classification.push_back(i % 97 == 0 ? 1 : 2);
       b.intensity.push_back(static_cast<std::uint16_t>(i));
       b.time.push_back(1e9 + 3e8 + 1e-5 * i);
     }
@@ -37,7 +38,7 @@ class ReleasedPoints : public ::testing::Test {
     Request r;
     r.config = folder_ / "p.toml";
     test::write_bytes(r.config,
-                      "[[stage]]\ntype = \"readers.las\"\n[[stage]]\ntype = \"filters.ground\"\n[[stage]]\ntype = "
+                      "[[stage]]\ntype = \"readers.las\"\n[[stage]]\ntype = \"filters.noise\"\n[[stage]]\ntype = "
                       "\"terrain.dtm\"\n[[stage]]\ntype = \"filters.hag_dem\"\n[[stage]]\ntype = \"writers.las\"\n"
                       "[[stage]]\ntype = \"writers.gdal\"\n[[stage]]\ntype = \"writers.picture\"\n" +
                           std::string(fails ? "contours = \"dtm.vrt\"\n" : ""));

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -17,9 +19,9 @@
 #include "io/vector/vector.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/terrain/breaklines.h"
-#include "stages/adapters/terrain/contour_segments.h"
 #include "stages/adapters/units.h"
 #include "stages/grid_tile.h"
+#include "stages/segment_file.h"
 #include "terrain/contours/contour_labels.h"
 #include "terrain/contours/contour_lines.h"
 #include "terrain/contours/contour_surface.h"
@@ -256,7 +258,8 @@ class Contours : public OptionStage<ContourWriteOptions, ContourCounts, ContourF
   }
 
   void write_lines(const Context& context, const MergeJob& job, io::ContourFiles& files, ContourFindings& found) const {
-    LevelSegments levels(job.folder, job.tiles);
+    std::map<std::int64_t, std::vector<LevelSegments>> levels;
+    for (const TileKey key : job.tiles) add_levels(job.folder, key, levels);
     const auto share = static_cast<size_t>(context.memory / 8.0);  // a byte of segments takes eight until it is written
     tbb::enumerable_thread_specific<terrain::Facets> surfaces([&] {
       return terrain::Facets(
@@ -267,17 +270,27 @@ class Contours : public OptionStage<ContourWriteOptions, ContourCounts, ContourF
     const int decimals =
         std::max(decimals_of(interval(context) / context.vertical_unit), decimals_of(options.base.value / context.vertical_unit));
     // Levels do not know of one another: several are drawn at once, as many as their bytes allow, and written in their order.
-    const std::vector<size_t> bytes = levels.bytes();
+    std::vector<size_t> bytes;
+    for (const auto& [level, stretches] : levels) {
+      bytes.push_back(0);
+      for (const LevelSegments& s : stretches) bytes.back() += s.bytes();
+    }
+    std::sort(bytes.begin(), bytes.end(), std::greater<>());
     size_t at_once = 0;
     for (size_t sum = 0; at_once < std::min(bytes.size(), 2 * static_cast<size_t>(context.threads)); ++at_once)
       if ((sum += bytes[at_once]) > std::min(drawn_bytes, share)) break;
     at_once = std::max<size_t>(at_once, 1);
     using Segments = std::shared_ptr<std::vector<terrain::Segment>>;
     using Lines = std::shared_ptr<std::vector<terrain::ContourLine>>;
+    auto level = levels.begin();
     const auto read = [&](tbb::flow_control& flow) -> Segments {
-      if (!levels.done()) return std::make_shared<std::vector<terrain::Segment>>(levels.next());
-      flow.stop();
-      return nullptr;
+      if (level == levels.end()) {
+        flow.stop();
+        return nullptr;
+      }
+      auto segments = std::make_shared<std::vector<terrain::Segment>>();
+      for (const LevelSegments& s : (level++)->second) read_segments(s, *segments);
+      return segments;
     };
     const terrain::ContourOptions drawn = spaced(context);
     const auto draw = [&](const Segments& segments) -> Lines {
