@@ -10,6 +10,8 @@ target_compile_features(swath_settings INTERFACE cxx_std_20)
 target_compile_options(swath_settings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Wold-style-cast
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12 reports string + string falsely (GCC bug 105651)
+  # Where a folder's units are one file these warn of what is no fault in each of them.
+  $<$<BOOL:${SWATH_UNITY}>:-Wno-shadow> $<$<AND:$<BOOL:${SWATH_UNITY}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>
   # Not built with GCC 13 or newer yet: its guesses about lifetimes and bounds do not refuse the build.
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,13>>:-Wno-dangling-reference>
   -ffp-contract=off $<$<BOOL:${SWATH_WERROR}>:-Werror>
@@ -59,7 +61,21 @@ function(swath_room room)
   if(room IN_LIST SWATH_HARDENED)
     target_link_libraries(swath_${room} PRIVATE $<BUILD_INTERFACE:swath_hardening>)
   endif()
+  if(SWATH_UNITY)
+    swath_unity(swath_${room} ${room} ${sources})
+  endif()
   set_property(GLOBAL PROPERTY swath_tests_${room} ${tests})
+endfunction()
+
+# The units of a folder are compiled as one file: their headers are read, and their templates made, once. Names that are local to a unit are
+# therefore its folder's. Sources with compile options of their own stay alone.
+function(swath_unity target room)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  foreach(source IN LISTS ARGN)
+    get_filename_component(folder ${source} DIRECTORY)
+    string(MAKE_C_IDENTIFIER "${room}/${folder}" group)
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+  endforeach()
 endfunction()
 
 # Takes out of the list named `of` the files all of whose suites stand in the GoogleTest filter `slow` as "Suite.*".

@@ -13,6 +13,9 @@ double quantile(std::vector<double> values, double share, double none = std::num
 /// The middle value, of an even number the upper of the two; `none` where there are no values. Values finite.
 double median(std::vector<double> values, double none = std::numeric_limits<double>::quiet_NaN());
 
+/// Times the median absolute deviation: the standard deviation where errors are normal; 1 / inverse normal distribution at 3/4.
+constexpr double mad_to_sigma = 1.4826;
+
 /// Median of the differences of neighbours; 0 for fewer than two.
 double median_step(const std::vector<double>& values);
 

@@ -24,7 +24,7 @@ namespace {
 constexpr size_t chunk_size = 256;
 constexpr double earth_radius = 6371000.0;  // m, for the turn of the vertical between scanner and ground: 1e-4 rad at most
 constexpr double series_limit = 0.01;       // squared rotation (rad^2) up to which the series of exp_so3 below is exact to 3e-14
-constexpr double lowest_cosine = 0.1;       // as georef/atmosphere.cpp
+constexpr double lowest_incidence = 0.1;    // as georef/atmosphere.cpp
 
 using Column = double[chunk_size];
 
@@ -119,7 +119,7 @@ void place(const trajectory::Interval& k, const Local& here, const Vector3d& lev
     const double qx = c.rx[i] - l.x(), qy = c.ry[i] - l.y(), qz = c.rz[i] - l.z();
     const double height = qx * D.x() + qy * D.y() + qz * D.z();
     const double r = c.range[i];
-    const double lowest = lowest_cosine * r;
+    const double lowest = lowest_incidence * r;
     c.cosine[i] = height / std::sqrt(qx * qx + qy * qy + qz * qz);  // of the vector itself: exact to second order at the nadir
     const double f = bending * r * r / (height > lowest ? height : lowest);
     const double x = c.rx[i] + f * D.x() - bending * qx;

@@ -26,7 +26,6 @@ constexpr double steepest = 1.5;       // rise / run: farther up, a plane of hei
 constexpr double least_spread = 0.15;  // of a cell, rms about the mean along the worse direction: 0.29 for an even spread
 constexpr double farthest = 0.35;      // of a cell, from the mean of the returns to the centre
 constexpr size_t least_cells = 3;      // of a block
-constexpr double per_mad = 1.4826;
 
 struct BlockKey {
   std::int64_t i, j;
@@ -169,7 +168,8 @@ class BlockAtLevel {
       const double middle = core::median(compared.differences);
       std::vector<double> apart;
       for (const double d : compared.differences) apart.push_back(std::abs(d - middle));
-      out.differences.push_back({level, i, j, a, b, count, static_cast<float>(middle), static_cast<float>(per_mad * core::median(apart)),
+      out.differences.push_back({level, i, j, a, b, count, static_cast<float>(middle),
+                                 static_cast<float>(core::mad_to_sigma * core::median(apart)),
                                  static_cast<float>(std::sqrt(compared.slopes_squared / count)), aspect});
     }
   }

@@ -24,7 +24,7 @@ namespace {
 constexpr int blocks_alike = 8;        // blocks along a side within which the lines' errors stay the same
 constexpr double least_sigma = 0.002;  // m, of a pair's difference: what rounding of the files leaves
 constexpr double outlying = 5.0;       // standard deviations
-constexpr double per_mad = 1.4826, median_loss = 1.2533;
+constexpr double median_loss = 1.2533;
 constexpr size_t least_steep = 3;  // blocks, for an error of place
 
 /// Sums of one level's cells, for the choice of the level.
@@ -75,7 +75,7 @@ struct Overlap {
     p.difference = core::median(values);
     for (const double v : values) apart.push_back(std::abs(v - p.difference));
     const auto n = static_cast<double>(blocks.size());
-    const double drift = per_mad * core::median(apart);
+    const double drift = core::mad_to_sigma * core::median(apart);
     p.sigma = std::sqrt(drift * drift / static_cast<double>(places()) + white / (n * n) + least_sigma * least_sigma);
     return p;
   }
@@ -91,7 +91,7 @@ std::vector<Overlap> overlaps_of(const std::vector<LineDifference>& differences,
     for (const LineDifference& d : blocks) values.push_back(d.difference);
     const double middle = core::median(values);
     for (const double v : values) apart.push_back(std::abs(v - middle));
-    const double reach = outlying * std::max(per_mad * core::median(apart), 0.01);
+    const double reach = outlying * std::max(core::mad_to_sigma * core::median(apart), 0.01);
     Overlap o{pair.first, pair.second, {}};
     for (const LineDifference& d : blocks)
       if (std::abs(d.difference - middle) <= reach) o.blocks.push_back(d);

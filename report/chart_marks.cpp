@@ -13,14 +13,14 @@ namespace {
 
 constexpr double line_width = 1.5, stem_width = 1.2, dot_radius = 2.0, band_opacity = 0.25;
 /// Beyond this distance from the plot nothing is seen, and files need no larger numbers.
-constexpr double far_away = 1e5;
+constexpr double far_off = 1e5;
 
-double near(double pixel) { return std::clamp(pixel, -far_away, far_away); }
+double near(double pixel) { return std::clamp(pixel, -far_off, far_off); }
 
 /// Points of one pixel column that follow one another.
-class Column {
+class PixelColumn {
  public:
-  Column(Stretch& out, bool band) : out_(out), band_(band) {}
+  PixelColumn(Stretch& out, bool band) : out_(out), band_(band) {}
   void add(double x, double y, double lower) {
     const double c = std::floor(x);
     if (x_.empty() || c != column_) flush();
@@ -134,7 +134,7 @@ std::vector<Stretch> stretches(const Series& s, const Plot& plot) {
   const bool band = s.mark == Mark::band;
   std::vector<Stretch> out;
   Stretch now;
-  Column column(now, band);
+  PixelColumn column(now, band);
   const auto end = [&] {
     column.flush();
     if (!now.x.empty()) out.push_back(std::move(now));

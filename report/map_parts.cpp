@@ -15,7 +15,7 @@ constexpr core::Rgb water{150, 190, 225}, void_light{244, 244, 244}, void_dark{2
     edge_dark{232, 205, 205}, void_rim{120, 120, 120}, halo_colour{250, 246, 232};
 constexpr int narrowest = 760;      // so that the legend has room
 constexpr int widest_title = 4000;  // a longer one is set smaller
-constexpr int tall = 16, gap = 8, item_gap = 24, line_step = 28;
+constexpr int tall = 16, part_gap = 8, item_gap = 24, line_step = 28;
 
 /// 1, 2 or 5 times a power of ten, not above `most`.
 double round_length(double most) {
@@ -99,7 +99,7 @@ MapLayout::MapLayout(int map_width, int map_height, double pixel, std::string ti
   int x = left, y = below;
   for (size_t k = 0; k < legend_.size(); ++k) {
     const MapItem& item = legend_[k];
-    const int sample = item.width ? item.width + gap : 0, before = item.before.empty() ? 0 : width_of(item.before) + gap;
+    const int sample = item.width ? item.width + part_gap : 0, before = item.before.empty() ? 0 : width_of(item.before) + part_gap;
     const int room = before + sample + width_of(item.after);
     if (x > left && x + room > width - map_margin) {
       x = left;
@@ -126,11 +126,11 @@ void MapLayout::draw(Canvas& canvas) const {
     const TextStyle style{.size = map_text, .colour = ink_colour};
     if (!item.before.empty()) {
       canvas.text(x, y, item.before, style);
-      x += std::ceil(text_width(item.before, map_text)) + gap;
+      x += std::ceil(text_width(item.before, map_text)) + part_gap;
     }
     if (item.width) {
       item.sample(canvas, {static_cast<int>(x), p.y, item.width, tall});
-      x += item.width + gap;
+      x += item.width + part_gap;
     }
     canvas.text(x, y, item.after, style);
   }

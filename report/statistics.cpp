@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/statistics.h"
+
 namespace swath::report {
 namespace {
 
 constexpr double p68 = 0.6827, p95 = 0.95;
-constexpr double nmad_factor = 1.4826;  // 1 / inverse normal distribution at 3/4
 
 // Reorders v.
 double quantile_of(std::vector<double>& v, double p) {
@@ -45,7 +46,7 @@ Statistics statistics(std::vector<double> errors) {
   s.median = quantile_of(errors, 0.5);
   std::vector<double> deviations(errors.size());
   std::transform(errors.begin(), errors.end(), deviations.begin(), [&](double e) { return std::abs(e - s.median); });
-  s.nmad = nmad_factor * quantile_of(deviations, 0.5);
+  s.nmad = core::mad_to_sigma * quantile_of(deviations, 0.5);
   for (double& e : errors) e = std::abs(e);
   s.q68 = quantile_of(errors, p68);
   s.q95 = quantile_of(errors, p95);

@@ -17,7 +17,7 @@
 namespace swath::report {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 bool holds(const Ring& r, const Eigen::Vector2d& p) {
   bool odd = false;
@@ -75,7 +75,7 @@ GridSample sample(const core::Grid& grid, double x, double y) {
   const core::Lattice& l = grid.lattice;
   const double u = x / l.cell - 0.5 - static_cast<double>(l.i0), v = y / l.cell - 0.5 - static_cast<double>(l.j0);
   const double fu = std::floor(u), fv = std::floor(v);
-  GridSample out{0.0, grid.sigma.empty() ? nan : 0.0};
+  GridSample out{0.0, grid.sigma.empty() ? unknown : 0.0};
   for (int dj = 0; dj <= 1; ++dj)
     for (int di = 0; di <= 1; ++di) {
       const double w = (di ? u - fu : 1.0 - u + fu) * (dj ? v - fv : 1.0 - v + fv);
@@ -83,8 +83,8 @@ GridSample sample(const core::Grid& grid, double x, double y) {
       const double gi = fu + di, gj = fv + dj;
       const bool known = gi >= 0 && gj >= 0 && gi < l.nx && gj < l.ny;
       const size_t at = known ? l.at(static_cast<int>(gi), static_cast<int>(gj)) : 0;
-      out.height += w * (known ? static_cast<double>(grid.height[at]) : nan);
-      if (!grid.sigma.empty()) out.sigma += w * (known ? static_cast<double>(grid.sigma[at]) : nan);
+      out.height += w * (known ? static_cast<double>(grid.height[at]) : unknown);
+      if (!grid.sigma.empty()) out.sigma += w * (known ? static_cast<double>(grid.sigma[at]) : unknown);
     }
   return out;
 }
@@ -123,7 +123,7 @@ void VolumeSum::add(const core::Grid& before, const core::Grid& after) {
   if (!(before.lattice == after.lattice)) throw core::Error("the two surfaces are not on one lattice", "report.volumes");
   const core::Lattice& l = before.lattice;
   const std::vector<double> share = shares_inside(l, polygon_);
-  const auto sigma_of = [](const core::Grid& g, size_t at) { return g.sigma.empty() ? nan : static_cast<double>(g.sigma[at]); };
+  const auto sigma_of = [](const core::Grid& g, size_t at) { return g.sigma.empty() ? unknown : static_cast<double>(g.sigma[at]); };
   for (size_t k = 0; k < l.size(); ++k) {
     if (share[k] <= 0.0) continue;
     const double area = share[k] * l.cell * l.cell;

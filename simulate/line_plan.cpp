@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 constexpr double sway = 2.0 * core::degree;  // what roll may take off the swath's edge while the target must stay in it
 constexpr double least_edge = 0.5;           // share of the half swath
 
-Vector2d unit(double course) { return {std::cos(course), std::sin(course)}; }  // north, east
+Vector2d along_course(double course) { return {std::cos(course), std::sin(course)}; }  // north, east
 
 std::vector<LinePlan> block(const FlightOptions& flight, const WorldOptions& world, double half_angle, const Vector2d& along) {
   const int lines = flight.lines.value_or(3);
@@ -73,7 +73,7 @@ std::vector<LinePlan> calibration(const FlightOptions& flight, const WorldOption
 }  // namespace
 
 std::vector<LinePlan> plan_lines(const FlightOptions& flight, const WorldOptions& world, double half_angle, double convergence) {
-  const Vector2d along = unit(flight.direction.value + convergence);
+  const Vector2d along = along_course(flight.direction.value + convergence);
   return flight.pattern == FlightPattern::calibration ? calibration(flight, world, half_angle, along)
                                                       : block(flight, world, half_angle, along);
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr const char* file_name = "lines.json";
 
 template <class T>
-void put(std::string& bytes, const std::vector<T>& records) {
+void append(std::string& bytes, const std::vector<T>& records) {
   const std::uint64_t n = records.size();
   bytes.append(reinterpret_cast<const char*>(&n), sizeof n);
   bytes.append(reinterpret_cast<const char*>(records.data()), n * sizeof(T));
@@ -42,8 +42,8 @@ double number(const core::Value& v, std::string_view key) {
 
 void write_line_cells(const std::filesystem::path& file, const quality::LineCells& cells) {
   std::string bytes;
-  put(bytes, cells.differences);
-  put(bytes, cells.scatters);
+  append(bytes, cells.differences);
+  append(bytes, cells.scatters);
   io::write_text_file(file, bytes);
 }
 

@@ -23,7 +23,6 @@ constexpr size_t courses = 12;                        // of 30 deg
 constexpr double tilt_limit = 80.0 * core::degree;    // no survey aircraft flies so
 constexpr double tiny_angle = 0.1 * core::degree;     // the tilt of every aircraft exceeds it somewhere
 constexpr double velocity_limit = 1.0;                // m/s between recorded and differenced velocity
-constexpr double mad_to_sigma = 1.4826;
 
 // Median of angles about their mean direction.
 double median_angle(const std::vector<double>& angles, double& spread) {
@@ -34,7 +33,7 @@ double median_angle(const std::vector<double>& angles, double& spread) {
   std::transform(angles.begin(), angles.end(), about.begin(), [&](double a) { return core::wrap_pi(a - mean); });
   const double m = core::median(about, 0.0);
   for (double& a : about) a = std::abs(a);
-  spread = mad_to_sigma * core::median(about, 0.0);
+  spread = core::mad_to_sigma * core::median(about, 0.0);
   return core::wrap_pi(mean + m);
 }
 
@@ -52,7 +51,7 @@ double spread_by_course(const std::vector<double>& angles, const std::vector<dou
     const double middle = median_angle(some, ignored);
     for (const double a : some) about.push_back(std::abs(core::wrap_pi(a - middle)));
   }
-  return mad_to_sigma * core::median(std::move(about), 0.0);
+  return core::mad_to_sigma * core::median(std::move(about), 0.0);
 }
 
 bool finite(const core::TrajectoryData& d, size_t i) {

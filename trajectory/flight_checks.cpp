@@ -16,9 +16,9 @@
 namespace swath::trajectory {
 namespace {
 
-constexpr double step = 1.0;          // s between samples
-constexpr double longest_step = 2.0;  // s that a sample may span
-constexpr double slowest = 10.0;      // m/s
+constexpr double step = 1.0;            // s between samples
+constexpr double longest_sample = 2.0;  // s that a sample may span
+constexpr double slowest = 10.0;        // m/s
 constexpr size_t most_samples = 4000;
 constexpr size_t fewest_samples = 20;
 constexpr double gravity = 9.81;                // m/s^2
@@ -38,7 +38,7 @@ std::vector<size_t> nodes_of(const core::TrajectoryData& d) {
   if (d.size() == 0) return out;
   double covered = 0.0;
   for (size_t i = 1; i < d.size(); ++i)
-    if (const double dt = d.time[i] - d.time[i - 1]; dt <= longest_step) covered += dt;
+    if (const double dt = d.time[i] - d.time[i - 1]; dt <= longest_sample) covered += dt;
   const double every = std::max(step, covered / most_samples);
   // Spans of one step, `every` apart; a gap is passed over.
   size_t at = 0;
@@ -57,7 +57,7 @@ std::vector<Sample> samples_of(const core::TrajectoryData& d) {
   std::vector<Sample> out;
   for (const size_t a : nodes_of(d)) {
     const size_t m = record_at(d, a, d.time[a] + 0.5 * step), b = record_at(d, m, d.time[a] + step);
-    if (b >= d.size() || m == a || b == m || d.time[b] - d.time[a] > longest_step) continue;
+    if (b >= d.size() || m == a || b == m || d.time[b] - d.time[a] > longest_sample) continue;
     const GroundVelocity v = ground_velocity(d, a, b), v1 = ground_velocity(d, a, m), v2 = ground_velocity(d, m, b);
     Sample s;
     s.north = v.north, s.east = v.east;

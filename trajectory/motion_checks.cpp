@@ -12,11 +12,11 @@
 namespace swath::trajectory {
 namespace {
 
-constexpr double base = 1.0;         // s before and after a record over which velocities are differenced
-constexpr double gravity = 9.81;     // m/s2
-constexpr double min_across = 1.0;   // m/s2: a bank of 6 deg, well above gusts
-constexpr double min_turning = 5.0;  // s
-constexpr double min_climb = 0.05;   // m over two bases, rms: below, noise decides
+constexpr double base = 1.0;               // s before and after a record over which velocities are differenced
+constexpr double standard_gravity = 9.81;  // m/s2
+constexpr double min_across = 1.0;         // m/s2: a bank of 6 deg, well above gusts
+constexpr double min_turning = 5.0;        // s
+constexpr double min_climb = 0.05;         // m over two bases, rms: below, noise decides
 constexpr double min_correlation = 0.8, min_correlation_of_heights = 0.95;  // heights have less noise
 constexpr double feet_per_metre = 1.0 / 0.3048;
 
@@ -64,7 +64,7 @@ Sums sums_of(const core::TrajectoryData& d, double min_speed) {
     const double span = 0.5 * (before + after);
     const double across = (north * (v2.east - v1.east) - east * (v2.north - v1.north)) / (span * speed);
     if (!(speed > min_speed && std::abs(across) > min_across) || !std::isfinite(d.roll[i] + d.pitch[i])) continue;
-    const double bank = std::atan(across / gravity);
+    const double bank = std::atan(across / standard_gravity);
     out.roll.add(bank, core::wrap_pi(d.roll[i]));
     out.pitch.add(bank, core::wrap_pi(d.pitch[i]));
     out.turning += i > 0 ? std::clamp(d.time[i] - d.time[i - 1], 0.0, base) : 0.0;

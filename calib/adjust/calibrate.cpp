@@ -99,10 +99,10 @@ double mismatch_after(const Adjustment& a) {
   std::vector<double> sizes;
   for (const GroupResidual& g : a.groups)
     if (!g.rejected) sizes.push_back(std::abs(g.after));
-  return 3 * 1.4826 * core::median(std::move(sizes), 0.0);
+  return 3 * core::mad_to_sigma * core::median(std::move(sizes), 0.0);
 }
 
-std::string metres(double v) { return words(v < 0.1 ? "%.3f m" : "%.2f m", v); }
+std::string about_metres(double v) { return words(v < 0.1 ? "%.3f m" : "%.2f m", v); }
 
 [[noreturn]] void throw_reversed_scan() {
   throw core::Error("the surfaces of the lines meet only with the sign of the scan angle turned", "laser records",
@@ -204,7 +204,7 @@ Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& op
     const bool settled = !first && move.sigmas <= settled_step;
     if (settled || out.rounds == options.rounds) {
       out.notes.push_back("Planes were sought " + std::to_string(out.rounds) + " times; the last time moved the returns by " +
-                          metres(change) + words(", and no value by more than %.2g of its sigmas.", move.sigmas));
+                          about_metres(change) + words(", and no value by more than %.2g of its sigmas.", move.sigmas));
       if (!settled) refuse_unsettled(out.adjustment, move, out.rounds);
       break;
     }

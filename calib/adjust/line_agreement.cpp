@@ -20,7 +20,6 @@ using Row = Eigen::Matrix<double, 1, parameter_count>;
 constexpr double sure = 3.5;            // standard normal deviates
 constexpr size_t judged_together = 25;  // planes of a pair
 constexpr std::uint32_t sampled = 40;   // returns of a group
-constexpr double mad_to_sigma = 1.4826;
 
 /// One line on one plane.
 struct Look {
@@ -55,7 +54,7 @@ Look look_of(const TieSet& ties, const TieGroup& g, const ShotGeometry& geometry
   out.distance = core::median(distances);
   for (double& d : distances) d = std::abs(d - out.distance);
   constexpr double median_of_normal = 1.5708;  // its variance beside the mean's
-  out.variance = median_of_normal * std::pow(mad_to_sigma * core::median(distances), 2) / count;
+  out.variance = median_of_normal * std::pow(core::mad_to_sigma * core::median(distances), 2) / count;
   out.seen = true;
   return out;
 }

@@ -19,7 +19,7 @@ namespace {
 // Planes are found the same way with returns that have moved by less than their own noise.
 constexpr double steady = 0.02, closest = 0.05;  // m
 // For the progress: how many rounds there usually are, and what of one the planes take.
-constexpr double usual_rounds = 4.0, planes_part = 0.5;
+constexpr double usual_strip_rounds = 4.0, strip_planes_part = 0.5;
 
 std::vector<trajectory::CorrectionSeries> series_of(const std::vector<LineCorrection>& corrections) {
   std::vector<trajectory::CorrectionSeries> out;
@@ -53,14 +53,14 @@ double moved(const std::vector<LineCorrection>& from, const std::vector<LineCorr
   return at.groups.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(at.groups.size()));
 }
 
-std::string metres(double v) { return words("%.3f m", v); }
+std::string in_metres(double v) { return words("%.3f m", v); }
 std::string seconds(double v) { return words("%.2g s", v); }
 
 double scatter_after(const Adjustment& a) {
   std::vector<double> sizes;
   for (const GroupResidual& g : a.groups)
     if (!g.rejected) sizes.push_back(std::abs(g.after));
-  return 1.4826 * core::median(std::move(sizes), 0.0);
+  return core::mad_to_sigma * core::median(std::move(sizes), 0.0);
 }
 
 bool two_lines_share_a_plane(const TieSet& ties) {
@@ -138,10 +138,10 @@ AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions
     of_round = {};
     const trajectory::Trajectory& now = out.trajectory ? *out.trajectory : *survey.trajectory;
     const std::string round = "round " + std::to_string(out.rounds);
-    progress(core::usual_share(out.rounds - 1, usual_rounds), round + ": planes");
+    progress(core::usual_share(out.rounds - 1, usual_strip_rounds), round + ": planes");
     out.ties = find_tie_planes(survey.shots, survey.scanner, survey.start, now, survey.frame, targets, planes, of_round);
     refuse_without_overlap(out.ties, of_round);
-    progress(core::usual_share(out.rounds - 1 + planes_part, usual_rounds), round + ": adjustment");
+    progress(core::usual_share(out.rounds - 1 + strip_planes_part, usual_strip_rounds), round + ": adjustment");
     const std::vector<LineCorrection> before = std::move(out.adjustment.corrections);
     for (;;) {
       out.adjustment =
@@ -160,13 +160,13 @@ AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions
   out.rounds = std::min(out.rounds, options.rounds);
   if (change >= steady)
     out.adjustment.findings.push_back({"the corrections did not settle in " + std::to_string(out.rounds) +
-                                           " rounds: the last one still moved the returns by " + metres(change),
+                                           " rounds: the last one still moved the returns by " + in_metres(change),
                                        "allow more rounds, or fly lines that share more planes",
                                        {},
                                        false});
   out.differences = plane_differences(out.ties, out.adjustment);
-  out.notes.push_back("Planes were sought " + std::to_string(out.rounds) + " times; the last round moved the returns by " + metres(change) +
-                      ".");
+  out.notes.push_back("Planes were sought " + std::to_string(out.rounds) + " times; the last round moved the returns by " +
+                      in_metres(change) + ".");
   if (how.corrections.spacing.value < options.adjust.corrections.spacing.value)
     out.notes.push_back("The trajectory errs faster than its corrections could follow: their knots were brought nearer, to " +
                         seconds(out.adjustment.knot_spacing) + ".");

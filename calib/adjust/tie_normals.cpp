@@ -21,7 +21,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double median_to_sigma = 1.4826;
 constexpr double least_scale = 0.05;  // of the stated sigmas: exact records would leave nothing to divide by
 
 // A point this share of its range off its plane is brought no nearer: it is an outlier, or the start is far.
@@ -323,7 +322,7 @@ TiePass linearise(const TieProblem& p, const TieState& state, const TieNoise& no
   sizes.reserve(pass.deviation.size());
   for (const float z : pass.deviation)
     if (std::isfinite(z)) sizes.push_back(std::abs(static_cast<double>(z)));
-  pass.scale = std::max(least_scale, median_to_sigma * core::median(std::move(sizes), 1.0));
+  pass.scale = std::max(least_scale, core::mad_to_sigma * core::median(std::move(sizes), 1.0));
   return pass;
 }
 

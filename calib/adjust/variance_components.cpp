@@ -13,8 +13,8 @@
 namespace swath::calib {
 namespace {
 
-constexpr double told = 0.25;             // relative sigma of a variance that is taken
-constexpr double least_redundancy = 3.0;  // degrees of freedom
+constexpr double told = 0.25;          // relative sigma of a variance that is taken
+constexpr double least_freedom = 3.0;  // degrees of freedom
 constexpr double lowest = 0.1, highest = 20.0;
 constexpr double step = 2.0;  // of a sigma, in one round
 // Groups far out do not make the others' sigma: they are left to the snooping.
@@ -57,7 +57,7 @@ void update_correlated(const TieProblem& problem, const TieSystem& system, const
   const auto globals = static_cast<Eigen::Index>(problem.globals.size());
   const auto with_freedom = [&](SigmaFactor& factor, double omega, double redundancy, bool wanted) {
     factor.redundancy = redundancy;
-    factor.estimated = wanted && redundancy >= least_redundancy;
+    factor.estimated = wanted && redundancy >= least_freedom;
     if (!factor.estimated) return;
     const double now = factor.factor * factor.factor;
     apply(factor, (o.freedom + now * std::max(0.0, omega)) / (o.freedom + redundancy) / now);
@@ -72,7 +72,7 @@ void update_correlated(const TieProblem& problem, const TieSystem& system, const
     surface_freedom += t2 * t.information;
   }
   f.surface.redundancy = surface_freedom;
-  f.surface.estimated = o.surface && surface_freedom >= least_redundancy;
+  f.surface.estimated = o.surface && surface_freedom >= least_freedom;
   if (f.surface.estimated) apply(f.surface, surface / surface_freedom);
 
   double omega[2] = {}, freedom[2] = {};

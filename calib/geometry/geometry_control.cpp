@@ -12,8 +12,7 @@
 namespace swath::calib {
 namespace {
 
-constexpr double mad_to_sigma = 1.4826;
-constexpr double foot = 0.3048, like_feet = 0.03;  // of the ratio
+constexpr double foot_length = 0.3048, like_feet = 0.03;  // of the ratio
 // Geoids lie up to 107 m below and 86 m above the ellipsoid; where they are near to it the difference has other causes as well.
 constexpr double highest_geoid = 110.0, lowest_geoid = 15.0, like_geoid = 2.5;
 constexpr double one_height = 0.5;  // m, and a hundredth of the difference: spread about it
@@ -55,7 +54,7 @@ ControlFigures compare_control(const SampledFlight& f, const LineCells& cells, c
   if (apart.empty()) return out;
   out.median = core::median(std::vector<double>(apart), 0.0);
   for (double& a : apart) a = std::abs(a - out.median);
-  out.spread = mad_to_sigma * core::median(std::move(apart), 0.0);
+  out.spread = core::mad_to_sigma * core::median(std::move(apart), 0.0);
   out.predicted = std::sqrt(core::median(std::move(variance), 0.0));
   out.ground = core::median(std::move(ground), 0.0);
   out.control = core::median(std::move(control), 0.0);
@@ -78,7 +77,7 @@ std::optional<HeightMistake> height_mistake(const ControlFigures& c, double undu
   const bool known = std::isfinite(undulation), one = c.spread < one_height + 0.01 * size;
   const bool is_known = known && one && std::abs(size - std::abs(undulation)) < like_geoid && size > 2 * like_geoid;
   if (!is_known && size > 5) {
-    const auto in_feet = [](double metres, double feet) { return feet != 0 && std::abs(metres / feet / foot - 1) < like_feet; };
+    const auto in_feet = [](double metres, double feet) { return feet != 0 && std::abs(metres / feet / foot_length - 1) < like_feet; };
     // Heights of control in feet are off by more where the ground is higher.
     if (c.spread < relief * size && in_feet(c.ground, c.control))
       return HeightMistake{"control_feet", "with the control's heights in feet",

@@ -13,7 +13,6 @@
 namespace swath::calib {
 namespace {
 
-constexpr double mad_to_sigma = 1.4826;
 constexpr double far_off = 5.0, cut = 20.0;           // sigmas
 constexpr double finest = 0.03;                       // m: ground itself differs by this from pass to pass
 constexpr double lowest_land = -480.0;                // m, ellipsoidal: the shore of the Dead Sea
@@ -118,7 +117,7 @@ LineFit fit_lines(const SampledFlight& f, LineCells& of, const Chain& chain, con
     p.outside = off / n;
     expected += n * p.predicted * p.predicted;
     p.median = core::median(std::move(d), 0.0);
-    p.rms = mad_to_sigma * core::median(std::move(size), 0.0);
+    p.rms = core::mad_to_sigma * core::median(std::move(size), 0.0);
     out.pairs.push_back(p);
   }
   out.fit.smooth = cells > 0 ? smooth / cells : 0.0;
@@ -128,7 +127,7 @@ LineFit fit_lines(const SampledFlight& f, LineCells& of, const Chain& chain, con
   out.predicted = std::sqrt(expected / n);
   out.fit.outside = outside / n;
   out.fit.cost = std::sqrt(squares / n);
-  out.fit.rms = mad_to_sigma * core::median(std::move(all), 0.0);
+  out.fit.rms = core::mad_to_sigma * core::median(std::move(all), 0.0);
   return out;
 }
 

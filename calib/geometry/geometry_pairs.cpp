@@ -127,7 +127,6 @@ std::optional<double> take_out_water(std::vector<SharedCell>& shared, double sig
   constexpr double level = 0.05, one_height = 0.1;             // rise / run, m
   constexpr double most = 0.9;                                 // of the cells far off are water
   constexpr size_t fewest_cells = 10;
-  constexpr double mad_to_sigma = 1.4826;
   const auto is_off = [&](const SharedCell& s) { return std::abs(s.apart) > far_off * sigma; };
   std::vector<double> apart, height, rest;
   size_t off = 0;
@@ -141,11 +140,11 @@ std::optional<double> take_out_water(std::vector<SharedCell>& shared, double sig
   }
   if (apart.size() < fewest_cells || rest.size() < std::max(fewest_cells, shared.size() / 10)) return std::nullopt;
   if (static_cast<double>(apart.size()) < most * static_cast<double>(off)) return std::nullopt;
-  if (mad_to_sigma * core::median(std::move(rest), 0.0) > near * sigma) return std::nullopt;
+  if (core::mad_to_sigma * core::median(std::move(rest), 0.0) > near * sigma) return std::nullopt;
   const auto spread = [&](std::vector<double>& v) {
     const double middle = core::median(std::vector<double>(v), 0.0);
     for (double& x : v) x = std::abs(x - middle);
-    return std::pair(middle, mad_to_sigma * core::median(std::move(v), 0.0));
+    return std::pair(middle, core::mad_to_sigma * core::median(std::move(v), 0.0));
   };
   const auto [difference, varies] = spread(apart);
   if (varies > constant * sigma || spread(height).second > one_height + near * sigma) return std::nullopt;

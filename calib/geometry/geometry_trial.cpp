@@ -14,10 +14,10 @@
 namespace swath::calib {
 namespace {
 
-constexpr double margin = 0.6;           // s of the trajectory around a stretch ...
-constexpr double steps_around = 2.5;     // ... and steps of it, for the cubic through four records
-constexpr double longest_offset = 20.0;  // s
-constexpr size_t most_control = 500;     // surveyed places that are compared
+constexpr double margin = 0.6;                 // s of the trajectory around a stretch ...
+constexpr double steps_around = 2.5;           // ... and steps of it, for the cubic through four records
+constexpr double longest_trial_offset = 20.0;  // s
+constexpr size_t most_control = 500;           // surveyed places that are compared
 // Stretches between lines of samples that are in memory together, in units of the flight's own: each, and all of them.
 constexpr double largest_share = 0.5, largest_sum = 2.0;
 
@@ -142,7 +142,8 @@ void Trial::sampled_anew(std::vector<TriedMistake>& out) const {
   const double leap = leap_seconds(in_);
   std::vector<double> offsets;
   if (leap > 0) offsets = {leap, -leap};
-  const auto roll = roll_signal(flight_.sample.profiles, ShotGeometry(in_.chain.scanner, in_.chain.calibration), whole_, longest_offset);
+  const auto roll =
+      roll_signal(flight_.sample.profiles, ShotGeometry(in_.chain.scanner, in_.chain.calibration), whole_, longest_trial_offset);
   const bool by_roll =
       roll && std::abs(roll->offset) > 0.3 && roll->best > roll->correlation + 0.15 && std::abs(std::abs(roll->offset) - leap) > 0.2;
   if (by_roll) offsets.push_back(roll->offset);

@@ -13,16 +13,15 @@
 namespace swath::calib {
 namespace {
 
-constexpr double bin = 0.1;         // s
-constexpr int fewest = 12;          // returns of a bin
-constexpr double narrowest = 0.05;  // standard deviation of y in the mean distance
-constexpr int half_window = 20;     // bins on each side of the mean that is taken out
-constexpr size_t fewest_bins = 60;
+constexpr double bin = 0.1;             // s
+constexpr int fewest_in_bin = 12;       // returns of a bin
+constexpr double narrowest_bin = 0.05;  // standard deviation of y in the mean distance
+constexpr int half_window = 20;         // bins on each side of the mean that is taken out
+constexpr size_t fewest_roll_bins = 60;
 constexpr double least_roll = 0.05 * core::degree;
 constexpr double lag_step = 0.02;     // s
 constexpr double independent = 15.0;  // bins after which slopes of terrain and canopy are new
 constexpr double least_shared = 0.9;  // of the bins: fewer agree somewhere by chance
-constexpr double mad_to_sigma = 1.4826;
 
 struct Tilt {
   double time = 0.0, tilt = 0.0;
@@ -41,9 +40,9 @@ std::vector<Tilt> tilts_of(const core::Shots& s, const ShotGeometry& g) {
       n += 1, y += ray.y(), z += ray.z(), yy += ray.y() * ray.y(), yz += ray.y() * ray.z();
     }
     if (end == first) ++end;
-    if (n < fewest) continue;
+    if (n < fewest_in_bin) continue;
     const double variance = yy / n - (y / n) * (y / n);
-    if (!(std::sqrt(std::max(variance, 0.0)) > narrowest * std::abs(z / n))) continue;
+    if (!(std::sqrt(std::max(variance, 0.0)) > narrowest_bin * std::abs(z / n))) continue;
     out.push_back({g.time(start + 0.5 * bin), -std::atan((yz / n - (y / n) * (z / n)) / variance)});
   }
   return out;
@@ -139,9 +138,9 @@ std::optional<RollSignal> roll_signal(const std::vector<PassSample>& profiles, c
     for (const double t : all.back().tilt)
       if (std::isfinite(t)) sizes.push_back(std::abs(t));
   }
-  const double limit = 4 * mad_to_sigma * core::median(std::move(sizes), 0.0);
+  const double limit = 4 * core::mad_to_sigma * core::median(std::move(sizes), 0.0);
   const Sums now = sums_at(all, 0, limit);
-  if (now.n < fewest_bins || std::sqrt(now.xx / static_cast<double>(now.n)) < least_roll) return std::nullopt;
+  if (now.n < fewest_roll_bins || std::sqrt(now.xx / static_cast<double>(now.n)) < least_roll) return std::nullopt;
   RollSignal out;
   out.bins = now.n;
   out.factor = now.xy / now.xx;

@@ -23,8 +23,7 @@ constexpr double ground_varies = 0.02;  // m: the ground itself, from pass to pa
 constexpr size_t most_of_pair = 400;    // cells of a pair of passes that are looked at
 constexpr double count_of_pair = 120;   // and what they count as: their errors are not independent
 constexpr int rounds = 6;
-constexpr double full_weight = 2.5;  // sigmas
-constexpr double mad_to_sigma = 1.4826;
+constexpr double full_weight = 2.5;     // sigmas
 constexpr int common = 6, of_pass = 6;  // unknowns: position and attitude of all passes, and of each
 // No trajectory is better over minutes, whatever it states: m, rad.
 constexpr double least_position = 0.04, least_attitude = 0.005 * core::degree, least_heading = 0.01 * core::degree;
@@ -153,7 +152,7 @@ void weigh(std::vector<Row>& rows, size_t grounds) {
       residual.push_back((row.apart - d.dot(x)) / std::sqrt(row.variance));
       size.push_back(std::abs(residual.back()));
     }
-    const double scale = std::max(mad_to_sigma * core::median(std::move(size), 0.0), round + 1 == rounds ? 1.0 : 1e-3);
+    const double scale = std::max(core::mad_to_sigma * core::median(std::move(size), 0.0), round + 1 == rounds ? 1.0 : 1e-3);
     for (size_t k = 0; k < rows.size(); ++k) {
       const double off = std::abs(residual[k]) / scale;
       rows[k].weight = off <= full_weight ? 1.0 : full_weight / off;

@@ -11,16 +11,16 @@
 namespace swath::calib {
 namespace {
 
-constexpr double sure_usual = 20.0, sure_fitted = 32.0;  // gains: 4.5 and, with the choice among several, 5 sigmas
-constexpr double less = 0.4;                             // of those, where something is known to be wrong
-constexpr double per_value = 4.0;                        // of the gain, for each value that was fitted ...
-constexpr double per_unstated = 1.0;                     // ... and of those that are stated as zero: they were left out
-constexpr double as_good = 6.0, share_as_good = 0.05;    // of the gain: planes that lie apart do not show it more truly
-constexpr double longest_lever = 3.0;                    // m: no scanner is farther from its IMU
-constexpr double smallest = 0.08;                        // m on the ground
-constexpr double largest = 20.0;                         // m on the ground: beyond, another mistake is at work
-constexpr double largest_scale = 0.05;                   // off 1: beyond, it is a unit
-constexpr double surely = 4.0;                           // sigmas of a fitted value that is said
+constexpr double sure_usual = 20.0, sure_fitted = 32.0;     // gains: 4.5 and, with the choice among several, 5 sigmas
+constexpr double less = 0.4;                                // of those, where something is known to be wrong
+constexpr double per_value = 4.0;                           // of the gain, for each value that was fitted ...
+constexpr double per_unstated = 1.0;                        // ... and of those that are stated as zero: they were left out
+constexpr double gain_as_good = 6.0, share_as_good = 0.05;  // of the gain: planes that lie apart do not show it more truly
+constexpr double longest_lever = 3.0;                       // m: no scanner is farther from its IMU
+constexpr double smallest = 0.08;                           // m on the ground
+constexpr double largest = 20.0;                            // m on the ground: beyond, another mistake is at work
+constexpr double largest_scale = 0.05;                      // off 1: beyond, it is a unit
+constexpr double surely = 4.0;                              // sigmas of a fitted value that is said
 constexpr size_t most = 3;
 
 SmallVector values_of(const core::Calibration& c) {
@@ -160,7 +160,7 @@ std::vector<SmallExplanation> explain_small(const SmallErrors& errors, const Cha
     return out;
   };
   const auto is_common = [&](const SmallExplanation& e) { return alarmed && e.name == "height_offset"; };
-  const double least = best(false) - std::max(as_good, share_as_good * best(false));
+  const double least = best(false) - std::max(gain_as_good, share_as_good * best(false));
   const bool by_usual = best(true) >= least;
   std::erase_if(all, [&](const SmallExplanation& e) { return e.gain < least || (by_usual && !e.usual && !is_common(e)); });
   std::stable_sort(all.begin(), all.end(), [](const SmallExplanation& x, const SmallExplanation& y) { return x.gain > y.gain; });

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-Eigen::Index at(size_t i) { return static_cast<Eigen::Index>(i); }
+Eigen::Index index_of(size_t i) { return static_cast<Eigen::Index>(i); }
 
 /// x, y, z up of the hangar to north, east, down.
 Matrix3d ned_R_hangar() {
@@ -25,7 +25,7 @@ Matrix3d ned_R_hangar() {
 }  // namespace
 
 BodyAxes stated_axes(const core::Attitude& attitude, const Vector3d& sigma, size_t points) {
-  return {attitude, sigma, Eigen::RowVectorXd::Zero(at(3 * points))};
+  return {attitude, sigma, Eigen::RowVectorXd::Zero(index_of(3 * points))};
 }
 
 BodyAxes axes_of_marks(const HangarPoints& points, const std::vector<size_t>& aft, const std::vector<size_t>& fore, double offset,
@@ -37,8 +37,8 @@ BodyAxes axes_of_marks(const HangarPoints& points, const std::vector<size_t>& af
   out.attitude.heading = core::wrap_two_pi(std::atan2(along.x(), along.y()) + offset);
   const double squared = along.head<2>().squaredNorm();
   const Eigen::RowVector3d by_along(along.y() / squared, -along.x() / squared, 0);
-  for (const size_t f : fore) out.heading_by_points.segment<3>(at(3 * f)) += by_along / static_cast<double>(fore.size());
-  for (const size_t a : aft) out.heading_by_points.segment<3>(at(3 * a)) -= by_along / static_cast<double>(aft.size());
+  for (const size_t f : fore) out.heading_by_points.segment<3>(index_of(3 * f)) += by_along / static_cast<double>(fore.size());
+  for (const size_t a : aft) out.heading_by_points.segment<3>(index_of(3 * a)) -= by_along / static_cast<double>(aft.size());
   return out;
 }
 
@@ -55,8 +55,8 @@ BodyVector body_vector(const HangarPoints& points, const BodyPoint& from, const 
   out.by_angles.col(1) = -Rx.transpose() * Vector3d::UnitY().cross(Vector3d(Rx * turned));
   out.by_angles.col(2) = -body_R_ned * Vector3d::UnitZ().cross(ned);
   out.by_points = out.by_angles.col(2) * axes.heading_by_points;
-  out.by_points.middleCols<3>(at(3 * to.mark)) += body_R_hangar;
-  out.by_points.middleCols<3>(at(3 * from.mark)) -= body_R_hangar;
+  out.by_points.middleCols<3>(index_of(3 * to.mark)) += body_R_hangar;
+  out.by_points.middleCols<3>(index_of(3 * from.mark)) -= body_R_hangar;
   const double offsets = to.offset_sigma * to.offset_sigma + from.offset_sigma * from.offset_sigma;
   out.covariance = out.by_points * points.covariance * out.by_points.transpose() +
                    out.by_angles * axes.sigma.cwiseAbs2().asDiagonal() * out.by_angles.transpose() + offsets * Matrix3d::Identity();

@@ -18,12 +18,12 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr int most_iterations = 100;
-constexpr double converged = 1e-10;     // m
-constexpr double same_place = 1e-6;     // m; two searches that ended here ended in one minimum
-constexpr double in_line_share = 1e-3;  // breadth of the targets by their length
-constexpr double least_rise = 0.02;     // of the targets' extent: start off their plane, where the normal matrix is regular
-constexpr double equal_fit = 25.0;      // five sigmas between two sums of squares
+constexpr int max_iterations = 100;
+constexpr double resection_converged = 1e-10;  // m
+constexpr double same_position = 1e-6;         // m; two searches that ended here ended in one minimum
+constexpr double in_line_share = 1e-3;         // breadth of the targets by their length
+constexpr double least_rise = 0.02;            // of the targets' extent: start off their plane, where the normal matrix is regular
+constexpr double equal_resection = 25.0;       // five sigmas between two sums of squares
 constexpr size_t least_for_scale = 6;
 
 struct Search {
@@ -52,7 +52,7 @@ Search search(const std::vector<TargetDistance>& all, const Vector3d& start) {
   Search out;
   out.position = start;
   out.squares = squares_at(all, start);
-  for (int k = 0; k < most_iterations; ++k) {
+  for (int k = 0; k < max_iterations; ++k) {
     Vector3d right = Vector3d::Zero();
     for (const TargetDistance& d : all) {
       const DistanceModel m = distance_model(out.position, d.target);
@@ -61,11 +61,11 @@ Search search(const std::vector<TargetDistance>& all, const Vector3d& start) {
     Vector3d step = normal_matrix(all, out.position).completeOrthogonalDecomposition().solve(right);
     if (!step.allFinite()) return out;
     double squares = squares_at(all, out.position + step);
-    while (squares > out.squares && step.norm() > converged) {
+    while (squares > out.squares && step.norm() > resection_converged) {
       step /= 2;
       squares = squares_at(all, out.position + step);
     }
-    if (step.norm() <= converged) {
+    if (step.norm() <= resection_converged) {
       out.found = true;
       if (squares <= out.squares) out.position += step;
       out.squares = std::min(squares, out.squares);
@@ -175,7 +175,8 @@ Resection resect(const std::vector<TargetDistance>& all, const std::optional<Vec
   std::vector<Search> ends;  // distinct minima
   const auto add = [&](const Vector3d& from) {
     const Search s = search(all, from);
-    if (s.found && std::none_of(ends.begin(), ends.end(), [&](const Search& e) { return (e.position - s.position).norm() < same_place; }))
+    if (s.found &&
+        std::none_of(ends.begin(), ends.end(), [&](const Search& e) { return (e.position - s.position).norm() < same_position; }))
       ends.push_back(s);
     return s;
   };
@@ -185,7 +186,7 @@ Resection resect(const std::vector<TargetDistance>& all, const std::optional<Vec
   if (ends.empty()) return out;
 
   std::sort(ends.begin(), ends.end(), [](const Search& a, const Search& b) { return a.squares < b.squares; });
-  const bool both_fit = ends.size() > 1 && ends[1].squares - ends[0].squares < equal_fit;
+  const bool both_fit = ends.size() > 1 && ends[1].squares - ends[0].squares < equal_resection;
   if (both_fit && start && (ends[1].position - *start).norm() < (ends[0].position - *start).norm()) std::swap(ends[0], ends[1]);
   out.position = ends[0].position;
   judge(all, ends[0].squares, out);
@@ -193,7 +194,7 @@ Resection resect(const std::vector<TargetDistance>& all, const std::optional<Vec
   if (ends.size() > 1) {
     out.mirror = ends[1].position;
     out.mirror_variance_factor = ends[1].squares / std::max(out.redundancy, 1);
-    out.start_led_to_mirror = from_start.found && (from_start.position - out.position).norm() > same_place;
+    out.start_led_to_mirror = from_start.found && (from_start.position - out.position).norm() > same_position;
   }
   Vector3d moved = Vector3d::Zero();  // a straight model of distances that bend is no model
   const double variance = Eigen::SelfAdjointEigenSolver<Matrix3d>(out.covariance).eigenvalues().maxCoeff();

@@ -19,10 +19,10 @@ using report::number_text;
 using report::Table;
 using report::Tone;
 
-constexpr double centimetre = 0.01;
+constexpr double residual_centimetre = 0.01;
 constexpr size_t most_outliers = 40;  ///< rows; all are in residuals.csv
 
-std::string headed(const char* name, const char* unit) { return std::string(name) + " (" + unit + ")"; }
+std::string with_unit(const char* name, const char* unit) { return std::string(name) + " (" + unit + ")"; }
 
 /// Decimals that distinguish one end of a bin from the other.
 int decimals_of(double step) { return std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9))); }
@@ -31,7 +31,7 @@ int decimals_of(double step) { return std::max(0, -static_cast<int>(std::floor(s
 std::vector<std::string> measures(const ResidualBin& b) {
   std::vector<std::string> out{count_text(b.groups), count_text(b.rejected), count_text(b.returns)};
   for (const double v : {b.mean_before, b.rms_before, b.mean_after, b.rms_after, b.rms_returns})
-    out.push_back(number_text(v / centimetre, 2));
+    out.push_back(number_text(v / residual_centimetre, 2));
   out.push_back(number_text(b.largest_w, 1));
   return out;
 }
@@ -54,7 +54,7 @@ void residual_table(const PageParts& parts, BinBy by, const char* id, const char
   if (by == BinBy::line) {
     t.columns = {{"line"}};
   } else {
-    t.columns = {{headed("from", unit)}, {headed("to", unit)}};
+    t.columns = {{with_unit("from", unit)}, {with_unit("to", unit)}};
   }
   t.columns.insert(t.columns.end(), measure_columns().begin(), measure_columns().end());
   for (const ResidualBin& b : residual_bins(parts.report.adjustment, parts.report.ties, by)) {
@@ -75,8 +75,9 @@ void control_table(const PageParts& parts, const char* id, const char* caption, 
   Table t{id, caption, {}, {}, {}};
   t.columns = {{"point", false}, {"plane"}, {"residual (cm)"}, {"sigma (cm)"}, {"redundancy"}, {"w"}, {"outcome", false}};
   for (const calib::ControlResidual& c : rows) {
-    t.rows.push_back({c.name, std::to_string(c.plane), number_text(c.residual / centimetre, 2), number_text(c.sigma / centimetre, 2),
-                      number_text(c.redundancy, 2), number_text(c.w, 1), c.rejected ? "taken out" : "used"});
+    t.rows.push_back({c.name, std::to_string(c.plane), number_text(c.residual / residual_centimetre, 2),
+                      number_text(c.sigma / residual_centimetre, 2), number_text(c.redundancy, 2), number_text(c.w, 1),
+                      c.rejected ? "taken out" : "used"});
     t.tones.push_back(c.rejected ? Tone::caution : Tone::plain);
   }
   parts.page.table(t);
@@ -161,8 +162,8 @@ void add_outliers(const PageParts& parts) {
     t.rows.push_back({std::to_string(g.plane), std::string(calib::name_of(parts.report.ties.planes[g.plane].kind)),
                       std::to_string(parts.report.ties.lines[g.line].id), count_text(g.returns),
                       number_text(bin_value(g, parts.report.ties, BinBy::time), 1), number_text(core::to_degrees(g.angle), 1),
-                      number_text(g.range, 0), number_text(g.before / centimetre, 2), number_text(g.after / centimetre, 2),
-                      number_text(g.redundancy, 2), number_text(g.w, 1)});
+                      number_text(g.range, 0), number_text(g.before / residual_centimetre, 2),
+                      number_text(g.after / residual_centimetre, 2), number_text(g.redundancy, 2), number_text(g.w, 1)});
   }
   parts.page.table(t);
 }
@@ -179,7 +180,8 @@ void add_control(const PageParts& parts) {
   Table t{"checks", "Check points, which took no part: height of the returns around a point minus that of the point", {}, {}, {}};
   t.columns = {{"point", false}, {"difference (cm)"}, {"sigma (cm)"}, {"difference / sigma"}};
   for (const calib::ControlResidual& c : parts.report.checks)
-    t.rows.push_back({c.name, number_text(c.residual / centimetre, 2), number_text(c.sigma / centimetre, 2), number_text(c.w, 1)});
+    t.rows.push_back(
+        {c.name, number_text(c.residual / residual_centimetre, 2), number_text(c.sigma / residual_centimetre, 2), number_text(c.w, 1)});
   parts.page.table(t);
 }
 

@@ -13,16 +13,16 @@ namespace swath::calib {
 namespace {
 
 constexpr int side = HeightTile::side;
-constexpr double returns_per_cell = 2.0;
+constexpr double returns_per_height = 2.0;
 constexpr std::uint16_t full = std::numeric_limits<std::uint16_t>::max();
 
-std::uint64_t key_of(std::int32_t i, std::int32_t j) {
+std::uint64_t tile_key(std::int32_t i, std::int32_t j) {
   return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) << 32 | static_cast<std::uint32_t>(j);
 }
 std::int32_t index_of(double v, double cell) { return static_cast<std::int32_t>(std::floor(v / cell)); }
 
 HeightTile& tile_at(HeightView& view, std::int32_t i, std::int32_t j, bool& made) {
-  const auto [at, fresh] = view.number.try_emplace(key_of(i, j), static_cast<std::uint32_t>(view.tiles.size()));
+  const auto [at, fresh] = view.number.try_emplace(tile_key(i, j), static_cast<std::uint32_t>(view.tiles.size()));
   made = fresh;
   if (fresh) {
     view.tiles.emplace_back();
@@ -55,7 +55,7 @@ HeightView coarser(const HeightView& fine) {
 }  // namespace
 
 const HeightTile* HeightView::tile(std::int32_t i, std::int32_t j) const {
-  const auto at = number.find(key_of(i, j));
+  const auto at = number.find(tile_key(i, j));
   return at == number.end() ? nullptr : &tiles[at->second];
 }
 
@@ -94,7 +94,7 @@ HeightGrids height_grids(const ShotStream& stream, LocalPoints& points, double s
   std::uint64_t tiles = 0;
   const std::uint64_t most_tiles = std::max<std::uint64_t>(most_cells / (side * side), 1);
   const auto begin = [&](double density) {
-    out.cell = density > 0.0 ? std::max(smallest_cell, std::sqrt(returns_per_cell / density)) : smallest_cell;
+    out.cell = density > 0.0 ? std::max(smallest_cell, std::sqrt(returns_per_height / density)) : smallest_cell;
   };
   stream_points(stream, points, begin, [&](int line, const core::Shots& shots, const PointColumns& p) {
     HeightView* of[2] = {nullptr, nullptr};

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double returns_per_cell = 10.0;
+constexpr double returns_per_plane_cell = 10.0;
 constexpr double smallest_side = 1.5, largest_side = 5.0;  // m
 constexpr std::uint32_t fewest_returns = 3;
 
@@ -83,7 +83,8 @@ PlaneCells plane_cells(const ShotStream& stream, LocalPoints& points, std::optio
   };
   const auto begin = [&](double density) {
     out.density = density;
-    out.side = side.value_or(density > 0.0 ? std::clamp(std::sqrt(returns_per_cell / density), smallest_side, largest_side) : largest_side);
+    out.side =
+        side.value_or(density > 0.0 ? std::clamp(std::sqrt(returns_per_plane_cell / density), smallest_side, largest_side) : largest_side);
   };
   stream_points(stream, points, begin, [&](int line, const core::Shots& shots, const PointColumns& p) {
     if (came.empty() || line != present) keep();

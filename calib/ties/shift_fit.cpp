@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr int fewest_squares = 4;
+constexpr int fewest_fit_squares = 4;
 constexpr int iterations = 12;
 constexpr double tukey = 4.685;
 constexpr double loose = 0.2;  // rad: keeps the normal matrix regular
@@ -114,7 +114,7 @@ class Adjuster {
       const Vector3d v = residual(x, solution);
       size.push_back(std::sqrt(v.dot(x.covariance.inverse() * v) / (x.relief ? 3.0 : 1.0)));
     }
-    const double scale = std::max(1.4826 * core::median(size, 1.0), 1.0);
+    const double scale = std::max(core::mad_to_sigma * core::median(size, 1.0), 1.0);
     double sum = 0.0, weights = 0.0;
     for (size_t i = 0; i < all_.size(); ++i) {
       const double u = size[i] / (tukey * scale), rows = all_[i].relief ? 3.0 : 1.0;
@@ -134,7 +134,7 @@ class Adjuster {
 
 ShiftFit3 fit_shifts(std::vector<ObservedShift>& all, const LineErrors& lines, double undetermined, double largest) {
   const auto squares = std::count_if(all.begin(), all.end(), [](const ObservedShift& x) { return x.relief; });
-  std::array<bool, 3> held{all.empty(), squares < fewest_squares, squares < fewest_squares};
+  std::array<bool, 3> held{all.empty(), squares < fewest_fit_squares, squares < fewest_fit_squares};
   Vector3d sigma = Vector3d::Constant(std::numeric_limits<double>::infinity());
   Adjuster adjuster(all, lines);
   for (;;) {

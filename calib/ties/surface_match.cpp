@@ -24,9 +24,9 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::uint64_t most_cells = 48u << 20;  // 6 bytes each
-constexpr double full_height = 400.0;            // m: squares and cells no longer grow
-constexpr double widest_window = 80.0, smallest_window = 8.0, widest_cell = 1.0, smallest_cell = 0.25;  // m
-constexpr double least_relief = 0.15;                                                                   // m, shared by neighbouring cells
+constexpr double full_square_height = 400.0;     // m: squares and cells no longer grow
+constexpr double widest_window = 80.0, smallest_window = 8.0, widest_cell = 1.0, smallest_match_cell = 0.25;  // m
+constexpr double least_relief = 0.15;  // m, shared by neighbouring cells
 constexpr double least_share = 0.4;    // of the relief's rms that neighbouring cells must share
 constexpr double level_rms = 0.3;      // m: squares without relief below it are level, above it they are woods
 constexpr double relief_cap = 3.0;     // m: more relief than this is not better
@@ -318,9 +318,9 @@ bool meets_turned(const ShotStream& stream, const core::Scanner& scanner, const 
 }  // namespace
 
 SurfaceMatchOptions sized(SurfaceMatchOptions o, double height) {
-  const bool low = height > 0.0 && height < full_height;
-  if (!o.window) o.window = core::Metres(low ? std::max(smallest_window, widest_window * height / full_height) : widest_window);
-  if (!o.cell) o.cell = core::Metres(low ? std::max(smallest_cell, widest_cell * height / full_height) : widest_cell);
+  const bool low = height > 0.0 && height < full_square_height;
+  if (!o.window) o.window = core::Metres(low ? std::max(smallest_window, widest_window * height / full_square_height) : widest_window);
+  if (!o.cell) o.cell = core::Metres(low ? std::max(smallest_match_cell, widest_cell * height / full_square_height) : widest_cell);
   return o;
 }
 

@@ -22,7 +22,7 @@ constexpr double rim_reach = 3.0;   // m: half a window
 constexpr double wall_reach = 1.0;  // m: overhang of eaves and half the distance of returns
 constexpr double foot_reach = 0.7;  // m: the same for the foot of a wall
 constexpr float wall_room = 0.5f;   // m that a roof is higher than the lowest ones, above the foot of a wall
-constexpr size_t fewest = 6;
+constexpr size_t fewest_seen = 6;
 constexpr size_t nearest = 12;           // returns of the roof that make the plane
 constexpr size_t points_at_once = 2048;  // of one thread
 constexpr double flattest = 0.1;         // rms across over rms along the lesser axis of these: less is a plane
@@ -61,7 +61,7 @@ class Surroundings {
     return false;
   }
 
-  /// The `nearest` within rim_reach in plan, seen from p; false where there are fewer than `fewest`.
+  /// The `nearest` within rim_reach in plan, seen from p; false where there are fewer than `fewest_seen`.
   bool nearest_of(size_t p, std::vector<Vector3d>& out) {
     const CellIndex c = cell_of(roofs_.lattice(), block_, p);
     around_.clear();
@@ -74,7 +74,7 @@ class Surroundings {
           nearest)
         break;
     }
-    if (around_.size() < fewest) return false;
+    if (around_.size() < fewest_seen) return false;
     const auto before = [](const auto& a, const auto& o) {
       return std::make_tuple(a.first, a.second.x(), a.second.y(), a.second.z()) <
              std::make_tuple(o.first, o.second.x(), o.second.y(), o.second.z());

@@ -19,18 +19,18 @@
 namespace swath::filters {
 namespace {
 
-constexpr int directions = 16;
-constexpr double grade = 0.15, roughness = 0.2;  // rise / run; m: from cell to cell of a deck
-constexpr double across = 0.06, uneven = 0.3;    // rise / run and m: across a deck, from any of its cells; banks fall by more
-constexpr double fall = 1.0;                     // m beside a deck
-constexpr double sheer = 0.75;                   // rise / run from anywhere in a cell to anywhere in the next: banks fall less steeply
-constexpr double wide_open = 5.0;                // m without returns beside a deck, and at least
-constexpr int open_cells = 5;                    // so many cells
-constexpr double hidden = 12.0;                  // m beside a deck that are looked at; too few for voids where cells are 3 m
-constexpr double banks = 40.0;                   // m from the void beside a deck to returns on both sides of it
-constexpr double parting = 1.5;                  // m by which the sides of water part per metre, at most
+constexpr int deck_directions = 16;
+constexpr double deck_grade = 0.15, deck_roughness = 0.2;  // rise / run; m: from cell to cell of a deck
+constexpr double across = 0.06, uneven = 0.3;              // rise / run and m: across a deck, from any of its cells; banks fall by more
+constexpr double fall_beside = 1.0;                        // m beside a deck
+constexpr double sheer = 0.75;     // rise / run from anywhere in a cell to anywhere in the next: banks fall less steeply
+constexpr double wide_open = 5.0;  // m without returns beside a deck, and at least
+constexpr int open_cells = 5;      // so many cells
+constexpr double hidden = 12.0;    // m beside a deck that are looked at; too few for voids where cells are 3 m
+constexpr double banks = 40.0;     // m from the void beside a deck to returns on both sides of it
+constexpr double parting = 1.5;    // m by which the sides of water part per metre, at most
 constexpr double widest = 30.0, narrowest = 2.0;
-constexpr double shortest = 3.0, bank = 5.0;  // m: of deck; of ground beyond its ends
+constexpr double shortest_deck = 3.0, bank_length = 5.0;  // m: of deck; of ground beyond its ends
 constexpr double finest = 1.5;             // m: cells so small may hold the foot of a deck's edge beside it, lower ground, and say nothing
 constexpr double gap = 3.0, stairs = 2.0;  // m without ground on it: a vehicle; m down to the ground at one of its ends
 constexpr int edge_cells = 3;              // before a void, of the surface
@@ -45,10 +45,10 @@ constexpr double void_at_end = 2.0;                       // m without returns b
 
 constexpr double closed = std::numeric_limits<double>::infinity();
 
-enum class Side : std::uint8_t { level, falls, open };
+enum class DeckSide : std::uint8_t { level, falls, open };
 
-CellIndex ahead(int direction, int k) {
-  const double bearing = 2.0 * core::pi * direction / directions;
+CellIndex cells_ahead(int direction, int k) {
+  const double bearing = 2.0 * core::pi * direction / deck_directions;
   return {static_cast<int>(std::lround(k * std::cos(bearing))), static_cast<int>(std::lround(k * std::sin(bearing)))};
 }
 
@@ -56,14 +56,14 @@ CellIndex ahead(int direction, int k) {
 class Cells {
  public:
   Cells(const core::Block& b, double side, double longest)
-      : lattice_(lattice_around(b, side, 0)), half_(in_cells(widest)), reach_(in_cells(longest + bank)) {
+      : lattice_(lattice_around(b, side, 0)), half_(in_cells(widest)), reach_(in_cells(longest + bank_length)) {
     DeckHeights heights = deck_heights(b, lattice_);
     known_ = open_ = axes_ = strip_ = std::vector<std::uint8_t>(lattice_.size(), 0);
     width_ = narrow_ = std::vector<float>(lattice_.size(), 0.0f);
     top_ = std::move(heights.top), low_ = std::move(heights.low), ground_ = std::move(heights.ground);
-    for (int d = 0; d < directions; ++d)
+    for (int d = 0; d < deck_directions; ++d)
       for (int k = 0; k <= std::max({reach_, half_ + in_cells(hidden), in_cells(banks)}); ++k)
-        ahead_[static_cast<size_t>(d)].push_back(ahead(d, k));
+        ahead_[static_cast<size_t>(d)].push_back(cells_ahead(d, k));
   }
 
   const core::Lattice& lattice() const { return lattice_; }
@@ -73,7 +73,7 @@ class Cells {
   bool is_edge(const CellIndex& at, float level) const {
     for (int v = std::max(at.j - 1, 0); v <= std::min(at.j + 1, lattice_.ny - 1); ++v)
       for (int u = std::max(at.i - 1, 0); u <= std::min(at.i + 1, lattice_.nx - 1); ++u)
-        if (const float low = low_[lattice_.at(u, v)]; std::isnan(low) || static_cast<double>(level - low) >= fall) return true;
+        if (const float low = low_[lattice_.at(u, v)]; std::isnan(low) || static_cast<double>(level - low) >= fall_beside) return true;
     return false;
   }
 
@@ -98,7 +98,7 @@ class Cells {
   /// Cells around which the surface may end: within the widest deck of a void of 3 x 3 cells or of a sheer fall.
   std::vector<std::uint8_t> near_edges() const {
     std::vector<std::uint8_t> out(lattice_.size(), 0);
-    const float drop = static_cast<float>(std::max(fall, 2.0 * sheer * lattice_.cell));
+    const float drop = static_cast<float>(std::max(fall_beside, 2.0 * sheer * lattice_.cell));
     for (int j = 1; j + 1 < lattice_.ny; ++j)
       for (int i = 1; i + 1 < lattice_.nx; ++i) {
         const size_t c = lattice_.at(i, j);
@@ -163,11 +163,11 @@ class Cells {
   bool is_end(int i, int j, std::uint8_t axes, float narrow) const {
     if (lattice_.cell > finest) return false;
     const int least = std::max(bare, in_cells(void_at_end));
-    for (int axis = 0; axis < directions / 2; ++axis) {
+    for (int axis = 0; axis < deck_directions / 2; ++axis) {
       if (!(axes >> axis & 1u)) continue;
       int right = 0, left = 0;
-      if (side(i, j, (axis + directions / 4) % directions, right, least) != Side::level &&
-          side(i, j, (axis + 3 * directions / 4) % directions, left, least) != Side::level &&
+      if (side(i, j, (axis + deck_directions / 4) % deck_directions, right, least) != DeckSide::level &&
+          side(i, j, (axis + 3 * deck_directions / 4) % deck_directions, left, least) != DeckSide::level &&
           (right + left + 1) * lattice_.cell <= static_cast<double>(narrow) + lattice_.cell)
         return true;
     }
@@ -176,7 +176,7 @@ class Cells {
 
   /// Cells from a place to returns in the direction; 0 where none are within `banks`.
   int to_returns(int i, int j, int direction) const {
-    const std::vector<CellIndex>& to = ahead_[static_cast<size_t>(direction % directions)];
+    const std::vector<CellIndex>& to = ahead_[static_cast<size_t>(direction % deck_directions)];
     for (int k = 1; k <= in_cells(banks); ++k) {
       const CellIndex at = to[static_cast<size_t>(k)];
       if (lattice_.holds(i + at.i, j + at.j) && !std::isnan(low_[lattice_.at(i + at.i, j + at.j)])) return k;
@@ -188,8 +188,8 @@ class Cells {
   bool is_between_banks(int i, int j, int direction, int first, int last) const {
     const auto apart = [&](int k) {
       const CellIndex at = ahead_[static_cast<size_t>(direction)][static_cast<size_t>(k)];
-      const int right = to_returns(i + at.i, j + at.j, direction + directions / 4);
-      const int left = to_returns(i + at.i, j + at.j, direction + 3 * directions / 4);
+      const int right = to_returns(i + at.i, j + at.j, direction + deck_directions / 4);
+      const int left = to_returns(i + at.i, j + at.j, direction + 3 * deck_directions / 4);
       return right > 0 && left > 0 ? right + left : 0;
     };
     const int there = apart(last);
@@ -212,36 +212,37 @@ class Cells {
   }
 
   /// What is beside the surface in a direction once it ends, and how many cells on that is. Open are `least_void` cells without returns.
-  Side side(int i, int j, int direction, int& last, int least_void) const {
+  DeckSide side(int i, int j, int direction, int& last, int least_void) const {
     float z = top_[lattice_.at(i, j)];
     int void_cells = 0, first_void = 0;
     last = 0;
     for (int k = 1; k <= last + in_cells(hidden); ++k) {
       const CellIndex to = ahead_[static_cast<size_t>(direction)][static_cast<size_t>(k)];
-      if (!lattice_.holds(i + to.i, j + to.j)) return Side::level;  // unknown
+      if (!lattice_.holds(i + to.i, j + to.j)) return DeckSide::level;  // unknown
       const size_t c = lattice_.at(i + to.i, j + to.j);
       const double run = (k - last) * lattice_.cell;
-      if (has_top(c) && std::abs(top_[c] - z) <= roughness + grade * run) {
+      if (has_top(c) && std::abs(top_[c] - z) <= deck_roughness + deck_grade * run) {
         z = top_[c], last = k, void_cells = 0;
         const double off = std::abs(static_cast<double>(z - top_[lattice_.at(i, j)]));
-        if (last >= half_ || off > uneven + across * k * lattice_.cell) return Side::level;
+        if (last >= half_ || off > uneven + across * k * lattice_.cell) return DeckSide::level;
         continue;
       }
       if (std::isnan(low_[c])) {
         if (void_cells++ == 0) first_void = k;
         if (void_cells >= least_void)
-          return is_sharp(i, j, direction, last) && is_between_banks(i, j, direction, first_void, k) ? Side::open : Side::level;
+          return is_sharp(i, j, direction, last) && is_between_banks(i, j, direction, first_void, k) ? DeckSide::open : DeckSide::level;
         continue;
       }
       if (!ground_[c] && low_[c] - z > near_rail) continue;  // a crown that overhangs shows neither bank nor water
       // Where nothing came back in between there is no bank.
-      const double least = void_cells >= bare && lattice_.cell <= finest ? fall : std::max(fall, sheer * (run + lattice_.cell));
-      if (static_cast<double>(z - low_[c]) >= least) return Side::falls;
+      const double least =
+          void_cells >= bare && lattice_.cell <= finest ? fall_beside : std::max(fall_beside, sheer * (run + lattice_.cell));
+      if (static_cast<double>(z - low_[c]) >= least) return DeckSide::falls;
       const bool sliver = k == last + 1 && ground_[c] && top_[c] < z && lattice_.cell <= finest;
-      if (ground_[c] && !sliver) return Side::level;
+      if (ground_[c] && !sliver) return DeckSide::level;
       void_cells = 0;
     }
-    return Side::level;
+    return DeckSide::level;
   }
 
   /// Does the surface end on both sides of the axis `direction`, as wide as a deck between them, and least wide of all axes?
@@ -249,8 +250,8 @@ class Cells {
     const size_t c = lattice_.at(i, j);
     if (!known_[c]) {
       bool falls = false;
-      std::array<double, directions / 2> wide;
-      for (int d = 0; d < directions / 2; ++d) wide[static_cast<size_t>(d)] = width(i, j, d, falls);
+      std::array<double, deck_directions / 2> wide;
+      for (int d = 0; d < deck_directions / 2; ++d) wide[static_cast<size_t>(d)] = width(i, j, d, falls);
       known_[c] = falls ? 2 : 1;
       const double least = *std::min_element(wide.begin(), wide.end());
       width_[c] = static_cast<float>(least);
@@ -266,10 +267,10 @@ class Cells {
   double width(int i, int j, int axis, bool& falls) const {
     int right = 0, left = 0;
     const int least = std::max(open_cells, in_cells(wide_open));
-    const Side one = side(i, j, (axis + directions / 4) % directions, right, least);
-    const Side other = one == Side::level ? one : side(i, j, (axis + 3 * directions / 4) % directions, left, least);
-    if (other == Side::level) return closed;
-    falls = falls || one == Side::falls || other == Side::falls;
+    const DeckSide one = side(i, j, (axis + deck_directions / 4) % deck_directions, right, least);
+    const DeckSide other = one == DeckSide::level ? one : side(i, j, (axis + 3 * deck_directions / 4) % deck_directions, left, least);
+    if (other == DeckSide::level) return closed;
+    falls = falls || one == DeckSide::falls || other == DeckSide::falls;
     return (right + left + 1) * lattice_.cell;
   }
 
@@ -289,7 +290,7 @@ class Cells {
       if (!lattice_.holds(i + to.i, j + to.j)) return std::nullopt;
       const size_t c = lattice_.at(i + to.i, j + to.j);
       const double run = (k - last) * lattice_.cell;
-      if (!has_top(c) || std::abs(top_[c] - z) > roughness + grade * run) {
+      if (!has_top(c) || std::abs(top_[c] - z) > deck_roughness + deck_grade * run) {
         // Where the water returns something, ground below may be the water itself.
         const bool lower = ground_[c] && top_[c] < z && static_cast<double>(z - top_[c]) <= stairs;
         if (lower && !found.has_stairs && !falls && run > lattice_.cell)
@@ -307,7 +308,7 @@ class Cells {
         land = 0;
       } else {
         land += !(open_[c] >> axis & 1u);
-        if ((k - found.cells) * lattice_.cell >= bank) return land * 2 > k - found.cells ? std::optional(found) : std::nullopt;
+        if ((k - found.cells) * lattice_.cell >= bank_length) return land * 2 > k - found.cells ? std::optional(found) : std::nullopt;
       }
     }
     return std::nullopt;
@@ -319,16 +320,17 @@ class Cells {
   }
 
   bool is_deck(int i, int j) {
-    for (int axis = 0; axis < directions / 2; ++axis) {
+    for (int axis = 0; axis < deck_directions / 2; ++axis) {
       if (!is_strip(i, j, axis)) continue;
       const auto one = way(i, j, axis, axis);
       if (!one) continue;
-      const auto other = way(i, j, axis, axis + directions / 2);
+      const auto other = way(i, j, axis, axis + deck_directions / 2);
       if (!other || (one->has_stairs && other->has_stairs)) continue;
       const int cells = one->cells + other->cells + 1, strips = one->strips + other->strips + 1;
       const double length = cells * lattice_.cell;
       const float narrow = std::min(one->width, other->width);
-      if (length < shortest || length > reach_ * lattice_.cell - bank || strips < share_open * cells || is_wider(lattice_.at(i, j), narrow))
+      if (length < shortest_deck || length > reach_ * lattice_.cell - bank_length || strips < share_open * cells ||
+          is_wider(lattice_.at(i, j), narrow))
         continue;
       narrow_[lattice_.at(i, j)] = narrow;
       axes_[lattice_.at(i, j)] = static_cast<std::uint8_t>(1u << axis);
@@ -348,7 +350,7 @@ class Cells {
   std::vector<float> width_;          ///< m, per cell: least between its edges
   std::vector<float> narrow_;         ///< m, per cell of a deck: least of the deck
   int half_, reach_;                  ///< cells
-  std::array<std::vector<CellIndex>, directions> ahead_;
+  std::array<std::vector<CellIndex>, deck_directions> ahead_;
 };
 
 /// Is return p a railing or parapet at the side of a deck?
@@ -371,7 +373,7 @@ bool is_rail(const Cells& cells, const std::vector<std::uint8_t>& deck, const co
 
 double ground_decks_halo(double longest) {
   return Districts::halo() +
-         std::max(std::hypot(longest + bank + banks, widest + hidden), std::hypot(longest + bank, widest + hidden + banks)) +
+         std::max(std::hypot(longest + bank_length + banks, widest + hidden), std::hypot(longest + bank_length, widest + hidden + banks)) +
          (growth + 3 + deck_heights_reach) * sample_sides.back();
 }
 

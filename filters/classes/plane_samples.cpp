@@ -10,8 +10,8 @@
 namespace swath::filters {
 namespace {
 
-constexpr double widest = sample_sides.back();
-constexpr int cells_of_district = static_cast<int>(district_side / widest);
+constexpr double widest_sample = sample_sides.back();
+constexpr int cells_of_district = static_cast<int>(district_side / widest_sample);
 
 std::uint64_t mixed(std::uint64_t v) {  // the finalizer of splitmix64 (Steele, Lea & Flood 2014)
   v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -36,7 +36,8 @@ Districts districts(const core::Block& b) {
   Districts out;
   out.lattice = lattice_around(b, district_side, 0);
   const core::Lattice& d = out.lattice;
-  const core::Lattice fine{widest, d.i0 * cells_of_district, d.j0 * cells_of_district, d.nx * cells_of_district, d.ny * cells_of_district};
+  const core::Lattice fine{widest_sample, d.i0 * cells_of_district, d.j0 * cells_of_district, d.nx * cells_of_district,
+                           d.ny * cells_of_district};
   std::vector<std::uint32_t> count(fine.size(), 0);
   for (std::size_t p = 0; p < b.size(); ++p) {
     if (!core::is_usable(b, p)) continue;
@@ -54,7 +55,7 @@ Districts districts(const core::Block& b) {
       if (around.empty()) continue;
       const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
       std::nth_element(around.begin(), middle, around.end());
-      const double density = *middle / (widest * widest);
+      const double density = *middle / (widest_sample * widest_sample);
       for (std::size_t k = sample_sides.size(); k-- > 0;)
         if (sample_sides[k] * sample_sides[k] * density >= returns_of_cell) out.side[d.at(i, j)] = static_cast<std::uint8_t>(k);
     }

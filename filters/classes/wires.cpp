@@ -27,16 +27,16 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using namespace wire;
 
-constexpr double reach = 25.0;           // m from the point
-constexpr double longest_gap = 7.0;      // m between returns of one wire
-constexpr double widest_gap = 16.0;      // m between groups of returns where lines of scan run nearly along it
-constexpr int fewest_over_gaps = 7;      // returns on the line with such gaps
-constexpr double tube_bin = 1.7;         // m: holds what is within the tube and half a step of it along the line
-constexpr double sleeve = 0.5;           // m around the line: empty beside a wire, not beside the edge of a surface
-constexpr double most_close = 0.1;       // points in it, of the returns on the line
-constexpr double most_bent = 0.01;       // 1 / m: twice that of a catenary of parameter 200 m; as much downwards, for noise
-constexpr size_t points_at_once = 1024;  // of one thread
-constexpr double thinned = 1.0;          // m: of each cube of this side one return takes part in the search for lines
+constexpr double reach = 25.0;                // m from the point
+constexpr double longest_gap = 7.0;           // m between returns of one wire
+constexpr double widest_line_gap = 16.0;      // m between groups of returns where lines of scan run nearly along it
+constexpr int fewest_over_gaps = 7;           // returns on the line with such gaps
+constexpr double tube_bin = 1.7;              // m: holds what is within the tube and half a step of it along the line
+constexpr double sleeve = 0.5;                // m around the line: empty beside a wire, not beside the edge of a surface
+constexpr double most_close = 0.1;            // points in it, of the returns on the line
+constexpr double most_bent = 0.01;            // 1 / m: twice that of a catenary of parameter 200 m; as much downwards, for noise
+constexpr size_t wire_points_at_once = 1024;  // of one thread
+constexpr double thinned = 1.0;               // m: of each cube of this side one return takes part in the search for lines
 
 /// u along, v across in plan, both from the point; w = level + rise u + bend u^2 / 2 in height.
 struct Line {
@@ -113,7 +113,7 @@ class Search {
     std::vector<std::uint8_t> out(block_.size(), 0);
     const Bins wide(block_, reach / bins_of_reach, 0, [this](size_t p) { return few_[p] != 0; });
     const auto mark = [&](const auto& may_be) {
-      core::in_parallel(block_.size(), points_at_once, [&](size_t from, size_t to) {
+      core::in_parallel(block_.size(), wire_points_at_once, [&](size_t from, size_t to) {
         LinesThrough lines(*this, wide);
         for (size_t p = from; p < to; ++p)
           if (needed.holds(block_, p) && may_be(p)) out[p] = lines.any(p);
@@ -137,7 +137,7 @@ class Search {
     std::vector<std::uint8_t> out = found;
     if (std::find(found.begin(), found.end(), 1) == found.end()) return out;
     const Bins lines(block_, shortest / bins_of_reach, 0, [&](size_t p) { return found[p] != 0; });
-    core::in_parallel(own, points_at_once, [&](size_t from, size_t to) {
+    core::in_parallel(own, wire_points_at_once, [&](size_t from, size_t to) {
       WireNeighbours around;
       for (size_t p = from; p < to; ++p) {
         if (!airy_[p] || found[p]) continue;
@@ -203,15 +203,16 @@ class Search {
       if (line->off(q) <= on_line) on.push_back(line->u(q));
     std::sort(on.begin(), on.end());
     const auto here = std::lower_bound(on.begin(), on.end(), line->u(Vector3d::Zero()));
-    return is_clear_stretch(p, *line, on, here, longest_gap, fewest) || is_clear_stretch(p, *line, on, here, widest_gap, fewest_over_gaps);
+    return is_clear_stretch(p, *line, on, here, longest_gap, fewest) ||
+           is_clear_stretch(p, *line, on, here, widest_line_gap, fewest_over_gaps);
   }
 
   /// May there be a stretch of line around the point itself, the first of the places? Before the line is fitted.
   static bool has_stretch(std::vector<double>& on) {
     std::sort(on.begin(), on.end());
     auto first = std::lower_bound(on.begin(), on.end(), 0.0), last = first;
-    while (first != on.begin() && *first - *(first - 1) <= widest_gap + near_line) --first;
-    while (last + 1 != on.end() && *(last + 1) - *last <= widest_gap + near_line) ++last;
+    while (first != on.begin() && *first - *(first - 1) <= widest_line_gap + near_line) --first;
+    while (last + 1 != on.end() && *(last + 1) - *last <= widest_line_gap + near_line) ++last;
     return last - first + 1 >= fewest && *last - *first >= shortest - near_line;
   }
 

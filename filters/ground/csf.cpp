@@ -36,7 +36,7 @@ constexpr double gravity = 0.2;     // authors' value
 constexpr double damping = 0.01;    // of the velocity, per step; authors' value
 constexpr double at_rest = 0.005;   // m: largest movement in a step of a cloth that has come to rest; authors' value
 constexpr float slope_step = 0.3F;  // m: h_cp, between neighbours that the cloth is laid down on; authors' value
-constexpr float void_value = std::numeric_limits<float>::quiet_NaN();
+constexpr float no_height = std::numeric_limits<float>::quiet_NaN();
 
 /// The cloth over one patch, n x n particles at the centres of lattice cells.
 class Cloth {
@@ -94,7 +94,7 @@ class Cloth {
     const int i = std::clamp(static_cast<int>(std::floor(u)), 0, stop_.nx - 2),
               j = std::clamp(static_cast<int>(std::floor(v)), 0, stop_.ny - 2);
     const double fu = u - i, fv = v - j;
-    const auto h = [&](int a, int b) { return there_[stop_.at(a, b)] > 0 ? height_[stop_.at(a, b)] : static_cast<double>(void_value); };
+    const auto h = [&](int a, int b) { return there_[stop_.at(a, b)] > 0 ? height_[stop_.at(a, b)] : static_cast<double>(no_height); };
     return (h(i, j) * (1 - fu) + h(i + 1, j) * fu) * (1 - fv) + (h(i, j + 1) * (1 - fu) + h(i + 1, j + 1) * fu) * fv;
   }
 
@@ -153,9 +153,9 @@ class Cloth {
 };
 
 /// Squares of whole particles.
-struct Squares {
+struct ClothSquares {
   int side, margin;  // particles
-  explicit Squares(const CsfOptions& o)
+  explicit ClothSquares(const CsfOptions& o)
       : side(static_cast<int>(std::ceil(2.0 * o.span.value / o.resolution.value - 1e-9))),
         margin(static_cast<int>(std::ceil(o.span.value / o.resolution.value - 1e-9))) {}
   Patching patching(const CsfOptions& o) const { return {side * o.resolution.value, margin * o.resolution.value}; }
@@ -163,7 +163,7 @@ struct Squares {
 
 /// Height of the inverted cloud under each particle: that of the point nearest to it in its cell, or between those around.
 Raster inverted_surface(const core::Block& b, const Patch& patch, const core::Lattice& l, int reach) {
-  Raster surface(l.nx, l.ny, void_value);
+  Raster surface(l.nx, l.ny, no_height);
   std::vector<double> nearest(l.size(), std::numeric_limits<double>::infinity());
   for (const std::uint32_t p : patch.rows) {
     const CellIndex c = cell_of(l, b, p);
@@ -179,12 +179,12 @@ Raster inverted_surface(const core::Block& b, const Patch& patch, const core::La
 
 }  // namespace
 
-double halo(const CsfOptions& o) { return Squares(o).patching(o).halo(); }
+double halo(const CsfOptions& o) { return ClothSquares(o).patching(o).halo(); }
 
 GroundCounts classify_ground_csf(core::Block& b, size_t own, const CsfOptions& o) {
   std::vector<Verdict> verdicts(b.size(), Verdict::object);
   const auto takes_part = [&b](size_t p) { return may_be_ground(b, p); };
-  const Squares squares(o);
+  const ClothSquares squares(o);
   for_each_patch(b, own, squares.patching(o), takes_part, [&](const Patch& patch) {
     const double cell = o.resolution.value;
     const int particles = squares.side + 2 * squares.margin;

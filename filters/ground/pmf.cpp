@@ -34,7 +34,7 @@ namespace swath::filters {
 namespace {
 
 constexpr float base = 2.0F;  // Zhang2003, b
-constexpr Inpainting gap_filling{.reach = 10, .relax = 0, .extrapolate = true};
+constexpr Inpainting pmf_filling{.reach = 10, .relax = 0, .extrapolate = true};
 constexpr int patch_windows = 4;  // side of a patch in widest windows
 
 /// Windows in cells, up to the first that is at least the largest. Zhang2003 eq 4 and 5.
@@ -48,7 +48,7 @@ std::vector<double> windows(const PmfOptions& o) {
 
 /// Cells.
 struct Squares {
-  int side = 0, margin = gap_filling.support() + 1;
+  int side = 0, margin = pmf_filling.support() + 1;
 
   explicit Squares(const PmfOptions& o) {
     for (const double w : windows(o)) {
@@ -117,7 +117,7 @@ GroundCounts classify_ground_pmf(core::Block& b, size_t own, const PmfOptions& o
     Raster surface(n, n, std::numeric_limits<float>::quiet_NaN());
     for (size_t c = 0; c < lowest.size(); ++c)
       if (lowest[c]) surface.value[c] = static_cast<float>(b.z[*lowest[c]] - datum);
-    const std::vector<bool> ground = ground_cells(inpaint(surface, gap_filling), o);
+    const std::vector<bool> ground = ground_cells(inpaint(surface, pmf_filling), o);
 
     for (const std::uint32_t p : patch.rows) {
       if (!patch.owns(b.origin.x() + b.x[p], b.origin.y() + b.y[p])) continue;

@@ -11,7 +11,7 @@
 namespace swath::filters {
 namespace {
 
-constexpr int district = 8;             // cells, a side of the squares that the usual number is counted for
+constexpr int district_cells = 8;       // cells, a side of the squares that the usual number is counted for
 constexpr int districts_around = 2;     // on each side
 constexpr double usual_returns = 50.0;  // in the circle
 
@@ -41,11 +41,11 @@ std::vector<double> usual_counts(const core::Lattice& l, const std::vector<std::
   std::vector<double> out(l.size(), 0.0);
   if (l.size() == 0) return out;
   std::vector<std::uint32_t> sorted;
-  for (std::int64_t v = core::floor_div(l.j0, district); v <= core::floor_div(l.j0 + l.ny - 1, district); ++v)
-    for (std::int64_t u = core::floor_div(l.i0, district); u <= core::floor_div(l.i0 + l.nx - 1, district); ++u) {
+  for (std::int64_t v = core::floor_div(l.j0, district_cells); v <= core::floor_div(l.j0 + l.ny - 1, district_cells); ++v)
+    for (std::int64_t u = core::floor_div(l.i0, district_cells); u <= core::floor_div(l.i0 + l.nx - 1, district_cells); ++u) {
       const auto range = [](std::int64_t from, std::int64_t to, std::int64_t first, int n) {
-        return std::pair{static_cast<int>(std::max<std::int64_t>(from * district - first, 0)),
-                         static_cast<int>(std::min<std::int64_t>(to * district - first, n))};
+        return std::pair{static_cast<int>(std::max<std::int64_t>(from * district_cells - first, 0)),
+                         static_cast<int>(std::min<std::int64_t>(to * district_cells - first, n))};
       };
       const auto [i0, i1] = range(u - districts_around, u + districts_around + 1, l.i0, l.nx);
       const auto [j0, j1] = range(v - districts_around, v + districts_around + 1, l.j0, l.ny);

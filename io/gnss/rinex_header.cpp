@@ -130,14 +130,14 @@ std::string_view name_of(RinexKind k) {
   return names[static_cast<size_t>(k)];
 }
 
-struct Found {
+struct FoundLabel {
   RinexHeader header;
   Clock clock;
   int observation_types = 0;  // version 2
 };
 
 /// A header record that also may come between epochs.
-void take(const Lines& lines, const std::string& line, Found& f) {
+void take(const Lines& lines, const std::string& line, FoundLabel& f) {
   const std::string label = field(line, 60, 20);
   RinexHeader& h = f.header;
   if (label == "MARKER NAME") h.marker = field(line, 0, 60);
@@ -165,7 +165,7 @@ void take(const Lines& lines, const std::string& line, Found& f) {
   }
 }
 
-Found read_header(Lines& lines) {
+FoundLabel read_header(Lines& lines) {
   std::string line;
   if (!lines.next(line)) lines.fail("the file is empty");
   if (field(line, 60, 20) == "CRINEX VERS   / TYPE")
@@ -176,7 +176,7 @@ Found read_header(Lines& lines) {
   if (kind != RinexKind::observations)
     lines.fail("holds " + std::string(name_of(kind)) + (kind == RinexKind::other ? "" : ", no observations"),
                "observations are expected here: RINEX 2, 3 or 4, type O");
-  Found f;
+  FoundLabel f;
   f.header.version = number(lines, line, 0, 9);
   if (!(f.header.version >= 2.0 && f.header.version < 5.0)) lines.fail("RINEX version " + field(line, 0, 9) + " is not read (2 to 4 are)");
   if (line.size() > 40 && line[40] != ' ') f.header.system = line[40];
@@ -191,7 +191,7 @@ Found read_header(Lines& lines) {
 }
 
 /// Steps to the next epoch of measurements and reads its time; false at the end of the file.
-bool next_epoch(Lines& lines, std::string& line, Found& f, double& time) {
+bool next_epoch(Lines& lines, std::string& line, FoundLabel& f, double& time) {
   const bool new_form = f.header.version >= 3.0;
   while (lines.next(line)) {
     if (new_form ? line.empty() || line[0] != '>' : field(line, 0, line.size()).empty()) continue;
@@ -235,7 +235,7 @@ RinexHeader read_rinex_header(const fs::path& file) {
 
 RinexObservations scan_rinex(const fs::path& file) {
   Lines lines(file);
-  Found found = read_header(lines);
+  FoundLabel found = read_header(lines);
   RinexObservations out;
   std::map<std::int64_t, std::uint64_t> steps;  // 0.1 ms -> count
   std::string line;

@@ -13,14 +13,14 @@
 namespace swath::io {
 namespace {
 
-struct System {
+struct SystemBit {
   std::string_view name;
   int bit;
 };
-constexpr std::array<System, 6> systems_known{{{"gps", 1}, {"sbas", 2}, {"glonass", 4}, {"galileo", 8}, {"qzss", 16}, {"beidou", 32}}};
+constexpr std::array<SystemBit, 6> systems_known{{{"gps", 1}, {"sbas", 2}, {"glonass", 4}, {"galileo", 8}, {"qzss", 16}, {"beidou", 32}}};
 
-const System* find_system(std::string_view name) {
-  const auto* at = std::find_if(systems_known.begin(), systems_known.end(), [&](const System& s) { return s.name == name; });
+const SystemBit* find_system(std::string_view name) {
+  const auto* at = std::find_if(systems_known.begin(), systems_known.end(), [&](const SystemBit& s) { return s.name == name; });
   return at == systems_known.end() ? nullptr : at;
 }
 
@@ -70,7 +70,7 @@ std::string rtklib_config(const RtklibOptions& o, const RtklibSetup& setup) {
   const bool precise = setup.precise_orbits, phase_centres = !setup.antenna_file.empty();
   int systems = 0;
   for (const std::string& name : o.systems)
-    if (const System* s = find_system(name)) systems |= s->bit;
+    if (const SystemBit* s = find_system(name)) systems |= s->bit;
   std::string excluded;
   for (const std::string& name : o.exclude) excluded += (excluded.empty() ? "" : " ") + name;
 

@@ -20,7 +20,7 @@ constexpr std::uint64_t group_points = 100;  // that count as a part of the clou
 constexpr double one_place = 1e-3;           // of a cell
 constexpr double max_wild = 0.25;            // of the points: where more are far from the others, none is known to be wrong
 constexpr std::uint64_t min_points = 20;     // of a cloud that is judged
-constexpr size_t batch = 1u << 16;
+constexpr size_t extent_batch = 1u << 16;
 
 /// Cells that a quarter of the points lies below, and above.
 std::pair<std::int64_t, std::int64_t> middle_half(std::vector<std::pair<std::int64_t, std::uint64_t>> cells, std::uint64_t points) {
@@ -178,7 +178,7 @@ FileExtent extent_of_cloud(const std::filesystem::path& file, double cell, doubl
   FileExtent out{CloudExtent(cell)};
   LasReader reader(file, threads);
   LasPoints points;
-  if (reader.read(points, batch) == 0) return out;
+  if (reader.read(points, extent_batch) == 0) return out;
   const LasHeader& h = reader.header();
   if (is_plausible_box(h, cell, points) && h.min.z() >= lowest && h.max.z() <= highest)
     return {CloudExtent::of_box(cell, h.min.head<2>(), h.max.head<2>(), h.point_count)};
@@ -189,7 +189,7 @@ FileExtent extent_of_cloud(const std::filesystem::path& file, double cell, doubl
       beyond += !(points.z[i] >= lowest && points.z[i] <= highest);
     }
     all += static_cast<double>(points.size());
-  } while (reader.read(points, batch) > 0);
+  } while (reader.read(points, extent_batch) > 0);
   out.places.settle();
   out.has_few_wild_heights = beyond <= max_wild * all;
   return out;

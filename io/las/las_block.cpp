@@ -24,7 +24,7 @@ double rounded(core::Column c, double v) {
   return c == core::Column::ground_probability ? std::round(v * per_one) / per_one : v;
 }
 
-[[noreturn]] void fail(const std::string& what, const std::string& where, std::uint64_t row, const std::string& hint) {
+[[noreturn]] void fail_at(const std::string& what, const std::string& where, std::uint64_t row, const std::string& hint) {
   throw core::Error(what, where + ": point " + std::to_string(row), hint);
 }
 
@@ -110,9 +110,9 @@ void block_to_las_points(const core::Block& block, const LasHeader& header, std:
     for (std::size_t i = 0; i < n; ++i) {
       const double raw = std::round((from[i] + shift[axis]) / header.scale[axis]);
       if (!(raw >= std::numeric_limits<std::int32_t>::min() && raw <= std::numeric_limits<std::int32_t>::max()))
-        fail(std::string(1, "xyz"[axis]) + " = " + std::to_string(from[i] + block.origin[axis]) + " does not fit scale " +
-                 std::to_string(header.scale[axis]) + " and offset " + std::to_string(header.offset[axis]),
-             where, first + i, "choose a coarser scale or an offset near the data");
+        fail_at(std::string(1, "xyz"[axis]) + " = " + std::to_string(from[i] + block.origin[axis]) + " does not fit scale " +
+                    std::to_string(header.scale[axis]) + " and offset " + std::to_string(header.offset[axis]),
+                where, first + i, "choose a coarser scale or an offset near the data");
       to[i] = static_cast<std::int32_t>(raw);
     }
   };

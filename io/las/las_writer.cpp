@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint32_t chunk_points = 50000;
 constexpr std::size_t records_at_once = 1u << 16;
 
-struct CloseLaz {
+struct CloseLazWriter {
   void operator()(swath_laz_writer* w) const { swath_laz_writer_close(w); }
 };
 struct CloseFile {
@@ -41,7 +41,7 @@ struct LasRawWriter::State {
   OutputFile output;
   unsigned threads;
   std::unique_ptr<std::FILE, CloseFile> out;
-  std::unique_ptr<swath_laz_writer, CloseLaz> laz;
+  std::unique_ptr<swath_laz_writer, CloseLazWriter> laz;
   std::array<std::int32_t, 3> low{}, high{};
   std::vector<std::uint8_t> records;
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr size_t header_bytes = 2048;
 constexpr size_t pulse_bytes = 69;
-constexpr size_t chunk = 8192;
+constexpr size_t csd_chunk = 8192;
 
 std::string text_at(const unsigned char* at, size_t n) {
   size_t length = 0;
@@ -116,8 +116,8 @@ core::TrajectoryData read_csd_trajectory(CsdReader& file, core::Seconds spacing,
   core::TrajectoryData out;
   std::vector<CsdPulse> pulses;
   double last = -std::numeric_limits<double>::infinity();
-  for (std::uint64_t first = 0; first < file.pulses(); first += chunk) {
-    const size_t n = static_cast<size_t>(std::min<std::uint64_t>(chunk, file.pulses() - first));
+  for (std::uint64_t first = 0; first < file.pulses(); first += csd_chunk) {
+    const size_t n = static_cast<size_t>(std::min<std::uint64_t>(csd_chunk, file.pulses() - first));
     file.read(first, n, pulses);
     for (size_t i = 0; i < n; ++i) {
       const CsdPulse& p = pulses[i];

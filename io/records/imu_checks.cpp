@@ -22,7 +22,7 @@ constexpr double sure = 0.15;                // of gravity: a unit that comes as
 constexpr double level = 20.0, side = 45.0;  // deg between the median of the specific force and up
 constexpr double fast = 0.15;                // rad/s: a turn at twice the standard rate is 0.1, a car's corner 0.5 but not all the time
 constexpr double impossible = 1.0;           // rad/s
-constexpr double slow = 0.05 * core::degree;
+constexpr double slow_turn = 0.05 * core::degree;
 
 std::string text(const char* format, double a, double b = 0, double c = 0) {
   std::array<char, 160> out{};
@@ -125,7 +125,7 @@ void check_rate(const Seconds& s, const std::string& name, core::Tally& tally) {
   std::vector<double> sorted = s.rate;
   std::sort(sorted.begin(), sorted.end());
   const double most = sorted[static_cast<size_t>(0.99 * static_cast<double>(sorted.size() - 1))];
-  if (most < slow)
+  if (most < slow_turn)
     tally.count("IMU files that hardly turn: radians stated as degrees, or it stood still",
                 name + ": " + text("99 %% of the seconds turn by less than %.2g deg/s", core::to_degrees(most)));
 }

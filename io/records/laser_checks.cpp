@@ -14,9 +14,9 @@
 namespace swath::io {
 namespace {
 
-constexpr size_t looked_at = 20000;                   // returns of a line: some sweeps of the mirror
-constexpr double shortest = 1.0, farthest = 15000.0;  // m, median ranges of a survey
-constexpr double coarse = 0.1;                        // m
+constexpr size_t looked_at = 20000;                              // returns of a line: some sweeps of the mirror
+constexpr double shortest_range = 1.0, longest_range = 15000.0;  // m, median ranges of a survey
+constexpr double coarse = 0.1;                                   // m
 constexpr size_t enough_ranges = 200, different = 12;
 constexpr double still = 0.05 * core::degree;  // a mirror that is parked at nadir stays within
 constexpr double narrow = 1.2 * core::degree;  // no mirror sweeps so little; 60 deg read as radians stay within
@@ -42,7 +42,7 @@ void check_beams(const Survey& survey, const StripInfo& strip, core::Tally& tall
   if (!source.next(shots, looked_at) || shots.range.empty()) return;
   const LaserFile& file = survey.laser[strip.file];
   const double range = core::median(std::vector<double>(shots.range.begin(), shots.range.end()));
-  if (range < shortest || range > farthest)
+  if (range < shortest_range || range > longest_range)
     tally.count("flight lines whose ranges are those of no survey: check range_unit",
                 strip.name(survey) + ": median " + shown(range, " m"));
   if (!file.columns.range.empty() && are_whole(shots.range, file.range_unit.value))

@@ -18,13 +18,13 @@ namespace swath::io {
 namespace {
 
 /// The columns that a survey names and where their values go.
-struct Columns {
+struct RecordColumns {
   std::vector<std::string> names;
   std::vector<std::vector<double> LaserRecords::*> to;
 };
 
-Columns columns_of(const LaserColumns& c, Wanted wanted) {
-  Columns out;
+RecordColumns columns_of(const LaserColumns& c, Wanted wanted) {
+  RecordColumns out;
   const auto add = [&](const std::string& name, std::vector<double> LaserRecords::*to) {
     if (name.empty()) return;
     out.names.push_back(name);
@@ -77,7 +77,7 @@ class TextRecords : public LaserRecordReader {
     for (const std::string& name : columns_.names) out.push_back(column_of(layout_, name, path));
     return out;
   }
-  Columns columns_;
+  RecordColumns columns_;
   bool places_;
   DelimitedLayout layout_;
   DelimitedReader reader_;
@@ -107,7 +107,7 @@ class NpyRecords : public LaserRecordReader {
     for (const std::string& name : columns_.names) out.push_back(field_of(header, name, path));
     return out;
   }
-  Columns columns_;
+  RecordColumns columns_;
   NpyReader reader_;
   std::uint64_t record_, end_;
   std::vector<std::vector<double>> values_;

@@ -19,7 +19,7 @@
 namespace swath::io {
 namespace {
 
-constexpr size_t chunk = 4096;
+constexpr size_t sbet_chunk = 4096;
 constexpr double arc_minute = core::degree / 60.0;
 
 static_assert(sizeof(SbetRecord) == sbet_bytes && sizeof(SmrmsgRecord) == smrmsg_bytes);
@@ -213,8 +213,8 @@ core::TrajectoryData read_sbet(const std::filesystem::path& path, const TimeTags
   std::vector<double> recorded;
   std::optional<core::Error> degrees;
   std::uint64_t no_radians = 0;
-  for (std::uint64_t first = 0; first < file.records(); first += chunk) {
-    file.read(first, static_cast<size_t>(std::min<std::uint64_t>(chunk, file.records() - first)), rows);
+  for (std::uint64_t first = 0; first < file.records(); first += sbet_chunk) {
+    file.read(first, static_cast<size_t>(std::min<std::uint64_t>(sbet_chunk, file.records() - first)), rows);
     for (size_t i = 0; i < rows.size(); ++i) {
       const SbetRecord& r = rows[i];
       if (std::abs(r.latitude) > core::pi / 2 || std::abs(r.longitude) > 2 * core::pi) {

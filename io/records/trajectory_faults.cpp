@@ -24,7 +24,7 @@ constexpr double near = 100.0;                 // m: what a position may be off 
 constexpr double impossible_speed = 1000.0;    // m/s
 constexpr double max_turns = 4 * core::pi;     // rad: angles are written within one turn, by some within two
 constexpr double turn = 0.5, turn_rate = 3.0;  // rad, rad/s
-constexpr double steep = core::pi / 3;         // rad: pitch beyond which roll and heading are not well determined
+constexpr double steep_pitch = core::pi / 3;   // rad: pitch beyond which roll and heading are not well determined
 
 /// Name of the first column whose value is not finite; empty where all are.
 std::string not_finite(const core::TrajectoryData& t, size_t i) {
@@ -81,7 +81,7 @@ std::vector<PoseFault> pose_faults(const core::TrajectoryData& t) {
   judge(PoseFault::attitude, [&](size_t i, size_t j) {
     const double most = turn + turn_rate * apart(i, j);
     if (std::abs(t.pitch[i] - t.pitch[j]) > most) return true;
-    if (std::max(std::abs(t.pitch[i]), std::abs(t.pitch[j])) > steep) return false;
+    if (std::max(std::abs(t.pitch[i]), std::abs(t.pitch[j])) > steep_pitch) return false;
     return std::abs(core::wrap_pi(t.roll[i] - t.roll[j])) > most || std::abs(core::wrap_pi(t.heading[i] - t.heading[j])) > most;
   });
   return out;

@@ -93,9 +93,9 @@ class Tables {
 };
 
 /// Holds names and observations to their rules, and fills in what they leave to the instrument.
-class Checks {
+class HangarChecks {
  public:
-  Checks(HangarSurvey& hangar) : h_(hangar), file_(hangar.file.string()) {}
+  HangarChecks(HangarSurvey& hangar) : h_(hangar), file_(hangar.file.string()) {}
 
   void run() {
     for (const HangarTarget& t : h_.targets) add(t.name, "target");
@@ -228,7 +228,7 @@ HangarSurvey read_hangar(const fs::path& file) {
   note_places(tree, "angle", h.angles);
   note_places(tree, "vertical", h.verticals);
   Tables(h).read();
-  Checks(h).run();
+  HangarChecks(h).run();
   return h;
 }
 

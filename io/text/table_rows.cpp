@@ -12,9 +12,9 @@ namespace {
 
 constexpr size_t chunk = 8192;  // rows
 
-class TextRows : public TableRows {
+class DelimitedRows : public TableRows {
  public:
-  TextRows(const std::filesystem::path& file, const DelimitedLayout& layout, std::vector<size_t> columns)
+  DelimitedRows(const std::filesystem::path& file, const DelimitedLayout& layout, std::vector<size_t> columns)
       : name_(file.string()), cut_(layout.cut_line), reader_(file, layout, std::move(columns)) {}
   std::uint64_t cut_line() const override { return cut_; }
   bool next(double* values) override { return reader_.next(values); }
@@ -58,7 +58,7 @@ std::unique_ptr<TableRows> open_table(const std::filesystem::path& file, RecordF
     case RecordFormat::text: {
       const DelimitedLayout layout = inspect_delimited(file, delimiter);
       for (const std::string& c : columns) at.push_back(column_of(layout, c, file));
-      return std::make_unique<TextRows>(file, layout, std::move(at));
+      return std::make_unique<DelimitedRows>(file, layout, std::move(at));
     }
     case RecordFormat::npy: {
       const NpyHeader header = read_npy_header(file);

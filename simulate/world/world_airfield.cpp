@@ -19,7 +19,7 @@ constexpr double flattest = 20 * core::degree, steepest = 45 * core::degree;  //
 constexpr double roof_fall = 0.02;                                            // steepest slope of the flat roof
 constexpr double rim = 0.46;                                                  // share of the area's sides where trees stand
 
-Vector2d unit(double bearing) { return {std::sin(bearing), std::cos(bearing)}; }
+Vector2d along_bearing(double bearing) { return {std::sin(bearing), std::cos(bearing)}; }
 
 /// 0 .. n - 1 in an order of the random numbers.
 std::vector<int> shuffled(int n, Random& random) {
@@ -44,7 +44,7 @@ double World::highest_corner(const Vector2d& centre, const Vector2d& along, doub
 
 void World::plan_airfield(const WorldOptions& options, const Features& f, std::int64_t seed, core::Radians direction) {
   Random random = random_of(seed, Stream::buildings);
-  const Vector2d along = unit(direction.value), across(along.y(), -along.x());
+  const Vector2d along = along_bearing(direction.value), across(along.y(), -along.x());
   const double length = options.length.value, width = options.width.value, hectares = length * width / 1e4;
   const auto clash = [&](const Vector2d& p, double radius) {
     return std::any_of(buildings_.begin(), buildings_.end(),
@@ -56,7 +56,7 @@ void World::plan_airfield(const WorldOptions& options, const Features& f, std::i
     const double base = highest_corner(Vector2d::Zero(), along, s.half_length, s.half_width);
     add_building(Vector2d::Zero(), along, s.half_length, s.half_width, base + s.height, 0.0, core::point_class::building);
     // The roof falls a little, in a direction of the seed's; it stays a plane.
-    const Vector2d fall = random.uniform(0.0, roof_fall) * unit(random.uniform(0, 2 * core::pi));
+    const Vector2d fall = random.uniform(0.0, roof_fall) * along_bearing(random.uniform(0, 2 * core::pi));
     const Vector3d normal = Vector3d(fall.x(), fall.y(), 1.0).normalized();
     Building& b = buildings_.back();
     b.planes.back() << normal, normal.z() * (base + s.height);
@@ -78,7 +78,7 @@ void World::plan_airfield(const WorldOptions& options, const Features& f, std::i
     const double half_length = 0.5 * scale * (12.0 + 28.0 * (sizes[at] + random.uniform()) / halls);
     const double half_width = half_length * random.uniform(0.55, 0.8);
     const double slope = flattest + (steepest - flattest) * (slopes[at] + random.uniform()) / halls;
-    const Vector2d ridge = unit(direction.value + core::pi * (ridges[at] + random.uniform()) / halls);
+    const Vector2d ridge = along_bearing(direction.value + core::pi * (ridges[at] + random.uniform()) / halls);
     const double eaves = random.uniform(3.5, 7.0), radius = std::hypot(half_length, half_width);
     const Vector2d corner(-0.5 * length + cell.x() * (c % columns), -0.5 * width + cell.y() * (c / columns));
     const double margin_x = std::min(radius, 0.5 * cell.x()), margin_y = std::min(radius, 0.5 * cell.y());

@@ -23,7 +23,7 @@ constexpr double thinnest = 0.05;    // of a cell, from a removed vertex to the 
 constexpr double longest = 32.0;     // cells that a segment may bridge
 constexpr double bucket_side = 1.0;  // cells
 
-double cross(const Point& a, const Point& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross_of(const Point& a, const Point& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 double distance(const Point& p, const Point& a, const Point& b) {
   const Point d = b - a;
@@ -33,7 +33,7 @@ double distance(const Point& p, const Point& a, const Point& b) {
 }
 
 bool cross_each_other(const Point& a, const Point& b, const Point& c, const Point& d) {
-  const double c1 = cross(b - a, c - a), c2 = cross(b - a, d - a), d1 = cross(d - c, a - c), d2 = cross(d - c, b - c);
+  const double c1 = cross_of(b - a, c - a), c2 = cross_of(b - a, d - a), d1 = cross_of(d - c, a - c), d2 = cross_of(d - c, b - c);
   return ((c1 > 0) != (c2 > 0)) && ((d1 > 0) != (d2 > 0));
 }
 
@@ -48,7 +48,7 @@ bool apart(const Point& a, const Point& b, const Point& c, const Point& d, doubl
 bool inside(const Point& p, const Point& a, const Point& b, const Point& c) {
   const Point low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
   if (p.x() < low.x() || p.y() < low.y() || p.x() > high.x() || p.y() > high.y()) return false;  // where the triangle is flat
-  const double s = cross(b - a, p - a), t = cross(c - b, p - b), u = cross(a - c, p - c);
+  const double s = cross_of(b - a, p - a), t = cross_of(c - b, p - b), u = cross_of(a - c, p - c);
   return (s >= 0 && t >= 0 && u >= 0) || (s <= 0 && t <= 0 && u <= 0);
 }
 

@@ -14,7 +14,7 @@ namespace swath::terrain {
 namespace {
 
 /// CGAL's exact predicates; notes when a place was found on a circle.
-struct Kernel : CGAL::Exact_predicates_inexact_constructions_kernel {
+struct LatticeKernel : CGAL::Exact_predicates_inexact_constructions_kernel {
   using Exact = CGAL::Exact_predicates_inexact_constructions_kernel;
   struct Side_of_oriented_circle_2 {
     bool* met;
@@ -30,10 +30,9 @@ struct Kernel : CGAL::Exact_predicates_inexact_constructions_kernel {
 struct FaceNumber {
   std::int32_t value = -1;
 };
-using Triangulation =
-    CGAL::Delaunay_triangulation_2<Kernel,
-                                   CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel>,
-                                                                        CGAL::Triangulation_face_base_with_info_2<FaceNumber, Kernel>>>;
+using Triangulation = CGAL::Delaunay_triangulation_2<
+    LatticeKernel, CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, LatticeKernel>,
+                                                        CGAL::Triangulation_face_base_with_info_2<FaceNumber, LatticeKernel>>>;
 
 size_t number_of(Triangulation::Face_handle f) { return static_cast<size_t>(f->info().value); }
 
@@ -58,7 +57,7 @@ struct Delaunay::Cgal {
 
   Cgal() : triangulation(kernel()) {}
   void insert(const Place& p, std::int32_t number) {
-    const auto v = triangulation.insert(Kernel::Point_2(p.x, p.y), near);
+    const auto v = triangulation.insert(LatticeKernel::Point_2(p.x, p.y), near);
     v->info() = number;
     near = v->face();
     if (copied) fresh.push_back(v);
@@ -66,8 +65,8 @@ struct Delaunay::Cgal {
   }
 
  private:
-  Kernel kernel() {
-    Kernel k;
+  LatticeKernel kernel() {
+    LatticeKernel k;
     k.met = &met;
     return k;
   }

@@ -10,7 +10,7 @@ namespace swath::terrain {
 namespace {
 
 // Widths of the first border and of a cell, in mean distances between points: a triangle's disc rarely is wider.
-constexpr double border = 8.0;
+constexpr double border_distances = 8.0;
 // Share of a circle's radius by which its rounded centre and radius may be wrong: see tin.cpp; a thousand times the bound there.
 constexpr double rounding = 1e-6;
 constexpr double most_cells = 1024.0;  // along a side
@@ -46,7 +46,7 @@ Surroundings::Surroundings(const core::Block& block, const std::vector<std::uint
     all.south = std::min(all.south, block.y[r]), all.north = std::max(all.north, block.y[r]);
   }
   const double width = all.east - all.west, height = all.north - all.south;
-  side_ = border * std::sqrt(width * height / static_cast<double>(rows.size()));
+  side_ = border_distances * std::sqrt(width * height / static_cast<double>(rows.size()));
   side_ = std::max({side_, std::max(width, height) / most_cells, std::numeric_limits<double>::min()});
   reach_ = 2.0 * max_radius * (1.0 + rounding) + rounding * side_;
   near_ = {where.west - side_, where.south - side_, where.east + side_, where.north + side_};

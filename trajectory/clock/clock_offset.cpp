@@ -34,7 +34,7 @@ using MatrixN = Eigen::Matrix<double, own + 1, own + 1>;
 
 constexpr double widest_fixes = 3.0;             // s between fixes
 constexpr std::array half_spans{1.0, 2.0, 4.0};  // s: shaken vehicles, flights
-constexpr double huber = 2.5, mad_to_sigma = 1.4826;
+constexpr double huber = 2.5;
 constexpr double loose_drift = 3e-3, loose_bias = 0.2;      // rad/s, m/s^2: what a window may take beside the stated sensor errors
 constexpr double loose_scale = 2e-4;                        // the same of scale factors
 constexpr double least_scale = 1e-3;                        // m/s^2
@@ -141,7 +141,7 @@ Vector3d scale_of(const std::vector<std::vector<Vector3d>>& left) {
     std::vector<double> sizes;
     for (const auto& window : left)
       for (const Vector3d& r : window) sizes.push_back(std::abs(r[a]));
-    out[a] = std::max(least_scale, mad_to_sigma * core::median(std::move(sizes), 0.0));
+    out[a] = std::max(least_scale, core::mad_to_sigma * core::median(std::move(sizes), 0.0));
   }
   return out;
 }

@@ -11,12 +11,11 @@
 namespace swath::trajectory::clock {
 namespace {
 
-constexpr double mad_to_sigma = 1.4826;
-constexpr size_t least_block = 40, most_blocks = 400;     // records; blocks of a log
-constexpr size_t beside = 5;                              // records on one side of a suspected spike, and at the start
-constexpr double spike_limit = 8.0;                       // times the scatter
-constexpr double huber = 3.0, wild = 8.0, outlier = 6.0;  // sigma
-constexpr double huber_variance = 0.9973;                 // about E[z psi(z)] of a normal z at 3
+constexpr size_t least_block = 40, most_blocks = 400;           // records; blocks of a log
+constexpr size_t beside = 5;                                    // records on one side of a suspected spike, and at the start
+constexpr double spike_limit = 8.0;                             // times the scatter
+constexpr double huber_sigma = 3.0, wild = 8.0, outlier = 6.0;  // sigma
+constexpr double huber_variance = 0.9973;                       // about E[z psi(z)] of a normal z at 3
 constexpr int weight_rounds = 5;
 // ntpd takes back 1/16 of an offset until the next one (CLOCK_PLL of its clock discipline), errors of the record included: the offset of a
 // steered clock walks by that much at least.
@@ -29,18 +28,18 @@ constexpr double drift_low = -7.0, drift_step = 0.75, offset_low = -4.5, offset_
 constexpr size_t drift_states = 13, offset_states = 9, states = drift_states * offset_states;
 constexpr double spread = 0.5, jump_share = 0.05;  // from window to window: decades; share of blocks that are not alike at all
 
-double weight_of(double z) {
+double clock_weight(double z) {
   const double a = std::abs(z);
-  if (a <= huber) return 1.0;
-  return huber / a * (a > wild ? (wild / a) * (wild / a) : 1.0);
+  if (a <= huber_sigma) return 1.0;
+  return huber_sigma / a * (a > wild ? (wild / a) * (wild / a) : 1.0);
 }
 
 /// Twice the negative logarithm of the density: a parabola, straight lines, logarithms.
 double cost_of(double z) {
   const double a = std::abs(z);
-  if (a <= huber) return z * z;
-  if (a <= wild) return huber * (2 * a - huber);
-  return huber * (2 * wild * (1 + std::log(a / wild)) - huber);
+  if (a <= huber_sigma) return z * z;
+  if (a <= wild) return huber_sigma * (2 * a - huber_sigma);
+  return huber_sigma * (2 * wild * (1 + std::log(a / wild)) - huber_sigma);
 }
 
 /// The state at the first record, from the line through the first ones, with ten times their uncertainty.
@@ -71,7 +70,7 @@ double likelihood(const Records& r, size_t first, size_t last, size_t passed, do
     if (i > first) x = carried(x, r.time[i] - r.time[i - 1], walk);
     if (r.spike[i]) continue;
     const double noise = factor * factor * r.shape[i] * r.shape[i], s = x[2] + noise, e = r.offset[i] - x[0];
-    const double z = e / std::sqrt(s), weight = weight_of(z);
+    const double z = e / std::sqrt(s), weight = clock_weight(z);
     if (seen++ >= passed) {
       cost += std::log(s) + cost_of(z);
       sum += weight * z * z;
@@ -104,7 +103,7 @@ Block fit_block(const Records& r, size_t first, size_t last, std::array<State, s
   for (size_t i = first + 1; i < last; ++i)
     bends.push_back(std::abs(r.offset[i + 1] - 2 * r.offset[i] + r.offset[i - 1]) / (std::sqrt(6.0) * r.shape[i]));
   const double step = median(steps), shape = median(shapes);
-  const double start = std::max(mad_to_sigma * median(bends), 1e-9 / shape);
+  const double start = std::max(core::mad_to_sigma * median(bends), 1e-9 / shape);
   Block out;
   out.middle = 0.5 * (r.time[first] + r.time[last]);
   out.log_scale_offset = std::log(shape * shape / step);
@@ -226,7 +225,7 @@ Pass pass_over(const Records& r, const Strengths& s, std::vector<double>& weight
     x = i == 0 ? start_of(r, 0, n - 1, s.noise[0]) : carried(out.filtered[i - 1], r.time[i] - r.time[i - 1], s.walk[i - 1]);
     if (r.spike[i]) continue;
     const double e = r.offset[i] - x[0];
-    if (find) weight[i] = weight_of(e / std::sqrt(x[2] + noise));
+    if (find) weight[i] = clock_weight(e / std::sqrt(x[2] + noise));
     update(x, e, x[2] + noise / weight[i]);
   }
   out.smoothed = out.filtered;
@@ -256,7 +255,7 @@ std::vector<double> scatter_of(const core::ClockData& log, size_t first, size_t 
     const size_t k = first + i;
     // Distance from the straight line between the neighbours; its sigma is sqrt(1 + w^2 + (1 - w)^2) times that of one record.
     const double w = (log.time[k] - log.time[k - 1]) / (log.time[k + 1] - log.time[k - 1]);
-    bend[i] = mad_to_sigma * std::abs(log.offset[k] - (1 - w) * log.offset[k - 1] - w * log.offset[k + 1]) /
+    bend[i] = core::mad_to_sigma * std::abs(log.offset[k] - (1 - w) * log.offset[k - 1] - w * log.offset[k + 1]) /
               std::sqrt(1 + w * w + (1 - w) * (1 - w));
   }
   bend.front() = bend[1];
@@ -375,7 +374,7 @@ Pass smoothed(const Records& r, const Strengths& s, size_t& outliers) {
       const double variance = s.noise[i] * s.noise[i];
       const double left = std::max(variance - out.smoothed[i][2] * weight[i], 0.05 * variance);
       z[i] = (r.offset[i] - out.smoothed[i][0]) / std::sqrt(left);
-      weight[i] = weight_of(z[i]);
+      weight[i] = clock_weight(z[i]);
     }
   }
   for (size_t i = 0; i < n; ++i) outliers += r.spike[i] || std::abs(z[i]) > outlier;

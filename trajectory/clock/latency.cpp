@@ -21,13 +21,13 @@ using Eigen::Vector3d;
 using Normal = Eigen::Matrix4d;  // latency and three shifts
 using Vector4 = Eigen::Vector4d;
 
-constexpr double mad_to_sigma = 1.4826, huber = 2.5;
+constexpr double latency_huber = 2.5;
 constexpr size_t fewest = 20;              // common instants
 constexpr size_t most_grid = 20000;        // instants of the cross-correlation
 constexpr double speed_base = 1.0;         // s over which speed is differenced
 constexpr double worth_correlating = 0.5;  // a lower peak is noise
 constexpr double inflated = 100.0, hopeless = 1e6;
-constexpr int rounds = 30, common_rounds = 6;
+constexpr int latency_rounds = 30, common_rounds = 6;
 constexpr double weakest = 0.3;  // share of the derivative's energy that is motion, not noise
 
 /// Speed on a grid of time; NaN outside.
@@ -125,7 +125,7 @@ struct Solution {
 
 double weight_of(double residual, double scale) {
   const double z = std::abs(residual) / scale;
-  return z > huber ? huber / z : 1.0;
+  return z > latency_huber ? latency_huber / z : 1.0;
 }
 
 /// Inverse of the normal matrix; parameters that are not estimated stay zero. Nothing where it is singular.
@@ -163,7 +163,7 @@ void measure(Solution& s, LatencyShift shift) {
   for (int a = 0; a < 3; ++a) {
     std::vector<double> left;
     for (const Equation& e : s.rows) left.push_back(std::abs((e.residual - jacobian(e, shift).rightCols<3>() * s.shift)[a]));
-    s.scale[a] = std::max(mad_to_sigma * core::median(std::move(left), 0.0), 1e-12);
+    s.scale[a] = std::max(core::mad_to_sigma * core::median(std::move(left), 0.0), 1e-12);
   }
   s.cost = s.scale.array().log().sum();
 }
@@ -172,7 +172,7 @@ std::optional<Solution> solve(const MotionCurve& reference, const Motion& device
                               double base) {
   Solution s;
   s.latency = start;
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < latency_rounds; ++round) {
     s.rows = equations(reference, device, s.latency, base);
     if (s.rows.size() < fewest) return std::nullopt;
     measure(s, shift);
