@@ -5,6 +5,7 @@
 #include <set>
 
 #include "io/text/output_file.h"
+#include "pipeline/delivery.h"
 #include "pipeline/input_guard.h"
 #include "pipeline/outcome.h"
 #include "pipeline/released_points.h"

@@ -20,6 +20,7 @@
 #include "pipeline/plan.h"
 #include "pipeline/progress.h"
 #include "pipeline/provenance.h"
+#include "pipeline/stage_memory.h"
 #include "pipeline/tile_groups.h"
 #include "pipeline/tile_store.h"
 #include "pipeline/work/piece_record.h"
