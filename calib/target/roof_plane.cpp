@@ -56,7 +56,7 @@ RoofPlane fit_roof_plane(const std::vector<Pierced>& pulses, const std::vector<B
     fit.n = size.size();
     fit.rms = std::sqrt(sum / static_cast<double>(fit.n - 3));
     fit.sigma = fit.rms * N.inverse().diagonal().cwiseSqrt();
-    cut = std::max(residual_in_sigma * 1.4826 * core::median(size), 2.0 * range_sigma);
+    cut = std::max(residual_in_sigma * core::mad_to_sigma * core::median(size), 2.0 * range_sigma);
   }
   return fit;
 }
