@@ -2,18 +2,23 @@
 #include "filters/classes/roofs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace swath::filters {
 namespace {
 
-constexpr float part_link = 0.4f;     // m from cell to cell where small planes join large ones
-constexpr float roof_link = 2.0f;     // m from cell to cell of one roof
-constexpr int roof_growth = 2;        // links from large planes to the small ones beside them
-constexpr int fewest_around = 4;      // roof cells around a gap of a roof
-constexpr double share_around = 0.7;  // of the cells around it that hold returns off the ground
-constexpr double search_sides = 3.0;  // of the square of the least area, on each side of a cell
+constexpr float part_link = 0.4f;       // m from cell to cell where small planes join large ones
+constexpr float roof_link = 2.0f;       // m from cell to cell of one roof
+constexpr int roof_growth = 2;          // links from large planes to the small ones beside them
+constexpr int fewest_around = 4;        // roof cells around a gap of a roof
+constexpr double share_around = 0.7;    // of the cells around it that hold returns off the ground
+constexpr double search_sides = 3.0;    // of the square of the least area, on each side of a cell
+constexpr double widest_vehicle = 2.6;  // m: the law of most countries, EU directive 96/53
+constexpr size_t large = 8;             // times the least area: what is larger is a roof whatever its form
+constexpr int rim_gap = 3;              // cells
 
 int search_radius(double side) { return static_cast<int>(std::ceil(search_sides * side / structure_cell)); }
 
@@ -56,17 +61,59 @@ class Roofs {
         if (out[c] || cells_.kind[c] != Planar::wide || !is_roof(c)) continue;
         const std::uint8_t samples = samples_at(i, j);
         const auto wanted = static_cast<size_t>(std::ceil(side * side * Districts::occupied(samples)));
-        const std::vector<CellIndex>& found = growth.from(i, j, Districts::link(samples), wanted, linked);
-        if (found.size() < wanted) continue;
+        const std::vector<CellIndex>& found = growth.from(i, j, Districts::link(samples), large * wanted, linked);
+        if (found.size() < wanted || (found.size() < large * wanted && is_narrow(i, j, found))) continue;
         out[c] = 1;
-        // Links lead both ways: the others found are as many from where they are, if that is within their squares.
+        // Links lead both ways: the others find the same from where they are, if that is within their squares.
         const auto [west, east] = std::minmax_element(found.begin(), found.end(), [](CellIndex a, CellIndex o) { return a.i < o.i; });
         const auto [south, north] = std::minmax_element(found.begin(), found.end(), [](CellIndex a, CellIndex o) { return a.j < o.j; });
-        if (east->i - west->i > radius || north->j - south->j > radius) continue;
         for (const CellIndex& at : found)
-          if (samples_at(i + at.i, j + at.j) == samples) out[lattice_.at(i + at.i, j + at.j)] = 1;
+          if (east->i - at.i <= radius && at.i - west->i <= radius && north->j - at.j <= radius && at.j - south->j <= radius &&
+              samples_at(i + at.i, j + at.j) == samples)
+            out[lattice_.at(i + at.i, j + at.j)] = 1;
       }
     return out;
+  }
+
+  /// Do the planes of these cells stand alone and are they no wider than a vehicle? Not where they may go on beyond the data, nor where
+  /// they lean on a higher roof.
+  bool is_narrow(int i, int j, const std::vector<CellIndex>& found) const {
+    constexpr double cm = 100.0;
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+    for (const CellIndex& at : found) {
+      if (is_at_rim(i + at.i, j + at.j) || is_beside_roof(i + at.i, j + at.j)) return false;
+      const PlanarSums& s = cells_.sums[lattice_.at(i + at.i, j + at.j)];
+      const double west = cm * structure_cell * at.i, south = cm * structure_cell * at.j;
+      n += s.n, x += s.x + s.n * west, y += s.y + s.n * south;
+      xx += s.xx + west * (2.0 * s.x + s.n * west), yy += s.yy + south * (2.0 * s.y + s.n * south);
+      xy += s.xy + west * s.y + south * s.x + s.n * west * south;
+    }
+    xx = xx / n - x / n * (x / n), yy = yy / n - y / n * (y / n), xy = xy / n - x / n * (y / n);
+    const double least = 0.5 * (xx + yy) - std::hypot(0.5 * (xx - yy), xy);
+    return std::sqrt(12.0 * std::max(0.0, least)) <= cm * widest_vehicle;  // of a rectangle
+  }
+
+  bool is_beside_roof(int i, int j) const {
+    const size_t c = lattice_.at(i, j);
+    for (int v = std::max(j - 1, 0); v <= std::min(j + 1, lattice_.ny - 1); ++v)
+      for (int u = std::max(i - 1, 0); u <= std::min(i + 1, lattice_.nx - 1); ++u)
+        if (const size_t near = lattice_.at(u, v);
+            cells_.kind[near] == Planar::wide && is_roof(near) && cells_.plane[near] > cells_.plane[c] + roof_link)
+          return true;
+    return false;
+  }
+
+  /// Is there nothing for rim_gap cells in one of the four directions?
+  bool is_at_rim(int i, int j) const {
+    for (const auto& [di, dj] : std::array<std::pair<int, int>, 4>{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}}) {
+      bool empty = true;
+      for (int k = 1; k <= rim_gap && empty; ++k) {
+        const int u = i + k * di, v = j + k * dj;
+        empty = u < 0 || v < 0 || u >= lattice_.nx || v >= lattice_.ny || std::isnan(cells_.low[lattice_.at(u, v)]);
+      }
+      if (empty) return true;
+    }
+    return false;
   }
 
   /// Takes in the cells with returns off the ground that have roofs nearly all around.
@@ -104,7 +151,7 @@ class Roofs {
 }  // namespace
 
 double roof_cells_halo(double side) {
-  return (search_radius(side) + roof_growth * Districts::link(sample_sides.size() - 1) + 2 * structure_link + 1) * structure_cell;
+  return (search_radius(side) + roof_growth * Districts::link(sample_sides.size() - 1) + 2 * structure_link + rim_gap + 1) * structure_cell;
 }
 
 std::vector<float> roof_cells(const StructureCells& cells, const std::vector<std::uint8_t>& standing,

@@ -14,6 +14,12 @@
 
 namespace swath::filters {
 
+/// Sums over the planar points of one cell: their number, places from the cell's corner (cm), and products of these. Whole numbers, so that
+/// the order of the points does not matter.
+struct PlanarSums {
+  std::int32_t n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+};
+
 /// Row-major as in core::Grid; heights relative to the block's origin, m.
 struct StructureCells {
   core::Lattice lattice;
@@ -22,6 +28,7 @@ struct StructureCells {
   std::vector<float> ground;  ///< lowest point of class ground; NaN where none
   std::vector<float> low;     ///< lowest usable point; NaN where none
   std::vector<Planar> kind;   ///< of the planar points, the widest
+  std::vector<PlanarSums> sums;
 
   bool has_plane(size_t c) const { return plane[c] == plane[c]; }
   bool has_ground(size_t c) const { return ground[c] == ground[c]; }

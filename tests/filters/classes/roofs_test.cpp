@@ -21,7 +21,9 @@ struct Planes {
     cells.lattice = {1.0, 0, 0, 60, 36};
     cells.plane.assign(cells.lattice.size(), none);
     cells.height = cells.ground = cells.low = cells.plane;
+    cells.low.assign(cells.lattice.size(), 0.0f);
     cells.kind.assign(cells.lattice.size(), Planar::none);
+    cells.sums.assign(cells.lattice.size(), {});
     where.lattice = {district_side, 0, 0, 5, 3};
     where.side.assign(where.lattice.size(), 0);
     standing.assign(cells.lattice.size(), 0);
@@ -33,6 +35,11 @@ struct Planes {
         const size_t c = cells.lattice.at(i, j);
         cells.plane[c] = cells.low[c] = cells.height[c] = z;
         cells.kind[c] = kind;
+        for (const int x : {0, 33, 67, 100})
+          for (const int y : {0, 33, 67, 100}) {
+            PlanarSums& s = cells.sums[c];
+            s.n += 1, s.x += x, s.y += y, s.xx += x * x, s.xy += x * y, s.yy += y * y;
+          }
         standing[c] = 1;
       }
   }
@@ -68,9 +75,26 @@ TEST(Roofs, AGapIsFilledWhereSomethingStandsInItAndADeckIsNone) {
 
 TEST(Roofs, LongRowsOfCellsCountFromEachOfThem) {
   Planes p;
-  p.add(2, 10, 40, 1, 6.0f);
+  p.add(2, 10, 56, 3, 6.0f);
   const std::vector<float> roofs = p.roofs();
-  for (int i = 2; i < 42; ++i) EXPECT_EQ(roofs[p.cells.lattice.at(i, 10)], 6.0f) << i;
+  for (int i = 2; i < 58; ++i) EXPECT_EQ(roofs[p.cells.lattice.at(i, 10)], 6.0f) << i;
+}
+
+TEST(Roofs, WhatStandsAloneAndIsAsNarrowAsAVehicleIsNone) {
+  Planes p;
+  p.add(5, 5, 8, 2, 3.0f);    // a lorry
+  p.add(25, 5, 8, 3, 3.0f);   // a row of garages
+  p.add(5, 20, 8, 2, 3.0f);   // a lean-to ...
+  p.add(5, 22, 8, 6, 9.0f);   // ... and its house
+  p.add(30, 25, 8, 2, 3.0f);  // may be the rest of a roof ...
+  for (int i = 25; i < 45; ++i)
+    for (int j = 27; j < 36; ++j) p.cells.low[p.cells.lattice.at(i, j)] = none;  // ... beyond the data
+  const std::vector<float> roofs = p.roofs();
+  const auto is = [&](int i, int j) { return !std::isnan(roofs[p.cells.lattice.at(i, j)]); };
+  for (int i = 5; i < 13; ++i) EXPECT_FALSE(is(i, 5) || is(i, 6)) << i;
+  for (int i = 25; i < 33; ++i) EXPECT_TRUE(is(i, 5) && is(i, 7)) << i;
+  for (int i = 5; i < 13; ++i) EXPECT_TRUE(is(i, 20) && is(i, 21) && is(i, 25)) << i;
+  for (int i = 30; i < 38; ++i) EXPECT_TRUE(is(i, 25) && is(i, 26)) << i;
 }
 
 }  // namespace
