@@ -62,9 +62,12 @@ class Roofs {
         const std::uint8_t samples = samples_at(i, j);
         const auto wanted = static_cast<size_t>(std::ceil(side * side * Districts::occupied(samples)));
         const std::vector<CellIndex>& found = growth.from(i, j, Districts::link(samples), large * wanted, linked);
-        if (found.size() < wanted || (found.size() < large * wanted && is_narrow(i, j, found))) continue;
+        if (found.size() < large * wanted) {
+          out[c] = found.size() >= wanted && !is_narrow(i, j, found);
+          continue;
+        }
         out[c] = 1;
-        // Links lead both ways: the others find the same from where they are, if that is within their squares.
+        // Links lead both ways: the others find as many from where they are, if that is within their squares.
         const auto [west, east] = std::minmax_element(found.begin(), found.end(), [](CellIndex a, CellIndex o) { return a.i < o.i; });
         const auto [south, north] = std::minmax_element(found.begin(), found.end(), [](CellIndex a, CellIndex o) { return a.j < o.j; });
         for (const CellIndex& at : found)
