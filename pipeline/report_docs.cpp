@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "pipeline/run_report.h"
+#include "pipeline/engine/run_report.h"
 #include "stages/registry.h"
 
 namespace swath::pipeline {

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/run.h"
 
+#include <tbb/global_control.h>
+
 #include <algorithm>
 #include <set>
 
 #include "io/text/output_file.h"
 #include "pipeline/delivery.h"
+#include "pipeline/engine/outcome.h"
+#include "pipeline/engine/strips.h"
+#include "pipeline/engine/tiles.h"
 #include "pipeline/input_guard.h"
-#include "pipeline/outcome.h"
 #include "pipeline/released_points.h"
-#include "pipeline/strips.h"
 #include "pipeline/summary.h"
-#include "pipeline/tiles.h"
 #include "pipeline/work/survey_piece.h"
 #include "stages/area.h"
 
@@ -168,6 +170,7 @@ void remove_if_empty(const fs::path& top) {
 
 Outcome run(Plan& plan, Progress& progress, const std::string& command) {
   RunState run(plan, progress);
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(run.threads));
   const auto start = std::chrono::steady_clock::now();
   fit_memory(run.memory.bytes());
   expect_own(run.work);

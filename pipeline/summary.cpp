@@ -7,7 +7,7 @@
 #include "io/text/value_file.h"
 #include "pipeline/progress.h"
 #include "pipeline/report_docs.h"
-#include "pipeline/warnings.h"
+#include "pipeline/report_warnings.h"
 
 namespace swath::pipeline {
 namespace {

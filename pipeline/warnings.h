@@ -47,7 +47,4 @@ void describe(const Warning& w, V& v) {
   v.tables("figures", w.figures, "The figures in it.");
 }
 
-/// The warnings of a report.json: of limits, of readers, of quality.geometry, of the work folder.
-std::vector<Warning> warnings_in(const core::Value& report);
-
 }  // namespace swath::pipeline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/warnings.h"
+#include "pipeline/report_warnings.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/run_state.h"
+#include "pipeline/engine/run_state.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -29,7 +29,6 @@ RunState::RunState(Plan& p, Progress& shown)
       output(fs::absolute(p.run.output)),
       work(output / ".swath"),
       threads(p.run.threads > 0 ? p.run.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))),
-      tbb_threads(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads)),
       memory(p.run.memory.value),
       grids(p.run.tile.value),
       context{p.survey},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/strips.h"
+#include "pipeline/engine/strips.h"
 
 #include <tbb/parallel_pipeline.h>
 
@@ -9,12 +9,12 @@
 #include "core/config/result_visitors.h"
 #include "io/las/las_source.h"
 #include "io/text/value_file.h"
+#include "pipeline/engine/tiles.h"
 #include "pipeline/expected_time.h"
 #include "pipeline/fullest_tile.h"
 #include "pipeline/pulse_border.h"
 #include "pipeline/stage_memory.h"
 #include "pipeline/tile_work.h"
-#include "pipeline/tiles.h"
 #include "pipeline/work/survey_piece.h"
 
 namespace swath::pipeline {

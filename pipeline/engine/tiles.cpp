@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/tiles.h"
+#include "pipeline/engine/tiles.h"
 
 #include <tbb/parallel_for.h>
 

@@ -2,7 +2,7 @@
 // The tiles of a run: every tile stage on groups of tiles, in parallel within the memory budget, and the merges.
 #pragma once
 
-#include "pipeline/run_state.h"
+#include "pipeline/engine/run_state.h"
 
 namespace swath::pipeline {
 

@@ -2,7 +2,7 @@
 // The strips of a run: the source's flight lines, each streamed through the strip stages into the store of points.
 #pragma once
 
-#include "pipeline/run_state.h"
+#include "pipeline/engine/run_state.h"
 
 namespace swath::pipeline {
 

@@ -2,7 +2,7 @@
 // The end of a run: its report, the limits that it is judged by, and the delivery of its products.
 #pragma once
 
-#include "pipeline/run_state.h"
+#include "pipeline/engine/run_state.h"
 #include "pipeline/work/work_folder.h"
 
 namespace swath::pipeline {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/outcome.h"
+#include "pipeline/engine/outcome.h"
 
 #include <limits>
 
@@ -7,10 +7,10 @@
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "pipeline/delivery.h"
+#include "pipeline/engine/run_report.h"
 #include "pipeline/input_guard.h"
 #include "pipeline/report_docs.h"
-#include "pipeline/run_report.h"
-#include "pipeline/warnings.h"
+#include "pipeline/report_warnings.h"
 
 namespace swath::pipeline {
 namespace {

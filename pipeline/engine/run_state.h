@@ -6,15 +6,13 @@
 // before a run goes on from it. Products wait in its products/ until the run is done.
 #pragma once
 
-#include <tbb/global_control.h>
-
 #include <filesystem>
 #include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "pipeline/account.h"
+#include "pipeline/engine/account.h"
 #include "pipeline/grid_store.h"
 #include "pipeline/memory.h"
 #include "pipeline/plan.h"
@@ -34,7 +32,6 @@ struct RunState {
   Progress& progress;
   std::filesystem::path output, work;
   int threads;
-  tbb::global_control tbb_threads;
   MemoryBudget memory;
   GridStore grids;
   stages::Context context;

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/report_warnings.h"
+
+#include <algorithm>
+
+#include "io/las/las_box.h"
+#include "pipeline/limits.h"
+
+namespace swath::pipeline {
+namespace {
+
+using core::Value;
+
+constexpr std::string_view box_code = "points.outside_box", damage_code = "work.damaged", geometry_code = "geometry.contradiction",
+                           mistake_code = "geometry.mistake";
+
+/// An example for each file, and one for those that the report counts without.
+void add_boxes(const Value& wrong, std::vector<Warning>& out) {
+  const auto& examples = wrong.find("examples")->items();
+  for (const Value& example : examples) out.push_back({std::string(box_code), example.as_text(), {}});
+  const auto more = wrong.find("count")->as_int() - static_cast<std::int64_t>(examples.size());
+  if (more > 0)
+    out.push_back({std::string(box_code),
+                   "and " + std::to_string(more) + " more " + io::wrong_box + ": report.json",
+                   {{"more", static_cast<double>(more), {}}}});
+}
+
+/// The sentences of what is named are the last ones.
+void add_geometry(const Value& geometry, std::vector<Warning>& out) {
+  const Value* named = geometry.find("named");
+  const auto& sentences = geometry.find("warnings")->items();
+  const size_t mistakes = named ? std::min(named->items().size(), sentences.size()) : 0;
+  for (size_t k = 0; k < sentences.size(); ++k)
+    out.push_back({std::string(k + mistakes < sentences.size() ? geometry_code : mistake_code), sentences[k].as_text(), {}});
+}
+
+}  // namespace
+
+std::vector<Warning> warnings_in(const Value& report) {
+  std::vector<Warning> out;
+  if (const Value* damaged = report.find("pieces_damaged"); damaged && damaged->as_int() > 0)
+    out.push_back({std::string(damage_code),
+                   std::to_string(damaged->as_int()) + " pieces of an earlier run were damaged and were done again",
+                   {{"pieces", damaged->as_number(), {}}}});
+  for (const Value& stage : report.find("stages")->items())
+    if (const Value* tally = stage.find("tally"))
+      if (const Value* wrong = tally->find(io::wrong_box)) add_boxes(*wrong, out);
+  if (const Value* geometry = report.find("geometry")) add_geometry(*geometry, out);
+  if (const Value* limits = report.find("limits"))
+    for (Warning& w : missed_limits(*limits)) out.push_back(std::move(w));
+  return out;
+}
+
+}  // namespace swath::pipeline

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "pipeline/warnings.h"
+
+namespace swath::pipeline {
+
+/// The warnings of a report.json: of limits, of readers, of quality.geometry, of the work folder.
+std::vector<Warning> warnings_in(const core::Value& report);
+
+}  // namespace swath::pipeline
