@@ -10,7 +10,7 @@
 #include "core/config/result_visitors.h"
 #include "io/raster/grid_file.h"
 #include "io/text/output_file.h"
-#include "pipeline/released_points.h"
+#include "pipeline/work/released_points.h"
 #include "pipeline/stage_memory.h"
 #include "pipeline/tile_queue.h"
 #include "pipeline/tile_work.h"

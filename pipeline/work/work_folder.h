@@ -11,7 +11,7 @@
 
 namespace swath::pipeline {
 
-constexpr const char* released_name = "released.done";  ///< beside the strips, see pipeline/released_points.h
+constexpr const char* released_name = "released.done";  ///< beside the strips, see pipeline/work/released_points.h
 
 /// Throws core::Error (usage) where it is a link or not a folder, or holds anything that no run makes: it would be emptied.
 void expect_own(const std::filesystem::path& folder);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/fullest_tile.h"
+#include "pipeline/engine/fullest_tile.h"
 
 #include <algorithm>
 #include <cmath>

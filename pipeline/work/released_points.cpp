@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/released_points.h"
+#include "pipeline/work/released_points.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A run whose last stage fails has written its points and released them: what the same command goes on from.
-#include "pipeline/released_points.h"
+#include "pipeline/work/released_points.h"
 
 #include <map>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/pulse_border.h"
+#include "pipeline/engine/pulse_border.h"
 
 #include <numeric>
 
