@@ -12,8 +12,8 @@
 #include "pipeline/engine/strips.h"
 #include "pipeline/engine/tiles.h"
 #include "pipeline/input_guard.h"
-#include "pipeline/work/released_points.h"
 #include "pipeline/summary.h"
+#include "pipeline/work/released_points.h"
 #include "pipeline/work/survey_piece.h"
 #include "stages/area.h"
 

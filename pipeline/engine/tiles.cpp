@@ -10,10 +10,10 @@
 #include "core/config/result_visitors.h"
 #include "io/raster/grid_file.h"
 #include "io/text/output_file.h"
-#include "pipeline/work/released_points.h"
 #include "pipeline/stage_memory.h"
 #include "pipeline/tile_queue.h"
 #include "pipeline/tile_work.h"
+#include "pipeline/work/released_points.h"
 #include "pipeline/work/survey_piece.h"
 #include "stages/waters.h"
 
