@@ -55,7 +55,7 @@ core::Describe describe_of(Stage& s) {
 std::string stage_page(Stage& s) {
   std::string out = std::string(s.info().summary) + "\n\n";
   out += "- works on: " + grains_text(s) + "\n- needs: " + both(s.info().needs, s.info().needs_products) +
-         used_by(s, "\n- uses where it is there: ") + "\n- gives: " + both(s.info().gives, s.info().gives_products) + "\n\n";
+         used_by(s, "\n- uses if present: ") + "\n- gives: " + both(s.info().gives, s.info().gives_products) + "\n\n";
   if (core::document_options(describe_of(s)).empty()) return out + "It has no options.\n";
   return out + core::option_table_markdown(describe_of(s));
 }

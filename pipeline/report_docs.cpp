@@ -18,12 +18,21 @@ core::DescribeResults findings_of(const stages::Stage& s) {
   return [&s](core::ResultVisitor& v) { s.visit_findings(v); };
 }
 
+struct LineCount {};
+
+template <class V>
+void describe(const LineCount&, V& v) {
+  v.result("line", 0, "Number of the flight line.");
+  v.result("count", std::uint64_t{0}, "Records of it.");
+}
+
 /// A count under `tally`.
 struct CountedSample {};
 
 template <class V>
 void describe(const CountedSample&, V& v) {
   v.result("count", std::uint64_t{0}, "Number of records.");
+  v.tables_if(false, "lines", std::vector<LineCount>{}, "The count by flight line.");
   v.result("examples", std::vector<std::string>{}, "The first of them.");
 }
 

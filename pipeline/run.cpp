@@ -86,14 +86,16 @@ void keep_whole(RunState& run) {
   run.progress.begin("check of earlier work", 0, "");
   const EarlierWork earlier = keep_whole_work(run.work, [&](double done) { run.progress.share(done); });
   run.progress.end();
-  std::uint64_t given_up = 0;
   if (makes_points(run.plan))
-    given_up = give_up_strips(run.folder(run.last_strip_stage), [&](TileKey key) { return is_tile_done(run, last_reader(run), key); });
-  run.damaged = earlier.damaged + given_up;
+    run.read_again = give_up_strips(run.folder(run.last_strip_stage),
+                                    [&](TileKey key) { return !run.keeps_store && is_tile_done(run, last_reader(run), key); });
+  run.damaged = earlier.damaged;
   if (run.damaged > 0)
     run.progress.say("damaged: " + std::to_string(run.damaged) + " pieces of an earlier run are not what they were and are done again");
-  if (earlier.lines - given_up + earlier.pieces > 0)
-    run.progress.say("resumed: " + std::to_string(earlier.lines - given_up) + " flight lines or files and " +
+  if (run.read_again > 0)
+    run.progress.say("read again: " + std::to_string(run.read_again) + " flight lines or files, whose points were removed once written");
+  if (earlier.lines - run.read_again + earlier.pieces > 0)
+    run.progress.say("resumed: " + std::to_string(earlier.lines - run.read_again) + " flight lines or files and " +
                      std::to_string(earlier.pieces) + " pieces of other stages were done by an earlier run and are not done again");
 }
 

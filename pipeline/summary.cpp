@@ -51,6 +51,9 @@ class FindingsText {
 
  private:
   static bool is_list_of_tables(const Value& v) { return v.is_array() && !v.items().empty() && v.items()[0].is_object(); }
+  static bool is_list_of_numbers(const Value& v) {
+    return v.is_array() && std::ranges::all_of(v.items(), [](const Value& one) { return one.is_number(); });
+  }
   bool is_detail(const std::string& at) const {
     const auto known = declared_.find(at);
     return known != declared_.end() && known->second.form.audience == core::Audience::detail;
@@ -59,6 +62,11 @@ class FindingsText {
   std::string figure(const Value& v, const std::string& at, const std::string& margin) const {
     const auto known = declared_.find(at);
     if (known != declared_.end() && v.is_number()) return " " + core::shown(v, known->second.form);
+    if (known != declared_.end() && is_list_of_numbers(v)) {
+      std::string row;
+      for (const Value& one : v.items()) row += (row.empty() ? " " : ", ") + core::shown(one, known->second.form);
+      return row;
+    }
     std::string text = scalar(v);
     if (!v.is_text() || text.find('\n') == std::string::npos) return " " + text;
     if (text.back() == '\n') text.pop_back();

@@ -40,7 +40,7 @@ void describe(const VolumesFound& f, V& v) {
   v.result("polygon", r.polygon, core::plain().only_if(!r.polygon.empty()), "What was counted within.");
   v.result("polygon_vertices_left_out", f.vertices_left_out, core::if_any(), "Vertices that are not finite or beyond every map.");
   v.result("units", std::string_view(f.has_crs ? "m" : "those of the file, which states no CRS"),
-           "Of lengths; areas and volumes are their powers.");
+           "Unit of lengths; areas in its square, volumes in its cube.");
   v.result("cell", f.cell, "Side of the cells.");
   v.result("cut", s.cut, "Volume below the surface before.");
   v.result("fill", s.fill, "Volume above it.");
@@ -48,10 +48,10 @@ void describe(const VolumesFound& f, V& v) {
   v.result("area", s.area, "Area compared.");
   v.result("cut_area", s.cut_area, "Area lowered.");
   v.result("fill_area", s.fill_area, "Area raised.");
-  v.result("correlation", r.correlation, "Of the errors of any two cells of a model.");
+  v.result("correlation", r.correlation, "Correlation of the errors of any two cells of a model.");
   v.result("sigma_cut", s.sigma_cut, core::plain().only_if(has_sigma), "Standard deviation of the cut.");
-  v.result("sigma_fill", s.sigma_fill, core::plain().only_if(has_sigma), "Of the fill.");
-  v.result("sigma_net", s.sigma_net, core::plain().only_if(has_sigma), "Of the net volume.");
+  v.result("sigma_fill", s.sigma_fill, core::plain().only_if(has_sigma), "Standard deviation of the fill.");
+  v.result("sigma_net", s.sigma_net, core::plain().only_if(has_sigma), "Standard deviation of the net volume.");
   v.result("cells", s.cells, "Cells compared.");
   v.result("cells_left_out", s.left_out, "Cells where a surface is void.");
   v.result("area_left_out", s.area_left_out, "Their area.");

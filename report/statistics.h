@@ -36,11 +36,11 @@ void describe(const Statistics& r, V& v) {
   v.result("rms", r.rms, "Root mean square.");
   v.result("median", r.median, "Median.");
   v.result("nmad", r.nmad, "1.4826 times the median distance from the median.");
-  v.result("q68", r.q68, "68.3 % of the sizes lie below.");
-  v.result("q95", r.q95, "95 % of the sizes lie below.");
+  v.result("q68", r.q68, "68.3 % of the absolute values are smaller.");
+  v.result("q95", r.q95, "95 % of the absolute values are smaller.");
   v.result("minimum", r.minimum, "Smallest value.");
   v.result("maximum", r.maximum, "Largest value.");
-  v.result("max_abs", r.max_abs, "Largest size.");
+  v.result("max_abs", r.max_abs, "Largest absolute value.");
 }
 
 /// Quantiles interpolate linearly between order statistics (type 7 of Hyndman and Fan 1996).

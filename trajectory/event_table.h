@@ -46,7 +46,7 @@ void describe(const EventFigures& r, V& v) {
   v.result("events_with_position", r.with_position, core::plain().in_summary(), "Of those: events with a position.");
   v.result("median_formal_sigma_m", r.formal, metres(4), "Median of the filter's own sigmas: east, north, height.");
   v.result("empirical_sigma_m", r.empirical, metres(4), "Sigmas by the leave-one-out test: east, north, height.");
-  v.table("leave_one_out", r.leave_one_out, "Each fix against what the others say of it.");
+  v.table("leave_one_out", r.leave_one_out, "Each fix against its prediction from the others.");
 }
 
 EventFigures figures_of(const core::EventData& events, const core::GnssData& gnss, const EventPositions& solved, Interpolator method);

@@ -45,8 +45,8 @@ void find_correlated(const std::vector<Parameter>& globals, const std::vector<Pa
           !(std::abs(out.correlation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j))) > hardly_apart))
         continue;
       out.findings.push_back({std::string(words_of(a).name) + " and " + std::string(words_of(b).name) +
-                                  " are hardly told apart: an error of the one is balanced by the other (correlations)",
-                              !shape.crossed       ? "fly lines across"
+                                  " are strongly correlated: an error of one is compensated by the other",
+                              !shape.crossed       ? "fly cross lines"
                               : !shape.two_heights ? "fly some lines at another height, lower or higher by half"
                                                    : "survey a target on the ground",
                               {a, b},
@@ -62,7 +62,7 @@ void find_contradictions(const TieProblem& p, const AdjustRounds& r, Adjustment&
     const char* names[] = {"east", "north", "up"};
     std::string where;
     for (int k = 0; k < 3; ++k)
-      where += std::string(k ? ", " : "") + names[k] + " " + (r.shift.known[k] ? metres(r.shift.mean[k]) : std::string("not told"));
+      where += std::string(k ? ", " : "") + names[k] + " " + (r.shift.known[k] ? metres(r.shift.mean[k]) : std::string("not determined"));
     tell("control does not fit: mean misfit " + where + ": another datum? It was left out",
          "state the control's CRS and kind of heights (ellipsoidal or with a geoid) as they are");
   }
@@ -72,7 +72,7 @@ void find_contradictions(const TieProblem& p, const AdjustRounds& r, Adjustment&
   const SigmaFactors& f = r.factors;
   const auto worse = [&](const SigmaFactor& s, const char* what, const char* cure) {
     if (s.estimated && s.factor > factor_to_tell)
-      tell(std::string(what) + " err " + number(s.factor) + " times as much as stated; the sigmas hold that", cure);
+      tell(std::string(what) + " have errors " + number(s.factor) + " times as large as stated; the sigmas allow for that", cure);
   };
   worse(f.range, "ranges", "state the sigma of the ranges as it is");
   worse(f.angle, "scan angles", "state the sigma of the scan angles and the beam's divergence as they are");
@@ -80,8 +80,8 @@ void find_contradictions(const TieProblem& p, const AdjustRounds& r, Adjustment&
   worse(f.attitude[line_mean], "the trajectory's attitudes", "look at its IMU's model and its report");
   worse(f.control, "control points", "look at their residuals");
   if (out.waves_between)
-    tell("what is left on the planes waves along the lines: the trajectory errs faster than corrections " + number(out.knot_spacing) +
-             " s apart can follow; sigmas of the corrections may be too small",
+    tell("what is left on the planes waves along the lines: the trajectory's errors vary faster than corrections " +
+             number(out.knot_spacing) + " s apart can follow; sigmas of the corrections may be too small",
          "narrow corrections.spacing, raise corrections.most");
   if (r.snooping_full)
     tell("more planes or control points are displaced than may be left out", "look at the groups with the largest w; raise snooping.share");

@@ -99,7 +99,7 @@ struct ResidualSample {
 
 /// One thing that the flight does not show, or that looks wrong, in words.
 struct Finding {
-  std::string what;                   ///< "pitch and along-track shift cannot be told apart: only one line direction"
+  std::string what;                   ///< "pitch and along-track shift cannot be separated: only one line direction"
   std::string cure;                   ///< "fly one line in the opposite direction ..."
   std::vector<Parameter> parameters;  ///< concerned
   bool refuses = false;               ///< true: the values of those parameters are not delivered

@@ -46,12 +46,12 @@ Words words_for(Parameter p, const FlightShape& s) {
     case boresight_roll:
     case scan_offset:
       if (one_way)
-        return {name + " and a tilt or shift of the trajectory across the track cannot be told apart: only one line direction",
+        return {name + " and a tilt or shift of the trajectory across the track cannot be separated: only one line direction",
                 opposite_cure};
       break;
     case boresight_pitch:
       if (s.sloping == 0) return {name + " shows on sloping planes alone, and all are level: no sloping planes or walls", slopes_cure};
-      if (one_way) return {name + " and along-track shift cannot be told apart: only one line direction", opposite_cure};
+      if (one_way) return {name + " and along-track shift cannot be separated: only one line direction", opposite_cure};
       break;
     case boresight_heading:
       if (s.sloping == 0) return {name + " shows on sloping planes alone, and all are level: no sloping planes or walls", slopes_cure};
@@ -62,8 +62,8 @@ Words words_for(Parameter p, const FlightShape& s) {
       break;
     case range_offset:
       if (!s.control && !s.two_heights)
-        return {name + " and a common error of height cannot be told apart: neither control nor a second flying height", control_cure};
-      if (!s.control) return {name + " and a common error of height cannot be told apart: no control", control_cure};
+        return {name + " and a common error of height cannot be separated: neither control nor a second flying height", control_cure};
+      if (!s.control) return {name + " and a common error of height cannot be separated: no control", control_cure};
       break;
     case range_scale:
       if (!s.two_heights || !s.control)
@@ -215,7 +215,7 @@ std::vector<Finding> diagnose(const std::vector<Parameter>& globals, const Separ
     if (std::all_of(parts.begin(), parts.end(),
                     [&](Parameter p) { return named[std::find(globals.begin(), globals.end(), p) - globals.begin()]; }))
       continue;
-    Finding f{joined(parts) + " cannot be told apart", "", parts, true};
+    Finding f{joined(parts) + " cannot be separated", "", parts, true};
     std::set<std::string> cures;
     for (const Parameter p : parts) {
       const Words w = words_for(p, shape);

@@ -168,7 +168,7 @@ AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions
   out.notes.push_back("Planes were sought " + std::to_string(out.rounds) + " times; the last round moved the returns by " +
                       in_metres(change) + ".");
   if (how.corrections.spacing.value < options.adjust.corrections.spacing.value)
-    out.notes.push_back("The trajectory errs faster than its corrections could follow: their knots were brought nearer, to " +
+    out.notes.push_back("The trajectory's errors vary faster than its corrections could follow: their knots were brought closer, to " +
                         seconds(out.adjustment.knot_spacing) + ".");
   for (std::string& note : targets_not_found(of_round)) out.notes.push_back(std::move(note));
   tally.add(of_round);

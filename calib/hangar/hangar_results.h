@@ -34,8 +34,8 @@ struct DistanceResidual {
 template <class V>
 void describe(const DistanceResidual& r, V& v) {
   v.result("to", r.to, "Target of the distance.");
-  v.result("residual_mm", 1e3 * r.residual, core::millimetres().always(), "Observed less adjusted distance.");
-  v.result("w", r.w, core::plain(2).always(), "Residual divided by its own sigma; 0 where nothing checks the distance.");
+  v.result("residual_mm", -1e3 * r.residual, core::millimetres().always(), "Adjusted less observed distance.");
+  v.result("w", 0.0 - r.w, core::plain(2).always(), "Residual divided by its own sigma; 0 where nothing checks the distance.");
 }
 
 template <class V>
@@ -75,9 +75,9 @@ template <class V>
 void describe(const SightResult& r, V& v) {
   v.result("what", r.text, "The observation.");
   v.result("place", r.place, "File and line that it was read from.");
-  v.result("observed", r.observed, core::Form{"rad or m"}.always(), "As observed.");
-  v.result("residual", r.residual, core::Form{"rad or m"}.always(), "Adjusted less observed.");
-  v.result("sigma", r.sigma, core::Form{"rad or m"}.always(), "Its standard deviation.");
+  v.result("observed", r.observed, core::plain().always(), "As observed, in rad (angles) or m (distances).");
+  v.result("residual", r.residual, core::plain().always(), "Adjusted less observed, in rad (angles) or m (distances).");
+  v.result("sigma", r.sigma, core::plain().always(), "Its standard deviation, in rad (angles) or m (distances).");
   v.result("w", r.w, core::plain(2).always(), "Residual divided by its own sigma.");
 }
 

@@ -45,7 +45,7 @@ void refuse(const PointSearch& p, const std::string& name, const std::string& fi
               "distance one; 3 are needed and 4 for a check",
           file, "sight it from three stations, or state its coordinates with `at` and `sigma`");
     case PointState::not_determined:
-      throw Error("the stations that see " + point + " are fewer than three or stand in one line", file,
+      throw Error("the stations that see " + point + " are fewer than three or lie in one line", file,
                   "sight it from three stations that make a triangle");
     case PointState::weak:
       throw Error("the sights at " + point + " hardly determine it: it lies in the plane of its stations, or they are too close together",

@@ -73,8 +73,8 @@ void describe(const RangeOffset& r, V& v) {
   const Form m = metres.only_if(r.is_known);
   v.result("present_m", r.present, m, "Range offset in force.");
   v.result("mean_m", r.mean, m, "Mean of the readings.");
-  v.result("sigma_m", r.sigma, m, "Standard deviation of the mean.");
-  v.result("value_m", r.value, m, "New range offset: the mean where it is beyond the tolerance.");
+  v.result("sigma_m", r.sigma, m.in_summary(), "Standard deviation of the mean.");
+  v.result("value_m", r.value, m.in_summary(), "New range offset: the mean where it is beyond the tolerance.");
 }
 
 RangeOffset range_offset_of(const FlatTarget& t) {
@@ -140,7 +140,7 @@ void describe(const Jointly& r, V& v) {
   v.table("lever_arm_right_correction", arm(j.lever_right), "To be added to the lever arm.");
   v.result("lowest_height_m", j.lowest, metres, "Lowest flying height above the target.");
   v.result("highest_height_m", j.highest, metres, "Highest flying height above the target.");
-  v.result("chi2", j.chi2, ratio, "Per degree of freedom.");
+  v.result("chi2", j.chi2, ratio, "Chi-square per degree of freedom.");
 }
 
 struct Corner {
@@ -181,11 +181,11 @@ void describe(const Details& r, V& v) {
 template <class V>
 void describe(const TargetAngle& a, V& v) {
   const Form deg = degrees.only_if(a.determined), arcsec = arc_seconds.only_if(a.determined), known = core::plain().only_if(a.determined);
-  v.result("determined", a.determined, "True: lines show it.");
+  v.result("determined", a.determined, core::plain().in_summary(), "True: lines show it.");
   v.result("present_deg", to_degrees(a.present), degrees, "Angle in force.");
-  v.result("value_deg", to_degrees(a.value), degrees, "New angle: the mean where it is beyond the tolerance.");
+  v.result("value_deg", to_degrees(a.value), degrees.in_summary(), "New angle: the mean where it is beyond the tolerance.");
   v.result("mean_deg", to_degrees(a.mean), deg, "Mean of the readings.");
-  v.result("sigma_arcsec", a.sigma / target_arc_second, arcsec, "Standard deviation of the mean.");
+  v.result("sigma_arcsec", a.sigma / target_arc_second, arcsec.in_summary(), "Standard deviation of the mean.");
   v.result("sigma_of_readings_arcsec", a.own / target_arc_second, arcsec, "The same by the readings' own covariance.");
   v.result("sigma_by_scatter_arcsec", a.scatter / target_arc_second, arcsec.only_if(a.determined && a.scatter > 0.0),
            "The same by their scatter.");
@@ -228,7 +228,7 @@ void describe(const TargetView& s, V& v) {
   v.result("blur_at_edges_m", s.blur, m, "Standard deviation of a pulse's place across an edge.");
   v.result("half_footprint_m", s.half_footprint, m, "Half the band with returns on and off the roof.");
   v.result("roughness_m", s.roughness, m, "RMS of the roof's returns about their plane.");
-  v.result("chi2", s.chi2, number, "Of the edges' fit per degree of freedom.");
+  v.result("chi2", s.chi2, number, "Chi-square per degree of freedom of the edges' fit.");
   v.tables_if(s.seen, "edges", s.sides, "Edges in the order of the corners.");
 }
 

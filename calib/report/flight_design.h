@@ -24,8 +24,8 @@ void describe(const LineOnPlanes& r, V& v) {
   v.result("id", l.id, "Number of the line.");
   v.result("name", l.name, "Its name in the survey.");
   v.result("heading", l.heading, core::Form{"rad"}.always(), "Mean course over ground, clockwise from true north.");
-  v.result("height", l.height, core::metres().always(), "Mean of the scanner above the ground.");
-  v.result("speed", l.speed, core::Form{"m/s"}.always(), "Mean over ground.");
+  v.result("height", l.height, core::metres().always(), "Mean height of the scanner above the ground.");
+  v.result("speed", l.speed, core::Form{"m/s"}.always(), "Mean ground speed.");
   v.result("length", l.length, core::metres().always(), "Length.");
   v.result("first", l.first, core::seconds().always(), "GPS time of the first return.");
   v.result("last", l.last, core::seconds().always(), "GPS time of the last return.");

@@ -174,7 +174,7 @@ void add_correlations(const PageParts& parts) {
   if (!chart) return;
   parts.page.section("Correlations", 3);
   parts.page.paragraph(
-      "Near one or minus one the two parameters can hardly be separated on this flight: an error of the one is balanced by the other.");
+      "Near one or minus one the two parameters can hardly be separated on this flight: an error of the one is compensated by the other.");
   parts.keep("figures/correlation.png", report::draw(*chart));
   parts.page.figure_svg(report::svg(*chart), "Correlations between the estimated parameters.", "figures/correlation.png");
 }

@@ -129,7 +129,7 @@ template <class V>
 void describe(const DifferenceMap& r, V& v) {
   v.result("file", r.file, "GeoTIFF beside this file.");
   v.result("cell", r.cell, m, "Side of a cell.");
-  v.result("metres_per_unit", r.unit, ratio, "Of the heights in the GeoTIFF.");
+  v.result("metres_per_unit", r.unit, ratio, "Metres per unit of the heights in the GeoTIFF.");
   v.table("statistics", r.statistics, "Height differences, m.");
 }
 
@@ -185,7 +185,7 @@ struct Frame {
 
 template <class V>
 void describe(const Frame& r, V& v) {
-  v.result("origin", r.of.origin, core::metres(), "ECEF.");
+  v.result("origin", r.of.origin, core::metres(), "Origin in ECEF.");
   v.result("local_R_ecef", r.of.local_R_ecef, "Rows: east, north, up.");
 }
 

@@ -71,10 +71,10 @@ void find_datum(const JointTarget& j, const TargetMeasures& m, Findings& say) {
     const double size = j.datum.head<2>().norm(), its = j.datum_sigma.head<2>().maxCoeff();
     constexpr double worth_telling = 0.05;  // m
     if (size > significant * its && size > worth_telling)
-      say(words(
-          "the target stands %.2f m east and %.2f m north (+-%.2f m) of its survey in all lines alike: datum or base station, not the "
-          "mounting; it cancels in opposite lines",
-          j.datum.x(), j.datum.y(), its));
+      say(
+          words("the target lies %.2f m east and %.2f m north (+-%.2f m) of its survey in all lines alike: datum or base station, not the "
+                "mounting; it cancels in opposite lines",
+                j.datum.x(), j.datum.y(), its));
   }
 }
 

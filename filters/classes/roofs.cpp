@@ -16,7 +16,7 @@ constexpr int roof_growth = 2;          // links from large planes to the small 
 constexpr int fewest_around = 4;        // roof cells around a gap of a roof
 constexpr double share_around = 0.7;    // of the cells around it that hold returns off the ground
 constexpr double search_sides = 3.0;    // of the square of the least area, on each side of a cell
-constexpr double widest_vehicle = 2.6;  // m: the law of most countries, EU directive 96/53
+constexpr double widest_vehicle = 2.6;  // m: EU directive 96/53 allows 2.55 m, refrigerated bodies 2.60 m
 constexpr size_t large = 8;             // times the least area: what is larger is a roof whatever its form
 constexpr int rim_gap = 3;              // cells
 

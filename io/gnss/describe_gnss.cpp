@@ -138,12 +138,12 @@ void describe(const PosFacts& r, V& v) {
 }
 
 struct SentenceCount {
-  std::string kind;
+  std::string name;
   std::uint64_t count = 0;
 };
 template <class V>
 void describe(const SentenceCount& r, V& v) {
-  v.result("kind", r.kind, "Kind of the sentence: GGA, RMC ...");
+  v.result("name", r.name, "Kind of the sentence: GGA, RMC ...");
   v.result("count", r.count, "How many there are.");
 }
 
@@ -169,12 +169,12 @@ struct TagFacts {
 template <class V>
 void describe(const TagFacts& r, V& v) {
   v.result("format", "RTKLIB time tags"s, "Format.");
-  v.result("recording_began", r.began, "Begin of the recording, GPS date.");
+  v.result("recording_began", r.began, "Start of the recording, GPS date.");
   v.result("seconds_of_week", r.seconds_of_week, "The same in seconds of the GPS week.");
   v.result("gps_week", r.week, "GPS week.");
   v.result("tags", r.tags, "Arrivals.");
-  v.result("first_arrival_s", r.first, core::seconds(), "First arrival after the begin.");
-  v.result("last_arrival_s", r.last, core::seconds(), "Last arrival after the begin.");
+  v.result("first_arrival_s", r.first, core::seconds(), "First arrival after the start.");
+  v.result("last_arrival_s", r.last, core::seconds(), "Last arrival after the start.");
   v.result("warnings", r.warnings, "What looks wrong.");
 }
 

@@ -20,7 +20,7 @@ namespace swath::io {
 ///   pps        Time of each pulse by the clock: MJD and seconds of day, or POSIX seconds alone ("#" and a sequence number may follow).
 ///              Pulses stand on whole seconds of UTC: the clock must be right to half a second.
 /// Where the clock was set back, what lies before is left out and counted: its times are no longer unique. Records at a repeated time are
-/// dropped and counted. Throws Error "file:line" for a line that cannot be read.
+/// left out and counted. Throws Error "file:line" for a line that cannot be read.
 core::ClockData read_clock_log(const std::filesystem::path& file, ClockFormat format, core::Tally& tally);
 
 /// All logs of the survey, joined in time order; epoch is that of the first. Throws Error where they are of different formats (two views of

@@ -2,6 +2,7 @@
 #include "io/records/describe_trajectory.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -52,13 +53,13 @@ bool looks_like(const std::filesystem::path& path, Plausible plausible) {
 }
 
 struct TimeFacts {
-  core::Interval span{};
+  std::array<double, 2> ends{};
   std::optional<double> rate{};
 };
 template <class V>
 void describe(const TimeFacts& r, V& v) {
-  v.result("time", r.span, "First and last time, as recorded.");
-  v.result("duration_s", r.span.high - r.span.low, core::seconds().only_if(r.span.any()), "Time from the first to the last.");
+  v.result("time", r.ends, "First and last time, as recorded.");
+  v.result("duration_s", r.ends[1] - r.ends[0], core::seconds(), "Time from the first to the last; below 0 over a week's end.");
   v.result("rate_hz", r.rate, core::Form{"Hz"}, "Records per second, by the median step.");
 }
 
@@ -73,7 +74,7 @@ TimeFacts times_of(const std::vector<double>& time, std::vector<std::string>& wa
     repeated += step == 0;
     if (step > 0) steps.push_back(step);
   }
-  out.span = {time.front(), time.back()};
+  out.ends = {time.front(), time.back()};
   if (back) warnings.push_back("time goes back " + std::to_string(back) + " times: the file is not sorted");
   if (repeated) warnings.push_back(std::to_string(repeated) + " records repeat the time before them");
   if (time.front() >= 0 && time.back() < 2 * core::seconds_per_week)

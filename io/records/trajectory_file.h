@@ -12,7 +12,7 @@ namespace swath::io {
 
 /// What every trajectory must keep, whatever its format: values finite, latitudes and pitches within a quarter turn, time rising.
 /// Throws Error "name: record N" where it does not, and where time goes back (nothing is sorted silently). Records at a repeated time are
-/// dropped and counted; gaps (over 5 times the median step and over 0.05 s) are counted with their length.
+/// left out and counted; gaps (over 5 times the median step and over 0.05 s) are counted with their length.
 void check_trajectory(core::TrajectoryData& trajectory, const std::string& name, core::Tally& tally);
 
 /// Reads one trajectory file of the survey by its format, checked, with sigmas: the file's own, else those that the survey states for it.

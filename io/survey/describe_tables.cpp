@@ -85,7 +85,7 @@ struct TableFacts {
 template <class V>
 void describe(const TableFacts& r, V& v) {
   v.result("format", r.format, "Format.");
-  v.result("delimiter", r.delimiter, "What parts the columns.");
+  v.result("delimiter", r.delimiter, "Separator of the columns.");
   v.result("header", r.header, "Does a line name the columns?");
   v.result("rows", r.rows, "Rows.");
   v.tables("columns", r.columns, "Columns.");

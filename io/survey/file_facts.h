@@ -42,7 +42,7 @@ void describe(const StatedCrs& r, V& v) {
   v.result("crs", r.name, "Name of the CRS.");
   v.result("epsg", r.epsg, core::if_any(), "Its EPSG code.");
   v.result("unit", r.unit, "Its horizontal unit.");
-  v.result("heights", r.heights, "What heights count from.");
+  v.result("heights", r.heights, "Vertical reference of the heights.");
 }
 
 }  // namespace swath::io

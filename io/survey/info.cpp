@@ -184,8 +184,8 @@ Value describe_raster(const Path& path) {
   double t[6];
   if (data->GetGeoTransform(t) == CE_None) {
     out.cell.emplace(t[1], -t[5]);
-    out.x = {t[0], t[0] + t[1] * out.size[0]};
-    out.y = {t[3] + t[5] * out.size[1], t[3]};
+    for (const double x : {t[0], t[0] + t[1] * out.size[0]}) out.x.add(x);
+    for (const double y : {t[3], t[3] + t[5] * out.size[1]}) out.y.add(y);  // a south-up raster goes the other way
     if (t[2] != 0 || t[4] != 0) out.warnings.push_back("the grid is rotated");
   } else {
     out.warnings.push_back("the file is not georeferenced");

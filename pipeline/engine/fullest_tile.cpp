@@ -25,6 +25,8 @@ std::optional<FileBox> box_of(const stages::Context& context, const io::LasSourc
   const FileBox b{h.min.x() * context.unit, h.min.y() * context.unit, h.max.x() * context.unit, h.max.y() * context.unit, {}, {}};
   const stages::Box& area = context.area.box;
   if (!s.same_places || h.point_count == 0 || !area.holds(b.x0, b.y0) || !area.holds(b.x1, b.y1)) return std::nullopt;
+  const auto is_kept = [&](double z) { return context.area.has_height(z * context.vertical_unit); };
+  if (!is_kept(h.min.z()) || !is_kept(h.max.z())) return std::nullopt;
   if (!(std::abs(b.x0) < 1e8 && std::abs(b.y0) < 1e8 && std::abs(b.x1) < 1e8 && std::abs(b.y1) < 1e8)) return std::nullopt;
   FileBox out = b;
   const auto first = [&](double v) { return static_cast<int>(std::floor(v / side)); };

@@ -70,6 +70,7 @@ core::Value report_of(const RunState& run, const std::string& command, double se
   r.limits = judged(run.plan.run.limits, measured(run));
   r.pieces_resumed = run.resumed;
   r.pieces_damaged = run.damaged;
+  r.strips_read_again = run.read_again;
   r.seconds = seconds;
   r.threads = run.threads;
   r.warnings = warnings_in(core::reported(r));

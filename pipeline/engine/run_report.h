@@ -30,7 +30,7 @@ template <class V>
 void describe(const Input& i, V& v) {
   v.result("file", i.file, "The file.");
   v.result("bytes", i.bytes, "Its length.");
-  v.result("xxh3", i.hash, "Its checksum, XXH3 of 128 bits.");
+  v.result("xxh3", i.hash, "Its checksum, XXH3 of 64 bits.");
 }
 
 struct PointCounts {
@@ -74,7 +74,7 @@ struct RunReport {
   std::vector<StageReport> stages;
   std::vector<JudgedLimit> limits;
   std::vector<Warning> warnings;
-  std::uint64_t pieces_resumed = 0, pieces_damaged = 0;
+  std::uint64_t pieces_resumed = 0, pieces_damaged = 0, strips_read_again = 0;
   double seconds = 0.0;
   int threads = 0;
 };
@@ -94,6 +94,8 @@ void describe(const RunReport& r, V& v) {
   v.tables("warnings", r.warnings, "What a person should look at.");
   v.result("pieces_resumed", r.pieces_resumed, "Pieces of work that an earlier run had done.");
   v.result("pieces_damaged", r.pieces_damaged, "Pieces of an earlier run that were damaged and made again.");
+  v.result("strips_read_again", r.strips_read_again, core::if_any(),
+           "Flight lines or files read again: their points were removed once written.");
   v.result("seconds", r.seconds, core::seconds(), "Time of the run.");
   v.result("threads", r.threads, "Threads in use.");
 }

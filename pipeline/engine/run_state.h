@@ -40,13 +40,14 @@ struct RunState {
   std::vector<Input> inputs;
   std::vector<std::string> fingerprints, folders;  ///< of each stage; of the work that its folder holds
   core::ColumnSet kept;                            ///< of the strips' points
+  bool keeps_store = false;                        ///< all of their columns, for other runs, too
   size_t source = 0;                               ///< the stage that is the plan's source; as many as there are stages where it has none
   size_t last_strip_stage = 0;
   std::unique_ptr<TileStore> store;
   std::unique_ptr<SquareCounts> squares;
   std::set<TileKey> surface_tiles;  ///< without a point of their own, but a surface reaches into them from their neighbours
   bool has_products = false;        ///< of a tile stage that is finished
-  std::uint64_t resumed = 0, damaged = 0;
+  std::uint64_t resumed = 0, damaged = 0, read_again = 0;
 
   const stages::Stage& stage(size_t number) const { return *plan.stages[number].stage; }
   bool works_on(size_t number, stages::Grain g) const { return stage(number).works_on(g); }

@@ -48,18 +48,23 @@ core::ColumnSet needed_columns(const RunState& run) {
   return needed;
 }
 
-void stream_strip(RunState& run, const stages::Strip& strip, const fs::path& strip_folder) {
-  struct Parcel {
-    stages::StripBatch batch;
-    std::vector<Account> accounts;
-    std::uint64_t read = 0;
-  };
-  const size_t n = run.plan.stages.size(), source = run.source;
-  const auto reader = run.stage(source).open(run.context, strip);
-  // Where the budget is little, batches are small, and the same in each run; then they are few.
+struct Parcel {
+  stages::StripBatch batch;
+  std::vector<Account> accounts;
+  std::uint64_t read = 0;
+};
+
+/// How many batches are at work, and the points of each. Where the budget is little, they are small, and the same in each run; then few.
+std::pair<size_t, size_t> batches_of(const RunState& run) {
   const double points_at_once = share_of_batches * run.memory.bytes() / batch_bytes_per_point;
   const auto batches = std::clamp(static_cast<size_t>(points_at_once) / least_in_batch, size_t{1}, static_cast<size_t>(run.threads) + 1);
-  const size_t batch_points = std::clamp(static_cast<size_t>(points_at_once / static_cast<double>(batches)), least_in_batch, most_in_batch);
+  return {batches, std::clamp(static_cast<size_t>(points_at_once / static_cast<double>(batches)), least_in_batch, most_in_batch)};
+}
+
+void stream_strip(RunState& run, const stages::Strip& strip, const fs::path& strip_folder) {
+  const size_t n = run.plan.stages.size(), source = run.source;
+  const auto reader = run.stage(source).open(run.context, strip);
+  const auto [batches, batch_points] = batches_of(run);
   StripWriter writer(strip_folder, run.plan.run.tile.value,
                      static_cast<size_t>(share_of_buffers * run.memory.free() / 2.0));  // columns grow by doubling
   std::vector<Account> accounts(n);
@@ -121,6 +126,12 @@ void expect_room_for_strips(const RunState& run) {
   run.memory.require(share_of_batches * least, left, "reading the points");
 }
 
+/// Has the stage finished some of its tiles?
+bool has_pieces(const fs::path& folder) {
+  return fs::exists(folder) && std::any_of(fs::directory_iterator(folder), fs::directory_iterator(),
+                                           [](const fs::directory_entry& e) { return e.path().extension() == ".done"; });
+}
+
 /// A tile that the clouds' headers show to be too full is refused before any point is read: with the budget for points that lie evenly over
 /// their files' boxes, as the next ones around it do.
 void expect_room_for_fullest_tile(const RunState& run) {
@@ -128,13 +139,16 @@ void expect_room_for_fullest_tile(const RunState& run) {
   const std::optional<FullTile> tile = fullest_tile(run.context);
   if (!tile) return;
   const double left = run.memory.left();
+  // A cloud may be without the others.
+  using core::Column;
+  const core::ColumnSet certain = needed_columns(run) - core::ColumnSet{Column::sigma_v, Column::sigma_h, Column::range, Column::incidence};
   const auto needed = [&](const std::map<TileKey, std::uint64_t>& points) {
     TileStore assumed({}, run.plan.run.tile.value, run.context.origin);
-    for (const auto& [key, n] : points) assumed.assume(key, n, needed_columns(run));
+    for (const auto& [key, n] : points) assumed.assume(key, n, certain);
     SquareCounts squares(assumed);
     std::pair<double, std::string_view> most;
     for (size_t i = run.last_strip_stage + 1; i < run.plan.stages.size(); ++i) {
-      if (!run.works_on(i, Grain::tile)) continue;
+      if (!run.works_on(i, Grain::tile) || has_pieces(run.folder(i))) continue;
       const StageMemory memory(assumed, run.stage(i), run.context);
       TileGroup largest;
       for (const auto& [key, n] : points)
@@ -177,7 +191,8 @@ void choose_strips(RunState& run) {
   core::ColumnSet all;
   for (int c = 0; c < core::column_count; ++c) all.add(static_cast<core::Column>(c));
   keep(all);
-  if (!run.plan.run.keep_work && !fs::exists(run.folder(run.last_strip_stage))) keep(needed_columns(run));
+  run.keeps_store = run.plan.run.keep_work || fs::exists(run.folder(run.last_strip_stage));
+  if (!run.keeps_store) keep(needed_columns(run));
 }
 
 void find_strips(RunState& run) {

@@ -86,7 +86,8 @@ std::vector<TileGroup> groups_of(RunState& run, size_t number, const std::vector
   const StageMemory memory(*run.store, run.stage(number), run.context);
   const Measure measure = [&](std::vector<TileKey> tiles) { return memory.of(std::move(tiles)); };
   const auto fitted = [&](std::vector<TileGroup> groups) {
-    for (TileGroup& g : groups) g = memory.cut(std::move(g), budget, *run.squares);
+    for (TileGroup& g : groups)  // what is done is not done again, and its points may be gone
+      if (!fs::exists(done_file(run, number, g))) g = memory.cut(std::move(g), budget, *run.squares);
     return groups;
   };
   if (info.gives.empty() || !info.gives_products.empty() || run.works_on(number, Grain::merge)) return fitted(single_tiles(keys, measure));
@@ -137,23 +138,48 @@ PieceRecord run_group(RunState& run, size_t number, const TileGroup& group, bool
   return record;
 }
 
-/// Are the points of a tile needed no more once the stage has worked on it?
+/// Are the points of a tile needed no more once the stage has worked on it? A store that an earlier run has kept whole stays so.
 bool releases(const RunState& run, size_t number) {
-  return number == last_reader(run) && !run.plan.run.keep_work && run.stage(number).halo() <= 0.0 && run.stage(number).info().gives.empty();
+  return number == last_reader(run) && !run.keeps_store && run.stage(number).halo() <= 0.0 && run.stage(number).info().gives.empty();
+}
+
+/// The tiles that the stage works on.
+struct StageTiles {
+  std::vector<TileKey> keys;
+  std::set<TileKey> fringe, wet;  ///< without points of their own; with water
+};
+
+StageTiles stage_tiles(const RunState& run, size_t number) {
+  const stages::Info& info = run.stage(number).info();
+  StageTiles out{tiles_of(run, number), {}, {}};
+  if (has_surface(info.gives_products)) out.fringe = run.store->fringe(run.stage(number).halo());
+  if (info.makes(stages::Product::dtm)) out.wet = tiles_of_water(run);
+  out.fringe.insert(out.wet.begin(), out.wet.end());
+  for (const TileKey key : out.fringe)
+    if (!run.surface_tiles.contains(key)) out.keys.push_back(key);
+  return out;
+}
+
+/// What the groups' pieces say goes to the stage's account.
+void add_pieces(RunState& run, size_t number, const std::vector<TileGroup>& groups, std::vector<PieceRecord> pieces) {
+  Account& account = run.accounts[number];
+  account.in = account.out = run.store->points();
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    const TileKey first = groups[i].tiles[0];
+    std::optional<Account> one = account_of(pieces[i].note);
+    if (!one) throw damaged_work(done_file(run, number, groups[i]));
+    if (!run.store->tiles().contains(first) && !run.surface_tiles.contains(first)) one->tally = {};
+    account.add(*one);
+    for (PieceFile& f : pieces[i].files) run.made[number].push_back(std::move(f));
+  }
 }
 
 void run_tiles(RunState& run, size_t number) {
   const stages::Info& info = run.stage(number).info();
-  std::set<TileKey> fringe = has_surface(info.gives_products) ? run.store->fringe(run.stage(number).halo()) : std::set<TileKey>{};
-  const std::set<TileKey> wet = info.makes(stages::Product::dtm) ? tiles_of_water(run) : std::set<TileKey>{};
-  fringe.insert(wet.begin(), wet.end());
-  std::vector<TileKey> keys = tiles_of(run, number);
-  for (const TileKey key : fringe)
-    if (!run.surface_tiles.contains(key)) keys.push_back(key);
-
+  const StageTiles tiles = stage_tiles(run, number);
   const double left = run.memory.left(), free = std::max(0.0, left);
   const auto budget = static_cast<std::uint64_t>(free);
-  const std::vector<TileGroup> groups = groups_of(run, number, keys, budget);
+  const std::vector<TileGroup> groups = groups_of(run, number, tiles.keys, budget);
   for (const TileGroup& g : groups)
     if (!fs::exists(done_file(run, number, g)))
       run.memory.require(static_cast<double>(g.bytes), left + run.memory.reserve(),
@@ -189,7 +215,7 @@ void run_tiles(RunState& run, size_t number) {
             run.progress.skip(group.own, work_of(group));
           } else {
             run.memory.make_room(group.bytes);
-            note = run_group(run, number, group, wet.contains(group.tiles[0]));
+            note = run_group(run, number, group, tiles.wet.contains(group.tiles[0]));
             run.progress.advance(group.own, work_of(group));
           }
           if (lets_go) run.store->release(group.tiles[0]);
@@ -198,17 +224,8 @@ void run_tiles(RunState& run, size_t number) {
       tbb::simple_partitioner());
   run.progress.end();
   run.resumed += again;
-  Account& account = run.accounts[number];
-  account.in = account.out = run.store->points();
-  keep_surface_tiles(run, number, fringe);
-  for (size_t i = 0; i < notes.size(); ++i) {
-    const TileKey first = groups[i].tiles[0];
-    std::optional<Account> one = account_of(notes[i].note);
-    if (!one) throw damaged_work(done_file(run, number, groups[i]));
-    if (!run.store->tiles().contains(first) && !run.surface_tiles.contains(first)) one->tally = {};
-    account.add(*one);
-    for (PieceFile& f : notes[i].files) run.made[number].push_back(std::move(f));
-  }
+  keep_surface_tiles(run, number, tiles.fringe);
+  add_pieces(run, number, groups, std::move(notes));
   if (!info.gives.empty()) run.store->add_overlay(run.folder(number), info.gives);
   for (const stages::Product p : info.gives_products) run.grids.add(p, run.folder(number));
   expect_made(run, number);

@@ -25,7 +25,7 @@ template <class V>
 void describe(const PieceFile& f, V& v) {
   v.result("name", f.name, "Relative to the record's folder.");
   v.result("bytes", f.bytes, "Its length.");
-  v.result("checksum", f.checksum, "XXH3 of 128 bits; empty where it was not taken.");
+  v.result("checksum", f.checksum, "XXH3 of 64 bits; empty where it was not taken.");
 }
 
 /// The file as it is now. Throws core::SystemError where it is gone or cannot be read.

@@ -82,8 +82,8 @@ struct InnovationFigures {
 template <class V>
 void describe(const InnovationFigures& r, V& v) {
   v.result("mean_nis", r.mean, core::plain(2).always(), "Mean normalised innovation squared of the fixes at full weight.");
-  v.result("degrees_of_freedom", 3, "Its expectation.");
-  v.result("band_95", Eigen::Vector2d(3 - r.band, 3 + r.band), core::plain(2), "Where 95 % of right models have it.");
+  v.result("degrees_of_freedom", 3, "Degrees of freedom of the NIS, also its expected mean.");
+  v.result("band_95", Eigen::Vector2d(3 - r.band, 3 + r.band), core::plain(2), "95 % interval of the mean NIS if the models are right.");
   v.result("rms_ned_m", r.rms, core::metres(), "RMS innovation: north, east, down.");
   v.result("correlation_lag_1_ned", r.correlation, core::plain(2), "Correlation of each innovation with the one before.");
   v.result("residual_rms_ned_m", r.residual_rms, core::metres(), "RMS of fix less smoothed antenna position.");
@@ -116,7 +116,7 @@ void describe(const SensorConstant& r, V& v) {
   v.result("unit", r.unit_name, "Unit of the figures.");
   v.result("value", Eigen::Vector3d(r.value / r.unit), "Estimate: x, y, z.");
   v.result("sigma", Eigen::Vector3d(r.sigma / r.unit), "Its sigmas.");
-  v.result("stated_sigma", r.stated / r.unit, core::plain().always(), "Sigma by which it was stated in imu_spec.");
+  v.result("stated_sigma", r.stated / r.unit, core::plain().always(), "Sigma stated in imu_spec.");
 }
 
 struct LeverArmFound {
@@ -170,8 +170,8 @@ template <class V>
 void describe(const InsEstimates& r, V& v) {
   v.table("gyro_bias", r.gyro_bias, "Bias of the gyroscopes.");
   v.table("accelerometer_bias", r.accelerometer_bias, "Bias of the accelerometers.");
-  v.table("gyro_scale", r.gyro_scale, "Error of the gyroscopes' scale.");
-  v.table("accelerometer_scale", r.accelerometer_scale, "Error of the accelerometers' scale.");
+  v.table("gyro_scale", r.gyro_scale, "Scale error of the gyroscopes.");
+  v.table("accelerometer_scale", r.accelerometer_scale, "Scale error of the accelerometers.");
   v.table("lever_arm", r.lever_arm, "Lever arm from the IMU to the antenna.");
   v.table("gnss_latency", r.latency, "Latency of the fixes.");
   v.table("vehicle_axis", r.axis, "Direction in which a land vehicle moves.");

@@ -24,7 +24,7 @@ TEST(AdjustFindings, DegenerateFlightsAreRefusedInWords) {
 
   const World one_way = pattern_of({{0.0, 0.0}, {0.0, 0.0}, {0.0, 50.0}});
   const Adjustment b = flown(one_way, plain(), 2, near_truth(one_way));
-  EXPECT_TRUE(says(b, "boresight pitch and along-track shift cannot be told apart: only one line direction", false));
+  EXPECT_TRUE(says(b, "boresight pitch and along-track shift cannot be separated: only one line direction", false));
   EXPECT_TRUE(b.estimates[boresight_pitch].delivered);
   EXPECT_EQ(b.estimates[boresight_pitch].grade, Grade::coarse);
 

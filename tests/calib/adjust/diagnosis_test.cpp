@@ -61,7 +61,7 @@ TEST(Diagnosis, OneDirection) {
   ASSERT_EQ(found.size(), 1u);
   EXPECT_TRUE(found[0].refuses);
   EXPECT_EQ(found[0].parameters, std::vector<Parameter>{boresight_pitch});
-  EXPECT_EQ(found[0].what, "boresight pitch and along-track shift cannot be told apart: only one line direction");
+  EXPECT_EQ(found[0].what, "boresight pitch and along-track shift cannot be separated: only one line direction");
   EXPECT_EQ(found[0].cure, "fly one line in the opposite direction over the same buildings");
 }
 
@@ -88,7 +88,7 @@ TEST(Diagnosis, CombinationsAreNamedTogether) {
   const auto found = two(500.0, 500.0, 0.9999, {4, true, false, false, false, false, 3, 9, 0.4});
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].parameters, (std::vector<Parameter>{boresight_roll, boresight_pitch}));
-  EXPECT_EQ(found[0].what.find("boresight roll and boresight pitch cannot be told apart"), 0u);
+  EXPECT_EQ(found[0].what.find("boresight roll and boresight pitch cannot be separated"), 0u);
   EXPECT_TRUE(found[0].refuses);
 }
 

@@ -41,7 +41,7 @@ TEST(Refusals, OfStationsNameTheCause) {
 TEST(Refusals, OfPointsNameTheCause) {
   PointSearch p;
   for (const auto& [state, words] : {std::pair{PointState::too_few, "point 'roof' has too few sights"},
-                                     {PointState::not_determined, "fewer than three or stand in one line"},
+                                     {PointState::not_determined, "fewer than three or lie in one line"},
                                      {PointState::weak, "hardly determine it"},
                                      {PointState::two_fit, "mirrored in the plane of the stations"},
                                      {PointState::not_found, "does not converge"}}) {

@@ -262,7 +262,7 @@ CalibrationReport made_report(bool refused) {
   r.checks.push_back({"check 2", 0, -0.021, 0.022, 1.0, -0.95, false});
   a.findings.push_back({"apron, south corner 2 disagrees with the flight by 9.4 cm", "check its coordinates and its datum", {}, false});
   if (refused)
-    a.findings.push_back({"range offset and range scale cannot be told apart: only one flying height",
+    a.findings.push_back({"range offset and range scale cannot be separated: only one flying height",
                           "fly the same lines at twice the height",
                           {calib::range_scale},
                           true});

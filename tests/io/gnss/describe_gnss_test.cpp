@@ -39,7 +39,7 @@ TEST(DescribeGnss, NmeaWithoutADate) {
   const core::Value told = describe_file(folder / "a.log");
   EXPECT_EQ(told.find("format")->as_text(), "NMEA");
   const core::Value& sentence = told.find("sentences")->items().at(0);
-  EXPECT_EQ(sentence.find("kind")->as_text(), "GGA");
+  EXPECT_EQ(sentence.find("name")->as_text(), "GGA");
   EXPECT_EQ(sentence.find("count")->as_int(), 1);
   EXPECT_NE(info_text(told).find("no RMC or ZDA sentence states the date"), std::string::npos);
 }

@@ -21,13 +21,16 @@ core::Grid numbered(core::Lattice l) {
 
 TEST(GridFile, ReadsBackWhatWasWritten) {
   const test::TemporaryFolder folder;
-  const core::Grid g = numbered({2.0, -3, 5, 4, 6});
+  core::Grid g = numbered({2.0, -3, 5, 4, 6});
+  g.reason[3] = core::Void::no_data;
+  g.count.assign(g.lattice.size(), 7);
   write_grid_file(folder / "a.grid", g);
   const core::Grid back = read_grid_file(folder / "a.grid");
   EXPECT_EQ(back.lattice, g.lattice);
   EXPECT_EQ(back.height, g.height);
   EXPECT_EQ(back.sigma, g.sigma);
-  EXPECT_TRUE(back.count.empty());
+  EXPECT_EQ(back.count, g.count);
+  EXPECT_EQ(back.reason, g.reason);
 }
 
 TEST(GridFile, ACutFileIsAnError) {

@@ -56,6 +56,10 @@ TEST(FullestTile, NothingIsKnownWhereTheAreaLeavesPointsOut) {
   Cloud c(3000, 500100.0, 500400.0);
   c.context.area.box.x1 = 500200.0;
   EXPECT_FALSE(fullest_tile(c.context));
+  Cloud high(3000, 500100.0, 500400.0);
+  EXPECT_TRUE(fullest_tile(high.context));
+  high.context.area.highest = -1e3;
+  EXPECT_FALSE(fullest_tile(high.context));
 }
 
 }  // namespace
