@@ -176,7 +176,7 @@ class FirstLines {
 };
 
 /// A line of data with its place.
-struct DataLine {
+struct NumberedLine {
   std::vector<std::string> fields;
   std::uint64_t begin, number;
 };
@@ -195,7 +195,7 @@ DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::
   DelimitedLayout out;
   std::string comment, header, line;
   bool have_header = false, anything = false;
-  std::vector<DataLine> data;
+  std::vector<NumberedLine> data;
   while (data.size() <= cut_line_context && lines.next(line)) {
     if (line.empty()) continue;
     if (is_comment(line)) {
@@ -218,9 +218,9 @@ DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::
     throw core::Error("no line of numbers", path.string(),
                       lines.number() == 0 ? "the file is empty" : "the file holds a header or comments only");
   std::vector<std::vector<std::string>> fields;
-  for (const DataLine& d : data) fields.push_back(d.fields);
+  for (const NumberedLine& d : data) fields.push_back(d.fields);
   const bool cut = first_line_is_cut(fields, !anything);
-  const DataLine& first = data[cut ? 1 : 0];
+  const NumberedLine& first = data[cut ? 1 : 0];
   if (cut) out.cut_line = data[0].number;
   out.columns = first.fields.size();
   out.data_begin = first.begin;
