@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double arc_second = core::degree / 3600.0;
-constexpr int grey = 4;  // of the palette
+constexpr double chart_arc_second = core::degree / 3600.0;
+constexpr int grey_colour = 4;  // of the palette
 
 /// Edges of one view in plan, displacements `enlarged`.
 report::Series edges_in_plan(const FlatTarget& t, const TargetView& v, double enlarged, int colour, const std::string& name) {
@@ -55,7 +55,7 @@ report::Panel plan(const FlatTarget& t, bool after) {
   p.x_label = after ? "east (m) " : "east (m)";
   p.y_label = "north (m)";
   p.equal_scale = true;
-  report::Series outline{t.target.surveyed ? "surveyed" : "mean", {}, {}, {}, report::Mark::line, grey};
+  report::Series outline{t.target.surveyed ? "surveyed" : "mean", {}, {}, {}, report::Mark::line, grey_colour};
   for (size_t k = 0; k <= t.target.sides(); ++k) {
     outline.x.push_back(t.target.corners[k % t.target.sides()].x());
     outline.y.push_back(t.target.corners[k % t.target.sides()].y());
@@ -64,7 +64,7 @@ report::Panel plan(const FlatTarget& t, bool after) {
   int colour = 0;
   for (const TargetLine& l : t.lines) {
     if (!l.measured) continue;
-    if (colour == grey) ++colour;
+    if (colour == grey_colour) ++colour;
     p.series.push_back(edges_in_plan(t, after ? l.after : l.before, enlarged, colour++, "line " + std::to_string(l.line)));
   }
   return p;
@@ -75,12 +75,13 @@ report::Panel readings(const std::string& name, const TargetAngle& a) {
   p.title = name + ": readings less the mean, with their sigmas";
   p.x_label = "reading of " + name;
   p.y_label = "arcsec";
-  report::Series mean{"sigma of the mean", {0.5, static_cast<double>(a.readings.size()) + 0.5}, {}, {}, report::Mark::band, grey};
-  mean.y.assign(2, a.sigma / arc_second);
+  report::Series mean{"sigma of the mean", {0.5, static_cast<double>(a.readings.size()) + 0.5}, {}, {}, report::Mark::band, grey_colour};
+  mean.y.assign(2, a.sigma / chart_arc_second);
   p.series.push_back(mean);
   report::Series dots{"", {}, {}, {}, report::Mark::dots, 0}, bars{"", {}, {}, {}, report::Mark::line, 0};
   for (size_t i = 0; i < a.readings.size(); ++i) {
-    const double x = static_cast<double>(i + 1), y = (a.readings[i].value - a.mean) / arc_second, s = a.readings[i].sigma / arc_second;
+    const double x = static_cast<double>(i + 1), y = (a.readings[i].value - a.mean) / chart_arc_second,
+                 s = a.readings[i].sigma / chart_arc_second;
     dots.x.push_back(x);
     dots.y.push_back(y);
     for (const double end : {y - s, y + s}) {

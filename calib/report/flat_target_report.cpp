@@ -18,7 +18,7 @@ using core::to_degrees;
 using Eigen::Vector2d;
 
 constexpr double target_arc_second = core::degree / 3600.0;
-constexpr Form ratio = core::plain().always(), metres = core::metres().always(), degrees = core::in_degrees().always(),
+constexpr Form target_ratio = core::plain().always(), metres = core::metres().always(), degrees = core::in_degrees().always(),
                arc_seconds = Form{"arcsec"}.always(), millionths = Form{"ppm"}.always();
 
 struct Named {
@@ -32,13 +32,13 @@ std::optional<S> given(bool holds, S value) {
   return holds ? std::optional<S>(std::move(value)) : std::nullopt;
 }
 
-struct ReadingRow {
+struct TargetReadingRow {
   Reading of;
   bool is_angle = true;
 };
 
 template <class V>
-void describe(const ReadingRow& r, V& v) {
+void describe(const TargetReadingRow& r, V& v) {
   const std::vector<int> both{r.of.first, r.of.second};
   v.result("lines", r.of.second >= 0 ? both : std::vector<int>{r.of.first}, "Numbers of the lines.");
   v.result("value_deg", to_degrees(r.of.value), degrees.only_if(r.is_angle), "Boresight angle that the lines show.");
@@ -47,8 +47,8 @@ void describe(const ReadingRow& r, V& v) {
   v.result("sigma_m", r.of.sigma, metres.only_if(!r.is_angle), "Its standard deviation.");
 }
 
-std::vector<ReadingRow> rows_of(const std::vector<Reading>& readings, bool are_angles) {
-  std::vector<ReadingRow> out;
+std::vector<TargetReadingRow> rows_of(const std::vector<Reading>& readings, bool are_angles) {
+  std::vector<TargetReadingRow> out;
   for (const Reading& r : readings) out.push_back({r, are_angles});
   return out;
 }
@@ -98,7 +98,7 @@ struct ScanScale {
 
 template <class V>
 void describe(const ScanScale& r, V& v) {
-  v.result("value", r.value, ratio, "Scale of the scan angles.");
+  v.result("value", r.value, target_ratio, "Scale of the scan angles.");
   v.result("sigma_ppm", 1e6 * r.sigma, millionths, "Its standard deviation.");
 }
 
@@ -140,7 +140,7 @@ void describe(const Jointly& r, V& v) {
   v.table("lever_arm_right_correction", arm(j.lever_right), "To be added to the lever arm.");
   v.result("lowest_height_m", j.lowest, metres, "Lowest flying height above the target.");
   v.result("highest_height_m", j.highest, metres, "Highest flying height above the target.");
-  v.result("chi2", j.chi2, ratio, "Chi-square per degree of freedom.");
+  v.result("chi2", j.chi2, target_ratio, "Chi-square per degree of freedom.");
 }
 
 struct Corner {
@@ -205,7 +205,7 @@ void describe(const SideView& r, V& v) {
 
 template <class V>
 void describe(const TargetView& s, V& v) {
-  const Form n = core::plain().only_if(s.seen), m = metres.only_if(s.seen), number = ratio.only_if(s.seen),
+  const Form n = core::plain().only_if(s.seen), m = metres.only_if(s.seen), number = target_ratio.only_if(s.seen),
              in_ppm = millionths.only_if(s.seen);
   v.result("seen", s.seen, "True: the line sees the target.");
   v.result("why_not", s.why_not, core::plain().only_if(!s.seen && !s.why_not.empty()), "Why it does not.");

@@ -137,7 +137,7 @@ class Cut {
 
 }  // namespace
 
-void keep_in_area(std::vector<Breakline>& features, const Area& area, const Vector3d& origin, core::Tally& tally) {
+void keep_in_area(std::vector<Breakline>& features, const core::Area& area, const Vector3d& origin, core::Tally& tally) {
   Cut cut(area, origin, tally);
   std::vector<Breakline> out;
   for (const Breakline& f : features) {
