@@ -23,9 +23,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double steady_angle = 2e-7;  // rad: 0.04 arcsec
-constexpr double steady_range = 5e-4;  // m
-constexpr double significant = 3.0;    // sigmas
+constexpr double steady_angle = 2e-7;    // rad: 0.04 arcsec
+constexpr double steady_range = 5e-4;    // m
+constexpr double significant_arm = 3.0;  // sigmas
 
 /// The surveyed target of that name, or the largest that is a level roof; `not_used`: what the others are, in words.
 std::optional<RoofTarget> surveyed_target(const std::vector<io::ControlPoint>& control, const std::string& wanted,
@@ -256,7 +256,7 @@ class Analysis {
       t.scatter = r.scatter;
       t.sigma = r.sigma;
       // A displacement that does not grow with the flying height is no angle's.
-      if (t.determined && arm && out_.joint.two_heights && std::abs(arm->value) > significant * arm->sigma) {
+      if (t.determined && arm && out_.joint.two_heights && std::abs(arm->value) > significant_arm * arm->sigma) {
         t.mean = current - joint.value;
         t.sigma = t.own = joint.sigma;
         t.of_two_heights = true;
