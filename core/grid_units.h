@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
+#include "core/block.h"
 #include "core/grid.h"
 
 namespace swath::core {
@@ -22,6 +24,23 @@ inline Grid in_units(double unit, double vertical_unit, Grid grid) {
     for (float& s : grid.sigma) s = static_cast<float>(static_cast<double>(s) / vertical_unit);
   }
   return grid;
+}
+
+/// Multiplies a block's coordinates, not its origin.
+inline void scale_columns(double horizontal, double vertical, Block& block) {
+  const auto scale = [](std::vector<double>& column, double factor) {
+    if (factor != 1.0)
+      for (double& v : column) v *= factor;
+  };
+  scale(block.x, horizontal);
+  scale(block.y, horizontal);
+  scale(block.z, vertical);
+}
+
+/// Multiplies its origin, too.
+inline void scale_block(double horizontal, double vertical, Block& block) {
+  scale_columns(horizontal, vertical, block);
+  block.origin = block.origin.cwiseProduct(Eigen::Vector3d(horizontal, horizontal, vertical));
 }
 
 }  // namespace swath::core

@@ -6,9 +6,6 @@
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
-#include <cmath>
-
 namespace swath::georef {
 
 using Eigen::Matrix3d;

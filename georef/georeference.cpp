@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "core/error.h"
 #include "core/geo/frames.h"
@@ -195,18 +194,14 @@ void propagate(const ShotGeometry& g, const core::SensorSigma& sensor, const Loc
     const double qx = tx - l.x(), qy = ty - l.y(), qz = tz - l.z();
     const double t2 = tx * tx + ty * ty + tz * tz, r2 = c.range[i] * c.range[i], cos2 = c.cosine[i] * c.cosine[i];
     double total = common, down = common_vertical;
-    for (int k = 0; k < 3; ++k) {
-      const double along = axis[k].x() * tx + axis[k].y() * ty + axis[k].z() * tz;
-      const double lift = vertical[k].x() * tx + vertical[k].y() * ty + vertical[k].z() * tz;
-      total += variance[k] * (t2 - along * along);
+    const auto turn = [&](int k, double x, double y, double z, double squared) {
+      const double along = axis[k].x() * x + axis[k].y() * y + axis[k].z() * z;
+      const double lift = vertical[k].x() * x + vertical[k].y() * y + vertical[k].z() * z;
+      total += variance[k] * (squared - along * along);
       down += variance[k] * lift * lift;
-    }
-    for (int k = 3; k < 6; ++k) {
-      const double along = axis[k].x() * qx + axis[k].y() * qy + axis[k].z() * qz;
-      const double lift = vertical[k].x() * qx + vertical[k].y() * qy + vertical[k].z() * qz;
-      total += variance[k] * (r2 - along * along);
-      down += variance[k] * lift * lift;
-    }
+    };
+    for (int k = 0; k < 3; ++k) turn(k, tx, ty, tz, t2);
+    for (int k = 3; k < 6; ++k) turn(k, qx, qy, qz, r2);
     const double range = range_constant + range_growing * c.raw_range[i] * c.raw_range[i];
     total += range;
     down += range * cos2;
@@ -225,6 +220,19 @@ void propagate(const ShotGeometry& g, const core::SensorSigma& sensor, const Loc
     c.sigma_h[i] = static_cast<float>(std::sqrt(level > 0.0 ? level : 0.0));
     c.sigma_v[i] = static_cast<float>(std::sqrt(down));
   }
+}
+
+// What holds over the interval that the cursor is in.
+Local local_of(const trajectory::Cursor& cursor, const CorrelatedErrors* correlated) {
+  const trajectory::Interval& k = cursor.interval();
+  Local out;
+  out.pose = k.pose(k.start);
+  out.ecef_R_base = k.base_attitude;
+  out.sigma = cursor.sigma(0.5 * (k.start + k.end));
+  const Matrix3d base_R_ned = out.ecef_R_base.transpose() * ecef_R_ned_at(out.pose);
+  out.down = base_R_ned.col(2);
+  if (correlated && correlated->any()) out.errors = correlated->at(k.start, out.sigma, base_R_ned);
+  return out;
 }
 
 // ecef to map minus origin, in place; NaN where there is none.
@@ -330,15 +338,7 @@ Counts Georeferencer::run(const core::Shots& shots, core::Block& out) const {
   const auto finish_chunk = [&] {
     if (c.n == 0) return;
     const trajectory::Interval& k = cursor.interval();
-    if (cursor.number() != number) {
-      number = cursor.number();
-      here.pose = k.pose(k.start);
-      here.ecef_R_base = k.base_attitude;
-      here.sigma = cursor.sigma(0.5 * (k.start + k.end));
-      const Matrix3d base_R_ned = here.ecef_R_base.transpose() * ecef_R_ned_at(here.pose);
-      here.down = base_R_ned.col(2);
-      if (with_sigma_ && correlated_.any()) here.errors = correlated_.at(k.start, here.sigma, base_R_ned);
-    }
+    if (cursor.number() != number) here = local_of(cursor, with_sigma_ ? &correlated_ : nullptr), number = cursor.number();
     make_rays(geometry_, with_sigma_, c);
     turn_to_base(k, geometry_.lever_arm(), c);
     place(k, here, geometry_.lever_arm(), geometry_.air().bending, c);

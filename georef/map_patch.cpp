@@ -6,7 +6,6 @@
 #include "georef/map_patch.h"
 
 #include <cmath>
-#include <limits>
 
 #include "core/config/units.h"
 

@@ -70,8 +70,6 @@ Matrix3d attitude_axes(const Vector3d& down) {
   return axes;
 }
 
-Jacobian ned_jacobian(const Jacobian& ecef, const trajectory::Pose& pose) { return ecef_R_ned_at(pose).transpose() * ecef; }
-
 Variances variances(const core::SensorSigma& s, const trajectory::PoseSigma& p) {
   const auto square = [](double v) { return v * v; };
   Variances v{};
@@ -107,13 +105,6 @@ CalibrationCovariance calibration_covariance(const core::SensorSigma& sensor) {
         out(i, j) = std::sqrt(v[static_cast<size_t>(i)] * v[static_cast<size_t>(j)]) *
                     (i == j ? 1.0 : sensor.correlation[static_cast<size_t>(i * n + j)]);
   return out;
-}
-
-Matrix3d covariance(const Jacobian& by, const Variances& v, const Vector3d& beam, double beam_divergence) {
-  const double pointing = beam_divergence / 4.0;
-  Matrix3d C = pointing * pointing * (beam.squaredNorm() * Matrix3d::Identity() - beam * beam.transpose());
-  for (int k = 0; k < parameter_count; ++k) C += v[static_cast<size_t>(k)] * by.col(k) * by.col(k).transpose();
-  return C;
 }
 
 }  // namespace swath::georef

@@ -90,15 +90,10 @@ class ShotGeometry {
 Eigen::Matrix3d ecef_R_ned_at(const trajectory::Pose& pose);
 /// Columns: axes in body about which roll, pitch and heading turn it; `down`: the nadir in body.
 Eigen::Matrix3d attitude_axes(const Eigen::Vector3d& down);
-/// A Jacobian in ecef turned to north, east, down at the pose.
-Jacobian ned_jacobian(const Jacobian& ecef, const trajectory::Pose& pose);
 
 Variances variances(const core::SensorSigma& sensor, const trajectory::PoseSigma& pose);
 /// Of the calibration values boresight_roll .. latency, with the correlations that `sensor` states.
 using CalibrationCovariance = Eigen::Matrix<double, latency + 1, latency + 1>;
 CalibrationCovariance calibration_covariance(const core::SensorSigma& sensor);
-/// J S J^T in NED, m^2, with a quarter of the divergence as pointing sigma about both axes across the beam (Schaer et al. 2007). `beam`:
-/// vector from scanner to point in the same frame as `by`.
-Eigen::Matrix3d covariance(const Jacobian& by, const Variances& v, const Eigen::Vector3d& beam, double beam_divergence);
 
 }  // namespace swath::georef

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/line_file.h"
 
-#include <string>
-
 #include "core/error.h"
 
 namespace swath::pipeline {

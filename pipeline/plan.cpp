@@ -137,6 +137,20 @@ void read_stages(const Value& tree, Plan& plan, std::vector<Fault>& faults) {
   }
 }
 
+/// The cells of two grids that a stage needs where they differ; otherwise empty.
+std::string differing_cells(const stages::Info& info, const std::map<Product, double>& cells) {
+  const auto cell = [&](Product q) {
+    return core::format_quantity(core::Dimension::length, cells.at(q)) + " of " + std::string(name_of(q));
+  };
+  const Product* first = nullptr;
+  for (const Product& p : info.needs_products) {
+    if (!cells.contains(p)) continue;
+    if (first && cells.at(p) != cells.at(*first)) return cell(*first) + " and " + cell(p);
+    first = &p;
+  }
+  return {};
+}
+
 /// Do the stages fit one another: sources first, columns and products given before they are needed, grains in order.
 void check_order(const Plan& plan, std::vector<Fault>& faults) {
   ColumnSet columns;
@@ -166,17 +180,8 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
       if (!has(p))
         fault("needs " + std::string(name_of(p)) + ", which no stage before it gives",
               giver([p](const stages::Info& i) { return i.makes(p); }));
-    const Product* first = nullptr;
-    for (const Product& p : info.needs_products) {
-      if (!cells.contains(p)) continue;
-      if (first && cells.at(p) != cells.at(*first)) {
-        const auto cell = [&](Product q) {
-          return core::format_quantity(core::Dimension::length, cells.at(q)) + " of " + std::string(name_of(q));
-        };
-        fault("needs grids of the same cells, and they are " + cell(*first) + " and " + cell(p), "give both stages the same cell");
-      }
-      first = &p;
-    }
+    if (const std::string sizes = differing_cells(info, cells); !sizes.empty())
+      fault("needs grids of the same cells, and they are " + sizes, "give both stages the same cell");
     for (int c = 0; c < core::column_count; ++c) {
       const auto column = static_cast<core::Column>(c);
       if (info.needs.has(column) && !columns.has(column))
@@ -209,7 +214,7 @@ void check_memory(const Plan& plan, std::vector<Fault>& faults) {
   for (const PlannedStage& s : plan.stages) {
     double needed = 0.0;
     stages::Raster largest;
-    for (const stages::Raster& r : s.stage->rasters(context)) {
+    for (const stages::Raster& r : s.stage->memory(context).rasters) {
       needed += r.total(0.0);
       if (r.total(0.0) > largest.total(0.0)) largest = r;
     }

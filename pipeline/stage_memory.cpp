@@ -49,12 +49,13 @@ StageMemory::StageMemory(const TileStore& store, const stages::Stage& stage, con
   given_bytes_ = bytes_of(stage.info().gives, 0.0);
 }
 
-/// Bytes for `rows` points in a square of `side` metres, `judged` of which the stage's own bytes are for.
-double StageMemory::needed(double rows, double judged, double side, double all_points) const {
+/// Bytes for `rows` points in a square of `side` metres, `near` of which the stage's own bytes are for.
+double StageMemory::needed(double rows, double near, double side, double all_points) const {
   square_.tile_side = side;
   const double chunk = 2.0 * static_cast<double>(chunk_rows) * row_bytes_;  // read, packed and unpacked
-  double bytes = chunk + row_bytes_ * rows + stage_.bytes_per_point() * judged;
-  for (const stages::Raster& r : stage_.rasters(square_)) bytes += r.total(all_points);
+  const stages::TileMemory own = stage_.memory(square_);
+  double bytes = chunk + row_bytes_ * rows + own.bytes_per_point * (near * own.share_of_points);
+  for (const stages::Raster& r : own.rasters) bytes += r.total(all_points);
   return bytes;
 }
 
@@ -76,12 +77,12 @@ TileGroup StageMemory::of(std::vector<TileKey> tiles) const {
   const auto points = static_cast<double>(load.points);
   const double near =
       stage_.near_halo() < stage_.halo() ? static_cast<double>(store_.load_with_halo(tiles, stage_.near_halo()).points) : points;
-  const double rows = std::min(points, near + left), judged = std::min(points, near) * stage_.share_of_points(side);
+  const double rows = std::min(points, near + left);
   // A tile that is joined to others is there once more for a moment.
   const double moment = tiles.size() > 1 ? static_cast<double>(load.neighbour) : 0.0;
   group.with_halo = static_cast<std::uint64_t>(rows);
-  group.bytes =
-      static_cast<std::uint64_t>(needed(rows + moment, judged, side, points) + number_in_tile * (rows - static_cast<double>(group.own)));
+  group.bytes = static_cast<std::uint64_t>(needed(rows + moment, std::min(points, near), side, points) +
+                                           number_in_tile * (rows - static_cast<double>(group.own)));
   group.tiles = std::move(tiles);
   return group;
 }
@@ -136,8 +137,7 @@ TileGroup StageMemory::cut(TileGroup group, std::uint64_t budget, SquareCounts& 
         const double near_points = near < halo ? around.in(part, near, side) : points;
         const double reached = part_side + 2.0 * halo;
         const double rows = std::min(points, near_points + stage_.left_per_area() * reached * reached);
-        const double judged = std::min(points, near_points) * stage_.share_of_points(part_side);
-        const double one = needed(rows, judged, part_side, points) + number_in_tile * rows;
+        const double one = needed(rows, std::min(points, near_points), part_side, points) + number_in_tile * rows;
         if (one > bytes) bytes = one, rows_of_largest = rows;
       }
     // What the parts give is put together in a column of the whole tile.

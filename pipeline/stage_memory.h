@@ -42,7 +42,7 @@ class StageMemory {
 
  private:
   class Around;
-  double needed(double rows, double judged, double side, double all_points) const;
+  double needed(double rows, double near, double side, double all_points) const;
 
   const TileStore& store_;
   const stages::Stage& stage_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/tile_work.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>

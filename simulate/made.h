@@ -10,19 +10,10 @@
 
 #include "core/config/result.h"
 #include "core/config/units.h"
+#include "core/records/number_count.h"
 #include "simulate/recorded_flight.h"
 
 namespace swath::simulate {
-
-struct ReturnCount {
-  int number = 0;
-  std::uint64_t count = 0;
-};
-template <class V>
-void describe(const ReturnCount& r, V& v) {
-  v.result("number", r.number, "Class, number of the return or flight line.");
-  v.result("count", r.count, "Returns of it.");
-}
 
 struct LaserMade {
   std::uint64_t surveyed_points = 0, pulses = 0, returns = 0;
@@ -33,9 +24,7 @@ struct LaserMade {
 template <class V>
 void describe(const LaserMade& r, V& v) {
   const auto counts = [&v](const char* key, const std::map<int, std::uint64_t>& of, const char* doc) {
-    std::vector<ReturnCount> list;
-    for (const auto& [number, count] : of) list.push_back({number, count});
-    v.tables_if(!list.empty(), key, list, doc);
+    v.tables_if(!of.empty(), key, core::counts_of(of), doc);
   };
   v.result("surveyed_points", r.surveyed_points, "Surveyed points on targets and on the ground.");
   v.result("pulses", r.pulses, "Pulses.");

@@ -85,68 +85,69 @@ core::ScannerModel model_of(Pattern p) {
 
 double least_side_with_hall(const WorldOptions& w) { return std::hypot(w.hall_length.value, w.hall_width.value) + 10.0; }
 
-Features features_of(const WorldOptions& w) {
-  Features f;
-  switch (w.scene) {
+namespace {
+
+/// A scene as its name has it.
+Features usual_features(Scene scene) {
+  switch (scene) {
     case Scene::flat:
-      f = {.slope = 0.01};
-      break;
+      return {.slope = 0.01};
     case Scene::hills:
-      f = {.slope = 0.02, .relief = 20, .trees = 40, .low_vegetation = 0.1, .woodland = 0.1};
-      break;
+      return {.slope = 0.02, .relief = 20, .trees = 40, .low_vegetation = 0.1, .woodland = 0.1};
     case Scene::steep:
-      f = {.slope = 0.25, .relief = 30, .scarp = 12, .trees = 60, .low_vegetation = 0.2, .woodland = 0.25};
-      break;
+      return {.slope = 0.25, .relief = 30, .scarp = 12, .trees = 60, .low_vegetation = 0.2, .woodland = 0.25};
     case Scene::forest:
-      f = {.slope = 0.08, .relief = 12, .trees = 250, .low_vegetation = 0.3, .woodland = 0.75};
-      break;
+      return {.slope = 0.08, .relief = 12, .trees = 250, .low_vegetation = 0.3, .woodland = 0.75};
     case Scene::town:
-      f = {.slope = 0.01,
-           .relief = 2,
-           .buildings = 9,
-           .trees = 30,
-           .low_vegetation = 0.05,
-           .power_line = true,
-           .woodland = 0.2,
-           .built_up = 0.7};
-      break;
+      return {.slope = 0.01,
+              .relief = 2,
+              .buildings = 9,
+              .trees = 30,
+              .low_vegetation = 0.05,
+              .power_line = true,
+              .woodland = 0.2,
+              .built_up = 0.7};
     case Scene::mixed:
-      f = {.slope = 0.03,
-           .relief = 8,
-           .scarp = 5,
-           .embankment = 3,
-           .buildings = 6,
-           .trees = 150,
-           .low_vegetation = 0.15,
-           .water = true,
-           .power_line = true,
-           .woodland = 0.25,
-           .built_up = 0.35};
-      break;
+      return {.slope = 0.03,
+              .relief = 8,
+              .scarp = 5,
+              .embankment = 3,
+              .buildings = 6,
+              .trees = 150,
+              .low_vegetation = 0.15,
+              .water = true,
+              .power_line = true,
+              .woodland = 0.25,
+              .built_up = 0.35};
     case Scene::zoo:
-      f = {.slope = 0.03,
-           .relief = 8,
-           .scarp = 9,
-           .embankment = 4,
-           .ditch = 5,
-           .buildings = 7,
-           .trees = 600,
-           .low_vegetation = 0.1,
-           .crops = 0.8,
-           .water = true,
-           .power_line = true,
-           .hall = true,
-           .bridge = true,
-           .woodland = 0.3,
-           .built_up = 0.3,
-           .foliage = 0.4,
-           .scarp_slope = 1.43,
-           .embankment_at = -0.05};
-      break;
+      return {.slope = 0.03,
+              .relief = 8,
+              .scarp = 9,
+              .embankment = 4,
+              .ditch = 5,
+              .buildings = 7,
+              .trees = 600,
+              .low_vegetation = 0.1,
+              .crops = 0.8,
+              .water = true,
+              .power_line = true,
+              .hall = true,
+              .bridge = true,
+              .woodland = 0.3,
+              .built_up = 0.3,
+              .foliage = 0.4,
+              .scarp_slope = 1.43,
+              .embankment_at = -0.05};
     case Scene::airfield:
-      f = {.slope = 0.002, .relief = 0.4, .buildings = 0.3, .trees = 0.4};
-      break;
+      return {.slope = 0.002, .relief = 0.4, .buildings = 0.3, .trees = 0.4};
   }
+  return {};
+}
+
+}  // namespace
+
+Features features_of(const WorldOptions& w) {
+  Features f = usual_features(w.scene);
   if (w.slope) f.slope = *w.slope;
   if (w.relief) f.relief = w.relief->value;
   if (w.scarp) f.scarp = w.scarp->value;

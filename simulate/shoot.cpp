@@ -58,80 +58,90 @@ void Shooter::shoot(const Line& line, std::int64_t first, std::int64_t last, Ret
   for (std::int64_t k = first; k < last; ++k) pulse(line, k, echoes, out);
 }
 
-void Shooter::pulse(const Line& line, std::int64_t number, Echoes& echoes, Returns& out) const {
+// One pulse on its way.
+struct Shooter::Beam {
+  core::GpsTime time;
+  ScanState scan;
+  Vector3d in_scanner;         // unit vector
+  Vector3d origin, direction;  // ECEF
+  Vector3d tangent, slope;     // the same in the map's tangent frame
+  double begin, length;        // of the ray along it, m
+  Ray ray;
+};
+
+bool Shooter::aim(const Line& line, std::int64_t number, Random& random, Beam& out) const {
+  const ScannerOptions& scanner = options_.scanner;
+  out.time = start_ + (line.start + static_cast<double>(number) / scanner.prf.value);
+  const double t = out.time - start_;
+  const Pose pose = flight_.pose(t);
+  const Eigen::Matrix3d ecef_R_body = core::ecef_R_ned(pose.position.latitude, pose.position.longitude) * core::matrix_of(pose.attitude);
+  out.origin = core::ecef_of(pose.position) + ecef_R_body * lever_arm_;
+
+  out.scan = line.scans ? scan_at(scanner, t) : ScanState{};
+  // A mirror that stands still reads 0.
+  if (scanner.pattern == Pattern::profile || !line.scans) out.scan.angle = options_.mounting.truth.scan_offset.value;
+  out.in_scanner = beam_of(scanner, out.scan.angle, out.scan.forward);
+  if (!options_.noise.noise_free) {
+    const double sigma = 0.25 * scanner.divergence.value;
+    const double one = random.normal(), other = random.normal();
+    out.in_scanner = deflected(out.in_scanner, sigma * one, sigma * other);
+  }
+  out.direction = ecef_R_body * (body_R_scanner_ * out.in_scanner);
+
+  // The beam on the map: a parabola through three of its points between the highest and the lowest ground.
+  out.tangent = map_.tangent_of(out.origin);
+  out.slope = map_.direction_of(out.direction);
+  if (out.slope.z() > -0.1) return false;
+  const double top = map_.map_of(out.tangent).z();
+  out.begin = std::max(0.0, (top - world_.relief().highest() - 1.0) / -out.slope.z());
+  const double end = std::max(out.begin + 10.0, (top - world_.relief().lowest() + 1.0) / -out.slope.z());
+  const double half = 0.5 * (end - out.begin);
+  const Vector3d a = map_.map_of(out.tangent + out.begin * out.slope), b = map_.map_of(out.tangent + (out.begin + half) * out.slope),
+                 c = map_.map_of(out.tangent + end * out.slope);
+  out.ray = {a, (4 * b - 3 * a - c) / (2 * half), (a - 2 * b + c) / (2 * half * half)};
+  out.length = end - out.begin;
+  return true;
+}
+
+void Shooter::displace(const Beam& beam, Random& error, Echoes& echoes) const {
+  const NoiseOptions& noise = options_.noise;
+  const double outlier = error.uniform();
+  Echo& first = echoes.echo[0];
+  Echo& last = echoes.echo[static_cast<size_t>(echoes.count - 1)];
+  if (outlier < noise.high_points) {
+    first.s -= error.uniform(10.0, std::max(11.0, 0.5 * beam.begin));
+    first.kind = core::point_class::high_noise;
+  } else if (outlier < noise.high_points + noise.low_points) {
+    last.s += error.uniform(3.0, 25.0);
+    last.kind = core::point_class::low_noise;
+  } else if (outlier < noise.high_points + noise.low_points + noise.multipath) {
+    last.s += error.uniform(0.5, 3.0);
+    last.kind = core::point_class::low_noise;
+  } else if (noise.low_groups > 0.0 && last.kind == core::point_class::ground) {
+    const Vector3d foot = beam.ray.at(last.s);
+    const double depth = group_depth(noise.low_groups, options_.seed, foot.x(), foot.y());
+    if (depth > 0.0 && error.uniform() < group_share) {
+      last.s += depth + group_scatter * error.normal();
+      last.kind = core::point_class::low_noise;
+    }
+  }
+}
+
+void Shooter::record(const Line& line, const Beam& beam, const Echoes& echoes, Random& error, Returns& out) const {
   const NoiseOptions& noise = options_.noise;
   const ScannerOptions& scanner = options_.scanner;
   const core::Calibration& truth = options_.mounting.truth;
   const bool noisy = !noise.noise_free;
-  const auto index = static_cast<std::uint64_t>(line.id) << 40 | static_cast<std::uint64_t>(number);
-  Random random = random_of(options_.seed, Stream::pulse, index);
-
-  const core::GpsTime time = start_ + (line.start + static_cast<double>(number) / scanner.prf.value);
-  const double t = time - start_;
-  const Pose pose = flight_.pose(t);
-  const Eigen::Matrix3d ecef_R_body = core::ecef_R_ned(pose.position.latitude, pose.position.longitude) * core::matrix_of(pose.attitude);
-  const Vector3d origin = core::ecef_of(pose.position) + ecef_R_body * lever_arm_;
-
-  ScanState scan = scan_at(scanner, t);
-  if (!line.scans) scan = {};
-  // A mirror that stands still reads 0.
-  if (scanner.pattern == Pattern::profile || !line.scans) scan.angle = truth.scan_offset.value;
-  Vector3d beam = beam_of(scanner, scan.angle, scan.forward);
-  if (noisy) {
-    const double sigma = 0.25 * scanner.divergence.value;
-    const double one = random.normal(), other = random.normal();
-    beam = deflected(beam, sigma * one, sigma * other);
-  }
-  const Vector3d direction = ecef_R_body * (body_R_scanner_ * beam);
-
-  // The beam on the map: a parabola through three of its points between the highest and the lowest ground.
-  const Vector3d tangent = map_.tangent_of(origin), slope = map_.direction_of(direction);
-  if (slope.z() > -0.1) return;
-  const double top = map_.map_of(tangent).z();
-  const double begin = std::max(0.0, (top - world_.relief().highest() - 1.0) / -slope.z());
-  const double end = std::max(begin + 10.0, (top - world_.relief().lowest() + 1.0) / -slope.z());
-  const double half = 0.5 * (end - begin);
-  const Vector3d a = map_.map_of(tangent + begin * slope), b = map_.map_of(tangent + (begin + half) * slope),
-                 c = map_.map_of(tangent + end * slope);
-  const Ray ray{a, (4 * b - 3 * a - c) / (2 * half), (a - 2 * b + c) / (2 * half * half)};
-  world_.trace(ray, end - begin + 50.0, noisy ? begin * scanner.divergence.value : 0.0, random, echoes);
-  detect(echoes, scanner.separation.value, scanner.max_returns);
-  if (echoes.count == 0) return;
-
-  Random error = random_of(options_.seed, Stream::noise, index);
-  double angle = scan.angle;
-  if (noisy) {
-    const double outlier = error.uniform();
-    Echo& first = echoes.echo[0];
-    Echo& last = echoes.echo[static_cast<size_t>(echoes.count - 1)];
-    if (outlier < noise.high_points) {
-      first.s -= error.uniform(10.0, std::max(11.0, 0.5 * begin));
-      first.kind = core::point_class::high_noise;
-    } else if (outlier < noise.high_points + noise.low_points) {
-      last.s += error.uniform(3.0, 25.0);
-      last.kind = core::point_class::low_noise;
-    } else if (outlier < noise.high_points + noise.low_points + noise.multipath) {
-      last.s += error.uniform(0.5, 3.0);
-      last.kind = core::point_class::low_noise;
-    } else if (noise.low_groups > 0.0 && last.kind == core::point_class::ground) {
-      const Vector3d foot = ray.at(last.s);
-      const double depth = group_depth(noise.low_groups, options_.seed, foot.x(), foot.y());
-      if (depth > 0.0 && error.uniform() < group_share) {
-        last.s += depth + group_scatter * error.normal();
-        last.kind = core::point_class::low_noise;
-      }
-    }
-    angle += noise.scan_angle.value * error.normal();
-  }
-  const bool profile = scanner.pattern == Pattern::profile;
-  double recorded_angle = profile ? 0.0 : (angle - truth.scan_offset.value) / truth.scan_scale;
+  double angle = beam.scan.angle;
+  if (noisy) angle += noise.scan_angle.value * error.normal();
+  double recorded_angle = scanner.pattern == Pattern::profile ? 0.0 : (angle - truth.scan_offset.value) / truth.scan_scale;
   if (noisy) recorded_angle = rounded(recorded_angle, scanner.angle_resolution.value);
 
   for (int i = 0; i < echoes.count; ++i) {
     const Echo& echo = echoes.echo[static_cast<size_t>(i)];
-    const double range = begin + echo.s;
-    const Vector3d p = origin + range * direction;
-    const Vector3d map = map_.map_of(tangent + range * slope) + map_.map_origin();
+    const double range = beam.begin + echo.s;
+    const Vector3d p = beam.origin + range * beam.direction;
+    const Vector3d map = map_.map_of(beam.tangent + range * beam.slope) + map_.map_origin();
     double recorded = range, brightness = 0.0;
     if (noisy) {
       recorded += noise.range.value * error.normal();
@@ -140,17 +150,17 @@ void Shooter::pulse(const Line& line, std::int64_t number, Echoes& echoes, Retur
     recorded = (recorded - truth.range_offset.value) / truth.range_scale;
     if (noisy) recorded = rounded(recorded, scanner.range_resolution.value);
     const double nominal = options_.flight.height.value / range;
-    out.time.push_back(time - truth.latency.value);
+    out.time.push_back(beam.time - truth.latency.value);
     out.angle.push_back(recorded_angle);
-    out.forward.push_back(scan.forward);
+    out.forward.push_back(beam.scan.forward);
     out.range.push_back(recorded);
     out.intensity.push_back(std::clamp(std::round(2000 * echo.energy * (1 + brightness) * nominal * nominal), 1.0, 65535.0));
     out.number.push_back(i + 1);
     out.count.push_back(echoes.count);
     out.line.push_back(line.id);
-    out.positive.push_back(scan.positive);
-    out.edge.push_back(scan.edge);
-    out.true_time.push_back(time);
+    out.positive.push_back(beam.scan.positive);
+    out.edge.push_back(beam.scan.edge);
+    out.true_time.push_back(beam.time);
     out.x.push_back(p.x());
     out.y.push_back(p.y());
     out.z.push_back(p.z());
@@ -158,12 +168,26 @@ void Shooter::pulse(const Line& line, std::int64_t number, Echoes& echoes, Retur
     out.north.push_back(map.y());
     out.height.push_back(map.z());
     out.true_range.push_back(range);
-    out.true_angle.push_back(scan.angle);
-    out.beam_x.push_back(beam.x());
-    out.beam_y.push_back(beam.y());
-    out.beam_z.push_back(beam.z());
+    out.true_angle.push_back(beam.scan.angle);
+    out.beam_x.push_back(beam.in_scanner.x());
+    out.beam_y.push_back(beam.in_scanner.y());
+    out.beam_z.push_back(beam.in_scanner.z());
     out.kind.push_back(echo.kind);
   }
+}
+
+void Shooter::pulse(const Line& line, std::int64_t number, Echoes& echoes, Returns& out) const {
+  const bool noisy = !options_.noise.noise_free;
+  const auto index = static_cast<std::uint64_t>(line.id) << 40 | static_cast<std::uint64_t>(number);
+  Random random = random_of(options_.seed, Stream::pulse, index);
+  Beam beam;
+  if (!aim(line, number, random, beam)) return;
+  world_.trace(beam.ray, beam.length + 50.0, noisy ? beam.begin * options_.scanner.divergence.value : 0.0, random, echoes);
+  detect(echoes, options_.scanner.separation.value, options_.scanner.max_returns);
+  if (echoes.count == 0) return;
+  Random error = random_of(options_.seed, Stream::noise, index);
+  if (noisy) displace(beam, error, echoes);
+  record(line, beam, echoes, error, out);
 }
 
 }  // namespace swath::simulate

@@ -56,7 +56,14 @@ class Shooter {
   void shoot(const Line& line, std::int64_t first, std::int64_t last, Returns& out) const;
 
  private:
+  struct Beam;
   void pulse(const Line& line, std::int64_t number, Echoes& echoes, Returns& out) const;
+  /// The pulse's beam; false where it never comes down.
+  bool aim(const Line& line, std::int64_t number, Random& random, Beam& out) const;
+  /// Outliers: an echo high above or below its place.
+  void displace(const Beam& beam, Random& error, Echoes& echoes) const;
+  /// What the instrument writes, beside the truth.
+  void record(const Line& line, const Beam& beam, const Echoes& echoes, Random& error, Returns& out) const;
 
   const Options& options_;
   const World& world_;

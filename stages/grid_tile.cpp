@@ -5,11 +5,12 @@
 
 namespace swath::stages {
 
-std::filesystem::path grid_file(const std::filesystem::path& folder, TileKey key) {
-  return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".grid");
+std::filesystem::path piece_file(const std::filesystem::path& folder, TileKey key, const char* ending) {
+  return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + "." + ending);
 }
 
 void write_grid_tile(const std::filesystem::path& folder, TileKey key, const core::Grid& grid) {
+  std::filesystem::create_directories(folder);
   io::write_grid_file(grid_file(folder, key), grid);
 }
 

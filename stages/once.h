@@ -55,7 +55,7 @@ struct Output {
   std::filesystem::path folder;
 };
 
-/// A stage at work.
+/// A stage at work on a survey.
 struct Site {
   Context& context;
   core::Tally& tally;
@@ -65,39 +65,38 @@ struct Site {
 template <class P>
 struct Argument;
 
-template <class P>
 struct PlainArgument {
   static void declare(Info&) {}
 };
 template <>
-struct Argument<const io::Survey&> : PlainArgument<const io::Survey&> {
-  static const io::Survey& of(Site& s) { return s.context.survey; }
+struct Argument<const io::Survey&> : PlainArgument {
+  static const io::Survey& of(auto& s) { return s.context.survey; }
 };
 template <>
-struct Argument<core::Tally&> : PlainArgument<core::Tally&> {
-  static core::Tally& of(Site& s) { return s.tally; }
+struct Argument<core::Tally&> : PlainArgument {
+  static core::Tally& of(auto& s) { return s.tally; }
 };
 template <>
-struct Argument<const core::OnProgress&> : PlainArgument<const core::OnProgress&> {
-  static const core::OnProgress& of(Site& s) { return s.context.progress; }
+struct Argument<const core::OnProgress&> : PlainArgument {
+  static const core::OnProgress& of(auto& s) { return s.context.progress; }
 };
 template <>
-struct Argument<const Context&> : PlainArgument<const Context&> {
-  static const Context& of(Site& s) { return s.context; }
+struct Argument<const Context&> : PlainArgument {
+  static const Context& of(auto& s) { return s.context; }
 };
 template <>
-struct Argument<const Output&> : PlainArgument<const Output&> {
-  static Output of(Site& s) { return {s.context.output}; }
+struct Argument<const Output&> : PlainArgument {
+  static Output of(auto& s) { return {s.context.output}; }
 };
 template <>
 struct Argument<const georef::ShotStream&> {
   static void declare(Info& info) { info.needs_products.push_back(Product::shots); }
-  static georef::ShotStream of(Site& s) { return stream_shots(s.context); }
+  static georef::ShotStream of(auto& s) { return stream_shots(s.context); }
 };
 template <Record R>
 struct Argument<const R&> {
   static void declare(Info& info) { info.needs_products.push_back(Product::of<R>()); }
-  static const R& of(Site& s) { return s.context.records.get<R>(); }
+  static const R& of(auto& s) { return s.context.records.template get<R>(); }
 };
 template <Record R>
 struct Argument<R> {
@@ -107,12 +106,46 @@ struct Argument<R> {
 template <Record R>
 struct Argument<const R*> {
   static void declare(Info& info) { info.uses_products.push_back(Product::of<R>()); }
-  static const R* of(Site& s) { return s.context.records.find<R>(); }
+  static const R* of(auto& s) { return s.context.records.template find<R>(); }
 };
 
 /// Is a parameter the stage's options?
 template <class P>
 constexpr bool is_options = core::Described<std::remove_cvref_t<P>> && !std::same_as<std::remove_cvref_t<P>, io::Survey>;
+
+/// What a function's parameters say. Where there is no function: nothing.
+template <class F>
+struct Signature {
+  using Result = void;
+  using Options = NoOptions;
+  static void declare(Info&) {}
+};
+template <class T, class... P>
+struct Signature<T (*)(P...)> {
+  using Result = T;
+  /// The type of the parameter that is the options; NoOptions where there is none.
+  using Options = std::remove_cvref_t<std::tuple_element_t<
+      0, decltype(std::tuple_cat(std::declval<std::conditional_t<is_options<P>, std::tuple<std::remove_cvref_t<P>>, std::tuple<>>>()...,
+                                 std::declval<std::tuple<NoOptions>>()))>>;
+  static void declare(Info& info) { (declare_one<P>(info), ...); }
+  template <class S, class O>
+  static T call(T (*function)(P...), S& site, const O& o) {
+    return function(one<P>(site, o)...);
+  }
+
+ private:
+  template <class Q>
+  static void declare_one(Info& info) {
+    if constexpr (!is_options<Q>) Argument<Q>::declare(info);
+  }
+  template <class Q, class S, class O>
+  static decltype(auto) one(S& site, const O& o) {
+    if constexpr (is_options<Q>)
+      return (o);
+    else
+      return Argument<Q>::of(site);
+  }
+};
 
 /// Hands a record on. What follows from it is settled: the place on the map follows from the trajectory.
 template <Record R>
@@ -163,35 +196,6 @@ struct Returned<Corrected<R, F>> {
   }
 };
 
-template <class F>
-struct OnceSignature;
-template <class T, class... P>
-struct OnceSignature<T (*)(P...)> {
-  using Result = T;
-  /// The type of the parameter that is the options; NoOptions where there is none.
-  using Options = std::remove_cvref_t<std::tuple_element_t<
-      0, decltype(std::tuple_cat(std::declval<std::conditional_t<is_options<P>, std::tuple<std::remove_cvref_t<P>>, std::tuple<>>>()...,
-                                 std::declval<std::tuple<NoOptions>>()))>>;
-  static void declare(Info& info) {
-    (declare_one<P>(info), ...);
-    Returned<T>::declare(info);
-  }
-  static T call(T (*function)(P...), Site& site, const Options& o) { return function(one<P>(site, o)...); }
-
- private:
-  template <class Q>
-  static void declare_one(Info& info) {
-    if constexpr (!is_options<Q>) Argument<Q>::declare(info);
-  }
-  template <class Q>
-  static decltype(auto) one(Site& site, const Options& o) {
-    if constexpr (is_options<Q>)
-      return (o);
-    else
-      return Argument<Q>::of(site);
-  }
-};
-
 /// What a function does not say of itself; each may be left out.
 template <class O>
 struct OnceExtras {
@@ -201,15 +205,17 @@ struct OnceExtras {
 };
 
 template <auto function>
-class OnceStage : public OptionStage<typename OnceSignature<decltype(function)>::Options> {
+class OnceStage : public OptionStage<typename Signature<decltype(function)>::Options> {
  public:
-  using Signature = OnceSignature<decltype(function)>;
-  using Options = typename Signature::Options;
-  using Findings = typename Returned<typename Signature::Result>::Findings;
+  using Function = Signature<decltype(function)>;
+  using Options = typename Function::Options;
+  using Result = Returned<typename Function::Result>;
+  using Findings = typename Result::Findings;
 
   OnceStage(std::string_view name, std::string_view summary, OnceExtras<Options> extras)
       : info_{name, summary, {Grain::survey}, {}, {}, {}, {}}, extras_(extras) {
-    Signature::declare(info_);
+    Function::declare(info_);
+    Result::declare(info_);
   }
   const Info& info() const override { return info_; }
   void visit_findings(core::ResultVisitor& v) const override {
@@ -226,7 +232,7 @@ class OnceStage : public OptionStage<typename OnceSignature<decltype(function)>:
   }
   void run_survey(Context& context, core::Tally& tally, core::Value& findings) const override {
     Site site{context, tally};
-    findings = Returned<typename Signature::Result>::keep(site, Signature::call(function, site, this->options));
+    findings = Result::keep(site, Function::call(function, site, this->options));
   }
 
  private:
@@ -235,7 +241,7 @@ class OnceStage : public OptionStage<typename OnceSignature<decltype(function)>:
 };
 
 template <auto function>
-Entry once(std::string_view name, std::string_view summary, OnceExtras<typename OnceSignature<decltype(function)>::Options> extras = {}) {
+Entry once(std::string_view name, std::string_view summary, OnceExtras<typename Signature<decltype(function)>::Options> extras = {}) {
   return {name, [=] { return std::make_unique<OnceStage<function>>(name, summary, extras); }};
 }
 

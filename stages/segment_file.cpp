@@ -5,8 +5,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "io/raster/grid_file.h"
-#include "io/text/output_file.h"
+#include "stages/grid_tile.h"
 
 namespace swath::stages {
 namespace {
@@ -22,9 +21,7 @@ struct Head {
   io::PackedHead packed;
 };
 
-fs::path segment_file(const fs::path& folder, TileKey key) {
-  return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".segments");
-}
+fs::path segment_file(const fs::path& folder, TileKey key) { return piece_file(folder, key, "segments"); }
 
 }  // namespace
 

@@ -95,6 +95,13 @@ struct Raster {
   }
 };
 
+/// What a tile at work takes beside its columns.
+struct TileMemory {
+  double bytes_per_point = 64.0;  ///< of tile and near halo
+  std::vector<Raster> rasters{};  ///< needed however few points there are
+  double share_of_points = 1.0;   ///< that those bytes are for: less than 1 where a stage leaves the halo's far points out
+};
+
 class Stage;
 struct Context;
 
@@ -215,14 +222,8 @@ class Stage {
   virtual void thin(const Context&, const Box& /*tiles*/, core::Block& /*around*/) const {}
   /// Points per square metre beyond near_halo() that thin() leaves at most; infinite where it leaves all.
   virtual double left_per_area() const { return std::numeric_limits<double>::infinity(); }
-  /// Bytes of working memory per point of tile and halo, beside the columns.
-  virtual double bytes_per_point() const { return 64.0; }
-  /// Share of the points of tile and halo that these bytes are for: less than 1 where a stage leaves the halo's far points out. `side`: m,
-  /// of the tile.
-  virtual double share_of_points([[maybe_unused]] double side) const { return 1.0; }
-  /// The rasters of one tile at work: memory that is needed however few points there are. In a plan there are no `grids` yet, and rasters
-  /// whose cells they set are left out.
-  virtual std::vector<Raster> rasters(const Context&) const { return {}; }
+  /// Working memory of one tile of the context's side. In a plan there are no `grids` yet, and rasters whose cells they set are left out.
+  virtual TileMemory memory(const Context&) const { return {}; }
   /// Side of the cells of the grids that the stage gives, m; 0 where it gives none or takes them from a grid. A stage that needs several
   /// grids needs them with the same cells.
   virtual double cell() const { return 0.0; }
@@ -254,6 +255,14 @@ class Stage {
     return false;
   }
 };
+
+/// The files of one of the survey's lists, as Stage::inputs.
+template <auto list>
+std::vector<std::filesystem::path> files_in(const io::Survey& survey) {
+  std::vector<std::filesystem::path> out;
+  for (const auto& f : survey.*list) out.push_back(io::resolve(survey, f.file));
+  return out;
+}
 
 /// A stage without options, or without declared results.
 struct NoOptions {};

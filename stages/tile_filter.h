@@ -13,11 +13,9 @@
 #include <string_view>
 #include <utility>
 
-#include "core/config/result_visitors.h"
-#include "core/tile_columns.h"
-#include "stages/entry.h"
 #include "stages/kept_classes.h"
 #include "stages/stage.h"
+#include "stages/tile.h"
 #include "stages/tile_memory.h"
 
 namespace swath::stages {
@@ -33,15 +31,6 @@ template <auto function>
 using OptionsOf = typename FilterSignature<decltype(function)>::Options;
 template <auto function>
 using CountsOf = typename FilterSignature<decltype(function)>::Counts;
-
-/// The halo() beside the options; 0 where there is none. (Within a class its member of that name would hide it.)
-template <class O>
-double halo_of(const O& o) {
-  if constexpr (requires { halo(o); })
-    return halo(o);
-  else
-    return 0.0;
-}
 
 /// What only some filters need.
 struct FilterExtras {
@@ -63,8 +52,7 @@ class TileFilter : public OptionStage<All, CountsOf<function>> {
     if (extras_.check) extras_.check(context, info_.name, columns(own_options()));
   }
   double halo() const override { return halo_of(own_options()); }
-  double bytes_per_point() const override { return memory_of(own_options(), 0.0).bytes_per_point; }
-  std::vector<Raster> rasters(const Context& c) const override { return memory_of(own_options(), c.tile_side).rasters; }
+  TileMemory memory(const Context& c) const override { return memory_of(own_options(), c.tile_side); }
   void run_tile(const Context&, TileJob& job) const override {
     core::count_results(function(job.block, job.own, own_options()), job.tally);
   }

@@ -19,11 +19,6 @@
 
 namespace swath::stages {
 
-struct TileMemory {
-  double bytes_per_point = 64.0;  ///< of tile and halo, beside the columns
-  std::vector<Raster> rasters{};
-};
-
 /// Of a tile of `side` metres. A filter that is not listed takes 64 bytes per point.
 template <class O>
 TileMemory memory_of(const O&, double /*side*/) {

@@ -5,7 +5,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <iostream>
 #include <limits>
 #include <memory>
 #include <sstream>
@@ -171,23 +170,7 @@ void add_request(CLI::App* c, Arguments& a) {
   c->add_option("--set", a.request.sets, "One option of one stage: dtm.cell=\"50 cm\", run.tile=\"250 m\"")->allow_extra_args(false);
 }
 
-int command_line(int argc, char** argv) {
-  Arguments a;
-  CLI::App app(
-      "Examples\n"
-      "  swath simulate demo                                   a small survey with its truth, in demo/\n"
-      "  swath run configs/survey.toml --survey demo/survey.toml --output out\n"
-      "  swath run configs/survey.toml --survey demo/survey.toml --set dtm.cell=\"50 cm\"\n"
-      "  swath info flight.laz                                 what a file holds, and what looks wrong in it\n"
-      "  swath stages filters.smrf                             a stage and its options\n"
-      "\n"
-      "swath: raw records of an airborne laser survey in; georeferenced, classified points, terrain model and contours out.\n",
-      "swath");
-  app.set_version_flag("--version", "swath " + std::string(pipeline::program_version()));
-  app.require_subcommand(1);
-  app.formatter(std::make_shared<HelpText>());
-  app.footer("Exit codes: 0 done, 1 bad data, 2 bad usage or config, 3 done but a quality limit set in the config was missed.");
-
+void add_pipeline_commands(CLI::App& app, Arguments& a) {
   auto* c = app.add_subcommand(
       "run",
       "Examples\n  swath run configs/survey.toml --survey demo/survey.toml --output out\n  swath run configs/survey.toml --survey "
@@ -209,8 +192,10 @@ int command_line(int argc, char** argv) {
                          "effective option and where its value comes from.");
   add_request(c, a);
   c->add_flag("--json", a.json, "As JSON");
+}
 
-  c = app.add_subcommand("stages", "Examples\n  swath stages\n  swath stages filters.smrf\n\nList the stages, or describe one.");
+void add_list_commands(CLI::App& app, Arguments& a) {
+  auto* c = app.add_subcommand("stages", "Examples\n  swath stages\n  swath stages filters.smrf\n\nList the stages, or describe one.");
   c->add_option("NAME", a.name, "Stage");
 
   c = app.add_subcommand("warnings",
@@ -218,10 +203,12 @@ int command_line(int argc, char** argv) {
   c->add_option("CODE", a.name, "Code of a warning");
 
   app.add_subcommand("schema", "Examples\n  swath schema > swath.schema.json\n\nPrint the JSON Schema of pipelines and surveys.");
+}
 
-  c = app.add_subcommand("simulate",
-                         "Examples\n  swath simulate demo\n  swath simulate demo --set seed=7 --set flight.lines=2 --set "
-                         "world.scene=forest\n\nMake the raw records of a survey whose truth is known.");
+void add_survey_commands(CLI::App& app, Arguments& a) {
+  auto* c = app.add_subcommand("simulate",
+                               "Examples\n  swath simulate demo\n  swath simulate demo --set seed=7 --set flight.lines=2 --set "
+                               "world.scene=forest\n\nMake the raw records of a survey whose truth is known.");
   c->add_option("FOLDER", a.folder, "Folder to make the survey in")->required();
   c->add_option("--config", a.request.config, "Options of the simulation, .toml or .json");
   c->add_option("--set", a.request.sets, "One option of the simulation: seed=7, flight.speed=\"60 m/s\"")->allow_extra_args(false);
@@ -233,8 +220,10 @@ int command_line(int argc, char** argv) {
       "raw records, RINEX, PCAP, rasters, GeoPackage, DXF, JSON), and what looks wrong.");
   c->add_option("FILE", a.name, "File")->required();
   c->add_flag("--json", a.json, "As JSON");
+}
 
-  c = app.add_subcommand(
+void add_product_commands(CLI::App& app, Arguments& a) {
+  auto* c = app.add_subcommand(
       "volumes",
       "Examples\n  swath volumes may/dtm.vrt june/dtm.vrt --polygon pit.gpkg\n  swath volumes out/dtm.vrt --design 412.5 "
       "--json\n\nCut and fill between two terrain models, or from one to a design height, with sigma.");
@@ -266,6 +255,28 @@ int command_line(int argc, char** argv) {
       "docs", "Examples\n  swath docs docs\n  swath docs docs --check\n\nWrite the generated parts of the documentation's pages.");
   c->add_option("FOLDER", a.folder, "The docs folder")->required();
   c->add_flag("--check", a.check, "Write nothing; exit 1 where a page is out of date");
+}
+
+int command_line(int argc, char** argv) {
+  Arguments a;
+  CLI::App app(
+      "Examples\n"
+      "  swath simulate demo                                   a small survey with its truth, in demo/\n"
+      "  swath run configs/survey.toml --survey demo/survey.toml --output out\n"
+      "  swath run configs/survey.toml --survey demo/survey.toml --set dtm.cell=\"50 cm\"\n"
+      "  swath info flight.laz                                 what a file holds, and what looks wrong in it\n"
+      "  swath stages filters.smrf                             a stage and its options\n"
+      "\n"
+      "swath: raw records of an airborne laser survey in; georeferenced, classified points, terrain model and contours out.\n",
+      "swath");
+  app.set_version_flag("--version", "swath " + std::string(pipeline::program_version()));
+  app.require_subcommand(1);
+  app.formatter(std::make_shared<HelpText>());
+  app.footer("Exit codes: 0 done, 1 bad data, 2 bad usage or config, 3 done but a quality limit set in the config was missed.");
+  add_pipeline_commands(app, a);
+  add_list_commands(app, a);
+  add_survey_commands(app, a);
+  add_product_commands(app, a);
 
   try {
     app.parse(argc, argv);

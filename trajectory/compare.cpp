@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"

@@ -85,22 +85,6 @@ PointFixes to_local(const core::GnssData& gnss, const LocalFrame& frame) {
   return out;
 }
 
-std::string_view name_of(Reach r) {
-  switch (r) {
-    case Reach::full:
-      return "full";
-    case Reach::partial:
-      return "partial";
-    case Reach::too_few:
-      return "too few fixes";
-    case Reach::gap:
-      return "gap";
-    case Reach::outside:
-      return "outside";
-  }
-  return "";
-}
-
 FixWindow window_at(const std::vector<double>& time, double t, size_t epochs, double longest_step) {
   const auto next = static_cast<size_t>(std::upper_bound(time.begin(), time.end(), t) - time.begin());
   return window(time, next, next, epochs, longest_step);

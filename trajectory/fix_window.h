@@ -38,7 +38,6 @@ enum class Reach {
   gap,      ///< between two fixes that are too far apart
   outside,  ///< before the first or after the last fix
 };
-std::string_view name_of(Reach r);
 /// Can an instant be interpolated?
 inline bool reached(Reach r) { return r == Reach::full || r == Reach::partial; }
 

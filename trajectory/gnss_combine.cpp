@@ -55,82 +55,106 @@ GnssAccount account_of(const GnssData& fixes, double interval) {
   return a;
 }
 
+namespace {
+
+/// The rows of the next epoch, one of each solution that has it, and its time; empty at the end.
+double take_epoch(const std::vector<GnssData>& solutions, std::vector<size_t>& next, std::vector<Candidate>& epoch) {
+  epoch.clear();
+  double time = std::numeric_limits<double>::infinity();
+  for (size_t s = 0; s < solutions.size(); ++s)
+    if (next[s] < solutions[s].size()) time = std::min(time, solutions[s].time[next[s]]);
+  if (time == std::numeric_limits<double>::infinity()) return time;
+  for (size_t s = 0; s < solutions.size(); ++s)
+    if (next[s] < solutions[s].size() && solutions[s].time[next[s]] <= time + same_epoch) epoch.push_back({s, next[s]++});
+  return time;
+}
+
+/// By candidate: those that agree with it, itself included. True where any two disagree.
+bool group(const std::vector<GnssData>& solutions, const std::vector<Candidate>& fixed, double sigmas, double time, CombinedGnss& out,
+           std::vector<std::vector<size_t>>& groups) {
+  groups.assign(fixed.size(), {});
+  bool disagree = false;
+  for (size_t i = 0; i < fixed.size(); ++i)
+    for (size_t j = 0; j < fixed.size(); ++j) {
+      const GnssData &a = solutions[fixed[i].solution], &b = solutions[fixed[j].solution];
+      if (i == j) {
+        groups[i].push_back(j);
+      } else if (std::abs(a.time[fixed[i].row] - b.time[fixed[j].row]) <= same_instant) {
+        if (distance_in_sigmas(a, fixed[i].row, b, fixed[j].row) <= sigmas) {
+          groups[i].push_back(j);
+        } else {
+          disagree = true;
+          const double apart = (a.position[fixed[i].row] - b.position[fixed[j].row]).norm();
+          if (apart > out.worst_disagreement) out.worst_disagreement = apart, out.worst_at = time;
+        }
+      }
+    }
+  return disagree;
+}
+
+/// The weighted mean of a group in place of the last row.
+void average(const std::vector<GnssData>& solutions, const std::vector<Candidate>& fixed, const std::vector<size_t>& of, GnssData& data) {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d about = solutions[fixed[of[0]].solution].position[fixed[of[0]].row];
+  for (const size_t g : of) {
+    const GnssData& s = solutions[fixed[g].solution];
+    const Eigen::Matrix3d w = s.covariance[fixed[g].row].inverse();
+    information += w;
+    weighted += w * (s.position[fixed[g].row] - about);
+  }
+  const Eigen::Matrix3d mean = information.inverse();
+  data.position.back() = about + mean * weighted;
+  data.covariance.back() = static_cast<double>(of.size()) * mean;
+}
+
+/// From the last row to the nearest rival: a fixed solution outside the group whose own group is as large.
+Eigen::Vector3d to_rival(const std::vector<GnssData>& solutions, const std::vector<Candidate>& fixed,
+                         const std::vector<std::vector<size_t>>& groups, const std::vector<size_t>& of, const GnssData& data) {
+  double nearest = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d spread = Eigen::Vector3d::Zero();
+  for (size_t i = 0; i < fixed.size(); ++i) {
+    if (std::find(of.begin(), of.end(), i) != of.end() || groups[i].size() < of.size()) continue;
+    const Eigen::Vector3d d = solutions[fixed[i].solution].position[fixed[i].row] - data.position.back();
+    if (d.norm() < nearest) nearest = d.norm(), spread = d;
+  }
+  return spread;
+}
+
+}  // namespace
+
 CombinedGnss combine_gnss(const std::vector<GnssData>& solutions, double sigmas) {
   CombinedGnss out;
   out.taken.assign(solutions.size(), 0);
   std::vector<size_t> next(solutions.size(), 0);
   std::vector<Candidate> epoch, fixed;
-  std::vector<std::vector<size_t>> groups;  // by candidate: those that agree with it, itself included
+  std::vector<std::vector<size_t>> groups;
+  const auto take = [&](const Candidate& c) {
+    append(out.data, solutions[c.solution], c.row);
+    ++out.taken[c.solution];
+  };
   for (;;) {
-    double time = std::numeric_limits<double>::infinity();
-    for (size_t s = 0; s < solutions.size(); ++s)
-      if (next[s] < solutions[s].size()) time = std::min(time, solutions[s].time[next[s]]);
-    if (time == std::numeric_limits<double>::infinity()) break;
-    epoch.clear();
-    for (size_t s = 0; s < solutions.size(); ++s)
-      if (next[s] < solutions[s].size() && solutions[s].time[next[s]] <= time + same_epoch) epoch.push_back({s, next[s]++});
-
-    const Candidate best = *std::min_element(epoch.begin(), epoch.end(), [&](const Candidate& a, const Candidate& b) {
-      return rank(solutions[a.solution].quality[a.row]) < rank(solutions[b.solution].quality[b.row]);
-    });
+    const double time = take_epoch(solutions, next, epoch);
+    if (epoch.empty()) break;
     fixed.clear();
     for (const Candidate& c : epoch)
       if (solutions[c.solution].quality[c.row] == FixQuality::fixed) fixed.push_back(c);
     if (fixed.size() < 2) {
-      append(out.data, solutions[best.solution], best.row);
-      ++out.taken[best.solution];
+      take(*std::min_element(epoch.begin(), epoch.end(), [&](const Candidate& a, const Candidate& b) {
+        return rank(solutions[a.solution].quality[a.row]) < rank(solutions[b.solution].quality[b.row]);
+      }));
       continue;
     }
-
-    groups.assign(fixed.size(), {});
-    bool disagree = false;
-    for (size_t i = 0; i < fixed.size(); ++i)
-      for (size_t j = 0; j < fixed.size(); ++j) {
-        const GnssData &a = solutions[fixed[i].solution], &b = solutions[fixed[j].solution];
-        if (i == j) {
-          groups[i].push_back(j);
-        } else if (std::abs(a.time[fixed[i].row] - b.time[fixed[j].row]) <= same_instant) {
-          if (distance_in_sigmas(a, fixed[i].row, b, fixed[j].row) <= sigmas) {
-            groups[i].push_back(j);
-          } else {
-            disagree = true;
-            const double apart = (a.position[fixed[i].row] - b.position[fixed[j].row]).norm();
-            if (apart > out.worst_disagreement) out.worst_disagreement = apart, out.worst_at = time;
-          }
-        }
-      }
-    size_t chosen = 0;
-    for (size_t i = 1; i < groups.size(); ++i)
-      if (groups[i].size() > groups[chosen].size()) chosen = i;
-    const std::vector<size_t>& group = groups[chosen];
-
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
-    const Eigen::Vector3d about = solutions[fixed[group[0]].solution].position[fixed[group[0]].row];
-    for (const size_t g : group) {
-      const GnssData& s = solutions[fixed[g].solution];
-      const Eigen::Matrix3d w = s.covariance[fixed[g].row].inverse();
-      information += w;
-      weighted += w * (s.position[fixed[g].row] - about);
-    }
-    const Eigen::Matrix3d mean = information.inverse();
-    append(out.data, solutions[fixed[chosen].solution], fixed[chosen].row);
-    ++out.taken[fixed[chosen].solution];
-    if (group.size() > 1) {
-      out.data.position.back() = about + mean * weighted;
-      out.data.covariance.back() = static_cast<double>(group.size()) * mean;
+    const bool disagree = group(solutions, fixed, sigmas, time, out, groups);
+    const auto chosen = std::max_element(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+    take(fixed[static_cast<size_t>(chosen - groups.begin())]);
+    if (chosen->size() > 1) {
+      average(solutions, fixed, *chosen, out.data);
       ++out.averaged;
     }
     if (!disagree) continue;
     ++out.disagreeing;
-    // A rival: a fixed solution outside the group whose own group is as large.
-    double nearest = std::numeric_limits<double>::infinity();
-    Eigen::Vector3d spread = Eigen::Vector3d::Zero();
-    for (size_t i = 0; i < fixed.size(); ++i) {
-      if (std::find(group.begin(), group.end(), i) != group.end() || groups[i].size() < group.size()) continue;
-      const Eigen::Vector3d d = solutions[fixed[i].solution].position[fixed[i].row] - out.data.position.back();
-      if (d.norm() < nearest) nearest = d.norm(), spread = d;
-    }
+    const Eigen::Vector3d spread = to_rival(solutions, fixed, groups, *chosen, out.data);
     out.data.covariance.back() += 0.5 * spread * spread.transpose();
   }
   return out;

@@ -10,7 +10,6 @@
 #include "trajectory/kinematic.h"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 
 #include "core/statistics.h"

@@ -128,8 +128,8 @@ void put_estimates(const TieProblem& p, const AdjustRounds& r, const Separation&
       larger = std::max(larger, enlargement(regions.ratio[i], regions.freedom[i], significance));
     }
     e.held = std::sqrt(std::max(0.0, held(i, i)));
-    const double told = lines.replicates >= least_jackknifed ? std::max(larger * e.formal, e.jackknife_lines) : larger * e.formal;
-    e.sigma = e.found_sigma = std::hypot(told, e.held);
+    const double own = lines.replicates >= least_jackknifed ? std::max(larger * e.formal, e.jackknife_lines) : larger * e.formal;
+    e.sigma = e.found_sigma = std::hypot(own, e.held);
     e.determined = std::isfinite(e.apriori) ? 1.0 - std::pow(e.formal / e.apriori, 2) : 1.0;
   }
   const MatrixXd C = r.solution.covariance.topLeftCorner(globals, globals) + held;

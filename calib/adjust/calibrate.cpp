@@ -102,6 +102,14 @@ double mismatch_after(const Adjustment& a) {
   return 3 * core::mad_to_sigma * core::median(std::move(sizes), 0.0);
 }
 
+/// The first round looks at few planes: it only leads to where the others begin. Sigmas by leaving out are not asked of it.
+void make_quick(TiePlaneOptions& planes, AdjustOptions& adjusted) {
+  planes.planes = std::max(300, planes.planes / 4);
+  planes.returns = std::max(planes.fewest, planes.returns / 3);
+  adjusted.jackknife.lines = false;
+  adjusted.jackknife.blocks = 0;
+}
+
 std::string about_metres(double v) { return words(v < 0.1 ? "%.3f m" : "%.2f m", v); }
 
 [[noreturn]] void throw_reversed_scan() {
@@ -110,14 +118,8 @@ std::string about_metres(double v) { return words(v < 0.1 ? "%.3f m" : "%.2f m",
 }
 
 void refuse_without_ties(const TieSet& ties, const core::Tally& tally) {
-  if (!ties.planes.empty()) return;
-  std::string told;
-  const core::Value counts = tally.value();
-  for (const auto& [what, one] : counts.members())
-    told += (told.empty() ? "" : "; ") + what + ": " + std::to_string(one.find("count")->as_int());
-  throw core::Error("no plane was found that two lines have seen, and no surveyed target" + (told.empty() ? "" : " (" + told + ")"),
-                    "calibration flight",
-                    "lines must overlap over level or sloping planes of some metres: ground, roofs; see `planes` of the options");
+  if (ties.planes.empty())
+    refuse_without_planes(tally, ", and no surveyed target", "calibration flight", ": ground, roofs; see `planes` of the options");
 }
 
 }  // namespace
@@ -175,17 +177,11 @@ Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& op
   core::Tally of_round;
   core::Calibration before = now;
   for (out.rounds = 1; out.rounds <= options.rounds; ++out.rounds) {
-    // The first round looks at few planes: it only leads to where the others begin. Sigmas by leaving out are not asked of it.
     const bool first = out.rounds == 1 && options.rounds > 1;
     TiePlaneOptions planes = sized(options.planes, flight.scale);
     AdjustOptions adjusted = options.adjust;
     planes.mismatch.value = std::max(mismatch, closest);
-    if (first) {
-      planes.planes = std::max(300, planes.planes / 4);
-      planes.returns = std::max(planes.fewest, planes.returns / 3);
-      adjusted.jackknife.lines = false;
-      adjusted.jackknife.blocks = 0;
-    }
+    if (first) make_quick(planes, adjusted);
     const std::string round = "round " + std::to_string(out.rounds);
     const double done = coarse_rounds + out.rounds - 1;
     of_round = {};

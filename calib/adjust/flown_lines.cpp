@@ -110,6 +110,4 @@ std::vector<Finding> check_lines(const std::vector<FlownLine>& lines) {
   return out;
 }
 
-double between_courses(double a, double b) { return std::abs(core::wrap_pi(a - b)); }
-
 }  // namespace swath::calib

@@ -53,7 +53,4 @@ double side_for(const std::vector<FlownLine>& lines, double returns);
 /// another (mixed numbers), lines outside the trajectory.
 std::vector<Finding> check_lines(const std::vector<FlownLine>& lines);
 
-/// Difference of two courses, 0 to pi.
-double between_courses(double a, double b);
-
 }  // namespace swath::calib

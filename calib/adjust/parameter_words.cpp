@@ -3,12 +3,12 @@
 
 #include <array>
 
+#include "calib/report_units.h"
 #include "core/config/units.h"
 
 namespace swath::calib {
 
 const ParameterWords& words_of(Parameter parameter) {
-  static constexpr double arc_second = core::degree / 3600.0;
   static constexpr std::array<ParameterWords, latency + 1> words{{
       {"boresight_roll", "boresight roll", "rad", "arcsec", arc_second},
       {"boresight_pitch", "boresight pitch", "rad", "arcsec", arc_second},

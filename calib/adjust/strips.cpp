@@ -73,13 +73,8 @@ void refuse_without_overlap(const TieSet& ties, const core::Tally& tally) {
   if (ties.lines.size() == 1)
     throw core::Error("there is but one flight line: strips are adjusted to one another", "strip adjustment",
                       "leave calib.strips out, or add lines that overlap");
-  if (two_lines_share_a_plane(ties)) return;
-  std::string told;
-  const core::Value counts = tally.value();
-  for (const auto& [what, one] : counts.members())
-    told += (told.empty() ? "" : "; ") + what + ": " + std::to_string(one.find("count")->as_int());
-  throw core::Error("no plane was found that two lines have seen" + (told.empty() ? "" : " (" + told + ")"), "strip adjustment",
-                    "lines must overlap over level or sloping planes of some metres, and lie no farther apart than planes.mismatch");
+  if (!two_lines_share_a_plane(ties))
+    refuse_without_planes(tally, "", "strip adjustment", ", and lie no farther apart than planes.mismatch");
 }
 
 void refuse_what_the_adjustment_refuses(const Adjustment& a) {

@@ -7,7 +7,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <thread>
@@ -78,17 +77,48 @@ struct Workspace {
   Eigen::MatrixXd rows;  // unknowns x pack
 };
 
-void linearise_group(const TieProblem& p, const TieState& state, const ShotGeometry& geometry, const TieNoise& noise, double scale,
-                     size_t number, trajectory::Cursor& cursor, Workspace& w, TiePass& pass) {
-  const TieGroup& g = p.ties->groups[number];
-  const TieReturns& returns = p.ties->returns;
-  GroupBlock& block = pass.blocks[number];
-  block.index = unknowns_of(p, g, state.calibration.latency.value);
-  const int m = static_cast<int>(block.index.size());
-  const int globals = static_cast<int>(p.globals.size());
-  const Places places = places_of(p, block.index);
+/// Sums a group's normal equations, observation by observation: unknowns, the plane's three, and the right side last.
+class RowPack {
+ public:
+  RowPack(const TieProblem& p, std::uint32_t line, const Places& places, int unknowns, Eigen::MatrixXd& rows)
+      : p_(p), line_(line), places_(places), rows_(rows), sum_(Eigen::MatrixXd::Zero(unknowns + 4, unknowns + 4)) {
+    rows_.setZero(unknowns + 4, pack);
+  }
+  void add(const Condition& c, double t, double root) {
+    auto row = rows_.col(filled_);
+    const auto globals = static_cast<int>(p_.globals.size());
+    for (int k = 0; k < globals; ++k) row[k] = root * c.by[p_.globals[k]];
+    const CorrectionKnots::Weights wp = p_.knots->position(line_, t), wa = p_.knots->attitude(line_, t);
+    for (int k = 0; k < wp.count; ++k)
+      row.segment<3>(places_.position + wp.first[k] - places_.first_position) = (root * wp.weight[k]) * c.by.segment<3>(position_north);
+    for (int k = 0; k < wa.count; ++k)
+      row.segment<3>(places_.attitude + wa.first[k] - places_.first_attitude) = (root * wa.weight[k]) * c.by.segment<3>(attitude_roll);
+    row.tail<4>() << -root, -root * c.u, -root * c.v, root * c.f;
+    if (++filled_ == pack) flush();
+  }
+  Eigen::MatrixXd finish() {
+    flush();
+    sum_.triangularView<Eigen::StrictlyUpper>() = sum_.transpose();
+    return std::move(sum_);
+  }
 
-  // Distances, and their median: a tree or a car in the group does not move it, the state's own errors move all alike.
+ private:
+  void flush() {
+    if (filled_ > 0) sum_.selfadjointView<Eigen::Lower>().rankUpdate(rows_.leftCols(filled_));
+    rows_.leftCols(filled_).setZero();
+    filled_ = 0;
+  }
+  const TieProblem& p_;
+  std::uint32_t line_;
+  Places places_;
+  Eigen::MatrixXd& rows_;
+  Eigen::MatrixXd sum_;
+  int filled_ = 0;
+};
+
+/// Distances of a group's returns, and their median: a tree or a car in the group does not move it, the state's own errors move all alike.
+double condition_group(const TieProblem& p, const TieState& state, const ShotGeometry& geometry, const TieNoise& noise, const TieGroup& g,
+                       trajectory::Cursor& cursor, Workspace& w) {
   w.conditions.resize(g.end - g.begin);
   w.sorted.clear();
   for (std::uint32_t i = g.begin; i < g.end; ++i) {
@@ -98,16 +128,39 @@ void linearise_group(const TieProblem& p, const TieState& state, const ShotGeome
     else
       c.f = std::numeric_limits<double>::quiet_NaN();
   }
-  const double median = w.sorted.empty() ? 0.0 : core::median(w.sorted);
+  return w.sorted.empty() ? 0.0 : core::median(w.sorted);
+}
 
-  w.rows.setZero(m + 4, pack);
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(m + 4, m + 4);
-  int filled = 0;
-  const auto flush = [&] {
-    if (filled > 0) sum.selfadjointView<Eigen::Lower>().rankUpdate(w.rows.leftCols(filled));
-    w.rows.leftCols(filled).setZero();
-    filled = 0;
-  };
+/// Squares of the deviations from the group's mean, against the shares of ranges (q_r) and angles (q_a) in the variance.
+void add_moments(const TieProblem& p, const TieGroup& g, const Workspace& w, const TiePass& pass, double scale, double mean,
+                 GroupBlock& block) {
+  const double freedom = static_cast<double>(block.used) / (block.used - 1.0) / p.robust.consistency();
+  for (std::uint32_t i = g.begin; i < g.end; ++i) {
+    const Condition& c = w.conditions[i - g.begin];
+    if (!std::isfinite(c.f)) continue;
+    const double share = p.robust(pass.deviation[i] / scale);
+    if (share <= 0.0) continue;
+    const double v = c.variance();
+    const double e = share * (c.f - mean) * (c.f - mean) / v * freedom - c.constant / v;
+    const double r = c.range / v, a = c.angle / v;
+    block.moment[0] += r * r;
+    block.moment[1] += r * a;
+    block.moment[2] += a * a;
+    block.moment[3] += r * e;
+    block.moment[4] += a * e;
+  }
+}
+
+void linearise_group(const TieProblem& p, const TieState& state, const ShotGeometry& geometry, const TieNoise& noise, double scale,
+                     size_t number, trajectory::Cursor& cursor, Workspace& w, TiePass& pass) {
+  const TieGroup& g = p.ties->groups[number];
+  const TieReturns& returns = p.ties->returns;
+  GroupBlock& block = pass.blocks[number];
+  block.index = unknowns_of(p, g, state.calibration.latency.value);
+  const int m = static_cast<int>(block.index.size());
+  const double median = condition_group(p, state, geometry, noise, g, cursor, w);
+
+  RowPack rows(p, g.line, places_of(p, block.index), m, w.rows);
   double mean = 0.0, weights = 0.0;
   for (std::uint32_t i = g.begin; i < g.end; ++i) {
     const Condition& c = w.conditions[i - g.begin];
@@ -124,17 +177,8 @@ void linearise_group(const TieProblem& p, const TieState& state, const ShotGeome
       ++block.rejected;
       continue;
     }
-    const double root = std::sqrt(share) / sigma;
-    auto row = w.rows.col(filled);
-    for (int k = 0; k < globals; ++k) row[k] = root * c.by[p.globals[k]];
-    const double t = geometry.time(returns.time[i]);
-    const CorrectionKnots::Weights wp = p.knots->position(g.line, t), wa = p.knots->attitude(g.line, t);
-    for (int k = 0; k < wp.count; ++k)
-      row.segment<3>(places.position + wp.first[k] - places.first_position) = (root * wp.weight[k]) * c.by.segment<3>(position_north);
-    for (int k = 0; k < wa.count; ++k)
-      row.segment<3>(places.attitude + wa.first[k] - places.first_attitude) = (root * wa.weight[k]) * c.by.segment<3>(attitude_roll);
-    row.tail<4>() << -root, -root * c.u, -root * c.v, root * c.f;
-    if (++filled == pack) flush();
+    const double root = std::sqrt(share) / sigma, t = geometry.time(returns.time[i]);
+    rows.add(c, t, root);
     ++block.used;
     block.angle += geometry.angle(returns.angle[i]);
     block.range += geometry.range(returns.range[i]);
@@ -144,32 +188,13 @@ void linearise_group(const TieProblem& p, const TieState& state, const ShotGeome
     mean += root * root * c.f;
     weights += root * root;
   }
-  flush();
-  sum.triangularView<Eigen::StrictlyUpper>() = sum.transpose();
+  const Eigen::MatrixXd sum = rows.finish();
   block.N = sum.topLeftCorner(m + 3, m + 3);
   block.b = sum.col(m + 3).head(m + 3);
   block.c = sum(m + 3, m + 3);
   if (block.used == 0) return;
   for (double* v : {&block.angle, &block.range, &block.time, &block.depth, &block.noise}) *v /= block.used;
-
-  // Squares of the deviations from the group's mean, against the shares of ranges (q_r) and angles (q_a) in the variance.
-  if (block.used < 3) return;
-  mean /= weights;
-  const double freedom = static_cast<double>(block.used) / (block.used - 1.0) / p.robust.consistency();
-  for (std::uint32_t i = g.begin; i < g.end; ++i) {
-    const Condition& c = w.conditions[i - g.begin];
-    if (!std::isfinite(c.f)) continue;
-    const double share = p.robust(pass.deviation[i] / scale);
-    if (share <= 0.0) continue;
-    const double v = c.variance();
-    const double e = share * (c.f - mean) * (c.f - mean) / v * freedom - c.constant / v;
-    const double r = c.range / v, a = c.angle / v;
-    block.moment[0] += r * r;
-    block.moment[1] += r * a;
-    block.moment[2] += a * a;
-    block.moment[3] += r * e;
-    block.moment[4] += a * e;
-  }
+  if (block.used >= 3) add_moments(p, g, w, pass, scale, mean / weights, block);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace swath::calib {
 namespace {
 
-constexpr double told = 0.25;          // relative sigma of a variance that is taken
+constexpr double taken_sigma = 0.25;   // relative sigma of a variance that is taken
 constexpr double least_freedom = 3.0;  // degrees of freedom
 constexpr double lowest = 0.1, highest = 20.0;
 constexpr double step = 2.0;  // of a sigma, in one round
@@ -35,36 +35,34 @@ void update_white(const std::vector<GroupBlock>& blocks, const TieSelection& use
   f.angle.redundancy = 0.0;
   // Variance of normally distributed squares is twice their mean's: the estimates have the covariance 2 M^-1.
   const double det = m[0] * m[2] - m[1] * m[1];
-  const auto is_told = [](double variance) { return variance > 0.0 && 2.0 * variance < told * told; };
+  const auto is_taken = [](double variance) { return variance > 0.0 && 2.0 * variance < taken_sigma * taken_sigma; };
   if (det > 1e-12 * m[0] * m[2] && m[2] > 0.0) f.angle.redundancy = det / m[0];
-  if (o.range && o.angle && f.angle.redundancy > 0.0 && is_told(m[2] / det) && is_told(m[0] / det)) {
+  if (o.range && o.angle && f.angle.redundancy > 0.0 && is_taken(m[2] / det) && is_taken(m[0] / det)) {
     apply(f.range, (m[2] * m[3] - m[1] * m[4]) / det);
     apply(f.angle, (m[0] * m[4] - m[1] * m[3]) / det);
     f.range.estimated = f.angle.estimated = true;
     f.range.redundancy = det / m[2];
-  } else if (o.range && m[0] > 0.0 && is_told(1.0 / m[0])) {
+  } else if (o.range && m[0] > 0.0 && is_taken(1.0 / m[0])) {
     apply(f.range, (m[3] - m[1]) / m[0]);
     f.range.estimated = true;
-  } else if (o.angle && !o.range && m[2] > 0.0 && is_told(1.0 / m[2])) {
+  } else if (o.angle && !o.range && m[2] > 0.0 && is_taken(1.0 / m[2])) {
     apply(f.angle, (m[4] - m[1]) / m[2]);
     f.angle.estimated = true;
   }
 }
 
-void update_correlated(const TieProblem& problem, const TieSystem& system, const TieSolution& s, const TieTests& tests,
-                       const TieSelection& use, const TiePrior& prior, const Eigen::VectorXd& correction, const ComponentOptions& o,
-                       SigmaFactors& f) {
-  const auto globals = static_cast<Eigen::Index>(problem.globals.size());
-  const auto with_freedom = [&](SigmaFactor& factor, double omega, double redundancy, bool wanted) {
-    factor.redundancy = redundancy;
-    factor.estimated = wanted && redundancy >= least_freedom;
-    if (!factor.estimated) return;
-    const double now = factor.factor * factor.factor;
-    apply(factor, (o.freedom + now * std::max(0.0, omega)) / (o.freedom + redundancy) / now);
-  };
+namespace {
 
+void update_with_freedom(SigmaFactor& factor, double omega, double redundancy, bool wanted, double freedom) {
+  factor.redundancy = redundancy;
+  factor.estimated = wanted && redundancy >= least_freedom;
+  if (!factor.estimated) return;
+  const double now = factor.factor * factor.factor;
+  apply(factor, (freedom + now * std::max(0.0, omega)) / (freedom + redundancy) / now);
+}
+
+void update_surface(double t2, const TieTests& tests, const TieSelection& use, const ComponentOptions& o, SigmaFactors& f) {
   double surface = 0.0, surface_freedom = 0.0;
-  const double t2 = system.surface() * system.surface();
   for (size_t g = 0; g < tests.group.size(); ++g) {
     if (!use.group[g]) continue;
     const TieTest& t = tests.group[g];
@@ -74,6 +72,28 @@ void update_correlated(const TieProblem& problem, const TieSystem& system, const
   f.surface.redundancy = surface_freedom;
   f.surface.estimated = o.surface && surface_freedom >= least_freedom;
   if (f.surface.estimated) apply(f.surface, surface / surface_freedom);
+}
+
+void update_control(const TieTests& tests, const TieSelection& use, const ComponentOptions& o, SigmaFactors& f) {
+  double control = 0.0, control_freedom = 0.0;
+  for (size_t c = 0; c < tests.control.size(); ++c) {
+    if (!use.control[c]) continue;
+    control += tests.control[c].w * tests.control[c].w * tests.control[c].redundancy;
+    control_freedom += tests.control[c].redundancy;
+  }
+  update_with_freedom(f.control, control, control_freedom, o.control, o.freedom);
+}
+
+}  // namespace
+
+void update_correlated(const TieProblem& problem, const TieSystem& system, const TieSolution& s, const TieTests& tests,
+                       const TieSelection& use, const TiePrior& prior, const Eigen::VectorXd& correction, const ComponentOptions& o,
+                       SigmaFactors& f) {
+  const auto globals = static_cast<Eigen::Index>(problem.globals.size());
+  const auto with_freedom = [&](SigmaFactor& factor, double omega, double redundancy, bool wanted) {
+    update_with_freedom(factor, omega, redundancy, wanted, o.freedom);
+  };
+  update_surface(system.surface() * system.surface(), tests, use, o, f);
 
   double omega[2] = {}, freedom[2] = {};
   const CorrectionKnots& knots = *problem.knots;
@@ -113,14 +133,7 @@ void update_correlated(const TieProblem& problem, const TieSystem& system, const
     with_freedom(of_part[line_drift], omega_drift, freedom_drift, wanted);
     with_freedom(of_part[within_line], omega[part] - omega_both, freedom[part] - freedom_both, wanted);
   }
-
-  double control = 0.0, control_freedom = 0.0;
-  for (size_t c = 0; c < tests.control.size(); ++c) {
-    if (!use.control[c]) continue;
-    control += tests.control[c].w * tests.control[c].w * tests.control[c].redundancy;
-    control_freedom += tests.control[c].redundancy;
-  }
-  with_freedom(f.control, control, control_freedom, o.control);
+  update_control(tests, use, o, f);
 }
 
 }  // namespace swath::calib

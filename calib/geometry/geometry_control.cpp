@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/geometry/geometry_control.h"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 

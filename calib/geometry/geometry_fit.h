@@ -11,6 +11,7 @@
 #include "calib/geometry/roll_signal.h"
 #include "calib/geometry/small_errors.h"
 #include "calib/geometry/usual_mistakes.h"
+#include "core/config/result.h"
 #include "core/records/sensor.h"
 #include "trajectory/flight_checks.h"
 #include "trajectory/motion_checks.h"
@@ -27,6 +28,15 @@ struct Fit {
   double smooth = 0.0;   ///< share of cells that are smooth
 };
 
+template <class V>
+void describe(const Fit& r, V& v) {
+  v.result("cells", r.cells, "Cells that two lines share.");
+  v.result("rms_m", r.rms, core::metres().always(), "Robust RMS of the differences.");
+  v.result("outside", r.outside, core::share().always(), "Share of shared cells that are off by five predicted sigmas.");
+  v.result("cost", r.cost, core::metres().always(), "Root mean square of the differences, each cut at twenty sigmas.");
+  v.result("smooth", r.smooth, core::share().always(), "Share of cells that are smooth.");
+}
+
 /// What is looked at beside the lines' fit.
 struct GeometryCheck {
   std::string name;    ///< "ground_height"
@@ -35,6 +45,12 @@ struct GeometryCheck {
   std::string text;   ///< a sentence with figures, where it is not held
   bool said = false;  ///< trajectory::MotionChecks warns of the same
 };
+
+template <class V>
+void describe(const GeometryCheck& r, V& v) {
+  v.result("value", r.value, core::plain().always(), "Figure that is judged.");
+  v.result("held", r.held, "False: it contradicts the stated sigmas.");
+}
 
 /// A surveyed height on the ground.
 struct SurveyedHeight {

@@ -2,12 +2,14 @@
 // How far the passes of a sample lie apart on smooth ground, and how far their stated errors let them.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
 #include "calib/geometry/geometry_sample.h"
 #include "calib/terms.h"
 #include "calib/ties/local_points.h"
+#include "core/config/result.h"
 #include "core/records/sensor.h"
 #include "georef/shot_geometry.h"
 
@@ -62,6 +64,17 @@ struct LinePair {
   double outside = 0.0;    ///< share of cells that differ by more than five times that
   double water = 0.0;      ///< difference of the water's level, m; its cells are not among `cells`
 };
+
+template <class V>
+void describe(const LinePair& r, V& v) {
+  v.result("lines", std::array<int, 2>{r.line_a, r.line_b}, "Numbers of the two flight lines.");
+  v.result("n", r.cells, "Cells that they share.");
+  v.result("median_m", r.median, core::metres().always(), "Median difference along the normal.");
+  v.result("rms_m", r.rms, core::metres().always(), "Robust RMS of the differences.");
+  v.result("predicted_m", r.predicted, core::metres().always(), "Difference that the stated sigmas predict.");
+  v.result("outside", r.outside, core::share().always(), "Share of cells that differ by more than five of those.");
+  v.result("water_m", r.water, core::metres(2).only_if(r.water != 0.0), "Difference of level ground that is taken for water, left out.");
+}
 
 /// How a cell's place along a direction depends on what a point depends on.
 struct CellSensitivity {

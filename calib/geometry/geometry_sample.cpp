@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -347,10 +346,6 @@ std::vector<GeometrySample> collect_samples(const std::vector<const SamplePlan*>
       if (kept.size() > 0) (key.first ? out[k].profiles : out[k].surfaces).push_back({key.second, std::move(kept)});
     }
   return out;
-}
-
-GeometrySample collect_sample(const SamplePlan& plan, const ShotStream& stream) {
-  return std::move(collect_samples({&plan}, stream).front());
 }
 
 core::TrajectoryData cut_trajectory(const core::TrajectoryData& d, const SamplePlan& plan, double shift, double margin) {

@@ -71,9 +71,7 @@ struct GeometrySample {
   std::vector<PassSample> profiles;
 };
 
-/// Reads the stream once. Which returns are kept depends on the plan and the records' numbers alone.
-GeometrySample collect_sample(const SamplePlan& plan, const ShotStream& stream);
-/// Several plans of one flight, the stream read once.
+/// Samples of several plans of one flight, the stream read once. Which returns are kept depends on the plan and the records' numbers alone.
 std::vector<GeometrySample> collect_samples(const std::vector<const SamplePlan*>& plans, const ShotStream& stream);
 
 /// The records of a trajectory within the times of a sample (shifted), with a margin, s.

@@ -112,13 +112,8 @@ struct Candidate {
   Vector3d position() const { return adjusted.points; }
 };
 
-PointSearch search(const PointNetwork& n, const std::optional<Vector3d>& start) {
-  PointSearch out;
-  const std::vector<PointCondition> conditions = conditions_of(n);
-  if (conditions.size() < 3) {
-    out.state = PointState::too_few;
-    return out;
-  }
+/// Distances that the conditions come to, roughly: where the search begins.
+std::vector<TargetDistance> rough_distances(const PointNetwork& n, const std::vector<PointCondition>& conditions) {
   std::vector<TargetDistance> rough;
   for (const PointCondition& c : conditions) {
     if (c.kind == Kind::height) continue;
@@ -130,7 +125,36 @@ PointSearch search(const PointNetwork& n, const std::optional<Vector3d>& start) 
     const double side = triangle_side(level, n.angles[c.alpha].angle, n.angles[c.beta].angle, n.verticals[c.other].angle, c.kind);
     rough.push_back({n.stations[c.kind == Kind::from_a ? c.a : c.b], side, rough_sigma});
   }
-  const Resection begin = resect(rough, start);
+  return rough;
+}
+
+/// Which of two places is meant, the first one in the end: by the fit, then by vertical angles, then by where the search was to start.
+void choose(std::vector<Candidate>& found, const std::optional<Vector3d>& start, PointSearch& out) {
+  const bool both_fit = found[1].adjusted.solved && found[1].adjusted.squares - found[0].adjusted.squares < equal_fit;
+  const double elevations = found[0].elevation - found[1].elevation;
+  if (both_fit && std::abs(elevations) > equal_fit) {
+    out.decided_by_elevation = true;
+    if (elevations > 0) std::swap(found[0], found[1]);
+  } else if (both_fit && start) {
+    out.decided_by_start = true;
+    if ((found[1].position() - *start).norm() < (found[0].position() - *start).norm()) std::swap(found[0], found[1]);
+  } else if (both_fit) {
+    out.state = PointState::two_fit;
+  } else {
+    out.elevations_contradict = elevations > equal_fit;
+  }
+  out.mirror = found[1].position();
+  out.mirror_variance_factor = found[1].adjusted.squares / std::max(found[1].adjusted.redundancy, 1);
+}
+
+PointSearch search(const PointNetwork& n, const std::optional<Vector3d>& start) {
+  PointSearch out;
+  const std::vector<PointCondition> conditions = conditions_of(n);
+  if (conditions.size() < 3) {
+    out.state = PointState::too_few;
+    return out;
+  }
+  const Resection begin = resect(rough_distances(n, conditions), start);
   if (begin.state == ResectionState::in_line || begin.state == ResectionState::too_few) {
     out.state = PointState::not_determined;
     return out;
@@ -164,21 +188,7 @@ PointSearch search(const PointNetwork& n, const std::optional<Vector3d>& start) 
   }
   out.state = PointState::solved;
   if (found.size() > 1) {
-    const bool both_fit = found[1].adjusted.solved && found[1].adjusted.squares - found[0].adjusted.squares < equal_fit;
-    const double elevations = found[0].elevation - found[1].elevation;
-    if (both_fit && std::abs(elevations) > equal_fit) {
-      out.decided_by_elevation = true;
-      if (elevations > 0) std::swap(found[0], found[1]);
-    } else if (both_fit && start) {
-      out.decided_by_start = true;
-      if ((found[1].position() - *start).norm() < (found[0].position() - *start).norm()) std::swap(found[0], found[1]);
-    } else if (both_fit) {
-      out.state = PointState::two_fit;
-    } else {
-      out.elevations_contradict = elevations > equal_fit;
-    }
-    out.mirror = found[1].position();
-    out.mirror_variance_factor = found[1].adjusted.squares / std::max(found[1].adjusted.redundancy, 1);
+    choose(found, start, out);
     out.start_led_to_mirror = from_start && (*from_start - found[0].position()).norm() > same_place;
   }
   out.position = found[0].position();

@@ -41,18 +41,16 @@ DeliveredCalibration delivered(const calib::Adjustment& a, const core::SensorSig
              : std::isfinite(e.apriori) ? std::max(e.apriori, stated)
                                         : std::max(stated, std::hypot(e.found - e.start, e.found_sigma));
     };
+    const auto give = [&](double& to, double& its_sigma) { to = value, its_sigma = known(its_sigma); };
     switch (parameter_at(k)) {
       case calib::boresight_roll:
-        c.roll.value = value;
-        s.roll.value = known(s.roll.value);
+        give(c.roll.value, s.roll.value);
         break;
       case calib::boresight_pitch:
-        c.pitch.value = value;
-        s.pitch.value = known(s.pitch.value);
+        give(c.pitch.value, s.pitch.value);
         break;
       case calib::boresight_heading:
-        c.heading.value = value;
-        s.heading.value = known(s.heading.value);
+        give(c.heading.value, s.heading.value);
         break;
       case calib::lever_forward:
       case calib::lever_right:
@@ -61,24 +59,19 @@ DeliveredCalibration delivered(const calib::Adjustment& a, const core::SensorSig
         lever = std::max(lever, known(sensor.lever_arm.value));
         break;
       case calib::range_offset:
-        c.range_offset.value = value;
-        s.range_offset.value = known(s.range_offset.value);
+        give(c.range_offset.value, s.range_offset.value);
         break;
       case calib::range_scale:
-        c.range_scale = value;
-        s.range_scale = known(s.range_scale);
+        give(c.range_scale, s.range_scale);
         break;
       case calib::scan_offset:
-        c.scan_offset.value = value;
-        s.scan_offset.value = known(s.scan_offset.value);
+        give(c.scan_offset.value, s.scan_offset.value);
         break;
       case calib::scan_scale:
-        c.scan_scale = value;
-        s.scan_scale = known(s.scan_scale);
+        give(c.scan_scale, s.scan_scale);
         break;
       default:
-        c.latency.value = value;
-        s.latency.value = known(s.latency.value);
+        give(c.latency.value, s.latency.value);
     }
   }
   s.lever_arm.value = lever;

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "calib/report/verdict.h"
+#include "calib/report_units.h"
 #include "core/config/units.h"
 #include "report/difference_map.h"
 
@@ -17,7 +17,6 @@ using report::Mark;
 using report::Panel;
 using report::Series;
 
-constexpr double figure_arc_second = core::degree / 3600.0, figure_centimetre = 0.01;
 constexpr int grey = 4, colours = 7;
 /// Share of the groups in use that the range of a panel goes by: a few far off, and those taken out, do not flatten the rest.
 constexpr double residual_share = 0.99;
@@ -83,7 +82,7 @@ Panel residual_panel(const CalibrationReport& report, BinBy by, bool before) {
     const double x = by == BinBy::line ? static_cast<double>(g.line) + spread(seen[g.line]++, all[g.line]) : bin_value(g, report.ties, by);
     Series& s = g.rejected ? taken_out : p.series[g.line];
     s.x.push_back(x);
-    s.y.push_back((before ? g.before : g.after) / figure_centimetre);
+    s.y.push_back((before ? g.before : g.after) / centimetre);
   }
   if (!taken_out.x.empty()) p.series.push_back(std::move(taken_out));
   return p;
@@ -112,7 +111,7 @@ std::optional<Chart> correction_chart(const CalibrationReport& report) {
   c.title = "Corrections of the trajectory, with their sigmas";
   c.panel_height = 150;
   for (size_t axis = 0; axis < 6; ++axis) {
-    const double unit = axis < 3 ? figure_centimetre : figure_arc_second;
+    const double unit = axis < 3 ? centimetre : arc_second;
     Panel p;
     p.x_label = label_of(BinBy::time);
     p.y_label = std::string(names[axis]) + (axis < 3 ? " (cm)" : " (arcsec)");

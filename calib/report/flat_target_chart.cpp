@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/report_units.h"
 #include "core/config/units.h"
 
 namespace swath::calib {
@@ -11,7 +12,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double chart_arc_second = core::degree / 3600.0;
 constexpr int grey_colour = 4;  // of the palette
 
 /// Edges of one view in plan, displacements `enlarged`.
@@ -76,12 +76,11 @@ report::Panel readings(const std::string& name, const TargetAngle& a) {
   p.x_label = "reading of " + name;
   p.y_label = "arcsec";
   report::Series mean{"sigma of the mean", {0.5, static_cast<double>(a.readings.size()) + 0.5}, {}, {}, report::Mark::band, grey_colour};
-  mean.y.assign(2, a.sigma / chart_arc_second);
+  mean.y.assign(2, a.sigma / arc_second);
   p.series.push_back(mean);
   report::Series dots{"", {}, {}, {}, report::Mark::dots, 0}, bars{"", {}, {}, {}, report::Mark::line, 0};
   for (size_t i = 0; i < a.readings.size(); ++i) {
-    const double x = static_cast<double>(i + 1), y = (a.readings[i].value - a.mean) / chart_arc_second,
-                 s = a.readings[i].sigma / chart_arc_second;
+    const double x = static_cast<double>(i + 1), y = (a.readings[i].value - a.mean) / arc_second, s = a.readings[i].sigma / arc_second;
     dots.x.push_back(x);
     dots.y.push_back(y);
     for (const double end : {y - s, y + s}) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "calib/report_units.h"
 #include "core/config/result_visitors.h"
 #include "core/config/units.h"
 #include "core/geo/frames.h"
@@ -17,7 +18,6 @@ using core::Form;
 using core::to_degrees;
 using Eigen::Vector2d;
 
-constexpr double target_arc_second = core::degree / 3600.0;
 constexpr Form target_ratio = core::plain().always(), metres = core::metres().always(), degrees = core::in_degrees().always(),
                arc_seconds = Form{"arcsec"}.always(), millionths = Form{"ppm"}.always();
 
@@ -42,7 +42,7 @@ void describe(const TargetReadingRow& r, V& v) {
   const std::vector<int> both{r.of.first, r.of.second};
   v.result("lines", r.of.second >= 0 ? both : std::vector<int>{r.of.first}, "Numbers of the lines.");
   v.result("value_deg", to_degrees(r.of.value), degrees.only_if(r.is_angle), "Boresight angle that the lines show.");
-  v.result("sigma_arcsec", r.of.sigma / target_arc_second, arc_seconds.only_if(r.is_angle), "Its standard deviation.");
+  v.result("sigma_arcsec", r.of.sigma / arc_second, arc_seconds.only_if(r.is_angle), "Its standard deviation.");
   v.result("value_m", r.of.value, metres.only_if(!r.is_angle), "Range offset that the lines show.");
   v.result("sigma_m", r.of.sigma, metres.only_if(!r.is_angle), "Its standard deviation.");
 }
@@ -114,7 +114,7 @@ struct Estimated {
 template <class V>
 void describe(const Estimated& r, V& v) {
   v.result("value_deg", to_degrees(r.value), degrees.only_if(r.is_angle), "Boresight angle.");
-  v.result("sigma_arcsec", r.sigma / target_arc_second, arc_seconds.only_if(r.is_angle), "Its standard deviation.");
+  v.result("sigma_arcsec", r.sigma / arc_second, arc_seconds.only_if(r.is_angle), "Its standard deviation.");
   v.result("value_m", r.value, metres.only_if(!r.is_angle), "Length.");
   v.result("sigma_m", r.sigma, metres.only_if(!r.is_angle), "Its standard deviation.");
 }
@@ -185,11 +185,11 @@ void describe(const TargetAngle& a, V& v) {
   v.result("present_deg", to_degrees(a.present), degrees, "Angle in force.");
   v.result("value_deg", to_degrees(a.value), degrees.in_summary(), "New angle: the mean where it is beyond the tolerance.");
   v.result("mean_deg", to_degrees(a.mean), deg, "Mean of the readings.");
-  v.result("sigma_arcsec", a.sigma / target_arc_second, arcsec.in_summary(), "Standard deviation of the mean.");
-  v.result("sigma_of_readings_arcsec", a.own / target_arc_second, arcsec, "The same by the readings' own covariance.");
-  v.result("sigma_by_scatter_arcsec", a.scatter / target_arc_second, arcsec.only_if(a.determined && a.scatter > 0.0),
+  v.result("sigma_arcsec", a.sigma / arc_second, arcsec.in_summary(), "Standard deviation of the mean.");
+  v.result("sigma_of_readings_arcsec", a.own / arc_second, arcsec, "The same by the readings' own covariance.");
+  v.result("sigma_by_scatter_arcsec", a.scatter / arc_second, arcsec.only_if(a.determined && a.scatter > 0.0),
            "The same by their scatter.");
-  v.result("tolerance_arcsec", a.tolerance / target_arc_second, arcsec, "Difference up to which the angle in force is kept.");
+  v.result("tolerance_arcsec", a.tolerance / arc_second, arcsec, "Difference up to which the angle in force is kept.");
   v.result("beyond_tolerance", a.beyond, known, "True: the angle is replaced.");
   v.result("by_two_heights", true, core::plain().only_if(a.determined && a.of_two_heights), "Angle and lever arm were separated.");
 }
@@ -278,8 +278,28 @@ std::string readings_csv(const FlatTarget& t) {
            "\n";
   };
   for (const auto& [name, a] : angles_of(t))
-    for (const Reading& r : a.readings) row(name, r, core::degree, "deg", target_arc_second, "arcsec");
+    for (const Reading& r : a.readings) row(name, r, core::degree, "deg", arc_second, "arcsec");
   for (const Reading& r : t.range_readings) row("range_offset", r, 1.0, "m", 1.0, "m");
+  return out;
+}
+
+std::vector<TargetReading> readings_in(const core::Value& tree) {
+  std::vector<TargetReading> out;
+  for (const auto& [key, parameter] :
+       {std::pair{"roll", georef::boresight_roll}, {"pitch", georef::boresight_pitch}, {"heading", georef::boresight_heading}}) {
+    const core::Value* angle = tree.find(key);
+    const core::Value* mean = angle ? angle->find("mean_deg") : nullptr;
+    if (!mean) continue;
+    out.push_back({parameter,
+                   mean->as_number() * core::degree,
+                   angle->find("sigma_arcsec")->as_number() * arc_second,
+                   angle->find("readings")->items().size(),
+                   {}});
+  }
+  if (const core::Value* range = tree.find("range_offset"))
+    out.push_back({georef::range_offset, range->find("mean_m")->as_number(), range->find("sigma_m")->as_number(), 1, {}});
+  if (const core::Value* scale = tree.find("scan_scale"))
+    out.push_back({georef::scan_scale, scale->find("value")->as_number(), 1e-6 * scale->find("sigma_ppm")->as_number(), 1, {}});
   return out;
 }
 

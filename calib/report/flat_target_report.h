@@ -3,7 +3,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "calib/report/report_data.h"
 #include "calib/target/flat_target.h"
 #include "core/config/result.h"
 
@@ -12,6 +14,9 @@ namespace swath::calib {
 /// Everything: target, lines before and after, readings, angles, range, what all determine jointly, findings. SI units, angles in deg and
 /// arcsec where the key says so.
 core::Value value_of(const FlatTarget& t);
+
+/// The readings in such a tree; none where it has none.
+std::vector<TargetReading> readings_in(const core::Value& tree);
 
 /// The part for the run's report: angles with sigmas, range offset, scan scale, findings.
 void describe(const FlatTarget& t, core::ResultVisitor& v);

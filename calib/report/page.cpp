@@ -13,6 +13,7 @@
 #include "calib/report/residual_bins.h"
 #include "calib/report/tables.h"
 #include "calib/report/verdict.h"
+#include "calib/report_units.h"
 #include "core/config/units.h"
 #include "report/html.h"
 
@@ -24,7 +25,6 @@ using report::number_text;
 using report::Table;
 using report::Tone;
 
-constexpr double page_arc_second = core::degree / 3600.0, page_centimetre = 0.01;
 constexpr size_t most_maps = 6;  ///< pairs of lines whose maps stand in the page; all are kept as files
 
 void findings(const PageParts& parts) {
@@ -72,7 +72,7 @@ void corrections(const PageParts& parts) {
       double largest = 0.0;
       for (const auto& v : c.value)
         if (std::abs(v[axis]) > std::abs(largest)) largest = v[axis];
-      row.push_back(number_text(largest / (axis < 3 ? page_centimetre : page_arc_second), axis < 3 ? 2 : 1));
+      row.push_back(number_text(largest / (axis < 3 ? centimetre : arc_second), axis < 3 ? 2 : 1));
     }
     t.rows.push_back(std::move(row));
   }
@@ -118,7 +118,7 @@ void differences(const PageParts& parts) {
     for (const core::Grid* g : {&d.before, &d.after}) {
       const report::Statistics s = difference_statistics(*g);
       row.push_back(count_text(s.n));
-      for (const double v : {s.mean, s.rms, s.q95}) row.push_back(number_text(v / page_centimetre, 2));
+      for (const double v : {s.mean, s.rms, s.q95}) row.push_back(number_text(v / centimetre, 2));
       if (g == &d.after) worst.emplace_back(std::isfinite(s.rms) ? -s.rms : 0.0, k);
     }
     t.rows.push_back(std::move(row));

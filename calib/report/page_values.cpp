@@ -6,6 +6,7 @@
 
 #include "calib/report/figures.h"
 #include "calib/report/verdict.h"
+#include "calib/report_units.h"
 #include "core/config/units.h"
 #include "report/html.h"
 
@@ -18,8 +19,6 @@ using report::count_text;
 using report::number_text;
 using report::Table;
 using report::Tone;
-
-constexpr double arc_second = core::degree / 3600.0, centimetre = 0.01, millimetre = 0.001;
 
 /// How the parameters of one dimension are shown.
 struct Group {

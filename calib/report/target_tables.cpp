@@ -2,7 +2,6 @@
 #include "calib/report/target_tables.h"
 
 #include <array>
-#include <cmath>
 #include <limits>
 #include <string>
 

@@ -14,12 +14,6 @@ namespace swath::calib {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-Vector3d displaced(const Vector3d& p, const core::Attitude& d) {
-  return {p.x() - p.y() * d.heading + p.z() * d.pitch,  // eq 5, 6
-          p.y() + p.x() * d.heading - p.z() * d.roll,   // eq 7
-          p.z() - p.x() * d.pitch + p.y() * d.roll};    // eq 8
-}
-
 double pitch_displacement(double along, double z) { return along / z; }                                           // eq 9
 double roll_displacement(double across, double z) { return -across / z; }                                         // eq 10
 double heading_displacement(double along, double z, double pitch, double y) { return (-along + z * pitch) / y; }  // eq 11
@@ -40,8 +34,6 @@ Vector3d beam_to(const Matrix3d& M, double y, double z) {
   return {0.0, v.x(), v.y()};
 }
 
-Vector3d seen(const OpposedDisplacements& d) { return {d.along_nadir, d.across, d.along_side}; }
-
 }  // namespace
 
 OpposedDisplacements displacements_of(const core::Attitude& mounting_error, double z, double y) {
@@ -55,23 +47,6 @@ OpposedDisplacements displacements_of(const core::Attitude& mounting_error, doub
   d.along_side = -(M * side).x();
   d.y_computed = side.y();
   return d;
-}
-
-core::Attitude exact_displacement(const OpposedDisplacements& given) {
-  Vector3d angles = Vector3d::Zero();  // of the mounting's error
-  const auto attitude = [](const Vector3d& a) { return core::Attitude{a.x(), a.y(), a.z()}; };
-  const auto model = [&](const Vector3d& a) { return seen(displacements_of(attitude(a), given.z, given.y)); };
-  constexpr int most = 50;
-  constexpr double step = 1e-6, closed = 1e-15;  // rad
-  for (int i = 0; i < most; ++i) {
-    Matrix3d by;
-    for (int k = 0; k < 3; ++k)
-      by.col(k) = (model(angles + step * Vector3d::Unit(k)) - model(angles - step * Vector3d::Unit(k))) / (2 * step);
-    const Vector3d change = by.inverse() * (seen(given) - model(angles));
-    angles += change;
-    if (change.cwiseAbs().maxCoeff() < closed) break;
-  }
-  return inverse(attitude(angles));
 }
 
 core::Attitude mounting_of(const core::Attitude& d) { return {-d.roll, -d.pitch, -d.heading}; }

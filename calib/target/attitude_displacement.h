@@ -19,9 +19,6 @@
 
 namespace swath::calib {
 
-/// Eq 5 to 8: x' = x - y dh + z dp; y' = y + x dh - z dr; z' = z - x dp + y dr.
-Eigen::Vector3d displaced(const Eigen::Vector3d& point, const core::Attitude& displacement);
-
 /// Eq 9 with its right sign: dp = (x' - x) / z, from profiles (scan angle 0).
 double pitch_displacement(double along, double z);
 /// Eq 10: dr = (y - y') / z, from a wall along the flight. `across` = y' - y.
@@ -43,8 +40,6 @@ enum class SideDistance { surveyed, computed };  ///< which y eq 11 divides by
 
 /// Eq 9, 10, 11 in that order.
 core::Attitude small_angle_displacement(const OpposedDisplacements& d, SideDistance side = SideDistance::computed);
-/// The rotation itself, by Newton's method on the exact geometry (y_computed takes no part). Closed to 1e-13 rad below 0.1 rad.
-core::Attitude exact_displacement(const OpposedDisplacements& d);
 /// What flights of exact geometry would show with this mounting error. z, y: surveyed.
 OpposedDisplacements displacements_of(const core::Attitude& mounting_error, double z, double y);
 

@@ -6,7 +6,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <unordered_set>
 
@@ -93,6 +92,51 @@ void HeightGrid::add(const Vector3d& p) {
   ++c.n;
 }
 
+/// The patch's plane; false where it is not level and smooth.
+bool HeightGrid::fit_plane(const std::vector<Key>& patch, const std::vector<Vector2d>& centres, const FinderOptions& options,
+                           FoundRoof& roof) const {
+  Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
+  Vector3d b = Vector3d::Zero();
+  for (size_t i = 0; i < patch.size(); ++i) {
+    const Vector3d row(1.0, centres[i].x() - centres.front().x(), centres[i].y() - centres.front().y());
+    N += row * row.transpose();
+    b += row * static_cast<double>(cells_.at(packed(patch[i])).mean());
+  }
+  roof.plane = N.ldlt().solve(b);
+  roof.plane[0] -= roof.plane.tail<2>().dot(centres.front());
+  if (roof.plane.tail<2>().norm() > options.level) return false;
+  double squares = 0.0;
+  for (size_t i = 0; i < patch.size(); ++i)
+    squares += std::pow(static_cast<double>(cells_.at(packed(patch[i])).mean()) - roof.up(centres[i]), 2);
+  return std::sqrt(squares / static_cast<double>(patch.size())) <= roughest;
+}
+
+/// Two cells away from the patch all is lower.
+bool HeightGrid::is_surrounded(const std::vector<Key>& patch, const FinderOptions& options, const FoundRoof& roof) const {
+  Cells own, near, around;
+  for (const Key& k : patch) own.insert(packed(k));
+  for (const Key& k : patch)
+    for (std::int32_t i = -2; i <= 2; ++i)
+      for (std::int32_t j = -2; j <= 2; ++j) {
+        const std::uint64_t other = packed({k.first + i, k.second + j});
+        if (own.contains(other)) continue;
+        (std::abs(i) < 2 && std::abs(j) < 2 ? near : around).insert(other);
+      }
+  size_t known = 0, lower = 0, all = 0;
+  for (const std::uint64_t other : around) {
+    if (near.contains(other)) continue;
+    ++all;
+    const auto at = cells_.find(other);
+    if (at == cells_.end()) continue;
+    ++known;
+    const Key k = unpacked(other);
+    lower +=
+        static_cast<double>(at->second.mean()) < roof.up(cell_ * (Vector2d(k.first, k.second) + Vector2d(0.5, 0.5))) - options.stands_out;
+  }
+  return static_cast<double>(known) >= known_around * static_cast<double>(all) &&
+         static_cast<double>(lower) >= surrounded * static_cast<double>(known);
+}
+
 std::vector<FoundRoof> HeightGrid::roofs(const FinderOptions& options) const {
   std::vector<Key> keys;
   for (const auto& [key, cell] : cells_)
@@ -119,52 +163,58 @@ std::vector<FoundRoof> HeightGrid::roofs(const FinderOptions& options) const {
 
     FoundRoof roof;
     std::vector<Vector2d> centres;
-    Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
-    Vector3d b = Vector3d::Zero();
-    for (const Key& k : patch) {
-      centres.push_back(cell_ * (Vector2d(k.first, k.second) + Vector2d(0.5, 0.5)));
-      const Vector3d row(1.0, centres.back().x() - centres.front().x(), centres.back().y() - centres.front().y());
-      N += row * row.transpose();
-      b += row * static_cast<double>(cells_.at(packed(k)).mean());
-    }
-    roof.plane = N.ldlt().solve(b);
-    roof.plane[0] -= roof.plane.tail<2>().dot(centres.front());
-    if (roof.plane.tail<2>().norm() > options.level) continue;
-    const auto up = [&](const Vector2d& p) { return roof.plane[0] + roof.plane.tail<2>().dot(p); };
-    double squares = 0.0;
-    for (size_t i = 0; i < patch.size(); ++i)
-      squares += std::pow(static_cast<double>(cells_.at(packed(patch[i])).mean()) - up(centres[i]), 2);
-    if (std::sqrt(squares / static_cast<double>(patch.size())) > roughest) continue;
-
-    // Two cells away from the patch all is lower.
-    Cells own, near, around;
-    for (const Key& k : patch) own.insert(packed(k));
-    for (const Key& k : patch)
-      for (std::int32_t i = -2; i <= 2; ++i)
-        for (std::int32_t j = -2; j <= 2; ++j) {
-          const std::uint64_t other = packed({k.first + i, k.second + j});
-          if (own.contains(other)) continue;
-          (std::abs(i) < 2 && std::abs(j) < 2 ? near : around).insert(other);
-        }
-    size_t known = 0, lower = 0, all = 0;
-    for (const std::uint64_t other : around) {
-      if (near.contains(other)) continue;
-      ++all;
-      const auto at = cells_.find(other);
-      if (at == cells_.end()) continue;
-      ++known;
-      const Key k = unpacked(other);
-      lower += static_cast<double>(at->second.mean()) < up(cell_ * (Vector2d(k.first, k.second) + Vector2d(0.5, 0.5))) - options.stands_out;
-    }
-    if (static_cast<double>(known) < known_around * static_cast<double>(all) ||
-        static_cast<double>(lower) < surrounded * static_cast<double>(known))
-      continue;
+    for (const Key& k : patch) centres.push_back(cell_ * (Vector2d(k.first, k.second) + Vector2d(0.5, 0.5)));
+    if (!fit_plane(patch, centres, options, roof) || !is_surrounded(patch, options, roof)) continue;
     fit_rectangle(centres, cell_, roof);
     if (roof.share < fills || 2.0 * roof.half.y() < options.shortest) continue;
     out.push_back(roof);
   }
   return out;
 }
+
+namespace {
+
+/// The target: of the largest area times lines that show it.
+std::optional<RoofTarget> largest_target(const std::vector<std::pair<FoundRoof, int>>& found,
+                                         const std::optional<trajectory::LocalFrame>& frame, double near) {
+  std::optional<RoofTarget> best;
+  double score = 0.0;
+  for (const auto& [seed, seed_line] : found) {
+    Vector2d centre(0, 0), half(0, 0), axis(0, 0);
+    double up = 0.0;
+    std::set<int> lines;
+    for (const auto& [r, of] : found) {
+      const double size = r.half.prod() / seed.half.prod();
+      constexpr double alike = 0.7;
+      if ((r.centre - seed.centre).norm() > near || size < alike || size > 1.0 / alike || !lines.insert(of).second) continue;
+      centre += r.centre;
+      half += r.half;
+      axis += Vector2d(std::cos(2.0 * r.azimuth), std::sin(2.0 * r.azimuth));
+      up += r.up(r.centre);
+    }
+    const double n = static_cast<double>(lines.size());
+    const double mine = 4.0 * seed.half.prod() * n;
+    if (mine <= score) continue;
+    score = mine;
+    centre /= n;
+    half /= n;
+    up /= n;
+    // A square has no longer side: its azimuths cancel by right angles.
+    const double azimuth = axis.norm() > 0.5 * n ? 0.5 * std::atan2(axis.y(), axis.x()) : seed.azimuth;
+    const Vector2d x(std::sin(azimuth), std::cos(azimuth)), y(x.y(), -x.x());
+    std::vector<Vector3d> corners;
+    for (const Vector2d& c : {Vector2d(1, 1), Vector2d(1, -1), Vector2d(-1, -1), Vector2d(-1, 1)}) {
+      const Vector2d p = centre + c.x() * half.x() * x + c.y() * half.y() * y;
+      corners.push_back(frame->to_ecef({p.x(), p.y(), up}));
+    }
+    constexpr double as_found = 0.03;  // m, of corners once they are the mean of the lines
+    best = roof_target("largest flat roof", corners, as_found, as_found);
+    best->surveyed = false;
+  }
+  return best;
+}
+
+}  // namespace
 
 std::optional<RoofTarget> find_roof(const ShotStream& shots, const ShotGeometry& geometry, const trajectory::Trajectory& trajectory,
                                     double search, const FinderOptions& options) {
@@ -197,43 +247,7 @@ std::optional<RoofTarget> find_roof(const ShotStream& shots, const ShotGeometry&
   });
   if (!points.empty()) close_line();
 
-  // The target: of the largest area times lines that show it.
-  const double near = 2.0 * search * range + 2.0 * widest;
-  std::optional<RoofTarget> best;
-  double score = 0.0;
-  for (const auto& [seed, seed_line] : found) {
-    Vector2d centre(0, 0), half(0, 0), axis(0, 0);
-    double up = 0.0;
-    std::set<int> lines;
-    for (const auto& [r, of] : found) {
-      const double size = r.half.prod() / seed.half.prod();
-      constexpr double alike = 0.7;
-      if ((r.centre - seed.centre).norm() > near || size < alike || size > 1.0 / alike || !lines.insert(of).second) continue;
-      centre += r.centre;
-      half += r.half;
-      axis += Vector2d(std::cos(2.0 * r.azimuth), std::sin(2.0 * r.azimuth));
-      up += r.plane[0] + r.plane.tail<2>().dot(r.centre);
-    }
-    const double n = static_cast<double>(lines.size());
-    const double mine = 4.0 * seed.half.prod() * n;
-    if (mine <= score) continue;
-    score = mine;
-    centre /= n;
-    half /= n;
-    up /= n;
-    // A square has no longer side: its azimuths cancel by right angles.
-    const double azimuth = axis.norm() > 0.5 * n ? 0.5 * std::atan2(axis.y(), axis.x()) : seed.azimuth;
-    const Vector2d x(std::sin(azimuth), std::cos(azimuth)), y(x.y(), -x.x());
-    std::vector<Vector3d> corners;
-    for (const Vector2d& c : {Vector2d(1, 1), Vector2d(1, -1), Vector2d(-1, -1), Vector2d(-1, 1)}) {
-      const Vector2d p = centre + c.x() * half.x() * x + c.y() * half.y() * y;
-      corners.push_back(frame->to_ecef({p.x(), p.y(), up}));
-    }
-    constexpr double as_found = 0.03;  // m, of corners once they are the mean of the lines
-    best = roof_target("largest flat roof", corners, as_found, as_found);
-    best->surveyed = false;
-  }
-  return best;
+  return largest_target(found, frame, 2.0 * search * range + 2.0 * widest);
 }
 
 }  // namespace swath::calib

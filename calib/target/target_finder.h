@@ -28,7 +28,7 @@ struct FoundRoof {
   double azimuth = 0.0;          ///< of the longer side, from north, rad
   Eigen::Vector3d plane;         ///< up = plane . (1, east, north)
   double share = 0.0;            ///< of the rectangle that its returns fill
-  int lines = 1;
+  double up(const Eigen::Vector2d& p) const { return plane[0] + plane.tail<2>().dot(p); }
 };
 
 /// Searches line by line on grids of heights (memory: returns and cells of one line), then joins what lies at one place within `search` m
@@ -45,6 +45,11 @@ class HeightGrid {
   std::vector<FoundRoof> roofs(const FinderOptions& options) const;
 
  private:
+  using Key = std::pair<std::int32_t, std::int32_t>;
+  bool fit_plane(const std::vector<Key>& patch, const std::vector<Eigen::Vector2d>& centres, const FinderOptions& options,
+                 FoundRoof& roof) const;
+  bool is_surrounded(const std::vector<Key>& patch, const FinderOptions& options, const FoundRoof& roof) const;
+
   struct Cell {
     float lowest, highest;
     double sum;

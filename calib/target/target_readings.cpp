@@ -83,6 +83,68 @@ std::string_view name_of(TargetRole r) {
   return names[static_cast<size_t>(r)];
 }
 
+namespace {
+
+/// The view of a line from the pose: what does not need the other lines.
+LineMeasure measure_of(int line, const TargetView& view, const trajectory::Pose& pose, const ShotGeometry& geometry,
+                       const RoofTarget& target) {
+  LineMeasure l;
+  l.line = line;
+  l.view = &view;
+  l.heading = view.heading;
+  l.body_R_local = (target.frame.local_R_ecef * pose.ecef_R_body).transpose();
+  const Eigen::Vector2d x(std::sin(view.heading), std::cos(view.heading)), y(x.y(), -x.x());
+  Matrix3d local_R_level = Matrix3d::Identity();
+  local_R_level.block<2, 1>(0, 0) = x;
+  local_R_level.block<2, 1>(0, 1) = y;
+  l.body_R_level = l.body_R_local * local_R_level;
+  const Vector3d scanner = target.frame.local_R_ecef * (pose.position + pose.ecef_R_body * geometry.lever_arm() - target.frame.origin);
+  const Vector3d centre(view.centre.x(), view.centre.y(), target.up(view.centre));
+  l.target = l.body_R_local * (centre - scanner);
+  l.delta = l.body_R_level * Vector3d(view.displacement.x(), view.displacement.y(), view.height);
+  Jacobian by;
+  geometry.ecef_point(pose, view.middle, by);
+  l.by = pose.ecef_R_body.transpose() * by;
+  return l;
+}
+
+TargetRole role_of(const TargetView& view, const ShotGeometry& geometry, double widest, const RoleShares& shares) {
+  if (widest < profile_tangent) return TargetRole::profile;
+  const Vector3d beam = geometry.beam()(geometry.angle(view.middle.angle), view.middle.forward).direction;
+  const double share = std::abs(beam.y() / beam.z()) / std::max(widest, 1e-6);
+  if (share <= shares.nadir) return view.covariance(1, 1) > too_vague * too_vague ? TargetRole::profile : TargetRole::nadir;
+  return share >= shares.edge ? TargetRole::edge : TargetRole::between;
+}
+
+/// Effect on a line's displacement of one sigma of the survey: 3 x 3n, east, north of each corner, then their heights.
+MatrixXd survey_effect(const LineMeasure& l, const RoofTarget& target) {
+  const Index corners = static_cast<Index>(target.sides());
+  MatrixXd A(corners, 3);
+  for (Index k = 0; k < corners; ++k)
+    A.row(k) << 1.0, target.corners[static_cast<size_t>(k)].x(), target.corners[static_cast<size_t>(k)].y();
+  const MatrixXd plane_by_heights = (A.transpose() * A).inverse() * A.transpose();
+  MatrixXd survey = MatrixXd::Zero(3, 3 * corners);
+  survey.leftCols(2 * corners) = target.sigma_h * l.body_R_level.leftCols<2>() * l.view->by_corners;
+  const Eigen::RowVector3d at(1.0, l.view->centre.x(), l.view->centre.y());
+  survey.rightCols(corners) = -target.sigma_v * l.body_R_level.col(2) * (at * plane_by_heights);
+  return survey;
+}
+
+/// Effect of one sigma of each calibration value that no reading estimates.
+MatrixXd held_effects(const std::vector<LineMeasure>& lines, const RoofTarget& target, const core::SensorSigma& sigma) {
+  std::vector<std::pair<Parameter, double>> held{{lever_forward, sigma.lever_arm.value}, {lever_right, sigma.lever_arm.value},
+                                                 {lever_down, sigma.lever_arm.value},    {range_scale, sigma.range_scale},
+                                                 {scan_scale, sigma.scan_scale},         {latency, sigma.latency.value}};
+  if (!target.surveyed) held.push_back({range_offset, sigma.range_offset.value});
+  MatrixXd out = MatrixXd::Zero(3 * static_cast<Index>(lines.size()), static_cast<Index>(held.size()));
+  for (size_t i = 0; i < lines.size(); ++i)
+    for (size_t k = 0; k < held.size(); ++k)
+      out.block<3, 1>(row_of(i, 0), static_cast<Index>(k)) = held[k].second * lines[i].by.col(held[k].first);
+  return out;
+}
+
+}  // namespace
+
 TargetMeasures target_measures(const std::vector<std::pair<int, const TargetView*>>& views, const ShotGeometry& geometry,
                                const trajectory::Trajectory& trajectory, const TrajectoryCovariance& trajectory_covariance,
                                const RoofTarget& target, const core::SensorSigma& sigma, double widest, const RoleShares& shares) {
@@ -90,49 +152,16 @@ TargetMeasures target_measures(const std::vector<std::pair<int, const TargetView
   m.widest = widest;
   m.surveyed = target.surveyed;
   m.across = geometry.beam().is_across() && !geometry.beam().ignores_record();
-  const Index corners = static_cast<Index>(target.sides());
-  MatrixXd A(corners, 3);
-  for (Index k = 0; k < corners; ++k)
-    A.row(k) << 1.0, target.corners[static_cast<size_t>(k)].x(), target.corners[static_cast<size_t>(k)].y();
-  const MatrixXd plane_by_heights = (A.transpose() * A).inverse() * A.transpose();
-
   std::vector<double> times;
-  std::vector<MatrixXd> by_survey;  // 3 x 3n: east, north of each corner, then their heights
+  std::vector<MatrixXd> by_survey;
   for (const auto& [line, view] : views) {
     const double t = geometry.time(view->time);
     const auto pose = trajectory.pose_at(t);
     if (!view->seen || !pose) continue;
-    LineMeasure l;
-    l.line = line;
-    l.view = view;
-    l.heading = view->heading;
-    l.body_R_local = (target.frame.local_R_ecef * pose->ecef_R_body).transpose();
-    const Eigen::Vector2d x(std::sin(view->heading), std::cos(view->heading)), y(x.y(), -x.x());
-    Matrix3d local_R_level = Matrix3d::Identity();
-    local_R_level.block<2, 1>(0, 0) = x;
-    local_R_level.block<2, 1>(0, 1) = y;
-    l.body_R_level = l.body_R_local * local_R_level;
-    const Vector3d scanner = target.frame.local_R_ecef * (pose->position + pose->ecef_R_body * geometry.lever_arm() - target.frame.origin);
-    const Vector3d centre(view->centre.x(), view->centre.y(), target.up(view->centre));
-    l.target = l.body_R_local * (centre - scanner);
-    l.delta = l.body_R_level * Vector3d(view->displacement.x(), view->displacement.y(), view->height);
-    Jacobian by;
-    geometry.ecef_point(*pose, view->middle, by);
-    l.by = pose->ecef_R_body.transpose() * by;
-    const Vector3d beam = geometry.beam()(geometry.angle(view->middle.angle), view->middle.forward).direction;
-    const double share = std::abs(beam.y() / beam.z()) / std::max(widest, 1e-6);
-    l.role = widest < profile_tangent ? TargetRole::profile
-             : share <= shares.nadir  ? TargetRole::nadir
-             : share >= shares.edge   ? TargetRole::edge
-                                      : TargetRole::between;
-    if (view->covariance(1, 1) > too_vague * too_vague && share <= shares.nadir) l.role = TargetRole::profile;
-    MatrixXd survey = MatrixXd::Zero(3, 3 * corners);
-    survey.leftCols(2 * corners) = target.sigma_h * l.body_R_level.leftCols<2>() * view->by_corners;
-    const Eigen::RowVector3d at(1.0, view->centre.x(), view->centre.y());
-    survey.rightCols(corners) = -target.sigma_v * l.body_R_level.col(2) * (at * plane_by_heights);
-    by_survey.push_back(survey);
+    m.lines.push_back(measure_of(line, *view, *pose, geometry, target));
+    m.lines.back().role = role_of(*view, geometry, widest, shares);
+    by_survey.push_back(survey_effect(m.lines.back(), target));
     times.push_back(t);
-    m.lines.push_back(l);
   }
 
   const size_t n = m.lines.size();
@@ -152,15 +181,7 @@ TargetMeasures target_measures(const std::vector<std::pair<int, const TargetView
       returns(2, 2) = v.height_sigma * v.height_sigma;
       block += m.lines[i].body_R_level * returns * m.lines[i].body_R_level.transpose();
     }
-
-  std::vector<std::pair<Parameter, double>> held{{lever_forward, sigma.lever_arm.value}, {lever_right, sigma.lever_arm.value},
-                                                 {lever_down, sigma.lever_arm.value},    {range_scale, sigma.range_scale},
-                                                 {scan_scale, sigma.scan_scale},         {latency, sigma.latency.value}};
-  if (!target.surveyed) held.push_back({range_offset, sigma.range_offset.value});
-  m.held = MatrixXd::Zero(3 * static_cast<Index>(n), static_cast<Index>(held.size()));
-  for (size_t i = 0; i < n; ++i)
-    for (size_t k = 0; k < held.size(); ++k)
-      m.held.block<3, 1>(row_of(i, 0), static_cast<Index>(k)) = held[k].second * m.lines[i].by.col(held[k].first);
+  m.held = held_effects(m.lines, target, sigma);
   for (size_t i = 0; i < n; ++i) {
     const Matrix3d all = m.covariance.block<3, 3>(row_of(i, 0), row_of(i, 0)) +
                          m.held.middleRows<3>(row_of(i, 0)) * m.held.middleRows<3>(row_of(i, 0)).transpose();
@@ -169,26 +190,21 @@ TargetMeasures target_measures(const std::vector<std::pair<int, const TargetView
   return m;
 }
 
-AngleReadings read_angles(const TargetMeasures& given) {
-  TargetMeasures m = given;
-  const size_t n = m.lines.size();
-  // An offset between survey and trajectory cancels in pairs but for the difference of their headings: it is taken out beforehand.
-  core::SensorSigma none;
-  const JointTarget joint = solve_jointly(m, none);
-  const double most = *std::max_element(joint.datum_sigma.data(), joint.datum_sigma.data() + 2) < too_vague ? 1.0 : 0.0;
-  for (LineMeasure& l : m.lines) l.delta -= most * l.body_R_local * Vector3d(joint.datum.x(), joint.datum.y(), 0.0);
+namespace {
 
-  AngleReadings out;
-  const auto reading = [&](size_t i, size_t j) {
-    Reading r;
-    r.first = m.lines[i].line;
-    r.second = m.lines[j].line;
-    r.by = RowVectorXd::Zero(3 * static_cast<Index>(n));
-    return r;
-  };
-  const auto half_swath = [&](size_t i) { return m.widest * m.lines[i].target.z(); };
-  for (size_t i = 0; i < n; ++i)
-    for (size_t j = i + 1; j < n; ++j) {
+Reading reading_of(const TargetMeasures& m, size_t i, size_t j) {
+  Reading r;
+  r.first = m.lines[i].line;
+  r.second = m.lines[j].line;
+  r.by = RowVectorXd::Zero(3 * static_cast<Index>(m.lines.size()));
+  return r;
+}
+
+double half_swath(const TargetMeasures& m, size_t i) { return m.widest * m.lines[i].target.z(); }
+
+void read_pitch_and_roll(const TargetMeasures& m, AngleReadings& out) {
+  for (size_t i = 0; i < m.lines.size(); ++i)
+    for (size_t j = i + 1; j < m.lines.size(); ++j) {
       const LineMeasure &a = m.lines[i], &b = m.lines[j];
       if (std::cos(a.heading - b.heading) > -parallel) continue;
       const double z = 0.5 * (a.target.z() + b.target.z());
@@ -196,15 +212,15 @@ AngleReadings read_angles(const TargetMeasures& given) {
       // Heading and the scan's scale act on a target to the side: opposite lines over the same ground are free of them.
       constexpr double same_ground = 0.35;  // of the swath's half width
       const bool profile = a.role == TargetRole::profile && b.role == TargetRole::profile;
-      if (!profile && 0.5 * std::abs(a.target.y() + b.target.y()) > same_ground * half_swath(i)) continue;
+      if (!profile && 0.5 * std::abs(a.target.y() + b.target.y()) > same_ground * half_swath(m, i)) continue;
       if (known(m, i, 0) && known(m, j, 0)) {
-        Reading r = reading(i, j);
+        Reading r = reading_of(m, i, j);
         r.value = pitch_displacement(0.5 * (a.delta.x() + b.delta.x()), z);  // eq 9
         r.by[row_of(i, 0)] = r.by[row_of(j, 0)] = 0.5 / z;
         out.pitch.readings.push_back(r);
       }
       if (!profile && known(m, i, 1) && known(m, j, 1)) {
-        Reading r = reading(i, j);
+        Reading r = reading_of(m, i, j);
         r.value = roll_displacement(0.5 * (a.delta.y() + b.delta.y()), z);  // eq 10
         r.by[row_of(i, 1)] = r.by[row_of(j, 1)] = -0.5 / z;
         out.roll.readings.push_back(r);
@@ -212,9 +228,11 @@ AngleReadings read_angles(const TargetMeasures& given) {
     }
   mean_of(m, out.pitch);
   mean_of(m, out.roll);
+}
 
-  for (size_t i = 0; i < n; ++i)
-    for (size_t j = i + 1; j < n; ++j) {
+void read_heading(const TargetMeasures& m, AngleReadings& out) {
+  for (size_t i = 0; i < m.lines.size(); ++i)
+    for (size_t j = i + 1; j < m.lines.size(); ++j) {
       const LineMeasure &a = m.lines[i], &b = m.lines[j];
       const double cosine = std::cos(a.heading - b.heading);
       if (std::abs(cosine) < parallel || !known(m, i, 0) || !known(m, j, 0)) continue;
@@ -223,9 +241,9 @@ AngleReadings read_angles(const TargetMeasures& given) {
       const auto y = [&](const LineMeasure& l) { return l.target.y() + l.delta.y() + l.target.z() * out.roll.value; };
       const double apart = y(a) - sense * y(b), z = a.target.z() - sense * b.target.z();
       constexpr double far_enough = 0.5;  // of the swath's half width
-      if (std::abs(apart) < far_enough * std::max(half_swath(i), half_swath(j))) continue;
+      if (std::abs(apart) < far_enough * std::max(half_swath(m, i), half_swath(m, j))) continue;
       if (sense < 0.0 && !out.pitch.determined) continue;
-      Reading r = reading(i, j);
+      Reading r = reading_of(m, i, j);
       r.value = heading_displacement(a.delta.x() - sense * b.delta.x(), z, out.pitch.value, apart);  // eq 11
       r.by[row_of(i, 0)] = -1.0 / apart;
       r.by[row_of(j, 0)] = sense / apart;
@@ -233,43 +251,63 @@ AngleReadings read_angles(const TargetMeasures& given) {
       out.heading.readings.push_back(r);
     }
   mean_of(m, out.heading);
+}
 
-  if (m.surveyed)
-    for (size_t i = 0; i < n; ++i) {
-      const Vector3d u = m.lines[i].by.col(range_offset);
-      if (!known(m, i, 2)) continue;
-      // Along the beam: turns of the scanner do not act there.
-      Reading r = reading(i, i);
-      r.second = -1;
-      const bool plan = known(m, i, 0) && known(m, i, 1);
-      // Without its place in plan, the height alone shows the error of the range.
-      if (plan) {
-        r.value = u.dot(m.lines[i].delta) / u.squaredNorm();
-        r.by.segment<3>(row_of(i, 0)) = u.transpose() / u.squaredNorm();
-      } else {
-        r.value = m.lines[i].delta.z() / u.z();
-        r.by[row_of(i, 2)] = 1.0 / u.z();
-      }
-      out.range.readings.push_back(r);
+/// Along the beam: turns of the scanner do not act there.
+void read_range(const TargetMeasures& m, AngleReadings& out) {
+  for (size_t i = 0; i < m.lines.size(); ++i) {
+    const Vector3d u = m.lines[i].by.col(range_offset);
+    if (!known(m, i, 2)) continue;
+    Reading r = reading_of(m, i, i);
+    r.second = -1;
+    const bool plan = known(m, i, 0) && known(m, i, 1);
+    // Without its place in plan, the height alone shows the error of the range.
+    if (plan) {
+      r.value = u.dot(m.lines[i].delta) / u.squaredNorm();
+      r.by.segment<3>(row_of(i, 0)) = u.transpose() / u.squaredNorm();
+    } else {
+      r.value = m.lines[i].delta.z() / u.z();
+      r.by[row_of(i, 2)] = 1.0 / u.z();
     }
+    out.range.readings.push_back(r);
+  }
   mean_of(m, out.range);
+}
+
+}  // namespace
+
+AngleReadings read_angles(const TargetMeasures& given) {
+  TargetMeasures m = given;
+  // An offset between survey and trajectory cancels in pairs but for the difference of their headings: it is taken out beforehand.
+  const JointTarget joint = solve_jointly(m, {});
+  const double most = *std::max_element(joint.datum_sigma.data(), joint.datum_sigma.data() + 2) < too_vague ? 1.0 : 0.0;
+  for (LineMeasure& l : m.lines) l.delta -= most * l.body_R_local * Vector3d(joint.datum.x(), joint.datum.y(), 0.0);
+
+  AngleReadings out;
+  read_pitch_and_roll(m, out);
+  read_heading(m, out);
+  if (m.surveyed) read_range(m, out);
   return out;
 }
 
-JointTarget solve_jointly(const TargetMeasures& m, const core::SensorSigma& sigma) {
-  JointTarget out;
-  const size_t n = m.lines.size();
-  if (n == 0) return out;
-  out.lowest = 1e300;
-  for (const LineMeasure& l : m.lines) {
-    out.lowest = std::min(out.lowest, l.target.z());
-    out.highest = std::max(out.highest, l.target.z());
-  }
-  out.two_heights = out.highest > two_heights_apart * out.lowest;
+namespace {
 
-  enum : int { roll, pitch, heading, forward, right, scale, range, east, north, count };
-  const bool scan = m.across && m.widest > profile_tangent;
-  const size_t strains = scan && m.surveyed ? n : 0;
+namespace joint {
+enum : int { roll, pitch, heading, forward, right, scale, range, east, north, count };
+}
+
+bool scans(const TargetMeasures& m) { return m.across && m.widest > profile_tangent; }
+
+/// Displacements, and the roof's growth across where it shows the scan's scale: d = A x with covariance C.
+struct JointSystem {
+  MatrixXd A, C;
+  VectorXd d;
+};
+
+JointSystem joint_system(const TargetMeasures& m) {
+  using namespace joint;
+  const size_t n = m.lines.size();
+  const size_t strains = scans(m) && m.surveyed ? n : 0;
   const Index rows = 3 * static_cast<Index>(n) + static_cast<Index>(strains);
   MatrixXd A = MatrixXd::Zero(rows, count), C = MatrixXd::Zero(rows, rows);
   VectorXd d = VectorXd::Zero(rows);
@@ -300,6 +338,26 @@ JointTarget solve_jointly(const TargetMeasures& m, const core::SensorSigma& sigm
     common[row] = l.view->strain_across_by_growth;
   }
   C += common * common.transpose();
+  return {std::move(A), std::move(C), std::move(d)};
+}
+
+}  // namespace
+
+JointTarget solve_jointly(const TargetMeasures& m, const core::SensorSigma& sigma) {
+  JointTarget out;
+  const size_t n = m.lines.size();
+  if (n == 0) return out;
+  out.lowest = 1e300;
+  for (const LineMeasure& l : m.lines) {
+    out.lowest = std::min(out.lowest, l.target.z());
+    out.highest = std::max(out.highest, l.target.z());
+  }
+  out.two_heights = out.highest > two_heights_apart * out.lowest;
+
+  using namespace joint;
+  const bool scan = scans(m);
+  const auto [A, C, d] = joint_system(m);
+  const Index rows = d.size();
   const MatrixXd inverse = C.ldlt().solve(MatrixXd::Identity(rows, rows));
   MatrixXd N = A.transpose() * inverse * A;
   const auto prior = [&](int k, double s) { N(k, k) += 1.0 / (s * s); };

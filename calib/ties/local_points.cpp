@@ -3,7 +3,6 @@
 // refraction term is that of the trajectory interval's first record (1e-8 m); the ray is bent in the frame of that record (1e-8 m).
 #include "calib/ties/local_points.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>

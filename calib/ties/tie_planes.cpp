@@ -17,6 +17,7 @@
 
 #include "calib/ties/plane_edges.h"
 #include "calib/ties/tie_returns.h"
+#include "core/error.h"
 #include "core/statistics.h"
 #include "filters/pcl_messages.h"
 
@@ -296,7 +297,44 @@ void append(TieSet& set, Judged& j, const std::vector<NearReturn>& all) {
   }
 }
 
+PlaneRegion region_of(const Facet& f, const TiePlaneOptions& o) {
+  PlaneRegion r;
+  r.centre = f.centre, r.normal = f.normal, r.cells = f.cells, r.looks = f.looks;
+  r.reach = 3.0 * o.mismatch.value + ransac_distance * o.roughness->value;
+  r.wanted = static_cast<std::uint32_t>(o.returns);
+  return r;
+}
+
+bool lies_on(const Facet& f, const PlaneRegion& r) {
+  const auto axes = plane_axes(r.normal);
+  const Vector3d away = f.centre - r.centre;
+  return std::abs(r.normal.dot(away)) < r.reach && is_inside(r.outline, {axes[0].dot(away), axes[1].dot(away)}, 0.0);
+}
+
+/// What the set holds, and why it is empty where it is.
+void count_ties(const TieSet& set, core::Tally& tally) {
+  for (const TiePlane& p : set.planes) tally.count("planes: " + std::string(name_of(p.kind)));
+  std::set<std::uint32_t> tied;
+  for (const TieGroup& g : set.groups) tied.insert(g.line);
+  for (std::uint32_t l = 0; l < set.lines.size(); ++l)
+    if (!tied.contains(l)) tally.count("lines without ties", "line " + std::to_string(set.lines[l].id));
+  if (!set.planes.empty()) return;
+  if (tally.of("cells") > 0 && tally.of("cells refused: one line") + tally.of("cells refused: not plane") == tally.of("cells"))
+    tally.count("no ties: no place that two lines have seen is plane");
+  else
+    tally.count("no ties: no plane is good enough");
+}
+
 }  // namespace
+
+void refuse_without_planes(const core::Tally& tally, const std::string& what_else, const std::string& where, const std::string& hint) {
+  std::string listed;
+  const core::Value counts = tally.value();
+  for (const auto& [what, one] : counts.members())
+    listed += (listed.empty() ? "" : "; ") + what + ": " + std::to_string(one.find("count")->as_int());
+  throw core::Error("no plane was found that two lines have seen" + what_else + (listed.empty() ? "" : " (" + listed + ")"), where,
+                    "lines must overlap over level or sloping planes of some metres" + hint);
+}
 
 TieSet find_tie_planes(const ShotStream& stream, const core::Scanner& scanner, const core::Calibration& calibration,
                        const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame,
@@ -320,23 +358,10 @@ TieSet find_tie_planes(const ShotStream& stream, const core::Scanner& scanner, c
     facets = find_facets(cells, facet_options(o), tally);
     for (const SurveyedTarget& t : targets) regions.push_back(region_of(t, o, cells.density));
   }
-  const auto on_target = [&](const Facet& f) {
-    for (size_t t = 0; t < targets.size(); ++t) {
-      const PlaneRegion& r = regions[t];
-      const auto axes = plane_axes(r.normal);
-      const Vector3d away = f.centre - r.centre;
-      if (std::abs(r.normal.dot(away)) < r.reach && is_inside(r.outline, {axes[0].dot(away), axes[1].dot(away)}, 0.0)) return true;
-    }
-    return false;
-  };
-  std::erase_if(facets, on_target);
-  for (const Facet& f : facets) {
-    PlaneRegion r;
-    r.centre = f.centre, r.normal = f.normal, r.cells = f.cells, r.looks = f.looks;
-    r.reach = 3.0 * o.mismatch.value + ransac_distance * o.roughness->value;
-    r.wanted = static_cast<std::uint32_t>(o.returns);
-    regions.push_back(std::move(r));
-  }
+  std::erase_if(facets, [&](const Facet& f) {
+    return std::any_of(regions.begin(), regions.end(), [&](const PlaneRegion& target) { return lies_on(f, target); });
+  });
+  for (const Facet& f : facets) regions.push_back(region_of(f, o));
   std::vector<std::vector<NearReturn>> near;
   if (!regions.empty()) near = collect_returns(stream, points, regions, side, set.lines);
 
@@ -367,17 +392,7 @@ TieSet find_tie_planes(const ShotStream& stream, const core::Scanner& scanner, c
       append(set, j, near[k]);
     std::vector<NearReturn>().swap(near[k]);
   }
-  for (const TiePlane& p : set.planes) tally.count("planes: " + std::string(name_of(p.kind)));
-  std::set<std::uint32_t> tied;
-  for (const TieGroup& g : set.groups) tied.insert(g.line);
-  for (std::uint32_t l = 0; l < set.lines.size(); ++l)
-    if (!tied.contains(l)) tally.count("lines without ties", "line " + std::to_string(set.lines[l].id));
-  if (set.planes.empty()) {
-    if (tally.of("cells") > 0 && tally.of("cells refused: one line") + tally.of("cells refused: not plane") == tally.of("cells"))
-      tally.count("no ties: no place that two lines have seen is plane");
-    else
-      tally.count("no ties: no plane is good enough");
-  }
+  count_ties(set, tally);
   return set;
 }
 

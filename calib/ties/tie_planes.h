@@ -22,4 +22,8 @@ TieSet find_tie_planes(const ShotStream& stream, const core::Scanner& scanner, c
                        const trajectory::Trajectory& trajectory, const trajectory::LocalFrame& frame,
                        const std::vector<SurveyedTarget>& targets, const TiePlaneOptions& options, core::Tally& tally);
 
+/// Throws that no plane was found, with what became of those sought; `what_else` was not found either, `hint` ends what helps.
+[[noreturn]] void refuse_without_planes(const core::Tally& tally, const std::string& what_else, const std::string& where,
+                                        const std::string& hint);
+
 }  // namespace swath::calib

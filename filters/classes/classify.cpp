@@ -8,8 +8,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel.h"
 #include "filters/classes/bridges.h"
 #include "filters/classes/building_sides.h"
+#include "filters/classes/crowns.h"
 #include "filters/classes/ground_decks.h"
 #include "filters/classes/missing_heights.h"
 #include "filters/classes/roof_planes.h"
@@ -22,13 +24,14 @@ namespace {
 
 namespace cls = core::point_class;
 
-constexpr float least_plane_height = 1.0f;  // m above ground: a deck near its ends
-constexpr float above_roof = 1.5f;          // m: chimneys, parapets and what else stands on a roof
-constexpr float beside_deck = 0.5f;         // m above or below a deck: kerbs, rails
-constexpr double widest_needed = 9.0;       // m2 of one plane: larger roofs may have several
-constexpr float below_ground = 1.0f;        // m: returns deeper than this may be noise
-constexpr double below_reach = 2.25;        // m: the widest radius in which ground is looked for beside them
-constexpr double ground_beside = 0.25;      // of the last returns there
+constexpr float least_plane_height = 1.0f;     // m above ground: a deck near its ends
+constexpr float above_roof = 1.5f;             // m: chimneys, parapets and what else stands on a roof
+constexpr float beside_deck = 0.5f;            // m above or below a deck: kerbs, rails
+constexpr double widest_needed = 9.0;          // m2 of one plane: larger roofs may have several
+constexpr float below_ground = 1.0f;           // m: returns deeper than this may be noise
+constexpr double below_reach = 2.25;           // m: the widest radius in which ground is looked for beside them
+constexpr double ground_beside = 0.25;         // of the last returns there
+constexpr size_t crown_points_at_once = 2048;  // of one thread
 
 bool is_free(const core::Block& b, size_t p) {
   return core::is_usable(b, p) && b.classification[p] != cls::ground && b.classification[p] != cls::water;
@@ -45,7 +48,7 @@ double wide_area(const ClassifyOptions& o) { return std::min(o.building_side.val
 /// Metres of points around a tile that the planes and what follows from them depend on.
 double planes_halo(const ClassifyOptions& o) {
   const double decks = o.bridge_length.value > 0.0 ? deck_cells_halo(o.bridge_length.value) : 0.0;
-  const double structures = decks + roof_cells_halo(o.building_side.value) + building_sides_halo();
+  const double structures = decks + roof_cells_halo(o.building_side.value) + building_sides_halo() + crowns_halo();
   return planar_points_halo() + std::max(structures, wire_points_halo());
 }
 
@@ -118,7 +121,7 @@ class Structures {
   /// Of a point that is neither ground, water, noise nor withheld.
   std::uint8_t class_of(size_t p) const {
     if (is_deck(p)) return cls::bridge_deck;
-    if (sides_[p] || (raised_[p] && static_cast<float>(block_.z[p]) - roofs_[cell(p)] <= above_roof)) return cls::building;  // NaN: no roof
+    if (sides_[p] || (raised_[p] && !crown_[p] && is_on_roof(p))) return cls::building;
     if (wires_[p]) return cls::wire;
     if (below_.is_noise(p)) return cls::low_noise;
     return is_surface(p) && planar_[p] == Planar::wide ? cls::unassigned : vegetation(block_.height[p], options_);
@@ -129,6 +132,7 @@ class Structures {
     const CellIndex at = cell_of(cells_.lattice, block_, p);
     return cells_.lattice.at(at.i, at.j);
   }
+  bool is_on_roof(size_t p) const { return static_cast<float>(block_.z[p]) - roofs_[cell(p)] <= above_roof; }  // NaN: no roof
   bool is_surface(size_t p) const { return raised_[p] && planar_[p] != Planar::none; }
 
   void find_decks(size_t own) {
@@ -146,14 +150,33 @@ class Structures {
     for (size_t p = 0; p < block_.size(); ++p)
       if (raised_[p]) standing[cell(p)] = 1;
     roofs_ = roof_cells(cells_, standing, decks_, where_, {options_.building_height.value, options_.building_side.value});
+    find_crowns(OwnBox(block_, own, building_sides_halo()));
     std::vector<std::uint8_t> roof(block_.size(), 0), free(block_.size(), 0);
     for (size_t p = 0; p < block_.size(); ++p) {
       if (!available_[p]) continue;
       const size_t c = cell(p);
-      roof[p] = is_surface(p) && roofs_[c] == roofs_[c];
+      roof[p] = is_surface(p) && !crown_[p] && roofs_[c] == roofs_[c];
       free[p] = !decks_[c];
     }
     sides_ = building_sides(block_, roof, free, options_.roughness.value, options_.building_height.value, own);
+  }
+
+  /// Of the returns on and below roofs, those of trees.
+  void find_crowns(const OwnBox& needed) {
+    std::vector<Witness> witness(block_.size(), Witness::none);
+    for (size_t p = 0; p < block_.size(); ++p) {
+      if (!raised_[p] || decks_[cell(p)]) continue;
+      if (is_on_roof(p))
+        witness[p] = is_surface(p) ? Witness::roof : Witness::none;
+      else if (!is_surface(p) && !core::is_last_return(block_, p))
+        witness[p] = Witness::crown;
+    }
+    const Crowns crowns(block_, witness);
+    crown_.assign(block_.size(), 0);
+    core::in_parallel(block_.size(), crown_points_at_once, [&](size_t from, size_t to) {
+      for (size_t p = from; p < to; ++p)
+        crown_[p] = raised_[p] && planar_[p] != Planar::wide && is_on_roof(p) && needed.holds(block_, p) && crowns.holds(p);
+    });
   }
 
   void find_wires(size_t own) {
@@ -173,9 +196,9 @@ class Structures {
   Below below_;
   std::vector<Planar> planar_;
   StructureCells cells_;
-  std::vector<std::uint8_t> decks_, ground_decks_;  // per cell; per point
-  std::vector<float> roofs_;                        // per cell
-  std::vector<std::uint8_t> sides_, wires_;         // per point
+  std::vector<std::uint8_t> decks_, ground_decks_;   // per cell; per point
+  std::vector<float> roofs_;                         // per cell
+  std::vector<std::uint8_t> crown_, sides_, wires_;  // per point
 };
 
 void count(ClassifyCounts& n, std::uint8_t c) {

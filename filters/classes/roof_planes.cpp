@@ -18,6 +18,7 @@
 #include "core/wide.h"
 #include "filters/bins.h"
 #include "filters/classes/plane_samples.h"
+#include "filters/classes/returns.h"
 
 namespace swath::filters {
 namespace {
@@ -77,8 +78,6 @@ struct Points {
     return out;
   }
 };
-
-bool is_first_return(const core::Block& b, size_t p) { return b.return_number.empty() || b.return_number[p] <= 1; }
 
 /// By least squares of heights.
 Plane fit(const Points& p) {

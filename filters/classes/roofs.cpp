@@ -13,6 +13,8 @@ namespace {
 constexpr float part_link = 0.4f;       // m from cell to cell where small planes join large ones
 constexpr float roof_link = 2.0f;       // m from cell to cell of one roof
 constexpr int roof_growth = 2;          // links from large planes to the small ones beside them
+constexpr double low_share = 0.75;      // of the least height: of what goes on from a roof at its level
+constexpr int low_growth = 8;           // links
 constexpr int fewest_around = 4;        // roof cells around a gap of a roof
 constexpr double share_around = 0.7;    // of the cells around it that hold returns off the ground
 constexpr double search_sides = 3.0;    // of the square of the least area, on each side of a cell
@@ -33,6 +35,12 @@ class Roofs {
       return Districts::link(where_.side_at(lattice_.centre_x(static_cast<int>(from % static_cast<size_t>(lattice_.nx))),
                                             lattice_.centre_y(static_cast<int>(from / static_cast<size_t>(lattice_.nx)))));
     };
+    const auto goes_on = [this](size_t from, size_t to, int) {
+      return cells_.kind[to] == Planar::wide && !decks_[to] && std::abs(cells_.plane[from] - cells_.plane[to]) <= part_link &&
+             static_cast<double>(cells_.height[to]) >= low_share * limits_.height;
+    };
+    spread(
+        cells_, roof, low_growth, [](size_t) { return structure_link; }, goes_on);
     spread(cells_, roof, roof_growth, link, [this](size_t from, size_t to, int) { return is_linked(from, to, part_link); });
     std::vector<float> height(lattice_.size(), std::numeric_limits<float>::quiet_NaN());
     for (size_t k = 0; k < roof.size(); ++k)
@@ -154,7 +162,8 @@ class Roofs {
 }  // namespace
 
 double roof_cells_halo(double side) {
-  return (search_radius(side) + roof_growth * Districts::link(sample_sides.size() - 1) + 2 * structure_link + rim_gap + 1) * structure_cell;
+  const int grown = low_growth * structure_link + roof_growth * Districts::link(sample_sides.size() - 1);
+  return (search_radius(side) + grown + 2 * structure_link + rim_gap + 1) * structure_cell;
 }
 
 std::vector<float> roof_cells(const StructureCells& cells, const std::vector<std::uint8_t>& standing,

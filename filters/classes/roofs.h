@@ -17,9 +17,10 @@ struct RoofLimits {
 /// Metres of cells around a place that roof_cells depends on there.
 double roof_cells_halo(double side);
 
-/// Height of the roof (m, as in `cells`) for every cell of a roof; NaN elsewhere. Wide planes in enough cells make a roof; then the smaller
-/// planes beside it on its level, and the cells with returns off the ground (`standing`) that have roofs nearly all around. Cells of
-/// `decks` are left out, and what stands alone and is up to 2.6 m wide: vehicles, containers, clipped hedges.
+/// Height of the roof (m, as in `cells`) for every cell of a roof; NaN elsewhere. Wide planes in enough cells make a roof; then the wide
+/// ones that it goes on with at its level down to three quarters of the least height, the smaller planes beside it on its level, and the
+/// cells with returns off the ground (`standing`) that have roofs nearly all around. Cells of `decks` are left out, and what stands alone
+/// and is up to 2.6 m wide: vehicles, containers, clipped hedges.
 std::vector<float> roof_cells(const StructureCells& cells, const std::vector<std::uint8_t>& standing,
                               const std::vector<std::uint8_t>& decks, const Districts& where, const RoofLimits& limits);
 

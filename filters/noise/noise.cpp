@@ -5,7 +5,6 @@
 #include "filters/noise/noise.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -119,6 +118,38 @@ void for_each_own(const Bins& bins, size_t own, Judge&& judge, Found&& found) {
 
 double squared(double v) { return v * v; }
 
+/// Whether a point lies below the ground around it, with few others at most.
+class LowGroups {
+ public:
+  LowGroups(const Bins& bins, const NoiseOptions& o) : bins_(bins), o_(o), lowest_(lowest_of_cells(bins)) {}
+  bool operator()(CellIndex c, const Bins::Point& p) const {
+    const double depth = o_.low_depth.value, reach = squared(o_.low_radius.value);
+    const auto company = [&](const Bins::Point& q) { return q.z < p.z + depth && squared(q.x - p.x) + squared(q.y - p.y) <= reach; };
+    return count_around(bins_, c, 1, o_.low_group + 1, company) <= o_.low_group &&
+           ground_around_is_above(lowest_, bins_.lattice(), c, p, depth) &&
+           usual_in_disc(bins_, c, outer_ring, 1.0) >= usual_of_group * o_.low_group;
+  }
+
+ private:
+  const Bins& bins_;
+  const NoiseOptions& o_;
+  std::vector<Bins::Point> lowest_;
+};
+
+/// Whether a point has too few others around it, where others have more.
+bool is_isolated(const Bins& bins, CellIndex c, const Bins::Point& p, const NoiseOptions& o) {
+  const auto alone = [&](int balls) {
+    const double reach = squared(balls * o.radius.value);
+    const auto near = [&](const Bins::Point& q) { return squared(q.x - p.x) + squared(q.y - p.y) + squared(q.z - p.z) <= reach; };
+    return count_around(bins, c, balls, o.neighbours + 1, near) <= o.neighbours;  // the point itself is counted
+  };
+  if (!alone(1)) return false;
+  const auto beside = [&](const Bins::Point& q) { return squared(q.x - p.x) + squared(q.y - p.y) <= squared(o.radius.value); };
+  if (count_around(bins, c, 1, sparse * o.neighbours + 1, beside) > sparse * o.neighbours) return true;
+  return alone(wider) && (usual_in_disc(bins, c, district, wider) >= usual_alone * o.neighbours ||
+                          points_around(bins, c, district) <= static_cast<size_t>(o.neighbours));
+}
+
 }  // namespace
 
 double halo(const NoiseOptions& o) { return std::max((district + 1) * o.radius.value, (outer_ring + 1) * o.low_radius.value); }
@@ -143,36 +174,17 @@ NoiseCounts flag_noise(core::Block& b, size_t own, const NoiseOptions& o) {
     ++n.range_gate;
   }
 
+  const auto is_judged = [&](size_t p) { return judged[p]; };
   std::vector<std::uint32_t> low;
   if (o.low_group > 0) {
-    const Bins bins(b, o.low_radius.value, outer_ring, [&](size_t p) { return judged[p]; });
-    const std::vector<Bins::Point> lowest = lowest_of_cells(bins);
-    const double depth = o.low_depth.value;
-    const double reach = squared(o.low_radius.value);
-    const auto is_low = [&](CellIndex c, const Bins::Point& p) {
-      const auto company = [&](const Bins::Point& q) { return q.z < p.z + depth && squared(q.x - p.x) + squared(q.y - p.y) <= reach; };
-      return count_around(bins, c, 1, o.low_group + 1, company) <= o.low_group &&
-             ground_around_is_above(lowest, bins.lattice(), c, p, depth) &&
-             usual_in_disc(bins, c, outer_ring, 1.0) >= usual_of_group * o.low_group;
-    };
-    for_each_own(bins, own, is_low, [&](std::uint32_t p) { low.push_back(p); });
+    const Bins bins(b, o.low_radius.value, outer_ring, is_judged);
+    const LowGroups groups(bins, o);
+    for_each_own(bins, own, groups, [&](std::uint32_t p) { low.push_back(p); });
   }
-
   if (o.neighbours > 0) {
-    const Bins bins(b, o.radius.value, district, [&](size_t p) { return judged[p]; });
-    const auto is_isolated = [&](CellIndex c, const Bins::Point& p) {
-      const auto alone = [&](int balls) {
-        const double reach = squared(balls * o.radius.value);
-        const auto near = [&](const Bins::Point& q) { return squared(q.x - p.x) + squared(q.y - p.y) + squared(q.z - p.z) <= reach; };
-        return count_around(bins, c, balls, o.neighbours + 1, near) <= o.neighbours;  // the point itself is counted
-      };
-      if (!alone(1)) return false;
-      const auto beside = [&](const Bins::Point& q) { return squared(q.x - p.x) + squared(q.y - p.y) <= squared(o.radius.value); };
-      if (count_around(bins, c, 1, sparse * o.neighbours + 1, beside) > sparse * o.neighbours) return true;
-      return alone(wider) && (usual_in_disc(bins, c, district, wider) >= usual_alone * o.neighbours ||
-                              points_around(bins, c, district) <= static_cast<size_t>(o.neighbours));
-    };
-    for_each_own(bins, own, is_isolated, [&](std::uint32_t p) {
+    const Bins bins(b, o.radius.value, district, is_judged);
+    const auto isolated = [&](CellIndex c, const Bins::Point& p) { return is_isolated(bins, c, p, o); };
+    for_each_own(bins, own, isolated, [&](std::uint32_t p) {
       set_noise(p, core::flag::isolated, core::point_class::high_noise);
       ++n.isolated;
     });

@@ -228,11 +228,6 @@ RinexKind rinex_kind(const fs::path& file) {
   return lines.next(line) ? kind_of(line) : RinexKind::other;
 }
 
-RinexHeader read_rinex_header(const fs::path& file) {
-  Lines lines(file);
-  return read_header(lines).header;
-}
-
 RinexObservations scan_rinex(const fs::path& file) {
   Lines lines(file);
   FoundLabel found = read_header(lines);

@@ -33,12 +33,8 @@ struct RinexObservations {
 /// What the file is by its first line (orbits: SP3); `other` where that is not understood. Throws Error where it cannot be read.
 RinexKind rinex_kind(const std::filesystem::path& file);
 
-/// Reads the header. Throws Error: no RINEX observation file, compressed, a version below 2, no end of header, a field that is no number
-/// (file:line).
-RinexHeader read_rinex_header(const std::filesystem::path& file);
-
-/// Reads the header and the time of every epoch, whatever its time system; measurements are passed over. Throws Error as above, for an
-/// epoch that is not understood, and where there is none.
+/// Reads the header and the time of every epoch, whatever its time system; measurements are passed over. Throws Error: no RINEX observation
+/// file, compressed, a version below 2, no end of header, a field that is no number, an epoch that is not understood (file:line), no epoch.
 RinexObservations scan_rinex(const std::filesystem::path& file);
 
 }  // namespace swath::io

@@ -72,6 +72,8 @@ std::vector<std::string> standard_columns() {
           "vn", "ve", "vu",  "sdvn", "sdve", "sdvu", "sdvne", "sdveu", "sdvun"};
 }
 
+constexpr int last_week = 10000;  // in 2171
+
 /// The instant of the first two words; false where they are none.
 bool time_of(const Words& words, PosHeader::Scale scale, double& time) {
   double of_epoch = 0;  // seconds since 1980-01-06 by the calendar of the file's scale
@@ -84,11 +86,11 @@ bool time_of(const Words& words, PosHeader::Scale scale, double& time) {
         !read_number(words[1].substr(a + 1, b - a - 1), m) || !read_number(words[1].substr(b + 1), s))
       return false;
     const std::optional<double> t = core::gps_of_gps_date(date, h * 3600 + m * 60 + s);
-    if (!t) return false;
+    if (!t || !(*t >= 0 && *t <= core::from_week(last_week, 0))) return false;
     of_epoch = *t;
   } else {
     double week = 0, seconds = 0;
-    if (!read_number(words[0], week) || !read_number(words[1], seconds) || week != std::floor(week) || !(week >= 0 && week <= 10000) ||
+    if (!read_number(words[0], week) || !read_number(words[1], seconds) || week != std::floor(week) || !(week >= 0 && week <= last_week) ||
         !(seconds >= 0 && seconds <= core::seconds_per_week))
       return false;
     of_epoch = core::from_week(static_cast<int>(week), seconds);
@@ -165,13 +167,56 @@ PosHeader read_pos_header(const std::filesystem::path& file) {
   return h;
 }
 
+namespace {
+
+/// A base station's place, as ECEF and geodetic.
+struct BasePlace {
+  Vector3d ecef;
+  core::Geodetic geodetic = core::geodetic_of(ecef);
+};
+
+/// Place, velocity and covariances of a line from its coordinates `c`.
+void place_fix(const PosHeader& h, const Columns& columns, const Words& words, const double* c, const BasePlace& base, Fix& fix) {
+  core::Geodetic g;
+  Vector3d velocity(columns.of("vn"), columns.of("ve"), columns.of("vu"));
+  switch (h.place) {
+    case PosHeader::Place::geodetic: {
+      const double latitude = h.degrees_minutes ? degrees_of(c, words[2].starts_with("-")) : c[0];
+      const double longitude = h.degrees_minutes ? degrees_of(c + 3, words[5].starts_with("-")) : c[1];
+      if (std::abs(latitude) > 90 || std::abs(longitude) > 360) {
+        fix.fault = "latitude " + core::format_number(latitude) + ", longitude " + core::format_number(longitude) + " are no degrees";
+        fix.hint = "the file's header does not name its columns";
+      }
+      g = {latitude * core::degree, longitude * core::degree, c[h.degrees_minutes ? 6 : 2]};
+      fix.position = core::ecef_of(g);
+      break;
+    }
+    case PosHeader::Place::ecef:
+      fix.position = {c[0], c[1], c[2]};
+      break;
+    case PosHeader::Place::baseline:
+      g = base.geodetic;
+      fix.position = base.ecef + ecef_vector({c[1], c[0], c[2]}, g.latitude, g.longitude);
+      break;
+  }
+  if (h.place == PosHeader::Place::ecef) {
+    fix.covariance = columns.covariance("sd", 'x', 'y', 'z');
+    fix.velocity = {columns.of("vx"), columns.of("vy"), columns.of("vz")};
+    fix.velocity_covariance = columns.covariance("sdv", 'x', 'y', 'z');
+  } else {
+    fix.covariance = ecef_covariance(columns.covariance("sd", 'n', 'e', 'u'), g.latitude, g.longitude);
+    fix.velocity = ecef_vector(velocity, g.latitude, g.longitude);
+    fix.velocity_covariance = ecef_covariance(columns.covariance("sdv", 'n', 'e', 'u'), g.latitude, g.longitude);
+  }
+}
+
+}  // namespace
+
 core::GnssData read_pos(const std::filesystem::path& path, const GnssFile& f, double latency, core::Tally& tally) {
   const std::string name = path.string();
   const PosHeader h = read_pos_header(path);
   refuse_header(h, f, name);
-  Vector3d base = h.base.value_or(Vector3d::Zero());
-  if (f.base) base = {(*f.base)[0].value, (*f.base)[1].value, (*f.base)[2].value};
-  const core::Geodetic base_place = core::geodetic_of(base);
+  const BasePlace base{f.base ? Vector3d((*f.base)[0].value, (*f.base)[1].value, (*f.base)[2].value) : h.base.value_or(Vector3d::Zero())};
   const size_t coordinates = h.degrees_minutes ? 7 : 3;
   FixList fixes(f, name, latency + f.time.offset.value, false, tally);
   Columns columns(h.columns);
@@ -197,37 +242,7 @@ core::GnssData read_pos(const std::filesystem::path& path, const GnssFile& f, do
     }
     fix.quality = quality_of_rtklib(columns.of("Q"));
     fix.satellites = columns.of("ns");
-    core::Geodetic g;
-    Vector3d velocity(columns.of("vn"), columns.of("ve"), columns.of("vu"));
-    switch (h.place) {
-      case PosHeader::Place::geodetic: {
-        const double latitude = h.degrees_minutes ? degrees_of(c, words[2].starts_with("-")) : c[0];
-        const double longitude = h.degrees_minutes ? degrees_of(c + 3, words[5].starts_with("-")) : c[1];
-        if (std::abs(latitude) > 90 || std::abs(longitude) > 360) {
-          fix.fault = "latitude " + core::format_number(latitude) + ", longitude " + core::format_number(longitude) + " are no degrees";
-          fix.hint = "the file's header does not name its columns";
-        }
-        g = {latitude * core::degree, longitude * core::degree, c[coordinates - 1]};
-        fix.position = core::ecef_of(g);
-        break;
-      }
-      case PosHeader::Place::ecef:
-        fix.position = {c[0], c[1], c[2]};
-        break;
-      case PosHeader::Place::baseline:
-        fix.position = base + ecef_vector({c[1], c[0], c[2]}, base_place.latitude, base_place.longitude);
-        g = base_place;
-        break;
-    }
-    if (h.place == PosHeader::Place::ecef) {
-      fix.covariance = columns.covariance("sd", 'x', 'y', 'z');
-      fix.velocity = {columns.of("vx"), columns.of("vy"), columns.of("vz")};
-      fix.velocity_covariance = columns.covariance("sdv", 'x', 'y', 'z');
-    } else {
-      fix.covariance = ecef_covariance(columns.covariance("sd", 'n', 'e', 'u'), g.latitude, g.longitude);
-      fix.velocity = ecef_vector(velocity, g.latitude, g.longitude);
-      fix.velocity_covariance = ecef_covariance(columns.covariance("sdv", 'n', 'e', 'u'), g.latitude, g.longitude);
-    }
+    place_fix(h, columns, words, c, base, fix);
     fixes.add(fix, lines.number());
     ++good_ones;
   }

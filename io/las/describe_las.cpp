@@ -2,7 +2,6 @@
 // Density is taken over the cells of 2 m (of the CRS's unit) that hold a point, so that voids and slanting strips do not lower it.
 #include "io/las/describe_las.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -107,10 +106,10 @@ void describe(const LasFacts& r, V& v) {
   v.result("y", r.s.xyz[1], "Smallest and largest y.");
   v.result("z", r.s.xyz[2], "Smallest and largest z.");
   v.table("time", r.time, "GPS times of the points.");
-  v.tables_if(r.s.points > 0, "returns", counts_of(r.s.by_return), "Points by their return number.");
-  v.tables_if(r.s.points > 0, "returns_per_pulse", counts_of(r.s.by_count), "Points by the number of returns of their pulse.");
-  v.tables_if(r.s.points > 0, "classes", counts_of(r.s.classes), "Points by their ASPRS class.");
-  v.tables_if(r.s.points > 0, "lines", counts_of(r.s.lines), "Points by their point source id.");
+  v.tables_if(r.s.points > 0, "returns", core::counts_of(r.s.by_return), "Points by their return number.");
+  v.tables_if(r.s.points > 0, "returns_per_pulse", core::counts_of(r.s.by_count), "Points by the number of returns of their pulse.");
+  v.tables_if(r.s.points > 0, "classes", core::counts_of(r.s.classes), "Points by their ASPRS class.");
+  v.tables_if(r.s.points > 0, "lines", core::counts_of(r.s.lines), "Points by their point source id.");
   v.result("scan_angle_deg", r.s.angle, "Smallest and largest scan angle.");
   v.result("withheld", r.s.withheld, core::if_any(), "Points flagged as withheld.");
   v.result("overlap", r.s.overlap, core::if_any(), "Points flagged as overlap.");

@@ -246,7 +246,10 @@ LasHeader read_las_header(const std::filesystem::path& file, std::vector<std::st
   return h;
 }
 
-std::vector<std::uint8_t> las_header_bytes(LasHeader& h, std::uint64_t evlr_start, const std::string& file) {
+namespace {
+
+/// Counts and lengths that the file is to state are possible in its version.
+void set_record_length(LasHeader& h, const std::string& file) {
   const auto layout = las_layout(h.point_format);
   constexpr std::array<int, 5> highest_format{1, 1, 3, 5, 10};
   if (h.version_major != 1 || h.version_minor < 0 || h.version_minor > 4 || !layout ||
@@ -259,11 +262,9 @@ std::vector<std::uint8_t> las_header_bytes(LasHeader& h, std::uint64_t evlr_star
   const int record_length = layout->size + h.extra_bytes();
   if (record_length > std::numeric_limits<std::uint16_t>::max()) throw core::Error("the extra bytes do not fit the point record", file);
   h.record_length = static_cast<std::uint16_t>(record_length);
+}
 
-  std::vector<LasVlr> vlrs = with_extras(h.vlrs, h.extras);
-  if (h.compressed) vlrs.push_back({"laszip encoded", 22204, "LASzip record", h.laszip, 0, 0});
-  const std::size_t head = header_size(h.version_minor);
-  std::vector<std::uint8_t> b(head);
+void append_vlrs(const std::vector<LasVlr>& vlrs, const std::string& file, std::vector<std::uint8_t>& b) {
   for (const LasVlr& v : vlrs) {
     if (v.data.size() > std::numeric_limits<std::uint16_t>::max())
       throw core::Error("the record " + v.user_id + " " + std::to_string(v.record_id) + " is longer than 65535 bytes", file,
@@ -276,6 +277,17 @@ std::vector<std::uint8_t> las_header_bytes(LasHeader& h, std::uint64_t evlr_star
     put_text(&b[at + 22], 32, v.description);
     std::copy(v.data.begin(), v.data.end(), b.begin() + static_cast<std::ptrdiff_t>(at + vlr_head));
   }
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> las_header_bytes(LasHeader& h, std::uint64_t evlr_start, const std::string& file) {
+  set_record_length(h, file);
+  std::vector<LasVlr> vlrs = with_extras(h.vlrs, h.extras);
+  if (h.compressed) vlrs.push_back({"laszip encoded", 22204, "LASzip record", h.laszip, 0, 0});
+  const std::size_t head = header_size(h.version_minor);
+  std::vector<std::uint8_t> b(head);
+  append_vlrs(vlrs, file, b);
   if (h.version_minor == 0) b.insert(b.end(), {0xDD, 0xCC});  // point data start signature of LAS 1.0
   h.offset_to_points = static_cast<std::uint32_t>(b.size());
 

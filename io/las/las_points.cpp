@@ -229,6 +229,29 @@ void decode_las_lines(std::span<const std::uint8_t> records, const LasHeader& he
   }
 }
 
+namespace {
+
+void put_colours_and_waves(const LasPoints& p, std::size_t i, const LasLayout& l, const Places& at, std::uint8_t* b) {
+  if (l.rgb) {
+    put(b + at.rgb, at_or_zero(p.red, i));
+    put(b + at.rgb + 2, at_or_zero(p.green, i));
+    put(b + at.rgb + 4, at_or_zero(p.blue, i));
+  }
+  if (l.nir) put(b + at.nir, at_or_zero(p.nir, i));
+  if (l.wave) {
+    std::uint8_t* w = b + at.wave;
+    w[0] = at_or_zero(p.wave_descriptor, i);
+    put(w + 1, at_or_zero(p.wave_offset, i));
+    put(w + 9, at_or_zero(p.wave_size, i));
+    put(w + 13, at_or_zero(p.wave_location, i));
+    put(w + 17, at_or_zero(p.wave_dx, i));
+    put(w + 21, at_or_zero(p.wave_dy, i));
+    put(w + 25, at_or_zero(p.wave_dz, i));
+  }
+}
+
+}  // namespace
+
 void encode_las_points(const LasPoints& p, std::size_t begin, std::size_t end, const LasHeader& header, std::span<std::uint8_t> records,
                        const std::string& where) {
   const LasLayout l = *las_layout(header.point_format);
@@ -271,22 +294,7 @@ void encode_las_points(const LasPoints& p, std::size_t begin, std::size_t end, c
       put(b + 18, at_or_zero(p.point_source_id, i));
     }
     if (l.gps) put(b + at.gps, at_or_zero(p.gps_time, i));
-    if (l.rgb) {
-      put(b + at.rgb, at_or_zero(p.red, i));
-      put(b + at.rgb + 2, at_or_zero(p.green, i));
-      put(b + at.rgb + 4, at_or_zero(p.blue, i));
-    }
-    if (l.nir) put(b + at.nir, at_or_zero(p.nir, i));
-    if (l.wave) {
-      std::uint8_t* w = b + at.wave;
-      w[0] = at_or_zero(p.wave_descriptor, i);
-      put(w + 1, at_or_zero(p.wave_offset, i));
-      put(w + 9, at_or_zero(p.wave_size, i));
-      put(w + 13, at_or_zero(p.wave_location, i));
-      put(w + 17, at_or_zero(p.wave_dx, i));
-      put(w + 21, at_or_zero(p.wave_dy, i));
-      put(w + 25, at_or_zero(p.wave_dz, i));
-    }
+    put_colours_and_waves(p, i, l, at, b);
     if (p.extra.empty())
       std::memset(b + at.extra, 0, extra);
     else

@@ -6,7 +6,6 @@
 #include <array>
 #include <cerrno>
 #include <fstream>
-#include <optional>
 
 #include "core/error.h"
 #include "io/las/las_source.h"

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 
 #include "core/config/units.h"
 #include "core/error.h"
@@ -108,6 +107,16 @@ void read_row(GDALRasterBand& band, int row, int col, int n, std::vector<double>
   const double scale = band.GetScale(), offset = band.GetOffset();
   for (size_t k = 0; k < values.size(); ++k)
     values[k] = mask[k] && std::isfinite(values[k]) ? values[k] * scale + offset : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Whether the raster, or any of those that a virtual one is made of, is an ASCII grid.
+bool is_of_ascii_grids(GDALDataset& d) {
+  const CPLStringList files(d.GetFileList());
+  for (int i = 0; i < files.size(); ++i) {
+    const GDALDriverH driver = GDALIdentifyDriver(files[i], nullptr);
+    if (driver && EQUAL(GDALGetDescription(driver), "AAIGrid")) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -256,12 +265,17 @@ core::Grid read_grid(const std::filesystem::path& file, const std::optional<core
   const auto col1 = static_cast<int>(std::clamp<std::int64_t>(l.i0 + l.nx - whole.i0, 0, whole.nx));
   std::vector<double> row;
   std::vector<unsigned char> mask;
+  // From the north, as the file lies. Of an ASCII grid from its first row on: asked for a row behind a lost one, GDAL tries all above it
+  // anew, at twice the cost for each.
+  const auto north = std::clamp<std::int64_t>(whole.j0 + whole.ny - (l.j0 + l.ny), 0, whole.ny);
+  const auto south = std::clamp<std::int64_t>(whole.j0 + whole.ny - l.j0, 0, whole.ny);
+  const std::int64_t first = north > 0 && north < south && is_of_ascii_grids(*d) ? 0 : north;
   const auto each = [&](int band, auto&& put) {
-    for (int j = 0; band && col1 > col0 && j < l.ny; ++j) {
-      const std::int64_t row_south = l.j0 + j - whole.j0;
-      if (row_south < 0 || row_south >= whole.ny) continue;
-      read_row(*d->GetRasterBand(band), static_cast<int>(whole.ny - 1 - row_south), col0, col1 - col0, row, mask, file, messages);
-      for (int c = col0; c < col1; ++c) put(l.at(static_cast<int>(whole.i0 + c - l.i0), j), row[static_cast<size_t>(c - col0)]);
+    for (std::int64_t j = first; band && col1 > col0 && north < south && j < south; ++j) {
+      read_row(*d->GetRasterBand(band), static_cast<int>(j), col0, col1 - col0, row, mask, file, messages);
+      for (int c = col0; j >= north && c < col1; ++c)
+        put(l.at(static_cast<int>(whole.i0 + c - l.i0), static_cast<int>(whole.j0 + whole.ny - 1 - j - l.j0)),
+            row[static_cast<size_t>(c - col0)]);
     }
   };
   each(height, [&](size_t k, double v) {

@@ -213,18 +213,18 @@ core::TrajectoryData read_sbet(const std::filesystem::path& path, const TimeTags
   std::vector<double> recorded;
   std::optional<core::Error> degrees;
   std::uint64_t no_radians = 0;
+  const auto judge = [&](const SbetRecord& r, std::uint64_t number) {
+    if (!(std::abs(r.latitude) > core::pi / 2 || std::abs(r.longitude) > 2 * core::pi)) return;
+    if (no_radians++ == 0)
+      degrees.emplace("latitude " + core::format_number(r.latitude) + ", longitude " + core::format_number(r.longitude) + " are no radians",
+                      path.string() + ": record " + std::to_string(number),
+                      "SBET angles are radians; is this an SBET, or one written in degrees?");
+  };
   for (std::uint64_t first = 0; first < file.records(); first += sbet_chunk) {
     file.read(first, static_cast<size_t>(std::min<std::uint64_t>(sbet_chunk, file.records() - first)), rows);
     for (size_t i = 0; i < rows.size(); ++i) {
       const SbetRecord& r = rows[i];
-      if (std::abs(r.latitude) > core::pi / 2 || std::abs(r.longitude) > 2 * core::pi) {
-        ++no_radians;
-        if (!degrees)
-          degrees.emplace(
-              "latitude " + core::format_number(r.latitude) + ", longitude " + core::format_number(r.longitude) + " are no radians",
-              path.string() + ": record " + std::to_string(first + i),
-              "SBET angles are radians; is this an SBET, or one written in degrees?");
-      }
+      judge(r, first + i);
       const double turn = wander ? r.wander_angle : 0.0;
       recorded.push_back(r.time);
       out.latitude.push_back(r.latitude);
@@ -247,12 +247,7 @@ core::TrajectoryData read_sbet(const std::filesystem::path& path, const TimeTags
   out.time = gps_times(tags, path.string(), recorded, {}, impossible_times, tally);
   if (const std::vector<std::uint8_t> marked = leave_out_faults(out, path.string(), tally); !marked.empty())
     for (Velocities& v : velocities)
-      for (auto* c : {&v.north, &v.east, &v.down}) {
-        size_t kept = 0;
-        for (size_t i = 0; i < marked.size(); ++i)
-          if (!marked[i]) (*c)[kept++] = (*c)[i];
-        c->resize(kept);
-      }
+      for (auto* c : {&v.north, &v.east, &v.down}) leave_out(*c, marked);
   for (size_t i = 0; i < out.size(); ++i) {
     out.longitude[i] = core::wrap_pi(out.longitude[i]);
     out.roll[i] = core::wrap_pi(out.roll[i]);

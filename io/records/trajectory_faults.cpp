@@ -88,13 +88,7 @@ std::vector<PoseFault> pose_faults(const core::TrajectoryData& t) {
 }
 
 void leave_out(core::TrajectoryData& t, const std::vector<std::uint8_t>& dropped) {
-  core::for_each_trajectory_column([&](auto member, const char*) {
-    auto& column = t.*member;
-    size_t kept = 0;
-    for (size_t i = 0; i < column.size(); ++i)
-      if (!dropped[i]) column[kept++] = column[i];
-    column.resize(kept);
-  });
+  core::for_each_trajectory_column([&](auto member, const char*) { leave_out(t.*member, dropped); });
 }
 
 std::vector<std::uint8_t> leave_out_faults(core::TrajectoryData& t, const std::string& name, core::Tally& tally) {

@@ -20,6 +20,15 @@ enum class PoseFault : std::uint8_t { none, not_finite, impossible, time, place,
 /// attitude that contradicts those around it: over an hour, 500 m/s and 100 m, or 3 rad/s and half a radian apart.
 std::vector<PoseFault> pose_faults(const core::TrajectoryData& t);
 
+/// Takes the marked elements out.
+template <class T>
+void leave_out(std::vector<T>& column, const std::vector<std::uint8_t>& marked) {
+  size_t kept = 0;
+  for (size_t i = 0; i < column.size(); ++i)
+    if (!marked[i]) column[kept++] = column[i];
+  column.resize(kept);
+}
+
 /// Takes the marked records out.
 void leave_out(core::TrajectoryData& t, const std::vector<std::uint8_t>& marked);
 

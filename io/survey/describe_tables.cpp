@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/survey/describe_tables.h"
 
-#include <array>
 #include <cmath>
 
 #include "core/config/result_visitors.h"
@@ -49,7 +48,7 @@ void describe(const CsdFacts& r, V& v) {
   v.result("gps_week", r.h.gps_week, "GPS week that the header states.");
   v.result("seconds_of_week", r.time.span, core::seconds(), "First and last time of a pulse.");
   if (r.pulses) v.result("from", core::utc_text(core::from_week(r.h.gps_week, r.time.span.low)), "UTC of the first.");
-  v.tables("pulses_by_returns", counts_of(r.returns), "Pulses by the number of their returns.");
+  v.tables("pulses_by_returns", core::counts_of(r.returns), "Pulses by the number of their returns.");
   v.result("range_m", r.range.span, core::metres(), "Smallest and largest range.");
   v.result("scan_angle_deg", r.angle.span, core::in_degrees(), "Smallest and largest scan angle.");
   v.result("carrier_latitude_deg", r.latitude.span, core::in_degrees(), "Smallest and largest latitude of the carrier.");

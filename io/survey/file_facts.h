@@ -10,24 +10,9 @@
 
 #include "core/config/interval.h"
 #include "core/geo/crs.h"
+#include "core/records/number_count.h"
 
 namespace swath::io {
-
-/// How many there are of a number: of a class, a flight line, a return.
-struct NumberCount {
-  int number = 0;
-  std::uint64_t count = 0;
-};
-template <class V>
-void describe(const NumberCount& r, V& v) {
-  v.result("number", r.number, "Class, flight line or number of a return.");
-  v.result("count", r.count, "Points or pulses of it.");
-}
-inline std::vector<NumberCount> counts_of(const std::map<int, std::uint64_t>& counts) {
-  std::vector<NumberCount> out;
-  for (const auto& [number, count] : counts) out.push_back({number, count});
-  return out;
-}
 
 /// The CRS that a file states.
 struct StatedCrs {

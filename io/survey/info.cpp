@@ -296,16 +296,16 @@ void render(const Value& table, const std::string& indent, std::string& out) {
 }  // namespace
 
 core::Value describe_file(const std::filesystem::path& file) {
-  Value told = describe_content(file);
+  Value facts = describe_content(file);
   Value out(Value::Object{{"file", file.string()}, {"bytes", static_cast<std::uint64_t>(std::filesystem::file_size(file))}});
-  std::move(told.members().begin(), told.members().end(), std::back_inserter(out.members()));
+  std::move(facts.members().begin(), facts.members().end(), std::back_inserter(out.members()));
   return out;
 }
 
-std::string info_text(const core::Value& told) {
+std::string info_text(const core::Value& facts) {
   std::string out;
-  render(told, "", out);
-  if (const Value* warnings = told.find("warnings"))
+  render(facts, "", out);
+  if (const Value* warnings = facts.find("warnings"))
     for (const Value& w : warnings->items()) out += "warning: " + w.as_text() + "\n";
   return out;
 }

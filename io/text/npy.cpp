@@ -231,11 +231,8 @@ bool put(const std::string& type, double v, unsigned char* to) {
   return put_integer<std::int64_t>(v, to);
 }
 
-}  // namespace
-
-NpyHeader read_npy_header(const std::filesystem::path& path) {
-  const BinaryFile file(path);
-  const std::string where = path.string();
+/// The header's dictionary; `data_begin`: where it ends.
+Value read_dictionary(const BinaryFile& file, const std::string& where, std::uint64_t& data_begin) {
   unsigned char start[12] = {};
   const size_t got = file.read_some(0, start, sizeof start);
   if (got < 6 || std::string(reinterpret_cast<const char*>(start), 6) != "\x93NUMPY")
@@ -251,8 +248,17 @@ NpyHeader read_npy_header(const std::filesystem::path& path) {
     throw core::Error("the header of the .npy file is longer than 64 kB", where, "save the array with fewer or shorter field names");
   std::string text(length, ' ');
   file.read(before, text.data(), length);
-  const Value tree = PythonLiteral(text, where).value();
+  data_begin = before + length;
+  return PythonLiteral(text, where).value();
+}
 
+}  // namespace
+
+NpyHeader read_npy_header(const std::filesystem::path& path) {
+  const BinaryFile file(path);
+  const std::string where = path.string();
+  NpyHeader out;
+  const Value tree = read_dictionary(file, where, out.data_begin);
   const Value *descr = tree.find("descr"), *fortran = tree.find("fortran_order"), *shape = tree.find("shape");
   if (!descr || !fortran || !fortran->is_bool() || !shape || !shape->is_array())
     throw core::Error("the header of the .npy file lacks descr, fortran_order or shape", where);
@@ -261,8 +267,6 @@ NpyHeader read_npy_header(const std::filesystem::path& path) {
     if (!side.is_int() || side.as_int() < 0) throw core::Error("the shape of the .npy file is not understood", where);
     sides.push_back(static_cast<std::uint64_t>(side.as_int()));
   }
-  NpyHeader out;
-  out.data_begin = before + length;
   const bool plain = descr->is_text();
   if (sides.empty() || sides.size() > (plain ? 2 : 1))
     throw core::Error("the array has " + std::to_string(sides.size()) + " dimensions; " + (plain ? "1 or 2" : "1") + " can be read", where);
@@ -290,14 +294,14 @@ NpyHeader read_npy_header(const std::filesystem::path& path) {
     if (out.rows > most / out.row_stride) throw core::Error("the shape of the .npy file is not possible", where);
     data_bytes = out.rows * out.row_stride;
   }
-  if (file.size() < out.data_begin + data_bytes)
-    throw core::Error(
-        "the file ends early: " + std::to_string(out.rows) + " rows need " + std::to_string(out.data_begin + data_bytes) + " bytes",
-        where + ": byte " + std::to_string(file.size()), "the file is truncated: copy or export it again");
-  if (file.size() > out.data_begin + data_bytes)
-    throw core::Error("the header counts " + std::to_string(out.rows) + " rows, but " +
-                          std::to_string(file.size() - out.data_begin - data_bytes) + " bytes follow the last of them",
-                      where + ": byte " + std::to_string(out.data_begin + data_bytes), "the header is damaged: save the array again");
+  const std::uint64_t end = out.data_begin + data_bytes;
+  if (file.size() < end)
+    throw core::Error("the file ends early: " + std::to_string(out.rows) + " rows need " + std::to_string(end) + " bytes",
+                      where + ": byte " + std::to_string(file.size()), "the file is truncated: copy or export it again");
+  if (file.size() > end)
+    throw core::Error("the header counts " + std::to_string(out.rows) + " rows, but " + std::to_string(file.size() - end) +
+                          " bytes follow the last of them",
+                      where + ": byte " + std::to_string(end), "the header is damaged: save the array again");
   return out;
 }
 
@@ -365,13 +369,9 @@ std::string NpyWriter::header() const {
   dict += "], 'fortran_order': False, 'shape': (" + std::to_string(rows_) + ",), }";
   // Room for the final count of rows (20 digits), then up to a multiple of 64 bytes as NumPy aligns its data.
   const size_t longest = dict.size() - std::to_string(rows_).size() + 20;
-  const size_t total = (10 + longest + 1 + 63) / 64 * 64;
-  dict.resize(total - 10 - 1, ' ');
-  dict += '\n';
-  std::string out("\x93NUMPY\x01\x00", 8);
-  out += static_cast<char>((total - 10) & 255);
-  out += static_cast<char>((total - 10) >> 8);
-  return out + dict;
+  const size_t after = (10 + longest + 1 + 63) / 64 * 64 - 10;
+  dict.resize(after - 1, ' ');
+  return std::string("\x93NUMPY\x01\x00", 8) + static_cast<char>(after & 255) + static_cast<char>(after >> 8) + dict + '\n';
 }
 
 void NpyWriter::append(const std::vector<const double*>& values, size_t n) {

@@ -14,7 +14,6 @@
 #include <limits>
 #include <memory>
 #include <numeric>
-#include <type_traits>
 #include <vector>
 
 namespace swath::io {

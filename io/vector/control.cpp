@@ -223,6 +223,30 @@ void hold_target(const std::vector<ControlPoint>& corners) {
                       place, "a plane needs a corner off that line by more than three of its sigmas");
 }
 
+/// All points of the groups but those of targets that lost a corner, each with a name.
+std::vector<ControlPoint> joined(std::vector<std::vector<ControlPoint>>& groups, const std::set<std::string>& lost, core::Tally& tally) {
+  std::vector<ControlPoint> out;
+  for (std::vector<ControlPoint>& group : groups) {
+    if (lost.contains(group[0].target)) {
+      tally.count("control points of targets that lose another corner, left out", group[0].place, group.size());
+      continue;
+    }
+    if (!group[0].target.empty()) {
+      if (group.size() > 3 && group.front().ecef == group.back().ecef) {  // a ring that was closed
+        tally.count("control points that close the ring of their target, left out", group.back().place);
+        group.pop_back();
+      }
+      hold_target(group);
+    }
+    for (size_t k = 0; k < group.size(); ++k) {
+      ControlPoint& p = group[k];
+      if (p.name.empty()) p.name = p.target.empty() ? std::to_string(out.size() + 1) : p.target + " " + std::to_string(k + 1);
+      out.push_back(std::move(p));
+    }
+  }
+  return out;
+}
+
 /// One file's points in ecef, corners of a target brought together.
 std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, const std::vector<RawLayer>& layers,
                                     const std::string& file, core::Tally& tally) {
@@ -270,25 +294,7 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
     }
   }
   if (impossible > 0 && !are_few(impossible, all)) throw core::Error(*fault);
-  std::vector<ControlPoint> out;
-  for (std::vector<ControlPoint>& group : groups) {
-    if (lost.contains(group[0].target)) {
-      tally.count("control points of targets that lose another corner, left out", group[0].place, group.size());
-      continue;
-    }
-    if (!group[0].target.empty()) {
-      if (group.size() > 3 && group.front().ecef == group.back().ecef) {  // a ring that was closed
-        tally.count("control points that close the ring of their target, left out", group.back().place);
-        group.pop_back();
-      }
-      hold_target(group);
-    }
-    for (size_t k = 0; k < group.size(); ++k) {
-      ControlPoint& p = group[k];
-      if (p.name.empty()) p.name = p.target.empty() ? std::to_string(out.size() + 1) : p.target + " " + std::to_string(k + 1);
-      out.push_back(std::move(p));
-    }
-  }
+  std::vector<ControlPoint> out = joined(groups, lost, tally);
   tally.read("control points", all);
   tally.keep("control points", out.size());
   if (out.empty()) tally.count("control files without a point", file);

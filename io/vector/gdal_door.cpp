@@ -9,10 +9,8 @@
 #include <ogr_spatialref.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <fstream>
-#include <iomanip>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -44,7 +42,7 @@ constexpr const char* raster_drivers[] = {"GTiff", "VRT", "AAIGrid", "GSBG",    
                                           "NTv2",  "XYZ", "SRTMHGT", "USGSDEM", "DTED",  "GPKG", "PNG",  "JPEG", nullptr};
 constexpr const char* vector_drivers[] = {"GPKG", "ESRI Shapefile", "GeoJSON",      "GeoJSONSeq", "DXF", "CSV",
                                           "KML",  "FlatGeobuf",     "MapInfo File", nullptr};
-constexpr double megabyte = 1048576, largest_block = 256 * megabyte;
+constexpr double megabyte = 1048576, largest_block = 250 * megabyte;
 constexpr const char* other_drivers[] = {"COG", "MEM", "Memory", nullptr};  // for writing
 constexpr const char* formats_read =
     "GeoTIFF, VRT of local files, Arc/Info ASCII grid, GTX, EHdr, ENVI, Erdas Imagine, XYZ, SRTM, DTED, GeoPackage, shapefile, GeoJSON, "

@@ -139,14 +139,6 @@ std::string ContourFiles::close() {
   return left_out_;
 }
 
-void write_contours(const std::vector<std::filesystem::path>& files, const std::vector<core::ContourLine>& lines, const std::string& crs) {
-  std::vector<ContourWriter> writers;
-  for (const auto& file : files) writers.emplace_back(file, crs);
-  for (const core::ContourLine& line : lines)
-    for (ContourWriter& w : writers) w.add(line);
-  for (ContourWriter& w : writers) w.close();
-}
-
 VectorLines read_lines(const std::filesystem::path& file) {
   const GdalMessages messages;
   const Dataset set = open_vector(file);

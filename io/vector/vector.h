@@ -73,9 +73,6 @@ class ContourFiles {
   std::string geojson_name_, left_out_;
 };
 
-/// All lines into each of the files.
-void write_contours(const std::vector<std::filesystem::path>& files, const std::vector<core::ContourLine>& lines, const std::string& crs);
-
 /// A line of a vector file.
 struct VectorLine {
   std::vector<double> x, y;  ///< easting before northing, CRS units

@@ -4,9 +4,11 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 
 #include "core/config/result.h"
 #include "core/report.h"
+#include "stages/stage.h"
 
 namespace swath::pipeline {
 
@@ -37,6 +39,9 @@ void describe(const Account& a, V& v) {
 
 /// From what a work folder kept; nothing where a part is missing.
 std::optional<Account> account_of(const core::Value& note);
+
+/// Throws core::Error where records of a stage's files are neither handed on nor counted as left out.
+void expect_balance(const core::Tally& tally, const stages::Stage& stage);
 
 inline double seconds_since(std::chrono::steady_clock::time_point t) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count();

@@ -22,20 +22,19 @@ struct FileBox {
 std::optional<FileBox> box_of(const stages::Context& context, const io::LasSource& s) {
   const io::LasHeader& h = s.header;
   const double side = context.tile_side;
-  const FileBox b{h.min.x() * context.unit, h.min.y() * context.unit, h.max.x() * context.unit, h.max.y() * context.unit, {}, {}};
+  FileBox b{h.min.x() * context.unit, h.min.y() * context.unit, h.max.x() * context.unit, h.max.y() * context.unit, {}, {}};
   const stages::Box& area = context.area.box;
   if (!s.same_places || h.point_count == 0 || !area.holds(b.x0, b.y0) || !area.holds(b.x1, b.y1)) return std::nullopt;
   const auto is_kept = [&](double z) { return context.area.has_height(z * context.vertical_unit); };
   if (!is_kept(h.min.z()) || !is_kept(h.max.z())) return std::nullopt;
   if (!(std::abs(b.x0) < 1e8 && std::abs(b.y0) < 1e8 && std::abs(b.x1) < 1e8 && std::abs(b.y1) < 1e8)) return std::nullopt;
-  FileBox out = b;
   const auto first = [&](double v) { return static_cast<int>(std::floor(v / side)); };
   // Points on the outer rim belong to the tile within it.
   const auto last = [&](double v, int low) { return std::max(low, static_cast<int>(std::ceil(v / side)) - 1); };
-  out.low = {first(b.x0), first(b.y0)};
-  out.high = {last(b.x1, out.low.ix), last(b.y1, out.low.iy)};
-  if (!(b.x0 <= b.x1 && b.y0 <= b.y1) || out.tiles() > most_tiles) return std::nullopt;
-  return out;
+  b.low = {first(b.x0), first(b.y0)};
+  b.high = {last(b.x1, b.low.ix), last(b.y1, b.low.iy)};
+  if (!(b.x0 <= b.x1 && b.y0 <= b.y1) || b.tiles() > most_tiles) return std::nullopt;
+  return b;
 }
 
 /// Share of the stretch from a to b that lies in the tile number i.
@@ -47,7 +46,7 @@ double share(double a, double b, int i, double side) {
 
 std::optional<FullTile> fullest_tile(const stages::Context& context) {
   std::optional<FullTile> out;
-  for (const io::LasSource& s : stages::cloud_sources(context)) {
+  for (const io::LasSource& s : io::cloud_sources(context.survey, stages::cloud_map(context))) {
     const std::optional<FileBox> box = box_of(context, s);
     if (!box) continue;
     const auto points = static_cast<std::uint64_t>(static_cast<double>(s.header.point_count) / box->tiles());
@@ -58,7 +57,7 @@ std::optional<FullTile> fullest_tile(const stages::Context& context) {
 
 std::map<stages::TileKey, std::uint64_t> even_tiles(const stages::Context& context) {
   std::map<stages::TileKey, std::uint64_t> out;
-  for (const io::LasSource& s : stages::cloud_sources(context)) {
+  for (const io::LasSource& s : io::cloud_sources(context.survey, stages::cloud_map(context))) {
     const std::optional<FileBox> b = box_of(context, s);
     if (!b) continue;
     for (int iy = b->low.iy; iy <= b->high.iy; ++iy)

@@ -7,21 +7,10 @@
 
 #include "core/error.h"
 #include "io/text/output_file.h"
-#include "pipeline/work/survey_piece.h"
 
 namespace swath::pipeline {
 
 namespace fs = std::filesystem;
-
-std::optional<Account> account_of(const core::Value& note) {
-  const core::Value *in = note.find("in"), *out = note.find("out"), *cut = note.find("cut"), *seconds = note.find("seconds");
-  const core::Value *tally = note.find("tally"), *findings = note.find("findings"), *records = note.find("records");
-  if (!in || !out || !cut || !seconds || !tally || !findings || !records) return std::nullopt;
-  const auto count = [](const core::Value* v) { return static_cast<std::uint64_t>(v->as_int()); };
-  Account a{count(in), count(out), count(cut), seconds->as_number(), core::Tally::from(*tally), *findings};
-  add_records(a.tally, *records);
-  return a;
-}
 
 RunState::RunState(Plan& p, Progress& shown)
     : plan(p),

@@ -15,7 +15,6 @@
 #include "pipeline/expected_time.h"
 #include "pipeline/stage_memory.h"
 #include "pipeline/tile_work.h"
-#include "pipeline/work/survey_piece.h"
 
 namespace swath::pipeline {
 namespace {
@@ -212,7 +211,6 @@ void run_strips(RunState& run) {
   expect_times(run, records);
   run.progress.begin("strips", records, "returns");
   std::vector<std::string> names;
-  std::uint64_t in = 0;
   bool has_room = false;  // for those that are not done
   for (size_t i = 0; i < strips.size(); ++i) {
     char name[32];
@@ -233,10 +231,9 @@ void run_strips(RunState& run) {
       if (!one) throw damaged_work(strip_folder);
       run.accounts[k].add(*one);
     }
-    in = run.accounts[source].in;
   }
   run.progress.end();
-  if (in == 0)
+  if (run.accounts[source].in == 0)
     throw core::Error("no laser return to work on", run.plan.survey_file.string(),
                       "are the lines' times those of the records? see `swath info` of the laser file");
   run.accounts[source].in += without_strip;

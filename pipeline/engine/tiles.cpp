@@ -14,7 +14,6 @@
 #include "pipeline/tile_queue.h"
 #include "pipeline/tile_work.h"
 #include "pipeline/work/released_points.h"
-#include "pipeline/work/survey_piece.h"
 #include "stages/waters.h"
 
 namespace swath::pipeline {

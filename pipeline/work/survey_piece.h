@@ -18,13 +18,6 @@ struct SurveyPiece {
   std::vector<PieceFile> files;
 };
 
-/// What became of the records of a stage's files, as the report lists it, and back.
-core::Value records_of(const core::Tally& tally);
-void add_records(core::Tally& tally, const core::Value& records);
-
-/// Throws core::Error where records of a stage's files are neither handed on nor counted as left out.
-void expect_balance(const core::Tally& tally, const stages::Stage& stage);
-
 bool is_survey_piece_done(const std::filesystem::path& folder);
 
 /// Runs the stage, which puts its products into `folder`. What it has finished so far is kept as it goes: a stage may take hours, and look

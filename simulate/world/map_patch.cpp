@@ -94,20 +94,4 @@ Eigen::Vector3d MapPatch::map_of(const Eigen::Vector3d& tangent) const {
   return out;
 }
 
-Eigen::Vector3d MapPatch::ecef_of_map(const Eigen::Vector3d& map) const {
-  Eigen::Vector3d tangent = centre_;
-  tangent.head<2>() = map.head<2>();
-  for (int i = 0; i < 10; ++i) {
-    Eigen::Matrix3d J;
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::Vector3d step = Eigen::Vector3d::Unit(k);
-      J.col(k) = (map_of(tangent + step) - map_of(tangent - step)) / 2;
-    }
-    const Eigen::Vector3d change = J.partialPivLu().solve(map - map_of(tangent));
-    tangent += change;
-    if (change.norm() < 1e-9) break;
-  }
-  return ecef_of(tangent);
-}
-
 }  // namespace swath::simulate

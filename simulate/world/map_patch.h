@@ -23,8 +23,6 @@ class MapPatch {
   Eigen::Vector3d tangent_of(const Eigen::Vector3d& ecef) const { return tangent_R_ecef_ * (ecef - origin_ecef_); }
   Eigen::Vector3d direction_of(const Eigen::Vector3d& ecef_vector) const { return tangent_R_ecef_ * ecef_vector; }
   Eigen::Vector3d ecef_of(const Eigen::Vector3d& tangent) const { return origin_ecef_ + tangent_R_ecef_.transpose() * tangent; }
-  /// ECEF of a map point (relative easting, northing, height) by Newton's method on map_of.
-  Eigen::Vector3d ecef_of_map(const Eigen::Vector3d& map) const;
 
   const Eigen::Vector3d& map_origin() const { return map_origin_; }  ///< easting, northing of the origin; 0
   double convergence() const { return convergence_; }                ///< bearing of grid north from true north, clockwise, rad

@@ -7,29 +7,21 @@
 #include <limits>
 
 #include "simulate/random.h"
+#include "simulate/world/bearing.h"
 
 namespace swath::simulate {
-namespace {
 
-Eigen::Vector2d unit_of(double bearing) { return {std::sin(bearing), std::cos(bearing)}; }
-
-}  // namespace
-
-Relief::Relief(const WorldOptions& world, std::int64_t seed, core::Radians direction, double half) : base_(world.ground.value) {
-  const Features f = features_of(world);
+void Relief::plan_parts(const WorldOptions& world, const Features& f, std::int64_t seed, core::Radians direction) {
   Random random = random_of(seed, Stream::relief);
   const double length = world.length.value, width = world.width.value, size = std::sqrt(length * width);
-  const Eigen::Vector2d along = unit_of(direction.value), across(along.y(), -along.x());
-
-  slope_ = f.slope * unit_of(-135 * core::degree);
-  double up = f.slope * half * std::sqrt(2.0), down = up;
-  steepest_ = f.slope;
+  const Eigen::Vector2d along = along_bearing(direction.value), across(along.y(), -along.x());
 
   if (f.relief > 0.0) {
     for (int i = 0; i < 4; ++i) {
       const double wavelength = std::exp(random.uniform(std::log(90.0), std::log(500.0)));
       const double amplitude = f.relief * 0.12 * std::sqrt(wavelength / 500.0) * random.uniform(0.6, 1.4);
-      waves_.push_back({2 * core::pi / wavelength * unit_of(random.uniform(0, 2 * core::pi)), amplitude, random.uniform(0, 2 * core::pi)});
+      waves_.push_back(
+          {2 * core::pi / wavelength * along_bearing(random.uniform(0, 2 * core::pi)), amplitude, random.uniform(0, 2 * core::pi)});
     }
     for (int i = 0; i < 5; ++i) {
       const double sigma = random.uniform(0.12, 0.3) * size;
@@ -40,17 +32,17 @@ Relief::Relief(const WorldOptions& world, std::int64_t seed, core::Radians direc
   }
   if (f.scarp > 0.0) {
     // Steepest in the middle: height / (2 width).
-    const Eigen::Vector2d normal = unit_of(direction.value + 75 * core::degree);
+    const Eigen::Vector2d normal = along_bearing(direction.value + 75 * core::degree);
     steps_.push_back({normal, 0.28 * width, f.scarp, f.scarp / (2 * f.scarp_slope), 0.0});
   }
   if (f.embankment > 0.0) {
     // A crest 8 m wide with flanks of about 1 : 1.5.
-    const Eigen::Vector2d normal = unit_of(direction.value + 20 * core::degree);
+    const Eigen::Vector2d normal = along_bearing(direction.value + 20 * core::degree);
     steps_.push_back({normal, f.embankment_at * length, f.embankment, 0.75 * f.embankment, 4.0 + 0.75 * f.embankment});
   }
   if (f.ditch > 0.0) {
     // A bottom 3 m wide with flanks of about 1 : 1.5.
-    const Eigen::Vector2d normal = unit_of(direction.value + 15 * core::degree);
+    const Eigen::Vector2d normal = along_bearing(direction.value + 15 * core::degree);
     const double flank = 0.75 * f.ditch, half_bottom = 1.5 + flank;
     steps_.push_back({normal, 0.33 * length, -f.ditch, flank, half_bottom});
     ditch_ = {normal, 0.33 * length, half_bottom + 2 * flank};
@@ -62,7 +54,14 @@ Relief::Relief(const WorldOptions& world, std::int64_t seed, core::Radians direc
     const double sigma = 0.45 * lake_radius_;
     hills_.push_back({lake_centre_, -0.12 * lake_radius_, 0.5 / (sigma * sigma)});
   }
+}
 
+Relief::Relief(const WorldOptions& world, std::int64_t seed, core::Radians direction, double half) : base_(world.ground.value) {
+  const Features f = features_of(world);
+  slope_ = f.slope * along_bearing(-135 * core::degree);
+  double up = f.slope * half * std::sqrt(2.0), down = up;
+  steepest_ = f.slope;
+  plan_parts(world, f, seed, direction);
   for (const Wave& w : waves_) {
     steepest_ += w.amplitude * w.k.norm();
     up += w.amplitude;

@@ -56,6 +56,8 @@ class Relief {
     Eigen::Vector2d normal;
     double offset, amplitude, width, half;
   };
+  void plan_parts(const WorldOptions& world, const Features& f, std::int64_t seed, core::Radians direction);
+
   double base_ = 0.0, steepest_ = 0.0, highest_ = 0.0, lowest_ = 0.0;
   Eigen::Vector2d slope_ = Eigen::Vector2d::Zero();
   std::vector<Wave> waves_;

@@ -126,92 +126,97 @@ bool World::ground_hit(const Ray& ray, double far, double& s) const {
   return false;
 }
 
-void World::trace(const Ray& ray, double far, double footprint, Random& random, Echoes& out) const {
-  out.count = 0;
-  double s_ground = 0.0;
-  if (!ground_hit(ray, far, s_ground)) return;
-  const Vector3d q = ray.at(s_ground), d = ray.slope(s_ground);
-  const Relief::Sample ground = relief_.at(q.x(), q.y());
-  double s_surface = s_ground;
-  std::uint8_t surface = ground.water ? cls::water : cls::ground;
-  Vector3d normal = Vector3d(-ground.gradient.x(), -ground.gradient.y(), 1.0).normalized();
-
-  // Objects in the cells the ray passes between the ground and the height of the highest object, each once.
+struct World::Path {
   struct Crossing {
     double in, out;
     std::uint32_t object;
   };
+  Path(const Ray& r, double width, double s) : ray(r), footprint(width), s_ground(s), q(r.at(s)), d(r.slope(s)), s_surface(s) {}
+  const Ray& ray;
+  double footprint, s_ground;
+  Vector3d q, d;  // the ground's place and the ray's slope there
+  // What stops the beam.
+  double s_surface;
+  std::uint8_t surface = cls::ground;
+  Vector3d normal = Vector3d::UnitZ();
+  // What it crosses before, each once.
+  size_t crossed = 0, seen_count = 0;
   std::array<Crossing, 16> crossings;
   std::array<std::uint32_t, 128> seen;
-  size_t crossed = 0, seen_count = 0;
-  const auto meet = [&](std::uint32_t object) {
-    for (size_t i = 0; i < seen_count; ++i)
-      if (seen[i] == object) return;
-    if (seen_count < seen.size()) seen[seen_count++] = object;
-    const std::uint32_t index = object & 0x3fffffffu;
-    double in = 0, to = 0;
-    switch (static_cast<Sort>(object >> 30)) {
-      case Sort::building: {
-        size_t plane = 0;
-        const Building& b = buildings_[index];
-        if (!enter(b, q, d, in, plane) || s_ground + in >= s_surface) return;
-        double s = s_ground + in;
-        const Vector3d n = b.planes[plane].head<3>();
-        for (int i = 0; i < 2; ++i) s += (b.planes[plane][3] - n.dot(ray.at(s))) / n.dot(ray.slope(s));
-        s_surface = s;
-        surface = b.kind;
-        normal = n;
-        return;
-      }
-      case Sort::tree:
-        if (!cross(trees_[index], q, d, in, to)) return;
-        break;
-      case Sort::wire:
-        if (!approach(wires_[index], q, d, in, to)) return;
-        if (to > 0.5 * footprint + wires_[index].radius) return;
-        break;
-    }
-    if (crossed < crossings.size()) crossings[crossed++] = {s_ground + in, s_ground + to, object};
-  };
+};
 
-  if (!objects_.empty()) {
-    // Cells upward along the ray (Amanatides and Woo 1987), from the ground.
-    const double rise = -d.z(), reach = std::max(0.0, highest_object_ - q.z()) / rise;
-    int i = static_cast<int>(std::floor((q.x() - west_) / cell_)), j = static_cast<int>(std::floor((q.y() - south_) / cell_));
-    const double vx = -d.x(), vy = -d.y();
-    const auto first = [](double at, double low, int k, double v) {
-      return v > 0 ? (low + (k + 1) * cell_ - at) / v : v < 0 ? (low + k * cell_ - at) / v : 1e300;
-    };
-    double tx = first(q.x(), west_, i, vx), ty = first(q.y(), south_, j, vy);
-    const double step_x = vx == 0 ? 1e300 : cell_ / std::abs(vx), step_y = vy == 0 ? 1e300 : cell_ / std::abs(vy);
-    for (double t = 0.0; t <= reach;) {
-      if (i >= 0 && j >= 0 && i < nx_ && j < ny_) {
-        const size_t c = static_cast<size_t>(j) * static_cast<size_t>(nx_) + static_cast<size_t>(i);
-        if (static_cast<double>(top_[c]) > q.z() + t * rise - 0.5)
-          for (std::uint32_t k = begin_[c]; k < begin_[c + 1]; ++k) meet(objects_[k]);
-      }
-      if (tx < ty) {
-        t = tx;
-        tx += step_x;
-        i += vx > 0 ? 1 : -1;
-      } else {
-        t = ty;
-        ty += step_y;
-        j += vy > 0 ? 1 : -1;
-      }
+void World::meet(std::uint32_t object, Path& path) const {
+  for (size_t i = 0; i < path.seen_count; ++i)
+    if (path.seen[i] == object) return;
+  if (path.seen_count < path.seen.size()) path.seen[path.seen_count++] = object;
+  const std::uint32_t index = object & 0x3fffffffu;
+  double in = 0, to = 0;
+  switch (static_cast<Sort>(object >> 30)) {
+    case Sort::building: {
+      size_t plane = 0;
+      const Building& b = buildings_[index];
+      if (!enter(b, path.q, path.d, in, plane) || path.s_ground + in >= path.s_surface) return;
+      double s = path.s_ground + in;
+      const Vector3d n = b.planes[plane].head<3>();
+      for (int i = 0; i < 2; ++i) s += (b.planes[plane][3] - n.dot(path.ray.at(s))) / n.dot(path.ray.slope(s));
+      path.s_surface = s;
+      path.surface = b.kind;
+      path.normal = n;
+      return;
+    }
+    case Sort::tree:
+      if (!cross(trees_[index], path.q, path.d, in, to)) return;
+      break;
+    case Sort::wire:
+      if (!approach(wires_[index], path.q, path.d, in, to)) return;
+      if (to > 0.5 * path.footprint + wires_[index].radius) return;
+      break;
+  }
+  if (path.crossed < path.crossings.size()) path.crossings[path.crossed++] = {path.s_ground + in, path.s_ground + to, object};
+}
+
+// Objects in the cells that the ray passes between the ground and the height of the highest object: cells upward along the ray (Amanatides
+// and Woo 1987).
+void World::meet_objects(Path& path) const {
+  const Vector3d &q = path.q, &d = path.d;
+  const double rise = -d.z(), reach = std::max(0.0, highest_object_ - q.z()) / rise;
+  int i = static_cast<int>(std::floor((q.x() - west_) / cell_)), j = static_cast<int>(std::floor((q.y() - south_) / cell_));
+  const double vx = -d.x(), vy = -d.y();
+  const auto first = [](double at, double low, int k, double v) {
+    return v > 0 ? (low + (k + 1) * cell_ - at) / v : v < 0 ? (low + k * cell_ - at) / v : 1e300;
+  };
+  double tx = first(q.x(), west_, i, vx), ty = first(q.y(), south_, j, vy);
+  const double step_x = vx == 0 ? 1e300 : cell_ / std::abs(vx), step_y = vy == 0 ? 1e300 : cell_ / std::abs(vy);
+  for (double t = 0.0; t <= reach;) {
+    if (i >= 0 && j >= 0 && i < nx_ && j < ny_) {
+      const size_t c = static_cast<size_t>(j) * static_cast<size_t>(nx_) + static_cast<size_t>(i);
+      if (static_cast<double>(top_[c]) > q.z() + t * rise - 0.5)
+        for (std::uint32_t k = begin_[c]; k < begin_[c + 1]; ++k) meet(objects_[k], path);
+    }
+    if (tx < ty) {
+      t = tx;
+      tx += step_x;
+      i += vx > 0 ? 1 : -1;
+    } else {
+      t = ty;
+      ty += step_y;
+      j += vy > 0 ? 1 : -1;
     }
   }
+}
 
-  // Energy on its way down.
-  std::sort(crossings.begin(), crossings.begin() + static_cast<std::ptrdiff_t>(crossed),
+// Echoes of wires and crowns; the energy that is left.
+double World::pass_crossings(Path& path, Random& random, Echoes& out) const {
+  using Crossing = Path::Crossing;
+  std::sort(path.crossings.begin(), path.crossings.begin() + static_cast<std::ptrdiff_t>(path.crossed),
             [](const Crossing& a, const Crossing& b) { return a.in < b.in || (a.in == b.in && a.object < b.object); });
   double energy = 1.0;
-  for (size_t k = 0; k < crossed && energy > least_energy; ++k) {
-    const Crossing& c = crossings[k];
-    if (c.in >= s_surface) break;
+  for (size_t k = 0; k < path.crossed && energy > least_energy; ++k) {
+    const Crossing& c = path.crossings[k];
+    if (c.in >= path.s_surface) break;
     const std::uint32_t index = c.object & 0x3fffffffu;
     if (static_cast<Sort>(c.object >> 30) == Sort::wire) {
-      const double share = footprint > 0 ? std::min(1.0, 4 / core::pi * 2 * wires_[index].radius / footprint) : 1.0;
+      const double share = path.footprint > 0 ? std::min(1.0, 4 / core::pi * 2 * wires_[index].radius / path.footprint) : 1.0;
       out.add({c.in, energy * share * reflectance(cls::wire), 1.0, cls::wire});
       energy *= 1 - share;
       continue;
@@ -220,31 +225,48 @@ void World::trace(const Ray& ray, double far, double footprint, Random& random, 
     double s = c.in;
     while (energy > least_energy) {
       s += random.exponential() * mean_share / tree.extinction;
-      if (s >= std::min(c.out, s_surface)) break;
+      if (s >= std::min(c.out, path.s_surface)) break;
       const double share = random.uniform(2 * mean_share - 1, 1.0);
-      out.add({s, energy * share * reflectance(cls::high_vegetation), 1.0, vegetation_class(ray.at(s).z() - tree.ground)});
+      out.add({s, energy * share * reflectance(cls::high_vegetation), 1.0, vegetation_class(path.ray.at(s).z() - tree.ground)});
       energy *= 1 - share;
     }
   }
+  return energy;
+}
 
-  const double cosine = std::clamp(-normal.dot(d) / d.norm(), 0.0, 1.0);
+void World::end_on_surface(const Path& path, double energy, Random& random, Echoes& out) const {
+  const Vector3d &q = path.q, &d = path.d;
+  const double cosine = std::clamp(-path.normal.dot(d) / d.norm(), 0.0, 1.0);
   const auto stop = [&](double low, double high, double least_share) {
-    const double s = s_ground + random.uniform(low, high) / d.z();
+    const double s = path.s_ground + random.uniform(low, high) / d.z();
     const double share = random.uniform(least_share, 1.0);
     out.add({s, energy * share * reflectance(cls::low_vegetation), 1.0, cls::low_vegetation});
     energy *= 1 - share;
   };
-  const Field field = surface == cls::ground ? field_at(q.x(), q.y()) : Field{};
+  const Field field = path.surface == cls::ground ? field_at(q.x(), q.y()) : Field{};
   if (field.height > 0.0) {
     if (random.uniform() < field.stopped) stop(crop_bottom * field.height, field.height, 0.5);
-  } else if (surface == cls::ground && low_vegetation_ > 0.0 && low_vegetation_at(q) && random.uniform() < 0.35) {
+  } else if (path.surface == cls::ground && low_vegetation_ > 0.0 && low_vegetation_at(q) && random.uniform() < 0.35) {
     stop(0.1, low_vegetation_height_, 0.2);
   }
-  if (surface == cls::water) {
+  if (path.surface == cls::water) {
     const double off = std::acos(cosine) / specular_angle;
     if (random.uniform() > diffuse_water + (1 - diffuse_water) * std::exp(-0.5 * off * off)) energy = 0.0;
   }
-  out.add({s_surface, energy * reflectance(surface) * std::max(cosine, 0.1), cosine, surface});
+  out.add({path.s_surface, energy * reflectance(path.surface) * std::max(cosine, 0.1), cosine, path.surface});
+}
+
+void World::trace(const Ray& ray, double far, double footprint, Random& random, Echoes& out) const {
+  out.count = 0;
+  double s = 0.0;
+  if (!ground_hit(ray, far, s)) return;
+  Path path(ray, footprint, s);
+  const Relief::Sample ground = relief_.at(path.q.x(), path.q.y());
+  if (ground.water) path.surface = cls::water;
+  path.normal = Vector3d(-ground.gradient.x(), -ground.gradient.y(), 1.0).normalized();
+  if (!objects_.empty()) meet_objects(path);
+  const double energy = pass_crossings(path, random, out);
+  end_on_surface(path, energy, random, out);
   std::sort(out.echo.begin(), out.echo.begin() + out.count, [](const Echo& a, const Echo& b) { return a.s < b.s; });
 }
 

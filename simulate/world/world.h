@@ -93,12 +93,21 @@ class World {
   void plan_fields(const WorldOptions& options, const Features& f, std::int64_t seed, core::Radians direction);
   Field field_at(double e, double n) const;
   void plan_airfield(const WorldOptions& options, const Features& f, std::int64_t seed, core::Radians direction);
+  void plan_flat_roof(const WorldOptions& options, const Eigen::Vector2d& along, Random& random);
+  void plan_halls(const WorldOptions& options, int halls, core::Radians direction, Random& random);
+  void plan_rim_trees(const WorldOptions& options, const Features& f, const Eigen::Vector2d& along, Random random);
+  bool is_built_near(const Eigen::Vector2d& p, double radius) const;
   double highest_corner(const Eigen::Vector2d& centre, const Eigen::Vector2d& along, double half_length, double half_width) const;
   void plan_power_line(const WorldOptions& options, std::int64_t seed, core::Radians direction);
   void plan_trees(const WorldOptions& options, const Features& f, std::int64_t seed, core::Radians direction);
   void add_building(const Eigen::Vector2d& centre, const Eigen::Vector2d& along, double half_length, double half_width, double eaves,
                     double ridge, std::uint8_t kind);
   void index_objects(double half);
+  struct Path;  ///< of one pulse: what it meets
+  void meet(std::uint32_t object, Path& path) const;
+  void meet_objects(Path& path) const;
+  double pass_crossings(Path& path, Random& random, Echoes& out) const;
+  void end_on_surface(const Path& path, double energy, Random& random, Echoes& out) const;
   bool low_vegetation_at(const Eigen::Vector3d& q) const;
 
   Relief relief_;

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/block.h"
+#include "simulate/world/bearing.h"
 #include "simulate/world/world.h"
 
 namespace swath::simulate {
@@ -18,8 +19,6 @@ constexpr double apart = 6.0;                                                 //
 constexpr double flattest = 20 * core::degree, steepest = 45 * core::degree;  // roofs of halls
 constexpr double roof_fall = 0.02;                                            // steepest slope of the flat roof
 constexpr double rim = 0.46;                                                  // share of the area's sides where trees stand
-
-Vector2d along_bearing(double bearing) { return {std::sin(bearing), std::cos(bearing)}; }
 
 /// 0 .. n - 1 in an order of the random numbers.
 std::vector<int> shuffled(int n, Random& random) {
@@ -42,29 +41,38 @@ double World::highest_corner(const Vector2d& centre, const Vector2d& along, doub
   return highest;
 }
 
+bool World::is_built_near(const Vector2d& p, double radius) const {
+  return std::any_of(buildings_.begin(), buildings_.end(),
+                     [&](const Building& b) { return (b.centre - p).norm() < b.radius + radius + apart; });
+}
+
 void World::plan_airfield(const WorldOptions& options, const Features& f, std::int64_t seed, core::Radians direction) {
   Random random = random_of(seed, Stream::buildings);
-  const Vector2d along = along_bearing(direction.value), across(along.y(), -along.x());
-  const double length = options.length.value, width = options.width.value, hectares = length * width / 1e4;
-  const auto clash = [&](const Vector2d& p, double radius) {
-    return std::any_of(buildings_.begin(), buildings_.end(),
-                       [&](const Building& b) { return (b.centre - p).norm() < b.radius + radius + apart; });
-  };
-
+  const Vector2d along = along_bearing(direction.value);
+  const double hectares = options.length.value * options.width.value / 1e4;
   if (f.buildings > 0.0) {
-    const BuildingSize s = airfield_building(options);
-    const double base = highest_corner(Vector2d::Zero(), along, s.half_length, s.half_width);
-    add_building(Vector2d::Zero(), along, s.half_length, s.half_width, base + s.height, 0.0, core::point_class::building);
-    // The roof falls a little, in a direction of the seed's; it stays a plane.
-    const Vector2d fall = random.uniform(0.0, roof_fall) * along_bearing(random.uniform(0, 2 * core::pi));
-    const Vector3d normal = Vector3d(fall.x(), fall.y(), 1.0).normalized();
-    Building& b = buildings_.back();
-    b.planes.back() << normal, normal.z() * (base + s.height);
-    b.top += fall.norm() * b.radius;
-    b.name = "building";
+    plan_flat_roof(options, along, random);
+    plan_halls(options, std::max(1, static_cast<int>(std::lround(f.buildings * hectares))), direction, random);
   }
+  plan_rim_trees(options, f, along, random_of(seed, Stream::trees));
+}
 
-  const int halls = f.buildings > 0.0 ? std::max(1, static_cast<int>(std::lround(f.buildings * hectares))) : 0;
+void World::plan_flat_roof(const WorldOptions& options, const Vector2d& along, Random& random) {
+  const BuildingSize s = airfield_building(options);
+  const double base = highest_corner(Vector2d::Zero(), along, s.half_length, s.half_width);
+  add_building(Vector2d::Zero(), along, s.half_length, s.half_width, base + s.height, 0.0, core::point_class::building);
+  // The roof falls a little, in a direction of the seed's; it stays a plane.
+  const Vector2d fall = random.uniform(0.0, roof_fall) * along_bearing(random.uniform(0, 2 * core::pi));
+  const Vector3d normal = Vector3d(fall.x(), fall.y(), 1.0).normalized();
+  Building& b = buildings_.back();
+  b.planes.back() << normal, normal.z() * (base + s.height);
+  b.top += fall.norm() * b.radius;
+  b.name = "building";
+}
+
+void World::plan_halls(const WorldOptions& options, int halls, core::Radians direction, Random& random) {
+  const Vector2d along = along_bearing(direction.value), across(along.y(), -along.x());
+  const double length = options.length.value, width = options.width.value;
   const int columns = std::clamp(static_cast<int>(std::lround(std::sqrt(halls * length / width))), 1, std::max(1, halls));
   const int rows = (halls + columns - 1) / columns;
   const Vector2d cell(length / columns, width / std::max(1, rows));
@@ -86,22 +94,25 @@ void World::plan_airfield(const WorldOptions& options, const Features& f, std::i
       const double l = corner.x() + random.uniform(margin_x, cell.x() - margin_x),
                    w = corner.y() + random.uniform(margin_y, cell.y() - margin_y);
       const Vector2d p = l * along + w * across;
-      if (clash(p, radius) || relief_.is_water(p.x(), p.y())) continue;
+      if (is_built_near(p, radius) || relief_.is_water(p.x(), p.y())) continue;
       const double base = highest_corner(p, ridge, half_length, half_width) + eaves;
       add_building(p, ridge, half_length, half_width, base, base + half_width * std::tan(slope), core::point_class::building);
       buildings_.back().name = "hall " + std::to_string(++built);
       break;
     }
   }
+}
 
-  Random wood = random_of(seed, Stream::trees);
-  for (auto i = static_cast<int>(f.trees * hectares); i > 0; --i) {
+void World::plan_rim_trees(const WorldOptions& options, const Features& f, const Vector2d& along, Random wood) {
+  const Vector2d across(along.y(), -along.x());
+  const double length = options.length.value, width = options.width.value;
+  for (auto i = static_cast<int>(f.trees * (length * width / 1e4)); i > 0; --i) {
     // On one of the four sides, from `rim` of its half to the area's edge.
     const double side = wood.uniform(rim, 0.5) * (wood.uniform() < 0.5 ? -1.0 : 1.0), other = wood.uniform(-0.5, 0.5);
     const bool ends = wood.uniform() < 0.5;
     const double height = wood.uniform(5, 14), radius = std::max(1.0, 0.2 * height), extinction = f.foliage * wood.uniform(0.12, 0.4);
     const Vector2d p = (ends ? side : other) * length * along + (ends ? other : side) * width * across;
-    if (clash(p, radius)) continue;
+    if (is_built_near(p, radius)) continue;
     const double ground = relief_.height(p.x(), p.y()), crown = 0.65 * height;
     trees_.push_back({Vector3d(p.x(), p.y(), ground + height - crown / 2), radius, crown / 2, extinction, ground});
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/block.h"
+#include "simulate/world/bearing.h"
 #include "simulate/world/world.h"
 
 namespace swath::simulate {
@@ -14,14 +15,12 @@ using Eigen::Vector3d;
 
 constexpr std::uint8_t tower_class = 15;  // ASPRS "transmission tower"
 
-Vector2d bearing_unit(double bearing) { return {std::sin(bearing), std::cos(bearing)}; }
-
 /// The area's own axes: along the flight lines and to their right.
 struct Area {
   Vector2d along, across;
   double length, width;
   Area(const WorldOptions& o, core::Radians direction)
-      : along(bearing_unit(direction.value)), across(along.y(), -along.x()), length(o.length.value), width(o.width.value) {}
+      : along(along_bearing(direction.value)), across(along.y(), -along.x()), length(o.length.value), width(o.width.value) {}
   Vector2d at(double l, double w) const { return l * along + w * across; }
   double hectares() const { return length * width / 1e4; }
 };
@@ -64,7 +63,7 @@ void World::plan_buildings(const WorldOptions& options, const Features& f, std::
       const double half_length = big ? random.uniform(12, 25) : random.uniform(5, 9),
                    half_width = big ? random.uniform(7, 12) : random.uniform(4, 6);
       const double radius = std::hypot(half_length, half_width);
-      const Vector2d along = bearing_unit(street + (random.uniform() < 0.5 ? 0.0 : core::pi / 2) + random.uniform(-0.05, 0.05));
+      const Vector2d along = along_bearing(street + (random.uniform() < 0.5 ? 0.0 : core::pi / 2) + random.uniform(-0.05, 0.05));
       const bool gable = !big && random.uniform() < 0.7;
       const double eaves = big ? random.uniform(6, 14) : random.uniform(3, 6.5), roof = random.uniform(1.5, 4.0);
       const auto clash = [&](const Building& b) { return (b.centre - centre).norm() < b.radius + radius + 3.0; };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/block.h"
+#include "simulate/world/bearing.h"
 #include "simulate/world/world.h"
 
 namespace swath::simulate {
@@ -20,14 +21,13 @@ constexpr double steepest_field = 0.25;                                      // 
 constexpr int most_trees_in_field = 25;
 constexpr double steep_cover = 0.577350269;  // tan 30 degrees
 
-Vector2d unit(double bearing) { return {std::sin(bearing), std::cos(bearing)}; }
 Vector2d right_of(const Vector2d& along) { return {along.y(), -along.x()}; }
 
 }  // namespace
 
 void World::plan_hall(const WorldOptions& options, const Features& f, std::int64_t seed, core::Radians direction) {
   Random random = random_of(seed, Stream::structures, 0);
-  const Vector2d along = unit(direction.value), across = right_of(along);
+  const Vector2d along = along_bearing(direction.value), across = right_of(along);
   const double half_length = 0.5 * options.hall_length.value, half_width = 0.5 * options.hall_width.value;
   const double length = options.length.value, width = options.width.value, radius = std::hypot(half_length, half_width);
   // In the built-up end of the area, whole within it; the driest of some places.
@@ -38,12 +38,12 @@ void World::plan_hall(const WorldOptions& options, const Features& f, std::int64
     place = random.uniform(near, far) * along + random.uniform(-side, side) * across;
     bool dry = true;
     for (int i = 0; i < 12; ++i) {
-      const Vector2d p = place + radius * unit(i * core::pi / 6);
+      const Vector2d p = place + radius * along_bearing(i * core::pi / 6);
       dry = dry && !relief_.is_water(p.x(), p.y());
     }
     if (dry) break;
   }
-  const Vector2d ridge = unit(direction.value + random.uniform(-0.3, 0.3));
+  const Vector2d ridge = along_bearing(direction.value + random.uniform(-0.3, 0.3));
   const double base = highest_corner(place, ridge, half_length, half_width);
   add_building(place, ridge, half_length, half_width, base + hall_height, 0.0, core::point_class::building);
 }
@@ -51,7 +51,7 @@ void World::plan_hall(const WorldOptions& options, const Features& f, std::int64
 void World::plan_bridge(const WorldOptions& options, std::int64_t seed, core::Radians direction) {
   const Relief::Ditch& ditch = *relief_.ditch();
   Random random = random_of(seed, Stream::structures, 1);
-  const Vector2d along = unit(direction.value), across = right_of(along), deck = ditch.normal;
+  const Vector2d along = along_bearing(direction.value), across = right_of(along), deck = ditch.normal;
   // Where the ditch's middle line is `w` right of the area's axis; on dry ground, clear of other structures.
   Vector2d place = Vector2d::Zero();
   for (int attempt = 0; attempt < 200; ++attempt) {
@@ -78,7 +78,7 @@ void World::plan_bridge(const WorldOptions& options, std::int64_t seed, core::Ra
 }
 
 void World::plan_fields(const WorldOptions& options, const Features& f, std::int64_t seed, core::Radians direction) {
-  along_ = unit(direction.value);
+  along_ = along_bearing(direction.value);
   const Vector2d across = right_of(along_);
   fields_along_ = static_cast<int>(options.length.value / parcel_length);
   fields_across_ = static_cast<int>(options.width.value / parcel_width);

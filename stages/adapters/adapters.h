@@ -1,35 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One maker per stage; registry.cpp lists them.
+// The stages of these folders; registry.cpp lists them.
 #pragma once
 
-#include <memory>
-
 #include "core/tile_columns.h"
-#include "stages/stage.h"
+#include "stages/entry.h"
 
 namespace swath::stages {
 
-std::unique_ptr<Stage> make_laser_reader();
-std::unique_ptr<Stage> make_las_reader();
-std::unique_ptr<Stage> make_georeference();
-std::unique_ptr<Stage> make_returns();
-std::unique_ptr<Stage> make_visibility();
-std::unique_ptr<Stage> make_lines();
-std::unique_ptr<Stage> make_ground();
-std::unique_ptr<Stage> make_hag_dem();
-std::unique_ptr<Stage> make_breaklines();
-std::unique_ptr<Stage> make_dtm();
-std::unique_ptr<Stage> make_dsm();
-std::unique_ptr<Stage> make_canopy();
-std::unique_ptr<Stage> make_relief();
-std::unique_ptr<Stage> make_density();
-std::unique_ptr<Stage> make_intensity();
-std::unique_ptr<Stage> make_contours();
-std::unique_ptr<Stage> make_penetration();
-std::unique_ptr<Stage> make_las_writer();
-std::unique_ptr<Stage> make_gdal_writer();
-std::unique_ptr<Stage> make_picture_writer();
-std::unique_ptr<Stage> make_truth();
+Entry lever_arm_stage(), kinematic_stage(), ins_gnss_stage(), rtklib_stage(), time_sync_stage(), trajectory_reader_stage(),
+    imu_reader_stage(), gnss_reader_stage(), trajectory_writer_stage();
+Entry adjust_stage(), flat_target_stage(), strips_stage(), geometry_stage();
+Entry laser_reader_stage(), las_reader_stage(), georeference_stage(), returns_stage(), visibility_stage(), lines_stage(), ground_stage(),
+    hag_dem_stage(), breaklines_stage(), dtm_stage(), dsm_stage(), canopy_stage(), relief_stage(), density_stage(), intensity_stage(),
+    contours_stage(), penetration_stage(), las_writer_stage(), gdal_writer_stage(), picture_writer_stage(), truth_stage();
 
 /// Refuses the gate of ranges of a filter that reads them where the files of a cloud have none.
 void expect_ranges(const Context& context, std::string_view stage, core::TileColumns columns);

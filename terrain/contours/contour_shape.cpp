@@ -5,7 +5,6 @@
 #include "terrain/contours/contour_shape.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>

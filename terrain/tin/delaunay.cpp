@@ -7,7 +7,6 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
-#include <algorithm>
 #include <utility>
 
 namespace swath::terrain {

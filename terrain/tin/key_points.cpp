@@ -171,21 +171,25 @@ void Thinning::judge(Seat& seat, const Place& p, double z) const {
   seat.need = round.radius > widest_ ? beyond_all - std::hypot(p.x - round.x, p.y - round.y) : seat.error;
 }
 
+/// Terrain points, and no flag of an earlier run.
+std::vector<std::uint32_t> rows_to_thin(core::Block& block, const KeyPointOptions& o) {
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t i = 0; i < block.size(); ++i) {
+    block.flags[i] &= static_cast<std::uint16_t>(~core::flag::key_point);
+    const bool is_terrain =
+        core::is_usable(block, i) && std::find(o.classes.begin(), o.classes.end(), block.classification[i]) != o.classes.end();
+    if (is_terrain) rows.push_back(i);
+  }
+  return rows;
+}
+
 }  // namespace
 
 double halo(const KeyPointOptions& o) { return o.cell.value + o.max_edge.value; }
 
 KeyPointCounts mark_key_points(core::Block& block, std::size_t own, const KeyPointOptions& o) {
   KeyPointCounts counts;
-  std::vector<std::uint32_t> rows;
-  for (std::uint32_t i = 0; i < block.size(); ++i) {
-    block.flags[i] &= static_cast<std::uint16_t>(~core::flag::key_point);
-    const bool is_terrain =
-        core::is_usable(block, i) && std::find(o.classes.begin(), o.classes.end(), block.classification[i]) != o.classes.end();
-    if (!is_terrain) continue;
-    rows.push_back(i);
-    counts.terrain += i < own;
-  }
+  const std::vector<std::uint32_t> rows = rows_to_thin(block, o);
   const auto cell_of = [&](const Place& p) {
     return CellKey{core::cell_index(p.y + block.origin.y(), o.cell.value), core::cell_index(p.x + block.origin.x(), o.cell.value)};
   };
@@ -194,6 +198,7 @@ KeyPointCounts mark_key_points(core::Block& block, std::size_t own, const KeyPoi
   Rectangle where{1e300, 1e300, -1e300, -1e300};
   for (const std::uint32_t r : rows) {
     if (r >= own) break;
+    ++counts.terrain;
     const CellKey key = cell_of({block.x[r], block.y[r]});
     if (!cells.try_emplace(key).second) continue;
     const double west = static_cast<double>(key.second) * o.cell.value - block.origin.x(),

@@ -34,29 +34,31 @@ struct Share {
   Vec from{0, 0}, to{0, 0};  ///< new centres at the border's edge that comes to the vertex and at the one that leaves it
 };
 
-}  // namespace
-
-double NaturalNeighbours::height(std::int32_t triangle, double x, double y) const {
-  const auto plane = [&] { return height_in(tin_, triangle, x, y); };
+/// Triangles whose circumcircles hold the place, in an order of their own; none where it is at a vertex, or where they reach the rim or a
+/// breakline.
+std::vector<std::int32_t> hole_at(const Tin& tin, std::int32_t triangle, double x, double y) {
   const auto holds = [&](std::int32_t t) {
-    const Circumcircle c = circumcircle(tin_, t);
+    const Circumcircle c = circumcircle(tin, t);
     return (x - c.x) * (x - c.x) + (y - c.y) * (y - c.y) < c.radius * c.radius;
   };
-  if (!holds(triangle)) return plane();  // at a vertex
+  if (!holds(triangle)) return {};  // at a vertex
   std::vector<std::int32_t> hole{triangle};
   for (size_t n = 0; n < hole.size(); ++n)
     for (int k = 0; k < 3; ++k) {
-      const std::int32_t other = tin_.across[static_cast<size_t>(hole[n])][static_cast<size_t>(k)];
-      if (other < 0) return plane();
+      const std::int32_t other = tin.across[static_cast<size_t>(hole[n])][static_cast<size_t>(k)];
+      if (other < 0) return {};
       if (std::find(hole.begin(), hole.end(), other) != hole.end() || !holds(other)) continue;
-      const auto& v = tin_.triangles[static_cast<size_t>(hole[n])];
+      const auto& v = tin.triangles[static_cast<size_t>(hole[n])];
       const std::pair<std::int32_t, std::int32_t> edge(
           std::minmax(v[static_cast<size_t>((k + 1) % 3)], v[static_cast<size_t>((k + 2) % 3)]));
-      if (std::binary_search(tin_.constrained.begin(), tin_.constrained.end(), edge)) return plane();
+      if (std::binary_search(tin.constrained.begin(), tin.constrained.end(), edge)) return {};
       hole.push_back(other);
     }
-  std::sort(hole.begin(), hole.end(), [&](std::int32_t a, std::int32_t b) { return tin_.is_before(a, b); });
+  std::sort(hole.begin(), hole.end(), [&](std::int32_t a, std::int32_t b) { return tin.is_before(a, b); });
+  return hole;
+}
 
+std::vector<Share> shares_of(const Tin& tin, const std::vector<std::int32_t>& hole, double x, double y) {
   std::vector<Share> shares;
   const auto share = [&](std::int32_t v) -> Share& {
     const auto at = std::find_if(shares.begin(), shares.end(), [v](const Share& s) { return s.vertex == v; });
@@ -64,10 +66,10 @@ double NaturalNeighbours::height(std::int32_t triangle, double x, double y) cons
     shares.push_back(Share{v, 0.0, {0, 0}, {0, 0}});
     return shares.back();
   };
-  const auto from_q = [&](std::int32_t v) { return Vec{tin_.x[v] - x, tin_.y[v] - y}; };
+  const auto from_q = [&](std::int32_t v) { return Vec{tin.x[v] - x, tin.y[v] - y}; };
   for (const std::int32_t t : hole) {
-    const auto& v = tin_.triangles[static_cast<size_t>(t)];
-    const Circumcircle circle = circumcircle(tin_, t);
+    const auto& v = tin.triangles[static_cast<size_t>(t)];
+    const Circumcircle circle = circumcircle(tin, t);
     const Vec left{circle.x - x, circle.y - y};
     const Vec p = from_q(v[0]), q = from_q(v[1]), r = from_q(v[2]);
     const bool turned = cross({q.x - p.x, q.y - p.y}, {r.x - p.x, r.y - p.y}) < 0.0;
@@ -75,12 +77,12 @@ double NaturalNeighbours::height(std::int32_t triangle, double x, double y) cons
       // The edge opposite vertex k with this triangle on its left.
       std::int32_t a = v[static_cast<size_t>((k + 1) % 3)], b = v[static_cast<size_t>((k + 2) % 3)];
       if (turned) std::swap(a, b);
-      const std::int32_t other = tin_.across[static_cast<size_t>(t)][static_cast<size_t>(k)];
+      const std::int32_t other = tin.across[static_cast<size_t>(t)][static_cast<size_t>(k)];
       const bool inner = std::find(hole.begin(), hole.end(), other) != hole.end();
-      if (inner && tin_.is_before(other, t)) continue;  // was met from the other side
+      if (inner && tin.is_before(other, t)) continue;  // was met from the other side
       Vec right;
       if (inner) {
-        const Circumcircle c = circumcircle(tin_, other);
+        const Circumcircle c = circumcircle(tin, other);
         right = {c.x - x, c.y - y};
       } else {
         right = centre_through_origin(from_q(a), from_q(b));
@@ -93,7 +95,16 @@ double NaturalNeighbours::height(std::int32_t triangle, double x, double y) cons
     }
   }
   std::sort(shares.begin(), shares.end(),
-            [&](const Share& a, const Share& b) { return is_before(tin_.place(a.vertex), tin_.place(b.vertex)); });
+            [&](const Share& a, const Share& b) { return is_before(tin.place(a.vertex), tin.place(b.vertex)); });
+  return shares;
+}
+
+}  // namespace
+
+double NaturalNeighbours::height(std::int32_t triangle, double x, double y) const {
+  const std::vector<std::int32_t> hole = hole_at(tin_, triangle, x, y);
+  if (hole.empty()) return height_in(tin_, triangle, x, y);
+  const std::vector<Share> shares = shares_of(tin_, hole, x, y);
   double sum = 0.0, total = 0.0;
   const double z0 = tin_.z[shares.front().vertex];
   for (const Share& s : shares) {
@@ -102,7 +113,7 @@ double NaturalNeighbours::height(std::int32_t triangle, double x, double y) cons
     sum += area * (tin_.z[s.vertex] - z0);
   }
   const double z = z0 + sum / total;
-  return std::isfinite(z) ? z : plane();
+  return std::isfinite(z) ? z : height_in(tin_, triangle, x, y);
 }
 
 }  // namespace swath::terrain

@@ -29,7 +29,4 @@ std::vector<std::int32_t> triangles_at_centres(const Tin& tin, const Eigen::Vect
 /// triangles, so ask for all places at once.
 std::vector<std::int32_t> triangles_at(const Tin& tin, const std::vector<double>& x, const std::vector<double>& y);
 
-/// Heights at places (Block frame, m); NaN where no triangle covers the place.
-std::vector<double> heights_at(const Tin& tin, const std::vector<double>& x, const std::vector<double>& y);
-
 }  // namespace swath::terrain

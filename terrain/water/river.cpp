@@ -110,7 +110,10 @@ std::vector<Vector3d> sampled_ring(const std::vector<Vector3d>& ring, double ste
   return out;
 }
 
-Banks banks_of(const std::vector<Vector3d>& ring) {
+namespace {
+
+/// Vertices at the outline's ends: those of the two places opposite along it that make the sum of the widths between least.
+std::pair<size_t, size_t> ends_of(const std::vector<Vector3d>& ring) {
   const Outline outline(ring);
   std::vector<Vector2d> p;
   for (int k = 0; k < split_samples; ++k) p.push_back(outline.place(outline.length() * k / split_samples));
@@ -122,20 +125,12 @@ Banks banks_of(const std::vector<Vector3d>& ring) {
       sum += (p[static_cast<size_t>((s + k) % split_samples)] - p[static_cast<size_t>((s - k + split_samples) % split_samples)]).norm();
     if (sum < least) least = sum, best = s;
   }
-  const size_t n = ring.size();
-  const size_t begin = outline.vertex_near(outline.length() * best / split_samples);
-  const size_t end = outline.vertex_near(outline.length() * (best + split_samples / 2) / split_samples);
+  return {outline.vertex_near(outline.length() * best / split_samples),
+          outline.vertex_near(outline.length() * (best + split_samples / 2) / split_samples)};
+}
 
-  Banks banks;
-  for (size_t k = begin;; k = (k + 1) % n) {
-    banks.left.push_back(k);
-    if (k == end) break;
-  }
-  for (size_t k = begin;; k = (k + n - 1) % n) {
-    banks.right.push_back(k);
-    if (k == end) break;
-  }
-
+/// Pairs of vertices of the two banks.
+std::vector<std::pair<size_t, size_t>> rungs_of(const std::vector<Vector3d>& ring, const Banks& banks) {
   // cost(i, j): least sum of squared widths of a pairing that has come to (i, j).
   const size_t rows = banks.left.size(), columns = banks.right.size();
   const auto first = [&](size_t i) {
@@ -166,14 +161,33 @@ Banks banks_of(const std::vector<Vector3d>& ring) {
     }
     std::swap(before, here);
   }
+  std::vector<std::pair<size_t, size_t>> rungs;
   for (size_t i = rows - 1, j = columns - 1;;) {
-    banks.rungs.emplace_back(i, j);
+    rungs.emplace_back(i, j);
     const std::uint8_t s = step[i][j - first(i)];
     if (s == none || (i == 0 && j == 0)) break;
     if (s != from_right) --i;
     if (s != from_left) --j;
   }
-  std::reverse(banks.rungs.begin(), banks.rungs.end());
+  std::reverse(rungs.begin(), rungs.end());
+  return rungs;
+}
+
+}  // namespace
+
+Banks banks_of(const std::vector<Vector3d>& ring) {
+  const size_t n = ring.size();
+  const auto [begin, end] = ends_of(ring);
+  Banks banks;
+  for (size_t k = begin;; k = (k + 1) % n) {
+    banks.left.push_back(k);
+    if (k == end) break;
+  }
+  for (size_t k = begin;; k = (k + n - 1) % n) {
+    banks.right.push_back(k);
+    if (k == end) break;
+  }
+  banks.rungs = rungs_of(ring, banks);
   return banks;
 }
 

@@ -13,6 +13,7 @@
 #include "io/vector/vector.h"
 #include "pipeline/work/store_file.h"
 #include "tests/io/las_sample.h"
+#include "tests/io/vector/write_contours.h"
 
 namespace {
 

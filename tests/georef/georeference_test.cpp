@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "tests/calib/reference_data.h"
 #include "tests/calib/survey_support.h"
+#include "tests/georef/point_covariance.h"
 
 namespace swath::test {}
 namespace swath::georef {

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "tests/calib/survey_support.h"
+#include "tests/georef/point_covariance.h"
 
 namespace swath::test {}
 namespace swath::georef {

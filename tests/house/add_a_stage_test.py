@@ -66,7 +66,7 @@ class AddAStage(unittest.TestCase):
                 (tree / name).parent.mkdir(parents=True, exist_ok=True)
                 (tree / name).write_text(text)
             registry = (ROOT / "stages/registry.cpp").read_text()
-            registry, n = re.subn(r"(?=^ *\{\"terrain\.breaklines\")", lines["stages/registry.cpp"] + "\n", registry, flags=re.M)
+            registry, n = re.subn(r"(?=^ *breaklines_stage\(\))", lines["stages/registry.cpp"] + "\n", registry, flags=re.M)
             self.assertEqual(n, 1)
             (tree / "stages").mkdir()
             (tree / "stages/registry.cpp").write_text(f'#include "filters/{unit}.h"\n' + registry)

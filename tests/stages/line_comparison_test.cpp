@@ -8,6 +8,8 @@
 #include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "io/text/value_file.h"
+#include "quality/line_offsets.h"
+#include "stages/grid_tile.h"
 #include "tests/world/support.h"
 
 namespace swath::stages {
@@ -16,23 +18,24 @@ namespace {
 TEST(LineComparison, CellsOfATileComeBack) {
   const test::TemporaryFolder folder;
   const quality::LineCells cells{{{0, 1, 2, 3, 4, 5, 0.1F, 0.01F}, {1, 1, 2, 3, 4, 7, 0.2F, 0.02F}}, {{0, 1, 2, 3, 9, 0.03F}}};
-  write_line_cells(folder / "a.cells", cells);
+  write_rows(folder / "a.cells", cells.differences, cells.scatters);
   quality::LineCells back;
-  read_line_cells(folder / "a.cells", back);
+  read_rows(folder / "a.cells", back.differences, back.scatters);
   EXPECT_EQ(back.differences, cells.differences);
   EXPECT_EQ(back.scatters, cells.scatters);
-  read_line_cells(folder / "a.cells", back);
+  read_rows(folder / "a.cells", back.differences, back.scatters);
   EXPECT_EQ(back.differences.size(), 4u);
 }
 
 TEST(LineComparison, ADamagedFileIsAnError) {
   const test::TemporaryFolder folder;
-  write_line_cells(folder / "a.cells", {{{0, 1, 2, 3, 4, 5, 0.1F, 0.01F}}, {}});
+  const quality::LineCells cells{{{0, 1, 2, 3, 4, 5, 0.1F, 0.01F}}, {}};
+  write_rows(folder / "a.cells", cells.differences, cells.scatters);
   const std::string bytes = test::read_bytes(folder / "a.cells");
   quality::LineCells back;
   for (const std::string& damaged : {bytes.substr(0, 5), bytes.substr(0, bytes.size() - 1), bytes + "x"}) {
     test::write_bytes(folder / "b.cells", damaged);
-    EXPECT_THROW(read_line_cells(folder / "b.cells", back), core::Error);
+    EXPECT_THROW(read_rows(folder / "b.cells", back.differences, back.scatters), core::Error);
   }
 }
 

@@ -142,8 +142,9 @@ Taken take(const Case& c, double side, double spacing) {
   const Box around = own.grown(stage->near_halo());
   size_t near = 0;
   for (size_t p = 0; p < job.block.size(); ++p) near += around.holds(job.block.x[p], job.block.y[p]);
-  Taken t{0.0, stage->bytes_per_point() * stage->share_of_points(side) * static_cast<double>(near), job.block.size()};
-  for (const Raster& r : stage->rasters(context)) t.declared += r.total(static_cast<double>(job.block.size()));
+  const TileMemory declared = stage->memory(context);
+  Taken t{0.0, declared.bytes_per_point * declared.share_of_points * static_cast<double>(near), job.block.size()};
+  for (const Raster& r : declared.rasters) t.declared += r.total(static_cast<double>(job.block.size()));
   if (c.type == "filters.visibility") {  // the stage itself wants a trajectory
     filters::VisibilityOptions o;
     std::vector<core::Fault> none;

@@ -239,6 +239,26 @@ double inflation(const Solution& s, LatencyShift shift) {
   return inv && (*inv)(0, 0) > 0 ? std::min(n(0, 0) * (*inv)(0, 0), hopeless) : hopeless;
 }
 
+/// What each instant's residual adds to the latency, s; rms and outliers of the residuals.
+std::vector<double> pulls_of(const Solution& s, const Normal& inv, LatencyShift shift, LatencyResult& out) {
+  std::vector<double> pull;
+  for (const Equation& e : s.rows) {
+    const auto j = jacobian(e, shift);
+    const Vector3d left = e.residual - j.rightCols<3>() * s.shift;
+    double sum = 0, lowest = 1;
+    for (int a = 0; a < 3; ++a) {
+      const double w = weight_of(left[a], s.scale[a]);
+      sum += w / (s.scale[a] * s.scale[a]) * left[a] * (inv.row(0) * j.row(a).transpose())(0);
+      lowest = std::min(lowest, w);
+    }
+    pull.push_back(sum);
+    out.outliers += lowest < 0.5;
+    out.rms += left.cwiseAbs2() / static_cast<double>(s.rows.size());
+  }
+  out.rms = out.rms.cwiseSqrt();
+  return pull;
+}
+
 LatencyResult estimate(const Motion& raw_reference, const Motion& raw_device, const LatencyOptions& o, bool places) {
   LatencyResult out;
   const auto no = [&](const char* why) {
@@ -269,23 +289,8 @@ LatencyResult estimate(const Motion& raw_reference, const Motion& raw_device, co
   const Normal n = normal_of(s, shift);
   const auto inv = inverse(n, shift);
   if (!inv) return no("the motion does not tell a latency from a constant shift: vary speed or direction, or estimate no shift");
-  std::vector<double> pull;
-  for (const Equation& e : s.rows) {
-    const auto j = jacobian(e, shift);
-    const Vector3d left = e.residual - j.rightCols<3>() * s.shift;
-    double sum = 0, lowest = 1;
-    for (int a = 0; a < 3; ++a) {
-      const double w = weight_of(left[a], s.scale[a]);
-      sum += w / (s.scale[a] * s.scale[a]) * left[a] * (inv->row(0) * j.row(a).transpose())(0);
-      lowest = std::min(lowest, w);
-    }
-    pull.push_back(sum);
-    out.outliers += lowest < 0.5;
-    out.rms += left.cwiseAbs2() / static_cast<double>(s.rows.size());
-  }
-  out.rms = out.rms.cwiseSqrt();
   const double share = motion_share(s);
-  out.sigma = std::sqrt(variance_of_sum(pull)) / std::max(share, weakest);
+  out.sigma = std::sqrt(variance_of_sum(pulls_of(s, *inv, shift, out))) / std::max(share, weakest);
   for (size_t a = 0; a < 3; ++a) out.shift[a] = s.shift[static_cast<Eigen::Index>(a)];
   out.axes_inflation = inflation(s, LatencyShift::axes);
   out.track_inflation = places ? inflation(s, LatencyShift::track) : out.axes_inflation;

@@ -224,6 +224,23 @@ class PassCount {
   const core::OnProgress& progress_;
 };
 
+/// The first run, with as much noise of the IMU as its innovations ask for.
+template <class Start>
+SmootherRun first_run(Problem& problem, const Start& from_scratch) {
+  SmootherRun run = run_smoother(problem, from_scratch(), false);
+  if (!adapt_imu(problem, run.outcomes)) return run;
+  while (adapt_imu(problem, run_forward(problem, from_scratch()))) {
+  }
+  return run_smoother(problem, from_scratch(), false);
+}
+
+void refuse_contradicting(const std::vector<double>& weights) {
+  const auto rejected = std::count_if(weights.begin(), weights.end(), [](double w) { return w < 1.0; });
+  if (2 * static_cast<size_t>(rejected) > weights.size())
+    throw core::Error(std::to_string(rejected) + " of " + std::to_string(weights.size()) + " fixes contradict the IMU",
+                      "trajectory.ins_gnss", "check the lever arm's sign, the time scales, imu.angle_unit, imu_spec and the fixes' sigmas");
+}
+
 /// The smoother over records that are in order.
 InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const core::ImuErrorModel& spec, const Vector3d& lever_arm,
                           double lever_arm_sigma, const InsGnssOptions& options, const ClockFindings& clocks,
@@ -238,7 +255,6 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
 
   const Alignment alignment = align(path, gnss, spec, lever_arm, standstills, options);
   const Start start = start_of(path, gnss, alignment, spec, layout, lever_arm, lever_arm_sigma, options);
-
   problem.share = options.correlated_share.value_or(usual_share);
   PassCount count(nodes.size(), progress);
   problem.at_node = [&count] { count(); };
@@ -246,12 +262,7 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
   // Repeated about the smoothed trajectory until it stays.
   problem.gate = first_gate;
   const auto from_scratch = [&] { return InsFilter(problem, start.estimate, StateVector::Zero(layout.size), start.covariance, nullptr); };
-  SmootherRun run = run_smoother(problem, from_scratch(), false);
-  if (adapt_imu(problem, run.outcomes)) {
-    while (adapt_imu(problem, run_forward(problem, from_scratch()))) {
-    }
-    run = run_smoother(problem, from_scratch(), false);
-  }
+  SmootherRun run = first_run(problem, from_scratch);
   problem.gate = gate_of(options.outlier_probability);
   std::vector<Estimate> reference(nodes.size());
   const auto about = [&](const SmoothedNode& at) {
@@ -285,11 +296,7 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
   const InsFindings findings{
       problem, run, backward, spec, alignment, lever_arm, lever_arm_sigma, standstills, iterations, shift > settled ? shift : 0.0, clocks};
   result.series = series_of(findings);
-  size_t rejected = 0;
-  for (const double w : result.series.weight) rejected += w < 1.0;
-  if (2 * rejected > result.series.weight.size())
-    throw core::Error(std::to_string(rejected) + " of " + std::to_string(result.series.weight.size()) + " fixes contradict the IMU",
-                      "trajectory.ins_gnss", "check the lever arm's sign, the time scales, imu.angle_unit, imu_spec and the fixes' sigmas");
+  refuse_contradicting(result.series.weight);
   result.report = report_of(findings, result.series);
   result.trajectory = trajectory_of(problem, run.nodes, options.output_rate.value);
   result.trajectory.errors = std::move(run.errors);

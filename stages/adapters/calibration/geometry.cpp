@@ -1,18 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/adapters/calibration/geometry.h"
-
+// The geometry of a flight judged before anything is made of it: what report.json says of it.
 #include <algorithm>
 #include <cmath>
 
+#include "calib/geometry/geometry_gate.h"
 #include "calib/ties/control.h"
+#include "core/config/result.h"
 #include "core/error.h"
 #include "core/geo/geodesy.h"
 #include "core/statistics.h"
 #include "io/vector/control.h"
-#include "stages/adapters/calibration/calibration_flight.h"
+#include "stages/adapters/adapters.h"
+#include "stages/once.h"
 
 namespace swath::stages {
 namespace {
+
+struct GeometryFindings {
+  calib::GeometryFigures geometry;
+};
+
+template <class V>
+void describe(const GeometryFindings& r, V& v) {
+  v.table("geometry", r.geometry, "The judgement; in report.json it is the key geometry of the whole report.");
+}
 
 constexpr size_t looked_at = 4096;  // returns of a line for the usual range
 
@@ -79,31 +90,6 @@ void count(const calib::GeometryFigures& found, core::Tally& tally) {
                     core::format_number(std::round(found.control.nearest / 100) / 10) + " km from a track");
 }
 
-GeometryReport report_of(const calib::GeometryFigures& found, const calib::GeometryOptions& o) {
-  constexpr const char* verdicts[] = {"not judged", "consistent", "inconsistent"};
-  GeometryReport r;
-  r.verdict = verdicts[static_cast<size_t>(found.verdict)];
-  for (const calib::TriedMistake& t : found.named) r.named.push_back(t.name);
-  for (const calib::LinePair& p : found.lines.pairs)
-    if (p.cells >= static_cast<std::uint64_t>(o.min_cells) && p.rms > 0)
-      r.line_difference = std::max(r.line_difference.value_or(0.0), p.rms);
-  if (found.control.points > 0) r.control = found.control;
-  // What the trajectory's reader has warned of is not said again, but counts.
-  const auto said = std::count_if(found.checks.begin(), found.checks.end(), [](const auto& c) { return !c.held && c.said; });
-  r.contradictions = found.warnings.size() + static_cast<size_t>(said);
-  r.covered = found.covered;
-  r.predicted = found.lines.predicted;
-  r.fit = found.lines.fit;
-  r.pairs = found.lines.pairs;
-  for (const calib::GeometryCheck& c : found.checks) r.checks.emplace_back(c.name, c);
-  r.tried = found.tried;
-  if (!found.doubt.empty()) r.doubt = found.doubt;
-  r.warnings = found.warnings;
-  return r;
-}
-
-}  // namespace
-
 GeometryFindings judge_flight(const Context& context, const trajectory::Trajectory& trajectory, const core::GnssData* fixes,
                               const georef::ShotStream& shots, const calib::GeometryOptions& o, core::Tally& tally) {
   calib::GeometryInput in;
@@ -129,7 +115,20 @@ GeometryFindings judge_flight(const Context& context, const trajectory::Trajecto
     tally.count("the geometry could not be judged", e.what());
   }
   count(found, tally);
-  return {report_of(found, o)};
+  for (const calib::LinePair& p : found.lines.pairs)
+    if (p.cells >= static_cast<std::uint64_t>(o.min_cells) && p.rms > 0)
+      found.line_difference = std::max(found.line_difference.value_or(0.0), p.rms);
+  return {std::move(found)};
+}
+
+}  // namespace
+
+Entry geometry_stage() {
+  return once<judge_flight>(
+      "quality.geometry",
+      "Judges the geometry of a flight on a sample of its returns: lines against one another, heights, headings, roll; "
+      "where they do not fit, the usual mistakes are tried.",
+      {.inputs = files_in<&io::Survey::control>});
 }
 
 }  // namespace swath::stages

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "filters/classes/height.h"
 #include "filters/classes/returns.h"
 #include "io/las/las_block.h"
 #include "io/las/las_header.h"
 #include "stages/adapters/adapters.h"
+#include "stages/tile.h"
 
 namespace swath::stages {
 namespace {
@@ -90,26 +90,9 @@ void describe(const HeightCounts& r, V& v) {
   v.result("above a void of the DTM: height unknown", r.unknown, core::if_any(), "Points without a height above ground.");
 }
 
-class HeightAboveGround : public OptionStage<NoOptions, HeightCounts> {
- public:
-  const Info& info() const override {
-    static const Info info{"filters.hag_dem",
-                           "Height of every point above the DTM, bilinear between cell centres.",
-                           {Grain::tile},
-                           {},
-                           {Column::height},
-                           {Product::points, Product::dtm},
-                           {}};
-    return info;
-  }
-  double bytes_per_point() const override { return 16.0; }
-  std::vector<Raster> rasters(const Context& c) const override { return window_of(c, Product::dtm, 0); }
-  void run_tile(const Context& context, TileJob& job) const override {
-    const double cell = context.grids->cell(Product::dtm);
-    const core::Grid terrain = context.grids->window(Product::dtm, lattice_in(cell, job.box.grown(1.5 * cell)));
-    core::count_results(HeightCounts{filters::height_above(terrain, job.block, job.own)}, job.tally);
-  }
-};
+HeightCounts set_heights(TileJob& job, const In<Product::dtm>& terrain) {
+  return {filters::height_above(terrain.over(job.box.grown(1.5 * terrain.cell())), job.block, job.own)};
+}
 
 }  // namespace
 
@@ -125,7 +108,12 @@ void expect_ranges(const Context& context, std::string_view stage, core::TileCol
   }
 }
 
-std::unique_ptr<Stage> make_returns() { return std::make_unique<Returns>(); }
-std::unique_ptr<Stage> make_hag_dem() { return std::make_unique<HeightAboveGround>(); }
+Entry returns_stage() { return {"filters.returns", std::make_unique<Returns>}; }
+Entry hag_dem_stage() {
+  return tile<set_heights>("filters.hag_dem", "Height of every point above the DTM, bilinear between cell centres.",
+                           {.columns = {.needs = {}, .gives = {Column::height}}, .memory = [](const NoOptions&, const Context& c) {
+                              return TileMemory{16.0, window_of(c, Product::dtm, 0)};
+                            }});
+}
 
 }  // namespace swath::stages

@@ -57,9 +57,10 @@ class Ground : public ClassFilter<filters::classify_ground, true> {
 
 }  // namespace
 
-std::unique_ptr<Stage> make_ground() {
-  return std::make_unique<Ground>(
-      "filters.ground", "Ground points by a robust surface through the last returns, with a probability of bare ground for every point.");
+Entry ground_stage() {
+  return entry_of<Ground>("filters.ground",
+                          "Ground points by a robust surface through the last returns, with a probability of bare ground for every point.",
+                          {});
 }
 
 }  // namespace swath::stages

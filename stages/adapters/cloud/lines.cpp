@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/config/result_visitors.h"
-#include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "quality/line_offsets.h"
 #include "stages/adapters/adapters.h"
-#include "stages/line_comparison.h"
+#include "stages/tile.h"
 
 namespace swath::stages {
 namespace {
@@ -21,53 +19,43 @@ void describe(const OverlapCounts& r, V& v) {
   v.result("lines that overlap no other on smooth ground: no offset", r.alone, core::if_any(), "Flight lines without an offset.");
 }
 
-class Lines : public OptionStage<quality::LineOptions, OverlapCounts, quality::LineComparison> {
- public:
-  const Info& info() const override {
-    static const Info info{
-        "quality.lines",
-        "Flight lines compared where they overlap: a height offset per line, scatter of the returns, what neighbours share.",
-        {Grain::tile, Grain::merge},
-        {Column::strip, Column::flags},
-        {},
-        {Product::points},
-        {}};
-    return info;
-  }
-  core::ColumnSet also_reads() const override { return {Column::classification, Column::return_number, Column::return_count}; }
-  double halo() const override { return quality::halo(options); }
-  double bytes_per_point() const override { return 48.0; }
-  std::vector<std::string> products() const override { return {"lines.json"}; }
+quality::LineCells cells_of_lines(const std::vector<std::filesystem::path>& files) {
+  quality::LineCells cells;
+  for (const std::filesystem::path& file : files) read_rows(file, cells.differences, cells.scatters);
+  return cells;
+}
+void keep_cells(const std::filesystem::path& folder, TileKey key, const quality::LineCells& cells) {
+  write_rows(piece_file(folder, key, "cells"), cells.differences, cells.scatters);
+}
 
-  bool is_divisible() const override { return true; }
-  void join_parts(const Context& context, const TileJob& whole, const std::vector<std::filesystem::path>& parts) const override {
-    quality::LineCells cells;  // blocks that parts share are the same in each
-    for (const std::filesystem::path& part : parts) read_line_cells(file_of(context, part, whole.key), cells);
-    write_line_cells(file_of(context, whole.folder, whole.key), cells);
-  }
-  void run_tile(const Context& context, TileJob& job) const override {
-    write_line_cells(file_of(context, job.folder, job.key), quality::compare_cells(job.block, job.own, options));
-  }
-
-  void run_merge(const Context& context, MergeJob& job) const override {
-    quality::LineCells cells;
-    for (const TileKey key : job.tiles) read_line_cells(file_of(context, job.folder, key), cells);
-    const quality::LineComparison c = quality::compare_lines(std::move(cells), options);
-    job.findings = core::reported(c);
-    io::write_text_file(context.output / "lines.json", io::to_json(job.findings));
-    OverlapCounts counts{c.pairs.size()};
-    for (const quality::LineOffset& l : c.lines) counts.alone += l.pairs == 0;
-    core::count_results(counts, job.tally);
-  }
-
- private:
-  static std::filesystem::path file_of(const Context& context, const std::filesystem::path& folder, TileKey key) {
-    return folder / (context.label(key) + ".cells");
-  }
-};
+void compare_cells(const TileJob& job, const quality::LineOptions& o) {
+  keep_cells(job.folder, job.key, quality::compare_cells(job.block, job.own, o));
+}
+/// Blocks that parts share are the same in each.
+void join_cells(const Context&, const TileJob& whole, const std::vector<std::filesystem::path>& parts) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path& part : parts) files.push_back(piece_file(part, whole.key, "cells"));
+  keep_cells(whole.folder, whole.key, cells_of_lines(files));
+}
+Found<quality::LineComparison, OverlapCounts> compare_lines(const MergeJob& job, const Output& to, const quality::LineOptions& o) {
+  std::vector<std::filesystem::path> files;
+  for (const TileKey key : job.tiles) files.push_back(piece_file(job.folder, key, "cells"));
+  quality::LineComparison found = quality::compare_lines(cells_of_lines(files), o);
+  io::write_text_file(to.folder / "lines.json", io::to_json(core::reported(found)));
+  OverlapCounts counts{found.pairs.size()};
+  for (const quality::LineOffset& line : found.lines) counts.alone += line.pairs == 0;
+  return {std::move(found), counts};
+}
 
 }  // namespace
 
-std::unique_ptr<Stage> make_lines() { return std::make_unique<Lines>(); }
+Entry lines_stage() {
+  return tile<compare_cells, compare_lines>(
+      "quality.lines", "Flight lines compared where they overlap: a height offset per line, scatter of the returns, what neighbours share.",
+      {.columns = {.needs = {Column::strip, Column::flags}, .reads = {Column::classification, Column::return_number, Column::return_count}},
+       .memory = [](const quality::LineOptions&, const Context&) { return TileMemory{48.0}; },
+       .products = [](const quality::LineOptions&) { return std::vector<std::string>{"lines.json"}; },
+       .join_parts = join_cells});
+}
 
 }  // namespace swath::stages

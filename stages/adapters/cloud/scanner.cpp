@@ -3,11 +3,13 @@
 
 #include <limits>
 
+#include "georef/map_patch.h"
+
 namespace swath::stages {
 
-std::vector<Eigen::Vector3d> ScannerPositions::of(const Context& context, const trajectory::Trajectory& trajectory,
-                                                  const core::Block& block) const {
-  const std::shared_ptr<const georef::MapPatches> map = patches(context);
+std::vector<Eigen::Vector3d> scanner_positions(const Context& context, const trajectory::Trajectory& trajectory, const core::Block& block,
+                                               RunCache& cache) {
+  const georef::MapPatches& map = cache.get([&] { return georef::MapPatches(context.crs); });
   Eigen::Vector3d lever;
   for (Eigen::Index a = 0; a < 3; ++a) lever[a] = context.survey.calibration.lever_arm_scanner[static_cast<size_t>(a)].value;
   const Eigen::Vector3d unit(context.unit, context.unit, context.crs.vertical_metres_per_unit());
@@ -18,16 +20,10 @@ std::vector<Eigen::Vector3d> ScannerPositions::of(const Context& context, const 
       out[p] = out[p - 1];
     } else if (cursor.seek(block.time[p])) {
       const trajectory::Pose pose = cursor.pose(block.time[p]);
-      out[p] = (*map)(pose.position + pose.ecef_R_body * lever).cwiseProduct(unit) - block.origin;
+      out[p] = map(pose.position + pose.ecef_R_body * lever).cwiseProduct(unit) - block.origin;
     }
   }
   return out;
-}
-
-std::shared_ptr<const georef::MapPatches> ScannerPositions::patches(const Context& context) const {
-  const std::lock_guard lock(mutex_);
-  if (!patches_) patches_ = std::make_shared<georef::MapPatches>(context.crs);
-  return patches_;
 }
 
 }  // namespace swath::stages

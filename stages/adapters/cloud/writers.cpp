@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <array>
-#include <mutex>
 #include <optional>
 
-#include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "io/las/las_writer.h"
-#include "io/raster/geotiff.h"
-#include "io/raster/vrt.h"
 #include "io/vector/vector.h"
 #include "report/picture.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/cloud/clouds.h"
-#include "stages/adapters/cloud/tile_list.h"
 #include "stages/adapters/units.h"
 #include "stages/drawing_file.h"
 #include "stages/surfaces.h"
+#include "stages/tile.h"
+#include "stages/tile_product.h"
 
 namespace swath::stages {
 enum class WrittenTimes { recorded, adjusted };
@@ -31,7 +27,8 @@ namespace swath::stages {
 namespace {
 
 namespace fs = std::filesystem;
-using core::Column;
+
+constexpr double finest_default = 0.001;
 
 struct LasOptions {
   std::string folder = "points";
@@ -59,195 +56,140 @@ void describe(const TileFindings& r, V& v) {
   v.result("tiles", r.tiles, core::plain().in_summary(), "Tiles that were written.");
 }
 
-class LasTiles : public OptionStage<LasOptions, NoResults, TileFindings> {
- public:
-  const Info& info() const override {
-    static const Info info{"writers.las",
-                           "LAS or LAZ tiles: points of clouds with every field as recorded, others as LAS 1.4 with extra bytes.",
-                           {Grain::tile, Grain::merge},
-                           {},
-                           {},
-                           {Product::points},
-                           {}};
-    return info;
-  }
-  core::ColumnSet also_reads() const override {
-    core::ColumnSet all;
-    for (int c = 0; c < core::column_count; ++c) all.add(static_cast<Column>(c));
-    return all;
-  }
-  bool is_streamed() const override { return true; }
-  double bytes_per_point() const override { return 170.0; }
-  std::vector<std::string> products() const override { return {options.folder}; }
-  void run_tile(const Context& context, TileJob& job) const override {
-    io::LasWriteOptions o;
-    o.format = options.point_format;
-    o.scale = Eigen::Vector3d::Constant(options.scale.value_or(finest_default));
-    o.offset = offset_near(context);
-    o.crs_wkt = core::Crs(context.product_crs).wkt1();
-    o.times_as_they_are = context.weekless;
-    o.guid = context.project;
-    o.creation_year = static_cast<std::uint16_t>(context.creation_year);
-    o.creation_day = static_cast<std::uint16_t>(context.creation_day);
-    o.threads = 1;
-    std::optional<io::LasWriter> writer;
-    const auto open = [&](bool has_sources) {
-      if (has_sources) o.sources = sources(context), o.header = header_;
-      writer.emplace(context.output / options.folder / name(context, job.key), o);
-    };
-    // Fields hang on all of the points, so that these are gone through twice.
-    job.stream([&](core::Block& block) {
-      if (!writer) open(!block.source.empty());
-      writer->look_at(block);
-    });
-    if (!writer) open(false);
-    job.stream([&](core::Block& block) {
-      if (o.sources) o.sources->complete(block);
-      scale_block(context, block, true);
-      writer->write(block);
-    });
-    if (writer->overlap_lost() > 0)
-      job.tally.count("overlap flags that the point format cannot hold (point_format = 6 keeps them)", writer->overlap_lost());
-    writer->finish();
-  }
-  void run_merge(const Context& context, MergeJob& job) const override {
-    std::vector<std::string> files;
-    for (const TileKey key : job.tiles) files.push_back(name(context, key));
-    write_list(context.output / options.folder, files);
-    job.findings = core::reported(TileFindings{files.size()});
-    if (sources_)
-      for (const std::string& what : sources_->left_out()) job.tally.count("not carried from the cloud's files", what);
-  }
+/// Near the data, and the same for every tile: tiles can be joined without rounding again.
+Eigen::Vector3d offset_near(const Context& context) {
+  return {std::round(context.origin.x() / context.unit), std::round(context.origin.y() / context.unit), 0.0};
+}
 
- private:
-  static constexpr double finest_default = 0.001;
+template <class H>
+void date_file(const Context& context, H& header) {
+  header.guid = context.project;
+  header.creation_year = static_cast<std::uint16_t>(context.creation_year);
+  header.creation_day = static_cast<std::uint16_t>(context.creation_day);
+}
 
-  /// Near the data, and the same for every tile: tiles can be joined without rounding again.
-  static Eigen::Vector3d offset_near(const Context& context) {
-    return {std::round(context.origin.x() / context.unit), std::round(context.origin.y() / context.unit), 0.0};
-  }
-
-  /// The files of the run's clouds; sets header_, too. The same for every tile.
-  std::shared_ptr<const io::LasSources> sources(const Context& context) const {
-    std::call_once(sources_read_, [&] {
-      std::vector<io::LasSource> files = cloud_sources(context);
-      const bool same_places = std::all_of(files.begin(), files.end(), [](const io::LasSource& s) { return s.same_places; });
-      const bool same_steps = std::all_of(files.begin(), files.end(), [&](const io::LasSource& s) {
-        return s.header.offset == files[0].header.offset && s.header.scale == files[0].header.scale;
-      });
-      const bool has_legacy = std::any_of(files.begin(), files.end(), [](const io::LasSource& s) { return s.header.point_format < 6; });
-      const bool keeps = keeps_crs(context, files);
-      auto all = std::make_shared<const io::LasSources>(std::move(files), options.times == WrittenTimes::recorded);
-      const bool to_extended = has_legacy && options.point_format.value_or(all->header(false).point_format) >= 6;
-      const bool keep_crs = keeps && !to_extended;
-      header_ = all->header(keep_crs);
-      if (!all->same_project()) {
-        header_.guid = context.project;
-        header_.creation_year = static_cast<std::uint16_t>(context.creation_year);
-        header_.creation_day = static_cast<std::uint16_t>(context.creation_day);
-      }
-      if (options.scale || !same_places) header_.scale = Eigen::Vector3d::Constant(options.scale.value_or(finest_default));
-      if (options.scale || !same_places || !same_steps) header_.offset = offset_near(context);
-      if (options.point_format) header_.point_format = *options.point_format;
-      if (!keep_crs) io::add_las_wkt(header_, core::Crs(context.product_crs).wkt1());
-      if (!keep_crs || options.point_format) header_.version_minor = 4;
-      sources_ = std::move(all);
-    });
-    return sources_;
-  }
-
-  std::string name(const Context& context, TileKey key) const { return context.label(key) + (options.compress ? ".laz" : ".las"); }
-
-  mutable std::once_flag sources_read_;
-  mutable std::shared_ptr<const io::LasSources> sources_;
-  mutable io::LasHeader header_;
+/// The files of the run's clouds, and the header of every tile.
+struct LasRun {
+  std::shared_ptr<const io::LasSources> sources;
+  io::LasHeader header;
 };
 
-class GridTiles : public OptionStage<NoOptions, NoResults, TileFindings> {
- public:
-  const Info& info() const override {
-    static const Info info{
-        "writers.gdal",
-        "Every grid of the run (DTM, DSM, canopy, slope, hillshade, intensity, densities) as Cloud Optimized GeoTIFF tiles with "
-        "a mosaic index (VRT); sigma, count and void reason beside DTM and DSM.",
-        {Grain::tile, Grain::merge},
-        {},
-        {},
-        {Product::dtm},
-        {}};
-    return info;
-  }
-  double bytes_per_point() const override { return 0.0; }
-  // Measured 2026-11-22 with tests/stages/memory_test.cpp, tiles of 200 and 260 m, cells of 0.5 m: 108 and 144 bytes per cell, with GDAL's
-  // own blocks of 512 x 512. One surface is written at a time.
-  std::vector<Raster> rasters(const Context& c) const override {
-    Raster largest;
-    if (c.grids)
-      for (const Surface& s : made(c))
-        if (const Raster r{"", c.grids->cell(s.product), c.tile_side, 150.0}; r.total(0.0) > largest.total(0.0)) largest = r;
-    return {largest};
-  }
-  std::vector<std::string> products() const override {
-    std::vector<std::string> out;
-    for (const Surface& s : surfaces()) {
-      for (const char* ending : {"", ".vrt"}) out.push_back(std::string(name_of(s.product)) + ending);
-      if (s.has_quality) out.push_back(std::string(name_of(s.product)) + "_quality.vrt");
-    }
-    return out;
-  }
-  void run_tile(const Context& context, TileJob& job) const override {
-    for (const Surface& s : made(context)) {
-      const core::Lattice own = lattice_in(context.grids->cell(s.product), job.box);
-      const core::Grid in_metres = context.grids->window(s.product, own);
-      const fs::path folder = context.output / name_of(s.product);
-      const fs::path file = folder / name(context, s.product, job.key, "");
-      if (!s.has_quality) {
-        const bool is_height = s.unit == "height";
-        const core::Grid grid = is_height ? in_crs_units(context, in_metres) : core::Grid();
-        const std::string unit(is_height ? (context.vertical_unit == 1.0 ? "m" : "ft") : s.unit);
-        io::write_raster(file, in_crs_units(context, own), {{std::string(s.band), unit, is_height ? &grid.height : &in_metres.height}},
-                         context.product_crs, true);
-        continue;
-      }
-      const core::Grid grid = in_crs_units(context, in_metres);
-      io::write_grid(file, grid, context.product_crs, io::height_bands);
-      io::GridBands quality = io::quality_bands;
-      quality.sigma = !grid.sigma.empty();
-      quality.count = !grid.count.empty();
-      io::write_grid(folder / name(context, s.product, job.key, "_quality"), grid, context.product_crs, quality);
-    }
-  }
-  void run_merge(const Context& context, MergeJob& job) const override {
-    size_t done = 0;
-    for (const Surface& s : made(context)) {
-      const fs::path folder = context.output / name_of(s.product);
-      std::vector<std::string> files;
-      context.progress(static_cast<double>(done++) / static_cast<double>(surfaces().size()), {});
-      for (const char* kind : {"", "_quality"}) {
-        if (*kind && !s.has_quality) continue;
-        std::vector<fs::path> tiles;
-        for (const TileKey key : job.tiles) {
-          files.push_back(name(context, s.product, key, kind));
-          tiles.push_back(folder / files.back());
-        }
-        io::write_vrt(context.output / (std::string(name_of(s.product)) + kind + ".vrt"), tiles);
-      }
-      write_list(folder, files);
-    }
-    job.findings = core::reported(TileFindings{job.tiles.size()});
-  }
+LasRun las_run(const Context& context, const LasOptions& options) {
+  std::vector<io::LasSource> files = io::cloud_sources(context.survey, cloud_map(context));
+  const bool same_places = std::all_of(files.begin(), files.end(), [](const io::LasSource& s) { return s.same_places; });
+  const bool same_steps = std::all_of(files.begin(), files.end(), [&](const io::LasSource& s) {
+    return s.header.offset == files[0].header.offset && s.header.scale == files[0].header.scale;
+  });
+  const bool has_legacy = std::any_of(files.begin(), files.end(), [](const io::LasSource& s) { return s.header.point_format < 6; });
+  const bool keeps = io::keeps_crs(files, context.crs);
+  auto all = std::make_shared<const io::LasSources>(std::move(files), options.times == WrittenTimes::recorded);
+  const bool to_extended = has_legacy && options.point_format.value_or(all->header(false).point_format) >= 6;
+  const bool keep_crs = keeps && !to_extended;
+  io::LasHeader header = all->header(keep_crs);
+  if (!all->same_project()) date_file(context, header);
+  if (options.scale || !same_places) header.scale = Eigen::Vector3d::Constant(options.scale.value_or(finest_default));
+  if (options.scale || !same_places || !same_steps) header.offset = offset_near(context);
+  if (options.point_format) header.point_format = *options.point_format;
+  if (!keep_crs) io::add_las_wkt(header, core::Crs(context.product_crs).wkt1());
+  if (!keep_crs || options.point_format) header.version_minor = 4;
+  return {std::move(all), std::move(header)};
+}
 
- private:
-  static std::vector<Surface> made(const Context& context) {
-    std::vector<Surface> out;
-    for (const Surface& s : surfaces())
-      if (context.grids->has(s.product)) out.push_back(s);
-    return out;
+std::string las_name(const Context& context, TileKey key, const LasOptions& o) {
+  return context.label(key) + (o.compress ? ".laz" : ".las");
+}
+
+void write_las(TileJob& job, const Context& context, const LasOptions& options, RunCache& cache) {
+  io::LasWriteOptions o;
+  o.format = options.point_format;
+  o.scale = Eigen::Vector3d::Constant(options.scale.value_or(finest_default));
+  o.offset = offset_near(context);
+  o.crs_wkt = core::Crs(context.product_crs).wkt1();
+  o.times_as_they_are = context.weekless;
+  date_file(context, o);
+  o.threads = 1;
+  std::optional<io::LasWriter> writer;
+  const auto open = [&](bool has_sources) {
+    if (has_sources) {
+      const LasRun& run = cache.get([&] { return las_run(context, options); });
+      o.sources = run.sources, o.header = run.header;
+    }
+    writer.emplace(context.output / options.folder / las_name(context, job.key, options), o);
+  };
+  // Fields hang on all of the points, so that these are gone through twice.
+  job.stream([&](core::Block& block) {
+    if (!writer) open(!block.source.empty());
+    writer->look_at(block);
+  });
+  if (!writer) open(false);
+  job.stream([&](core::Block& block) {
+    if (o.sources) o.sources->complete(block);
+    to_crs_units(context, block);
+    writer->write(block);
+  });
+  if (writer->overlap_lost() > 0)
+    job.tally.count("overlap flags that the point format cannot hold (point_format = 6 keeps them)", writer->overlap_lost());
+  writer->finish();
+}
+TileFindings list_las(const MergeJob& job, const Context& context, const LasOptions& o, RunCache& cache, core::Tally& tally) {
+  std::vector<std::string> files;
+  for (const TileKey key : job.tiles) files.push_back(las_name(context, key, o));
+  write_list(context.output / o.folder, files);
+  if (const LasRun* run = cache.find<LasRun>())
+    for (const std::string& what : run->sources->left_out()) tally.count("not carried from the cloud's files", what);
+  return {files.size()};
+}
+
+std::vector<Surface> surfaces_made(const Context& context) {
+  std::vector<Surface> out;
+  for (const Surface& s : surfaces())
+    if (context.grids && context.grids->has(s.product)) out.push_back(s);
+  return out;
+}
+
+void write_surfaces(const TileJob& job, const Context& context) {
+  for (const Surface& s : surfaces_made(context)) {
+    const core::Grid in_metres = context.grids->window(s.product, lattice_in(context.grids->cell(s.product), job.box));
+    const bool is_height = s.unit == "height";
+    const core::Grid grid = s.has_quality || is_height ? in_crs_units(context, in_metres) : core::Grid();
+    const TileRasters out{context, std::string(name_of(s.product))};
+    if (!s.has_quality) {
+      const std::string unit(is_height ? (context.vertical_unit == 1.0 ? "m" : "ft") : s.unit);
+      out.write(job.key, in_metres.lattice, {{std::string(s.band), unit, is_height ? &grid.height : &in_metres.height}});
+      continue;
+    }
+    io::write_grid(out.file(job.key), grid, context.product_crs, io::height_bands);
+    io::GridBands quality = io::quality_bands;
+    quality.sigma = !grid.sigma.empty();
+    quality.count = !grid.count.empty();
+    io::write_grid(out.file(job.key, "_quality"), grid, context.product_crs, quality);
   }
-  static std::string name(const Context& context, Product p, TileKey key, const std::string& kind) {
-    return std::string(name_of(p)) + "_" + context.label(key) + kind + ".tif";
+}
+TileFindings index_surfaces(const MergeJob& job, const Context& context) {
+  size_t done = 0;
+  for (const Surface& s : surfaces_made(context)) {
+    context.progress(static_cast<double>(done++) / static_cast<double>(surfaces().size()), {});
+    const TileRasters out{context, std::string(name_of(s.product))};
+    out.finish(job.tiles, s.has_quality ? std::vector<std::string>{"", "_quality"} : std::vector<std::string>{""});
   }
-};
+  return {job.tiles.size()};
+}
+// Measured 2026-11-22 with tests/stages/memory_test.cpp, tiles of 200 and 260 m, cells of 0.5 m: 108 and 144 bytes per cell, with GDAL's
+// own blocks of 512 x 512. One surface is written at a time.
+TileMemory surface_memory(const NoOptions&, const Context& c) {
+  Raster largest;
+  for (const Surface& s : surfaces_made(c))
+    if (const Raster r{"", c.grids->cell(s.product), c.tile_side, 150.0}; r.total(0.0) > largest.total(0.0)) largest = r;
+  return {0.0, {largest}};
+}
+std::vector<std::string> surface_files(const NoOptions&) {
+  std::vector<std::string> out;
+  for (const Surface& s : surfaces()) {
+    for (const char* ending : {"", ".vrt"}) out.push_back(std::string(name_of(s.product)) + ending);
+    if (s.has_quality) out.push_back(std::string(name_of(s.product)) + "_quality.vrt");
+  }
+  return out;
+}
 
 /// The DTM's cells that have a height, as one lattice whose borders do not depend on the tiling; empty where there is none.
 core::Lattice extent_of(const Context& context, const std::vector<TileKey>& tiles) {
@@ -310,51 +252,56 @@ void describe(const PictureFindings& r, V& v) {
   v.result("file", r.file, "Name of the picture within the output.");
 }
 
-class PictureWriter : public OptionStage<PictureWriteOptions, NoResults, PictureFindings> {
- public:
-  const Info& info() const override {
-    static const Info info{"writers.picture",
-                           "Picture of the terrain: hillshade with contours, as PNG, SVG or PDF.",
-                           {Grain::merge},
-                           {},
-                           {},
-                           {Product::dtm},
-                           {}};
-    return info;
-  }
-  std::vector<std::string> products() const override { return {options.file}; }
-  void run_merge(const Context& context, MergeJob& job) const override {
-    const core::Lattice extent = extent_of(context, job.tiles);
-    if (extent.size() == 0) return;
-    core::Grid grid = overview(context, extent, 2 * options.max_side);
-    const double cell = grid.lattice.cell;
-    grid = in_crs_units(context, std::move(grid));
+std::optional<PictureFindings> draw_picture(const MergeJob& job, const Context& context, const In<Product::dtm>&,
+                                            const PictureWriteOptions& options) {
+  const core::Lattice extent = extent_of(context, job.tiles);
+  if (extent.size() == 0) return std::nullopt;
+  core::Grid grid = overview(context, extent, 2 * options.max_side);
+  const double cell = grid.lattice.cell;
+  grid = in_crs_units(context, std::move(grid));
 
-    report::PictureOptions o = options;
-    if (o.title.empty()) o.title = context.survey.name;
-    o.unit = context.crs.unit_name() == "metre" ? "m" : "ft";
-    o.height_unit = context.vertical_unit == 1.0 ? "m" : "ft";
-    o.light.exaggeration *= context.vertical_unit / context.unit;
-    std::vector<core::ContourLine> lines;
-    if (const fs::path contours = context.made(options.contours); !options.contours.empty() && !contours.empty()) {
-      // The overview has its own corner where it was averaged: contours are moved along.
-      const bool moved = cell != extent.cell;
-      const double x0 = moved ? extent.west() / context.unit : 0.0, y0 = moved ? extent.south() / context.unit : 0.0;
-      for (io::VectorLine& line : io::read_lines(contours).lines) {
-        for (double& x : line.x) x -= x0;
-        for (double& y : line.y) y -= y0;
-        lines.push_back({std::move(line.x), std::move(line.y), line.height, line.index, line.closed});
-      }
+  report::PictureOptions o = options;
+  if (o.title.empty()) o.title = context.survey.name;
+  o.unit = context.crs.unit_name() == "metre" ? "m" : "ft";
+  o.height_unit = context.vertical_unit == 1.0 ? "m" : "ft";
+  o.light.exaggeration *= context.vertical_unit / context.unit;
+  std::vector<core::ContourLine> lines;
+  if (const fs::path contours = context.made(options.contours); !options.contours.empty() && !contours.empty()) {
+    // The overview has its own corner where it was averaged: contours are moved along.
+    const bool moved = cell != extent.cell;
+    const double x0 = moved ? extent.west() / context.unit : 0.0, y0 = moved ? extent.south() / context.unit : 0.0;
+    for (io::VectorLine& line : io::read_lines(contours).lines) {
+      for (double& x : line.x) x -= x0;
+      for (double& y : line.y) y -= y0;
+      lines.push_back({std::move(line.x), std::move(line.y), line.height, line.index, line.closed});
     }
-    write_drawing(context.output / options.file, report::relief_map(grid, lines, o));
-    job.findings = core::reported(PictureFindings{options.file});
   }
-};
+  write_drawing(context.output / options.file, report::relief_map(grid, lines, o));
+  return PictureFindings{options.file};
+}
 
 }  // namespace
 
-std::unique_ptr<Stage> make_las_writer() { return std::make_unique<LasTiles>(); }
-std::unique_ptr<Stage> make_picture_writer() { return std::make_unique<PictureWriter>(); }
-std::unique_ptr<Stage> make_gdal_writer() { return std::make_unique<GridTiles>(); }
+Entry las_writer_stage() {
+  core::ColumnSet all;
+  for (int c = 0; c < core::column_count; ++c) all.add(static_cast<core::Column>(c));
+  return tile<write_las, list_las>("writers.las",
+                                   "LAS or LAZ tiles: points of clouds with every field as recorded, others as LAS 1.4 with extra bytes.",
+                                   {.columns = {.needs = {}, .reads = all},
+                                    .memory = [](const LasOptions&, const Context&) { return TileMemory{170.0}; },
+                                    .products = [](const LasOptions& o) { return std::vector{o.folder}; },
+                                    .is_streamed = true});
+}
+Entry gdal_writer_stage() {
+  return tile<write_surfaces, index_surfaces>("writers.gdal",
+                                              "Every grid of the run (DTM, DSM, canopy, slope, hillshade, intensity, densities) as Cloud "
+                                              "Optimized GeoTIFF tiles with a mosaic index "
+                                              "(VRT); sigma, count and void reason beside DTM and DSM.",
+                                              {.needs = {Product::dtm}, .memory = surface_memory, .products = surface_files});
+}
+Entry picture_writer_stage() {
+  return merge<draw_picture>("writers.picture", "Picture of the terrain: hillshade with contours, as PNG, SVG or PDF.",
+                             {.products = [](const PictureWriteOptions& o) { return std::vector{o.file}; }});
+}
 
 }  // namespace swath::stages

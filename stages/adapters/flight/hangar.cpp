@@ -1,15 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/adapters/flight/hangar.h"
+// Lever arms by a hangar survey.
+#include <filesystem>
+#include <string>
+#include <vector>
 
+#include "calib/hangar/hangar_results.h"
+#include "core/config/option.h"
 #include "core/error.h"
 #include "io/survey/hangar_file.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
+#include "stages/adapters/adapters.h"
+#include "stages/once.h"
 
 namespace swath::stages {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct LeverArmOptions {
+  bool hold_stations = false;
+};
+
+template <class V>
+void describe(LeverArmOptions& o, V& v) {
+  v.option("hold_stations", o.hold_stations, "Takes the stations as free of error. Only for comparison: the sigmas come out far too small.",
+           "Jubanski et al.");
+}
 
 io::HangarSurvey read(const io::Survey& survey) {
   if (!survey.hangar)
@@ -17,8 +34,6 @@ io::HangarSurvey read(const io::Survey& survey) {
                             "state hangar = \"hangar.toml\" in the survey (docs/lever-arm.md)");
   return io::read_hangar(io::resolve(survey, *survey.hangar));
 }
-
-}  // namespace
 
 std::vector<std::string> lever_arm_files(const LeverArmOptions&) { return {"lever_arm.json", "lever_arm.toml"}; }
 
@@ -38,6 +53,14 @@ calib::HangarResult survey_hangar(const io::Survey& survey, const LeverArmOption
   io::write_text_file(to.folder / "lever_arm.json", io::to_json(core::reported(result)));
   io::write_text_file(to.folder / "lever_arm.toml", calib::survey_lines(result));
   return result;
+}
+
+}  // namespace
+
+Entry lever_arm_stage() {
+  return once<survey_hangar>("calib.lever_arm",
+                             "Lever arms of IMU, scanner and antenna by a hangar survey with a total station, with their covariance.",
+                             {.check = expect_hangar, .inputs = hangar_files, .products = lever_arm_files});
 }
 
 }  // namespace swath::stages

@@ -1,24 +1,56 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/adapters/flight/ins_gnss.h"
-
+// The trajectory of a flight from its IMU and GNSS records, with its report, plots and, where truth is known, its errors.
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <limits>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
+#include "core/config/option.h"
 #include "core/error.h"
 #include "core/time.h"
 #include "io/records/sbet.h"
+#include "io/survey/survey.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "report/flight_charts.h"
+#include "stages/adapters/adapters.h"
 #include "stages/drawing_file.h"
+#include "stages/once.h"
 #include "trajectory/checks.h"
 #include "trajectory/compare.h"
+#include "trajectory/ins/ins_gnss.h"
+
+namespace swath::stages {
+
+enum class PlotFormat { png, svg, pdf };
+
+}  // namespace swath::stages
+
+namespace swath::core {
+template <>
+struct Choices<stages::PlotFormat> {
+  static constexpr std::array<std::string_view, 3> names{"png", "svg", "pdf"};
+};
+}  // namespace swath::core
 
 namespace swath::stages {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct InsGnssStageOptions : trajectory::InsGnssOptions {
+  std::vector<PlotFormat> plots{PlotFormat::png, PlotFormat::svg};
+};
+
+template <class V>
+void describe(InsGnssStageOptions& o, V& v) {
+  describe(static_cast<trajectory::InsGnssOptions&>(o), v);
+  v.option("plots", o.plots, "Formats of the plots in the folder plots; an empty list makes none.");
+}
 
 /// The true trajectory of a simulated survey: an SBET, whose seconds of week are of the week that the flight begins in.
 std::optional<trajectory::Trajectory> truth_of(const io::Survey& survey, double first) {
@@ -58,8 +90,6 @@ void write_products(const Output& to, const InsGnssStageOptions& o, const trajec
       write_drawing(to.folder / "plots" / (c.name + "." + ending), report::drawing(c.chart));
     }
 }
-
-}  // namespace
 
 std::vector<std::string> ins_gnss_products(const InsGnssStageOptions& o) {
   std::vector<std::string> out{"trajectory.json"};
@@ -103,6 +133,16 @@ Given<trajectory::Trajectory, trajectory::InsFigures> smooth_flight(core::ImuDat
   constexpr double steps = 2.5;  // of the trajectory's records; a longer one is a gap
   interpolation.max_gap.value = std::max(interpolation.max_gap.value, steps / o.output_rate.value);
   return {trajectory::Trajectory(std::move(result.trajectory), interpolation, "trajectory.ins_gnss"), std::move(result.report.figures)};
+}
+
+}  // namespace
+
+Entry ins_gnss_stage() {
+  return once<smooth_flight>(
+      "trajectory.ins_gnss",
+      "Smoothed trajectory from IMU and GNSS records: strapdown mechanisation, error-state Kalman filter, smoother; with "
+      "its covariances, estimates of the sensors' errors and plots.",
+      {.check = expect_imu_spec, .inputs = true_trajectory, .products = ins_gnss_products});
 }
 
 }  // namespace swath::stages

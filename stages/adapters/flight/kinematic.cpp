@@ -1,16 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/adapters/flight/kinematic.h"
-
+// Positions of the GNSS antenna at events.
 #include <limits>
+#include <string>
+#include <vector>
 
+#include "core/config/option.h"
 #include "core/error.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "report/chart.h"
+#include "stages/adapters/adapters.h"
 #include "stages/drawing_file.h"
+#include "stages/once.h"
+#include "trajectory/event_table.h"
 
 namespace swath::stages {
 namespace {
+
+struct KinematicStageOptions : trajectory::KinematicOptions {
+  trajectory::Interpolator method = trajectory::Interpolator::kalman;
+  std::string file = "events.csv";
+  bool leave_one_out = false;
+};
+
+template <class V>
+void describe(KinematicStageOptions& o, V& v) {
+  v.option("method", o.method, "Kalman filter of the window; or, to compare, line, 2nd-degree polynomial or RTS smoother.", "Jubanski2005");
+  v.option("file", o.file, "Name of the table of events within the output.");
+  v.option("leave_one_out", o.leave_one_out, "Write the leave-one-out test of all four methods (leave_one_out.txt, .png, .svg).");
+  describe(static_cast<trajectory::KinematicOptions&>(o), v);
+}
 
 using trajectory::Interpolator;
 
@@ -49,8 +68,6 @@ report::Chart drawing(const trajectory::LeaveOneOut& test, double start) {
   return chart;
 }
 
-}  // namespace
-
 std::vector<std::string> kinematic_products(const KinematicStageOptions& o) {
   std::vector<std::string> out{o.file, "kinematic.json"};
   if (o.leave_one_out) out.insert(out.end(), {"leave_one_out.txt", "leave_one_out.png", "leave_one_out.svg"});
@@ -81,6 +98,14 @@ trajectory::EventFigures position_events(const core::GnssData& all, const core::
   io::write_text_file(to.folder / "leave_one_out.txt", solved.test.table());
   for (const char* name : {"leave_one_out.png", "leave_one_out.svg"}) write_drawing(to.folder / name, report::drawing(chart));
   return findings;
+}
+
+}  // namespace
+
+Entry kinematic_stage() {
+  return once<position_events>("trajectory.kinematic",
+                               "Positions of the GNSS antenna at events, by a Kalman filter from both sides; leave-one-out test.",
+                               {.check = expect_crs, .products = kinematic_products});
 }
 
 }  // namespace swath::stages

@@ -1,20 +1,54 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/adapters/flight/time_sync.h"
-
+// The events of a flight on GPS time.
 #include <cmath>
+#include <filesystem>
+#include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "core/config/option.h"
+#include "core/config/result.h"
 #include "core/error.h"
 #include "io/records/clock_log.h"
 #include "io/records/event_file.h"
 #include "io/text/output_file.h"
 #include "report/chart.h"
+#include "stages/adapters/adapters.h"
 #include "stages/drawing_file.h"
+#include "stages/once.h"
+#include "trajectory/clock/techniques.h"
 
 namespace swath::stages {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct TimeSyncOptions : trajectory::TechniqueOptions {
+  std::string technique;
+  std::string file = "events_time.csv";
+};
+
+template <class V>
+void describe(TimeSyncOptions& o, V& v) {
+  describe(static_cast<trajectory::TechniqueOptions&>(o), v);
+  v.option("technique", o.technique, "Technique whose events are handed on; empty: all.");
+  v.option("file", o.file, "Name of the table of events within the output.");
+}
+
+struct TimeSyncFindings {
+  std::optional<trajectory::ClockFigures> clock{};
+  std::vector<trajectory::TechniqueFigures> events{};
+  std::vector<trajectory::TechniqueDifferences> comparisons{};
+};
+
+template <class V>
+void describe(const TimeSyncFindings& r, V& v) {
+  v.table("clock", r.clock, "The log of the computer's clock.");
+  v.tables("events", r.events, "Events by technique.");
+  v.tables_if(!r.comparisons.empty(), "comparisons", r.comparisons, "Techniques against one another.");
+}
+
 using trajectory::ClockModel;
 using trajectory::ClockReading;
 using trajectory::CorrectedEvents;
@@ -82,13 +116,10 @@ report::Chart drawing(const std::optional<ClockModel>& clock, bool is_literal, c
   return chart;
 }
 
-}  // namespace
-
 std::vector<std::string> time_sync_products(const TimeSyncOptions& o) { return {o.file, "time_sync.png", "time_sync.svg"}; }
 
 std::vector<fs::path> event_files(const io::Survey& survey) {
-  std::vector<fs::path> out;
-  for (const io::EventFile& f : survey.events) out.push_back(io::resolve(survey, f.file));
+  std::vector<fs::path> out = files_in<&io::Survey::events>(survey);
   for (const io::ClockLog& f : survey.clock) out.push_back(io::resolve(survey, f.file));
   return out;
 }
@@ -133,6 +164,15 @@ Given<core::EventData, TimeSyncFindings> sync_times(const io::Survey& survey, co
   for (const CorrectedEvents& t : techniques)
     if (o.technique.empty() || t.events.technique == o.technique) given.push_back(t.events);
   return {io::events_of(given), std::move(found)};
+}
+
+}  // namespace
+
+Entry time_sync_stage() {
+  return once<sync_times>("time.sync",
+                          "Brings events to GPS time: corrects those of the computer's clock by its logs, flags doubtful ones, compares "
+                          "techniques.",
+                          {.check = expect_events, .inputs = event_files, .products = time_sync_products});
 }
 
 }  // namespace swath::stages

@@ -2,28 +2,21 @@
 // The run against what is known of a simulated survey: every return by its record, the ground labels, the terrain.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <optional>
 
-#include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "io/raster/geotiff.h"
 #include "io/text/npy.h"
-#include "io/text/output_file.h"
-#include "io/text/value_file.h"
 #include "quality/truth_errors.h"
 #include "stages/adapters/adapters.h"
-#include "stages/grid_tile.h"
+#include "stages/tile.h"
 
 namespace swath::stages {
 namespace {
 
 namespace fs = std::filesystem;
-using core::Column;
 
-fs::path sums_file(const fs::path& folder, TileKey key) {
-  return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".sums");
-}
+using core::Column;
 
 struct TruthFindings {
   std::optional<std::string> truth{};
@@ -44,112 +37,96 @@ void describe(const TruthFindings& r, V& v) {
   v.table("dtm", r.dtm, "Errors of the terrain model.");
 }
 
-class Truth : public OptionStage<NoOptions, NoResults, TruthFindings> {
- public:
-  const Info& info() const override {
-    static const Info info{"report.truth",
-                           "Errors against truth, where the survey names it: points, their sigmas, ground labels, terrain.",
-                           {Grain::tile, Grain::merge},
-                           {Column::record, Column::strip},
-                           {},
-                           {Product::points},
-                           {}};
-    return info;
-  }
-  core::ColumnSet also_reads() const override { return {Column::sigma_h, Column::sigma_v, Column::classification}; }
-
-  std::vector<fs::path> inputs(const io::Survey& survey) const override {
-    std::vector<fs::path> out;
-    for (const auto& f : {survey.truth.returns, survey.truth.dtm})
-      if (f) out.push_back(io::resolve(survey, *f));
-    return out;
-  }
-
-  void check(const Context& context) const override {
-    if (context.survey.truth.returns && context.survey.laser.size() > 1)
-      throw core::usage_error("report.truth: truth.returns has one row per record of one laser file; the survey names " +
-                                  std::to_string(context.survey.laser.size()),
-                              context.survey.name, "compare one file at a time, or leave truth.returns out");
-  }
-
-  void run_tile(const Context& context, TileJob& job) const override {
-    quality::TruthSums sums;
-    if (context.survey.truth.returns) sums = compare(context, job.block, job.own);
-    io::write_text_file(sums_file(job.folder, job.key), {reinterpret_cast<const char*>(&sums), sizeof sums});
-  }
-
-  void run_merge(const Context& context, MergeJob& job) const override {
-    if (!context.survey.truth.returns && !context.survey.truth.dtm) {
-      TruthFindings found;
-      found.truth = "none: the survey names no truth";
-      job.findings = core::reported(found);
-      return;
+/// Rows of the truth are those of the laser records; a tile's points of one strip rise in record.
+quality::TruthSums compare_points(const Context& context, const core::Block& block, size_t own) {
+  const fs::path file = io::resolve(context.survey, *context.survey.truth.returns);
+  const io::NpyHeader header = io::read_npy_header(file);
+  io::NpyReader truth(file, {io::field_of(header, "e", file), io::field_of(header, "n", file), io::field_of(header, "h", file),
+                             io::field_of(header, "cls", file)});
+  constexpr size_t window = 1 << 16;
+  std::vector<std::vector<double>> columns;
+  std::uint64_t first = 0, rows = 0;
+  quality::TruthSums s;
+  for (size_t i = 0; i < own; ++i) {
+    const std::uint64_t row = block.record[i];
+    if (row >= truth.rows())
+      throw core::Error("record " + std::to_string(row) + " has no row of truth", file.string(),
+                        "truth.returns must have one row per laser record");
+    if (row < first || row >= first + rows) {
+      first = row;
+      rows = std::min<std::uint64_t>(window, truth.rows() - first);
+      truth.read(first, rows, columns);
     }
-    quality::TruthSums all;
-    for (const TileKey key : job.tiles) {
-      const std::string bytes = io::read_text_file(sums_file(job.folder, key));
-      quality::TruthSums s;
-      if (bytes.size() != sizeof s) io::cut_short(sums_file(job.folder, key));
-      std::memcpy(&s, bytes.data(), sizeof s);
-      all.add(s);
-    }
-    TruthFindings found;
-    found.points = quality::point_errors(all);
-    if (found.points) found.rms_3d = found.points->rms_3d;
-    found.ground = quality::label_errors(all);
-    if (context.survey.truth.dtm && context.grids->has(Product::dtm)) compare_terrain(context, job.tiles, found);
-    job.findings = core::reported(found);
+    const size_t k = row - first;
+    s.add(block, i, {columns[0][k] * context.unit, columns[1][k] * context.unit, columns[2][k] * context.vertical_unit},
+          static_cast<int>(columns[3][k]));
   }
+  return s;
+}
 
- private:
-  /// Rows of the truth are those of the laser records; a tile's points of one strip rise in record.
-  static quality::TruthSums compare(const Context& context, const core::Block& block, size_t own) {
-    const fs::path file = io::resolve(context.survey, *context.survey.truth.returns);
-    const io::NpyHeader header = io::read_npy_header(file);
-    io::NpyReader truth(file, {io::field_of(header, "e", file), io::field_of(header, "n", file), io::field_of(header, "h", file),
-                               io::field_of(header, "cls", file)});
-    constexpr size_t window = 1 << 16;
-    std::vector<std::vector<double>> columns;
-    std::uint64_t first = 0, rows = 0;
-    quality::TruthSums s;
-    for (size_t i = 0; i < own; ++i) {
-      const std::uint64_t row = block.record[i];
-      if (row >= truth.rows())
-        throw core::Error("record " + std::to_string(row) + " has no row of truth", file.string(),
-                          "truth.returns must have one row per laser record");
-      if (row < first || row >= first + rows) {
-        first = row;
-        rows = std::min<std::uint64_t>(window, truth.rows() - first);
-        truth.read(first, rows, columns);
-      }
-      const size_t k = row - first;
-      s.add(block, i, {columns[0][k] * context.unit, columns[1][k] * context.unit, columns[2][k] * context.vertical_unit},
-            static_cast<int>(columns[3][k]));
-    }
-    return s;
+void compare_terrain(const Context& context, const std::vector<TileKey>& tiles, TruthFindings& found) {
+  const fs::path file = io::resolve(context.survey, *context.survey.truth.dtm);
+  const In<Product::dtm> terrain{*context.grids};
+  const double cell = terrain.cell();
+  const io::RasterInfo raster = io::read_raster_info(file);
+  if (std::abs(raster.geotransform[1] * context.unit - cell) > 1e-6 * cell) {
+    found.dtm_not_compared = "not compared: the truth has another cell";
+    return;
   }
+  quality::TerrainSums sums;
+  for (const TileKey key : tiles) {
+    const core::Lattice own = terrain.lattice(context.box_of(key));
+    core::Lattice in_truth = own;
+    in_truth.cell = cell / context.unit;
+    sums.add(terrain.window(own), io::read_grid(file, in_truth), context.vertical_unit);
+  }
+  found.dtm = sums.errors();
+}
+fs::path truth_sums(const fs::path& folder, TileKey key) { return piece_file(folder, key, "sums"); }
 
-  static void compare_terrain(const Context& context, const std::vector<TileKey>& tiles, TruthFindings& found) {
-    const fs::path file = io::resolve(context.survey, *context.survey.truth.dtm);
-    const double cell = context.grids->cell(Product::dtm);
-    const io::RasterInfo raster = io::read_raster_info(file);
-    if (std::abs(raster.geotransform[1] * context.unit - cell) > 1e-6 * cell) {
-      found.dtm_not_compared = "not compared: the truth has another cell";
-      return;
-    }
-    quality::TerrainSums sums;
-    for (const TileKey key : tiles) {
-      const core::Lattice own = lattice_in(cell, context.box_of(key));
-      core::Lattice in_truth = own;
-      in_truth.cell = cell / context.unit;
-      sums.add(context.grids->window(Product::dtm, own), io::read_grid(file, in_truth), context.vertical_unit);
-    }
-    found.dtm = sums.errors();
+void sum_errors(const TileJob& job, const Context& context) {
+  quality::TruthSums sums;
+  if (context.survey.truth.returns) sums = compare_points(context, job.block, job.own);
+  write_rows(truth_sums(job.folder, job.key), std::vector{sums});
+}
+TruthFindings find_errors(const MergeJob& job, const Context& context) {
+  TruthFindings found;
+  if (!context.survey.truth.returns && !context.survey.truth.dtm) {
+    found.truth = "none: the survey names no truth";
+    return found;
   }
-};
+  std::vector<quality::TruthSums> tiles;
+  for (const TileKey key : job.tiles) read_rows(truth_sums(job.folder, key), tiles);
+  quality::TruthSums all;
+  for (const quality::TruthSums& s : tiles) all.add(s);
+  found.points = quality::point_errors(all);
+  if (found.points) found.rms_3d = found.points->rms_3d;
+  found.ground = quality::label_errors(all);
+  if (context.survey.truth.dtm && context.grids->has(Product::dtm)) compare_terrain(context, job.tiles, found);
+  return found;
+}
+
+std::vector<fs::path> truth_files(const io::Survey& survey) {
+  std::vector<fs::path> out;
+  for (const auto& f : {survey.truth.returns, survey.truth.dtm})
+    if (f) out.push_back(io::resolve(survey, *f));
+  return out;
+}
+void expect_one_laser(const Context& context, const NoOptions&) {
+  if (context.survey.truth.returns && context.survey.laser.size() > 1)
+    throw core::usage_error("report.truth: truth.returns has one row per record of one laser file; the survey names " +
+                                std::to_string(context.survey.laser.size()),
+                            context.survey.name, "compare one file at a time, or leave truth.returns out");
+}
 
 }  // namespace
 
-std::unique_ptr<Stage> make_truth() { return std::make_unique<Truth>(); }
+Entry truth_stage() {
+  return tile<sum_errors, find_errors>(
+      "report.truth", "Errors against truth, where the survey names it: points, their sigmas, ground labels, terrain.",
+      {.columns = {.needs = {Column::record, Column::strip}, .reads = {Column::sigma_h, Column::sigma_v, Column::classification}},
+       .check = expect_one_laser,
+       .inputs = truth_files});
+}
 
 }  // namespace swath::stages

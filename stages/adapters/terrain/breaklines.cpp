@@ -2,18 +2,13 @@
 #include "stages/adapters/terrain/breaklines.h"
 
 #include <algorithm>
-#include <cstring>
-#include <mutex>
 
 #include "core/config/option_visitors.h"
-#include "core/config/result_visitors.h"
 #include "core/error.h"
-#include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "io/vector/breaklines.h"
 #include "stages/adapters/adapters.h"
 #include "stages/area.h"
-#include "stages/grid_tile.h"
 #include "stages/waters.h"
 #include "terrain/dtm.h"
 #include "terrain/water/breakline_area.h"
@@ -25,10 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* settled_file = "breaklines.settled";
 constexpr const char* options_file = "options.json";
-
-fs::path shore_file(const fs::path& folder, TileKey key) {
-  return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".shores");
-}
 
 /// The survey's features in metres of the run's Blocks.
 std::vector<core::Breakline> features_of(const Context& context, core::Tally& tally) {
@@ -92,106 +83,82 @@ void describe(const BreaklineFindings& r, V& v) {
   v.result("edges", r.edges, "Edges of the network that they make.");
 }
 
-class BreaklineStage : public OptionStage<SettleOptions, BreaklineCounts, BreaklineFindings> {
- public:
-  const Info& info() const override {
-    static const Info info{"terrain.breaklines",
-                           "Breaklines, boundaries and water of the survey made ready: lines noded, lakes flat, rivers falling.",
-                           {Grain::tile, Grain::merge},
-                           {core::Column::classification, core::Column::flags},
-                           {},
-                           {Product::points},
-                           {Product::breaklines}};
-    return info;
-  }
-  core::ColumnSet also_reads() const override { return {core::Column::sigma_v}; }
-  std::vector<fs::path> inputs(const io::Survey& survey) const override {
-    std::vector<fs::path> out;
-    for (const io::BreaklineFile& f : survey.breaklines) out.push_back(io::resolve(survey, f.file));
-    return out;
-  }
-  void check(const Context& context) const override {
-    if (context.survey.breaklines.empty())
-      throw core::usage_error("terrain.breaklines: the survey names no [[breaklines]]", context.survey.name,
-                              "name their files in survey.toml, or leave the stage out");
-  }
-  void run_tile(const Context& context, TileJob& job) const override {
-    terrain::DtmOptions ground;
-    ground.classes = options.classes;
-    const auto shores =
-        terrain::shore_points(job.block, terrain::terrain_rows(job.block, ground), job.own, features(context), options.water);
-    core::count_results(BreaklineCounts{shores.size()}, job.tally);
-    io::write_text_file(shore_file(job.folder, job.key),
-                        {reinterpret_cast<const char*>(shores.data()), shores.size() * sizeof(terrain::ShorePoint)});
-  }
-  void run_merge(const Context& context, MergeJob& job) const override {
-    std::vector<core::Breakline> all = features_of(context, job.tally);
-    std::vector<std::vector<terrain::ShorePoint>> shores(all.size());
-    for (const TileKey key : job.tiles) {
-      const fs::path file = shore_file(job.folder, key);
-      const std::string bytes = io::read_text_file(file);
-      if (bytes.size() % sizeof(terrain::ShorePoint) != 0) io::cut_short(file);
-      for (size_t at = 0; at + sizeof(terrain::ShorePoint) <= bytes.size(); at += sizeof(terrain::ShorePoint)) {
-        terrain::ShorePoint p;
-        std::memcpy(&p, bytes.data() + at, sizeof p);
-        if (p.feature >= shores.size()) io::cut_short(file);
-        shores[p.feature].push_back(p);
-      }
-    }
-    std::vector<terrain::SettledLine> settled;
-    BreaklineFindings found;
-    for (size_t f = 0; f < all.size(); ++f) {
-      const bool derived = all[f].is_water() && !all[f].has_height;
-      const auto points = shores[f].size();
-      if (all[f].is_water()) {
-        all[f] = terrain::with_heights(all[f], std::move(shores[f]), options.water, job.tally);
-        found.waters.push_back(account(context, all[f], derived, points));
-      }
-      settled.push_back({std::move(all[f]), derived});
-    }
-    const terrain::Breaklines ready(settled, options, context.origin);  // reports lines that meet at different heights
-    found.features = settled.size();
-    found.edges = ready.network().edges.size();
-    job.findings = core::reported(found);
-    io::write_text_file(job.folder / settled_file, terrain::pack(settled));
-    terrain::BreaklineOptions mine = options;
-    io::write_text_file(job.folder / options_file, io::to_json(core::effective_values(core::described(mine))));
-  }
+SettledWater account(const Context& context, const core::Breakline& b, bool derived, size_t points) {
+  SettledWater one{b.place.substr(b.place.rfind('/') + 1), b.kind == core::BreaklineKind::lake ? "lake" : "river"};
+  if (derived) one.shore_points = points;
+  if (!b.has_height) return one;
+  const auto [low, high] = std::minmax_element(b.parts.front().begin(), b.parts.front().end(),
+                                               [](const Eigen::Vector3d& p, const Eigen::Vector3d& q) { return p.z() < q.z(); });
+  one.lowest = low->z() + context.origin.z();
+  one.highest = high->z() + context.origin.z();
+  one.sigma = b.sigma;
+  return one;
+}
+fs::path shore_file(const fs::path& folder, TileKey key) { return piece_file(folder, key, "shores"); }
 
- private:
-  const std::vector<core::Breakline>& features(const Context& context) const {
-    std::call_once(once_, [&] {
-      core::Tally unheard;  // the merge reads the same files and reports
-      features_ = features_of(context, unheard);
-    });
-    return features_;
+BreaklineCounts find_shores(const TileJob& job, const Context& context, const SettleOptions& o, RunCache& cache) {
+  const std::vector<core::Breakline>& features = cache.get([&] {
+    core::Tally unheard;  // the merge reads the same files and reports
+    return features_of(context, unheard);
+  });
+  terrain::DtmOptions ground;
+  ground.classes = o.classes;
+  const auto shores = terrain::shore_points(job.block, terrain::terrain_rows(job.block, ground), job.own, features, o.water);
+  write_rows(shore_file(job.folder, job.key), shores);
+  return {shores.size()};
+}
+BreaklineFindings settle_features(const MergeJob& job, const Context& context, const SettleOptions& o, core::Tally& tally) {
+  std::vector<core::Breakline> all = features_of(context, tally);
+  std::vector<std::vector<terrain::ShorePoint>> shores(all.size());
+  for (const TileKey key : job.tiles) {
+    std::vector<terrain::ShorePoint> points;
+    read_rows(shore_file(job.folder, key), points);
+    for (const terrain::ShorePoint& p : points) {
+      if (p.feature >= shores.size()) io::cut_short(shore_file(job.folder, key));
+      shores[p.feature].push_back(p);
+    }
   }
-  static SettledWater account(const Context& context, const core::Breakline& b, bool derived, size_t points) {
-    SettledWater one{b.place.substr(b.place.rfind('/') + 1), b.kind == core::BreaklineKind::lake ? "lake" : "river"};
-    if (derived) one.shore_points = points;
-    if (!b.has_height) return one;
-    const auto [low, high] = std::minmax_element(b.parts.front().begin(), b.parts.front().end(),
-                                                 [](const Eigen::Vector3d& p, const Eigen::Vector3d& q) { return p.z() < q.z(); });
-    one.lowest = low->z() + context.origin.z();
-    one.highest = high->z() + context.origin.z();
-    one.sigma = b.sigma;
-    return one;
+  std::vector<terrain::SettledLine> settled;
+  BreaklineFindings found;
+  for (size_t f = 0; f < all.size(); ++f) {
+    const bool derived = all[f].is_water() && !all[f].has_height;
+    const auto points = shores[f].size();
+    if (all[f].is_water()) {
+      all[f] = terrain::with_heights(all[f], std::move(shores[f]), o.water, tally);
+      found.waters.push_back(account(context, all[f], derived, points));
+    }
+    settled.push_back({std::move(all[f]), derived});
   }
-  mutable std::once_flag once_;
-  mutable std::vector<core::Breakline> features_;
-};
+  const terrain::Breaklines ready(settled, o, context.origin);  // reports lines that meet at different heights
+  found.features = settled.size();
+  found.edges = ready.network().edges.size();
+  io::write_text_file(job.folder / settled_file, terrain::pack(settled));
+  terrain::BreaklineOptions mine = o;
+  io::write_text_file(job.folder / options_file, io::to_json(core::effective_values(core::described(mine))));
+  return found;
+}
+
+void expect_breaklines(const Context& context, const SettleOptions&) {
+  if (context.survey.breaklines.empty())
+    throw core::usage_error("terrain.breaklines: the survey names no [[breaklines]]", context.survey.name,
+                            "name their files in survey.toml, or leave the stage out");
+}
 
 }  // namespace
 
-std::unique_ptr<terrain::Breaklines> settled_breaklines(const Context& context) {
+const terrain::Breaklines* breaklines_of(const Context& context, RunCache& cache) {
   if (!context.grids || !context.grids->has(Product::breaklines)) return nullptr;
   const fs::path folder = context.grids->folder(Product::breaklines);
-  terrain::BreaklineOptions options;
-  std::vector<core::Fault> faults;
-  core::read_options(core::described(options), io::read_value_file(folder / options_file), "", faults);
-  core::throw_if_any(faults);
-  return std::make_unique<terrain::Breaklines>(terrain::unpack(io::read_text_file(folder / settled_file), (folder / settled_file).string()),
-                                               options, context.origin);
+  return cache
+      .get([&] {
+        terrain::BreaklineOptions options;
+        std::vector<core::Fault> faults;
+        core::read_options(core::described(options), io::read_value_file(folder / options_file), "", faults);
+        core::throw_if_any(faults);
+        return std::make_unique<terrain::Breaklines>(
+            terrain::unpack(io::read_text_file(folder / settled_file), (folder / settled_file).string()), options, context.origin);
+      })
+      .get();
 }
 
 std::vector<Box> waters_of(const Context& context) {
@@ -212,6 +179,13 @@ std::vector<Box> waters_of(const Context& context) {
   return out;
 }
 
-std::unique_ptr<Stage> make_breaklines() { return std::make_unique<BreaklineStage>(); }
+Entry breaklines_stage() {
+  return tile<find_shores, settle_features>(
+      "terrain.breaklines", "Breaklines, boundaries and water of the survey made ready: lines noded, lakes flat, rivers falling.",
+      {.columns = {.needs = {core::Column::classification, core::Column::flags}, .reads = {core::Column::sigma_v}},
+       .gives = {Product::breaklines},
+       .check = expect_breaklines,
+       .inputs = files_in<&io::Survey::breaklines>});
+}
 
 }  // namespace swath::stages

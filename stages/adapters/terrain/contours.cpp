@@ -4,23 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 
-#include "core/config/result_visitors.h"
 #include "core/geo/crs.h"
 #include "core/paste.h"
 #include "core/statistics.h"
-#include "io/text/output_file.h"
-#include "io/text/value_file.h"
 #include "io/vector/vector.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/terrain/breaklines.h"
-#include "stages/adapters/units.h"
-#include "stages/grid_tile.h"
 #include "stages/segment_file.h"
 #include "terrain/contours/contour_labels.h"
 #include "terrain/contours/contour_lines.h"
@@ -77,10 +71,6 @@ void describe(ContourWriteOptions& o, V& v) {
   v.table("spots", o.spots, "Spot heights.");
 }
 
-fs::path facts_file(const fs::path& folder, TileKey key) {
-  return folder / (std::to_string(key.ix) + "_" + std::to_string(key.iy) + ".facts");
-}
-
 /// Decimals that a step of heights needs, at most 3.
 int decimals_of(double step) {
   for (int n = 0; n < 3; ++n)
@@ -134,120 +124,47 @@ double flying_height(const Context& context, const trajectory::Trajectory* flown
   return core::median(std::move(heights));
 }
 
-class Contours : public OptionStage<ContourWriteOptions, ContourCounts, ContourFindings> {
- public:
-  const Info& info() const override {
-    static const Info info{"terrain.contours",
-                           "Smooth contours of the DTM with index contours, depressions, labels and spot heights, joined across tiles, as "
-                           "GeoPackage, DXF and GeoJSON.",
-                           {Grain::tile, Grain::merge},
-                           {},
-                           {},
-                           {Product::dtm},
-                           {Product::contours},
-                           {Product::of<trajectory::Trajectory>()}};
-    return info;
-  }
-  core::ColumnSet also_reads() const override {
-    if (options.source == ContourSource::grid) return {};
-    return {core::Column::classification, core::Column::flags, core::Column::sigma_v, core::Column::sigma_h};
-  }
-  double halo() const override {
-    return options.source == ContourSource::grid ? 0.0
-                                                 : terrain::halo(options.tin) + border(options.tin.cell.value) * options.tin.cell.value;
-  }
-  double bytes_per_point() const override { return options.source == ContourSource::grid ? 0.0 : 300.0; }
-  // Measured 2026-11-22 with tests/stages/memory_test.cpp, cells of 0.5 m: 32 bytes per cell of the grid and of the TIN's lattice; and six
-  // fields of five bytes while the surface is smoothed.
-  std::vector<Raster> rasters(const Context& c) const override {
-    if (options.source == ContourSource::grid) {
-      std::vector<Raster> out = window_of(c, Product::dtm, 1);
-      if (!out.empty()) out.push_back({"", out[0].cell, c.tile_side + 2.0 * border(out[0].cell) * out[0].cell, 32.0});
-      return out;
-    }
-    const double side = c.tile_side + 2.0 * border(options.tin.cell.value) * options.tin.cell.value;
-    return {{"tin.cell", options.tin.cell.value, side, 72.0},
-            {"tin.cell", options.tin.cell.value, side + 2.0 * options.tin.max_edge.value, 8.0}};
-  }
-  std::vector<std::string> products() const override { return {options.name + ".gpkg", options.name + ".dxf", options.name + ".geojson"}; }
+// 0.1 um of rounding hides the last bits of the conversion to feet.
+double rounded(double height) { return std::round(height * 1e7) / 1e7; }
 
-  void run_tile(const Context& context, TileJob& job) const override {
-    const core::Lattice own = lattice_in(cell(context), job.box);
-    const int around = border(own.cell);
-    const core::Lattice window{own.cell, own.i0 - around, own.j0 - around, own.nx + 2 * around, own.ny + 2 * around};
-    core::Grid grid;
-    if (options.source == ContourSource::grid) {
-      grid = context.grids->window(Product::dtm, window);
-    } else {  // as terrain.dtm makes it, breaklines and boundaries with it
-      const terrain::Breaklines* lines = lines_.get(context);
-      grid = terrain::dtm(job.block, window, options.tin, lines);
-      if (lines) lines->cut(grid);
-    }
-    if (options.source == ContourSource::tin) {
-      core::Grid mine(own);
-      core::paste(grid, mine);
-      write_grid_tile(job.folder, job.key, mine);
-    }
-    const terrain::SurfaceFacts facts = terrain::facts_of(grid, own, interval(context));
-    const auto spots = terrain::spot_heights(grid, own, options.spots);
-    const terrain::ContourOptions drawn = spaced(context);
-    const auto segments = terrain::trace(terrain::contour_surface(std::move(grid), terrain::vertical_tolerance(drawn)), own, drawn);
-    core::count_results(ContourCounts{segments.size()}, job.tally);
-    write_segments(job.folder, job.key, segments);
-    std::string bytes(reinterpret_cast<const char*>(&facts), sizeof facts);
-    bytes.append(reinterpret_cast<const char*>(spots.data()), spots.size() * sizeof(terrain::SpotHeight));
-    io::write_text_file(facts_file(job.folder, job.key), bytes);
+core::ContourLine in_crs_units(const Context& context, const terrain::ContourLine& line) {
+  core::ContourLine out;
+  for (const auto& v : line.vertices) {
+    out.x.push_back(v.x() / context.unit);
+    out.y.push_back(v.y() / context.unit);
   }
+  out.height = rounded(line.height / context.vertical_unit);
+  out.index = line.is_index;
+  out.closed = line.closed;
+  out.depression = line.depression;
+  return out;
+}
+/// Cells around a tile that its lines and spot heights depend on: squares reach a cell beyond the tile.
+int border(const ContourWriteOptions& o, double cell) {
+  return std::max(1 + terrain::contour_surface_reach(terrain::vertical_tolerance(o)),
+                  1 + static_cast<int>(std::ceil(terrain::halo(o.spots) / cell)));
+}
 
-  void run_merge(const Context& context, MergeJob& job) const override {
-    io::ContourFiles files(context.output, options.name, context.product_crs, context.heights);
-    terrain::SurfaceFacts facts;
-    std::vector<terrain::SpotHeight> spots;
-    for (const TileKey key : job.tiles) read_facts(job.folder, key, facts, spots);
-    ContourFindings found;
-    write_lines(context, job, files, found);
-    write_spots(context, std::move(spots), files, found);
-    found.interval = terrain::judge_interval(facts, interval(context), flying_height(context, record<trajectory::Trajectory>(context)),
-                                             context.vertical_unit);
-    if (const std::string left_out = files.close(); !left_out.empty()) found.interval.findings.push_back(left_out);
-    job.findings = core::reported(found);
-  }
+double halo(const ContourWriteOptions& o) {
+  const double cell = o.tin.cell.value;
+  return o.source == ContourSource::grid ? 0.0 : terrain::halo(o.tin) + border(o, cell) * cell;
+}
 
- private:
-  BreaklinesOfRun lines_;  ///< of source = "tin"
+/// The stage's options in a run.
+struct ContourRun {
+  const Context& context;
+  const ContourWriteOptions& options;
 
-  double interval(const Context& context) const {
-    return options.interval ? options.interval->value : terrain::usual_interval_of(context.vertical_unit);
-  }
-  terrain::ContourOptions spaced(const Context& context) const {
+  double interval() const { return options.interval ? options.interval->value : terrain::usual_interval_of(context.vertical_unit); }
+  terrain::ContourOptions spaced() const {
     terrain::ContourOptions o = options;
-    o.interval = core::Metres(interval(context));
+    o.interval = core::Metres(interval());
     return o;
   }
-  /// Cells around a tile that its lines and spot heights depend on: squares reach a cell beyond the tile.
-  int border(double cell) const {
-    return std::max(1 + terrain::contour_surface_reach(terrain::vertical_tolerance(options)),
-                    1 + static_cast<int>(std::ceil(terrain::halo(options.spots) / cell)));
-  }
-
-  double cell(const Context& context) const {
-    return options.source == ContourSource::grid ? context.grids->cell(Product::dtm) : options.tin.cell.value;
-  }
-
-  static void read_facts(const fs::path& folder, TileKey key, terrain::SurfaceFacts& facts, std::vector<terrain::SpotHeight>& spots) {
-    const fs::path file = facts_file(folder, key);
-    const std::string bytes = io::read_text_file(file);
-    if (bytes.size() < sizeof facts || (bytes.size() - sizeof facts) % sizeof(terrain::SpotHeight) != 0) io::cut_short(file);
-    terrain::SurfaceFacts one;
-    std::memcpy(&one, bytes.data(), sizeof one);
-    facts += one;
-    const size_t before = spots.size();
-    spots.resize(before + (bytes.size() - sizeof one) / sizeof(terrain::SpotHeight));
-    if (spots.size() > before) std::memcpy(spots.data() + before, bytes.data() + sizeof one, bytes.size() - sizeof one);
-  }
+  double cell() const { return options.source == ContourSource::grid ? context.grids->cell(Product::dtm) : options.tin.cell.value; }
 
   /// The model that is contoured, of any window.
-  core::Grid surface(const Context& context, const fs::path& folder, const core::Lattice& window) const {
+  core::Grid surface(const fs::path& folder, const core::Lattice& window) const {
     if (options.source == ContourSource::grid) return context.grids->window(Product::dtm, window);
     core::Grid out(window);
     const auto tile = [&](double edge) { return static_cast<int>(std::floor(edge / context.tile_side)); };
@@ -257,18 +174,17 @@ class Contours : public OptionStage<ContourWriteOptions, ContourCounts, ContourF
     return out;
   }
 
-  void write_lines(const Context& context, const MergeJob& job, io::ContourFiles& files, ContourFindings& found) const {
+  void write_lines(const MergeJob& job, io::ContourFiles& files, ContourFindings& found) const {
     std::map<std::int64_t, std::vector<LevelSegments>> levels;
     for (const TileKey key : job.tiles) add_levels(job.folder, key, levels);
     const auto share = static_cast<size_t>(context.memory / 8.0);  // a byte of segments takes eight until it is written
     tbb::enumerable_thread_specific<terrain::Facets> surfaces([&] {
       return terrain::Facets(
-          cell(context), [&](const core::Lattice& window) { return surface(context, job.folder, window); },
+          cell(), [&](const core::Lattice& window) { return surface(job.folder, window); },
           std::max(least_page_bytes, std::min(page_bytes, share) / static_cast<size_t>(context.threads)));
     });
     terrain::Labeller labeller(options.labels);
-    const int decimals =
-        std::max(decimals_of(interval(context) / context.vertical_unit), decimals_of(options.base.value / context.vertical_unit));
+    const int decimals = std::max(decimals_of(interval() / context.vertical_unit), decimals_of(options.base.value / context.vertical_unit));
     // Levels do not know of one another: several are drawn at once, as many as their bytes allow, and written in their order.
     std::vector<size_t> bytes;
     for (const auto& [level, stretches] : levels) {
@@ -292,7 +208,7 @@ class Contours : public OptionStage<ContourWriteOptions, ContourCounts, ContourF
       for (const LevelSegments& s : (level++)->second) read_segments(s, *segments);
       return segments;
     };
-    const terrain::ContourOptions drawn = spaced(context);
+    const terrain::ContourOptions drawn = spaced();
     const auto draw = [&](const Segments& segments) -> Lines {
       return std::make_shared<std::vector<terrain::ContourLine>>(terrain::contour_lines(std::move(*segments), drawn, surfaces.local()));
     };
@@ -325,13 +241,13 @@ class Contours : public OptionStage<ContourWriteOptions, ContourCounts, ContourF
     found.lines = files.count();
   }
 
-  void write_spots(const Context& context, std::vector<terrain::SpotHeight> spots, io::ContourFiles& files, ContourFindings& found) const {
+  void write_spots(std::vector<terrain::SpotHeight> spots, io::ContourFiles& files, ContourFindings& found) const {
     std::sort(spots.begin(), spots.end());
-    const int decimals = std::min(3, decimals_of(interval(context) / context.vertical_unit) + 1);
+    const int decimals = std::min(3, decimals_of(interval() / context.vertical_unit) + 1);
     for (const terrain::SpotHeight& s : spots) {
       core::SpotHeight out;
-      out.x = (static_cast<double>(s.i) + 0.5) * cell(context) / context.unit;
-      out.y = (static_cast<double>(s.j) + 0.5) * cell(context) / context.unit;
+      out.x = (static_cast<double>(s.i) + 0.5) * cell() / context.unit;
+      out.y = (static_cast<double>(s.j) + 0.5) * cell() / context.unit;
       out.height = rounded(s.height / context.vertical_unit);
       out.text = height_text(out.height, decimals);
       out.top = s.top != 0;
@@ -340,26 +256,79 @@ class Contours : public OptionStage<ContourWriteOptions, ContourCounts, ContourF
       files.add(out);
     }
   }
+};
 
-  // 0.1 um of rounding hides the last bits of the conversion to feet.
-  static double rounded(double height) { return std::round(height * 1e7) / 1e7; }
-
-  static core::ContourLine in_crs_units(const Context& context, const terrain::ContourLine& line) {
-    core::ContourLine out;
-    for (const auto& v : line.vertices) {
-      out.x.push_back(v.x() / context.unit);
-      out.y.push_back(v.y() / context.unit);
+ContourCounts trace_contours(const TileJob& job, const Context& context, const ContourWriteOptions& o, RunCache& cache) {
+  const ContourRun run{context, o};
+  const core::Lattice own = lattice_in(run.cell(), job.box);
+  const int around = border(o, own.cell);
+  const core::Lattice window{own.cell, own.i0 - around, own.j0 - around, own.nx + 2 * around, own.ny + 2 * around};
+  core::Grid grid;
+  if (o.source == ContourSource::grid) {
+    grid = context.grids->window(Product::dtm, window);
+  } else {  // as terrain.dtm makes it, breaklines and boundaries with it
+    const terrain::Breaklines* lines = breaklines_of(context, cache);
+    grid = terrain::dtm(job.block, window, o.tin, lines);
+    if (lines) lines->cut(grid);
+    core::Grid mine(own);
+    core::paste(grid, mine);
+    write_grid_tile(job.folder, job.key, mine);
+  }
+  const terrain::SurfaceFacts facts = terrain::facts_of(grid, own, run.interval());
+  write_rows(piece_file(job.folder, job.key, "facts"), std::vector{facts}, terrain::spot_heights(grid, own, o.spots));
+  const terrain::ContourOptions drawn = run.spaced();
+  const auto segments = terrain::trace(terrain::contour_surface(std::move(grid), terrain::vertical_tolerance(drawn)), own, drawn);
+  write_segments(job.folder, job.key, segments);
+  return {segments.size()};
+}
+ContourFindings draw_contours(const MergeJob& job, const Context& context, const trajectory::Trajectory* flown,
+                              const ContourWriteOptions& o) {
+  const ContourRun run{context, o};
+  io::ContourFiles files(context.output, o.name, context.product_crs, context.heights);
+  std::vector<terrain::SurfaceFacts> tiles;
+  std::vector<terrain::SpotHeight> spots;
+  for (const TileKey key : job.tiles) read_rows(piece_file(job.folder, key, "facts"), tiles, spots);
+  terrain::SurfaceFacts facts;
+  for (const terrain::SurfaceFacts& t : tiles) facts += t;
+  ContourFindings found;
+  run.write_lines(job, files, found);
+  run.write_spots(std::move(spots), files, found);
+  found.interval = terrain::judge_interval(facts, run.interval(), flying_height(context, flown), context.vertical_unit);
+  if (const std::string left_out = files.close(); !left_out.empty()) found.interval.findings.push_back(left_out);
+  return found;
+}
+// Measured 2026-11-22 with tests/stages/memory_test.cpp, cells of 0.5 m: 32 bytes per cell of the grid and of the TIN's lattice; and six
+// fields of five bytes while the surface is smoothed.
+TileMemory contour_memory(const ContourWriteOptions& o, const Context& c) {
+  if (o.source == ContourSource::grid) {
+    TileMemory out{0.0, window_of(c, Product::dtm, 1)};
+    if (!out.rasters.empty()) {
+      const double cell = out.rasters[0].cell;
+      out.rasters.push_back({"", cell, c.tile_side + 2.0 * border(o, cell) * cell, 32.0});
     }
-    out.height = rounded(line.height / context.vertical_unit);
-    out.index = line.is_index;
-    out.closed = line.closed;
-    out.depression = line.depression;
     return out;
   }
-};
+  const double cell = o.tin.cell.value, side = c.tile_side + 2.0 * border(o, cell) * cell;
+  return {300.0, {{"tin.cell", cell, side, 72.0}, {"tin.cell", cell, side + 2.0 * o.tin.max_edge.value, 8.0}}};
+}
+core::ColumnSet contour_columns(const ContourWriteOptions& o) {
+  if (o.source == ContourSource::grid) return {};
+  return {core::Column::classification, core::Column::flags, core::Column::sigma_v, core::Column::sigma_h};
+}
+std::vector<std::string> contour_files(const ContourWriteOptions& o) { return {o.name + ".gpkg", o.name + ".dxf", o.name + ".geojson"}; }
 
 }  // namespace
 
-std::unique_ptr<Stage> make_contours() { return std::make_unique<Contours>(); }
+Entry contours_stage() {
+  return tile<trace_contours, draw_contours>(
+      "terrain.contours",
+      "Smooth contours of the DTM with index contours, depressions, labels and spot heights, joined across tiles, as GeoPackage, DXF and "
+      "GeoJSON.",
+      {.needs = {Product::dtm},
+       .gives = {Product::contours},
+       .reads = contour_columns,
+       .memory = contour_memory,
+       .products = contour_files});
+}
 
 }  // namespace swath::stages

@@ -3,13 +3,11 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/terrain/breaklines.h"
-#include "stages/adapters/units.h"
-#include "stages/grid_tile.h"
 #include "stages/line_comparison.h"
+#include "stages/tile.h"
 #include "terrain/dsm.h"
 #include "terrain/dtm.h"
 #include "terrain/voids.h"
@@ -65,8 +63,8 @@ void describe(const DtmFindings& r, V& v) {
 /// Where filters.visibility has run: void cells to which beams came of which none reached the ground.
 void mark_never_seen(const Context& context, const TileJob& job, core::Grid& grid) {
   if (!context.grids->has(Product::visibility)) return;
-  const double cell = context.grids->cell(Product::visibility);
-  terrain::mark_never_seen(grid, context.grids->window(Product::visibility, lattice_in(cell, job.box.grown(cell))));
+  const In<Product::visibility> seen{*context.grids};
+  terrain::mark_never_seen(grid, seen.over(job.box.grown(seen.cell())));
 }
 
 /// Cells of all tiles with a height, and holes: voids with ground on all sides, and those whose ground no beam reached.
@@ -87,106 +85,71 @@ Cover cover_of(const Context& context, const MergeJob& job) {
   return c;
 }
 
-class Dtm : public OptionStage<terrain::DtmOptions, DtmCounts, DtmFindings> {
- public:
-  const Info& info() const override {
-    static const Info info{
-        "terrain.dtm",
-        "Terrain model: the Delaunay TIN of the ground points read at the cell centres, with sigma, count and void reason.",
-        {Grain::tile, Grain::merge},
-        {core::Column::classification, core::Column::flags},
-        {},
-        {Product::points},
-        {Product::dtm}};
-    return info;
+/// Of points that carry none. Do they follow from the comparison of lines?
+bool complete_sigmas(const Context& context, TileJob& job, const terrain::DtmOptions& o) {
+  if (o.assumed_sigma) {
+    const core::Metres along = o.assumed_horizontal.value_or(*o.assumed_sigma);
+    quality::give_sigmas(job.block, o.assumed_sigma->value, std::sqrt(2.0) * along.value);
+  } else if (const std::optional<quality::KnownLines> lines = known_lines(context); lines && !std::isnan(lines->scatter)) {
+    return quality::give_sigmas(job.block, lines->sigma(), lines->horizontal_sigma()) > 0;
   }
-  core::ColumnSet also_reads() const override { return {core::Column::sigma_v, core::Column::sigma_h}; }
-  std::string_view implied(bool cloud) const override { return cloud && !options.assumed_sigma ? "quality.lines" : ""; }
-  double halo() const override { return terrain::halo(options); }
-  // Measured 2026-11-22: 290 bytes, tile 1000 m and 4 points per square metre; 195 in tests/stages/memory_test.cpp, tile 500 m, where half
-  // of the points are those of the halo that are not triangulated and take a few bytes each.
-  double bytes_per_point() const override { return 330.0; }
-  double share_of_points(double side) const override {
-    const double near = side + 2.0 * terrain::triangulated_border(options) + room, all = side + 2.0 * halo();
-    return std::min(1.0, near * near / (all * all));
-  }
-  // Measured 2026-11-22 with tests/stages/memory_test.cpp, tile 200 m, cells of 0.25 m: 24 bytes per cell; two counts per cell around the
-  // tile for the void reasons.
-  std::vector<Raster> rasters(const Context& c) const override {
-    return {{"cell", options.cell.value, c.tile_side, 26.0}, {"cell", options.cell.value, c.tile_side + 2.0 * options.max_edge.value, 8.0}};
-  }
-  double cell() const override { return options.cell.value; }
-  bool is_divisible() const override { return true; }
-  void join_parts(const Context&, const TileJob& whole, const std::vector<std::filesystem::path>& parts) const override {
-    join_grid_parts(whole.folder, whole.key, parts, lattice_in(options.cell.value, whole.box));
-  }
-  void run_tile(const Context& context, TileJob& job) const override {
-    const terrain::Breaklines* lines = lines_.get(context);
-    DtmCounts counts;
-    counts.tiles_without_sigma = complete_sigmas(context, job) ? 1 : 0;
-    core::Grid grid = terrain::dtm(job.block, lattice_in(options.cell.value, job.box), options, lines, &counts.shared);
-    mark_never_seen(context, job, grid);
-    if (lines) lines->cut(grid);  // beyond the boundary nothing is missed
-    counts.cells = cells_of(grid);
-    core::count_results(counts, job.tally);
-    write_grid_tile(job.folder, job.key, grid);
-  }
-  void run_merge(const Context& context, MergeJob& job) const override {
-    const Cover cover = cover_of(context, job);
-    if (cover.known == 0)
-      throw core::Error("no triangle of ground points is small enough to give any cell of the DTM a height", context.survey.name,
-                        "are there three ground points that are not on one line, closer than max_edge = " +
-                            core::format_quantity(core::Dimension::length, options.max_edge.value) + "?");
-    job.findings = core::reported(DtmFindings{static_cast<double>(cover.holes) / static_cast<double>(cover.known + cover.holes)});
-  }
+  return false;
+}
 
- private:
-  /// Of points that carry none. Do they follow from the comparison of lines?
-  bool complete_sigmas(const Context& context, TileJob& job) const {
-    if (options.assumed_sigma) {
-      const core::Metres along = options.assumed_horizontal.value_or(*options.assumed_sigma);
-      quality::give_sigmas(job.block, options.assumed_sigma->value, std::sqrt(2.0) * along.value);
-    } else if (const std::optional<quality::KnownLines> lines = known_lines(context); lines && !std::isnan(lines->scatter)) {
-      return quality::give_sigmas(job.block, lines->sigma(), lines->horizontal_sigma()) > 0;
-    }
-    return false;
-  }
-  static constexpr double room = 10.0;  // m: for triangles that reach beyond the border
-  BreaklinesOfRun lines_;
-};
+Tiled<DtmCounts, Product::dtm> model_terrain(TileJob& job, const Context& context, const terrain::DtmOptions& o, RunCache& cache) {
+  const terrain::Breaklines* lines = breaklines_of(context, cache);
+  DtmCounts counts;
+  counts.tiles_without_sigma = complete_sigmas(context, job, o) ? 1 : 0;
+  core::Grid grid = terrain::dtm(job.block, lattice_in(o.cell.value, job.box), o, lines, &counts.shared);
+  mark_never_seen(context, job, grid);
+  if (lines) lines->cut(grid);  // beyond the boundary nothing is missed
+  counts.cells = cells_of(grid);
+  return {counts, {std::move(grid)}};
+}
+DtmFindings judge_terrain(const MergeJob& job, const Context& context, const terrain::DtmOptions& o) {
+  const Cover cover = cover_of(context, job);
+  if (cover.known == 0)
+    throw core::Error("no triangle of ground points is small enough to give any cell of the DTM a height", context.survey.name,
+                      "are there three ground points that are not on one line, closer than max_edge = " +
+                          core::format_quantity(core::Dimension::length, o.max_edge.value) + "?");
+  return {static_cast<double>(cover.holes) / static_cast<double>(cover.known + cover.holes)};
+}
+// Measured 2026-11-22: 290 bytes per point, tile 1000 m and 4 points per square metre; 195 in tests/stages/memory_test.cpp, tile 500 m,
+// where half of the points are those of the halo that are not triangulated and take a few bytes each. There, too, tile 200 m, cells of
+// 0.25 m: 24 bytes per cell; two counts per cell around the tile for the void reasons.
+TileMemory dtm_memory(const terrain::DtmOptions& o, const Context& c) {
+  constexpr double room = 10.0;  // m: for triangles that reach beyond the border
+  const double near = c.tile_side + 2.0 * terrain::triangulated_border(o) + room, all = c.tile_side + 2.0 * terrain::halo(o);
+  return {330.0,
+          {{"cell", o.cell.value, c.tile_side, 26.0}, {"cell", o.cell.value, c.tile_side + 2.0 * o.max_edge.value, 8.0}},
+          std::min(1.0, near * near / (all * all))};
+}
 
-class Dsm : public OptionStage<terrain::DsmOptions, CellCounts> {
- public:
-  const Info& info() const override {
-    static const Info info{"terrain.dsm",
-                           "Surface model: the highest first return of each cell.",
-                           {Grain::tile},
-                           {core::Column::return_number, core::Column::classification, core::Column::flags},
-                           {},
-                           {Product::points},
-                           {Product::dsm}};
-    return info;
-  }
-  core::ColumnSet also_reads() const override { return {core::Column::sigma_v}; }
-  double halo() const override { return terrain::halo(options); }
-  double bytes_per_point() const override { return 240.0; }
-  // Measured as above, cells of 0.5 m: 42 bytes per cell.
-  std::vector<Raster> rasters(const Context& c) const override { return {{"cell", options.cell.value, c.tile_side + 2.0 * halo(), 46.0}}; }
-  double cell() const override { return options.cell.value; }
-  bool is_divisible() const override { return true; }
-  void join_parts(const Context&, const TileJob& whole, const std::vector<std::filesystem::path>& parts) const override {
-    join_grid_parts(whole.folder, whole.key, parts, lattice_in(options.cell.value, whole.box));
-  }
-  void run_tile(const Context&, TileJob& job) const override {
-    const core::Grid grid = terrain::dsm(job.block, lattice_in(options.cell.value, job.box), options);
-    core::count_results(cells_of(grid), job.tally);
-    write_grid_tile(job.folder, job.key, grid);
-  }
-};
+Tiled<CellCounts, Product::dsm> model_surface(const TileJob& job, const terrain::DsmOptions& o) {
+  core::Grid grid = terrain::dsm(job.block, lattice_in(o.cell.value, job.box), o);
+  return {cells_of(grid), {std::move(grid)}};
+}
+/// Measured as above, cells of 0.5 m: 42 bytes per cell.
+TileMemory dsm_memory(const terrain::DsmOptions& o, const Context& c) {
+  return {240.0, {{"cell", o.cell.value, c.tile_side + 2.0 * terrain::halo(o), 46.0}}};
+}
 
 }  // namespace
 
-std::unique_ptr<Stage> make_dtm() { return std::make_unique<Dtm>(); }
-std::unique_ptr<Stage> make_dsm() { return std::make_unique<Dsm>(); }
+Entry dtm_stage() {
+  return tile<model_terrain, judge_terrain>(
+      "terrain.dtm", "Terrain model: the Delaunay TIN of the ground points read at the cell centres, with sigma, count and void reason.",
+      {.columns = {.needs = {core::Column::classification, core::Column::flags}, .reads = {core::Column::sigma_v, core::Column::sigma_h}},
+       .memory = dtm_memory,
+       .implied = [](const terrain::DtmOptions& o, bool cloud) -> std::string_view {
+         return cloud && !o.assumed_sigma ? "quality.lines" : "";
+       }});
+}
+Entry dsm_stage() {
+  return tile<model_surface>("terrain.dsm", "Surface model: the highest first return of each cell.",
+                             {.columns = {.needs = {core::Column::return_number, core::Column::classification, core::Column::flags},
+                                          .reads = {core::Column::sigma_v}},
+                              .memory = dsm_memory});
+}
 
 }  // namespace swath::stages

@@ -80,10 +80,5 @@ TEST(FlownLines, ConstantSaturatedMixedAndLostLinesAreNamed) {
   EXPECT_FALSE(found[1].refuses);
 }
 
-TEST(FlownLines, CoursesMeetAcrossNorth) {
-  EXPECT_NEAR(between_courses(359 * deg, 2 * deg), 3 * deg, 1e-12);
-  EXPECT_NEAR(between_courses(10 * deg, 190 * deg), 180 * deg, 1e-12);
-}
-
 }  // namespace
 }  // namespace swath::calib

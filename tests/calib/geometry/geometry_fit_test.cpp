@@ -29,7 +29,7 @@ TEST(GeometryFit, ReturnsContradictARolledMountAndWrongHeights) {
   SampledFlight s;
   s.frame = GateFlight::local();
   s.plan = plan_sample(f.lines, t, s.frame, 0.0, 300.0, {});
-  s.sample = collect_sample(s.plan, f.input(t).shots);
+  s.sample = collect_samples({&s.plan}, f.input(t).shots).front();
   s.ground = {s.plan.cell, 0.13};
   s.sensor = f.sensor;
   const auto right = check_returns(s, f.chain, t, f.data);

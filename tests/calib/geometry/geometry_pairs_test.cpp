@@ -18,7 +18,7 @@ struct Sampled {
   GateFlight flight;
   trajectory::Trajectory trajectory{flight.data};
   SamplePlan plan = plan_sample(flight.lines, trajectory, GateFlight::local(), 0.0, 300.0, {});
-  GeometrySample sample = collect_sample(plan, flight.input(trajectory).shots);
+  GeometrySample sample = collect_samples({&plan}, flight.input(trajectory).shots).front();
   GroundOptions options{plan.cell, 0.15};
 };
 

@@ -35,7 +35,7 @@ TEST(GeometrySample, StretchesLieWhereTracksAreNear) {
     profiles += s.profile;
   }
   EXPECT_EQ(profiles, 3u);
-  const GeometrySample sample = collect_sample(plan, flight().input(t).shots);
+  const GeometrySample sample = collect_samples({&plan}, flight().input(t).shots).front();
   ASSERT_EQ(sample.surfaces.size(), 3u);
   size_t kept = 0;
   for (const PassSample& s : sample.surfaces) kept += s.shots.size();
@@ -65,7 +65,7 @@ TEST(GeometrySample, ALineInTwoFilesIsNotComparedWithItself) {
 TEST(GeometrySample, ReturnsOfTwoFilesAreByTime) {
   const trajectory::Trajectory t(flight().data);
   const SamplePlan plan = plan_sample(flight().lines, t, GateFlight::local(), 0.0, 300.0, {});
-  const GeometrySample sample = collect_sample(plan, [&](const std::function<void(int, const core::Shots&)>& work) {
+  const ShotStream halves = [&](const std::function<void(int, const core::Shots&)>& work) {
     for (const size_t first : {size_t{1}, size_t{0}}) {
       core::Shots half;
       const core::Shots& all = flight().shots[0];
@@ -74,7 +74,8 @@ TEST(GeometrySample, ReturnsOfTwoFilesAreByTime) {
       if (first == 0) half.forward.assign(half.size(), 0.1);
       work(flight().lines[0].line, half);
     }
-  });
+  };
+  const GeometrySample sample = collect_samples({&plan}, halves).front();
   ASSERT_FALSE(sample.surfaces.empty());
   for (const PassSample& s : sample.surfaces) {
     EXPECT_TRUE(std::is_sorted(s.shots.time.begin(), s.shots.time.end()));

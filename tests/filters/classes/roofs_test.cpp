@@ -73,6 +73,17 @@ TEST(Roofs, AGapIsFilledWhereSomethingStandsInItAndADeckIsNone) {
   for (const float z : p.roofs()) EXPECT_TRUE(std::isnan(z));
 }
 
+TEST(Roofs, APlaneGoesOnBelowTheLeastHeight) {
+  Planes p;
+  p.add(5, 5, 6, 6, 2.1f);
+  p.add(11, 5, 6, 6, 1.8f);
+  p.add(30, 30, 6, 6, 1.8f);  // alone
+  const std::vector<float> roofs = p.roofs();
+  const auto is = [&](int i, int j) { return !std::isnan(roofs[p.cells.lattice.at(i, j)]); };
+  EXPECT_TRUE(is(7, 7) && is(13, 7) && is(16, 10));
+  EXPECT_FALSE(is(32, 32));
+}
+
 TEST(Roofs, LongRowsOfCellsCountFromEachOfThem) {
   Planes p;
   p.add(2, 10, 56, 3, 6.0f);

@@ -66,7 +66,7 @@ class RinexFile : public testing::Test {
 };
 
 TEST_F(RinexFile, HeaderOfVersion2) {
-  const RinexHeader h = read_rinex_header(write(header_2(header_line("     0.200", "INTERVAL"))));
+  const RinexHeader h = scan_rinex(write(header_2(header_line("     0.200", "INTERVAL")) + epoch_2("15  3  1 11  0  0.0000000", 2))).header;
   EXPECT_EQ(h.version, 2.11);
   EXPECT_EQ(h.system, 'G');
   EXPECT_EQ(h.marker, "ROVER ONE");
@@ -79,7 +79,8 @@ TEST_F(RinexFile, HeaderOfVersion2) {
 
 TEST_F(RinexFile, APositionOffTheEarthIsNone) {
   for (const char* p : {"        0.0000        0.0000        0.0000", "       12.0000       -4.0000       20.0000"})
-    EXPECT_FALSE(read_rinex_header(write(header_3("M", header_line(p, "APPROX POSITION XYZ")))).position);
+    EXPECT_FALSE(
+        scan_rinex(write(header_3("M", header_line(p, "APPROX POSITION XYZ")) + "> 2015 07 01 00 00 30.0000000  0  0\n")).header.position);
 }
 
 TEST_F(RinexFile, EpochsOfVersion2) {
@@ -154,8 +155,8 @@ TEST_F(RinexFile, FaultsNameTheirLine) {
   EXPECT_NE(fault(header_2()).find("no epoch"), std::string::npos);
   EXPECT_NE(fault(header_2() + epoch_2("15 13  1 11  0  0.0000000", 2)).find("a.obs:8: '2015-13-01' is no date"), std::string::npos);
   EXPECT_NE(fault(header_3("M") + "> 2015 07 01 00 99 30.0000000  0  1\n").find("time of day"), std::string::npos);
-  EXPECT_THROW(read_rinex_header(folder_ / "none.obs"), core::Error);
-  EXPECT_THROW(read_rinex_header(folder_.path()), core::Error);
+  EXPECT_THROW(scan_rinex(folder_ / "none.obs"), core::Error);
+  EXPECT_THROW(scan_rinex(folder_.path()), core::Error);
 }
 
 TEST(Rinex, AnHourOfTwoStations) {

@@ -135,9 +135,10 @@ TEST_F(PosFiles, JunkIsCountedAndTooMuchIsRefused) {
     text += "2374 " + std::to_string(243258 + i) + " 40.5 -105.25 1600" + (i == 7 ? "   0  0 0 0 0 0 0 0 0 0" : tail) + "\n";
   std::string binary = "\x01\x02 junk \xff";
   binary += '\0';
-  const core::GnssData g = read(text + binary + "\n2374 243400 40.5 -105.\n");
+  const std::string far = "5830/07/08 19:34:18.500 40.5 -105.25 1600" + tail + "\n";
+  const core::GnssData g = read(text + far + binary + "\n2374 243400 40.5 -105.\n");
   EXPECT_EQ(g.size(), 99u);
-  EXPECT_EQ(tally_.of("RTKLIB lines that are no solution, left out"), 2u);
+  EXPECT_EQ(tally_.of("RTKLIB lines that are no solution, left out"), 3u);
   EXPECT_EQ(tally_.of("RTKLIB lines of epochs without a solution, left out"), 1u);
   EXPECT_NE(refusal("a b c d e f g\na b c d e f g\n").find("2 of 2 lines are no solution"), std::string::npos);
   EXPECT_NE(refusal("%  GPST latitude(deg) longitude(deg) height(m) Q ns\n").find("no position"), std::string::npos);

@@ -291,5 +291,26 @@ TEST(GeoTiff, ALatticeOfDamagedNumbersIsRefused) {
   EXPECT_THROW(lattice_of(info, "a.tif"), core::Error);
 }
 
+// From the south, GDAL took 2^58 readings to say so. The window lies behind the cut, too.
+TEST(GeoTiff, AnAsciiGridThatIsCutShortIsRefusedAtOnce) {
+  const test::TemporaryFolder folder;
+  std::string text = "ncols 3\nnrows 60\nxllcorner 500000\nyllcorner 5400000\ncellsize 1\nNODATA_value -9999\n";
+  for (int row = 0; row < 60; ++row) text += "1 2 " + std::to_string(row) + "\n";
+  test::write_bytes(folder / "whole.asc", text);
+  test::write_bytes(folder / "cut.asc", text.substr(0, text.find("1 2 2\n")));
+  const core::Lattice south{1, 500000, 5400000, 3, 5};
+  EXPECT_EQ(read_grid(folder / "whole.asc").height.front(), 1);
+  EXPECT_EQ(read_grid(folder / "whole.asc", south).height[south.at(2, 4)], 55);
+  EXPECT_THROW(read_grid(folder / "cut.asc"), core::Error);
+  EXPECT_THROW(read_grid(folder / "cut.asc", south), core::Error);
+  EXPECT_THROW(read_raster(folder / "cut.asc"), core::Error);
+  EXPECT_TRUE(std::isnan(read_grid(folder / "cut.asc", core::Lattice{1, 500000, 5399990, 3, 5}).height.front()));  // outside
+  test::write_bytes(folder / "cut.vrt",
+                    R"(<VRTDataset rasterXSize="3" rasterYSize="60"><GeoTransform>500000, 1, 0, 5400060, 0, -1</GeoTransform>)"
+                    R"(<VRTRasterBand dataType="Float32" band="1"><SimpleSource><SourceFilename relativeToVRT="1">cut.asc</SourceFilename>)"
+                    R"(<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>)");
+  EXPECT_THROW(read_grid(folder / "cut.vrt", south), core::Error);
+}
+
 }  // namespace
 }  // namespace swath::io

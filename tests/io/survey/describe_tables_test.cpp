@@ -12,12 +12,12 @@ namespace {
 TEST(DescribeTables, TextAndNumpy) {
   const test::TemporaryFolder folder;
   test::write_bytes(folder / "a.csv", "t,r\n1,5\n2,nan\n3,-7\n");
-  core::Value told = describe_file(folder / "a.csv");
-  EXPECT_EQ(told.find("format")->as_text(), "delimited text");
-  EXPECT_EQ(told.find("rows")->as_int(), 3);
-  EXPECT_EQ(told.find("columns")->items()[1].find("span")->items()[0].as_number(), -7);
-  EXPECT_NE(info_text(told).find("warning: column r holds 1"), std::string::npos) << info_text(told);
-  EXPECT_NE(info_text(told).find("columns\n  t  1 to 3\n  r  -7 to 5\n"), std::string::npos) << info_text(told);
+  core::Value facts = describe_file(folder / "a.csv");
+  EXPECT_EQ(facts.find("format")->as_text(), "delimited text");
+  EXPECT_EQ(facts.find("rows")->as_int(), 3);
+  EXPECT_EQ(facts.find("columns")->items()[1].find("span")->items()[0].as_number(), -7);
+  EXPECT_NE(info_text(facts).find("warning: column r holds 1"), std::string::npos) << info_text(facts);
+  EXPECT_NE(info_text(facts).find("columns\n  t  1 to 3\n  r  -7 to 5\n"), std::string::npos) << info_text(facts);
   test::write_bytes(folder / "a.csv", "t,r\n1,5\n2,x\n");
   EXPECT_NE(info_text(describe_file(folder / "a.csv")).find("reading stopped"), std::string::npos);
 
@@ -25,10 +25,10 @@ TEST(DescribeTables, TextAndNumpy) {
   NpyWriter w(folder / "a.npy", {{"t", "f8"}});
   w.append({v}, 2);
   w.commit();
-  told = describe_file(folder / "a.npy");
-  EXPECT_EQ(told.find("rows")->as_int(), 2);
-  EXPECT_EQ(told.find("columns")->items()[0].find("type")->as_text(), "<f8");
-  EXPECT_EQ(told.find("columns")->items()[0].find("span")->items()[1].as_number(), 2.5);
+  facts = describe_file(folder / "a.npy");
+  EXPECT_EQ(facts.find("rows")->as_int(), 2);
+  EXPECT_EQ(facts.find("columns")->items()[0].find("type")->as_text(), "<f8");
+  EXPECT_EQ(facts.find("columns")->items()[0].find("span")->items()[1].as_number(), 2.5);
 }
 
 }  // namespace

@@ -10,18 +10,18 @@ namespace {
 TEST(Info, ASurveyWithItsFaults) {
   const test::TemporaryFolder folder;
   test::write_bytes(folder / "survey.toml", "name = \"s\"\n[[laser]]\nfile = \"none.csv\"\n");
-  const core::Value told = describe_file(folder / "survey.toml");
-  EXPECT_EQ(told.find("name")->as_text(), "s");
-  EXPECT_NE(info_text(told).find("no such file"), std::string::npos);
+  const core::Value facts = describe_file(folder / "survey.toml");
+  EXPECT_EQ(facts.find("name")->as_text(), "s");
+  EXPECT_NE(info_text(facts).find("no such file"), std::string::npos);
 }
 
 TEST(Info, WhatThisProgramWritesAndReads) {
   const test::TemporaryFolder folder;
   const auto format = [&](const char* name, const std::string& text) {
     test::write_bytes(folder / name, text);
-    const core::Value told = describe_file(folder / name);
-    EXPECT_TRUE(told.find("warnings")->items().empty()) << info_text(told);
-    return told.find("format")->as_text();
+    const core::Value facts = describe_file(folder / name);
+    EXPECT_TRUE(facts.find("warnings")->items().empty()) << info_text(facts);
+    return facts.find("format")->as_text();
   };
   EXPECT_EQ(format("report.json", R"({"program": "swath 1", "survey": "s", "stages": [{"type": "readers.las"}]})"), "report of a run");
   EXPECT_NE(info_text(describe_file(folder / "report.json")).find("readers.las"), std::string::npos);
@@ -58,9 +58,9 @@ TEST(InfoReference, EveryKind) {
                                      {"rinex_rtklib/07590920.05n", "RINEX"},
                                      {"contour_gdal/contour-gdal.geojson", "GeoJSON"},
                                      {"contour_gdal/input-dem.asc", "AAIGrid"}}) {
-    const core::Value told = describe_file(data / name);
-    EXPECT_EQ(told.find("format")->as_text(), format) << name;
-    EXPECT_GT(info_text(told).size(), 80u);
+    const core::Value facts = describe_file(data / name);
+    EXPECT_EQ(facts.find("format")->as_text(), format) << name;
+    EXPECT_GT(info_text(facts).size(), 80u);
   }
   EXPECT_EQ(describe_file(data / "optech_csd/sample.csd").find("pulses")->as_int(), 1000);
   EXPECT_EQ(describe_file(data / "rinex_rtklib/07590920.05o").find("interval_s")->as_number(), 30.0);

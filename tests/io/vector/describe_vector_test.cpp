@@ -2,6 +2,7 @@
 #include "io/vector/describe_vector.h"
 
 #include "io/vector/vector.h"
+#include "tests/io/vector/write_contours.h"
 #include "tests/world/support.h"
 
 namespace swath::io {

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "io/vector/gdal_door.h"
 #include "tests/io/file_size_limit.h"
+#include "tests/io/vector/write_contours.h"
 #include "tests/world/support.h"
 
 namespace swath::io {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/terrain/made.h"
+#include "tests/terrain/tin/heights_at.h"
 
 namespace swath::terrain {
 namespace {

@@ -7,6 +7,7 @@
 #include "terrain/dtm.h"
 #include "terrain/tin/tin_surface.h"
 #include "tests/terrain/made.h"
+#include "tests/terrain/tin/heights_at.h"
 
 namespace swath::terrain {
 namespace {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "terrain/tin/tin_surface.h"
+#include "tests/terrain/tin/heights_at.h"
 
 namespace swath::terrain {
 namespace {

@@ -7,25 +7,25 @@
 #include "core/geo/crs.h"
 #include "io/survey/survey.h"
 
-namespace swath::stages {
+namespace swath::io {
 
 /// What states the CRS of a cloud: WKT, "EPSG:32632" ... Throws core::Error that names points.crs where neither survey nor file states it.
-std::string cloud_definition(const io::Survey& survey, const io::PointFile& file);
+std::string cloud_definition(const Survey& survey, const PointFile& file);
 /// The CRS itself. Throws core::Error also where it is not understood.
-core::Crs cloud_crs(const io::Survey& survey, const io::PointFile& file);
+core::Crs cloud_crs(const Survey& survey, const PointFile& file);
 
 /// The same system, whatever the text it is written as: nothing is to be transformed.
 bool is_same_crs(const core::Crs& a, const core::Crs& b);
 
 /// Holds every cloud against the CRS of the run (that of the first where the survey states none). Throws core::Error: a CRS not stated,
 /// heights of one system where the other's is not stated, a transformation or its grid that is not there.
-void check_clouds(const io::Survey& survey);
+void check_clouds(const Survey& survey);
 
 /// What the heights of a run on clouds in a CRS that does not state it count from: ellipsoidal where every cloud says so.
-std::string heights_of_clouds(const io::Survey& survey);
+std::string heights_of_clouds(const Survey& survey);
 
 /// Metres of one unit of the cloud's heights: what the survey states of the file, else its CRS, else `stated` by the file (0: nothing),
 /// else the survey's height_unit, else the unit of the horizontal axes.
-double height_unit(const io::Survey& survey, const io::PointFile& file, const core::Crs& crs, double stated);
+double height_unit(const Survey& survey, const PointFile& file, const core::Crs& crs, double stated);
 
-}  // namespace swath::stages
+}  // namespace swath::io
