@@ -26,15 +26,12 @@ if(SWATH_SANITIZE)
   target_link_options(swath_settings INTERFACE -fsanitize=${SWATH_SANITIZE})
 endif()
 
-# A fault in a reader, should one be left, stops the program instead of running on (docs/security.md; tests/cli/hardening_test.py). The code of
-# the rooms that meet the bytes of files is guarded; what the linker does holds for the whole program. Some systems' compilers define
-# _FORTIFY_SOURCE themselves, and it needs optimization.
-set(SWATH_HARDENED core io pipeline CACHE STRING "Rooms whose code is guarded against overrun stacks and buffers")
-add_library(swath_hardening INTERFACE)
+# A fault, should one be left, stops the program instead of running on (docs/security.md; tests/cli/hardening_test.py). Some systems' compilers
+# define _FORTIFY_SOURCE themselves, and it needs optimization. The sanitizers take the place of these flags.
 if(NOT SWATH_SANITIZE)
-  target_compile_options(swath_hardening INTERFACE -fstack-protector-strong -fstack-clash-protection -fPIE
+  target_compile_options(swath_settings INTERFACE -fstack-protector-strong -fstack-clash-protection -fPIE
     $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3>)
-  target_link_options(swath_hardening INTERFACE -pie -Wl,-z,relro,-z,now,-z,noexecstack)
+  target_link_options(swath_settings INTERFACE -pie -Wl,-z,relro,-z,now,-z,noexecstack)
 endif()
 
 function(swath_room room)
@@ -58,9 +55,6 @@ function(swath_room room)
     target_link_libraries(swath_${room} PUBLIC swath::${used})
   endforeach()
   target_link_libraries(swath_${room} PUBLIC ${R_PUBLIC_LIBRARIES} PRIVATE ${R_LIBRARIES} $<BUILD_INTERFACE:swath_settings>)
-  if(room IN_LIST SWATH_HARDENED)
-    target_link_libraries(swath_${room} PRIVATE $<BUILD_INTERFACE:swath_hardening>)
-  endif()
   if(SWATH_UNITY)
     swath_unity(swath_${room} ${room} ${sources})
   endif()
