@@ -108,9 +108,14 @@ class Structures {
       raised_[p] = available_[p] && b.height[p] >= least_plane_height;
     }
     planar_ = planar_points(b, available_, where_, o.roughness.value, wide_area(o));
-    find_decks(own);
-    find_roofs(own);
-    find_wires(own);
+    core::in_parallel(2, 1, [&](size_t part, size_t) {  // neither reads what the other finds
+      if (part == 0) {
+        find_decks(own);
+        find_roofs(own);
+      } else {
+        find_wires(own);
+      }
+    });
   }
 
   bool is_wire(size_t p) const { return wires_[p] != 0; }

@@ -33,6 +33,7 @@ class Crowns {
   const core::Block& block_;
   const std::vector<Witness>& witness_;
   Bins witnesses_;
+  std::vector<std::uint8_t> near_;  ///< per cell of the bins: has it or a neighbour that is looked at a crown's return?
 };
 
 }  // namespace swath::filters
