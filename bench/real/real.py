@@ -175,7 +175,7 @@ def main():
     class_table(found)
     probability_tables(found)
     rates = sorted({name for f in found for name in f["rates"] if name.startswith(("filters.", "terrain."))})
-    print("M points per second of each stage's own time\n")
+    print("M points per second of each stage's own time, summed over threads with tiles of their own\n")
     common.table(["cloud", *rates], [[f["name"], *(f"{f['rates'].get(r, float('nan')):.2f}" for r in rates)] for f in found])
     if given.json:
         kept = [{k: v for k, v in f.items() if not isinstance(v, np.ndarray)} for f in found]
