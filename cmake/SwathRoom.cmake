@@ -26,6 +26,13 @@ if(SWATH_SANITIZE)
   target_link_options(swath_settings INTERFACE -fsanitize=${SWATH_SANITIZE})
 endif()
 
+# Counts the lines that run, of the rooms' own code alone: what the libraries' templates make is not counted and costs nothing (scripts/coverage.sh).
+add_library(swath_coverage INTERFACE)
+if(SWATH_COVERAGE)
+  target_compile_options(swath_coverage INTERFACE --coverage -fprofile-filter-files=${PROJECT_SOURCE_DIR}/.*)
+  target_link_options(swath_coverage INTERFACE --coverage)
+endif()
+
 # A fault, should one be left, stops the program instead of running on (docs/security.md; tests/cli/hardening_test.py). Some systems' compilers
 # define _FORTIFY_SOURCE themselves, and it needs optimization. The sanitizers take the place of these flags.
 if(NOT SWATH_SANITIZE)
@@ -54,7 +61,8 @@ function(swath_room room)
   foreach(used IN LISTS R_USES)
     target_link_libraries(swath_${room} PUBLIC swath::${used})
   endforeach()
-  target_link_libraries(swath_${room} PUBLIC ${R_PUBLIC_LIBRARIES} PRIVATE ${R_LIBRARIES} $<BUILD_INTERFACE:swath_settings>)
+  target_link_libraries(swath_${room} PUBLIC ${R_PUBLIC_LIBRARIES} PRIVATE ${R_LIBRARIES}
+    $<BUILD_INTERFACE:swath_settings> $<BUILD_INTERFACE:swath_coverage>)
   if(SWATH_UNITY)
     swath_unity(swath_${room} ${room} ${sources})
   endif()

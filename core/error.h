@@ -41,8 +41,8 @@ class SystemError : public Error {
 };
 
 /// An error of the command line or of a config: exit code 2.
-inline Error usage_error(std::string what, std::string where = {}, std::string hint = {}) {
-  return Error(std::move(what), std::move(where), std::move(hint), Exit::bad_usage);
+inline Error usage_error(const std::string& what, std::string where = {}, std::string hint = {}) {
+  return Error(what, std::move(where), std::move(hint), Exit::bad_usage);
 }
 
 }  // namespace swath::core

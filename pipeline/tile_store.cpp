@@ -136,7 +136,7 @@ void StripWriter::commit(const std::string& note) {
   committed_ = true;
 }
 
-TileStore::TileStore(fs::path strips, double tile_side, Eigen::Vector3d origin)
+TileStore::TileStore(fs::path strips, double tile_side, const Eigen::Vector3d& origin)
     : strips_(std::move(strips)), side_(tile_side), origin_(origin) {}
 
 bool TileStore::is_committed(const fs::path& strip_folder) { return fs::exists(strip_folder / strip_record); }

@@ -58,7 +58,7 @@ void keep_columns(core::Block& block, core::ColumnSet kept);
 class TileStore {
  public:
   /// `strips`: the folder that holds one folder per committed strip.
-  TileStore(std::filesystem::path strips, double tile_side, Eigen::Vector3d origin);
+  TileStore(std::filesystem::path strips, double tile_side, const Eigen::Vector3d& origin);
 
   static bool is_committed(const std::filesystem::path& strip_folder);
   static std::string note(const std::filesystem::path& strip_folder);

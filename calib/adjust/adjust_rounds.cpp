@@ -27,7 +27,7 @@ constexpr double free_sigma = 1e4;
 }  // namespace
 
 AdjustRounds::AdjustRounds(const TieProblem& problem, const core::Calibration& start, const core::SensorSigma& noise, VectorXd apriori,
-                           VectorXd limit, const AdjustOptions& options)
+                           const VectorXd& limit, const AdjustOptions& options)
     : problem_(&problem), stated_(&noise), options_(&options), start_(start) {
   state.calibration = start;
   state.correction = VectorXd::Zero(problem.knots->size());

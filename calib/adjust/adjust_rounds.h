@@ -15,7 +15,7 @@ class AdjustRounds {
   /// All that is referred to must outlive this object. `apriori`: sigma of each global unknown's start value, infinite where free; `limit`:
   /// its largest useful sigma.
   AdjustRounds(const TieProblem& problem, const core::Calibration& start, const core::SensorSigma& noise, Eigen::VectorXd apriori,
-               Eigen::VectorXd limit, const AdjustOptions& options);
+               const Eigen::VectorXd& limit, const AdjustOptions& options);
 
   /// Runs to the end; the members below are then of the last linearisation.
   void run();

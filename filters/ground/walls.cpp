@@ -211,7 +211,7 @@ void Surfaces::leave(Border& b, int i, int j, size_t c, size_t direction) const 
     return;
   }
   if (on_[n.cell] == on_[c]) return;
-  for (int k = 1; k <= std::max(facade, static_cast<int>(n.run / (r.run * cell_) + 0.5)); ++k) {
+  for (int k = 1; k <= std::max(facade, static_cast<int>(std::lround(n.run / (r.run * cell_)))); ++k) {
     if (!z_.holds(i + k * r.i, j + k * r.j)) break;
     const size_t other = z_.at(i + k * r.i, j + k * r.j);
     if (z_.value[c] - z_.value[other] > wall + wall_per_run * k * r.run * cell_) {

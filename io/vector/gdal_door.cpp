@@ -15,6 +15,7 @@
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/error.h"
 #include "core/geo/crs.h"
@@ -160,7 +161,7 @@ void GdalMessages::note(bool failure, const char* message) {
 }
 
 void GdalMessages::fail(const std::string& doing, const std::filesystem::path& file, std::string hint) const {
-  throw core::Error(text_.empty() ? doing : doing + ": " + text_, file.string(), hint);
+  throw core::Error(text_.empty() ? doing : doing + ": " + text_, file.string(), std::move(hint));
 }
 
 void GdalMessages::check(const std::string& doing, const std::filesystem::path& file) const {

@@ -110,7 +110,7 @@ std::string toml_of(const Value& tree) {
   return out;
 }
 
-std::string survey_toml(io::Survey survey, const std::string& comment) {
+std::string survey_toml(const io::Survey& survey, const std::string& comment) {
   const Value all = effective(survey);
   Value defaults = effective(io::Survey{});
   *defaults.find("scanner")->find("model") = Value{};  // stated always

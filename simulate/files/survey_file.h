@@ -12,6 +12,6 @@ namespace swath::simulate {
 std::string toml_of(const core::Value& tree);
 
 /// survey.toml of a survey: the options that differ from their defaults, and those that a reader must not have to guess.
-std::string survey_toml(io::Survey survey, const std::string& comment);
+std::string survey_toml(const io::Survey& survey, const std::string& comment);
 
 }  // namespace swath::simulate

@@ -94,7 +94,7 @@ class Unpacker {
 
 }  // namespace
 
-Breaklines::Breaklines(std::vector<SettledLine> lines, const BreaklineOptions& options, const Vector3d& origin)
+Breaklines::Breaklines(const std::vector<SettledLine>& lines, const BreaklineOptions& options, const Vector3d& origin)
     : options_(options), origin_(origin) {
   std::vector<NetworkLine> network;
   for (const core::BreaklineKind kind :

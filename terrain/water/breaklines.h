@@ -43,7 +43,7 @@ class Breaklines {
  public:
   Breaklines() = default;
   /// Throws core::Error where surveyed lines meet at different heights (terrain/water/line_network.h).
-  Breaklines(std::vector<SettledLine> lines, const BreaklineOptions& options, const Eigen::Vector3d& origin);
+  Breaklines(const std::vector<SettledLine>& lines, const BreaklineOptions& options, const Eigen::Vector3d& origin);
 
   const Constraints& network() const { return network_; }
   /// The part of the network that comes within `reach` (m) of a window.
