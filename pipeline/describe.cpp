@@ -2,6 +2,7 @@
 #include "pipeline/describe.h"
 
 #include "core/config/option_visitors.h"
+#include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "io/survey/hangar_file.h"
 #include "io/survey/survey.h"
@@ -10,6 +11,7 @@
 #include "pipeline/plan.h"
 #include "pipeline/report_docs.h"
 #include "pipeline/warnings.h"
+#include "planning/flight_plan.h"
 #include "stages/registry.h"
 
 namespace swath::pipeline {
@@ -124,6 +126,11 @@ std::vector<std::filesystem::path> write_docs(const std::filesystem::path& docs,
   page(docs / "lever-arm.md", "hangar.toml", core::option_table_markdown(core::described(hangar)));
   page(docs / "report.md", "report.json", report_page());
   page(docs / "warnings.md", "Warnings", warning_page());
+  planning::PlanOptions plan;
+  const planning::FlightPlan flight;
+  page(docs / "planning.md", "Flight planning",
+       "### Options of plan.toml\n\n" + core::option_table_markdown(core::described(plan)) + "\n### Keys of plan.json\n\n" +
+           core::result_table_markdown(core::described_results(flight)));
   RunOptions run;
   page(docs / "run.md", "[run]", core::option_table_markdown(core::described(run)));
   return differing;

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/line_file.h"
 
+#include <cmath>
+#include <utility>
+
 #include "core/error.h"
 
 namespace swath::pipeline {
 namespace {
+
+constexpr double farthest = 1e8;  // m or feet: no map projection reaches it
 
 /// Without heights, so that no geoid is asked for.
 core::Crs flat(const core::Crs& crs) { return crs.is_geocentric() ? crs : crs.horizontal(); }
@@ -24,6 +29,22 @@ std::vector<io::VectorLine> read_lines_in(const std::filesystem::path& file, con
                         file.string(), "is that the CRS of its coordinates? GeoJSON that names none is in degrees of WGS 84");
   }
   return std::move(read.lines);
+}
+
+std::vector<std::vector<Eigen::Vector2d>> read_rings_in(const std::filesystem::path& file, const core::Crs& crs, std::uint64_t& left_out) {
+  std::vector<std::vector<Eigen::Vector2d>> out;
+  for (const io::VectorLine& line : read_lines_in(file, crs)) {
+    if (!line.closed) continue;
+    std::vector<Eigen::Vector2d> ring;
+    for (size_t k = 0; k + 1 < line.x.size(); ++k)
+      if (std::abs(line.x[k]) < farthest && std::abs(line.y[k]) < farthest)
+        ring.emplace_back(line.x[k], line.y[k]);
+      else
+        ++left_out;
+    if (ring.size() >= 3) out.push_back(std::move(ring));
+  }
+  if (out.empty()) throw core::Error("the file holds no polygon and no closed line", file.string());
+  return out;
 }
 
 }  // namespace swath::pipeline

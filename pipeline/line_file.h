@@ -2,6 +2,8 @@
 // Lines and polygons of a vector file in the CRS of the data that they are laid over.
 #pragma once
 
+#include <Eigen/Core>
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -14,5 +16,9 @@ namespace swath::pipeline {
 /// CRS (DXF), and any file where `crs` is empty, is taken as it is. Throws core::Error, naming both
 /// CRSs where a place has no coordinates in the other.
 std::vector<io::VectorLine> read_lines_in(const std::filesystem::path& file, const core::Crs& crs);
+
+/// The polygons and closed lines among them, without the repeated vertex. `left_out`: vertices that are not finite, or farther off than any
+/// map reaches. Throws core::Error where none is left.
+std::vector<std::vector<Eigen::Vector2d>> read_rings_in(const std::filesystem::path& file, const core::Crs& crs, std::uint64_t& left_out);
 
 }  // namespace swath::pipeline

@@ -14,6 +14,7 @@
 #include "core/printable.h"
 #include "io/las/las_reader.h"
 #include "io/raster/geotiff.h"
+#include "io/raster/height_file.h"
 #include "io/raster/png.h"
 #include "io/text/output_file.h"
 #include "pipeline/input_guard.h"
@@ -291,7 +292,7 @@ std::vector<ProfileFound> write_profiles(const ProfileRequest& request) {
   const double half_width = request.half_width / (metric ? 1.0 : crs.metres_per_unit());
   const auto short_unit = [](double metres) { return std::string(metres == 1.0 ? "m" : "ft"); };
   const std::string unit = metric ? "m" : short_unit(crs.metres_per_unit()),
-                    height_unit = short_unit(!request.dtm.empty() ? height_unit_of(request.dtm)
+                    height_unit = short_unit(!request.dtm.empty() ? io::height_unit_of(request.dtm)
                                              : crs.empty()        ? 1.0
                                                                   : crs.vertical_metres_per_unit());
 

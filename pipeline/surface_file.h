@@ -16,9 +16,6 @@ struct SurfaceFile {
   double vertical_unit = 1.0;  ///< metres per unit of height: the band's own unit, else the CRS's, else 1
 };
 
-/// Metres per unit of the heights of a raster.
-double height_unit_of(const std::filesystem::path& file);
-
 /// Reads the first band (or the band `height`) of a raster, and sigma from its own band or from the file that a run writes beside it:
 /// dtm.vrt has dtm_quality.vrt. `window`: on the raster's lattice. Throws core::Error.
 SurfaceFile read_surface(const std::filesystem::path& file, const std::optional<core::Lattice>& window = std::nullopt);

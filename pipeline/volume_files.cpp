@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "io/raster/geotiff.h"
+#include "io/raster/height_file.h"
 #include "pipeline/line_file.h"
 #include "pipeline/surface_file.h"
 #include "report/volumes.h"
@@ -16,25 +17,6 @@ namespace swath::pipeline {
 namespace {
 
 constexpr std::int64_t band_cells = 1 << 22;  // of the surfaces that are held at a time
-
-constexpr double farthest = 1e8;  // m or feet: no map projection reaches it
-
-/// `left_out`: vertices that are not finite, or farther off than any map reaches.
-std::vector<report::Ring> rings_of(const std::filesystem::path& file, const core::Crs& crs, std::uint64_t& left_out) {
-  std::vector<report::Ring> out;
-  for (const io::VectorLine& line : read_lines_in(file, crs)) {
-    if (!line.closed) continue;
-    report::Ring ring;
-    for (size_t k = 0; k + 1 < line.x.size(); ++k)
-      if (std::abs(line.x[k]) < farthest && std::abs(line.y[k]) < farthest)
-        ring.emplace_back(line.x[k], line.y[k]);
-      else
-        ++left_out;
-    if (ring.size() >= 3) out.push_back(std::move(ring));
-  }
-  if (out.empty()) throw core::Error("the file holds no polygon and no closed line", file.string());
-  return out;
-}
 
 /// The cells of `l` that the polygon reaches.
 core::Lattice around(const core::Lattice& l, const std::vector<report::Ring>& polygon) {
@@ -71,7 +53,7 @@ struct Surface {
     const io::RasterInfo info = io::read_raster_info(f);
     lattice = io::lattice_of(info, f);
     if (!info.crs_wkt.empty()) crs = core::Crs(info.crs_wkt);
-    vertical_unit = height_unit_of(f);
+    vertical_unit = io::height_unit_of(f);
   }
   /// On the cells of `l`, of any size.
   core::Grid on(const core::Lattice& l) const {
@@ -112,7 +94,7 @@ VolumesFound volumes_of(const VolumeRequest& request) {
   std::vector<report::Ring> polygon;
   std::uint64_t vertices_left_out = 0;
   if (!request.polygon.empty()) {
-    polygon = rings_of(request.polygon, crs, vertices_left_out);
+    polygon = read_rings_in(request.polygon, crs, vertices_left_out);
     lattice = around(lattice, polygon);
   }
   report::VolumeSum sum(vertical / metre, request.correlation, polygon);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/config/option.h"
@@ -15,6 +16,23 @@ enum class FlightPattern {
   block,        ///< parallel lines, and lines across them
   calibration,  ///< over one place in many ways: along, across, at the swath's edge, without scan, at two heights
 };
+
+/// A line to be flown, in place of a pattern.
+struct LineOptions {
+  std::string name;
+  std::array<core::Metres, 2> from{}, to{};
+  core::Metres height;
+  bool scans = true;
+};
+
+template <class V>
+void describe(LineOptions& l, V& v) {
+  v.option("name", l.name, "Name of the line.");
+  v.option("from", l.from, "Easting and northing of its start.");
+  v.option("to", l.to, "Easting and northing of its end.");
+  v.option("height", l.height, core::within(-500, 14000), "Height to be flown, in the height system of the ground.");
+  v.option("scans", l.scans, "false: the mirror stands still at nadir.");
+}
 
 struct FlightOptions {
   FlightPattern pattern = FlightPattern::block;
@@ -33,11 +51,15 @@ struct FlightOptions {
   double turbulence = 1.0;
   core::MetresPerSecond wind{4.0};
   core::Radians wind_from = core::degrees(300.0);
+  std::vector<LineOptions> line;
   std::vector<io::TrajectoryFile> along;
   core::Seconds along_knots{0.1};
 
   /// Height of the calibration flight's second level above the ground, m; 0 where there is none.
   double upper_height() const;
+  /// Greatest and least height of the lines above the ground in the middle of the area, which is at height `ground`.
+  double highest(double ground) const;
+  double lowest(double ground) const;
 };
 
 template <class V>
@@ -64,11 +86,13 @@ void describe(FlightOptions& f, V& v) {
   v.option("turbulence", f.turbulence, core::within(0, 5), "Factor on the amplitudes of turbulence (1: about 1 deg of roll, 0.3 m).");
   v.option("wind", f.wind, core::within(0, 40), "Wind, which the aircraft meets by crabbing.");
   v.option("wind_from", f.wind_from, core::within(0, 2 * core::pi), "Direction the wind comes from, clockwise from grid north.");
+  v.tables("line", f.line, "Lines to be flown one after the other, in place of a pattern, as `swath plan` writes them.");
   v.tables("along", f.along,
            "Trajectory files to fly along, in place of lines: as in survey.toml, relative to the working folder; their time holds. Without "
            "laser.");
   v.option("along_knots", f.along_knots, core::within(0.01, 10),
            "Spacing of the knots of the splines along that trajectory; faster motion is smoothed away.");
+  v.check(f.line.empty() || f.along.empty(), "lines and a trajectory to fly along exclude each other");
   v.check(f.wind.value < 0.8 * f.speed.value, "the wind must be well below the aircraft's speed");
   v.check(!f.second_height || f.second_height->value == 0.0 || f.second_height->value >= 20.0, "the second height is 0 or at least 20 m");
 }

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A calibration flight, after the use of flat targets: opposite lines along the target's long wall determine roll, opposite profiles pitch,
-// lines that have the target at the swath's edge heading, a second height lever arm and range offset from the angles (docs/simulate.md).
 #include "simulate/line_plan.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.h"
+#include "planning/calibration_flight.h"
+
 namespace swath::simulate {
 namespace {
 
 using Eigen::Vector2d;
-
-constexpr double sway = 2.0 * core::degree;  // what roll may take off the swath's edge while the target must stay in it
-constexpr double least_edge = 0.5;           // share of the half swath
 
 Vector2d along_course(double course) { return {std::cos(course), std::sin(course)}; }  // north, east
 
@@ -38,39 +36,44 @@ std::vector<LinePlan> block(const FlightOptions& flight, const WorldOptions& wor
 }
 
 std::vector<LinePlan> calibration(const FlightOptions& flight, const WorldOptions& world, double half_angle, const Vector2d& along) {
+  planning::CalibrationFlight task;
+  task.height = flight.height.value;
+  task.second_height = flight.upper_height();
+  task.half_angle = half_angle;
+  task.length =
+      flight.line_length ? flight.line_length->value : std::max(world.length.value, world.width.value) + 0.7 * flight.height.value;
+  task.target_half_width = airfield_building(world).half_width;
+  task.cross_lines = flight.cross_lines;
+  task.edge_lines = flight.edge_lines;
+  task.profile_lines = flight.profile_lines;
+  task.opposite = flight.opposite;
   const Vector2d across(-along.y(), along.x());
-  const double height = flight.height.value, upper = flight.upper_height();
-  const double length = flight.line_length ? flight.line_length->value : std::max(world.length.value, world.width.value) + 0.7 * height;
   std::vector<LinePlan> plan;
-  // Line `i` of a group, counted from 0, `aside` metres to the right of the area's middle as the first one flies.
-  const auto add = [&](const std::string& name, int i, const Vector2d& way, const Vector2d& middle, double level, bool scans) {
-    const double sense = flight.opposite && i % 2 ? -1.0 : 1.0;
-    plan.push_back(
-        {middle - sense * 0.5 * length * way, middle + sense * 0.5 * length * way, name + " " + std::to_string(i + 1), level, scans});
-  };
-  // Along and across by turns: the way from one to the other is half of that back onto the same line.
-  const auto centre = [&](const std::string& high, double level) {
-    for (int i = 0; i < std::max(2, flight.cross_lines); ++i) {
-      if (i < 2) add(high + "along", i, along, Vector2d::Zero(), level, true);
-      if (i < flight.cross_lines) add(high + "across", i, across, Vector2d::Zero(), level, true);
-    }
-  };
-  centre("", 0.0);
-  if (flight.edge_lines) {
-    const double half_swath = height * std::tan(half_angle);
-    const double aside = std::max(least_edge * half_swath, height * std::tan(half_angle - sway) - airfield_building(world).half_width);
-    // Flown against each other both have the middle on their right; in one direction the second has it on its left.
-    add("edge right", 0, along, -aside * across, 0.0, true);
-    add(flight.opposite ? "edge right" : "edge left", 1, along, aside * across, 0.0, true);
+  for (const planning::CalibrationLine& l : planning::calibration_lines(task)) {
+    const auto place = [&](const Vector2d& p) -> Vector2d { return p.x() * along + p.y() * across; };
+    plan.push_back({place(l.from), place(l.to), l.name, l.level, l.scans});
   }
-  if (flight.profile_lines)
-    for (int i = 0; i < 2; ++i) add("profile", i, along, Vector2d::Zero(), 0.0, false);
-  if (upper > 0.0) centre("high ", upper - height);
   if (flight.lines && static_cast<size_t>(*flight.lines) < plan.size()) plan.resize(static_cast<size_t>(*flight.lines));
   return plan;
 }
 
 }  // namespace
+
+std::vector<LinePlan> given_lines(const std::vector<LineOptions>& lines, const core::Crs& crs, const LocalPlane& plane, double flown) {
+  const core::Transform to_geodetic(crs, core::wgs84_geodetic());
+  std::vector<LinePlan> plan;
+  for (const LineOptions& l : lines) {
+    const auto place = [&](const std::array<core::Metres, 2>& map) -> Vector2d {
+      const Eigen::Vector3d g = to_geodetic({map[0].value, map[1].value, l.height.value});
+      return plane.plane_of({g.y() * core::degree, g.x() * core::degree, l.height.value}).head<2>();
+    };
+    const std::string name = l.name.empty() ? "line " + std::to_string(plan.size() + 1) : l.name;
+    plan.push_back({place(l.from), place(l.to), name, l.height.value - flown, l.scans});
+    if ((plan.back().to - plan.back().from).norm() < 1.0)
+      throw core::usage_error(name + " is shorter than 1 m", "flight.line", "give another start or end");
+  }
+  return plan;
+}
 
 std::vector<LinePlan> plan_lines(const FlightOptions& flight, const WorldOptions& world, double half_angle, double convergence) {
   const Vector2d along = along_course(flight.direction.value + convergence);

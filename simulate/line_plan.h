@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/geo/crs.h"
+#include "simulate/flight.h"
 #include "simulate/flight_options.h"
 #include "simulate/scene_options.h"
 
@@ -22,5 +24,9 @@ struct LinePlan {
 /// The names of a calibration flight's lines state their part: "along 1", "across 2", "edge right 1" (the middle lies at the swath's right
 /// edge), "profile 1", "high along 1".
 std::vector<LinePlan> plan_lines(const FlightOptions& flight, const WorldOptions& world, double half_angle, double convergence);
+
+/// Lines that are given on the map, in a plane whose level 0 lies `flown` m high. Throws core::Error where a line is too short, or lies
+/// beyond the CRS.
+std::vector<LinePlan> given_lines(const std::vector<LineOptions>& lines, const core::Crs& crs, const LocalPlane& plane, double flown);
 
 }  // namespace swath::simulate

@@ -58,6 +58,18 @@ double FlightOptions::upper_height() const {
   return second_height ? second_height->value : 11.0 / 7.0 * height.value;
 }
 
+double FlightOptions::highest(double ground) const {
+  double out = line.empty() ? std::max(height.value, upper_height()) : line[0].height.value - ground;
+  for (const LineOptions& l : line) out = std::max(out, l.height.value - ground);
+  return out;
+}
+
+double FlightOptions::lowest(double ground) const {
+  double out = line.empty() ? height.value : line[0].height.value - ground;
+  for (const LineOptions& l : line) out = std::min(out, l.height.value - ground);
+  return line.empty() && upper_height() > 0.0 ? std::min(out, upper_height()) : out;
+}
+
 BuildingSize airfield_building(const WorldOptions& w) {
   const double length = std::clamp(std::min(w.length.value, w.width.value) / 9.0, 12.0, 80.0);
   return {0.5 * length, 0.25 * length, 12.0};
@@ -162,6 +174,10 @@ Features features_of(const WorldOptions& w) {
   if (w.crops) f.crops = *w.crops;
   if (w.water) f.water = *w.water;
   if (w.power_line) f.power_line = *w.power_line;
+  if (w.dem) {
+    f.slope = f.relief = f.scarp = f.embankment = f.ditch = 0.0;
+    f.water = false;
+  }
   // Without room for it, or a ditch to cross, the scene goes without.
   f.hall = w.hall.value_or(f.hall) && std::min(w.length.value, w.width.value) >= least_side_with_hall(w);
   f.bridge = w.bridge.value_or(f.bridge) && f.ditch > 0.0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <optional>
 
 #include "core/config/option.h"
@@ -17,6 +18,7 @@ struct WorldOptions {
   Scene scene = Scene::mixed;
   core::Metres length{1000.0}, width{400.0};
   core::Metres ground{600.0};
+  std::optional<std::filesystem::path> dem{};
   std::optional<double> slope{};
   std::optional<core::Metres> relief{}, scarp{}, embankment{}, ditch{};
   std::optional<double> scarp_slope{};
@@ -50,6 +52,7 @@ void describe(WorldOptions& w, V& v) {
   v.option("length", w.length, core::within(50, 1e4), "Length of the area along the flight lines.");
   v.option("width", w.width, core::within(50, 1e4), "Width of the area across the flight lines.");
   v.option("ground", w.ground, core::within(-500, 8000), "Ellipsoidal height of the ground in the middle.");
+  v.option("dem", w.dem, "Terrain model in place of the scene's ground: a raster in the survey's CRS.");
   v.option("slope", w.slope, core::within(0, 1), "Slope of the whole area (rise / run), down to grid north-east.");
   v.option("relief", w.relief, core::within(0, 500), "Amplitude of hills.");
   v.option("scarp", w.scarp, core::within(0, 100), "Height of a steep scarp through the area (0: none).");
@@ -73,6 +76,8 @@ void describe(WorldOptions& w, V& v) {
   v.option("hall_length", w.hall_length, core::within(10, 1000), "Length of the hall, nearly along the flight lines.");
   v.option("hall_width", w.hall_width, core::within(10, 1000), "Width of the hall.");
   v.option("bridge", w.bridge, "A bridge over the ditch (class 17); the ground below it is seen from the sides.");
+  v.check(!w.dem || !(w.slope || w.relief || w.scarp || w.embankment || w.ditch || w.water || w.bridge),
+          "a terrain model is the whole ground: leave slope, relief, scarp, embankment, ditch, water and bridge out");
   v.check(!w.hall.value_or(false) || std::min(w.length.value, w.width.value) >= least_side_with_hall(w),
           "a hall needs an area whose sides are 10 m longer than the hall's diagonal");
   v.check(!w.bridge.value_or(false) || features_of(w).ditch > 0.0, "a bridge needs a ditch to cross: set `ditch`");

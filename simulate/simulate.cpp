@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/grid.h"
 #include "io/raster/geotiff.h"
+#include "io/raster/height_file.h"
 #include "io/records/sbet.h"
 #include "io/records/trajectory_file.h"
 #include "io/survey/survey.h"
@@ -74,14 +75,21 @@ Scenery along_trajectory(const Options& o) {
 /// Half the swath's angle; a profile's place among other lines is planned as if it had some.
 double swath_angle(const ScannerOptions& s) { return widest_angle(s) > 0 ? widest_angle(s) : 0.1; }
 
-double lowest_of(const FlightOptions& f) { return f.upper_height() > 0.0 ? std::min(f.height.value, f.upper_height()) : f.height.value; }
+/// How far a beam reaches to the side, per metre of height.
+double reach_per_height(const ScannerOptions& s) { return std::tan(std::min(1.2, widest_angle(s) + 6 * core::degree)); }
 
-/// Half side of the square that beams reach, m. Boresight and attitude may add 6 degrees to the scan; lines and area may overlap either
-/// way.
-double reach_of(const Options& o) {
+/// Half side of the square that beams reach, m, over level ground. Boresight and attitude may add 6 degrees to the scan; lines and area may
+/// overlap either way.
+double reach_of(const Options& o, const Eigen::Vector2d& middle) {
   const FlightOptions& f = o.flight;
-  const double height = std::max(f.height.value, f.upper_height());
-  const double reach = height * std::tan(std::min(1.2, widest_angle(o.scanner) + 6 * core::degree)) + 60.0;
+  const double reach = f.highest(o.world.ground.value) * reach_per_height(o.scanner) + 60.0;
+  if (!f.line.empty()) {
+    double farthest = 0.0;
+    for (const LineOptions& l : f.line)
+      for (const auto& end : {l.from, l.to})
+        farthest = std::max({farthest, std::abs(end[0].value - middle.x()), std::abs(end[1].value - middle.y())});
+    return farthest + reach;
+  }
   const double area = std::max(o.world.length.value, o.world.width.value);
   if (f.pattern == FlightPattern::calibration) {
     double farthest = 0.71 * area;
@@ -95,20 +103,36 @@ double reach_of(const Options& o) {
   return std::max({area, line, across}) * 0.71 + reach;
 }
 
+/// The ground that the options name, and how much farther beams reach where it is low.
+World world_on(const Options& o, const Eigen::Vector2d& middle, double& half) {
+  if (!o.world.dem) return World(o.world, o.seed, o.flight.direction, half);
+  const core::Box wide = core::Box{middle.x(), middle.y(), middle.x(), middle.y()}.grown(2.0 * half);
+  io::HeightFile dem = io::read_heights(*o.world.dem, wide);
+  const core::Crs map = core::Crs(o.crs).horizontal();
+  if (!dem.crs.empty() && dem.crs.horizontal().key() != map.key() && (map.epsg() == 0 || dem.crs.epsg() != map.epsg()))
+    throw core::usage_error("the terrain model is in " + dem.crs.name() + ", the survey in " + map.name(), "world.dem",
+                            "set crs to that of the model, or warp the model (gdalwarp)");
+  half = std::min(2.0 * half, half + std::max(0.0, o.world.ground.value - dem.field.lowest()) * reach_per_height(o.scanner));
+  return World(o.world, Relief(std::move(dem.field), middle), o.seed, o.flight.direction, half);
+}
+
 Scenery build(const Options& o) {
   const core::Crs crs(o.crs);
   if (!o.flight.along.empty()) return along_trajectory(o);
   const core::Geodetic origin{o.latitude.value, o.longitude.value, o.world.ground.value};
   const double ground = o.world.ground.value, flown = ground + o.flight.height.value;
-  const double highest = ground + std::max(o.flight.height.value, o.flight.upper_height());
+  const double highest = ground + o.flight.highest(ground);
+  const Eigen::Vector2d middle =
+      core::Transform(core::wgs84_geodetic(), crs)(Eigen::Vector3d(core::to_degrees(o.longitude), core::to_degrees(o.latitude), ground))
+          .head<2>();
   Scenery s;
-  s.half = reach_of(o);
+  s.half = reach_of(o, middle);
   s.start = core::from_week(o.output.week, o.output.start.value);
   double low = ground;
   if (o.output.laser) {
-    s.world.emplace(o.world, o.seed, o.flight.direction, s.half);
+    s.world.emplace(world_on(o, middle, s.half));
     low = s.world->relief().lowest() - low_margin;
-    if (s.world->relief().highest() > ground + lowest_of(o.flight) - 10.0)
+    if (s.world->relief().highest() > ground + o.flight.lowest(ground) - 10.0)
       throw core::usage_error("the ground may reach " +
                                   core::format_quantity(core::Dimension::length, std::round(s.world->relief().highest())) +
                                   ", too near to the flying height",
@@ -117,7 +141,8 @@ Scenery build(const Options& o) {
   // Without laser the map serves for the bearing of its grid north alone.
   s.map.emplace(crs, origin, o.output.laser ? s.half : 100.0, low, highest + 30.0);
   const double convergence = s.map->convergence();
-  const std::vector<LinePlan> plan = plan_lines(o.flight, o.world, swath_angle(o.scanner), convergence);
+  const std::vector<LinePlan> plan = o.flight.line.empty() ? plan_lines(o.flight, o.world, swath_angle(o.scanner), convergence)
+                                                           : given_lines(o.flight.line, crs, LocalPlane(origin, flown), flown);
   // The ellipsoid's curvature: the flight keeps its height above the ellipsoid, as the ground does.
   s.flight = std::make_unique<PlannedFlight>(o.flight, origin, flown, plan, o.flight.wind_from.value + convergence, o.seed);
   return s;

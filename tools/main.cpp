@@ -21,6 +21,8 @@
 #include "io/survey/info.h"
 #include "io/text/value_file.h"
 #include "pipeline/describe.h"
+#include "pipeline/flight_plan/budget.h"
+#include "pipeline/flight_plan/plan_files.h"
 #include "pipeline/input_guard.h"
 #include "pipeline/limits.h"
 #include "pipeline/plan.h"
@@ -43,7 +45,10 @@ struct Arguments {
   pipeline::Request request;
   pipeline::VolumeRequest volumes;
   pipeline::ProfileRequest profile;
-  std::string name, folder, scene, width = "1 m";
+  pipeline::PlanRequest plan;
+  pipeline::BudgetRequest budget;
+  std::vector<std::string> angles{"0 deg", "20 deg"};
+  std::string name, folder, scene, width = "1 m", speed = "60 m/s";
   bool quiet = false, json_log = false, json = false, check = false;
 
   pipeline::Voice voice() const { return json_log ? pipeline::Voice::json : quiet ? pipeline::Voice::quiet : pipeline::Voice::bar; }
@@ -61,6 +66,11 @@ int run(Arguments& a, const std::string& command) {
 }
 
 int check(Arguments& a) {
+  if (pipeline::is_flight_plan(a.request.config)) {
+    const planning::FlightPlan plan = pipeline::check_flight_plan({a.request.config, {}, {}, a.request.sets});
+    if (!a.quiet) std::printf("%s: a flight of %zu lines\n", a.request.config.c_str(), plan.lines.size());
+    return 0;
+  }
   const pipeline::Plan plan = pipeline::make_plan(a.request);
   if (!plan.survey_file.empty()) pipeline::check_output(plan);
   if (a.quiet) return 0;
@@ -112,14 +122,18 @@ int volumes(const Arguments& a) {
   return 0;
 }
 
-int profile(Arguments& a) {
-  core::Shape length{core::Kind::quantity, core::Dimension::length};
+/// A number with its unit from the command line; `example`: one that would do.
+double quantity(core::Dimension d, const std::string& text, const std::string& option, const std::string& example) {
   std::string fault;
-  const auto width = core::read_scalar(length, a.width, fault);
-  if (!width || !(width->as_number() > 0.0))
-    throw core::usage_error("'" + a.width + "' is no width" + (fault.empty() ? "" : ": " + fault), "--half-width",
-                            "write a length with its unit: \"2 m\"");
-  a.profile.half_width = width->as_number();
+  const auto value = core::read_scalar({core::Kind::quantity, d}, text, fault);
+  if (!value) throw core::usage_error("'" + text + "': " + fault, option, "write it with its unit: \"" + example + "\"");
+  return value->as_number();
+}
+
+int profile(Arguments& a) {
+  a.profile.half_width = quantity(core::Dimension::length, a.width, "--half-width", "2 m");
+  if (!(a.profile.half_width > 0.0))
+    throw core::usage_error("'" + a.width + "' is no width", "--half-width", "write a length with its unit: \"2 m\"");
   core::Value list = core::Value::array();
   for (const pipeline::ProfileFound& one : pipeline::write_profiles(a.profile)) {
     list.push(core::reported(one));
@@ -130,6 +144,23 @@ int profile(Arguments& a) {
       std::printf("  %zu of its vertices are not finite or beyond every map, left out\n", one.vertices_left_out);
   }
   if (a.json) print_json(list);
+  return 0;
+}
+
+int plan_flight(const Arguments& a) {
+  const planning::FlightPlan plan = pipeline::write_flight_plan(a.plan);
+  if (a.quiet) return 0;
+  a.json ? print_json(core::reported(plan)) : print(pipeline::plan_text(plan));
+  return 0;
+}
+
+int budget(Arguments& a) {
+  a.budget.height = quantity(core::Dimension::length, a.width, "--height", "600 m");
+  a.budget.speed = quantity(core::Dimension::speed, a.speed, "--speed", "60 m/s");
+  a.budget.angles.clear();
+  for (const std::string& angle : a.angles) a.budget.angles.push_back(quantity(core::Dimension::angle, angle, "--angle", "20 deg"));
+  const pipeline::BudgetTable table = pipeline::budget_of(a.budget);
+  a.json ? print_json(core::reported(table)) : print(pipeline::budget_text(table));
   return 0;
 }
 
@@ -206,9 +237,32 @@ void add_list_commands(CLI::App& app, Arguments& a) {
 }
 
 void add_survey_commands(CLI::App& app, Arguments& a) {
-  auto* c = app.add_subcommand("simulate",
-                               "Examples\n  swath simulate demo\n  swath simulate demo --set seed=7 --set flight.lines=2 --set "
-                               "world.scene=forest\n\nMake the raw records of a survey whose truth is known.");
+  auto* c = app.add_subcommand(
+      "plan",
+      "Examples\n  swath plan configs/flight/plan.toml --output plan\n  swath plan flight.toml --dem terrain.tif --output "
+      "plan --set flight.speed=\"60 m/s\"\n\nPlan a flight over an area: lines, density, accuracy, time and cost.");
+  c->add_option("PLAN", a.plan.config, "What is asked of the flight, .toml or .json")->required();
+  c->add_option("--dem", a.plan.dem, "Terrain model, in place of the config's");
+  c->add_option("--output", a.plan.folder, "Folder to write to")->required();
+  c->add_option("--set", a.plan.sets, "One option of the plan: flight.speed=\"60 m/s\"")->allow_extra_args(false);
+  c->add_flag("--quiet", a.quiet, "Nothing but errors");
+  c->add_flag("--json", a.json, "The plan as JSON");
+
+  c = app.add_subcommand("budget",
+                         "Examples\n  swath budget demo/survey.toml --height \"600 m\" --angle \"0 deg\" --angle \"20 deg\" --slope "
+                         "0.1\n\nShow the errors of a survey's points by source, from its own sigmas.");
+  c->add_option("SURVEY", a.budget.survey, "survey.toml")->required();
+  c->add_option("--height", a.width, "Above the ground")->required();
+  c->add_option("--angle", a.angles, "Scan angle; may be given more than once")->allow_extra_args(false)->capture_default_str();
+  c->add_option("--speed", a.speed, "Over the ground: errors of time move a point along the track")->capture_default_str();
+  c->add_option("--slope", a.budget.slope, "Of the ground across the track, rise / run")->capture_default_str();
+  c->add_option("--penetration", a.budget.penetration, "Share of the pulses that reach the ground under trees")
+      ->check(CLI::Range(0.0, 1.0));
+  c->add_flag("--json", a.json, "As JSON");
+
+  c = app.add_subcommand("simulate",
+                         "Examples\n  swath simulate demo\n  swath simulate demo --set seed=7 --set flight.lines=2 --set "
+                         "world.scene=forest\n\nMake the raw records of a survey whose truth is known.");
   c->add_option("FOLDER", a.folder, "Folder to make the survey in")->required();
   c->add_option("--config", a.request.config, "Options of the simulation, .toml or .json");
   c->add_option("--set", a.request.sets, "One option of the simulation: seed=7, flight.speed=\"60 m/s\"")->allow_extra_args(false);
@@ -292,6 +346,8 @@ int command_line(int argc, char** argv) {
   if (name == "check") return check(a);
   if (name == "explain") return explain(a);
   if (name == "warnings") return print(pipeline::warning_help(a.name)), 0;
+  if (name == "plan") return plan_flight(a);
+  if (name == "budget") return budget(a);
   if (name == "simulate") return simulate_survey(a);
   if (name == "info") return info(a);
   if (name == "volumes") return volumes(a);

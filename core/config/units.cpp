@@ -68,6 +68,9 @@ constexpr Unit known_units[] = {
     {"ug/sqrt(Hz)", D::velocity_walk, 9.80665e-6},
     {"ppm", D::ratio, 1e-6},
     {"%", D::ratio, 1e-2},
+    {"uJ", D::energy, 1e-6},
+    {"mJ", D::energy, 1e-3},
+    {"J", D::energy, 1.0},
 };
 
 }  // namespace
@@ -107,6 +110,8 @@ std::string_view name_of(Dimension d) {
       return "velocity random walk";
     case Dimension::ratio:
       return "ratio";
+    case Dimension::energy:
+      return "energy";
   }
   return "number";
 }

@@ -27,6 +27,7 @@ enum class Dimension {
   angular_walk,   // rad/sqrt(s), white noise of an angular rate
   velocity_walk,  // m/s/sqrt(s), white noise of a specific force
   ratio,          // 1
+  energy,         // J
 };
 
 /// A number with its dimension in its type. Construction is explicit; `.value` is SI.
@@ -69,6 +70,7 @@ using MetresPerSecond2 = Quantity<Dimension::acceleration>;
 using AngularWalk = Quantity<Dimension::angular_walk>;
 using VelocityWalk = Quantity<Dimension::velocity_walk>;
 using Ratio = Quantity<Dimension::ratio>;
+using Joules = Quantity<Dimension::energy>;
 
 constexpr double pi = std::numbers::pi;
 constexpr double degree = pi / 180.0;

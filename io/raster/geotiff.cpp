@@ -199,7 +199,7 @@ RasterInfo read_raster_info(const std::filesystem::path& file) {
   return info_of(*d);
 }
 
-Raster read_raster(const std::filesystem::path& file, int band_number) {
+Raster read_raster(const std::filesystem::path& file, int band_number, const std::optional<PixelWindow>& window) {
   const GdalMessages messages;
   const Dataset d = open(file, messages);
   const RasterInfo info = info_of(*d);
@@ -208,11 +208,19 @@ Raster read_raster(const std::filesystem::path& file, int band_number) {
     throw core::Error("has no band " + std::to_string(band_number), file.string(), "its bands are 1 to " + std::to_string(r.bands));
   r.name = info.names[static_cast<size_t>(band_number - 1)];
   r.unit = info.units[static_cast<size_t>(band_number - 1)];
+  const PixelWindow w = window.value_or(PixelWindow{0, 0, r.nx, r.ny});
+  if (w.column < 0 || w.row < 0 || w.columns < 1 || w.rows < 1 || w.columns > r.nx - w.column || w.rows > r.ny - w.row)
+    throw core::Error("has no such window of pixels", file.string());
+  const std::array<double, 6> g = r.geotransform;
+  r.geotransform[0] = g[0] + w.column * g[1] + w.row * g[2];
+  r.geotransform[3] = g[3] + w.column * g[4] + w.row * g[5];
+  r.nx = w.columns;
+  r.ny = w.rows;
   r.values.reserve(static_cast<size_t>(r.nx) * static_cast<size_t>(r.ny));
   std::vector<double> row;
   std::vector<unsigned char> mask;
   for (int j = 0; j < r.ny; ++j) {
-    read_row(*d->GetRasterBand(band_number), j, 0, r.nx, row, mask, file, messages);
+    read_row(*d->GetRasterBand(band_number), w.row + j, w.column, r.nx, row, mask, file, messages);
     r.values.insert(r.values.end(), row.begin(), row.end());
   }
   return r;

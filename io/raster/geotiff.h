@@ -59,8 +59,13 @@ struct Raster {
   std::string crs_wkt;         ///< WKT2:2019; empty where the file states none
 };
 
-/// Reads one band (from 1) of any raster that GDAL reads. Throws core::Error.
-Raster read_raster(const std::filesystem::path& file, int band = 1);
+/// Pixels of a raster, counted from its upper left one.
+struct PixelWindow {
+  int column = 0, row = 0, columns = 0, rows = 0;
+};
+
+/// Reads one band (from 1) of any raster that GDAL reads, or the part of it that lies within a window. Throws core::Error.
+Raster read_raster(const std::filesystem::path& file, int band = 1, const std::optional<PixelWindow>& window = std::nullopt);
 
 /// What stands in a raster's header.
 struct RasterInfo {

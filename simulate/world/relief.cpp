@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "simulate/random.h"
 #include "simulate/world/bearing.h"
@@ -86,7 +87,17 @@ Relief::Relief(const WorldOptions& world, std::int64_t seed, core::Radians direc
   }
 }
 
+Relief::Relief(core::HeightField field, const Eigen::Vector2d& middle) : field_(std::move(field)), middle_(middle) {
+  steepest_ = field_->steepest();
+  highest_ = field_->highest();
+  lowest_ = field_->lowest();
+}
+
 Relief::Sample Relief::at(double e, double n) const {
+  if (field_) {
+    const core::HeightField::Sample s = field_->at(middle_.x() + e, middle_.y() + n);
+    return {s.height, s.gradient, false};
+  }
   const Eigen::Vector2d p(e, n);
   Sample s;
   s.height = base_ + slope_.dot(p);

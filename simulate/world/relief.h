@@ -6,12 +6,13 @@
 #include <optional>
 #include <vector>
 
+#include "core/height_field.h"
 #include "simulate/options.h"
 
 namespace swath::simulate {
 
-/// The analytic ground: a slope, waves, hills, a scarp, an embankment, a ditch and a lake's basin. Coordinates: metres east and north
-/// of the middle of the area in the map frame, heights in the map's height system.
+/// The ground: a terrain model, or analytic, a slope, waves, hills, a scarp, an embankment, a ditch and a lake's basin. Coordinates: metres
+/// east and north of the middle of the area in the map frame, heights in the map's height system.
 class Relief {
  public:
   struct Sample {
@@ -29,6 +30,8 @@ class Relief {
   Relief() = default;
   /// `half` is the half side of the square that holds everything the beam can reach.
   Relief(const WorldOptions& world, std::int64_t seed, core::Radians direction, double half);
+  /// The ground of a terrain model; `middle`: easting and northing of the middle of the area.
+  Relief(core::HeightField field, const Eigen::Vector2d& middle);
 
   /// The ground, or the water's surface where it stands above it.
   Sample at(double e, double n) const;
@@ -58,6 +61,8 @@ class Relief {
   };
   void plan_parts(const WorldOptions& world, const Features& f, std::int64_t seed, core::Radians direction);
 
+  std::optional<core::HeightField> field_;
+  Eigen::Vector2d middle_ = Eigen::Vector2d::Zero();
   double base_ = 0.0, steepest_ = 0.0, highest_ = 0.0, lowest_ = 0.0;
   Eigen::Vector2d slope_ = Eigen::Vector2d::Zero();
   std::vector<Wave> waves_;

@@ -90,7 +90,10 @@ bool approach(const Wire& w, const Vector3d& p, const Vector3d& d, double& t, do
 }  // namespace
 
 World::World(const WorldOptions& options, std::int64_t seed, core::Radians direction, double half)
-    : relief_(options, seed, direction, half) {
+    : World(options, Relief(options, seed, direction, half), seed, direction, half) {}
+
+World::World(const WorldOptions& options, Relief relief, std::int64_t seed, core::Radians direction, double half)
+    : relief_(std::move(relief)) {
   const Features f = features_of(options);
   low_vegetation_ = f.low_vegetation;
   low_vegetation_height_ = options.low_vegetation_height.value;

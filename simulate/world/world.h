@@ -69,6 +69,8 @@ enum class Cover : std::uint8_t { open = 1, forest = 2, steep = 3, building = 4,
 class World {
  public:
   World(const WorldOptions& options, std::int64_t seed, core::Radians direction, double half);
+  /// The same on ground that is given.
+  World(const WorldOptions& options, Relief relief, std::int64_t seed, core::Radians direction, double half);
 
   const Relief& relief() const { return relief_; }
   const std::vector<Building>& buildings() const { return buildings_; }

@@ -27,10 +27,11 @@ const std::map<std::string, std::set<std::string>> arrows = {
     {"report", {"core"}},
     {"georef", {"core", "trajectory"}},
     {"calib", {"core", "io", "filters", "terrain", "trajectory", "report", "georef"}},
-    {"simulate", {"core", "io"}},
+    {"planning", {"core"}},
+    {"simulate", {"core", "io", "planning"}},
     {"stages", {"core", "io", "filters", "terrain", "quality", "trajectory", "report", "georef", "calib"}},
-    {"pipeline", {"core", "io", "report", "stages"}},
-    {"tools", {"core", "io", "pipeline", "simulate"}},
+    {"pipeline", {"core", "io", "report", "planning", "stages"}},
+    {"tools", {"core", "io", "planning", "pipeline", "simulate"}},
 };
 
 /// Third party (as its includes begin) -> the only files that may include it.

@@ -12,7 +12,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-ROOMS = "core io filters terrain quality trajectory report georef calib simulate stages pipeline tools".split()
+ROOMS = "core io filters terrain quality trajectory report georef calib planning simulate stages pipeline tools".split()
 NAME = r"(?:Mc|Le)?[A-Z][a-zäöüéß]+(?:-[A-Z][a-zäöü]+)?"
 YEAR = r"(?:19|20)[0-9]{2}(?!\.?[0-9]|[%-]| m\b)"
 AUTHORS = rf"\b(?P<first>{NAME})(?P<others>(?:(?:,? and |,? & |, )(?:de )?{NAME})*(?: et al\.)?)"

@@ -24,6 +24,19 @@ std::string geojson(const std::vector<Eigen::Vector2d>& places, const std::strin
   return out + "]}}]}";
 }
 
+TEST(LineFile, RingsAreClosedLines) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "ring.geojson",
+                    geojson({{600000, 5300000}, {600060, 5300000}, {600060, 5300050}, {600000, 5300000}}, "EPSG:32632"));
+  test::write_bytes(folder / "open.geojson", geojson({{600000, 5300000}, {600060, 5300000}, {600060, 5300050}}, "EPSG:32632"));
+  std::uint64_t left_out = 0;
+  const auto rings = read_rings_in(folder / "ring.geojson", core::Crs("EPSG:32632"), left_out);
+  ASSERT_EQ(rings.size(), 1u);
+  EXPECT_EQ(rings[0].size(), 3u);
+  EXPECT_EQ(left_out, 0u);
+  EXPECT_THROW(read_rings_in(folder / "open.geojson", core::Crs("EPSG:32632"), left_out), core::Error);
+}
+
 TEST(LineFile, LinesComeInTheCrsOfTheData) {
   const test::TemporaryFolder folder;
   const std::vector<Eigen::Vector2d> map{{600000, 5300000}, {600060, 5300020}, {600030, 5300055}};

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/error.h"
+
 namespace swath::simulate {
 namespace {
 
@@ -33,6 +35,32 @@ std::vector<std::string> names(const std::vector<LinePlan>& plan) {
 }
 
 Eigen::Vector2d way(const LinePlan& l) { return (l.to - l.from).normalized(); }
+
+/// Easting and northing become the plane's true north and east by PROJ; the level counts from the flight's height.
+TEST(LinePlan, GivenLinesLieWhereTheMapHasThem) {
+  const core::Crs crs("EPSG:32632");
+  const core::Geodetic origin{47.9 * core::degree, 10.5 * core::degree, 600};
+  const LocalPlane plane(origin, 1200);
+  const auto lines = given_lines(
+      {{"", {core::Metres(612000), core::Metres(5306000)}, {core::Metres(613000), core::Metres(5307000)}, core::Metres(1250), true},
+       {"back", {core::Metres(613000), core::Metres(5307000)}, {core::Metres(612000), core::Metres(5306000)}, core::Metres(1150), false}},
+      crs, plane, 1200);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].name, "line 1");
+  EXPECT_EQ(lines[1].name, "back");
+  EXPECT_EQ(lines[0].level, 50);
+  EXPECT_FALSE(lines[1].scans);
+  const core::Transform to_map(core::wgs84_geodetic(), crs);
+  const core::Geodetic g = plane.geodetic_of({lines[0].to.x(), lines[0].to.y(), 1250});
+  const Eigen::Vector3d map = to_map({core::to_degrees(g.longitude), core::to_degrees(g.latitude), 1250});
+  EXPECT_NEAR(map.x(), 613000, 1e-3);
+  EXPECT_NEAR(map.y(), 5307000, 1e-3);
+  EXPECT_THROW(
+      given_lines(
+          {{"", {core::Metres(612000), core::Metres(5306000)}, {core::Metres(612000), core::Metres(5306000)}, core::Metres(1200), true}},
+          crs, plane, 1200),
+      core::Error);
+}
 
 TEST(LinePlan, LinesOverlapAsAsked) {
   FlightOptions o;

@@ -91,6 +91,23 @@ TEST(Relief, ADitchIsAsDeepAsToldAndLevelBeyondItsHalfWidth) {
   EXPECT_LT(std::abs(depth(-ditch.half_width)), 0.02 * 5.0);
 }
 
+TEST(Relief, ATerrainModelIsTheGround) {
+  std::vector<float> z;
+  for (int j = 0; j < 50; ++j)
+    for (int i = 0; i < 50; ++i) z.push_back(static_cast<float>(300 + 5 * std::sin(0.3 * i) + 0.5 * j));
+  const core::HeightField field({5000, 7000, 10, 10, 50, 50}, z);
+  const Relief relief(field, {5240, 7230});
+  for (double d = -200; d <= 200; d += 7.3) {
+    const Relief::Sample s = relief.at(d, -0.5 * d);
+    EXPECT_EQ(s.height, field.height(5240 + d, 7230 - 0.5 * d));
+    EXPECT_LE(s.gradient.norm(), relief.steepest());
+    EXPECT_FALSE(s.water);
+  }
+  EXPECT_EQ(relief.highest(), field.highest());
+  EXPECT_EQ(relief.lowest(), field.lowest());
+  EXPECT_FALSE(relief.ditch());
+}
+
 TEST(Relief, AScarpHasItsSlope) {
   for (const double slope : {0.8, 1.43, 2.5}) {
     WorldOptions w = level();

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Terrain models of any source as the ground to plan or simulate a flight over.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "core/area.h"
+#include "core/geo/crs.h"
+#include "core/height_field.h"
+
+namespace swath::io {
+
+struct HeightFile {
+  core::HeightField field;  ///< map metres, heights in metres
+  core::Crs crs;            ///< empty where the file states none
+};
+
+/// Metres per unit of the heights of a raster: its first band's own unit, else the CRS's, else 1.
+double height_unit_of(const std::filesystem::path& file);
+
+/// The first band of a north-up raster, its pixels of any shape and place; `within`: only what of it lies in that box (map metres), two
+/// pixels more on each side. Throws core::Error: not north up, in degrees, more than 400 million pixels, nothing of it in the box, no
+/// height.
+HeightFile read_heights(const std::filesystem::path& file, const std::optional<core::Box>& within = std::nullopt);
+
+}  // namespace swath::io
