@@ -45,6 +45,10 @@ std::vector<Warning> warnings_in(const Value& report) {
   for (const Value& stage : report.find("stages")->items())
     if (const Value* tally = stage.find("tally"))
       if (const Value* wrong = tally->find(io::wrong_box)) add_boxes(*wrong, out);
+  for (const Value& stage : report.find("stages")->items())
+    if (const Value* findings = stage.find("findings"); findings && stage.find("type")->as_text() == "quality.points")
+      if (const Value* named = findings->find("named"))
+        for (const Value& fault : named->items()) out.push_back({fault.find("code")->as_text(), fault.find("sentence")->as_text(), {}});
   if (const Value* geometry = report.find("geometry")) add_geometry(*geometry, out);
   if (const Value* limits = report.find("limits"))
     for (Warning& w : missed_limits(*limits)) out.push_back(std::move(w));

@@ -7,6 +7,12 @@ namespace swath::pipeline {
 
 const std::vector<WarningKind>& warning_kinds() {
   static const std::vector<WarningKind> kinds{
+      {"check.heights", "The ground lies to one side of the check points on all lines, beyond four sigmas.",
+       "Compare geoid, height system, datum and antenna heights of check points and survey."},
+      {"check.line", "One flight line differs from its check points beyond four sigmas, and other lines do not.",
+       "Look at the line's trajectory (report, quality.geometry); calib.strips can adjust it."},
+      {"check.mark", "One check point differs from the ground of all lines that show it, beyond four sigmas.",
+       "Look at its record in the field book; it may be set on something that is no ground."},
       {"geometry.contradiction", "Lines, heights or headings of the flight contradict one another more than their accuracy allows.",
        "See the checks of quality.geometry in report.json, and the warnings geometry.mistake beside this one."},
       {"geometry.mistake", "A usual mistake in the description of the survey explains the contradictions.",

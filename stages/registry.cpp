@@ -62,6 +62,7 @@ const std::vector<Entry>& registry() {
       las_writer_stage(),
       gdal_writer_stage(),
       picture_writer_stage(),
+      check_points_stage(),
       truth_stage(),
   };
   return list;

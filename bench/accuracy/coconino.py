@@ -34,11 +34,13 @@ x, y = (place[:, :2] + move).T
 
 folder = common.scratch("coconino")
 common.write_las(folder / "ground.las", *moved.T, np.full(len(moved), 2, np.uint8), 0.001)
-(folder / "survey.toml").write_text(f'name = "Coconino"\ncrs = "{crs}"\n[[points]]\nfile = "ground.las"\ncrs = "{crs}"\nline = 1\n')
+(folder / "check.csv").write_text("name,x,y,z,cover\n" + "".join(f"{n},{x[n]:.3f},{y[n]:.3f},{place[n, 2]:.3f},{kind[n]}\n" for n in range(len(place))))
+(folder / "survey.toml").write_text(f'name = "Coconino"\ncrs = "{crs}"\n[[points]]\nfile = "ground.las"\ncrs = "{crs}"\nline = 1\n'
+                                    '[[control]]\nfile = "check.csv"\nuse = "check"\n')
 rows = []
 for cell in ("0.5 m", "1 m"):
     output = folder / cell
-    common.run([{"type": "readers.las"}, {"type": "terrain.dtm", "cell": cell}, {"type": "writers.gdal"}], folder / "survey.toml", output)
+    common.run([{"type": "readers.las"}, {"type": "terrain.dtm", "cell": cell}, {"type": "quality.points", "open": ["NVA"], "surface": "mean"}, {"type": "writers.gdal"}], folder / "survey.toml", output)
     height, at = common.raster(output / "dtm.vrt")
     error = common.bilinear(height, at, x, y) - place[:, 2]
     for key, name in NAMES.items():
@@ -47,3 +49,8 @@ for cell in ("0.5 m", "1 m"):
         rows.append([name, cell, f"{here.sum()} of {np.sum(kind == key)}", f"{e.mean():+.3f}", f"{common.rms(e):.3f}", f"{np.quantile(np.abs(e), 0.95):.3f}",
                      f"{near.mean():+.3f}", f"{common.rms(near):.3f}"])
 common.table(["check points", "cell", "judged", "mean m", "rms m", "95 % m", "points within 1 m: mean m", "rms m"], rows)
+
+stage = next(s for s in json.loads((output / "report.json").read_text())["stages"] if s["type"] == "quality.points")
+common.table(["quality.points", "product", "n", "mean m", "rms m", "95 % m", "rms with marks m"],
+             [[a["cover"], a["product"], str(a["n"]), f"{a['mean']:+.3f}", f"{a['rms']:.3f}", f"{a['q95']:.3f}", f"{a['rmse_with_marks_m']:.3f}"]
+              for a in stage["findings"]["accuracy"] if "(" in a["cover"]])

@@ -22,7 +22,7 @@ struct ControlFile {
   std::filesystem::path file;
   std::string crs;
   ControlUse use = ControlUse::control;
-  std::string name = "name", target = "target", x = "x", y = "y", z = "z", sigma_h = "sigma_h", sigma_v = "sigma_v";
+  std::string name = "name", target = "target", cover = "cover", x = "x", y = "y", z = "z", sigma_h = "sigma_h", sigma_v = "sigma_v";
   core::Metres sigma_horizontal{0.02}, sigma_vertical{0.02};
 };
 
@@ -33,6 +33,7 @@ void describe(ControlFile& f, V& v) {
   v.option("use", f.use, "control: takes part in the adjustment; check: is compared with its result alone.");
   v.option("name", f.name, "Column of the points' names.");
   v.option("target", f.target, "Column with the plane a point is a corner of, in order around it; empty: a single ground point.");
+  v.option("cover", f.cover, "Column with what covers the ground there (open, forest ...), for quality.points.");
   v.option("x", f.x, "Column of eastings.");
   v.option("y", f.y, "Column of northings.");
   v.option("z", f.z, "Column of heights.");

@@ -34,7 +34,7 @@ constexpr double width_sigmas = 3.0;
 /// A point as its file states it.
 struct RawPoint {
   std::string name;  ///< empty: none stated
-  std::string target;
+  std::string target, cover;
   Vector3d at;  ///< easting (longitude), northing (latitude), height; units of the CRS
   double sigma_h = 0, sigma_v = 0;
   std::string place;
@@ -57,13 +57,15 @@ RawLayer read_table(const std::filesystem::path& path, const ControlFile& f) {
   const ControlFile usual;
   const TextTable table(path);
   const std::array<size_t, 3> xyz{table.column(f.x), table.column(f.y), table.column(f.z)};
-  const auto name = table.column_if_there(f.name, usual.name), target = table.column_if_there(f.target, usual.target);
+  const auto name = table.column_if_there(f.name, usual.name), target = table.column_if_there(f.target, usual.target),
+             cover = table.column_if_there(f.cover, usual.cover);
   const auto sigma_h = table.column_if_there(f.sigma_h, usual.sigma_h), sigma_v = table.column_if_there(f.sigma_v, usual.sigma_v);
   RawLayer out;
   for (size_t row = 0; row < table.rows(); ++row) {
     RawPoint p;
     if (name) p.name = table.text(row, *name);
     if (target) p.target = table.text(row, *target);
+    if (cover) p.cover = table.text(row, *cover);
     for (int k = 0; k < 3; ++k) p.at[k] = table.coordinate(row, xyz[static_cast<size_t>(k)]);
     const auto sigma = [&](const std::optional<size_t>& column, core::Metres otherwise) {
       return column && !table.text(row, *column).empty() ? table.number(row, *column) : otherwise.value;
@@ -78,7 +80,7 @@ RawLayer read_table(const std::filesystem::path& path, const ControlFile& f) {
 
 /// Fields of a layer by name; -1 where it has none.
 struct Attributes {
-  int name, target, z, sigma_h, sigma_v;
+  int name, target, cover, z, sigma_h, sigma_v;
 };
 
 int field_of(OGRFeatureDefn& defn, const std::string& name, const std::string& usual, bool number, const std::string& place) {
@@ -123,6 +125,7 @@ void add_feature(OGRFeature& feature, const Attributes& fields, const ControlFil
   const OGRGeometry& shape = single_part(*whole, p.place);
   p.name = text_in(feature, fields.name);
   p.target = text_in(feature, fields.target);
+  p.cover = text_in(feature, fields.cover);
   p.sigma_h = number_in(feature, fields.sigma_h, f.sigma_horizontal.value);
   p.sigma_v = number_in(feature, fields.sigma_v, f.sigma_vertical.value);
   const auto type = wkbFlatten(shape.getGeometryType());
@@ -164,9 +167,9 @@ std::vector<RawLayer> read_geopackage(const std::filesystem::path& path, const C
     if (defn.GetGeomFieldCount() == 0) continue;
     RawLayer raw;
     raw.own_crs = stated_wkt(layer->GetSpatialRef());
-    const Attributes fields{field_of(defn, f.name, usual.name, false, place), field_of(defn, f.target, usual.target, false, place),
-                            field_of(defn, f.z, usual.z, true, place), field_of(defn, f.sigma_h, usual.sigma_h, true, place),
-                            field_of(defn, f.sigma_v, usual.sigma_v, true, place)};
+    const Attributes fields{field_of(defn, f.name, usual.name, false, place),      field_of(defn, f.target, usual.target, false, place),
+                            field_of(defn, f.cover, usual.cover, false, place),    field_of(defn, f.z, usual.z, true, place),
+                            field_of(defn, f.sigma_h, usual.sigma_h, true, place), field_of(defn, f.sigma_v, usual.sigma_v, true, place)};
     for (const auto& feature : *layer) {
       RawPoint p;
       p.place = place + ", feature " + std::to_string(feature->GetFID());
@@ -275,7 +278,7 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
       }
       hold_sigma(raw.sigma_h, "easting and northing", raw.place);
       hold_sigma(raw.sigma_v, "height", raw.place);
-      ControlPoint p{raw.name, raw.target, Vector3d::Zero(), raw.sigma_h, raw.sigma_v, f.use, raw.place};
+      ControlPoint p{raw.name, raw.target, Vector3d::Zero(), raw.sigma_h, raw.sigma_v, f.use, raw.place, raw.cover};
       try {
         p.ecef = to_ecef({raw.at.x(), raw.at.y(), raw.at.z() * height_unit});
       } catch (const core::Error&) {

@@ -21,7 +21,8 @@ struct ControlPoint {
   double sigma_h = 0.0;  ///< m, of each horizontal coordinate
   double sigma_v = 0.0;  ///< m
   ControlUse use = ControlUse::control;
-  std::string place;  ///< "file:line"
+  std::string place;    ///< "file:line"
+  std::string cover{};  ///< what covers the ground; empty: not stated
 };
 
 /// All control of a survey, in the files' order; corners of one target adjacent and in their order. Throws Error with file and line:

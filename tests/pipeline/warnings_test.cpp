@@ -14,7 +14,9 @@ namespace {
 TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
   const core::Value report = io::parse_json(
       R"({"pieces_damaged": 2, "stages": [{"type": "readers.las", "tally": {
-          "flight lines or files with points well outside the box of a header": {"count": 4, "examples": ["a.las: 4 of 100"]}}}],
+          "flight lines or files with points well outside the box of a header": {"count": 4, "examples": ["a.las: 4 of 100"]}}},
+          {"type": "quality.points", "findings": {"named": [{"code": "check.heights", "sentence": "a"}, {"code": "check.line", "sentence": "b"},
+                                                            {"code": "check.mark", "sentence": "c"}]}}],
           "geometry": {"named": ["range_feet"], "warnings": ["lines disagree", "with ranges in feet: state range_unit"]},
           "limits": [{"name": "outside", "value": 0.3, "limit": 0.1, "held": false, "excess": 0.2},
                      {"name": "voids", "value": null, "limit": 0.1, "held": false, "excess": null},

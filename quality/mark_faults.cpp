@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Medians in place of an adjustment: up to half of the readings of a mark or a line may be wrong. Lines are judged first, by the median of
+// their marks; all of them together only where every one of them lies to the same side beyond its sigma; then marks, by what is left.
+#include "quality/mark_faults.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "core/statistics.h"
+
+namespace swath::quality {
+namespace {
+
+constexpr double beyond = 4.0;         // sigmas
+constexpr double of_median = 1.2533;   // standard error of a median over that of a mean, large samples
+constexpr double least_sigma = 0.005;  // m: marks and points are never better known
+constexpr size_t least_marks = 3;      // of a line that is judged
+
+std::string text(const char* format, const std::string& who, double difference, double sigma, size_t n) {
+  char out[300];
+  std::snprintf(out, sizeof out, format, who.c_str(), std::abs(difference), difference < 0 ? "below" : "above", n, sigma);
+  return out;
+}
+
+struct Group {
+  std::vector<double> difference, sigma;
+};
+
+/// The points' own sigma is shared by a line's readings, the marks' and the scatter are not.
+double sigma_of(const Group& g, double mark_sigma, double scatter) {
+  const double own = core::median(g.sigma, 0.0), each = std::max({mark_sigma, scatter, least_sigma});
+  return std::hypot(own, of_median * each / std::sqrt(static_cast<double>(g.difference.size())));
+}
+
+}  // namespace
+
+MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<MarkReading>& readings) {
+  MarkFaults out;
+  if (readings.empty()) return out;
+  std::map<int, Group> lines;
+  std::vector<double> mark_sigmas;
+  for (const MarkReading& r : readings) {
+    Group& g = lines[r.line];
+    g.difference.push_back(static_cast<double>(r.difference));
+    g.sigma.push_back(static_cast<double>(r.sigma));
+    mark_sigmas.push_back(marks[static_cast<size_t>(r.mark)].sigma);
+  }
+  const double mark_sigma = core::median(mark_sigmas, 0.0);
+  std::map<int, double> offset;
+  for (const auto& [line, g] : lines) offset[line] = core::median(g.difference);
+  std::vector<double> rest;
+  for (const MarkReading& r : readings) rest.push_back(std::abs(static_cast<double>(r.difference) - offset[r.line]));
+  const double scatter = core::mad_to_sigma * core::median(rest, 0.0);
+
+  bool all_above = true, all_below = true;
+  size_t judged = 0;
+  for (const auto& [line, g] : lines) {
+    const double sigma = sigma_of(g, mark_sigma, scatter);
+    out.lines.push_back({line, g.difference.size(), offset[line], sigma});
+    if (g.difference.size() < least_marks) continue;
+    ++judged;
+    all_above = all_above && offset[line] > beyond * sigma;
+    all_below = all_below && offset[line] < -beyond * sigma;
+  }
+  if (judged > 0 && (all_above || all_below)) {
+    std::vector<double> offsets, sigmas;
+    for (const LineAtMarks& l : out.lines)
+      if (l.marks >= least_marks) {
+        offsets.push_back(l.difference);
+        sigmas.push_back(l.sigma);
+      }
+    out.common = core::median(offsets);
+    out.named.push_back(
+        {"check.heights", text("%s lies %.3f m %s the check points on all of its %zu lines (sigma %.3f m): compare geoid, height "
+                               "system and antenna heights",
+                               "the ground", out.common, core::median(sigmas), judged)});
+  }
+  std::map<int, bool> is_shifted;
+  for (const LineAtMarks& l : out.lines) {
+    const double own = l.difference - out.common;
+    is_shifted[l.line] = l.marks >= least_marks && lines.size() > 1 && std::abs(own) > beyond * l.sigma;
+    if (is_shifted[l.line])
+      out.named.push_back(
+          {"check.line", text("%s lies %.3f m %s its %zu check points (sigma %.3f m), other lines do not: look at its trajectory",
+                              "line " + std::to_string(l.line), own, l.sigma, l.marks)});
+  }
+  // What a line has in common is its own; of a line with few marks nothing can be said.
+  std::map<int, Group> of_mark;  // differences, and the scatter of the points around the mark
+  for (const MarkReading& r : readings) {
+    const double line = lines[r.line].difference.size() >= least_marks ? offset[r.line] : out.common;
+    of_mark[r.mark].difference.push_back(static_cast<double>(r.difference) - line);
+    of_mark[r.mark].sigma.push_back(static_cast<double>(r.scatter));
+  }
+  for (const auto& [m, group] : of_mark) {
+    const CheckMark& mark = marks[static_cast<size_t>(m)];
+    const double own = core::median(group.difference);
+    const double sigma = std::hypot(mark.sigma, std::max({scatter, least_sigma, core::median(group.sigma)}));
+    if (std::abs(own) > beyond * sigma)
+      out.named.push_back(
+          {"check.mark", text("at check point %s the ground lies %.3f m %s its height in all of the %zu lines that show it (sigma "
+                              "%.3f m): check its record",
+                              mark.name + " (" + mark.place + ")", own, sigma, group.difference.size())});
+  }
+  return out;
+}
+
+}  // namespace swath::quality

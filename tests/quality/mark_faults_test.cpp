@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "quality/mark_faults.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <random>
+
+namespace swath::quality {
+namespace {
+
+constexpr double mark_sigma = 0.02, line_sigma = 0.03, noise = 0.01;
+
+struct Case {
+  std::vector<CheckMark> marks;
+  std::vector<MarkReading> readings;
+};
+
+/// Twelve marks, four lines that show half of them each; errors drawn from the stated sigmas. `change`: what is wrong.
+Case drawn(unsigned seed, const std::function<double(int mark, int line)>& change) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  Case c;
+  std::vector<double> of_mark, of_line;
+  for (int m = 0; m < 12; ++m) {
+    c.marks.push_back({"M" + std::to_string(m), "", "check.csv:" + std::to_string(m + 2), {}, mark_sigma});
+    of_mark.push_back(mark_sigma * normal(random));
+  }
+  for (int l = 0; l < 4; ++l) of_line.push_back(line_sigma * normal(random));
+  for (int m = 0; m < 12; ++m)
+    for (int l = 0; l < 4; ++l) {
+      if ((m + l) % 2) continue;
+      const double d = of_line[static_cast<size_t>(l)] - of_mark[static_cast<size_t>(m)] + noise * normal(random) + change(m, l + 1);
+      c.readings.push_back({m, l + 1, 8, static_cast<float>(d), static_cast<float>(line_sigma), 0.0f, 0.02f});
+    }
+  return c;
+}
+
+using Codes = std::vector<std::string>;
+
+std::vector<std::string> codes(const Case& c) {
+  std::vector<std::string> out;
+  for (const NamedFault& f : find_faults(c.marks, c.readings).named) out.push_back(f.code);
+  return out;
+}
+
+TEST(MarkFaults, NothingIsNamedWhereNothingIsWrong) {
+  int named = 0;
+  for (unsigned seed = 1; seed <= 200; ++seed) named += static_cast<int>(codes(drawn(seed, [](int, int) { return 0.0; })).size());
+  EXPECT_LE(named, 1);  // beyond four sigmas
+}
+
+TEST(MarkFaults, ABadMarkIsNamed) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Case c = drawn(seed, [](int m, int) { return m == 5 ? -0.4 : 0.0; });
+    const MarkFaults f = find_faults(c.marks, c.readings);
+    ASSERT_EQ(f.named.size(), 1u) << seed;
+    EXPECT_EQ(f.named[0].code, "check.mark");
+    EXPECT_NE(f.named[0].sentence.find("M5 (check.csv:7)"), std::string::npos) << f.named[0].sentence;
+    EXPECT_NE(f.named[0].sentence.find("below"), std::string::npos);
+  }
+}
+
+/// Plants that passed as ground scatter about their plane: a mark among them is not named for what they do.
+TEST(MarkFaults, PlantsAreNoBadMark) {
+  Case c = drawn(4, [](int m, int) { return m == 5 ? 0.2 : 0.0; });
+  EXPECT_EQ(codes(c), Codes{"check.mark"});
+  for (MarkReading& r : c.readings)
+    if (r.mark == 5) r.scatter = 0.1f;
+  EXPECT_TRUE(codes(c).empty());
+}
+
+TEST(MarkFaults, AShiftedLineIsNamed) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Case c = drawn(seed, [](int, int l) { return l == 3 ? 0.4 : 0.0; });
+    const MarkFaults f = find_faults(c.marks, c.readings);
+    ASSERT_EQ(f.named.size(), 1u) << seed;
+    EXPECT_EQ(f.named[0].code, "check.line");
+    EXPECT_NE(f.named[0].sentence.find("line 3 lies"), std::string::npos) << f.named[0].sentence;
+    EXPECT_NEAR(f.lines[2].difference, 0.4, 0.15);
+  }
+}
+
+TEST(MarkFaults, AWrongGeoidIsNamedOnce) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Case c = drawn(seed, [](int, int) { return -46.8; });
+    const MarkFaults f = find_faults(c.marks, c.readings);
+    ASSERT_EQ(f.named.size(), 1u) << seed;
+    EXPECT_EQ(f.named[0].code, "check.heights");
+    EXPECT_NEAR(f.common, -46.8, 0.1);
+    EXPECT_NE(f.named[0].sentence.find("geoid"), std::string::npos);
+  }
+}
+
+TEST(MarkFaults, AllThreeAtOnce) {
+  for (unsigned seed = 1; seed <= 20; ++seed)
+    EXPECT_EQ(codes(drawn(seed, [](int m, int l) { return 2.0 + (m == 5 ? 0.4 : 0.0) + (l == 2 ? -0.5 : 0.0); })),
+              (Codes{"check.heights", "check.line", "check.mark"}))
+        << seed;
+}
+
+TEST(MarkFaults, OfOneLineAloneTheHeightsAreNamed) {
+  Case c = drawn(3, [](int, int) { return 0.5; });
+  std::erase_if(c.readings, [](const MarkReading& r) { return r.line != 1; });
+  EXPECT_EQ(codes(c), Codes{"check.heights"});
+  EXPECT_TRUE(find_faults(c.marks, {}).named.empty());
+}
+
+}  // namespace
+}  // namespace swath::quality
