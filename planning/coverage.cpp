@@ -28,7 +28,14 @@ struct View {
 class Looker {
  public:
   Looker(const FlightLine& line, const core::HeightField& ground, const Beam& beam, double cell)
-      : line_(line), ground_(ground), beam_(beam), cell_(cell), along_(line.along()), across_(line.across()), length_(line.length()) {}
+      : line_(line),
+        ground_(ground),
+        beam_(beam),
+        cell_(cell),
+        along_(line.along()),
+        across_(line.across()),
+        length_(line.length()),
+        reach_((line.level - ground.lowest()) * std::tan(beam.half_angle) + cell) {}
 
   /// Nothing seen: pulses is 0.
   View at(const Vector2d& p) const {
@@ -36,7 +43,7 @@ class Looker {
     const Vector2d d = p - line_.from;
     const double s = along_.dot(d), y = across_.dot(d), half = 0.5 * cell_;
     v.share_along = std::clamp(std::min(s + half, length_) - std::max(s - half, 0.0), 0.0, cell_) / cell_;
-    if (v.share_along == 0.0) return v;
+    if (v.share_along == 0.0 || std::abs(y) > reach_) return v;
     const core::HeightField::Sample ground = ground_.at(p.x(), p.y());
     v.height = line_.level - ground.height;
     if (!(v.height > 0.0)) return v;
@@ -72,7 +79,7 @@ class Looker {
   const Beam& beam_;
   double cell_;
   Vector2d along_, across_;
-  double length_;
+  double length_, reach_;  // reach: no beam meets the ground farther from the line
 };
 
 }  // namespace

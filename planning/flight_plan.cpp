@@ -284,16 +284,17 @@ double share_of(const std::vector<float>& values, double below) {
   return all > 0 ? static_cast<double>(n) / static_cast<double>(all) : 0.0;
 }
 
-/// A round number (1, 2 or 5 times a power of ten) of about 1/40 of a swath.
-double usual_cell(double swath) {
-  const double wanted = swath / 40.0, power = std::pow(10.0, std::floor(std::log10(wanted)));
+/// A round number (1, 2 or 5 times a power of ten) of about 1/40 of a swath; smaller over a small area, larger over a huge one.
+double usual_cell(double swath, double area) {
+  const double wanted = std::clamp(swath / 40.0, std::sqrt(area) / 1000.0, std::max(std::sqrt(area) / 20.0, 1e-3));
+  const double power = std::pow(10.0, std::floor(std::log10(wanted)));
   for (const double k : {5.0, 2.0})
     if (wanted >= k * power) return k * power;
   return power;
 }
 
 void add_coverage(const PlanOptions& o, const Sensor& s, const std::vector<Ring>& area, const core::HeightField& ground, FlightPlan& plan) {
-  const double cell = o.cell ? o.cell->value : usual_cell(plan.swath.width);
+  const double cell = o.cell ? o.cell->value : usual_cell(plan.swath.width, plan.area);
   Vector2d low = area.front().front(), high = low;
   for (const Ring& r : area)
     for (const Vector2d& p : r) {
@@ -314,7 +315,7 @@ void add_coverage(const PlanOptions& o, const Sensor& s, const std::vector<Ring>
   plan.sigma_horizontal = spread_of(plan.coverage.sigma_horizontal);
   constexpr double none = 1e-6;  // pulses per m2
   plan.unseen_share = share_of(plan.coverage.density, none);
-  if (plan.unseen_share > 0.0)
+  if (plan.unseen_share > 0.0 && o.flight.pattern == PlanPattern::block)
     plan.warnings.push_back(
         text("%.2f %% of the area is seen by no line: behind ridges, or beyond the sensor's range", 100 * plan.unseen_share));
   if (o.flight.density) {

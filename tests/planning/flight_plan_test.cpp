@@ -88,6 +88,19 @@ TEST(FlightPlan, ACalibrationFlightMeetsItsTargetInManyWays) {
   EXPECT_EQ(make_flight_plan(o, area, core::HeightField(100)).lines.size(), 10u);
 }
 
+/// Cells fit the area where none are asked for.
+TEST(FlightPlan, TinyAndHugeAreasHaveCells) {
+  const std::vector<Ring> tiny{{{1000, 1000}, {1004, 1000}, {1004, 1003}}}, huge{{{0, 0}, {60e3, 0}, {60e3, 50e3}, {0, 50e3}}};
+  const FlightPlan small = make_flight_plan(options(), tiny, core::HeightField(100));
+  EXPECT_GT(small.density.median, 3.0);
+  PlanOptions o = options();
+  o.flight.height = core::Metres(1400);
+  o.cost.endurance = core::Seconds(80000);
+  const FlightPlan large = make_flight_plan(o, huge, core::HeightField(100));
+  EXPECT_GT(large.density.least, 0.5);
+  EXPECT_LE(large.coverage.lattice.size(), 4100000u);
+}
+
 TEST(FlightPlan, CostsAreSums) {
   PlanOptions o = options();
   o.cost.fixed = 100;
