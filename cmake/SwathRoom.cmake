@@ -35,8 +35,9 @@ endif()
 
 # A fault, should one be left, stops the program instead of running on (docs/security.md; tests/cli/hardening_test.py). Some systems' compilers
 # define _FORTIFY_SOURCE themselves, and it needs optimization. The sanitizers take the place of these flags.
+# Position-independent for programs and shared libraries alike, so that a Python module links the objects of the program.
 if(NOT SWATH_SANITIZE)
-  target_compile_options(swath_settings INTERFACE -fstack-protector-strong -fstack-clash-protection -fPIE
+  target_compile_options(swath_settings INTERFACE -fstack-protector-strong -fstack-clash-protection -fPIC -fno-semantic-interposition -fvisibility=hidden
     $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3>)
   target_link_options(swath_settings INTERFACE -pie -Wl,-z,relro,-z,now,-z,noexecstack)
 endif()

@@ -13,8 +13,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr size_t least_for_plane = 4;
-constexpr double least_spread = 0.3;   // of the radius: rms distance from the mean along the narrower axis
-constexpr double farthest_mean = 0.5;  // of the radius: the mark lies among its points
+constexpr double least_spread_of_ground = 0.3;  // of the radius: rms distance from the mean along the narrower axis
+constexpr double farthest_mean = 0.5;           // of the radius: the mark lies among its points
 constexpr std::uint8_t ground = 2;
 
 struct Points {
@@ -37,7 +37,7 @@ MarkReading reading_of(const Points& p, double radius, MarkSurface surface) {
   double height = mean.z();
   Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
   const double narrow = std::sqrt(std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues()[0]));
-  if (surface == MarkSurface::plane && p.at.size() >= least_for_plane && narrow > least_spread * radius &&
+  if (surface == MarkSurface::plane && p.at.size() >= least_for_plane && narrow > least_spread_of_ground * radius &&
       mean.head<2>().norm() < farthest_mean * radius) {
     gradient = spread.ldlt().solve(with_height);
     height -= gradient.dot(mean.head<2>());

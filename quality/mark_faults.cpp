@@ -13,10 +13,10 @@
 namespace swath::quality {
 namespace {
 
-constexpr double beyond = 4.0;         // sigmas
-constexpr double of_median = 1.2533;   // standard error of a median over that of a mean, large samples
-constexpr double least_sigma = 0.005;  // m: marks and points are never better known
-constexpr size_t least_marks = 3;      // of a line that is judged
+constexpr double beyond = 4.0;              // sigmas
+constexpr double of_median = 1.2533;        // standard error of a median over that of a mean, large samples
+constexpr double least_mark_sigma = 0.005;  // m: marks and points are never better known
+constexpr size_t least_marks = 3;           // of a line that is judged
 
 std::string text(const char* format, const std::string& who, double difference, double sigma, size_t n) {
   char out[300];
@@ -30,7 +30,7 @@ struct Group {
 
 /// The points' own sigma is shared by a line's readings, the marks' and the scatter are not.
 double sigma_of(const Group& g, double mark_sigma, double scatter) {
-  const double own = core::median(g.sigma, 0.0), each = std::max({mark_sigma, scatter, least_sigma});
+  const double own = core::median(g.sigma, 0.0), each = std::max({mark_sigma, scatter, least_mark_sigma});
   return std::hypot(own, of_median * each / std::sqrt(static_cast<double>(g.difference.size())));
 }
 
@@ -96,7 +96,7 @@ MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<Ma
   for (const auto& [m, group] : of_mark) {
     const CheckMark& mark = marks[static_cast<size_t>(m)];
     const double own = core::median(group.difference);
-    const double sigma = std::hypot(mark.sigma, std::max({scatter, least_sigma, core::median(group.sigma)}));
+    const double sigma = std::hypot(mark.sigma, std::max({scatter, least_mark_sigma, core::median(group.sigma)}));
     if (std::abs(own) > beyond * sigma)
       out.named.push_back(
           {"check.mark", text("at check point %s the ground lies %.3f m %s its height in all of the %zu lines that show it (sigma "
