@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/command.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <sstream>
+
+#include "core/config/option.h"
+#include "core/error.h"
+#include "core/printable.h"
+#include "io/text/value_file.h"
+#include "pipeline/provenance.h"
+
+namespace swath::tools {
+namespace {
+
+/// Help that opens with examples; the overview shows of each command in its last sentence alone.
+class HelpText : public CLI::Formatter {
+ public:
+  std::string make_subcommand(const CLI::App* c) const override {
+    const std::string whole = c->get_description();
+    const size_t blank = whole.rfind("\n\n");
+    std::ostringstream out;
+    CLI::detail::format_help(out, c->get_name(), blank == std::string::npos ? whole : whole.substr(blank + 2), column_width_);
+    return out.str();
+  }
+};
+
+/// A fault of the command line in the form of every other error.
+core::Error usage_fault(const CLI::App& app, const CLI::ParseError& e, int argc, char** argv) {
+  std::vector<std::string> names;
+  for (const CLI::App* c : app.get_subcommands({})) names.push_back(c->get_name());
+  const std::string first = argc > 1 ? argv[1] : "";
+  const bool known = std::find(names.begin(), names.end(), first) != names.end();
+  if (known || first.empty() || first[0] == '-')
+    return core::usage_error(e.what(), known ? "swath " + first : "swath", known ? "see swath " + first + " --help" : "see swath --help");
+  const std::string near = core::nearest(first, names);
+  return core::usage_error("'" + first + "' is no command", "swath", near.empty() ? "see swath --help" : "did you mean '" + near + "'?");
+}
+
+constexpr const char* overview =
+    "Examples\n"
+    "  swath simulate demo                                   a small survey with its truth, in demo/\n"
+    "  swath run configs/survey.toml --survey demo/survey.toml --output out\n"
+    "  swath run configs/survey.toml --survey demo/survey.toml --set dtm.cell=\"50 cm\"\n"
+    "  swath info flight.laz                                 what a file holds, and what looks wrong in it\n"
+    "  swath stages filters.smrf                             a stage and its options\n"
+    "\n"
+    "swath: raw records of an airborne laser survey in; georeferenced, classified points, terrain model and contours out.\n";
+
+}  // namespace
+
+Commands::Commands() : app_(overview, "swath") {
+  app_.set_version_flag("--version", "swath " + std::string(pipeline::program_version()));
+  app_.require_subcommand(1);
+  app_.formatter(std::make_shared<HelpText>());
+  app_.footer("Exit codes: 0 done, 1 bad data, 2 bad usage or config, 3 done but a quality limit set in the config was missed.");
+}
+
+CLI::App* Commands::add(const std::string& name, const std::string& help, std::function<int()> call) {
+  CLI::App* command = app_.add_subcommand(name, help);
+  calls_.emplace_back(command, std::move(call));
+  return command;
+}
+
+int Commands::call(int argc, char** argv) {
+  typed_ = "swath";
+  for (int i = 1; i < argc; ++i) typed_ += std::string(" ") + argv[i];
+  try {
+    app_.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app_.exit(e);
+    throw usage_fault(app_, e, argc, argv);
+  }
+  const CLI::App* given = app_.get_subcommands().front();
+  for (const auto& [command, function] : calls_)
+    if (command == given) return function();
+  return 0;
+}
+
+void add_request(CLI::App& c, pipeline::Request& request) {
+  c.add_option("CONFIG", request.config, "Pipeline, .toml or .json")->required();
+  c.add_option("--survey", request.survey, "survey.toml, in place of the config's");
+  c.add_option("--output", request.output, "Folder of the products, in place of the config's");
+  c.add_option("--set", request.sets, "One option of one stage: dtm.cell=\"50 cm\", run.tile=\"250 m\"")->allow_extra_args(false);
+}
+
+void print(const std::string& text) { std::fputs(core::printable(text).c_str(), stdout); }
+void print_json(const core::Value& value) { std::fputs(io::to_json(value).c_str(), stdout); }
+
+double quantity(core::Dimension dimension, const std::string& text, const std::string& option, const std::string& example) {
+  std::string fault;
+  const auto value = core::read_scalar({core::Kind::quantity, dimension}, text, fault);
+  if (!value) throw core::usage_error("'" + text + "': " + fault, option, "write it with its unit: \"" + example + "\"");
+  return value->as_number();
+}
+
+}  // namespace swath::tools

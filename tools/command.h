@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The commands of the program. A command declares its options on the parser and is called with what was given.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/config/units.h"
+#include "core/config/value.h"
+#include "pipeline/plan.h"
+#include "pipeline/progress.h"
+
+namespace swath::tools {
+
+/// The parser with its commands, in the order of the overview.
+class Commands {
+ public:
+  /// `help`: examples, a blank line, and one sentence for the overview. `call` returns the exit code.
+  CLI::App* add(const std::string& name, const std::string& help, std::function<int()> call);
+  /// Reads the command line and calls its command; throws core::Error on a fault.
+  int call(int argc, char** argv);
+  /// The command line as it was typed, for the provenance of products.
+  const std::string& typed() const { return typed_; }
+
+  Commands();
+  Commands(const Commands&) = delete;
+  Commands& operator=(const Commands&) = delete;
+
+ private:
+  CLI::App app_;
+  std::string typed_;
+  std::vector<std::pair<CLI::App*, std::function<int()>>> calls_;
+};
+
+/// How a command that works for long reports progress.
+struct Loudness {
+  bool quiet = false, json_log = false;
+  pipeline::Voice voice() const { return json_log ? pipeline::Voice::json : quiet ? pipeline::Voice::quiet : pipeline::Voice::bar; }
+};
+
+/// CONFIG, --survey, --output and --set.
+void add_request(CLI::App& command, pipeline::Request& request);
+/// For a person: texts of files as a terminal can show them.
+void print(const std::string& text);
+void print_json(const core::Value& value);
+/// A number with its unit from the command line, in SI units; `example`: one that would do. Throws core::Error.
+double quantity(core::Dimension dimension, const std::string& text, const std::string& option, const std::string& example);
+
+/// Runs a pipeline and prints its summary; the exit code. `typed`: the command line, for provenance.
+int run_pipeline(const pipeline::Request& request, const Loudness& loudness, const std::string& typed);
+
+void add_pipeline_commands(Commands& commands);
+void add_list_commands(Commands& commands);
+void add_plan_command(Commands& commands);
+void add_budget_command(Commands& commands);
+void add_simulate_command(Commands& commands);
+void add_info_command(Commands& commands);
+void add_volumes_command(Commands& commands);
+void add_profile_command(Commands& commands);
+void add_docs_command(Commands& commands);
+
+}  // namespace swath::tools

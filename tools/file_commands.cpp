@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files: simulated surveys, what a file holds.
+#include <algorithm>
+#include <cstdio>
+
+#include "core/config/result_visitors.h"
+#include "io/survey/info.h"
+#include "io/text/value_file.h"
+#include "simulate/simulate.h"
+#include "tools/command.h"
+
+namespace swath::tools {
+namespace {
+
+struct SimulateArguments {
+  std::filesystem::path config;
+  std::vector<std::string> sets;
+  std::string folder;
+  Loudness loudness;
+};
+
+int simulate_survey(const SimulateArguments& a) {
+  core::Value given = a.config.empty() ? core::Value::object() : io::read_value_file(a.config);
+  for (const std::string& set : a.sets) pipeline::set_option(given, set);
+  const simulate::Options options = simulate::read_options(given);
+  pipeline::Progress progress(a.loudness.voice());
+  progress.begin("simulate", 1000, "per mille");
+  std::uint64_t shown = 0;
+  const simulate::Made made = simulate::run(options, a.folder, [&](double share) {
+    const auto now = static_cast<std::uint64_t>(share * 1000);
+    if (now > shown) progress.advance(now - shown);
+    shown = std::max(shown, now);
+  });
+  progress.end();
+  if (!a.loudness.quiet) print_json(core::reported(made));
+  return 0;
+}
+
+struct InfoArguments {
+  std::string name;
+  bool json = false;
+};
+
+int info(const InfoArguments& a) {
+  const core::Value found = io::describe_file(a.name);
+  a.json ? print_json(found) : print(io::info_text(found));
+  return 0;
+}
+
+}  // namespace
+
+void add_simulate_command(Commands& commands) {
+  const auto a = std::make_shared<SimulateArguments>();
+  auto* c = commands.add("simulate",
+                         "Examples\n  swath simulate demo\n  swath simulate demo --set seed=7 --set flight.lines=2 --set "
+                         "world.scene=forest\n\nMake the raw records of a survey whose truth is known.",
+                         [a] { return simulate_survey(*a); });
+  c->add_option("FOLDER", a->folder, "Folder to make the survey in")->required();
+  c->add_option("--config", a->config, "Options of the simulation, .toml or .json");
+  c->add_option("--set", a->sets, "One option of the simulation: seed=7, flight.speed=\"60 m/s\"")->allow_extra_args(false);
+  c->add_flag("--quiet", a->loudness.quiet, "Nothing but errors");
+}
+
+void add_info_command(Commands& commands) {
+  const auto a = std::make_shared<InfoArguments>();
+  auto* c = commands.add(
+      "info",
+      "Examples\n  swath info flight.laz\n  swath info trajectory.sbet --json\n\nReport what a file holds (points, trajectories, "
+      "raw records, RINEX, PCAP, rasters, GeoPackage, DXF, JSON), and what looks wrong.",
+      [a] { return info(*a); });
+  c->add_option("FILE", a->name, "File")->required();
+  c->add_flag("--json", a->json, "As JSON");
+}
+
+}  // namespace swath::tools

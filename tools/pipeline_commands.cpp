@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pipelines: run, check, explain.
+#include <cstdio>
+
+#include "core/config/result_visitors.h"
+#include "core/error.h"
+#include "core/printable.h"
+#include "pipeline/describe.h"
+#include "pipeline/flight_plan/plan_files.h"
+#include "pipeline/input_guard.h"
+#include "pipeline/limits.h"
+#include "pipeline/run.h"
+#include "pipeline/summary.h"
+#include "tools/command.h"
+
+namespace swath::tools {
+
+int run_pipeline(const pipeline::Request& request, const Loudness& loudness, const std::string& typed) {
+  pipeline::Plan plan = pipeline::make_plan(request);
+  pipeline::Progress progress(loudness.voice());
+  const pipeline::Outcome outcome = pipeline::run(plan, progress, typed);
+  if (!loudness.quiet && !loudness.json_log) print(pipeline::summary(outcome.report, plan.run.output));
+  if (outcome.code == core::Exit::quality_missed)
+    for (const pipeline::Warning& w : pipeline::missed_limits(*outcome.report.find("limits")))
+      std::fprintf(stderr, "swath: done, but a quality limit was missed: %s\n", core::printable(w.text).c_str());
+  return static_cast<int>(outcome.code);
+}
+
+namespace {
+
+struct Given {
+  pipeline::Request request;
+  Loudness loudness;
+  bool json = false;
+};
+
+int check(const Given& a) {
+  if (pipeline::is_flight_plan(a.request.config)) {
+    const planning::FlightPlan plan = pipeline::check_flight_plan({a.request.config, {}, {}, a.request.sets});
+    if (!a.loudness.quiet) std::printf("%s: a flight of %zu lines\n", a.request.config.c_str(), plan.lines.size());
+    return 0;
+  }
+  const pipeline::Plan plan = pipeline::make_plan(a.request);
+  if (!plan.survey_file.empty()) pipeline::check_output(plan);
+  if (a.loudness.quiet) return 0;
+  std::printf("%s: %zu stages fit one another\n", a.request.config.c_str(), plan.stages.size());
+  if (plan.survey_file.empty())
+    std::printf("no survey was named: its files are not checked\n");
+  else
+    std::printf("%s: complete; %zu laser, %zu trajectory, %zu IMU, %zu GNSS, %zu point files\n", plan.survey_file.c_str(),
+                plan.survey.laser.size(), plan.survey.trajectory.size(), plan.survey.imu.size(), plan.survey.gnss.size(),
+                plan.survey.points.size());
+  return 0;
+}
+
+int explain(const Given& a) {
+  pipeline::Plan plan = pipeline::make_plan(a.request);
+  const pipeline::Explanation found = pipeline::explain(plan);
+  a.json ? print_json(core::reported(found)) : print(pipeline::explanation_text(found));
+  return 0;
+}
+
+}  // namespace
+
+void add_pipeline_commands(Commands& commands) {
+  const auto a = std::make_shared<Given>();
+  auto* c = commands.add(
+      "run",
+      "Examples\n  swath run configs/survey.toml --survey demo/survey.toml --output out\n  swath run configs/survey.toml --survey "
+      "demo/survey.toml --set run.memory=\"4 GB\" --threads 8 --json-log\n\nRun a pipeline on a survey; the same command continues a run "
+      "that was killed.",
+      [a, &commands] { return run_pipeline(a->request, a->loudness, commands.typed()); });
+  add_request(*c, a->request);
+  c->add_option("--threads", a->request.threads, "Threads, in place of the config's (0: one per processor)");
+  c->add_flag("--quiet", a->loudness.quiet, "Nothing but errors");
+  c->add_flag("--json-log", a->loudness.json_log, "Progress as one JSON object per line on standard error");
+
+  const auto checked = std::make_shared<Given>();
+  c = commands.add("check",
+                   "Examples\n  swath check configs/survey.toml --survey demo/survey.toml\n\nReport every fault of a config and its "
+                   "survey, without reading data.",
+                   [checked] { return check(*checked); });
+  add_request(*c, checked->request);
+  c->add_flag("--quiet", checked->loudness.quiet, "Nothing but faults");
+
+  const auto explained = std::make_shared<Given>();
+  c = commands.add("explain",
+                   "Examples\n  swath explain configs/survey.toml --survey demo/survey.toml --set dtm.cell=\"50 cm\"\n\nShow every "
+                   "effective option and where its value comes from.",
+                   [explained] { return explain(*explained); });
+  add_request(*c, explained->request);
+  c->add_flag("--json", explained->json, "As JSON");
+}
+
+}  // namespace swath::tools

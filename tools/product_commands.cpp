@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From finished terrain models and clouds: volumes, profiles.
+#include <cstdio>
+
+#include "core/config/result_visitors.h"
+#include "core/error.h"
+#include "pipeline/profile.h"
+#include "pipeline/volume_files.h"
+#include "tools/command.h"
+
+namespace swath::tools {
+namespace {
+
+struct VolumeArguments {
+  pipeline::VolumeRequest request;
+  bool json = false;
+};
+
+int volumes(const VolumeArguments& a) {
+  if (a.request.after.empty() == !a.request.design)
+    throw core::usage_error("volumes need a second surface or a design height", "swath volumes", "give AFTER or --design, one of them");
+  const pipeline::VolumesFound found = pipeline::volumes_of(a.request);
+  a.json ? print_json(core::reported(found)) : print(pipeline::volume_text(found));
+  return 0;
+}
+
+struct ProfileArguments {
+  pipeline::ProfileRequest request;
+  std::string half_width = "1 m";
+  bool quiet = false, json = false;
+};
+
+int profile(ProfileArguments& a) {
+  a.request.half_width = quantity(core::Dimension::length, a.half_width, "--half-width", "2 m");
+  if (!(a.request.half_width > 0.0))
+    throw core::usage_error("'" + a.half_width + "' is no width", "--half-width", "write a length with its unit: \"2 m\"");
+  core::Value list = core::Value::array();
+  for (const pipeline::ProfileFound& one : pipeline::write_profiles(a.request)) {
+    list.push(core::reported(one));
+    if (a.json || a.quiet) continue;
+    std::printf("%s: %.1f long, %zu points, %zu places of the terrain model; .csv, .svg and .png in %s\n", one.name.c_str(), one.length,
+                one.points, one.terrain_samples, a.request.folder.c_str());
+    if (one.vertices_left_out > 0)
+      std::printf("  %zu of its vertices are not finite or beyond every map, left out\n", one.vertices_left_out);
+  }
+  if (a.json) print_json(list);
+  return 0;
+}
+
+}  // namespace
+
+void add_volumes_command(Commands& commands) {
+  const auto a = std::make_shared<VolumeArguments>();
+  auto* c =
+      commands.add("volumes",
+                   "Examples\n  swath volumes may/dtm.vrt june/dtm.vrt --polygon pit.gpkg\n  swath volumes out/dtm.vrt --design 412.5 "
+                   "--json\n\nCut and fill between two terrain models, or from one to a design height, with sigma.",
+                   [a] { return volumes(*a); });
+  c->add_option("BEFORE", a->request.before, "Terrain model, GeoTIFF or VRT; NAME_quality beside it gives sigma")->required();
+  c->add_option("AFTER", a->request.after, "The same later; its cells may be others");
+  c->add_option("--design", a->request.design, "Height in place of AFTER, in the unit of BEFORE's heights");
+  c->add_option("--polygon", a->request.polygon, "Polygons or closed lines to count within, in the CRS of BEFORE");
+  c->add_option("--correlation", a->request.correlation, "Of the errors of any two cells of a model: 1 one shift for all, 0 noise")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  c->add_flag("--json", a->json, "As JSON");
+}
+
+void add_profile_command(Commands& commands) {
+  const auto a = std::make_shared<ProfileArguments>();
+  auto* c =
+      commands.add("profile",
+                   "Examples\n  swath profile out/products/points --dtm out/products/dtm.vrt --from 652010,5310020 --to 652340,5310200 "
+                   "--output sections\n  swath profile flight.laz --line axis.gpkg --half-width \"2 m\" --output sections\n\nSections "
+                   "through points and terrain model along lines, as CSV, SVG and PNG.",
+                   [a] { return profile(*a); });
+  c->add_option("POINTS", a->request.points, "LAS or LAZ files, or folders of them");
+  c->add_option("--dtm", a->request.dtm, "Terrain model, GeoTIFF or VRT");
+  c->add_option("--line", a->request.lines, "Lines to cut along: GeoPackage, GeoJSON, DXF ..., or .csv with profile,x,y");
+  c->add_option("--from", a->request.from, "x,y where one straight line begins");
+  c->add_option("--to", a->request.to, "x,y where it ends");
+  c->add_option("--half-width", a->half_width, "Points up to this far from the line are shown")->capture_default_str();
+  c->add_option("--output", a->request.folder, "Folder to write to")->required();
+  c->add_flag("--quiet", a->quiet, "Nothing but errors");
+  c->add_flag("--json", a->json, "What was found, as JSON");
+}
+
+}  // namespace swath::tools
