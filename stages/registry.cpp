@@ -60,6 +60,7 @@ const std::vector<Entry>& registry() {
       penetration_stage(),
       trajectory_writer_stage(),
       las_writer_stage(),
+      copc_writer_stage(),
       gdal_writer_stage(),
       picture_writer_stage(),
       check_points_stage(),

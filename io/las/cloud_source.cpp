@@ -82,11 +82,12 @@ bool has_weekless_times(const Survey& survey) {
   return !weekless.empty();
 }
 
-CloudSource::CloudSource(const Survey& survey, size_t cloud, const CloudMap& map, const Eigen::Vector2d& rim, const CloudExtent& extent)
+CloudSource::CloudSource(const Survey& survey, size_t cloud, const CloudMap& map, const Eigen::Vector2d& rim, const CloudExtent& extent,
+                         LasPart part)
     : file_(survey.points[cloud]),
-      number_(static_cast<std::uint32_t>(cloud + 1)),
+      number_(part.unused.has(core::Column::source) ? 0 : static_cast<std::uint32_t>(cloud + 1)),
       map_(map),
-      reader_(resolve(survey, file_.file)),
+      reader_(resolve(survey, file_.file), 0, std::move(part)),
       rim_(rim),
       extent_(extent),
       time_(times_of(file_)) {
@@ -140,7 +141,7 @@ void CloudSource::keep_near(core::Block& block, core::Tally& tally) {
   if (far == 0) return;
   far_ += far;
   core::leave_out(block, is_far, "points alone far from all others of their file, left out", file_.file.string(), tally);
-  if (extent_.is_stated() && !are_few(far_, reader_.header().point_count))
+  if (extent_.is_stated() && !are_few(far_, reader_.count()))
     throw core::Error("points lie far from the box that the file's header states", file_.file.string(),
                       "the header is wrong: write the file again with a tool that makes its box from the points");
 }

@@ -35,8 +35,9 @@ bool has_weekless_times(const Survey& survey);
 /// Streams a point cloud in map coordinates, converted to the CRS and metres of the run.
 class CloudSource {
  public:
-  /// `cloud`: number in the survey's points; `rim`: largest coordinates of the survey's files; `extent`: of this one.
-  CloudSource(const Survey& survey, size_t cloud, const CloudMap& map, const Eigen::Vector2d& rim, const CloudExtent& extent);
+  /// `cloud`: number in the survey's points; `rim`: largest coordinates of the survey's files; `extent`: of this one; `part`: of its points.
+  CloudSource(const Survey& survey, size_t cloud, const CloudMap& map, const Eigen::Vector2d& rim, const CloudExtent& extent,
+              LasPart part = {});
   /// False at the end.
   bool next(core::Block& out, size_t most, core::Tally& tally);
 
@@ -46,7 +47,7 @@ class CloudSource {
   void convert(core::Block& block, core::Tally& tally);
 
   const PointFile& file_;
-  std::uint32_t number_;
+  std::uint32_t number_;  ///< from 1; 0: records are not kept
   CloudMap map_;
   LasReader reader_;
   Eigen::Vector2d rim_;

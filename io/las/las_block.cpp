@@ -65,12 +65,13 @@ void las_points_to_block(const LasPoints& p, const LasHeader& header, std::uint6
   using core::Column;
   core::resize(block, n);
   core::add_columns(block, {Column::time, Column::flags, Column::scan_angle, Column::record});
+  const bool has_angles = !p.raw_scan_angle.empty(), has_times = l.gps && !p.gps_time.empty();  // unless they were not read
   for (std::size_t i = 0; i < n; ++i) {
     block.x[i] = p.raw_x[i] * header.scale.x() + shift.x();
     block.y[i] = p.raw_y[i] * header.scale.y() + shift.y();
     block.z[i] = p.raw_z[i] * header.scale.z() + shift.z();
   }
-  if (l.gps) block.time = las_gps_times(p.gps_time, header, time, read, where, first);
+  if (has_times) block.time = las_gps_times(p.gps_time, header, time, read, where, first);
   block.intensity = p.intensity;
   block.return_number = p.return_number;
   block.return_count = p.return_count;
@@ -89,7 +90,7 @@ void las_points_to_block(const LasPoints& p, const LasHeader& header, std::uint6
     if (p.scan_direction[i]) flags |= core::flag::scan_direction;
     if (p.edge_of_line[i]) flags |= core::flag::edge_of_line;
     block.flags[i] = static_cast<std::uint16_t>(flags);
-    block.scan_angle[i] = static_cast<float>(p.raw_scan_angle[i] * (l.extended ? las_angle_step : 1.0) * degree);
+    if (has_angles) block.scan_angle[i] = static_cast<float>(p.raw_scan_angle[i] * (l.extended ? las_angle_step : 1.0) * degree);
     block.record[i] = static_cast<std::uint32_t>(first + i);
   }
   for_each_extra_column([&](Column c, const char* name, auto member) {

@@ -304,7 +304,7 @@ void encode_las_points(const LasPoints& p, std::size_t begin, std::size_t end, c
 
 std::vector<double> las_extra_values(const LasPoints& p, const LasHeader& header, const std::string& name, int component) {
   const LasExtra* e = field(header, name);
-  if (!e || e->type == 0 || component >= e->components()) return {};
+  if (!e || e->type == 0 || component >= e->components() || p.extra.empty()) return {};
   const int type = base_type(*e), size = e->size() / e->components();
   const auto c = static_cast<std::size_t>(component);
   const std::size_t stride = static_cast<std::size_t>(header.extra_bytes());

@@ -34,10 +34,6 @@ bool is_crs(const LasVlr& v) {
 /// Records that describe the bytes of the file they are in.
 bool is_of_the_file(const LasVlr& v) { return v.user_id == "copc" || is(v, "LAStools", 30) || is(v, "LAStools", 20); }
 
-bool same_field(const LasExtra& a, const LasExtra& b) {
-  return a.name == b.name && a.type == b.type && a.bytes == b.bytes && a.nodata == b.nodata && a.scale == b.scale && a.offset == b.offset;
-}
-
 /// The smallest point format that has every field of all.
 int common_format(const std::vector<LasSource>& files) {
   bool extended = false, gps = false, rgb = false, nir = false, wave = false;
@@ -167,7 +163,7 @@ LasSources::LasSources(std::vector<LasSource> files, bool record_times) : files_
     for (const LasExtra& e : f.header.extras) {
       std::size_t at = 0;
       const auto is_taken = [&](std::size_t k) { return std::find(where.begin(), where.end(), k) != where.end(); };
-      while (at < extras_.size() && (is_taken(at) || !same_field(extras_[at], e))) ++at;
+      while (at < extras_.size() && (is_taken(at) || !is_same_field(extras_[at], e))) ++at;
       if (at == extras_.size()) {
         LasExtra added = e;
         for (int again = 2;

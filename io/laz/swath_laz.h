@@ -15,6 +15,22 @@ extern "C" {
 
 enum { SWATH_LAZ_OK = 0, SWATH_LAZ_DATA = 1, SWATH_LAZ_FILE = 2, SWATH_LAZ_USAGE = 3, SWATH_LAZ_PANIC = 4 };
 
+/* The bits of the crate's DecompressionSelection. */
+enum {
+  SWATH_LAZ_FIELD_Z = 1 << 0,
+  SWATH_LAZ_FIELD_CLASSIFICATION = 1 << 1,
+  SWATH_LAZ_FIELD_FLAGS = 1 << 2,
+  SWATH_LAZ_FIELD_INTENSITY = 1 << 3,
+  SWATH_LAZ_FIELD_SCAN_ANGLE = 1 << 4,
+  SWATH_LAZ_FIELD_USER_DATA = 1 << 5,
+  SWATH_LAZ_FIELD_POINT_SOURCE = 1 << 6,
+  SWATH_LAZ_FIELD_GPS_TIME = 1 << 7,
+  SWATH_LAZ_FIELD_RGB = 1 << 8,
+  SWATH_LAZ_FIELD_NIR = 1 << 9,
+  SWATH_LAZ_FIELD_WAVES = 1 << 10,
+  SWATH_LAZ_FIELD_EXTRA = 1 << 11
+};
+
 typedef struct swath_laz_reader swath_laz_reader;
 typedef struct swath_laz_writer swath_laz_writer;
 
@@ -28,6 +44,13 @@ int swath_laz_vlr(uint8_t point_format, uint16_t extra_bytes, uint32_t chunk_poi
 int swath_laz_reader_open(const char* path, uint64_t data_start, const uint8_t* vlr, size_t vlr_size, uint8_t point_format,
                           uint16_t record_length, uint64_t point_count, uint32_t threads, swath_laz_reader** reader, char* message,
                           size_t message_capacity);
+/* The same for some chunks of a file of layered chunks or of chunks of variable size: those at these offsets, one after the other. */
+int swath_laz_reader_open_chunks(const char* path, const uint8_t* vlr, size_t vlr_size, uint8_t point_format, uint16_t record_length,
+                                 const uint64_t* offsets, const uint64_t* bytes, const uint64_t* points, size_t chunks, uint32_t threads,
+                                 swath_laz_reader** reader, char* message, size_t message_capacity);
+/* Fields that are decompressed, a sum of SWATH_LAZ_FIELD_*; x, y, return numbers and scanner channel always are. Others hold what the first
+ * record of the chunk has. To be called before the first read; without effect in point formats 0 to 5, whose records are one stream. */
+void swath_laz_reader_select(swath_laz_reader* reader, uint32_t fields);
 /* The next n records into `out` (n * record_length bytes); asking beyond point_count is USAGE. */
 int swath_laz_reader_read(swath_laz_reader* reader, uint8_t* out, uint64_t n, char* message, size_t message_capacity);
 void swath_laz_reader_close(swath_laz_reader* reader);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/config/option_visitors.h"
+#include "io/copc/ept.h"
 #include "io/survey/calibration_file.h"
 #include "io/survey/survey_checks.h"
 #include "io/text/value_file.h"
@@ -38,6 +39,7 @@ Survey read_survey(const core::Value& tree, const std::filesystem::path& folder)
     return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
   });
   core::throw_if_any(faults);
+  expand_clouds(survey);
   if (const Value* stated = tree.find("sigma")) note_stated(*stated, survey.sigma);
   if (survey.calibration_file) {
     const core::SensorSigma stated = survey.sigma;

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests/io/laspy_check.py:
+// For tests/io/laspy_check.py and copc_check.py:
 //   las_samples write FOLDER       writes files of every point format and, beside each, its columns as bare arrays
+//   las_samples copc FOLDER        writes COPC files of their point formats, with extra bytes as recorded and as floats, likewise
 //   las_samples dump FILE FOLDER   writes the columns of a file as LasReader sees them
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 
 #include "core/error.h"
+#include "io/las/las_recode.h"
+#include "tests/io/copc/copc_sample.h"
 #include "tests/io/las_sample.h"
 
 namespace {
@@ -65,19 +68,39 @@ void write_samples(const std::filesystem::path& folder) {
       }
 }
 
+void write_copc_samples(const std::filesystem::path& folder) {
+  for (const int format : {6, 7, 8})
+    for (const bool floats : {false, true}) {
+      io::LasHeader h = test::sample_header(format, 4, true), to = h;
+      io::LasPoints p = test::copc_points(h, 150000);
+      std::vector<double> whole(p.size());  // of 64 bits copc.js takes what a double holds
+      for (std::size_t i = 0; i < whole.size(); ++i) whole[i] = 1e9 * static_cast<double>(i % 4001);
+      for (const char* name : {"type7", "type8"}) set_las_extra_values(p, h, name, whole, "sample");
+      const std::vector<std::uint8_t> records = test::records_of(p, h);
+      if (floats) to.extras = io::float_extras(h.extras);
+      io::LasRecoder recode(h, to, "sample");
+      const io::RecordStream stream = [&](const auto& f) { f(recode(records)); };
+      const std::string name = "format" + std::to_string(format) + (floats ? "_float" : "") + ".copc.laz";
+      io::write_copc(folder / name, to, stream, {folder, 1e9, 0});
+      dump_columns(folder / (name + ".columns"), h, p);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
   const std::string verb = argc > 1 ? argv[1] : "";
   if (verb == "write" && argc == 3) {
     write_samples(argv[2]);
+  } else if (verb == "copc" && argc == 3) {
+    write_copc_samples(argv[2]);
   } else if (verb == "dump" && argc == 4) {
     io::LasReader reader(argv[2]);
     io::LasPoints p;
     reader.read(p, static_cast<std::size_t>(reader.header().point_count));
     dump_columns(argv[3], reader.header(), p);
   } else {
-    std::cerr << "las_samples write FOLDER | dump FILE FOLDER\n";
+    std::cerr << "las_samples write FOLDER | copc FOLDER | dump FILE FOLDER\n";
     return 2;
   }
   return 0;

@@ -10,6 +10,9 @@ if(Python3_FOUND)
   add_test(NAME laspy.las_files_both_ways
     COMMAND sh -c "if [ -x '${laspy_venv}/bin/python' ]; then exec '${laspy_venv}/bin/python' \"$@\"; else echo 'SKIPPED: no laspy environment'; exit 77; fi"
             laspy ${CMAKE_CURRENT_LIST_DIR}/laspy_check.py $<TARGET_FILE:las_samples> ${PROJECT_BINARY_DIR}/laspy_files)
+  add_test(NAME laspy.copc_files_field_by_field
+    COMMAND sh -c "if [ -x '${laspy_venv}/bin/python' ]; then exec '${laspy_venv}/bin/python' \"$@\"; else echo 'SKIPPED: no laspy environment'; exit 77; fi"
+            laspy ${CMAKE_CURRENT_LIST_DIR}/copc_check.py $<TARGET_FILE:las_samples> ${PROJECT_BINARY_DIR}/copc_files ${CMAKE_CURRENT_LIST_DIR}/copcjs)
   set_tests_properties(laspy.environment PROPERTIES FIXTURES_SETUP laspy SKIP_RETURN_CODE 77 TIMEOUT 300)
-  set_tests_properties(laspy.las_files_both_ways PROPERTIES FIXTURES_REQUIRED laspy SKIP_RETURN_CODE 77 TIMEOUT 600)
+  set_tests_properties(laspy.las_files_both_ways laspy.copc_files_field_by_field PROPERTIES FIXTURES_REQUIRED laspy SKIP_RETURN_CODE 77 TIMEOUT 600)
 endif()

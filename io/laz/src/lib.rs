@@ -3,6 +3,7 @@
 
 mod error;
 mod reader;
+mod table;
 mod threads;
 mod writer;
 
@@ -118,6 +119,41 @@ pub unsafe extern "C" fn swath_laz_reader_open(
         *reader = Box::into_raw(Box::new(opened));
         Ok(())
     })
+}
+
+/// # Safety
+/// Pointers as swath_laz.h says.
+#[no_mangle]
+pub unsafe extern "C" fn swath_laz_reader_open_chunks(
+    path: *const c_char,
+    vlr: *const u8,
+    vlr_size: usize,
+    point_format: u8,
+    record_length: u16,
+    offsets: *const u64,
+    bytes: *const u64,
+    points: *const u64,
+    chunks: usize,
+    threads: u32,
+    reader: *mut *mut Reader,
+    message: *mut c_char,
+    message_capacity: usize,
+) -> c_int {
+    guarded(message, message_capacity, || {
+        let vlr = vlr_of(vlr, vlr_size)?;
+        let (offsets, bytes, points) = (slice_of(offsets, chunks), slice_of(bytes, chunks), slice_of(points, chunks));
+        let places = (0..chunks).map(|i| (offsets[i], bytes[i], points[i]));
+        let opened = Reader::open_chunks(path_of(path), vlr, point_format, record_length, places, threads)?;
+        *reader = Box::into_raw(Box::new(opened));
+        Ok(())
+    })
+}
+
+/// # Safety
+/// A handle of swath_laz_reader_open.
+#[no_mangle]
+pub unsafe extern "C" fn swath_laz_reader_select(reader: *mut Reader, fields: u32) {
+    (*reader).select(fields);
 }
 
 /// # Safety

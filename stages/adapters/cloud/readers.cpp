@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "core/error.h"
+#include "io/copc/cloud_part.h"
 #include "io/las/cloud_crs.h"
 #include "io/las/cloud_extent.h"
 #include "io/records/laser_checks.h"
@@ -75,19 +77,31 @@ class LaserReader : public OptionStage<NoOptions> {
 
 class CloudStrip : public StripReader {
  public:
-  CloudStrip(const Context& context, size_t cloud, const Eigen::Vector2d& rim, const io::CloudExtent& extent)
-      : source_(context.survey, cloud, cloud_map(context), rim, extent) {}
+  CloudStrip(const Context& context, size_t cloud, const Eigen::Vector2d& rim, const io::CloudExtent& extent, const io::CloudPart& part)
+      : source_(context.survey, cloud, cloud_map(context), rim, extent, {part.chunks, context.unused}) {}
   bool next(StripBatch& batch, size_t most, core::Tally& tally) override { return source_.next(batch.block, most, tally); }
 
  private:
   io::CloudSource source_;
 };
 
-class LasCloud : public OptionStage<NoOptions> {
+struct CloudOptions {
+  std::optional<std::array<double, 4>> bounds;
+  std::optional<core::Metres> resolution;
+};
+
+template <class V>
+void describe(CloudOptions& o, V& v) {
+  v.option("bounds", o.bounds, "West, south, east, north in units of the CRS: points outside are not read, or left out.");
+  v.option("resolution", o.resolution, core::above(0.0), "COPC and EPT: only levels needed for points this far apart; unset: all points.");
+  v.check(!o.bounds || ((*o.bounds)[0] < (*o.bounds)[2] && (*o.bounds)[1] < (*o.bounds)[3]), "bounds are west, south, east, north");
+}
+
+class LasCloud : public OptionStage<CloudOptions> {
  public:
   const Info& info() const override {
     static const Info info{"readers.las",
-                           "Reads the survey's point clouds, LAS or LAZ in map coordinates.",
+                           "Reads the survey's point clouds in map coordinates: LAS, LAZ, COPC, EPT, or what a virtual point cloud lists.",
                            {Grain::strip},
                            {},
                            {Column::x, Column::y, Column::z, Column::time, Column::intensity, Column::return_number, Column::return_count,
@@ -134,23 +148,37 @@ class LasCloud : public OptionStage<NoOptions> {
     }
     if (any_height) context.area.lowest = -Area::none, context.area.highest = Area::none;
     if (places.x0 <= places.x1) set_area(context, places, around_clouds);
+    if (options.bounds) {
+      const auto& [west, south, east, north] = *options.bounds;
+      Box& box = context.area.box;
+      box = {std::max(box.x0, west * context.unit), std::max(box.y0, south * context.unit), std::min(box.x1, east * context.unit),
+             std::min(box.y1, north * context.unit)};
+    }
     if (context.crs.heights() == core::Heights::unknown) context.heights = io::heights_of_clouds(context.survey);
   }
   std::vector<Strip> strips(const Context& context, core::Tally& tally) const override {
     std::vector<Strip> out;
+    parts_.clear();
+    std::uint64_t unread = 0;
     rim_.setConstant(-std::numeric_limits<double>::infinity());
+    const auto resolution = options.resolution ? std::optional(options.resolution->value) : std::nullopt;
     for (size_t i = 0; i < context.survey.points.size(); ++i) {
       const io::PointFile& f = context.survey.points[i];
-      std::vector<std::string> ignored;
-      const io::LasHeader header = io::read_las_header(io::resolve(context.survey, f.file), ignored);
-      out.push_back({i, 0, f.line.value_or(0), f.file.string(), header.point_count});
-      tally.read("points", header.point_count);
+      const io::CloudPart& part = parts_.emplace_back(io::part_of_cloud(context.survey, f, cloud_map(context), resolution));
       if (extents_[i].points() > 0) rim_ = rim_.cwiseMax(extents_[i].high());
+      unread += part.unread;
+      if (part.points == 0 && part.unread > 0) continue;
+      out.push_back({i, 0, f.line.value_or(0), f.file.string(), part.points});
+      tally.read("points", part.points);
     }
+    if (out.empty() && unread > 0)
+      throw core::Error("no point of the clouds lies within the bounds", context.survey.name,
+                        "bounds are west, south, east, north in units of the CRS; see `swath info` of the clouds");
+    if (unread > 0) tally.count("points of nodes outside the area or below the resolution, not read", unread);
     return out;
   }
   std::unique_ptr<StripReader> open(const Context& context, const Strip& strip) const override {
-    return std::make_unique<CloudStrip>(context, strip.source, rim_, extents_[strip.source]);
+    return std::make_unique<CloudStrip>(context, strip.source, rim_, extents_[strip.source], parts_[strip.source]);
   }
 
  private:
@@ -175,6 +203,7 @@ class LasCloud : public OptionStage<NoOptions> {
   }
 
   mutable std::vector<io::CloudExtent> extents_;  // of the run's files
+  mutable std::vector<io::CloudPart> parts_;      // what of them is read
   mutable Eigen::Vector2d rim_;                   // of the run, found once before the files are read
 };
 

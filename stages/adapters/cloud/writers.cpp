@@ -2,12 +2,10 @@
 #include <algorithm>
 #include <optional>
 
-#include "core/error.h"
-#include "io/las/las_writer.h"
 #include "io/vector/vector.h"
 #include "report/picture.h"
 #include "stages/adapters/adapters.h"
-#include "stages/adapters/cloud/clouds.h"
+#include "stages/adapters/cloud/las_product.h"
 #include "stages/adapters/units.h"
 #include "stages/drawing_file.h"
 #include "stages/surfaces.h"
@@ -15,37 +13,20 @@
 #include "stages/tile_product.h"
 
 namespace swath::stages {
-enum class WrittenTimes { recorded, adjusted };
-}
-
-template <>
-struct swath::core::Choices<swath::stages::WrittenTimes> {
-  static constexpr std::array<std::string_view, 2> names{"recorded", "adjusted"};
-};
-
-namespace swath::stages {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double finest_default = 0.001;
-
-struct LasOptions {
+struct LasOptions : PointFields {
   std::string folder = "points";
   bool compress = true;
-  std::optional<double> scale;
-  std::optional<int> point_format;
-  WrittenTimes times = WrittenTimes::recorded;
 };
 
 template <class V>
 void describe(LasOptions& o, V& v) {
   v.option("folder", o.folder, "Folder of the tiles within the output.");
   v.option("compress", o.compress, "LAZ in place of LAS.");
-  v.option("scale", o.scale, core::above_to(0.0, 1.0),
-           "Resolution of coordinates, in units of the CRS; unset: that of the cloud's files, or 0.001.");
-  v.option("point_format", o.point_format, core::within(0, 10), "Point format; unset: that of the cloud's files, or 6 (7 with colours).");
-  v.option("times", o.times, "Times of clouds: as recorded, or adjusted (adjusted standard GPS time).");
+  describe(static_cast<PointFields&>(o), v);
 }
 
 struct TileFindings {
@@ -56,87 +37,18 @@ void describe(const TileFindings& r, V& v) {
   v.result("tiles", r.tiles, core::plain().in_summary(), "Tiles that were written.");
 }
 
-/// Near the data, and the same for every tile: tiles can be joined without rounding again.
-Eigen::Vector3d offset_near(const Context& context) {
-  return {std::round(context.origin.x() / context.unit), std::round(context.origin.y() / context.unit), 0.0};
-}
-
-template <class H>
-void date_file(const Context& context, H& header) {
-  header.guid = context.project;
-  header.creation_year = static_cast<std::uint16_t>(context.creation_year);
-  header.creation_day = static_cast<std::uint16_t>(context.creation_day);
-}
-
-/// The files of the run's clouds, and the header of every tile.
-struct LasRun {
-  std::shared_ptr<const io::LasSources> sources;
-  io::LasHeader header;
-};
-
-LasRun las_run(const Context& context, const LasOptions& options) {
-  std::vector<io::LasSource> files = io::cloud_sources(context.survey, cloud_map(context));
-  const bool same_places = std::all_of(files.begin(), files.end(), [](const io::LasSource& s) { return s.same_places; });
-  const bool same_steps = std::all_of(files.begin(), files.end(), [&](const io::LasSource& s) {
-    return s.header.offset == files[0].header.offset && s.header.scale == files[0].header.scale;
-  });
-  const bool has_legacy = std::any_of(files.begin(), files.end(), [](const io::LasSource& s) { return s.header.point_format < 6; });
-  const bool keeps = io::keeps_crs(files, context.crs);
-  auto all = std::make_shared<const io::LasSources>(std::move(files), options.times == WrittenTimes::recorded);
-  const bool to_extended = has_legacy && options.point_format.value_or(all->header(false).point_format) >= 6;
-  const bool keep_crs = keeps && !to_extended;
-  io::LasHeader header = all->header(keep_crs);
-  if (!all->same_project()) date_file(context, header);
-  if (options.scale || !same_places) header.scale = Eigen::Vector3d::Constant(options.scale.value_or(finest_default));
-  if (options.scale || !same_places || !same_steps) header.offset = offset_near(context);
-  if (options.point_format) header.point_format = *options.point_format;
-  if (!keep_crs) io::add_las_wkt(header, core::Crs(context.product_crs).wkt1());
-  if (!keep_crs || options.point_format) header.version_minor = 4;
-  return {std::move(all), std::move(header)};
-}
-
 std::string las_name(const Context& context, TileKey key, const LasOptions& o) {
   return context.label(key) + (o.compress ? ".laz" : ".las");
 }
 
 void write_las(TileJob& job, const Context& context, const LasOptions& options, RunCache& cache) {
-  io::LasWriteOptions o;
-  o.format = options.point_format;
-  o.scale = Eigen::Vector3d::Constant(options.scale.value_or(finest_default));
-  o.offset = offset_near(context);
-  o.crs_wkt = core::Crs(context.product_crs).wkt1();
-  o.times_as_they_are = context.weekless;
-  date_file(context, o);
-  o.threads = 1;
-  std::optional<io::LasWriter> writer;
-  const auto open = [&](bool has_sources) {
-    if (has_sources) {
-      const LasRun& run = cache.get([&] { return las_run(context, options); });
-      o.sources = run.sources, o.header = run.header;
-    }
-    writer.emplace(context.output / options.folder / las_name(context, job.key, options), o);
-  };
-  // Fields hang on all of the points, so that these are gone through twice.
-  job.stream([&](core::Block& block) {
-    if (!writer) open(!block.source.empty());
-    writer->look_at(block);
-  });
-  if (!writer) open(false);
-  job.stream([&](core::Block& block) {
-    if (o.sources) o.sources->complete(block);
-    to_crs_units(context, block);
-    writer->write(block);
-  });
-  if (writer->overlap_lost() > 0)
-    job.tally.count("overlap flags that the point format cannot hold (point_format = 6 keeps them)", writer->overlap_lost());
-  writer->finish();
+  write_points(job, context, options, cache, context.output / options.folder / las_name(context, job.key, options));
 }
 TileFindings list_las(const MergeJob& job, const Context& context, const LasOptions& o, RunCache& cache, core::Tally& tally) {
   std::vector<std::string> files;
   for (const TileKey key : job.tiles) files.push_back(las_name(context, key, o));
   write_list(context.output / o.folder, files);
-  if (const LasRun* run = cache.find<LasRun>())
-    for (const std::string& what : run->sources->left_out()) tally.count("not carried from the cloud's files", what);
+  count_not_carried(cache, tally);
   return {files.size()};
 }
 
@@ -283,11 +195,9 @@ std::optional<PictureFindings> draw_picture(const MergeJob& job, const Context& 
 }  // namespace
 
 Entry las_writer_stage() {
-  core::ColumnSet all;
-  for (int c = 0; c < core::column_count; ++c) all.add(static_cast<core::Column>(c));
   return tile<write_las, list_las>("writers.las",
                                    "LAS or LAZ tiles: points of clouds with every field as recorded, others as LAS 1.4 with extra bytes.",
-                                   {.columns = {.needs = {}, .reads = all},
+                                   {.columns = {.needs = {}, .reads = all_columns()},
                                     .memory = [](const LasOptions&, const Context&) { return TileMemory{170.0}; },
                                     .products = [](const LasOptions& o) { return std::vector{o.folder}; },
                                     .is_streamed = true});

@@ -262,5 +262,43 @@ TEST(LasReader, AutzenEqualsItsTwinAndComesOutAgain) {
   }
 }
 
+TEST(LasReader, ColumnsThatNobodyUsesAreLeftOutAndTheOthersAreAsInTheFile) {
+  const test::TemporaryFolder folder;
+  using core::Column;
+  const core::ColumnSet unused{Column::time, Column::intensity, Column::scan_angle, Column::user_data, Column::red,
+                               Column::green, Column::blue,     Column::range,      Column::incidence, Column::sigma_h,
+                               Column::sigma_v, Column::height, Column::ground_probability, Column::source};
+  for (const int format : {3, 6, 7, 8, 10}) {
+    LasHeader h = test::sample_header(format, 4, true);
+    h.extras.push_back(test::extra_field("sigma_v", 9));
+    const LasPoints p = test::sample_points(h, 120000);
+    test::write_sample(folder / "a.laz", h, p);
+    LasReader whole(folder / "a.laz"), part(folder / "a.laz", 1, {{}, unused});
+    core::Block a, b;
+    std::size_t rows = 0;
+    while (whole.read(a, 50000, {.keep_unknown = true}) > 0) {
+      ASSERT_EQ(part.read(b, 50000, {.keep_unknown = true}), a.size());
+      EXPECT_EQ(a.x, b.x);
+      EXPECT_EQ(a.z, b.z);
+      EXPECT_EQ(a.return_number, b.return_number);
+      EXPECT_EQ(a.classification, b.classification);
+      EXPECT_EQ(a.flags, b.flags);
+      EXPECT_EQ(a.strip, b.strip);
+      EXPECT_EQ(a.record, b.record);
+      EXPECT_EQ(b.intensity.empty(), format != 3) << "older formats are one stream";
+      EXPECT_EQ(b.sigma_v.empty(), format != 3);
+      EXPECT_FALSE(a.sigma_v.empty());
+      if (format >= 6) {
+        EXPECT_TRUE(std::all_of(b.time.begin(), b.time.end(), [](double t) { return t == 0.0; }));
+      }
+      rows += a.size();
+    }
+    EXPECT_EQ(rows, 120000u);
+    LasReader kept(folder / "a.laz", 1, {{}, unused - core::ColumnSet{Column::source}});
+    kept.read(b, 10, {.keep_unknown = true}, 1);
+    EXPECT_FALSE(b.intensity.empty()) << "a record that is kept is whole";
+  }
+}
+
 }  // namespace
 }  // namespace swath::io
