@@ -2,6 +2,7 @@
 #include "stages/registry.h"
 
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/cloud/copc.h"
 #include "stages/tile_filter.h"
 
 namespace swath::stages {

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "io/copc/copc_hierarchy.h"
+#include "io/copc/ept.h"
 #include "io/las/cloud_crs.h"
 
 namespace swath::io {
@@ -65,16 +66,15 @@ CloudPart part_of_cloud(const Survey& survey, const PointFile& file, const Cloud
   const core::Crs crs = cloud_crs(survey, file);
   constexpr double metres_per_degree = 111e3;
   if (resolution) *resolution /= crs.is_geographic() ? metres_per_degree : crs.metres_per_unit();
-  if (resolution && !info && !file.node)
+  const std::optional<EptNode> node = info ? std::nullopt : ept_node(path);
+  if (resolution && !info && !node)
     throw core::usage_error("a resolution is stated, but the file has no levels of detail", path.string(),
                             "leave `resolution` of readers.las out, or give a COPC file or an EPT index");
   const AreaOfNodes area(crs, map);
   CloudPart part{{}, header.point_count, 0};
-  if (file.node) {
-    const CloudNode& n = *file.node;
-    const auto is_enough = [&] { return resolution && n.spacing * 2.0 <= *resolution; };  // the level above is as dense as asked for
-    if ((n.level > 0 && is_enough()) || !area.reaches_into({n.box[0], n.box[1], n.box[2]}, {n.box[3], n.box[4], n.box[5]}))
-      std::swap(part.points, part.unread);
+  if (node) {
+    const bool is_finer = resolution && node->level > level_for(std::ldexp(node->spacing, node->level), resolution);
+    if (is_finer || !area.reaches_into(node->low, node->high)) std::swap(part.points, part.unread);
     return part;
   }
   if (!info) return part;

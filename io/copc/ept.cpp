@@ -89,9 +89,26 @@ OctreeCube cube_of(const Value& index, const fs::path& file) {
   return {{0.5 * (b[0] + b[3]), 0.5 * (b[1] + b[4]), 0.5 * (b[2] + b[5])}, 0.5 * (b[3] - b[0])};
 }
 
+/// Cells along a node's side.
+double span_of(const Value& index, const fs::path& file) {
+  const Value& span = member(index, "span", file);
+  if (!span.is_number() || !(span.as_number() > 0.0)) bad_index("the span of the EPT index is no number above 0", file);
+  return span.as_number();
+}
+
 bool ends_in(const fs::path& file, const char* ending) { return file.extension() == ending; }
 
 }  // namespace
+
+std::optional<EptNode> ept_node(const fs::path& file) {
+  if (file.parent_path().filename() != "ept-data") return std::nullopt;
+  const fs::path index = file.parent_path().parent_path() / "ept.json";
+  if (!fs::exists(index)) return std::nullopt;
+  const Value about = read_value_file(index);
+  const OctreeKey key = key_of(file.stem().string(), index);
+  const OctreeCube cube = cube_of(about, index).of(key);
+  return EptNode{key.level, cube.side() / span_of(about, index), cube.low(), cube.centre.array() + cube.half_side};
+}
 
 std::vector<PointFile> ept_files(const fs::path& index, const PointFile& like) {
   const Value about = read_value_file(index);
@@ -99,9 +116,9 @@ std::vector<PointFile> ept_files(const fs::path& index, const PointFile& like) {
   if (!encoding.is_text() || encoding.as_text() != "laszip")
     throw core::Error("the EPT nodes are not LAZ files" + (encoding.is_text() ? ": " + encoding.as_text() : std::string()), index.string(),
                       "build the index with the encoding laszip");
-  const OctreeCube cube = cube_of(about, index);
-  const Value &span = member(about, "span", index), &points = member(about, "points", index);
-  if (!span.is_number() || !(span.as_number() > 0.0) || !points.is_int()) bad_index("span or points of the EPT index are no numbers", index);
+  cube_of(about, index), span_of(about, index);
+  const Value& points = member(about, "points", index);
+  if (!points.is_int()) bad_index("the EPT index has no number of points", index);
   EptHierarchy hierarchy(index.parent_path() / "ept-hierarchy");
   std::sort(hierarchy.nodes.begin(), hierarchy.nodes.end());
   std::int64_t sum = 0;
@@ -110,9 +127,6 @@ std::vector<PointFile> ept_files(const fs::path& index, const PointFile& like) {
     PointFile& f = out.emplace_back(like);
     f.file = like.file.parent_path() / "ept-data" / (key.text() + ".laz");
     if (f.crs.empty()) f.crs = crs_of(about);
-    const OctreeCube c = cube.of(key);
-    const Eigen::Vector3d low = c.low(), high = c.centre.array() + c.half_side;
-    f.node = CloudNode{key.level, c.side() / span.as_number(), {low.x(), low.y(), low.z(), high.x(), high.y(), high.z()}};
     const fs::path file = index.parent_path() / "ept-data" / (key.text() + ".laz");
     if (!fs::exists(file)) throw core::Error("the EPT node " + key.text() + " of " + std::to_string(n) + " points is missing", file.string(), damaged);
     sum += n;

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/block.h"
 #include "io/las/las_reader.h"
 
 namespace swath::io {
@@ -159,6 +160,16 @@ CloudExtent CloudExtent::of_box(double cell, const Eigen::Vector2d& low, const E
 
 namespace {
 
+/// All columns but the coordinates.
+core::ColumnSet places_alone() {
+  using core::Column;
+  core::ColumnSet unused{Column::source};
+  core::for_each_column([&](Column c, const char*, auto) {
+    if (c != Column::x && c != Column::y && c != Column::z) unused.add(c);
+  });
+  return unused;
+}
+
 /// Is the header's box so narrow that none of its points can be far from the others, and are these points in it?
 bool is_plausible_box(const LasHeader& h, double cell, const LasPoints& points) {
   const Eigen::Array2d low = h.min.head<2>(), high = h.max.head<2>();
@@ -176,7 +187,7 @@ bool is_plausible_box(const LasHeader& h, double cell, const LasPoints& points) 
 
 FileExtent extent_of_cloud(const std::filesystem::path& file, double cell, double lowest, double highest, unsigned threads) {
   FileExtent out{CloudExtent(cell)};
-  LasReader reader(file, threads);
+  LasReader reader(file, threads, {{}, places_alone()});
   LasPoints points;
   if (reader.read(points, extent_batch) == 0) return out;
   const LasHeader& h = reader.header();

@@ -87,10 +87,6 @@ int LasExtra::size() const {
   return components() * of_type[static_cast<std::size_t>((type - 1) % 10 + 1)];
 }
 
-bool is_same_field(const LasExtra& a, const LasExtra& b) {
-  return a.name == b.name && a.type == b.type && a.bytes == b.bytes && a.nodata == b.nodata && a.scale == b.scale && a.offset == b.offset;
-}
-
 std::vector<LasVlr> with_extras(const std::vector<LasVlr>& vlrs, const std::vector<LasExtra>& extras) {
   std::vector<std::uint8_t> said, all = extras_bytes(extras);
   for (const LasVlr& v : vlrs)

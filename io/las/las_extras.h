@@ -37,9 +37,6 @@ struct LasExtra {
   int size() const;
 };
 
-/// Does a raw value mean the same in both?
-bool is_same_field(const LasExtra& a, const LasExtra& b);
-
 /// The bit pattern that `nodata` of an integer field holds.
 constexpr std::uint64_t las_integer_bits(std::int64_t v) { return static_cast<std::uint64_t>(v); }
 

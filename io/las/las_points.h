@@ -56,8 +56,7 @@ void decode_las_lines(std::span<const std::uint8_t> records, const LasHeader& he
 void encode_las_points(const LasPoints& points, std::size_t begin, std::size_t end, const LasHeader& header,
                        std::span<std::uint8_t> records, const std::string& where);
 
-/// One component of an extra field as numbers, raw * scale + offset; NaN where nodata. Empty where no field has the name, or
-/// the extra bytes were not read.
+/// One component of an extra field as numbers, raw * scale + offset; NaN where nodata. Empty where no field has the name.
 std::vector<double> las_extra_values(const LasPoints& points, const LasHeader& header, const std::string& name, int component = 0);
 /// Stores numbers as an extra field: nearest raw value; NaN becomes nodata. Throws core::Error (`where` and row) for a number that the
 /// field cannot hold, or NaN where it has no nodata.

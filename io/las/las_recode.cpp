@@ -34,6 +34,10 @@ bool is_number_of_one_name(const std::vector<LasExtra>& extras, const LasExtra& 
 
 }  // namespace
 
+bool is_same_field(const LasExtra& a, const LasExtra& b) {
+  return a.name == b.name && a.type == b.type && a.bytes == b.bytes && a.nodata == b.nodata && a.scale == b.scale && a.offset == b.offset;
+}
+
 std::vector<LasExtra> common_extras(const std::vector<LasHeader>& files) {
   std::vector<LasExtra> out = files.front().extras;
   for (const LasHeader& h : files) {

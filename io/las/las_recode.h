@@ -14,6 +14,9 @@
 
 namespace swath::io {
 
+/// Does a raw value mean the same in both?
+bool is_same_field(const LasExtra& a, const LasExtra& b);
+
 /// The fields of files that all have fields of the same names: as they are where they agree, else as our own columns are written
 /// (las_extras_of). Throws core::Error for files that do not have the same fields.
 std::vector<LasExtra> common_extras(const std::vector<LasHeader>& files);

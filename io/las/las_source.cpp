@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "io/las/las_block.h"
 #include "io/las/las_bytes.h"
+#include "io/las/las_recode.h"
 
 namespace swath::io {
 

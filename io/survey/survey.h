@@ -133,13 +133,6 @@ void describe(TrajectoryFile& f, V& v) {
   v.option("sigma_heading", f.sigma_heading, core::above(0), "Sigma of heading, where the file states none.");
 }
 
-/// What a file is of an octree that is kept as one file per node (EPT).
-struct CloudNode {
-  int level = 0;
-  double spacing = 0.0;         ///< of the node's points, units of the file's CRS
-  std::array<double, 6> box{};  ///< its cube: lowest x, y, z, highest x, y, z
-};
-
 /// One point cloud in map coordinates, entering after georeferencing.
 struct PointFile {
   std::filesystem::path file;
@@ -149,12 +142,11 @@ struct PointFile {
   core::TimeScale time_scale = core::TimeScale::unstated;
   std::optional<int> week;
   std::string date;
-  std::optional<CloudNode> node{};  ///< no option: of a file that an EPT index lists
 };
 
 template <class V>
 void describe(PointFile& f, V& v) {
-  v.option("file", f.file, "LAS, LAZ or COPC file, EPT index (ept.json) or list of files (.vpc), relative to survey.toml.");
+  v.option("file", f.file, "LAS or LAZ file, relative to survey.toml.");
   v.option("crs", f.crs,
            "CRS of the file, where it states none, a wrong one or no heights: \"EPSG:25832+7837\", \"EPSG:25832+ellipsoidal\".");
   v.option("height_unit", f.height_unit, core::above(0.0),

@@ -47,15 +47,6 @@ core::ColumnSet needed_columns(const RunState& run) {
   return needed;
 }
 
-/// Columns of the source's points that neither strip stages nor what is kept of them have a use for.
-core::ColumnSet unused_columns(const RunState& run, core::ColumnSet kept) {
-  for (size_t i = run.source + 1; i <= run.last_strip_stage; ++i) kept = kept | columns_of_tiles(run.stage(i));
-  core::ColumnSet unused;
-  for (int c = 0; c < core::column_count; ++c)
-    if (const auto column = static_cast<core::Column>(c); !kept.has(column)) unused.add(column);
-  return unused;
-}
-
 struct Parcel {
   stages::StripBatch batch;
   std::vector<Account> accounts;
@@ -192,7 +183,6 @@ void expect_times(RunState& run, std::uint64_t returns) {
 void choose_strips(RunState& run) {
   const auto keep = [&](core::ColumnSet columns) {
     run.kept = columns;
-    run.context.unused = unused_columns(run, columns);
     std::string text = run.fingerprints[run.last_strip_stage];
     for (int c = 0; c < core::column_count; ++c) text += columns.has(static_cast<core::Column>(c)) ? '1' : '0';
     run.folders[run.last_strip_stage] = core::hex(core::fnv1a(text));

@@ -12,7 +12,7 @@ Entry lever_arm_stage(), kinematic_stage(), ins_gnss_stage(), rtklib_stage(), ti
 Entry adjust_stage(), flat_target_stage(), strips_stage(), geometry_stage();
 Entry laser_reader_stage(), las_reader_stage(), georeference_stage(), returns_stage(), visibility_stage(), lines_stage(), ground_stage(),
     hag_dem_stage(), breaklines_stage(), dtm_stage(), dsm_stage(), canopy_stage(), relief_stage(), density_stage(), intensity_stage(),
-    contours_stage(), penetration_stage(), las_writer_stage(), copc_writer_stage(), gdal_writer_stage(), picture_writer_stage(), truth_stage(),
+    contours_stage(), penetration_stage(), las_writer_stage(), gdal_writer_stage(), picture_writer_stage(), truth_stage(),
     check_points_stage();
 
 /// Refuses the gate of ranges of a filter that reads them where the files of a cloud have none.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tiles leave their points as LAS records in the work folder; the merge sorts them into the octree.
+#include "stages/adapters/cloud/copc.h"
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -10,7 +12,6 @@
 #include "io/copc/copc_writer.h"
 #include "io/las/las_bytes.h"
 #include "io/las/las_recode.h"
-#include "stages/adapters/adapters.h"
 #include "stages/adapters/cloud/las_product.h"
 #include "stages/grid_tile.h"
 #include "stages/tile_product.h"

@@ -47,10 +47,12 @@ TEST(Ept, NodesAreFilesWithTheCrsAndTheCubeOfTheIndex) {
   EXPECT_EQ(files[0].file, "cloud/ept-data/0-0-0-0.laz");
   EXPECT_EQ(files[0].crs, "EPSG:25832");
   EXPECT_EQ(files[1].line, 7);
-  ASSERT_TRUE(files[1].node);
-  EXPECT_EQ(files[1].node->level, 1);
-  EXPECT_DOUBLE_EQ(files[1].node->spacing * 2.0, files[0].node->spacing);
-  EXPECT_DOUBLE_EQ(files[1].node->box[3] - files[1].node->box[0], 0.5 * (files[0].node->box[3] - files[0].node->box[0]));
+  const auto root = ept_node(one.folder / files[0].file.string()), below = ept_node(one.folder / files[1].file.string());
+  ASSERT_TRUE(root && below);
+  EXPECT_EQ(below->level, 1);
+  EXPECT_DOUBLE_EQ(below->spacing * 2.0, root->spacing);
+  EXPECT_DOUBLE_EQ(below->high.x() - below->low.x(), 0.5 * (root->high.x() - root->low.x()));
+  EXPECT_FALSE(ept_node(one.folder / "a.copc.laz"));
   like.crs = "EPSG:25832+7837";
   EXPECT_EQ(ept_files(one.index, like)[0].crs, like.crs) << "the survey has the last word";
   one.set(one.index, "srs", parse_json(R"({"authority": "EPSG", "horizontal": "25832", "vertical": "5783"})", "test"));
@@ -88,7 +90,7 @@ TEST(Ept, WhatIsMissingOrWrongIsOneErrorThatNamesIt) {
   const OneIndex one;
   const core::Value whole = read_value_file(one.index);
   for (const Case& c : {Case{"are not LAZ files: binary", "dataType", "binary"}, Case{"ept.json says 7", "points", 7},
-                        Case{"are no numbers", "span", 0}, Case{"are no cube", "bounds", core::Value::array()}}) {
+                        Case{"is no number above 0", "span", 0}, Case{"are no cube", "bounds", core::Value::array()}}) {
     one.set(one.index, c.key, c.value);
     EXPECT_NE(one.fault().find(c.expected), std::string::npos) << one.fault();
     write_text_file(one.index, to_json(whole));
