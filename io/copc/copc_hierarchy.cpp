@@ -117,7 +117,7 @@ class PageReader {
                get<std::uint64_t>(at + 16), get<std::int32_t>(at + 24), get<std::int32_t>(at + 28)};
     const OctreeKey& k = n.key;
     if (k.level < 0 || k.level > highest_level || std::min({k.x, k.y, k.z}) < 0 || std::max({k.x, k.y, k.z}) >= 1 << k.level)
-      broken("there is no node " + k.text(), file_, byte);
+      broken("'" + k.text() + "' is not a node", file_, byte);
     if (n.points == is_page) return read(n.offset, static_cast<std::uint64_t>(std::max(n.bytes, 0)));
     if (!keys_.emplace(k, byte).second) broken("the node " + k.text() + " is listed twice", file_, byte);
     if (n.points == 0) return;

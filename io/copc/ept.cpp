@@ -33,10 +33,10 @@ OctreeKey key_of(const std::string& text, const fs::path& file) {
   const char *at = text.data(), *end = at + text.size();
   for (std::int32_t* part : {&key.level, &key.x, &key.y, &key.z}) {
     const auto [next, code] = std::from_chars(at, end, *part);
-    if (code != std::errc() || *part < 0 || (next != end && *next != '-')) bad_index("'" + text + "' is no node", file);
+    if (code != std::errc() || *part < 0 || (next != end && *next != '-')) bad_index("'" + text + "' is not a node", file);
     at = next == end ? end : next + 1;
   }
-  if (key.text() != text || key.level > 30 || std::max({key.x, key.y, key.z}) >= 1 << key.level) bad_index("'" + text + "' is no node", file);
+  if (key.text() != text || key.level > 30 || std::max({key.x, key.y, key.z}) >= 1 << key.level) bad_index("'" + text + "' is not a node", file);
   return key;
 }
 
@@ -52,7 +52,7 @@ class EptHierarchy {
     if (!fs::exists(file)) throw core::Error("the page of the EPT hierarchy is missing", file.string(), damaged);
     if (!pages_.insert(top).second) bad_index("the page is listed twice", file);
     const Value page = read_value_file(file);
-    if (!page.is_object()) bad_index("the page of the EPT hierarchy is no table of nodes", file);
+    if (!page.is_object()) bad_index("the page of the EPT hierarchy is not a table of nodes", file);
     for (const auto& [name, points] : page.members()) {
       const OctreeKey key = key_of(name, file);
       if (!points.is_int() || points.as_int() < -1) bad_index("the node " + name + " has no number of points", file);
@@ -85,14 +85,14 @@ OctreeCube cube_of(const Value& index, const fs::path& file) {
   if (bounds.is_array())
     for (const Value& v : bounds.items())
       if (v.is_number()) b.push_back(v.as_number());
-  if (b.size() != 6 || !(b[3] > b[0])) bad_index("the bounds of the EPT index are no cube", file);
+  if (b.size() != 6 || !(b[3] > b[0])) bad_index("the bounds of the EPT index are not a cube", file);
   return {{0.5 * (b[0] + b[3]), 0.5 * (b[1] + b[4]), 0.5 * (b[2] + b[5])}, 0.5 * (b[3] - b[0])};
 }
 
 /// Cells along a node's side.
 double span_of(const Value& index, const fs::path& file) {
   const Value& span = member(index, "span", file);
-  if (!span.is_number() || !(span.as_number() > 0.0)) bad_index("the span of the EPT index is no number above 0", file);
+  if (!span.is_number() || !(span.as_number() > 0.0)) bad_index("the span of the EPT index is not a number above 0", file);
   return span.as_number();
 }
 

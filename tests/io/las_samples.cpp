@@ -2,12 +2,14 @@
 // For tests/io/laspy_check.py and copc_check.py:
 //   las_samples write FOLDER       writes files of every point format and, beside each, its columns as bare arrays
 //   las_samples copc FOLDER        writes COPC files of their point formats, with extra bytes as recorded and as floats, likewise
+//   las_samples vpc FOLDER         writes two tiles and a virtual point cloud of them (vpc_check.py)
 //   las_samples dump FILE FOLDER   writes the columns of a file as LasReader sees them
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 
 #include "core/error.h"
+#include "io/copc/tile_index.h"
 #include "io/las/las_recode.h"
 #include "tests/io/copc/copc_sample.h"
 #include "tests/io/las_sample.h"
@@ -86,6 +88,23 @@ void write_copc_samples(const std::filesystem::path& folder) {
     }
 }
 
+void write_virtual_cloud(const std::filesystem::path& folder) {
+  io::LasHeader h = test::sample_header(7, 4, true);
+  io::TileIndex index{{}, "EPSG:25832+7837", 1.0, 1.0, "2026-01-02T00:00:00Z"};
+  for (const char* name : {"a.laz", "b.laz"}) {
+    h.offset.x() += 1000.0;
+    test::write_sample(folder / name, h, test::copc_points(h, 1000));
+    io::LasReader reader(folder / name);
+    h = reader.header();
+    core::Block block;
+    reader.read(block, 1000);
+    io::TileFactsOf facts;
+    facts.add(block);
+    index.tiles.push_back({name, facts.facts()});
+  }
+  io::write_vpc(folder / "a.vpc", index, h);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -94,13 +113,15 @@ int main(int argc, char** argv) try {
     write_samples(argv[2]);
   } else if (verb == "copc" && argc == 3) {
     write_copc_samples(argv[2]);
+  } else if (verb == "vpc" && argc == 3) {
+    write_virtual_cloud(argv[2]);
   } else if (verb == "dump" && argc == 4) {
     io::LasReader reader(argv[2]);
     io::LasPoints p;
     reader.read(p, static_cast<std::size_t>(reader.header().point_count));
     dump_columns(argv[3], reader.header(), p);
   } else {
-    std::cerr << "las_samples write FOLDER | copc FOLDER | dump FILE FOLDER\n";
+    std::cerr << "las_samples write FOLDER | copc FOLDER | vpc FOLDER | dump FILE FOLDER\n";
     return 2;
   }
   return 0;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the virtual environment of laspy_check.py: laspy_environment.py FOLDER REQUIREMENTS.
+"""Makes the virtual environment of a check: laspy_environment.py FOLDER REQUIREMENTS.
 
 Exit code 77 (skipped) where the packages cannot be fetched.
 """
@@ -22,6 +22,6 @@ pip = [str(folder / "bin/python"), "-m", "pip", "install", "--quiet", "--disable
 done = subprocess.run(pip, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 if done.returncode:
     print(done.stdout)
-    print("SKIPPED: pip cannot install laspy, lazrs and numpy (no network, or no build for this Python)")
+    print(f"SKIPPED: pip cannot install {requirements.name} (no network, or no build for this Python)")
     sys.exit(77)
 stamp.write_text(wanted)

@@ -82,7 +82,8 @@ core::ColumnSet all_columns() {
   return all;
 }
 
-void write_points(TileJob& job, const Context& context, const PointFields& fields, RunCache& cache, const std::filesystem::path& file) {
+io::TileFacts write_points(TileJob& job, const Context& context, const PointFields& fields, RunCache& cache,
+                           const std::filesystem::path& file) {
   io::LasWriteOptions o;
   o.format = fields.point_format;
   o.scale = Eigen::Vector3d::Constant(fields.scale.value_or(finest_default));
@@ -105,14 +106,17 @@ void write_points(TileJob& job, const Context& context, const PointFields& field
     writer->look_at(block);
   });
   if (!writer) open(false);
+  io::TileFactsOf facts;
   job.stream([&](core::Block& block) {
     if (o.sources) o.sources->complete(block);
+    facts.add(block);
     to_crs_units(context, block);
     writer->write(block);
   });
   if (writer->overlap_lost() > 0)
     job.tally.count("overlap flags that the point format cannot hold (point_format = 6 keeps them)", writer->overlap_lost());
   writer->finish();
+  return facts.facts();
 }
 
 void count_not_carried(RunCache& cache, core::Tally& tally) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 
+#include "io/copc/tile_index.h"
 #include "stages/tile.h"
 
 namespace swath::stages {
@@ -39,7 +40,9 @@ core::ColumnSet all_columns();
 
 /// Writes a tile's points: those of clouds with every field as recorded, others as LAS 1.4 with extra bytes. Tiles differ in the definitions
 /// of extra fields alone (io::common_extras).
-void write_points(TileJob& job, const Context& context, const PointFields& fields, RunCache& cache, const std::filesystem::path& file);
+/// Returns what is known of them.
+io::TileFacts write_points(TileJob& job, const Context& context, const PointFields& fields, RunCache& cache,
+                           const std::filesystem::path& file);
 
 /// Counts what files that write_points() wrote do not carry on from the cloud's.
 void count_not_carried(RunCache& cache, core::Tally& tally);

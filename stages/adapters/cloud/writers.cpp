@@ -1,16 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <optional>
+#include <set>
 
+#include "core/config/units.h"
+#include "core/error.h"
+#include "core/time.h"
+#include "io/copc/tile_index.h"
+#include "io/vector/named_areas.h"
 #include "io/vector/vector.h"
 #include "report/picture.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/cloud/las_product.h"
 #include "stages/adapters/units.h"
 #include "stages/drawing_file.h"
+#include "stages/grid_tile.h"
 #include "stages/surfaces.h"
 #include "stages/tile.h"
 #include "stages/tile_product.h"
+
+namespace swath::stages {
+enum class TileNames { corner, kilometre, areas };
+}
+
+template <>
+struct swath::core::Choices<swath::stages::TileNames> {
+  static constexpr std::array<std::string_view, 3> names{"corner", "kilometre", "areas"};
+};
 
 namespace swath::stages {
 namespace {
@@ -20,13 +38,25 @@ namespace fs = std::filesystem;
 struct LasOptions : PointFields {
   std::string folder = "points";
   bool compress = true;
+  bool index = true;
+  TileNames names = TileNames::corner;
+  std::string prefix;
+  fs::path areas;
+  std::string areas_field = "name";
 };
 
 template <class V>
 void describe(LasOptions& o, V& v) {
   v.option("folder", o.folder, "Folder of the tiles within the output.");
   v.option("compress", o.compress, "LAZ in place of LAS.");
+  v.option("index", o.index, "Virtual point cloud (index.vpc) and map of the tiles (index.gpkg) beside them.");
+  v.option("names", o.names, "Tiles' names: south-west corner, that corner in kilometres, or those of areas around tiles.");
+  v.option("prefix", o.prefix, "What the tiles' names begin with.");
+  v.option("areas", o.areas, "Polygons that name the tile whose centre they hold (names = areas): any vector file.");
+  v.option("areas_field", o.areas_field, "Field of the polygons with the name.");
   describe(static_cast<PointFields&>(o), v);
+  v.check((o.names == TileNames::areas) == !o.areas.empty(), "areas name a file where names = areas, and only there");
+  v.check(o.prefix.find('/') == std::string::npos, "a prefix is not a folder");
 }
 
 struct TileFindings {
@@ -37,16 +67,68 @@ void describe(const TileFindings& r, V& v) {
   v.result("tiles", r.tiles, core::plain().in_summary(), "Tiles that were written.");
 }
 
-std::string las_name(const Context& context, TileKey key, const LasOptions& o) {
-  return context.label(key) + (o.compress ? ".laz" : ".las");
+constexpr double kilometre = 1000.0;
+
+/// Whole kilometres, or polygons that can be read.
+void check_names(const Context& context, const LasOptions& o) {
+  if (o.names == TileNames::kilometre && (context.unit != 1.0 || std::fmod(context.tile_side, kilometre) != 0.0))
+    throw core::usage_error("tiles of " + core::format_number(context.tile_side) + " m cannot be named by whole kilometres", "writers.las.names",
+                            "choose run.tile = \"1 km\" and a CRS in metres, or names = \"corner\"");
+  if (o.names == TileNames::areas) io::NamedAreas(o.areas, o.areas_field, context.product_crs);
 }
 
-void write_las(TileJob& job, const Context& context, const LasOptions& options, RunCache& cache) {
-  write_points(job, context, options, cache, context.output / options.folder / las_name(context, job.key, options));
+std::string las_name(const Context& context, TileKey key, const LasOptions& o, RunCache& cache) {
+  const Box box = context.box_of(key);
+  std::string name = context.label(key);
+  if (o.names == TileNames::kilometre)
+    name = std::to_string(std::llround(box.x0 / kilometre)) + "_" + std::to_string(std::llround(box.y0 / kilometre));
+  if (o.names == TileNames::areas) {
+    const io::NamedAreas& areas = cache.get([&] { return io::NamedAreas(o.areas, o.areas_field, context.product_crs); });
+    name = areas.at(0.5 * (box.x0 + box.x1) / context.unit, 0.5 * (box.y0 + box.y1) / context.unit);
+  }
+  return o.prefix + name + (o.compress ? ".laz" : ".las");
 }
+
+fs::path facts_file(const fs::path& folder, TileKey key) { return piece_file(folder, key, "points"); }
+
+void write_las(TileJob& job, const Context& context, const LasOptions& options, RunCache& cache) {
+  const io::TileFacts facts =
+      write_points(job, context, options, cache, context.output / options.folder / las_name(context, job.key, options, cache));
+  write_rows(facts_file(job.folder, job.key), std::vector{facts});
+}
+
+/// A CRS without a way to WGS84 has no place in a virtual point cloud.
+void write_index(const MergeJob& job, const Context& context, const std::vector<std::string>& files, const fs::path& folder,
+                 core::Tally& tally) {
+  io::TileIndex index{{}, context.product_crs, context.unit, context.vertical_unit, {}};
+  std::vector<io::TileFacts> facts;
+  for (const TileKey key : job.tiles) read_rows(facts_file(job.folder, key), facts);
+  for (size_t i = 0; i < files.size(); ++i) index.tiles.push_back({files[i], facts.at(i)});
+  const auto full = std::find_if(facts.begin(), facts.end(), [](const io::TileFacts& f) { return f.points > 0; });
+  if (full == facts.end()) return;
+  constexpr double day = 86400.0;
+  const double new_year = core::unix_of_date(std::to_string(std::max(1970, context.creation_year)) + "-01-01").value_or(0.0);
+  index.date = core::utc_text(core::from_unix(new_year + std::max(0, context.creation_day - 1) * day));
+  if (context.weekless)  // their dates are not known
+    for (io::IndexedTile& t : index.tiles) t.facts.first_time = io::TileFacts::none, t.facts.last_time = -io::TileFacts::none;
+  io::write_tile_layer(folder / "index.gpkg", index);
+  std::vector<std::string> ignored;
+  const io::LasHeader header = io::read_las_header(folder / files[static_cast<size_t>(full - facts.begin())], ignored);
+  try {
+    io::write_vpc(folder / "index.vpc", index, header);
+  } catch (const core::SystemError&) {
+    throw;
+  } catch (const core::Error& e) {
+    tally.count("index.vpc is left out: it is in WGS84", std::string(e.what()));
+  }
+}
+
 TileFindings list_las(const MergeJob& job, const Context& context, const LasOptions& o, RunCache& cache, core::Tally& tally) {
   std::vector<std::string> files;
-  for (const TileKey key : job.tiles) files.push_back(las_name(context, key, o));
+  for (const TileKey key : job.tiles) files.push_back(las_name(context, key, o, cache));
+  if (std::set<std::string>(files.begin(), files.end()).size() != files.size())
+    throw core::Error("two tiles have the same name", o.areas.string(), "choose areas of one tile each, or run.tile as large as the areas");
+  if (o.index) write_index(job, context, files, context.output / o.folder, tally);
   write_list(context.output / o.folder, files);
   count_not_carried(cache, tally);
   return {files.size()};
@@ -199,6 +281,7 @@ Entry las_writer_stage() {
                                    "LAS or LAZ tiles: points of clouds with every field as recorded, others as LAS 1.4 with extra bytes.",
                                    {.columns = {.needs = {}, .reads = all_columns()},
                                     .memory = [](const LasOptions&, const Context&) { return TileMemory{170.0}; },
+                                    .check = check_names,
                                     .products = [](const LasOptions& o) { return std::vector{o.folder}; },
                                     .is_streamed = true});
 }

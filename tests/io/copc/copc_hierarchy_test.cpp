@@ -108,8 +108,8 @@ TEST(CopcHierarchy, EveryFaultIsOneErrorThatNamesIt) {
       {"begins within another", 3, 24, 15, 4},             // longer than the gap to the next
       {"begins within another", 1, 16, 20, 8},             // in the header
       {"nodes hold", 4, 28, 77, 4},                        // other points than the header counts
-      {"there is no node 1-2-", 4, 4, 2, 4},               // x outside the level
-      {"there is no node 99-", 4, 0, 99, 4},               // level
+      {"'1-2-", 4, 4, 2, 4},               // x outside the level
+      {"'99-", 4, 0, 99, 4},               // level
       {"is listed twice", 2, 4, 0, 4},                     // the key of the entry before it
       {"has no parent", 0, 0, 9, 4},                       // the root becomes another node
       {"a page is listed twice", 2, 28, -1, 4},            // a page that is the root's: see below

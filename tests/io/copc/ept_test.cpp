@@ -90,7 +90,7 @@ TEST(Ept, WhatIsMissingOrWrongIsOneErrorThatNamesIt) {
   const OneIndex one;
   const core::Value whole = read_value_file(one.index);
   for (const Case& c : {Case{"are not LAZ files: binary", "dataType", "binary"}, Case{"ept.json says 7", "points", 7},
-                        Case{"is no number above 0", "span", 0}, Case{"are no cube", "bounds", core::Value::array()}}) {
+                        Case{"is not a number above 0", "span", 0}, Case{"are not a cube", "bounds", core::Value::array()}}) {
     one.set(one.index, c.key, c.value);
     EXPECT_NE(one.fault().find(c.expected), std::string::npos) << one.fault();
     write_text_file(one.index, to_json(whole));
@@ -104,7 +104,7 @@ TEST(Ept, WhatIsMissingOrWrongIsOneErrorThatNamesIt) {
   const std::string pages = read_text_file(page);
   for (const char* name : {"1-2-0-0", "1-0-0", "1-0-0-0-0", "a", "01-0-0-0"}) {
     one.set(page, name, 5);
-    EXPECT_NE(one.fault().find("is no node"), std::string::npos) << name << one.fault();
+    EXPECT_NE(one.fault().find("is not a node"), std::string::npos) << name << one.fault();
     write_text_file(page, pages);
   }
   one.set(page, "0-0-0-0", "many");
