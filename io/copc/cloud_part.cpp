@@ -36,7 +36,8 @@ class AreaOfNodes {
       if (!std::isfinite(east + north)) return true;
       box = {std::min(box.x0, east), std::min(box.y0, north), std::max(box.x1, east), std::max(box.y1, north)};
     }
-    const double slack = transform_ ? 0.02 * std::max(box.x1 - box.x0, box.y1 - box.y0) : 0.0;  // what a curved side reaches beyond its points
+    const double slack =
+        transform_ ? 0.02 * std::max(box.x1 - box.x0, box.y1 - box.y0) : 0.0;  // what a curved side reaches beyond its points
     box = box.grown(slack);
     return box.x1 >= area.x0 && box.x0 < area.x1 && box.y1 >= area.y0 && box.y0 < area.y1;
   }

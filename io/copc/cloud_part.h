@@ -15,8 +15,9 @@ struct CloudPart {
   std::uint64_t points = 0, unread = 0;
 };
 
-/// The nodes whose cubes reach into the map's area, on the levels that are needed for points `resolution` metres apart. The hierarchy of a COPC
-/// file is checked in any case. Throws core::Error where it is broken, and core::usage_error for a resolution where the file has no levels.
+/// The nodes whose cubes reach into the map's area, on the levels that are needed for points `resolution` metres apart. The hierarchy of a
+/// COPC file is checked in any case. Throws core::Error where it is broken, and core::usage_error for a resolution where the file has no
+/// levels.
 CloudPart part_of_cloud(const Survey& survey, const PointFile& file, const CloudMap& map, std::optional<double> resolution);
 
 }  // namespace swath::io

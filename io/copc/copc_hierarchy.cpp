@@ -22,8 +22,8 @@ using las::put;
 namespace {
 
 constexpr std::size_t info_bytes = 160, entry_bytes = 32;
-constexpr int highest_level = 30;            // cubes along a side are counted in 32 bits
-constexpr std::size_t one_page = 8192;       // entries
+constexpr int highest_level = 30;       // cubes along a side are counted in 32 bits
+constexpr std::size_t one_page = 8192;  // entries
 constexpr int page_levels = 4;
 constexpr std::int32_t is_page = -1;
 
@@ -42,7 +42,8 @@ void put_entry(std::vector<std::uint8_t>& out, const OctreeKey& k, std::uint64_t
 /// Writes the page of a node and, before it, those below.
 class PageWriter {
  public:
-  PageWriter(const std::vector<CopcNode>& nodes, std::uint64_t place) : place_(place), levels_(nodes.size() > one_page ? page_levels : highest_level) {
+  PageWriter(const std::vector<CopcNode>& nodes, std::uint64_t place)
+      : place_(place), levels_(nodes.size() > one_page ? page_levels : highest_level) {
     for (const CopcNode& n : nodes) nodes_.emplace(n.key, n);
   }
   /// Its place and size in the file.
@@ -88,7 +89,8 @@ class PageReader {
     if (!pages_.insert(at).second) broken("a page is listed twice", file_, at);
     std::vector<std::uint8_t> page(size);
     in_.seekg(static_cast<std::streamoff>(at));
-    if (!in_.read(reinterpret_cast<char*>(page.data()), static_cast<std::streamsize>(size))) throw_system_error("cannot read", file_, errno);
+    if (!in_.read(reinterpret_cast<char*>(page.data()), static_cast<std::streamsize>(size)))
+      throw_system_error("cannot read", file_, errno);
     for (std::size_t i = 0; i < size; i += entry_bytes) entry(&page[i], at + i);
   }
 
@@ -114,7 +116,9 @@ class PageReader {
  private:
   void entry(const std::uint8_t* at, std::uint64_t byte) {
     CopcNode n{{get<std::int32_t>(at), get<std::int32_t>(at + 4), get<std::int32_t>(at + 8), get<std::int32_t>(at + 12)},
-               get<std::uint64_t>(at + 16), get<std::int32_t>(at + 24), get<std::int32_t>(at + 28)};
+               get<std::uint64_t>(at + 16),
+               get<std::int32_t>(at + 24),
+               get<std::int32_t>(at + 28)};
     const OctreeKey& k = n.key;
     if (k.level < 0 || k.level > highest_level || std::min({k.x, k.y, k.z}) < 0 || std::max({k.x, k.y, k.z}) >= 1 << k.level)
       broken("'" + k.text() + "' is not a node", file_, byte);

@@ -14,8 +14,8 @@ namespace swath::io {
 
 struct CopcInfo {
   OctreeCube cube;
-  double spacing = 0.0;                     ///< between points of the root, units of the coordinates
-  std::uint64_t page = 0, page_bytes = 0;   ///< of the hierarchy's root
+  double spacing = 0.0;                      ///< between points of the root, units of the coordinates
+  std::uint64_t page = 0, page_bytes = 0;    ///< of the hierarchy's root
   double first_time = 0.0, last_time = 0.0;  ///< GPS time as stored
 };
 
@@ -32,8 +32,8 @@ LasVlr copc_info_record(const CopcInfo& info);
 /// Of a file that is COPC; nothing where it is not. Throws core::Error where the record cannot be right.
 std::optional<CopcInfo> copc_info(const LasHeader& header, const std::filesystem::path& file);
 
-/// The pages of the nodes, to be written from byte `place` on, and where their root is (`info`). A page covers `page_levels` levels below its
-/// top, where there are more nodes than one page should have.
+/// The pages of the nodes, to be written from byte `place` on, and where their root is (`info`). A page covers `page_levels` levels below
+/// its top, where there are more nodes than one page should have.
 std::vector<std::uint8_t> copc_pages(const std::vector<CopcNode>& nodes, std::uint64_t place, CopcInfo& info);
 /// All nodes with points, in the order of the file. Throws core::Error that names file and byte where pages or nodes overlap or leave the
 /// file, nodes come twice or have no parent, or do not hold as many points as the header counts.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Source: COPC Specification 1.0 (Bell, Manning, Butler 2021); ASPRS LAS Specification 1.4 R15.
-// Deviation: none. The crate copc_converter is not used: it needs rustc 1.88 where Ubuntu 24.04 has 1.75, and LAS files of all points as input.
+// Deviation: none. The crate copc_converter is not used: it needs rustc 1.88 where Ubuntu 24.04 has 1.75, and LAS files of all points as
+// input.
 #include "io/copc/copc_writer.h"
 
 #include <algorithm>
@@ -231,8 +232,7 @@ void add_bucket(const RecordBucket& bucket, const std::vector<std::uint8_t>& rec
   };
   const std::size_t length = h.record_length;
   std::vector<Place> places(bucket.points);
-  for (std::uint32_t i = 0; i < places.size(); ++i)
-    places[i] = {code_of(&records[i * length]), priority_of(&records[i * length]), i};
+  for (std::uint32_t i = 0; i < places.size(); ++i) places[i] = {code_of(&records[i * length]), priority_of(&records[i * length]), i};
   std::sort(places.begin(), places.end(), [&](const Place& a, const Place& b) {
     if (a.code != b.code) return a.code < b.code;
     if (a.priority != b.priority) return a.priority < b.priority;

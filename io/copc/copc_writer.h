@@ -23,10 +23,10 @@ struct CopcWritten {
   double spacing = 0.0;  ///< between points of the root, units of the coordinates
 };
 
-/// Writes a COPC 1.0 file: LAS 1.4, point format 6, 7 or 8, one compressed chunk per node. `header` is taken as it is but for counts, bounds,
-/// lengths and the records of LAZ and COPC; `records` are laid out as it says. Within a node points are in order of time. The bytes depend on
-/// header and points alone: not on their order, on memory or threads. The file appears whole or not at all. Throws core::Error for another
-/// point format, and where more points lie within the smallest cube than one chunk can hold.
+/// Writes a COPC 1.0 file: LAS 1.4, point format 6, 7 or 8, one compressed chunk per node. `header` is taken as it is but for counts,
+/// bounds, lengths and the records of LAZ and COPC; `records` are laid out as it says. Within a node points are in order of time. The bytes
+/// depend on header and points alone: not on their order, on memory or threads. The file appears whole or not at all. Throws core::Error
+/// for another point format, and where more points lie within the smallest cube than one chunk can hold.
 CopcWritten write_copc(const std::filesystem::path& file, LasHeader header, const RecordStream& records, const CopcWriteOptions& options,
                        const core::OnProgress& progress = core::unwatched);
 

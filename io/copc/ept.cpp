@@ -36,7 +36,8 @@ OctreeKey key_of(const std::string& text, const fs::path& file) {
     if (code != std::errc() || *part < 0 || (next != end && *next != '-')) bad_index("'" + text + "' is not a node", file);
     at = next == end ? end : next + 1;
   }
-  if (key.text() != text || key.level > 30 || std::max({key.x, key.y, key.z}) >= 1 << key.level) bad_index("'" + text + "' is not a node", file);
+  if (key.text() != text || key.level > 30 || std::max({key.x, key.y, key.z}) >= 1 << key.level)
+    bad_index("'" + text + "' is not a node", file);
   return key;
 }
 
@@ -128,11 +129,13 @@ std::vector<PointFile> ept_files(const fs::path& index, const PointFile& like) {
     f.file = like.file.parent_path() / "ept-data" / (key.text() + ".laz");
     if (f.crs.empty()) f.crs = crs_of(about);
     const fs::path file = index.parent_path() / "ept-data" / (key.text() + ".laz");
-    if (!fs::exists(file)) throw core::Error("the EPT node " + key.text() + " of " + std::to_string(n) + " points is missing", file.string(), damaged);
+    if (!fs::exists(file))
+      throw core::Error("the EPT node " + key.text() + " of " + std::to_string(n) + " points is missing", file.string(), damaged);
     sum += n;
   }
   if (sum != points.as_int())
-    bad_index("the nodes of the EPT hierarchy have " + std::to_string(sum) + " points, ept.json says " + std::to_string(points.as_int()), index);
+    bad_index("the nodes of the EPT hierarchy have " + std::to_string(sum) + " points, ept.json says " + std::to_string(points.as_int()),
+              index);
   return out;
 }
 
@@ -180,7 +183,8 @@ void expand_clouds(Survey& survey) {
   std::set<fs::path> known;
   for (const PointFile& f : out)
     if (const fs::path file = resolve(survey, f.file).lexically_normal(); !known.insert(file).second)
-      throw core::usage_error("the file is listed twice: its points would be read twice", file.string(), "see [[points]] and the lists that it names");
+      throw core::usage_error("the file is listed twice: its points would be read twice", file.string(),
+                              "see [[points]] and the lists that it names");
   survey.points = std::move(out);
 }
 

@@ -21,9 +21,9 @@ struct EptNode {
 /// Of a file ept-data/KEY.laz beside an ept.json; nothing for others.
 std::optional<EptNode> ept_node(const std::filesystem::path& file);
 
-/// The files of an EPT index (Entwine Point Tile 1.0 and 1.1, encoding laszip): one per node with points, in the order of their keys. `like`:
-/// what else the survey says of them; where it states no CRS they get that of the index. Throws core::Error, once and with the file, for an index
-/// or hierarchy that is not whole, another encoding, and a node without its file.
+/// The files of an EPT index (Entwine Point Tile 1.0 and 1.1, encoding laszip): one per node with points, in the order of their keys.
+/// `like`: what else the survey says of them; where it states no CRS they get that of the index. Throws core::Error, once and with the
+/// file, for an index or hierarchy that is not whole, another encoding, and a node without its file.
 std::vector<PointFile> ept_files(const std::filesystem::path& index, const PointFile& like);
 
 /// The files that a virtual point cloud (.vpc: a STAC ItemCollection) lists. Throws core::Error for a file that is not there or not local.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Source: the octrees of EPT and COPC leave the choice of each level's points to the writer. Here priorities are nested: the point that stands
-// for a cell stands for the smaller cell around it, too, so that levels follow from sorting once, without passing points up or down.
+// Source: the octrees of EPT and COPC leave the choice of each level's points to the writer. Here priorities are nested: the point that
+// stands for a cell stands for the smaller cell around it, too, so that levels follow from sorting once, without passing points up or down.
 // Deviation: none of COPC 1.0. Cells at the deepest level are 2^-21 of the cube's side; points closer than that share the deepest node.
 #include "io/copc/octree.h"
 
@@ -49,8 +49,9 @@ class OctreeVisit {
       std::size_t at = begin;
       const int shift = code_bits - 3 * (key.level + 1);
       for (int octant = 0; octant < 8; ++octant) {
-        const auto last = std::partition_point(codes_.begin() + static_cast<std::ptrdiff_t>(at), codes_.begin() + static_cast<std::ptrdiff_t>(end),
-                                               [&](std::uint64_t c) { return static_cast<int>(c >> shift & 7u) <= octant; });
+        const auto last =
+            std::partition_point(codes_.begin() + static_cast<std::ptrdiff_t>(at), codes_.begin() + static_cast<std::ptrdiff_t>(end),
+                                 [&](std::uint64_t c) { return static_cast<int>(c >> shift & 7u) <= octant; });
         const auto next = static_cast<std::size_t>(last - codes_.begin());
         if (next > at) has_children = visit(key.child(octant), at, next) || has_children;
         at = next;

@@ -36,7 +36,7 @@ struct OctreeCube {
 };
 
 namespace octree {
-constexpr int cell_bits = 8;   ///< a node has 2^8 cells along its side and at most one point of its level in each
+constexpr int cell_bits = 8;    ///< a node has 2^8 cells along its side and at most one point of its level in each
 constexpr int depth_bits = 21;  ///< cells along the root's side at the deepest level: 2^21, three times 21 bits are one number
 constexpr int max_level = depth_bits - cell_bits;
 constexpr std::uint64_t leaf_points = 100000;  ///< a cube of as many points or fewer is not divided
@@ -50,14 +50,15 @@ OctreeKey octree_key(std::uint64_t code, int level);
 
 /// Level of each point. In every cell of a level the point with the lowest priority stands for the others in it, on this level or above;
 /// a point's level is the first on which it does so. That depends on the points within the cell alone: any part of a cloud cut along
-/// nodes of level `cell_bits` or above gets the levels that it has in the whole. `codes` ascend; where priorities are equal the first counts.
+/// nodes of level `cell_bits` or above gets the levels that it has in the whole. `codes` ascend; where priorities are equal the first
+/// counts.
 std::vector<std::uint8_t> octree_levels(std::span<const std::uint64_t> codes, std::span<const std::uint64_t> priorities);
 
 /// Points of a node: their numbers, ascending. May be empty where a node has children alone.
 using OnNode = std::function<void(const OctreeKey&, std::vector<std::uint32_t>&)>;
 
-/// Calls `on_node` for each node at or below `top` that has points or children with points, children first. Points whose level is above that
-/// of `top` are left out. A cube of at most `leaf_points` keeps what its levels above do not have.
+/// Calls `on_node` for each node at or below `top` that has points or children with points, children first. Points whose level is above
+/// that of `top` are left out. A cube of at most `leaf_points` keeps what its levels above do not have.
 void visit_octree(const OctreeKey& top, std::span<const std::uint64_t> codes, std::span<const std::uint8_t> levels, const OnNode& on_node);
 
 }  // namespace swath::io

@@ -67,8 +67,8 @@ void RecordBuckets::choose(const OctreeKey& key, Cubes cubes, std::uint64_t most
   }
   const int shift = 3 * (octree::cell_bits - key.level - 1);
   for (int octant = 0; octant < 8; ++octant) {
-    const auto next = std::partition_point(cubes.begin(), cubes.end(),
-                                           [&](const auto& c) { return static_cast<int>(c.first >> shift & 7u) <= octant; });
+    const auto next =
+        std::partition_point(cubes.begin(), cubes.end(), [&](const auto& c) { return static_cast<int>(c.first >> shift & 7u) <= octant; });
     const auto n = static_cast<std::size_t>(next - cubes.begin());
     choose(key.child(octant), cubes.first(n), most);
     cubes = cubes.subspan(n);

@@ -20,16 +20,16 @@ using CodeOf = std::function<std::uint64_t(const std::uint8_t*)>;
 
 /// A cube with all of its points.
 struct RecordBucket {
-  OctreeKey key;  ///< on level `octree::cell_bits` or above
+  OctreeKey key;                        ///< on level `octree::cell_bits` or above
   std::uint64_t points = 0, first = 0;  ///< number of its first record in the file
 };
 
-/// Goes through the records twice: counts them by cubes and writes those of one cube after the other into a file in `folder`, which goes with
-/// this object. Cubes hold `most` points or fewer where those of level `octree::cell_bits` do; they come in the order of the curve.
+/// Goes through the records twice: counts them by cubes and writes those of one cube after the other into a file in `folder`, which goes
+/// with this object. Cubes hold `most` points or fewer where those of level `octree::cell_bits` do; they come in the order of the curve.
 class RecordBuckets {
  public:
-  RecordBuckets(const std::filesystem::path& folder, std::size_t record_length, std::uint64_t most, double memory, const RecordStream& records,
-                const CodeOf& code_of);
+  RecordBuckets(const std::filesystem::path& folder, std::size_t record_length, std::uint64_t most, double memory,
+                const RecordStream& records, const CodeOf& code_of);
   ~RecordBuckets();
   RecordBuckets(const RecordBuckets&) = delete;
   RecordBuckets& operator=(const RecordBuckets&) = delete;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Source: STAC Specification 1.0.0 (Item), STAC extensions pointcloud 1.0.0 and projection 1.1.0, laid out as QGIS and PDAL wrench read .vpc files.
-// Deviation: the footprint in WGS84 is the box's outline with 8 points a side, whose sides are straight there.
+// Source: STAC Specification 1.0.0 (Item), STAC extensions pointcloud 1.0.0 and projection 1.1.0, laid out as QGIS and PDAL wrench read
+// .vpc files. Deviation: the footprint in WGS84 is the box's outline with 8 points a side, whose sides are straight there.
 #include "io/copc/tile_index.h"
 
 #include <algorithm>
@@ -47,7 +47,8 @@ Value schema_of(const LasHeader& h) {
   const LasLayout l = *las_layout(h.point_format);
   for (const char* axis : {"X", "Y", "Z"}) add(axis, 8, "floating");
   add("Intensity", 2, "unsigned");
-  for (const char* name : {"ReturnNumber", "NumberOfReturns", "ScanDirectionFlag", "EdgeOfFlightLine", "Classification"}) add(name, 1, "unsigned");
+  for (const char* name : {"ReturnNumber", "NumberOfReturns", "ScanDirectionFlag", "EdgeOfFlightLine", "Classification"})
+    add(name, 1, "unsigned");
   add("ScanAngleRank", 4, "floating");
   add("UserData", 1, "unsigned");
   add("PointSourceId", 2, "unsigned");
@@ -77,7 +78,8 @@ Value classes_of(const TileFacts& f) {
 
 bool has_times(const TileFacts& f) { return f.first_time <= f.last_time; }
 
-Value item_of(const IndexedTile& tile, const TileIndex& index, const core::Crs& crs, const core::Transform& to_wgs84, const LasHeader& header) {
+Value item_of(const IndexedTile& tile, const TileIndex& index, const core::Crs& crs, const core::Transform& to_wgs84,
+              const LasHeader& header) {
   constexpr int steps = 8;
   const TileFacts& f = tile.facts;
   Value item = Value::object();
@@ -99,7 +101,8 @@ Value item_of(const IndexedTile& tile, const TileIndex& index, const core::Crs& 
   item["bbox"] = array_of({*west, *south, *east, *north});
   Value& p = item["properties"];
   p["datetime"] = has_times(f) ? core::utc_text(core::GpsTime(f.first_time)) : index.date;
-  if (has_times(f)) p["start_datetime"] = core::utc_text(core::GpsTime(f.first_time)), p["end_datetime"] = core::utc_text(core::GpsTime(f.last_time));
+  if (has_times(f))
+    p["start_datetime"] = core::utc_text(core::GpsTime(f.first_time)), p["end_datetime"] = core::utc_text(core::GpsTime(f.last_time));
   p["pc:count"] = f.points;
   p["pc:type"] = "lidar";
   p["pc:encoding"] = header.compressed ? "application/vnd.laszip" : "application/vnd.las";
@@ -135,7 +138,8 @@ void TileFactsOf::add(const core::Block& b) {
     cells_.insert(cell(0) << 32 | (cell(1) & 0xffffffffu));
     if (!b.classification.empty()) ++f.classes[b.classification[i]];
     if (!b.return_number.empty()) f.first_returns += b.return_number[i] == 1;
-    if (!b.time.empty() && b.time[i] > 0.0) f.first_time = std::min(f.first_time, b.time[i]), f.last_time = std::max(f.last_time, b.time[i]);
+    if (!b.time.empty() && b.time[i] > 0.0)
+      f.first_time = std::min(f.first_time, b.time[i]), f.last_time = std::max(f.last_time, b.time[i]);
   }
 }
 
@@ -158,7 +162,12 @@ void write_vpc(const std::filesystem::path& file, const TileIndex& index, const 
 }
 
 void write_tile_layer(const std::filesystem::path& file, const TileIndex& index) {
-  LineLayer layer{"tiles", "Tiles of the point cloud", {"points", "first_returns", "points_per_m2", "lowest", "highest"}, {}, {"first_time", "last_time", "classes"}, true};
+  LineLayer layer{"tiles",
+                  "Tiles of the point cloud",
+                  {"points", "first_returns", "points_per_m2", "lowest", "highest"},
+                  {},
+                  {"first_time", "last_time", "classes"},
+                  true};
   for (const IndexedTile& tile : index.tiles) {
     const TileFacts& f = tile.facts;
     if (f.points == 0) continue;
@@ -168,9 +177,11 @@ void write_tile_layer(const std::filesystem::path& file, const TileIndex& index)
     for (int c = 0; c < 256; ++c)
       if (f.classes[c] > 0) classes += (classes.empty() ? "" : ", ") + std::to_string(c) + ": " + std::to_string(f.classes[c]);
     const auto time = [&](double t) { return has_times(f) ? core::utc_text(core::GpsTime(t)) : std::string(); };
-    layer.lines.push_back({tile.name, x, y,
-                           {static_cast<double>(f.points), static_cast<double>(f.first_returns), f.density(), f.low[2] / index.vertical_unit,
-                            f.high[2] / index.vertical_unit},
+    layer.lines.push_back({tile.name,
+                           x,
+                           y,
+                           {static_cast<double>(f.points), static_cast<double>(f.first_returns), f.density(),
+                            f.low[2] / index.vertical_unit, f.high[2] / index.vertical_unit},
                            {time(f.first_time), time(f.last_time), classes}});
   }
   write_line_layer(file, layer, index.crs);

@@ -18,7 +18,7 @@ namespace swath::io {
 /// What is known of a tile's points, gathered block by block.
 struct TileFacts {
   static constexpr double none = std::numeric_limits<double>::infinity();
-  std::uint64_t points = 0, first_returns = 0, cells = 0;  ///< cells of `cell` metres with a point
+  std::uint64_t points = 0, first_returns = 0, cells = 0;               ///< cells of `cell` metres with a point
   double low[3] = {none, none, none}, high[3] = {-none, -none, -none};  ///< map metres
   double first_time = none, last_time = -none;                          ///< GPS time, s; infinite where unknown
   std::uint64_t classes[256] = {};
@@ -51,11 +51,12 @@ struct TileIndex {
   std::string date;                        ///< "2024-06-07T00:00:00Z", of tiles whose times are unknown
 };
 
-/// A STAC 1.0 ItemCollection with the extensions pointcloud and projection: per tile its box in WGS84 and in the CRS, times, number, density,
-/// heights and classes, and the fields of `header` (pc:schemas). Throws core::Error where the CRS has no way to WGS84.
+/// A STAC 1.0 ItemCollection with the extensions pointcloud and projection: per tile its box in WGS84 and in the CRS, times, number,
+/// density, heights and classes, and the fields of `header` (pc:schemas). Throws core::Error where the CRS has no way to WGS84.
 void write_vpc(const std::filesystem::path& file, const TileIndex& index, const LasHeader& header);
 
-/// Layer `tiles` of a GeoPackage: the box of each tile's points, with number, first returns, density, heights, times and classes ("2: 1200, 5: 88").
+/// Layer `tiles` of a GeoPackage: the box of each tile's points, with number, first returns, density, heights, times and classes ("2: 1200,
+/// 5: 88").
 void write_tile_layer(const std::filesystem::path& file, const TileIndex& index);
 
 }  // namespace swath::io

@@ -35,7 +35,8 @@ bool has_weekless_times(const Survey& survey);
 /// Streams a point cloud in map coordinates, converted to the CRS and metres of the run.
 class CloudSource {
  public:
-  /// `cloud`: number in the survey's points; `rim`: largest coordinates of the survey's files; `extent`: of this one; `part`: of its points.
+  /// `cloud`: number in the survey's points; `rim`: largest coordinates of the survey's files; `extent`: of this one; `part`: of its
+  /// points.
   CloudSource(const Survey& survey, size_t cloud, const CloudMap& map, const Eigen::Vector2d& rim, const CloudExtent& extent,
               LasPart part = {});
   /// False at the end.

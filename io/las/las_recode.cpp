@@ -29,7 +29,8 @@ const LasExtra* own_extra(const std::string& name) {
 }
 
 bool is_number_of_one_name(const std::vector<LasExtra>& extras, const LasExtra& e) {
-  return e.type >= 1 && e.type <= 10 && std::count_if(extras.begin(), extras.end(), [&](const LasExtra& x) { return x.name == e.name; }) == 1;
+  return e.type >= 1 && e.type <= 10 &&
+         std::count_if(extras.begin(), extras.end(), [&](const LasExtra& x) { return x.name == e.name; }) == 1;
 }
 
 }  // namespace
@@ -77,7 +78,8 @@ LasRecoder::LasRecoder(const LasHeader& from, const LasHeader& to, std::string w
 std::span<const std::uint8_t> LasRecoder::operator()(std::span<const std::uint8_t> records) {
   if (other_.empty()) return records;
   decode_las_points(records, from_, in_);
-  const std::size_t n = in_.size(), wide = static_cast<std::size_t>(from_.extra_bytes()), wide_out = static_cast<std::size_t>(to_.extra_bytes());
+  const std::size_t n = in_.size(), wide = static_cast<std::size_t>(from_.extra_bytes()),
+                    wide_out = static_cast<std::size_t>(to_.extra_bytes());
   out_ = in_;
   out_.extra.assign(n * wide_out, 0);
   std::size_t at = 0, at_out = 0;

@@ -41,6 +41,7 @@ class LasRecoder {
 };
 
 /// Calls `f` with the records of a LAS file that is not compressed, some at a time.
-void each_las_records(const std::filesystem::path& file, const LasHeader& header, const std::function<void(std::span<const std::uint8_t>)>& f);
+void each_las_records(const std::filesystem::path& file, const LasHeader& header,
+                      const std::function<void(std::span<const std::uint8_t>)>& f);
 
 }  // namespace swath::io

@@ -26,7 +26,8 @@ void write_line_layer(const std::filesystem::path& file, const LineLayer& what, 
   srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   const std::string description = "DESCRIPTION=" + what.about;
   const char* const options[] = {"GEOMETRY_NAME=geom", "FID=fid", "SPATIAL_INDEX=YES", description.c_str(), nullptr};
-  OGRLayer* layer = set->CreateLayer(what.name.c_str(), facts.empty ? nullptr : &srs, what.are_areas ? wkbPolygon : wkbLineString, const_cast<char**>(options));
+  OGRLayer* layer = set->CreateLayer(what.name.c_str(), facts.empty ? nullptr : &srs, what.are_areas ? wkbPolygon : wkbLineString,
+                                     const_cast<char**>(options));
   if (!layer) messages.fail_writing(file);
   OGRFieldDefn name("name", OFTString);
   if (layer->CreateField(&name) != OGRERR_NONE) messages.fail_writing(file);

@@ -23,8 +23,8 @@ struct LineLayer {
   bool are_areas = false;                  ///< closed lines around Polygons
 };
 
-/// GeoPackage 1.2, LineStrings or Polygons in the horizontal part of the CRS. Equal layers give equal bytes: the time stamp that the format wants is a
-/// constant, 2000-01-01. Throws core::Error: unknown CRS, file not writable, disk full; nothing half-written stays.
+/// GeoPackage 1.2, LineStrings or Polygons in the horizontal part of the CRS. Equal layers give equal bytes: the time stamp that the format
+/// wants is a constant, 2000-01-01. Throws core::Error: unknown CRS, file not writable, disk full; nothing half-written stays.
 void write_line_layer(const std::filesystem::path& file, const LineLayer& layer, const std::string& crs);
 
 }  // namespace swath::io

@@ -74,7 +74,9 @@ const std::string& NamedAreas::at(double x, double y) const {
   const auto place = [&] { return core::format_number(x) + ", " + core::format_number(y); };
   for (const Area& a : areas_) {
     if (!a.holds(x, y)) continue;
-    if (found) throw core::Error("the areas '" + found->name + "' and '" + a.name + "' both hold the place " + place(), file_.string(), "areas must not overlap");
+    if (found)
+      throw core::Error("the areas '" + found->name + "' and '" + a.name + "' both hold the place " + place(), file_.string(),
+                        "areas must not overlap");
     found = &a;
   }
   if (!found) throw core::Error("no area holds the place " + place(), file_.string(), "areas must cover the survey, one per tile");

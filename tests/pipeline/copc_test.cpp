@@ -2,9 +2,11 @@
 // COPC, EPT and virtual point clouds through whole runs.
 #include <algorithm>
 #include <fstream>
+#include <tuple>
 
 #include "core/error.h"
 #include "io/text/value_file.h"
+#include "io/vector/line_layer.h"
 #include "pipeline/run.h"
 #include "tests/io/copc/copc_sample.h"
 #include "tests/world/support.h"
@@ -81,7 +83,8 @@ TEST_F(CopcRun, TheFileHasEveryFieldOfTheCloudWhateverTheTilesAndThreads) {
   const std::string stages = stages_of("", "writers.copc");
   const fs::path out = run_on(folder.path(), "a.laz", stages, "out");
   EXPECT_EQ(records_in(out / "points.copc.laz"), records_in(folder / "a.laz"));
-  EXPECT_TRUE(bytes_in(out / "points.copc.laz") == bytes_in(run_on(folder.path(), "a.laz", stages, "out1", "400 m", 1) / "points.copc.laz"));
+  EXPECT_TRUE(bytes_in(out / "points.copc.laz") ==
+              bytes_in(run_on(folder.path(), "a.laz", stages, "out1", "400 m", 1) / "points.copc.laz"));
   EXPECT_TRUE(bytes_in(out / "points.copc.laz") == bytes_in(run_on(folder.path(), "a.laz", stages, "out2", "2 km") / "points.copc.laz"));
   const core::Value report = io::read_value_file(out / "report.json");
   EXPECT_NE(io::to_json(report).find("\"points.copc.laz\""), std::string::npos);
@@ -135,13 +138,38 @@ TEST_F(CopcRun, CopcEptAndVirtualCloudsInEqualLasIn) {
   EXPECT_EQ(records_in(run_on(folder.path(), "a.vpc", stages, "of_vpc") / "points"), of_las);
 }
 
+TEST_F(CopcRun, TilesAreListedForViewersAndMapsAndNamedByKilometresOrAreas) {
+  const std::string by_kilometre = stages_of("", "writers.las", "names = \"kilometre\"\nprefix = \"als_\"\n");
+  const fs::path out = run_on(folder.path(), "a.laz", by_kilometre, "out", "1 km");
+  EXPECT_TRUE(fs::exists(out / "points" / "als_500_5400.laz"));
+  EXPECT_TRUE(fs::exists(out / "points" / "als_499_5399.laz"));
+  EXPECT_TRUE(fs::exists(out / "points" / "index.gpkg"));
+  const std::vector<std::string> records = records_in(folder / "a.laz");
+  EXPECT_EQ(records_in(run_on(folder.path(), "out/points/index.vpc", stages_of("", "writers.las"), "again") / "points"), records);
+  EXPECT_THROW(run_on(folder.path(), "a.laz", by_kilometre, "out400", "400 m"), core::Error);
+
+  io::LineLayer sheets{"sheets", "", {}, {}, {}, true};
+  for (const auto& [name, x, y] :
+       {std::tuple("north-east", 5e5, 54e5), {"north-west", 499e3, 54e5}, {"south-east", 5e5, 5399e3}, {"south-west", 499e3, 5399e3}})
+    sheets.lines.push_back({name, {x, x + 1e3, x + 1e3, x, x}, {y, y, y + 1e3, y + 1e3, y}, {}});
+  io::write_line_layer(folder / "sheets.gpkg", sheets, "EPSG:25832");
+  const auto by_areas = [&](const std::string& more) {
+    return stages_of("", "writers.las", "names = \"areas\"\nareas = \"" + (folder / "sheets.gpkg").string() + "\"\n" + more);
+  };
+  EXPECT_TRUE(fs::exists(run_on(folder.path(), "a.laz", by_areas(""), "named", "1 km") / "points" / "south-west.laz"));
+  EXPECT_THROW(run_on(folder.path(), "a.laz", by_areas(""), "named400", "400 m"), core::Error) << "several tiles in one area";
+  EXPECT_THROW(run_on(folder.path(), "a.laz", by_areas("areas_field = \"sheet\"\n"), "field", "1 km"), core::Error);
+  EXPECT_THROW(run_on(folder.path(), "a.laz", stages_of("", "writers.las", "names = \"areas\"\n"), "none"), core::Error);
+  const fs::path bare = run_on(folder.path(), "a.laz", stages_of("", "writers.las", "index = false\n"), "bare");
+  EXPECT_FALSE(fs::exists(bare / "points" / "index.vpc") || fs::exists(bare / "points" / "index.gpkg"));
+}
+
 TEST_F(CopcRun, BoundsGiveThePointsWithinThemFromEveryKindOfFile) {
   const std::string stages = stages_of("bounds = [500100, 5400050, 500300, 5400400]\n", "writers.las");
   const fs::path of_las = run_on(folder.path(), "a.laz", stages, "las");
   const std::vector<std::string> records = records_in(of_las / "points");
   std::size_t inside = 0;
-  for (std::size_t i = 0; i < points; ++i)
-    inside += all.x[i] >= 500100 && all.x[i] < 500300 && all.y[i] >= 5400050 && all.y[i] < 5400400;
+  for (std::size_t i = 0; i < points; ++i) inside += all.x[i] >= 500100 && all.x[i] < 500300 && all.y[i] >= 5400050 && all.y[i] < 5400400;
   EXPECT_EQ(records.size(), inside);
   const fs::path of_copc = run_on(folder.path(), "a.copc.laz", stages, "copc");
   EXPECT_EQ(records_in(of_copc / "points"), records);

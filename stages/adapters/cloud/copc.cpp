@@ -181,7 +181,8 @@ CopcFindings write_copc_files(const MergeJob& job, const Context& context, const
 
 Entry copc_writer_stage() {
   return tile<keep_records, write_copc_files>(
-      "writers.copc", "Cloud Optimized Point Cloud: one LAZ file of the survey, or one per block, with an octree for viewers and part reads.",
+      "writers.copc",
+      "Cloud Optimized Point Cloud: one LAZ file of the survey, or one per block, with an octree for viewers and part reads.",
       {.columns = {.needs = {}, .reads = all_columns()},
        .memory = [](const CopcOptions&, const Context&) { return TileMemory{170.0}; },
        .products = [](const CopcOptions& o) { return std::vector{o.block ? o.folder : o.file}; },

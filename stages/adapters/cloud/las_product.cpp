@@ -42,9 +42,8 @@ LasRun las_run(const Context& context, const PointFields& fields) {
   std::vector<io::LasSource> files = io::cloud_sources(context.survey, cloud_map(context));
   const auto all_of = [&](const auto& is) { return std::all_of(files.begin(), files.end(), is); };
   const bool same_places = all_of([](const io::LasSource& s) { return s.same_places; });
-  const bool same_steps = all_of([&](const io::LasSource& s) {
-    return s.header.offset == files[0].header.offset && s.header.scale == files[0].header.scale;
-  });
+  const bool same_steps =
+      all_of([&](const io::LasSource& s) { return s.header.offset == files[0].header.offset && s.header.scale == files[0].header.scale; });
   const bool all_extended = all_of([](const io::LasSource& s) { return s.header.point_format >= 6; });
   const bool all_wkt = all_of([](const io::LasSource& s) { return (s.header.global_encoding & io::las_encoding::wkt) != 0; });
   const bool keeps = io::keeps_crs(files, context.crs) && (all_wkt || !fields.only_copc);

@@ -38,9 +38,8 @@ void describe(PointFields& o, V& v) {
 /// What stages that write points read: all that there is.
 core::ColumnSet all_columns();
 
-/// Writes a tile's points: those of clouds with every field as recorded, others as LAS 1.4 with extra bytes. Tiles differ in the definitions
-/// of extra fields alone (io::common_extras).
-/// Returns what is known of them.
+/// Writes a tile's points: those of clouds with every field as recorded, others as LAS 1.4 with extra bytes. Tiles differ in the
+/// definitions of extra fields alone (io::common_extras). Returns what is known of them.
 io::TileFacts write_points(TileJob& job, const Context& context, const PointFields& fields, RunCache& cache,
                            const std::filesystem::path& file);
 

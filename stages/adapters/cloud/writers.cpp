@@ -72,8 +72,8 @@ constexpr double kilometre = 1000.0;
 /// Whole kilometres, or polygons that can be read.
 void check_names(const Context& context, const LasOptions& o) {
   if (o.names == TileNames::kilometre && (context.unit != 1.0 || std::fmod(context.tile_side, kilometre) != 0.0))
-    throw core::usage_error("tiles of " + core::format_number(context.tile_side) + " m cannot be named by whole kilometres", "writers.las.names",
-                            "choose run.tile = \"1 km\" and a CRS in metres, or names = \"corner\"");
+    throw core::usage_error("tiles of " + core::format_number(context.tile_side) + " m cannot be named by whole kilometres",
+                            "writers.las.names", "choose run.tile = \"1 km\" and a CRS in metres, or names = \"corner\"");
   if (o.names == TileNames::areas) io::NamedAreas(o.areas, o.areas_field, context.product_crs);
 }
 

@@ -21,7 +21,8 @@ std::vector<CopcNode> made_nodes(int levels) {
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (nodes[i].key.level + 1 < levels)
       for (int octant = 0; octant < 8; ++octant)
-        nodes.push_back({nodes[i].key.child(octant), points_at + 8 + 10 * nodes.size(), 10, static_cast<std::int32_t>(nodes.size() % 5 + 1), 0});
+        nodes.push_back(
+            {nodes[i].key.child(octant), points_at + 8 + 10 * nodes.size(), 10, static_cast<std::int32_t>(nodes.size() % 5 + 1), 0});
   return nodes;
 }
 
@@ -102,17 +103,17 @@ TEST(CopcHierarchy, EveryFaultIsOneErrorThatNamesIt) {
     std::size_t bytes;
   };
   const std::vector<Case> cases{
-      {"does not fit the file", 3, 16, 1 << 30, 8},        // offset
-      {"does not fit the file", 3, 24, -5, 4},             // size
-      {"does not fit the file", 3, 28, -7, 4},             // points
-      {"begins within another", 3, 24, 15, 4},             // longer than the gap to the next
-      {"begins within another", 1, 16, 20, 8},             // in the header
-      {"nodes hold", 4, 28, 77, 4},                        // other points than the header counts
-      {"'1-2-", 4, 4, 2, 4},               // x outside the level
-      {"'99-", 4, 0, 99, 4},               // level
-      {"is listed twice", 2, 4, 0, 4},                     // the key of the entry before it
-      {"has no parent", 0, 0, 9, 4},                       // the root becomes another node
-      {"a page is listed twice", 2, 28, -1, 4},            // a page that is the root's: see below
+      {"does not fit the file", 3, 16, 1 << 30, 8},  // offset
+      {"does not fit the file", 3, 24, -5, 4},       // size
+      {"does not fit the file", 3, 28, -7, 4},       // points
+      {"begins within another", 3, 24, 15, 4},       // longer than the gap to the next
+      {"begins within another", 1, 16, 20, 8},       // in the header
+      {"nodes hold", 4, 28, 77, 4},                  // other points than the header counts
+      {"'1-2-", 4, 4, 2, 4},                         // x outside the level
+      {"'99-", 4, 0, 99, 4},                         // level
+      {"is listed twice", 2, 4, 0, 4},               // the key of the entry before it
+      {"has no parent", 0, 0, 9, 4},                 // the root becomes another node
+      {"a page is listed twice", 2, 28, -1, 4},      // a page that is the root's: see below
   };
   for (const Case& c : cases) {
     const Written w = write_pages(folder, made_nodes(2));

@@ -32,7 +32,8 @@ TileIndex made_index() {
   a.add(made_block(500000.0));
   b.add(made_block(500500.0));
   b.add(made_block(500520.0));
-  TileIndex index{{{"a.laz", a.facts()}, {"b.laz", b.facts()}, {"c.laz", empty.facts()}}, "EPSG:25832+7837", 1.0, 1.0, "2026-01-02T00:00:00Z"};
+  TileIndex index{
+      {{"a.laz", a.facts()}, {"b.laz", b.facts()}, {"c.laz", empty.facts()}}, "EPSG:25832+7837", 1.0, 1.0, "2026-01-02T00:00:00Z"};
   return index;
 }
 

@@ -265,9 +265,20 @@ TEST(LasReader, AutzenEqualsItsTwinAndComesOutAgain) {
 TEST(LasReader, ColumnsThatNobodyUsesAreLeftOutAndTheOthersAreAsInTheFile) {
   const test::TemporaryFolder folder;
   using core::Column;
-  const core::ColumnSet unused{Column::time, Column::intensity, Column::scan_angle, Column::user_data, Column::red,
-                               Column::green, Column::blue,     Column::range,      Column::incidence, Column::sigma_h,
-                               Column::sigma_v, Column::height, Column::ground_probability, Column::source};
+  const core::ColumnSet unused{Column::time,
+                               Column::intensity,
+                               Column::scan_angle,
+                               Column::user_data,
+                               Column::red,
+                               Column::green,
+                               Column::blue,
+                               Column::range,
+                               Column::incidence,
+                               Column::sigma_h,
+                               Column::sigma_v,
+                               Column::height,
+                               Column::ground_probability,
+                               Column::source};
   for (const int format : {3, 6, 7, 8, 10}) {
     LasHeader h = test::sample_header(format, 4, true);
     h.extras.push_back(test::extra_field("sigma_v", 9));

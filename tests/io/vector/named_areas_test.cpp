@@ -16,7 +16,8 @@ LineFeature square(const std::string& name, double x, double y, double side) {
 
 TEST(NamedAreas, APlaceHasTheNameOfTheAreaAroundIt) {
   const test::TemporaryFolder folder;
-  write_line_layer(folder / "a.gpkg", {"sheets", "", {}, {square("north", 0, 100, 100), square("south", 0, 0, 100)}, {}, true}, "EPSG:25832");
+  write_line_layer(folder / "a.gpkg", {"sheets", "", {}, {square("north", 0, 100, 100), square("south", 0, 0, 100)}, {}, true},
+                   "EPSG:25832");
   const NamedAreas areas(folder / "a.gpkg", "name", "EPSG:25832+7837");
   EXPECT_EQ(areas.at(50, 50), "south");
   EXPECT_EQ(areas.at(50, 150), "north");
