@@ -114,7 +114,11 @@ class Blocks {
     return {index(0), index(1)};
   }
   std::string name(TileKey key) const {
-    const auto corner = [&](int i) { return core::format_number(std::round(i * side_ / context_.unit * 1000.0) / 1000.0); };
+    const auto corner = [&](int i) {
+      const double at = i * (side_ / context_.unit);
+      const bool is_whole = at == std::round(at);  // else in thousandths, so that blocks keep names of their own
+      return is_whole ? std::to_string(std::llround(at)) : std::to_string(std::llround(at * 1000.0)) + "mm";
+    };
     return corner(key.ix) + "_" + corner(key.iy) + ".copc.laz";
   }
 
