@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Source: COPC Specification 1.0 (Bell, Manning, Butler 2021), "info VLR" and "hierarchy VLR".
+// Source: COPC Specification 1.0, "info VLR" and "hierarchy VLR".
 // Deviation: none. All pages are in one extended record.
 #include "io/copc/copc_hierarchy.h"
 

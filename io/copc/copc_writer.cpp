@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Source: COPC Specification 1.0 (Bell, Manning, Butler 2021); ASPRS LAS Specification 1.4 R15.
+// Source: COPC Specification 1.0; ASPRS LAS Specification 1.4 R15.
 // Deviation: none. The crate copc_converter is not used: it needs rustc 1.88 where Ubuntu 24.04 has 1.75, and LAS files of all points as
 // input.
 #include "io/copc/copc_writer.h"
@@ -38,7 +38,7 @@ Eigen::Vector3d place_of(const std::uint8_t* record, const LasHeader& h) {
   return raw.cwiseProduct(h.scale) + h.offset;
 }
 
-/// A number that says nothing about place or time (the finalizer of SplitMix64, Steele, Lea and Flood 2014).
+/// A number that says nothing about place or time (the finalizer of SplitMix64).
 std::uint64_t mixed(std::uint64_t v) {
   v = (v ^ v >> 30) * 0xbf58476d1ce4e5b9u;
   v = (v ^ v >> 27) * 0x94d049bb133111ebu;
