@@ -192,7 +192,7 @@ double log_likelihood(const PointFixes& fixes, size_t first, size_t end, int axi
   const auto z = [&](size_t i) { return fixes.position[i][axis]; };
   const auto r = [&](size_t i) { return white * white * fixes.covariance[i](axis, axis); };
   Eigen::Vector3d x(z(first), (z(first + 1) - z(first)) / (fixes.time[first + 1] - fixes.time[first]), 0.0);
-  Eigen::Matrix3d p = Eigen::Matrix3d::Zero(), noise;
+  Eigen::Matrix3d p = Eigen::Matrix3d::Zero(), noise = p;
   p.diagonal() << r(first), piece_velocity_variance, m.acceleration() * m.acceleration();
   double sum = 0.0, step_of_noise = 0.0;
   for (size_t i = first + 1; i < end; ++i) {
