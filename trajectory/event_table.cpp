@@ -71,8 +71,8 @@ std::string table_of(const core::EventData& events, const std::vector<EventPosit
     out += core::csv_field(events.id[i]) + "," + (events.strip[i] ? std::to_string(events.strip[i]) : "") + "," +
            core::csv_field(events.technique[i]) + "," + number(events.time[i], 7) + "," + number(map.x(), decimals) + "," +
            number(map.y(), decimals) + "," + number(map.z(), 4) + "," + numbers(e.position, 4) + "," + numbers(e.velocity, 4) + "," +
-           numbers(e.sigma, 4) + "," + numbers(e.velocity_sigma, 4) + "," + number(along, 4) + "," +
-           std::to_string(e.fixes) + "," + flags_of(e, events.doubtful[i]) + "\n";
+           numbers(e.sigma, 4) + "," + numbers(e.velocity_sigma, 4) + "," + number(along, 4) + "," + std::to_string(e.fixes) + "," +
+           flags_of(e, events.doubtful[i]) + "\n";
   }
   return out;
 }
@@ -133,8 +133,7 @@ EventFigures figures_of(const core::EventData& events, const PointTrack& track, 
   for (const EventPosition& e : solved)
     for (int axis = 0; axis < 3 && reached(e.reach); ++axis) sigmas[static_cast<size_t>(axis)].push_back(e.sigma[axis]);
   r.with_position = sigmas[0].size();
-  if (r.with_position > 0)
-    r.sigma = Eigen::Vector3d(core::median(sigmas[0]), core::median(sigmas[1]), core::median(sigmas[2]));
+  if (r.with_position > 0) r.sigma = Eigen::Vector3d(core::median(sigmas[0]), core::median(sigmas[1]), core::median(sigmas[2]));
   return r;
 }
 

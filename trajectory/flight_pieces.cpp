@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Turbulence shakes the course over one step by a degree and more; over five seconds it does so by a tenth of that, and a turn at a bank of 5
-// degrees and 60 m/s still changes it by 4 degrees.
+// Turbulence shakes the course over one step by a degree and more; over five seconds it does so by a tenth of that, and a turn at a bank of
+// 5 degrees and 60 m/s still changes it by 4 degrees.
 #include "trajectory/flight_pieces.h"
 
 #include <algorithm>

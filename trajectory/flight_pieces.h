@@ -36,8 +36,8 @@ struct LineSpan {
 /// By the stated lines; what lies between them are turns. They cover all fixes.
 std::vector<FlightPiece> pieces_by_line(const PointFixes& fixes, const std::vector<LineSpan>& lines);
 
-/// First fixes of pieces within which the acceleration may pass for one of a single level: pieces of flight, long ones cut to about a minute,
-/// short ones joined.
+/// First fixes of pieces within which the acceleration may pass for one of a single level: pieces of flight, long ones cut to about a
+/// minute, short ones joined.
 std::vector<size_t> level_pieces(const PointFixes& fixes, const std::vector<FlightPiece>& pieces);
 
 }  // namespace swath::trajectory

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The error of an interpolator's position x is (x - s) + (s - truth), s the smoother's by the most likely motion. The first part is known; the
-// second has the smoother's covariance and is independent of it, both being functions of the same fixes.
+// The error of an interpolator's position x is (x - s) + (s - truth), s the smoother's by the most likely motion. The first part is known;
+// the second has the smoother's covariance and is independent of it, both being functions of the same fixes.
 #include "trajectory/interpolators.h"
 
 #include <algorithm>
@@ -28,8 +28,7 @@ std::string_view title_of(Interpolator i) {
 
 PointTrack track_of(PointFixes fixes, const std::vector<LineSpan>& lines, const KinematicOptions& o) {
   const double longest = longest_step(fixes, o);
-  std::vector<FlightPiece> pieces =
-      lines.empty() ? pieces_by_course(fixes, o.turn_rate.value, longest) : pieces_by_line(fixes, lines);
+  std::vector<FlightPiece> pieces = lines.empty() ? pieces_by_course(fixes, o.turn_rate.value, longest) : pieces_by_line(fixes, lines);
   MotionModel model = fit_motion(fixes, level_pieces(fixes, pieces));
   PointSmoother smoother(fixes, std::move(model));
   return {std::move(fixes), longest, std::move(pieces), std::move(smoother)};

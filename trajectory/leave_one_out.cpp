@@ -127,8 +127,9 @@ std::string LeaveOneOut::table() const {
       out += line;
     }
   }
-  out += "\nexpected: median sigma of a difference by the motion model; ratio: rms of difference over that sigma\n\n"
-         "Sigma of the differences by piece, E N H, cm; ratio of the Kalman filter\n\n";
+  out +=
+      "\nexpected: median sigma of a difference by the motion model; ratio: rms of difference over that sigma\n\n"
+      "Sigma of the differences by piece, E N H, cm; ratio of the Kalman filter\n\n";
   std::snprintf(line, sizeof line, "%-22s %6s", "", "fixes");
   out += line;
   for (const Interpolator i : interpolators) {

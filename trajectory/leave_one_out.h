@@ -15,9 +15,9 @@ namespace swath::trajectory {
 /// Of differences fix minus interpolated, per axis east, north, height; m. NaN where n is too small.
 struct DifferenceStatistics {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero(), sigma = mean, rms = mean, max_abs = mean;
-  Eigen::Vector3d median_formal = mean;   ///< median of the sigma that the interpolator itself states
+  Eigen::Vector3d median_formal = mean;    ///< median of the sigma that the interpolator itself states
   Eigen::Vector3d median_expected = mean;  ///< median sigma of the difference by the motion model and the fix's white error
-  Eigen::Vector3d ratio = mean;           ///< rms of difference / that sigma: 1 where it is true
+  Eigen::Vector3d ratio = mean;            ///< rms of difference / that sigma: 1 where it is true
 };
 
 template <class V>

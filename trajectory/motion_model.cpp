@@ -20,15 +20,15 @@ constexpr double piece_velocity_variance = 1e4;
 // Bounds of the search: from an antenna on a pillar to aerobatics; times from a tenth of a step to a minute, over which a turn lasts.
 constexpr double least_acceleration = 1e-4, greatest_acceleration = 100.0, least_time_share = 0.1, greatest_time = 60.0;
 constexpr double least_white = 0.1, greatest_white = 10.0;
-// Some of a fix's error is always slow (orbits, air, phase centres). Nothing known of its share, half of the variance is expected to be white,
-// and the logarithm of its sigma within 0.5.
+// Some of a fix's error is always slow (orbits, air, phase centres). Nothing known of its share, half of the variance is expected to be
+// white, and the logarithm of its sigma within 0.5.
 const double expected_white = -0.5 * std::log(2.0);
 constexpr double white_prior = 0.5;
 constexpr double level_grid = 1.2, time_grid = 1.0, white_grid = 0.5, posterior_grid = 0.1, closeness = 0.02;  // of logarithms
 constexpr int model_rounds = 2;
-constexpr size_t overlap = 3;            // fixes of the neighbours that settle a piece's start
-constexpr size_t enough_fixes = 4000;    // of a record's pieces, for what is one per record
-constexpr double series_below = 0.5;     // dt / time: the closed form loses digits there
+constexpr size_t overlap = 3;             // fixes of the neighbours that settle a piece's start
+constexpr size_t enough_fixes = 4000;     // of a record's pieces, for what is one per record
+constexpr double series_below = 0.5;      // dt / time: the closed form loses digits there
 constexpr double noise_tolerance = 5e-3;  // of a step: the noise of one of nearly its length serves
 
 /// What a unit impulse of the acceleration's drive makes of position, velocity and acceleration after s.
@@ -163,9 +163,7 @@ const PointMotion& MotionModel::at(double t) const {
 
 Eigen::Matrix3d MotionModel::white_of(const Eigen::Matrix3d& stated) const { return white.asDiagonal() * stated * white.asDiagonal(); }
 
-Eigen::Matrix3d MotionModel::slow_of(const Eigen::Matrix3d& stated) const {
-  return slow.asDiagonal() * stated * slow.asDiagonal();
-}
+Eigen::Matrix3d MotionModel::slow_of(const Eigen::Matrix3d& stated) const { return slow.asDiagonal() * stated * slow.asDiagonal(); }
 
 MotionModel fit_motion(const PointFixes& fixes, const std::vector<size_t>& pieces) {
   MotionModel out;

@@ -41,8 +41,9 @@ struct MotionModel {
   Eigen::Matrix3d slow_of(const Eigen::Matrix3d& stated) const;
 };
 
-/// The model under which the fixes are most probable. The correlation time is one per axis and record, the white share one for east and north
-/// and one for height, the acceleration one per axis and piece. `pieces`: first fix of each piece, rising from 0. Three fixes or more.
+/// The model under which the fixes are most probable. The correlation time is one per axis and record, the white share one for east and
+/// north and one for height, the acceleration one per axis and piece. `pieces`: first fix of each piece, rising from 0. Three fixes or
+/// more.
 MotionModel fit_motion(const PointFixes& fixes, const std::vector<size_t>& pieces);
 
 /// Logarithm of the probability of one axis's fixes [first, end), up to a constant; `white` as in MotionModel.

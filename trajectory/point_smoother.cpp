@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Source: Rauch, Tung and Striebel 1965. The smoothed covariance is in a form of sums only, (I - G F) P (I - G F)' + G (P+ + Q) G', so that it
-// stays positive.
+// Source: Rauch, Tung and Striebel 1965. The smoothed covariance is in a form of sums only, (I - G F) P (I - G F)' + G (P+ + Q) G', so that
+// it stays positive.
 #include "trajectory/point_smoother.h"
 
 #include <Eigen/Cholesky>
@@ -62,8 +62,8 @@ PointSmoother::PointSmoother(PointFixes fixes, MotionModel model) : fixes_(std::
   }
   smoothed_ = filtered_;
   for (size_t i = fixes_.size() - 1; i-- > 0;)
-    smoothed_[i] = back(filtered_[i], smoothed_[i + 1], fixes_.time[i + 1] - fixes_.time[i],
-                        model_.at(0.5 * (fixes_.time[i] + fixes_.time[i + 1])));
+    smoothed_[i] =
+        back(filtered_[i], smoothed_[i + 1], fixes_.time[i + 1] - fixes_.time[i], model_.at(0.5 * (fixes_.time[i] + fixes_.time[i + 1])));
 }
 
 PointState PointSmoother::point(const State& s, double time) {

@@ -30,7 +30,8 @@ void expect_statistics(const LeaveOneOut& ours, Interpolator method, const core:
   expect_close(s.max_abs, theirs.find("max_abs"), what + " largest");
   if (const core::Value* formal = theirs.find("median_formal_sd")) expect_close(s.median_formal, formal, what + " formal");
   if (const core::Value* first = theirs.find("first3_differences"))
-    for (size_t k = 0; k < 3; ++k) expect_close(ours.difference[static_cast<size_t>(method)][k].value, &first->items()[k], what + " difference");
+    for (size_t k = 0; k < 3; ++k)
+      expect_close(ours.difference[static_cast<size_t>(method)][k].value, &first->items()[k], what + " difference");
 }
 
 TEST(LeaveOneOut, StatisticsOfTheReference) {

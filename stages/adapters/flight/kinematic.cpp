@@ -31,7 +31,8 @@ void describe(KinematicStageOptions& o, V& v) {
   v.option("method", o.method, "Kalman filter of the window; or, to compare, line, 2nd-degree polynomial or RTS smoother.", "Jubanski2005");
   v.option("file", o.file, "Name of the table of events within the output.");
   v.option("leave_one_out", o.leave_one_out, "Write the leave-one-out test of all four methods (leave_one_out.txt, .png, .svg).");
-  v.option("rates", o.rates, core::within(0.01, 1000), "Rates in Hz to which the fixes are thinned and tested (rates.txt).", "Jubanski2005");
+  v.option("rates", o.rates, core::within(0.01, 1000), "Rates in Hz to which the fixes are thinned and tested (rates.txt).",
+           "Jubanski2005");
   describe(static_cast<trajectory::KinematicOptions&>(o), v);
 }
 
