@@ -159,7 +159,7 @@ struct LasReader::State {
   }
 };
 
-LasReader::LasReader(std::filesystem::path file, unsigned threads, LasPart part) : state_(std::make_unique<State>()) {
+LasReader::LasReader(std::filesystem::path file, unsigned threads, const LasPart& part) : state_(std::make_unique<State>()) {
   state_->file = std::move(file);
   state_->header = read_las_header(state_->file, state_->warnings);
   state_->choose(part);

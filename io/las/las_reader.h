@@ -35,7 +35,7 @@ struct LasPart {
 class LasReader {
  public:
   /// `threads` for LAZ: 1 decompresses in the caller's thread, 0 on one per processor; the result does not depend on it.
-  explicit LasReader(std::filesystem::path file, unsigned threads = 0, LasPart part = {});
+  explicit LasReader(std::filesystem::path file, unsigned threads = 0, const LasPart& part = {});
   ~LasReader();
   LasReader(LasReader&&) noexcept;
   LasReader& operator=(LasReader&&) noexcept;

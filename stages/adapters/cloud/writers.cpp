@@ -41,7 +41,7 @@ struct LasOptions : PointFields {
   bool index = true;
   TileNames names = TileNames::corner;
   std::string prefix;
-  fs::path areas;
+  std::optional<fs::path> areas;
   std::string areas_field = "name";
 };
 
@@ -55,7 +55,7 @@ void describe(LasOptions& o, V& v) {
   v.option("areas", o.areas, "Polygons that name the tile whose centre they hold (names = areas): any vector file.");
   v.option("areas_field", o.areas_field, "Field of the polygons with the name.");
   describe(static_cast<PointFields&>(o), v);
-  v.check((o.names == TileNames::areas) == !o.areas.empty(), "areas name a file where names = areas, and only there");
+  v.check((o.names == TileNames::areas) == o.areas.has_value(), "areas name a file where names = areas, and only there");
   v.check(o.prefix.find('/') == std::string::npos, "a prefix is not a folder");
 }
 
@@ -74,7 +74,7 @@ void check_names(const Context& context, const LasOptions& o) {
   if (o.names == TileNames::kilometre && (context.unit != 1.0 || std::fmod(context.tile_side, kilometre) != 0.0))
     throw core::usage_error("tiles of " + core::format_number(context.tile_side) + " m cannot be named by whole kilometres",
                             "writers.las.names", "choose run.tile = \"1 km\" and a CRS in metres, or names = \"corner\"");
-  if (o.names == TileNames::areas) io::NamedAreas(o.areas, o.areas_field, context.product_crs);
+  if (o.names == TileNames::areas) io::NamedAreas(*o.areas, o.areas_field, context.product_crs);
 }
 
 std::string las_name(const Context& context, TileKey key, const LasOptions& o, RunCache& cache) {
@@ -83,7 +83,7 @@ std::string las_name(const Context& context, TileKey key, const LasOptions& o, R
   if (o.names == TileNames::kilometre)
     name = std::to_string(std::llround(box.x0 / kilometre)) + "_" + std::to_string(std::llround(box.y0 / kilometre));
   if (o.names == TileNames::areas) {
-    const io::NamedAreas& areas = cache.get([&] { return io::NamedAreas(o.areas, o.areas_field, context.product_crs); });
+    const io::NamedAreas& areas = cache.get([&] { return io::NamedAreas(*o.areas, o.areas_field, context.product_crs); });
     name = areas.at(0.5 * (box.x0 + box.x1) / context.unit, 0.5 * (box.y0 + box.y1) / context.unit);
   }
   return o.prefix + name + (o.compress ? ".laz" : ".las");
@@ -127,7 +127,7 @@ TileFindings list_las(const MergeJob& job, const Context& context, const LasOpti
   std::vector<std::string> files;
   for (const TileKey key : job.tiles) files.push_back(las_name(context, key, o, cache));
   if (std::set<std::string>(files.begin(), files.end()).size() != files.size())
-    throw core::Error("two tiles have the same name", o.areas.string(), "choose areas of one tile each, or run.tile as large as the areas");
+    throw core::Error("two tiles have the same name", o.areas.value_or(fs::path()).string(), "choose areas of one tile each, or run.tile as large as the areas");
   if (o.index) write_index(job, context, files, context.output / o.folder, tally);
   write_list(context.output / o.folder, files);
   count_not_carried(cache, tally);
