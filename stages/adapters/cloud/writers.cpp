@@ -127,7 +127,8 @@ TileFindings list_las(const MergeJob& job, const Context& context, const LasOpti
   std::vector<std::string> files;
   for (const TileKey key : job.tiles) files.push_back(las_name(context, key, o, cache));
   if (std::set<std::string>(files.begin(), files.end()).size() != files.size())
-    throw core::Error("two tiles have the same name", o.areas.value_or(fs::path()).string(), "choose areas of one tile each, or run.tile as large as the areas");
+    throw core::Error("two tiles have the same name", o.areas.value_or(fs::path()).string(),
+                      "choose areas of one tile each, or run.tile as large as the areas");
   if (o.index) write_index(job, context, files, context.output / o.folder, tally);
   write_list(context.output / o.folder, files);
   count_not_carried(cache, tally);
