@@ -2,6 +2,7 @@
 #include "stages/registry.h"
 
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/terrain/powerlines.h"
 #include "stages/tile_filter.h"
 
 namespace swath::stages {
@@ -58,6 +59,7 @@ const std::vector<Entry>& registry() {
       intensity_stage(),
       contours_stage(),
       penetration_stage(),
+      power_lines_stage(),
       trajectory_writer_stage(),
       las_writer_stage(),
       gdal_writer_stage(),

@@ -1,53 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/vector/line_layer.h"
 
-#include <gdal_priv.h>
-#include <ogrsf_frmts.h>
-
-#include "core/error.h"
-#include "io/text/output_file.h"
-#include "io/vector/gdal_door.h"
+#include "io/vector/feature_file.h"
 
 namespace swath::io {
 
 void write_line_layer(const std::filesystem::path& file, const LineLayer& what, const std::string& crs) {
-  const CrsFacts facts = crs_facts(crs);
-  OutputFile out(file);
-  std::filesystem::remove(out.temporary());  // the driver makes only files that are not there yet
-  const GdalMessages messages;
-  const GdalSetting date{"OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z"};
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
-  if (!driver) throw core::Error("this GDAL has no GeoPackage driver", file.string());
-  const char* const creation[] = {"VERSION=1.2", nullptr};
-  Dataset set(driver->Create(out.temporary().c_str(), 0, 0, 0, GDT_Unknown, const_cast<char**>(creation)));
-  if (!set) messages.fail_writing(file);
-  OGRSpatialReference srs;
-  if (!facts.empty) srs.SetFromUserInput(facts.horizontal_wkt.c_str());
-  srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  const std::string description = "DESCRIPTION=" + what.about;
-  const char* const options[] = {"GEOMETRY_NAME=geom", "FID=fid", "SPATIAL_INDEX=YES", description.c_str(), nullptr};
-  OGRLayer* layer = set->CreateLayer(what.name.c_str(), facts.empty ? nullptr : &srs, wkbLineString, const_cast<char**>(options));
-  if (!layer) messages.fail_writing(file);
-  OGRFieldDefn name("name", OFTString);
-  if (layer->CreateField(&name) != OGRERR_NONE) messages.fail_writing(file);
-  for (const std::string& f : what.fields) {
-    OGRFieldDefn field(f.c_str(), OFTReal);
-    if (layer->CreateField(&field) != OGRERR_NONE) messages.fail_writing(file);
-  }
-  if (set->StartTransaction() != OGRERR_NONE) messages.fail_writing(file);
+  FeatureLayer layer{what.name, what.about, FeatureShape::line, true, {{"name", std::string()}}, {}};
+  for (const std::string& f : what.fields) layer.fields.push_back({f, 0.0});
   for (const LineFeature& l : what.lines) {
-    OGRFeature feature(layer->GetLayerDefn());
-    feature.SetField(0, l.name.c_str());
-    for (size_t k = 0; k < l.numbers.size(); ++k) feature.SetField(static_cast<int>(k) + 1, l.numbers[k]);
-    OGRLineString shape;
-    shape.setPoints(static_cast<int>(l.x.size()), l.x.data(), l.y.data());
-    feature.SetGeometry(&shape);
-    if (layer->CreateFeature(&feature) != OGRERR_NONE) messages.fail_writing(file);
+    Feature feature;
+    for (size_t k = 0; k < l.x.size(); ++k) feature.places.emplace_back(l.x[k], l.y[k], 0.0);
+    feature.values.emplace_back(l.name);
+    for (const double number : l.numbers) feature.values.emplace_back(number);
+    layer.features.push_back(std::move(feature));
   }
-  if (set->CommitTransaction() != OGRERR_NONE) messages.fail_writing(file);
-  set.reset();
-  messages.check_written(file);
-  out.commit();
+  write_gpkg(file, {layer}, crs);
 }
 
 }  // namespace swath::io
