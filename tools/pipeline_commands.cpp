@@ -8,6 +8,8 @@
 #include "pipeline/describe.h"
 #include "pipeline/flight_plan/plan_files.h"
 #include "pipeline/input_guard.h"
+#include "pipeline/jobs/config_folder.h"
+#include "pipeline/jobs/saved_config.h"
 #include "pipeline/limits.h"
 #include "pipeline/run.h"
 #include "pipeline/summary.h"
@@ -15,8 +17,9 @@
 
 namespace swath::tools {
 
-int run_pipeline(const pipeline::Request& request, const Loudness& loudness, const std::string& typed) {
+int run_pipeline(const pipeline::Request& request, const Loudness& loudness, const std::string& typed, const std::filesystem::path& save) {
   pipeline::Plan plan = pipeline::make_plan(request);
+  if (!save.empty()) pipeline::save_config(plan, request, save, typed);
   pipeline::Progress progress(loudness.voice());
   const pipeline::Outcome outcome = pipeline::run(plan, progress, typed);
   if (!loudness.quiet && !loudness.json_log) print(pipeline::summary(outcome.report, plan.run.output));
@@ -30,13 +33,15 @@ namespace {
 
 struct Given {
   pipeline::Request request;
+  std::filesystem::path save;
   Loudness loudness;
   bool json = false;
 };
 
 int check(const Given& a) {
-  if (pipeline::is_flight_plan(a.request.config)) {
-    const planning::FlightPlan plan = pipeline::check_flight_plan({a.request.config, {}, {}, a.request.sets});
+  const std::filesystem::path config = pipeline::find_config(a.request.config);
+  if (pipeline::is_flight_plan(config)) {
+    const planning::FlightPlan plan = pipeline::check_flight_plan({config, {}, {}, a.request.sets});
     if (!a.loudness.quiet) std::printf("%s: a flight of %zu lines\n", a.request.config.c_str(), plan.lines.size());
     return 0;
   }
@@ -69,11 +74,9 @@ void add_pipeline_commands(Commands& commands) {
       "Examples\n  swath run configs/survey.toml --survey demo/survey.toml --output out\n  swath run configs/survey.toml --survey "
       "demo/survey.toml --set run.memory=\"4 GB\" --threads 8 --json-log\n\nRun a pipeline on a survey; the same command continues a run "
       "that was killed.",
-      [a, &commands] { return run_pipeline(a->request, a->loudness, commands.typed()); });
+      [a, &commands] { return run_pipeline(a->request, a->loudness, commands.typed(), a->save); });
   add_request(*c, a->request);
-  c->add_option("--threads", a->request.threads, "Threads, in place of the config's (0: one per processor)");
-  c->add_flag("--quiet", a->loudness.quiet, "Nothing but errors");
-  c->add_flag("--json-log", a->loudness.json_log, "Progress as one JSON object per line on standard error");
+  add_run_options(*c, a->request, a->loudness, a->save);
 
   const auto checked = std::make_shared<Given>();
   c = commands.add("check",
