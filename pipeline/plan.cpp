@@ -88,6 +88,13 @@ void apply_set(Value& tree, const std::string& set) {
                           near.empty() ? "its stages: run, " + known : "did you mean '" + near + "'?");
 }
 
+/// Of the entries that the plan has beside the registry's, or of these; null where none has the name.
+std::unique_ptr<stages::Stage> stage_named(const std::string& name, const std::vector<stages::Entry>& entries) {
+  for (const stages::Entry& e : entries)
+    if (e.name == name) return e.make();
+  return stages::make_stage(name);
+}
+
 std::vector<std::string> stage_names() {
   std::vector<std::string> names;
   for (const auto& e : stages::registry()) names.emplace_back(e.name);
@@ -110,7 +117,7 @@ void add_implied(const stages::Stage& stage, const core::Location& where, const 
   plan.stages.push_back({stages::make_stage(name), std::move(table), path});
 }
 
-void read_stages(const Value& tree, Plan& plan, std::vector<Fault>& faults) {
+void read_stages(const Value& tree, const std::vector<stages::Entry>& entries, Plan& plan, std::vector<Fault>& faults) {
   const Value* list = tree.find("stage");
   if (!list || !list->is_array() || list->items().empty()) {
     faults.push_back({tree.where, "stage", "the pipeline has no stages", "an ordered list of [[stage]] tables, each with a type"});
@@ -124,7 +131,7 @@ void read_stages(const Value& tree, Plan& plan, std::vector<Fault>& faults) {
       faults.push_back({table.where, path, "the stage has no type", "`swath stages` lists them"});
       continue;
     }
-    auto stage = stages::make_stage(type->as_text());
+    auto stage = stage_named(type->as_text(), entries);
     if (!stage) {
       const std::string near = core::nearest(type->as_text(), stage_names());
       faults.push_back({type->where, path + ".type", "'" + type->as_text() + "' is no stage",
@@ -306,9 +313,9 @@ Value with_origin(const core::Describe& d, const Value& written) {
 Plan make_plan(const Request& request) {
   Plan plan;
   plan.config = request.config;
-  if (!std::filesystem::exists(request.config))
+  if (!request.tree && !std::filesystem::exists(request.config))
     throw core::usage_error("no such file", request.config.string(), "check the name of the config");
-  Value tree = io::read_value_file(request.config);
+  Value tree = request.tree ? *request.tree : io::read_value_file(request.config);
   if (!tree.is_object()) throw core::usage_error("a pipeline is a table with [run] and [[stage]]", request.config.string());
   for (const std::string& s : request.sets) apply_set(tree, s);
 
@@ -323,7 +330,7 @@ Plan make_plan(const Request& request) {
     core::read_options(core::described(plan.run), plan.run_table, "run", faults);
   else
     faults.push_back({plan.run_table.where, "run", "expected a table", ""});
-  read_stages(tree, plan, faults);
+  read_stages(tree, request.entries, plan, faults);
   if (faults.empty()) check_order(plan, faults);
   if (faults.empty()) check_memory(plan, faults);
 
@@ -340,7 +347,7 @@ Plan make_plan(const Request& request) {
       throw core::usage_error("no such file", plan.survey_file.string(), "check the name of the survey");
     try {
       const Value survey = io::read_value_file(plan.survey_file);
-      plan.survey = io::read_survey(survey, plan.survey_file.parent_path());
+      plan.survey = io::read_survey(survey, plan.survey_file.parent_path(), request.records);
       io::check_records(plan.survey, survey);
     } catch (const core::Error& e) {
       if (faults.empty()) throw;

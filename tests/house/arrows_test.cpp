@@ -32,6 +32,7 @@ const std::map<std::string, std::set<std::string>> arrows = {
     {"stages", {"core", "io", "filters", "terrain", "quality", "trajectory", "report", "georef", "calib"}},
     {"pipeline", {"core", "io", "report", "planning", "stages"}},
     {"tools", {"core", "io", "planning", "pipeline", "simulate"}},
+    {"python", {"core", "io", "trajectory", "stages", "pipeline", "simulate"}},
 };
 
 /// Third party (as its includes begin) -> the only files that may include it.
@@ -46,6 +47,7 @@ const std::vector<std::pair<std::regex, std::regex>> doors = {
     {std::regex("ceres/.*"), std::regex("calib/.*\\.cpp")},
     {std::regex("tbb/.*|oneapi/.*"), std::regex("(pipeline|simulate|io|stages/adapters)/.*\\.cpp|core/parallel\\.cpp")},
     {std::regex("CLI/.*"), std::regex("tools/.*")},
+    {std::regex("nanobind/.*"), std::regex("python/.*")},
 };
 
 struct Include {
