@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
     swath::tools::add_pipeline_commands(commands);
     swath::tools::add_list_commands(commands);
     swath::tools::add_plan_command(commands);
+    swath::tools::add_task_command(commands);
     swath::tools::add_budget_command(commands);
     swath::tools::add_simulate_command(commands);
     swath::tools::add_info_command(commands);

@@ -3,8 +3,12 @@
 #include <cstdio>
 
 #include "core/config/result_visitors.h"
+#include "core/error.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
 #include "pipeline/flight_plan/budget.h"
 #include "pipeline/flight_plan/plan_files.h"
+#include "pipeline/task_graph.h"
 #include "tools/command.h"
 
 namespace swath::tools {
@@ -12,10 +16,37 @@ namespace {
 
 struct PlanArguments {
   pipeline::PlanRequest request;
+  std::filesystem::path survey, tasks, slurm;
+  int parts = 8;
   bool quiet = false, json = false;
 };
 
+/// The program itself, for scripts that call it from elsewhere.
+std::filesystem::path own_program() {
+  std::error_code ec;
+  const auto file = std::filesystem::read_symlink("/proc/self/exe", ec);
+  return ec ? "swath" : file;
+}
+
+int plan_tasks(const PlanArguments& a) {
+  pipeline::Request request;
+  request.config = a.request.config;
+  request.sets = a.request.sets;
+  request.survey = a.survey;
+  request.output = a.request.folder;
+  const pipeline::TaskGraph graph = pipeline::task_graph(request, a.parts);
+  const std::string json = io::to_json(core::reported(graph));
+  if (!a.slurm.empty() && a.tasks.empty())
+    throw core::usage_error("the jobs read the plan", "--slurm", "write it to a file as well: --tasks tasks.json");
+  if (!a.tasks.empty()) io::write_text_file(a.tasks, json);
+  if (!a.slurm.empty()) io::write_text_file(a.slurm, pipeline::slurm_script(graph, a.tasks, own_program()));
+  if (a.quiet) return 0;
+  a.json ? static_cast<void>(std::fputs(json.c_str(), stdout)) : print(pipeline::task_text(graph));
+  return 0;
+}
+
 int plan_flight(const PlanArguments& a) {
+  if (a.request.folder.empty()) throw core::usage_error("no folder for the plan", "--output", "name one: --output plan");
   const planning::FlightPlan plan = pipeline::write_flight_plan(a.request);
   if (a.quiet) return 0;
   a.json ? print_json(core::reported(plan)) : print(pipeline::plan_text(plan));
@@ -46,12 +77,17 @@ void add_plan_command(Commands& commands) {
   auto* c =
       commands.add("plan",
                    "Examples\n  swath plan configs/flight/plan.toml --output plan\n  swath plan flight.toml --dem terrain.tif --output "
-                   "plan --set flight.speed=\"60 m/s\"\n\nPlan a flight over an area: lines, density, accuracy, time and cost.",
-                   [a] { return plan_flight(*a); });
-  c->add_option("PLAN", a->request.config, "What is asked of the flight, .toml or .json")->required();
+                   "plan --set flight.speed=\"60 m/s\"\n  swath plan configs/survey.toml --survey demo/survey.toml --output out --parts 4 "
+                   "--json\n\nPlan a flight over an area: lines, density, accuracy, time and cost; or a run's tasks for several processes.",
+                   [a] { return pipeline::is_pipeline(a->request.config) ? plan_tasks(*a) : plan_flight(*a); });
+  c->add_option("PLAN", a->request.config, "What is asked of the flight, or a pipeline, .toml or .json")->required();
   c->add_option("--dem", a->request.dem, "Terrain model, in place of the config's");
-  c->add_option("--output", a->request.folder, "Folder to write to")->required();
-  c->add_option("--set", a->request.sets, "One option of the plan: flight.speed=\"60 m/s\"")->allow_extra_args(false);
+  c->add_option("--output", a->request.folder, "Folder to write to; of a pipeline that of the products");
+  c->add_option("--survey", a->survey, "Pipeline: survey.toml, in place of the config's");
+  c->add_option("--parts", a->parts, "Pipeline: parts of each wave that can be shared")->capture_default_str();
+  c->add_option("--tasks", a->tasks, "Pipeline: file to write the tasks to, .json");
+  c->add_option("--slurm", a->slurm, "Pipeline: script to write that gives the tasks to Slurm as job arrays");
+  c->add_option("--set", a->request.sets, "One option: flight.speed=\"60 m/s\"")->allow_extra_args(false);
   c->add_flag("--quiet", a->quiet, "Nothing but errors");
   c->add_flag("--json", a->json, "The plan as JSON");
 }
