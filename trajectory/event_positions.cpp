@@ -21,7 +21,7 @@ EventPosition not_reached(Reach reach, size_t fixes) {
 }
 
 // From the frame of the computation to the axes of the place itself: a flight of 100 km turns the vertical by 0.9 deg.
-EventPosition place(const PointState& s, const LocalFrame& frame, const FixWindow& w) {
+EventPosition place(const PointState& s, const PointState::Matrix6& error, const LocalFrame& frame, const FixWindow& w) {
   EventPosition e;
   e.reach = w.reach;
   e.fixes = w.size();
@@ -30,7 +30,7 @@ EventPosition place(const PointState& s, const LocalFrame& frame, const FixWindo
   turn.topLeftCorner<3, 3>() = local_frame(e.position).local_R_ecef * frame.local_R_ecef.transpose();
   turn.bottomRightCorner<3, 3>() = turn.topLeftCorner<3, 3>();
   e.velocity = turn.topLeftCorner<3, 3>() * s.velocity();
-  e.covariance = turn * s.covariance * turn.transpose();
+  e.covariance = turn * error * turn.transpose();
   e.sigma = e.covariance.diagonal().head<3>().cwiseSqrt();
   e.velocity_sigma = e.covariance.diagonal().tail<3>().cwiseSqrt();
   return e;
@@ -43,32 +43,24 @@ bool usable(const core::GnssData& gnss, size_t i) {
   return Eigen::LLT<Eigen::Matrix3d>(gnss.covariance[i]).info() == Eigen::Success;
 }
 
-EventPositions positions_at(const core::GnssData& gnss, const std::vector<double>& times, Interpolator method, const KinematicOptions& o) {
-  const LocalFrame frame = local_frame(gnss.position.front());
-  const PointFixes fixes = to_local(gnss, frame);
-  const PointSmoother smoother(fixes);
-  EventPositions out;
-  out.longest_step = longest_step(fixes, o);
-  for (size_t i = 1; i < fixes.size(); ++i) out.gaps += fixes.time[i] - fixes.time[i - 1] > out.longest_step;
-  out.test = leave_one_out(fixes, smoother, o);
-  out.empirical = out.test.of(method).rms;
+PointTrack track_of(const core::GnssData& gnss, const std::vector<LineSpan>& lines, const KinematicOptions& o) {
+  return track_of(to_local(gnss, local_frame(gnss.position.front())), lines, o);
+}
 
-  const auto state_at = [&](const FixWindow& w, double t) {
-    switch (method) {
-      case Interpolator::line:
-        return polynomial_at(fixes, w, t, 1, o);
-      case Interpolator::parabola:
-        return polynomial_at(fixes, w, t, 2, o);
-      case Interpolator::rts:
-        return smoother.at(t);
-      case Interpolator::kalman:
-        break;
-    }
-    return interpolate(fixes, w, t, o);
-  };
+std::vector<EventPosition> positions_at(const PointTrack& track, const Eigen::Vector3d& origin, const std::vector<double>& times,
+                                        Interpolator method, const KinematicOptions& o) {
+  const LocalFrame frame = local_frame(origin);
+  std::vector<EventPosition> out;
   for (const double t : times) {
-    const FixWindow w = window_at(fixes.time, t, static_cast<size_t>(o.epochs), out.longest_step);
-    out.events.push_back(reached(w.reach) ? place(state_at(w, t), frame, w) : not_reached(w.reach, w.size()));
+    const FixWindow w = window_at(track.fixes.time, t, static_cast<size_t>(o.epochs), track.longest_step);
+    if (!reached(w.reach)) {
+      out.push_back(not_reached(w.reach, w.size()));
+      continue;
+    }
+    Estimate e = estimate_at(track, w, t, method, o);
+    // What the fixes have in common passes to the event as it is.
+    e.error.topLeftCorner<3, 3>() += track.model().slow_of(stated_at(track.fixes, t));
+    out.push_back(place(e.state, e.error, frame, w));
   }
   return out;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Positions of the GNSS antenna at events, with the sigma that theory states and the one that the fixes themselves show.
+// Positions of the GNSS antenna at events with their sigma.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,23 +16,19 @@ struct EventPosition {
   size_t fixes = 0;                       ///< of the window
   Eigen::Vector3d position;               ///< ecef, m
   Eigen::Vector3d velocity;               ///< east, north, up at the position, m/s
-  Eigen::Vector3d sigma, velocity_sigma;  ///< formal, same axes, m and m/s
-  PointState::Matrix6 covariance;         ///< formal, same axes: position, velocity
-};
-
-struct EventPositions {
-  std::vector<EventPosition> events;  ///< in the order of the times given
-  LeaveOneOut test;
-  Eigen::Vector3d empirical;  ///< rms of the leave-one-out differences of the method used, east, north, up, m; NaN without any
-  size_t gaps = 0;            ///< steps between fixes that are too long
-  double longest_step = 0.0;  ///< s
+  Eigen::Vector3d sigma, velocity_sigma;  ///< same axes, m and m/s
+  PointState::Matrix6 covariance;         ///< of the error, same axes: position, velocity
 };
 
 /// Is this fix of use: time, position and covariance finite, covariance positive definite?
 bool usable(const core::GnssData& gnss, size_t fix);
 
-/// `gnss`: three usable fixes or more, time rising. Works in east, north, up at the first fix.
-EventPositions positions_at(const core::GnssData& gnss, const std::vector<double>& times, Interpolator method,
-                            const KinematicOptions& options);
+/// The fixes in east, north, up at the first one, cut into pieces, with their motion. `gnss`: three usable fixes or more, time rising.
+/// `lines`: in GPS time.
+PointTrack track_of(const core::GnssData& gnss, const std::vector<LineSpan>& lines, const KinematicOptions& options);
+
+/// `track`: of fixes whose first is at `origin` (ecef, m). In the order of the times given.
+std::vector<EventPosition> positions_at(const PointTrack& track, const Eigen::Vector3d& origin, const std::vector<double>& times,
+                                        Interpolator method, const KinematicOptions& options);
 
 }  // namespace swath::trajectory

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trajectory/event_table.h"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <vector>
 
 #include "core/error.h"
 #include "core/printable.h"
+#include "core/statistics.h"
 
 namespace swath::trajectory {
 namespace {
@@ -34,7 +36,7 @@ std::string flags_of(const EventPosition& e, bool doubtful) {
 
 constexpr const char* header =
     "id,strip,technique,gps_time,easting,northing,height,x,y,z,v_east,v_north,v_up,sigma_east,sigma_north,sigma_up,"
-    "empirical_east,empirical_north,empirical_up,sigma_v_east,sigma_v_north,sigma_v_up,sigma_time,fixes,flags\n";
+    "sigma_v_east,sigma_v_north,sigma_v_up,sigma_time,fixes,flags\n";
 
 }  // namespace
 
@@ -52,13 +54,13 @@ core::GnssData usable_fixes(const core::GnssData& gnss, core::Tally& tally) {
   return out;
 }
 
-std::string table_of(const core::EventData& events, const EventPositions& solved, const core::Crs& crs, double vertical_unit) {
+std::string table_of(const core::EventData& events, const std::vector<EventPosition>& solved, const core::Crs& crs, double vertical_unit) {
   const core::Transform to_map(core::wgs84_ecef(), crs);
   const double height_unit = crs.has_height_unit() ? 1.0 : vertical_unit;
   const int decimals = crs.is_geographic() ? 10 : 4;
   std::string out = header;
   for (size_t i = 0; i < events.size(); ++i) {
-    const EventPosition& e = solved.events[i];
+    const EventPosition& e = solved[i];
     Eigen::Vector3d map = e.position;
     if (reached(e.reach)) {
       map = to_map(e.position);
@@ -66,22 +68,21 @@ std::string table_of(const core::EventData& events, const EventPositions& solved
     }
     // What the time's own error moves the antenna along its path.
     const double along = events.sigma[i] > 0.0 ? events.sigma[i] * e.velocity.norm() : std::nan("");
-    const Eigen::Vector3d empirical = reached(e.reach) ? solved.empirical : e.position;
     out += core::csv_field(events.id[i]) + "," + (events.strip[i] ? std::to_string(events.strip[i]) : "") + "," +
            core::csv_field(events.technique[i]) + "," + number(events.time[i], 7) + "," + number(map.x(), decimals) + "," +
            number(map.y(), decimals) + "," + number(map.z(), 4) + "," + numbers(e.position, 4) + "," + numbers(e.velocity, 4) + "," +
-           numbers(e.sigma, 4) + "," + numbers(empirical, 4) + "," + numbers(e.velocity_sigma, 4) + "," + number(along, 4) + "," +
-           std::to_string(e.fixes) + "," + flags_of(e, events.doubtful[i]) + "\n";
+           numbers(e.sigma, 4) + "," + numbers(e.velocity_sigma, 4) + "," + number(along, 4) + "," + std::to_string(e.fixes) + "," +
+           flags_of(e, events.doubtful[i]) + "\n";
   }
   return out;
 }
 
-void count_events(const core::EventData& events, const core::GnssData& gnss, const EventPositions& solved, const std::string& survey,
-                  core::Tally& tally) {
+void count_events(const core::EventData& events, const core::GnssData& gnss, const std::vector<EventPosition>& solved,
+                  const std::string& survey, core::Tally& tally) {
   size_t outside = 0;
   for (size_t i = 0; i < events.size(); ++i) {
     const std::string event = "event " + events.id[i];
-    switch (solved.events[i].reach) {
+    switch (solved[i].reach) {
       case Reach::full:
         break;
       case Reach::partial:
@@ -107,20 +108,33 @@ void count_events(const core::EventData& events, const core::GnssData& gnss, con
                       survey, "is the time scale of the events, or of the fixes, stated as it is?");
 }
 
-EventFigures figures_of(const core::EventData& events, const core::GnssData& gnss, const EventPositions& solved, Interpolator method) {
+MotionFigures figures_of(const MotionModel& model) {
+  MotionFigures r{model.motion.size(), model.white};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto k = static_cast<size_t>(axis);
+    std::vector<double> levels;
+    for (const PointMotion& m : model.motion) levels.push_back(m[k].acceleration());
+    r.acceleration[axis] = core::median(std::move(levels));
+    r.time[axis] = model.motion.front()[k].time;
+  }
+  return r;
+}
+
+EventFigures figures_of(const core::EventData& events, const PointTrack& track, const std::vector<EventPosition>& solved,
+                        Interpolator method) {
   EventFigures r;
   r.method = core::Choices<Interpolator>::names[static_cast<size_t>(method)];
-  r.fixes = gnss.size();
-  r.gaps = solved.gaps;
-  r.longest_step = solved.longest_step;
+  r.fixes = track.fixes.size();
+  for (size_t i = 1; i < track.fixes.size(); ++i) r.gaps += track.fixes.time[i] - track.fixes.time[i - 1] > track.longest_step;
+  r.longest_step = track.longest_step;
   r.events = events.size();
-  std::vector<Eigen::Vector3d> formal;
-  for (const EventPosition& e : solved.events)
-    if (reached(e.reach)) formal.push_back(e.sigma);
-  r.with_position = formal.size();
-  if (!formal.empty()) r.formal = statistics_of(formal, formal).median_formal;
-  if (solved.empirical.allFinite()) r.empirical = solved.empirical;
-  r.leave_one_out = solved.test;
+  r.motion = figures_of(track.model());
+  r.comparisons = compare_event_places(events, solved);
+  std::array<std::vector<double>, 3> sigmas;
+  for (const EventPosition& e : solved)
+    for (int axis = 0; axis < 3 && reached(e.reach); ++axis) sigmas[static_cast<size_t>(axis)].push_back(e.sigma[axis]);
+  r.with_position = sigmas[0].size();
+  if (r.with_position > 0) r.sigma = Eigen::Vector3d(core::median(sigmas[0]), core::median(sigmas[1]), core::median(sigmas[2]));
   return r;
 }
 

@@ -12,7 +12,9 @@
 #include "core/records/event_data.h"
 #include "core/records/gnss_data.h"
 #include "core/report.h"
+#include "trajectory/event_comparison.h"
 #include "trajectory/event_positions.h"
+#include "trajectory/rate_test.h"
 
 namespace swath::trajectory {
 
@@ -20,19 +22,37 @@ namespace swath::trajectory {
 core::GnssData usable_fixes(const core::GnssData& gnss, core::Tally& tally);
 
 /// CSV, one row per event, metres and m/s (easting, northing and height: units of the CRS); fields without a value are empty.
-std::string table_of(const core::EventData& events, const EventPositions& solved, const core::Crs& crs, double vertical_unit);
+std::string table_of(const core::EventData& events, const std::vector<EventPosition>& solved, const core::Crs& crs, double vertical_unit);
 
 /// Counts events without a position, and doubtful ones. Throws core::Error where all lie outside the fixes.
-void count_events(const core::EventData& events, const core::GnssData& gnss, const EventPositions& solved, const std::string& survey,
-                  core::Tally& tally);
+void count_events(const core::EventData& events, const core::GnssData& gnss, const std::vector<EventPosition>& solved,
+                  const std::string& survey, core::Tally& tally);
+
+/// What moves the antenna, as the fixes show it.
+struct MotionFigures {
+  size_t pieces = 0;
+  Eigen::Vector3d white = Eigen::Vector3d::Ones(), time = white, acceleration = white;
+};
+
+template <class V>
+void describe(const MotionFigures& r, V& v) {
+  v.result("pieces", r.pieces, "Pieces of the flight, each with an acceleration of its own.");
+  v.result("white_sigma_over_stated", r.white, core::plain(2), "White error of the fixes over their stated sigma: east, north, height.");
+  v.result("acceleration_time_s", r.time, core::seconds(2), "Correlation time of the acceleration.");
+  v.result("median_acceleration_m_s2", r.acceleration, core::Form{"m/s2", 3}, "Median over the pieces of its standard deviation.");
+}
+MotionFigures figures_of(const MotionModel& model);
 
 struct EventFigures {
   std::string method;
   std::uint64_t fixes = 0, gaps = 0;
   double longest_step = 0.0;
   std::uint64_t events = 0, with_position = 0;
-  std::optional<Eigen::Vector3d> formal{}, empirical{};
-  std::optional<LeaveOneOut> leave_one_out{};
+  std::optional<Eigen::Vector3d> sigma{};
+  MotionFigures motion{};
+  LeaveOneOut leave_one_out{};
+  std::vector<RateTest> rates{};
+  std::vector<PlaceDifferences> comparisons{};
 };
 
 template <class V>
@@ -44,11 +64,14 @@ void describe(const EventFigures& r, V& v) {
   v.result("longest_step_without_gap_s", r.longest_step, core::seconds().always(), "Longest step between fixes that is not a gap.");
   v.result("events", r.events, core::plain().in_summary(), "Events.");
   v.result("events_with_position", r.with_position, core::plain().in_summary(), "Of those: events with a position.");
-  v.result("median_formal_sigma_m", r.formal, metres(4), "Median of the filter's own sigmas: east, north, height.");
-  v.result("empirical_sigma_m", r.empirical, metres(4), "Sigmas by the leave-one-out test: east, north, height.");
+  v.result("median_sigma_m", r.sigma, metres(4).in_summary(), "Median sigma of the events' positions: east, north, height.");
+  v.table("motion", r.motion, "Motion between the fixes and the fixes' errors.");
   v.table("leave_one_out", r.leave_one_out, "Each fix against its prediction from the others.");
+  v.tables_if(!r.rates.empty(), "rates", r.rates, "The record thinned to lower rates.");
+  v.tables_if(!r.comparisons.empty(), "comparisons", r.comparisons, "Positions by two techniques, and against the recorder's own places.");
 }
 
-EventFigures figures_of(const core::EventData& events, const core::GnssData& gnss, const EventPositions& solved, Interpolator method);
+EventFigures figures_of(const core::EventData& events, const PointTrack& track, const std::vector<EventPosition>& solved,
+                        Interpolator method);
 
 }  // namespace swath::trajectory

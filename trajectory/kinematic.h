@@ -26,6 +26,7 @@ struct KinematicOptions {
   double noise_share = 0.01;
   core::MetresPerSecond noise_floor{0.05};
   bool noise_grows_with_time = true;
+  core::RadiansPerSecond turn_rate{0.0087};
 };
 
 template <class V>
@@ -46,6 +47,7 @@ void describe(KinematicOptions& o, V& v) {
   v.option("noise_floor", o.noise_floor, core::at_least(0.0), "Least standard deviation of the velocity's noise.");
   v.option("noise_grows_with_time", o.noise_grows_with_time,
            "The noise is that of one second and its variance grows with the step; false: that of any step.");
+  v.option("turn_rate", o.turn_rate, core::above(0.0), "Course that changes faster is a turn, where the survey states no [[line]].");
 }
 
 /// Position and velocity of a point with their covariance; order: three of position (m), three of velocity (m/s).

@@ -115,7 +115,7 @@ TEST(KinematicStage, WritesPositionsVelocitiesAndSigmas) {
     EXPECT_EQ((*row)["technique"], "pc");
     EXPECT_EQ((*row)["fixes"], "10");
     EXPECT_EQ((*row)["flags"], "");
-    for (const char* sigma : {"sigma_east", "sigma_up", "empirical_north", "sigma_v_east"}) {
+    for (const char* sigma : {"sigma_east", "sigma_up", "sigma_north", "sigma_v_east"}) {
       EXPECT_GT(std::stod((*row)[sigma]), 0.005) << sigma;
       EXPECT_LT(std::stod((*row)[sigma]), 0.6) << sigma;
     }
@@ -126,7 +126,10 @@ TEST(KinematicStage, WritesPositionsVelocitiesAndSigmas) {
   const core::Value json = io::read_value_file(run.folder / "kinematic.json");
   EXPECT_EQ(json.find("events_with_position")->as_int(), 2);
   EXPECT_EQ(json.find("leave_one_out")->find("fixes")->as_int(), 50);
-  EXPECT_NEAR(json.find("empirical_sigma_m")->items()[2].as_number(), std::stod(rows[0]["empirical_up"]), 1e-4);
+  EXPECT_NEAR(json.find("median_sigma_m")->items()[2].as_number(), std::max(std::stod(rows[0]["sigma_up"]), std::stod(rows[1]["sigma_up"])),
+              1e-4);  // of an even number the upper of the two
+  EXPECT_GT(json.find("motion")->find("median_acceleration_m_s2")->items()[0].as_number(), 0.05);
+  EXPECT_EQ(rows[0].count("empirical_up"), 0u);  // one sigma
   EXPECT_EQ(io::to_json(json), io::to_json(run.findings));
   EXPECT_EQ(test::entries(run.folder.path()), 2u);
   EXPECT_TRUE(run.tally.empty());
@@ -144,7 +147,7 @@ TEST(KinematicStage, EventsWithoutFixesAroundThemAreFlaggedAndCounted) {
   for (size_t k = 0; k < rows.size(); ++k) {
     EXPECT_EQ(rows[k]["flags"], flags[k]);
     EXPECT_EQ(rows[k]["easting"].empty(), k != 2 && k != 3) << k;
-    EXPECT_EQ(rows[k]["empirical_east"].empty(), k != 2 && k != 3) << k;
+    EXPECT_EQ(rows[k]["sigma_east"].empty(), k != 2 && k != 3) << k;
   }
   EXPECT_EQ(run.tally.of("events in a gap of the GNSS record, without position"), 1u);
   EXPECT_EQ(run.tally.of("events outside the GNSS record, without position"), 1u);
@@ -162,7 +165,7 @@ TEST(KinematicStage, TheLeaveOneOutTestIsWrittenAndDrawn) {
   for (const std::string& file : run.stage->products()) EXPECT_TRUE(std::filesystem::exists(run.folder / file)) << file;
   EXPECT_EQ(run.rows("stations.csv").size(), 1u);
   const std::string table = test::read_bytes(run.folder / "leave_one_out.txt");
-  for (const char* word : {"Kalman", "straight line", "2nd degree", "RTS", "50 fixes", "formal sigma"})
+  for (const char* word : {"Kalman", "straight line", "2nd degree", "RTS", "50 fixes", "ratio", "straight 1"})
     EXPECT_NE(table.find(word), std::string::npos) << word;
   EXPECT_GT(io::read_png(run.folder / "leave_one_out.png").width, 500);
   EXPECT_NE(test::read_bytes(run.folder / "leave_one_out.svg").find("<svg"), std::string::npos);
@@ -232,7 +235,7 @@ TEST(KinematicStage, TimesOfAnotherScaleAndTooFewFixesAreErrors) {
   EXPECT_THROW(few.go(), core::Error);
 }
 
-TEST(KinematicStage, ARecordTooShortForTheTestHasNoEmpiricalSigma) {
+TEST(KinematicStage, ARecordTooShortForTheTestHasASigmaToo) {
   Trial run;
   for (size_t i = 8; i < run.gnss.size(); ++i) run.gnss.covariance[i].setZero();
   run.event(3.5, "1");
@@ -241,9 +244,42 @@ TEST(KinematicStage, ARecordTooShortForTheTestHasNoEmpiricalSigma) {
   auto row = run.rows()[0];
   EXPECT_EQ(row["flags"], "short_window");
   EXPECT_FALSE(row["sigma_east"].empty());
-  EXPECT_TRUE(row["empirical_east"].empty());
-  EXPECT_EQ(run.findings.find("empirical_sigma_m"), nullptr);
+  EXPECT_EQ(run.findings.find("leave_one_out")->find("fixes")->as_int(), 0);
   EXPECT_TRUE(std::filesystem::exists(run.folder / "leave_one_out.png"));
+}
+
+TEST(KinematicStage, WithoutEventsTheFixesAreTested) {
+  Trial run;
+  run.context.crs = core::Crs();  // no table, no CRS
+  run.set(R"({"leave_one_out": true, "rates": [0.5, 2, 0.01]})");
+  run.survey.lines.resize(2);
+  run.survey.line_time = {core::TimeScale::gps, 0, {}};
+  for (int k = 0; k < 2; ++k) {
+    run.survey.lines[static_cast<size_t>(k)].id = k + 1;
+    run.survey.lines[static_cast<size_t>(k)].start = core::Seconds(start + 5 + 25 * k);
+    run.survey.lines[static_cast<size_t>(k)].end = core::Seconds(start + 25 + 25 * k);
+  }
+  run.context.records.put(run.gnss);
+  run.stage->check(run.context);
+  run.stage->run_survey(run.context, run.tally, run.findings);
+  EXPECT_FALSE(std::filesystem::exists(run.folder / "events.csv"));
+  const std::string table = test::read_bytes(run.folder / "leave_one_out.txt");
+  for (const char* word : {"line 1", "line 2", "turns"}) EXPECT_NE(table.find(word), std::string::npos) << word;
+  EXPECT_NE(test::read_bytes(run.folder / "rates.txt").find("0.5 Hz"), std::string::npos);
+  ASSERT_EQ(run.findings.find("rates")->items().size(), 1u);
+  EXPECT_EQ(run.findings.find("rates")->items()[0].find("withheld")->as_int(), 21);  // fixes 9 to 49, every second
+  EXPECT_EQ(run.tally.of("rates above that of the record, not tested"), 1u);
+  EXPECT_EQ(run.tally.of("rates that leave too few fixes, not tested"), 1u);
+}
+
+TEST(KinematicStage, WithNothingToDoItIsRefused) {
+  Trial run;
+  try {
+    run.stage->check(run.context);
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_NE(std::string(e.what()).find("no [[event]] file and no test"), std::string::npos) << e.what();
+  }
 }
 
 TEST(KinematicStage, NoEventsGiveATableWithoutRows) {

@@ -37,8 +37,8 @@ class MadeFlight {
       for (const Wave& w : waves_[k]) v[k] += w.amplitude * w.omega * std::cos(w.omega * t + w.phase);
     return v;
   }
-  /// n fixes at `rate` per second: 1.6, 2.4 and 4 cm with correlations, all known to the fixes; times off by 0.5 ms, which is not.
-  PointFixes fixes(size_t n, double rate) {
+  /// n fixes at `rate` per second: 1.6, 2.4 and 4 cm with correlations, all known to the fixes; times off by `clock` (s), which is not.
+  PointFixes fixes(size_t n, double rate, double clock = 0.0005) {
     Eigen::Matrix3d c;
     c << 2.6e-4, 1.0e-4, -2.2e-4, 1.0e-4, 5.8e-4, 3.8e-4, -2.2e-4, 3.8e-4, 1.6e-3;
     const Eigen::Matrix3d root = c.llt().matrixL();
@@ -47,7 +47,7 @@ class MadeFlight {
       const double t = static_cast<double>(i) / rate;
       const Eigen::Vector3d e(normal(), normal(), normal());
       out.position.push_back(position(t) + root * e);
-      out.time.push_back(t + 0.0005 * normal());
+      out.time.push_back(t + clock * normal());
       out.covariance.push_back(c);
     }
     return out;

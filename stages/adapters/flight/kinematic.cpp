@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Positions of the GNSS antenna at events.
+#include <cstdio>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "core/config/option.h"
 #include "core/error.h"
+#include "core/statistics.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "report/chart.h"
@@ -21,6 +23,7 @@ struct KinematicStageOptions : trajectory::KinematicOptions {
   trajectory::Interpolator method = trajectory::Interpolator::kalman;
   std::string file = "events.csv";
   bool leave_one_out = false;
+  std::vector<double> rates;
 };
 
 template <class V>
@@ -28,12 +31,15 @@ void describe(KinematicStageOptions& o, V& v) {
   v.option("method", o.method, "Kalman filter of the window; or, to compare, line, 2nd-degree polynomial or RTS smoother.", "Jubanski2005");
   v.option("file", o.file, "Name of the table of events within the output.");
   v.option("leave_one_out", o.leave_one_out, "Write the leave-one-out test of all four methods (leave_one_out.txt, .png, .svg).");
+  v.option("rates", o.rates, core::within(0.01, 1000), "Rates in Hz to which the fixes are thinned and tested (rates.txt).",
+           "Jubanski2005");
   describe(static_cast<trajectory::KinematicOptions&>(o), v);
 }
 
 using trajectory::Interpolator;
 
 constexpr size_t least_fixes = 3;
+constexpr double rate_tolerance = 0.05;  // of a rate: receivers' steps are not exact
 
 report::Chart drawing(const trajectory::LeaveOneOut& test, double start) {
   static constexpr const char* axes[] = {"East", "North", "Height"};
@@ -55,7 +61,7 @@ report::Chart drawing(const trajectory::LeaveOneOut& test, double start) {
       for (size_t k = 0; k < test.fix.size(); ++k) {
         if (broken(k)) s.x.push_back(test.time[k] - start), s.y.push_back(nan);
         s.x.push_back(test.time[k] - start);
-        s.y.push_back(100.0 * test.difference[static_cast<size_t>(method)][k][axis]);
+        s.y.push_back(100.0 * test.difference[static_cast<size_t>(method)][k].value[axis]);
       }
       p.series.push_back(std::move(s));
     }
@@ -69,33 +75,63 @@ report::Chart drawing(const trajectory::LeaveOneOut& test, double start) {
 }
 
 std::vector<std::string> kinematic_products(const KinematicStageOptions& o) {
-  std::vector<std::string> out{o.file, "kinematic.json"};
+  std::vector<std::string> out{"kinematic.json"};
+  if (!o.file.empty()) out.push_back(o.file);
   if (o.leave_one_out) out.insert(out.end(), {"leave_one_out.txt", "leave_one_out.png", "leave_one_out.svg"});
+  if (!o.rates.empty()) out.push_back("rates.txt");
   return out;
 }
 
-void expect_crs(const Context& context, const KinematicStageOptions&) {
-  if (context.survey.crs.empty())
+void expect_work(const Context& context, const KinematicStageOptions& o) {
+  if (!context.survey.events.empty() && context.survey.crs.empty())
     throw core::usage_error("trajectory.kinematic: the survey states no CRS for the table of events", context.survey.name,
                             "state it, for example crs = \"EPSG:32632\"");
+  if (context.survey.events.empty() && !o.leave_one_out && o.rates.empty())
+    throw core::usage_error("trajectory.kinematic: the survey names no [[event]] file and no test is asked for", context.survey.name,
+                            "name the events, or state leave_one_out = true or rates = [1]");
 }
 
-trajectory::EventFigures position_events(const core::GnssData& all, const core::EventData& events, const Context& context,
+/// The record at each rate below its own; the others are counted.
+std::vector<trajectory::RateTest> test_rates(const trajectory::PointFixes& fixes, const std::vector<trajectory::LineSpan>& lines,
+                                             const KinematicStageOptions& o, core::Tally& tally) {
+  std::vector<trajectory::RateTest> out;
+  const double own = 1.0 / core::median_step(fixes.time), length = fixes.time.back() - fixes.time.front();
+  for (const double rate : o.rates) {
+    char name[40];
+    std::snprintf(name, sizeof name, "%g Hz", rate);
+    if (rate > own * (1.0 + rate_tolerance))
+      tally.count("rates above that of the record, not tested", name);
+    else if (length * rate < least_fixes)
+      tally.count("rates that leave too few fixes, not tested", name);
+    else
+      out.push_back(trajectory::test_rate(fixes, rate, lines, o));
+  }
+  return out;
+}
+
+trajectory::EventFigures position_events(const core::GnssData& all, const core::EventData* given, const Context& context,
                                          const KinematicStageOptions& o, const Output& to, core::Tally& tally) {
   const core::GnssData gnss = trajectory::usable_fixes(all, tally);
   if (gnss.size() < least_fixes)
     throw core::Error("trajectory.kinematic: " + std::to_string(gnss.size()) + " GNSS fixes are of use, " + std::to_string(least_fixes) +
                           " are the least",
                       context.survey.name, "see the counts of the stage that reads them");
-  const trajectory::EventPositions solved = trajectory::positions_at(gnss, events.time, o.method, o);
+  std::vector<trajectory::LineSpan> lines;
+  for (const io::LineWindow& w : io::line_windows(context.survey)) lines.push_back({w.id, w.start, w.end});
+  const trajectory::PointTrack track = trajectory::track_of(gnss, lines, o);
+  const core::EventData events = given ? *given : core::EventData{};
+  const std::vector<trajectory::EventPosition> solved = trajectory::positions_at(track, gnss.position.front(), events.time, o.method, o);
   trajectory::count_events(events, gnss, solved, context.survey.name, tally);
-  trajectory::EventFigures findings = trajectory::figures_of(events, gnss, solved, o.method);
+  trajectory::EventFigures findings = trajectory::figures_of(events, track, solved, o.method);
+  findings.leave_one_out = trajectory::leave_one_out(track, o);
+  findings.rates = test_rates(track.fixes, lines, o, tally);
 
-  io::write_text_file(to.folder / o.file, trajectory::table_of(events, solved, context.crs, context.vertical_unit));
+  if (given) io::write_text_file(to.folder / o.file, trajectory::table_of(events, solved, context.crs, context.vertical_unit));
   io::write_text_file(to.folder / "kinematic.json", io::to_json(core::reported(findings)));
+  if (!o.rates.empty()) io::write_text_file(to.folder / "rates.txt", trajectory::table_of(findings.rates));
   if (!o.leave_one_out) return findings;
-  const report::Chart chart = drawing(solved.test, gnss.time.front());
-  io::write_text_file(to.folder / "leave_one_out.txt", solved.test.table());
+  const report::Chart chart = drawing(findings.leave_one_out, gnss.time.front());
+  io::write_text_file(to.folder / "leave_one_out.txt", findings.leave_one_out.table());
   for (const char* name : {"leave_one_out.png", "leave_one_out.svg"}) write_drawing(to.folder / name, report::drawing(chart));
   return findings;
 }
@@ -105,7 +141,7 @@ trajectory::EventFigures position_events(const core::GnssData& all, const core::
 Entry kinematic_stage() {
   return once<position_events>("trajectory.kinematic",
                                "Positions of the GNSS antenna at events, by a Kalman filter from both sides; leave-one-out test.",
-                               {.check = expect_crs, .products = kinematic_products});
+                               {.check = expect_work, .products = kinematic_products});
 }
 
 }  // namespace swath::stages
