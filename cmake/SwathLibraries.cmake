@@ -9,6 +9,7 @@ find_package(CGAL REQUIRED)
 set(PCL_FIND_QUIETLY ON)
 find_package(PCL REQUIRED COMPONENTS common kdtree search sample_consensus)
 find_package(octomap REQUIRED)
+find_package(Ceres 2.1 REQUIRED)
 # Not as a component: PCL's finder then asks for VTK and that for MPI, which nothing here uses.
 find_library(SWATH_PCL_SEGMENTATION pcl_segmentation REQUIRED)
 find_package(tomlplusplus REQUIRED CONFIG)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/describe.h"
 
+#include "calib/block/block_theory.h"
+#include "calib/block/station_drift.h"
 #include "core/config/option_visitors.h"
 #include "core/config/result_visitors.h"
 #include "core/error.h"
@@ -131,6 +133,13 @@ std::vector<std::filesystem::path> write_docs(const std::filesystem::path& docs,
   page(docs / "planning.md", "Flight planning",
        "### Options of plan.toml\n\n" + core::option_table_markdown(core::described(plan)) + "\n### Keys of plan.json\n\n" +
            core::result_table_markdown(core::described_results(flight)));
+  calib::TheoryOptions theory;
+  const calib::TheoryTable theory_found;
+  const calib::DriftFound drift_found;
+  page(docs / "block.md", "Blocks of images",
+       "### Options of a theory file\n\n" + core::option_table_markdown(core::described(theory)) +
+           "\n### Keys of `block-theory --json`\n\n" + core::result_table_markdown(core::described_results(theory_found)) +
+           "\n### Keys of `block-drift --json`\n\n" + core::result_table_markdown(core::described_results(drift_found)));
   RunOptions run;
   page(docs / "run.md", "[run]", core::option_table_markdown(core::described(run)));
   return differing;

@@ -4,7 +4,7 @@
 set -euo pipefail
 packages=(
   build-essential cmake ninja-build ccache git ca-certificates
-  libeigen3-dev libcgal-dev libpcl-dev liboctomap-dev libtbb-dev libgdal-dev libproj-dev proj-data libpng-dev
+  libeigen3-dev libcgal-dev libpcl-dev liboctomap-dev libceres-dev libtbb-dev libgdal-dev libproj-dev proj-data libpng-dev
   libcairo2-dev fonts-dejavu-core # charts and maps, and their typeface
   libtomlplusplus-dev rapidjson-dev libcli11-dev libxxhash-dev libzstd-dev libgtest-dev
   python3 python3-venv clang-format

@@ -39,6 +39,8 @@ int main(int argc, char** argv) {
     swath::tools::add_list_commands(commands);
     swath::tools::add_plan_command(commands);
     swath::tools::add_budget_command(commands);
+    swath::tools::add_block_theory_command(commands);
+    swath::tools::add_block_drift_command(commands);
     swath::tools::add_simulate_command(commands);
     swath::tools::add_info_command(commands);
     swath::tools::add_volumes_command(commands);

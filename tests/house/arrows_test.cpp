@@ -30,8 +30,8 @@ const std::map<std::string, std::set<std::string>> arrows = {
     {"planning", {"core"}},
     {"simulate", {"core", "io", "planning"}},
     {"stages", {"core", "io", "filters", "terrain", "quality", "trajectory", "report", "georef", "calib"}},
-    {"pipeline", {"core", "io", "report", "planning", "stages"}},
-    {"tools", {"core", "io", "planning", "pipeline", "simulate"}},
+    {"pipeline", {"core", "io", "report", "planning", "stages", "calib"}},
+    {"tools", {"core", "io", "planning", "pipeline", "simulate", "calib"}},
 };
 
 /// Third party (as its includes begin) -> the only files that may include it.

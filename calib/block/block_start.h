@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Start values of a block: poses from stations and the direction of flight or from observed attitudes, points by intersection.
+#pragma once
+
+#include "calib/block/image_block.h"
+
+namespace swath::calib {
+
+/// Sets camera_R_local of an image from an attitude of the body and its camera's mounting.
+void set_attitude(ImageBlock& block, std::uint32_t image, const Eigen::Matrix3d& local_R_body);
+
+/// Poses of all images from stations: the antenna's lever arm is taken off, attitudes are those observed or else level, with the heading
+/// of the strip at its neighbours in time. Throws core::Error: an image without station, a strip of one image without attitude.
+void start_poses(ImageBlock& block);
+
+/// Points by intersection of their rays, the sum of squared distances least; control coordinates that are known replace those found.
+/// Points with one ray are left as they are. Returns the points whose rays are parallel.
+size_t intersect_points(ImageBlock& block);
+
+}  // namespace swath::calib

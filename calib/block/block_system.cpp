@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calib/block/block_system.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include "calib/block/block_costs.h"
+#include "core/error.h"
+#include "core/geo/frames.h"
+
+namespace swath::calib {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+std::array<double, 9> by_rows(const Matrix3d& M) {
+  return {M(0, 0), M(0, 1), M(0, 2), M(1, 0), M(1, 1), M(1, 2), M(2, 0), M(2, 1), M(2, 2)};
+}
+
+/// W with W' W = inverse of the covariance.
+std::array<double, 9> whitener(const Matrix3d& covariance) {
+  const Eigen::LLT<Matrix3d> llt(covariance);
+  if (llt.info() != Eigen::Success) throw std::invalid_argument("a covariance is not positive definite");
+  return by_rows(llt.matrixL().solve(Matrix3d::Identity()));
+}
+
+struct Pose {
+  std::array<double, 6> value{};
+  std::array<double, 9> base{};
+};
+
+}  // namespace
+
+struct BlockSystem::State {
+  ImageBlock& block;
+  BlockWeights weights;
+  int threads;
+  ceres::Problem problem;
+  std::vector<Pose> poses;
+  std::vector<std::array<double, 3>> points, boresight, antenna;
+  std::vector<CameraVector> cameras;
+  std::vector<Matrix3d> nominal;  // body_R_camera
+  std::vector<std::array<double, 6>> drifts;
+  std::vector<ceres::ResidualBlockId> ids;
+  std::vector<double*> order;  // of parameter blocks
+  LinearBlock shape;           // without rows
+
+  State(ImageBlock& b, const BlockWeights& w, int t) : block(b), weights(w), threads(t) {
+    if (weights.of_ray.empty()) weights.of_ray.assign(block.rays.size(), 1.0);
+    take_values();
+    add_parameters();
+    add_points();
+    add_rays();
+    add_navigation();
+    add_priors();
+  }
+
+  void take_values();
+  void give_values();
+  void add_parameters();
+  void add_points();
+  void add_rays();
+  void add_navigation();
+  void add_priors();
+  void add_node(NodeKind kind, size_t index, double* values, int size, const std::vector<int>& components);
+  template <class Vector>
+  void add_partly(NodeKind kind, size_t index, double* values, int size, const Vector& sigma);
+  template <int N, class Vector>
+  void add_prior(NodeKind kind, size_t index, double* values, const Vector& sigma);
+  void note(ObservationKind kind, size_t index, int rows, int component, ceres::ResidualBlockId id) {
+    const size_t row = shape.observations.empty() ? 0 : shape.observations.back().row + static_cast<size_t>(shape.observations.back().rows);
+    shape.observations.push_back({kind, static_cast<std::uint32_t>(index), component, row, rows});
+    ids.push_back(id);
+  }
+};
+
+void BlockSystem::State::take_values() {
+  for (const BlockImage& i : block.images) {
+    const Vector3d& X = i.position;
+    poses.push_back({{X.x(), X.y(), X.z(), 0.0, 0.0, 0.0}, by_rows(i.camera_R_local)});
+  }
+  for (const BlockPoint& p : block.points) points.push_back({p.position.x(), p.position.y(), p.position.z()});
+  for (const BlockCamera& c : block.cameras) {
+    cameras.push_back(c.value);
+    boresight.push_back({});
+    nominal.push_back(c.body_R_camera);
+    antenna.push_back({c.antenna.x(), c.antenna.y(), c.antenna.z()});
+  }
+  for (const StationDrift& d : block.drifts)
+    drifts.push_back({d.shift.x(), d.shift.y(), d.shift.z(), d.change.x(), d.change.y(), d.change.z()});
+}
+
+void BlockSystem::State::give_values() {
+  for (size_t i = 0; i < poses.size(); ++i) {
+    const auto& p = poses[i].value;
+    block.images[i].position = Vector3d(p[0], p[1], p[2]);
+    block.images[i].camera_R_local = core::exp_so3(Vector3d(p[3], p[4], p[5])) * block.images[i].camera_R_local;
+    poses[i].base = by_rows(block.images[i].camera_R_local);
+    std::fill(poses[i].value.begin() + 3, poses[i].value.end(), 0.0);
+  }
+  for (size_t i = 0; i < points.size(); ++i) block.points[i].position = Vector3d(points[i].data());
+  for (size_t c = 0; c < cameras.size(); ++c) {
+    block.cameras[c].value = cameras[c];
+    block.cameras[c].antenna = Vector3d(antenna[c].data());
+    block.cameras[c].body_R_camera = nominal[c] * core::exp_so3(-Vector3d(boresight[c].data()));
+  }
+  for (size_t d = 0; d < drifts.size(); ++d) {
+    block.drifts[d].shift = Vector3d(drifts[d].data());
+    block.drifts[d].change = Vector3d(drifts[d].data() + 3);
+  }
+}
+
+void BlockSystem::State::add_node(NodeKind kind, size_t index, double* values, int size, const std::vector<int>& components) {
+  problem.AddParameterBlock(values, size);
+  if (components.empty()) return problem.SetParameterBlockConstant(values);
+  std::vector<int> held;
+  for (int k = 0; k < size; ++k)
+    if (std::find(components.begin(), components.end(), k) == components.end()) held.push_back(k);
+  if (!held.empty()) problem.SetManifold(values, new ceres::SubsetManifold(size, held));
+  order.push_back(values);
+  for (size_t k = 0; k < components.size(); ++k) shape.node_of.push_back(static_cast<int>(shape.nodes.size()));
+  shape.nodes.push_back({kind, static_cast<std::uint32_t>(index), shape.unknowns, components});
+  shape.unknowns += static_cast<int>(components.size());
+}
+
+template <class Vector>
+void BlockSystem::State::add_partly(NodeKind kind, size_t index, double* values, int size, const Vector& sigma) {
+  std::vector<int> components;
+  for (int k = 0; k < size; ++k)
+    if (sigma[k] > 0.0) components.push_back(k);
+  add_node(kind, index, values, size, components);
+}
+
+void BlockSystem::State::add_parameters() {
+  for (size_t i = 0; i < poses.size(); ++i) add_node(NodeKind::image, i, poses[i].value.data(), 6, {0, 1, 2, 3, 4, 5});
+  for (size_t c = 0; c < cameras.size(); ++c) {
+    const BlockCamera& camera = block.cameras[c];
+    add_partly(NodeKind::camera, c, cameras[c].data(), camera_values, camera.sigma);
+    add_partly(NodeKind::boresight, c, boresight[c].data(), 3, camera.boresight_sigma);
+    add_partly(NodeKind::antenna, c, antenna[c].data(), 3, camera.antenna_sigma);
+  }
+  for (size_t d = 0; d < drifts.size(); ++d) add_node(NodeKind::drift, d, drifts[d].data(), 6, {0, 1, 2, 3, 4, 5});
+}
+
+void BlockSystem::State::add_points() {
+  const std::vector<char> use = determined_points(block);
+  int column = shape.unknowns;
+  for (size_t p = 0; p < points.size(); ++p) {
+    shape.point_column.push_back(use[p] ? column : -1);
+    if (!use[p]) continue;
+    problem.AddParameterBlock(points[p].data(), 3);
+    order.push_back(points[p].data());
+    column += 3;
+  }
+}
+
+void BlockSystem::State::add_rays() {
+  for (size_t r = 0; r < block.rays.size(); ++r) {
+    const ImageRay& ray = block.rays[r];
+    if (shape.point_column[ray.point] < 0) continue;
+    const std::uint32_t camera = block.images[ray.image].camera;
+    auto* cost = new ceres::AutoDiffCostFunction<RayCost, 2, 6, 3, camera_values>(new RayCost{
+        ray.x, ray.y, ray.sigma, poses[ray.image].base.data(), &weights.ray, &weights.of_ray[r], block.cameras[camera].distortion});
+    note(ObservationKind::ray, r, 2, 0,
+         problem.AddResidualBlock(cost, nullptr, poses[ray.image].value.data(), points[ray.point].data(), cameras[camera].data()));
+  }
+  for (size_t k = 0; k < block.control.size(); ++k) {
+    const BlockControl& c = block.control[k];
+    if (c.check || shape.point_column[c.point] < 0) continue;
+    for (int i = 0; i < 3; ++i) {
+      if (!c.known[static_cast<size_t>(i)]) continue;
+      auto* cost = new ceres::AutoDiffCostFunction<ControlCost, 1, 3>(new ControlCost{i, c.position[i], c.sigma[i], &weights.control});
+      note(ObservationKind::control, k, 1, i, problem.AddResidualBlock(cost, nullptr, points[c.point].data()));
+    }
+  }
+}
+
+void BlockSystem::State::add_navigation() {
+  for (size_t s = 0; s < block.stations.size(); ++s) {
+    const ImageStation& station = block.stations[s];
+    const std::uint32_t camera = block.images[station.image].camera;
+    Pose& pose = poses[station.image];
+    const int set = block.drift_of.empty() ? -1 : block.drift_of[s];
+    const double u = set < 0 ? 0.0
+                             : (block.images[station.image].time - block.drifts[static_cast<size_t>(set)].first) /
+                                   block.drifts[static_cast<size_t>(set)].span;
+    auto* cost = new StationCost{{station.position.x(), station.position.y(), station.position.z()},
+                                 whitener(station.covariance),
+                                 pose.base.data(),
+                                 &weights.station,
+                                 u};
+    const auto id = set < 0 ? problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3>(cost), nullptr,
+                                                       pose.value.data(), antenna[camera].data())
+                            : problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3, 6>(cost), nullptr,
+                                                       pose.value.data(), antenna[camera].data(), drifts[static_cast<size_t>(set)].data());
+    note(ObservationKind::station, s, 3, 0, id);
+  }
+  for (size_t a = 0; a < block.attitudes.size(); ++a) {
+    const ImageAttitude& attitude = block.attitudes[a];
+    const BlockImage& image = block.images[attitude.image];
+    const Matrix3d& B = block.cameras[image.camera].body_R_camera;
+    auto* cost = new AttitudeCost{by_rows(attitude.local_R_body * B), whitener(B.transpose() * attitude.covariance * B),
+                                  poses[attitude.image].base.data(), &weights.attitude};
+    note(ObservationKind::attitude, a, 3, 0,
+         problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AttitudeCost, 3, 6, 3>(cost), nullptr, poses[attitude.image].value.data(),
+                                  boresight[image.camera].data()));
+  }
+}
+
+template <int N, class Vector>
+void BlockSystem::State::add_prior(NodeKind kind, size_t index, double* values, const Vector& sigma) {
+  for (const UnknownNode& node : shape.nodes) {
+    if (node.kind != kind || node.index != index) continue;
+    for (size_t k = 0; k < node.components.size(); ++k) {
+      const int i = node.components[k];
+      if (!(sigma[i] < free_value)) continue;
+      auto* cost = new ceres::AutoDiffCostFunction<PriorCost, 1, N>(new PriorCost{i, values[i], sigma[i]});
+      note(ObservationKind::prior, static_cast<size_t>(node.first) + k, 1, 0, problem.AddResidualBlock(cost, nullptr, values));
+    }
+  }
+}
+
+void BlockSystem::State::add_priors() {
+  for (size_t c = 0; c < cameras.size(); ++c) {
+    add_prior<camera_values>(NodeKind::camera, c, cameras[c].data(), block.cameras[c].sigma);
+    add_prior<3>(NodeKind::boresight, c, boresight[c].data(), block.cameras[c].boresight_sigma);
+    add_prior<3>(NodeKind::antenna, c, antenna[c].data(), block.cameras[c].antenna_sigma);
+  }
+}
+
+BlockSystem::BlockSystem(ImageBlock& block, const BlockWeights& weights, int threads)
+    : state_(std::make_unique<State>(block, weights, std::max(1, threads))) {}
+BlockSystem::~BlockSystem() = default;
+
+void BlockSystem::weigh(const BlockWeights& weights) {
+  State& s = *state_;
+  s.weights.ray = weights.ray, s.weights.station = weights.station, s.weights.attitude = weights.attitude,
+  s.weights.control = weights.control;
+  if (!weights.of_ray.empty()) std::copy(weights.of_ray.begin(), weights.of_ray.end(), s.weights.of_ray.begin());
+}
+
+BlockConvergence BlockSystem::solve() {
+  constexpr size_t few_images = 40;  // a dense matrix is faster
+  State& s = *state_;
+  ceres::Solver::Options o;
+  o.linear_solver_type = s.poses.size() < few_images ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
+  auto* ordering = new ceres::ParameterBlockOrdering;
+  o.linear_solver_ordering.reset(ordering);
+  std::vector<double*> all;
+  s.problem.GetParameterBlocks(&all);
+  for (double* values : all) {
+    const bool point = !s.points.empty() && values >= s.points.front().data() && values <= s.points.back().data();
+    ordering->AddElementToGroup(values, point ? 0 : 1);
+  }
+  o.num_threads = s.threads;
+  o.max_num_iterations = 100;
+  o.function_tolerance = 1e-14;
+  o.parameter_tolerance = 1e-13;
+  o.gradient_tolerance = 1e-14;
+  o.initial_trust_region_radius = 1e8;  // start values are near: steps are those of Gauss and Newton
+  o.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(o, &s.problem, &summary);
+  s.give_values();
+  return {summary.termination_type == ceres::CONVERGENCE, static_cast<int>(summary.iterations.size()), 2.0 * summary.final_cost,
+          summary.message};
+}
+
+LinearBlock BlockSystem::linearise() {
+  State& s = *state_;
+  ceres::Problem::EvaluateOptions o;
+  o.parameter_blocks = s.order;
+  o.residual_blocks = s.ids;
+  o.num_threads = s.threads;
+  ceres::CRSMatrix J;
+  LinearBlock out = s.shape;
+  double cost = 0.0;
+  if (!s.problem.Evaluate(o, &cost, &out.residual, nullptr, &J)) throw std::runtime_error("a block's equations cannot be evaluated");
+  out.first.assign(J.rows.begin(), J.rows.end());
+  out.column = std::move(J.cols);
+  out.value = std::move(J.values);
+  return out;
+}
+
+int LinearBlock::points() const {
+  return static_cast<int>(std::count_if(point_column.begin(), point_column.end(), [](int c) { return c >= 0; }));
+}
+
+void find_drift_sets(ImageBlock& block) {
+  block.drifts.clear();
+  block.drift_of.assign(block.stations.size(), -1);
+  if (block.drift_sets == DriftSets::none) return;
+  std::map<int, std::pair<double, double>> spans;
+  const auto key = [&](const ImageStation& s) { return block.drift_sets == DriftSets::strip ? block.images[s.image].strip : 0; };
+  for (const ImageStation& s : block.stations) {
+    const double t = block.images[s.image].time;
+    const auto [it, is_new] = spans.try_emplace(key(s), t, t);
+    it->second = {std::min(it->second.first, t), std::max(it->second.second, t)};
+  }
+  std::map<int, int> number;
+  for (const auto& [strip, span] : spans) {
+    if (!(span.second > span.first))
+      throw core::Error("all stations of strip " + std::to_string(strip) + " are at one instant: its drift is not determined", "",
+                        "a strip needs two stations or more; state drift = \"none\" or \"block\", or another strip number");
+    number[strip] = static_cast<int>(block.drifts.size());
+    block.drifts.push_back({strip, span.first, span.second - span.first, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}});
+  }
+  for (size_t i = 0; i < block.stations.size(); ++i) block.drift_of[i] = number.at(key(block.stations[i]));
+}
+
+std::vector<char> determined_points(const ImageBlock& block) {
+  std::vector<int> rays(block.points.size(), 0), coordinates(block.points.size(), 0);
+  for (const ImageRay& r : block.rays) ++rays[r.point];
+  for (const BlockControl& c : block.control)
+    if (!c.check) coordinates[c.point] += static_cast<int>(std::count(c.known.begin(), c.known.end(), true));
+  std::vector<char> out(block.points.size(), 0);
+  for (size_t p = 0; p < out.size(); ++p) out[p] = rays[p] >= 2 || (rays[p] == 1 && coordinates[p] >= 3);
+  return out;
+}
+
+}  // namespace swath::calib

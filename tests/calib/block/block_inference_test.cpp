@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calib/block/block_inference.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "tests/calib/block/made_block.h"
+
+namespace swath::calib {
+namespace {
+
+/// Everything from the dense inverse.
+TEST(BlockInference, CovariancesAndRedundanciesAreThoseOfTheDenseInverse) {
+  test::Making m;
+  m.which.drift = DriftSets::strip;
+  m.attitudes = true;
+  m.camera_sigma.head<3>().setConstant(0.05);
+  ImageBlock block = test::make_block(m).given;
+  const LinearBlock l = BlockSystem(block, {}, 1).linearise();
+  const int all = l.unknowns + 3 * l.points();
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(l.residual.size()), all);
+  for (size_t row = 0; row < l.residual.size(); ++row)
+    for (size_t k = l.first[row]; k < l.first[row + 1]; ++k) A(static_cast<Eigen::Index>(row), l.column[k]) = l.value[k];
+  const Eigen::VectorXd s = A.colwise().norm().cwiseInverse();
+  const Eigen::MatrixXd scaled = A * s.asDiagonal();
+  const Eigen::MatrixXd C = s.asDiagonal() * (scaled.transpose() * scaled).inverse() * s.asDiagonal();
+  const BlockInference found = infer(l);
+  ASSERT_TRUE(found.determined());
+  constexpr double share = 1e-6;  // of a variance; condition 1e5
+  for (size_t n = 0; n < l.nodes.size(); ++n)
+    for (Eigen::Index k = 0; k < found.nodes[n].rows(); ++k) {
+      const double expected = C(l.nodes[n].first + k, l.nodes[n].first + k);
+      EXPECT_NEAR(found.nodes[n](k, k), expected, share * expected);
+    }
+  for (size_t p = 0; p < block.points.size(); ++p)
+    for (int k = 0; k < 3; ++k) {
+      const double expected = C(l.point_column[p] + k, l.point_column[p] + k);
+      EXPECT_NEAR(found.points[p](k, k), expected, share * expected);
+    }
+  double sum = 0.0;
+  for (const BlockObservation& o : l.observations)
+    for (size_t row = o.row; row < o.row + static_cast<size_t>(o.rows); ++row) {
+      const Eigen::RowVectorXd a = A.row(static_cast<Eigen::Index>(row));
+      const double r = 1.0 - (a * C * a.transpose()).value();
+      EXPECT_NEAR(found.redundancy[row], r, 1e-5);
+      if (o.kind == ObservationKind::ray && r > 0.01) {
+        const Eigen::Vector3d moves = C.middleRows(l.point_column[block.rays[o.index].point], 3) * a.transpose();
+        EXPECT_NEAR(found.outer[row], moves.norm() * delta0 / std::sqrt(r), 1e-3 * found.outer[row] + 1e-6);
+        EXPECT_NEAR(found.w[row], l.residual[row] / std::sqrt(r), 1e-3 * std::abs(l.residual[row] / std::sqrt(r)) + 1e-5);
+      }
+      sum += r;
+    }
+  EXPECT_NEAR(sum, static_cast<double>(l.residual.size()) - all, 1e-4);
+  EXPECT_NEAR(found.redundancy_of[0] + found.redundancy_of[1] + found.redundancy_of[2] + found.redundancy_of[3] + found.redundancy_of[4],
+              sum, 1e-3);
+}
+
+}  // namespace
+}  // namespace swath::calib

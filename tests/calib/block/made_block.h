@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A block with known truth: strips over hills, images with attitudes of some degrees, noise on all that is observed.
+#pragma once
+
+#include <cmath>
+#include <random>
+
+#include "calib/block/block_start.h"
+#include "calib/block/block_theory.h"
+#include "core/geo/frames.h"
+
+namespace swath::calib::test {
+
+struct MadeBlock {
+  ImageBlock truth, given;
+};
+
+struct Making {
+  unsigned seed = 1;
+  TheoryOptions layout;
+  TheoryCase which{"", DriftSets::none, ControlLayout::chains, 0};
+  CameraVector camera = CameraVector::Zero();        ///< true distortion and principal point; f is the layout's
+  CameraVector camera_sigma = CameraVector::Zero();  ///< as BlockCamera::sigma
+  double drift = 0.0;                                ///< m, sigma of shifts and changes
+  bool attitudes = false;                            ///< observed, with an unknown boresight of 0.01 rad
+  double attitude_sigma = 1e-4;                      ///< rad
+  Making() { layout.strips = 3, layout.images = 6; }
+};
+
+inline MadeBlock make_block(const Making& m) {
+  std::mt19937 random(m.seed);
+  std::normal_distribution<double> normal;
+  const auto vector = [&](double sigma) { return Eigen::Vector3d(sigma * normal(random), sigma * normal(random), sigma * normal(random)); };
+  MadeBlock out;
+  ImageBlock& t = out.truth;
+  t = theoretical_block(m.layout, m.which);
+  for (int k = 1; k < camera_values; ++k) t.cameras[0].value[k] = m.camera[k];
+  t.cameras[0].sigma = m.camera_sigma;
+  t.cameras[0].body_R_camera << 1, 0, 0, 0, -1, 0, 0, 0, -1;  // the image's x axis forward, its upper edge to the left
+  const Eigen::Matrix3d nominal = t.cameras[0].body_R_camera;
+  if (m.attitudes) {
+    t.cameras[0].boresight_sigma.setConstant(free_value);
+    t.cameras[0].body_R_camera = nominal * core::exp_so3(Eigen::Vector3d(0.01, -0.006, 0.008));
+  }
+  for (BlockPoint& p : t.points) p.position.z() = 60.0 * normal(random);
+  for (BlockImage& i : t.images) {
+    i.position += vector(20.0);
+    i.camera_R_local = core::exp_so3(vector(0.02)) * i.camera_R_local;
+  }
+  for (StationDrift& d : t.drifts) d.shift = vector(m.drift), d.change = vector(m.drift);
+  for (ImageRay& r : t.rays) {
+    const auto seen = image_of(t.cameras[0].value, t.cameras[0].distortion,
+                               t.images[r.image].camera_R_local * (t.points[r.point].position - t.images[r.image].position));
+    r.x = seen->x(), r.y = seen->y();
+  }
+  for (BlockControl& c : t.control) c.position = t.points[c.point].position;
+  for (size_t s = 0; s < t.stations.size(); ++s) {
+    const BlockImage& i = t.images[t.stations[s].image];
+    Eigen::Vector3d moved = Eigen::Vector3d::Zero();
+    if (t.drift_of[s] >= 0) {
+      const StationDrift& d = t.drifts[static_cast<size_t>(t.drift_of[s])];
+      moved = d.shift + (i.time - d.first) / d.span * d.change;
+    }
+    t.stations[s].position = i.position + moved;
+  }
+  if (m.attitudes)
+    for (std::uint32_t i = 0; i < t.images.size(); ++i)
+      t.attitudes.push_back({i, t.images[i].camera_R_local.transpose() * t.cameras[0].body_R_camera.transpose(),
+                             std::pow(m.attitude_sigma, 2) * Eigen::Matrix3d::Identity()});
+  ImageBlock& g = out.given;
+  g = t;
+  g.cameras[0].body_R_camera = nominal;
+  for (int k = 0; k < camera_values; ++k)
+    if (m.camera_sigma[k] > 0.0) g.cameras[0].value[k] = k == 0 ? t.cameras[0].value[0] + 0.02 : 0.0;
+  for (ImageRay& r : g.rays) r.x += r.sigma * normal(random), r.y += r.sigma * normal(random);
+  for (ImageStation& s : g.stations) s.position += std::sqrt(s.covariance(0, 0)) * vector(1.0);
+  for (ImageAttitude& a : g.attitudes) a.local_R_body = a.local_R_body * core::exp_so3(vector(m.attitude_sigma));
+  for (BlockControl& c : g.control) c.position += c.sigma.cwiseProduct(vector(1.0));
+  start_poses(g);
+  intersect_points(g);
+  return out;
+}
+
+}  // namespace swath::calib::test
