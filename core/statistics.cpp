@@ -19,6 +19,15 @@ double quantile(std::vector<double> values, double share, double none) {
   return values.empty() ? none : order_statistic(values, static_cast<size_t>(share * static_cast<double>(values.size() - 1)));
 }
 
+double interpolated_quantile(std::vector<double>& values, double share) {
+  const double at = share * static_cast<double>(values.size() - 1);
+  const auto number = static_cast<size_t>(at);
+  const double low = order_statistic(values, number);
+  if (number + 1 == values.size()) return low;
+  const double high = *std::min_element(values.begin() + static_cast<std::ptrdiff_t>(number) + 1, values.end());
+  return low + (at - static_cast<double>(number)) * (high - low);
+}
+
 double median(std::vector<double> values, double none) { return values.empty() ? none : order_statistic(values, values.size() / 2); }
 
 double median_step(const std::vector<double>& values) {

@@ -25,6 +25,16 @@ TEST(Statistics, QuantileIsAnOrderStatistic) {
   EXPECT_EQ(quantile({5, 1, 4, 2, 3}, 1.0), 5);
 }
 
+TEST(Statistics, AQuantileBetweenTwoValuesLiesOnTheLineBetweenThem) {
+  std::vector<double> v{4, 1, 3, 2};
+  EXPECT_DOUBLE_EQ(interpolated_quantile(v, 0.5), 2.5);
+  EXPECT_DOUBLE_EQ(interpolated_quantile(v, 0.9), 3.7);
+  EXPECT_DOUBLE_EQ(interpolated_quantile(v, 0.0), 1.0);
+  EXPECT_DOUBLE_EQ(interpolated_quantile(v, 1.0), 4.0);
+  std::vector<double> one{7};
+  EXPECT_DOUBLE_EQ(interpolated_quantile(one, 0.3), 7.0);
+}
+
 TEST(Statistics, MedianStep) {
   EXPECT_EQ(median_step({}), 0.0);
   EXPECT_EQ(median_step({1.0}), 0.0);
