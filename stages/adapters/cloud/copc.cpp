@@ -113,6 +113,14 @@ class Blocks {
     };
     return {index(0), index(1)};
   }
+  /// May the block hold points of such a file? By the box of its header, and a step of its coordinates around it.
+  bool meets(TileKey key, const io::LasHeader& file) const {
+    const auto within = [&](int axis, int index) {
+      const auto at = [&](double v) { return std::floor(v * context_.unit / side_); };
+      return at(file.min[axis] - file.scale[axis]) <= index && at(file.max[axis] + file.scale[axis]) >= index;
+    };
+    return within(0, key.ix) && within(1, key.iy);
+  }
   std::string name(TileKey key) const {
     const auto corner = [&](int i) {
       const double at = i * (side_ / context_.unit);
@@ -132,6 +140,7 @@ class Blocks {
 io::RecordStream stream_of(const AllRecords& all, const io::LasHeader& header, const Blocks* blocks, TileKey only) {
   return [&all, &header, blocks, only](const std::function<void(std::span<const std::uint8_t>)>& f) {
     for (const KeptRecords& k : all) {
+      if (blocks && !blocks->meets(only, k.header)) continue;
       io::LasRecoder recode(k.header, header, k.file.string());
       std::vector<std::uint8_t> chosen;
       io::each_las_records(k.file, k.header, [&](std::span<const std::uint8_t> some) {
