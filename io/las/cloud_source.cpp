@@ -83,11 +83,11 @@ bool has_weekless_times(const Survey& survey) {
 }
 
 CloudSource::CloudSource(const Survey& survey, size_t cloud, const CloudMap& map, const Eigen::Vector2d& rim, const CloudExtent& extent,
-                         LasPart part)
+                         const LasPart& part)
     : file_(survey.points[cloud]),
       number_(part.unused.has(core::Column::source) ? 0 : static_cast<std::uint32_t>(cloud + 1)),
       map_(map),
-      reader_(resolve(survey, file_.file), 0, std::move(part)),
+      reader_(resolve(survey, file_.file), 0, part),
       rim_(rim),
       extent_(extent),
       time_(times_of(file_)) {

@@ -38,7 +38,7 @@ class CloudSource {
   /// `cloud`: number in the survey's points; `rim`: largest coordinates of the survey's files; `extent`: of this one; `part`: of its
   /// points.
   CloudSource(const Survey& survey, size_t cloud, const CloudMap& map, const Eigen::Vector2d& rim, const CloudExtent& extent,
-              LasPart part = {});
+              const LasPart& part = {});
   /// False at the end.
   bool next(core::Block& out, size_t most, core::Tally& tally);
 
