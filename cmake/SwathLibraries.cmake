@@ -7,11 +7,11 @@ find_package(PROJ REQUIRED CONFIG)
 find_package(GDAL REQUIRED)
 find_package(CGAL REQUIRED)
 set(PCL_FIND_QUIETLY ON)
-find_package(PCL REQUIRED COMPONENTS common kdtree search sample_consensus)
+# Its common library alone: the algorithms come from PCL's headers (PCL_NO_PRECOMPILE). Its other libraries hold them for every type of point,
+# 87 MB that the program would load at each start.
+find_package(PCL REQUIRED COMPONENTS common)
 find_package(octomap REQUIRED)
 find_package(Ceres 2.1 REQUIRED)
-# Not as a component: PCL's finder then asks for VTK and that for MPI, which nothing here uses.
-find_library(SWATH_PCL_SEGMENTATION pcl_segmentation REQUIRED)
 find_package(tomlplusplus REQUIRED CONFIG)
 find_package(CLI11 REQUIRED CONFIG)
 find_package(PNG REQUIRED)
