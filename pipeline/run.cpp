@@ -5,17 +5,19 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "io/text/output_file.h"
+#include "io/text/value_file.h"
 #include "pipeline/delivery.h"
 #include "pipeline/engine/outcome.h"
 #include "pipeline/engine/strips.h"
+#include "pipeline/engine/survey_stages.h"
 #include "pipeline/engine/tiles.h"
 #include "pipeline/input_guard.h"
 #include "pipeline/summary.h"
 #include "pipeline/work/released_points.h"
 #include "pipeline/work/survey_piece.h"
-#include "stages/area.h"
 
 namespace swath::pipeline {
 namespace {
@@ -26,52 +28,12 @@ using stages::Grain;
 
 constexpr const char* discarded_name = ".swath-discarded";
 
-void prepare_map(RunState& run) {
-  run.context.crs = core::Crs(run.plan.survey.crs);
-  if (works_on_the_map(run.plan)) require_projected(run.context.crs, run.plan.survey_file);
-  run.context.unit = run.context.crs.metres_per_unit();
-  run.context.vertical_unit = run.context.crs.vertical_metres_per_unit();
-  run.context.product_crs = run.plan.survey.crs;
-  run.context.heights = run.context.crs.vertical_name();
-  if (!run.context.crs.has_height_unit()) {
-    if (run.plan.survey.height_unit)
-      run.context.vertical_unit = run.plan.survey.height_unit->value;
-    else if (!run.plan.survey.points.empty())
-      run.context.vertical_unit = run.context.unit;
-    if (run.context.vertical_unit != 1.0)
-      run.context.product_crs = "COMPD_CS[\"" + run.context.crs.name() + " + height\"," + run.context.crs.wkt1() +
-                                ",VERT_CS[\"height\",VERT_DATUM[\"unknown\",2005],UNIT[\"" +
-                                (run.context.vertical_unit == 0.3048 ? "foot" : "height unit") + "\"," +
-                                core::format_number(run.context.vertical_unit) + "],AXIS[\"Up\",UP]]]";
-  }
-  // What comes from the records of a flight has ellipsoidal heights; a cloud's source knows about its own.
-  if (run.context.crs.heights() == core::Heights::unknown) run.context.heights = core::ellipsoidal_heights;
-  stages::set_area(run.context, run.context.area.box, 0.0);
-  for (const PlannedStage& s : run.plan.stages)
-    if (s.stage->is_source()) s.stage->locate(run.context);
-}
-
-void prepare(RunState& run) {
-  if (run.plan.survey_file.empty())
-    throw core::usage_error("no survey to run on", run.plan.config.string(),
-                            "name it with --survey DIR/survey.toml, or as run.survey in the config");
-  for (const PlannedStage& s : run.plan.stages)
-    if (run.plan.survey.crs.empty() && s.stage->is_source()) run.plan.survey.crs = s.stage->own_crs(run.plan.survey);
-  run.context.tile_side = run.plan.run.tile.value;
-  run.context.grids = &run.grids;
-  run.context.threads = run.threads;
-  run.context.progress = [&run](double share, std::string_view now) { run.progress.share(share, now); };
-  if (works_on_the_map(run.plan) || !run.plan.survey.crs.empty()) prepare_map(run);
-  run.inputs = inputs_of(run.plan);
-  run.fingerprints = fingerprints(run.plan, run.inputs);
-  if (!run.fingerprints.empty()) run.context.project = project_id(run.fingerprints.back());
-  const Day day = creation_day();
-  run.context.creation_year = day.year;
-  run.context.creation_day = day.of_year;
-  while (run.source < run.plan.stages.size() && !run.stage(run.source).is_source()) ++run.source;
-  for (size_t i = 0; i < run.plan.stages.size(); ++i)
-    if (run.works_on(i, Grain::strip)) run.last_strip_stage = i;
-  run.folders = run.fingerprints;
+/// Several processes may be about to work on what is there.
+void expect_no_foreign(const RunState& run, const std::set<std::string>& valid) {
+  const std::set<std::string> foreign = foreign_folders(run.work, valid);
+  if (foreign.empty()) return;
+  throw core::usage_error("it holds work of another plan, or of other inputs: " + *foreign.begin(), run.work.string(),
+                          "finish that plan, or choose another --output; `swath run` without --wave would remove it");
 }
 
 /// Of an earlier run of this plan that was killed, or whose work was kept.
@@ -79,6 +41,7 @@ void keep_whole(RunState& run) {
   if (makes_points(run.plan)) choose_strips(run);
   std::set<std::string> valid;
   for (size_t i = 0; i < run.plan.stages.size(); ++i) valid.insert(run.folder(i).filename().string());
+  if (run.share) expect_no_foreign(run, valid);
   sweep(run.work, valid);
   std::error_code absent;
   fs::remove_all(run.output / discarded_name, absent);
@@ -99,57 +62,6 @@ void keep_whole(RunState& run) {
                      std::to_string(earlier.pieces) + " pieces of other stages were done by an earlier run and are not done again");
 }
 
-/// What readers hand on is as large as their files, and read as fast from these.
-bool is_read_again(const RunState& run, size_t number) { return run.stage(number).info().name.starts_with("readers."); }
-
-/// Is what an earlier run has kept of a survey stage enough? IMU records are not needed where the stages that use them are done; their
-/// piece is, for what the report says of them.
-bool is_resumed(const RunState& run, size_t number) {
-  if (!is_survey_piece_done(run.folder(number))) return false;
-  if (!is_read_again(run, number)) return true;
-  for (size_t i = number + 1; i < run.plan.stages.size(); ++i)
-    if (run.works_on(i, Grain::survey) && run.stage(i).info().uses(stages::Product::of<core::ImuData>()) &&
-        !is_survey_piece_done(run.folder(i)))
-      return false;
-  return true;
-}
-
-/// What no stage behind this one has a use for.
-std::vector<stages::Product> last_uses(const RunState& run, size_t number) {
-  std::vector<stages::Product> last = run.stage(number).info().needs_products;
-  std::erase_if(last, [&](stages::Product p) {
-    for (size_t i = number + 1; i < run.plan.stages.size(); ++i)
-      if (run.stage(i).info().uses(p)) return true;
-    return false;
-  });
-  return last;
-}
-
-void run_survey_stages(RunState& run) {
-  for (size_t i = 0; i < run.plan.stages.size(); ++i) {
-    if (!run.works_on(i, Grain::survey)) continue;
-    if (run.stage(i).info().takes(stages::Product::shots)) find_strips(run);
-    begin_products(run, i);
-    run.progress.begin(std::string(run.stage(i).info().name), 0, "");
-    const bool resumed = is_resumed(run, i);
-    run.context.memory = run.memory.free();
-    run.context.last_uses = last_uses(run, i);
-    SurveyPiece piece = resumed
-                            ? resume_survey_piece(run.context, run.folder(i))
-                            : run_survey_piece(run.stage(i), run.context, run.folder(i),
-                                               !is_read_again(run, i) || run.stage(i).info().makes(stages::Product::of<core::ImuData>()));
-    run.progress.end();
-    run.resumed += resumed;
-    run.accounts[i].tally.add(piece.tally);
-    run.accounts[i].findings = std::move(piece.findings);
-    run.accounts[i].seconds += piece.seconds;
-    run.made[i] = std::move(piece.files);
-    run.context.earlier.push_back(run.context.output);
-    if (const Value* geometry = run.accounts[i].findings.find("geometry"))
-      if (const Value* doubt = geometry->find("doubt")) run.context.records.put(stages::GeometryDoubt{doubt->as_text()});
-  }
-}
-
 /// Survey stages, strips, tile stages and merges.
 size_t steps(const RunState& run) {
   const bool points = makes_points(run.plan);
@@ -168,10 +80,17 @@ void remove_if_empty(const fs::path& top) {
   if (fs::is_directory(top, ec) && fs::is_empty(top, ec)) fs::remove(top, ec);
 }
 
-}  // namespace
+/// The survey stages are done by one process; another that comes to do the same finds them done.
+bool is_survey_done(const RunState& run) {
+  for (size_t i = 0; i < run.plan.stages.size(); ++i)
+    if (run.works_on(i, Grain::survey) && !run.stage(i).info().name.starts_with("readers.") && !is_survey_piece_done(run.folder(i)))
+      return false;
+  return true;
+}
 
-Outcome run(Plan& plan, Progress& progress, const std::string& command) {
+Outcome run_alone(Plan& plan, Progress& progress, const std::string& command, std::vector<Input> inputs) {
   RunState run(plan, progress);
+  run.inputs = std::move(inputs);
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(run.threads));
   const auto start = std::chrono::steady_clock::now();
   fit_memory(run.memory.bytes());
@@ -219,6 +138,64 @@ Outcome run(Plan& plan, Progress& progress, const std::string& command) {
     if (made_output) remove_if_empty(run.output);
     throw;
   }
+}
+
+/// One without the folder is on a machine that does not see it, or comes too early.
+void expect_work(const fs::path& work) {
+  if (!fs::is_directory(work))
+    throw core::usage_error("there is no work folder", work.string(),
+                            "do wave 0 first; where that is done: does this machine see the folder?");
+}
+
+/// The last wave. A process that comes when it is done finds the report.
+Outcome finish_shared(Plan& plan, Progress& progress, const std::string& command, std::vector<Input> inputs) {
+  const fs::path output = fs::absolute(plan.run.output), work = output / work_name, file = output / "report.json";
+  if (!fs::is_directory(work) && fs::is_regular_file(file)) {
+    Value report = io::read_value_file(file);
+    const Value* limits = report.find("limits");
+    return {limits && !missed_limits(*limits).empty() ? core::Exit::quality_missed : core::Exit::done, std::move(report)};
+  }
+  expect_work(work);
+  return run_alone(plan, progress, command, std::move(inputs));
+}
+
+}  // namespace
+
+Outcome run(Plan& plan, Progress& progress, const std::string& command) { return run_alone(plan, progress, command, {}); }
+
+Outcome run_share(Plan& plan, Progress& progress, const std::string& command, const Share& share, std::vector<Input> inputs) {
+  const std::vector<Wave> waves = waves_of(plan);
+  if (share.wave >= waves.size())
+    throw core::usage_error("there is no wave " + std::to_string(share.wave), "--wave",
+                            "this plan has the waves 0 to " + std::to_string(waves.size() - 1) + ": see `swath tasks`");
+  const Wave wave = waves[share.wave];
+  if (!wave.is_shared() && share.part != 1) return {};  // one process does it
+  if (wave.kind == WaveKind::finish) return finish_shared(plan, progress, command, std::move(inputs));
+  RunState run(plan, progress);
+  run.share = share;
+  run.inputs = std::move(inputs);
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(run.threads));
+  fit_memory(run.memory.bytes());
+  expect_own(run.work);
+  if (!run.plan.survey_file.empty()) check_output(run.plan);
+  prepare(run);
+  if (!share.fingerprint.empty() && share.fingerprint != run.fingerprints.back())
+    throw core::usage_error("config, survey or program have changed since the tasks were listed", run.plan.config.string(),
+                            "list them anew with `swath tasks`, for another --output");
+  if (share.wave > 0) expect_work(run.work);
+  std::error_code ec;
+  fs::create_directories(run.work, ec);
+  if (ec) io::throw_system_error("cannot make the output folder", run.output, ec.value());
+  if (makes_points(run.plan)) choose_strips(run);
+  if (share.wave == 0 && is_survey_done(run)) return {};
+  const WorkLock lock(run.work, share.wave == 0 ? WorkLock::Use::alone_when_free : WorkLock::Use::together);
+  run.progress.expect(std::vector<double>(steps(run), 0.0));
+  if (share.wave == 0) keep_whole(run);
+  run_survey_stages(run);
+  if (share.wave > 0) run_strips(run);
+  if (wave.kind == WaveKind::tiles) run_tile_stages(run);
+  lock.expect_there();
+  return {};
 }
 
 }  // namespace swath::pipeline

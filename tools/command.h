@@ -12,6 +12,7 @@
 #include "core/config/value.h"
 #include "pipeline/plan.h"
 #include "pipeline/progress.h"
+#include "pipeline/run.h"
 
 namespace swath::tools {
 
@@ -49,6 +50,8 @@ void print_json(const core::Value& value);
 /// A number with its unit from the command line, in SI units; `example`: one that would do. Throws core::Error.
 double quantity(core::Dimension dimension, const std::string& text, const std::string& option, const std::string& example);
 
+/// Summary and missed limits of a run, where it has come to its report; the exit code.
+int print_outcome(const pipeline::Outcome& outcome, const pipeline::Plan& plan, const Loudness& loudness);
 /// Runs a pipeline and prints its summary; the exit code. `typed`: the command line, for provenance.
 int run_pipeline(const pipeline::Request& request, const Loudness& loudness, const std::string& typed);
 
@@ -62,6 +65,7 @@ void add_simulate_command(Commands& commands);
 void add_info_command(Commands& commands);
 void add_volumes_command(Commands& commands);
 void add_profile_command(Commands& commands);
+void add_task_commands(Commands& commands);
 void add_docs_command(Commands& commands);
 
 }  // namespace swath::tools

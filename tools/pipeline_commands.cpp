@@ -15,15 +15,19 @@
 
 namespace swath::tools {
 
-int run_pipeline(const pipeline::Request& request, const Loudness& loudness, const std::string& typed) {
-  pipeline::Plan plan = pipeline::make_plan(request);
-  pipeline::Progress progress(loudness.voice());
-  const pipeline::Outcome outcome = pipeline::run(plan, progress, typed);
+int print_outcome(const pipeline::Outcome& outcome, const pipeline::Plan& plan, const Loudness& loudness) {
+  if (!outcome.report.is_object()) return static_cast<int>(outcome.code);
   if (!loudness.quiet && !loudness.json_log) print(pipeline::summary(outcome.report, plan.run.output));
   if (outcome.code == core::Exit::quality_missed)
     for (const pipeline::Warning& w : pipeline::missed_limits(*outcome.report.find("limits")))
       std::fprintf(stderr, "swath: done, but a quality limit was missed: %s\n", core::printable(w.text).c_str());
   return static_cast<int>(outcome.code);
+}
+
+int run_pipeline(const pipeline::Request& request, const Loudness& loudness, const std::string& typed) {
+  pipeline::Plan plan = pipeline::make_plan(request);
+  pipeline::Progress progress(loudness.voice());
+  return print_outcome(pipeline::run(plan, progress, typed), plan, loudness);
 }
 
 namespace {
@@ -32,7 +36,16 @@ struct Given {
   pipeline::Request request;
   Loudness loudness;
   bool json = false;
+  std::optional<size_t> wave;
+  std::string part = "1/1";
 };
+
+int run(const Given& a, const std::string& typed) {
+  if (!a.wave) return run_pipeline(a.request, a.loudness, typed);
+  pipeline::Plan plan = pipeline::make_plan(a.request);
+  pipeline::Progress progress(a.loudness.voice());
+  return print_outcome(pipeline::run_share(plan, progress, typed, pipeline::read_share(*a.wave, a.part)), plan, a.loudness);
+}
 
 int check(const Given& a) {
   if (pipeline::is_flight_plan(a.request.config)) {
@@ -69,9 +82,11 @@ void add_pipeline_commands(Commands& commands) {
       "Examples\n  swath run configs/survey.toml --survey demo/survey.toml --output out\n  swath run configs/survey.toml --survey "
       "demo/survey.toml --set run.memory=\"4 GB\" --threads 8 --json-log\n\nRun a pipeline on a survey; the same command continues a run "
       "that was killed.",
-      [a, &commands] { return run_pipeline(a->request, a->loudness, commands.typed()); });
+      [a, &commands] { return run(*a, commands.typed()); });
   add_request(*c, a->request);
   c->add_option("--threads", a->request.threads, "Threads, in place of the config's (0: one per processor)");
+  auto* wave = c->add_option("--wave", a->wave, "Do one wave of a run that several processes do together (`swath tasks` lists them)");
+  c->add_option("--part", a->part, "Part of the wave, i/n: 2/8")->needs(wave);
   c->add_flag("--quiet", a->loudness.quiet, "Nothing but errors");
   c->add_flag("--json-log", a->loudness.json_log, "Progress as one JSON object per line on standard error");
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "core/config/result_visitors.h"
+#include "core/error.h"
 #include "pipeline/flight_plan/budget.h"
 #include "pipeline/flight_plan/plan_files.h"
 #include "tools/command.h"
@@ -16,6 +17,8 @@ struct PlanArguments {
 };
 
 int plan_flight(const PlanArguments& a) {
+  if (pipeline::is_pipeline(a.request.config))
+    throw core::usage_error("it is a pipeline, not a flight plan", a.request.config.string(), "`swath tasks` lists the tasks of its run");
   const planning::FlightPlan plan = pipeline::write_flight_plan(a.request);
   if (a.quiet) return 0;
   a.json ? print_json(core::reported(plan)) : print(pipeline::plan_text(plan));

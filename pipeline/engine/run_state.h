@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "pipeline/engine/account.h"
+#include "pipeline/engine/share.h"
 #include "pipeline/grid_store.h"
 #include "pipeline/memory.h"
 #include "pipeline/plan.h"
@@ -47,18 +48,25 @@ struct RunState {
   std::unique_ptr<SquareCounts> squares;
   std::set<TileKey> surface_tiles;  ///< without a point of their own, but a surface reaches into them from their neighbours
   bool has_products = false;        ///< of a tile stage that is finished
+  std::optional<Share> share;       ///< what this process does where several do the run together
   std::uint64_t resumed = 0, damaged = 0, read_again = 0;
 
   const stages::Stage& stage(size_t number) const { return *plan.stages[number].stage; }
+  /// Is the wave the one that this process has a share of?
+  bool shares(WaveKind kind, size_t number) const;
+  /// Which pieces of such work are this process's: all, where it does the run alone.
+  std::vector<bool> own_pieces(const std::vector<double>& work) const;
   bool works_on(size_t number, stages::Grain g) const { return stage(number).works_on(g); }
   /// The stage's own folder of work.
   std::filesystem::path folder(size_t number) const;
 };
 
-constexpr const char* products_name = "products";
+constexpr const char *products_name = "products", *work_name = ".swath";
 
 /// What the stage writes from now on goes to its own folder, from which it is delivered at the end of the run.
 void begin_products(RunState& run, size_t number);
+/// Throws core::Error (usage): a process has come to work on a wave before the one in front of it is done.
+[[noreturn]] void wave_too_early(const RunState& run, const std::string& missing);
 /// Whatever the stage has finished is there.
 void expect_made(const RunState& run, size_t number);
 

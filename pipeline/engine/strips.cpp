@@ -210,6 +210,10 @@ void run_strips(RunState& run) {
   for (const stages::Strip& s : strips) records += s.records;
   expect_times(run, records);
   run.progress.begin("strips", records, "returns");
+  const bool is_shared = run.shares(WaveKind::strips, 0);
+  std::vector<double> work;
+  for (const stages::Strip& s : strips) work.push_back(static_cast<double>(s.records));
+  const std::vector<bool> mine = run.own_pieces(work);
   std::vector<std::string> names;
   bool has_room = false;  // for those that are not done
   for (size_t i = 0; i < strips.size(); ++i) {
@@ -217,13 +221,19 @@ void run_strips(RunState& run) {
     std::snprintf(name, sizeof name, "strip_%04zu", i + 1);
     names.emplace_back(name);
     const fs::path strip_folder = strips_folder / name;
+    if (is_shared && !mine[i]) continue;
+    std::optional<PieceLock> lock;
+    if (is_shared) lock.emplace(strip_folder);
     if (TileStore::is_committed(strip_folder)) {
       ++run.resumed;
       run.progress.skip(strips[i].records);
+    } else if (run.share && !is_shared) {
+      wave_too_early(run, strips[i].name + " is missing");
     } else {
       if (!std::exchange(has_room, true)) expect_room_for_strips(run), expect_room_for_fullest_tile(run);
       stream_strip(run, strips[i], strip_folder);
     }
+    if (is_shared) continue;
     const Value note = io::parse_json(TileStore::note(strip_folder), strip_folder.string());
     if (!note.is_array() || note.items().size() != run.last_strip_stage + 1) throw damaged_work(strip_folder);
     for (size_t k = 0; k <= run.last_strip_stage; ++k) {
@@ -233,6 +243,7 @@ void run_strips(RunState& run) {
     }
   }
   run.progress.end();
+  if (is_shared) return;
   if (run.accounts[source].in == 0)
     throw core::Error("no laser return to work on", run.plan.survey_file.string(),
                       "are the lines' times those of the records? see `swath info` of the laser file");
@@ -244,7 +255,7 @@ void run_strips(RunState& run) {
     throw core::Error("no return could be georeferenced: the trajectory covers none of them", run.plan.survey_file.string(),
                       "compare the time scales with `swath info` of the laser and trajectory files");
   run.squares = std::make_unique<SquareCounts>(*run.store);
-  expect_room_for_tiles(run);
+  if (!run.share) expect_room_for_tiles(run);
 }
 
 }  // namespace swath::pipeline

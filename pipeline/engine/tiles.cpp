@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using stages::Grain;
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* groups_file = "groups.done";
+constexpr const char *groups_file = "groups.done", *merge_file = "merge.done";
 
 /// What a group takes to work on, for the progress: its memory holds the points around it and its rasters, and so one point alone in a tile
 /// is not taken for next to nothing.
@@ -92,6 +92,12 @@ std::vector<TileGroup> groups_of(RunState& run, size_t number, const std::vector
   if (info.gives.empty() || !info.gives_products.empty() || run.works_on(number, Grain::merge)) return fitted(single_tiles(keys, measure));
   // Those of a run that was killed, so that what it has done counts.
   const fs::path file = run.folder(number) / groups_file;
+  if (run.share) {
+    // Every process comes to the same groups, whatever it holds.
+    const std::vector<TileGroup> groups = single_tiles(keys, measure);
+    if (!fs::exists(file)) write_boxes(file, groups);
+    return fitted(groups);
+  }
   std::vector<TileGroup> groups = grouped_tiles(keys, read_boxes(file), measure), open;
   std::copy_if(groups.begin(), groups.end(), std::back_inserter(open),
                [&](const TileGroup& g) { return !fs::exists(done_file(run, number, g)); });
@@ -139,7 +145,8 @@ PieceRecord run_group(RunState& run, size_t number, const TileGroup& group, bool
 
 /// Are the points of a tile needed no more once the stage has worked on it? A store that an earlier run has kept whole stays so.
 bool releases(const RunState& run, size_t number) {
-  return number == last_reader(run) && !run.keeps_store && run.stage(number).halo() <= 0.0 && run.stage(number).info().gives.empty();
+  return number == last_reader(run) && !run.keeps_store && !run.share && run.stage(number).halo() <= 0.0 &&
+         run.stage(number).info().gives.empty();
 }
 
 /// The tiles that the stage works on.
@@ -173,12 +180,46 @@ void add_pieces(RunState& run, size_t number, const std::vector<TileGroup>& grou
   }
 }
 
+/// Of several processes' groups those of this one, by points: what a group takes depends on what the process holds.
+std::vector<TileGroup> own_groups(const RunState& run, const std::vector<TileGroup>& groups) {
+  constexpr double points_of_a_tile = 1e4;  // what a tile takes that holds none
+  std::vector<double> work;
+  for (const TileGroup& g : groups) work.push_back(static_cast<double>(g.own) + points_of_a_tile);
+  const std::vector<bool> mine = run.own_pieces(work);
+  std::vector<TileGroup> out;
+  for (size_t i = 0; i < groups.size(); ++i)
+    if (mine[i]) out.push_back(groups[i]);
+  return out;
+}
+
+void expect_done(const RunState& run, size_t number, const std::vector<TileGroup>& groups) {
+  const auto open = std::count_if(groups.begin(), groups.end(), [&](const TileGroup& g) { return !fs::exists(done_file(run, number, g)); });
+  if (open > 0)
+    wave_too_early(run, std::to_string(open) + " of " + std::to_string(groups.size()) + " tiles of " +
+                            std::string(run.stage(number).info().name) + " are missing");
+}
+
+/// Does a later stage read what the merge makes, its findings or a product? A surface is there with its tiles.
+bool is_read_later(const RunState& run, size_t number) {
+  const stages::Info& info = run.stage(number).info();
+  const auto reads = [&](const stages::Stage& later) {
+    return later.implied(true) == info.name || later.implied(false) == info.name ||
+           std::any_of(info.gives_products.begin(), info.gives_products.end(),
+                       [&](stages::Product p) { return !has_surface({p}) && later.info().uses(p); });
+  };
+  for (size_t i = number + 1; i < run.plan.stages.size(); ++i)
+    if (reads(run.stage(i))) return true;
+  return false;
+}
+
 void run_tiles(RunState& run, size_t number) {
   const stages::Info& info = run.stage(number).info();
   const StageTiles tiles = stage_tiles(run, number);
   const double left = run.memory.left(), free = std::max(0.0, left);
   const auto budget = static_cast<std::uint64_t>(free);
-  const std::vector<TileGroup> groups = groups_of(run, number, tiles.keys, budget);
+  const bool is_shared = run.shares(WaveKind::tiles, number);
+  const std::vector<TileGroup> all = groups_of(run, number, tiles.keys, budget), groups = is_shared ? own_groups(run, all) : all;
+  if (run.share && !is_shared) expect_done(run, number, groups);
   for (const TileGroup& g : groups)
     if (!fs::exists(done_file(run, number, g)))
       run.memory.require(static_cast<double>(g.bytes), left + run.memory.reserve(),
@@ -206,6 +247,8 @@ void run_tiles(RunState& run, size_t number) {
           const TileQueue::Piece piece = queue.take();
           const TileGroup& group = groups[piece.number()];
           PieceRecord& note = notes[piece.number()];
+          std::optional<PieceLock> lock;
+          if (is_shared) lock.emplace(done_file(run, number, group));
           if (const fs::path done = done_file(run, number, group); fs::exists(done)) {
             std::optional<PieceRecord> read = read_record(done);
             if (!read) throw damaged_work(done);
@@ -223,6 +266,7 @@ void run_tiles(RunState& run, size_t number) {
       tbb::simple_partitioner());
   run.progress.end();
   run.resumed += again;
+  if (is_shared) return;
   keep_surface_tiles(run, number, tiles.fringe);
   add_pieces(run, number, groups, std::move(notes));
   if (!info.gives.empty()) run.store->add_overlay(run.folder(number), info.gives);
@@ -245,6 +289,21 @@ void run_merge(RunState& run, size_t number) {
   run.accounts[number].tally.add(job.tally);
   for (auto& [key, value] : job.findings.members()) run.accounts[number].findings[key] = std::move(value);
   run.accounts[number].seconds += seconds_since(start);
+}
+
+/// The first process that comes to a later wave merges for all. The last wave merges again, for the report.
+void share_merge(RunState& run, size_t number) {
+  if (!is_read_later(run, number)) return;
+  const fs::path done = run.folder(number) / merge_file;
+  const PieceLock lock(done);
+  if (fs::exists(done)) return;
+  std::vector<PieceFile> before = run.made[number];
+  run.made[number].clear();
+  run_merge(run, number);
+  std::vector<fs::path> files;
+  for (const PieceFile& f : run.made[number]) files.push_back(run.folder(number) / f.name);
+  write_record(done, {piece_files(run.folder(number), std::move(files)), {}});
+  replace_files(run.made[number], std::move(before));
 }
 
 }  // namespace
@@ -282,12 +341,14 @@ void expect_room_for_tiles(RunState& run) {
 void run_tile_stages(RunState& run) {
   for (size_t i = run.last_strip_stage + 1; i < run.plan.stages.size(); ++i) {
     if (!run.works_on(i, Grain::tile) && !run.works_on(i, Grain::merge)) continue;
+    if (run.share && !run.works_on(i, Grain::tile) && !is_read_later(run, i)) continue;
     begin_products(run, i);
     if (run.works_on(i, Grain::tile))
       run_tiles(run, i);
     else
       for (const stages::Product p : run.stage(i).info().gives_products) run.grids.add(p, run.folder(i));
-    if (run.works_on(i, Grain::merge)) run_merge(run, i);
+    if (run.shares(WaveKind::tiles, i)) return;
+    if (run.works_on(i, Grain::merge)) run.share ? share_merge(run, i) : run_merge(run, i);
     if (!run.works_on(i, Grain::survey)) run.context.earlier.push_back(run.context.output);
     // What a comparison alone says of data that are refused is not kept.
     run.has_products = run.has_products || (!run.stage(i).info().name.starts_with("quality.") && fs::exists(run.context.output));

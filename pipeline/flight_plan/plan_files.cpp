@@ -180,6 +180,8 @@ bool is_flight_plan(const fs::path& config) {
   return given.find("flight") != nullptr && given.find("sensor") != nullptr && given.find("stage") == nullptr;
 }
 
+bool is_pipeline(const fs::path& config) { return fs::is_regular_file(config) && io::read_value_file(config).find("stage") != nullptr; }
+
 planning::FlightPlan check_flight_plan(const PlanRequest& request) {
   const PlanInput input = read_plan_input(request);
   return planning::make_flight_plan(input.options, input.area, input.ground);

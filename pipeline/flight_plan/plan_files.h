@@ -16,6 +16,8 @@ planning::FlightPlan write_flight_plan(const PlanRequest& request);
 
 /// Is that config a flight plan, and no pipeline? No, too, where there is no such file.
 bool is_flight_plan(const std::filesystem::path& config);
+/// Does the file hold stages, as configs of `swath run` do?
+bool is_pipeline(const std::filesystem::path& config);
 /// The same without writing anything.
 planning::FlightPlan check_flight_plan(const PlanRequest& request);
 

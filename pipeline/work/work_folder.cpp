@@ -95,11 +95,12 @@ void expect_own(const fs::path& folder) {
   }
 }
 
-WorkLock::WorkLock(const fs::path& work)
+WorkLock::WorkLock(const fs::path& work, Use use)
     : file_(work / lock_name), fd_(::open(file_.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0666)) {
   if (fd_ < 0) io::throw_system_error("cannot write", file_, errno);
   // Between the two calls the run that had the lock may have ended and removed the file, and another may have made it anew.
-  if (::flock(fd_, LOCK_EX | LOCK_NB) || !is_there()) {
+  const int way = use == Use::together ? LOCK_SH | LOCK_NB : use == Use::alone ? LOCK_EX | LOCK_NB : LOCK_EX;
+  if (::flock(fd_, way) || !is_there()) {
     ::close(fd_);
     throw core::usage_error("another run is at work in this output folder", work.parent_path().string(),
                             "wait for it to end, or choose another --output");
@@ -118,6 +119,13 @@ void WorkLock::expect_there() const {
   if (is_there()) return;
   throw core::SystemError("the output folder was removed or replaced while the run was at work", file_.parent_path().parent_path().string(),
                           "run the same command again");
+}
+
+std::set<std::string> foreign_folders(const fs::path& work, const std::set<std::string>& valid) {
+  std::set<std::string> out;
+  for (const auto& entry : fs::directory_iterator(work))
+    if (const std::string name = entry.path().filename().string(); is_stage_folder(entry) && !valid.contains(name)) out.insert(name);
+  return out;
 }
 
 void sweep(const fs::path& work, const std::set<std::string>& valid) {

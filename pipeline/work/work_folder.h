@@ -16,11 +16,12 @@ constexpr const char* released_name = "released.done";  ///< beside the strips, 
 /// Throws core::Error (usage) where it is a link or not a folder, or holds anything that no run makes: it would be emptied.
 void expect_own(const std::filesystem::path& folder);
 
-/// One run at a time in one output folder.
+/// One run at a time in one output folder; the processes that do one run together hold it together.
 class WorkLock {
  public:
-  /// `work`: the folder. Throws core::Error (usage) where another run is at work in it.
-  explicit WorkLock(const std::filesystem::path& work);
+  enum class Use { alone, alone_when_free, together };
+  /// `work`: the folder. Throws core::Error (usage) where another run is at work in it; `alone_when_free` waits for it to end.
+  explicit WorkLock(const std::filesystem::path& work, Use use = Use::alone);
   ~WorkLock();
   WorkLock(const WorkLock&) = delete;
   WorkLock& operator=(const WorkLock&) = delete;
@@ -34,6 +35,9 @@ class WorkLock {
   std::filesystem::path file_;
   int fd_;
 };
+
+/// Folders of stages in the work folder that are not one of the `valid`: work of another plan, or of other inputs.
+std::set<std::string> foreign_folders(const std::filesystem::path& work, const std::set<std::string>& valid);
 
 /// Whatever lies in the work folder and is not one of the `valid` folders goes.
 void sweep(const std::filesystem::path& work, const std::set<std::string>& valid);

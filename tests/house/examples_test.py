@@ -61,7 +61,7 @@ def call(*words, cwd=None):
 
 def flags_of(text):
     """{flag: takes a value} of a command's help."""
-    lines = re.findall(r"^  ((?:-\w,)?--[\w-]+)( [A-Z]+(?: \.\.\.)?)?(?:  |$)", text.split("Options:")[-1], re.M)
+    lines = re.findall(r"^  ((?:-\w,)?--[\w-]+)( [A-Z]+(?: \.\.\.)?)?(?: Needs: --[\w-]+)?(?:  |$)", text.split("Options:")[-1], re.M)
     return {name: bool(value) for names, value in lines for name in names.split(",")}
 
 
@@ -178,7 +178,7 @@ class Examples(unittest.TestCase):
             elif words[0] == "simulate":
                 done = self.judge_simulate(words)
             else:
-                if words[0] in ("check", "explain"):
+                if words[0] in ("check", "explain", "tasks"):
                     self.assertEqual(self.judge_run(words).returncode, 0)
                 done = call(*words, cwd=self.folder)
             missing = re.search(r"error: (\S+): .*no such file", done.stderr, re.I)
