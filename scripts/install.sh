@@ -6,6 +6,7 @@ packages=(
   build-essential cmake ninja-build ccache git ca-certificates
   libeigen3-dev libcgal-dev libpcl-dev liboctomap-dev libceres-dev libtbb-dev libgdal-dev libproj-dev proj-data libpng-dev
   libcairo2-dev fonts-dejavu-core # charts and maps, and their typeface
+  pkg-config libcpp-httplib-dev # the web server of swath view
   libtomlplusplus-dev rapidjson-dev libcli11-dev libxxhash-dev libzstd-dev libgtest-dev
   python3 python3-venv clang-format
   rtklib # runs, it is not linked: raw GNSS observations go through its rnx2rtkp

@@ -46,6 +46,7 @@ int main(int argc, char** argv) {
     swath::tools::add_info_command(commands);
     swath::tools::add_volumes_command(commands);
     swath::tools::add_profile_command(commands);
+    swath::tools::add_view_command(commands);
     swath::tools::add_docs_command(commands);
     const int code = commands.call(argc, argv);
     errno = 0;

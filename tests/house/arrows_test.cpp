@@ -31,7 +31,7 @@ const std::map<std::string, std::set<std::string>> arrows = {
     {"simulate", {"core", "io", "planning"}},
     {"stages", {"core", "io", "filters", "terrain", "quality", "trajectory", "report", "georef", "calib"}},
     {"pipeline", {"core", "io", "report", "planning", "stages", "calib"}},
-    {"tools", {"core", "io", "planning", "pipeline", "simulate", "calib"}},
+    {"tools", {"core", "io", "report", "planning", "pipeline", "simulate", "calib"}},
 };
 
 /// Third party (as its includes begin) -> the only files that may include it.
@@ -46,6 +46,8 @@ const std::vector<std::pair<std::regex, std::regex>> doors = {
     {std::regex("ceres/.*"), std::regex("calib/.*\\.cpp")},
     {std::regex("tbb/.*|oneapi/.*"), std::regex("(pipeline|simulate|io|stages/adapters)/.*\\.cpp|core/parallel\\.cpp")},
     {std::regex("CLI/.*"), std::regex("tools/.*")},
+    {std::regex("zlib\\.h"), std::regex("tools/view/packed\\.cpp")},
+    {std::regex("httplib\\.h"), std::regex("tools/view/server\\.cpp")},
 };
 
 struct Include {
