@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The bill of materials of a built program, CycloneDX 1.5 as JSON: crates of the lock file, Debian packages of the libraries that it loads
-and of the headers that it was compiled from.
+"""The bill of materials of a built program, CycloneDX 1.5 as JSON: crates and npm packages of the lock files, Debian packages of the libraries that it
+loads and of the headers that it was compiled from.
 
   python3 scripts/sbom.py [--program build/release/tools/swath] [--output swath.cdx.json]
 
 The same program on the same system gives the same bytes. Exit 77 where the system has no dpkg to ask.
 """
 import argparse
+import base64
 import hashlib
 import json
 import re
@@ -19,6 +20,7 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parent.parent
 LOCK = SOURCE / "io/laz/Cargo.lock"
+PAGES_LOCK = SOURCE / "web/package-lock.json"
 ROOT = "swath"
 # Debian's short names of licences, where SPDX has another.
 SPDX = {"Expat": "MIT", "MIT/X11": "MIT", "Apache-2": "Apache-2.0", "BSD-2-clause": "BSD-2-Clause", "BSD-3-clause": "BSD-3-Clause",
@@ -58,6 +60,26 @@ def crates(build):
             c["pedigree"] = {"notes": "read_gps_time of point formats 6 to 10 is repaired in the build (io/laz/crates.cmake)"}
         components.append(c)
     return components, edges
+
+
+# --- packages of the pages
+
+def npm(build):
+    """Those that the pages of swath view are bundled from, where the program has pages; esbuild, which bundles them, is not in them."""
+    if not (build / "web/pages/pages.cpp").exists():
+        return []
+    components = []
+    for path, p in json.loads(PAGES_LOCK.read_text())["packages"].items():
+        if not path or p.get("dev"):
+            continue
+        name = path.removeprefix("node_modules/")
+        algorithm, content = p["integrity"].split("-", 1)
+        c = {"type": "library", "bom-ref": f"pkg:npm/{name}@{p['version']}", "name": name, "version": p["version"], "purl": f"pkg:npm/{name}@{p['version']}",
+             "hashes": [{"alg": algorithm.upper().replace("SHA", "SHA-"), "content": base64.b64decode(content).hex()}]}
+        if "license" in p:
+            c["licenses"] = [{"expression": p["license"]}]
+        components.append(c)
+    return components
 
 
 # --- Debian packages
@@ -145,6 +167,9 @@ def bill(program):
     headers = compiled_from(build, owner)
     libraries, reference = debian(({p for p in needs if p != ROOT} | set().union(*needs.values()) | headers))
     components, edges = crates(build)
+    pages = npm(build)
+    components += pages
+    edges[ROOT] = [*edges[ROOT], *(c["bom-ref"] for c in pages)]
     for package, wanted in needs.items():
         mine = ROOT if package == ROOT else reference[package]
         edges[mine] = sorted({*edges.get(mine, []), *(reference[w] for w in wanted)})

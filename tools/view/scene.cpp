@@ -30,7 +30,11 @@ Value crs_table(const core::Crs& crs, double north) {
   double east_m = 1.0, north_m = 1.0, up_m = 1.0;
   out["name"] = crs.empty() ? std::string("no coordinate reference system is stated") : crs.name();
   out["unit"] = crs.empty() ? std::string() : crs.is_geographic() ? std::string("deg") : short_unit(crs.unit_name());
-  out["heightUnit"] = crs.empty() ? std::string() : crs.has_height_unit() ? short_unit(crs.vertical_unit_name()) : std::string("m");
+  // As everywhere in LAS, heights without a stated unit are in that of the plane.
+  const bool in_metres = !crs.empty() && crs.is_geographic() && !crs.has_height_unit();
+  out["heightUnit"] = crs.empty() ? std::string()
+                      : in_metres ? std::string("m")
+                                  : short_unit(crs.has_height_unit() ? crs.vertical_unit_name() : crs.unit_name());
   if (!crs.empty() && crs.is_geographic()) {
     north_m = metres_per_degree;
     east_m = metres_per_degree * std::cos(north * 3.14159265358979323846 / 180.0);

@@ -110,7 +110,7 @@ export class SectionPanel {
       down = true;
     }
     g.stroke();
-    const stretch = ((bottom - top) / (high - low)) / ((right - left) / section.length);
+    const stretch = ((bottom - top) / (high - low) / cloud.frame.toMetres[2]) / ((right - left) / section.length);
     const z = (v) => v.toFixed(1);
     this.note.textContent = `${section.length.toFixed(1)} m long, strip of ${(2 * section.halfWidth).toFixed(1)} m, ${section.found.toLocaleString('en').replaceAll(',', '\u202f')} points of those shown, ` +
       `${z(low + pad)} to ${z(high - pad)} ${this.heightUnit}, heights ${stretch.toPrecision(2)} times` + (section.ground.some((p) => !Number.isNaN(p.z)) ? '; white: terrain model' : '');

@@ -66,7 +66,10 @@ export class Terrain {
     const low = known[Math.floor(known.length * 0.01)], high = known[Math.floor(known.length * 0.99)];
     const rgba = new Uint8Array(4 * nx * ny);
     for (let k = 0; k < nx * ny; ++k) {
-      if (shade[k] < 0) continue;
+      if (shade[k] < 0) {
+        rgba.set([150, 150, 140, 0], 4 * k);
+        continue;
+      }
       const tone = rampColour('height', (this.heights[k] - low) / (high - low || 1));
       // Grey with a breath of the height's colour: points on it stay readable.
       for (let c = 0; c < 3; ++c) rgba[4 * k + c] = Math.min(255, (shade[k] / 255) * (0.82 * 255 + 0.18 * tone[c]) * 1.05);
@@ -79,6 +82,19 @@ export class Terrain {
     texture.generateMipmaps = true;
     texture.needsUpdate = true;
     return texture;
+  }
+
+  /** Mean of the heights up to so many cells away; NaN where there are none. */
+  near(i, j, cells) {
+    let sum = 0, n = 0;
+    for (let b = Math.max(0, j - cells); b <= Math.min(this.ny - 1, j + cells); ++b)
+      for (let a = Math.max(0, i - cells); a <= Math.min(this.nx - 1, i + cells); ++a) {
+        const h = this.heights[b * this.nx + a];
+        if (Number.isNaN(h)) continue;
+        sum += h;
+        ++n;
+      }
+    return n ? sum / n : NaN;
   }
 
   made() {
@@ -98,8 +114,10 @@ export class Terrain {
     for (const j of js)
       for (const i of is) {
         const h = this.heights[j * nx + i];
-        known[at] = Number.isNaN(h) ? 0 : 1;
-        position.set(this.frame.sceneOf(this.west + (i + 0.5) * this.cell, this.south + (j + 0.5) * this.cell, known[at] ? h : 0), 3 * at);
+        // Vertices beside the model continue its rim: the texture cuts it off where it ends.
+        const height = Number.isNaN(h) ? this.near(i, j, step) : h;
+        known[at] = Number.isNaN(height) ? 0 : 1;
+        position.set(this.frame.sceneOf(this.west + (i + 0.5) * this.cell, this.south + (j + 0.5) * this.cell, known[at] ? height : 0), 3 * at);
         uv.set([(i + 0.5) / nx, (j + 0.5) / ny], 2 * at);
         ++at;
       }

@@ -53,16 +53,33 @@ export class View {
     this.draw();
   }
 
-  /** The whole of the data: obliquely from the south, or from above. */
+  /** The whole of the data, as large as it fits: obliquely from the south, or from above. */
   home(oblique) {
-    const half = Math.tan((this.camera.fov * Math.PI) / 360);
-    const [w, d, h] = this.frame.size;
-    let distance = Math.max(d / 2 / half, w / 2 / half / this.camera.aspect) * 1.06 + h / 2;
-    if (oblique) distance = Math.max((d * 0.72 + h) / 2 / half, w / 2 / half / this.camera.aspect) * 1.06 + d * 0.25;
-    distance = Math.max(distance, 2);
-    this.controls.target.set(0, 0, 0);
-    const tilt = oblique ? (38 * Math.PI) / 180 : 1e-4;
-    this.camera.position.set(0, -distance * Math.sin(tilt), distance * Math.cos(tilt));
+    const tilt = oblique ? (40 * Math.PI) / 180 : 1e-4;
+    const from = new Vector3(0, -Math.sin(tilt), Math.cos(tilt));
+    const [w, d, h] = this.frame.size.map((v, k) => (v / 2) * (k === 2 ? this.world.scale.z : 1));
+    const target = new Vector3();
+    let distance = 4 * this.radius * Math.max(1, this.world.scale.z);
+    for (let turn = 0; turn < 12; ++turn) {
+      this.camera.position.copy(from).multiplyScalar(distance).add(target);
+      this.camera.lookAt(target);
+      this.camera.near = distance / 1000;
+      this.camera.far = distance * 10;
+      this.camera.updateProjectionMatrix();
+      this.camera.updateMatrixWorld(true);
+      const low = new Vector2(Infinity, Infinity), high = new Vector2(-Infinity, -Infinity);
+      for (let k = 0; k < 8; ++k) {
+        const p = new Vector3(k & 1 ? w : -w, k & 2 ? d : -d, k & 4 ? h : -h).project(this.camera);
+        low.min(p);
+        high.max(p);
+      }
+      const half = Math.tan((this.camera.fov * Math.PI) / 360) * distance;
+      target.x += ((low.x + high.x) / 2) * half * this.camera.aspect;
+      target.y += (((low.y + high.y) / 2) * half) / Math.max(0.3, Math.cos(tilt));
+      distance *= Math.max(0.3, Math.max(high.x - low.x, high.y - low.y) / 1.92);
+    }
+    this.controls.target.copy(target);
+    this.camera.position.copy(from).multiplyScalar(Math.max(distance, 2)).add(target);
     this.controls.update();
     this.draw();
   }
