@@ -62,7 +62,8 @@ bool is_copc(const std::filesystem::path& file) {
 /// COPC files are read by the page as it needs them; it opens on a small part of their points. Of others it gets a part, once.
 int serve_scene(const ViewArguments& a, const ProductFiles& files) {
   const bool streams = !files.clouds.empty() && std::all_of(files.clouds.begin(), files.clouds.end(), is_copc);
-  SceneOptions options{.points = streams ? first_points : served_points, .terrain_side = 2048, .line_vertices = 1500000};
+  SceneOptions options{
+      .points = streams ? first_points : served_points, .terrain_side = 2048, .line_vertices = 1500000, .streams = streams};
   if (!streams && a.points > 0) options.points = a.points;
   std::string about;
   const auto prepare = [&] {

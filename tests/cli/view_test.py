@@ -142,10 +142,11 @@ class Saved(Pages):
             at = b.value("""(() => { const r = document.getElementById('view').getBoundingClientRect(); return [r.left + r.width / 2, r.top + r.height / 2]; })()""")
             b.click(*at)
             values = dict(b.wait("document.getElementById('picked').hidden ? null : Array.from(document.querySelectorAll('#values tr'), r => [r.children[0].textContent, r.children[1].textContent])"))
-            # The middle of the picture is the middle of the survey.
+            # The middle of the picture is the place that the camera looks at.
             points = b.value("swathView.scene.points")
+            target = b.value("swathView.frame.mapOfScene(swathView.view.controls.target)")
             for name, k in (("easting", 0), ("northing", 1)):
-                middle = (points["low"][k] + points["high"][k]) / 2
+                middle = target[k]
                 self.assertAlmostEqual(float(values[name].split()[0]), middle, delta=0.08 * (points["high"][k] - points["low"][k]) + 1)
             self.assertRegex(values["class"], r"^\d+ \w+")
             self.assertRegex(values["return"], r"^\d of \d$")
@@ -202,6 +203,23 @@ class Saved(Pages):
             self.assertIn("<h2>Figures</h2>", text)
             b.screenshot(self.folder / "off.png")
             self.assertGreater(len(pixels((self.folder / "off.png").read_bytes())), 20)
+
+    def test_without_webgl_it_says_so(self):
+        page, _ = self.saved("--points", "1000")
+        with self.browser(options=("--disable-3d-apis",)) as b:
+            self.assertEqual(b.open(page.as_uri()), "failed")
+            self.assertIn("WebGL 2 is switched off or not there", b.value("document.getElementById('message').textContent"))
+            b.value("document.getElementById('report-open').click()")
+            self.assertIn("Figures", b.value("document.getElementById('report').innerText"))
+
+    def test_a_damaged_page_says_so(self):
+        page, _ = self.saved("--points", "1000")
+        text = page.read_text()
+        for old, new, words in (('id="blob-points.x">', 'id="blob-points.q">', 'does not hold "points.x"'), ('"step": ', '"step" ', "table cannot be read")):
+            page.write_text(text.replace(old, new, 1))
+            with self.browser() as b:
+                self.assertEqual(b.open(page.as_uri()), "failed")
+                self.assertIn(words, b.value("document.getElementById('message').textContent"))
 
     def test_texts_of_files_are_text(self):
         page, _ = self.saved()

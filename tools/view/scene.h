@@ -18,6 +18,7 @@ struct SceneOptions {
   std::uint64_t points = 1000000;      ///< at most about as many
   int terrain_side = 1024;             ///< cells along the longer side of the terrain model
   std::size_t line_vertices = 300000;  ///< of the contours
+  bool streams = false;                ///< the page reads the clouds itself and shows more and more of their points
 };
 
 /// The files that are shown of a folder; empty where it has none of a kind.

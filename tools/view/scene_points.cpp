@@ -86,7 +86,7 @@ std::string add_points(Scene& scene, const ProductFiles& files, const SceneOptio
   if (!b.sigma_v.empty()) packer.add("sigma_v", std::span<const std::uint16_t>(millimetres_of(b.sigma_v)));
   about["columns"] = packer.table;
   std::move(packer.blobs.begin(), packer.blobs.end(), std::back_inserter(scene.blobs));
-  scene.about = report::count_text(b.size()) + " of " + report::count_text(sample.of) + " points";
+  scene.about = (options.streams ? std::string() : report::count_text(b.size()) + " of ") + report::count_text(sample.of) + " points";
   return sample.crs;
 }
 

@@ -54,7 +54,7 @@ class Page {
 
   /** Takes points from COPC files as the view needs them, in place of the sample. */
   async stream() {
-    this.octrees = new Octrees(this.scene.copc, this.cloud, this.view, this.scene.budget, () => {
+    this.octrees = new Octrees(this.scene.copc, this.cloud, this.view, { budget: this.scene.budget, measured: this.distance(this.scene.points.of) }, () => {
       if (this.sample && this.octrees.loaded.size > 0) {
         this.cloud.remove(this.sample);
         this.sample = null;
@@ -73,9 +73,14 @@ class Page {
     if (this.octrees?.fault) $('shown').textContent += `; some could not be read: ${this.octrees.fault}`;
   }
 
+  /** Metres between as many points, spread evenly. */
+  distance(n) {
+    return 1.1 * Math.sqrt(Math.max(1, this.frame.size[0] * this.frame.size[1]) / Math.max(1, n));
+  }
+
   /** Points on the screen are as large as their distance to the next, so that surfaces close. */
   spacing(n) {
-    this.cloud.material.uniforms.spacing.value = 1.1 * Math.sqrt(Math.max(1, this.frame.size[0] * this.frame.size[1]) / Math.max(1, n));
+    this.cloud.material.uniforms.spacing.value = this.distance(n);
   }
 
   legend() {
@@ -110,8 +115,6 @@ class Page {
     $('section-close').onclick = () => this.closeSection();
     $('section-save').onclick = () => save('section.csv', this.panel.csv(this.frame), 'text/csv');
     $('half-width').onchange = () => this.ends && this.showSection(...this.ends);
-    $('report-open').onclick = () => document.body.classList.toggle('report');
-    $('report-close').onclick = () => document.body.classList.remove('report');
     this.panel = new SectionPanel($('section-canvas'), $('section-note'), this.units.height);
     this.pointer();
   }
@@ -232,6 +235,8 @@ class Page {
 const HINT = 'Drag: turn. Right button: move. Wheel: zoom. Click a point: its values.';
 
 async function start() {
+  $('report-open').onclick = () => document.body.classList.toggle('report');
+  $('report-close').onclick = () => document.body.classList.remove('report');
   say('Unpacking …', 'loading');
   try {
     const page = new Page(readScene());

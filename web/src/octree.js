@@ -6,9 +6,9 @@ const FINE = 1.3;   // pixels between points below which a node is not divided f
 const FLYING = 3;   // nodes asked for at a time
 
 export class Octrees {
-  /** `onPoints`: called when something new is to be drawn; `budget`: points. */
-  constructor(addresses, cloud, view, budget, onPoints) {
-    Object.assign(this, { cloud, view, budget, onPoints, files: [], loaded: new Map(), flying: new Set(), failed: new Set(), fault: '' });
+  /** `onPoints`: called when something new is to be drawn; `budget`: points; `measured`: metres between those of the whole cloud. */
+  constructor(addresses, cloud, view, { budget, measured }, onPoints) {
+    Object.assign(this, { cloud, view, budget, measured, onPoints, files: [], loaded: new Map(), flying: new Set(), failed: new Set(), fault: '' });
     this.worker = new Worker('stream.js');
     this.worker.onmessage = ({ data }) => this.answer(data);
     this.opened = new Promise((resolve, reject) => Object.assign(this, { resolve, reject }));
@@ -31,8 +31,8 @@ export class Octrees {
       const chunk = this.cloud.add({ ...data.columns, shuffled: true }, id);
       this.loaded.set(id, { chunk, used: performance.now() });
     }
-    this.onPoints();
     this.update();
+    this.onPoints();
   }
 
   box(file, [level, x, y, z]) {
@@ -95,6 +95,7 @@ export class Octrees {
       this.worker.postMessage({ file, key });
     }
     this.idle = this.flying.size === 0;
-    if (finest < Infinity) this.cloud.material.uniforms.spacing.value = 1.3 * finest;
+    // Where a node has all points of its place, they lie as far apart as they were measured, not as its level allows.
+    if (finest < Infinity) this.cloud.material.uniforms.spacing.value = Math.max(1.3 * finest, this.measured);
   }
 }
