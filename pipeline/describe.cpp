@@ -92,12 +92,27 @@ std::string stage_list() {
   return out;
 }
 
+std::vector<std::string> stage_names() { return stages::stage_names(); }
+
+std::vector<std::string> settable_options() {
+  std::vector<std::string> out;
+  const auto add = [&](const std::string& table, const core::Describe& d) {
+    for (const core::OptionDoc& o : core::document_options(d))
+      if (!o.is_table && o.path.find("[]") == std::string::npos) out.push_back(table + "." + o.path);
+  };
+  RunOptions run;
+  add("run", core::described(run));
+  for (const std::string& name : stage_names()) {
+    const auto stage = stages::make_stage(name);
+    add(name.substr(name.rfind('.') + 1), describe_of(*stage));
+  }
+  return out;
+}
+
 std::string stage_help(const std::string& name) {
   const auto s = stages::make_stage(name);
   if (!s) {
-    std::vector<std::string> names;
-    for (const auto& e : stages::registry()) names.emplace_back(e.name);
-    const std::string near = core::nearest(name, names);
+    const std::string near = core::nearest(name, stage_names());
     throw core::usage_error("'" + name + "' is no stage", "", near.empty() ? "`swath stages` lists them" : "did you mean '" + near + "'?");
   }
   return std::string(s->info().name) + ": " + std::string(s->info().summary) + "\n\n  works on  " + grains_text(*s) + "\n  needs     " +

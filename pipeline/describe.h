@@ -15,6 +15,11 @@ std::string stage_list();
 /// Everything a stage says of itself. Throws core::Error (usage) for an unknown name, naming the nearest.
 std::string stage_help(const std::string& name);
 
+/// Names of the stages, in the order of the chain.
+std::vector<std::string> stage_names();
+/// What --set takes, as it takes it: "dtm.cell", "run.tile"; options within lists of tables are left out.
+std::vector<std::string> settable_options();
+
 /// JSON Schema of pipelines and, under "$defs", of surveys and of report.json.
 core::Value schema();
 

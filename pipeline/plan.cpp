@@ -10,6 +10,7 @@
 #include "io/survey/read_survey.h"
 #include "io/survey/record_checks.h"
 #include "io/text/value_file.h"
+#include "pipeline/jobs/config_folder.h"
 #include "stages/registry.h"
 
 namespace swath::pipeline {
@@ -88,12 +89,6 @@ void apply_set(Value& tree, const std::string& set) {
                           near.empty() ? "its stages: run, " + known : "did you mean '" + near + "'?");
 }
 
-std::vector<std::string> stage_names() {
-  std::vector<std::string> names;
-  for (const auto& e : stages::registry()) names.emplace_back(e.name);
-  return names;
-}
-
 /// What a stage uses of others and the plan does not name, where there are points for it.
 void add_implied(const stages::Stage& stage, const core::Location& where, const std::string& path, Plan& plan) {
   bool cloud = false, points = false;
@@ -126,7 +121,7 @@ void read_stages(const Value& tree, Plan& plan, std::vector<Fault>& faults) {
     }
     auto stage = stages::make_stage(type->as_text());
     if (!stage) {
-      const std::string near = core::nearest(type->as_text(), stage_names());
+      const std::string near = core::nearest(type->as_text(), stages::stage_names());
       faults.push_back({type->where, path + ".type", "'" + type->as_text() + "' is no stage",
                         near.empty() ? "`swath stages` lists them" : "did you mean '" + near + "'?"});
       continue;
@@ -301,15 +296,35 @@ Value with_origin(const core::Describe& d, const Value& written) {
   return walk(core::effective_values(d), &written);
 }
 
+/// The survey that the request or the config names. Its faults join those of the config.
+void read_plan_survey(const Request& request, Plan& plan, std::vector<Fault>& faults) {
+  if (request.survey_tree)
+    plan.survey_file = "command line";
+  else if (!request.survey.empty())
+    plan.survey_file = request.survey;
+  else if (plan.run.survey)
+    plan.survey_file = plan.config.parent_path() / *plan.run.survey;
+  if (plan.survey_file.empty()) return;
+  if (!request.survey_tree && !std::filesystem::exists(plan.survey_file))
+    throw core::usage_error("no such file", plan.survey_file.string(), "check the name of the survey");
+  try {
+    const Value survey = request.survey_tree ? *request.survey_tree : io::read_value_file(plan.survey_file);
+    plan.survey = io::read_survey(survey, plan.survey_file.parent_path());
+    io::check_records(plan.survey, survey);
+  } catch (const core::Error& e) {
+    if (faults.empty()) throw;
+    const core::Location nowhere;
+    faults.push_back({nowhere, "", e.text(), ""});
+  }
+}
+
 }  // namespace
 
 Plan make_plan(const Request& request) {
   Plan plan;
-  plan.config = request.config;
-  if (!std::filesystem::exists(request.config))
-    throw core::usage_error("no such file", request.config.string(), "check the name of the config");
-  Value tree = io::read_value_file(request.config);
-  if (!tree.is_object()) throw core::usage_error("a pipeline is a table with [run] and [[stage]]", request.config.string());
+  plan.config = find_config(request.config);
+  Value tree = io::read_value_file(plan.config);
+  if (!tree.is_object()) throw core::usage_error("a pipeline is a table with [run] and [[stage]]", plan.config.string());
   for (const std::string& s : request.sets) apply_set(tree, s);
 
   std::vector<Fault> faults;
@@ -327,27 +342,9 @@ Plan make_plan(const Request& request) {
   if (faults.empty()) check_order(plan, faults);
   if (faults.empty()) check_memory(plan, faults);
 
-  if (!request.survey.empty()) {
-    plan.survey_file = request.survey;
-  } else if (plan.run.survey) {
-    plan.survey_file = request.config.parent_path() / *plan.run.survey;
-  }
   if (!request.output.empty()) plan.run.output = request.output;
   if (request.threads >= 0) plan.run.threads = request.threads;
-
-  if (!plan.survey_file.empty()) {
-    if (!std::filesystem::exists(plan.survey_file))
-      throw core::usage_error("no such file", plan.survey_file.string(), "check the name of the survey");
-    try {
-      const Value survey = io::read_value_file(plan.survey_file);
-      plan.survey = io::read_survey(survey, plan.survey_file.parent_path());
-      io::check_records(plan.survey, survey);
-    } catch (const core::Error& e) {
-      if (faults.empty()) throw;
-      const core::Location nowhere;
-      faults.push_back({nowhere, "", e.text(), ""});
-    }
-  }
+  read_plan_survey(request, plan, faults);
   core::throw_if_any(faults);
   if (!plan.survey_file.empty()) {
     check_against_survey(plan);

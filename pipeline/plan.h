@@ -38,10 +38,11 @@ void describe(RunOptions& r, V& v) {
 
 /// What the command line gives.
 struct Request {
-  std::filesystem::path config;
+  std::filesystem::path config;          ///< a file, or the name of a config that comes with the program
   std::vector<std::string> sets;         ///< "ground.cell=50 cm", "run.tile=250 m"
   std::filesystem::path survey, output;  ///< empty: from the config
   int threads = -1;
+  std::optional<core::Value> survey_tree{};  ///< a survey that no file holds, in place of one; its files have absolute names
 };
 
 struct PlannedStage {
@@ -57,7 +58,7 @@ struct Plan {
   std::filesystem::path config;
   RunOptions run;
   core::Value run_table;
-  std::filesystem::path survey_file;  ///< empty: none was named
+  std::filesystem::path survey_file;  ///< empty: none was named; "command line" for one that no file holds
   io::Survey survey;
   std::vector<PlannedStage> stages;
 };

@@ -99,20 +99,27 @@ def file_of(path):
     return "/usr" + real if real.startswith("/lib") else real
 
 
+def delayed(program):
+    """Names of the libraries that the program loads at their first use, by its notes (cmake/delayed_stubs.cmake)."""
+    return re.findall(r'"soname":\["([^"]+)"\]', run("readelf", "-p", ".note.dlopen", program))
+
+
 def loaded(program, owner):
     """Packages of the libraries that the loader finds for the program -> packages that each needs itself."""
-    found = {}
-    for line in run("ldd", program).splitlines():
-        match = re.match(r"\s*(\S+) => (/\S+)", line) or re.match(r"\s*(/\S+)()", line)
-        if match:
-            name = Path(match[1]).name
-            found[name] = match[2] or match[1]
+    found, late = {}, delayed(program)
+    known = dict(re.findall(r"\s(\S+) \(.*x86-64.*\) => (/\S+)", run(shutil.which("ldconfig") or "/sbin/ldconfig", "-p"))) if late else {}
+    found.update((name, known[name]) for name in late if name in known)
+    for path in [program, *list(found.values())]:
+        for line in run("ldd", path).splitlines():
+            match = re.match(r"\s*(\S+) => (/\S+)", line) or re.match(r"\s*(/\S+)()", line)
+            if match:
+                found.setdefault(Path(match[1]).name, match[2] or match[1])
     package = {name: owner.get(file_of(path)) for name, path in found.items()}
     needs = {}
     for name, path in [(ROOT, program), *found.items()]:
         mine = ROOT if name == ROOT else package[name]
         if mine:
-            wanted = re.findall(r"\(NEEDED\).*\[(.+)\]", run("readelf", "-d", path))
+            wanted = re.findall(r"\(NEEDED\).*\[(.+)\]", run("readelf", "-d", path)) + (late if name == ROOT else [])
             needs.setdefault(mine, set()).update(package[w] for w in wanted if package.get(w) not in (None, mine))
     return needs
 

@@ -70,6 +70,12 @@ const std::vector<Entry>& registry() {
   return list;
 }
 
+std::vector<std::string> stage_names() {
+  std::vector<std::string> names;
+  for (const Entry& e : registry()) names.emplace_back(e.name);
+  return names;
+}
+
 std::unique_ptr<Stage> make_stage(std::string_view name) {
   for (const Entry& e : registry())
     if (e.name == name) return e.make();

@@ -40,9 +40,9 @@ core::Error usage_fault(const CLI::App& app, const CLI::ParseError& e, int argc,
 
 constexpr const char* overview =
     "Examples\n"
-    "  swath simulate demo                                   a small survey with its truth, in demo/\n"
-    "  swath run configs/survey.toml --survey demo/survey.toml --output out\n"
-    "  swath run configs/survey.toml --survey demo/survey.toml --set dtm.cell=\"50 cm\"\n"
+    "  swath demo                                            a simulated survey, its products and their errors\n"
+    "  swath dtm flight.laz --cell 50cm --contours 1m        terrain model and contours of a point cloud\n"
+    "  swath run survey --survey lech/survey.toml -o out     raw records to products, by a config of the program's own\n"
     "  swath info flight.laz                                 what a file holds, and what looks wrong in it\n"
     "  swath stages filters.smrf                             a stage and its options\n"
     "\n"
@@ -79,10 +79,17 @@ int Commands::call(int argc, char** argv) {
 }
 
 void add_request(CLI::App& c, pipeline::Request& request) {
-  c.add_option("CONFIG", request.config, "Pipeline, .toml or .json")->required();
+  c.add_option("CONFIG", request.config, "Pipeline, .toml or .json, or the name of one that comes with the program")->required();
   c.add_option("--survey", request.survey, "survey.toml, in place of the config's");
-  c.add_option("--output", request.output, "Folder of the products, in place of the config's");
+  c.add_option("-o,--output", request.output, "Folder of the products, in place of the config's");
   c.add_option("--set", request.sets, "One option of one stage: dtm.cell=\"50 cm\", run.tile=\"250 m\"")->allow_extra_args(false);
+}
+
+void add_run_options(CLI::App& c, pipeline::Request& request, Loudness& loudness, std::filesystem::path& save) {
+  c.add_option("--threads", request.threads, "Threads, in place of the config's (0: one per processor)");
+  c.add_option("--save-config", save, "Write what is run as a config for `swath run`: NAME.toml");
+  c.add_flag("--quiet", loudness.quiet, "Nothing but errors");
+  c.add_flag("--json-log", loudness.json_log, "Progress as one JSON object per line on standard error");
 }
 
 void print(const std::string& text) { std::fputs(core::printable(text).c_str(), stdout); }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -13,6 +14,7 @@
 #include "pipeline/plan.h"
 #include "pipeline/progress.h"
 #include "pipeline/run.h"
+#include "simulate/simulate.h"
 
 namespace swath::tools {
 
@@ -25,6 +27,7 @@ class Commands {
   int call(int argc, char** argv);
   /// The command line as it was typed, for the provenance of products.
   const std::string& typed() const { return typed_; }
+  const CLI::App& parser() const { return app_; }
 
   Commands();
   Commands(const Commands&) = delete;
@@ -52,9 +55,20 @@ double quantity(core::Dimension dimension, const std::string& text, const std::s
 
 /// Summary and missed limits of a run, where it has come to its report; the exit code.
 int print_outcome(const pipeline::Outcome& outcome, const pipeline::Plan& plan, const Loudness& loudness);
-/// Runs a pipeline and prints its summary; the exit code. `typed`: the command line, for provenance.
-int run_pipeline(const pipeline::Request& request, const Loudness& loudness, const std::string& typed);
+/// --threads, --save-config, --quiet and --json-log.
+void add_run_options(CLI::App& command, pipeline::Request& request, Loudness& loudness, std::filesystem::path& save);
 
+/// Runs a pipeline and prints its summary; the exit code. `typed`: the command line, for provenance. `save`: file that gets the config;
+/// empty: none.
+int run_pipeline(const pipeline::Request& request, const Loudness& loudness, const std::string& typed, const std::filesystem::path& save);
+/// Simulates a survey into a folder, with progress. `config` may be empty; `sets` as of --set.
+simulate::Made make_survey(const std::filesystem::path& config, const std::vector<std::string>& sets, const std::filesystem::path& folder,
+                           const Loudness& loudness);
+
+void add_completion_commands(Commands& commands);
+void add_init_command(Commands& commands);
+void add_demo_command(Commands& commands);
+void add_job_commands(Commands& commands);
 void add_pipeline_commands(Commands& commands);
 void add_list_commands(Commands& commands);
 void add_plan_command(Commands& commands);

@@ -10,6 +10,24 @@
 #include "tools/command.h"
 
 namespace swath::tools {
+
+simulate::Made make_survey(const std::filesystem::path& config, const std::vector<std::string>& sets, const std::filesystem::path& folder,
+                           const Loudness& loudness) {
+  core::Value given = config.empty() ? core::Value::object() : io::read_value_file(config);
+  for (const std::string& set : sets) pipeline::set_option(given, set);
+  const simulate::Options options = simulate::read_options(given);
+  pipeline::Progress progress(loudness.voice());
+  progress.begin("simulate", 1000, "per mille");
+  std::uint64_t shown = 0;
+  simulate::Made made = simulate::run(options, folder, [&](double share) {
+    const auto now = static_cast<std::uint64_t>(share * 1000);
+    if (now > shown) progress.advance(now - shown);
+    shown = std::max(shown, now);
+  });
+  progress.end();
+  return made;
+}
+
 namespace {
 
 struct SimulateArguments {
@@ -20,18 +38,7 @@ struct SimulateArguments {
 };
 
 int simulate_survey(const SimulateArguments& a) {
-  core::Value given = a.config.empty() ? core::Value::object() : io::read_value_file(a.config);
-  for (const std::string& set : a.sets) pipeline::set_option(given, set);
-  const simulate::Options options = simulate::read_options(given);
-  pipeline::Progress progress(a.loudness.voice());
-  progress.begin("simulate", 1000, "per mille");
-  std::uint64_t shown = 0;
-  const simulate::Made made = simulate::run(options, a.folder, [&](double share) {
-    const auto now = static_cast<std::uint64_t>(share * 1000);
-    if (now > shown) progress.advance(now - shown);
-    shown = std::max(shown, now);
-  });
-  progress.end();
+  const simulate::Made made = make_survey(a.config, a.sets, a.folder, a.loudness);
   if (!a.loudness.quiet) print_json(core::reported(made));
   return 0;
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the program itself has: stages, warnings, schema, generated pages.
+// What the program itself has: stages, warnings, schema, generated pages, completion, manual.
 #include <cstdio>
 
 #include "core/error.h"
 #include "pipeline/describe.h"
+#include "pipeline/provenance.h"
 #include "tools/command.h"
+#include "tools/command_docs.h"
 
 namespace swath::tools {
 
@@ -26,6 +28,28 @@ void add_list_commands(Commands& commands) {
 
   commands.add("schema", "Examples\n  swath schema > swath.schema.json\n\nPrint the JSON Schema of pipelines and surveys.", [] {
     print_json(pipeline::schema());
+    return 0;
+  });
+}
+
+void add_completion_commands(Commands& commands) {
+  const auto shell = std::make_shared<std::string>();
+  auto* c =
+      commands.add("completion",
+                   "Examples\n  swath completion bash > ~/.local/share/bash-completion/completions/swath\n  swath completion zsh > "
+                   "~/.zfunc/_swath\n  swath completion fish > ~/.config/fish/completions/swath.fish\n\nPrint the completion of commands, "
+                   "options and stages for a shell.",
+                   [shell, &commands] {
+                     const auto texts = texts_of(commands.parser());
+                     const auto write = *shell == "bash" ? bash_completion : *shell == "zsh" ? zsh_completion : fish_completion;
+                     std::fputs(write(texts, known_words()).c_str(), stdout);
+                     return 0;
+                   });
+  c->add_option("SHELL", *shell, "bash, zsh or fish")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
+
+  commands.add("man", "Examples\n  swath man > swath.1\n\nPrint the manual page.", [&commands] {
+    std::fputs(manual_page(texts_of(commands.parser()), std::string(pipeline::program_version()), commands.parser().get_footer()).c_str(),
+               stdout);
     return 0;
   });
 }

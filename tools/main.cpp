@@ -2,7 +2,9 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <thread>
 
@@ -12,6 +14,7 @@
 
 #include "core/error.h"
 #include "core/printable.h"
+#include "pipeline/jobs/config_folder.h"
 #include "tools/command.h"
 
 namespace {
@@ -26,6 +29,13 @@ void keep_freed_memory() {
 #endif
 }
 
+/// Archives of the program bring the charts' typeface with them, in share/swath/fonts: fontconfig is pointed to it.
+void use_own_typeface() {
+  const std::filesystem::path fonts = swath::pipeline::program_folder() / "../share/swath/fonts/fonts.conf";
+  std::error_code ec;
+  if (std::filesystem::exists(fonts, ec)) setenv("FONTCONFIG_FILE", fonts.lexically_normal().c_str(), 0);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -33,8 +43,12 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   keep_freed_memory();
+  use_own_typeface();
   try {
     swath::tools::Commands commands;
+    swath::tools::add_demo_command(commands);
+    swath::tools::add_job_commands(commands);
+    swath::tools::add_init_command(commands);
     swath::tools::add_pipeline_commands(commands);
     swath::tools::add_list_commands(commands);
     swath::tools::add_plan_command(commands);
@@ -47,6 +61,7 @@ int main(int argc, char** argv) {
     swath::tools::add_volumes_command(commands);
     swath::tools::add_profile_command(commands);
     swath::tools::add_view_command(commands);
+    swath::tools::add_completion_commands(commands);
     swath::tools::add_docs_command(commands);
     const int code = commands.call(argc, argv);
     errno = 0;

@@ -8,6 +8,8 @@
 #include "pipeline/describe.h"
 #include "pipeline/flight_plan/plan_files.h"
 #include "pipeline/input_guard.h"
+#include "pipeline/jobs/config_folder.h"
+#include "pipeline/jobs/saved_config.h"
 #include "pipeline/limits.h"
 #include "pipeline/run.h"
 #include "pipeline/summary.h"
@@ -24,8 +26,9 @@ int print_outcome(const pipeline::Outcome& outcome, const pipeline::Plan& plan, 
   return static_cast<int>(outcome.code);
 }
 
-int run_pipeline(const pipeline::Request& request, const Loudness& loudness, const std::string& typed) {
+int run_pipeline(const pipeline::Request& request, const Loudness& loudness, const std::string& typed, const std::filesystem::path& save) {
   pipeline::Plan plan = pipeline::make_plan(request);
+  if (!save.empty()) pipeline::save_config(plan, request, save, typed);
   pipeline::Progress progress(loudness.voice());
   return print_outcome(pipeline::run(plan, progress, typed), plan, loudness);
 }
@@ -34,6 +37,7 @@ namespace {
 
 struct Given {
   pipeline::Request request;
+  std::filesystem::path save;
   Loudness loudness;
   bool json = false;
   std::optional<size_t> wave;
@@ -41,15 +45,17 @@ struct Given {
 };
 
 int run(const Given& a, const std::string& typed) {
-  if (!a.wave) return run_pipeline(a.request, a.loudness, typed);
+  if (!a.wave) return run_pipeline(a.request, a.loudness, typed, a.save);
+  if (!a.save.empty()) throw core::usage_error("a wave is a part of a run", "--save-config", "save the config of the whole run");
   pipeline::Plan plan = pipeline::make_plan(a.request);
   pipeline::Progress progress(a.loudness.voice());
   return print_outcome(pipeline::run_share(plan, progress, typed, pipeline::read_share(*a.wave, a.part)), plan, a.loudness);
 }
 
 int check(const Given& a) {
-  if (pipeline::is_flight_plan(a.request.config)) {
-    const planning::FlightPlan plan = pipeline::check_flight_plan({a.request.config, {}, {}, a.request.sets});
+  const std::filesystem::path config = pipeline::find_config(a.request.config);
+  if (pipeline::is_flight_plan(config)) {
+    const planning::FlightPlan plan = pipeline::check_flight_plan({config, {}, {}, a.request.sets});
     if (!a.loudness.quiet) std::printf("%s: a flight of %zu lines\n", a.request.config.c_str(), plan.lines.size());
     return 0;
   }
@@ -84,11 +90,9 @@ void add_pipeline_commands(Commands& commands) {
       "that was killed.",
       [a, &commands] { return run(*a, commands.typed()); });
   add_request(*c, a->request);
-  c->add_option("--threads", a->request.threads, "Threads, in place of the config's (0: one per processor)");
+  add_run_options(*c, a->request, a->loudness, a->save);
   auto* wave = c->add_option("--wave", a->wave, "Do one wave of a run that several processes do together (`swath tasks` lists them)");
   c->add_option("--part", a->part, "Part of the wave, i/n: 2/8")->needs(wave);
-  c->add_flag("--quiet", a->loudness.quiet, "Nothing but errors");
-  c->add_flag("--json-log", a->loudness.json_log, "Progress as one JSON object per line on standard error");
 
   const auto checked = std::make_shared<Given>();
   c = commands.add("check",

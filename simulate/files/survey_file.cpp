@@ -2,63 +2,15 @@
 #include "simulate/files/survey_file.h"
 
 #include "core/config/option_visitors.h"
-#include "core/error.h"
+#include "io/text/toml_text.h"
 
 namespace swath::simulate {
 namespace {
 
 using core::Value;
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (c == '\n')
-      out += "\\n";
-    else
-      out += c;
-  }
-  return out + "\"";
-}
-
-std::string scalar(const Value& v) {
-  if (v.is_bool()) return v.as_bool() ? "true" : "false";
-  if (v.is_int()) return std::to_string(v.as_int());
-  if (v.is_number()) {
-    const std::string text = core::format_number(v.as_number());
-    return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
-  }
-  if (v.is_text()) return quoted(v.as_text());
-  if (v.is_array()) {
-    std::string out = "[";
-    for (const Value& item : v.items()) out += (out.size() > 1 ? ", " : "") + scalar(item);
-    return out + "]";
-  }
-  throw core::Error("a value of kind " + std::string(v.kind()) + " has no place in a TOML list");
-}
-
-bool is_table_list(const Value& v) { return v.is_array() && !v.items().empty() && v.items().front().is_object(); }
-
-void write(const Value& table, const std::string& path, std::string& out) {
-  for (const auto& [key, v] : table.members())
-    if (!v.is_null() && !v.is_object() && !is_table_list(v)) out += key + " = " + scalar(v) + "\n";
-  for (const auto& [key, v] : table.members()) {
-    const std::string name = path.empty() ? key : path + "." + key;
-    if (v.is_object()) {
-      if (v.members().empty()) continue;
-      out += "\n[" + name + "]\n";
-      write(v, name, out);
-    } else if (is_table_list(v)) {
-      for (const Value& item : v.items()) {
-        out += "\n[[" + name + "]]\n";
-        write(item, name, out);
-      }
-    }
-  }
-}
-
 bool same(const Value& a, const Value& b) {
-  return a.kind() == b.kind() && !a.is_object() && !is_table_list(a) && (a.is_null() || scalar(a) == scalar(b));
+  return a.kind() == b.kind() && !a.is_object() && !io::is_table_list(a) && (a.is_null() || io::toml_scalar(a) == io::toml_scalar(b));
 }
 
 /// Without the values that `fallback` has too.
@@ -104,12 +56,6 @@ Value fallback_of(const std::string& list) {
 
 }  // namespace
 
-std::string toml_of(const Value& tree) {
-  std::string out;
-  write(tree, "", out);
-  return out;
-}
-
 std::string survey_toml(const io::Survey& survey, const std::string& comment) {
   const Value all = effective(survey);
   Value defaults = effective(io::Survey{});
@@ -122,7 +68,7 @@ std::string survey_toml(const io::Survey& survey, const std::string& comment) {
       continue;
     }
     if (const Value* kept = out.find(key)) {
-      if (is_table_list(*kept)) {
+      if (io::is_table_list(*kept)) {
         const Value fallback = fallback_of(key);
         ordered[key] = Value::array();
         for (const Value& item : kept->items()) ordered[key].push(pruned(item, fallback));
@@ -131,7 +77,7 @@ std::string survey_toml(const io::Survey& survey, const std::string& comment) {
       }
     }
   }
-  return comment + toml_of(ordered);
+  return comment + io::to_toml(ordered);
 }
 
 }  // namespace swath::simulate

@@ -108,10 +108,15 @@ Tiled<DtmCounts, Product::dtm> model_terrain(TileJob& job, const Context& contex
 }
 DtmFindings judge_terrain(const MergeJob& job, const Context& context, const terrain::DtmOptions& o) {
   const Cover cover = cover_of(context, job);
-  if (cover.known == 0)
-    throw core::Error("no triangle of ground points is small enough to give any cell of the DTM a height", context.survey.name,
-                      "are there three ground points that are not on one line, closer than max_edge = " +
+  if (cover.known == 0) {
+    std::string classes;
+    for (const int c : o.classes) classes += (classes.empty() ? "" : ", ") + std::to_string(c);
+    throw core::Error("no triangle of ground points (class " + classes + ") is small enough to give any cell of the DTM a height",
+                      context.survey.name,
+                      "are there points of that class (`swath info FILE` lists the classes), three of them not on one line and closer than "
+                      "max_edge = " +
                           core::format_quantity(core::Dimension::length, o.max_edge.value) + "?");
+  }
   return {static_cast<double>(cover.holes) / static_cast<double>(cover.known + cover.holes)};
 }
 // Measured 2026-11-22: 290 bytes per point, tile 1000 m and 4 points per square metre; 195 in tests/stages/memory_test.cpp, tile 500 m,

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/survey/column_roles.h"
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+#include <string_view>
+
+namespace swath::io {
+namespace {
+
+/// A key of [columns] and names in use for it, without their unit endings.
+struct Role {
+  std::string_view key;
+  std::vector<std::string_view> names;
+};
+
+struct Kind {
+  TableKind kind;
+  std::vector<Role> roles;
+  std::vector<std::vector<std::string_view>> required;  ///< one of these sets of keys
+};
+
+const Role time_role{
+    "time", {"time", "t", "gps_time", "gpstime", "gps_sow", "sow", "tow", "gps_tow", "seconds_of_week", "timestamp", "unix_time", "utc"}};
+const Role week_role{"week", {"week", "gps_week", "wn"}};
+
+/// In the order of the search: what needs more columns comes first.
+const std::vector<Kind>& kinds() {
+  static const std::vector<Kind> list{
+      {TableKind::imu,
+       {time_role,
+        week_role,
+        {"gyro_x", {"gyro_x", "gyr_x", "gx", "wx", "omega_x", "angular_rate_x", "dtheta_x", "dangle_x"}},
+        {"gyro_y", {"gyro_y", "gyr_y", "gy", "wy", "omega_y", "angular_rate_y", "dtheta_y", "dangle_y"}},
+        {"gyro_z", {"gyro_z", "gyr_z", "gz", "wz", "omega_z", "angular_rate_z", "dtheta_z", "dangle_z"}},
+        {"accelerometer_x", {"accelerometer_x", "acc_x", "accel_x", "ax", "fx", "dv_x", "dvel_x"}},
+        {"accelerometer_y", {"accelerometer_y", "acc_y", "accel_y", "ay", "fy", "dv_y", "dvel_y"}},
+        {"accelerometer_z", {"accelerometer_z", "acc_z", "accel_z", "az", "fz", "dv_z", "dvel_z"}}},
+       {{"time", "gyro_x", "gyro_y", "gyro_z", "accelerometer_x", "accelerometer_y", "accelerometer_z"}}},
+      {TableKind::trajectory,
+       {time_role,
+        week_role,
+        {"latitude", {"latitude", "lat", "northing"}},
+        {"longitude", {"longitude", "lon", "lng", "long", "easting"}},
+        {"height", {"height", "h", "h_ell", "ellipsoidal_height", "alt", "altitude"}},
+        {"roll", {"roll"}},
+        {"pitch", {"pitch"}},
+        {"heading", {"heading", "yaw", "azimuth"}}},
+       {{"time", "latitude", "longitude", "height", "roll", "pitch", "heading"}}},
+      {TableKind::laser,
+       {time_role,
+        week_role,
+        {"line", {"line", "strip", "flight_line", "line_id"}},
+        {"scan_angle", {"scan_angle", "angle", "mirror_angle", "encoder_angle"}},
+        {"range", {"range", "distance", "slant_range"}},
+        {"intensity", {"intensity", "amplitude"}},
+        {"return_number", {"return_number", "return", "echo", "echo_number"}},
+        {"return_count", {"return_count", "number_of_returns", "returns", "echoes"}}},
+       {{"time", "range"}}},
+      {TableKind::gnss,
+       {time_role,
+        week_role,
+        {"latitude", {"latitude", "lat"}},
+        {"longitude", {"longitude", "lon", "lng", "long"}},
+        {"height", {"height", "h", "h_ell", "ellipsoidal_height", "alt", "altitude"}},
+        {"x", {"ecef_x"}},
+        {"y", {"ecef_y"}},
+        {"z", {"ecef_z"}},
+        {"cov_xx", {"cov_xx"}},
+        {"cov_xy", {"cov_xy"}},
+        {"cov_xz", {"cov_xz"}},
+        {"cov_yy", {"cov_yy"}},
+        {"cov_yz", {"cov_yz"}},
+        {"cov_zz", {"cov_zz"}},
+        {"sigma_north", {"sigma_north", "sd_north", "sdn", "std_north"}},
+        {"sigma_east", {"sigma_east", "sd_east", "sde", "std_east"}},
+        {"sigma_up", {"sigma_up", "sd_up", "sdu", "std_up", "sd_down", "sigma_down", "sd_height"}},
+        {"quality", {"quality", "q", "fix"}},
+        {"satellites", {"satellites", "n_sat", "nsat", "ns", "sats"}}},
+       {{"time", "latitude", "longitude", "height"}, {"time", "x", "y", "z"}}},
+      {TableKind::event, {time_role, {"id", {"id", "event", "event_id", "image", "photo", "frame", "name"}}}, {{"time", "id"}}},
+  };
+  return list;
+}
+
+struct PlainName {
+  std::string name, unit;
+};
+
+/// "lat_deg" is "lat" in deg.
+PlainName plain_name(const std::string& given) {
+  static constexpr std::array<std::string_view, 11> units{"deg", "rad", "degps", "radps", "mps2", "mps", "m2", "m", "s", "g", "ms"};
+  std::string name = given;
+  std::transform(name.begin(), name.end(), name.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  const size_t cut = name.rfind('_');
+  if (cut == std::string::npos || cut == 0) return {name, ""};
+  const std::string ending = name.substr(cut + 1);
+  if (std::find(units.begin(), units.end(), ending) == units.end()) return {name, ""};
+  return {name.substr(0, cut), ending};
+}
+
+bool has_all(const ColumnRoles& found, const std::vector<std::string_view>& keys) {
+  return std::all_of(keys.begin(), keys.end(), [&](std::string_view key) {
+    return std::any_of(found.columns.begin(), found.columns.end(), [&](const auto& column) { return column.first == key; });
+  });
+}
+
+/// Not both a geodetic and an ECEF position, nor both forms of accuracy: the first is kept.
+void drop_second_form(ColumnRoles& found) {
+  const auto drop = [&](std::initializer_list<std::string_view> keys) {
+    std::erase_if(found.columns, [&](const auto& column) { return std::find(keys.begin(), keys.end(), column.first) != keys.end(); });
+  };
+  if (has_all(found, {"latitude", "longitude", "height"})) drop({"x", "y", "z"});
+  if (has_all(found, {"cov_xx", "cov_xy", "cov_xz", "cov_yy", "cov_yz", "cov_zz"}))
+    drop({"sigma_north", "sigma_east", "sigma_up"});
+  else
+    drop({"cov_xx", "cov_xy", "cov_xz", "cov_yy", "cov_yz", "cov_zz"});
+  if (!has_all(found, {"sigma_north", "sigma_east", "sigma_up"})) drop({"sigma_north", "sigma_east", "sigma_up"});
+}
+
+/// What a column's name and unit say of its file.
+void note_units(const PlainName& plain, std::string_view key, ColumnRoles& found) {
+  if (plain.unit.starts_with("deg") || plain.unit.starts_with("rad")) found.angle_unit = plain.unit.substr(0, 3);
+  const bool acceleration = key.starts_with("accelerometer"), gyro = key.starts_with("gyro");
+  if (acceleration && plain.unit.starts_with("mps")) found.acceleration_unit = "m/s2";
+  if (acceleration && plain.unit == "g") found.acceleration_unit = "g";
+  if (gyro && (plain.name.starts_with("dtheta") || plain.name.starts_with("dangle"))) found.imu_kind = "increments";
+  if (gyro && plain.unit.ends_with("ps")) found.imu_kind = "rates";
+  if (key != "time") return;
+  if (plain.name.ends_with("sow") || plain.name.ends_with("tow") || plain.name == "seconds_of_week") found.time_scale = "gps_week";
+  if (plain.name == "unix_time") found.time_scale = "unix";
+  if (plain.unit == "ms") found.time_unit = "1 ms";
+}
+
+}  // namespace
+
+ColumnRoles roles_of(const std::vector<std::string>& names) {
+  std::vector<PlainName> plain;
+  for (const std::string& name : names) plain.push_back(plain_name(name));
+  for (const Kind& kind : kinds()) {
+    ColumnRoles found;
+    found.kind = kind.kind;
+    for (const Role& role : kind.roles)
+      for (size_t c = 0; c < names.size(); ++c) {
+        if (std::find(role.names.begin(), role.names.end(), plain[c].name) == role.names.end()) continue;
+        found.columns.emplace_back(role.key, names[c]);
+        note_units(plain[c], role.key, found);
+        break;
+      }
+    if (std::none_of(kind.required.begin(), kind.required.end(), [&](const auto& keys) { return has_all(found, keys); })) continue;
+    if (kind.kind == TableKind::gnss) drop_second_form(found);
+    return found;
+  }
+  return {};
+}
+
+}  // namespace swath::io

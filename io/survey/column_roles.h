@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the columns of a table of records are likely to hold, by their names.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace swath::io {
+
+/// The list of survey.toml that a table of records belongs to; `none` where its names do not say.
+enum class TableKind { none, laser, imu, gnss, trajectory, event };
+
+struct ColumnRoles {
+  TableKind kind = TableKind::none;
+  std::vector<std::pair<std::string, std::string>> columns{};  ///< key of [columns] and the file's name, in the order of survey.toml
+  std::string angle_unit{};                                    ///< "deg" or "rad" as the names state it; empty: they do not
+  std::string acceleration_unit{};                             ///< "m/s2" or "g"
+  std::string imu_kind{};                                      ///< "increments" or "rates"
+  std::string time_scale{};                                    ///< "gps_week" (seconds of week), "unix"
+  std::string time_unit{};                                     ///< "1 ms" where times are no seconds
+};
+
+/// Judges a header by common names with their unit endings ("lat_deg", "gyro_x_radps", "gps_sow_s"). Columns that only have numbers have
+/// none.
+ColumnRoles roles_of(const std::vector<std::string>& names);
+
+}  // namespace swath::io

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/survey/proposal.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "core/error.h"
+#include "io/survey/column_roles.h"
+#include "io/survey/info.h"
+#include "io/text/output_file.h"
+#include "io/text/toml_text.h"
+
+namespace swath::io {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Value;
+
+std::string text_of(const Value& facts, std::string_view key) {
+  const Value* found = facts.find(key);
+  return found && found->is_text() ? found->as_text() : std::string();
+}
+
+/// Lowest and highest of a list of two numbers.
+std::optional<std::pair<double, double>> interval_of(const Value& facts, std::string_view key) {
+  const Value* found = facts.find(key);
+  if (!found || !found->is_array() || found->items().size() != 2) return {};
+  const Value &low = found->items()[0], &high = found->items()[1];
+  if (!low.is_number() || !high.is_number()) return {};
+  return std::pair(low.as_number(), high.as_number());
+}
+
+/// Points in a scanner's own frame: metres about the scanner, to both sides of it, without a CRS.
+bool is_scanner_frame(const Value& facts) {
+  constexpr double longest = 10000.0;  // m, no airborne laser ranges farther
+  const auto x = interval_of(facts, "x"), y = interval_of(facts, "y"), z = interval_of(facts, "z");
+  if (!x || !y || !z || !text_of(facts, "crs").empty()) return false;
+  const auto near = [](const auto& v) { return std::abs(v.first) < longest && std::abs(v.second) < longest; };
+  return near(*x) && near(*y) && near(*z) && y->first < 0.0 && y->second > 0.0;
+}
+
+/// The survey while it is written.
+class Draft {
+ public:
+  void list(const std::string& name, const fs::path& file) {
+    table_ = name + "[" + std::to_string(++tables_[name]) + "]";
+    text_ += "\n[[" + name + "]]\n";
+    ++files_;
+    known("file", file.generic_string());
+  }
+  void table(const std::string& name) {
+    table_ = name;
+    text_ += "\n[" + name + "]\n";
+  }
+  void known(const std::string& key, const Value& value) { line(key + " = " + toml_scalar(value)); }
+  void line(const std::string& text) { text_ += text + "\n"; }
+  /// A line to be completed, and why it is not known.
+  void open(const std::string& line, const std::string& why) {
+    text_ += "# ? " + why + "\n# " + line + "\n";
+    const std::string key = line.substr(0, line.find(" = "));
+    open_.push_back((table_.empty() ? key : table_ + "." + key) + ": " + why);
+  }
+  void note(const std::string& text) { text_ += (text.starts_with("\n") ? "" : "# ") + text + "\n"; }
+  void count_file() { ++files_; }
+  Proposal done() && { return {std::move(text_), files_, std::move(open_)}; }
+
+ private:
+  std::string text_, table_;
+  std::map<std::string, int> tables_;
+  std::size_t files_ = 0;
+  std::vector<std::string> open_;
+};
+
+using Files = std::vector<const FoundFile*>;
+
+/// The files by the part of the survey that they make.
+struct Sorted {
+  Files points, scanner, csd, sbet, smrmsg, pos, nmea, observations, navigation, calibration;
+  std::vector<std::pair<const FoundFile*, ColumnRoles>> tables;
+  std::vector<std::string> left;
+  std::string zone;  ///< UTM zone of the first position found
+
+  bool has_laser() const { return !scanner.empty() || !csd.empty() || has(TableKind::laser); }
+  bool has(TableKind kind) const {
+    return std::any_of(tables.begin(), tables.end(), [&](const auto& t) { return t.second.kind == kind; });
+  }
+};
+
+using Span = std::optional<std::pair<double, double>>;
+
+void note_zone(const Span& latitude, const Span& longitude, Sorted& out) {
+  if (!out.zone.empty() || !latitude || !longitude) return;
+  if (!(std::abs(latitude->first) < 84.0) || !(std::abs(longitude->first) < 180.0)) return;
+  const int zone = static_cast<int>(std::floor((longitude->first + 180.0) / 6.0)) + 1;
+  out.zone = "EPSG:" + std::to_string((latitude->first < 0.0 ? 32700 : 32600) + zone);
+}
+
+/// The span of a table's column that has the role.
+Span span_of(const Value& facts, const ColumnRoles& roles, std::string_view role) {
+  for (const auto& [key, name] : roles.columns)
+    if (key == role)
+      for (const Value& column : facts.find("columns")->items())
+        if (text_of(column, "name") == name) return interval_of(column, "span");
+  return {};
+}
+
+ColumnRoles roles_in(const Value& facts) {
+  std::vector<std::string> names;
+  if (const Value* columns = facts.find("columns"))
+    for (const Value& one : columns->items()) names.push_back(text_of(one, "name"));
+  return roles_of(names);
+}
+
+void sort_file(const FoundFile& f, Sorted& out) {
+  const std::string format = text_of(f.facts, "format"), kind = text_of(f.facts, "kind");
+  const auto left = [&](const std::string& why) { out.left.push_back(f.name.generic_string() + ": " + why); };
+  if (f.facts.is_null()) return left("cannot be read: " + f.fault);
+  for (const char* carrier : {"", "carrier_"})
+    note_zone(interval_of(f.facts, std::string(carrier) + "latitude_deg"), interval_of(f.facts, std::string(carrier) + "longitude_deg"),
+              out);
+  const std::map<std::string, Files*> by_format{{"Optech CSD", &out.csd},      {"SBET", &out.sbet}, {"smrmsg", &out.smrmsg},
+                                                {"RTKLIB solution", &out.pos}, {"NMEA", &out.nmea}, {"calibration", &out.calibration}};
+  if (const auto at = by_format.find(format); at != by_format.end()) return at->second->push_back(&f);
+  if (format == "LAS" || format == "LAZ") return (is_scanner_frame(f.facts) ? out.scanner : out.points).push_back(&f);
+  if (format == "RINEX") return (kind == "observations" ? out.observations : out.navigation).push_back(&f);
+  if (format == "SP3 orbits") return out.navigation.push_back(&f);
+  if (format == "NumPy array" || format == "delimited text") {
+    ColumnRoles roles = roles_in(f.facts);
+    if (roles.kind == TableKind::none) return left(format + " whose columns do not say what they are: see `swath info`");
+    if (roles.angle_unit == "deg") note_zone(span_of(f.facts, roles, "latitude"), span_of(f.facts, roles, "longitude"), out);
+    return out.tables.emplace_back(&f, std::move(roles)), void();
+  }
+  left(format + ", which has no place that can be known: a terrain model, lines or points may belong to [[breaklines]] or [[control]]");
+}
+
+bool ends_in(const FoundFile& f, std::initializer_list<const char*> endings) {
+  const std::string ending = f.name.extension().string();
+  return std::any_of(endings.begin(), endings.end(), [&](const char* one) { return ending == one; });
+}
+
+/// A record of the list with its format, where the name's ending does not say it.
+void add_record(Draft& d, const std::string& list, const FoundFile& f, const char* format, std::initializer_list<const char*> endings) {
+  d.list(list, f.name);
+  if (!ends_in(f, endings)) d.known("format", format);
+}
+
+void open_week(Draft& d, const std::string& why) { d.open("time = { scale = \"gps_week\", week = 2317 }", why); }
+
+/// Times, units and columns of a table of records.
+void add_table(Draft& d, const FoundFile& f, const ColumnRoles& r) {
+  static constexpr std::array names{"", "laser", "imu", "gnss", "trajectory", "event"};
+  d.list(names[static_cast<size_t>(r.kind)], f.name);
+  if (r.kind != TableKind::event && !ends_in(f, {".csv", ".txt", ".npy"})) d.known("format", "text");
+  const bool has_weeks = std::any_of(r.columns.begin(), r.columns.end(), [](const auto& c) { return c.first == "week"; });
+  const std::string unit = r.time_unit.empty() ? "" : ", unit = \"" + r.time_unit + "\"";
+  if (has_weeks || r.time_scale == "unix")
+    d.line("time = { scale = \"" + std::string(has_weeks ? "gps_week" : "unix") + "\"" + unit + " }");
+  else
+    d.open("time = { scale = \"gps_week\", week = 2317" + unit + " }",
+           r.time_scale == "gps_week" ? "times are seconds of the GPS week, and the file does not say of which"
+                                      : "the file does not state its time scale: gps, gps_adjusted, gps_week, unix, utc_day or device");
+  const auto unit_of = [&](const char* key, const std::string& found, const char* example, const char* choices) {
+    if (!found.empty()) return d.known(key, found);
+    d.open(std::string(key) + " = \"" + example + "\"", std::string("the names of the columns do not state it: ") + choices);
+  };
+  const auto has = [&](std::string_view key) {
+    return std::any_of(r.columns.begin(), r.columns.end(), [&](const auto& c) { return c.first == key; });
+  };
+  if (r.kind == TableKind::imu) unit_of("kind", r.imu_kind, "increments", "increments or rates");
+  if (r.kind == TableKind::imu || r.kind == TableKind::trajectory || has("scan_angle") || has("latitude"))
+    unit_of("angle_unit", r.angle_unit, "deg", "deg, rad or gon");
+  if (r.kind == TableKind::imu) unit_of("acceleration_unit", r.acceleration_unit, "m/s2", "m/s2, g or mg");
+  if (r.kind == TableKind::imu) d.open("axes = [\"x\", \"y\", \"z\"]", "which axes of the sensor point forward, right and down");
+  std::string columns;
+  for (const auto& [key, name] : r.columns) columns += (columns.empty() ? "" : ", ") + key + " = " + toml_scalar(name);
+  d.line("columns = { " + columns + " }  # by their names: check them");
+}
+
+void add_head(Draft& d, const Sorted& s, const std::string& name) {
+  d.note(
+      "Proposed by swath init from the files of this folder. Lines with # ? are not known from the files: complete the line below each, "
+      "and");
+  d.note("remove its #. Then: swath check survey --survey survey.toml");
+  d.known("name", name);
+  const std::string crs = "crs = \"" + (s.zone.empty() ? std::string("EPSG:25832") : s.zone) + "\"";
+  if (s.has_laser()) {
+    d.open(crs, "the CRS of the products is a choice" + std::string(s.zone.empty() ? "" : "; the files lie in this UTM zone"));
+  } else if (!s.points.empty()) {
+    const bool all_state = std::none_of(s.points.begin(), s.points.end(), [](auto* f) { return text_of(f->facts, "crs").empty(); });
+    if (all_state) d.note("without crs the products are in the CRS of the first cloud: " + text_of(s.points.front()->facts, "crs"));
+  }
+  if (!s.calibration.empty())
+    d.known("calibration_file", s.calibration.front()->name.generic_string()), d.count_file();
+  else if (!s.csd.empty())
+    d.line("calibration_file = " + toml_scalar(s.csd.front()->name.generic_string()) + "  # boresight of its header");
+}
+
+void add_laser(Draft& d, const Sorted& s) {
+  for (const FoundFile* f : s.scanner) {
+    d.list("laser", f->name);
+    if (const Value* time = f->facts.find("time"); time && text_of(*time, "scale").starts_with("seconds"))
+      open_week(d, "times are seconds of the GPS week, and the file does not say of which");
+  }
+  for (const FoundFile* f : s.csd) add_record(d, "laser", *f, "csd", {".csd"});
+}
+
+void add_trajectory(Draft& d, const Sorted& s) {
+  for (size_t k = 0; k < s.sbet.size(); ++k) {
+    add_record(d, "trajectory", *s.sbet[k], "sbet", {".out", ".sbet"});
+    open_week(d, "an SBET holds seconds of the GPS week, and not of which");
+    if (s.smrmsg.size() == s.sbet.size()) d.known("accuracy", s.smrmsg[k]->name.generic_string()), d.count_file();
+  }
+  if (s.smrmsg.size() != s.sbet.size())
+    for (const FoundFile* f : s.smrmsg) d.note("? " + f->name.generic_string() + ": the SBET that these accuracies belong to is not known");
+}
+
+void add_gnss(Draft& d, const Sorted& s) {
+  for (const FoundFile* f : s.pos) add_record(d, "gnss", *f, "pos", {".pos"});
+  for (const FoundFile* f : s.nmea) {
+    add_record(d, "gnss", *f, "nmea", {".nmea", ".log"});
+    if (text_of(f->facts, "from").empty()) d.open("time = { date = \"2026-01-31\" }", "its sentences do not state the date");
+  }
+  if (s.observations.empty()) return;
+  const auto names = [](const Files& files) {
+    Value out = Value::array();
+    for (const FoundFile* f : files) out.push(f->name.generic_string());
+    return out;
+  };
+  d.table("rinex");
+  for (size_t k = 0; k < s.observations.size() + s.navigation.size(); ++k) d.count_file();
+  if (s.observations.size() == 1)
+    d.known("rover", names(s.observations));
+  else
+    d.open(
+        "rover = " + toml_scalar(names({s.observations.front()})),
+        "which of these is the aircraft's: " + toml_scalar(names(s.observations)) + "; the others belong to [[rinex.base]] observations");
+  if (!s.navigation.empty()) d.known("navigation", names(s.navigation));
+}
+
+/// What no file holds: scanner, mounting, lever arms.
+void add_mounting(Draft& d, const Sorted& s) {
+  const bool fixes = !s.pos.empty() || !s.nmea.empty() || !s.observations.empty() || s.has(TableKind::gnss);
+  if (s.has(TableKind::imu)) {
+    d.table("imu_spec");
+    d.open("grade = \"tactical\"", "no file holds the IMU's data sheet: its grade, or its values");
+  }
+  if (s.has(TableKind::imu) && fixes) {
+    d.table("antenna");
+    d.open("lever_arm = [\"0 m\", \"0 m\", \"0 m\"]", "no file holds it: from the IMU's centre to the antenna, forward, right, down");
+  }
+  if (!s.has_laser()) return;
+  d.table("scanner");
+  if (s.csd.empty())
+    d.open("model = \"mirror\"", "the records do not name it: mirror, polygon, profile, conical, palmer or beam (docs/survey.md)");
+  else
+    d.known("model", "mirror");
+  if (!s.calibration.empty()) return;
+  d.table("calibration");
+  if (s.csd.empty())
+    for (const char* angle : {"roll", "pitch", "heading"})
+      d.open(std::string(angle) + " = \"0 deg\"", "no file holds the boresight angles");
+  d.open("lever_arm_scanner = [\"0 m\", \"0 m\", \"0 m\"]", "no file holds it: from the IMU's centre to the scanner, forward, right, down");
+}
+
+}  // namespace
+
+std::vector<FoundFile> find_records(const fs::path& folder, const std::function<void(std::size_t, std::size_t, const fs::path&)>& on_file) {
+  std::error_code ec;
+  if (!fs::is_directory(folder, ec)) throw core::usage_error("no such folder", folder.string(), "name the folder of a survey's files");
+  std::vector<fs::path> names;
+  for (fs::recursive_directory_iterator at(folder, ec), end; !ec && at != end; at.increment(ec)) {
+    const fs::path name = at->path().lexically_relative(folder);
+    const bool is_hidden = at->path().filename().string().starts_with(".");
+    const bool is_folder = at->is_directory(ec);
+    if (is_folder && (is_hidden || fs::exists(at->path() / "report.json", ec))) at.disable_recursion_pending();
+    if (!is_folder && !is_hidden && name != "survey.toml") names.push_back(name);
+  }
+  if (ec) throw_system_error("cannot read the folder", folder, ec.value());
+  std::sort(names.begin(), names.end());
+  std::vector<FoundFile> out;
+  for (const fs::path& name : names) {
+    if (on_file) on_file(out.size(), names.size(), name);
+    FoundFile& f = out.emplace_back(FoundFile{name});
+    try {
+      f.facts = describe_file(folder / name);
+    } catch (const core::Error& e) {
+      f.fault = e.what();
+    }
+  }
+  return out;
+}
+
+Proposal propose_survey(const std::vector<FoundFile>& files, const std::string& name) {
+  Sorted s;
+  for (const FoundFile& f : files) sort_file(f, s);
+  Draft d;
+  add_head(d, s, name);
+  add_mounting(d, s);
+  add_laser(d, s);
+  add_trajectory(d, s);
+  add_gnss(d, s);
+  for (const auto& [file, roles] : s.tables) add_table(d, *file, roles);
+  for (const FoundFile* f : s.points) {
+    if (s.has_laser()) {
+      s.left.push_back(f->name.generic_string() + ": a cloud in map coordinates, which a survey of raw records does not take");
+      continue;
+    }
+    d.list("points", f->name);
+    if (text_of(f->facts, "crs").empty()) d.open("crs = \"EPSG:25832\"", "the file states no CRS that is understood");
+  }
+  if (s.has_laser()) d.note("\n# Without [[line]] tables (id, start, end) the flight lines are those of the records; docs/survey.md.");
+  if (!s.left.empty()) d.note("\n# Not part of this survey:");
+  for (const std::string& one : s.left) d.note("  " + one);
+  return std::move(d).done();
+}
+
+}  // namespace swath::io

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/jobs/clouds.h"
+
+#include <glob.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "core/error.h"
+#include "core/geo/crs.h"
+#include "io/las/cloud_crs.h"
+#include "io/las/las_crs.h"
+#include "io/text/output_file.h"
+
+namespace swath::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_ending(const fs::path& file, std::initializer_list<const char*> endings) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return std::any_of(endings.begin(), endings.end(), [&](const char* one) { return ending == one; });
+}
+
+/// The LAS and LAZ files of a folder; of an Entwine Point Tile its index.
+std::vector<fs::path> files_in_folder(const fs::path& folder) {
+  std::vector<fs::path> out;
+  std::error_code ec;
+  if (const fs::path index = folder / "ept.json"; fs::exists(index, ec)) return {index};
+  for (fs::directory_iterator at(folder, ec), end; !ec && at != end; at.increment(ec))
+    if (has_ending(at->path(), {".las", ".laz"})) out.push_back(at->path());
+  if (ec) io::throw_system_error("cannot read the folder", folder, ec.value());
+  if (out.empty()) throw core::usage_error("the folder holds no LAS or LAZ file", folder.string(), "name the files, or another folder");
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::vector<fs::path> files_matching(const std::string& pattern) {
+  glob_t found{};
+  const std::unique_ptr<glob_t, void (*)(glob_t*)> owner(&found, globfree);
+  errno = 0;
+  const int code = ::glob(pattern.c_str(), GLOB_ERR, nullptr, &found);
+  if (code == GLOB_NOMATCH) throw core::usage_error("no file matches the pattern", pattern, "quote it where the shell must not expand it");
+  if (code != 0) io::throw_system_error("cannot read a folder of the pattern", pattern, errno ? errno : EIO);
+  std::vector<fs::path> out;
+  for (size_t k = 0; k < found.gl_pathc; ++k)
+    if (const fs::path file = found.gl_pathv[k]; fs::is_directory(file)) {
+      const std::vector<fs::path> inside = files_in_folder(file);
+      out.insert(out.end(), inside.begin(), inside.end());
+    } else {
+      out.push_back(file);
+    }
+  return out;
+}
+
+/// The CRS that a cloud states; nothing where it states none that is understood.
+struct Stated {
+  std::optional<core::Crs> crs;
+  std::string why;  ///< there is none
+  double x = 0.0, y = 0.0;
+};
+
+Stated stated_crs(const fs::path& file) {
+  std::vector<std::string> ignored;
+  const io::LasHeader header = io::read_las_header(file, ignored);
+  const io::LasCrs found = io::las_crs(header);
+  Stated out;
+  out.x = 0.5 * (header.min.x() + header.max.x());
+  out.y = 0.5 * (header.min.y() + header.max.y());
+  if (found.definition.empty()) {
+    out.why = "states no CRS" + (found.note.empty() ? std::string() : ": " + found.note);
+    return out;
+  }
+  try {
+    out.crs.emplace(found.definition);
+  } catch (const core::Error& e) {
+    out.why = std::string("states a CRS that cannot be used: ") + e.what();
+  }
+  return out;
+}
+
+std::string named(const core::Crs& crs) {
+  const std::string heights = crs.has_height_unit() ? ", heights in " + crs.vertical_unit_name() : std::string();
+  return crs.name() + " (" + crs.unit_name() + heights + ")";
+}
+
+/// "EPSG:32632", the UTM zone of a place in degrees.
+std::string utm_zone(double longitude, double latitude) {
+  if (!(std::abs(longitude) <= 180.0 && std::abs(latitude) <= 84.0)) return "EPSG:326xx";
+  const int zone = std::min(60, static_cast<int>(std::floor((longitude + 180.0) / 6.0)) + 1);
+  return "EPSG:" + std::to_string((latitude < 0.0 ? 32700 : 32600) + zone);
+}
+
+void require_known(const std::string& crs) {
+  try {
+    core::Crs{crs};
+  } catch (const core::Error& e) {
+    throw core::usage_error(e.what(), "--crs " + crs, e.hint());
+  }
+}
+
+/// One CRS for all, in units of length, or an error.
+void require_one_crs(const core::Crs& first, const fs::path& first_file, const Stated& cloud, const fs::path& file) {
+  if (first.is_geographic())
+    throw core::usage_error("its coordinates are degrees (" + first.name() + "), and products need a map projection", first_file.string(),
+                            "name one with --crs, for example --crs " + utm_zone(cloud.x, cloud.y));
+  if (io::is_same_crs(*cloud.crs, first)) return;
+  const bool units = cloud.crs->unit_name() != first.unit_name() || (cloud.crs->has_height_unit() && first.has_height_unit() &&
+                                                                     cloud.crs->vertical_unit_name() != first.vertical_unit_name());
+  throw core::usage_error("the clouds are in different " + std::string(units ? "units and CRSs" : "CRSs") + ": this one in " +
+                              named(*cloud.crs) + ", " + first_file.string() + " in " + named(first),
+                          file.string(),
+                          "name the CRS of the products with --crs, and clouds of others are transformed; or run each alone");
+}
+
+}  // namespace
+
+std::vector<fs::path> cloud_files(const std::vector<std::string>& names) {
+  std::vector<fs::path> out;
+  std::set<fs::path> known;
+  for (const std::string& name : names) {
+    std::error_code ec;
+    std::vector<fs::path> found;
+    if (fs::is_directory(name, ec))
+      found = files_in_folder(name);
+    else if (fs::exists(name, ec))
+      found = {name};
+    else if (name.find_first_of("*?[") != std::string::npos)
+      found = files_matching(name);
+    else
+      throw core::usage_error("no such file or folder", name, "name LAS or LAZ files, folders of them, or patterns");
+    for (fs::path& file : found)
+      if (known.insert(fs::weakly_canonical(file, ec)).second) out.push_back(std::move(file));
+  }
+  return out;
+}
+
+core::Value cloud_survey(const std::vector<fs::path>& files, const std::string& crs) {
+  if (!crs.empty()) require_known(crs);
+  core::Value points = core::Value::array();
+  std::optional<core::Crs> first;
+  fs::path first_file;
+  for (const fs::path& file : files) {
+    core::Value& cloud = points.push(core::Value::object());
+    cloud["file"] = fs::absolute(file).lexically_normal().string();
+    if (!has_ending(file, {".las", ".laz"})) continue;  // their readers know them
+    const Stated stated = stated_crs(file);
+    if (!stated.crs && crs.empty()) throw core::usage_error(stated.why, file.string(), "name its CRS: --crs EPSG:25832");
+    if (!stated.crs) cloud["crs"] = crs;
+    if (!crs.empty()) continue;
+    if (!first) first = stated.crs, first_file = file;
+    require_one_crs(*first, first_file, stated, file);
+  }
+  core::Value survey = core::Value::object();
+  survey["name"] = cloud_name(files);
+  if (!crs.empty()) survey["crs"] = crs;
+  survey["points"] = std::move(points);
+  return survey;
+}
+
+std::string cloud_name(const std::vector<fs::path>& files) {
+  const auto plain = [](fs::path file) {
+    file = file.stem();
+    return (file.extension() == ".copc" ? file.stem() : file).string();
+  };
+  if (files.size() == 1 && files.front().filename() != "ept.json") return plain(files.front());
+  const fs::path folder = fs::absolute(files.front()).lexically_normal().parent_path();
+  const bool together = std::all_of(files.begin(), files.end(),
+                                    [&](const fs::path& file) { return fs::absolute(file).lexically_normal().parent_path() == folder; });
+  return together && folder.has_filename() ? folder.filename().string() : "clouds";
+}
+
+fs::path proposed_output(const std::vector<fs::path>& files, const std::string& job) {
+  const fs::path out = cloud_name(files) + "_" + job;
+  std::error_code ec;
+  if (!fs::exists(out, ec) || fs::exists(out / "report.json", ec) || fs::exists(out / ".swath", ec)) return out;
+  if (fs::is_directory(out, ec) && fs::is_empty(out, ec)) return out;
+  throw core::usage_error("is there already and holds no run of this program", out.string(),
+                          "name the folder of the products with --output");
+}
+
+}  // namespace swath::pipeline

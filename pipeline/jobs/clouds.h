@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Point clouds named on the command line as a survey.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/config/value.h"
+
+namespace swath::pipeline {
+
+/// The files that names stand for, each once, in the order of the names: a file itself, a folder for its LAS and LAZ files, a pattern (*,
+/// ?, [..]) for the files that match. Throws core::Error: no such file, nothing that matches, a folder that cannot be read.
+std::vector<std::filesystem::path> cloud_files(const std::vector<std::string>& names);
+
+/// A survey of these clouds with absolute names, as survey.toml would hold it. `crs`: of the products, and of clouds that state none;
+/// empty: what the clouds state. Throws core::Error (usage) where they state none or different ones and `crs` is empty, or coordinates in
+/// degrees.
+core::Value cloud_survey(const std::vector<std::filesystem::path>& files, const std::string& crs);
+
+/// The name of what is made of them: of the only file, or of the folder that all are in.
+std::string cloud_name(const std::vector<std::filesystem::path>& files);
+
+/// Where the products go when no folder is named: NAME_JOB in the working folder. Throws core::Error (usage) where that is there and holds
+/// anything but an earlier run.
+std::filesystem::path proposed_output(const std::vector<std::filesystem::path>& files, const std::string& job);
+
+}  // namespace swath::pipeline

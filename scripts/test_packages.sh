@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Installs each package of out/packages in a bare system made by debootstrap and runs `swath demo` there as a normal user. As root.
+#   bash scripts/test_packages.sh [SUITE [MIRROR]]     SUITE: bookworm (Debian 12); another needs packages that were built on it
+set -euo pipefail
+cd "$(dirname "$0")/.."
+suite="${1:-bookworm}"
+mirror="${2:-}"
+[ "$(id -u)" -eq 0 ] || { echo "swath: as root, for debootstrap and chroot" >&2; exit 1; }
+command -v debootstrap >/dev/null || { echo "swath: debootstrap is missing; apt-get install debootstrap" >&2; exit 1; }
+work="${SWATH_ROOTS:-build/roots}"
+mkdir -p "$work"
+work="$(realpath "$work")"
+bare="$work/$suite"
+[ -e "$bare/etc/os-release" ] || debootstrap --variant=minbase "$suite" "$bare" $mirror >"$work/$suite.log"
+
+root=""
+leave() {
+  if [ -n "$root" ]; then
+    mountpoint -q "$root/proc" && umount "$root/proc"
+    rm -rf --one-file-system "$root"
+  fi
+}
+trap leave EXIT
+
+fresh() { # a copy of the bare system with a user, in `root`
+  leave
+  root="$work/test"
+  rm -rf --one-file-system "$root"
+  cp -a "$bare" "$root"
+  cp /etc/resolv.conf "$root/etc/resolv.conf"
+  mount -t proc proc "$root/proc"
+  chroot "$root" useradd --create-home surveyor
+}
+
+demo() { # a program within the root
+  local began ended
+  began="$(date +%s.%N)"
+  chroot "$root" su - surveyor -c "$1 --version && $1 demo" >"$work/demo.txt" 2>"$work/demo.log" || { tail -5 "$work/demo.txt" "$work/demo.log" >&2; return 1; }
+  ended="$(date +%s.%N)"
+  for product in dtm.vrt relief.png contours.gpkg report.json; do
+    [ -s "$root/home/surveyor/swath-demo/products/$product" ] || { echo "swath: no $product" >&2; return 1; }
+  done
+  cmp -s "$root/home/surveyor/swath-demo/products/relief.png" "${SWATH_PICTURE:-/dev/null}" && echo "  the picture is that of SWATH_PICTURE"
+  awk -v a="$began" -v b="$ended" 'BEGIN { printf "  demo: %.0f s\n", b - a }'
+  du -xsm "$root/home/surveyor/swath-demo/products" | awk '{ print "  products: " $1 " MB" }'
+}
+
+for package in out/packages/*.deb out/packages/*.tar.zst out/packages/*.zip; do
+  [ -e "$package" ] || continue
+  echo "== $(basename "$package"), $(stat -c %s "$package") bytes, in a bare $suite"
+  fresh
+  before="$(du -xsm "$root" | cut -f1)"
+  case "$package" in
+    *.deb)
+      cp "$package" "$root/tmp/swath.deb"
+      chroot "$root" sh -c 'apt-get update -q && DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends /tmp/swath.deb' >"$work/apt.log" 2>&1 ||
+        { tail -20 "$work/apt.log" >&2; exit 1; }
+      chroot "$root" sh -c 'rm -f /tmp/swath.deb; apt-get clean'
+      program=swath
+      ;;
+    *.tar.zst)
+      zstd -q -dc "$package" | tar -C "$root/home/surveyor" -xf -
+      program="$(cd "$root" && echo home/surveyor/swath-*/bin/swath)"
+      program="/$program"
+      ;;
+    *.zip)
+      unzip -q "$package" -d "$root/home/surveyor"
+      program="$(cd "$root" && echo home/surveyor/swath-*/bin/swath)"
+      program="/$program"
+      ;;
+  esac
+  chroot "$root" chown -R surveyor: /home/surveyor
+  echo "  installed: $(($(du -xsm "$root" | cut -f1) - before)) MB"
+  demo "$program"
+done
+echo "every package installs and runs"

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/survey/column_roles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace swath::io {
+namespace {
+
+std::string column(const ColumnRoles& r, const std::string& key) {
+  const auto at = std::find_if(r.columns.begin(), r.columns.end(), [&](const auto& c) { return c.first == key; });
+  return at == r.columns.end() ? "" : at->second;
+}
+
+TEST(ColumnRoles, ImuByItsIncrements) {
+  const auto r = roles_of({"gps_sow_s", "dtheta_x_rad", "dtheta_y_rad", "dtheta_z_rad", "dv_x_mps", "dv_y_mps", "dv_z_mps"});
+  EXPECT_EQ(r.kind, TableKind::imu);
+  EXPECT_EQ(r.imu_kind, "increments");
+  EXPECT_EQ(r.angle_unit, "rad");
+  EXPECT_EQ(r.acceleration_unit, "m/s2");
+  EXPECT_EQ(r.time_scale, "gps_week");
+  EXPECT_EQ(column(r, "accelerometer_z"), "dv_z_mps");
+}
+
+TEST(ColumnRoles, ImuByItsRates) {
+  const auto r = roles_of({"Time", "GYRO_X_degps", "gyro_y_degps", "gyro_z_degps", "acc_x_g", "acc_y_g", "acc_z_g"});
+  EXPECT_EQ(r.kind, TableKind::imu);
+  EXPECT_EQ(r.imu_kind, "rates");
+  EXPECT_EQ(r.angle_unit, "deg");
+  EXPECT_EQ(r.acceleration_unit, "g");
+  EXPECT_EQ(r.time_scale, "") << "a column called time does not say its scale";
+  EXPECT_EQ(column(r, "gyro_x"), "GYRO_X_degps");
+}
+
+TEST(ColumnRoles, FixesHaveOnePositionAndOneFormOfAccuracy) {
+  const auto r = roles_of({"t", "lat", "lon", "h", "ecef_x_m", "ecef_y_m", "ecef_z_m", "cov_xx_m2", "cov_xy_m2", "cov_xz_m2", "cov_yy_m2",
+                           "cov_yz_m2", "cov_zz_m2", "sd_north_m", "sd_east_m", "sd_down_m"});
+  EXPECT_EQ(r.kind, TableKind::gnss);
+  EXPECT_EQ(column(r, "latitude"), "lat");
+  EXPECT_EQ(column(r, "x"), "");
+  EXPECT_EQ(column(r, "cov_yz"), "cov_yz_m2");
+  EXPECT_EQ(column(r, "sigma_north"), "");
+  EXPECT_EQ(r.angle_unit, "");
+}
+
+TEST(ColumnRoles, WithAttitudeItIsATrajectory) {
+  EXPECT_EQ(roles_of({"t", "lat", "lon", "h", "roll", "pitch", "yaw"}).kind, TableKind::trajectory);
+  EXPECT_EQ(roles_of({"t", "range_m", "scan_angle_deg"}).kind, TableKind::laser);
+  const auto events = roles_of({"unix_time_ms", "photo"});
+  EXPECT_EQ(events.kind, TableKind::event);
+  EXPECT_EQ(events.time_scale, "unix");
+  EXPECT_EQ(events.time_unit, "1 ms");
+}
+
+TEST(ColumnRoles, NamesThatSayNothingAreNone) {
+  EXPECT_EQ(roles_of({"1", "2", "3", "4", "5", "6", "7"}).kind, TableKind::none);
+  EXPECT_EQ(roles_of({"x", "y", "z"}).kind, TableKind::none);
+  EXPECT_EQ(roles_of({}).kind, TableKind::none);
+}
+
+}  // namespace
+}  // namespace swath::io

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/survey/proposal.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <regex>
+
+#include "core/error.h"
+#include "io/survey/read_survey.h"
+#include "io/text/value_file.h"
+#include "tests/world/support.h"
+
+namespace swath::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The proposal as a person would complete it: the line below each question counts.
+std::string completed(const std::string& toml) { return std::regex_replace(toml, std::regex("# \\? [^\n]*\n# "), ""); }
+
+bool is_open(const Proposal& p, const std::string& key) {
+  return std::any_of(p.open.begin(), p.open.end(), [&](const std::string& one) { return one.starts_with(key + ": "); });
+}
+
+TEST(Proposal, RecordsOfAFlightByTheNamesOfTheirColumns) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "laser.csv", "gps_sow_s,line,scan_angle_deg,range_m\n474009,1,-20.5,500.1\n474010,1,20.5,500.2\n");
+  test::write_bytes(folder / "nav/imu.csv", "time,gx,gy,gz,ax,ay,az\n1,0,0,0,0,0,-9.8\n2,0,0,0,0,0,-9.8\n");
+  test::write_bytes(folder / "nav/gnss.csv", "gps_sow_s,lat_deg,lon_deg,h_ell_m\n474006,47.9,10.5,1127\n474007,47.9,10.5,1127\n");
+  test::write_bytes(folder / "notes.txt", "weather was fine\n");
+  test::write_bytes(folder / ".hidden.csv", "gps_sow_s,lat_deg,lon_deg,h_ell_m\n1,2,3,4\n");
+  test::write_bytes(folder / "products/report.json", "{}");
+  test::write_bytes(folder / "products/events.csv", "time,id\n1,2\n");
+  std::size_t called = 0;
+  const auto found = find_records(folder.path(), [&](std::size_t done, std::size_t all, const fs::path&) {
+    EXPECT_EQ(done, called++);
+    EXPECT_EQ(all, 4u);
+  });
+  ASSERT_EQ(found.size(), 4u) << "hidden files and products are passed over";
+  const Proposal p = propose_survey(found, "lech");
+  EXPECT_EQ(p.files, 3u);
+  for (const char* key : {"crs", "laser[1].time", "imu[1].time", "imu[1].kind", "imu[1].angle_unit", "imu[1].acceleration_unit",
+                          "gnss[1].time", "antenna.lever_arm", "scanner.model", "calibration.roll", "calibration.lever_arm_scanner"})
+    EXPECT_TRUE(is_open(p, key)) << key << "\n" << p.toml;
+  EXPECT_FALSE(is_open(p, "gnss[1].angle_unit")) << "lat_deg says it";
+  EXPECT_NE(p.toml.find("notes.txt"), std::string::npos) << "what has no place is named";
+  EXPECT_NE(p.toml.find("EPSG:32632"), std::string::npos) << "the zone of the fixes: " << p.toml;
+
+  test::write_bytes(folder / "survey.toml", p.toml);
+  EXPECT_THROW(read_survey(folder / "survey.toml"), core::Error) << "what is open is missed";
+  test::write_bytes(folder / "survey.toml", completed(p.toml));
+  const Survey survey = read_survey(folder / "survey.toml");
+  EXPECT_EQ(survey.name, "lech");
+  ASSERT_EQ(survey.laser.size(), 1u);
+  EXPECT_EQ(survey.laser[0].columns.range, "range_m");
+  ASSERT_EQ(survey.imu.size(), 1u);
+  EXPECT_EQ(survey.imu[0].file, "nav/imu.csv");
+  ASSERT_EQ(survey.gnss.size(), 1u);
+  EXPECT_EQ(survey.gnss[0].columns.latitude, "lat_deg");
+}
+
+FoundFile file(const std::string& name, const std::string& facts) { return {name, parse_json(facts, name), ""}; }
+
+TEST(Proposal, CloudsAndScannerFramesAreNotTheSame) {
+  const std::string frame = R"({"format": "LAS", "x": [-2.0, 3.0], "y": [-220.0, 215.0], "z": [480.0, 640.0],
+                                "time": {"scale": "seconds of the GPS week"}})";
+  const std::string map =
+      R"({"format": "LAZ", "crs": "ETRS89 / UTM zone 32N", "x": [0.0, 3.0], "y": [-220.0, 215.0], "z": [480.0, 640.0]})";
+  const Proposal clouds = propose_survey({file("map.laz", map)}, "m");
+  EXPECT_NE(clouds.toml.find("[[points]]\nfile = \"map.laz\""), std::string::npos) << clouds.toml;
+  EXPECT_TRUE(clouds.open.empty()) << clouds.open.front();
+  const Proposal raw = propose_survey({file("frame.las", frame), file("map.laz", map)}, "m");
+  EXPECT_NE(raw.toml.find("[[laser]]\nfile = \"frame.las\""), std::string::npos) << raw.toml;
+  EXPECT_EQ(raw.toml.find("[[points]]"), std::string::npos) << "a survey has one or the other";
+  EXPECT_TRUE(is_open(raw, "laser[1].time"));
+  const Proposal bare = propose_survey({file("bare.laz", R"({"format": "LAZ", "x": [5e5, 5.1e5], "y": [5e6, 5.1e6], "z": [0, 9]})")}, "m");
+  EXPECT_TRUE(is_open(bare, "points[1].crs"));
+}
+
+TEST(Proposal, FormatsWithTheirOwnFields) {
+  const Proposal p = propose_survey(
+      {file("a.csd", R"({"format": "Optech CSD", "carrier_latitude_deg": [-1.0, -0.9], "carrier_longitude_deg": [11, 11.1]})"),
+       file("a.out", R"({"format": "SBET"})"),
+       file("a.smrmsg", R"({"format": "smrmsg"})"),
+       file("fix.txt", R"({"format": "RTKLIB solution"})"),
+       file("log.nmea", R"({"format": "NMEA", "fixes": 0})"),
+       file("r.obs", R"({"format": "RINEX", "kind": "observations"})"),
+       file("b.obs", R"({"format": "RINEX", "kind": "observations"})"),
+       file("n.nav", R"({"format": "RINEX", "kind": "navigation messages"})"),
+       {"broken.laz", {}, "the file is cut off"}},
+      "m");
+  EXPECT_EQ(p.files, 8u);
+  EXPECT_NE(p.toml.find("calibration_file = \"a.csd\""), std::string::npos);
+  EXPECT_NE(p.toml.find("accuracy = \"a.smrmsg\""), std::string::npos);
+  EXPECT_NE(p.toml.find("file = \"fix.txt\"\nformat = \"pos\""), std::string::npos) << "its ending does not say it: " << p.toml;
+  EXPECT_NE(p.toml.find("navigation = [\"n.nav\"]"), std::string::npos);
+  EXPECT_NE(p.toml.find("broken.laz: cannot be read: the file is cut off"), std::string::npos);
+  EXPECT_NE(p.toml.find("EPSG:32732"), std::string::npos) << "southern zone 32";
+  EXPECT_TRUE(is_open(p, "trajectory[1].time"));
+  EXPECT_TRUE(is_open(p, "gnss[2].time"));
+  EXPECT_TRUE(is_open(p, "rinex.rover")) << "which of two is the aircraft's";
+  EXPECT_NO_THROW(parse_toml(completed(p.toml), "made"));
+}
+
+TEST(Proposal, AFolderThatIsNotThere) { EXPECT_THROW(find_records("no/such/folder"), core::Error); }
+
+}  // namespace
+}  // namespace swath::io

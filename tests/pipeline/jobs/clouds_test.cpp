@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/jobs/clouds.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/geo/crs.h"
+#include "io/las/las_crs.h"
+#include "tests/io/las_sample.h"
+#include "tests/world/support.h"
+
+namespace swath::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of clouds, worked in.
+class Clouds : public ::testing::Test {
+ protected:
+  Clouds() : before_(fs::current_path()) { fs::current_path(folder_.path()); }
+  ~Clouds() override { fs::current_path(before_); }
+
+  static fs::path cloud(const fs::path& name, const std::string& crs, double x = 500000.0, double y = 5400000.0) {
+    io::LasHeader header = test::sample_header(6);
+    header.offset = {x, y, -100.0};
+    if (!crs.empty()) io::add_las_wkt(header, core::Crs(crs).wkt1());
+    if (name.has_parent_path()) fs::create_directories(name.parent_path());
+    test::write_sample(name, header, test::sample_points(header, 100), 1);
+    return name;
+  }
+  template <class F>
+  static core::Error fault(F&& call) {
+    try {
+      call();
+    } catch (const core::Error& e) {
+      return e;
+    }
+    ADD_FAILURE() << "nothing was refused";
+    return core::Error("");
+  }
+  static std::string fault_of(const std::vector<fs::path>& files, const std::string& crs = {}) {
+    const core::Error e = fault([&] { cloud_survey(files, crs); });
+    EXPECT_EQ(e.code(), core::Exit::bad_usage);
+    return e.text();
+  }
+
+  fs::path before_;
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Clouds, FilesFoldersAndPatternsEachOnce) {
+  for (const char* name : {"tiles/b.laz", "tiles/a.LAS", "other.laz"}) cloud(name, "");
+  test::write_bytes("tiles/readme.txt", "not a cloud");
+  const std::vector<fs::path> expected{"other.laz", "tiles/a.LAS", "tiles/b.laz"};
+  EXPECT_EQ(cloud_files({"other.laz", "tiles", "./tiles/b.laz"}), expected);
+  EXPECT_EQ(cloud_files({"*.laz", "tiles/*.[lL][aA][sSzZ]"}), expected);
+  EXPECT_EQ(cloud_files({"ti*"}), (std::vector<fs::path>{"tiles/a.LAS", "tiles/b.laz"})) << "a pattern may match folders";
+}
+
+TEST_F(Clouds, AnIndexStandsForItsFiles) {
+  cloud("tile/ept-data/0-0-0-0.laz", "");
+  test::write_bytes("tile/ept.json", "{}");
+  EXPECT_EQ(cloud_files({"tile"}), std::vector<fs::path>{"tile/ept.json"});
+  EXPECT_EQ(cloud_name({"tile/ept.json"}), "tile");
+  test::write_bytes("all.vpc", "{}");
+  const core::Value survey = cloud_survey(cloud_files({"all.vpc"}), "");
+  EXPECT_EQ(survey.find("points")->items()[0].find("crs"), nullptr) << "its reader finds the CRS of its files";
+}
+
+TEST_F(Clouds, NamesThatStandForNothingAreOneError) {
+  fs::create_directory("empty");
+  fs::create_symlink("loop", "loop");
+  const auto text = [&](const std::string& name) { return fault([&] { cloud_files({name}); }).text(); };
+  EXPECT_NE(text("away.laz").find("away.laz: no such file or folder"), std::string::npos);
+  EXPECT_NE(text("empty").find("holds no LAS or LAZ file"), std::string::npos);
+  EXPECT_NE(text("away*.laz").find("no file matches the pattern"), std::string::npos);
+  EXPECT_NE(text("loop/*.laz").find("cannot read a folder of the pattern"), std::string::npos) << text("loop/*.laz");
+}
+
+TEST_F(Clouds, OneCrsForAll) {
+  const auto a = cloud("a.laz", "EPSG:32632"), b = cloud("b.laz", "EPSG:32632");
+  const core::Value survey = cloud_survey({a, b}, "");
+  EXPECT_EQ(survey.find("crs"), nullptr) << "the clouds' own";
+  ASSERT_EQ(survey.find("points")->items().size(), 2u);
+  EXPECT_EQ(survey.find("points")->items()[0].find("crs"), nullptr);
+  EXPECT_EQ(survey.find("points")->items()[1].find("file")->as_text(), (fs::current_path() / "b.laz").string());
+}
+
+TEST_F(Clouds, ACrsThatIsNotStatedIsAskedFor) {
+  const auto bare = cloud("bare.laz", ""), known = cloud("known.laz", "EPSG:25832");
+  EXPECT_NE(fault_of({bare}).find("states no CRS"), std::string::npos);
+  EXPECT_NE(fault_of({bare}).find("--crs EPSG:25832"), std::string::npos);
+  const core::Value survey = cloud_survey({bare, known}, "EPSG:25832");
+  EXPECT_EQ(survey.find("crs")->as_text(), "EPSG:25832");
+  EXPECT_EQ(survey.find("points")->items()[0].find("crs")->as_text(), "EPSG:25832");
+  EXPECT_EQ(survey.find("points")->items()[1].find("crs"), nullptr) << "it states its own";
+  EXPECT_NE(fault_of({bare}, "EPSG:1").find("--crs EPSG:1"), std::string::npos);
+}
+
+TEST_F(Clouds, DifferentCrssAndUnitsAreNamed) {
+  const auto a = cloud("a.laz", "EPSG:32632"), zone = cloud("zone.laz", "EPSG:32633"), feet = cloud("feet.laz", "EPSG:2994");
+  EXPECT_NE(fault_of({a, zone}).find("different CRSs"), std::string::npos);
+  EXPECT_NE(fault_of({a, zone}).find("UTM zone 33N"), std::string::npos);
+  EXPECT_NE(fault_of({a, feet}).find("different units and CRSs"), std::string::npos);
+  EXPECT_NE(fault_of({a, feet}).find("(foot)"), std::string::npos) << fault_of({a, feet});
+  EXPECT_NO_THROW(cloud_survey({a, zone}, "EPSG:32632")) << "the CRS of the products is named: others are transformed";
+}
+
+TEST_F(Clouds, DegreesNeedAMapProjection) {
+  const auto degrees = cloud("degrees.laz", "EPSG:4326", 11.0, 48.0);
+  EXPECT_NE(fault_of({degrees}).find("map projection"), std::string::npos);
+  EXPECT_NE(fault_of({degrees}).find("EPSG:32"), std::string::npos) << fault_of({degrees});
+}
+
+TEST_F(Clouds, ProductsHaveANameOfTheirOwn) {
+  EXPECT_EQ(cloud_name({"in/flight.copc.laz"}), "flight");
+  EXPECT_EQ(cloud_name({"in/a.laz", "in/b.laz"}), "in");
+  EXPECT_EQ(cloud_name({"in/a.laz", "out/b.laz"}), "clouds");
+  const std::vector<fs::path> one{"flight.laz"};
+  EXPECT_EQ(proposed_output(one, "dtm"), "flight_dtm");
+  fs::create_directory("flight_dtm");
+  EXPECT_EQ(proposed_output(one, "dtm"), "flight_dtm") << "an empty folder is free";
+  test::write_bytes("flight_dtm/thesis.tex", "years of work");
+  EXPECT_NE(fault([&] { proposed_output(one, "dtm"); }).text().find("--output"), std::string::npos);
+  test::write_bytes("flight_dtm/report.json", "{}");
+  EXPECT_EQ(proposed_output(one, "dtm"), "flight_dtm") << "an earlier run";
+}
+
+}  // namespace
+}  // namespace swath::pipeline

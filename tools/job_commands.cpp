@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One command for one job on point clouds: each is a config that comes with the program, and options of its stages under short names.
+#include <algorithm>
+
+#include "core/error.h"
+#include "pipeline/jobs/clouds.h"
+#include "pipeline/jobs/config_folder.h"
+#include "tools/command.h"
+
+namespace swath::tools {
+namespace {
+
+using core::Dimension;
+
+/// An option of a stage under a short name.
+struct JobOption {
+  std::string flag;    ///< "--cell"
+  std::string option;  ///< as for --set: "dtm.cell"
+  Dimension dimension;
+  std::string example;
+  std::string help;
+};
+
+struct Job {
+  std::string name;
+  std::string config;
+  std::string help;
+  std::vector<JobOption> options{};
+  std::string classified{};  ///< config for clouds whose classes are taken as they are; empty: the job has none
+};
+
+const std::vector<Job>& jobs() {
+  static const std::vector<Job> list{
+      {"dtm",
+       "dtm",
+       "Examples\n  swath dtm flight.laz\n  swath dtm tiles/ --cell 50cm --contours 1m --output terrain\n  swath dtm 'tiles/*.laz' "
+       "--classes 2 "
+       "--classes 9\n\nMake a terrain model, contours and their picture of point clouds.",
+       {{"--cell", "dtm.cell", Dimension::length, "50cm", "Side of the terrain model's cells"},
+        {"--contours", "contours.interval", Dimension::length, "1m", "Height between contours"}},
+       "terrain"},
+      {"classify", "classes",
+       "Examples\n  swath classify flight.laz\n  swath classify tiles/ --output classified\n\nClassify point clouds: ground, vegetation, "
+       "buildings, bridges, wires, water, noise."},
+      {"qc", "qc",
+       "Examples\n  swath qc tiles/\n  swath qc line1.laz line2.laz --output qc\n\nJudge the quality of point clouds: density, flight "
+       "lines "
+       "against one another, gaps."},
+      {"copc", "copc", "Examples\n  swath copc tiles/\n\nWrite point clouds as COPC, the form of LAZ that viewers stream."},
+  };
+  return list;
+}
+
+struct Given {
+  std::vector<std::string> clouds, classes;
+  std::string crs;
+  std::vector<std::string> values;  ///< of the job's options, in their order; empty: not given
+  pipeline::Request request;
+  std::filesystem::path save;
+  Loudness loudness;
+};
+
+/// "dtm.classes=[2, 9]". Throws core::Error (usage) for what is no class.
+std::string class_list(const std::vector<std::string>& classes) {
+  std::string list;
+  for (const std::string& one : classes) {
+    const bool digits = !one.empty() && one.size() <= 3 && one.find_first_not_of("0123456789") == std::string::npos;
+    if (!digits || std::stoi(one) > 255)
+      throw core::usage_error("'" + one + "' is not a class", "--classes",
+                              "ASPRS classes are numbers from 0 to 255: 2 ground, 9 water; `swath info FILE` lists those of a cloud");
+    list += (list.empty() ? "" : ", ") + std::to_string(std::stoi(one));
+  }
+  return "dtm.classes=[" + list + "]";
+}
+
+pipeline::Request request_of(const Job& job, const Given& a) {
+  pipeline::Request out = a.request;
+  const auto files = pipeline::cloud_files(a.clouds);
+  out.config = a.classes.empty() ? job.config : job.classified;
+  if (!a.classes.empty()) out.sets.push_back(class_list(a.classes));
+  for (size_t k = 0; k < job.options.size(); ++k) {
+    const JobOption& o = job.options[k];
+    if (a.values[k].empty()) continue;
+    quantity(o.dimension, a.values[k], o.flag, o.example);
+    out.sets.push_back(o.option + "=" + a.values[k]);
+  }
+  out.survey_tree = pipeline::cloud_survey(files, a.crs);
+  if (out.output.empty()) out.output = pipeline::proposed_output(files, job.name);
+  return out;
+}
+
+void add_job(Commands& commands, const Job& job) {
+  const auto a = std::make_shared<Given>();
+  a->values.resize(job.options.size());
+  auto* c = commands.add(job.name, job.help,
+                         [a, &job, &commands] { return run_pipeline(request_of(job, *a), a->loudness, commands.typed(), a->save); });
+  c->add_option("CLOUD", a->clouds, "LAS, LAZ, COPC, EPT or .vpc files, folders of them, or patterns")->required();
+  c->add_option("-o,--output", a->request.output, "Folder of the products; without it NAME_" + job.name + " in the working folder");
+  for (size_t k = 0; k < job.options.size(); ++k) {
+    const JobOption& o = job.options[k];
+    c->add_option(o.flag, a->values[k], o.help + ", for example " + o.example);
+  }
+  if (!job.classified.empty())
+    c->add_option("--classes", a->classes, "Class of the clouds that is terrain, such as 2; without it ground is found anew")
+        ->allow_extra_args(false);
+  c->add_option("--crs", a->crs, "CRS of the products, and of clouds that state none: EPSG:25832");
+  c->add_option("--set", a->request.sets, "One option of one stage of the config " + job.config)->allow_extra_args(false);
+  add_run_options(*c, a->request, a->loudness, a->save);
+}
+
+}  // namespace
+
+void add_job_commands(Commands& commands) {
+  const auto known = pipeline::config_names();
+  for (const Job& job : jobs())
+    if (std::find(known.begin(), known.end(), job.config) != known.end()) add_job(commands, job);
+}
+
+}  // namespace swath::tools
