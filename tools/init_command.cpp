@@ -31,6 +31,7 @@ int init(const Given& a) {
   const std::filesystem::path whole = std::filesystem::absolute(a.folder / ".").lexically_normal().parent_path();
   const io::Proposal proposal = io::propose_survey(found, whole.filename().string());
   if (a.print_only) return print(proposal.toml), 0;
+  if (found.empty()) throw core::Error("the folder holds no file", a.folder.string(), "name the folder of a survey's records");
   if (proposal.files == 0)
     throw core::Error("none of its " + std::to_string(found.size()) + " files is a record of a survey", a.folder.string(),
                       "--print shows what each of them is");

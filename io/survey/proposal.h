@@ -18,9 +18,9 @@ struct FoundFile {
   std::string fault{};
 };
 
-/// Every file of the folder and the folders in it, by name; hidden ones, survey.toml and the products of runs (folders with a report.json)
-/// are passed over. `on_file`: called before each is read, with the files read so far and their number. Throws core::Error: a folder that
-/// is not there or cannot be read.
+/// Every file of the folder and the folders in it, by name; hidden ones, survey.toml, links to folders and the products of runs (folders
+/// with a report.json) are passed over. What cannot be read, be it a folder, has its fault. `on_file`: called before each is read, with the
+/// files read so far and their number. Throws core::Error: `folder` is not there or cannot be read.
 std::vector<FoundFile> find_records(const std::filesystem::path& folder,
                                     const std::function<void(std::size_t, std::size_t, const std::filesystem::path&)>& on_file = {});
 

@@ -48,8 +48,9 @@ std::vector<fs::path> files_matching(const std::string& pattern) {
   if (code == GLOB_NOMATCH) throw core::usage_error("no file matches the pattern", pattern, "quote it where the shell must not expand it");
   if (code != 0) io::throw_system_error("cannot read a folder of the pattern", pattern, errno ? errno : EIO);
   std::vector<fs::path> out;
+  std::error_code ec;
   for (size_t k = 0; k < found.gl_pathc; ++k)
-    if (const fs::path file = found.gl_pathv[k]; fs::is_directory(file)) {
+    if (const fs::path file = found.gl_pathv[k]; fs::is_directory(file, ec)) {
       const std::vector<fs::path> inside = files_in_folder(file);
       out.insert(out.end(), inside.begin(), inside.end());
     } else {

@@ -113,6 +113,7 @@ class Named(Case):
         self.assert_error(swath("init", self.folder / "away"), 2, "no such folder", "hint: ")
         empty = self.folder / "empty"
         empty.mkdir()
+        self.assert_error(swath("init", empty, "--quiet"), 1, "the folder holds no file", "hint: ")
         (empty / "notes.txt").write_text("nothing of a survey\n")
         self.assert_error(swath("init", empty, "--quiet"), 1, "none of its 1 files", "hint: ")
         self.assertFalse((empty / "survey.toml").exists())

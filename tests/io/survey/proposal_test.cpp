@@ -2,6 +2,7 @@
 #include "io/survey/proposal.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <regex>
@@ -101,6 +102,25 @@ TEST(Proposal, FormatsWithTheirOwnFields) {
   EXPECT_TRUE(is_open(p, "gnss[2].time"));
   EXPECT_TRUE(is_open(p, "rinex.rover")) << "which of two is the aircraft's";
   EXPECT_NO_THROW(parse_toml(completed(p.toml), "made"));
+}
+
+TEST(Proposal, WhatCannotBeReadIsNamedAndTheRestIsProposed) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "a.pos", "% GPST latitude(deg) longitude(deg) height(m) Q ns\n");
+  test::write_bytes(folder / "cut.las", "LASF");
+  test::write_bytes(folder / "empty.csv", "");
+  test::write_bytes(folder / "laser.csv", "gps_sow_s,range_m\n474009,500.1\n474010,500.2\n");
+  fs::create_symlink("nothing.laz", folder / "linked.laz");
+  fs::create_directory_symlink(".", folder / "itself");
+  ASSERT_EQ(::mkfifo((folder / "pipe.csv").c_str(), 0600), 0);
+  const auto found = find_records(folder.path());
+  ASSERT_EQ(found.size(), 6u) << "a link to a folder is passed over";
+  const Proposal p = propose_survey(found, "odd");
+  EXPECT_NE(p.toml.find("[[laser]]\nfile = \"laser.csv\""), std::string::npos) << p.toml;
+  EXPECT_NE(p.toml.find("cut.las: cannot be read: "), std::string::npos) << p.toml;
+  EXPECT_NE(p.toml.find("empty.csv: cannot be read: the file is empty"), std::string::npos) << p.toml;
+  EXPECT_NE(p.toml.find("linked.laz: cannot be read: the link leads to nothing"), std::string::npos) << p.toml;
+  EXPECT_NE(p.toml.find("pipe.csv: cannot be read: it is not a file"), std::string::npos) << p.toml;
 }
 
 TEST(Proposal, AFolderThatIsNotThere) { EXPECT_THROW(find_records("no/such/folder"), core::Error); }
