@@ -130,6 +130,7 @@ struct Context {
   core::OnProgress progress = core::unwatched;   ///< of the survey stage or merge at work
   const Grids* grids = nullptr;
   const Stage* source = nullptr;     ///< of the plan; null where it has none
+  core::ColumnSet unread{};          ///< columns of the source's points that no stage of the run reads
   std::vector<Strip> strips{};       ///< of the source, in the order of the work
   Records records{};                 ///< that survey stages handed on
   std::vector<Product> last_uses{};  ///< of records that no stage behind the one at work needs

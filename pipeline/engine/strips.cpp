@@ -47,6 +47,16 @@ core::ColumnSet needed_columns(const RunState& run) {
   return needed;
 }
 
+/// The columns of a cloud's points that neither a strip stage reads nor the strips keep. Times are always read: the reader judges them.
+core::ColumnSet unread_columns(const RunState& run) {
+  core::ColumnSet all;
+  for (int c = 0; c < core::column_count; ++c) all.add(static_cast<core::Column>(c));
+  core::ColumnSet read = run.kept | core::ColumnSet{core::Column::time};
+  for (size_t i = run.source; i <= run.last_strip_stage; ++i)
+    if (run.works_on(i, Grain::strip)) read = read | run.stage(i).info().needs | run.stage(i).also_reads();
+  return all - read;
+}
+
 struct Parcel {
   stages::StripBatch batch;
   std::vector<Account> accounts;
@@ -192,6 +202,7 @@ void choose_strips(RunState& run) {
   keep(all);
   run.keeps_store = run.plan.run.keep_work || fs::exists(run.folder(run.last_strip_stage));
   if (!run.keeps_store) keep(needed_columns(run));
+  run.context.unread = unread_columns(run);
 }
 
 void find_strips(RunState& run) {

@@ -78,7 +78,7 @@ class LaserReader : public OptionStage<NoOptions> {
 class CloudStrip : public StripReader {
  public:
   CloudStrip(const Context& context, size_t cloud, const Eigen::Vector2d& rim, const io::CloudExtent& extent, const io::CloudPart& part)
-      : source_(context.survey, cloud, cloud_map(context), rim, extent, {part.chunks}) {}
+      : source_(context.survey, cloud, cloud_map(context), rim, extent, {part.chunks, context.unread}) {}
   bool next(StripBatch& batch, size_t most, core::Tally& tally) override { return source_.next(batch.block, most, tally); }
 
  private:
