@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "core/config/result_visitors.h"
 #include "core/error.h"
@@ -11,6 +12,7 @@
 #include "io/survey/record_checks.h"
 #include "io/text/value_file.h"
 #include "pipeline/jobs/config_folder.h"
+#include "pipeline/jobs/pdal_pipeline.h"
 #include "stages/registry.h"
 
 namespace swath::pipeline {
@@ -298,17 +300,17 @@ Value with_origin(const core::Describe& d, const Value& written) {
 
 /// The survey that the request or the config names. Its faults join those of the config.
 void read_plan_survey(const Request& request, Plan& plan, std::vector<Fault>& faults) {
-  if (request.survey_tree)
+  if (plan.survey_tree)
     plan.survey_file = "command line";
   else if (!request.survey.empty())
     plan.survey_file = request.survey;
   else if (plan.run.survey)
     plan.survey_file = plan.config.parent_path() / *plan.run.survey;
   if (plan.survey_file.empty()) return;
-  if (!request.survey_tree && !std::filesystem::exists(plan.survey_file))
+  if (!plan.survey_tree && !std::filesystem::exists(plan.survey_file))
     throw core::usage_error("no such file", plan.survey_file.string(), "check the name of the survey");
   try {
-    const Value survey = request.survey_tree ? *request.survey_tree : io::read_value_file(plan.survey_file);
+    const Value survey = plan.survey_tree ? *plan.survey_tree : io::read_value_file(plan.survey_file);
     plan.survey = io::read_survey(survey, plan.survey_file.parent_path());
     io::check_records(plan.survey, survey);
   } catch (const core::Error& e) {
@@ -324,6 +326,10 @@ Plan make_plan(const Request& request) {
   Plan plan;
   plan.config = find_config(request.config);
   Value tree = io::read_value_file(plan.config);
+  plan.survey_tree = request.survey_tree;
+  const bool is_pdal = is_pdal_pipeline(tree);
+  if (is_pdal && !request.survey.empty()) throw core::usage_error("a PDAL pipeline names its clouds itself", "--survey");
+  if (is_pdal) std::tie(tree, plan.survey_tree, plan.runs_as) = read_pdal_pipeline(tree, plan.config);
   if (!tree.is_object()) throw core::usage_error("a pipeline is a table with [run] and [[stage]]", plan.config.string());
   for (const std::string& s : request.sets) apply_set(tree, s);
 

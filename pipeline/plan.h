@@ -61,6 +61,8 @@ struct Plan {
   std::filesystem::path survey_file;  ///< empty: none was named; "command line" for one that no file holds
   io::Survey survey;
   std::vector<PlannedStage> stages;
+  std::optional<core::Value> survey_tree{};  ///< as Request::survey_tree
+  std::vector<std::string> runs_as{};        ///< a pipeline of PDAL: what each of its stages is here
 };
 
 /// Reads config and survey. Throws core::Error (exit code 2) with all faults. A plan without a survey can be checked and

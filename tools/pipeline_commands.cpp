@@ -17,6 +17,16 @@
 
 namespace swath::tools {
 
+namespace {
+
+/// How the stages of a PDAL pipeline are run, line by line.
+void print_runs_as(const pipeline::Plan& plan) {
+  if (!plan.runs_as.empty()) print(plan.config.string() + " is a PDAL pipeline; it runs as\n");
+  for (const std::string& one : plan.runs_as) print("  " + one + "\n");
+}
+
+}  // namespace
+
 int print_outcome(const pipeline::Outcome& outcome, const pipeline::Plan& plan, const Loudness& loudness) {
   if (!outcome.report.is_object()) return static_cast<int>(outcome.code);
   if (!loudness.quiet && !loudness.json_log) print(pipeline::summary(outcome.report, plan.run.output));
@@ -28,7 +38,8 @@ int print_outcome(const pipeline::Outcome& outcome, const pipeline::Plan& plan, 
 
 int run_pipeline(const pipeline::Request& request, const Loudness& loudness, const std::string& typed, const std::filesystem::path& save) {
   pipeline::Plan plan = pipeline::make_plan(request);
-  if (!save.empty()) pipeline::save_config(plan, request, save, typed);
+  if (!save.empty()) pipeline::save_config(plan, save, typed);
+  if (!loudness.quiet && !loudness.json_log) print_runs_as(plan);
   pipeline::Progress progress(loudness.voice());
   return print_outcome(pipeline::run(plan, progress, typed), plan, loudness);
 }

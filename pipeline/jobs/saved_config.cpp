@@ -44,12 +44,12 @@ Value config_of(const Plan& plan) {
   return config;
 }
 
-void save_config(const Plan& plan, const Request& request, const fs::path& file, const std::string& typed) {
+void save_config(const Plan& plan, const fs::path& file, const std::string& typed) {
   Value config = config_of(plan);
   const std::string comment = comment_of(typed);
-  if (request.survey_tree) {
+  if (plan.survey_tree) {
     const fs::path survey = fs::path(file).replace_extension(".survey.toml");
-    write_new(survey, comment + io::to_toml(*request.survey_tree));
+    write_new(survey, comment + io::to_toml(*plan.survey_tree));
     config["run"]["survey"] = survey.filename().string();
   } else if (!plan.survey_file.empty()) {
     config["run"]["survey"] = fs::absolute(plan.survey_file).lexically_normal().string();

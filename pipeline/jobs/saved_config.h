@@ -13,7 +13,7 @@ namespace swath::pipeline {
 core::Value config_of(const Plan& plan);
 
 /// Writes what `swath run FILE` needs to do the same again: the plan as a config, and beside it NAME.survey.toml with a survey that no file
-/// holds (Request::survey_tree). `typed`: the command line. Throws core::Error (usage) where one of them is there with another content.
-void save_config(const Plan& plan, const Request& request, const std::filesystem::path& file, const std::string& typed);
+/// holds (Plan::survey_tree). `typed`: the command line. Throws core::Error (usage) where one of them is there with another content.
+void save_config(const Plan& plan, const std::filesystem::path& file, const std::string& typed);
 
 }  // namespace swath::pipeline

@@ -22,7 +22,7 @@ TEST(SavedConfig, IsThePlanAgain) {
   const test::TemporaryFolder folder;
   const Request request = request_with(test::source_folder() / "configs/dtm.toml");
   const Plan plan = make_plan(request);
-  save_config(plan, request, folder / "mine.toml", "swath dtm \x1b[31m\n--cell 50cm");
+  save_config(plan, folder / "mine.toml", "swath dtm \x1b[31m\n--cell 50cm");
   EXPECT_EQ(test::entries(folder.path()), 1u) << "a plan without a survey has none to write";
   Request again;
   again.config = folder / "mine.toml";
@@ -44,16 +44,15 @@ TEST(SavedConfig, IsThePlanAgain) {
 
 TEST(SavedConfig, ASurveyThatNoFileHoldsIsWrittenBesideIt) {
   const test::TemporaryFolder folder;
-  Request request = request_with(test::source_folder() / "configs/trajectory.toml");
-  request.sets.clear();
   core::Value survey = core::Value::object();
   survey["name"] = "made";
   core::Value file = core::Value::object();
   test::write_bytes(folder / "fix.pos", "% made\n");
   file["file"] = (folder / "fix.pos").string();
   survey["gnss"].push(file);
-  request.survey_tree = survey;
-  save_config(make_plan({request.config, {}, {}, {}}), request, folder / "mine.toml", "swath");
+  Plan plan = make_plan({test::source_folder() / "configs/trajectory.toml", {}, {}, {}});
+  plan.survey_tree = survey;
+  save_config(plan, folder / "mine.toml", "swath");
   EXPECT_NE(test::read_bytes(folder / "mine.toml").find("survey = \"mine.survey.toml\""), std::string::npos);
   EXPECT_NE(test::read_bytes(folder / "mine.survey.toml").find("fix.pos"), std::string::npos);
 }
@@ -64,15 +63,15 @@ TEST(SavedConfig, AnotherConfigIsNotOverwritten) {
   const Plan plan = make_plan(request);
   test::write_bytes(folder / "mine.toml", "[run]\n");
   try {
-    save_config(plan, request, folder / "mine.toml", "swath");
+    save_config(plan, folder / "mine.toml", "swath");
     FAIL() << "it was overwritten";
   } catch (const core::Error& e) {
     EXPECT_EQ(e.code(), core::Exit::bad_usage);
     EXPECT_NE(e.where().find("mine.toml"), std::string::npos);
   }
   EXPECT_EQ(test::read_bytes(folder / "mine.toml"), "[run]\n");
-  save_config(plan, request, folder / "new.toml", "swath");
-  EXPECT_NO_THROW(save_config(plan, request, folder / "new.toml", "swath")) << "the same command continues a run";
+  save_config(plan, folder / "new.toml", "swath");
+  EXPECT_NO_THROW(save_config(plan, folder / "new.toml", "swath")) << "the same command continues a run";
 }
 
 }  // namespace

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Source: PDAL 2.x, documentation of its stages (pdal.io). Where a default differs from ours, PDAL's is set.
+#include "pipeline/jobs/pdal_options.h"
+
+#include <algorithm>
+#include <map>
+
+#include "io/text/toml_text.h"
+
+namespace swath::pipeline {
+
+using core::Value;
+
+const std::vector<PdalFilter>& pdal_filters() {
+  static const std::vector<PdalFilter> list{
+      {"filters.smrf",
+       "filters.smrf",
+       {{"cell", "cell", PdalUnit::across, 1.0},
+        {"slope", "slope"},
+        {"window", "window", PdalUnit::across, 18.0},
+        {"threshold", "threshold", PdalUnit::height, 0.5},
+        {"scalar", "scalar", PdalUnit::height, 1.25},
+        {"cut", "cut", PdalUnit::across}},
+       {},
+       "last returns alone, openings without an approximation"},
+      {"filters.pmf",
+       "filters.pmf",
+       {{"cell_size", "cell_size", PdalUnit::across, 1.0},
+        {"max_window_size", "max_window_size", PdalUnit::across, 33.0},
+        {"slope", "slope"},
+        {"initial_distance", "initial_distance", PdalUnit::height, 0.15},
+        {"max_distance", "max_distance", PdalUnit::height, 2.5},
+        {"exponential", "exponential"}},
+       {},
+       "last returns alone"},
+      {"filters.csf",
+       "filters.csf",
+       {{"resolution", "resolution", PdalUnit::across, 1.0},
+        {"rigidness", "rigidness"},
+        {"step", "step"},
+        {"iterations", "iterations"},
+        {"threshold", "threshold", PdalUnit::height, 0.5},
+        {"smooth", "smooth"}},
+       {},
+       "last returns alone, the cloth in squares of twice span"},
+      {"filters.elm",
+       "filters.noise",
+       {{"threshold", "low_depth", PdalUnit::height, 1.0}},
+       {{"neighbours", 0}},
+       "low points by the ground around them in place of the cell's next lowest point"},
+      {"filters.outlier",
+       "filters.outlier",
+       {{"mean_k", "mean_k", PdalUnit::none, 8.0}, {"multiplier", "multiplier", PdalUnit::none, 2.0}},
+       {{"min_distance", "0 m"}, {"group", 0}},
+       "mean and deviation of the points around in place of the whole cloud's; classes 7 below and 18 above"},
+  };
+  return list;
+}
+
+bool is_the_case(const std::string& type, const std::string& name, const Value& value) {
+  static const std::map<std::string, std::vector<std::string>> same{{"returns", {"last, only", "last,only"}},
+                                                                    {"class", {"7"}},
+                                                                    {"method", {"statistical"}},
+                                                                    {"dir", {""}},
+                                                                    {"gdaldriver", {"GTiff"}},
+                                                                    {"data_type", {"float", "float32"}},
+                                                                    {"nodata", {"-9999"}},
+                                                                    {"dimension", {"Z"}},
+                                                                    {"forward", {"all"}},
+                                                                    {"extra_dims", {"all"}},
+                                                                    {"offset_x", {"auto"}},
+                                                                    {"offset_y", {"auto"}},
+                                                                    {"offset_z", {"auto"}},
+                                                                    {"minor_version", {"4"}},
+                                                                    {"compression", {"true", "laszip", "lazperf"}}};
+  if (name == "tag" || name == "type") return true;
+  const auto at = same.find(name);
+  if (at == same.end() || (name == "compression" && type != "writers.las")) return false;
+  const std::string text = value.is_text() ? value.as_text() : io::toml_scalar(value);
+  return std::find(at->second.begin(), at->second.end(), text) != at->second.end();
+}
+
+}  // namespace swath::pipeline

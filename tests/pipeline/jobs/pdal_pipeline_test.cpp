@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/jobs/pdal_pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/geo/crs.h"
+#include "io/las/las_crs.h"
+#include "io/text/value_file.h"
+#include "pipeline/plan.h"
+#include "tests/io/las_sample.h"
+#include "tests/world/support.h"
+
+namespace swath::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Value;
+
+/// A folder with a cloud in metres and one in feet, worked in.
+class Pdal : public ::testing::Test {
+ protected:
+  Pdal() : before_(fs::current_path()) {
+    fs::current_path(folder_.path());
+    for (const auto& [name, crs] : {std::pair{"metres.laz", "EPSG:32632"}, {"feet.laz", "EPSG:2992"}}) {
+      io::LasHeader header = test::sample_header(6);
+      io::add_las_wkt(header, core::Crs(crs).wkt1());
+      test::write_sample(name, header, test::sample_points(header, 100), 1);
+    }
+  }
+  ~Pdal() override { fs::current_path(before_); }
+
+  static PdalPipeline read(const std::string& json) {
+    const Value tree = io::parse_json(json, "x.json");
+    EXPECT_TRUE(is_pdal_pipeline(tree));
+    return read_pdal_pipeline(tree, "x.json");
+  }
+  static Value config(const std::string& json) { return std::get<0>(read(json)); }
+  static std::string fault_of(const std::string& json) {
+    try {
+      read(json);
+    } catch (const core::Error& e) {
+      EXPECT_EQ(e.code(), core::Exit::bad_usage);
+      EXPECT_NE(e.where().find("x.json"), std::string::npos) << e.text();
+      return e.text();
+    }
+    return "";
+  }
+  /// A pipeline from metres.laz, its stages between reader and writer.
+  static std::string chain(const std::string& stages, const std::string& writer = "\"out/p.laz\"",
+                           const std::string& reader = "\"metres.laz\"") {
+    return "{\"pipeline\": [" + reader + (stages.empty() ? "" : ", " + stages) + ", " + writer + "]}";
+  }
+
+  fs::path before_;
+  test::TemporaryFolder folder_;
+};
+
+const std::string ground = R"({"type": "filters.range", "limits": "Classification[2:2]"})";
+
+TEST_F(Pdal, GroundAndTerrainModel) {
+  const Value c = config(chain(R"({"type": "filters.smrf", "cell": 2.0, "slope": "0.2", "returns": "last, only"}, )" + ground,
+                               R"({"type": "writers.gdal", "filename": "out/dtm.tif", "resolution": 0.5, "output_type": "idw"})"));
+  EXPECT_EQ(io::to_json(*c.find("stage")), io::to_json(io::parse_json(R"([{"type": "readers.las"},
+              {"type": "filters.smrf", "cell": "2 m", "window": "18 m", "threshold": "0.5 m", "scalar": 1.25, "slope": 0.2},
+              {"type": "terrain.dtm", "cell": "0.5 m", "classes": [2]}, {"type": "writers.gdal"}])",
+                                                                      "made")));
+  EXPECT_EQ(c.find("run")->find("output")->as_text(), "out/dtm");
+}
+
+TEST_F(Pdal, LengthsAreInUnitsOfTheCrs) {
+  const Value c = config(chain(R"({"type": "filters.smrf", "cell": 10})", "\"p.laz\"", "\"feet.laz\""));
+  const Value& smrf = c.find("stage")->items()[1];
+  EXPECT_EQ(smrf.find("cell")->as_text(), "3.048 m");
+  EXPECT_EQ(smrf.find("threshold")->as_text(), "0.1524 m");
+  EXPECT_NEAR(smrf.find("scalar")->as_number(), 1.25 * 0.3048, 1e-12);
+  EXPECT_EQ(smrf.find("slope"), nullptr) << "the default of both";
+}
+
+TEST_F(Pdal, EveryStageThatBothHaveMakesAPlan) {
+  test::write_bytes("x.json", R"([{"type": "readers.las", "filename": "metres.laz"}, {"type": "readers.las", "filename": "feet.laz"},
+    {"type": "filters.merge"}, {"type": "filters.reprojection", "out_srs": "EPSG:32610"}, {"type": "filters.elm"}, {"type": "filters.outlier", "mean_k": 12},
+    {"type": "filters.csf", "smooth": false}, {"type": "filters.hag_delaunay"}, {"type": "writers.las", "filename": "all.laz", "forward": "all", "scale_x": 0.01},
+    {"type": "writers.copc", "filename": "all.copc.laz"}, {"type": "writers.gdal", "filename": "dsm.tif", "resolution": 1, "output_type": "max"}])");
+  const Plan plan = make_plan({"x.json", {}, {}, {}});
+  std::vector<std::string> types;
+  for (const PlannedStage& s : plan.stages) types.emplace_back(s.stage->info().name);
+  EXPECT_EQ(types, (std::vector<std::string>{"readers.las", "filters.noise", "filters.outlier", "filters.csf", "terrain.dtm",
+                                             "filters.hag_dem", "writers.las", "writers.copc", "terrain.dsm", "writers.gdal"}));
+  EXPECT_EQ(plan.survey.crs, "EPSG:32610");
+  EXPECT_EQ(plan.survey.points.size(), 2u);
+  EXPECT_EQ(plan.run.output, "all");
+  EXPECT_EQ(plan.runs_as.size(), 14u);
+  EXPECT_THROW(make_plan({"x.json", {}, "survey.toml", {}}), core::Error) << "it names its clouds itself";
+}
+
+TEST_F(Pdal, WhatHasNoCounterpartIsRefusedWithItsPlace) {
+  const auto refused = [](const std::string& json, const std::string& why) {
+    const std::string text = fault_of(json);
+    EXPECT_NE(text.find(why), std::string::npos) << json << "\n" << text;
+  };
+  refused(chain(R"({"type": "filters.sample", "radius": 1})"), "'filters.sample' has no counterpart here");
+  refused(chain(R"({"type": "filters.smrf", "ignore": "Classification[7:7]"})"), "filters.smrf: 'ignore'");
+  refused(chain(R"({"type": "filters.smrf", "cell": "wide"})"), "'cell' is not a number");
+  refused(chain(ground), "points of other classes would be deleted before writers.las");
+  refused(chain(R"({"type": "filters.range", "limits": "Z[0:100]"})"), "filters flag points and never delete them");
+  refused(chain(R"({"type": "filters.outlier", "method": "radius"})"), "'method' = radius");
+  refused(chain(R"({"type": "filters.smrf", "inputs": ["a"]})"), "branches");
+  refused(chain("", R"({"type": "writers.gdal", "filename": "a.tif", "resolution": 1, "output_type": "idw"})"), "the mean of all points");
+  refused(chain(ground, R"({"type": "writers.gdal", "filename": "a.tif", "resolution": 1})"), "output_type 'all'");
+  refused(chain(ground, R"({"type": "writers.gdal", "filename": "a.tif", "output_type": "idw"})"), "no 'resolution'");
+  refused(chain("", R"({"type": "writers.text", "filename": "a.txt"})"), "'writers.text' has no counterpart here");
+  refused(R"(["metres.laz", {"type": "filters.smrf"}])", "no writer");
+  refused(R"([{"type": "filters.smrf"}, "out.laz"])", "does not begin with a reader");
+  refused(R"({"pipeline": []})", "has no stages");
+  refused(R"(["metres.laz", 7])", "a table or the name of a file");
+}
+
+TEST_F(Pdal, BoundsAndResolutionOfReadersThatHaveThem) {
+  const auto reader_with = [](const std::string& bounds) {
+    return chain("", "\"p.laz\"", R"({"type": "readers.copc", "filename": "feet.laz", "resolution": 10, "bounds": ")" + bounds + "\"}");
+  };
+  const Value c = config(reader_with("([1, 2.5], [3, 4])"));
+  const Value& reader = c.find("stage")->items()[0];
+  EXPECT_EQ(io::to_json(*reader.find("bounds")), io::to_json(io::parse_json("[1.0, 3.0, 2.5, 4.0]", "made")));
+  EXPECT_EQ(reader.find("resolution")->as_text(), "3.048 m");
+  EXPECT_NE(fault_of(reader_with("([1, 2], [3, 4], [5, 6])")), "");
+}
+
+TEST(PdalPipeline, OursIsNotOne) {
+  EXPECT_FALSE(is_pdal_pipeline(io::parse_json(R"({"run": {}, "stage": []})", "x.json")));
+  EXPECT_TRUE(is_pdal_pipeline(io::parse_json("[]", "x.json")));
+}
+
+}  // namespace
+}  // namespace swath::pipeline
