@@ -199,6 +199,9 @@ void add_head(Draft& d, const Sorted& s, const std::string& name) {
 }
 
 void add_laser(Draft& d, const Sorted& s) {
+  const auto tables = std::count_if(s.tables.begin(), s.tables.end(), [](const auto& t) { return t.second.kind == TableKind::laser; });
+  if (!s.scanner.empty() + !s.csd.empty() + (tables > 0) > 1)
+    d.note("\n# ? Laser records in several formats may be the same records: keep one [[laser]] for each.");
   for (const FoundFile* f : s.scanner) {
     d.list("laser", f->name);
     if (const Value* time = f->facts.find("time"); time && text_of(*time, "scale").starts_with("seconds"))

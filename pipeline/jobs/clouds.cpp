@@ -14,7 +14,6 @@
 #include "core/geo/crs.h"
 #include "io/las/cloud_crs.h"
 #include "io/las/las_crs.h"
-#include "io/text/output_file.h"
 
 namespace swath::pipeline {
 namespace {
@@ -27,6 +26,11 @@ bool has_ending(const fs::path& file, std::initializer_list<const char*> endings
   return std::any_of(endings.begin(), endings.end(), [&](const char* one) { return ending == one; });
 }
 
+[[noreturn]] void refuse_unreadable(const std::string& what, const fs::path& where, int code) {
+  throw core::usage_error(what + ": " + std::generic_category().message(code), where.string(),
+                          "name the files that you may read, or have the rights of the folder changed");
+}
+
 /// The LAS and LAZ files of a folder; of an Entwine Point Tile its index.
 std::vector<fs::path> files_in_folder(const fs::path& folder) {
   std::vector<fs::path> out;
@@ -34,7 +38,7 @@ std::vector<fs::path> files_in_folder(const fs::path& folder) {
   if (const fs::path index = folder / "ept.json"; fs::exists(index, ec)) return {index};
   for (fs::directory_iterator at(folder, ec), end; !ec && at != end; at.increment(ec))
     if (has_ending(at->path(), {".las", ".laz"})) out.push_back(at->path());
-  if (ec) io::throw_system_error("cannot read the folder", folder, ec.value());
+  if (ec) refuse_unreadable("cannot read the folder", folder, ec.value());
   if (out.empty()) throw core::usage_error("the folder holds no LAS or LAZ file", folder.string(), "name the files, or another folder");
   std::sort(out.begin(), out.end());
   return out;
@@ -46,7 +50,7 @@ std::vector<fs::path> files_matching(const std::string& pattern) {
   errno = 0;
   const int code = ::glob(pattern.c_str(), GLOB_ERR, nullptr, &found);
   if (code == GLOB_NOMATCH) throw core::usage_error("no file matches the pattern", pattern, "quote it where the shell must not expand it");
-  if (code != 0) io::throw_system_error("cannot read a folder of the pattern", pattern, errno ? errno : EIO);
+  if (code != 0) refuse_unreadable("cannot read a folder of the pattern", pattern, errno ? errno : EIO);
   std::vector<fs::path> out;
   std::error_code ec;
   for (size_t k = 0; k < found.gl_pathc; ++k)

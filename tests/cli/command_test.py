@@ -211,6 +211,8 @@ class Runs(Case):
         classified.write_text("".join(f'[[points]]\nfile = "{t}"\n' for t in tiles))
         terrain = self.run_ok(classified, config=SOURCE / "configs" / "terrain.toml", out=self.folder / "terrain")
         self.assertGreater(stage(terrain, "terrain.dtm")["tally"]["cells with a height"]["count"], 0)
+        found = self.run_ok(survey, config=SOURCE / "configs" / "dtm.toml", out=self.folder / "dtm")
+        self.assertGreater(stage(found, "terrain.dtm")["tally"]["cells with a height"]["count"], 0)
         copc = self.run_ok(survey, config=SOURCE / "configs" / "copc.toml", out=self.folder / "copc")
         self.assertEqual(stage(copc, "writers.copc")["findings"]["points"], stage(report, "writers.las")["counts"]["in"])
         self.assertTrue((self.folder / "copc" / "points.copc.laz").exists())
@@ -222,7 +224,7 @@ class Runs(Case):
         # survey.toml, trajectory.toml and events.toml, which need other records, run in navigation_test.py, lever_arm.toml in
         # lever_arm_test.py, strips.toml in strips_test.py, calibrate.toml in calibration_test.py.
         known = {"survey.toml", "survey_sbet.toml", "trajectory.toml", "events.toml", "georeference.toml", "cloud.toml", "lever_arm.toml",
-                 "strips.toml", "calibrate.toml", "classes.toml", "survey_classes.toml", "terrain.toml", "copc.toml",
+                 "strips.toml", "calibrate.toml", "classes.toml", "survey_classes.toml", "terrain.toml", "dtm.toml", "copc.toml",
                  "convert_trajectory.toml"}
         self.assertEqual({c.name for c in CONFIGS}, known, "a new config is run here too")
 

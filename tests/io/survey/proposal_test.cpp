@@ -75,6 +75,9 @@ TEST(Proposal, CloudsAndScannerFramesAreNotTheSame) {
   EXPECT_NE(raw.toml.find("[[laser]]\nfile = \"frame.las\""), std::string::npos) << raw.toml;
   EXPECT_EQ(raw.toml.find("[[points]]"), std::string::npos) << "a survey has one or the other";
   EXPECT_TRUE(is_open(raw, "laser[1].time"));
+  EXPECT_EQ(raw.toml.find("may be the same records"), std::string::npos);
+  const Proposal twice = propose_survey({file("frame.las", frame), file("a.csd", R"({"format": "Optech CSD"})")}, "m");
+  EXPECT_NE(twice.toml.find("may be the same records"), std::string::npos) << twice.toml;
   const Proposal bare = propose_survey({file("bare.laz", R"({"format": "LAZ", "x": [5e5, 5.1e5], "y": [5e6, 5.1e6], "z": [0, 9]})")}, "m");
   EXPECT_TRUE(is_open(bare, "points[1].crs"));
 }
