@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs each package of out/packages in a bare system made by debootstrap and runs `swath demo` there as a normal user. As root.
 #   bash scripts/test_packages.sh [SUITE [MIRROR]]     SUITE: bookworm (Debian 12); another needs packages that were built on it
+# SWATH_PACKAGES: other packages than those; SWATH_ROOTS: where the systems are made; SWATH_PICTURE: a relief.png that the demonstration's must equal.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 suite="${1:-bookworm}"
@@ -46,16 +47,19 @@ demo() { # a program within the root
   du -xsm "$root/home/surveyor/swath-demo/products" | awk '{ print "  products: " $1 " MB" }'
 }
 
-for package in out/packages/*.deb out/packages/*.tar.zst out/packages/*.zip; do
+for package in ${SWATH_PACKAGES:-out/packages/*.deb out/packages/*.tar.zst out/packages/*.zip}; do
   [ -e "$package" ] || continue
   echo "== $(basename "$package"), $(stat -c %s "$package") bytes, in a bare $suite"
   fresh
+  chroot "$root" sh -c 'apt-get update -q && apt-get clean' >"$work/apt.log" 2>&1 || { tail -5 "$work/apt.log" >&2; exit 1; }  # lists are not counted
   before="$(du -xsm "$root" | cut -f1)"
   case "$package" in
     *.deb)
       cp "$package" "$root/tmp/swath.deb"
-      chroot "$root" sh -c 'apt-get update -q && DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends /tmp/swath.deb' >"$work/apt.log" 2>&1 ||
+      began="$(date +%s)"
+      chroot "$root" sh -c 'DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends /tmp/swath.deb' >"$work/apt.log" 2>&1 ||
         { tail -20 "$work/apt.log" >&2; exit 1; }
+      echo "  apt: $(($(date +%s) - began)) s"
       chroot "$root" sh -c 'rm -f /tmp/swath.deb; apt-get clean'
       program=swath
       ;;
