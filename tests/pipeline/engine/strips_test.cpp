@@ -83,8 +83,8 @@ TEST_F(CloudColumns, AWriterOfPointsReadsWholeRecords) {
 }
 
 TEST_F(CloudColumns, StripStagesReadTheirs) {
-  EXPECT_TRUE(unread({"terrain.dtm"}).has(Column::return_count));
-  EXPECT_FALSE(unread({"filters.returns", "terrain.dtm"}).has(Column::return_count));
+  EXPECT_TRUE(unread({"terrain.density"}).has(Column::return_count));
+  EXPECT_FALSE(unread({"filters.returns", "terrain.density"}).has(Column::return_count));
 }
 
 TEST_F(CloudColumns, ProductsAndCountsAreThoseOfWholeRecords) {

@@ -85,12 +85,13 @@ TEST_F(Pdal, EveryStageThatBothHaveMakesAPlan) {
   const Plan plan = make_plan({"x.json", {}, {}, {}});
   std::vector<std::string> types;
   for (const PlannedStage& s : plan.stages) types.emplace_back(s.stage->info().name);
-  EXPECT_EQ(types, (std::vector<std::string>{"readers.las", "filters.noise", "filters.outlier", "filters.csf", "terrain.dtm",
-                                             "filters.hag_dem", "writers.las", "writers.copc", "terrain.dsm", "writers.gdal"}));
+  EXPECT_EQ(types,
+            (std::vector<std::string>{"readers.las", "filters.noise", "filters.outlier", "filters.csf", "quality.lines", "terrain.dtm",
+                                      "filters.hag_dem", "writers.las", "writers.copc", "terrain.dsm", "writers.gdal"}));
   EXPECT_EQ(plan.survey.crs, "EPSG:32610");
   EXPECT_EQ(plan.survey.points.size(), 2u);
   EXPECT_EQ(plan.run.output, "all");
-  EXPECT_EQ(plan.runs_as.size(), 14u);
+  EXPECT_EQ(plan.runs_as.size(), 13u);
   EXPECT_THROW(make_plan({"x.json", {}, "survey.toml", {}}), core::Error) << "it names its clouds itself";
 }
 
