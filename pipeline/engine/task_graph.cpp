@@ -61,6 +61,9 @@ class GraphMaker {
       : plan_(make_plan(request)), quiet_(Voice::quiet), run_(plan_, quiet_), parts_(static_cast<std::uint64_t>(parts)) {
     if (plan_.survey_file.empty())
       throw core::usage_error("no survey to list tasks of", plan_.config.string(), "name it with --survey DIR/survey.toml");
+    if (plan_.survey_tree)
+      throw core::usage_error("a PDAL pipeline cannot be run by several processes", plan_.config.string(),
+                              "swath run --save-config NAME.toml writes it as a config with its survey");
     prepare(run_);
     if (makes_points(plan_)) choose_strips(run_);
     graph_.config = fs::absolute(plan_.config).string();
