@@ -9,7 +9,7 @@ build="${SWATH_BUILD:-}"
 if [ -z "$build" ]; then
   build=build/package
   bash scripts/install.sh
-  cmake --preset release -B "$build" -DSWATH_TESTS=OFF
+  cmake --preset release -B "$build" -DSWATH_TESTS=OFF -DSWATH_PAGES=ON
   cmake --build "$build"
 fi
 build="$(realpath "$build")"

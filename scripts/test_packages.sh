@@ -37,13 +37,14 @@ fresh() { # a copy of the bare system with a user, in `root`
 demo() { # a program within the root
   local began ended
   began="$(date +%s.%N)"
-  chroot "$root" su - surveyor -c "$1 --version && $1 demo" >"$work/demo.txt" 2>"$work/demo.log" || { tail -5 "$work/demo.txt" "$work/demo.log" >&2; return 1; }
+  chroot "$root" su - surveyor -c "$1 --version && $1 demo && $1 view swath-demo/products --save view.html" >"$work/demo.txt" 2>"$work/demo.log" || { tail -5 "$work/demo.txt" "$work/demo.log" >&2; return 1; }
   ended="$(date +%s.%N)"
   for product in dtm.vrt relief.png contours.gpkg report.json; do
     [ -s "$root/home/surveyor/swath-demo/products/$product" ] || { echo "swath: no $product" >&2; return 1; }
   done
+  [ -s "$root/home/surveyor/view.html" ] || { echo "swath: no view.html" >&2; return 1; }
   cmp -s "$root/home/surveyor/swath-demo/products/relief.png" "${SWATH_PICTURE:-/dev/null}" && echo "  the picture is that of SWATH_PICTURE"
-  awk -v a="$began" -v b="$ended" 'BEGIN { printf "  demo: %.0f s\n", b - a }'
+  awk -v a="$began" -v b="$ended" 'BEGIN { printf "  demo and page: %.0f s\n", b - a }'
   du -xsm "$root/home/surveyor/swath-demo/products" | awk '{ print "  products: " $1 " MB" }'
 }
 

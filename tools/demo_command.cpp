@@ -23,7 +23,8 @@ int demo(Given a, const std::string& typed) {
   const int code = run_pipeline(a.request, a.loudness, typed, a.save);
   if (a.loudness.quiet || a.loudness.json_log) return code;
   print("\nrecords   " + survey.string() + "\nproducts  " + products.string() + "\npicture   " + (products / "relief.png").string() +
-        "\n\nnext: swath run survey --survey " + (survey / "survey.toml").string() + " --output again --set dtm.cell=50cm\n");
+        "\n\nnext: swath view " + products.string() + "\n      swath run survey --survey " + (survey / "survey.toml").string() +
+        " --output again --set dtm.cell=50cm\n");
   return code;
 }
 
