@@ -15,7 +15,7 @@ import unittest
 import zlib
 
 import chromium
-from support import CONFIG, Case, SMALL, SOURCE, SWATH, swath
+from support import CONFIG, Case, SMALL, SOURCE, SWATH, swath, write_las
 
 SKIPPED = 77  # as tests/cli/CMakeLists.txt has it
 WITHOUT_PAGES = "built without its pages" in swath("view", "/nowhere").stderr
@@ -51,6 +51,16 @@ DRAWN = """(() => { const v = swathView.view, gl = v.renderer.getContext(), w = 
   let n = 0; const colours = new Set();
   for (let k = 0; k < p.length; k += 4) if (p[k] !== 0x10 || p[k + 1] !== 0x14 || p[k + 2] !== 0x1a) { ++n; colours.add(p[k] << 16 | p[k + 1] << 8 | p[k + 2]); }
   return {share: n / (w * h), colours: colours.size}; })()"""
+
+
+def geocentric(file):
+    """Two points in ECEF, which GeoTIFF keys state."""
+    write_las(file, [(4146000.0, 613000.0, 4791000.0), (4146001.0, 613001.0, 4791001.0)])
+    data = bytearray(file.read_bytes())
+    keys = struct.pack("<12H", 1, 1, 0, 2, 1024, 0, 1, 3, 2048, 0, 1, 4978)
+    data[227:227] = struct.pack("<H16sHH32s", 0, b"LASF_Projection", 34735, len(keys), b"") + keys
+    struct.pack_into("<II", data, 96, 227 + 54 + len(keys), 1)
+    file.write_bytes(bytes(data))
 
 
 def only(layer):
@@ -239,6 +249,8 @@ class Saved(Pages):
                                    (self.folder / "notes.txt", 2, "neither a cloud nor a folder"), (broken, 1, "broken.laz")):
             self.assert_error(swath("view", given, "--save", self.folder / "x.html"), code, words)
             self.assertFalse((self.folder / "x.html").exists())
+        geocentric(self.folder / "space.las")
+        self.assert_error(swath("view", self.folder / "space.las", "--save", self.folder / "x.html", "--quiet"), 1, "geocentric", "cloud.toml")
         self.assert_error(swath("view", tile, "--save", tile), 2, tile.name)
         self.assert_error(swath("view", self.products, "--save", self.folder / "x.html", "--port", "8000"), 2, "exclude each other")
 

@@ -114,6 +114,9 @@ Scene make_scene(const ProductFiles& files, const SceneOptions& options, const c
   }
   if (!files.contours.empty()) add_contours(scene, files.contours, options);
   const core::Crs crs = definition.empty() ? core::Crs() : core::Crs(definition);
+  if (!crs.empty() && crs.is_geocentric())
+    throw core::Error("coordinates are geocentric (" + crs.name() + "), and a page shows a map", files.clouds.front().string(),
+                      "bring them to a CRS of the map first: swath run configs/cloud.toml, and view its output");
   if (!files.trajectory.empty() && !crs.empty()) try {
       add_trajectory(scene, files.trajectory, crs);
     } catch (const core::Error& e) {

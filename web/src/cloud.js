@@ -34,6 +34,12 @@ export function percentiles(values, p, unknown = -1) {
   return high > low ? [low, high] : [low, low + 1];
 }
 
+function gathered(values, order) {
+  const out = new values.constructor(values.length);
+  for (let k = 0; k < out.length; ++k) out[k] = values[order[k]];
+  return out;
+}
+
 export class Cloud {
   /** `frame`: from stored numbers to the scene and to map coordinates (see main.js). */
   constructor(frame) {
@@ -112,11 +118,12 @@ export class Cloud {
     const own = {};
     for (const [name, values] of Object.entries(columns)) {
       if (!ArrayBuffer.isView(values)) continue;
-      own[name] = order ? values.constructor.from(order, (k) => values[k]) : values;
+      own[name] = order ? gathered(values, order) : values;
     }
     const f = this.frame;
     const s = this.stretch;
     let lastId = -1, lastIndex = 0;
+    const counts = new Uint32Array(256);
     const level = (v, r) => Math.min(Math.max(((v - r[0]) / (r[1] - r[0])) * 255, 0), 255);
     for (let k = 0; k < n; ++k) {
       position[3 * k] = own.x[k] * f.step[0] - f.centre[0];
@@ -128,8 +135,9 @@ export class Cloud {
       look[4 * k + 1] = lastIndex;
       look[4 * k + 2] = !own.sigma_v || own.sigma_v[k] === NOTHING ? 255 : Math.min(level(own.sigma_v[k], s.sigma), 254);
       look[4 * k + 3] = own.intensity ? level(own.intensity[k], s.intensity) : 200;
-      this.counts.set(c, (this.counts.get(c) ?? 0) + 1);
+      ++counts[c];
     }
+    counts.forEach((m, c) => m > 0 && this.counts.set(c, (this.counts.get(c) ?? 0) + m));
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(position, 3));
     geometry.setAttribute('tint', new BufferAttribute(new Uint8Array(4 * n), 4, true));
@@ -146,7 +154,10 @@ export class Cloud {
     this.group.remove(chunk.points);
     chunk.points.geometry.dispose();
     this.chunks.splice(this.chunks.indexOf(chunk), 1);
-    if (chunk.columns.class) for (const c of chunk.columns.class) this.counts.set(c, this.counts.get(c) - 1);
+    for (let k = 0; k < chunk.count; ++k) {
+      const c = chunk.look[4 * k];
+      this.counts.set(c, this.counts.get(c) - 1);
+    }
   }
 
   /** Ranges of the colours, from the first points that come. */
