@@ -153,26 +153,4 @@ export class View {
     caster.setFromCamera(new Vector2((px / this.width) * 2 - 1, 1 - (py / this.height) * 2), this.camera);
     return caster.ray.intersectPlane(new Plane(new Vector3(0, 0, 1), 0), new Vector3());
   }
-
-  /** Pictures per second while the view turns, each waited for; `share` of the points. */
-  async frameRate(seconds, share) {
-    const gl = this.renderer.getContext();
-    const pixel = new Uint8Array(4);
-    const begin = performance.now();
-    const start = this.camera.position.clone();
-    let frames = 0;
-    while (performance.now() - begin < seconds * 1000) {
-      this.camera.position.applyAxisAngle(new Vector3(0, 0, 1), 0.02);
-      this.camera.lookAt(this.controls.target);
-      this.drawNow(share);
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
-      ++frames;
-      await new Promise((r) => setTimeout(r));
-    }
-    const rate = (frames * 1000) / (performance.now() - begin);
-    this.camera.position.copy(start);
-    this.controls.update();
-    this.draw();
-    return rate;
-  }
 }
