@@ -25,6 +25,7 @@
 #include "simulate/files/gnss_file.h"
 #include "simulate/files/imu_file.h"
 #include "simulate/files/laser_file.h"
+#include "simulate/files/objects_file.h"
 #include "simulate/files/survey_file.h"
 #include "simulate/files/trajectory_files.h"
 #include "simulate/planned_flight.h"
@@ -293,6 +294,7 @@ void write_laser(const Scenery& s, const Options& o, const fs::path& folder, con
 std::vector<io::ControlFile> write_ground_truth(const Scenery& s, const Options& o, const fs::path& folder, LaserMade& made) {
   const std::vector<Facet> facets = facets_of(*s.world);
   write_planes(folder / "truth" / "planes.csv", facets, *s.map);
+  write_objects(folder / "truth", *s.world, *s.map);
   const std::vector<SurveyedPoint> points = survey_points(o, *s.world, facets);
   made.surveyed_points = points.size();
   return write_control(folder, points, o.control, *s.map);

@@ -3,6 +3,7 @@
 
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/cloud/copc.h"
+#include "stages/adapters/terrain/powerlines.h"
 #include "stages/tile_filter.h"
 
 namespace swath::stages {
@@ -59,6 +60,7 @@ const std::vector<Entry>& registry() {
       intensity_stage(),
       contours_stage(),
       penetration_stage(),
+      power_lines_stage(),
       trajectory_writer_stage(),
       las_writer_stage(),
       copc_writer_stage(),

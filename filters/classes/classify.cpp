@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Classes: ASPRS LAS 1.4 R15, table 17. Order of the decisions as in the usual chains of rules (Vosselman & Maas 2010, "Airborne and
 // terrestrial laser scanning", ch. 4): planes first, of these decks before roofs, then lines, and what has neither is vegetation.
-// The steps and their deviations: roof_planes, structure_cells, bridges, building_sides, wires.
+// The steps and their deviations: roof_planes, structure_cells, bridges, building_sides, wires, towers.
 #include "filters/classes/classify.h"
 
 #include <algorithm>
@@ -17,6 +17,7 @@
 #include "filters/classes/roof_planes.h"
 #include "filters/classes/roofs.h"
 #include "filters/classes/structure_cells.h"
+#include "filters/classes/towers.h"
 #include "filters/classes/wires.h"
 
 namespace swath::filters {
@@ -24,6 +25,7 @@ namespace {
 
 namespace cls = core::point_class;
 
+constexpr std::uint8_t tower_class = 15;
 constexpr float least_plane_height = 1.0f;     // m above ground: a deck near its ends
 constexpr float above_roof = 1.5f;             // m: chimneys, parapets and what else stands on a roof
 constexpr float beside_deck = 0.5f;            // m above or below a deck: kerbs, rails
@@ -49,7 +51,7 @@ double wide_area(const ClassifyOptions& o) { return std::min(o.building_side.val
 double planes_halo(const ClassifyOptions& o) {
   const double decks = o.bridge_length.value > 0.0 ? deck_cells_halo(o.bridge_length.value) : 0.0;
   const double structures = decks + roof_cells_halo(o.building_side.value) + building_sides_halo() + crowns_halo();
-  return planar_points_halo() + std::max(structures, wire_points_halo());
+  return planar_points_halo() + std::max({structures, wire_points_halo(), tower_points_halo()});
 }
 
 std::uint8_t vegetation(float height, const ClassifyOptions& o) {
@@ -128,6 +130,7 @@ class Structures {
     if (is_deck(p)) return cls::bridge_deck;
     if (sides_[p] || (raised_[p] && !crown_[p] && is_on_roof(p))) return cls::building;
     if (wires_[p]) return cls::wire;
+    if (towers_[p]) return tower_class;
     if (below_.is_noise(p)) return cls::low_noise;
     return is_surface(p) && planar_[p] == Planar::wide ? cls::unassigned : vegetation(block_.height[p], options_);
   }
@@ -192,6 +195,8 @@ class Structures {
       high[p] = alone && static_cast<double>(block_.height[p]) >= options_.wire_height.value;
     }
     wires_ = wire_points(block_, high, surface, where_, own);
+    for (size_t p = 0; p < block_.size(); ++p) high[p] = raised_[p] && !surface[p] && wires_[p] != 1;
+    towers_ = tower_points(block_, wires_, high, own);
   }
 
   const core::Block& block_;
@@ -201,9 +206,9 @@ class Structures {
   Below below_;
   std::vector<Planar> planar_;
   StructureCells cells_;
-  std::vector<std::uint8_t> decks_, ground_decks_;   // per cell; per point
-  std::vector<float> roofs_;                         // per cell
-  std::vector<std::uint8_t> crown_, sides_, wires_;  // per point
+  std::vector<std::uint8_t> decks_, ground_decks_;            // per cell; per point
+  std::vector<float> roofs_;                                  // per cell
+  std::vector<std::uint8_t> crown_, sides_, wires_, towers_;  // per point
 };
 
 void count(ClassifyCounts& n, std::uint8_t c) {
@@ -212,6 +217,7 @@ void count(ClassifyCounts& n, std::uint8_t c) {
   n.high_vegetation += c == cls::high_vegetation;
   n.building += c == cls::building;
   n.wire += c == cls::wire;
+  n.tower += c == tower_class;
   n.bridge_deck += c == cls::bridge_deck;
   n.low_noise += c == cls::low_noise;
   n.unassigned += c == cls::unassigned;

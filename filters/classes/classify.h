@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// ASPRS classes of what is not ground: vegetation by height, buildings, bridge decks, wires.
+// ASPRS classes of what is not ground: vegetation by height, buildings, bridge decks, wires and their supports.
 #pragma once
 
 #include "core/block.h"
@@ -41,7 +41,7 @@ void describe(ClassifyOptions& o, V& v) {
 
 /// Classes set among the own points.
 struct ClassifyCounts {
-  core::Changed low_vegetation, medium_vegetation, high_vegetation, building, wire, bridge_deck, unassigned, low_noise;
+  core::Changed low_vegetation, medium_vegetation, high_vegetation, building, wire, tower, bridge_deck, unassigned, low_noise;
   core::Kept kept;
 };
 
@@ -53,6 +53,7 @@ void describe(const ClassifyCounts& r, V& v) {
   v.result("high vegetation", r.high_vegetation, if_any(), "Returns of class 5.");
   v.result("building", r.building, if_any(), "Returns of class 6.");
   v.result("wire", r.wire, if_any(), "Returns of class 14.");
+  v.result("tower", r.tower, if_any(), "Returns of class 15.");
   v.result("bridge deck", r.bridge_deck, if_any(), "Returns of class 17.");
   v.result("low noise", r.low_noise, if_any(), "Returns of class 7: scattered among ground returns a metre or more above them.");
   v.result("unassigned", r.unassigned, if_any(), "Returns of class 1.");

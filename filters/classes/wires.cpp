@@ -36,7 +36,8 @@ constexpr double sleeve = 0.5;                // m around the line: empty beside
 constexpr double most_close = 0.1;            // points in it, of the returns on the line
 constexpr double most_bent = 0.01;            // 1 / m: twice that of a catenary of parameter 200 m; as much downwards, for noise
 constexpr size_t wire_points_at_once = 1024;  // of one thread
-constexpr double thinned = 1.0;               // m: of each cube of this side one return takes part in the search for lines
+constexpr std::uint8_t carried_on = 2;
+constexpr double thinned = 1.0;  // m: of each cube of this side one return takes part in the search for lines
 
 /// u along, v across in plan, both from the point; w = level + rise u + bend u^2 / 2 in height.
 struct Line {
@@ -144,7 +145,7 @@ class Search {
         around.find(lines, block_, p, shortest);
         if (around.size() + 1 < fewest || !around.any_within(longest_gap)) continue;
         for (size_t k = 0; k < around.size() && !out[p]; ++k)
-          out[p] = around.is_line(k) && around.may_carry_on(k) && carries_on(around, around[k]);
+          if (around.is_line(k) && around.may_carry_on(k) && carries_on(around, around[k])) out[p] = carried_on;
       }
     });
     return out;

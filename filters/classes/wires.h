@@ -17,7 +17,8 @@ double wire_points_halo();
 /// m, straight in plan and no steeper than 30 degrees, in height along a parabola that may open upwards as a catenary does, each within 0.4
 /// m, with gaps of at most 7 m (16 m with at least six others), while nearly nothing else lies within 1.5 m of that line, points of a
 /// `surface` least of all. Wires side by side differ from foliage by the few places of the line's cross-section that they take. Then the
-/// candidates that carry on such lines by up to one gap. Does not depend on the order of the points.
+/// candidates that carry on such lines by up to one gap: 2. The 1 hold for points within 15 m of the own ones, too. Does not depend on the
+/// order of the points.
 std::vector<std::uint8_t> wire_points(const core::Block& b, const std::vector<std::uint8_t>& candidate,
                                       const std::vector<std::uint8_t>& surface, const Districts& where, size_t own);
 

@@ -213,6 +213,8 @@ class Runs(Case):
         self.assertGreater(stage(terrain, "terrain.dtm")["tally"]["cells with a height"]["count"], 0)
         found = self.run_ok(survey, config=SOURCE / "configs" / "dtm.toml", out=self.folder / "dtm")
         self.assertGreater(stage(found, "terrain.dtm")["tally"]["cells with a height"]["count"], 0)
+        lines = stage(self.run_ok(survey, config=SOURCE / "configs" / "corridor.toml", out=self.folder / "corridor"), "terrain.powerlines")
+        self.assertEqual(lines["findings"]["spans"], 0)  # a scene without wires
         copc = self.run_ok(survey, config=SOURCE / "configs" / "copc.toml", out=self.folder / "copc")
         self.assertEqual(stage(copc, "writers.copc")["findings"]["points"], stage(report, "writers.las")["counts"]["in"])
         self.assertTrue((self.folder / "copc" / "points.copc.laz").exists())
@@ -224,7 +226,7 @@ class Runs(Case):
         # survey.toml, trajectory.toml and events.toml, which need other records, run in navigation_test.py, lever_arm.toml in
         # lever_arm_test.py, strips.toml in strips_test.py, calibrate.toml in calibration_test.py.
         known = {"survey.toml", "survey_sbet.toml", "trajectory.toml", "events.toml", "georeference.toml", "cloud.toml", "lever_arm.toml",
-                 "strips.toml", "calibrate.toml", "classes.toml", "survey_classes.toml", "terrain.toml", "dtm.toml", "copc.toml",
+                 "strips.toml", "calibrate.toml", "classes.toml", "survey_classes.toml", "terrain.toml", "dtm.toml", "copc.toml", "corridor.toml",
                  "convert_trajectory.toml"}
         self.assertEqual({c.name for c in CONFIGS}, known, "a new config is run here too")
 

@@ -31,7 +31,7 @@ void add_wire(core::Block& b, double offset, double height, double spacing, unsi
 
 double share(const std::vector<std::uint8_t>& found) {
   double n = 0;
-  for (const std::uint8_t w : found) n += w;
+  for (const std::uint8_t w : found) n += w != 0;
   return n / static_cast<double>(found.size());
 }
 
