@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The catenary of a wire of even weight (McLaughlin 2006, eq. 3) as
 //   z(s) = level + (cosh(kappa u + t) - cosh t) / kappa,  u = s - at,  t = asinh(slope),
-// fitted by Gauss-Newton with rejection of gross errors (Mikhail 1976). Deviation: below kappa u = 1e-3 the first terms of its series
-// are taken (relative error below 1e-12).
+// fitted by Gauss-Newton with rejection of gross errors (Mikhail 1976), with a height and a tilt of each flight line. An error of the roll
+// by e tilts a wire across the line by e; a place wrong by d along the wire is a tilt of d / a. Deviation: below kappa u = 1e-3 the first
+// terms of its series are taken (relative error below 1e-12).
 #include "terrain/corridor/catenary.h"
 
 #include <Eigen/Cholesky>
@@ -15,42 +16,76 @@
 namespace swath::terrain {
 namespace {
 
-constexpr double series_below = 1e-3;    // of kappa u
-constexpr double rejected_beyond = 3.5;  // robust sigmas
-constexpr double finest_sigma = 0.002;   // m: returns are not written finer
-constexpr size_t fewest_of_line = 8;     // returns of a flight line with an offset of its own
+constexpr double series_below = 1e-3;     // of kappa u
+constexpr double rejected_beyond = 3.5;   // robust sigmas
+constexpr double finest_sigma = 0.002;    // m: returns are not written finer
+constexpr size_t fewest_of_line = 8;      // returns of a flight line with an offset of its own
+constexpr double shortest_tilted = 30.0;  // m that a flight line with a tilt of its own sees of the wire
 constexpr int rounds = 12;
 
-/// Offsets of flight lines: which column of the design each line has; lines with few returns share the first's.
+/// Offsets and tilts of flight lines: which column of the design each line has. Lines with few returns share the first's offset, those that
+/// see little of the wire the first's tilt.
 struct LineColumns {
-  std::map<std::uint16_t, int> column;
+  struct Columns {
+    int offset = -1, tilt = -1;
+    double share = 0.0;  // of the returns
+  };
+  std::map<std::uint16_t, Columns> of;
   int count = 0;
-  std::vector<double> share;  // of the returns, by column
+  std::vector<double> offset_share, tilt_share;  // by column; 0 where it is of the other sort
 
   explicit LineColumns(const std::vector<OnWire>& returns) {
-    std::map<std::uint16_t, size_t> n;
-    for (const OnWire& r : returns) ++n[r.line];
-    bool first = true;
-    for (const auto& [line, size] : n) {
-      column[line] = -1;
-      if (size < fewest_of_line) continue;
-      if (!first) {
-        column[line] = count++;
-        share.push_back(static_cast<double>(size) / static_cast<double>(returns.size()));
-      }
+    struct Seen {
+      size_t returns = 0;
+      double low = 1e300, high = -1e300;
+    };
+    std::map<std::uint16_t, Seen> seen;
+    for (const OnWire& r : returns) {
+      Seen& s = seen[r.line];
+      ++s.returns;
+      s.low = std::min(s.low, r.s), s.high = std::max(s.high, r.s);
+    }
+    bool first = true, first_long = true;
+    for (const auto& [line, s] : seen) {
+      Columns& c = of[line];
+      c.share = static_cast<double>(s.returns) / static_cast<double>(returns.size());
+      if (s.returns < fewest_of_line) continue;
+      if (!first) c.offset = add(c.share, 0.0);
       first = false;
+      if (s.high - s.low < shortest_tilted) continue;
+      if (!first_long) c.tilt = add(0.0, c.share);
+      first_long = false;
     }
   }
-  /// Indicators less their means: the level stays the mean of all lines.
-  void fill(const OnWire& r, Eigen::VectorXd& row) const {
-    for (int k = 0; k < count; ++k) row(3 + k) = -share[static_cast<size_t>(k)];
-    if (const int k = column.at(r.line); k >= 0) row(3 + k) += 1.0;
+  /// Indicators less their means: level and slope stay the means of all lines.
+  void fill(const OnWire& r, double u, Eigen::VectorXd& row) const {
+    for (int k = 0; k < count; ++k) row(3 + k) = -offset_share[static_cast<size_t>(k)] - u * tilt_share[static_cast<size_t>(k)];
+    const Columns& c = of.at(r.line);
+    if (c.offset >= 0) row(3 + c.offset) += 1.0;
+    if (c.tilt >= 0) row(3 + c.tilt) += u;
+  }
+  /// How each line's curve differs from the mean, by the columns' unknowns.
+  std::vector<LineOfFlight> differences(const Eigen::VectorXd& unknown) const {
+    double level = 0.0, tilt = 0.0;
+    for (int k = 0; k < count; ++k)
+      level += offset_share[static_cast<size_t>(k)] * unknown(k), tilt += tilt_share[static_cast<size_t>(k)] * unknown(k);
+    std::vector<LineOfFlight> out;
+    for (const auto& [line, c] : of)
+      out.push_back({line, c.share, (c.offset < 0 ? 0.0 : unknown(c.offset)) - level, (c.tilt < 0 ? 0.0 : unknown(c.tilt)) - tilt});
+    return out;
+  }
+
+ private:
+  int add(double offset, double tilt) {
+    offset_share.push_back(offset), tilt_share.push_back(tilt);
+    return count++;
   }
 };
 
 class Fit {
  public:
-  explicit Fit(const std::vector<OnWire>& returns) : returns_(returns), lines_(returns), offset_(Eigen::VectorXd::Zero(lines_.count)) {}
+  explicit Fit(const std::vector<OnWire>& returns)
+      : returns_(returns), lines_(returns), differences_(Eigen::VectorXd::Zero(lines_.count)) {}
 
   CatenaryFit run() {
     CatenaryFit out;
@@ -94,13 +129,13 @@ class Fit {
   Eigen::VectorXd row_of(const Catenary& c, const OnWire& r) const {
     Eigen::VectorXd row(3 + lines_.count);
     row.head<3>() = c.gradient(r.s);
-    lines_.fill(r, row);
+    lines_.fill(r, r.s - c.at, row);
     return row;
   }
   double residual(const Catenary& c, const OnWire& r) const {
     if (lines_.count == 0) return r.z - c.z(r.s);
     const Eigen::VectorXd row = row_of(c, r);
-    return r.z - c.z(r.s) - row.tail(lines_.count).dot(offset_);
+    return r.z - c.z(r.s) - row.tail(lines_.count).dot(differences_);
   }
 
   bool step(Catenary& c, const std::vector<char>& used) {
@@ -116,7 +151,7 @@ class Fit {
     const Eigen::VectorXd change = normal_.ldlt().solve(right);
     if (!change.allFinite()) return false;
     c.level += change(0), c.slope += change(1), c.kappa += change(2);
-    offset_ += change.tail(lines_.count);
+    differences_ += change.tail(lines_.count);
     last_step_ = std::abs(change(0));
     return std::abs(c.slope) < 3.0 && std::abs(c.kappa) < 1.0;
   }
@@ -140,18 +175,30 @@ class Fit {
     out.sigma = std::max(finest_sigma, std::sqrt(squares / redundancy));
     const Eigen::MatrixXd all = normal_.ldlt().solve(Eigen::MatrixXd::Identity(normal_.rows(), normal_.cols()));
     out.covariance = out.sigma * out.sigma * all.topLeftCorner<3, 3>();
-    if (lines_.count > 0) {  // the mean of the lines' heights is as good as they agree
-      double scatter = std::pow(mean_offset(), 2);
-      for (int k = 0; k < lines_.count; ++k) scatter += std::pow(offset_(k) - mean_offset(), 2);
-      out.sigma_lines = std::sqrt(scatter / (lines_.count * (lines_.count + 1.0)));
-    }
+    out.lines = lines_.differences(differences_);
+    out.sigma_lines = sigma_of_mean();
     out.found = out.covariance.allFinite();
   }
-  double mean_offset() const { return offset_.sum() / (lines_.count + 1.0); }  // the first line's is 0
+  /// The mean of the lines' heights is as good as they agree.
+  double sigma_of_mean() const {
+    std::vector<double> level;
+    bool first = true;
+    for (const LineOfFlight& l : lines_.differences(differences_)) {
+      const bool own = lines_.of.at(l.line).offset >= 0;
+      if (own || first) level.push_back(l.level);
+      first = first && own;
+    }
+    if (level.size() < 2) return 0.0;
+    const auto n = static_cast<double>(level.size());
+    double mean = 0.0, squares = 0.0;
+    for (const double v : level) mean += v / n;
+    for (const double v : level) squares += (v - mean) * (v - mean);
+    return std::sqrt(squares / (n * (n - 1.0)));
+  }
 
   const std::vector<OnWire>& returns_;
   LineColumns lines_;
-  Eigen::VectorXd offset_;
+  Eigen::VectorXd differences_;
   Eigen::MatrixXd normal_;
   double last_step_ = 0.0;
 };

@@ -34,10 +34,19 @@ struct OnWire {
   std::uint16_t line = 0;   ///< flight line
 };
 
+/// How the curve of one flight line differs from that of all: by level + tilt (s - at).
+struct LineOfFlight {
+  std::uint16_t line = 0;
+  double share = 0.0;  ///< of the returns; the curve of all is the lines' mean by these
+  double level = 0.0;  ///< m
+  double tilt = 0.0;
+};
+
 struct CatenaryFit {
   Catenary curve;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of level, slope and kappa, of what returns scatter within a flight line
   double sigma_lines = 0.0;                              ///< m, of the level: how flight lines that see the wire agree
+  std::vector<LineOfFlight> lines;                       ///< by number
   double sigma = 0.0;                                    ///< of one return in height, m, from the residuals
   size_t used = 0;                                       ///< returns that were not rejected
   bool found = false;
@@ -46,8 +55,8 @@ struct CatenaryFit {
 };
 
 /// Least squares with returns beyond 3.5 robust sigmas rejected in turn. Where several flight lines see the wire, each but the first has an
-/// offset in height of its own, so that a step between lines does not bend the curve. Not found: fewer than five returns, or all at nearly
-/// one place.
+/// offset in height of its own, and a tilt where it sees 30 m or more: neither a step between lines nor errors of their roll, nor of their
+/// places along the wire, bend the curve. Not found: fewer than five returns, or all at nearly one place.
 CatenaryFit fit_catenary(const std::vector<OnWire>& returns);
 
 }  // namespace swath::terrain

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Strands beside one another are a span; where strands of two spans meet there is a support. The sag is the largest distance of chord and
-// wire; its variance follows from both catenaries at each support, as the station of their meeting depends on both.
+// wire; its variance follows from both catenaries at each support, as the station of their meeting depends on both, and on how flight lines
+// differ where the two spans are seen by different ones.
 #include "terrain/corridor/spans.h"
 
 #include <algorithm>
@@ -20,6 +21,7 @@ constexpr double parallel = 0.07;    // rad: conductors of one span
 constexpr double level_with = 30.0;  // m: and in height
 constexpr double overlap = 0.6;      // of the shorter strand
 constexpr double arms = 15.0;        // m: wires of one support lie within, across
+constexpr double line_share = 0.1;   // of a wire's returns: flight lines with less say little of heights
 constexpr double at_support = 6.0;   // m along: meetings and returns of one support
 
 class Groups {  // union-find
@@ -61,6 +63,7 @@ class Builder {
   }
 
   PowerLines run() {
+    sigma_line_ = sigma_of_lines();
     for (size_t c = 0; c < out_.conductors.size(); ++c)
       for (const bool last : {false, true}) meet(c, last);
     find_pylons();
@@ -71,6 +74,22 @@ class Builder {
 
  private:
   ConductorEnd& end(size_t c, bool last) { return last ? out_.conductors[c].last : out_.conductors[c].first; }
+
+  /// Of one flight line's heights at the ends of wires, from how lines that see the same wire differ there, m.
+  double sigma_of_lines() const {
+    double squares = 0.0, redundancy = 0.0;
+    for (const Conductor& c : out_.conductors)
+      for (const double s : {c.strand.first, c.strand.last}) {
+        std::vector<double> height;
+        for (const LineOfFlight& l : c.strand.fit.lines)
+          if (l.share >= line_share) height.push_back(l.level + l.tilt * (s - c.strand.fit.curve.at));
+        if (height.size() < 2) continue;
+        const double mean = std::accumulate(height.begin(), height.end(), 0.0) / static_cast<double>(height.size());
+        for (const double h : height) squares += (h - mean) * (h - mean);
+        redundancy += static_cast<double>(height.size()) - 1.0;
+      }
+    return redundancy > 0.0 ? std::sqrt(squares / redundancy) : 0.0;
+  }
 
   /// Spans of the strands, without those that are too short to be believed.
   void group(std::vector<Strand> strands) {
@@ -132,7 +151,7 @@ class Builder {
       const Strand& b = out_.conductors[k].strand;
       for (const bool other : {false, true}) {
         if ((end_place(k, other) - here).norm() > 2 * options_.end_reach) continue;
-        const Meeting m = meeting_of(a, last, b, other, options_.end_reach);
+        const Meeting m = meeting_of(a, last, b, other, options_.end_reach, sigma_line_);
         if (!m.found || (best.found && m.miss >= best.miss)) continue;
         best = m;
         end(c, last).partner = k;
@@ -269,7 +288,8 @@ class Builder {
       const double so = other.line.s(c.strand.line.at(e.s));
       const double rate = wire.dz(e.s) - c.strand.line.along.dot(other.line.along) * other.fit.curve.dz(so);
       own -= by_station / rate * wire.gradient(e.s);
-      variance += std::pow(by_station / rate * other.fit.sigma_z(so), 2);
+      variance += std::pow(by_station / rate, 2) *
+                  (std::pow(other.fit.sigma_z(so), 2) + sigma_line_ * sigma_line_ * unlike_lines(c.strand.fit, other.fit));
     }
     sag.sigma = std::sqrt(variance + own.dot(c.strand.fit.covariance * own));
     c.sag = sag;
@@ -295,6 +315,7 @@ class Builder {
   const std::vector<TowerGroup>& towers_;
   const SpanOptions& options_;
   PowerLines out_;
+  double sigma_line_ = 0.0;
   std::vector<char> in_plan_;  // of both ends of each conductor
 };
 

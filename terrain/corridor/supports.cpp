@@ -30,7 +30,7 @@ constexpr double most_sigma = 1.0;         // m
 constexpr double least_turn = 0.03;        // rad: below it lines in plan do not say where they cross
 constexpr double least_break = 0.01;       // change of slope in height
 
-Meeting by_height(const Strand& a, const Strand& b, double from) {
+Meeting by_height(const Strand& a, const Strand& b, double from, double sigma_line) {
   Meeting m;
   m.s = from;
   double rate = 0.0, sb = 0.0;
@@ -45,7 +45,9 @@ Meeting by_height(const Strand& a, const Strand& b, double from) {
   }
   sb = b.line.s(a.line.at(m.s));
   m.miss = std::abs(b.line.v(a.line.at(m.s)));
-  m.sigma = std::hypot(a.fit.sigma_z(m.s), b.fit.sigma_z(sb)) / std::abs(rate);
+  m.sigma =
+      std::sqrt(std::pow(a.fit.sigma_z(m.s), 2) + std::pow(b.fit.sigma_z(sb), 2) + sigma_line * sigma_line * unlike_lines(a.fit, b.fit)) /
+      std::abs(rate);
   m.found = true;
   return m;
 }
@@ -64,6 +66,15 @@ Meeting in_plan(const Strand& a, const Strand& b) {
 }
 
 }  // namespace
+
+double unlike_lines(const CatenaryFit& a, const CatenaryFit& b) {
+  std::map<std::uint16_t, double> more;  // of a than of b
+  for (const LineOfFlight& l : a.lines) more[l.line] += l.share;
+  for (const LineOfFlight& l : b.lines) more[l.line] -= l.share;
+  double out = 0.0;
+  for (const auto& [line, share] : more) out += share * share;
+  return out;
+}
 
 std::vector<TowerGroup> tower_groups(const std::vector<TowerPoint>& points) {
   using Key = std::pair<std::int64_t, std::int64_t>;
@@ -111,7 +122,7 @@ std::vector<TowerGroup> tower_groups(const std::vector<TowerPoint>& points) {
   return out;
 }
 
-Meeting meeting_of(const Strand& a, bool a_ends_last, const Strand& b, bool b_ends_last, double reach) {
+Meeting meeting_of(const Strand& a, bool a_ends_last, const Strand& b, bool b_ends_last, double reach, double sigma_line) {
   const double end_a = a_ends_last ? a.last : a.first, end_b = b_ends_last ? b.last : b.first;
   const auto is_good = [&](const Meeting& m) {
     if (!m.found || m.miss > most_miss || m.sigma > most_sigma) return false;
@@ -119,7 +130,7 @@ Meeting meeting_of(const Strand& a, bool a_ends_last, const Strand& b, bool b_en
     const double sb = b.line.s(a.line.at(m.s)), past_b = b_ends_last ? sb - end_b : end_b - sb;
     return past_a > -overrun && past_a < reach && past_b > -overrun && past_b < reach;
   };
-  const Meeting plan = in_plan(a, b), height = by_height(a, b, 0.5 * (end_a + a.line.s(b.line.at(end_b))));
+  const Meeting plan = in_plan(a, b), height = by_height(a, b, 0.5 * (end_a + a.line.s(b.line.at(end_b))), sigma_line);
   if (is_good(plan) && (!is_good(height) || plan.sigma < height.sigma)) return plan;
   return is_good(height) ? height : Meeting{};
 }

@@ -37,6 +37,10 @@ struct Meeting {
 /// The meeting of the ends of two strands that are one wire hung over a support: where their heights cross, or, where the wire turns there,
 /// their lines in plan; whichever is known better. Not found: the meeting is farther than `reach` from one of the ends, they miss each
 /// other by more than 1.5 m, or its station is not known to 1 m.
-Meeting meeting_of(const Strand& a, bool a_ends_last, const Strand& b, bool b_ends_last, double reach);
+Meeting meeting_of(const Strand& a, bool a_ends_last, const Strand& b, bool b_ends_last, double reach, double sigma_line);
+
+/// What the mean of two wires' flight lines differs by, as a share of the variance of one line: 0 where both have the same lines in the
+/// same shares.
+double unlike_lines(const CatenaryFit& a, const CatenaryFit& b);
 
 }  // namespace swath::terrain

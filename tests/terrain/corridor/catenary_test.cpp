@@ -77,6 +77,39 @@ TEST(Catenary, AStepBetweenFlightLinesDoesNotBendIt) {
   EXPECT_NEAR(fit.sigma_lines, 0.05, 0.01);  // half the step: sigma of a mean of two
 }
 
+TEST(Catenary, TiltsOfFlightLinesThatSeePartOfItDoNotBendIt) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  const Catenary truth{75.0, 25.0, 0.0, 1.0 / 625.0};
+  double squares = 0.0;
+  constexpr int rounds = 200;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<OnWire> r;
+    for (std::uint16_t line = 1; line <= 2; ++line) {
+      const double shift = 0.03 * normal(random), tilt = 5e-4 * normal(random);
+      for (OnWire o : returns(truth, line == 1 ? 0.0 : 50.0, line == 1 ? 100.0 : 150.0, 150, 0.02, random))
+        r.push_back({o.s, o.z + shift + tilt * (o.s - 75.0), line});
+    }
+    const CatenaryFit fit = fit_catenary(r);
+    ASSERT_TRUE(fit.found);
+    squares += std::pow(fit.curve.kappa - truth.kappa, 2) / fit.covariance(2, 2);
+  }
+  EXPECT_NEAR(std::sqrt(squares / rounds), 1.0, 0.15);  // 3 sigmas of 200 rounds
+}
+
+TEST(Catenary, ShortPiecesOfALineHaveNoTiltOfTheirOwn) {
+  std::mt19937 random(12);
+  const Catenary truth{75.0, 25.0, 0.0, 1.0 / 625.0};
+  std::vector<OnWire> r = returns(truth, 0.0, 150.0, 150, 0.02, random);
+  for (OnWire o : returns(truth, 130.0, 150.0, 30, 0.02, random)) r.push_back({o.s, o.z + 0.1, 2});
+  const CatenaryFit fit = fit_catenary(r);
+  ASSERT_EQ(fit.lines.size(), 2u);
+  EXPECT_EQ(fit.lines[0].tilt, 0.0);
+  EXPECT_EQ(fit.lines[1].tilt, 0.0);
+  EXPECT_NEAR(fit.lines[1].level - fit.lines[0].level, 0.1, 0.02);
+  EXPECT_NEAR(fit.lines[0].share, 150.0 / 180.0, 1e-9);
+}
+
 TEST(Catenary, TooFewReturnsOrAllAtOnePlaceAreNone) {
   EXPECT_FALSE(fit_catenary({}).found);
   EXPECT_FALSE(fit_catenary({{0, 5, 1}, {1, 5, 1}, {2, 5, 1}, {3, 5, 1}}).found);

@@ -29,7 +29,7 @@ TEST(Supports, WiresMeetAtTheirSupportWithATrueSigma) {
     double squares = 0.0, n = 0.0;
     for (unsigned seed = 0; seed < 60; ++seed) {
       const Strand a = strand({0, 0}, 0.0, 2 * seed + 1), b = strand({150, 0}, turn, 2 * seed + 2);
-      const Meeting m = meeting_of(a, true, b, false, 25.0);
+      const Meeting m = meeting_of(a, true, b, false, 25.0, 0.0);
       ASSERT_TRUE(m.found);
       EXPECT_EQ(m.in_plan, turn > 0.0);
       const double error = a.line.at(m.s).x() - 150.0;
@@ -42,9 +42,25 @@ TEST(Supports, WiresMeetAtTheirSupportWithATrueSigma) {
 
 TEST(Supports, WiresSideBySideAndFarEndsDoNotMeet) {
   const Strand a = strand({0, 0}, 0.0, 1);
-  EXPECT_FALSE(meeting_of(a, true, strand({150, 4}, 0.0, 2), false, 25.0).found);
-  EXPECT_FALSE(meeting_of(a, true, strand({150, 0}, 0.0, 2), true, 25.0).found);   // the other's far end
-  EXPECT_FALSE(meeting_of(a, true, strand({230, 0}, 0.0, 2), false, 25.0).found);  // a span apart
+  EXPECT_FALSE(meeting_of(a, true, strand({150, 4}, 0.0, 2), false, 25.0, 0.0).found);
+  EXPECT_FALSE(meeting_of(a, true, strand({150, 0}, 0.0, 2), true, 25.0, 0.0).found);   // the other's far end
+  EXPECT_FALSE(meeting_of(a, true, strand({230, 0}, 0.0, 2), false, 25.0, 0.0).found);  // a span apart
+}
+
+TEST(Supports, WiresSeenByDifferentFlightLinesMeetLessSurely) {
+  CatenaryFit both, one, other;
+  both.lines = {{1, 0.5}, {2, 0.5}};
+  one.lines = {{1, 1.0}};
+  other.lines = {{2, 1.0}};
+  EXPECT_EQ(unlike_lines(both, both), 0.0);
+  EXPECT_EQ(unlike_lines(both, one), 0.5);
+  EXPECT_EQ(unlike_lines(one, other), 2.0);
+  const Strand a = strand({0, 0}, 0.0, 1), b = strand({150, 0}, 0.0, 2);
+  Strand c = b;
+  for (LineOfFlight& l : c.fit.lines) l.line += 7;
+  const double alike = meeting_of(a, true, b, false, 25.0, 0.02).sigma, unlike = meeting_of(a, true, c, false, 25.0, 0.02).sigma;
+  EXPECT_EQ(alike, meeting_of(a, true, b, false, 25.0, 0.0).sigma);
+  EXPECT_GT(unlike, 2.0 * alike);
 }
 
 TEST(Supports, ReturnsOfTowersAreGroupsWithTheirMiddle) {
