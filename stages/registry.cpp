@@ -16,6 +16,7 @@ const std::vector<Entry>& registry() {
       gnss_reader_stage(),
       ins_gnss_stage(),
       time_sync_stage(),
+      latency_stage(),
       kinematic_stage(),
       lever_arm_stage(),
       laser_reader_stage(),

@@ -129,6 +129,7 @@ EventFigures figures_of(const core::EventData& events, const PointTrack& track, 
   r.longest_step = track.longest_step;
   r.events = events.size();
   r.motion = figures_of(track.model());
+  r.comparisons = compare_event_places(events, solved);
   std::array<std::vector<double>, 3> sigmas;
   for (const EventPosition& e : solved)
     for (int axis = 0; axis < 3 && reached(e.reach); ++axis) sigmas[static_cast<size_t>(axis)].push_back(e.sigma[axis]);

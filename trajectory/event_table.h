@@ -12,6 +12,7 @@
 #include "core/records/event_data.h"
 #include "core/records/gnss_data.h"
 #include "core/report.h"
+#include "trajectory/event_comparison.h"
 #include "trajectory/event_positions.h"
 #include "trajectory/rate_test.h"
 
@@ -51,6 +52,7 @@ struct EventFigures {
   MotionFigures motion{};
   LeaveOneOut leave_one_out{};
   std::vector<RateTest> rates{};
+  std::vector<PlaceDifferences> comparisons{};
 };
 
 template <class V>
@@ -66,6 +68,7 @@ void describe(const EventFigures& r, V& v) {
   v.table("motion", r.motion, "Motion between the fixes and the fixes' errors.");
   v.table("leave_one_out", r.leave_one_out, "Each fix against its prediction from the others.");
   v.tables_if(!r.rates.empty(), "rates", r.rates, "The record thinned to lower rates.");
+  v.tables_if(!r.comparisons.empty(), "comparisons", r.comparisons, "Positions by two techniques, and against the recorder's own places.");
 }
 
 EventFigures figures_of(const core::EventData& events, const PointTrack& track, const std::vector<EventPosition>& solved,

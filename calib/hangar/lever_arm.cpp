@@ -29,4 +29,17 @@ Eigen::Vector3d vertical_lever_arm(double up, double omega, double phi) {
   return turn_over * (core::matrix_of(attitude_of_tilt(omega, phi)) * lever_body);
 }
 
+TiltedArm tilted(const Eigen::Vector3d& lever, const Eigen::Matrix3d& covariance, const core::Attitude& tilt, double tilt_sigma) {
+  const Eigen::Matrix3d R = core::matrix_of(tilt);
+  TiltedArm out;
+  out.end = R * lever;
+  out.shift = out.end - lever;
+  // A small roll turns about the forward axis of the tilted body, a small pitch about the right axis of the level one.
+  const Eigen::Matrix<double, 3, 2> by_tilt =
+      (Eigen::Matrix<double, 3, 2>() << R.col(0).cross(out.end), Eigen::Vector3d::UnitY().cross(out.end)).finished();
+  const Eigen::Matrix3d total = R * covariance * R.transpose() + tilt_sigma * tilt_sigma * by_tilt * by_tilt.transpose();
+  out.sigma = total.diagonal().cwiseSqrt();
+  return out;
+}
+
 }  // namespace swath::calib

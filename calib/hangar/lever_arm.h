@@ -22,4 +22,13 @@ core::Attitude attitude_of_tilt(double omega, double phi);
 /// A vertical lever arm of length `up` under omega and phi: x forward, y left, z up, m (Jubanski et al., eq 3).
 Eigen::Vector3d vertical_lever_arm(double up, double omega, double phi);
 
+/// A lever arm's far end under tilt against its near end, in level axes (forward, right, down), m.
+struct TiltedArm {
+  Eigen::Vector3d end = Eigen::Vector3d::Zero();    ///< with the tilt
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< `end` less that without it
+  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();  ///< of `end`: of the arm and of the tilt
+};
+/// Jubanski et al., eq 3, for any arm. `covariance`: of the arm, body, m^2; `tilt_sigma`: of roll and of pitch, rad.
+TiltedArm tilted(const Eigen::Vector3d& lever, const Eigen::Matrix3d& covariance, const core::Attitude& tilt, double tilt_sigma);
+
 }  // namespace swath::calib

@@ -2,6 +2,7 @@
 // Times by clocks that are not GPS time yet. A double holds GPS seconds of today to 0.24 us only, so these count from a whole second.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,14 +24,16 @@ struct ClockData {
 /// Events as one technique timed them. Columns of one length.
 struct EventTags {
   std::string technique;
-  bool computer_clock = false;         ///< times are the computer's, in the count of GPS as in ClockData, and not yet corrected
-  double latency = 0.0;                ///< to be added to every time, s
-  double epoch = 0.0;                  ///< GPS time, whole seconds
-  std::vector<double> time;            ///< s since epoch
-  std::vector<double> sigma;           ///< of the time, s; 0: not known
-  std::vector<std::string> id;         ///< name, or number from 1
-  std::vector<std::int32_t> strip;     ///< 0: none
-  std::vector<std::uint8_t> doubtful;  ///< 1: timed before its clock had settled, or where its log shows nothing
+  bool computer_clock = false;               ///< times are the computer's, in the count of GPS as in ClockData, and not yet corrected
+  double latency = 0.0;                      ///< to be added to every time, s
+  double epoch = 0.0;                        ///< GPS time, whole seconds
+  std::vector<double> time;                  ///< s since epoch
+  std::vector<double> sigma;                 ///< of the time, s; 0: not known
+  std::vector<std::string> id;               ///< name, or number from 1
+  std::vector<std::int32_t> strip;           ///< 0: none
+  std::vector<std::uint8_t> doubtful;        ///< 1: timed before its clock had settled, or where its log shows nothing
+  std::vector<Eigen::Vector3d> place;        ///< that the recorder states for the antenna, ecef, m; NaN: none. Empty, or one per event
+  std::vector<Eigen::Vector3d> place_sigma;  ///< north, east, down, m; as `place`
 
   size_t size() const { return time.size(); }
 };

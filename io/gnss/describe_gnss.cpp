@@ -201,6 +201,7 @@ void describe(const ObservationFacts& r, V& v) {
   v.result("to", core::utc_text(o.last), "UTC of the last epoch.");
   v.result("seconds", to_millis(o.last - o.first), core::seconds(), "Time from the first to the last.");
   v.result("longest_gap_s", o.longest_gap, core::seconds().always(), "Longest step between epochs.");
+  v.result("events", o.events, core::if_any(), "External events (epochs of flag 5).");
 }
 
 struct RinexFacts {

@@ -132,6 +132,7 @@ std::string_view name_of(RinexKind k) {
 
 struct FoundLabel {
   RinexHeader header;
+  std::vector<RinexEvent> events;
   Clock clock;
   int observation_types = 0;  // version 2
 };
@@ -190,6 +191,20 @@ FoundLabel read_header(Lines& lines) {
   lines.fail("the header has no end", "the file is cut off");
 }
 
+double second_of(const Lines& lines, const std::string& line, const FoundLabel& f) {
+  return f.header.version >= 3.0 ? number(lines, line, 18, 11) : number(lines, line, 15, 11);
+}
+
+/// The time of an epoch's line with these seconds of the minute.
+double epoch_time(const Lines& lines, const std::string& line, FoundLabel& f, double second) {
+  const bool new_form = f.header.version >= 3.0;
+  int year = new_form ? whole(lines, line, 2, 4) : whole(lines, line, 1, 2);
+  if (!new_form) year += year < 80 ? 2000 : 1900;
+  const size_t month = new_form ? 7 : 4;
+  return f.clock(lines, year, whole(lines, line, month, 2), whole(lines, line, month + 3, 2), whole(lines, line, month + 6, 2),
+                 whole(lines, line, month + 9, 2), second);
+}
+
 /// Steps to the next epoch of measurements and reads its time; false at the end of the file.
 bool next_epoch(Lines& lines, std::string& line, FoundLabel& f, double& time) {
   const bool new_form = f.header.version >= 3.0;
@@ -199,13 +214,13 @@ bool next_epoch(Lines& lines, std::string& line, FoundLabel& f, double& time) {
     const int count = new_form ? whole(lines, line, 32, 3) : whole(lines, line, 29, 3);
     const bool measured = flag <= 1 || flag == 6;
     if (flag <= 1) {
-      int year = new_form ? whole(lines, line, 2, 4) : whole(lines, line, 1, 2);
-      if (!new_form) year += year < 80 ? 2000 : 1900;
-      const size_t month = new_form ? 7 : 4;
-      const double second = new_form ? number(lines, line, 18, 11) : number(lines, line, 15, 11);
-      time = f.clock(lines, year, whole(lines, line, month, 2), whole(lines, line, month + 3, 2), whole(lines, line, month + 6, 2),
-                     whole(lines, line, month + 9, 2), second);
+      time = epoch_time(lines, line, f, second_of(lines, line, f));
       if (!is_instant(time)) lines.fail("the epoch is not between 1980 and 2100");
+    }
+    if (flag == 5) {
+      const double second = second_of(lines, line, f), whole_second = std::floor(second);
+      f.events.push_back({epoch_time(lines, line, f, whole_second), second - whole_second});
+      if (!is_instant(f.events.back().second)) lines.fail("the event is not between 1980 and 2100");
     }
     int pass = new_form && measured ? 0 : count;  // version 3 marks its epochs: what lies between them need not be counted
     if (!new_form && measured) {
@@ -255,7 +270,16 @@ RinexObservations scan_rinex(const fs::path& file) {
     }
   }
   out.header = found.header;
+  out.events = found.events.size();
   return out;
+}
+
+std::vector<RinexEvent> rinex_events(const fs::path& file) {
+  Lines lines(file);
+  FoundLabel found = read_header(lines);
+  std::string line;
+  for (double time = 0; next_epoch(lines, line, found, time);) continue;
+  return std::move(found.events);
 }
 
 }  // namespace swath::io

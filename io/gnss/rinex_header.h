@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace swath::io {
 
@@ -26,8 +27,14 @@ struct RinexObservations {
   RinexHeader header;
   double first = 0, last = 0;  ///< GPS time of the first and the last epoch, s
   std::uint64_t epochs = 0;
-  double interval = 0;     ///< median step between epochs, s; 0 with one epoch
-  double longest_gap = 0;  ///< longest step between epochs, s
+  double interval = 0;       ///< median step between epochs, s; 0 with one epoch
+  double longest_gap = 0;    ///< longest step between epochs, s
+  std::uint64_t events = 0;  ///< epochs of flag 5
+};
+
+/// An epoch of flag 5, an external event, as GPS time; whole seconds and their fraction apart.
+struct RinexEvent {
+  double second = 0.0, fraction = 0.0;
 };
 
 /// What the file is by its first line (orbits: SP3); `other` where that is not understood. Throws Error where it cannot be read.
@@ -36,5 +43,8 @@ RinexKind rinex_kind(const std::filesystem::path& file);
 /// Reads the header and the time of every epoch, whatever its time system; measurements are passed over. Throws Error: no RINEX observation
 /// file, compressed, a version below 2, no end of header, a field that is no number, an epoch that is not understood (file:line), no epoch.
 RinexObservations scan_rinex(const std::filesystem::path& file);
+
+/// The external events of an observation file, in its order. Throws Error as scan_rinex does, but not where there is no epoch.
+std::vector<RinexEvent> rinex_events(const std::filesystem::path& file);
 
 }  // namespace swath::io

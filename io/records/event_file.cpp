@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/time.h"
+#include "io/records/event_marks.h"
 #include "io/survey/wild_records.h"
 #include "io/text/data_lines.h"
 #include "io/text/delimited.h"
@@ -43,10 +44,39 @@ std::vector<DataLine> rows_of(const std::filesystem::path& path, const EventFile
   return out;
 }
 
+std::string technique_of(const EventFile& file) { return file.technique.empty() ? file.file.stem().string() : file.technique; }
+
+core::EventTags tags_of(const std::vector<EventMark>& marks, const EventFile& file, core::Tally& tally) {
+  core::EventTags out;
+  out.technique = technique_of(file);
+  out.latency = file.latency.value;
+  out.epoch = marks.front().second;
+  for (const EventMark& m : marks) {
+    out.time.push_back(m.second - out.epoch + m.fraction + file.time.offset.value);
+    out.sigma.push_back(m.sigma);
+    out.id.push_back(m.id);
+    out.strip.push_back(0);
+    out.doubtful.push_back(m.doubtful);
+    out.place.push_back(m.place);
+    out.place_sigma.push_back(m.place_sigma);
+    if (out.size() > 1 && out.time.back() < out.time[out.size() - 2])
+      tally.count("events whose time is before the one before", out.technique + " " + m.id);
+  }
+  if (std::none_of(out.place.begin(), out.place.end(), [](const Eigen::Vector3d& p) { return p.allFinite(); })) {
+    out.place.clear();
+    out.place_sigma.clear();
+  }
+  tally.read("events", out.size());
+  tally.keep("events", out.size());
+  return out;
+}
+
 }  // namespace
 
 core::EventTags read_event_file(const Survey& survey, const EventFile& file, core::Tally& tally) {
   const std::filesystem::path path = resolve(survey, file.file);
+  const EventFormat format = format_of(file, path);
+  if (format != EventFormat::text) return tags_of(read_marks(path, file, format, tally), file, tally);
   if (file.columns.time.empty())
     throw core::usage_error("the column of the time is not stated", path.string(), "event.columns.time: a name, or a number from 1");
   DelimitedLayout layout;
@@ -60,7 +90,7 @@ core::EventTags read_event_file(const Survey& survey, const EventFile& file, cor
   const std::optional<size_t> id = column(file.columns.id), strip = column(file.columns.strip);
 
   core::EventTags out;
-  out.technique = file.technique.empty() ? file.file.stem().string() : file.technique;
+  out.technique = technique_of(file);
   out.computer_clock = file.computer_clock;
   out.latency = file.latency.value;
   // The offset goes with the fraction, for the same reason as below.
@@ -117,6 +147,8 @@ core::EventData events_of(const std::vector<core::EventTags>& techniques) {
       out.strip.push_back(t.strip[i]);
       out.technique.push_back(t.technique);
       out.doubtful.push_back(t.doubtful[i]);
+      out.place.push_back(t.place.empty() ? Eigen::Vector3d::Constant(NAN) : t.place[i]);
+      out.place_sigma.push_back(t.place.empty() ? Eigen::Vector3d::Zero() : t.place_sigma[i]);
     }
   }
   return out;

@@ -19,8 +19,10 @@
 #include "io/gnss/rtklib_pos.h"
 #include "io/las/describe_las.h"
 #include "io/raster/geotiff.h"
+#include "io/records/describe_events.h"
 #include "io/records/describe_pcap.h"
 #include "io/records/describe_trajectory.h"
+#include "io/records/event_marks.h"
 #include "io/survey/describe_tables.h"
 #include "io/survey/file_facts.h"
 #include "io/survey/read_survey.h"
@@ -116,6 +118,7 @@ Value describe_tree(const Path& path) {
     out.members().insert(out.members().begin() + 1, {"calibration", *tree.find("calibration")});  // as the file has it
     return out;
   }
+  if (has("point") && (has("station") || has("target") || has("angle"))) return describe_hangar(path);
   for (const char* key : {"laser", "trajectory", "imu", "gnss", "points", "event", "hangar", "rinex", "crs", "scanner"})
     if (has(key)) return describe_survey(path);
   return core::reported(TreeFacts{"JSON or TOML", tree});
@@ -214,20 +217,24 @@ Value describe_content(const Path& path) {
   if (begins(std::string_view("CSD\0", 4))) return describe_csd(path);
   if (begins("\x93NUMPY")) return describe_npy(path);
   if (looks_like_tag(path)) return describe_tag(path);
+  if (const EventFormat events = event_format(path); events != EventFormat::text && events != EventFormat::rinex)
+    return describe_events(path, events);
   if (looks_like_pos(path)) return describe_pos(path);
   if (looks_like_nmea(path)) return describe_nmea(path);
   if (looks_like_pcap(start)) return describe_pcap(path);
   const bool binary = start.find('\0') != std::string::npos;
   if (!binary && rinex_kind(path) != RinexKind::other) return describe_rinex(path);
+  if (!binary && looks_like_loopstats(path)) return describe_loopstats(path);
   if (path.extension() == ".toml" || path.extension() == ".json") return describe_tree(path);
   if (binary && looks_like_sbet(path)) return describe_sbet(path);
   if (binary && looks_like_smrmsg(path)) return describe_smrmsg(path);
   if (Value raster = describe_raster(path); !raster.is_null()) return raster;
   if (Value vector = describe_vector(path); !vector.is_null()) return vector;
   if (!binary) return describe_text(path);
-  throw core::Error("is of no kind that is known here", path.string(),
-                    "LAS, LAZ, SBET, smrmsg, CSD, NumPy, RTKLIB solutions, NMEA, RINEX, PCAP, text, survey.toml, JSON, rasters and vector "
-                    "files are known");
+  throw core::Error(
+      "is of no kind that is known here", path.string(),
+      "LAS, LAZ, SBET, smrmsg, CSD, NumPy, RTKLIB solutions, NMEA, RINEX, UBX, PCAP, text, survey.toml, JSON, rasters and vector "
+      "files are known");
 }
 
 std::string scalar(const Value& v) {

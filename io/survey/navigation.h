@@ -230,9 +230,15 @@ void describe(EventColumns& c, V& v) {
   v.option("strip", c.strip, "Strip the event belongs to.");
 }
 
+enum class EventFormat { automatic, text, rinex, mrk, ubx, novatel };
+enum class EventEdge { rising, falling };
+
 /// One file of events: camera exposures, pulses.
 struct EventFile {
   std::filesystem::path file;
+  EventFormat format = EventFormat::automatic;
+  EventEdge edge = EventEdge::rising;
+  int input = 0;
   std::string technique;
   TimeTags time;
   bool computer_clock = false;
@@ -243,7 +249,10 @@ struct EventFile {
 
 template <class V>
 void describe(EventFile& e, V& v) {
-  v.option("file", e.file, "Delimited text, relative to survey.toml.");
+  v.option("file", e.file, "File of events, relative to survey.toml.");
+  v.option("format", e.format, "Format; automatic: by the name's ending and the first bytes.");
+  v.option("edge", e.edge, "Edge of the pulse that is the event (ubx).");
+  v.option("input", e.input, core::within(0, 4), "Input of the receiver, from 1 (ubx, novatel); 0: all.");
   v.option("technique", e.technique, "Name of the technique that timed them (\"pc\", \"marks\"), for comparisons.");
   v.table("time", e.time, "Time scale.");
   v.option("computer_clock", e.computer_clock, "Times are of the computer's clock and are corrected by [[clock]].");
@@ -278,6 +287,14 @@ struct Choices<io::AccelerationUnit> {
 template <>
 struct Choices<io::GnssFormat> {
   static constexpr std::array<std::string_view, 4> names{"automatic", "text", "pos", "nmea"};
+};
+template <>
+struct Choices<io::EventFormat> {
+  static constexpr std::array<std::string_view, 6> names{"automatic", "text", "rinex", "mrk", "ubx", "novatel"};
+};
+template <>
+struct Choices<io::EventEdge> {
+  static constexpr std::array<std::string_view, 2> names{"rising", "falling"};
 };
 template <>
 struct Choices<io::ClockFormat> {

@@ -8,6 +8,7 @@
 
 #include "core/config/option_visitors.h"
 #include "core/error.h"
+#include "io/records/event_marks.h"
 #include "io/records/laser_records.h"
 #include "io/survey/survey_checks.h"
 #include "io/survey/wild_records.h"
@@ -36,7 +37,9 @@ class RecordChecks {
     each("trajectory", survey_.trajectory, [&](TrajectoryFile& f, const std::string& key) {
       if (format_of(f) == TrajectoryFormat::text) columns(f, key, false);
     });
-    each("event", survey_.events, [&](EventFile& f, const std::string& key) { columns(f, key, false); });
+    each("event", survey_.events, [&](EventFile& f, const std::string& key) {
+      if (format_of(f, resolve(survey_, f.file)) == EventFormat::text) columns(f, key, false);
+    });
     each("imu", survey_.imu, [&](ImuFile& f, const std::string& key) { columns(f, key, format_of(f) == RecordFormat::npy); });
     each("gnss", survey_.gnss, [&](GnssFile& f, const std::string& key) {
       if (format_of(f) == GnssFormat::text) columns(f, key, false);

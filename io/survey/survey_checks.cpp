@@ -7,6 +7,7 @@
 
 #include "core/geo/crs.h"
 #include "io/records/csd.h"
+#include "io/records/event_marks.h"
 #include "io/records/imu_axes.h"
 
 namespace swath::io {
@@ -289,8 +290,23 @@ class Checks {
 
   void event(const EventFile& f, const std::string& key) {
     exists(f.file, key + ".file");
-    time(f.time, key + ".time", false, false);
-    if (f.columns.time.empty()) fault(key + ".columns.time", "the column of times is not named");
+    const std::filesystem::path path = resolve(survey_, f.file);
+    std::error_code absent;
+    const EventFormat format = std::filesystem::is_regular_file(path, absent) ? format_of(f, path) : f.format;
+    if (format != EventFormat::ubx && f.edge != EventEdge::rising) fault(key + ".edge", "has no effect: only UBX files know both edges");
+    if (format != EventFormat::ubx && format != EventFormat::novatel && f.input != 0)
+      fault(key + ".input", "has no effect: the format has one input");
+    if (format == EventFormat::automatic || format == EventFormat::text) {
+      time(f.time, key + ".time", false, false);
+      if (f.columns.time.empty()) fault(key + ".columns.time", "the column of times is not named");
+      return;
+    }
+    const TimeTags& t = f.time;
+    if (t.scale != core::TimeScale::unstated || t.week || !t.date.empty() || t.unit.value != 1 || !t.origin.empty() || t.origin_at != 0)
+      fault(key + ".time", "has no effect: the format states its own time scale", "only `offset` acts on these files");
+    if (tree_at(key + ".columns")) fault(key + ".columns", "has no effect: the format defines its fields");
+    if (!f.delimiter.empty()) fault(key + ".delimiter", "has no effect: the format defines it");
+    if (f.computer_clock) fault(key + ".computer_clock", "contradicts the format: its times are those of GNSS");
   }
 
   /// Faults of options that the format leaves nothing to do for.

@@ -91,7 +91,7 @@ void visit_gnss(F& f, G& d) {
 
 template <class F, class E>
 void visit_events(F& f, E& d) {
-  f(d.time), f(d.sigma), f(d.id), f(d.strip), f(d.technique), f(d.doubtful);
+  f(d.time), f(d.sigma), f(d.id), f(d.strip), f(d.technique), f(d.doubtful), f(d.place), f(d.place_sigma);
 }
 
 template <class F, class T>

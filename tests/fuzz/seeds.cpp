@@ -185,6 +185,21 @@ void work(const Path& folder) {
   write(folder / "record", R"({"piece": "a/b/piece.json", "files": [["points.cols", 3, "0123456789abcdef"]], "note": {"points": 3}})");
 }
 
+/// Two UBX-TIM-TM2 messages.
+void time_marks(const Path& file) {
+  std::string out;
+  for (unsigned k = 0; k < 2; ++k) {
+    std::string body("\x0d\x03", 2);
+    put(body, 28, 2), put(body, 0, 1), put(body, 0xcc, 1), put(body, k, 2), put(body, 2300, 2), put(body, 2300, 2);
+    put(body, 1000u * k, 4), put(body, 5, 4), put(body, 1000u * k + 20, 4), put(body, 5, 4), put(body, 30, 4);
+    std::uint8_t a = 0, b = 0;
+    for (const char c : body) a = static_cast<std::uint8_t>(a + static_cast<std::uint8_t>(c)), b = static_cast<std::uint8_t>(b + a);
+    out += "\xb5\x62" + body;
+    put(out, a, 1), put(out, b, 1);
+  }
+  write(file, out);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -193,13 +208,14 @@ int main(int argc, char** argv) try {
     return 2;
   }
   const Path into = argv[1];
-  for (const char* target : {"las", "csd", "sbet", "npy", "pcap", "raster", "vector", "work"})
+  for (const char* target : {"las", "csd", "sbet", "npy", "pcap", "raster", "vector", "work", "events"})
     std::filesystem::create_directories(into / target);
   clouds(into / "las");
   csd(into / "csd" / "flight.csd");
   sbet(into / "sbet");
   npy(into / "npy");
   pcap(into / "pcap");
+  time_marks(into / "events" / "marks.ubx");
   rasters(into / "raster");
   vectors(into / "vector");
   work(into / "work");

@@ -123,6 +123,28 @@ TEST(TimeSync, StampsMeetTheMarks) {
   EXPECT_NE(test::read_bytes(t.context.output / "time_sync.svg").find("pc - marks"), std::string::npos);
 }
 
+TEST(TimeSync, PhotosOfADroneAndAMissingOne) {
+  Trial t;
+  std::string photos;
+  char line[160];
+  for (int i = 0; i < 20; ++i) {
+    if (i == 7) continue;
+    std::snprintf(line, sizeof line, "%d\t%.6f\t[2264]\t-40,N\t0,E\t86,V\t44.4%03d,Lat\t1.2,Lon\t359.4,Ellh\t0.03, 0.03, 0.05\t50,Q\n",
+                  i + 1, 400000 + 2.5 * i, i);
+    photos += line;
+  }
+  test::write_bytes(t.folder / "a_Timestamp.MRK", photos);
+  t.survey.events.emplace_back().file = "a_Timestamp.MRK";
+  t.go();
+  const core::EventData& events = t.context.records.get<core::EventData>();
+  ASSERT_EQ(events.size(), 19u);
+  EXPECT_TRUE(events.place[3].allFinite());
+  EXPECT_EQ(t.tally.of("events missing by the pattern of intervals"), 1u);
+  const core::Value& pattern = *t.findings.find("events")->items()[0].find("pattern");
+  EXPECT_NEAR(pattern.find("interval_s")->as_number(), 2.5, 1e-5);
+  EXPECT_EQ(pattern.find("missing")->as_int(), 1);
+}
+
 TEST(TimeSync, EveryOptionHasItsEffect) {
   const auto run = [](const std::string& options) {
     auto t = std::make_unique<Trial>();

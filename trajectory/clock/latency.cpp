@@ -281,14 +281,14 @@ LatencyResult estimate(const Motion& raw_reference, const Motion& raw_device, co
   }
   if (!best) {
     if (equations(curve, device, out.coarse, base).size() < fewest) return no("the records have too few instants in common");
-    return no("the motion does not tell a latency from a constant shift: vary speed or direction, or estimate no shift");
+    return no("a latency and a constant shift are alike in this motion: vary speed or direction, or estimate no shift");
   }
   const Solution& s = *best;
   out.latency = s.latency;
   out.used = s.rows.size();
   const Normal n = normal_of(s, shift);
   const auto inv = inverse(n, shift);
-  if (!inv) return no("the motion does not tell a latency from a constant shift: vary speed or direction, or estimate no shift");
+  if (!inv) return no("a latency and a constant shift are alike in this motion: vary speed or direction, or estimate no shift");
   const double share = motion_share(s);
   out.sigma = std::sqrt(variance_of_sum(pulls_of(s, *inv, shift, out))) / std::max(share, weakest);
   for (size_t a = 0; a < 3; ++a) out.shift[a] = s.shift[static_cast<Eigen::Index>(a)];
@@ -296,7 +296,7 @@ LatencyResult estimate(const Motion& raw_reference, const Motion& raw_device, co
   out.track_inflation = places ? inflation(s, LatencyShift::track) : out.axes_inflation;
   const double own = shift == LatencyShift::none ? 1.0 : shift == LatencyShift::axes ? out.axes_inflation : out.track_inflation;
   if (std::abs(out.latency) > search) return no("the best latency lies beyond the search");
-  if (own > 1e4) return no("the motion does not tell a latency from a constant shift: vary speed or direction, or estimate no shift");
+  if (own > 1e4) return no("a latency and a constant shift are alike in this motion: vary speed or direction, or estimate no shift");
   if (!(out.sigma < search / 3) || share < weakest) return no("the motion is too weak against the records' noise");
   out.determinable = true;
   if (shift == LatencyShift::none && places && out.axes_inflation > inflated)
@@ -316,24 +316,14 @@ LatencyResult latency_of_rates(const Motion& reference, const Motion& device, co
   return estimate(reference, device, options, false);
 }
 
-Motion places_of(const core::TrajectoryData& t, const Vector3d& origin, double epoch) {
+Motion places_of(const std::vector<double>& time, const std::vector<Vector3d>& place, const Vector3d& origin, double epoch) {
   const core::Geodetic g = core::geodetic_of(origin);
   const Eigen::Matrix3d ned_R_ecef = core::ecef_R_ned(g.latitude, g.longitude).transpose();
   Motion out;
-  for (size_t i = 0; i < t.size(); ++i) {
-    out.time.push_back(t.time[i] - epoch);
-    out.value.push_back(ned_R_ecef * (core::ecef_of({t.latitude[i], t.longitude[i], t.height[i]}) - origin));
-  }
-  return out;
-}
-
-Motion heading_rate_of(const core::TrajectoryData& t, double epoch) {
-  Motion out;
-  for (size_t i = 1; i < t.size(); ++i) {
-    const double dt = t.time[i] - t.time[i - 1];
-    if (!(dt > 0)) continue;
-    out.time.push_back(0.5 * ((t.time[i] - epoch) + (t.time[i - 1] - epoch)));
-    out.value.emplace_back(core::wrap_pi(t.heading[i] - t.heading[i - 1]) / dt, 0, 0);
+  for (size_t i = 0; i < time.size(); ++i) {
+    if (!place[i].allFinite()) continue;
+    out.time.push_back(time[i] - epoch);
+    out.value.push_back(ned_R_ecef * (place[i] - origin));
   }
   return out;
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/config/option.h"
-#include "core/records/trajectory_data.h"
+#include "core/config/result.h"
 #include "trajectory/clock/motion.h"
 
 namespace swath::trajectory {
@@ -50,6 +50,22 @@ struct LatencyResult {
   double axes_inflation = 1.0, track_inflation = 1.0;
 };
 
+template <class V>
+void describe(const LatencyResult& r, V& v) {
+  const auto solved = core::plain().only_if(r.used > 0), known = core::plain().only_if(r.determinable);
+  v.result("determinable", r.determinable, core::plain().in_summary(), "Does the motion determine the latency?");
+  v.result("reason", r.reason, core::plain().only_if(!r.reason.empty()).in_summary(), "Why not, or what the answer rests on.");
+  v.result("latency_s", r.latency, core::seconds(6).only_if(r.determinable).in_summary(), "To be added to the device's times.");
+  v.result("sigma_s", r.sigma, core::seconds(6).only_if(r.determinable).in_summary(), "Its sigma.");
+  v.result("correlation", r.correlation, core::plain(3), "Peak of the cross-correlation of speed; 0 where the speed hardly changes.");
+  v.result("used", r.used, "Instants of the device within the reference.");
+  v.result("outliers", r.outliers, solved, "Of those: instants that have less than half of their weight.");
+  v.result("shift", r.shift, known, "Constant shift estimated beside it: axes, or along, across, up.");
+  v.result("rms", r.rms, solved, "RMS residual: north, east, down.");
+  v.result("inflation_by_axes", r.axes_inflation, solved, "Growth of the latency's variance by a shift along the axes.");
+  v.result("inflation_by_track", r.track_inflation, solved, "Growth of it by a shift along the track.");
+}
+
 /// Coarse by the cross-correlation of speed, then robust least squares on the places (Huber, one scale per axis), the reference
 /// interpolated by cubics. The sigma is that of the sum of each instant's pull on the answer, with their autocorrelation as far as it is
 /// positive (Geyer 1992): it holds for errors that are white or correlated over times much shorter than the record (a twentieth, say), in
@@ -59,11 +75,9 @@ LatencyResult latency_of_places(const Motion& reference, const Motion& device, c
 /// The same from turn rates, for example of the yaw rate of GNSS against that of an IMU. `shift` track counts as axes.
 LatencyResult latency_of_rates(const Motion& reference, const Motion& device, const LatencyOptions& options = {});
 
-/// A trajectory's places in north, east, down axes about `origin` (ecef), times from `epoch` (GPS time, s).
-Motion places_of(const core::TrajectoryData& trajectory, const Eigen::Vector3d& origin, double epoch);
-
-/// A trajectory's rate of heading, from its differences, times half-way; in x, rad/s.
-Motion heading_rate_of(const core::TrajectoryData& trajectory, double epoch);
+/// Places in north, east, down axes about `origin` (all ecef, m), times from `epoch` (GPS time, s). Places that are not finite are left
+/// out.
+Motion places_of(const std::vector<double>& time, const std::vector<Eigen::Vector3d>& place, const Eigen::Vector3d& origin, double epoch);
 
 }  // namespace swath::trajectory
 

@@ -106,6 +106,7 @@ ClockFigures figures_of(const ClockModel& clock, ClockMethod model) {
 
 TechniqueFigures figures_of(const CorrectedEvents& t) {
   TechniqueFigures out{t.events.technique, t.events.size(), !t.readings.empty(), t.before_settled, t.outside_log};
+  out.pattern = pattern_of(t.events);
   for (size_t i = 0; i < t.readings.size(); ++i) {
     out.largest_correction = std::max(out.largest_correction, std::abs(t.readings[i].offset));
     if (!t.events.doubtful[i]) out.largest_sigma = std::max(out.largest_sigma, t.events.sigma[i]);

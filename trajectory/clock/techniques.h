@@ -10,6 +10,7 @@
 #include "core/config/result.h"
 #include "core/report.h"
 #include "trajectory/clock/clock_model.h"
+#include "trajectory/clock/event_pattern.h"
 #include "trajectory/clock/time_compare.h"
 
 namespace swath::trajectory {
@@ -86,6 +87,7 @@ struct TechniqueFigures {
   bool is_corrected = false;
   std::uint64_t before_settled = 0, outside_log = 0;
   double largest_correction = 0.0, largest_sigma = 0.0;  ///< s; sigma of the events that are not doubtful, 0: not known
+  EventPattern pattern{};
 };
 
 template <class V>
@@ -98,6 +100,7 @@ void describe(const TechniqueFigures& r, V& v) {
   v.result("largest_correction_s", r.largest_correction, core::Form{"s"}.only_if(r.is_corrected), "Largest correction.");
   v.result("largest_sigma_s", r.largest_sigma, core::Form{"s"}.only_if(r.largest_sigma > 0),
            "Largest sigma of an event that is not doubtful.");
+  v.table("pattern", r.pattern, "Intervals between events.");
 }
 
 TechniqueFigures figures_of(const CorrectedEvents& events);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/hangar/hangar_results.h"
+#include "calib/hangar/hangar_tables.h"
 #include "core/config/option.h"
 #include "core/error.h"
 #include "io/survey/hangar_file.h"
@@ -20,12 +21,15 @@ namespace fs = std::filesystem;
 
 struct LeverArmOptions {
   bool hold_stations = false;
+  core::Radians tilt_sigma = core::degrees(0.1);
 };
 
 template <class V>
 void describe(LeverArmOptions& o, V& v) {
   v.option("hold_stations", o.hold_stations, "Takes the stations as free of error. Only for comparison: the sigmas come out far too small.",
            "Jubanski et al.");
+  v.option("tilt_sigma", o.tilt_sigma, core::at_least(0), "Sigma of roll and pitch for the table of lever arms under tilt.",
+           "Jubanski et al. eq 3");
 }
 
 io::HangarSurvey read(const io::Survey& survey) {
@@ -35,7 +39,7 @@ io::HangarSurvey read(const io::Survey& survey) {
   return io::read_hangar(io::resolve(survey, *survey.hangar));
 }
 
-std::vector<std::string> lever_arm_files(const LeverArmOptions&) { return {"lever_arm.json", "lever_arm.toml"}; }
+std::vector<std::string> lever_arm_files(const LeverArmOptions&) { return {"lever_arm.json", "lever_arm.toml", "lever_arm.txt"}; }
 
 std::vector<fs::path> hangar_files(const io::Survey& survey) {
   const io::HangarSurvey hangar = read(survey);
@@ -52,6 +56,7 @@ calib::HangarResult survey_hangar(const io::Survey& survey, const LeverArmOption
   for (const std::string& w : result.warnings) tally.count("warnings of the hangar survey", w);
   io::write_text_file(to.folder / "lever_arm.json", io::to_json(core::reported(result)));
   io::write_text_file(to.folder / "lever_arm.toml", calib::survey_lines(result));
+  io::write_text_file(to.folder / "lever_arm.txt", calib::tables_of(result, o.tilt_sigma.value));
   return result;
 }
 

@@ -155,7 +155,10 @@ Given<core::EventData, TimeSyncFindings> sync_times(const io::Survey& survey, co
 
   TimeSyncFindings found;
   if (clock) found.clock = trajectory::figures_of(*clock, o.model);
-  for (const CorrectedEvents& t : techniques) found.events.push_back(trajectory::figures_of(t));
+  for (const CorrectedEvents& t : techniques) {
+    found.events.push_back(trajectory::figures_of(t));
+    trajectory::count_breaks(t.events, found.events.back().pattern, tally);
+  }
   for (const TechniquePair& c : compared) found.comparisons.push_back(trajectory::differences_of(c, flown, o));
   io::write_text_file(to.folder / o.file, trajectory::table_of(techniques));
   if (const report::Chart chart = drawing(clock, o.model == trajectory::ClockMethod::literal, compared); !chart.panels.empty())

@@ -45,6 +45,27 @@ TEST(LeverArm, AVerticalOneUnderTilt) {
   EXPECT_NEAR(tilt_shift({0, 0, -z}, {a, 0, 0}), 0.00385, tenth_mm);
 }
 
+TEST(LeverArm, TheSigmaOfATiltedOneIsThatOfItsParts) {
+  // By differences: roll and pitch of the tilt, and each component of the arm.
+  const Vector3d lever(0.4, -0.2, -1.3);
+  const Eigen::Matrix3d arm = Vector3d(0.002, 0.003, 0.004).cwiseAbs2().asDiagonal();
+  const core::Attitude tilt{4 * deg, -3 * deg, 0};
+  constexpr double sigma = 0.1 * deg, step = 1e-6;
+  const TiltedArm t = tilted(lever, arm, tilt, sigma);
+  EXPECT_LT((t.end - core::matrix_of(tilt) * lever).norm(), rounding);
+  EXPECT_LT((t.shift - (t.end - lever)).norm(), rounding);
+  const auto end = [&](double roll, double pitch, const Vector3d& l) { return Vector3d(core::matrix_of({roll, pitch, 0}) * l); };
+  Vector3d variance = Vector3d::Zero();
+  variance += (sigma * (end(tilt.roll + step, tilt.pitch, lever) - end(tilt.roll - step, tilt.pitch, lever)) / (2 * step)).cwiseAbs2();
+  variance += (sigma * (end(tilt.roll, tilt.pitch + step, lever) - end(tilt.roll, tilt.pitch - step, lever)) / (2 * step)).cwiseAbs2();
+  for (int k = 0; k < 3; ++k) variance += (std::sqrt(arm(k, k)) * end(tilt.roll, tilt.pitch, Vector3d::Unit(k))).cwiseAbs2();
+  EXPECT_LT((t.sigma - variance.cwiseSqrt()).norm(), 1e-9);
+  // A vertical arm under an omega: eq 3.
+  const Vector3d paper = vertical_lever_arm(1.3, 4 * deg, 0);
+  const Vector3d ours = tilted({0, 0, -1.3}, arm, {4 * deg, 0, 0}, 0).end;
+  EXPECT_LT((Vector3d(ours.x(), -ours.y(), -ours.z()) - paper).norm(), rounding);
+}
+
 TEST(LeverArmReference, EquationThree) {
   SWATH_SHARED_OR_SKIP(file, "vectors/p001_survey.json");
   rapidjson::Document d;

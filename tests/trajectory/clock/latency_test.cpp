@@ -7,6 +7,7 @@
 #include <functional>
 #include <random>
 
+#include "core/config/result_visitors.h"
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
 
@@ -242,23 +243,29 @@ TEST(Latency, WhatCannotBeToldIsNotTold) {
   EXPECT_FALSE(latency_of_places({}, {}).determinable);
 }
 
-TEST(Latency, OfTrajectories) {
-  core::TrajectoryData a, b;
+TEST(Latency, OfPlacesOnEarth) {
   const Vector3d origin = core::ecef_of({0.8, 0.2, 0});
   const Eigen::Matrix3d ecef_R_ned = core::ecef_R_ned(0.8, 0.2);
   const Flight f;
-  for (core::TrajectoryData* d : {&a, &b})
+  std::vector<double> times[2];
+  std::vector<Vector3d> places[2];
+  for (int k = 0; k < 2; ++k)
     for (int i = 0; i < 2000; ++i) {
       const double t = 0.1 * i;
-      const core::Geodetic g = core::geodetic_of(origin + ecef_R_ned * f.place(t));
-      d->time.push_back(1.4e9 + t - (d == &b ? 0.25 : 0));
-      d->latitude.push_back(g.latitude);
-      d->longitude.push_back(g.longitude);
-      d->height.push_back(g.height);
-      d->heading.push_back(core::wrap_two_pi(f.heading(t)));
+      times[k].push_back(1.4e9 + t - (k == 1 ? 0.25 : 0));
+      places[k].push_back(origin + ecef_R_ned * f.place(t));
     }
-  EXPECT_NEAR(latency_of_places(places_of(a, origin, 1.4e9), places_of(b, origin, 1.4e9)).latency, 0.25, 1e-5);
-  EXPECT_NEAR(latency_of_rates(heading_rate_of(a, 1.4e9), heading_rate_of(b, 1.4e9)).latency, 0.25, 1e-5);
+  places[1][7].setConstant(std::nan(""));
+  const Motion device = places_of(times[1], places[1], origin, 1.4e9);
+  EXPECT_EQ(device.time.size(), 1999u);
+  const LatencyResult r = latency_of_places(places_of(times[0], places[0], origin, 1.4e9), device);
+  EXPECT_NEAR(r.latency, 0.25, 1e-5);
+  const core::Value report = core::reported(r);
+  EXPECT_TRUE(report.find("determinable")->as_bool());
+  EXPECT_NEAR(report.find("latency_s")->as_number(), 0.25, 1e-5);
+  const core::Value none = core::reported(latency_of_places({}, {}));
+  EXPECT_EQ(none.find("latency_s"), nullptr);
+  EXPECT_EQ(none.find("reason")->as_text(), "too few records");
 }
 
 }  // namespace
