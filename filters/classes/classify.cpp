@@ -26,6 +26,7 @@ namespace {
 namespace cls = core::point_class;
 
 constexpr std::uint8_t tower_class = 15;
+constexpr float least_tower_height = 2.0f;     // m above ground: crops and bushes around its foot are lower
 constexpr float least_plane_height = 1.0f;     // m above ground: a deck near its ends
 constexpr float above_roof = 1.5f;             // m: chimneys, parapets and what else stands on a roof
 constexpr float beside_deck = 0.5f;            // m above or below a deck: kerbs, rails
@@ -120,7 +121,8 @@ class Structures {
     });
   }
 
-  bool is_wire(size_t p) const { return wires_[p] != 0; }
+  /// Wires and their supports: what a filter may have found alone in space.
+  bool is_of_line(size_t p) const { return wires_[p] != 0 || towers_[p] != 0; }
   bool is_deck(size_t p) const {
     const size_t c = cell(p);
     return ground_decks_[p] || (decks_[c] && std::abs(static_cast<float>(block_.z[p]) - cells_.plane[c]) <= beside_deck);
@@ -195,7 +197,8 @@ class Structures {
       high[p] = alone && static_cast<double>(block_.height[p]) >= options_.wire_height.value;
     }
     wires_ = wire_points(block_, high, surface, where_, own);
-    for (size_t p = 0; p < block_.size(); ++p) high[p] = raised_[p] && !surface[p] && wires_[p] != 1;
+    for (size_t p = 0; p < block_.size(); ++p)
+      high[p] = block_.height[p] >= least_tower_height && (raised_[p] ? !surface[p] : is_isolated(block_, p)) && wires_[p] != 1;
     towers_ = tower_points(block_, wires_, high, own);
   }
 
@@ -238,7 +241,7 @@ ClassifyCounts classify(core::Block& b, size_t own, const ClassifyOptions& o) {
   for (const std::uint32_t p : unknown) b.height[p] = std::numeric_limits<float>::quiet_NaN();
   for (size_t p = 0; p < own; ++p) {
     const bool on_deck = core::is_usable(b, p) && b.classification[p] == cls::ground && structures.is_deck(p);
-    if (on_deck || is_free(b, p) || (structures.is_wire(p) && is_isolated(b, p)))
+    if (on_deck || is_free(b, p) || (structures.is_of_line(p) && is_isolated(b, p)))
       count(n, found[p] = on_deck ? cls::bridge_deck : structures.class_of(p));
     else
       ++n.kept;

@@ -74,9 +74,9 @@ double halo(const ClassifyOptions& o);
 /// Classes those of the first `own` points that are neither ground, water, noise nor withheld; those after are the halo and stay as they
 /// are. Needs columns classification (with ground) and height. Unassigned stay points at or below the ground's height or without one, and
 /// smooth planes that are neither building nor deck: vehicles, containers, ground that the ground filter left out. Points flagged isolated
-/// and of class 18 that lie on a wire become wire. Returns a metre or more below ground returns among which they are scattered (at least a
-/// quarter of the last returns within one and a half times the usual distance) become low noise, flag low_point. The result depends on the
-/// points within halo() and not on their order.
+/// and of class 18 that lie on a wire become wire, those of its supports tower. Returns a metre or more below ground returns among which
+/// they are scattered (at least a quarter of the last returns within one and a half times the usual distance) become low noise, flag
+/// low_point. The result depends on the points within halo() and not on their order.
 ClassifyCounts classify(core::Block& block, size_t own, const ClassifyOptions& o);
 
 }  // namespace swath::filters

@@ -19,8 +19,8 @@ constexpr int arms_ring = 4;             // cells
 constexpr size_t fewest_of_body = 3;     // returns
 constexpr double least_body = 3.0;       // m, from the lowest of them to the highest
 constexpr double wires_near = 6.0;       // m in plan
-constexpr double below_wires = 1.0;      // m that a support may end below the lowest wire
-constexpr double crown_depth = 5.0;      // m below the wires: a crown is wide from here on
+constexpr double below_wires = 3.0;      // m below the lowest wire: its top may have been taken for wire
+constexpr double crown_depth = 5.0;      // m below its top a crown is wide
 constexpr double arms_below = 3.0;       // m
 constexpr double most_of_ring = 0.2;     // of its cells: arms
 constexpr double least_on_tower = 0.01;  // m of rounding
@@ -39,7 +39,9 @@ class TowerSearch {
       for (int i = arms_ring; i < l.nx - arms_ring; ++i) {
         if (tall_.in(i, j).empty()) continue;
         const std::optional<double> wire = lowest_wire(i, j);
-        if (!wire || !is_body(i, j, *wire) || !is_bare_around(i, j, *wire)) continue;
+        if (!wire) continue;
+        const std::optional<double> top = top_of_body(i, j, *wire);
+        if (!top || !is_bare_around(i, j, std::min(*wire, *top))) continue;
         each(i, j, arms_ring, [&](int ring, const Bins::Point& q, std::uint32_t row) {
           if (row < own && (ring <= body_ring || q.z >= *wire - arms_below)) out[row] = 1;
         });
@@ -72,24 +74,26 @@ class TowerSearch {
     return std::isfinite(lowest) ? std::optional(lowest) : std::nullopt;
   }
 
-  bool is_body(int i, int j, double wire) const {
+  /// The highest return of what may be a support.
+  std::optional<double> top_of_body(int i, int j, double wire) const {
     size_t n = 0;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     each(i, j, body_ring, [&](int, const Bins::Point& q, std::uint32_t) {
       ++n;
       low = std::min(low, q.z), high = std::max(high, q.z);
     });
-    return n >= fewest_of_body && high - low >= least_body && high >= wire - below_wires - least_on_tower;
+    if (n < fewest_of_body || high - low < least_body || high < wire - below_wires - least_on_tower) return std::nullopt;
+    return high;
   }
 
-  bool is_bare_around(int i, int j, double wire) const {
+  bool is_bare_around(int i, int j, double top) const {
     int taken = 0, cells = 0;
     for (int dj = -arms_ring; dj <= arms_ring; ++dj)
       for (int di = -arms_ring; di <= arms_ring; ++di) {
         if (std::max(std::abs(di), std::abs(dj)) <= body_ring) continue;
         ++cells;
         const auto points = tall_.in(i + di, j + dj);
-        taken += std::any_of(points.begin(), points.end(), [&](const Bins::Point& q) { return q.z >= wire - crown_depth; });
+        taken += std::any_of(points.begin(), points.end(), [&](const Bins::Point& q) { return q.z >= top - crown_depth; });
       }
     return static_cast<double>(taken) <= most_of_ring * static_cast<double>(cells);
   }

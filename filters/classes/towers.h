@@ -12,11 +12,11 @@ namespace swath::filters {
 /// Metres of points around a place that tower_points depends on there.
 double tower_points_halo();
 
-/// 1 for each of the first `own` points with `tall` that belongs to a support. `wire`: points on wires; `tall`: points off the ground and
-/// on no surface or wire. A support is a column 3 m wide with at least three returns over at least 3 m of height that reaches up to 1 m
-/// below the lowest wire within 6 m, or higher, while around it, up to 4.5 m away and from 5 m below the wires on, at most 20 % of the
-/// cells of 1 m hold returns: arms, but not a crown. Arms are those returns around it from 3 m below the wires on. Does not depend on the
-/// order of the points.
+/// 1 for each of the first `own` points with `tall` that belongs to a support. `wire`: 1 for points on wires; `tall`: points off the ground
+/// and on no surface or wire. A support is a column 3 m wide with at least three returns over at least 3 m of height that ends 3 m below
+/// the lowest wire within 6 m, or higher, while around it, up to 4.5 m away and from 5 m below its top (or the wires) on, at most 20 % of
+/// the cells of 1 m hold returns: arms, but not a crown. Arms are those returns around it from 3 m below the wires on. Does not depend on
+/// the order of the points.
 std::vector<std::uint8_t> tower_points(const core::Block& b, const std::vector<std::uint8_t>& wire, const std::vector<std::uint8_t>& tall,
                                        size_t own);
 
