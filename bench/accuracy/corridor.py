@@ -27,7 +27,7 @@ def features(geopackage, layer):
         for row in base.execute(f'select * from "{layer}"'):
             blob = row["geom"]
             start = 8 + {0: 0, 1: 32, 2: 48, 3: 48, 4: 64}[blob[3] >> 1 & 7]
-            kind = struct.unpack_from("<I", blob, start + 1)[0] & 0xf
+            kind = (struct.unpack_from("<I", blob, start + 1)[0] & 0xffff) % 1000
             count = struct.unpack_from("<I", blob, start + 5)[0] if kind == 2 else 1
             yield dict(row), np.frombuffer(blob, "<f8", 3 * count, start + (9 if kind == 2 else 5)).reshape(count, 3)
 
