@@ -31,6 +31,7 @@ struct Placed {
     p.reach = Reach::full;
     p.position = frame.to_ecef(enu);
     p.sigma.setConstant(0.02);
+    p.velocity.setZero(), p.velocity_sigma.setZero(), p.covariance.setZero();
     solved.push_back(p);
   }
 };
