@@ -39,7 +39,7 @@ endif()
 if(NOT SWATH_SANITIZE)
   target_compile_options(swath_settings INTERFACE -fstack-protector-strong -fstack-clash-protection -fPIC -fno-semantic-interposition -fvisibility=hidden
     $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3>)
-  target_link_options(swath_settings INTERFACE -pie -Wl,-z,relro,-z,now,-z,noexecstack)
+  target_link_options(swath_settings INTERFACE $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-pie> -Wl,-z,relro,-z,now,-z,noexecstack)
 endif()
 
 function(swath_room room)
@@ -68,6 +68,7 @@ function(swath_room room)
     swath_unity(swath_${room} ${room} ${sources})
   endif()
   set_property(GLOBAL PROPERTY swath_tests_${room} ${tests})
+  set_property(GLOBAL APPEND PROPERTY swath_rooms swath_${room})
 endfunction()
 
 # The units of a folder are compiled as one file: their headers are read, and their templates made, once. Names that are local to a unit are

@@ -107,7 +107,7 @@ void add_implied(const stages::Stage& stage, const core::Location& where, const 
   plan.stages.push_back({stages::make_stage(name), std::move(table), path});
 }
 
-void read_stages(const Value& tree, Plan& plan, std::vector<Fault>& faults) {
+void read_stages(const Value& tree, const std::vector<stages::Entry>& entries, Plan& plan, std::vector<Fault>& faults) {
   const Value* list = tree.find("stage");
   if (!list || !list->is_array() || list->items().empty()) {
     faults.push_back({tree.where, "stage", "the pipeline has no stages", "an ordered list of [[stage]] tables, each with a type"});
@@ -121,7 +121,8 @@ void read_stages(const Value& tree, Plan& plan, std::vector<Fault>& faults) {
       faults.push_back({table.where, path, "the stage has no type", "`swath stages` lists them"});
       continue;
     }
-    auto stage = stages::make_stage(type->as_text());
+    const auto own = std::find_if(entries.begin(), entries.end(), [&](const stages::Entry& e) { return e.name == type->as_text(); });
+    auto stage = own != entries.end() ? own->make() : stages::make_stage(type->as_text());
     if (!stage) {
       const std::string near = core::nearest(type->as_text(), stages::stage_names());
       faults.push_back({type->where, path + ".type", "'" + type->as_text() + "' is no stage",
@@ -311,7 +312,7 @@ void read_plan_survey(const Request& request, Plan& plan, std::vector<Fault>& fa
     throw core::usage_error("no such file", plan.survey_file.string(), "check the name of the survey");
   try {
     const Value survey = plan.survey_tree ? *plan.survey_tree : io::read_value_file(plan.survey_file);
-    plan.survey = io::read_survey(survey, plan.survey_file.parent_path());
+    plan.survey = io::read_survey(survey, plan.survey_file.parent_path(), request.records);
     io::check_records(plan.survey, survey);
   } catch (const core::Error& e) {
     if (faults.empty()) throw;
@@ -324,10 +325,10 @@ void read_plan_survey(const Request& request, Plan& plan, std::vector<Fault>& fa
 
 Plan make_plan(const Request& request) {
   Plan plan;
-  plan.config = find_config(request.config);
-  Value tree = io::read_value_file(plan.config);
+  plan.config = request.tree ? request.config : find_config(request.config);
+  Value tree = request.tree ? *request.tree : io::read_value_file(plan.config);
   plan.survey_tree = request.survey_tree;
-  const bool is_pdal = is_pdal_pipeline(tree);
+  const bool is_pdal = !request.tree && is_pdal_pipeline(tree);
   if (is_pdal && !request.survey.empty()) throw core::usage_error("a PDAL pipeline names its clouds itself", "--survey");
   if (is_pdal) std::tie(tree, plan.survey_tree, plan.runs_as) = read_pdal_pipeline(tree, plan.config);
   if (!tree.is_object()) throw core::usage_error("a pipeline is a table with [run] and [[stage]]", plan.config.string());
@@ -344,7 +345,7 @@ Plan make_plan(const Request& request) {
     core::read_options(core::described(plan.run), plan.run_table, "run", faults);
   else
     faults.push_back({plan.run_table.where, "run", "expected a table", ""});
-  read_stages(tree, plan, faults);
+  read_stages(tree, request.entries, plan, faults);
   if (faults.empty()) check_order(plan, faults);
   if (faults.empty()) check_memory(plan, faults);
 

@@ -10,7 +10,9 @@
 #include "core/config/option_visitors.h"
 #include "core/config/result.h"
 #include "io/survey/survey.h"
+#include "io/survey/survey_checks.h"
 #include "pipeline/limits.h"
+#include "stages/entry.h"
 #include "stages/stage.h"
 
 namespace swath::pipeline {
@@ -42,7 +44,10 @@ struct Request {
   std::vector<std::string> sets;         ///< "ground.cell=50 cm", "run.tile=250 m"
   std::filesystem::path survey, output;  ///< empty: from the config
   int threads = -1;
-  std::optional<core::Value> survey_tree{};  ///< a survey that no file holds, in place of one; its files have absolute names
+  std::optional<core::Value> survey_tree{};      ///< a survey that no file holds, in place of one; its files have absolute names
+  std::optional<core::Value> tree{};             ///< what the config holds, where it is no file; `config` then names it in messages
+  std::vector<stages::Entry> entries{};          ///< stages that the plan may name beside those of the registry
+  io::RecordsIn records = io::RecordsIn::files;  ///< memory: some of these stages give points or the trajectory
 };
 
 struct PlannedStage {

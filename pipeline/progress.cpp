@@ -116,6 +116,7 @@ void Progress::expect(std::vector<double> steps) {
 }
 
 void Progress::begin(const std::string& what, std::uint64_t total, const std::string& unit, double work) {
+  expect_wanted();
   const std::lock_guard lock(mutex_);
   what_ = what;
   unit_ = unit;
@@ -140,6 +141,7 @@ void Progress::advance(std::uint64_t n, double work) { count(n, work, false); }
 void Progress::skip(std::uint64_t n, double work) { count(n, work, true); }
 
 void Progress::count(std::uint64_t n, double work, bool skipped) {
+  expect_wanted();
   const std::lock_guard lock(mutex_);
   done_ += n;
   work_done_ += work;
@@ -148,6 +150,7 @@ void Progress::count(std::uint64_t n, double work, bool skipped) {
 }
 
 void Progress::share(double done, std::string_view now) {
+  expect_wanted();
   const std::lock_guard lock(mutex_);
   now_ = now;
   share_ = std::max(share_, std::clamp(done, 0.0, 1.0));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -10,7 +11,15 @@
 #include <thread>
 #include <vector>
 
+#include "core/error.h"
+
 namespace swath::pipeline {
+
+/// A run was stopped from outside. As where the disk is full, work done so far stays valid.
+class Interrupted : public core::SystemError {
+ public:
+  Interrupted() : core::SystemError("the run was interrupted", "", "the same command goes on from what is done") {}
+};
 
 /// How a run reports on standard error.
 enum class Voice { bar, lines, quiet, json };
@@ -39,6 +48,8 @@ class Progress {
   void end();
   /// A line for the person (not when quiet).
   void say(const std::string& text);
+  /// From any thread: the next begin(), advance(), skip() or share() throws Interrupted, which ends the run.
+  void stop() { stopped_ = true; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -54,8 +65,12 @@ class Progress {
   void show_json(bool last);
   void count(std::uint64_t n, double work, bool skipped);
   void tick();
+  void expect_wanted() const {
+    if (stopped_) throw Interrupted();
+  }
 
   Voice voice_;
+  std::atomic<bool> stopped_ = false;
   std::mutex mutex_;
   std::string what_, unit_, now_;
   std::uint64_t total_ = 0, done_ = 0, skipped_ = 0;

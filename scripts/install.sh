@@ -8,7 +8,7 @@ packages=(
   libcairo2-dev fonts-dejavu-core # charts and maps, and their typeface
   pkg-config libcpp-httplib-dev # the web server of swath view
   libtomlplusplus-dev rapidjson-dev libcli11-dev libxxhash-dev libzstd-dev libgtest-dev
-  python3 python3-venv clang-format
+  python3 python3-venv python3-dev clang-format
   rtklib # runs, it is not linked: raw GNSS observations go through its rnx2rtkp
 )
 # The LAZ coder needs Rust 1.66 or newer: Debian 12 has it as cargo-web, Ubuntu 24.04 as cargo.

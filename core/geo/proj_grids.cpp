@@ -37,4 +37,10 @@ std::vector<std::filesystem::path> grid_files_between(const Crs& from, const Crs
   return {out.begin(), out.end()};
 }
 
+void use_proj_folder(const std::filesystem::path& folder) {
+  const std::string name = folder.string();
+  const char* names[] = {name.c_str()};
+  proj_context_set_search_paths(nullptr, name.empty() ? 0 : 1, names);  // of the default context, which all others are copied from
+}
+
 }  // namespace swath::core

@@ -28,13 +28,13 @@ void keep_stated_noise(const core::SensorSigma& stated, core::SensorSigma& sigma
 
 }  // namespace
 
-Survey read_survey(const core::Value& tree, const std::filesystem::path& folder) {
+Survey read_survey(const core::Value& tree, const std::filesystem::path& folder, RecordsIn records) {
   if (!tree.is_object()) throw core::usage_error("a survey is a table", tree.where.text());
   Survey survey;
   survey.folder = folder;
   std::vector<Fault> faults;
   core::read_options(core::described(survey), tree, "", faults);
-  check_survey(survey, tree, faults);
+  check_survey(survey, tree, faults, records);
   std::stable_sort(faults.begin(), faults.end(), [](const Fault& a, const Fault& b) {
     return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
   });

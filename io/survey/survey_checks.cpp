@@ -40,7 +40,8 @@ using core::Value;
 /// The conditions between a survey's options and with the files on disk. A key that already has a fault gets no second one.
 class Checks {
  public:
-  Checks(const Survey& survey, const Value& tree, std::vector<Fault>& faults) : survey_(survey), tree_(tree), faults_(faults) {}
+  Checks(const Survey& survey, const Value& tree, std::vector<Fault>& faults, RecordsIn records)
+      : survey_(survey), tree_(tree), faults_(faults), records_(records) {}
 
   void all() {
     project();
@@ -101,10 +102,11 @@ class Checks {
     if (survey_.calibration_file) exists(*survey_.calibration_file, "calibration_file");
     const bool raw = !survey_.laser.empty();
     if (raw && !survey_.points.empty()) fault("points", "a survey has either raw [[laser]] records or georeferenced [[points]], not both");
-    if (!raw && survey_.points.empty() && !navigation)
+    const bool in_files = records_ == RecordsIn::files;
+    if (in_files && !raw && survey_.points.empty() && !navigation)
       fault("laser", "no records: neither [[laser]] nor [[points]] is there, nor [[trajectory]], [[imu]], [[gnss]], [[event]] or hangar");
     const auto is_csd = [](const LaserFile& f) { return format_of(f) == LaserFormat::csd; };
-    if (raw && survey_.trajectory.empty() && !computed && !std::all_of(survey_.laser.begin(), survey_.laser.end(), is_csd))
+    if (in_files && raw && survey_.trajectory.empty() && !computed && !std::all_of(survey_.laser.begin(), survey_.laser.end(), is_csd))
       fault("trajectory", "raw [[laser]] records need a [[trajectory]], or [[imu]] and [[gnss]] records to compute it from");
     const Value* antenna = tree_.find("antenna");
     const bool fixes = !survey_.gnss.empty() || !survey_.rinex.rover.empty();
@@ -380,10 +382,13 @@ class Checks {
   const Survey& survey_;
   const Value& tree_;
   std::vector<Fault>& faults_;
+  RecordsIn records_;
 };
 
 }  // namespace
 
-void check_survey(const Survey& survey, const Value& tree, std::vector<Fault>& faults) { Checks(survey, tree, faults).all(); }
+void check_survey(const Survey& survey, const Value& tree, std::vector<Fault>& faults, RecordsIn records) {
+  Checks(survey, tree, faults, records).all();
+}
 
 }  // namespace swath::io

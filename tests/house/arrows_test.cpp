@@ -32,6 +32,7 @@ const std::map<std::string, std::set<std::string>> arrows = {
     {"stages", {"core", "io", "filters", "terrain", "quality", "trajectory", "report", "georef", "calib"}},
     {"pipeline", {"core", "io", "report", "planning", "stages", "calib"}},
     {"tools", {"core", "io", "report", "planning", "pipeline", "simulate", "calib"}},
+    {"python", {"core", "io", "trajectory", "stages", "pipeline", "simulate"}},
 };
 
 /// Third party (as its includes begin) -> the only files that may include it.
@@ -48,6 +49,7 @@ const std::vector<std::pair<std::regex, std::regex>> doors = {
     {std::regex("CLI/.*"), std::regex("tools/.*")},
     {std::regex("zlib\\.h"), std::regex("tools/view/packed\\.cpp")},
     {std::regex("httplib\\.h"), std::regex("tools/view/server\\.cpp")},
+    {std::regex("nanobind/.*"), std::regex("python/.*")},
 };
 
 struct Include {

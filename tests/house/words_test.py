@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-ROOMS = "core io filters terrain quality trajectory report georef calib planning simulate stages pipeline tools".split()
+ROOMS = "core io filters terrain quality trajectory report georef calib planning simulate stages pipeline tools python".split()
 # Pattern -> what to write instead.
 WORDS = {
     r"tells?|telling|told": "reports, shows, says; distinguish, determine; known",

@@ -5,6 +5,7 @@
 #include "io/las/las_writer.h"
 #include "io/text/value_file.h"
 #include "pipeline/describe.h"
+#include "stages/registry.h"
 #include "tests/world/support.h"
 
 namespace swath::pipeline {
@@ -50,6 +51,18 @@ TEST(Plan, ReadsConfigSurveyAndSets) {
   EXPECT_EQ(smrf.find("slope")->find("from")->as_text(), "--set");
   EXPECT_EQ(smrf.find("window")->find("from")->as_text(), "default");
   EXPECT_EQ(found.stages[3].options.find("cell")->find("value")->as_text(), "0.5 m");
+}
+
+TEST(Plan, ATreeInPlaceOfAFileMayNameStagesOfItsOwn) {
+  Case c("");
+  c.request.tree = io::parse_toml(std::string(good) + "[[stage]]\ntype = \"a.copy\"\n", "the tree");
+  const std::string unknown = c.fault();
+  EXPECT_NE(unknown.find("'a.copy' is no stage"), std::string::npos) << unknown;
+  EXPECT_NE(unknown.find("the tree:9:"), std::string::npos) << unknown;
+  c.request.entries = {{"a.copy", [] { return stages::make_stage("writers.las"); }}};
+  c.request.config = "there is no such file";
+  const Plan plan = make_plan(c.request);
+  EXPECT_EQ(plan.stages.back().stage->info().name, "writers.las");
 }
 
 TEST(Plan, AStageThatAnotherUsesIsPutInFrontOfIt) {

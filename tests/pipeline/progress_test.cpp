@@ -117,5 +117,17 @@ TEST(Progress, JsonIsOneObjectPerLineAndQuietIsQuiet) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
+TEST(Progress, AStoppedRunEndsAtItsNextStep) {
+  Progress p(Voice::quiet);
+  p.begin("work", 10, "points");
+  p.advance(1);
+  std::thread([&] { p.stop(); }).join();
+  EXPECT_THROW(p.advance(1), Interrupted);
+  EXPECT_THROW(p.skip(1), Interrupted);
+  EXPECT_THROW(p.share(0.5), Interrupted);
+  EXPECT_THROW(p.begin("more", 0, ""), core::SystemError);  // as such it leaves the work done so far
+  p.end();
+}
+
 }  // namespace
 }  // namespace swath::pipeline

@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "core/error.h"
 #include "tests/world/support.h"
 
 namespace swath::core {
@@ -20,6 +21,14 @@ void write_geoid(const std::filesystem::path& file, float height) {
   for (const std::int32_t n : {3, 5}) big_endian(&n, sizeof n);
   for (int i = 0; i < 15; ++i) big_endian(&height, sizeof height);
   test::write_bytes(file, bytes);
+}
+
+TEST(ProjGrids, TheFolderOfTheDatabaseMayBeAnother) {
+  const test::TemporaryFolder folder;
+  use_proj_folder(folder.path());
+  EXPECT_THROW(Crs("EPSG:32632"), Error);
+  use_proj_folder({});
+  EXPECT_EQ(Crs("EPSG:32632").epsg(), 32632);
 }
 
 TEST(ProjGrids, AGeoidOfTheUsersOwnIsFound) {

@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "io/survey/read_survey.h"
+#include "io/text/value_file.h"
 #include "tests/world/support.h"
 
 namespace swath::io {
@@ -198,6 +199,20 @@ TEST_F(NavigationChecks, ControlFilesMustBeThere) {
   const std::string text = "hangar = \"x.dat\"\n[[control]]\nfile = \"";
   EXPECT_EQ(fault_of(text + "imu.csv\"\n"), "");
   EXPECT_NE(fault_of(text + "none.csv\"\n").find("control[1].file: no such file"), std::string::npos);
+}
+
+TEST(SurveyChecks, RecordsOfTheCallerNeedNoFiles) {
+  const test::TemporaryFolder folder;
+  const core::Value tree = parse_toml("crs = \"EPSG:32632\"\n", "survey");
+  EXPECT_THROW(read_survey(tree, folder.path()), core::Error);
+  EXPECT_EQ(read_survey(tree, folder.path(), RecordsIn::memory).crs, "EPSG:32632");
+  test::write_bytes(folder / "laser.csv", "x");
+  const core::Value flight = parse_toml(
+      "crs = \"EPSG:32632\"\n[[laser]]\nfile = \"laser.csv\"\nangle_unit = \"deg\"\ntime = {scale = \"gps\"}\n"
+      "columns = {time = \"t\", range = \"r\", scan_angle = \"a\"}\n",
+      "survey");
+  EXPECT_THROW(read_survey(flight, folder.path()), core::Error);  // without a trajectory
+  EXPECT_EQ(read_survey(flight, folder.path(), RecordsIn::memory).laser.size(), 1u);
 }
 
 }  // namespace

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Airborne laser surveys: raw records to trajectories, georeferenced and classified points, terrain models and contours.
+
+Points are NumPy columns by LAS names; every filter and surface of the program `swath` is a function on them, with its options by name and
+numbers with their units as text (cell="50 cm"). Pipeline runs whole surveys. What is wrong raises swath.Error.
+"""
+
+import os as _os
+from pathlib import Path as _Path
+
+from . import _swath
+from ._errors import Error
+from ._flight import Trajectory, georeference, read_survey, read_trajectory, simulate, smooth
+from ._functions import FUNCTIONS
+from ._other import describe_file, stages
+from ._pipeline import Pipeline, Tile
+from ._points import Points, Storage, as_points, read_points, write_points
+from ._report import Report, Stage, read_report
+from ._surfaces import VOIDS, Contour, Contours, Grid, read_grid
+from ._swath import version as __version__
+
+globals().update(FUNCTIONS)
+if not {"PROJ_DATA", "PROJ_LIB"} & set(_os.environ) and (_Path(__file__).parent / "proj/proj.db").is_file():
+    _swath.use_proj_folder(str(_Path(__file__).parent / "proj"))  # a wheel's own; other packages' PROJ is left alone
+__all__ = ["VOIDS", "Contour", "Contours", "Error", "Grid", "Pipeline", "Points", "Report", "Stage", "Storage", "Tile", "Trajectory", "as_points",
+           "describe_file", "georeference", "read_grid", "read_points", "read_report", "read_survey", "read_trajectory", "simulate", "smooth",
+           "stages", "write_points", "__version__", *FUNCTIONS]
