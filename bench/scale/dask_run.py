@@ -123,6 +123,7 @@ def main():
     subprocess.run([program, "tasks", *config, "--output", str(folder / "shared"), "--parts", str(given.parts), "--save", str(tasks)], check=True, stdout=subprocess.DEVNULL)
     dask = module(folder / "module")
     with LocalCluster(n_workers=given.workers, threads_per_worker=1, processes=True, dashboard_address=None, local_directory=str(folder / "workers")) as cluster, Client(cluster) as client:
+        cluster.adapt(minimum=given.workers, maximum=given.workers, interval="500ms")  # as a job system gives new workers for lost ones
         watch = Watch(program, tasks, given.kills, given.every, given.seed)
         watch.start()
         start = time.monotonic()
