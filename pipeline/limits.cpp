@@ -17,11 +17,17 @@ struct Kind {
   double scale;
   const char* unit;
 };
-constexpr std::array<Kind, 5> kinds{{{"outside", "returns that the trajectory does not cover", 100.0, "%"},
-                                     {"voids", "holes in the DTM", 100.0, "%"},
-                                     {"truth_rms", "3D rms of the points against truth", 1.0, "m"},
-                                     {"line_difference", "difference of two lines on smooth ground", 1.0, "m"},
-                                     {"contradictions", "warnings of the flight's geometry", 1.0, ""}}};
+constexpr std::array<Kind, 11> kinds{{{"outside", "returns that the trajectory does not cover", 100.0, "%"},
+                                      {"voids", "holes in the DTM", 100.0, "%"},
+                                      {"truth_rms", "3D rms of the points against truth", 1.0, "m"},
+                                      {"line_difference", "difference of two lines on smooth ground", 1.0, "m"},
+                                      {"contradictions", "warnings of the flight's geometry", 1.0, ""},
+                                      {"overlap_difference", "difference of overlapping lines on smooth level ground", 1.0, "m"},
+                                      {"void_share", "voids apart from water", 100.0, "%"},
+                                      {"nva", "RMSE at open check points, with their own error", 1.0, "m"},
+                                      {"vva", "95 % of the errors at vegetated check points", 1.0, "m"},
+                                      {"surface_difference", "rms difference of the terrain model and its reference", 1.0, "m"},
+                                      {"quality_level", "missed requirements of the quality level", 1.0, ""}}};
 
 std::string text_of(double value, const Kind& kind) {
   char text[48];
@@ -45,6 +51,12 @@ std::vector<JudgedLimit> judged(const Limits& limits, const Measured& measured) 
   judge(kinds[3], measured.line_difference, limits.line_difference.value, none.line_difference.value);
   judge(kinds[4], measured.contradictions, limits.contradictions, none.contradictions);
   judge(kinds[2], measured.truth_rms, limits.truth_rms.value, none.truth_rms.value);
+  judge(kinds[5], measured.overlap_difference, limits.overlap_difference.value, none.overlap_difference.value);
+  judge(kinds[6], measured.void_share, limits.void_share, none.void_share);
+  judge(kinds[7], measured.nva, limits.nva.value, none.nva.value);
+  judge(kinds[8], measured.vva, limits.vva.value, none.vva.value);
+  judge(kinds[9], measured.surface_difference, limits.surface_difference.value, none.surface_difference.value);
+  judge(kinds[10], measured.quality_level, limits.quality_level, none.quality_level);
   return list;
 }
 

@@ -21,6 +21,8 @@ struct Limits {
   core::Metres truth_rms{1e9};
   core::Metres line_difference{1e9};
   double contradictions = 1e9;
+  core::Metres overlap_difference{1e9}, nva{1e9}, vva{1e9}, surface_difference{1e9};
+  double void_share = 1.0, quality_level = 1e9;
 };
 
 template <class V>
@@ -33,12 +35,22 @@ void describe(Limits& l, V& v) {
            "Largest rms difference of two lines on smooth ground before adjustment (quality.geometry).");
   v.option("contradictions", l.contradictions, core::at_least(0),
            "Largest number of warnings of quality.geometry; 0: any makes exit code 3.");
+  v.option("overlap_difference", l.overlap_difference, core::at_least(0),
+           "Largest rms difference of overlapping lines on smooth level ground (quality.swath).");
+  v.option("void_share", l.void_share, core::within(0, 1), "Largest share of voids apart from water in the survey (quality.swath).");
+  v.option("nva", l.nva, core::at_least(0), "Largest RMSE at open check points, with their own error (quality.points).");
+  v.option("vva", l.vva, core::at_least(0), "Largest 95 % quantile of errors at vegetated check points (quality.points).");
+  v.option("surface_difference", l.surface_difference, core::at_least(0),
+           "Largest rms difference of the terrain model and its reference (quality.surface).");
+  v.option("quality_level", l.quality_level, core::at_least(0),
+           "Largest number of missed requirements (report.quality); 0: any makes exit code 3.");
 }
 
 /// What a run measured of what the limits judge, in their units; nothing where no stage measures it.
 struct Measured {
   std::optional<double> outside, voids, truth_rms;
   std::optional<double> line_difference{}, contradictions{};
+  std::optional<double> overlap_difference{}, void_share{}, nva{}, vva{}, surface_difference{}, quality_level{};
 };
 
 /// A limit that the config sets or the run measured.

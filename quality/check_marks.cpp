@@ -19,7 +19,7 @@ constexpr std::uint8_t ground = 2;
 
 struct Points {
   std::vector<Vector3d> at;  // from the mark
-  std::vector<double> sigma;
+  std::vector<double> sigma, sigma_h;
 };
 
 MarkReading reading_of(const Points& p, double radius, MarkSurface surface) {
@@ -48,6 +48,7 @@ MarkReading reading_of(const Points& p, double radius, MarkSurface surface) {
   out.scatter = static_cast<float>(std::sqrt(squares / static_cast<double>(p.at.size())));
   out.difference = static_cast<float>(height);
   out.sigma = static_cast<float>(core::median(p.sigma, 0.0));
+  out.sigma_h = static_cast<float>(core::median(p.sigma_h, 0.0));
   return out;
 }
 
@@ -65,6 +66,7 @@ std::vector<MarkReading> read_marks(const core::Block& b, const std::vector<Chec
       Points& p = found[{m, b.strip.empty() ? 0 : b.strip[i]}];
       p.at.push_back(d);
       if (!b.sigma_v.empty() && std::isfinite(b.sigma_v[i])) p.sigma.push_back(static_cast<double>(b.sigma_v[i]));
+      if (!b.sigma_h.empty() && std::isfinite(b.sigma_h[i])) p.sigma_h.push_back(static_cast<double>(b.sigma_h[i]));
     }
   }
   std::vector<MarkReading> out;

@@ -29,6 +29,7 @@ struct MarkReading {
   float sigma = 0.0F;       ///< m, median of the points' own; 0 where they have none
   float slope = 0.0F;       ///< rise / run of the plane through them; 0 where their mean is taken
   float scatter = 0.0F;     ///< m, rms of the points about the plane or the mean: plants that passed as ground show in it
+  float sigma_h = 0.0F;     ///< m, median of the points' own sigma of place, radial; 0 where they have none
 };
 
 enum class MarkSurface {

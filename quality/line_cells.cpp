@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A plane by least squares through the single returns of each line in each cell; where two lines have one that fits, they are compared at
 // the cell's centre. Steep cells are compared apart, for there an error of place passes for one of height, and by the side to which they
-// fall, for on opposite sides it has opposite signs. A cell's rms is divided by the root of the
-// lower quartile of chi square over its degrees of freedom (Wilson and Hilferty 1931), so that the lower quartile over cells on planes is
-// the standard deviation of a return, and rough cells, up to half of them, hardly raise it.
+// fall, for on opposite sides it has opposite signs. A cell's rms is divided by quartile_of() its degrees of freedom.
 // Returns are summed in an order that their coordinates alone decide, so that tiles that share a block agree to the last bit.
 #include "quality/line_cells.h"
 
@@ -16,16 +14,14 @@
 
 #include "core/grid.h"
 #include "core/statistics.h"
+#include "quality/cell_planes.h"
 
 namespace swath::quality {
 namespace {
 
-constexpr int block_side = 16;         // narrowest cells
-constexpr double steep = 0.35;         // rise / run: level ground up to this
-constexpr double steepest = 1.5;       // rise / run: farther up, a plane of heights says little
-constexpr double least_spread = 0.15;  // of a cell, rms about the mean along the worse direction: 0.29 for an even spread
-constexpr double farthest = 0.35;      // of a cell, from the mean of the returns to the centre
-constexpr size_t least_cells = 3;      // of a block
+constexpr int block_side = 16;     // narrowest cells
+constexpr double steep = 0.35;     // rise / run: level ground up to this
+constexpr size_t least_cells = 3;  // of a block
 
 struct BlockKey {
   std::int64_t i, j;
@@ -42,68 +38,30 @@ struct Return {
 
 struct Moments {
   std::uint16_t cell, line;
-  double n = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0;
-
-  void add(const Return& r) {
-    n += 1, x += r.x, y += r.y, z += r.z;
-    xx += r.x * r.x, xy += r.x * r.y, yy += r.y * r.y;
-    xz += r.x * r.z, yz += r.y * r.z, zz += r.z * r.z;
-  }
-  void add(const Moments& o) {
-    n += o.n, x += o.x, y += o.y, z += o.z;
-    xx += o.xx, xy += o.xy, yy += o.yy, xz += o.xz, yz += o.yz, zz += o.zz;
-  }
+  PlaneSums sums{};
 };
 
-struct Plane {
-  double height, rms, east, north;  ///< east, north: rise / run
-  double slope_squared() const { return east * east + north * north; }
-};
-
-int aspect_of(const Plane& p) {
+int aspect_of(const CellPlane& p) {
   if (p.slope_squared() <= steep * steep) return 0;
   if (std::abs(p.east) >= std::abs(p.north)) return p.east < 0.0 ? 1 : 3;
   return p.north < 0.0 ? 2 : 4;
 }
 
-/// Nothing where the returns do not span the cell: the height at its centre would be a guess. `cx`, `cy`: the cell's centre.
-std::optional<Plane> plane_of(const Moments& m, double cx, double cy, double cell) {
-  const double mx = m.x / m.n, my = m.y / m.n, mz = m.z / m.n;
-  const double xx = m.xx / m.n - mx * mx, xy = m.xy / m.n - mx * my, yy = m.yy / m.n - my * my;
-  const double half = 0.5 * (xx + yy), narrow = half - std::sqrt(std::max(0.0, half * half - (xx * yy - xy * xy)));
-  if (!(narrow > least_spread * least_spread * cell * cell) || std::hypot(mx - cx, my - cy) > farthest * cell) return std::nullopt;
-  const double xz = m.xz / m.n - mx * mz, yz = m.yz / m.n - my * mz, zz = m.zz / m.n - mz * mz;
-  const double det = xx * yy - xy * xy, bx = (yy * xz - xy * yz) / det, by = (xx * yz - xy * xz) / det;
-  if (!(bx * bx + by * by <= steepest * steepest)) return std::nullopt;
-  const double rest = std::max(0.0, zz - bx * xz - by * yz) * m.n / (m.n - 3);
-  return Plane{mz + bx * (cx - mx) + by * (cy - my), std::sqrt(rest), bx, by};
-}
-
-/// Root of the lower quartile of chi square over its degrees of freedom.
-double quartile_of(double freedom) {
-  constexpr double normal = -0.6745;
-  const double part = 2.0 / (9.0 * freedom);
-  return std::pow(1.0 - part + normal * std::sqrt(part), 1.5);
-}
-
 /// The returns of blocks that hold one of the first `own` points.
 std::vector<Return> returns_in_blocks(const core::Block& b, size_t own, double cell, std::vector<BlockKey>& blocks) {
   const double side = cell * block_side;
-  const auto counts = [&b](size_t p) {
-    return core::is_usable(b, p) && core::is_last_return(b, p) && (b.return_number.empty() || b.return_number[p] <= 1);
-  };
   const auto block_of = [&](size_t p) {
     return BlockKey{core::cell_index(b.origin.x() + b.x[p], side), core::cell_index(b.origin.y() + b.y[p], side)};
   };
   for (size_t p = 0; p < own; ++p)
-    if (const BlockKey key = block_of(p); counts(p) && (blocks.empty() || blocks.back() != key)) blocks.push_back(key);
+    if (const BlockKey key = block_of(p); is_single(b, p) && (blocks.empty() || blocks.back() != key)) blocks.push_back(key);
   std::sort(blocks.begin(), blocks.end());
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
   std::vector<Return> out;
   out.reserve(b.size());
   size_t last = 0;
   for (size_t p = 0; p < b.size(); ++p) {
-    if (!counts(p)) continue;
+    if (!is_single(b, p)) continue;
     const BlockKey key = block_of(p);
     if (last >= blocks.size() || blocks[last] != key)
       last = static_cast<size_t>(std::lower_bound(blocks.begin(), blocks.end(), key) - blocks.begin());
@@ -122,7 +80,7 @@ std::vector<Moments> moments_of(std::span<const Return> returns) {
   std::vector<Moments> out;
   for (const Return& r : returns) {
     if (out.empty() || out.back().cell != r.cell || out.back().line != r.line) out.push_back({r.cell, r.line});
-    out.back().add(r);
+    out.back().sums.add(r.x, r.y, r.z);
   }
   return out;
 }
@@ -135,7 +93,7 @@ std::vector<Moments> doubled(std::vector<Moments> cells, int across) {
   std::vector<Moments> out;
   for (const Moments& m : cells)
     if (!out.empty() && key(out.back()) == key(m))
-      out.back().add(m);
+      out.back().sums.add(m.sums);
     else
       out.push_back(m);
   return out;
@@ -180,16 +138,16 @@ class BlockAtLevel {
     const double cx = (lines[0].cell % across_ + 0.5) * cell_ - middle, cy = (lines[0].cell / across_ + 0.5) * cell_ - middle;
     smooth_.clear();
     for (const Moments& m : lines) {
-      if (m.n < options_.least) continue;
-      const std::optional<Plane> plane = plane_of(m, cx, cy, cell_);
+      if (m.sums.n < options_.least) continue;
+      const std::optional<CellPlane> plane = plane_of(m.sums, cx, cy, cell_);
       if (!plane || plane->rms > options_.roughness.value) continue;
-      sigmas_[m.line][aspect_of(*plane) == 0 ? 0 : 1].push_back(plane->rms / quartile_of(m.n - 3.0));
+      sigmas_[m.line][aspect_of(*plane) == 0 ? 0 : 1].push_back(plane->rms / quartile_of(m.sums.n - 3.0));
       smooth_.emplace_back(m.line, *plane);
     }
     for (size_t a = 0; a < smooth_.size(); ++a)
       for (size_t b = a + 1; b < smooth_.size(); ++b) {
-        const Plane &p = smooth_[a].second, &q = smooth_[b].second;
-        const Plane mean{0.0, 0.0, 0.5 * (p.east + q.east), 0.5 * (p.north + q.north)};
+        const CellPlane &p = smooth_[a].second, &q = smooth_[b].second;
+        const CellPlane mean{0.0, 0.0, 0.5 * (p.east + q.east), 0.5 * (p.north + q.north)};
         Compared& of_pair = compared_[{smooth_[a].first, smooth_[b].first, aspect_of(mean)}];
         of_pair.differences.push_back(p.height - q.height);
         of_pair.slopes_squared += mean.slope_squared();
@@ -205,7 +163,7 @@ class BlockAtLevel {
     double slopes_squared = 0.0;
   };
   std::map<std::tuple<int, int, int>, Compared> compared_;  ///< by lines and aspect
-  std::vector<std::pair<int, Plane>> smooth_;
+  std::vector<std::pair<int, CellPlane>> smooth_;
 };
 
 }  // namespace

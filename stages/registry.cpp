@@ -3,6 +3,7 @@
 
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/cloud/copc.h"
+#include "stages/adapters/quality/quality_stages.h"
 #include "stages/adapters/terrain/powerlines.h"
 #include "stages/tile_filter.h"
 
@@ -67,7 +68,11 @@ const std::vector<Entry>& registry() {
       copc_writer_stage(),
       gdal_writer_stage(),
       picture_writer_stage(),
+      pulse_density_stage(),
+      swath_stage(),
+      surface_stage(),
       check_points_stage(),
+      quality_report_stage(),
       truth_stage(),
   };
   return list;

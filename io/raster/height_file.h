@@ -24,4 +24,7 @@ double height_unit_of(const std::filesystem::path& file);
 /// height.
 HeightFile read_heights(const std::filesystem::path& file, const std::optional<core::Box>& within = std::nullopt);
 
+/// The same, and nothing where nothing of the raster lies in the box or none of its pixels there has a height.
+std::optional<HeightFile> find_heights(const std::filesystem::path& file, const core::Box& within);
+
 }  // namespace swath::io

@@ -19,7 +19,7 @@ struct LineLayer {
   std::string name, about;          ///< about: the layer's description
   std::vector<std::string> fields;  ///< of real numbers, beside `name`
   std::vector<LineFeature> lines;
-  std::vector<std::string> text_fields{};  ///< behind those of numbers
+  std::vector<std::string> text_fields{};  ///< behind `name`, before those of numbers
   bool are_areas = false;                  ///< closed lines around Polygons
 };
 

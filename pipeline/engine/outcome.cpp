@@ -2,6 +2,7 @@
 #include "pipeline/engine/outcome.h"
 
 #include <limits>
+#include <set>
 
 #include "core/config/result_visitors.h"
 #include "io/text/output_file.h"
@@ -31,7 +32,30 @@ Measured measured(const RunState& run) {
   for (size_t i = 0; i < run.accounts.size(); ++i)
     if (run.stage(i).info().name == "georeference" && run.accounts[i].in > 0)
       outside = static_cast<double>(run.accounts[i].tally.of("outside the trajectory, left out")) / static_cast<double>(run.accounts[i].in);
-  return {outside, finding("voids"), finding("truth_rms"), finding("line_difference"), finding("contradictions")};
+  return {outside,
+          finding("voids"),
+          finding("truth_rms"),
+          finding("line_difference"),
+          finding("contradictions"),
+          finding("overlap_difference"),
+          finding("void_share"),
+          finding("nva"),
+          finding("vva"),
+          finding("surface_difference"),
+          finding("quality_level")};
+}
+
+/// Control of the survey that no stage reads, with what it is for.
+std::vector<std::string> unused_control(const Plan& plan) {
+  std::set<fs::path> read;
+  for (const PlannedStage& s : plan.stages)
+    for (const fs::path& file : s.stage->inputs(plan.survey)) read.insert(file);
+  std::vector<std::string> out;
+  for (const io::ControlFile& f : plan.survey.control)
+    if (!read.contains(io::resolve(plan.survey, f.file)))
+      out.push_back(f.file.generic_string() + " (use = \"" + std::string(core::Choices<io::ControlUse>::names[static_cast<size_t>(f.use)]) +
+                    "\")");
+  return out;
 }
 
 StageReport stage_report(const RunState& run, size_t number, const Value& options) {
@@ -68,6 +92,7 @@ core::Value report_of(const RunState& run, const std::string& command, double se
   }
   r.versions = versions();
   r.limits = judged(run.plan.run.limits, measured(run));
+  r.control_unused = unused_control(run.plan);
   r.pieces_resumed = run.resumed;
   r.pieces_damaged = run.damaged;
   r.strips_read_again = run.read_again;

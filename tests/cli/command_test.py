@@ -218,6 +218,9 @@ class Runs(Case):
         copc = self.run_ok(survey, config=SOURCE / "configs" / "copc.toml", out=self.folder / "copc")
         self.assertEqual(stage(copc, "writers.copc")["findings"]["points"], stage(report, "writers.las")["counts"]["in"])
         self.assertTrue((self.folder / "copc" / "points.copc.laz").exists())
+        quality = self.run_ok(classified, config=SOURCE / "configs" / "qc.toml", out=self.folder / "quality")
+        self.assertGreater(stage(quality, "quality.density")["findings"]["density"], 0.1)
+        self.assertIn("Spatial distribution", (self.folder / "quality" / "quality.html").read_text())
         given = self.folder / "given.toml"  # a trajectory and nothing else
         given.write_text(f'[[trajectory]]\nfile = "{self.survey / "sbet.out"}"\n' + trajectory_time(self.survey / "survey.toml"))
         made = self.run_ok(given, config=SOURCE / "configs" / "convert_trajectory.toml", out=self.folder / "given")
@@ -227,7 +230,7 @@ class Runs(Case):
         # lever_arm_test.py, strips.toml in strips_test.py, calibrate.toml in calibration_test.py.
         known = {"survey.toml", "survey_sbet.toml", "trajectory.toml", "events.toml", "georeference.toml", "cloud.toml", "lever_arm.toml",
                  "strips.toml", "calibrate.toml", "classes.toml", "survey_classes.toml", "terrain.toml", "dtm.toml", "copc.toml", "corridor.toml",
-                 "convert_trajectory.toml"}
+                 "convert_trajectory.toml", "qc.toml"}
         self.assertEqual({c.name for c in CONFIGS}, known, "a new config is run here too")
 
     def test_the_config_as_json_gives_the_same_products(self):

@@ -13,24 +13,31 @@ namespace {
 
 TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
   const core::Value report = io::parse_json(
-      R"({"pieces_damaged": 2, "stages": [{"type": "readers.las", "tally": {
+      R"({"pieces_damaged": 2, "control_unused": ["a.csv (use = \"control\")"], "stages": [{"type": "readers.las", "tally": {
           "flight lines or files with points well outside the box of a header": {"count": 4, "examples": ["a.las: 4 of 100"]}}},
           {"type": "quality.points", "findings": {"named": [{"code": "check.heights", "sentence": "a"}, {"code": "check.line", "sentence": "b"},
-                                                            {"code": "check.mark", "sentence": "c"}]}}],
+                                                            {"code": "check.mark", "sentence": "c"}, {"code": "check.few", "sentence": "d"},
+                                                            {"code": "check.names", "sentence": "e"}, {"code": "check.outside", "sentence": "f"}]}}],
           "geometry": {"named": ["range_feet"], "warnings": ["lines disagree", "with ranges in feet: state range_unit"]},
           "limits": [{"name": "outside", "value": 0.3, "limit": 0.1, "held": false, "excess": 0.2},
                      {"name": "voids", "value": null, "limit": 0.1, "held": false, "excess": null},
                      {"name": "truth_rms", "value": 1, "limit": 0.1, "held": false, "excess": 0.9},
                      {"name": "line_difference", "value": 1, "limit": 0.1, "held": false, "excess": 0.9},
+                     {"name": "overlap_difference", "value": 1, "limit": 0.1, "held": false, "excess": 0.9},
+                     {"name": "void_share", "value": 0.3, "limit": 0.1, "held": false, "excess": 0.2},
+                     {"name": "nva", "value": 1, "limit": 0.1, "held": false, "excess": 0.9},
+                     {"name": "vva", "value": 1, "limit": 0.1, "held": false, "excess": 0.9},
+                     {"name": "surface_difference", "value": 1, "limit": 0.1, "held": false, "excess": 0.9},
+                     {"name": "quality_level", "value": 2, "limit": 0, "held": false, "excess": 2},
                      {"name": "contradictions", "value": 1, "limit": 0, "held": false, "excess": 1}]})",
       "report");
-  std::set<std::string> codes;
-  for (const Warning& w : warnings_in(report)) {
-    codes.insert(w.code);
-    EXPECT_FALSE(w.text.empty());
-    EXPECT_NE(warning_help(w.code).find(w.code + ": "), std::string::npos);
-  }
-  EXPECT_EQ(codes.size(), warning_kinds().size());
+std::set<std::string> codes;
+for (const Warning& w : warnings_in(report)) {
+  codes.insert(w.code);
+  EXPECT_FALSE(w.text.empty());
+  EXPECT_NE(warning_help(w.code).find(w.code + ": "), std::string::npos);
+}
+EXPECT_EQ(codes.size(), warning_kinds().size());
 }
 
 TEST(Warnings, AnUnknownCodeNamesTheNearest) {

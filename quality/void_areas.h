@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The voids of all tiles as areas with their outlines, within what the survey covers.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/area.h"
+#include "core/config/result.h"
+#include "quality/void_cells.h"
+
+namespace swath::quality {
+
+/// A cell of a survey's footprint, 64 cells of void_cell() a side, that holds a first return; plain data.
+struct FootprintCell {
+  std::int32_t i = 0, j = 0;
+  auto operator<=>(const FootprintCell&) const = default;
+};
+inline double footprint_cell(const PulseSpacing& s) { return 64.0 * void_cell(s); }
+
+/// Of the first `own` points.
+std::vector<FootprintCell> footprint_of(const core::Block& block, std::size_t own, const PulseSpacing& spacing);
+
+struct VoidArea {
+  double x = 0.0, y = 0.0;  ///< of its middle, m
+  double area = 0.0;        ///< m2
+  bool is_water = false;
+  std::vector<std::vector<Eigen::Vector2d>> rings{};  ///< outline with the void to the left, then its islands; m, not closed
+};
+
+template <class V>
+void describe(const VoidArea& r, V& v) {
+  v.result("x", r.x, "Easting of its middle, m.");
+  v.result("y", r.y, "Northing of its middle, m.");
+  v.result("area_m2", r.area, "Its area.");
+  v.result("water", r.is_water, "Water: half of its area is known to be, or half of the first returns beside it are of that class.");
+}
+
+struct SwathVoids {
+  double judged = 0.0;                  ///< m2, within the footprint
+  double least = 0.0;                   ///< m2: smaller ones are none
+  double area = 0.0, water_area = 0.0;  ///< m2, of all voids; apart from water, and of water
+  std::vector<VoidArea> voids{};        ///< largest first
+};
+
+/// Joins the runs of all tiles. Judged is what the survey covers: footprint cells and gaps between them up to `max_gap` m wide, and what
+/// they enclose, without the outermost cells, for nothing shows how far these are covered.
+/// `without_points`: squares that no tile has looked at; what of them the survey covers is void.
+SwathVoids judge_voids(std::vector<VoidRun> runs, const std::vector<FootprintCell>& footprint, const std::vector<core::Box>& without_points,
+                       const PulseSpacing& spacing, double max_gap);
+
+}  // namespace swath::quality

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Check points against the ground points and the terrain model: accuracy by cover, class of the map, and whose fault a difference is.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "core/statistics.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
+#include "io/vector/control.h"
+#include "quality/mark_faults.h"
+#include "report/volumes.h"
+#include "stages/adapters/adapters.h"
+#include "stages/adapters/quality/mark_files.h"
+#include "stages/tile.h"
+
+namespace swath::stages {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Column;
+
+constexpr size_t least_marks_judged = 3;
+constexpr size_t names_shown = 6;
+constexpr const char* points_file = "check_points.json";  // for report.quality
+
+struct CheckPointOptions {
+  std::string name = "check_points";
+  core::Metres radius{1.0};
+  quality::MarkSurface surface = quality::MarkSurface::plane;
+  std::vector<std::string> open{"", "open", "bare", "urban", "NVA"};
+  MapOptions map{};
+};
+
+template <class V>
+void describe(CheckPointOptions& o, V& v) {
+  v.option("name", o.name, "Name of the table and the layer of all check points: NAME.csv, NAME.gpkg.");
+  v.option("radius", o.radius, core::above_to(0.0, 20.0), "Ground points within this distance of a check point are compared with it.");
+  v.option("surface", o.surface, "plane: through the ground points, at the check point; mean: of their heights.");
+  v.option("open", o.open, "Covers that count as not vegetated; \"\": none stated.");
+  v.table("map", o.map, "Class of a map made from the survey.");
+}
+
+double halo(const CheckPointOptions& o) { return o.radius.value; }
+
+struct CheckPointFindings {
+  std::optional<std::string> none{};
+  std::uint64_t marks = 0;
+  std::vector<std::string> outside{}, unread{};
+  std::optional<double> nva{}, vva{};
+  std::vector<CoverAccuracy> accuracy{};
+  std::optional<MapClassFound> map{};
+  std::vector<quality::LineAtMarks> lines{};
+  std::vector<quality::NamedFault> named{};
+};
+
+template <class V>
+void describe(const CheckPointFindings& r, V& v) {
+  using core::metres;
+  v.result("check_points", r.none, core::plain().in_summary(), "Why nothing was compared.");
+  v.result("marks", r.marks, core::plain().only_if(!r.none), "Check points of the survey.");
+  v.result("outside", r.outside, core::plain().only_if(!r.outside.empty()), "Check points where the survey has no points at all.");
+  v.result("unread", r.unread, core::plain().only_if(!r.unread.empty()), "Check points without ground points around them.");
+  v.result("nva_m", r.nva, metres().in_summary().limited_by("nva"), "RMSE of the ground points on open ground, check points' error added.");
+  v.result("vva_m", r.vva, metres().in_summary().limited_by("vva"), "95 % of the ground points' errors under vegetation are smaller.");
+  v.tables("accuracy", r.accuracy, "Errors by product and cover.");
+  v.table("map", r.map, "Class of a map made from the survey.");
+  v.tables("lines", r.lines, "Flight lines against the check points that they show.");
+  v.tables("named", r.named, "Whose fault the largest differences are.");
+}
+
+struct Marks {
+  std::vector<quality::CheckMark> list;
+};
+
+Marks marks_of(const Context& context) {
+  Marks out;
+  core::Tally of_others;
+  const core::Transform to_map(core::wgs84_ecef(), context.crs);
+  for (const io::ControlPoint& p : io::read_control(context.survey, of_others)) {
+    if (p.use != io::ControlUse::check || !p.target.empty()) continue;
+    const Eigen::Vector3d map = to_map(p.ecef);
+    out.list.push_back(
+        {p.name, p.cover, p.place, {map.x() * context.unit, map.y() * context.unit, map.z() * context.vertical_unit}, p.sigma_v});
+  }
+  return out;
+}
+
+std::vector<fs::path> check_files(const io::Survey& survey) {
+  std::vector<fs::path> out;
+  for (const io::ControlFile& f : survey.control)
+    if (f.use == io::ControlUse::check) out.push_back(io::resolve(survey, f.file));
+  return out;
+}
+
+fs::path readings_file(const fs::path& folder, TileKey key) { return piece_file(folder, key, "marks"); }
+
+void read_tile(const TileJob& job, const Context& context, const CheckPointOptions& o, RunCache& cache) {
+  std::vector<quality::MarkReading> readings;
+  if (!check_files(context.survey).empty() && !context.crs.empty()) {
+    const Marks& marks = cache.get([&] { return marks_of(context); });
+    std::vector<size_t> here;
+    for (size_t m = 0; m < marks.list.size(); ++m)
+      if (job.box.holds(marks.list[m].at.x(), marks.list[m].at.y())) here.push_back(m);
+    readings = quality::read_marks(job.block, marks.list, here, o.radius.value, o.surface);
+  }
+  write_rows(readings_file(job.folder, job.key), readings);
+}
+
+/// What the readings of its lines say of each mark: differences weighted by their points, of sigma and slope the largest.
+void add_readings(const std::vector<quality::MarkReading>& readings, std::vector<MarkFound>& found) {
+  std::vector<double> n(found.size(), 0.0);
+  for (const quality::MarkReading& r : readings) {
+    const auto m = static_cast<size_t>(r.mark);
+    MarkFound& f = found[m];
+    if (n[m] == 0.0) f.points = f.slope = 0.0;
+    f.points += static_cast<double>(r.difference) * r.points;
+    n[m] += r.points;
+    f.sigma = std::max(f.sigma, static_cast<double>(r.sigma));
+    f.sigma_h = std::max(f.sigma_h, static_cast<double>(r.sigma_h));
+    f.slope = std::max(f.slope, static_cast<double>(r.slope));
+  }
+  for (size_t m = 0; m < found.size(); ++m)
+    if (n[m] > 0.0) found[m].points /= n[m];
+}
+
+std::vector<MarkFound> found_at(const MergeJob& job, const Context& context, const Marks& marks,
+                                const std::vector<quality::MarkReading>& readings) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  std::vector<MarkFound> out(marks.list.size(), MarkFound{none, none, 0.0, 0.0, none, false});
+  add_readings(readings, out);
+  const bool has_dtm = context.grids && context.grids->has(Product::dtm);
+  for (size_t m = 0; m < marks.list.size(); ++m) {
+    const Eigen::Vector3d& at = marks.list[m].at;
+    out[m].is_outside =
+        std::none_of(job.tiles.begin(), job.tiles.end(), [&](TileKey k) { return context.box_of(k).holds(at.x(), at.y()); });
+    if (!has_dtm || out[m].is_outside) continue;
+    const double cell = context.grids->cell(Product::dtm);
+    const core::Grid around = context.grids->window(
+        Product::dtm, core::lattice_of(cell, at.x() - 2 * cell, at.y() - 2 * cell, at.x() + 2 * cell, at.y() + 2 * cell));
+    out[m].dtm = report::sample(around, at.x(), at.y()).height - at.z();
+  }
+  return out;
+}
+
+std::string shown(const std::vector<std::string>& names) {
+  std::string out;
+  for (size_t k = 0; k < std::min(names.size(), names_shown); ++k) out += (k ? ", " : "") + names[k];
+  return names.size() > names_shown ? out + " and " + std::to_string(names.size() - names_shown) + " more" : out;
+}
+
+/// Distance of a place from the nearest tile with points, km.
+double away(const MergeJob& job, const Context& context, const Eigen::Vector3d& at) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const TileKey key : job.tiles) {
+    const Box b = context.box_of(key);
+    nearest = std::min(nearest, std::hypot(std::max({b.x0 - at.x(), 0.0, at.x() - b.x1}), std::max({b.y0 - at.y(), 0.0, at.y() - b.y1})));
+  }
+  return 1e-3 * nearest;
+}
+
+/// What is wrong with the check points as a whole.
+void name_records(const MergeJob& job, const Context& context, const Marks& marks, const std::vector<MarkFound>& at,
+                  CheckPointFindings& found) {
+  std::set<std::string> names, twice;
+  double nearest = std::numeric_limits<double>::infinity();
+  size_t compared = 0;
+  for (size_t m = 0; m < marks.list.size(); ++m) {
+    const quality::CheckMark& mark = marks.list[m];
+    if (!names.insert(mark.name).second) twice.insert(mark.name);
+    if (at[m].is_outside) {
+      found.outside.push_back(mark.name);
+      nearest = std::min(nearest, away(job, context, mark.at));
+    } else if (std::isnan(at[m].points)) {
+      found.unread.push_back(mark.name);
+    }
+    compared += !std::isnan(at[m].points) || !std::isnan(at[m].dtm);
+  }
+  const size_t all = marks.list.size(), outside = found.outside.size();
+  char distance[60];
+  std::snprintf(distance, sizeof distance, "%.1f km", nearest);
+  if (outside == all && all > 0)
+    found.named.push_back({"check.outside", "none of the " + std::to_string(all) + " check points lies within the survey, the nearest is " +
+                                                distance + " away: compare the CRS and the columns of [[control]] with the survey's"});
+  else if (outside > 0)
+    found.named.push_back({"check.outside", std::to_string(outside) + " of " + std::to_string(all) +
+                                                " check points lie outside the survey's points: " + shown(found.outside)});
+  if (!twice.empty())
+    found.named.push_back(
+        {"check.names", std::to_string(twice.size()) + " names stand for several check points: " + shown({twice.begin(), twice.end()})});
+  if (compared < least_marks_judged)
+    found.named.push_back({"check.few", std::to_string(compared) + " of " + std::to_string(all) +
+                                            " check points could be compared, fewer than 3: no accuracy is stated by them"});
+}
+
+void judge_accuracy(const Marks& marks, const std::vector<MarkFound>& at, const CheckPointOptions& o, CheckPointFindings& found) {
+  found.accuracy = accuracy_of(marks.list, at, o.open);
+  if (const CoverAccuracy* a = find_accuracy(found.accuracy, "points", open_cover)) found.nva = a->with_marks;
+  if (const CoverAccuracy* a = find_accuracy(found.accuracy, "points", vegetated_cover)) found.vva = a->errors.q95;
+  std::vector<double> sigmas;
+  for (const MarkFound& m : at)
+    if (m.sigma_h > 0.0) sigmas.push_back(m.sigma_h);
+  const CoverAccuracy* heights = find_accuracy(found.accuracy, "dtm", every_cover);
+  found.map = map_class_of(o.map, heights ? heights : find_accuracy(found.accuracy, "points", every_cover), core::median(sigmas, 0.0));
+}
+
+CheckPointFindings judge_points(const MergeJob& job, const Context& context, const CheckPointOptions& o, RunCache& cache) {
+  CheckPointFindings found;
+  if (check_files(context.survey).empty()) {
+    found.none = "none: the survey has no [[control]] with use = \"check\"";
+    return found;
+  }
+  const Marks& marks = cache.get([&] { return marks_of(context); });
+  std::vector<quality::MarkReading> readings;
+  for (const TileKey key : job.tiles) read_rows(readings_file(job.folder, key), readings);
+  std::sort(readings.begin(), readings.end(),
+            [](const auto& a, const auto& b) { return std::pair(a.mark, a.line) < std::pair(b.mark, b.line); });
+  const std::vector<MarkFound> at = found_at(job, context, marks, readings);
+  found.marks = marks.list.size();
+  name_records(job, context, marks, at, found);
+  judge_accuracy(marks, at, o, found);
+  quality::MarkFaults faults = quality::find_faults(marks.list, readings);
+  found.lines = std::move(faults.lines);
+  found.named.insert(found.named.end(), faults.named.begin(), faults.named.end());
+  write_marks(context, o.name, marks.list, at, readings);
+  core::Value all = core::reported(found);
+  core::Value& list = all["check_points_found"] = core::Value::array();
+  for (size_t m = 0; m < at.size(); ++m) list.push(core::reported(NamedMark{marks.list[m].name, marks.list[m].cover, at[m]}));
+  io::write_text_file(context.output / points_file, io::to_json(all));
+  return found;
+}
+
+}  // namespace
+
+Entry check_points_stage() {
+  return tile<read_tile, judge_points>(
+      "quality.points", "Check points against ground points and terrain model: accuracy by cover, and whose fault a difference is.",
+      {.columns = {.needs = {Column::classification, Column::flags, Column::strip}, .reads = {Column::sigma_v, Column::sigma_h}},
+       .inputs = check_files,
+       .products = [](const CheckPointOptions& o) {
+         return std::vector<std::string>{o.name + ".csv", o.name + ".gpkg", points_file};
+       }});
+}
+
+}  // namespace swath::stages

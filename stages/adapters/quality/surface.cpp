@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The terrain model less a reference, by slope and cover.
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "core/relief.h"
+#include "io/raster/geotiff.h"
+#include "io/raster/height_file.h"
+#include "io/text/value_file.h"
+#include "quality/surface_difference.h"
+#include "report/difference_map.h"
+#include "stages/adapters/quality/quality_stages.h"
+#include "stages/map_overview.h"
+#include "stages/tile.h"
+#include "stages/tile_product.h"
+
+namespace swath::stages {
+namespace {
+
+using core::Column;
+namespace fs = std::filesystem;
+
+constexpr const char* difference_name = "surface_difference";
+
+struct SurfaceOptions {
+  std::optional<fs::path> reference;
+};
+
+template <class V>
+void describe(SurfaceOptions& o, V& v) {
+  v.option("reference", o.reference, "Terrain model to compare with, any north-up raster, relative to survey.toml; unset: no comparison.");
+}
+
+struct SurfaceCounts {
+  std::uint64_t compared = 0, without_reference = 0;
+};
+
+template <class V>
+void describe(const SurfaceCounts& r, V& v) {
+  v.result("cells compared with the reference", r.compared, core::if_any(), "Cells of the terrain model where both have a height.");
+  v.result("cells without a height of the reference", r.without_reference, core::if_any(), "Cells of the terrain model alone.");
+}
+
+struct SurfaceFindings {
+  std::optional<std::string> none{}, heights{};
+  std::string reference{};
+  std::optional<double> rms{};
+  quality::SurfaceComparison found{};
+};
+
+template <class V>
+void describe(const SurfaceFindings& r, V& v) {
+  v.result("surface", r.none, core::plain().in_summary(), "Why nothing was compared.");
+  v.result("reference", r.reference, core::plain().only_if(!r.reference.empty()), "Name of the reference's file.");
+  v.result("heights", r.heights, "What is not known of the height systems.");
+  v.result("rms_m", r.rms, core::metres().in_summary().limited_by("surface_difference"), "Terrain model less reference, rms.");
+  v.tables("classes", r.found.classes, "Terrain model less reference, by slope and cover.");
+  v.result("bins_m", r.found.bins, "Middles of 41 bins of all differences; the outermost hold what lies beyond.");
+  v.result("bin_cells", r.found.bin_cells, "Cells in each bin.");
+}
+
+fs::path reference_of(const io::Survey& survey, const SurfaceOptions& o) { return io::resolve(survey, *o.reference); }
+
+core::Crs crs_of_reference(const fs::path& file) {
+  const std::string wkt = io::read_raster_info(file).crs_wkt;
+  return wkt.empty() ? core::Crs() : core::Crs(wkt);
+}
+
+bool is_same_map(const core::Crs& a, const core::Crs& b) {
+  const core::Crs left = a.horizontal(), right = b.horizontal();
+  return left.key() == right.key() || (left.epsg() != 0 && left.epsg() == right.epsg());
+}
+
+/// Refuses a reference on another map or with heights of another system before any point is read.
+void check_reference(const io::Survey& survey, const core::Crs& of_survey, const SurfaceOptions& o) {
+  if (!o.reference) return;
+  const fs::path file = reference_of(survey, o);
+  if (!fs::exists(file))
+    throw core::usage_error("no such file", file.string(), "check quality.surface.reference; it is relative to survey.toml");
+  const core::Crs crs = crs_of_reference(file);
+  if (crs.empty() || of_survey.empty()) return;
+  if (!is_same_map(crs, of_survey))
+    throw core::usage_error("the reference is in " + crs.name() + ", the survey in " + of_survey.name(), file.string(),
+                            "warp it to the survey's CRS first (gdalwarp -t_srs)");
+  if (crs.heights() == core::Heights::vertical && of_survey.heights() == core::Heights::vertical &&
+      crs.vertical_name() != of_survey.vertical_name())
+    throw core::usage_error("the reference's heights are " + crs.vertical_name() + ", the survey's " + of_survey.vertical_name(),
+                            file.string(), "bring both to one height system first");
+}
+
+SurfaceCounts compare_tile(const TileJob& job, const Context& context, const In<Product::dtm>& terrain, const SurfaceOptions& o,
+                           RunCache& cache) {
+  if (!o.reference) return {};
+  // A cloud's own CRS is known only now.
+  cache.get([&] {
+    check_reference(context.survey, context.crs, o);
+    return true;
+  });
+  const core::Lattice own = terrain.lattice(job.box);
+  const core::Grid around = terrain.window({own.cell, own.i0 - 1, own.j0 - 1, own.nx + 2, own.ny + 2}), model = terrain.window(own);
+  const std::optional<io::HeightFile> reference = io::find_heights(reference_of(context.survey, o), job.box.grown(2.0 * own.cell));
+  const auto height = [&](double x, double y) {
+    return reference && reference->field.knows(x, y) ? reference->field.height(x, y) : std::numeric_limits<double>::quiet_NaN();
+  };
+  const quality::SurfaceDifference d =
+      quality::compare_surface(model, core::slope(around, own), quality::covers_of(job.block, own), height);
+  TileRasters{context, difference_name}.write(job.key, own, {{"terrain model less reference", "m", &d.difference.height}});
+  write_rows(piece_file(job.folder, job.key, "differences"), d.sums, d.bins);
+  write_grid_tile(job.folder / "map", job.key, d.difference);
+  SurfaceCounts counts{0, d.not_compared};
+  for (const quality::DifferenceSums& s : d.sums) counts.compared += s.sums.n;
+  return counts;
+}
+
+SurfaceFindings judge_surfaces(const MergeJob& job, const Context& context, const SurfaceOptions& o) {
+  SurfaceFindings found;
+  if (!o.reference) {
+    found.none = "not compared: quality.surface has no reference";
+    return found;
+  }
+  std::vector<quality::DifferenceSums> sums;
+  std::vector<quality::DifferenceBin> bins;
+  for (const TileKey key : job.tiles) read_rows(piece_file(job.folder, key, "differences"), sums, bins);
+  found.found = quality::judge_surface(sums, bins);
+  found.reference = o.reference->filename().string();
+  if (found.found.classes.empty())
+    throw core::Error("the reference has no height where the survey has terrain", reference_of(context.survey, o).string(),
+                      "is it of this place, and in the survey's CRS?");
+  const core::Crs crs = crs_of_reference(reference_of(context.survey, o));
+  if (crs.empty() || crs.heights() == core::Heights::unknown)
+    found.heights = "the reference does not state what its heights count from: taken as " + context.heights;
+  found.rms = found.found.classes[0].errors.rms;
+  TileRasters{context, difference_name}.finish(job.tiles);
+  io::write_text_file(context.output / "surface.json", io::to_json(core::reported(found)));
+  report::DifferenceMapOptions look;
+  look.title = "Terrain model less reference";
+  const double cell = context.grids->cell(Product::dtm);
+  write_picture(context, difference_name,
+                report::draw(report::difference_map(overview_of(context, job.folder / "map", job.tiles, cell), look)));
+  return found;
+}
+
+using SurfaceWork = WorkStage<nullptr, compare_tile, judge_surfaces>;
+
+/// The reference is an option's, not the survey's: its content decides the result, too.
+class SurfaceStage : public SurfaceWork {
+ public:
+  using SurfaceWork::SurfaceWork;
+  std::vector<fs::path> inputs(const io::Survey& survey) const override {
+    return options.reference ? std::vector<fs::path>{reference_of(survey, options)} : std::vector<fs::path>{};
+  }
+};
+
+}  // namespace
+
+Entry surface_stage() {
+  const TileExtras<SurfaceOptions> extras{
+      .columns = {.needs = {Column::classification, Column::flags}},
+      // Per cell of the model: it twice, slope, difference, counts of returns, the reference with its nodes.
+      .memory =
+          [](const SurfaceOptions&, const Context& c) {
+            return TileMemory{8.0, window_of(c, Product::dtm, 8)};
+          },
+      .check = [](const Context& c,
+                  const SurfaceOptions& o) { check_reference(c.survey, c.survey.crs.empty() ? core::Crs() : core::Crs(c.survey.crs), o); },
+      .products =
+          [](const SurfaceOptions&) {
+            const std::string name = difference_name;
+            return std::vector<std::string>{"surface.json", name, name + ".vrt", name + ".png"};
+          }};
+  constexpr std::string_view name = "quality.surface";
+  return {name, [=] {
+            return std::make_unique<SurfaceStage>(
+                name, "Terrain model less a reference model by slope and cover, with a map of the differences.", extras);
+          }};
+}
+
+}  // namespace swath::stages
