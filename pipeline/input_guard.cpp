@@ -37,8 +37,8 @@ bool holds(const fs::path& folder, const fs::path& file) {
 }
 
 bool names_a_file(const fs::path& product) {
-  constexpr const char* endings[] = {".json", ".csv",  ".html", ".gpkg", ".dxf",    ".geojson", ".vrt", ".tif", ".png",
-                                     ".svg",  ".sbet", ".toml", ".txt",  ".smrmsg", ".pos",     ".laz", ".las"};
+  constexpr const char* endings[] = {".json", ".csv", ".html", ".gpkg", ".dxf", ".geojson", ".vrt", ".tif", ".png", ".svg",
+                                     ".pdf",  ".xml", ".sbet", ".toml", ".txt", ".smrmsg",  ".pos", ".laz", ".las"};
   return std::find(std::begin(endings), std::end(endings), product.extension().string()) != std::end(endings);
 }
 

@@ -25,7 +25,7 @@ constexpr std::array<Kind, 11> kinds{{{"outside", "returns that the trajectory d
                                       {"overlap_difference", "difference of overlapping lines on smooth level ground", 1.0, "m"},
                                       {"void_share", "voids apart from water", 100.0, "%"},
                                       {"nva", "RMSE at open check points, with their own error", 1.0, "m"},
-                                      {"vva", "95 % of the errors at vegetated check points", 1.0, "m"},
+                                      {"vva", "RMSE at vegetated check points, with their own error", 1.0, "m"},
                                       {"surface_difference", "rms difference of the terrain model and its reference", 1.0, "m"},
                                       {"quality_level", "missed requirements of the quality level", 1.0, ""}}};
 

@@ -39,7 +39,7 @@ void describe(Limits& l, V& v) {
            "Largest rms difference of overlapping lines on smooth level ground (quality.swath).");
   v.option("void_share", l.void_share, core::within(0, 1), "Largest share of voids apart from water in the survey (quality.swath).");
   v.option("nva", l.nva, core::at_least(0), "Largest RMSE at open check points, with their own error (quality.points).");
-  v.option("vva", l.vva, core::at_least(0), "Largest 95 % quantile of errors at vegetated check points (quality.points).");
+  v.option("vva", l.vva, core::at_least(0), "Largest RMSE at vegetated check points, with their own error (quality.points).");
   v.option("surface_difference", l.surface_difference, core::at_least(0),
            "Largest rms difference of the terrain model and its reference (quality.surface).");
   v.option("quality_level", l.quality_level, core::at_least(0),

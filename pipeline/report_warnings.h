@@ -7,7 +7,7 @@
 
 namespace swath::pipeline {
 
-/// The warnings of a report.json: of limits, of readers, of quality.geometry and quality.points, of control that is not used, of the work folder.
+/// The warnings of a report.json: of limits, readers, quality.geometry, quality.points, control that is not used, the work folder.
 std::vector<Warning> warnings_in(const core::Value& report);
 
 }  // namespace swath::pipeline

@@ -45,7 +45,7 @@ const std::vector<WarningKind>& warning_kinds() {
        "See the layer voids of swath.gpkg: fly the gaps again, classify water, or raise the limit."},
       {"limit.voids", "The terrain model has more holes than run.limits.voids allows.",
        "See the reasons of the voids in the quality raster, take larger cells, or raise the limit."},
-      {"limit.vva", "The errors at vegetated check points are larger than run.limits.vva.",
+      {"limit.vva", "The RMSE at vegetated check points is larger than run.limits.vva.",
        "See quality.points in report.json by cover; or raise the limit."},
       {"points.outside_box", "Points lie well outside the box that their file's header states.",
        "The points are used as they are; have the file written again, for other programs trust the box."},

@@ -93,6 +93,7 @@ MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<Ma
     of_mark[r.mark].difference.push_back(static_cast<double>(r.difference) - line);
     of_mark[r.mark].sigma.push_back(static_cast<double>(r.scatter));
   }
+  if (of_mark.size() < least_marks) return out;  // of two that differ nothing says which is wrong
   for (const auto& [m, group] : of_mark) {
     const CheckMark& mark = marks[static_cast<size_t>(m)];
     const double own = core::median(group.difference);

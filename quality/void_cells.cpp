@@ -106,7 +106,8 @@ Mask void_mask(const Mask& returns, const PulseSpacing& spacing) {
   const std::vector<float> to_return = squared_distances(returns.set, l.nx, l.ny);
   for (size_t c = 0; c < l.size(); ++c) centres.set[c] = to_return[c] > static_cast<float>(disc * disc);
   // The outermost returns fill their cell, half of which belongs to the gap already.
-  const double reach = disc - std::max(0.0, gap * spacing.actual / l.cell - 0.5);
+  // Of points far sparser than the rule nothing is taken back: all that a disc of it does not find covered is void.
+  const double reach = std::max(0.0, disc - std::max(0.0, gap * spacing.actual / l.cell - 0.5));
   const std::vector<float> to_centre = squared_distances(centres.set, l.nx, l.ny);
   for (size_t c = 0; c < l.size(); ++c) out.set[c] = static_cast<double>(to_centre[c]) <= reach * reach;
   return out;

@@ -13,7 +13,7 @@ namespace swath::quality {
 /// The spacing that a rule counts in, and that of the points themselves.
 struct PulseSpacing {
   double rule = 1.0;    ///< m, ANPS of the specification; of the points where there is none
-  double actual = 1.0;  ///< m, of all lines together
+  double actual = 1.0;  ///< m, of all lines together where most of the survey lies
 };
 
 /// Side of the cells that voids are made of: a quarter of the rule's spacing, m.

@@ -199,6 +199,14 @@ void Canvas::pixels(const Box& b, const std::function<core::Rgb(int, int)>& colo
   }
 }
 
+void Canvas::inset(double x, double y, double scale, const std::function<void(Canvas&)>& paint) {
+  cairo_save(cairo_);
+  cairo_translate(cairo_, x, y);
+  cairo_scale(cairo_, scale, scale);
+  paint(*this);
+  cairo_restore(cairo_);
+}
+
 namespace {
 
 void check(cairo_status_t status, const Drawing& d) {
@@ -208,8 +216,8 @@ void check(cairo_status_t status, const Drawing& d) {
                       {}, "a side has at most 32767 pixels");
 }
 
-/// Draws and closes the file, where it is one. Returns the texts.
-std::vector<Canvas::Label> paint(cairo_surface_t* surface, const Drawing& d, double scale = 1.0) {
+/// Draws and closes the file, where it is one and `is_last`. Returns the texts.
+std::vector<Canvas::Label> paint(cairo_surface_t* surface, const Drawing& d, double scale = 1.0, bool is_last = true) {
   check(cairo_surface_status(surface), d);
   const Context c(cairo_create(surface));
   cairo_scale(c.get(), scale, scale);
@@ -218,7 +226,8 @@ std::vector<Canvas::Label> paint(cairo_surface_t* surface, const Drawing& d, dou
   Canvas canvas(c.get());
   d.paint(canvas);
   check(cairo_status(c.get()), d);
-  if (!has_pixels(c.get())) cairo_surface_finish(surface);
+  if (!is_last) cairo_show_page(c.get());
+  if (is_last && !has_pixels(c.get())) cairo_surface_finish(surface);
   cairo_surface_flush(surface);
   check(cairo_surface_status(surface), d);
   return canvas.labels();
@@ -292,13 +301,19 @@ std::string svg(const Drawing& d) {
   return out.insert(out.rfind("</svg>"), unseen(labels));
 }
 
-std::string pdf(const Drawing& d) {
+std::string pdf(const Drawing& d) { return pdf(std::vector<Drawing>{d}); }
+
+std::string pdf(const std::vector<Drawing>& pages) {
   std::string out;
-  if (d.width <= 0 || d.height <= 0) return out;
-  const Surface surface(cairo_pdf_surface_create_for_stream(append, &out, d.width * points_per_pixel, d.height * points_per_pixel));
+  if (pages.empty() || pages[0].width <= 0 || pages[0].height <= 0) return out;
+  const auto points = [](int pixels) { return pixels * points_per_pixel; };
+  const Surface surface(cairo_pdf_surface_create_for_stream(append, &out, points(pages[0].width), points(pages[0].height)));
   cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_4);  // the same with every Cairo
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
-  paint(surface.get(), d, points_per_pixel);
+  for (size_t k = 0; k < pages.size(); ++k) {
+    cairo_pdf_surface_set_size(surface.get(), points(pages[k].width), points(pages[k].height));
+    paint(surface.get(), pages[k], points_per_pixel, k + 1 == pages.size());
+  }
   return out;
 }
 

@@ -64,6 +64,8 @@ class Canvas {
   void text(double x, double y, std::string_view utf8, const TextStyle& style);
   /// Pixel by pixel; `colour` takes column and row within the box.
   void pixels(const Box& box, const std::function<core::Rgb(int, int)>& colour);
+  /// A drawing of its own within this one: its corner at (x, y), `scale` times its size.
+  void inset(double x, double y, double scale, const std::function<void(Canvas&)>& paint);
 
   const std::vector<Label>& labels() const { return labels_; }
 
@@ -87,6 +89,8 @@ core::Picture draw(const Drawing& drawing);
 std::string svg(const Drawing& drawing);
 /// One page with its typeface, without dates.
 std::string pdf(const Drawing& drawing);
+/// A page for each drawing.
+std::string pdf(const std::vector<Drawing>& pages);
 
 /// The same of everything that has a drawing(): charts, correlations.
 template <class T>

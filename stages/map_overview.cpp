@@ -10,6 +10,30 @@
 
 namespace swath::stages {
 
+namespace {
+
+/// The part with heights, and a rim of a cell.
+core::Grid cropped(const core::Grid& g) {
+  int west = g.lattice.nx, east = -1, south = g.lattice.ny, north = -1;
+  for (int j = 0; j < g.lattice.ny; ++j)
+    for (int i = 0; i < g.lattice.nx; ++i)
+      if (g.reason[g.lattice.at(i, j)] == core::Void::none)
+        west = std::min(west, i), east = std::max(east, i), south = std::min(south, j), north = std::max(north, j);
+  if (east < 0) return g;
+  west = std::max(0, west - 1), south = std::max(0, south - 1);
+  east = std::min(g.lattice.nx - 1, east + 1), north = std::min(g.lattice.ny - 1, north + 1);
+  core::Grid out(core::Lattice{g.lattice.cell, g.lattice.i0 + west, g.lattice.j0 + south, east - west + 1, north - south + 1});
+  out.count.assign(out.lattice.size(), 0);
+  for (int j = 0; j < out.lattice.ny; ++j)
+    for (int i = 0; i < out.lattice.nx; ++i) {
+      const size_t to = out.lattice.at(i, j), from = g.lattice.at(i + west, j + south);
+      out.height[to] = g.height[from], out.reason[to] = g.reason[from], out.count[to] = g.count[from];
+    }
+  return out;
+}
+
+}  // namespace
+
 core::Grid overview_of(const Context& context, const std::filesystem::path& folder, const std::vector<TileKey>& tiles, double cell,
                        int most) {
   if (tiles.empty()) return core::Grid();
@@ -43,7 +67,7 @@ core::Grid overview_of(const Context& context, const std::filesystem::path& fold
       out.height[c] = static_cast<float>(sums[c] / out.count[c]);
       out.reason[c] = core::Void::none;
     }
-  return out;
+  return cropped(out);
 }
 
 void write_picture(const Context& context, const std::string& name, const core::Picture& picture) {

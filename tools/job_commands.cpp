@@ -27,6 +27,7 @@ struct Job {
   std::string help;
   std::vector<JobOption> options{};
   std::string classified{};  ///< config for clouds whose classes are taken as they are; empty: the job has none
+  bool judges = false;       ///< takes check points, a reference and a quality level
 };
 
 const std::vector<Job>& jobs() {
@@ -42,10 +43,13 @@ const std::vector<Job>& jobs() {
       {"classify", "classes",
        "Examples\n  swath classify flight.laz\n  swath classify tiles/ --output classified\n\nClassify point clouds: ground, vegetation, "
        "buildings, bridges, wires, water, noise."},
-      {"qc", "qc",
-       "Examples\n  swath qc tiles/\n  swath qc line1.laz line2.laz --output qc\n\nJudge the quality of point clouds: density, flight "
-       "lines "
-       "against one another, gaps."},
+      {"qc",
+       "qc",
+       "Examples\n  swath qc tiles/\n  swath qc delivery/ --level QL2 --check marks.csv --reference dtm.tif --output qc\n\nJudge the "
+       "quality of point clouds: density, voids, flight lines against one another, check points, a reference model.",
+       {},
+       {},
+       true},
       {"copc", "copc", "Examples\n  swath copc tiles/\n\nWrite point clouds as COPC, the form of LAZ that viewers stream."},
   };
   return list;
@@ -55,6 +59,9 @@ struct Given {
   std::vector<std::string> clouds, classes;
   std::string crs;
   std::vector<std::string> values;  ///< of the job's options, in their order; empty: not given
+  std::vector<std::filesystem::path> check;
+  std::string check_crs, level = "none";
+  std::filesystem::path reference;
   pipeline::Request request;
   std::filesystem::path save;
   Loudness loudness;
@@ -73,6 +80,23 @@ std::string class_list(const std::vector<std::string>& classes) {
   return "dtm.classes=[" + list + "]";
 }
 
+/// What a job that judges is given beside its clouds.
+void add_judgement(const Given& a, pipeline::Request& out) {
+  std::vector<std::string> sets{"swath.quality_level=" + a.level};
+  if (!a.reference.empty()) sets.push_back("surface.reference=" + std::filesystem::absolute(a.reference).string());
+  out.sets.insert(out.sets.begin(), sets.begin(), sets.end());
+  if (a.check.empty()) return;
+  core::Value control = core::Value::array();
+  for (const std::filesystem::path& file : a.check) {
+    core::Value one = core::Value::object();
+    one["file"] = core::Value(std::filesystem::absolute(file).string());
+    one["use"] = core::Value(std::string("check"));
+    if (!a.check_crs.empty()) one["crs"] = core::Value(a.check_crs);
+    control.push(std::move(one));
+  }
+  (*out.survey_tree)["control"] = std::move(control);
+}
+
 pipeline::Request request_of(const Job& job, const Given& a) {
   pipeline::Request out = a.request;
   const auto files = pipeline::cloud_files(a.clouds);
@@ -85,6 +109,7 @@ pipeline::Request request_of(const Job& job, const Given& a) {
     out.sets.push_back(o.option + "=" + a.values[k]);
   }
   out.survey_tree = pipeline::cloud_survey(files, a.crs);
+  if (job.judges) add_judgement(a, out);
   if (out.output.empty()) out.output = pipeline::proposed_output(files, job.name);
   return out;
 }
@@ -103,6 +128,12 @@ void add_job(Commands& commands, const Job& job) {
   if (!job.classified.empty())
     c->add_option("--classes", a->classes, "Class of the clouds that is terrain, such as 2; without it ground is found anew")
         ->allow_extra_args(false);
+  if (job.judges) {
+    c->add_option("--check", a->check, "Check points: CSV with name,x,y,z or GeoPackage")->allow_extra_args(false);
+    c->add_option("--check-crs", a->check_crs, "Their CRS, where it is not the survey's");
+    c->add_option("--reference", a->reference, "Terrain model to compare with, GeoTIFF or VRT");
+    c->add_option("--level", a->level, "Quality level of the USGS, QL0 to QL3; none: figures without a verdict")->capture_default_str();
+  }
   c->add_option("--crs", a->crs, "CRS of the products, and of clouds that state none: EPSG:25832");
   c->add_option("--set", a->request.sets, "One option of one stage of the config " + job.config)->allow_extra_args(false);
   add_run_options(*c, a->request, a->loudness, a->save);

@@ -115,7 +115,7 @@ TEST_F(CheckPoints, RightOnesAreJudgedByCoverAndNoneIsNamed) {
   }
   EXPECT_EQ(open + vegetated + (f.find("unread") ? static_cast<std::int64_t>(f.find("unread")->items().size()) : 0), 32);
   EXPECT_GT(vegetated, 3);
-  EXPECT_EQ(models, 4);  // open, vegetated, and each cover by its name
+  EXPECT_EQ(models, 5);  // open, vegetated, all, and each cover by its name
   const std::string table = test::read_bytes(out / "a/check_points.csv");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 33);
 }

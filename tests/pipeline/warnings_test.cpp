@@ -13,7 +13,7 @@ namespace {
 
 TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
   const core::Value report = io::parse_json(
-      R"({"pieces_damaged": 2, "control_unused": ["a.csv (use = \"control\")"], "stages": [{"type": "readers.las", "tally": {
+      R"json({"pieces_damaged": 2, "control_unused": ["a.csv (use = \"control\")"], "stages": [{"type": "readers.las", "tally": {
           "flight lines or files with points well outside the box of a header": {"count": 4, "examples": ["a.las: 4 of 100"]}}},
           {"type": "quality.points", "findings": {"named": [{"code": "check.heights", "sentence": "a"}, {"code": "check.line", "sentence": "b"},
                                                             {"code": "check.mark", "sentence": "c"}, {"code": "check.few", "sentence": "d"},
@@ -29,15 +29,15 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
                      {"name": "vva", "value": 1, "limit": 0.1, "held": false, "excess": 0.9},
                      {"name": "surface_difference", "value": 1, "limit": 0.1, "held": false, "excess": 0.9},
                      {"name": "quality_level", "value": 2, "limit": 0, "held": false, "excess": 2},
-                     {"name": "contradictions", "value": 1, "limit": 0, "held": false, "excess": 1}]})",
+                     {"name": "contradictions", "value": 1, "limit": 0, "held": false, "excess": 1}]})json",
       "report");
-std::set<std::string> codes;
-for (const Warning& w : warnings_in(report)) {
-  codes.insert(w.code);
-  EXPECT_FALSE(w.text.empty());
-  EXPECT_NE(warning_help(w.code).find(w.code + ": "), std::string::npos);
-}
-EXPECT_EQ(codes.size(), warning_kinds().size());
+  std::set<std::string> codes;
+  for (const Warning& w : warnings_in(report)) {
+    codes.insert(w.code);
+    EXPECT_FALSE(w.text.empty());
+    EXPECT_NE(warning_help(w.code).find(w.code + ": "), std::string::npos);
+  }
+  EXPECT_EQ(codes.size(), warning_kinds().size());
 }
 
 TEST(Warnings, AnUnknownCodeNamesTheNearest) {

@@ -99,6 +99,13 @@ TEST(MarkFaults, AllThreeAtOnce) {
         << seed;
 }
 
+TEST(MarkFaults, OfTwoMarksNoneIsNamed) {
+  Case c = drawn(3, [](int m, int) { return m == 5 ? 0.4 : 0.0; });
+  std::erase_if(c.readings, [](const MarkReading& r) { return r.mark != 5 && r.mark != 6; });
+  EXPECT_FALSE(c.readings.empty());
+  EXPECT_TRUE(codes(c).empty());
+}
+
 TEST(MarkFaults, OfOneLineAloneTheHeightsAreNamed) {
   Case c = drawn(3, [](int, int) { return 0.5; });
   std::erase_if(c.readings, [](const MarkReading& r) { return r.line != 1; });

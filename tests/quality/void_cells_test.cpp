@@ -59,6 +59,17 @@ TEST(VoidCells, ARegularPatternHasNone) {
   EXPECT_TRUE(find_voids(pattern([](double, double) { return false; }), window(s), s).empty());
 }
 
+/// Returns 2 m apart by a rule of 0.35 m: void is what is farther than 0.7 m from all of them, 1 - pi 0.7^2 / 4 of the area.
+TEST(VoidCells, FarTooSparsePointsLeaveTheSpaceBetweenThemVoid) {
+  core::Block b;
+  for (double x = 0.5; x < side; x += 2.0)
+    for (double y = 0.5; y < side; y += 2.0) b.x.push_back(x), b.y.push_back(y), b.z.push_back(0.0);
+  const PulseSpacing s{0.35, 2.0};
+  const core::Lattice inner = core::lattice_of(void_cell(s), 10.0, 10.0, 90.0, 90.0);
+  const double area = inner.nx * inner.ny * void_cell(s) * void_cell(s);
+  EXPECT_NEAR(area_of(find_voids(b, inner, s), s) / area, 1.0 - 3.14159 * 0.49 / 4.0, 0.03);  // cells of 0.09 m
+}
+
 /// A gap narrower than 4 ANPS holds no disc of radius 2 ANPS.
 TEST(VoidCells, NarrowGapsAreNone) {
   const PulseSpacing s{spacing, spacing};

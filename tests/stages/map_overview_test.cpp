@@ -38,6 +38,15 @@ TEST(MapOverview, IsTheWholeWhereItFits) {
   EXPECT_EQ(g.reason[g.lattice.at(99, 49)], core::Void::no_data);
 }
 
+TEST(MapOverview, EndsWhereNothingLies) {
+  TwoTiles t;
+  t.tiles = {{0, 0}};  // its southern half alone has heights
+  const core::Grid g = overview_of(t.context, t.folder.path(), t.tiles, 2.0);
+  EXPECT_EQ(g.lattice, (core::Lattice{2.0, 0, 0, 50, 26}));
+  EXPECT_EQ(g.count[g.lattice.at(49, 24)], 1u);
+  EXPECT_EQ(g.reason[g.lattice.at(49, 25)], core::Void::no_data);
+}
+
 TEST(MapOverview, IsAveragedWhereItDoesNot) {
   const TwoTiles t;
   const core::Grid g = overview_of(t.context, t.folder.path(), t.tiles, 2.0, 20);

@@ -47,9 +47,9 @@ double halo(const CheckPointOptions& o) { return o.radius.value; }
 
 struct CheckPointFindings {
   std::optional<std::string> none{};
-  std::uint64_t marks = 0;
+  std::uint64_t marks = 0, corners = 0;
   std::vector<std::string> outside{}, unread{};
-  std::optional<double> nva{}, vva{};
+  std::optional<double> nva{}, vva{}, vva_95{};
   std::vector<CoverAccuracy> accuracy{};
   std::optional<MapClassFound> map{};
   std::vector<quality::LineAtMarks> lines{};
@@ -61,10 +61,12 @@ void describe(const CheckPointFindings& r, V& v) {
   using core::metres;
   v.result("check_points", r.none, core::plain().in_summary(), "Why nothing was compared.");
   v.result("marks", r.marks, core::plain().only_if(!r.none), "Check points of the survey.");
+  v.result("corners", r.corners, core::if_any(), "Corners of targets among them, which are not compared: calib.adjust does that.");
   v.result("outside", r.outside, core::plain().only_if(!r.outside.empty()), "Check points where the survey has no points at all.");
   v.result("unread", r.unread, core::plain().only_if(!r.unread.empty()), "Check points without ground points around them.");
   v.result("nva_m", r.nva, metres().in_summary().limited_by("nva"), "RMSE of the ground points on open ground, check points' error added.");
-  v.result("vva_m", r.vva, metres().in_summary().limited_by("vva"), "95 % of the ground points' errors under vegetation are smaller.");
+  v.result("vva_m", r.vva, metres().in_summary().limited_by("vva"), "RMSE of the ground points under vegetation, the same way.");
+  v.result("vva_95_m", r.vva_95, metres(), "95 % of the ground points' absolute errors under vegetation are smaller.");
   v.tables("accuracy", r.accuracy, "Errors by product and cover.");
   v.table("map", r.map, "Class of a map made from the survey.");
   v.tables("lines", r.lines, "Flight lines against the check points that they show.");
@@ -73,6 +75,7 @@ void describe(const CheckPointFindings& r, V& v) {
 
 struct Marks {
   std::vector<quality::CheckMark> list;
+  std::uint64_t corners = 0;  ///< of targets: calib.adjust compares them
 };
 
 Marks marks_of(const Context& context) {
@@ -80,7 +83,11 @@ Marks marks_of(const Context& context) {
   core::Tally of_others;
   const core::Transform to_map(core::wgs84_ecef(), context.crs);
   for (const io::ControlPoint& p : io::read_control(context.survey, of_others)) {
-    if (p.use != io::ControlUse::check || !p.target.empty()) continue;
+    if (p.use != io::ControlUse::check) continue;
+    if (!p.target.empty()) {
+      ++out.corners;
+      continue;
+    }
     const Eigen::Vector3d map = to_map(p.ecef);
     out.list.push_back(
         {p.name, p.cover, p.place, {map.x() * context.unit, map.y() * context.unit, map.z() * context.vertical_unit}, p.sigma_v});
@@ -198,7 +205,8 @@ void name_records(const MergeJob& job, const Context& context, const Marks& mark
 void judge_accuracy(const Marks& marks, const std::vector<MarkFound>& at, const CheckPointOptions& o, CheckPointFindings& found) {
   found.accuracy = accuracy_of(marks.list, at, o.open);
   if (const CoverAccuracy* a = find_accuracy(found.accuracy, "points", open_cover)) found.nva = a->with_marks;
-  if (const CoverAccuracy* a = find_accuracy(found.accuracy, "points", vegetated_cover)) found.vva = a->errors.q95;
+  if (const CoverAccuracy* a = find_accuracy(found.accuracy, "points", vegetated_cover))
+    found.vva = a->with_marks, found.vva_95 = a->errors.q95;
   std::vector<double> sigmas;
   for (const MarkFound& m : at)
     if (m.sigma_h > 0.0) sigmas.push_back(m.sigma_h);
@@ -219,6 +227,7 @@ CheckPointFindings judge_points(const MergeJob& job, const Context& context, con
             [](const auto& a, const auto& b) { return std::pair(a.mark, a.line) < std::pair(b.mark, b.line); });
   const std::vector<MarkFound> at = found_at(job, context, marks, readings);
   found.marks = marks.list.size();
+  found.corners = marks.corners;
   name_records(job, context, marks, at, found);
   judge_accuracy(marks, at, o, found);
   quality::MarkFaults faults = quality::find_faults(marks.list, readings);

@@ -29,7 +29,7 @@ quality::MeasuredQuality measured_in(const QualityFacts& f) {
   m.intraswath = f.swath.known("hard_m");
   m.interswath = f.swath.known("overlap_rms_m");
   m.nva = f.points.known("nva_m");
-  m.vva = f.points.known("vva_m");
+  m.vva = f.points.known("vva_95_m");
   return m;
 }
 

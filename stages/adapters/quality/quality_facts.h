@@ -9,6 +9,7 @@
 
 #include "core/config/value.h"
 #include "quality/quality_level.h"
+#include "stages/adapters/quality/quality_sheet.h"
 #include "stages/stage.h"
 
 namespace swath::stages {
@@ -47,8 +48,8 @@ struct QualityFacts {
 /// Reads what the stages before have made.
 QualityFacts quality_facts(const Context& context, const quality::StatedLimits& stated);
 
-/// quality.html: one self-contained file.
-std::string quality_page(const QualityFacts& facts);
+/// quality.html, one self-contained file, and quality.pdf.
+QualitySheet quality_page(const QualityFacts& facts);
 
 /// ISO 19157-2 XML: DQ_DataQuality with a report for each measure, quantitative and conformance results.
 std::string quality_xml(const QualityFacts& facts);

@@ -2,11 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/text/output_file.h"
-#include "io/text/value_file.h"
-#include "report/chart.h"
 #include "report/html.h"
-#include "report/page.h"
 #include "stages/adapters/quality/quality_facts.h"
 
 namespace swath::stages {
@@ -43,25 +39,30 @@ report::Table figures(const std::string& caption, const std::vector<std::pair<st
   return t;
 }
 
-void add_map(report::Page& page, const std::filesystem::path& file, const std::string& caption) {
-  if (!file.empty()) page.figure_png(io::read_text_file(file), caption, file.filename().string());
+void add_map(QualitySheet& page, const std::filesystem::path& file, const std::string& caption) {
+  if (!file.empty()) page.map(file, caption);
 }
 
 /// Bins of equal width as columns.
-void add_histogram(report::Page& page, const Facts& from, const std::string& x_label, const std::string& caption) {
+void add_histogram(QualitySheet& page, const Facts& from, const std::string& x_label, const std::string& caption) {
   const std::vector<double> middles = from.numbers("bins_m"), cells = from.numbers("bin_cells");
   if (middles.size() < 3) return;
   double width = middles[1] - middles[0];
   for (size_t k = 2; k < middles.size(); ++k) width = std::min(width, middles[k] - middles[k - 1]);
   report::Series s;
   s.mark = report::Mark::band;
+  const auto add = [&s](double x, double y) {
+    s.x.push_back(100.0 * x);
+    s.y.push_back(y);
+    s.y2.push_back(0.0);
+  };
+  const double edge = 0.03 * width;  // steep, for a band has one height at each place
   for (size_t k = 0; k < middles.size(); ++k) {
-    const double left = 100.0 * (middles[k] - 0.5 * width), right = 100.0 * (middles[k] + 0.5 * width);
-    for (const auto& [x, y] : {std::pair(left, 0.0), {left, cells[k]}, {right, cells[k]}, {right, 0.0}}) {
-      s.x.push_back(x);
-      s.y.push_back(y);
-      s.y2.push_back(0.0);
-    }
+    const double left = middles[k] - 0.5 * width, right = middles[k] + 0.5 * width;
+    if (k == 0 || middles[k] - middles[k - 1] > 1.5 * width) add(left - edge, 0.0);
+    add(left + edge, cells[k]);
+    add(right - edge, cells[k]);
+    if (k + 1 == middles.size() || middles[k + 1] - middles[k] > 1.5 * width) add(right + edge, 0.0);
   }
   report::Panel panel;
   panel.x_label = x_label;
@@ -69,10 +70,10 @@ void add_histogram(report::Page& page, const Facts& from, const std::string& x_l
   panel.series = {s};
   report::Chart chart;
   chart.panels.push_back(panel);
-  page.figure_svg(report::svg(chart), caption);
+  page.chart(std::move(chart), caption);
 }
 
-void add_requirements(report::Page& page, const QualityFacts& f) {
+void add_requirements(QualitySheet& page, const QualityFacts& f) {
   if (f.requirements.empty()) return;
   page.section("Requirements");
   page.paragraph(f.level == "none"
@@ -95,7 +96,7 @@ void add_requirements(report::Page& page, const QualityFacts& f) {
   page.table(t);
 }
 
-void add_density(report::Page& page, const QualityFacts& f) {
+void add_density(QualitySheet& page, const QualityFacts& f) {
   if (!f.density.any()) return;
   page.section("Density of first returns");
   const auto text = [&](const char* key, int decimals) { return number_text(f.density.number(key), decimals); };
@@ -118,7 +119,7 @@ void add_density(report::Page& page, const QualityFacts& f) {
   add_map(page, f.density_map, "First returns per m2 of all lines.");
 }
 
-void add_voids(report::Page& page, const QualityFacts& f) {
+void add_voids(QualitySheet& page, const QualityFacts& f) {
   if (!f.swath.any()) return;
   page.section("Spatial distribution and voids");
   const auto text = [&](const char* key, int decimals, double scale = 1.0) { return number_text(scale * f.swath.number(key), decimals); };
@@ -143,7 +144,7 @@ void add_voids(report::Page& page, const QualityFacts& f) {
   add_map(page, f.distribution_map, "Share of cells of twice the pulse spacing with a first return; outlines of voids, water or not.");
 }
 
-void add_overlaps(report::Page& page, const QualityFacts& f) {
+void add_overlaps(QualitySheet& page, const QualityFacts& f) {
   if (!f.swath.any()) return;
   page.section("Flight lines against one another");
   const std::string cell = number_text(f.swath.number("cell_m"), 1);
@@ -183,7 +184,7 @@ void add_overlaps(report::Page& page, const QualityFacts& f) {
 }
 
 /// Differences at the check points, in the order of the file.
-void add_residuals(report::Page& page, const std::vector<Facts>& marks) {
+void add_residuals(QualitySheet& page, const std::vector<Facts>& marks) {
   if (marks.size() < 2) return;
   report::Series points{"ground points", {}, {}, {}, report::Mark::dots, -1}, model{"terrain model", {}, {}, {}, report::Mark::dots, -1},
       sigma{"sigma of the points", {}, {}, {}, report::Mark::band, -1};
@@ -205,10 +206,10 @@ void add_residuals(report::Page& page, const std::vector<Facts>& marks) {
   panel.series.push_back(model);
   report::Chart chart;
   chart.panels.push_back(panel);
-  page.figure_svg(report::svg(chart), "Differences at the check points.", "check_points.csv");
+  page.chart(std::move(chart), "Differences at the check points.", "check_points.csv");
 }
 
-void add_points(report::Page& page, const QualityFacts& f) {
+void add_points(QualitySheet& page, const QualityFacts& f) {
   if (!f.points.any()) return;
   page.section("Check points");
   std::vector<std::string> named;
@@ -262,7 +263,30 @@ void add_points(report::Page& page, const QualityFacts& f) {
                       map.list("intervals")));
 }
 
-void add_surface(report::Page& page, const QualityFacts& f) {
+/// Heights of both models along a line, and their difference.
+void add_profile(QualitySheet& page, const Facts& profile) {
+  const std::vector<double> along = profile.numbers("along_m"), model = profile.numbers("model_m"),
+                            reference = profile.numbers("reference_m");
+  report::Series of_model{"terrain model", along, model, {}, report::Mark::line, -1},
+      of_reference{"reference", along, reference, {}, report::Mark::line, -1}, difference{"", along, {}, {}, report::Mark::line, -1};
+  bool any = false;
+  for (size_t k = 0; k < along.size(); ++k) {
+    difference.y.push_back(100.0 * (model[k] - reference[k]));
+    any = any || std::isfinite(difference.y.back());
+  }
+  if (!any) return;
+  report::Chart chart;
+  chart.panels.resize(2);
+  for (report::Panel& panel : chart.panels) panel.x_label = "along the line (m)";
+  chart.panels[0].y_label = "height (m)";
+  chart.panels[0].series = {of_reference, of_model};
+  chart.panels[1].y_label = "model less reference (cm)";
+  chart.panels[1].y_share = 0.98;
+  chart.panels[1].series = {difference};
+  page.chart(std::move(chart), "Section " + profile.text("name") + ".", "surface_profiles.csv");
+}
+
+void add_surface(QualitySheet& page, const QualityFacts& f) {
   if (!f.surface.any()) return;
   page.section("Terrain model against the reference");
   page.paragraph("Reference: " + f.surface.text("reference") + "." +
@@ -282,9 +306,10 @@ void add_surface(report::Page& page, const QualityFacts& f) {
                       f.surface.list("classes")));
   add_histogram(page, f.surface, "terrain model less reference (cm)", "All differences; the outermost bins hold what lies beyond.");
   add_map(page, f.surface_map, "Terrain model less reference.");
+  for (const Facts& profile : f.surface.list("profiles")) add_profile(page, profile);
 }
 
-void add_verdict(report::Page& page, const QualityFacts& f) {
+void add_verdict(QualitySheet& page, const QualityFacts& f) {
   const size_t missed = f.missed(), judged = f.judged(), named = f.points.list("named").size();
   const std::string faults =
       named == 0 ? "" : " " + std::to_string(named) + (named == 1 ? " fault is" : " faults are") + " named at the check points.";
@@ -300,8 +325,8 @@ void add_verdict(report::Page& page, const QualityFacts& f) {
 
 }  // namespace
 
-std::string quality_page(const QualityFacts& f) {
-  report::Page page("Quality of " + f.survey, f.crs + (f.heights.empty() ? "" : "; heights: " + f.heights));
+QualitySheet quality_page(const QualityFacts& f) {
+  QualitySheet page("Quality of " + f.survey, f.crs + (f.heights.empty() ? "" : "; heights: " + f.heights));
   add_verdict(page, f);
   add_requirements(page, f);
   add_density(page, f);
@@ -313,7 +338,7 @@ std::string quality_page(const QualityFacts& f) {
     page.section("What is not shown");
     page.list(f.not_judged);
   }
-  return page.html();
+  return page;
 }
 
 }  // namespace swath::stages

@@ -35,7 +35,9 @@ void describe(const QualityReportFindings& r, V& v) {
 
 QualityReportFindings write_quality(const MergeJob&, const Context& context, const QualityReportOptions& o) {
   const QualityFacts facts = quality_facts(context, o.limits);
-  io::write_text_file(context.output / "quality.html", quality_page(facts));
+  const QualitySheet page = quality_page(facts);
+  io::write_text_file(context.output / "quality.html", page.html());
+  io::write_text_file(context.output / "quality.pdf", page.pdf());
   io::write_text_file(context.output / "quality.xml", quality_xml(facts));
   return {facts.level, facts.judged(), facts.missed(), facts.requirements, facts.not_judged};
 }
@@ -43,9 +45,10 @@ QualityReportFindings write_quality(const MergeJob&, const Context& context, con
 }  // namespace
 
 Entry quality_report_stage() {
-  return merge<write_quality>("report.quality", "What the quality stages found, judged by a quality level: quality.html and ISO 19157 XML.",
+  return merge<write_quality>("report.quality",
+                              "What the quality stages found, judged by a quality level: quality.html, quality.pdf and ISO 19157 XML.",
                               {.products = [](const QualityReportOptions&) {
-                                return std::vector<std::string>{"quality.html", "quality.xml"};
+                                return std::vector<std::string>{"quality.html", "quality.pdf", "quality.xml"};
                               }});
 }
 

@@ -72,8 +72,9 @@ std::vector<Measure> measures_in(const QualityFacts& f) {
       f.swath.known("overlap_rms_m"), "(interswath)");
   add(absolute, "non-vegetated vertical accuracy", "RMSE at open check points with their own error.", "m", f.points.known("nva_m"),
       "(NVA)");
-  add(absolute, "vegetated vertical accuracy", "95 % of the absolute errors at vegetated check points are smaller.", "m",
-      f.points.known("vva_m"), "(VVA)");
+  add(absolute, "vegetated vertical accuracy", "RMSE at vegetated check points with their own error.", "m", f.points.known("vva_m"));
+  add(absolute, "vegetated vertical accuracy, 95 %", "95 % of the absolute errors at vegetated check points are smaller.", "m",
+      f.points.known("vva_95_m"), "(VVA)");
   add(gridded, "difference from a reference model", "Terrain model less reference, rms.", "m", f.surface.known("rms_m"));
   return out;
 }

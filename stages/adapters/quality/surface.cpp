@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The terrain model less a reference, by slope and cover.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -10,7 +11,9 @@
 #include "io/text/value_file.h"
 #include "quality/surface_difference.h"
 #include "report/difference_map.h"
+#include "report/volumes.h"
 #include "stages/adapters/quality/quality_stages.h"
+#include "stages/adapters/quality/surface_profiles.h"
 #include "stages/map_overview.h"
 #include "stages/tile.h"
 #include "stages/tile_product.h"
@@ -22,14 +25,17 @@ using core::Column;
 namespace fs = std::filesystem;
 
 constexpr const char* difference_name = "surface_difference";
+constexpr const char* profiles_name = "surface_profiles";
 
 struct SurfaceOptions {
-  std::optional<fs::path> reference;
+  std::optional<fs::path> reference, profiles;
 };
 
 template <class V>
 void describe(SurfaceOptions& o, V& v) {
   v.option("reference", o.reference, "Terrain model to compare with, any north-up raster, relative to survey.toml; unset: no comparison.");
+  v.option("profiles", o.profiles, "Lines of sections, any vector file, relative to survey.toml; unset: two across the middle.");
+  v.check(o.reference || !o.profiles, "profiles need a reference");
 }
 
 struct SurfaceCounts {
@@ -78,6 +84,9 @@ void check_reference(const io::Survey& survey, const core::Crs& of_survey, const
   const fs::path file = reference_of(survey, o);
   if (!fs::exists(file))
     throw core::usage_error("no such file", file.string(), "check quality.surface.reference; it is relative to survey.toml");
+  if (o.profiles && !fs::exists(io::resolve(survey, *o.profiles)))
+    throw core::usage_error("no such file", io::resolve(survey, *o.profiles).string(),
+                            "check quality.surface.profiles; it is relative to survey.toml");
   const core::Crs crs = crs_of_reference(file);
   if (crs.empty() || of_survey.empty()) return;
   if (!is_same_map(crs, of_survey))
@@ -113,6 +122,33 @@ SurfaceCounts compare_tile(const TileJob& job, const Context& context, const In<
   return counts;
 }
 
+/// Sections along the stated lines, or across the middle of the survey.
+std::vector<SurfaceProfile> profiles_of(const MergeJob& job, const Context& context, const SurfaceOptions& o) {
+  Box box = context.box_of(job.tiles[0]);
+  for (const TileKey key : job.tiles) {
+    const Box b = context.box_of(key);
+    box = {std::min(box.x0, b.x0), std::min(box.y0, b.y0), std::max(box.x1, b.x1), std::max(box.y1, b.y1)};
+  }
+  const double cell = context.grids->cell(Product::dtm);
+  const HeightsAt model = [&](const std::vector<Eigen::Vector2d>& places, const Box& around) {
+    const core::Grid grid = context.grids->window(Product::dtm, core::lattice_of(cell, around.x0, around.y0, around.x1, around.y1));
+    std::vector<double> out;
+    for (const Eigen::Vector2d& p : places) out.push_back(report::sample(grid, p.x(), p.y()).height);
+    return out;
+  };
+  const HeightsAt reference = [&](const std::vector<Eigen::Vector2d>& places, const Box& around) {
+    const std::optional<io::HeightFile> file = io::find_heights(reference_of(context.survey, o), around);
+    std::vector<double> out;
+    for (const Eigen::Vector2d& p : places)
+      out.push_back(file && file->field.knows(p.x(), p.y()) ? file->field.height(p.x(), p.y()) : std::nan(""));
+    return out;
+  };
+  std::vector<SurfaceProfile> out;
+  for (const SectionLine& line : o.profiles ? section_lines(context, io::resolve(context.survey, *o.profiles)) : middle_lines(box))
+    out.push_back(profile_along(line, cell, model, reference));
+  return out;
+}
+
 SurfaceFindings judge_surfaces(const MergeJob& job, const Context& context, const SurfaceOptions& o) {
   SurfaceFindings found;
   if (!o.reference) {
@@ -131,8 +167,13 @@ SurfaceFindings judge_surfaces(const MergeJob& job, const Context& context, cons
   if (crs.empty() || crs.heights() == core::Heights::unknown)
     found.heights = "the reference does not state what its heights count from: taken as " + context.heights;
   found.rms = found.found.classes[0].errors.rms;
+  core::Value all = core::reported(found);
+  core::Value& sections = all["profiles"] = core::Value::array();
+  const std::vector<SurfaceProfile> profiles = profiles_of(job, context, o);
+  for (const SurfaceProfile& p : profiles) sections.push(core::reported(p));
+  write_profiles(context, profiles_name, profiles);
   TileRasters{context, difference_name}.finish(job.tiles);
-  io::write_text_file(context.output / "surface.json", io::to_json(core::reported(found)));
+  io::write_text_file(context.output / "surface.json", io::to_json(all));
   report::DifferenceMapOptions look;
   look.title = "Terrain model less reference";
   const double cell = context.grids->cell(Product::dtm);
@@ -148,7 +189,10 @@ class SurfaceStage : public SurfaceWork {
  public:
   using SurfaceWork::SurfaceWork;
   std::vector<fs::path> inputs(const io::Survey& survey) const override {
-    return options.reference ? std::vector<fs::path>{reference_of(survey, options)} : std::vector<fs::path>{};
+    std::vector<fs::path> out;
+    if (options.reference) out.push_back(reference_of(survey, options));
+    if (options.reference && options.profiles) out.push_back(io::resolve(survey, *options.profiles));
+    return out;
   }
 };
 
@@ -167,7 +211,7 @@ Entry surface_stage() {
       .products =
           [](const SurfaceOptions&) {
             const std::string name = difference_name;
-            return std::vector<std::string>{"surface.json", name, name + ".vrt", name + ".png"};
+            return std::vector<std::string>{"surface.json", name, name + ".vrt", name + ".png", std::string(profiles_name) + ".csv"};
           }};
   constexpr std::string_view name = "quality.surface";
   return {name, [=] {

@@ -75,12 +75,13 @@ SwathRule rule_of(const Context& context, const SwathOptions& o) {
     return v && v->is_number() ? v->as_number() : 0.0;
   };
   SwathRule rule;
-  rule.spacing.actual = number("spacing_m");
+  // Of the median cell: where lines overlap here and there their mean is closer than the returns beside a void.
+  rule.spacing.actual = number("density_50") > 0.0 ? 1.0 / std::sqrt(number("density_50")) : number("spacing_m");
   if (!(rule.spacing.actual > 0.0)) throw core::Error("no first return is among the points", "quality.swath", "are the points numbered?");
   rule.spacing.rule = stated_spacing(o);
   rule.from = o.anps ? "stated" : rule.spacing.rule > 0.0 ? "quality level" : "measured";
   if (rule.spacing.rule == 0.0) {
-    rule.spacing.rule = rule.spacing.actual;
+    rule.spacing.rule = number("spacing_m");
     if (rule.spacing.rule > widest_measured)
       throw core::Error(
           "the first returns lie " + core::format_number(std::round(10.0 * rule.spacing.rule) / 10.0) + " m apart, farther than 3 m",
