@@ -17,12 +17,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double parallel = 0.07;    // rad: conductors of one span
-constexpr double level_with = 30.0;  // m: and in height
-constexpr double overlap = 0.6;      // of the shorter strand
-constexpr double arms = 15.0;        // m: wires of one support lie within, across
-constexpr double line_share = 0.1;   // of a wire's returns: flight lines with less say little of heights
-constexpr double at_support = 6.0;   // m along: meetings and returns of one support
+constexpr double parallel = 0.07;      // rad: conductors of one span
+constexpr double level_with = 30.0;    // m: and in height
+constexpr double overlap = 0.6;        // of the shorter strand
+constexpr double arms = 15.0;          // m: wires of one support lie within, across
+constexpr double line_share = 0.1;     // of a wire's returns: flight lines with less say little of heights
+constexpr double carries_near = 10.0;  // m in plan: wires that returns of a support must reach up to,
+constexpr double carries_below = 4.0;  // m below the lowest of them at most
+constexpr double at_support = 6.0;     // m along: meetings and returns of one support
 
 class Groups {  // union-find
  public:
@@ -50,6 +52,14 @@ bool are_of_one_span(const Strand& a, const Strand& b, double widest) {
   const Vector2d middle = b.line.at(0.5 * (b.first + b.last));
   return std::abs(a.line.v(middle)) <= widest &&
          std::abs(a.fit.curve.z(a.line.s(middle)) - b.fit.curve.z(0.5 * (b.first + b.last))) <= level_with;
+}
+
+/// Returns that end far below the wires above them are of something else, a bush or a tree.
+bool may_carry(const TowerGroup& t, const std::vector<WirePoint>& wires) {
+  double lowest = 1e300;
+  for (const WirePoint& w : wires)
+    if ((Vector2d(w.x, w.y) - t.at).norm() <= carries_near) lowest = std::min(lowest, w.z);
+  return lowest > 1e299 || t.top >= lowest - carries_below;
 }
 
 class Builder {
@@ -322,7 +332,8 @@ class Builder {
 }  // namespace
 
 PowerLines find_power_lines(const std::vector<WirePoint>& wires, const std::vector<TowerPoint>& towers, const SpanOptions& o) {
-  const std::vector<TowerGroup> groups = tower_groups(towers);
+  std::vector<TowerGroup> groups = tower_groups(towers);
+  std::erase_if(groups, [&](const TowerGroup& t) { return !may_carry(t, wires); });
   std::vector<Vector2d> supports;
   for (const TowerGroup& t : groups) supports.push_back(t.at);
   return Builder(find_strands(wires, supports, o.strands), groups, o).run();

@@ -106,6 +106,21 @@ TEST(Spans, LongSpansOfBundlesAndThinReturnsHaveThem) {
   }
 }
 
+TEST(Spans, ReturnsOfTowersFarBelowTheWiresAreNoSupport) {
+  const test::PowerLineScene s = test::make_power_line({});
+  std::vector<WirePoint> wires;
+  for (size_t p = 0; p < s.block.size(); ++p)
+    if (s.truth[p] == core::point_class::wire) wires.push_back({s.block.x[p], s.block.y[p], s.block.z[p], s.block.strip[p]});
+  const Eigen::Vector2d middle = 0.5 * (s.pylons[1] + s.pylons[2]);
+  const auto spans_with_top = [&](double height) {
+    std::vector<TowerPoint> bush;
+    for (int k = 0; k < 6; ++k) bush.push_back({middle.x(), middle.y(), s.terrain(middle.x(), middle.y()) + height * k / 5.0});
+    return find_power_lines(wires, bush).spans.size();
+  };
+  EXPECT_EQ(spans_with_top(5.0), 3u);
+  EXPECT_EQ(spans_with_top(20.0), 4u);  // a pole that holds them up there
+}
+
 TEST(Spans, ConductorsOfASpanAreNumberedFromLeftToRight) {
   const test::PowerLineScene s = test::make_power_line({});
   const PowerLines lines = lines_of(s, true);
