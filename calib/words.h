@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sentences by printf() formats. fmt was weighed: it checks its formats, but is one more library to find and to ship.
 #pragma once
 
 #include <cstdio>

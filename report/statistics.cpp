@@ -4,22 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/distributions.h"
 #include "core/statistics.h"
 
 namespace swath::report {
 namespace {
 
 constexpr double p68 = 0.6827, p95 = 0.95;
-
-// Reorders v.
-double quantile_of(std::vector<double>& v, double p) {
-  const double at = p * static_cast<double>(v.size() - 1);
-  const auto k = static_cast<std::ptrdiff_t>(at);
-  std::nth_element(v.begin(), v.begin() + k, v.end());
-  const double low = v[k];
-  if (static_cast<size_t>(k) + 1 == v.size()) return low;
-  return low + (at - static_cast<double>(k)) * (*std::min_element(v.begin() + k + 1, v.end()) - low);
-}
 
 }  // namespace
 
@@ -43,13 +34,13 @@ Statistics statistics(std::vector<double> errors) {
   s.maximum = *high;
   s.max_abs = std::max(std::abs(s.minimum), std::abs(s.maximum));
 
-  s.median = quantile_of(errors, 0.5);
+  s.median = core::interpolated_quantile(errors, 0.5);
   std::vector<double> deviations(errors.size());
   std::transform(errors.begin(), errors.end(), deviations.begin(), [&](double e) { return std::abs(e - s.median); });
-  s.nmad = core::mad_to_sigma * quantile_of(deviations, 0.5);
+  s.nmad = core::mad_to_sigma * core::interpolated_quantile(deviations, 0.5);
   for (double& e : errors) e = std::abs(e);
-  s.q68 = quantile_of(errors, p68);
-  s.q95 = quantile_of(errors, p95);
+  s.q68 = core::interpolated_quantile(errors, p68);
+  s.q95 = core::interpolated_quantile(errors, p95);
   return s;
 }
 

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <set>
 
+#include "core/distributions.h"
+
 namespace swath::calib {
 
 using Eigen::MatrixXd;
@@ -103,7 +105,7 @@ std::vector<std::vector<size_t>> groups_by_region(const TieSet& ties, const TieS
 double enlargement(double ratio, double freedom, double significance) {
   if (!(freedom > 0.0)) return 1.0;
   const double f = std::max(1.0, freedom);
-  return std::max(1.0, ratio / std::sqrt(chi_square_quantile(1.0 - significance, f) / f));
+  return std::max(1.0, ratio / std::sqrt(core::chi_square_quantile(1.0 - significance, f) / f));
 }
 
 }  // namespace swath::calib

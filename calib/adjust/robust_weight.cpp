@@ -3,7 +3,6 @@
 // reduced, none). Robust scale: 1.4826 times the median of absolute deviations.
 #include "calib/adjust/robust_weight.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace swath::calib {
@@ -19,21 +18,6 @@ RobustWeight::RobustWeight(double full, double zero) : full_(full), zero_(zero),
     sum += value * (i == 0 || i == steps ? 1.0 : i % 2 ? 4.0 : 2.0);
   }
   consistency_ = 2.0 * sum * h / 3.0 / std::sqrt(2.0 * 3.14159265358979323846);
-}
-
-double normal_quantile(double p) {
-  double low = -40.0, high = 40.0;
-  for (int i = 0; i < 100; ++i) {
-    const double middle = 0.5 * (low + high);
-    (0.5 * std::erfc(-middle / std::sqrt(2.0)) < p ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
-double chi_square_quantile(double p, double f) {
-  const double a = 2.0 / (9.0 * f);
-  const double root = std::max(0.0, 1.0 - a + normal_quantile(p) * std::sqrt(a));
-  return f * root * root * root;
 }
 
 }  // namespace swath::calib

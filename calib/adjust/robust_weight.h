@@ -22,9 +22,4 @@ class RobustWeight {
   double full_, zero_, consistency_;
 };
 
-/// z with P(Z <= z) = p for the normal distribution; p in (0, 1).
-double normal_quantile(double p);
-/// Of chi-square with f > 0 degrees of freedom (Wilson & Hilferty 1931; within 1 % from f = 2 on at p = 0.9 to 0.999).
-double chi_square_quantile(double p, double f);
-
 }  // namespace swath::calib

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/distributions.h"
+
 namespace swath::calib {
 namespace {
 
@@ -84,7 +86,7 @@ int reject_worst(const TieSystem& system, const TieTests& tests, const SnoopingO
     bool control;
   };
   std::vector<Candidate> candidates;
-  const double critical = normal_quantile(1.0 - 0.5 * o.alpha);
+  const double critical = core::normal_quantile(1.0 - 0.5 * o.alpha);
   for (std::uint32_t k = 0; k < system.planes(); ++k) {
     const auto [first, last] = system.groups_of(k);
     for (size_t g = first; g < last; ++g)

@@ -11,6 +11,7 @@
 #include "calib/hangar/refusals.h"
 #include "calib/words.h"
 #include "core/config/units.h"
+#include "core/distributions.h"
 #include "core/error.h"
 
 namespace swath::calib {
@@ -311,10 +312,8 @@ class Solver {
 double LeverArm::sigma() const { return std::sqrt(covariance.diagonal().maxCoeff()); }
 
 bool scatter_too_large(double factor, int redundancy) {
-  constexpr double one_in_thousand = 3.09;
-  if (redundancy <= 0) return false;
-  const double k = 2.0 / (9.0 * redundancy);
-  return factor > std::pow(1 - k + one_in_thousand * std::sqrt(k), 3);
+  constexpr double one_in_thousand = 1e-3;
+  return redundancy > 0 && factor * redundancy > core::chi_square_limit(one_in_thousand, redundancy);
 }
 
 HangarResult solve_hangar(const io::HangarSurvey& hangar, bool hold_stations) { return Solver(hangar, hold_stations).run(); }

@@ -68,7 +68,7 @@ struct HangarResult {
 /// where a station, a point or the heading is not determined, with what is missing.
 HangarResult solve_hangar(const io::HangarSurvey& hangar, bool hold_stations);
 
-/// Does a variance factor speak against the stated sigmas, at one in a thousand (Wilson and Hilferty's form of chi-square)?
+/// Does a variance factor speak against the stated sigmas, at one in a thousand of chi-square?
 bool scatter_too_large(double variance_factor, int redundancy);
 
 /// The lines for survey.toml.

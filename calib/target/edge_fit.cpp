@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The posterior is computed on a grid of offsets and slopes that is narrowed until it is finer than the blur; on the coarse grids the blur
 // is widened to the grid's step, so that no peak is missed between its nodes. Means and covariances of the last grid.
+// Ceres was weighed: the likelihood of pulses on either side of an edge has steps and several peaks, and its mean and spread are wanted.
 #include "calib/target/edge_fit.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parameters that are held and yet uncertain are "considered" (Schmidt, "Application of state-space methods to navigation problems", 1966):
 // covariance = that of the others + G diag(their variances) G^T with G the others' change with them.
+// Ceres was weighed: the model is linear, and what is not observable must be held one parameter at a time, which its solver does not offer.
 #include "calib/ties/shift_fit.h"
 
 #include <Eigen/Cholesky>

@@ -4,7 +4,9 @@
 
 #include <rapidjson/error/en.h>
 #include <rapidjson/memorystream.h>
+#include <rapidjson/prettywriter.h>
 #include <rapidjson/reader.h>
+#include <rapidjson/stringbuffer.h>
 
 #include <toml++/toml.h>
 #include <algorithm>
@@ -147,60 +149,42 @@ class TreeBuilder {
   std::vector<Value*> open_;
 };
 
-void quote(const std::string& text, std::string& out) {
+using JsonWriter = rapidjson::PrettyWriter<rapidjson::StringBuffer>;
+
+void write_text(const std::string& text, JsonWriter& out) {
   const bool plain = std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
   const std::string s = plain ? text : core::utf8(text);  // JSON is UTF-8
-  static const char* digits = "0123456789abcdef";
-  out += '"';
-  for (const char c : s) {
-    const auto u = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\')
-      (out += '\\') += c;
-    else if (c == '\n')
-      out += "\\n";
-    else if (c == '\t')
-      out += "\\t";
-    else if (u < 0x20)
-      ((out += "\\u00") += digits[u >> 4]) += digits[u & 15];
-    else
-      out += c;
-  }
-  out += '"';
+  out.String(s.data(), static_cast<rapidjson::SizeType>(s.size()));
 }
 
-void write(const Value& v, int depth, std::string& out) {
-  const auto line = [&](int d) { (out += '\n').append(static_cast<size_t>(2 * d), ' '); };
+/// Numbers as the program prints them everywhere; a list of single values takes one line.
+void write(const Value& v, JsonWriter& out) {
+  const auto raw = [&](const std::string& number) { out.RawValue(number.data(), number.size(), rapidjson::kNumberType); };
   if (v.is_null())
-    out += "null";
+    out.Null();
   else if (v.is_bool())
-    out += v.as_bool() ? "true" : "false";
+    out.Bool(v.as_bool());
   else if (v.is_int())
-    out += std::to_string(v.as_int());
+    out.Int64(v.as_int());
   else if (v.is_number())
-    out += std::isfinite(v.as_number()) ? core::format_number(v.as_number()) : "null";
+    std::isfinite(v.as_number()) ? raw(core::format_number(v.as_number())) : static_cast<void>(out.Null());
   else if (v.is_text())
-    quote(v.as_text(), out);
+    write_text(v.as_text(), out);
   else if (v.is_array()) {
-    out += '[';
     const bool flat = std::all_of(v.items().begin(), v.items().end(), [](const Value& i) { return !i.is_array() && !i.is_object(); });
-    for (size_t i = 0; i < v.items().size(); ++i) {
-      if (i) out += flat ? ", " : ",";
-      if (!flat) line(depth + 1);
-      write(v.items()[i], depth + 1, out);
-    }
-    if (!flat) line(depth);
-    out += ']';
+    out.SetFormatOptions(flat ? rapidjson::kFormatSingleLineArray : rapidjson::kFormatDefault);
+    out.StartArray();
+    for (const Value& item : v.items()) write(item, out);
+    out.SetFormatOptions(flat ? rapidjson::kFormatSingleLineArray : rapidjson::kFormatDefault);
+    out.EndArray();
+    out.SetFormatOptions(rapidjson::kFormatDefault);
   } else {
-    out += '{';
-    for (size_t i = 0; i < v.members().size(); ++i) {
-      if (i) out += ',';
-      line(depth + 1);
-      quote(v.members()[i].first, out);
-      out += ": ";
-      write(v.members()[i].second, depth + 1, out);
+    out.StartObject();
+    for (const auto& [key, member] : v.members()) {
+      write_text(key, out);
+      write(member, out);
     }
-    if (!v.members().empty()) line(depth);
-    out += '}';
+    out.EndObject();
   }
 }
 
@@ -271,9 +255,11 @@ core::Value read_value_file(const std::filesystem::path& file) {
 }
 
 std::string to_json(const core::Value& v) {
-  std::string out;
-  write(v, 0, out);
-  return out += '\n';
+  rapidjson::StringBuffer text;
+  JsonWriter out(text);
+  out.SetIndent(' ', 2);
+  write(v, out);
+  return std::string(text.GetString(), text.GetSize()) + '\n';
 }
 
 }  // namespace swath::io

@@ -10,6 +10,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "core/distributions.h"
 #include "terrain/water/area.h"
 #include "terrain/water/river.h"
 
@@ -19,13 +20,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double own_tolerance = 0.01;  // m: own heights that differ by more from the surface made of them are counted
-
-double quantile_of(const std::vector<double>& sorted, double q) {
-  const double at = q * static_cast<double>(sorted.size() - 1);
-  const auto low = static_cast<size_t>(at);
-  const size_t high = std::min(low + 1, sorted.size() - 1);
-  return sorted[low] + (at - static_cast<double>(low)) * (sorted[high] - sorted[low]);
-}
 
 /// The vertices of an outer ring by cells, for the nearest one.
 class Shoreline {
@@ -75,8 +69,9 @@ std::pair<double, double> level_of(const std::vector<ShorePoint>& shores, double
   }
   std::sort(z.begin(), z.end());
   std::sort(sigma.begin(), sigma.end());
-  const double own = sigma.empty() ? 0.0 : quantile_of(sigma, 0.5);
-  return {quantile_of(z, q), std::hypot(own, 0.5 * (quantile_of(z, std::min(0.5, 2.0 * q)) - quantile_of(z, 0.5 * q)))};
+  const double own = sigma.empty() ? 0.0 : core::interpolated_quantile(sigma, 0.5);
+  return {core::interpolated_quantile(z, q),
+          std::hypot(own, 0.5 * (core::interpolated_quantile(z, std::min(0.5, 2.0 * q)) - core::interpolated_quantile(z, 0.5 * q)))};
 }
 
 /// Heights of islands' vertices: those of the nearest vertex of the outline.
@@ -172,9 +167,8 @@ core::Breakline with_heights(const core::Breakline& water, std::vector<ShorePoin
     if (water.has_height) {
       std::vector<double> z;
       for (const Vector3d& v : water.parts.front()) z.push_back(v.z());
-      std::sort(z.begin(), z.end());
-      level = quantile_of(z, 0.5);
-      if (z.back() - z.front() > own_tolerance)
+      level = core::interpolated_quantile(z, 0.5);
+      if (const auto [low, high] = std::minmax_element(z.begin(), z.end()); *high - *low > own_tolerance)
         tally.count("lakes whose vertices differ in height: their median is the level", water.place);
     } else {
       std::tie(level, out.sigma) = level_of(shores, o.quantile);

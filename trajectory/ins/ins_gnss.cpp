@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/distributions.h"
 #include "core/error.h"
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
@@ -39,18 +40,6 @@ constexpr double most_roughness = 64;
 constexpr double first_gate = 1e5;  // NIS in the first pass, whose start may be degrees off
 
 std::string seconds(double t) { return core::format_number(std::round(t * 1000) / 1000); }
-
-/// NIS of 3 degrees of freedom that is exceeded with the given probability: Wilson and Hilferty, within 1 % below 1e-2.
-double gate_of(double probability) {
-  // Normal quantile by bisection of erfc.
-  double low = 0, high = 40;
-  for (int i = 0; i < 200; ++i) {
-    const double mid = 0.5 * (low + high);
-    (0.5 * std::erfc(mid / std::sqrt(2.0)) > probability ? low : high) = mid;
-  }
-  const double c = 2.0 / 27.0, root = 1 - c + low * std::sqrt(c);
-  return 3 * root * root * root;
-}
 
 /// An IMU whose numbers cannot be those of a survey: units or axes.
 void require_plausible(const core::ImuData& imu) {
@@ -263,7 +252,7 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
   problem.gate = first_gate;
   const auto from_scratch = [&] { return InsFilter(problem, start.estimate, StateVector::Zero(layout.size), start.covariance, nullptr); };
   SmootherRun run = first_run(problem, from_scratch);
-  problem.gate = gate_of(options.outlier_probability);
+  problem.gate = core::chi_square_limit(options.outlier_probability, 3.0);  // the NIS of a position
   std::vector<Estimate> reference(nodes.size());
   const auto about = [&](const SmoothedNode& at) {
     const bool attitude = start.attitude_given && &at == &run.nodes.front();  // what is given is that of the beginning

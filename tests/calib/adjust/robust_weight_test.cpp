@@ -33,15 +33,5 @@ TEST(RobustWeight, SumsOfNormalDeviatesGiveTheirVariance) {
   EXPECT_NEAR(RobustWeight(20.0, 30.0).consistency(), 1.0, 1e-6);
 }
 
-TEST(RobustWeight, Quantiles) {
-  EXPECT_NEAR(normal_quantile(0.9995), 3.290527, 1e-6);
-  EXPECT_NEAR(normal_quantile(0.5), 0.0, 1e-12);
-  EXPECT_NEAR(normal_quantile(0.025), -1.959964, 1e-6);
-  // From tables.
-  EXPECT_NEAR(chi_square_quantile(0.99, 7.0), 18.475, 0.1);
-  EXPECT_NEAR(chi_square_quantile(0.99, 24.0), 42.980, 0.1);
-  EXPECT_NEAR(chi_square_quantile(0.99, 2.0), 9.210, 0.1);
-}
-
 }  // namespace
 }  // namespace swath::calib
