@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/wide.h"
 
@@ -29,6 +30,15 @@ SWATH_WIDE Extent extent_of(const double* v, size_t n) {
   return e;
 }
 
+/// The cells that hold a box in the block and `around` about it, and `border` more.
+core::Lattice lattice_of(const core::Block& b, Extent x, Extent y, double cell, double around, int border) {
+  const std::int64_t i0 = core::cell_index(b.origin.x() + x.low - around, cell) - border;
+  const std::int64_t j0 = core::cell_index(b.origin.y() + y.low - around, cell) - border;
+  const std::int64_t i1 = core::cell_index(b.origin.x() + x.high + around, cell) + border;
+  const std::int64_t j1 = core::cell_index(b.origin.y() + y.high + around, cell) + border;
+  return {cell, i0, j0, static_cast<int>(i1 - i0) + 1, static_cast<int>(j1 - j0) + 1};
+}
+
 SWATH_WIDE void cells_of(const double* v, double origin, double cell, double first, std::int32_t* out, size_t n) {
   for (size_t k = 0; k < n; ++k) out[k] = static_cast<std::int32_t>(std::floor((origin + v[k]) / cell) - first);
 }
@@ -46,13 +56,18 @@ core::Lattice lattice_around(const core::Block& b, double cell, int border) {
 }
 
 core::Lattice lattice_around(const core::Block& b, size_t own, double cell, double around, int border) {
-  const auto [west, east] = extent_of(b.x.data(), own);
-  const auto [south, north] = extent_of(b.y.data(), own);
-  const std::int64_t i0 = core::cell_index(b.origin.x() + west - around, cell) - border;
-  const std::int64_t j0 = core::cell_index(b.origin.y() + south - around, cell) - border;
-  const std::int64_t i1 = core::cell_index(b.origin.x() + east + around, cell) + border;
-  const std::int64_t j1 = core::cell_index(b.origin.y() + north + around, cell) + border;
-  return {cell, i0, j0, static_cast<int>(i1 - i0) + 1, static_cast<int>(j1 - j0) + 1};
+  return lattice_of(b, extent_of(b.x.data(), own), extent_of(b.y.data(), own), cell, around, border);
+}
+
+core::Lattice lattice_around(const core::Block& b, const std::vector<std::uint8_t>& taken, double cell, int border) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  Extent x{none, -none}, y = x;
+  for (size_t p = 0; p < b.size(); ++p) {
+    if (!taken[p]) continue;
+    x = {std::min(x.low, b.x[p]), std::max(x.high, b.x[p])};
+    y = {std::min(y.low, b.y[p]), std::max(y.high, b.y[p])};
+  }
+  return x.low > x.high ? core::Lattice{cell, 0, 0, 0, 0} : lattice_of(b, x, y, cell, 0.0, border);
 }
 
 OwnBox::OwnBox(const core::Block& b, size_t own, double around) : origin_(b.origin), west_(1), east_(0), south_(1), north_(0) {

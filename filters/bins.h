@@ -17,6 +17,8 @@ namespace swath::filters {
 core::Lattice lattice_around(const core::Block& b, double cell, int border);
 /// The same for the first `own` points and `around` (CRS units) about them; there must be one.
 core::Lattice lattice_around(const core::Block& b, size_t own, double cell, double around, int border);
+/// The same for the points with `taken`.
+core::Lattice lattice_around(const core::Block& b, const std::vector<std::uint8_t>& taken, double cell, int border);
 
 /// Column and row of point p in the lattice.
 struct CellIndex {

@@ -70,7 +70,7 @@ class Decks {
       for (int k = 0; k <= reach_; ++k) ahead_[static_cast<size_t>(d)].push_back(ahead(d, k));
   }
 
-  std::vector<std::uint8_t> find() const {
+  std::vector<std::uint8_t> find(const OwnBox& begun) const {
     const core::Lattice& l = cells_.lattice;
     const std::vector<std::uint8_t> may = near_ground_level();
     std::vector<std::uint8_t> deck(l.size(), 0);
@@ -80,7 +80,9 @@ class Decks {
         const auto may_be = [&](int u, int v) { return l.holds(u, v) && may[l.at(u, v)] != 0 && cells_.kind[l.at(u, v)] == Planar::wide; };
         // One cell in each square of 2 x 2 is judged, the first that may be a deck.
         const int west = is_second(l.i0 + i) ? i - 1 : i, south = is_second(l.j0 + j) ? j - 1 : j;
-        if (!may_be(i, j) || (i > west && may_be(west, j)) || (j > south && (may_be(west, south) || may_be(west + 1, south)))) continue;
+        if (!begun.touches(l, i, j) || !may_be(i, j) || (i > west && may_be(west, j)) ||
+            (j > south && (may_be(west, south) || may_be(west + 1, south))))
+          continue;
         deck[l.at(i, j)] = !is_seen_through(i, j) && is_deck(i, j);
       }
     spread(
@@ -217,8 +219,12 @@ class Decks {
 
 }  // namespace
 
-double deck_cells_halo(double longest) { return longest + (deck_growth * structure_link + 3) * structure_cell; }
+double deck_spread() { return (deck_growth * structure_link + 1) * structure_cell; }
 
-std::vector<std::uint8_t> deck_cells(const StructureCells& cells, const BridgeLimits& limits) { return Decks(cells, limits).find(); }
+double deck_cells_halo(double longest) { return deck_spread() + longest + 2 * structure_cell; }
+
+std::vector<std::uint8_t> deck_cells(const StructureCells& cells, const BridgeLimits& limits, const OwnBox& begun) {
+  return Decks(cells, limits).find(begun);
+}
 
 }  // namespace swath::filters

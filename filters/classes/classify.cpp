@@ -46,13 +46,15 @@ bool is_isolated(const core::Block& b, size_t p) {
          !(b.flags[p] & core::flag::withheld);
 }
 
+/// Metres of decks around a tile that its classes depend on.
+double roofs_reach(const ClassifyOptions& o) { return roof_cells_halo(o.building_side.value) + building_sides_halo() + crowns_halo(); }
+
 double wide_area(const ClassifyOptions& o) { return std::min(o.building_side.value * o.building_side.value, widest_needed); }
 
 /// Metres of points around a tile that the planes and what follows from them depend on.
 double planes_halo(const ClassifyOptions& o) {
   const double decks = o.bridge_length.value > 0.0 ? deck_cells_halo(o.bridge_length.value) : 0.0;
-  const double structures = decks + roof_cells_halo(o.building_side.value) + building_sides_halo() + crowns_halo();
-  return planar_points_halo() + std::max({structures, wire_points_halo(), tower_points_halo()});
+  return planar_points_halo() + std::max({decks + roofs_reach(o), wire_points_halo(), tower_points_halo()});
 }
 
 std::uint8_t vegetation(float height, const ClassifyOptions& o) {
@@ -64,11 +66,10 @@ std::uint8_t vegetation(float height, const ClassifyOptions& o) {
 /// Returns that lie deep below ground returns among which they are scattered: echoes on detours. In a pit there is no ground beside them.
 class Below {
  public:
-  Below(const core::Block& b, const Districts& where)
-      : block_(b),
-        where_(where),
-        last_(b, below_reach, 0, [&b, any = any_deep(b)](size_t p) { return any && core::is_usable(b, p) && core::is_last_return(b, p); }) {
-  }
+  Below(const core::Block& b, size_t own, const Districts& where)
+      : block_(b), where_(where), last_(b, below_reach, 0, [&b, any = any_deep(b, own), near = OwnBox(b, own, below_reach)](size_t p) {
+          return any && core::is_usable(b, p) && core::is_last_return(b, p) && near.holds(b, p);
+        }) {}
 
   bool is_noise(size_t p) const {
     if (!(block_.height[p] <= -below_ground)) return false;
@@ -91,8 +92,8 @@ class Below {
   }
 
  private:
-  static bool any_deep(const core::Block& b) {
-    return std::any_of(b.height.begin(), b.height.end(), [](float h) { return h <= -below_ground; });
+  static bool any_deep(const core::Block& b, size_t own) {
+    return std::any_of(b.height.begin(), b.height.begin() + static_cast<std::ptrdiff_t>(own), [](float h) { return h <= -below_ground; });
   }
 
   const core::Block& block_;
@@ -104,8 +105,8 @@ class Below {
 class Structures {
  public:
   Structures(const core::Block& b, size_t own, const ClassifyOptions& o)
-      : block_(b), options_(o), where_(districts(b)), available_(b.size(), 0), raised_(b.size(), 0), below_(b, where_) {
-    const OwnBox needed(b, own, planes_halo(o) - Districts::halo());
+      : block_(b), options_(o), where_(districts(b)), available_(b.size(), 0), raised_(b.size(), 0), below_(b, own, where_) {
+    const OwnBox needed(b, own, planes_reach());
     for (size_t p = 0; p < b.size(); ++p) {
       available_[p] = is_free(b, p) && needed.holds(b, p);
       raised_[p] = available_[p] && b.height[p] >= least_plane_height;
@@ -145,13 +146,25 @@ class Structures {
   bool is_on_roof(size_t p) const { return static_cast<float>(block_.z[p]) - roofs_[cell(p)] <= above_roof; }  // NaN: no roof
   bool is_surface(size_t p) const { return raised_[p] && planar_[p] != Planar::none; }
 
+  /// m around the own points in which planes are looked for.
+  double planes_reach() const { return planes_halo(options_) - Districts::halo(); }
+  /// Of the block's cells those within that.
+  core::Lattice needed_cells(size_t own) const {
+    core::Lattice l = lattice_around(block_, structure_cell, 0);
+    if (own == 0) return l;
+    const core::Lattice near = lattice_around(block_, own, structure_cell, planes_reach(), 0);
+    const std::int64_t i0 = std::max(l.i0, near.i0), i1 = std::min(l.i0 + l.nx, near.i0 + near.nx);
+    const std::int64_t j0 = std::max(l.j0, near.j0), j1 = std::min(l.j0 + l.ny, near.j0 + near.ny);
+    return {structure_cell, i0, j0, static_cast<int>(i1 - i0), static_cast<int>(j1 - j0)};
+  }
+
   void find_decks(size_t own) {
-    cells_ = structure_cells(block_, planar_);
+    cells_ = structure_cells(block_, planar_, needed_cells(own));
     decks_.assign(cells_.lattice.size(), 0);
     ground_decks_.assign(block_.size(), 0);
     const double longest = options_.bridge_length.value;
     if (longest <= 0.0) return;
-    decks_ = deck_cells(cells_, {longest, options_.building_height.value});
+    decks_ = deck_cells(cells_, {longest, options_.building_height.value}, OwnBox(block_, own, roofs_reach(options_) + deck_spread()));
     if (options_.decks_in_ground) ground_decks_ = ground_decks(block_, where_, longest, own);
   }
 
@@ -159,8 +172,9 @@ class Structures {
     std::vector<std::uint8_t> standing(cells_.lattice.size(), 0);  // cells with returns off the ground
     for (size_t p = 0; p < block_.size(); ++p)
       if (raised_[p]) standing[cell(p)] = 1;
-    roofs_ = roof_cells(cells_, standing, decks_, where_, {options_.building_height.value, options_.building_side.value});
-    find_crowns(OwnBox(block_, own, building_sides_halo()));
+    roofs_ = roof_cells(cells_, standing, decks_, where_, {options_.building_height.value, options_.building_side.value},
+                        OwnBox(block_, own, building_sides_halo() + crowns_halo() + roof_spread()));
+    find_crowns(own);
     std::vector<std::uint8_t> roof(block_.size(), 0), free(block_.size(), 0);
     for (size_t p = 0; p < block_.size(); ++p) {
       if (!available_[p]) continue;
@@ -172,10 +186,11 @@ class Structures {
   }
 
   /// Of the returns on and below roofs, those of trees.
-  void find_crowns(const OwnBox& needed) {
+  void find_crowns(size_t own) {
+    const OwnBox needed(block_, own, building_sides_halo()), around(block_, own, building_sides_halo() + crowns_halo());
     std::vector<Witness> witness(block_.size(), Witness::none);
     for (size_t p = 0; p < block_.size(); ++p) {
-      if (!raised_[p] || decks_[cell(p)]) continue;
+      if (!raised_[p] || !around.holds(block_, p) || decks_[cell(p)]) continue;
       if (is_on_roof(p))
         witness[p] = is_surface(p) ? Witness::roof : Witness::none;
       else if (!is_surface(p) && !core::is_last_return(block_, p))
@@ -185,7 +200,7 @@ class Structures {
     crown_.assign(block_.size(), 0);
     core::in_parallel(block_.size(), crown_points_at_once, [&](size_t from, size_t to) {
       for (size_t p = from; p < to; ++p)
-        crown_[p] = raised_[p] && planar_[p] != Planar::wide && is_on_roof(p) && needed.holds(block_, p) && crowns.holds(p);
+        crown_[p] = raised_[p] && planar_[p] != Planar::wide && needed.holds(block_, p) && is_on_roof(p) && crowns.holds(p);
     });
   }
 

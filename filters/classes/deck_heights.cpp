@@ -14,13 +14,20 @@ namespace cls = core::point_class;
 constexpr float none = std::numeric_limits<float>::quiet_NaN();
 constexpr float outlier_depth = 1.5f;  // m
 
-/// The lowest value in the cells around, NaN where none has one.
-float lowest_around(const core::Lattice& l, const std::vector<float>& value, int i, int j) {
-  float lowest = none;
-  for (int v = std::max(j - deck_heights_reach, 0); v <= std::min(j + deck_heights_reach, l.ny - 1); ++v)
-    for (int u = std::max(i - deck_heights_reach, 0); u <= std::min(i + deck_heights_reach, l.nx - 1); ++u)
-      if (const float z = value[l.at(u, v)]; z == z && !(lowest <= z)) lowest = z;
-  return lowest;
+/// For each cell the lowest value in those up to deck_heights_reach away, infinite where none has one.
+std::vector<float> lowest_around(const core::Lattice& l, const std::vector<float>& value) {
+  constexpr float nothing = std::numeric_limits<float>::infinity();
+  const auto nx = static_cast<size_t>(l.nx), ny = static_cast<size_t>(l.ny), reach = static_cast<size_t>(deck_heights_reach);
+  std::vector<float> row(nx + 2 * reach, nothing), along(l.size(), nothing), out(l.size(), nothing);
+  for (size_t j = 0; j < ny; ++j) {
+    for (size_t i = 0; i < nx; ++i) row[i + reach] = std::isnan(value[j * nx + i]) ? nothing : value[j * nx + i];
+    for (size_t shift = 0; shift <= 2 * reach; ++shift)
+      for (size_t i = 0; i < nx; ++i) along[j * nx + i] = std::min(along[j * nx + i], row[i + shift]);
+  }
+  for (size_t j = 0; j < ny; ++j)
+    for (size_t from = j - std::min(j, reach); from < std::min(j + reach + 1, ny); ++from)
+      for (size_t i = 0; i < nx; ++i) out[j * nx + i] = std::min(out[j * nx + i], along[from * nx + i]);
+  return out;
 }
 
 }  // namespace
@@ -41,13 +48,10 @@ DeckHeights deck_heights(const core::Block& b, const core::Lattice& l) {
     out.ground[c] = ground;
   }
   std::vector<float> limit(l.size(), none);  // of low outliers, in the cells that hold some
-  for (int j = 0; j < l.ny; ++j)
-    for (int i = 0; i < l.nx; ++i) {
-      const size_t c = l.at(i, j);
-      const float here = bottom[c];
-      if (!(out.low[c] < here || here != here)) continue;
-      if (const float below = lowest_around(l, bottom, i, j) - outlier_depth; out.low[c] <= below) limit[c] = below, out.low[c] = none;
-    }
+  const std::vector<float> lowest = lowest_around(l, bottom);
+  for (size_t c = 0; c < limit.size(); ++c)
+    if (const float below = lowest[c] - outlier_depth; std::isfinite(below) && out.low[c] <= below) limit[c] = below, out.low[c] = none;
+  if (std::all_of(limit.begin(), limit.end(), [](float z) { return std::isnan(z); })) return out;
   for (size_t p = 0; p < b.size(); ++p) {
     if (!core::is_usable(b, p)) continue;
     const CellIndex at = cell_of(l, b, p);

@@ -62,12 +62,13 @@ Districts districts(const core::Block& b) {
   return out;
 }
 
-Samples::Samples(const core::Block& b, double side)
-    : lattice_(lattice_around(b, side, sample_border)), count_(lattice_.size(), 0), samples_(lattice_.size() * samples_of_cell) {
+Samples::Samples(const core::Block& b, const core::Lattice& l)
+    : lattice_(l), count_(lattice_.size(), 0), samples_(lattice_.size() * samples_of_cell) {
   std::vector<std::uint64_t> hashes(samples_.size());
   for (std::uint32_t p = 0; p < b.size(); ++p) {
     if (!core::is_usable(b, p)) continue;
     const CellIndex at = cell_of(lattice_, b, p);
+    if (!lattice_.holds(at.i, at.j)) continue;
     const std::size_t c = lattice_.at(at.i, at.j), first = c * samples_of_cell;
     const std::uint64_t hash = hash_of(b, p);
     std::size_t n = count_[c];

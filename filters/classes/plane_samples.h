@@ -19,7 +19,7 @@ constexpr std::array<double, 4> sample_sides{1.0, 1.5, 2.0, 3.0};
 constexpr double district_side = 12.0;      ///< m: squares that have one side of cells each
 constexpr double returns_of_cell = 4.0;     ///< usual number that a cell should hold
 constexpr std::size_t samples_of_cell = 4;  ///< at most
-constexpr int sample_border = 4;            ///< empty cells around the returns
+constexpr int sample_border = 4;            ///< cells around those that planes are looked for in
 
 /// Which side of cells each district has: the narrowest whose cells usually hold `returns_of_cell` returns, else the widest.
 struct Districts {
@@ -45,11 +45,11 @@ struct Districts {
 /// Usual is the median over the cells of 3 m of the district and those around it that hold any usable return.
 Districts districts(const core::Block& b);
 
-/// Usable returns by cells of one side, at most samples_of_cell in each: those of the least hash of their coordinates, so that the sample
-/// depends neither on the order of the returns nor on other cells.
+/// Usable returns by the cells of a lattice, at most samples_of_cell in each: those of the least hash of their coordinates, so that the
+/// sample depends neither on the order of the returns nor on other cells.
 class Samples {
  public:
-  Samples(const core::Block& b, double side);
+  Samples(const core::Block& b, const core::Lattice& l);
 
   struct Sample {
     float x, y;  ///< m from the cell's centre
@@ -65,7 +65,7 @@ class Samples {
   }
 
  private:
-  core::Lattice lattice_;  ///< sample_border empty cells around the returns
+  core::Lattice lattice_;
   std::vector<std::uint8_t> count_;
   std::vector<Sample> samples_;
 };

@@ -6,8 +6,6 @@
 // took 28 % of the class filter's time at 14 returns/m2); the draws are those of a fixed sequence.
 #include "filters/classes/roof_planes.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -81,16 +79,18 @@ struct Points {
 
 /// By least squares of heights.
 Plane fit(const Points& p) {
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  const auto z0 = static_cast<double>(p.z[0]);
+  double x = 0, y = 0, z = 0, xx = 0, xy = 0, yy = 0, xz = 0, yz = 0;
+  const double z0 = p.z[0], n = static_cast<double>(p.n);
   for (size_t k = 0; k < p.n; ++k) {
-    const Eigen::Vector3d a(1.0, p.x[k], p.y[k]);
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(a);
-    right += a * (static_cast<double>(p.z[k]) - z0);
+    const double px = p.x[k], py = p.y[k], pz = p.z[k] - z0;
+    x += px, y += py, z += pz;
+    xx += px * px, xy += px * py, yy += py * py, xz += px * pz, yz += py * pz;
   }
-  const Eigen::Vector3d s = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-  return {static_cast<float>(s(0) + z0), static_cast<float>(s(1)), static_cast<float>(s(2))};
+  x /= n, y /= n, z /= n;
+  xx -= n * x * x, xy -= n * x * y, yy -= n * y * y, xz -= n * x * z, yz -= n * y * z;
+  const double area = xx * yy - xy * xy;
+  const double east = (xz * yy - yz * xy) / area, north = (yz * xx - xz * xy) / area;
+  return {static_cast<float>(z - east * x - north * y + z0), static_cast<float>(east), static_cast<float>(north)};
 }
 
 float cross(float ax, float ay, float bx, float by) { return ax * by - ay * bx; }
@@ -187,13 +187,14 @@ class Window {
       const size_t n = left_.within(p, tolerance / p.cosine());
       if (n <= most) continue;
       most = n, best = p;
+      if (n == left_.n) break;  // no other can have more
     }
     return most >= least;
   }
 
   /// Notes how closely the returns follow the plane.
   bool is_roof(const Points& found, Plane& plane, float tolerance) const {
-    if (plane.east * plane.east + plane.north * plane.north > steepest2) return false;
+    if (!(plane.east * plane.east + plane.north * plane.north <= steepest2)) return false;  // nor one through a line of returns
     float squares = 0;
     size_t last = 0;
     for (size_t k = 0; k < found.n; ++k) {
@@ -204,11 +205,11 @@ class Window {
     const auto n = static_cast<float>(found.n);
     const float rms = std::sqrt(squares / n);
     if (rms > rms_share * tolerance) return false;
+    plane.glass = static_cast<float>(last) < last_share * n;
+    if (plane.glass && (found.n < glass_fewest || rms > glass_rms * tolerance)) return false;
     const auto [all, first] = over(found, plane, tolerance);
     plane.close = std::max(all.close, first.close);
-    if (static_cast<float>(last) >= last_share * n) return all.on >= own_share;
-    plane.glass = true;
-    return found.n >= glass_fewest && rms <= glass_rms * tolerance && first.on >= glass_share;
+    return plane.glass ? first.on >= glass_share : all.on >= own_share;
   }
 
   /// Shares of sampled returns.
@@ -254,7 +255,9 @@ class Planes {
  public:
   Planes(const core::Block& b, const std::vector<std::uint8_t>& candidate, const Districts& where, size_t level, float tolerance,
          double area)
-      : samples_(b, sample_sides[level]), side_(static_cast<float>(lattice().cell)), start_(lattice().size() + 1, 0) {
+      : samples_(b, lattice_around(b, candidate, sample_sides[level], sample_border)),
+        side_(static_cast<float>(lattice().cell)),
+        start_(lattice().size() + 1, 0) {
     looked_.assign(lattice().size(), 0);
     find(b, candidate, where, level, tolerance);
     wide_.assign(planes_.size(), 0);

@@ -27,74 +27,94 @@ int search_radius(double side) { return static_cast<int>(std::ceil(search_sides 
 class Roofs {
  public:
   Roofs(const StructureCells& cells, const std::vector<std::uint8_t>& decks, const Districts& where, const RoofLimits& limits)
-      : cells_(cells), lattice_(cells.lattice), decks_(decks), where_(where), limits_(limits) {}
+      : cells_(cells), lattice_(cells.lattice), decks_(decks), where_(where), limits_(limits), part_(cells.lattice.size(), Part::none) {
+    for (size_t c = 0; c < part_.size(); ++c)
+      if (cells_.has_plane(c) && static_cast<double>(cells_.height[c]) >= limits_.height && !decks_[c])
+        part_[c] = cells_.kind[c] == Planar::wide ? Part::wide : Part::some;
+  }
 
-  std::vector<float> heights(const std::vector<std::uint8_t>& standing) const {
-    std::vector<std::uint8_t> roof = large_enough();
+  std::vector<float> heights(const std::vector<std::uint8_t>& standing, const OwnBox& begun) const {
+    std::vector<std::uint8_t> roof = large_enough(begun);
     const auto link = [&](size_t from) {
       return Districts::link(where_.side_at(lattice_.centre_x(static_cast<int>(from % static_cast<size_t>(lattice_.nx))),
                                             lattice_.centre_y(static_cast<int>(from / static_cast<size_t>(lattice_.nx)))));
     };
     const auto goes_on = [this](size_t from, size_t to, int) {
-      return cells_.kind[to] == Planar::wide && !decks_[to] && std::abs(cells_.plane[from] - cells_.plane[to]) <= part_link &&
+      return cells_.kind[to] == Planar::wide && !decks_[to] && is_near(from, to, part_link) &&
              static_cast<double>(cells_.height[to]) >= low_share * limits_.height;
     };
     spread(
         cells_, roof, low_growth, [](size_t) { return structure_link; }, goes_on);
-    spread(cells_, roof, roof_growth, link, [this](size_t from, size_t to, int) { return is_linked(from, to, part_link); });
+    spread(cells_, roof, roof_growth, link,
+           [this](size_t from, size_t to, int) { return part_[to] != Part::none && is_near(from, to, part_link); });
     std::vector<float> height(lattice_.size(), std::numeric_limits<float>::quiet_NaN());
     for (size_t k = 0; k < roof.size(); ++k)
       if (roof[k]) height[k] = cells_.plane[k];
-    fill(standing, height);
+    fill(standing, height, begun);
     return height;
   }
 
  private:
-  bool is_roof(size_t c) const { return cells_.has_plane(c) && static_cast<double>(cells_.height[c]) >= limits_.height && !decks_[c]; }
-  bool is_linked(size_t from, size_t to, float step) const {
-    return is_roof(to) && std::abs(cells_.plane[from] - cells_.plane[to]) <= step;
-  }
+  /// What a cell may be of a roof: high enough and no deck.
+  enum class Part : std::uint8_t { none, some, wide };
 
-  /// Cells with wide planes among enough linked ones.
-  std::vector<std::uint8_t> large_enough() const {
+  bool is_near(size_t from, size_t to, float step) const { return std::abs(cells_.plane[from] - cells_.plane[to]) <= step; }
+
+  enum class Verdict : std::uint8_t { unknown, no, yes };
+
+  /// The cells of one growth, as offsets from where it began.
+  struct Extent {
+    int west = 0, east = 0, south = 0, north = 0;
+    explicit Extent(const std::vector<CellIndex>& found) {
+      for (const CellIndex& at : found)
+        west = std::min(west, at.i), east = std::max(east, at.i), south = std::min(south, at.j), north = std::max(north, at.j);
+    }
+    /// Do all lie within `reach` cells of one of them in both directions?
+    bool is_within(CellIndex at, int reach) const {
+      return std::max(east - at.i, at.i - west) <= reach && std::max(north - at.j, at.j - south) <= reach;
+    }
+  };
+
+  /// Cells with wide planes among enough linked ones, of those that `begun` touches.
+  std::vector<std::uint8_t> large_enough(const OwnBox& begun) const {
     const double side = limits_.side / structure_cell;
     const int radius = search_radius(limits_.side);
-    const auto linked = [this](size_t from, size_t to) { return cells_.kind[to] == Planar::wide && is_linked(from, to, roof_link); };
+    const auto linked = [this](size_t from, size_t to) { return is_near(from, to, roof_link); };
     const auto samples_at = [this](int i, int j) { return where_.side_at(lattice_.centre_x(i), lattice_.centre_y(j)); };
-    std::vector<std::uint8_t> out(lattice_.size(), 0);
-    Growth growth(lattice_, radius);
+    std::vector<Verdict> verdict(lattice_.size(), Verdict::unknown);
+    Growth growth(lattice_, radius, [this](size_t c) { return part_[c] == Part::wide; });
     for (int j = 0; j < lattice_.ny; ++j)
       for (int i = 0; i < lattice_.nx; ++i) {
         const size_t c = lattice_.at(i, j);
-        if (out[c] || cells_.kind[c] != Planar::wide || !is_roof(c)) continue;
+        if (verdict[c] != Verdict::unknown || part_[c] != Part::wide || !begun.touches(lattice_, i, j)) continue;
         const std::uint8_t samples = samples_at(i, j);
+        const int link = Districts::link(samples);
         const auto wanted = static_cast<size_t>(std::ceil(side * side * Districts::occupied(samples)));
-        const std::vector<CellIndex>& found = growth.from(i, j, Districts::link(samples), large * wanted, linked);
-        if (found.size() < large * wanted) {
-          out[c] = found.size() >= wanted && !is_narrow(i, j, found);
-          continue;
-        }
-        out[c] = 1;
-        // Links lead both ways: the others find as many from where they are, if that is within their squares.
-        const auto [west, east] = std::minmax_element(found.begin(), found.end(), [](CellIndex a, CellIndex o) { return a.i < o.i; });
-        const auto [south, north] = std::minmax_element(found.begin(), found.end(), [](CellIndex a, CellIndex o) { return a.j < o.j; });
+        const std::vector<CellIndex>& found = growth.from(i, j, link, large * wanted, linked);
+        const bool is_large = found.size() >= large * wanted;
+        const Extent extent(found);
+        const Verdict here = is_large || (found.size() >= wanted && !is_narrow(i, j, found, extent)) ? Verdict::yes : Verdict::no;
+        verdict[c] = here;
+        // Links lead both ways: the others find the same from where they are, if the end of it is within this square and all of it within
+        // theirs; of what is large enough whatever its form, as much.
+        if (!is_large && !extent.is_within({0, 0}, radius - link)) continue;
         for (const CellIndex& at : found)
-          if (east->i - at.i <= radius && at.i - west->i <= radius && north->j - at.j <= radius && at.j - south->j <= radius &&
-              samples_at(i + at.i, j + at.j) == samples)
-            out[lattice_.at(i + at.i, j + at.j)] = 1;
+          if (extent.is_within(at, radius) && samples_at(i + at.i, j + at.j) == samples) verdict[lattice_.at(i + at.i, j + at.j)] = here;
       }
+    std::vector<std::uint8_t> out(verdict.size());
+    std::transform(verdict.begin(), verdict.end(), out.begin(), [](Verdict v) { return v == Verdict::yes; });
     return out;
   }
 
   /// Do the planes of these cells stand alone and are they no wider than a vehicle? Not where they may go on beyond the data, nor where
   /// they lean on a higher roof.
-  bool is_narrow(int i, int j, const std::vector<CellIndex>& found) const {
+  bool is_narrow(int i, int j, const std::vector<CellIndex>& found, const Extent& extent) const {
     constexpr double cm = 100.0;
     double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
     for (const CellIndex& at : found) {
       if (is_at_rim(i + at.i, j + at.j) || is_beside_roof(i + at.i, j + at.j)) return false;
       const PlanarSums& s = cells_.sums[lattice_.at(i + at.i, j + at.j)];
-      const double west = cm * structure_cell * at.i, south = cm * structure_cell * at.j;
+      const double west = cm * structure_cell * (at.i - extent.west), south = cm * structure_cell * (at.j - extent.south);
       n += s.n, x += s.x + s.n * west, y += s.y + s.n * south;
       xx += s.xx + west * (2.0 * s.x + s.n * west), yy += s.yy + south * (2.0 * s.y + s.n * south);
       xy += s.xy + west * s.y + south * s.x + s.n * west * south;
@@ -108,8 +128,7 @@ class Roofs {
     const size_t c = lattice_.at(i, j);
     for (int v = std::max(j - 1, 0); v <= std::min(j + 1, lattice_.ny - 1); ++v)
       for (int u = std::max(i - 1, 0); u <= std::min(i + 1, lattice_.nx - 1); ++u)
-        if (const size_t near = lattice_.at(u, v);
-            cells_.kind[near] == Planar::wide && is_roof(near) && cells_.plane[near] > cells_.plane[c] + roof_link)
+        if (const size_t near = lattice_.at(u, v); part_[near] == Part::wide && cells_.plane[near] > cells_.plane[c] + roof_link)
           return true;
     return false;
   }
@@ -128,13 +147,13 @@ class Roofs {
   }
 
   /// Takes in the cells with returns off the ground that have roofs nearly all around.
-  void fill(const std::vector<std::uint8_t>& standing, std::vector<float>& height) const {
+  void fill(const std::vector<std::uint8_t>& standing, std::vector<float>& height, const OwnBox& begun) const {
     const auto is_roof_at = [&](size_t c) { return height[c] == height[c]; };
     std::vector<std::pair<size_t, float>> filled;
     for (int j = 0; j < lattice_.ny; ++j)
       for (int i = 0; i < lattice_.nx; ++i) {
         const size_t c = lattice_.at(i, j);
-        if (!standing[c] || is_roof_at(c) || decks_[c]) continue;
+        if (!standing[c] || is_roof_at(c) || decks_[c] || !begun.touches(lattice_, i, j)) continue;
         int others = 0, roofs = 0;
         float highest = -std::numeric_limits<float>::infinity();
         for (int v = std::max(j - structure_link, 0); v <= std::min(j + structure_link, lattice_.ny - 1); ++v)
@@ -157,18 +176,21 @@ class Roofs {
   const std::vector<std::uint8_t>& decks_;
   const Districts& where_;
   RoofLimits limits_;
+  std::vector<Part> part_;  ///< per cell
 };
 
 }  // namespace
 
-double roof_cells_halo(double side) {
-  const int grown = low_growth * structure_link + roof_growth * Districts::link(sample_sides.size() - 1);
-  return (search_radius(side) + grown + 2 * structure_link + rim_gap + 1) * structure_cell;
+double roof_spread() {
+  return (low_growth * structure_link + roof_growth * Districts::link(sample_sides.size() - 1) + structure_link) * structure_cell;
 }
 
+double roof_cells_halo(double side) { return roof_spread() + (search_radius(side) + structure_link + rim_gap + 1) * structure_cell; }
+
 std::vector<float> roof_cells(const StructureCells& cells, const std::vector<std::uint8_t>& standing,
-                              const std::vector<std::uint8_t>& decks, const Districts& where, const RoofLimits& limits) {
-  return Roofs(cells, decks, where, limits).heights(standing);
+                              const std::vector<std::uint8_t>& decks, const Districts& where, const RoofLimits& limits,
+                              const OwnBox& begun) {
+  return Roofs(cells, decks, where, limits).heights(standing, begun);
 }
 
 }  // namespace swath::filters

@@ -21,9 +21,9 @@ void add(PlanarSums& s, double east, double north) {
 
 }  // namespace
 
-StructureCells structure_cells(const core::Block& b, const std::vector<Planar>& planar) {
+StructureCells structure_cells(const core::Block& b, const std::vector<Planar>& planar, const core::Lattice& l) {
   StructureCells out;
-  out.lattice = lattice_around(b, structure_cell, 0);
+  out.lattice = l;
   out.plane.assign(out.lattice.size(), std::numeric_limits<float>::quiet_NaN());
   out.height = out.ground = out.low = out.plane;
   out.kind.assign(out.lattice.size(), Planar::none);
@@ -31,6 +31,7 @@ StructureCells structure_cells(const core::Block& b, const std::vector<Planar>& 
   for (size_t p = 0; p < b.size(); ++p) {
     if (!core::is_usable(b, p)) continue;
     const CellIndex at = cell_of(out.lattice, b, p);
+    if (!out.lattice.holds(at.i, at.j)) continue;
     const size_t c = out.lattice.at(at.i, at.j);
     const auto z = static_cast<float>(b.z[p]);
     out.kind[c] = std::max(out.kind[c], planar[p]);

@@ -26,6 +26,15 @@ TEST(Bins, CellsLieOnWholeMultiplesInMapCoordinates) {
   EXPECT_EQ(lattice_around({}, 2.0, 3).size(), 0u);
 }
 
+TEST(Bins, ALatticeAroundSomePointsHoldsThemAlone) {
+  const core::Lattice l = lattice_around(some_points(), std::vector<std::uint8_t>{0, 1, 0, 1}, 2.0, 1);
+  EXPECT_EQ(l.i0, 250000 - 1);
+  EXPECT_EQ(l.j0, 2500000 - 1);
+  EXPECT_EQ(l.nx, 3);
+  EXPECT_EQ(l.ny, 3);
+  EXPECT_EQ(lattice_around(some_points(), std::vector<std::uint8_t>(4, 0), 2.0, 1).size(), 0u);
+}
+
 TEST(Bins, CellsOfManyPointsAreThoseOfEach) {
   const core::Block b = some_points();
   const core::Lattice l = lattice_around(b, 2.0, 1);

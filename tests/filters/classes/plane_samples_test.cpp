@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "filters/bins.h"
 #include "tests/world/scene.h"
 
 namespace swath::filters {
@@ -39,7 +40,7 @@ TEST(PlaneSamples, AtMostFourOfEachCellInAnyOrder) {
   const core::Block b = field(0.25);
   std::vector<std::uint32_t> rows;
   const core::Block other = test::shuffled(b, 7, rows);
-  const Samples one(b, 1.0), two(other, 1.0);
+  const Samples one(b, lattice_around(b, 1.0, 0)), two(other, lattice_around(other, 1.0, 0));
   ASSERT_EQ(one.lattice(), two.lattice());
   for (int j = 0; j < one.lattice().ny; ++j)
     for (int i = 0; i < one.lattice().nx; ++i) {
@@ -53,7 +54,7 @@ TEST(PlaneSamples, NoiseIsNoSample) {
   core::Block b = field(2.0);
   core::add_columns(b, {core::Column::classification});
   b.classification.assign(b.size(), core::point_class::high_noise);
-  const Samples none(b, 1.0);
+  const Samples none(b, lattice_around(b, 1.0, 0));
   for (int j = 0; j < none.lattice().ny; ++j)
     for (int i = 0; i < none.lattice().nx; ++i) EXPECT_TRUE(none.in(i, j).empty());
 }

@@ -43,7 +43,11 @@ struct Planes {
         standing[c] = 1;
       }
   }
-  std::vector<float> roofs() const { return roof_cells(cells, standing, decks, where, {}); }
+  std::vector<float> roofs(double east = 60.0) const {
+    core::Block corners;
+    corners.x = {0.0, east}, corners.y = {0.0, 36.0}, corners.z = {0.0, 0.0};
+    return roof_cells(cells, standing, decks, where, {}, OwnBox(corners, 2, 0.0));
+  }
 };
 
 TEST(Roofs, LargeAndHighPlanesAreRoofsWithTheSmallPartsBesideThem) {
@@ -59,6 +63,24 @@ TEST(Roofs, LargeAndHighPlanesAreRoofsWithTheSmallPartsBesideThem) {
   EXPECT_FALSE(is(20, 3));
   EXPECT_FALSE(is(42, 4));
   EXPECT_TRUE(is(4, 22) && is(7, 20));
+}
+
+TEST(Roofs, OnlyThoseThatBeginInTheBoxAreLookedFor) {
+  Planes p;
+  p.add(2, 2, 9, 9, 6.0f);
+  p.add(40, 2, 9, 9, 6.0f);
+  const std::vector<float> roofs = p.roofs(20.0);
+  EXPECT_EQ(roofs[p.cells.lattice.at(5, 5)], 6.0f);
+  EXPECT_TRUE(std::isnan(roofs[p.cells.lattice.at(45, 5)]));
+}
+
+TEST(Roofs, EveryCellOfARoofOfAnyFormIsOne) {
+  Planes p;  // galleries around a court: none of their squares holds all
+  p.add(2, 2, 30, 3, 6.0f), p.add(2, 29, 30, 3, 6.0f), p.add(2, 5, 3, 24, 6.0f), p.add(29, 5, 3, 24, 6.0f);
+  p.add(40, 4, 1, 8, 6.0f), p.add(42, 4, 1, 8, 6.0f), p.add(44, 4, 1, 8, 6.0f);  // linked over gaps
+  p.standing.assign(p.standing.size(), 0);                                       // nothing is filled
+  const std::vector<float> roofs = p.roofs();
+  for (size_t c = 0; c < roofs.size(); ++c) EXPECT_EQ(std::isnan(roofs[c]), std::isnan(p.cells.plane[c])) << c % 60 << " " << c / 60;
 }
 
 TEST(Roofs, AGapIsFilledWhereSomethingStandsInItAndADeckIsNone) {
