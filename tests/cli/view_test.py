@@ -55,7 +55,7 @@ DRAWN = """(() => { const v = swathView.view, gl = v.renderer.getContext(), w = 
 
 def geocentric(file):
     """Two points in ECEF, which GeoTIFF keys state."""
-    write_las(file, [(4146000.0, 613000.0, 4791000.0), (4146001.0, 613001.0, 4791001.0)])
+    write_las(file, [(4146000.0, 613000.0, 4791000.0), (4146001.0, 613001.0, 4791001.0)], scale=0.01)
     data = bytearray(file.read_bytes())
     keys = struct.pack("<12H", 1, 1, 0, 2, 1024, 0, 1, 3, 2048, 0, 1, 4978)
     data[227:227] = struct.pack("<H16sHH32s", 0, b"LASF_Projection", 34735, len(keys), b"") + keys
