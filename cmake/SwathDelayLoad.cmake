@@ -17,4 +17,5 @@ function(swath_delay_load target name library)
   # The stubs call the loader within `target`, which calls them.
   target_link_libraries(${target}_${name} INTERFACE ${target} ${CMAKE_DL_LIBS})
   target_link_libraries(${target} INTERFACE ${target}_${name})
+  set_property(GLOBAL APPEND PROPERTY swath_rooms ${target}_${name})
 endfunction()
