@@ -2,23 +2,12 @@
 // The error-state Kalman filter over nodes: instants of fixes and some between them. The same code runs forward and backward in time.
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <vector>
 
-#include "core/records/gnss_data.h"
-#include "trajectory/ins/error_state.h"
-#include "trajectory/ins/ins_options.h"
-#include "trajectory/ins/measurement.h"
+#include "trajectory/ins/ins_problem.h"
+#include "trajectory/ins/ins_steps.h"
 
 namespace swath::trajectory {
-
-/// An instant at which the filter stops.
-struct Node {
-  double time = 0.0;
-  std::int32_t fix = -1;  ///< number of the GNSS fix, or -1
-  bool still = false;     ///< the body stands on the ground
-};
 
 /// One update as the smoother needs it.
 struct Update {
@@ -35,29 +24,6 @@ struct NodeRecord {
   StateMatrix covariance;
   Estimate estimate;  ///< what the errors count from
   StateVector mean;   ///< of the errors about `estimate`
-};
-
-/// What one GNSS fix did.
-struct FixOutcome {
-  Eigen::Vector3d innovation, innovation_sigma;  ///< north east down, m
-  double nis = 0.0, velocity_nis = -1.0;         ///< -1: no velocity
-  double weight = 1.0;
-};
-
-/// What all passes share. References stay with the caller.
-struct Problem {
-  const ImuPath& path;
-  const core::GnssData& gnss;
-  const std::vector<Node>& nodes;
-  Layout layout;
-  ProcessNoise noise;
-  InsGnssOptions options;
-  double share = 0.4;      ///< of the fixes' variance that is correlated in time
-  double variance = 1.0;   ///< factor on the fixes' stated covariances
-  double roughness = 1.0;  ///< factor on the IMU's stated noise: what vibration adds
-  double gate = 21.1;      ///< NIS of three degrees of freedom beyond which a fix is down-weighted
-  /// Called at every node that a pass comes to, for the progress.
-  std::function<void()> at_node = [] {};
 };
 
 /// Without a reference the filter feeds each correction back at once and linearises about its own estimate. With one, a trajectory near
@@ -79,9 +45,7 @@ class InsFilter {
 
  private:
   template <int Rows>
-  double apply(const Eigen::Matrix<double, Rows, Eigen::Dynamic, 0, Rows, most_states>& design,
-               const Eigen::Matrix<double, Rows, 1>& innovation, const Eigen::Matrix<double, Rows, Rows>& noise, double gate,
-               NodeRecord* record, double* weight);
+  double apply(const Observation<Rows>& observation, NodeRecord* record, double* weight);
   void use_position(const Node& node, NodeRecord* record, FixOutcome* outcome);
   void use_velocity(const Node& node, NodeRecord* record, FixOutcome* outcome);
   void use_standstill(NodeRecord* record);

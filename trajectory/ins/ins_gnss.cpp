@@ -19,6 +19,7 @@
 #include "core/time_gap.h"
 #include "trajectory/ins/alignment.h"
 #include "trajectory/ins/ins_output.h"
+#include "trajectory/ins/ins_problem.h"
 #include "trajectory/ins/ins_report.h"
 #include "trajectory/ins/ins_start.h"
 
@@ -230,10 +231,26 @@ void refuse_contradicting(const std::vector<double>& weights) {
                       "trajectory.ins_gnss", "check the lever arm's sign, the time scales, imu.angle_unit, imu_spec and the fixes' sigmas");
 }
 
+/// All but the records, which their owner gives.
+SmoothedFlight left_by(const Problem& p, const SmootherRun& run, const Start& start) {
+  SmoothedFlight out;
+  out.nodes = p.nodes;
+  out.layout = p.layout;
+  out.noise = p.noise;
+  out.options = p.options;
+  out.share = p.share, out.variance = p.variance, out.roughness = p.roughness, out.gate = p.gate;
+  for (const SmoothedNode& n : run.nodes) out.estimates.push_back(n.estimate);
+  out.outcomes = run.outcomes;
+  out.stated = start.estimate;
+  out.covariance = widened(start.covariance, run.nodes.front().sigma, start.attitude_given);
+  out.attitude_given = start.attitude_given;
+  return out;
+}
+
 /// The smoother over records that are in order.
 InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const core::ImuErrorModel& spec, const Vector3d& lever_arm,
                           double lever_arm_sigma, const InsGnssOptions& options, const ClockFindings& clocks,
-                          const core::OnProgress& progress) {
+                          const core::OnProgress& progress, SmoothedFlight* left) {
   const std::vector<Span> standstills =
       options.zero_velocity || options.alignment != AlignmentMethod::given ? find_standstills(path, gnss, spec) : std::vector<Span>{};
   const std::vector<Node> nodes = nodes_of(path, gnss, options.zero_velocity ? standstills : std::vector<Span>{});
@@ -289,6 +306,7 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
   result.report = report_of(findings, result.series);
   result.trajectory = trajectory_of(problem, run.nodes, options.output_rate.value);
   result.trajectory.errors = std::move(run.errors);
+  if (left) *left = left_by(problem, run, start);
   return result;
 }
 
@@ -296,12 +314,12 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
 
 InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core::ImuErrorModel& spec, const Vector3d& lever_arm,
                      double lever_arm_sigma, const InsGnssOptions& stated_options, const StatedClocks& stated,
-                     const core::OnProgress& progress) {
+                     const core::OnProgress& progress, SmoothedFlight* left) {
   require_plausible(imu_records);
   require_finite(fixes);
   InsGnssOptions options = stated_options;
   Trimmed records = trim(std::move(imu_records), std::move(fixes));
-  const ImuPath path = make_path(std::move(records.imu), options.max_gap.value);
+  ImuPath path = make_path(std::move(records.imu), options.max_gap.value);
   ClockFindings clocks;
   clocks.stated = stated;
   clocks.imu.reason = clocks.velocity.reason = "not looked for";
@@ -311,7 +329,9 @@ InsGnssResult smooth(core::ImuData imu_records, core::GnssData fixes, const core
   if (records.gnss.has_velocity()) clocks.velocity = velocity_lag(records.gnss);
   options.use_velocity = options.use_velocity && !clocks.velocities_lag();
   try {
-    return smooth_path(path, records.gnss, spec, lever_arm, lever_arm_sigma, options, clocks, progress);
+    InsGnssResult result = smooth_path(path, records.gnss, spec, lever_arm, lever_arm_sigma, options, clocks, progress, left);
+    if (left) left->path = std::move(path), left->gnss = std::move(records.gnss);
+    return result;
   } catch (const core::Error& e) {
     if (!clocks.apart()) {
       const std::string leap = leap_seconds_between(path, records.gnss, spec, lever_arm, lever_arm_sigma);

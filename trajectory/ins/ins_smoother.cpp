@@ -116,16 +116,6 @@ SmoothedNode smoothed(const Layout& layout, const NodeRecord& record, const Adjo
   return out;
 }
 
-/// Takes position, velocity and psi in ecef to north, east, down, their velocities, roll, pitch, heading.
-Matrix9 local_by_ecef(const NavState& nav) {
-  const core::Geodetic g = core::geodetic_of(nav.position);
-  const Matrix3d ned = core::ecef_R_ned(g.latitude, g.longitude);
-  Matrix9 turn = Matrix9::Zero();
-  turn.block<3, 3>(0, 0) = turn.block<3, 3>(3, 3) = ned.transpose();
-  turn.block<3, 3>(6, 6) = angles_by_psi(ned, core::attitude_of(ned.transpose() * nav.ecef_R_body));
-  return turn;
-}
-
 /// Collects the error links on the way back. Between instants i < j the filter's errors pass by Psi, the product of (I - K H) Phi, and
 ///   Cov(e_i, e_j) = P_i Psi^T (I - Lambda_j P_j)
 /// (de Jong and Mackinnon 1988). With P = L L^T the links are L_j^-1 Psi L_i, the ends L_i and (1 - L_j^T Lambda_j L_j) L_j^T.
@@ -172,6 +162,15 @@ class LinkCollector {
 };
 
 }  // namespace
+
+Matrix9 local_by_ecef(const NavState& nav) {
+  const core::Geodetic g = core::geodetic_of(nav.position);
+  const Matrix3d ned = core::ecef_R_ned(g.latitude, g.longitude);
+  Matrix9 turn = Matrix9::Zero();
+  turn.block<3, 3>(0, 0) = turn.block<3, 3>(3, 3) = ned.transpose();
+  turn.block<3, 3>(6, 6) = angles_by_psi(ned, core::attitude_of(ned.transpose() * nav.ecef_R_body));
+  return turn;
+}
 
 Matrix9 local_covariance(const NavState& nav, const Matrix9& ecef) {
   const Matrix9 turn = local_by_ecef(nav);

@@ -44,6 +44,8 @@ std::vector<FixOutcome> run_forward(const Problem& problem, InsFilter filter);
 /// the forward pass after them.
 std::vector<FilterNode> run_backward(const Problem& problem, InsFilter last);
 
+/// Takes position, velocity and psi in ecef to north, east, down, their velocities, roll, pitch, heading.
+core::CovarianceSeries::Matrix9 local_by_ecef(const NavState& nav);
 /// Covariance of north, east, down, velocities, roll, pitch, heading from that of position, velocity and psi in ecef.
 core::CovarianceSeries::Matrix9 local_covariance(const NavState& nav, const Eigen::Matrix<double, 9, 9>& ecef);
 

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The unknowns of a whole flight: which errors of the smoother's state each instant has, and which are the same for all.
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+#include "calib/block/node_matrix.h"
+#include "trajectory/ins/ins_problem.h"
+
+namespace swath::calib {
+
+/// Nodes of a NodeMatrix: one per instant with the errors that change (position, velocity, attitude, biases, the fixes' correlated part),
+/// and a last one, `common`, with those that do not (scales, lever arm, latency, a vehicle's axis), followed by the scanner's calibration.
+class FlightStates {
+ public:
+  /// `calibration`: number of the calibration's unknowns.
+  FlightStates(const trajectory::Layout& layout, size_t instants, int calibration = 0);
+
+  std::vector<int> sizes() const;
+  int common() const { return instants_; }
+  int instants() const { return instants_; }
+  /// Rows of the layout that each instant has, in its order; position, velocity, attitude come first.
+  const std::vector<int>& moving() const { return moving_; }
+  /// Rows of the layout in the common node; the calibration follows them.
+  const std::vector<int>& constant() const { return constant_; }
+  int calibration_first() const { return static_cast<int>(constant_.size()); }
+  int calibration_size() const { return calibration_; }
+  /// Number of a node's first unknown.
+  Eigen::Index first(int node) const { return static_cast<Eigen::Index>(moving_.size()) * node; }
+  /// The error of one instant in the layout's order.
+  trajectory::StateVector at(int instant, const Eigen::VectorXd& x) const;
+
+ private:
+  int instants_, calibration_;
+  std::vector<int> moving_, constant_;
+};
+
+/// N x = b.
+struct NetworkNormals {
+  explicit NetworkNormals(const std::vector<int>& sizes) : N(sizes), b(Eigen::VectorXd::Zero(N.unknowns())) {}
+
+  /// The part of an observation's derivatives that belongs to one node.
+  using Part = std::pair<int, Eigen::MatrixXd>;
+  /// Adds the sum of squares (f - A x)^T W (f - A x), A by parts.
+  void add(const std::vector<Part>& parts, const Eigen::MatrixXd& W, const Eigen::VectorXd& f);
+
+  NodeMatrix N;
+  Eigen::VectorXd b;
+  double squares = 0.0;  ///< of the observations at x = 0, weighted
+};
+
+/// The inverse of a covariance whose rows may be of very different sizes; a variance below `floor` of its row counts as that.
+Eigen::MatrixXd information_of(Eigen::MatrixXd covariance, const Eigen::VectorXd& floor);
+
+}  // namespace swath::calib

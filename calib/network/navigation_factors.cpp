@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Source: Dellaert and Kaess 2017 on the error model of trajectory/ins (Groves 2013). The IMU's
+// records of an interval are summed to one transition and one covariance (preintegration, Lupton and Sukkarieh 2012), anew about each
+// linearisation instead of by derivatives: the sum is cheap beside the solution. Deviations: of a fix weighed down only the diagonal
+// (north, east, down) of its innovation's covariance is kept; a velocity that was weighed down is so by its own covariance; standstill and
+// wheels keep their full weight.
+#include "calib/network/navigation_factors.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "trajectory/ins/ins_start.h"
+
+namespace swath::calib {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using trajectory::Layout;
+using trajectory::Observation;
+
+// Least noise of a passage, a thousandth of the best IMU's or less: a perfect one would leave nothing to weigh by. Sigmas.
+constexpr double least_position = 1e-7, least_velocity = 1e-7;      // m, m/s
+constexpr double least_attitude = 1e-9;                             // rad
+constexpr double least_gyro_bias = 1e-13, least_force_bias = 1e-9;  // rad/s, m/s^2
+constexpr double least_fix = 1e-6;                                  // of its sigma
+constexpr double least_of_prior = 1e-12;                            // of any state: m, m/s, rad, s
+
+VectorXd floor_of(const FlightStates& states, const Layout& l) {
+  VectorXd out(static_cast<Eigen::Index>(states.moving().size()));
+  for (size_t i = 0; i < states.moving().size(); ++i) {
+    const int row = states.moving()[i];
+    const double sigma = row < l.velocity         ? least_position
+                         : row < l.attitude       ? least_velocity
+                         : row < l.gyro_bias      ? least_attitude
+                         : row < l.force_bias     ? least_gyro_bias
+                         : row < l.force_bias + 3 ? least_force_bias
+                                                  : least_fix;
+    out[static_cast<Eigen::Index>(i)] = sigma * sigma;
+  }
+  return out;
+}
+
+/// Columns of a design over the layout, those of an instant and those of the constants; the calibration has none.
+std::vector<NetworkNormals::Part> parts_of(const FlightStates& states, int instant, const MatrixXd& design) {
+  MatrixXd common = MatrixXd::Zero(design.rows(), states.calibration_first() + states.calibration_size());
+  common.leftCols(states.calibration_first()) = design(Eigen::all, states.constant());
+  return {{instant, design(Eigen::all, states.moving())}, {states.common(), std::move(common)}};
+}
+
+template <int Rows>
+void add_observation(const Observation<Rows>& o, const FlightStates& states, int instant, NetworkNormals& into) {
+  const Eigen::Matrix<double, Rows, Rows> weight = o.noise.inverse();
+  into.add(parts_of(states, instant, o.design), 0.5 * (weight + weight.transpose()), o.residual);
+}
+
+void add_start(const FlightStates& states, const trajectory::Estimate& first, const NavigationPrior& prior, NetworkNormals& into) {
+  const auto n = prior.covariance.rows();
+  const MatrixXd W = information_of(prior.covariance, VectorXd::Constant(n, least_of_prior * least_of_prior));
+  into.add(parts_of(states, 0, MatrixXd::Identity(n, n)), W, prior.mean(first));
+}
+
+/// The equation e_k+1 = transition e_k + (carried less reference) + noise.
+void add_passage(const FlightStates& states, int to, const trajectory::Passage& passage, const trajectory::Estimate& reference,
+                 const Layout& l, const VectorXd& floor, NetworkNormals& into) {
+  const std::vector<int>& moving = states.moving();
+  const auto n = static_cast<Eigen::Index>(moving.size());
+  const trajectory::StateMatrix noise = passage.noise();
+  const trajectory::StateVector apart = passage.carried.minus(reference, l);
+  const MatrixXd W = information_of(noise(moving, moving), floor);
+  std::vector<NetworkNormals::Part> parts = parts_of(states, to - 1, -passage.transition(moving, Eigen::all));
+  parts.emplace_back(to, MatrixXd::Identity(n, n));
+  into.add(parts, W, apart(moving));
+}
+
+void weigh_down(Observation<3>& position, const trajectory::FixOutcome& outcome, const Vector3d& place) {
+  if (outcome.weight >= 1.0) return;
+  const Eigen::Matrix3d ned = trajectory::ned_at(place);
+  position.noise += (1.0 / outcome.weight - 1.0) * (ned * outcome.innovation_sigma.cwiseAbs2().asDiagonal() * ned.transpose());
+}
+
+/// Standstill and wheels follow one another as in the filter.
+class VirtualClock {
+ public:
+  bool due(double time) const { return std::abs(time - last_) >= trajectory::virtual_interval; }
+  void used(double time) { last_ = time; }
+
+ private:
+  double last_ = -1e300;
+};
+
+void add_measured(const trajectory::Problem& problem, const FlightStates& states, int instant, const trajectory::Estimate& at,
+                  const Vector3d& rate, const trajectory::FixOutcome* outcome, VirtualClock& clock, NetworkNormals& into) {
+  const trajectory::Node& node = problem.nodes[static_cast<size_t>(instant)];
+  if (node.fix >= 0) {
+    const auto k = static_cast<size_t>(node.fix);
+    Observation<3> position = observed_position(problem, k, at, rate);
+    if (outcome) weigh_down(position, *outcome, problem.gnss.position[k]);
+    add_observation(position, states, instant, into);
+    if (auto velocity = observed_velocity(problem, k, at, rate)) {
+      if (outcome) velocity->noise *= std::max(1.0, outcome->velocity_nis / problem.gate);
+      add_observation(*velocity, states, instant, into);
+    }
+  }
+  if (!clock.due(node.time)) return;
+  if (node.still) {
+    add_observation(observed_standstill(problem, at), states, instant, into);
+    clock.used(node.time);
+  } else if (problem.layout.track >= 0) {
+    if (const auto wheels = observed_wheels(problem, at, rate)) {
+      add_observation(*wheels, states, instant, into);
+      clock.used(node.time);
+    }
+  }
+}
+
+}  // namespace
+
+NavigationPrior prior_of(const trajectory::SmoothedFlight& flight) {
+  const auto mean = [stated = flight.stated, layout = flight.layout, given = flight.attitude_given](const trajectory::Estimate& about) {
+    return trajectory::stated_mean(stated, about, layout, given);
+  };
+  return {flight.covariance, mean};
+}
+
+void add_navigation(const trajectory::Problem& problem, const FlightStates& states, const std::vector<trajectory::Estimate>& estimates,
+                    const std::vector<trajectory::FixOutcome>& outcomes, const NavigationPrior& prior, NetworkNormals& into) {
+  add_start(states, estimates.front(), prior, into);
+  const VectorXd floor = floor_of(states, problem.layout);
+  VirtualClock clock;
+  Vector3d rate = Vector3d::Zero();
+  trajectory::ImuWalk walk(problem.path, problem.nodes.front().time);
+  for (int k = 0; k < states.instants(); ++k) {
+    const auto at = static_cast<size_t>(k);
+    if (k > 0) {
+      const trajectory::Passage passage = passage_to(problem, estimates[at - 1], walk, problem.nodes[at].time);
+      if (passage.rate) rate = *passage.rate;
+      add_passage(states, k, passage, estimates[at], problem.layout, floor, into);
+    }
+    add_measured(problem, states, k, estimates[at], rate, outcomes.empty() ? nullptr : &outcomes[at], clock, into);
+  }
+}
+
+}  // namespace swath::calib

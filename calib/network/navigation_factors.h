@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What IMU and GNSS say of a flight, as parts of one system of equations: the smoother's own model, node for node.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "calib/network/flight_states.h"
+#include "trajectory/ins/ins_steps.h"
+
+namespace swath::calib {
+
+/// What is known of the first instant and of the constants before any measurement.
+struct NavigationPrior {
+  trajectory::StateMatrix covariance;
+  /// Mean of the errors about an estimate of the first instant.
+  std::function<trajectory::StateVector(const trajectory::Estimate&)> mean;
+};
+NavigationPrior prior_of(const trajectory::SmoothedFlight& flight);
+
+/// Adds the prior, the passages from instant to instant and what was measured at each, linearised about `estimates` (their constants must
+/// be alike). `outcomes`: of the smoother, empty or per instant; fixes that it weighed down are weighed down here: its gate is one of
+/// innovations, which a system of all instants does not have.
+void add_navigation(const trajectory::Problem& problem, const FlightStates& states, const std::vector<trajectory::Estimate>& estimates,
+                    const std::vector<trajectory::FixOutcome>& outcomes, const NavigationPrior& prior, NetworkNormals& into);
+
+}  // namespace swath::calib
