@@ -25,6 +25,7 @@ const std::vector<Entry>& registry() {
       adjust_stage(),
       flat_target_stage(),
       strips_stage(),
+      network_stage(),
       geometry_stage(),
       georeference_stage(),
       returns_stage(),

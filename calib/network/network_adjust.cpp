@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rounds of seeking planes with the trajectory as adjusted so far and of Gauss-Newton steps over all instants. Groups of returns are
+// weighed only once the trajectory has come to them: at first all of them are far off, and all are right.
+#include "calib/network/network_adjust.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/adjust/start_sigmas.h"
+#include "calib/network/network.h"
+#include "core/error.h"
+#include "core/statistics.h"
+#include "trajectory/ins/ins_output.h"
+
+namespace swath::calib {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double planes_settled = 0.2;     // sigmas of all unknowns together
+constexpr double steady_returns = 0.005;   // m: planes are found the same way with returns that have moved by less
+constexpr double closest_mismatch = 0.05;  // m
+constexpr double usual_network_rounds = 3.0, search_part = 0.3;
+constexpr double first_part = 0.6;  // of the iterations, before groups are weighed
+
+std::vector<Parameter> unknown_values(const EstimateOptions& e) {
+  const bool wanted[] = {e.roll,         e.pitch,       e.heading,     e.lever_forward, e.lever_right, e.lever_down,
+                         e.range_offset, e.range_scale, e.scan_offset, e.scan_scale,    e.latency};
+  std::vector<Parameter> out;
+  for (int p = boresight_roll; p <= latency; ++p)
+    if (wanted[p]) out.push_back(static_cast<Parameter>(p));
+  return out;
+}
+
+std::vector<double> times_of(const std::vector<trajectory::Node>& nodes) {
+  std::vector<double> out;
+  for (const trajectory::Node& n : nodes) out.push_back(n.time);
+  return out;
+}
+
+class NetworkRounds {
+ public:
+  NetworkRounds(const CalibrationFlight& flight, const trajectory::SmoothedFlight& smoothed, const NetworkOptions& options)
+      : flight_(flight),
+        smoothed_(smoothed),
+        problem_(smoothed.problem()),
+        options_(options),
+        unknown_(unknown_values(options.estimate)),
+        network_(problem_, smoothed.estimates, smoothed.outcomes, prior_of(smoothed), static_cast<int>(unknown_.size())) {
+    interpolation_.max_gap.value = std::max(interpolation_.max_gap.value, 2.5 / options.smoother.output_rate.value);
+  }
+
+  core::Calibration calibration() const {
+    core::Calibration out = flight_.start;
+    for (size_t i = 0; i < unknown_.size(); ++i)
+      set_value(out, unknown_[i], value_of(flight_.start, unknown_[i]) + network_.calibration()[static_cast<Eigen::Index>(i)]);
+    return out;
+  }
+
+  /// Through the present estimates, without covariances.
+  trajectory::Trajectory trajectory() const {
+    std::vector<trajectory::SmoothedNode> nodes(network_.estimates().size());
+    for (size_t k = 0; k < nodes.size(); ++k) nodes[k] = {network_.estimates()[k], {}, {}};
+    return trajectory::Trajectory(trajectory_of(problem_, nodes, options_.smoother.output_rate.value), interpolation_, "calib.network");
+  }
+
+  PlaneFactors factors(const TieSet& ties) const {
+    return PlaneFactors(ties, flight_.scanner, flight_.sensor, times_of(smoothed_.nodes), unknown_, options_.robust,
+                        options_.surface_sigma.value, problem_.noise.angle, flight_.threads);
+  }
+
+  /// Steps until the states stay; true where they did.
+  bool iterate(PlaneFactors& planes, int& iterations) {
+    for (int i = 0; i < options_.iterations; ++i) {
+      const bool weigh = started_weighing_ || i >= static_cast<int>(first_part * options_.iterations);
+      const double moved = network_.step([&](NetworkNormals& into) {
+        planes.linearise(trajectory(), calibration());
+        if (weigh) planes.weigh();
+        planes.add(network_.states(), into);
+        add_start_values(into);
+      });
+      planes.follow(network_.last_step(), network_.states());
+      ++iterations;
+      if (moved > planes_settled) continue;
+      if (weigh) return true;
+      started_weighing_ = true;
+    }
+    return false;
+  }
+
+  const FlightStates& states() const { return network_.states(); }
+  Network& network() { return network_; }
+  const std::vector<Parameter>& unknown() const { return unknown_; }
+  double apriori(Parameter p) const { return apriori_of(options_.apriori, p); }
+  core::TrajectoryData finished() const { return trajectory_of(problem_, network_.smoothed(), options_.smoother.output_rate.value); }
+
+ private:
+  void add_start_values(NetworkNormals& into) const {
+    const auto n = static_cast<Eigen::Index>(unknown_.size());
+    if (n == 0) return;
+    VectorXd information(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double sigma = apriori(unknown_[static_cast<size_t>(i)]);
+      information[i] = std::isfinite(sigma) ? 1.0 / (sigma * sigma) : 0.0;
+    }
+    Eigen::MatrixXd part = Eigen::MatrixXd::Zero(n, into.N.size(states().common()));
+    part.rightCols(n).setIdentity();
+    into.add({{states().common(), part}}, information.asDiagonal(), -network_.calibration());
+  }
+
+  const CalibrationFlight& flight_;
+  const trajectory::SmoothedFlight& smoothed_;
+  trajectory::Problem problem_;
+  const NetworkOptions& options_;
+  std::vector<Parameter> unknown_;
+  Network network_;
+  trajectory::TrajectoryOptions interpolation_;
+  bool started_weighing_ = false;
+};
+
+double robust_scatter(const std::vector<PlaneMisfit>& misfits) {
+  std::vector<double> sizes;
+  for (const PlaneMisfit& m : misfits)
+    if (m.returns > 0 && m.weight > 0) sizes.push_back(std::abs(m.mean));
+  return core::mad_to_sigma * core::median(std::move(sizes), 0.0);
+}
+
+/// By how much the groups' returns lie elsewhere along their normals than before a round: differences of lines, so that planes may move.
+double moved_by(const std::vector<PlaneMisfit>& before, const std::vector<PlaneMisfit>& after) {
+  double squares = 0, n = 0;
+  for (size_t g = 0; g < after.size(); ++g) {
+    if (after[g].returns == 0 || after[g].weight <= 0) continue;
+    squares += std::pow(after[g].mean - before[g].mean, 2);
+    ++n;
+  }
+  return n > 0 ? std::sqrt(squares / n) : 0.0;
+}
+
+void refuse_without_common_planes(const TieSet& ties, const core::Tally& tally) {
+  for (size_t g = 1; g < ties.groups.size(); ++g)
+    if (ties.groups[g].plane == ties.groups[g - 1].plane) return;
+  refuse_without_planes(tally, "", "calib.network", ", and lie no farther apart than planes.mismatch");
+}
+
+std::vector<PlaneMisfit> misfits_with(PlaneFactors factors, const trajectory::Trajectory& trajectory,
+                                      const core::Calibration& calibration) {
+  factors.fit(trajectory, calibration);
+  factors.linearise(trajectory, calibration);
+  return factors.misfits();
+}
+
+}  // namespace
+
+AdjustedNetwork adjust_network(const CalibrationFlight& flight, const trajectory::SmoothedFlight& smoothed, const NetworkOptions& options,
+                               core::Tally& tally, const core::OnProgress& progress) {
+  std::vector<SurveyedTarget> targets;
+  std::copy_if(flight.targets.begin(), flight.targets.end(), std::back_inserter(targets),
+               [](const SurveyedTarget& t) { return t.use == io::ControlUse::control; });
+  NetworkRounds rounds(flight, smoothed, options);
+  AdjustedNetwork out;
+  TiePlaneOptions planes = sized(options.planes, flight.scale);
+  core::Tally of_round;
+  for (out.rounds = 1; out.rounds <= options.rounds; ++out.rounds) {
+    of_round = {};
+    const trajectory::Trajectory now = out.rounds == 1 ? *flight.trajectory : rounds.trajectory();
+    const std::string round = "round " + std::to_string(out.rounds);
+    progress(core::usual_share(out.rounds - 1, usual_network_rounds), round + ": planes");
+    out.ties = find_tie_planes(flight.shots, flight.scanner, rounds.calibration(), now, flight.frame, targets, planes, of_round);
+    refuse_without_common_planes(out.ties, of_round);
+    progress(core::usual_share(out.rounds - 1 + search_part, usual_network_rounds), round + ": adjustment");
+    PlaneFactors factors = rounds.factors(out.ties);
+    const std::vector<PlaneMisfit> before = misfits_with(factors, now, rounds.calibration());
+    factors.fit(now, rounds.calibration());
+    out.settled = rounds.iterate(factors, out.iterations);
+    out.after = misfits_with(factors, rounds.trajectory(), rounds.calibration());
+    out.last_move = moved_by(before, out.after);
+    out.left_out = factors.left_out();
+    out.noise_factor = factors.noise_factor();
+    planes.mismatch.value =
+        std::clamp(3 * robust_scatter(out.after), std::min(closest_mismatch, planes.mismatch.value), planes.mismatch.value);
+    if (out.rounds > 1 && out.last_move < steady_returns) break;
+  }
+  out.rounds = std::min(out.rounds, options.rounds);
+  tally.add(of_round);
+  out.before = misfits_with(rounds.factors(out.ties), *flight.trajectory, flight.start);
+  progress(core::usual_share(usual_network_rounds, usual_network_rounds), "covariances");
+  Network& network = rounds.network();
+  network.invert();
+  out.trajectory = rounds.finished();
+  out.calibration = rounds.calibration();
+  out.covariance = network.calibration_covariance();
+  for (size_t i = 0; i < rounds.unknown().size(); ++i) {
+    const Parameter p = rounds.unknown()[i];
+    const auto at = static_cast<Eigen::Index>(i);
+    out.values.push_back(
+        {p, value_of(flight.start, p), rounds.apriori(p), value_of(out.calibration, p), std::sqrt(std::max(0.0, out.covariance(at, at)))});
+  }
+  out.instants = smoothed.nodes.size();
+  out.unknowns = static_cast<std::uint64_t>(network.last_step().size());
+  return out;
+}
+
+PlaneAgreement agreement_on_planes(const AdjustedNetwork& network) {
+  PlaneAgreement out;
+  const std::vector<TieGroup>& groups = network.ties.groups;
+  for (size_t i = 0; i < groups.size(); ++i)
+    for (size_t j = i + 1; j < groups.size() && groups[j].plane == groups[i].plane; ++j) {
+      const PlaneMisfit &a = network.after[i], &b = network.after[j];
+      if (groups[i].line == groups[j].line || a.returns == 0 || b.returns == 0 || a.weight <= 0 || b.weight <= 0) continue;
+      if (network.before[i].returns == 0 || network.before[j].returns == 0) continue;
+      ++out.pairs;
+      out.before += std::pow(network.before[i].mean - network.before[j].mean, 2);
+      out.after += std::pow(a.mean - b.mean, 2);
+    }
+  if (out.pairs > 0) {
+    out.before = std::sqrt(out.before / static_cast<double>(out.pairs));
+    out.after = std::sqrt(out.after / static_cast<double>(out.pairs));
+  }
+  return out;
+}
+
+}  // namespace swath::calib

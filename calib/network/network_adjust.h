@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// IMU, GNSS and the laser's surfaces in one adjustment.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/adjust/calibrate.h"
+#include "calib/network/network_options.h"
+#include "calib/network/plane_factors.h"
+#include "trajectory/ins/ins_problem.h"
+
+namespace swath::calib {
+
+/// A calibration value that was an unknown.
+struct NetworkValue {
+  Parameter parameter = boresight_roll;
+  double start = 0.0, apriori = 0.0;  ///< with its sigma; infinite: free
+  double value = 0.0, sigma = 0.0;
+};
+
+struct AdjustedNetwork {
+  core::TrajectoryData trajectory;  ///< with covariances at the instants
+  core::Calibration calibration;    ///< the start with the values found
+  std::vector<NetworkValue> values;
+  Eigen::MatrixXd covariance;  ///< of the values, in their order
+  TieSet ties;                 ///< of the last round
+  /// In the order of TieSet::groups: with the smoother's trajectory and the start calibration, and after.
+  std::vector<PlaneMisfit> before, after;
+  std::uint64_t instants = 0, unknowns = 0, left_out = 0;
+  int rounds = 0, iterations = 0;
+  double noise_factor = 1.0;  ///< of single returns
+  double last_move = 0.0;     ///< rms by which the last round moved the groups, m
+  bool settled = false;
+};
+
+/// `flight.trajectory` is that of the smoother that left `smoothed`. Throws core::Error where no two lines see the same planes.
+AdjustedNetwork adjust_network(const CalibrationFlight& flight, const trajectory::SmoothedFlight& smoothed, const NetworkOptions& options,
+                               core::Tally& tally, const core::OnProgress& progress = core::unwatched);
+
+/// How two lines differ on the planes that both see, rms over planes and pairs, m.
+struct PlaneAgreement {
+  std::uint64_t pairs = 0;
+  double before = 0.0, after = 0.0;
+};
+PlaneAgreement agreement_on_planes(const AdjustedNetwork& network);
+
+}  // namespace swath::calib

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What planes that several flight lines have seen say of a flight's states and of the scanner's calibration.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "calib/adjust/adjust_options.h"
+#include "calib/adjust/tie_normals.h"
+#include "calib/network/flight_states.h"
+#include "calib/ties/tie_set.h"
+#include "core/records/sensor.h"
+#include "trajectory/trajectory.h"
+
+namespace swath::calib {
+
+/// How one line's returns lie about one plane.
+struct PlaneMisfit {
+  std::uint32_t plane = 0, line = 0;
+  double mean = 0.0;   ///< of its returns from the plane, m
+  double sigma = 0.0;  ///< of that mean by noise and surface alone, m
+  double weight = 1.0;
+  std::uint32_t returns = 0;
+};
+
+class PlaneFactors {
+ public:
+  /// All must outlive it. `times`: of the instants; `unknown`: calibration values that are estimated, rising; `surface`: sigma by which a
+  /// plane seen in one line departs from that of all, m; `wander`: power spectral density of the gyros' white noise, rad^2/s: between two
+  /// instants the attitude departs from the straight line by a Brownian bridge, which the states do not hold.
+  PlaneFactors(const TieSet& ties, const core::Scanner& scanner, const core::SensorSigma& sensor, std::vector<double> times,
+               std::vector<Parameter> unknown, const RobustOptions& robust, double surface, double wander, int threads);
+
+  /// Fits the planes to all returns as they lie, and takes from their roughness what is not noise. Once, before the first linearisation.
+  void fit(const trajectory::Trajectory& trajectory, const core::Calibration& calibration);
+  /// All returns at a trajectory, which passes through the states, and a calibration.
+  void linearise(const trajectory::Trajectory& trajectory, const core::Calibration& calibration);
+  /// Adds all planes with their own unknowns eliminated.
+  void add(const FlightStates& states, NetworkNormals& into);
+  /// Moves the planes as a solution asks for.
+  void follow(const Eigen::VectorXd& x, const FlightStates& states);
+  /// Weighs groups by their misfits: those far beyond what noise, surface and the others' scatter explain lose their weight.
+  void weigh();
+
+  const std::vector<TiePlane>& planes() const { return state_.planes; }
+  std::vector<PlaneMisfit> misfits() const;
+  double noise_factor() const { return scale_; }  ///< robust sigma of single returns about their group, in stated sigmas
+  std::uint64_t left_out() const;                 ///< groups without weight
+
+ private:
+  struct Rest {
+    std::vector<int> index;  // numbers by number_of()
+    Eigen::MatrixXd N_xp;
+    Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  };
+  struct Worker;
+  struct Place {  // of an unknown: node and row in it
+    int node;
+    Eigen::Index row;
+  };
+  // Unknowns that planes touch: six of each instant (position, attitude), then the calibration's.
+  int number_of(int instant, int component) const { return 6 * instant + component; }
+  int calibration_number() const { return 6 * static_cast<int>(times_.size()); }
+  Place place_of(int number, const FlightStates& states) const;
+  int interval_at(double t) const;
+  void linearise_group(Worker& worker, size_t number);
+  void fill_block(Worker& worker, size_t number, double median);
+  double variance_between(size_t group) const;
+  void fit_plane(std::uint32_t plane);
+  void set_roughness();
+  Rest add_plane(std::uint32_t plane, const FlightStates& states, NetworkNormals& into) const;
+  void scatter(const Rest& rest, const Eigen::MatrixXd& N, const Eigen::VectorXd& b, const FlightStates& states,
+               NetworkNormals& into) const;
+
+  const TieSet* ties_;
+  const core::Scanner* scanner_;
+  TieNoise noise_;
+  std::vector<double> times_;
+  std::vector<Parameter> unknown_;
+  RobustWeight robust_;
+  double surface_, wander_;
+  int threads_;
+  CorrectionKnots no_knots_;
+  TieProblem problem_;
+  TieState state_;
+  std::vector<GroupBlock> blocks_;
+  std::vector<double> turn_;    // of each group: squared derivative of its mean by a turn of the body, m^2/rad^2
+  std::vector<double> weight_;  // of each group
+  std::vector<float> deviation_;
+  std::vector<size_t> first_group_;
+  std::vector<Rest> rests_;
+  double scale_ = 1.0;
+};
+
+}  // namespace swath::calib

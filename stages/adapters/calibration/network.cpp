@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// IMU, GNSS and laser surfaces of a survey in one adjustment.
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/adjust/parameter_words.h"
+#include "calib/adjust/prepared_flight.h"
+#include "calib/adjust/start_sigmas.h"
+#include "calib/network/network_adjust.h"
+#include "core/config/result.h"
+#include "io/survey/calibration_file.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
+#include "stages/adapters/adapters.h"
+#include "stages/adapters/flight/smoothing.h"
+#include "stages/once.h"
+
+namespace swath::stages {
+namespace {
+
+struct NetworkStageOptions : calib::NetworkOptions {};
+
+template <class V>
+void describe(NetworkStageOptions& o, V& v) {
+  describe(static_cast<calib::NetworkOptions&>(o), v);
+}
+
+struct ValueRow {
+  calib::NetworkValue of;
+};
+
+template <class V>
+void describe(const ValueRow& r, V& v) {
+  const core::Form si = core::Form{"SI"}.always();
+  v.result("value", r.of.value, si, "Estimate, in rad, m, s or as a ratio.");
+  v.result("sigma", r.of.sigma, si, "Its standard deviation.");
+  v.result("start", r.of.start, si, "Value in the survey.");
+  v.result("start_sigma", r.of.apriori, si, "Standard deviation of that.");
+}
+
+struct AgainstTruth {
+  trajectory::TruthComparison smoother, network;
+};
+
+template <class V>
+void describe(const AgainstTruth& r, V& v) {
+  v.table("smoother", r.smoother, "Errors of the smoother's trajectory.");
+  v.table("network", r.network, "Errors of the adjusted trajectory.");
+}
+
+struct NetworkFindings {
+  std::uint64_t lines = 0, planes = 0, tie_returns = 0, instants = 0, unknowns = 0, left_out = 0;
+  int rounds = 0, iterations = 0;
+  bool settled = false;
+  double noise_factor = 0.0, last_move = 0.0;
+  calib::PlaneAgreement on_planes{};
+  std::vector<std::pair<std::string, ValueRow>> values{};
+  std::optional<AgainstTruth> truth{};
+};
+
+template <class V>
+void describe(const NetworkFindings& r, V& v) {
+  const core::Form shown = core::plain().in_summary(), m = core::metres().always();
+  v.result("lines", r.lines, "Flight lines.");
+  v.result("planes", r.planes, shown, "Planes that several lines have seen.");
+  v.result("tie_returns", r.tie_returns, "Returns on these planes.");
+  v.result("groups_left_out", r.left_out, "Groups of returns (one line on one plane) without weight: far off their plane.");
+  v.result("instants", r.instants, "Instants with a navigation state of their own.");
+  v.result("unknowns", r.unknowns, "Unknowns of the system, planes not counted.");
+  v.result("rounds", r.rounds, "Searches for planes.");
+  v.result("iterations", r.iterations, "Linearisations.");
+  v.result("settled", r.settled, shown, "False: the states still moved when the iterations ended.");
+  v.result("last_move_m", r.last_move, m, "RMS by which the last round moved returns from their planes.");
+  v.result("noise_factor", r.noise_factor, core::plain(2), "Robust scatter of single returns about their group, in stated sigmas.");
+  v.result("pairs_on_planes", r.on_planes.pairs, "Pairs of lines on common planes.");
+  v.result("rms_before_m", r.on_planes.before, m.in_summary(), "RMS difference of two lines on a plane, with the smoother's trajectory.");
+  v.result("rms_after_m", r.on_planes.after, m.in_summary(), "The same with the adjusted trajectory.");
+  v.named_tables("values", r.values, "Calibration values that were unknowns.");
+  v.table("truth", r.truth, "Errors against the truth of a simulated survey.");
+}
+
+NetworkFindings found_by(const calib::AdjustedNetwork& n) {
+  NetworkFindings f;
+  f.lines = n.ties.lines.size();
+  f.planes = n.ties.planes.size();
+  f.tie_returns = n.ties.returns.size();
+  f.instants = n.instants, f.unknowns = n.unknowns, f.left_out = n.left_out;
+  f.rounds = n.rounds, f.iterations = n.iterations, f.settled = n.settled;
+  f.noise_factor = n.noise_factor, f.last_move = n.last_move;
+  f.on_planes = calib::agreement_on_planes(n);
+  for (const calib::NetworkValue& v : n.values) f.values.emplace_back(std::string(calib::words_of(v.parameter).key), ValueRow{v});
+  return f;
+}
+
+/// The sensor's sigmas with those that the adjustment found, and the correlations of what it found.
+core::SensorSigma sigma_of(const calib::AdjustedNetwork& n, core::SensorSigma s) {
+  double arm = 0.0;
+  for (const calib::NetworkValue& v : n.values) switch (v.parameter) {
+      case calib::boresight_roll:
+        s.roll.value = v.sigma;
+        break;
+      case calib::boresight_pitch:
+        s.pitch.value = v.sigma;
+        break;
+      case calib::boresight_heading:
+        s.heading.value = v.sigma;
+        break;
+      case calib::range_offset:
+        s.range_offset.value = v.sigma;
+        break;
+      case calib::range_scale:
+        s.range_scale = v.sigma;
+        break;
+      case calib::scan_offset:
+        s.scan_offset.value = v.sigma;
+        break;
+      case calib::scan_scale:
+        s.scan_scale = v.sigma;
+        break;
+      case calib::latency:
+        s.latency.value = v.sigma;
+        break;
+      default:
+        arm = std::max(arm, v.sigma);
+    }
+  if (arm > 0.0) s.lever_arm.value = arm;
+  constexpr size_t all = core::calibration_keys.size();
+  s.correlation.assign(all * all, 0.0);
+  for (size_t i = 0; i < all; ++i) s.correlation[i * all + i] = 1.0;
+  for (size_t i = 0; i < n.values.size(); ++i)
+    for (size_t j = 0; j < n.values.size(); ++j)
+      s.correlation[static_cast<size_t>(n.values[i].parameter) * all + static_cast<size_t>(n.values[j].parameter)] =
+          i == j ? 1.0 : n.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) / (n.values[i].sigma * n.values[j].sigma);
+  return s;
+}
+
+std::vector<std::string> network_products(const NetworkStageOptions&) { return {"network.json", "calibration.json"}; }
+
+void expect_spec(const Context& context, const NetworkStageOptions&) { require_imu_spec(context.survey, "calib.network"); }
+
+std::vector<std::filesystem::path> network_inputs(const io::Survey& survey) {
+  std::vector<std::filesystem::path> out = true_trajectory(survey);
+  for (const auto& f : files_in<&io::Survey::control>(survey)) out.push_back(f);
+  return out;
+}
+
+Given<trajectory::Trajectory, NetworkFindings> adjust_survey(core::ImuData imu, const core::GnssData& gnss, const Context& context,
+                                                             const georef::ShotStream& shots, const NetworkStageOptions& o,
+                                                             const Output& to, const core::OnProgress& progress, core::Tally& tally) {
+  const io::Survey& survey = context.survey;
+  const double rate = o.smoother.output_rate.value;
+  trajectory::SmoothedFlight left;
+  trajectory::InsGnssResult smoothed = smooth_records(std::move(imu), gnss, survey, o.smoother, progress, &left);
+  for (const std::string& w : smoothed.report.warnings) tally.count(w);
+  const trajectory::Trajectory before = as_flown(std::move(smoothed.trajectory), rate, "calib.network");
+  const calib::PreparedFlight prepared(survey, shots, context.threads, before, {}, tally);
+  calib::NetworkOptions how = o;
+  how.apriori = calib::start_sigmas(survey.sigma);
+  calib::AdjustedNetwork network = calib::adjust_network(prepared.flight, left, how, tally, progress);
+  if (!network.settled) tally.count("the adjustment did not settle: raise iterations, or look for lines that do not fit");
+
+  NetworkFindings findings = found_by(network);
+  if (const auto truth = truth_of(survey, before.data()))
+    findings.truth = AgainstTruth{compare_with_truth(survey, trajectory::errors_against(before.data(), *truth)),
+                                  compare_with_truth(survey, trajectory::errors_against(network.trajectory, *truth))};
+  io::write_text_file(to.folder / "calibration.json",
+                      io::to_json(io::calibration_tree(network.calibration, sigma_of(network, survey.sigma))));
+  io::write_text_file(to.folder / "network.json", io::to_json(core::reported(findings)));
+  if (!network.values.empty())
+    tally.count("calibration values were estimated: georeference with calibration.json in another run, this one has the survey's");
+  return {as_flown(std::move(network.trajectory), rate, "calib.network"), std::move(findings)};
+}
+
+}  // namespace
+
+Entry network_stage() {
+  return once<adjust_survey>("calib.network",
+                             "Joint adjustment of IMU and GNSS records and of planes that several flight lines have seen: trajectory with "
+                             "covariances, calibration values if asked; network.json and calibration.json.",
+                             {.check = expect_spec, .inputs = network_inputs, .products = network_products});
+}
+
+}  // namespace swath::stages

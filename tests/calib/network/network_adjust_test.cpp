@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calib/network/network_adjust.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include "calib/adjust/start_sigmas.h"
+#include "core/error.h"
+#include "tests/calib/tie_world.h"
+#include "tests/trajectory/ins_run.h"
+#include "trajectory/compare.h"
+#include "trajectory/ins/ins_gnss.h"
+
+namespace swath::calib {
+namespace {
+
+using namespace test;
+using swath::test::motion_start;
+
+/// A MEMS survey of a village by parallel lines flown to and fro, 350 m above it, fixes of 1 Hz.
+struct MemsSurvey {
+  simulate::PlannedFlight flight;
+  trajectory::test::Course course;
+  core::TrajectoryData truth;
+  TieWorld world;
+  Flown shots;
+  trajectory::SmoothedFlight left;
+  std::unique_ptr<trajectory::Trajectory> smoothed;
+  CalibrationFlight survey;
+
+  explicit MemsSurvey(int lines, core::Calibration start_error = {})
+      : flight(swath::test::survey_flight(lines)), course(swath::test::motion_of(flight), 0.0, flight.duration()) {
+    for (double t = 0.02; t < flight.duration(); t += 0.02) append(t);
+    const trajectory::Trajectory exact(truth, {}, "truth");
+    std::vector<std::pair<double, double>> spans;
+    for (const simulate::Line& l : flight.lines()) spans.emplace_back(motion_start + l.start, motion_start + l.end);
+    survey.frame = world.frame = frame_of(spans, 350.0, exact);
+    world.houses = village(60, 400.0, 5);
+    world.prf = 6000.0;
+    world.truth.roll = core::degrees(0.2);
+    shoot(exact, spans);
+
+    trajectory::test::Trial trial = trajectory::test::trial_of(core::ImuGrade::mems, 3);
+    trial.change_gnss = [](core::GnssData& g) { g = swath::test::keep_fixes(g, [](size_t k) { return k % 5 == 0; }); };
+    core::ImuData imu = swath::test::with_errors(course.exact.imu, core::error_model_of(core::ImuGrade::mems), 3);
+    core::GnssData gnss = swath::test::with_errors(course.exact.gnss, trial.fixes, 3);
+    trial.change_gnss(gnss);
+    trajectory::InsGnssResult result =
+        smooth(std::move(imu), std::move(gnss), trial.stated, course.sensors.lever, 0.02, {}, {}, core::unwatched, &left);
+    smoothed = std::make_unique<trajectory::Trajectory>(std::move(result.trajectory));
+
+    survey.shots = shots.stream();
+    survey.scanner = world.scanner;
+    survey.start = world.truth;
+    survey.start.roll.value += start_error.roll.value;
+    survey.sensor.range = core::Metres(0.02);
+    survey.sensor.roll = core::degrees(0.05);
+    survey.sensor.stated = {"roll"};
+    survey.trajectory = smoothed.get();
+    survey.scale = scale_of(350.0, 6000.0 / (50.0 * 255.0), survey.sensor);
+    survey.threads = 2;
+  }
+
+  trajectory::Comparison errors(const core::TrajectoryData& of) const {
+    std::vector<trajectory::Span> lines;
+    for (const simulate::Line& l : flight.lines()) lines.push_back({motion_start + l.start, motion_start + l.end});
+    return trajectory::compare(trajectory::errors_against(of, trajectory::Trajectory(truth, {}, "truth")), lines);
+  }
+
+ private:
+  void append(double t) {
+    const swath::test::Truth at = swath::test::truth_at(course.motion, t);
+    const core::Geodetic g = core::geodetic_of(at.position);
+    const core::Attitude a = core::attitude_of(core::ecef_R_ned(g.latitude, g.longitude).transpose() * at.ecef_R_body);
+    truth.time.push_back(motion_start + t);
+    truth.latitude.push_back(g.latitude), truth.longitude.push_back(g.longitude), truth.height.push_back(g.height);
+    truth.roll.push_back(a.roll), truth.pitch.push_back(a.pitch), truth.heading.push_back(a.heading);
+  }
+  void shoot(const trajectory::Trajectory& exact, const std::vector<std::pair<double, double>>& spans) {
+    std::mt19937 random(9);
+    std::normal_distribution<double> normal;
+    const ShotGeometry geometry(world.scanner, world.truth);
+    trajectory::Cursor cursor(exact);
+    for (size_t k = 0; k < spans.size(); ++k) {
+      core::Shots out;
+      for (double t = spans[k].first; t < spans[k].second; t += 1.0 / world.prf) {
+        cursor.seek(t);
+        const double phase = t * world.scans - std::floor(t * world.scans);
+        const double angle = world.half_angle * (phase < 0.5 ? 4.0 * phase - 1.0 : 3.0 - 4.0 * phase);
+        const auto point = [&](double range) -> Eigen::Vector3d {
+          return world.frame.local_R_ecef * (geometry.ecef_point(cursor.pose(t), {angle, 0.0, range}) - world.frame.origin);
+        };
+        const Eigen::Vector3d one = point(1000.0), way = point(1001.0) - one, from = one - 1000.0 * way;
+        out.time.push_back(t);
+        out.angle.push_back(angle);
+        out.range.push_back(world.hit(from, way) + 0.02 * normal(random));
+        out.return_number.push_back(1), out.return_count.push_back(1);
+      }
+      shots.lines.emplace_back(static_cast<int>(k) + 1, std::move(out));
+    }
+  }
+};
+
+NetworkOptions quick() {
+  NetworkOptions o;
+  o.planes.planes = 600;
+  o.planes.returns = 40;
+  o.rounds = 2;
+  return o;
+}
+
+TEST(NetworkAdjust, PlanesMakeTheAttitudeOfAMemsSurveyBetterAndItsSigmasTrue) {
+  const MemsSurvey made(3);
+  core::Tally tally;
+  const AdjustedNetwork network = adjust_network(made.survey, made.left, quick(), tally);
+  EXPECT_TRUE(network.settled);
+  const trajectory::Comparison before = made.errors(made.smoothed->data()), after = made.errors(network.trajectory);
+  double pull = 0;
+  for (size_t c = 0; c < 6; ++c) {
+    std::printf("%s: rms %.4g -> %.4g, error/sigma %.2f -> %.2f\n", std::string(trajectory::Comparison::names[c]).c_str(),
+                before.component[c].rms, after.component[c].rms, before.component[c].over_sigma, after.component[c].over_sigma);
+    pull += std::pow(after.component[c].over_sigma, 2) / 6;
+  }
+  EXPECT_LT(after.component[3].rms, 0.2 * before.component[3].rms);  // seen: a sixteenth
+  EXPECT_LT(after.component[2].rms, 0.8 * before.component[2].rms);
+  EXPECT_LT(after.component[5].rms, before.component[5].rms);  // parallel lines hardly see the heading
+  EXPECT_LT(std::sqrt(pull), 1.6);                             // one flight: six components that hardly change within it
+  const PlaneAgreement planes = agreement_on_planes(network);
+  EXPECT_GT(planes.pairs, 50u);
+  EXPECT_LT(planes.after, 0.5 * planes.before);
+  EXPECT_EQ(network.trajectory.covariance.time.size(), network.instants);
+}
+
+TEST(NetworkAdjust, FindsTheBoresightWithTheTrajectory) {
+  core::Calibration off;
+  off.roll = core::degrees(0.04);
+  const MemsSurvey made(3, off);
+  core::Tally tally;
+  NetworkOptions o = quick();
+  o.estimate.roll = true;
+  o.apriori = start_sigmas(made.survey.sensor);
+  const AdjustedNetwork network = adjust_network(made.survey, made.left, o, tally);
+  ASSERT_EQ(network.values.size(), 1u);
+  const NetworkValue& v = network.values.front();
+  EXPECT_EQ(v.parameter, boresight_roll);
+  EXPECT_LT(v.sigma, 0.5 * core::degrees(0.05).value);  // an accelerometer's bias across tilts the body as the boresight does
+  EXPECT_LT(std::abs(v.value - made.world.truth.roll.value), 4 * v.sigma);
+  EXPECT_EQ(network.calibration.roll.value, v.value);
+}
+
+TEST(NetworkAdjust, OneLineAloneIsRefusedWithWhatWasSought) {
+  const MemsSurvey made(1);
+  core::Tally tally;
+  try {
+    adjust_network(made.survey, made.left, quick(), tally);
+    FAIL() << "nothing was refused";
+  } catch (const core::Error& e) {
+    EXPECT_NE(std::string(e.what()).find("plane"), std::string::npos) << e.text();
+  }
+}
+
+}  // namespace
+}  // namespace swath::calib

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The joint adjustment as its user meets it: configs/network.toml on a small MEMS survey."""
+import json
+import unittest
+
+from support import SOURCE, Case, stage, swath
+
+CONFIG = SOURCE / "configs" / "network.toml"
+# Two lines and one across over halls, raw records alone.
+SURVEY = ["world.scene=airfield", "world.length=300 m", "world.width=200 m", "flight.lines=2", "flight.cross_lines=1", "flight.overlap=0.6",
+          "flight.height=300 m", "scanner.prf=8 kHz", "scanner.frequency=25 Hz", "mounting.deliver=truth", "imu.grade=mems", "gnss.rate=1 Hz",
+          "output.trajectory=none", "output.truth_returns=false"]
+
+
+class Network(Case):
+    simulated = SURVEY
+
+    def test_surfaces_correct_the_trajectory_and_the_report_says_how_well(self):
+        report = self.run_ok(self.survey / "survey.toml", config=CONFIG)
+        found = stage(report, "calib.network")["findings"]
+        self.assertTrue(found["settled"])
+        self.assertLess(found["rms_after_m"], 0.5 * found["rms_before_m"])
+        smoother, network = (found["truth"][who]["lines"] for who in ("smoother", "network"))
+        for angle in ("roll", "pitch", "heading"):
+            self.assertLess(network[angle]["rms_arcsec"], smoother[angle]["rms_arcsec"], angle)
+        self.assertEqual(set(found["values"]), {"boresight_roll", "boresight_pitch", "boresight_heading"})
+        self.assertEqual(json.loads((self.out / "network.json").read_text())["planes"], found["planes"])
+        calibration = json.loads((self.out / "calibration.json").read_text())
+        self.assertIn("calibration", calibration)
+        self.assertGreater((self.out / "trajectory.sbet").stat().st_size, 136 * 1000)
+        self.assertTrue((self.out / "trajectory.smrmsg").exists())
+
+    def test_without_the_grade_of_the_imu_it_is_refused(self):
+        text = (self.survey / "survey.toml").read_text()
+        kept = text[:text.index("[imu_spec]")] + "\n".join(text[text.index("[imu_spec]"):].split("\n\n", 1)[1:])
+        (self.survey / "unstated.toml").write_text(kept)
+        done = swath("run", CONFIG, "--survey", self.survey / "unstated.toml", "--output", self.out, "--quiet")
+        self.assert_error(done, 2, "how good the IMU is", "hint: ")
+
+
+if __name__ == "__main__":
+    unittest.main()
