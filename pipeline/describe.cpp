@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/describe.h"
 
+#include "calib/block/block_findings.h"
 #include "calib/block/block_theory.h"
 #include "calib/block/station_drift.h"
 #include "core/config/option_visitors.h"
@@ -151,10 +152,14 @@ std::vector<std::filesystem::path> write_docs(const std::filesystem::path& docs,
   calib::TheoryOptions theory;
   const calib::TheoryTable theory_found;
   const calib::DriftFound drift_found;
+  calib::BlockConfig block;
+  const calib::BlockFound block_found;
   page(docs / "block.md", "Blocks of images",
-       "### Options of a theory file\n\n" + core::option_table_markdown(core::described(theory)) +
-           "\n### Keys of `block-theory --json`\n\n" + core::result_table_markdown(core::described_results(theory_found)) +
-           "\n### Keys of `block-drift --json`\n\n" + core::result_table_markdown(core::described_results(drift_found)));
+       "### Options of a block\n\n" + core::option_table_markdown(core::described(block)) + "\n### Keys of block.json\n\n" +
+           core::result_table_markdown(core::described_results(block_found)) + "\n### Options of a theory file\n\n" +
+           core::option_table_markdown(core::described(theory)) + "\n### Keys of `block-theory --json`\n\n" +
+           core::result_table_markdown(core::described_results(theory_found)) + "\n### Keys of `block-drift --json`\n\n" +
+           core::result_table_markdown(core::described_results(drift_found)));
   RunOptions run;
   page(docs / "run.md", "[run]", core::option_table_markdown(core::described(run)));
   return differing;

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <map>
 
+#include "calib/block/block_checks.h"
+#include "calib/block/block_files.h"
 #include "calib/block/block_theory.h"
 #include "calib/block/station_drift.h"
 #include "core/config/option_visitors.h"
@@ -94,7 +96,48 @@ int block_drift(const DriftArguments& a) {
   return 0;
 }
 
+struct BlockArguments {
+  std::string config;
+  std::filesystem::path folder = "block";
+  std::vector<std::string> sets;
+  bool json = false;
+};
+
+int block(const BlockArguments& a) {
+  core::Value given = io::read_value_file(a.config);
+  for (const std::string& set : a.sets) pipeline::set_option(given, set);
+  const calib::BlockConfig config = calib::read_block_config(a.config, given);
+  calib::ReadBlock read = calib::read_block(config, a.config);
+  calib::refuse_mistakes(read, config);
+  const calib::StartResidual start = calib::start_residual(calib::sample_of(read, 2000).block);
+  const calib::BlockSolution solution = calib::adjust_block(read.block, config.adjust);
+  calib::BlockFound found = calib::findings_of(read, config, solution);
+  found.start_tie = start.tie, found.start_control = start.control;
+  const std::vector<std::string> files = calib::write_block(a.folder, read, config, solution, found);
+  if (a.json) {
+    print_json(core::reported(found));
+  } else {
+    print(calib::block_text(found));
+    std::string text = "written to " + a.folder.string() + ":";
+    for (const std::string& f : files) text += " " + f;
+    print(text + "\n");
+  }
+  return 0;
+}
+
 }  // namespace
+
+void add_block_command(Commands& commands) {
+  const auto a = std::make_shared<BlockArguments>();
+  auto* c = commands.add("block",
+                         "Examples\n  swath block block.toml --output block\n\nAdjust a block of images with GNSS stations, "
+                         "control and self-calibration.",
+                         [a] { return block(*a); });
+  c->add_option("CONFIG", a->config, "Cameras, images, image points and control, .toml or .json")->required();
+  c->add_option("--output", a->folder, "Folder for orientations, cameras, points and report; default: block");
+  c->add_option("--set", a->sets, "One option of it: drift=strip, adjust.robust=false")->allow_extra_args(false);
+  c->add_flag("--json", a->json, "What block.json holds, on the terminal");
+}
 
 void add_block_theory_command(Commands& commands) {
   const auto a = std::make_shared<TheoryArguments>();

@@ -73,6 +73,7 @@ void add_pipeline_commands(Commands& commands);
 void add_list_commands(Commands& commands);
 void add_plan_command(Commands& commands);
 void add_budget_command(Commands& commands);
+void add_block_command(Commands& commands);
 void add_block_theory_command(Commands& commands);
 void add_block_drift_command(Commands& commands);
 void add_simulate_command(Commands& commands);

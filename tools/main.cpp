@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
     swath::tools::add_plan_command(commands);
     swath::tools::add_task_commands(commands);
     swath::tools::add_budget_command(commands);
+    swath::tools::add_block_command(commands);
     swath::tools::add_block_theory_command(commands);
     swath::tools::add_block_drift_command(commands);
     swath::tools::add_simulate_command(commands);

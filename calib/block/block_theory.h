@@ -156,8 +156,4 @@ template <>
 struct Choices<calib::ControlLayout> {
   static constexpr std::array<std::string_view, 3> names{"none", "corners", "chains"};
 };
-template <>
-struct Choices<calib::DriftSets> {
-  static constexpr std::array<std::string_view, 3> names{"none", "block", "strip"};
-};
 }  // namespace swath::core

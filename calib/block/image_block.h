@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "calib/block/brown.h"
+#include "core/config/option.h"
 
 namespace swath::calib {
 
@@ -96,3 +97,14 @@ struct ImageBlock {
 };
 
 }  // namespace swath::calib
+
+namespace swath::core {
+template <>
+struct Choices<calib::DriftSets> {
+  static constexpr std::array<std::string_view, 3> names{"none", "block", "strip"};
+};
+template <>
+struct Choices<calib::DistortionAt> {
+  static constexpr std::array<std::string_view, 2> names{"ideal", "measured"};
+};
+}  // namespace swath::core

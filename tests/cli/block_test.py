@@ -9,7 +9,62 @@ from support import SOURCE, Case, swath
 QUADRO_1 = [(0.959, 1.502), (1.620, 1.680), (2.101, 2.288), (1.533, 2.268)]
 
 
+F, HEIGHT = 100.0, 1500.0  # mm, m: scale 1:15 000
+
+
+def write_block(folder, y="up", drift="none", control_unit=1.0):
+    """Three strips of five level images, flown to and fro, over points whose heights differ; exact image points."""
+    points = {f"p{i}{j}": (300.0 * i, 350.0 * j, 40.0 * ((3 * i + 5 * j) % 7)) for i in range(9) for j in range(9)}
+    images, marks = ["name,strip,time,x,y,z"], ["image,point,x,y"]
+    for strip in range(3):
+        way = 1 if strip % 2 == 0 else -1
+        for k in range(5):
+            x, y0, z = 1200.0 + way * 600.0 * (k - 2), 700.0 * (strip + 1), HEIGHT + 5.0 * k
+            name = f"s{strip}_{k}.jpg"
+            images.append(f"{name},{strip},{1000 * strip + 10 * k},{x},{y0},{z}")
+            for point, (px, py, pz) in points.items():
+                u, v = (way * d * F / (z - pz) for d in (px - x, py - y0))
+                if abs(u) < 60 and abs(v) < 60:
+                    marks.append(f"{name},{point},{u:.9f},{v:.9f}")
+    control = ["name,x,y,z"] + [",".join(map(str, [p, *(c / control_unit for c in points[p])])) for p in ("p00", "p80", "p08", "p88", "p44")]
+    for name, lines in (("images", images), ("points", marks), ("control", control)):
+        (folder / f"{name}.csv").write_text("\n".join(lines) + "\n")
+    (folder / "block.toml").write_text(
+        f'kind = "block_adjust"\ncrs = "local"\ndrift = "{drift}"\n[images]\nfile = "images.csv"\n[[camera]]\nname = "C"\nf = "{F} mm"\n'
+        f'[[image_points]]\nfile = "points.csv"\nunit = "mm"\ny = "{y}"\norigin = "middle"\nsigma = "5 um"\n[[control]]\nfile = "control.csv"\n')
+    return points
+
+
 class Block(Case):
+    def test_adjusts_files(self):
+        points = write_block(self.folder)
+        done = swath("block", self.folder / "block.toml", "--output", self.folder / "out", "--set", "adjust.components=false")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("15 images, 81 points", done.stdout)
+        rows = (self.folder / "out" / "orientation.csv").read_text().splitlines()
+        given = (self.folder / "images.csv").read_text().splitlines()[1:]
+        for row, image in zip([r for r in rows if not r.startswith("#")][1:], given):
+            cells, stated = row.split(","), image.split(",")
+            for got, want in zip(cells[3:6], stated[3:6]):
+                self.assertAlmostEqual(float(got), float(want), delta=2e-4)
+            self.assertAlmostEqual(float(cells[6]), 0.0, delta=1e-5)  # omega
+        found = json.loads((self.folder / "out" / "block.json").read_text())
+        self.assertEqual((found["images"], found["control"], found["rejected"]), (15, 5, 0))
+        self.assertIn("<svg", (self.folder / "out" / "report.html").read_text())
+        self.assertEqual(len(points), found["points"])
+
+    def test_mistakes_are_named(self):
+        write_block(self.folder, y="down")
+        self.assert_error(swath("block", self.folder / "block.toml", "--output", self.folder / "out"), 1, "y axis of the image points has the other sense")
+        write_block(self.folder, control_unit=0.3048)
+        self.assert_error(swath("block", self.folder / "block.toml", "--output", self.folder / "out"), 1, "control is in feet")
+        self.assertFalse((self.folder / "out").exists())
+        write_block(self.folder, drift="strip")
+        corners = (self.folder / "control.csv").read_text().splitlines()[:-1]
+        (self.folder / "control.csv").write_text("\n".join(corners) + "\n")
+        self.assert_error(swath("block", self.folder / "block.toml", "--output", self.folder / "out"), 1, "heights.*cross strips.*chains of height control")
+        self.assert_error(swath("block", self.folder / "block.toml", "--set", "crs="), 2, "crs is not stated")
+
     def test_quadro_1(self):
         done = swath("block-theory", "--json")
         self.assertEqual(done.returncode, 0, done.stderr)

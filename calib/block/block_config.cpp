@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calib/block/block_config.h"
+
+#include <cmath>
+
+#include "calib/block/direct_orientation.h"
+#include "core/config/option_visitors.h"
+#include "core/error.h"
+#include "io/text/line_reader.h"
+
+namespace swath::calib {
+namespace {
+
+/// `dimension` none: a bare number. In SI.
+double sigma_from(const std::string& text, core::Dimension dimension, const std::string& key, const std::string& file) {
+  if (text == "held") return held_value;
+  if (text == "free") return free_value;
+  std::string fault;
+  double value = 0.0;
+  if (dimension == core::Dimension::none) {
+    if (!io::read_number(text, value)) fault = "not a number";
+  } else {
+    value = core::parse_quantity(dimension, text, fault).value_or(0.0);
+  }
+  if (fault.empty() && !(value > 0.0 && std::isfinite(value))) fault = "not above 0";
+  if (!fault.empty())
+    throw core::usage_error("camera.sigma." + key + " is \"" + text + "\": " + fault, file, "\"held\", \"free\", or a sigma");
+  return value;
+}
+
+bool needs_distortion(const BlockCamera& c) {
+  for (int k = 3; k < camera_values; ++k)
+    if (c.value[k] != 0.0 || c.sigma[k] != held_value) return true;
+  return false;
+}
+
+}  // namespace
+
+BlockConfig read_block_config(const std::filesystem::path& file, core::Value given) {
+  BlockConfig out;
+  std::vector<core::Fault> faults;
+  core::read_options(core::described(out), given, "", faults);
+  core::throw_if_any(faults);
+  const auto beside = [&](std::filesystem::path& path) {
+    if (!path.empty() && path.is_relative()) path = file.parent_path() / path;
+  };
+  beside(out.images.file);
+  for (io::ImageFile& f : out.image_points) beside(f.file);
+  for (BlockControlFile& f : out.control) beside(f.file);
+  for (const io::ImageFile& f : out.image_points)
+    if (!f.sigma && !f.sigma_pixels)
+      throw core::usage_error("the sigma of the image points is not stated", f.file.string(), "add sigma = \"3 um\" or sigma_pixels = 0.3");
+  return out;
+}
+
+BlockCamera camera_of(const CameraConfig& c, const std::string& file) {
+  constexpr double millimetres = 1e3;
+  BlockCamera out;
+  out.name = c.name;
+  out.value << millimetres * c.f.value, millimetres * c.x0.value, millimetres * c.y0.value, c.k1, c.k2, c.k3, c.p1, c.p2, c.b1, c.b2;
+  const std::array<const std::string*, camera_values> sigmas{&c.sigma.f,  &c.sigma.x0, &c.sigma.y0, &c.sigma.k1, &c.sigma.k2,
+                                                             &c.sigma.k3, &c.sigma.p1, &c.sigma.p2, &c.sigma.b1, &c.sigma.b2};
+  for (size_t k = 0; k < sigmas.size(); ++k) {
+    const bool length = k < 3;
+    out.sigma[static_cast<Eigen::Index>(k)] =
+        (length ? millimetres : 1.0) *
+        sigma_from(*sigmas[k], length ? core::Dimension::length : core::Dimension::none, std::string(camera_keys[k]), file);
+  }
+  if (needs_distortion(out) && !c.distortion)
+    throw core::usage_error("camera " + c.name + " has distortion, and it is not stated which point it is computed from", file,
+                            "add distortion = \"ideal\" (OpenCV, COLMAP, Metashape) or distortion = \"measured\" (calibration protocols)");
+  out.distortion = c.distortion.value_or(DistortionAt::ideal);
+  out.body_R_camera = camera_mounting(c.mount, c.boresight);
+  out.boresight_sigma.setConstant(sigma_from(c.sigma.boresight, core::Dimension::angle, "boresight", file));
+  out.antenna = out.body_R_camera.transpose() * Eigen::Vector3d(c.antenna[0].value, c.antenna[1].value, c.antenna[2].value);
+  out.antenna_sigma.setConstant(sigma_from(c.sigma.antenna, core::Dimension::length, "antenna", file));
+  return out;
+}
+
+}  // namespace swath::calib

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calib/block/block_files.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "calib/block/block_page.h"
+#include "calib/block/direct_orientation.h"
+#include "calib/block/mark_plane.h"
+#include "calib/block/orientation_table.h"
+#include "core/config/result_visitors.h"
+#include "core/config/units.h"
+#include "core/geo/frames.h"
+#include "io/text/output_file.h"
+#include "io/text/value_file.h"
+#include "io/vector/point_layer.h"
+
+namespace swath::calib {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+
+std::vector<MatrixXd> image_covariances(const ReadBlock& read, const BlockSolution& s) {
+  std::vector<MatrixXd> out(read.block.images.size());
+  for (size_t n = 0; n < s.linear.nodes.size(); ++n)
+    if (s.linear.nodes[n].kind == NodeKind::image) out[s.linear.nodes[n].index] = s.inference.nodes[n];
+  return out;
+}
+
+ImageOrientation oriented(const ReadBlock& read, std::uint32_t image, const MatrixXd& covariance) {
+  const BlockImage& i = read.block.images[image];
+  const Matrix3d to_grid = read.frame.local_R_grid(i.position).transpose();
+  ImageOrientation out;
+  out.map = read.frame.map_of(i.position);
+  out.grid_R_camera = to_grid * i.camera_R_local.transpose();
+  Matrix3d ned_R_enu;
+  ned_R_enu << 0, 1, 0, 1, 0, 0, 0, 0, -1;
+  out.attitude = core::attitude_of(ned_R_enu * read.frame.local_R_true(i.position).transpose() * i.camera_R_local.transpose() *
+                                   read.block.cameras[i.camera].body_R_camera.transpose());
+  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Identity();
+  turn.topLeftCorner<3, 3>() = to_grid;
+  out.covariance = turn * covariance * turn.transpose();
+  return out;
+}
+
+std::string format(const char* form, double value) {
+  char text[48];
+  std::snprintf(text, sizeof text, form, value);
+  return text;
+}
+
+io::ImageData colmap_data(const ReadBlock& read, const BlockConfig& config, std::vector<io::ColmapPoint>& points) {
+  io::ImageData out;
+  const ImageBlock& b = read.block;
+  std::vector<char> exact;
+  for (size_t c = 0; c < b.cameras.size(); ++c) {
+    auto camera = pixel_camera(b.cameras[c], config.cameras[c]);
+    exact.push_back(camera.has_value());
+    if (!camera) {
+      BlockCamera plain = b.cameras[c];
+      plain.value.tail<7>().setZero();
+      camera = pixel_camera(plain, config.cameras[c]);
+    }
+    out.cameras.push_back(*camera);
+  }
+  for (std::uint32_t i = 0; i < b.images.size(); ++i) {
+    out.images.push_back(b.images[i].name);
+    out.camera_of.push_back(b.images[i].camera);
+    out.poses.push_back({i, b.images[i].camera_R_local, b.images[i].position});
+  }
+  for (const BlockPoint& p : b.points) points.push_back({p.name, p.position});
+  for (const ImageRay& r : b.rays) {
+    const std::uint32_t camera = b.images[r.image].camera;
+    Eigen::Vector2d p(r.x, r.y);
+    if (!exact[camera]) {  // the distortion is taken off: the camera is without
+      const auto d = direction_of(b.cameras[camera].value, b.cameras[camera].distortion, p);
+      if (!d) continue;
+      p = d->head<2>() + b.cameras[camera].value.segment<2>(1);
+    }
+    p = in_pixels(p, config.cameras[camera]);
+    out.marks.push_back({r.image, r.point, p.x(), p.y(), 0});
+  }
+  return out;
+}
+
+std::vector<io::NamedPoint> points_of(const ReadBlock& read, const BlockSolution& s) {
+  const ImageBlock& b = read.block;
+  std::vector<const char*> kind(b.points.size(), "tie");
+  for (const BlockControl& c : b.control) kind[c.point] = c.check ? "check" : "control";
+  std::vector<int> rays(b.points.size(), 0);
+  for (const ImageRay& r : b.rays) ++rays[r.point];
+  std::vector<io::NamedPoint> out;
+  for (size_t p = 0; p < b.points.size(); ++p) {
+    if (s.linear.point_column[p] < 0) continue;
+    const Matrix3d R = read.frame.local_R_grid(b.points[p].position).transpose();
+    const Vector3d sigma = (R * s.inference.points[p] * R.transpose()).diagonal().cwiseSqrt();
+    out.push_back({b.points[p].name,
+                   kind[p],
+                   read.frame.map_of(b.points[p].position),
+                   {static_cast<double>(rays[p]), sigma.x(), sigma.y(), sigma.z()}});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string orientation_csv(const ReadBlock& read, const BlockConfig& config, const BlockSolution& s) {
+  std::string out = orientation_header(config.crs);
+  const auto covariances = image_covariances(read, s);
+  for (std::uint32_t i = 0; i < read.block.images.size(); ++i) {
+    const BlockImage& image = read.block.images[i];
+    out += orientation_line(image.name, read.block.cameras[image.camera].name, image.strip, oriented(read, i, covariances[i]));
+  }
+  return out;
+}
+
+std::string geo_text(const ReadBlock& read, const BlockConfig& config, const BlockSolution& s) {
+  std::string out = config.crs + "\n";
+  const auto covariances = image_covariances(read, s);
+  const char* const place = std::abs(read.frame.middle().x()) > 1000.0 ? " %.4f" : " %.10f";
+  for (std::uint32_t i = 0; i < read.block.images.size(); ++i) {
+    const ImageOrientation o = oriented(read, i, covariances[i]);
+    out += read.block.images[i].name + format(place, o.map.x()) + format(place, o.map.y()) + format(" %.4f", o.map.z());
+    for (const double a : {o.attitude.heading, o.attitude.pitch, o.attitude.roll}) out += format(" %.5f", a / core::degree);
+    out +=
+        format(" %.4f", std::sqrt((o.covariance(0, 0) + o.covariance(1, 1)) / 2.0)) + format(" %.4f", std::sqrt(o.covariance(2, 2))) + "\n";
+  }
+  return out;
+}
+
+std::string camera_toml(const ReadBlock& read, const BlockConfig& config, const BlockFound& found) {
+  std::string out = "# Cameras after the adjustment: tables that `swath block` takes. Values in brackets are standard deviations.\n";
+  for (size_t c = 0; c < read.block.cameras.size(); ++c) {
+    const BlockCamera& camera = read.block.cameras[c];
+    const CameraConfig& k = config.cameras[c];
+    out += "\n[[camera]]\nname = \"" + camera.name + "\"\n";
+    for (int i = 0; i < camera_values; ++i) {
+      const CameraValueFound& v = found.cameras[c].values[static_cast<size_t>(i)];
+      const std::string number = core::format_number(v.value);
+      out += v.name + " = " + (i < 3 ? "\"" + number + " mm\"" : number) +
+             (v.held ? "" : "  # (" + core::format_number(v.sigma) + (v.unit.empty() ? "" : " " + v.unit) + ")") + "\n";
+    }
+    out += std::string("distortion = \"") + (camera.distortion == DistortionAt::ideal ? "ideal" : "measured") + "\"\n";
+    if (k.pixel)
+      out += "columns = " + std::to_string(k.columns) + "\nrows = " + std::to_string(k.rows) + "\npixel = \"" +
+             core::format_number(1e6 * k.pixel->value) + " um\"\n";
+    // The mount stays; what is left of the rotation is the boresight.
+    const Matrix3d mount = camera_mounting(k.mount, {});
+    const core::Attitude b = core::attitude_of(camera.body_R_camera * mount.transpose());
+    const Vector3d arm = camera.body_R_camera * camera.antenna;
+    out += "mount = \"" + core::format_number(k.mount.value / core::degree) + " deg\"\nboresight = [\"" +
+           core::format_number(b.roll / core::degree) + " deg\", \"" + core::format_number(b.pitch / core::degree) + " deg\", \"" +
+           core::format_number(core::wrap_pi(b.heading) / core::degree) + " deg\"]\nantenna = [\"" + core::format_number(arm.x()) +
+           " m\", \"" + core::format_number(arm.y()) + " m\", \"" + core::format_number(arm.z()) + " m\"]\n";
+  }
+  return out;
+}
+
+std::vector<std::string> write_block(const std::filesystem::path& folder, const ReadBlock& read, const BlockConfig& config,
+                                     const BlockSolution& s, const BlockFound& found) {
+  std::filesystem::create_directories(folder);
+  std::vector<std::string> out;
+  const auto text = [&](const char* name, const std::string& what) {
+    io::write_text_file(folder / name, what);
+    out.emplace_back(name);
+  };
+  text("orientation.csv", orientation_csv(read, config, s));
+  if (!read.frame.is_local()) text("geo.txt", geo_text(read, config, s));
+  text("camera.toml", camera_toml(read, config, found));
+  io::write_point_layer(folder / "points.gpkg", "points", read.frame.is_local() ? "" : config.crs,
+                        {"image_points", "sigma_east", "sigma_north", "sigma_up"}, points_of(read, s));
+  out.emplace_back("points.gpkg");
+  if (std::all_of(config.cameras.begin(), config.cameras.end(),
+                  [](const CameraConfig& c) { return c.pixel && c.columns > 0 && c.rows > 0; })) {
+    std::vector<io::ColmapPoint> points;
+    const io::ImageData data = colmap_data(read, config, points);
+    io::write_colmap(folder / "colmap", data, points);
+    out.emplace_back("colmap");
+  }
+  text("block.json", io::to_json(core::reported(found)));
+  text("report.html", block_page(read, config, s, found));
+  return out;
+}
+
+}  // namespace swath::calib

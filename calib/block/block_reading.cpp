@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calib/block/block_reading.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <unordered_map>
+
+#include "calib/block/block_start.h"
+#include "calib/block/mark_plane.h"
+#include "core/config/units.h"
+#include "core/error.h"
+#include "core/geo/frames.h"
+#include "io/text/text_table.h"
+
+namespace swath::calib {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Numbers = std::unordered_map<std::string, std::uint32_t>;
+
+std::uint32_t camera_number(const BlockConfig& c, const std::string& name, const std::string& place) {
+  for (size_t k = 0; k < c.cameras.size(); ++k)
+    if (c.cameras[k].name == name) return static_cast<std::uint32_t>(k);
+  throw core::Error("camera " + name + " is not in the config", place, "add a [[camera]] of that name");
+}
+
+/// One row of the table of images.
+struct TableRow {
+  Vector3d map = Vector3d::Constant(std::nan(""));
+  double sigma_h = 0.0, sigma_v = 0.0;
+  std::array<double, 3> angles{};
+};
+
+int strip_in(const io::TextTable& table, size_t row, size_t column) {
+  const double strip = table.number(row, column);
+  if (strip != std::floor(strip) || std::abs(strip) > 1e9)
+    throw core::Error("the strip is not a whole number: " + table.text(row, column), table.place(row));
+  return static_cast<int>(strip);
+}
+
+std::array<const char*, 3> angle_columns(ImageAngles kind) {
+  if (kind == ImageAngles::roll_pitch_heading) return {"roll", "pitch", "heading"};
+  return {"omega", "phi", "kappa"};
+}
+
+std::vector<TableRow> read_images(const BlockConfig& config, ImageBlock& block, Numbers& image_number) {
+  const ImagesConfig& c = config.images;
+  const io::TextTable table(c.file);
+  const size_t name = table.column(c.name), x = table.column(c.x), y = table.column(c.y), z = table.column(c.z),
+               strip = table.column(c.strip), time = table.column(c.time);
+  const auto camera = table.column_if_there(c.camera, "camera"), h = table.column_if_there(c.sigma_h, "sigma_h"),
+             v = table.column_if_there(c.sigma_v, "sigma_v");
+  if (!camera && config.cameras.size() > 1)
+    throw core::Error("several cameras, and the table of images has no column \"" + c.camera + "\"", c.file.string());
+  std::array<size_t, 3> angle{};
+  if (c.angles != ImageAngles::none)
+    for (size_t k = 0; k < 3; ++k) angle[k] = table.column(angle_columns(c.angles)[k]);
+  std::vector<TableRow> out;
+  for (size_t r = 0; r < table.rows(); ++r) {
+    BlockImage image;
+    image.name = table.text(r, name);
+    image.camera = camera ? camera_number(config, table.text(r, *camera), table.place(r)) : 0;
+    image.strip = strip_in(table, r, strip);
+    image.time = table.number(r, time);
+    const auto [it, is_new] = image_number.try_emplace(image.name, static_cast<std::uint32_t>(block.images.size()));
+    if (!is_new) throw core::Error("image " + image.name + " is there twice", table.place(r));
+    block.images.push_back(image);
+    TableRow row;
+    row.map = {table.number(r, x), table.number(r, y), table.number(r, z)};
+    row.sigma_h = h ? table.number(r, *h) : c.sigma_station_h.value;
+    row.sigma_v = v ? table.number(r, *v) : c.sigma_station_v.value;
+    if (!(row.sigma_h > 0.0 && row.sigma_v > 0.0)) throw core::Error("a sigma of the station is not above 0", table.place(r));
+    if (c.angles != ImageAngles::none)
+      for (size_t k = 0; k < 3; ++k) row.angles[k] = table.number(r, angle[k]) * core::degree;
+    out.push_back(row);
+  }
+  return out;
+}
+
+/// Points of one file: numbers of images and points are those of the block.
+void add_marks(const BlockConfig& config, const io::ImageFile& file, const io::ImageData& data, bool has_table, ReadBlock& read,
+               Numbers& image_number, Numbers& point_number) {
+  ImageBlock& block = read.block;
+  std::vector<std::uint32_t> image_of;
+  for (size_t i = 0; i < data.images.size(); ++i) {
+    const auto found = image_number.find(data.images[i]);
+    if (found != image_number.end()) {
+      image_of.push_back(found->second);
+      continue;
+    }
+    if (has_table)
+      throw core::Error("image " + data.images[i] + " has image points and is not in the table of images", data.file.string(),
+                        "add it to " + config.images.file.string() + ", or take its points out");
+    BlockImage image;
+    image.name = data.images[i];
+    image.time = static_cast<double>(block.images.size());
+    if (config.cameras.size() > 1) image.camera = camera_number(config, data.cameras.at(data.camera_of.at(i)).name, data.file.string());
+    image_of.push_back(static_cast<std::uint32_t>(block.images.size()));
+    image_number[image.name] = image_of.back();
+    block.images.push_back(image);
+  }
+  std::vector<std::uint32_t> point_of;
+  for (const std::string& name : data.points) {
+    const auto [it, is_new] = point_number.try_emplace(name, static_cast<std::uint32_t>(block.points.size()));
+    if (is_new) block.points.push_back({name, Vector3d::Zero()});
+    point_of.push_back(it->second);
+  }
+  for (const io::ImageMark& m : data.marks) {
+    const std::uint32_t image = image_of[m.image];
+    const CameraConfig& camera = config.cameras[block.images[image].camera];
+    const Eigen::Vector2d p = on_plane(data, m, camera);
+    const double sigma = file.sigma ? 1e3 * file.sigma->value : *file.sigma_pixels * 1e3 * pixel_side(camera, data.file.string());
+    block.rays.push_back({image, point_of[m.point], p.x(), p.y(), sigma});
+  }
+}
+
+void refuse_twice(const ImageBlock& block) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
+  keys.reserve(block.rays.size());
+  for (std::uint32_t r = 0; r < block.rays.size(); ++r)
+    keys.emplace_back(static_cast<std::uint64_t>(block.rays[r].image) << 32 | block.rays[r].point, r);
+  std::sort(keys.begin(), keys.end());
+  size_t twice = 0;
+  std::string first;
+  for (size_t k = 1; k < keys.size(); ++k) {
+    if (keys[k].first != keys[k - 1].first) continue;
+    if (twice++ == 0)
+      first = "point " + block.points[block.rays[keys[k].second].point].name + " on image " +
+              block.images[block.rays[keys[k].second].image].name;
+  }
+  if (twice)
+    throw core::Error("measured twice: " + first + (twice > 1 ? " and " + std::to_string(twice - 1) + " more" : ""), "",
+                      "two points may have one name, or a file may be listed twice");
+}
+
+void read_control(const BlockControlFile& f, ReadBlock& read, const Numbers& point_number, std::map<std::string, std::string>& known) {
+  const io::TextTable table(f.file);
+  const size_t name = table.column(f.name), x = table.column(f.x), y = table.column(f.y), z = table.column(f.z);
+  const auto h = table.column_if_there(f.sigma_h, "sigma_h"), v = table.column_if_there(f.sigma_v, "sigma_v");
+  for (size_t r = 0; r < table.rows(); ++r) {
+    const std::string& point = table.text(r, name);
+    const auto [it, is_new] = known.try_emplace(point, table.place(r));
+    if (!is_new) throw core::Error("control point " + point + " is there twice, first in " + it->second, table.place(r));
+    const auto found = point_number.find(point);
+    if (found == point_number.end()) {
+      read.control_without_image.push_back(point);
+      continue;
+    }
+    BlockControl c;
+    c.point = found->second;
+    c.check = f.use == BlockControlUse::check;
+    c.known = {f.kind != ControlKind::z, f.kind != ControlKind::z, f.kind != ControlKind::xy};
+    const double sigma_h = h ? table.number(r, *h) : f.sigma_horizontal.value, sigma_v = v ? table.number(r, *v) : f.sigma_vertical.value;
+    if (!(sigma_h > 0.0 && sigma_v > 0.0)) throw core::Error("a sigma is not above 0", table.place(r));
+    c.sigma = {sigma_h, sigma_h, sigma_v};
+    read.block.control.push_back(c);
+    read.control.push_back({{table.number(r, x), table.number(r, y), table.number(r, z)}, table.place(r)});
+  }
+}
+
+std::string first_of(const std::vector<std::string>& names) {
+  std::string out;
+  for (size_t k = 0; k < names.size() && k < 5; ++k) out += (k ? ", " : "") + names[k];
+  return names.size() > 5 ? out + " and " + std::to_string(names.size() - 5) + " more" : out;
+}
+
+/// Camera positions of a file of orientations onto those of the block, where they are not all in a line.
+std::optional<Eigen::Matrix4d> similarity(const std::vector<Vector3d>& from, const std::vector<Vector3d>& to) {
+  if (from.size() < 3) return {};
+  Eigen::Matrix3Xd a(3, from.size()), b(3, to.size());
+  for (size_t k = 0; k < from.size(); ++k) {
+    a.col(static_cast<Eigen::Index>(k)) = from[k];
+    b.col(static_cast<Eigen::Index>(k)) = to[k];
+  }
+  constexpr double flat = 0.02;  // second against first extent
+  const Eigen::Matrix3Xd centred = b.colwise() - b.rowwise().mean();
+  const Vector3d extents = Eigen::JacobiSVD<Eigen::Matrix3Xd>(centred).singularValues();
+  if (extents[1] < flat * extents[0]) return {};
+  return Eigen::umeyama(a, b, true);
+}
+
+/// Start values by orientations of a file; false where they cannot be placed.
+bool start_from_file(ReadBlock& read, const std::vector<std::pair<std::uint32_t, io::FilePose>>& poses, bool has_table) {
+  if (poses.size() < read.block.images.size()) return false;
+  Eigen::Matrix4d S = Eigen::Matrix4d::Identity();
+  if (has_table) {
+    std::vector<Vector3d> from, to;
+    for (const auto& [image, pose] : poses) {
+      from.push_back(pose.position);
+      to.push_back(read.block.images[image].position);
+    }
+    const auto found = similarity(from, to);
+    if (!found) return false;
+    S = *found;
+  }
+  const double scale = std::cbrt(S.topLeftCorner<3, 3>().determinant());
+  const Matrix3d R = S.topLeftCorner<3, 3>() / scale;
+  for (const auto& [image, pose] : poses) {
+    read.block.images[image].camera_R_local = pose.camera_R_frame * R.transpose();
+    read.block.images[image].position = (S * pose.position.homogeneous()).head<3>();
+  }
+  return true;
+}
+
+void add_stations(const BlockConfig& config, const std::vector<TableRow>& rows, ReadBlock& read) {
+  for (std::uint32_t i = 0; i < rows.size(); ++i) {
+    read.block.images[i].position = read.frame.local_of(rows[i].map);
+    if (config.images.angles != ImageAngles::none) read.angles.push_back({i, rows[i].angles});
+    if (config.images.stations != ImageValues::observed) continue;
+    const Vector3d variance(rows[i].sigma_h * rows[i].sigma_h, rows[i].sigma_h * rows[i].sigma_h, rows[i].sigma_v * rows[i].sigma_v);
+    const Matrix3d R = read.frame.local_R_grid(read.block.images[i].position);
+    read.block.stations.push_back({i, read.block.images[i].position, R * variance.asDiagonal() * R.transpose()});
+    ++read.stations_observed;
+  }
+}
+
+void expect_points(const BlockConfig& config, ReadBlock& read) {
+  std::vector<char> seen(read.block.images.size(), 0);
+  for (const ImageRay& r : read.block.rays) seen[r.image] = 1;
+  for (size_t i = 0; i < seen.size(); ++i)
+    if (!seen[i]) read.images_without_points.push_back(read.block.images[i].name);
+  if (!read.images_without_points.empty() && config.images.angle_use != ImageValues::observed)
+    throw core::Error("images without image points: " + first_of(read.images_without_points), config.images.file.string(),
+                      "names may differ (with and without .jpg); or take these images out of the table");
+  if (!config.control.empty() && read.block.control.empty())
+    throw core::Error("no control point is measured on an image: " + first_of(read.control_without_image), config.control[0].file.string(),
+                      "names in the control file and of the image points may differ");
+}
+
+}  // namespace
+
+Matrix3d body_attitude(const ReadBlock& read, std::uint32_t image, const std::array<double, 3>& a, ImageAngles kind, ImageNorth north) {
+  const BlockImage& i = read.block.images[image];
+  const Matrix3d local_R_enu = north == ImageNorth::grid ? read.frame.local_R_grid(i.position) : read.frame.local_R_true(i.position);
+  if (kind == ImageAngles::roll_pitch_heading) {
+    Matrix3d enu_R_ned;
+    enu_R_ned << 0, 1, 0, 1, 0, 0, 0, 0, -1;
+    return local_R_enu * enu_R_ned * core::matrix_of({a[0], a[1], a[2]});
+  }
+  const auto turn = [](double angle, const Vector3d& axis) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); };
+  const Matrix3d omega = turn(a[0], Vector3d::UnitX()), phi = turn(a[1], Vector3d::UnitY()), kappa = turn(a[2], Vector3d::UnitZ());
+  const Matrix3d enu_R_camera = kind == ImageAngles::omega_phi_kappa ? omega * phi * kappa : phi * omega * kappa;
+  return local_R_enu * enu_R_camera * read.block.cameras[i.camera].body_R_camera.transpose();
+}
+
+void start_block(ReadBlock& read, const BlockConfig& config) {
+  ImageBlock& block = read.block;
+  block.attitudes.clear();
+  const ImagesConfig& c = config.images;
+  for (const StatedAngles& a : read.angles) {
+    Matrix3d covariance = std::pow(c.sigma_angle.value, 2) * Matrix3d::Identity();
+    covariance(2, 2) = std::pow(c.sigma_heading.value, 2);
+    block.attitudes.push_back({a.image, body_attitude(read, a.image, a.value, c.angles, *c.north), covariance});
+  }
+  const std::vector<ImageStation> observed = block.stations;
+  if (observed.empty())  // the table's positions, to start from
+    for (std::uint32_t i = 0; i < block.images.size(); ++i) block.stations.push_back({i, block.images[i].position, Matrix3d::Identity()});
+  start_poses(block);
+  block.stations = observed;
+  if (c.angle_use == ImageValues::start) block.attitudes.clear();
+}
+
+ReadBlock read_block(const BlockConfig& config, const std::string& config_file) {
+  ReadBlock read;
+  if (config.cameras.empty()) throw core::usage_error("no [[camera]]", config_file);
+  for (const CameraConfig& c : config.cameras) read.block.cameras.push_back(camera_of(c, config_file));
+  read.block.drift_sets = config.drift;
+  Numbers image_number, point_number;
+  const bool has_table = !config.images.file.empty();
+  std::vector<TableRow> rows;
+  if (has_table) rows = read_images(config, read.block, image_number);
+  std::vector<std::pair<std::uint32_t, io::FilePose>> poses;
+  for (const io::ImageFile& f : config.image_points) {
+    const io::ImageData data = io::read_image_file(f);
+    add_marks(config, f, data, has_table, read, image_number, point_number);
+    for (const io::FilePose& p : data.poses) poses.emplace_back(image_number.at(data.images[p.image]), p);
+  }
+  refuse_twice(read.block);
+  std::map<std::string, std::string> known;
+  for (const BlockControlFile& f : config.control) read_control(f, read, point_number, known);
+  expect_points(config, read);
+  Vector3d middle = Vector3d::Zero();
+  for (const TableRow& r : rows) middle += r.map / static_cast<double>(rows.size());
+  if (rows.empty() && config.crs != "local")
+    throw core::usage_error("without a table of images the orientations' own frame is adjusted in", config_file, "state crs = \"local\"");
+  read.frame = BlockFrame(config.crs, middle);
+  add_stations(config, rows, read);
+  for (size_t k = 0; k < read.block.control.size(); ++k) read.block.control[k].position = read.frame.local_of(read.control[k].map);
+  const bool by_file = config.images.angles == ImageAngles::none && start_from_file(read, poses, has_table);
+  if (!by_file && !has_table)
+    throw core::Error("nothing to start from: no table of images, and orientations of " + std::to_string(poses.size()) + " of " +
+                          std::to_string(read.block.images.size()) + " images",
+                      config_file, "add [images] with a file of stations");
+  if (!by_file) start_block(read, config);
+  read.started_from = by_file                                     ? "the orientations of the image points' file"
+                      : config.images.angles != ImageAngles::none ? "stations and angles of the table"
+                                                                  : "stations and the directions of the strips";
+  intersect_points(read.block);
+  return read;
+}
+
+}  // namespace swath::calib

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// With t the rotation error of the body in north, east, down, R = ned_R_body and l the lever arm:
+//   d position = d IMU + t x (R l) + v dtime + R dl,   d camera = R_camera' (t + w dtime) + boresight,
+// t = J (d roll, d pitch, d heading), w the rotation of the body.
+#include "calib/block/direct_orientation.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <set>
+
+#include "calib/block/block_frame.h"
+#include "core/error.h"
+#include "core/geo/geodesy.h"
+#include "core/statistics.h"
+
+namespace swath::calib {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// Rotation about north, east, down by changes of roll, pitch and heading.
+Matrix3d rotation_by_angles(const core::Attitude& a) {
+  Matrix3d J;
+  J.col(0) = core::matrix_of({0.0, a.pitch, a.heading}) * Vector3d::UnitX();
+  J.col(1) = core::matrix_of({0.0, 0.0, a.heading}) * Vector3d::UnitY();
+  J.col(2) = Vector3d::UnitZ();
+  return J;
+}
+
+/// North, east, down, roll, pitch, heading.
+Matrix6 pose_covariance(const trajectory::Trajectory& t, double time) {
+  Matrix6 out = Matrix6::Zero();
+  const core::CovarianceSeries& series = t.data().covariance;
+  if (!series.empty()) {
+    const core::CovarianceSeries::Matrix9 C = series.at(time);
+    out.topLeftCorner<3, 3>() = C.topLeftCorner<3, 3>();
+    out.topRightCorner<3, 3>() = C.topRightCorner<3, 3>();
+    out.bottomLeftCorner<3, 3>() = C.bottomLeftCorner<3, 3>();
+    out.bottomRightCorner<3, 3>() = C.bottomRightCorner<3, 3>();
+    return out;
+  }
+  const trajectory::PoseSigma s = t.sigma_at(time);
+  const std::array<double, 6> sigmas{s.north, s.east, s.down, s.roll, s.pitch, s.heading};
+  for (int k = 0; k < 6; ++k) out(k, k) = sigmas[static_cast<size_t>(k)] * sigmas[static_cast<size_t>(k)];
+  return out;
+}
+
+/// Events of one technique by time.
+std::vector<size_t> exposures_of(const core::EventData& events, const std::string& technique) {
+  const std::set<std::string> techniques(events.technique.begin(), events.technique.end());
+  std::string list;
+  for (const std::string& t : techniques) list += (list.empty() ? "" : ", ") + t;
+  if (technique.empty() && techniques.size() > 1)
+    throw core::usage_error("orientation.direct: the survey's events are of several techniques: " + list, "", "state technique");
+  if (!technique.empty() && !techniques.contains(technique))
+    throw core::usage_error("orientation.direct: no event is of the technique " + technique, "", "the survey has " + list);
+  std::vector<size_t> out;
+  for (size_t i = 0; i < events.size(); ++i)
+    if (technique.empty() || events.technique[i] == technique) out.push_back(i);
+  std::stable_sort(out.begin(), out.end(), [&](size_t a, size_t b) { return events.time[a] < events.time[b]; });
+  return out;
+}
+
+class DirectSolver {
+ public:
+  DirectSolver(const core::Crs& crs, const DirectOptions& o)
+      : options_(o), body_R_camera_(camera_mounting(o.mount, o.boresight)), to_map_(core::wgs84_ecef(), crs) {}
+
+  void orient(const trajectory::Trajectory& trajectory, double time, double time_sigma, DirectImage& out) const {
+    const trajectory::Pose pose = *trajectory.pose_at(time);
+    const Vector3d arm(options_.lever_arm[0].value, options_.lever_arm[1].value, options_.lever_arm[2].value);
+    const core::Geodetic at = core::geodetic_of(pose.position);
+    const Matrix3d ned_R_ecef = core::ecef_R_ned(at.latitude, at.longitude).transpose(), R = ned_R_ecef * pose.ecef_R_body;
+    const Vector3d centre = pose.position + pose.ecef_R_body * arm;
+    out.attitude = core::attitude_of(R);
+    out.orientation.attitude = out.attitude;
+    out.orientation.map = to_map_(centre);
+    // Grid north where the image is: true north turned back by its bearing on the grid.
+    constexpr double step = 10.0;  // m
+    const Matrix3d enu = ecef_R_enu(centre);
+    const Vector3d way = to_map_(Vector3d(centre + step * enu.col(1))) - out.orientation.map;
+    const double turn = std::atan2(way.x(), way.y());
+    const Matrix3d ecef_R_grid = enu * Eigen::AngleAxisd(turn, Vector3d::UnitZ()).toRotationMatrix();
+    out.orientation.grid_R_camera = ecef_R_grid.transpose() * pose.ecef_R_body * body_R_camera_;
+    const Matrix3d grid_R_ned = ecef_R_grid.transpose() * ned_R_ecef.transpose(), J = rotation_by_angles(out.attitude);
+    Matrix6 A = Matrix6::Zero();  // of the pose's errors
+    A.topLeftCorner<3, 3>() = grid_R_ned;
+    A.topRightCorner<3, 3>() = -grid_R_ned * core::skew(R * arm) * J;
+    const Matrix3d camera_R_ned = (R * body_R_camera_).transpose();
+    A.bottomRightCorner<3, 3>() = -camera_R_ned * J;
+    Eigen::Matrix<double, 6, 1> by_time;
+    by_time << grid_R_ned * ned_R_ecef * (pose.velocity + pose.ecef_R_body * pose.rate.cross(arm)), -body_R_camera_.transpose() * pose.rate;
+    Matrix6 C = A * pose_covariance(trajectory, time) * A.transpose() + time_sigma * time_sigma * by_time * by_time.transpose();
+    for (int k = 0; k < 3; ++k) {
+      C(k, k) += std::pow(options_.sigma_lever_arm.value, 2);
+      C(3 + k, 3 + k) += std::pow(options_.sigma_boresight.value, 2);
+    }
+    out.orientation.covariance = C;
+  }
+
+ private:
+  const DirectOptions& options_;
+  Matrix3d body_R_camera_;
+  core::Transform to_map_;
+};
+
+}  // namespace
+
+Matrix3d camera_mounting(core::Radians mount, const std::array<core::Radians, 3>& boresight) {
+  Matrix3d mounted;  // the image's x axis forward, its upper edge to the left
+  mounted << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+  return core::matrix_of({boresight[0].value, boresight[1].value, boresight[2].value}) *
+         Eigen::AngleAxisd(mount.value, Vector3d::UnitZ()).toRotationMatrix() * mounted;
+}
+
+std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajectory, const core::EventData& events, const core::Crs& crs,
+                                            const DirectOptions& options, DirectFound& found) {
+  const DirectSolver solver(crs, options);
+  std::vector<DirectImage> out;
+  std::vector<double> plan, height, tilt, turn;
+  for (const size_t i : exposures_of(events, options.technique)) {
+    ++found.events;
+    if (!trajectory.covers(events.time[i])) {
+      ++found.outside;
+      continue;
+    }
+    DirectImage image;
+    image.name = events.id[i], image.strip = events.strip[i], image.time = events.time[i], image.doubtful = events.doubtful[i] != 0;
+    found.doubtful += image.doubtful;
+    solver.orient(trajectory, image.time, events.sigma[i], image);
+    const Matrix6& C = image.orientation.covariance;
+    plan.push_back(std::sqrt((C(0, 0) + C(1, 1)) / 2.0)), height.push_back(std::sqrt(C(2, 2)));
+    tilt.push_back(std::sqrt((C(3, 3) + C(4, 4)) / 2.0)), turn.push_back(std::sqrt(C(5, 5)));
+    out.push_back(std::move(image));
+  }
+  if (out.empty())
+    throw core::Error("orientation.direct: none of " + std::to_string(found.events) + " exposures is within the trajectory", "",
+                      "check the time scale of the events");
+  found.images = out.size();
+  found.position = core::median(plan), found.height = core::median(height), found.angle = core::median(tilt),
+  found.heading = core::median(turn);
+  return out;
+}
+
+std::string direct_images_csv(const std::vector<DirectImage>& images, const std::string& camera) {
+  std::string out = "name,camera,strip,time,x,y,z,sigma_h,sigma_v,roll,pitch,heading\n";
+  for (const DirectImage& i : images) {
+    const Matrix6& C = i.orientation.covariance;
+    char text[320];
+    std::snprintf(text, sizeof text, ",%d,%.9f,%.4f,%.4f,%.4f,%.5f,%.5f,%.8f,%.8f,%.8f\n", i.strip, i.time, i.orientation.map.x(),
+                  i.orientation.map.y(), i.orientation.map.z(), std::sqrt((C(0, 0) + C(1, 1)) / 2.0), std::sqrt(C(2, 2)),
+                  i.attitude.roll / core::degree, i.attitude.pitch / core::degree, i.attitude.heading / core::degree);
+    out += i.name + "," + camera + text;
+  }
+  return out;
+}
+
+}  // namespace swath::calib

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Direct orientation: the pose of each image from the trajectory at its exposure, the camera's lever arm and boresight.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/block/orientation_table.h"
+#include "core/config/option.h"
+#include "core/config/result.h"
+#include "core/geo/crs.h"
+#include "core/records/event_data.h"
+#include "trajectory/trajectory.h"
+
+namespace swath::calib {
+
+struct DirectOptions {
+  std::string camera = "camera", technique;
+  core::Radians mount{};
+  std::array<core::Radians, 3> boresight{};
+  std::array<core::Metres, 3> lever_arm{};
+  core::Radians sigma_boresight{};
+  core::Metres sigma_lever_arm{};
+};
+
+template <class V>
+void describe(DirectOptions& o, V& v) {
+  v.option("camera", o.camera, "Name of the camera, for the tables.");
+  v.option("technique", o.technique, "Which technique's events are the exposures; needed where the survey has several.");
+  v.option("mount", o.mount, "Angle from the direction of flight to the image's x axis, clockwise from above.");
+  v.option("boresight", o.boresight, "Roll, pitch, heading of the camera in the body, beside mount.");
+  v.option("lever_arm", o.lever_arm, "IMU centre to perspective centre: forward, right, down.");
+  v.option("sigma_boresight", o.sigma_boresight, core::within(0, 1), "Sigma of each boresight angle, common to all images.");
+  v.option("sigma_lever_arm", o.sigma_lever_arm, core::within(0, 10), "Sigma of each component of the lever arm.");
+}
+
+struct DirectImage {
+  std::string name;
+  int strip = 0;
+  double time = 0.0;  ///< GPS time, s
+  bool doubtful = false;
+  ImageOrientation orientation;
+  core::Attitude attitude;  ///< of the body, from true north
+};
+
+struct DirectFound {
+  size_t events = 0, outside = 0, doubtful = 0, images = 0;
+  double position = 0.0, height = 0.0, angle = 0.0, heading = 0.0;  ///< median sigmas, m and rad
+};
+template <class V>
+void describe(const DirectFound& r, V& v) {
+  v.result("events", r.events, "Exposures.");
+  v.result("images", r.images, core::plain().in_summary(), "Images with an orientation.");
+  v.result("outside", r.outside, core::plain().in_summary(), "Exposures outside the trajectory.");
+  v.result("doubtful", r.doubtful, "Exposures whose time is doubtful.");
+  v.result("sigma_plan_m", r.position, core::metres(4).in_summary(), "Median standard deviation of easting and northing.");
+  v.result("sigma_height_m", r.height, core::metres(4).in_summary(), "Median standard deviation of heights.");
+  v.result("sigma_tilt_deg", r.angle / core::degree, core::in_degrees(5).in_summary(),
+           "Median standard deviation of the tilt about the image's axes.");
+  v.result("sigma_turn_deg", r.heading / core::degree, core::in_degrees(5).in_summary(), "The same about the camera's axis.");
+}
+
+/// body_R_camera of a mounting.
+Eigen::Matrix3d camera_mounting(core::Radians mount, const std::array<core::Radians, 3>& boresight);
+
+/// The images in the order of time. Covariance: the trajectory's (exact where the smoother gave it, else its sigmas as independent), the
+/// time of the event by velocity and rotation, lever arm and boresight. Throws core::Error where no event is within the trajectory, or
+/// several techniques are there and none is stated.
+std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajectory, const core::EventData& events, const core::Crs& crs,
+                                            const DirectOptions& options, DirectFound& found);
+
+/// The table that [images] of `swath block` takes: stations are the perspective centres, angles those of the body.
+std::string direct_images_csv(const std::vector<DirectImage>& images, const std::string& camera);
+
+}  // namespace swath::calib

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// orientation.csv: a line per image.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "core/geo/frames.h"
+
+namespace swath::calib {
+
+struct ImageOrientation {
+  Eigen::Vector3d map = Eigen::Vector3d::Zero();  ///< perspective centre: easting, northing, height of the CRS
+  Eigen::Matrix3d grid_R_camera = Eigen::Matrix3d::Identity();
+  core::Attitude attitude;  ///< of the body, from true north
+  /// East, north, up of the grid, m; rotations about the camera's axes, rad.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
+/// Omega, phi, kappa of R = Rx(omega) Ry(phi) Rz(kappa), rad.
+Eigen::Vector3d omega_phi_kappa_of(const Eigen::Matrix3d& grid_R_camera);
+
+/// Comments with the conventions, and the names of the columns.
+std::string orientation_header(const std::string& crs);
+std::string orientation_line(const std::string& image, const std::string& camera, int strip, const ImageOrientation& orientation);
+
+}  // namespace swath::calib

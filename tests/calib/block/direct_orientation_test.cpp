@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calib/block/direct_orientation.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "calib/block/block_frame.h"
+#include "core/error.h"
+#include "core/geo/geodesy.h"
+
+namespace swath::calib {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double latitude = 48.0 * core::degree, longitude = 10.5 * core::degree, height = 900.0;
+
+/// North at 50 m/s with constant attitude, 20 Hz.
+core::TrajectoryData straight(const core::Attitude& a, double north = 0.0, double east = 0.0, double down = 0.0) {
+  core::TrajectoryData d;
+  for (int k = 0; k < 100; ++k) {
+    d.time.push_back(1000.0 + 0.05 * k);
+    d.latitude.push_back(latitude + (2.5 * k + north) / core::meridian_radius(latitude));
+    d.longitude.push_back(longitude + east / (core::prime_vertical_radius(latitude) * std::cos(latitude)));
+    d.height.push_back(height - down);
+    d.roll.push_back(a.roll), d.pitch.push_back(a.pitch), d.heading.push_back(a.heading);
+    d.sigma_north.push_back(0.02f), d.sigma_east.push_back(0.03f), d.sigma_down.push_back(0.05f);
+    d.sigma_roll.push_back(1e-4f), d.sigma_pitch.push_back(2e-4f), d.sigma_heading.push_back(4e-4f);
+  }
+  return d;
+}
+
+core::EventData exposure(double time, double sigma = 0.0) {
+  core::EventData e;
+  e.time = {time}, e.sigma = {sigma}, e.id = {"1"}, e.strip = {3}, e.technique = {"marks"}, e.doubtful = {0};
+  return e;
+}
+
+DirectImage oriented_at(const core::TrajectoryData& data, double time, const DirectOptions& o, double sigma = 0.0) {
+  DirectFound found;
+  return direct_orientation(trajectory::Trajectory(data), exposure(time, sigma), core::Crs("EPSG:32632"), o, found).at(0);
+}
+
+DirectOptions mounted() {
+  DirectOptions o;
+  o.mount = core::degrees(90.0);
+  o.boresight = {core::degrees(0.3), core::degrees(-0.2), core::degrees(0.7)};
+  o.lever_arm = {core::Metres(0.4), core::Metres(-0.2), core::Metres(1.5)};
+  return o;
+}
+
+TEST(DirectOrientation, PositionAndAxes) {
+  const core::Attitude a{0.03, -0.02, 0.4};
+  const DirectImage i = oriented_at(straight(a), 1002.5, mounted());
+  EXPECT_EQ(i.strip, 3);
+  EXPECT_NEAR(i.attitude.heading, a.heading, 1e-5);
+  // By the way of the conventions: IMU, lever arm in the body, ECEF, map.
+  const core::Geodetic at{latitude + 125.0 / core::meridian_radius(latitude), longitude, height};
+  const Matrix3d ecef_R_body = core::ecef_R_ned(at.latitude, at.longitude) * core::matrix_of(a);
+  const Vector3d centre = core::ecef_of(at) + ecef_R_body * Vector3d(0.4, -0.2, 1.5);
+  EXPECT_LT((i.orientation.map - core::Transform(core::wgs84_ecef(), core::Crs("EPSG:32632"))(centre)).norm(), 1e-4);
+  // The camera looks down, its upper edge forward: the image's y axis along the heading, east of the grid by the convergence.
+  const Vector3d up_edge = i.orientation.grid_R_camera.col(1);
+  EXPECT_NEAR(std::atan2(up_edge.x(), up_edge.y()), a.heading + core::degrees(0.7).value - 1.5 * core::degree * std::sin(latitude), 2e-3);
+  EXPECT_GT(i.orientation.grid_R_camera(2, 2), 0.99);
+  EXPECT_NEAR(i.orientation.grid_R_camera.determinant(), 1.0, 1e-12);
+}
+
+/// Change of an orientation: position on the grid, and rotation vector w about the camera's axes, camera_R = exp(w) camera_R0.
+Eigen::Matrix<double, 6, 1> change(const DirectImage& from, const DirectImage& to) {
+  Eigen::Matrix<double, 6, 1> out;
+  out << to.orientation.map - from.orientation.map,
+      core::log_so3(to.orientation.grid_R_camera.transpose() * from.orientation.grid_R_camera);
+  return out;
+}
+
+TEST(DirectOrientation, CovarianceIsThatOfTheChanges) {
+  const core::Attitude a{0.05, -0.04, 2.1};
+  const DirectOptions o = mounted();
+  const DirectImage here = oriented_at(straight(a), 1002.5, o, 1e-3);
+  Eigen::Matrix<double, 6, 6> expected = Eigen::Matrix<double, 6, 6>::Zero();
+  const auto add = [&](const Eigen::Matrix<double, 6, 1>& d, double step, double sigma) {
+    const Eigen::Matrix<double, 6, 1> by = d / step * sigma;
+    expected += by * by.transpose();
+  };
+  constexpr double metre = 0.5, angle = 1e-4, instant = 0.01;
+  add(change(here, oriented_at(straight(a, metre), 1002.5, o)), metre, 0.02);
+  add(change(here, oriented_at(straight(a, 0, metre), 1002.5, o)), metre, 0.03);
+  add(change(here, oriented_at(straight(a, 0, 0, metre), 1002.5, o)), metre, 0.05);
+  add(change(here, oriented_at(straight({a.roll + angle, a.pitch, a.heading}), 1002.5, o)), angle, 1e-4);
+  add(change(here, oriented_at(straight({a.roll, a.pitch + angle, a.heading}), 1002.5, o)), angle, 2e-4);
+  add(change(here, oriented_at(straight({a.roll, a.pitch, a.heading + angle}), 1002.5, o)), angle, 4e-4);
+  add(change(here, oriented_at(straight(a), 1002.5 + instant, o)), instant, 1e-3);
+  // The grid's scale is 0.9998 there, so 1e-3 of a variance; map coordinates round at 1e-9 m.
+  for (int r = 0; r < 6; ++r)
+    for (int c = 0; c < 6; ++c)
+      EXPECT_NEAR(here.orientation.covariance(r, c), expected(r, c), 3e-3 * std::sqrt(expected(r, r) * expected(c, c))) << r << " " << c;
+}
+
+TEST(DirectOrientation, TheTableIsWhatABlockReads) {
+  DirectFound found;
+  core::EventData e = exposure(1002.5);
+  e.time.push_back(2000.0), e.sigma.push_back(0.0), e.id.emplace_back("2"), e.strip.push_back(3), e.technique.emplace_back("marks"),
+      e.doubtful.push_back(1);
+  const auto images = direct_orientation(trajectory::Trajectory(straight({0, 0, 1})), e, core::Crs("EPSG:32632"), {}, found);
+  EXPECT_EQ(found.images, 1u);
+  EXPECT_EQ(found.outside, 1u);
+  EXPECT_NEAR(found.height, 0.05, 1e-6);
+  const std::string table = direct_images_csv(images, "left");
+  EXPECT_TRUE(table.starts_with("name,camera,strip,time,x,y,z,sigma_h,sigma_v,roll,pitch,heading\n1,left,3,1002.500000000,")) << table;
+  e.technique[1] = "pc";
+  EXPECT_THROW(direct_orientation(trajectory::Trajectory(straight({0, 0, 1})), e, core::Crs("EPSG:32632"), {}, found), core::Error);
+  DirectOptions o;
+  o.technique = "pc";
+  EXPECT_THROW(direct_orientation(trajectory::Trajectory(straight({0, 0, 1})), e, core::Crs("EPSG:32632"), o, found), core::Error);
+}
+
+}  // namespace
+}  // namespace swath::calib

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/images/image_lines.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/error.h"
+#include "tests/world/support.h"
+
+namespace swath::io {
+namespace {
+
+TEST(ImageLines, LongLinesCommentsAndLineEnds) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "lines.txt";
+  const std::string longer(200000, '1');  // beyond the blocks of other readers
+  std::ofstream(file, std::ios::binary) << "# comment\r\n\n  \n" << longer << "\r\n a\tb  c\n7";
+  ImageLines lines(file);
+  std::string_view line;
+  ASSERT_TRUE(lines.next_data(line));
+  EXPECT_EQ(line.size(), longer.size());
+  EXPECT_EQ(lines.number(), 4u);
+  ASSERT_TRUE(lines.next_data(line));
+  EXPECT_EQ(blank_words(line), (std::vector<std::string_view>{"a", "b", "c"}));
+  ASSERT_TRUE(lines.next_data(line));
+  EXPECT_EQ(lines.number_in(line, "x"), 7.0);
+  EXPECT_EQ(lines.count_in(line, "n"), 7u);
+  EXPECT_FALSE(lines.next_data(line));
+}
+
+TEST(ImageLines, FaultsNameTheLine) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "lines.txt";
+  std::ofstream(file) << "1\n1.5x nan -3\n";
+  ImageLines lines(file);
+  std::string_view line;
+  lines.next(line);
+  lines.next(line);
+  for (const std::string_view word : blank_words(line)) {
+    try {
+      word == "-3" ? static_cast<void>(lines.count_in(word, "n")) : static_cast<void>(lines.number_in(word, "x"));
+      FAIL() << word;
+    } catch (const core::Error& e) {
+      EXPECT_TRUE(e.where().ends_with("lines.txt:2")) << e.text();
+    }
+  }
+}
+
+TEST(ImageLines, NamesAreNumberedAsTheyCome) {
+  std::vector<std::string> names;
+  NumberedNames number(names);
+  EXPECT_EQ(number("b"), 0u);
+  EXPECT_EQ(number("a"), 1u);
+  EXPECT_EQ(number("b"), 0u);
+  EXPECT_EQ(names, (std::vector<std::string>{"b", "a"}));
+}
+
+}  // namespace
+}  // namespace swath::io
