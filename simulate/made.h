@@ -61,6 +61,7 @@ void describe(const RecordedFlight::Departure& r, V& v) {
 struct Made {
   std::optional<LaserMade> laser{};
   std::optional<std::int64_t> fixes{}, events{};
+  std::optional<std::uint64_t> images{}, image_points{};
   double seconds = 0.0;
   std::uint64_t lines = 0;
   std::optional<RecordedFlight::Departure> departure{};
@@ -70,6 +71,8 @@ void describe(const Made& r, V& v) {
   if (r.laser) describe(*r.laser, v);
   v.result("fixes", r.fixes, "GNSS fixes.");
   v.result("events", r.events, "Events.");
+  v.result("images", r.images, "Images.");
+  v.result("image_points", r.image_points, "Image points of points that two images see.");
   v.result("seconds", r.seconds, core::seconds(), "Duration of the flight.");
   v.result("lines", r.lines, "Flight lines.");
   v.table("splines_minus_trajectory", r.departure, "How far the flight is from the trajectory that it follows.");

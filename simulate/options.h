@@ -11,6 +11,7 @@
 #include "core/records/sensor.h"
 #include "core/time.h"
 #include "io/survey/survey.h"
+#include "simulate/camera_options.h"
 #include "simulate/flight_options.h"
 #include "simulate/navigation_options.h"
 #include "simulate/scene_options.h"
@@ -195,6 +196,7 @@ struct Options {
   ImuOptions imu;
   GnssOptions gnss;
   EventOptions events;
+  CameraOptions camera;
   ControlOptions control;
   OutputOptions output;
 };
@@ -214,6 +216,7 @@ void describe(Options& o, V& v) {
   v.table("imu", o.imu, "IMU.");
   v.table("gnss", o.gnss, "GNSS receiver.");
   v.table("events", o.events, "Camera exposures and the computer clock that times them.");
+  v.table("camera", o.camera, "Camera whose exposures are the events.");
   v.table("control", o.control, "Surveyed points and targets, of surveys with laser records.");
   v.table("output", o.output, "Files.");
   const bool parks = o.scanner.pattern == Pattern::triangle || o.scanner.pattern == Pattern::sine;
@@ -222,6 +225,7 @@ void describe(Options& o, V& v) {
   v.check(o.flight.along.empty() || !o.output.laser, "a flight along a trajectory has no laser: set output.laser = false");
   v.check(o.output.trajectory != TrajectoryOutput::none || (o.imu.file && o.gnss.file),
           "without a trajectory the survey needs imu.file and gnss.file");
+  v.check(!o.camera.file || (o.events.file && o.flight.along.empty()), "camera.file needs events.file = true and a flight along lines");
   bool las = false;
   for (Format f : o.output.formats) las = las || f == Format::las || f == Format::laz;
   v.check(!las || (o.scanner.pattern != Pattern::conical && o.scanner.pattern != Pattern::palmer),

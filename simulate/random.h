@@ -54,7 +54,8 @@ enum class Stream : std::uint64_t {
   control,
   structures,
   fields,
-  low_groups
+  low_groups,
+  camera
 };
 
 inline Random random_of(std::int64_t seed, Stream stream, std::uint64_t index = 0) {

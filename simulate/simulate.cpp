@@ -20,6 +20,7 @@
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "simulate/errors.h"
+#include "simulate/files/camera_files.h"
 #include "simulate/files/control_files.h"
 #include "simulate/files/events.h"
 #include "simulate/files/gnss_file.h"
@@ -76,14 +77,17 @@ Scenery along_trajectory(const Options& o) {
 /// Half the swath's angle; a profile's place among other lines is planned as if it had some.
 double swath_angle(const ScannerOptions& s) { return widest_angle(s) > 0 ? widest_angle(s) : 0.1; }
 
-/// How far a beam reaches to the side, per metre of height.
-double reach_per_height(const ScannerOptions& s) { return std::tan(std::min(1.2, widest_angle(s) + 6 * core::degree)); }
+/// How far a beam or an image reaches to the side, per metre of height.
+double reach_per_height(const Options& o) {
+  const double beam = widest_angle(o.scanner), image = o.camera.file ? std::atan(o.camera.reach()) : 0.0;
+  return std::tan(std::min(1.2, std::max(beam, image) + 6 * core::degree));
+}
 
 /// Half side of the square that beams reach, m, over level ground. Boresight and attitude may add 6 degrees to the scan; lines and area may
 /// overlap either way.
 double reach_of(const Options& o, const Eigen::Vector2d& middle) {
   const FlightOptions& f = o.flight;
-  const double reach = f.highest(o.world.ground.value) * reach_per_height(o.scanner) + 60.0;
+  const double reach = f.highest(o.world.ground.value) * reach_per_height(o) + 60.0;
   if (!f.line.empty()) {
     double farthest = 0.0;
     for (const LineOptions& l : f.line)
@@ -113,7 +117,7 @@ World world_on(const Options& o, const Eigen::Vector2d& middle, double& half) {
   if (!dem.crs.empty() && dem.crs.horizontal().key() != map.key() && (map.epsg() == 0 || dem.crs.epsg() != map.epsg()))
     throw core::usage_error("the terrain model is in " + dem.crs.name() + ", the survey in " + map.name(), "world.dem",
                             "set crs to that of the model, or warp the model (gdalwarp)");
-  half = std::min(2.0 * half, half + std::max(0.0, o.world.ground.value - dem.field.lowest()) * reach_per_height(o.scanner));
+  half = std::min(2.0 * half, half + std::max(0.0, o.world.ground.value - dem.field.lowest()) * reach_per_height(o));
   return World(o.world, Relief(std::move(dem.field), middle), o.seed, o.flight.direction, half);
 }
 
@@ -130,7 +134,7 @@ Scenery build(const Options& o) {
   s.half = reach_of(o, middle);
   s.start = core::from_week(o.output.week, o.output.start.value);
   double low = ground;
-  if (o.output.laser) {
+  if (o.output.laser || o.camera.file) {
     s.world.emplace(world_on(o, middle, s.half));
     low = s.world->relief().lowest() - low_margin;
     if (s.world->relief().highest() > ground + o.flight.lowest(ground) - 10.0)
@@ -140,7 +144,7 @@ Scenery build(const Options& o) {
                               "flight.height", "fly higher, or less relief, slope or area");
   }
   // Without laser the map serves for the bearing of its grid north alone.
-  s.map.emplace(crs, origin, o.output.laser ? s.half : 100.0, low, highest + 30.0);
+  s.map.emplace(crs, origin, s.world ? s.half : 100.0, low, highest + 30.0);
   const double convergence = s.map->convergence();
   const std::vector<LinePlan> plan = o.flight.line.empty() ? plan_lines(o.flight, o.world, swath_angle(o.scanner), convergence)
                                                            : given_lines(o.flight.line, crs, LocalPlane(origin, flown), flown);
@@ -267,6 +271,10 @@ void write_navigation(const Scenery& s, const Options& o, const fs::path& folder
   if (o.imu.file) write_imu(folder, *s.flight, s.start, o.imu, noise_free, o.seed);
   if (o.gnss.file) made.fixes = write_gnss(folder, *s.flight, s.start, o.gnss, o.mounting.lever_arm_antenna, noise_free, o.seed);
   if (o.events.file) made.events = write_events(folder, *s.flight, s.start, o.events, noise_free, o.seed);
+  if (o.camera.file) {
+    const CameraMade camera = write_camera(folder, *s.world, *s.map, *s.flight, s.start, o);
+    made.images = camera.images, made.image_points = camera.image_points;
+  }
 }
 
 /// Returns and the terrain's truth.

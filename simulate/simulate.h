@@ -18,6 +18,7 @@ using Progress = std::function<void(double)>;
 /// Writes into `out_folder` (made where it is not there):
 ///   survey.toml (first format) and survey_FORMAT.toml (each further one), laser.FORMAT, sbet.out + smrmsg.out or trajectory.csv,
 ///   imu.csv, gnss.csv, events_pc.csv, events_marks.csv, loopstats, pps.log,
+///   with camera.file images.csv, image_points.csv, block_control.csv, block_check.csv, block.toml (for `swath block`) and their truth,
 ///   control.csv (targets) and check.csv (ground points),
 ///   truth/: planes.csv (facets of buildings), control.csv (exact places of what was surveyed), sbet.out (200 Hz), returns.npy (see
 ///   TruthFile), dtm.tif, calibration.json, imu.json and imu_drift.csv (errors of the IMU), gnss.csv (errors of each fix), events.csv,

@@ -19,6 +19,7 @@ const std::vector<Entry>& registry() {
       time_sync_stage(),
       latency_stage(),
       kinematic_stage(),
+      direct_orientation_stage(),
       lever_arm_stage(),
       laser_reader_stage(),
       las_reader_stage(),

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Image points of the scene by a camera on the flight, with everything that `swath block` reads. The projection is this room's own.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "core/time.h"
+#include "simulate/camera_options.h"
+#include "simulate/files/events.h"
+#include "simulate/flight.h"
+#include "simulate/options.h"
+#include "simulate/world/map_patch.h"
+#include "simulate/world/world.h"
+
+namespace swath::simulate {
+
+/// Where a point in camera axes (x right, y up, z backward) is seen, mm from the middle of the sensor, y up; nothing beyond the sensor or
+/// behind the camera.
+std::optional<Eigen::Vector2d> seen_at(const CameraOptions& camera, const Eigen::Vector3d& direction);
+
+struct CameraMade {
+  std::uint64_t images = 0, points = 0, image_points = 0, hidden = 0;
+};
+
+/// Writes images.csv (stations of the antenna with their errors, observed attitudes), image_points.csv, block_control.csv, block_check.csv,
+/// block.toml, and truth/images.csv, truth/camera_points.csv, truth/drift.csv. Points that terrain, buildings or dense crowns hide are not
+/// measured. Noise-free: no noise, shifts and drifts stay. Throws core::Error where no image sees a point.
+CameraMade write_camera(const std::filesystem::path& folder, const World& world, const MapPatch& map, const Flight& flight,
+                        core::GpsTime start, const Options& options);
+
+}  // namespace swath::simulate
