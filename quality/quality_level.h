@@ -69,7 +69,7 @@ void describe(const Requirement& r, V& v) {
   v.result("value", r.value, core::plain().always(), "What was measured; null where no stage measured it.");
   v.result("limit", r.limit, "The limit.");
   v.result("at_least", r.is_least, "The value must not be below the limit; otherwise not above it.");
-  v.result("met", r.is_met(), core::plain().only_if(r.value.has_value()), "Is it met?");
+  v.result("met", r.is_met(), core::plain().only_if(r.value.has_value()), "Whether it is met.");
 }
 
 /// The requirements of the level with those of the contract in their place; of `none` those of the contract alone.

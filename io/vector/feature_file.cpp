@@ -17,11 +17,11 @@
 namespace swath::io {
 namespace {
 
-void check_features(const std::filesystem::path& file, const FeatureLayer& layer) {
+void check_features(const std::filesystem::path& file, const SpatialLayer& layer) {
   for (size_t k = 0; k < layer.features.size(); ++k) {
-    const Feature& f = layer.features[k];
+    const SpatialFeature& f = layer.features[k];
     const std::string at = file.string() + ": " + layer.name + " " + std::to_string(k + 1);
-    const size_t least = layer.shape == FeatureShape::point ? 1 : layer.shape == FeatureShape::line ? 2 : 3;
+    const size_t least = layer.shape == SpatialShape::point ? 1 : layer.shape == SpatialShape::line ? 2 : 3;
     if (f.places.size() < least) throw core::Error("a feature has too few places", at);
     for (const Eigen::Vector3d& p : f.places)
       if (!p.allFinite()) throw core::Error("a feature holds a coordinate that is not finite", at);
@@ -31,15 +31,15 @@ void check_features(const std::filesystem::path& file, const FeatureLayer& layer
   }
 }
 
-std::unique_ptr<OGRGeometry> geometry_of(const FeatureLayer& layer, const Feature& f) {
+std::unique_ptr<OGRGeometry> geometry_of(const SpatialLayer& layer, const SpatialFeature& f) {
   const auto place = [&](OGRSimpleCurve& line, const Eigen::Vector3d& p) {
     layer.flat ? line.addPoint(p.x(), p.y()) : line.addPoint(p.x(), p.y(), p.z());
   };
-  if (layer.shape == FeatureShape::point) {
+  if (layer.shape == SpatialShape::point) {
     const Eigen::Vector3d& p = f.places[0];
     return layer.flat ? std::make_unique<OGRPoint>(p.x(), p.y()) : std::make_unique<OGRPoint>(p.x(), p.y(), p.z());
   }
-  if (layer.shape == FeatureShape::line) {
+  if (layer.shape == SpatialShape::line) {
     auto line = std::make_unique<OGRLineString>();
     for (const Eigen::Vector3d& p : f.places) place(*line, p);
     return line;
@@ -52,14 +52,14 @@ std::unique_ptr<OGRGeometry> geometry_of(const FeatureLayer& layer, const Featur
   return area;
 }
 
-OGRwkbGeometryType type_of(const FeatureLayer& layer) {
-  const OGRwkbGeometryType flat = layer.shape == FeatureShape::point  ? wkbPoint
-                                  : layer.shape == FeatureShape::line ? wkbLineString
+OGRwkbGeometryType type_of(const SpatialLayer& layer) {
+  const OGRwkbGeometryType flat = layer.shape == SpatialShape::point  ? wkbPoint
+                                  : layer.shape == SpatialShape::line ? wkbLineString
                                                                       : wkbPolygon;
   return layer.flat ? flat : wkbSetZ(flat);
 }
 
-void add_layer(GDALDataset& set, const FeatureLayer& what, const CrsFacts& facts, const GdalMessages& messages,
+void add_layer(GDALDataset& set, const SpatialLayer& what, const CrsFacts& facts, const GdalMessages& messages,
                const std::filesystem::path& file) {
   OGRSpatialReference srs;
   if (!facts.empty) srs.SetFromUserInput(facts.horizontal_wkt.c_str());
@@ -69,13 +69,13 @@ void add_layer(GDALDataset& set, const FeatureLayer& what, const CrsFacts& facts
   const char* const options[] = {"GEOMETRY_NAME=geom", "FID=fid", "SPATIAL_INDEX=YES", description.c_str(), nullptr};
   OGRLayer* layer = set.CreateLayer(what.name.c_str(), facts.empty ? nullptr : &srs, type_of(what), const_cast<char**>(options));
   if (!layer) messages.fail_writing(file);
-  for (const FeatureField& f : what.fields) {
+  for (const SpatialField& f : what.fields) {
     const bool real = std::holds_alternative<double>(f.kind), text = std::holds_alternative<std::string>(f.kind);
     OGRFieldDefn field(f.name.c_str(), real ? OFTReal : text ? OFTString : OFTInteger64);
     if (layer->CreateField(&field) != OGRERR_NONE) messages.fail_writing(file);
   }
   if (set.StartTransaction() != OGRERR_NONE) messages.fail_writing(file);
-  for (const Feature& f : what.features) {
+  for (const SpatialFeature& f : what.features) {
     OGRFeature feature(layer->GetLayerDefn());
     for (int k = 0; k < static_cast<int>(f.values.size()); ++k) {
       const FieldValue& v = f.values[static_cast<size_t>(k)];
@@ -95,8 +95,8 @@ void add_layer(GDALDataset& set, const FeatureLayer& what, const CrsFacts& facts
 
 }  // namespace
 
-void write_gpkg(const std::filesystem::path& file, const std::vector<FeatureLayer>& layers, const std::string& crs) {
-  for (const FeatureLayer& layer : layers) check_features(file, layer);
+void write_gpkg(const std::filesystem::path& file, const std::vector<SpatialLayer>& layers, const std::string& crs) {
+  for (const SpatialLayer& layer : layers) check_features(file, layer);
   const CrsFacts facts = crs_facts(crs);
   OutputFile out(file);
   std::filesystem::remove(out.temporary());  // the driver makes only files that are not there yet
@@ -107,18 +107,18 @@ void write_gpkg(const std::filesystem::path& file, const std::vector<FeatureLaye
   const char* const creation[] = {"VERSION=1.2", nullptr};
   Dataset set(driver->Create(out.temporary().c_str(), 0, 0, 0, GDT_Unknown, const_cast<char**>(creation)));
   if (!set) messages.fail_writing(file);
-  for (const FeatureLayer& layer : layers) add_layer(*set, layer, facts, messages, file);
+  for (const SpatialLayer& layer : layers) add_layer(*set, layer, facts, messages, file);
   set.reset();
   messages.check_written(file);
   out.commit();
 }
 
-void write_dxf(const std::filesystem::path& file, const std::vector<FeatureLayer>& layers, const std::string& crs) {
-  for (const FeatureLayer& layer : layers) check_features(file, layer);
+void write_dxf(const std::filesystem::path& file, const std::vector<SpatialLayer>& layers, const std::string& crs) {
+  for (const SpatialLayer& layer : layers) check_features(file, layer);
   const CrsFacts facts = crs_facts(crs);
   const int decimals = facts.geographic ? 9 : 4;
   TextStream text(file);
-  const auto name_of = [](const FeatureLayer& layer) {
+  const auto name_of = [](const SpatialLayer& layer) {
     std::string upper = layer.name;
     for (char& c : upper) c = static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
     return upper;
@@ -137,16 +137,16 @@ void write_dxf(const std::filesystem::path& file, const std::vector<FeatureLayer
   for (size_t k = 0; k < layers.size(); ++k)
     text << "0\nLAYER\n2\n" << name_of(layers[k]) << "\n70\n0\n62\n" << std::to_string(1 + k % 7) << "\n6\nCONTINUOUS\n";
   text << "0\nENDTAB\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n";
-  for (const FeatureLayer& layer : layers)
-    for (const Feature& f : layer.features) {
-      if (layer.shape == FeatureShape::point) {
+  for (const SpatialLayer& layer : layers)
+    for (const SpatialFeature& f : layer.features) {
+      if (layer.shape == SpatialShape::point) {
         text << "0\nPOINT\n8\n" << name_of(layer) << "\n";
         place(f.places[0]);
         continue;
       }
       text << "0\nPOLYLINE\n8\n"
            << name_of(layer) << "\n66\n1\n10\n0.0\n20\n0.0\n30\n0.0\n70\n"
-           << (layer.shape == FeatureShape::polygon ? "9" : "8") << "\n";
+           << (layer.shape == SpatialShape::polygon ? "9" : "8") << "\n";
       for (const Eigen::Vector3d& p : f.places) {
         text << "0\nVERTEX\n8\n" << name_of(layer) << "\n";
         place(p);
@@ -158,7 +158,7 @@ void write_dxf(const std::filesystem::path& file, const std::vector<FeatureLayer
   text.close();
 }
 
-void write_feature_csv(const std::filesystem::path& file, const FeatureLayer& layer) {
+void write_feature_csv(const std::filesystem::path& file, const SpatialLayer& layer) {
   check_features(file, layer);
   const auto row_of = [](const std::vector<std::string>& cells) {
     std::string row;
@@ -166,12 +166,12 @@ void write_feature_csv(const std::filesystem::path& file, const FeatureLayer& la
     return row + "\n";
   };
   std::vector<std::string> cells;
-  if (layer.shape == FeatureShape::point) cells = {"x", "y", "z"};
-  for (const FeatureField& f : layer.fields) cells.push_back(f.name);
+  if (layer.shape == SpatialShape::point) cells = {"x", "y", "z"};
+  for (const SpatialField& f : layer.fields) cells.push_back(f.name);
   std::string out = row_of(cells);
-  for (const Feature& f : layer.features) {
+  for (const SpatialFeature& f : layer.features) {
     cells.clear();
-    if (layer.shape == FeatureShape::point)
+    if (layer.shape == SpatialShape::point)
       for (int k = 0; k < 3; ++k) cells.push_back(fixed_text(f.places[0](k), 3));
     for (const FieldValue& v : f.values) {
       if (const double* number = std::get_if<double>(&v)) cells.push_back(std::isfinite(*number) ? fixed_text(*number, 4) : "");

@@ -160,8 +160,8 @@ void GdalMessages::note(bool failure, const char* message) {
   failed_ = failed_ || failure;
 }
 
-void GdalMessages::fail(const std::string& doing, const std::filesystem::path& file, std::string hint) const {
-  throw core::Error(text_.empty() ? doing : doing + ": " + text_, file.string(), std::move(hint));
+void GdalMessages::fail(const std::string& doing, const std::filesystem::path& file, const std::string& hint) const {
+  throw core::Error(text_.empty() ? doing : doing + ": " + text_, file.string(), hint);
 }
 
 void GdalMessages::check(const std::string& doing, const std::filesystem::path& file) const {

@@ -26,7 +26,7 @@ class GdalMessages {
   const std::string& text() const { return text_; }
   void note(bool failure, const char* message);
   /// Throws core::Error "doing: GDAL's text" for `file`.
-  [[noreturn]] void fail(const std::string& doing, const std::filesystem::path& file, std::string hint = {}) const;
+  [[noreturn]] void fail(const std::string& doing, const std::filesystem::path& file, const std::string& hint = {}) const;
   /// fail() where GDAL reported a failure.
   void check(const std::string& doing, const std::filesystem::path& file) const;
   /// For a file that is being written: throws core::SystemError, with a hint where the disk is full.

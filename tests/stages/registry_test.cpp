@@ -35,7 +35,10 @@ TEST(Registry, DefaultsAreValid) {
     std::vector<core::Fault> faults;
     const core::Describe d = [&](core::Visitor& v) { stage->visit(v); };
     core::read_options(d, core::effective_values(d), "", faults);
-    for (const auto& f : faults) ADD_FAILURE() << e.name << ": " << f.text();
+    const bool contract = e.name == "terrain.powerlines";  // its limits depend on country and contract, and have no default
+    EXPECT_EQ(faults.empty(), !contract) << e.name;
+    for (const auto& f : faults)
+      if (!contract || f.text().find("must be given") == std::string::npos) ADD_FAILURE() << e.name << ": " << f.text();
   }
 }
 

@@ -53,7 +53,7 @@ struct LatencyResult {
 template <class V>
 void describe(const LatencyResult& r, V& v) {
   const auto solved = core::plain().only_if(r.used > 0), known = core::plain().only_if(r.determinable);
-  v.result("determinable", r.determinable, core::plain().in_summary(), "Does the motion determine the latency?");
+  v.result("determinable", r.determinable, core::plain().in_summary(), "Whether the motion determines the latency.");
   v.result("reason", r.reason, core::plain().only_if(!r.reason.empty()).in_summary(), "Why not, or what the answer rests on.");
   v.result("latency_s", r.latency, core::seconds(6).only_if(r.determinable).in_summary(), "To be added to the device's times.");
   v.result("sigma_s", r.sigma, core::seconds(6).only_if(r.determinable).in_summary(), "Its sigma.");

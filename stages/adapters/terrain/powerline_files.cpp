@@ -39,10 +39,10 @@ std::vector<Eigen::Vector3d> mapped(std::vector<Eigen::Vector3d> places, const O
 io::FieldValue whole(size_t n) { return static_cast<std::int64_t>(n); }
 io::FieldValue pylon_number(const std::optional<size_t>& p) { return p ? std::to_string(*p + 1) : std::string(); }
 
-io::FeatureLayer conductors(const PowerLineResult& r, const OnMap& map) {
-  io::FeatureLayer out{"conductors",
+io::SpatialLayer conductors(const PowerLineResult& r, const OnMap& map) {
+  io::SpatialLayer out{"conductors",
                        "Wires as catenaries z = z0 + a cosh((s - s0) / a) - a, s m from the first vertex; lengths and sigmas in m",
-                       io::FeatureShape::line,
+                       io::SpatialShape::line,
                        false,
                        {{"name", std::string()},
                         {"span", std::int64_t{}},
@@ -74,10 +74,10 @@ io::FeatureLayer conductors(const PowerLineResult& r, const OnMap& map) {
   return out;
 }
 
-io::FeatureLayer spans(const PowerLineResult& r, const OnMap& map) {
-  io::FeatureLayer out{"spans",
+io::SpatialLayer spans(const PowerLineResult& r, const OnMap& map) {
+  io::SpatialLayer out{"spans",
                        "Axis of each span",
-                       io::FeatureShape::line,
+                       io::SpatialShape::line,
                        false,
                        {{"span", std::int64_t{}},
                         {"length", 0.0},
@@ -97,10 +97,10 @@ io::FeatureLayer spans(const PowerLineResult& r, const OnMap& map) {
   return out;
 }
 
-io::FeatureLayer pylons(const PowerLineResult& r, const OnMap& map) {
-  io::FeatureLayer out{"pylons",
+io::SpatialLayer pylons(const PowerLineResult& r, const OnMap& map) {
+  io::SpatialLayer out{"pylons",
                        "Supports: their top, returns of class 15 (0: known by the wires alone)",
-                       io::FeatureShape::point,
+                       io::SpatialShape::point,
                        false,
                        {{"pylon", std::int64_t{}}, {"sigma", 0.0}, {"returns", std::int64_t{}}, {"spans", std::int64_t{}}},
                        {}};
@@ -112,10 +112,10 @@ io::FeatureLayer pylons(const PowerLineResult& r, const OnMap& map) {
   return out;
 }
 
-io::FeatureLayer clearances(const PowerLineResult& r, const OnMap& map) {
-  io::FeatureLayer out{"clearances",
+io::SpatialLayer clearances(const PowerLineResult& r, const OnMap& map) {
+  io::SpatialLayer out{"clearances",
                        "Smallest distances, from the wire to the nearest place; m",
-                       io::FeatureShape::line,
+                       io::SpatialShape::line,
                        false,
                        {{"conductor", std::string()},
                         {"to", std::string()},
@@ -135,8 +135,8 @@ io::FeatureLayer clearances(const PowerLineResult& r, const OnMap& map) {
   return out;
 }
 
-io::FeatureLayer infringements(const PowerLineResult& r, const OnMap& map) {
-  io::FeatureLayer out{"infringements", "Returns nearer than their limit, the nearest of each square metre",      io::FeatureShape::point,
+io::SpatialLayer infringements(const PowerLineResult& r, const OnMap& map) {
+  io::SpatialLayer out{"infringements", "Returns nearer than their limit, the nearest of each square metre",      io::SpatialShape::point,
                        false,           {{"conductor", std::string()}, {"of", std::string()}, {"distance", 0.0}}, {}};
   for (size_t k = 0; k < r.clearances.size(); ++k)
     for (const terrain::Infringement& i : r.clearances[k].infringements)
@@ -145,10 +145,10 @@ io::FeatureLayer infringements(const PowerLineResult& r, const OnMap& map) {
   return out;
 }
 
-io::FeatureLayer trees(const PowerLineResult& r, const OnMap& map) {
-  io::FeatureLayer out{"falling_trees",
+io::SpatialLayer trees(const PowerLineResult& r, const OnMap& map) {
+  io::SpatialLayer out{"falling_trees",
                        "Trees that come too near to a wire when they fall: tops; margin below 0: they reach it",
-                       io::FeatureShape::point,
+                       io::SpatialShape::point,
                        false,
                        {{"conductor", std::string()}, {"height", 0.0}, {"margin", 0.0}},
                        {}};
@@ -184,7 +184,7 @@ std::string conductor_name(const terrain::PowerLines& lines, size_t conductor) {
   return std::to_string(span + 1) + "." + std::to_string(std::find(all.begin(), all.end(), conductor) - all.begin() + 1);
 }
 
-std::vector<io::FeatureLayer> power_line_layers(const PowerLineResult& result, const Context& context) {
+std::vector<io::SpatialLayer> power_line_layers(const PowerLineResult& result, const Context& context) {
   const OnMap map{context};
   return {conductors(result, map), spans(result, map),         pylons(result, map),
           clearances(result, map), infringements(result, map), trees(result, map)};

@@ -23,7 +23,7 @@ struct PowerLineResult {
 std::string conductor_name(const terrain::PowerLines& lines, size_t conductor);
 
 /// Layers conductors, spans, pylons, clearances (from wire to the nearest place), infringements and falling_trees.
-std::vector<io::FeatureLayer> power_line_layers(const PowerLineResult& result, const Context& context);
+std::vector<io::SpatialLayer> power_line_layers(const PowerLineResult& result, const Context& context);
 
 /// Profile along the span and plan, with what lies within `beside` metres of its axis. `base`: height of the places' origin, m.
 report::Chart span_sheet(const PowerLineResult& result, size_t span, const std::vector<terrain::Obstacle>& obstacles, double beside,

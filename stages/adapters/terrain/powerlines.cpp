@@ -280,10 +280,10 @@ PowerLineFindings find_lines(const MergeJob& job, const Context& context, const 
     c.wires = bundle.wires, c.spacing = bundle.spacing;
   }
   look_around(job, context, o, result);
-  const std::vector<io::FeatureLayer> layers = power_line_layers(result, context);
+  const std::vector<io::SpatialLayer> layers = power_line_layers(result, context);
   io::write_gpkg(context.output / (o.name + ".gpkg"), layers, context.product_crs);
   io::write_dxf(context.output / (o.name + ".dxf"), layers, context.product_crs);
-  for (const io::FeatureLayer& layer : layers) io::write_feature_csv(context.output / (o.name + "_" + layer.name + ".csv"), layer);
+  for (const io::SpatialLayer& layer : layers) io::write_feature_csv(context.output / (o.name + "_" + layer.name + ".csv"), layer);
   return summary(result, wires.size());
 }
 

@@ -10,10 +10,13 @@ namespace {
 
 using Eigen::Vector3d;
 
+// m: PROJ inverts the seven parameters between the datums by their signs, which leaves 0.12 mm.
+constexpr double datum = 2e-4;
+
 TEST(BlockFrame, ThereAndBackAndLocal) {
   const BlockFrame frame("EPSG:25832+ellipsoidal", {600000, 5600000, 300});
   for (const Vector3d& p : {Vector3d(600000, 5600000, 300), Vector3d(604000, 5597000, 1500)})
-    EXPECT_LT((frame.map_of(frame.local_of(p)) - p).norm(), 1e-6);
+    EXPECT_LT((frame.map_of(frame.local_of(p)) - p).norm(), datum);
   EXPECT_LT(frame.local_of({600000, 5600000, 300}).norm(), 1e-6);
   // 100 m up is 100 m; 1000 m of grid is 1000 m over the scale of the projection, 0.99972 there with the height's share.
   EXPECT_NEAR(frame.local_of({600000, 5600000, 400}).z(), 100.0, 1e-6);

@@ -24,6 +24,7 @@ struct Making {
   double drift = 0.0;                                ///< m, sigma of shifts and changes
   bool attitudes = false;                            ///< observed, with an unknown boresight of 0.01 rad
   double attitude_sigma = 1e-4;                      ///< rad
+  double tilt = 0.02;                                ///< rad, of the images about each axis, one sigma
   Making() { layout.strips = 3, layout.images = 6; }
 };
 
@@ -45,7 +46,7 @@ inline MadeBlock make_block(const Making& m) {
   for (BlockPoint& p : t.points) p.position.z() = 60.0 * normal(random);
   for (BlockImage& i : t.images) {
     i.position += vector(20.0);
-    i.camera_R_local = core::exp_so3(vector(0.02)) * i.camera_R_local;
+    i.camera_R_local = core::exp_so3(vector(m.tilt)) * i.camera_R_local;
   }
   for (StationDrift& d : t.drifts) d.shift = vector(m.drift), d.change = vector(m.drift);
   for (ImageRay& r : t.rays) {

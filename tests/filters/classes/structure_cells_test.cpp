@@ -47,7 +47,7 @@ TEST(StructureCells, GrowingCrossesOneEmptyCellAndStaysInItsSquare) {
   const auto cells_from = [&](int start, int radius, size_t wanted, auto&& is) {
     Growth growth(l, radius, [&](size_t c) { return is(static_cast<int>(c % 40), static_cast<int>(c / 40)); });
     const auto linked = [&](size_t, size_t) { return true; };
-    growth.from(7, 1, structure_link, 100, linked);  // what went before does not matter
+    growth.from(start, 1, structure_link, 3, linked);  // what went before does not matter
     return growth.from(start, 1, structure_link, wanted, linked).size();
   };
   const auto every_second = [](int i, int j) { return j == 1 && i % 2 == 0; };

@@ -15,16 +15,16 @@ namespace {
 
 constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<FeatureLayer> layers() {
+std::vector<SpatialLayer> layers() {
   return {{"wires",
            "Wires",
-           FeatureShape::line,
+           SpatialShape::line,
            false,
            {{"name", std::string()}, {"sag", 0.0}, {"returns", std::int64_t{0}}},
            {{{{1000, 2000, 30}, {1100.5, 2000, 28}, {1200, 2001, 31}}, {std::string("A, left"), 4.25, std::int64_t{77}}},
             {{{1000, 2010, 30}, {1100, 2010, 29}}, {std::string("B"), unset, std::int64_t{5}}}}},
-          {"pylons", "Pylons", FeatureShape::point, false, {{"top", 0.0}}, {{{{1000, 2005, 32.5}}, {32.5}}}},
-          {"roofs", "Roofs", FeatureShape::polygon, false, {}, {{{{0, 0, 5}, {10, 0, 5}, {10, 8, 6}}, {}}}}};
+          {"pylons", "Pylons", SpatialShape::point, false, {{"top", 0.0}}, {{{{1000, 2005, 32.5}}, {32.5}}}},
+          {"roofs", "Roofs", SpatialShape::polygon, false, {}, {{{{0, 0, 5}, {10, 0, 5}, {10, 8, 6}}, {}}}}};
 }
 
 TEST(FeatureFile, LinesComeBackWithHeights) {
@@ -68,7 +68,7 @@ TEST(FeatureFile, TheSameLayersAreTheSameBytes) {
 
 TEST(FeatureFile, AFeatureThatDoesNotFitItsLayerIsAnError) {
   const test::TemporaryFolder folder;
-  std::vector<FeatureLayer> one_place = layers(), wrong_kind = layers(), not_finite = layers();
+  std::vector<SpatialLayer> one_place = layers(), wrong_kind = layers(), not_finite = layers();
   one_place[0].features[1].places.resize(1);
   wrong_kind[0].features[0].values[1] = std::string("4.25");
   not_finite[1].features[0].places[0].z() = unset;
