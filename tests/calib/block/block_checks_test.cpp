@@ -55,7 +55,8 @@ TEST(BlockChecks, ImageAxes) {
 
 TEST(BlockChecks, Angles) {
   test::Making making = test::small_making();
-  making.tilt = 0.1;  // the order of omega and phi is seen by their product alone
+  making.tilt = 0.1;  // the order of omega and phi is seen by their product alone: a boresight as large would hide it
+  making.boresight.setZero();
   test::MadeFiles m;
   m.block = test::make_block(making).given;
   m.write_angles = true;

@@ -22,7 +22,8 @@ struct Making {
   CameraVector camera = CameraVector::Zero();        ///< true distortion and principal point; f is the layout's
   CameraVector camera_sigma = CameraVector::Zero();  ///< as BlockCamera::sigma
   double drift = 0.0;                                ///< m, sigma of shifts and changes
-  bool attitudes = false;                            ///< observed, with an unknown boresight of 0.01 rad
+  bool attitudes = false;                            ///< observed, with an unknown boresight
+  Eigen::Vector3d boresight{0.01, -0.006, 0.008};    ///< rad
   double attitude_sigma = 1e-4;                      ///< rad
   double tilt = 0.02;                                ///< rad, of the images about each axis, one sigma
   Making() { layout.strips = 3, layout.images = 6; }
@@ -41,7 +42,7 @@ inline MadeBlock make_block(const Making& m) {
   const Eigen::Matrix3d nominal = t.cameras[0].body_R_camera;
   if (m.attitudes) {
     t.cameras[0].boresight_sigma.setConstant(free_value);
-    t.cameras[0].body_R_camera = nominal * core::exp_so3(Eigen::Vector3d(0.01, -0.006, 0.008));
+    t.cameras[0].body_R_camera = nominal * core::exp_so3(m.boresight);
   }
   for (BlockPoint& p : t.points) p.position.z() = 60.0 * normal(random);
   for (BlockImage& i : t.images) {
