@@ -3,7 +3,8 @@
 // alpha at A, beta at B. Beyond the paper the stations' coordinates are observations with their covariance (held, they make sigmas of
 // 0.06 mm out of 2 mm distances), all points are adjusted together, so that the stations' errors cancel in differences as they should,
 // both sides of the stations' plane are tried, and vertical angles may make conditions for the height with their sign.
-// Ceres was weighed: it has no conditions between observations (Gauss-Helmert), and observations as unknowns would hide their residuals' sigmas.
+// Ceres was weighed: it has no conditions between observations (Gauss-Helmert), and observations as unknowns would hide their residuals'
+// sigmas.
 #include "calib/hangar/combined_point.h"
 
 #include <Eigen/Cholesky>

@@ -2,7 +2,8 @@
 // Source: Jubanski et al., eq 9 (parametric adjustment of a station from distances). The paper starts from values read off a drawing; here
 // they are computed on both sides of the plane of the targets, because from the wrong side the adjustment ends in the mirror image. Whether
 // the linear model, and with it the sigmas, holds: relative curvature (Bates & Watts, "Relative curvature measures of nonlinearity", 1980).
-// Ceres was weighed: three unknowns, but curvature, redundancy and the mirror solution need the Jacobians at every step, which it keeps to itself.
+// Ceres was weighed: three unknowns, but curvature, redundancy and the mirror solution need the Jacobians at every step, which it keeps to
+// itself.
 #include "calib/hangar/resection.h"
 
 #include <Eigen/Cholesky>
