@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "calib/block/block_checks.h"
 #include "calib/block/block_files.h"
@@ -26,13 +27,17 @@ struct TheoryArguments {
   bool json = false;
 };
 
-int block_theory(const TheoryArguments& a) {
-  core::Value given = a.config.empty() ? core::Value::object() : io::read_value_file(a.config);
-  for (const std::string& set : a.sets) pipeline::set_option(given, set);
+calib::TheoryOptions theory_options(core::Value given, const std::vector<std::string>& sets) {
+  for (const std::string& set : sets) pipeline::set_option(given, set);
   calib::TheoryOptions options;
   std::vector<core::Fault> faults;
   core::read_options(core::described(options), given, "", faults);
   core::throw_if_any(faults);
+  return options;
+}
+
+int block_theory(const TheoryArguments& a) {
+  const calib::TheoryOptions options = theory_options(a.config.empty() ? core::Value::object() : io::read_value_file(a.config), a.sets);
   const calib::TheoryTable table = calib::theory_table(options);
   a.json ? print_json(core::reported(table)) : print(calib::theory_text(table));
   return 0;
@@ -160,6 +165,20 @@ void add_block_drift_command(Commands& commands) {
   c->add_option("FILE", a->file, "Table: strip, time in s, and columns of differences station less reference")->required();
   c->add_option("--column", a->columns, "Column of differences; may be given more than once; default: all")->allow_extra_args(false);
   c->add_flag("--json", a->json, "As JSON");
+}
+
+std::optional<std::string> check_block_config(const std::filesystem::path& config, const std::vector<std::string>& sets) {
+  if (!std::filesystem::is_regular_file(config)) return std::nullopt;
+  core::Value given = io::read_value_file(config);
+  if (given.find("stage") || given.find("run")) return std::nullopt;
+  if (given.find("image_points")) {
+    for (const std::string& set : sets) pipeline::set_option(given, set);
+    return "a block of images, " + std::to_string(calib::read_block_config(config.string(), given).image_points.size()) +
+           " file(s) of image points";
+  }
+  if (!given.find("sigma_image")) return std::nullopt;
+  const calib::TheoryOptions options = theory_options(given, sets);
+  return "the accuracy of a block of " + std::to_string(options.strips) + " strips of " + std::to_string(options.images) + " images";
 }
 
 }  // namespace swath::tools

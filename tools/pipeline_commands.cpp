@@ -70,6 +70,10 @@ int check(const Given& a) {
     if (!a.loudness.quiet) std::printf("%s: a flight of %zu lines\n", a.request.config.c_str(), plan.lines.size());
     return 0;
   }
+  if (const auto block = check_block_config(config, a.request.sets)) {
+    if (!a.loudness.quiet) std::printf("%s: %s\n", a.request.config.c_str(), block->c_str());
+    return 0;
+  }
   const pipeline::Plan plan = pipeline::make_plan(a.request);
   if (!plan.survey_file.empty()) pipeline::check_output(plan);
   if (a.loudness.quiet) return 0;

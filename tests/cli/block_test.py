@@ -66,6 +66,13 @@ class Block(Case):
         self.assert_error(swath("block", self.folder / "block.toml", "--output", self.folder / "out"), 1, "(?s)heights.*cross strips.*chains of height control")
         self.assert_error(swath("block", self.folder / "block.toml", "--set", "crs="), 2, "crs is not stated")
 
+    def test_check_knows_configs_of_blocks(self):
+        theory = SOURCE / "configs" / "flight" / "block_theory.toml"
+        self.assertIn("a block of 6 strips of 21 images", swath("check", theory).stdout)
+        self.assert_error(swath("check", theory, "--set", "strips=0"), 2, "strips")
+        write_block(self.folder)
+        self.assertIn("1 file(s) of image points", swath("check", self.folder / "block.toml").stdout)
+
     def test_quadro_1(self):
         done = swath("block-theory", "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
