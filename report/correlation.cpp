@@ -12,7 +12,7 @@
 namespace swath::report {
 namespace {
 
-constexpr core::Rgb ink{40, 40, 40}, white{255, 255, 255};
+constexpr core::Rgb on_light{40, 40, 40}, on_dark{255, 255, 255};
 constexpr int matrix_pad = 12, matrix_gap = 8, row = 34, least_cell = 66;
 constexpr double label_size = 13.0, heading_size = 18.0;
 constexpr double dark = 0.75;  // white letters from here on
@@ -49,7 +49,7 @@ struct CellLayout {
         if (!std::isfinite(v)) continue;
         canvas.fill({left + c * least_cell + 1, top + r * row + 1, least_cell - 2, row - 2}, diverging_colour(v));
         canvas.text(left + (c + 0.5) * least_cell, y, coefficient(v, r == c),
-                    {.size = label_size, .colour = std::abs(v) > dark ? white : ink, .anchor = Anchor::middle});
+                    {.size = label_size, .colour = std::abs(v) > dark ? on_dark : on_light, .anchor = Anchor::middle});
       }
     }
     for (int c = 0; c < n; ++c)

@@ -36,7 +36,7 @@ bool needs_distortion(const BlockCamera& c) {
 
 }  // namespace
 
-BlockConfig read_block_config(const std::filesystem::path& file, core::Value given) {
+BlockConfig read_block_config(const std::filesystem::path& file, const core::Value& given) {
   BlockConfig out;
   std::vector<core::Fault> faults;
   core::read_options(core::described(out), given, "", faults);

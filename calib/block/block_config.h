@@ -169,7 +169,7 @@ void describe(BlockConfig& b, V& v) {
 }
 
 /// Reads a config; paths in it become relative to where the program runs. Throws core::Error with all faults. `sets`: "key=value".
-BlockConfig read_block_config(const std::filesystem::path& file, core::Value given);
+BlockConfig read_block_config(const std::filesystem::path& file, const core::Value& given);
 
 /// The camera of a config as the adjustment takes it. Throws core::Error for a sigma that is none of "held", "free" and a number.
 BlockCamera camera_of(const CameraConfig& config, const std::string& file);
