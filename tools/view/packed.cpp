@@ -29,7 +29,7 @@ std::string planes_of(std::span<const Unsigned> values) {
 
 }  // namespace
 
-void Packer::put(const std::string& name, const char* type, bool delta, std::size_t count, std::string planes) {
+void Packer::put(const std::string& name, const char* type, bool delta, std::size_t count, const std::string& planes) {
   core::Value& about = table[name];
   about["blob"] = prefix_ + "." + name;
   about["type"] = type;

@@ -31,7 +31,7 @@ class Packer {
   std::vector<Blob> blobs;
 
  private:
-  void put(const std::string& name, const char* type, bool delta, std::size_t count, std::string planes);
+  void put(const std::string& name, const char* type, bool delta, std::size_t count, const std::string& planes);
   std::string prefix_;
 };
 
