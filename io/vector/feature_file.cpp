@@ -99,14 +99,9 @@ void write_gpkg(const std::filesystem::path& file, const std::vector<SpatialLaye
   for (const SpatialLayer& layer : layers) check_features(file, layer);
   const CrsFacts facts = crs_facts(crs);
   OutputFile out(file);
-  std::filesystem::remove(out.temporary());  // the driver makes only files that are not there yet
   const GdalMessages messages;
   const GdalSetting date{"OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z"};
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
-  if (!driver) throw core::Error("this GDAL has no GeoPackage driver", file.string());
-  const char* const creation[] = {"VERSION=1.2", nullptr};
-  Dataset set(driver->Create(out.temporary().c_str(), 0, 0, 0, GDT_Unknown, const_cast<char**>(creation)));
-  if (!set) messages.fail_writing(file);
+  Dataset set = new_geopackage(out.temporary(), file, messages);
   for (const SpatialLayer& layer : layers) add_layer(*set, layer, facts, messages, file);
   set.reset();
   messages.check_written(file);

@@ -75,14 +75,9 @@ void write_layer(GDALDataset& set, const FeatureLayer& what, OGRSpatialReference
 void write_feature_layers(const std::filesystem::path& file, const std::vector<FeatureLayer>& layers, const std::string& crs) {
   const CrsFacts facts = crs_facts(crs);
   OutputFile out(file);
-  std::filesystem::remove(out.temporary());  // the driver makes only files that are not there yet
   const GdalMessages messages;
   const GdalSetting date{"OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z"};
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
-  if (!driver) throw core::Error("this GDAL has no GeoPackage driver", file.string());
-  const char* const creation[] = {"VERSION=1.2", nullptr};
-  Dataset set(driver->Create(out.temporary().c_str(), 0, 0, 0, GDT_Unknown, const_cast<char**>(creation)));
-  if (!set) messages.fail_writing(file);
+  Dataset set = new_geopackage(out.temporary(), file, messages);
   OGRSpatialReference srs;
   if (!facts.empty) srs.SetFromUserInput(facts.horizontal_wkt.c_str());
   srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);

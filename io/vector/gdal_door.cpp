@@ -189,6 +189,16 @@ Dataset open_raster(const std::filesystem::path& file) {
 }
 Dataset open_vector(const std::filesystem::path& file) { return open_plain(file, GDAL_OF_VECTOR, vector_drivers); }
 
+Dataset new_geopackage(const std::filesystem::path& temporary, const std::filesystem::path& file, const GdalMessages& messages) {
+  std::filesystem::remove(temporary);  // the driver makes only files that are not there yet
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
+  if (!driver) throw core::Error("this GDAL has no GeoPackage driver", file.string());
+  const char* const creation[] = {"VERSION=1.2", nullptr};
+  Dataset set(driver->Create(temporary.c_str(), 0, 0, 0, GDT_Unknown, const_cast<char**>(creation)));
+  if (!set) messages.fail_writing(file);
+  return set;
+}
+
 GdalSetting::GdalSetting(const char* key, const char* value) : key_(key) {
   if (const char* before = CPLGetThreadLocalConfigOption(key, nullptr)) {
     had_ = true;

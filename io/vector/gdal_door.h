@@ -49,6 +49,9 @@ using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
 Dataset open_raster(const std::filesystem::path& file);
 Dataset open_vector(const std::filesystem::path& file);
 
+/// An empty GeoPackage 1.2 in place of `temporary`, for the product `file`, which messages name. Throws core::Error.
+Dataset new_geopackage(const std::filesystem::path& temporary, const std::filesystem::path& file, const GdalMessages& messages);
+
 /// A setting of GDAL on this thread as long as the object lives.
 class GdalSetting {
  public:

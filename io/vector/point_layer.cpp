@@ -32,14 +32,9 @@ void add_point(OGRLayer& layer, const NamedPoint& p, size_t fields, const GdalMe
 void write_point_layer(const std::filesystem::path& file, const std::string& layer_name, const std::string& crs,
                        const std::vector<std::string>& fields, const std::vector<NamedPoint>& points) {
   OutputFile out(file);
-  std::filesystem::remove(out.temporary());  // the driver makes only files that are not there yet
   const GdalMessages messages;
   const GdalSetting date("OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z"), speed("OGR_SQLITE_SYNCHRONOUS", "OFF");
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
-  if (!driver) throw core::Error("this GDAL has no GeoPackage driver", file.string());
-  const char* const creation[] = {"VERSION=1.2", nullptr};
-  Dataset set(driver->Create(out.temporary().c_str(), 0, 0, 0, GDT_Unknown, const_cast<char**>(creation)));
-  if (!set) messages.fail_writing(file);
+  Dataset set = new_geopackage(out.temporary(), file, messages);
   OGRSpatialReference srs;
   if (!crs.empty()) srs.SetFromUserInput(crs_facts(crs).wkt.c_str());
   srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);

@@ -20,13 +20,8 @@ constexpr int features_per_transaction = 20000;
 class GpkgSink : public ContourSink {
  public:
   GpkgSink(const std::filesystem::path& file, const CrsFacts& crs) : file_(file), out_(file) {
-    std::filesystem::remove(out_.temporary());  // the driver makes only files that are not there yet
     const Scope scope;
-    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
-    if (!driver) throw core::Error("this GDAL has no GeoPackage driver", file.string());
-    const char* const creation[] = {"VERSION=1.2", nullptr};
-    set_ = driver->Create(out_.temporary().c_str(), 0, 0, 0, GDT_Unknown, const_cast<char**>(creation));
-    if (!set_) scope.messages.fail_writing(file_);
+    set_ = new_geopackage(out_.temporary(), file_, scope.messages).release();
     try {
       make_layers(crs, scope);
     } catch (...) {
