@@ -19,10 +19,13 @@ class Network(Case):
         report = self.run_ok(self.survey / "survey.toml", config=CONFIG)
         found = stage(report, "calib.network")["findings"]
         self.assertTrue(found["settled"])
-        self.assertLess(found["rms_after_m"], 0.5 * found["rms_before_m"])
+        self.assertLess(found["rms_after_m"], 0.2 * found["rms_before_m"])  # 0.03 to 0.14 over twelve seeds
         smoother, network = (found["truth"][who]["lines"] for who in ("smoother", "network"))
+        # Roll is what overlapping lines see. Pitch and heading of a single survey this small may come out larger than the smoother's; what must
+        # hold of them is their sigma (error / sigma up to 1.8 over twelve seeds).
+        self.assertLess(network["roll"]["rms_arcsec"], 0.95 * smoother["roll"]["rms_arcsec"])
         for angle in ("roll", "pitch", "heading"):
-            self.assertLess(network[angle]["rms_arcsec"], smoother[angle]["rms_arcsec"], angle)
+            self.assertLess(network[angle]["error_over_sigma"], 3.0, angle)
         self.assertEqual(set(found["values"]), {"boresight_roll", "boresight_pitch", "boresight_heading"})
         self.assertEqual(json.loads((self.out / "network.json").read_text())["planes"], found["planes"])
         calibration = json.loads((self.out / "calibration.json").read_text())
