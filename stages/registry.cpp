@@ -3,6 +3,7 @@
 
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/cloud/copc.h"
+#include "stages/adapters/cloud/crop.h"
 #include "stages/adapters/quality/quality_stages.h"
 #include "stages/adapters/terrain/powerlines.h"
 #include "stages/tile_filter.h"
@@ -30,6 +31,7 @@ const std::vector<Entry>& registry() {
       geometry_stage(),
       georeference_stage(),
       returns_stage(),
+      crop_stage(),
       class_filter<filters::flag_noise>(
           "filters.noise", "Isolated points, low points and ranges outside the gate: flagged and classed as noise, never deleted.",
           {.check = expect_ranges}),

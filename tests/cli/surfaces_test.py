@@ -2,6 +2,7 @@
 """Contours, volumes and profiles of a run's products, as their user calls them."""
 import json
 import re
+import struct
 import unittest
 
 from support import CONFIG, SMALL, Case, stage, swath
@@ -62,6 +63,60 @@ class Surfaces(Case):
                           "--half-width")
         self.assert_error(swath("profile", points, "--from", "0,0", "--to", "1,1", "--output", self.folder / "cut"), 1, "neither points")
         self.assertFalse((self.folder / "cut").exists())
+
+
+class Crop(Case):
+    simulated = SMALL
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.made = cls.class_folder / "made"
+        done = swath("run", CONFIG, "--survey", cls.survey / "survey.toml", "--output", cls.made, "--quiet")
+        if done.returncode != 0:
+            raise AssertionError(done.stderr)
+        corners = [struct.unpack_from("<4d", t.read_bytes(), 179) for t in sorted((cls.made / "points").glob("*.laz"))]  # max x, min x, max y, min y
+        cls.west, cls.north = min(c[1] for c in corners), max(c[2] for c in corners)
+
+    def config(self, options, *, writer='folder = "cut"'):
+        """A cropped cloud: its config and survey; `options`: of filters.crop."""
+        (self.folder / "crop.toml").write_text(f'[[stage]]\ntype = "readers.las"\n[[stage]]\ntype = "filters.crop"\n{options}\n[[stage]]\ntype = "writers.las"\n{writer}\n')
+        (self.folder / "cloud.toml").write_text("".join(f'[[points]]\nfile = "{t}"\n' for t in sorted((self.made / "points").glob("*.laz"))))
+        return self.folder / "crop.toml"
+
+    def shape(self, name, kind, places, crs="32632"):
+        ring = [[self.west + x, self.north - y] for x, y in places]
+        (self.folder / name).write_text(json.dumps({
+            "type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": f"urn:ogc:def:crs:EPSG::{crs}"}},
+            "features": [{"type": "Feature", "properties": {}, "geometry": {"type": kind, "coordinates": [ring] if kind == "Polygon" else ring}}]}))
+
+    def test_points_outside_are_withheld_and_none_is_lost_for_any_tiling(self):
+        self.shape("area.geojson", "Polygon", [(20, 20), (120, 30), (90, 90), (20, 20)])
+        self.shape("axis.geojson", "LineString", [(0, 10), (150, 100)])
+        config = self.config('polygons = "area.geojson"\naxis = "axis.geojson"\nbuffer = "5 m"')
+        counts = []
+        for tile in ("500 m", "40 m"):
+            report = self.run_ok(self.folder / "cloud.toml", "--set", f"run.tile={tile}", config=config, out=self.folder / tile[:2])
+            crop = stage(report, "filters.crop")
+            self.assertEqual(crop["counts"]["in"], crop["counts"]["out"])
+            kept, withheld = (crop["tally"][k]["count"] for k in ("points kept", "points withheld"))
+            self.assertEqual(kept + withheld, crop["counts"]["in"])
+            self.assertAlmostEqual(crop["findings"]["kept_share"], kept / (kept + withheld), places=6)
+            counts.append((kept, withheld))
+        self.assertEqual(counts[0], counts[1])
+        self.assertGreater(min(counts[0]), 500)
+
+    def test_what_cannot_be_cropped_is_one_error(self):
+        cloud = self.folder / "cloud.toml"
+        run = lambda options: swath("run", self.config(options), "--survey", cloud, "--output", self.out, "--quiet")
+        self.assert_error(run(""), 2, "polygons or an axis must be given")
+        self.assert_error(run('axis = "axis.geojson"'), 2, "buffer")
+        self.assert_error(run('polygons = "none.gpkg"'), 1, "none.gpkg")
+        self.shape("area.geojson", "Polygon", [(0, 0), (90, 90), (90, 0), (0, 80), (0, 0)])
+        self.assert_error(run('polygons = "area.geojson"'), 1, "cross near", "feature 0")
+        self.shape("area.geojson", "Polygon", [(9000, 20), (9120, 30), (9090, 90), (9000, 20)])
+        self.assert_error(run('polygons = "area.geojson"'), 1, "no point is left", "area.geojson")
+        self.assertFalse((self.out / "cut").exists())
 
 
 if __name__ == "__main__":
