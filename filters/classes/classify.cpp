@@ -46,8 +46,10 @@ bool is_isolated(const core::Block& b, size_t p) {
          !(b.flags[p] & core::flag::withheld);
 }
 
-/// Metres of decks around a tile that its classes depend on.
-double roofs_reach(const ClassifyOptions& o) { return roof_cells_halo(o.building_side.value) + building_sides_halo() + crowns_halo(); }
+/// Metres of roofs around a tile that its classes depend on.
+double roofs_around() { return std::max(building_sides_halo() + crowns_halo(), tower_points_halo()); }
+/// The same of decks.
+double roofs_reach(const ClassifyOptions& o) { return roof_cells_halo(o.building_side.value) + roofs_around(); }
 
 double wide_area(const ClassifyOptions& o) { return std::min(o.building_side.value * o.building_side.value, widest_needed); }
 
@@ -120,6 +122,7 @@ class Structures {
         find_wires(own);
       }
     });
+    find_towers(own);
   }
 
   /// Wires and their supports: what a filter may have found alone in space.
@@ -173,7 +176,7 @@ class Structures {
     for (size_t p = 0; p < block_.size(); ++p)
       if (raised_[p]) standing[cell(p)] = 1;
     roofs_ = roof_cells(cells_, standing, decks_, where_, {options_.building_height.value, options_.building_side.value},
-                        OwnBox(block_, own, building_sides_halo() + crowns_halo() + roof_spread()));
+                        OwnBox(block_, own, roofs_around() + roof_spread()));
     find_crowns(own);
     std::vector<std::uint8_t> roof(block_.size(), 0), free(block_.size(), 0);
     for (size_t p = 0; p < block_.size(); ++p) {
@@ -212,9 +215,18 @@ class Structures {
       high[p] = alone && static_cast<double>(block_.height[p]) >= options_.wire_height.value;
     }
     wires_ = wire_points(block_, high, surface, where_, own);
-    for (size_t p = 0; p < block_.size(); ++p)
-      high[p] = block_.height[p] >= least_tower_height && (raised_[p] ? !surface[p] : is_isolated(block_, p)) && wires_[p] != 1;
-    towers_ = tower_points(block_, wires_, high, own);
+  }
+
+  /// Supports carry wires; edges of roofs are lines, too.
+  void find_towers(size_t own) {
+    const OwnBox needed(block_, own, tower_points_halo());
+    std::vector<std::uint8_t> high(block_.size(), 0), wire(block_.size(), 0);
+    for (size_t p = 0; p < block_.size(); ++p) {
+      if (!needed.holds(block_, p)) continue;
+      wire[p] = wires_[p] != 0 && !is_on_roof(p);
+      high[p] = block_.height[p] >= least_tower_height && (raised_[p] ? !is_surface(p) : is_isolated(block_, p)) && wires_[p] != 1;
+    }
+    towers_ = tower_points(block_, wire, high, own);
   }
 
   const core::Block& block_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <tuple>
 
 #include "filters/bins.h"
 
@@ -24,6 +25,13 @@ constexpr double crown_depth = 5.0;      // m below its top a crown is wide
 constexpr double arms_below = 3.0;       // m
 constexpr double most_of_ring = 0.2;     // of its cells: arms
 constexpr double least_on_tower = 0.01;  // m of rounding
+constexpr double gap_of_body = 5.0;      // m between returns of a body one above the other: a crown below it is looked at
+constexpr double gap_of_pole = 10.0;     // m between those of a pole, which few pulses hit
+constexpr double pole_radius = 0.7;      // m: half a footprint and half the pole
+constexpr double least_pole = 5.0;       // m, as least_body
+constexpr double above_wires = 8.0;      // m above the highest wire: arms of earth wires
+constexpr double upper_part = 8.0;       // m below the top: above bushes at its foot
+constexpr double beside_body = 0.5;      // m: returns belong to it
 
 class TowerSearch {
  public:
@@ -38,12 +46,14 @@ class TowerSearch {
     for (int j = arms_ring; j < l.ny - arms_ring; ++j)
       for (int i = arms_ring; i < l.nx - arms_ring; ++i) {
         if (tall_.in(i, j).empty()) continue;
-        const std::optional<double> wire = lowest_wire(i, j);
-        if (!wire) continue;
-        const std::optional<double> top = top_of_body(i, j, *wire);
-        if (!top || !is_bare_around(i, j, std::min(*wire, *top))) continue;
+        const std::optional<Range> wires = wires_around(i, j);
+        if (!wires) continue;
+        const std::optional<Body> body = body_at(i, j, *wires);
+        if (!body || !is_bare_around(i, j, std::min(wires->low, body->top))) continue;
         each(i, j, arms_ring, [&](int ring, const Bins::Point& q, std::uint32_t row) {
-          if (row < own && (ring <= body_ring || q.z >= *wire - arms_below)) out[row] = 1;
+          if (row >= own || q.z > wires->high + above_wires) return;
+          const bool beside = std::hypot(q.x - body->x, q.y - body->y) <= body->radius;
+          if ((ring <= body_ring && beside) || q.z >= wires->low - arms_below) out[row] = 1;
         });
       }
     return out;
@@ -60,30 +70,58 @@ class TowerSearch {
       }
   }
 
-  std::optional<double> lowest_wire(int i, int j) const {
+  struct Range {
+    double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+  };
+  /// The upper part of a support: its middle, and how far from it returns belong to it.
+  struct Body {
+    double x = 0.0, y = 0.0, radius = 0.0, top = 0.0;
+  };
+
+  /// Heights of the wires near the cell.
+  std::optional<Range> wires_around(int i, int j) const {
     const core::Lattice &l = tall_.lattice(), &w = wires_.lattice();
     const double x = l.centre_x(i), y = l.centre_y(j);
     const int column = static_cast<int>(core::cell_index(x, w.cell) - w.i0), row = static_cast<int>(core::cell_index(y, w.cell) - w.j0);
-    double lowest = std::numeric_limits<double>::infinity();
+    Range r;
     for (int dj = -1; dj <= 1; ++dj)
       for (int di = -1; di <= 1; ++di) {
         if (!w.holds(column + di, row + dj)) continue;
         for (const Bins::Point& q : wires_.in(column + di, row + dj))
-          if (std::hypot(q.x + block_.origin.x() - x, q.y + block_.origin.y() - y) <= wires_near) lowest = std::min(lowest, q.z);
+          if (std::hypot(q.x + block_.origin.x() - x, q.y + block_.origin.y() - y) <= wires_near)
+            r.low = std::min(r.low, q.z), r.high = std::max(r.high, q.z);
       }
-    return std::isfinite(lowest) ? std::optional(lowest) : std::nullopt;
+    return r.low <= r.high ? std::optional(r) : std::nullopt;
   }
 
-  /// The highest return of what may be a support.
-  std::optional<double> top_of_body(int i, int j, double wire) const {
-    size_t n = 0;
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+  /// Returns from the highest down to the first gap: what may be a support.
+  std::optional<Body> body_at(int i, int j, const Range& wires) const {
+    std::vector<Bins::Point> column;
     each(i, j, body_ring, [&](int, const Bins::Point& q, std::uint32_t) {
-      ++n;
-      low = std::min(low, q.z), high = std::max(high, q.z);
+      if (q.z <= wires.high + above_wires) column.push_back(q);
     });
-    if (n < fewest_of_body || high - low < least_body || high < wire - below_wires - least_on_tower) return std::nullopt;
-    return high;
+    std::sort(column.begin(), column.end(),
+              [](const Bins::Point& a, const Bins::Point& b) { return std::tie(b.z, a.x, a.y) < std::tie(a.z, b.x, b.y); });
+    const double below = column.empty() ? gap_of_pole : wires.low - column.front().z - least_on_tower;
+    if (below >= gap_of_pole) return std::nullopt;
+    if (below <= below_wires)
+      if (const auto wide = upper_body(column, gap_of_body, least_body)) return wide;
+    const auto pole = upper_body(column, gap_of_pole, least_pole);
+    return pole && pole->radius <= pole_radius + beside_body ? pole : std::nullopt;
+  }
+
+  static std::optional<Body> upper_body(const std::vector<Bins::Point>& column, double gap, double least) {
+    size_t n = 1;
+    while (n < column.size() && column[n - 1].z - column[n].z <= gap) ++n;
+    if (n < fewest_of_body || column[0].z - column[n - 1].z < least) return std::nullopt;
+    const auto in_upper = std::count_if(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(n),
+                                        [&](const Bins::Point& q) { return q.z >= column[0].z - upper_part; });
+    const size_t upper = std::max<size_t>(2, static_cast<size_t>(in_upper));
+    Body b;
+    b.top = column[0].z;
+    for (size_t k = 0; k < upper; ++k) b.x += column[k].x / static_cast<double>(upper), b.y += column[k].y / static_cast<double>(upper);
+    for (size_t k = 0; k < upper; ++k) b.radius = std::max(b.radius, std::hypot(column[k].x - b.x, column[k].y - b.y) + beside_body);
+    return b;
   }
 
   bool is_bare_around(int i, int j, double top) const {

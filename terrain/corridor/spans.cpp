@@ -23,7 +23,9 @@ constexpr double overlap = 0.6;        // of the shorter strand
 constexpr double arms = 15.0;          // m: wires of one support lie within, across
 constexpr double line_share = 0.1;     // of a wire's returns: flight lines with less say little of heights
 constexpr double carries_near = 10.0;  // m in plan: wires that returns of a support must reach up to,
-constexpr double carries_below = 4.0;  // m below the lowest of them at most
+constexpr double carries_below = 4.0;  // m below the lowest of them at most;
+constexpr double pole_below = 10.0;    // m, of poles that few returns show: over
+constexpr double pole_height = 5.0;    // m or more
 constexpr double at_support = 6.0;     // m along: meetings and returns of one support
 
 class Groups {  // union-find
@@ -59,7 +61,7 @@ bool may_carry(const TowerGroup& t, const std::vector<WirePoint>& wires) {
   double lowest = 1e300;
   for (const WirePoint& w : wires)
     if ((Vector2d(w.x, w.y) - t.at).norm() <= carries_near) lowest = std::min(lowest, w.z);
-  return lowest > 1e299 || t.top >= lowest - carries_below;
+  return lowest > 1e299 || t.top >= lowest - (t.top - t.bottom >= pole_height ? pole_below : carries_below);
 }
 
 class Builder {
@@ -215,30 +217,39 @@ class Builder {
     end(c, last).pylon = nearest;
   }
 
-  /// Of a support known by its wires alone, the middle of their meetings; and how well its station is known.
+  /// Of a support known by its wires alone, the middle of their meetings; one with returns takes its station along the line from them, as
+  /// far as they know it better. Arms lie across the line that halves the turn: in that direction the wires' meetings lie beside the axis.
   void place(size_t p, bool has_returns) {
     Pylon& pylon = out_.pylons[p];
     std::vector<double> x, y;
     double weight = 0.0, top = -1e300;
+    Vector2d along = Vector2d::Zero();
     for (const Conductor& c : out_.conductors)
       for (const ConductorEnd* e : {&c.first, &c.last}) {
         if (e->pylon != p || !e->known) continue;
         const Vector3d at = c.strand.at(e->s);
         x.push_back(at.x()), y.push_back(at.y());
         top = std::max(top, at.z());
+        along += along.dot(c.strand.line.along) < 0.0 ? Vector2d(-c.strand.line.along) : c.strand.line.along;
         weight += 1.0 / std::max(1e-6, e->sigma * e->sigma);
       }
     if (x.empty()) return;
-    if (!has_returns) {
-      const auto middle = [](const std::vector<double>& v) {
-        const auto [low, high] = std::minmax_element(v.begin(), v.end());
-        return 0.5 * (*low + *high);
-      };
-      pylon.at = {middle(x), middle(y)};
-      pylon.top = top;
-    }
+    const auto middle = [](const std::vector<double>& v) {
+      const auto [low, high] = std::minmax_element(v.begin(), v.end());
+      return 0.5 * (*low + *high);
+    };
+    const Vector2d meetings(middle(x), middle(y));
     const double variance = 2.0 / weight;  // each meeting is seen from both sides
-    if (!has_returns || variance < 0.5 * pylon.covariance.trace()) pylon.covariance = variance * Eigen::Matrix2d::Identity();
+    if (!has_returns) {
+      pylon.at = meetings;
+      pylon.top = top;
+      pylon.covariance = variance * Eigen::Matrix2d::Identity();
+      return;
+    }
+    along.normalize();
+    const Vector2d moved = pylon.covariance * along, gain = moved / (along.dot(moved) + variance);
+    pylon.at += gain * along.dot(meetings - pylon.at);
+    pylon.covariance -= gain * moved.transpose();
   }
 
   /// An end without a meeting of its own takes the station of the support beyond it.

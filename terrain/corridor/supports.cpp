@@ -19,16 +19,19 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double group_cell = 2.0;         // m: returns in neighbouring cells belong together
-constexpr size_t fewest_returns = 3;       // of a support
-constexpr double level_height = 2.0;       // m
-constexpr size_t fewest_levels = 4;        // whose middles' scatter is believed
-constexpr double least_axis_sigma = 0.05;  // m, of a support's axis by its returns
-constexpr double most_miss = 1.5;          // m
-constexpr double overrun = 4.0;            // m that returns near a curve run on past its support
-constexpr double most_sigma = 1.0;         // m
-constexpr double least_turn = 0.03;        // rad: below it lines in plan do not say where they cross
-constexpr double least_break = 0.01;       // change of slope in height
+constexpr double group_cell = 2.0;               // m: returns in neighbouring cells belong together
+constexpr size_t fewest_returns = 3;             // of a support
+constexpr double level_height = 2.0;             // m
+constexpr size_t fewest_levels = 4;              // whose middles' scatter is believed
+constexpr double least_axis_sigma = 0.05;        // m, of a support's axis by its returns
+constexpr size_t all_round = 20;                 // returns: of fewer, those of one side may be missing
+constexpr double full = 0.5;                     // of the larger extent is the smaller one of levels that are seen from all sides
+constexpr double slimmest = 0.15, widest = 0.5;  // m: half the width of supports that are seen from one side
+constexpr double most_miss = 1.5;                // m
+constexpr double overrun = 4.0;                  // m that returns near a curve run on past its support
+constexpr double most_sigma = 1.0;               // m
+constexpr double least_turn = 0.03;              // rad: below it lines in plan do not say where they cross
+constexpr double least_break = 0.01;             // change of slope in height
 
 Meeting by_height(const Strand& a, const Strand& b, double from, double sigma_line) {
   Meeting m;
@@ -63,6 +66,16 @@ Meeting in_plan(const Strand& a, const Strand& b) {
   m.sigma = std::sqrt(a.variance_across(m.s) + b.variance_across(sb)) / std::abs(turn);
   m.found = true;
   return m;
+}
+
+/// Variance of the axis behind returns that may show one side of a support: up to half its width, all values alike.
+double unseen_variance(const Eigen::Vector2d& extent, const std::vector<Eigen::Vector2d>& levels, size_t returns) {
+  Vector2d mean = Vector2d::Zero();
+  for (const Vector2d& l : levels) mean += l / static_cast<double>(levels.size());
+  if (returns >= all_round && mean.minCoeff() >= full * mean.maxCoeff()) return 0.0;
+  const auto n = static_cast<double>(returns);
+  const double width = extent.maxCoeff() * (n + 1.0) / (n - 1.0);  // n values spread evenly reach over (n - 1) / (n + 1) of it on average
+  return std::pow(std::clamp(0.5 * width, slimmest, widest), 2) / 3.0;
 }
 
 }  // namespace
@@ -116,7 +129,10 @@ std::vector<TowerGroup> tower_groups(const std::vector<TowerPoint>& points) {
       g.covariance += (box.center() - g.at) * (box.center() - g.at).transpose() / (n * std::max(1.0, n - 1.0));
     // Of few levels the scatter says little: evenly spread over the width.
     if (levels.size() < fewest_levels) g.covariance = (all.sizes().cwiseAbs2() / 12.0).asDiagonal();
-    g.covariance += least_axis_sigma * least_axis_sigma * Eigen::Matrix2d::Identity();
+    std::vector<Vector2d> extents;
+    for (const auto& [level, box] : levels) extents.push_back(box.sizes());
+    g.covariance +=
+        (least_axis_sigma * least_axis_sigma + unseen_variance(all.sizes(), extents, rows.size())) * Eigen::Matrix2d::Identity();
     out.push_back(g);
   }
   return out;

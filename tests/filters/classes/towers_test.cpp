@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "tests/world/power_line.h"
@@ -36,6 +37,48 @@ TEST(Towers, MastsWithArmsAreFoundAndTreesBesideTheLineAreNot) {
   }
   EXPECT_GE(right, 0.95 * all);
   EXPECT_LE(wrong, 0.02 * (right + wrong));
+}
+
+/// A wire 20 m above level ground along x through (0, 0), and what stands there; `found`: 1 for what is of a support.
+struct Stand {
+  core::Block b;
+  std::vector<std::uint8_t> wire, tall;
+  void add(double x, double y, double z, bool is_wire) {
+    b.x.push_back(x), b.y.push_back(y), b.z.push_back(z), b.height.push_back(static_cast<float>(z));
+    wire.push_back(is_wire), tall.push_back(!is_wire);
+  }
+  Stand() {
+    for (double x = -30.0; x <= 30.0; x += 1.5) add(x, 2.0, 20.0, true);
+  }
+  std::vector<std::uint8_t> found() const { return tower_points(b, wire, tall, b.x.size()); }
+  size_t count() const {
+    const auto f = found();
+    return static_cast<size_t>(std::accumulate(f.begin(), f.end(), 0));
+  }
+};
+
+TEST(Towers, APoleOfFewReturnsIsFoundAndABushUnderAStrayReturnIsNot) {
+  Stand pole, bush, low;
+  for (const double z : {4.0, 8.5, 12.0}) pole.add(0.2 * std::sin(z), 0.2 * std::cos(z), z, false);
+  EXPECT_EQ(pole.count(), 3u);
+  for (int k = 0; k < 20; ++k) bush.add(1.2 * std::sin(k), 1.2 * std::cos(k), 2.0 + 0.1 * k, false);
+  bush.add(0.3, 0.0, 19.5, false);  // near the wire, and not on it
+  EXPECT_EQ(bush.count(), 0u);
+  for (const double z : {2.5, 5.0, 8.0}) low.add(0.0, 0.1, z, false);  // 12 m below the wire
+  EXPECT_EQ(low.count(), 0u);
+}
+
+TEST(Towers, ABirdAboveAndABushAtItsFootAreNotOfTheMast) {
+  Stand s;
+  for (double z = 6.0; z <= 20.5; z += 1.5) s.add(0.25 * std::sin(9.0 * z), 0.25 * std::cos(9.0 * z), z, false);
+  const size_t mast = s.b.x.size();
+  s.add(0.5, 0.5, 60.0, false);
+  for (int k = 0; k < 12; ++k) s.add(1.6 + 0.2 * std::sin(k), 0.8 * std::cos(k), 2.5, false);
+  const std::vector<std::uint8_t> found = s.found();
+  for (size_t p = 0; p < found.size(); ++p)
+    if (p >= mast || s.tall[p]) {
+      EXPECT_EQ(found[p] != 0, p < mast) << s.b.x[p] << " " << s.b.y[p] << " " << s.b.z[p];
+    }
 }
 
 TEST(Towers, WithoutWiresAMastIsNone) {

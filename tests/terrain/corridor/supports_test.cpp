@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <random>
 
@@ -61,6 +62,29 @@ TEST(Supports, WiresSeenByDifferentFlightLinesMeetLessSurely) {
   const double alike = meeting_of(a, true, b, false, 25.0, 0.02).sigma, unlike = meeting_of(a, true, c, false, 25.0, 0.02).sigma;
   EXPECT_EQ(alike, meeting_of(a, true, b, false, 25.0, 0.0).sigma);
   EXPECT_GT(unlike, 2.0 * alike);
+}
+
+TEST(Supports, APoleThatIsSeenFromOneSideHasATrueSigma) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  double squares = 0.0, n = 0.0;
+  for (int pole = 0; pole < 400; ++pole) {
+    // A square pole; two of its faces are seen, in shares that follow from the view.
+    const double half = 0.15 + 0.2 * share(random), view = 0.5 * M_PI * share(random), turn = 2.0 * M_PI * share(random);
+    std::vector<TowerPoint> points;
+    for (int k = 4 + static_cast<int>(10.0 * share(random)); k > 0; --k) {
+      const bool front = share(random) * (std::cos(view) + std::sin(view)) < std::cos(view);
+      const double along = half * (2.0 * share(random) - 1.0), u = front ? half : along, v = front ? along : half;
+      points.push_back(
+          {50.0 + u * std::cos(turn) - v * std::sin(turn), 50.0 + u * std::sin(turn) + v * std::cos(turn), 20.0 * share(random)});
+    }
+    const std::vector<TowerGroup> groups = tower_groups(points);
+    ASSERT_EQ(groups.size(), 1u);
+    const Eigen::Vector2d e = groups[0].at - Eigen::Vector2d(50.0, 50.0);
+    squares += e.dot(groups[0].covariance.inverse() * e);
+    n += 2.0;
+  }
+  EXPECT_NEAR(std::sqrt(squares / n), 1.0, 0.2);
 }
 
 TEST(Supports, ReturnsOfTowersAreGroupsWithTheirMiddle) {
