@@ -5,6 +5,7 @@
 #include "stages/adapters/cloud/copc.h"
 #include "stages/adapters/cloud/crop.h"
 #include "stages/adapters/quality/quality_stages.h"
+#include "stages/adapters/terrain/forest.h"
 #include "stages/adapters/terrain/powerlines.h"
 #include "stages/tile_filter.h"
 
@@ -66,6 +67,7 @@ const std::vector<Entry>& registry() {
       intensity_stage(),
       contours_stage(),
       penetration_stage(),
+      forest_stage(),
       power_lines_stage(),
       trajectory_writer_stage(),
       las_writer_stage(),

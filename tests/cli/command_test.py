@@ -215,6 +215,8 @@ class Runs(Case):
         self.assertGreater(stage(found, "terrain.dtm")["tally"]["cells with a height"]["count"], 0)
         lines = stage(self.run_ok(survey, config=SOURCE / "configs" / "corridor.toml", out=self.folder / "corridor"), "terrain.powerlines")
         self.assertEqual(lines["findings"]["spans"], 0)  # a scene without wires
+        forest = stage(self.run_ok(survey, config=SOURCE / "configs" / "forest.toml", out=self.folder / "forest"), "terrain.forest")
+        self.assertEqual(forest["findings"]["trees"], len((self.folder / "forest" / "trees.csv").read_text().splitlines()) - 1)
         copc = self.run_ok(survey, config=SOURCE / "configs" / "copc.toml", out=self.folder / "copc")
         self.assertEqual(stage(copc, "writers.copc")["findings"]["points"], stage(report, "writers.las")["counts"]["in"])
         self.assertTrue((self.folder / "copc" / "points.copc.laz").exists())
@@ -230,7 +232,7 @@ class Runs(Case):
         # lever_arm_test.py, strips.toml in strips_test.py, network.toml in network_test.py, calibrate.toml in calibration_test.py.
         known = {"survey.toml", "survey_sbet.toml", "trajectory.toml", "events.toml", "georeference.toml", "cloud.toml", "lever_arm.toml",
                  "strips.toml", "calibrate.toml", "classes.toml", "survey_classes.toml", "terrain.toml", "dtm.toml", "copc.toml", "corridor.toml",
-                 "convert_trajectory.toml", "qc.toml", "network.toml"}
+                 "convert_trajectory.toml", "forest.toml", "qc.toml", "network.toml"}
         self.assertEqual({c.name for c in CONFIGS}, known, "a new config is run here too")
 
     def test_the_config_as_json_gives_the_same_products(self):

@@ -199,7 +199,8 @@ INSTANTIATE_TEST_SUITE_P(Slow, Memory,
                                          Case{"filters.csf", "resolution = \"0.5 m\""}, Case{"filters.ptd", ""}, Case{"filters.robust", ""},
                                          Case{"filters.classify", ""}, Case{"filters.water", ""}, Case{"filters.key_points", ""},
                                          Case{"terrain.dtm", ""}, Case{"terrain.dsm", "cell = \"0.5 m\"\nmethod = \"spike_free\""},
-                                         Case{"terrain.contours", "source = \"tin\""}),
+                                         Case{"terrain.contours", "source = \"tin\""}, Case{"terrain.forest", ""},
+                                         Case{"terrain.forest", "crown_cell = \"0.2 m\""}),
                          [](const auto& tested) { return name_of(tested.param, tested.index); });
 
 }  // namespace
