@@ -4,6 +4,7 @@
 
 #include "core/config/result_visitors.h"
 #include "core/error.h"
+#include "pipeline/measures/level_curve.h"
 #include "pipeline/profile.h"
 #include "pipeline/volume_files.h"
 #include "tools/command.h"
@@ -13,12 +14,21 @@ namespace {
 
 struct VolumeArguments {
   pipeline::VolumeRequest request;
+  std::string levels;
   bool json = false;
 };
 
 int volumes(const VolumeArguments& a) {
+  if (!a.levels.empty()) {
+    if (!a.request.after.empty() || a.request.design)
+      throw core::usage_error("--levels stands alone", "swath volumes", "leave AFTER and --design out");
+    const pipeline::LevelCurve curve = pipeline::level_curve(a.request, pipeline::levels_of(a.levels));
+    a.json ? print_json(core::reported(curve)) : print(pipeline::level_text(curve));
+    return 0;
+  }
   if (a.request.after.empty() == !a.request.design)
-    throw core::usage_error("volumes need a second surface or a design height", "swath volumes", "give AFTER or --design, one of them");
+    throw core::usage_error("volumes need a second surface or a design height", "swath volumes",
+                            "give AFTER, --design or --levels, one of them");
   const pipeline::VolumesFound found = pipeline::volumes_of(a.request);
   a.json ? print_json(core::reported(found)) : print(pipeline::volume_text(found));
   return 0;
@@ -51,14 +61,16 @@ int profile(ProfileArguments& a) {
 
 void add_volumes_command(Commands& commands) {
   const auto a = std::make_shared<VolumeArguments>();
-  auto* c =
-      commands.add("volumes",
-                   "Examples\n  swath volumes may/dtm.vrt june/dtm.vrt --polygon pit.gpkg\n  swath volumes out/dtm.vrt --design 412.5 "
-                   "--json\n\nCut and fill between two terrain models, or from one to a design height, with sigma.",
-                   [a] { return volumes(*a); });
+  auto* c = commands.add(
+      "volumes",
+      "Examples\n  swath volumes may/dtm.vrt june/dtm.vrt --polygon pit.gpkg\n  swath volumes out/dtm.vrt --design 412.5 "
+      "--json\n  swath volumes out/dtm.vrt --levels 405,420,0.5 --polygon basin.gpkg\n\nCut and fill between two terrain models, or from "
+      "one to a design height, with sigma; or area and volume below levels, as a reservoir's curve.",
+      [a] { return volumes(*a); });
   c->add_option("BEFORE", a->request.before, "Terrain model, GeoTIFF or VRT; NAME_quality beside it gives sigma")->required();
   c->add_option("AFTER", a->request.after, "The same later; its cells may be others");
   c->add_option("--design", a->request.design, "Height in place of AFTER, in the unit of BEFORE's heights");
+  c->add_option("--levels", a->levels, "LOW,HIGH,STEP: area and volume below each level, in the unit of BEFORE's heights");
   c->add_option("--polygon", a->request.polygon, "Polygons or closed lines to count within, in the CRS of BEFORE");
   c->add_option("--correlation", a->request.correlation, "Of the errors of any two cells of a model: 1 one shift for all, 0 noise")
       ->check(CLI::Range(0.0, 1.0))

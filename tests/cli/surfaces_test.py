@@ -35,6 +35,17 @@ class Surfaces(Case):
         self.assertGreater(high["sigma_net"], 0)
         self.assertRegex(swath("volumes", dtm, "--design", "2000").stdout, r"(?m)^fill +[0-9.]+ m3 ")
 
+    def test_levels_make_a_curve(self):
+        dtm = self.made / "dtm.vrt"
+        base = json.loads(swath("volumes", dtm, "--design", "2000", "--json").stdout)
+        rows = json.loads(swath("volumes", dtm, "--levels", "1998,2000,0.5", "--json").stdout)["levels"]
+        self.assertEqual([r["level"] for r in rows], [1998, 1998.5, 1999, 1999.5, 2000])
+        self.assertEqual(rows[-1]["volume"], base["fill"])
+        self.assertEqual(rows[-1]["area"], base["fill_area"])
+        self.assertAlmostEqual(rows[1]["volume"] - rows[0]["volume"], 0.5 * base["area"], delta=1e-6 * base["fill"])  # all of it is below
+        self.assert_error(swath("volumes", dtm, "--levels", "5,4,1"), 2, "--levels")
+        self.assert_error(swath("volumes", dtm, "--levels", "4,5,1", "--design", "3"), 2, "--levels")
+
     def test_volumes_refuse_what_they_cannot_answer(self):
         dtm = self.made / "dtm.vrt"
         self.assert_error(swath("volumes", dtm), 2, "--design")
