@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From finished terrain models and clouds: volumes, profiles.
 #include <cstdio>
+#include <cstdlib>
 
 #include "core/config/result_visitors.h"
 #include "core/error.h"
+#include "pipeline/measures/cross_sections.h"
 #include "pipeline/measures/level_curve.h"
 #include "pipeline/profile.h"
 #include "pipeline/volume_files.h"
@@ -36,11 +38,41 @@ int volumes(const VolumeArguments& a) {
 
 struct ProfileArguments {
   pipeline::ProfileRequest request;
-  std::string half_width = "1 m";
+  std::string half_width = "1 m", stations, width = "40 m", design;
   bool quiet = false, json = false;
 };
 
+double width_of(const std::string& text, const std::string& option) {
+  const double v = quantity(core::Dimension::length, text, option, "20 m");
+  if (!(v > 0.0)) throw core::usage_error("'" + text + "' is no width", option, "write a length above 0 with its unit: \"20 m\"");
+  return v;
+}
+
+int cross_sections(const ProfileArguments& a) {
+  pipeline::CrossSectionRequest r;
+  r.axis = a.request;
+  r.step = width_of(a.stations, "--stations"), r.width = width_of(a.width, "--width");
+  char* end = nullptr;
+  const double level = std::strtod(a.design.c_str(), &end);
+  if (!a.design.empty() && *end == '\0')
+    r.level = level;
+  else
+    r.design = a.design;
+  core::Value list = core::Value::array();
+  for (const pipeline::AxisSections& one : pipeline::write_cross_sections(r)) {
+    list.push(core::reported(one));
+    if (a.json || a.quiet) continue;
+    std::printf("%s: %zu sections over %.1f, cut %.2f, fill %.2f; %zu incomplete; sections.csv and section_points.csv in %s\n",
+                one.name.c_str(), one.sections, one.length, one.cut, one.fill, one.incomplete, r.axis.folder.c_str());
+  }
+  if (a.json) print_json(list);
+  return 0;
+}
+
 int profile(ProfileArguments& a) {
+  if (!a.stations.empty()) return cross_sections(a);
+  if (!a.design.empty())
+    throw core::usage_error("--design is for sections across an axis", "swath profile", "give --stations \"20 m\", too");
   a.request.half_width = quantity(core::Dimension::length, a.half_width, "--half-width", "2 m");
   if (!(a.request.half_width > 0.0))
     throw core::usage_error("'" + a.half_width + "' is no width", "--half-width", "write a length with its unit: \"2 m\"");
@@ -92,6 +124,9 @@ void add_profile_command(Commands& commands) {
   c->add_option("--from", a->request.from, "x,y where one straight line begins");
   c->add_option("--to", a->request.to, "x,y where it ends");
   c->add_option("--half-width", a->half_width, "Points up to this far from the line are shown")->capture_default_str();
+  c->add_option("--stations", a->stations, "Sections across the line every so far, in place of one along it, as tables");
+  c->add_option("--width", a->width, "Of a section across")->capture_default_str();
+  c->add_option("--design", a->design, "Surface (raster) or height that sections across are compared with: areas, volumes");
   c->add_option("--output", a->request.folder, "Folder to write to")->required();
   c->add_flag("--quiet", a->quiet, "Nothing but errors");
   c->add_flag("--json", a->json, "What was found, as JSON");

@@ -66,6 +66,26 @@ class Surfaces(Case):
         self.assertEqual((self.folder / "cut" / "profile.png").read_bytes()[:4], b"\x89PNG")
         self.assertIn("<svg", (self.folder / "cut" / "profile.svg").read_text())
 
+    def test_sections_across_an_axis(self):
+        vrt = (self.made / "dtm.vrt").read_text()
+        west, cell, _, north, _, _ = (float(v) for v in re.search(r"<GeoTransform>(.*)</GeoTransform>", vrt).group(1).split(","))
+        columns, rows = (int(re.search(rf'raster{axis}Size="(\d+)"', vrt).group(1)) for axis in "XY")
+        x, y = west + 0.5 * cell * columns, north - 0.5 * cell * rows
+        ends = ["--from", f"{x - 30},{y}", "--to", f"{x + 35},{y}"]
+        call = ["profile", "--dtm", self.made / "dtm.vrt", *ends, "--stations", "10 m", "--width", "12 m", "--output", self.folder / "cut"]
+        done = swath(*call, "--design", "2000", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        told = json.loads(done.stdout)[0]
+        self.assertEqual(told["sections"], 8)
+        table = [r.split(",") for r in (self.folder / "cut" / "sections.csv").read_text().splitlines()]
+        self.assertEqual(len(table), 9)
+        self.assertEqual(table[1][4], "90.000")
+        self.assertAlmostEqual(told["fill"], sum(float(r[table[0].index("fill_volume")]) for r in table[1:]), delta=0.1)
+        self.assertEqual(told["cut"], 0)
+        self.assert_error(swath(*call, "--design", "none.tif"), 1, "none.tif")
+        self.assert_error(swath(*[w if w != "10 m" else "0 m" for w in call]), 2, "--stations")
+        self.assert_error(swath("profile", "--dtm", self.made / "dtm.vrt", *ends, "--design", "3", "--output", self.folder / "cut"), 2, "--stations")
+
     def test_profiles_refuse_what_they_cannot_answer(self):
         points = self.made / "points"
         self.assert_error(swath("profile", points, "--output", self.folder / "cut"), 2, "--line")
