@@ -115,7 +115,9 @@ int block(const BlockArguments& a) {
   calib::ReadBlock read = calib::read_block(config, a.config);
   calib::refuse_mistakes(read, config);
   const calib::StartResidual start = calib::start_residual(calib::sample_of(read, 2000).block);
+  const calib::ReadBlock stated = read;
   const calib::BlockSolution solution = calib::adjust_block(read.block, config.adjust);
+  calib::refuse_wrong_stations(stated, read, solution, config);
   calib::BlockFound found = calib::findings_of(read, config, solution);
   found.start_tie = start.tie, found.start_control = start.control;
   const std::vector<std::string> files = calib::write_block(a.folder, read, config, solution, found);

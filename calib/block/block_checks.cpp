@@ -10,123 +10,20 @@
 #include <numeric>
 #include <set>
 
+#include "calib/block/block_control_checks.h"
+#include "calib/block/block_mistakes.h"
 #include "calib/block/block_start.h"
+#include "calib/block/station_bases.h"
 #include "core/error.h"
 #include "core/statistics.h"
 
 namespace swath::calib {
 namespace {
 
-using Eigen::Matrix2d;
-using Eigen::Vector3d;
-
 constexpr double clearly = 3.0;      // times smaller: another convention fits better
 constexpr double by_accident = 3.0;  // sigmas of image points: below it everything fits
 constexpr size_t sampled = 2000;     // points
-
-struct Mistake {
-  std::string what, hint;
-  std::function<void(ReadBlock&)> instead;  // changes a copy to what it would be without the mistake
-};
-
-void turn_marks(ReadBlock& read, const Matrix2d& M) {
-  for (ImageRay& r : read.block.rays) {
-    const Eigen::Vector2d p = M * Eigen::Vector2d(r.x, r.y);
-    r.x = p.x(), r.y = p.y();
-  }
-}
-
-Matrix2d matrix(double a, double b, double c, double d) {
-  Matrix2d M;
-  M << a, b, c, d;
-  return M;
-}
-
-std::vector<Mistake> of_image_axes() {
-  const auto axes = [](const std::string& what, const std::string& hint, const Matrix2d& M) {
-    return Mistake{what, hint, [M](ReadBlock& read) { turn_marks(read, M); }};
-  };
-  return {axes("the y axis of the image points has the other sense", "state the other of y = \"up\" and y = \"down\"", matrix(1, 0, 0, -1)),
-          axes("the images are mirrored (x has the other sense)",
-               "image points of a mirrored scan or of negatives: measure in the positive, or turn the sign of x", matrix(-1, 0, 0, 1)),
-          axes("the camera is turned by 180 deg", "add 180 deg to camera.mount", matrix(-1, 0, 0, -1)),
-          axes("the camera is turned by 90 deg", "take 90 deg off camera.mount", matrix(0, -1, 1, 0)),
-          axes("the camera is turned by 90 deg", "add 90 deg to camera.mount", matrix(0, 1, -1, 0)),
-          axes("x and y of the image points are exchanged", "exchange x_column and y_column", matrix(0, 1, 1, 0)),
-          axes("the images are mirrored and turned by 90 deg", "state the other of y = \"up\" and y = \"down\", and check camera.mount",
-               matrix(0, -1, -1, 0))};
-}
-
-std::vector<Mistake> of_angles(const ReadBlock& read, const BlockConfig& config) {
-  std::vector<Mistake> out;
-  const ImageAngles kind = config.images.angles;
-  if (kind == ImageAngles::none) return out;
-  const auto again = [&](const std::string& what, const std::string& hint, ImageAngles k, ImageNorth north, std::array<double, 3> sign) {
-    out.push_back({what, hint, [=](ReadBlock& other) {
-                     for (const StatedAngles& a : other.angles) {
-                       const std::array<double, 3> v{sign[0] * a.value[0], sign[1] * a.value[1], sign[2] * a.value[2]};
-                       set_attitude(other.block, a.image, body_attitude(other, a.image, v, k, north));
-                     }
-                   }});
-  };
-  const ImageNorth north = *config.images.north;
-  const std::array<double, 3> same{1, 1, 1};
-  const bool boresight_held =
-      std::all_of(read.block.cameras.begin(), read.block.cameras.end(), [](const BlockCamera& c) { return c.boresight_sigma.isZero(0.0); });
-  if (boresight_held)  // an unknown boresight heading is the same to the images
-    again("headings (kappa) count from the other north", "state the other of north = \"grid\" and north = \"true\"", kind,
-          north == ImageNorth::grid ? ImageNorth::true_north : ImageNorth::grid, same);
-  if (kind == ImageAngles::omega_phi_kappa)
-    again("the angles are phi omega kappa, not omega phi kappa", "state angles = \"phi_omega_kappa\"", ImageAngles::phi_omega_kappa, north,
-          same);
-  if (kind == ImageAngles::phi_omega_kappa)
-    again("the angles are omega phi kappa, not phi omega kappa", "state angles = \"omega_phi_kappa\"", ImageAngles::omega_phi_kappa, north,
-          same);
-  static const std::map<ImageAngles, std::array<const char*, 3>> names{{ImageAngles::roll_pitch_heading, {"roll", "pitch", "heading"}},
-                                                                       {ImageAngles::omega_phi_kappa, {"omega", "phi", "kappa"}},
-                                                                       {ImageAngles::phi_omega_kappa, {"omega", "phi", "kappa"}}};
-  for (size_t k = 0; k < 3; ++k) {
-    std::array<double, 3> sign = same;
-    sign[k] = -1.0;
-    again(std::string(names.at(kind)[k]) + " has the other sign", "turn the sign of the column", kind, north, sign);
-  }
-  again("all angles have the other sign", "the angles may turn the map to the camera: turn their signs and order", kind, north,
-        {-1, -1, -1});
-  return out;
-}
-
-/// Images of each strip in the order of time.
-std::map<int, std::vector<std::uint32_t>> flown_strips(const ImageBlock& block) {
-  std::map<int, std::vector<std::uint32_t>> strips;
-  for (std::uint32_t i = 0; i < block.images.size(); ++i) strips[block.images[i].strip].push_back(i);
-  for (auto& [strip, images] : strips)
-    std::sort(images.begin(), images.end(), [&](auto a, auto b) { return block.images[a].time < block.images[b].time; });
-  return strips;
-}
-
-/// Each image at the position of the one after it (`step` 1) or before it (-1); the last one goes on straight.
-void shift_positions(ImageBlock& block, int step) {
-  for (auto& [strip, images] : flown_strips(block)) {
-    if (images.size() < 3) continue;
-    std::vector<Vector3d> at;
-    for (const std::uint32_t i : images) at.push_back(block.images[i].position);
-    const auto n = static_cast<int>(at.size());
-    for (int k = 0; k < n; ++k) {
-      const int from = k + step;
-      const Vector3d beyond = from < 0    ? Vector3d(2.0 * at[0] - at[1])
-                              : from >= n ? Vector3d(2.0 * at[static_cast<size_t>(n - 1)] - at[static_cast<size_t>(n - 2)])
-                                          : at[static_cast<size_t>(from)];
-      block.images[images[static_cast<size_t>(k)]].position = beyond;
-    }
-  }
-}
-
-std::vector<Mistake> of_stations(const ReadBlock& read) {
-  if (read.stations_observed == 0) return {};
-  const std::string hint = "an event is missing or was counted twice: match images and events by their time";
-  return {{"the stations are those of the image before", hint, [](ReadBlock& r) { shift_positions(r.block, 1); }},
-          {"the stations are those of the image after", hint, [](ReadBlock& r) { shift_positions(r.block, -1); }}};
-}
+constexpr size_t sampled_for_strips = 400;
 
 std::string shown(double millimetres) {
   char text[40];
@@ -134,60 +31,121 @@ std::string shown(double millimetres) {
   return text;
 }
 
-/// Where the images see each control point, by rays alone, less where it is surveyed.
-std::vector<Vector3d> control_offsets(const ReadBlock& read, double factor) {
-  ImageBlock block = read.block;
-  std::vector<BlockControl> control;
-  block.control.swap(control);
-  intersect_points(block);
-  std::vector<int> rays(block.points.size(), 0);
-  for (const ImageRay& r : block.rays) ++rays[r.point];
-  std::vector<Vector3d> out;
-  for (size_t k = 0; k < control.size(); ++k) {
-    if (rays[control[k].point] < 2) continue;
-    Vector3d d = block.points[control[k].point].position - read.frame.local_of(factor * read.control[k].map);
-    for (int i = 0; i < 3; ++i)
-      if (!control[k].known[static_cast<size_t>(i)]) d[i] = 0.0;
-    out.push_back(d);
-  }
+std::vector<char> points_of_control(const ImageBlock& block) {
+  std::vector<char> out(block.points.size(), 0);
+  for (const BlockControl& c : block.control)
+    if (!c.check) out[c.point] = 1;
   return out;
 }
 
-double median_length(const std::vector<Vector3d>& offsets) {
-  std::vector<double> lengths;
-  for (const Vector3d& d : offsets) lengths.push_back(d.norm());
-  return core::median(lengths, 0.0);
+/// mm; of a ray from behind the camera a large value. Points must be intersected.
+double ray_residual(const ImageBlock& block, const ImageRay& r) {
+  const BlockImage& i = block.images[r.image];
+  const BlockCamera& camera = block.cameras[i.camera];
+  const auto seen = image_of(camera.value, camera.distortion, i.camera_R_local * (block.points[r.point].position - i.position));
+  return seen ? (*seen - Eigen::Vector2d(r.x, r.y)).norm() : 10.0 * camera.value[0];
 }
 
-double distance_to_ground(const ImageBlock& block) {
-  double points = 0.0, images = 0.0;
-  for (const BlockPoint& p : block.points) points += p.position.z() / static_cast<double>(block.points.size());
-  for (const BlockImage& i : block.images) images += i.position.z() / static_cast<double>(block.images.size());
-  return std::max(1.0, std::abs(images - points));
+std::vector<ImageRay> tie_rays(const ImageBlock& block) {
+  const std::vector<char> is_control = points_of_control(block);
+  std::vector<ImageRay> out;
+  for (const ImageRay& r : block.rays)
+    if (!is_control[r.point]) out.push_back(r);
+  return out;
 }
 
-void refuse_feet(const ReadBlock& sample) {
-  const std::vector<Vector3d> offsets = control_offsets(sample, 1.0);
-  if (offsets.empty()) return;
-  constexpr double foot = 0.3048, far = 0.2;
-  const double stated = median_length(offsets), height = distance_to_ground(sample.block);
-  if (stated < far * height) return;
-  for (const auto& [factor, what] : {std::pair{foot, "control is in feet"}, {1.0 / foot, "stations are in feet"}}) {
-    double scaled = stated;
-    try {
-      scaled = median_length(control_offsets(sample, factor));
-    } catch (const core::Error&) {
-      continue;  // outside the projection
-    }
-    if (clearly * scaled < stated)
-      throw core::Error(std::string(what) + ": points lie " + std::to_string(static_cast<long>(std::lround(scaled))) +
-                            " m from where the images see them, and " + std::to_string(static_cast<long>(std::lround(stated))) +
-                            " m as stated",
-                        sample.control.front().place, "convert to metres: 1 ft = 0.3048 m");
+/// Of tie_rays(), over the principal distance.
+std::vector<double> tie_residuals(const ImageBlock& given) {
+  ImageBlock block = given;
+  intersect_points(block);
+  std::vector<double> out;
+  for (const ImageRay& r : tie_rays(block)) out.push_back(ray_residual(block, r) / block.cameras[block.images[r.image].camera].value[0]);
+  return out;
+}
+
+/// Image points on the sensor, and not on a corner of it.
+void refuse_off_sensor(const ReadBlock& read, const BlockConfig& config) {
+  constexpr double beyond = 1.05, spread = 0.02;  // of half the sensor
+  for (std::uint32_t c = 0; c < config.cameras.size(); ++c) {
+    const CameraConfig& camera = config.cameras[c];
+    if (!camera.pixel || camera.columns <= 0 || camera.rows <= 0) continue;
+    std::vector<double> x, y;
+    for (const ImageRay& r : read.block.rays)
+      if (read.block.images[r.image].camera == c) x.push_back(std::abs(r.x)), y.push_back(std::abs(r.y));
+    if (x.size() < 20) continue;
+    constexpr double most = 0.98;  // of the points: single blunders are the adjustment's
+    const double side = 1e3 * camera.pixel->value, half_x = side * camera.columns / 2.0, half_y = side * camera.rows / 2.0,
+                 far_x = core::quantile(x, most), far_y = core::quantile(y, most);
+    const std::string place = config.image_points.front().file.string(),
+                      reach = "image points of camera " + camera.name + " reach " + shown(far_x) + " in x and " + shown(far_y) +
+                              " in y from the middle, the sensor " + shown(half_x) + " and " + shown(half_y);
+    if (far_x > beyond * half_x || far_y > beyond * half_y)
+      throw core::Error(reach, place, "check unit, origin and pixel, and that columns and rows are not exchanged");
+    if (far_x < spread * half_x && far_y < spread * half_y) throw core::Error(reach, place, "check unit and pixel");
   }
-  throw core::Error(
-      "control points lie " + std::to_string(static_cast<long>(std::lround(stated))) + " m (median) from where the images see them",
-      sample.control.front().place, "check the CRS and the order of easting and northing");
+}
+
+/// Residuals of tie points, each up to a fifth of the principal distance, over that distance: one strip's mistake shows in their mean.
+struct MeanResidual {
+  double all = 0.0, moved = 0.0;  ///< of all points; of those on an image that lies elsewhere than in `stated`
+};
+MeanResidual mean_residual(const ImageBlock& block, const ImageBlock& stated) {
+  constexpr double at_most = 0.2;
+  std::vector<char> on_moved(block.points.size(), 0);
+  for (const ImageRay& r : block.rays)
+    if (block.images[r.image].position != stated.images[r.image].position) on_moved[r.point] = 1;
+  double all = 0.0, moved = 0.0, all_count = 0.0, moved_count = 0.0;
+  size_t k = 0;
+  const std::vector<double> residuals = tie_residuals(block);
+  for (const ImageRay& r : tie_rays(block)) {
+    const double v = std::min(at_most, residuals[k++]);
+    all += v, all_count += 1.0;
+    if (on_moved[r.point]) moved += v, moved_count += 1.0;
+  }
+  return {all / std::max(1.0, all_count), moved / std::max(1.0, moved_count)};
+}
+
+/// The strips with the largest residuals, some of them.
+std::vector<int> worst_strips(const ImageBlock& block) {
+  constexpr size_t tried = 6;
+  std::map<int, std::pair<double, double>> sums;
+  const std::vector<double> residuals = tie_residuals(block);
+  size_t k = 0;
+  for (const ImageRay& r : tie_rays(block)) {
+    auto& [sum, n] = sums[block.images[r.image].strip];
+    sum += std::min(1.0, residuals[k++]), n += 1.0;
+  }
+  std::vector<std::pair<double, int>> order;
+  for (const auto& [strip, sum] : sums) order.emplace_back(-sum.first / sum.second, strip);
+  std::sort(order.begin(), order.end());
+  std::vector<int> out;
+  for (size_t i = 0; i < order.size() && i < tried; ++i) out.push_back(order[i].second);
+  return out;
+}
+
+/// `times`: by how much residuals must fall.
+void refuse_shifted_strip(const ReadBlock& sample, const BlockConfig& config, double times) {
+  constexpr double suspicious = 0.02;  // of the principal distance; smaller
+  if (sample.stations_observed == 0) return;
+  const double stated = mean_residual(sample.block, sample.block).all;
+  if (stated < suspicious) return;
+  std::optional<Mistake> best;
+  ImageBlock better;
+  double least = stated;
+  for (Mistake& m : mistakes_within_strips(sample, worst_strips(sample.block))) {
+    ReadBlock other = sample;
+    m.instead(other);
+    const double found = mean_residual(other.block, sample.block).all;
+    if (found < least) best = std::move(m), least = found, better = std::move(other.block);
+  }
+  if (!best) return;
+  // Without angles the level start leaves several per cent everywhere: the points of the moved images decide.
+  const double before = mean_residual(sample.block, better).moved, after = mean_residual(better, sample.block).moved;
+  if (times * after > before) return;
+  char text[160];
+  std::snprintf(text, sizeof text, ": image points are off by %.1f %% of the principal distance (mean) as stated, by %.1f %% otherwise",
+                100.0 * before, 100.0 * after);
+  throw core::Error(best->what + text, config.images.file.string(), best->hint);
 }
 
 }  // namespace
@@ -195,17 +153,9 @@ void refuse_feet(const ReadBlock& sample) {
 StartResidual start_residual(const ImageBlock& given) {
   ImageBlock block = given;
   intersect_points(block);
-  std::vector<char> is_control(block.points.size(), 0);
-  for (const BlockControl& c : block.control)
-    if (!c.check) is_control[c.point] = 1;
+  const std::vector<char> is_control = points_of_control(block);
   std::vector<double> tie, control;
-  for (const ImageRay& r : block.rays) {
-    const BlockImage& i = block.images[r.image];
-    const BlockCamera& camera = block.cameras[i.camera];
-    const auto seen = image_of(camera.value, camera.distortion, i.camera_R_local * (block.points[r.point].position - i.position));
-    const double v = seen ? (*seen - Eigen::Vector2d(r.x, r.y)).norm() : 10.0 * camera.value[0];  // behind the camera
-    (is_control[r.point] ? control : tie).push_back(v);
-  }
+  for (const ImageRay& r : block.rays) (is_control[r.point] ? control : tie).push_back(ray_residual(block, r));
   return {core::median(tie, 0.0), core::median(control, 0.0)};
 }
 
@@ -241,9 +191,9 @@ void refuse_mistakes(const ReadBlock& read, const BlockConfig& config) {
   double sigma = 0.0;
   for (const ImageRay& r : sample.block.rays) sigma = std::max(sigma, r.sigma);
   if (stated.sum() > by_accident * sigma) {
-    std::vector<Mistake> mistakes = of_image_axes();
-    for (Mistake& m : of_angles(sample, config)) mistakes.push_back(std::move(m));
-    for (Mistake& m : of_stations(sample)) mistakes.push_back(std::move(m));
+    std::vector<Mistake> mistakes = mistakes_of_image_axes();
+    for (Mistake& m : mistakes_of_angles(sample, config)) mistakes.push_back(std::move(m));
+    for (Mistake& m : mistakes_of_stations(sample)) mistakes.push_back(std::move(m));
     const Mistake* best = nullptr;
     StartResidual least = stated;
     for (const Mistake& m : mistakes) {
@@ -257,7 +207,24 @@ void refuse_mistakes(const ReadBlock& read, const BlockConfig& config) {
                             shown(least.sum()) + " without that mistake",
                         config.image_points.front().file.string(), best->hint);
   }
-  refuse_feet(sample);
+  refuse_off_sensor(read, config);
+  if (stated.sum() > by_accident * sigma) refuse_shifted_strip(sample_of(read, sampled_for_strips), config, read.started_level ? 2.0 : 1.4);
+  if (!read.started_level) refuse_broken_bases(read, config);
+  refuse_far_control(sample);
+}
+
+void refuse_wrong_stations(const ReadBlock& stated, const ReadBlock& adjusted, const BlockSolution& s, const BlockConfig& config) {
+  constexpr double disagree = 5.0;   // sigmas of stations
+  constexpr double too_many = 0.05;  // of the image points, without weight
+  constexpr auto of_stations = 1u;   // in BlockInference
+  const double freedom = s.inference.redundancy_of[of_stations];
+  const bool far = freedom > 1.0 && s.weights.station * std::sqrt(s.inference.squares_of[of_stations] / freedom) > disagree;
+  if (!far && static_cast<double>(s.without_weight) < too_many * static_cast<double>(stated.block.rays.size())) return;
+  ReadBlock turned = stated;  // attitudes by the images, positions by the stations
+  for (size_t i = 0; i < turned.block.images.size(); ++i) turned.block.images[i].camera_R_local = adjusted.block.images[i].camera_R_local;
+  turned.started_level = false;
+  refuse_shifted_strip(sample_of(turned, sampled_for_strips), config, 1.4);
+  refuse_broken_bases(turned, config);
 }
 
 }  // namespace swath::calib

@@ -2,10 +2,10 @@
 // Usual mistakes of conventions, found before the adjustment: residuals at the start values, as stated and with one thing changed.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "calib/block/block_adjust.h"
 #include "calib/block/block_reading.h"
 
 namespace swath::calib {
@@ -21,7 +21,12 @@ StartResidual start_residual(const ImageBlock& block);
 ReadBlock sample_of(const ReadBlock& read, size_t points);
 
 /// Throws core::Error that names the mistake where another convention fits the image points three times better: image axes (y up or down,
-/// mirrored, turned), kind and sense of angles, north, stations of the neighbouring image, control in feet.
+/// mirrored, turned), kind, sense and unit of angles, north, stations of the neighbouring image in the block or in one strip from an image
+/// on; or where image points are off the sensor, or control is far from where the images see it.
 void refuse_mistakes(const ReadBlock& read, const BlockConfig& config);
+
+/// After the adjustment, where stations or many image points do not fit by far: a block that started level has attitudes now. Throws
+/// core::Error that names a missing event or a shifted strip. `stated`: before the adjustment.
+void refuse_wrong_stations(const ReadBlock& stated, const ReadBlock& adjusted, const BlockSolution& solution, const BlockConfig& config);
 
 }  // namespace swath::calib

@@ -73,7 +73,7 @@ void add_drifts(const ReadBlock& read, const BlockSolution& s, BlockFound& out) 
 void add_precision(const ReadBlock& read, const BlockSolution& s, BlockFound& out) {
   double plan = 0.0, height = 0.0, n = 0.0;
   for (size_t p = 0; p < read.block.points.size(); ++p) {
-    if (s.linear.point_column[p] < 0) continue;
+    if (s.linear.point_column[p] < 0 || out.unfit.of_point[p]) continue;
     const Matrix3d& C = s.inference.points[p];
     plan += (C(0, 0) + C(1, 1)) / 2.0, height += C(2, 2), n += 1.0;
     out.max_plan = std::max(out.max_plan, std::sqrt((C(0, 0) + C(1, 1)) / 2.0));
@@ -215,6 +215,13 @@ std::string line(const char* form, double a, double b = 0.0) {
   return text;
 }
 
+std::string names_of(const std::vector<std::string>& names) {
+  constexpr size_t shown = 5;
+  std::string out;
+  for (size_t k = 0; k < names.size() && k < shown; ++k) out += (k ? ", " : "") + names[k];
+  return names.size() > shown ? out + " and " + std::to_string(names.size() - shown) + " more" : out;
+}
+
 void add_sentences(BlockFound& out) {
   for (const CameraFound& c : out.cameras)
     for (const CameraValueFound& v : c.values)
@@ -234,7 +241,19 @@ void add_sentences(BlockFound& out) {
   for (const FactorFound& f : out.factors)
     if (f.estimated && (f.factor > 2.0 || f.factor < 0.5))
       out.findings.push_back("the stated sigmas of " + f.kind + line(" were multiplied by %.2f: check them", f.factor));
-  if (out.without_weight > 0) out.findings.push_back(std::to_string(out.without_weight) + " image points do not fit and have no weight");
+  if (out.without_weight > 0)
+    out.findings.push_back(std::to_string(out.without_weight) + " image points do not fit and have no weight" +
+                           (out.unfit.images.empty()
+                                ? ""
+                                : "; more than a third of those on " + names_of(out.unfit.images) + ": check their stations and events"));
+  if (!out.unfit.control.empty())
+    out.findings.push_back("control does not fit image points, which have no weight: " + names_of(out.unfit.control) +
+                           "; check coordinates and names, or leave these points out");
+  if (!out.unfit.others.empty())
+    out.findings.push_back("points that do not fit on two images: " + names_of(out.unfit.others) +
+                           "; one name may be given to two points. They are not counted in the precision");
+  if (!out.images_without_points.empty())
+    out.findings.push_back("images without image points have their observed orientation: " + names_of(out.images_without_points));
   for (const CheckFound& c : out.check)
     if (c.points > 3 && c.over_sigma > 2.0)
       out.findings.push_back("check points differ in " + c.coordinate + line(" by %.1f times their standard deviations", c.over_sigma));
@@ -260,6 +279,7 @@ BlockFound findings_of(const ReadBlock& read, const BlockConfig& config, const B
           {kinds[k], factors[k], s.inference.redundancy_of[k], !s.component_estimated.empty() && s.component_estimated[k] != 0});
   for (std::uint32_t c = 0; c < read.block.cameras.size(); ++c) out.cameras.push_back(camera_found(read, config, s, c));
   add_drifts(read, s, out);
+  out.unfit = unfit_points(read.block, s.weights.of_ray);
   add_precision(read, s, out);
   add_tests(read, s, out);
   add_differences(read, s, out);

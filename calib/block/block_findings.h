@@ -9,6 +9,7 @@
 
 #include "calib/block/block_adjust.h"
 #include "calib/block/block_reading.h"
+#include "calib/block/unfit_points.h"
 #include "core/config/result.h"
 
 namespace swath::calib {
@@ -125,6 +126,7 @@ void describe(const FactorFound& r, V& v) {
 }
 
 struct BlockFound {
+  UnfitPoints unfit;
   std::string started_from;
   size_t images = 0, points = 0, rays = 0, stations = 0, attitudes = 0, control = 0, checks = 0, points_left_out = 0, without_weight = 0;
   size_t observations = 0, unknowns = 0, iterations = 0, rounds = 0;

@@ -295,6 +295,7 @@ ReadBlock read_block(const BlockConfig& config, const std::string& config_file) 
                           std::to_string(read.block.images.size()) + " images",
                       config_file, "add [images] with a file of stations");
   if (!by_file) start_block(read, config);
+  read.started_level = !by_file && config.images.angles == ImageAngles::none;
   read.started_from = by_file                                     ? "the orientations of the image points' file"
                       : config.images.angles != ImageAngles::none ? "stations and angles of the table"
                                                                   : "stations and the directions of the strips";

@@ -33,7 +33,8 @@ struct ReadBlock {
   std::vector<std::string> control_without_image;
   std::vector<std::string> images_without_points;
   size_t stations_observed = 0;
-  std::string started_from;  ///< in words
+  std::string started_from;
+  bool started_level = false;  ///< no angles, no orientations of a file  ///< in words
 };
 
 /// Throws core::Error: what a file lacks, names that are not there, a point that is twice on an image, an image without points.

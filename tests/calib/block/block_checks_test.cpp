@@ -3,25 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include "core/error.h"
-#include "tests/calib/block/made_files.h"
+#include "tests/calib/block/refusal.h"
 
 namespace swath::calib {
 namespace {
 
-/// What a block with a mistake is refused with; empty where it is not.
-std::string refusal(const test::MadeFiles& m) {
-  const test::TemporaryFolder folder;
-  const std::string file = test::write_made(m, folder.path());
-  const BlockConfig config = test::read_made(file);
-  const ReadBlock read = read_block(config, file);
-  try {
-    refuse_mistakes(read, config);
-  } catch (const core::Error& e) {
-    return e.text();
-  }
-  return {};
-}
+using test::refusal;
 
 test::MadeFiles made() {
   test::MadeFiles m;
@@ -93,6 +80,15 @@ TEST(BlockChecks, ControlInFeet) {
   m.control_unit = 1.0;
   for (BlockControl& c : m.block.control) c.position.x() += 50000.0;
   EXPECT_NE(refusal(m).find("from where the images see them"), std::string::npos) << refusal(m);
+}
+
+TEST(BlockChecks, PointsOffTheSensor) {
+  test::MadeFiles m = made();
+  for (ImageRay& r : m.block.rays) r.x += 115.0, r.y += 115.0;  // from a corner, not from the middle
+  EXPECT_NE(refusal(m).find("image points of camera RMK reach"), std::string::npos) << refusal(m);
+  m = made();
+  for (ImageRay& r : m.block.rays) r.x *= 1e-3, r.y *= 1e-3;
+  EXPECT_NE(refusal(m).find("check unit and pixel"), std::string::npos) << refusal(m);
 }
 
 }  // namespace

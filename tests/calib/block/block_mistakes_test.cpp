@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calib/block/block_mistakes.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/calib/block/refusal.h"
+
+namespace swath::calib {
+namespace {
+
+/// Body angles of a block, each changed.
+std::string refused(const std::function<void(core::Attitude&)>& change) {
+  test::Making making = test::small_making();
+  making.boresight.setZero();
+  making.tilt = 0.05;
+  test::MadeFiles m;
+  m.block = test::make_block(making).given;
+  m.write_angles = true;
+  m.angles = m.stated_angles = "roll_pitch_heading";
+  Eigen::Matrix3d ned_R_enu;
+  ned_R_enu << 0, 1, 0, 1, 0, 0, 0, 0, -1;
+  for (ImageAttitude& a : m.block.attitudes) {
+    core::Attitude t = core::attitude_of(ned_R_enu * a.local_R_body);
+    change(t);
+    a.local_R_body = ned_R_enu.transpose() * core::matrix_of(t);
+  }
+  return test::refusal(m);
+}
+
+void expect_in(const std::string& text, const std::string& part) { EXPECT_NE(text.find(part), std::string::npos) << text; }
+
+TEST(BlockMistakes, UnitsAndOrderOfAngles) {
+  EXPECT_EQ(refused([](core::Attitude&) {}), "");
+  const auto scaled = [](double f) { return [f](core::Attitude& a) { a.roll *= f, a.pitch *= f, a.heading *= f; }; };
+  expect_in(refused(scaled(core::degree)), "the angles are in radians");
+  expect_in(refused(scaled(1.0 / 0.9)), "the angles are in gon");
+  expect_in(refused([](core::Attitude& a) { std::swap(a.roll, a.pitch); }), "roll and pitch are exchanged");
+  expect_in(refused([](core::Attitude& a) { a.heading = core::pi / 2.0 - a.heading; }), "heading counts counter-clockwise from east");
+}
+
+/// The stations of strip `strip` (by its place in the table) from image `first` on are those of the image after.
+std::string shifted(int strip, int first) {
+  test::MadeFiles m;
+  m.block = test::make_block(test::small_making()).given;
+  std::vector<size_t> of;
+  for (size_t s = 0; s < m.block.stations.size(); ++s)
+    if (m.block.images[m.block.stations[s].image].strip == strip) of.push_back(s);
+  const std::vector<ImageStation> at = m.block.stations;
+  for (size_t k = static_cast<size_t>(first); k < of.size(); ++k)
+    m.block.stations[of[k]].position =
+        k + 1 < of.size() ? at[of[k + 1]].position : Eigen::Vector3d(2.0 * at[of[k]].position - at[of[k - 1]].position);
+  return test::refusal(m);
+}
+
+TEST(BlockMistakes, OneStripIsShifted) {
+  const int strip = test::make_block(test::small_making()).given.images[8].strip;  // the second, of six images
+  expect_in(shifted(strip, 0), "the stations of strip " + std::to_string(strip) + " are those of the image after");
+}
+
+TEST(BlockMistakes, StationHeightsInFeet) {
+  test::MadeFiles m;
+  m.block = test::make_block(test::small_making()).given;
+  for (ImageStation& s : m.block.stations) s.position.z() /= 0.3048;
+  expect_in(test::refusal(m), "heights of the stations are in feet");
+}
+
+}  // namespace
+}  // namespace swath::calib

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calib/block/station_bases.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/calib/block/refusal.h"
+
+namespace swath::calib {
+namespace {
+
+/// What a block is refused with whose positions in strip 1 are from its image `first` on those of the image `step` after.
+std::string refused(size_t first, int step) {
+  ReadBlock read;
+  read.block = test::make_block(test::small_making()).truth;
+  read.stations_observed = read.block.stations.size();
+  std::vector<std::uint32_t> images;
+  for (std::uint32_t i = 0; i < read.block.images.size(); ++i)
+    if (read.block.images[i].strip == 1) images.push_back(i);
+  const std::vector<BlockImage> at = read.block.images;
+  for (size_t k = first; k < images.size(); ++k) {
+    const auto n = static_cast<size_t>(static_cast<int>(k) + step);
+    read.block.images[images[k]].position =
+        n < images.size() ? at[images[n]].position : Eigen::Vector3d(2.0 * at[images[k]].position - at[images[k - 1]].position);
+  }
+  try {
+    refuse_broken_bases(read, {});
+  } catch (const core::Error& e) {
+    return e.text();
+  }
+  return {};
+}
+
+TEST(StationBases, TiltedBlocksPass) {
+  for (const unsigned seed : {1u, 2u, 3u, 4u, 5u}) {
+    test::Making making = test::small_making();
+    making.seed = seed;
+    making.tilt = 0.06;
+    const auto bases = station_bases(test::make_block(making).truth);
+    ASSERT_GT(bases.size(), 10u);
+    for (const StationBase& b : bases) {
+      EXPECT_LT(b.ratio, 1.2) << seed;
+      EXPECT_GT(b.ratio, 0.8) << seed;
+    }
+  }
+}
+
+TEST(StationBases, AMissingEventIsNamed) {
+  const std::string text = refused(3, 1);
+  EXPECT_NE(text.find("of strip 1 lie "), std::string::npos) << text;
+  EXPECT_NE(text.find("may be missing"), std::string::npos) << text;
+}
+
+TEST(StationBases, AnEventTwiceIsNamed) {
+  const std::string text = refused(3, -1);
+  EXPECT_NE(text.find("an event may be listed twice"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace swath::calib
