@@ -7,6 +7,7 @@
 
 #include "calib/block/block_page.h"
 #include "calib/block/direct_orientation.h"
+#include "calib/block/geolocation_files.h"
 #include "calib/block/mark_plane.h"
 #include "calib/block/orientation_table.h"
 #include "core/config/result_visitors.h"
@@ -46,13 +47,23 @@ ImageOrientation oriented(const ReadBlock& read, std::uint32_t image, const Matr
   return out;
 }
 
-std::string format(const char* form, double value) {
-  char text[48];
-  std::snprintf(text, sizeof text, form, value);
-  return text;
+std::vector<Geolocation> geolocations(const ReadBlock& read, const BlockSolution& s) {
+  std::vector<Geolocation> out;
+  const auto covariances = image_covariances(read, s);
+  Matrix3d ned_R_enu;
+  ned_R_enu << 0, 1, 0, 1, 0, 0, 0, 0, -1;
+  for (std::uint32_t i = 0; i < read.block.images.size(); ++i) {
+    const BlockImage& image = read.block.images[i];
+    const ImageOrientation o = oriented(read, i, covariances[i]);
+    out.push_back({image.name, o.map,
+                   upper_edge_attitude(ned_R_enu * read.frame.local_R_true(image.position).transpose() * image.camera_R_local.transpose()),
+                   std::sqrt((o.covariance(0, 0) + o.covariance(1, 1)) / 2.0), std::sqrt(o.covariance(2, 2))});
+  }
+  return out;
 }
 
-io::ImageData colmap_data(const ReadBlock& read, const BlockConfig& config, std::vector<io::ColmapPoint>& points) {
+/// Points that took no part are left out with their image points.
+io::ImageData colmap_data(const ReadBlock& read, const BlockConfig& config, const BlockSolution& s, std::vector<io::ColmapPoint>& points) {
   io::ImageData out;
   const ImageBlock& b = read.block;
   std::vector<char> exact;
@@ -73,6 +84,7 @@ io::ImageData colmap_data(const ReadBlock& read, const BlockConfig& config, std:
   }
   for (const BlockPoint& p : b.points) points.push_back({p.name, p.position});
   for (const ImageRay& r : b.rays) {
+    if (s.linear.point_column[r.point] < 0) continue;
     const std::uint32_t camera = b.images[r.image].camera;
     Eigen::Vector2d p(r.x, r.y);
     if (!exact[camera]) {  // the distortion is taken off: the camera is without
@@ -117,20 +129,6 @@ std::string orientation_csv(const ReadBlock& read, const BlockConfig& config, co
   return out;
 }
 
-std::string geo_text(const ReadBlock& read, const BlockConfig& config, const BlockSolution& s) {
-  std::string out = config.crs + "\n";
-  const auto covariances = image_covariances(read, s);
-  const char* const place = std::abs(read.frame.middle().x()) > 1000.0 ? " %.4f" : " %.10f";
-  for (std::uint32_t i = 0; i < read.block.images.size(); ++i) {
-    const ImageOrientation o = oriented(read, i, covariances[i]);
-    out += read.block.images[i].name + format(place, o.map.x()) + format(place, o.map.y()) + format(" %.4f", o.map.z());
-    for (const double a : {o.attitude.heading, o.attitude.pitch, o.attitude.roll}) out += format(" %.5f", a / core::degree);
-    out +=
-        format(" %.4f", std::sqrt((o.covariance(0, 0) + o.covariance(1, 1)) / 2.0)) + format(" %.4f", std::sqrt(o.covariance(2, 2))) + "\n";
-  }
-  return out;
-}
-
 std::string camera_toml(const ReadBlock& read, const BlockConfig& config, const BlockFound& found) {
   std::string out = "# Cameras after the adjustment: tables that `swath block` takes. Values in brackets are standard deviations.\n";
   for (size_t c = 0; c < read.block.cameras.size(); ++c) {
@@ -168,7 +166,11 @@ std::vector<std::string> write_block(const std::filesystem::path& folder, const 
     out.emplace_back(name);
   };
   text("orientation.csv", orientation_csv(read, config, s));
-  if (!read.frame.is_local()) text("geo.txt", geo_text(read, config, s));
+  if (!read.frame.is_local()) {
+    const std::vector<Geolocation> images = geolocations(read, s);
+    text("geo.txt", geo_text(config.crs, images));
+    text("geolocation.csv", geolocation_csv(config.crs, images, core::Crs(config.crs).is_geographic()));
+  }
   text("camera.toml", camera_toml(read, config, found));
   io::write_point_layer(folder / "points.gpkg", "points", read.frame.is_local() ? "" : config.crs,
                         {"image_points", "sigma_east", "sigma_north", "sigma_up"}, points_of(read, s));
@@ -176,7 +178,7 @@ std::vector<std::string> write_block(const std::filesystem::path& folder, const 
   if (std::all_of(config.cameras.begin(), config.cameras.end(),
                   [](const CameraConfig& c) { return c.pixel && c.columns > 0 && c.rows > 0; })) {
     std::vector<io::ColmapPoint> points;
-    const io::ImageData data = colmap_data(read, config, points);
+    const io::ImageData data = colmap_data(read, config, s, points);
     io::write_colmap(folder / "colmap", data, points);
     out.emplace_back("colmap");
   }

@@ -14,8 +14,6 @@ namespace swath::calib {
 
 /// orientation.csv: a header with the conventions, then a line per image.
 std::string orientation_csv(const ReadBlock& read, const BlockConfig& config, const BlockSolution& solution);
-/// OpenDroneMap's image geolocation file: CRS, then name, x, y, z, yaw, pitch, roll, sigmas.
-std::string geo_text(const ReadBlock& read, const BlockConfig& config, const BlockSolution& solution);
 /// camera.toml: what [[camera]] takes, with the sigmas found.
 std::string camera_toml(const ReadBlock& read, const BlockConfig& config, const BlockFound& found);
 

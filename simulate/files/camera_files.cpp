@@ -126,6 +126,32 @@ class Photographer {
     points_.push_back({name, at, to_ecef_(Vector3d(at + Vector3d(map_.map_origin().x(), map_.map_origin().y(), 0.0)))});
   }
 
+  /// Under the exposure that lies farthest along the first line's direction and across it, a little towards the middle: several images see
+  /// it.
+  Vector2d corner(double along, double across) const {
+    constexpr double inwards = 0.1;
+    Vector2d way = exposures_[0].on_map.head<2>(), middle = Vector2d::Zero();
+    for (const Exposure& x : exposures_) {
+      middle += x.on_map.head<2>() / static_cast<double>(exposures_.size());
+      if (x.line == exposures_[0].line) way = x.on_map.head<2>();
+    }
+    way -= exposures_[0].on_map.head<2>();
+    if (!(way.norm() > 0.0)) way = Vector2d::UnitX();
+    const Vector2d u = way.normalized(), v(-u.y(), u.x());
+    Vector2d reach = Vector2d::Constant(1e-9);
+    for (const Exposure& x : exposures_) {
+      const Vector2d d = x.on_map.head<2>() - middle;
+      reach = reach.cwiseMax(Vector2d(std::abs(d.dot(u)), std::abs(d.dot(v))));
+    }
+    const auto share = [&](const Exposure& x) {
+      const Vector2d d = x.on_map.head<2>() - middle;
+      return along * d.dot(u) / reach.x() + across * d.dot(v) / reach.y();
+    };
+    const auto farthest =
+        std::max_element(exposures_.begin(), exposures_.end(), [&](const Exposure& a, const Exposure& b) { return share(a) < share(b); });
+    return (1.0 - inwards) * farthest->on_map.head<2>() + inwards * middle;
+  }
+
   /// Ground points about evenly where images may see them, as many as make `points` per image; control and check points.
   void lay_points() {
     if (exposures_.empty()) return;
@@ -146,8 +172,9 @@ class Photographer {
       }
     tie_points_ = points_.size();
     for (int c = 0; c < c_.control; ++c) {
-      const Vector2d share = c < 4 ? Vector2d(c % 2, c / 2) : Vector2d(random.uniform(), random.uniform());
-      const Vector2d at = low + share.cwiseProduct(high - low);
+      const double u = random.uniform(), w = random.uniform();
+      const Vector2d at =
+          c < 4 ? corner(c % 2 == 0 ? -1.0 : 1.0, c < 2 ? -1.0 : 1.0) : Vector2d(low + Vector2d(u, w).cwiseProduct(high - low));
       add_point("control" + std::to_string(c + 1), at.x(), at.y());
     }
     for (int c = 0; c < c_.check; ++c) {

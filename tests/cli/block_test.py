@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blocks of images on the command line: accuracy before the flight, drifts of stations."""
+import csv
 import json
 import unittest
 
-from support import SOURCE, Case, swath
+from support import SOURCE, Case, simulate, swath
 
 # Ackermann's Quadro 1, recomputed; 0.5 % of each.
 QUADRO_1 = [(0.959, 1.502), (1.620, 1.680), (2.101, 2.288), (1.533, 2.268)]
@@ -65,6 +66,27 @@ class Block(Case):
         (self.folder / "control.csv").write_text("\n".join(corners) + "\n")
         self.assert_error(swath("block", self.folder / "block.toml", "--output", self.folder / "out"), 1, "(?s)heights.*cross strips.*chains of height control")
         self.assert_error(swath("block", self.folder / "block.toml", "--set", "crs="), 2, "crs is not stated")
+
+    def test_geolocation_of_other_programs(self):
+        """The angles of geo.txt and geolocation.csv are those of a body under whose front the image's upper edge lies."""
+        flown = simulate(self.folder / "flown", ["output.laser=false", "imu.file=false", "gnss.file=false", "events.file=true", "camera.file=true",
+                                                 "events.interval=3 s", "world.length=500 m", "world.width=300 m", "flight.lines=2",
+                                                 "flight.cross_lines=0", "flight.height=400 m", "camera.points=30", "noise.noise_free=true",
+                                                 'camera.boresight=["0 deg", "0 deg", "0 deg"]'])
+        done = swath("block", flown / "block.toml", "--output", self.folder / "out", "--set", "adjust.components=false")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(flown / "truth" / "images.csv") as f:
+            truth = {r["name"]: [float(r[k]) for k in ("x", "y", "z", "heading", "pitch", "roll")] for r in csv.DictReader(f)}
+        for file, separator in (("geo.txt", " "), ("geolocation.csv", ",")):
+            first, *lines = (self.folder / "out" / file).read_text().splitlines()
+            self.assertIn("EPSG:32632", first)
+            self.assertEqual(len(lines), len(truth))
+            for line in lines:
+                name, *values = line.split(separator)
+                self.assertEqual(len(values), 8)
+                for k, (got, want) in enumerate(zip(map(float, values), truth[name])):
+                    off = (got - want + 180.0) % 360.0 - 180.0 if k == 3 else got - want
+                    self.assertLess(abs(off), 0.1 if k < 3 else 0.01, (file, name, k))
 
     def test_check_knows_configs_of_blocks(self):
         theory = SOURCE / "configs" / "flight" / "block_theory.toml"

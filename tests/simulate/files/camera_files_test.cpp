@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "core/geo/geodesy.h"
 #include "io/text/text_table.h"
@@ -78,6 +79,22 @@ TEST(CameraFiles, ImagePointsAreThoseOfTheTruth) {
     ASSERT_TRUE(at);
     EXPECT_NEAR(marks.number(r, 2), at->x() / 0.0068 + 3608.0, 1e-3);  // tables round at 1e-4 pixel, and at 1e-6 m
     EXPECT_NEAR(marks.number(r, 3), 2706.0 - at->y() / 0.0068, 1e-3);
+  }
+}
+
+TEST(CameraFiles, ControlInTheCornersOfTheFlightIsOnImages) {
+  const test::TemporaryFolder folder;
+  Options o = small_flight();
+  o.flight.direction = core::degrees(37.0);
+  run(o, folder.path(), {});
+  const io::TextTable control(folder.path() / "block_control.csv"), marks(folder.path() / "image_points.csv");
+  std::map<std::string, int> seen;
+  for (size_t r = 0; r < marks.rows(); ++r) ++seen[marks.text(r, 1)];
+  std::set<std::string> corners;
+  for (size_t r = 0; r < control.rows(); ++r) corners.insert(control.text(r, 0));
+  for (const char* name : {"control1", "control2", "control3", "control4"}) {
+    EXPECT_TRUE(corners.contains(name)) << name;
+    EXPECT_GE(seen[name], 2) << name;
   }
 }
 
