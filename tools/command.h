@@ -77,6 +77,7 @@ void add_budget_command(Commands& commands);
 void add_block_command(Commands& commands);
 void add_block_theory_command(Commands& commands);
 void add_block_drift_command(Commands& commands);
+void add_undistort_command(Commands& commands);
 /// What a config of `block` or `block-theory` describes, in a few words; nothing where the file is neither. Reads no image. Throws
 /// core::Error (usage) with all faults.
 std::optional<std::string> check_block_config(const std::filesystem::path& config, const std::vector<std::string>& sets);

@@ -57,6 +57,7 @@ int main(int argc, char** argv) {
     swath::tools::add_block_command(commands);
     swath::tools::add_block_theory_command(commands);
     swath::tools::add_block_drift_command(commands);
+    swath::tools::add_undistort_command(commands);
     swath::tools::add_simulate_command(commands);
     swath::tools::add_info_command(commands);
     swath::tools::add_volumes_command(commands);

@@ -144,7 +144,7 @@ std::string camera_toml(const ReadBlock& read, const BlockConfig& config, const 
     out += std::string("distortion = \"") + (camera.distortion == DistortionAt::ideal ? "ideal" : "measured") + "\"\n";
     if (k.pixel)
       out += "columns = " + std::to_string(k.columns) + "\nrows = " + std::to_string(k.rows) + "\npixel = \"" +
-             core::format_number(1e6 * k.pixel->value) + " um\"\n";
+             core::format_number(std::round(1e12 * k.pixel->value) / 1e6) + " um\"\n";
     // The mount stays; what is left of the rotation is the boresight.
     const Matrix3d mount = camera_mounting(k.mount, {});
     const core::Attitude b = core::attitude_of(camera.body_R_camera * mount.transpose());

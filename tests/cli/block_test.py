@@ -2,7 +2,9 @@
 """Blocks of images on the command line: accuracy before the flight, drifts of stations."""
 import csv
 import json
+import struct
 import unittest
+import zlib
 
 from support import SOURCE, Case, simulate, swath
 
@@ -134,6 +136,31 @@ class Block(Case):
         self.assert_error(swath("block-drift", table), 1, "differences.csv:2")
         table.write_text("strip,time\n1,0\n")
         self.assert_error(swath("block-drift", table), 1, "no column of differences")
+
+
+class Undistort(Case):
+    def test_images(self):
+        columns, rows = 60, 40
+        values = b"".join(b"\0" + bytes(v for c in range(columns) for v in (4 * c, 6 * r, 100)) for r in range(rows))
+        chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))  # noqa: E731
+        image, camera = self.folder / "a.png", self.folder / "camera.toml"
+        image.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", columns, rows, 8, 2, 0, 0, 0)) +
+                          chunk(b"IDAT", zlib.compress(values)) + chunk(b"IEND", b""))
+        text = f'[[camera]]\nname = "C"\nf = "20 mm"\nx0 = "0.5 mm"\nk1 = -1e-4\ndistortion = "ideal"\ncolumns = {columns}\nrows = {rows}\npixel = "300 um"\n'
+        camera.write_text(text)
+        first, second = self.folder / "first", self.folder / "second"
+        done = swath("undistort", image, "--camera", camera, "--output", first)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(sorted(p.name for p in first.iterdir()), ["a.tif", "camera.toml"])
+        # By the camera that was written they change no more.
+        done = swath("undistort", first / "a.tif", "--camera", first / "camera.toml", "--output", second)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((first / "a.tif").read_bytes(), (second / "a.tif").read_bytes())
+        self.assert_error(swath("undistort", first / "a.tif", "--camera", first / "camera.toml", "--output", first), 2, "written over")
+        self.assert_error(swath("undistort", image, "--camera", camera, "--name", "D"), 2, "no camera is named D")
+        camera.write_text(text.replace("rows = 40", "rows = 41"))
+        self.assert_error(swath("undistort", image, "--camera", camera, "--output", self.folder / "third"), 1, "60 x 40 pixels, camera C has 60 x 41")
+        self.assertFalse((self.folder / "third").exists())
 
 
 if __name__ == "__main__":

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Each pixel of the result is a direction of the ideal camera; its value is the image's where the camera saw that direction.
+#include "calib/block/undistort.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "calib/block/mark_plane.h"
+#include "core/config/option_visitors.h"
+#include "core/error.h"
+#include "io/text/value_file.h"
+
+namespace swath::calib {
+namespace {
+
+struct CameraFile {
+  std::vector<CameraConfig> cameras;
+};
+template <class V>
+void describe(CameraFile& f, V& v) {
+  v.tables("camera", f.cameras, "Cameras.");
+}
+
+/// Values at a place in pixels from the centre of the first one; nothing changes outside the centres of the outer pixels.
+void sample(const io::ImageRaster& image, double x, double y, std::uint16_t* out) {
+  constexpr double rounding = 1e-6;
+  if (x < -rounding || y < -rounding || x > image.columns - 1 + rounding || y > image.rows - 1 + rounding) return;
+  const int column = std::clamp(static_cast<int>(std::floor(x)), 0, std::max(0, image.columns - 2)),
+            row = std::clamp(static_cast<int>(std::floor(y)), 0, std::max(0, image.rows - 2));
+  const double u = std::clamp(x - column, 0.0, 1.0), w = std::clamp(y - row, 0.0, 1.0);
+  const int right = std::min(column + 1, image.columns - 1), below = std::min(row + 1, image.rows - 1);
+  for (int b = 0; b < image.bands; ++b) {
+    const auto value = [&](int c, int r) { return static_cast<double>(image.values[image.at(c, r) + static_cast<size_t>(b)]); };
+    const double above = (1.0 - u) * value(column, row) + u * value(right, row),
+                 under = (1.0 - u) * value(column, below) + u * value(right, below);
+    out[b] = static_cast<std::uint16_t>(std::lround((1.0 - w) * above + w * under));
+  }
+}
+
+}  // namespace
+
+std::vector<CameraConfig> read_cameras(const std::filesystem::path& file) {
+  CameraFile out;
+  std::vector<core::Fault> faults;
+  core::read_options(core::described(out), io::read_value_file(file), "", faults);
+  core::throw_if_any(faults);
+  if (out.cameras.empty()) throw core::usage_error("no [[camera]]", file.string(), "`swath block` writes such a file: camera.toml");
+  return out.cameras;
+}
+
+io::ImageRaster undistorted(const io::ImageRaster& image, const CameraConfig& config, const std::string& name) {
+  pixel_side(config, name);
+  if (image.columns != config.columns || image.rows != config.rows)
+    throw core::Error("the image has " + std::to_string(image.columns) + " x " + std::to_string(image.rows) + " pixels, camera " +
+                          config.name + " has " + std::to_string(config.columns) + " x " + std::to_string(config.rows),
+                      name, "undistort the images as the camera took them, not turned and not resized");
+  const BlockCamera camera = camera_of(config, name);
+  const double side = 1e3 * config.pixel->value;
+  io::ImageRaster out = image;
+  std::fill(out.values.begin(), out.values.end(), std::uint16_t{0});
+  for (int row = 0; row < out.rows; ++row)
+    for (int column = 0; column < out.columns; ++column) {
+      const Eigen::Vector3d direction((column + 0.5 - out.columns / 2.0) * side, (out.rows / 2.0 - row - 0.5) * side, -camera.value[0]);
+      const auto seen = image_of(camera.value, camera.distortion, direction);
+      if (!seen) continue;
+      const Eigen::Vector2d at = in_pixels(*seen, config);
+      sample(image, at.x() - 0.5, at.y() - 0.5, &out.values[out.at(column, row)]);
+    }
+  return out;
+}
+
+std::string undistorted_camera(const CameraConfig& c) {
+  const auto number = [](double v) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.12g", v);  // 60 um are 6e-5 m, times 1e6 not 60 again
+    return std::string(text);
+  };
+  return "\n[[camera]]\nname = \"" + c.name + "\"\nf = \"" + number(1e3 * c.f.value) + " mm\"\ncolumns = " + std::to_string(c.columns) +
+         "\nrows = " + std::to_string(c.rows) + "\npixel = \"" + number(1e6 * c.pixel->value) + " um\"\n";
+}
+
+}  // namespace swath::calib

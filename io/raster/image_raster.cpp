@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/raster/image_raster.h"
+
+#include <gdal_priv.h>
+
+#include "core/error.h"
+#include "io/text/output_file.h"
+#include "io/vector/gdal_door.h"
+
+namespace swath::io {
+namespace {
+
+constexpr double most_pixels = 1e9;
+
+CPLErr transfer(GDALDataset& d, GDALRWFlag way, std::vector<std::uint16_t>& values, int bands) {
+  const auto number = static_cast<GSpacing>(sizeof(std::uint16_t));
+  const int columns = d.GetRasterXSize(), rows = d.GetRasterYSize();
+  return d.RasterIO(way, 0, 0, columns, rows, values.data(), columns, rows, GDT_UInt16, bands, nullptr, number * bands,
+                    number * bands * columns, number, nullptr);
+}
+
+}  // namespace
+
+ImageRaster read_image_raster(const std::filesystem::path& file) {
+  const GdalMessages messages;
+  const Dataset d(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER));
+  if (!d) messages.fail("cannot read the image", file, "GDAL reads TIFF, JPEG, PNG and others");
+  ImageRaster out{d->GetRasterXSize(), d->GetRasterYSize(), d->GetRasterCount(), 8, {}};
+  if (out.bands == 0) throw core::Error("the image has no band", file.string());
+  for (int b = 1; b <= out.bands; ++b) {
+    const GDALDataType type = d->GetRasterBand(b)->GetRasterDataType();
+    if (type != GDT_Byte && type != GDT_UInt16)
+      throw core::Error(std::string("the image's values are ") + GDALGetDataTypeName(type), file.string(),
+                        "convert it to 8 or 16 bits (gdal_translate -ot UInt16)");
+    if (type == GDT_UInt16) out.bits = 16;
+  }
+  if (static_cast<double>(out.columns) * out.rows * out.bands > most_pixels)
+    throw core::Error("the image has more than a thousand million values", file.string());
+  out.values.resize(out.at(0, out.rows));
+  if (transfer(*d, GF_Read, out.values, out.bands) != CE_None) messages.fail("cannot read the image", file);
+  messages.check("cannot read the image", file);
+  return out;
+}
+
+void write_image_raster(const std::filesystem::path& file, const ImageRaster& image) {
+  OutputFile out(file);
+  const GdalMessages messages;
+  const GdalSetting no_side_files("GDAL_PAM_ENABLED", "NO");
+  const char* const options[] = {"COMPRESS=DEFLATE",
+                                 "PREDICTOR=2",
+                                 "TILED=YES",
+                                 "BIGTIFF=IF_SAFER",
+                                 "INTERLEAVE=PIXEL",
+                                 "NUM_THREADS=1",
+                                 image.bands >= 3 ? "PHOTOMETRIC=RGB" : "PHOTOMETRIC=MINISBLACK",
+                                 nullptr};
+  {
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+    if (!driver) throw core::Error("this GDAL has no GTiff driver", file.string());
+    const Dataset made(driver->Create(out.temporary().c_str(), image.columns, image.rows, image.bands,
+                                      image.bits == 16 ? GDT_UInt16 : GDT_Byte, const_cast<char**>(options)));
+    if (!made) messages.fail_writing(file);
+    std::vector<std::uint16_t> values = image.values;  // GDAL's writing takes no constant
+    if (transfer(*made, GF_Write, values, image.bands) != CE_None) messages.fail_writing(file);
+  }
+  messages.check_written(file);
+  out.commit();
+}
+
+}  // namespace swath::io

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/raster/image_raster.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/world/support.h"
+
+namespace swath::io {
+namespace {
+
+TEST(ImageRaster, WhatIsWrittenReadsBack) {
+  const test::TemporaryFolder folder;
+  for (const int bits : {8, 16}) {
+    ImageRaster image{37, 21, 3, bits, {}};
+    for (size_t k = 0; k < image.at(0, image.rows); ++k)
+      image.values.push_back(static_cast<std::uint16_t>(k * 7 % (bits == 8 ? 256 : 65536)));
+    write_image_raster(folder.path() / "a.tif", image);
+    const ImageRaster back = read_image_raster(folder.path() / "a.tif");
+    EXPECT_EQ(back.columns, 37);
+    EXPECT_EQ(back.rows, 21);
+    EXPECT_EQ(back.bands, 3);
+    EXPECT_EQ(back.bits, bits);
+    EXPECT_EQ(back.values, image.values);
+  }
+}
+
+TEST(ImageRaster, WhatIsNoImage) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder.path() / "b.jpg", "no image");
+  EXPECT_THROW(read_image_raster(folder.path() / "b.jpg"), core::Error);
+  EXPECT_THROW(read_image_raster(folder.path() / "none.tif"), core::Error);
+}
+
+}  // namespace
+}  // namespace swath::io
