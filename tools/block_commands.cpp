@@ -6,9 +6,9 @@
 #include <map>
 #include <optional>
 
-#include "calib/block/block_checks.h"
 #include "calib/block/block_files.h"
 #include "calib/block/block_theory.h"
+#include "calib/block/checks/block_checks.h"
 #include "calib/block/station_drift.h"
 #include "core/config/option_visitors.h"
 #include "core/config/result_visitors.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The base is the move of common points between two images, as if both were level, times flying height over principal distance. The height
 // is not known, its neighbours' is nearly the same. Attitudes must be known to a degree: 3 deg move points by a fifth of a base.
-#include "calib/block/station_bases.h"
+#include "calib/block/checks/station_bases.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calib/block/block_checks.h"
+#include "calib/block/checks/block_checks.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/calib/block/refusal.h"
+#include "tests/calib/block/checks/refusal.h"
 
 namespace swath::calib {
 namespace {

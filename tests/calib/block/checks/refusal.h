@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "calib/block/block_checks.h"
+#include "calib/block/checks/block_checks.h"
 #include "core/error.h"
 #include "tests/calib/block/made_files.h"
 

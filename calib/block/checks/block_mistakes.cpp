@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calib/block/block_mistakes.h"
+#include "calib/block/checks/block_mistakes.h"
 
 #include <algorithm>
 #include <array>

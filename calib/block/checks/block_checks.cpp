@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The residual is robust (a median), and of start values: attitudes that are off by some degrees leave a few per cent of the principal
 // distance, a wrong convention several times as much.
-#include "calib/block/block_checks.h"
+#include "calib/block/checks/block_checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +10,10 @@
 #include <numeric>
 #include <set>
 
-#include "calib/block/block_control_checks.h"
-#include "calib/block/block_mistakes.h"
 #include "calib/block/block_start.h"
-#include "calib/block/station_bases.h"
+#include "calib/block/checks/block_control_checks.h"
+#include "calib/block/checks/block_mistakes.h"
+#include "calib/block/checks/station_bases.h"
 #include "core/error.h"
 #include "core/statistics.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Offsets are medians: a few points under wrong names do not hide what is wrong with all of them, nor are they taken for it.
-#include "calib/block/block_control_checks.h"
+#include "calib/block/checks/block_control_checks.h"
 
 #include <algorithm>
 #include <cmath>
