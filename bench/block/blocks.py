@@ -203,7 +203,7 @@ def calibration(program, height=900.0, f=50.0, spacing=None, stations=0.3, noise
                 print("   note:", note)
 
 
-def control(program, height=900.0, f=50.0, noise=0.5, stations=0.2, seeds=10):
+def control(program, height=900.0, f=50.0, noise=0.5, stations=0.2, seeds=60):
     """60 images in four strips; 8, 3 and no control points; root mean square of 20 check points over seeds."""
     camera = Camera(f)
     base, apart = 0.4 * height * camera.columns * camera.pixel / f, 0.7 * height * camera.rows * camera.pixel / f
@@ -225,6 +225,9 @@ def control(program, height=900.0, f=50.0, noise=0.5, stations=0.2, seeds=10):
                 used = {8: names, 3: [names[0], names[1], names[5]], 0: None}[count]
                 block.write(Path(made), noise * camera.pixel, stations=stations, control=used, check=check, sigma_control=0.05)
                 found = adjust(program, Path(made), *PLAIN)
+                if isinstance(found, str):
+                    print(count, seed, found)
+                    continue
                 for k, c in enumerate(found["check"]):
                     squares[k].append(c["rms_m"] ** 2)
         rms = [math.sqrt(sum(s) / len(s)) for s in squares]
@@ -298,8 +301,7 @@ def size(program, strips=100, images=100):
     base, apart = 0.4 * height * camera.columns * camera.pixel / 50.0, 0.7 * height * camera.rows * camera.pixel / 50.0
     layout = [(0 if k % 2 == 0 else (images - 1) * base, k * apart, 90 if k % 2 == 0 else 270, images, base, height) for k in range(strips)]
     block = Block(1, camera, layout)
-    area = 0.4 * apart / 0.7 * base / 0.4  # new ground of an image
-    block.grid(math.sqrt(apart * base / 26.5), 0.3 * base)
+    block.grid(math.sqrt(apart * base / 28.5), 0.3 * base)
     names = []
     for k, (a, b) in enumerate(((0, 0), (images - 1, 0), (0, strips - 1), (images - 1, strips - 1))):
         names.append(f"c{k}")

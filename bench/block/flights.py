@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From raw IMU, GNSS and events to oriented images, and on to a block, over seeds: errors over standard deviations of direct and of
+integrated orientation.
+
+    python3 bench/block/flights.py build/release/tools/swath 20 [strip|none|block] [true|false: factors on sigmas]
+"""
+import csv
+import json
+import math
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from blocks import times, turn
+
+FLIGHT = ["output.laser=false", "output.trajectory=none", "events.file=true", "events.interval=2.5 s", "camera.file=true", "world.scene=hills",
+          "flight.lines=3", "flight.cross_lines=2", "camera.control=5", "camera.check=20"]
+BORESIGHT = (0.31, -0.22, 0.53)  # deg, of the simulation
+RUN = """[[stage]]
+type = "readers.imu"
+[[stage]]
+type = "readers.gnss"
+[[stage]]
+type = "trajectory.ins_gnss"
+[[stage]]
+type = "time.sync"
+[[stage]]
+type = "orientation.direct"
+technique = "marks"
+mount = "90 deg"
+boresight = ["0.31 deg", "-0.22 deg", "0.53 deg"]
+lever_arm = ["0.21 m", "-0.08 m", "0.34 m"]
+"""
+
+
+def call(*words):
+    done = subprocess.run([str(w) for w in words], capture_output=True, text=True)
+    if done.returncode:
+        raise SystemExit(done.stderr)
+
+
+def rows_of(file):
+    with open(file) as f:
+        return list(csv.DictReader(line for line in f if not line.startswith("#")))
+
+
+def ned_r_body(row):
+    r, p, h = (math.radians(float(row[k])) for k in ("roll", "pitch", "heading"))
+    return times(turn(2, h), times(turn(1, p), turn(0, r)))
+
+
+def transposed(m):
+    return [[m[c][r] for c in range(3)] for r in range(3)]
+
+
+BODY_R_CAMERA = times(times(turn(2, math.radians(BORESIGHT[2])), times(turn(1, math.radians(BORESIGHT[1])), turn(0, math.radians(BORESIGHT[0])))),
+                      [[0, 1, 0], [1, 0, 0], [0, 0, -1]])
+
+
+class Sums(dict):
+    def note(self, kind, error, sigma):
+        total = self.setdefault(kind, [0.0, 0.0, 0])
+        total[0] += (error / sigma) ** 2
+        total[1] += error ** 2
+        total[2] += 1
+
+
+def compare(sums, kind, found, truth, of_camera):
+    """`of_camera`: the table's roll, pitch, heading are of a body whose boresight was adjusted; its matrix is compared then."""
+    true = {r["name"]: r for r in truth}
+    for row in found:
+        t = true[row["image"]]
+        for k, axis in enumerate("xyz"):
+            sums.note(f"{kind} {'plan' if k < 2 else 'height'}, m", float(row[axis]) - float(t[axis]), math.sqrt(float(row[f"c{k + 1}{k + 1}"])))
+        body = ned_r_body(row)
+        camera = times(body, of_camera)
+        e = times(transposed(camera), times(ned_r_body(t), BODY_R_CAMERA))
+        for k, angle in enumerate(((e[2][1] - e[1][2]) / 2, (e[0][2] - e[2][0]) / 2, (e[1][0] - e[0][1]) / 2)):
+            sums.note(f"{kind} {'tilt' if k < 2 else 'heading'}, deg", math.degrees(angle), math.degrees(math.sqrt(float(row[f"c{k + 4}{k + 4}"]))))
+
+
+def block_config(flown, drift, found):
+    text = (flown / "block.toml").read_text()
+    out = []
+    for line in text.splitlines():
+        if line.startswith("antenna"):
+            continue
+        if line.startswith("drift"):
+            line = f'drift = "{drift}"'
+        if line.startswith("sigma_angle"):
+            line = f'sigma_angle = "{found["sigma_tilt_deg"]} deg"'
+        if line.startswith("sigma_heading"):
+            line = f'sigma_heading = "{found["sigma_turn_deg"]} deg"'
+        out.append(line.replace('file = "images.csv"', 'file = "run/images.csv"'))
+    (flown / "integrated.toml").write_text("\n".join(out) + "\n")
+
+
+def main(program, number=20, drift="strip", components="true"):
+    sums = Sums()
+    for seed in range(1, number + 1):
+        with tempfile.TemporaryDirectory() as made:
+            flown = Path(made) / "flown"
+            call(program, "simulate", flown, "--quiet", "--set", f"seed={seed}", *(w for s in FLIGHT for w in ("--set", s)))
+            (Path(made) / "run.toml").write_text(RUN)
+            call(program, "run", Path(made) / "run.toml", "--survey", flown / "survey.toml", "--output", flown / "run", "--quiet")
+            truth = rows_of(flown / "truth" / "images.csv")
+            compare(sums, "direct", rows_of(flown / "run" / "orientation_direct.csv"), truth, BODY_R_CAMERA)
+            report = json.loads((flown / "run" / "report.json").read_text())
+            block_config(flown, drift, next(s["findings"] for s in report["stages"] if s["type"] == "orientation.direct"))
+            call(program, "block", flown / "integrated.toml", "--output", flown / "out", "--set", "adjust.robust=false", "--set", f"adjust.components={components}")
+            block = json.loads((flown / "out" / "block.json").read_text())
+            values = {v["name"]: v for v in block["cameras"][0]["values"]}
+            b = [math.radians(values[f"boresight_{k}"]["value"]) for k in ("roll", "pitch", "heading")]
+            adjusted = times(times(turn(2, b[2]), times(turn(1, b[1]), turn(0, b[0]))), [[0, 1, 0], [1, 0, 0], [0, 0, -1]])
+            compare(sums, "integrated", rows_of(flown / "out" / "orientation.csv"), truth, adjusted)
+            for c in block["check"]:
+                total = sums.setdefault(f"check points {c['coordinate']}, m", [0.0, 0.0, 0])
+                total[0] += c["over_sigma"] ** 2 * c["points"]
+                total[1] += c["rms_m"] ** 2 * c["points"]
+                total[2] += c["points"]
+            for name, true in zip(("roll", "pitch", "heading"), BORESIGHT):
+                v = values[f"boresight_{name}"]
+                sums.note("boresight, deg", v["value"] - true, v["sigma"])
+            for name, true in {"f": 50.21, "x0": 0.021, "y0": -0.034}.items():
+                sums.note(f"camera {name}, mm", values[name]["value"] - true, values[name]["sigma"])
+    for kind, (over, squares, n) in sums.items():
+        print(f"{kind}: rms {math.sqrt(squares / n):.4f}, over sigma {math.sqrt(over / n):.3f} of {n}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], *map(int, sys.argv[2:3]), *sys.argv[3:])
