@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "calib/block/block_page.h"
 #include "calib/block/direct_orientation.h"
@@ -13,6 +14,7 @@
 #include "core/config/result_visitors.h"
 #include "core/config/units.h"
 #include "core/geo/frames.h"
+#include "io/las/las_writer.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "io/vector/point_layer.h"
@@ -117,6 +119,31 @@ std::vector<io::NamedPoint> points_of(const ReadBlock& read, const BlockSolution
   return out;
 }
 
+/// Points of points_of() as a cloud: user data the number of image points, class 1 (tie) or 8 (surveyed), withheld where they do not fit.
+void write_points_laz(const std::filesystem::path& file, const std::string& crs, const std::vector<io::NamedPoint>& points,
+                      const UnfitPoints& unfit) {
+  const std::set<std::string_view> wrong(unfit.others.begin(), unfit.others.end());
+  constexpr double most_rays = 255.0;
+  constexpr std::uint8_t key_point = 8;
+  core::Block cloud;
+  if (!points.empty()) cloud.origin = points.front().position;
+  for (const io::NamedPoint& p : points) {
+    const Vector3d at = p.position - cloud.origin;
+    cloud.x.push_back(at.x()), cloud.y.push_back(at.y()), cloud.z.push_back(at.z());
+    cloud.classification.push_back(p.kind == "tie" ? 1 : key_point);
+    cloud.user_data.push_back(static_cast<std::uint8_t>(std::min(most_rays, p.values[0])));
+    cloud.sigma_h.push_back(static_cast<float>(std::hypot(p.values[1], p.values[2])));
+    cloud.sigma_v.push_back(static_cast<float>(p.values[3]));
+    cloud.flags.push_back(wrong.contains(p.name) ? core::flag::withheld : std::uint16_t{0});
+  }
+  io::LasWriteOptions o;
+  if (!crs.empty()) o.crs_wkt = core::Crs(crs).wkt1();
+  o.threads = 1;
+  io::LasWriter writer(file, o);
+  if (cloud.size() > 0) writer.write(cloud);
+  writer.finish();
+}
+
 }  // namespace
 
 std::string orientation_csv(const ReadBlock& read, const BlockConfig& config, const BlockSolution& s) {
@@ -172,14 +199,19 @@ std::vector<std::string> write_block(const std::filesystem::path& folder, const 
     text("geolocation.csv", geolocation_csv(config.crs, images, core::Crs(config.crs).is_geographic()));
   }
   text("camera.toml", camera_toml(read, config, found));
-  io::write_point_layer(folder / "points.gpkg", "points", read.frame.is_local() ? "" : config.crs,
-                        {"image_points", "sigma_east", "sigma_north", "sigma_up"}, points_of(read, s));
+  const std::string crs = read.frame.is_local() ? "" : config.crs;
+  const std::vector<io::NamedPoint> points = points_of(read, s);
+  io::write_point_layer(folder / "points.gpkg", "points", crs, {"image_points", "sigma_east", "sigma_north", "sigma_up"}, points);
   out.emplace_back("points.gpkg");
+  if (crs.empty() || !core::Crs(crs).is_geographic()) {
+    write_points_laz(folder / "points.laz", crs, points, found.unfit);
+    out.emplace_back("points.laz");
+  }
   if (std::all_of(config.cameras.begin(), config.cameras.end(),
                   [](const CameraConfig& c) { return c.pixel && c.columns > 0 && c.rows > 0; })) {
-    std::vector<io::ColmapPoint> points;
-    const io::ImageData data = colmap_data(read, config, s, points);
-    io::write_colmap(folder / "colmap", data, points);
+    std::vector<io::ColmapPoint> places;
+    const io::ImageData data = colmap_data(read, config, s, places);
+    io::write_colmap(folder / "colmap", data, places);
     out.emplace_back("colmap");
   }
   text("block.json", io::to_json(core::reported(found)));

@@ -34,7 +34,8 @@ core::Attitude upper_edge_attitude(const Eigen::Matrix3d& ned_R_camera) {
 }
 
 std::string geo_text(const std::string& crs, const std::vector<Geolocation>& images) {
-  std::string out = crs + "\n";
+  // OpenDroneMap knows EPSG codes of plane CRSs alone: without "+ellipsoidal" or a vertical part.
+  std::string out = (crs.starts_with("EPSG:") ? crs.substr(0, crs.find('+')) : crs) + "\n";
   for (const Geolocation& g : images) {
     const char* const place = std::abs(g.map.x()) > 360.0 || std::abs(g.map.y()) > 90.0 ? "%.4f" : "%.10f";
     out += line_of(g.image, ' ',

@@ -36,7 +36,11 @@ void write_point_layer(const std::filesystem::path& file, const std::string& lay
   const GdalSetting date("OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z"), speed("OGR_SQLITE_SYNCHRONOUS", "OFF");
   Dataset set = new_geopackage(out.temporary(), file, messages);
   OGRSpatialReference srs;
-  if (!crs.empty()) srs.SetFromUserInput(crs_facts(crs).wkt.c_str());
+  if (!crs.empty()) {
+    const CrsFacts facts = crs_facts(crs);
+    const bool flat = facts.ellipsoidal && !facts.geographic;  // a GeoPackage has no projection with three axes
+    srs.SetFromUserInput(flat ? facts.horizontal_wkt.c_str() : facts.wkt.c_str());
+  }
   srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   const char* const options[] = {"GEOMETRY_NAME=geom", "FID=fid", "SPATIAL_INDEX=YES", nullptr};
   OGRLayer* layer = set->CreateLayer(layer_name.c_str(), crs.empty() ? nullptr : &srs, wkbPoint25D, const_cast<char**>(options));

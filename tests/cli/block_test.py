@@ -75,7 +75,8 @@ class Block(Case):
                                                  "events.interval=3 s", "world.length=500 m", "world.width=300 m", "flight.lines=2",
                                                  "flight.cross_lines=0", "flight.height=400 m", "camera.points=30", "noise.noise_free=true",
                                                  'camera.boresight=["0 deg", "0 deg", "0 deg"]'])
-        done = swath("block", flown / "block.toml", "--output", self.folder / "out", "--set", "adjust.components=false")
+        done = swath("block", flown / "block.toml", "--output", self.folder / "out", "--set", "adjust.components=false", "--set",
+                     'crs="EPSG:32632+ellipsoidal"')
         self.assertEqual(done.returncode, 0, done.stderr)
         with open(flown / "truth" / "images.csv") as f:
             truth = {r["name"]: [float(r[k]) for k in ("x", "y", "z", "heading", "pitch", "roll")] for r in csv.DictReader(f)}

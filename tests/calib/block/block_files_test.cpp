@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "io/images/image_file.h"
+#include "io/las/las_reader.h"
 #include "io/text/text_table.h"
 #include "tests/calib/block/made_files.h"
 
@@ -36,7 +37,8 @@ TEST(BlockFiles, OrientationsReadBackAreThoseAdjusted) {
   m.more = "[adjust]\nrobust = false\ncomponents = false\n";
   const Adjusted a = adjusted(test::write_made(m, folder.path()));
   const auto files = write_block(folder.path() / "out", a.read, a.config, a.solution, a.found);
-  EXPECT_EQ(files, (std::vector<std::string>{"orientation.csv", "camera.toml", "points.gpkg", "colmap", "block.json", "report.html"}));
+  EXPECT_EQ(files, (std::vector<std::string>{"orientation.csv", "camera.toml", "points.gpkg", "points.laz", "colmap", "block.json",
+                                             "report.html"}));
   const io::TextTable table(folder.path() / "out" / "orientation.csv");
   ASSERT_EQ(table.rows(), a.read.block.images.size());
   for (size_t i = 0; i < table.rows(); ++i) {
@@ -57,6 +59,17 @@ TEST(BlockFiles, OrientationsReadBackAreThoseAdjusted) {
         (core::matrix_of(body) - ned_R_enu * image.camera_R_local.transpose() * a.read.block.cameras[0].body_R_camera.transpose()).norm(),
         1e-8);
     EXPECT_GT(table.number(i, table.column("c11")), 0.0);
+  }
+  io::LasReader laz(folder.path() / "out" / "points.laz", 1);
+  core::Block cloud;
+  cloud.origin = Vector3d::Zero();
+  ASSERT_EQ(laz.read(cloud, 100000), a.read.block.points.size());
+  for (size_t p = 0; p < cloud.size(); ++p) {  // all take part: in the block's order
+    EXPECT_LT((Vector3d(cloud.x[p], cloud.y[p], cloud.z[p]) - a.read.block.points[p].position).cwiseAbs().maxCoeff(), 0.00051);
+    const Vector3d variance = a.solution.inference.points[p].diagonal();
+    EXPECT_NEAR(cloud.sigma_h[p], std::sqrt(variance.x() + variance.y()), 0.002);  // extra bytes count millimetres
+    EXPECT_NEAR(cloud.sigma_v[p], std::sqrt(variance.z()), 0.002);
+    EXPECT_GE(cloud.user_data[p], 2);
   }
   io::ImageFile colmap;
   colmap.file = folder.path() / "out" / "colmap", colmap.format = io::ImageFormat::colmap;

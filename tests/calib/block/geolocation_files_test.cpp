@@ -45,6 +45,8 @@ TEST(GeolocationFiles, Lines) {
       {"a.jpg", {500000.12342, 5400000.5, 900.25}, {0.5 * degree, -1.0 * degree, 90.0 * degree}, 0.02, 0.03}};
   EXPECT_EQ(geo_text("EPSG:25832", images),
             "EPSG:25832\na.jpg 500000.1234 5400000.5000 900.2500 90.00000 -1.00000 0.50000 0.0200 0.0300\n");
+  EXPECT_EQ(geo_text("EPSG:25832+ellipsoidal", {}), "EPSG:25832\n");
+  EXPECT_EQ(geo_text("+proj=utm +zone=32", {}), "+proj=utm +zone=32\n");
   EXPECT_EQ(geolocation_csv("EPSG:25832", images, false),
             "#imagename,easting,northing,z,yaw,pitch,roll,accuracy_horizontal,accuracy_vertical (EPSG:25832)\n"
             "a.jpg,500000.1234,5400000.5000,900.2500,90.00000,-1.00000,0.50000,0.0200,0.0300\n");

@@ -36,6 +36,8 @@ TEST(PointLayer, PointsWithTheirNumbers) {
   const std::string first = read_text_file(file);
   write_point_layer(file, "points", "EPSG:25832", {"rays", "sigma"}, points);
   EXPECT_EQ(read_text_file(file), first);
+  for (const char* crs : {"EPSG:25832+ellipsoidal", "EPSG:25832+7837", "EPSG:4979"})
+    EXPECT_NO_THROW(write_point_layer(file, "points", crs, {"rays", "sigma"}, points)) << crs;
   EXPECT_THROW(write_point_layer(file, "points", "", {"rays"}, points), core::Error);
 }
 
