@@ -10,7 +10,7 @@
 namespace swath::io {
 namespace {
 
-constexpr double most_pixels = 1e9;
+constexpr double most_samples = 1e9;
 
 CPLErr transfer(GDALDataset& d, GDALRWFlag way, std::vector<std::uint16_t>& values, int bands) {
   const auto number = static_cast<GSpacing>(sizeof(std::uint16_t));
@@ -34,7 +34,7 @@ ImageRaster read_image_raster(const std::filesystem::path& file) {
                         "convert it to 8 or 16 bits (gdal_translate -ot UInt16)");
     if (type == GDT_UInt16) out.bits = 16;
   }
-  if (static_cast<double>(out.columns) * out.rows * out.bands > most_pixels)
+  if (static_cast<double>(out.columns) * out.rows * out.bands > most_samples)
     throw core::Error("the image has more than a thousand million values", file.string());
   out.values.resize(out.at(0, out.rows));
   if (transfer(*d, GF_Read, out.values, out.bands) != CE_None) messages.fail("cannot read the image", file);

@@ -168,11 +168,6 @@ void hold_vertices(const std::vector<Breakline>& features, size_t first) {
         where->place, "check the file, and crs in this [[breaklines]]");
 }
 
-bool is_of_layer(OGRFeature& feature, const std::string& layer) {
-  const int field = feature.GetFieldIndex("Layer");
-  return field >= 0 && layer == feature.GetFieldAsString(field);
-}
-
 }  // namespace
 
 std::vector<Breakline> read_breaklines(const Survey& survey, const std::string& crs, core::Tally& tally) {

@@ -6,6 +6,7 @@
 #include <cpl_minixml.h>
 #include <gdal.h>
 #include <gdal_priv.h>
+#include <ogr_feature.h>
 #include <ogr_spatialref.h>
 
 #include <algorithm>
@@ -188,6 +189,11 @@ Dataset open_raster(const std::filesystem::path& file) {
   return opened;
 }
 Dataset open_vector(const std::filesystem::path& file) { return open_plain(file, GDAL_OF_VECTOR, vector_drivers); }
+
+bool is_of_layer(OGRFeature& feature, const std::string& layer) {
+  const int field = feature.GetFieldIndex("Layer");
+  return field >= 0 && layer == feature.GetFieldAsString(field);
+}
 
 Dataset new_geopackage(const std::filesystem::path& temporary, const std::filesystem::path& file, const GdalMessages& messages) {
   std::filesystem::remove(temporary);  // the driver makes only files that are not there yet

@@ -9,6 +9,7 @@
 #include "core/geo/crs.h"
 
 class GDALDataset;
+class OGRFeature;
 class OGRSpatialReference;
 
 namespace swath::io {
@@ -48,6 +49,8 @@ using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
 /// a request to a server, or read files that the text names.
 Dataset open_raster(const std::filesystem::path& file);
 Dataset open_vector(const std::filesystem::path& file);
+/// Whether the feature's field "Layer" says `layer`, as GDAL gives the layers of a DXF file.
+bool is_of_layer(OGRFeature& feature, const std::string& layer);
 
 /// An empty GeoPackage 1.2 in place of `temporary`, for the product `file`, which messages name. Throws core::Error.
 Dataset new_geopackage(const std::filesystem::path& temporary, const std::filesystem::path& file, const GdalMessages& messages);

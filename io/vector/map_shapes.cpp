@@ -61,9 +61,9 @@ void expect_area(const MapShape& s) {
     throw core::Error("the area is empty: all its vertices lie on one line", s.place, "correct it, or leave the feature out");
 }
 
-class Reader {
+class ShapeReader {
  public:
-  Reader(MapShapeKind kind, const core::Crs& own, const core::Crs& to) : kind_(kind) {
+  ShapeReader(MapShapeKind kind, const core::Crs& own, const core::Crs& to) : kind_(kind) {
     if (own.empty() || to.empty()) return;
     const core::Crs from = own.horizontal(), map = to.horizontal();
     if (from.wkt() == map.wkt() || (from.epsg() != 0 && from.epsg() == map.epsg())) return;
@@ -130,11 +130,6 @@ class Reader {
   double unit_ = 1.0;
 };
 
-bool is_of_layer(OGRFeature& feature, const std::string& layer) {
-  const int field = feature.GetFieldIndex("Layer");
-  return field >= 0 && layer == feature.GetFieldAsString(field);
-}
-
 }  // namespace
 
 std::vector<MapShape> read_map_shapes(const std::filesystem::path& file, const std::string& layer, const core::Crs& crs,
@@ -150,7 +145,7 @@ std::vector<MapShape> read_map_shapes(const std::filesystem::path& file, const s
   for (OGRLayer* l : set->GetLayers()) {
     const std::string name = l->GetName(), stated = stated_wkt(l->GetSpatialRef());
     layers += (layers.empty() ? "" : ", ") + name;
-    Reader reader(kind, stated.empty() ? core::Crs() : core::Crs(stated), crs);
+    ShapeReader reader(kind, stated.empty() ? core::Crs() : core::Crs(stated), crs);
     for (const auto& feature : *l) {
       if (!layer.empty() && layer != name && !is_of_layer(*feature, layer)) continue;
       has_layer = true;

@@ -20,7 +20,6 @@
 namespace swath::calib {
 namespace {
 
-constexpr double clearly = 3.0;      // times smaller: another convention fits better
 constexpr double by_accident = 3.0;  // sigmas of image points: below it everything fits
 constexpr size_t sampled = 2000;     // points
 constexpr size_t sampled_for_strips = 400;

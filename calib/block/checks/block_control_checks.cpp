@@ -16,9 +16,6 @@ namespace {
 using Eigen::Vector3d;
 using Change = std::function<Vector3d(const Vector3d&)>;
 
-constexpr double foot = 0.3048;
-constexpr double clearly = 3.0;
-
 /// In flying heights. Angles or orientations place points to some metres; a level start leaves tilts of up to 5 deg, which move a point
 /// that two images see in a corner by as much as a flying height.
 struct Limits {

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "calib/block/block_start.h"
+#include "calib/block/checks/block_control_checks.h"
 #include "core/config/units.h"
 
 namespace swath::calib {
@@ -15,7 +16,6 @@ using Eigen::Matrix2d;
 using Eigen::Vector3d;
 using Triple = std::array<double, 3>;
 
-constexpr double foot = 0.3048;
 const char* const by_time = "an event is missing or was counted twice: match images and events by their time";
 
 Matrix2d matrix(double a, double b, double c, double d) {
