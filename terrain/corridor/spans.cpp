@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "core/statistics.h"
+#include "terrain/corridor/passing.h"
 
 namespace swath::terrain {
 namespace {
@@ -345,9 +346,16 @@ class Builder {
 PowerLines find_power_lines(const std::vector<WirePoint>& wires, const std::vector<TowerPoint>& towers, const SpanOptions& o) {
   std::vector<TowerGroup> groups = tower_groups(towers);
   std::erase_if(groups, [&](const TowerGroup& t) { return !may_carry(t, wires); });
-  std::vector<Vector2d> supports;
-  for (const TowerGroup& t : groups) supports.push_back(t.at);
-  return Builder(find_strands(wires, supports, o.strands), groups, o).run();
+  const auto strands_between = [&] {
+    std::vector<Vector2d> supports;
+    for (const TowerGroup& t : groups) supports.push_back(t.at);
+    return find_strands(wires, supports, o.strands);
+  };
+  std::vector<Strand> strands = strands_between();
+  const std::vector<char> passed = passed_by_wires(wires, strands, groups, o.strands);
+  if (std::erase_if(groups, [&](const TowerGroup& t) { return passed[static_cast<size_t>(&t - groups.data())]; }) > 0)
+    strands = strands_between();
+  return Builder(std::move(strands), groups, o).run();
 }
 
 }  // namespace swath::terrain

@@ -118,7 +118,16 @@ TEST(Spans, ReturnsOfTowersFarBelowTheWiresAreNoSupport) {
     return find_power_lines(wires, bush).spans.size();
   };
   EXPECT_EQ(spans_with_top(5.0), 3u);
-  EXPECT_EQ(spans_with_top(20.0), 4u);  // a pole that holds them up there
+  EXPECT_EQ(spans_with_top(20.0), 3u);  // up to the wires, which run on over it as one curve
+}
+
+TEST(Spans, TightWiresOfShortSpansKeepTheirSupports) {
+  test::LineOfWires o;
+  o.arms = {{-1, 9}, {1, 9}};
+  o.span = 60.0, o.a = 1200.0;  // sag 0.38 m
+  const Scored s = ten_seeds(o);
+  EXPECT_EQ(s.pylons_found, s.pylons);
+  EXPECT_EQ(s.pylons_invented, 0);
 }
 
 TEST(Spans, ConductorsOfASpanAreNumberedFromLeftToRight) {
