@@ -15,8 +15,7 @@ namespace {
 
 constexpr int max_rounds = 12;  // of robust weights
 constexpr int max_component_rounds = 4;
-constexpr double no_weight = 1e-6;  // so that the residual is still there and a point can come back
-constexpr double settled = 1e-3;    // change of a weight, or of a factor relative to itself
+constexpr double settled = 1e-3;  // change of a weight, or of a factor relative to itself
 
 /// Robust weights from the residuals over their own sigmas; true where one changed. `redundancy`: per row, of the plain adjustment.
 bool reweigh(const LinearBlock& l, const std::vector<float>& redundancy, const BlockOptions& o, BlockWeights& weights) {
@@ -38,7 +37,7 @@ bool reweigh(const LinearBlock& l, const std::vector<float>& redundancy, const B
   bool changed = false;
   for (size_t r = 0; r < size.size(); ++r) {
     double& w = weights.of_ray[r];
-    const double now = std::max(no_weight, weight(size[r] / scale));
+    const double now = std::max(no_ray_weight, weight(size[r] / scale));
     changed = changed || std::abs(now - w) > settled;
     w = now;
   }
@@ -75,8 +74,8 @@ void expect_observations(const ImageBlock& block) {
                         "measure at least three points that other images see, or leave the image out");
 }
 
-BlockInference inferred(const ImageBlock& block, const LinearBlock& linear) {
-  BlockInference out = infer(linear);
+BlockInference inferred(const ImageBlock& block, const LinearBlock& linear, const BlockWeights& weights) {
+  BlockInference out = infer(linear, weights.of_ray);
   if (!out.determined() || !out.unsound_points.empty()) refuse_undetermined(block, linear, out.unsound_points);
   return out;
 }
@@ -102,7 +101,7 @@ BlockSolution adjust_block(ImageBlock& block, const BlockOptions& o) {
   }
   out.convergence = system.solve();
   LinearBlock linear = system.linearise();
-  out.inference = inferred(block, linear);
+  out.inference = inferred(block, linear, out.weights);
   for (int component_round = 0;; ++component_round) {
     bool changed = false;
     const std::vector<float> redundancy = out.inference.redundancy;
@@ -113,7 +112,7 @@ BlockSolution adjust_block(ImageBlock& block, const BlockOptions& o) {
       ++out.rounds;
       changed = true;
     }
-    if (changed || component_round > 0) out.inference = inferred(block, linear);
+    if (changed || component_round > 0) out.inference = inferred(block, linear, out.weights);
     if (!o.components || component_round == max_component_rounds || !rescale(out.inference, o, out)) break;
     system.weigh(out.weights);
     out.convergence = system.solve();
@@ -123,11 +122,11 @@ BlockSolution adjust_block(ImageBlock& block, const BlockOptions& o) {
   if (!out.convergence.converged)
     throw core::Error("the adjustment does not converge (" + out.convergence.text + ")", "",
                       "start values may be far off: check the conventions of angles and image axes, and the strip's direction");
-  for (const double r : linear.residual) out.square_sum += r * r;
+  for (const double squares : out.inference.squares_of) out.square_sum += squares;
   out.observations = linear.residual.size();
   out.unknowns = static_cast<size_t>(linear.unknowns) + 3 * static_cast<size_t>(linear.points());
   out.points_left_out = static_cast<size_t>(std::count(linear.point_column.begin(), linear.point_column.end(), -1));
-  out.without_weight = static_cast<size_t>(std::count(out.weights.of_ray.begin(), out.weights.of_ray.end(), no_weight));
+  out.without_weight = static_cast<size_t>(std::count(out.weights.of_ray.begin(), out.weights.of_ray.end(), no_ray_weight));
   linear.column.clear(), linear.column.shrink_to_fit();
   linear.value.clear(), linear.value.shrink_to_fit();
   out.linear = std::move(linear);

@@ -39,13 +39,14 @@ struct BlockSolution {
   LinearBlock linear;  ///< observations and residuals at the solution; derivatives are dropped
   BlockWeights weights;
   size_t observations = 0, unknowns = 0;
-  double square_sum = 0.0;  ///< v' P v
+  double square_sum = 0.0;  ///< v' P v of all that has a weight
   int rounds = 0;
   size_t without_weight = 0;              ///< image points
   size_t points_left_out = 0;             ///< seen too rarely
   std::vector<char> component_estimated;  ///< rays, stations, attitudes, control
 
-  double redundancy() const { return static_cast<double>(observations) - static_cast<double>(unknowns); }
+  /// Observations less unknowns, and less what image points without weight have of it.
+  double redundancy() const { return static_cast<double>(observations) - static_cast<double>(unknowns) - inference.redundancy_lost; }
   double sigma0() const;  ///< root of the variance factor; 1 where sigmas and residuals agree
 };
 

@@ -49,9 +49,25 @@ void judge_point(BlockInference& out, const BlockNormals& normals, const NodeFac
   }
 }
 
+/// Image points without weight have nearly all of their redundancy and no square: with them every sigma would come out too small.
+void add_sums(const LinearBlock& linear, const std::vector<double>& of_ray, BlockInference& out) {
+  for (const BlockObservation& o : linear.observations) {
+    const bool lost = o.kind == ObservationKind::ray && !of_ray.empty() && of_ray[o.index] <= no_ray_weight;
+    for (size_t row = o.row; row < o.row + static_cast<size_t>(o.rows); ++row) {
+      const double r = static_cast<double>(out.redundancy[row]);
+      if (lost) {
+        out.redundancy_lost += r;
+        continue;
+      }
+      out.redundancy_of[static_cast<size_t>(o.kind)] += r;
+      out.squares_of[static_cast<size_t>(o.kind)] += linear.residual[row] * linear.residual[row];
+    }
+  }
+}
+
 }  // namespace
 
-BlockInference infer(const LinearBlock& linear) {
+BlockInference infer(const LinearBlock& linear, const std::vector<double>& of_ray) {
   const BlockNormals normals(linear);
   BlockInference out;
   NodeFactor factor(normals.reduced());
@@ -80,11 +96,7 @@ BlockInference infer(const LinearBlock& linear) {
       judge_row(out, linear, row, a.dot(C * a));
     }
   }
-  for (const BlockObservation& o : linear.observations)
-    for (size_t row = o.row; row < o.row + static_cast<size_t>(o.rows); ++row) {
-      out.redundancy_of[static_cast<size_t>(o.kind)] += static_cast<double>(out.redundancy[row]);
-      out.squares_of[static_cast<size_t>(o.kind)] += linear.residual[row] * linear.residual[row];
-    }
+  add_sums(linear, of_ray, out);
   return out;
 }
 

@@ -23,11 +23,12 @@ struct BlockInference {
   std::vector<float> w;                                 ///< per row, residual over its own sigma; 0 where the redundancy is
   std::vector<float> outer;                             ///< per row of a ray: what the smallest error that is found moves its point, m
   std::array<double, 5> redundancy_of{}, squares_of{};  ///< by ObservationKind: sums of redundancies and of squared residuals
+  double redundancy_lost = 0.0;                         ///< of image points without weight, which the sums leave out
 
   bool determined() const { return smallest_pivot > 1e-12; }
 };
 
-/// Where the block is not determined, with smallest_pivot and unsound_points alone.
-BlockInference infer(const LinearBlock& linear);
+/// Where the block is not determined, with smallest_pivot and unsound_points alone. `of_ray`: robust weights of the image points; empty: 1.
+BlockInference infer(const LinearBlock& linear, const std::vector<double>& of_ray = {});
 
 }  // namespace swath::calib

@@ -13,6 +13,9 @@
 
 namespace swath::calib {
 
+/// Weight of an image point that does not fit: its residual is still there, so that it can come back.
+inline constexpr double no_ray_weight = 1e-6;
+
 /// What the observations count, beside their sigmas.
 struct BlockWeights {
   double ray = 1.0, station = 1.0, attitude = 1.0, control = 1.0;  ///< factors on the sigmas

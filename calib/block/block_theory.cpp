@@ -157,7 +157,7 @@ TheoryFound theory_of(const TheoryOptions& o, const TheoryCase& c) {
   const LinearBlock linear = BlockSystem(block, {}, 1).linearise();
   out.points = static_cast<size_t>(linear.points());
   const BlockInference found = infer(linear);
-  if (!found.determined()) {
+  if (!found.determined() || !found.unsound_points.empty()) {
     try {
       refuse_undetermined(block, linear, found.unsound_points);
     } catch (const core::Error& e) {

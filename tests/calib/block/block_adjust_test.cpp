@@ -216,6 +216,23 @@ TEST(BlockAdjust, ComponentsFindTheSigmas) {
   EXPECT_NEAR(s.sigma0(), 1.0, 0.05);
 }
 
+/// Gross errors that have lost their weight say nothing of the others' sigma, neither by their residuals nor by their redundancy.
+TEST(BlockAdjust, ImagePointsWithoutWeightDoNotMakeSigmasSmaller) {
+  test::Making m;
+  m.layout.strips = 4, m.layout.images = 12, m.layout.side = 0.6;
+  test::MadeBlock b = test::make_block(m);
+  for (std::uint32_t r = 3; r < b.given.rays.size(); r += 10) b.given.rays[r].x += r % 20 == 3 ? 1.0 : -1.0;  // 100 sigma
+  BlockOptions o;
+  o.threads = 1;
+  const BlockSolution s = adjust_block(b.given, o);
+  EXPECT_GE(s.without_weight, b.given.rays.size() / 10);
+  std::printf("%zu of %zu without weight, factor %.4f, redundancy %.1f and %.1f lost\n", s.without_weight, b.given.rays.size(),
+              s.weights.ray, s.inference.redundancy_of[0], s.inference.redundancy_lost);
+  const double own = 1.0 / std::sqrt(2.0 * s.inference.redundancy_of[0]);  // sigma of the factor
+  EXPECT_NEAR(s.weights.ray, 1.0, 3.0 * own);
+  EXPECT_NEAR(s.sigma0(), 1.0, 3.0 * own);
+}
+
 TEST(BlockAdjust, WhatIsMissingIsNamed) {
   test::MadeBlock b = test::make_block({});
   b.given.images[3].name = "P4";
