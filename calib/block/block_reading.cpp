@@ -21,6 +21,13 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Numbers = std::unordered_map<std::string, std::uint32_t>;
 
+void refuse_same_cameras(const BlockConfig& c, const std::string& place) {
+  for (size_t k = 1; k < c.cameras.size(); ++k)
+    for (size_t other = 0; other < k; ++other)
+      if (c.cameras[k].name == c.cameras[other].name)
+        throw core::usage_error("two [[camera]] have the name " + c.cameras[k].name, place, "give each camera a name of its own");
+}
+
 std::uint32_t camera_number(const BlockConfig& c, const std::string& name, const std::string& place) {
   for (size_t k = 0; k < c.cameras.size(); ++k)
     if (c.cameras[k].name == name) return static_cast<std::uint32_t>(k);
@@ -80,9 +87,30 @@ std::vector<TableRow> read_images(const BlockConfig& config, ImageBlock& block, 
   return out;
 }
 
-/// Points of one file: numbers of images and points are those of the block.
-void add_marks(const BlockConfig& config, const io::ImageFile& file, const io::ImageData& data, bool has_table, ReadBlock& read,
-               Numbers& image_number, Numbers& point_number) {
+/// The camera of an image that no table of images has.
+std::uint32_t camera_of_file(const BlockConfig& config, const io::ImageData& data, size_t image) {
+  if (config.cameras.size() == 1) return 0;
+  if (data.camera_of.empty())
+    throw core::Error("several cameras, and the file does not say which took image " + data.images[image], data.file.string(),
+                      "add [images] with a table that has a column of the camera");
+  return camera_number(config, data.cameras[data.camera_of[image]].name, data.file.string());
+}
+
+/// Pixels are those of the images as the other program had them: resized or turned ones would be taken for others.
+void expect_same_size(const io::ImageData& data, size_t image, const CameraConfig& camera) {
+  if (data.camera_of.empty() || camera.columns <= 0 || camera.rows <= 0) return;  // without pixels on_plane() refuses
+  const io::FileCamera& file = data.cameras[data.camera_of[image]];
+  const auto size = [](int columns, int rows) { return std::to_string(columns) + " x " + std::to_string(rows) + " pixels"; };
+  if (file.columns != camera.columns || file.rows != camera.rows)
+    throw core::Error("image " + data.images[image] + " has " + size(file.columns, file.rows) + " in this file, camera " + camera.name +
+                          " has " + size(camera.columns, camera.rows),
+                      data.file.string(),
+                      "state columns, rows and pixel of the images as that program had them: it may have resized or turned them");
+}
+
+/// Points of one file: numbers of images and points are those of the block. `prefix`: for points that have the program's own numbers.
+void add_marks(const BlockConfig& config, const io::ImageFile& file, const io::ImageData& data, bool has_table, const std::string& prefix,
+               ReadBlock& read, Numbers& image_number, Numbers& point_number) {
   ImageBlock& block = read.block;
   std::vector<std::uint32_t> image_of;
   for (size_t i = 0; i < data.images.size(); ++i) {
@@ -97,13 +125,15 @@ void add_marks(const BlockConfig& config, const io::ImageFile& file, const io::I
     BlockImage image;
     image.name = data.images[i];
     image.time = static_cast<double>(block.images.size());
-    if (config.cameras.size() > 1) image.camera = camera_number(config, data.cameras.at(data.camera_of.at(i)).name, data.file.string());
+    image.camera = camera_of_file(config, data, i);
     image_of.push_back(static_cast<std::uint32_t>(block.images.size()));
     image_number[image.name] = image_of.back();
     block.images.push_back(image);
   }
+  for (size_t i = 0; i < image_of.size(); ++i) expect_same_size(data, i, config.cameras[block.images[image_of[i]].camera]);
   std::vector<std::uint32_t> point_of;
-  for (const std::string& name : data.points) {
+  for (size_t p = 0; p < data.points.size(); ++p) {
+    const std::string name = (data.numbered.empty() || !data.numbered[p] ? "" : prefix) + data.points[p];
     const auto [it, is_new] = point_number.try_emplace(name, static_cast<std::uint32_t>(block.points.size()));
     if (is_new) block.points.push_back({name, Vector3d::Zero()});
     point_of.push_back(it->second);
@@ -184,7 +214,9 @@ std::optional<Eigen::Matrix4d> similarity(const std::vector<Vector3d>& from, con
 
 /// Start values by orientations of a file; false where they cannot be placed.
 bool start_from_file(ReadBlock& read, const std::vector<std::pair<std::uint32_t, io::FilePose>>& poses, bool has_table) {
-  if (poses.size() < read.block.images.size()) return false;
+  std::vector<char> placed(read.block.images.size(), 0);
+  for (const auto& [image, pose] : poses) placed[image] = 1;
+  if (std::count(placed.begin(), placed.end(), 0) > 0) return false;
   Eigen::Matrix4d S = Eigen::Matrix4d::Identity();
   if (has_table) {
     std::vector<Vector3d> from, to;
@@ -205,7 +237,7 @@ bool start_from_file(ReadBlock& read, const std::vector<std::pair<std::uint32_t,
   return true;
 }
 
-void add_stations(const BlockConfig& config, const std::vector<TableRow>& rows, ReadBlock& read) {
+void add_stations(const BlockConfig& config, const std::string& config_file, const std::vector<TableRow>& rows, ReadBlock& read) {
   for (std::uint32_t i = 0; i < rows.size(); ++i) {
     read.block.images[i].position = read.frame.local_of(rows[i].map);
     if (config.images.angles != ImageAngles::none) read.angles.push_back({i, rows[i].angles});
@@ -215,6 +247,9 @@ void add_stations(const BlockConfig& config, const std::vector<TableRow>& rows, 
     read.block.stations.push_back({i, read.block.images[i].position, R * variance.asDiagonal() * R.transpose()});
     ++read.stations_observed;
   }
+  if (config.drift != DriftSets::none && read.stations_observed == 0)
+    throw core::usage_error("drift has no effect: no station is observed", config_file,
+                            "state stations = \"observed\" and the file of [images], or drift = \"none\"");
 }
 
 void expect_points(const BlockConfig& config, ReadBlock& read) {
@@ -266,6 +301,7 @@ void start_block(ReadBlock& read, const BlockConfig& config) {
 ReadBlock read_block(const BlockConfig& config, const std::string& config_file) {
   ReadBlock read;
   if (config.cameras.empty()) throw core::usage_error("no [[camera]]", config_file);
+  refuse_same_cameras(config, config_file);
   for (const CameraConfig& c : config.cameras) read.block.cameras.push_back(camera_of(c, config_file));
   read.block.drift_sets = config.drift;
   Numbers image_number, point_number;
@@ -273,9 +309,12 @@ ReadBlock read_block(const BlockConfig& config, const std::string& config_file) 
   std::vector<TableRow> rows;
   if (has_table) rows = read_images(config, read.block, image_number);
   std::vector<std::pair<std::uint32_t, io::FilePose>> poses;
-  for (const io::ImageFile& f : config.image_points) {
+  for (size_t k = 0; k < config.image_points.size(); ++k) {
+    const io::ImageFile& f = config.image_points[k];
     const io::ImageData data = io::read_image_file(f);
-    add_marks(config, f, data, has_table, read, image_number, point_number);
+    // Among several files a program's point 7 is not another's.
+    const std::string prefix = config.image_points.size() > 1 ? std::to_string(k + 1) + ":" : "";
+    add_marks(config, f, data, has_table, prefix, read, image_number, point_number);
     for (const io::FilePose& p : data.poses) poses.emplace_back(image_number.at(data.images[p.image]), p);
   }
   refuse_twice(read.block);
@@ -287,7 +326,7 @@ ReadBlock read_block(const BlockConfig& config, const std::string& config_file) 
   if (rows.empty() && config.crs != "local")
     throw core::usage_error("without a table of images the orientations' own frame is adjusted in", config_file, "state crs = \"local\"");
   read.frame = BlockFrame(config.crs, middle);
-  add_stations(config, rows, read);
+  add_stations(config, config_file, rows, read);
   for (size_t k = 0; k < read.block.control.size(); ++k) read.block.control[k].position = read.frame.local_of(read.control[k].map);
   const bool by_file = config.images.angles == ImageAngles::none && start_from_file(read, poses, has_table);
   if (!by_file && !has_table)

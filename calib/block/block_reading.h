@@ -33,11 +33,12 @@ struct ReadBlock {
   std::vector<std::string> control_without_image;
   std::vector<std::string> images_without_points;
   size_t stations_observed = 0;
-  std::string started_from;
-  bool started_level = false;  ///< no angles, no orientations of a file  ///< in words
+  std::string started_from;    ///< in words
+  bool started_level = false;  ///< no angles, no orientations of a file
 };
 
-/// Throws core::Error: what a file lacks, names that are not there, a point that is twice on an image, an image without points.
+/// Throws core::Error: what a file lacks, names that are not there or are there twice, a point that is twice on an image, an image without
+/// points or of another size than its camera's, drift without stations.
 ReadBlock read_block(const BlockConfig& config, const std::string& config_file);
 
 /// local_R_body by angles of a kind at an image's position.

@@ -12,12 +12,14 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "core/error.h"
 #include "io/images/image_file.h"
 #include "io/images/image_lines.h"
 #include "io/text/line_reader.h"
 #include "io/text/value_file.h"
+#include "io/vector/gdal_door.h"
 
 namespace swath::io {
 namespace {
@@ -37,6 +39,7 @@ class BlocksFile {
   std::string text(const CPLXMLNode* node, const char* path, bool needed, const std::string& whose) const;
   double number(const CPLXMLNode* node, const char* path, const std::string& whose) const;
   double number_or(const CPLXMLNode* node, const char* path, double otherwise, const std::string& whose) const;
+  int pixels(const CPLXMLNode* node, const char* path, const std::string& whose) const;
   void read_group(const CPLXMLNode* group);
   void read_photo(const CPLXMLNode* photo, const Eigen::Matrix3d& ours_R_oriented);
   void read_points(const CPLXMLNode* list, const char* element, NumberedNames& point_number);
@@ -44,6 +47,7 @@ class BlocksFile {
 
   ImageData out_;
   std::map<std::string, std::uint32_t> image_of_id_;
+  std::set<std::string> image_names_;
 };
 
 std::string BlocksFile::text(const CPLXMLNode* node, const char* path, bool needed, const std::string& whose) const {
@@ -61,6 +65,14 @@ double BlocksFile::number(const CPLXMLNode* node, const char* path, const std::s
 
 double BlocksFile::number_or(const CPLXMLNode* node, const char* path, double otherwise, const std::string& whose) const {
   return text(node, path, false, whose).empty() ? otherwise : number(node, path, whose);
+}
+
+int BlocksFile::pixels(const CPLXMLNode* node, const char* path, const std::string& whose) const {
+  constexpr double most_pixels = 1e6;
+  const double value = number(node, path, whose);
+  if (!(value >= 1.0 && value <= most_pixels && value == std::floor(value)))
+    fail("<" + std::string(path) + "> of " + whose + " is not a number of pixels");
+  return static_cast<int>(value);
 }
 
 /// From the axes of CameraOrientation (x right, left, down or up; z = x cross y) to x right, y up, z backward.
@@ -85,7 +97,10 @@ void BlocksFile::read_photo(const CPLXMLNode* photo, const Eigen::Matrix3d& ours
   if (!image_of_id_.try_emplace(id, image).second) fail("photo " + id + " is there twice");
   std::string path = text(photo, "ImagePath", true, whose);
   std::replace(path.begin(), path.end(), '\\', '/');
-  out_.images.push_back(path.substr(path.rfind('/') + 1));
+  const std::string name = path.substr(path.rfind('/') + 1);
+  if (!image_names_.insert(name).second)
+    fail("two photos have the name " + name + ", in different folders", "give the images names of their own, and export the block again");
+  out_.images.push_back(name);
   out_.camera_of.push_back(static_cast<std::uint32_t>(out_.cameras.size() - 1));
   if (!CPLGetXMLNode(const_cast<CPLXMLNode*>(photo), "Pose.Rotation") || text(photo, "Pose.Center.x", false, whose).empty()) return;
   if (text(photo, "Pose.Rotation.M_00", false, whose).empty())
@@ -107,8 +122,8 @@ void BlocksFile::read_group(const CPLXMLNode* group) {
   if (c.name.empty()) c.name = "photogroup " + std::to_string(out_.cameras.size() + 1);
   const std::string model = text(group, "CameraModelType", false, c.name);
   if (!model.empty() && model != "Perspective") fail("the camera of " + c.name + " is of type " + model + ", which is not Brown's");
-  c.columns = static_cast<int>(number(group, "ImageDimensions.Width", c.name));
-  c.rows = static_cast<int>(number(group, "ImageDimensions.Height", c.name));
+  c.columns = pixels(group, "ImageDimensions.Width", c.name);
+  c.rows = pixels(group, "ImageDimensions.Height", c.name);
   double f = number_or(group, "FocalLengthPixels", 0.0, c.name);
   if (!(f > 0.0)) {
     double pixel = number_or(group, "PixelSize", 0.0, c.name);
@@ -138,9 +153,13 @@ void BlocksFile::read_points(const CPLXMLNode* list, const char* element, Number
   for (const CPLXMLNode* point = list ? list->psChild : nullptr; point; point = point->psNext) {
     if (point->eType != CXT_Element || std::string(point->pszValue) != element) continue;
     std::string name = text(point, "Name", false, "");
+    const bool own = name.empty();
     ++k;
-    if (name.empty()) name = (std::string(element) == "TiePoint" ? "T" : "C") + std::to_string(k);
-    const std::uint32_t number_of_point = point_number(name);
+    if (own) name = (std::string(element) == "TiePoint" ? "T" : "C") + std::to_string(k);
+    const size_t points = out_.points.size();
+    std::uint32_t number_of_point = point_number(name);
+    while (own && out_.points.size() == points) number_of_point = point_number(name += "'");  // a named point is called so, too
+    out_.numbered.resize(out_.points.size(), own);
     for (const CPLXMLNode* m = point->psChild; m; m = m->psNext) {
       if (m->eType != CXT_Element || std::string(m->pszValue) != "Measurement") continue;
       const std::string id = text(m, "PhotoId", true, "a measurement of " + name);
@@ -154,9 +173,11 @@ void BlocksFile::read_points(const CPLXMLNode* list, const char* element, Number
 }
 
 ImageData BlocksFile::read() {
+  const GdalMessages messages;  // a parser that prints nothing
   const std::string all = read_text_file(out_.file);
   const std::unique_ptr<CPLXMLNode, CloseXml> tree(CPLParseXMLString(all.c_str()));
   const CPLXMLNode* root = tree ? CPLGetXMLNode(tree.get(), "=BlocksExchange") : nullptr;
+  if (!tree) messages.fail("not an XML file with <BlocksExchange>", out_.file, "export the block as BlocksExchange XML");
   if (!root) fail("not an XML file with <BlocksExchange>", "export the block as BlocksExchange XML");
   const CPLXMLNode* block = CPLGetXMLNode(const_cast<CPLXMLNode*>(root), "Block");
   if (!block) fail("the file has no <Block>");

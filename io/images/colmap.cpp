@@ -130,6 +130,7 @@ ImageData read_colmap(const std::filesystem::path& folder) {
       cameras.fail("camera " + out.cameras.back().name + " is there twice");
   }
   read_colmap_images(folder, camera_number, out);
+  out.numbered.assign(out.points.size(), 1);
   return out;
 }
 

@@ -77,6 +77,8 @@ struct ImageData {
   ImageY y = ImageY::down;
   ImageOrigin origin = ImageOrigin::corner;
   std::vector<std::string> images, points;
+  /// Per point, 1: its name is a number of the program's own, which another file has for another point. Empty: names are the user's.
+  std::vector<char> numbered;
   std::vector<ImageMark> marks;
   std::vector<FileCamera> cameras;
   std::vector<std::uint32_t> camera_of;  ///< per image; empty where the format names no camera

@@ -3,6 +3,7 @@
 // documentation ("Geometric Models"): normalised coordinates count from the middle of the image, y down, and the larger side is 1; rotation
 // (a rotation vector) and translation take a point of the world (topocentric: east, north, up) to the camera (y down, z forward).
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "core/error.h"
@@ -20,6 +21,28 @@ const core::Value& member(const core::Value& v, std::string_view key, const std:
   const core::Value* found = v.find(key);
   if (!found) throw core::Error(whose + " has no \"" + std::string(key) + "\"", v.where.text());
   return *found;
+}
+
+/// A member of the kind that `is` accepts.
+const core::Value& member_of_kind(const core::Value& v, std::string_view key, const std::string& whose, bool (core::Value::*is)() const,
+                                  const char* kind) {
+  const core::Value& found = member(v, key, whose);
+  if (!(found.*is)()) throw core::Error("\"" + std::string(key) + "\" of " + whose + " is not a " + kind, found.where.text());
+  return found;
+}
+const std::string& text_in(const core::Value& v, std::string_view key, const std::string& whose) {
+  return member_of_kind(v, key, whose, &core::Value::is_text, "text").as_text();
+}
+const core::Value::Object& table_in(const core::Value& v, std::string_view key, const std::string& whose) {
+  return member_of_kind(v, key, whose, &core::Value::is_object, "table").members();
+}
+int pixels_in(const core::Value& v, std::string_view key, const std::string& whose) {
+  constexpr double most_pixels = 1e6;
+  const core::Value& found = member_of_kind(v, key, whose, &core::Value::is_number, "number");
+  const double pixels = found.as_number();
+  if (!(pixels >= 1.0 && pixels <= most_pixels && pixels == std::floor(pixels)))
+    throw core::Error("\"" + std::string(key) + "\" of " + whose + " is not a number of pixels", found.where.text());
+  return static_cast<int>(pixels);
 }
 
 double number_or(const core::Value& v, std::string_view key, double otherwise) {
@@ -40,14 +63,14 @@ Eigen::Vector3d vector_in(const core::Value& v, const std::string& what) {
 }
 
 FileCamera opensfm_camera(const std::string& name, const core::Value& v) {
-  const std::string type = member(v, "projection_type", "camera " + name).as_text();
+  const std::string type = text_in(v, "projection_type", "camera " + name);
   if (type != "perspective" && type != "brown" && type != "radial" && type != "simple_radial")
     throw core::Error("camera " + name + " is of type " + type + ", which is not Brown's", v.where.text(),
                       "known are perspective, simple_radial, radial and brown");
   FileCamera out;
   out.name = name;
-  out.columns = static_cast<int>(member(v, "width", "camera " + name).as_number());
-  out.rows = static_cast<int>(member(v, "height", "camera " + name).as_number());
+  out.columns = pixels_in(v, "width", "camera " + name);
+  out.rows = pixels_in(v, "height", "camera " + name);
   const double side = std::max(out.columns, out.rows);
   const double f = number_or(v, "focal", 0.0);
   out.fx = side * number_or(v, "focal_x", f);
@@ -92,13 +115,13 @@ ImageData read_opensfm(const std::filesystem::path& tracks) {
   if (!all.is_array() || all.items().empty()) throw core::Error("no reconstruction in the file", json.string());
   const core::Value& first = all.items().front();
   std::map<std::string, std::uint32_t, std::less<>> camera_number;
-  for (const auto& [name, camera] : member(first, "cameras", "the reconstruction").members()) {
+  for (const auto& [name, camera] : table_in(first, "cameras", "the reconstruction")) {
     camera_number[name] = static_cast<std::uint32_t>(out.cameras.size());
     out.cameras.push_back(opensfm_camera(name, camera));
   }
   std::map<std::string, std::uint32_t, std::less<>> image_number;
-  for (const auto& [name, shot] : member(first, "shots", "the reconstruction").members()) {
-    const auto camera = camera_number.find(member(shot, "camera", "shot " + name).as_text());
+  for (const auto& [name, shot] : table_in(first, "shots", "the reconstruction")) {
+    const auto camera = camera_number.find(text_in(shot, "camera", "shot " + name));
     if (camera == camera_number.end()) throw core::Error("the camera of shot " + name + " is not listed", shot.where.text());
     const auto image = static_cast<std::uint32_t>(out.images.size());
     image_number[name] = image;
@@ -109,6 +132,7 @@ ImageData read_opensfm(const std::filesystem::path& tracks) {
     out.poses.push_back({image, opensfm_down_forward.asDiagonal() * R, -R.transpose() * t});
   }
   read_tracks(tracks, image_number, out);
+  out.numbered.assign(out.points.size(), 1);
   return out;
 }
 

@@ -87,5 +87,53 @@ TEST(BlockReading, WhatDoesNotFitTogetherIsNamed) {
   EXPECT_NE(changed("control.csv", "name,x,y,z\nnone,0,0,0\n").find("no control point is measured on an image: none"), std::string::npos);
 }
 
+TEST(BlockReading, OptionsThatDoNothingAreRefused) {
+  const test::TemporaryFolder folder;
+  test::MadeFiles m;
+  m.block = test::make_block(test::small_making()).given;
+  m.drift = "strip";
+  const std::string file = test::write_made(m, folder.path()), text = swath::test::read_bytes(file);
+  EXPECT_EQ(fault_of(file), "");
+  std::string other = text;
+  other.replace(other.find("[images]"), 8, "[images]\nstations = \"start\"");
+  swath::test::write_bytes(file, other);
+  EXPECT_NE(fault_of(file).find("drift has no effect: no station is observed"), std::string::npos) << fault_of(file);
+  swath::test::write_bytes(file, text + "[[camera]]\nname = \"RMK\"\nf = \"150 mm\"\n");
+  EXPECT_NE(fault_of(file).find("two [[camera]] have the name RMK"), std::string::npos) << fault_of(file);
+}
+
+/// Image points of a program that had the images smaller would be taken for others, all of them by one factor.
+TEST(BlockReading, ImagesOfAnotherSizeThanTheCamerasAreRefused) {
+  const test::TemporaryFolder folder;
+  const auto model = folder.path() / "sparse";
+  std::filesystem::create_directories(model);
+  swath::test::write_bytes(model / "cameras.txt", "1 PINHOLE 2000 1500 1600 1600 1000 750\n");
+  swath::test::write_bytes(model / "images.txt", "1 0 1 0 0 0 0 100 1 a.jpg\n10 10 1\n2 0 1 0 0 -50 0 100 1 b.jpg\n20 10 1\n");
+  const auto file = (folder.path() / "block.toml").string();
+  const auto with = [&](const std::string& size, const std::string& more) {
+    swath::test::write_bytes(file, "kind = \"block_adjust\"\ncrs = \"local\"\n[[camera]]\nname = \"1\"\nf = \"8 mm\"\npixel = \"5 um\"\n" +
+                                       size + more + "[[image_points]]\nfile = \"sparse\"\nformat = \"colmap\"\nsigma_pixels = 0.5\n");
+    return fault_of(file);
+  };
+  EXPECT_EQ(with("columns = 2000\nrows = 1500\n", ""), "");
+  const std::string fault = with("columns = 4000\nrows = 3000\n", "");
+  EXPECT_NE(fault.find("image a.jpg has 2000 x 1500 pixels in this file, camera 1 has 4000 x 3000 pixels"), std::string::npos) << fault;
+  EXPECT_NE(with("columns = 1500\nrows = 2000\n", "").find("camera 1 has 1500 x 2000 pixels"), std::string::npos);
+  // Point 1 of COLMAP is not the point 1 that somebody measured.
+  swath::test::write_bytes(folder.path() / "p.csv", "image,point,x,y\na.jpg,1,500,500\nb.jpg,1,600,500\n");
+  with("columns = 2000\nrows = 1500\n",
+       "[[image_points]]\nfile = \"p.csv\"\nunit = \"pixel\"\ny = \"down\"\norigin = \"corner\"\nsigma_pixels = 0.5\n");
+  std::vector<std::string> names;
+  for (const BlockPoint& p : read_block(test::read_made(file), file).block.points) names.push_back(p.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"1", "2:1"}));
+  // Which camera took an image must be stated somewhere.
+  swath::test::write_bytes(folder.path() / "p.csv", "image,point,x,y\na,1,0,0\n");
+  swath::test::write_bytes(
+      file,
+      "kind = \"block_adjust\"\ncrs = \"local\"\n[[camera]]\nname = \"a\"\n[[camera]]\nname = \"b\"\n[[image_points]]\n"
+      "file = \"p.csv\"\nunit = \"mm\"\ny = \"up\"\norigin = \"middle\"\nsigma = \"5 um\"\n");
+  EXPECT_NE(fault_of(file).find("several cameras, and the file does not say which took image a"), std::string::npos) << fault_of(file);
+}
+
 }  // namespace
 }  // namespace swath::calib

@@ -165,6 +165,24 @@ TEST_F(ImageFiles, OpenSfm) {
   EXPECT_LT((d.poses[0].position + R.transpose() * Eigen::Vector3d(1, 2, 3)).norm(), 1e-12);
 }
 
+TEST_F(ImageFiles, OpenSfmValuesOfAnotherKindAreNamed) {
+  ImageFile f;
+  f.format = ImageFormat::opensfm;
+  f.file = write("o/tracks.csv", "a.tif\t17\t3\t0.25\t-0.125\n");
+  const auto with = [&](const std::string& cameras, const std::string& shots) {
+    write("o/reconstruction.json", "[{\"cameras\":" + cameras + ",\"shots\":" + shots + "}]");
+    return fault_of(f);
+  };
+  EXPECT_NE(with("[]", "{}").find("reconstruction.json:1:12: \"cameras\" of the reconstruction is not a table"), std::string::npos)
+      << with("[]", "{}");
+  const std::string camera = R"({"c":{"projection_type":"brown","width":10,"height":10}})";
+  EXPECT_NE(with(camera, "3").find("\"shots\" of the reconstruction is not a table"), std::string::npos);
+  EXPECT_NE(with(camera, R"({"a.tif":{"camera":1}})").find("\"camera\" of shot a.tif is not a text"), std::string::npos);
+  EXPECT_NE(with(R"({"c":{"projection_type":2}})", "{}").find("is not a text"), std::string::npos);
+  EXPECT_NE(with(R"({"c":{"projection_type":"brown","width":1e12}})", "{}").find("\"width\" of camera c is not a number of pixels"),
+            std::string::npos);
+}
+
 constexpr const char* blocks_head =
     "<BlocksExchange version=\"2.1\"><Block><Photogroups><Photogroup><Name>UCX</Name><ImageDimensions><Width>9420</Width>"
     "<Height>14430</Height></ImageDimensions><SensorSize>103.896</SensorSize><FocalLength>100.735601903992</FocalLength>"
@@ -179,7 +197,8 @@ TEST_F(ImageFiles, BlocksExchange) {
       "<M_21>-0.006067647409696231</M_21><M_22>-0.9999812130648239</M_22></Rotation><Center><x>651999.7</x><y>6863073.6</y>"
       "<z>1318.9</z></Center></Pose></Photo></Photogroup></Photogroups>";
   const std::string points =
-      "<ControlPoints><ControlPoint><Name>G1</Name><Measurement><PhotoId>146</PhotoId><x>3296.56</x><y>9253.75</y></Measurement>"
+      "<ControlPoints><ControlPoint><Name>T1</Name></ControlPoint><ControlPoint><Name>G1</Name><Measurement><PhotoId>146</"
+      "PhotoId><x>3296.56</x><y>9253.75</y></Measurement>"
       "</ControlPoint></ControlPoints><TiePoints><TiePoint><Measurement><PhotoId>146</PhotoId><x>0</x><y>0</y></Measurement></TiePoint>"
       "</TiePoints></Block></BlocksExchange>";
   ImageFile f;
@@ -187,7 +206,8 @@ TEST_F(ImageFiles, BlocksExchange) {
   f.file = write("block.xml", blocks_head + photo + points);
   const ImageData d = read_image_file(f);
   EXPECT_EQ(d.images, std::vector<std::string>{"071_2810.jpg"});
-  EXPECT_EQ(d.points, (std::vector<std::string>{"G1", "T1"}));
+  EXPECT_EQ(d.points, (std::vector<std::string>{"T1", "G1", "T1'"}));
+  EXPECT_EQ(d.numbered, (std::vector<char>{0, 0, 1}));
   EXPECT_DOUBLE_EQ(d.marks[0].x, 3297.06);  // the first pixel's corner is half a pixel off its centre
   EXPECT_DOUBLE_EQ(d.marks[1].y, 0.5);
   EXPECT_NEAR(d.cameras[0].fx, 13991.05582, 1e-5);  // as the format's own documentation states it for these numbers
@@ -204,6 +224,34 @@ TEST_F(ImageFiles, BlocksExchange) {
   EXPECT_NE(fault_of(f).find("photo 9, which is not there"), std::string::npos) << fault_of(f);
   f.file = write("not.xml", "<a></a>");
   EXPECT_NE(fault_of(f).find("BlocksExchange"), std::string::npos);
+  // What the parser says goes into the message, and nowhere else.
+  f.file = write("cut.xml", "<BlocksExchange><Block>");
+  ::testing::internal::CaptureStderr();
+  const std::string cut = fault_of(f), printed = ::testing::internal::GetCapturedStderr();
+  EXPECT_NE(cut.find("not an XML file with <BlocksExchange>: "), std::string::npos) << cut;
+  EXPECT_EQ(printed, "");
+}
+
+TEST_F(ImageFiles, APhotogroupWithoutPixelsIsRefused) {
+  ImageFile f;
+  f.format = ImageFormat::blocks_exchange;
+  for (const char* width : {"0", "1e12", "9420.5"}) {
+    std::string head = blocks_head;
+    head.replace(head.find("9420"), 4, width);
+    f.file = write("block.xml", head + "</Photogroup></Photogroups></Block></BlocksExchange>");
+    EXPECT_NE(fault_of(f).find("<ImageDimensions.Width> of UCX is not a number of pixels"), std::string::npos) << fault_of(f);
+  }
+}
+
+TEST_F(ImageFiles, PhotosOfOneNameInTwoFoldersAreRefused) {
+  const auto photo = [](const char* id, const char* path) {
+    return "<Photo><Id>" + std::string(id) + "</Id><ImagePath>" + path + "</ImagePath></Photo>";
+  };
+  ImageFile f;
+  f.format = ImageFormat::blocks_exchange;
+  f.file = write("block.xml", blocks_head + photo("1", "100MEDIA/DJI_0001.JPG") + photo("2", "101MEDIA/DJI_0001.JPG") +
+                                  "</Photogroup></Photogroups></Block></BlocksExchange>");
+  EXPECT_NE(fault_of(f).find("two photos have the name DJI_0001.JPG"), std::string::npos) << fault_of(f);
 }
 
 }  // namespace
