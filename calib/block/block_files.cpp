@@ -16,6 +16,7 @@
 #include "core/geo/frames.h"
 #include "io/las/las_writer.h"
 #include "io/text/output_file.h"
+#include "io/text/toml_text.h"
 #include "io/text/value_file.h"
 #include "io/vector/point_layer.h"
 
@@ -161,7 +162,7 @@ std::string camera_toml(const ReadBlock& read, const BlockConfig& config, const 
   for (size_t c = 0; c < read.block.cameras.size(); ++c) {
     const BlockCamera& camera = read.block.cameras[c];
     const CameraConfig& k = config.cameras[c];
-    out += "\n[[camera]]\nname = \"" + camera.name + "\"\n";
+    out += "\n[[camera]]\nname = " + io::toml_scalar(camera.name) + "\n";
     for (int i = 0; i < camera_values; ++i) {
       const CameraValueFound& v = found.cameras[c].values[static_cast<size_t>(i)];
       const std::string number = core::format_number(v.value);

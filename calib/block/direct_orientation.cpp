@@ -14,6 +14,7 @@
 #include "calib/block/block_frame.h"
 #include "core/error.h"
 #include "core/geo/geodesy.h"
+#include "core/printable.h"
 #include "core/statistics.h"
 
 namespace swath::calib {
@@ -132,6 +133,7 @@ std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajec
     DirectImage image;
     image.name = events.id[i], image.strip = events.strip[i], image.time = events.time[i], image.doubtful = events.doubtful[i] != 0;
     found.doubtful += image.doubtful;
+    found.exact += !(events.sigma[i] > 0.0);
     solver.orient(trajectory, image.time, events.sigma[i], image);
     const Matrix6& C = image.orientation.covariance;
     plan.push_back(std::sqrt((C(0, 0) + C(1, 1)) / 2.0)), height.push_back(std::sqrt(C(2, 2)));
@@ -151,11 +153,12 @@ std::string direct_images_csv(const std::vector<DirectImage>& images, const std:
   std::string out = "name,camera,strip,time,x,y,z,sigma_h,sigma_v,roll,pitch,heading\n";
   for (const DirectImage& i : images) {
     const Matrix6& C = i.orientation.covariance;
+    const int decimals = plan_decimals(i.orientation.map);
     char text[320];
-    std::snprintf(text, sizeof text, ",%d,%.9f,%.4f,%.4f,%.4f,%.5f,%.5f,%.8f,%.8f,%.8f\n", i.strip, i.time, i.orientation.map.x(),
-                  i.orientation.map.y(), i.orientation.map.z(), std::sqrt((C(0, 0) + C(1, 1)) / 2.0), std::sqrt(C(2, 2)),
+    std::snprintf(text, sizeof text, ",%d,%.9f,%.*f,%.*f,%.4f,%.5f,%.5f,%.8f,%.8f,%.8f\n", i.strip, i.time, decimals, i.orientation.map.x(),
+                  decimals, i.orientation.map.y(), i.orientation.map.z(), std::sqrt((C(0, 0) + C(1, 1)) / 2.0), std::sqrt(C(2, 2)),
                   i.attitude.roll / core::degree, i.attitude.pitch / core::degree, i.attitude.heading / core::degree);
-    out += i.name + "," + camera + text;
+    out += core::csv_field(i.name) + "," + core::csv_field(camera) + text;
   }
   return out;
 }

@@ -46,7 +46,7 @@ struct DirectImage {
 };
 
 struct DirectFound {
-  size_t events = 0, outside = 0, doubtful = 0, images = 0;
+  size_t events = 0, outside = 0, doubtful = 0, exact = 0, images = 0;
   double position = 0.0, height = 0.0, angle = 0.0, heading = 0.0;  ///< median sigmas, m and rad
 };
 template <class V>
@@ -55,6 +55,7 @@ void describe(const DirectFound& r, V& v) {
   v.result("images", r.images, core::plain().in_summary(), "Images with an orientation.");
   v.result("outside", r.outside, core::plain().in_summary(), "Exposures outside the trajectory.");
   v.result("doubtful", r.doubtful, "Exposures whose time is doubtful.");
+  v.result("without_sigma", r.exact, core::if_any(), "Exposures without a stated sigma of time: their time counts as exact.");
   v.result("sigma_plan_m", r.position, core::metres(4).in_summary(), "Median standard deviation of easting and northing.");
   v.result("sigma_height_m", r.height, core::metres(4).in_summary(), "Median standard deviation of heights.");
   v.result("sigma_tilt_deg", r.angle / core::degree, core::in_degrees(5).in_summary(),

@@ -4,7 +4,9 @@
 #include <cstdio>
 #include <initializer_list>
 
+#include "calib/block/orientation_table.h"
 #include "core/config/units.h"
+#include "core/printable.h"
 
 namespace swath::calib {
 namespace {
@@ -37,7 +39,7 @@ std::string geo_text(const std::string& crs, const std::vector<Geolocation>& ima
   // OpenDroneMap knows EPSG codes of plane CRSs alone: without "+ellipsoidal" or a vertical part.
   std::string out = (crs.starts_with("EPSG:") ? crs.substr(0, crs.find('+')) : crs) + "\n";
   for (const Geolocation& g : images) {
-    const char* const place = std::abs(g.map.x()) > 360.0 || std::abs(g.map.y()) > 90.0 ? "%.4f" : "%.10f";
+    const char* const place = plan_decimals(g.map) > 4 ? "%.10f" : "%.4f";
     out += line_of(g.image, ' ',
                    {{place, g.map.x()},
                     {place, g.map.y()},
@@ -56,7 +58,7 @@ std::string geolocation_csv(const std::string& crs, const std::vector<Geolocatio
                     ",z,yaw,pitch,roll,accuracy_horizontal,accuracy_vertical (" + crs + ")\n";
   const char* const place = geographic ? "%.10f" : "%.4f";
   for (const Geolocation& g : images)
-    out += line_of(g.image, ',',
+    out += line_of(core::csv_field(g.image), ',',
                    {{place, geographic ? g.map.y() : g.map.x()},
                     {place, geographic ? g.map.x() : g.map.y()},
                     {"%.4f", g.map.z()},

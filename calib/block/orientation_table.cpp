@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "core/config/units.h"
+#include "core/printable.h"
 
 namespace swath::calib {
 namespace {
@@ -20,6 +21,11 @@ std::string table_field(const char* form, double value) {
 
 Eigen::Vector3d omega_phi_kappa_of(const Eigen::Matrix3d& R) {
   return {std::atan2(-R(1, 2), R(2, 2)), std::asin(std::clamp(R(0, 2), -1.0, 1.0)), std::atan2(-R(0, 1), R(0, 0))};
+}
+
+int plan_decimals(const Eigen::Vector3d& map) {
+  const bool degrees = std::abs(map.x()) <= 360.0 && std::abs(map.y()) <= 90.0;  // more decimals do no harm where they are metres
+  return degrees ? 10 : 4;
 }
 
 std::string orientation_header(const std::string& crs) {
@@ -37,9 +43,9 @@ std::string orientation_header(const std::string& crs) {
 }
 
 std::string orientation_line(const std::string& image, const std::string& camera, int strip, const ImageOrientation& o) {
-  std::string out = image + "," + camera + "," + std::to_string(strip);
-  const bool degrees = std::abs(o.map.x()) <= 360.0 && std::abs(o.map.y()) <= 90.0;  // more decimals do no harm where they are metres
-  for (int k = 0; k < 2; ++k) out += table_field(degrees ? ",%.10f" : ",%.4f", o.map[k]);
+  std::string out = core::csv_field(image) + "," + core::csv_field(camera) + "," + std::to_string(strip);
+  const char* const place = plan_decimals(o.map) > 4 ? ",%.10f" : ",%.4f";
+  for (int k = 0; k < 2; ++k) out += table_field(place, o.map[k]);
   out += table_field(",%.4f", o.map.z());
   const Eigen::Vector3d angles = omega_phi_kappa_of(o.grid_R_camera);
   for (int k = 0; k < 3; ++k) out += table_field(",%.7f", angles[k] / core::degree);

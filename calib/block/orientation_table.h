@@ -20,6 +20,9 @@ struct ImageOrientation {
 /// Omega, phi, kappa of R = Rx(omega) Ry(phi) Rz(kappa), rad.
 Eigen::Vector3d omega_phi_kappa_of(const Eigen::Matrix3d& grid_R_camera);
 
+/// Decimals of easting and northing: 4; 10 where they are, or may be, degrees.
+int plan_decimals(const Eigen::Vector3d& map);
+
 /// Comments with the conventions, and the names of the columns.
 std::string orientation_header(const std::string& crs);
 std::string orientation_line(const std::string& image, const std::string& camera, int strip, const ImageOrientation& orientation);

@@ -9,6 +9,7 @@
 #include "calib/block/mark_plane.h"
 #include "core/config/option_visitors.h"
 #include "core/error.h"
+#include "io/text/toml_text.h"
 #include "io/text/value_file.h"
 
 namespace swath::calib {
@@ -76,8 +77,9 @@ std::string undistorted_camera(const CameraConfig& c) {
     std::snprintf(text, sizeof text, "%.12g", v);  // 60 um are 6e-5 m, times 1e6 not 60 again
     return std::string(text);
   };
-  return "\n[[camera]]\nname = \"" + c.name + "\"\nf = \"" + number(1e3 * c.f.value) + " mm\"\ncolumns = " + std::to_string(c.columns) +
-         "\nrows = " + std::to_string(c.rows) + "\npixel = \"" + number(1e6 * c.pixel->value) + " um\"\n";
+  return "\n[[camera]]\nname = " + io::toml_scalar(c.name) + "\nf = \"" + number(1e3 * c.f.value) +
+         " mm\"\ncolumns = " + std::to_string(c.columns) + "\nrows = " + std::to_string(c.rows) + "\npixel = \"" +
+         number(1e6 * c.pixel->value) + " um\"\n";
 }
 
 }  // namespace swath::calib

@@ -102,6 +102,10 @@ TEST(BlockFiles, CameraTomlIsACameraOfAConfig) {
   const BlockCamera c = camera_of(back.cameras[0], "c.toml");
   for (int k = 0; k < camera_values; ++k) EXPECT_NEAR(c.value[k], a.read.block.cameras[0].value[k], 1e-12 * std::abs(c.value[k])) << k;
   EXPECT_LT((c.body_R_camera - a.read.block.cameras[0].body_R_camera).norm(), 1e-12);
+  ReadBlock named = a.read;
+  named.block.cameras[0].name = "\"RMK\" \\ 15";
+  EXPECT_EQ(io::parse_toml(camera_toml(named, a.config, a.found), "c.toml").find("camera")->items()[0].find("name")->as_text(),
+            named.block.cameras[0].name);
   EXPECT_EQ(a.found.cameras[0].correlated, (std::vector<std::string>{"f", "x0", "y0", "k1"}));
   EXPECT_NEAR(a.found.cameras[0].values[0].value, 150.0, 5.0 * a.found.cameras[0].values[0].sigma);
 }

@@ -108,9 +108,15 @@ TEST(DirectOrientation, TheTableIsWhatABlockReads) {
   const auto images = direct_orientation(trajectory::Trajectory(straight({0, 0, 1})), e, core::Crs("EPSG:32632"), {}, found);
   EXPECT_EQ(found.images, 1u);
   EXPECT_EQ(found.outside, 1u);
+  EXPECT_EQ(found.exact, 1u);  // its sigmas are too small by what the time's would add
   EXPECT_NEAR(found.height, 0.05, 1e-6);
   const std::string table = direct_images_csv(images, "left");
   EXPECT_TRUE(table.starts_with("name,camera,strip,time,x,y,z,sigma_h,sigma_v,roll,pitch,heading\n1,left,3,1002.500000000,")) << table;
+  const auto degrees = direct_orientation(trajectory::Trajectory(straight({0, 0, 1})), e, core::Crs("EPSG:4326"), {}, found);
+  const std::string row = direct_images_csv(degrees, "left");
+  char place[60];
+  std::snprintf(place, sizeof place, ",%.10f,%.10f,", degrees[0].orientation.map.x(), degrees[0].orientation.map.y());
+  EXPECT_NE(row.find(place), std::string::npos) << row;  // 1e-10 deg are 0.01 mm
   e.technique[1] = "pc";
   EXPECT_THROW(direct_orientation(trajectory::Trajectory(straight({0, 0, 1})), e, core::Crs("EPSG:32632"), {}, found), core::Error);
   DirectOptions o;

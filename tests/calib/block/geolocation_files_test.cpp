@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "calib/block/direct_orientation.h"
+#include "calib/block/orientation_table.h"
 #include "core/config/units.h"
 
 namespace swath::calib {
@@ -50,6 +51,10 @@ TEST(GeolocationFiles, Lines) {
   EXPECT_EQ(geolocation_csv("EPSG:25832", images, false),
             "#imagename,easting,northing,z,yaw,pitch,roll,accuracy_horizontal,accuracy_vertical (EPSG:25832)\n"
             "a.jpg,500000.1234,5400000.5000,900.2500,90.00000,-1.00000,0.50000,0.0200,0.0300\n");
+  std::vector<Geolocation> named = images;
+  named[0].image = "a, 2.jpg";
+  EXPECT_NE(geolocation_csv("EPSG:25832", named, false).find("\n\"a, 2.jpg\",500000.1234,"), std::string::npos);
+  EXPECT_TRUE(orientation_line("a, 2.jpg", "left", 1, {}).starts_with("\"a, 2.jpg\",left,1,"));
   const std::vector<Geolocation> place{{"b", {9.1, 48.7, 400.0}, {0.0, 0.0, 0.0}, 0.1, 0.1}};
   EXPECT_NE(geolocation_csv("EPSG:4979", place, true).find("b,48.7000000000,9.1000000000,400.0000,"), std::string::npos);
   EXPECT_NE(geo_text("EPSG:4979", place).find("b 9.1000000000 48.7000000000 "), std::string::npos);

@@ -74,6 +74,10 @@ TEST(Undistort, CamerasOfAFile) {
   EXPECT_DOUBLE_EQ(back[0].f.value, 0.02);
   EXPECT_DOUBLE_EQ(back[0].pixel->value, 1e-4);
   EXPECT_NE(undistorted_camera(camera()).find("pixel = \"100 um\""), std::string::npos);
+  CameraConfig quoted = camera();
+  quoted.name = "\"left\" \\ 1";
+  swath::test::write_bytes(file, undistorted_camera(quoted));
+  EXPECT_EQ(read_cameras(file).at(0).name, quoted.name);
   swath::test::write_bytes(file, "crs = \"local\"\n");
   EXPECT_THROW(read_cameras(file), core::Error);
   CameraConfig other = camera();
