@@ -16,6 +16,17 @@ Vector2d distortion(const CameraVector& c, const Vector2d& p) {
   return d;
 }
 
+/// Does the radial distortion fold over between the middle and r^2? What lies beyond the fold is seen a second time inside it.
+bool folds(const CameraVector& c, double r2) {
+  constexpr double flattest = 0.1;  // measured by ideal radius
+  constexpr int parts = 8;
+  for (int k = 1; k <= parts; ++k) {
+    const double at = r2 * k / parts;
+    if (!(1.0 + at * (3.0 * c[3] + at * (5.0 * c[4] + at * 7.0 * c[5])) > flattest)) return true;
+  }
+  return false;
+}
+
 /// p with p + sign * distortion(p) = target.
 std::optional<Vector2d> inverted(const CameraVector& c, double sign, const Vector2d& target) {
   constexpr double step = 1e-5;     // mm
@@ -43,7 +54,10 @@ std::optional<Vector2d> image_of(const CameraVector& c, DistortionAt at, const E
   if (!(d.z() < 0.0)) return {};
   const Vector2d ideal = -c[0] / d.z() * d.head<2>();
   const Vector2d principal(c[1], c[2]);
-  if (at == DistortionAt::ideal) return Vector2d(principal + ideal + distortion(c, ideal));
+  if (at == DistortionAt::ideal) {
+    if (folds(c, ideal.squaredNorm())) return {};
+    return Vector2d(principal + ideal + distortion(c, ideal));
+  }
   const auto measured = inverted(c, -1.0, ideal);
   if (!measured) return {};
   return Vector2d(principal + *measured);

@@ -35,7 +35,8 @@ void brown(const T* c, const T& x, const T& y, T& dx, T& dy) {
   dy = y * radial + c[7] * (r2 + 2.0 * y * y) + c[6] * xy;
 }
 
-/// Measured point of a direction d in camera axes (d3 < 0), mm; nothing where the distortion does not converge or d is not in front.
+/// Measured point of a direction d in camera axes (d3 < 0), mm; nothing where the distortion does not converge or folds over, or d is
+/// not in front.
 std::optional<Eigen::Vector2d> image_of(const CameraVector& camera, DistortionAt at, const Eigen::Vector3d& d);
 
 /// The direction of a measured point in camera axes: (x, y, -f) less distortion, not normalised; nothing where it does not converge.

@@ -33,6 +33,9 @@ ImageRaster read_image_raster(const std::filesystem::path& file) {
       throw core::Error(std::string("the image's values are ") + GDALGetDataTypeName(type), file.string(),
                         "convert it to 8 or 16 bits (gdal_translate -ot UInt16)");
     if (type == GDT_UInt16) out.bits = 16;
+    if (d->GetRasterBand(b)->GetColorTable())
+      throw core::Error("the image's values are numbers of colours in a palette", file.string(),
+                        "convert it to colours (gdal_translate -expand rgb)");
   }
   if (static_cast<double>(out.columns) * out.rows * out.bands > most_samples)
     throw core::Error("the image has more than a thousand million values", file.string());

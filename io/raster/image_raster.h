@@ -19,7 +19,8 @@ struct ImageRaster {
   }
 };
 
-/// Throws core::Error, and where a band is neither of bytes nor of unsigned 16-bit numbers.
+/// Throws core::Error, and where a band is neither of bytes nor of unsigned 16-bit numbers, or has a palette: between two numbers of a
+/// palette lies no colour.
 ImageRaster read_image_raster(const std::filesystem::path& file);
 
 /// Writes a tiled TIFF without loss. Throws core::Error.

@@ -39,6 +39,9 @@ TEST(Brown, WhatIsBehindOrFoldsHasNoImage) {
   CameraVector c = CameraVector::Zero();
   c[0] = 35.0, c[3] = -1e-2;  // the image folds back from 5.8 mm on
   EXPECT_FALSE(direction_of(c, DistortionAt::ideal, {20.0, 0.0}));
+  // 9 mm of the ideal image would be seen at 1.7 mm, where 1.8 mm are.
+  EXPECT_TRUE(image_of(c, DistortionAt::ideal, {5.0, 0.0, -35.0}));
+  EXPECT_FALSE(image_of(c, DistortionAt::ideal, {9.0, 0.0, -35.0}));
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/raster/image_raster.h"
 
+#include <gdal_priv.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "io/vector/gdal_door.h"
 #include "tests/world/support.h"
 
 namespace swath::io {
@@ -30,6 +32,30 @@ TEST(ImageRaster, WhatIsNoImage) {
   test::write_bytes(folder.path() / "b.jpg", "no image");
   EXPECT_THROW(read_image_raster(folder.path() / "b.jpg"), core::Error);
   EXPECT_THROW(read_image_raster(folder.path() / "none.tif"), core::Error);
+}
+
+TEST(ImageRaster, APaletteIsRefused) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "p.tif";
+  write_image_raster(file, {4, 1, 1, 8, {0, 1, 1, 0}});
+  EXPECT_NO_THROW(read_image_raster(file));
+  {
+    const GdalMessages messages;
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+    ASSERT_TRUE(driver);
+    const Dataset set(driver->Create(file.c_str(), 4, 1, 1, GDT_Byte, nullptr));
+    ASSERT_TRUE(set);
+    const GDALColorEntry red{255, 0, 0, 255}, blue{0, 0, 255, 255};
+    GDALColorTable colours;
+    colours.SetColorEntry(0, &red), colours.SetColorEntry(1, &blue);
+    ASSERT_EQ(set->GetRasterBand(1)->SetColorTable(&colours), CE_None);
+  }
+  try {
+    read_image_raster(file);
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_NE(e.text().find("palette"), std::string::npos) << e.text();
+  }
 }
 
 }  // namespace
