@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The base is the move of common points between two images, as if both were level, times flying height over principal distance. The height
-// is not known, its neighbours' is nearly the same. Attitudes must be known to a degree: 3 deg move points by a fifth of a base.
+// is not known, its neighbours' is nearly the same. Attitudes must be known to a degree: 3 deg move points by a fifth of a base. Images
+// taken on nearly one place, as by a drone that hovers, show nothing but the errors of stations and attitudes.
 #include "calib/block/checks/station_bases.h"
 
 #include <algorithm>
@@ -13,6 +14,8 @@
 
 namespace swath::calib {
 namespace {
+
+constexpr double least_move = 0.05;  // over the flying height
 
 using Points = std::unordered_map<std::uint32_t, Eigen::Vector2d>;
 
@@ -48,7 +51,7 @@ void add_strip(const ImageBlock& block, std::vector<std::uint32_t> images, const
   for (size_t k = 1; k < images.size(); ++k) {
     const std::uint32_t a = images[k - 1], b = images[k];
     const double move = move_between(points[a], points[b]);
-    if (move > 0.0) strip.push_back({a, b, (block.images[b].position - block.images[a].position).norm() / move});
+    if (move > least_move) strip.push_back({a, b, (block.images[b].position - block.images[a].position).norm() / move});
   }
   for (size_t k = 0; k < strip.size(); ++k) {
     std::vector<double> around;

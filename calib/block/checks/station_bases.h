@@ -14,7 +14,8 @@ struct StationBase {
   double ratio = 1.0;  ///< of the stations' distance and the one that image points show, over its neighbours' in the strip
 };
 
-/// Pairs with common points and neighbours to compare with. Positions are those of the stations, attitudes known to a degree or so.
+/// Pairs with common points, a base of a twentieth of the flying height or more, and neighbours to compare with. Positions are those of the
+/// stations, attitudes known to a degree or so.
 std::vector<StationBase> station_bases(const ImageBlock& block);
 
 /// Throws core::Error where a distance is about twice its neighbours', or next to nothing.

@@ -55,5 +55,31 @@ TEST(StationBases, AnEventTwiceIsNamed) {
   EXPECT_NE(text.find("an event may be listed twice"), std::string::npos) << text;
 }
 
+/// A drone that hovers: two images half a metre apart, whose stations say one and a half.
+TEST(StationBases, ImagesOnOnePlaceAreNotJudged) {
+  ReadBlock read;
+  read.block = test::make_block(test::small_making()).truth;
+  ImageBlock& b = read.block;
+  read.stations_observed = b.stations.size() + 1;
+  std::vector<std::uint32_t> images;
+  for (std::uint32_t i = 0; i < b.images.size(); ++i)
+    if (b.images[i].strip == 1) images.push_back(i);
+  BlockImage second = b.images[images[2]];
+  const Eigen::Vector3d way = (b.images[images[3]].position - second.position).normalized();
+  second.time += 0.1 * (b.images[images[3]].time - second.time);
+  second.position += 0.5 * way;
+  const auto number = static_cast<std::uint32_t>(b.images.size());
+  const std::vector<ImageRay> rays = b.rays;
+  for (const ImageRay& r : rays) {
+    if (r.image != images[2]) continue;
+    const auto seen =
+        image_of(b.cameras[0].value, b.cameras[0].distortion, second.camera_R_local * (b.points[r.point].position - second.position));
+    b.rays.push_back({number, r.point, seen->x(), seen->y(), r.sigma});
+  }
+  second.position += way;
+  b.images.push_back(second);
+  EXPECT_NO_THROW(refuse_broken_bases(read, {}));
+}
+
 }  // namespace
 }  // namespace swath::calib
