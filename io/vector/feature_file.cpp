@@ -22,9 +22,13 @@ void check_features(const std::filesystem::path& file, const SpatialLayer& layer
     const SpatialFeature& f = layer.features[k];
     const std::string at = file.string() + ": " + layer.name + " " + std::to_string(k + 1);
     const size_t least = layer.shape == SpatialShape::point ? 1 : layer.shape == SpatialShape::line ? 2 : 3;
-    if (f.places.size() < least) throw core::Error("a feature has too few places", at);
-    for (const Eigen::Vector3d& p : f.places)
-      if (!p.allFinite()) throw core::Error("a feature holds a coordinate that is not finite", at);
+    const auto check = [&](const std::vector<Eigen::Vector3d>& places) {
+      if (places.size() < least) throw core::Error("a feature has too few places", at);
+      for (const Eigen::Vector3d& p : places)
+        if (!p.allFinite()) throw core::Error("a feature holds a coordinate that is not finite", at);
+    };
+    check(f.places);
+    for (const auto& hole : f.holes) check(hole);
     bool same = f.values.size() == layer.fields.size();
     for (size_t i = 0; same && i < f.values.size(); ++i) same = f.values[i].index() == layer.fields[i].kind.index();
     if (!same) throw core::Error("a feature's values are not those of the layer's fields", at);
@@ -44,11 +48,15 @@ std::unique_ptr<OGRGeometry> geometry_of(const SpatialLayer& layer, const Spatia
     for (const Eigen::Vector3d& p : f.places) place(*line, p);
     return line;
   }
-  OGRLinearRing ring;
-  for (const Eigen::Vector3d& p : f.places) place(ring, p);
-  ring.closeRings();
   auto area = std::make_unique<OGRPolygon>();
-  area->addRing(&ring);
+  const auto add = [&](const std::vector<Eigen::Vector3d>& places) {
+    OGRLinearRing ring;
+    for (const Eigen::Vector3d& p : places) place(ring, p);
+    ring.closeRings();
+    area->addRing(&ring);
+  };
+  add(f.places);
+  for (const auto& hole : f.holes) add(hole);
   return area;
 }
 
@@ -62,11 +70,13 @@ OGRwkbGeometryType type_of(const SpatialLayer& layer) {
 void add_layer(GDALDataset& set, const SpatialLayer& what, const CrsFacts& facts, const GdalMessages& messages,
                const std::filesystem::path& file) {
   OGRSpatialReference srs;
-  if (!facts.empty) srs.SetFromUserInput(facts.horizontal_wkt.c_str());
+  const bool compound = what.vertical && (facts.geographic || !facts.ellipsoidal);  // it has no projection with three axes
+  if (!facts.empty) srs.SetFromUserInput(compound ? facts.wkt.c_str() : facts.horizontal_wkt.c_str());
   srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   const std::string description =
       "DESCRIPTION=" + what.about + (what.flat ? "" : "; heights in " + facts.vertical_unit + ", " + facts.vertical_name);
-  const char* const options[] = {"GEOMETRY_NAME=geom", "FID=fid", "SPATIAL_INDEX=YES", description.c_str(), nullptr};
+  const char* const options[] = {"GEOMETRY_NAME=geom", "FID=fid", "SPATIAL_INDEX=YES", what.about.empty() ? nullptr : description.c_str(),
+                                 nullptr};
   OGRLayer* layer = set.CreateLayer(what.name.c_str(), facts.empty ? nullptr : &srs, type_of(what), const_cast<char**>(options));
   if (!layer) messages.fail_writing(file);
   for (const SpatialField& f : what.fields) {
@@ -124,6 +134,17 @@ void write_dxf(const std::filesystem::path& file, const std::vector<SpatialLayer
     text.fixed(p.y(), decimals) << "\n30\n";
     text.fixed(p.z(), decimals) << "\n";
   };
+  const auto polyline = [&](const SpatialLayer& layer, const std::vector<Eigen::Vector3d>& places) {
+    text << "0\nPOLYLINE\n8\n"
+         << name_of(layer) << "\n66\n1\n10\n0.0\n20\n0.0\n30\n0.0\n70\n"
+         << (layer.shape == SpatialShape::polygon ? "9" : "8") << "\n";
+    for (const Eigen::Vector3d& p : places) {
+      text << "0\nVERTEX\n8\n" << name_of(layer) << "\n";
+      place(p);
+      text << "70\n32\n";
+    }
+    text << "0\nSEQEND\n8\n" << name_of(layer) << "\n";
+  };
   text << "999\nCRS: " << (facts.empty ? std::string("not stated") : core::printable(facts.name)) << "\n999\nCoordinates in " << facts.unit
        << ", heights in " << facts.vertical_unit << ", " << core::printable(facts.vertical_name) << "\n";
   text << "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n0\nENDSEC\n0\nSECTION\n2\nTABLES\n";
@@ -139,15 +160,8 @@ void write_dxf(const std::filesystem::path& file, const std::vector<SpatialLayer
         place(f.places[0]);
         continue;
       }
-      text << "0\nPOLYLINE\n8\n"
-           << name_of(layer) << "\n66\n1\n10\n0.0\n20\n0.0\n30\n0.0\n70\n"
-           << (layer.shape == SpatialShape::polygon ? "9" : "8") << "\n";
-      for (const Eigen::Vector3d& p : f.places) {
-        text << "0\nVERTEX\n8\n" << name_of(layer) << "\n";
-        place(p);
-        text << "70\n32\n";
-      }
-      text << "0\nSEQEND\n8\n" << name_of(layer) << "\n";
+      polyline(layer, f.places);
+      for (const auto& hole : f.holes) polyline(layer, hole);
     }
   text << "0\nENDSEC\n0\nEOF\n";
   text.close();

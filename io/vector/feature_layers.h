@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points, lines and polygons with texts and numbers, out as the layers of a GeoPackage.
+// Points, lines and polygons without heights, with texts and numbers, out as the layers of a GeoPackage.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "io/vector/feature_file.h"
+
 namespace swath::io {
 
-enum class FeatureShape { point, line, polygon };
+using FeatureShape = SpatialShape;
 
 struct Feature {
   /// One part: of a point its one place, of a line its vertices; of a polygon its outer ring and then its holes, not closed. CRS units.
@@ -25,8 +27,7 @@ struct FeatureLayer {
   std::vector<Feature> features;
 };
 
-/// GeoPackage 1.2 in the horizontal part of the CRS. Equal layers give equal bytes: the time stamp that the format wants is a constant,
-/// 2000-01-01. Throws core::Error: unknown CRS, file not writable, disk full; nothing half-written stays.
+/// By write_gpkg(), which throws: also where a feature's texts and numbers are not as many as the layer's fields.
 void write_feature_layers(const std::filesystem::path& file, const std::vector<FeatureLayer>& layers, const std::string& crs);
 
 }  // namespace swath::io

@@ -48,6 +48,14 @@ TEST(FeatureLayers, TheSameLayersAreTheSameBytes) {
   EXPECT_EQ(test::entries(folder.path()), 2u);
 }
 
+TEST(FeatureLayers, AFeatureHasAllValuesOfItsLayer) {
+  const test::TemporaryFolder folder;
+  std::vector<FeatureLayer> less = layers();
+  less[1].features[0].numbers.pop_back();
+  EXPECT_THROW(write_feature_layers(folder / "a.gpkg", less, "EPSG:32632"), core::Error);
+  EXPECT_EQ(test::entries(folder.path()), 0u);
+}
+
 TEST(FeatureLayers, AnUnknownCrsLeavesNothing) {
   const test::TemporaryFolder folder;
   EXPECT_THROW(write_feature_layers(folder / "a.gpkg", layers(), "EPSG:1"), core::Error);
