@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <numeric>
 
 #include "core/statistics.h"
@@ -20,7 +21,18 @@ constexpr size_t longest_lack = 5;         // intervals; a longer break is the w
 constexpr size_t fewest_intervals = 5;
 constexpr double most_of = 0.5;
 
+constexpr double all_twice = 0.4;  // of the intervals
+
 bool is_close(double interval, double to) { return std::abs(interval - to) <= pattern_closeness * to; }
+
+/// The median; where every second interval is many times as long, as when both edges of each pulse were recorded, that of the long ones.
+double usual_interval(const std::vector<double>& steps) {
+  const double middle = core::median(steps);
+  std::vector<double> longer;
+  std::copy_if(steps.begin(), steps.end(), std::back_inserter(longer), [&](double s) { return double_share * s > middle; });
+  if (static_cast<double>(longer.size()) < all_twice * static_cast<double>(steps.size())) return middle;
+  return core::median(longer);
+}
 
 }  // namespace
 
@@ -32,11 +44,12 @@ EventPattern pattern_of(const core::EventTags& events) {
   std::vector<double> steps;
   for (size_t k = 1; k < order.size(); ++k) steps.push_back(events.time[order[k]] - events.time[order[k - 1]]);
   if (steps.size() < fewest_intervals) return out;
-  const double usual = core::median(steps);
+  const double usual = usual_interval(steps);
   out.intervals = static_cast<size_t>(
       std::count_if(steps.begin(), steps.end(), [&](double s) { return s < (static_cast<double>(longest_lack) + 0.5) * usual; }));
   out.regular = static_cast<size_t>(std::count_if(steps.begin(), steps.end(), [&](double s) { return is_close(s, usual); }));
-  if (static_cast<double>(out.regular) <= most_of * static_cast<double>(out.intervals)) return out;
+  const auto twice = std::count_if(steps.begin(), steps.end(), [&](double s) { return s < double_share * usual; });
+  if (static_cast<double>(out.regular) <= most_of * static_cast<double>(out.intervals - static_cast<size_t>(twice))) return out;
   out.interval = usual;
   for (size_t k = 1; k < order.size(); ++k) {
     const double step = steps[k - 1], times = std::round(step / usual);

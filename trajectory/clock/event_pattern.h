@@ -38,8 +38,8 @@ void describe(const EventPattern& r, V& v) {
   v.result("doubles", r.doubles, known, "Events recorded twice by the pattern.");
 }
 
-/// A pattern is there where most intervals are within a fifth of their median. An interval near two to five times the usual one lacks
-/// events; longer ones part flight lines. One below a fifth of it is an event recorded twice.
+/// A pattern is there where most intervals, doubles aside, are within a fifth of their median. An interval near two to five times the usual
+/// one lacks events; longer ones part flight lines. One below a fifth of it is an event recorded twice, also where every event is.
 EventPattern pattern_of(const core::EventTags& events);
 
 /// Counts missing and double events with their figures as examples.

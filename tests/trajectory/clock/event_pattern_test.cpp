@@ -56,6 +56,20 @@ TEST(EventPattern, MissingAndDoubleEventsHaveFigures) {
   EXPECT_EQ(tally.of("events recorded twice by the pattern of intervals"), 1u);
 }
 
+/// Both edges of each pulse recorded: every second interval is the pulse's width.
+TEST(EventPattern, WhenEveryEventIsThereTwiceThatIsSaid) {
+  const core::EventTags once = exposures();
+  core::EventTags e;
+  e.technique = once.technique;
+  for (size_t i = 0; i < once.time.size(); ++i)
+    for (const double width : {0.0, 0.012}) e.time.push_back(once.time[i] + width), e.id.push_back(once.id[i]);
+  const EventPattern p = pattern_of(e);
+  EXPECT_NEAR(p.interval, 2.0, 0.05);
+  EXPECT_EQ(p.doubles, 60u);
+  EXPECT_EQ(p.missing, 0u);
+  EXPECT_EQ(p.regular, 57u);
+}
+
 TEST(EventPattern, EventsWithoutAPatternAreNotJudged) {
   core::EventTags e;
   double t = 0.0;
