@@ -142,6 +142,7 @@ struct TileExtras {
   std::string_view (*implied)(const O&, bool cloud) = nullptr;  ///< as Stage::implied
   void (*check)(const Context&, const O&) = nullptr;
   std::vector<std::filesystem::path> (*inputs)(const io::Survey&) = nullptr;
+  std::vector<std::filesystem::path> (*files)(const io::Survey&, const O&) = nullptr;  ///< inputs that options name, beside those
   std::vector<std::string> (*products)(const O&) = nullptr;
   bool is_streamed = false;
   /// As Stage::join_parts; grids made of points alone are joined in any case.
@@ -202,7 +203,11 @@ class WorkStage : public OptionStage<typename F::Options, typename F::Counts, ty
     if (extras_.check) extras_.check(c, this->options);
   }
   std::vector<std::filesystem::path> inputs(const io::Survey& s) const override {
-    return extras_.inputs ? extras_.inputs(s) : std::vector<std::filesystem::path>{};
+    std::vector<std::filesystem::path> out;
+    if (extras_.inputs) out = extras_.inputs(s);
+    if (!extras_.files) return out;
+    for (std::filesystem::path& file : extras_.files(s, this->options)) out.push_back(std::move(file));
+    return out;
   }
   std::vector<std::string> products() const override {
     return extras_.products ? extras_.products(this->options) : std::vector<std::string>{};

@@ -4,8 +4,11 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
+
 #include "core/config/units.h"
 #include "core/error.h"
+#include "core/printable.h"
 #include "io/vector/gdal_door.h"
 
 namespace swath::io {
@@ -33,6 +36,16 @@ void expect_same_crs(const OGRLayer& layer, const std::string& crs, const std::f
                       "transform the file, for example by ogr2ogr -t_srs");
 }
 
+/// Names become names of files: none may lead to another folder.
+void expect_name(const std::string& name, const std::filesystem::path& file, GIntBig feature) {
+  const bool plain = !name.empty() && name.front() != '.' &&
+                     std::none_of(name.begin(), name.end(), [](unsigned char c) { return c == '/' || c == '\\' || c < ' ' || c == 0x7f; });
+  if (!plain)
+    throw core::Error("'" + core::printable(name) + "' cannot be the name of a file",
+                      file.string() + ": feature " + std::to_string(feature),
+                      "names of areas are not empty, do not begin with a dot and hold no / or \\");
+}
+
 }  // namespace
 
 NamedAreas::NamedAreas(const std::filesystem::path& file, const std::string& field, const std::string& crs) : file_(file) {
@@ -53,7 +66,9 @@ NamedAreas::NamedAreas(const std::filesystem::path& file, const std::string& fie
       if (type == wkbPolygon) add_rings(*g->toPolygon(), area.x, area.y);
       if (type == wkbMultiPolygon)
         for (const OGRPolygon* part : *g->toMultiPolygon()) add_rings(*part, area.x, area.y);
-      if (!area.x.empty()) areas_.push_back(std::move(area));
+      if (area.x.empty()) continue;
+      expect_name(area.name, file, feature->GetFID());
+      areas_.push_back(std::move(area));
     }
   }
   if (!has_field) throw core::Error("no layer has a field '" + field + "'", file.string(), "name the field with the areas' names");

@@ -11,8 +11,8 @@ namespace swath::io {
 /// Polygons of a vector file, each with the text of one field.
 class NamedAreas {
  public:
-  /// `crs`: that of the places asked for, as text that PROJ knows. Throws core::Error where the file has no polygon, no such field or
-  /// another horizontal CRS.
+  /// `crs`: that of the places asked for, as text that PROJ knows. Throws core::Error where the file has no polygon, no such field,
+  /// another horizontal CRS, or a name that cannot be that of a file.
   NamedAreas(const std::filesystem::path& file, const std::string& field, const std::string& crs);
   /// The name of the area that holds the place (CRS units). Throws core::Error where none or several do.
   const std::string& at(double x, double y) const;

@@ -154,7 +154,7 @@ TEST_F(CopcRun, TilesAreListedForViewersAndMapsAndNamedByKilometresOrAreas) {
     sheets.lines.push_back({name, {x, x + 1e3, x + 1e3, x, x}, {y, y, y + 1e3, y + 1e3, y}, {}});
   io::write_line_layer(folder / "sheets.gpkg", sheets, "EPSG:25832");
   const auto by_areas = [&](const std::string& more) {
-    return stages_of("", "writers.las", "names = \"areas\"\nareas = \"" + (folder / "sheets.gpkg").string() + "\"\n" + more);
+    return stages_of("", "writers.las", "names = \"areas\"\nareas = \"sheets.gpkg\"\n" + more);
   };
   EXPECT_TRUE(fs::exists(run_on(folder.path(), "a.laz", by_areas(""), "named", "1 km") / "points" / "south-west.laz"));
   EXPECT_THROW(run_on(folder.path(), "a.laz", by_areas(""), "named400", "400 m"), core::Error) << "several tiles in one area";

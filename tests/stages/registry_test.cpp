@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "core/config/option_visitors.h"
@@ -41,6 +43,31 @@ TEST(Registry, DefaultsAreValid) {
     for (const auto& f : faults)
       if (!contract || f.text().find("must be given") == std::string::npos) ADD_FAILURE() << e.name << ": " << f.text();
   }
+}
+
+/// Otherwise a run that is continued would take what the file held before, and a product could take its place.
+TEST(Registry, FilesThatOptionsNameAreInputsBesideTheSurvey) {
+  io::Survey survey;
+  survey.folder = "flight";
+  int files = 0;
+  for (const Entry& e : registry()) {
+    const auto stage = e.make();
+    const core::Describe d = [&](core::Visitor& v) { stage->visit(v); };
+    core::Value given = core::Value::object();
+    std::set<std::filesystem::path> wanted;
+    for (const auto& o : core::document_options(d)) {
+      if (o.is_table || o.shape != "file" || o.path == "program") continue;  // a program is no data
+      given[o.path] = core::Value(o.path + ".gpkg");
+      wanted.insert(std::filesystem::path("flight") / (o.path + ".gpkg"));
+    }
+    std::vector<core::Fault> faults;
+    core::read_options(d, given, "", faults);
+    if (wanted.empty()) continue;
+    const std::vector<std::filesystem::path> inputs = stage->inputs(survey);
+    for (const auto& file : wanted) EXPECT_EQ(std::count(inputs.begin(), inputs.end(), file), 1) << e.name << " " << file;
+    files += static_cast<int>(wanted.size());
+  }
+  EXPECT_GE(files, 5);
 }
 
 }  // namespace

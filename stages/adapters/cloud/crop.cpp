@@ -117,28 +117,21 @@ void join_counts(const Context&, const TileJob& whole, const std::vector<fs::pat
   write_rows(row_file(whole.folder, whole.key), std::vector<CropRow>{sum_of(files)});
 }
 
-using CropWork = WorkStage<nullptr, crop_tile, judge_crop>;
-
-class Crop : public CropWork {
- public:
-  using CropWork::CropWork;
-  std::vector<fs::path> inputs(const io::Survey& survey) const override {
-    std::vector<fs::path> out;
-    for (const auto& file : {options.polygons, options.axis})
-      if (file) out.push_back(io::resolve(survey, *file));
-    return out;
-  }
-};
+std::vector<fs::path> shape_files(const io::Survey& survey, const CropOptions& o) {
+  std::vector<fs::path> out;
+  for (const auto& file : {o.polygons, o.axis})
+    if (file) out.push_back(io::resolve(survey, *file));
+  return out;
+}
 
 }  // namespace
 
 Entry crop_stage() {
-  return {"filters.crop", [] {
-            return std::make_unique<Crop>(
-                "filters.crop", "Part of a cloud: points outside of polygons, or far from an axis, are withheld.",
-                TileExtras<CropOptions>{
-                    .columns = {.needs = {Column::flags}, .gives = {Column::flags}}, .check = check_shapes, .join_parts = join_counts});
-          }};
+  return tile<crop_tile, judge_crop>("filters.crop", "Part of a cloud: points outside of polygons, or far from an axis, are withheld.",
+                                     {.columns = {.needs = {Column::flags}, .gives = {Column::flags}},
+                                      .check = check_shapes,
+                                      .files = shape_files,
+                                      .join_parts = join_counts});
 }
 
 }  // namespace swath::stages

@@ -52,7 +52,7 @@ void describe(LasOptions& o, V& v) {
   v.option("index", o.index, "Virtual point cloud (index.vpc) and map of the tiles (index.gpkg) beside them.");
   v.option("names", o.names, "Tiles' names: south-west corner, that corner in kilometres, or those of areas around tiles.");
   v.option("prefix", o.prefix, "What the tiles' names begin with.");
-  v.option("areas", o.areas, "Polygons that name the tile whose centre they hold (names = areas): any vector file.");
+  v.option("areas", o.areas, "Polygons, relative to survey.toml, that name the tile whose centre they hold (names = areas).");
   v.option("areas_field", o.areas_field, "Field of the polygons with the name.");
   describe(static_cast<PointFields&>(o), v);
   v.check((o.names == TileNames::areas) == o.areas.has_value(), "areas name a file where names = areas, and only there");
@@ -69,12 +69,21 @@ void describe(const TileFindings& r, V& v) {
 
 constexpr double kilometre = 1000.0;
 
+io::NamedAreas areas_of(const Context& context, const LasOptions& o) {
+  return io::NamedAreas(io::resolve(context.survey, *o.areas), o.areas_field, context.product_crs);
+}
+
+std::vector<fs::path> area_files(const io::Survey& survey, const LasOptions& o) {
+  if (!o.areas) return {};
+  return {io::resolve(survey, *o.areas)};
+}
+
 /// Whole kilometres, or polygons that can be read.
 void check_names(const Context& context, const LasOptions& o) {
   if (o.names == TileNames::kilometre && (context.unit != 1.0 || std::fmod(context.tile_side, kilometre) != 0.0))
     throw core::usage_error("tiles of " + core::format_number(context.tile_side) + " m cannot be named by whole kilometres",
                             "writers.las.names", "choose run.tile = \"1 km\" and a CRS in metres, or names = \"corner\"");
-  if (o.names == TileNames::areas) io::NamedAreas(*o.areas, o.areas_field, context.product_crs);
+  if (o.names == TileNames::areas) areas_of(context, o);
 }
 
 std::string las_name(const Context& context, TileKey key, const LasOptions& o, RunCache& cache) {
@@ -83,7 +92,7 @@ std::string las_name(const Context& context, TileKey key, const LasOptions& o, R
   if (o.names == TileNames::kilometre)
     name = std::to_string(std::llround(box.x0 / kilometre)) + "_" + std::to_string(std::llround(box.y0 / kilometre));
   if (o.names == TileNames::areas) {
-    const io::NamedAreas& areas = cache.get([&] { return io::NamedAreas(*o.areas, o.areas_field, context.product_crs); });
+    const io::NamedAreas& areas = cache.get([&] { return areas_of(context, o); });
     name = areas.at(0.5 * (box.x0 + box.x1) / context.unit, 0.5 * (box.y0 + box.y1) / context.unit);
   }
   return o.prefix + name + (o.compress ? ".laz" : ".las");
@@ -283,6 +292,7 @@ Entry las_writer_stage() {
                                    {.columns = {.needs = {}, .reads = all_columns()},
                                     .memory = [](const LasOptions&, const Context&) { return TileMemory{170.0}; },
                                     .check = check_names,
+                                    .files = area_files,
                                     .products = [](const LasOptions& o) { return std::vector{o.folder}; },
                                     .is_streamed = true});
 }

@@ -98,6 +98,23 @@ void check_reference(const io::Survey& survey, const core::Crs& of_survey, const
                             file.string(), "bring both to one height system first");
 }
 
+/// Cells of the model that were compared, from the first to behind the last; plain data.
+struct ComparedCells {
+  std::int64_t i0 = std::numeric_limits<std::int64_t>::max(), j0 = i0, i1 = std::numeric_limits<std::int64_t>::lowest(), j1 = i1;
+  void add(std::int64_t i, std::int64_t j) {
+    i0 = std::min(i0, i), j0 = std::min(j0, j), i1 = std::max(i1, i + 1), j1 = std::max(j1, j + 1);
+  }
+};
+
+ComparedCells compared_cells(const core::Grid& difference) {
+  ComparedCells out;
+  const core::Lattice& l = difference.lattice;
+  for (int j = 0; j < l.ny; ++j)
+    for (int i = 0; i < l.nx; ++i)
+      if (difference.reason[l.at(i, j)] == core::Void::none) out.add(l.i0 + i, l.j0 + j);
+  return out;
+}
+
 SurfaceCounts compare_tile(const TileJob& job, const Context& context, const In<Product::dtm>& terrain, const SurfaceOptions& o,
                            RunCache& cache) {
   if (!o.reference) return {};
@@ -115,21 +132,26 @@ SurfaceCounts compare_tile(const TileJob& job, const Context& context, const In<
   const quality::SurfaceDifference d =
       quality::compare_surface(model, core::slope(around, own), quality::covers_of(job.block, own), height);
   TileRasters{context, difference_name}.write(job.key, own, {{"terrain model less reference", "m", &d.difference.height}});
-  write_rows(piece_file(job.folder, job.key, "differences"), d.sums, d.bins);
+  write_rows(piece_file(job.folder, job.key, "differences"), d.sums, d.bins, std::vector{compared_cells(d.difference)});
   write_grid_tile(job.folder / "map", job.key, d.difference);
   SurfaceCounts counts{0, d.not_compared};
   for (const quality::DifferenceSums& s : d.sums) counts.compared += s.sums.n;
   return counts;
 }
 
-/// Sections along the stated lines, or across the middle of the survey.
-std::vector<SurfaceProfile> profiles_of(const MergeJob& job, const Context& context, const SurfaceOptions& o) {
-  Box box = context.box_of(job.tiles[0]);
-  for (const TileKey key : job.tiles) {
-    const Box b = context.box_of(key);
-    box = {std::min(box.x0, b.x0), std::min(box.y0, b.y0), std::max(box.x1, b.x1), std::max(box.y1, b.y1)};
-  }
+/// Around all cells that were compared; of tiles without any nothing counts.
+Box box_of(const std::vector<ComparedCells>& of_tiles, double cell) {
+  ComparedCells all;
+  for (const ComparedCells& c : of_tiles)
+    all = {std::min(all.i0, c.i0), std::min(all.j0, c.j0), std::max(all.i1, c.i1), std::max(all.j1, c.j1)};
+  return {cell * static_cast<double>(all.i0), cell * static_cast<double>(all.j0), cell * static_cast<double>(all.i1),
+          cell * static_cast<double>(all.j1)};
+}
+
+/// Sections along the stated lines, or across the middle of what was compared, however it is tiled.
+std::vector<SurfaceProfile> profiles_of(const std::vector<ComparedCells>& compared, const Context& context, const SurfaceOptions& o) {
   const double cell = context.grids->cell(Product::dtm);
+  const Box box = box_of(compared, cell);
   const HeightsAt model = [&](const std::vector<Eigen::Vector2d>& places, const Box& around) {
     const core::Grid grid = context.grids->window(Product::dtm, core::lattice_of(cell, around.x0, around.y0, around.x1, around.y1));
     std::vector<double> out;
@@ -157,7 +179,8 @@ SurfaceFindings judge_surfaces(const MergeJob& job, const Context& context, cons
   }
   std::vector<quality::DifferenceSums> sums;
   std::vector<quality::DifferenceBin> bins;
-  for (const TileKey key : job.tiles) read_rows(piece_file(job.folder, key, "differences"), sums, bins);
+  std::vector<ComparedCells> compared;
+  for (const TileKey key : job.tiles) read_rows(piece_file(job.folder, key, "differences"), sums, bins, compared);
   found.found = quality::judge_surface(sums, bins);
   found.reference = o.reference->filename().string();
   if (found.found.classes.empty())
@@ -169,7 +192,7 @@ SurfaceFindings judge_surfaces(const MergeJob& job, const Context& context, cons
   found.rms = found.found.classes[0].errors.rms;
   core::Value all = core::reported(found);
   core::Value& sections = all["profiles"] = core::Value::array();
-  const std::vector<SurfaceProfile> profiles = profiles_of(job, context, o);
+  const std::vector<SurfaceProfile> profiles = profiles_of(compared, context, o);
   for (const SurfaceProfile& p : profiles) sections.push(core::reported(p));
   write_profiles(context, profiles_name, profiles);
   TileRasters{context, difference_name}.finish(job.tiles);
@@ -182,42 +205,32 @@ SurfaceFindings judge_surfaces(const MergeJob& job, const Context& context, cons
   return found;
 }
 
-using SurfaceWork = WorkStage<nullptr, compare_tile, judge_surfaces>;
-
-/// The reference is an option's, not the survey's: its content decides the result, too.
-class SurfaceStage : public SurfaceWork {
- public:
-  using SurfaceWork::SurfaceWork;
-  std::vector<fs::path> inputs(const io::Survey& survey) const override {
-    std::vector<fs::path> out;
-    if (options.reference) out.push_back(reference_of(survey, options));
-    if (options.reference && options.profiles) out.push_back(io::resolve(survey, *options.profiles));
-    return out;
-  }
-};
+std::vector<fs::path> files_of_surfaces(const io::Survey& survey, const SurfaceOptions& o) {
+  std::vector<fs::path> out;
+  if (o.reference) out.push_back(reference_of(survey, o));
+  if (o.reference && o.profiles) out.push_back(io::resolve(survey, *o.profiles));
+  return out;
+}
 
 }  // namespace
 
 Entry surface_stage() {
-  const TileExtras<SurfaceOptions> extras{
-      .columns = {.needs = {Column::classification, Column::flags}},
-      // Per cell of the model: it twice, slope, difference, counts of returns, the reference with its nodes.
-      .memory =
-          [](const SurfaceOptions&, const Context& c) {
-            return TileMemory{8.0, window_of(c, Product::dtm, 8)};
-          },
-      .check = [](const Context& c,
-                  const SurfaceOptions& o) { check_reference(c.survey, c.survey.crs.empty() ? core::Crs() : core::Crs(c.survey.crs), o); },
-      .products =
-          [](const SurfaceOptions&) {
-            const std::string name = difference_name;
-            return std::vector<std::string>{"surface.json", name, name + ".vrt", name + ".png", std::string(profiles_name) + ".csv"};
-          }};
-  constexpr std::string_view name = "quality.surface";
-  return {name, [=] {
-            return std::make_unique<SurfaceStage>(
-                name, "Terrain model less a reference model by slope and cover, with a map of the differences.", extras);
-          }};
+  return tile<compare_tile, judge_surfaces>(
+      "quality.surface", "Terrain model less a reference model by slope and cover, with a map of the differences.",
+      {.columns = {.needs = {Column::classification, Column::flags}},
+       // Per cell of the model: it twice, slope, difference, counts of returns, the reference with its nodes.
+       .memory =
+           [](const SurfaceOptions&, const Context& c) {
+             return TileMemory{8.0, window_of(c, Product::dtm, 8)};
+           },
+       .check = [](const Context& c,
+                   const SurfaceOptions& o) { check_reference(c.survey, c.survey.crs.empty() ? core::Crs() : core::Crs(c.survey.crs), o); },
+       .files = files_of_surfaces,
+       .products =
+           [](const SurfaceOptions&) {
+             const std::string name = difference_name;
+             return std::vector<std::string>{"surface.json", name, name + ".vrt", name + ".png", std::string(profiles_name) + ".csv"};
+           }});
 }
 
 }  // namespace swath::stages

@@ -33,6 +33,10 @@ TEST(NamedAreas, WhatCannotNameATileIsAnError) {
   EXPECT_THROW(NamedAreas(folder / "a.gpkg", "sheet", "EPSG:25832"), core::Error) << "no such field";
   EXPECT_THROW(NamedAreas(folder / "a.gpkg", "name", "EPSG:25833"), core::Error) << "another CRS";
   EXPECT_THROW(NamedAreas(folder / "b.gpkg", "name", "EPSG:25832"), core::Error) << "no such file";
+  for (const char* name : {"../out", "a/b", "a\\b", ".", "", "a\nb"}) {
+    write_line_layer(folder / "d.gpkg", {"sheets", "", {}, {square(name, 0, 0, 100)}, {}, true}, "EPSG:25832");
+    EXPECT_THROW(NamedAreas(folder / "d.gpkg", "name", "EPSG:25832"), core::Error) << name;
+  }
   write_line_layer(folder / "c.gpkg", {"lines", "", {}, {square("one", 0, 0, 100)}}, "EPSG:25832");
   EXPECT_THROW(NamedAreas(folder / "c.gpkg", "name", "EPSG:25832"), core::Error) << "no polygon";
 }
