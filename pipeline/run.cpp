@@ -28,9 +28,17 @@ using stages::Grain;
 
 constexpr const char* discarded_name = ".swath-discarded";
 
+/// Names of the folders that this plan's work lies in.
+std::set<std::string> own_folders(RunState& run) {
+  if (makes_points(run.plan)) choose_strips(run);
+  std::set<std::string> out;
+  for (size_t i = 0; i < run.plan.stages.size(); ++i) out.insert(run.folder(i).filename().string());
+  return out;
+}
+
 /// Several processes may be about to work on what is there.
-void expect_no_foreign(const RunState& run, const std::set<std::string>& valid) {
-  const std::set<std::string> foreign = foreign_folders(run.work, valid);
+void expect_no_foreign(RunState& run) {
+  const std::set<std::string> foreign = foreign_folders(run.work, own_folders(run));
   if (foreign.empty()) return;
   throw core::usage_error("it holds work of another plan, or of other inputs: " + *foreign.begin(), run.work.string(),
                           "finish that plan, or choose another --output; `swath run` without --wave would remove it");
@@ -38,10 +46,7 @@ void expect_no_foreign(const RunState& run, const std::set<std::string>& valid) 
 
 /// Of an earlier run of this plan that was killed, or whose work was kept.
 void keep_whole(RunState& run) {
-  if (makes_points(run.plan)) choose_strips(run);
-  std::set<std::string> valid;
-  for (size_t i = 0; i < run.plan.stages.size(); ++i) valid.insert(run.folder(i).filename().string());
-  if (run.share) expect_no_foreign(run, valid);
+  const std::set<std::string> valid = own_folders(run);
   sweep(run.work, valid);
   std::error_code absent;
   fs::remove_all(run.output / discarded_name, absent);
@@ -88,7 +93,14 @@ bool is_survey_done(const RunState& run) {
   return true;
 }
 
-Outcome run_alone(Plan& plan, Progress& progress, const std::string& command, std::vector<Input> inputs) {
+void expect_same_plan(const RunState& run, const Share& share) {
+  if (!share.fingerprint.empty() && share.fingerprint != run.fingerprints.back())
+    throw core::usage_error("config, survey or program have changed since the tasks were listed", run.plan.config.string(),
+                            "list them anew with `swath tasks`, for another --output");
+}
+
+/// `share`: the last wave of what several processes do; null: the whole run.
+Outcome run_alone(Plan& plan, Progress& progress, const std::string& command, std::vector<Input> inputs, const Share* share) {
   RunState run(plan, progress);
   run.inputs = std::move(inputs);
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(run.threads));
@@ -98,6 +110,7 @@ Outcome run_alone(Plan& plan, Progress& progress, const std::string& command, st
   expect_own(run.output / discarded_name);
   if (!run.plan.survey_file.empty()) check_output(run.plan);
   prepare(run);
+  if (share) expect_same_plan(run, *share);
   const bool made_output = !fs::exists(run.output);
   std::error_code ec;
   fs::create_directories(run.work, ec);
@@ -105,6 +118,7 @@ Outcome run_alone(Plan& plan, Progress& progress, const std::string& command, st
   const fs::path discarded = run.output / discarded_name;
   const WorkLock lock(run.work);
   expect_own(run.work);  // again: whatever came to lie there before the lock is not emptied
+  if (share) expect_no_foreign(run);
   try {
     keep_whole(run);
     run.progress.expect(std::vector<double>(steps(run), 0.0));
@@ -147,21 +161,36 @@ void expect_work(const fs::path& work) {
                             "do wave 0 first; where that is done: does this machine see the folder?");
 }
 
+/// Is the report that of this plan's run? Its last stage says what it was made from.
+bool is_report_of(const RunState& run, const Value& report) {
+  const Value* stages = report.is_object() ? report.find("stages") : nullptr;
+  if (!stages || !stages->is_array() || stages->items().empty() || !stages->items().back().is_object()) return false;
+  const Value* made = stages->items().back().find("fingerprint");
+  return made && made->is_text() && made->as_text() == run.fingerprints.back();
+}
+
 /// The last wave. A process that comes when it is done finds the report.
-Outcome finish_shared(Plan& plan, Progress& progress, const std::string& command, std::vector<Input> inputs) {
+Outcome finish_shared(Plan& plan, Progress& progress, const std::string& command, const Share& share, std::vector<Input> inputs) {
   const fs::path output = fs::absolute(plan.run.output), work = output / work_name, file = output / "report.json";
   if (!fs::is_directory(work) && fs::is_regular_file(file)) {
+    RunState run(plan, progress);
+    run.inputs = std::move(inputs);
+    prepare(run);
+    expect_same_plan(run, share);
     Value report = io::read_value_file(file);
-    const Value* limits = report.find("limits");
-    return {limits && !missed_limits(*limits).empty() ? core::Exit::quality_missed : core::Exit::done, std::move(report)};
+    if (is_report_of(run, report)) {
+      const Value* limits = report.find("limits");
+      return {limits && !missed_limits(*limits).empty() ? core::Exit::quality_missed : core::Exit::done, std::move(report)};
+    }
+    inputs = std::move(run.inputs);
   }
   expect_work(work);
-  return run_alone(plan, progress, command, std::move(inputs));
+  return run_alone(plan, progress, command, std::move(inputs), &share);
 }
 
 }  // namespace
 
-Outcome run(Plan& plan, Progress& progress, const std::string& command) { return run_alone(plan, progress, command, {}); }
+Outcome run(Plan& plan, Progress& progress, const std::string& command) { return run_alone(plan, progress, command, {}, nullptr); }
 
 Outcome run_share(Plan& plan, Progress& progress, const std::string& command, const Share& share, std::vector<Input> inputs) {
   const std::vector<Wave> waves = waves_of(plan);
@@ -170,7 +199,7 @@ Outcome run_share(Plan& plan, Progress& progress, const std::string& command, co
                             "this plan has the waves 0 to " + std::to_string(waves.size() - 1) + ": see `swath tasks`");
   const Wave wave = waves[share.wave];
   if (!wave.is_shared() && share.part != 1) return {};  // one process does it
-  if (wave.kind == WaveKind::finish) return finish_shared(plan, progress, command, std::move(inputs));
+  if (wave.kind == WaveKind::finish) return finish_shared(plan, progress, command, share, std::move(inputs));
   RunState run(plan, progress);
   run.share = share;
   run.inputs = std::move(inputs);
@@ -179,9 +208,7 @@ Outcome run_share(Plan& plan, Progress& progress, const std::string& command, co
   expect_own(run.work);
   if (!run.plan.survey_file.empty()) check_output(run.plan);
   prepare(run);
-  if (!share.fingerprint.empty() && share.fingerprint != run.fingerprints.back())
-    throw core::usage_error("config, survey or program have changed since the tasks were listed", run.plan.config.string(),
-                            "list them anew with `swath tasks`, for another --output");
+  expect_same_plan(run, share);
   if (share.wave > 0) expect_work(run.work);
   std::error_code ec;
   fs::create_directories(run.work, ec);
@@ -190,7 +217,7 @@ Outcome run_share(Plan& plan, Progress& progress, const std::string& command, co
   if (share.wave == 0 && is_survey_done(run)) return {};
   const WorkLock lock(run.work, share.wave == 0 ? WorkLock::Use::alone_when_free : WorkLock::Use::together);
   run.progress.expect(std::vector<double>(steps(run), 0.0));
-  if (share.wave == 0) keep_whole(run);
+  if (share.wave == 0) expect_no_foreign(run), keep_whole(run);
   run_survey_stages(run);
   if (share.wave > 0) run_strips(run);
   if (wave.kind == WaveKind::tiles) run_tile_stages(run);

@@ -51,8 +51,8 @@ Share read_share(size_t wave, const std::string& part) {
   const auto first = std::from_chars(part.data(), end, out.part);
   const bool has_slash = first.ec == std::errc() && first.ptr != end && *first.ptr == '/';
   const auto second = has_slash ? std::from_chars(first.ptr + 1, end, out.parts) : std::from_chars_result{end, std::errc::invalid_argument};
-  if (second.ec != std::errc() || second.ptr != end || out.part < 1 || out.part > out.parts)
-    throw core::usage_error("'" + part + "' is not a part", "--part", "write it as i/n, from 1/n to n/n: --part 2/8");
+  if (second.ec != std::errc() || second.ptr != end || out.part < 1 || out.part > out.parts || out.parts > max_parts)
+    throw core::usage_error("'" + part + "' is not a part", "--part", "write it as i/n, from 1/n to n/n, n at most 100000: --part 2/8");
   return out;
 }
 

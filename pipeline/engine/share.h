@@ -33,7 +33,9 @@ struct Share {
   std::string fingerprint{};  ///< of the plan that it is a share of; empty: not compared
 };
 
-/// "i/n" with 1 <= i <= n. Throws core::Error (usage).
+constexpr int max_parts = 100000;  ///< of a wave
+
+/// "i/n" with 1 <= i <= n <= max_parts. Throws core::Error (usage).
 Share read_share(size_t wave, const std::string& part);
 
 /// Which pieces of such work are the part's: the largest first to whoever has least, so that every process comes to the same answer alone.

@@ -183,7 +183,8 @@ Input unchanged_input(const Value& given, const fs::path& tasks) {
 }  // namespace
 
 TaskGraph task_graph(const Request& request, int parts) {
-  if (parts < 1 || parts > 100000) throw core::usage_error(std::to_string(parts) + " parts", "--parts", "write a number from 1 to 100000");
+  if (parts < 1 || parts > max_parts)
+    throw core::usage_error(std::to_string(parts) + " parts", "--parts", "write a number from 1 to 100000");
   return GraphMaker(request, parts).make();
 }
 

@@ -50,7 +50,7 @@ TEST(Share, PartsAreReadOrRefused) {
   EXPECT_EQ(s.wave, 3u);
   EXPECT_EQ(s.part, 2);
   EXPECT_EQ(s.parts, 8);
-  for (const char* wrong : {"", "2", "0/8", "9/8", "2/", "/8", "a/b", "2/8x", "-1/8", "2/8/3", "99999999999/99999999999"})
+  for (const char* wrong : {"", "2", "0/8", "9/8", "2/", "/8", "a/b", "2/8x", "-1/8", "2/8/3", "1/100001", "99999999999/99999999999"})
     EXPECT_THROW(read_share(0, wrong), core::Error) << wrong;
 }
 
@@ -140,6 +140,13 @@ TEST_F(SharedRun, HasTheProductsOfOneProcessWhateverTheOrderAndHoweverOften) {
   const Outcome again = share(out / "shared", waves - 1, 1, 1);  // as a scheduler repeats what is slow
   EXPECT_EQ(again.code, end.code);
   EXPECT_EQ(again.report.find("pieces_resumed")->as_int(), end.report.find("pieces_resumed")->as_int());
+  // The report of this plan says nothing of another's tasks.
+  Request other = request(out / "shared");
+  other.sets.push_back("dtm.cell=2 m");
+  Plan plan = make_plan(other);
+  Progress progress(Voice::quiet);
+  const std::string fault = refusal([&] { run_share(plan, progress, "test", {waves - 1, 1, 1, {}}); });
+  EXPECT_NE(fault.find("there is no work folder"), std::string::npos) << fault;
 }
 
 TEST_F(SharedRun, AWaveBeforeItsTurnIsRefusedAndNothingIsLost) {
@@ -167,6 +174,8 @@ TEST_F(SharedRun, AnotherPlanInTheSameFolderIsRefused) {
   Progress progress(Voice::quiet);
   const std::string fault = refusal([&] { run_share(plan, progress, "test", {0, 1, 1, {}}); });
   EXPECT_NE(fault.find("it holds work of another plan"), std::string::npos) << fault;
+  const std::string end = refusal([&] { run_share(plan, progress, "test", {waves_of(plan).size() - 1, 1, 1, {}}); });
+  EXPECT_NE(end.find("it holds work of another plan"), std::string::npos) << end;
   EXPECT_EQ(refusal([&] { share(out / "out", 2, 1, 1); }), "");  // the first plan goes on
 }
 
@@ -174,7 +183,14 @@ TEST_F(SharedRun, ATaskOfAChangedPlanIsRefused) {
   const test::TemporaryFolder out;
   Plan plan = make_plan(request(out / "out"));
   Progress progress(Voice::quiet);
-  EXPECT_NE(refusal([&] { run_share(plan, progress, "test", {0, 1, 1, "of another plan"}); }).find("have changed"), std::string::npos);
+  for (const size_t wave : {size_t{0}, waves_of(plan).size() - 1}) {
+    fs::create_directories(out / "out/.swath");
+    EXPECT_NE(refusal([&] {
+                run_share(plan, progress, "test", {wave, 1, 1, "of another plan"});
+              }).find("have changed"),
+              std::string::npos)
+        << wave;
+  }
 }
 
 }  // namespace
