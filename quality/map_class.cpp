@@ -54,9 +54,9 @@ std::string both_classes(const std::string& plan, const std::string& height) {
   return plan.empty() || height.empty() ? std::string() : std::max(plan, height);
 }
 
-double closest_interval(MapRule rule, const std::string& name, double ep) {
+double closest_interval(MapRule rule, const std::string& name, double ep, std::optional<double> q90) {
   for (const MapClass& c : map_classes(rule))
-    if (c.name == name) return ep / c.height_ep;
+    if (c.name == name) return std::max(ep / c.height_ep, q90.value_or(0.0) / c.height_pec);
   throw core::Error("no class '" + name + "' by this rule", "", "classes are A, B, C, and D of pcd");
 }
 

@@ -50,8 +50,9 @@ std::string both_classes(const std::string& plan, const std::string& height);
 inline double interval_of(double h, double c) { return h / c; }
 inline double c_factor_of(double h, double interval) { return h / interval; }
 
-/// The closest contour interval, m, whose class (by name) a standard error of heights allows. Throws core::Error: no such class.
-double closest_interval(MapRule rule, const std::string& name, double ep);
+/// The closest contour interval, m, whose class (by name) height_class() gives to a standard error `ep` and, where it is known, to `q90`.
+/// Throws core::Error: no such class.
+double closest_interval(MapRule rule, const std::string& name, double ep, std::optional<double> q90 = {});
 
 }  // namespace swath::quality
 

@@ -62,7 +62,9 @@ class Quality(Case):
 
     def test_check_points_that_do_not_fit_are_named(self):
         self.assertEqual(self.codes("--check", self.moved("x", 20000)), ["check.outside", "check.few"])
-        self.assertEqual(self.codes("--check", self.rows(count=2)), ["check.few"])
+        few = self.judged("--check", self.rows(count=2))
+        self.assertEqual([w["code"] for w in few["warnings"]], ["check.few"])
+        self.assertNotIn("nva_m", stage(few, "quality.points")["findings"])
         self.assertEqual(self.codes("--check", self.rows(lambda cells: ["same", *cells[1:]])), ["check.names"])
         self.assertEqual(self.codes("--check", self.moved("z", -46.8)), ["check.heights"])
         # Places of zone 33 in zone 32 lie far off, those of zone 32 that say so do not.
@@ -74,7 +76,7 @@ class Quality(Case):
 
     def test_wrong_requests(self):
         for more, words in ((["--level", "QL7"], ["QL7", "QL2"]), (["--reference", "none.tif"], ["none.tif"]), (["--check", "none.csv"], ["none.csv"]),
-                            (["--crs", "EPSG:1"], ["EPSG:1"])):
+                            (["--crs", "EPSG:1"], ["EPSG:1"]), (["--check-crs", "EPSG:32633"], ["--check-crs", "--check FILE"])):
             with self.subTest(more=more):
                 self.assert_error(swath("qc", self.cloud, "--output", self.out, "--quiet", *more), 2, *words)
                 self.assertFalse(self.out.exists())

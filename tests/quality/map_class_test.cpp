@@ -69,6 +69,11 @@ TEST(MapClass, IntervalsAndCFactor) {
   EXPECT_DOUBLE_EQ(closest_interval(MapRule::decree, "A", 0.15), 0.45);
   EXPECT_DOUBLE_EQ(closest_interval(MapRule::paper, "A", 0.20), 0.50);
   EXPECT_THROW(closest_interval(MapRule::paper, "D", 0.2), core::Error);
+  // 90 % of the errors may need more than the standard error does: the class is reached at that interval, and just not below it.
+  EXPECT_DOUBLE_EQ(closest_interval(MapRule::decree, "A", 0.15, 0.20), 0.45);
+  EXPECT_DOUBLE_EQ(closest_interval(MapRule::decree, "A", 0.15, 0.30), 0.60);
+  EXPECT_EQ(height_class(MapRule::decree, 0.60, 0.15, 0.30), "A");
+  EXPECT_EQ(height_class(MapRule::decree, 0.59, 0.15, 0.30), "B");
   EXPECT_NEAR(interval_of(1200, 2200), 0.545454545455, 1e-12);
   EXPECT_NEAR(c_factor_of(1200, interval_of(1200, 914)), 914, 1e-9);
 }

@@ -22,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using core::Column;
 
-constexpr size_t least_marks_judged = 3;
 constexpr size_t names_shown = 6;
 constexpr const char* points_file = "check_points.json";  // for report.quality
 
@@ -64,7 +63,8 @@ void describe(const CheckPointFindings& r, V& v) {
   v.result("corners", r.corners, core::if_any(), "Corners of targets among them, which are not compared: calib.adjust does that.");
   v.result("outside", r.outside, core::plain().only_if(!r.outside.empty()), "Check points where the survey has no points at all.");
   v.result("unread", r.unread, core::plain().only_if(!r.unread.empty()), "Check points without ground points around them.");
-  v.result("nva_m", r.nva, metres().in_summary().limited_by("nva"), "RMSE of the ground points on open ground, check points' error added.");
+  v.result("nva_m", r.nva, metres().in_summary().limited_by("nva"),
+           "RMSE of the ground points at three or more open check points, their error added.");
   v.result("vva_m", r.vva, metres().in_summary().limited_by("vva"), "RMSE of the ground points under vegetation, the same way.");
   v.result("vva_95_m", r.vva_95, metres(), "95 % of the ground points' absolute errors under vegetation are smaller.");
   v.tables("accuracy", r.accuracy, "Errors by product and cover.");
@@ -197,21 +197,21 @@ void name_records(const MergeJob& job, const Context& context, const Marks& mark
   if (!twice.empty())
     found.named.push_back(
         {"check.names", std::to_string(twice.size()) + " names stand for several check points: " + shown({twice.begin(), twice.end()})});
-  if (compared < least_marks_judged)
+  if (compared < fewest_marks_judged)
     found.named.push_back({"check.few", std::to_string(compared) + " of " + std::to_string(all) +
                                             " check points could be compared, fewer than 3: no accuracy is stated by them"});
 }
 
 void judge_accuracy(const Marks& marks, const std::vector<MarkFound>& at, const CheckPointOptions& o, CheckPointFindings& found) {
   found.accuracy = accuracy_of(marks.list, at, o.open);
-  if (const CoverAccuracy* a = find_accuracy(found.accuracy, "points", open_cover)) found.nva = a->with_marks;
-  if (const CoverAccuracy* a = find_accuracy(found.accuracy, "points", vegetated_cover))
+  if (const CoverAccuracy* a = judged_accuracy(found.accuracy, "points", open_cover)) found.nva = a->with_marks;
+  if (const CoverAccuracy* a = judged_accuracy(found.accuracy, "points", vegetated_cover))
     found.vva = a->with_marks, found.vva_95 = a->errors.q95;
   std::vector<double> sigmas;
   for (const MarkFound& m : at)
     if (m.sigma_h > 0.0) sigmas.push_back(m.sigma_h);
-  const CoverAccuracy* heights = find_accuracy(found.accuracy, "dtm", every_cover);
-  found.map = map_class_of(o.map, heights ? heights : find_accuracy(found.accuracy, "points", every_cover), core::median(sigmas, 0.0));
+  const CoverAccuracy* heights = judged_accuracy(found.accuracy, "dtm", every_cover);
+  found.map = map_class_of(o.map, heights ? heights : judged_accuracy(found.accuracy, "points", every_cover), core::median(sigmas, 0.0));
 }
 
 CheckPointFindings judge_points(const MergeJob& job, const Context& context, const CheckPointOptions& o, RunCache& cache) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/statistics.h"
+#include "core/distributions.h"
 
 namespace swath::stages {
 namespace {
@@ -28,7 +28,7 @@ CoverAccuracy accuracy_of_group(const std::string& product, const std::string& c
     predicted += g.mark_sigma[k] * g.mark_sigma[k] + g.sigma[k] * g.sigma[k];
     has_sigmas = has_sigmas && g.sigma[k] > 0.0;
   }
-  a.q90 = core::quantile(sizes, 0.9);
+  a.q90 = core::interpolated_quantile(sizes, 0.9);
   a.marks_sigma = std::sqrt(squares / n);
   a.with_marks = std::hypot(a.errors.rms, a.marks_sigma);
   const double rest = a.errors.rms * a.errors.rms - a.marks_sigma * a.marks_sigma;
@@ -68,8 +68,10 @@ std::vector<CoverAccuracy> accuracy_of(const std::vector<quality::CheckMark>& ma
   return out;
 }
 
-const CoverAccuracy* find_accuracy(const std::vector<CoverAccuracy>& list, const std::string& product, const std::string& cover) {
-  const auto at = std::find_if(list.begin(), list.end(), [&](const auto& a) { return a.product == product && a.cover == cover; });
+const CoverAccuracy* judged_accuracy(const std::vector<CoverAccuracy>& list, const std::string& product, const std::string& cover) {
+  const auto at = std::find_if(list.begin(), list.end(), [&](const auto& a) {
+    return a.product == product && a.cover == cover && a.errors.n >= fewest_marks_judged;
+  });
   return at == list.end() ? nullptr : &*at;
 }
 
@@ -82,7 +84,7 @@ std::optional<MapClassFound> map_class_of(const MapOptions& o, const CoverAccura
     out.q90_height = heights->q90;
     if (o.interval) out.height_class = class_text(quality::height_class(o.rule, o.interval->value, *out.ep_height, out.q90_height));
     for (const quality::MapClass& c : quality::map_classes(o.rule))
-      out.intervals.push_back({c.name, quality::closest_interval(o.rule, c.name, *out.ep_height)});
+      out.intervals.push_back({c.name, quality::closest_interval(o.rule, c.name, *out.ep_height, out.q90_height)});
     if (o.flying_height) out.c_factor = quality::c_factor_of(o.flying_height->value, out.intervals[0].interval);
   }
   if (o.flying_height && o.c_factor) out.interval_by_c = quality::interval_of(o.flying_height->value, *o.c_factor);

@@ -71,8 +71,11 @@ void describe(const CoverAccuracy& a, V& v) {
 std::vector<CoverAccuracy> accuracy_of(const std::vector<quality::CheckMark>& marks, const std::vector<MarkFound>& found,
                                        const std::vector<std::string>& open);
 
-/// The one of a product and cover; null where there is none.
-const CoverAccuracy* find_accuracy(const std::vector<CoverAccuracy>& list, const std::string& product, const std::string& cover);
+/// Check points that an accuracy is stated by at least; ASPRS 2024 wants 30.
+constexpr std::uint64_t fewest_marks_judged = 3;
+
+/// The one of a product and cover; null where there is none, or fewer than fewest_marks_judged are compared.
+const CoverAccuracy* judged_accuracy(const std::vector<CoverAccuracy>& list, const std::string& product, const std::string& cover);
 
 struct MapOptions {
   quality::MapRule rule = quality::MapRule::decree;
@@ -89,6 +92,9 @@ void describe(MapOptions& o, V& v) {
   v.option("planimetry", o.planimetry, above(0.0), "Measured standard error of planimetry; unset: sigma_h of the points, a prediction.");
   v.option("flying_height", o.flying_height, above(0.0), "Above ground, for the C factor.");
   v.option("c_factor", o.c_factor, above(0.0), "Of an instrument to compare with: the interval that it supports from flying_height.");
+  v.check(o.interval || o.scale || !(o.planimetry || o.flying_height || o.c_factor), "a class is judged by a scale, an interval or both");
+  v.check(o.scale || !o.planimetry, "planimetry is judged by a scale");
+  v.check(o.flying_height || !o.c_factor, "a c_factor needs the flying_height");
 }
 
 struct IntervalFound {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/printable.h"
 #include "io/text/output_file.h"
 #include "io/vector/feature_layers.h"
 
@@ -49,8 +50,8 @@ void write_marks(const Context& context, const std::string& name, const std::vec
     const double sigma = f.sigma > 0.0 ? f.sigma : std::nan("");
     const std::string lines = by_line(readings, m);
     std::snprintf(text, sizeof text, ",%.3f,%.3f,%.3f,%.4f,", x, y, z, mark.sigma);
-    table += mark.name + text + mark.cover + "," + cell_of(f.points) + "," + cell_of(f.dtm) + "," + cell_of(sigma) + "," +
-             cell_of(f.slope) + "," + lines + "\n";
+    table += core::csv_field(mark.name) + text + core::csv_field(mark.cover) + "," + cell_of(f.points) + "," + cell_of(f.dtm) + "," +
+             cell_of(sigma) + "," + cell_of(f.slope) + "," + lines + "\n";
     layer.features.push_back({{{{x, y}}}, {mark.name, mark.cover, mark.place, lines}, {z, mark.sigma, f.points, f.dtm, sigma, f.slope}});
   }
   io::write_text_file(context.output / (name + ".csv"), table);

@@ -39,8 +39,8 @@ std::vector<std::string> gaps_in(const QualityFacts& f) {
   if (!f.swath.any()) out.push_back("Overlaps, distribution and voids: quality.swath did not run.");
   if (f.swath.any() && f.swath.number("overlap_cells") == 0.0) out.push_back("Overlaps: no two lines see the same smooth level ground.");
   if (!f.points.any()) out.push_back("Accuracy: the survey has no check points ([[control]] with use = \"check\").");
-  if (f.points.any() && !f.points.known("nva_m")) out.push_back("NVA: no check point on open ground could be compared.");
-  if (f.points.any() && !f.points.known("vva_m")) out.push_back("VVA: no check point under vegetation could be compared.");
+  if (f.points.any() && !f.points.known("nva_m")) out.push_back("NVA: fewer than three check points on open ground could be compared.");
+  if (f.points.any() && !f.points.known("vva_m")) out.push_back("VVA: fewer than three check points under vegetation could be compared.");
   if (!f.surface.any()) out.push_back("Terrain model: quality.surface has no reference.");
   for (const std::string& sentence : f.lines.texts("not_shown")) out.push_back(sentence);
   return out;
