@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 
 constexpr double step = 1.0;        // m between the places where the ground is looked at
 constexpr double sample = 0.5;      // m, of other wires
-constexpr double thinned = 1.0;     // m: of infringements
+constexpr double top_cell = 1.0;    // m: whose highest returns may be tops
 constexpr double top_radius = 2.0;  // m
 constexpr double least_tree = 3.0;  // m
 constexpr double part = 20.0;       // m of a conductor whose surroundings are looked at at once
@@ -138,7 +138,7 @@ std::optional<Clearance> to_returns(const Wire& wire, Hazard kind, const Obstacl
     best.swung = std::min(best.swung, swung);
     if (swung >= best.limit) return;
     Infringement& i = worst
-                          .try_emplace({core::cell_index(obstacle.x, thinned), core::cell_index(obstacle.y, thinned)},
+                          .try_emplace({core::cell_index(obstacle.x, infringement_cell), core::cell_index(obstacle.y, infringement_cell)},
                                        Infringement{obstacle.at(), kind, swung})
                           .first->second;
     if (swung < i.distance) i = {obstacle.at(), kind, swung};
@@ -218,12 +218,12 @@ std::vector<FallingTree> falling_trees(const PowerLines& lines, size_t span, con
   for (const size_t k : s.conductors)
     Wire(lines.conductors[k], o.swing).around(obstacles, o.reach, [&](const Obstacle& obstacle) {
       if (obstacle.kind != Hazard::vegetation) return;
-      Vector3d& top =
-          highest.try_emplace({core::cell_index(obstacle.x, thinned), core::cell_index(obstacle.y, thinned)}, obstacle.at()).first->second;
+      Vector3d& top = highest.try_emplace({core::cell_index(obstacle.x, top_cell), core::cell_index(obstacle.y, top_cell)}, obstacle.at())
+                          .first->second;
       if (obstacle.z > top.z()) top = obstacle.at();
     });
   std::vector<FallingTree> out;
-  const auto around = static_cast<std::int64_t>(std::ceil(top_radius / thinned));
+  const auto around = static_cast<std::int64_t>(std::ceil(top_radius / top_cell));
   for (const auto& [cell, top] : highest) {
     bool is_top = true;
     for (std::int64_t j = -around; j <= around && is_top; ++j)

@@ -28,6 +28,8 @@ struct Clearance {
   bool is_kept() const { return swung >= limit; }
 };
 
+constexpr double infringement_cell = 1.0;  ///< m: of the squares of which infringements are the worst
+
 /// A return that is nearer than its limit.
 struct Infringement {
   Eigen::Vector3d at = Eigen::Vector3d::Zero();

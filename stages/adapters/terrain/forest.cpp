@@ -7,7 +7,7 @@
 #include <limits>
 #include <tuple>
 
-#include "core/statistics.h"
+#include "core/distributions.h"
 #include "io/vector/feature_file.h"
 #include "stages/tile.h"
 #include "stages/tile_product.h"
@@ -152,9 +152,8 @@ ForestFindings gather_forest(const MergeJob& job, const Context& context) {
   std::vector<double> heights;
   for (const terrain::Tree& t : trees) heights.push_back(t.height), found.crown_hectares += t.crown_area / 1e4;
   if (heights.empty()) return found;
-  found.median_height = core::median(heights);
-  std::sort(heights.begin(), heights.end());
-  found.p95_height = heights[static_cast<size_t>(0.95 * static_cast<double>(heights.size() - 1))];
+  found.median_height = core::interpolated_quantile(heights, 0.5);
+  found.p95_height = core::interpolated_quantile(heights, 0.95);
   return found;
 }
 

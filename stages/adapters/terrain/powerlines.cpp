@@ -4,9 +4,11 @@
 #include "stages/adapters/terrain/powerlines.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "core/block.h"
 #include "io/vector/feature_file.h"
@@ -35,10 +37,11 @@ namespace cls = core::point_class;
 using core::Column;
 using terrain::Hazard;
 
-constexpr std::uint8_t tower_class = 15;  // LAS 1.4 R15, table 17: transmission tower
-constexpr double near_cell = 10.0;        // m: cells that say whether a wire is near
-constexpr double wire_gaps = 20.0;        // m between returns of one wire, bridged when its surroundings are taken
-constexpr double sheet_beside = 20.0;     // m: what a sheet shows
+constexpr std::uint8_t tower_class = 15;                                       // LAS 1.4 R15, table 17: transmission tower
+constexpr std::uint8_t key_point_class = 8, rail_class = 10, road_class = 11;  // the same table: ground of delivered clouds, too
+constexpr double near_cell = 10.0;                                             // m: cells that say whether a wire is near
+constexpr double wire_gaps = 20.0;     // m between returns of one wire, bridged when its surroundings are taken
+constexpr double sheet_beside = 20.0;  // m: what a sheet shows
 
 struct PowerLineOptions {
   std::string name = "powerlines";
@@ -71,7 +74,13 @@ void describe(PowerLineOptions& o, V& v) {
   stated(o.wire, "wire");
 }
 
-double halo(const PowerLineOptions& o) { return o.reach.value + wire_gaps; }
+/// Cells around one with wires whose returns are kept.
+std::int64_t cells_around(const PowerLineOptions& o) {
+  return static_cast<std::int64_t>(std::ceil((o.reach.value + wire_gaps) / near_cell));
+}
+
+/// Whole cells, so that every tile sees the wires of all that are near its own returns.
+double halo(const PowerLineOptions& o) { return near_cell * static_cast<double>(cells_around(o) + 1); }
 
 struct PowerLineCounts {
   std::uint64_t wires = 0, towers = 0, around = 0;
@@ -114,7 +123,7 @@ void describe(const PowerLineFindings& r, V& v) {
   v.result("length_m", r.metres, core::metres(0), "Length of all spans.");
   v.result("unused_wire_returns", r.unused, "Returns of class 14 that belong to no conductor.");
   v.result("infringements", r.infringements, core::plain().in_summary(),
-           "Square metres of vegetation and buildings nearer than their limit.");
+           "Square metres of vegetation and buildings nearer to any wire than their limit.");
   v.result("falling_trees", r.trees, core::plain().in_summary(), "Trees that come too near to a wire when they fall.");
   v.tables("clearances", r.clearances, "Smallest distances by what they are to.");
 }
@@ -126,7 +135,7 @@ struct CorridorRow {
 };
 
 std::optional<Hazard> hazard_of(std::uint8_t c) {
-  if (c == cls::ground || c == cls::water) return Hazard::ground;
+  if (c == cls::ground || c == cls::water || c == key_point_class || c == rail_class || c == road_class) return Hazard::ground;
   if (c >= cls::low_vegetation && c <= cls::high_vegetation) return Hazard::vegetation;
   if (c == cls::building) return Hazard::building;
   return std::nullopt;
@@ -143,7 +152,7 @@ PowerLineCounts collect(const TileJob& job, const PowerLineOptions& o) {
   std::set<std::pair<std::int64_t, std::int64_t>> with_wires, near;
   for (size_t p = 0; p < b.size(); ++p)
     if (core::is_usable(b, p) && b.classification[p] == cls::wire) with_wires.insert(cell(b.x[p], b.y[p]));
-  const auto ring = static_cast<std::int64_t>(std::ceil(halo(o) / near_cell));
+  const std::int64_t ring = cells_around(o);
   for (const auto& [i, j] : with_wires)
     for (std::int64_t v = j - ring; v <= j + ring; ++v)
       for (std::int64_t u = i - ring; u <= i + ring; ++u) near.insert({u, v});
@@ -214,26 +223,55 @@ std::string sheet_name(const PowerLineOptions& o, size_t span) {
 
 std::string sheet_folder(const PowerLineOptions& o) { return o.name + "_sheets"; }
 
+/// A tree beside a support is seen from the spans on both sides: it is one, with the smaller margin.
+class Trees {
+ public:
+  void add(const std::vector<terrain::FallingTree>& of_a_span) {
+    for (const terrain::FallingTree& t : of_a_span) {
+      const auto [at, fresh] = number_.try_emplace({t.top.x(), t.top.y(), t.top.z()}, all.size());
+      if (fresh)
+        all.push_back(t);
+      else if (t.margin < all[at->second].margin)
+        all[at->second] = t;
+    }
+  }
+  std::vector<terrain::FallingTree> all;
+
+ private:
+  std::map<std::array<double, 3>, size_t> number_;  // by their tops
+};
+
 void look_around(const MergeJob& job, const Context& context, const PowerLineOptions& o, PowerLineResult& result) {
   const terrain::ClearanceOptions options = clearance_options(o);
   result.clearances.resize(result.lines.conductors.size());
   Surroundings surroundings(job, context);
   const double reach = o.reach.value + 10.0;  // a swung wire reaches farther
   std::vector<std::string> sheets;
+  Trees trees;
   for (size_t k = 0; k < result.lines.spans.size(); ++k) {
     const std::vector<terrain::Obstacle> near = surroundings.of(result.lines, k, reach);
     const terrain::Obstacles obstacles(near);
     for (const size_t c : result.lines.spans[k].conductors)
       result.clearances[c] = terrain::clearances_of(result.lines, c, obstacles, options);
-    const auto trees = terrain::falling_trees(result.lines, k, obstacles, options);
-    result.trees.insert(result.trees.end(), trees.begin(), trees.end());
+    trees.add(terrain::falling_trees(result.lines, k, obstacles, options));
     context.progress(static_cast<double>(k + 1) / static_cast<double>(result.lines.spans.size()), {});
     if (o.sheets == SheetFormat::none) continue;
     sheets.push_back(sheet_name(o, k));
     const report::Chart chart = span_sheet(result, k, near, sheet_beside, context.origin.z());
     write_drawing(context.output / sheet_folder(o) / sheets.back(), report::drawing(chart));
   }
+  result.trees = std::move(trees.all);
   if (o.sheets != SheetFormat::none) write_list(context.output / sheet_folder(o), sheets);
+}
+
+/// Square metres with an infringement of any conductor, of vegetation and of buildings.
+std::uint64_t infringed_area(const PowerLineResult& r) {
+  std::set<std::tuple<Hazard, std::int64_t, std::int64_t>> cells;
+  for (const terrain::ConductorClearances& c : r.clearances)
+    for (const terrain::Infringement& i : c.infringements)
+      cells.insert(
+          {i.kind, core::cell_index(i.at.x(), terrain::infringement_cell), core::cell_index(i.at.y(), terrain::infringement_cell)});
+  return cells.size();
 }
 
 PowerLineFindings summary(const PowerLineResult& r, size_t wires) {
@@ -259,7 +297,7 @@ PowerLineFindings summary(const PowerLineResult& r, size_t wires) {
       }
     if (!s.conductor.empty()) found.clearances.push_back(s);
   }
-  for (const terrain::ConductorClearances& c : r.clearances) found.infringements += c.infringements.size();
+  found.infringements = infringed_area(r);
   return found;
 }
 
