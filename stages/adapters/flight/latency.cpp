@@ -67,7 +67,7 @@ trajectory::LatencyResult find_latency(const trajectory::Trajectory& flown, cons
   if (device.time.empty())
     throw core::Error("time.latency: no event has a place", survey.name, "Timestamp.MRK files state places; other events do not");
   const trajectory::LatencyResult found = trajectory::latency_of_places(antenna_of(flown, survey.antenna, origin, epoch), device, o);
-  if (!found.determinable) tally.count("latency not determinable: " + found.reason);
+  if (!found.determinable) tally.count("latency not determinable", found.reason);
   io::write_text_file(to.folder / "latency.json", io::to_json(core::reported(found)));
   return found;
 }
