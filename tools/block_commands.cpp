@@ -16,6 +16,7 @@
 #include "io/text/delimited.h"
 #include "io/text/text_table.h"
 #include "io/text/value_file.h"
+#include "pipeline/input_guard.h"
 #include "tools/command.h"
 
 namespace swath::tools {
@@ -108,10 +109,21 @@ struct BlockArguments {
   bool json = false;
 };
 
+/// No product takes the place of what the block is read from: its config may be a block.json, its points in a folder colmap.
+void expect_apart(const BlockArguments& a, const calib::BlockConfig& config) {
+  std::vector<std::filesystem::path> read{a.config, config.images.file};
+  for (const auto& f : config.image_points) read.push_back(f.file);
+  for (const auto& f : config.control) read.push_back(f.file);
+  std::erase(read, std::filesystem::path());
+  const pipeline::InputGuard guard(read);
+  for (const std::string& product : calib::block_products()) guard.expect_apart(a.folder / product);
+}
+
 int block(const BlockArguments& a) {
   core::Value given = io::read_value_file(a.config);
   for (const std::string& set : a.sets) pipeline::set_option(given, set);
   const calib::BlockConfig config = calib::read_block_config(a.config, given);
+  expect_apart(a, config);
   calib::ReadBlock read = calib::read_block(config, a.config);
   calib::refuse_mistakes(read, config);
   const calib::StartResidual start = calib::start_residual(calib::sample_of(read, 2000).block);

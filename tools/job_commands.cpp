@@ -82,6 +82,8 @@ std::string class_list(const std::vector<std::string>& classes) {
 
 /// What a job that judges is given beside its clouds.
 void add_judgement(const Given& a, pipeline::Request& out) {
+  if (a.check.empty() && !a.check_crs.empty())
+    throw core::usage_error("there are no check points that it is the CRS of", "--check-crs", "name them by --check FILE");
   std::vector<std::string> sets{"swath.quality_level=" + a.level};
   if (!a.reference.empty()) sets.push_back("surface.reference=" + std::filesystem::absolute(a.reference).string());
   out.sets.insert(out.sets.begin(), sets.begin(), sets.end());

@@ -49,6 +49,9 @@ double width_of(const std::string& text, const std::string& option) {
 }
 
 int cross_sections(const ProfileArguments& a) {
+  if (!a.request.points.empty())
+    throw core::usage_error("sections across an axis are of surfaces, and points are not read", "swath profile",
+                            "leave POINTS out, or --stations for a section along the line");
   pipeline::CrossSectionRequest r;
   r.axis = a.request;
   r.step = width_of(a.stations, "--stations"), r.width = width_of(a.width, "--width");

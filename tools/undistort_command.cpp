@@ -5,12 +5,15 @@
 #include "calib/block/undistort.h"
 #include "core/error.h"
 #include "io/text/output_file.h"
+#include "pipeline/input_guard.h"
 #include "tools/command.h"
 
 namespace swath::tools {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* camera_name = "camera.toml";
 
 struct UndistortArguments {
   std::vector<std::string> images;
@@ -39,12 +42,14 @@ int undistort(const UndistortArguments& a) {
     if (fs::exists(to) && fs::exists(image) && fs::equivalent(to, image))
       throw core::usage_error("the image would be written over", image, "state another --output");
   }
+  const pipeline::InputGuard guard({a.cameras});
+  guard.expect_apart(a.folder / camera_name);
   for (const std::string& image : a.images) {
     const io::ImageRaster out = calib::undistorted(io::read_image_raster(image), camera, image);
     fs::create_directories(a.folder);
     io::write_image_raster(a.folder / (fs::path(image).stem().string() + ".tif"), out);
   }
-  io::write_text_file(a.folder / "camera.toml",
+  io::write_text_file(a.folder / camera_name,
                       "# Camera of these images: no distortion, principal point in the middle.\n" + calib::undistorted_camera(camera));
   print(std::to_string(a.images.size()) + " images written to " + a.folder.string() + "\n");
   return 0;

@@ -185,6 +185,11 @@ std::string camera_toml(const ReadBlock& read, const BlockConfig& config, const 
   return out;
 }
 
+std::vector<std::string> block_products() {
+  return {"orientation.csv", "geo.txt", "geolocation.csv", "camera.toml", "points.gpkg",
+          "points.laz",      "colmap",  "block.json",      "report.html"};
+}
+
 std::vector<std::string> write_block(const std::filesystem::path& folder, const ReadBlock& read, const BlockConfig& config,
                                      const BlockSolution& s, const BlockFound& found) {
   std::filesystem::create_directories(folder);

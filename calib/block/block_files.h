@@ -17,6 +17,9 @@ std::string orientation_csv(const ReadBlock& read, const BlockConfig& config, co
 /// camera.toml: what [[camera]] takes, with the sigmas found.
 std::string camera_toml(const ReadBlock& read, const BlockConfig& config, const BlockFound& found);
 
+/// Names of what write_block() may write into its folder.
+std::vector<std::string> block_products();
+
 /// Writes all products into a folder; returns their names. COLMAP needs cameras with pixels and is left out without them.
 std::vector<std::string> write_block(const std::filesystem::path& folder, const ReadBlock& read, const BlockConfig& config,
                                      const BlockSolution& solution, const BlockFound& found);

@@ -7,9 +7,11 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/printable.h"
 #include "io/raster/geotiff.h"
 #include "io/raster/height_file.h"
 #include "io/text/output_file.h"
+#include "pipeline/input_guard.h"
 #include "pipeline/surface_file.h"
 #include "report/volumes.h"
 
@@ -18,6 +20,7 @@ namespace {
 
 using Eigen::Vector2d;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr const char *sections_name = "sections.csv", *section_points_name = "section_points.csv";
 
 /// A raster that is read where a section lies.
 struct Model {
@@ -53,6 +56,7 @@ struct Station {
 
 std::vector<Station> stations_of(const ProfileLine& line, double step) {
   std::vector<Station> out;
+  Station end{0.0, Vector2d::Zero(), Vector2d::Zero()};
   double begin = 0.0, next = 0.0;
   for (size_t k = 1; k < line.vertices.size(); ++k) {
     const Vector2d d = line.vertices[k] - line.vertices[k - 1];
@@ -61,8 +65,9 @@ std::vector<Station> stations_of(const ProfileLine& line, double step) {
     for (; next <= begin + length; next = static_cast<double>(out.size()) * step)
       out.push_back({next, line.vertices[k - 1] + d * ((next - begin) / length), d / length});
     begin += length;
-    if (k + 1 == line.vertices.size() && begin - out.back().station > 1e-6 * step) out.push_back({begin, line.vertices[k], d / length});
+    end = {begin, line.vertices[k], d / length};
   }
+  if (!out.empty() && end.station - out.back().station > 1e-6 * step) out.push_back(end);
   return out;
 }
 
@@ -99,8 +104,8 @@ class Writer {
     for (const ProfileLine& line : profile_lines(request_.axis, terrain_.crs)) out.push_back(along(line));
     if (met_ == 0)
       throw core::Error("no section meets the terrain model", request_.axis.dtm.string(), "check the CRS of the axis, and its place");
-    io::write_text_file(request_.axis.folder / "sections.csv", rows_);
-    io::write_text_file(request_.axis.folder / "section_points.csv", points_);
+    io::write_text_file(request_.axis.folder / sections_name, rows_);
+    io::write_text_file(request_.axis.folder / section_points_name, points_);
     return out;
   }
 
@@ -117,7 +122,7 @@ class Writer {
       ++sum.sections;
       sum.incomplete += now.known < 1.0;
       before = {s.station, now};
-      rows_ += line.name + "," + number(s.station) + "," + number(s.at.x()) + "," + number(s.at.y()) + "," +
+      rows_ += core::csv_field(line.name) + "," + number(s.station) + "," + number(s.at.x()) + "," + number(s.at.y()) + "," +
                number(std::fmod(std::atan2(s.along.x(), s.along.y()) * 180.0 / M_PI + 360.0, 360.0)) + "," + number(now.ground) + "," +
                number(now.design) + "," + number(now.cut * area) + "," + number(now.fill * area) + "," + number(cut) + "," + number(fill) +
                "," + number(now.known) + "\n";
@@ -141,8 +146,8 @@ class Writer {
     for (size_t k = 0; k < at.size(); ++k) {
       met_ += std::isfinite(ground[k]);
       const double offset = half * (static_cast<double>(k) - n) / n;
-      points_ += name + "," + number(s.station) + "," + number(offset) + "," + number(at[k].x()) + "," + number(at[k].y()) + "," +
-                 number(ground[k]) + "," + number(design[k]) + "\n";
+      points_ += core::csv_field(name) + "," + number(s.station) + "," + number(offset) + "," + number(at[k].x()) + "," +
+                 number(at[k].y()) + "," + number(ground[k]) + "," + number(design[k]) + "\n";
       if (k == 0 || !is_known(k) || !is_known(k - 1)) continue;
       ++known;
       if (compares) add(ground[k - 1] - design[k - 1], ground[k] - design[k], half / n, out);
@@ -171,6 +176,8 @@ class Writer {
 
 std::vector<AxisSections> write_cross_sections(const CrossSectionRequest& request) {
   if (request.axis.dtm.empty()) throw core::usage_error("sections need a terrain model", "swath profile", "name it by --dtm FILE");
+  const InputGuard guard({request.axis.dtm, request.axis.lines, request.design});
+  for (const char* name : {sections_name, section_points_name}) guard.expect_apart(request.axis.folder / name);
   return Writer(request).run();
 }
 

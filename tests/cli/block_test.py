@@ -56,6 +56,13 @@ class Block(Case):
         self.assertIn("<svg", (self.folder / "out" / "report.html").read_text())
         self.assertEqual(len(points), found["points"])
 
+    def test_what_is_read_is_not_written_over(self):
+        write_block(self.folder)
+        config = (self.folder / "block.toml").rename(self.folder / "camera.toml")
+        text = config.read_text()
+        self.assert_error(swath("block", config, "--output", self.folder), 2, "would overwrite", "camera.toml")
+        self.assertEqual((config.read_text(), (self.folder / "orientation.csv").exists()), (text, False))
+
     def test_mistakes_are_named(self):
         write_block(self.folder, y="down")
         self.assert_error(swath("block", self.folder / "block.toml", "--output", self.folder / "out"), 1, "y axis of the image points has the other sense")
@@ -158,6 +165,9 @@ class Undistort(Case):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual((first / "a.tif").read_bytes(), (second / "a.tif").read_bytes())
         self.assert_error(swath("undistort", first / "a.tif", "--camera", first / "camera.toml", "--output", first), 2, "written over")
+        # The camera that is read is not written over.
+        self.assert_error(swath("undistort", image, "--camera", camera, "--output", self.folder), 2, "would overwrite", "camera.toml")
+        self.assertEqual((camera.read_text(), (self.folder / "a.tif").exists()), (text, False))
         self.assert_error(swath("undistort", image, "--camera", camera, "--name", "D"), 2, "no camera is named D")
         camera.write_text(text.replace("rows = 40", "rows = 41"))
         self.assert_error(swath("undistort", image, "--camera", camera, "--output", self.folder / "third"), 1, "60 x 40 pixels, camera C has 60 x 41")

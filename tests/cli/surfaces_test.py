@@ -85,6 +85,7 @@ class Surfaces(Case):
         self.assert_error(swath(*call, "--design", "none.tif"), 1, "none.tif")
         self.assert_error(swath(*[w if w != "10 m" else "0 m" for w in call]), 2, "--stations")
         self.assert_error(swath("profile", "--dtm", self.made / "dtm.vrt", *ends, "--design", "3", "--output", self.folder / "cut"), 2, "--stations")
+        self.assert_error(swath(*call[:1], self.made / "points", *call[1:]), 2, "points are not read")
 
     def test_profiles_refuse_what_they_cannot_answer(self):
         points = self.made / "points"

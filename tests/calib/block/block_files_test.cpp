@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "io/images/image_file.h"
 #include "io/las/las_reader.h"
@@ -39,6 +41,8 @@ TEST(BlockFiles, OrientationsReadBackAreThoseAdjusted) {
   const auto files = write_block(folder.path() / "out", a.read, a.config, a.solution, a.found);
   EXPECT_EQ(files, (std::vector<std::string>{"orientation.csv", "camera.toml", "points.gpkg", "points.laz", "colmap", "block.json",
                                              "report.html"}));
+  const auto known = block_products();
+  for (const std::string& name : files) EXPECT_EQ(std::count(known.begin(), known.end(), name), 1) << name;
   const io::TextTable table(folder.path() / "out" / "orientation.csv");
   ASSERT_EQ(table.rows(), a.read.block.images.size());
   for (size_t i = 0; i < table.rows(); ++i) {

@@ -49,6 +49,25 @@ TEST(CrossSections, ALevelDesignInASlopeCutsOneSideAndFillsTheOther) {
             std::string::npos);
 }
 
+TEST(CrossSections, TheAxisThatIsReadIsNotWrittenOverAndItsNameIsOneField) {
+  const test::TemporaryFolder folder;
+  write_plane(folder / "dtm.tif", 0.0, "EPSG:32632");
+  CrossSectionRequest r = request(folder);
+  // Its last vertex is there twice; the end is a station all the same.
+  const std::string axis = "profile;x;y\nA8, km 3;600050;5300010\nA8, km 3;600050;5300035\nA8, km 3;600050;5300035\n";
+  test::write_bytes(folder / "out/sections.csv", axis);
+  r.axis.from.clear(), r.axis.to.clear();
+  r.axis.lines = folder / "out/sections.csv";
+  EXPECT_THROW(write_cross_sections(r), core::Error);
+  EXPECT_EQ(test::read_bytes(folder / "out/sections.csv"), axis);
+  r.axis.folder = folder / "apart";
+  const auto found = write_cross_sections(r);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].sections, 3u);
+  EXPECT_NEAR(found[0].length, 25.0, 1e-6);
+  EXPECT_NE(test::read_bytes(folder / "apart/sections.csv").find("\n\"A8, km 3\",25.000,"), std::string::npos);
+}
+
 TEST(CrossSections, ADesignSurfaceAndWhatIsNotThere) {
   const test::TemporaryFolder folder;
   write_plane(folder / "dtm.tif", 0.0, "EPSG:32632");
