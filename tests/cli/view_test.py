@@ -238,6 +238,13 @@ class Saved(Pages):
         self.assertIn(html.escape("</script><script>alert(1)</script>{{scene}}&amp;"), text)
         self.assertNotRegex(re.sub(r"(?s)<script>.*?</script>|<pre>.*?</pre>", "", text), r"""(?:src|href)=["'](?!data:)""")
 
+    def test_a_cloud_without_crs_beside_one_with(self):
+        tile = next((self.products / "points").glob("*.la[sz]"))
+        write_las(self.folder / "bare.las", [(652000.0, 5310500.0, 700.0), (652010.0, 5310510.0, 701.0)], scale=0.01)
+        for clouds in ((tile, self.folder / "bare.las"), (self.folder / "bare.las", tile)):
+            done = swath("view", *clouds, "--save", self.folder / "view.html", "--quiet")
+            self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_what_cannot_be_shown(self):
         empty = self.folder / "empty"
         empty.mkdir()
