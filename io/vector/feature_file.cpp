@@ -28,7 +28,10 @@ void check_features(const std::filesystem::path& file, const SpatialLayer& layer
         if (!p.allFinite()) throw core::Error("a feature holds a coordinate that is not finite", at);
     };
     check(f.places);
-    for (const auto& hole : f.holes) check(hole);
+    for (const auto& hole : f.holes) {
+      if (layer.shape != SpatialShape::polygon) throw core::Error("a feature that is not an area has a hole", at);
+      check(hole);
+    }
     bool same = f.values.size() == layer.fields.size();
     for (size_t i = 0; same && i < f.values.size(); ++i) same = f.values[i].index() == layer.fields[i].kind.index();
     if (!same) throw core::Error("a feature's values are not those of the layer's fields", at);

@@ -40,7 +40,8 @@ struct SpatialLayer {
 /// values than the layer's fields, file not writable, disk full; nothing half-written stays.
 void write_gpkg(const std::filesystem::path& file, const std::vector<SpatialLayer>& layers, const std::string& crs);
 
-/// AutoCAD R12: 3D polylines and points, each layer in upper case with a colour of its own; 4 decimals (9 in degrees). Throws as above.
+/// AutoCAD R12: 3D polylines and points, each layer in upper case with a colour of its own, holes as polylines of their own; 4 decimals (9
+/// in degrees). Throws as above.
 void write_dxf(const std::filesystem::path& file, const std::vector<SpatialLayer>& layers, const std::string& crs);
 
 /// The fields of one layer as delimited text with a head line: numbers with 4 decimals, in front of them x, y and z of points with 3.

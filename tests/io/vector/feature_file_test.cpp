@@ -51,6 +51,20 @@ TEST(FeatureFile, DrawingsHoldPolylinesInSpace) {
   EXPECT_NE(test::read_bytes(folder / "a.dxf").find("POINT"), std::string::npos);
 }
 
+TEST(FeatureFile, PolygonsKeepTheirHoles) {
+  std::vector<SpatialLayer> roof{layers()[2]};
+  roof[0].features[0].holes = {{{6, 1, 5}, {8, 1, 5}, {8, 2, 5}}};
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.gpkg", "a.dxf"}) {
+    name[2] == 'g' ? write_gpkg(folder / name, roof, "EPSG:32632") : write_dxf(folder / name, roof, "EPSG:32632");
+    const VectorLines read = read_lines(folder / name);
+    ASSERT_EQ(read.lines.size(), 2u) << name;
+    EXPECT_EQ(read.lines[1].x, (std::vector<double>{6, 8, 8, 6})) << name;
+  }
+  roof[0].features[0].holes[0].pop_back();
+  EXPECT_THROW(write_gpkg(folder / "b.gpkg", roof, "EPSG:32632"), core::Error);
+}
+
 TEST(FeatureFile, TablesQuoteTextsAndLeaveUnsetNumbersEmpty) {
   const test::TemporaryFolder folder;
   write_feature_csv(folder / "a.csv", layers()[0]);
