@@ -12,7 +12,7 @@ namespace {
 using core::Value;
 
 constexpr std::string_view box_code = "points.outside_box", damage_code = "work.damaged", geometry_code = "geometry.contradiction",
-                           mistake_code = "geometry.mistake", control_code = "control.unused";
+                           mistake_code = "geometry.mistake", control_code = "control.unused", buildings_code = "buildings.none";
 
 /// An example for each file, and one for those that the report counts without.
 void add_boxes(const Value& wrong, std::vector<Warning>& out) {
@@ -49,6 +49,10 @@ std::vector<Warning> warnings_in(const Value& report) {
     if (const Value* findings = stage.find("findings"); findings && stage.find("type")->as_text() == "quality.points")
       if (const Value* named = findings->find("named"))
         for (const Value& fault : named->items()) out.push_back({fault.find("code")->as_text(), fault.find("sentence")->as_text(), {}});
+  for (const Value& stage : report.find("stages")->items())
+    if (const Value* findings = stage.find("findings"); findings && stage.find("type")->as_text() == "terrain.buildings")
+      if (const Value* returns = findings->find("returns"); returns && returns->as_int() == 0)
+        out.push_back({std::string(buildings_code), "no return is of class building (6): terrain.buildings found nothing", {}});
   if (const Value* unused = report.find("control_unused"))
     for (const Value& file : unused->items())
       out.push_back({std::string(control_code), "[[control]] " + file.as_text() + " is used by no stage of this run", {}});

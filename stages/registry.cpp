@@ -5,6 +5,7 @@
 #include "stages/adapters/cloud/copc.h"
 #include "stages/adapters/cloud/crop.h"
 #include "stages/adapters/quality/quality_stages.h"
+#include "stages/adapters/terrain/buildings.h"
 #include "stages/adapters/terrain/forest.h"
 #include "stages/adapters/terrain/powerlines.h"
 #include "stages/tile_filter.h"
@@ -68,6 +69,7 @@ const std::vector<Entry>& registry() {
       contours_stage(),
       penetration_stage(),
       forest_stage(),
+      buildings_stage(),
       power_lines_stage(),
       trajectory_writer_stage(),
       las_writer_stage(),

@@ -217,6 +217,9 @@ class Runs(Case):
         self.assertEqual(lines["findings"]["spans"], 0)  # a scene without wires
         forest = stage(self.run_ok(survey, config=SOURCE / "configs" / "forest.toml", out=self.folder / "forest"), "terrain.forest")
         self.assertEqual(forest["findings"]["trees"], len((self.folder / "forest" / "trees.csv").read_text().splitlines()) - 1)
+        buildings = stage(self.run_ok(survey, config=SOURCE / "configs" / "buildings.toml", out=self.folder / "buildings"), "terrain.buildings")
+        city = json.loads((self.folder / "buildings" / "buildings.city.json").read_text())
+        self.assertEqual(buildings["findings"]["buildings"], len(city["CityObjects"]))
         copc = self.run_ok(survey, config=SOURCE / "configs" / "copc.toml", out=self.folder / "copc")
         self.assertEqual(stage(copc, "writers.copc")["findings"]["points"], stage(report, "writers.las")["counts"]["in"])
         self.assertTrue((self.folder / "copc" / "points.copc.laz").exists())
@@ -232,7 +235,7 @@ class Runs(Case):
         # lever_arm_test.py, strips.toml in strips_test.py, network.toml in network_test.py, calibrate.toml in calibration_test.py.
         known = {"survey.toml", "survey_sbet.toml", "trajectory.toml", "events.toml", "georeference.toml", "cloud.toml", "lever_arm.toml",
                  "strips.toml", "calibrate.toml", "classes.toml", "survey_classes.toml", "terrain.toml", "dtm.toml", "copc.toml", "corridor.toml",
-                 "convert_trajectory.toml", "forest.toml", "qc.toml", "network.toml"}
+                 "convert_trajectory.toml", "forest.toml", "buildings.toml", "qc.toml", "network.toml"}
         self.assertEqual({c.name for c in CONFIGS}, known, "a new config is run here too")
 
     def test_the_config_as_json_gives_the_same_products(self):

@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PLACEHOLDERS = {"SURVEY": "survey", "DIR": "demo", "LENGTH": '"1 km"', "WIDTH": '"500 m"', "LINES": "2", "PRF": '"50 kHz"', "FREQUENCY": '"50 Hz"'}
 SMALL = ["world.scene=hills", "world.length=300 m", "world.width=200 m", "flight.lines=2", "flight.cross_lines=0", "flight.height=300 m",
          "scanner.prf=2 kHz"]
-SURVEYS = {"cloud": "cloud", "qc": "cloud", "classes": "cloud", "corridor": "cloud", "forest": "cloud", "terrain": "cloud", "copc": "cloud", "dtm": "cloud", "lever_arm": "hangar"}  # config: what it starts from
+SURVEYS = {"cloud": "cloud", "qc": "cloud", "classes": "cloud", "corridor": "cloud", "forest": "cloud", "buildings": "cloud", "terrain": "cloud", "copc": "cloud", "dtm": "cloud", "lever_arm": "hangar"}  # config: what it starts from
 LONGEST = 60  # s that a command may take, and a simulation before it begins to write
 
 
