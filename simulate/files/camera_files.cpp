@@ -13,6 +13,7 @@
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
 #include "io/text/output_file.h"
+#include "io/text/toml_text.h"
 #include "simulate/random.h"
 
 namespace swath::simulate {
@@ -152,6 +153,16 @@ class Photographer {
     return (1.0 - inwards) * farthest->on_map.head<2>() + inwards * middle;
   }
 
+  /// `across`: points from west to east and from south to north.
+  void expect_few_points(const Vector2d& across) const {
+    constexpr double most_points = 2e7;
+    const double points = across.x() * across.y();
+    if (points < most_points) return;
+    std::array<char, 80> text;
+    std::snprintf(text.data(), text.size(), "the flight would have %.0f million tie points", 1e-6 * points);
+    throw core::usage_error(text.data(), "camera.points", "check camera.f and camera.pixel, or take fewer points");
+  }
+
   /// Ground points about evenly where images may see them, as many as make `points` per image; control and check points.
   void lay_points() {
     if (exposures_.empty()) return;
@@ -163,6 +174,7 @@ class Photographer {
     }
     const double side = c_.pixel.value / c_.f.value * height, spacing = side * std::sqrt(double(c_.columns) * c_.rows / c_.points);
     const double rim = 0.5 * side * std::min(c_.columns, c_.rows);
+    expect_few_points((high - low + Vector2d::Constant(2.0 * rim)) / spacing);
     Random random = random_of(o_.seed, Stream::camera, of_images);
     size_t k = 0;
     for (double e = low.x() - rim; e < high.x() + rim; e += spacing)
@@ -299,13 +311,12 @@ class Photographer {
     const auto no_less = [](double sigma, double least) { return std::max(sigma, least); };
     const Vector3d arm = vector_of(o_.mounting.lever_arm_antenna) - vector_of(c_.lever_arm);
     const bool drifts = c_.shift.value > 0.0 || c_.drift.value > 0.0;
-    std::string text =
-        "# Simulated images: swath block block.toml; truth/ holds what is known of them.\nkind = \"block_adjust\"\ncrs = \"" + o_.crs +
-        "\"\ndrift = \"" + (drifts ? "strip" : "none") +
-        "\"\n\n[images]\nfile = \"images.csv\"\nsigma_station_h = " + length(no_less(c_.station_horizontal.value, 1e-4)) +
-        "\nsigma_station_v = " + length(no_less(c_.station_vertical.value, 1e-4)) +
-        "\nangles = \"roll_pitch_heading\"\nnorth = \"true\"\nangle_use = \"observed\"\nsigma_angle = " +
-        angle(no_less(c_.roll_pitch.value, 1e-7)) + "\nsigma_heading = " + angle(no_less(c_.heading.value, 1e-7)) + "\n\n";
+    std::string text = "# Simulated images: swath block block.toml; truth/ holds what is known of them.\nkind = \"block_adjust\"\ncrs = " +
+                       io::toml_scalar(o_.crs) + "\ndrift = \"" + (drifts ? "strip" : "none") +
+                       "\"\n\n[images]\nfile = \"images.csv\"\nsigma_station_h = " + length(no_less(c_.station_horizontal.value, 1e-4)) +
+                       "\nsigma_station_v = " + length(no_less(c_.station_vertical.value, 1e-4)) +
+                       "\nangles = \"roll_pitch_heading\"\nnorth = \"true\"\nangle_use = \"observed\"\nsigma_angle = " +
+                       angle(no_less(c_.roll_pitch.value, 1e-7)) + "\nsigma_heading = " + angle(no_less(c_.heading.value, 1e-7)) + "\n\n";
     text += "[[camera]]\nname = \"camera\"\nf = " + length(c_.nominal_f.value) + "\nk3 = " + core::format_number(c_.k3) +
             "\ndistortion = \"ideal\"\ncolumns = " + std::to_string(c_.columns) + "\nrows = " + std::to_string(c_.rows) +
             "\npixel = " + length(c_.pixel.value) + "\nmount = " + angle(c_.mount.value) + "\nantenna = [" + length(arm.x()) + ", " +

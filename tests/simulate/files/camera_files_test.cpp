@@ -122,5 +122,18 @@ TEST(CameraFiles, StationsHaveTheirShiftAndDrift) {
     }
 }
 
+/// A principal distance in metres for one in millimetres: thousands of millions of points.
+TEST(CameraFiles, MorePointsThanFitAreRefused) {
+  const test::TemporaryFolder folder;
+  Options o = small_flight();
+  o.camera.f = core::Metres(50.0);
+  try {
+    run(o, folder.path(), {});
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_NE(e.text().find("million tie points"), std::string::npos) << e.text();
+  }
+}
+
 }  // namespace
 }  // namespace swath::simulate
