@@ -33,7 +33,7 @@ TEST(ForestStage, TheTilingChangesNothing) {
   const core::Block all = wood();
   Work w;
   w.context.origin = all.origin;
-  const auto stage = stage_with("terrain.forest", "cell = \"7 m\"\n");
+  const auto stage = make_stage("terrain.forest");
   const auto run = [&](double tile, const std::string& name) {
     w.context.tile_side = tile;
     w.context.output = w.folder / (name + "/products");

@@ -172,6 +172,12 @@ PowerLineCounts collect(const TileJob& job, const PowerLineOptions& o) {
   return {wires.size(), towers.size(), around.size()};
 }
 
+/// In an order that their places alone decide: sums do not depend on the tiling to the last bit.
+template <class Row>
+void sort_by_place(std::vector<Row>& rows) {
+  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
+}
+
 /// What lies around a span, from the tiles that it touches. Tiles of the span before are kept.
 class Surroundings {
  public:
@@ -199,6 +205,7 @@ class Surroundings {
         if (box.holds(r.x + context_.origin.x(), r.y + context_.origin.y())) out.push_back({r.x, r.y, r.z, static_cast<Hazard>(r.kind)});
     }
     tiles_ = std::move(now);
+    sort_by_place(out);
     return out;
   }
 
@@ -304,6 +311,7 @@ PowerLineFindings summary(const PowerLineResult& r, size_t wires) {
 PowerLineFindings find_lines(const MergeJob& job, const Context& context, const PowerLineOptions& o) {
   std::vector<CorridorRow> wire_rows, tower_rows;
   for (const TileKey key : job.tiles) read_rows(wires_file(job.folder, key), wire_rows, tower_rows);
+  sort_by_place(wire_rows), sort_by_place(tower_rows);
   std::vector<terrain::WirePoint> wires;
   std::vector<terrain::TowerPoint> towers;
   for (const CorridorRow& r : wire_rows) wires.push_back({r.x, r.y, r.z, static_cast<std::uint16_t>(r.line)});
