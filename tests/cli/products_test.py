@@ -2,6 +2,7 @@
 """One small survey through the stages that end a chain: power lines, trees, quality, COPC; what they say of each other and of the truth agrees."""
 import csv
 import json
+import math
 import unittest
 
 from support import Case, stage, swath
@@ -52,7 +53,8 @@ class Products(Case):
         self.assertGreaterEqual(len(conductors), len(wires))
         self.assertEqual(len(rows(self.made / "powerlines_spans.csv")), found["spans"])
         self.assertEqual(len(rows(self.made / "powerlines_pylons.csv")), found["pylons"])
-        self.assertEqual(len(rows(self.made / "powerlines_infringements.csv")), found["infringements"])
+        near = rows(self.made / "powerlines_infringements.csv")  # of each conductor; a square metre that two come near counts once
+        self.assertEqual(len({(r["of"], math.floor(float(r["x"])), math.floor(float(r["y"]))) for r in near}), found["infringements"])
         self.assertEqual(len(rows(self.made / "powerlines_falling_trees.csv")), found["falling_trees"])
         lowest = {"low": float(wires[0]["z0"]), "found": min(float(c["z0"]) for c in conductors)}
         self.assertLess(abs(lowest["found"] - lowest["low"]), 1.0, lowest)

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "core/error.h"
 #include "core/geo/geodesy.h"
 #include "io/text/text_table.h"
 #include "simulate/simulate.h"
