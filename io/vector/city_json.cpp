@@ -2,6 +2,7 @@
 // CityJSON 2.0 (OGC 20-072r5): chapters on the transform, metadata, geometry objects and semantics.
 #include "io/vector/city_json.h"
 
+#include <ogr_spatialref.h>
 #include <rapidjson/stringbuffer.h>
 #include <rapidjson/writer.h>
 
@@ -23,6 +24,18 @@ using Writer = rapidjson::Writer<rapidjson::StringBuffer>;
 using Vertex = std::array<std::int64_t, 3>;
 
 constexpr double vertex_step = 0.001;  // CRS units
+
+/// EPSG's code of the CRS, of its horizontal part where a compound one has none; empty where neither has one.
+std::string epsg_code(const std::string& crs) {
+  if (crs.empty()) return {};
+  const core::Crs given(crs);
+  OGRSpatialReference srs;
+  if (srs.SetFromUserInput(given.wkt().c_str()) == OGRERR_NONE)
+    if (const char* name = srs.GetAuthorityName(nullptr), *code = srs.GetAuthorityCode(nullptr);
+        name && code && std::string(name) == "EPSG")
+      return code;
+  return given.epsg() > 0 ? std::to_string(given.epsg()) : "";
+}
 
 struct Extent {
   Vector3d low{0.0, 0.0, 0.0}, high = low;
@@ -92,8 +105,7 @@ class CityWriter {
     out_.Key("metadata");
     out_.StartObject();
     extent(extent_);
-    if (const int code = crs.empty() ? 0 : core::Crs(crs).epsg(); code > 0)
-      member("referenceSystem", "https://www.opengis.net/def/crs/EPSG/0/" + std::to_string(code));
+    if (const std::string code = epsg_code(crs); !code.empty()) member("referenceSystem", "https://www.opengis.net/def/crs/EPSG/0/" + code);
     if (!title.empty()) member("title", title);
     out_.EndObject();
   }
