@@ -127,6 +127,12 @@ def _entry(file: Path, columns: Mapping[str, Array], default: Mapping[str, Any],
     return {"file": str(file), **default, **(given or {}), "columns": {n: n for n in columns}}
 
 
+def _expect(survey: Mapping[str, Any], key: str, what: str, where: str, hint: str) -> None:
+    """Raises Error where neither the call nor the survey has these records."""
+    if not survey.get(key):
+        raise usage_error(f"no {what}", f"{where}: {key}", hint)
+
+
 def smooth(imu: Any = None, gnss: Any = None, *, survey: Survey | None = None, imu_format: Mapping[str, Any] | None = None,
            gnss_format: Mapping[str, Any] | None = None, threads: int | None = None, memory: str | None = None, progress: bool = False,
            **options: Any) -> Trajectory:
@@ -150,6 +156,8 @@ def smooth(imu: Any = None, gnss: Any = None, *, survey: Survey | None = None, i
             tree["imu"] = [_entry(folder / "imu.npy", _columns(imu, IMU_COLUMNS, "imu"), default, imu_format)]
         if gnss is not None:
             tree["gnss"] = [_entry(folder / "gnss.csv", _columns(gnss, GNSS_COLUMNS, "gnss"), {"angle_unit": "deg", "time": {"scale": "gps"}}, gnss_format)]
+        _expect(tree, "imu", "IMU records", "swath.smooth", "give them as `imu`, or a survey that has [[imu]]")
+        _expect(tree, "gnss", "GNSS positions", "swath.smooth", "give them as `gnss`, or a survey that has [[gnss]]")
         config = {"run": settings, "stage": [{"type": s, **(plain(options) if s == "trajectory.ins_gnss" else {})} for s in stages]}
         done = _swath.run({"in_memory": True, "config": "swath.smooth", "tree": json.dumps(config), "command": "swath.smooth", "bar": progress,
                            "survey": survey_file(folder, tree), "output": str(folder / "out"), "memory_beside": 0.0 if memory else MEMORY_BESIDE})
@@ -159,11 +167,13 @@ def smooth(imu: Any = None, gnss: Any = None, *, survey: Survey | None = None, i
 
 def read_trajectory(survey: Survey, *, max_gap: str = "0.1 s") -> Trajectory:
     """The trajectory that a survey names ([[trajectory]]: SBET with smrmsg, text), as the stage readers.trajectory reads it."""
+    tree = read_survey(survey)
+    _expect(tree, "trajectory", "trajectory", "swath.read_trajectory", "give a survey that has [[trajectory]]")
     config = {"stage": [{"type": "readers.trajectory", "max_gap": max_gap}, {"type": "python.take_trajectory"}]}
     with tempfile.TemporaryDirectory(prefix="swath-") as name:
         folder = Path(name)
         done = _swath.run({"in_memory": True, "config": "swath.read_trajectory", "tree": json.dumps(config), "command": "swath.read_trajectory",
-                           "survey": survey_file(folder, read_survey(survey)), "output": str(folder / "out"), "memory_beside": MEMORY_BESIDE})
+                           "survey": survey_file(folder, tree), "output": str(folder / "out"), "memory_beside": MEMORY_BESIDE})
     return Trajectory(done["trajectory"], report_of(json.loads(done["report"])), _step(done["trajectory"]))
 
 
