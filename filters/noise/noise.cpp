@@ -144,6 +144,7 @@ bool is_isolated(const Bins& bins, CellIndex c, const Bins::Point& p, const Nois
     return count_around(bins, c, balls, o.neighbours + 1, near) <= o.neighbours;  // the point itself is counted
   };
   if (!alone(1)) return false;
+  if (!o.widen) return true;
   const auto beside = [&](const Bins::Point& q) { return squared(q.x - p.x) + squared(q.y - p.y) <= squared(o.radius.value); };
   if (count_around(bins, c, 1, sparse * o.neighbours + 1, beside) > sparse * o.neighbours) return true;
   return alone(wider) && (usual_in_disc(bins, c, district, wider) >= usual_alone * o.neighbours ||

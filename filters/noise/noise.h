@@ -14,6 +14,7 @@ namespace swath::filters {
 struct NoiseOptions {
   core::Metres radius{5.0};
   int neighbours = 4;
+  bool widen = true;
   core::Metres low_depth{1.0};
   core::Metres low_radius{5.0};
   int low_group = 6;
@@ -23,9 +24,9 @@ struct NoiseOptions {
 
 template <class V>
 void describe(NoiseOptions& o, V& v) {
-  v.option("radius", o.radius, core::above(0.0),
-           "Radius of the ball in which an isolated point's neighbours are counted; twice it where sparse.");
+  v.option("radius", o.radius, core::above(0.0), "Radius of the ball in which an isolated point's neighbours are counted.");
   v.option("neighbours", o.neighbours, core::within(0, 1000), "A point with fewer neighbours is isolated; 0 keeps all.");
+  v.option("widen", o.widen, "Where points are sparse, neighbours within twice the radius count, too.");
   v.option("low_depth", o.low_depth, core::above(0.0), "A low point lies at least this far below the ground around it.");
   v.option("low_radius", o.low_radius, core::above(0.0), "Horizontal radius in which a group of low points must stand alone.");
   v.option("low_group", o.low_group, core::within(0, 1000), "Most points of one group of low points; 0 keeps all.");
@@ -69,6 +70,7 @@ double halo(const NoiseOptions& o);
 /// - Isolated: fewer than `neighbours` other points within `radius` in 3D (exact); where fewer than eight times as many lie within it in
 ///   plan, so that sparse ground would be isolated too, also within twice the radius. Where the 9 x 9 columns around (side radius) hold so
 ///   few that less than twice `neighbours` are usual within twice the radius, only those with fewer than `neighbours` in these columns.
+///   Without `widen` the ball of `radius` alone decides.
 /// - Low point: at most `low_group` points (itself one) within `low_radius` horizontally are lower than low_depth above it, and the
 ///   lowest points of the cells around (side low_radius, second and third ring) say the same: of the 20 chords between opposite cells at
 ///   least 8 exist, and at most one passes less than low_depth above the point. Where fewer than twice low_group are usual within

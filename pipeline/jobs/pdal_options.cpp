@@ -52,15 +52,43 @@ const std::vector<PdalFilter>& pdal_filters() {
        "filters.outlier",
        {{"mean_k", "mean_k", PdalUnit::none, 8.0}, {"multiplier", "multiplier", PdalUnit::none, 2.0}},
        {{"min_distance", "0 m"}, {"group", 0}},
-       "mean and deviation of the points around in place of the whole cloud's; classes 7 below and 18 above"},
+       "mean and deviation of the points around in place of the whole cloud's; classes 7 below and 18 above",
+       "statistical"},
+      {"filters.outlier",
+       "filters.noise",
+       {{"radius", "radius", PdalUnit::across, 1.0}, {"min_k", "neighbours", PdalUnit::none, 2.0}},
+       {{"widen", false}, {"low_group", 0}},
+       "class 18 in place of 7; points that are withheld or noise before are not neighbours",
+       "radius"},
   };
   return list;
+}
+
+std::string pdal_nearest(const std::string& type) {
+  static const std::string thin =
+      "here no filter deletes points; nearest is filters.key_points, which flags those that the ground's surface needs";
+  static const std::map<std::string, std::string> nearest{
+      {"filters.sample", thin},
+      {"filters.decimation", thin},
+      {"filters.voxelcentroidnearestneighbor", thin},
+      {"filters.voxelcenternearestneighbor", thin},
+      {"filters.voxeldownsize", thin},
+      {"filters.crop", "nearest is filters.crop of a config, which withholds points outside of polygons in a file"},
+      {"filters.hag_nn", "nearest is filters.hag_delaunay"},
+      {"filters.hag_dem", "nearest is filters.hag_delaunay"},
+      {"filters.dem", "nearest is filters.noise of a config"},
+      {"filters.expression", "nearest is filters.range with Classification[a:b] right before writers.gdal"},
+      {"filters.returns", "nearest is filters.returns of a config, which numbers the returns of pulses and deletes none"},
+      {"writers.ept_addon", "nearest is writers.copc"},
+      {"writers.ogr", "nearest is writers.las"},
+      {"writers.raster", "nearest is writers.gdal"}};
+  const auto at = nearest.find(type);
+  return at == nearest.end() ? "" : at->second;
 }
 
 bool is_the_case(const std::string& type, const std::string& name, const Value& value) {
   static const std::map<std::string, std::vector<std::string>> same{{"returns", {"last, only", "last,only"}},
                                                                     {"class", {"7"}},
-                                                                    {"method", {"statistical"}},
                                                                     {"dir", {""}},
                                                                     {"gdaldriver", {"GTiff"}},
                                                                     {"data_type", {"float", "float32"}},

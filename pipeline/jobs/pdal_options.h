@@ -26,9 +26,13 @@ struct PdalFilter {
   std::vector<PdalOption> options;
   std::vector<std::pair<const char*, core::Value>> fixed;
   const char* differs;
+  const char* method = "";  ///< the filter's option `method` that this is; empty: any, or the filter has none
 };
 
 const std::vector<PdalFilter>& pdal_filters();
+
+/// What comes nearest here to a stage of PDAL's that has no counterpart; empty where nothing does.
+std::string pdal_nearest(const std::string& type);
 
 /// May the option be written because its value is what is the case here: "returns" = "last, only"?
 bool is_the_case(const std::string& type, const std::string& name, const core::Value& value);

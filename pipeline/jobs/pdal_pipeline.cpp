@@ -194,9 +194,9 @@ class Translation {
       refuse(*s.find("inputs"), "a pipeline with branches has no counterpart here", "one chain from readers to writers");
     if (limited_ && !type.starts_with("writers.gdal"))
       refuse(*limited_, "points of other classes would be deleted before " + type + ", and here filters flag and never delete",
-             "filters.range goes right before writers.gdal");
-    for (const PdalFilter& f : pdal_filters())
-      if (type == f.type) return filter(s, f);
+             type.starts_with("writers.") ? "leave filters.range out: every point is written with its class, by which readers choose"
+                                          : "filters.range goes right before writers.gdal");
+    if (const PdalFilter* f = filter_of(s)) return filter(s, *f);
     if (type == "filters.range") return range(s);
     if (type == "filters.hag_delaunay") return heights(s);
     if (type == "filters.reprojection") return runs_as_.push_back(type + ": the CRS of the products, from the reader on"), void();
@@ -205,8 +205,23 @@ class Translation {
     if (type == "writers.las" || type == "writers.copc") return points(s);
     if (type == "writers.gdal") return grid(s);
     if (type.starts_with("readers.")) refuse(s, "a reader behind other stages has no counterpart here", "readers come first");
+    const std::string nearest = pdal_nearest(type);
     refuse(s, "'" + type + "' has no counterpart here",
-           "filters.smrf, pmf, csf, elm, outlier, range, hag_delaunay, reprojection and merge have, writers.las, gdal and copc");
+           !nearest.empty()
+               ? nearest
+               : "filters.smrf, pmf, csf, elm, outlier, range, hag_delaunay, reprojection and merge have, writers.las, gdal and copc");
+  }
+
+  /// The filter of the stage's type and method; of its type alone where the method is unknown, which filter() then refuses.
+  static const PdalFilter* filter_of(const Value& s) {
+    const Value* method = s.find("method");
+    const PdalFilter* found = nullptr;
+    for (const PdalFilter& f : pdal_filters()) {
+      if (type_of(s) != f.type) continue;
+      if (!method || (method->is_text() && method->as_text() == f.method)) return &f;
+      if (!found) found = &f;
+    }
+    return found;
   }
 
   void filter(const Value& s, const PdalFilter& f) {
@@ -215,6 +230,7 @@ class Translation {
       if (o.set) stage[o.ours] = converted(*o.set, o);
     for (const auto& [key, value] : f.fixed) stage[key] = value;
     each_option(s, [&](const std::string& name, const Value& v) {
+      if (name == "method" && v.is_text() && v.as_text() == f.method) return true;
       const auto at = std::find_if(f.options.begin(), f.options.end(), [&](const PdalOption& o) { return name == o.name; });
       if (at == f.options.end()) return false;
       stage[at->ours] = converted(v, *at);

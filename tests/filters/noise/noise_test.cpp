@@ -46,6 +46,27 @@ TEST(Noise, IsolatedPointsAreThoseOfTheDefinition) {
   EXPECT_GT(saved, 100u);
 }
 
+TEST(Noise, WithoutWideningTheBallAloneDecides) {
+  core::Block b;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(0.0, 60.0);
+  core::resize(b, 1500);
+  for (size_t p = 0; p < b.size(); ++p) b.x[p] = place(random), b.y[p] = place(random), b.z[p] = place(random);
+  NoiseOptions o;
+  o.low_group = 0;
+  o.widen = false;
+  flag_noise(b, b.size(), o);
+  std::uint64_t isolated = 0;
+  for (size_t p = 0; p < b.size(); ++p) {
+    int near = 0;
+    for (size_t q = 0; q < b.size(); ++q)
+      near += q != p && std::pow(b.x[q] - b.x[p], 2) + std::pow(b.y[q] - b.y[p], 2) + std::pow(b.z[q] - b.z[p], 2) <= 25.0;
+    ASSERT_EQ(is(b, p, core::flag::isolated), near < o.neighbours);
+    isolated += near < o.neighbours;
+  }
+  EXPECT_GT(isolated, 200u);
+}
+
 TEST(Noise, SparseGroundIsNotIsolatedAndBirdsAre) {
   core::Block b;
   for (int j = 0; j < 30; ++j)

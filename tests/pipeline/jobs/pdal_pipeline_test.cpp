@@ -77,6 +77,20 @@ TEST_F(Pdal, LengthsAreInUnitsOfTheCrs) {
   EXPECT_EQ(smrf.find("slope"), nullptr) << "the default of both";
 }
 
+TEST_F(Pdal, OutliersByRadiusAreIsolatedPoints) {
+  const auto outliers = [](const std::string& options, const std::string& reader) {
+    return io::to_json(
+        config(chain(R"({"type": "filters.outlier", "method": "radius")" + options + "}", "\"p.laz\"", reader)).find("stage")->items()[1]);
+  };
+  const auto noise = [](const std::string& json) { return io::to_json(io::parse_json(json, "made")); };
+  EXPECT_EQ(outliers("", "\"metres.laz\""),
+            noise(R"({"type": "filters.noise", "radius": "1 m", "neighbours": 2, "widen": false, "low_group": 0})"));
+  EXPECT_EQ(outliers(R"(, "radius": 10, "min_k": "4")", "\"feet.laz\""),
+            noise(R"({"type": "filters.noise", "radius": "3.048 m", "neighbours": 4, "widen": false, "low_group": 0})"));
+  const Value statistical = config(chain(R"({"type": "filters.outlier", "method": "statistical", "mean_k": 6})"));
+  EXPECT_EQ(statistical.find("stage")->items()[1].find("type")->as_text(), "filters.outlier");
+}
+
 TEST_F(Pdal, EveryStageThatBothHaveMakesAPlan) {
   test::write_bytes("x.json", R"([{"type": "readers.las", "filename": "metres.laz"}, {"type": "readers.las", "filename": "feet.laz"},
     {"type": "filters.merge"}, {"type": "filters.reprojection", "out_srs": "EPSG:32610"}, {"type": "filters.elm"}, {"type": "filters.outlier", "mean_k": 12},
@@ -101,11 +115,16 @@ TEST_F(Pdal, WhatHasNoCounterpartIsRefusedWithItsPlace) {
     EXPECT_NE(text.find(why), std::string::npos) << json << "\n" << text;
   };
   refused(chain(R"({"type": "filters.sample", "radius": 1})"), "'filters.sample' has no counterpart here");
+  refused(chain(R"({"type": "filters.sample", "radius": 1})"), "nearest is filters.key_points");
   refused(chain(R"({"type": "filters.smrf", "ignore": "Classification[7:7]"})"), "filters.smrf: 'ignore'");
   refused(chain(R"({"type": "filters.smrf", "cell": "wide"})"), "'cell' is not a number");
   refused(chain(ground), "points of other classes would be deleted before writers.las");
+  refused(chain(ground), "every point is written with its class");
   refused(chain(R"({"type": "filters.range", "limits": "Z[0:100]"})"), "filters flag points and never delete them");
-  refused(chain(R"({"type": "filters.outlier", "method": "radius"})"), "'method' = radius");
+  refused(chain(R"({"type": "filters.outlier", "method": "cluster"})"), "filters.outlier: 'method' = cluster");
+  refused(chain(R"({"type": "filters.outlier", "method": "radius", "mean_k": 8})"), "filters.outlier: 'mean_k'");
+  refused(chain(R"({"type": "filters.outlier", "radius": 2})"), "filters.outlier: 'radius'");
+  refused(chain(R"({"type": "filters.smrf", "method": "statistical"})"), "filters.smrf: 'method'");
   refused(chain(R"({"type": "filters.smrf", "inputs": ["a"]})"), "branches");
   refused(chain("", R"({"type": "writers.gdal", "filename": "a.tif", "resolution": 1, "output_type": "idw"})"), "the mean of all points");
   refused(chain(ground, R"({"type": "writers.gdal", "filename": "a.tif", "resolution": 1})"), "output_type 'all'");
