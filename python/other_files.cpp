@@ -95,7 +95,7 @@ void bind_other_files(nb::module_& m) {
   m.def("read_raster", &read_raster);
   m.def("write_contours", &write_contours);
   m.def("simulate", &simulate_survey);
-  m.def("use_proj_folder", [](const std::string& folder) { core::use_proj_folder(folder); });
+  m.def("use_proj_folders", [](const std::vector<std::string>& folders) { core::use_proj_folders({folders.begin(), folders.end()}); });
   m.def("describe_file", [](const std::string& file) { return io::to_json(io::describe_file(file)); });
 }
 

@@ -44,14 +44,7 @@ for file in "$root"/lib/*; do patchelf --set-rpath '$ORIGIN' "$file"; done
 mkdir -p "$root/share/proj" "$root/share/swath/fonts"
 cp -L /usr/share/proj/proj.db /usr/share/proj/proj.ini "$root/share/proj/"
 cp -L /usr/share/fonts/truetype/dejavu/DejaVuSans.ttf /usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf "$root/share/swath/fonts/"
-cat >"$root/share/swath/fonts/fonts.conf" <<'CONF'
-<?xml version="1.0"?>
-<!DOCTYPE fontconfig SYSTEM "urn:fontconfig:fonts.dtd">
-<fontconfig>
-  <dir prefix="relative">.</dir>
-  <cachedir prefix="xdg">fontconfig</cachedir>
-</fontconfig>
-CONF
+cp cmake/fonts.conf "$root/share/swath/fonts/"
 # The licences of what is bundled.
 mkdir -p "$root/share/doc/swath/licences"
 for file in "$root"/lib/*; do

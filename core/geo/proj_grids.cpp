@@ -37,10 +37,12 @@ std::vector<std::filesystem::path> grid_files_between(const Crs& from, const Crs
   return {out.begin(), out.end()};
 }
 
-void use_proj_folder(const std::filesystem::path& folder) {
-  const std::string name = folder.string();
-  const char* names[] = {name.c_str()};
-  proj_context_set_search_paths(nullptr, name.empty() ? 0 : 1, names);  // of the default context, which all others are copied from
+void use_proj_folders(const std::vector<std::filesystem::path>& folders) {
+  std::vector<const char*> names;
+  for (const std::filesystem::path& folder : folders)
+    if (!folder.empty()) names.push_back(folder.c_str());
+  // Of the default context, which all others are copied from.
+  proj_context_set_search_paths(nullptr, static_cast<int>(names.size()), names.data());
 }
 
 }  // namespace swath::core

@@ -12,8 +12,8 @@ namespace swath::core {
 /// it may choose. Empty where none takes any, or either CRS is empty.
 std::vector<std::filesystem::path> grid_files_between(const Crs& from, const Crs& to);
 
-/// From now on PROJ finds its database and grids in this folder, in place of the one that it was built for; GDAL's PROJ, too. Empty: that
-/// one again. To be called before other threads use PROJ.
-void use_proj_folder(const std::filesystem::path& folder);
+/// From now on PROJ finds its database and grids in these folders, the first that holds a file, in place of those that it was built for and
+/// that the environment names; GDAL's PROJ, too. None: these again. Empty names are left out. To be called before other threads use PROJ.
+void use_proj_folders(const std::vector<std::filesystem::path>& folders);
 
 }  // namespace swath::core

@@ -6,9 +6,8 @@ numbers with their units as text (cell="50 cm"). Pipeline runs whole surveys. Wh
 """
 
 import os as _os
-from pathlib import Path as _Path
 
-from . import _swath
+from . import _swath, _wheel
 from ._errors import Error
 from ._flight import Trajectory, georeference, read_survey, read_trajectory, simulate, smooth
 from ._functions import FUNCTIONS
@@ -20,8 +19,11 @@ from ._surfaces import VOIDS, Contour, Contours, Grid, read_grid
 from ._swath import version as __version__
 
 globals().update(FUNCTIONS)
-if not {"PROJ_DATA", "PROJ_LIB"} & set(_os.environ) and (_Path(__file__).parent / "proj/proj.db").is_file():
-    _swath.use_proj_folder(str(_Path(__file__).parent / "proj"))  # a wheel's own; other packages' PROJ is left alone
+if _folders := _wheel.proj_folders(_os.environ):
+    # Within this module alone: other packages' PROJ, and the environment that they read, are left as they are.
+    _swath.use_proj_folders([_wheel.users_proj_folder(_os.environ), *_folders])
+if _settings := _wheel.typeface(_os.environ):
+    _os.environ["FONTCONFIG_FILE"] = _settings
 __all__ = ["VOIDS", "Contour", "Contours", "Error", "Grid", "Pipeline", "Points", "Report", "Stage", "Storage", "Tile", "Trajectory", "as_points",
            "describe_file", "georeference", "read_grid", "read_points", "read_report", "read_survey", "read_trajectory", "simulate", "smooth",
            "stages", "write_points", "__version__", *FUNCTIONS]

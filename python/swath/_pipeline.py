@@ -22,7 +22,7 @@ from ._errors import usage_error
 from ._report import Report, report_of
 from ._runs import plain
 
-CONFIGS = Path(__file__).parent / "configs"
+CONFIGS = Path(__file__).parent / "share/swath/configs"
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,12 +7,16 @@ import os
 import sys
 from pathlib import Path
 
+from ._wheel import proj_folders
+
+
+def environment_of(environment: dict[str, str]) -> dict[str, str]:
+    """The program's environment: PROJ finds the wheel's database unless PROJ_DATA names one."""
+    folders = proj_folders(environment)
+    return environment | {"PROJ_DATA": os.pathsep.join(folders)} if folders else environment
+
 
 def main() -> None:
-    """Becomes the program; PROJ finds its database beside it unless the environment names another."""
-    package = Path(__file__).parent
-    data = package / "proj"
-    if (data / "proj.db").is_file():
-        os.environ.setdefault("PROJ_DATA", str(data))
-    program = package / "bin" / "swath"
-    os.execv(program, ["swath", *sys.argv[1:]])
+    """Becomes the program."""
+    program = Path(__file__).parent / "bin" / "swath"
+    os.execve(program, ["swath", *sys.argv[1:]], environment_of(dict(os.environ)))

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "core/geo/proj_handles.h"
 #include "tests/world/support.h"
 
 namespace swath::core {
@@ -25,10 +26,22 @@ void write_geoid(const std::filesystem::path& file, float height) {
 
 TEST(ProjGrids, TheFolderOfTheDatabaseMayBeAnother) {
   const test::TemporaryFolder folder;
-  use_proj_folder(folder.path());
+  use_proj_folders({folder.path()});
   EXPECT_THROW(Crs("EPSG:32632"), Error);
-  use_proj_folder({});
+  use_proj_folders({});
   EXPECT_EQ(Crs("EPSG:32632").epsg(), 32632);
+}
+
+TEST(ProjGrids, SeveralFoldersAreSearchedTogether) {
+  const std::string database = proj_text(proj_context_get_database_path(nullptr));
+  ASSERT_FALSE(database.empty());
+  const test::TemporaryFolder folder;
+  write_geoid(folder / "own.gtx", 40.0f);
+  use_proj_folders({{}, folder.path(), std::filesystem::path(database).parent_path()});
+  const auto files = grid_files_between(wgs84_geodetic(), Crs("+proj=utm +zone=32 +datum=WGS84 +geoidgrids=own.gtx +type=crs"));
+  use_proj_folders({});
+  ASSERT_EQ(files.size(), 1u);
+  EXPECT_EQ(files[0], folder / "own.gtx");
 }
 
 TEST(ProjGrids, AGeoidOfTheUsersOwnIsFound) {
