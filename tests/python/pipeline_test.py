@@ -35,7 +35,9 @@ def opened_ground(tile):
     return np.where(tile.z - opened[j - j0, i - i0] < 0.5, 2, 1)[:tile.own]
 
 
-class OnTile(InFolder):
+class OnHill(InFolder):
+    """A cloud of 600 m side, with runs on it."""
+
     def setUp(self):
         super().setUp()
         columns, self.is_ground = hill(150_000, side=600.0)
@@ -53,6 +55,8 @@ class OnTile(InFolder):
         self.assertEqual(len(tiles), len(self.points))
         return tiles.classification[np.argsort(tiles.gps_time)]
 
+
+class Tilings(OnHill):
     def test_a_filter_of_scipy_gives_the_same_for_any_tiling(self):
         made, calls = {}, {}
         for tile in ("250 m", "500 m"):
@@ -74,6 +78,8 @@ class OnTile(InFolder):
         x, y = np.meshgrid(dtm["500 m"].x, dtm["500 m"].y)
         np.testing.assert_array_equal(dtm["250 m"].at(x, y), dtm["500 m"].height)
 
+
+class OnTile(OnHill):
     def test_behind_the_ground_filter_by_default_and_in_place(self):
         seen = []
 

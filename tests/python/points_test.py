@@ -125,7 +125,9 @@ class Columns(InFolder):
         self.assertEqual(len(stream), 1000)
         del points, columns, array, view, stream  # and released without a fault
 
-    def test_memory_of_ten_million_points(self):
+
+class Memory(InFolder):
+    def test_ten_million_points_are_not_copied(self):
         """In a process of its own: what reading takes beside the columns."""
         script = f"""
 import resource, numpy as np, swath

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """mypy on the package and on code that uses it; the stubs hold what the module has."""
 import ast
+import os
+import shutil
 import subprocess
 import sys
 import unittest
@@ -38,9 +40,9 @@ BAD = ['swath.ground(swath.read_points("a.laz"), wides="80 m")', 'swath.dtm(swat
 
 
 class Stubs(InFolder):
-    def mypy(self, *arguments):
+    def mypy(self, *arguments, package=PACKAGE):
         done = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(self.folder / "cache"), *map(str, arguments)],
-                              capture_output=True, text=True, cwd=self.folder)
+                              capture_output=True, text=True, cwd=self.folder, env=os.environ | {"PYTHONPATH": str(package.parent)})
         return done.returncode, done.stdout + done.stderr
 
     def test_the_package_and_its_use(self):
@@ -54,6 +56,18 @@ class Stubs(InFolder):
         code, said = self.mypy(*(self.folder / f"bad{k}.py" for k in range(len(BAD))))
         for k, line in enumerate(BAD):
             self.assertIn(f"bad{k}.py:2: error", said, line)
+
+    def test_a_fault_in_the_stubs_is_found(self):
+        changed = self.folder / "changed/swath"
+        shutil.copytree(PACKAGE, changed, ignore=shutil.ignore_patterns("*.so", "share"))
+        stub = (changed / "_functions.pyi").read_text()
+        begin = stub.index("def dtm(")
+        end = stub.index(") -> Grid:", begin)
+        (changed / "_functions.pyi").write_text(stub[:end] + ") -> Points:" + stub[end + len(") -> Grid:"):])
+        (self.folder / "good.py").write_text(GOOD)
+        code, said = self.mypy(self.folder / "good.py", package=changed)
+        self.assertEqual(code, 1, said)
+        self.assertIn("expression has type", said)
 
     def test_stubs_hold_every_name(self):
         names = lambda file: {n.name for n in ast.parse((PACKAGE / file).read_text()).body if isinstance(n, (ast.FunctionDef, ast.ClassDef))}
