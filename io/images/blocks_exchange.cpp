@@ -68,11 +68,9 @@ double BlocksFile::number_or(const CPLXMLNode* node, const char* path, double ot
 }
 
 int BlocksFile::pixels(const CPLXMLNode* node, const char* path, const std::string& whose) const {
-  constexpr double most_pixels = 1e6;
-  const double value = number(node, path, whose);
-  if (!(value >= 1.0 && value <= most_pixels && value == std::floor(value)))
-    fail("<" + std::string(path) + "> of " + whose + " is not a number of pixels");
-  return static_cast<int>(value);
+  const std::optional<int> found = pixel_count(number(node, path, whose));
+  if (!found) fail("<" + std::string(path) + "> of " + whose + " is not a number of pixels");
+  return *found;
 }
 
 /// From the axes of CameraOrientation (x right, left, down or up; z = x cross y) to x right, y up, z backward.

@@ -36,12 +36,18 @@ const std::vector<ColmapModel>& colmap_models() {
   return models;
 }
 
+int pixels_in(const ImageLines& lines, std::string_view word, std::string_view name) {
+  const std::optional<int> found = pixel_count(static_cast<double>(lines.count_in(word, name)));
+  if (!found) lines.fail(std::string(name) + " is not a number of pixels: " + std::string(word));
+  return *found;
+}
+
 FileCamera colmap_camera(const ImageLines& lines, const std::vector<std::string_view>& words) {
   if (words.size() < 5) lines.fail("a camera has at least five fields: CAMERA_ID MODEL WIDTH HEIGHT PARAMS");
   FileCamera out;
   out.name = words[0];
-  out.columns = static_cast<int>(lines.count_in(words[2], "WIDTH"));
-  out.rows = static_cast<int>(lines.count_in(words[3], "HEIGHT"));
+  out.columns = pixels_in(lines, words[2], "WIDTH");
+  out.rows = pixels_in(lines, words[3], "HEIGHT");
   for (const ColmapModel& m : colmap_models()) {
     if (words[1] != m.name) continue;
     if (words.size() != 4 + m.values.size() + m.zeros)

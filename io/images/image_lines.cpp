@@ -48,6 +48,12 @@ std::uint64_t ImageLines::count_in(std::string_view word, std::string_view name)
   return value;
 }
 
+std::optional<int> pixel_count(double value) {
+  constexpr double max_pixels = 1e6;
+  if (!(value >= 1.0 && value <= max_pixels && value == std::floor(value))) return std::nullopt;
+  return static_cast<int>(value);
+}
+
 std::vector<std::string_view> blank_words(std::string_view line) {
   std::vector<std::string_view> out;
   constexpr std::string_view blanks = " \t";

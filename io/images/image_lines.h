@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -37,6 +38,9 @@ class ImageLines {
 
 /// The words of a line between blanks and tabs.
 std::vector<std::string_view> blank_words(std::string_view line);
+
+/// Columns or rows of an image: whole, from 1 to a million; nothing otherwise.
+std::optional<int> pixel_count(double value);
 
 /// Names numbered from 0 in the order they come.
 class NumberedNames {

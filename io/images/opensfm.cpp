@@ -37,12 +37,10 @@ const core::Value::Object& table_in(const core::Value& v, std::string_view key, 
   return member_of_kind(v, key, whose, &core::Value::is_object, "table").members();
 }
 int pixels_in(const core::Value& v, std::string_view key, const std::string& whose) {
-  constexpr double most_pixels = 1e6;
   const core::Value& found = member_of_kind(v, key, whose, &core::Value::is_number, "number");
-  const double pixels = found.as_number();
-  if (!(pixels >= 1.0 && pixels <= most_pixels && pixels == std::floor(pixels)))
-    throw core::Error("\"" + std::string(key) + "\" of " + whose + " is not a number of pixels", found.where.text());
-  return static_cast<int>(pixels);
+  const std::optional<int> pixels = pixel_count(found.as_number());
+  if (!pixels) throw core::Error("\"" + std::string(key) + "\" of " + whose + " is not a number of pixels", found.where.text());
+  return *pixels;
 }
 
 double number_or(const core::Value& v, std::string_view key, double otherwise) {

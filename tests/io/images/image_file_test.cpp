@@ -141,6 +141,10 @@ TEST_F(ImageFiles, ColmapAsItsDocumentationHasIt) {
   EXPECT_LT((d.poses[0].camera_R_frame * (front - d.poses[0].position) + Eigen::Vector3d::UnitZ()).norm(), 1e-12);
   write("s/cameras.txt", "1 OPENCV_FISHEYE 3072 2304 2559 2559 1536 1152 0 0 0 0\n");
   EXPECT_NE(fault_of(f).find("OPENCV_FISHEYE, which is not Brown's"), std::string::npos) << fault_of(f);
+  for (const char* width : {"0", "4294967296"}) {
+    write("s/cameras.txt", std::string("1 SIMPLE_RADIAL ") + width + " 2304 2559.81 1536 1152 -0.0218531\n");
+    EXPECT_NE(fault_of(f).find(std::string("WIDTH is not a number of pixels: ") + width), std::string::npos) << fault_of(f);
+  }
 }
 
 TEST_F(ImageFiles, OpenSfm) {

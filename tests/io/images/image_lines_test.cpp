@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "core/error.h"
@@ -27,6 +28,12 @@ TEST(ImageLines, LongLinesCommentsAndLineEnds) {
   EXPECT_EQ(lines.number_in(line, "x"), 7.0);
   EXPECT_EQ(lines.count_in(line, "n"), 7u);
   EXPECT_FALSE(lines.next_data(line));
+}
+
+TEST(ImageLines, PixelsAreWholeFromOneToAMillion) {
+  EXPECT_EQ(pixel_count(7216.0), 7216);
+  EXPECT_EQ(pixel_count(1e6), 1000000);
+  for (const double wrong : {0.0, -3.0, 1.5, 1000001.0, 1e300, std::nan("")}) EXPECT_FALSE(pixel_count(wrong)) << wrong;
 }
 
 TEST(ImageLines, FaultsNameTheLine) {
