@@ -11,17 +11,14 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double at_group = 4.0;      // m along: strands that a support separates end within, before or behind it
-constexpr double beside_group = 8.0;  // m across: arms of a support
-constexpr double in_line = 0.02;      // of the gap, across: strands of one wire
-constexpr double scatter = 1.5;       // of one curve, against that of either side
+constexpr double at_group = 4.0;  // m along: strands that a support separates end within, before or behind it
+constexpr double in_line = 0.02;  // of the gap, across: strands of one wire
 
 /// Whether b begins behind the group where a ends, or ends where a begins, both near its axis: a's and b's wires may be one.
 bool faces(const Strand& a, const Strand& b, const Vector2d& group, const StrandOptions& o) {
   const double s = a.line.s(group);
-  if (std::abs(a.line.v(group)) > beside_group) return false;
-  double low = a.line.s(b.line.at(b.first)), high = a.line.s(b.line.at(b.last));
-  if (low > high) std::swap(low, high);
+  if (std::abs(a.line.v(group)) > support_beside) return false;
+  const auto [low, high] = range_along(a, b);
   const double gap = low > a.last ? low - a.last : a.first - high;
   const bool between = (a.last <= s + at_group && low >= s - at_group) || (high <= s + at_group && a.first >= s - at_group);
   if (!between || gap > o.join) return false;
@@ -29,12 +26,8 @@ bool faces(const Strand& a, const Strand& b, const Vector2d& group, const Strand
 }
 
 bool are_one_curve(const std::vector<WirePoint>& points, const Strand& a, const Strand& b) {
-  std::vector<std::uint32_t> rows = a.points;
-  rows.insert(rows.end(), b.points.begin(), b.points.end());
-  const size_t all = rows.size();
-  const Strand both = fit_strand(points, std::move(rows));
-  return both.fit.found && both.fit.used + all / 20 >= all && both.fit.curve.kappa > 0.0 &&
-         both.fit.sigma <= scatter * std::max(a.fit.sigma, b.fit.sigma);
+  const std::optional<Strand> both = fit_as_one(points, a, b);
+  return both && both->fit.curve.kappa > 0.0 && both->fit.sigma <= joint_growth * std::max(a.fit.sigma, b.fit.sigma);
 }
 
 }  // namespace

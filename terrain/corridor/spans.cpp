@@ -44,8 +44,7 @@ class Groups {  // union-find
 
 /// The part of b's range that lies beside a, on a's line.
 double beside(const Strand& a, const Strand& b) {
-  double low = a.line.s(b.line.at(b.first)), high = a.line.s(b.line.at(b.last));
-  if (low > high) std::swap(low, high);
+  const auto [low, high] = range_along(a, b);
   return std::min(high, a.last) - std::max(low, a.first);
 }
 

@@ -70,4 +70,18 @@ Strand fit_strand(const std::vector<WirePoint>& points, std::vector<std::uint32_
   return out;
 }
 
+Range range_along(const Strand& a, const Strand& b) {
+  const double first = a.line.s(b.line.at(b.first)), last = a.line.s(b.line.at(b.last));
+  return {std::min(first, last), std::max(first, last)};
+}
+
+std::optional<Strand> fit_as_one(const std::vector<WirePoint>& points, const Strand& a, const Strand& b) {
+  std::vector<std::uint32_t> rows = a.points;
+  rows.insert(rows.end(), b.points.begin(), b.points.end());
+  const size_t all = rows.size();
+  Strand both = fit_strand(points, std::move(rows));
+  if (!both.fit.found || both.fit.used + all / 20 < all) return std::nullopt;
+  return both;
+}
+
 }  // namespace swath::terrain

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "terrain/corridor/catenary.h"
@@ -40,7 +41,16 @@ struct Strand {
   double variance_across(double s) const { return sigma_at_mean * sigma_at_mean + s * s * sigma_turn * sigma_turn; }
 };
 
+/// First and last s on a's line of b's outermost returns.
+struct Range {
+  double low, high;
+};
+Range range_along(const Strand& a, const Strand& b);
+
 /// Fits line and catenary to some of the points; fit.found is false where it cannot.
 Strand fit_strand(const std::vector<WirePoint>& points, std::vector<std::uint32_t> rows);
+
+/// Both as one strand; nothing where no curve fits them or more than 5 % of their returns lie off it.
+std::optional<Strand> fit_as_one(const std::vector<WirePoint>& points, const Strand& a, const Strand& b);
 
 }  // namespace swath::terrain

@@ -30,7 +30,6 @@ constexpr int seed_fewest = 4;                                  // returns in li
 constexpr double strand_steepest = 0.6;                         // rise / run
 constexpr double least_extension = 6.0, most_extension = 20.0;  // m that a strand grows at once
 constexpr double support_reach = 3.0;                           // m along a strand around a support
-constexpr double support_beside = 8.0;                          // m across: arms of a support
 constexpr double part_length = 8.0;                             // m: shortest part that a strand is cut into
 constexpr double least_kink = 0.02;                             // change of slope at a support
 constexpr double least_f = 25.0;          // of the F test, 3 and n - 6 degrees of freedom: by chance in far less than one of a million
@@ -38,7 +37,6 @@ constexpr double hanging = 1e-4;          // 1 / m: curves that open downwards b
 constexpr double other_direction = 0.03;  // rad: strands to be joined are nearly in one line
 constexpr double scrap_near = 0.7;        // m
 constexpr double scrap_density = 0.4;     // of the returns per metre of the strand beside it
-constexpr double joint_growth = 1.5;      // of the scatter when two strands of one wire are fitted as one
 constexpr double joint_least = 0.10;      // m: scatter that is good enough in any case
 
 /// v = c0 + c1 u + c2 u^2 / 2, least squares; straight where there are few.
@@ -323,20 +321,16 @@ bool is_support_between(const Strand& a, double from, double to, const std::vect
 std::optional<Strand> joined(const std::vector<WirePoint>& points, const Strand& a, const Strand& b, const std::vector<Vector2d>& supports,
                              const StrandOptions& o) {
   if (std::abs(a.line.along.dot(b.line.along)) < std::cos(other_direction)) return std::nullopt;
-  double low = a.line.s(b.line.at(b.first)), high = a.line.s(b.line.at(b.last));
-  if (low > high) std::swap(low, high);
+  const auto [low, high] = range_along(a, b);
   const double gap = low > a.last ? low - a.last : a.first > high ? a.first - high : 0.0;
   if (gap > o.join || std::min(high, a.last) - std::max(low, a.first) > 0.5 * std::min(high - low, a.length())) return std::nullopt;
   if (gap > 0.0 && is_support_between(a, std::min(high, a.last), std::max(low, a.first), supports)) return std::nullopt;
   const Vector2d middle = b.line.at(0.5 * (b.first + b.last));
   if (std::abs(a.line.v(middle)) > o.tube + 0.02 * gap) return std::nullopt;
-  std::vector<std::uint32_t> rows = a.points;
-  rows.insert(rows.end(), b.points.begin(), b.points.end());
-  const size_t all = rows.size();
-  Strand both = fit_strand(points, std::move(rows));
+  std::optional<Strand> both = fit_as_one(points, a, b);
   const double apart = std::max(a.fit.sigma, b.fit.sigma);
-  if (!both.fit.found || both.fit.used + all / 20 < all || both.fit.sigma > std::max(joint_least, joint_growth * apart) ||
-      both.sigma_v > std::max(joint_least, joint_growth * std::max(a.sigma_v, b.sigma_v)) || both.fit.curve.kappa < -hanging)
+  if (!both || both->fit.sigma > std::max(joint_least, joint_growth * apart) ||
+      both->sigma_v > std::max(joint_least, joint_growth * std::max(a.sigma_v, b.sigma_v)) || both->fit.curve.kappa < -hanging)
     return std::nullopt;
   return both;
 }

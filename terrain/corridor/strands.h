@@ -9,6 +9,9 @@
 
 namespace swath::terrain {
 
+constexpr double support_beside = 8.0;  ///< m across a wire: arms of a support
+constexpr double joint_growth = 1.5;    ///< of the scatter when two strands of one wire are fitted as one
+
 struct StrandOptions {
   double tube = 0.4;       ///< m: returns so near to the growing curve belong to it; holds a bundle of conductors together
   double shortest = 15.0;  ///< m: strands below are left out
