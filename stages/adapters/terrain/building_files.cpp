@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/config/units.h"
+#include "stages/adapters/terrain/on_map.h"
 #include "terrain/buildings/roof_solid.h"
 
 namespace swath::stages {
@@ -11,18 +13,7 @@ namespace {
 
 using terrain::Building;
 
-constexpr double degrees_per_radian = 180.0 / M_PI;
-
-/// Metres relative to the run's origin into units of its CRS.
-struct CrsPlace {
-  const Context& context;
-  double height(double z) const { return (z + context.origin.z()) / context.vertical_unit; }
-  Eigen::Vector3d operator()(const Eigen::Vector3d& p) const {
-    return {(p.x() + context.origin.x()) / context.unit, (p.y() + context.origin.y()) / context.unit, height(p.z())};
-  }
-};
-
-std::vector<Eigen::Vector3d> ring_on_map(const terrain::Ring& ring, const CrsPlace& place, const terrain::RoofPlane* plane) {
+std::vector<Eigen::Vector3d> ring_on_map(const terrain::Ring& ring, const OnMap& place, const terrain::RoofPlane* plane) {
   std::vector<Eigen::Vector3d> out;
   for (const Eigen::Vector2d& p : ring) {
     const double z = plane ? plane->height(p) : 0.0;
@@ -31,7 +22,7 @@ std::vector<Eigen::Vector3d> ring_on_map(const terrain::Ring& ring, const CrsPla
   return out;
 }
 
-io::SpatialFeature area_feature(const terrain::Outline& outline, const CrsPlace& place, const terrain::RoofPlane* plane) {
+io::SpatialFeature area_feature(const terrain::Outline& outline, const OnMap& place, const terrain::RoofPlane* plane) {
   io::SpatialFeature out{ring_on_map(outline.outer, place, plane), {}};
   for (const terrain::Ring& hole : outline.holes) out.holes.push_back(ring_on_map(hole, place, plane));
   return out;
@@ -40,7 +31,7 @@ io::SpatialFeature area_feature(const terrain::Outline& outline, const CrsPlace&
 io::FieldValue number_of(size_t n) { return static_cast<std::int64_t>(n); }
 
 /// The fields of a building; heights in m, those of ground and roof top in the unit of the CRS.
-std::vector<std::pair<std::string, io::FieldValue>> fields_of(const Building& b, size_t number, const CrsPlace& place,
+std::vector<std::pair<std::string, io::FieldValue>> fields_of(const Building& b, size_t number, const OnMap& place,
                                                               const HeightChoices& o) {
   const double ground = ground_of(b, o.ground);
   return {{"building", number_of(number)},
@@ -70,7 +61,7 @@ const char* semantics_of(terrain::Boundary kind) {
   return kind == terrain::Boundary::ground ? "GroundSurface" : kind == terrain::Boundary::roof ? "RoofSurface" : "WallSurface";
 }
 
-io::CityGeometry city_geometry(const char* lod, bool is_solid, const terrain::Solid& faces, const CrsPlace& place) {
+io::CityGeometry city_geometry(const char* lod, bool is_solid, const terrain::Solid& faces, const OnMap& place) {
   io::CityGeometry out{lod, is_solid, {}};
   for (const terrain::SolidFace& face : faces) {
     io::CitySurface surface{semantics_of(face.kind), face.rings};
@@ -86,7 +77,7 @@ io::CityGeometry city_geometry(const char* lod, bool is_solid, const terrain::So
 double ground_of(const Building& b, GroundReference from) { return from == GroundReference::mean ? b.mean_ground : b.lowest_ground; }
 
 std::vector<io::SpatialLayer> building_layers(const std::vector<Building>& buildings, const Context& context, const HeightChoices& o) {
-  const CrsPlace place{context};
+  const OnMap place{context};
   io::SpatialLayer outlines{"buildings",
                             std::string("Outlines; area in m2; eaves and ridge in m above the ") +
                                 (o.ground == GroundReference::mean ? "mean" : "lowest") +
@@ -119,8 +110,8 @@ std::vector<io::SpatialLayer> building_layers(const std::vector<Building>& build
       roofs.features.push_back(area_feature(face.outline, place, &plane));
       roofs.features.back().values = {number_of(k + 1),
                                       number_of(face.plane + 1),
-                                      plane.inclination() * degrees_per_radian,
-                                      plane.aspect() * degrees_per_radian,
+                                      core::to_degrees(plane.inclination()),
+                                      core::to_degrees(plane.aspect()),
                                       plane.rms,
                                       number_of(plane.returns),
                                       area,
@@ -131,7 +122,7 @@ std::vector<io::SpatialLayer> building_layers(const std::vector<Building>& build
 }
 
 CityBuildings city_buildings(const std::vector<Building>& buildings, const Context& context, const HeightChoices& o) {
-  const CrsPlace place{context};
+  const OnMap place{context};
   CityBuildings out;
   for (size_t k = 0; k < buildings.size(); ++k) {
     const Building& b = buildings[k];

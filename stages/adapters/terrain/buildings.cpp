@@ -157,26 +157,21 @@ class Terrain {
 /// Groups of returns that may hold buildings, each whole once all tiles that it touches have been read.
 class Groups {
  public:
-  Groups(const MergeJob& job, const Context& context, const BuildingStageOptions& o)
-      : job_(job), context_(context), o_(o), built_(cells(job, o, true)), seen_(cells(job, o, false)) {
-    left_.assign(built_.groups(), 0);
-    for (const TileKey key : job.tiles)
-      for (const std::uint32_t g : groups_in(key)) ++left_[g];
-  }
+  Groups(const MergeJob& job, const Context& context, const BuildingStageOptions& o) : Groups(job, context, o, cells_of(job)) {}
 
   terrain::FoundBuildings find() {
     terrain::FoundBuildings all;
     std::map<std::uint32_t, std::vector<terrain::RoofReturn>> open;
     double done = 0.0;
-    for (const TileKey key : job_.tiles) {
+    for (size_t t = 0; t < job_.tiles.size(); ++t) {
       std::vector<RoofRow> rows;
-      read_rows(roofs_file(job_.folder, key), rows);
+      read_rows(roofs_file(job_.folder, job_.tiles[t]), rows);
       for (const RoofRow& r : rows) {
         const terrain::CellPlace c = place_in(r.x + context_.origin.x(), r.y + context_.origin.y(), o_.gap.value);
         open[built_.group(c.i, c.j)].push_back({r.x, r.y, r.z});
       }
       std::vector<std::vector<terrain::RoofReturn>> whole;
-      for (const std::uint32_t g : groups_in(key)) {
+      for (const std::uint32_t g : groups_in_[t]) {
         if (--left_[g] > 0) continue;
         whole.push_back(std::move(open[g]));
         open.erase(g);
@@ -189,18 +184,28 @@ class Groups {
   }
 
  private:
-  static terrain::CellSet cells(const MergeJob& job, const BuildingStageOptions&, bool of_buildings) {
+  struct Cells {
     std::vector<terrain::CellRun> built, seen;
-    for (const TileKey key : job.tiles) read_rows(cells_file(job.folder, key), built, seen);
-    return terrain::CellSet(of_buildings ? built : seen);
+    std::vector<size_t> built_ends;  ///< of each tile's runs in built
+  };
+  static Cells cells_of(const MergeJob& job) {
+    Cells out;
+    for (const TileKey key : job.tiles) {
+      read_rows(cells_file(job.folder, key), out.built, out.seen);
+      out.built_ends.push_back(out.built.size());
+    }
+    return out;
   }
 
-  std::set<std::uint32_t> groups_in(TileKey key) const {
-    std::vector<terrain::CellRun> built, seen;
-    read_rows(cells_file(job_.folder, key), built, seen);
-    std::set<std::uint32_t> out;
-    for (const terrain::CellRun& r : built) out.insert(built_.group(r.first, r.j));
-    return out;
+  Groups(const MergeJob& job, const Context& context, const BuildingStageOptions& o, const Cells& cells)
+      : job_(job), context_(context), o_(o), built_(cells.built), seen_(cells.seen) {
+    left_.assign(built_.groups(), 0);
+    size_t run = 0;
+    for (const size_t end : cells.built_ends) {
+      std::set<std::uint32_t>& groups = groups_in_.emplace_back();
+      for (; run < end; ++run) groups.insert(built_.group(cells.built[run].first, cells.built[run].j));
+      for (const std::uint32_t g : groups) ++left_[g];
+    }
   }
 
   void add(std::vector<std::vector<terrain::RoofReturn>> groups, terrain::FoundBuildings& all) const {
@@ -228,7 +233,8 @@ class Groups {
   const Context& context_;
   const BuildingStageOptions& o_;
   terrain::CellSet built_, seen_;
-  std::vector<std::uint32_t> left_;  ///< tiles with returns of a group that have not been read
+  std::vector<std::set<std::uint32_t>> groups_in_;  ///< of each tile
+  std::vector<std::uint32_t> left_;                 ///< tiles with returns of a group that have not been read
 };
 
 BuildingFindings summary_of(const terrain::FoundBuildings& found, GroundReference from) {

@@ -9,6 +9,7 @@
 
 #include "core/distributions.h"
 #include "io/vector/feature_file.h"
+#include "stages/adapters/terrain/on_map.h"
 #include "stages/tile.h"
 #include "stages/tile_product.h"
 #include "terrain/forest/canopy.h"
@@ -119,10 +120,7 @@ std::vector<terrain::Tree> all_trees(const MergeJob& job, std::vector<CoverRow>&
 }
 
 std::vector<io::SpatialLayer> layers_of(const std::vector<terrain::Tree>& trees, const Context& context) {
-  const auto on_map = [&](double x, double y, double z) {
-    return Eigen::Vector3d((x + context.origin.x()) / context.unit, (y + context.origin.y()) / context.unit,
-                           (z + context.origin.z()) / context.vertical_unit);
-  };
+  const OnMap map{context};
   const std::vector<io::SpatialField> fields{{"tree", std::int64_t{}}, {"height", 0.0}, {"crown_area", 0.0}, {"crown_diameter", 0.0}};
   io::SpatialLayer tops{"trees", "Highest return of each tree; lengths in m, areas in m2", io::SpatialShape::point, false, fields, {}};
   io::SpatialLayer crowns{"crowns", "Convex outlines of the crowns", io::SpatialShape::polygon, true, fields, {}};
@@ -130,9 +128,9 @@ std::vector<io::SpatialLayer> layers_of(const std::vector<terrain::Tree>& trees,
     const terrain::Tree& t = trees[k];
     const std::vector<io::FieldValue> values{static_cast<std::int64_t>(k + 1), t.height, t.crown_area,
                                              2.0 * std::sqrt(t.crown_area / M_PI)};
-    tops.features.push_back({{on_map(t.x, t.y, t.z)}, values});
+    tops.features.push_back({{map({t.x, t.y, t.z})}, values});
     crowns.features.push_back({{}, values});
-    for (const Eigen::Vector2d& p : t.crown) crowns.features.back().places.push_back(on_map(p.x(), p.y(), 0.0));
+    for (const Eigen::Vector2d& p : t.crown) crowns.features.back().places.push_back(map({p.x(), p.y(), 0.0}));
   }
   return {tops, crowns};
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "stages/adapters/terrain/on_map.h"
+
 namespace swath::stages {
 namespace {
 
@@ -16,14 +18,6 @@ constexpr size_t drawn_returns = 6000;  // of each kind on a sheet
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// Places in the run's CRS.
-struct OnMap {
-  const Context& context;
-  Eigen::Vector3d operator()(const Eigen::Vector3d& p) const {
-    const Eigen::Vector3d m = p + context.origin;
-    return {m.x() / context.unit, m.y() / context.unit, m.z() / context.vertical_unit};
-  }
-};
-
 std::vector<Eigen::Vector3d> vertices(const terrain::Conductor& c) {
   std::vector<Eigen::Vector3d> out;
   const int pieces = std::max(1, static_cast<int>(std::ceil((c.last.s - c.first.s) / vertex_step)));
