@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From finished terrain models and clouds: volumes, profiles.
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
@@ -57,7 +58,7 @@ int cross_sections(const ProfileArguments& a) {
   r.step = width_of(a.stations, "--stations"), r.width = width_of(a.width, "--width");
   char* end = nullptr;
   const double level = std::strtod(a.design.c_str(), &end);
-  if (!a.design.empty() && *end == '\0')
+  if (!a.design.empty() && *end == '\0' && std::isfinite(level))
     r.level = level;
   else
     r.design = a.design;

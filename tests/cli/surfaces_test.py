@@ -83,6 +83,7 @@ class Surfaces(Case):
         self.assertAlmostEqual(told["fill"], sum(float(r[table[0].index("fill_volume")]) for r in table[1:]), delta=0.1)
         self.assertEqual(told["cut"], 0)
         self.assert_error(swath(*call, "--design", "none.tif"), 1, "none.tif")
+        self.assert_error(swath(*call, "--design", "nan"), 1, "nan")
         self.assert_error(swath(*[w if w != "10 m" else "0 m" for w in call]), 2, "--stations")
         self.assert_error(swath("profile", "--dtm", self.made / "dtm.vrt", *ends, "--design", "3", "--output", self.folder / "cut"), 2, "--stations")
         self.assert_error(swath(*call[:1], self.made / "points", *call[1:]), 2, "points are not read")
