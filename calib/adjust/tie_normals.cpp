@@ -131,26 +131,6 @@ double condition_group(const TieProblem& p, const TieState& state, const ShotGeo
   return w.sorted.empty() ? 0.0 : core::median(w.sorted);
 }
 
-/// Squares of the deviations from the group's mean, against the shares of ranges (q_r) and angles (q_a) in the variance.
-void add_moments(const TieProblem& p, const TieGroup& g, const Workspace& w, const TiePass& pass, double scale, double mean,
-                 GroupBlock& block) {
-  const double freedom = static_cast<double>(block.used) / (block.used - 1.0) / p.robust.consistency();
-  for (std::uint32_t i = g.begin; i < g.end; ++i) {
-    const Condition& c = w.conditions[i - g.begin];
-    if (!std::isfinite(c.f)) continue;
-    const double share = p.robust(pass.deviation[i] / scale);
-    if (share <= 0.0) continue;
-    const double v = c.variance();
-    const double e = share * (c.f - mean) * (c.f - mean) / v * freedom - c.constant / v;
-    const double r = c.range / v, a = c.angle / v;
-    block.moment[0] += r * r;
-    block.moment[1] += r * a;
-    block.moment[2] += a * a;
-    block.moment[3] += r * e;
-    block.moment[4] += a * e;
-  }
-}
-
 void linearise_group(const TieProblem& p, const TieState& state, const ShotGeometry& geometry, const TieNoise& noise, double scale,
                      size_t number, trajectory::Cursor& cursor, Workspace& w, TiePass& pass) {
   const TieGroup& g = p.ties->groups[number];
@@ -194,7 +174,7 @@ void linearise_group(const TieProblem& p, const TieState& state, const ShotGeome
   block.c = sum(m + 3, m + 3);
   if (block.used == 0) return;
   for (double* v : {&block.angle, &block.range, &block.time, &block.depth, &block.noise}) *v /= block.used;
-  if (block.used >= 3) add_moments(p, g, w, pass, scale, mean / weights, block);
+  if (block.used >= 3) add_moments(p.robust, w.conditions, pass.deviation.data() + g.begin, scale, mean / weights, block);
 }
 
 }  // namespace
@@ -323,6 +303,25 @@ bool condition_of(const TieProblem& p, const ShotGeometry& geometry, const TieSt
   out.u = axes[0].dot(place);
   out.v = axes[1].dot(place);
   return true;
+}
+
+void add_moments(const RobustWeight& robust, const std::vector<Condition>& conditions, const float* deviation, double scale, double mean,
+                 GroupBlock& block) {
+  const double freedom = static_cast<double>(block.used) / (block.used - 1.0) / robust.consistency();
+  for (const Condition& c : conditions) {
+    const double z = *deviation++;
+    if (!std::isfinite(c.f)) continue;
+    const double share = robust(z / scale);
+    if (share <= 0.0) continue;
+    const double v = c.variance();
+    const double e = share * (c.f - mean) * (c.f - mean) / v * freedom - c.constant / v;
+    const double r = c.range / v, a = c.angle / v;
+    block.moment[0] += r * r;
+    block.moment[1] += r * a;
+    block.moment[2] += a * a;
+    block.moment[3] += r * e;
+    block.moment[4] += a * e;
+  }
 }
 
 TiePass linearise(const TieProblem& p, const TieState& state, const TieNoise& noise, double scale) {

@@ -86,6 +86,10 @@ struct Condition {
   double depth = 0.0;                               ///< along the vertical from scanner to point, m
   double variance() const { return range + angle + constant; }
 };
+/// Squares of the deviations from a group's mean, against the shares of ranges and angles in the variance: fills block.moment. Conditions
+/// whose f is not finite take no part; `deviation`: of each from the group's median in sigmas, `scale` their robust sigma.
+void add_moments(const RobustWeight& robust, const std::vector<Condition>& conditions, const float* deviation, double scale, double mean,
+                 GroupBlock& block);
 /// `cursor` at any time; false where the trajectory does not reach.
 bool condition_of(const TieProblem& problem, const ShotGeometry& geometry, const TieState& state, const TieNoise& noise,
                   trajectory::Cursor& cursor, const TieGroup& group, size_t row, Condition& out);

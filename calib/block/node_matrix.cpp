@@ -236,7 +236,7 @@ MatrixXd NodeFactor::solve(const MatrixXd& b) const {
   return out;
 }
 
-void NodeFactor::invert() {
+void NodeFactor::invert(Keep keep) {
   std::vector<MatrixXd> whole(fronts_.size());  // of the inverse over a front, while it has children to come
   std::vector<int> waiting(fronts_.size(), 0);
   for (const Front& f : fronts_)
@@ -264,6 +264,7 @@ void NodeFactor::invert() {
     Z.bottomLeftCorner(f.rows, own) = f.Z21;
     Z.topRightCorner(own, f.rows) = f.Z21.transpose();
     if (waiting[k] > 0) whole[k] = std::move(Z);
+    if (keep == Keep::inverse_alone) f.L11.resize(0, 0), f.L21.resize(0, 0);
   }
 }
 

@@ -50,8 +50,10 @@ class NodeFactor {
   /// By which unknowns are multiplied to scale them: 1 / sqrt(diagonal); 1 where that is 0.
   const Eigen::VectorXd& scale() const { return scale_; }
 
-  /// Computes the inverse on the factor's pattern; once, before covariance().
-  void invert();
+  enum class Keep { factor, inverse_alone };
+  /// Computes the inverse on the factor's pattern; once, before covariance(). `inverse_alone`: the factor, which is as large, goes as the
+  /// inverse comes, and solve() cannot be called any more.
+  void invert(Keep keep = Keep::factor);
   /// The inverse's rows and columns of some nodes, in their order. Each two of them must have had a block, or a common front.
   Eigen::MatrixXd covariance(const std::vector<int>& nodes) const;
 

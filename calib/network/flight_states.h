@@ -19,6 +19,7 @@ class FlightStates {
   FlightStates(const trajectory::Layout& layout, size_t instants, int calibration = 0);
 
   std::vector<int> sizes() const;
+  int size(int node) const { return node < instants_ ? static_cast<int>(moving_.size()) : calibration_first() + calibration_; }
   int common() const { return instants_; }
   int instants() const { return instants_; }
   /// Rows of the layout that each instant has, in its order; position, velocity, attitude come first.

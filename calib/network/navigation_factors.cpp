@@ -51,20 +51,22 @@ std::vector<NetworkNormals::Part> parts_of(const FlightStates& states, int insta
 }
 
 template <int Rows>
-void add_observation(const Observation<Rows>& o, const FlightStates& states, int instant, NetworkNormals& into) {
+void visit_observation(NavigationKind kind, const Observation<Rows>& o, const FlightStates& states, int instant,
+                       const NavigationVisit& visit) {
   const Eigen::Matrix<double, Rows, Rows> weight = o.noise.inverse();
-  into.add(parts_of(states, instant, o.design), 0.5 * (weight + weight.transpose()), o.residual);
+  visit(kind, parts_of(states, instant, o.design), 0.5 * (weight + weight.transpose()), o.residual);
 }
 
-void add_start(const FlightStates& states, const trajectory::Estimate& first, const NavigationPrior& prior, NetworkNormals& into) {
+void visit_start(const FlightStates& states, const trajectory::Estimate& first, const NavigationPrior& prior,
+                 const NavigationVisit& visit) {
   const auto n = prior.covariance.rows();
   const MatrixXd W = information_of(prior.covariance, VectorXd::Constant(n, least_of_prior * least_of_prior));
-  into.add(parts_of(states, 0, MatrixXd::Identity(n, n)), W, prior.mean(first));
+  visit(NavigationKind::start, parts_of(states, 0, MatrixXd::Identity(n, n)), W, prior.mean(first));
 }
 
 /// The equation e_k+1 = transition e_k + (carried less reference) + noise.
-void add_passage(const FlightStates& states, int to, const trajectory::Passage& passage, const trajectory::Estimate& reference,
-                 const Layout& l, const VectorXd& floor, NetworkNormals& into) {
+void visit_passage(const FlightStates& states, int to, const trajectory::Passage& passage, const trajectory::Estimate& reference,
+                   const Layout& l, const VectorXd& floor, const NavigationVisit& visit) {
   const std::vector<int>& moving = states.moving();
   const auto n = static_cast<Eigen::Index>(moving.size());
   const trajectory::StateMatrix noise = passage.noise();
@@ -72,7 +74,7 @@ void add_passage(const FlightStates& states, int to, const trajectory::Passage& 
   const MatrixXd W = information_of(noise(moving, moving), floor);
   std::vector<NetworkNormals::Part> parts = parts_of(states, to - 1, -passage.transition(moving, Eigen::all));
   parts.emplace_back(to, MatrixXd::Identity(n, n));
-  into.add(parts, W, apart(moving));
+  visit(NavigationKind::imu, parts, W, apart(moving));
 }
 
 void weigh_down(Observation<3>& position, const trajectory::FixOutcome& outcome, const Vector3d& place) {
@@ -91,26 +93,26 @@ class VirtualClock {
   double last_ = -1e300;
 };
 
-void add_measured(const trajectory::Problem& problem, const FlightStates& states, int instant, const trajectory::Estimate& at,
-                  const Vector3d& rate, const trajectory::FixOutcome* outcome, VirtualClock& clock, NetworkNormals& into) {
+void visit_measured(const trajectory::Problem& problem, const FlightStates& states, int instant, const trajectory::Estimate& at,
+                    const Vector3d& rate, const trajectory::FixOutcome* outcome, VirtualClock& clock, const NavigationVisit& visit) {
   const trajectory::Node& node = problem.nodes[static_cast<size_t>(instant)];
   if (node.fix >= 0) {
     const auto k = static_cast<size_t>(node.fix);
     Observation<3> position = observed_position(problem, k, at, rate);
     if (outcome) weigh_down(position, *outcome, problem.gnss.position[k]);
-    add_observation(position, states, instant, into);
+    visit_observation(NavigationKind::position, position, states, instant, visit);
     if (auto velocity = observed_velocity(problem, k, at, rate)) {
       if (outcome) velocity->noise *= std::max(1.0, outcome->velocity_nis / problem.gate);
-      add_observation(*velocity, states, instant, into);
+      visit_observation(NavigationKind::velocity, *velocity, states, instant, visit);
     }
   }
   if (!clock.due(node.time)) return;
   if (node.still) {
-    add_observation(observed_standstill(problem, at), states, instant, into);
+    visit_observation(NavigationKind::standstill, observed_standstill(problem, at), states, instant, visit);
     clock.used(node.time);
   } else if (problem.layout.track >= 0) {
     if (const auto wheels = observed_wheels(problem, at, rate)) {
-      add_observation(*wheels, states, instant, into);
+      visit_observation(NavigationKind::wheels, *wheels, states, instant, visit);
       clock.used(node.time);
     }
   }
@@ -125,9 +127,9 @@ NavigationPrior prior_of(const trajectory::SmoothedFlight& flight) {
   return {flight.covariance, mean};
 }
 
-void add_navigation(const trajectory::Problem& problem, const FlightStates& states, const std::vector<trajectory::Estimate>& estimates,
-                    const std::vector<trajectory::FixOutcome>& outcomes, const NavigationPrior& prior, NetworkNormals& into) {
-  add_start(states, estimates.front(), prior, into);
+void each_navigation(const trajectory::Problem& problem, const FlightStates& states, const std::vector<trajectory::Estimate>& estimates,
+                     const std::vector<trajectory::FixOutcome>& outcomes, const NavigationPrior& prior, const NavigationVisit& visit) {
+  visit_start(states, estimates.front(), prior, visit);
   const VectorXd floor = floor_of(states, problem.layout);
   VirtualClock clock;
   Vector3d rate = Vector3d::Zero();
@@ -137,10 +139,18 @@ void add_navigation(const trajectory::Problem& problem, const FlightStates& stat
     if (k > 0) {
       const trajectory::Passage passage = passage_to(problem, estimates[at - 1], walk, problem.nodes[at].time);
       if (passage.rate) rate = *passage.rate;
-      add_passage(states, k, passage, estimates[at], problem.layout, floor, into);
+      visit_passage(states, k, passage, estimates[at], problem.layout, floor, visit);
     }
-    add_measured(problem, states, k, estimates[at], rate, outcomes.empty() ? nullptr : &outcomes[at], clock, into);
+    visit_measured(problem, states, k, estimates[at], rate, outcomes.empty() ? nullptr : &outcomes[at], clock, visit);
   }
+}
+
+void add_navigation(const trajectory::Problem& problem, const FlightStates& states, const std::vector<trajectory::Estimate>& estimates,
+                    const std::vector<trajectory::FixOutcome>& outcomes, const NavigationPrior& prior, NetworkNormals& into) {
+  each_navigation(problem, states, estimates, outcomes, prior,
+                  [&into](NavigationKind, const std::vector<NetworkNormals::Part>& parts, const MatrixXd& weight, const VectorXd& left) {
+                    into.add(parts, weight, left);
+                  });
 }
 
 }  // namespace swath::calib

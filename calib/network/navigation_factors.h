@@ -18,6 +18,16 @@ struct NavigationPrior {
 };
 NavigationPrior prior_of(const trajectory::SmoothedFlight& flight);
 
+enum class NavigationKind { start, imu, position, velocity, standstill, wheels };
+
+/// One observation, linearised: its kind, the derivatives by nodes, its weight, and what is left of it.
+using NavigationVisit = std::function<void(NavigationKind kind, const std::vector<NetworkNormals::Part>& parts,
+                                           const Eigen::MatrixXd& weight, const Eigen::VectorXd& left)>;
+
+/// The prior, the passages from instant to instant and what was measured at each, one after another; as add_navigation().
+void each_navigation(const trajectory::Problem& problem, const FlightStates& states, const std::vector<trajectory::Estimate>& estimates,
+                     const std::vector<trajectory::FixOutcome>& outcomes, const NavigationPrior& prior, const NavigationVisit& visit);
+
 /// Adds the prior, the passages from instant to instant and what was measured at each, linearised about `estimates` (their constants must
 /// be alike). `outcomes`: of the smoother, empty or per instant; fixes that it weighed down are weighed down here: its gate is one of
 /// innovations, which a system of all instants does not have.

@@ -35,8 +35,14 @@ class Network {
   /// Of the last linearisation: weighted squares of all observations at its point.
   double squares() const { return squares_; }
 
-  /// Inverts the last linearisation on its pattern; before what follows.
-  void invert() { factor_->invert(); }
+  /// Observations of IMU and GNSS, linearised at the present estimates.
+  void each(const NavigationVisit& visit) const { each_navigation(*problem_, states_, estimates_, outcomes_, prior_, visit); }
+
+  /// The fixes' correlated error is an unknown of each instant, the last three of it.
+  bool has_fix_error() const { return problem_->layout.fix >= 0; }
+
+  /// Inverts the last linearisation on its pattern, once; before what follows.
+  void invert() { factor_->invert(NodeFactor::Keep::inverse_alone); }
   /// Covariance over some nodes of states(), in their order.
   Eigen::MatrixXd covariance(const std::vector<int>& nodes) const { return factor_->covariance(nodes); }
   /// As the smoother states them.

@@ -22,6 +22,7 @@ constexpr double steady_returns = 0.005;   // m: planes are found the same way w
 constexpr double closest_mismatch = 0.05;  // m
 constexpr double usual_network_rounds = 3.0, search_part = 0.3;
 constexpr double first_part = 0.6;  // of the iterations, before groups are weighed
+constexpr int most_weightings = 4;  // in one round; in the first, whose planes are sought anew, one
 
 std::vector<Parameter> unknown_values(const EstimateOptions& e) {
   const bool wanted[] = {e.roll,         e.pitch,       e.heading,     e.lever_forward, e.lever_right, e.lever_down,
@@ -46,7 +47,8 @@ class NetworkRounds {
         problem_(smoothed.problem()),
         options_(options),
         unknown_(unknown_values(options.estimate)),
-        network_(problem_, smoothed.estimates, smoothed.outcomes, prior_of(smoothed), static_cast<int>(unknown_.size())) {
+        network_(problem_, smoothed.estimates, smoothed.outcomes, prior_of(smoothed), static_cast<int>(unknown_.size())),
+        surface_(options.surface_sigma.value) {
     interpolation_.max_gap.value = std::max(interpolation_.max_gap.value, 2.5 / options.smoother.output_rate.value);
   }
 
@@ -65,8 +67,8 @@ class NetworkRounds {
   }
 
   PlaneFactors factors(const TieSet& ties) const {
-    return PlaneFactors(ties, flight_.scanner, flight_.sensor, times_of(smoothed_.nodes), unknown_, options_.robust,
-                        options_.surface_sigma.value, problem_.noise.angle, flight_.threads);
+    return PlaneFactors(ties, flight_.scanner, flight_.sensor, times_of(smoothed_.nodes), unknown_, options_.robust, surface_,
+                        problem_.noise.angle, flight_.threads);
   }
 
   /// Steps until the states stay; true where they did.
@@ -88,11 +90,43 @@ class NetworkRounds {
     return false;
   }
 
+  /// Solves with the surfaces' sigma and the groups that the residuals bear out; the last solution is inverted. True where it settled.
+  bool adjust(PlaneFactors& planes, bool first, int& iterations) {
+    bool settled = false;
+    displaced_ = 0;
+    for (int i = 0;; ++i) {
+      settled = iterate(planes, iterations);
+      network_.invert();
+      tests_ = test_planes(planes, network_.states(), network_.factor(), network_.last_step());
+      if (i == (first ? 1 : most_weightings)) break;
+      const bool surface = options_.estimate_surface && update_surface(planes, tests_);
+      const int out = options_.snooping.use ? reject_groups(planes, tests_, options_.snooping.alpha, options_.snooping.share) : 0;
+      displaced_ += static_cast<std::uint64_t>(out);
+      if (!surface && out == 0) break;
+    }
+    surface_ = planes.surface();
+    return settled;
+  }
+
+  const PlaneTests& tests() const { return tests_; }
+  std::uint64_t displaced() const { return displaced_; }
+  std::vector<NetworkComponent> components() const {
+    const auto values = std::count_if(unknown_.begin(), unknown_.end(), [this](Parameter p) { return std::isfinite(apriori(p)); });
+    return components_of(network_, tests_, static_cast<int>(values));
+  }
   const FlightStates& states() const { return network_.states(); }
-  Network& network() { return network_; }
+  const Network& network() const { return network_; }
   const std::vector<Parameter>& unknown() const { return unknown_; }
   double apriori(Parameter p) const { return apriori_of(options_.apriori, p); }
-  core::TrajectoryData finished() const { return trajectory_of(problem_, network_.smoothed(), options_.smoother.output_rate.value); }
+  /// Trajectory and biases with their covariances.
+  void finish(AdjustedNetwork& out) const {
+    const std::vector<trajectory::SmoothedNode> nodes = network_.smoothed();
+    out.trajectory = trajectory_of(problem_, nodes, options_.smoother.output_rate.value);
+    constexpr int gyro = trajectory::Layout::gyro_bias, force = trajectory::Layout::force_bias;
+    for (const trajectory::SmoothedNode& n : nodes)
+      out.biases.push_back(
+          {n.estimate.nav.time, n.estimate.gyro_bias, n.sigma.segment<3>(gyro), n.estimate.force_bias, n.sigma.segment<3>(force)});
+  }
 
  private:
   void add_start_values(NetworkNormals& into) const {
@@ -114,6 +148,9 @@ class NetworkRounds {
   const NetworkOptions& options_;
   std::vector<Parameter> unknown_;
   Network network_;
+  double surface_;
+  PlaneTests tests_;
+  std::uint64_t displaced_ = 0;
   trajectory::TrajectoryOptions interpolation_;
   bool started_weighing_ = false;
 };
@@ -160,7 +197,7 @@ AdjustedNetwork adjust_network(const CalibrationFlight& flight, const trajectory
   AdjustedNetwork out;
   TiePlaneOptions planes = sized(options.planes, flight.scale);
   core::Tally of_round;
-  for (out.rounds = 1; out.rounds <= options.rounds; ++out.rounds) {
+  for (out.rounds = 1;; ++out.rounds) {
     of_round = {};
     const trajectory::Trajectory now = out.rounds == 1 ? *flight.trajectory : rounds.trajectory();
     const std::string round = "round " + std::to_string(out.rounds);
@@ -171,22 +208,27 @@ AdjustedNetwork adjust_network(const CalibrationFlight& flight, const trajectory
     PlaneFactors factors = rounds.factors(out.ties);
     const std::vector<PlaneMisfit> before = misfits_with(factors, now, rounds.calibration());
     factors.fit(now, rounds.calibration());
-    out.settled = rounds.iterate(factors, out.iterations);
+    out.settled = rounds.adjust(factors, out.rounds == 1, out.iterations);
     out.after = misfits_with(factors, rounds.trajectory(), rounds.calibration());
     out.last_move = moved_by(before, out.after);
     out.left_out = factors.left_out();
     out.noise_factor = factors.noise_factor();
+    out.surface_sigma = factors.surface();
+    out.displaced = rounds.displaced();
+    out.tests = rounds.tests();
+    out.planes = factors.planes();
     planes.mismatch.value =
         std::clamp(3 * robust_scatter(out.after), std::min(closest_mismatch, planes.mismatch.value), planes.mismatch.value);
-    if (out.rounds > 1 && out.last_move < steady_returns) break;
+    const bool last = out.rounds == options.rounds || (out.rounds > 1 && out.last_move < steady_returns);
+    if (!last) continue;
+    out.components = rounds.components();
+    break;
   }
-  out.rounds = std::min(out.rounds, options.rounds);
   tally.add(of_round);
   out.before = misfits_with(rounds.factors(out.ties), *flight.trajectory, flight.start);
   progress(core::usual_share(usual_network_rounds, usual_network_rounds), "covariances");
-  Network& network = rounds.network();
-  network.invert();
-  out.trajectory = rounds.finished();
+  const Network& network = rounds.network();
+  rounds.finish(out);
   out.calibration = rounds.calibration();
   out.covariance = network.calibration_covariance();
   for (size_t i = 0; i < rounds.unknown().size(); ++i) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/adjust/calibrate.h"
+#include "calib/network/network_components.h"
 #include "calib/network/network_options.h"
 #include "calib/network/plane_factors.h"
 #include "trajectory/ins/ins_problem.h"
@@ -20,6 +21,12 @@ struct NetworkValue {
   double value = 0.0, sigma = 0.0;
 };
 
+/// Biases of the IMU at one instant, with their sigmas: rad/s, m/s^2, body axes.
+struct SensorBias {
+  double time = 0.0;
+  Eigen::Vector3d gyro, gyro_sigma, force, force_sigma;
+};
+
 struct AdjustedNetwork {
   core::TrajectoryData trajectory;  ///< with covariances at the instants
   core::Calibration calibration;    ///< the start with the values found
@@ -30,9 +37,15 @@ struct AdjustedNetwork {
   std::vector<PlaneMisfit> before, after;
   std::uint64_t instants = 0, unknowns = 0, left_out = 0;
   int rounds = 0, iterations = 0;
-  double noise_factor = 1.0;  ///< of single returns
-  double last_move = 0.0;     ///< rms by which the last round moved the groups, m
+  double noise_factor = 1.0;    ///< of single returns
+  double surface_sigma = 0.0;   ///< by which a plane seen in one line departs from that of all, m
+  PlaneTests tests;             ///< groups as `after`
+  std::uint64_t displaced = 0;  ///< groups that the tests left out
+  std::vector<NetworkComponent> components;
+  double last_move = 0.0;  ///< rms by which the last round moved the groups, m
   bool settled = false;
+  std::vector<TiePlane> planes;  ///< centre and normal adjusted
+  std::vector<SensorBias> biases;
 };
 
 /// `flight.trajectory` is that of the smoother that left `smoothed`. Throws core::Error where no two lines see the same planes.

@@ -9,6 +9,20 @@
 
 namespace swath::calib {
 
+/// Test of displacements of single groups: one line's returns on one plane.
+struct GroupTestOptions {
+  bool use = true;
+  double alpha = 0.001;
+  double share = 0.1;
+};
+
+template <class V>
+void describe(GroupTestOptions& o, V& v) {
+  v.option("use", o.use, "Test each plane in each line for a displacement, and leave it out.", "Baarda1968");
+  v.option("alpha", o.alpha, core::within(1e-9, 0.1), "Error of the first kind of one test.");
+  v.option("share", o.share, core::within(0, 0.5), "Greatest share of the groups that may be left out.");
+}
+
 struct NetworkOptions {
   NetworkOptions() {
     planes.mismatch.value = 0.5;
@@ -20,6 +34,8 @@ struct NetworkOptions {
   EstimateOptions estimate;
   AprioriOptions apriori;  ///< not an option: start_sigmas()
   RobustOptions robust;
+  GroupTestOptions snooping;
+  bool estimate_surface = true;
   core::Metres surface_sigma{0.003};
   int rounds = 4, iterations = 12;
 };
@@ -30,7 +46,9 @@ void describe(NetworkOptions& o, V& v) {
   v.table("planes", o.planes, "The search for planes; `mismatch` is that of the first round.");
   v.table("estimate", o.estimate, "Calibration values that are unknowns, about the survey's with its sigmas; the others are held.");
   v.table("robust", o.robust, "Weights of single returns, and of one line's returns on one plane.");
+  v.table("snooping", o.snooping, "Search for planes that are displaced in one line.");
   v.option("surface_sigma", o.surface_sigma, core::at_least(0), "Sigma by which a plane seen in one line departs from that of all lines.");
+  v.option("estimate_surface", o.estimate_surface, "Estimate that sigma from the residuals; the stated one is its start.");
   v.option("rounds", o.rounds, core::within(1, 20), "Maximum number of searches for planes; they end where the returns stay in place.");
   v.option("iterations", o.iterations, core::within(2, 100), "Maximum number of linearisations in each round.");
 }

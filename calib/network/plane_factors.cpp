@@ -52,7 +52,8 @@ PlaneFactors::PlaneFactors(const TieSet& ties, const core::Scanner& scanner, con
                            std::vector<Parameter> unknown, const RobustOptions& robust, double surface, double wander, int threads)
     : ties_(&ties),
       scanner_(&scanner),
-      noise_(noise_of(sensor)),
+      stated_(noise_of(sensor)),
+      noise_(stated_),
       times_(std::move(times)),
       unknown_(std::move(unknown)),
       robust_(robust.full, robust.zero),
@@ -64,6 +65,7 @@ PlaneFactors::PlaneFactors(const TieSet& ties, const core::Scanner& scanner, con
       blocks_(ties.groups.size()),
       turn_(ties.groups.size(), 0.0),
       weight_(ties.groups.size(), 1.0),
+      rejected_(ties.groups.size(), 0),
       deviation_(ties.returns.size(), 0.0f) {
   state_.correction = VectorXd::Zero(0);
   state_.planes = ties.planes;
@@ -98,7 +100,7 @@ void PlaneFactors::fill_block(Worker& w, size_t number, double median) {
 
   w.rows.setZero(poses + values + 4, g.end - g.begin);
   Vector3d turn = Vector3d::Zero();
-  double weights = 0.0;
+  double weights = 0.0, sum_of_f = 0.0;
   Eigen::Index used = 0;
   for (std::uint32_t i = g.begin; i < g.end; ++i) {
     const Condition& c = w.conditions[i - g.begin];
@@ -127,8 +129,11 @@ void PlaneFactors::fill_block(Worker& w, size_t number, double median) {
     row.tail<4>() << -root, -root * c.u, -root * c.v, root * c.f;
     turn += root * root * by_turn;
     weights += root * root;
+    sum_of_f += root * root * c.f;
     block.noise += c.range + c.angle;
     block.time += t;
+    block.angle += w.geometry.angle(ties_->returns.angle[i]);
+    block.range += w.geometry.range(ties_->returns.range[i]);
   }
   const Eigen::Index n = poses + values + 3;
   MatrixXd sum = MatrixXd::Zero(n + 1, n + 1);
@@ -139,9 +144,9 @@ void PlaneFactors::fill_block(Worker& w, size_t number, double median) {
   block.c = sum(n, n);
   block.used = static_cast<std::uint32_t>(used);
   if (used == 0) return;
-  block.noise /= static_cast<double>(used);
-  block.time /= static_cast<double>(used);
+  for (double* v : {&block.noise, &block.time, &block.angle, &block.range}) *v /= static_cast<double>(used);
   turn_[number] = (turn / weights).squaredNorm();
+  if (used >= 3) add_moments(robust_, w.conditions, deviation_.data() + g.begin, scale_, sum_of_f / weights, block);
 }
 
 void PlaneFactors::linearise_group(Worker& w, size_t number) {
@@ -188,6 +193,15 @@ void PlaneFactors::linearise(const trajectory::Trajectory& trajectory, const cor
   for (const float z : deviation_)
     if (std::isfinite(z)) sizes.push_back(std::abs(static_cast<double>(z)));
   scale_ = std::max(least_noise_factor, core::mad_to_sigma * core::median(std::move(sizes), 1.0));
+  set_noise();
+}
+
+// Ranges and angles apart: they weigh differently at nadir and at the swath's edge, and so do heights and attitude.
+void PlaneFactors::set_noise() {
+  update_white(blocks_, {std::vector<char>(blocks_.size(), 1), {}}, ComponentOptions(), factors_);
+  noise_.range = stated_.range * factors_.range.factor;
+  noise_.angle = stated_.angle * factors_.angle.factor;
+  noise_.pointing = stated_.pointing * factors_.angle.factor;
 }
 
 void PlaneFactors::fit_plane(std::uint32_t k) {
@@ -313,8 +327,19 @@ std::vector<PlaneMisfit> PlaneFactors::misfits() const {
   std::vector<PlaneMisfit> out;
   for (size_t g = 0; g < blocks_.size(); ++g) {
     const GroupBlock& block = blocks_[g];
-    PlaneMisfit m{ties_->groups[g].plane, ties_->groups[g].line, 0.0, 0.0, weight_[g], block.used};
+    PlaneMisfit m{ties_->groups[g].plane,
+                  ties_->groups[g].line,
+                  0.0,
+                  0.0,
+                  weight_[g],
+                  block.used,
+                  block.rejected,
+                  block.time,
+                  block.angle,
+                  block.range,
+                  0.0};
     if (block.used > 0) {
+      m.rms = std::sqrt(block.c / block.weight());
       m.mean = -block.b[static_cast<Eigen::Index>(block.index.size())] / block.weight();
       m.sigma = std::sqrt(1.0 / block.weight() + variance_between(g));
     }
@@ -330,7 +355,7 @@ void PlaneFactors::weigh() {
     if (m.returns > 0) sizes.push_back(std::abs(m.mean) / m.sigma);
   const double scale = std::max(1.0, core::mad_to_sigma * core::median(std::move(sizes), 1.0));
   for (size_t g = 0; g < all.size(); ++g)
-    if (all[g].returns > 0) weight_[g] = robust_(all[g].mean / all[g].sigma / scale);
+    if (all[g].returns > 0) weight_[g] = rejected_[g] ? 0.0 : robust_(all[g].mean / all[g].sigma / scale);
 }
 
 std::uint64_t PlaneFactors::left_out() const {

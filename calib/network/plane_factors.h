@@ -7,6 +7,7 @@
 
 #include "calib/adjust/adjust_options.h"
 #include "calib/adjust/tie_normals.h"
+#include "calib/adjust/variance_components.h"
 #include "calib/network/flight_states.h"
 #include "calib/ties/tie_set.h"
 #include "core/records/sensor.h"
@@ -20,11 +21,25 @@ struct PlaneMisfit {
   double mean = 0.0;   ///< of its returns from the plane, m
   double sigma = 0.0;  ///< of that mean by noise and surface alone, m
   double weight = 1.0;
-  std::uint32_t returns = 0;
+  std::uint32_t returns = 0, rejected = 0;      ///< with a weight; far from their group
+  double time = 0.0, angle = 0.0, range = 0.0;  ///< means, calibrated: s, rad, m
+  double rms = 0.0;                             ///< of the returns from the plane, m
 };
 
 class PlaneFactors {
  public:
+  /// What a plane leaves behind when it is eliminated: its step is -inverse (b + N_xp^T x).
+  struct Rest {
+    std::vector<int> index;  ///< unknowns that its groups touch, rising; see place_of()
+    Eigen::MatrixXd N_xp;
+    Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  };
+  struct Place {  ///< of an unknown: node and row in it
+    int node;
+    Eigen::Index row;
+  };
+
   /// All must outlive it. `times`: of the instants; `unknown`: calibration values that are estimated, rising; `surface`: sigma by which a
   /// plane seen in one line departs from that of all, m; `wander`: power spectral density of the gyros' white noise, rad^2/s: between two
   /// instants the attitude departs from the straight line by a Brownian bridge, which the states do not hold.
@@ -42,40 +57,47 @@ class PlaneFactors {
   /// Weighs groups by their misfits: those far beyond what noise, surface and the others' scatter explain lose their weight.
   void weigh();
 
+  /// Leaves a group out for good.
+  void reject(size_t group) { rejected_[group] = 1, weight_[group] = 0.0; }
+  double surface() const { return surface_; }
+  void set_surface(double sigma) { surface_ = sigma; }
+
   const std::vector<TiePlane>& planes() const { return state_.planes; }
   std::vector<PlaneMisfit> misfits() const;
-  double noise_factor() const { return scale_; }  ///< robust sigma of single returns about their group, in stated sigmas
-  std::uint64_t left_out() const;                 ///< groups without weight
+  size_t groups() const { return blocks_.size(); }
+  /// Numbers of a plane's groups: [first, last).
+  std::pair<size_t, size_t> groups_of(std::uint32_t plane) const { return {first_group_[plane], first_group_[plane + 1]}; }
+  const GroupBlock& block(size_t group) const { return blocks_[group]; }  ///< as linearised, of single returns alone
+  double weight(size_t group) const { return weight_[group]; }
+  /// Of a group's mean beyond the noise of its returns: surface, and attitude between the instants, m^2.
+  double variance_between(size_t group) const;
+  const Rest& rest(std::uint32_t plane) const { return rests_[plane]; }  ///< of the last add()
+  Place place_of(int unknown, const FlightStates& states) const;
+  double consistency() const { return robust_.consistency(); }
+  double noise_factor() const { return scale_; }  ///< robust sigma of single returns about their group, in sigmas as estimated
+  const SigmaFactor& range_factor() const { return factors_.range; }  ///< on the stated sigmas, from returns about their groups
+  const SigmaFactor& angle_factor() const { return factors_.angle; }  ///< of scan angle and pointing
+  std::uint64_t left_out() const;                                     ///< groups without weight
 
  private:
-  struct Rest {
-    std::vector<int> index;  // numbers by number_of()
-    Eigen::MatrixXd N_xp;
-    Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  };
   struct Worker;
-  struct Place {  // of an unknown: node and row in it
-    int node;
-    Eigen::Index row;
-  };
   // Unknowns that planes touch: six of each instant (position, attitude), then the calibration's.
   int number_of(int instant, int component) const { return 6 * instant + component; }
   int calibration_number() const { return 6 * static_cast<int>(times_.size()); }
-  Place place_of(int number, const FlightStates& states) const;
   int interval_at(double t) const;
   void linearise_group(Worker& worker, size_t number);
   void fill_block(Worker& worker, size_t number, double median);
-  double variance_between(size_t group) const;
   void fit_plane(std::uint32_t plane);
   void set_roughness();
+  void set_noise();
   Rest add_plane(std::uint32_t plane, const FlightStates& states, NetworkNormals& into) const;
   void scatter(const Rest& rest, const Eigen::MatrixXd& N, const Eigen::VectorXd& b, const FlightStates& states,
                NetworkNormals& into) const;
 
   const TieSet* ties_;
   const core::Scanner* scanner_;
-  TieNoise noise_;
+  TieNoise stated_, noise_;
+  SigmaFactors factors_;
   std::vector<double> times_;
   std::vector<Parameter> unknown_;
   RobustWeight robust_;
@@ -87,6 +109,7 @@ class PlaneFactors {
   std::vector<GroupBlock> blocks_;
   std::vector<double> turn_;    // of each group: squared derivative of its mean by a turn of the body, m^2/rad^2
   std::vector<double> weight_;  // of each group
+  std::vector<char> rejected_;
   std::vector<float> deviation_;
   std::vector<size_t> first_group_;
   std::vector<Rest> rests_;

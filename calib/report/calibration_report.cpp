@@ -38,7 +38,7 @@ std::vector<std::string> write_calibration_report(const CalibrationReport& repor
   });
   text("report.html", page);
   // Last: where it stands, the report beside it is whole.
-  text(report.strips ? "strips.json" : "calibration.json", io::to_json(calibration_report_tree(report)));
+  text(tree_file(report), io::to_json(calibration_report_tree(report)));
   return written;
 }
 

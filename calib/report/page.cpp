@@ -147,10 +147,19 @@ void differences(const PageParts& parts) {
     }
 }
 
+void joint_sections(const PageParts& parts) {
+  for (const ReportSection& s : parts.report.sections_of_joint) {
+    parts.page.section(s.heading);
+    for (const std::string& text : s.paragraphs) parts.page.paragraph(text);
+    for (const Table& t : s.tables) parts.page.table(t);
+    for (const ReportSection::Figure& f : s.figures) parts.figure(f.name, f.chart, f.caption);
+  }
+}
+
 void files(const PageParts& parts) {
   parts.page.section("Files beside this report");
   std::vector<std::string> items{
-      parts.report.strips ? "strips.json: everything in this report."
+      parts.report.strips ? std::string(tree_file(parts.report)) + ": everything in this report."
                           : "calibration.json: the values for the survey's run, and everything in this report.",
       "residuals.csv: each group of returns. planes.csv: each tie plane. corrections.csv: each line's corrections.",
   };
@@ -163,19 +172,22 @@ void files(const PageParts& parts) {
 }  // namespace
 
 std::string calibration_page(const CalibrationReport& report, const KeepFigure& keep) {
-  report::Page page(report.strips ? "Strip adjustment" : "Calibration report",
+  report::Page page(report.joint    ? "Joint adjustment of IMU, GNSS and surfaces"
+                    : report.strips ? "Strip adjustment"
+                                    : "Calibration report",
                     report.survey.empty() ? std::string() : "Survey " + report.survey);
   const PageParts parts{report, keep, page};
   const CalibrationVerdict v = verdict_of(report);
   page.banner(v.tone, v.text);
   origin(parts);
   findings(parts);
-  if (report.strips)
-    add_plane_differences(parts);
-  else
-    add_values(parts);
+  const bool estimated = std::any_of(report.adjustment.estimates.begin(), report.adjustment.estimates.end(),
+                                     [](const calib::Estimate& e) { return e.estimated; });
+  if (report.strips) add_plane_differences(parts);
+  if (!report.strips || estimated) add_values(parts);
   add_summary(parts);
-  if (!report.strips) add_correlations(parts);
+  if (!report.strips || estimated) add_correlations(parts);
+  joint_sections(parts);
   add_target(parts);
   add_flight(parts);
   add_residuals(parts);

@@ -132,7 +132,9 @@ void add_plane_differences(const PageParts& parts) {
   parts.page.paragraph(
       "Two lines that have seen the same plane: the difference of the mean distances of their returns from it, over all planes that the "
       "two "
-      "share. Before: with the trajectory as it was given. After: with the corrected one. The calibration was held.");
+      "share. " +
+      (parts.report.joint ? std::string("Before: with the smoother's trajectory and the start values. After: with the adjusted one.")
+                          : "Before: with the trajectory as it was given. After: with the corrected one. The calibration was held."));
   Table t{"plane-differences", "Differences of lines on common planes", {}, {}, {}};
   t.columns = {{"line"}, {"and line"}, {"planes"}, {"mean before (cm)"}, {"rms before (cm)"}, {"mean after (cm)"}, {"rms after (cm)"}};
   const auto add = [&](const calib::PairOnPlanes& p, std::string a, std::string b) {

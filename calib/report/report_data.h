@@ -15,6 +15,8 @@
 #include "core/config/value.h"
 #include "core/grid.h"
 #include "core/records/sensor.h"
+#include "report/chart.h"
+#include "report/page.h"
 
 namespace swath::calib {
 
@@ -65,6 +67,19 @@ struct ReportOrigin {
   std::vector<std::string> inputs;   ///< "laser: laser.npy", in the survey's order
 };
 
+/// A part of the page that one kind of adjustment alone has.
+struct ReportSection {
+  struct Figure {
+    std::string name;  ///< of the file, without folder and ending
+    report::Chart chart;
+    std::string caption;
+  };
+  std::string heading;
+  std::vector<std::string> paragraphs;
+  std::vector<report::Table> tables;
+  std::vector<Figure> figures;
+};
+
 struct CalibrationReport {
   std::string survey;  ///< name
   ReportOrigin origin;
@@ -82,6 +97,10 @@ struct CalibrationReport {
   std::vector<std::string> notes;              ///< further sentences for the reader ("start values were found from height grids")
   /// Set: the report is of a strip adjustment, no calibration value is estimated, and strips.json takes the place of calibration.json.
   std::optional<calib::PlaneDifferences> strips;
+  /// With `strips`: of a joint adjustment, which estimates the trajectory from its records and perhaps calibration values; adjustment.json
+  /// takes the place of strips.json.
+  bool joint = false;
+  std::vector<ReportSection> sections_of_joint;
 };
 
 }  // namespace swath::calib

@@ -43,6 +43,10 @@ std::string differences_after(const CalibrationReport& report) {
                          "survey that uses this calibration; the corrections of the lines (corrections.csv) are not in it.";
 }
 
+const char* tree_file(const CalibrationReport& report) {
+  return report.joint ? "adjustment.json" : report.strips ? "strips.json" : "calibration.json";
+}
+
 std::string difference_file(const LineDifference& d, bool before) {
   return "differences/" + std::to_string(d.line_a) + "_" + std::to_string(d.line_b) + (before ? "_before.tif" : "_after.tif");
 }

@@ -21,6 +21,9 @@ std::string sections_csv(const CalibrationReport& report);
 /// With what the maps of differences were made, as a sentence.
 std::string differences_after(const CalibrationReport& report);
 
+/// The report as a tree: calibration.json, strips.json or adjustment.json.
+const char* tree_file(const CalibrationReport& report);
+
 /// "differences/1_2_before.tif": names of the files of one pair.
 std::string difference_file(const LineDifference& difference, bool before);
 

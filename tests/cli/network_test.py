@@ -30,6 +30,14 @@ class Network(Case):
         self.assertEqual(json.loads((self.out / "network.json").read_text())["planes"], found["planes"])
         calibration = json.loads((self.out / "calibration.json").read_text())
         self.assertIn("calibration", calibration)
+        kinds = found["components"]
+        for kind in ("planes", "returns", "gnss_position"):
+            self.assertLess(abs(kinds[kind]["factor"] - 1), 0.4, kind)
+        self.assertLess(found["surface_sigma_m"], 0.003)  # roofs and ground of the simulation are planes to a millimetre
+        page = (self.out / "report.html").read_text()
+        for heading in ("Joint adjustment", "What the surfaces changed", "Biases of the IMU", "Differences between lines"):
+            self.assertIn(heading, page)
+        self.assertIn("plane_differences", json.loads((self.out / "adjustment.json").read_text()))
         self.assertGreater((self.out / "trajectory.sbet").stat().st_size, 136 * 1000)
         self.assertTrue((self.out / "trajectory.smrmsg").exists())
 

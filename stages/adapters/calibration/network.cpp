@@ -10,22 +10,31 @@
 #include "calib/adjust/prepared_flight.h"
 #include "calib/adjust/start_sigmas.h"
 #include "calib/network/network_adjust.h"
+#include "calib/network/network_report.h"
+#include "calib/report/calibration_report.h"
+#include "calib/report/flight_views.h"
 #include "core/config/result.h"
 #include "io/survey/calibration_file.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/calibration/calibration_flight.h"
 #include "stages/adapters/flight/smoothing.h"
 #include "stages/once.h"
 
 namespace swath::stages {
 namespace {
 
-struct NetworkStageOptions : calib::NetworkOptions {};
+struct NetworkStageOptions : calib::NetworkOptions {
+  calib::LineHeightOptions differences;
+  int sections = 4;
+};
 
 template <class V>
 void describe(NetworkStageOptions& o, V& v) {
   describe(static_cast<calib::NetworkOptions&>(o), v);
+  v.table("differences", o.differences, "Maps of the differences of overlapping lines.");
+  v.option("sections", o.sections, core::within(0, 50), "Cross sections drawn in the report.");
 }
 
 struct ValueRow {
@@ -41,6 +50,17 @@ void describe(const ValueRow& r, V& v) {
   v.result("start_sigma", r.of.apriori, si, "Standard deviation of that.");
 }
 
+struct ComponentRow {
+  calib::NetworkComponent of;
+};
+
+template <class V>
+void describe(const ComponentRow& r, V& v) {
+  v.result("observations", r.of.observations, "Number of observations.");
+  v.result("redundancy", r.of.redundancy, core::plain(1), "Degrees of freedom that their residuals have.");
+  v.result("factor", r.of.factor, core::plain(3), "Sigmas as the residuals show them over those used; absent below 3 degrees of freedom.");
+}
+
 struct AgainstTruth {
   trajectory::TruthComparison smoother, network;
 };
@@ -52,10 +72,11 @@ void describe(const AgainstTruth& r, V& v) {
 }
 
 struct NetworkFindings {
-  std::uint64_t lines = 0, planes = 0, tie_returns = 0, instants = 0, unknowns = 0, left_out = 0;
+  std::uint64_t lines = 0, planes = 0, tie_returns = 0, instants = 0, unknowns = 0, left_out = 0, displaced = 0;
   int rounds = 0, iterations = 0;
   bool settled = false;
-  double noise_factor = 0.0, last_move = 0.0;
+  double noise_factor = 0.0, last_move = 0.0, surface_sigma = 0.0;
+  std::vector<std::pair<std::string, ComponentRow>> components{};
   calib::PlaneAgreement on_planes{};
   std::vector<std::pair<std::string, ValueRow>> values{};
   std::optional<AgainstTruth> truth{};
@@ -68,6 +89,7 @@ void describe(const NetworkFindings& r, V& v) {
   v.result("planes", r.planes, shown, "Planes that several lines have seen.");
   v.result("tie_returns", r.tie_returns, "Returns on these planes.");
   v.result("groups_left_out", r.left_out, "Groups of returns (one line on one plane) without weight: far off their plane.");
+  v.result("groups_displaced", r.displaced, "Groups that the test of displacements (snooping) left out.");
   v.result("instants", r.instants, "Instants with a navigation state of their own.");
   v.result("unknowns", r.unknowns, "Unknowns of the system, planes not counted.");
   v.result("rounds", r.rounds, "Searches for planes.");
@@ -75,6 +97,8 @@ void describe(const NetworkFindings& r, V& v) {
   v.result("settled", r.settled, shown, "False: the states still moved when the iterations ended.");
   v.result("last_move_m", r.last_move, m, "RMS by which the last round moved returns from their planes.");
   v.result("noise_factor", r.noise_factor, core::plain(2), "Robust scatter of single returns about their group, in stated sigmas.");
+  v.result("surface_sigma_m", r.surface_sigma, m, "Sigma by which a plane seen in one line departs from that of all lines.");
+  v.named_tables("components", r.components, "Kinds of observation: how large their residuals are beside their sigmas.");
   v.result("pairs_on_planes", r.on_planes.pairs, "Pairs of lines on common planes.");
   v.result("rms_before_m", r.on_planes.before, m.in_summary(), "RMS difference of two lines on a plane, with the smoother's trajectory.");
   v.result("rms_after_m", r.on_planes.after, m.in_summary(), "The same with the adjusted trajectory.");
@@ -90,6 +114,8 @@ NetworkFindings found_by(const calib::AdjustedNetwork& n) {
   f.instants = n.instants, f.unknowns = n.unknowns, f.left_out = n.left_out;
   f.rounds = n.rounds, f.iterations = n.iterations, f.settled = n.settled;
   f.noise_factor = n.noise_factor, f.last_move = n.last_move;
+  f.displaced = n.displaced, f.surface_sigma = n.surface_sigma;
+  for (const calib::NetworkComponent& c : n.components) f.components.emplace_back(c.kind, ComponentRow{c});
   f.on_planes = calib::agreement_on_planes(n);
   for (const calib::NetworkValue& v : n.values) f.values.emplace_back(std::string(calib::words_of(v.parameter).key), ValueRow{v});
   return f;
@@ -137,7 +163,9 @@ core::SensorSigma sigma_of(const calib::AdjustedNetwork& n, core::SensorSigma s)
   return s;
 }
 
-std::vector<std::string> network_products(const NetworkStageOptions&) { return {"network.json", "calibration.json"}; }
+std::vector<std::string> network_products(const NetworkStageOptions&) {
+  return {"report.html", "network.json", "calibration.json", "adjustment.json"};
+}
 
 void expect_spec(const Context& context, const NetworkStageOptions&) { require_imu_spec(context.survey, "calib.network"); }
 
@@ -162,16 +190,22 @@ Given<trajectory::Trajectory, NetworkFindings> adjust_survey(core::ImuData imu, 
   calib::AdjustedNetwork network = calib::adjust_network(prepared.flight, left, how, tally, progress);
   if (!network.settled) tally.count("the adjustment did not settle: raise iterations, or look for lines that do not fit");
 
+  trajectory::Trajectory after = as_flown(std::move(network.trajectory), rate, "calib.network");
   NetworkFindings findings = found_by(network);
   if (const auto truth = truth_of(survey, before.data()))
     findings.truth = AgainstTruth{compare_with_truth(survey, trajectory::errors_against(before.data(), *truth)),
-                                  compare_with_truth(survey, trajectory::errors_against(network.trajectory, *truth))};
+                                  compare_with_truth(survey, trajectory::errors_against(after.data(), *truth))};
+  calib::CalibrationReport report = report_on(context, prepared.lines);
+  calib::put_network(network, before, after, report);
+  calib::add_views(prepared.flight, {context.crs, context.unit, context.origin}, {network.calibration, after}, o.differences,
+                   prepared.cell(), o.sections, report);
+  calib::write_calibration_report(report, to.folder);
   io::write_text_file(to.folder / "calibration.json",
                       io::to_json(io::calibration_tree(network.calibration, sigma_of(network, survey.sigma))));
   io::write_text_file(to.folder / "network.json", io::to_json(core::reported(findings)));
   if (!network.values.empty())
     tally.count("calibration values were estimated: georeference with calibration.json in another run, this one has the survey's");
-  return {as_flown(std::move(network.trajectory), rate, "calib.network"), std::move(findings)};
+  return {std::move(after), std::move(findings)};
 }
 
 }  // namespace

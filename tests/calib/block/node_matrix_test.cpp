@@ -83,6 +83,14 @@ TEST(NodeMatrix, TheInverseOnTheFactorsPatternIsThatOfTheWholeMatrix) {
   }
 }
 
+TEST(NodeMatrix, TheInverseAloneIsTheSame) {
+  const Made m = make(6);
+  NodeFactor with(m.sparse()), alone(m.sparse());
+  with.invert();
+  alone.invert(NodeFactor::Keep::inverse_alone);
+  for (const std::vector<int>& clique : m.cliques) EXPECT_EQ(with.covariance(clique), alone.covariance(clique));
+}
+
 TEST(NodeMatrix, SolvesEquations) {
   const Made m = make(5);
   const NodeMatrix N = m.sparse();

@@ -132,6 +132,13 @@ TEST(NetworkAdjust, PlanesMakeTheAttitudeOfAMemsSurveyBetterAndItsSigmasTrue) {
   EXPECT_GT(planes.pairs, 50u);
   EXPECT_LT(planes.after, 0.5 * planes.before);
   EXPECT_EQ(network.trajectory.covariance.time.size(), network.instants);
+  EXPECT_LT(network.surface_sigma, 0.0015);  // the village's planes are exact, 0.003 m was the start
+  EXPECT_EQ(network.biases.size(), network.instants);
+  EXPECT_EQ(network.tests.group.size(), network.after.size());
+  for (const NetworkComponent& c : network.components)
+    if (c.kind == "planes" || c.kind == "returns" || c.kind == "gnss_position") {
+      EXPECT_NEAR(c.factor, 1.0, 0.25) << c.kind;
+    }
 }
 
 TEST(NetworkAdjust, FindsTheBoresightWithTheTrajectory) {

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Source: variance = v^T P v / redundancy of the component (Foerstner 1979). The redundancy of the IMU is what all observations together
+// have less that of the others: its own trace is a difference of numbers alike to 1e-7 and beyond.
+#include "calib/network/network_components.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace swath::calib {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double least_freedom = 3.0;
+
+/// Number of unknowns that observations of one kind determine: trace(W A C A^T).
+double determined_by(const std::vector<NetworkNormals::Part>& parts, const MatrixXd& W, const Network& network) {
+  std::vector<int> nodes;
+  Eigen::Index columns = 0;
+  for (const auto& [node, A] : parts) nodes.push_back(node), columns += network.states().size(node);
+  MatrixXd A(W.rows(), columns);
+  columns = 0;
+  for (const auto& [node, part] : parts) {
+    A.middleCols(columns, part.cols()) = part;
+    columns += part.cols();
+  }
+  return W.cwiseProduct(A * network.covariance(nodes) * A.transpose()).sum();
+}
+
+/// The rows of a passage that are the fixes' correlated error: the last three, where there are any.
+std::vector<NetworkNormals::Part> last_rows(const std::vector<NetworkNormals::Part>& parts, Eigen::Index n) {
+  std::vector<NetworkNormals::Part> out;
+  for (const auto& [node, A] : parts) out.emplace_back(node, A.bottomRows(n));
+  return out;
+}
+
+enum Kind { start, imu, fix_error, position, velocity, standstill, wheels, navigation_kinds };
+constexpr std::array<const char*, navigation_kinds> keys{"start",         "imu",        "gnss_correlated", "gnss_position",
+                                                         "gnss_velocity", "standstill", "wheels"};
+
+Kind kind_of(NavigationKind k) {
+  switch (k) {
+    case NavigationKind::start:
+      return start;
+    case NavigationKind::imu:
+      return imu;
+    case NavigationKind::position:
+      return position;
+    case NavigationKind::velocity:
+      return velocity;
+    case NavigationKind::standstill:
+      return standstill;
+    case NavigationKind::wheels:
+      break;
+  }
+  return wheels;
+}
+
+void add(KindSums& sums, const std::vector<NetworkNormals::Part>& parts, const MatrixXd& W, const VectorXd& left, const Network& network) {
+  sums.observations += static_cast<std::uint64_t>(left.size());
+  sums.redundancy += static_cast<double>(left.size()) - determined_by(parts, W, network);
+  sums.squares += left.dot(W * left);
+}
+
+}  // namespace
+
+std::vector<NetworkComponent> components_of(const Network& network, const PlaneTests& tests, int values) {
+  std::array<KindSums, navigation_kinds> sums;
+  const Eigen::Index fixes = network.has_fix_error() ? 3 : 0;
+  network.each([&](NavigationKind k, const std::vector<NetworkNormals::Part>& parts, const MatrixXd& W, const VectorXd& left) {
+    if (k != NavigationKind::imu) return add(sums[kind_of(k)], parts, W, left, network);
+    const Eigen::Index own = left.size() - fixes;
+    sums[imu].observations += static_cast<std::uint64_t>(own);
+    sums[imu].squares += left.head(own).dot(W.topLeftCorner(own, own) * left.head(own));
+    if (fixes > 0) add(sums[fix_error], last_rows(parts, fixes), W.bottomRightCorner(fixes, fixes), left.tail(fixes), network);
+  });
+  // Planes are unknowns, too: three each.
+  double all = values - static_cast<double>(network.last_step().size()) - 3.0 * static_cast<double>(tests.planes), others = 0.0;
+  for (const KindSums* s : {&tests.means, &tests.returns, &tests.control})
+    all += static_cast<double>(s->observations), others += s->redundancy;
+  for (size_t k = 0; k < sums.size(); ++k) {
+    all += static_cast<double>(sums[k].observations);
+    if (k != imu) others += sums[k].redundancy;
+  }
+  sums[imu].redundancy = all - others;
+
+  std::vector<NetworkComponent> out;
+  const auto put = [&out](const char* key, const KindSums& s) {
+    if (s.observations == 0) return;
+    const double factor = s.redundancy < least_freedom ? std::numeric_limits<double>::quiet_NaN() : std::sqrt(s.squares / s.redundancy);
+    out.push_back({key, s.observations, s.redundancy, factor});
+  };
+  for (size_t k = 0; k < sums.size(); ++k) put(keys[k], sums[k]);
+  put("planes", tests.means);
+  put("returns", tests.returns);
+  put("control", tests.control);
+  return out;
+}
+
+}  // namespace swath::calib

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the residuals of groups of returns (one line on one plane) say of the groups and of the surfaces' sigma.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "calib/block/node_matrix.h"
+#include "calib/network/plane_factors.h"
+
+namespace swath::calib {
+
+/// Test of one group's displacement along the normal.
+struct GroupTest {
+  double w = 0.0;             ///< standardised; 0 where the others do not control it
+  double redundancy = 0.0;    ///< share of a displacement that shows in the residual, 0 to 1
+  double displacement = 0.0;  ///< estimate of it, m
+};
+
+/// A surveyed point against its plane.
+struct ControlTest {
+  std::string name;
+  std::uint32_t plane = 0;
+  double residual = 0.0, sigma = 0.0;  ///< m; its sigma
+  double redundancy = 0.0, w = 0.0;
+};
+
+/// Sums over one kind of observation.
+struct KindSums {
+  std::uint64_t observations = 0;
+  double redundancy = 0.0, squares = 0.0;  ///< squares of weighted residuals
+};
+
+struct PlaneTests {
+  std::vector<GroupTest> group;
+  std::vector<ControlTest> points;
+  std::vector<Eigen::Vector3d> plane_sigma;  ///< of each plane's step: m along the normal, slopes; NaN where no group takes part
+  std::uint64_t planes = 0;                  ///< that take part
+  KindSums means, returns, control;          ///< of groups; of single returns about their groups; of surveyed points
+  /// Derivative of the restricted log-likelihood by the surfaces' variance, times two, and its expected square: a step is their ratio.
+  double score = 0.0, information = 0.0;
+};
+
+/// Of a solution: the normal equations' factor, inverted, and its step; the planes' part as it was added to them.
+PlaneTests test_planes(const PlaneFactors& planes, const FlightStates& states, const NodeFactor& factor, const Eigen::VectorXd& step);
+
+/// Moves the surfaces' sigma to where the residuals are as large as expected. True where the groups' variances change by 2 % or more.
+bool update_surface(PlaneFactors& planes, const PlaneTests& tests);
+
+/// Leaves out groups with |w| above the critical value of `alpha`, one per plane, the largest first, not more than `share` of all. Returns
+/// their number.
+int reject_groups(PlaneFactors& planes, const PlaneTests& tests, double alpha, double share);
+
+}  // namespace swath::calib
