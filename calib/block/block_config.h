@@ -84,7 +84,7 @@ void describe(CameraConfig& c, V& v) {
 
 /// The table of images.
 struct ImagesConfig {
-  std::filesystem::path file;
+  std::filesystem::path file, correlation;
   std::string name = "name", strip = "strip", time = "time", camera = "camera", x = "x", y = "y", z = "z", sigma_h = "sigma_h",
               sigma_v = "sigma_v";
   ImageValues stations = ImageValues::observed;
@@ -98,6 +98,7 @@ struct ImagesConfig {
 template <class V>
 void describe(ImagesConfig& i, V& v) {
   v.option("file", i.file, "Table of the images; empty: those of a format that has orientations.");
+  v.option("correlation", i.correlation, "Covariances within and between images, for all sigmas here; as orientation.direct writes them.");
   v.option("name", i.name, "Column of the names, as the image points have them.");
   v.option("strip", i.strip, "Column of the strip's number.");
   v.option("time", i.time, "Column of the time of exposure, s, on any scale.");
@@ -117,6 +118,8 @@ void describe(ImagesConfig& i, V& v) {
   v.option("sigma_heading", i.sigma_heading, core::above(0), "Sigma of observed heading (kappa).");
   v.check(i.angles == ImageAngles::none || i.north, "angles are given: state north = \"grid\" or \"true\"");
   v.check(i.angles != ImageAngles::none || i.angle_use == ImageValues::start, "angle_use is observed: state the kind of angles");
+  v.check(i.correlation.empty() || (!i.file.empty() && (i.stations == ImageValues::observed || i.angle_use == ImageValues::observed)),
+          "correlation has no effect: neither stations nor angles of a table are observed");
 }
 
 /// One file of control points.

@@ -112,9 +112,18 @@ std::string said(const ReadBlock& read, const BlockObservation& o, size_t row, s
       return std::string(k == 0 ? "x" : "y") + " of point " + b.points[b.rays[o.index].point].name + " on image " +
              b.images[b.rays[o.index].image].name;
     case ObservationKind::station:
+      if (!b.chain.empty()) {
+        unit = "sigmas", by = 1.0;
+        return axis(k) + " of the station of image " + b.images[b.stations[o.index].image].name + ", given those before";
+      }
       unit = "m", by = std::sqrt(b.stations[o.index].covariance(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)));
       return axis(k) + " of the station of image " + b.images[b.stations[o.index].image].name;
     case ObservationKind::attitude:
+      if (!b.chain.empty()) {
+        unit = "sigmas", by = 1.0;
+        return "rotation about axis " + std::to_string(k + 1) + " of image " + b.images[b.attitudes[o.index].image].name +
+               ", given its station and the images before";
+      }
       unit = "deg",
       by = std::sqrt(b.attitudes[o.index].covariance(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k))) / core::degree;
       return "rotation about axis " + std::to_string(k + 1) + " of image " + b.images[b.attitudes[o.index].image].name;

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "calib/block/block_costs.h"
+#include "calib/block/navigation/chain_cost.h"
 #include "core/error.h"
 #include "core/geo/frames.h"
 
@@ -56,7 +57,7 @@ struct BlockSystem::State {
     add_parameters();
     add_points();
     add_rays();
-    add_navigation();
+    block.chain.empty() ? add_navigation() : add_chain();
     add_priors();
   }
 
@@ -66,16 +67,22 @@ struct BlockSystem::State {
   void add_points();
   void add_rays();
   void add_navigation();
+  void add_chain();
   void add_priors();
+  double drift_time(size_t station) const;
   void add_node(NodeKind kind, size_t index, double* values, int size, const std::vector<int>& components);
   template <class Vector>
   void add_partly(NodeKind kind, size_t index, double* values, int size, const Vector& sigma);
   template <int N, class Vector>
   void add_prior(NodeKind kind, size_t index, double* values, const Vector& sigma);
   void note(ObservationKind kind, size_t index, int rows, int component, ceres::ResidualBlockId id) {
+    note_rows(kind, index, rows, component);
+    ids.push_back(id);
+  }
+  /// Of an equation that several observations have in common.
+  void note_rows(ObservationKind kind, size_t index, int rows, int component) {
     const size_t row = shape.observations.empty() ? 0 : shape.observations.back().row + static_cast<size_t>(shape.observations.back().rows);
     shape.observations.push_back({kind, static_cast<std::uint32_t>(index), component, row, rows});
-    ids.push_back(id);
   }
 };
 
@@ -180,20 +187,24 @@ void BlockSystem::State::add_rays() {
   }
 }
 
+double BlockSystem::State::drift_time(size_t station) const {
+  const int set = block.drift_of.empty() ? -1 : block.drift_of[station];
+  if (set < 0) return 0.0;
+  const StationDrift& d = block.drifts[static_cast<size_t>(set)];
+  return (block.images[block.stations[station].image].time - d.first) / d.span;
+}
+
 void BlockSystem::State::add_navigation() {
   for (size_t s = 0; s < block.stations.size(); ++s) {
     const ImageStation& station = block.stations[s];
     const std::uint32_t camera = block.images[station.image].camera;
     Pose& pose = poses[station.image];
     const int set = block.drift_of.empty() ? -1 : block.drift_of[s];
-    const double u = set < 0 ? 0.0
-                             : (block.images[station.image].time - block.drifts[static_cast<size_t>(set)].first) /
-                                   block.drifts[static_cast<size_t>(set)].span;
     auto* cost = new StationCost{{station.position.x(), station.position.y(), station.position.z()},
                                  whitener(station.covariance),
                                  pose.base.data(),
                                  &weights.station,
-                                 u};
+                                 drift_time(s)};
     const auto id = set < 0 ? problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3>(cost), nullptr,
                                                        pose.value.data(), antenna[camera].data())
                             : problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3, 6>(cost), nullptr,
@@ -209,6 +220,40 @@ void BlockSystem::State::add_navigation() {
     note(ObservationKind::attitude, a, 3, 0,
          problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AttitudeCost, 3, 6, 3>(cost), nullptr, poses[attitude.image].value.data(),
                                   boresight[image.camera].data()));
+  }
+}
+
+void BlockSystem::State::add_chain() {
+  std::vector<ChainMember> member(poses.size());
+  std::vector<size_t> station_of(poses.size(), 0), attitude_of(poses.size(), 0);
+  for (size_t i = 0; i < poses.size(); ++i) {
+    const std::uint32_t camera = block.images[i].camera;
+    member[i].pose = poses[i].value.data(), member[i].base = poses[i].base.data();
+    member[i].antenna = antenna[camera].data(), member[i].boresight = boresight[camera].data();
+  }
+  for (size_t s = 0; s < block.stations.size(); ++s) {
+    const ImageStation& station = block.stations[s];
+    ChainMember& m = member[station.image];
+    m.station = {station.position.x(), station.position.y(), station.position.z()};
+    m.u = drift_time(s);
+    if (!block.drift_of.empty() && block.drift_of[s] >= 0) m.drift = drifts[static_cast<size_t>(block.drift_of[s])].data();
+    station_of[station.image] = s;
+  }
+  for (size_t a = 0; a < block.attitudes.size(); ++a) {
+    const ImageAttitude& attitude = block.attitudes[a];
+    const Matrix3d& B = block.cameras[block.images[attitude.image].camera].body_R_camera;
+    member[attitude.image].observed_local_R_camera = by_rows(attitude.local_R_body * B);
+    attitude_of[attitude.image] = a;
+  }
+  for (const NavigationStep& step : block.chain) {
+    std::vector<ChainMember> members;
+    for (const std::uint32_t i : step.before) members.push_back(member[i]);
+    members.push_back(member[step.image]);
+    std::vector<double*> blocks;
+    auto* cost = chain_cost(step, members, &weights.station, &weights.attitude, blocks);
+    ids.push_back(problem.AddResidualBlock(cost, nullptr, blocks));
+    if (members.back().station) note_rows(ObservationKind::station, station_of[step.image], 3, 0);
+    if (members.back().observed_local_R_camera) note_rows(ObservationKind::attitude, attitude_of[step.image], 3, 0);
   }
 }
 

@@ -64,6 +64,14 @@ struct ImageAttitude {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< rad^2, of a rotation about the body's axes
 };
 
+/// The errors of an image's station (local frame, m) and attitude (about the camera's nominal axes, rad), one of them or both, given those
+/// of images before it: e = by_before e_before + q, Cov(q) = root root'.
+struct NavigationStep {
+  std::uint32_t image = 0;
+  std::vector<std::uint32_t> before;  ///< images
+  Eigen::MatrixXd by_before, root;    ///< root: lower triangle
+};
+
 /// A surveyed point. Check points take no part in the adjustment.
 struct BlockControl {
   std::uint32_t point = 0;
@@ -90,6 +98,7 @@ struct ImageBlock {
   std::vector<ImageRay> rays;
   std::vector<ImageStation> stations;  ///< at most one per image
   std::vector<ImageAttitude> attitudes;
+  std::vector<NavigationStep> chain;  ///< of all stations and attitudes; empty: those of different images are independent
   std::vector<BlockControl> control;
   DriftSets drift_sets = DriftSets::none;
   std::vector<StationDrift> drifts;  ///< made by find_drift_sets()

@@ -113,56 +113,115 @@ struct Nees {
   double ratio() const { return std::sqrt(sum / n); }
 };
 
-TEST(BlockAdjust, SigmasAreTrueOverSeeds) {
+/// Errors over sigmas of all that is adjusted.
+struct AllNees {
   Nees points, positions, attitudes, camera, shifts, boresight;
-  for (unsigned seed = 1; seed <= 20; ++seed) {
-    test::Making m;
-    m.seed = seed;
-    m.layout.strips = 3, m.layout.images = 7, m.layout.side = 0.4;
-    m.which = {"", DriftSets::strip, ControlLayout::corners, 2};
-    m.drift = 1.5;
-    m.attitudes = true;
-    m.camera << 0, 0.05, -0.08, 2e-8, 0, 0, 0, 0, 0, 0;
-    m.camera_sigma.head<4>().setConstant(free_value);
-    test::MadeBlock b = test::make_block(m);
-    const BlockSolution s = adjust_block(b.given, plain_least_squares());
-    for (size_t p = 0; p < b.given.points.size(); ++p)
-      for (int k = 0; k < 3; ++k) points.add(b.given.points[p].position[k] - b.truth.points[p].position[k], s.inference.points[p](k, k));
-    for (size_t n = 0; n < s.linear.nodes.size(); ++n) {
-      const UnknownNode& node = s.linear.nodes[n];
-      const Eigen::MatrixXd& C = s.inference.nodes[n];
-      if (node.kind == NodeKind::image) {
-        const Vector3d dX = b.given.images[node.index].position - b.truth.images[node.index].position;
-        const Vector3d turn =
-            core::log_so3(b.given.images[node.index].camera_R_local * b.truth.images[node.index].camera_R_local.transpose());
-        for (int k = 0; k < 3; ++k) positions.add(dX[k], C(k, k)), attitudes.add(turn[k], C(3 + k, 3 + k));
-      }
-      if (node.kind == NodeKind::camera)
-        for (size_t k = 0; k < node.components.size(); ++k) {
-          const auto i = static_cast<Eigen::Index>(k);
-          camera.add(b.given.cameras[0].value[node.components[k]] - b.truth.cameras[0].value[node.components[k]], C(i, i));
-        }
-      if (node.kind == NodeKind::boresight) {
-        const Vector3d turn = core::log_so3(b.given.cameras[0].body_R_camera.transpose() * b.truth.cameras[0].body_R_camera);
-        for (int k = 0; k < 3; ++k) boresight.add(turn[k], C(k, k));
-      }
-      if (node.kind == NodeKind::drift)
-        for (int k = 0; k < 3; ++k) {
-          shifts.add(b.given.drifts[node.index].shift[k] - b.truth.drifts[node.index].shift[k], C(k, k));
-          shifts.add(b.given.drifts[node.index].change[k] - b.truth.drifts[node.index].change[k], C(3 + k, 3 + k));
-        }
+  void add(const test::MadeBlock& b, const BlockSolution& s);
+  std::vector<std::pair<const char*, double>> ratios() const {
+    std::vector<std::pair<const char*, double>> out{{"points", points.ratio()},
+                                                    {"positions", positions.ratio()},
+                                                    {"attitudes", attitudes.ratio()},
+                                                    {"camera", camera.ratio()},
+                                                    {"boresight", boresight.ratio()}};
+    if (shifts.n > 0.0) out.emplace_back("shifts", shifts.ratio());
+    return out;
+  }
+};
+
+void AllNees::add(const test::MadeBlock& b, const BlockSolution& s) {
+  for (size_t p = 0; p < b.given.points.size(); ++p)
+    for (int k = 0; k < 3; ++k) points.add(b.given.points[p].position[k] - b.truth.points[p].position[k], s.inference.points[p](k, k));
+  for (size_t n = 0; n < s.linear.nodes.size(); ++n) {
+    const UnknownNode& node = s.linear.nodes[n];
+    const Eigen::MatrixXd& C = s.inference.nodes[n];
+    if (node.kind == NodeKind::image) {
+      const Vector3d dX = b.given.images[node.index].position - b.truth.images[node.index].position;
+      const Vector3d turn =
+          core::log_so3(b.given.images[node.index].camera_R_local * b.truth.images[node.index].camera_R_local.transpose());
+      for (int k = 0; k < 3; ++k) positions.add(dX[k], C(k, k)), attitudes.add(turn[k], C(3 + k, 3 + k));
     }
+    if (node.kind == NodeKind::camera)
+      for (size_t k = 0; k < node.components.size(); ++k) {
+        const auto i = static_cast<Eigen::Index>(k);
+        camera.add(b.given.cameras[0].value[node.components[k]] - b.truth.cameras[0].value[node.components[k]], C(i, i));
+      }
+    if (node.kind == NodeKind::boresight) {
+      const Vector3d turn = core::log_so3(b.given.cameras[0].body_R_camera.transpose() * b.truth.cameras[0].body_R_camera);
+      for (int k = 0; k < 3; ++k) boresight.add(turn[k], C(k, k));
+    }
+    if (node.kind == NodeKind::drift)
+      for (int k = 0; k < 3; ++k) {
+        shifts.add(b.given.drifts[node.index].shift[k] - b.truth.drifts[node.index].shift[k], C(k, k));
+        shifts.add(b.given.drifts[node.index].change[k] - b.truth.drifts[node.index].change[k], C(3 + k, 3 + k));
+      }
+  }
+}
+
+test::Making flight(unsigned seed, DriftSets drift) {
+  test::Making m;
+  m.seed = seed;
+  m.layout.strips = 3, m.layout.images = 7, m.layout.side = 0.4;
+  m.which = {"", drift, ControlLayout::corners, 2};
+  m.drift = 1.5;
+  m.attitudes = true;
+  m.camera << 0, 0.05, -0.08, 2e-8, 0, 0, 0, 0, 0, 0;
+  m.camera_sigma.head<4>().setConstant(free_value);
+  return m;
+}
+
+TEST(BlockAdjust, SigmasAreTrueOverSeeds) {
+  AllNees all;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    test::MadeBlock b = test::make_block(flight(seed, DriftSets::strip));
+    const BlockSolution s = adjust_block(b.given, plain_least_squares());
+    all.add(b, s);
   }
   // 80 camera values, 60 of the boresight, all correlated within a seed: 0.85-1.15 is two of their own sigmas.
-  for (const auto& [name, nees] : {std::pair{"points", points},
-                                   {"positions", positions},
-                                   {"attitudes", attitudes},
-                                   {"camera", camera},
-                                   {"shifts", shifts},
-                                   {"boresight", boresight}}) {
-    EXPECT_GT(nees.ratio(), 0.85) << name;
-    EXPECT_LT(nees.ratio(), 1.15) << name;
+  for (const auto& [name, ratio] : all.ratios()) {
+    EXPECT_GT(ratio, 0.85) << name;
+    EXPECT_LT(ratio, 1.15) << name;
   }
+}
+
+/// As the stations of a made block are: each error a share of the one before.
+std::vector<NavigationStep> chain_of(const ImageBlock& b, double share) {
+  std::vector<NavigationStep> out;
+  for (std::uint32_t i = 0; i < b.images.size(); ++i) {
+    NavigationStep step;
+    step.image = i;
+    if (i > 0) step.before = {i - 1}, step.by_before = share * Eigen::MatrixXd::Identity(6, 6);
+    Eigen::MatrixXd C = Eigen::MatrixXd::Zero(6, 6);
+    C.topLeftCorner(3, 3) = b.stations[i].covariance, C.bottomRightCorner(3, 3) = b.attitudes[i].covariance;
+    step.root = (i > 0 ? std::sqrt(1.0 - share * share) : 1.0) * Eigen::MatrixXd(C.diagonal().cwiseSqrt().asDiagonal());
+    out.push_back(step);
+  }
+  return out;
+}
+
+/// Errors of stations and attitudes that are correlated from image to image: with the chain sigmas are true, without it they are too small.
+TEST(BlockAdjust, CorrelatedStationsHaveTrueSigmasWithTheirChain) {
+  constexpr double share = 0.95;
+  AllNees with, without;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    test::Making m = flight(seed, DriftSets::none);
+    m.correlation = share;
+    m.layout.sigma_image = core::Metres(5e-6);
+    m.layout.sigma_station = m.layout.sigma_control = core::Metres(0.3);
+    test::MadeBlock b = test::make_block(m), plain = b;
+    ASSERT_EQ(b.given.stations.size(), b.given.images.size());
+    b.given.chain = chain_of(b.given, share);
+    const BlockSolution s = adjust_block(b.given, plain_least_squares());
+    EXPECT_NEAR(s.sigma0(), 1.0, 0.15);
+    with.add(b, s);
+    without.add(plain, adjust_block(plain.given, plain_least_squares()));
+  }
+  for (const auto& [name, ratio] : with.ratios()) {
+    EXPECT_GT(ratio, 0.85) << name;
+    EXPECT_LT(ratio, 1.15) << name;
+  }
+  for (const auto& [name, ratio] : without.ratios()) std::printf("without the chain: %s %.2f\n", name, ratio);
+  EXPECT_GT(without.positions.ratio(), 1.25);
+  EXPECT_GT(without.boresight.ratio(), 1.25);
 }
 
 TEST(BlockAdjust, GrossErrorsLoseTheirWeightAndTheTestFindsThem) {
