@@ -150,6 +150,7 @@ struct BlockConfig {
   BlockKind kind = BlockKind::block_adjust;
   std::string crs;
   DriftSets drift = DriftSets::none;
+  Datum datum = Datum::none;
   std::vector<CameraConfig> cameras;
   ImagesConfig images;
   std::vector<io::ImageFile> image_points;
@@ -162,6 +163,7 @@ void describe(BlockConfig& b, V& v) {
   v.option("kind", b.kind, "What the file is.");
   v.option("crs", b.crs, "CRS of stations, control and products, or \"local\": a Cartesian frame, z up, m.");
   v.option("drift", b.drift, "Unknown shift and drift of the stations: none, one set for the block, or one per strip.", "Ackermann, eq 1");
+  v.option("datum", b.datum, "Unknown datum of stations and angles against control: none, a shift, or with rotation and scale.");
   v.tables("camera", b.cameras, "Cameras.");
   v.table("images", b.images, "Images with stations and angles.");
   v.tables("image_points", b.image_points, "Files of image points.");
@@ -169,6 +171,8 @@ void describe(BlockConfig& b, V& v) {
   v.table("adjust", b.adjust, "Weights.");
   v.check(!b.crs.empty(), "crs is not stated: a CRS such as \"EPSG:25832+ellipsoidal\", or \"local\"");
   v.check(!b.image_points.empty(), "no [[image_points]]");
+  v.check(b.datum == Datum::none || b.drift == DriftSets::none,
+          "datum and drift are both stated: the shift of a drift is that of the datum; state datum = \"none\"");
 }
 
 /// Reads a config; paths in it become relative to where the program runs. Throws core::Error with all faults. `sets`: "key=value".

@@ -275,6 +275,23 @@ void add_chain(const BlockConfig& config, const OrientationCorrelation& correlat
   read.block.chain = navigation_chain(correlation, image_number, turn, parts, config.images.correlation.string());
 }
 
+/// Before anything is adjusted: what its normal equations would say without names.
+void expect_datum(const ReadBlock& read, const std::string& config_file) {
+  if (read.block.datum == Datum::none) return;
+  if (read.stations_observed == 0)
+    throw core::usage_error("datum has no effect: no station is observed", config_file, "state datum = \"none\"");
+  std::array<size_t, 3> known{};
+  for (const BlockControl& c : read.block.control)
+    for (size_t k = 0; k < 3; ++k) known[k] += !c.check && c.known[k];
+  const bool shift = read.block.datum == Datum::shift;
+  const size_t plan = shift ? 1 : 2, heights = shift ? 1 : 3;
+  if (known[0] >= plan && known[2] >= heights) return;
+  throw core::Error("the datum of the stations is not determinable: control has " + std::to_string(known[0]) + " points in plan and " +
+                        std::to_string(known[2]) + " heights, and " + std::string(core::Choices<Datum>::names.at(shift ? 1 : 2)) +
+                        " needs " + std::to_string(plan) + " and " + std::to_string(heights),
+                    config_file, "survey more control, or state datum = \"none\"" + std::string(shift ? "" : " or \"shift\""));
+}
+
 void expect_points(const BlockConfig& config, ReadBlock& read) {
   std::vector<char> seen(read.block.images.size(), 0);
   for (const ImageRay& r : read.block.rays) seen[r.image] = 1;
@@ -328,6 +345,7 @@ ReadBlock read_block(const BlockConfig& config, const std::string& config_file) 
   refuse_same_cameras(config, config_file);
   for (const CameraConfig& c : config.cameras) read.block.cameras.push_back(camera_of(c, config_file));
   read.block.drift_sets = config.drift;
+  read.block.datum = config.datum;
   Numbers image_number, point_number;
   const bool has_table = !config.images.file.empty();
   std::vector<TableRow> rows;
@@ -357,6 +375,7 @@ ReadBlock read_block(const BlockConfig& config, const std::string& config_file) 
   }
   add_stations(config, config_file, rows, read);
   for (size_t k = 0; k < read.block.control.size(); ++k) read.block.control[k].position = read.frame.local_of(read.control[k].map);
+  expect_datum(read, config_file);
   const bool by_file = config.images.angles == ImageAngles::none && start_from_file(read, poses, has_table);
   if (!by_file && !has_table)
     throw core::Error("nothing to start from: no table of images, and orientations of " + std::to_string(poses.size()) + " of " +

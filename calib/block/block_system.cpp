@@ -47,6 +47,8 @@ struct BlockSystem::State {
   std::vector<CameraVector> cameras;
   std::vector<Matrix3d> nominal;  // body_R_camera
   std::vector<std::array<double, 6>> drifts;
+  std::array<double, 7> datum{};  // shift, rotation, scale
+  std::array<double, 3> datum_centre{};
   std::vector<ceres::ResidualBlockId> ids;
   std::vector<double*> order;  // of parameter blocks
   LinearBlock shape;           // without rows
@@ -100,6 +102,9 @@ void BlockSystem::State::take_values() {
   }
   for (const StationDrift& d : block.drifts)
     drifts.push_back({d.shift.x(), d.shift.y(), d.shift.z(), d.change.x(), d.change.y(), d.change.z()});
+  const StationDatum& s = block.station_datum;
+  datum = {s.shift.x(), s.shift.y(), s.shift.z(), s.rotation.x(), s.rotation.y(), s.rotation.z(), s.scale};
+  datum_centre = {s.centre.x(), s.centre.y(), s.centre.z()};
 }
 
 void BlockSystem::State::give_values() {
@@ -120,6 +125,9 @@ void BlockSystem::State::give_values() {
     block.drifts[d].shift = Vector3d(drifts[d].data());
     block.drifts[d].change = Vector3d(drifts[d].data() + 3);
   }
+  block.station_datum.shift = Vector3d(datum.data());
+  block.station_datum.rotation = Vector3d(datum.data() + 3);
+  block.station_datum.scale = datum[6];
 }
 
 void BlockSystem::State::add_node(NodeKind kind, size_t index, double* values, int size, const std::vector<int>& components) {
@@ -152,6 +160,8 @@ void BlockSystem::State::add_parameters() {
     add_partly(NodeKind::antenna, c, antenna[c].data(), 3, camera.antenna_sigma);
   }
   for (size_t d = 0; d < drifts.size(); ++d) add_node(NodeKind::drift, d, drifts[d].data(), 6, {0, 1, 2, 3, 4, 5});
+  if (block.datum == Datum::shift) add_node(NodeKind::datum, 0, datum.data(), 7, {0, 1, 2});
+  if (block.datum == Datum::similarity) add_node(NodeKind::datum, 0, datum.data(), 7, {0, 1, 2, 3, 4, 5, 6});
 }
 
 void BlockSystem::State::add_points() {
@@ -204,7 +214,14 @@ void BlockSystem::State::add_navigation() {
                                  whitener(station.covariance),
                                  pose.base.data(),
                                  &weights.station,
-                                 drift_time(s)};
+                                 drift_time(s),
+                                 block.datum == Datum::none ? nullptr : datum_centre.data()};
+    if (block.datum != Datum::none) {
+      note(ObservationKind::station, s, 3, 0,
+           problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3, 7>(cost), nullptr, pose.value.data(),
+                                    antenna[camera].data(), datum.data()));
+      continue;
+    }
     const auto id = set < 0 ? problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3>(cost), nullptr,
                                                        pose.value.data(), antenna[camera].data())
                             : problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3, 6>(cost), nullptr,
@@ -217,9 +234,13 @@ void BlockSystem::State::add_navigation() {
     const Matrix3d& B = block.cameras[image.camera].body_R_camera;
     auto* cost = new AttitudeCost{by_rows(attitude.local_R_body * B), whitener(B.transpose() * attitude.covariance * B),
                                   poses[attitude.image].base.data(), &weights.attitude};
-    note(ObservationKind::attitude, a, 3, 0,
-         problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AttitudeCost, 3, 6, 3>(cost), nullptr, poses[attitude.image].value.data(),
-                                  boresight[image.camera].data()));
+    double* const pose = poses[attitude.image].value.data();
+    const auto id = block.datum == Datum::similarity
+                        ? problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AttitudeCost, 3, 6, 3, 7>(cost), nullptr, pose,
+                                                   boresight[image.camera].data(), datum.data())
+                        : problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AttitudeCost, 3, 6, 3>(cost), nullptr, pose,
+                                                   boresight[image.camera].data());
+    note(ObservationKind::attitude, a, 3, 0, id);
   }
 }
 
@@ -230,6 +251,8 @@ void BlockSystem::State::add_chain() {
     const std::uint32_t camera = block.images[i].camera;
     member[i].pose = poses[i].value.data(), member[i].base = poses[i].base.data();
     member[i].antenna = antenna[camera].data(), member[i].boresight = boresight[camera].data();
+    if (block.datum != Datum::none) member[i].datum = datum.data(), member[i].datum_centre = datum_centre.data();
+    member[i].turned = block.datum == Datum::similarity;
   }
   for (size_t s = 0; s < block.stations.size(); ++s) {
     const ImageStation& station = block.stations[s];
@@ -339,6 +362,8 @@ int LinearBlock::points() const {
 void find_drift_sets(ImageBlock& block) {
   block.drifts.clear();
   block.drift_of.assign(block.stations.size(), -1);
+  block.station_datum.centre.setZero();
+  for (const ImageStation& s : block.stations) block.station_datum.centre += s.position / static_cast<double>(block.stations.size());
   if (block.drift_sets == DriftSets::none) return;
   std::map<int, std::pair<double, double>> spans;
   const auto key = [&](const ImageStation& s) { return block.drift_sets == DriftSets::strip ? block.images[s.image].strip : 0; };

@@ -91,6 +91,16 @@ struct StationDrift {
   Eigen::Vector3d change = Eigen::Vector3d::Zero();  ///< a1 times the span, m
 };
 
+/// Unknown datum of the stations against control: none, a shift, or shift, rotation and scale.
+enum class Datum { none, shift, similarity };
+
+/// X_GPS + v = centre + (1 + scale) exp(rotation) (X - centre) + shift, and attitudes are turned by exp(rotation).
+struct StationDatum {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();                                     ///< local, m: held
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero(), rotation = Eigen::Vector3d::Zero();  ///< m, rad
+  double scale = 0.0;
+};
+
 struct ImageBlock {
   std::vector<BlockCamera> cameras;
   std::vector<BlockImage> images;
@@ -103,6 +113,8 @@ struct ImageBlock {
   DriftSets drift_sets = DriftSets::none;
   std::vector<StationDrift> drifts;  ///< made by find_drift_sets()
   std::vector<int> drift_of;         ///< per station: its set, or -1
+  Datum datum = Datum::none;
+  StationDatum station_datum;  ///< its centre is made by find_drift_sets()
 };
 
 }  // namespace swath::calib
@@ -111,6 +123,10 @@ namespace swath::core {
 template <>
 struct Choices<calib::DriftSets> {
   static constexpr std::array<std::string_view, 3> names{"none", "block", "strip"};
+};
+template <>
+struct Choices<calib::Datum> {
+  static constexpr std::array<std::string_view, 3> names{"none", "shift", "similarity"};
 };
 template <>
 struct Choices<calib::DistortionAt> {

@@ -40,7 +40,7 @@ class ChainCost : public ceres::CostFunction {
     if (jacobians)
       for (size_t b = 0; b < sizes.size(); ++b)
         if (jacobians[b]) std::fill_n(jacobians[b], rows * sizes[b], 0.0);
-    std::vector<std::array<double, 18>> derivative(4);
+    std::vector<std::array<double, 21>> derivative(4);
     for (const ChainPart& p : parts_) {
       std::array<const double*, 4> values{};
       std::array<double*, 4> by{};
@@ -81,9 +81,12 @@ class Parameters {
 };
 
 ChainPart station_part(const ChainMember& m, MatrixXd weight, const double* factor, Parameters& parameters) {
-  auto* cost = new StationCost{*m.station, identity, m.base, &one, m.u};
+  auto* cost = new StationCost{*m.station, identity, m.base, &one, m.u, m.datum ? m.datum_centre : nullptr};
   ChainPart out{nullptr, {parameters.number_of(m.pose, 6), parameters.number_of(m.antenna, 3)}, std::move(weight), factor};
-  if (m.drift) {
+  if (m.datum) {
+    out.blocks.push_back(parameters.number_of(m.datum, 7));
+    out.equation = std::make_unique<ceres::AutoDiffCostFunction<StationCost, 3, 6, 3, 7>>(cost);
+  } else if (m.drift) {
     out.blocks.push_back(parameters.number_of(m.drift, 6));
     out.equation = std::make_unique<ceres::AutoDiffCostFunction<StationCost, 3, 6, 3, 6>>(cost);
   } else {
@@ -94,10 +97,14 @@ ChainPart station_part(const ChainMember& m, MatrixXd weight, const double* fact
 
 ChainPart attitude_part(const ChainMember& m, MatrixXd weight, const double* factor, Parameters& parameters) {
   auto* cost = new AttitudeCost{*m.observed_local_R_camera, identity, m.base, &one};
-  return {std::make_unique<ceres::AutoDiffCostFunction<AttitudeCost, 3, 6, 3>>(cost),
-          {parameters.number_of(m.pose, 6), parameters.number_of(m.boresight, 3)},
-          std::move(weight),
-          factor};
+  ChainPart out{nullptr, {parameters.number_of(m.pose, 6), parameters.number_of(m.boresight, 3)}, std::move(weight), factor};
+  if (m.datum && m.turned) {
+    out.blocks.push_back(parameters.number_of(m.datum, 7));
+    out.equation = std::make_unique<ceres::AutoDiffCostFunction<AttitudeCost, 3, 6, 3, 7>>(cost);
+  } else {
+    out.equation = std::make_unique<ceres::AutoDiffCostFunction<AttitudeCost, 3, 6, 3>>(cost);
+  }
+  return out;
 }
 
 }  // namespace

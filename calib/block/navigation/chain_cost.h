@@ -17,8 +17,10 @@ namespace swath::calib {
 /// What is observed of one image, and where its unknowns are.
 struct ChainMember {
   double* pose = nullptr;
-  const double* base = nullptr;  ///< camera_R_local0 by rows
-  double *antenna = nullptr, *boresight = nullptr, *drift = nullptr;
+  const double* base = nullptr;                                                         ///< camera_R_local0 by rows
+  double *antenna = nullptr, *boresight = nullptr, *drift = nullptr, *datum = nullptr;  ///< the last two: one of them at most
+  const double* datum_centre = nullptr;
+  bool turned = false;                                             ///< attitudes, too, have the datum
   double u = 0.0;                                                  ///< of the drift
   std::optional<std::array<double, 3>> station{};                  ///< local, m
   std::optional<std::array<double, 9>> observed_local_R_camera{};  ///< with the nominal boresight; by rows

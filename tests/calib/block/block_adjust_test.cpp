@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "core/error.h"
 #include "io/text/value_file.h"
 #include "tests/calib/block/made_block.h"
@@ -202,7 +204,7 @@ std::vector<NavigationStep> chain_of(const ImageBlock& b, double share) {
 TEST(BlockAdjust, CorrelatedStationsHaveTrueSigmasWithTheirChain) {
   constexpr double share = 0.95;
   AllNees with, without;
-  for (unsigned seed = 1; seed <= 20; ++seed) {
+  for (unsigned seed = 1; seed <= 100; ++seed) {
     test::Making m = flight(seed, DriftSets::none);
     m.correlation = share;
     m.layout.sigma_image = core::Metres(5e-6);
@@ -219,9 +221,78 @@ TEST(BlockAdjust, CorrelatedStationsHaveTrueSigmasWithTheirChain) {
     EXPECT_GT(ratio, 0.85) << name;
     EXPECT_LT(ratio, 1.15) << name;
   }
+  for (const auto& [name, ratio] : with.ratios()) std::printf("with the chain: %s %.3f\n", name, ratio);
   for (const auto& [name, ratio] : without.ratios()) std::printf("without the chain: %s %.2f\n", name, ratio);
   EXPECT_GT(without.positions.ratio(), 1.25);
   EXPECT_GT(without.boresight.ratio(), 1.25);
+}
+
+/// Stations and attitudes of another datum than control: its values over their sigmas, and the block in the datum of control.
+TEST(BlockAdjust, DatumsHaveTrueSigmas) {
+  for (const Datum datum : {Datum::shift, Datum::similarity}) {
+    AllNees all;
+    Nees shift, rotation, scale;
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      test::Making m = flight(seed, DriftSets::none);
+      m.which.control = ControlLayout::chains;
+      m.datum = datum;
+      m.stations.shift = {-1.7, 2.1, 45.3};
+      if (datum == Datum::similarity) m.stations.rotation = {1e-5, -2e-5, 3e-5}, m.stations.scale = 8e-6;
+      test::MadeBlock b = test::make_block(m);
+      const BlockSolution s = adjust_block(b.given, plain_least_squares());
+      all.add(b, s);
+      const UnknownNode* node = nullptr;
+      Eigen::MatrixXd C;
+      for (size_t n = 0; n < s.linear.nodes.size(); ++n)
+        if (s.linear.nodes[n].kind == NodeKind::datum) node = &s.linear.nodes[n], C = s.inference.nodes[n];
+      ASSERT_NE(node, nullptr);
+      ASSERT_EQ(node->components.size(), datum == Datum::shift ? 3u : 7u);
+      const StationDatum& found = b.given.station_datum;
+      // The true shift is that in the middle of the true stations; here it is in the middle of those observed.
+      const Vector3d apart = found.centre - m.stations.shift - b.truth_centre;
+      const Vector3d at_found = (1.0 + m.stations.scale) * core::exp_so3(m.stations.rotation) * (found.centre - b.truth_centre) +
+                                b.truth_centre + m.stations.shift - found.centre;
+      EXPECT_LT(apart.norm(), 1.0);
+      for (int k = 0; k < 3; ++k) shift.add(found.shift[k] - at_found[k], C(k, k));
+      if (datum == Datum::shift) continue;
+      for (int k = 0; k < 3; ++k) rotation.add(found.rotation[k] - m.stations.rotation[k], C(3 + k, 3 + k));
+      scale.add(found.scale - m.stations.scale, C(6, 6));
+    }
+    std::vector<std::pair<const char*, double>> ratios = all.ratios();
+    ratios.emplace_back("shift", shift.ratio());
+    if (datum == Datum::similarity) ratios.emplace_back("rotation", rotation.ratio());
+    for (const auto& [name, ratio] : ratios) {
+      EXPECT_GT(ratio, 0.85) << name;
+      EXPECT_LT(ratio, 1.15) << name;
+    }
+    if (datum == Datum::similarity) {  // of 20 values: 0.16 is a sigma of the ratio
+      EXPECT_GT(scale.ratio(), 0.6);
+      EXPECT_LT(scale.ratio(), 1.4);
+    }
+  }
+}
+
+TEST(BlockAdjust, ADatumThatControlDoesNotDetermineIsNamed) {
+  const auto fault_with = [](Datum datum, const std::function<void(ImageBlock&)>& change) -> std::string {
+    test::Making m = flight(1, DriftSets::none);
+    m.datum = datum;
+    test::MadeBlock b = test::make_block(m);
+    change(b.given);
+    try {
+      adjust_block(b.given, plain_least_squares());
+    } catch (const core::Error& e) {
+      return std::string(e.what()) + "; " + e.hint();
+    }
+    return "";
+  };
+  const auto without_control = [](ImageBlock& b) { b.control.clear(); };
+  EXPECT_NE(
+      fault_with(Datum::shift, without_control).find("the datum of the stations is not determined by control; survey a control point"),
+      std::string::npos);
+  const auto few = [](ImageBlock& b) { b.control.resize(2); };  // rotation about their line
+  EXPECT_EQ(fault_with(Datum::shift, few), "");
+  EXPECT_NE(fault_with(Datum::similarity, few).find("the datum of the stations is not determined by control; survey three"),
+            std::string::npos);
 }
 
 TEST(BlockAdjust, GrossErrorsLoseTheirWeightAndTheTestFindsThem) {

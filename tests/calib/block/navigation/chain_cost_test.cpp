@@ -134,6 +134,36 @@ TEST(ChainCost, DerivativesAreThoseOfDifferences) {
   }
 }
 
+/// A datum moves stations and turns attitudes.
+TEST(ChainCost, Datum) {
+  Two t(false);
+  std::array<double, 7> datum{0.3, -0.2, 0.1, 0.02, -0.03, 0.04, 1e-3};
+  const std::array<double, 3> centre{2.0, 3.0, 4.0};
+  for (ChainMember& m : t.members) m.datum = datum.data(), m.datum_centre = centre.data(), m.turned = true;
+  const VectorXd e = plain_errors(t, 0);
+  const Matrix3d R0 = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(t.base[0].data());
+  const Matrix3d R = core::exp_so3(Vector3d(t.pose[0].data() + 3)) * R0, turn = core::exp_so3(Vector3d(datum.data() + 3));
+  const Vector3d X = Vector3d(t.pose[0].data()) + R.transpose() * Vector3d(t.antenna.data()), c(centre.data());
+  const Vector3d there = c + (1.0 + datum[6]) * turn * (X - c) + Vector3d(datum.data());
+  EXPECT_LT((e.head<3>() - (there - Vector3d(t.members[0].station->data()))).norm(), 1e-12);
+  const Matrix3d observed = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(t.members[0].observed_local_R_camera->data());
+  const Vector3d w = core::log_so3(R * turn.transpose() * observed * core::exp_so3(-Vector3d(t.boresight.data())));
+  EXPECT_LT((e.tail<3>() - w).norm(), 1e-9);
+  MatrixXd J;
+  t.residual(t.step, t.members, &J);
+  ASSERT_EQ(J.cols(), 25);
+  constexpr double step = 1e-6;
+  for (size_t k = 0; k < t.places.size(); ++k) {
+    const double at = *t.places[k];
+    *t.places[k] = at + step;
+    const VectorXd more = t.residual(t.step, t.members);
+    *t.places[k] = at - step;
+    const VectorXd less = t.residual(t.step, t.members);
+    *t.places[k] = at;
+    EXPECT_LT((J.col(static_cast<Eigen::Index>(k)) - (more - less) / (2 * step)).norm(), 1e-7) << k;
+  }
+}
+
 TEST(ChainCost, StationsAlone) {
   Two t(false);
   for (ChainMember& m : t.members) m.observed_local_R_camera.reset();
