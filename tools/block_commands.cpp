@@ -111,7 +111,7 @@ struct BlockArguments {
 
 /// No product takes the place of what the block is read from: its config may be a block.json, its points in a folder colmap.
 void expect_apart(const BlockArguments& a, const calib::BlockConfig& config) {
-  std::vector<std::filesystem::path> read{a.config, config.images.file};
+  std::vector<std::filesystem::path> read{a.config, config.images.file, config.images.correlation};
   for (const auto& f : config.image_points) read.push_back(f.file);
   for (const auto& f : config.control) read.push_back(f.file);
   std::erase(read, std::filesystem::path());

@@ -2,7 +2,7 @@
 """From raw IMU, GNSS and events to oriented images, and on to a block, over seeds: errors over standard deviations of direct and of
 integrated orientation.
 
-    python3 bench/block/flights.py build/release/tools/swath 20 [strip|none|block] [true|false: factors on sigmas]
+    python3 bench/block/flights.py build/release/tools/swath 20 [strip|none|block] [true|false: factors on sigmas] [true|false: correlation]
 """
 import csv
 import json
@@ -80,7 +80,7 @@ def compare(sums, kind, found, truth, of_camera):
             sums.note(f"{kind} {'tilt' if k < 2 else 'heading'}, deg", math.degrees(angle), math.degrees(math.sqrt(float(row[f"c{k + 4}{k + 4}"]))))
 
 
-def block_config(flown, drift, found):
+def block_config(flown, drift, found, correlation):
     text = (flown / "block.toml").read_text()
     out = []
     for line in text.splitlines():
@@ -93,37 +93,43 @@ def block_config(flown, drift, found):
         if line.startswith("sigma_heading"):
             line = f'sigma_heading = "{found["sigma_turn_deg"]} deg"'
         out.append(line.replace('file = "images.csv"', 'file = "run/images.csv"'))
+        if line == "[images]" and correlation:
+            out.append('correlation = "run/orientation_correlation.csv"')
     (flown / "integrated.toml").write_text("\n".join(out) + "\n")
 
 
-def main(program, number=20, drift="strip", components="true"):
+def fly(program, seed, drift, components, correlation, sums):
+    with tempfile.TemporaryDirectory() as made:
+        flown = Path(made) / "flown"
+        call(program, "simulate", flown, "--quiet", "--set", f"seed={seed}", *(w for s in FLIGHT for w in ("--set", s)))
+        (Path(made) / "run.toml").write_text(RUN)
+        call(program, "run", Path(made) / "run.toml", "--survey", flown / "survey.toml", "--output", flown / "run", "--quiet")
+        truth = rows_of(flown / "truth" / "images.csv")
+        compare(sums, "direct", rows_of(flown / "run" / "orientation_direct.csv"), truth, BODY_R_CAMERA)
+        report = json.loads((flown / "run" / "report.json").read_text())
+        block_config(flown, drift, next(s["findings"] for s in report["stages"] if s["type"] == "orientation.direct"), correlation == "true")
+        call(program, "block", flown / "integrated.toml", "--output", flown / "out", "--set", "adjust.robust=false", "--set", f"adjust.components={components}")
+        block = json.loads((flown / "out" / "block.json").read_text())
+        values = {v["name"]: v for v in block["cameras"][0]["values"]}
+        b = [math.radians(values[f"boresight_{k}"]["value"]) for k in ("roll", "pitch", "heading")]
+        adjusted = times(times(turn(2, b[2]), times(turn(1, b[1]), turn(0, b[0]))), [[0, 1, 0], [1, 0, 0], [0, 0, -1]])
+        compare(sums, "integrated", rows_of(flown / "out" / "orientation.csv"), truth, adjusted)
+        for c in block["check"]:
+            total = sums.setdefault(f"check points {c['coordinate']}, m", [0.0, 0.0, 0])
+            total[0] += c["over_sigma"] ** 2 * c["points"]
+            total[1] += c["rms_m"] ** 2 * c["points"]
+            total[2] += c["points"]
+        for name, true in zip(("roll", "pitch", "heading"), BORESIGHT):
+            v = values[f"boresight_{name}"]
+            sums.note("boresight, deg", v["value"] - true, v["sigma"])
+        for name, true in {"f": 50.21, "x0": 0.021, "y0": -0.034}.items():
+            sums.note(f"camera {name}, mm", values[name]["value"] - true, values[name]["sigma"])
+
+
+def main(program, number=20, drift="none", components="false", correlation="true"):
     sums = Sums()
     for seed in range(1, number + 1):
-        with tempfile.TemporaryDirectory() as made:
-            flown = Path(made) / "flown"
-            call(program, "simulate", flown, "--quiet", "--set", f"seed={seed}", *(w for s in FLIGHT for w in ("--set", s)))
-            (Path(made) / "run.toml").write_text(RUN)
-            call(program, "run", Path(made) / "run.toml", "--survey", flown / "survey.toml", "--output", flown / "run", "--quiet")
-            truth = rows_of(flown / "truth" / "images.csv")
-            compare(sums, "direct", rows_of(flown / "run" / "orientation_direct.csv"), truth, BODY_R_CAMERA)
-            report = json.loads((flown / "run" / "report.json").read_text())
-            block_config(flown, drift, next(s["findings"] for s in report["stages"] if s["type"] == "orientation.direct"))
-            call(program, "block", flown / "integrated.toml", "--output", flown / "out", "--set", "adjust.robust=false", "--set", f"adjust.components={components}")
-            block = json.loads((flown / "out" / "block.json").read_text())
-            values = {v["name"]: v for v in block["cameras"][0]["values"]}
-            b = [math.radians(values[f"boresight_{k}"]["value"]) for k in ("roll", "pitch", "heading")]
-            adjusted = times(times(turn(2, b[2]), times(turn(1, b[1]), turn(0, b[0]))), [[0, 1, 0], [1, 0, 0], [0, 0, -1]])
-            compare(sums, "integrated", rows_of(flown / "out" / "orientation.csv"), truth, adjusted)
-            for c in block["check"]:
-                total = sums.setdefault(f"check points {c['coordinate']}, m", [0.0, 0.0, 0])
-                total[0] += c["over_sigma"] ** 2 * c["points"]
-                total[1] += c["rms_m"] ** 2 * c["points"]
-                total[2] += c["points"]
-            for name, true in zip(("roll", "pitch", "heading"), BORESIGHT):
-                v = values[f"boresight_{name}"]
-                sums.note("boresight, deg", v["value"] - true, v["sigma"])
-            for name, true in {"f": 50.21, "x0": 0.021, "y0": -0.034}.items():
-                sums.note(f"camera {name}, mm", values[name]["value"] - true, values[name]["sigma"])
+        fly(program, seed, drift, components, correlation, sums)
     for kind, (over, squares, n) in sums.items():
         print(f"{kind}: rms {math.sqrt(squares / n):.4f}, over sigma {math.sqrt(over / n):.3f} of {n}")
 

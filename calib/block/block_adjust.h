@@ -2,9 +2,8 @@
 // Bundle adjustment of a block: collinearity, control, stations with shift and drift, attitudes, self-calibration; robust weights, variance
 // components, covariance and tests.
 //
-// Sources: Ackermann, eq 1 (stations); Brown 1971 (camera); Baarda 1968 (tests); Foerstner 1979 (components). Deviations: stations and
-// attitudes of different images are taken as independent beside the unknown shift and drift of their sets. What the smoother leaves in
-// common to neighbouring images beyond a straight line in time is not modelled.
+// Sources: Ackermann, eq 1 (stations); Brown 1971 (camera); Baarda 1968 (tests); Foerstner 1979 (components). Stations and attitudes of
+// different images are independent beside the unknown shift and drift of their sets, or correlated as a chain says (navigation/).
 #pragma once
 
 #include <string>

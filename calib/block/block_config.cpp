@@ -45,6 +45,7 @@ BlockConfig read_block_config(const std::filesystem::path& file, const core::Val
     if (!path.empty() && path.is_relative()) path = file.parent_path() / path;
   };
   beside(out.images.file);
+  beside(out.images.correlation);
   for (io::ImageFile& f : out.image_points) beside(f.file);
   for (BlockControlFile& f : out.control) beside(f.file);
   for (const io::ImageFile& f : out.image_points)

@@ -84,7 +84,7 @@ void describe(CameraConfig& c, V& v) {
 
 /// The table of images.
 struct ImagesConfig {
-  std::filesystem::path file;
+  std::filesystem::path file, correlation;
   std::string name = "name", strip = "strip", time = "time", camera = "camera", x = "x", y = "y", z = "z", sigma_h = "sigma_h",
               sigma_v = "sigma_v";
   ImageValues stations = ImageValues::observed;
@@ -98,6 +98,7 @@ struct ImagesConfig {
 template <class V>
 void describe(ImagesConfig& i, V& v) {
   v.option("file", i.file, "Table of the images; empty: those of a format that has orientations.");
+  v.option("correlation", i.correlation, "Covariances within and between images, for all sigmas here; as orientation.direct writes them.");
   v.option("name", i.name, "Column of the names, as the image points have them.");
   v.option("strip", i.strip, "Column of the strip's number.");
   v.option("time", i.time, "Column of the time of exposure, s, on any scale.");
@@ -117,6 +118,8 @@ void describe(ImagesConfig& i, V& v) {
   v.option("sigma_heading", i.sigma_heading, core::above(0), "Sigma of observed heading (kappa).");
   v.check(i.angles == ImageAngles::none || i.north, "angles are given: state north = \"grid\" or \"true\"");
   v.check(i.angles != ImageAngles::none || i.angle_use == ImageValues::start, "angle_use is observed: state the kind of angles");
+  v.check(i.correlation.empty() || (!i.file.empty() && (i.stations == ImageValues::observed || i.angle_use == ImageValues::observed)),
+          "correlation has no effect: neither stations nor angles of a table are observed");
 }
 
 /// One file of control points.
@@ -147,6 +150,7 @@ struct BlockConfig {
   BlockKind kind = BlockKind::block_adjust;
   std::string crs;
   DriftSets drift = DriftSets::none;
+  Datum datum = Datum::none;
   std::vector<CameraConfig> cameras;
   ImagesConfig images;
   std::vector<io::ImageFile> image_points;
@@ -159,6 +163,7 @@ void describe(BlockConfig& b, V& v) {
   v.option("kind", b.kind, "What the file is.");
   v.option("crs", b.crs, "CRS of stations, control and products, or \"local\": a Cartesian frame, z up, m.");
   v.option("drift", b.drift, "Unknown shift and drift of the stations: none, one set for the block, or one per strip.", "Ackermann, eq 1");
+  v.option("datum", b.datum, "Unknown datum of stations and angles against control: none, a shift, or with rotation and scale.");
   v.tables("camera", b.cameras, "Cameras.");
   v.table("images", b.images, "Images with stations and angles.");
   v.tables("image_points", b.image_points, "Files of image points.");
@@ -166,6 +171,8 @@ void describe(BlockConfig& b, V& v) {
   v.table("adjust", b.adjust, "Weights.");
   v.check(!b.crs.empty(), "crs is not stated: a CRS such as \"EPSG:25832+ellipsoidal\", or \"local\"");
   v.check(!b.image_points.empty(), "no [[image_points]]");
+  v.check(b.datum == Datum::none || b.drift == DriftSets::none,
+          "datum and drift are both stated: the shift of a drift is that of the datum; state datum = \"none\"");
 }
 
 /// Reads a config; paths in it become relative to where the program runs. Throws core::Error with all faults. `sets`: "key=value".

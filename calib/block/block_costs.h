@@ -62,23 +62,31 @@ struct RayCost {
   }
 };
 
-/// X_GPS + v = X0 + local_R_camera a + a0 + a1 u (Ackermann, eq 1, with the antenna's lever arm a).
+/// X_GPS + v = X + a0 + a1 u, X = X0 + local_R_camera a (Ackermann, eq 1, with the antenna's lever arm a); or, where `centre` is given, of
+/// another datum: centre + (1 + m) exp(w) (X - centre) + t, the seven being t, w, m.
 struct StationCost {
   std::array<double, 3> position;
   std::array<double, 9> root;  ///< by rows, root' root = inverse covariance
   const double* base;
   const double* factor;
   double u;
+  const double* centre = nullptr;
 
   template <class T>
-  bool operator()(const T* pose, const T* antenna, const T* drift, T* r) const {
+  bool operator()(const T* pose, const T* antenna, const T* moved, T* r) const {
     const std::array<T, 3> back{-pose[3], -pose[4], -pose[5]}, a{antenna[0], antenna[1], antenna[2]};
     std::array<T, 3> turned, e, v;
     rotate(back.data(), a, turned);
     for (size_t i = 0; i < 3; ++i) {
       const T arm = base[i] * turned[0] + base[3 + i] * turned[1] + base[6 + i] * turned[2];
       e[i] = pose[i] + arm - position[i];
-      if (drift) e[i] += drift[i] + u * drift[3 + i];
+      if (moved && !centre) e[i] += moved[i] + u * moved[3 + i];
+    }
+    if (moved && centre) {
+      const std::array<T, 3> from{e[0] + (position[0] - centre[0]), e[1] + (position[1] - centre[1]), e[2] + (position[2] - centre[2])};
+      std::array<T, 3> there;
+      rotate(moved + 3, from, there);
+      for (size_t i = 0; i < 3; ++i) e[i] += (there[i] - from[i]) + moved[6] * there[i] + moved[i];
     }
     times(root.data(), e, v);
     for (size_t i = 0; i < 3; ++i) r[i] = v[i] / *factor;
@@ -90,7 +98,8 @@ struct StationCost {
   }
 };
 
-/// The rotation from the camera as observed, exp(b) body_R_camera' body_R_local, to the camera as adjusted; about the camera's axes.
+/// The rotation from the camera as observed, exp(b) body_R_camera' body_R_local, to the camera as adjusted; about the camera's axes. With a
+/// datum: to the adjusted one in the datum of the observed.
 struct AttitudeCost {
   std::array<double, 9> local_R_camera;  ///< as observed, with the nominal boresight; by rows
   std::array<double, 9> root;
@@ -99,6 +108,10 @@ struct AttitudeCost {
 
   template <class T>
   bool operator()(const T* pose, const T* boresight, T* r) const {
+    return (*this)(pose, boresight, static_cast<const T*>(nullptr), r);
+  }
+  template <class T>
+  bool operator()(const T* pose, const T* boresight, const T* datum, T* r) const {
     const std::array<T, 3> back{-boresight[0], -boresight[1], -boresight[2]};
     std::array<std::array<T, 3>, 3> column;
     for (size_t j = 0; j < 3; ++j) {
@@ -106,6 +119,10 @@ struct AttitudeCost {
       e[j] = T(1.0);
       rotate(back.data(), e, a);
       times(local_R_camera.data(), a, b);
+      if (datum) {
+        const std::array<T, 3> to_control{-datum[3], -datum[4], -datum[5]}, there = b;
+        rotate(to_control.data(), there, b);
+      }
       times(base, b, c);
       rotate(pose + 3, c, column[j]);
     }

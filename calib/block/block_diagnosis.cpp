@@ -65,6 +65,7 @@ struct Moves {
   std::vector<double> of_image;     // m
   double plan = 0.0, height = 0.0;  // m: largest of a point
   std::set<std::string> strips, values;
+  bool datum = false;
 };
 
 double height_of(const ImageBlock& block) {
@@ -97,6 +98,9 @@ void note_values(const ImageBlock& block, const UnknownNode& n, const VectorXd& 
         break;
       case NodeKind::antenna:
         if (x > noticed) out.values.insert(block.cameras[n.index].name + ".antenna");
+        break;
+      case NodeKind::datum:
+        out.datum = out.datum || (component < 3 ? x : x * distance) > noticed;
         break;
       case NodeKind::image:
         break;
@@ -150,6 +154,11 @@ UndeterminedMode of_drifts(const ImageBlock& block, const std::set<std::string>&
 }
 
 UndeterminedMode named(const ImageBlock& block, const Moves& m) {
+  if (m.datum)
+    return {0.0, "the datum of the stations is not determined by control",
+            block.datum == Datum::shift ? "survey a control point in plan and height, or state datum = \"none\""
+                                        : "survey three control points with height, two of them in plan, not in one line; or state "
+                                          "datum = \"shift\""};
   if (!m.values.empty())
     return {0.0, "values of the camera are not separated from the positions of the images: " + listed(m.values),
             "hold them or state their sigmas; flights at two heights, cross strips and stations separate them"};

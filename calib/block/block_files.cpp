@@ -11,6 +11,7 @@
 #include "calib/block/geolocation_files.h"
 #include "calib/block/mark_plane.h"
 #include "calib/block/orientation_table.h"
+#include "calib/block/patb_files.h"
 #include "core/config/result_visitors.h"
 #include "core/config/units.h"
 #include "core/geo/frames.h"
@@ -66,7 +67,7 @@ std::vector<Geolocation> geolocations(const ReadBlock& read, const BlockSolution
 }
 
 /// Points that took no part are left out with their image points.
-io::ImageData colmap_data(const ReadBlock& read, const BlockConfig& config, const BlockSolution& s, std::vector<io::ColmapPoint>& points) {
+io::ImageData pixel_data(const ReadBlock& read, const BlockConfig& config, const BlockSolution& s, std::vector<io::PlacedPoint>& points) {
   io::ImageData out;
   const ImageBlock& b = read.block;
   std::vector<char> exact;
@@ -99,6 +100,32 @@ io::ImageData colmap_data(const ReadBlock& read, const BlockConfig& config, cons
     out.marks.push_back({r.image, r.point, p.x(), p.y(), 0});
   }
   return out;
+}
+
+/// Image points without distortion; those of points that took no part are left out.
+void write_patb(const std::filesystem::path& folder, const ReadBlock& read, const BlockSolution& s) {
+  const ImageBlock& b = read.block;
+  std::vector<std::string> images, points;
+  std::vector<PatbPhoto> photos;
+  std::vector<PatbMark> marks;
+  const MatrixXd none = MatrixXd::Zero(6, 6);
+  for (std::uint32_t i = 0; i < b.images.size(); ++i) {
+    const ImageOrientation o = oriented(read, i, none);
+    images.push_back(b.images[i].name);
+    photos.push_back({images.back(), b.cameras[b.images[i].camera].value[0], o.map, o.grid_R_camera});
+  }
+  for (const BlockPoint& p : b.points) points.push_back(p.name);
+  for (const ImageRay& r : b.rays) {
+    if (s.linear.point_column[r.point] < 0) continue;
+    const BlockCamera& camera = b.cameras[b.images[r.image].camera];
+    if (const auto d = direction_of(camera.value, camera.distortion, {r.x, r.y})) marks.push_back({r.image, r.point, d->x(), d->y()});
+  }
+  const std::vector<std::string> patb_images = patb_names(images), patb_points = patb_names(points);
+  std::filesystem::create_directories(folder);
+  io::write_text_file(folder / "block.im", patb_image_coordinates(photos, patb_images, patb_points, marks));
+  io::write_text_file(folder / "block.ori", patb_orientations(photos, patb_images));
+  const std::string table = patb_name_table(images, patb_images, points, patb_points);
+  table.empty() ? static_cast<void>(std::filesystem::remove(folder / "names.csv")) : io::write_text_file(folder / "names.csv", table);
 }
 
 std::vector<io::NamedPoint> points_of(const ReadBlock& read, const BlockSolution& s) {
@@ -186,8 +213,8 @@ std::string camera_toml(const ReadBlock& read, const BlockConfig& config, const 
 }
 
 std::vector<std::string> block_products() {
-  return {"orientation.csv", "geo.txt", "geolocation.csv", "camera.toml", "points.gpkg",
-          "points.laz",      "colmap",  "block.json",      "report.html"};
+  return {"orientation.csv", "geo.txt", "geolocation.csv", "camera.toml", "points.gpkg", "points.laz", "colmap",
+          "opensfm",         "patb",    "block.json",      "report.html"};
 }
 
 std::vector<std::string> write_block(const std::filesystem::path& folder, const ReadBlock& read, const BlockConfig& config,
@@ -212,13 +239,17 @@ std::vector<std::string> write_block(const std::filesystem::path& folder, const 
   if (crs.empty() || !core::Crs(crs).is_geographic()) {
     write_points_laz(folder / "points.laz", crs, points, found.unfit);
     out.emplace_back("points.laz");
+    write_patb(folder / "patb", read, s);
+    out.emplace_back("patb");
   }
   if (std::all_of(config.cameras.begin(), config.cameras.end(),
                   [](const CameraConfig& c) { return c.pixel && c.columns > 0 && c.rows > 0; })) {
-    std::vector<io::ColmapPoint> places;
-    const io::ImageData data = colmap_data(read, config, s, places);
+    std::vector<io::PlacedPoint> places;
+    const io::ImageData data = pixel_data(read, config, s, places);
     io::write_colmap(folder / "colmap", data, places);
     out.emplace_back("colmap");
+    io::write_opensfm(folder / "opensfm", data, places);
+    out.emplace_back("opensfm");
   }
   text("block.json", io::to_json(core::reported(found)));
   text("report.html", block_page(read, config, s, found));

@@ -70,6 +70,17 @@ void add_drifts(const ReadBlock& read, const BlockSolution& s, BlockFound& out) 
   }
 }
 
+void add_datum(const ReadBlock& read, const BlockSolution& s, BlockFound& out) {
+  for (size_t n = 0; n < s.linear.nodes.size(); ++n) {
+    if (s.linear.nodes[n].kind != NodeKind::datum) continue;
+    const StationDatum& d = read.block.station_datum;
+    const Eigen::VectorXd sigma = s.inference.nodes[n].diagonal().cwiseSqrt();
+    DatumFound found{sigma.size() > 3, d.shift, sigma.head<3>(), d.rotation, Eigen::Vector3d::Zero(), d.scale, 0.0};
+    if (found.similarity) found.rotation_sigma = sigma.segment<3>(3), found.scale_sigma = sigma[6];
+    out.datum = found;
+  }
+}
+
 void add_precision(const ReadBlock& read, const BlockSolution& s, BlockFound& out) {
   double plan = 0.0, height = 0.0, n = 0.0;
   for (size_t p = 0; p < read.block.points.size(); ++p) {
@@ -112,9 +123,18 @@ std::string said(const ReadBlock& read, const BlockObservation& o, size_t row, s
       return std::string(k == 0 ? "x" : "y") + " of point " + b.points[b.rays[o.index].point].name + " on image " +
              b.images[b.rays[o.index].image].name;
     case ObservationKind::station:
+      if (!b.chain.empty()) {
+        unit = "sigmas", by = 1.0;
+        return axis(k) + " of the station of image " + b.images[b.stations[o.index].image].name + ", given those before";
+      }
       unit = "m", by = std::sqrt(b.stations[o.index].covariance(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)));
       return axis(k) + " of the station of image " + b.images[b.stations[o.index].image].name;
     case ObservationKind::attitude:
+      if (!b.chain.empty()) {
+        unit = "sigmas", by = 1.0;
+        return "rotation about axis " + std::to_string(k + 1) + " of image " + b.images[b.attitudes[o.index].image].name +
+               ", given its station and the images before";
+      }
       unit = "deg",
       by = std::sqrt(b.attitudes[o.index].covariance(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k))) / core::degree;
       return "rotation about axis " + std::to_string(k + 1) + " of image " + b.images[b.attitudes[o.index].image].name;
@@ -279,6 +299,7 @@ BlockFound findings_of(const ReadBlock& read, const BlockConfig& config, const B
           {kinds[k], factors[k], s.inference.redundancy_of[k], !s.component_estimated.empty() && s.component_estimated[k] != 0});
   for (std::uint32_t c = 0; c < read.block.cameras.size(); ++c) out.cameras.push_back(camera_found(read, config, s, c));
   add_drifts(read, s, out);
+  add_datum(read, s, out);
   out.unfit = unfit_points(read.block, s.weights.of_ray);
   add_precision(read, s, out);
   add_tests(read, s, out);

@@ -63,6 +63,25 @@ void describe(const SetDriftFound& r, V& v) {
   v.result("span_s", r.span, core::seconds(1), "Time from the first station to the last.");
 }
 
+/// Datum of the stations against control (StationDatum).
+struct DatumFound {
+  bool similarity = false;
+  Eigen::Vector3d shift, shift_sigma;        ///< m, axes of the local frame
+  Eigen::Vector3d rotation, rotation_sigma;  ///< rad
+  double scale = 0.0, scale_sigma = 0.0;     ///< less 1
+};
+template <class V>
+void describe(const DatumFound& r, V& v) {
+  constexpr double in_ppm = 1e6;
+  const core::Form angle = core::in_degrees(7).only_if(r.similarity), ppm = core::Form{"ppm", 3}.only_if(r.similarity);
+  v.result("shift_m", r.shift, core::metres(4), "Shift in the middle of the stations, stations less control: east, north, up.");
+  v.result("shift_sigma_m", r.shift_sigma, core::metres(4), "Its standard deviations.");
+  v.result("rotation_deg", Eigen::Vector3d(r.rotation / core::degree), angle, "Rotation about east, north and up, of control to stations.");
+  v.result("rotation_sigma_deg", Eigen::Vector3d(r.rotation_sigma / core::degree), angle, "Its standard deviations.");
+  v.result("scale_ppm", in_ppm * r.scale, ppm, "Scale of the stations against control, less 1.");
+  v.result("scale_sigma_ppm", in_ppm * r.scale_sigma, ppm, "Its standard deviation.");
+}
+
 /// Differences of points, adjusted less surveyed.
 struct PointDifference {
   std::string name;
@@ -142,6 +161,7 @@ struct BlockFound {
   std::vector<FactorFound> factors;
   std::vector<CameraFound> cameras;
   std::vector<SetDriftFound> drifts;
+  std::optional<DatumFound> datum;
   std::vector<CheckFound> check;
   std::vector<PointDifference> differences;
   std::vector<SuspectFound> suspects;
@@ -185,6 +205,7 @@ void describe(const BlockFound& r, V& v) {
   v.tables("factors", r.factors, "Factors on the sigmas by kind of observation.");
   v.tables("cameras", r.cameras, "Cameras.");
   v.tables("drifts", r.drifts, "Shift and drift of the stations.");
+  v.table("datum", r.datum, "Datum of the stations against control.");
   v.tables("check", r.check, "Check points by coordinate.");
   v.tables("differences", r.differences, "Control and check points.");
   v.tables("suspects", r.suspects, "Observations with the largest |w|.");

@@ -215,6 +215,25 @@ void add_drifts(report::Page& page, const BlockFound& f) {
   page.table(t);
 }
 
+void add_datum(report::Page& page, const BlockFound& f) {
+  if (!f.datum) return;
+  const DatumFound& d = *f.datum;
+  page.section("Datum of stations against control");
+  report::Table t{"datum", "Stations less control", {{"value", false}, {"unit", false}, {"found"}, {"sigma"}}, {}, {}};
+  static constexpr std::array<const char*, 3> axes{"east", "north", "up"};
+  for (int k = 0; k < 3; ++k)
+    t.rows.push_back(
+        {std::string("shift ") + axes[static_cast<size_t>(k)], "m", number_text(d.shift[k], 4), number_text(d.shift_sigma[k], 4)});
+  if (d.similarity) {
+    for (int k = 0; k < 3; ++k)
+      t.rows.push_back({std::string("rotation about ") + axes[static_cast<size_t>(k)], "deg", number_text(d.rotation[k] / core::degree, 6),
+                        number_text(d.rotation_sigma[k] / core::degree, 6)});
+    t.rows.push_back({"scale less 1", "ppm", number_text(1e6 * d.scale, 2), number_text(1e6 * d.scale_sigma, 2)});
+  }
+  page.table(t);
+  page.paragraph("Products are in the datum of control.");
+}
+
 void add_suspects(report::Page& page, const BlockFound& f) {
   page.section("Tests");
   page.paragraph(count_text(f.rejected) + " of " + count_text(f.observations) +
@@ -242,6 +261,7 @@ std::string block_page(const ReadBlock& read, const BlockConfig& config, const B
   page.figure_svg(report::svg(plan),
                   "Images, control and points with their standard error ellipses, enlarged " + number_text(factor, 0) + " times");
   add_drifts(page, f);
+  add_datum(page, f);
   add_cameras(page, read, s, f);
   add_suspects(page, f);
   return page.html();

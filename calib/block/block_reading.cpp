@@ -9,6 +9,7 @@
 
 #include "calib/block/block_start.h"
 #include "calib/block/mark_plane.h"
+#include "calib/block/navigation/navigation_chain.h"
 #include "core/config/units.h"
 #include "core/error.h"
 #include "core/geo/frames.h"
@@ -242,14 +243,53 @@ void add_stations(const BlockConfig& config, const std::string& config_file, con
     read.block.images[i].position = read.frame.local_of(rows[i].map);
     if (config.images.angles != ImageAngles::none) read.angles.push_back({i, rows[i].angles});
     if (config.images.stations != ImageValues::observed) continue;
-    const Vector3d variance(rows[i].sigma_h * rows[i].sigma_h, rows[i].sigma_h * rows[i].sigma_h, rows[i].sigma_v * rows[i].sigma_v);
+    Matrix3d covariance = Vector3d(rows[i].sigma_h, rows[i].sigma_h, rows[i].sigma_v).cwiseAbs2().asDiagonal();
+    if (!read.covariance.empty()) covariance = read.covariance[i].topLeftCorner<3, 3>();
     const Matrix3d R = read.frame.local_R_grid(read.block.images[i].position);
-    read.block.stations.push_back({i, read.block.images[i].position, R * variance.asDiagonal() * R.transpose()});
+    read.block.stations.push_back({i, read.block.images[i].position, R * covariance * R.transpose()});
     ++read.stations_observed;
   }
   if (config.drift != DriftSets::none && read.stations_observed == 0)
     throw core::usage_error("drift has no effect: no station is observed", config_file,
                             "state stations = \"observed\" and the file of [images], or drift = \"none\"");
+}
+
+std::vector<PoseCovariance> own_covariances(const OrientationCorrelation& correlation, const Numbers& image_number, size_t images) {
+  std::vector<PoseCovariance> out(images, PoseCovariance::Identity());
+  for (const CovariancePair& p : correlation.pairs)
+    if (const auto found = image_number.find(correlation.images[p.image]); p.image == p.other && found != image_number.end())
+      out[found->second] = p.value;
+  return out;
+}
+
+/// From the grid and the body's axes to the local frame and the camera's.
+void add_chain(const BlockConfig& config, const OrientationCorrelation& correlation, const Numbers& image_number, ReadBlock& read) {
+  std::vector<PoseCovariance> turn(read.block.images.size(), PoseCovariance::Zero());
+  for (size_t i = 0; i < turn.size(); ++i) {
+    const BlockImage& image = read.block.images[i];
+    turn[i].topLeftCorner<3, 3>() = read.frame.local_R_grid(image.position);
+    turn[i].bottomRightCorner<3, 3>() = read.block.cameras[image.camera].body_R_camera.transpose();
+  }
+  const bool stations = config.images.stations == ImageValues::observed, angles = config.images.angle_use == ImageValues::observed;
+  const ChainParts parts = stations && angles ? ChainParts{0, 6} : stations ? ChainParts{0, 3} : ChainParts{3, 3};
+  read.block.chain = navigation_chain(correlation, image_number, turn, parts, config.images.correlation.string());
+}
+
+/// Before anything is adjusted: what its normal equations would say without names.
+void expect_datum(const ReadBlock& read, const std::string& config_file) {
+  if (read.block.datum == Datum::none) return;
+  if (read.stations_observed == 0)
+    throw core::usage_error("datum has no effect: no station is observed", config_file, "state datum = \"none\"");
+  std::array<size_t, 3> known{};
+  for (const BlockControl& c : read.block.control)
+    for (size_t k = 0; k < 3; ++k) known[k] += !c.check && c.known[k];
+  const bool shift = read.block.datum == Datum::shift;
+  const size_t plan = shift ? 1 : 2, heights = shift ? 1 : 3;
+  if (known[0] >= plan && known[2] >= heights) return;
+  throw core::Error("the datum of the stations is not determinable: control has " + std::to_string(known[0]) + " points in plan and " +
+                        std::to_string(known[2]) + " heights, and " + std::string(core::Choices<Datum>::names.at(shift ? 1 : 2)) +
+                        " needs " + std::to_string(plan) + " and " + std::to_string(heights),
+                    config_file, "survey more control, or state datum = \"none\"" + std::string(shift ? "" : " or \"shift\""));
 }
 
 void expect_points(const BlockConfig& config, ReadBlock& read) {
@@ -288,6 +328,7 @@ void start_block(ReadBlock& read, const BlockConfig& config) {
   for (const StatedAngles& a : read.angles) {
     Matrix3d covariance = std::pow(c.sigma_angle.value, 2) * Matrix3d::Identity();
     covariance(2, 2) = std::pow(c.sigma_heading.value, 2);
+    if (!read.covariance.empty()) covariance = read.covariance[a.image].bottomRightCorner<3, 3>();
     block.attitudes.push_back({a.image, body_attitude(read, a.image, a.value, c.angles, *c.north), covariance});
   }
   const std::vector<ImageStation> observed = block.stations;
@@ -304,6 +345,7 @@ ReadBlock read_block(const BlockConfig& config, const std::string& config_file) 
   refuse_same_cameras(config, config_file);
   for (const CameraConfig& c : config.cameras) read.block.cameras.push_back(camera_of(c, config_file));
   read.block.drift_sets = config.drift;
+  read.block.datum = config.datum;
   Numbers image_number, point_number;
   const bool has_table = !config.images.file.empty();
   std::vector<TableRow> rows;
@@ -326,8 +368,14 @@ ReadBlock read_block(const BlockConfig& config, const std::string& config_file) 
   if (rows.empty() && config.crs != "local")
     throw core::usage_error("without a table of images the orientations' own frame is adjusted in", config_file, "state crs = \"local\"");
   read.frame = BlockFrame(config.crs, middle);
+  OrientationCorrelation correlation;
+  if (!config.images.correlation.empty()) {
+    correlation = read_correlation(config.images.correlation);
+    read.covariance = own_covariances(correlation, image_number, read.block.images.size());
+  }
   add_stations(config, config_file, rows, read);
   for (size_t k = 0; k < read.block.control.size(); ++k) read.block.control[k].position = read.frame.local_of(read.control[k].map);
+  expect_datum(read, config_file);
   const bool by_file = config.images.angles == ImageAngles::none && start_from_file(read, poses, has_table);
   if (!by_file && !has_table)
     throw core::Error("nothing to start from: no table of images, and orientations of " + std::to_string(poses.size()) + " of " +
@@ -338,6 +386,7 @@ ReadBlock read_block(const BlockConfig& config, const std::string& config_file) 
   read.started_from = by_file                                     ? "the orientations of the image points' file"
                       : config.images.angles != ImageAngles::none ? "stations and angles of the table"
                                                                   : "stations and the directions of the strips";
+  if (!read.covariance.empty()) add_chain(config, correlation, image_number, read);
   intersect_points(read.block);
   return read;
 }

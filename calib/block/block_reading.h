@@ -10,6 +10,7 @@
 #include "calib/block/block_config.h"
 #include "calib/block/block_frame.h"
 #include "calib/block/image_block.h"
+#include "calib/block/navigation/orientation_correlation.h"
 
 namespace swath::calib {
 
@@ -29,7 +30,8 @@ struct ReadBlock {
   ImageBlock block;
   BlockFrame frame{"local", Eigen::Vector3d::Zero()};
   std::vector<StatedAngles> angles;
-  std::vector<StatedControl> control;  ///< by number, as block.control
+  std::vector<PoseCovariance> covariance;  ///< per image, where the config names a file of correlations
+  std::vector<StatedControl> control;      ///< by number, as block.control
   std::vector<std::string> control_without_image;
   std::vector<std::string> images_without_points;
   size_t stations_observed = 0;

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "calib/block/block_costs.h"
+#include "calib/block/navigation/chain_cost.h"
 #include "core/error.h"
 #include "core/geo/frames.h"
 
@@ -46,6 +47,8 @@ struct BlockSystem::State {
   std::vector<CameraVector> cameras;
   std::vector<Matrix3d> nominal;  // body_R_camera
   std::vector<std::array<double, 6>> drifts;
+  std::array<double, 7> datum{};  // shift, rotation, scale
+  std::array<double, 3> datum_centre{};
   std::vector<ceres::ResidualBlockId> ids;
   std::vector<double*> order;  // of parameter blocks
   LinearBlock shape;           // without rows
@@ -56,7 +59,7 @@ struct BlockSystem::State {
     add_parameters();
     add_points();
     add_rays();
-    add_navigation();
+    block.chain.empty() ? add_navigation() : add_chain();
     add_priors();
   }
 
@@ -66,16 +69,22 @@ struct BlockSystem::State {
   void add_points();
   void add_rays();
   void add_navigation();
+  void add_chain();
   void add_priors();
+  double drift_time(size_t station) const;
   void add_node(NodeKind kind, size_t index, double* values, int size, const std::vector<int>& components);
   template <class Vector>
   void add_partly(NodeKind kind, size_t index, double* values, int size, const Vector& sigma);
   template <int N, class Vector>
   void add_prior(NodeKind kind, size_t index, double* values, const Vector& sigma);
   void note(ObservationKind kind, size_t index, int rows, int component, ceres::ResidualBlockId id) {
+    note_rows(kind, index, rows, component);
+    ids.push_back(id);
+  }
+  /// Of an equation that several observations have in common.
+  void note_rows(ObservationKind kind, size_t index, int rows, int component) {
     const size_t row = shape.observations.empty() ? 0 : shape.observations.back().row + static_cast<size_t>(shape.observations.back().rows);
     shape.observations.push_back({kind, static_cast<std::uint32_t>(index), component, row, rows});
-    ids.push_back(id);
   }
 };
 
@@ -93,6 +102,9 @@ void BlockSystem::State::take_values() {
   }
   for (const StationDrift& d : block.drifts)
     drifts.push_back({d.shift.x(), d.shift.y(), d.shift.z(), d.change.x(), d.change.y(), d.change.z()});
+  const StationDatum& s = block.station_datum;
+  datum = {s.shift.x(), s.shift.y(), s.shift.z(), s.rotation.x(), s.rotation.y(), s.rotation.z(), s.scale};
+  datum_centre = {s.centre.x(), s.centre.y(), s.centre.z()};
 }
 
 void BlockSystem::State::give_values() {
@@ -113,6 +125,9 @@ void BlockSystem::State::give_values() {
     block.drifts[d].shift = Vector3d(drifts[d].data());
     block.drifts[d].change = Vector3d(drifts[d].data() + 3);
   }
+  block.station_datum.shift = Vector3d(datum.data());
+  block.station_datum.rotation = Vector3d(datum.data() + 3);
+  block.station_datum.scale = datum[6];
 }
 
 void BlockSystem::State::add_node(NodeKind kind, size_t index, double* values, int size, const std::vector<int>& components) {
@@ -145,6 +160,8 @@ void BlockSystem::State::add_parameters() {
     add_partly(NodeKind::antenna, c, antenna[c].data(), 3, camera.antenna_sigma);
   }
   for (size_t d = 0; d < drifts.size(); ++d) add_node(NodeKind::drift, d, drifts[d].data(), 6, {0, 1, 2, 3, 4, 5});
+  if (block.datum == Datum::shift) add_node(NodeKind::datum, 0, datum.data(), 7, {0, 1, 2});
+  if (block.datum == Datum::similarity) add_node(NodeKind::datum, 0, datum.data(), 7, {0, 1, 2, 3, 4, 5, 6});
 }
 
 void BlockSystem::State::add_points() {
@@ -180,20 +197,31 @@ void BlockSystem::State::add_rays() {
   }
 }
 
+double BlockSystem::State::drift_time(size_t station) const {
+  const int set = block.drift_of.empty() ? -1 : block.drift_of[station];
+  if (set < 0) return 0.0;
+  const StationDrift& d = block.drifts[static_cast<size_t>(set)];
+  return (block.images[block.stations[station].image].time - d.first) / d.span;
+}
+
 void BlockSystem::State::add_navigation() {
   for (size_t s = 0; s < block.stations.size(); ++s) {
     const ImageStation& station = block.stations[s];
     const std::uint32_t camera = block.images[station.image].camera;
     Pose& pose = poses[station.image];
     const int set = block.drift_of.empty() ? -1 : block.drift_of[s];
-    const double u = set < 0 ? 0.0
-                             : (block.images[station.image].time - block.drifts[static_cast<size_t>(set)].first) /
-                                   block.drifts[static_cast<size_t>(set)].span;
     auto* cost = new StationCost{{station.position.x(), station.position.y(), station.position.z()},
                                  whitener(station.covariance),
                                  pose.base.data(),
                                  &weights.station,
-                                 u};
+                                 drift_time(s),
+                                 block.datum == Datum::none ? nullptr : datum_centre.data()};
+    if (block.datum != Datum::none) {
+      note(ObservationKind::station, s, 3, 0,
+           problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3, 7>(cost), nullptr, pose.value.data(),
+                                    antenna[camera].data(), datum.data()));
+      continue;
+    }
     const auto id = set < 0 ? problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3>(cost), nullptr,
                                                        pose.value.data(), antenna[camera].data())
                             : problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3, 6>(cost), nullptr,
@@ -206,9 +234,49 @@ void BlockSystem::State::add_navigation() {
     const Matrix3d& B = block.cameras[image.camera].body_R_camera;
     auto* cost = new AttitudeCost{by_rows(attitude.local_R_body * B), whitener(B.transpose() * attitude.covariance * B),
                                   poses[attitude.image].base.data(), &weights.attitude};
-    note(ObservationKind::attitude, a, 3, 0,
-         problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AttitudeCost, 3, 6, 3>(cost), nullptr, poses[attitude.image].value.data(),
-                                  boresight[image.camera].data()));
+    double* const pose = poses[attitude.image].value.data();
+    const auto id = block.datum == Datum::similarity
+                        ? problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AttitudeCost, 3, 6, 3, 7>(cost), nullptr, pose,
+                                                   boresight[image.camera].data(), datum.data())
+                        : problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AttitudeCost, 3, 6, 3>(cost), nullptr, pose,
+                                                   boresight[image.camera].data());
+    note(ObservationKind::attitude, a, 3, 0, id);
+  }
+}
+
+void BlockSystem::State::add_chain() {
+  std::vector<ChainMember> member(poses.size());
+  std::vector<size_t> station_of(poses.size(), 0), attitude_of(poses.size(), 0);
+  for (size_t i = 0; i < poses.size(); ++i) {
+    const std::uint32_t camera = block.images[i].camera;
+    member[i].pose = poses[i].value.data(), member[i].base = poses[i].base.data();
+    member[i].antenna = antenna[camera].data(), member[i].boresight = boresight[camera].data();
+    if (block.datum != Datum::none) member[i].datum = datum.data(), member[i].datum_centre = datum_centre.data();
+    member[i].turned = block.datum == Datum::similarity;
+  }
+  for (size_t s = 0; s < block.stations.size(); ++s) {
+    const ImageStation& station = block.stations[s];
+    ChainMember& m = member[station.image];
+    m.station = {station.position.x(), station.position.y(), station.position.z()};
+    m.u = drift_time(s);
+    if (!block.drift_of.empty() && block.drift_of[s] >= 0) m.drift = drifts[static_cast<size_t>(block.drift_of[s])].data();
+    station_of[station.image] = s;
+  }
+  for (size_t a = 0; a < block.attitudes.size(); ++a) {
+    const ImageAttitude& attitude = block.attitudes[a];
+    const Matrix3d& B = block.cameras[block.images[attitude.image].camera].body_R_camera;
+    member[attitude.image].observed_local_R_camera = by_rows(attitude.local_R_body * B);
+    attitude_of[attitude.image] = a;
+  }
+  for (const NavigationStep& step : block.chain) {
+    std::vector<ChainMember> members;
+    for (const std::uint32_t i : step.before) members.push_back(member[i]);
+    members.push_back(member[step.image]);
+    std::vector<double*> blocks;
+    auto* cost = chain_cost(step, members, &weights.station, &weights.attitude, blocks);
+    ids.push_back(problem.AddResidualBlock(cost, nullptr, blocks));
+    if (members.back().station) note_rows(ObservationKind::station, station_of[step.image], 3, 0);
+    if (members.back().observed_local_R_camera) note_rows(ObservationKind::attitude, attitude_of[step.image], 3, 0);
   }
 }
 
@@ -294,6 +362,8 @@ int LinearBlock::points() const {
 void find_drift_sets(ImageBlock& block) {
   block.drifts.clear();
   block.drift_of.assign(block.stations.size(), -1);
+  block.station_datum.centre.setZero();
+  for (const ImageStation& s : block.stations) block.station_datum.centre += s.position / static_cast<double>(block.stations.size());
   if (block.drift_sets == DriftSets::none) return;
   std::map<int, std::pair<double, double>> spans;
   const auto key = [&](const ImageStation& s) { return block.drift_sets == DriftSets::strip ? block.images[s.image].strip : 0; };

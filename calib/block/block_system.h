@@ -22,7 +22,7 @@ struct BlockWeights {
   std::vector<double> of_ray;                                      ///< robust weights; empty: 1
 };
 
-enum class NodeKind { image, camera, boresight, antenna, drift };
+enum class NodeKind { image, camera, boresight, antenna, drift, datum };
 
 /// Unknowns that are eliminated together.
 struct UnknownNode {
@@ -83,7 +83,8 @@ class BlockSystem {
   std::unique_ptr<State> state_;
 };
 
-/// Sets block.drifts and drift_of from the stations and drift_sets. Throws core::Error where a set's stations are all at one instant.
+/// Sets block.drifts and drift_of from the stations and drift_sets, and the centre of their datum. Throws core::Error where a set's
+/// stations are all at one instant.
 void find_drift_sets(ImageBlock& block);
 
 /// Points with enough rays and control coordinates for a position: two rays, or one and all three coordinates.

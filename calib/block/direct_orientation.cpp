@@ -89,14 +89,17 @@ class DirectSolver {
     const Matrix3d ecef_R_grid = enu * Eigen::AngleAxisd(turn, Vector3d::UnitZ()).toRotationMatrix();
     out.orientation.grid_R_camera = ecef_R_grid.transpose() * pose.ecef_R_body * body_R_camera_;
     const Matrix3d grid_R_ned = ecef_R_grid.transpose() * ned_R_ecef.transpose(), J = rotation_by_angles(out.attitude);
-    Matrix6 A = Matrix6::Zero();  // of the pose's errors
-    A.topLeftCorner<3, 3>() = grid_R_ned;
-    A.topRightCorner<3, 3>() = -grid_R_ned * core::skew(R * arm) * J;
-    const Matrix3d camera_R_ned = (R * body_R_camera_).transpose();
-    A.bottomRightCorner<3, 3>() = -camera_R_ned * J;
+    out.errors.by_pose.topLeftCorner<3, 3>() = grid_R_ned;
+    out.errors.by_pose.topRightCorner<3, 3>() = -grid_R_ned * core::skew(R * arm) * J;
+    out.errors.by_pose.bottomRightCorner<3, 3>() = -R.transpose() * J;
     Eigen::Matrix<double, 6, 1> by_time;
-    by_time << grid_R_ned * ned_R_ecef * (pose.velocity + pose.ecef_R_body * pose.rate.cross(arm)), -body_R_camera_.transpose() * pose.rate;
-    Matrix6 C = A * pose_covariance(trajectory, time) * A.transpose() + time_sigma * time_sigma * by_time * by_time.transpose();
+    by_time << grid_R_ned * ned_R_ecef * (pose.velocity + pose.ecef_R_body * pose.rate.cross(arm)), -pose.rate;
+    out.errors.of_time = time_sigma * time_sigma * by_time * by_time.transpose();
+    out.errors.by_lever_arm.topRows<3>() = grid_R_ned * R;
+    Matrix6 to_camera = Matrix6::Identity();
+    to_camera.bottomRightCorner<3, 3>() = body_R_camera_.transpose();
+    const Matrix6 A = out.errors.by_pose;
+    Matrix6 C = to_camera * (A * pose_covariance(trajectory, time) * A.transpose() + out.errors.of_time) * to_camera.transpose();
     for (int k = 0; k < 3; ++k) {
       C(k, k) += std::pow(options_.sigma_lever_arm.value, 2);
       C(3 + k, 3 + k) += std::pow(options_.sigma_boresight.value, 2);
@@ -146,6 +149,32 @@ std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajec
   found.images = out.size();
   found.position = core::median(plan), found.height = core::median(height), found.angle = core::median(tilt),
   found.heading = core::median(turn);
+  return out;
+}
+
+OrientationCorrelation direct_correlation(const std::vector<DirectImage>& images, const trajectory::Trajectory& trajectory,
+                                          const DirectOptions& o) {
+  const trajectory::ErrorModel model(trajectory.data(), o.errors);
+  const auto paired = static_cast<size_t>(o.correlated_images);
+  const size_t at_once = std::max<size_t>(paired, 50);
+  OrientationCorrelation out;
+  for (const DirectImage& i : images) out.images.push_back(i.name);
+  for (size_t begin = 0; begin < images.size(); begin += at_once) {
+    const size_t first = begin - std::min(begin, paired), end = std::min(images.size(), begin + at_once);
+    std::vector<double> times;
+    for (size_t i = first; i < end; ++i) times.push_back(images[i].time);
+    const Eigen::MatrixXd C = model.covariance(times);
+    for (size_t i = begin; i < end; ++i)
+      for (size_t j = std::max(first, i - std::min(i, paired)); j <= i; ++j) {
+        const DirectErrors &a = images[i].errors, &b = images[j].errors;
+        const auto row = 6 * static_cast<Eigen::Index>(i - first), column = 6 * static_cast<Eigen::Index>(j - first);
+        CovariancePair pair{static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), {}};
+        pair.value = a.by_pose * C.block<6, 6>(row, column) * b.by_pose.transpose() +
+                     std::pow(o.sigma_lever_arm.value, 2) * a.by_lever_arm * b.by_lever_arm.transpose();
+        if (i == j) pair.value += a.of_time;
+        out.pairs.push_back(pair);
+      }
+  }
   return out;
 }
 

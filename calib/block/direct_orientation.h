@@ -7,11 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "calib/block/navigation/orientation_correlation.h"
 #include "calib/block/orientation_table.h"
 #include "core/config/option.h"
 #include "core/config/result.h"
 #include "core/geo/crs.h"
 #include "core/records/event_data.h"
+#include "trajectory/ins/error_model.h"
 #include "trajectory/trajectory.h"
 
 namespace swath::calib {
@@ -23,6 +25,8 @@ struct DirectOptions {
   std::array<core::Metres, 3> lever_arm{};
   core::Radians sigma_boresight{};
   core::Metres sigma_lever_arm{};
+  int correlated_images = 30;
+  trajectory::ErrorModelOptions errors;
 };
 
 template <class V>
@@ -34,7 +38,16 @@ void describe(DirectOptions& o, V& v) {
   v.option("lever_arm", o.lever_arm, "IMU centre to perspective centre: forward, right, down.");
   v.option("sigma_boresight", o.sigma_boresight, core::within(0, 1), "Sigma of each boresight angle, common to all images.");
   v.option("sigma_lever_arm", o.sigma_lever_arm, core::within(0, 10), "Sigma of each component of the lever arm.");
+  v.option("correlated_images", o.correlated_images, core::within(1, 1000), "Images before each one that its errors are paired with.");
+  v.table("errors", o.errors, "Errors of trajectories that state no covariances between instants.");
 }
+
+/// How the errors of a perspective centre on the grid and of the body's rotation come about (axes of OrientationCorrelation).
+struct DirectErrors {
+  PoseCovariance by_pose = PoseCovariance::Zero();                                 ///< by north, east, down, roll, pitch, heading
+  PoseCovariance of_time = PoseCovariance::Zero();                                 ///< covariance by the exposure's own time
+  Eigen::Matrix<double, 6, 3> by_lever_arm = Eigen::Matrix<double, 6, 3>::Zero();  ///< common to all images
+};
 
 struct DirectImage {
   std::string name;
@@ -43,6 +56,7 @@ struct DirectImage {
   bool doubtful = false;
   ImageOrientation orientation;
   core::Attitude attitude;  ///< of the body, from true north
+  DirectErrors errors;
 };
 
 struct DirectFound {
@@ -71,6 +85,11 @@ Eigen::Matrix3d camera_mounting(core::Radians mount, const std::array<core::Radi
 /// several techniques are there and none is stated.
 std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajectory, const core::EventData& events, const core::Crs& crs,
                                             const DirectOptions& options, DirectFound& found);
+
+/// Covariances of each image with those before it, some of them: of the trajectory, each exposure's time and the lever arm. The boresight
+/// is not of the body.
+OrientationCorrelation direct_correlation(const std::vector<DirectImage>& images, const trajectory::Trajectory& trajectory,
+                                          const DirectOptions& options);
 
 /// The table that [images] of `swath block` takes: stations are the perspective centres, angles those of the body.
 std::string direct_images_csv(const std::vector<DirectImage>& images, const std::string& camera);

@@ -64,6 +64,14 @@ struct ImageAttitude {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< rad^2, of a rotation about the body's axes
 };
 
+/// The errors of an image's station (local frame, m) and attitude (about the camera's nominal axes, rad), one of them or both, given those
+/// of images before it: e = by_before e_before + q, Cov(q) = root root'.
+struct NavigationStep {
+  std::uint32_t image = 0;
+  std::vector<std::uint32_t> before;  ///< images
+  Eigen::MatrixXd by_before, root;    ///< root: lower triangle
+};
+
 /// A surveyed point. Check points take no part in the adjustment.
 struct BlockControl {
   std::uint32_t point = 0;
@@ -83,6 +91,16 @@ struct StationDrift {
   Eigen::Vector3d change = Eigen::Vector3d::Zero();  ///< a1 times the span, m
 };
 
+/// Unknown datum of the stations against control: none, a shift, or shift, rotation and scale.
+enum class Datum { none, shift, similarity };
+
+/// X_GPS + v = centre + (1 + scale) exp(rotation) (X - centre) + shift, and attitudes are turned by exp(rotation).
+struct StationDatum {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();                                     ///< local, m: held
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero(), rotation = Eigen::Vector3d::Zero();  ///< m, rad
+  double scale = 0.0;
+};
+
 struct ImageBlock {
   std::vector<BlockCamera> cameras;
   std::vector<BlockImage> images;
@@ -90,10 +108,13 @@ struct ImageBlock {
   std::vector<ImageRay> rays;
   std::vector<ImageStation> stations;  ///< at most one per image
   std::vector<ImageAttitude> attitudes;
+  std::vector<NavigationStep> chain;  ///< of all stations and attitudes; empty: those of different images are independent
   std::vector<BlockControl> control;
   DriftSets drift_sets = DriftSets::none;
   std::vector<StationDrift> drifts;  ///< made by find_drift_sets()
   std::vector<int> drift_of;         ///< per station: its set, or -1
+  Datum datum = Datum::none;
+  StationDatum station_datum;  ///< its centre is made by find_drift_sets()
 };
 
 }  // namespace swath::calib
@@ -102,6 +123,10 @@ namespace swath::core {
 template <>
 struct Choices<calib::DriftSets> {
   static constexpr std::array<std::string_view, 3> names{"none", "block", "strip"};
+};
+template <>
+struct Choices<calib::Datum> {
+  static constexpr std::array<std::string_view, 3> names{"none", "shift", "similarity"};
 };
 template <>
 struct Choices<calib::DistortionAt> {

@@ -140,7 +140,7 @@ ImageData read_colmap(const std::filesystem::path& folder) {
   return out;
 }
 
-void write_colmap(const std::filesystem::path& folder, const ImageData& data, const std::vector<ColmapPoint>& points) {
+void write_colmap(const std::filesystem::path& folder, const ImageData& data, const std::vector<PlacedPoint>& points) {
   std::filesystem::create_directories(folder);
   std::string text = "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS\n";
   for (size_t c = 0; c < data.cameras.size(); ++c) {

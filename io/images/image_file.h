@@ -97,14 +97,16 @@ ImageData read_colmap(const std::filesystem::path& folder);
 ImageData read_opensfm(const std::filesystem::path& tracks);
 ImageData read_blocks_exchange(const std::filesystem::path& file);
 
-/// A point of write_colmap().
-struct ColmapPoint {
+/// A point in the frame of the poses.
+struct PlacedPoint {
   std::string name;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
 };
 /// Writes cameras.txt, images.txt and points3D.txt: marks in pixels from the corner of the first pixel, y down. Points without marks are
 /// left out. Poses: one per image of `data`, in its order.
-void write_colmap(const std::filesystem::path& folder, const ImageData& data, const std::vector<ColmapPoint>& points);
+void write_colmap(const std::filesystem::path& folder, const ImageData& data, const std::vector<PlacedPoint>& points);
+/// Writes tracks.csv and reconstruction.json, of the same. Throws core::Error for a name with a tab.
+void write_opensfm(const std::filesystem::path& folder, const ImageData& data, const std::vector<PlacedPoint>& points);
 
 }  // namespace swath::io
 

@@ -56,6 +56,35 @@ class Block(Case):
         self.assertIn("<svg", (self.folder / "out" / "report.html").read_text())
         self.assertEqual(len(points), found["points"])
 
+    def test_what_it_writes_for_other_programs_it_reads(self):
+        """Image points as PAT-B, COLMAP and OpenSfM have them give the same orientations."""
+        write_block(self.folder)
+        config = self.folder / "block.toml"
+        sensor = f'f = "{F} mm"\ncolumns = 13000\nrows = 13000\npixel = "10 um"\n'
+        config.write_text(config.read_text().replace(f'f = "{F} mm"\n', sensor))
+        self.assertEqual(swath("block", config, "--output", self.folder / "out", "--set", "adjust.components=false").returncode, 0)
+        head = f'crs = "local"\n[images]\nfile = "images.csv"\n[[camera]]\nname = "C"\n{sensor}[[image_points]]\n'
+        for name, points in (("patb", 'file = "out/patb/block.im"\nformat = "patb"\nunit = "um"\ny = "up"\norigin = "middle"\nsigma = "5 um"\n'),
+                             ("colmap", 'file = "out/colmap"\nformat = "colmap"\nsigma = "5 um"\n'),
+                             ("opensfm", 'file = "out/opensfm/tracks.csv"\nformat = "opensfm"\nsigma = "5 um"\n')):
+            control = '[[control]]\nfile = "control.csv"\n' if name == "patb" else ""  # the others have numbers for names
+            (self.folder / "again.toml").write_text(head + points + control)
+            done = swath("block", self.folder / "again.toml", "--output", self.folder / name, "--set", "adjust.components=false")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            rows = [[r for r in (self.folder / f / "orientation.csv").read_text().splitlines() if not r.startswith("#")][1:] for f in ("out", name)]
+            self.assertEqual(len(rows[0]), 15)
+            for a, b in zip(*rows):
+                for k in (3, 4, 5, *range(12, 21)):  # place to the table's digits, and the matrix
+                    self.assertAlmostEqual(float(a.split(",")[k]), float(b.split(",")[k]), delta=2e-4 if k < 6 else 1e-8, msg=(name, k))
+        orientation = (self.folder / "out" / "patb" / "block.ori").read_text().splitlines()
+        self.assertEqual(len(orientation), 45)
+        first = rows[0][0].split(",")
+        for k in range(3):
+            self.assertAlmostEqual(float(orientation[0][32 + 16 * k:48 + 16 * k]), float(first[3 + k]), delta=1e-4)
+        matrix = [float((orientation[1] + orientation[2])[16 * k:16 * k + 16]) for k in range(9)]
+        for got, want in zip(matrix, map(float, first[12:21])):
+            self.assertAlmostEqual(got, want, delta=2e-12)
+
     def test_what_is_read_is_not_written_over(self):
         write_block(self.folder)
         config = (self.folder / "block.toml").rename(self.folder / "camera.toml")

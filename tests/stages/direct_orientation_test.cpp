@@ -65,6 +65,14 @@ TEST(DirectOrientationStage, EachExposureWithinTheTrajectoryIsARowOfBothTables) 
   // 100 m along the meridian, scaled by the projection.
   EXPECT_NEAR(images.number(1, images.column("y")) - images.number(0, images.column("y")), 0.9996 * 100.0, 0.02);
   EXPECT_NE(test::read_bytes(o.work.context.output / "orientation_direct.csv").find("\ndsc2,P1,1,"), std::string::npos);
+  // Of both images, and between them: north after 2 s of 150.
+  const io::TextTable pairs(o.work.context.output / "orientation_correlation.csv");
+  ASSERT_EQ(pairs.rows(), 3u);
+  EXPECT_EQ(pairs.text(1, 0) + " " + pairs.text(1, 1), "dsc2 dsc1");
+  const size_t north = pairs.column("c22"), roll = pairs.column("c44");
+  EXPECT_NEAR(pairs.number(0, north), 0.02 * 0.02 + 4.0 * 4e-8, 1e-6);  // and the pitch by the lever arm
+  EXPECT_NEAR(pairs.number(0, roll), 1e-8, 1e-12);
+  EXPECT_NEAR(pairs.number(1, roll), 1e-8 * std::exp(-2.0 / 200.0), 1e-12);
 }
 
 TEST(DirectOrientationStage, WhatItNeedsIsNamedBeforeTheRun) {

@@ -17,7 +17,9 @@ void describe(DirectStageOptions& o, V& v) {
   describe(static_cast<calib::DirectOptions&>(o), v);
 }
 
-std::vector<std::string> direct_products(const DirectStageOptions&) { return {"orientation_direct.csv", "images.csv"}; }
+std::vector<std::string> direct_products(const DirectStageOptions&) {
+  return {"orientation_direct.csv", "images.csv", "orientation_correlation.csv"};
+}
 
 void expect_map(const Context& context, const DirectStageOptions&) {
   if (context.survey.crs.empty())
@@ -35,6 +37,8 @@ calib::DirectFound orient_images(const trajectory::Trajectory& trajectory, const
   for (const calib::DirectImage& i : images) table += calib::orientation_line(i.name, o.camera, i.strip, i.orientation);
   io::write_text_file(to.folder / "orientation_direct.csv", table);
   io::write_text_file(to.folder / "images.csv", calib::direct_images_csv(images, o.camera));
+  io::write_text_file(to.folder / "orientation_correlation.csv",
+                      calib::correlation_csv(calib::direct_correlation(images, trajectory, o), context.survey.crs));
   return found;
 }
 

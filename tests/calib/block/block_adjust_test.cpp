@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "core/error.h"
 #include "io/text/value_file.h"
 #include "tests/calib/block/made_block.h"
@@ -113,56 +115,184 @@ struct Nees {
   double ratio() const { return std::sqrt(sum / n); }
 };
 
-TEST(BlockAdjust, SigmasAreTrueOverSeeds) {
+/// Errors over sigmas of all that is adjusted.
+struct AllNees {
   Nees points, positions, attitudes, camera, shifts, boresight;
-  for (unsigned seed = 1; seed <= 20; ++seed) {
-    test::Making m;
-    m.seed = seed;
-    m.layout.strips = 3, m.layout.images = 7, m.layout.side = 0.4;
-    m.which = {"", DriftSets::strip, ControlLayout::corners, 2};
-    m.drift = 1.5;
-    m.attitudes = true;
-    m.camera << 0, 0.05, -0.08, 2e-8, 0, 0, 0, 0, 0, 0;
-    m.camera_sigma.head<4>().setConstant(free_value);
-    test::MadeBlock b = test::make_block(m);
-    const BlockSolution s = adjust_block(b.given, plain_least_squares());
-    for (size_t p = 0; p < b.given.points.size(); ++p)
-      for (int k = 0; k < 3; ++k) points.add(b.given.points[p].position[k] - b.truth.points[p].position[k], s.inference.points[p](k, k));
-    for (size_t n = 0; n < s.linear.nodes.size(); ++n) {
-      const UnknownNode& node = s.linear.nodes[n];
-      const Eigen::MatrixXd& C = s.inference.nodes[n];
-      if (node.kind == NodeKind::image) {
-        const Vector3d dX = b.given.images[node.index].position - b.truth.images[node.index].position;
-        const Vector3d turn =
-            core::log_so3(b.given.images[node.index].camera_R_local * b.truth.images[node.index].camera_R_local.transpose());
-        for (int k = 0; k < 3; ++k) positions.add(dX[k], C(k, k)), attitudes.add(turn[k], C(3 + k, 3 + k));
-      }
-      if (node.kind == NodeKind::camera)
-        for (size_t k = 0; k < node.components.size(); ++k) {
-          const auto i = static_cast<Eigen::Index>(k);
-          camera.add(b.given.cameras[0].value[node.components[k]] - b.truth.cameras[0].value[node.components[k]], C(i, i));
-        }
-      if (node.kind == NodeKind::boresight) {
-        const Vector3d turn = core::log_so3(b.given.cameras[0].body_R_camera.transpose() * b.truth.cameras[0].body_R_camera);
-        for (int k = 0; k < 3; ++k) boresight.add(turn[k], C(k, k));
-      }
-      if (node.kind == NodeKind::drift)
-        for (int k = 0; k < 3; ++k) {
-          shifts.add(b.given.drifts[node.index].shift[k] - b.truth.drifts[node.index].shift[k], C(k, k));
-          shifts.add(b.given.drifts[node.index].change[k] - b.truth.drifts[node.index].change[k], C(3 + k, 3 + k));
-        }
+  void add(const test::MadeBlock& b, const BlockSolution& s);
+  std::vector<std::pair<const char*, double>> ratios() const {
+    std::vector<std::pair<const char*, double>> out{{"points", points.ratio()},
+                                                    {"positions", positions.ratio()},
+                                                    {"attitudes", attitudes.ratio()},
+                                                    {"camera", camera.ratio()},
+                                                    {"boresight", boresight.ratio()}};
+    if (shifts.n > 0.0) out.emplace_back("shifts", shifts.ratio());
+    return out;
+  }
+};
+
+void AllNees::add(const test::MadeBlock& b, const BlockSolution& s) {
+  for (size_t p = 0; p < b.given.points.size(); ++p)
+    for (int k = 0; k < 3; ++k) points.add(b.given.points[p].position[k] - b.truth.points[p].position[k], s.inference.points[p](k, k));
+  for (size_t n = 0; n < s.linear.nodes.size(); ++n) {
+    const UnknownNode& node = s.linear.nodes[n];
+    const Eigen::MatrixXd& C = s.inference.nodes[n];
+    if (node.kind == NodeKind::image) {
+      const Vector3d dX = b.given.images[node.index].position - b.truth.images[node.index].position;
+      const Vector3d turn =
+          core::log_so3(b.given.images[node.index].camera_R_local * b.truth.images[node.index].camera_R_local.transpose());
+      for (int k = 0; k < 3; ++k) positions.add(dX[k], C(k, k)), attitudes.add(turn[k], C(3 + k, 3 + k));
     }
+    if (node.kind == NodeKind::camera)
+      for (size_t k = 0; k < node.components.size(); ++k) {
+        const auto i = static_cast<Eigen::Index>(k);
+        camera.add(b.given.cameras[0].value[node.components[k]] - b.truth.cameras[0].value[node.components[k]], C(i, i));
+      }
+    if (node.kind == NodeKind::boresight) {
+      const Vector3d turn = core::log_so3(b.given.cameras[0].body_R_camera.transpose() * b.truth.cameras[0].body_R_camera);
+      for (int k = 0; k < 3; ++k) boresight.add(turn[k], C(k, k));
+    }
+    if (node.kind == NodeKind::drift)
+      for (int k = 0; k < 3; ++k) {
+        shifts.add(b.given.drifts[node.index].shift[k] - b.truth.drifts[node.index].shift[k], C(k, k));
+        shifts.add(b.given.drifts[node.index].change[k] - b.truth.drifts[node.index].change[k], C(3 + k, 3 + k));
+      }
+  }
+}
+
+test::Making flight(unsigned seed, DriftSets drift) {
+  test::Making m;
+  m.seed = seed;
+  m.layout.strips = 3, m.layout.images = 7, m.layout.side = 0.4;
+  m.which = {"", drift, ControlLayout::corners, 2};
+  m.drift = 1.5;
+  m.attitudes = true;
+  m.camera << 0, 0.05, -0.08, 2e-8, 0, 0, 0, 0, 0, 0;
+  m.camera_sigma.head<4>().setConstant(free_value);
+  return m;
+}
+
+TEST(BlockAdjust, SigmasAreTrueOverSeeds) {
+  AllNees all;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    test::MadeBlock b = test::make_block(flight(seed, DriftSets::strip));
+    const BlockSolution s = adjust_block(b.given, plain_least_squares());
+    all.add(b, s);
   }
   // 80 camera values, 60 of the boresight, all correlated within a seed: 0.85-1.15 is two of their own sigmas.
-  for (const auto& [name, nees] : {std::pair{"points", points},
-                                   {"positions", positions},
-                                   {"attitudes", attitudes},
-                                   {"camera", camera},
-                                   {"shifts", shifts},
-                                   {"boresight", boresight}}) {
-    EXPECT_GT(nees.ratio(), 0.85) << name;
-    EXPECT_LT(nees.ratio(), 1.15) << name;
+  for (const auto& [name, ratio] : all.ratios()) {
+    EXPECT_GT(ratio, 0.85) << name;
+    EXPECT_LT(ratio, 1.15) << name;
   }
+}
+
+/// As the stations of a made block are: each error a share of the one before.
+std::vector<NavigationStep> chain_of(const ImageBlock& b, double share) {
+  std::vector<NavigationStep> out;
+  for (std::uint32_t i = 0; i < b.images.size(); ++i) {
+    NavigationStep step;
+    step.image = i;
+    if (i > 0) step.before = {i - 1}, step.by_before = share * Eigen::MatrixXd::Identity(6, 6);
+    Eigen::MatrixXd C = Eigen::MatrixXd::Zero(6, 6);
+    C.topLeftCorner(3, 3) = b.stations[i].covariance, C.bottomRightCorner(3, 3) = b.attitudes[i].covariance;
+    step.root = (i > 0 ? std::sqrt(1.0 - share * share) : 1.0) * Eigen::MatrixXd(C.diagonal().cwiseSqrt().asDiagonal());
+    out.push_back(step);
+  }
+  return out;
+}
+
+/// Errors of stations and attitudes that are correlated from image to image: with the chain sigmas are true, without it they are too small.
+TEST(BlockAdjust, CorrelatedStationsHaveTrueSigmasWithTheirChain) {
+  constexpr double share = 0.95;
+  AllNees with, without;
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    test::Making m = flight(seed, DriftSets::none);
+    m.correlation = share;
+    m.layout.sigma_image = core::Metres(5e-6);
+    m.layout.sigma_station = m.layout.sigma_control = core::Metres(0.3);
+    test::MadeBlock b = test::make_block(m), plain = b;
+    ASSERT_EQ(b.given.stations.size(), b.given.images.size());
+    b.given.chain = chain_of(b.given, share);
+    const BlockSolution s = adjust_block(b.given, plain_least_squares());
+    EXPECT_NEAR(s.sigma0(), 1.0, 0.15);
+    with.add(b, s);
+    without.add(plain, adjust_block(plain.given, plain_least_squares()));
+  }
+  for (const auto& [name, ratio] : with.ratios()) {
+    EXPECT_GT(ratio, 0.85) << name;
+    EXPECT_LT(ratio, 1.15) << name;
+  }
+  for (const auto& [name, ratio] : with.ratios()) std::printf("with the chain: %s %.3f\n", name, ratio);
+  for (const auto& [name, ratio] : without.ratios()) std::printf("without the chain: %s %.2f\n", name, ratio);
+  EXPECT_GT(without.positions.ratio(), 1.25);
+  EXPECT_GT(without.boresight.ratio(), 1.25);
+}
+
+/// Stations and attitudes of another datum than control: its values over their sigmas, and the block in the datum of control.
+TEST(BlockAdjust, DatumsHaveTrueSigmas) {
+  for (const Datum datum : {Datum::shift, Datum::similarity}) {
+    AllNees all;
+    Nees shift, rotation, scale;
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      test::Making m = flight(seed, DriftSets::none);
+      m.which.control = ControlLayout::chains;
+      m.datum = datum;
+      m.stations.shift = {-1.7, 2.1, 45.3};
+      if (datum == Datum::similarity) m.stations.rotation = {1e-5, -2e-5, 3e-5}, m.stations.scale = 8e-6;
+      test::MadeBlock b = test::make_block(m);
+      const BlockSolution s = adjust_block(b.given, plain_least_squares());
+      all.add(b, s);
+      const UnknownNode* node = nullptr;
+      Eigen::MatrixXd C;
+      for (size_t n = 0; n < s.linear.nodes.size(); ++n)
+        if (s.linear.nodes[n].kind == NodeKind::datum) node = &s.linear.nodes[n], C = s.inference.nodes[n];
+      ASSERT_NE(node, nullptr);
+      ASSERT_EQ(node->components.size(), datum == Datum::shift ? 3u : 7u);
+      const StationDatum& found = b.given.station_datum;
+      // The true shift is that in the middle of the true stations; here it is in the middle of those observed.
+      const Vector3d apart = found.centre - m.stations.shift - b.truth_centre;
+      const Vector3d at_found = (1.0 + m.stations.scale) * core::exp_so3(m.stations.rotation) * (found.centre - b.truth_centre) +
+                                b.truth_centre + m.stations.shift - found.centre;
+      EXPECT_LT(apart.norm(), 1.0);
+      for (int k = 0; k < 3; ++k) shift.add(found.shift[k] - at_found[k], C(k, k));
+      if (datum == Datum::shift) continue;
+      for (int k = 0; k < 3; ++k) rotation.add(found.rotation[k] - m.stations.rotation[k], C(3 + k, 3 + k));
+      scale.add(found.scale - m.stations.scale, C(6, 6));
+    }
+    std::vector<std::pair<const char*, double>> ratios = all.ratios();
+    ratios.emplace_back("shift", shift.ratio());
+    if (datum == Datum::similarity) ratios.emplace_back("rotation", rotation.ratio());
+    for (const auto& [name, ratio] : ratios) {
+      EXPECT_GT(ratio, 0.85) << name;
+      EXPECT_LT(ratio, 1.15) << name;
+    }
+    if (datum == Datum::similarity) {  // of 20 values: 0.16 is a sigma of the ratio
+      EXPECT_GT(scale.ratio(), 0.6);
+      EXPECT_LT(scale.ratio(), 1.4);
+    }
+  }
+}
+
+TEST(BlockAdjust, ADatumThatControlDoesNotDetermineIsNamed) {
+  const auto fault_with = [](Datum datum, const std::function<void(ImageBlock&)>& change) -> std::string {
+    test::Making m = flight(1, DriftSets::none);
+    m.datum = datum;
+    test::MadeBlock b = test::make_block(m);
+    change(b.given);
+    try {
+      adjust_block(b.given, plain_least_squares());
+    } catch (const core::Error& e) {
+      return std::string(e.what()) + "; " + e.hint();
+    }
+    return "";
+  };
+  const auto without_control = [](ImageBlock& b) { b.control.clear(); };
+  EXPECT_NE(
+      fault_with(Datum::shift, without_control).find("the datum of the stations is not determined by control; survey a control point"),
+      std::string::npos);
+  const auto few = [](ImageBlock& b) { b.control.resize(2); };  // rotation about their line
+  EXPECT_EQ(fault_with(Datum::shift, few), "");
+  EXPECT_NE(fault_with(Datum::similarity, few).find("the datum of the stations is not determined by control; survey three"),
+            std::string::npos);
 }
 
 TEST(BlockAdjust, GrossErrorsLoseTheirWeightAndTheTestFindsThem) {

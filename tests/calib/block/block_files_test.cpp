@@ -39,8 +39,8 @@ TEST(BlockFiles, OrientationsReadBackAreThoseAdjusted) {
   m.more = "[adjust]\nrobust = false\ncomponents = false\n";
   const Adjusted a = adjusted(test::write_made(m, folder.path()));
   const auto files = write_block(folder.path() / "out", a.read, a.config, a.solution, a.found);
-  EXPECT_EQ(files, (std::vector<std::string>{"orientation.csv", "camera.toml", "points.gpkg", "points.laz", "colmap", "block.json",
-                                             "report.html"}));
+  EXPECT_EQ(files, (std::vector<std::string>{"orientation.csv", "camera.toml", "points.gpkg", "points.laz", "patb", "colmap", "opensfm",
+                                             "block.json", "report.html"}));
   const auto known = block_products();
   for (const std::string& name : files) EXPECT_EQ(std::count(known.begin(), known.end(), name), 1) << name;
   const io::TextTable table(folder.path() / "out" / "orientation.csv");

@@ -135,5 +135,80 @@ TEST(BlockReading, ImagesOfAnotherSizeThanTheCamerasAreRefused) {
   EXPECT_NE(fault_of(file).find("several cameras, and the file does not say which took image a"), std::string::npos) << fault_of(file);
 }
 
+/// A file of correlations takes the place of all sigmas of stations and angles.
+TEST(BlockReading, CorrelationsMakeAChain) {
+  const test::TemporaryFolder folder;
+  test::MadeFiles m;
+  m.block = test::make_block(test::small_making()).given;
+  m.write_angles = true;
+  m.angle_use = "observed";
+  const std::string file = test::write_made(m, folder.path());
+  OrientationCorrelation correlation;
+  PoseCovariance C = PoseCovariance::Zero();
+  C.diagonal() << 0.04, 0.09, 0.16, 1e-8, 4e-8, 9e-8;
+  for (std::uint32_t i = 0; i < m.block.images.size(); ++i) {
+    correlation.images.push_back(m.block.images[i].name);
+    if (i > 0) correlation.pairs.push_back({i, i - 1, 0.6 * C});
+    correlation.pairs.push_back({i, i, C});
+  }
+  std::ofstream(folder / "correlation.csv") << correlation_csv(correlation, "local");
+  BlockConfig config = test::read_made(file);
+  config.images.correlation = folder / "correlation.csv";
+  const ReadBlock read = read_block(config, file);
+  ASSERT_EQ(read.block.chain.size(), m.block.images.size());
+  EXPECT_LT((read.block.stations[2].covariance - C.topLeftCorner<3, 3>()).norm(), 1e-12);
+  EXPECT_LT((read.block.attitudes[2].covariance - C.bottomRightCorner<3, 3>()).norm(), 1e-18);
+  const NavigationStep& step = read.block.chain[1];
+  EXPECT_EQ(step.image, 1u);
+  EXPECT_EQ(step.before, std::vector<std::uint32_t>{0u});
+  EXPECT_LT((step.by_before - 0.6 * Eigen::MatrixXd::Identity(6, 6)).norm(), 1e-6);
+  // The image's y axis points to the left of the body here: variances are the same.
+  EXPECT_NEAR(step.root(1, 1), std::sqrt(0.64 * 0.09), 1e-9);
+  EXPECT_NEAR(step.root(4, 4), std::sqrt(0.64 * 4e-8), 1e-12);
+  config.images.angle_use = ImageValues::start;
+  EXPECT_EQ(read_block(config, file).block.chain[1].root.rows(), 3);
+  correlation.images[3] = "other";
+  std::ofstream(folder / "correlation.csv") << correlation_csv(correlation, "local");
+  try {
+    read_block(config, file);
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_EQ(std::string(e.what()), "image " + m.block.images[3].name + " is not in the file of correlations");
+  }
+  config.images.correlation.clear();
+  EXPECT_TRUE(read_block(config, file).block.chain.empty());
+}
+
+TEST(BlockReading, ADatumNeedsStationsAndControl) {
+  const test::TemporaryFolder folder;
+  test::MadeFiles m;
+  m.block = test::make_block(test::small_making()).given;
+  const std::string file = test::write_made(m, folder.path());
+  const auto fault_with = [&](Datum datum, size_t control, ImageValues stations = ImageValues::observed) -> std::string {
+    BlockConfig config = test::read_made(file);
+    config.datum = datum, config.control.resize(control), config.images.stations = stations;
+    try {
+      read_block(config, file);
+    } catch (const core::Error& e) {
+      return e.text();
+    }
+    return "";
+  };
+  EXPECT_EQ(fault_with(Datum::similarity, 2), "");
+  EXPECT_EQ(fault_with(Datum::none, 0), "");
+  EXPECT_NE(fault_with(Datum::shift, 0).find("control has 0 points in plan and 0 heights, and shift needs 1 and 1"), std::string::npos);
+  EXPECT_NE(fault_with(Datum::similarity, 0).find("similarity needs 2 and 3"), std::string::npos);
+  EXPECT_NE(fault_with(Datum::shift, 2, ImageValues::start).find("no station is observed"), std::string::npos);
+  core::Value both = io::read_value_file(file);
+  both["drift"] = core::Value("block");
+  both["datum"] = core::Value("shift");
+  try {
+    read_block_config(file, both);
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_NE(e.text().find("the shift of a drift is that of the datum"), std::string::npos) << e.text();
+  }
+}
+
 }  // namespace
 }  // namespace swath::calib

@@ -100,6 +100,77 @@ TEST(DirectOrientation, CovarianceIsThatOfTheChanges) {
       EXPECT_NEAR(here.orientation.covariance(r, c), expected(r, c), 3e-3 * std::sqrt(expected(r, r) * expected(c, c))) << r << " " << c;
 }
 
+core::EventData exposures(std::initializer_list<double> times, double sigma) {
+  core::EventData e;
+  for (const double t : times) {
+    e.time.push_back(t), e.sigma.push_back(sigma), e.strip.push_back(1), e.technique.emplace_back("marks"), e.doubtful.push_back(0);
+    e.id.push_back(std::to_string(e.id.size() + 1));
+  }
+  return e;
+}
+
+/// Of one image: what its covariance has, in the body's axes, without the boresight. Of two: what decays with time, and the lever arm.
+TEST(DirectOrientation, CorrelationOfImages) {
+  const trajectory::Trajectory trajectory(straight({0.05, -0.04, 2.1}));
+  DirectOptions o = mounted();
+  o.sigma_lever_arm = core::Metres(0.3);
+  o.errors.position_correlation = o.errors.roll_correlation = o.errors.pitch_correlation = o.errors.heading_correlation =
+      core::Seconds(2.0);
+  DirectFound found;
+  const auto images = direct_orientation(trajectory, exposures({1001.0, 1002.0, 1003.5}, 1e-3), core::Crs("EPSG:32632"), o, found);
+  const OrientationCorrelation all = direct_correlation(images, trajectory, o);
+  ASSERT_EQ(all.pairs.size(), 6u);
+  EXPECT_EQ(all.images, (std::vector<std::string>{"1", "2", "3"}));
+  PoseCovariance turn = PoseCovariance::Identity();  // to the camera's axes
+  turn.bottomRightCorner<3, 3>() = camera_mounting(o.mount, o.boresight).transpose();
+  const auto expect_near = [](const PoseCovariance& a, const PoseCovariance& b, const PoseCovariance& size) {
+    for (int r = 0; r < 6; ++r)
+      for (int c = 0; c < 6; ++c) EXPECT_NEAR(a(r, c), b(r, c), 1e-6 * std::sqrt(size(r, r) * size(c, c))) << r << " " << c;
+  };
+  for (const CovariancePair& p : all.pairs)
+    if (p.image == p.other)
+      expect_near(turn * p.value * turn.transpose(), images[p.image].orientation.covariance, images[0].orientation.covariance);
+  const CovariancePair &own = all.pairs[2], &before = all.pairs[1];
+  ASSERT_EQ(before.image, 1u);
+  ASSERT_EQ(before.other, 0u);
+  PoseCovariance arm = PoseCovariance::Zero();
+  arm.topLeftCorner<3, 3>() = 0.09 * Matrix3d::Identity();  // nearly one attitude on the grid
+  const PoseCovariance of_trajectory = own.value - arm - images[1].errors.of_time;
+  const PoseCovariance expected = std::exp(-0.5) * of_trajectory + arm;
+  for (int r = 0; r < 6; ++r)
+    for (int c = 0; c < 6; ++c)
+      EXPECT_NEAR(before.value(r, c), expected(r, c), 1e-4 * std::sqrt(own.value(r, r) * own.value(c, c))) << r << " " << c;
+  o.correlated_images = 1;
+  const OrientationCorrelation few = direct_correlation(images, trajectory, o);
+  ASSERT_EQ(few.pairs.size(), 5u);
+  EXPECT_EQ(few.pairs[3].other, 1u);
+  expect_near(few.pairs[3].value, all.pairs[4].value, own.value);
+}
+
+/// Images in many windows have the same covariances as in one.
+TEST(DirectOrientation, CorrelationOfManyImages) {
+  const trajectory::Trajectory trajectory(straight({0.05, -0.04, 2.1}));
+  core::EventData e;
+  for (int k = 0; k < 120; ++k) {
+    e.time.push_back(1000.1 + 0.04 * k), e.sigma.push_back(0.0), e.strip.push_back(1), e.technique.emplace_back("marks"),
+        e.doubtful.push_back(0);
+    e.id.push_back(std::to_string(k));
+  }
+  DirectOptions o = mounted();
+  DirectFound found;
+  const auto images = direct_orientation(trajectory, e, core::Crs("EPSG:32632"), o, found);
+  o.correlated_images = 7;
+  const OrientationCorrelation windows = direct_correlation(images, trajectory, o);
+  o.correlated_images = 1000;
+  const OrientationCorrelation one = direct_correlation(images, trajectory, o);
+  EXPECT_EQ(one.pairs.size(), 120u * 121u / 2u);
+  ASSERT_EQ(windows.pairs.size(), 120u * 8u - 28u);
+  for (const CovariancePair& p : windows.pairs) {
+    const CovariancePair& same = one.pairs[p.image * (p.image + 1u) / 2u + p.other];
+    EXPECT_LT((p.value - same.value).norm(), 1e-9 * same.value.norm());
+  }
+}
+
 TEST(DirectOrientation, TheTableIsWhatABlockReads) {
   DirectFound found;
   core::EventData e = exposure(1002.5);

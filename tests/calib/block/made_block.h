@@ -13,6 +13,7 @@ namespace swath::calib::test {
 
 struct MadeBlock {
   ImageBlock truth, given;
+  Eigen::Vector3d truth_centre = Eigen::Vector3d::Zero();  ///< of the stations
 };
 
 struct Making {
@@ -25,7 +26,10 @@ struct Making {
   bool attitudes = false;                            ///< observed, with an unknown boresight
   Eigen::Vector3d boresight{0.01, -0.006, 0.008};    ///< rad
   double attitude_sigma = 1e-4;                      ///< rad
-  double tilt = 0.02;                                ///< rad, of the images about each axis, one sigma
+  Datum datum = Datum::none;                         ///< stations and attitudes have that of `stations`
+  StationDatum stations;
+  double correlation = 0.0;  ///< of the errors of stations and attitudes from each image to the next
+  double tilt = 0.02;        ///< rad, of the images about each axis, one sigma
   Making() { layout.strips = 3, layout.images = 6; }
 };
 
@@ -71,12 +75,30 @@ inline MadeBlock make_block(const Making& m) {
                              std::pow(m.attitude_sigma, 2) * Eigen::Matrix3d::Identity()});
   ImageBlock& g = out.given;
   g = t;
+  g.datum = m.datum;
+  if (m.datum != Datum::none) {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    for (const ImageStation& s : t.stations) centre += s.position / static_cast<double>(t.stations.size());
+    out.truth_centre = centre;
+    const Eigen::Matrix3d turn = core::exp_so3(m.stations.rotation);
+    for (ImageStation& s : g.stations) s.position = centre + (1.0 + m.stations.scale) * turn * (s.position - centre) + m.stations.shift;
+    for (ImageAttitude& a : g.attitudes) a.local_R_body = turn * a.local_R_body;
+  }
   g.cameras[0].body_R_camera = nominal;
   for (int k = 0; k < camera_values; ++k)
     if (m.camera_sigma[k] > 0.0) g.cameras[0].value[k] = k == 0 ? t.cameras[0].value[0] + 0.02 : 0.0;
   for (ImageRay& r : g.rays) r.x += r.sigma * normal(random), r.y += r.sigma * normal(random);
-  for (ImageStation& s : g.stations) s.position += std::sqrt(s.covariance(0, 0)) * vector(1.0);
-  for (ImageAttitude& a : g.attitudes) a.local_R_body = a.local_R_body * core::exp_so3(vector(m.attitude_sigma));
+  Eigen::Vector3d off = Eigen::Vector3d::Zero(), turned = off;
+  if (m.correlation > 0.0) off = vector(1.0), turned = vector(1.0);
+  const double kept = m.correlation, fresh = std::sqrt(1.0 - kept * kept);
+  for (ImageStation& s : g.stations) {
+    off = kept * off + fresh * vector(1.0);
+    s.position += std::sqrt(s.covariance(0, 0)) * off;
+  }
+  for (ImageAttitude& a : g.attitudes) {
+    turned = kept * turned + fresh * vector(1.0);
+    a.local_R_body = a.local_R_body * core::exp_so3(m.attitude_sigma * turned);
+  }
   for (BlockControl& c : g.control) c.position += c.sigma.cwiseProduct(vector(1.0));
   start_poses(g);
   intersect_points(g);

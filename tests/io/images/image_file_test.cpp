@@ -126,6 +126,33 @@ TEST_F(ImageFiles, ColmapThereAndBack) {
   }
 }
 
+TEST_F(ImageFiles, OpenSfmThereAndBack) {
+  const ImageData d = model();
+  write_opensfm(folder_.path() / "sfm", d, {{"7", {1, 2, 3}}, {"8", {4, 5, 6}}, {"9", {7, 8, 9}}});
+  ImageFile f;
+  f.file = folder_.path() / "sfm/tracks.csv", f.format = ImageFormat::opensfm;
+  const ImageData r = read_image_file(f);
+  EXPECT_EQ(r.images, d.images);
+  EXPECT_EQ(r.points, (std::vector<std::string>{"1", "2", "3"}));
+  ASSERT_EQ(r.marks.size(), d.marks.size());
+  for (size_t k = 0; k < d.marks.size(); ++k) {
+    EXPECT_EQ(r.marks[k].image, d.marks[k].image);
+    EXPECT_NEAR(r.marks[k].x, d.marks[k].x, 1e-12 * 4000.0);
+    EXPECT_NEAR(r.marks[k].y, d.marks[k].y, 1e-12 * 4000.0);
+  }
+  EXPECT_NEAR(r.cameras[0].fy, d.cameras[0].fy, 1e-11);
+  EXPECT_NEAR(r.cameras[0].cy, d.cameras[0].cy, 1e-11);
+  EXPECT_EQ(r.cameras[0].k3, d.cameras[0].k3);
+  EXPECT_EQ(r.cameras[0].p2, d.cameras[0].p2);
+  for (size_t i = 0; i < 2; ++i) {
+    EXPECT_LT((r.poses[i].camera_R_frame - d.poses[i].camera_R_frame).norm(), 1e-14);
+    EXPECT_LT((r.poses[i].position - d.poses[i].position).norm(), 1e-11);
+  }
+  ImageData tab = model();
+  tab.images[0] = "a\tb.jpg";
+  EXPECT_THROW(write_opensfm(folder_.path() / "sfm", tab, {}), core::Error);
+}
+
 TEST_F(ImageFiles, ColmapAsItsDocumentationHasIt) {
   write("s/cameras.txt", "# Camera list\n1 SIMPLE_RADIAL 3072 2304 2559.81 1536 1152 -0.0218531\n");
   write("s/images.txt",
