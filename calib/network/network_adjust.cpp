@@ -214,6 +214,8 @@ AdjustedNetwork adjust_network(const CalibrationFlight& flight, const trajectory
     out.left_out = factors.left_out();
     out.noise_factor = factors.noise_factor();
     out.surface_sigma = factors.surface();
+    out.range_factor = factors.range_factor().factor;
+    out.angle_factor = factors.angle_factor().factor;
     out.displaced = rounds.displaced();
     out.tests = rounds.tests();
     out.planes = factors.planes();

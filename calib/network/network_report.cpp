@@ -123,7 +123,7 @@ ReportSection changes_of(const Adjustment& a) {
     for (report::Table* t : {&change, &sigma}) t->columns.push_back({std::string(axes[k]) + (k < 3 ? " (cm)" : " (arcsec)")});
   for (const LineCorrection& c : a.corrections) {
     if (c.time.empty()) continue;
-    std::vector<std::string> changed{std::to_string(c.line)}, sigmas = changed;
+    for (report::Table* t : {&change, &sigma}) t->rows.push_back({std::to_string(c.line)});
     bool large = false;
     for (size_t k = 0; k < 6; ++k) {
       double found = 0, expected = 0, was = 0, is = 0;
@@ -135,13 +135,11 @@ ReportSection changes_of(const Adjustment& a) {
       const auto text = [&](double sum) {
         return number_text(std::sqrt(sum / static_cast<double>(c.time.size())) / unit_of(k), k < 3 ? 2 : 1);
       };
-      changed.push_back(text(found) + " / " + text(expected));
-      sigmas.push_back(text(was) + " / " + text(is));
+      change.rows.back().push_back(text(found) + " / " + text(expected));
+      sigma.rows.back().push_back(text(was) + " / " + text(is));
       large = large || found > 9 * std::max(expected, 0.01 * was);
     }
-    change.rows.push_back(std::move(changed));
     change.tones.push_back(large ? report::Tone::caution : report::Tone::plain);
-    sigma.rows.push_back(std::move(sigmas));
   }
   s.tables = {std::move(change), std::move(sigma)};
   return s;
