@@ -2,6 +2,7 @@
 #include "pipeline/line_file.h"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/error.h"
@@ -14,21 +15,38 @@ constexpr double farthest = 1e8;  // m or feet: no map projection reaches it
 /// Without heights, so that no geoid is asked for.
 core::Crs flat(const core::Crs& crs) { return crs.is_geocentric() ? crs : crs.horizontal(); }
 
+/// From the CRS of a file to that of the data; nothing where places stay as they are.
+struct Way {
+  core::Transform transform;
+  std::string from, to;
+};
+std::optional<Way> way_between(const std::string& file_wkt, const core::Crs& crs) {
+  if (crs.empty() || file_wkt.empty()) return std::nullopt;
+  const core::Crs from = flat(core::Crs(file_wkt)), to = flat(crs);
+  if (from.key() == to.key() || (from.epsg() != 0 && from.epsg() == to.epsg())) return std::nullopt;
+  return Way{core::Transform(from, to), from.name(), to.name()};
+}
+
+void move_places(const Way& way, std::vector<double>& x, std::vector<double>& y, const std::filesystem::path& file) {
+  std::vector<double> z(x.size(), 0.0);
+  if (way.transform.apply(x.data(), y.data(), z.data(), x.size()) > 0)
+    throw core::Error("its CRS is " + way.from + ", that of the data " + way.to + ", and a place of it has no coordinates there",
+                      file.string(), "is that the CRS of its coordinates? GeoJSON that names none is in degrees of WGS 84");
+}
+
 }  // namespace
 
-std::vector<io::VectorLine> read_lines_in(const std::filesystem::path& file, const core::Crs& crs) {
-  io::VectorLines read = io::read_lines(file);
-  if (crs.empty() || read.crs_wkt.empty()) return std::move(read.lines);
-  const core::Crs from = flat(core::Crs(read.crs_wkt)), to = flat(crs);
-  if (from.key() == to.key() || (from.epsg() != 0 && from.epsg() == to.epsg())) return std::move(read.lines);
-  const core::Transform transform(from, to);
-  for (io::VectorLine& line : read.lines) {
-    std::vector<double> z(line.x.size(), 0.0);
-    if (transform.apply(line.x.data(), line.y.data(), z.data(), line.x.size()) > 0)
-      throw core::Error("its CRS is " + from.name() + ", that of the data " + to.name() + ", and a place of it has no coordinates there",
-                        file.string(), "is that the CRS of its coordinates? GeoJSON that names none is in degrees of WGS 84");
-  }
+std::vector<io::VectorLine> read_lines_in(const std::filesystem::path& file, const core::Crs& crs, const std::string& field) {
+  io::VectorLines read = io::read_lines(file, field);
+  if (const auto transform = way_between(read.crs_wkt, crs))
+    for (io::VectorLine& line : read.lines) move_places(*transform, line.x, line.y, file);
   return std::move(read.lines);
+}
+
+io::SpotFile read_spots_in(const std::filesystem::path& file, const core::Crs& crs, const std::string& field) {
+  io::SpotFile read = io::read_spots(file, field);
+  if (const auto transform = way_between(read.crs_wkt, crs)) move_places(*transform, read.x, read.y, file);
+  return read;
 }
 
 std::vector<std::vector<Eigen::Vector2d>> read_rings_in(const std::filesystem::path& file, const core::Crs& crs, std::uint64_t& left_out) {

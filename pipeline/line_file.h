@@ -5,9 +5,11 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/geo/crs.h"
+#include "io/vector/spot_file.h"
 #include "io/vector/vector.h"
 
 namespace swath::pipeline {
@@ -15,7 +17,10 @@ namespace swath::pipeline {
 /// All lines of the file, x and y in the horizontal part of `crs`; z, where there is one, stays as the file has it. A file that states no
 /// CRS (DXF), and any file where `crs` is empty, is taken as it is. Throws core::Error, naming both
 /// CRSs where a place has no coordinates in the other.
-std::vector<io::VectorLine> read_lines_in(const std::filesystem::path& file, const core::Crs& crs);
+/// `field`: the one with a line's height, where it has none of the usual names.
+std::vector<io::VectorLine> read_lines_in(const std::filesystem::path& file, const core::Crs& crs, const std::string& field = {});
+/// The same for spot heights.
+io::SpotFile read_spots_in(const std::filesystem::path& file, const core::Crs& crs, const std::string& field = {});
 
 /// The polygons and closed lines among them, without the repeated vertex. `left_out`: vertices that are not finite, or farther off than any
 /// map reaches. Throws core::Error where none is left.

@@ -85,6 +85,7 @@ void add_simulate_command(Commands& commands);
 void add_info_command(Commands& commands);
 void add_volumes_command(Commands& commands);
 void add_profile_command(Commands& commands);
+void add_map_terrain_command(Commands& commands);
 void add_task_commands(Commands& commands);
 void add_view_command(Commands& commands);
 void add_docs_command(Commands& commands);

@@ -62,6 +62,7 @@ int main(int argc, char** argv) {
     swath::tools::add_info_command(commands);
     swath::tools::add_volumes_command(commands);
     swath::tools::add_profile_command(commands);
+    swath::tools::add_map_terrain_command(commands);
     swath::tools::add_view_command(commands);
     swath::tools::add_completion_commands(commands);
     swath::tools::add_docs_command(commands);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From finished terrain models and clouds: volumes, profiles.
+// From finished terrain models and clouds: volumes, profiles. From a map: its terrain model.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "pipeline/measures/cross_sections.h"
 #include "pipeline/measures/level_curve.h"
+#include "pipeline/measures/map_terrain_files.h"
 #include "pipeline/profile.h"
 #include "pipeline/volume_files.h"
 #include "tools/command.h"
@@ -34,6 +35,34 @@ int volumes(const VolumeArguments& a) {
                             "give AFTER, --design or --levels, one of them");
   const pipeline::VolumesFound found = pipeline::volumes_of(a.request);
   a.json ? print_json(core::reported(found)) : print(pipeline::volume_text(found));
+  return 0;
+}
+
+struct MapTerrainArguments {
+  pipeline::MapTerrainRequest request;
+  std::string cell = "5 m", interval, sigma, max_edge = "1000 m", tolerance = "1 cm", flats = "fill";
+  bool quiet = false, json = false;
+};
+
+double length_of(const std::string& text, const std::string& option, double least) {
+  const double v = quantity(core::Dimension::length, text, option, "5 m");
+  if (!(v > least)) throw core::usage_error("'" + text + "' is too small", option, "write a length with its unit: \"5 m\"");
+  return v;
+}
+
+int map_terrain(MapTerrainArguments& a) {
+  pipeline::MapTerrainRequest& r = a.request;
+  r.cell = length_of(a.cell, "--cell", 0.0);
+  r.max_edge = length_of(a.max_edge, "--max-edge", r.cell);
+  r.tolerance = length_of(a.tolerance, "--tolerance", -1e-12);
+  if (!a.interval.empty()) r.interval = length_of(a.interval, "--interval", 0.0);
+  if (!a.sigma.empty()) r.sigma = length_of(a.sigma, "--sigma", -1e-12);
+  r.keep_flats = a.flats == "keep";
+  const pipeline::MapTerrainFound found = pipeline::write_map_terrain(r);
+  if (a.json)
+    print_json(core::reported(found));
+  else if (!a.quiet)
+    print(pipeline::map_terrain_text(found));
   return 0;
 }
 
@@ -112,6 +141,31 @@ void add_volumes_command(Commands& commands) {
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   c->add_flag("--json", a->json, "As JSON");
+}
+
+void add_map_terrain_command(Commands& commands) {
+  const auto a = std::make_shared<MapTerrainArguments>();
+  auto* c =
+      commands.add("map-dtm",
+                   "Examples\n  swath map-dtm contours.gpkg spots.shp --cell \"5 m\" --output map\n  swath map-dtm sheet.dxf --crs "
+                   "EPSG:25832 --sigma \"0.5 m\" --output map\n\nMake a terrain model of a map: contours, spot heights and breaklines, "
+                   "without any laser point.",
+                   [a] { return map_terrain(*a); });
+  c->add_option("MAP", a->request.files, "GeoPackage, Shapefile, DXF, GeoJSON ...: lines and points with heights")->required();
+  c->add_option("--field", a->request.field,
+                "Field with the height; without it height, elev, elevation, contour or z, or the z of the places");
+  c->add_option("--crs", a->request.crs, "CRS of the model, and of files that state none: EPSG:25832");
+  c->add_option("--cell", a->cell, "Side of the model's cells")->capture_default_str();
+  c->add_option("--interval", a->interval, "Height between contours; without it the usual one");
+  c->add_option("--sigma", a->sigma, "Standard deviation of the contours' own heights; without it they count as right");
+  c->add_option("--max-edge", a->max_edge, "Longest triangle bridged")->capture_default_str();
+  c->add_option("--tolerance", a->tolerance, "By which contours that meet may differ in height")->capture_default_str();
+  c->add_option("--flats", a->flats, "Triangles that join a contour with itself: fill by least bending, or keep")
+      ->check(CLI::IsMember({"fill", "keep"}))
+      ->capture_default_str();
+  c->add_option("--output", a->request.folder, "Folder to write to")->required();
+  c->add_flag("--quiet", a->quiet, "Nothing but errors");
+  c->add_flag("--json", a->json, "What was found, as JSON");
 }
 
 void add_profile_command(Commands& commands) {

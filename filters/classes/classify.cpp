@@ -31,9 +31,8 @@ constexpr float least_plane_height = 1.0f;     // m above ground: a deck near it
 constexpr float above_roof = 1.5f;             // m: chimneys, parapets and what else stands on a roof
 constexpr float beside_deck = 0.5f;            // m above or below a deck: kerbs, rails
 constexpr double widest_needed = 9.0;          // m2 of one plane: larger roofs may have several
-constexpr float below_ground = 1.0f;           // m: returns deeper than this may be noise
-constexpr double below_reach = 2.25;           // m: the widest radius in which ground is looked for beside them
-constexpr double ground_beside = 0.25;         // of the last returns there
+constexpr double below_reach = 2.25;           // m: the widest radius in which ground is looked for beside returns below it
+constexpr float beside_surface = 0.5f;         // m from the terrain model: ground that its filter left out lies within this
 constexpr size_t crown_points_at_once = 2048;  // of one thread
 
 bool is_free(const core::Block& b, size_t p) {
@@ -65,19 +64,30 @@ std::uint8_t vegetation(float height, const ClassifyOptions& o) {
   return h < o.medium_vegetation.value ? cls::low_vegetation : h < o.high_vegetation.value ? cls::medium_vegetation : cls::high_vegetation;
 }
 
-/// Returns that lie deep below ground returns among which they are scattered: echoes on detours. In a pit there is no ground beside them.
+/// Returns below the ground that may be noise, and what must lie at least as far above them.
+struct Depth {
+  float least;    ///< m below the terrain model
+  double share;   ///< of the last returns around
+  int around;     ///< fewest of these
+  bool by_model;  ///< whatever lies at the terrain model counts: large groups of low returns take the ground beside them from its filter
+};
+constexpr Depth deep{1.0f, 0.25, 1, true}, shallow{0.3f, 0.6, 3, false};
+
+/// Returns that lie below ground returns among which they are scattered: echoes on detours. In a pit there is no ground beside them; in a
+/// ditch, and on a slope of which the model shaves an edge, less of it than beside an echo.
 class Below {
  public:
   Below(const core::Block& b, size_t own, const Districts& where)
-      : block_(b), where_(where), last_(b, below_reach, 0, [&b, any = any_deep(b, own), near = OwnBox(b, own, below_reach)](size_t p) {
+      : block_(b), where_(where), last_(b, below_reach, 0, [&b, any = any_below(b, own), near = OwnBox(b, own, below_reach)](size_t p) {
           return any && core::is_usable(b, p) && core::is_last_return(b, p) && near.holds(b, p);
         }) {}
 
   bool is_noise(size_t p) const {
-    if (!(block_.height[p] <= -below_ground)) return false;
+    if (!(block_.height[p] <= -shallow.least)) return false;
+    const Depth& depth = block_.height[p] <= -deep.least ? deep : shallow;
     const CellIndex d = cell_of(where_.lattice, block_, p), c = cell_of(last_.lattice(), block_, p);
     const double radius = 0.75 * sample_sides[where_.side[where_.lattice.at(d.i, d.j)]];
-    int all = 0, ground = 0;
+    int all = 0, above = 0;
     for (int dj = -1; dj <= 1; ++dj)
       for (int di = -1; di <= 1; ++di) {
         if (!last_.lattice().holds(c.i + di, c.j + dj)) continue;
@@ -87,15 +97,18 @@ class Below {
           const double x = points[k].x - block_.x[p], y = points[k].y - block_.y[p];
           if (x * x + y * y > radius * radius || rows[k] == p) continue;
           ++all;
-          ground += block_.classification[rows[k]] == cls::ground && points[k].z - block_.z[p] >= static_cast<double>(below_ground);
+          above += is_surface(rows[k], depth.by_model) && points[k].z - block_.z[p] >= static_cast<double>(depth.least);
         }
       }
-    return ground > 0 && static_cast<double>(ground) >= ground_beside * static_cast<double>(all);
+    return all >= depth.around && above > 0 && static_cast<double>(above) >= depth.share * static_cast<double>(all);
   }
 
  private:
-  static bool any_deep(const core::Block& b, size_t own) {
-    return std::any_of(b.height.begin(), b.height.begin() + static_cast<std::ptrdiff_t>(own), [](float h) { return h <= -below_ground; });
+  static bool any_below(const core::Block& b, size_t own) {
+    return std::any_of(b.height.begin(), b.height.begin() + static_cast<std::ptrdiff_t>(own), [](float h) { return h <= -shallow.least; });
+  }
+  bool is_surface(size_t p, bool by_model) const {
+    return block_.classification[p] == cls::ground || (by_model && std::abs(block_.height[p]) <= beside_surface);
   }
 
   const core::Block& block_;

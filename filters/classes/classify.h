@@ -55,7 +55,7 @@ void describe(const ClassifyCounts& r, V& v) {
   v.result("wire", r.wire, if_any(), "Returns of class 14.");
   v.result("tower", r.tower, if_any(), "Returns of class 15.");
   v.result("bridge deck", r.bridge_deck, if_any(), "Returns of class 17.");
-  v.result("low noise", r.low_noise, if_any(), "Returns of class 7: scattered among ground returns a metre or more above them.");
+  v.result("low noise", r.low_noise, if_any(), "Returns of class 7: below ground returns among which they are scattered.");
   v.result("unassigned", r.unassigned, if_any(), "Returns of class 1.");
   v.result("ground, water or noise, not looked at", r.kept, if_any(), "Returns that keep their class, withheld ones too.");
 }
@@ -74,9 +74,10 @@ double halo(const ClassifyOptions& o);
 /// Classes those of the first `own` points that are neither ground, water, noise nor withheld; those after are the halo and stay as they
 /// are. Needs columns classification (with ground) and height. Unassigned stay points at or below the ground's height or without one, and
 /// smooth planes that are neither building nor deck: vehicles, containers, ground that the ground filter left out. Points flagged isolated
-/// and of class 18 that lie on a wire become wire, those of its supports tower. Returns a metre or more below ground returns among which
-/// they are scattered (at least a quarter of the last returns within one and a half times the usual distance) become low noise, flag
-/// low_point. The result depends on the points within halo() and not on their order.
+/// and of class 18 that lie on a wire become wire, those of its supports tower. Low noise, flag low_point, become returns a metre or more
+/// below the terrain model where a quarter of the last returns within one and a half times the usual distance lie a metre above them, as
+/// ground or at the model; and those 0.3 m or more below it where 60 % of three or more are ground 0.3 m above them. The result depends on
+/// the points within halo() and not on their order.
 ClassifyCounts classify(core::Block& block, size_t own, const ClassifyOptions& o);
 
 }  // namespace swath::filters

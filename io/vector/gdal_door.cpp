@@ -195,6 +195,13 @@ bool is_of_layer(OGRFeature& feature, const std::string& layer) {
   return field >= 0 && layer == feature.GetFieldAsString(field);
 }
 
+int height_field(const OGRFeatureDefn& fields, const std::string& stated) {
+  if (!stated.empty()) return fields.GetFieldIndex(stated.c_str());
+  for (const char* name : {"height", "elev", "elevation", "contour", "z"})
+    if (const int at = fields.GetFieldIndex(name); at >= 0) return at;  // regardless of case
+  return -1;
+}
+
 Dataset new_geopackage(const std::filesystem::path& temporary, const std::filesystem::path& file, const GdalMessages& messages) {
   std::filesystem::remove(temporary);  // the driver makes only files that are not there yet
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");

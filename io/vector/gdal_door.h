@@ -10,6 +10,7 @@
 
 class GDALDataset;
 class OGRFeature;
+class OGRFeatureDefn;
 class OGRSpatialReference;
 
 namespace swath::io {
@@ -51,6 +52,8 @@ Dataset open_raster(const std::filesystem::path& file);
 Dataset open_vector(const std::filesystem::path& file);
 /// Whether the feature's field "Layer" says `layer`, as GDAL gives the layers of a DXF file.
 bool is_of_layer(OGRFeature& feature, const std::string& layer);
+/// The field `stated`, or where that is empty `height`, `elev`, `elevation`, `contour` or `z`; -1 where there is none.
+int height_field(const OGRFeatureDefn& fields, const std::string& stated);
 
 /// An empty GeoPackage 1.2 in place of `temporary`, for the product `file`, which messages name. Throws core::Error.
 Dataset new_geopackage(const std::filesystem::path& temporary, const std::filesystem::path& file, const GdalMessages& messages);

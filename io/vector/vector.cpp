@@ -33,10 +33,9 @@ struct Fields {
   int cad_layer = -1;
 };
 
-Fields fields_of(OGRFeatureDefn& defn) {
+Fields fields_of(OGRFeatureDefn& defn, const std::string& height) {
   Fields f;
-  for (const char* name : {"height", "elev", "elevation", "contour", "z"})
-    if (f.height < 0) f.height = defn.GetFieldIndex(name);  // regardless of case
+  f.height = height_field(defn, height);
   f.index = defn.GetFieldIndex("index");
   f.depression = defn.GetFieldIndex("depression");
   f.cad_layer = defn.GetFieldIndex("Layer");
@@ -139,14 +138,14 @@ std::string ContourFiles::close() {
   return left_out_;
 }
 
-VectorLines read_lines(const std::filesystem::path& file) {
+VectorLines read_lines(const std::filesystem::path& file, const std::string& field) {
   const GdalMessages messages;
   const Dataset set = open_vector(file);
   if (!set) messages.fail("cannot read the vector file", file, std::filesystem::exists(file) ? "" : "check the name");
   VectorLines out;
   for (OGRLayer* layer : set->GetLayers()) {
     if (const OGRSpatialReference* srs = layer->GetSpatialRef(); srs && out.crs_wkt.empty()) out.crs_wkt = wkt2(*srs);
-    const Fields fields = fields_of(*layer->GetLayerDefn());
+    const Fields fields = fields_of(*layer->GetLayerDefn(), field);
     for (const auto& feature : *layer) {
       const OGRGeometry* shape = feature->GetGeometryRef();
       if (!shape) continue;

@@ -90,7 +90,8 @@ struct VectorLines {
   std::string crs_wkt;  ///< WKT2:2019 of the first layer; empty where it states none
 };
 
-/// Reads all lines (also parts of multi-lines and rings of polygons, curves as chords) of all layers. Throws core::Error.
-VectorLines read_lines(const std::filesystem::path& file);
+/// Reads all lines (also parts of multi-lines and rings of polygons, curves as chords) of all layers. `field`: the one with the height, in
+/// place of those named above. Throws core::Error.
+VectorLines read_lines(const std::filesystem::path& file, const std::string& field = {});
 
 }  // namespace swath::io

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from support import CLOUD, CONFIG, SMALL, SMALLEST, SOURCE, Case, products, schema_faults, stage, swath
 
-COMMANDS = ["run", "check", "explain", "tasks", "task", "stages", "schema", "simulate", "info", "qc", "block-theory", "block-drift", "volumes", "profile", "docs"]
+COMMANDS = ["run", "check", "explain", "tasks", "task", "stages", "schema", "simulate", "info", "qc", "block-theory", "block-drift", "volumes", "profile", "map-dtm", "docs"]
 CONFIGS = sorted((SOURCE / "configs").glob("*.toml"))
 
 

@@ -30,7 +30,7 @@ const std::map<std::string, std::set<std::string>> arrows = {
     {"planning", {"core"}},
     {"simulate", {"core", "io", "planning"}},
     {"stages", {"core", "io", "filters", "terrain", "quality", "trajectory", "report", "georef", "calib"}},
-    {"pipeline", {"core", "io", "report", "planning", "stages", "calib"}},
+    {"pipeline", {"core", "io", "report", "planning", "terrain", "stages", "calib"}},
     {"tools", {"core", "io", "report", "planning", "pipeline", "simulate", "calib"}},
     {"python", {"core", "io", "trajectory", "stages", "pipeline", "simulate"}},
 };

@@ -169,6 +169,46 @@ TEST(Classify, ReturnsScatteredBelowTheGroundAreLowNoiseAndAPitIsNot) {
   EXPECT_EQ(n.low_noise, found + taken);
 }
 
+TEST(Classify, ShallowEchoesAmongGroundAreLowNoiseAndADitchIsNot) {
+  const test::Scene s = test::make_scene("flat");
+  core::Block b = prepared(s);
+  size_t echoes = 0, ditch = 0;
+  const auto is_echo = [&](size_t p) { return p % 97 == 0 && b.x[p] < 90.0; };
+  const auto is_ditch = [&](size_t p) { return std::abs(b.x[p] - 120.0) < 1.5; };  // 3 m wide, refused by the ground filter
+  for (size_t p = 0; p < b.size(); ++p) {
+    if (!is_echo(p) && !is_ditch(p)) continue;
+    b.z[p] -= 0.6, b.height[p] -= 0.6f, b.classification[p] = cls::unassigned;
+    echoes += is_echo(p), ditch += is_ditch(p);
+  }
+  ASSERT_GT(echoes, 50u);
+  classify(b, b.size(), {});
+  size_t found = 0, taken = 0;
+  for (size_t p = 0; p < b.size(); ++p) {
+    found += is_echo(p) && b.classification[p] == cls::low_noise;
+    taken += is_ditch(p) && b.classification[p] == cls::low_noise;
+  }
+  EXPECT_GE(static_cast<double>(found), 0.95 * static_cast<double>(echoes));
+  EXPECT_LE(static_cast<double>(taken), 0.2 * static_cast<double>(ditch));
+}
+
+TEST(Classify, LowNoiseIsFoundWhereItTookTheGroundAroundFromTheFilter) {
+  const test::Scene s = test::make_scene("flat");
+  core::Block b = prepared(s);
+  size_t group = 0, found = 0;
+  const auto is_low = [&](size_t p) { return std::hypot(b.x[p] - 50.0, b.y[p] - 50.0) < 3.0 && p % 2 == 0; };
+  for (size_t p = 0; p < b.size(); ++p) {
+    if (std::hypot(b.x[p] - 50.0, b.y[p] - 50.0) < 6.0) b.classification[p] = cls::unassigned;
+    if (is_low(p)) b.z[p] -= 4.0, b.height[p] -= 4.0f, ++group;
+  }
+  ASSERT_GT(group, 8u);
+  classify(b, b.size(), {});
+  for (size_t p = 0; p < b.size(); ++p) {
+    found += is_low(p) && b.classification[p] == cls::low_noise;
+    EXPECT_TRUE(is_low(p) || b.classification[p] != cls::low_noise);
+  }
+  EXPECT_GE(static_cast<double>(found), 0.9 * static_cast<double>(group));
+}
+
 TEST(Classify, AWireOverAFieldAndNoiseWaterAndHaloStay) {
   test::Scene s = test::make_scene("flat");
   const size_t before = s.block.size();

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/vector/spot_file.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "io/vector/feature_file.h"
+#include "io/vector/vector.h"
+#include "tests/world/support.h"
+
+namespace swath::io {
+namespace {
+
+constexpr const char* utm32 = "EPSG:32632";
+
+/// A contour with its label and a spot height, as this program writes them.
+void write_contour_file(const std::filesystem::path& file) {
+  ContourWriter writer(file, utm32);
+  writer.add(core::ContourLine{{500000, 500100}, {5300000, 5300000}, 420.0, false, false, false});
+  writer.add(core::ContourLabel{500050, 5300000, "420", 0.0, 5.0, 420.0});
+  writer.add(core::SpotHeight{500010, 5300020, 423.4, "423.4", true, 5.0});
+  writer.close();
+}
+
+TEST(SpotFile, SpotHeightsOfContoursAreReadAndTheirLabelsAreNot) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"map.gpkg", "map.dxf"}) {
+    write_contour_file(folder / name);
+    const SpotFile found = read_spots(folder / name);
+    ASSERT_EQ(found.z.size(), 1u) << name;
+    EXPECT_NEAR(found.x[0], 500010.0, 1e-3);
+    EXPECT_NEAR(found.y[0], 5300020.0, 1e-3);
+    EXPECT_NEAR(found.z[0], 423.4, 1e-3);
+    EXPECT_EQ(found.crs_wkt.empty(), std::string(name) == "map.dxf");
+  }
+}
+
+TEST(SpotFile, AStatedFieldStandsBeforeTheUsualOnesAndFlatPointsAreCounted) {
+  const test::TemporaryFolder folder;
+  SpatialLayer layer{"peaks", "", SpatialShape::point, true, {{"height", 0.0}, {"hoehe", 0.0}}, {}};
+  layer.features.push_back({{{1, 2, 0}}, {7.0, 8.0}});
+  layer.features.push_back({{{3, 4, 0}}, {9.0, std::nan("")}});
+  write_gpkg(folder / "peaks.gpkg", {layer}, utm32);
+  const SpotFile usual = read_spots(folder / "peaks.gpkg"), stated = read_spots(folder / "peaks.gpkg", "hoehe");
+  EXPECT_EQ(usual.z, (std::vector<double>{7.0, 9.0}));
+  EXPECT_EQ(stated.z, std::vector<double>{8.0});
+  EXPECT_EQ(stated.without_height, 1u);
+  EXPECT_THROW(read_spots(folder / "none.gpkg"), core::Error);
+}
+
+}  // namespace
+}  // namespace swath::io
