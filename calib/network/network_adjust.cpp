@@ -22,7 +22,8 @@ constexpr double steady_returns = 0.005;   // m: planes are found the same way w
 constexpr double closest_mismatch = 0.05;  // m
 constexpr double usual_network_rounds = 3.0, search_part = 0.3;
 constexpr double first_part = 0.6;  // of the iterations, before groups are weighed
-constexpr int most_weightings = 4;  // in one round; in the first, whose planes are sought anew, one
+constexpr int most_updates = 12;    // of the surfaces' sigma in one round
+constexpr int most_rejections = 4;  // in one round; where planes are sought anew after the first, one is enough in that
 
 std::vector<Parameter> unknown_values(const EstimateOptions& e) {
   const bool wanted[] = {e.roll,         e.pitch,       e.heading,     e.lever_forward, e.lever_right, e.lever_down,
@@ -91,28 +92,34 @@ class NetworkRounds {
   }
 
   /// Solves with the surfaces' sigma and the groups that the residuals bear out; the last solution is inverted. True where it settled.
-  bool adjust(PlaneFactors& planes, bool first, int& iterations) {
-    bool settled = false;
+  /// Groups are tested only once the sigma has settled: with one too small most would look displaced.
+  bool adjust(PlaneFactors& planes, int rejections, int& iterations) {
     displaced_ = 0;
-    for (int i = 0;; ++i) {
-      settled = iterate(planes, iterations);
+    for (int updates = 0;;) {
+      const bool settled = iterate(planes, iterations);
       network_.invert();
       tests_ = test_planes(planes, network_.states(), network_.factor(), network_.last_step());
-      if (i == (first ? 1 : most_weightings)) break;
-      const bool surface = options_.estimate_surface && update_surface(planes, tests_);
-      const int out = options_.snooping.use ? reject_groups(planes, tests_, options_.snooping.alpha, options_.snooping.share) : 0;
+      surface_ = planes.surface();
+      if (options_.estimate_surface) {
+        if (updates == most_updates) return settled;
+        if (update_surface(planes, tests_)) {
+          ++updates;
+          continue;
+        }
+      }
+      if (!options_.snooping.use || rejections-- == 0) return settled;
+      const int out = reject_groups(planes, tests_, options_.snooping.alpha, options_.snooping.share);
+      if (out == 0) return settled;
       displaced_ += static_cast<std::uint64_t>(out);
-      if (!surface && out == 0) break;
     }
-    surface_ = planes.surface();
-    return settled;
   }
 
   const PlaneTests& tests() const { return tests_; }
   std::uint64_t displaced() const { return displaced_; }
   std::vector<NetworkComponent> components() const {
-    const auto values = std::count_if(unknown_.begin(), unknown_.end(), [this](Parameter p) { return std::isfinite(apriori(p)); });
-    return components_of(network_, tests_, static_cast<int>(values));
+    std::vector<double> sigmas;
+    for (const Parameter p : unknown_) sigmas.push_back(apriori(p));
+    return components_of(network_, tests_, sigmas);
   }
   const FlightStates& states() const { return network_.states(); }
   const Network& network() const { return network_; }
@@ -179,11 +186,26 @@ void refuse_without_common_planes(const TieSet& ties, const core::Tally& tally) 
   refuse_without_planes(tally, "", "calib.network", ", and lie no farther apart than planes.mismatch");
 }
 
-std::vector<PlaneMisfit> misfits_with(PlaneFactors factors, const trajectory::Trajectory& trajectory,
-                                      const core::Calibration& calibration) {
-  factors.fit(trajectory, calibration);
+/// About the planes as they are.
+std::vector<PlaneMisfit> misfits_of(PlaneFactors factors, const trajectory::Trajectory& trajectory, const core::Calibration& calibration) {
   factors.linearise(trajectory, calibration);
   return factors.misfits();
+}
+
+/// About planes fitted to the groups that have weight.
+std::vector<PlaneMisfit> refitted(PlaneFactors factors, const trajectory::Trajectory& trajectory, const core::Calibration& calibration) {
+  factors.fit(trajectory, calibration);
+  return misfits_of(std::move(factors), trajectory, calibration);
+}
+
+std::vector<VarianceComponent> sigmas_of(const PlaneFactors& factors, const core::SensorSigma& stated, double stated_surface,
+                                         const PlaneTests& tests, bool surface_estimated) {
+  const SigmaFactor &range = factors.range_factor(), &angle = factors.angle_factor();
+  const double angle_sigma = std::hypot(stated.scan_angle.value, stated.beam_divergence.value / 4.0);
+  const double surface = stated_surface > 0.0 ? factors.surface() / stated_surface : not_known;
+  return {{"range", stated.range.value, range.factor, range.redundancy, range.estimated},
+          {"angle", angle_sigma, angle.factor, angle.redundancy, angle.estimated},
+          {"surface", stated_surface, surface, tests.means.redundancy, surface_estimated}};
 }
 
 }  // namespace
@@ -206,14 +228,17 @@ AdjustedNetwork adjust_network(const CalibrationFlight& flight, const trajectory
     refuse_without_common_planes(out.ties, of_round);
     progress(core::usual_share(out.rounds - 1 + search_part, usual_network_rounds), round + ": adjustment");
     PlaneFactors factors = rounds.factors(out.ties);
-    const std::vector<PlaneMisfit> before = misfits_with(factors, now, rounds.calibration());
-    factors.fit(now, rounds.calibration());
-    out.settled = rounds.adjust(factors, out.rounds == 1, out.iterations);
-    out.after = misfits_with(factors, rounds.trajectory(), rounds.calibration());
-    out.last_move = moved_by(before, out.after);
+    const core::Calibration start = rounds.calibration();
+    factors.fit(now, start);
+    out.settled = rounds.adjust(factors, out.rounds == 1 && options.rounds > 1 ? 1 : most_rejections, out.iterations);
+    const trajectory::Trajectory moved = rounds.trajectory();
+    out.after = misfits_of(factors, moved, rounds.calibration());
+    out.last_move = moved_by(refitted(factors, now, start), refitted(factors, moved, rounds.calibration()));
     out.left_out = factors.left_out();
     out.noise_factor = factors.noise_factor();
     out.surface_sigma = factors.surface();
+    out.surface_estimated = options.estimate_surface && surface_is_known(rounds.tests());
+    out.sigmas = sigmas_of(factors, flight.sensor, options.surface_sigma.value, rounds.tests(), out.surface_estimated);
     out.range_factor = factors.range_factor().factor;
     out.angle_factor = factors.angle_factor().factor;
     out.displaced = rounds.displaced();
@@ -223,11 +248,11 @@ AdjustedNetwork adjust_network(const CalibrationFlight& flight, const trajectory
         std::clamp(3 * robust_scatter(out.after), std::min(closest_mismatch, planes.mismatch.value), planes.mismatch.value);
     const bool last = out.rounds == options.rounds || (out.rounds > 1 && out.last_move < steady_returns);
     if (!last) continue;
+    out.before = refitted(factors, *flight.trajectory, flight.start);
     out.components = rounds.components();
     break;
   }
   tally.add(of_round);
-  out.before = misfits_with(rounds.factors(out.ties), *flight.trajectory, flight.start);
   progress(core::usual_share(usual_network_rounds, usual_network_rounds), "covariances");
   const Network& network = rounds.network();
   rounds.finish(out);

@@ -37,9 +37,11 @@ struct AdjustedNetwork {
   std::vector<PlaneMisfit> before, after;
   std::uint64_t instants = 0, unknowns = 0, left_out = 0;
   int rounds = 0, iterations = 0;
-  double noise_factor = 1.0;                      ///< of single returns
+  double noise_factor = 1.0;                      ///< scatter of single returns about their group, in the sigmas that were used
+  std::vector<VarianceComponent> sigmas;          ///< of ranges, angles and surfaces: stated, and as estimated
   double surface_sigma = 0.0;                     ///< by which a plane seen in one line departs from that of all, m
   double range_factor = 1.0, angle_factor = 1.0;  ///< sigmas of ranges, and of scan angles and pointing, over the stated ones
+  bool surface_estimated = false;                 ///< false: as stated
   PlaneTests tests;                               ///< groups as `after`
   std::uint64_t displaced = 0;                    ///< groups that the tests left out
   std::vector<NetworkComponent> components;

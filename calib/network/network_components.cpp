@@ -19,7 +19,8 @@ constexpr double least_freedom = 3.0;
 double determined_by(const std::vector<NetworkNormals::Part>& parts, const MatrixXd& W, const Network& network) {
   std::vector<int> nodes;
   Eigen::Index columns = 0;
-  for (const auto& [node, A] : parts) nodes.push_back(node), columns += network.states().size(node);
+  for (const auto& [node, part] : parts)
+    if (part.cols() > 0) nodes.push_back(node), columns += part.cols();  // nothing common to the flight may be unknown
   MatrixXd A(W.rows(), columns);
   columns = 0;
   for (const auto& [node, part] : parts) {
@@ -64,9 +65,23 @@ void add(KindSums& sums, const std::vector<NetworkNormals::Part>& parts, const M
   sums.squares += left.dot(W * left);
 }
 
+/// Start values of the calibration, as far as they have sigmas.
+KindSums start_values(const Network& network, const std::vector<double>& apriori) {
+  KindSums out;
+  if (apriori.empty()) return out;
+  const MatrixXd covariance = network.calibration_covariance();
+  for (size_t i = 0; i < apriori.size(); ++i) {
+    if (!std::isfinite(apriori[i])) continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    ++out.observations;
+    out.redundancy += 1.0 - covariance(at, at) / (apriori[i] * apriori[i]);
+  }
+  return out;
+}
+
 }  // namespace
 
-std::vector<NetworkComponent> components_of(const Network& network, const PlaneTests& tests, int values) {
+std::vector<NetworkComponent> components_of(const Network& network, const PlaneTests& tests, const std::vector<double>& apriori) {
   std::array<KindSums, navigation_kinds> sums;
   const Eigen::Index fixes = network.has_fix_error() ? 3 : 0;
   network.each([&](NavigationKind k, const std::vector<NetworkNormals::Part>& parts, const MatrixXd& W, const VectorXd& left) {
@@ -77,8 +92,9 @@ std::vector<NetworkComponent> components_of(const Network& network, const PlaneT
     if (fixes > 0) add(sums[fix_error], last_rows(parts, fixes), W.bottomRightCorner(fixes, fixes), left.tail(fixes), network);
   });
   // Planes are unknowns, too: three each.
-  double all = values - static_cast<double>(network.last_step().size()) - 3.0 * static_cast<double>(tests.planes), others = 0.0;
-  for (const KindSums* s : {&tests.means, &tests.returns, &tests.control})
+  const KindSums values = start_values(network, apriori);
+  double all = -static_cast<double>(network.last_step().size()) - 3.0 * static_cast<double>(tests.planes), others = 0.0;
+  for (const KindSums* s : {&values, &tests.means, &tests.returns, &tests.control})
     all += static_cast<double>(s->observations), others += s->redundancy;
   for (size_t k = 0; k < sums.size(); ++k) {
     all += static_cast<double>(sums[k].observations);

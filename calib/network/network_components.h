@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How large the residuals of each kind of observation are beside what their sigmas let expect.
+// How large the residuals of each kind of observation are beside what their sigmas predict.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,8 @@ struct NetworkComponent {
   double factor = 0.0;      ///< sigmas as the residuals show them over those that were used; NaN with less than 3 degrees of freedom
 };
 
-/// Of the network's last step, inverted; `values`: number of calibration values with a stated sigma. Kinds that do not occur are left out.
-std::vector<NetworkComponent> components_of(const Network& network, const PlaneTests& tests, int values);
+/// Of the network's last step, inverted; `apriori`: sigmas of the calibration values' start, infinite for free ones. Kinds that do not
+/// occur are left out.
+std::vector<NetworkComponent> components_of(const Network& network, const PlaneTests& tests, const std::vector<double>& apriori);
 
 }  // namespace swath::calib

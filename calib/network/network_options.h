@@ -19,8 +19,8 @@ struct GroupTestOptions {
 template <class V>
 void describe(GroupTestOptions& o, V& v) {
   v.option("use", o.use, "Test each plane in each line for a displacement, and leave it out.", "Baarda1968");
-  v.option("alpha", o.alpha, core::within(1e-9, 0.1), "Error of the first kind of one test.");
-  v.option("share", o.share, core::within(0, 0.5), "Greatest share of the groups that may be left out.");
+  v.option("alpha", o.alpha, core::within(1e-9, 0.1), "Probability of a false alarm in one test.");
+  v.option("share", o.share, core::within(0, 0.5), "Maximum share of the groups that the test may leave out.");
 }
 
 struct NetworkOptions {
@@ -50,7 +50,8 @@ void describe(NetworkOptions& o, V& v) {
   v.option("surface_sigma", o.surface_sigma, core::at_least(0), "Sigma by which a plane seen in one line departs from that of all lines.");
   v.option("estimate_surface", o.estimate_surface, "Estimate that sigma from the residuals; the stated one is its start.");
   v.option("rounds", o.rounds, core::within(1, 20), "Maximum number of searches for planes; they end where the returns stay in place.");
-  v.option("iterations", o.iterations, core::within(2, 100), "Maximum number of linearisations in each round.");
+  v.option("iterations", o.iterations, core::within(2, 100),
+           "Maximum number of linearisations of a solution; a round has several solutions.");
 }
 
 }  // namespace swath::calib

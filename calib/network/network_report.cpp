@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
+#include "calib/adjust/diagnosis.h"
 #include "calib/report_units.h"
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
@@ -74,6 +76,8 @@ void put_groups(const AdjustedNetwork& n, Adjustment& a) {
 }
 
 void put_values(const AdjustedNetwork& n, Adjustment& a) {
+  const LimitOptions limits;  // of calib.adjust, as it has them by default
+  a.condition = not_known;
   a.calibration = n.calibration;
   for (int p = boresight_roll; p <= latency; ++p) {
     Estimate& e = a.estimates[static_cast<size_t>(p)];
@@ -83,27 +87,43 @@ void put_values(const AdjustedNetwork& n, Adjustment& a) {
   for (const NetworkValue& v : n.values) {
     Estimate& e = a.estimates[static_cast<size_t>(v.parameter)];
     e.estimated = e.delivered = true;
-    e.grade = Grade::good;
+    e.grade = v.sigma <= limit_of(limits, v.parameter) ? Grade::good : Grade::coarse;
     e.start = v.start, e.apriori = v.apriori;
     e.value = e.found = v.value;
     e.sigma = e.found_sigma = e.formal = v.sigma;
-    e.white = not_known;
+    e.white = e.held = not_known;
     e.determined = std::isfinite(v.apriori) ? 1.0 - v.sigma * v.sigma / (v.apriori * v.apriori) : 1.0;
+    if (e.determined < limits.determined) e.grade = Grade::undetermined;
   }
   const Eigen::VectorXd scale = n.covariance.diagonal().cwiseSqrt().cwiseInverse();
   a.correlation = scale.asDiagonal() * n.covariance * scale.asDiagonal();
+}
+
+std::string in_words(const std::string& kind) {
+  static const std::map<std::string, std::string> words{{"start", "start of the navigation"},
+                                                        {"imu", "IMU"},
+                                                        {"gnss_correlated", "GNSS, error correlated in time"},
+                                                        {"gnss_position", "GNSS position"},
+                                                        {"gnss_velocity", "GNSS velocity"},
+                                                        {"standstill", "standstill"},
+                                                        {"wheels", "wheels"},
+                                                        {"planes", "lines on planes, mean distances"},
+                                                        {"returns", "returns about the mean of their line on a plane"},
+                                                        {"control", "surveyed points"}};
+  const auto found = words.find(kind);
+  return found == words.end() ? kind : found->second;
 }
 
 ReportSection kinds_of(const AdjustedNetwork& n) {
   ReportSection s;
   s.heading = "Kinds of observation";
   s.paragraphs = {
-      "The residuals of each kind beside what its sigmas let expect: 1 where the sigmas are right, above where errors are larger than "
-      "stated. Redundancy: degrees of freedom of these residuals; a kind with few of them shows little. The surfaces' sigma and those of "
-      "ranges and angles are estimated, IMU and GNSS keep what the smoother gave them."};
+      "The residuals of each kind beside what its sigmas predict: 1 where the sigmas are right, above where errors are larger than "
+      "stated. Redundancy: degrees of freedom of these residuals; a kind with few of them shows little. IMU and GNSS keep the sigmas that "
+      "the smoother gave them; those of ranges, angles and surfaces are listed with the adjustment."};
   report::Table t{"kinds", "Residuals by kind", {{"kind", false}, {"observations"}, {"redundancy"}, {"factor on the sigma"}}, {}, {}};
   for (const NetworkComponent& c : n.components)
-    t.rows.push_back({c.kind, report::count_text(c.observations), number_text(c.redundancy, 1), number_text(c.factor, 2)});
+    t.rows.push_back({in_words(c.kind), report::count_text(c.observations), number_text(c.redundancy, 1), number_text(c.factor, 2)});
   s.tables.push_back(std::move(t));
   return s;
 }
@@ -181,6 +201,7 @@ void put_network(const AdjustedNetwork& network, const trajectory::Trajectory& b
   Adjustment& a = report.adjustment;
   put_groups(network, a);
   put_values(network, a);
+  a.components = network.sigmas;
   a.planes = network.planes;
   a.plane_sigma = network.tests.plane_sigma;
   a.corrections = corrections(network, before, after);

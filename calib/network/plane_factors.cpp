@@ -208,7 +208,7 @@ void PlaneFactors::fit_plane(std::uint32_t k) {
   Matrix3d N = damping.asDiagonal();
   Vector3d b = Vector3d::Zero();
   for (size_t g = first_group_[k]; g < first_group_[k + 1]; ++g) {
-    if (blocks_[g].used == 0) continue;
+    if (blocks_[g].used == 0 || left_out(g)) continue;
     N += blocks_[g].N.bottomRightCorner<3, 3>();
     b += blocks_[g].b.tail<3>();
   }
@@ -247,22 +247,22 @@ double PlaneFactors::variance_between(size_t g) const {
 PlaneFactors::Rest PlaneFactors::add_plane(std::uint32_t plane, const FlightStates& states, NetworkNormals& into) const {
   Rest rest;
   for (size_t g = first_group_[plane]; g < first_group_[plane + 1]; ++g)
-    if (weight_[g] > 0.0 && blocks_[g].used > 0) rest.index.insert(rest.index.end(), blocks_[g].index.begin(), blocks_[g].index.end());
+    if (weight(g) > 0.0 && blocks_[g].used > 0) rest.index.insert(rest.index.end(), blocks_[g].index.begin(), blocks_[g].index.end());
   std::sort(rest.index.begin(), rest.index.end());
   rest.index.erase(std::unique(rest.index.begin(), rest.index.end()), rest.index.end());
   const auto m = static_cast<Eigen::Index>(rest.index.size());
   MatrixXd N = MatrixXd::Zero(m + 3, m + 3);
   VectorXd b = VectorXd::Zero(m + 3);
   for (size_t g = first_group_[plane]; g < first_group_[plane + 1]; ++g) {
-    if (weight_[g] <= 0.0 || blocks_[g].used == 0) continue;
+    if (weight(g) <= 0.0 || blocks_[g].used == 0) continue;
     GroupBlock block = blocks_[g];
     with_surface(block, std::sqrt(variance_between(g)));
     std::vector<Eigen::Index> at;
     for (const int i : block.index) at.push_back(std::lower_bound(rest.index.begin(), rest.index.end(), i) - rest.index.begin());
     for (Eigen::Index i = 0; i < 3; ++i) at.push_back(m + i);
-    N(at, at) += weight_[g] * block.N;
-    b(at) += weight_[g] * block.b;
-    into.squares += weight_[g] * block.c;
+    N(at, at) += weight(g) * block.N;
+    b(at) += weight(g) * block.b;
+    into.squares += weight(g) * block.c;
   }
   for (const ControlRow& row : control_rows({state_.planes[plane]}, 1.0)) {
     const double w = 1.0 / (row.sigma * row.sigma);
@@ -361,5 +361,7 @@ void PlaneFactors::weigh() {
 std::uint64_t PlaneFactors::left_out() const {
   return static_cast<std::uint64_t>(std::count_if(weight_.begin(), weight_.end(), [](double w) { return w <= 0.0; }));
 }
+
+std::uint64_t PlaneFactors::rejected() const { return static_cast<std::uint64_t>(std::count(rejected_.begin(), rejected_.end(), char{1})); }
 
 }  // namespace swath::calib

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 #include "calib/adjust/adjust_options.h"
@@ -46,7 +47,8 @@ class PlaneFactors {
   PlaneFactors(const TieSet& ties, const core::Scanner& scanner, const core::SensorSigma& sensor, std::vector<double> times,
                std::vector<Parameter> unknown, const RobustOptions& robust, double surface, double wander, int threads);
 
-  /// Fits the planes to all returns as they lie, and takes from their roughness what is not noise. Once, before the first linearisation.
+  /// Fits the planes to the returns as they lie, without groups that have lost their weight, and takes from their roughness what is not
+  /// noise. Before the first linearisation.
   void fit(const trajectory::Trajectory& trajectory, const core::Calibration& calibration);
   /// All returns at a trajectory, which passes through the states, and a calibration.
   void linearise(const trajectory::Trajectory& trajectory, const core::Calibration& calibration);
@@ -68,18 +70,22 @@ class PlaneFactors {
   /// Numbers of a plane's groups: [first, last).
   std::pair<size_t, size_t> groups_of(std::uint32_t plane) const { return {first_group_[plane], first_group_[plane + 1]}; }
   const GroupBlock& block(size_t group) const { return blocks_[group]; }  ///< as linearised, of single returns alone
-  double weight(size_t group) const { return weight_[group]; }
+  /// As the solution has it: a trace for one that is far off, so that it can be tested; 0 for one that was rejected.
+  double weight(size_t group) const { return rejected_[group] ? 0.0 : std::max(weight_[group], trace_weight); }
+  bool left_out(size_t group) const { return weight_[group] <= 0.0; }
   /// Of a group's mean beyond the noise of its returns: surface, and attitude between the instants, m^2.
   double variance_between(size_t group) const;
   const Rest& rest(std::uint32_t plane) const { return rests_[plane]; }  ///< of the last add()
   Place place_of(int unknown, const FlightStates& states) const;
   double consistency() const { return robust_.consistency(); }
-  double noise_factor() const { return scale_; }  ///< robust sigma of single returns about their group, in sigmas as estimated
+  double noise_factor() const { return scale_; }  ///< robust sigma of single returns about their group, in the sigmas that were used
   const SigmaFactor& range_factor() const { return factors_.range; }  ///< on the stated sigmas, from returns about their groups
   const SigmaFactor& angle_factor() const { return factors_.angle; }  ///< of scan angle and pointing
-  std::uint64_t left_out() const;                                     ///< groups without weight
+  std::uint64_t left_out() const;                                     ///< groups without weight, rejected ones among them
+  std::uint64_t rejected() const;
 
  private:
+  static constexpr double trace_weight = 1e-6;
   struct Worker;
   // Unknowns that planes touch: six of each instant (position, attitude), then the calibration's.
   int number_of(int instant, int component) const { return 6 * instant + component; }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sources: w-test and redundancy numbers (Baarda 1968) for the displacement that a group's returns share; the surfaces' variance by
-// restricted maximum likelihood, Fisher's scoring (Patterson and Thompson 1971). Deviation: residuals of groups on different planes count
-// as uncorrelated in the expected square of the score, which makes a step somewhat too long.
+// restricted maximum likelihood, Fisher's scoring (Patterson and Thompson 1971). Deviations: residuals of groups on different planes count
+// as uncorrelated in the expected square of the score, which makes a step somewhat too long; in test and score the groups of a plane count
+// with their full weights (robust ones would hide what is to be found), those of other planes as they were weighed.
 #include "calib/network/plane_tests.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,7 +26,8 @@ constexpr double least_redundancy = 1e-3;
 // Groups far out do not make the others' sigma: they are left to the test.
 constexpr double largest_square = 9.0;
 constexpr double least_surface = 1e-4;       // m
-constexpr double surface_step = 4.0;         // of the variance, upwards, in one round
+constexpr double surface_step = 4.0;         // of the variance, both ways, in one update
+constexpr double least_freedom = 10.0;       // of groups' means: a sigma known to 22 %
 constexpr double change_of_variance = 0.02;  // of groups' means
 
 struct Solution {
@@ -103,41 +105,55 @@ void test_control(const TiePlane& plane, std::uint32_t number, const PlaneSoluti
   }
 }
 
+/// `weight`: as solved with; Q: covariance of the predicted means. Both are first turned into what they are with full weights on this
+/// plane.
+void test_groups(const std::vector<size_t>& groups, const VectorXd& residual, const VectorXd& variance, const VectorXd& weight,
+                 const MatrixXd& Q, PlaneTests& out) {
+  const Index n = residual.size();
+  const VectorXd full = variance.cwiseInverse(), added = full - weight;
+  const MatrixXd with_full = (MatrixXd::Identity(n, n) + Q * added.asDiagonal()).partialPivLu().solve(Q);
+  const VectorXd left = residual - with_full * added.cwiseProduct(residual);
+  const MatrixXd P = MatrixXd(full.asDiagonal()) - full.asDiagonal() * with_full * full.asDiagonal();
+  out.information += P.squaredNorm();
+  for (Index i = 0; i < n; ++i) {
+    GroupTest& t = out.group[groups[static_cast<size_t>(i)]];
+    t.redundancy = std::max(0.0, 1.0 - with_full(i, i) * full[i]);
+    if (t.redundancy <= least_redundancy) continue;
+    t.displacement = left[i] / t.redundancy;
+    t.w = left[i] * std::sqrt(full[i] / t.redundancy);
+    out.score += (std::min(t.w * t.w, largest_square) - 1.0) * t.redundancy * full[i];
+  }
+}
+
 void test_plane(const PlaneFactors& planes, std::uint32_t plane, const Solution& solution, PlaneTests& out) {
   std::vector<size_t> groups;
   const auto [begin, end] = planes.groups_of(plane);
   for (size_t g = begin; g < end; ++g)
     if (planes.weight(g) > 0.0 && planes.block(g).used > 0) groups.push_back(g);
   if (groups.empty()) return;
-  ++out.planes;
+  out.planes += std::any_of(groups.begin(), groups.end(), [&](size_t g) { return !planes.left_out(g); }) ? 1 : 0;
   const PlaneSolution s = solution_of(planes, plane, solution);
   const auto n = static_cast<Index>(groups.size()), m = s.x.size();
   MatrixXd A = MatrixXd::Zero(n, m);
-  VectorXd residual(n), variance(n);
+  VectorXd residual(n), variance(n), robust(n);
   for (Index i = 0; i < n; ++i) {
     const size_t g = groups[static_cast<size_t>(i)];
     const GroupBlock& b = planes.block(g);
     const auto k = static_cast<Index>(b.index.size());
     A(i, places_in(b.index, planes.rest(plane).index)) = -b.N.col(k).transpose() / b.weight();
     residual[i] = -b.b[k] / b.weight() + A.row(i).dot(s.x);
-    variance[i] = (1.0 / b.weight() + planes.variance_between(g)) / planes.weight(g);
+    variance[i] = 1.0 / b.weight() + planes.variance_between(g);
+    robust[i] = planes.weight(g);
   }
-  const VectorXd weight = variance.cwiseInverse();
+  const VectorXd weight = robust.cwiseQuotient(variance);
   const MatrixXd Q = A * s.C * A.transpose();
-  const MatrixXd P = MatrixXd(weight.asDiagonal()) - weight.asDiagonal() * Q * weight.asDiagonal();
-  out.information += P.squaredNorm();
+  test_groups(groups, residual, variance, weight, Q, out);
   for (Index i = 0; i < n; ++i) {
     const size_t g = groups[static_cast<size_t>(i)];
-    GroupTest& t = out.group[g];
+    if (planes.left_out(g)) continue;
     const double square = residual[i] * residual[i] * weight[i], determined = std::min(1.0, Q(i, i) * weight[i]);
-    t.redundancy = 1.0 - determined;
-    if (t.redundancy > least_redundancy) {
-      t.displacement = residual[i] / t.redundancy;
-      t.w = residual[i] * std::sqrt(weight[i] / t.redundancy);
-      out.score += (std::min(t.w * t.w, largest_square) - 1.0) * t.redundancy * weight[i];
-    }
     ++out.means.observations;
-    out.means.redundancy += t.redundancy;
+    out.means.redundancy += 1.0 - determined;
     out.means.squares += square;
     add_returns(planes.block(g), planes.variance_between(g), planes.weight(g), s,
                 places_in(planes.block(g).index, planes.rest(plane).index), square, determined, planes.consistency(), out.returns);
@@ -156,11 +172,14 @@ PlaneTests test_planes(const PlaneFactors& planes, const FlightStates& states, c
   return out;
 }
 
+bool surface_is_known(const PlaneTests& tests) { return tests.means.redundancy >= least_freedom && tests.information > 0.0; }
+
 bool update_surface(PlaneFactors& planes, const PlaneTests& tests) {
-  if (!(tests.information > 0.0)) return false;
+  if (!surface_is_known(tests)) return false;
+  constexpr double floor = least_surface * least_surface;
   const double now = planes.surface() * planes.surface();
-  const double wanted = std::clamp(now + tests.score / tests.information, least_surface * least_surface,
-                                   std::max(surface_step * now, 100 * least_surface * least_surface));
+  const double wanted =
+      std::clamp(now + tests.score / tests.information, std::max(floor, now / surface_step), std::max(100 * floor, surface_step * now));
   double before = 0.0, after = 0.0;  // information of all groups
   for (size_t g = 0; g < tests.group.size(); ++g) {
     if (planes.weight(g) <= 0.0 || planes.block(g).used == 0) continue;
@@ -188,7 +207,7 @@ int reject_groups(PlaneFactors& planes, const PlaneTests& tests, double alpha, d
     if (found) candidates.push_back(worst);
   }
   std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.w > b.w; });
-  const double most = share * static_cast<double>(tests.group.size()) - static_cast<double>(planes.left_out());
+  const double most = share * static_cast<double>(tests.group.size()) - static_cast<double>(planes.rejected());
   int count = 0;
   for (const Candidate& c : candidates) {
     if (count + 1 > most) break;

@@ -45,7 +45,11 @@ struct PlaneTests {
 /// Of a solution: the normal equations' factor, inverted, and its step; the planes' part as it was added to them.
 PlaneTests test_planes(const PlaneFactors& planes, const FlightStates& states, const NodeFactor& factor, const Eigen::VectorXd& step);
 
-/// Moves the surfaces' sigma to where the residuals are as large as expected. True where the groups' variances change by 2 % or more.
+/// True where the groups have 10 degrees of freedom or more: fewer do not determine the surfaces' sigma, and could bring it to nothing.
+bool surface_is_known(const PlaneTests& tests);
+
+/// Moves the surfaces' sigma to where the residuals are as large as expected, by a factor of 2 at most; not where it is not known. True
+/// where the groups' variances change by 2 % or more.
 bool update_surface(PlaneFactors& planes, const PlaneTests& tests);
 
 /// Leaves out groups with |w| above the critical value of `alpha`, one per plane, the largest first, not more than `share` of all. Returns

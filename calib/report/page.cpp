@@ -62,10 +62,16 @@ void corrections(const PageParts& parts) {
   const auto chart = correction_chart(parts.report);
   if (!chart) return;
   parts.page.section("Corrections of the lines");
-  parts.page.paragraph("What each line's trajectory was moved and turned by, to be added to it; linear in time between the knots.");
-  Table t{"corrections", "Largest correction of each line, over its knots", {}, {}, {}};
-  t.columns = {{"line"},      {"knots"},         {"north (cm)"},     {"east (cm)"},
-               {"down (cm)"}, {"roll (arcsec)"}, {"pitch (arcsec)"}, {"heading (arcsec)"}};
+  const bool joint = parts.report.joint;
+  parts.page.paragraph(
+      joint ? "What the adjustment moved and turned the smoother's trajectory by, second by second; the sigma is that of the "
+              "adjusted trajectory."
+            : "What each line's trajectory was moved and turned by, to be added to it; linear in time between the knots.");
+  Table t{"corrections", joint ? "Largest correction of each line" : "Largest correction of each line, over its knots", {}, {}, {}};
+  t.columns = {{"line"},           {joint ? "instants" : "knots"},
+               {"north (cm)"},     {"east (cm)"},
+               {"down (cm)"},      {"roll (arcsec)"},
+               {"pitch (arcsec)"}, {"heading (arcsec)"}};
   for (const calib::LineCorrection& c : parts.report.adjustment.corrections) {
     std::vector<std::string> row{std::to_string(c.line), count_text(c.value.size())};
     for (size_t axis = 0; axis < 6; ++axis) {
@@ -159,8 +165,11 @@ void joint_sections(const PageParts& parts) {
 void files(const PageParts& parts) {
   parts.page.section("Files beside this report");
   std::vector<std::string> items{
-      parts.report.strips ? std::string(tree_file(parts.report)) + ": everything in this report."
-                          : "calibration.json: the values for the survey's run, and everything in this report.",
+      parts.report.joint
+          ? "adjustment.json: lines, planes, residuals and values of this report. network.json: kinds of observation, and errors "
+            "against the truth of a simulated survey. calibration.json: the values for the survey's run."
+      : parts.report.strips ? std::string(tree_file(parts.report)) + ": everything in this report."
+                            : "calibration.json: the values for the survey's run, and everything in this report.",
       "residuals.csv: each group of returns. planes.csv: each tie plane. corrections.csv: each line's corrections.",
   };
   if (!parts.report.sections.empty()) items.emplace_back("sections.csv: the returns of the cross-sections.");

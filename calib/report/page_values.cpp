@@ -72,11 +72,18 @@ std::string unbroken(std::string_view text) {
   return out;
 }
 
-void value_table(const PageParts& parts, const Group& g, const std::array<std::string, 5>& notes) {
+std::string outcome(const Estimate& e, bool delivered) {
+  if (!delivered) return e.grade == calib::Grade::unsettled ? "not settled" : "not determined";
+  if (e.grade == calib::Grade::undetermined) return "delivered, mostly its start value";
+  return e.grade == calib::Grade::coarse ? "delivered, coarse" : "delivered";
+}
+
+/// `notes`: of the sigmas, which are as many as these.
+void value_table(const PageParts& parts, const Group& g, const std::vector<std::string>& notes) {
   Table t{g.id, g.title, {}, {}, {}};
   t.columns = {{"parameter", false}, {headed("nominal", g.value_unit)}, {headed("value", g.value_unit)}, {headed("change", g.change_unit)}};
   static constexpr std::array<const char*, 5> sigmas{"sigma", "formal", "jackknife, lines", "jackknife, planes", "white"};
-  for (size_t k = 0; k < sigmas.size(); ++k) t.columns.push_back({headed(sigmas[k], g.change_unit) + notes[k]});
+  for (size_t k = 0; k < notes.size(); ++k) t.columns.push_back({headed(sigmas[k], g.change_unit) + notes[k]});
   t.columns.push_back({"from the data (%)"});
   t.columns.push_back({"outcome", false});
   bool any = false;
@@ -91,40 +98,53 @@ void value_table(const PageParts& parts, const Group& g, const std::array<std::s
     const bool known = good || e.found_sigma > 0.0;
     const double value = good ? e.value : e.found;
     row.push_back(shown(known ? value : none));
-    for (const double v : {value - e.start, good ? e.sigma : e.found_sigma, e.formal, e.jackknife_lines, e.jackknife_planes, e.white})
-      row.push_back(number_text(known ? v / g.change_size : none, g.change_decimals));
+    const std::array<double, 6> numbers{value - e.start, good ? e.sigma : e.found_sigma, e.formal, e.jackknife_lines, e.jackknife_planes,
+                                        e.white};
+    for (size_t k = 0; k <= notes.size(); ++k) row.push_back(number_text(known ? numbers[k] / g.change_size : none, g.change_decimals));
     row.push_back(number_text(known ? 100.0 * e.determined : none, 1));
-    row.emplace_back(!good                             ? (e.grade == calib::Grade::unsettled ? "not settled" : "not determined")
-                     : e.grade == calib::Grade::coarse ? "delivered, coarse"
-                                                       : "delivered");
+    row.push_back(outcome(e, good));
     t.rows.push_back(std::move(row));
     t.tones.push_back(good ? Tone::plain : Tone::bad);
   }
   if (any) parts.page.table(t);
 }
 
-}  // namespace
-
-void add_values(const PageParts& parts) {
-  parts.page.section("Calibration values");
-  const std::array<std::string, 5> notes{
+std::vector<std::string> sigma_notes(const PageParts& parts) {
+  return {
       parts.page.footnote("The one-sigma uncertainty that is delivered in calibration.json: the larger of the formal one and the lines' "
                           "jackknife (of four lines or more), with "
                           "what the stated sigmas of values that were held (the lever arm) do to it."),
-      parts.page.footnote("From the adjustment's covariance, with the trajectory's errors hanging together in time."),
+      parts.page.footnote("From the adjustment's covariance, with the trajectory's errors correlated in time."),
       parts.page.footnote("How far the values scatter when one flight line at a time is left out."),
       parts.page.footnote("How far they scatter when one region of tie planes at a time is left out."),
       parts.page.footnote(
           "What the sigma would be if every return were independent and the trajectory without error. For comparison only: it is "
           "far too small, since neighbouring returns share the trajectory's errors.")};
+}
+
+std::vector<std::string> joint_note(const PageParts& parts) {
+  return {
+      parts.page.footnote("One standard deviation by the covariance of the joint adjustment, in which the trajectory is unknown; it is "
+                          "delivered in calibration.json. Values that are held count as free of error.")};
+}
+
+}  // namespace
+
+void add_values(const PageParts& parts) {
+  parts.page.section("Calibration values");
+  const bool joint = parts.report.joint;
+  const std::vector<std::string> notes = joint ? joint_note(parts) : sigma_notes(parts);
   for (const Group& g : value_groups()) value_table(parts, g, notes);
   std::vector<std::string> held;
   for (int k = 0; k < estimated_count; ++k)
     if (!parts.report.adjustment.estimates[static_cast<size_t>(k)].estimated) held.emplace_back(words_of(parameter_at(k)).name);
   if (!held.empty()) parts.page.paragraph("Held at the start value and not estimated: " + joined(held) + ".");
   parts.page.paragraph(
-      "“From the data” is the share of the knowledge that this flight brought, the rest being the start value with its a-priori sigma. "
-      "calibration.json keeps the start value of what is not determined or not settled; the value found stands here and in its estimates.");
+      std::string(
+          "“From the data” is the share of the knowledge that this flight brought, the rest being the start value with its a-priori "
+          "sigma. calibration.json ") +
+      (joint ? "has all values that were estimated, also those that are mostly their start value."
+             : "keeps the start value of what is not determined or not settled; the value found is listed here and in its estimates."));
 }
 
 void add_plane_differences(const PageParts& parts) {

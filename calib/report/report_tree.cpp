@@ -212,7 +212,7 @@ void describe(const Adjustment& r, V& v) {
   v.result("observations", r.observations, "Observations.");
   v.result("unknowns", r.unknowns, "Unknowns.");
   v.result("sigma0", r.sigma0, ratio, "A posteriori sigma of unit weight.");
-  v.result("condition", r.condition, ratio, "Condition number of the scaled normal matrix.");
+  v.result("condition", r.condition, ratio, "Condition number of the scaled normal matrix of the calibration values; null: not computed.");
   v.result("iterations", r.iterations, "Rounds of linearisation.");
   v.result("groups", r.groups.size(), "Groups of returns: one line on one plane.");
   v.result("rejected_returns", r.rejected_returns, "Returns taken out.");
@@ -246,10 +246,10 @@ void describe(const CalibrationReport& r, V& v) {
   v.result("inputs", r.origin.inputs, "Files that it was made from.");
   v.result("calibrated", verdict.calibrated, core::plain().only_if(!r.strips), "True: all estimated boresight angles are delivered.");
   v.result("verdict", verdict.text, "The result as sentences.");
-  v.table("plane_differences", r.strips, "How the lines of a strip adjustment meet on planes.");
+  v.table("plane_differences", r.strips, "How the lines of a strip or joint adjustment meet on planes.");
   v.tables("findings", r.adjustment.findings, "What the flight does not determine, or what looks wrong.");
   v.result("notes", r.notes, "Further sentences.");
-  v.tables_if(!r.strips, "estimates", estimates_of(r.adjustment), "All parameters that can be estimated.");
+  v.tables_if(!r.strips || r.joint, "estimates", estimates_of(r.adjustment), "All parameters that can be estimated.");
   v.table("adjustment", r.adjustment, "The adjustment in figures.");
   v.table("flight", flight_design(r), "How the flight was flown.");
   v.tables("variance_components", r.adjustment.components, "Errors of the observations, as stated and as found.");

@@ -38,6 +38,7 @@ class Csv {
 }  // namespace
 
 std::string differences_after(const CalibrationReport& report) {
+  if (report.joint) return "Before: with the smoother's trajectory and the start values. After: with the adjusted trajectory and values.";
   return report.strips ? "Before: with the trajectory as it was given. After: with the corrected trajectory."
                        : "Before: with the start values. After: with the delivered calibration and the trajectory as it was given, as in a "
                          "survey that uses this calibration; the corrections of the lines (corrections.csv) are not in it.";

@@ -74,7 +74,7 @@ void describe(const AgainstTruth& r, V& v) {
 struct NetworkFindings {
   std::uint64_t lines = 0, planes = 0, tie_returns = 0, instants = 0, unknowns = 0, left_out = 0, displaced = 0;
   int rounds = 0, iterations = 0;
-  bool settled = false;
+  bool settled = false, surface_estimated = false;
   double noise_factor = 0.0, last_move = 0.0, surface_sigma = 0.0, range_factor = 1.0, angle_factor = 1.0;
   std::vector<std::pair<std::string, ComponentRow>> components{};
   calib::PlaneAgreement on_planes{};
@@ -96,10 +96,12 @@ void describe(const NetworkFindings& r, V& v) {
   v.result("iterations", r.iterations, "Linearisations.");
   v.result("settled", r.settled, shown, "False: the states still moved when the iterations ended.");
   v.result("last_move_m", r.last_move, m, "RMS by which the last round moved returns from their planes.");
-  v.result("noise_factor", r.noise_factor, core::plain(2), "Robust scatter of single returns about their group, in sigmas as estimated.");
+  v.result("noise_factor", r.noise_factor, core::plain(2),
+           "Robust scatter of single returns about their group, in the sigmas that were used.");
   v.result("range_factor", r.range_factor, core::plain(2), "Sigma of the ranges as their scatter on planes shows it, over the stated one.");
   v.result("angle_factor", r.angle_factor, core::plain(2), "The same of scan angles and pointing.");
   v.result("surface_sigma_m", r.surface_sigma, m, "Sigma by which a plane seen in one line departs from that of all lines.");
+  v.result("surface_estimated", r.surface_estimated, "True: from the residuals; false: as stated.");
   v.named_tables("components", r.components, "Kinds of observation: how large their residuals are beside their sigmas.");
   v.result("pairs_on_planes", r.on_planes.pairs, "Pairs of lines on common planes.");
   v.result("rms_before_m", r.on_planes.before, m.in_summary(), "RMS difference of two lines on a plane, with the smoother's trajectory.");
@@ -116,7 +118,7 @@ NetworkFindings found_by(const calib::AdjustedNetwork& n) {
   f.instants = n.instants, f.unknowns = n.unknowns, f.left_out = n.left_out;
   f.rounds = n.rounds, f.iterations = n.iterations, f.settled = n.settled;
   f.noise_factor = n.noise_factor, f.last_move = n.last_move;
-  f.displaced = n.displaced, f.surface_sigma = n.surface_sigma;
+  f.displaced = n.displaced, f.surface_sigma = n.surface_sigma, f.surface_estimated = n.surface_estimated;
   f.range_factor = n.range_factor, f.angle_factor = n.angle_factor;
   for (const calib::NetworkComponent& c : n.components) f.components.emplace_back(c.kind, ComponentRow{c});
   f.on_planes = calib::agreement_on_planes(n);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <random>
 
@@ -31,7 +32,10 @@ struct MemsSurvey {
   std::unique_ptr<trajectory::Trajectory> smoothed;
   CalibrationFlight survey;
 
-  explicit MemsSurvey(int lines, core::Calibration start_error = {})
+  /// How much a line (from 1) sees the surface farther away than it is, m.
+  using Displacement = std::function<double(int line, const Eigen::Vector3d& point)>;
+
+  explicit MemsSurvey(int lines, core::Calibration start_error = {}, const Displacement& displacement = {})
       : flight(swath::test::survey_flight(lines)), course(swath::test::motion_of(flight), 0.0, flight.duration()) {
     for (double t = 0.02; t < flight.duration(); t += 0.02) append(t);
     const trajectory::Trajectory exact(truth, {}, "truth");
@@ -41,7 +45,7 @@ struct MemsSurvey {
     world.houses = village(60, 400.0, 5);
     world.prf = 6000.0;
     world.truth.roll = core::degrees(0.2);
-    shoot(exact, spans);
+    shoot(exact, spans, displacement);
 
     trajectory::test::Trial trial = trajectory::test::trial_of(core::ImuGrade::mems, 3);
     trial.change_gnss = [](core::GnssData& g) { g = swath::test::keep_fixes(g, [](size_t k) { return k % 5 == 0; }); };
@@ -79,7 +83,7 @@ struct MemsSurvey {
     truth.latitude.push_back(g.latitude), truth.longitude.push_back(g.longitude), truth.height.push_back(g.height);
     truth.roll.push_back(a.roll), truth.pitch.push_back(a.pitch), truth.heading.push_back(a.heading);
   }
-  void shoot(const trajectory::Trajectory& exact, const std::vector<std::pair<double, double>>& spans) {
+  void shoot(const trajectory::Trajectory& exact, const std::vector<std::pair<double, double>>& spans, const Displacement& displacement) {
     std::mt19937 random(9);
     std::normal_distribution<double> normal;
     const ShotGeometry geometry(world.scanner, world.truth);
@@ -96,7 +100,9 @@ struct MemsSurvey {
         const Eigen::Vector3d one = point(1000.0), way = point(1001.0) - one, from = one - 1000.0 * way;
         out.time.push_back(t);
         out.angle.push_back(angle);
-        out.range.push_back(world.hit(from, way) + 0.02 * normal(random));
+        const double range = world.hit(from, way);
+        const double off = displacement ? displacement(static_cast<int>(k) + 1, from + range * way) : 0.0;
+        out.range.push_back(range + off + 0.02 * normal(random));
         out.return_number.push_back(1), out.return_count.push_back(1);
       }
       shots.lines.emplace_back(static_cast<int>(k) + 1, std::move(out));
@@ -156,6 +162,81 @@ TEST(NetworkAdjust, FindsTheBoresightWithTheTrajectory) {
   EXPECT_LT(v.sigma, 0.5 * core::degrees(0.05).value);  // an accelerometer's bias across tilts the body as the boresight does
   EXPECT_LT(std::abs(v.value - made.world.truth.roll.value), 4 * v.sigma);
   EXPECT_EQ(network.calibration.roll.value, v.value);
+}
+
+const VarianceComponent& sigma_of(const AdjustedNetwork& network, const std::string& name) {
+  const auto found = std::find_if(network.sigmas.begin(), network.sigmas.end(), [&](const VarianceComponent& v) { return v.name == name; });
+  return found == network.sigmas.end() ? throw std::out_of_range(name) : *found;
+}
+
+TEST(NetworkAdjust, AWronglyStatedSigmaOfRangesIsFound) {
+  MemsSurvey made(3);
+  made.survey.sensor.range = core::Metres(0.05);  // it is 0.02 m
+  core::Tally tally;
+  NetworkOptions o = quick();
+  o.rounds = 1;
+  const AdjustedNetwork network = adjust_network(made.survey, made.left, o, tally);
+  const VarianceComponent& range = sigma_of(network, "range");
+  EXPECT_TRUE(range.estimated);
+  EXPECT_EQ(range.stated, 0.05);
+  EXPECT_NEAR(range.factor, 0.4, 0.04);
+  EXPECT_NEAR(network.noise_factor, 1.0, 0.1);
+}
+
+constexpr double cell = 20.0;  // m
+
+TEST(NetworkAdjust, RoughSurfacesRaiseTheirSigmaAndAreNotRejected) {
+  constexpr double rough = 0.02;
+  const MemsSurvey made(3, {}, [](int line, const Eigen::Vector3d& p) {
+    const auto at = [](double x) { return static_cast<unsigned>(std::lround(x / cell) + 1000); };
+    std::seed_seq seed{at(p.x()), at(p.y()), static_cast<unsigned>(line)};
+    std::mt19937 random(seed);
+    return rough * std::normal_distribution<double>()(random);
+  });
+  core::Tally tally;
+  for (const int rounds : {1, 2}) {
+    NetworkOptions o = quick();
+    o.rounds = rounds;
+    const AdjustedNetwork network = adjust_network(made.survey, made.left, o, tally);
+    std::printf("%d rounds: surface %.4f m, displaced %llu, left out %llu of %zu\n", rounds, network.surface_sigma,
+                static_cast<unsigned long long>(network.displaced), static_cast<unsigned long long>(network.left_out),
+                network.after.size());
+    EXPECT_TRUE(network.surface_estimated);
+    EXPECT_GT(network.surface_sigma, 0.6 * rough);  // planes across the border of two cells have less
+    EXPECT_LT(network.surface_sigma, 1.2 * rough);
+    EXPECT_LT(static_cast<double>(network.displaced), 0.02 * static_cast<double>(network.after.size()));
+    EXPECT_EQ(sigma_of(network, "surface").factor, network.surface_sigma / 0.003);
+  }
+}
+
+TEST(NetworkAdjust, APlaneDisplacedInOneLineIsRejectedThere) {
+  constexpr double displaced = 0.05;
+  constexpr int wrong = 2;
+  const auto inside = [](const Eigen::Vector3d& p, double half) { return std::max(std::abs(p.x()), std::abs(p.y())) < half; };
+  const MemsSurvey made(3, {},
+                        [&](int line, const Eigen::Vector3d& p) { return line == wrong && inside(p, 1.5 * cell) ? displaced : 0.0; });
+  core::Tally tally;
+  const AdjustedNetwork network = adjust_network(made.survey, made.left, quick(), tally);
+  size_t there = 0, rejected = 0, elsewhere = 0, right = 0;
+  for (const PlaneMisfit& m : network.after) {
+    const Eigen::Vector3d& at = network.planes[m.plane].centre;
+    const bool is_wrong = network.ties.lines[m.line].id == wrong && inside(at, cell);
+    if (is_wrong) {
+      ++there;
+      if (m.weight > 0) continue;
+      ++rejected;
+      EXPECT_NEAR(std::abs(m.mean), displaced, 0.02);  // about the plane of the others
+    } else if (!inside(at, 2 * cell)) {
+      ++elsewhere;
+      right += m.weight > 0;
+    } else if (inside(at, cell) && m.returns > 0 && m.weight > 0) {
+      EXPECT_LT(std::abs(m.mean), 0.6 * displaced);
+    }
+  }
+  std::printf("rejected %zu of %zu displaced, %zu of %zu others in use\n", rejected, there, right, elsewhere);
+  EXPECT_GT(there, 2u);
+  EXPECT_GT(rejected, there / 2);
+  EXPECT_GT(right, 0.97 * static_cast<double>(elsewhere));
 }
 
 TEST(NetworkAdjust, OneLineAloneIsRefusedWithWhatWasSought) {

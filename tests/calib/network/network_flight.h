@@ -15,8 +15,9 @@ struct NetworkFlight {
   trajectory::SmootherRun run;                  ///< linearised about `reference`
   std::vector<trajectory::Estimate> reference;  ///< constants alike at all instants
 
-  explicit NetworkFlight(double seconds, bool velocity = false, core::ImuGrade grade = core::ImuGrade::tactical)
-      : flight(trajectory::test::motion_of(swath::test::survey_flight(2)), setup_of(seconds, velocity, grade)) {
+  explicit NetworkFlight(double seconds, bool velocity = false, core::ImuGrade grade = core::ImuGrade::tactical,
+                         trajectory::Layout layout = {true, true, true, true, false})
+      : flight(trajectory::test::motion_of(swath::test::survey_flight(2)), setup_of(seconds, velocity, grade, layout)) {
     run = run_smoother(*flight.problem, flight.filter());
     for (int i = 0; i < 3; ++i) {
       refer();
@@ -30,8 +31,9 @@ struct NetworkFlight {
   }
 
  private:
-  static trajectory::test::InsProblem::Setup setup_of(double seconds, bool velocity, core::ImuGrade grade) {
+  static trajectory::test::InsProblem::Setup setup_of(double seconds, bool velocity, core::ImuGrade grade, trajectory::Layout layout) {
     trajectory::test::InsProblem::Setup s;
+    s.layout = layout;
     s.sensors.until = seconds;
     s.imu = core::error_model_of(grade);
     s.fixes.velocity = velocity;

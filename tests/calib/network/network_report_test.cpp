@@ -6,10 +6,12 @@
 #include <cmath>
 
 #include "calib/report/page.h"
+#include "calib/report/report_tree.h"
 #include "calib/report/tables.h"
 #include "calib/report_units.h"
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
+#include "io/text/value_file.h"
 
 namespace swath::calib {
 namespace {
@@ -47,6 +49,7 @@ AdjustedNetwork made() {
   n.tests.group = {{0.7, 0.4, 0.005}, {-0.7, 0.4, -0.005}};
   n.tests.plane_sigma = {Eigen::Vector3d(0.01, 1e-3, 1e-3)};
   n.components = {{"imu", 1000, 10.0, 1.05}, {"gnss_position", 60, 50.0, 0.95}};
+  n.sigmas = {{"range", 0.02, 1.3, 900.0, true}, {"surface", 0.003, 1.0, 4.0, false}};
   n.values = {{boresight_roll, 0.001, 2e-4, 0.0012, 1e-4}};
   n.calibration.roll = core::Radians(0.0012);
   n.covariance = Eigen::MatrixXd::Constant(1, 1, 1e-8);
@@ -104,10 +107,35 @@ TEST(NetworkReport, ThePageSaysWhatTheSurfacesChanged) {
   });
   EXPECT_NE(html.find("Joint adjustment"), std::string::npos);
   EXPECT_NE(html.find("5.00 / 8.00"), std::string::npos);  // north: found, and sqrt(10^2 - 6^2) cm
-  EXPECT_NE(html.find("gnss_position"), std::string::npos);
+  EXPECT_NE(html.find("GNSS position"), std::string::npos);
+  EXPECT_EQ(html.find("gnss_position"), std::string::npos);
+  // What calib.adjust alone has, and what it says of its files.
+  for (const char* of_calibration : {"jackknife", "condition number", "knots", "as it was given", "everything in this report"})
+    EXPECT_EQ(html.find(of_calibration), std::string::npos) << of_calibration;
+  EXPECT_NE(html.find("found / stated"), std::string::npos);
+  EXPECT_NE(html.find("network.json"), std::string::npos);
   EXPECT_NE(html.find("Biases of the IMU"), std::string::npos);
   EXPECT_NE(html.find("values-angles"), std::string::npos);
   EXPECT_NE(std::find(files.begin(), files.end(), "figures/biases.png"), files.end());
+}
+
+TEST(NetworkReport, TheTreeHasValuesAndSigmasAndClaimsNothingElse) {
+  AdjustedNetwork n = made();
+  n.values.push_back({boresight_heading, 0.0, 2e-4, 1e-5, 1.9e-4});  // hardly known better than before
+  n.values.push_back({boresight_pitch, 0.0, 1e-2, 1e-5, 1e-3});      // 0.06 deg
+  n.covariance = Eigen::Vector3d(1e-8, 3.61e-8, 1e-6).asDiagonal();
+  CalibrationReport report;
+  put_network(n, flight(0.0, 0.0, 0.1), flight(shift_north, turn, 0.06), report);
+  EXPECT_EQ(report.adjustment.estimates[boresight_roll].grade, Grade::coarse);  // 1e-4 rad is beyond 0.005 deg
+  EXPECT_EQ(report.adjustment.estimates[boresight_heading].grade, Grade::undetermined);
+  EXPECT_EQ(report.adjustment.estimates[boresight_pitch].grade, Grade::coarse);
+  const core::Value tree = calibration_report_tree(report);
+  ASSERT_NE(tree.find("estimates"), nullptr);
+  EXPECT_EQ(tree.find("estimates")->items().size(), static_cast<size_t>(latency) + 1);
+  ASSERT_NE(tree.find("variance_components"), nullptr);
+  EXPECT_EQ(tree.find("variance_components")->items().size(), 2u);
+  const std::string text = io::to_json(tree);
+  EXPECT_EQ(text.find("\"condition\": 0"), std::string::npos);
 }
 
 TEST(NetworkReport, StatesThatStillMoveAreAFinding) {

@@ -14,7 +14,7 @@ namespace swath::calib::test {
 
 /// With a trajectory that is off by a known error of the states, linear between instants.
 struct Crossing {
-  World world = make_world({{0.3, 0.0}, {0.3 + 90.0 * deg, 50.0}}, block_planes(3, 4, 9));
+  World world;
   TieSet ties;
   std::vector<double> times;
   trajectory::Layout layout;
@@ -24,7 +24,9 @@ struct Crossing {
   std::unique_ptr<trajectory::Trajectory> off;
   core::Calibration calibration;
 
-  explicit Crossing(double size = 1.0, Dice* noise = nullptr) {
+  /// `side`: squared, number of planes on the ground.
+  explicit Crossing(double size = 1.0, Dice* noise = nullptr, int side = 3)
+      : world(make_world({{0.3, 0.0}, {0.3 + 90.0 * deg, 50.0}}, block_planes(side, 4, 9))) {
     world.returns = noise ? 60 : 12;
     ties = ties_of(world, noise);
     for (size_t l = 0; l < world.lines.size(); ++l)

@@ -74,6 +74,26 @@ TEST(PlaneFactors, AGroupFarFromItsPlaneLosesItsWeight) {
   EXPECT_GT(full, misfits.size() * 8 / 10);
 }
 
+TEST(PlaneFactors, ARejectedGroupTakesNoPartInTheFit) {
+  Dice dice(3);
+  Crossing c(0.0, &dice);
+  const TieGroup& bad = c.ties.groups[4];
+  for (std::uint32_t i = bad.begin; i < bad.end; ++i) c.ties.returns.range[i] += 1.0;
+  PlaneFactors factors = c.factors();
+  factors.reject(4);
+  factors.fit(*c.off, c.calibration);
+  factors.linearise(*c.off, c.calibration);
+  const std::vector<PlaneMisfit> misfits = factors.misfits();
+  EXPECT_GT(std::abs(misfits[4].mean), 0.7);  // the range's metre, along the normal
+  size_t others = 0;
+  for (size_t g = 0; g < misfits.size(); ++g) {
+    if (g == 4 || misfits[g].plane != bad.plane) continue;
+    EXPECT_LT(std::abs(misfits[g].mean), 0.03);
+    ++others;
+  }
+  EXPECT_GT(others, 0u);
+}
+
 /// A solution moves the planes that were eliminated: with everything else held, to where the returns are.
 TEST(PlaneFactors, PlanesFollowTheSolution) {
   Crossing c(0.0);

@@ -21,13 +21,14 @@ struct Known {
   PlaneTests tests;
 
   /// `rough`: sigma by which each group lies off its plane, m; `stated`: what the adjustment takes it for.
-  Known(std::uint64_t seed, double rough, double stated, double one_group = 0.0)
-      : flight(made(seed, rough, one_group)), planes(flight.factors(stated)) {
+  Known(std::uint64_t seed, double rough, double stated, double one_group = 0.0, int side = 3)
+      : flight(made(seed, rough, one_group, side)), planes(flight.factors(stated)) {
     planes.fit(*flight.off, flight.calibration);
     for (int i = 0; i < 3; ++i) step();
   }
-  void step() {
+  void step(bool weigh = false) {
     planes.linearise(*flight.off, flight.calibration);
+    if (weigh) planes.weigh();
     NetworkNormals normals(flight.states->sizes());
     planes.add(*flight.states, normals);
     // A millionth of what the planes could say.
@@ -41,9 +42,9 @@ struct Known {
   }
 
  private:
-  static Crossing made(std::uint64_t seed, double rough, double one_group) {
+  static Crossing made(std::uint64_t seed, double rough, double one_group, int side) {
     Dice dice(seed);
-    Crossing c(0.0, &dice);
+    Crossing c(0.0, &dice, side);
     for (size_t g = 0; g < c.ties.groups.size(); ++g) {
       const double off = rough * dice.normal() + (g == 4 ? one_group : 0.0);
       const TieGroup& of = c.ties.groups[g];
@@ -83,9 +84,10 @@ TEST(PlaneTests, ResidualsAreAsLargeAsTheirRedundancySays) {
 TEST(PlaneTests, TheSurfacesSigmaIsFoundFromAboveAndFromBelow) {
   for (const double stated : {0.001, 0.02}) {
     double variance = 0;
-    constexpr int flights = 8;
+    constexpr int flights = 4, many = 12;
     for (std::uint64_t seed = 1; seed <= flights; ++seed) {
-      Known k(seed, 0.008, stated);
+      Known k(seed, 0.008, stated, 0.0, many);
+      EXPECT_TRUE(surface_is_known(k.tests));
       for (int i = 0; i < 8; ++i) {
         if (!update_surface(k.planes, k.tests)) break;
         k.step();
@@ -97,8 +99,26 @@ TEST(PlaneTests, TheSurfacesSigmaIsFoundFromAboveAndFromBelow) {
   }
 }
 
+TEST(PlaneTests, AFewDegreesOfFreedomLeaveTheSurfacesSigmaAsStated) {
+  Known k(1, 0.0, 0.02);
+  std::printf("redundancy %.2f\n", k.tests.means.redundancy);
+  ASSERT_GT(k.tests.means.redundancy, 0.5);
+  ASSERT_LT(k.tests.means.redundancy, 10.0);
+  EXPECT_FALSE(surface_is_known(k.tests));
+  EXPECT_FALSE(update_surface(k.planes, k.tests));
+  EXPECT_EQ(k.planes.surface(), 0.02);
+}
+
+TEST(PlaneTests, AnUpdateOfTheSurfacesSigmaIsAFactorOfTwoAtMost) {
+  Known large(1, 0.0, 0.05, 0.0, 12), small(1, 0.05, 0.001, 0.0, 12);
+  EXPECT_TRUE(update_surface(large.planes, large.tests));
+  EXPECT_NEAR(large.planes.surface(), 0.025, 1e-9);
+  EXPECT_TRUE(update_surface(small.planes, small.tests));
+  EXPECT_NEAR(small.planes.surface(), 0.002, 1e-9);
+}
+
 TEST(PlaneTests, ExactSurfacesHaveHardlyAny) {
-  Known k(3, 0.0, 0.01);
+  Known k(3, 0.0, 0.01, 0.0, 12);
   for (int i = 0; i < 8; ++i) {
     if (!update_surface(k.planes, k.tests)) break;
     k.step();
@@ -123,6 +143,31 @@ TEST(PlaneTests, ADisplacedGroupIsLeftOut) {
   EXPECT_EQ(k.planes.left_out(), 1u);  // and stays out
   k.step();
   EXPECT_EQ(reject_groups(k.planes, k.tests, 1e-6, 0.1), 0);
+}
+
+/// A robust weight must not hide a displaced group from the test, neither a part of one nor none.
+TEST(PlaneTests, ADisplacedGroupIsFoundThroughItsRobustWeight) {
+  for (const double displacement : {0.035, 0.2}) {
+    Known k(5, 0.0, 0.003, displacement);
+    for (int i = 0; i < 3; ++i) k.step(true);
+    const std::uint32_t plane = k.flight.ties.groups[4].plane;
+    const auto [begin, end] = k.planes.groups_of(plane);
+    double largest = 0, weight = 1;
+    for (size_t g = begin; g < end; ++g) {
+      largest = std::max(largest, std::abs(k.tests.group[g].w));
+      weight = std::min(weight, k.planes.weight(g));
+    }
+    std::printf("displaced by %.3f m: w %.1f, least weight %.2g\n", displacement, largest, weight);
+    EXPECT_LT(weight, 0.5);
+    EXPECT_GT(largest, 4.0);
+    EXPECT_GE(reject_groups(k.planes, k.tests, 0.001, 0.1), 1);
+    int out = 0;
+    for (size_t g = begin; g < end; ++g) out += k.planes.weight(g) == 0.0;
+    EXPECT_EQ(out, 1);
+    for (int i = 0; i < 2; ++i) k.step(true);
+    for (size_t g = begin; g < end; ++g)
+      EXPECT_TRUE(k.planes.weight(g) == 0.0 || k.planes.weight(g) == 1.0);  // the others of the plane are right
+  }
 }
 
 }  // namespace
