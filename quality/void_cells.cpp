@@ -153,6 +153,14 @@ void add_runs(const Mask& returns, const PulseSpacing& spacing, std::vector<Void
     }
 }
 
+/// All of a square that no return comes near.
+void add_rows(const core::Lattice& square, std::vector<VoidRun>& out) {
+  for (int j = 0; j < square.ny; ++j) {
+    const auto first = static_cast<std::int32_t>(square.i0);
+    out.push_back({static_cast<std::int32_t>(square.j0 + j), first, first + square.nx});
+  }
+}
+
 }  // namespace
 
 std::vector<VoidRun> find_voids(const core::Block& b, const core::Lattice& w, const PulseSpacing& spacing) {
@@ -163,7 +171,10 @@ std::vector<VoidRun> find_voids(const core::Block& b, const core::Lattice& w, co
       const int i = column * block_cells, j = row * block_cells;
       const core::Lattice square{w.cell, w.i0 + i, w.j0 + j, std::min(block_cells, w.nx - i), std::min(block_cells, w.ny - j)};
       const Mask mask = mask_of(returns, w, column, row, grown(square, around_window));
-      if (has_empty_block(mask)) add_runs(mask, spacing, out);
+      if (std::none_of(mask.set.begin(), mask.set.end(), [](std::uint8_t s) { return s != 0; }))
+        add_rows(square, out);
+      else if (has_empty_block(mask))
+        add_runs(mask, spacing, out);
     }
   return out;
 }

@@ -99,6 +99,13 @@ void add_judgement(const Given& a, pipeline::Request& out) {
   (*out.survey_tree)["control"] = std::move(control);
 }
 
+/// Tiles of at most max_cells a side, for cells finer than the usual tile is made for. `--set run.tile`, which comes later, decides.
+void fit_tile(const std::string& cell, const JobOption& o, pipeline::Request& out) {
+  constexpr double usual_tile = 500.0, max_cells = 2000.0;  // m; along a side
+  const double side = max_cells * quantity(o.dimension, cell, o.flag, o.example);
+  if (side > 0.0 && side < usual_tile) out.sets.insert(out.sets.begin(), "run.tile=" + core::format_quantity(Dimension::length, side));
+}
+
 pipeline::Request request_of(const Job& job, const Given& a) {
   pipeline::Request out = a.request;
   const auto files = pipeline::cloud_files(a.clouds);
@@ -109,6 +116,7 @@ pipeline::Request request_of(const Job& job, const Given& a) {
     if (a.values[k].empty()) continue;
     quantity(o.dimension, a.values[k], o.flag, o.example);
     out.sets.push_back(o.option + "=" + a.values[k]);
+    if (o.option == "dtm.cell") fit_tile(a.values[k], o, out);
   }
   out.survey_tree = pipeline::cloud_survey(files, a.crs);
   if (job.judges) add_judgement(a, out);

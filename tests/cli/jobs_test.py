@@ -42,6 +42,12 @@ class Jobs(Case):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(products(self.out), products(again))
 
+    def test_fine_cells_take_smaller_tiles(self):
+        for given, side in (((), "400"), (("--set", "run.tile=250m"), "250")):
+            saved = self.folder / f"{side}.toml"
+            done = swath("dtm", self.files[0], "-o", self.out, "--cell", "20cm", "--crs", "EPSG:32632", *given, "--save-config", saved, "--quiet")
+            self.assertRegex(saved.read_text(), rf'tile = "{side} ?m"', done.stderr)
+
     def test_a_pipeline_of_pdal_is_what_our_own_stages_give(self):
         pipeline = self.folder / "x.json"
         pipeline.write_text("""{"pipeline": ["%s/*.las", {"type": "filters.smrf", "cell": 1.5}, {"type": "filters.range", "limits": "Classification[2:2]"},

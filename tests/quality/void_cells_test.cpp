@@ -85,6 +85,16 @@ TEST(VoidCells, TilesMakeTheWhole) {
   EXPECT_NEAR(area_of(find_voids(b, window(s, 0.0, 50.0), s), s) + area_of(find_voids(b, window(s, 50.0, side), s), s), whole, 1e-9);
 }
 
+/// A window of 5 x 5 squares of cells with returns in the middle: those that no return comes near are void as a whole.
+TEST(VoidCells, WhereThereAreNoReturnsAllIsVoid) {
+  const PulseSpacing s{spacing, spacing};
+  const core::Block b = pattern([](double x, double y) { return std::abs(x - 50.0) > 20.0 || std::abs(y - 50.0) > 20.0; });
+  const core::Lattice wide = core::lattice_of(void_cell(s), -270.0, -270.0, 370.0, 370.0);
+  const std::vector<VoidRun> runs = find_voids(b, wide, s);
+  EXPECT_NEAR(area_of(runs, s), 640.0 * 640.0 - 40.0 * 40.0, 0.06 * 40.0 * 40.0);
+  for (const VoidRun& r : runs) EXPECT_TRUE(r.i0 >= wide.i0 && r.i1 <= wide.i0 + wide.nx && r.j >= wide.j0 && r.j < wide.j0 + wide.ny);
+}
+
 TEST(VoidCells, TheRimSaysWhetherItIsWater) {
   const PulseSpacing s{spacing, spacing};
   core::Block b = pattern([](double x, double y) { return std::hypot(x - 50.0, y - 50.0) < 20.0; });

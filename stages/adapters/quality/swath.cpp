@@ -98,12 +98,22 @@ void mark_water(const Context& context, const Box& box, double cell, std::vector
   if (runs.empty() || !context.grids || !context.grids->has(Product::dtm)) return;
   const In<Product::dtm> terrain{*context.grids};
   const core::Grid model = terrain.over(box.grown(terrain.cell()));
-  for (quality::VoidRun& r : runs)
-    for (std::int32_t i = r.i0; i < r.i1; ++i) {
-      const auto column = static_cast<int>(core::cell_index((i + 0.5) * cell, model.lattice.cell) - model.lattice.i0),
-                 row = static_cast<int>(core::cell_index((r.j + 0.5) * cell, model.lattice.cell) - model.lattice.j0);
-      r.water += model.lattice.holds(column, row) && model.reason[model.lattice.at(column, row)] == core::Void::water;
+  const auto column_of = [&](std::int32_t i) {
+    return static_cast<int>(core::cell_index((i + 0.5) * cell, model.lattice.cell) - model.lattice.i0);
+  };
+  for (quality::VoidRun& r : runs) {
+    const auto row = static_cast<int>(core::cell_index((r.j + 0.5) * cell, model.lattice.cell) - model.lattice.j0);
+    if (row < 0 || row >= model.lattice.ny) continue;
+    for (std::int32_t i = r.i0, next = 0; i < r.i1; i = next) {  // by columns of the model, which are many cells wide
+      const int column = column_of(i);
+      next = static_cast<std::int32_t>(std::ceil(static_cast<double>(column + 1 + model.lattice.i0) * model.lattice.cell / cell - 0.5));
+      next = std::clamp(next, i + 1, r.i1);
+      while (next > i + 1 && column_of(next - 1) != column) --next;  // rounding
+      while (next < r.i1 && column_of(next) == column) ++next;
+      if (model.lattice.holds(column, row) && model.reason[model.lattice.at(column, row)] == core::Void::water)
+        r.water += static_cast<std::uint32_t>(next - i);
     }
+  }
 }
 
 void look_at_tile(const TileJob& job, const Context& context, const SwathOptions& o, RunCache& cache) {
