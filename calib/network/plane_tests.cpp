@@ -105,23 +105,40 @@ void test_control(const TiePlane& plane, std::uint32_t number, const PlaneSoluti
   }
 }
 
-/// `weight`: as solved with; Q: covariance of the predicted means. Both are first turned into what they are with full weights on this
-/// plane.
-void test_groups(const std::vector<size_t>& groups, const VectorXd& residual, const VectorXd& variance, const VectorXd& weight,
-                 const MatrixXd& Q, PlaneTests& out) {
-  const Index n = residual.size();
-  const VectorXd full = variance.cwiseInverse(), added = full - weight;
-  const MatrixXd with_full = (MatrixXd::Identity(n, n) + Q * added.asDiagonal()).partialPivLu().solve(Q);
-  const VectorXd left = residual - with_full * added.cwiseProduct(residual);
-  const MatrixXd P = MatrixXd(full.asDiagonal()) - full.asDiagonal() * with_full * full.asDiagonal();
+/// Mean residuals of a plane's groups, and the covariance of what is predicted for them.
+struct Means {
+  VectorXd residual, weight;
+  MatrixXd Q;
+
+  /// What they are with other weights on this plane.
+  Means with(const VectorXd& wanted) const {
+    const Index n = residual.size();
+    const VectorXd added = wanted - weight;
+    Means out{residual, wanted, (MatrixXd::Identity(n, n) + Q * added.asDiagonal()).partialPivLu().solve(Q)};
+    out.residual -= out.Q * added.cwiseProduct(residual);
+    return out;
+  }
+  double redundancy(Index i) const { return std::max(0.0, 1.0 - Q(i, i) * weight[i]); }
+  double w(Index i) const { return residual[i] * std::sqrt(weight[i] / redundancy(i)); }
+};
+
+/// All groups are tested with their full weight, `full`. Those far off say nothing of the surfaces and keep their trace of weight there.
+void test_groups(const PlaneFactors& planes, const std::vector<size_t>& groups, const Means& solved, const VectorXd& full,
+                 PlaneTests& out) {
+  const Means tested = solved.with(full);
+  VectorXd in_use = full;
+  for (Index i = 0; i < full.size(); ++i)
+    if (planes.left_out(groups[static_cast<size_t>(i)])) in_use[i] = solved.weight[i];
+  const Means surface = solved.with(in_use);
+  const MatrixXd P = MatrixXd(in_use.asDiagonal()) - in_use.asDiagonal() * surface.Q * in_use.asDiagonal();
   out.information += P.squaredNorm();
-  for (Index i = 0; i < n; ++i) {
-    GroupTest& t = out.group[groups[static_cast<size_t>(i)]];
-    t.redundancy = std::max(0.0, 1.0 - with_full(i, i) * full[i]);
-    if (t.redundancy <= least_redundancy) continue;
-    t.displacement = left[i] / t.redundancy;
-    t.w = left[i] * std::sqrt(full[i] / t.redundancy);
-    out.score += (std::min(t.w * t.w, largest_square) - 1.0) * t.redundancy * full[i];
+  for (Index i = 0; i < full.size(); ++i) {
+    const size_t g = groups[static_cast<size_t>(i)];
+    GroupTest& t = out.group[g];
+    t.redundancy = tested.redundancy(i);
+    if (t.redundancy > least_redundancy) t.displacement = tested.residual[i] / t.redundancy, t.w = tested.w(i);
+    if (planes.left_out(g) || surface.redundancy(i) <= least_redundancy) continue;
+    out.score += (std::min(std::pow(surface.w(i), 2), largest_square) - 1.0) * surface.redundancy(i) * full[i];
   }
 }
 
@@ -147,7 +164,7 @@ void test_plane(const PlaneFactors& planes, std::uint32_t plane, const Solution&
   }
   const VectorXd weight = robust.cwiseQuotient(variance);
   const MatrixXd Q = A * s.C * A.transpose();
-  test_groups(groups, residual, variance, weight, Q, out);
+  test_groups(planes, groups, {residual, weight, Q}, variance.cwiseInverse(), out);
   for (Index i = 0; i < n; ++i) {
     const size_t g = groups[static_cast<size_t>(i)];
     if (planes.left_out(g)) continue;
