@@ -4,6 +4,7 @@
 #include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 #include "core/config/result_visitors.h"
@@ -190,8 +191,10 @@ core::Error none_of_the_clouds(const RunState& run) {
   if (ending == ".las" || ending == ".laz") {
     std::vector<std::string> ignored;
     const io::LasHeader header = io::read_las_header(file, ignored);
-    first = "its header states x " + core::format_number(header.min.x()) + " to " + core::format_number(header.max.x()) + ", y " +
-            core::format_number(header.min.y()) + " to " + core::format_number(header.max.y()) + "; ";
+    char text[160];
+    std::snprintf(text, sizeof text, "its header states x %.3f to %.3f, y %.3f to %.3f; ", header.min.x(), header.max.x(), header.min.y(),
+                  header.max.y());
+    first = text;
   }
   return core::Error(
       "no point of the clouds is left to work on" + (why.empty() ? why : ": " + why), file.string(),
