@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/engine/map_fit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -42,9 +43,11 @@ std::optional<MapFit> map_fit(const stages::Context& context) {
     const auto place = core::place_on_earth(context.crs, at);
     const auto scale = core::map_scale(context.crs, at);
     if (!place || !scale) continue;
-    const double k = scale->worst();
-    if (best && std::abs(best->scale - 1.0) <= std::abs(k - 1.0)) continue;
-    best = MapFit{k, scale->area(), core::degrees_outside(context.crs, *place), core::utm_zone(*place, context.crs)};
+    const double k = scale->worst(), outside = core::degrees_outside(context.crs, *place);
+    const double nearest = best ? std::min(best->outside, outside) : outside;
+    if (!best || std::abs(best->scale - 1.0) > std::abs(k - 1.0))
+      best = MapFit{k, scale->area(), outside, core::utm_zone(*place, context.crs)};
+    best->outside = nearest;
   }
   return best;
 }
