@@ -38,6 +38,34 @@ std::string text_of(double value, const Kind& kind) {
 /// Null: computed, and not finite.
 double number_of(const Value& v) { return v.is_number() ? v.as_number() : std::numeric_limits<double>::quiet_NaN(); }
 
+/// "nominal pulse density of all lines (ANPD) 1.2 1/m2 (at least 2)".
+std::string text_of(const Value& requirement) {
+  const std::string& unit = requirement.find("unit")->as_text();
+  const bool at_least = requirement.find("at_least")->as_bool();
+  char text[96];
+  std::snprintf(text, sizeof text, " %.4g%s (at %s %.4g)", number_of(*requirement.find("value")), unit.empty() ? "" : (" " + unit).c_str(),
+                at_least ? "least" : "most", requirement.find("limit")->as_number());
+  return requirement.find("what")->as_text() + text;
+}
+
+/// "2 of 5 requirements of QL2 are missed (run.limits.quality_level allows 0): ..."
+std::string missed_requirements(double missed, double allowed, const Value* stages) {
+  const auto whole = [](double v) { return text_of(v, kinds.back()); };
+  std::string of, named, level = "the quality level";
+  if (stages)
+    for (const Value& stage : stages->items()) {
+      const Value* findings = stage.find("findings");
+      const Value* requirements = findings ? findings->find("requirements") : nullptr;
+      if (!requirements) continue;
+      if (const Value* judged = findings->find("judged")) of = " of " + std::to_string(judged->as_int());
+      if (const Value* name = findings->find("quality_level"); name && name->as_text() != "none") level = name->as_text();
+      for (const Value& one : requirements->items())
+        if (const Value* met = one.find("met"); met && !met->as_bool()) named += (named.empty() ? ": " : ", ") + text_of(one);
+    }
+  return whole(missed) + of + (missed == 1.0 && of.empty() ? " requirement of " : " requirements of ") + level +
+         (missed == 1.0 ? " is missed" : " are missed") + " (run.limits.quality_level allows " + whole(allowed) + ")" + named;
+}
+
 }  // namespace
 
 std::vector<JudgedLimit> judged(const Limits& limits, const Measured& measured) {
@@ -60,7 +88,7 @@ std::vector<JudgedLimit> judged(const Limits& limits, const Measured& measured) 
   return list;
 }
 
-std::vector<Warning> missed_limits(const Value& judged) {
+std::vector<Warning> missed_limits(const Value& judged, const Value* stages) {
   std::vector<Warning> out;
   for (const Value& one : judged.items()) {
     const Value* over = one.find("excess");
@@ -68,6 +96,12 @@ std::vector<Warning> missed_limits(const Value& judged) {
     const std::string& name = one.find("name")->as_text();
     const Kind& kind = *std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return k.name == name; });
     const double value = number_of(*one.find("value")), limit = one.find("limit")->as_number(), excess = number_of(*over);
+    if (name == kinds.back().name) {
+      out.push_back({"limit." + name,
+                     missed_requirements(value, limit, stages),
+                     {{"value", value, {}}, {"limit", limit, {}}, {"excess", excess, {}}}});
+      continue;
+    }
     out.push_back(
         {"limit." + name,
          "run.limits." + name + " = " + text_of(limit, kind) + " is exceeded by " + text_of(excess, kind) + ": " + std::string(kind.what) +

@@ -76,6 +76,7 @@ void describe(const JudgedLimit& l, V& v) {
 std::vector<JudgedLimit> judged(const Limits& limits, const Measured& measured);
 
 /// Of the limits in report.json, a warning for each that was missed: which, the value, the limit and by how much. Empty where all are held.
-std::vector<Warning> missed_limits(const core::Value& judged);
+/// `stages`: those of the report, of which report.quality names the requirements that are missed; null: they are counted alone.
+std::vector<Warning> missed_limits(const core::Value& judged, const core::Value* stages = nullptr);
 
 }  // namespace swath::pipeline

@@ -12,6 +12,8 @@
 #include "core/block.h"
 #include "core/error.h"
 #include "core/printable.h"
+#include "io/las/cloud_crs.h"
+#include "io/las/las_crs.h"
 #include "io/las/las_reader.h"
 #include "io/raster/geotiff.h"
 #include "io/raster/height_file.h"
@@ -29,6 +31,7 @@ namespace fs = std::filesystem;
 using Point = Eigen::Vector2d;
 
 constexpr size_t batch = 1 << 17;
+constexpr const char* no_points = "no point of the clouds lies within the half width of the line; are both of the same place?";
 constexpr size_t window_cells = 1 << 20;  // of the terrain model that is held at a time
 
 struct Sample {
@@ -270,6 +273,60 @@ std::string table_of(const Section& s) {
   return out;
 }
 
+/// The system of one file; nothing where it states none.
+struct StatedCrs {
+  fs::path file;
+  core::Crs crs;
+  double height_unit = 1.0;
+};
+
+StatedCrs crs_of_cloud(const fs::path& file) {
+  std::vector<std::string> ignored;
+  const io::LasCrs stated = io::las_crs(io::read_las_header(file, ignored));
+  if (stated.definition.empty()) return {file, {}, stated.vertical_metres > 0.0 ? stated.vertical_metres : 1.0};
+  const core::Crs crs(stated.definition);
+  const double unit = crs.has_height_unit()          ? crs.vertical_metres_per_unit()
+                      : stated.vertical_metres > 0.0 ? stated.vertical_metres
+                      : crs.is_geographic()          ? 1.0
+                                                     : crs.metres_per_unit();
+  return {file, crs, unit};
+}
+
+StatedCrs crs_of_model(const fs::path& file) {
+  const std::string wkt = io::read_raster_info(file).crs_wkt;
+  return {file, wkt.empty() ? core::Crs() : core::Crs(wkt), io::height_unit_of(file)};
+}
+
+/// Heights of which one file does not state the system are taken as those of the other, as long as their units agree.
+bool is_one_system(const StatedCrs& a, const StatedCrs& b) {
+  using core::Heights;
+  if (std::abs(a.height_unit / b.height_unit - 1.0) > 1e-9) return false;
+  if (io::is_same_crs(a.crs, b.crs)) return true;
+  if (!io::is_same_crs(a.crs.horizontal(), b.crs.horizontal())) return false;
+  if (a.crs.heights() == Heights::unknown || b.crs.heights() == Heights::unknown) return true;
+  return a.crs.heights() == b.crs.heights() && a.crs.vertical_name() == b.crs.vertical_name();
+}
+
+std::string named(const StatedCrs& s) {
+  const char* unit = s.height_unit == 1.0 ? "m" : "ft";
+  return s.crs.name() + " (" + s.crs.unit_name() + ", heights in " + unit + ")";
+}
+
+/// The one system of all files that state one, the model before the clouds. Throws core::Error where there are two.
+StatedCrs common_crs(const ProfileRequest& request, const std::vector<fs::path>& files) {
+  std::vector<StatedCrs> all;
+  if (!request.dtm.empty()) all.push_back(crs_of_model(request.dtm));
+  for (const fs::path& file : files) all.push_back(crs_of_cloud(file));
+  const auto first = std::find_if(all.begin(), all.end(), [](const StatedCrs& s) { return !s.crs.empty(); });
+  if (first == all.end()) return all.front();
+  for (const StatedCrs& one : all)
+    if (!one.crs.empty() && !is_one_system(one, *first))
+      throw core::usage_error("is in " + named(one) + ", while " + first->file.string() + " is in " + named(*first) +
+                                  ": a section needs one coordinate reference system and one unit",
+                              one.file.string(), "bring clouds to one with `swath classify FILES --crs EPSG:...`, or cut each alone");
+  return *first;
+}
+
 /// No file that is read is written over.
 void check_names(const ProfileRequest& request, std::vector<fs::path> read, const std::vector<ProfileLine>& lines) {
   read.insert(read.end(), {request.dtm, request.lines});
@@ -284,17 +341,14 @@ std::vector<ProfileFound> write_profiles(const ProfileRequest& request) {
   const std::vector<fs::path> files = las_files(request.points);
   if (files.empty() && request.dtm.empty())
     throw core::usage_error("neither points nor a terrain model are named", "swath profile", "name LAS files or folders, or --dtm FILE");
-  const std::string wkt = request.dtm.empty() ? io::LasReader(files[0]).crs().definition : io::read_raster_info(request.dtm).crs_wkt;
-  const core::Crs crs = wkt.empty() ? core::Crs() : core::Crs(wkt);
+  const StatedCrs system = common_crs(request, files);
+  const core::Crs& crs = system.crs;
   const std::vector<ProfileLine> lines = profile_lines(request, crs);
   check_names(request, files, lines);
   const bool metric = crs.empty() || crs.metres_per_unit() == 0.0;
   const double half_width = request.half_width / (metric ? 1.0 : crs.metres_per_unit());
   const auto short_unit = [](double metres) { return std::string(metres == 1.0 ? "m" : "ft"); };
-  const std::string unit = metric ? "m" : short_unit(crs.metres_per_unit()),
-                    height_unit = short_unit(!request.dtm.empty() ? io::height_unit_of(request.dtm)
-                                             : crs.empty()        ? 1.0
-                                                                  : crs.vertical_metres_per_unit());
+  const std::string unit = metric ? "m" : short_unit(crs.metres_per_unit()), height_unit = short_unit(system.height_unit);
 
   std::vector<Section> sections;
   for (const ProfileLine& line : lines) sections.push_back(section_of(line, half_width));
@@ -314,7 +368,8 @@ std::vector<ProfileFound> write_profiles(const ProfileRequest& request) {
     io::write_text_file(request.folder / (s.line->name + ".csv"), table_of(s));
     io::write_text_file(request.folder / (s.line->name + ".svg"), report::svg(chart));
     io::write_png(request.folder / (s.line->name + ".png"), report::draw(chart));
-    found.push_back({s.line->name, s.length(), s.line->left_out, s.points.size(), static_cast<size_t>(known)});
+    found.push_back({s.line->name, s.length(), s.line->left_out, s.points.size(), static_cast<size_t>(known),
+                     !files.empty() && s.points.empty() ? no_points : std::string()});
   }
   return found;
 }

@@ -34,6 +34,7 @@ struct ProfileFound {
   std::string name;
   double length = 0.0;
   std::size_t vertices_left_out = 0, points = 0, terrain_samples = 0;
+  std::string warning{};
 };
 
 template <class V>
@@ -43,6 +44,7 @@ void describe(const ProfileFound& f, V& v) {
   v.result("vertices_left_out", f.vertices_left_out, core::if_any(), "Vertices that are not finite or beyond every map.");
   v.result("points", f.points, "Points within the half width.");
   v.result("terrain_samples", f.terrain_samples, "Places where the terrain model has a height.");
+  v.result("warning", f.warning, core::plain().only_if(!f.warning.empty()), "What is wrong with the section.");
 }
 
 /// The lines that a request names, those of a file as profile_1, profile_2 ... where they bear no name. Those of a vector file that states

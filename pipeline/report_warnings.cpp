@@ -2,8 +2,10 @@
 #include "pipeline/report_warnings.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "io/las/las_box.h"
+#include "pipeline/engine/map_fit.h"
 #include "pipeline/limits.h"
 
 namespace swath::pipeline {
@@ -12,7 +14,8 @@ namespace {
 using core::Value;
 
 constexpr std::string_view box_code = "points.outside_box", damage_code = "work.damaged", geometry_code = "geometry.contradiction",
-                           mistake_code = "geometry.mistake", control_code = "control.unused", buildings_code = "buildings.none";
+                           mistake_code = "geometry.mistake", control_code = "control.unused", buildings_code = "buildings.none",
+                           scale_code = "crs.scale", outside_code = "crs.outside";
 
 /// An example for each file, and one for those that the report counts without.
 void add_boxes(const Value& wrong, std::vector<Warning>& out) {
@@ -23,6 +26,14 @@ void add_boxes(const Value& wrong, std::vector<Warning>& out) {
     out.push_back({std::string(box_code),
                    "and " + std::to_string(more) + " more " + io::wrong_box + ": report.json",
                    {{"more", static_cast<double>(more), {}}}});
+}
+
+void add_crs(const Value& crs, std::vector<Warning>& out) {
+  const std::string& name = crs.find("name")->as_text();
+  if (const Value* scale = crs.find("scale"); scale && std::abs(scale->as_number() - 1.0) > warned_scale)
+    out.push_back({std::string(scale_code), scale_warning(name, scale->as_number()), {{"scale", scale->as_number(), {}}}});
+  if (const Value* outside = crs.find("degrees_outside"); outside && outside->as_number() > warned_outside)
+    out.push_back({std::string(outside_code), outside_warning(name, outside->as_number()), {{"outside", outside->as_number(), "deg"}}});
 }
 
 /// The sentences of what is named are the last ones.
@@ -38,6 +49,7 @@ void add_geometry(const Value& geometry, std::vector<Warning>& out) {
 
 std::vector<Warning> warnings_in(const Value& report) {
   std::vector<Warning> out;
+  if (const Value* crs = report.find("crs")) add_crs(*crs, out);
   if (const Value* damaged = report.find("pieces_damaged"); damaged && damaged->as_int() > 0)
     out.push_back({std::string(damage_code),
                    std::to_string(damaged->as_int()) + " pieces of an earlier run were damaged and were done again",
@@ -58,7 +70,7 @@ std::vector<Warning> warnings_in(const Value& report) {
       out.push_back({std::string(control_code), "[[control]] " + file.as_text() + " is used by no stage of this run", {}});
   if (const Value* geometry = report.find("geometry")) add_geometry(*geometry, out);
   if (const Value* limits = report.find("limits"))
-    for (Warning& w : missed_limits(*limits)) out.push_back(std::move(w));
+    for (Warning& w : missed_limits(*limits, report.find("stages"))) out.push_back(std::move(w));
   return out;
 }
 

@@ -23,6 +23,11 @@ const std::vector<WarningKind>& warning_kinds() {
        "Where all do, compare the CRS and the order of the columns of this [[control]] with the survey's."},
       {"control.unused", "A [[control]] of the survey is used by no stage of the run.",
        "Add a stage that uses it (quality.points for check points, calib.adjust for control), or leave it out of the survey."},
+      {"crs.outside", "The data lie far outside the area of use of the products' CRS.",
+       "Compare the CRS with the place: is it that of another zone or country? Clouds are transformed to the one named by --crs or the "
+       "survey."},
+      {"crs.scale", "Lengths on the map differ from those on the ground by more than 0.5 % at the data.",
+       "Choose a local projection, such as the UTM zone, as CRS of the products, or correct areas, densities and volumes by the scale."},
       {"geometry.contradiction", "Lines, heights or headings of the flight contradict one another more than their accuracy allows.",
        "See the checks of quality.geometry in report.json, and the warnings geometry.mistake beside this one."},
       {"geometry.mistake", "A usual mistake in the description of the survey explains the contradictions.",

@@ -2,6 +2,7 @@
 #include "tools/command.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <sstream>
 
@@ -13,6 +14,8 @@
 
 namespace swath::tools {
 namespace {
+
+constexpr int most_threads = 1024;
 
 /// Help that opens with examples; the overview shows of each command in its last sentence alone.
 class HelpText : public CLI::Formatter {
@@ -78,15 +81,30 @@ int Commands::call(int argc, char** argv) {
   return 0;
 }
 
+CLI::Validator threads_check() {
+  return CLI::Validator(
+      [](std::string& text) -> std::string {
+        int n = 0;
+        const auto [end, bad] = std::from_chars(text.data(), text.data() + text.size(), n);
+        if (bad == std::errc() && end == text.data() + text.size() && n >= 0 && n <= most_threads) return {};
+        return "'" + text + "' is not a number of threads: 1 to " + std::to_string(most_threads) + ", or 0 for one per processor";
+      },
+      "");
+}
+
+CLI::Validator name_check() {
+  return CLI::Validator([](std::string& text) -> std::string { return text.empty() ? "the name is empty" : ""; }, "");
+}
+
 void add_request(CLI::App& c, pipeline::Request& request) {
   c.add_option("CONFIG", request.config, "Pipeline, .toml or .json, or the name of one that comes with the program")->required();
   c.add_option("--survey", request.survey, "survey.toml, in place of the config's");
-  c.add_option("-o,--output", request.output, "Folder of the products, in place of the config's");
+  c.add_option("-o,--output", request.output, "Folder of the products, in place of the config's")->check(name_check());
   c.add_option("--set", request.sets, "One option of one stage: dtm.cell=\"50 cm\", run.tile=\"250 m\"")->allow_extra_args(false);
 }
 
 void add_run_options(CLI::App& c, pipeline::Request& request, Loudness& loudness, std::filesystem::path& save) {
-  c.add_option("--threads", request.threads, "Threads, in place of the config's (0: one per processor)");
+  c.add_option("--threads", request.threads, "Threads, in place of the config's (0: one per processor)")->check(threads_check());
   c.add_option("--save-config", save, "Write what is run as a config for `swath run`: NAME.toml");
   c.add_flag("--quiet", loudness.quiet, "Nothing but errors");
   c.add_flag("--json-log", loudness.json_log, "Progress as one JSON object per line on standard error");

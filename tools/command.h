@@ -46,6 +46,9 @@ struct Loudness {
   pipeline::Voice voice() const { return json_log ? pipeline::Voice::json : quiet ? pipeline::Voice::quiet : pipeline::Voice::bar; }
 };
 
+/// Checks of values as they are typed; without a text of their own in the help.
+CLI::Validator threads_check();
+CLI::Validator name_check();
 /// CONFIG, --survey, --output and --set.
 void add_request(CLI::App& command, pipeline::Request& request);
 /// For a person: texts of files as a terminal can show them.

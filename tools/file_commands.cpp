@@ -6,6 +6,7 @@
 #include "core/config/result_visitors.h"
 #include "io/survey/info.h"
 #include "io/text/value_file.h"
+#include "simulate/files/earlier_survey.h"
 #include "simulate/simulate.h"
 #include "tools/command.h"
 
@@ -16,6 +17,7 @@ simulate::Made make_survey(const std::filesystem::path& config, const std::vecto
   core::Value given = config.empty() ? core::Value::object() : io::read_value_file(config);
   for (const std::string& set : sets) pipeline::set_option(given, set);
   const simulate::Options options = simulate::read_options(given);
+  const simulate::EarlierSurvey earlier(folder);
   pipeline::Progress progress(loudness.voice());
   progress.begin("simulate", 1000, "per mille");
   std::uint64_t shown = 0;
@@ -25,6 +27,12 @@ simulate::Made make_survey(const std::filesystem::path& config, const std::vecto
     shown = std::max(shown, now);
   });
   progress.end();
+  std::vector<std::filesystem::path> inputs;
+  for (const io::TrajectoryFile& f : options.flight.along) inputs.push_back(f.file);
+  if (options.world.dem) inputs.push_back(*options.world.dem);
+  std::string stale;
+  for (const std::string& name : earlier.remove_stale(inputs)) stale += (stale.empty() ? "" : ", ") + name;
+  if (!stale.empty()) progress.say("removed: files of the earlier simulation in this folder that this one does not write: " + stale);
   return made;
 }
 

@@ -21,6 +21,9 @@ int init(const Given& a) {
   const std::filesystem::path file = a.folder / "survey.toml";
   if (!a.print_only && std::filesystem::exists(file))
     throw core::usage_error("is there already", file.string(), "--print shows the proposal and writes nothing");
+  if (std::filesystem::exists(a.folder) && !std::filesystem::is_directory(a.folder))
+    throw core::usage_error("is a file, and a folder of a survey's files is needed", a.folder.string(),
+                            "see `swath info` for what one file holds");
   pipeline::Progress progress(a.loudness.voice());
   bool begun = false;
   const auto found = io::find_records(a.folder, [&](std::size_t done, std::size_t all, const std::filesystem::path&) {

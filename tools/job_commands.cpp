@@ -106,6 +106,15 @@ void fit_tile(const std::string& cell, const JobOption& o, pipeline::Request& ou
   if (side > 0.0 && side < usual_tile) out.sets.insert(out.sets.begin(), "run.tile=" + core::format_quantity(Dimension::length, side));
 }
 
+/// Terrain, flight lines and check points are judged by the cloud's own ground.
+void require_ground(const std::vector<std::filesystem::path>& files, const std::vector<std::string>& sets) {
+  const bool others = std::any_of(sets.begin(), sets.end(), [](const std::string& s) { return s.starts_with("dtm.classes"); });
+  if (others || pipeline::has_class(files, 2)) return;
+  throw core::Error(
+      "no point is classified as ground (class 2), and quality is judged by the cloud's own ground", files.front().string(),
+      "run `swath classify` first, and judge the points that it writes; or name the classes of the ground: --set dtm.classes=[2,8]");
+}
+
 pipeline::Request request_of(const Job& job, const Given& a) {
   pipeline::Request out = a.request;
   const auto files = pipeline::cloud_files(a.clouds);
@@ -119,18 +128,35 @@ pipeline::Request request_of(const Job& job, const Given& a) {
     if (o.option == "dtm.cell") fit_tile(a.values[k], o, out);
   }
   out.survey_tree = pipeline::cloud_survey(files, a.crs);
-  if (job.judges) add_judgement(a, out);
+  if (job.judges) add_judgement(a, out), require_ground(files, a.request.sets);
   if (out.output.empty()) out.output = pipeline::proposed_output(files, job.name);
   return out;
+}
+
+/// A fault of an option that a short name set is that one's, and not the config's.
+int run_job(const Job& job, const Given& a, const std::string& typed) {
+  try {
+    return run_pipeline(request_of(job, a), a.loudness, typed, a.save);
+  } catch (const core::Error& e) {
+    if (e.code() != core::Exit::bad_usage || e.where().starts_with("--")) throw;
+    for (size_t k = 0; k < job.options.size(); ++k) {
+      const std::string& key = job.options[k].option;
+      const std::string option = key.substr(key.find('.') + 1), said = e.where() + " " + e.what();
+      if (!a.values[k].empty() && said.find(option) != std::string::npos)
+        throw core::usage_error(e.what(), job.options[k].flag + " " + a.values[k],
+                                e.hint().empty() ? "it sets " + key + ", see `swath explain " + job.config + "`" : e.hint());
+    }
+    throw;
+  }
 }
 
 void add_job(Commands& commands, const Job& job) {
   const auto a = std::make_shared<Given>();
   a->values.resize(job.options.size());
-  auto* c = commands.add(job.name, job.help,
-                         [a, &job, &commands] { return run_pipeline(request_of(job, *a), a->loudness, commands.typed(), a->save); });
+  auto* c = commands.add(job.name, job.help, [a, &job, &commands] { return run_job(job, *a, commands.typed()); });
   c->add_option("CLOUD", a->clouds, "LAS, LAZ, COPC, EPT or .vpc files, folders of them, or patterns")->required();
-  c->add_option("-o,--output", a->request.output, "Folder of the products; without it NAME_" + job.name + " in the working folder");
+  c->add_option("-o,--output", a->request.output, "Folder of the products; without it NAME_" + job.name + " in the working folder")
+      ->check(name_check());
   for (size_t k = 0; k < job.options.size(); ++k) {
     const JobOption& o = job.options[k];
     c->add_option(o.flag, a->values[k], o.help + ", for example " + o.example);

@@ -31,7 +31,7 @@ int print_outcome(const pipeline::Outcome& outcome, const pipeline::Plan& plan, 
   if (!outcome.report.is_object()) return static_cast<int>(outcome.code);
   if (!loudness.quiet && !loudness.json_log) print(pipeline::summary(outcome.report, plan.run.output));
   if (outcome.code == core::Exit::quality_missed)
-    for (const pipeline::Warning& w : pipeline::missed_limits(*outcome.report.find("limits")))
+    for (const pipeline::Warning& w : pipeline::missed_limits(*outcome.report.find("limits"), outcome.report.find("stages")))
       std::fprintf(stderr, "swath: done, but a quality limit was missed: %s\n", core::printable(w.text).c_str());
   return static_cast<int>(outcome.code);
 }

@@ -112,6 +112,7 @@ int profile(ProfileArguments& a) {
   core::Value list = core::Value::array();
   for (const pipeline::ProfileFound& one : pipeline::write_profiles(a.request)) {
     list.push(core::reported(one));
+    if (!one.warning.empty()) std::fprintf(stderr, "swath: warning: %s: %s\n", one.name.c_str(), one.warning.c_str());
     if (a.json || a.quiet) continue;
     std::printf("%s: %.1f long, %zu points, %zu places of the terrain model; .csv, .svg and .png in %s\n", one.name.c_str(), one.length,
                 one.points, one.terrain_samples, a.request.folder.c_str());

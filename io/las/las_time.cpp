@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "core/config/value.h"
@@ -99,7 +100,9 @@ std::string LasTimeCheck::fault(const LasHeader& header, TimeScale scale) const 
   if (points_ == 0 || scale != TimeScale::unstated || (low_ == 0.0 && high_ == 0.0)) return {};
   const bool weekly = low_ >= 0.0 && high_ < longest_week;
   if (header.gps_time_is_adjusted() != weekly) return {};
-  const std::string span = core::format_number(low_) + " to " + core::format_number(high_) + " s";
+  char span_text[96];
+  std::snprintf(span_text, sizeof span_text, "%.3f to %.3f s", low_, high_);
+  const std::string span = span_text;
   if (weekly)
     return "the GPS time bit says adjusted standard GPS time, but times of " + span +
            " look like seconds of the week; state points.time_scale";

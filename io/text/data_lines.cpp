@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/text/data_lines.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -23,14 +24,15 @@ double DataLine::number(size_t column) const {
   double value = 0;
   if (!read_number(field(column), value) || !std::isfinite(value))
     fault("'" + fields[column] + "' in column " + std::to_string(column + 1) + " is no number",
-          "correct the line, or the columns or format that the survey states");
+          number_hint(fields[column], "correct the line, or the columns or format that the survey states"));
   return value;
 }
 
 void for_each_data_line(const std::filesystem::path& file, const std::function<char(const std::string&)>& delimiter,
                         const std::function<void(DataLine&)>& f, const std::function<void(const std::string&)>& comment) {
-  const std::string text = read_text_file(file);
-  if (text.find('\0') != std::string::npos) throw core::Error("is not delimited text", file.string(), "check the name of the file");
+  std::string text = read_text_file(file);
+  require_text(text, file);
+  if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');  // lines of the classic Mac OS
   DataLine out;
   char parted_by = 0;
   for (size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0; at < text.size();) {

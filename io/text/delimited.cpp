@@ -2,6 +2,7 @@
 #include "io/text/delimited.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -181,6 +182,14 @@ struct NumberedLine {
   std::uint64_t begin, number;
 };
 
+void require_not_utf16(const std::filesystem::path& path) {
+  const BinaryFile file(path);
+  std::array<char, 4> begin{};
+  const size_t got = file.read_some(0, begin.data(), std::min<std::uint64_t>(begin.size(), file.size()));
+  const std::string_view text(begin.data(), got);
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) require_text(text, path);
+}
+
 /// A record whose first number is cut off counts as a header no more than one that is whole.
 bool is_header(const std::vector<std::string>& fields) {
   if (all_numbers(fields)) return false;
@@ -190,7 +199,21 @@ bool is_header(const std::vector<std::string>& fields) {
 
 }  // namespace
 
+void require_text(std::string_view begin, const std::filesystem::path& file) {
+  const bool marked = begin.starts_with("\xFF\xFE") || begin.starts_with("\xFE\xFF");
+  const bool bare = begin.size() >= 4 && (begin[0] == '\0') != (begin[1] == '\0') && (begin[2] == '\0') != (begin[3] == '\0');
+  if (marked || bare)
+    throw core::Error("is text in UTF-16, which is not read", file.string(),
+                      "save it as UTF-8: \"CSV UTF-8\" in a spreadsheet's list of formats");
+  if (begin.find('\0') != std::string_view::npos) throw core::Error("is not delimited text", file.string(), "check the name of the file");
+}
+
+const char* number_hint(std::string_view field, const char* otherwise) {
+  return field.find(',') != std::string_view::npos ? "decimal commas are not read: write decimal points" : otherwise;
+}
+
 DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::string& delimiter) {
+  require_not_utf16(path);
   FirstLines lines(path);
   DelimitedLayout out;
   std::string comment, header, line;
@@ -251,7 +274,7 @@ size_t column_of(const DelimitedLayout& layout, const std::string& column, const
     if (number <= std::max(layout.columns, layout.names.size())) return number - 1;
     throw core::Error("no column " + column + "; " + list_of(layout), file.string());
   }
-  const std::string near = core::nearest(column, layout.names);
+  const std::string near = column.size() < 3 ? std::string() : core::nearest(column, layout.names);  // any letter is near another
   throw core::Error("no column '" + column + "'; " + list_of(layout), file.string(),
                     near.empty() ? "name one of the columns, or its number from 1" : "did you mean '" + near + "'?");
 }
@@ -348,8 +371,7 @@ void DelimitedReader::bad_number(const char* begin, const char* end, size_t colu
   const std::string text(begin, std::min(end, begin + 40));
   const std::string name = column < names_.size() ? "'" + names_[column] + "'" : std::to_string(column + 1);
   throw core::Error("'" + text + "' in column " + name + " is no number", file_.path().string() + ":" + std::to_string(line_),
-                    text.find(',') != std::string::npos ? "decimal commas are not read: write decimal points"
-                                                        : "correct the line, or export the file again");
+                    number_hint(text, "correct the line, or export the file again"));
 }
 
 }  // namespace swath::io

@@ -7,11 +7,17 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/text/binary_file.h"
 
 namespace swath::io {
+
+/// What to do about a field that is not a number: a decimal comma is named.
+const char* number_hint(std::string_view field, const char* otherwise);
+/// Throws Error where the text's first bytes are those of UTF-16 or it holds bytes of 0: `begin` of a file, of any length.
+void require_text(std::string_view begin, const std::filesystem::path& file);
 
 /// How a delimited file is written, found in its first lines.
 struct DelimitedLayout {

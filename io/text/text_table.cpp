@@ -53,7 +53,7 @@ double TextTable::coordinate(size_t row, size_t column) const {
   if (bad != std::errc{} || end != stop)
     throw core::Error(
         (field.empty() ? "the field is empty" : "'" + field + "' is no number") + std::string(" in column '") + layout_.names[column] + "'",
-        place(row), "correct the line, or name another column");
+        place(row), number_hint(field, "correct the line, or name another column"));
   return value;
 }
 

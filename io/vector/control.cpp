@@ -53,12 +53,29 @@ void hold_sigma(double sigma, const char* of, const std::string& place) {
                       "a point that is not known at all is left out of the file; sigmas are in metres");
 }
 
+/// Usual names of a coordinate, where the survey does not name its column. Throws core::Error where there is none, or more than one.
+size_t coordinate_column(const TextTable& table, const std::string& asked, const std::string& usual,
+                         std::initializer_list<const char*> names) {
+  if (asked != usual || table.column_if_there(usual, usual)) return table.column(asked);
+  std::optional<size_t> found;
+  for (const char* name : names)
+    if (const auto at = table.column_if_there(name, name)) {
+      if (found) return table.column(asked);
+      found = at;
+    }
+  return found ? *found : table.column(asked);
+}
+
 RawLayer read_table(const std::filesystem::path& path, const ControlFile& f) {
   const ControlFile usual;
   const TextTable table(path);
-  const std::array<size_t, 3> xyz{table.column(f.x), table.column(f.y), table.column(f.z)};
-  const auto name = table.column_if_there(f.name, usual.name), target = table.column_if_there(f.target, usual.target),
-             cover = table.column_if_there(f.cover, usual.cover);
+  const std::array<size_t, 3> xyz{coordinate_column(table, f.x, usual.x, {"e", "east", "easting"}),
+                                  coordinate_column(table, f.y, usual.y, {"n", "north", "northing"}),
+                                  coordinate_column(table, f.z, usual.z, {"h", "height", "elev", "elevation"})};
+  auto name = table.column_if_there(f.name, usual.name);
+  for (const char* other : {"p", "point", "id", "point_id"})
+    if (!name && f.name == usual.name) name = table.column_if_there(other, other);
+  const auto target = table.column_if_there(f.target, usual.target), cover = table.column_if_there(f.cover, usual.cover);
   const auto sigma_h = table.column_if_there(f.sigma_h, usual.sigma_h), sigma_v = table.column_if_there(f.sigma_v, usual.sigma_v);
   RawLayer out;
   for (size_t row = 0; row < table.rows(); ++row) {

@@ -8,6 +8,7 @@
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "pipeline/delivery.h"
+#include "pipeline/engine/map_fit.h"
 #include "pipeline/engine/run_report.h"
 #include "pipeline/input_guard.h"
 #include "pipeline/report_docs.h"
@@ -75,6 +76,12 @@ StageReport stage_report(const RunState& run, size_t number, const Value& option
   return s;
 }
 
+CrsReport crs_report(const RunState& run) {
+  CrsReport r{run.context.crs.name(), run.plan.survey.crs, run.context.heights};
+  if (const auto fit = map_fit(run.context)) r.scale = fit->scale, r.outside = fit->outside;
+  return r;
+}
+
 }  // namespace
 
 core::Value report_of(const RunState& run, const std::string& command, double seconds) {
@@ -82,7 +89,7 @@ core::Value report_of(const RunState& run, const std::string& command, double se
   r.program = "swath " + std::string(program_version());
   r.command = command;
   r.survey = run.plan.survey.name;
-  if (!run.context.crs.empty()) r.crs = {run.context.crs.name(), run.plan.survey.crs, run.context.heights};
+  if (!run.context.crs.empty()) r.crs = crs_report(run);
   r.inputs = run.inputs;
   const Explanation options = explain(run.plan);
   r.run = options.run;

@@ -17,6 +17,8 @@ namespace swath::pipeline {
 
 struct CrsReport {
   std::string name, definition, heights;
+  std::optional<double> scale{};  ///< of lengths at the data
+  double outside = 0.0;           ///< degrees
 };
 
 template <class V>
@@ -24,6 +26,9 @@ void describe(const CrsReport& r, V& v) {
   v.result("name", r.name, "Its name.");
   v.result("definition", r.definition, "As survey.toml or the cloud states it.");
   v.result("heights", r.heights, "What heights count from.");
+  v.result("scale", r.scale.value_or(1.0), core::plain().always().only_if(r.scale.has_value()),
+           "Lengths on the map by lengths on the ellipsoid at the data, where they differ most.");
+  v.result("degrees_outside", r.outside, core::if_any(), "How far the data lie outside the CRS's area of use.");
 }
 
 template <class V>

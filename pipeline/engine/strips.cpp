@@ -4,10 +4,14 @@
 #include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 #include "core/config/result_visitors.h"
+#include "core/printable.h"
+#include "io/las/las_header.h"
 #include "io/las/las_source.h"
+#include "io/survey/survey.h"
 #include "io/text/value_file.h"
 #include "pipeline/engine/fullest_tile.h"
 #include "pipeline/engine/pulse_border.h"
@@ -174,6 +178,29 @@ void expect_room_for_fullest_tile(const RunState& run) {
   run.memory.require(bytes, left, std::string(what) + " on the fullest tile of " + tile->file, true);
 }
 
+/// Every point of the clouds was left out: why, and where the first file says that its points lie.
+core::Error none_of_the_clouds(const RunState& run) {
+  std::string why, first;
+  for (const Account& account : run.accounts) {
+    const Value counts = account.tally.value();
+    for (const auto& [what, one] : counts.members())
+      if (what.ends_with("left out")) why += (why.empty() ? "" : "; ") + std::to_string(one.find("count")->as_int()) + " " + what;
+  }
+  const fs::path file = io::resolve(run.plan.survey, run.plan.survey.points.front().file);
+  const std::string ending = core::lower_case(file.extension().string());
+  if (ending == ".las" || ending == ".laz") {
+    std::vector<std::string> ignored;
+    const io::LasHeader header = io::read_las_header(file, ignored);
+    char text[160];
+    std::snprintf(text, sizeof text, "its header states x %.3f to %.3f, y %.3f to %.3f; ", header.min.x(), header.max.x(), header.min.y(),
+                  header.max.y());
+    first = text;
+  }
+  return core::Error(
+      "no point of the clouds is left to work on" + (why.empty() ? why : ": " + why), file.string(),
+      first + "are these coordinates of " + run.context.crs.name() + "? see `swath info` of the cloud for scale, unit and CRS");
+}
+
 /// Of the strips and what follows them.
 void expect_times(RunState& run, std::uint64_t returns) {
   const auto n = static_cast<double>(returns), shared = n / run.threads;
@@ -262,6 +289,7 @@ void run_strips(RunState& run) {
   expect_balance(run.accounts[source].tally, run.stage(source));
   run.store = std::make_unique<TileStore>(strips_folder, run.plan.run.tile.value, run.context.origin);
   run.store->open(names);
+  if (run.store->points() == 0 && run.stage(source).info().makes(stages::Product::points)) throw none_of_the_clouds(run);
   if (run.store->points() == 0)
     throw core::Error("no return could be georeferenced: the trajectory covers none of them", run.plan.survey_file.string(),
                       "compare the time scales with `swath info` of the laser and trajectory files");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "pipeline/engine/map_fit.h"
 #include "pipeline/engine/strips.h"
 #include "pipeline/work/survey_piece.h"
 #include "stages/area.h"
@@ -12,6 +13,15 @@ namespace {
 
 using core::Value;
 using stages::Grain;
+
+/// As soon as the place of the data is known: of clouds before any work, of a flight once its trajectory is there.
+void expect_map_fits(const RunState& run) {
+  if (!works_on_the_map(run.plan)) return;
+  const bool typed = run.plan.survey_tree.has_value();
+  const std::string where =
+      typed && !run.plan.survey.points.empty() ? run.plan.survey.points.front().file.string() : run.plan.survey_file.string() + ": crs";
+  require_map_fit(run.context, where, typed);
+}
 
 void prepare_map(RunState& run) {
   run.context.crs = core::Crs(run.plan.survey.crs);
@@ -36,6 +46,7 @@ void prepare_map(RunState& run) {
   stages::set_area(run.context, run.context.area.box, 0.0);
   for (const PlannedStage& s : run.plan.stages)
     if (s.stage->is_source()) s.stage->locate(run.context);
+  expect_map_fits(run);
 }
 
 /// What readers hand on is as large as their files, and read as fast from these.
@@ -114,6 +125,7 @@ void run_survey_stages(RunState& run) {
     if (const Value* geometry = run.accounts[i].findings.find("geometry"))
       if (const Value* doubt = geometry->find("doubt")) run.context.records.put(stages::GeometryDoubt{doubt->as_text()});
   }
+  expect_map_fits(run);
 }
 
 }  // namespace swath::pipeline

@@ -12,8 +12,10 @@
 
 #include "core/error.h"
 #include "core/geo/crs.h"
+#include "core/geo/map_scale.h"
 #include "io/las/cloud_crs.h"
 #include "io/las/las_crs.h"
+#include "io/las/las_reader.h"
 
 namespace swath::pipeline {
 namespace {
@@ -66,8 +68,9 @@ std::vector<fs::path> files_matching(const std::string& pattern) {
 /// The CRS that a cloud states; nothing where it states none that is understood.
 struct Stated {
   std::optional<core::Crs> crs;
-  std::string why;  ///< there is none
-  double x = 0.0, y = 0.0;
+  std::string why;                                   ///< there is none
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  ///< of its bounds
+  bool is_across = false;                            ///< in degrees: the antimeridian
 };
 
 Stated stated_crs(const fs::path& file) {
@@ -75,8 +78,9 @@ Stated stated_crs(const fs::path& file) {
   const io::LasHeader header = io::read_las_header(file, ignored);
   const io::LasCrs found = io::las_crs(header);
   Stated out;
-  out.x = 0.5 * (header.min.x() + header.max.x());
-  out.y = 0.5 * (header.min.y() + header.max.y());
+  out.middle = 0.5 * (header.min + header.max).head<2>();
+  // A cloud in degrees that is half a globe wide lies on both sides of the antimeridian.
+  out.is_across = header.max.x() - header.min.x() > 180.0;
   if (found.definition.empty()) {
     out.why = "states no CRS" + (found.note.empty() ? std::string() : ": " + found.note);
     return out;
@@ -94,13 +98,6 @@ std::string named(const core::Crs& crs) {
   return crs.name() + " (" + crs.unit_name() + heights + ")";
 }
 
-/// "EPSG:32632", the UTM zone of a place in degrees.
-std::string utm_zone(double longitude, double latitude) {
-  if (!(std::abs(longitude) <= 180.0 && std::abs(latitude) <= 84.0)) return "EPSG:326xx";
-  const int zone = std::min(60, static_cast<int>(std::floor((longitude + 180.0) / 6.0)) + 1);
-  return "EPSG:" + std::to_string((latitude < 0.0 ? 32700 : 32600) + zone);
-}
-
 void require_known(const std::string& crs) {
   try {
     core::Crs{crs};
@@ -113,7 +110,8 @@ void require_known(const std::string& crs) {
 void require_one_crs(const core::Crs& first, const fs::path& first_file, const Stated& cloud, const fs::path& file) {
   if (first.is_geographic())
     throw core::usage_error("its coordinates are degrees (" + first.name() + "), and products need a map projection", first_file.string(),
-                            "name one with --crs, for example --crs " + utm_zone(cloud.x, cloud.y));
+                            "name one with --crs, for example --crs " +
+                                core::utm_zone({cloud.is_across ? cloud.middle.x() + 180.0 : cloud.middle.x(), cloud.middle.y()}, first));
   if (io::is_same_crs(*cloud.crs, first)) return;
   const bool units = cloud.crs->unit_name() != first.unit_name() || (cloud.crs->has_height_unit() && first.has_height_unit() &&
                                                                      cloud.crs->vertical_unit_name() != first.vertical_unit_name());
@@ -166,6 +164,20 @@ core::Value cloud_survey(const std::vector<fs::path>& files, const std::string& 
   if (!crs.empty()) survey["crs"] = crs;
   survey["points"] = std::move(points);
   return survey;
+}
+
+bool has_class(const std::vector<fs::path>& files, int point_class) {
+  constexpr size_t batch = 1 << 16;
+  for (const fs::path& file : files) {
+    if (!has_ending(file, {".las", ".laz"})) return true;
+    io::LasReader reader(file);
+    io::LasTime time;
+    time.keep_unknown = true;
+    core::Block block;
+    while (reader.read(block, batch, time) > 0)
+      if (std::find(block.classification.begin(), block.classification.end(), point_class) != block.classification.end()) return true;
+  }
+  return false;
 }
 
 std::string cloud_name(const std::vector<fs::path>& files) {

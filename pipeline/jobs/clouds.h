@@ -26,4 +26,7 @@ std::string cloud_name(const std::vector<std::filesystem::path>& files);
 /// anything but an earlier run.
 std::filesystem::path proposed_output(const std::vector<std::filesystem::path>& files, const std::string& job);
 
+/// Does any LAS or LAZ file hold a point of the class? Reads until the first; true where a file is of another kind.
+bool has_class(const std::vector<std::filesystem::path>& files, int point_class);
+
 }  // namespace swath::pipeline

@@ -57,6 +57,10 @@ std::vector<std::string> config_names() {
 
 fs::path find_config(const fs::path& given) {
   if (is_config_file(given)) return given;
+  std::error_code ec;
+  if (fs::is_directory(given, ec))
+    throw core::usage_error("is a folder, and a config is needed: a pipeline, .toml or .json", given.string(),
+                            "a survey goes with it by --survey FOLDER/survey.toml; clouds go to `swath dtm`, `classify`, `qc`");
   if (given.empty() || given.has_parent_path() || given.has_extension())
     throw core::usage_error("no such file", given.string(), "check the name of the config");
   for (const fs::path& folder : config_folders())

@@ -136,6 +136,14 @@ class Looks(Case):
         self.assertEqual(again.returncode, 0)
         json.loads(again.stdout)
         self.assertEqual(products(self.folder / "again"), products(self.survey))
+        mine = self.folder / "again" / "notes.txt"
+        mine.write_text("kept")
+        fewer = swath("simulate", self.folder / "again", *(w for s in [*self.simulated, 'output.formats=["csv"]'] for w in ("--set", s)))
+        self.assertEqual(fewer.returncode, 0, fewer.stderr)
+        self.assertEqual(sorted(p.name for p in (self.folder / "again").glob("laser.*")), ["laser.csv"])
+        self.assertEqual(sorted(p.name for p in (self.folder / "again").glob("survey*")), ["survey.toml"])
+        self.assertRegex(fewer.stderr, "removed: .*laser.las, laser.laz, laser.npy, .*survey_")
+        self.assertTrue(mine.exists())
 
 
 class Runs(Case):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One command for one job: clouds by files, folders and patterns; the demonstration; a survey.toml proposed; completion and manual."""
+import json
 import os
 import re
 import shutil
@@ -95,6 +96,44 @@ class Jobs(Case):
         pipeline.write_text('["%s",\n {"type": "filters.sample", "radius": 1}, "out.laz"]' % cloud)
         self.assert_error(swath("run", pipeline, "-o", self.out), 2, r"x\.json:2:\d+: 'filters.sample' has no counterpart here", "hint: ")
         self.assertFalse(self.out.exists())
+
+    def test_what_is_typed_wrong_is_named_as_it_was_typed(self):
+        cloud = self.files[0]
+        for n in ("-3", "100000", "two"):
+            self.assert_error(swath("dtm", cloud, "--threads", n, "-o", self.out), 2, f"'{n}' is not a number of threads", "1024")
+        for command in ("dtm", "run"):
+            self.assert_error(swath(command, cloud, "-o", ""), 2, "the name is empty")
+        self.assert_error(swath("dtm", cloud, "--cell", "1km", "-o", self.out), 2, "--cell 1km: .*max_edge must span", "hint: .*dtm.cell")
+        self.assert_error(swath("check", self.clouds), 2, "is a folder, and a config is needed", "hint: ")
+        self.assert_error(swath("init", cloud), 2, "is a file, and a folder", "hint: ")
+        self.assertFalse(self.out.exists())
+
+    def test_a_projection_that_is_not_of_the_place_is_refused_or_warned_of(self):
+        cloud = self.files[0]
+        web = swath("dtm", cloud, "--crs", "EPSG:3857", "-o", self.out, "--quiet")
+        self.assert_error(web, 2, "the map projection is not for this place: in WGS 84 / Pseudo-Mercator lengths", "hint: .*--crs EPSG:32632")
+        self.assertFalse(self.out.exists())
+        other = swath("dtm", cloud, "--crs", "EPSG:32635", "-o", self.out)
+        self.assertEqual(other.returncode, 0, other.stderr)
+        self.assertIn("warning [crs.outside]: the data lie", other.stdout)
+        crs = json.loads((self.out / "report.json").read_text())["crs"]
+        self.assertGreater(crs["degrees_outside"], 3)
+        self.assertAlmostEqual(crs["scale"], 1.0, delta=0.03)
+
+    def test_judging_needs_ground_and_check_points_before_the_work(self):
+        self.assert_error(swath("qc", self.clouds, "-o", self.out, "--quiet"), 1, "no point is classified as ground", "hint: run `swath classify` first")
+        self.assertFalse(self.out.exists())
+        classified = swath("classify", self.clouds, "-o", self.folder / "classified", "--quiet")
+        self.assertEqual(classified.returncode, 0, classified.stderr)
+        marks = self.folder / "marks.csv"
+        marks.write_text("name;x;y;z\nP0;650017,093;5300081,269;100,885\n")
+        done = swath("qc", self.folder / "classified" / "points", "--check", marks, "-o", self.out)
+        self.assert_error(done, 1, r"marks\.csv:2: '650017,093' is no number", "decimal commas are not read")
+        self.assertNotIn("strips", done.stderr)
+        self.assertFalse(self.out.exists())
+        level = swath("qc", self.folder / "classified" / "points", "--level", "QL0", "-o", self.out, "--quiet")
+        self.assertEqual(level.returncode, 3, level.stderr)
+        self.assertRegex(level.stderr, r"\d of \d requirements? of QL0 (is|are) missed \(run.limits.quality_level allows 0\): ")
 
 
 class Named(Case):

@@ -52,6 +52,16 @@ class Surfaces(Case):
         self.assert_error(swath("volumes", dtm, dtm, "--design", "3"), 2, "--design")
         self.assert_error(swath("volumes", self.made / "none.tif", "--design", "3"), 1, "none.tif")
 
+    def test_a_profile_of_two_systems_is_refused(self):
+        cloud = sorted((self.made / "points").glob("*.la[sz]"))[0]
+        moved = self.folder / "moved"
+        done = swath("copc", cloud, "--crs", "EPSG:32633", "-o", moved, "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        other = sorted(moved.rglob("*.laz"))[0]
+        done = swath("profile", other, "--dtm", self.made / "dtm.vrt", "--from", "0,0", "--to", "9,9", "--output", self.folder / "cut")
+        self.assert_error(done, 2, re.escape(str(other)) + ": is in .*33N.* while .*dtm.vrt is in .*32N", "hint: ")
+        self.assertFalse((self.folder / "cut").exists())
+
     def test_a_profile_is_a_table_and_two_pictures(self):
         vrt = (self.made / "dtm.vrt").read_text()
         west, cell, _, north, _, _ = (float(v) for v in re.search(r"<GeoTransform>(.*)</GeoTransform>", vrt).group(1).split(","))

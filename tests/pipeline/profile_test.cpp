@@ -20,8 +20,8 @@ namespace {
 
 double ground(double x, double y) { return 100.0 + 0.1 * (x - 600000.0) - 0.05 * (y - 5300000.0); }
 
-/// Ground points and roofs 6 m above every metre of 80 m by 80 m, and a terrain model of them.
-void make(const test::TemporaryFolder& folder) {
+/// Ground points and roofs 6 m above every metre of 80 m by 80 m.
+void make_cloud(const std::filesystem::path& file, const std::string& crs) {
   core::Block b;
   b.origin = {600000.0, 5300000.0, 0.0};
   core::resize(b, 80 * 80);
@@ -37,10 +37,15 @@ void make(const test::TemporaryFolder& folder) {
       b.return_number[k] = b.return_count[k] = 1;
     }
   io::LasWriteOptions o;
-  o.crs_wkt = core::Crs("EPSG:32632").wkt1();
-  io::LasWriter writer(folder / "points.laz", o);
+  o.crs_wkt = core::Crs(crs).wkt1();
+  io::LasWriter writer(file, o);
   writer.write(b);
   writer.finish();
+}
+
+/// The same and a terrain model of them.
+void make(const test::TemporaryFolder& folder) {
+  make_cloud(folder / "points.laz", "EPSG:32632");
   core::Grid g(core::Lattice{1.0, 600000, 5300000, 80, 80});
   for (int j = 0; j < 80; ++j)
     for (int i = 0; i < 80; ++i) {
@@ -200,6 +205,54 @@ TEST(Profile, AVertexFarAwayCostsNothing) {
   EXPECT_NEAR(static_cast<double>(found[0].terrain_samples), 140.0, 2.0);  // 70 m by half metres
   EXPECT_EQ(found[1].vertices_left_out, 1);
   EXPECT_EQ(found[1].terrain_samples, 81);
+}
+
+TEST(Profile, FilesOfTwoSystemsAreRefusedByTheirNames) {
+  const test::TemporaryFolder folder;
+  make(folder);
+  make_cloud(folder / "other_zone.laz", "EPSG:32633");
+  make_cloud(folder / "feet.laz", "EPSG:32632+6360");  // heights in US survey feet
+  make_cloud(folder / "levelled.laz", "EPSG:32632+5773");
+  ProfileRequest r;
+  r.from = "600005,5300010";
+  r.to = "600065,5300055";
+  r.folder = folder / "out";
+  const auto fault = [&](const std::filesystem::path& dtm, const std::vector<std::filesystem::path>& points) {
+    r.dtm = dtm;
+    r.points = points;
+    try {
+      write_profiles(r);
+    } catch (const core::Error& e) {
+      return e.text();
+    }
+    return std::string();
+  };
+  for (const char* name : {"other_zone.laz", "feet.laz"}) {
+    for (const std::string& text : {fault(folder / "dtm.tif", {folder / name}), fault({}, {folder / "points.laz", folder / name})}) {
+      EXPECT_NE(text.find(name), std::string::npos) << text;
+      EXPECT_TRUE(text.find("dtm.tif") != std::string::npos || text.find("points.laz") != std::string::npos) << text;
+    }
+    EXPECT_FALSE(std::filesystem::exists(r.folder));
+  }
+  EXPECT_EQ(fault(folder / "dtm.tif", {folder / "levelled.laz"}), "") << "the model states nothing of its heights";
+}
+
+TEST(Profile, ASectionWithoutPointsIsWarnedOf) {
+  const test::TemporaryFolder folder;
+  make(folder);
+  ProfileRequest r;
+  r.dtm = folder / "dtm.tif";
+  r.from = "600005,5300010.1";
+  r.to = "600065,5300010.1";
+  r.half_width = 0.2;
+  r.folder = folder / "out";
+  EXPECT_EQ(write_profiles(r)[0].warning, "");
+  r.points = {folder / "points.laz"};
+  const ProfileFound none = write_profiles(r)[0];
+  EXPECT_EQ(none.points, 0u);
+  EXPECT_NE(none.warning.find("no point"), std::string::npos);
+  r.half_width = 1.0;
+  EXPECT_EQ(write_profiles(r)[0].warning, "");
 }
 
 TEST(Profile, WhatIsNotThereIsAnError) {

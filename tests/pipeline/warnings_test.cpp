@@ -19,6 +19,7 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
                                                             {"code": "check.mark", "sentence": "c"}, {"code": "check.few", "sentence": "d"},
                                                             {"code": "check.names", "sentence": "e"}, {"code": "check.outside", "sentence": "f"}]}},
           {"type": "terrain.buildings", "findings": {"buildings": 0, "returns": 0}}, {"type": "terrain.buildings", "findings": {"returns": 7}}],
+          "crs": {"name": "WGS 84 / Arctic", "scale": 0.97, "degrees_outside": 12.5},
           "geometry": {"named": ["range_feet"], "warnings": ["lines disagree", "with ranges in feet: state range_unit"]},
           "limits": [{"name": "outside", "value": 0.3, "limit": 0.1, "held": false, "excess": 0.2},
                      {"name": "voids", "value": null, "limit": 0.1, "held": false, "excess": null},

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/geo/geodesy.h"
+#include "core/geo/map_scale.h"
 #include "core/records/gnss_data.h"
 #include "core/statistics.h"
 #include "stages/area.h"
@@ -14,33 +15,12 @@
 namespace swath::stages {
 namespace {
 
-/// Degrees, from 0 to less than 360.
-double turned(double degrees) {
-  const double v = std::fmod(degrees, 360.0);
-  return v < 0.0 ? v + 360.0 : v;
-}
-
 constexpr double margin = 3.0;  // degrees: half a UTM zone, beyond which its scale error passes 0.3 %
 
-/// The area of use of the run's CRS, degrees.
-class AreaOfUse {
- public:
-  explicit AreaOfUse(const Context& context) : is_known_(context.crs.area_of_use(west_, south_, east_, north_)) {}
-
-  /// How far a place lies outside, degrees; 0 inside and where the area is not known.
-  double beside(double latitude, double longitude) const {
-    if (!is_known_) return 0.0;
-    const double lon = core::to_degrees(longitude), lat = core::to_degrees(latitude);
-    // Around the globe: longitude 180 is longitude -180.
-    const double width = east_ - west_ >= 360.0 ? 360.0 : turned(east_ - west_), from_west = turned(lon - west_);
-    const double across = from_west <= width ? 0.0 : std::min(from_west - width, 360.0 - from_west);
-    return std::max({across, south_ - lat, lat - north_, 0.0});
-  }
-
- private:
-  double west_ = 0, south_ = 0, east_ = 0, north_ = 0;
-  bool is_known_;
-};
+/// How far a place (rad) lies outside the area of use of the run's CRS, degrees.
+double beside_area(const Context& context, double latitude, double longitude) {
+  return core::degrees_outside(context.crs, {core::to_degrees(longitude), core::to_degrees(latitude)});
+}
 
 [[noreturn]] void refuse(const Context& context, const char* what, double beside, const char* hint) {
   throw core::usage_error(std::string(what) + " " + core::format_number(std::round(beside * 10) / 10) +
@@ -49,10 +29,9 @@ class AreaOfUse {
 }
 
 void check_area(const Context& context, const core::TrajectoryData& d, core::Tally& tally) {
-  const AreaOfUse area(context);
   std::uint64_t outside = 0;
   for (size_t i = 0; i < d.size(); ++i) {
-    const double beside = area.beside(d.latitude[i], d.longitude[i]);
+    const double beside = beside_area(context, d.latitude[i], d.longitude[i]);
     if (beside > margin)
       refuse(context, "the trajectory lies", beside,
              "choose the CRS of the survey's place; is the trajectory in degrees where radians are meant?");
@@ -70,11 +49,10 @@ Eigen::Vector3d origin_near(const Context& context, const Eigen::Vector3d& posit
 
 void check_place_of_fixes(const Context& context, const core::GnssData& fixes) {
   if (context.crs.empty() || !context.crs.is_projected()) return;
-  const AreaOfUse area(context);
   std::vector<double> beside;
   for (const Eigen::Vector3d& p : fixes.position) {
     const core::Geodetic g = core::geodetic_of(p);
-    beside.push_back(area.beside(g.latitude, g.longitude));
+    beside.push_back(beside_area(context, g.latitude, g.longitude));
   }
   if (const double median = core::median(std::move(beside), 0.0); median > margin)
     refuse(

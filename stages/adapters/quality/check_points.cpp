@@ -102,6 +102,16 @@ std::vector<fs::path> check_files(const io::Survey& survey) {
   return out;
 }
 
+/// A check point file that cannot be used is found before the work begins.
+void require_marks(const Context& context, const CheckPointOptions&) {
+  if (check_files(context.survey).empty()) return;
+  io::Survey survey = context.survey;
+  if (survey.crs.empty() && context.source) survey.crs = context.source->own_crs(survey);
+  if (survey.crs.empty()) return;
+  core::Tally of_the_run;
+  io::read_control(survey, of_the_run);
+}
+
 fs::path readings_file(const fs::path& folder, TileKey key) { return piece_file(folder, key, "marks"); }
 
 void read_tile(const TileJob& job, const Context& context, const CheckPointOptions& o, RunCache& cache) {
@@ -247,6 +257,7 @@ Entry check_points_stage() {
   return tile<read_tile, judge_points>(
       "quality.points", "Check points against ground points and terrain model: accuracy by cover, and whose fault a difference is.",
       {.columns = {.needs = {Column::classification, Column::flags, Column::strip}, .reads = {Column::sigma_v, Column::sigma_h}},
+       .check = require_marks,
        .inputs = check_files,
        .products = [](const CheckPointOptions& o) {
          return std::vector<std::string>{o.name + ".csv", o.name + ".gpkg", points_file};

@@ -27,5 +27,23 @@ TEST(DataLines, FieldsWithTheirPlaceAndComments) {
   EXPECT_THROW(for_each_data_line(folder / "a.bin", delimiter_in, [](DataLine&) {}), core::Error);
 }
 
+TEST(DataLines, Utf16IsNamedAndLinesOfTheClassicMacOsAreRead) {
+  const test::TemporaryFolder folder;
+  for (const std::string& text :
+       {std::string("\xFF\xFEn\0,\0x\0\n\0", 10), std::string("\xFE\xFF\0n\0,\0x", 8), std::string("n\0,\0x\0\n\0", 8)}) {
+    test::write_bytes(folder / "a.csv", text);
+    try {
+      for_each_data_line(folder / "a.csv", delimiter_in, [](DataLine&) {});
+      FAIL();
+    } catch (const core::Error& e) {
+      EXPECT_NE(std::string(e.what()).find("UTF-16"), std::string::npos) << e.text();
+    }
+  }
+  test::write_bytes(folder / "a.csv", "name,x\rA,1\rB,2\r");
+  std::vector<std::uint64_t> lines;
+  for_each_data_line(folder / "a.csv", delimiter_in, [&](DataLine& l) { lines.push_back(l.line + 10 * l.fields.size()); });
+  EXPECT_EQ(lines, (std::vector<std::uint64_t>{21, 22, 23}));
+}
+
 }  // namespace
 }  // namespace swath::io

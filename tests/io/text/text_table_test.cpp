@@ -44,6 +44,20 @@ TEST_F(Tables, ColumnsThatNeedNotBeThere) {
   EXPECT_EQ(fault([&] { t.column_if_there("s", "sigma"); }), "a.csv: no column 's'; columns: name, x");
 }
 
+TEST_F(Tables, ADecimalCommaIsNamedAndALetterHasNoNearest) {
+  const auto hint = [](const auto& f) {
+    try {
+      f();
+    } catch (const core::Error& e) {
+      return e.hint();
+    }
+    return std::string();
+  };
+  const TextTable t = table("P;N;E\nP0;650017,093;5\n");
+  EXPECT_EQ(hint([&] { t.number(0, 1); }), "decimal commas are not read: write decimal points");
+  EXPECT_EQ(hint([&] { t.column("x"); }), "name one of the columns, or its number from 1");
+}
+
 TEST_F(Tables, FaultsNameTheirLine) {
   EXPECT_EQ(fault([&] { table(""); }), "a.csv: no row of data");
   EXPECT_EQ(fault([&] { table("name,x\n"); }), "a.csv: no row of data");

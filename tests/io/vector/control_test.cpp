@@ -93,6 +93,17 @@ TEST_F(Control, OtherColumnsAndNames) {
   EXPECT_EQ(fault(), "control.csv: no column 'roof'; columns: E, N, H");
 }
 
+TEST_F(Control, UsualNamesOfColumnsAreUnderstood) {
+  for (const char* header : {"P,N,E,Z", "Point,Northing,Easting,Elevation", "id,north,east,height", "name,y,x,h"}) {
+    const auto points = read(std::string(header) + "\nA7,5300200,500100,480\n");
+    ASSERT_EQ(points.size(), 1u) << header;
+    EXPECT_EQ(points[0].name, "A7") << header;
+    EXPECT_NEAR((points[0].ecef - ecef(500100, 5300200, 480)).norm(), 0.0, 1e-3) << header;
+  }
+  EXPECT_EQ(fault("P,N,E,easting,Z\nA7,5300200,500100,500100,480\n"), "control.csv: no column 'x'; columns: P, N, E, easting, Z");
+  EXPECT_EQ(fault("P,N,Q,Z\nA7,5300200,500100,480\n"), "control.csv: no column 'x'; columns: P, N, Q, Z");
+}
+
 TEST_F(Control, HeightsFollowTheCrs) {
   survey_.height_unit = core::Metres(0.3048);
   const double feet = height / 0.3048;

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/geo/crs.h"
 #include "io/las/las_crs.h"
+#include "io/las/las_writer.h"
 #include "tests/io/las_sample.h"
 #include "tests/world/support.h"
 
@@ -110,6 +111,45 @@ TEST_F(Clouds, DegreesNeedAMapProjection) {
   const auto degrees = cloud("degrees.laz", "EPSG:4326", 11.0, 48.0);
   EXPECT_NE(fault_of({degrees}).find("map projection"), std::string::npos);
   EXPECT_NE(fault_of({degrees}).find("EPSG:32"), std::string::npos) << fault_of({degrees});
+}
+
+/// Two points in degrees.
+fs::path pair(const fs::path& name, const std::string& crs, double x0, double x1, double latitude) {
+  core::Block b;
+  core::resize(b, 2);
+  b.x = {x0, x1};
+  b.y = {latitude, latitude};
+  b.z = {10.0, 10.0};
+  io::LasWriteOptions o;
+  o.crs_wkt = core::Crs(crs).wkt1();
+  o.scale = {1e-7, 1e-7, 1e-3};
+  io::LasWriter writer(name, o);
+  writer.write(b);
+  writer.finish();
+  return name;
+}
+
+TEST_F(Clouds, TheProposedZoneIsThatOfThePlace) {
+  EXPECT_NE(fault_of({pair("munich.las", "EPSG:4326", 11.0, 11.1, 48.0)}).find("--crs EPSG:32632"), std::string::npos);
+  EXPECT_NE(fault_of({pair("etrs.las", "EPSG:4258", 11.0, 11.1, 48.0)}).find("--crs EPSG:25832"), std::string::npos);
+  const std::string fiji = fault_of({pair("fiji.las", "EPSG:4326", -179.9999, 179.9999, -17.0)});
+  EXPECT_TRUE(fiji.find("--crs EPSG:32760") != std::string::npos || fiji.find("--crs EPSG:32701") != std::string::npos) << fiji;
+}
+
+TEST_F(Clouds, AClassIsFoundInAnyFile) {
+  for (const bool ground : {false, true}) {
+    core::Block b;
+    core::resize(b, 3);
+    core::add_columns(b, {core::Column::classification});
+    b.x = b.y = b.z = {1.0, 2.0, 3.0};
+    b.classification = {1, 1, static_cast<std::uint8_t>(ground ? 2 : 1)};
+    io::LasWriter writer(ground ? "ground.laz" : "bare.laz", io::LasWriteOptions{});
+    writer.write(b);
+    writer.finish();
+  }
+  EXPECT_FALSE(has_class({"bare.laz"}, 2));
+  EXPECT_TRUE(has_class({"bare.laz", "ground.laz"}, 2));
+  EXPECT_TRUE(has_class({"all.vpc"}, 2)) << "not looked into";
 }
 
 TEST_F(Clouds, ProductsHaveANameOfTheirOwn) {

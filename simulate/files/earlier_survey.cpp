@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulate/files/earlier_survey.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace swath::simulate {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 22> records{
+    "survey.toml",       "laser.csv",       "laser.npy",   "laser.las",        "laser.laz",     "sbet.out",
+    "smrmsg.out",        "trajectory.csv",  "imu.csv",     "gnss.csv",         "events_pc.csv", "events_marks.csv",
+    "loopstats",         "pps.log",         "control.csv", "check.csv",        "images.csv",    "image_points.csv",
+    "block_control.csv", "block_check.csv", "block.toml",  "camera_points.csv"};
+constexpr std::array<std::string_view, 4> of_formats{".csv", ".npy", ".las", ".laz"};
+
+/// A name that simulations write: one of the records, survey_FORMAT.toml.
+bool is_own(const std::string& name) {
+  if (std::find(records.begin(), records.end(), name) != records.end()) return true;
+  return std::any_of(of_formats.begin(), of_formats.end(),
+                     [&](std::string_view format) { return name == "survey_" + std::string(format.substr(1)) + ".toml"; });
+}
+
+}  // namespace
+
+EarlierSurvey::EarlierSurvey(const fs::path& folder) : folder_(folder) {
+  std::error_code ec;
+  if (!fs::is_regular_file(folder / "truth" / "simulation.json", ec)) return;
+  for (const fs::path& inside : {fs::path(), fs::path("truth")})
+    for (fs::directory_iterator at(folder / inside, ec), end; !ec && at != end; at.increment(ec)) {
+      const std::string name = at->path().filename().string();
+      if (!at->is_regular_file(ec) || (inside.empty() && !is_own(name))) continue;
+      if (const auto written = fs::last_write_time(at->path(), ec); !ec) files_[(inside / name).string()] = written;
+    }
+}
+
+std::vector<std::string> EarlierSurvey::remove_stale(const std::vector<fs::path>& inputs) const {
+  std::vector<std::string> out;
+  for (const auto& [name, written] : files_) {
+    std::error_code ec;
+    if (fs::last_write_time(folder_ / name, ec) != written || ec) continue;
+    const fs::path file = folder_ / name;
+    if (std::any_of(inputs.begin(), inputs.end(), [&](const fs::path& input) { return fs::equivalent(input, file, ec); })) continue;
+    if (fs::remove(folder_ / name, ec)) out.push_back(name);
+  }
+  return out;
+}
+
+}  // namespace swath::simulate

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulate/files/earlier_survey.h"
+
+#include <chrono>
+
+#include "tests/world/support.h"
+
+namespace swath::simulate {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+/// A file of an hour ago.
+void write_old(const fs::path& file) {
+  fs::create_directories(file.parent_path());
+  test::write_bytes(file, "old");
+  fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::hours(1));
+}
+
+TEST(EarlierSurvey, WhatIsNotWrittenAnewGoes) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"survey.toml", "laser.npy", "survey_las.toml", "laser.las", "my_survey.toml", "notes.txt", "out/laser.las",
+                           "sbet.out", "truth/simulation.json", "truth/trees.csv"})
+    write_old(folder / name);
+  const EarlierSurvey earlier(folder.path());
+  for (const char* name : {"survey.toml", "laser.npy", "truth/simulation.json"}) test::write_bytes(folder / name, "new");
+  EXPECT_EQ(earlier.remove_stale({folder / "sbet.out"}), (Names{"laser.las", "survey_las.toml", "truth/trees.csv"}));
+  for (const char* name : {"survey.toml", "laser.npy", "my_survey.toml", "notes.txt", "out/laser.las", "sbet.out"})
+    EXPECT_TRUE(fs::exists(folder / name)) << name;
+}
+
+TEST(EarlierSurvey, AFolderThatNoSimulationMadeStaysAsItIs) {
+  const test::TemporaryFolder folder;
+  write_old(folder / "laser.las");
+  EXPECT_EQ(EarlierSurvey(folder.path()).remove_stale(), Names{});
+  EXPECT_EQ(EarlierSurvey(folder / "absent").remove_stale(), Names{});
+  EXPECT_TRUE(fs::exists(folder / "laser.las"));
+}
+
+}  // namespace
+}  // namespace swath::simulate
