@@ -21,7 +21,9 @@ std::string correlation_csv(const OrientationCorrelation& correlation, const std
       "# crs: " + crs +
       "; covariance of the errors (estimated less true) of `image` (rows) and `other` (columns): east, north, up of the grid (m), "
       "rotation w (rad) about the body's axes forward, right, down, body_R_map = exp(w) body_R_map_true\n"
-      "# given the others of its rows, the errors of an image depend on no other image before it\nimage,other";
+      "# given the others of its rows, the errors of an image depend on no other image before it\n"
+      "# lever arm and boresight are not in here: their errors are those of all images, sigma.antenna and sigma.boresight of [[camera]]\n"
+      "image,other";
   for (int r = 0; r < 6; ++r)
     for (int c = 0; c < 6; ++c) out += "," + entry(r, c);
   out += "\n";
