@@ -151,13 +151,11 @@ std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajec
   return out;
 }
 
-OrientationCorrelation direct_correlation(const std::vector<DirectImage>& images, const trajectory::Trajectory& trajectory,
-                                          const DirectOptions& o) {
+void direct_correlation(const std::vector<DirectImage>& images, const trajectory::Trajectory& trajectory, const DirectOptions& o,
+                        const std::function<void(const CovariancePair&)>& take) {
   const trajectory::ErrorModel model(trajectory.data(), o.errors);
   const auto paired = static_cast<size_t>(o.correlated_images);
   const size_t at_once = std::max<size_t>(paired, 50);
-  OrientationCorrelation out;
-  for (const DirectImage& i : images) out.images.push_back(i.name);
   for (size_t begin = 0; begin < images.size(); begin += at_once) {
     const size_t first = begin - std::min(begin, paired), end = std::min(images.size(), begin + at_once);
     std::vector<double> times;
@@ -170,10 +168,9 @@ OrientationCorrelation direct_correlation(const std::vector<DirectImage>& images
         CovariancePair pair{static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), {}};
         pair.value = a.by_pose * C.block<6, 6>(row, column) * b.by_pose.transpose();
         if (i == j) pair.value += a.of_time;
-        out.pairs.push_back(pair);
+        take(pair);
       }
   }
-  return out;
 }
 
 std::string direct_images_csv(const std::vector<DirectImage>& images, const std::string& camera) {

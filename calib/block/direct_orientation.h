@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,7 +26,7 @@ struct DirectOptions {
   std::array<core::Metres, 3> lever_arm{};
   core::Radians sigma_boresight{};
   core::Metres sigma_lever_arm{};
-  int correlated_images = 30;
+  int correlated_images = 10;
   trajectory::ErrorModelOptions errors;
 };
 
@@ -40,7 +41,8 @@ void describe(DirectOptions& o, V& v) {
            "Sigma of its angles, common to all images; in a block sigma.boresight of [[camera]].");
   v.option("sigma_lever_arm", o.sigma_lever_arm, core::within(0, 10),
            "Sigma of its components, common to all images; in a block sigma.antenna of [[camera]].");
-  v.option("correlated_images", o.correlated_images, core::within(1, 1000), "Images before each one that its errors are paired with.");
+  v.option("correlated_images", o.correlated_images, core::within(0, 1000),
+           "Images before each one that its errors are paired with; 0: no file of them.");
   v.table("errors", o.errors, "Errors of trajectories that state no covariances between instants.");
 }
 
@@ -90,8 +92,8 @@ std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajec
 /// Covariances of each image with those before it, some of them: of the trajectory and each exposure's time. Lever arm and boresight, the
 /// same in all images, are not in them: an error that never decays is not a chain of few images; a block has it as an unknown of the
 /// camera.
-OrientationCorrelation direct_correlation(const std::vector<DirectImage>& images, const trajectory::Trajectory& trajectory,
-                                          const DirectOptions& options);
+void direct_correlation(const std::vector<DirectImage>& images, const trajectory::Trajectory& trajectory, const DirectOptions& options,
+                        const std::function<void(const CovariancePair&)>& take);
 
 /// The table that [images] of `swath block` takes: stations are the perspective centres, angles those of the body.
 std::string direct_images_csv(const std::vector<DirectImage>& images, const std::string& camera);
