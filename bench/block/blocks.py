@@ -6,6 +6,7 @@ and drift, control and check points. Independent of the program's own projection
     python3 bench/block/blocks.py control build/release/tools/swath       # 60 images, 8, 3 and 0 control points: check points
     python3 bench/block/blocks.py seeds build/release/tools/swath         # 20 seeds: errors over standard deviations
     python3 bench/block/blocks.py size build/release/tools/swath          # 10 000 images, a million image points: time and memory
+    python3 bench/block/blocks.py size build/release/tools/swath 100 100 10   # the same, stations correlated with 10 before each
 """
 import csv
 import json
@@ -295,7 +296,20 @@ def seeds(program, number=20):
         print(f"{kind}: error over sigma {math.sqrt(total / n):.3f} of {n}")
 
 
-def size(program, strips=100, images=100):
+def correlate(folder, images, paired, sigma, decay=100.0):
+    """Stations with errors that decay over time (s), each paired with those before it."""
+    with open(folder / "correlation.csv", "w") as f:
+        f.write("# crs: local\nimage,other," + ",".join(f"c{r}{c}" for r in range(1, 7) for c in range(1, 7)) + "\n")
+        for k, image in enumerate(images):
+            for other in images[max(0, k - paired):k + 1]:
+                share = math.exp(-abs(image["time"] - other["time"]) / decay)
+                entries = [f"{share * (sigma ** 2 if r < 3 else 1e-8):.12e}" if r == c else "0" for r in range(6) for c in range(6)]
+                f.write(f"{image['name']},{other['name']},{','.join(entries)}\n")
+    config = folder / "block.toml"
+    config.write_text(config.read_text().replace("[images]\n", '[images]\ncorrelation = "correlation.csv"\n'))
+
+
+def size(program, strips=100, images=100, paired=0):
     camera = Camera(50.0)
     height = 900.0
     base, apart = 0.4 * height * camera.columns * camera.pixel / 50.0, 0.7 * height * camera.rows * camera.pixel / 50.0
@@ -308,6 +322,8 @@ def size(program, strips=100, images=100):
         block.add(names[-1], a * base, b * apart)
     with tempfile.TemporaryDirectory() as made:
         block.write(Path(made), 0.0027, stations=0.08, control=names, sigma_control=0.03)
+        if paired:
+            correlate(Path(made), block.images, paired, 0.08)
         begin = time.monotonic()
         found = adjust(program, Path(made), *PLAIN)
         taken = time.monotonic() - begin

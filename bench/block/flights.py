@@ -31,6 +31,7 @@ technique = "marks"
 mount = "90 deg"
 boresight = ["0.31 deg", "-0.22 deg", "0.53 deg"]
 lever_arm = ["0.21 m", "-0.08 m", "0.34 m"]
+correlated_images = 30
 """
 
 

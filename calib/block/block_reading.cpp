@@ -371,6 +371,7 @@ ReadBlock read_block(const BlockConfig& config, const std::string& config_file) 
   OrientationCorrelation correlation;
   if (!config.images.correlation.empty()) {
     correlation = read_correlation(config.images.correlation);
+    expect_grid(correlation, config.crs, config.images.correlation.string());
     read.covariance = own_covariances(correlation, image_number, read.block.images.size());
   }
   add_stations(config, config_file, rows, read);

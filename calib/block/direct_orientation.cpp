@@ -95,7 +95,6 @@ class DirectSolver {
     Eigen::Matrix<double, 6, 1> by_time;
     by_time << grid_R_ned * ned_R_ecef * (pose.velocity + pose.ecef_R_body * pose.rate.cross(arm)), -pose.rate;
     out.errors.of_time = time_sigma * time_sigma * by_time * by_time.transpose();
-    out.errors.by_lever_arm.topRows<3>() = grid_R_ned * R;
     Matrix6 to_camera = Matrix6::Identity();
     to_camera.bottomRightCorner<3, 3>() = body_R_camera_.transpose();
     const Matrix6 A = out.errors.by_pose;
@@ -152,13 +151,11 @@ std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajec
   return out;
 }
 
-OrientationCorrelation direct_correlation(const std::vector<DirectImage>& images, const trajectory::Trajectory& trajectory,
-                                          const DirectOptions& o) {
+void direct_correlation(const std::vector<DirectImage>& images, const trajectory::Trajectory& trajectory, const DirectOptions& o,
+                        const std::function<void(const CovariancePair&)>& take) {
   const trajectory::ErrorModel model(trajectory.data(), o.errors);
   const auto paired = static_cast<size_t>(o.correlated_images);
   const size_t at_once = std::max<size_t>(paired, 50);
-  OrientationCorrelation out;
-  for (const DirectImage& i : images) out.images.push_back(i.name);
   for (size_t begin = 0; begin < images.size(); begin += at_once) {
     const size_t first = begin - std::min(begin, paired), end = std::min(images.size(), begin + at_once);
     std::vector<double> times;
@@ -169,13 +166,11 @@ OrientationCorrelation direct_correlation(const std::vector<DirectImage>& images
         const DirectErrors &a = images[i].errors, &b = images[j].errors;
         const auto row = 6 * static_cast<Eigen::Index>(i - first), column = 6 * static_cast<Eigen::Index>(j - first);
         CovariancePair pair{static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), {}};
-        pair.value = a.by_pose * C.block<6, 6>(row, column) * b.by_pose.transpose() +
-                     std::pow(o.sigma_lever_arm.value, 2) * a.by_lever_arm * b.by_lever_arm.transpose();
+        pair.value = a.by_pose * C.block<6, 6>(row, column) * b.by_pose.transpose();
         if (i == j) pair.value += a.of_time;
-        out.pairs.push_back(pair);
+        take(pair);
       }
   }
-  return out;
 }
 
 std::string direct_images_csv(const std::vector<DirectImage>& images, const std::string& camera) {

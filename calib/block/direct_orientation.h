@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,7 +26,7 @@ struct DirectOptions {
   std::array<core::Metres, 3> lever_arm{};
   core::Radians sigma_boresight{};
   core::Metres sigma_lever_arm{};
-  int correlated_images = 30;
+  int correlated_images = 10;
   trajectory::ErrorModelOptions errors;
 };
 
@@ -36,17 +37,19 @@ void describe(DirectOptions& o, V& v) {
   v.option("mount", o.mount, "Angle from the direction of flight to the image's x axis, clockwise from above.");
   v.option("boresight", o.boresight, "Roll, pitch, heading of the camera in the body, beside mount.");
   v.option("lever_arm", o.lever_arm, "IMU centre to perspective centre: forward, right, down.");
-  v.option("sigma_boresight", o.sigma_boresight, core::within(0, 1), "Sigma of each boresight angle, common to all images.");
-  v.option("sigma_lever_arm", o.sigma_lever_arm, core::within(0, 10), "Sigma of each component of the lever arm.");
-  v.option("correlated_images", o.correlated_images, core::within(1, 1000), "Images before each one that its errors are paired with.");
+  v.option("sigma_boresight", o.sigma_boresight, core::within(0, 1),
+           "Sigma of its angles, common to all images; in a block sigma.boresight of [[camera]].");
+  v.option("sigma_lever_arm", o.sigma_lever_arm, core::within(0, 10),
+           "Sigma of its components, common to all images; in a block sigma.antenna of [[camera]].");
+  v.option("correlated_images", o.correlated_images, core::within(0, 1000),
+           "Images before each one that its errors are paired with; 0: no file of them.");
   v.table("errors", o.errors, "Errors of trajectories that state no covariances between instants.");
 }
 
 /// How the errors of a perspective centre on the grid and of the body's rotation come about (axes of OrientationCorrelation).
 struct DirectErrors {
-  PoseCovariance by_pose = PoseCovariance::Zero();                                 ///< by north, east, down, roll, pitch, heading
-  PoseCovariance of_time = PoseCovariance::Zero();                                 ///< covariance by the exposure's own time
-  Eigen::Matrix<double, 6, 3> by_lever_arm = Eigen::Matrix<double, 6, 3>::Zero();  ///< common to all images
+  PoseCovariance by_pose = PoseCovariance::Zero();  ///< by north, east, down, roll, pitch, heading
+  PoseCovariance of_time = PoseCovariance::Zero();  ///< covariance by the exposure's own time
 };
 
 struct DirectImage {
@@ -86,10 +89,11 @@ Eigen::Matrix3d camera_mounting(core::Radians mount, const std::array<core::Radi
 std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajectory, const core::EventData& events, const core::Crs& crs,
                                             const DirectOptions& options, DirectFound& found);
 
-/// Covariances of each image with those before it, some of them: of the trajectory, each exposure's time and the lever arm. The boresight
-/// is not of the body.
-OrientationCorrelation direct_correlation(const std::vector<DirectImage>& images, const trajectory::Trajectory& trajectory,
-                                          const DirectOptions& options);
+/// Covariances of each image with those before it, some of them: of the trajectory and each exposure's time. Lever arm and boresight, the
+/// same in all images, are not in them: an error that never decays is not a chain of few images; a block has it as an unknown of the
+/// camera.
+void direct_correlation(const std::vector<DirectImage>& images, const trajectory::Trajectory& trajectory, const DirectOptions& options,
+                        const std::function<void(const CovariancePair&)>& take);
 
 /// The table that [images] of `swath block` takes: stations are the perspective centres, angles those of the body.
 std::string direct_images_csv(const std::vector<DirectImage>& images, const std::string& camera);

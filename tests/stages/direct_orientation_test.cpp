@@ -75,6 +75,14 @@ TEST(DirectOrientationStage, EachExposureWithinTheTrajectoryIsARowOfBothTables) 
   EXPECT_NEAR(pairs.number(1, roll), 1e-8 * std::exp(-2.0 / 200.0), 1e-12);
 }
 
+TEST(DirectOrientationStage, WithoutPairedImagesThereIsNoFileOfThem) {
+  Orientation o("correlated_images = 0\n");
+  o.expose({1002.0, 1004.0});
+  o.stage->run_survey(o.work.context, o.tally, o.findings);
+  EXPECT_TRUE(fs::exists(o.work.context.output / "images.csv"));
+  EXPECT_FALSE(fs::exists(o.work.context.output / "orientation_correlation.csv"));
+}
+
 TEST(DirectOrientationStage, WhatItNeedsIsNamedBeforeTheRun) {
   Orientation o;
   o.work.survey.events.clear();

@@ -11,6 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "io/text/binary_file.h"
+#include "io/text/output_file.h"
+
 namespace swath::calib {
 
 /// Errors, estimated less true: east, north, up of the grid (m), then the rotation w (rad) about the body's axes forward, right, down with
@@ -25,11 +28,30 @@ struct CovariancePair {
 struct OrientationCorrelation {
   std::vector<std::string> images;    ///< in the order of the chain
   std::vector<CovariancePair> pairs;  ///< by image; of each the last one is that with itself
+  std::string crs;                    ///< of the grid, as the file states it; empty where it does not
 };
 
-std::string correlation_csv(const OrientationCorrelation& correlation, const std::string& crs);
+/// Writes the file row by row.
+class CorrelationFile {
+ public:
+  CorrelationFile(const std::filesystem::path& file, const std::string& crs);
+  /// In the order of OrientationCorrelation::pairs.
+  void add(const std::string& image, const std::string& other, const PoseCovariance& value);
+  void commit();
 
-/// Throws core::Error with file and line: an image without a row with itself, a pair whose other image comes later or that is there twice.
+ private:
+  void flush();
+
+  io::OutputFile file_;
+  io::BinaryAppender to_;
+  std::string text_;
+};
+
+/// Throws core::Error with file and line: an image without a row with itself, a pair whose other image comes later or that is there twice,
+/// a covariance of an image with itself that is not symmetric.
 OrientationCorrelation read_correlation(const std::filesystem::path& file);
+
+/// Throws core::Error where the file states another grid than that of `crs` (heights do not matter).
+void expect_grid(const OrientationCorrelation& correlation, const std::string& crs, const std::string& file);
 
 }  // namespace swath::calib

@@ -17,8 +17,10 @@ void describe(DirectStageOptions& o, V& v) {
   describe(static_cast<calib::DirectOptions&>(o), v);
 }
 
-std::vector<std::string> direct_products(const DirectStageOptions&) {
-  return {"orientation_direct.csv", "images.csv", "orientation_correlation.csv"};
+std::vector<std::string> direct_products(const DirectStageOptions& o) {
+  std::vector<std::string> out{"orientation_direct.csv", "images.csv"};
+  if (o.correlated_images > 0) out.emplace_back("orientation_correlation.csv");
+  return out;
 }
 
 void expect_map(const Context& context, const DirectStageOptions&) {
@@ -37,8 +39,11 @@ calib::DirectFound orient_images(const trajectory::Trajectory& trajectory, const
   for (const calib::DirectImage& i : images) table += calib::orientation_line(i.name, o.camera, i.strip, i.orientation);
   io::write_text_file(to.folder / "orientation_direct.csv", table);
   io::write_text_file(to.folder / "images.csv", calib::direct_images_csv(images, o.camera));
-  io::write_text_file(to.folder / "orientation_correlation.csv",
-                      calib::correlation_csv(calib::direct_correlation(images, trajectory, o), context.survey.crs));
+  if (o.correlated_images == 0) return found;
+  calib::CorrelationFile file(to.folder / "orientation_correlation.csv", context.survey.crs);
+  calib::direct_correlation(images, trajectory, o,
+                            [&](const calib::CovariancePair& p) { file.add(images[p.image].name, images[p.other].name, p.value); });
+  file.commit();
   return found;
 }
 

@@ -135,6 +135,12 @@ TEST(BlockReading, ImagesOfAnotherSizeThanTheCamerasAreRefused) {
   EXPECT_NE(fault_of(file).find("several cameras, and the file does not say which took image a"), std::string::npos) << fault_of(file);
 }
 
+void write(const std::filesystem::path& file, const OrientationCorrelation& correlation, const std::string& crs) {
+  CorrelationFile to(file, crs);
+  for (const CovariancePair& p : correlation.pairs) to.add(correlation.images[p.image], correlation.images[p.other], p.value);
+  to.commit();
+}
+
 /// A file of correlations takes the place of all sigmas of stations and angles.
 TEST(BlockReading, CorrelationsMakeAChain) {
   const test::TemporaryFolder folder;
@@ -151,7 +157,7 @@ TEST(BlockReading, CorrelationsMakeAChain) {
     if (i > 0) correlation.pairs.push_back({i, i - 1, 0.6 * C});
     correlation.pairs.push_back({i, i, C});
   }
-  std::ofstream(folder / "correlation.csv") << correlation_csv(correlation, "local");
+  write(folder / "correlation.csv", correlation, "local");
   BlockConfig config = test::read_made(file);
   config.images.correlation = folder / "correlation.csv";
   const ReadBlock read = read_block(config, file);
@@ -168,12 +174,19 @@ TEST(BlockReading, CorrelationsMakeAChain) {
   config.images.angle_use = ImageValues::start;
   EXPECT_EQ(read_block(config, file).block.chain[1].root.rows(), 3);
   correlation.images[3] = "other";
-  std::ofstream(folder / "correlation.csv") << correlation_csv(correlation, "local");
+  write(folder / "correlation.csv", correlation, "local");
   try {
     read_block(config, file);
     FAIL();
   } catch (const core::Error& e) {
     EXPECT_EQ(std::string(e.what()), "image " + m.block.images[3].name + " is not in the file of correlations");
+  }
+  write(folder / "correlation.csv", correlation, "EPSG:32632");
+  try {
+    read_block(config, file);
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_EQ(std::string(e.what()), "its covariances are on the grid of EPSG:32632, the block is on that of local");
   }
   config.images.correlation.clear();
   EXPECT_TRUE(read_block(config, file).block.chain.empty());
