@@ -57,14 +57,19 @@ std::vector<std::string> config_names() {
 
 fs::path find_config(const fs::path& given) {
   if (is_config_file(given)) return given;
-  std::error_code ec;
-  if (fs::is_directory(given, ec))
-    throw core::usage_error("is a folder, and a config is needed: a pipeline, .toml or .json", given.string(),
-                            "a survey goes with it by --survey FOLDER/survey.toml; clouds go to `swath dtm`, `classify`, `qc`");
-  if (given.empty() || given.has_parent_path() || given.has_extension())
+  const auto expect_no_folder = [&given] {
+    std::error_code ec;
+    if (fs::is_directory(given, ec))
+      throw core::usage_error("is a folder, and a config is needed: a pipeline, .toml or .json", given.string(),
+                              "a survey goes with it by --survey FOLDER/survey.toml; clouds go to `swath dtm`, `classify`, `qc`");
+  };
+  if (given.empty() || given.has_parent_path() || given.has_extension()) {
+    expect_no_folder();
     throw core::usage_error("no such file", given.string(), "check the name of the config");
+  }
   for (const fs::path& folder : config_folders())
     if (const fs::path file = folder / (given.string() + ".toml"); is_config_file(file)) return file;
+  expect_no_folder();
   const std::vector<std::string> known = config_names();
   const std::string near = core::nearest(given.string(), known);
   throw core::usage_error("no such file, and no config of that name comes with the program", given.string(),
