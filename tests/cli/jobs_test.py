@@ -200,7 +200,7 @@ class Shells(unittest.TestCase):
         """What bash offers behind these words."""
         script = swath("completion", "bash").stdout + (
             f'\nCOMP_WORDS=({" ".join(map(repr, words))}); COMP_CWORD={len(words) - 1}; _swath; printf "%s\\n" "${{COMPREPLY[@]}}"\n')
-        done = subprocess.run(["bash", "--norc", "-u", "-c", script], capture_output=True, text=True, cwd=SOURCE / "configs")
+        done = subprocess.run(["bash", "--norc", "-u", "-s"], input=script, capture_output=True, text=True, cwd=SOURCE / "configs")
         self.assertEqual(done.stderr, "")
         return done.stdout.split()
 
