@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Flat triangles are the known fault of a TIN of contours. Thibault and Gold 2000 put the skeleton of the flat part in their place, with heights
-// by distance. Here the part is opened and bends as little as it can: a valley goes on falling, a ridge or top goes on rising over its last
-// contour.
+// Flat triangles are the known fault of a TIN of contours. Thibault and Gold 2000 put the skeleton of the flat part in their place, with
+// heights by distance. Here the part is opened and bends as little as it can: a valley goes on falling, a ridge or top goes on rising over
+// its last contour.
 #include "terrain/contours/map_surface.h"
 
 #include <algorithm>
