@@ -11,6 +11,7 @@
 #include "io/text/value_file.h"
 #include "io/vector/control.h"
 #include "quality/mark_faults.h"
+#include "quality/roof_edges.h"
 #include "report/volumes.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/quality/mark_files.h"
@@ -52,6 +53,9 @@ struct CheckPointFindings {
   std::vector<CoverAccuracy> accuracy{};
   std::optional<MapClassFound> map{};
   std::vector<quality::LineAtMarks> lines{};
+  std::optional<std::string> no_planimetry{};
+  std::optional<quality::RoofPlanimetry> planimetry{};
+  std::vector<quality::RoofShift> roofs{};
   std::vector<quality::NamedFault> named{};
 };
 
@@ -60,7 +64,7 @@ void describe(const CheckPointFindings& r, V& v) {
   using core::metres;
   v.result("check_points", r.none, core::plain().in_summary(), "Why nothing was compared.");
   v.result("marks", r.marks, core::plain().only_if(!r.none), "Check points of the survey.");
-  v.result("corners", r.corners, core::if_any(), "Corners of targets among them, which are not compared: calib.adjust does that.");
+  v.result("corners", r.corners, core::if_any(), "Corners of targets among them: the edges of roofs are compared.");
   v.result("outside", r.outside, core::plain().only_if(!r.outside.empty()), "Check points where the survey has no points at all.");
   v.result("unread", r.unread, core::plain().only_if(!r.unread.empty()), "Check points without ground points around them.");
   v.result("nva_m", r.nva, metres().in_summary().limited_by("nva"),
@@ -70,12 +74,16 @@ void describe(const CheckPointFindings& r, V& v) {
   v.tables("accuracy", r.accuracy, "Errors by product and cover.");
   v.table("map", r.map, "Class of a map made from the survey.");
   v.tables("lines", r.lines, "Flight lines against the check points that they show.");
+  v.result("no_planimetry", r.no_planimetry, "Why no place is compared, where there are check targets.");
+  v.table("planimetry", r.planimetry, "Places by the edges of roofs that are check targets.");
+  v.tables("roofs", r.roofs, "Roofs of the cloud less targets.");
   v.tables("named", r.named, "Whose fault the largest differences are.");
 }
 
 struct Marks {
   std::vector<quality::CheckMark> list;
-  std::uint64_t corners = 0;  ///< of targets: calib.adjust compares them
+  std::vector<quality::RoofTarget> targets{};
+  std::uint64_t corners = 0;  ///< of targets
 };
 
 Marks marks_of(const Context& context) {
@@ -84,13 +92,15 @@ Marks marks_of(const Context& context) {
   const core::Transform to_map(core::wgs84_ecef(), context.crs);
   for (const io::ControlPoint& p : io::read_control(context.survey, of_others)) {
     if (p.use != io::ControlUse::check) continue;
-    if (!p.target.empty()) {
-      ++out.corners;
+    const Eigen::Vector3d map = to_map(p.ecef);
+    const Eigen::Vector3d at(map.x() * context.unit, map.y() * context.unit, map.z() * context.vertical_unit);
+    if (p.target.empty()) {
+      out.list.push_back({p.name, p.cover, p.place, at, p.sigma_v});
       continue;
     }
-    const Eigen::Vector3d map = to_map(p.ecef);
-    out.list.push_back(
-        {p.name, p.cover, p.place, {map.x() * context.unit, map.y() * context.unit, map.z() * context.vertical_unit}, p.sigma_v});
+    ++out.corners;
+    if (out.targets.empty() || out.targets.back().name != p.target) out.targets.push_back({p.target, {}, p.sigma_h});
+    out.targets.back().corners.push_back(at);
   }
   return out;
 }
@@ -106,14 +116,16 @@ fs::path readings_file(const fs::path& folder, TileKey key) { return piece_file(
 
 void read_tile(const TileJob& job, const Context& context, const CheckPointOptions& o, RunCache& cache) {
   std::vector<quality::MarkReading> readings;
+  std::vector<quality::EdgeReturn> edges;
   if (!check_files(context.survey).empty() && !context.crs.empty()) {
     const Marks& marks = cache.get([&] { return marks_of(context); });
     std::vector<size_t> here;
     for (size_t m = 0; m < marks.list.size(); ++m)
       if (job.box.holds(marks.list[m].at.x(), marks.list[m].at.y())) here.push_back(m);
     readings = quality::read_marks(job.block, marks.list, here, o.radius.value, o.surface);
+    edges = quality::edge_returns(job.block, job.own, marks.targets);
   }
-  write_rows(readings_file(job.folder, job.key), readings);
+  write_rows(readings_file(job.folder, job.key), readings, edges);
 }
 
 /// What the readings of its lines say of each mark: differences weighted by their points, of sigma and slope the largest.
@@ -197,9 +209,18 @@ void name_records(const MergeJob& job, const Context& context, const Marks& mark
   if (!twice.empty())
     found.named.push_back(
         {"check.names", std::to_string(twice.size()) + " names stand for several check points: " + shown({twice.begin(), twice.end()})});
-  if (compared < fewest_marks_judged)
+  if (compared < fewest_marks_judged && (all > 0 || marks.targets.empty()))
     found.named.push_back({"check.few", std::to_string(compared) + " of " + std::to_string(all) +
                                             " check points could be compared, fewer than 3: no accuracy is stated by them"});
+}
+
+void judge_planimetry(const Marks& marks, const std::vector<quality::EdgeReturn>& edges, CheckPointFindings& found) {
+  if (marks.targets.empty()) return;
+  found.roofs = quality::roof_shifts(marks.targets, edges);
+  if (found.roofs.empty())
+    found.no_planimetry = "none of " + std::to_string(marks.targets.size()) + " check targets has three edges that the points show";
+  else
+    found.planimetry = quality::planimetry_of(marks.targets, found.roofs);
 }
 
 void judge_accuracy(const Marks& marks, const std::vector<MarkFound>& at, const CheckPointOptions& o, CheckPointFindings& found) {
@@ -222,13 +243,15 @@ CheckPointFindings judge_points(const MergeJob& job, const Context& context, con
   }
   const Marks& marks = cache.get([&] { return marks_of(context); });
   std::vector<quality::MarkReading> readings;
-  for (const TileKey key : job.tiles) read_rows(readings_file(job.folder, key), readings);
+  std::vector<quality::EdgeReturn> edges;
+  for (const TileKey key : job.tiles) read_rows(readings_file(job.folder, key), readings, edges);
   std::sort(readings.begin(), readings.end(),
             [](const auto& a, const auto& b) { return std::pair(a.mark, a.line) < std::pair(b.mark, b.line); });
   const std::vector<MarkFound> at = found_at(job, context, marks, readings);
   found.marks = marks.list.size();
   found.corners = marks.corners;
   name_records(job, context, marks, at, found);
+  judge_planimetry(marks, edges, found);
   judge_accuracy(marks, at, o, found);
   quality::MarkFaults faults = quality::find_faults(marks.list, readings);
   found.lines = std::move(faults.lines);
