@@ -11,8 +11,6 @@
 namespace swath::stages {
 namespace {
 
-using terrain::Hazard;
-
 constexpr double vertex_step = 2.0;     // m along a conductor
 constexpr size_t drawn_returns = 6000;  // of each kind on a sheet
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
