@@ -17,12 +17,18 @@ using test::add_point;
 
 bool is(const core::Block& b, size_t p, std::uint16_t f) { return b.flags[p] & f; }
 
-TEST(Noise, IsolatedPointsAreThoseOfTheDefinition) {
+/// 1500 points at random in a cube of 60 m.
+core::Block scattered() {
   core::Block b;
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(0.0, 60.0);
   core::resize(b, 1500);
   for (size_t p = 0; p < b.size(); ++p) b.x[p] = place(random), b.y[p] = place(random), b.z[p] = place(random);
+  return b;
+}
+
+TEST(Noise, IsolatedPointsAreThoseOfTheDefinition) {
+  core::Block b = scattered();
   NoiseOptions o;
   o.low_group = 0;
   const NoiseCounts n = flag_noise(b, b.size(), o);
@@ -47,11 +53,7 @@ TEST(Noise, IsolatedPointsAreThoseOfTheDefinition) {
 }
 
 TEST(Noise, WithoutWideningTheBallAloneDecides) {
-  core::Block b;
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> place(0.0, 60.0);
-  core::resize(b, 1500);
-  for (size_t p = 0; p < b.size(); ++p) b.x[p] = place(random), b.y[p] = place(random), b.z[p] = place(random);
+  core::Block b = scattered();
   NoiseOptions o;
   o.low_group = 0;
   o.widen = false;

@@ -115,22 +115,27 @@ TEST(ChainCost, ErrorsAreThoseOfStationAndAttitude) {
   EXPECT_LT((e.tail<3>() - turn).norm(), 1e-9);
 }
 
+/// Derivatives by all parameters against central differences.
+void expect_derivatives(Two& t, Eigen::Index parameters) {
+  MatrixXd J;
+  t.residual(t.step, t.members, &J);
+  ASSERT_EQ(J.cols(), parameters);
+  constexpr double step = 1e-6;
+  for (size_t k = 0; k < t.places.size(); ++k) {
+    const double at = *t.places[k];
+    *t.places[k] = at + step;
+    const VectorXd more = t.residual(t.step, t.members);
+    *t.places[k] = at - step;
+    const VectorXd less = t.residual(t.step, t.members);
+    *t.places[k] = at;
+    EXPECT_LT((J.col(static_cast<Eigen::Index>(k)) - (more - less) / (2 * step)).norm(), 1e-7) << k;
+  }
+}
+
 TEST(ChainCost, DerivativesAreThoseOfDifferences) {
   for (const bool with_drift : {false, true}) {
     Two t(with_drift);
-    MatrixXd J;
-    t.residual(t.step, t.members, &J);
-    ASSERT_EQ(J.cols(), with_drift ? 24 : 18);
-    constexpr double step = 1e-6;
-    for (size_t k = 0; k < t.places.size(); ++k) {
-      const double at = *t.places[k];
-      *t.places[k] = at + step;
-      const VectorXd more = t.residual(t.step, t.members);
-      *t.places[k] = at - step;
-      const VectorXd less = t.residual(t.step, t.members);
-      *t.places[k] = at;
-      EXPECT_LT((J.col(static_cast<Eigen::Index>(k)) - (more - less) / (2 * step)).norm(), 1e-7) << k;
-    }
+    expect_derivatives(t, with_drift ? 24 : 18);
   }
 }
 
@@ -149,19 +154,7 @@ TEST(ChainCost, Datum) {
   const Matrix3d observed = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(t.members[0].observed_local_R_camera->data());
   const Vector3d w = core::log_so3(R * turn.transpose() * observed * core::exp_so3(-Vector3d(t.boresight.data())));
   EXPECT_LT((e.tail<3>() - w).norm(), 1e-9);
-  MatrixXd J;
-  t.residual(t.step, t.members, &J);
-  ASSERT_EQ(J.cols(), 25);
-  constexpr double step = 1e-6;
-  for (size_t k = 0; k < t.places.size(); ++k) {
-    const double at = *t.places[k];
-    *t.places[k] = at + step;
-    const VectorXd more = t.residual(t.step, t.members);
-    *t.places[k] = at - step;
-    const VectorXd less = t.residual(t.step, t.members);
-    *t.places[k] = at;
-    EXPECT_LT((J.col(static_cast<Eigen::Index>(k)) - (more - less) / (2 * step)).norm(), 1e-7) << k;
-  }
+  expect_derivatives(t, 25);
 }
 
 TEST(ChainCost, StationsAlone) {
