@@ -194,20 +194,17 @@ TEST(NetworkAdjust, RoughSurfacesRaiseTheirSigmaAndAreNotRejected) {
     return rough * std::normal_distribution<double>()(random);
   });
   core::Tally tally;
-  {
-    constexpr int rounds = 1;  // the sigma settles within it
-    NetworkOptions o = quick();
-    o.rounds = rounds;
-    const AdjustedNetwork network = adjust_network(made.survey, made.left, o, tally);
-    std::printf("%d rounds: surface %.4f m, displaced %llu, left out %llu of %zu\n", rounds, network.surface_sigma,
-                static_cast<unsigned long long>(network.displaced), static_cast<unsigned long long>(network.left_out),
-                network.after.size());
-    EXPECT_TRUE(network.surface_estimated);
-    EXPECT_GT(network.surface_sigma, 0.6 * rough);  // planes across the border of two cells have less
-    EXPECT_LT(network.surface_sigma, 1.2 * rough);
-    EXPECT_LT(static_cast<double>(network.displaced), 0.02 * static_cast<double>(network.after.size()));
-    EXPECT_EQ(sigma_of(network, "surface").factor, network.surface_sigma / 0.003);
-  }
+  constexpr int rounds = 1;  // the sigma settles within it
+  NetworkOptions o = quick();
+  o.rounds = rounds;
+  const AdjustedNetwork network = adjust_network(made.survey, made.left, o, tally);
+  std::printf("%d rounds: surface %.4f m, displaced %llu, left out %llu of %zu\n", rounds, network.surface_sigma,
+              static_cast<unsigned long long>(network.displaced), static_cast<unsigned long long>(network.left_out), network.after.size());
+  EXPECT_TRUE(network.surface_estimated);
+  EXPECT_GT(network.surface_sigma, 0.6 * rough);  // planes across the border of two cells have less
+  EXPECT_LT(network.surface_sigma, 1.2 * rough);
+  EXPECT_LT(static_cast<double>(network.displaced), 0.02 * static_cast<double>(network.after.size()));
+  EXPECT_EQ(sigma_of(network, "surface").factor, network.surface_sigma / 0.003);
 }
 
 TEST(NetworkAdjust, OneLineAloneIsRefusedWithWhatWasSought) {

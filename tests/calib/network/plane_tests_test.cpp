@@ -83,22 +83,20 @@ TEST(PlaneTests, ResidualsAreAsLargeAsTheirRedundancySays) {
 }
 
 TEST(PlaneTests, TheSurfacesSigmaIsFound) {
-  {
-    constexpr double stated = 0.02;
-    double variance = 0;
-    constexpr int flights = 4, many = 12;
-    for (std::uint64_t seed = 1; seed <= flights; ++seed) {
-      Known k(seed, 0.008, stated, 0.0, many);
-      EXPECT_TRUE(surface_is_known(k.tests));
-      for (int i = 0; i < 8; ++i) {
-        if (!update_surface(k.planes, k.tests)) break;
-        k.step();
-      }
-      variance += k.planes.surface() * k.planes.surface() / flights;
+  constexpr double stated = 0.02;
+  double variance = 0;
+  constexpr int flights = 4, many = 12;
+  for (std::uint64_t seed = 1; seed <= flights; ++seed) {
+    Known k(seed, 0.008, stated, 0.0, many);
+    EXPECT_TRUE(surface_is_known(k.tests));
+    for (int i = 0; i < 8; ++i) {
+      if (!update_surface(k.planes, k.tests)) break;
+      k.step();
     }
-    std::printf("stated %.3f m: found %.4f m\n", stated, std::sqrt(variance));
-    EXPECT_NEAR(std::sqrt(variance), 0.008, 0.0016);
+    variance += k.planes.surface() * k.planes.surface() / flights;
   }
+  std::printf("stated %.3f m: found %.4f m\n", stated, std::sqrt(variance));
+  EXPECT_NEAR(std::sqrt(variance), 0.008, 0.0016);
 }
 
 TEST(PlaneTests, AFewDegreesOfFreedomLeaveTheSurfacesSigmaAsStated) {
