@@ -83,9 +83,7 @@ AdjustFindings found_in(const calib::Calibrated& c) {
   return out;
 }
 
-std::vector<std::string> adjust_products(const AdjustStageOptions&) {
-  return {"calibration.json", "report.html", "residuals.csv", "corrections.csv", "planes.csv", "sections.csv", "figures", "differences"};
-}
+std::vector<std::string> adjust_products(const AdjustStageOptions&) { return with_report({"calibration.json"}); }
 
 AdjustFindings adjust_flight(const Context& context, const trajectory::Trajectory& trajectory, const georef::ShotStream& shots,
                              const AdjustStageOptions& o, const Output& to, const core::OnProgress& progress, core::Tally& tally) {

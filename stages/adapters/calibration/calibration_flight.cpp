@@ -32,6 +32,12 @@ calib::ReportOrigin origin_of(const Context& context, const std::vector<calib::F
 
 }  // namespace
 
+std::vector<std::string> with_report(std::vector<std::string> own) {
+  for (const char* name : {"report.html", "residuals.csv", "corrections.csv", "planes.csv", "sections.csv", "figures", "differences"})
+    own.emplace_back(name);
+  return own;
+}
+
 calib::CalibrationReport report_on(const Context& context, const std::vector<calib::FlownLine>& lines) {
   calib::CalibrationReport report;
   report.survey = context.survey.name;

@@ -25,16 +25,12 @@
 namespace swath::stages {
 namespace {
 
-struct NetworkStageOptions : calib::NetworkOptions {
-  calib::LineHeightOptions differences;
-  int sections = 4;
-};
+struct NetworkStageOptions : calib::NetworkOptions, FlightViewOptions {};
 
 template <class V>
 void describe(NetworkStageOptions& o, V& v) {
   describe(static_cast<calib::NetworkOptions&>(o), v);
-  v.table("differences", o.differences, "Maps of the differences of overlapping lines.");
-  v.option("sections", o.sections, core::within(0, 50), "Cross sections drawn in the report.");
+  describe(static_cast<FlightViewOptions&>(o), v);
 }
 
 struct ValueRow {
@@ -169,7 +165,7 @@ core::SensorSigma sigma_of(const calib::AdjustedNetwork& n, core::SensorSigma s)
 }
 
 std::vector<std::string> network_products(const NetworkStageOptions&) {
-  return {"report.html", "network.json", "calibration.json", "adjustment.json"};
+  return with_report({"network.json", "calibration.json", "adjustment.json"});
 }
 
 void expect_spec(const Context& context, const NetworkStageOptions&) { require_imu_spec(context.survey, "calib.network"); }

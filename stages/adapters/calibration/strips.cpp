@@ -218,9 +218,7 @@ struct StripStage {
   }
 };
 
-std::vector<std::string> strip_products(const StripStageOptions&) {
-  return {"strips.json", "report.html", "residuals.csv", "corrections.csv", "planes.csv", "sections.csv", "figures", "differences"};
-}
+std::vector<std::string> strip_products(const StripStageOptions&) { return with_report({"strips.json"}); }
 
 Corrections correct_strips(const Context& context, const trajectory::Trajectory& flown, const georef::ShotStream& shots,
                            const GeometryDoubt* doubt, const StripStageOptions& o, const Output& to, const core::OnProgress& progress,
