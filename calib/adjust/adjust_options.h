@@ -97,11 +97,18 @@ struct SnoopingOptions {
   double share = 0.1;
 };
 
+/// `use`, `share`: what is tested, and of what the share may be left out.
+template <class V>
+void describe_snooping(SnoopingOptions& o, V& v, const char* use, const char* share) {
+  v.option("use", o.use, use, "Baarda1968");
+  v.option("alpha", o.alpha, core::within(1e-9, 0.1), "Probability of a false alarm in one test.");
+  v.option("share", o.share, core::within(0, 0.5), share);
+}
+
 template <class V>
 void describe(SnoopingOptions& o, V& v) {
-  v.option("use", o.use, "Test each plane in each line, and each control point, for a gross displacement, and leave it out.", "Baarda1968");
-  v.option("alpha", o.alpha, core::within(1e-9, 0.1), "Error of the first kind of one test.");
-  v.option("share", o.share, core::within(0, 0.5), "Greatest share of the groups that may be left out, and of the control points.");
+  describe_snooping(o, v, "Test each plane in each line, and each control point, for a gross displacement, and leave it out.",
+                    "Maximum share of the groups that may be left out, and of the control points.");
 }
 
 /// Which variances are estimated from the residuals.

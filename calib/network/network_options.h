@@ -10,17 +10,12 @@
 namespace swath::calib {
 
 /// Test of displacements of single groups: one line's returns on one plane.
-struct GroupTestOptions {
-  bool use = true;
-  double alpha = 0.001;
-  double share = 0.1;
-};
+struct GroupTestOptions : SnoopingOptions {};
 
 template <class V>
 void describe(GroupTestOptions& o, V& v) {
-  v.option("use", o.use, "Test each plane in each line for a displacement, and leave it out.", "Baarda1968");
-  v.option("alpha", o.alpha, core::within(1e-9, 0.1), "Probability of a false alarm in one test.");
-  v.option("share", o.share, core::within(0, 0.5), "Maximum share of the groups that the test may leave out.");
+  describe_snooping(o, v, "Test each plane in each line for a displacement, and leave it out.",
+                    "Maximum share of the groups that the test may leave out.");
 }
 
 struct NetworkOptions {
