@@ -18,7 +18,8 @@ struct NavigationPrior {
 };
 NavigationPrior prior_of(const trajectory::SmoothedFlight& flight);
 
-enum class NavigationKind { start, imu, position, velocity, standstill, wheels };
+/// fix_error: rows of a passage, the last three where the fixes' correlated error is an unknown; each_navigation() gives them with `imu`.
+enum class NavigationKind { start, imu, fix_error, position, velocity, standstill, wheels };
 
 /// One observation, linearised: its kind, the derivatives by nodes, its weight, and what is left of it.
 using NavigationVisit = std::function<void(NavigationKind kind, const std::vector<NetworkNormals::Part>& parts,

@@ -37,27 +37,18 @@ std::vector<NetworkNormals::Part> last_rows(const std::vector<NetworkNormals::Pa
   return out;
 }
 
-enum Kind { start, imu, fix_error, position, velocity, standstill, wheels, navigation_kinds };
-constexpr std::array<const char*, navigation_kinds> keys{"start",         "imu",        "gnss_correlated", "gnss_position",
-                                                         "gnss_velocity", "standstill", "wheels"};
-
-Kind kind_of(NavigationKind k) {
-  switch (k) {
-    case NavigationKind::start:
-      return start;
-    case NavigationKind::imu:
-      return imu;
-    case NavigationKind::position:
-      return position;
-    case NavigationKind::velocity:
-      return velocity;
-    case NavigationKind::standstill:
-      return standstill;
-    case NavigationKind::wheels:
-      break;
-  }
-  return wheels;
-}
+struct Name {
+  const char *key, *words;
+};
+/// In the order of NavigationKind.
+constexpr std::array<Name, 7> names{{{"start", "start of the navigation"},
+                                     {"imu", "IMU"},
+                                     {"gnss_correlated", "GNSS, error correlated in time"},
+                                     {"gnss_position", "GNSS position"},
+                                     {"gnss_velocity", "GNSS velocity"},
+                                     {"standstill", "standstill"},
+                                     {"wheels", "wheels"}}};
+constexpr auto imu = static_cast<size_t>(NavigationKind::imu), fix_error = static_cast<size_t>(NavigationKind::fix_error);
 
 void add(KindSums& sums, const std::vector<NetworkNormals::Part>& parts, const MatrixXd& W, const VectorXd& left, const Network& network) {
   sums.observations += static_cast<std::uint64_t>(left.size());
@@ -82,10 +73,10 @@ KindSums start_values(const Network& network, const std::vector<double>& apriori
 }  // namespace
 
 std::vector<NetworkComponent> components_of(const Network& network, const PlaneTests& tests, const std::vector<double>& apriori) {
-  std::array<KindSums, navigation_kinds> sums;
+  std::array<KindSums, names.size()> sums;
   const Eigen::Index fixes = network.has_fix_error() ? 3 : 0;
   network.each([&](NavigationKind k, const std::vector<NetworkNormals::Part>& parts, const MatrixXd& W, const VectorXd& left) {
-    if (k != NavigationKind::imu) return add(sums[kind_of(k)], parts, W, left, network);
+    if (k != NavigationKind::imu) return add(sums[static_cast<size_t>(k)], parts, W, left, network);
     const Eigen::Index own = left.size() - fixes;
     sums[imu].observations += static_cast<std::uint64_t>(own);
     sums[imu].squares += left.head(own).dot(W.topLeftCorner(own, own) * left.head(own));
@@ -103,15 +94,15 @@ std::vector<NetworkComponent> components_of(const Network& network, const PlaneT
   sums[imu].redundancy = all - others;
 
   std::vector<NetworkComponent> out;
-  const auto put = [&out](const char* key, const KindSums& s) {
+  const auto put = [&out](const Name& name, const KindSums& s) {
     if (s.observations == 0) return;
     const double factor = s.redundancy < least_freedom ? std::numeric_limits<double>::quiet_NaN() : std::sqrt(s.squares / s.redundancy);
-    out.push_back({key, s.observations, s.redundancy, factor});
+    out.push_back({name.key, name.words, s.observations, s.redundancy, factor});
   };
-  for (size_t k = 0; k < sums.size(); ++k) put(keys[k], sums[k]);
-  put("planes", tests.means);
-  put("returns", tests.returns);
-  put("control", tests.control);
+  for (size_t k = 0; k < sums.size(); ++k) put(names[k], sums[k]);
+  put({"planes", "lines on planes, mean distances"}, tests.means);
+  put({"returns", "returns about the mean of their line on a plane"}, tests.returns);
+  put({"control", "surveyed points"}, tests.control);
   return out;
 }
 

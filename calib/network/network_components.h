@@ -12,7 +12,8 @@
 namespace swath::calib {
 
 struct NetworkComponent {
-  std::string kind;  ///< key
+  std::string kind;   ///< key
+  std::string words;  ///< for people
   std::uint64_t observations = 0;
   double redundancy = 0.0;  ///< degrees of freedom that its residuals have
   double factor = 0.0;      ///< sigmas as the residuals show them over those that were used; NaN with less than 3 degrees of freedom

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "calib/adjust/diagnosis.h"
@@ -99,21 +98,6 @@ void put_values(const AdjustedNetwork& n, Adjustment& a) {
   a.correlation = scale.asDiagonal() * n.covariance * scale.asDiagonal();
 }
 
-std::string in_words(const std::string& kind) {
-  static const std::map<std::string, std::string> words{{"start", "start of the navigation"},
-                                                        {"imu", "IMU"},
-                                                        {"gnss_correlated", "GNSS, error correlated in time"},
-                                                        {"gnss_position", "GNSS position"},
-                                                        {"gnss_velocity", "GNSS velocity"},
-                                                        {"standstill", "standstill"},
-                                                        {"wheels", "wheels"},
-                                                        {"planes", "lines on planes, mean distances"},
-                                                        {"returns", "returns about the mean of their line on a plane"},
-                                                        {"control", "surveyed points"}};
-  const auto found = words.find(kind);
-  return found == words.end() ? kind : found->second;
-}
-
 ReportSection kinds_of(const AdjustedNetwork& n) {
   ReportSection s;
   s.heading = "Kinds of observation";
@@ -123,7 +107,7 @@ ReportSection kinds_of(const AdjustedNetwork& n) {
       "the smoother gave them; those of ranges, angles and surfaces are listed with the adjustment."};
   report::Table t{"kinds", "Residuals by kind", {{"kind", false}, {"observations"}, {"redundancy"}, {"factor on the sigma"}}, {}, {}};
   for (const NetworkComponent& c : n.components)
-    t.rows.push_back({in_words(c.kind), report::count_text(c.observations), number_text(c.redundancy, 1), number_text(c.factor, 2)});
+    t.rows.push_back({c.words, report::count_text(c.observations), number_text(c.redundancy, 1), number_text(c.factor, 2)});
   s.tables.push_back(std::move(t));
   return s;
 }

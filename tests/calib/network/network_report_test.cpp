@@ -48,7 +48,7 @@ AdjustedNetwork made() {
   n.after = {{0, 0, 0.002, 0.003, 1.0, 40}, {0, 1, -0.002, 0.003, 1.0, 40}};
   n.tests.group = {{0.7, 0.4, 0.005}, {-0.7, 0.4, -0.005}};
   n.tests.plane_sigma = {Eigen::Vector3d(0.01, 1e-3, 1e-3)};
-  n.components = {{"imu", 1000, 10.0, 1.05}, {"gnss_position", 60, 50.0, 0.95}};
+  n.components = {{"imu", "IMU", 1000, 10.0, 1.05}, {"gnss_position", "GNSS position", 60, 50.0, 0.95}};
   n.sigmas = {{"range", 0.02, 1.3, 900.0, true}, {"surface", 0.003, 1.0, 4.0, false}};
   n.values = {{boresight_roll, 0.001, 2e-4, 0.0012, 1e-4}};
   n.calibration.roll = core::Radians(0.0012);
