@@ -17,6 +17,7 @@ struct Kind {
   double scale;
   const char* unit;
 };
+constexpr std::string_view level_limit = "quality_level";
 constexpr std::array<Kind, 11> kinds{{{"outside", "returns that the trajectory does not cover", 100.0, "%"},
                                       {"voids", "holes in the DTM", 100.0, "%"},
                                       {"truth_rms", "3D rms of the points against truth", 1.0, "m"},
@@ -27,7 +28,7 @@ constexpr std::array<Kind, 11> kinds{{{"outside", "returns that the trajectory d
                                       {"nva", "RMSE at open check points, with their own error", 1.0, "m"},
                                       {"vva", "RMSE at vegetated check points, with their own error", 1.0, "m"},
                                       {"surface_difference", "rms difference of the terrain model and its reference", 1.0, "m"},
-                                      {"quality_level", "missed requirements of the quality level", 1.0, ""}}};
+                                      {level_limit, "missed requirements of the quality level", 1.0, ""}}};
 
 std::string text_of(double value, const Kind& kind) {
   char text[48];
@@ -37,6 +38,10 @@ std::string text_of(double value, const Kind& kind) {
 
 /// Null: computed, and not finite.
 double number_of(const Value& v) { return v.is_number() ? v.as_number() : std::numeric_limits<double>::quiet_NaN(); }
+
+const Kind& kind_of(std::string_view name) {
+  return *std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return k.name == name; });
+}
 
 /// "nominal pulse density of all lines (ANPD) 1.2 1/m2 (at least 2)".
 std::string text_of(const Value& requirement) {
@@ -50,7 +55,7 @@ std::string text_of(const Value& requirement) {
 
 /// "2 of 5 requirements of QL2 are missed (run.limits.quality_level allows 0): ..."
 std::string missed_requirements(double missed, double allowed, const Value* stages) {
-  const auto whole = [](double v) { return text_of(v, kinds.back()); };
+  const auto whole = [](double v) { return text_of(v, kind_of(level_limit)); };
   std::string of, named, level = "the quality level";
   if (stages)
     for (const Value& stage : stages->items()) {
@@ -94,9 +99,9 @@ std::vector<Warning> missed_limits(const Value& judged, const Value* stages) {
     const Value* over = one.find("excess");
     if (!over) continue;
     const std::string& name = one.find("name")->as_text();
-    const Kind& kind = *std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return k.name == name; });
+    const Kind& kind = kind_of(name);
     const double value = number_of(*one.find("value")), limit = one.find("limit")->as_number(), excess = number_of(*over);
-    if (name == kinds.back().name) {
+    if (name == level_limit) {
       out.push_back({"limit." + name,
                      missed_requirements(value, limit, stages),
                      {{"value", value, {}}, {"limit", limit, {}}, {"excess", excess, {}}}});
