@@ -20,6 +20,12 @@ const std::string& DataLine::field(size_t column) const {
   return fields[column];
 }
 
+void DataLine::expect_columns(size_t columns) const {
+  if (fields.size() != columns)
+    fault("the line has " + std::to_string(fields.size()) + " fields, the header " + std::to_string(columns) + " columns",
+          "the line is cut off, or a name holds the delimiter and needs quotes");
+}
+
 double DataLine::number(size_t column) const {
   double value = 0;
   if (!read_number(field(column), value) || !std::isfinite(value))

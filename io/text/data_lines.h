@@ -19,6 +19,8 @@ struct DataLine {
   [[noreturn]] void fault(const std::string& what, const std::string& hint) const;
   /// Throws Error where the line has fewer fields.
   const std::string& field(size_t column) const;
+  /// Throws Error where the line has not as many fields as the header has columns.
+  void expect_columns(size_t columns) const;
   /// Throws Error where the field is no finite number.
   double number(size_t column) const;
 };

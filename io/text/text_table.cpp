@@ -22,10 +22,7 @@ TextTable::TextTable(const std::filesystem::path& file, const std::string& delim
       layout_.columns = layout_.names.size();
       return;
     }
-    if (line.fields.size() != layout_.columns)
-      line.fault(
-          "the line has " + std::to_string(line.fields.size()) + " fields, the header " + std::to_string(layout_.columns) + " columns",
-          "the line is cut off, or a name holds the delimiter and needs quotes");
+    line.expect_columns(layout_.columns);
     lines_.push_back(line.line);
     rows_.push_back(std::move(line.fields));
   });
