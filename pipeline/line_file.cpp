@@ -6,11 +6,10 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/geo/same_map.h"
 
 namespace swath::pipeline {
 namespace {
-
-constexpr double farthest = 1e8;  // m or feet: no map projection reaches it
 
 /// Without heights, so that no geoid is asked for.
 core::Crs flat(const core::Crs& crs) { return crs.is_geocentric() ? crs : crs.horizontal(); }
@@ -23,7 +22,7 @@ struct Way {
 std::optional<Way> way_between(const std::string& file_wkt, const core::Crs& crs) {
   if (crs.empty() || file_wkt.empty()) return std::nullopt;
   const core::Crs from = flat(core::Crs(file_wkt)), to = flat(crs);
-  if (from.key() == to.key() || (from.epsg() != 0 && from.epsg() == to.epsg())) return std::nullopt;
+  if (core::is_same_map(from, to)) return std::nullopt;
   return Way{core::Transform(from, to), from.name(), to.name()};
 }
 
@@ -38,15 +37,22 @@ void move_places(const Way& way, std::vector<double>& x, std::vector<double>& y,
 
 std::vector<io::VectorLine> read_lines_in(const std::filesystem::path& file, const core::Crs& crs, const std::string& field) {
   io::VectorLines read = io::read_lines(file, field);
-  if (const auto transform = way_between(read.crs_wkt, crs))
-    for (io::VectorLine& line : read.lines) move_places(*transform, line.x, line.y, file);
+  move_into(crs, file, read);
   return std::move(read.lines);
 }
 
-io::SpotFile read_spots_in(const std::filesystem::path& file, const core::Crs& crs, const std::string& field) {
-  io::SpotFile read = io::read_spots(file, field);
-  if (const auto transform = way_between(read.crs_wkt, crs)) move_places(*transform, read.x, read.y, file);
-  return read;
+void move_into(const core::Crs& crs, const std::filesystem::path& file, io::VectorLines& read) {
+  if (const auto way = way_between(read.crs_wkt, crs))
+    for (io::VectorLine& line : read.lines) move_places(*way, line.x, line.y, file);
+}
+
+void move_into(const core::Crs& crs, const std::filesystem::path& file, io::SpotFile& read) {
+  if (const auto way = way_between(read.crs_wkt, crs)) move_places(*way, read.x, read.y, file);
+}
+
+bool is_on_a_map(double x, double y) {
+  constexpr double farthest = 1e8;  // m or feet
+  return std::abs(x) < farthest && std::abs(y) < farthest;
 }
 
 std::vector<std::vector<Eigen::Vector2d>> read_rings_in(const std::filesystem::path& file, const core::Crs& crs, std::uint64_t& left_out) {
@@ -55,7 +61,7 @@ std::vector<std::vector<Eigen::Vector2d>> read_rings_in(const std::filesystem::p
     if (!line.closed) continue;
     std::vector<Eigen::Vector2d> ring;
     for (size_t k = 0; k + 1 < line.x.size(); ++k)
-      if (std::abs(line.x[k]) < farthest && std::abs(line.y[k]) < farthest)
+      if (is_on_a_map(line.x[k], line.y[k]))
         ring.emplace_back(line.x[k], line.y[k]);
       else
         ++left_out;

@@ -19,8 +19,12 @@ namespace swath::pipeline {
 /// CRSs where a place has no coordinates in the other.
 /// `field`: the one with a line's height, where it has none of the usual names.
 std::vector<io::VectorLine> read_lines_in(const std::filesystem::path& file, const core::Crs& crs, const std::string& field = {});
-/// The same for spot heights.
-io::SpotFile read_spots_in(const std::filesystem::path& file, const core::Crs& crs, const std::string& field = {});
+/// Brings what was read of `file` there. Throws as read_lines_in().
+void move_into(const core::Crs& crs, const std::filesystem::path& file, io::VectorLines& read);
+void move_into(const core::Crs& crs, const std::filesystem::path& file, io::SpotFile& read);
+
+/// False for a place that is not finite or farther off than any map projection reaches.
+bool is_on_a_map(double x, double y);
 
 /// The polygons and closed lines among them, without the repeated vertex. `left_out`: vertices that are not finite, or farther off than any
 /// map reaches. Throws core::Error where none is left.

@@ -16,8 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using Point = Eigen::Vector2d;
 
-constexpr double farthest_vertex = 1e8;  // m or feet: no map projection reaches it
-
 double number(const std::string& text, const std::string& where) {
   double v = 0.0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), v);
@@ -82,8 +80,7 @@ std::vector<ProfileLine> profile_lines(const ProfileRequest& request, const core
     throw core::usage_error("no line to cut along is named", "swath profile", "give --line FILE, or --from x,y and --to x,y");
   }
   if (out.empty()) throw core::Error("the file holds no line", request.lines.string());
-  for (ProfileLine& line : out)
-    line.left_out = std::erase_if(line.vertices, [](const Point& p) { return !(p.cwiseAbs().maxCoeff() < farthest_vertex); });
+  for (ProfileLine& line : out) line.left_out = std::erase_if(line.vertices, [](const Point& p) { return !is_on_a_map(p.x(), p.y()); });
   std::map<std::string, int> seen;
   for (ProfileLine& line : out) {
     for (char& c : line.name)

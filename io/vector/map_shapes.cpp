@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/geo/same_map.h"
 #include "core/ring.h"
 #include "io/vector/gdal_door.h"
 
@@ -66,7 +67,7 @@ class ShapeReader {
   ShapeReader(MapShapeKind kind, const core::Crs& own, const core::Crs& to) : kind_(kind) {
     if (own.empty() || to.empty()) return;
     const core::Crs from = own.horizontal(), map = to.horizontal();
-    if (from.wkt() == map.wkt() || (from.epsg() != 0 && from.epsg() == map.epsg())) return;
+    if (core::is_same_map(from, map)) return;
     operation_.emplace(from, map);
     unit_ = map.is_geographic() ? 1.0 : map.metres_per_unit();
   }

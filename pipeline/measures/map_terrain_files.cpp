@@ -17,16 +17,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double farthest_place = 1e8;  // m or feet: no map projection reaches it
+struct MapFile {
+  fs::path name;
+  io::VectorLines lines;
+  io::SpotFile spots;
+};
 
-core::Crs crs_of(const MapTerrainRequest& r) {
+std::vector<MapFile> read_files(const MapTerrainRequest& r) {
+  std::vector<MapFile> out;
+  for (const fs::path& file : r.files) out.push_back({file, io::read_lines(file, r.field), io::read_spots(file, r.field)});
+  return out;
+}
+
+core::Crs crs_of(const MapTerrainRequest& r, const std::vector<MapFile>& files) {
   if (!r.crs.empty()) return core::Crs(r.crs);
-  for (const fs::path& file : r.files)
-    if (const std::string wkt = io::read_spots(file).crs_wkt; !wkt.empty()) return core::Crs(wkt);
+  for (const MapFile& file : files)
+    if (!file.spots.crs_wkt.empty()) return core::Crs(file.spots.crs_wkt);
   return {};
 }
 
-bool is_place(double x, double y, double z) { return std::abs(x) < farthest_place && std::abs(y) < farthest_place && std::isfinite(z); }
+bool is_place(double x, double y, double z) { return is_on_a_map(x, y) && std::isfinite(z); }
 
 /// The line with its heights; nothing where it has none, or no length.
 std::optional<terrain::MapLine> map_line(const io::VectorLine& line, const std::string& place) {
@@ -42,12 +52,13 @@ std::optional<terrain::MapLine> map_line(const io::VectorLine& line, const std::
   return out;
 }
 
-terrain::MapContent read_map(const MapTerrainRequest& r, const core::Crs& crs, MapTerrainFound& found) {
+terrain::MapContent content_of(std::vector<MapFile> files, const core::Crs& crs, MapTerrainFound& found) {
   terrain::MapContent out;
-  for (const fs::path& file : r.files) {
+  for (MapFile& file : files) {
     size_t number = 0;
-    for (const io::VectorLine& line : read_lines_in(file, crs, r.field)) {
-      auto one = map_line(line, file.string() + ": layer " + line.layer + ", line " + std::to_string(++number));
+    move_into(crs, file.name, file.lines);
+    for (const io::VectorLine& line : file.lines.lines) {
+      auto one = map_line(line, file.name.string() + ": layer " + line.layer + ", line " + std::to_string(++number));
       if (!one) {
         ++found.without_height;
         continue;
@@ -55,7 +66,8 @@ terrain::MapContent read_map(const MapTerrainRequest& r, const core::Crs& crs, M
       ++(one->contour ? found.contours : found.breaklines);
       out.lines.push_back(std::move(*one));
     }
-    const io::SpotFile spots = read_spots_in(file, crs, r.field);
+    move_into(crs, file.name, file.spots);
+    const io::SpotFile& spots = file.spots;
     found.without_height += spots.without_height;
     for (size_t k = 0; k < spots.x.size(); ++k)
       if (is_place(spots.x[k], spots.y[k], spots.z[k])) out.spots.emplace_back(spots.x[k], spots.y[k], spots.z[k]);
@@ -83,12 +95,13 @@ void write_products(const MapTerrainRequest& r, const core::Crs& crs, const terr
 MapTerrainFound write_map_terrain(const MapTerrainRequest& r) {
   const InputGuard guard(r.files);
   for (const char* name : {"dtm.tif", "dtm_quality.tif", "dtm_part.tif", "map_terrain.json"}) guard.expect_apart(r.folder / name);
-  const core::Crs crs = crs_of(r);
+  std::vector<MapFile> files = read_files(r);
+  const core::Crs crs = crs_of(r, files);
   const double metre = crs.empty() ? 1.0 : crs.metres_per_unit(), vertical = crs.empty() ? 1.0 : crs.vertical_metres_per_unit();
   if (metre == 0.0)
     throw core::Error("the map is in degrees", r.files.front().string(), "name a projected CRS for the model: --crs EPSG:25832");
   MapTerrainFound found;
-  const terrain::MapContent content = read_map(r, crs, found);
+  const terrain::MapContent content = content_of(std::move(files), crs, found);
   const auto heights = [&](std::optional<double> v) { return v ? std::optional(*v / vertical) : v; };
   terrain::MapTerrain made = terrain::map_terrain(
       content, {r.cell / metre, heights(r.interval), heights(r.sigma), r.max_edge / metre, r.tolerance / vertical, r.keep_flats});

@@ -8,7 +8,7 @@
 #include <unordered_map>
 
 #include "core/error.h"
-#include "core/geo/crs.h"
+#include "core/geo/same_map.h"
 #include "core/printable.h"
 #include "io/text/data_lines.h"
 #include "io/text/delimited.h"
@@ -55,10 +55,7 @@ class CorrelationLines {
     for (int k = 0; k < 36; ++k) columns_[static_cast<size_t>(k)] = io::column_of(layout_, entry(k / 6, k % 6), file_);
   }
   void take_row(const io::DataLine& line) {
-    if (line.fields.size() != layout_.columns)
-      line.fault(
-          "the line has " + std::to_string(line.fields.size()) + " fields, the header " + std::to_string(layout_.columns) + " columns",
-          "the line is cut off, or a name holds the delimiter and needs quotes");
+    line.expect_columns(layout_.columns);
     CovariancePair p = pair_of(line);
     for (int k = 0; k < 36; ++k) p.value(k / 6, k % 6) = line.number(columns_[static_cast<size_t>(k)]);
     if (p.image == p.other) expect_symmetric(p.value, out_.images[p.image], line);
@@ -94,8 +91,7 @@ class CorrelationLines {
 bool is_same_grid(const std::string& a, const std::string& b) {
   if (a == b) return true;
   if (a == "local" || b == "local") return false;
-  const core::Crs left(a), right(b);
-  return (left.epsg() != 0 && left.epsg() == right.epsg()) || left.horizontal().key() == right.horizontal().key();
+  return core::is_same_map(core::Crs(a), core::Crs(b));
 }
 
 }  // namespace
