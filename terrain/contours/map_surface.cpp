@@ -21,11 +21,10 @@ enum class Kind : std::uint8_t { sloping, flat, exit };
 
 /// For each vertex whether it lies on a contour.
 std::vector<bool> on_contours(const Tin& tin, const MapContent& content) {
-  std::set<double> levels;
-  for (const MapLine& l : content.lines)
-    if (l.contour) levels.insert(l.vertices.front().z());
+  const std::vector<double> levels = levels_in(content);
   std::vector<bool> out(tin.z.size());
-  for (size_t v = 0; v < out.size(); ++v) out[v] = tin.row[v] >= content.spots.size() && levels.contains(tin.z[v]);
+  for (size_t v = 0; v < out.size(); ++v)
+    out[v] = tin.row[v] >= content.spots.size() && std::binary_search(levels.begin(), levels.end(), tin.z[v]);
   return out;
 }
 
@@ -98,6 +97,13 @@ MapSurface read_triangles(const Tin& tin, const std::vector<std::int32_t>& trian
 }
 
 }  // namespace
+
+std::vector<double> levels_in(const MapContent& content) {
+  std::set<double> levels;
+  for (const MapLine& l : content.lines)
+    if (l.contour) levels.insert(l.vertices.front().z());
+  return {levels.begin(), levels.end()};
+}
 
 MapSurface map_surface(const MapContent& content, const core::Lattice& lattice, const MapSurfaceOptions& o) {
   const Eigen::Vector3d origin(0.5 * (lattice.west() + lattice.east()), 0.5 * (lattice.south() + lattice.north()), 0.0);

@@ -26,6 +26,9 @@ struct MapContent {
   std::vector<Eigen::Vector3d> spots;
 };
 
+/// Heights that contours have, ascending, each once.
+std::vector<double> levels_in(const MapContent& content);
+
 struct MapSurfaceOptions {
   double interval = 1.0;        ///< height between contours
   double max_edge = 1000.0;     ///< longest triangle bridged, as DtmOptions::max_edge

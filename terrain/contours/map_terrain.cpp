@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
 
 #include "core/error.h"
 
@@ -15,13 +14,6 @@ constexpr size_t fewest_tested = 50;
 constexpr double assumed_share = 0.25;  // of the interval, where nothing can be tested
 constexpr double least_share = 0.25;    // of the sigma midway, at a contour: a cell is wider than a line
 constexpr double level_rounding = 1e-3;
-
-std::vector<double> levels_in(const MapContent& content) {
-  std::set<double> levels;
-  for (const MapLine& l : content.lines)
-    if (l.contour) levels.insert(l.vertices.front().z());
-  return {levels.begin(), levels.end()};
-}
 
 /// The usual step from one level to the next.
 double usual_step(const std::vector<double>& levels) {
