@@ -25,10 +25,10 @@ using Eigen::VectorXd;
 constexpr double least_redundancy = 1e-3;
 // Groups far out do not make the others' sigma: they are left to the test.
 constexpr double largest_square = 9.0;
-constexpr double least_surface = 1e-4;       // m
-constexpr double surface_step = 4.0;         // of the variance, both ways, in one update
-constexpr double least_freedom = 10.0;       // of groups' means: a sigma known to 22 %
-constexpr double change_of_variance = 0.02;  // of groups' means
+constexpr double least_surface = 1e-4;        // m
+constexpr double surface_step = 4.0;          // of the variance, both ways, in one update
+constexpr double least_group_freedom = 10.0;  // of groups' means: a sigma known to 22 %
+constexpr double change_of_variance = 0.02;   // of groups' means
 
 struct Solution {
   const FlightStates& states;
@@ -189,7 +189,7 @@ PlaneTests test_planes(const PlaneFactors& planes, const FlightStates& states, c
   return out;
 }
 
-bool surface_is_known(const PlaneTests& tests) { return tests.means.redundancy >= least_freedom && tests.information > 0.0; }
+bool surface_is_known(const PlaneTests& tests) { return tests.means.redundancy >= least_group_freedom && tests.information > 0.0; }
 
 bool update_surface(PlaneFactors& planes, const PlaneTests& tests) {
   if (!surface_is_known(tests)) return false;

@@ -12,7 +12,7 @@
 namespace swath::io {
 namespace {
 
-constexpr std::string_view label_layer = "labels";  // of contours that this program wrote: on their lines, no heights of their own
+constexpr std::string_view contour_labels = "labels";  // of contours that this program wrote: on their lines, no heights of their own
 
 /// DXF texts come as points.
 bool is_text(OGRFeature& feature) {
@@ -45,7 +45,7 @@ SpotFile read_spots(const std::filesystem::path& file, const std::string& field)
   if (!set) messages.fail("cannot read the vector file", file, std::filesystem::exists(file) ? "" : "check the name");
   SpotFile out;
   for (OGRLayer* layer : set->GetLayers()) {
-    if (label_layer == layer->GetName()) continue;
+    if (contour_labels == layer->GetName()) continue;
     if (const OGRSpatialReference* srs = layer->GetSpatialRef(); srs && out.crs_wkt.empty()) out.crs_wkt = wkt2(*srs);
     const int at = height_field(*layer->GetLayerDefn(), field);
     for (const auto& feature : *layer) {
