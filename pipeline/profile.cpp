@@ -11,6 +11,7 @@
 
 #include "core/block.h"
 #include "core/error.h"
+#include "core/geo/same_map.h"
 #include "core/printable.h"
 #include "io/las/cloud_crs.h"
 #include "io/las/las_crs.h"
@@ -301,8 +302,8 @@ StatedCrs crs_of_model(const fs::path& file) {
 bool is_one_system(const StatedCrs& a, const StatedCrs& b) {
   using core::Heights;
   if (std::abs(a.height_unit / b.height_unit - 1.0) > 1e-9) return false;
-  if (io::is_same_crs(a.crs, b.crs)) return true;
-  if (!io::is_same_crs(a.crs.horizontal(), b.crs.horizontal())) return false;
+  if (core::is_same_crs(a.crs, b.crs)) return true;
+  if (!core::is_same_crs(a.crs.horizontal(), b.crs.horizontal())) return false;
   if (a.crs.heights() == Heights::unknown || b.crs.heights() == Heights::unknown) return true;
   return a.crs.heights() == b.crs.heights() && a.crs.vertical_name() == b.crs.vertical_name();
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/geo/same_map.h"
 #include "io/raster/geotiff.h"
 #include "io/raster/height_file.h"
 #include "pipeline/line_file.h"
@@ -80,7 +81,7 @@ VolumesFound volumes_of(const VolumeRequest& request) {
   core::Lattice lattice = before.lattice;
   if (!request.design) {
     after.emplace(request.after);
-    if (!before.crs.empty() && !after->crs.empty() && before.crs.key() != after->crs.key())
+    if (!core::are_comparable(before.crs, after->crs))
       throw core::Error("the two surfaces are in different CRSs: " + before.crs.name() + " and " + after->crs.name(),
                         request.after.string(), "bring one to the other's CRS and vertical datum first");
     if (before.vertical_unit != after->vertical_unit)

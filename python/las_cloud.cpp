@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/geo/crs.h"
+#include "core/geo/same_map.h"
 #include "io/las/cloud_crs.h"
 #include "io/las/las_crs.h"
 #include "io/las/las_reader.h"
@@ -86,7 +87,7 @@ void expect_alike(const LasCloud& cloud, const io::LasReader& reader, const std:
   if (reader.header().gps_time_is_adjusted() != cloud.header.gps_time_is_adjusted())
     throw core::Error("its times are on another scale than those of " + first.string(), file.string(), "read the files one by one");
   const std::string crs = reader.crs().definition;
-  const bool same = crs == cloud.crs || (!crs.empty() && !cloud.crs.empty() && io::is_same_crs(core::Crs(crs), core::Crs(cloud.crs)));
+  const bool same = crs == cloud.crs || (!crs.empty() && !cloud.crs.empty() && core::is_same_crs(core::Crs(crs), core::Crs(cloud.crs)));
   if (!same)
     throw core::Error("its CRS is not that of " + first.string(), file.string(), "read the files one by one, and transform one of them");
 }

@@ -11,6 +11,7 @@
 #include "core/config/option_visitors.h"
 #include "core/config/result_visitors.h"
 #include "core/error.h"
+#include "core/geo/same_map.h"
 #include "core/grid.h"
 #include "io/raster/geotiff.h"
 #include "io/raster/height_file.h"
@@ -114,7 +115,7 @@ World world_on(const Options& o, const Eigen::Vector2d& middle, double& half) {
   const core::Box wide = core::Box{middle.x(), middle.y(), middle.x(), middle.y()}.grown(2.0 * half);
   io::HeightFile dem = io::read_heights(*o.world.dem, wide);
   const core::Crs map = core::Crs(o.crs).horizontal();
-  if (!dem.crs.empty() && dem.crs.horizontal().key() != map.key() && (map.epsg() == 0 || dem.crs.epsg() != map.epsg()))
+  if (!dem.crs.empty() && !core::is_same_map(dem.crs, map))
     throw core::usage_error("the terrain model is in " + dem.crs.name() + ", the survey in " + map.name(), "world.dem",
                             "set crs to that of the model, or warp the model (gdalwarp)");
   half = std::min(2.0 * half, half + std::max(0.0, o.world.ground.value - dem.field.lowest()) * reach_per_height(o));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/geo/same_map.h"
 #include "io/copc/copc_hierarchy.h"
 #include "io/copc/ept.h"
 #include "io/las/cloud_crs.h"
@@ -16,7 +17,7 @@ namespace {
 class AreaOfNodes {
  public:
   AreaOfNodes(const core::Crs& file, const CloudMap& map) : map_(map) {
-    if (!is_same_crs(file, map.crs)) transform_.emplace(file, map.crs);
+    if (!core::is_same_crs(file, map.crs)) transform_.emplace(file, map.crs);
   }
 
   bool reaches_into(const Eigen::Vector3d& low, const Eigen::Vector3d& high) const {

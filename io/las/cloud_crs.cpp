@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/geo/same_map.h"
 #include "io/las/las_crs.h"
 
 namespace swath::io {
@@ -62,19 +63,13 @@ core::Crs cloud_crs(const Survey& survey, const PointFile& f) {
   }
 }
 
-bool is_same_crs(const core::Crs& a, const core::Crs& b) {
-  if (a.key() == b.key()) return true;
-  return a.epsg() != 0 && a.epsg() == b.epsg() && a.heights() == b.heights() && a.vertical_epsg() == b.vertical_epsg() &&
-         a.vertical_name() == b.vertical_name() && a.vertical_metres_per_unit() == b.vertical_metres_per_unit();
-}
-
 void check_clouds(const Survey& survey) {
   const core::Crs run = run_crs(survey);
   std::map<std::string, std::string> held;  // key of a CRS and the first file of it
   for (const PointFile& f : survey.points) {
     const core::Crs crs = cloud_crs(survey, f);
     const std::string file = resolve(survey, f.file).string();
-    if (!held.emplace(crs.key(), file).second || is_same_crs(crs, run)) continue;
+    if (!held.emplace(crs.key(), file).second || core::is_same_crs(crs, run)) continue;
     hold_heights(crs, run, file);
     try {
       core::Transform(crs, run);

@@ -14,9 +14,6 @@ std::string cloud_definition(const Survey& survey, const PointFile& file);
 /// The CRS itself. Throws core::Error also where it is not understood.
 core::Crs cloud_crs(const Survey& survey, const PointFile& file);
 
-/// The same system, whatever the text it is written as: nothing is to be transformed.
-bool is_same_crs(const core::Crs& a, const core::Crs& b);
-
 /// Holds every cloud against the CRS of the run (that of the first where the survey states none). Throws core::Error: a CRS not stated,
 /// heights of one system where the other's is not stated, a transformation or its grid that is not there.
 void check_clouds(const Survey& survey);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/geo/same_map.h"
 #include "core/grid_units.h"
 #include "core/time.h"
 #include "io/las/cloud_crs.h"
@@ -26,7 +27,7 @@ struct CloudPlace {
 CloudPlace place_of(const Survey& survey, const CloudMap& map, const PointFile& file, const LasCrs& stated) {
   CloudPlace place;
   const core::Crs crs = cloud_crs(survey, file);
-  if (!is_same_crs(crs, map.crs)) place.transform.emplace(crs, map.crs);
+  if (!core::is_same_crs(crs, map.crs)) place.transform.emplace(crs, map.crs);
   // PROJ takes heights of a known system in the CRS's own unit; those of an unknown one it hands through.
   const bool handed_through = !place.transform || crs.heights() == core::Heights::unknown;
   place.file_height_unit = height_unit(survey, file, crs, stated.vertical_metres);
@@ -61,7 +62,7 @@ bool keeps_crs(const std::vector<LasSource>& sources, const core::Crs& map) {
     const std::string stated = las_crs(s.header).definition;
     if (!s.same_places || stated.empty()) return false;
     try {
-      return is_same_crs(core::Crs(stated), map);
+      return core::is_same_crs(core::Crs(stated), map);
     } catch (const core::Error&) {  // not known to PROJ: the survey states another
       return false;
     }

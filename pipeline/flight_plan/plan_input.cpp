@@ -7,6 +7,7 @@
 #include "core/area.h"
 #include "core/config/option_visitors.h"
 #include "core/error.h"
+#include "core/geo/same_map.h"
 #include "io/raster/geotiff.h"
 #include "io/raster/height_file.h"
 #include "io/text/value_file.h"
@@ -69,9 +70,8 @@ core::HeightField ground_of(const planning::PlanOptions& o, const core::Crs& crs
   if (o.ground) return core::HeightField(o.ground->value);
   const double height = o.flight.height ? o.flight.height->value : 2000.0;
   io::HeightFile dem = io::read_heights(o.dem, box.grown(std::min(farthest_around, heights_around * height + o.flight.margin.value)));
-  const core::Crs there = dem.crs.empty() ? crs : dem.crs.horizontal();
-  if (there.key() != crs.key() && (crs.epsg() == 0 || there.epsg() != crs.epsg()))
-    throw core::usage_error("the terrain model is in " + there.name() + ", the plan in " + crs.name(), o.dem.string(),
+  if (!dem.crs.empty() && !core::is_same_map(dem.crs, crs))
+    throw core::usage_error("the terrain model is in " + dem.crs.horizontal().name() + ", the plan in " + crs.name(), o.dem.string(),
                             "leave `crs` out, or warp the model (gdalwarp -t_srs)");
   return std::move(dem.field);
 }

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/geo/crs.h"
 #include "core/geo/map_scale.h"
+#include "core/geo/same_map.h"
 #include "io/las/cloud_crs.h"
 #include "io/las/las_crs.h"
 #include "io/las/las_reader.h"
@@ -112,7 +113,7 @@ void require_one_crs(const core::Crs& first, const fs::path& first_file, const S
     throw core::usage_error("its coordinates are degrees (" + first.name() + "), and products need a map projection", first_file.string(),
                             "name one with --crs, for example --crs " +
                                 core::utm_zone({cloud.is_across ? cloud.middle.x() + 180.0 : cloud.middle.x(), cloud.middle.y()}, first));
-  if (io::is_same_crs(*cloud.crs, first)) return;
+  if (core::is_same_crs(*cloud.crs, first)) return;
   const bool units = cloud.crs->unit_name() != first.unit_name() || (cloud.crs->has_height_unit() && first.has_height_unit() &&
                                                                      cloud.crs->vertical_unit_name() != first.vertical_unit_name());
   throw core::usage_error("the clouds are in different " + std::string(units ? "units and CRSs" : "CRSs") + ": this one in " +

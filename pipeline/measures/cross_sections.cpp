@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/geo/same_map.h"
 #include "core/printable.h"
 #include "io/raster/geotiff.h"
 #include "io/raster/height_file.h"
@@ -88,7 +89,7 @@ class Writer {
   Writer(const CrossSectionRequest& r) : request_(r), terrain_(r.axis.dtm) {
     if (!r.design.empty()) {
       design_.emplace(r.design);
-      if (!terrain_.crs.empty() && !design_->crs.empty() && terrain_.crs.key() != design_->crs.key())
+      if (!core::are_comparable(terrain_.crs, design_->crs))
         throw core::Error("terrain and design are in different CRSs: " + terrain_.crs.name() + " and " + design_->crs.name(),
                           r.design.string(), "bring one to the other's CRS and vertical datum first");
       if (terrain_.unit != design_->unit)

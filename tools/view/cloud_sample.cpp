@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/geo/crs.h"
+#include "core/geo/same_map.h"
 #include "io/copc/copc_hierarchy.h"
 #include "io/copc/octree.h"
 #include "io/las/cloud_crs.h"
@@ -89,7 +90,7 @@ std::vector<Source> sources_of(const std::vector<fs::path>& files, CloudSample& 
   if (out.empty()) throw core::Error("no point to show", files.front().string(), "its header counts 0 points");
   for (const Source& s : out) {
     const std::string crs = io::las_crs(s.header).definition;
-    if (named && !crs.empty() && !io::is_same_crs(core::Crs(crs), core::Crs(sample.crs)))
+    if (named && !crs.empty() && !core::is_same_crs(core::Crs(crs), core::Crs(sample.crs)))
       throw core::Error("is in another coordinate reference system than " + named->file.string(), s.file.string(),
                         "run configs/cloud.toml over both, which brings clouds to one, and view its output");
     if (!crs.empty() && !named) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/geo/same_map.h"
 #include "io/copc/cloud_part.h"
 #include "io/las/cloud_crs.h"
 #include "io/las/cloud_extent.h"
@@ -138,7 +139,7 @@ class LasCloud : public OptionStage<CloudOptions> {
       const io::CloudExtent& e = extents_.emplace_back(std::move(found.places));
       if (e.points() == 0) continue;
       std::optional<core::Transform> transform;
-      if (!io::is_same_crs(crs, context.crs)) transform.emplace(crs, context.crs);
+      if (!core::is_same_crs(crs, context.crs)) transform.emplace(crs, context.crs);
       if (!has_origin) {  // of the first file with points
         const Eigen::Vector3d corner(e.low().x(), e.low().y(), 0.0);
         context.origin = origin_near(context, transform ? (*transform)(corner) : corner);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/geo/same_map.h"
 #include "core/relief.h"
 #include "io/raster/geotiff.h"
 #include "io/raster/height_file.h"
@@ -73,11 +74,6 @@ core::Crs crs_of_reference(const fs::path& file) {
   return wkt.empty() ? core::Crs() : core::Crs(wkt);
 }
 
-bool is_same_map(const core::Crs& a, const core::Crs& b) {
-  const core::Crs left = a.horizontal(), right = b.horizontal();
-  return left.key() == right.key() || (left.epsg() != 0 && left.epsg() == right.epsg());
-}
-
 /// Refuses a reference on another map or with heights of another system before any point is read.
 void check_reference(const io::Survey& survey, const core::Crs& of_survey, const SurfaceOptions& o) {
   if (!o.reference) return;
@@ -89,11 +85,10 @@ void check_reference(const io::Survey& survey, const core::Crs& of_survey, const
                             "check quality.surface.profiles; it is relative to survey.toml");
   const core::Crs crs = crs_of_reference(file);
   if (crs.empty() || of_survey.empty()) return;
-  if (!is_same_map(crs, of_survey))
+  if (!core::is_same_map(crs, of_survey))
     throw core::usage_error("the reference is in " + crs.name() + ", the survey in " + of_survey.name(), file.string(),
                             "warp it to the survey's CRS first (gdalwarp -t_srs)");
-  if (crs.heights() == core::Heights::vertical && of_survey.heights() == core::Heights::vertical &&
-      crs.vertical_name() != of_survey.vertical_name())
+  if (core::are_heights_apart(crs, of_survey))
     throw core::usage_error("the reference's heights are " + crs.vertical_name() + ", the survey's " + of_survey.vertical_name(),
                             file.string(), "bring both to one height system first");
 }

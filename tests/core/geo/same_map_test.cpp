@@ -16,6 +16,25 @@ TEST(SameMap, HeightsAreLeftOut) {
   EXPECT_FALSE(is_same_map(utm, Crs("EPSG:32632")));  // another datum
 }
 
+TEST(SameMap, CodesHoldWhateverTheText) {
+  const Crs utm("EPSG:25832"), written(utm.wkt1());
+  EXPECT_TRUE(is_same_map(utm, written));
+  EXPECT_TRUE(is_same_crs(utm, written));
+  EXPECT_FALSE(is_same_crs(utm, Crs("EPSG:25832+7837")));
+}
+
+TEST(SameMap, HeightsAreApartWhereBothAreStated) {
+  const Crs unknown("EPSG:25832"), levelled("EPSG:25832+7837"), older("EPSG:25832+5783"), ellipsoidal("EPSG:25832+ellipsoidal");
+  EXPECT_FALSE(are_heights_apart(unknown, levelled));
+  EXPECT_FALSE(are_heights_apart(levelled, levelled));
+  EXPECT_TRUE(are_heights_apart(levelled, older));
+  EXPECT_TRUE(are_heights_apart(levelled, ellipsoidal));
+  EXPECT_TRUE(are_comparable(unknown, levelled));
+  EXPECT_TRUE(are_comparable(Crs(), levelled));
+  EXPECT_FALSE(are_comparable(levelled, older));
+  EXPECT_FALSE(are_comparable(unknown, Crs("EPSG:25833")));
+}
+
 TEST(SameMap, WithoutCodesTheDefinitionDecides) {
   const Crs plain("+proj=utm +zone=32 +ellps=GRS80 +units=m");
   EXPECT_TRUE(is_same_map(plain, plain));
