@@ -9,7 +9,7 @@
 namespace swath::calib {
 namespace {
 
-constexpr double micrometres = 1e3;  // in a mm
+constexpr double micrometres_in_mm = 1e3;  // in a mm
 
 template <class... V>
 std::string line(const char* form, V... values) {
@@ -39,8 +39,8 @@ std::string patb_image_coordinates(const std::vector<PatbPhoto>& photos, const s
   for (size_t k = 0; k < marks.size(); ++k) {
     const PatbMark& m = marks[k];
     if (k == 0 || marks[k - 1].photo != m.photo)
-      out += line("%16s %15.4f\n", names[m.photo].c_str(), micrometres * photos[m.photo].principal_distance);
-    out += line("%16s %15.4f %15.4f\n", points[m.point].c_str(), micrometres * m.x, micrometres * m.y);
+      out += line("%16s %15.4f\n", names[m.photo].c_str(), micrometres_in_mm * photos[m.photo].principal_distance);
+    out += line("%16s %15.4f %15.4f\n", points[m.point].c_str(), micrometres_in_mm * m.x, micrometres_in_mm * m.y);
     if (k + 1 == marks.size() || marks[k + 1].photo != m.photo) out += line("%16s\n", "-99");
   }
   return out;
