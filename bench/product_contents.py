@@ -19,7 +19,7 @@ MASKED = {
     "LAS header, bytes 90 to 93": "day and year of the file's making",
     "report.json: program, versions": "version of the program and of the libraries",
     "report.json: command": "names the program's path and its output",
-    "report.json: seconds, stages/*/seconds": "time that the run took",
+    "report.json: seconds, processor_seconds, of stages too": "time that the run took",
     "report.json: threads, pieces_resumed": "what the machine did, not what it found",
     "report.json: fingerprint": "made from the names of options and the version",
     "report.json: from (line and column)": "moves when a comment of a config changes",
@@ -116,8 +116,8 @@ def flat(value, path=()):
 def is_masked(file, path):
     if not file.endswith("report.json"):
         return False
-    return (path[0] in ("program", "versions", "command", "seconds", "threads", "pieces_resumed") or path[-1] == "fingerprint" or
-            path[0] == "stages" and path[2:] == ("seconds",))
+    return (path[0] in ("program", "versions", "command", "seconds", "processor_seconds", "threads", "pieces_resumed") or path[-1] == "fingerprint" or
+            path[0] == "stages" and path[2:] in (("seconds",), ("processor_seconds",)))
 
 
 def plain(path, value):

@@ -104,7 +104,7 @@ Outcome run_alone(Plan& plan, Progress& progress, const std::string& command, st
   RunState run(plan, progress);
   run.inputs = std::move(inputs);
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(run.threads));
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch(Whose::program);
   fit_memory(run.memory.bytes());
   expect_own(run.work);
   expect_own(run.output / discarded_name);
@@ -127,7 +127,7 @@ Outcome run_alone(Plan& plan, Progress& progress, const std::string& command, st
       run_strips(run);
       run_tile_stages(run);
     }
-    Value report = report_of(run, command, seconds_since(start));
+    Value report = report_of(run, command, watch.spent());
     const bool held = missed_limits(*report.find("limits")).empty();
     deliver_all(run, report, lock);
     if (!run.plan.run.keep_work) discard(run.work, discarded);

@@ -72,7 +72,7 @@ StageReport stage_report(const RunState& run, size_t number, const Value& option
   else if (!a.findings.members().empty())
     s.findings = a.findings;
   s.options = options;
-  s.seconds = a.seconds;
+  s.time = a.time;
   return s;
 }
 
@@ -84,7 +84,7 @@ CrsReport crs_report(const RunState& run) {
 
 }  // namespace
 
-core::Value report_of(const RunState& run, const std::string& command, double seconds) {
+core::Value report_of(const RunState& run, const std::string& command, const TimeSpent& time) {
   RunReport r;
   r.program = "swath " + std::string(program_version());
   r.command = command;
@@ -103,7 +103,7 @@ core::Value report_of(const RunState& run, const std::string& command, double se
   r.pieces_resumed = run.resumed;
   r.pieces_damaged = run.damaged;
   r.strips_read_again = run.read_again;
-  r.seconds = seconds;
+  r.time = time;
   r.threads = run.threads;
   r.warnings = warnings_in(core::reported(r));
   return core::reported(r);

@@ -3,12 +3,13 @@
 #pragma once
 
 #include "pipeline/engine/run_state.h"
+#include "pipeline/time_spent.h"
 #include "pipeline/work/work_folder.h"
 
 namespace swath::pipeline {
 
-/// What report.json holds. `command`: as it was typed; `seconds`: that the run took.
-core::Value report_of(const RunState& run, const std::string& command, double seconds);
+/// What report.json holds. `command`: as it was typed; `time`: that the run took.
+core::Value report_of(const RunState& run, const std::string& command, const TimeSpent& time);
 
 /// All products go to the output folder, and the report behind them.
 void deliver_all(RunState& run, const core::Value& report, const WorkLock& lock);

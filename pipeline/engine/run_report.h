@@ -12,6 +12,7 @@
 #include "core/report.h"
 #include "pipeline/limits.h"
 #include "pipeline/provenance.h"
+#include "pipeline/time_spent.h"
 
 namespace swath::pipeline {
 
@@ -55,7 +56,7 @@ struct StageReport {
   std::uint64_t cut = 0;
   std::vector<core::RecordCount> records{};
   core::Value tally{}, findings{}, options{};
-  double seconds = 0.0;
+  TimeSpent time{};
 };
 
 template <class V>
@@ -68,7 +69,8 @@ void describe(const StageReport& s, V& v) {
   v.other("tally", s.tally, "Counts, each with its first examples.");
   v.other("findings", s.findings, "What the stage found.");
   v.other("options", s.options, "Every option: its value, and where it was set.");
-  v.result("seconds", s.seconds, core::seconds(), "Time of its work, summed over threads.");
+  v.result("seconds", s.time.seconds, core::seconds(), "Time of its work, summed over threads.");
+  v.result("processor_seconds", s.time.processor, core::seconds(), "Processor time of its work; of readers, of reading alone.");
 }
 
 struct RunReport {
@@ -81,7 +83,7 @@ struct RunReport {
   std::vector<Warning> warnings;
   std::vector<std::string> control_unused{};
   std::uint64_t pieces_resumed = 0, pieces_damaged = 0, strips_read_again = 0;
-  double seconds = 0.0;
+  TimeSpent time{};
   int threads = 0;
 };
 
@@ -104,7 +106,8 @@ void describe(const RunReport& r, V& v) {
   v.result("pieces_damaged", r.pieces_damaged, "Pieces of an earlier run that were damaged and made again.");
   v.result("strips_read_again", r.strips_read_again, core::if_any(),
            "Flight lines or files read again: their points were removed once written.");
-  v.result("seconds", r.seconds, core::seconds(), "Time of the run.");
+  v.result("seconds", r.time.seconds, core::seconds(), "Time of the run.");
+  v.result("processor_seconds", r.time.processor, core::seconds(), "Processor time of the run.");
   v.result("threads", r.threads, "Threads in use.");
 }
 

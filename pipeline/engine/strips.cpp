@@ -26,7 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 using core::Value;
 using stages::Grain;
-using Clock = std::chrono::steady_clock;
 
 constexpr size_t most_in_batch = 1 << 17, least_in_batch = 1 << 12;  // points
 constexpr double batch_bytes_per_point = 600.0;                      // of pulses, points, and what a strip stage makes of them
@@ -92,24 +91,26 @@ void stream_strip(RunState& run, const stages::Strip& strip, const fs::path& str
     auto parcel = std::make_shared<Parcel>();
     parcel->accounts.resize(n);
     parcel->batch.line = strip.line;
+    const Stopwatch watch(Whose::thread);
     more = reader->next(parcel->batch, batch_points, parcel->accounts[source].tally);
     parcel->read = parcel->batch.shots.size() + parcel->batch.block.size();
     border.cut(parcel->batch, !more);
     const std::uint64_t given = parcel->batch.shots.size() + parcel->batch.block.size();
     parcel->accounts[source].out = given;
+    parcel->accounts[source].time = watch.spent();
     return parcel;
   };
   const auto work = [&](std::shared_ptr<Parcel> parcel) {
     for (size_t i = source + 1; i <= run.last_strip_stage; ++i) {
       if (!run.works_on(i, Grain::strip)) continue;
       const auto size = [&] { return std::max(parcel->batch.shots.size(), parcel->batch.block.size()); };
-      const auto start = Clock::now();
+      const Stopwatch watch(Whose::thread);
       parcel->accounts[i].in = size();
       run.stage(i).run_strip(run.context, parcel->batch, parcel->accounts[i].tally);
       parcel->accounts[i].out = size();
       if (parcel->accounts[i].in != parcel->accounts[i].out + parcel->accounts[i].tally.left_out())
         throw core::Error("returns were lost on the way", std::string(run.stage(i).info().name), "this is a fault of the program");
-      parcel->accounts[i].seconds = seconds_since(start);
+      parcel->accounts[i].time = watch.spent();
     }
     keep_columns(parcel->batch.block, run.kept);
     return parcel;

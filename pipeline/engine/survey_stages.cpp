@@ -119,7 +119,7 @@ void run_survey_stages(RunState& run) {
     run.resumed += resumed;
     run.accounts[i].tally.add(piece.tally);
     run.accounts[i].findings = std::move(piece.findings);
-    run.accounts[i].seconds += piece.seconds;
+    run.accounts[i].time += piece.time;
     run.made[i] = std::move(piece.files);
     run.context.earlier.push_back(run.context.output);
     if (const Value* geometry = run.accounts[i].findings.find("geometry"))

@@ -21,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using stages::Grain;
-using Clock = std::chrono::steady_clock;
 
 constexpr const char *groups_file = "groups.done", *merge_file = "merge.done";
 
@@ -116,7 +115,7 @@ PieceRecord run_group(RunState& run, size_t number, const TileGroup& group, bool
   stages::TileJob job{group.tiles[0], TileBox(group.tiles).metres(run.context.tile_side), mine, {}, 0, {}};
   const io::FinishedFiles finished;
   const io::UnflushedFiles checked_when_resumed;
-  const auto start = Clock::now();
+  const Stopwatch watch(Whose::thread);
   TileWork(*run.store, run.context, run.stage(number)).run(group, job, has_water);
   std::vector<fs::path> by_stage = finished.files();
   std::vector<PieceFile> overlays;
@@ -135,7 +134,7 @@ PieceRecord run_group(RunState& run, size_t number, const TileGroup& group, bool
   }
   Account account;
   account.tally = std::move(job.tally);
-  account.seconds = seconds_since(start);
+  account.time = watch.spent();
   account.cut = group.parts > 1;
   PieceRecord record{piece_files(mine, by_stage), core::reported(account)};
   replace_files(record.files, std::move(overlays));
@@ -277,7 +276,7 @@ void run_tiles(RunState& run, size_t number) {
 void run_merge(RunState& run, size_t number) {
   stages::MergeJob job{run.folder(number), {}, {}};
   job.tiles = tiles_of(run, number);
-  const auto start = Clock::now();
+  const Stopwatch watch(Whose::program);
   run.context.memory = run.memory.free();
   run.progress.begin(std::string(run.stage(number).info().name) + " merge", 0, "");
   const io::FinishedFiles finished;
@@ -288,7 +287,7 @@ void run_merge(RunState& run, size_t number) {
   expect_balance(job.tally, run.stage(number));
   run.accounts[number].tally.add(job.tally);
   for (auto& [key, value] : job.findings.members()) run.accounts[number].findings[key] = std::move(value);
-  run.accounts[number].seconds += seconds_since(start);
+  run.accounts[number].time += watch.spent();
 }
 
 /// The first process that comes to a later wave merges for all. The last wave merges again, for the report.

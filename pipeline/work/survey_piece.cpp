@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/work/survey_piece.h"
 
-#include <chrono>
 #include <utility>
 
 #include "core/config/result_visitors.h"
@@ -13,7 +12,6 @@ namespace swath::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 constexpr const char *record_name = "survey.done", *partial_name = "files.done", *handed_on_name = "handed_on.bin";
 
@@ -24,7 +22,7 @@ bool is_survey_piece_done(const fs::path& folder) { return fs::exists(folder / r
 SurveyPiece run_survey_piece(const stages::Stage& stage, stages::Context& context, const fs::path& folder, bool keep) {
   SurveyPiece piece;
   const stages::Records::Marks before = context.records.marks();
-  const auto start = Clock::now();
+  const Stopwatch watch(Whose::program);
   PieceRecord so_far;
   {
     const io::FinishedFiles watch([&](const fs::path& file) {
@@ -35,7 +33,7 @@ SurveyPiece run_survey_piece(const stages::Stage& stage, stages::Context& contex
     stage.run_survey(context, piece.tally, piece.findings);
     expect_balance(piece.tally, stage);
   }
-  piece.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  piece.time = watch.spent();
   const bool kept = keep && write_handed_on(folder / handed_on_name, before, context);
   for (const PieceFile& f : so_far.files)
     if (!fs::exists(folder / f.name)) throw damaged_work(folder / f.name);
@@ -46,7 +44,7 @@ SurveyPiece run_survey_piece(const stages::Stage& stage, stages::Context& contex
     if (entry.is_regular_file() && entry.path() != folder / record_name) files.push_back(entry.path());
   piece.files = piece_files(folder, std::move(files));
   if (!kept) return piece;
-  write_record(folder / record_name, {piece.files, core::reported(Account{0, 0, 0, piece.seconds, piece.tally, piece.findings})});
+  write_record(folder / record_name, {piece.files, core::reported(Account{0, 0, 0, piece.time, piece.tally, piece.findings})});
   return piece;
 }
 
@@ -56,7 +54,7 @@ SurveyPiece resume_survey_piece(stages::Context& context, const fs::path& folder
   read_handed_on(folder / handed_on_name, context);
   std::optional<Account> account = account_of(record->note);
   if (!account) throw damaged_work(folder / record_name);
-  return {std::move(account->tally), std::move(account->findings), account->seconds, std::move(record->files)};
+  return {std::move(account->tally), std::move(account->findings), account->time, std::move(record->files)};
 }
 
 }  // namespace swath::pipeline

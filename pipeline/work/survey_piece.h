@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "pipeline/time_spent.h"
 #include "pipeline/work/piece_record.h"
 #include "stages/stage.h"
 
@@ -14,7 +15,7 @@ namespace swath::pipeline {
 struct SurveyPiece {
   core::Tally tally;
   core::Value findings = core::Value::object();
-  double seconds = 0.0;
+  TimeSpent time{};
   std::vector<PieceFile> files;
 };
 
