@@ -45,7 +45,38 @@ class Envelope {
   std::vector<float> value_;
 };
 
+/// Cells to the nearest one of the row that is set; 255: that or more.
+void distances_in_row(const std::uint8_t* mask, std::uint8_t* out, int n) {
+  int d = 255;
+  for (int i = 0; i < n; ++i) {
+    d = mask[i] ? 0 : std::min(d + 1, 255);
+    out[i] = static_cast<std::uint8_t>(d);
+  }
+  d = 255;
+  for (int i = n - 1; i >= 0; --i) {
+    d = mask[i] ? 0 : std::min(d + 1, 255);
+    out[i] = std::min(out[i], static_cast<std::uint8_t>(d));
+  }
+}
+
 }  // namespace
+
+std::vector<std::uint8_t> cells_within(const std::vector<std::uint8_t>& mask, int nx, int ny, double radius) {
+  std::vector<std::uint8_t> along(mask.size()), out(mask.size(), 0);
+  const auto row = [nx](int j) { return static_cast<size_t>(j) * static_cast<size_t>(nx); };
+  for (int j = 0; j < ny; ++j) distances_in_row(mask.data() + row(j), along.data() + row(j), nx);
+  const int reach = static_cast<int>(radius);
+  for (int j = 0; j < ny; ++j)
+    for (int v = std::max(0, j - reach); v <= std::min(ny - 1, j + reach); ++v) {
+      int left = reach;  // of the radius, along the row
+      while (left > 0 && left * left + (v - j) * (v - j) > radius * radius) --left;
+      const auto most = static_cast<std::uint8_t>(left);
+      const std::uint8_t* from = along.data() + row(v);
+      std::uint8_t* to = out.data() + row(j);
+      for (int i = 0; i < nx; ++i) to[i] = static_cast<std::uint8_t>(to[i] | (from[i] <= most));
+    }
+  return out;
+}
 
 std::vector<float> squared_distances(const std::vector<std::uint8_t>& mask, int nx, int ny) {
   std::vector<float> out(mask.size(), nowhere);

@@ -102,14 +102,13 @@ bool has_empty_block(const Mask& m) {
 
 Mask void_mask(const Mask& returns, const PulseSpacing& spacing) {
   const core::Lattice& l = returns.lattice;
-  Mask centres(l), out(l);
-  const std::vector<float> to_return = squared_distances(returns.set, l.nx, l.ny);
-  for (size_t c = 0; c < l.size(); ++c) centres.set[c] = to_return[c] > static_cast<float>(disc * disc);
+  Mask out(l);
+  std::vector<std::uint8_t> centres = cells_within(returns.set, l.nx, l.ny, disc);
+  for (std::uint8_t& c : centres) c = !c;
   // The outermost returns fill their cell, half of which belongs to the gap already.
   // Of points far sparser than the rule nothing is taken back: all that a disc of it does not find covered is void.
   const double reach = std::max(0.0, disc - std::max(0.0, gap * spacing.actual / l.cell - 0.5));
-  const std::vector<float> to_centre = squared_distances(centres.set, l.nx, l.ny);
-  for (size_t c = 0; c < l.size(); ++c) out.set[c] = static_cast<double>(to_centre[c]) <= reach * reach;
+  out.set = cells_within(centres, l.nx, l.ny, reach);
   return out;
 }
 
@@ -140,12 +139,12 @@ void add_runs(const Mask& returns, const PulseSpacing& spacing, std::vector<Void
       run_at[around.at(i, j)] = static_cast<int>(out.size()) - 1;
     }
   if (out.size() == before) return;
-  const std::vector<float> to_void = squared_distances(voids.set, around.nx, around.ny);
+  const std::vector<std::uint8_t> near_void = cells_within(voids.set, around.nx, around.ny, beside);
   int vi = 0, vj = 0;
   for (int j = 0; j < around.ny; ++j)
     for (int i = 0; i < around.nx; ++i) {
       const size_t c = around.at(i, j);
-      if (!returns.set[c] || static_cast<double>(to_void[c]) > beside * beside || !nearest_void(voids, i, j, vi, vj)) continue;
+      if (!returns.set[c] || !near_void[c] || !nearest_void(voids, i, j, vi, vj)) continue;
       const int run = run_at[around.at(vi, vj)];
       if (run < 0) continue;  // of another square
       ++out[static_cast<size_t>(run)].rim;
