@@ -99,6 +99,7 @@ core::EventTags read_event_file(const Survey& survey, const EventFile& file, cor
   tags.offset = core::Seconds(0);
   core::TimeReader clock = reader_of(tags, path.string());
   for (const DataLine& row : rows) {
+    if (layout.delimiter != ' ') row.expect_at_most(layout.columns, !layout.names.empty());
     // Whole seconds and their fraction apart: together they do not fit a double to better than 0.24 us.
     const double seconds = row.number(time) * unit, whole = std::floor(seconds);
     double gps = 0;

@@ -26,6 +26,11 @@ void DataLine::expect_columns(size_t columns) const {
           "the line is cut off, or a name holds the delimiter and needs quotes");
 }
 
+void DataLine::expect_at_most(size_t columns, bool has_header) const {
+  const size_t found = fields.size() - (fields.size() > columns && fields.back().empty() ? 1 : 0);
+  if (found > columns) fault(more_fields_text(found, columns, has_header), more_fields_hint);
+}
+
 double DataLine::number(size_t column) const {
   double value = 0;
   if (!read_number(field(column), value) || !std::isfinite(value))

@@ -208,6 +208,11 @@ void require_text(std::string_view begin, const std::filesystem::path& file) {
   if (begin.find('\0') != std::string_view::npos) throw core::Error("is not delimited text", file.string(), "check the name of the file");
 }
 
+std::string more_fields_text(size_t fields, size_t columns, bool has_header) {
+  return "the line has " + std::to_string(fields) + " fields, " + (has_header ? "the header " : "the first line ") +
+         std::to_string(columns) + (columns == 1 ? " column" : " columns");
+}
+
 const char* number_hint(std::string_view field, const char* otherwise) {
   return field.find(',') != std::string_view::npos ? "decimal commas are not read: write decimal points" : otherwise;
 }
@@ -288,6 +293,7 @@ DelimitedReader::DelimitedReader(const std::filesystem::path& file, const Delimi
       names_(layout.names),
       delimiter_(layout.delimiter),
       fields_needed_(columns.empty() ? 0 : *std::max_element(columns.begin(), columns.end()) + 1),
+      columns_(layout.names.empty() ? layout.columns : layout.names.size()),
       slots_(fields_needed_),
       buffer_(buffer_bytes),
       file_at_(begin),
@@ -357,7 +363,19 @@ bool DelimitedReader::next(double* values) {
     }
     at = stop + 1;
   }
+  if (delimiter_ != ' ') expect_no_more(at, end);
   return true;
+}
+
+void DelimitedReader::expect_no_more(const char* at, const char* end) const {
+  if (at > end) return;  // the last field that is needed was the line's last
+  // A line may end with its delimiter.
+  if (fields_needed_ + 1 + static_cast<size_t>(std::count(at, end, delimiter_)) <= columns_) return;
+  size_t fields = fields_needed_;
+  for (; at <= end && !(at == end && fields >= columns_); at = field_end(at, end, delimiter_) + 1) ++fields;
+  if (fields > columns_)
+    throw core::Error(more_fields_text(fields, columns_, !names_.empty()), file_.path().string() + ":" + std::to_string(line_),
+                      more_fields_hint);
 }
 
 void DelimitedReader::short_line(size_t fields) const {

@@ -14,6 +14,9 @@
 
 namespace swath::io {
 
+/// A line with more fields than the table has columns: what is wrong, and what may be the cause.
+std::string more_fields_text(size_t fields, size_t columns, bool has_header);
+inline constexpr const char* more_fields_hint = "a number with a decimal comma, or a text that holds the delimiter and needs quotes?";
 /// What to do about a field that is not a number: a decimal comma is named.
 const char* number_hint(std::string_view field, const char* otherwise);
 /// Throws Error where the text's first bytes are those of UTF-16 or it holds bytes of 0: `begin` of a file, of any length.
@@ -47,7 +50,9 @@ char delimiter_in(const std::string& line);
 char delimiter_from(const std::string& stated, const std::filesystem::path& file);
 
 /// Streams the numbers of chosen columns. Comments and empty lines are passed over. "nan" and "inf" are handed over as such, an empty
-/// field as NaN. Throws Error "file:line" for a field that is no number and for a line with too few fields.
+/// field as NaN. Throws Error "file:line" for a field that is no number, for a line with too few fields, and for one with more fields than
+/// the header (without one, the first line of data) where a character parts them: a decimal comma would move all that follows by one
+/// column.
 class DelimitedReader {
  public:
   /// Reads from byte `begin` (start of line number `line`) to byte `end`. `columns`: indices from 0, in the order wanted.
@@ -64,12 +69,14 @@ class DelimitedReader {
  private:
   bool next_line(const char*& begin, const char*& end);
   [[noreturn]] void short_line(size_t fields) const;
+  /// `at`: behind the fields that are needed.
+  void expect_no_more(const char* at, const char* end) const;
   [[noreturn]] void bad_number(const char* begin, const char* end, size_t column) const;
 
   BinaryFile file_;
   std::vector<std::string> names_;
   char delimiter_;
-  size_t fields_needed_;
+  size_t fields_needed_, columns_;
   std::vector<std::vector<size_t>> slots_;  // per field of the line: places in `values`
   std::vector<char> buffer_;
   size_t begin_ = 0, fill_ = 0;  // unread part of the buffer

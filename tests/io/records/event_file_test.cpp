@@ -117,6 +117,8 @@ TEST_F(EventFiles, FaultsNameTheirLine) {
   EXPECT_EQ(where_of(file("t,name,strip\n1,a,1\nx,a,1\n")), "events.csv:3");
   EXPECT_EQ(where_of(file("t,name,strip\n1,a,1\n\n2,a\n")), "events.csv:4");
   EXPECT_EQ(where_of(file("t,name,strip\n1,a,1.5\n")), "events.csv:2");
+  EXPECT_EQ(where_of(file("t,name,strip\n1,a,1\n2,5,b,1\n")), "events.csv:3") << "a decimal comma";
+  EXPECT_EQ(where_of(file("t,name,strip\n1,a,1,\n2,b,1,\n")), "no error") << "a delimiter at the end";
   EXPECT_EQ(where_of(file("t,name,strip\n-5,a,1\n")), "events.csv:2");
   EXPECT_EQ(where_of(file("time,name,strip\n1,a,1\n")), "events.csv");
   EXPECT_EQ(where_of(file("t,name,strip\n")), "events.csv");

@@ -23,6 +23,8 @@ TEST(DataLines, FieldsWithTheirPlaceAndComments) {
   EXPECT_EQ(lines[2].line, 6u);
   EXPECT_THROW(lines[1].number(1), core::Error);
   EXPECT_THROW(lines[2].field(1), core::Error);
+  EXPECT_NO_THROW(lines[0].expect_at_most(2, true));
+  EXPECT_THROW(lines[0].expect_at_most(1, true), core::Error);
   test::write_bytes(folder / "a.bin", std::string("a\0b\n", 4));
   EXPECT_THROW(for_each_data_line(folder / "a.bin", delimiter_in, [](DataLine&) {}), core::Error);
 }

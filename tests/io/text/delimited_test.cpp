@@ -84,6 +84,20 @@ TEST_F(Delimited, BadNumbersAndShortLinesNameTheLine) {
   EXPECT_NE(error_of("a b\n1 2\n3\n", {"b"}).where().find(":3"), std::string::npos);
 }
 
+TEST_F(Delimited, LinesWithMoreFieldsThanTheHeaderAreNamed) {
+  for (const char* text : {"a,b,c\n1,2,3\n1,2,5,3\n", "1,2,3\n1,2,5,3\n", "a,b,c\n1,2,3,\n1,2,5,3,\n", "a;b;c\n1;2;3\n1;2;x;y\n"}) {
+    const core::Error e = error_of(text, {"1"});
+    EXPECT_NE(e.where().find("a.csv:"), std::string::npos) << text;
+    EXPECT_NE(std::string(e.what()).find("the line has 4 fields"), std::string::npos) << text << e.what();
+    EXPECT_NE(e.hint().find("decimal comma"), std::string::npos) << text;
+  }
+  error_of("a,b\n1,2,5\n", {"b"});
+  // Delimiters at the end of lines and in quotes are none of numbers; blanks part no decimal commas.
+  EXPECT_EQ(read_all(made("a,b,c\n1,2,3,\n4,5,6\n"), {"a", "b"}), (Rows{{1, 2}, {4, 5}}));
+  EXPECT_EQ(read_all(made("a,b,c\n1,2,\"x,y\"\n"), {"a", "b"}), (Rows{{1, 2}}));
+  EXPECT_EQ(read_all(made("a b\n1 2 fixed\n3 4\n"), {"a", "b"}), (Rows{{1, 2}, {3, 4}}));
+}
+
 TEST_F(Delimited, EmptyAndBinaryFilesAreErrors) {
   error_of("", {"1"});
   error_of("a,b\n", {"a"});
