@@ -349,8 +349,12 @@ Plan make_plan(const Request& request) {
   if (faults.empty()) check_order(plan, faults);
   if (faults.empty()) check_memory(plan, faults);
 
-  if (!request.output.empty()) plan.run.output = request.output;
-  if (request.threads >= 0) plan.run.threads = request.threads;
+  const auto flag = [&](const char* key, const char* name, Value value) {
+    value.where.file = name;
+    plan.run_flags[key] = std::move(value);
+  };
+  if (!request.output.empty()) plan.run.output = request.output, flag("output", "--output", request.output.string());
+  if (request.threads >= 0) plan.run.threads = request.threads, flag("threads", "--threads", request.threads);
   read_plan_survey(request, plan, faults);
   core::throw_if_any(faults);
   if (!plan.survey_file.empty()) {
@@ -389,7 +393,9 @@ void set_option(core::Value& table, const std::string& set) {
 }
 
 Explanation explain(Plan& plan) {
-  Explanation out{plan.config.string(), plan.survey_file.string(), with_origin(core::described(plan.run), plan.run_table)};
+  Value run_table = plan.run_table;
+  for (const auto& [key, value] : plan.run_flags.members()) run_table[key] = value;
+  Explanation out{plan.config.string(), plan.survey_file.string(), with_origin(core::described(plan.run), run_table)};
   for (const PlannedStage& s : plan.stages) out.stages.push_back({s.stage->info().name, with_origin(s.describe(), s.table)});
   return out;
 }

@@ -62,8 +62,9 @@ struct PlannedStage {
 struct Plan {
   std::filesystem::path config;
   RunOptions run;
-  core::Value run_table;
-  std::filesystem::path survey_file;  ///< empty: none was named; "command line" for one that no file holds
+  core::Value run_table;                          ///< as written
+  core::Value run_flags = core::Value::object();  ///< of [run] what flags of the command line set
+  std::filesystem::path survey_file;              ///< empty: none was named; "command line" for one that no file holds
   io::Survey survey;
   std::vector<PlannedStage> stages;
   std::optional<core::Value> survey_tree{};  ///< as Request::survey_tree

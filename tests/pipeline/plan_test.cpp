@@ -44,11 +44,16 @@ struct Case {
 
 TEST(Plan, ReadsConfigSurveyAndSets) {
   Case c(good);
+  c.request.output = "elsewhere";
   c.request.sets = {"smrf.slope=0.3", "run.tile=250 m", "terrain.dtm.cell=\"50 cm\""};
   Plan plan = make_plan(c.request);
   ASSERT_EQ(plan.stages.size(), 4u);  // with quality.lines, which the terrain model of a cloud uses
   EXPECT_EQ(plan.run.tile.value, 250.0);
   const Explanation found = explain(plan);
+  EXPECT_EQ(found.run.find("output")->find("value")->as_text(), "elsewhere");
+  EXPECT_EQ(found.run.find("output")->find("from")->as_text(), "--output");
+  EXPECT_EQ(found.run.find("tile")->find("from")->as_text(), "--set");
+  EXPECT_EQ(found.run.find("threads")->find("from")->as_text(), "default");
   const core::Value& smrf = found.stages[1].options;
   EXPECT_EQ(smrf.find("slope")->find("value")->as_number(), 0.3);
   EXPECT_EQ(smrf.find("slope")->find("from")->as_text(), "--set");
