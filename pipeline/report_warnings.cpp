@@ -15,7 +15,10 @@ using core::Value;
 
 constexpr std::string_view box_code = "points.outside_box", damage_code = "work.damaged", geometry_code = "geometry.contradiction",
                            mistake_code = "geometry.mistake", control_code = "control.unused", buildings_code = "buildings.none",
-                           scale_code = "crs.scale", outside_code = "crs.outside";
+                           scale_code = "crs.scale", outside_code = "crs.outside", fixes_code = "trajectory.fixes",
+                           noise_code = "trajectory.imu_noise";
+constexpr double contradicting_share = 0.05, least_contradicting = 10.0;  // of the fixes; fixes
+constexpr double warned_noise = 30.0;                                     // times the stated noise
 
 /// An example for each file, and one for those that the report counts without.
 void add_boxes(const Value& wrong, std::vector<Warning>& out) {
@@ -45,6 +48,32 @@ void add_geometry(const Value& geometry, std::vector<Warning>& out) {
     out.push_back({std::string(k + mistakes < sentences.size() ? geometry_code : mistake_code), sentences[k].as_text(), {}});
 }
 
+/// Records that do not fit one another, beyond what outliers and vibration do.
+void add_trajectory(const Value& findings, std::vector<Warning>& out) {
+  if (const Value* fixes = findings.find("fixes")) {
+    const double used = fixes->find("used")->as_number(), contradict = fixes->find("down_weighted")->as_number();
+    if (contradict > std::max(least_contradicting, contradicting_share * used))
+      out.push_back({std::string(fixes_code),
+                     core::format_number(contradict) + " of " + core::format_number(used) +
+                         " fixes contradict the trajectory: it may be off by far more than its sigmas",
+                     {{"contradicting", contradict, {}}, {"fixes", used, {}}}});
+  }
+  if (const Value* noise = findings.find("imu_noise_factor"); noise && noise->as_number() >= warned_noise)
+    out.push_back({std::string(noise_code),
+                   "the IMU's records hold " + core::format_number(std::round(noise->as_number())) +
+                       " times the stated noise: the trajectory rests on the fixes",
+                   {{"factor", noise->as_number(), {}}}});
+}
+
+void add_findings(const std::string& stage, const Value& findings, std::vector<Warning>& out) {
+  if (stage == "trajectory.ins_gnss") add_trajectory(findings, out);
+  const Value *named = findings.find("named"), *returns = findings.find("returns");
+  if (stage == "quality.points" && named)
+    for (const Value& fault : named->items()) out.push_back({fault.find("code")->as_text(), fault.find("sentence")->as_text(), {}});
+  if (stage == "terrain.buildings" && returns && returns->as_int() == 0)
+    out.push_back({std::string(buildings_code), "no return is of class building (6): terrain.buildings found nothing", {}});
+}
+
 }  // namespace
 
 std::vector<Warning> warnings_in(const Value& report) {
@@ -58,13 +87,7 @@ std::vector<Warning> warnings_in(const Value& report) {
     if (const Value* tally = stage.find("tally"))
       if (const Value* wrong = tally->find(io::wrong_box)) add_boxes(*wrong, out);
   for (const Value& stage : report.find("stages")->items())
-    if (const Value* findings = stage.find("findings"); findings && stage.find("type")->as_text() == "quality.points")
-      if (const Value* named = findings->find("named"))
-        for (const Value& fault : named->items()) out.push_back({fault.find("code")->as_text(), fault.find("sentence")->as_text(), {}});
-  for (const Value& stage : report.find("stages")->items())
-    if (const Value* findings = stage.find("findings"); findings && stage.find("type")->as_text() == "terrain.buildings")
-      if (const Value* returns = findings->find("returns"); returns && returns->as_int() == 0)
-        out.push_back({std::string(buildings_code), "no return is of class building (6): terrain.buildings found nothing", {}});
+    if (const Value* findings = stage.find("findings")) add_findings(stage.find("type")->as_text(), *findings, out);
   if (const Value* unused = report.find("control_unused"))
     for (const Value& file : unused->items())
       out.push_back({std::string(control_code), "[[control]] " + file.as_text() + " is used by no stage of this run", {}});

@@ -14,11 +14,12 @@ namespace {
 
 constexpr core::Rgb level_grey{180, 180, 180};
 constexpr int enlarged_side = 1000;    // a small grid is enlarged to about this many pixels
+constexpr double legend_step = 0.1;    // of the legend's heights
 constexpr double darkest = 0.15;       // brightness of a cell without any light, level ground being 1
 constexpr double contrast = 1.4;       // exponent of the brightness: flat country needs more than Lambert's law gives
 constexpr double densest = 1.0 / 3.0;  // share of the map that ordinary contours may cover
 
-/// 2nd and 98th percentile of the heights.
+/// 2nd and 98th percentile of the heights: single peaks and pits do not take the colours from the rest.
 Span height_span(const core::Grid& g) {
   std::vector<double> heights;
   for (const float h : g.height)
@@ -118,7 +119,11 @@ Shown shown_of(const std::vector<PixelLine>& lines, double map_pixels) {
 std::vector<MapItem> legend_of(const core::Grid& g, const Span& span, const Shown& shown, const PictureOptions& o) {
   std::vector<MapItem> out;
   const auto rounded = [](double v) { return short_number(std::round(v * 10.0) / 10.0); };
-  if (span.any && o.tint) out.push_back(bar_item(rounded(span.low), rounded(span.high) + " " + o.height_unit, 140, tint_of));
+  const auto beyond = [&](const auto& is) { return std::any_of(g.height.begin(), g.height.end(), is); };
+  const char* below = beyond([&](float h) { return static_cast<double>(h) < span.low - legend_step; }) ? "< " : "";
+  const char* above = beyond([&](float h) { return static_cast<double>(h) > span.high + legend_step; }) ? "> " : "";
+  if (span.any && o.tint)
+    out.push_back(bar_item(below + rounded(span.low), above + rounded(span.high) + " " + o.height_unit, 140, tint_of));
   const auto every = [&](const char* what, double step) {
     return step > 0 ? std::string(what) + " " + short_number(step) + " " + o.height_unit : std::string(what);
   };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -25,6 +26,7 @@ constexpr double near_predicted = 2.5;  // of the predicted sigma
 constexpr double few_outside = 0.1;
 constexpr double no_worse = 1.02;  // of the cost as described, with a small mistake undone
 constexpr size_t most_named = 3;
+constexpr std::uint64_t few_cells = 5;
 constexpr double least_covered = 0.5, nearly_all = 0.95, all_covered = 0.995;
 constexpr double gross = 1.0;                     // m: no trajectory that is worth adjusting is so far off
 constexpr double leap_fit = 1.0;                  // m: lines that are flown a kilometre apart do not come near this
@@ -57,6 +59,11 @@ std::vector<TriedMistake> explain(const GeometryFigures& found, std::uint64_t le
   std::uint64_t most = found.lines.fit.cells;
   for (const TriedMistake& t : found.tried)
     if (fits(t.fit)) most = std::max(most, t.fit.cells);
+  // A few cells that fit as described are evidence, too, though not enough to judge by: what fits them worse explains nothing.
+  const Fit& as_is = found.lines.fit;
+  const double must_fit = found.verdict == Verdict::not_judged && as_is.cells >= few_cells && fits(as_is)
+                              ? as_good * std::max(as_is.cost, sigma)
+                              : std::numeric_limits<double>::infinity();
   const auto enough = std::max(least, static_cast<std::uint64_t>(fewer_cells * static_cast<double>(most)));
   const bool by_lines = std::any_of(found.tried.begin(), found.tried.end(), [&](const TriedMistake& t) { return t.fit.cells >= enough; });
   const auto cost = [&](const Fit& f) { return !by_lines ? 1.0 : f.cells >= enough ? f.cost : 1e9; };
@@ -64,7 +71,7 @@ std::vector<TriedMistake> explain(const GeometryFigures& found, std::uint64_t le
   for (const TriedMistake& t : found.tried) fewest = std::min(fewest, t.contradictions);
   std::vector<TriedMistake> out;
   for (const TriedMistake& t : found.tried) {
-    const bool near = !by_lines || fits(t.fit);
+    const bool near = !by_lines || (fits(t.fit) && t.fit.cost <= must_fit);
     const bool better = near && cost(t.fit) < far_better * now_cost;
     const bool resolves = t.contradictions < now && (!lines_apart || better) && cost(t.fit) <= as_good * now_cost;
     if (t.contradictions == fewest && (resolves || (lines_apart && better))) out.push_back(t);
@@ -126,7 +133,7 @@ void uncovered(const GeometryInput& in, GeometryFigures& out) {
 
 std::string lines_of(const LinePair& p) { return "lines " + std::to_string(p.line_a) + " and " + std::to_string(p.line_b); }
 
-void say(const SampledFlight& flight, const GeometryOptions& o, bool sound, GeometryFigures& out) {
+void say(const SampledFlight& flight, const GeometryOptions& o, bool sound, bool unmet, GeometryFigures& out) {
   const LinePair* worst = nullptr;
   size_t apart = 0;
   for (const LinePair& p : out.lines.pairs)
@@ -142,14 +149,15 @@ void say(const SampledFlight& flight, const GeometryOptions& o, bool sound, Geom
     if (!c.held && !c.said) out.warnings.push_back(c.text);
   if (sound && out.covered < nearly_all)
     out.warnings.push_back("the trajectory covers " + words("%.0f %%", 100 * out.covered) + " of the time of the flight lines");
-  else if (sound && out.lines.fit.cells > 0 && !worst)
+  else if (sound && !unmet && out.lines.fit.cells > 0 && !worst)
     out.warnings.push_back(
-        "the differences of lines where they overlap" + words(" (%.3f m rms, predicted %.3f m)", out.lines.fit.cost, out.lines.predicted) +
+        "the differences of lines where they overlap" + words(" (%.3f m rms, predicted %.3f m)", out.lines.fit.rms, out.lines.predicted) +
         (out.control.compared >= fewest_control_points ? words(" and of the ground from control (%.3f m)", out.control.median) : "") +
         " have the pattern of an error of calibration");
   else if (sound && !worst)
-    out.warnings.push_back("no ground was found that two lines have seen, though their tracks come within " +
-                           words("%.0f m", flight.plan.nearest));
+    out.warnings.push_back(
+        (out.lines.fit.cells > 0 ? words("only %.0f cells of ground were", static_cast<double>(out.lines.fit.cells)) : "no ground was") +
+        " found that two lines have seen, though their tracks come within " + words("%.0f m", flight.plan.nearest));
   for (const TriedMistake& t : out.named) {
     const bool lines = t.fit.cells > 0;
     out.warnings.push_back(
@@ -292,7 +300,7 @@ GeometryFigures judge_geometry(const GeometryInput& in, const GeometryOptions& o
     return out;
   }
   out.verdict = Verdict::inconsistent;
-  say(flight, o, sound, out);
+  say(flight, o, sound, unmet, out);
   out.doubt = doubt_of(out, o);
   return out;
 }

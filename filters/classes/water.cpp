@@ -7,21 +7,17 @@
 //    half of its returns there have at most: voids do not pull it down).
 // 2. From each square of 12 m with sparse returns the water at their level is grown by plots of 4 m, over gaps of one plot, within `reach`.
 // 3. It is water where enough sparse returns lie in it, those there lie in one plane, the plane is level, and what is around is not lower
-//    (a dark flat roof's surroundings are). The plane's slope has a prior of 0.001, that of rivers: where the returns say little, it is
-//    level.
+//    (a dark flat roof's surroundings are). The plane's slope has a prior of 0.001, that of rivers: few returns leave it level.
 // 4. Near the nadir all pulses come back. A water that lies there altogether shows by its form: ground's returns in one plane, level
 //    within 0.001, with rising ground all around. Squares whose plots lie at one level start it.
-// 5. Returns in the plots within three sigma of the plane are water; in the plots of the shore, which rises, those above one and a half are
-//    not.
+// 5. Returns in the plots within three sigma of the plane are water; in the plots of the shore, which rises, up to one and a half above it.
 #include "filters/classes/water.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
-#include <tuple>
 #include <vector>
 
 #include "core/floor_div.h"
@@ -152,13 +148,16 @@ class Plots {
   }
   size_t plot_of(const Region& r, const CellIndex& at) const { return lattice().at(r.i + at.i, r.j + at.j); }
 
-  template <class Member>
-  Region grow(int i, int j, double level, int gap, Member&& is_member) const {
-    Region r;
-    r.i = i, r.j = j, r.level = level;
-    r.radius = static_cast<int>(std::ceil(options_.reach.value / plot));
+  Region none_at(int i, int j, double level) const {
+    Region r{i, j, static_cast<int>(std::ceil(options_.reach.value / plot)), level, {}, {}, {}};
     const auto side = static_cast<size_t>(2 * r.radius + 1);
     r.distance.assign(side * side, Region::far);
+    return r;
+  }
+
+  template <class Member>
+  Region grow(int i, int j, double level, int gap, Member&& is_member) const {
+    Region r = none_at(i, j, level);
     const auto take = [&](int di, int dj) {
       if (!inside(r, di, dj) || r.distance[r.local(di, dj)] == 0 || !is_member(lattice().at(i + di, j + dj))) return;
       r.distance[r.local(di, dj)] = 0;
@@ -183,6 +182,36 @@ class Plots {
           }
         }
     return r;
+  }
+
+  /// Would what grow() finds come within two plots of the edge? Goes straight for it: level land is plots by the thousand.
+  template <class Member>
+  bool goes_on(int i, int j, double level, Member&& is_member) const {
+    Region r = none_at(i, j, level);  // its distances: 0 where it was
+    std::vector<CellIndex>& open = r.water;
+    const auto take = [&](int di, int dj) {
+      if (!inside(r, di, dj) || r.distance[r.local(di, dj)] == 0) return;
+      r.distance[r.local(di, dj)] = 0;
+      if (is_member(lattice().at(i + di, j + dj))) open.push_back({di, dj});
+    };
+    const auto is_near_edge = [&](const CellIndex& at) {
+      constexpr int near = Region::far - 2;
+      if (std::max(std::abs(at.i), std::abs(at.j)) + near < r.radius) return false;
+      for (int dj = -near; dj <= near; ++dj)
+        for (int di = -near; di <= near; ++di)
+          if (std::max(std::abs(at.i + di), std::abs(at.j + dj)) == r.radius && inside(r, at.i + di, at.j + dj)) return true;
+      return false;
+    };
+    for (int dj = -(seed_plots / 2); dj <= seed_plots / 2; ++dj)
+      for (int di = -(seed_plots / 2); di <= seed_plots / 2; ++di) take(di, dj);
+    while (!open.empty()) {
+      const CellIndex from = open.back();
+      open.pop_back();
+      if (is_near_edge(from)) return true;
+      for (int dj = -1; dj <= 1; ++dj)
+        for (int di = -1; di <= 1; ++di) take(from.i + di, from.j + dj);
+    }
+    return false;
   }
 
   bool is_at_level(size_t c, double level) const {
@@ -217,10 +246,12 @@ class Plots {
 
   /// Water that all pulses come back from: a level plane of ground's returns with rising ground all around.
   void judge_closed(int i, int j, double level) {
-    const Region r = grow(i, j, level, 1, [&](size_t c) {
+    const auto is_member = [&](size_t c) {
       return is_at_level(c, level) && static_cast<double>(ground_[c]) >= level_share * static_cast<double>(heights_[c].size()) &&
              is_smooth(c, level, 0.0);
-    });
+    };
+    if (goes_on(i, j, level, is_member)) return;
+    const Region r = grow(i, j, level, 1, is_member);
     if (r.water.size() < least_closed) return;
     std::vector<Eigen::Vector3d> means;
     double squares = 0, n = 0, rim = 0, rim_plots = 0, interior = 0, interior_plots = 0;
@@ -246,10 +277,7 @@ class Plots {
     for (int dj = -r.radius; dj <= r.radius; ++dj)
       for (int di = -r.radius; di <= r.radius; ++di) {
         const std::uint8_t d = r.distance[r.local(di, dj)];
-        if (d == Region::far) continue;
-        const bool edge = std::max(std::abs(di), std::abs(dj)) == r.radius;
-        if (edge && d < Region::far - 1) return;  // it goes on
-        if (d < 2) continue;
+        if (d == Region::far || d < 2) continue;
         ++ring;
         if (!lattice().holds(r.i + di, r.j + dj)) continue;
         const std::vector<double>& z = heights_[plot_of(r, {di, dj})];

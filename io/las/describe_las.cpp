@@ -151,7 +151,7 @@ void judge_times(LasFacts& out) {
   if (s.time_zero == s.points)
     out.warnings.push_back("all times are 0");
   else if (s.time_zero > 0)
-    out.warnings.push_back(std::to_string(s.time_zero) + " points have time 0");
+    out.warnings.push_back(std::to_string(s.time_zero) + (s.time_zero == 1 ? " point has time 0" : " points have time 0"));
 }
 
 /// The header's box and counts against the points.
@@ -159,7 +159,7 @@ void judge_header(LasFacts& out) {
   const LasHeader& h = out.h;
   for (int k = 0; k < 3; ++k) {
     const core::Interval& e = out.s.xyz[static_cast<size_t>(k)];
-    if (std::abs(h.min[k] - e.low) > h.scale[k] || std::abs(h.max[k] - e.high) > h.scale[k])
+    if (std::abs(h.min[k] - e.low) > std::abs(h.scale[k]) || std::abs(h.max[k] - e.high) > std::abs(h.scale[k]))
       out.warnings.push_back(std::string("the header states ") + "xyz"[k] + " " + core::format_number(h.min[k]) + " to " +
                              core::format_number(h.max[k]) + ", the points span " + core::format_number(e.low) + " to " +
                              core::format_number(e.high));

@@ -24,7 +24,13 @@ using Eigen::Vector3d;
 
 constexpr double most_not_finite = 0.03, most_repeated = 0.05;  // of the records
 constexpr const char *records = "IMU records", *gap_count = "IMU gaps";
-constexpr double fastest_turn = 100.0, largest_force = 1000.0;  // rad/s, m/s2: twice what the widest sensors measure
+constexpr double fastest_turn = 100.0, largest_force = 1000.0;    // rad/s, m/s2: twice what the widest sensors measure
+constexpr double least_jump_turn = 2.0, least_jump_force = 20.0;  // rad/s, m/s2: of one record against its neighbours
+constexpr double jump_ratio = 25.0;                               // of the median change from record to record
+constexpr double most_standing_out = 1e-3;                        // of the records, or
+constexpr size_t always_few = 3;
+constexpr size_t neighbours = 5;              // records on either side
+constexpr size_t changes_looked_at = 100000;  // changes for their median
 
 /// Records as recorded, in the record's axes and units.
 struct Raw {
@@ -48,34 +54,85 @@ void refuse_share(std::uint64_t n, std::uint64_t of, double most, const char* wh
     throw core::Error(std::to_string(n) + " of " + std::to_string(of) + " IMU records " + what, name, hint);
 }
 
-/// Takes out the records with rates or forces that no IMU measures, counted with the place and the values; leaves all where they are not
-/// few: then the units are others than stated, which check_imu() says.
-void leave_out_impossible(Raw& raw, const ImuFile& f, const std::vector<std::uint64_t>& numbers, const TableRows& rows,
-                          core::Tally& tally) {
+/// From a record's numbers to rad/s and m/s2.
+struct Scale {
+  double gyro, force;
+  double turn_of(const Vector3d& v) const { return v.cwiseAbs().maxCoeff() * gyro; }
+  double force_of(const Vector3d& v) const { return v.cwiseAbs().maxCoeff() * force; }
+};
+
+/// Nothing where the records have no step.
+std::optional<Scale> scale_of(const Raw& raw, const ImuFile& f) {
   const double step = f.rate ? 1.0 / f.rate->value : core::median_step(raw.time);
-  if (!(step > 0)) return;
+  if (!(step > 0)) return std::nullopt;
   const double per_second = f.kind == ImuKind::rates ? 1.0 : 1.0 / step;
-  const double gyro = radians_per(f.angle_unit) * std::abs(f.gyro_factor) * per_second;
-  const double force = mps2_per(f.acceleration_unit) * std::abs(f.accelerometer_factor) * per_second;
-  const auto is_bad = [&](size_t k) {
-    return raw.gyro[k].cwiseAbs().maxCoeff() * gyro > fastest_turn || raw.accelerometer[k].cwiseAbs().maxCoeff() * force > largest_force;
-  };
-  std::vector<size_t> bad;
+  return Scale{radians_per(f.angle_unit) * std::abs(f.gyro_factor) * per_second,
+               mps2_per(f.acceleration_unit) * std::abs(f.accelerometer_factor) * per_second};
+}
+
+/// Numbers of the records with rates or forces that no IMU measures.
+std::vector<size_t> beyond_any_imu(const Raw& raw, const Scale& s) {
+  std::vector<size_t> out;
   for (size_t k = 0; k < raw.time.size(); ++k)
-    if (is_bad(k)) bad.push_back(k);
-  if (bad.empty() || !are_few(bad.size(), raw.time.size())) return;
+    if (s.turn_of(raw.gyro[k]) > fastest_turn || s.force_of(raw.accelerometer[k]) > largest_force) out.push_back(k);
+  return out;
+}
+
+/// Numbers of the single records that stand out from those before and after them: a damaged digit, of which no filter can know. Vibration,
+/// landings and turns change neighbours, too.
+std::vector<size_t> standing_out(const Raw& raw, const Scale& s) {
+  std::vector<double> turns, forces;
+  const size_t n = raw.time.size(), stride = std::max<size_t>(1, n / changes_looked_at);
+  for (size_t k = 1; k < n; k += stride) {
+    turns.push_back(s.turn_of(raw.gyro[k] - raw.gyro[k - 1]));
+    forces.push_back(s.force_of(raw.accelerometer[k] - raw.accelerometer[k - 1]));
+  }
+  if (turns.empty()) return {};
+  const double turn = std::max(least_jump_turn, jump_ratio * core::median(std::move(turns))),
+               force = std::max(least_jump_force, jump_ratio * core::median(std::move(forces)));
+  const auto contradict = [&](size_t i, size_t j) {
+    return s.turn_of(raw.gyro[i] - raw.gyro[j]) > turn || s.force_of(raw.accelerometer[i] - raw.accelerometer[j]) > force;
+  };
+  std::vector<size_t> out = contradicted(n, contradict);
+  std::erase_if(out, [&](size_t k) {  // without it all around are smooth
+    for (size_t i = k - std::min(k, neighbours), j = i + 1; j < std::min(n, k + neighbours + 1); ++j) {
+      if (j == k) continue;
+      if (i != k && contradict(i, j)) return true;
+      i = j;
+    }
+    return false;
+  });
+  return out;
+}
+
+/// Takes out records, counted as `what` with the place and the values; leaves all where they are more than `most` of all and not few: then
+/// the units are others than stated, which check_imu() says, or the carrier shakes so.
+void leave_out(Raw& raw, std::vector<std::uint64_t>& numbers, const std::vector<size_t>& bad, double most, const Scale& s,
+               const TableRows& rows, const char* what, core::Tally& tally) {
+  const auto n = static_cast<double>(raw.time.size());
+  if (bad.empty() || !are_few(bad.size(), raw.time.size()) || (bad.size() > always_few && static_cast<double>(bad.size()) > most * n))
+    return;
   size_t kept = 0;
   for (size_t k = 0, next = 0; k < raw.time.size(); ++k) {
     if (next < bad.size() && bad[next] == k) {
       ++next;
-      tally.count("IMU records with rates or forces that no IMU measures, left out",
-                  rows.place_of(numbers[k]) + ": " + core::format_number(raw.gyro[k].cwiseAbs().maxCoeff() * gyro) + " rad/s, " +
-                      core::format_number(raw.accelerometer[k].cwiseAbs().maxCoeff() * force) + " m/s2");
+      tally.count(what, rows.place_of(numbers[k]) + ": " + core::format_number(s.turn_of(raw.gyro[k])) + " rad/s, " +
+                            core::format_number(s.force_of(raw.accelerometer[k])) + " m/s2");
       continue;
     }
-    raw.move(k, kept++);
+    raw.move(k, kept);
+    numbers[kept++] = numbers[k];
   }
   raw.resize(kept);
+}
+
+void leave_out_wild(Raw& raw, const ImuFile& f, std::vector<std::uint64_t>& numbers, const TableRows& rows, core::Tally& tally) {
+  const std::optional<Scale> scale = scale_of(raw, f);
+  if (!scale) return;
+  leave_out(raw, numbers, beyond_any_imu(raw, *scale), 1.0, *scale, rows, "IMU records with rates or forces that no IMU measures, left out",
+            tally);
+  leave_out(raw, numbers, standing_out(raw, *scale), most_standing_out, *scale, rows,
+            "IMU records that stand out from all around them, left out", tally);
 }
 
 /// The records as they are, but for those with a value or time that cannot be.
@@ -145,7 +202,7 @@ Raw read_raw(const std::filesystem::path& path, const ImuFile& f, core::Tally& t
   refuse_share(repeated, all.read, most_repeated, "are at the time of the record before", name,
                "the times are too coarse for the rate: export them with more digits");
   if (raw.time.empty()) throw core::Error("the file has no IMU records", name);
-  leave_out_impossible(raw, f, all.numbers, *rows, tally);
+  leave_out_wild(raw, f, all.numbers, *rows, tally);
   tally.read(records, all.read);
   tally.keep(records, raw.time.size());
   if (same > 0)

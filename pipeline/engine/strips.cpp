@@ -283,6 +283,11 @@ void run_strips(RunState& run) {
   }
   run.progress.end();
   if (is_shared) return;
+  if (run.accounts[source].in == 0 && run.stage(source).info().makes(stages::Product::points)) {
+    const std::vector<io::PointFile>& files = run.plan.survey.points;
+    throw core::Error(files.size() == 1 ? "the file has no points" : "no file of [[points]] has a point",
+                      io::resolve(run.plan.survey, files.front().file).string(), "see `swath info` of the file");
+  }
   if (run.accounts[source].in == 0)
     throw core::Error("no laser return to work on", run.plan.survey_file.string(),
                       "are the lines' times those of the records? see `swath info` of the laser file");

@@ -147,7 +147,7 @@ class Clouds(Case):
 
     def test_no_point(self):
         toml = cloud_survey(self.folder / "survey", [])
-        self.assert_bad_data(toml, r"survey\.toml: no laser return to work on", config=CLOUD)
+        self.assert_bad_data(toml, "the file has no points", config=CLOUD)
 
     def refuse_cloud(self, points):
         toml = cloud_survey(self.folder / "survey", points)

@@ -18,6 +18,7 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
           {"type": "quality.points", "findings": {"named": [{"code": "check.heights", "sentence": "a"}, {"code": "check.line", "sentence": "b"},
                                                             {"code": "check.mark", "sentence": "c"}, {"code": "check.few", "sentence": "d"},
                                                             {"code": "check.names", "sentence": "e"}, {"code": "check.outside", "sentence": "f"}]}},
+          {"type": "trajectory.ins_gnss", "findings": {"fixes": {"used": 1061, "down_weighted": 316}, "imu_noise_factor": 64}},
           {"type": "terrain.buildings", "findings": {"buildings": 0, "returns": 0}}, {"type": "terrain.buildings", "findings": {"returns": 7}}],
           "crs": {"name": "WGS 84 / Arctic", "scale": 0.97, "degrees_outside": 12.5},
           "geometry": {"named": ["range_feet"], "warnings": ["lines disagree", "with ranges in feet: state range_unit"]},
@@ -40,6 +41,16 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
     EXPECT_NE(warning_help(w.code).find(w.code + ": "), std::string::npos);
   }
   EXPECT_EQ(codes.size(), warning_kinds().size());
+}
+
+TEST(Warnings, AFewContradictingFixesAreNoWarning) {
+  const auto number = [](const std::string& findings) {
+    return warnings_in(io::parse_json(R"({"stages": [{"type": "trajectory.ins_gnss", "findings": )" + findings + "}]}", "report")).size();
+  };
+  EXPECT_EQ(number(R"({"fixes": {"used": 1000, "down_weighted": 50}, "imu_noise_factor": 4})"), 0u);
+  EXPECT_EQ(number(R"({"fixes": {"used": 1000, "down_weighted": 51}, "imu_noise_factor": 4})"), 1u);
+  EXPECT_EQ(number(R"({"fixes": {"used": 60, "down_weighted": 10}})"), 0u);
+  EXPECT_EQ(number(R"({"imu_noise_factor": 40})"), 1u);
 }
 
 TEST(Warnings, AnUnknownCodeNamesTheNearest) {

@@ -94,7 +94,8 @@ std::optional<Solution> solve(const std::vector<Instant>& at, const Vector3d& up
   size_t j = 0, k = 0;
   for (size_t i = 0; i < at.size(); ++i) {
     while (j < at.size() && at[j].time < at[i].time + half_span - 1e-3) ++j;
-    while (k < at.size() && at[k].time < at[i].time + 2 * half_span - 1e-3) ++k;
+    // Behind a gap, or where fixes are seldom, the next one is farther than the second span.
+    while (k < at.size() && (k <= j || at[k].time < at[i].time + 2 * half_span - 1e-3)) ++k;
     if (k >= at.size()) break;
     const double h1 = at[j].time - at[i].time, h2 = at[k].time - at[j].time, h = 0.5 * (h1 + h2);
     if (h > 3 * half_span) continue;

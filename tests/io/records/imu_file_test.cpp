@@ -217,6 +217,28 @@ TEST_F(ImuFiles, WhatIsDamagedIsLeftOutOrRefused) {
   EXPECT_NE(refusal(f).find("did you mean 'wy'"), std::string::npos);
 }
 
+TEST_F(ImuFiles, ARecordThatStandsOutIsLeftOut) {
+  const char* what = "IMU records that stand out from all around them, left out";
+  for (const char* row : {"0.01,0.02,0.03,0.1,0.2,-98.1", "0.01,3,0.03,0.1,0.2,-9.81", "0.01,0.02,0.03,0.1,0.2,98.1"}) {
+    tally_ = {};
+    const core::ImuData imu = read(made(300, at_100_hz, [&](int k) { return k == 100 ? row : level(k); }));
+    EXPECT_EQ(imu.size(), 299u) << row;
+    EXPECT_EQ(tally_.of(what), 1u) << row;
+    EXPECT_NE(example(what).find("imu.csv:102"), std::string::npos) << row;
+    EXPECT_EQ(tally_.of("IMU gaps"), 1u) << row;
+  }
+  // What is not one record alone is motion: a shock with its swing, vibration with peaks, a step.
+  const auto force = [](double f) { return "0.01,0.02,0.03,0.1,0.2," + core::format_number(f); };
+  for (const Row& motion :
+       std::vector<Row>{[&](int k) { return force(-g + (k < 100 ? 0.0 : 60.0 * std::exp(-0.1 * (k - 100)) * std::cos(1.5 * (k - 100)))); },
+                        [&](int k) { return force(-g + 15.0 * std::sin(2.1 * k) + (k % 37 == 0 ? 25.0 : 0.0)); },
+                        [&](int k) { return force(k < 150 ? -g : -g + 30.0); }, [&](int k) { return force(-g + (k % 50 ? 0.0 : 30.0)); }}) {
+    tally_ = {};
+    EXPECT_EQ(read(made(6000, at_100_hz, motion)).size(), 6000u);
+    EXPECT_EQ(tally_.of(what), 0u);
+  }
+}
+
 TEST_F(ImuFiles, TheWeekRollsOver) {
   const auto over = [](int k) { return std::fmod(604799 + 0.01 * k, 604800); };
   const core::ImuData imu = read(made(300, over, level));

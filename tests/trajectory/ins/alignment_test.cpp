@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <functional>
 
 #include "core/geo/geodesy.h"
 #include "tests/trajectory/ins_problem.h"
@@ -120,6 +121,27 @@ TEST(Alignment, InMotionOnTurns) {
       // Chi-square of 3 beyond 20: 2e-4.
       EXPECT_LT(normed(e, a->covariance), 20.0) << seed;
     }
+}
+
+TEST(Alignment, GapsAndSeldomFixesInTheFirstWindow) {
+  const test::MotionAt motion = test::motion_of(test::survey_flight(3));
+  const std::vector<std::function<bool(double)>> kept{[](double t) { return t < 15.1 || t > 18.0; },     // s from the first fix
+                                                      [](double t) { return t < 15.1 || t > 20.0; },     //
+                                                      [](double t) { return t < 15.1 || t > 26.0; },     //
+                                                      [](double t) { return std::fmod(t, 4.0) < 0.1; },  // every 4 s
+                                                      [](double t) { return std::fmod(t, 5.0) < 0.1; }};
+  for (size_t which = 0; which < kept.size(); ++which) {
+    InsProblem::Setup setup = setup_of(ImuGrade::tactical, 100);
+    setup.sensors.from = 25;
+    setup.change_gnss = [&](const core::GnssData& g) {
+      return test::keep_fixes(g, [&](size_t k) { return kept[which](g.time[k] - g.time[0] + 0.01); });
+    };
+    const InsProblem made(motion, setup);
+    const auto a = align_moving(made.path, made.gnss, setup.sensors.lever, setup.imu, Vector3d::Zero());
+    ASSERT_TRUE(a) << which;
+    EXPECT_LT(a->worst_sigma(), 3 * core::degree) << which;
+    EXPECT_LT(normed(error_of(*a, motion), a->covariance), 20.0) << which;
+  }
 }
 
 TEST(Alignment, InMotionOnAStraightLineHeadingIsTheTrack) {
