@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The mean is that of random effects: each roof's covariance and a scatter between roofs, which is found from the weighted squares about
-// the mean (DerSimonian and Laird 1986), so that its sigma holds for a cloud whose error differs from place to place.
+// the mean (the estimator of DerSimonian and Laird), so that its sigma holds for a cloud whose error differs from place to place.
 #include "quality/roof_planimetry.h"
 
 #include <Eigen/Dense>
