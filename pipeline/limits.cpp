@@ -18,7 +18,7 @@ struct Kind {
   const char* unit;
 };
 constexpr std::string_view level_limit = "quality_level";
-constexpr std::array<Kind, 11> kinds{{{"outside", "returns that the trajectory does not cover", 100.0, "%"},
+constexpr std::array<Kind, 12> kinds{{{"outside", "returns that the trajectory does not cover", 100.0, "%"},
                                       {"voids", "holes in the DTM", 100.0, "%"},
                                       {"truth_rms", "3D rms of the points against truth", 1.0, "m"},
                                       {"line_difference", "difference of two lines on smooth ground", 1.0, "m"},
@@ -27,6 +27,7 @@ constexpr std::array<Kind, 11> kinds{{{"outside", "returns that the trajectory d
                                       {"void_share", "voids apart from water", 100.0, "%"},
                                       {"nva", "RMSE at open check points, with their own error", 1.0, "m"},
                                       {"vva", "RMSE at vegetated check points, with their own error", 1.0, "m"},
+                                      {"planimetry", "horizontal RMSE of roofs, with the targets' own error", 1.0, "m"},
                                       {"surface_difference", "rms difference of the terrain model and its reference", 1.0, "m"},
                                       {level_limit, "missed requirements of the quality level", 1.0, ""}}};
 
@@ -88,8 +89,9 @@ std::vector<JudgedLimit> judged(const Limits& limits, const Measured& measured) 
   judge(kinds[6], measured.void_share, limits.void_share, none.void_share);
   judge(kinds[7], measured.nva, limits.nva.value, none.nva.value);
   judge(kinds[8], measured.vva, limits.vva.value, none.vva.value);
-  judge(kinds[9], measured.surface_difference, limits.surface_difference.value, none.surface_difference.value);
-  judge(kinds[10], measured.quality_level, limits.quality_level, none.quality_level);
+  judge(kinds[9], measured.planimetry, limits.planimetry.value, none.planimetry.value);
+  judge(kinds[10], measured.surface_difference, limits.surface_difference.value, none.surface_difference.value);
+  judge(kinds[11], measured.quality_level, limits.quality_level, none.quality_level);
   return list;
 }
 

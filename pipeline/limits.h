@@ -21,7 +21,7 @@ struct Limits {
   core::Metres truth_rms{1e9};
   core::Metres line_difference{1e9};
   double contradictions = 1e9;
-  core::Metres overlap_difference{1e9}, nva{1e9}, vva{1e9}, surface_difference{1e9};
+  core::Metres overlap_difference{1e9}, nva{1e9}, vva{1e9}, planimetry{1e9}, surface_difference{1e9};
   double void_share = 1.0, quality_level = 1e9;
 };
 
@@ -40,6 +40,8 @@ void describe(Limits& l, V& v) {
   v.option("void_share", l.void_share, core::within(0, 1), "Largest share of voids apart from water in the survey (quality.swath).");
   v.option("nva", l.nva, core::at_least(0), "Largest RMSE at open check points, with their own error (quality.points).");
   v.option("vva", l.vva, core::at_least(0), "Largest RMSE at vegetated check points, with their own error (quality.points).");
+  v.option("planimetry", l.planimetry, core::at_least(0),
+           "Largest horizontal RMSE of roofs, with the targets' own error (quality.points).");
   v.option("surface_difference", l.surface_difference, core::at_least(0),
            "Largest rms difference of the terrain model and its reference (quality.surface).");
   v.option("quality_level", l.quality_level, core::at_least(0),
@@ -50,7 +52,7 @@ void describe(Limits& l, V& v) {
 struct Measured {
   std::optional<double> outside, voids, truth_rms;
   std::optional<double> line_difference{}, contradictions{};
-  std::optional<double> overlap_difference{}, void_share{}, nva{}, vva{}, surface_difference{}, quality_level{};
+  std::optional<double> overlap_difference{}, void_share{}, nva{}, vva{}, planimetry{}, surface_difference{}, quality_level{};
 };
 
 /// A limit that the config sets or the run measured.

@@ -22,12 +22,11 @@ struct LevelLimits {
   double intraswath = 0.0;  ///< RMSD of one line on smooth hard ground, at most
   double interswath = 0.0;  ///< RMSD of overlapping lines there, at most
   double nva = 0.0;         ///< RMSE of heights on open ground, at most
-  double vva = 0.0;         ///< 95 % of the errors under vegetation, at most
 };
 
-/// USGS Lidar Base Specification 2025 rev. A (key USGS). Not for QualityLevel::none.
+/// USGS Lidar Base Specification 2025 rev. A (key USGS), tables 1, 2 and 4. Under vegetation it sets no limit. Not for QualityLevel::none.
 LevelLimits limits_of(QualityLevel level);
-constexpr double least_even = 0.9;  ///< share of cells of 2 ANPS with a first return (same source)
+constexpr double least_even = 0.9;  ///< share of cells of 2 ANPS with a first return (same source, spatial distribution and regularity)
 
 /// Limits that a contract states in place of the level's.
 struct StatedLimits {
@@ -44,7 +43,7 @@ void describe(StatedLimits& o, V& v) {
   v.option("intraswath", o.intraswath, above(0.0), "Largest scatter of one line on smooth hard ground.", "USGS");
   v.option("interswath", o.interswath, above(0.0), "Largest rms difference of overlapping lines on smooth level ground.", "USGS");
   v.option("nva", o.nva, above(0.0), "Largest RMSE of heights on open ground, with the check points' own error.", "USGS");
-  v.option("vva", o.vva, above(0.0), "Largest 95 % quantile of height errors under vegetation.", "USGS");
+  v.option("vva", o.vva, above(0.0), "Largest 95 % quantile of height errors under vegetation; no level limits it.", "USGS");
 }
 
 /// What a survey measured; nothing where no stage did.

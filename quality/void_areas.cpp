@@ -141,11 +141,46 @@ VoidArea area_of_runs(const std::vector<VoidRun>& runs, double cell) {
   }
   out.x /= cells, out.y /= cells;
   out.area = cells * cell * cell;
-  out.is_water = water >= 0.5 * cells || (rim > 0.0 && rim_water >= 0.5 * rim);
+  if (water >= 0.5 * cells)
+    out.water = WaterBy::known;
+  else if (rim > 0.0 && rim_water >= 0.5 * rim)
+    out.water = WaterBy::points;
+  return out;
+}
+
+/// The pieces of each group of runs; `runs` rise.
+std::vector<std::vector<RimPiece>> rims_by_group(const std::vector<RimPiece>& rims, const std::vector<VoidRun>& runs,
+                                                 const std::vector<std::vector<size_t>>& groups) {
+  std::vector<size_t> group_of(runs.size(), 0);
+  for (size_t g = 0; g < groups.size(); ++g)
+    for (const size_t k : groups[g]) group_of[k] = g;
+  std::vector<std::vector<RimPiece>> out(groups.size());
+  for (const RimPiece& p : rims) {
+    const auto next = std::upper_bound(runs.begin(), runs.end(), p, [](const RimPiece& a, const VoidRun& r) {
+      return std::pair(a.void_j, a.void_i) < std::pair(r.j, r.i0);
+    });
+    if (next == runs.begin()) continue;
+    const auto at = std::prev(next);
+    if (at->j == p.void_j && at->i1 > p.void_i) out[group_of[static_cast<size_t>(at - runs.begin())]].push_back(p);
+  }
   return out;
 }
 
 }  // namespace
+
+std::string VoidArea::evidence() const {
+  switch (water) {
+    case WaterBy::known:
+      return "known";
+    case WaterBy::points:
+      return "points";
+    case WaterBy::shore:
+      return "shore";
+    case WaterBy::none:
+      break;
+  }
+  return {};
+}
 
 std::vector<FootprintCell> footprint_of(const core::Block& b, size_t own, const PulseSpacing& spacing) {
   std::vector<FootprintCell> out;
@@ -162,7 +197,7 @@ std::vector<FootprintCell> footprint_of(const core::Block& b, size_t own, const 
 }
 
 SwathVoids judge_voids(std::vector<VoidRun> runs, const std::vector<FootprintCell>& cells, const std::vector<core::Box>& without_points,
-                       const PulseSpacing& spacing, double max_gap) {
+                       const PulseSpacing& spacing, double max_gap, const std::vector<RimPiece>& rims) {
   const double cell = void_cell(spacing), side = footprint_cell(spacing);
   const Footprint f = footprint_around(cells, side, max_gap);
   SwathVoids out;
@@ -170,15 +205,18 @@ SwathVoids judge_voids(std::vector<VoidRun> runs, const std::vector<FootprintCel
   out.judged = static_cast<double>(std::count(f.covered.begin(), f.covered.end(), 1)) * side * side;
   for (const core::Box& box : without_points) add_box(box, f, cell, runs);
   const std::vector<VoidRun> all = cut_runs(std::move(runs), f);
-  for (const std::vector<size_t>& group : joined_runs(all)) {
+  const std::vector<std::vector<size_t>> groups = joined_runs(all);
+  std::vector<std::vector<RimPiece>> pieces = rims_by_group(rims, all, groups);
+  for (size_t g = 0; g < groups.size(); ++g) {
     std::vector<VoidRun> mine;
-    for (const size_t k : group) mine.push_back(all[k]);
+    for (const size_t k : groups[g]) mine.push_back(all[k]);
     VoidArea v = area_of_runs(mine, cell);
     if (v.area < out.least) continue;
+    if (!v.is_water() && is_shore(std::move(pieces[g]))) v.water = WaterBy::shore;
     v.rings = outlines_of(mine);
     for (auto& ring : v.rings)
       for (Eigen::Vector2d& corner : ring) corner *= cell;
-    (v.is_water ? out.water_area : out.area) += v.area;
+    (v.is_water() ? out.water_area : out.area) += v.area;
     out.voids.push_back(std::move(v));
   }
   std::stable_sort(out.voids.begin(), out.voids.end(), [](const VoidArea& a, const VoidArea& b) { return a.area > b.area; });

@@ -4,11 +4,13 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/area.h"
 #include "core/config/result.h"
 #include "quality/void_cells.h"
+#include "quality/void_rims.h"
 
 namespace swath::quality {
 
@@ -22,10 +24,15 @@ inline double footprint_cell(const PulseSpacing& s) { return 64.0 * void_cell(s)
 /// Of the first `own` points.
 std::vector<FootprintCell> footprint_of(const core::Block& block, std::size_t own, const PulseSpacing& spacing);
 
+/// Why a void counts as water.
+enum class WaterBy { none, known, points, shore };
+
 struct VoidArea {
   double x = 0.0, y = 0.0;  ///< of its middle, m
   double area = 0.0;        ///< m2
-  bool is_water = false;
+  WaterBy water = WaterBy::none;
+  bool is_water() const { return water != WaterBy::none; }
+  std::string evidence() const;                       ///< "known", "points", "shore"; empty where it is none
   std::vector<std::vector<Eigen::Vector2d>> rings{};  ///< outline with the void to the left, then its islands; m, not closed
 };
 
@@ -34,7 +41,11 @@ void describe(const VoidArea& r, V& v) {
   v.result("x", r.x, "Easting of its middle, m.");
   v.result("y", r.y, "Northing of its middle, m.");
   v.result("area_m2", r.area, "Its area.");
-  v.result("water", r.is_water, "Water: half of its area is known to be, or half of the first returns beside it are of that class.");
+  v.result("water", r.is_water(), "Whether it is water.");
+  v.result(
+      "water_by", r.evidence(), core::plain().only_if(r.is_water()),
+      "known: breaklines, for half of its area; points: half of the first returns on its rim are of class 9; shore: its rim is level and "
+      "below the ground around it.");
 }
 
 struct SwathVoids {
@@ -46,8 +57,9 @@ struct SwathVoids {
 
 /// Joins the runs of all tiles. Judged is what the survey covers: footprint cells and gaps between them up to `max_gap` m wide, and what
 /// they enclose, without the outermost cells, for nothing shows how far these are covered.
-/// `without_points`: squares that no tile has looked at; what of them the survey covers is void.
+/// `without_points`: squares that no tile has looked at; what of them the survey covers is void. `rims`: of all tiles; none: no void is
+/// water by its shore.
 SwathVoids judge_voids(std::vector<VoidRun> runs, const std::vector<FootprintCell>& footprint, const std::vector<core::Box>& without_points,
-                       const PulseSpacing& spacing, double max_gap);
+                       const PulseSpacing& spacing, double max_gap, const std::vector<RimPiece>& rims = {});
 
 }  // namespace swath::quality

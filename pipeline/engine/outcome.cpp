@@ -42,6 +42,7 @@ Measured measured(const RunState& run) {
           finding("void_share"),
           finding("nva"),
           finding("vva"),
+          finding("planimetry"),
           finding("surface_difference"),
           finding("quality_level")};
 }

@@ -170,6 +170,16 @@ void Breaklines::apply(core::Grid& grid) const {
   cut(grid);
 }
 
+bool Breaklines::is_water(double x, double y) const {
+  return std::any_of(waters_.begin(), waters_.end(), [&](const Water& w) { return w.area.holds(x - origin_.x(), y - origin_.y()); });
+}
+
+bool Breaklines::any_water(double x0, double y0, double x1, double y1) const {
+  return std::any_of(waters_.begin(), waters_.end(), [&](const Water& w) {
+    return w.area.box_meets(x0 - origin_.x(), y0 - origin_.y(), x1 - origin_.x(), y1 - origin_.y());
+  });
+}
+
 void Breaklines::cut(core::Grid& grid) const {
   if (boundaries_.empty()) return;
   const core::Lattice& l = grid.lattice;

@@ -53,6 +53,10 @@ class Breaklines {
   /// Water: the height and sigma of its surface, reason none; where that is not known no height, reason water. Outside all boundaries
   /// (where there are any): no height, reason no_data.
   void apply(core::Grid& grid) const;
+  /// Is the place in a lake or river, whether its height is known or not? Map frame, m.
+  bool is_water(double x, double y) const;
+  /// Does a box (map frame, m) meet the box around one?
+  bool any_water(double x0, double y0, double x1, double y1) const;
   /// The boundaries' part of apply(): cells outside all of them have no height, reason no_data.
   void cut(core::Grid& grid) const;
 

@@ -160,7 +160,7 @@ TEST_F(Quality, KnownFaultsAreFound) {
   const core::Value& report = findings(o, "report.quality");
   EXPECT_EQ(report.find("quality_level")->as_text(), "QL2");
   EXPECT_GE(number(report, "missed"), 1);
-  EXPECT_EQ(report.find("requirements")->items().size(), 8u);
+  EXPECT_EQ(report.find("requirements")->items().size(), 7u);
   const std::string page = test::read_bytes(out / "a/quality.html"), xml = test::read_bytes(out / "a/quality.xml");
   for (const char* heading : {"Requirements", "Density of first returns", "Spatial distribution and voids",
                               "Flight lines against one another", "Check points", "Class of a map", "Terrain model against the reference"})

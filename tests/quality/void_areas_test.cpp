@@ -38,7 +38,7 @@ TEST(VoidAreas, OneAcrossTilesIsOne) {
   EXPECT_NEAR(v.voids[0].area, 600.0, 1e-9);
   EXPECT_NEAR(v.voids[0].x, 115.0, 1e-9);
   EXPECT_NEAR(v.voids[0].y, 110.0, 1e-9);
-  EXPECT_FALSE(v.voids[0].is_water);
+  EXPECT_FALSE(v.voids[0].is_water());
   ASSERT_EQ(v.voids[0].rings.size(), 1u);
   EXPECT_EQ(v.voids[0].rings[0].size(), 4u);
   EXPECT_NEAR(v.least, 4.0, 1e-12);  // (4 x 0.5)^2

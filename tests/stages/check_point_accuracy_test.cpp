@@ -80,15 +80,26 @@ TEST(CheckPointAccuracy, TheClosestIntervalHoldsForBothFigures) {
   MapOptions o;
   o.interval = core::Metres(1.0);
   o.flying_height = core::Metres(1200.0);
-  const auto map = map_class_of(o, judged_accuracy(all, "points", every_cover), 0.0);
+  const auto map = map_class_of(o, judged_accuracy(all, "points", every_cover), std::nullopt, 0.0);
   ASSERT_TRUE(map);
   EXPECT_NEAR(*map->q90_height, 0.60, 1e-12);
   EXPECT_NEAR(map->intervals[0].interval, 1.20, 1e-9);  // 90 % within half of it; the standard error of 0.26 m needs 0.78 m
   EXPECT_NEAR(*map->c_factor, 1000.0, 1e-6);
   EXPECT_EQ(*map->height_class, "B");
   o.interval = core::Metres(map->intervals[0].interval);
-  EXPECT_EQ(*map_class_of(o, judged_accuracy(all, "points", every_cover), 0.0)->height_class, "A");
-  EXPECT_FALSE(map_class_of(MapOptions{}, nullptr, 0.1));
+  EXPECT_EQ(*map_class_of(o, judged_accuracy(all, "points", every_cover), std::nullopt, 0.0)->height_class, "A");
+  EXPECT_FALSE(map_class_of(MapOptions{}, nullptr, 0.2, 0.1));
+}
+
+TEST(CheckPointAccuracy, PlanimetryOfAMapIsStatedMeasuredOrPredicted) {
+  MapOptions o;
+  o.scale = 1000.0;
+  EXPECT_EQ(map_class_of(o, nullptr, std::nullopt, 0.1)->plan_from.substr(0, 9), "predicted");
+  const auto by_roofs = map_class_of(o, nullptr, 0.2, 0.1);
+  EXPECT_NEAR(*by_roofs->ep_plan, 0.2, 1e-12);
+  EXPECT_EQ(by_roofs->plan_from, "measured: radial RMSE of roofs");
+  o.planimetry = core::Metres(0.3);
+  EXPECT_NEAR(*map_class_of(o, nullptr, 0.2, 0.1)->ep_plan, 0.3, 1e-12);
 }
 
 TEST(CheckPointAccuracy, OptionsOfAMapThatWouldDoNothingAreRefused) {

@@ -11,8 +11,10 @@
 #include "io/text/value_file.h"
 #include "io/vector/control.h"
 #include "quality/mark_faults.h"
+#include "quality/roof_planimetry.h"
 #include "report/volumes.h"
 #include "stages/adapters/adapters.h"
+#include "stages/adapters/cloud/scanner.h"
 #include "stages/adapters/quality/mark_files.h"
 #include "stages/tile.h"
 
@@ -52,6 +54,9 @@ struct CheckPointFindings {
   std::vector<CoverAccuracy> accuracy{};
   std::optional<MapClassFound> map{};
   std::vector<quality::LineAtMarks> lines{};
+  std::optional<std::string> no_planimetry{}, beams{};
+  std::optional<quality::RoofPlanimetry> planimetry{};
+  std::vector<quality::RoofShift> roofs{};
   std::vector<quality::NamedFault> named{};
 };
 
@@ -60,7 +65,7 @@ void describe(const CheckPointFindings& r, V& v) {
   using core::metres;
   v.result("check_points", r.none, core::plain().in_summary(), "Why nothing was compared.");
   v.result("marks", r.marks, core::plain().only_if(!r.none), "Check points of the survey.");
-  v.result("corners", r.corners, core::if_any(), "Corners of targets among them, which are not compared: calib.adjust does that.");
+  v.result("corners", r.corners, core::if_any(), "Corners of targets, whose edges are compared.");
   v.result("outside", r.outside, core::plain().only_if(!r.outside.empty()), "Check points where the survey has no points at all.");
   v.result("unread", r.unread, core::plain().only_if(!r.unread.empty()), "Check points without ground points around them.");
   v.result("nva_m", r.nva, metres().in_summary().limited_by("nva"),
@@ -70,12 +75,17 @@ void describe(const CheckPointFindings& r, V& v) {
   v.tables("accuracy", r.accuracy, "Errors by product and cover.");
   v.table("map", r.map, "Class of a map made from the survey.");
   v.tables("lines", r.lines, "Flight lines against the check points that they show.");
+  v.result("no_planimetry", r.no_planimetry, "Why no roof is compared, where there are check targets.");
+  v.result("beams", r.beams, "What shows where the beams pass the roofs.");
+  v.table("planimetry", r.planimetry, "Horizontal accuracy by the edges of roofs that are check targets.");
+  v.tables("roofs", r.roofs, "Each of these roofs: cloud less target.");
   v.tables("named", r.named, "Whose fault the largest differences are.");
 }
 
 struct Marks {
   std::vector<quality::CheckMark> list;
-  std::uint64_t corners = 0;  ///< of targets: calib.adjust compares them
+  std::vector<quality::RoofTarget> targets{};
+  std::uint64_t corners = 0;  ///< of targets
 };
 
 Marks marks_of(const Context& context) {
@@ -84,13 +94,15 @@ Marks marks_of(const Context& context) {
   const core::Transform to_map(core::wgs84_ecef(), context.crs);
   for (const io::ControlPoint& p : io::read_control(context.survey, of_others)) {
     if (p.use != io::ControlUse::check) continue;
-    if (!p.target.empty()) {
-      ++out.corners;
+    const Eigen::Vector3d map = to_map(p.ecef);
+    const Eigen::Vector3d at(map.x() * context.unit, map.y() * context.unit, map.z() * context.vertical_unit);
+    if (p.target.empty()) {
+      out.list.push_back({p.name, p.cover, p.place, at, p.sigma_v});
       continue;
     }
-    const Eigen::Vector3d map = to_map(p.ecef);
-    out.list.push_back(
-        {p.name, p.cover, p.place, {map.x() * context.unit, map.y() * context.unit, map.z() * context.vertical_unit}, p.sigma_v});
+    ++out.corners;
+    if (out.targets.empty() || out.targets.back().name != p.target) out.targets.push_back({p.target, {}, p.sigma_h});
+    out.targets.back().corners.push_back(at);
   }
   return out;
 }
@@ -114,16 +126,33 @@ void require_marks(const Context& context, const CheckPointOptions&) {
 
 fs::path readings_file(const fs::path& folder, TileKey key) { return piece_file(folder, key, "marks"); }
 
-void read_tile(const TileJob& job, const Context& context, const CheckPointOptions& o, RunCache& cache) {
+/// What a tile has at the targets: returns with their beams by the trajectory, or returns and the pulses that show the beams.
+struct RoofRows {
+  std::vector<quality::RoofReturn> returns;
+  std::vector<quality::PulseSpan> spans;
+};
+
+RoofRows roof_rows(const TileJob& job, const Context& context, const trajectory::Trajectory* flown,
+                   const std::vector<quality::RoofTarget>& targets, RunCache& cache) {
+  const bool any = std::any_of(targets.begin(), targets.end(), [&](const quality::RoofTarget& t) { return quality::is_near(t, job.box); });
+  if (!any) return {};
+  if (flown) return {quality::returns_at_roofs(job.block, job.own, scanner_positions(context, *flown, job.block, cache), targets), {}};
+  return {quality::returns_at_roofs(job.block, job.own, {}, targets), quality::spans_in(job.block, job.own, job.box)};
+}
+
+void read_tile(const TileJob& job, const Context& context, const CheckPointOptions& o, const trajectory::Trajectory* flown,
+               RunCache& cache) {
   std::vector<quality::MarkReading> readings;
+  RoofRows roofs;
   if (!check_files(context.survey).empty() && !context.crs.empty()) {
     const Marks& marks = cache.get([&] { return marks_of(context); });
     std::vector<size_t> here;
     for (size_t m = 0; m < marks.list.size(); ++m)
       if (job.box.holds(marks.list[m].at.x(), marks.list[m].at.y())) here.push_back(m);
     readings = quality::read_marks(job.block, marks.list, here, o.radius.value, o.surface);
+    roofs = roof_rows(job, context, flown, marks.targets, cache);
   }
-  write_rows(readings_file(job.folder, job.key), readings);
+  write_rows(readings_file(job.folder, job.key), readings, roofs.returns, roofs.spans);
 }
 
 /// What the readings of its lines say of each mark: differences weighted by their points, of sigma and slope the largest.
@@ -207,9 +236,22 @@ void name_records(const MergeJob& job, const Context& context, const Marks& mark
   if (!twice.empty())
     found.named.push_back(
         {"check.names", std::to_string(twice.size()) + " names stand for several check points: " + shown({twice.begin(), twice.end()})});
-  if (compared < fewest_marks_judged)
+  if (compared < fewest_marks_judged && (all > 0 || marks.targets.empty()))
     found.named.push_back({"check.few", std::to_string(compared) + " of " + std::to_string(all) +
                                             " check points could be compared, fewer than 3: no accuracy is stated by them"});
+}
+
+void judge_planimetry(const Marks& marks, RoofRows rows, bool has_trajectory, CheckPointFindings& found) {
+  if (marks.targets.empty()) return;
+  std::vector<double> run_sigmas;
+  if (!has_trajectory) run_sigmas = quality::find_runs(rows.returns, rows.spans, marks.targets);
+  if (rows.returns.empty() && !has_trajectory) {
+    found.no_planimetry = "there is no trajectory, and no pulses with several returns near the roofs that show the beams";
+    return;
+  }
+  found.beams = has_trajectory ? "trajectory" : "pulses with several returns";
+  found.roofs = quality::roof_shifts(marks.targets, rows.returns, run_sigmas);
+  found.planimetry = quality::planimetry_of(found.roofs, found.named);
 }
 
 void judge_accuracy(const Marks& marks, const std::vector<MarkFound>& at, const CheckPointOptions& o, CheckPointFindings& found) {
@@ -221,10 +263,12 @@ void judge_accuracy(const Marks& marks, const std::vector<MarkFound>& at, const 
   for (const MarkFound& m : at)
     if (m.sigma_h > 0.0) sigmas.push_back(m.sigma_h);
   const CoverAccuracy* heights = judged_accuracy(found.accuracy, "dtm", every_cover);
-  found.map = map_class_of(o.map, heights ? heights : judged_accuracy(found.accuracy, "points", every_cover), core::median(sigmas, 0.0));
+  found.map = map_class_of(o.map, heights ? heights : judged_accuracy(found.accuracy, "points", every_cover),
+                           found.planimetry ? found.planimetry->rmse : std::nullopt, core::median(sigmas, 0.0));
 }
 
-CheckPointFindings judge_points(const MergeJob& job, const Context& context, const CheckPointOptions& o, RunCache& cache) {
+CheckPointFindings judge_points(const MergeJob& job, const Context& context, const CheckPointOptions& o,
+                                const trajectory::Trajectory* flown, RunCache& cache) {
   CheckPointFindings found;
   if (check_files(context.survey).empty()) {
     found.none = "none: the survey has no [[control]] with use = \"check\"";
@@ -232,13 +276,15 @@ CheckPointFindings judge_points(const MergeJob& job, const Context& context, con
   }
   const Marks& marks = cache.get([&] { return marks_of(context); });
   std::vector<quality::MarkReading> readings;
-  for (const TileKey key : job.tiles) read_rows(readings_file(job.folder, key), readings);
+  RoofRows rows;
+  for (const TileKey key : job.tiles) read_rows(readings_file(job.folder, key), readings, rows.returns, rows.spans);
   std::sort(readings.begin(), readings.end(),
             [](const auto& a, const auto& b) { return std::pair(a.mark, a.line) < std::pair(b.mark, b.line); });
   const std::vector<MarkFound> at = found_at(job, context, marks, readings);
   found.marks = marks.list.size();
   found.corners = marks.corners;
   name_records(job, context, marks, at, found);
+  judge_planimetry(marks, std::move(rows), flown != nullptr, found);
   judge_accuracy(marks, at, o, found);
   quality::MarkFaults faults = quality::find_faults(marks.list, readings);
   found.lines = std::move(faults.lines);
@@ -256,7 +302,8 @@ CheckPointFindings judge_points(const MergeJob& job, const Context& context, con
 Entry check_points_stage() {
   return tile<read_tile, judge_points>(
       "quality.points", "Check points against ground points and terrain model: accuracy by cover, and whose fault a difference is.",
-      {.columns = {.needs = {Column::classification, Column::flags, Column::strip}, .reads = {Column::sigma_v, Column::sigma_h}},
+      {.columns = {.needs = {Column::classification, Column::flags, Column::strip},
+                   .reads = {Column::sigma_v, Column::sigma_h, Column::time, Column::return_number, Column::return_count}},
        .check = require_marks,
        .inputs = check_files,
        .products = [](const CheckPointOptions& o) {

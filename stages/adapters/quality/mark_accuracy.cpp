@@ -75,7 +75,7 @@ const CoverAccuracy* judged_accuracy(const std::vector<CoverAccuracy>& list, con
   return at == list.end() ? nullptr : &*at;
 }
 
-std::optional<MapClassFound> map_class_of(const MapOptions& o, const CoverAccuracy* heights, double sigma_h) {
+std::optional<MapClassFound> map_class_of(const MapOptions& o, const CoverAccuracy* heights, std::optional<double> roofs, double sigma_h) {
   if (!o.scale && !o.interval) return std::nullopt;
   MapClassFound out;
   out.rule = core::Choices<quality::MapRule>::names[static_cast<size_t>(o.rule)];
@@ -90,6 +90,8 @@ std::optional<MapClassFound> map_class_of(const MapOptions& o, const CoverAccura
   if (o.flying_height && o.c_factor) out.interval_by_c = quality::interval_of(o.flying_height->value, *o.c_factor);
   if (o.planimetry)
     out.ep_plan = o.planimetry->value, out.plan_from = "measured, as stated";
+  else if (roofs)
+    out.ep_plan = *roofs, out.plan_from = "measured: radial RMSE of roofs";
   else if (sigma_h > 0.0)
     out.ep_plan = sigma_h, out.plan_from = "predicted: sigma_h of the points around the check points";
   if (o.scale && out.ep_plan) out.plan_class = class_text(quality::plan_class(o.rule, *o.scale, *out.ep_plan));

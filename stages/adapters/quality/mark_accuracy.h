@@ -89,7 +89,8 @@ void describe(MapOptions& o, V& v) {
   v.option("rule", o.rule, "decree: Brazil 89.817; paper: as Brandalize prints it; pcd: PEC-PCD of 2016.", "Brandalize");
   v.option("scale", o.scale, core::within(100.0, 1e7), "Scale number of the map, 1000 for 1:1000: its class of planimetry is judged.");
   v.option("interval", o.interval, above(0.0), "Interval of its contours: its class of heights is judged.");
-  v.option("planimetry", o.planimetry, above(0.0), "Measured standard error of planimetry; unset: sigma_h of the points, a prediction.");
+  v.option("planimetry", o.planimetry, above(0.0),
+           "Measured standard error of planimetry; unset: that of roofs, or sigma_h of the points.");
   v.option("flying_height", o.flying_height, above(0.0), "Above ground, for the C factor.");
   v.option("c_factor", o.c_factor, above(0.0), "Of an instrument to compare with: the interval that it supports from flying_height.");
   v.check(o.interval || o.scale || !(o.planimetry || o.flying_height || o.c_factor), "a class is judged by a scale, an interval or both");
@@ -130,8 +131,8 @@ void describe(const MapClassFound& r, V& v) {
   v.result("interval_by_c_m", r.interval_by_c, metres(2), "Interval that map.c_factor supports from the flying height.");
 }
 
-/// `heights`: of all check points; `sigma_h`: median of the points' own, 0 where they have none. Nothing where neither scale nor interval
-/// is asked for.
-std::optional<MapClassFound> map_class_of(const MapOptions& o, const CoverAccuracy* heights, double sigma_h);
+/// `heights`: of all check points; `roofs`: horizontal RMSE by roofs; `sigma_h`: median of the points' own, 0 where they have none. Nothing
+/// where neither scale nor interval is asked for.
+std::optional<MapClassFound> map_class_of(const MapOptions& o, const CoverAccuracy* heights, std::optional<double> roofs, double sigma_h);
 
 }  // namespace swath::stages

@@ -41,6 +41,11 @@ std::vector<std::string> gaps_in(const QualityFacts& f) {
   if (!f.points.any()) out.push_back("Accuracy: the survey has no check points ([[control]] with use = \"check\").");
   if (f.points.any() && !f.points.known("nva_m")) out.push_back("NVA: fewer than three check points on open ground could be compared.");
   if (f.points.any() && !f.points.known("vva_m")) out.push_back("VVA: fewer than three check points under vegetation could be compared.");
+  if (f.points.any() && !f.points.table("planimetry").known("rmse_m")) {
+    const std::string why = f.points.text("no_planimetry");
+    out.push_back("Horizontal accuracy: " +
+                  (why.empty() ? "fewer than three surveyed roofs (check targets) could be compared." : why + "."));
+  }
   if (!f.surface.any()) out.push_back("Terrain model: quality.surface has no reference.");
   for (const std::string& sentence : f.lines.texts("not_shown")) out.push_back(sentence);
   return out;

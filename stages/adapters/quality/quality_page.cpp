@@ -263,6 +263,60 @@ void add_points(QualitySheet& page, const QualityFacts& f) {
                       map.list("intervals")));
 }
 
+/// Where the cloud has each roof, from where it was surveyed.
+void add_shifts(QualitySheet& page, const std::vector<Facts>& roofs, const Facts& mean) {
+  report::Series each{"roofs", {}, {}, {}, report::Mark::dots, -1}, all{"mean", {}, {}, {}, report::Mark::dots, -1},
+      surveyed{"as surveyed", {0.0}, {0.0}, {}, report::Mark::dots, -1};
+  for (const Facts& r : roofs) {
+    if (r.text("state") != "both") continue;
+    each.x.push_back(100.0 * r.number("east_m")), each.y.push_back(100.0 * r.number("north_m"));
+  }
+  if (each.x.empty()) return;
+  if (mean.known("east_m")) all.x.push_back(100.0 * mean.number("east_m")), all.y.push_back(100.0 * mean.number("north_m"));
+  report::Chart chart;
+  chart.width = 700, chart.panel_height = 420;
+  chart.panels.resize(1);
+  chart.panels[0].x_label = "east (cm)";
+  chart.panels[0].y_label = "north (cm)";
+  chart.panels[0].equal_scale = true;
+  chart.panels[0].series = {each, all, surveyed};
+  page.chart(std::move(chart), "Roofs of the cloud less their targets.", "report.json");
+}
+
+void add_planimetry(QualitySheet& page, const QualityFacts& f) {
+  const Facts p = f.points.table("planimetry");
+  if (!p.any()) return;
+  page.section("Horizontal accuracy by roofs");
+  const auto cm = [&](const char* key) { return number_text(100.0 * p.number(key), 1); };
+  page.table(
+      figures("Cloud less surveyed roofs, by the edges that end in the air. RMSE_H as ASPRS 2024 has it, with the targets' own error.",
+              {{"roofs compared", number_text(p.number("roofs"), 0)},
+               {"roofs that show one component", number_text(p.known("one_component").value_or(0.0), 0)},
+               {"roofs that changed or contradict the others, left out", number_text(p.known("changed").value_or(0.0), 0)},
+               {"mean east, sigma (cm)", cm("east_m") + ", " + cm("sigma_east_m")},
+               {"mean north, sigma (cm)", cm("north_m") + ", " + cm("sigma_north_m")},
+               {"RMSE east, north (cm)", cm("rmse_east_m") + ", " + cm("rmse_north_m")},
+               {"RMSE, radial (cm)", cm("rmse_m")},
+               {"of it by the spacing of the pulses (cm)", cm("measured_sigma_m")},
+               {"sigma of the targets, radial (cm)", cm("sigma_of_targets_m")},
+               {"RMSE_H (cm)", cm("rmse_with_targets_m")},
+               {"95 % by the NSSDA (cm)", cm("nssda_m")}}));
+  if (!p.holds("is_enough")) page.paragraph("Fewer than 30 roofs make no statement of horizontal accuracy (ASPRS 2024).");
+  const std::vector<Facts> roofs = f.points.list("roofs");
+  add_shifts(page, roofs, p);
+  page.table(table_of("Each roof.",
+                      {{"roof", "name", -1},
+                       {"shows", "state", -1},
+                       {"edges", "edges", 0},
+                       {"pulses", "pulses", 0},
+                       {"east (cm)", "east_m", 1, 100},
+                       {"sigma (cm)", "sigma_east_m", 1, 100},
+                       {"north (cm)", "north_m", 1, 100},
+                       {"sigma (cm)", "sigma_north_m", 1, 100},
+                       {"edges farther out by (cm)", "wider_m", 1, 100}},
+                      roofs));
+}
+
 /// Heights of both models along a line, and their difference.
 void add_profile(QualitySheet& page, const Facts& profile) {
   const std::vector<double> along = profile.numbers("along_m"), model = profile.numbers("model_m"),
@@ -333,6 +387,7 @@ QualitySheet quality_page(const QualityFacts& f) {
   add_voids(page, f);
   add_overlaps(page, f);
   add_points(page, f);
+  add_planimetry(page, f);
   add_surface(page, f);
   if (!f.not_judged.empty()) {
     page.section("What is not shown");

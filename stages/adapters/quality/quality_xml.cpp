@@ -75,6 +75,8 @@ std::vector<Measure> measures_in(const QualityFacts& f) {
   add(absolute, "vegetated vertical accuracy", "RMSE at vegetated check points with their own error.", "m", f.points.known("vva_m"));
   add(absolute, "vegetated vertical accuracy, 95 %", "95 % of the absolute errors at vegetated check points are smaller.", "m",
       f.points.known("vva_95_m"), "(VVA)");
+  add(absolute, "horizontal accuracy", "Radial RMSE of roofs with the targets' own error.", "m",
+      f.points.table("planimetry").known("rmse_with_targets_m"));
   add(gridded, "difference from a reference model", "Terrain model less reference, rms.", "m", f.surface.known("rms_m"));
   return out;
 }

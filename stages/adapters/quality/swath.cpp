@@ -13,6 +13,7 @@
 #include "report/value_map.h"
 #include "stages/adapters/quality/quality_stages.h"
 #include "stages/adapters/quality/swath_files.h"
+#include "stages/adapters/terrain/breaklines.h"
 #include "stages/map_overview.h"
 #include "stages/tile.h"
 #include "stages/tile_product.h"
@@ -32,6 +33,7 @@ struct SwathOptions {
   quality::QualityLevel quality_level = quality::QualityLevel::none;
   std::optional<core::Metres> anps;
   core::Metres max_gap{100.0};
+  bool shores = true;
   std::optional<core::Metres> cell;
   core::Metres roughness{0.10};
   int least = 8;
@@ -44,6 +46,7 @@ void describe(SwathOptions& o, V& v) {
   v.option("anps", o.anps, core::within(0.02, 20.0), "Pulse spacing that they are judged by, in place of the level's or the measured one.");
   v.option("max_gap", o.max_gap, core::within(0.0, 10000.0),
            "Gaps at the rim of the survey up to this width are voids, wider ones outside.");
+  v.option("shores", o.shores, "Voids whose rim is level and below the ground around are water, without class 9 or breaklines.");
   v.option("cell", o.cell, core::within(0.5, 20.0), "Side of the cells in which lines are compared; by default 1, 2, 4 or 8 m by density.");
   v.option("roughness", o.roughness, core::within(0.005, 1.0),
            "Compare a cell where each line's single returns fit a plane within this rms.");
@@ -58,7 +61,8 @@ double stated_spacing(const SwathOptions& o) {
 
 double halo(const SwathOptions& o) {
   const double stated = stated_spacing(o);
-  return quality::void_halo(stated > 0.0 ? stated : widest_measured);
+  const double rule = stated > 0.0 ? stated : widest_measured;
+  return std::max(quality::void_halo(rule), o.shores ? quality::rim_halo(rule) : 0.0);
 }
 
 /// What the stage works by, from its options and from the measured density.
@@ -93,7 +97,17 @@ SwathRule rule_of(const Context& context, const SwathOptions& o) {
   return rule;
 }
 
-/// Cells of each void that the terrain model knows as water.
+/// Cells of each void that lie in the lakes and rivers of terrain.breaklines.
+void mark_lines(const terrain::Breaklines* lines, const Box& box, double cell, std::vector<quality::VoidRun>& runs) {
+  if (!lines || !lines->any_water(box.x0, box.y0, box.x1, box.y1)) return;
+  for (quality::VoidRun& r : runs) {
+    std::uint32_t cells = 0;
+    for (std::int32_t i = r.i0; i < r.i1; ++i) cells += lines->is_water((i + 0.5) * cell, (r.j + 0.5) * cell);
+    r.water = std::max(r.water, cells);
+  }
+}
+
+/// Cells of each void that a terrain model knows as water without a height.
 void mark_water(const Context& context, const Box& box, double cell, std::vector<quality::VoidRun>& runs) {
   if (runs.empty() || !context.grids || !context.grids->has(Product::dtm)) return;
   const In<Product::dtm> terrain{*context.grids};
@@ -128,8 +142,11 @@ void look_at_tile(const TileJob& job, const Context& context, const SwathOptions
   const double cell = quality::void_cell(rule.spacing);
   std::vector<quality::VoidRun> voids = quality::find_voids(job.block, lattice_in(cell, job.box), rule.spacing);
   mark_water(context, job.box, cell, voids);
+  mark_lines(breaklines_of(context, cache), job.box, cell, voids);
+  const std::vector<quality::RimPiece> rims =
+      o.shores ? quality::rims_of(job.block, voids, rule.spacing) : std::vector<quality::RimPiece>{};
   write_rows(piece_file(job.folder, job.key, "swath"), overlaps.pairs, overlaps.bins, overlaps.lines, overlaps.line_bins, even.lines, voids,
-             quality::footprint_of(job.block, job.own, rule.spacing));
+             quality::footprint_of(job.block, job.own, rule.spacing), rims);
   write_grid_tile(job.folder / "dz", job.key, overlaps.difference);
   write_grid_tile(job.folder / "even", job.key, even.hit);
 }
@@ -157,9 +174,10 @@ SwathFindings judge_swaths(const MergeJob& job, const Context& context, const Sw
   std::vector<quality::EvenCells> even;
   std::vector<quality::VoidRun> voids;
   std::vector<quality::FootprintCell> footprint;
+  std::vector<quality::RimPiece> rims;
   for (const TileKey key : job.tiles)
     read_rows(piece_file(job.folder, key, "swath"), overlaps.pairs, overlaps.bins, overlaps.lines, overlaps.line_bins, even, voids,
-              footprint);
+              footprint, rims);
   TileRasters{context, overlap_name}.finish(job.tiles);
   found.quality_level = core::Choices<quality::QualityLevel>::names[static_cast<size_t>(o.quality_level)];
   found.spacing = rule.spacing;
@@ -167,7 +185,8 @@ SwathFindings judge_swaths(const MergeJob& job, const Context& context, const Sw
   found.cell = rule.cell;
   found.set_overlaps(quality::judge_overlaps(overlaps));
   found.set_even(even);
-  found.voids = quality::judge_voids(std::move(voids), footprint, tiles_without_points(context, job.tiles), rule.spacing, o.max_gap.value);
+  found.voids =
+      quality::judge_voids(std::move(voids), footprint, tiles_without_points(context, job.tiles), rule.spacing, o.max_gap.value, rims);
   write_swath_files(context, found);
   report::DifferenceMapOptions look;
   look.title = "Largest difference of two lines, lower number minus higher";

@@ -22,11 +22,11 @@ io::FeatureLayer voids_layer(const Context& context, const quality::SwathVoids& 
   io::FeatureLayer layer{"voids",
                          "Areas without a first return, larger than (4 ANPS)^2; area in square metres",
                          io::FeatureShape::polygon,
-                         {"kind"},
+                         {"kind", "water_by"},
                          {"area_m2"},
                          {}};
   for (const quality::VoidArea& v : voids.voids) {
-    io::Feature f{v.rings, {v.is_water ? "water" : "void"}, {v.area}};
+    io::Feature f{v.rings, {v.is_water() ? "water" : "void", v.evidence()}, {v.area}};
     for (auto& ring : f.parts)
       for (Eigen::Vector2d& corner : ring) corner /= context.unit;
     layer.features.push_back(std::move(f));
@@ -80,13 +80,13 @@ void SwathFindings::set_even(const std::vector<quality::EvenCells>& of_all_tiles
 }
 
 size_t SwathFindings::count(bool water) const {
-  return static_cast<size_t>(std::count_if(voids.voids.begin(), voids.voids.end(), [&](const auto& v) { return v.is_water == water; }));
+  return static_cast<size_t>(std::count_if(voids.voids.begin(), voids.voids.end(), [&](const auto& v) { return v.is_water() == water; }));
 }
 
 double SwathFindings::largest(bool water) const {
   double out = 0.0;
   for (const quality::VoidArea& v : voids.voids)
-    if (v.is_water == water) out = std::max(out, v.area);
+    if (v.is_water() == water) out = std::max(out, v.area);
   return out;
 }
 

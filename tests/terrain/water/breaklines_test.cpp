@@ -156,6 +156,18 @@ TEST(Breaklines, WaterOfUnknownHeightIsVoid) {
   EXPECT_EQ(g.reason[window.at(50, 30)], Void::none);
 }
 
+TEST(Breaklines, WaterIsKnownAsWaterWithAndWithoutItsHeight) {
+  const Eigen::Vector3d origin(500000, 4600000, 0);
+  for (const bool known : {true, false}) {
+    const core::Breakline lake{BreaklineKind::lake, "lake", {{{20, 20, 3}, {40, 20, 3}, {40, 40, 3}, {20, 40, 3}}}, known, 0.0};
+    const Breaklines lines({{lake, true}}, {}, origin);
+    EXPECT_TRUE(lines.is_water(500030, 4600030));
+    EXPECT_FALSE(lines.is_water(500050, 4600030));
+    EXPECT_TRUE(lines.any_water(500035, 4600035, 500090, 4600090));
+    EXPECT_FALSE(lines.any_water(500045, 4600035, 500090, 4600090));
+  }
+}
+
 TEST(Breaklines, PackedAndUnpackedTheyAreTheSame) {
   const auto before = world();
   const auto after = unpack(pack(before));

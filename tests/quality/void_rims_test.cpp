@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "quality/void_rims.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "quality/void_areas.h"
+
+namespace swath::quality {
+namespace {
+
+constexpr double spacing = 0.5, length = 240.0, width = 160.0;
+
+struct Place {
+  double z = 0.0;
+  bool returns = true;
+};
+using Scene = std::function<Place(double x, double y)>;
+
+core::Block cloud(const Scene& scene, unsigned seed = 3) {
+  core::Block b;
+  b.origin = {1000.0, 2000.0, 50.0};
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> shift(-0.3 * spacing, 0.3 * spacing);
+  std::normal_distribution<double> error(0.0, 0.02);
+  for (double y = 0.25; y < width; y += spacing)
+    for (double x = 0.25; x < length; x += spacing) {
+      const double u = x + shift(random), v = y + shift(random);
+      const Place p = scene(u, v);
+      if (!p.returns) continue;
+      b.x.push_back(u), b.y.push_back(v), b.z.push_back(p.z + error(random));
+      b.return_number.push_back(1), b.return_count.push_back(1), b.flags.push_back(0), b.strip.push_back(1);
+      b.classification.push_back(p.z > 2.5 ? core::point_class::building : core::point_class::ground);
+    }
+  return b;
+}
+
+/// Voids of the cloud, its tiles 80 m wide where `tiled`.
+SwathVoids voids_of(const core::Block& b, bool tiled = false) {
+  const PulseSpacing s{spacing, spacing};
+  std::vector<VoidRun> runs;
+  std::vector<RimPiece> rims;
+  for (double x = 0.0; x < length; x += tiled ? 80.0 : length) {
+    const core::Lattice w = core::lattice_of(void_cell(s), 1000.0 + x, 2000.0, 1000.0 + x + (tiled ? 80.0 : length), 2000.0 + width);
+    const double halo = std::max(void_halo(spacing), rim_halo(spacing));
+    std::vector<std::uint32_t> rows;
+    for (std::uint32_t p = 0; p < b.size(); ++p)
+      if (b.x[p] > x - halo && b.x[p] < x + (tiled ? 80.0 : length) + halo) rows.push_back(p);
+    const core::Block tile = core::select(b, rows);
+    const std::vector<VoidRun> mine = find_voids(tile, w, s);
+    const std::vector<RimPiece> pieces = rims_of(tile, mine, s);
+    runs.insert(runs.end(), mine.begin(), mine.end());
+    rims.insert(rims.end(), pieces.begin(), pieces.end());
+  }
+  return judge_voids(runs, footprint_of(b, b.size(), s), {}, s, 0.0, rims);
+}
+
+/// A canal of 10 m width and 80 m length from the middle, banks rising by 1 : 2 to 0.6 m; falling along it by `fall`.
+Place canal(double x, double y, double fall = 0.0) {
+  const double out = std::max(std::abs(y - 80.0) - 5.0, std::abs(x - 120.0) - 40.0);
+  return {std::min(0.6, 0.5 * std::max(0.0, out)) - fall * x, out > 0.0};
+}
+constexpr double canal_area = 10.0 * 80.0;
+
+TEST(VoidRims, ACanalWithoutWaterPointsIsWaterAndItsAreaIsRight) {
+  for (const double fall : {0.0, 0.002}) {
+    const SwathVoids v = voids_of(cloud([&](double x, double y) { return canal(x, y, fall); }));
+    ASSERT_EQ(v.voids.size(), 1u);
+    EXPECT_EQ(v.voids[0].evidence(), "shore");
+    EXPECT_NEAR(v.water_area, canal_area, 0.02 * canal_area) << fall;
+    EXPECT_EQ(v.area, 0.0);
+  }
+}
+
+TEST(VoidRims, BridgesAndTreesOverAPartOfTheRimChangeNothing) {
+  const SwathVoids v = voids_of(cloud([&](double x, double y) {
+    Place p = canal(x, y);
+    if (p.returns && std::fmod(x, 20.0) < 8.0 && y > 80.0 && y < 95.0) p.z += 5.0;
+    return p;
+  }));
+  ASSERT_EQ(v.voids.size(), 1u);
+  EXPECT_EQ(v.voids[0].evidence(), "shore");
+}
+
+TEST(VoidRims, TilesChangeNothing) {
+  const core::Block b = cloud([](double x, double y) { return canal(x, y); });
+  const SwathVoids whole = voids_of(b), tiled = voids_of(b, true);
+  ASSERT_EQ(tiled.voids.size(), 1u);
+  EXPECT_EQ(tiled.water_area, whole.water_area);
+}
+
+/// None of these is water.
+void expect_void(const char* what, const Scene& scene) {
+  const SwathVoids v = voids_of(cloud(scene));
+  ASSERT_GE(v.voids.size(), 1u) << what;
+  EXPECT_EQ(v.water_area, 0.0) << what;
+}
+
+TEST(VoidRims, WhatIsNoWaterStaysAVoid) {
+  const auto in = [](double x, double y, double half) { return std::max(std::abs(x - 120.0), std::abs(y - 80.0)) < half; };
+  expect_void("dark car park on level ground", [&](double x, double y) { return Place{0.02 * std::sin(x), !in(x, y, 12.0)}; });
+  expect_void("car park with kerbs of 15 cm", [&](double x, double y) { return Place{in(x, y, 14.0) ? 0.0 : 0.15, !in(x, y, 12.0)}; });
+  expect_void("gap on a slope of 5 %", [&](double x, double y) { return Place{0.05 * x, !in(x, y, 12.0)}; });
+  expect_void("gap on a steep slope", [&](double x, double y) { return Place{0.4 * y, !in(x, y, 12.0)}; });
+  expect_void("dark flat roof", [&](double x, double y) { return Place{in(x, y, 16.0) ? 8.0 : 0.0, !in(x, y, 13.0)}; });
+  expect_void("shadow of a hall", [&](double x, double y) {
+    const bool hall = std::abs(x - 110.0) < 10.0 && std::abs(y - 80.0) < 20.0;
+    return Place{hall ? 15.0 : 0.0, hall || !(x > 120.0 && x < 126.0 && std::abs(y - 80.0) < 20.0)};
+  });
+  expect_void("gap over a hill", [&](double x, double y) { return Place{3.0 * std::cos(0.05 * (x - 120.0)), !in(x, y, 12.0)}; });
+}
+
+TEST(VoidRims, SeveralVoidsAreJudgedEachByItsOwnRim) {
+  const SwathVoids v = voids_of(cloud([](double x, double y) {
+    const bool gap = std::abs(x - 120.0) < 10.0 && std::abs(y - 30.0) < 10.0;
+    Place p = canal(x, y);
+    return Place{p.z, p.returns && !gap};
+  }));
+  ASSERT_EQ(v.voids.size(), 2u);
+  EXPECT_NEAR(v.water_area, canal_area, 0.02 * canal_area);
+  EXPECT_NEAR(v.area, 400.0, 0.02 * 400.0);
+}
+
+TEST(VoidRims, FewPiecesOrNoGroundBehindSayNothing) {
+  std::vector<RimPiece> rim;
+  for (int k = 0; k < 7; ++k) rim.push_back({k, 0, k, 0, 1.0F, 2.0F});
+  EXPECT_FALSE(is_shore(rim));
+  rim.push_back({7, 0, 7, 0, 1.0F, 2.0F});
+  EXPECT_TRUE(is_shore(rim));
+  rim[3].behind = std::nanf("");
+  EXPECT_FALSE(is_shore(rim));
+  EXPECT_FALSE(is_shore({}));
+}
+
+}  // namespace
+}  // namespace swath::quality
