@@ -3,8 +3,10 @@
 
 SEEDS: their number, or first-last. Four lines and one across over halls, fixes of 1 Hz. Parts: held (the calibration is known), boresight (it
 is off by up to 0.02 deg, its sigma stated; roll, pitch and heading are estimated), outage60, outage120, outage300 (as held, no fixes for so many seconds about
-line 3), drift (as held, 90 % of the fixes' variance correlated over 120 s, sigmas of 6 and 10 cm). Errors within the lines, those of the smoother
-beside those of the network; points georeferenced with the adjusted trajectory, against true returns."""
+line 3), drift (as held, 90 % of the fixes' variance correlated over 120 s, sigmas of 6 and 10 cm), lever (as held, the antenna's lever arm known to
+2 mm and not to 2 cm), town (as held, over houses at 4 returns/m^2 of each line), town_lever (both). Errors within the lines, those of the smoother
+beside those of the network, and how they split into what all lines have in common, lines differ by, and wanders within them; points georeferenced with
+the adjusted trajectory, against true returns."""
 import concurrent.futures
 import json
 import os
@@ -25,10 +27,11 @@ BORESIGHT = {"mounting.deliver": "nominal", "mounting.truth.roll": "0 deg", "mou
              "mounting.truth.range_offset": "0 m", "mounting.truth.scan_scale": 1, "mounting.random_boresight": "0.02 deg",
              "mounting.sigma.lever_arm": "0 m", "mounting.nominal_sigma.lever_arm": "0 m"}
 DRIFT = {"gnss.sigma_horizontal": "6 cm", "gnss.sigma_vertical": "10 cm", "gnss.correlated_share": 0.9}
+TOWN = {"world.scene": "town", "scanner.prf": "80 kHz", "scanner.frequency": "80 Hz"}
 ADJUSTMENT = {"planes.planes": 1200, "sections": 0}  # planes for accuracy, not for density: the default takes all
-LEVER = 0.02  # m: sigma of each component of the antenna's lever arm, stated and true
+LEVER, MEASURED_LEVER = 0.02, 0.002  # m: sigma of each component of the antenna's lever arm, stated and true
 ANGLES = ("roll", "pitch", "heading")
-PARTS = {"held": {}, "boresight": BORESIGHT, "outage60": {}, "outage120": {}, "outage300": {}, "drift": DRIFT}
+PARTS = {"held": {}, "boresight": BORESIGHT, "outage60": {}, "outage120": {}, "outage300": {}, "drift": DRIFT, "lever": {}, "town": TOWN, "town_lever": TOWN}
 OUTAGE_LINE = "line 3"  # in the middle of the outage
 COMPONENTS = ("north", "east", "down", "roll", "pitch", "heading")
 
@@ -53,20 +56,32 @@ def errors_of_points(output, survey):
             "squares": [np.mean(np.sum(error[:, :2] ** 2, axis=1) / h**2), np.mean((error[:, 2] / v) ** 2)]}
 
 
-def relative(output, survey):
-    """Rms of the lines' mean position errors about the mean of all lines, m: 3D."""
+def errors_by_line(output, survey):
+    """Errors of the adjusted trajectory on each line: n x 6 each."""
     lines = tomllib.loads((survey / "survey.toml").read_text())["line"]
     flown, truth = navigation.sbet(output / "trajectory.sbet"), navigation.sbet(survey / "truth/sbet.out")
     time, error, _ = navigation.errors(flown, truth)
-    spans = [tuple(float(l[k].split()[0]) for k in ("start", "end")) for l in lines]
-    means = np.array([error[navigation.within(time, [s]), :3].mean(axis=0) for s in spans])
+    return [error[navigation.within(time, [tuple(float(l[k].split()[0]) for k in ("start", "end"))])] for l in lines]
+
+
+def relative(errors):
+    """Rms of the lines' mean position errors about the mean of all lines, m: 3D."""
+    means = np.array([e[:, :3].mean(axis=0) for e in errors])
     return np.sqrt(np.mean(np.sum((means - means.mean(axis=0)) ** 2, axis=1)))
+
+
+def split(errors):
+    """Attitude's mean over all lines, rms of the lines' means about it, rms about the lines' means: roll, pitch, heading each, rad."""
+    means = np.array([e[:, 3:].mean(axis=0) for e in errors])
+    within = np.sqrt(np.mean([np.mean((e[:, 3:] - m) ** 2, axis=0) for e, m in zip(errors, means)], axis=0))
+    return [means.mean(axis=0).tolist(), means.std(axis=0).tolist(), within.tolist()]
 
 
 def fly(part, seed):
     folder = common.scratch(f"network/{part}_{seed}")
-    off = LEVER * np.random.default_rng(seed).normal(size=3)
-    options = {**SURVEY, **PARTS[part], "seed": seed, "gnss.lever_arm_error": json.dumps([f"{v:.4f} m" for v in off]), "gnss.lever_arm_sigma": f"{LEVER} m"}
+    lever = MEASURED_LEVER if part.endswith("lever") else LEVER
+    off = lever * np.random.default_rng(seed).normal(size=3)
+    options = {**SURVEY, **PARTS[part], "seed": seed, "gnss.lever_arm_error": json.dumps([f"{v:.4f} m" for v in off]), "gnss.lever_arm_sigma": f"{lever} m"}
     if part.startswith("outage"):
         options = with_outage(folder, options, float(part.removeprefix("outage")))
     if part == "boresight":
@@ -81,7 +96,8 @@ def fly(part, seed):
         stages += [{"type": "georeference"}, {"type": "filters.returns"}, {"type": "writers.las", "compress": False}]
     common.run(stages, survey / "survey.toml", output)
     found = json.loads((output / "network.json").read_text())
-    found["relative"] = relative(output, survey)
+    errors = errors_by_line(output, survey)
+    found["relative"], found["split"] = relative(errors), split(errors)
     if part != "boresight":
         found["points"] = errors_of_points(output, survey)
     truth = json.loads((survey / "truth/calibration.json").read_text())
@@ -114,6 +130,8 @@ def report(part, done, rows):
           f"lines apart on planes {rms([d['rms_before_m'] for d in done])} and {rms([d['rms_after_m'] for d in done])} cm, "
           f"lines' position relative to one another {rms([d['relative'] for d in done])} cm, "
           f"sigma of surfaces {np.mean([d['surface_sigma_m'] for d in done]) * 1000:.1f} mm, groups displaced {sum(d['groups_displaced'] for d in done)}")
+    shares = common.rms(np.array([d["split"] for d in done])) / navigation.ARCSEC
+    print("  roll, pitch, heading, arcsec: " + ", ".join(f"{name} {' '.join(f'{v:.1f}' for v in row)}" for name, row in zip(("all lines alike", "between lines", "within lines"), shares)))
     kinds = sorted({k for d in done for k in d["components"]})
     print("  factors of sigmas: " + ", ".join(f"{k} {np.mean([v for v in (d['components'].get(k, {}).get('factor') for d in done) if v is not None] or [np.nan]):.2f}" for k in kinds))
     if "points" in done[0]:

@@ -98,7 +98,7 @@ class NetworkRounds {
     for (int updates = 0;;) {
       const bool settled = iterate(planes, iterations);
       network_.invert();
-      tests_ = test_planes(planes, network_.states(), network_.factor(), network_.last_step());
+      test(planes);
       surface_ = planes.surface();
       if (options_.estimate_surface) {
         if (updates == most_updates) return settled;
@@ -112,6 +112,14 @@ class NetworkRounds {
       if (out == 0) return settled;
       displaced_ += static_cast<std::uint64_t>(out);
     }
+  }
+
+  /// Groups that were left out keep the test that showed them.
+  void test(const PlaneFactors& planes) {
+    PlaneTests now = test_planes(planes, network_.states(), network_.factor(), network_.last_step());
+    for (size_t g = 0; g < planes.groups(); ++g)
+      if (planes.is_rejected(g)) now.group[g] = tests_.group[g];
+    tests_ = std::move(now);
   }
 
   const PlaneTests& tests() const { return tests_; }

@@ -40,6 +40,18 @@ TieNoise noise_of(const core::SensorSigma& s) {
 
 }  // namespace
 
+/// Variance of a weighted sum of a Brownian motion's departures from the straight lines between instants, per unit of its spectral density:
+/// covariance dt s (1 - s') within an interval of dt, s before s' as shares of it. Times must rise.
+struct Bridge {
+  double sum = 0.0, before = 0.0;
+  int interval = -1;
+  void add(int k, double dt, double s, double weight) {
+    if (k != interval) interval = k, before = 0.0;
+    sum += dt * weight * (1.0 - s) * (2.0 * before + weight * s);
+    before += weight * s;
+  }
+};
+
 struct PlaneFactors::Worker {
   ShotGeometry geometry;
   trajectory::Cursor cursor;
@@ -101,6 +113,7 @@ void PlaneFactors::fill_block(Worker& w, size_t number, double median) {
   w.rows.setZero(poses + values + 4, g.end - g.begin);
   Vector3d turn = Vector3d::Zero();
   double weights = 0.0, sum_of_f = 0.0;
+  Bridge bridge;
   Eigen::Index used = 0;
   for (std::uint32_t i = g.begin; i < g.end; ++i) {
     const Condition& c = w.conditions[i - g.begin];
@@ -127,6 +140,7 @@ void PlaneFactors::fill_block(Worker& w, size_t number, double median) {
     row.segment<3>(at + 9) = (root * s) * by_turn;
     for (Eigen::Index v = 0; v < values; ++v) row[poses + v] = root * c.by[unknown_[static_cast<size_t>(v)]];
     row.tail<4>() << -root, -root * c.u, -root * c.v, root * c.f;
+    bridge.add(k, times_[k + 1] - times_[k], s, root * root);
     turn += root * root * by_turn;
     weights += root * root;
     sum_of_f += root * root * c.f;
@@ -145,7 +159,7 @@ void PlaneFactors::fill_block(Worker& w, size_t number, double median) {
   block.used = static_cast<std::uint32_t>(used);
   if (used == 0) return;
   for (double* v : {&block.noise, &block.time, &block.angle, &block.range}) *v /= static_cast<double>(used);
-  turn_[number] = (turn / weights).squaredNorm();
+  turn_[number] = (turn / weights).squaredNorm() * bridge.sum / (weights * weights);
   if (used >= 3) add_moments(robust_, w.conditions, deviation_.data() + g.begin, scale_, sum_of_f / weights, block);
 }
 
@@ -239,10 +253,7 @@ void PlaneFactors::fit(const trajectory::Trajectory& trajectory, const core::Cal
   set_roughness();
 }
 
-double PlaneFactors::variance_between(size_t g) const {
-  const int k = interval_at(blocks_[g].time);
-  return surface_ * surface_ + wander_ * (times_[static_cast<size_t>(k) + 1] - times_[static_cast<size_t>(k)]) / 6.0 * turn_[g];
-}
+double PlaneFactors::variance_between(size_t g) const { return surface_ * surface_ + wander_ * turn_[g]; }
 
 PlaneFactors::Rest PlaneFactors::add_plane(std::uint32_t plane, const FlightStates& states, NetworkNormals& into) const {
   Rest rest;

@@ -73,6 +73,7 @@ class PlaneFactors {
   /// As the solution has it: a trace for one that is far off, so that it can be tested; 0 for one that was rejected.
   double weight(size_t group) const { return rejected_[group] ? 0.0 : std::max(weight_[group], trace_weight); }
   bool left_out(size_t group) const { return weight_[group] <= 0.0; }
+  bool is_rejected(size_t group) const { return rejected_[group] != 0; }
   /// Of a group's mean beyond the noise of its returns: surface, and attitude between the instants, m^2.
   double variance_between(size_t group) const;
   const Rest& rest(std::uint32_t plane) const { return rests_[plane]; }  ///< of the last add()
@@ -113,7 +114,8 @@ class PlaneFactors {
   TieProblem problem_;
   TieState state_;
   std::vector<GroupBlock> blocks_;
-  std::vector<double> turn_;    // of each group: squared derivative of its mean by a turn of the body, m^2/rad^2
+  std::vector<double>
+      turn_;  // of each group: variance of its mean by the body's wander between instants, per unit of spectral density, m^2 s/rad^2
   std::vector<double> weight_;  // of each group
   std::vector<char> rejected_;
   std::vector<float> deviation_;

@@ -22,6 +22,8 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double least_width = 0.1;    // of a cell's side: narrower returns lie on one scan line
+constexpr double least_wall = 0.3;     // the same of the neighbourhood of a wall's cell, three cells wide
+constexpr double least_freedom = 6.0;  // of returns by which a cell is judged
 constexpr double angle_slack = 0.05;   // rad between neighbouring cells beyond what their noise makes
 constexpr double stands_out = 1.5;     // m above its surroundings: a roof
 constexpr double surroundings = 8.0;   // m around a facet that are looked at for that
@@ -93,6 +95,7 @@ class Grower {
  private:
   void judge_cells(core::Tally& tally) {
     std::uint64_t all = 0, lonely = 0, rough = 0;
+    std::vector<PlaneCell> thin;
     for (std::uint32_t begin = 0, end = 0; begin < cells_.looks.size(); begin = end) {
       for (end = begin; end < cells_.looks.size() && cells_.looks[end].cell == cells_.looks[begin].cell;) ++end;
       ++all;
@@ -108,11 +111,12 @@ class Grower {
         n += m.n, freedom += m.n - 1.0;
         c.lines += l == begin || cells_.looks[l].line != cells_.looks[l - 1].line;
       }
-      // Looks of one line tie it to itself (ahead and behind); cells of one look are kept for walls alone, where lines differ in height.
-      if (freedom < 6.0) {
-        ++rough;
+      c.centre = centre_of(c.cell, cells_.side) + sum / n;
+      if (freedom < least_freedom) {
+        thin.push_back(c);
         continue;
       }
+      // Looks of one line tie it to itself (ahead and behind); cells of one look are kept for walls alone, where lines differ in height.
       const PlaneShape s = shape_of(scatter, freedom);
       if (end - begin < 2 && slope_of(s.normal) < wall_slope) {
         ++lonely;
@@ -122,14 +126,43 @@ class Grower {
         ++rough;
         continue;
       }
-      c.centre = centre_of(c.cell, cells_.side) + sum / n;
-      c.normal = s.normal, c.rms = s.rms;
-      c.tilt_sigma = std::max(s.rms, 0.02) / (std::sqrt(freedom) * s.narrow);
+      set_shape(c, s, freedom);
       plane_.push_back(c);
     }
+    rough += o_.thin_walls ? judge_thin(thin) : thin.size();
     tally.count("cells", all);
     tally.count("cells refused: one line", lonely);
     tally.count("cells refused: not plane", rough);
+  }
+
+  static void set_shape(PlaneCell& c, const PlaneShape& s, double freedom) {
+    c.normal = s.normal, c.rms = s.rms;
+    c.tilt_sigma = std::max(s.rms, 0.02) / (std::sqrt(freedom) * s.narrow);
+  }
+  // A wall leaves few returns in a cell, all of them its own: such cells are judged with their neighbours of the same sort, and taken where
+  // these lie on a wall. Returns the number of those that do not.
+  std::uint64_t judge_thin(const std::vector<PlaneCell>& thin) {
+    std::unordered_map<std::uint64_t, std::uint32_t> number;
+    for (std::uint32_t k = 0; k < thin.size(); ++k) number.emplace(key_of(thin[k].cell), k);
+    std::uint64_t others = 0;
+    std::vector<Growing> near;
+    for (PlaneCell c : thin) {
+      near.clear();
+      for (int d = 0; d < 27; ++d) {
+        const auto at = number.find(key_of({c.cell.i + d % 3 - 1, c.cell.j + d / 3 % 3 - 1, c.cell.k + d / 9 - 1}));
+        if (at != number.end()) take(near, thin[at->second], c.centre);
+      }
+      double freedom = 0.0;
+      for (const Growing& g : near) freedom += g.moments.n - 1.0;
+      const PlaneShape s = pooled(near);
+      if (freedom < least_freedom || slope_of(s.normal) < wall_slope || s.rms > o_.roughness || s.narrow < least_wall * cells_.side) {
+        ++others;
+        continue;
+      }
+      set_shape(c, s, freedom);
+      plane_.push_back(c);
+    }
+    return others;
   }
 
   // One level cell of each square: that of most lines, then the flattest.

@@ -18,6 +18,7 @@ struct FacetOptions {
   double mismatch = 0.05;      ///< rms by which lines may miss one another, m
   std::uint32_t returns = 12;  ///< fewest of one look
   size_t most = 3000;          ///< facets chosen
+  bool thin_walls = false;     ///< walls that leave a cell few returns
 };
 
 /// Returns of one line in one look on a facet.

@@ -16,7 +16,6 @@ namespace {
 
 constexpr double returns_per_plane_cell = 10.0;
 constexpr double smallest_side = 1.5, largest_side = 5.0;  // m
-constexpr std::uint32_t fewest_returns = 3;
 
 // Cell -> number of its present look: open addressing, doubled when half full.
 class CellTable {
@@ -68,7 +67,7 @@ PlaneShape shape_of(const Matrix3d& scatter, double freedom) {
   return s;
 }
 
-PlaneCells plane_cells(const ShotStream& stream, LocalPoints& points, std::optional<double> side) {
+PlaneCells plane_cells(const ShotStream& stream, LocalPoints& points, std::optional<double> side, std::uint32_t fewest) {
   PlaneCells out;
   std::vector<CellLook> looks;  // of the present line
   CellTable table;
@@ -77,7 +76,7 @@ PlaneCells plane_cells(const ShotStream& stream, LocalPoints& points, std::optio
   int present = 0;
   const auto keep = [&] {
     for (const CellLook& l : looks)
-      if (l.moments.n >= fewest_returns) out.looks.push_back(l);
+      if (l.moments.n >= fewest) out.looks.push_back(l);
     looks.clear();
     table.clear();
   };

@@ -81,11 +81,13 @@ struct PlaneCells {
   double side = 0.0;            ///< m
   double density = 0.0;         ///< last returns of one line per m^2
   std::vector<TieLine> lines;   ///< by id
-  std::vector<CellLook> looks;  ///< three returns or more; by cell, then line, then time
+  std::vector<CellLook> looks;  ///< by cell, then line, then time
   std::uint64_t returns = 0;    ///< last returns with a place
 };
 
-/// Reads the stream once. Without `side` the cell is so wide that a line leaves ten returns on a level one, 1.5 to 5 m.
-PlaneCells plane_cells(const ShotStream& stream, LocalPoints& points, std::optional<double> side);
+constexpr std::uint32_t usual_fewest = 3;
+/// Reads the stream once; looks of less than `fewest` returns in a cell are dropped. Without `side` the cell is so wide that a line leaves
+/// ten returns on a level one, 1.5 to 5 m.
+PlaneCells plane_cells(const ShotStream& stream, LocalPoints& points, std::optional<double> side, std::uint32_t fewest = usual_fewest);
 
 }  // namespace swath::calib

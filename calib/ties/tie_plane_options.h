@@ -13,6 +13,8 @@ struct TiePlaneOptions {
   std::optional<core::Metres> cell, piece, extent, roughness, margin;  ///< without them by sized()
   core::Metres mismatch{0.05}, target_search{5.0};
   int planes = 1200, returns = 100, fewest = 12;
+  std::optional<double> per_second;
+  bool thin_walls = false;
 };
 
 template <class V>
@@ -28,6 +30,9 @@ void describe(TiePlaneOptions& o, V& v) {
   v.option("mismatch", o.mismatch, core::at_least(0.0), "Rms by which lines miss one another at present.");
   v.option("target_search", o.target_search, core::above(0.0), "Distance from its survey within which a target's plane is looked for.");
   v.option("planes", o.planes, core::within(1, 100000), "Most planes, surveyed targets not counted.");
+  v.option("per_second", o.per_second, core::above(0.0),
+           "Most planes of one line in one second, those that say most of its pose; without it `planes` alone.");
+  v.option("thin_walls", o.thin_walls, "Find walls that leave only a few returns in a cell, too; takes more memory.");
   v.option("returns", o.returns, core::within(10, 10000), "Most returns of one line on one plane.");
   v.option("fewest", o.fewest, core::within(4, 10000), "Fewest returns of one line on one plane.");
   v.check(o.returns >= o.fewest, "returns must be fewest or more");

@@ -15,6 +15,7 @@
 #include <set>
 #include <tuple>
 
+#include "calib/ties/facet_choice.h"
 #include "calib/ties/plane_edges.h"
 #include "calib/ties/tie_returns.h"
 #include "core/error.h"
@@ -255,7 +256,7 @@ class Judge {
 FacetOptions facet_options(const TiePlaneOptions& o) {
   FacetOptions f;
   f.piece = o.piece->value, f.roughness = o.roughness->value, f.extent = o.extent->value, f.mismatch = o.mismatch.value;
-  f.returns = static_cast<std::uint32_t>(o.fewest), f.most = static_cast<size_t>(o.planes);
+  f.returns = static_cast<std::uint32_t>(o.fewest), f.most = static_cast<size_t>(o.planes), f.thin_walls = o.thin_walls;
   return f;
 }
 
@@ -348,14 +349,15 @@ TieSet find_tie_planes(const ShotStream& stream, const core::Scanner& scanner, c
   std::vector<PlaneRegion> regions;
   double side = 0.0;
   {
-    const PlaneCells cells = plane_cells(stream, points, o.cell ? std::optional(o.cell->value) : std::nullopt);
+    const PlaneCells cells =
+        plane_cells(stream, points, o.cell ? std::optional(o.cell->value) : std::nullopt, o.thin_walls ? 1 : usual_fewest);
     set.lines = cells.lines;
     side = cells.side;
     if (cells.returns == 0) {
       tally.count("no return has a place on the trajectory");
       return set;
     }
-    facets = find_facets(cells, facet_options(o), tally);
+    facets = choose_facets(find_facets(cells, facet_options(o), tally), scanner_of(points), {o.per_second, o.returns}, tally);
     for (const SurveyedTarget& t : targets) regions.push_back(region_of(t, o, cells.density));
   }
   std::erase_if(facets, [&](const Facet& f) {
@@ -370,8 +372,7 @@ TieSet find_tie_planes(const ShotStream& stream, const core::Scanner& scanner, c
     const bool is_target = k < targets.size();
     Judged j;
     Demands d;
-    d.fewest = static_cast<size_t>(o.fewest);
-    d.tolerance = o.roughness->value;
+    d.fewest = static_cast<size_t>(o.fewest), d.tolerance = o.roughness->value;
     if (is_target) {
       j.plane.kind = TieKind::target;
       j.plane.name = targets[k].name;

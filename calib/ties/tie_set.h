@@ -48,7 +48,8 @@ struct TieLine {
   double first = 0.0, last = 0.0;  ///< GPS time of its returns (latency not added), s
 };
 
-/// Returns [begin, end) of one line on one plane. A line that passes a plane twice (conical scans: ahead and behind) makes two groups.
+/// Returns [begin, end) of one line on one plane, in the order of time. A line that passes a plane twice (conical scans: ahead and behind)
+/// makes two groups.
 struct TieGroup {
   std::uint32_t plane = 0;
   std::uint32_t line = 0;  ///< index into TieSet::lines

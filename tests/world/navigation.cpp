@@ -35,10 +35,10 @@ simulate::Increments increments_of(const MotionAt& motion, double t, double step
 
 }  // namespace
 
-simulate::PlannedFlight survey_flight(int lines) {
+simulate::PlannedFlight survey_flight(int lines, int cross_lines) {
   simulate::FlightOptions options;
   options.lines = lines;
-  options.cross_lines = 0;
+  options.cross_lines = cross_lines;
   return flight_over(options, {});
 }
 

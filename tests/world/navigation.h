@@ -23,7 +23,7 @@ constexpr double motion_start = 2317 * 604800.0 + 208800.0;  ///< GPS time of se
 using MotionAt = std::function<simulate::Motion(double)>;
 
 /// Lines of 1 km flown to and fro at 50 m/s in turbulence, turns of 22 deg of bank between them: some 180 s from one line to the next.
-simulate::PlannedFlight survey_flight(int lines);
+simulate::PlannedFlight survey_flight(int lines, int cross_lines = 0);
 /// One line with 5 s before and after it.
 simulate::PlannedFlight straight_flight(double length);
 MotionAt motion_of(simulate::PlannedFlight flight);

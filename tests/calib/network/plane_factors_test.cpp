@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "tests/calib/network/plane_crossing.h"
 
 namespace swath::calib {
@@ -56,6 +60,30 @@ TEST(PlaneFactors, TheFitBringsPlanesToTheirReturnsAndRoughnessIsWhatIsNotNoise)
     EXPECT_EQ(m.weight, 1.0);
   }
   EXPECT_NEAR(factors.noise_factor(), 1.0, 0.15);
+}
+
+/// Variance of a group's mean by the wander between instants, its returns at given shares of an interval.
+double wander_of(const std::vector<double>& shares) {
+  Crossing c(0.0);
+  const TieGroup& g = c.ties.groups[0];
+  const auto interval = std::upper_bound(c.times.begin(), c.times.end(), c.ties.returns.time[g.begin]) - c.times.begin();
+  const double first = c.times[static_cast<size_t>(interval) - 1], dt = c.times[static_cast<size_t>(interval)] - first;
+  for (std::uint32_t i = g.begin; i < g.end; ++i)
+    c.ties.returns.time[i] = first + dt * shares[(i - g.begin) * shares.size() / (g.end - g.begin)];
+  // They leave the plane: all keep their weight.
+  PlaneFactors factors(c.ties, c.world.scanner, c.world.noise, c.times, c.unknown, {1e6, 2e6}, 0.0, 1e-10, 1);
+  factors.linearise(*c.off, c.calibration);
+  return factors.variance_between(0);
+}
+
+/// A Brownian bridge over a time T has the variance T / 4 in its middle, T / 12 in its mean, none at its ends.
+TEST(PlaneFactors, WhatWandersBetweenInstantsIsAveragedOverAGroup) {
+  const double middle = wander_of({0.5}), mean = wander_of({1 / 24., 3 / 24., 5 / 24., 7 / 24., 9 / 24., 11 / 24., 13 / 24., 15 / 24.,
+                                                            17 / 24., 19 / 24., 21 / 24., 23 / 24.});
+  std::printf("sigma by wander: %.2g m in the middle, %.2g m in the mean\n", std::sqrt(middle), std::sqrt(mean));
+  EXPECT_GT(middle, 0.0);
+  EXPECT_NEAR(middle / mean, 3.0, 0.3);
+  EXPECT_NEAR(wander_of({0.001}) / middle, 0.004, 0.001);
 }
 
 TEST(PlaneFactors, AGroupFarFromItsPlaneLosesItsWeight) {

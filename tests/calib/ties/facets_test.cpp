@@ -90,6 +90,60 @@ TEST(Facets, OneLineAloneTiesNothing) {
   EXPECT_GT(tally.of("cells refused: one line"), 500u);
 }
 
+/// Looks at a wall of 14 m by 6 m that two lines see with 0.8 returns/m^2 each, over ground with 4.
+PlaneCells walled() {
+  PlaneCells out;
+  out.side = 1.6, out.density = 4.0;
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> uniform;
+  std::normal_distribution<double> normal;
+  std::map<std::tuple<CellIndex3, std::uint32_t>, Moments<float>> all;
+  for (std::uint32_t l = 0; l < 2; ++l) {
+    out.lines.push_back({static_cast<int>(l) + 1, 100.0 * l, 100.0 * l + 10.0});
+    const auto add = [&](const Vector3d& p) {
+      const CellIndex3 c = cell_of(p.x(), p.y(), p.z(), out.side);
+      const Vector3d at = p - centre_of(c, out.side);
+      all[{c, l}].add(static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z()));
+    };
+    for (int i = 0; i < 67; ++i) add({10.0 + 14.0 * uniform(random), 12.0 + 0.03 * normal(random), 6.0 * uniform(random)});
+    for (int i = 0; i < 4 * 30 * 12; ++i) add({30.0 * uniform(random), 12.0 * uniform(random), 0.02 * normal(random)});
+  }
+  for (const auto& [key, m] : all)
+    out.looks.push_back({std::get<0>(key), std::get<1>(key), 100.0 * std::get<1>(key), 100.0 * std::get<1>(key) + 1.0, m});
+  return out;
+}
+
+TEST(Facets, AWallOfFewReturnsIsFoundWithItsNeighbours) {
+  core::Tally tally;
+  FacetOptions o;
+  const auto walls = [&] {
+    std::vector<Facet> out;
+    for (const Facet& f : find_facets(walled(), o, tally))
+      if (f.kind == TieKind::wall) out.push_back(f);
+    return out;
+  };
+  EXPECT_TRUE(walls().empty());
+  o.thin_walls = true;
+  const std::vector<Facet> found = walls();
+  ASSERT_FALSE(found.empty());
+  for (const Facet& f : found) {
+    EXPECT_GT(std::abs(f.normal.y()), 0.998);
+    EXPECT_NEAR(f.centre.y(), 12.0, 0.03);
+    EXPECT_EQ(f.looks.size(), 2u);
+    EXPECT_GE(f.half.minCoeff(), 1.5);
+  }
+}
+
+// A wood's single returns make no walls.
+TEST(Facets, ThinCellsOfAWoodAreNoWalls) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> crown(0.0, 14.0);
+  core::Tally tally;
+  FacetOptions o;
+  o.thin_walls = true;
+  EXPECT_TRUE(find_facets(cells_of([&](double, double) { return crown(random); }, {0.0, 0.0, 0.0}), o, tally).empty());
+}
+
 TEST(Facets, ASlopeOfTheGroundIsNoRoof) {
   core::Tally tally;
   const auto facets = find_facets(cells_of([](double x, double y) { return 0.2 * x + 0.1 * y; }, {0.0, 0.0}), {}, tally);
