@@ -349,10 +349,7 @@ Plan make_plan(const Request& request) {
   if (faults.empty()) check_order(plan, faults);
   if (faults.empty()) check_memory(plan, faults);
 
-  const auto flag = [&](const char* key, const char* name, Value value) {
-    value.where.file = name;
-    plan.run_flags[key] = std::move(value);
-  };
+  const auto flag = [&](const char* key, const char* name, Value value) { (plan.run_flags[key] = std::move(value)).where.file = name; };
   if (!request.output.empty()) plan.run.output = request.output, flag("output", "--output", request.output.string());
   if (request.threads >= 0) plan.run.threads = request.threads, flag("threads", "--threads", request.threads);
   read_plan_survey(request, plan, faults);
