@@ -184,6 +184,14 @@ class Clouds(Case):
         ground = stage(once, "filters.ground")["tally"]["ground"]["count"]
         self.assertEqual(stage(twice, "terrain.dtm")["tally"][same]["count"], ground)
 
+    def test_points_farther_apart_than_voids_are_measured(self):
+        report = self.run_cloud([(500000.25 + 4 * i, 5300000.25 + 4 * j, 100 + 0.2 * i) for j in range(40) for i in range(40)])
+        found = stage(report, "quality.swath")["findings"]
+        self.assertRegex(found["no_voids"], "m apart, farther than 3 m: .* quality.swath.anps")
+        self.assertNotIn("voids", found)
+        judged = self.run_ok(self.folder / "survey" / "survey.toml", "--set", "quality.swath.anps=5m", config=CLOUD, out=self.folder / "judged")
+        self.assertEqual(stage(judged, "quality.swath")["findings"]["voids"], 0)
+
     def test_all_points_at_one_place(self):
         self.refuse_cloud([(500010.5, 5300010.5, 100.0)] * 50)
 

@@ -69,7 +69,8 @@ double halo(const SwathOptions& o) {
 struct SwathRule {
   quality::PulseSpacing spacing{};
   std::string from;
-  double cell = 2.0;  ///< m, in which lines are compared
+  double cell = 2.0;                      ///< m, in which lines are compared
+  std::optional<std::string> no_voids{};  ///< why neither voids nor the distribution are judged
 };
 
 SwathRule rule_of(const Context& context, const SwathOptions& o) {
@@ -87,9 +88,8 @@ SwathRule rule_of(const Context& context, const SwathOptions& o) {
   if (rule.spacing.rule == 0.0) {
     rule.spacing.rule = number("spacing_m");
     if (rule.spacing.rule > widest_measured)
-      throw core::Error(
-          "the first returns lie " + core::format_number(std::round(10.0 * rule.spacing.rule) / 10.0) + " m apart, farther than 3 m",
-          "quality.swath", "state the spacing that they are judged by, for example anps = \"5 m\"");
+      rule.no_voids = "the first returns lie " + core::format_number(std::round(10.0 * rule.spacing.rule) / 10.0) +
+                      " m apart, farther than 3 m: state the spacing to judge by, quality.swath.anps";
   }
   const double in_cell = cells_for_least * o.least;
   for (rule.cell = 1.0; rule.cell < 8.0 && rule.cell * rule.cell * number("single_density") < in_cell;) rule.cell *= 2.0;
@@ -138,13 +138,17 @@ void look_at_tile(const TileJob& job, const Context& context, const SwathOptions
   TileRasters{context, overlap_name}.write(
       job.key, overlaps.difference.lattice,
       {{"largest difference of two lines, lower number minus higher", "m", &overlaps.difference.height}, {"lines", "", &seen}});
-  const quality::EvenSwath even = quality::even_cells(job.block, lattice_in(2.0 * rule.spacing.rule, job.box));
-  const double cell = quality::void_cell(rule.spacing);
-  std::vector<quality::VoidRun> voids = quality::find_voids(job.block, lattice_in(cell, job.box), rule.spacing);
-  mark_water(context, job.box, cell, voids);
-  mark_lines(breaklines_of(context, cache), job.box, cell, voids);
-  const std::vector<quality::RimPiece> rims =
-      o.shores ? quality::rims_of(job.block, voids, rule.spacing) : std::vector<quality::RimPiece>{};
+  const core::Lattice squares = lattice_in(2.0 * rule.spacing.rule, job.box);
+  const quality::EvenSwath even = rule.no_voids ? quality::EvenSwath{core::Grid(squares), {}} : quality::even_cells(job.block, squares);
+  std::vector<quality::VoidRun> voids;
+  std::vector<quality::RimPiece> rims;
+  if (!rule.no_voids) {
+    const double cell = quality::void_cell(rule.spacing);
+    voids = quality::find_voids(job.block, lattice_in(cell, job.box), rule.spacing);
+    mark_water(context, job.box, cell, voids);
+    mark_lines(breaklines_of(context, cache), job.box, cell, voids);
+    if (o.shores) rims = quality::rims_of(job.block, voids, rule.spacing);
+  }
   write_rows(piece_file(job.folder, job.key, "swath"), overlaps.pairs, overlaps.bins, overlaps.lines, overlaps.line_bins, even.lines, voids,
              quality::footprint_of(job.block, job.own, rule.spacing), rims);
   write_grid_tile(job.folder / "dz", job.key, overlaps.difference);
@@ -184,9 +188,12 @@ SwathFindings judge_swaths(const MergeJob& job, const Context& context, const Sw
   found.spacing_from = rule.from;
   found.cell = rule.cell;
   found.set_overlaps(quality::judge_overlaps(overlaps));
-  found.set_even(even);
-  found.voids =
-      quality::judge_voids(std::move(voids), footprint, tiles_without_points(context, job.tiles), rule.spacing, o.max_gap.value, rims);
+  found.no_voids = rule.no_voids;
+  if (!rule.no_voids) {
+    found.set_even(even);
+    found.voids =
+        quality::judge_voids(std::move(voids), footprint, tiles_without_points(context, job.tiles), rule.spacing, o.max_gap.value, rims);
+  }
   write_swath_files(context, found);
   report::DifferenceMapOptions look;
   look.title = "Largest difference of two lines, lower number minus higher";

@@ -2,6 +2,7 @@
 // What quality.swath finds, and the files that it leaves of it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct SwathFindings {
   std::string quality_level = "none";
   quality::PulseSpacing spacing{};
   std::string spacing_from;
+  std::optional<std::string> no_voids{};
   double cell = 0.0;
   quality::SwathPair all{};
   std::vector<quality::SwathPair> pairs{};
@@ -63,12 +65,14 @@ void describe(const SwathFindings& r, V& v) {
   v.result("overlap_q95_m", r.all.q95, metres(4).only_if(r.all.cells > 0), "95 % of its absolute values are smaller.");
   v.result("overlap_over_sigma", r.all.error_over_sigma, core::plain().only_if(r.all.predicted > 0.0),
            "overlap_rms_m over what the points' own sigmas predict; 1 where they are true.");
+  v.result("no_voids", r.no_voids, core::plain().in_summary(), "Why neither the distribution nor voids are judged.");
   v.result("even", r.even, core::share().in_summary(), "Share of cells of twice the pulse spacing with a first return of any line.");
   v.result("judged_km2", 1e-6 * r.voids.judged, core::plain(), "Area in which voids are looked for: the survey without its rim.");
   v.result("least_void_m2", r.voids.least, "Area from which on a void counts: (4 ANPS)^2.");
-  v.result("voids", static_cast<std::uint64_t>(r.count(false)), core::plain().in_summary(), "Voids apart from water.");
-  v.result("void_m2", r.voids.area, core::plain().in_summary(), "Their area.");
-  v.result("void_share", r.voids.judged > 0.0 ? r.voids.area / r.voids.judged : 0.0, core::share().limited_by("void_share"),
+  const bool judged = !r.no_voids;
+  v.result("voids", static_cast<std::uint64_t>(r.count(false)), core::plain().in_summary().only_if(judged), "Voids apart from water.");
+  v.result("void_m2", r.voids.area, core::plain().in_summary().only_if(judged), "Their area.");
+  v.result("void_share", r.voids.judged > 0.0 ? r.voids.area / r.voids.judged : 0.0, core::share().limited_by("void_share").only_if(judged),
            "Their share of the judged area.");
   v.result("largest_void_m2", r.largest(false), "The largest of them.");
   v.result("water_voids", static_cast<std::uint64_t>(r.count(true)), "Voids that are water.");
