@@ -61,9 +61,10 @@ const std::vector<WarningKind>& warning_kinds() {
       {"points.outside_box", "Points lie well outside the box that their file's header states.",
        "The points are used as they are; have the file written again, for other programs trust the box."},
       {"trajectory.fixes", "Many GNSS fixes contradict the smoothed trajectory; the stated sigmas do not hold.",
-       "See trajectory.json and the tally of the readers: damaged records, clocks apart, a wrong lever arm, fixes of poor quality."},
+       "See trajectory.json and what the readers counted: damaged records, clocks apart, a wrong lever arm, fixes of poor quality."},
       {"trajectory.imu_noise", "The IMU's records hold many times the noise that its specification states.",
-       "See the tally of readers.imu: damaged records, wrong units or axes, strong vibration; correct imu_spec if the IMU is so."},
+       "See what readers.imu counted in report.json: damaged records, wrong units or axes, strong vibration; correct imu_spec if the IMU "
+       "is so."},
       {"work.damaged", "Pieces of an earlier run's work were changed or damaged, and were done again.",
        "Look for what writes into the work folder, and check the disk."},
   };
