@@ -229,10 +229,10 @@ TEST_F(ImuFiles, ARecordThatStandsOutIsLeftOut) {
   }
   // What is not one record alone is motion: a shock with its swing, vibration with peaks, a step.
   const auto force = [](double f) { return "0.01,0.02,0.03,0.1,0.2," + core::format_number(f); };
-  for (const Row& motion :
-       std::vector<Row>{[&](int k) { return force(-g + (k < 100 ? 0.0 : 60.0 * std::exp(-0.1 * (k - 100)) * std::cos(1.5 * (k - 100)))); },
-                        [&](int k) { return force(-g + 15.0 * std::sin(2.1 * k) + (k % 37 == 0 ? 25.0 : 0.0)); },
-                        [&](int k) { return force(k < 150 ? -g : -g + 30.0); }, [&](int k) { return force(-g + (k % 50 ? 0.0 : 30.0)); }}) {
+  for (const Row& motion : std::vector<Row>{
+           [&](int k) { return force(-g + (k < 100 ? 0.0 : 60.0 * std::exp(-0.1 * (k - 100)) * std::cos(1.5 * (k - 100)))); },
+           [&](int k) { return force(-g + 15.0 * std::sin(2.1 * k) + (k % 37 == 0 ? 25.0 : 0.0)); },
+           [&](int k) { return force(k < 5900 ? -g : -g + 30.0); }, [&](int k) { return force(-g + (k % 50 ? 0.0 : 30.0)); }}) {
     tally_ = {};
     EXPECT_EQ(read(made(6000, at_100_hz, motion)).size(), 6000u);
     EXPECT_EQ(tally_.of(what), 0u);
