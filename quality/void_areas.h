@@ -42,10 +42,8 @@ void describe(const VoidArea& r, V& v) {
   v.result("y", r.y, "Northing of its middle, m.");
   v.result("area_m2", r.area, "Its area.");
   v.result("water", r.is_water(), "Whether it is water.");
-  v.result(
-      "water_by", r.evidence(), core::plain().only_if(r.is_water()),
-      "known: breaklines, for half of its area; points: half of the first returns on its rim are of class 9; shore: its rim is level and "
-      "below the ground around it.");
+  v.result("water_by", r.evidence(), core::plain().only_if(r.is_water()),
+           "Why it is water: known (breaklines), points (class 9 on its rim), shore (a level rim below the ground around).");
 }
 
 struct SwathVoids {

@@ -7,7 +7,7 @@
 
 #include "core/config/result.h"
 #include "core/report.h"
-#include "pipeline/time_spent.h"
+#include "pipeline/work/time_spent.h"
 #include "stages/stage.h"
 
 namespace swath::pipeline {

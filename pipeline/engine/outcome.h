@@ -3,7 +3,7 @@
 #pragma once
 
 #include "pipeline/engine/run_state.h"
-#include "pipeline/time_spent.h"
+#include "pipeline/work/time_spent.h"
 #include "pipeline/work/work_folder.h"
 
 namespace swath::pipeline {

@@ -12,7 +12,7 @@
 #include "core/report.h"
 #include "pipeline/limits.h"
 #include "pipeline/provenance.h"
-#include "pipeline/time_spent.h"
+#include "pipeline/work/time_spent.h"
 
 namespace swath::pipeline {
 

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "pipeline/time_spent.h"
 #include "pipeline/work/piece_record.h"
+#include "pipeline/work/time_spent.h"
 #include "stages/stage.h"
 
 namespace swath::pipeline {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/time_spent.h"
+#include "pipeline/work/time_spent.h"
 
 #include <gtest/gtest.h>
 
