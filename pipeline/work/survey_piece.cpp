@@ -25,7 +25,7 @@ SurveyPiece run_survey_piece(const stages::Stage& stage, stages::Context& contex
   const Stopwatch watch(Whose::program);
   PieceRecord so_far;
   {
-    const io::FinishedFiles watch([&](const fs::path& file) {
+    const io::FinishedFiles noting([&](const fs::path& file) {
       const io::FinishedFiles apart;  // the record is not one of the stage's files
       so_far.files.push_back(piece_file(folder, file));
       write_record(folder / partial_name, so_far);

@@ -143,7 +143,9 @@ TEST_F(CheckRoofs, TilesAndThreadsChangeNothing) {
   for (size_t k = 0; k < one.items().size(); ++k) {
     const core::Value &a = one.items()[k], &b = other.items()[k];
     EXPECT_EQ(a.find("state")->as_text(), b.find("state")->as_text());
-    if (a.find("east_m")) EXPECT_NEAR(number(a, "east_m"), number(b, "east_m"), 1e-4);
+    if (a.find("east_m")) {
+      EXPECT_NEAR(number(a, "east_m"), number(b, "east_m"), 1e-4);
+    }
   }
 }
 
