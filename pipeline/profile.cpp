@@ -300,12 +300,9 @@ StatedCrs crs_of_model(const fs::path& file) {
 
 /// Heights of which one file does not state the system are taken as those of the other, as long as their units agree.
 bool is_one_system(const StatedCrs& a, const StatedCrs& b) {
-  using core::Heights;
   if (std::abs(a.height_unit / b.height_unit - 1.0) > 1e-9) return false;
   if (core::is_same_crs(a.crs, b.crs)) return true;
-  if (!core::is_same_crs(a.crs.horizontal(), b.crs.horizontal())) return false;
-  if (a.crs.heights() == Heights::unknown || b.crs.heights() == Heights::unknown) return true;
-  return a.crs.heights() == b.crs.heights() && a.crs.vertical_name() == b.crs.vertical_name();
+  return core::is_same_crs(a.crs.horizontal(), b.crs.horizontal()) && !core::are_heights_apart(a.crs, b.crs);
 }
 
 std::string named(const StatedCrs& s) {

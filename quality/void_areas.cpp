@@ -169,17 +169,7 @@ std::vector<std::vector<RimPiece>> rims_by_group(const std::vector<RimPiece>& ri
 }  // namespace
 
 std::string VoidArea::evidence() const {
-  switch (water) {
-    case WaterBy::known:
-      return "known";
-    case WaterBy::points:
-      return "points";
-    case WaterBy::shore:
-      return "shore";
-    case WaterBy::none:
-      break;
-  }
-  return {};
+  return is_water() ? std::string(core::Choices<WaterBy>::names[static_cast<size_t>(water)]) : std::string();
 }
 
 std::vector<FootprintCell> footprint_of(const core::Block& b, size_t own, const PulseSpacing& spacing) {

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/area.h"
+#include "core/config/option.h"
 #include "core/config/result.h"
 #include "quality/void_cells.h"
 #include "quality/void_rims.h"
@@ -26,6 +29,15 @@ std::vector<FootprintCell> footprint_of(const core::Block& block, std::size_t ow
 
 /// Why a void counts as water.
 enum class WaterBy { none, known, points, shore };
+
+}  // namespace swath::quality
+
+template <>
+struct swath::core::Choices<swath::quality::WaterBy> {
+  static constexpr std::array<std::string_view, 4> names{"none", "known", "points", "shore"};
+};
+
+namespace swath::quality {
 
 struct VoidArea {
   double x = 0.0, y = 0.0;  ///< of its middle, m

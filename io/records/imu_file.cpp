@@ -27,10 +27,9 @@ constexpr const char *records = "IMU records", *gap_count = "IMU gaps";
 constexpr double fastest_turn = 100.0, largest_force = 1000.0;    // rad/s, m/s2: twice what the widest sensors measure
 constexpr double least_jump_turn = 2.0, least_jump_force = 20.0;  // rad/s, m/s2: of one record against its neighbours
 constexpr double jump_ratio = 25.0;                               // of the median change from record to record
-constexpr double most_standing_out = 1e-3;                        // of the records, or
-constexpr size_t always_few = 3;
-constexpr size_t neighbours = 5;              // records on either side
-constexpr size_t changes_looked_at = 100000;  // changes for their median
+constexpr double most_standing_out = 1e-3;                        // of the records
+constexpr size_t neighbours = 5;                                  // records on either side
+constexpr size_t changes_looked_at = 100000;                      // changes for their median
 
 /// Records as recorded, in the record's axes and units.
 struct Raw {
@@ -109,9 +108,7 @@ std::vector<size_t> standing_out(const Raw& raw, const Scale& s) {
 /// the units are others than stated, which check_imu() says, or the carrier shakes so.
 void leave_out(Raw& raw, std::vector<std::uint64_t>& numbers, const std::vector<size_t>& bad, double most, const Scale& s,
                const TableRows& rows, const char* what, core::Tally& tally) {
-  const auto n = static_cast<double>(raw.time.size());
-  if (bad.empty() || !are_few(bad.size(), raw.time.size()) || (bad.size() > always_few && static_cast<double>(bad.size()) > most * n))
-    return;
+  if (bad.empty() || !are_few(bad.size(), raw.time.size(), most)) return;
   size_t kept = 0;
   for (size_t k = 0, next = 0; k < raw.time.size(); ++k) {
     if (next < bad.size() && bad[next] == k) {

@@ -22,13 +22,12 @@ const std::string& DataLine::field(size_t column) const {
 
 void DataLine::expect_columns(size_t columns) const {
   if (fields.size() != columns)
-    fault("the line has " + std::to_string(fields.size()) + " fields, the header " + std::to_string(columns) + " columns",
-          "the line is cut off, or a name holds the delimiter and needs quotes");
+    fault(fields_and_columns(fields.size(), columns, true), "the line is cut off, or a name holds the delimiter and needs quotes");
 }
 
 void DataLine::expect_at_most(size_t columns, bool has_header) const {
   const size_t found = fields.size() - (fields.size() > columns && fields.back().empty() ? 1 : 0);
-  if (found > columns) fault(more_fields_text(found, columns, has_header), more_fields_hint);
+  if (found > columns) fault(fields_and_columns(found, columns, has_header), more_fields_hint);
 }
 
 double DataLine::number(size_t column) const {

@@ -208,9 +208,9 @@ void require_text(std::string_view begin, const std::filesystem::path& file) {
   if (begin.find('\0') != std::string_view::npos) throw core::Error("is not delimited text", file.string(), "check the name of the file");
 }
 
-std::string more_fields_text(size_t fields, size_t columns, bool has_header) {
-  return "the line has " + std::to_string(fields) + " fields, " + (has_header ? "the header " : "the first line ") +
-         std::to_string(columns) + (columns == 1 ? " column" : " columns");
+std::string fields_and_columns(size_t fields, size_t columns, bool has_header) {
+  return "the line has " + std::to_string(fields) + (fields == 1 ? " field, " : " fields, ") +
+         (has_header ? "the header " : "the first line ") + std::to_string(columns) + (columns == 1 ? " column" : " columns");
 }
 
 const char* number_hint(std::string_view field, const char* otherwise) {
@@ -374,7 +374,7 @@ void DelimitedReader::expect_no_more(const char* at, const char* end) const {
   size_t fields = fields_needed_;
   for (; at <= end && !(at == end && fields >= columns_); at = field_end(at, end, delimiter_) + 1) ++fields;
   if (fields > columns_)
-    throw core::Error(more_fields_text(fields, columns_, !names_.empty()), file_.path().string() + ":" + std::to_string(line_),
+    throw core::Error(fields_and_columns(fields, columns_, !names_.empty()), file_.path().string() + ":" + std::to_string(line_),
                       more_fields_hint);
 }
 

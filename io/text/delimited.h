@@ -14,8 +14,9 @@
 
 namespace swath::io {
 
-/// A line with more fields than the table has columns: what is wrong, and what may be the cause.
-std::string more_fields_text(size_t fields, size_t columns, bool has_header);
+/// What is wrong with a line whose fields are not the table's columns.
+std::string fields_and_columns(size_t fields, size_t columns, bool has_header);
+/// What may be the cause of a line with more fields than the table has columns.
 inline constexpr const char* more_fields_hint = "a number with a decimal comma, or a text that holds the delimiter and needs quotes?";
 /// What to do about a field that is not a number: a decimal comma is named.
 const char* number_hint(std::string_view field, const char* otherwise);

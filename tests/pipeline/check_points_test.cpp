@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <sstream>
 #include <stdexcept>
 
 #include "io/text/value_file.h"
 #include "pipeline/run.h"
 #include "simulate/simulate.h"
+#include "tests/world/csv_rows.h"
 #include "tests/world/support.h"
 
 namespace swath::pipeline {
@@ -53,22 +53,14 @@ class CheckPoints : public testing::Test {
   /// check.csv with `by` metres added to the heights of the rows that `which` names (from 1; 0: all), and a cover.
   static Outcome run_with(int which, double by, const std::filesystem::path& output) {
     const std::string good = test::read_bytes(*folder_ / "check.csv");
-    std::string out, row;
-    std::istringstream in(good);
     size_t z = 0;
-    for (int k = 0; std::getline(in, row); ++k) {
-      std::vector<std::string> cells;
-      std::istringstream fields(row);
-      for (std::string cell; std::getline(fields, cell, ',');) cells.push_back(cell);
+    test::write_bytes(*folder_ / "check.csv", test::with_rows(good, [&](int k, std::vector<std::string>& cells) {
       if (k == 0)
         z = static_cast<size_t>(std::find(cells.begin(), cells.end(), "z") - cells.begin());
       else if (which == 0 || which == k)
         cells[z] = std::to_string(std::stod(cells[z]) + by);
       cells.push_back(k == 0 ? "cover" : k % 4 == 0 ? "forest" : "open");
-      for (size_t c = 0; c < cells.size(); ++c) out += (c ? "," : "") + cells[c];
-      out += "\n";
-    }
-    test::write_bytes(*folder_ / "check.csv", out);
+    }));
     Request r;
     r.config = *folder_ / "points.toml";
     r.survey = *folder_ / "survey.toml";

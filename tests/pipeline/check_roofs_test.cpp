@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <sstream>
 #include <stdexcept>
 
 #include "io/text/value_file.h"
 #include "pipeline/run.h"
 #include "simulate/simulate.h"
+#include "tests/world/csv_rows.h"
 #include "tests/world/support.h"
 
 namespace swath::pipeline {
@@ -58,21 +58,14 @@ class CheckRoofs : public testing::Test {
 
   /// The targets moved against the cloud; of the target named `of` by `more` m farther east.
   static Outcome run_with(const std::filesystem::path& output, double more = 0.0, const std::vector<std::string>& sets = {}) {
-    std::istringstream in(test::read_bytes(*folder_ / "control.csv"));
-    std::string row, out, changed;
-    for (int k = 0; std::getline(in, row); ++k) {
-      std::vector<std::string> cells;
-      std::istringstream fields(row);
-      for (std::string cell; std::getline(fields, cell, ',');) cells.push_back(cell);
+    std::string changed;
+    const auto move = [&](int k, std::vector<std::string>& cells) {
+      if (k == 0) return;
       if (k == 1) changed = cells[1];
-      if (k > 0) {
-        cells[2] = std::to_string(std::stod(cells[2]) - east + (cells[1] == changed ? more : 0.0));
-        cells[3] = std::to_string(std::stod(cells[3]) - north);
-      }
-      for (size_t c = 0; c < cells.size(); ++c) out += (c ? "," : "") + cells[c];
-      out += "\n";
-    }
-    test::write_bytes(*folder_ / "roofs.csv", out);
+      cells[2] = std::to_string(std::stod(cells[2]) - east + (cells[1] == changed ? more : 0.0));
+      cells[3] = std::to_string(std::stod(cells[3]) - north);
+    };
+    test::write_bytes(*folder_ / "roofs.csv", test::with_rows(test::read_bytes(*folder_ / "control.csv"), move));
     Request r;
     r.config = *folder_ / "roofs.toml";
     r.survey = *folder_ / "check.toml";

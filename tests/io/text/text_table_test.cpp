@@ -61,7 +61,7 @@ TEST_F(Tables, ADecimalCommaIsNamedAndALetterHasNoNearest) {
 TEST_F(Tables, FaultsNameTheirLine) {
   EXPECT_EQ(fault([&] { table(""); }), "a.csv: no row of data");
   EXPECT_EQ(fault([&] { table("name,x\n"); }), "a.csv: no row of data");
-  EXPECT_EQ(fault([&] { table("name,x\na,1\nb\n"); }), "a.csv:3: the line has 1 fields, the header 2 columns");
+  EXPECT_EQ(fault([&] { table("name,x\na,1\nb\n"); }), "a.csv:3: the line has 1 field, the header 2 columns");
   const TextTable t = table("name|x\na|nan\nb|\nc|1m\n", "|");
   EXPECT_EQ(fault([&] { t.number(0, 1); }), "a.csv:2: 'nan' is no finite number in column 'x'");
   EXPECT_EQ(fault([&] { t.number(1, 1); }), "a.csv:3: the field is empty in column 'x'");
