@@ -18,7 +18,9 @@ struct CameraOptions {
   core::Metres pixel{6.8e-6};
   core::Radians mount = core::degrees(90.0);
   std::array<core::Radians, 3> boresight{core::degrees(0.31), core::degrees(-0.22), core::degrees(0.53)};
+  core::Radians boresight_sigma = core::degrees(0.02);
   std::array<core::Metres, 3> lever_arm{core::Metres(0.21), core::Metres(-0.08), core::Metres(0.34)};
+  core::Metres lever_arm_sigma{0.01};
   int points = 80;
   double noise = 0.33;
   core::Metres station_horizontal{0.04}, station_vertical{0.06}, shift, drift;
@@ -32,7 +34,7 @@ struct CameraOptions {
 
 template <class V>
 void describe(CameraOptions& c, V& v) {
-  v.option("file", c.file, "Writes image points, stations, control and block.toml for `swath block`; exposures are the events.");
+  v.option("file", c.file, "Writes image points, control, their tables of survey.toml, block.toml; exposures are the events.");
   v.option("f", c.f, core::above(0), "Principal distance.");
   v.option("nominal_f", c.nominal_f, core::above(0), "Principal distance that block.toml starts from.");
   v.option("x0", c.x0, "Principal point from the middle of the sensor, to the right.");
@@ -47,7 +49,11 @@ void describe(CameraOptions& c, V& v) {
   v.option("pixel", c.pixel, core::above(0), "Side of a pixel.");
   v.option("mount", c.mount, "Angle from the direction of flight to the image's x axis, clockwise from above.");
   v.option("boresight", c.boresight, "True roll, pitch, heading of the camera in the body, beside mount; block.toml starts from 0.");
+  v.option("boresight_sigma", c.boresight_sigma, core::within(0, 0.1),
+           "Sigma of the boresight's angles in survey.toml, whose errors are sampled; 0: true and held.");
   v.option("lever_arm", c.lever_arm, "IMU centre to perspective centre: forward, right, down.");
+  v.option("lever_arm_sigma", c.lever_arm_sigma, core::within(0, 1),
+           "Sigma of its components in survey.toml, whose errors are sampled; 0: true and held.");
   v.option("points", c.points, core::within(6, 100000), "Tie points per image, about.");
   v.option("noise", c.noise, core::within(0, 10), "Sigma of an image coordinate, pixels.");
   v.option("station_horizontal", c.station_horizontal, core::within(0, 100), "Sigma of a station's easting and northing.");

@@ -22,6 +22,7 @@
 #include "io/text/value_file.h"
 #include "simulate/errors.h"
 #include "simulate/files/camera_files.h"
+#include "simulate/files/camera_tables.h"
 #include "simulate/files/control_files.h"
 #include "simulate/files/events.h"
 #include "simulate/files/gnss_file.h"
@@ -267,7 +268,7 @@ Value effective(S options) {
   return core::effective_values(core::described(options));
 }
 
-void write_navigation(const Scenery& s, const Options& o, const fs::path& folder, Made& made) {
+void write_navigation(const Scenery& s, const Options& o, const fs::path& folder, io::Survey& survey, Made& made) {
   const bool noise_free = o.noise.noise_free;
   if (o.imu.file) write_imu(folder, *s.flight, s.start, o.imu, noise_free, o.seed);
   if (o.gnss.file) made.fixes = write_gnss(folder, *s.flight, s.start, o.gnss, o.mounting.lever_arm_antenna, noise_free, o.seed);
@@ -275,6 +276,7 @@ void write_navigation(const Scenery& s, const Options& o, const fs::path& folder
   if (o.camera.file) {
     const CameraMade camera = write_camera(folder, *s.world, *s.map, *s.flight, s.start, o);
     made.images = camera.images, made.image_points = camera.image_points;
+    if (o.events.file) describe_camera(o, camera, survey);
   }
 }
 
@@ -341,7 +343,7 @@ Made run(const Options& given, const fs::path& folder, const Progress& progress)
     survey.control = write_ground_truth(scenery, options, folder, made.laser.emplace());
     write_laser(scenery, options, folder, progress, *made.laser);
   }
-  write_navigation(scenery, options, folder, made);
+  write_navigation(scenery, options, folder, survey, made);
   if (options.output.trajectory != TrajectoryOutput::none)
     survey.trajectory = {write_trajectory(folder, *scenery.flight, scenery.start, options)};
   io::write_sbet(folder / "truth" / "sbet.out", true_trajectory(*scenery.flight, scenery.start));

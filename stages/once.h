@@ -202,6 +202,7 @@ struct OnceExtras {
   void (*check)(const Context&, const O&) = nullptr;                          ///< as Stage::check
   std::vector<std::filesystem::path> (*inputs)(const io::Survey&) = nullptr;  ///< as Stage::inputs
   std::vector<std::string> (*products)(const O&) = nullptr;                   ///< as Stage::products
+  std::vector<Product> needs{}, gives{};                                      ///< beside records: what lies in files
 };
 
 template <auto function>
@@ -216,6 +217,8 @@ class OnceStage : public OptionStage<typename Signature<decltype(function)>::Opt
       : info_{name, summary, {Grain::survey}, {}, {}, {}, {}}, extras_(extras) {
     Function::declare(info_);
     Result::declare(info_);
+    info_.needs_products.insert(info_.needs_products.end(), extras.needs.begin(), extras.needs.end());
+    info_.gives_products.insert(info_.gives_products.end(), extras.gives.begin(), extras.gives.end());
   }
   const Info& info() const override { return info_; }
   void visit_findings(core::ResultVisitor& v) const override {

@@ -57,7 +57,7 @@ concept Record = requires {
 class Product {
  public:
   static const Product shots, points, dtm, dsm, contours, breaklines, canopy, slope, hillshade, intensity, pulse_density, return_density,
-      visibility;
+      visibility, orientations;
   template <Record R>
   static constexpr Product of() {
     return Product(RecordName<R>::value);
@@ -72,7 +72,7 @@ class Product {
 inline constexpr Product Product::shots{"shots"}, Product::points{"points"}, Product::dtm{"dtm"}, Product::dsm{"dsm"},
     Product::contours{"contours"}, Product::breaklines{"breaklines"}, Product::canopy{"canopy"}, Product::slope{"slope"},
     Product::hillshade{"hillshade"}, Product::intensity{"intensity"}, Product::pulse_density{"pulse_density"},
-    Product::return_density{"return_density"}, Product::visibility{"visibility"};
+    Product::return_density{"return_density"}, Product::visibility{"visibility"}, Product::orientations{"orientations"};
 constexpr std::string_view name_of(Product p) { return p.name(); }
 
 /// The records of a run, one of each type. A stage that gives a record again replaces it. Copies of the store share their records.

@@ -23,6 +23,7 @@ const std::vector<Entry>& registry() {
       latency_stage(),
       kinematic_stage(),
       direct_orientation_stage(),
+      block_adjust_stage(),
       lever_arm_stage(),
       laser_reader_stage(),
       las_reader_stage(),

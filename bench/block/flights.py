@@ -15,7 +15,8 @@ from pathlib import Path
 from blocks import times, turn
 
 FLIGHT = ["output.laser=false", "output.trajectory=none", "events.file=true", "events.interval=2.5 s", "camera.file=true", "world.scene=hills",
-          "flight.lines=3", "flight.cross_lines=2", "camera.control=5", "camera.check=20"]
+          "flight.lines=3", "flight.cross_lines=2", "camera.control=5", "camera.check=20", "camera.boresight_sigma=0 deg",
+          "camera.lever_arm_sigma=0 m"]
 BORESIGHT = (0.31, -0.22, 0.53)  # deg, of the simulation
 RUN = """[[stage]]
 type = "readers.imu"
@@ -27,10 +28,6 @@ type = "trajectory.ins_gnss"
 type = "time.sync"
 [[stage]]
 type = "orientation.direct"
-technique = "marks"
-mount = "90 deg"
-boresight = ["0.31 deg", "-0.22 deg", "0.53 deg"]
-lever_arm = ["0.21 m", "-0.08 m", "0.34 m"]
 correlated_images = 30
 """
 

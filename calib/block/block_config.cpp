@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/block/block_config.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
-#include "calib/block/direct_orientation.h"
 #include "core/config/option_visitors.h"
 #include "core/error.h"
+#include "core/geo/frames.h"
 #include "io/text/line_reader.h"
 
 namespace swath::calib {
@@ -54,6 +55,22 @@ BlockConfig read_block_config(const std::filesystem::path& file, const core::Val
   return out;
 }
 
+Eigen::Matrix3d camera_mounting(core::Radians mount, const std::array<core::Radians, 3>& boresight) {
+  Eigen::Matrix3d mounted;  // the image's x axis forward, its upper edge to the left
+  mounted << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+  return core::matrix_of({boresight[0].value, boresight[1].value, boresight[2].value}) *
+         Eigen::AngleAxisd(mount.value, Eigen::Vector3d::UnitZ()).toRotationMatrix() * mounted;
+}
+
+CameraConfig config_of(const io::SurveyCamera& c) {
+  CameraConfig out;
+  static_cast<core::FrameCamera&>(out) = c;
+  static_cast<core::CameraSigmas&>(out.sigma) = c.sigma;
+  out.sigma.antenna = c.sigma.lever_arm;
+  out.of_survey = c;
+  return out;
+}
+
 BlockCamera camera_of(const CameraConfig& c, const std::string& file) {
   constexpr double millimetres = 1e3;
   BlockCamera out;
@@ -74,7 +91,7 @@ BlockCamera camera_of(const CameraConfig& c, const std::string& file) {
   out.body_R_camera = camera_mounting(c.mount, c.boresight);
   out.boresight_sigma.setConstant(sigma_from(c.sigma.boresight, core::Dimension::angle, "boresight", file));
   out.antenna = out.body_R_camera.transpose() * Eigen::Vector3d(c.antenna[0].value, c.antenna[1].value, c.antenna[2].value);
-  out.antenna_sigma.setConstant(sigma_from(c.sigma.antenna, core::Dimension::length, "antenna", file));
+  out.antenna_sigma.setConstant(sigma_from(c.sigma.antenna, core::Dimension::length, c.of_survey ? "lever_arm" : "antenna", file));
   return out;
 }
 

@@ -12,6 +12,8 @@
 #include "calib/block/block_adjust.h"
 #include "core/config/option.h"
 #include "io/images/image_file.h"
+#include "io/survey/camera_file.h"
+#include "io/survey/control_file.h"
 
 namespace swath::calib {
 
@@ -21,69 +23,38 @@ enum class BlockKind { block_adjust };
 enum class ImageAngles { none, roll_pitch_heading, omega_phi_kappa, phi_omega_kappa };
 enum class ImageNorth { grid, true_north };
 enum class ImageValues { observed, start };
-enum class ControlKind { xyz, xy, z };
-enum class BlockControlUse { control, check };
 
-/// Sigmas of a camera's values: "held", "free", or the sigma of an observed value.
-struct CameraSigmas {
-  std::string f = "held", x0 = "held", y0 = "held", k1 = "held", k2 = "held", k3 = "held", p1 = "held", p2 = "held", b1 = "held",
-              b2 = "held", boresight = "held", antenna = "held";
+struct CameraConfigSigmas : core::CameraSigmas {
+  CameraConfigSigmas() = default;
+  std::string antenna = "held";
 };
 
 template <class V>
-void describe(CameraSigmas& s, V& v) {
-  v.option("f", s.f, "\"held\", \"free\", or a sigma with its unit: \"0.01 mm\".");
-  v.option("x0", s.x0, "The same of x0.");
-  v.option("y0", s.y0, "The same of y0.");
-  v.option("k1", s.k1, "\"held\", \"free\", or a sigma in the value's unit: \"1e-9\".");
-  v.option("k2", s.k2, "The same of k2.");
-  v.option("k3", s.k3, "The same of k3.");
-  v.option("p1", s.p1, "The same of p1.");
-  v.option("p2", s.p2, "The same of p2.");
-  v.option("b1", s.b1, "The same of b1.");
-  v.option("b2", s.b2, "The same of b2.");
-  v.option("boresight", s.boresight, "\"held\", \"free\", or a sigma of each angle: \"0.1 deg\". Needs observed angles.");
+void describe(CameraConfigSigmas& s, V& v) {
+  describe(static_cast<core::CameraSigmas&>(s), v);
   v.option("antenna", s.antenna, "\"held\", \"free\", or a sigma of each coordinate of antenna: \"2 cm\".");
 }
 
-struct CameraConfig {
-  std::string name = "camera";
-  core::Metres f{0.1}, x0{}, y0{};
-  double k1 = 0.0, k2 = 0.0, k3 = 0.0, p1 = 0.0, p2 = 0.0, b1 = 0.0, b2 = 0.0;
-  CameraSigmas sigma;
-  std::optional<DistortionAt> distortion;
-  int columns = 0, rows = 0;
-  std::optional<core::Metres> pixel;
-  core::Radians mount{};
-  std::array<core::Radians, 3> boresight{};
+struct CameraConfig : core::FrameCamera {
+  CameraConfig() = default;
   std::array<core::Metres, 3> antenna{};
+  CameraConfigSigmas sigma;
+  /// Of a camera of a survey, whose stations are its perspective centres by this lever arm: camera.toml is a table of survey.toml then.
+  std::optional<io::SurveyCamera> of_survey{};
 };
 
 template <class V>
 void describe(CameraConfig& c, V& v) {
-  v.option("name", c.name, "Name.");
-  v.option("f", c.f, core::above(0), "Principal distance.");
-  v.option("x0", c.x0, "Principal point from the middle of the sensor, to the right.");
-  v.option("y0", c.y0, "Principal point from the middle of the sensor, up.");
-  v.option("k1", c.k1, "Radial distortion, measured less ideal, mm^-2.", "Brown1971");
-  v.option("k2", c.k2, "The same, mm^-4.");
-  v.option("k3", c.k3, "The same, mm^-6.");
-  v.option("p1", c.p1, "Decentring distortion, mm^-1: p1 (r^2 + 2 x^2) + 2 p2 x y in x.");
-  v.option("p2", c.p2, "The same in y, mm^-1.");
-  v.option("b1", c.b1, "Scale of x against y: b1 x in x.");
-  v.option("b2", c.b2, "Shear: b2 y in x.");
-  v.table("sigma", c.sigma, "Which values are held, free, or observed.");
-  v.option("distortion", c.distortion, "Point that the distortion is computed from; needed where there is or may be any.");
-  v.option("columns", c.columns, core::within(0, 1e6), "Pixels across; needed for image points in pixels.");
-  v.option("rows", c.rows, core::within(0, 1e6), "Pixels down; needed for image points in pixels.");
-  v.option("pixel", c.pixel, core::above(0), "Side of a pixel; needed for image points in pixels.");
-  v.option("mount", c.mount, "Angle from the direction of flight to the image's x axis, clockwise from above.");
-  v.option("boresight", c.boresight, "Roll, pitch, heading of the camera in the body, beside mount.");
+  describe(static_cast<core::FrameCamera&>(c), v);
   v.option("antenna", c.antenna, "From the perspective centre to the point that stations are of; forward, right, down.");
+  v.table("sigma", c.sigma, "Which values are held, free, or observed.");
 }
 
 /// The table of images.
 struct ImagesConfig {
+  /// In messages: the file for the user to look at where `file` is of a run's own, and what an image of the image points lacks that is
+  /// not in it.
+  std::string place{}, lacks = "is not in the table of images", lacks_hint{};
   std::filesystem::path file, correlation;
   std::string name = "name", strip = "strip", time = "time", camera = "camera", x = "x", y = "y", z = "z", sigma_h = "sigma_h",
               sigma_v = "sigma_v";
@@ -125,8 +96,8 @@ void describe(ImagesConfig& i, V& v) {
 /// One file of control points.
 struct BlockControlFile {
   std::filesystem::path file;
-  ControlKind kind = ControlKind::xyz;
-  BlockControlUse use = BlockControlUse::control;
+  io::ControlKind kind = io::ControlKind::xyz;
+  io::ControlUse use = io::ControlUse::control;
   std::string name = "name", x = "x", y = "y", z = "z", sigma_h = "sigma_h", sigma_v = "sigma_v";
   core::Metres sigma_horizontal{0.02}, sigma_vertical{0.02};
 };
@@ -178,6 +149,15 @@ void describe(BlockConfig& b, V& v) {
 /// Reads a config; paths in it become relative to where the program runs. Throws core::Error with all faults. `sets`: "key=value".
 BlockConfig read_block_config(const std::filesystem::path& file, const core::Value& given);
 
+/// Where the user finds the images, for messages.
+inline std::string place_of_images(const BlockConfig& c) { return c.images.place.empty() ? c.images.file.string() : c.images.place; }
+
+/// body_R_camera of a mounting.
+Eigen::Matrix3d camera_mounting(core::Radians mount, const std::array<core::Radians, 3>& boresight);
+
+/// A camera of a survey: stations are its perspective centres by the stated lever arm, whose error is `antenna`.
+CameraConfig config_of(const io::SurveyCamera& camera);
+
 /// The camera of a config as the adjustment takes it. Throws core::Error for a sigma that is none of "held", "free" and a number.
 BlockCamera camera_of(const CameraConfig& config, const std::string& file);
 
@@ -199,13 +179,5 @@ struct Choices<calib::ImageNorth> {
 template <>
 struct Choices<calib::ImageValues> {
   static constexpr std::array<std::string_view, 2> names{"observed", "start"};
-};
-template <>
-struct Choices<calib::ControlKind> {
-  static constexpr std::array<std::string_view, 3> names{"xyz", "xy", "z"};
-};
-template <>
-struct Choices<calib::BlockControlUse> {
-  static constexpr std::array<std::string_view, 2> names{"control", "check"};
 };
 }  // namespace swath::core

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "calib/block/block_page.h"
-#include "calib/block/direct_orientation.h"
 #include "calib/block/geolocation_files.h"
 #include "calib/block/mark_plane.h"
 #include "calib/block/orientation_table.h"
@@ -172,6 +171,10 @@ void write_points_laz(const std::filesystem::path& file, const std::string& crs,
   writer.finish();
 }
 
+std::string lengths(const Vector3d& v) {
+  return "[\"" + core::format_number(v.x()) + " m\", \"" + core::format_number(v.y()) + " m\", \"" + core::format_number(v.z()) + " m\"]";
+}
+
 }  // namespace
 
 std::string orientation_csv(const ReadBlock& read, const BlockConfig& config, const BlockSolution& s) {
@@ -185,7 +188,9 @@ std::string orientation_csv(const ReadBlock& read, const BlockConfig& config, co
 }
 
 std::string camera_toml(const ReadBlock& read, const BlockConfig& config, const BlockFound& found) {
-  std::string out = "# Cameras after the adjustment: tables that `swath block` takes. Values in brackets are standard deviations.\n";
+  const bool of_survey = std::any_of(config.cameras.begin(), config.cameras.end(), [](const CameraConfig& c) { return c.of_survey; });
+  std::string out = "# Cameras after the adjustment: tables that " + std::string(of_survey ? "survey.toml" : "`swath block`") +
+                    " takes. Values in brackets are standard deviations.\n";
   for (size_t c = 0; c < read.block.cameras.size(); ++c) {
     const BlockCamera& camera = read.block.cameras[c];
     const CameraConfig& k = config.cameras[c];
@@ -203,11 +208,17 @@ std::string camera_toml(const ReadBlock& read, const BlockConfig& config, const 
     // The mount stays; what is left of the rotation is the boresight.
     const Matrix3d mount = camera_mounting(k.mount, {});
     const core::Attitude b = core::attitude_of(camera.body_R_camera * mount.transpose());
-    const Vector3d arm = camera.body_R_camera * camera.antenna;
     out += "mount = \"" + core::format_number(k.mount.value / core::degree) + " deg\"\nboresight = [\"" +
            core::format_number(b.roll / core::degree) + " deg\", \"" + core::format_number(b.pitch / core::degree) + " deg\", \"" +
-           core::format_number(core::wrap_pi(b.heading) / core::degree) + " deg\"]\nantenna = [\"" + core::format_number(arm.x()) +
-           " m\", \"" + core::format_number(arm.y()) + " m\", \"" + core::format_number(arm.z()) + " m\"]\n";
+           core::format_number(core::wrap_pi(b.heading) / core::degree) + " deg\"]\n";
+    const Vector3d arm = camera.body_R_camera * camera.antenna;
+    if (!k.of_survey) {
+      out += "antenna = " + lengths(arm) + "\n";
+      continue;
+    }
+    const auto& stated = k.of_survey->lever_arm;
+    out += "lever_arm = " + lengths(Vector3d(stated[0].value, stated[1].value, stated[2].value) - arm) + "\n";
+    if (!k.of_survey->technique.empty()) out += "technique = " + io::toml_scalar(k.of_survey->technique) + "\n";
   }
   return out;
 }

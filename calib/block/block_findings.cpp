@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "calib/block/direct_orientation.h"
 #include "core/config/units.h"
 #include "core/geo/frames.h"
 #include "core/statistics.h"

@@ -9,6 +9,7 @@
 
 #include "calib/block/block_adjust.h"
 #include "calib/block/block_reading.h"
+#include "calib/block/navigation/direct_comparison.h"
 #include "calib/block/unfit_points.h"
 #include "core/config/result.h"
 
@@ -162,6 +163,7 @@ struct BlockFound {
   std::vector<CameraFound> cameras;
   std::vector<SetDriftFound> drifts;
   std::optional<DatumFound> datum;
+  std::vector<DirectCompared> direct;  ///< of a run
   std::vector<CheckFound> check;
   std::vector<PointDifference> differences;
   std::vector<SuspectFound> suspects;
@@ -206,6 +208,7 @@ void describe(const BlockFound& r, V& v) {
   v.tables("cameras", r.cameras, "Cameras.");
   v.tables("drifts", r.drifts, "Shift and drift of the stations.");
   v.table("datum", r.datum, "Datum of the stations against control.");
+  v.tables_if(!r.direct.empty(), "direct", r.direct, "Direct orientation beside the integrated one, in a run.");
   v.tables("check", r.check, "Check points by coordinate.");
   v.tables("differences", r.differences, "Control and check points.");
   v.tables("suspects", r.suspects, "Observations with the largest |w|.");

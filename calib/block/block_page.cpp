@@ -199,6 +199,29 @@ void add_cameras(report::Page& page, const ReadBlock& read, const BlockSolution&
   }
 }
 
+void add_direct(report::Page& page, const BlockFound& f) {
+  if (f.direct.empty()) return;
+  page.section("Direct and integrated orientation");
+  report::Table t{"direct",
+                  "By the trajectory alone, and after the adjustment",
+                  {{"component", false},
+                   {"unit", false},
+                   {"sigma direct"},
+                   {"sigma integrated"},
+                   {"mean difference"},
+                   {"rms difference"},
+                   {"rms over sigma"}},
+                  {},
+                  {}};
+  for (const DirectCompared& c : f.direct) {
+    const int decimals = c.unit == "m" ? 4 : 5;
+    t.rows.push_back({c.component, c.unit, c.is_known ? number_text(c.direct, decimals) : "not known", number_text(c.integrated, decimals),
+                      number_text(c.mean, decimals), number_text(c.rms, decimals), c.is_tested ? number_text(c.over_sigma, 2) : ""});
+  }
+  page.table(t);
+  page.paragraph("Integrated less direct; sigmas are medians over the images, with those of lever arm and boresight.");
+}
+
 void add_drifts(report::Page& page, const BlockFound& f) {
   if (f.drifts.empty()) return;
   page.section("Shift and drift of stations");
@@ -260,6 +283,7 @@ std::string block_page(const ReadBlock& read, const BlockConfig& config, const B
   const report::Chart plan = block_plan(read, s, f, factor);
   page.figure_svg(report::svg(plan),
                   "Images, control and points with their standard error ellipses, enlarged " + number_text(factor, 0) + " times");
+  add_direct(page, f);
   add_drifts(page, f);
   add_datum(page, f);
   add_cameras(page, read, s, f);

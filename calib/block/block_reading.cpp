@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <unordered_map>
 
 #include "calib/block/block_start.h"
@@ -13,7 +12,6 @@
 #include "core/config/units.h"
 #include "core/error.h"
 #include "core/geo/frames.h"
-#include "io/text/text_table.h"
 
 namespace swath::calib {
 namespace {
@@ -27,65 +25,6 @@ void refuse_same_cameras(const BlockConfig& c, const std::string& place) {
     for (size_t other = 0; other < k; ++other)
       if (c.cameras[k].name == c.cameras[other].name)
         throw core::usage_error("two [[camera]] have the name " + c.cameras[k].name, place, "give each camera a name of its own");
-}
-
-std::uint32_t camera_number(const BlockConfig& c, const std::string& name, const std::string& place) {
-  for (size_t k = 0; k < c.cameras.size(); ++k)
-    if (c.cameras[k].name == name) return static_cast<std::uint32_t>(k);
-  throw core::Error("camera " + name + " is not in the config", place, "add a [[camera]] of that name");
-}
-
-/// One row of the table of images.
-struct TableRow {
-  Vector3d map = Vector3d::Constant(std::nan(""));
-  double sigma_h = 0.0, sigma_v = 0.0;
-  std::array<double, 3> angles{};
-};
-
-int strip_in(const io::TextTable& table, size_t row, size_t column) {
-  const double strip = table.number(row, column);
-  if (strip != std::floor(strip) || std::abs(strip) > 1e9)
-    throw core::Error("the strip is not a whole number: " + table.text(row, column), table.place(row));
-  return static_cast<int>(strip);
-}
-
-std::array<const char*, 3> angle_columns(ImageAngles kind) {
-  if (kind == ImageAngles::roll_pitch_heading) return {"roll", "pitch", "heading"};
-  return {"omega", "phi", "kappa"};
-}
-
-std::vector<TableRow> read_images(const BlockConfig& config, ImageBlock& block, Numbers& image_number) {
-  const ImagesConfig& c = config.images;
-  const io::TextTable table(c.file);
-  const size_t name = table.column(c.name), x = table.column(c.x), y = table.column(c.y), z = table.column(c.z),
-               strip = table.column(c.strip), time = table.column(c.time);
-  const auto camera = table.column_if_there(c.camera, "camera"), h = table.column_if_there(c.sigma_h, "sigma_h"),
-             v = table.column_if_there(c.sigma_v, "sigma_v");
-  if (!camera && config.cameras.size() > 1)
-    throw core::Error("several cameras, and the table of images has no column \"" + c.camera + "\"", c.file.string());
-  std::array<size_t, 3> angle{};
-  if (c.angles != ImageAngles::none)
-    for (size_t k = 0; k < 3; ++k) angle[k] = table.column(angle_columns(c.angles)[k]);
-  std::vector<TableRow> out;
-  for (size_t r = 0; r < table.rows(); ++r) {
-    BlockImage image;
-    image.name = table.text(r, name);
-    image.camera = camera ? camera_number(config, table.text(r, *camera), table.place(r)) : 0;
-    image.strip = strip_in(table, r, strip);
-    image.time = table.number(r, time);
-    const auto [it, is_new] = image_number.try_emplace(image.name, static_cast<std::uint32_t>(block.images.size()));
-    if (!is_new) throw core::Error("image " + image.name + " is there twice", table.place(r));
-    block.images.push_back(image);
-    TableRow row;
-    row.map = {table.number(r, x), table.number(r, y), table.number(r, z)};
-    row.sigma_h = h ? table.number(r, *h) : c.sigma_station_h.value;
-    row.sigma_v = v ? table.number(r, *v) : c.sigma_station_v.value;
-    if (!(row.sigma_h > 0.0 && row.sigma_v > 0.0)) throw core::Error("a sigma of the station is not above 0", table.place(r));
-    if (c.angles != ImageAngles::none)
-      for (size_t k = 0; k < 3; ++k) row.angles[k] = table.number(r, angle[k]) * core::degree;
-    out.push_back(row);
-  }
-  return out;
 }
 
 /// The camera of an image that no table of images has.
@@ -121,8 +60,9 @@ void add_marks(const BlockConfig& config, const io::ImageFile& file, const io::I
       continue;
     }
     if (has_table)
-      throw core::Error("image " + data.images[i] + " has image points and is not in the table of images", data.file.string(),
-                        "add it to " + config.images.file.string() + ", or take its points out");
+      throw core::Error("image " + data.images[i] + " has image points and " + config.images.lacks, data.file.string(),
+                        config.images.lacks_hint.empty() ? "add it to " + config.images.file.string() + ", or take its points out"
+                                                         : config.images.lacks_hint);
     BlockImage image;
     image.name = data.images[i];
     image.time = static_cast<double>(block.images.size());
@@ -167,28 +107,23 @@ void refuse_twice(const ImageBlock& block) {
                       "two points may have one name, or a file may be listed twice");
 }
 
-void read_control(const BlockControlFile& f, ReadBlock& read, const Numbers& point_number, std::map<std::string, std::string>& known) {
-  const io::TextTable table(f.file);
-  const size_t name = table.column(f.name), x = table.column(f.x), y = table.column(f.y), z = table.column(f.z);
-  const auto h = table.column_if_there(f.sigma_h, "sigma_h"), v = table.column_if_there(f.sigma_v, "sigma_v");
-  for (size_t r = 0; r < table.rows(); ++r) {
-    const std::string& point = table.text(r, name);
-    const auto [it, is_new] = known.try_emplace(point, table.place(r));
-    if (!is_new) throw core::Error("control point " + point + " is there twice, first in " + it->second, table.place(r));
-    const auto found = point_number.find(point);
+void add_control(const std::vector<SurveyedPoint>& points, const Numbers& point_number, ReadBlock& read) {
+  std::unordered_map<std::string, std::string> known;
+  for (const SurveyedPoint& p : points) {
+    const auto found = point_number.find(p.name);
     if (found == point_number.end()) {
-      read.control_without_image.push_back(point);
+      read.control_without_image.push_back(p.name);
       continue;
     }
+    const auto [it, is_new] = known.try_emplace(p.name, p.place);
+    if (!is_new) throw core::Error("control point " + p.name + " is there twice, first in " + it->second, p.place);
     BlockControl c;
     c.point = found->second;
-    c.check = f.use == BlockControlUse::check;
-    c.known = {f.kind != ControlKind::z, f.kind != ControlKind::z, f.kind != ControlKind::xy};
-    const double sigma_h = h ? table.number(r, *h) : f.sigma_horizontal.value, sigma_v = v ? table.number(r, *v) : f.sigma_vertical.value;
-    if (!(sigma_h > 0.0 && sigma_v > 0.0)) throw core::Error("a sigma is not above 0", table.place(r));
-    c.sigma = {sigma_h, sigma_h, sigma_v};
+    c.check = p.check;
+    c.known = {p.kind != io::ControlKind::z, p.kind != io::ControlKind::z, p.kind != io::ControlKind::xy};
+    c.sigma = {p.sigma_h, p.sigma_h, p.sigma_v};
     read.block.control.push_back(c);
-    read.control.push_back({{table.number(r, x), table.number(r, y), table.number(r, z)}, table.place(r)});
+    read.control.push_back({p.map, p.place});
   }
 }
 
@@ -238,7 +173,7 @@ bool start_from_file(ReadBlock& read, const std::vector<std::pair<std::uint32_t,
   return true;
 }
 
-void add_stations(const BlockConfig& config, const std::string& config_file, const std::vector<TableRow>& rows, ReadBlock& read) {
+void add_stations(const BlockConfig& config, const std::string& config_file, const std::vector<ImageRow>& rows, ReadBlock& read) {
   for (std::uint32_t i = 0; i < rows.size(); ++i) {
     read.block.images[i].position = read.frame.local_of(rows[i].map);
     if (config.images.angles != ImageAngles::none) read.angles.push_back({i, rows[i].angles});
@@ -298,11 +233,8 @@ void expect_points(const BlockConfig& config, ReadBlock& read) {
   for (size_t i = 0; i < seen.size(); ++i)
     if (!seen[i]) read.images_without_points.push_back(read.block.images[i].name);
   if (!read.images_without_points.empty() && config.images.angle_use != ImageValues::observed)
-    throw core::Error("images without image points: " + first_of(read.images_without_points), config.images.file.string(),
+    throw core::Error("images without image points: " + first_of(read.images_without_points), place_of_images(config),
                       "names may differ (with and without .jpg); or take these images out of the table");
-  if (!config.control.empty() && read.block.control.empty())
-    throw core::Error("no control point is measured on an image: " + first_of(read.control_without_image), config.control[0].file.string(),
-                      "names in the control file and of the image points may differ");
 }
 
 }  // namespace
@@ -340,6 +272,15 @@ void start_block(ReadBlock& read, const BlockConfig& config) {
 }
 
 ReadBlock read_block(const BlockConfig& config, const std::string& config_file) {
+  const std::vector<SurveyedPoint> control = read_control_tables(config);
+  ReadBlock read = read_block(config, config_file, control);
+  if (!control.empty() && read.block.control.empty())
+    throw core::Error("no control point is measured on an image: " + first_of(read.control_without_image), config.control[0].file.string(),
+                      "names in the control file and of the image points may differ");
+  return read;
+}
+
+ReadBlock read_block(const BlockConfig& config, const std::string& config_file, const std::vector<SurveyedPoint>& control) {
   ReadBlock read;
   if (config.cameras.empty()) throw core::usage_error("no [[camera]]", config_file);
   refuse_same_cameras(config, config_file);
@@ -348,8 +289,12 @@ ReadBlock read_block(const BlockConfig& config, const std::string& config_file) 
   read.block.datum = config.datum;
   Numbers image_number, point_number;
   const bool has_table = !config.images.file.empty();
-  std::vector<TableRow> rows;
-  if (has_table) rows = read_images(config, read.block, image_number);
+  std::vector<ImageRow> rows;
+  if (has_table) rows = read_image_table(config);
+  for (const ImageRow& r : rows) {
+    image_number[r.image.name] = static_cast<std::uint32_t>(read.block.images.size());
+    read.block.images.push_back(r.image);
+  }
   std::vector<std::pair<std::uint32_t, io::FilePose>> poses;
   for (size_t k = 0; k < config.image_points.size(); ++k) {
     const io::ImageFile& f = config.image_points[k];
@@ -360,11 +305,10 @@ ReadBlock read_block(const BlockConfig& config, const std::string& config_file) 
     for (const io::FilePose& p : data.poses) poses.emplace_back(image_number.at(data.images[p.image]), p);
   }
   refuse_twice(read.block);
-  std::map<std::string, std::string> known;
-  for (const BlockControlFile& f : config.control) read_control(f, read, point_number, known);
+  add_control(control, point_number, read);
   expect_points(config, read);
   Vector3d middle = Vector3d::Zero();
-  for (const TableRow& r : rows) middle += r.map / static_cast<double>(rows.size());
+  for (const ImageRow& r : rows) middle += r.map / static_cast<double>(rows.size());
   if (rows.empty() && config.crs != "local")
     throw core::usage_error("without a table of images the orientations' own frame is adjusted in", config_file, "state crs = \"local\"");
   read.frame = BlockFrame(config.crs, middle);

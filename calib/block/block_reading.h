@@ -10,6 +10,7 @@
 #include "calib/block/block_config.h"
 #include "calib/block/block_frame.h"
 #include "calib/block/image_block.h"
+#include "calib/block/image_table.h"
 #include "calib/block/navigation/orientation_correlation.h"
 
 namespace swath::calib {
@@ -42,6 +43,8 @@ struct ReadBlock {
 /// Throws core::Error: what a file lacks, names that are not there or are there twice, a point that is twice on an image, an image without
 /// points or of another size than its camera's, drift without stations.
 ReadBlock read_block(const BlockConfig& config, const std::string& config_file);
+/// The same with these points in place of the config's; that none of them is on an image is no error.
+ReadBlock read_block(const BlockConfig& config, const std::string& config_file, const std::vector<SurveyedPoint>& control);
 
 /// local_R_body by angles of a kind at an image's position.
 Eigen::Matrix3d body_attitude(const ReadBlock& read, std::uint32_t image, const std::array<double, 3>& angles, ImageAngles kind,

@@ -15,6 +15,8 @@
 #include <optional>
 #include <string_view>
 
+#include "core/records/camera.h"
+
 namespace swath::calib {
 
 inline constexpr int camera_values = 10;
@@ -22,8 +24,7 @@ inline constexpr int camera_values = 10;
 inline constexpr std::array<std::string_view, camera_values> camera_keys{"f", "x0", "y0", "k1", "k2", "k3", "p1", "p2", "b1", "b2"};
 using CameraVector = Eigen::Matrix<double, camera_values, 1>;
 
-/// Where the distortion is evaluated.
-enum class DistortionAt { ideal, measured };
+using core::DistortionAt;
 
 /// `c`: the values by camera_keys; x, y from the principal point.
 template <class T>

@@ -8,9 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
-#include <set>
 
+#include "calib/block/block_config.h"
 #include "calib/block/block_frame.h"
 #include "core/error.h"
 #include "core/geo/geodesy.h"
@@ -51,30 +50,14 @@ Matrix6 pose_covariance(const trajectory::Trajectory& t, double time) {
   return out;
 }
 
-/// Events of one technique by time.
-std::vector<size_t> exposures_of(const core::EventData& events, const std::string& technique) {
-  const std::set<std::string> techniques(events.technique.begin(), events.technique.end());
-  std::string list;
-  for (const std::string& t : techniques) list += (list.empty() ? "" : ", ") + t;
-  if (technique.empty() && techniques.size() > 1)
-    throw core::usage_error("orientation.direct: the survey's events are of several techniques: " + list, "", "state technique");
-  if (!technique.empty() && !techniques.contains(technique))
-    throw core::usage_error("orientation.direct: no event is of the technique " + technique, "", "the survey has " + list);
-  std::vector<size_t> out;
-  for (size_t i = 0; i < events.size(); ++i)
-    if (technique.empty() || events.technique[i] == technique) out.push_back(i);
-  std::stable_sort(out.begin(), out.end(), [&](size_t a, size_t b) { return events.time[a] < events.time[b]; });
-  return out;
-}
-
 class DirectSolver {
  public:
-  DirectSolver(const core::Crs& crs, const DirectOptions& o)
-      : options_(o), body_R_camera_(camera_mounting(o.mount, o.boresight)), to_map_(core::wgs84_ecef(), crs) {}
+  explicit DirectSolver(const core::Crs& crs) : to_map_(core::wgs84_ecef(), crs) {}
 
-  void orient(const trajectory::Trajectory& trajectory, double time, double time_sigma, DirectImage& out) const {
+  void orient(const trajectory::Trajectory& trajectory, const DirectCamera& camera, double time, double time_sigma,
+              DirectImage& out) const {
     const trajectory::Pose pose = *trajectory.pose_at(time);
-    const Vector3d arm(options_.lever_arm[0].value, options_.lever_arm[1].value, options_.lever_arm[2].value);
+    const Vector3d& arm = camera.lever_arm;
     const core::Geodetic at = core::geodetic_of(pose.position);
     const Matrix3d ned_R_ecef = core::ecef_R_ned(at.latitude, at.longitude).transpose(), R = ned_R_ecef * pose.ecef_R_body;
     const Vector3d centre = pose.position + pose.ecef_R_body * arm;
@@ -87,7 +70,7 @@ class DirectSolver {
     const Vector3d way = to_map_(Vector3d(centre + step * enu.col(1))) - out.orientation.map;
     const double turn = std::atan2(way.x(), way.y());
     const Matrix3d ecef_R_grid = enu * Eigen::AngleAxisd(turn, Vector3d::UnitZ()).toRotationMatrix();
-    out.orientation.grid_R_camera = ecef_R_grid.transpose() * pose.ecef_R_body * body_R_camera_;
+    out.orientation.grid_R_camera = ecef_R_grid.transpose() * pose.ecef_R_body * camera.body_R_camera;
     const Matrix3d grid_R_ned = ecef_R_grid.transpose() * ned_R_ecef.transpose(), J = rotation_by_angles(out.attitude);
     out.errors.by_pose.topLeftCorner<3, 3>() = grid_R_ned;
     out.errors.by_pose.topRightCorner<3, 3>() = -grid_R_ned * core::skew(R * arm) * J;
@@ -96,47 +79,48 @@ class DirectSolver {
     by_time << grid_R_ned * ned_R_ecef * (pose.velocity + pose.ecef_R_body * pose.rate.cross(arm)), -pose.rate;
     out.errors.of_time = time_sigma * time_sigma * by_time * by_time.transpose();
     Matrix6 to_camera = Matrix6::Identity();
-    to_camera.bottomRightCorner<3, 3>() = body_R_camera_.transpose();
+    to_camera.bottomRightCorner<3, 3>() = camera.body_R_camera.transpose();
     const Matrix6 A = out.errors.by_pose;
     Matrix6 C = to_camera * (A * pose_covariance(trajectory, time) * A.transpose() + out.errors.of_time) * to_camera.transpose();
     for (int k = 0; k < 3; ++k) {
-      C(k, k) += std::pow(options_.sigma_lever_arm.value, 2);
-      C(3 + k, 3 + k) += std::pow(options_.sigma_boresight.value, 2);
+      C(k, k) += std::pow(camera.sigma_lever_arm, 2);
+      C(3 + k, 3 + k) += std::pow(camera.sigma_boresight, 2);
     }
     out.orientation.covariance = C;
   }
 
  private:
-  const DirectOptions& options_;
-  Matrix3d body_R_camera_;
   core::Transform to_map_;
 };
 
 }  // namespace
 
-Matrix3d camera_mounting(core::Radians mount, const std::array<core::Radians, 3>& boresight) {
-  Matrix3d mounted;  // the image's x axis forward, its upper edge to the left
-  mounted << 1, 0, 0, 0, -1, 0, 0, 0, -1;
-  return core::matrix_of({boresight[0].value, boresight[1].value, boresight[2].value}) *
-         Eigen::AngleAxisd(mount.value, Vector3d::UnitZ()).toRotationMatrix() * mounted;
+DirectCamera direct_camera(const io::SurveyCamera& camera, const std::string& survey) {
+  const BlockCamera c = camera_of(config_of(camera), survey);
+  const auto known = [](double sigma) { return std::isfinite(sigma) ? sigma : 0.0; };
+  return {c.name,
+          c.body_R_camera,
+          {camera.lever_arm[0].value, camera.lever_arm[1].value, camera.lever_arm[2].value},
+          known(c.boresight_sigma.x()),
+          known(c.antenna_sigma.x())};
 }
 
-std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajectory, const core::EventData& events, const core::Crs& crs,
-                                            const DirectOptions& options, DirectFound& found) {
-  const DirectSolver solver(crs, options);
+std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajectory, const std::vector<Exposure>& exposures,
+                                            const std::vector<DirectCamera>& cameras, const core::Crs& crs, DirectFound& found) {
+  const DirectSolver solver(crs);
   std::vector<DirectImage> out;
   std::vector<double> plan, height, tilt, turn;
-  for (const size_t i : exposures_of(events, options.technique)) {
+  for (const Exposure& e : exposures) {
     ++found.events;
-    if (!trajectory.covers(events.time[i])) {
+    if (!trajectory.covers(e.time)) {
       ++found.outside;
       continue;
     }
     DirectImage image;
-    image.name = events.id[i], image.strip = events.strip[i], image.time = events.time[i], image.doubtful = events.doubtful[i] != 0;
+    image.name = e.name, image.camera = e.camera, image.strip = e.strip, image.time = e.time, image.doubtful = e.doubtful;
     found.doubtful += image.doubtful;
-    found.exact += !(events.sigma[i] > 0.0);
-    solver.orient(trajectory, image.time, events.sigma[i], image);
+    found.exact += !(e.sigma > 0.0);
+    solver.orient(trajectory, cameras[e.camera], image.time, e.sigma, image);
     const Matrix6& C = image.orientation.covariance;
     plan.push_back(std::sqrt((C(0, 0) + C(1, 1)) / 2.0)), height.push_back(std::sqrt(C(2, 2)));
     tilt.push_back(std::sqrt((C(3, 3) + C(4, 4)) / 2.0)), turn.push_back(std::sqrt(C(5, 5)));
@@ -173,7 +157,7 @@ void direct_correlation(const std::vector<DirectImage>& images, const trajectory
   }
 }
 
-std::string direct_images_csv(const std::vector<DirectImage>& images, const std::string& camera) {
+std::string direct_images_csv(const std::vector<DirectImage>& images, const std::vector<DirectCamera>& cameras) {
   std::string out = "name,camera,strip,time,x,y,z,sigma_h,sigma_v,roll,pitch,heading\n";
   for (const DirectImage& i : images) {
     const Matrix6& C = i.orientation.covariance;
@@ -182,7 +166,7 @@ std::string direct_images_csv(const std::vector<DirectImage>& images, const std:
     std::snprintf(text, sizeof text, ",%d,%.9f,%.*f,%.*f,%.4f,%.5f,%.5f,%.8f,%.8f,%.8f\n", i.strip, i.time, decimals, i.orientation.map.x(),
                   decimals, i.orientation.map.y(), i.orientation.map.z(), std::sqrt((C(0, 0) + C(1, 1)) / 2.0), std::sqrt(C(2, 2)),
                   i.attitude.roll / core::degree, i.attitude.pitch / core::degree, i.attitude.heading / core::degree);
-    out += core::csv_field(i.name) + "," + core::csv_field(camera) + text;
+    out += core::csv_field(i.name) + "," + core::csv_field(cameras[i.camera].name) + text;
   }
   return out;
 }

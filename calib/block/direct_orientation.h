@@ -8,43 +8,39 @@
 #include <string>
 #include <vector>
 
+#include "calib/block/navigation/exposures.h"
 #include "calib/block/navigation/orientation_correlation.h"
 #include "calib/block/orientation_table.h"
 #include "core/config/option.h"
 #include "core/config/result.h"
 #include "core/geo/crs.h"
-#include "core/records/event_data.h"
 #include "trajectory/ins/error_model.h"
 #include "trajectory/trajectory.h"
 
 namespace swath::calib {
 
 struct DirectOptions {
-  std::string camera = "camera", technique;
-  core::Radians mount{};
-  std::array<core::Radians, 3> boresight{};
-  std::array<core::Metres, 3> lever_arm{};
-  core::Radians sigma_boresight{};
-  core::Metres sigma_lever_arm{};
   int correlated_images = 10;
   trajectory::ErrorModelOptions errors;
 };
 
 template <class V>
 void describe(DirectOptions& o, V& v) {
-  v.option("camera", o.camera, "Name of the camera, for the tables.");
-  v.option("technique", o.technique, "Which technique's events are the exposures; needed where the survey has several.");
-  v.option("mount", o.mount, "Angle from the direction of flight to the image's x axis, clockwise from above.");
-  v.option("boresight", o.boresight, "Roll, pitch, heading of the camera in the body, beside mount.");
-  v.option("lever_arm", o.lever_arm, "IMU centre to perspective centre: forward, right, down.");
-  v.option("sigma_boresight", o.sigma_boresight, core::within(0, 1),
-           "Sigma of its angles, common to all images; in a block sigma.boresight of [[camera]].");
-  v.option("sigma_lever_arm", o.sigma_lever_arm, core::within(0, 10),
-           "Sigma of its components, common to all images; in a block sigma.antenna of [[camera]].");
   v.option("correlated_images", o.correlated_images, core::within(0, 1000),
            "Images before each one that its errors are paired with; 0: no file of them.");
   v.table("errors", o.errors, "Errors of trajectories that state no covariances between instants.");
 }
+
+/// A camera on the carrier. Sigmas are common to all images, of each component; 0 where they are not known.
+struct DirectCamera {
+  std::string name;
+  Eigen::Matrix3d body_R_camera = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d lever_arm = Eigen::Vector3d::Zero();  ///< body, IMU centre to perspective centre, m
+  double sigma_boresight = 0.0, sigma_lever_arm = 0.0;  ///< rad, m
+};
+
+/// Throws core::Error for a sigma that is none of "held", "free" and a number.
+DirectCamera direct_camera(const io::SurveyCamera& camera, const std::string& survey);
 
 /// How the errors of a perspective centre on the grid and of the body's rotation come about (axes of OrientationCorrelation).
 struct DirectErrors {
@@ -54,6 +50,7 @@ struct DirectErrors {
 
 struct DirectImage {
   std::string name;
+  std::uint32_t camera = 0;
   int strip = 0;
   double time = 0.0;  ///< GPS time, s
   bool doubtful = false;
@@ -63,12 +60,14 @@ struct DirectImage {
 };
 
 struct DirectFound {
-  size_t events = 0, outside = 0, doubtful = 0, exact = 0, images = 0;
+  size_t events = 0, unnamed = 0, outside = 0, doubtful = 0, exact = 0, images = 0;
   double position = 0.0, height = 0.0, angle = 0.0, heading = 0.0;  ///< median sigmas, m and rad
+  std::vector<std::string> without;
 };
 template <class V>
 void describe(const DirectFound& r, V& v) {
   v.result("events", r.events, "Exposures.");
+  v.result("events_without_image", r.unnamed, core::if_any(), "Events that no list of images names.");
   v.result("images", r.images, core::plain().in_summary(), "Images with an orientation.");
   v.result("outside", r.outside, core::plain().in_summary(), "Exposures outside the trajectory.");
   v.result("doubtful", r.doubtful, "Exposures whose time is doubtful.");
@@ -78,16 +77,14 @@ void describe(const DirectFound& r, V& v) {
   v.result("sigma_tilt_deg", r.angle / core::degree, core::in_degrees(5).in_summary(),
            "Median standard deviation of the tilt about the image's axes.");
   v.result("sigma_turn_deg", r.heading / core::degree, core::in_degrees(5).in_summary(), "The same about the camera's axis.");
+  v.result("without", r.without, core::plain().in_summary().only_if(!r.without.empty()),
+           "What these sigmas and those of the tables do not hold, being free: a camera's boresight, its lever arm.");
 }
 
-/// body_R_camera of a mounting.
-Eigen::Matrix3d camera_mounting(core::Radians mount, const std::array<core::Radians, 3>& boresight);
-
 /// The images in the order of time. Covariance: the trajectory's (exact where the smoother gave it, else its sigmas as independent), the
-/// time of the event by velocity and rotation, lever arm and boresight. Throws core::Error where no event is within the trajectory, or
-/// several techniques are there and none is stated.
-std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajectory, const core::EventData& events, const core::Crs& crs,
-                                            const DirectOptions& options, DirectFound& found);
+/// time of the event by velocity and rotation, lever arm and boresight. Throws core::Error where no exposure is within the trajectory.
+std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajectory, const std::vector<Exposure>& exposures,
+                                            const std::vector<DirectCamera>& cameras, const core::Crs& crs, DirectFound& found);
 
 /// Covariances of each image with those before it, some of them: of the trajectory and each exposure's time. Lever arm and boresight, the
 /// same in all images, are not in them: an error that never decays is not a chain of few images; a block has it as an unknown of the
@@ -96,6 +93,6 @@ void direct_correlation(const std::vector<DirectImage>& images, const trajectory
                         const std::function<void(const CovariancePair&)>& take);
 
 /// The table that [images] of `swath block` takes: stations are the perspective centres, angles those of the body.
-std::string direct_images_csv(const std::vector<DirectImage>& images, const std::string& camera);
+std::string direct_images_csv(const std::vector<DirectImage>& images, const std::vector<DirectCamera>& cameras);
 
 }  // namespace swath::calib

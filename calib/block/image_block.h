@@ -128,8 +128,4 @@ template <>
 struct Choices<calib::Datum> {
   static constexpr std::array<std::string_view, 3> names{"none", "shift", "similarity"};
 };
-template <>
-struct Choices<calib::DistortionAt> {
-  static constexpr std::array<std::string_view, 2> names{"ideal", "measured"};
-};
 }  // namespace swath::core

@@ -43,8 +43,13 @@ void sample(const io::ImageRaster& image, double x, double y, std::uint16_t* out
 
 std::vector<CameraConfig> read_cameras(const std::filesystem::path& file) {
   CameraFile out;
+  core::Value tree = io::read_value_file(file);
+  if (core::Value* list = tree.find("camera"); list && list->is_array())  // those of a run say where the camera is on the carrier
+    for (core::Value& camera : list->items())
+      if (camera.is_object())
+        std::erase_if(camera.members(), [](const auto& m) { return m.first == "lever_arm" || m.first == "technique"; });
   std::vector<core::Fault> faults;
-  core::read_options(core::described(out), io::read_value_file(file), "", faults);
+  core::read_options(core::described(out), tree, "", faults);
   core::throw_if_any(faults);
   if (out.cameras.empty()) throw core::usage_error("no [[camera]]", file.string(), "`swath block` writes such a file: camera.toml");
   return out.cameras;

@@ -11,7 +11,7 @@
 
 namespace swath::calib {
 
-/// The [[camera]] tables of a file such as camera.toml; other keys are faults.
+/// The [[camera]] tables of a file such as camera.toml, of `swath block` or of a run; other keys are faults.
 std::vector<CameraConfig> read_cameras(const std::filesystem::path& file);
 
 /// Same size, principal distance and pixels; what the image does not show is 0. Bilinear. `name` stands in errors: core::Error where the

@@ -94,6 +94,12 @@ ImageData read_image_csv(const ImageFile& f) {
 ImageData read_bingo(const ImageFile& f) { return read_image_list(f, false); }
 ImageData read_patb(const ImageFile& f) { return read_image_list(f, true); }
 
+std::vector<std::filesystem::path> files_of(const ImageFile& f) {
+  if (f.format == ImageFormat::colmap) return {f.file / "cameras.txt", f.file / "images.txt"};
+  if (f.format == ImageFormat::opensfm) return {f.file, f.file.parent_path() / "reconstruction.json"};
+  return {f.file};
+}
+
 ImageData read_image_file(const ImageFile& f) {
   expect_conventions(f);
   switch (f.format) {

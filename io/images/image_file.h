@@ -89,6 +89,9 @@ struct ImageData {
 /// numbers; an image or a camera that is not there; a model of a camera that is not Brown's.
 ImageData read_image_file(const ImageFile& file);
 
+/// What is read of it, for hashes: of a COLMAP model and of OpenSfM several files.
+std::vector<std::filesystem::path> files_of(const ImageFile& file);
+
 /// By format, `file` as read_image_file() checked it.
 ImageData read_image_csv(const ImageFile& file);
 ImageData read_bingo(const ImageFile& file);

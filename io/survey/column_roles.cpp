@@ -79,6 +79,12 @@ const std::vector<Kind>& kinds() {
         {"quality", {"quality", "q", "fix"}},
         {"satellites", {"satellites", "n_sat", "nsat", "ns", "sats"}}},
        {{"time", "latitude", "longitude", "height"}, {"time", "x", "y", "z"}}},
+      {TableKind::image_points,
+       {{"image_column", {"image", "img", "photo", "frame"}},
+        {"point_column", {"point", "point_id", "track", "track_id", "marker"}},
+        {"x_column", {"x", "x_px", "u", "col", "column"}},
+        {"y_column", {"y", "y_px", "v", "row", "line"}}},
+       {{"image_column", "point_column", "x_column", "y_column"}}},
       {TableKind::event, {time_role, {"id", {"id", "event", "event_id", "image", "photo", "frame", "name"}}}, {{"time", "id"}}},
   };
   return list;

@@ -9,7 +9,7 @@
 namespace swath::io {
 
 /// The list of survey.toml that a table of records belongs to; `none` where its names do not say.
-enum class TableKind { none, laser, imu, gnss, trajectory, event };
+enum class TableKind { none, laser, imu, gnss, trajectory, event, image_points };
 
 struct ColumnRoles {
   TableKind kind = TableKind::none;

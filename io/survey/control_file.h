@@ -17,11 +17,15 @@ enum class ControlUse {
   check,    ///< is compared with the result only
 };
 
+/// Coordinates that are surveyed; others are approximate, to some metres.
+enum class ControlKind { xyz, xy, z };
+
 /// One file of surveyed points: delimited text (CSV) with a header, or GeoPackage (points; or polygons with heights, one target each).
 struct ControlFile {
   std::filesystem::path file;
   std::string crs;
   ControlUse use = ControlUse::control;
+  ControlKind kind = ControlKind::xyz;
   std::string name = "name", target = "target", cover = "cover", x = "x", y = "y", z = "z", sigma_h = "sigma_h", sigma_v = "sigma_v";
   core::Metres sigma_horizontal{0.02}, sigma_vertical{0.02};
 };
@@ -31,7 +35,8 @@ void describe(ControlFile& f, V& v) {
   v.option("file", f.file, "CSV or GeoPackage, relative to survey.toml.");
   v.option("crs", f.crs, "CRS of its coordinates; empty: that of the survey (GeoPackage: its own).");
   v.option("use", f.use, "control: takes part in the adjustment; check: is compared with its result alone.");
-  v.option("name", f.name, "Column of the points' names.");
+  v.option("kind", f.kind, "Coordinates that are surveyed, others being approximate; files of xy or z serve images alone.");
+  v.option("name", f.name, "Column of the points' names; of points on images as the image points have them.");
   v.option("target", f.target, "Column with the plane a point is a corner of, in order around it; empty: a single ground point.");
   v.option("cover", f.cover, "Column with what covers the ground there (open, forest ...), for quality.points.");
   v.option("x", f.x, "Column of eastings.");
@@ -49,5 +54,9 @@ namespace swath::core {
 template <>
 struct Choices<io::ControlUse> {
   static constexpr std::array<std::string_view, 2> names{"control", "check"};
+};
+template <>
+struct Choices<io::ControlKind> {
+  static constexpr std::array<std::string_view, 3> names{"xyz", "xy", "z"};
 };
 }  // namespace swath::core

@@ -56,6 +56,13 @@ void describe(const SurveyFacts& r, V& v) {
   files("imu", r.s.imu, "Files of IMU records.");
   files("gnss", r.s.gnss, "Files of GNSS records.");
   files("points", r.s.points, "Point clouds.");
+  files("event", r.s.events, "Files of events.");
+  std::vector<std::string> cameras;
+  for (const SurveyCamera& c : r.s.cameras) cameras.push_back(c.name);
+  v.result("camera", cameras, core::Form{}.only_if(!cameras.empty()), "Cameras.");
+  files("image", r.s.images, "Tables of images.");
+  files("image_points", r.s.image_points, "Files of image points.");
+  files("control", r.s.control, "Files of surveyed points.");
   v.result("lines", r.s.lines.size(), "Flight lines that it lists.");
   v.result("scanner", r.s.scanner.model, "Model of the scanner.");
   v.result("warnings", r.warnings, "Faults of the survey.");
@@ -113,7 +120,7 @@ Value describe_tree(const Path& path) {
     if (Value vector = describe_vector(path); !vector.is_null()) return vector;
   if (has("program") && has("stages")) return core::reported(TreeFacts{"report of a run", tree, "stages"});
   if (has("stage")) return core::reported(TreeFacts{"pipeline", tree, "stage"});
-  if (has("calibration") && has("sigma") && !has("laser") && !has("imu")) {
+  if (has("calibration") && has("sigma") && !has("laser") && !has("imu") && !has("crs") && !has("trajectory")) {
     Value out = core::reported(TreeFacts{"calibration", tree});
     out.members().insert(out.members().begin() + 1, {"calibration", *tree.find("calibration")});  // as the file has it
     return out;

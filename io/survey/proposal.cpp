@@ -46,10 +46,13 @@ bool is_scanner_frame(const Value& facts) {
 class Draft {
  public:
   void list(const std::string& name, const fs::path& file) {
-    table_ = name + "[" + std::to_string(++tables_[name]) + "]";
-    text_ += "\n[[" + name + "]]\n";
+    list(name);
     ++files_;
     known("file", file.generic_string());
+  }
+  void list(const std::string& name) {
+    table_ = name + "[" + std::to_string(++tables_[name]) + "]";
+    text_ += "\n[[" + name + "]]\n";
   }
   void table(const std::string& name) {
     table_ = name;
@@ -177,6 +180,27 @@ void add_table(Draft& d, const FoundFile& f, const ColumnRoles& r) {
   std::string columns;
   for (const auto& [key, name] : r.columns) columns += (columns.empty() ? "" : ", ") + key + " = " + toml_scalar(name);
   d.line("columns = { " + columns + " }  # by their names: check them");
+}
+
+/// Nothing of a table of image points says what its coordinates are.
+void add_image_points(Draft& d, const FoundFile& f, const ColumnRoles& r) {
+  d.list("image_points", f.name);
+  for (const auto& [key, name] : r.columns)
+    if (name + "_column" != key) d.known(key, name);
+  d.open("unit = \"pixel\"", "the file does not state the unit of its coordinates: pixel, mm or um");
+  d.open("y = \"down\"", "nor whether y points up or down");
+  d.open("origin = \"corner\"", "nor where they count from: middle of the sensor, corner or pixel_centre of the first pixel");
+  d.open("sigma_pixels = 0.5", "no file holds how well the points are measured");
+}
+
+void add_camera(Draft& d) {
+  d.list("camera");
+  d.open("f = \"50 mm\"", "no file holds the camera: principal distance, and x0, y0, k1 ... where they are known (docs/block.md)");
+  d.open("columns = 7216", "pixels across");
+  d.open("rows = 5412", "pixels down");
+  d.open("pixel = \"6.8 um\"", "side of a pixel");
+  d.open("mount = \"90 deg\"", "angle from the direction of flight to the image's x axis");
+  d.open("lever_arm = [\"0 m\", \"0 m\", \"0 m\"]", "from the IMU's centre to the perspective centre, forward, right, down");
 }
 
 void add_head(Draft& d, const Sorted& s, const std::string& name) {
@@ -321,7 +345,9 @@ Proposal propose_survey(const std::vector<FoundFile>& files, const std::string& 
   add_laser(d, s);
   add_trajectory(d, s);
   add_gnss(d, s);
-  for (const auto& [file, roles] : s.tables) add_table(d, *file, roles);
+  if (s.has(TableKind::image_points)) add_camera(d);
+  for (const auto& [file, roles] : s.tables)
+    roles.kind == TableKind::image_points ? add_image_points(d, *file, roles) : add_table(d, *file, roles);
   for (const FoundFile* f : s.points) {
     if (s.has_laser()) {
       s.left.push_back(f->name.generic_string() + ": a cloud in map coordinates, which a survey of raw records does not take");

@@ -6,6 +6,7 @@
 #include "core/config/option_visitors.h"
 #include "io/copc/ept.h"
 #include "io/survey/calibration_file.h"
+#include "io/survey/camera_checks.h"
 #include "io/survey/survey_checks.h"
 #include "io/text/value_file.h"
 
@@ -35,6 +36,7 @@ Survey read_survey(const core::Value& tree, const std::filesystem::path& folder,
   std::vector<Fault> faults;
   core::read_options(core::described(survey), tree, "", faults);
   check_survey(survey, tree, faults, records);
+  check_cameras(survey, tree, faults);
   std::stable_sort(faults.begin(), faults.end(), [](const Fault& a, const Fault& b) {
     return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
   });

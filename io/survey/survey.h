@@ -10,7 +10,9 @@
 #include "core/config/option.h"
 #include "core/records/sensor.h"
 #include "core/time.h"
+#include "io/images/image_file.h"
 #include "io/survey/breakline_file.h"
+#include "io/survey/camera_file.h"
 #include "io/survey/control_file.h"
 #include "io/survey/navigation.h"
 #include "io/survey/time_tags.h"
@@ -226,6 +228,9 @@ struct Survey {
   Rinex rinex;
   std::vector<ClockLog> clock;
   std::vector<EventFile> events;
+  std::vector<SurveyCamera> cameras;
+  std::vector<ImageListFile> images;
+  std::vector<ImageFile> image_points;
   std::vector<ControlFile> control;
   std::vector<BreaklineFile> breaklines;
   std::optional<std::filesystem::path> hangar;
@@ -261,6 +266,9 @@ void describe(Survey& s, V& v) {
   v.table("rinex", s.rinex, "Raw GNSS observations of rover and base stations.");
   v.tables("clock", s.clock, "Logs of the computer's clock.");
   v.tables("event", s.events, "Events to be placed on the time scale and the trajectory.");
+  v.tables("camera", s.cameras, "Cameras whose exposures are events.");
+  v.tables("image", s.images, "Tables of images: their names, and which event each one is.");
+  v.tables("image_points", s.image_points, "Points measured on images.");
   v.tables("control", s.control, "Surveyed points and targets.");
   v.tables("breaklines", s.breaklines, "Breaklines, boundaries and water lines of the terrain.");
   v.option("hangar", s.hangar, "Measurements in a hangar for the lever arms (docs/lever-arm.md); may be the survey's only entry.");

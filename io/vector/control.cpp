@@ -295,7 +295,7 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
       }
       hold_sigma(raw.sigma_h, "easting and northing", raw.place);
       hold_sigma(raw.sigma_v, "height", raw.place);
-      ControlPoint p{raw.name, raw.target, Vector3d::Zero(), raw.sigma_h, raw.sigma_v, f.use, raw.place, raw.cover};
+      ControlPoint p{raw.name, raw.target, Vector3d::Zero(), raw.sigma_h, raw.sigma_v, f.use, raw.place, raw.cover, f.kind};
       try {
         p.ecef = to_ecef({raw.at.x(), raw.at.y(), raw.at.z() * height_unit});
       } catch (const core::Error&) {
@@ -321,13 +321,12 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
   return out;
 }
 
-}  // namespace
-
-std::vector<ControlPoint> read_control(const Survey& survey, core::Tally& tally) {
+std::vector<ControlPoint> control_of(const Survey& survey, bool any_kind, core::Tally& tally) {
   std::vector<ControlPoint> all;
   std::map<std::string, std::string> targets;  // their files
   std::set<std::string> names;
   for (const ControlFile& f : survey.control) {
+    if (!any_kind && f.kind != ControlKind::xyz) continue;
     const std::filesystem::path path = resolve(survey, f.file);
     const std::string ending = core::lower_case(path.extension().string());
     const std::vector<RawLayer> layers = ending == ".gpkg" ? read_geopackage(path, f, tally) : std::vector<RawLayer>{read_table(path, f)};
@@ -343,5 +342,11 @@ std::vector<ControlPoint> read_control(const Survey& survey, core::Tally& tally)
   }
   return all;
 }
+
+}  // namespace
+
+std::vector<ControlPoint> read_control(const Survey& survey, core::Tally& tally) { return control_of(survey, false, tally); }
+
+std::vector<ControlPoint> read_image_control(const Survey& survey, core::Tally& tally) { return control_of(survey, true, tally); }
 
 }  // namespace swath::io

@@ -23,10 +23,14 @@ struct ControlPoint {
   ControlUse use = ControlUse::control;
   std::string place;    ///< "file:line"
   std::string cover{};  ///< what covers the ground; empty: not stated
+  ControlKind kind = ControlKind::xyz;
 };
 
-/// All control of a survey, in the files' order; corners of one target adjacent and in their order. Throws Error with file and line:
-/// columns missing, values not finite, a target of fewer than three corners or of corners in one line, a CRS without an operation to WGS84.
+/// All control of a survey that has three coordinates, in the files' order; corners of one target adjacent and in their order. Throws Error
+/// with file and line: columns missing, values not finite, a target of fewer than three corners or of corners in one line, a CRS without an
+/// operation to WGS84.
 std::vector<ControlPoint> read_control(const Survey& survey, core::Tally& tally);
+/// The same, and of files that hold plan or heights alone: images can use them, a laser cannot.
+std::vector<ControlPoint> read_image_control(const Survey& survey, core::Tally& tally);
 
 }  // namespace swath::io

@@ -90,7 +90,7 @@ class Photographer {
     write_marks(folder);
     write_control(folder);
     write_config(folder);
-    CameraMade made{exposures_.size(), 0, 0, hidden_};
+    CameraMade made{exposures_.size(), 0, 0, hidden_, has_seen(false), has_seen(true)};
     for (const GroundPoint& p : points_) made.points += p.seen > 1;
     for (const Mark& m : marks_) made.image_points += points_[m.point].seen > 1;
     return made;

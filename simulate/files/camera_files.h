@@ -23,6 +23,7 @@ std::optional<Eigen::Vector2d> seen_at(const CameraOptions& camera, const Eigen:
 
 struct CameraMade {
   std::uint64_t images = 0, points = 0, image_points = 0, hidden = 0;
+  bool has_control = false, has_check = false;  ///< points on images
 };
 
 /// Writes images.csv (stations of the antenna with their errors, observed attitudes), image_points.csv, block_control.csv, block_check.csv,

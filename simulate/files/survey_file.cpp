@@ -49,6 +49,8 @@ Value fallback_of(const std::string& list) {
     return v;
   }
   if (list == "event") return effective(io::EventFile{});
+  if (list == "camera") return effective(io::SurveyCamera{});
+  if (list == "image_points") return effective(io::ImageFile{});
   if (list == "control") return effective(io::ControlFile{});
   if (list == "points") return effective(io::PointFile{});
   return Value::object();

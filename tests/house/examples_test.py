@@ -23,7 +23,8 @@ ROOT = Path(__file__).resolve().parents[2]
 PLACEHOLDERS = {"SURVEY": "survey", "DIR": "demo", "LENGTH": '"1 km"', "WIDTH": '"500 m"', "LINES": "2", "PRF": '"50 kHz"', "FREQUENCY": '"50 Hz"'}
 SMALL = ["world.scene=hills", "world.length=300 m", "world.width=200 m", "flight.lines=2", "flight.cross_lines=0", "flight.height=300 m",
          "scanner.prf=2 kHz"]
-SURVEYS = {"cloud": "cloud", "qc": "cloud", "classes": "cloud", "corridor": "cloud", "forest": "cloud", "buildings": "cloud", "terrain": "cloud", "copc": "cloud", "dtm": "cloud", "lever_arm": "hangar"}  # config: what it starts from
+CAMERA = [*SMALL, "output.laser=false", "output.trajectory=none", "events.file=true", "camera.file=true"]
+SURVEYS = {"cloud": "cloud", "qc": "cloud", "classes": "cloud", "corridor": "cloud", "forest": "cloud", "buildings": "cloud", "terrain": "cloud", "copc": "cloud", "dtm": "cloud", "lever_arm": "hangar", "block": "camera"}  # config: what it starts from
 LONGEST = 60  # s that a command may take, and a simulation before it begins to write
 
 
@@ -120,6 +121,8 @@ class Examples(unittest.TestCase):
         for config in (ROOT / "bench").glob("*.toml"):
             shutil.copy(config, cls.folder / "bench")
         done = call("simulate", cls.folder / "kinds/demo", "--quiet", *[f"--set={s}" for s in SMALL])
+        assert done.returncode == 0, done.stderr
+        done = call("simulate", cls.folder / "kinds/camera", "--quiet", *[f"--set={s}" for s in CAMERA])
         assert done.returncode == 0, done.stderr
         for kind, text in (("cloud", 'name = "cloud"\ncrs = "EPSG:32632"\n\n[[points]]\nfile = "cloud.las"\ncrs = "EPSG:32632"\n'),
                            ("hangar", 'name = "hangar"\nhangar = "hangar.toml"\n')):

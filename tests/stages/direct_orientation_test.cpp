@@ -35,6 +35,8 @@ struct Orientation {
   explicit Orientation(const std::string& options = {}) : stage(stage_with("orientation.direct", options)) {
     work.survey.crs = "EPSG:32632";
     work.survey.events.emplace_back().file = "events.csv";
+    io::SurveyCamera& camera = work.survey.cameras.emplace_back();
+    camera.name = "P1", camera.lever_arm[2] = core::Metres(2.0);
     work.context.crs = core::Crs(work.survey.crs);
     work.context.records.put(trajectory::Trajectory(northward()));
   }
@@ -50,7 +52,7 @@ struct Orientation {
 };
 
 TEST(DirectOrientationStage, EachExposureWithinTheTrajectoryIsARowOfBothTables) {
-  Orientation o("camera = \"P1\"\nlever_arm = [\"0 m\", \"0 m\", \"2 m\"]\n");
+  Orientation o;
   EXPECT_EQ(fault_of([&] { o.stage->check(o.work.context); }), "");
   o.expose({1002.0, 1004.0, 2000.0});
   o.stage->run_survey(o.work.context, o.tally, o.findings);
@@ -83,8 +85,27 @@ TEST(DirectOrientationStage, WithoutPairedImagesThereIsNoFileOfThem) {
   EXPECT_FALSE(fs::exists(o.work.context.output / "orientation_correlation.csv"));
 }
 
+TEST(DirectOrientationStage, AListNamesTheImages) {
+  Orientation o;
+  o.work.survey.folder = o.work.context.output;
+  o.work.survey.images.emplace_back().file = "list.csv";
+  test::write_bytes(o.work.context.output / "list.csv", "name,event\nA 17.jpg,dsc2\n");
+  EXPECT_EQ(o.stage->inputs(o.work.survey), std::vector<fs::path>{o.work.context.output / "list.csv"});
+  o.expose({1002.0, 1004.0});
+  o.work.survey.cameras[0].sigma.boresight = "free";
+  o.stage->run_survey(o.work.context, o.tally, o.findings);
+  EXPECT_EQ(o.findings.find("images")->as_int(), 1);
+  EXPECT_EQ(o.findings.find("events_without_image")->as_int(), 1);
+  EXPECT_EQ(o.findings.find("without")->items().at(0).as_text(), "boresight of P1");
+  EXPECT_EQ(io::TextTable(o.work.context.output / "images.csv").text(0, 0), "A 17.jpg");
+}
+
 TEST(DirectOrientationStage, WhatItNeedsIsNamedBeforeTheRun) {
   Orientation o;
+  o.work.survey.cameras[0].sigma.lever_arm = "2";
+  EXPECT_NE(fault_of([&] { o.stage->check(o.work.context); }).find("camera.sigma.lever_arm"), std::string::npos);
+  o.work.survey.cameras.clear();
+  EXPECT_NE(fault_of([&] { o.stage->check(o.work.context); }).find("[[camera]]"), std::string::npos);
   o.work.survey.events.clear();
   EXPECT_NE(fault_of([&] { o.stage->check(o.work.context); }).find("[[event]]"), std::string::npos);
   o.work.survey.crs.clear();

@@ -144,7 +144,7 @@ void refuse_shifted_strip(const ReadBlock& sample, const BlockConfig& config, do
   char text[160];
   std::snprintf(text, sizeof text, ": image points are off by %.1f %% of the principal distance (mean) as stated, by %.1f %% otherwise",
                 100.0 * before, 100.0 * after);
-  throw core::Error(best->what + text, config.images.file.string(), best->hint);
+  throw core::Error(best->what + text, place_of_images(config), best->hint);
 }
 
 }  // namespace
@@ -199,6 +199,8 @@ void refuse_mistakes(const ReadBlock& read, const BlockConfig& config) {
       ReadBlock other = sample;
       m.instead(other);
       const StartResidual found = start_residual(other.block);
+      // Tie points that fit speak for the convention: control that lies elsewhere is no mistake of another kind.
+      if (found.tie > std::max(clearly * stated.tie, by_accident * sigma)) continue;
       if (clearly * found.sum() < stated.sum() && found.sum() < least.sum()) best = &m, least = found;
     }
     if (best)

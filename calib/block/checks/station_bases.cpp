@@ -87,7 +87,7 @@ void refuse_broken_bases(const ReadBlock& read, const BlockConfig& config) {
   const BlockImage &a = read.block.images[worst->from], &b = read.block.images[worst->to];
   throw core::Error("the stations of images " + a.name + " and " + b.name + " of strip " + std::to_string(a.strip) + " lie " + times +
                         " times as far apart as their image points show and their neighbours in the strip do",
-                    config.images.file.string(),
+                    place_of_images(config),
                     worst->ratio > 1.0
                         ? "the event of " + b.name + " may be missing, and those after it shifted by one image: match by time"
                         : "an event may be listed twice: match images and events by their time");

@@ -23,24 +23,44 @@ std::vector<std::string> direct_products(const DirectStageOptions& o) {
   return out;
 }
 
-void expect_map(const Context& context, const DirectStageOptions&) {
-  if (context.survey.crs.empty())
-    throw core::usage_error("orientation.direct: the survey states no CRS for the orientations", context.survey.name,
+void expect_cameras(const Context& context, const DirectStageOptions&) {
+  const io::Survey& s = context.survey;
+  if (s.crs.empty())
+    throw core::usage_error("orientation.direct: the survey states no CRS for the orientations", s.name,
                             "state it, for example crs = \"EPSG:32632\"");
-  if (context.survey.events.empty())
-    throw core::usage_error("orientation.direct: the survey names no [[event]] file", context.survey.name, "name the exposures");
+  if (s.events.empty()) throw core::usage_error("orientation.direct: the survey names no [[event]] file", s.name, "name the exposures");
+  if (s.cameras.empty())
+    throw core::usage_error("orientation.direct: the survey has no [[camera]]", s.name,
+                            "describe it: mount, boresight and lever_arm, and the technique of its events");
+  for (const io::SurveyCamera& c : s.cameras) calib::direct_camera(c, s.name);
+}
+
+calib::Exposures exposures_in(const io::Survey& survey, const core::EventData& events) {
+  std::vector<io::ListedImage> listed;
+  for (const io::ImageListFile& f : survey.images)
+    for (io::ListedImage& image : io::read_listed_images(io::resolve(survey, f.file), f)) listed.push_back(std::move(image));
+  return calib::exposures_of(events, survey.cameras, listed, io::line_windows(survey), survey.name);
 }
 
 calib::DirectFound orient_images(const trajectory::Trajectory& trajectory, const core::EventData& events, const Context& context,
                                  const DirectStageOptions& o, const Output& to) {
+  const io::Survey& survey = context.survey;
   calib::DirectFound found;
-  const std::vector<calib::DirectImage> images = calib::direct_orientation(trajectory, events, context.crs, o, found);
-  std::string table = calib::orientation_header(context.survey.crs);
-  for (const calib::DirectImage& i : images) table += calib::orientation_line(i.name, o.camera, i.strip, i.orientation);
+  std::vector<calib::DirectCamera> cameras;
+  for (const io::SurveyCamera& c : survey.cameras) {
+    cameras.push_back(calib::direct_camera(c, survey.name));
+    if (c.sigma.boresight == "free") found.without.push_back("boresight of " + c.name);
+    if (c.sigma.lever_arm == "free") found.without.push_back("lever arm of " + c.name);
+  }
+  const calib::Exposures exposures = exposures_in(survey, events);
+  found.unnamed = exposures.events_left_out;
+  const std::vector<calib::DirectImage> images = calib::direct_orientation(trajectory, exposures.images, cameras, context.crs, found);
+  std::string table = calib::orientation_header(survey.crs);
+  for (const calib::DirectImage& i : images) table += calib::orientation_line(i.name, cameras[i.camera].name, i.strip, i.orientation);
   io::write_text_file(to.folder / "orientation_direct.csv", table);
-  io::write_text_file(to.folder / "images.csv", calib::direct_images_csv(images, o.camera));
+  io::write_text_file(to.folder / "images.csv", calib::direct_images_csv(images, cameras));
   if (o.correlated_images == 0) return found;
-  calib::CorrelationFile file(to.folder / "orientation_correlation.csv", context.survey.crs);
+  calib::CorrelationFile file(to.folder / "orientation_correlation.csv", survey.crs);
   calib::direct_correlation(images, trajectory, o,
                             [&](const calib::CovariancePair& p) { file.add(images[p.image].name, images[p.other].name, p.value); });
   file.commit();
@@ -50,9 +70,9 @@ calib::DirectFound orient_images(const trajectory::Trajectory& trajectory, const
 }  // namespace
 
 Entry direct_orientation_stage() {
-  return once<orient_images>("orientation.direct",
-                             "Orientation of images by trajectory, exposure times, lever arm and boresight, with covariances.",
-                             {.check = expect_map, .products = direct_products});
+  return once<orient_images>(
+      "orientation.direct", "Orientation of images by trajectory, exposure times, lever arm and boresight, with covariances.",
+      {.check = expect_cameras, .inputs = files_in<&io::Survey::images>, .products = direct_products, .gives = {Product::orientations}});
 }
 
 }  // namespace swath::stages

@@ -33,23 +33,32 @@ core::TrajectoryData straight(const core::Attitude& a, double north = 0.0, doubl
   return d;
 }
 
-core::EventData exposure(double time, double sigma = 0.0) {
-  core::EventData e;
-  e.time = {time}, e.sigma = {sigma}, e.id = {"1"}, e.strip = {3}, e.technique = {"marks"}, e.doubtful = {0};
-  return e;
-}
+std::vector<Exposure> exposure(double time, double sigma = 0.0) { return {{"1", 0, 3, time, sigma, false}}; }
 
-DirectImage oriented_at(const core::TrajectoryData& data, double time, const DirectOptions& o, double sigma = 0.0) {
+DirectImage oriented_at(const core::TrajectoryData& data, double time, const DirectCamera& c, double sigma = 0.0) {
   DirectFound found;
-  return direct_orientation(trajectory::Trajectory(data), exposure(time, sigma), core::Crs("EPSG:32632"), o, found).at(0);
+  return direct_orientation(trajectory::Trajectory(data), exposure(time, sigma), {c}, core::Crs("EPSG:32632"), found).at(0);
 }
 
-DirectOptions mounted() {
-  DirectOptions o;
-  o.mount = core::degrees(90.0);
-  o.boresight = {core::degrees(0.3), core::degrees(-0.2), core::degrees(0.7)};
-  o.lever_arm = {core::Metres(0.4), core::Metres(-0.2), core::Metres(1.5)};
-  return o;
+io::SurveyCamera stated_camera() {
+  io::SurveyCamera c;
+  c.mount = core::degrees(90.0);
+  c.boresight = {core::degrees(0.3), core::degrees(-0.2), core::degrees(0.7)};
+  c.lever_arm = {core::Metres(0.4), core::Metres(-0.2), core::Metres(1.5)};
+  return c;
+}
+
+DirectCamera mounted() { return direct_camera(stated_camera(), "survey.toml"); }
+
+TEST(DirectOrientation, SigmasOfTheMountingAreThoseOfTheSurvey) {
+  io::SurveyCamera c = stated_camera();
+  c.sigma.boresight = "0.1 deg", c.sigma.lever_arm = "2 cm";
+  EXPECT_NEAR(direct_camera(c, "").sigma_boresight, 0.1 * core::degree, 1e-12);
+  EXPECT_NEAR(direct_camera(c, "").sigma_lever_arm, 0.02, 1e-12);
+  c.sigma.boresight = "free", c.sigma.lever_arm = "held";
+  EXPECT_EQ(direct_camera(c, "").sigma_boresight + direct_camera(c, "").sigma_lever_arm, 0.0);
+  c.sigma.lever_arm = "2";
+  EXPECT_THROW(direct_camera(c, ""), core::Error);
 }
 
 TEST(DirectOrientation, PositionAndAxes) {
@@ -79,7 +88,7 @@ Eigen::Matrix<double, 6, 1> change(const DirectImage& from, const DirectImage& t
 
 TEST(DirectOrientation, CovarianceIsThatOfTheChanges) {
   const core::Attitude a{0.05, -0.04, 2.1};
-  const DirectOptions o = mounted();
+  const DirectCamera o = mounted();
   const DirectImage here = oriented_at(straight(a), 1002.5, o, 1e-3);
   Eigen::Matrix<double, 6, 6> expected = Eigen::Matrix<double, 6, 6>::Zero();
   const auto add = [&](const Eigen::Matrix<double, 6, 1>& d, double step, double sigma) {
@@ -100,13 +109,10 @@ TEST(DirectOrientation, CovarianceIsThatOfTheChanges) {
       EXPECT_NEAR(here.orientation.covariance(r, c), expected(r, c), 3e-3 * std::sqrt(expected(r, r) * expected(c, c))) << r << " " << c;
 }
 
-core::EventData exposures(std::initializer_list<double> times, double sigma) {
-  core::EventData e;
-  for (const double t : times) {
-    e.time.push_back(t), e.sigma.push_back(sigma), e.strip.push_back(1), e.technique.emplace_back("marks"), e.doubtful.push_back(0);
-    e.id.push_back(std::to_string(e.id.size() + 1));
-  }
-  return e;
+std::vector<Exposure> exposures(std::initializer_list<double> times, double sigma) {
+  std::vector<Exposure> out;
+  for (const double t : times) out.push_back({std::to_string(out.size() + 1), 0, 1, t, sigma, false});
+  return out;
 }
 
 OrientationCorrelation correlation_of(const std::vector<DirectImage>& images, const trajectory::Trajectory& trajectory,
@@ -119,16 +125,17 @@ OrientationCorrelation correlation_of(const std::vector<DirectImage>& images, co
 /// Of one image: what its covariance has, in the body's axes, without boresight and lever arm. Of two: what decays with time.
 TEST(DirectOrientation, CorrelationOfImages) {
   const trajectory::Trajectory trajectory(straight({0.05, -0.04, 2.1}));
-  DirectOptions o = mounted();
-  o.sigma_lever_arm = core::Metres(0.3);
+  DirectCamera camera = mounted();
+  camera.sigma_lever_arm = 0.3;
+  DirectOptions o;
   o.errors.position_correlation = o.errors.roll_correlation = o.errors.pitch_correlation = o.errors.heading_correlation =
       core::Seconds(2.0);
   DirectFound found;
-  const auto images = direct_orientation(trajectory, exposures({1001.0, 1002.0, 1003.5}, 1e-3), core::Crs("EPSG:32632"), o, found);
+  const auto images = direct_orientation(trajectory, exposures({1001.0, 1002.0, 1003.5}, 1e-3), {camera}, core::Crs("EPSG:32632"), found);
   const OrientationCorrelation all = correlation_of(images, trajectory, o);
   ASSERT_EQ(all.pairs.size(), 6u);
   PoseCovariance turn = PoseCovariance::Identity();  // to the camera's axes
-  turn.bottomRightCorner<3, 3>() = camera_mounting(o.mount, o.boresight).transpose();
+  turn.bottomRightCorner<3, 3>() = camera.body_R_camera.transpose();
   const auto expect_near = [](const PoseCovariance& a, const PoseCovariance& b, const PoseCovariance& size) {
     for (int r = 0; r < 6; ++r)
       for (int c = 0; c < 6; ++c) EXPECT_NEAR(a(r, c), b(r, c), 1e-6 * std::sqrt(size(r, r) * size(c, c))) << r << " " << c;
@@ -155,15 +162,11 @@ TEST(DirectOrientation, CorrelationOfImages) {
 /// Images in many windows have the same covariances as in one.
 TEST(DirectOrientation, CorrelationOfManyImages) {
   const trajectory::Trajectory trajectory(straight({0.05, -0.04, 2.1}));
-  core::EventData e;
-  for (int k = 0; k < 120; ++k) {
-    e.time.push_back(1000.1 + 0.04 * k), e.sigma.push_back(0.0), e.strip.push_back(1), e.technique.emplace_back("marks"),
-        e.doubtful.push_back(0);
-    e.id.push_back(std::to_string(k));
-  }
-  DirectOptions o = mounted();
+  std::vector<Exposure> e;
+  for (int k = 0; k < 120; ++k) e.push_back({std::to_string(k), 0, 1, 1000.1 + 0.04 * k, 0.0, false});
+  DirectOptions o;
   DirectFound found;
-  const auto images = direct_orientation(trajectory, e, core::Crs("EPSG:32632"), o, found);
+  const auto images = direct_orientation(trajectory, e, {mounted()}, core::Crs("EPSG:32632"), found);
   o.correlated_images = 7;
   const OrientationCorrelation windows = correlation_of(images, trajectory, o);
   o.correlated_images = 1000;
@@ -178,26 +181,24 @@ TEST(DirectOrientation, CorrelationOfManyImages) {
 
 TEST(DirectOrientation, TheTableIsWhatABlockReads) {
   DirectFound found;
-  core::EventData e = exposure(1002.5);
-  e.time.push_back(2000.0), e.sigma.push_back(0.0), e.id.emplace_back("2"), e.strip.push_back(3), e.technique.emplace_back("marks"),
-      e.doubtful.push_back(1);
-  const auto images = direct_orientation(trajectory::Trajectory(straight({0, 0, 1})), e, core::Crs("EPSG:32632"), {}, found);
+  std::vector<Exposure> e = exposure(1002.5);
+  e.push_back({"2", 0, 3, 2000.0, 0.0, true});
+  const trajectory::Trajectory flown(straight({0, 0, 1}));
+  const std::vector<DirectCamera> cameras{{"left"}};
+  const auto images = direct_orientation(flown, e, cameras, core::Crs("EPSG:32632"), found);
   EXPECT_EQ(found.images, 1u);
   EXPECT_EQ(found.outside, 1u);
   EXPECT_EQ(found.exact, 1u);  // its sigmas are too small by what the time's would add
   EXPECT_NEAR(found.height, 0.05, 1e-6);
-  const std::string table = direct_images_csv(images, "left");
+  const std::string table = direct_images_csv(images, cameras);
   EXPECT_TRUE(table.starts_with("name,camera,strip,time,x,y,z,sigma_h,sigma_v,roll,pitch,heading\n1,left,3,1002.500000000,")) << table;
-  const auto degrees = direct_orientation(trajectory::Trajectory(straight({0, 0, 1})), e, core::Crs("EPSG:4326"), {}, found);
-  const std::string row = direct_images_csv(degrees, "left");
+  const auto degrees = direct_orientation(flown, e, cameras, core::Crs("EPSG:4326"), found);
+  const std::string row = direct_images_csv(degrees, cameras);
   char place[60];
   std::snprintf(place, sizeof place, ",%.10f,%.10f,", degrees[0].orientation.map.x(), degrees[0].orientation.map.y());
   EXPECT_NE(row.find(place), std::string::npos) << row;  // 1e-10 deg are 0.01 mm
-  e.technique[1] = "pc";
-  EXPECT_THROW(direct_orientation(trajectory::Trajectory(straight({0, 0, 1})), e, core::Crs("EPSG:32632"), {}, found), core::Error);
-  DirectOptions o;
-  o.technique = "pc";
-  EXPECT_THROW(direct_orientation(trajectory::Trajectory(straight({0, 0, 1})), e, core::Crs("EPSG:32632"), o, found), core::Error);
+  e.erase(e.begin());
+  EXPECT_THROW(direct_orientation(flown, e, cameras, core::Crs("EPSG:32632"), found), core::Error);
 }
 
 }  // namespace

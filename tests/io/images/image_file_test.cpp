@@ -285,5 +285,16 @@ TEST_F(ImageFiles, PhotosOfOneNameInTwoFoldersAreRefused) {
   EXPECT_NE(fault_of(f).find("two photos have the name DJI_0001.JPG"), std::string::npos) << fault_of(f);
 }
 
+TEST_F(ImageFiles, AllFilesOfAFormatAreNamed) {
+  using Names = std::vector<std::filesystem::path>;
+  ImageFile f;
+  f.file = "a/points.csv";
+  EXPECT_EQ(files_of(f), (Names{"a/points.csv"}));
+  f.format = ImageFormat::colmap, f.file = "sparse/0";
+  EXPECT_EQ(files_of(f), (Names{"sparse/0/cameras.txt", "sparse/0/images.txt"}));
+  f.format = ImageFormat::opensfm, f.file = "b/tracks.csv";
+  EXPECT_EQ(files_of(f), (Names{"b/tracks.csv", "b/reconstruction.json"}));
+}
+
 }  // namespace
 }  // namespace swath::io

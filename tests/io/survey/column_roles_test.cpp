@@ -56,6 +56,9 @@ TEST(ColumnRoles, WithAttitudeItIsATrajectory) {
 TEST(ColumnRoles, NamesThatSayNothingAreNone) {
   EXPECT_EQ(roles_of({"1", "2", "3", "4", "5", "6", "7"}).kind, TableKind::none);
   EXPECT_EQ(roles_of({"x", "y", "z"}).kind, TableKind::none);
+  const auto points = roles_of({"image", "track_id", "x", "y"});
+  EXPECT_EQ(points.kind, TableKind::image_points);
+  EXPECT_EQ(column(points, "point_column"), "track_id");
   EXPECT_EQ(roles_of({}).kind, TableKind::none);
 }
 

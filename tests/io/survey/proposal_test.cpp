@@ -128,5 +128,23 @@ TEST(Proposal, WhatCannotBeReadIsNamedAndTheRestIsProposed) {
 
 TEST(Proposal, AFolderThatIsNotThere) { EXPECT_THROW(find_records("no/such/folder"), core::Error); }
 
+TEST(Proposal, ImagePointsAskForTheCameraAndTheirConventions) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "events.csv", "unix_time,id\n1700000000,1\n1700000003,2\n");
+  test::write_bytes(folder / "measured.csv", "photo,point,x,y\n1,a,10,20\n2,a,30,40\n");
+  const Proposal p = propose_survey(find_records(folder.path(), {}), "images");
+  for (const char* key : {"camera[1].f", "camera[1].mount", "camera[1].lever_arm", "image_points[1].unit", "image_points[1].y",
+                          "image_points[1].origin", "image_points[1].sigma_pixels"})
+    EXPECT_TRUE(is_open(p, key)) << key << "\n" << p.toml;
+  EXPECT_NE(p.toml.find("image_column = \"photo\""), std::string::npos) << p.toml;
+  EXPECT_EQ(p.toml.find("point_column"), std::string::npos) << "as it is by default";
+  test::write_bytes(folder / "survey.toml", p.toml);
+  EXPECT_THROW(read_survey(folder / "survey.toml"), core::Error) << "what is open is missed";
+  test::write_bytes(folder / "survey.toml", completed(p.toml));
+  const Survey survey = read_survey(folder / "survey.toml");
+  EXPECT_EQ(survey.cameras.at(0).columns, 7216);
+  EXPECT_EQ(survey.image_points.at(0).image_column, "photo");
+}
+
 }  // namespace
 }  // namespace swath::io

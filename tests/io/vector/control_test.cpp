@@ -282,5 +282,17 @@ TEST_F(GeoPackageControl, FaultsNameTheirFeature) {
   EXPECT_NE(fault().find("none.gpkg: cannot read the GeoPackage"), std::string::npos);
 }
 
+TEST_F(Control, FilesOfPlanOrHeightsAloneAreForImages) {
+  file().kind = ControlKind::z;
+  add("full.csv").use = ControlUse::check;
+  test::write_bytes(folder_ / "control.csv", "name,x,y,z\nbench,500100,5300200,480\n");
+  test::write_bytes(folder_ / "full.csv", "name,x,y,z\nmark,500120,5300200,481\n");
+  const auto laser = read_control(survey_, tally_), images = read_image_control(survey_, tally_);
+  ASSERT_EQ(laser.size(), 1u);
+  EXPECT_EQ(laser[0].name, "mark");
+  ASSERT_EQ(images.size(), 2u);
+  EXPECT_TRUE(images[0].kind == ControlKind::z && images[1].kind == ControlKind::xyz);
+}
+
 }  // namespace
 }  // namespace swath::io

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/survey/camera_checks.h"
+
+#include <algorithm>
+
+#include "io/survey/survey_checks.h"
+
+namespace swath::io {
+namespace {
+
+class CameraChecks {
+ public:
+  CameraChecks(const Survey& survey, const core::Value& tree, std::vector<core::Fault>& faults)
+      : survey_(survey), tree_(tree), faults_(faults) {}
+
+  void all() {
+    for (size_t i = 0; i < survey_.cameras.size(); ++i) camera(i);
+    for (size_t i = 0; i < survey_.images.size(); ++i) {
+      const ImageListFile& f = survey_.images[i];
+      const std::string key = numbered("image", i) + ".file";
+      if (f.file.empty())
+        fault(key, "no file is named");
+      else
+        exists(resolve(survey_, f.file), key);
+    }
+    for (size_t i = 0; i < survey_.image_points.size(); ++i) points(survey_.image_points[i], numbered("image_points", i));
+    if (survey_.cameras.empty()) {
+      if (!survey_.images.empty()) fault("image", "images are listed, and the survey has no [[camera]]", "describe the camera");
+      if (!survey_.image_points.empty())
+        fault("image_points", "image points are listed, and the survey has no [[camera]]", "describe the camera");
+    } else if (survey_.events.empty()) {
+      fault("camera", "a camera is described, and no [[event]] file has its exposures", "name the file of its exposures");
+    }
+  }
+
+ private:
+  static std::string numbered(const char* name, size_t i) { return std::string(name) + "[" + std::to_string(i + 1) + "]"; }
+
+  void fault(const std::string& key, std::string what, std::string hint = {}) {
+    if (std::none_of(faults_.begin(), faults_.end(), [&](const core::Fault& f) { return f.key == key; }))
+      faults_.push_back({place_in(tree_, key), key, std::move(what), std::move(hint)});
+  }
+
+  void exists(const std::filesystem::path& path, const std::string& key) {
+    std::error_code ec;
+    if (!std::filesystem::is_regular_file(path, ec))
+      fault(key, "no such file: " + path.string(), "names are relative to the folder of the survey file");
+  }
+
+  void camera(size_t i) {
+    const SurveyCamera& c = survey_.cameras[i];
+    const std::string key = numbered("camera", i);
+    for (size_t other = 0; other < i; ++other)
+      if (survey_.cameras[other].name == c.name)
+        fault(key + ".name", "the name " + c.name + " is that of " + numbered("camera", other), "give each camera a name of its own");
+    const core::CameraSigmas& s = c.sigma;
+    const bool distorted = c.k1 != 0.0 || c.k2 != 0.0 || c.k3 != 0.0 || c.p1 != 0.0 || c.p2 != 0.0 || c.b1 != 0.0 || c.b2 != 0.0;
+    bool adjusted = false;
+    for (const std::string* one : {&s.k1, &s.k2, &s.k3, &s.p1, &s.p2, &s.b1, &s.b2}) adjusted = adjusted || *one != "held";
+    if ((distorted || adjusted) && !c.distortion)
+      fault(key + ".distortion", "the camera has distortion, and it is not stated which point it is computed from",
+            "\"ideal\" (OpenCV, COLMAP, Metashape) or \"measured\" (calibration protocols)");
+  }
+
+  void points(const ImageFile& f, const std::string& key) {
+    if (f.file.empty()) return fault(key + ".file", "no file is named");
+    ImageFile there = f;
+    there.file = resolve(survey_, f.file);
+    std::error_code ec;
+    if (f.format == ImageFormat::colmap && std::filesystem::exists(there.file / "images.bin", ec) &&
+        !std::filesystem::exists(there.file / "images.txt", ec))
+      return fault(key + ".file", "the COLMAP model " + there.file.string() + " is binary",
+                   "convert it: colmap model_converter --output_type TXT");
+    for (const std::filesystem::path& path : files_of(there)) exists(path, key + ".file");
+    if (!f.sigma && !f.sigma_pixels)
+      fault(key + ".sigma", "the sigma of the image points is not stated", "add sigma = \"3 um\" or sigma_pixels = 0.3");
+    const bool in_pixels = f.format == ImageFormat::colmap || f.format == ImageFormat::opensfm || f.format == ImageFormat::blocks_exchange;
+    if (in_pixels) return;
+    if (!f.unit) fault(key + ".unit", "the unit of the image coordinates is not stated", "one of mm, um, pixel");
+    if (!f.y) fault(key + ".y", "the sense of the y axis is not stated", "one of up, down");
+    if (!f.origin) fault(key + ".origin", "the origin of the image coordinates is not stated", "one of middle, corner, pixel_centre");
+  }
+
+  const Survey& survey_;
+  const core::Value& tree_;
+  std::vector<core::Fault>& faults_;
+};
+
+}  // namespace
+
+void check_cameras(const Survey& survey, const core::Value& tree, std::vector<core::Fault>& faults) {
+  CameraChecks(survey, tree, faults).all();
+}
+
+}  // namespace swath::io

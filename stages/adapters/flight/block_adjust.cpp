@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The block of a run: cameras, image points and control of the survey, stations and attitudes by direct orientation.
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "calib/block/block_files.h"
+#include "calib/block/checks/block_checks.h"
+#include "core/error.h"
+#include "core/geo/geodesy.h"
+#include "io/vector/control.h"
+#include "stages/adapters/adapters.h"
+#include "stages/once.h"
+
+namespace swath::stages {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* block_folder = "block";
+
+struct BlockStageOptions : calib::BlockWeightOptions {
+  calib::DriftSets drift = calib::DriftSets::none;
+  calib::Datum datum = calib::Datum::none;
+  calib::ImageValues stations = calib::ImageValues::observed, attitudes = calib::ImageValues::observed;
+};
+
+template <class V>
+void describe(BlockStageOptions& o, V& v) {
+  v.option("drift", o.drift, "Unknown shift and drift of the stations beside the covariances: none, per block or per strip.",
+           "Ackermann, eq 1");
+  v.option("datum", o.datum, "Unknown datum of the trajectory against control: none, a shift, or with rotation and scale.");
+  v.option("stations", o.stations, "observed: positions by the trajectory take part; start: values to start from.");
+  v.option("attitudes", o.attitudes, "The same of its attitudes.");
+  describe(static_cast<calib::BlockWeightOptions&>(o), v);
+  v.check(o.datum == calib::Datum::none || o.drift == calib::DriftSets::none,
+          "datum and drift are both stated: the shift of a drift is that of the datum; state datum = \"none\"");
+  v.check(o.stations == calib::ImageValues::observed || (o.drift == calib::DriftSets::none && o.datum == calib::Datum::none),
+          "drift and datum have no effect: the stations are values to start from");
+}
+
+std::vector<std::string> block_stage_products(const BlockStageOptions&) { return {block_folder}; }
+
+std::vector<fs::path> block_inputs(const io::Survey& survey) {
+  std::vector<fs::path> out;
+  for (io::ImageFile f : survey.image_points) {
+    f.file = io::resolve(survey, f.file);
+    for (fs::path& file : io::files_of(f)) out.push_back(std::move(file));
+  }
+  for (fs::path& file : files_in<&io::Survey::control>(survey)) out.push_back(std::move(file));
+  return out;
+}
+
+void expect_image_points(const Context& context, const BlockStageOptions& o) {
+  const io::Survey& s = context.survey;
+  if (s.cameras.empty()) throw core::usage_error("block.adjust: the survey has no [[camera]]", s.name, "describe it");
+  if (s.image_points.empty())
+    throw core::usage_error("block.adjust: the survey names no [[image_points]]", s.name, "name the file of points measured on its images");
+  for (const io::SurveyCamera& c : s.cameras) {
+    calib::camera_of(calib::config_of(c), s.name);
+    if (c.sigma.boresight == "free" && o.attitudes != calib::ImageValues::observed)
+      throw core::usage_error("block.adjust: the boresight of camera " + c.name + " is free, and attitudes are values to start from",
+                              s.name, "state sigma.boresight = \"held\", or attitudes = \"observed\"");
+  }
+}
+
+calib::BlockConfig config_of_run(const Context& context, const BlockStageOptions& o) {
+  const io::Survey& survey = context.survey;
+  calib::BlockConfig out;
+  out.crs = survey.crs, out.drift = o.drift, out.datum = o.datum;
+  static_cast<calib::BlockWeightOptions&>(out.adjust) = o;
+  out.adjust.threads = 1;  // more would add in another order: the last digits would depend on them
+  for (const io::SurveyCamera& c : survey.cameras) out.cameras.push_back(calib::config_of(c));
+  for (io::ImageFile f : survey.image_points) {
+    f.file = io::resolve(survey, f.file);
+    out.image_points.push_back(std::move(f));
+  }
+  calib::ImagesConfig& i = out.images;
+  i.file = context.made("images.csv"), i.correlation = context.made("orientation_correlation.csv");
+  if (i.correlation.empty())
+    throw core::usage_error("block.adjust: orientation.direct has written no covariances of stations and attitudes", survey.name,
+                            "state correlated_images = 1 or more for orientation.direct");
+  i.angles = calib::ImageAngles::roll_pitch_heading, i.north = calib::ImageNorth::true_north;
+  i.stations = o.stations, i.angle_use = o.attitudes;
+  i.place = io::resolve(survey, survey.images.empty() ? survey.events.front().file : survey.images.front().file).string();
+  i.lacks = "is none of the images that have an orientation";
+  i.lacks_hint =
+      survey.images.empty()
+          ? "its event is missing, is outside the trajectory, or has another id: list names and events in [[image]] where they differ"
+          : "add it to [[image]]; its event may be missing or outside the trajectory";
+  return out;
+}
+
+/// Single points: corners of targets are the laser's.
+std::vector<calib::SurveyedPoint> surveyed_points(const Context& context, core::Tally& tally) {
+  const core::Transform to_map(core::wgs84_ecef(), context.crs);
+  std::vector<calib::SurveyedPoint> out;
+  for (const io::ControlPoint& p : io::read_image_control(context.survey, tally))
+    if (p.target.empty()) out.push_back({p.name, to_map(p.ecef), p.sigma_h, p.sigma_v, p.kind, p.use == io::ControlUse::check, p.place});
+  return out;
+}
+
+/// A file none of whose points is on an image is one for the laser, where another file's are.
+void leave_out_others(const std::vector<calib::SurveyedPoint>& points, calib::ReadBlock& read) {
+  const auto file_of = [](const std::string& place) { return place.substr(0, place.rfind(':')); };
+  std::set<std::string> files;
+  for (const calib::StatedControl& c : read.control) files.insert(file_of(c.place));
+  if (files.empty()) return;
+  std::set<std::string> others;
+  for (const calib::SurveyedPoint& p : points)
+    if (!files.contains(file_of(p.place))) others.insert(p.name);
+  std::erase_if(read.control_without_image, [&](const std::string& name) { return others.contains(name); });
+}
+
+calib::BlockFound adjust_images(const Context& context, const BlockStageOptions& o, const Output& to, core::Tally& tally) {
+  const calib::BlockConfig config = config_of_run(context, o);
+  const std::vector<calib::SurveyedPoint> control = surveyed_points(context, tally);
+  context.progress(0.0, "reading image points");
+  calib::ReadBlock read = calib::read_block(config, context.survey.name, control);
+  leave_out_others(control, read);
+  calib::refuse_mistakes(read, config);
+  const calib::StartResidual start = calib::start_residual(calib::sample_of(read, 2000).block);
+  const calib::ReadBlock stated = read;
+  context.progress(0.2, "adjusting");
+  const calib::BlockSolution solution = calib::adjust_block(read.block, config.adjust);
+  calib::refuse_wrong_stations(stated, read, solution, config);
+  context.progress(0.8, "writing");
+  calib::BlockFound found = calib::findings_of(read, config, solution);
+  found.start_tie = start.tie, found.start_control = start.control;
+  found.started_from = "direct orientation";
+  found.direct = calib::compare_direct(stated, read, solution);
+  calib::write_block(to.folder / block_folder, read, config, solution, found);
+  return found;
+}
+
+}  // namespace
+
+Entry block_adjust_stage() {
+  return once<adjust_images>(
+      "block.adjust",
+      "Bundle adjustment of the flight's images with stations and attitudes by direct orientation: orientations, "
+      "cameras, points with covariances.",
+      {.check = expect_image_points, .inputs = block_inputs, .products = block_stage_products, .needs = {Product::orientations}});
+}
+
+}  // namespace swath::stages

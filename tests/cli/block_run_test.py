@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A block of images as stages of a run: from a flight's records to oriented images, and mistakes of its survey."""
+import csv
+import json
+import math
+import shutil
+import tomllib
+import unittest
+
+from support import SOURCE, Case, simulate, stage, substitute, swath
+
+CONFIG = SOURCE / "configs" / "block.toml"
+CAMERA = ["output.laser=false", "events.file=true", "events.interval=3 s", "camera.file=true", "world.scene=hills", "world.length=500 m",
+          "world.width=300 m", "flight.lines=2", "flight.cross_lines=1", "flight.height=400 m", "camera.points=40"]
+# With a trajectory of its own a run takes a second.
+STAGES = ("readers.trajectory", "time.sync", "orientation.direct", "block.adjust")
+
+
+def rows_of(file):
+    with open(file) as f:
+        return list(csv.DictReader(line for line in f if not line.startswith("#")))
+
+
+def rewrite(file, edit):
+    """`edit` takes the rows as dictionaries and returns them, or others."""
+    rows = rows_of(file)
+    columns = list(rows[0])
+    rows = edit(rows)
+    file.write_text("\n".join([",".join(columns), *(",".join(str(r[c]) for c in columns) for r in rows)]) + "\n")
+
+
+class BlockFlight(Case):
+    """configs/block.toml on raw records."""
+    simulated = [*CAMERA, "output.trajectory=none"]
+
+    def test_from_raw_records_to_the_block(self):
+        report = self.run_ok(self.survey / "survey.toml", config=CONFIG)
+        found = stage(report, "block.adjust")["findings"]
+        truth = {r["name"]: r for r in rows_of(self.survey / "truth" / "images.csv")}
+        integrated = rows_of(self.out / "block" / "orientation.csv")
+        self.assertEqual([r["image"] for r in integrated], sorted(truth, key=lambda n: float(truth[n]["time"])))
+        for row in integrated:
+            for k, axis in enumerate("xyz"):
+                self.assertLess(abs(float(row[axis]) - float(truth[row["image"]][axis])), 5 * math.sqrt(float(row[f"c{k + 1}{k + 1}"])), row["image"])
+        self.assertEqual([d["component"] for d in found["direct"]], ["east", "north", "up", "tilt about x", "tilt about y", "turn"])
+        for d in found["direct"]:
+            self.assertLess(d["integrated_sigma"], d["direct_sigma"], d)
+            self.assertLess(d["rms_over_sigma"], 3.0, d)  # few images, and what they have in common
+        self.assertEqual(found["started_from"], "direct orientation")
+        for check in found["check"]:
+            self.assertLess(check["over_sigma"], 2.0, check)
+        self.assertEqual(json.loads((self.out / "block" / "block.json").read_text()), found)
+        self.assertIn("Direct and integrated orientation", (self.out / "block" / "report.html").read_text())
+        # The cameras after the adjustment are tables of a survey, and of `swath undistort`.
+        camera = tomllib.loads((self.out / "block" / "camera.toml").read_text())["camera"][0]
+        self.assertEqual(camera["technique"], "marks")
+        for part, true in zip(camera["lever_arm"], (0.21, -0.08, 0.34)):
+            self.assertLess(abs(float(part.split()[0]) - true), 0.05)
+        for angle, true in zip(camera["boresight"], (0.31, -0.22, 0.53)):
+            self.assertLess(abs(float(angle.split()[0]) - true), 0.02)
+        text = (self.survey / "survey.toml").read_text()
+        begin = text.index("[[camera]]")
+        end = text.index("\n[[", begin)
+        adjusted = self.survey / "adjusted.toml"
+        adjusted.write_text(text[:begin] + (self.out / "block" / "camera.toml").read_text() + text[end:])
+        self.assertEqual(swath("check", CONFIG, "--survey", adjusted).returncode, 0, swath("check", CONFIG, "--survey", adjusted).stderr)
+        none = swath("undistort", self.folder / "none.jpg", "--camera", self.out / "block" / "camera.toml", "--output", self.folder / "u")
+        self.assertIn("none.jpg", none.stderr)
+
+
+class BlockRuns(Case):
+    simulated = [*CAMERA, "imu.file=false", "gnss.file=false"]
+
+    def setUp(self):
+        super().setUp()
+        self.config = self.folder / "run.toml"
+        self.config.write_text("".join(f'[[stage]]\ntype = "{s}"\n' for s in STAGES))
+        self.flown = self.copy()
+
+    def run_block(self, *more, code=0, out=None):
+        return self.run_ok(self.flown / "survey.toml", *more, config=self.config, code=code, out=out)
+
+    def refused(self, code, *words):
+        shutil.rmtree(self.out, ignore_errors=True)
+        done = swath("run", self.config, "--survey", self.flown / "survey.toml", "--output", self.out, "--quiet")
+        self.assert_error(done, code, *words)
+        self.assertFalse((self.out / "block").exists())
+
+    def test_what_changes_the_block_is_done_again_and_nothing_else(self):
+        keep = ["--set", "run.keep_work=true"]
+        first = self.run_block(*keep)
+        same = self.run_block(*keep)
+        self.assertGreater(same["pieces_resumed"], 0)
+        other = self.run_block(*keep, "--set", "block.adjust.robust=false")
+        self.assertEqual(other["pieces_resumed"], same["pieces_resumed"] - 1)
+        prints = lambda r: {s["type"]: s["fingerprint"] for s in r["stages"]}  # noqa: E731
+        self.assertEqual(prints(first), prints(same))
+        changed = [k for k in STAGES if prints(first)[k] != prints(other)[k]]
+        self.assertEqual(changed, ["block.adjust"])
+        for file in ("image_points.csv", "block_control.csv"):
+            rewrite(self.flown / file, lambda rows: rows[:-1])
+            again = self.run_block(*keep)
+            self.assertEqual(again["pieces_resumed"], 0, file)
+            self.assertNotEqual(prints(again)["block.adjust"], prints(first)["block.adjust"])
+            first = again
+
+    def test_threads_change_nothing(self):
+        outs = [self.folder / str(n) for n in (1, 2)]
+        for n, out in zip((1, 2), outs):
+            self.run_block("--set", f"run.threads={n}", out=out)
+        for name in ("orientation.csv", "camera.toml", "block.json", "points.laz"):
+            self.assertEqual(*((out / "block" / name).read_bytes() for out in outs), name)
+
+    def test_check_and_info_know_the_tables(self):
+        self.assertEqual(swath("check", self.config, "--survey", self.flown / "survey.toml").returncode, 0)
+        info = swath("info", self.flown / "survey.toml").stdout
+        self.assertIn("image_points.csv", info)
+        self.assertIn("block_control.csv", info)
+        substitute(self.flown / "survey.toml", 'origin = "corner"\n', "")
+        self.refused(2, r"image_points\[1\].origin", "one of middle, corner, pixel_centre")
+
+    def test_the_order_of_stages(self):
+        self.config.write_text("".join(f'[[stage]]\ntype = "{s}"\n' for s in STAGES if s != "orientation.direct"))
+        self.refused(2, "needs orientations, which no stage before it gives.*orientation.direct")
+
+    def test_images_by_a_list(self):
+        names = {r["name"]: f"DSC_{1000 + int(r['name'])}.jpg" for r in rows_of(self.flown / "truth" / "images.csv")}
+        rewrite(self.flown / "image_points.csv", lambda rows: [{**r, "image": names[r["image"]]} for r in rows])
+        (self.flown / "list.csv").write_text("name,event\n" + "".join(f"{n},{e}\n" for e, n in names.items()))
+        survey = self.flown / "survey.toml"
+        survey.write_text(survey.read_text() + '\n[[image]]\nfile = "list.csv"\n')
+        report = self.run_block()
+        self.assertEqual(stage(report, "block.adjust")["findings"]["images"], len(names))
+        self.assertTrue(rows_of(self.out / "block" / "orientation.csv")[0]["image"].startswith("DSC_"))
+        first, second = list(names.items())[:2]
+        for old, new, message in ((f"{second[1]},{second[0]}\n", f"{first[1]},{second[0]}\n", f"list.csv:3: .*image {first[1]} is there twice, first in"),
+                                  (f"{second[1]},{second[0]}\n", f"{second[1]},{first[0]}\n", "are of one event, " + first[0]),
+                                  (f"{second[1]},{second[0]}\n", f"{second[1]},9999\n", f"image {second[1]} is of event 9999, and no event"),
+                                  (f"{second[1]},{second[0]}\n", "", f"image {second[1]} has image points and is none of the images")):
+            text = (self.flown / "list.csv").read_text()
+            substitute(self.flown / "list.csv", old, new)
+            with self.subTest(message):
+                self.refused(1, message)
+            (self.flown / "list.csv").write_text(text)
+        (self.flown / "list.csv").write_text("name,event,camera\n" + "".join(f"{n},{e},P9\n" for e, n in names.items()))
+        self.refused(1, "camera P9 of image .* is not in the survey")
+
+    def test_events_that_do_not_fit(self):
+        marks = self.flown / "events_marks.csv"
+        text = marks.read_text()
+        rewrite(marks, lambda rows: rows[:3] + rows[4:])
+        self.refused(1, "image 4 has image points and is none of the images that have an orientation", "its event is missing")
+        # Every event has the id of the image before it, as where the first one is lost.
+        marks.write_text(text)
+        ids = [r["id"] for r in rows_of(marks)]
+        rewrite(marks, lambda rows: [{**r, "id": i} for r, i in zip(rows, [ids[-1], *ids])])
+        self.refused(1, "stations .*are those of the image (before|after)")
+        marks.write_text(text)
+        rewrite(marks, lambda rows: [rows[0], {**rows[1], "id": rows[0]["id"]}, *rows[2:]])
+        self.refused(1, "there twice")
+
+    def test_images_without_points_are_named(self):
+        rewrite(self.flown / "image_points.csv", lambda rows: [r for r in rows if r["image"] != "2"])
+        found = stage(self.run_block(), "block.adjust")["findings"]
+        self.assertIn("images without image points have their observed orientation: 2", found["findings"])
+        self.assertEqual(found["images_without_points"], ["2"])
+
+    def test_control_elsewhere(self):
+        control = self.flown / "block_control.csv"
+        text = control.read_text()
+        rewrite(control, lambda rows: [{**r, "x": float(r["x"]) + 5000.0} for r in rows])
+        self.refused(1, "control points lie up to .* from where the images see them")
+        control.write_text(text.replace("control", "other"))
+        findings = stage(self.run_block(), "block.adjust")["findings"]
+        self.assertIn("5 points of the control files are on no image", findings["findings"])
+
+    def test_a_camera_that_is_not_described(self):
+        substitute(self.flown / "survey.toml", 'technique = "marks"', 'technique = "mark"')  # of the events
+        self.refused(2, "no event is of the technique marks of camera camera", "the events are of mark, pc")
+
+    def test_options_that_do_nothing_are_refused(self):
+        done = swath("check", self.config, "--survey", self.flown / "survey.toml", "--set", "block.adjust.stations=start", "--set",
+                     "block.adjust.drift=strip")
+        self.assert_error(done, 2, "drift and datum have no effect")
+
+
+if __name__ == "__main__":
+    unittest.main()
