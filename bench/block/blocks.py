@@ -329,8 +329,9 @@ def size(program, strips=100, images=100, paired=0):
         taken = time.monotonic() - begin
         if isinstance(found, str):
             return print(found)
-        peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1e6
-        print(f"{found['images']} images, {found['points']} points, {found['image_points']} image points: {taken:.0f} s, {peak:.1f} GB; sigma0 {found['sigma0']:.3f}")
+        used = resource.getrusage(resource.RUSAGE_CHILDREN)
+        print(f"{found['images']} images, {found['points']} points, {found['image_points']} image points: {taken:.0f} s, "
+              f"{used.ru_utime + used.ru_stime:.0f} s of processor time, {used.ru_maxrss / 1e6:.1f} GB; sigma0 {found['sigma0']:.3f}")
         return None
 
 

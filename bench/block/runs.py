@@ -74,8 +74,9 @@ def main(program, number=20, *more):
     sums = Sums()
     for seed in range(1, int(number) + 1):
         fly(program, seed, more, sums)
-    for kind, (over, squares, n) in sums.items():
-        print(f"{kind}: rms {math.sqrt(squares / n):.3g}, over sigma {math.sqrt(over / n):.3f} of {n}")
+        print(f"--- {seed} flights")
+        for kind, (over, squares, n) in sums.items():
+            print(f"{kind}: rms {math.sqrt(squares / n):.3g}, over sigma {math.sqrt(over / n):.3f} of {n}", flush=True)
 
 
 if __name__ == "__main__":

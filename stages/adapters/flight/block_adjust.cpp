@@ -102,16 +102,21 @@ std::vector<calib::SurveyedPoint> surveyed_points(const Context& context, core::
   return out;
 }
 
-/// A file none of whose points is on an image is one for the laser, where another file's are.
-void leave_out_others(const std::vector<calib::SurveyedPoint>& points, calib::ReadBlock& read) {
+/// Files none of whose points is on an image may be the laser's: one sentence for each takes the place of their names.
+std::vector<std::string> files_without_image(const std::vector<calib::SurveyedPoint>& points, calib::ReadBlock& read) {
   const auto file_of = [](const std::string& place) { return place.substr(0, place.rfind(':')); };
-  std::set<std::string> files;
-  for (const calib::StatedControl& c : read.control) files.insert(file_of(c.place));
-  if (files.empty()) return;
-  std::set<std::string> others;
-  for (const calib::SurveyedPoint& p : points)
-    if (!files.contains(file_of(p.place))) others.insert(p.name);
-  std::erase_if(read.control_without_image, [&](const std::string& name) { return others.contains(name); });
+  std::set<std::string> seen, others, names;
+  for (const calib::StatedControl& c : read.control) seen.insert(file_of(c.place));
+  for (const calib::SurveyedPoint& p : points) {
+    if (seen.contains(file_of(p.place))) continue;
+    others.insert(fs::path(file_of(p.place)).filename().string());
+    names.insert(p.name);
+  }
+  std::erase_if(read.control_without_image, [&](const std::string& name) { return names.contains(name); });
+  std::vector<std::string> out;
+  for (const std::string& file : others)
+    out.push_back("no point of " + file + " is on an image: names differ, or it is the laser's control");
+  return out;
 }
 
 calib::BlockFound adjust_images(const Context& context, const BlockStageOptions& o, const Output& to, core::Tally& tally) {
@@ -119,7 +124,7 @@ calib::BlockFound adjust_images(const Context& context, const BlockStageOptions&
   const std::vector<calib::SurveyedPoint> control = surveyed_points(context, tally);
   context.progress(0.0, "reading image points");
   calib::ReadBlock read = calib::read_block(config, context.survey.name, control);
-  leave_out_others(control, read);
+  const std::vector<std::string> unseen = files_without_image(control, read);
   calib::refuse_mistakes(read, config);
   const calib::StartResidual start = calib::start_residual(calib::sample_of(read, 2000).block);
   const calib::ReadBlock stated = read;
@@ -131,6 +136,7 @@ calib::BlockFound adjust_images(const Context& context, const BlockStageOptions&
   found.start_tie = start.tie, found.start_control = start.control;
   found.started_from = "direct orientation";
   found.direct = calib::compare_direct(stated, read, solution);
+  found.findings.insert(found.findings.end(), unseen.begin(), unseen.end());
   calib::write_block(to.folder / block_folder, read, config, solution, found);
   return found;
 }
