@@ -54,6 +54,7 @@ Compared compare(unsigned seed, const std::string& boresight) {
 
 TEST(DirectComparison, DifferencesHaveTheirOwnSigmasOverSeeds) {
   constexpr int seeds = 20;
+  constexpr double three_sigma = 0.25;  // half of the rotations' variance is the boresight's, one error per seed
   std::array<double, 6> squares{};
   for (unsigned seed = 1; seed <= seeds; ++seed) {
     const Compared c = compare(seed, "0.0057295779513 deg");
@@ -64,7 +65,7 @@ TEST(DirectComparison, DifferencesHaveTheirOwnSigmasOverSeeds) {
       squares[k] += c.found[k].over_sigma * c.found[k].over_sigma / seeds;
     }
   }
-  for (size_t k = 0; k < 6; ++k) EXPECT_NEAR(std::sqrt(squares[k]), 1.0, 0.15) << k;
+  for (size_t k = 0; k < 6; ++k) EXPECT_NEAR(std::sqrt(squares[k]), 1.0, three_sigma) << k;
 }
 
 TEST(DirectComparison, AFreeBoresightLeavesDirectAttitudesWithoutSigma) {
