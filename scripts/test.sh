@@ -4,6 +4,6 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 bash scripts/install.sh
-cmake --preset release -DSWATH_TESTS=ON -DSWATH_UNITY=OFF
+cmake --preset release -DSWATH_TESTS=ON -DSWATH_UNITY=ON
 cmake --build build/release
 ctest --preset release -j "$(nproc)"

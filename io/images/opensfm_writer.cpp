@@ -24,17 +24,18 @@ double larger_side(const FileCamera& c) { return std::max(c.columns, c.rows); }
 
 Value camera_value(const FileCamera& c) {
   const double side = larger_side(c);
-  Value::Object out;
-  out.emplace_back("projection_type", Value("brown"));
-  out.emplace_back("width", Value(c.columns));
-  out.emplace_back("height", Value(c.rows));
-  out.emplace_back("focal_x", Value(c.fx / side));
-  out.emplace_back("focal_y", Value(c.fy / side));
-  out.emplace_back("c_x", Value((c.cx - c.columns / 2.0) / side));
-  out.emplace_back("c_y", Value((c.cy - c.rows / 2.0) / side));
-  for (const auto& [key, value] : {std::pair{"k1", c.k1}, {"k2", c.k2}, {"p1", c.p1}, {"p2", c.p2}, {"k3", c.k3}})
-    out.emplace_back(key, Value(value));
-  return Value(std::move(out));
+  return Value(Value::Object{{"projection_type", Value("brown")},
+                             {"width", Value(c.columns)},
+                             {"height", Value(c.rows)},
+                             {"focal_x", Value(c.fx / side)},
+                             {"focal_y", Value(c.fy / side)},
+                             {"c_x", Value((c.cx - c.columns / 2.0) / side)},
+                             {"c_y", Value((c.cy - c.rows / 2.0) / side)},
+                             {"k1", Value(c.k1)},
+                             {"k2", Value(c.k2)},
+                             {"p1", Value(c.p1)},
+                             {"p2", Value(c.p2)},
+                             {"k3", Value(c.k3)}});
 }
 
 Value shot_value(const FilePose& pose, const std::string& camera) {
