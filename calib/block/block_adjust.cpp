@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
 #include "calib/adjust/robust_weight.h"
 #include "calib/block/block_diagnosis.h"
@@ -89,8 +88,7 @@ BlockSolution adjust_block(ImageBlock& block, const BlockOptions& o) {
   find_drift_sets(block);
   BlockSolution out;
   out.weights.of_ray.assign(block.rays.size(), 1.0);
-  const int threads = o.threads > 0 ? o.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  BlockSystem system(block, out.weights, threads);
+  BlockSystem system(block, out.weights);
   {
     const LinearBlock start = system.linearise();
     const BlockNormals normals(start);

@@ -14,30 +14,20 @@
 
 namespace swath::calib {
 
-struct BlockWeightOptions {
+struct BlockOptions {
   bool robust = true;
   double full_weight = 3.0, no_weight = 8.0;
   bool components = true;
 };
 
 template <class V>
-void describe(BlockWeightOptions& o, V& v) {
+void describe(BlockOptions& o, V& v) {
   v.option("robust", o.robust, "Weights that fall with the residual, so that wrong image points do not count.", "Baarda1968");
   v.option("full_weight", o.full_weight, core::above(0), "Residual up to which an image point has its full weight, in robust sigmas.");
   v.option("no_weight", o.no_weight, core::above(0), "Residual from which on it has none.");
   v.option("components", o.components, "Factors on the sigmas of image points, stations, attitudes and control from their residuals.",
            "Foerstner1979");
   v.check(o.no_weight > o.full_weight, "no_weight must be larger than full_weight");
-}
-
-struct BlockOptions : BlockWeightOptions {
-  int threads = 0;
-};
-
-template <class V>
-void describe(BlockOptions& o, V& v) {
-  describe(static_cast<BlockWeightOptions&>(o), v);
-  v.option("threads", o.threads, core::within(0, 1024), "Threads; 0: one per processor.");
 }
 
 struct BlockSolution {

@@ -30,30 +30,24 @@ std::array<double, 9> whitener(const Matrix3d& covariance) {
   return by_rows(llt.matrixL().solve(Matrix3d::Identity()));
 }
 
-struct Pose {
-  std::array<double, 6> value{};
-  std::array<double, 9> base{};
-};
-
 }  // namespace
 
 struct BlockSystem::State {
   ImageBlock& block;
   BlockWeights weights;
-  int threads;
   ceres::Problem problem;
-  std::vector<Pose> poses;
-  std::vector<std::array<double, 3>> points, boresight, antenna;
-  std::vector<CameraVector> cameras;
-  std::vector<Matrix3d> nominal;  // body_R_camera
-  std::vector<std::array<double, 6>> drifts;
-  std::array<double, 7> datum{};  // shift, rotation, scale
+  // In one array: Ceres eliminates in the order of addresses, and several arrays lie in another order where other memory was taken.
+  std::vector<double> parameters;
+  std::vector<double*> poses, cameras, boresight, antenna, drifts, points;  // in `parameters`
+  double* datum = nullptr;                                                  // shift, rotation, scale
+  std::vector<std::array<double, 9>> base;                                  // per image, by rows
+  std::vector<Matrix3d> nominal;                                            // body_R_camera
   std::array<double, 3> datum_centre{};
   std::vector<ceres::ResidualBlockId> ids;
   std::vector<double*> order;  // of parameter blocks
   LinearBlock shape;           // without rows
 
-  State(ImageBlock& b, const BlockWeights& w, int t) : block(b), weights(w), threads(t) {
+  State(ImageBlock& b, const BlockWeights& w) : block(b), weights(w) {
     if (weights.of_ray.empty()) weights.of_ray.assign(block.rays.size(), 1.0);
     take_values();
     add_parameters();
@@ -89,44 +83,56 @@ struct BlockSystem::State {
 };
 
 void BlockSystem::State::take_values() {
+  parameters.reserve(6 * block.images.size() + (camera_values + 6) * block.cameras.size() + 6 * block.drifts.size() + 7 +
+                     3 * block.points.size());  // pointers into it stay
+  const auto put = [&](const auto& v) {
+    parameters.insert(parameters.end(), v.data(), v.data() + v.size());
+    return parameters.data() + parameters.size() - v.size();
+  };
+  const Vector3d none = Vector3d::Zero();
   for (const BlockImage& i : block.images) {
-    const Vector3d& X = i.position;
-    poses.push_back({{X.x(), X.y(), X.z(), 0.0, 0.0, 0.0}, by_rows(i.camera_R_local)});
+    poses.push_back(put(i.position));
+    put(none);  // rotation
+    base.push_back(by_rows(i.camera_R_local));
   }
-  for (const BlockPoint& p : block.points) points.push_back({p.position.x(), p.position.y(), p.position.z()});
   for (const BlockCamera& c : block.cameras) {
-    cameras.push_back(c.value);
-    boresight.push_back({});
+    cameras.push_back(put(c.value));
+    boresight.push_back(put(none));
+    antenna.push_back(put(c.antenna));
     nominal.push_back(c.body_R_camera);
-    antenna.push_back({c.antenna.x(), c.antenna.y(), c.antenna.z()});
   }
-  for (const StationDrift& d : block.drifts)
-    drifts.push_back({d.shift.x(), d.shift.y(), d.shift.z(), d.change.x(), d.change.y(), d.change.z()});
+  for (const StationDrift& d : block.drifts) {
+    drifts.push_back(put(d.shift));
+    put(d.change);
+  }
   const StationDatum& s = block.station_datum;
-  datum = {s.shift.x(), s.shift.y(), s.shift.z(), s.rotation.x(), s.rotation.y(), s.rotation.z(), s.scale};
+  datum = put(s.shift);
+  put(s.rotation);
+  parameters.push_back(s.scale);
   datum_centre = {s.centre.x(), s.centre.y(), s.centre.z()};
+  for (const BlockPoint& p : block.points) points.push_back(put(p.position));
 }
 
 void BlockSystem::State::give_values() {
   for (size_t i = 0; i < poses.size(); ++i) {
-    const auto& p = poses[i].value;
-    block.images[i].position = Vector3d(p[0], p[1], p[2]);
-    block.images[i].camera_R_local = core::exp_so3(Vector3d(p[3], p[4], p[5])) * block.images[i].camera_R_local;
-    poses[i].base = by_rows(block.images[i].camera_R_local);
-    std::fill(poses[i].value.begin() + 3, poses[i].value.end(), 0.0);
+    BlockImage& image = block.images[i];
+    image.position = Vector3d(poses[i]);
+    image.camera_R_local = core::exp_so3(Vector3d(poses[i] + 3)) * image.camera_R_local;
+    base[i] = by_rows(image.camera_R_local);
+    std::fill_n(poses[i] + 3, 3, 0.0);
   }
-  for (size_t i = 0; i < points.size(); ++i) block.points[i].position = Vector3d(points[i].data());
+  for (size_t i = 0; i < points.size(); ++i) block.points[i].position = Vector3d(points[i]);
   for (size_t c = 0; c < cameras.size(); ++c) {
-    block.cameras[c].value = cameras[c];
-    block.cameras[c].antenna = Vector3d(antenna[c].data());
-    block.cameras[c].body_R_camera = nominal[c] * core::exp_so3(-Vector3d(boresight[c].data()));
+    block.cameras[c].value = CameraVector(cameras[c]);
+    block.cameras[c].antenna = Vector3d(antenna[c]);
+    block.cameras[c].body_R_camera = nominal[c] * core::exp_so3(-Vector3d(boresight[c]));
   }
   for (size_t d = 0; d < drifts.size(); ++d) {
-    block.drifts[d].shift = Vector3d(drifts[d].data());
-    block.drifts[d].change = Vector3d(drifts[d].data() + 3);
+    block.drifts[d].shift = Vector3d(drifts[d]);
+    block.drifts[d].change = Vector3d(drifts[d] + 3);
   }
-  block.station_datum.shift = Vector3d(datum.data());
-  block.station_datum.rotation = Vector3d(datum.data() + 3);
+  block.station_datum.shift = Vector3d(datum);
+  block.station_datum.rotation = Vector3d(datum + 3);
   block.station_datum.scale = datum[6];
 }
 
@@ -152,16 +158,16 @@ void BlockSystem::State::add_partly(NodeKind kind, size_t index, double* values,
 }
 
 void BlockSystem::State::add_parameters() {
-  for (size_t i = 0; i < poses.size(); ++i) add_node(NodeKind::image, i, poses[i].value.data(), 6, {0, 1, 2, 3, 4, 5});
+  for (size_t i = 0; i < poses.size(); ++i) add_node(NodeKind::image, i, poses[i], 6, {0, 1, 2, 3, 4, 5});
   for (size_t c = 0; c < cameras.size(); ++c) {
     const BlockCamera& camera = block.cameras[c];
-    add_partly(NodeKind::camera, c, cameras[c].data(), camera_values, camera.sigma);
-    add_partly(NodeKind::boresight, c, boresight[c].data(), 3, camera.boresight_sigma);
-    add_partly(NodeKind::antenna, c, antenna[c].data(), 3, camera.antenna_sigma);
+    add_partly(NodeKind::camera, c, cameras[c], camera_values, camera.sigma);
+    add_partly(NodeKind::boresight, c, boresight[c], 3, camera.boresight_sigma);
+    add_partly(NodeKind::antenna, c, antenna[c], 3, camera.antenna_sigma);
   }
-  for (size_t d = 0; d < drifts.size(); ++d) add_node(NodeKind::drift, d, drifts[d].data(), 6, {0, 1, 2, 3, 4, 5});
-  if (block.datum == Datum::shift) add_node(NodeKind::datum, 0, datum.data(), 7, {0, 1, 2});
-  if (block.datum == Datum::similarity) add_node(NodeKind::datum, 0, datum.data(), 7, {0, 1, 2, 3, 4, 5, 6});
+  for (size_t d = 0; d < drifts.size(); ++d) add_node(NodeKind::drift, d, drifts[d], 6, {0, 1, 2, 3, 4, 5});
+  if (block.datum == Datum::shift) add_node(NodeKind::datum, 0, datum, 7, {0, 1, 2});
+  if (block.datum == Datum::similarity) add_node(NodeKind::datum, 0, datum, 7, {0, 1, 2, 3, 4, 5, 6});
 }
 
 void BlockSystem::State::add_points() {
@@ -170,8 +176,8 @@ void BlockSystem::State::add_points() {
   for (size_t p = 0; p < points.size(); ++p) {
     shape.point_column.push_back(use[p] ? column : -1);
     if (!use[p]) continue;
-    problem.AddParameterBlock(points[p].data(), 3);
-    order.push_back(points[p].data());
+    problem.AddParameterBlock(points[p], 3);
+    order.push_back(points[p]);
     column += 3;
   }
 }
@@ -181,10 +187,9 @@ void BlockSystem::State::add_rays() {
     const ImageRay& ray = block.rays[r];
     if (shape.point_column[ray.point] < 0) continue;
     const std::uint32_t camera = block.images[ray.image].camera;
-    auto* cost = new ceres::AutoDiffCostFunction<RayCost, 2, 6, 3, camera_values>(new RayCost{
-        ray.x, ray.y, ray.sigma, poses[ray.image].base.data(), &weights.ray, &weights.of_ray[r], block.cameras[camera].distortion});
-    note(ObservationKind::ray, r, 2, 0,
-         problem.AddResidualBlock(cost, nullptr, poses[ray.image].value.data(), points[ray.point].data(), cameras[camera].data()));
+    auto* cost = new ceres::AutoDiffCostFunction<RayCost, 2, 6, 3, camera_values>(
+        new RayCost{ray.x, ray.y, ray.sigma, base[ray.image].data(), &weights.ray, &weights.of_ray[r], block.cameras[camera].distortion});
+    note(ObservationKind::ray, r, 2, 0, problem.AddResidualBlock(cost, nullptr, poses[ray.image], points[ray.point], cameras[camera]));
   }
   for (size_t k = 0; k < block.control.size(); ++k) {
     const BlockControl& c = block.control[k];
@@ -192,7 +197,7 @@ void BlockSystem::State::add_rays() {
     for (int i = 0; i < 3; ++i) {
       if (!c.known[static_cast<size_t>(i)]) continue;
       auto* cost = new ceres::AutoDiffCostFunction<ControlCost, 1, 3>(new ControlCost{i, c.position[i], c.sigma[i], &weights.control});
-      note(ObservationKind::control, k, 1, i, problem.AddResidualBlock(cost, nullptr, points[c.point].data()));
+      note(ObservationKind::control, k, 1, i, problem.AddResidualBlock(cost, nullptr, points[c.point]));
     }
   }
 }
@@ -208,24 +213,23 @@ void BlockSystem::State::add_navigation() {
   for (size_t s = 0; s < block.stations.size(); ++s) {
     const ImageStation& station = block.stations[s];
     const std::uint32_t camera = block.images[station.image].camera;
-    Pose& pose = poses[station.image];
+    double* const pose = poses[station.image];
     const int set = block.drift_of.empty() ? -1 : block.drift_of[s];
     auto* cost = new StationCost{{station.position.x(), station.position.y(), station.position.z()},
                                  whitener(station.covariance),
-                                 pose.base.data(),
+                                 base[station.image].data(),
                                  &weights.station,
                                  drift_time(s),
                                  block.datum == Datum::none ? nullptr : datum_centre.data()};
     if (block.datum != Datum::none) {
       note(ObservationKind::station, s, 3, 0,
-           problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3, 7>(cost), nullptr, pose.value.data(),
-                                    antenna[camera].data(), datum.data()));
+           problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3, 7>(cost), nullptr, pose, antenna[camera], datum));
       continue;
     }
-    const auto id = set < 0 ? problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3>(cost), nullptr,
-                                                       pose.value.data(), antenna[camera].data())
-                            : problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3, 6>(cost), nullptr,
-                                                       pose.value.data(), antenna[camera].data(), drifts[static_cast<size_t>(set)].data());
+    const auto id =
+        set < 0 ? problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3>(cost), nullptr, pose, antenna[camera])
+                : problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StationCost, 3, 6, 3, 6>(cost), nullptr, pose, antenna[camera],
+                                           drifts[static_cast<size_t>(set)]);
     note(ObservationKind::station, s, 3, 0, id);
   }
   for (size_t a = 0; a < block.attitudes.size(); ++a) {
@@ -233,13 +237,13 @@ void BlockSystem::State::add_navigation() {
     const BlockImage& image = block.images[attitude.image];
     const Matrix3d& B = block.cameras[image.camera].body_R_camera;
     auto* cost = new AttitudeCost{by_rows(attitude.local_R_body * B), whitener(B.transpose() * attitude.covariance * B),
-                                  poses[attitude.image].base.data(), &weights.attitude};
-    double* const pose = poses[attitude.image].value.data();
+                                  base[attitude.image].data(), &weights.attitude};
+    double* const pose = poses[attitude.image];
     const auto id = block.datum == Datum::similarity
                         ? problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AttitudeCost, 3, 6, 3, 7>(cost), nullptr, pose,
-                                                   boresight[image.camera].data(), datum.data())
+                                                   boresight[image.camera], datum)
                         : problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AttitudeCost, 3, 6, 3>(cost), nullptr, pose,
-                                                   boresight[image.camera].data());
+                                                   boresight[image.camera]);
     note(ObservationKind::attitude, a, 3, 0, id);
   }
 }
@@ -249,9 +253,9 @@ void BlockSystem::State::add_chain() {
   std::vector<size_t> station_of(poses.size(), 0), attitude_of(poses.size(), 0);
   for (size_t i = 0; i < poses.size(); ++i) {
     const std::uint32_t camera = block.images[i].camera;
-    member[i].pose = poses[i].value.data(), member[i].base = poses[i].base.data();
-    member[i].antenna = antenna[camera].data(), member[i].boresight = boresight[camera].data();
-    if (block.datum != Datum::none) member[i].datum = datum.data(), member[i].datum_centre = datum_centre.data();
+    member[i].pose = poses[i], member[i].base = base[i].data();
+    member[i].antenna = antenna[camera], member[i].boresight = boresight[camera];
+    if (block.datum != Datum::none) member[i].datum = datum, member[i].datum_centre = datum_centre.data();
     member[i].turned = block.datum == Datum::similarity;
   }
   for (size_t s = 0; s < block.stations.size(); ++s) {
@@ -259,7 +263,7 @@ void BlockSystem::State::add_chain() {
     ChainMember& m = member[station.image];
     m.station = {station.position.x(), station.position.y(), station.position.z()};
     m.u = drift_time(s);
-    if (!block.drift_of.empty() && block.drift_of[s] >= 0) m.drift = drifts[static_cast<size_t>(block.drift_of[s])].data();
+    if (!block.drift_of.empty() && block.drift_of[s] >= 0) m.drift = drifts[static_cast<size_t>(block.drift_of[s])];
     station_of[station.image] = s;
   }
   for (size_t a = 0; a < block.attitudes.size(); ++a) {
@@ -295,14 +299,13 @@ void BlockSystem::State::add_prior(NodeKind kind, size_t index, double* values, 
 
 void BlockSystem::State::add_priors() {
   for (size_t c = 0; c < cameras.size(); ++c) {
-    add_prior<camera_values>(NodeKind::camera, c, cameras[c].data(), block.cameras[c].sigma);
-    add_prior<3>(NodeKind::boresight, c, boresight[c].data(), block.cameras[c].boresight_sigma);
-    add_prior<3>(NodeKind::antenna, c, antenna[c].data(), block.cameras[c].antenna_sigma);
+    add_prior<camera_values>(NodeKind::camera, c, cameras[c], block.cameras[c].sigma);
+    add_prior<3>(NodeKind::boresight, c, boresight[c], block.cameras[c].boresight_sigma);
+    add_prior<3>(NodeKind::antenna, c, antenna[c], block.cameras[c].antenna_sigma);
   }
 }
 
-BlockSystem::BlockSystem(ImageBlock& block, const BlockWeights& weights, int threads)
-    : state_(std::make_unique<State>(block, weights, std::max(1, threads))) {}
+BlockSystem::BlockSystem(ImageBlock& block, const BlockWeights& weights) : state_(std::make_unique<State>(block, weights)) {}
 BlockSystem::~BlockSystem() = default;
 
 void BlockSystem::weigh(const BlockWeights& weights) {
@@ -322,10 +325,10 @@ BlockConvergence BlockSystem::solve() {
   std::vector<double*> all;
   s.problem.GetParameterBlocks(&all);
   for (double* values : all) {
-    const bool point = !s.points.empty() && values >= s.points.front().data() && values <= s.points.back().data();
+    const bool point = !s.points.empty() && values >= s.points.front() && values <= s.points.back();
     ordering->AddElementToGroup(values, point ? 0 : 1);
   }
-  o.num_threads = s.threads;
+  o.num_threads = 1;  // more add in the order in which they are done: the last digits would depend on it
   o.max_num_iterations = 100;
   o.function_tolerance = 1e-14;
   o.parameter_tolerance = 1e-13;
@@ -344,7 +347,6 @@ LinearBlock BlockSystem::linearise() {
   ceres::Problem::EvaluateOptions o;
   o.parameter_blocks = s.order;
   o.residual_blocks = s.ids;
-  o.num_threads = s.threads;
   ceres::CRSMatrix J;
   LinearBlock out = s.shape;
   double cost = 0.0;

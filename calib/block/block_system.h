@@ -66,8 +66,8 @@ struct BlockConvergence {
 
 class BlockSystem {
  public:
-  /// `block` must outlive it; solve() changes its values.
-  BlockSystem(ImageBlock& block, const BlockWeights& weights, int threads);
+  /// `block` must outlive it; solve() changes its values. The same block gives the same values to the last bit, anywhere in memory.
+  BlockSystem(ImageBlock& block, const BlockWeights& weights);
   ~BlockSystem();
   BlockSystem(const BlockSystem&) = delete;
   BlockSystem& operator=(const BlockSystem&) = delete;

@@ -154,7 +154,7 @@ TheoryFound theory_of(const TheoryOptions& o, const TheoryCase& c) {
   out.images = block.images.size();
   out.rays = block.rays.size();
   out.station = o.sigma_station ? o.sigma_station->value : o.unit();
-  const LinearBlock linear = BlockSystem(block, {}, 1).linearise();
+  const LinearBlock linear = BlockSystem(block, {}).linearise();
   out.points = static_cast<size_t>(linear.points());
   const BlockInference found = infer(linear);
   if (!found.determined() || !found.unsound_points.empty()) {

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* block_folder = "block";
 
-struct BlockStageOptions : calib::BlockWeightOptions {
+struct BlockStageOptions : calib::BlockOptions {
   calib::DriftSets drift = calib::DriftSets::none;
   calib::Datum datum = calib::Datum::none;
   calib::ImageValues stations = calib::ImageValues::observed, attitudes = calib::ImageValues::observed;
@@ -34,7 +34,7 @@ void describe(BlockStageOptions& o, V& v) {
   v.option("datum", o.datum, "Unknown datum of the trajectory against control: none, a shift, or with rotation and scale.");
   v.option("stations", o.stations, "observed: positions by the trajectory take part; start: values to start from.");
   v.option("attitudes", o.attitudes, "The same of its attitudes.");
-  describe(static_cast<calib::BlockWeightOptions&>(o), v);
+  describe(static_cast<calib::BlockOptions&>(o), v);
   v.check(o.datum == calib::Datum::none || o.drift == calib::DriftSets::none,
           "datum and drift are both stated: the shift of a drift is that of the datum; state datum = \"none\"");
   v.check(o.stations == calib::ImageValues::observed || (o.drift == calib::DriftSets::none && o.datum == calib::Datum::none),
@@ -70,8 +70,7 @@ calib::BlockConfig config_of_run(const Context& context, const BlockStageOptions
   const io::Survey& survey = context.survey;
   calib::BlockConfig out;
   out.crs = survey.crs, out.drift = o.drift, out.datum = o.datum;
-  static_cast<calib::BlockWeightOptions&>(out.adjust) = o;
-  out.adjust.threads = 1;  // more would add in another order: the last digits would depend on them
+  out.adjust = o;
   for (const io::SurveyCamera& c : survey.cameras) out.cameras.push_back(calib::config_of(c));
   for (io::ImageFile f : survey.image_points) {
     f.file = io::resolve(survey, f.file);

@@ -18,7 +18,6 @@ using Eigen::Vector3d;
 BlockOptions plain_least_squares() {
   BlockOptions o;
   o.robust = o.components = false;
-  o.threads = 1;
   return o;
 }
 
@@ -320,7 +319,6 @@ TEST(BlockAdjust, GrossErrorsLoseTheirWeightAndTheTestFindsThem) {
   EXPECT_EQ(at, wrong[0]);
   BlockOptions robust;
   robust.components = false;
-  robust.threads = 1;
   const BlockSolution s = adjust_block(b.given, robust);
   EXPECT_LT(s.weights.of_ray[wrong[0]], 1e-5);
   EXPECT_LT(s.weights.of_ray[wrong[1]], 1e-5);
@@ -339,7 +337,6 @@ TEST(BlockAdjust, ComponentsFindTheSigmas) {
   for (ImageRay& r : b.given.rays) r.sigma *= 2.0;               // twice too large
   for (ImageStation& s : b.given.stations) s.covariance /= 9.0;  // three times too small
   BlockOptions o;
-  o.threads = 1;
   const BlockSolution s = adjust_block(b.given, o);
   EXPECT_NEAR(s.weights.ray, 0.5, 0.05);
   EXPECT_NEAR(s.weights.station, 3.0, 0.6);  // 120 coordinates less what the block takes: 10 % each
@@ -353,7 +350,6 @@ TEST(BlockAdjust, ImagePointsWithoutWeightDoNotMakeSigmasSmaller) {
   test::MadeBlock b = test::make_block(m);
   for (std::uint32_t r = 3; r < b.given.rays.size(); r += 10) b.given.rays[r].x += r % 20 == 3 ? 1.0 : -1.0;  // 100 sigma
   BlockOptions o;
-  o.threads = 1;
   const BlockSolution s = adjust_block(b.given, o);
   EXPECT_GE(s.without_weight, b.given.rays.size() / 10);
   std::printf("%zu of %zu without weight, factor %.4f, redundancy %.1f and %.1f lost\n", s.without_weight, b.given.rays.size(),

@@ -12,7 +12,7 @@ namespace {
 
 /// Error and hint of a block that must not be solved.
 std::string refusal(ImageBlock& block) {
-  const LinearBlock l = BlockSystem(block, {}, 1).linearise();
+  const LinearBlock l = BlockSystem(block, {}).linearise();
   const BlockInference found = infer(l);
   EXPECT_FALSE(found.determined() && found.unsound_points.empty());
   try {
@@ -78,7 +78,7 @@ TEST(BlockDiagnosis, AValueThatNothingSeparatesIsNamed) {
 
 TEST(BlockDiagnosis, ADeterminedBlockHasNoModes) {
   ImageBlock b = block_of(DriftSets::strip, ControlLayout::chains);
-  EXPECT_TRUE(undetermined_modes(b, BlockSystem(b, {}, 1).linearise()).empty());
+  EXPECT_TRUE(undetermined_modes(b, BlockSystem(b, {}).linearise()).empty());
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ TEST(BlockInference, CovariancesAndRedundanciesAreThoseOfTheDenseInverse) {
   m.attitudes = true;
   m.camera_sigma.head<3>().setConstant(0.05);
   ImageBlock block = test::make_block(m).given;
-  const LinearBlock l = BlockSystem(block, {}, 1).linearise();
+  const LinearBlock l = BlockSystem(block, {}).linearise();
   const int all = l.unknowns + 3 * l.points();
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(l.residual.size()), all);
   for (size_t row = 0; row < l.residual.size(); ++row)

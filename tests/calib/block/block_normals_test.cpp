@@ -16,7 +16,7 @@ TEST(BlockNormals, PointsAreEliminatedAsFromTheDenseMatrix) {
   m.which.drift = DriftSets::block;
   m.camera_sigma[0] = free_value;
   ImageBlock block = test::make_block(m).given;
-  const LinearBlock l = BlockSystem(block, {}, 1).linearise();
+  const LinearBlock l = BlockSystem(block, {}).linearise();
   const int n = l.unknowns, all = n + 3 * l.points();
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(l.residual.size()), all);
   for (size_t row = 0; row < l.residual.size(); ++row)
@@ -45,7 +45,7 @@ TEST(BlockNormals, ParallelRaysShowInThePointsPivot) {
   block.images[1].camera_R_local = block.images[0].camera_R_local;
   block.rays = {{0, 0, 1, 1, 0.01}, {1, 0, 1, 1, 0.01}};
   block.control.clear();
-  const LinearBlock l = BlockSystem(block, {}, 1).linearise();
+  const LinearBlock l = BlockSystem(block, {}).linearise();
   EXPECT_LT(BlockNormals(l).part(0).smallest_pivot, 1e-12);
 }
 

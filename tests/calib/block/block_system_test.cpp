@@ -2,6 +2,7 @@
 #include "calib/block/block_system.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include "core/error.h"
 #include "tests/calib/block/made_block.h"
@@ -24,7 +25,7 @@ test::Making everything() {
 /// Residuals with one unknown moved by h.
 std::vector<double> moved(const ImageBlock& block, const LinearBlock& l, int unknown, double h) {
   ImageBlock b = block;
-  BlockSystem system(b, {}, 1);  // its priors and its boresight's zero are those of the block that was not moved
+  BlockSystem system(b, {});  // its priors and its boresight's zero are those of the block that was not moved
   ImageBlock c = block;
   const UnknownNode& n = l.nodes[static_cast<size_t>(l.node_of[static_cast<size_t>(unknown)])];
   const int k = n.components[static_cast<size_t>(unknown - n.first)];
@@ -38,7 +39,7 @@ std::vector<double> moved(const ImageBlock& block, const LinearBlock& l, int unk
   if (n.kind == NodeKind::boresight)
     c.cameras[n.index].body_R_camera = c.cameras[n.index].body_R_camera * core::exp_so3(-h * Eigen::Vector3d::Unit(k));
   if (n.kind == NodeKind::drift) (k < 3 ? c.drifts[n.index].shift[k] : c.drifts[n.index].change[k - 3]) += h;
-  return BlockSystem(c, {}, 1).linearise().residual;
+  return BlockSystem(c, {}).linearise().residual;
 }
 
 TEST(BlockSystem, DerivativesAreThoseOfCentralDifferences) {
@@ -46,7 +47,7 @@ TEST(BlockSystem, DerivativesAreThoseOfCentralDifferences) {
     ImageBlock block = test::make_block(everything()).given;
     block.cameras[0].distortion = at;
     block.cameras[0].antenna = {0.5, 0.3, 1.2};
-    const LinearBlock l = BlockSystem(block, {}, 1).linearise();
+    const LinearBlock l = BlockSystem(block, {}).linearise();
     for (int unknown = 0; unknown < l.unknowns; ++unknown) {
       double scale = 0.0;
       for (size_t k = 0; k < l.column.size(); ++k)
@@ -64,6 +65,29 @@ TEST(BlockSystem, DerivativesAreThoseOfCentralDifferences) {
         }
       }
     }
+  }
+}
+
+/// What a thread allocates lies elsewhere than what the first one does, and Ceres sorts by address.
+TEST(BlockSystem, ItsPlaceInMemoryChangesNoDigit) {
+  const auto solved = [](int pages_from) {
+    test::Making m;
+    m.attitudes = true;  // with an unknown boresight
+    m.camera_sigma.head<4>().setConstant(free_value);
+    ImageBlock block = test::make_block(m).given;
+    mallopt(M_MMAP_THRESHOLD, pages_from);  // larger pieces are pages of their own: the later, the lower they lie
+    EXPECT_TRUE(BlockSystem(block, {}).solve().converged);
+    mallopt(M_MMAP_THRESHOLD, 128 * 1024);
+    return block;
+  };
+  const ImageBlock first = solved(128 * 1024);
+  for (const int pages_from : {16, 64, 256, 1024}) {
+    const ImageBlock other = solved(pages_from);
+    for (size_t i = 0; i < first.images.size(); ++i) {
+      EXPECT_EQ(other.images[i].position, first.images[i].position) << pages_from;
+      EXPECT_EQ(other.images[i].camera_R_local, first.images[i].camera_R_local) << pages_from;
+    }
+    EXPECT_EQ(other.cameras[0].value, first.cameras[0].value) << pages_from;
   }
 }
 
