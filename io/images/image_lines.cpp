@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "io/text/data_lines.h"
 #include "io/text/line_reader.h"
-#include "io/text/value_file.h"
 
 namespace swath::io {
 
-ImageLines::ImageLines(const std::filesystem::path& file) : file_(file), text_(read_text_file(file)) {}
+ImageLines::ImageLines(const std::filesystem::path& file) : file_(file), text_(read_lines(file)) {}
 
 bool ImageLines::next(std::string_view& line) {
   if (at_ >= text_.size()) return false;

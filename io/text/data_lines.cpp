@@ -38,14 +38,20 @@ double DataLine::number(size_t column) const {
   return value;
 }
 
-void for_each_data_line(const std::filesystem::path& file, const std::function<char(const std::string&)>& delimiter,
-                        const std::function<void(DataLine&)>& f, const std::function<void(const std::string&)>& comment) {
+std::string read_lines(const std::filesystem::path& file) {
   std::string text = read_text_file(file);
   require_text(text, file);
-  if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');  // lines of the classic Mac OS
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
+  return text;
+}
+
+void for_each_data_line(const std::filesystem::path& file, const std::function<char(const std::string&)>& delimiter,
+                        const std::function<void(DataLine&)>& f, const std::function<void(const std::string&)>& comment) {
+  const std::string text = read_lines(file);
   DataLine out;
   char parted_by = 0;
-  for (size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0; at < text.size();) {
+  for (size_t at = 0; at < text.size();) {
     const size_t stop = std::min(text.find('\n', at), text.size());
     std::string line = text.substr(at, stop - at);
     at = stop + 1;

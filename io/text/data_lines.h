@@ -27,6 +27,10 @@ struct DataLine {
   double number(size_t column) const;
 };
 
+/// A whole file whose lines end in '\n', or in "\r\n": without its byte order mark; those of the classic Mac OS ended in '\r'. Throws Error
+/// where it is not text.
+std::string read_lines(const std::filesystem::path& file);
+
 /// Calls f for every line that is neither empty nor a comment (# or %), and `comment` with the text of comments. `delimiter`: from the
 /// first line of data. Throws Error where the file is not text.
 void for_each_data_line(const std::filesystem::path& file, const std::function<char(const std::string&)>& delimiter,

@@ -30,6 +30,21 @@ TEST(ImageLines, LongLinesCommentsAndLineEnds) {
   EXPECT_FALSE(lines.next_data(line));
 }
 
+TEST(ImageLines, AByteOrderMarkIsNoPartOfTheFirstName) {
+  const test::TemporaryFolder folder;
+  const auto first_of = [&](const std::string& text) {
+    test::write_bytes(folder / "lines.txt", text);
+    ImageLines lines(folder / "lines.txt");
+    std::string_view line;
+    return lines.next_data(line) ? std::string(line) : std::string();
+  };
+  EXPECT_EQ(first_of("\xEF\xBB\xBF"
+                     "1001\r\n7 1 2\r\n"),
+            "1001");
+  EXPECT_EQ(first_of("1001\r7 1 2\r"), "1001");  // classic Mac OS
+  EXPECT_THROW(first_of(std::string("1\0\n\0", 4)), core::Error);
+}
+
 TEST(ImageLines, PixelsAreWholeFromOneToAMillion) {
   EXPECT_EQ(pixel_count(7216.0), 7216);
   EXPECT_EQ(pixel_count(1e6), 1000000);
