@@ -24,6 +24,7 @@ struct ControlPoint {
   std::string place;    ///< "file:line"
   std::string cover{};  ///< what covers the ground; empty: not stated
   ControlKind kind = ControlKind::xyz;
+  bool is_named = true;  ///< false: its name is a number by its place, or of the target's corner
 };
 
 /// All control of a survey that has three coordinates, in the files' order; corners of one target adjacent and in their order. Throws Error

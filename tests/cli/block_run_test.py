@@ -176,6 +176,18 @@ class BlockRuns(Case):
         findings = stage(self.run_block(), "block.adjust")["findings"]
         self.assertIn("no point of block_control.csv is on an image: names differ, or it is the laser's control", findings["findings"])
 
+    def test_control_without_names_is_not_that_of_numbered_tie_points(self):
+        points = list(dict.fromkeys(r["point"] for r in rows_of(self.flown / "image_points.csv") if not r["point"].startswith(("control", "check"))))
+        number = {p: str(k + 1) for k, p in enumerate(points)}
+        rewrite(self.flown / "image_points.csv", lambda rows: [{**r, "point": number.get(r["point"], r["point"])} for r in rows])
+        control = rows_of(self.flown / "block_control.csv")
+        (self.flown / "laser.csv").write_text("x,y,z\n" + "".join(f"{float(r['x']) + 300},{r['y']},{r['z']}\n" for r in control))
+        with open(self.flown / "survey.toml", "a") as survey:
+            survey.write('\n[[control]]\nfile = "laser.csv"\n')
+        found = stage(self.run_block(), "block.adjust")["findings"]
+        self.assertEqual(found["control"], len(control))
+        self.assertIn("no point of laser.csv is on an image: names differ, or it is the laser's control", found["findings"])
+
     def test_a_camera_that_is_not_described(self):
         substitute(self.flown / "survey.toml", 'technique = "marks"', 'technique = "mark"')  # of the events
         self.refused(2, "no event is of the technique marks of camera camera", "the events are of mark, pc")

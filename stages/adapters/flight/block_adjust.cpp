@@ -92,12 +92,13 @@ calib::BlockConfig config_of_run(const Context& context, const BlockStageOptions
   return out;
 }
 
-/// Single points: corners of targets are the laser's.
+/// Single points: corners of targets are the laser's. One without a name has its place in the file: numbers would be those of tie points.
 std::vector<calib::SurveyedPoint> surveyed_points(const Context& context, core::Tally& tally) {
   const core::Transform to_map(core::wgs84_ecef(), context.crs);
   std::vector<calib::SurveyedPoint> out;
   for (const io::ControlPoint& p : io::read_image_control(context.survey, tally))
-    if (p.target.empty()) out.push_back({p.name, to_map(p.ecef), p.sigma_h, p.sigma_v, p.kind, p.use == io::ControlUse::check, p.place});
+    if (p.target.empty())
+      out.push_back({p.is_named ? p.name : p.place, to_map(p.ecef), p.sigma_h, p.sigma_v, p.kind, p.use == io::ControlUse::check, p.place});
   return out;
 }
 

@@ -282,6 +282,14 @@ TEST_F(GeoPackageControl, FaultsNameTheirFeature) {
   EXPECT_NE(fault().find("none.gpkg: cannot read the GeoPackage"), std::string::npos);
 }
 
+TEST_F(Control, PointsWithoutANameAreKnownAsSuch) {
+  const auto named = read("name,x,y,z\nmark,500100,5300200,480\n,500120,5300200,481\n");
+  ASSERT_EQ(named.size(), 2u);
+  EXPECT_TRUE(named[0].is_named && !named[1].is_named);
+  EXPECT_EQ(named[1].name, "2");
+  EXPECT_FALSE(read("x,y,z\n500100,5300200,480\n")[0].is_named);
+}
+
 TEST_F(Control, FilesOfPlanOrHeightsAloneAreForImages) {
   file().kind = ControlKind::z;
   add("full.csv").use = ControlUse::check;
