@@ -12,6 +12,7 @@
 #include "core/config/units.h"
 #include "core/error.h"
 #include "core/geo/frames.h"
+#include "core/printable.h"
 
 namespace swath::calib {
 namespace {
@@ -48,6 +49,24 @@ void expect_same_size(const io::ImageData& data, size_t image, const CameraConfi
                       "state columns, rows and pixel of the images as that program had them: it may have resized or turned them");
 }
 
+/// How a name may be meant that is nowhere: without folder and extension, in lower case.
+std::string bare_name(std::string name) {
+  std::replace(name.begin(), name.end(), '\\', '/');
+  return core::lower_case(std::filesystem::path(name).stem().string());
+}
+
+[[noreturn]] void refuse_unknown_image(const BlockConfig& config, const io::ImageData& data, const std::string& name,
+                                       const std::vector<BlockImage>& images) {
+  std::string hint =
+      config.images.lacks_hint.empty() ? "add it to " + config.images.file.string() + ", or take its points out" : config.images.lacks_hint;
+  for (const BlockImage& i : images)
+    if (bare_name(i.name) == bare_name(name)) {
+      hint = "there is an image " + i.name + ": the names must be the same, with folder, extension, upper and lower case";
+      break;
+    }
+  throw core::Error("image " + name + " has image points and " + config.images.lacks, data.file.string(), hint);
+}
+
 /// Points of one file: numbers of images and points are those of the block. `prefix`: for points that have the program's own numbers.
 void add_marks(const BlockConfig& config, const io::ImageFile& file, const io::ImageData& data, bool has_table, const std::string& prefix,
                ReadBlock& read, Numbers& image_number, Numbers& point_number) {
@@ -59,10 +78,7 @@ void add_marks(const BlockConfig& config, const io::ImageFile& file, const io::I
       image_of.push_back(found->second);
       continue;
     }
-    if (has_table)
-      throw core::Error("image " + data.images[i] + " has image points and " + config.images.lacks, data.file.string(),
-                        config.images.lacks_hint.empty() ? "add it to " + config.images.file.string() + ", or take its points out"
-                                                         : config.images.lacks_hint);
+    if (has_table) refuse_unknown_image(config, data, data.images[i], block.images);
     BlockImage image;
     image.name = data.images[i];
     image.time = static_cast<double>(block.images.size());

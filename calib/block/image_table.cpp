@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/block/image_table.h"
 
-#include <cmath>
 #include <unordered_map>
 
 #include "core/config/units.h"
@@ -10,13 +9,6 @@
 
 namespace swath::calib {
 namespace {
-
-int strip_in(const io::TextTable& table, size_t row, size_t column) {
-  const double strip = table.number(row, column);
-  if (strip != std::floor(strip) || std::abs(strip) > 1e9)
-    throw core::Error("the strip is not a whole number: " + table.text(row, column), table.place(row));
-  return static_cast<int>(strip);
-}
 
 std::array<const char*, 3> angle_columns(ImageAngles kind) {
   if (kind == ImageAngles::roll_pitch_heading) return {"roll", "pitch", "heading"};
@@ -29,7 +21,7 @@ void add_control_table(const BlockControlFile& f, std::vector<SurveyedPoint>& ou
   const auto h = table.column_if_there(f.sigma_h, "sigma_h"), v = table.column_if_there(f.sigma_v, "sigma_v");
   for (size_t r = 0; r < table.rows(); ++r) {
     SurveyedPoint p;
-    p.name = table.text(r, name);
+    p.name = table.name(r, name, "the point");
     p.map = {table.number(r, x), table.number(r, y), table.number(r, z)};
     p.sigma_h = h ? table.number(r, *h) : f.sigma_horizontal.value, p.sigma_v = v ? table.number(r, *v) : f.sigma_vertical.value;
     if (!(p.sigma_h > 0.0 && p.sigma_v > 0.0)) throw core::Error("a sigma is not above 0", table.place(r));
@@ -63,9 +55,9 @@ std::vector<ImageRow> read_image_table(const BlockConfig& config) {
   for (size_t r = 0; r < table.rows(); ++r) {
     ImageRow row;
     BlockImage& image = row.image;
-    image.name = table.text(r, name);
+    image.name = table.name(r, name, "the image");
     image.camera = camera ? camera_number(config, table.text(r, *camera), table.place(r)) : 0;
-    image.strip = strip_in(table, r, strip);
+    image.strip = table.whole_number(r, strip, "the strip");
     image.time = table.number(r, time);
     const auto [it, is_new] = known.try_emplace(image.name, table.place(r));
     if (!is_new) throw core::Error("image " + image.name + " is there twice, first in " + it->second, table.place(r));

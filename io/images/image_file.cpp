@@ -85,8 +85,8 @@ ImageData read_image_csv(const ImageFile& f) {
   for (size_t r = 0; r < table.rows(); ++r) {
     const std::string place = table.place(r);
     const std::uint64_t line = std::stoull(place.substr(place.rfind(':') + 1));
-    out.marks.push_back(
-        {image_number(table.text(r, image)), point_number(table.text(r, point)), table.number(r, x), table.number(r, y), line});
+    out.marks.push_back({image_number(table.name(r, image, "the image of an image point")),
+                         point_number(table.name(r, point, "the image point")), table.number(r, x), table.number(r, y), line});
   }
   return out;
 }

@@ -13,9 +13,9 @@ namespace swath::io {
 
 struct ListedImage {
   std::string name, event;
-  std::optional<std::string> camera{};
-  std::optional<int> strip{};
-  std::string place;  ///< "file:line"
+  std::optional<std::string> camera{};  ///< none: there is no such column, or nothing in it
+  std::optional<int> strip{};           ///< the same
+  std::string place;                    ///< "file:line"
 };
 
 /// The rows of a table, which is at `path`. Throws core::Error with file and line: a column missing, a name or an event left empty, a strip

@@ -41,6 +41,20 @@ std::optional<size_t> TextTable::column_if_there(const std::string& name, const 
   return column(name);
 }
 
+const std::string& TextTable::name(size_t row, size_t column, const std::string& of) const {
+  if (text(row, column).empty())
+    throw core::Error(of + " has no name in column '" + layout_.names[column] + "'", place(row), "name it, or take the line out");
+  return text(row, column);
+}
+
+int TextTable::whole_number(size_t row, size_t column, const std::string& what) const {
+  constexpr double largest = 1e9;
+  const double value = number(row, column);
+  if (value != std::floor(value) || std::abs(value) > largest)
+    throw core::Error(what + " is not a whole number: " + text(row, column), place(row), "correct the line, or name another column");
+  return static_cast<int>(value);
+}
+
 double TextTable::coordinate(size_t row, size_t column) const {
   const std::string& field = text(row, column);
   const char *begin = field.data() + (field.size() > 1 && field[0] == '+' ? 1 : 0), *stop = field.data() + field.size();

@@ -78,6 +78,14 @@ TEST(BlockReading, WhatDoesNotFitTogetherIsNamed) {
   EXPECT_NE(changed("points.csv", points + last).find("measured twice: point"), std::string::npos);
   EXPECT_NE(changed("points.csv", points + "unknown.jpg,1,0,0\n").find("image unknown.jpg has image points and is not in the table"),
             std::string::npos);
+  const std::string known = m.block.images[0].name;
+  EXPECT_NE(
+      changed("points.csv", points + "images/" + known + ".JPG,1,0,0\n").find("there is an image " + known + ": the names must be the"),
+      std::string::npos);
+  EXPECT_NE(changed("points.csv", points + ",1,0,0\n").find("the image of an image point has no name in column 'image'"),
+            std::string::npos);
+  EXPECT_NE(changed("points.csv", points + known + ",,0,0\n").find("the image point has no name in column 'point'"), std::string::npos);
+  EXPECT_NE(changed("control.csv", control + ",1,2,3\n").find("the point has no name"), std::string::npos);
   EXPECT_NE(changed("images.csv", images + "empty.jpg,1,9999,0,0,4500\n").find("images without image points: empty.jpg"),
             std::string::npos);
   EXPECT_NE(changed("images.csv", images + images.substr(images.find('\n') + 1)).find("is there twice"), std::string::npos);

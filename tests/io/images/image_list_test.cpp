@@ -37,12 +37,16 @@ TEST_F(ImageList, RowsWithAndWithoutCameraAndStrip) {
   const auto full = read("run,body,photo,feature\n3,left,a,1\n", f);
   EXPECT_EQ(*full[0].camera, "left");
   EXPECT_EQ(*full[0].strip, 3);
+  const auto some = read("name,event,camera,strip\na,1,left,3\nb,2,,\n");
+  EXPECT_TRUE(some[0].camera && some[0].strip);
+  EXPECT_FALSE(some[1].camera || some[1].strip) << "as without the column";
 }
 
 TEST_F(ImageList, WhatIsMissingIsNamed) {
   EXPECT_NE(fault_of("name,id\na,1\n").find("event"), std::string::npos);
   EXPECT_NE(fault_of("name,event\na,1\nb,\n").find("list.csv:3"), std::string::npos);
   EXPECT_NE(fault_of("name,event\na,1\nb,\n").find("image b names no event"), std::string::npos);
+  EXPECT_NE(fault_of("name,event\n,1\n").find("the image has no name in column 'name'"), std::string::npos);
   EXPECT_NE(fault_of("name,event,strip\na,1,2.5\n").find("the strip is not a whole number: 2.5"), std::string::npos);
 }
 

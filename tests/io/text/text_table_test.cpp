@@ -36,6 +36,14 @@ TEST_F(Tables, NamesAndNumbers) {
   EXPECT_TRUE(t.place(1).ends_with("a.csv:6"));
 }
 
+TEST_F(Tables, NamesAndWholeNumbersThatMustBeThere) {
+  const TextTable t = table("name,strip\nP 1,-7\n,2.5\n");
+  EXPECT_EQ(t.name(0, 0, "the image"), "P 1");
+  EXPECT_EQ(t.whole_number(0, 1, "the strip"), -7);
+  EXPECT_EQ(fault([&] { t.name(1, 0, "the image"); }), "a.csv:3: the image has no name in column 'name'");
+  EXPECT_EQ(fault([&] { t.whole_number(1, 1, "the strip"); }), "a.csv:3: the strip is not a whole number: 2.5");
+}
+
 TEST_F(Tables, ColumnsThatNeedNotBeThere) {
   const TextTable t = table("name,x\na,1\n");
   EXPECT_EQ(t.column_if_there("Name", "Name"), 0u);
