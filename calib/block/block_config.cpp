@@ -29,12 +29,6 @@ double sigma_from(const std::string& text, core::Dimension dimension, const std:
   return value;
 }
 
-bool needs_distortion(const BlockCamera& c) {
-  for (int k = 3; k < camera_values; ++k)
-    if (c.value[k] != 0.0 || c.sigma[k] != held_value) return true;
-  return false;
-}
-
 }  // namespace
 
 BlockConfig read_block_config(const std::filesystem::path& file, const core::Value& given) {
@@ -49,9 +43,6 @@ BlockConfig read_block_config(const std::filesystem::path& file, const core::Val
   beside(out.images.correlation);
   for (io::ImageFile& f : out.image_points) beside(f.file);
   for (BlockControlFile& f : out.control) beside(f.file);
-  for (const io::ImageFile& f : out.image_points)
-    if (!f.sigma && !f.sigma_pixels)
-      throw core::usage_error("the sigma of the image points is not stated", f.file.string(), "add sigma = \"3 um\" or sigma_pixels = 0.3");
   return out;
 }
 
@@ -84,9 +75,8 @@ BlockCamera camera_of(const CameraConfig& c, const std::string& file) {
         (length ? millimetres : 1.0) *
         sigma_from(*sigmas[k], length ? core::Dimension::length : core::Dimension::none, std::string(camera_keys[k]), file);
   }
-  if (needs_distortion(out) && !c.distortion)
-    throw core::usage_error("camera " + c.name + " has distortion, and it is not stated which point it is computed from", file,
-                            "add distortion = \"ideal\" (OpenCV, COLMAP, Metashape) or distortion = \"measured\" (calibration protocols)");
+  if (core::lacks_distortion(c, c.sigma))
+    throw core::usage_error("camera " + c.name + ": " + core::distortion_fault, file, core::distortion_hint);
   out.distortion = c.distortion.value_or(DistortionAt::ideal);
   out.body_R_camera = camera_mounting(c.mount, c.boresight);
   out.boresight_sigma.setConstant(sigma_from(c.sigma.boresight, core::Dimension::angle, "boresight", file));

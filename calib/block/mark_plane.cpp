@@ -14,8 +14,8 @@ constexpr double plane_unit = 1e3;  // mm in a metre
 
 void expect_pixels(const CameraConfig& camera, const std::string& file) {
   if (!camera.pixel || camera.columns <= 0 || camera.rows <= 0)
-    throw core::Error("the image points are in pixels, and camera " + camera.name + " does not state columns, rows and pixel", file,
-                      "add columns = ..., rows = ..., pixel = \"5 um\" to [[camera]]");
+    throw core::Error("image points or their sigma are in pixels, and camera " + camera.name + " does not state columns, rows and pixel",
+                      file, "add columns = ..., rows = ..., pixel = \"5 um\" to [[camera]]");
 }
 }  // namespace
 

@@ -67,6 +67,19 @@ void describe(FrameCamera& c, V& v) {
   v.option("boresight", c.boresight, "Roll, pitch, heading of the camera in the body, beside mount.");
 }
 
+/// True where there is distortion, or may be after an adjustment, and it is not stated which point it is computed from.
+inline bool lacks_distortion(const FrameCamera& c, const CameraSigmas& s) {
+  if (c.distortion) return false;
+  for (const double value : {c.k1, c.k2, c.k3, c.p1, c.p2, c.b1, c.b2})
+    if (value != 0.0) return true;
+  for (const std::string* sigma : {&s.k1, &s.k2, &s.k3, &s.p1, &s.p2, &s.b1, &s.b2})
+    if (*sigma != "held") return true;
+  return false;
+}
+inline constexpr const char* distortion_fault = "there is or may be distortion, and it is not stated which point it is computed from";
+inline constexpr const char* distortion_hint =
+    "add distortion = \"ideal\" (OpenCV, COLMAP, Metashape) or distortion = \"measured\" (calibration protocols)";
+
 template <>
 struct Choices<DistortionAt> {
   static constexpr std::array<std::string_view, 2> names{"ideal", "measured"};

@@ -14,23 +14,6 @@ namespace {
 
 bool is_pixel_format(ImageFormat f) { return f == ImageFormat::colmap || f == ImageFormat::opensfm || f == ImageFormat::blocks_exchange; }
 
-[[noreturn]] void fail_file(const ImageFile& f, const std::string& what, const std::string& hint) {
-  throw core::usage_error(what, f.file.string(), hint);
-}
-
-void expect_conventions(const ImageFile& f) {
-  const std::string format(core::Choices<ImageFormat>::names.at(static_cast<size_t>(f.format)));
-  if (is_pixel_format(f.format)) {
-    if ((f.unit && *f.unit != ImageUnit::pixel) || (f.y && *f.y != ImageY::down) || f.origin)
-      fail_file(f, "unit, y and origin are fixed by the format " + format + " (pixels, y down)", "leave them out");
-    return;
-  }
-  if (!f.unit) fail_file(f, "the unit of the image coordinates is not stated", "add unit = \"mm\", \"um\" or \"pixel\"");
-  if (!f.y) fail_file(f, "the sense of the y axis is not stated", "add y = \"up\" or y = \"down\"");
-  if (!f.origin)
-    fail_file(f, "the origin of the image coordinates is not stated", "add origin = \"middle\", \"corner\" or \"pixel_centre\"");
-}
-
 ImageData stated(const ImageFile& f) {
   ImageData out;
   out.file = f.file;
@@ -94,6 +77,29 @@ ImageData read_image_csv(const ImageFile& f) {
 ImageData read_bingo(const ImageFile& f) { return read_image_list(f, false); }
 ImageData read_patb(const ImageFile& f) { return read_image_list(f, true); }
 
+std::vector<ConventionFault> convention_faults(const ImageFile& f) {
+  std::vector<ConventionFault> out;
+  if (is_pixel_format(f.format)) {
+    const bool unit = f.unit && *f.unit != ImageUnit::pixel, y = f.y && *f.y != ImageY::down;
+    if (unit || y || f.origin)
+      out.push_back({unit ? "unit"
+                     : y  ? "y"
+                          : "origin",
+                     "unit, y and origin are fixed by the format " +
+                         std::string(core::Choices<ImageFormat>::names.at(static_cast<size_t>(f.format))) + " (pixels, y down)",
+                     "leave them out"});
+    return out;
+  }
+  if (!f.unit) out.push_back({"unit", "the unit of the image coordinates is not stated", "one of mm, um, pixel"});
+  if (!f.y) out.push_back({"y", "the sense of the y axis is not stated", "one of up, down"});
+  if (!f.origin) out.push_back({"origin", "the origin of the image coordinates is not stated", "one of middle, corner, pixel_centre"});
+  return out;
+}
+
+bool needs_pixels(const ImageFile& f) {
+  return is_pixel_format(f.format) || f.unit == ImageUnit::pixel || (f.origin && *f.origin != ImageOrigin::middle) || f.sigma_pixels;
+}
+
 std::vector<std::filesystem::path> files_of(const ImageFile& f) {
   if (f.format == ImageFormat::colmap) return {f.file / "cameras.txt", f.file / "images.txt"};
   if (f.format == ImageFormat::opensfm) return {f.file, f.file.parent_path() / "reconstruction.json"};
@@ -101,7 +107,7 @@ std::vector<std::filesystem::path> files_of(const ImageFile& f) {
 }
 
 ImageData read_image_file(const ImageFile& f) {
-  expect_conventions(f);
+  for (const ConventionFault& fault : convention_faults(f)) throw core::usage_error(fault.what, f.file.string(), fault.hint);
   switch (f.format) {
     case ImageFormat::csv:
       return read_image_csv(f);

@@ -47,6 +47,7 @@ void describe(ImageFile& f, V& v) {
   v.option("x_column", f.x_column, "csv: column of x.");
   v.option("y_column", f.y_column, "csv: column of y.");
   v.check(!f.sigma || !f.sigma_pixels, "sigma and sigma_pixels are both given");
+  v.check(f.sigma || f.sigma_pixels, "the sigma of the image points is not stated: add sigma = \"3 um\" or sigma_pixels = 0.3");
 }
 
 /// A measured point, as the file has it.
@@ -84,6 +85,15 @@ struct ImageData {
   std::vector<std::uint32_t> camera_of;  ///< per image; empty where the format names no camera
   std::vector<FilePose> poses;
 };
+
+/// A convention that a format leaves open and that is not stated, or that it fixes and that is stated.
+struct ConventionFault {
+  std::string key, what, hint;
+};
+std::vector<ConventionFault> convention_faults(const ImageFile& file);
+
+/// True where coordinates or their sigma are in pixels or count from a corner: the camera must state columns, rows and pixel.
+bool needs_pixels(const ImageFile& file);
 
 /// Throws core::Error with file and line: a format that leaves something open and a config that does not state it; coordinates that are no
 /// numbers; an image or a camera that is not there; a model of a camera that is not Brown's.

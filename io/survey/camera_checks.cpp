@@ -50,16 +50,19 @@ class CameraChecks {
   void camera(size_t i) {
     const SurveyCamera& c = survey_.cameras[i];
     const std::string key = numbered("camera", i);
+    if (c.name.empty()) fault(key + ".name", "the camera has no name", "name it");
     for (size_t other = 0; other < i; ++other)
       if (survey_.cameras[other].name == c.name)
         fault(key + ".name", "the name " + c.name + " is that of " + numbered("camera", other), "give each camera a name of its own");
-    const core::CameraSigmas& s = c.sigma;
-    const bool distorted = c.k1 != 0.0 || c.k2 != 0.0 || c.k3 != 0.0 || c.p1 != 0.0 || c.p2 != 0.0 || c.b1 != 0.0 || c.b2 != 0.0;
-    bool adjusted = false;
-    for (const std::string* one : {&s.k1, &s.k2, &s.k3, &s.p1, &s.p2, &s.b1, &s.b2}) adjusted = adjusted || *one != "held";
-    if ((distorted || adjusted) && !c.distortion)
-      fault(key + ".distortion", "the camera has distortion, and it is not stated which point it is computed from",
-            "\"ideal\" (OpenCV, COLMAP, Metashape) or \"measured\" (calibration protocols)");
+    if (core::lacks_distortion(c, c.sigma)) fault(key + ".distortion", core::distortion_fault, core::distortion_hint);
+  }
+
+  /// That no camera has what coordinates in pixels need, before hours of work.
+  void sensor(const ImageFile& f, const std::string& key) {
+    const auto states = [](const SurveyCamera& c) { return c.pixel && c.columns > 0 && c.rows > 0; };
+    if (!needs_pixels(f) || survey_.cameras.empty() || std::any_of(survey_.cameras.begin(), survey_.cameras.end(), states)) return;
+    fault(numbered("camera", 0) + ".pixel", "pixels of " + key + " need columns, rows and pixel of the camera, which are not stated",
+          "columns = ..., rows = ..., pixel = \"5 um\"");
   }
 
   void points(const ImageFile& f, const std::string& key) {
@@ -72,13 +75,8 @@ class CameraChecks {
       return fault(key + ".file", "the COLMAP model " + there.file.string() + " is binary",
                    "convert it: colmap model_converter --output_type TXT");
     for (const std::filesystem::path& path : files_of(there)) exists(path, key + ".file");
-    if (!f.sigma && !f.sigma_pixels)
-      fault(key + ".sigma", "the sigma of the image points is not stated", "add sigma = \"3 um\" or sigma_pixels = 0.3");
-    const bool in_pixels = f.format == ImageFormat::colmap || f.format == ImageFormat::opensfm || f.format == ImageFormat::blocks_exchange;
-    if (in_pixels) return;
-    if (!f.unit) fault(key + ".unit", "the unit of the image coordinates is not stated", "one of mm, um, pixel");
-    if (!f.y) fault(key + ".y", "the sense of the y axis is not stated", "one of up, down");
-    if (!f.origin) fault(key + ".origin", "the origin of the image coordinates is not stated", "one of middle, corner, pixel_centre");
+    for (const ConventionFault& c : convention_faults(f)) fault(key + "." + c.key, c.what, c.hint);
+    sensor(f, key);
   }
 
   const Survey& survey_;
