@@ -55,6 +55,8 @@ struct ImagesConfig {
   /// In messages: the file for the user to look at where `file` is of a run's own, and what an image of the image points lacks that is
   /// not in it.
   std::string place{}, lacks = "is not in the table of images", lacks_hint{};
+  /// Of a mistake of the angles, where these are a trajectory's; empty: the table's columns are corrected.
+  std::string angles_hint{};
   std::filesystem::path file, correlation;
   std::string name = "name", strip = "strip", time = "time", camera = "camera", x = "x", y = "y", z = "z", sigma_h = "sigma_h",
               sigma_v = "sigma_v";

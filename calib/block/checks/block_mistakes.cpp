@@ -147,6 +147,8 @@ std::vector<Mistake> mistakes_of_angles(const ReadBlock& read, const BlockConfig
   add_kinds(kind, north, out);
   add_signs(kind, north, out);
   add_units(kind, north, out);
+  if (!config.images.angles_hint.empty())
+    for (Mistake& m : out) m.hint = config.images.angles_hint;
   return out;
 }
 

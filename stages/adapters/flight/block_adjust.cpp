@@ -84,6 +84,8 @@ calib::BlockConfig config_of_run(const Context& context, const BlockStageOptions
   i.angles = calib::ImageAngles::roll_pitch_heading, i.north = calib::ImageNorth::true_north;
   i.stations = o.stations, i.angle_use = o.attitudes;
   i.place = io::resolve(survey, survey.images.empty() ? survey.events.front().file : survey.images.front().file).string();
+  i.angles_hint =
+      "check axes and mounting of [[imu]], or angle_unit and signs of the columns of [[trajectory]], and boresight of [[camera]]";
   i.lacks = "is none of the images that have an orientation";
   i.lacks_hint =
       survey.images.empty()

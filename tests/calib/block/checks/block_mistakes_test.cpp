@@ -38,6 +38,23 @@ TEST(BlockMistakes, UnitsAndOrderOfAngles) {
   expect_in(refused([](core::Attitude& a) { a.heading = core::pi / 2.0 - a.heading; }), "heading counts counter-clockwise from east");
 }
 
+/// A run has no table of angles to correct.
+TEST(BlockMistakes, AnglesOfATrajectoryHaveItsHint) {
+  ReadBlock read;
+  read.block.cameras.resize(1);
+  BlockConfig config;
+  config.images.angles = ImageAngles::roll_pitch_heading, config.images.north = ImageNorth::true_north;
+  const auto by_table = mistakes_of_angles(read, config);
+  config.images.angles_hint = "check [[imu]]";
+  const auto by_trajectory = mistakes_of_angles(read, config);
+  ASSERT_EQ(by_trajectory.size(), by_table.size());
+  for (size_t k = 0; k < by_table.size(); ++k) {
+    EXPECT_EQ(by_trajectory[k].what, by_table[k].what);
+    EXPECT_NE(by_table[k].hint, "");
+    EXPECT_EQ(by_trajectory[k].hint, "check [[imu]]");
+  }
+}
+
 /// The stations of strip `strip` (by its place in the table) from image `first` on are those of the image after.
 std::string shifted(int strip, int first) {
   test::MadeFiles m;
