@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import re
 import shutil
 import tomllib
 import unittest
@@ -175,6 +176,8 @@ class BlockRuns(Case):
         control.write_text(text.replace("control", "other"))
         findings = stage(self.run_block(), "block.adjust")["findings"]
         self.assertIn("no point of block_control.csv is on an image: names differ, or it is the laser's control", findings["findings"])
+        substitute(self.flown / "survey.toml", 'file = "block_control.csv"', 'file = "block_control.csv"\nkind = "z"')
+        self.refused(1, "block_control.csv: no point of the file is on an image, and control of plan or heights alone serves images only")
 
     def test_control_without_names_is_not_that_of_numbered_tie_points(self):
         points = list(dict.fromkeys(r["point"] for r in rows_of(self.flown / "image_points.csv") if not r["point"].startswith(("control", "check"))))
@@ -192,10 +195,22 @@ class BlockRuns(Case):
         substitute(self.flown / "survey.toml", 'technique = "marks"', 'technique = "mark"')  # of the events
         self.refused(2, "no event is of the technique marks of camera camera", "the events are of mark, pc")
 
+    def test_a_drift_per_strip_needs_strips(self):
+        survey = self.flown / "survey.toml"
+        survey.write_text(re.sub(r'\nstrip = "strip"|\n\[\[line\]\]\n(?:[^\[\n].*\n)*|\n\[line_time\]\n(?:[^\[\n].*\n)*', "\n", survey.read_text()))
+        self.assertNotIn("[[line]]", survey.read_text())
+        with open(self.config, "a") as config:
+            config.write('drift = "strip"\n')
+        self.refused(2, "drift is per strip, and no image has the number of a strip")
+
     def test_options_that_do_nothing_are_refused(self):
         done = swath("check", self.config, "--survey", self.flown / "survey.toml", "--set", "block.adjust.stations=start", "--set",
                      "block.adjust.drift=strip")
         self.assert_error(done, 2, "drift and datum have no effect")
+        survey = self.flown / "survey.toml"
+        survey.write_text(re.sub(r'lever_arm = "[^"\[]*"', 'lever_arm = "free"', survey.read_text()))
+        done = swath("check", self.config, "--survey", survey, "--set", "block.adjust.stations=start")
+        self.assert_error(done, 2, "the lever arm of camera camera is free, and stations are values to start from")
 
 
 if __name__ == "__main__":

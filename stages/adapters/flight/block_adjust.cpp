@@ -63,6 +63,9 @@ void expect_image_points(const Context& context, const BlockStageOptions& o) {
     if (c.sigma.boresight == "free" && o.attitudes != calib::ImageValues::observed)
       throw core::usage_error("block.adjust: the boresight of camera " + c.name + " is free, and attitudes are values to start from",
                               s.name, "state sigma.boresight = \"held\", or attitudes = \"observed\"");
+    if (c.sigma.lever_arm == "free" && o.stations != calib::ImageValues::observed)
+      throw core::usage_error("block.adjust: the lever arm of camera " + c.name + " is free, and stations are values to start from", s.name,
+                              "state sigma.lever_arm = \"held\", or stations = \"observed\"");
   }
 }
 
@@ -104,14 +107,19 @@ std::vector<calib::SurveyedPoint> surveyed_points(const Context& context, core::
   return out;
 }
 
-/// Files none of whose points is on an image may be the laser's: one sentence for each takes the place of their names.
+/// Files none of whose points is on an image may be the laser's: one sentence for each takes the place of their names. Those of plan or
+/// heights alone are of no use to it.
 std::vector<std::string> files_without_image(const std::vector<calib::SurveyedPoint>& points, calib::ReadBlock& read) {
   const auto file_of = [](const std::string& place) { return place.substr(0, place.rfind(':')); };
   std::set<std::string> seen, others, names;
   for (const calib::StatedControl& c : read.control) seen.insert(file_of(c.place));
   for (const calib::SurveyedPoint& p : points) {
-    if (seen.contains(file_of(p.place))) continue;
-    others.insert(fs::path(file_of(p.place)).filename().string());
+    const std::string file = file_of(p.place);
+    if (seen.contains(file)) continue;
+    if (p.kind != io::ControlKind::xyz)
+      throw core::Error("no point of the file is on an image, and control of plan or heights alone serves images only", file,
+                        "names of the file and of the image points may differ; or take its [[control]] out");
+    others.insert(fs::path(file).filename().string());
     names.insert(p.name);
   }
   std::erase_if(read.control_without_image, [&](const std::string& name) { return names.contains(name); });
@@ -121,11 +129,20 @@ std::vector<std::string> files_without_image(const std::vector<calib::SurveyedPo
   return out;
 }
 
+/// Strips of images are those of a list, of the events or of flight lines; without any of them all images are of strip 0.
+void expect_strips(const calib::ReadBlock& read, const BlockStageOptions& o, const std::string& survey) {
+  const auto& images = read.block.images;
+  if (o.drift == calib::DriftSets::strip && std::all_of(images.begin(), images.end(), [](const auto& i) { return i.strip == 0; }))
+    throw core::usage_error("block.adjust: drift is per strip, and no image has the number of a strip", survey,
+                            "name the column of strips in [[event]] or [[image]], or list the flight lines in [[line]]");
+}
+
 calib::BlockFound adjust_images(const Context& context, const BlockStageOptions& o, const Output& to, core::Tally& tally) {
   const calib::BlockConfig config = config_of_run(context, o);
   const std::vector<calib::SurveyedPoint> control = surveyed_points(context, tally);
   context.progress(0.0, "reading image points");
   calib::ReadBlock read = calib::read_block(config, context.survey.name, control);
+  expect_strips(read, o, context.survey.name);
   const std::vector<std::string> unseen = files_without_image(control, read);
   calib::refuse_mistakes(read, config);
   const calib::StartResidual start = calib::start_residual(calib::sample_of(read, 2000).block);
