@@ -102,6 +102,11 @@ TEST(DirectOrientationStage, AListNamesTheImages) {
 
 TEST(DirectOrientationStage, WhatItNeedsIsNamedBeforeTheRun) {
   Orientation o;
+  o.work.survey.height_unit = core::Metres(0.3048);
+  EXPECT_NE(fault_of([&] { o.stage->check(o.work.context); }).find("not in height_unit"), std::string::npos);
+  o.work.survey.crs = "EPSG:32632+5703";
+  EXPECT_EQ(fault_of([&] { o.stage->check(o.work.context); }), "");
+  o.work.survey.height_unit.reset();
   o.work.survey.cameras[0].sigma.lever_arm = "2";
   EXPECT_NE(fault_of([&] { o.stage->check(o.work.context); }).find("camera.sigma.lever_arm"), std::string::npos);
   o.work.survey.cameras.clear();

@@ -28,6 +28,10 @@ void expect_cameras(const Context& context, const DirectStageOptions&) {
   if (s.crs.empty())
     throw core::usage_error("orientation.direct: the survey states no CRS for the orientations", s.name,
                             "state it, for example crs = \"EPSG:32632\"");
+  if (s.height_unit && s.height_unit->value != 1.0 && !core::Crs(s.crs).has_height_unit())
+    throw core::usage_error(
+        "orientation.direct: heights of orientations are in metres where the CRS has no vertical part, not in height_unit", s.name,
+        "state crs with its vertical part, for example \"EPSG:2263+6360\", and leave height_unit out");
   if (s.events.empty()) throw core::usage_error("orientation.direct: the survey names no [[event]] file", s.name, "name the exposures");
   if (s.cameras.empty())
     throw core::usage_error("orientation.direct: the survey has no [[camera]]", s.name,
