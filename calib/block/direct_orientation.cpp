@@ -77,11 +77,12 @@ class DirectSolver {
     out.errors.by_pose.bottomRightCorner<3, 3>() = -R.transpose() * J;
     Eigen::Matrix<double, 6, 1> by_time;
     by_time << grid_R_ned * ned_R_ecef * (pose.velocity + pose.ecef_R_body * pose.rate.cross(arm)), -pose.rate;
-    out.errors.of_time = time_sigma * time_sigma * by_time * by_time.transpose();
+    out.errors.of_time = time_sigma * by_time;
     Matrix6 to_camera = Matrix6::Identity();
     to_camera.bottomRightCorner<3, 3>() = camera.body_R_camera.transpose();
     const Matrix6 A = out.errors.by_pose;
-    Matrix6 C = to_camera * (A * pose_covariance(trajectory, time) * A.transpose() + out.errors.of_time) * to_camera.transpose();
+    Matrix6 C = to_camera * (A * pose_covariance(trajectory, time) * A.transpose() + out.errors.of_time * out.errors.of_time.transpose()) *
+                to_camera.transpose();
     for (int k = 0; k < 3; ++k) {
       C(k, k) += std::pow(camera.sigma_lever_arm, 2);
       C(3 + k, 3 + k) += std::pow(camera.sigma_boresight, 2);
@@ -117,7 +118,8 @@ std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajec
       continue;
     }
     DirectImage image;
-    image.name = e.name, image.camera = e.camera, image.strip = e.strip, image.time = e.time, image.doubtful = e.doubtful;
+    image.name = e.name, image.camera = e.camera, image.strip = e.strip, image.time = e.time, image.doubtful = e.doubtful,
+    image.event = e.event;
     found.doubtful += image.doubtful;
     found.exact += !(e.sigma > 0.0);
     solver.orient(trajectory, cameras[e.camera], image.time, e.sigma, image);
@@ -151,7 +153,7 @@ void direct_correlation(const std::vector<DirectImage>& images, const trajectory
         const auto row = 6 * static_cast<Eigen::Index>(i - first), column = 6 * static_cast<Eigen::Index>(j - first);
         CovariancePair pair{static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), {}};
         pair.value = a.by_pose * C.block<6, 6>(row, column) * b.by_pose.transpose();
-        if (i == j) pair.value += a.of_time;
+        if (i == j || (images[i].event && images[i].event == images[j].event)) pair.value += a.of_time * b.of_time.transpose();
         take(pair);
       }
   }
@@ -161,11 +163,13 @@ std::string direct_images_csv(const std::vector<DirectImage>& images, const std:
   std::string out = "name,camera,strip,time,x,y,z,sigma_h,sigma_v,roll,pitch,heading\n";
   for (const DirectImage& i : images) {
     const Matrix6& C = i.orientation.covariance;
-    const int decimals = plan_decimals(i.orientation.map);
+    // Given their neighbours, stations of images 0.5 s apart have sigmas of micrometres: rounding must stay below.
+    constexpr int finer = 3, metre_decimals = 7;
+    const int decimals = plan_decimals(i.orientation.map) + finer;
     char text[320];
-    std::snprintf(text, sizeof text, ",%d,%.9f,%.*f,%.*f,%.4f,%.5f,%.5f,%.8f,%.8f,%.8f\n", i.strip, i.time, decimals, i.orientation.map.x(),
-                  decimals, i.orientation.map.y(), i.orientation.map.z(), std::sqrt((C(0, 0) + C(1, 1)) / 2.0), std::sqrt(C(2, 2)),
-                  i.attitude.roll / core::degree, i.attitude.pitch / core::degree, i.attitude.heading / core::degree);
+    std::snprintf(text, sizeof text, ",%d,%.9f,%.*f,%.*f,%.*f,%.5f,%.5f,%.8f,%.8f,%.8f\n", i.strip, i.time, decimals, i.orientation.map.x(),
+                  decimals, i.orientation.map.y(), metre_decimals, i.orientation.map.z(), std::sqrt((C(0, 0) + C(1, 1)) / 2.0),
+                  std::sqrt(C(2, 2)), i.attitude.roll / core::degree, i.attitude.pitch / core::degree, i.attitude.heading / core::degree);
     out += core::csv_field(i.name) + "," + core::csv_field(cameras[i.camera].name) + text;
   }
   return out;

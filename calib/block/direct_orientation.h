@@ -44,8 +44,8 @@ DirectCamera direct_camera(const io::SurveyCamera& camera, const std::string& su
 
 /// How the errors of a perspective centre on the grid and of the body's rotation come about (axes of OrientationCorrelation).
 struct DirectErrors {
-  PoseCovariance by_pose = PoseCovariance::Zero();  ///< by north, east, down, roll, pitch, heading
-  PoseCovariance of_time = PoseCovariance::Zero();  ///< covariance by the exposure's own time
+  PoseCovariance by_pose = PoseCovariance::Zero();                            ///< by north, east, down, roll, pitch, heading
+  Eigen::Matrix<double, 6, 1> of_time = Eigen::Matrix<double, 6, 1>::Zero();  ///< one sigma of the event's own time
 };
 
 struct DirectImage {
@@ -54,6 +54,7 @@ struct DirectImage {
   int strip = 0;
   double time = 0.0;  ///< GPS time, s
   bool doubtful = false;
+  std::optional<size_t> event{};  ///< as Exposure
   ImageOrientation orientation;
   core::Attitude attitude;  ///< of the body, from true north
   DirectErrors errors;
@@ -86,9 +87,9 @@ void describe(const DirectFound& r, V& v) {
 std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajectory, const std::vector<Exposure>& exposures,
                                             const std::vector<DirectCamera>& cameras, const core::Crs& crs, DirectFound& found);
 
-/// Covariances of each image with those before it, some of them: of the trajectory and each exposure's time. Lever arm and boresight, the
-/// same in all images, are not in them: an error that never decays is not a chain of few images; a block has it as an unknown of the
-/// camera.
+/// Covariances of each image with those before it, some of them: of the trajectory and each event's time, which images of one event share.
+/// Lever arm and boresight, the same in all images, are not in them: an error that never decays is not a chain of few images; a block has
+/// it as an unknown of the camera.
 void direct_correlation(const std::vector<DirectImage>& images, const trajectory::Trajectory& trajectory, const DirectOptions& options,
                         const std::function<void(const CovariancePair&)>& take);
 

@@ -110,7 +110,7 @@ class ExposureFinder {
 
   Exposure exposure(const std::string& name, std::uint32_t camera, size_t event, std::optional<int> strip) const {
     Exposure out{
-        name, camera, strip.value_or(events_.strip[event]), events_.time[event], events_.sigma[event], events_.doubtful[event] != 0};
+        name, camera, strip.value_or(events_.strip[event]), events_.time[event], events_.sigma[event], events_.doubtful[event] != 0, event};
     if (!strip && out.strip == 0)
       for (const io::LineWindow& l : lines_)
         if (out.time >= l.start && out.time <= l.end) out.strip = l.id;

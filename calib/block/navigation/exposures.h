@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct Exposure {
   int strip = 0;
   double time = 0.0, sigma = 0.0;  ///< GPS time, s
   bool doubtful = false;
+  std::optional<size_t> event{};  ///< number of its event: cameras with one trigger share it
 };
 
 struct Exposures {

@@ -148,7 +148,7 @@ TEST(DirectOrientation, CorrelationOfImages) {
   const CovariancePair &own = all.pairs[2], &before = all.pairs[1];
   ASSERT_EQ(before.image, 1u);
   ASSERT_EQ(before.other, 0u);
-  const PoseCovariance expected = std::exp(-0.5) * (own.value - images[1].errors.of_time);
+  const PoseCovariance expected = std::exp(-0.5) * (own.value - images[1].errors.of_time * images[1].errors.of_time.transpose());
   for (int r = 0; r < 6; ++r)
     for (int c = 0; c < 6; ++c)
       EXPECT_NEAR(before.value(r, c), expected(r, c), 1e-4 * std::sqrt(own.value(r, r) * own.value(c, c))) << r << " " << c;
@@ -157,6 +157,20 @@ TEST(DirectOrientation, CorrelationOfImages) {
   ASSERT_EQ(few.pairs.size(), 5u);
   EXPECT_EQ(few.pairs[3].other, 1u);
   expect_near(few.pairs[3].value, all.pairs[4].value, own.value);
+}
+
+/// Two cameras with one trigger have all errors in common, that of its time as well: their difference is that of the rig alone.
+TEST(DirectOrientation, CamerasOfOneEventShareItsTime) {
+  const trajectory::Trajectory trajectory(straight({0.05, -0.04, 2.1}));
+  std::vector<Exposure> e{{"a", 0, 1, 1001.0, 0.01, false, 7}, {"b", 1, 1, 1001.0, 0.01, false, 7}, {"c", 0, 1, 1001.0, 0.01, false, 8}};
+  DirectFound found;
+  const auto images = direct_orientation(trajectory, e, {mounted(), mounted()}, core::Crs("EPSG:32632"), found);
+  const OrientationCorrelation all = correlation_of(images, trajectory, {});
+  ASSERT_EQ(all.pairs.size(), 6u);
+  const PoseCovariance &own = all.pairs[0].value, &rig = all.pairs[1].value, &other = all.pairs[4].value;
+  EXPECT_LT((rig - own).norm(), 1e-6 * own.norm());
+  EXPECT_LT((other - (own - images[0].errors.of_time * images[0].errors.of_time.transpose())).norm(), 1e-6 * own.norm());
+  EXPECT_GT((other - own).norm(), 0.1 * own.norm()) << "0.5 m of 0.02 m";
 }
 
 /// Images in many windows have the same covariances as in one.
@@ -195,8 +209,10 @@ TEST(DirectOrientation, TheTableIsWhatABlockReads) {
   const auto degrees = direct_orientation(flown, e, cameras, core::Crs("EPSG:4326"), found);
   const std::string row = direct_images_csv(degrees, cameras);
   char place[60];
-  std::snprintf(place, sizeof place, ",%.10f,%.10f,", degrees[0].orientation.map.x(), degrees[0].orientation.map.y());
-  EXPECT_NE(row.find(place), std::string::npos) << row;  // 1e-10 deg are 0.01 mm
+  std::snprintf(place, sizeof place, ",%.13f,%.13f,", degrees[0].orientation.map.x(), degrees[0].orientation.map.y());
+  EXPECT_NE(row.find(place), std::string::npos) << row;
+  std::snprintf(place, sizeof place, ",%.7f,%.7f,", images[0].orientation.map.y(), images[0].orientation.map.z());
+  EXPECT_NE(table.find(place), std::string::npos) << table;
   e.erase(e.begin());
   EXPECT_THROW(direct_orientation(flown, e, cameras, core::Crs("EPSG:32632"), found), core::Error);
 }

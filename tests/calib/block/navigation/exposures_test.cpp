@@ -63,6 +63,7 @@ TEST(Exposures, AListNamesImagesCamerasAndStrips) {
   EXPECT_EQ(e.images[1].name, "R1.jpg");
   EXPECT_EQ(e.images[1].camera, 1u);
   EXPECT_EQ(e.images[1].time, 10.2);
+  EXPECT_TRUE(e.images[0].event == 0u && e.images[1].event == 1u);
   EXPECT_EQ(e.images[2].strip, 1);
   EXPECT_EQ(e.events_left_out, 1u);
 }
