@@ -54,7 +54,19 @@ class CameraChecks {
     for (size_t other = 0; other < i; ++other)
       if (survey_.cameras[other].name == c.name)
         fault(key + ".name", "the name " + c.name + " is that of " + numbered("camera", other), "give each camera a name of its own");
+    stated(i, "mount", "the mount of the camera is not stated",
+           "the angle from the direction of flight to the image's x axis, clockwise from above: mount = \"90 deg\"");
+    stated(i, "lever_arm", "the lever arm of the camera is not stated",
+           "lever_arm = [\"... m\", \"... m\", \"... m\"] from the IMU's centre to the perspective centre: forward, right, down");
+    if (!survey_.image_points.empty()) stated(i, "f", "the principal distance of the camera is not stated", "f = \"... mm\"");
     if (core::lacks_distortion(c, c.sigma)) fault(key + ".distortion", core::distortion_fault, core::distortion_hint);
+  }
+
+  /// A key whose default would be a guess.
+  void stated(size_t i, const char* name, const char* what, const char* hint) {
+    const core::Value* list = tree_.find("camera");
+    if (list && list->is_array() && i < list->items().size() && list->items()[i].is_object() && !list->items()[i].find(name))
+      fault(numbered("camera", i) + "." + name, what, hint);
   }
 
   /// That no camera has what coordinates in pixels need, before hours of work.

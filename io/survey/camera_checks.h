@@ -8,8 +8,8 @@
 
 namespace swath::io {
 
-/// The same as check_survey() for cameras, lists of images and image points: names that are there twice, conventions and sigmas that are
-/// not stated, files that are not there, tables without the others that they need.
+/// The same as check_survey() for cameras, lists of images and image points: names that are there twice, conventions, mounts and lever
+/// arms that are not stated, files that are not there, tables without the others that they need.
 void check_cameras(const Survey& survey, const core::Value& tree, std::vector<core::Fault>& faults);
 
 }  // namespace swath::io

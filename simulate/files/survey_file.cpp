@@ -49,7 +49,11 @@ Value fallback_of(const std::string& list) {
     return v;
   }
   if (list == "event") return effective(io::EventFile{});
-  if (list == "camera") return effective(io::SurveyCamera{});
+  if (list == "camera") {
+    Value v = effective(io::SurveyCamera{});
+    for (const char* always : {"f", "mount", "lever_arm"}) *v.find(always) = Value{};  // no default of theirs is taken
+    return v;
+  }
   if (list == "image_points") return effective(io::ImageFile{});
   if (list == "control") return effective(io::ControlFile{});
   if (list == "points") return effective(io::PointFile{});

@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "io/text/value_file.h"
 #include "tests/world/support.h"
 
 namespace swath::io {
@@ -25,11 +26,11 @@ class CameraTables : public testing::Test {
     points.unit = ImageUnit::mm, points.y = ImageY::up, points.origin = ImageOrigin::middle, points.sigma_pixels = 0.3;
   }
   /// The keys of all faults of a survey that is changed so.
-  std::string faults_of(const std::function<void(Survey&)>& change) const {
+  std::string faults_of(const std::function<void(Survey&)>& change, const core::Value& tree = core::Value::object()) const {
     Survey changed = survey;
     change(changed);
     std::vector<core::Fault> faults;
-    check_cameras(changed, core::Value::object(), faults);
+    check_cameras(changed, tree, faults);
     std::string out;
     for (const core::Fault& f : faults) out += (out.empty() ? "" : " ") + f.key;
     return out;
@@ -48,6 +49,16 @@ TEST_F(CameraTables, WhatIsNotStatedIsAFault) {
   EXPECT_EQ(faults_of([](Survey& s) { s.cameras[0].k1 = 1e-5; }), "camera[1].distortion");
   EXPECT_EQ(faults_of([](Survey& s) { s.cameras[0].sigma.p2 = "free"; }), "camera[1].distortion");
   EXPECT_EQ(faults_of([](Survey& s) { s.cameras[0].sigma.p2 = "free", s.cameras[0].distortion = core::DistortionAt::ideal; }), "");
+}
+
+TEST_F(CameraTables, MountLeverArmAndPrincipalDistanceAreNeverGuessed) {
+  const auto same = [](Survey&) {};
+  EXPECT_EQ(faults_of(same, parse_toml("[[camera]]\nname = \"camera\"\n", "s.toml")), "camera[1].mount camera[1].lever_arm camera[1].f");
+  const core::Value full = parse_toml("[[camera]]\nf = \"50 mm\"\nmount = \"0 deg\"\nlever_arm = [\"0 m\", \"0 m\", \"0 m\"]\n", "s.toml");
+  EXPECT_EQ(faults_of(same, full), "");
+  // Without image points nothing needs the principal distance.
+  const core::Value mounted = parse_toml("[[camera]]\nmount = \"0 deg\"\nlever_arm = [\"0 m\", \"0 m\", \"0 m\"]\n", "s.toml");
+  EXPECT_EQ(faults_of([](Survey& s) { s.image_points.clear(); }, mounted), "");
 }
 
 TEST_F(CameraTables, WhatAFormatFixesIsNotStated) {

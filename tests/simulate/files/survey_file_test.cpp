@@ -57,5 +57,15 @@ TEST(SurveyFile, EveryListOfTablesLosesItsOwnDefaultsOnly) {
     EXPECT_EQ(text.find(left_out), std::string::npos) << left_out << "\n" << text;
 }
 
+TEST(SurveyFile, ACameraHasWhatASurveyNeverGuesses) {
+  io::Survey s;
+  s.crs = "EPSG:32632";
+  s.cameras.emplace_back();
+  const std::string text = survey_toml(s, "");
+  for (const char* stated : {"\nf = \"0.1 m\"", "\nmount = \"0 deg\"", "\nlever_arm = [\"0 m\", \"0 m\", \"0 m\"]"})
+    EXPECT_NE(text.find(stated), std::string::npos) << stated << "\n" << text;
+  EXPECT_EQ(text.find("boresight"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace swath::simulate
