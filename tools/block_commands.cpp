@@ -8,7 +8,7 @@
 
 #include "calib/block/block_files.h"
 #include "calib/block/block_theory.h"
-#include "calib/block/checks/block_checks.h"
+#include "calib/block/checks/checked_adjustment.h"
 #include "calib/block/station_drift.h"
 #include "core/config/option_visitors.h"
 #include "core/config/result_visitors.h"
@@ -125,14 +125,9 @@ int block(const BlockArguments& a) {
   const calib::BlockConfig config = calib::read_block_config(a.config, given);
   expect_apart(a, config);
   calib::ReadBlock read = calib::read_block(config, a.config);
-  calib::refuse_mistakes(read, config);
-  const calib::StartResidual start = calib::start_residual(calib::sample_of(read, 2000).block);
-  const calib::ReadBlock stated = read;
-  const calib::BlockSolution solution = calib::adjust_block(read.block, config.adjust);
-  calib::refuse_wrong_stations(stated, read, solution, config);
-  calib::BlockFound found = calib::findings_of(read, config, solution);
-  found.start_tie = start.tie, found.start_control = start.control;
-  const std::vector<std::string> files = calib::write_block(a.folder, read, config, solution, found);
+  const calib::CheckedAdjustment adjusted = calib::adjust_checked(read, config);
+  const calib::BlockFound& found = adjusted.found;
+  const std::vector<std::string> files = calib::write_block(a.folder, read, config, adjusted.solution, found);
   if (a.json) {
     print_json(core::reported(found));
   } else {

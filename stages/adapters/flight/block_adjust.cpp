@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calib/block/block_files.h"
-#include "calib/block/checks/block_checks.h"
+#include "calib/block/checks/checked_adjustment.h"
 #include "core/error.h"
 #include "core/geo/geodesy.h"
 #include "io/vector/control.h"
@@ -144,20 +144,14 @@ calib::BlockFound adjust_images(const Context& context, const BlockStageOptions&
   calib::ReadBlock read = calib::read_block(config, context.survey.name, control);
   expect_strips(read, o, context.survey.name);
   const std::vector<std::string> unseen = files_without_image(control, read);
-  calib::refuse_mistakes(read, config);
-  const calib::StartResidual start = calib::start_residual(calib::sample_of(read, 2000).block);
-  const calib::ReadBlock stated = read;
   context.progress(0.2, "adjusting");
-  const calib::BlockSolution solution = calib::adjust_block(read.block, config.adjust);
-  calib::refuse_wrong_stations(stated, read, solution, config);
+  auto [stated, solution, found] = calib::adjust_checked(read, config);
   context.progress(0.8, "writing");
-  calib::BlockFound found = calib::findings_of(read, config, solution);
-  found.start_tie = start.tie, found.start_control = start.control;
   found.started_from = "direct orientation";
   found.direct = calib::compare_direct(stated, read, solution);
   found.findings.insert(found.findings.end(), unseen.begin(), unseen.end());
   calib::write_block(to.folder / block_folder, read, config, solution, found);
-  return found;
+  return std::move(found);
 }
 
 }  // namespace
