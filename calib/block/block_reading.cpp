@@ -222,6 +222,7 @@ void add_chain(const BlockConfig& config, const OrientationCorrelation& correlat
     turn[i].bottomRightCorner<3, 3>() = read.block.cameras[image.camera].body_R_camera.transpose();
   }
   const bool stations = config.images.stations == ImageValues::observed, angles = config.images.angle_use == ImageValues::observed;
+  if (!stations && !angles) return;  // values to start from
   const ChainParts parts = stations && angles ? ChainParts{0, 6} : stations ? ChainParts{0, 3} : ChainParts{3, 3};
   read.block.chain = navigation_chain(correlation, image_number, turn, parts, config.images.correlation.string());
 }

@@ -110,6 +110,34 @@ TEST(BlockReading, OptionsThatDoNothingAreRefused) {
   EXPECT_NE(fault_of(file).find("two [[camera]] have the name RMK"), std::string::npos) << fault_of(file);
 }
 
+/// A run states covariances whatever takes part of them.
+TEST(BlockReading, CovariancesOfValuesToStartFromAreNoObservations) {
+  const test::TemporaryFolder folder;
+  test::MadeFiles m;
+  m.block = test::make_block(test::small_making()).given;
+  m.write_angles = true;
+  const std::string file = test::write_made(m, folder.path());
+  CorrelationFile to(folder.path() / "correlation.csv", "local");
+  for (const BlockImage& i : m.block.images) to.add(i.name, i.name, 1e-4 * PoseCovariance::Identity());
+  to.commit();
+  BlockConfig config = test::read_made(file);
+  config.images.correlation = folder.path() / "correlation.csv";
+  const size_t images = m.block.images.size();
+  for (const bool stations : {false, true})
+    for (const bool angles : {false, true}) {
+      config.images.stations = stations ? ImageValues::observed : ImageValues::start;
+      config.images.angle_use = angles ? ImageValues::observed : ImageValues::start;
+      const ReadBlock read = read_block(config, file);
+      EXPECT_EQ(read.covariance.size(), images);
+      EXPECT_EQ(read.block.chain.size(), stations || angles ? images : 0);
+      for (const NavigationStep& step : read.block.chain) EXPECT_EQ(step.root.rows(), 3 * (stations + angles));
+    }
+  config.images.stations = config.images.angle_use = ImageValues::start;
+  ReadBlock read = read_block(config, file);
+  const BlockSolution s = adjust_block(read.block, config.adjust);
+  EXPECT_EQ(s.inference.redundancy_of[1], 0.0) << "no station takes part";
+}
+
 /// Image points of a program that had the images smaller would be taken for others, all of them by one factor.
 TEST(BlockReading, ImagesOfAnotherSizeThanTheCamerasAreRefused) {
   const test::TemporaryFolder folder;
