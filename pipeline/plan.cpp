@@ -154,7 +154,6 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
   ColumnSet columns;
   std::vector<Product> products;
   std::map<Product, double> cells;  // of the grids given
-  const auto has = [&](Product p) { return std::find(products.begin(), products.end(), p) != products.end(); };
   bool tiles_began = false;
   int sources = 0;
   std::map<std::filesystem::path, std::string> makers{{"report.json", "the report"}, {".swath", "the work in progress"}};
@@ -169,13 +168,12 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
         if (gives(e.make()->info())) names += (names.empty() ? "" : ", ") + std::string(e.name);
       return names.empty() ? std::string() : "given by: " + names;
     };
-    sources += s.stage->is_source() ? 1 : 0;
-    if (s.stage->is_source() && sources > 1) fault("a second source of points", "one reader per pipeline");
+    if (s.stage->is_source() && sources++ > 0) fault("a second source of points", "one reader per pipeline");
     if (s.stage->works_on(Grain::strip) && tiles_began)
       fault("a strip stage behind a tile stage", "readers, georeference and returns come before filters and terrain");
     tiles_began = tiles_began || s.stage->works_on(Grain::tile);
     for (const Product p : info.needs_products)
-      if (!has(p))
+      if (std::find(products.begin(), products.end(), p) == products.end())
         fault("needs " + std::string(name_of(p)) + ", which no stage before it gives",
               giver([p](const stages::Info& i) { return i.makes(p); }));
     if (const std::string sizes = differing_cells(info, cells); !sizes.empty())
@@ -199,10 +197,9 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
       for (const Product p : info.gives_products) cells[p] = s.stage->cell();
     products.insert(products.end(), info.gives_products.begin(), info.gives_products.end());
   }
-  if (sources == 0 && works_on_the_map(plan)) {
-    const core::Location place{plan.config.string(), 0, 0};
+  const core::Location place{plan.config.string(), 0, 0};
+  if (sources == 0 && works_on_the_map(plan))
     faults.push_back({place, "stage", "no reader: nothing to work on", "readers.laser or readers.las give points"});
-  }
 }
 
 /// The rasters of one tile must fit into the budget, however few points there are.
@@ -255,7 +252,10 @@ void check_against_survey(const Plan& plan) {
   context.tile_side = plan.run.tile.value;
   for (const PlannedStage& s : plan.stages)
     if (s.stage->is_source()) context.source = s.stage.get();
-  for (const PlannedStage& s : plan.stages) s.stage->check(context);
+  for (const PlannedStage& s : plan.stages) {
+    s.stage->check(context);
+    for (std::string& product : s.stage->products()) context.planned.push_back(std::move(product));
+  }
   if (plan.survey.crs.empty() && works_on_the_map(plan))
     if (const std::string own = crs_of_source(plan); !own.empty()) require_projected(core::Crs(own), plan.survey_file);
 }

@@ -127,6 +127,7 @@ struct Context {
   double tile_side = 500.0;                      ///< m
   std::filesystem::path output{};                ///< where the stage at work puts its products, laid out as in the output folder
   std::vector<std::filesystem::path> earlier{};  ///< the same of the stages before it
+  std::vector<std::string> planned{};            ///< products of the stages before it, while a plan is checked
   core::OnProgress progress = core::unwatched;   ///< of the survey stage or merge at work
   const Grids* grids = nullptr;
   const Stage* source = nullptr;     ///< of the plan; null where it has none

@@ -195,6 +195,10 @@ class BlockRuns(Case):
         substitute(self.flown / "survey.toml", 'technique = "marks"', 'technique = "mark"')  # of the events
         self.refused(2, "no event is of the technique marks of camera camera", "the events are of mark, pc")
 
+    def test_covariances_that_nothing_writes_are_missed_before_the_run(self):
+        done = swath("check", self.config, "--survey", self.flown / "survey.toml", "--set", "orientation.direct.correlated_images=0")
+        self.assert_error(done, 2, "orientation.direct writes no covariances", "correlated_images = 1 or more")
+
     def test_a_drift_per_strip_needs_strips(self):
         survey = self.flown / "survey.toml"
         survey.write_text(re.sub(r'\nstrip = "strip"|\n\[\[line\]\]\n(?:[^\[\n].*\n)*|\n\[line_time\]\n(?:[^\[\n].*\n)*', "\n", survey.read_text()))

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* block_folder = "block";
+constexpr const char *block_folder = "block", *correlation_file = "orientation_correlation.csv";
 
 struct BlockStageOptions : calib::BlockOptions {
   calib::DriftSets drift = calib::DriftSets::none;
@@ -55,6 +55,9 @@ std::vector<fs::path> block_inputs(const io::Survey& survey) {
 
 void expect_image_points(const Context& context, const BlockStageOptions& o) {
   const io::Survey& s = context.survey;
+  if (std::find(context.planned.begin(), context.planned.end(), correlation_file) == context.planned.end())
+    throw core::usage_error("block.adjust: orientation.direct writes no covariances of stations and attitudes", s.name,
+                            "state correlated_images = 1 or more for orientation.direct");
   if (s.cameras.empty()) throw core::usage_error("block.adjust: the survey has no [[camera]]", s.name, "describe it");
   if (s.image_points.empty())
     throw core::usage_error("block.adjust: the survey names no [[image_points]]", s.name, "name the file of points measured on its images");
@@ -80,10 +83,7 @@ calib::BlockConfig config_of_run(const Context& context, const BlockStageOptions
     out.image_points.push_back(std::move(f));
   }
   calib::ImagesConfig& i = out.images;
-  i.file = context.made("images.csv"), i.correlation = context.made("orientation_correlation.csv");
-  if (i.correlation.empty())
-    throw core::usage_error("block.adjust: orientation.direct has written no covariances of stations and attitudes", survey.name,
-                            "state correlated_images = 1 or more for orientation.direct");
+  i.file = context.made("images.csv"), i.correlation = context.made(correlation_file);
   i.angles = calib::ImageAngles::roll_pitch_heading, i.north = calib::ImageNorth::true_north;
   i.stations = o.stations, i.angle_use = o.attitudes;
   i.place = io::resolve(survey, survey.images.empty() ? survey.events.front().file : survey.images.front().file).string();
