@@ -16,7 +16,7 @@ using core::Value;
 constexpr std::string_view box_code = "points.outside_box", damage_code = "work.damaged", geometry_code = "geometry.contradiction",
                            mistake_code = "geometry.mistake", control_code = "control.unused", buildings_code = "buildings.none",
                            scale_code = "crs.scale", outside_code = "crs.outside", fixes_code = "trajectory.fixes",
-                           noise_code = "trajectory.imu_noise";
+                           noise_code = "trajectory.imu_noise", events_code = "events.outside";
 constexpr double contradicting_share = 0.05, least_contradicting = 10.0;  // of the fixes; fixes
 constexpr double warned_noise = 30.0;                                     // times the stated noise
 
@@ -65,8 +65,18 @@ void add_trajectory(const Value& findings, std::vector<Warning>& out) {
                    {{"factor", noise->as_number(), {}}}});
 }
 
+/// Techniques whose events lie outside the record that should cover them.
+void add_events(const Value& techniques, std::vector<Warning>& out) {
+  for (const Value& one : techniques.items())
+    out.push_back({std::string(events_code),
+                   one.find("sentence")->as_text(),
+                   {{"outside", one.find("outside")->as_number(), {}}, {"events", one.find("events")->as_number(), {}}}});
+}
+
 void add_findings(const std::string& stage, const Value& findings, std::vector<Warning>& out) {
   if (stage == "trajectory.ins_gnss") add_trajectory(findings, out);
+  if (const Value* outside = findings.find("outside"); outside && (stage == "time.sync" || stage == "trajectory.kinematic"))
+    add_events(*outside, out);
   const Value *named = findings.find("named"), *returns = findings.find("returns");
   if (stage == "quality.points" && named)
     for (const Value& fault : named->items()) out.push_back({fault.find("code")->as_text(), fault.find("sentence")->as_text(), {}});

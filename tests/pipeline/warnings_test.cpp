@@ -20,6 +20,7 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
                                                             {"code": "check.names", "sentence": "e"}, {"code": "check.outside", "sentence": "f"},
                                                             {"code": "check.roof", "sentence": "g"}]}},
           {"type": "trajectory.ins_gnss", "findings": {"fixes": {"used": 1061, "down_weighted": 316}, "imu_noise_factor": 64}},
+          {"type": "time.sync", "findings": {"outside": [{"technique": "pc", "events": 40, "outside": 40, "sentence": "h"}]}},
           {"type": "terrain.buildings", "findings": {"buildings": 0, "returns": 0}}, {"type": "terrain.buildings", "findings": {"returns": 7}}],
           "crs": {"name": "WGS 84 / Arctic", "scale": 0.97, "degrees_outside": 12.5},
           "geometry": {"named": ["range_feet"], "warnings": ["lines disagree", "with ranges in feet: state range_unit"]},
