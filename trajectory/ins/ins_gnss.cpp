@@ -18,6 +18,7 @@
 #include "core/records/imu_columns.h"
 #include "core/time_gap.h"
 #include "trajectory/ins/alignment.h"
+#include "trajectory/ins/ins_noise.h"
 #include "trajectory/ins/ins_output.h"
 #include "trajectory/ins/ins_problem.h"
 #include "trajectory/ins/ins_report.h"
@@ -33,11 +34,7 @@ constexpr double node_spacing = 0.25;   // s: between nodes residuals of the mec
 constexpr double longest_lead = 120.0;  // s of IMU records kept before the first fix and after the last
 constexpr double most_rate = 2.0;       // rad/s, rms over the record
 constexpr int most_iterations = 8;
-constexpr double settled = 0.05;                         // sigmas by which the trajectory may still move
-constexpr double least_share = 0.02, usual_share = 0.4;  // of the GNSS variance that is correlated, where nothing determines it
-constexpr double least_fixes = 100;                      // from which noise is estimated
-constexpr double too_large = 1.5, too_alike = 0.25;      // normalised innovations: mean square, correlation of neighbours
-constexpr double most_roughness = 64;
+constexpr double settled = 0.05;    // sigmas by which the trajectory may still move
 constexpr double first_gate = 1e5;  // NIS in the first pass, whose start may be degrees off
 
 std::string seconds(double t) { return core::format_number(std::round(t * 1000) / 1000); }
@@ -140,51 +137,6 @@ std::vector<Node> nodes_of(const ImuPath& path, const core::GnssData& gnss, cons
     n.still = s < standstills.size() && n.time >= standstills[s].first;
   }
   return out;
-}
-
-/// Sets share and variance of the fixes to what the innovations show: their excess (nis / 3 - 1) S over what was expected belongs to the
-/// white part R. White noise above the stated variance raises that. True where they changed by more than noise.
-bool adapt_fixes(Problem& problem, const std::vector<FixOutcome>& outcomes) {
-  double nis = 0, all = 0, n = 0;
-  for (size_t k = 0; k < problem.nodes.size(); ++k) {
-    const FixOutcome& o = outcomes[k];
-    if (problem.nodes[k].fix < 0 || o.weight < 1) continue;
-    const double expected = o.innovation_sigma.squaredNorm() / problem.gnss.covariance[static_cast<size_t>(problem.nodes[k].fix)].trace();
-    if (expected > 4 * problem.variance) continue;  // after an outage the innovations depend on the IMU
-    nis += o.nis / 3;
-    all += expected;
-    n += 1;
-  }
-  if (n < least_fixes) return false;
-  const double white = (1 - problem.share) * problem.variance;  // of the stated variance
-  const double shown = std::clamp(white + (nis / n - 1) * (all / n), 0.2 * white, 5 * white);
-  const double noise = std::sqrt(2 / (3 * n)) * (all / n);
-  // Within the stated variance the rest of it is correlated; beyond, the share rises to the usual one as the statement proves worthless.
-  problem.share =
-      shown < 1 ? std::clamp(1 - shown, least_share, 0.95) : std::min(usual_share, least_share + (usual_share - least_share) * (shown - 1));
-  problem.variance = std::max(1.0, shown / (1 - problem.share));
-  return std::abs(shown - white) > std::max(0.03 * white, 2 * noise);
-}
-
-/// Doubles the IMU's noise where the innovations are too large and follow one another: more motion than the IMU shows, as under
-/// vibration. (White noise of the fixes makes them large too, but not alike.) True where it did.
-bool adapt_imu(Problem& problem, const std::vector<FixOutcome>& outcomes) {
-  if (problem.noise.angle == 0 && problem.noise.velocity == 0) return false;  // stated as perfect
-  double alike = 0, squares = 0, n = 0;
-  Vector3d before = Vector3d::Zero();
-  for (size_t k = 0; k < problem.nodes.size(); ++k) {
-    if (problem.nodes[k].fix < 0) continue;
-    const Vector3d z = outcomes[k].innovation.cwiseQuotient(outcomes[k].innovation_sigma);
-    alike += z.dot(before);
-    squares += z.squaredNorm();
-    before = z;
-    n += 1;
-  }
-  if (n < least_fixes || squares / (3 * n) < too_large || alike / squares < too_alike || problem.roughness >= most_roughness) return false;
-  problem.roughness *= 2;
-  for (double* density : {&problem.noise.angle, &problem.noise.velocity, &problem.noise.gyro_drift, &problem.noise.force_drift})
-    *density *= 4;
-  return true;
 }
 
 /// The largest change of position, velocity or attitude between two runs, in sigmas.
