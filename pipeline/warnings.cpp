@@ -65,6 +65,10 @@ const std::vector<WarningKind>& warning_kinds() {
        "The points are used as they are; have the file written again, for other programs trust the box."},
       {"trajectory.fixes", "Many GNSS fixes contradict the smoothed trajectory; the stated sigmas do not hold.",
        "See trajectory.json and what the readers counted: damaged records, clocks apart, a wrong lever arm, fixes of poor quality."},
+      {"trajectory.gnss_sigmas",
+       "The GNSS fixes scatter far less than their stated sigmas say; printed sigmas of the trajectory are too large.",
+       "See how the receiver or the post-processing scales its sigmas. They are right where the errors change far more slowly than "
+       "trajectory.ins_gnss.correlation_time: state that, or correlated_share."},
       {"trajectory.imu_noise", "The IMU's records hold many times the noise that its specification states.",
        "See what readers.imu counted in report.json: damaged records, wrong units or axes, strong vibration; correct imu_spec if the IMU "
        "is so."},

@@ -223,14 +223,15 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
   SmootherRun run = first_run(problem, from_scratch);
   problem.gate = core::chi_square_limit(options.outlier_probability, 3.0);  // the NIS of a position
   std::vector<Estimate> reference(nodes.size());
-  const auto about = [&](const SmoothedNode& at) {
+  const auto about_with = [&](const Problem& noise, const SmoothedNode& at) {
     const bool attitude = start.attitude_given && &at == &run.nodes.front();  // what is given is that of the beginning
     StateMatrix stated = start.covariance;
     // At the other end nothing is stated of the attitude: 1 rad is more than any error.
     if (start.attitude_given && !attitude) stated.block<3, 3>(Layout::attitude, Layout::attitude).setIdentity();
-    return InsFilter(problem, at.estimate, stated_mean(start.estimate, at.estimate, layout, attitude), widened(stated, at.sigma, attitude),
+    return InsFilter(noise, at.estimate, stated_mean(start.estimate, at.estimate, layout, attitude), widened(stated, at.sigma, attitude),
                      &reference);
   };
+  const auto about = [&](const SmoothedNode& at) { return about_with(problem, at); };
   const auto refer = [&] {
     for (size_t k = 0; k < nodes.size(); ++k) reference[k] = run.nodes[k].estimate;
   };
@@ -249,10 +250,14 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
   if (!std::isfinite(shift))
     throw core::Error("the filter diverged", "trajectory.ins_gnss", "check units, axes, lever arm and time scales");
   const std::vector<FilterNode> backward = run_backward(problem, about(run.nodes.back()));
+  const double overstated = options.correlated_share ? 1.0 : overstatement(problem, [&](const Problem& noise) {
+    return run_forward(noise, about_with(noise, run.nodes.front()));
+  });
 
   InsGnssResult result;
   const InsFindings findings{
-      problem, run, backward, spec, alignment, lever_arm, lever_arm_sigma, standstills, iterations, shift > settled ? shift : 0.0, clocks};
+      problem, run,       backward, spec, alignment, lever_arm, lever_arm_sigma, standstills, iterations, shift > settled ? shift : 0.0,
+      clocks,  overstated};
   result.series = series_of(findings);
   refuse_contradicting(result.series.weight);
   result.report = report_of(findings, result.series);

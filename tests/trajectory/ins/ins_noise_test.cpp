@@ -64,6 +64,34 @@ TEST(InsNoise, FixesOfLessWeightAndFewFixesDetermineNothing) {
   EXPECT_FALSE(adapt_imu(few.problem, few.outcomes));
 }
 
+/// Innovations of 2 cm, and passes whose sigma is that of the problem's whole variance of 4 cm fixes.
+TEST(InsNoise, SigmasThatAreTooLargeHaveAFactor) {
+  Pass made(1.0);
+  int passes = 0;
+  const auto pass = [&](const Problem& p) {
+    ++passes;
+    std::vector<FixOutcome> out = made.outcomes;
+    const double of = 2 * sigma * std::sqrt(p.variance);
+    for (FixOutcome& o : out) {
+      o.innovation_sigma.setConstant(of);
+      o.nis = o.innovation.squaredNorm() / (of * of);
+    }
+    return out;
+  };
+  made.problem.share = 0.95;
+  // Halved twice: 0.29 of the variance; the next would be 0.17 of it, and a quarter is right.
+  EXPECT_NEAR(overstatement(made.problem, pass), std::sqrt(1 / (0.05 + 0.95 / 4)), 1e-9);
+  EXPECT_EQ(passes, 4);
+  made.problem.variance = 0.25;  // right
+  EXPECT_EQ(overstatement(made.problem, pass), 1.0);
+  // Where little is correlated nothing is asked.
+  passes = 0;
+  made.problem.share = 0.7;
+  made.problem.variance = 1.0;
+  EXPECT_EQ(overstatement(made.problem, pass), 1.0);
+  EXPECT_EQ(passes, 0);
+}
+
 TEST(InsNoise, InnovationsThatAreLargeAndAlikeAreTheImus) {
   Pass rough(3.0, 0.9);
   const ProcessNoise before = rough.problem.noise;
