@@ -166,14 +166,20 @@ class PassCount {
   const core::OnProgress& progress_;
 };
 
-/// The first run, with as much noise of the IMU as its innovations ask for.
-template <class Start>
-SmootherRun first_run(Problem& problem, const Start& from_scratch) {
-  SmootherRun run = run_smoother(problem, from_scratch(), false);
-  if (!adapt_imu(problem, run.outcomes)) return run;
-  while (adapt_imu(problem, run_forward(problem, from_scratch()))) {
-  }
-  return run_smoother(problem, from_scratch(), false);
+/// Raises the IMU's noise to what the innovations ask for. Outliers, and a start that they spoilt, make them large as well: it is judged by
+/// passes about the first run (`again`) with a gate among innovations that may be large alike.
+template <class Pass>
+bool adapt_to_motion(Problem& problem, const SmootherRun& first, const Pass& again) {
+  if (!is_rough(problem, first.outcomes)) return false;
+  const double before = problem.roughness, gate = problem.gate;
+  problem.gate = gate_among(problem, first.outcomes);
+  std::vector<FixOutcome> outcomes = again();
+  do {
+    problem.gate = gate_among(problem, outcomes);
+    outcomes = again();
+  } while (adapt_imu(problem, outcomes));
+  problem.gate = gate;
+  return problem.roughness > before;
 }
 
 void refuse_contradicting(const std::vector<double>& weights) {
@@ -220,8 +226,7 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
   // Repeated about the smoothed trajectory until it stays.
   problem.gate = first_gate;
   const auto from_scratch = [&] { return InsFilter(problem, start.estimate, StateVector::Zero(layout.size), start.covariance, nullptr); };
-  SmootherRun run = first_run(problem, from_scratch);
-  problem.gate = core::chi_square_limit(options.outlier_probability, 3.0);  // the NIS of a position
+  SmootherRun run = run_smoother(problem, from_scratch(), false);
   std::vector<Estimate> reference(nodes.size());
   const auto about_with = [&](const Problem& noise, const SmoothedNode& at) {
     const bool attitude = start.attitude_given && &at == &run.nodes.front();  // what is given is that of the beginning
@@ -236,6 +241,11 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
     for (size_t k = 0; k < nodes.size(); ++k) reference[k] = run.nodes[k].estimate;
   };
   refer();
+  if (adapt_to_motion(problem, run, [&] { return run_forward(problem, about(run.nodes.front())); })) {
+    run = run_smoother(problem, from_scratch(), false);
+    refer();
+  }
+  problem.gate = core::chi_square_limit(options.outlier_probability, 3.0);  // the NIS of a position
   if (!options.correlated_share)
     for (int i = 0; i < most_iterations && adapt_fixes(problem, run_forward(problem, about(run.nodes.front()))); ++i) {
     }
