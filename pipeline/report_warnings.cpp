@@ -16,7 +16,7 @@ using core::Value;
 constexpr std::string_view box_code = "points.outside_box", damage_code = "work.damaged", geometry_code = "geometry.contradiction",
                            mistake_code = "geometry.mistake", control_code = "control.unused", buildings_code = "buildings.none",
                            scale_code = "crs.scale", outside_code = "crs.outside", fixes_code = "trajectory.fixes",
-                           noise_code = "trajectory.imu_noise";
+                           noise_code = "trajectory.imu_noise", events_code = "events.outside", sigmas_code = "trajectory.gnss_sigmas";
 constexpr double contradicting_share = 0.05, least_contradicting = 10.0;  // of the fixes; fixes
 constexpr double warned_noise = 30.0;                                     // times the stated noise
 
@@ -48,6 +48,8 @@ void add_geometry(const Value& geometry, std::vector<Warning>& out) {
     out.push_back({std::string(k + mistakes < sentences.size() ? geometry_code : mistake_code), sentences[k].as_text(), {}});
 }
 
+std::string one_decimal(double v) { return core::format_number(std::round(v * 10) / 10); }
+
 /// Records that do not fit one another, beyond what outliers and vibration do.
 void add_trajectory(const Value& findings, std::vector<Warning>& out) {
   if (const Value* fixes = findings.find("fixes")) {
@@ -58,6 +60,11 @@ void add_trajectory(const Value& findings, std::vector<Warning>& out) {
                          " fixes contradict the trajectory: it may be off by far more than its sigmas",
                      {{"contradicting", contradict, {}}, {"fixes", used, {}}}});
   }
+  if (const Value* fixes = findings.find("fixes"); fixes && fixes->find("sigmas_overstated"))
+    out.push_back({std::string(sigmas_code),
+                   "the stated sigmas of the GNSS fixes are " + one_decimal(fixes->find("sigmas_overstated")->as_number()) +
+                       " times too large by their scatter: the trajectory's sigmas are too large with them",
+                   {{"times", fixes->find("sigmas_overstated")->as_number(), {}}}});
   if (const Value* noise = findings.find("imu_noise_factor"); noise && noise->as_number() >= warned_noise)
     out.push_back({std::string(noise_code),
                    "the IMU's records hold " + core::format_number(std::round(noise->as_number())) +
@@ -65,8 +72,18 @@ void add_trajectory(const Value& findings, std::vector<Warning>& out) {
                    {{"factor", noise->as_number(), {}}}});
 }
 
+/// Techniques whose events lie outside the record that should cover them.
+void add_events(const Value& techniques, std::vector<Warning>& out) {
+  for (const Value& one : techniques.items())
+    out.push_back({std::string(events_code),
+                   one.find("sentence")->as_text(),
+                   {{"outside", one.find("outside")->as_number(), {}}, {"events", one.find("events")->as_number(), {}}}});
+}
+
 void add_findings(const std::string& stage, const Value& findings, std::vector<Warning>& out) {
   if (stage == "trajectory.ins_gnss") add_trajectory(findings, out);
+  if (const Value* outside = findings.find("outside"); outside && (stage == "time.sync" || stage == "trajectory.kinematic"))
+    add_events(*outside, out);
   const Value *named = findings.find("named"), *returns = findings.find("returns");
   if (stage == "quality.points" && named)
     for (const Value& fault : named->items()) out.push_back({fault.find("code")->as_text(), fault.find("sentence")->as_text(), {}});

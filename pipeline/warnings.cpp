@@ -30,6 +30,9 @@ const std::vector<WarningKind>& warning_kinds() {
        "survey."},
       {"crs.scale", "Lengths on the map differ from those on the ground by more than 0.5 % at the data.",
        "Choose a local projection, such as the UTM zone, as CRS of the products, or correct areas, densities and volumes by the scale."},
+      {"events.outside",
+       "Nearly all events of a technique lie outside the trajectory, the GNSS fixes or the events they are compared with.",
+       "Correct time scale, week, date or time.offset of that [[event]] in survey.toml; `swath info` shows the times of both files."},
       {"geometry.contradiction", "Lines, heights or headings of the flight contradict one another more than their accuracy allows.",
        "See the checks of quality.geometry in report.json, and the warnings geometry.mistake beside this one."},
       {"geometry.mistake", "A usual mistake in the description of the survey explains the contradictions.",
@@ -62,6 +65,10 @@ const std::vector<WarningKind>& warning_kinds() {
        "The points are used as they are; have the file written again, for other programs trust the box."},
       {"trajectory.fixes", "Many GNSS fixes contradict the smoothed trajectory; the stated sigmas do not hold.",
        "See trajectory.json and what the readers counted: damaged records, clocks apart, a wrong lever arm, fixes of poor quality."},
+      {"trajectory.gnss_sigmas",
+       "The GNSS fixes scatter far less than their stated sigmas say; printed sigmas of the trajectory are too large.",
+       "See how the receiver or the post-processing scales its sigmas. They are right where the errors change far more slowly than "
+       "trajectory.ins_gnss.correlation_time: state that, or correlated_share."},
       {"trajectory.imu_noise", "The IMU's records hold many times the noise that its specification states.",
        "See what readers.imu counted in report.json: damaged records, wrong units or axes, strong vibration; correct imu_spec if the IMU "
        "is so."},

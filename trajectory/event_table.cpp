@@ -34,6 +34,7 @@ std::string flags_of(const EventPosition& e, bool doubtful) {
   return out;
 }
 
+constexpr const char* gnss_record = "the GNSS record";
 constexpr const char* header =
     "id,strip,technique,gps_time,easting,northing,height,x,y,z,v_east,v_north,v_up,sigma_east,sigma_north,sigma_up,"
     "sigma_v_east,sigma_v_north,sigma_v_up,sigma_time,fixes,flags\n";
@@ -102,10 +103,8 @@ void count_events(const core::EventData& events, const core::GnssData& gnss, con
     if (events.doubtful[i]) tally.count("events whose time is doubtful", event);
   }
   if (events.size() > 0 && outside == events.size())
-    throw core::Error("trajectory.kinematic: all " + std::to_string(outside) + " events lie outside the GNSS record (events " +
-                          number(events.time.front(), 1) + " to " + number(events.time.back(), 1) + " s, fixes " +
-                          number(gnss.time.front(), 1) + " to " + number(gnss.time.back(), 1) + " s of GPS time)",
-                      survey, "is the time scale of the events, or of the fixes, stated as it is?");
+    if (const auto found = outside_of("", events.time, {gnss.time.front(), gnss.time.back()}, gnss_record))
+      throw core::Error("trajectory.kinematic: " + found->what, survey, found->cause);
 }
 
 MotionFigures figures_of(const MotionModel& model) {
@@ -130,6 +129,7 @@ EventFigures figures_of(const core::EventData& events, const PointTrack& track, 
   r.events = events.size();
   r.motion = figures_of(track.model());
   r.comparisons = compare_event_places(events, solved);
+  r.outside = outside_of(events, {track.fixes.time.front(), track.fixes.time.back()}, gnss_record);
   std::array<std::vector<double>, 3> sigmas;
   for (const EventPosition& e : solved)
     for (int axis = 0; axis < 3 && reached(e.reach); ++axis) sigmas[static_cast<size_t>(axis)].push_back(e.sigma[axis]);

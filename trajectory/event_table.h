@@ -14,6 +14,7 @@
 #include "core/report.h"
 #include "trajectory/event_comparison.h"
 #include "trajectory/event_positions.h"
+#include "trajectory/events_outside.h"
 #include "trajectory/rate_test.h"
 
 namespace swath::trajectory {
@@ -53,6 +54,7 @@ struct EventFigures {
   LeaveOneOut leave_one_out{};
   std::vector<RateTest> rates{};
   std::vector<PlaceDifferences> comparisons{};
+  std::vector<EventsOutside> outside{};
 };
 
 template <class V>
@@ -69,6 +71,7 @@ void describe(const EventFigures& r, V& v) {
   v.table("leave_one_out", r.leave_one_out, "Each fix against its prediction from the others.");
   v.tables_if(!r.rates.empty(), "rates", r.rates, "The record thinned to lower rates.");
   v.tables_if(!r.comparisons.empty(), "comparisons", r.comparisons, "Positions by two techniques, and against the recorder's own places.");
+  v.tables_if(!r.outside.empty(), "outside", r.outside, "Techniques nearly all of whose events lie outside the GNSS record.");
 }
 
 EventFigures figures_of(const core::EventData& events, const PointTrack& track, const std::vector<EventPosition>& solved,

@@ -49,6 +49,31 @@ void read_instant(const DataLine& line, const Columns& c, Record& r) {
   r.day = mjd - mjd_of_1970;
 }
 
+std::string name_of(ClockFormat f) { return std::string(core::Choices<ClockFormat>::names[static_cast<size_t>(f)]); }
+
+/// Is it the address of a source, of either version of IP?
+bool is_address(const std::string& text) { return std::count(text.begin(), text.end(), '.') > 1 || text.find(':') != std::string::npos; }
+
+/// What a line is by its form; nothing where it is of no known one.
+std::optional<ClockFormat> form_of(const DataLine& line) {
+  const size_t n = line.fields.size();
+  if (n >= 5 && is_address(line.fields[2])) return ClockFormat::peerstats;
+  const bool numbers = std::all_of(line.fields.begin(), line.fields.end(), [](const std::string& f) {
+    double value = 0;
+    return read_number(f.substr(0, f.find('#')), value);
+  });
+  if (!numbers || n > 7 || n == 3 || n == 4) return std::nullopt;
+  return n <= 2 ? ClockFormat::pps : ClockFormat::loopstats;
+}
+
+/// One log read as another gives offsets that look right: a line of another form is a fault.
+void expect_form(const DataLine& line, ClockFormat stated) {
+  const std::optional<ClockFormat> form = form_of(line);
+  if (form && *form != stated)
+    line.fault("the format is stated as " + name_of(stated) + ", and the line has the form of " + name_of(*form),
+               "state format = \"" + name_of(*form) + "\" for this [[clock]]");
+}
+
 /// The columns that a line of names gives.
 Columns named(const DataLine& line) {
   const auto find = [&](std::initializer_list<std::string_view> beginnings) -> std::optional<size_t> {
@@ -92,6 +117,7 @@ std::vector<Record> read_loopstats(const std::filesystem::path& file) {
       file, [&](DataLine& line) { columns = named(line); },
       [&](DataLine& line) {
         if (!columns) {
+          expect_form(line, ClockFormat::loopstats);
           columns.emplace();
           if (line.fields.size() >= 6) columns->jitter = 4;
         }
@@ -110,6 +136,7 @@ std::vector<Record> read_peerstats(const std::filesystem::path& file, core::Tall
   std::map<std::string, size_t> sources;
   const Columns columns{0, 1, 4, {}};
   const auto read = [&](DataLine& line) {
+    if (sources.empty()) expect_form(line, ClockFormat::peerstats);
     Record r;
     read_instant(line, columns, r);
     r.offset = line.number(columns.offset);
@@ -148,7 +175,14 @@ std::vector<Record> read_pulses(const std::filesystem::path& file) {
   for_each_line(
       file, [](DataLine&) {},
       [&](DataLine& line) {
+        const auto remark =
+            std::find_if(line.fields.begin() + 1, line.fields.end(), [](const std::string& f) { return f.empty() || f.starts_with('#'); });
+        line.fields.erase(remark, line.fields.end());
         line.fields[0] = line.fields[0].substr(0, line.fields[0].find('#'));
+        expect_form(line, ClockFormat::pps);
+        if (line.fields.size() > 2)
+          line.fault("has " + std::to_string(line.fields.size()) + " columns, and a log of pulses has one or two",
+                     "one column: POSIX seconds; two columns: MJD and seconds of the day");
         Record r;
         if (line.fields.size() >= 2) {
           read_instant(line, columns, r);

@@ -19,8 +19,9 @@ namespace swath::io {
 ///              of the system peer (6); where the file never names a selected source and has only one, all of it.
 ///   pps        Time of each pulse by the clock: MJD and seconds of day, or POSIX seconds alone ("#" and a sequence number may follow).
 ///              Pulses stand on whole seconds of UTC: the clock must be right to half a second.
-/// Where the clock was set back, what lies before is left out and counted: its times are no longer unique. Records at a repeated time are
-/// left out and counted. Throws Error "file:line" for a line that cannot be read.
+/// A line that has the form of another format is an error. Where the clock was set back, what lies before is left out and counted: its
+/// times are no longer unique. Records at a repeated time are left out and counted. Throws Error "file:line" for a line that cannot be
+/// read.
 core::ClockData read_clock_log(const std::filesystem::path& file, ClockFormat format, core::Tally& tally);
 
 /// All logs of the survey, joined in time order; epoch is that of the first. Throws Error where they are of different formats (two views of

@@ -13,6 +13,7 @@
 #include "core/time.h"
 #include "io/records/clock_log.h"
 #include "io/records/event_marks.h"
+#include "io/records/repeated_times.h"
 #include "io/survey/hangar_file.h"
 #include "io/text/line_reader.h"
 
@@ -56,6 +57,14 @@ void describe(const EventFacts& r, V& v) {
   v.result("with_place", places, core::if_any(), "Events whose place the recorder states.");
   v.result("doubtful", doubtful, core::if_any(), "Events whose recorder had no fix of GPS time.");
   v.result("warnings", r.warnings, "What looks wrong.");
+}
+
+/// Events of one time, with their names; times count from the first event, where a double holds their last digit.
+void count_repeated(const std::vector<EventMark>& marks, core::Tally& tally) {
+  std::vector<double> time;
+  for (const EventMark& m : marks) time.push_back(m.second - marks.front().second + m.fraction);
+  for (const auto& [first, again] : repeated_times(time))
+    tally.count("events at the time of another one", marks[first].id + " and " + marks[again].id);
 }
 
 struct LoopFacts {
@@ -113,6 +122,7 @@ core::Value describe_events(const std::filesystem::path& path, EventFormat forma
   core::Tally tally;
   try {
     out.marks = read_marks(path, file, format, tally);
+    count_repeated(out.marks, tally);
   } catch (const core::Error& e) {
     out.warnings.push_back(e.text());
   }

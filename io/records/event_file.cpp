@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/time.h"
 #include "io/records/event_marks.h"
+#include "io/records/repeated_times.h"
 #include "io/survey/wild_records.h"
 #include "io/text/data_lines.h"
 #include "io/text/delimited.h"
@@ -46,6 +47,11 @@ std::vector<DataLine> rows_of(const std::filesystem::path& path, const EventFile
 
 std::string technique_of(const EventFile& file) { return file.technique.empty() ? file.file.stem().string() : file.technique; }
 
+void count_repeated(const core::EventTags& events, core::Tally& tally) {
+  for (const auto& [first, again] : repeated_times(events.time))
+    tally.count("events at the time of another one", events.technique + " " + events.id[first] + " and " + events.id[again]);
+}
+
 core::EventTags tags_of(const std::vector<EventMark>& marks, const EventFile& file, core::Tally& tally) {
   core::EventTags out;
   out.technique = technique_of(file);
@@ -66,6 +72,7 @@ core::EventTags tags_of(const std::vector<EventMark>& marks, const EventFile& fi
     out.place.clear();
     out.place_sigma.clear();
   }
+  count_repeated(out, tally);
   tally.read("events", out.size());
   tally.keep("events", out.size());
   return out;
@@ -123,6 +130,7 @@ core::EventTags read_event_file(const Survey& survey, const EventFile& file, cor
     }
     out.strip.push_back(static_cast<std::int32_t>(line));
   }
+  count_repeated(out, tally);
   tally.read("events", rows.size());
   tally.keep("events", out.size());
   out.sigma.assign(out.size(), 0.0);

@@ -11,8 +11,8 @@
 namespace swath::io {
 
 /// Reads one file of events, text or a receiver's or camera's own (event_marks.h): times by the file's scale, ids as text, strips. Times
-/// that fall are kept as they stand and counted. Latency is not applied yet. Times of a computer's clock are given in the count of GPS.
-/// Throws Error "file:line" for a line that cannot be read.
+/// that fall or repeat are kept as they are and counted. Latency is not applied yet. Times of a computer's clock are given in the count of
+/// GPS. Throws Error "file:line" for a line that cannot be read.
 core::EventTags read_event_file(const Survey& survey, const EventFile& file, core::Tally& tally);
 
 /// Every [[event]] file of the survey, in its order. Throws Error where there is none. Those with `computer_clock` wait for the clock's

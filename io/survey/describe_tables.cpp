@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/survey/describe_tables.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "core/time.h"
 #include "io/records/csd.h"
+#include "io/records/repeated_times.h"
+#include "io/survey/column_roles.h"
 #include "io/survey/file_facts.h"
 #include "io/text/delimited.h"
 #include "io/text/npy.h"
@@ -98,6 +101,33 @@ core::Value reported(TableFacts& t) {
   return core::reported(t);
 }
 
+/// Is the first value of a column a number? Names of events are none.
+bool holds_numbers(const Path& path, const DelimitedLayout& layout, size_t column) {
+  double value = 0;
+  try {
+    return DelimitedReader(path, layout, {column}).next(&value);
+  } catch (const core::Error&) {
+    return false;
+  }
+}
+
+/// Which columns of a table of events hold times and names.
+struct EventColumns {
+  bool are_events = false;
+  size_t time = 0, id = 0;
+};
+EventColumns event_columns(const DelimitedLayout& layout) {
+  EventColumns out;
+  const ColumnRoles roles = roles_of(layout.names);
+  out.are_events = roles.kind == TableKind::event && layout.names.size() == layout.columns;
+  const auto index_of = [&](std::string_view key) {
+    const auto role = std::find_if(roles.columns.begin(), roles.columns.end(), [&](const auto& c) { return c.first == key; });
+    return static_cast<size_t>(std::find(layout.names.begin(), layout.names.end(), role->second) - layout.names.begin());
+  };
+  if (out.are_events) out.time = index_of("time"), out.id = index_of("id");
+  return out;
+}
+
 }  // namespace
 
 core::Value describe_csd(const Path& path) {
@@ -152,10 +182,11 @@ core::Value describe_text(const Path& path) {
   TableFacts out{"delimited text"};
   out.delimiter = layout.delimiter == '\t' ? "tab" : layout.delimiter == ' ' ? "blanks" : std::string(1, layout.delimiter);
   out.header = !layout.names.empty();
+  const EventColumns events = event_columns(layout);
   std::vector<size_t> indices;
   for (size_t c = 0; c < layout.columns; ++c) {
     out.columns.push_back({c < layout.names.size() ? layout.names[c] : std::to_string(c + 1)});
-    indices.push_back(c);
+    if (!events.are_events || c != events.id || holds_numbers(path, layout, c)) indices.push_back(c);
   }
   if (!layout.names.empty() && layout.names.size() != layout.columns)
     out.warnings.push_back("the header names " + std::to_string(layout.names.size()) + " columns, the first line has " +
@@ -163,13 +194,22 @@ core::Value describe_text(const Path& path) {
   if (layout.cut_line > 0)
     out.warnings.push_back("line " + std::to_string(layout.cut_line) + " is only the end of a record and is left out");
   DelimitedReader reader(path, layout, indices);
-  std::vector<double> row(indices.size());
+  std::vector<double> row(indices.size()), times;
+  std::vector<std::uint64_t> lines;
   try {
     for (; reader.next(row.data()); ++out.rows)
-      for (size_t c = 0; c < row.size(); ++c) out.columns[c].values.add(row[c]);
+      for (size_t c = 0; c < row.size(); ++c) {
+        out.columns[indices[c]].values.add(row[c]);
+        if (!events.are_events || indices[c] != events.time) continue;
+        times.push_back(row[c]);
+        lines.push_back(reader.line());
+      }
   } catch (const core::Error& e) {
     out.warnings.push_back("reading stopped: " + e.text());
   }
+  if (const auto repeated = repeated_times(times); !repeated.empty())
+    out.warnings.push_back("events at the time of another one: " + std::to_string(repeated.size()) + " (lines " +
+                           std::to_string(lines[repeated[0].first]) + " and " + std::to_string(lines[repeated[0].second]) + ")");
   return reported(out);
 }
 

@@ -19,7 +19,8 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
                                                             {"code": "check.mark", "sentence": "c"}, {"code": "check.few", "sentence": "d"},
                                                             {"code": "check.names", "sentence": "e"}, {"code": "check.outside", "sentence": "f"},
                                                             {"code": "check.roof", "sentence": "g"}]}},
-          {"type": "trajectory.ins_gnss", "findings": {"fixes": {"used": 1061, "down_weighted": 316}, "imu_noise_factor": 64}},
+          {"type": "trajectory.ins_gnss", "findings": {"fixes": {"used": 1061, "down_weighted": 316, "sigmas_overstated": 2.9}, "imu_noise_factor": 64}},
+          {"type": "time.sync", "findings": {"outside": [{"technique": "pc", "events": 40, "outside": 40, "sentence": "h"}]}},
           {"type": "terrain.buildings", "findings": {"buildings": 0, "returns": 0}}, {"type": "terrain.buildings", "findings": {"returns": 7}}],
           "crs": {"name": "WGS 84 / Arctic", "scale": 0.97, "degrees_outside": 12.5},
           "geometry": {"named": ["range_feet"], "warnings": ["lines disagree", "with ranges in feet: state range_unit"]},
@@ -53,6 +54,8 @@ TEST(Warnings, AFewContradictingFixesAreNoWarning) {
   EXPECT_EQ(number(R"({"fixes": {"used": 1000, "down_weighted": 51}, "imu_noise_factor": 4})"), 1u);
   EXPECT_EQ(number(R"({"fixes": {"used": 60, "down_weighted": 10}})"), 0u);
   EXPECT_EQ(number(R"({"imu_noise_factor": 40})"), 1u);
+  EXPECT_EQ(number(R"({"fixes": {"used": 60, "down_weighted": 0, "correlated_share": 0.94}})"), 0u);
+  EXPECT_EQ(number(R"({"fixes": {"used": 60, "down_weighted": 0, "sigmas_overstated": 3}})"), 1u);
 }
 
 TEST(Warnings, AnUnknownCodeNamesTheNearest) {

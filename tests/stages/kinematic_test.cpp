@@ -235,6 +235,22 @@ TEST(KinematicStage, TimesOfAnotherScaleAndTooFewFixesAreErrors) {
   EXPECT_THROW(few.go(), core::Error);
 }
 
+TEST(KinematicStage, ATechniqueADayAwayIsNamed) {
+  Trial run;
+  run.event(20.4, "1");
+  run.event(20.4 + 86400, "1");
+  run.events.technique.back() = "camera";
+  run.go();
+  EXPECT_EQ(run.tally.of("events outside the GNSS record, without position"), 1u);
+  const core::Value* outside = run.findings.find("outside");
+  ASSERT_NE(outside, nullptr);
+  ASSERT_EQ(outside->items().size(), 1u);
+  const std::string& sentence = outside->items()[0].find("sentence")->as_text();
+  EXPECT_NE(sentence.find("all 1 events of 'camera' lie outside the GNSS record: events from 2024-05-18T16:53:22"), std::string::npos)
+      << sentence;
+  EXPECT_NE(sentence.find("1 day apart"), std::string::npos) << sentence;
+}
+
 TEST(KinematicStage, ARecordTooShortForTheTestHasASigmaToo) {
   Trial run;
   for (size_t i = 8; i < run.gnss.size(); ++i) run.gnss.covariance[i].setZero();

@@ -123,6 +123,42 @@ TEST(TimeSync, StampsMeetTheMarks) {
   EXPECT_NE(test::read_bytes(t.context.output / "time_sync.svg").find("pc - marks"), std::string::npos);
 }
 
+/// A straight flight of an hour and a half that covers the made events.
+trajectory::Trajectory flown() {
+  core::TrajectoryData d;
+  for (int k = 0; k <= 90000; k += 10) {
+    d.time.push_back(1525 * 604800.0 + 2 * 86400 + 15 + 40000 + 0.1 * k);
+    d.latitude.push_back(0.8 + 1e-6 * k);
+    d.longitude.push_back(0.2), d.height.push_back(1000), d.roll.push_back(0), d.pitch.push_back(0), d.heading.push_back(0);
+  }
+  return trajectory::Trajectory(std::move(d), {.max_gap = core::Seconds(2)});
+}
+
+TEST(TimeSync, ATechniqueADayAwayIsNamed) {
+  const auto sentences = [](bool with_trajectory, const char* date) {
+    Trial t;
+    t.made_survey();
+    t.survey.events[0].computer_clock = false;
+    t.survey.events[0].time.date = date;
+    if (with_trajectory) t.context.records.put(flown());
+    t.go();
+    std::vector<std::string> out;
+    if (const core::Value* outside = t.findings.find("outside"))
+      for (const core::Value& one : outside->items()) out.push_back(one.find("sentence")->as_text());
+    return out;
+  };
+  for (const bool with : {true, false}) {
+    EXPECT_TRUE(sentences(with, "2009-03-31").empty());
+    const auto day_off = sentences(with, "2009-04-01");
+    ASSERT_EQ(day_off.size(), 1u);
+    EXPECT_NE(day_off[0].find(with ? "all 20 events of 'pc' lie outside the trajectory: events from 2009-04-01T11:06:45"
+                                   : "all 20 events of 'marks' lie outside the events of 'pc': events from 2009-03-31T11:06:45"),
+              std::string::npos)
+        << day_off[0];
+    EXPECT_NE(day_off[0].find("1 day apart"), std::string::npos) << day_off[0];
+  }
+}
+
 TEST(TimeSync, PhotosOfADroneAndAMissingOne) {
   Trial t;
   std::string photos;

@@ -18,6 +18,7 @@
 #include "core/records/imu_columns.h"
 #include "core/time_gap.h"
 #include "trajectory/ins/alignment.h"
+#include "trajectory/ins/ins_noise.h"
 #include "trajectory/ins/ins_output.h"
 #include "trajectory/ins/ins_problem.h"
 #include "trajectory/ins/ins_report.h"
@@ -33,11 +34,7 @@ constexpr double node_spacing = 0.25;   // s: between nodes residuals of the mec
 constexpr double longest_lead = 120.0;  // s of IMU records kept before the first fix and after the last
 constexpr double most_rate = 2.0;       // rad/s, rms over the record
 constexpr int most_iterations = 8;
-constexpr double settled = 0.05;                         // sigmas by which the trajectory may still move
-constexpr double least_share = 0.02, usual_share = 0.4;  // of the GNSS variance that is correlated, where nothing determines it
-constexpr double least_fixes = 100;                      // from which noise is estimated
-constexpr double too_large = 1.5, too_alike = 0.25;      // normalised innovations: mean square, correlation of neighbours
-constexpr double most_roughness = 64;
+constexpr double settled = 0.05;    // sigmas by which the trajectory may still move
 constexpr double first_gate = 1e5;  // NIS in the first pass, whose start may be degrees off
 
 std::string seconds(double t) { return core::format_number(std::round(t * 1000) / 1000); }
@@ -142,51 +139,6 @@ std::vector<Node> nodes_of(const ImuPath& path, const core::GnssData& gnss, cons
   return out;
 }
 
-/// Sets share and variance of the fixes to what the innovations show: their excess (nis / 3 - 1) S over what was expected belongs to the
-/// white part R. White noise above the stated variance raises that. True where they changed by more than noise.
-bool adapt_fixes(Problem& problem, const std::vector<FixOutcome>& outcomes) {
-  double nis = 0, all = 0, n = 0;
-  for (size_t k = 0; k < problem.nodes.size(); ++k) {
-    const FixOutcome& o = outcomes[k];
-    if (problem.nodes[k].fix < 0 || o.weight < 1) continue;
-    const double expected = o.innovation_sigma.squaredNorm() / problem.gnss.covariance[static_cast<size_t>(problem.nodes[k].fix)].trace();
-    if (expected > 4 * problem.variance) continue;  // after an outage the innovations depend on the IMU
-    nis += o.nis / 3;
-    all += expected;
-    n += 1;
-  }
-  if (n < least_fixes) return false;
-  const double white = (1 - problem.share) * problem.variance;  // of the stated variance
-  const double shown = std::clamp(white + (nis / n - 1) * (all / n), 0.2 * white, 5 * white);
-  const double noise = std::sqrt(2 / (3 * n)) * (all / n);
-  // Within the stated variance the rest of it is correlated; beyond, the share rises to the usual one as the statement proves worthless.
-  problem.share =
-      shown < 1 ? std::clamp(1 - shown, least_share, 0.95) : std::min(usual_share, least_share + (usual_share - least_share) * (shown - 1));
-  problem.variance = std::max(1.0, shown / (1 - problem.share));
-  return std::abs(shown - white) > std::max(0.03 * white, 2 * noise);
-}
-
-/// Doubles the IMU's noise where the innovations are too large and follow one another: more motion than the IMU shows, as under
-/// vibration. (White noise of the fixes makes them large too, but not alike.) True where it did.
-bool adapt_imu(Problem& problem, const std::vector<FixOutcome>& outcomes) {
-  if (problem.noise.angle == 0 && problem.noise.velocity == 0) return false;  // stated as perfect
-  double alike = 0, squares = 0, n = 0;
-  Vector3d before = Vector3d::Zero();
-  for (size_t k = 0; k < problem.nodes.size(); ++k) {
-    if (problem.nodes[k].fix < 0) continue;
-    const Vector3d z = outcomes[k].innovation.cwiseQuotient(outcomes[k].innovation_sigma);
-    alike += z.dot(before);
-    squares += z.squaredNorm();
-    before = z;
-    n += 1;
-  }
-  if (n < least_fixes || squares / (3 * n) < too_large || alike / squares < too_alike || problem.roughness >= most_roughness) return false;
-  problem.roughness *= 2;
-  for (double* density : {&problem.noise.angle, &problem.noise.velocity, &problem.noise.gyro_drift, &problem.noise.force_drift})
-    *density *= 4;
-  return true;
-}
-
 /// The largest change of position, velocity or attitude between two runs, in sigmas.
 double moved(const SmootherRun& now, const std::vector<Estimate>& before, const Layout& l) {
   double most = 0;
@@ -214,14 +166,20 @@ class PassCount {
   const core::OnProgress& progress_;
 };
 
-/// The first run, with as much noise of the IMU as its innovations ask for.
-template <class Start>
-SmootherRun first_run(Problem& problem, const Start& from_scratch) {
-  SmootherRun run = run_smoother(problem, from_scratch(), false);
-  if (!adapt_imu(problem, run.outcomes)) return run;
-  while (adapt_imu(problem, run_forward(problem, from_scratch()))) {
-  }
-  return run_smoother(problem, from_scratch(), false);
+/// Raises the IMU's noise to what the innovations ask for. Outliers, and a start that they spoilt, make them large as well: it is judged by
+/// passes about the first run (`again`) with a gate among innovations that may be large alike.
+template <class Pass>
+bool adapt_to_motion(Problem& problem, const SmootherRun& first, const Pass& again) {
+  if (!is_rough(problem, first.outcomes)) return false;
+  const double before = problem.roughness, gate = problem.gate;
+  problem.gate = gate_among(problem, first.outcomes);
+  std::vector<FixOutcome> outcomes = again();
+  do {
+    problem.gate = gate_among(problem, outcomes);
+    outcomes = again();
+  } while (adapt_imu(problem, outcomes));
+  problem.gate = gate;
+  return problem.roughness > before;
 }
 
 void refuse_contradicting(const std::vector<double>& weights) {
@@ -268,21 +226,26 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
   // Repeated about the smoothed trajectory until it stays.
   problem.gate = first_gate;
   const auto from_scratch = [&] { return InsFilter(problem, start.estimate, StateVector::Zero(layout.size), start.covariance, nullptr); };
-  SmootherRun run = first_run(problem, from_scratch);
-  problem.gate = core::chi_square_limit(options.outlier_probability, 3.0);  // the NIS of a position
+  SmootherRun run = run_smoother(problem, from_scratch(), false);
   std::vector<Estimate> reference(nodes.size());
-  const auto about = [&](const SmoothedNode& at) {
+  const auto about_with = [&](const Problem& noise, const SmoothedNode& at) {
     const bool attitude = start.attitude_given && &at == &run.nodes.front();  // what is given is that of the beginning
     StateMatrix stated = start.covariance;
     // At the other end nothing is stated of the attitude: 1 rad is more than any error.
     if (start.attitude_given && !attitude) stated.block<3, 3>(Layout::attitude, Layout::attitude).setIdentity();
-    return InsFilter(problem, at.estimate, stated_mean(start.estimate, at.estimate, layout, attitude), widened(stated, at.sigma, attitude),
+    return InsFilter(noise, at.estimate, stated_mean(start.estimate, at.estimate, layout, attitude), widened(stated, at.sigma, attitude),
                      &reference);
   };
+  const auto about = [&](const SmoothedNode& at) { return about_with(problem, at); };
   const auto refer = [&] {
     for (size_t k = 0; k < nodes.size(); ++k) reference[k] = run.nodes[k].estimate;
   };
   refer();
+  if (adapt_to_motion(problem, run, [&] { return run_forward(problem, about(run.nodes.front())); })) {
+    run = run_smoother(problem, from_scratch(), false);
+    refer();
+  }
+  problem.gate = core::chi_square_limit(options.outlier_probability, 3.0);  // the NIS of a position
   if (!options.correlated_share)
     for (int i = 0; i < most_iterations && adapt_fixes(problem, run_forward(problem, about(run.nodes.front()))); ++i) {
     }
@@ -297,10 +260,14 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
   if (!std::isfinite(shift))
     throw core::Error("the filter diverged", "trajectory.ins_gnss", "check units, axes, lever arm and time scales");
   const std::vector<FilterNode> backward = run_backward(problem, about(run.nodes.back()));
+  const double overstated = options.correlated_share ? 1.0 : overstatement(problem, [&](const Problem& noise) {
+    return run_forward(noise, about_with(noise, run.nodes.front()));
+  });
 
   InsGnssResult result;
   const InsFindings findings{
-      problem, run, backward, spec, alignment, lever_arm, lever_arm_sigma, standstills, iterations, shift > settled ? shift : 0.0, clocks};
+      problem, run,       backward, spec, alignment, lever_arm, lever_arm_sigma, standstills, iterations, shift > settled ? shift : 0.0,
+      clocks,  overstated};
   result.series = series_of(findings);
   refuse_contradicting(result.series.weight);
   result.report = report_of(findings, result.series);

@@ -22,6 +22,7 @@ constexpr double nis_tolerance = 0.3;   // the mean NIS per degree of freedom ma
 constexpr double sure_sigmas = 4.0;     // of a constant against its stated sigma
 constexpr double observed_share = 0.5;  // a constant counts as observed when its sigma has fallen below this share
 constexpr double outlier_share = 0.02;
+constexpr double too_cautious = 1.5;  // times that stated sigmas of fixes are too large
 constexpr double long_outage = 10.0;  // s
 
 std::string text(const char* form, double a, double b = 0, double c = 0, double d = 0) {
@@ -131,7 +132,8 @@ std::vector<Interruption> judged_gaps(const std::vector<BridgedGap>& gaps, Warni
   return out;
 }
 
-FixesUsed judged_fixes(const Problem& problem, const core::SmootherSeries& s, Warnings& warnings) {
+FixesUsed judged_fixes(const InsFindings& f, const core::SmootherSeries& s, Warnings& warnings) {
+  const Problem& problem = f.problem;
   FixesUsed out{s.fix_time.size(), 0, problem.share, problem.variance};
   for (const double w : s.weight) out.down_weighted += w < 1.0;
   const auto fixes = static_cast<double>(out.used), weighted = static_cast<double>(out.down_weighted);
@@ -139,6 +141,13 @@ FixesUsed judged_fixes(const Problem& problem, const core::SmootherSeries& s, Wa
     warnings.push_back(text("%.0f of %.0f fixes contradict the trajectory and are down-weighted", weighted, fixes));
   if (problem.variance > 1.3)
     warnings.push_back(text("the fixes scatter %.2f times more than stated; their sigmas are raised by that", std::sqrt(problem.variance)));
+  if (f.overstated >= too_cautious) {
+    out.overstated = f.overstated;
+    warnings.push_back(text(
+        "the stated sigmas of the fixes are %.1f times too large by their scatter (%.0f %% of their variance would be correlated), and the "
+        "sigmas of the trajectory with them, unless the fixes' errors change far more slowly than correlation_time of %.0f s",
+        f.overstated, 100 * problem.share, problem.options.correlation_time.value));
+  }
   return out;
 }
 
@@ -305,7 +314,7 @@ InsReport report_of(const InsFindings& f, const core::SmootherSeries& s) {
   r.alignment = {f.alignment.method, f.alignment.time, f.alignment.worst_sigma()};
   judge_given(f, r.alignment, warnings);
   for (const Span& still : f.standstills) r.standstill += still.last - still.first;
-  r.fixes = judged_fixes(f.problem, s, warnings);
+  r.fixes = judged_fixes(f, s, warnings);
   r.imu_noise_factor = f.problem.roughness;
   if (f.problem.roughness > 1)
     warnings.push_back(

@@ -22,6 +22,7 @@ struct InsFindings {
   int iterations;
   double unsettled;  ///< sigmas by which the last iteration still moved the trajectory; 0: it had settled
   const ClockFindings& clocks;
+  double overstated = 1.0;  ///< times that the fixes' stated sigmas are too large
 };
 
 core::SmootherSeries series_of(const InsFindings& findings);

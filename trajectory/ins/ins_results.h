@@ -62,6 +62,7 @@ void describe(const AlignmentFound& r, V& v) {
 struct FixesUsed {
   std::uint64_t used = 0, down_weighted = 0;
   double correlated = 0.0, variance_factor = 1.0;
+  std::optional<double> overstated{};
 };
 
 template <class V>
@@ -71,6 +72,7 @@ void describe(const FixesUsed& r, V& v) {
   v.result("correlated_share", r.correlated, core::share(2), "Share of the fixes' variance that is correlated in time.");
   v.result("white_share", 1 - r.correlated, core::share(2), "Share that is not.");
   v.result("variance_factor", r.variance_factor, core::plain(2), "Factor on the stated covariances of the fixes.");
+  v.result("sigmas_overstated", r.overstated, core::plain(1), "Times that the stated sigmas are too large by the scatter of the fixes.");
 }
 
 /// NIS of 3 degrees of freedom.

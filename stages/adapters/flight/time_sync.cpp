@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The events of a flight on GPS time.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -18,6 +19,7 @@
 #include "stages/drawing_file.h"
 #include "stages/once.h"
 #include "trajectory/clock/techniques.h"
+#include "trajectory/events_outside.h"
 
 namespace swath::stages {
 namespace {
@@ -40,6 +42,7 @@ struct TimeSyncFindings {
   std::optional<trajectory::ClockFigures> clock{};
   std::vector<trajectory::TechniqueFigures> events{};
   std::vector<trajectory::TechniqueDifferences> comparisons{};
+  std::vector<trajectory::EventsOutside> outside{};
 };
 
 template <class V>
@@ -47,6 +50,8 @@ void describe(const TimeSyncFindings& r, V& v) {
   v.table("clock", r.clock, "The log of the computer's clock.");
   v.tables("events", r.events, "Events by technique.");
   v.tables_if(!r.comparisons.empty(), "comparisons", r.comparisons, "Techniques against one another.");
+  v.tables_if(!r.outside.empty(), "outside", r.outside,
+              "Techniques nearly all of whose events lie outside the trajectory, or, without one, those of the other technique.");
 }
 
 using trajectory::ClockModel;
@@ -116,6 +121,34 @@ report::Chart drawing(const std::optional<ClockModel>& clock, bool is_literal, c
   return chart;
 }
 
+std::vector<double> gps_times(const core::EventTags& events) {
+  std::vector<double> out;
+  for (const double t : events.time) out.push_back(events.epoch + (t + events.latency));
+  return out;
+}
+
+/// Techniques whose times do not fit the trajectory; without one, those that have no event in common with the technique they are compared
+/// with.
+std::vector<trajectory::EventsOutside> times_that_do_not_fit(const std::vector<CorrectedEvents>& techniques,
+                                                             const std::vector<TechniquePair>& compared,
+                                                             const trajectory::Trajectory* flown) {
+  std::vector<trajectory::EventsOutside> out;
+  const auto judge = [&out](const core::EventTags& events, const trajectory::Span& record, const std::string& name) {
+    if (auto found = trajectory::outside_of(events.technique, gps_times(events), record, name)) out.push_back(std::move(*found));
+  };
+  if (flown) {
+    for (const CorrectedEvents& t : techniques)
+      judge(t.events, {flown->spans().front().first, flown->spans().back().last}, "the trajectory");
+    return out;
+  }
+  for (const TechniquePair& c : compared) {
+    const std::vector<double> other = gps_times(c.other->events);
+    const auto [first, last] = std::minmax_element(other.begin(), other.end());
+    if (c.timed.pairs.empty()) judge(c.one->events, {*first, *last}, "the events of '" + c.other->events.technique + "'");
+  }
+  return out;
+}
+
 std::vector<std::string> time_sync_products(const TimeSyncOptions& o) { return {o.file, "time_sync.png", "time_sync.svg"}; }
 
 std::vector<fs::path> event_files(const io::Survey& survey) {
@@ -160,6 +193,7 @@ Given<core::EventData, TimeSyncFindings> sync_times(const io::Survey& survey, co
     trajectory::count_breaks(t.events, found.events.back().pattern, tally);
   }
   for (const TechniquePair& c : compared) found.comparisons.push_back(trajectory::differences_of(c, flown, o));
+  found.outside = times_that_do_not_fit(techniques, compared, flown);
   io::write_text_file(to.folder / o.file, trajectory::table_of(techniques));
   if (const report::Chart chart = drawing(clock, o.model == trajectory::ClockMethod::literal, compared); !chart.panels.empty())
     for (const char* name : {"time_sync.png", "time_sync.svg"}) write_drawing(to.folder / name, report::drawing(chart));

@@ -98,6 +98,39 @@ TEST_F(ClockLogs, PulsesStandOnWholeSeconds) {
   EXPECT_EQ(where_of("1238457610.5\n40000.1\n", ClockFormat::pps), "log:2");
 }
 
+TEST_F(ClockLogs, ALogOfAnotherFormatIsNamed) {
+  const std::string loop = "54921 75440.031 0.000006019 13.778190 0.000351733 0.013380 6\n", old_loop = "54921 10847.650 0.00013 17.3 2\n";
+  const std::string peer = "54921 10 10.0.0.1 961a 0.1 0.2 0.3 0.4\n", six = "54921 10 2001:db8::1 961a 0.1 0.2 0.3 0.4\n";
+  const std::string pulses = "54921 10.000125\n", unix_pulses = "1238457610.000000125#75\n";
+  const auto fault_of = [&](const std::string& text, ClockFormat format) {
+    try {
+      read(text, format);
+    } catch (const core::Error& e) {
+      EXPECT_EQ(e.where(), (folder_ / "log").string() + ":1");
+      return std::string(e.what()) + " | " + e.hint();
+    }
+    return std::string("no error");
+  };
+  const auto expect = [&](const std::string& text, ClockFormat stated, const char* is) {
+    const std::string fault = fault_of(text, stated);
+    EXPECT_NE(fault.find(std::string("the form of ") + is + " | state format = \"" + is + "\""), std::string::npos) << fault;
+  };
+  for (const std::string& log : {loop, old_loop}) {
+    expect(log, ClockFormat::pps, "loopstats");
+    expect(log, ClockFormat::peerstats, "loopstats");
+  }
+  for (const std::string& log : {peer, six}) {
+    expect(log, ClockFormat::pps, "peerstats");
+    expect(log, ClockFormat::loopstats, "peerstats");
+  }
+  for (const std::string& log : {pulses, unix_pulses}) {
+    expect(log, ClockFormat::loopstats, "pps");
+    expect(log, ClockFormat::peerstats, "pps");
+  }
+  EXPECT_NE(fault_of("54921 10.000125 7\n", ClockFormat::pps).find("has 3 columns"), std::string::npos);
+  EXPECT_EQ(read("54921 10.000125 # 75\n54921 11.000125 #76\n", ClockFormat::pps).size(), 2u);
+}
+
 TEST_F(ClockLogs, AClockSetBackLeavesOutWhatWasBefore) {
   const core::ClockData c =
       read("54921 100 1 0 0 0 6\n54921 116 2 0 0 0 6\n54921 110 3 0 0 0 6\n54921 110 4 0 0 0 6\n54921 126 5 0 0 0 6\n");

@@ -42,6 +42,17 @@ TEST(DescribeEvents, EventsClocksAndHangarsByTheirContent) {
   EXPECT_EQ(hangar.find("format")->as_text(), "hangar survey");
 }
 
+TEST(DescribeEvents, EventsOfOneTimeAreNamed) {
+  const test::TemporaryFolder folder;
+  const std::string rest = "\t[2264]\t-40,N\t0,E\t86,V\t44.4,Lat\t1.2,Lon\t359.4,Ellh\t0.028, 0.031, 0.055\t50,Q\n";
+  const std::string photos = "1\t400373.488877" + rest + "2\t400375.988877" + rest;
+  test::write_bytes(folder / "a.MRK", photos);
+  EXPECT_TRUE(describe_file(folder / "a.MRK").find("warnings")->items().empty());
+  test::write_bytes(folder / "b.MRK", photos + "3\t400375.988877" + rest);
+  const std::string text = info_text(describe_file(folder / "b.MRK"));
+  EXPECT_NE(text.find("warning: events at the time of another one: 1 (2 and 3)"), std::string::npos) << text;
+}
+
 TEST(DescribeEvents, FilesOfTheWrongKindSayWhy) {
   const test::TemporaryFolder folder;
   const auto warning_of = [&](const std::string& text, EventFormat format) {

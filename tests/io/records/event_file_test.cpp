@@ -69,6 +69,14 @@ TEST_F(EventFiles, ColumnsByNumberAndHeaderInAComment) {
   EXPECT_EQ(read(f).id, (std::vector<std::string>{"a"}));
 }
 
+TEST_F(EventFiles, EventsOfOneTimeAreCountedAndNamed) {
+  const core::EventTags e = read(file("name,t,strip\na,10.25,1\nb,12.5,1\nc,10.25,2\nd,12.5,1\n"));
+  EXPECT_EQ(e.size(), 4u);
+  EXPECT_EQ(tally_.of("events at the time of another one"), 2u);
+  const core::Value counted = tally_.value();
+  EXPECT_EQ(counted.find("events at the time of another one")->find("examples")->items()[1].as_text(), "marks b and d");
+}
+
 TEST_F(EventFiles, EveryTimeScale) {
   // One instant, 2009-03-31T11:10:20.25 UTC, in each scale.
   const double gps = 1525 * 604800.0 + 213035.25;

@@ -31,5 +31,21 @@ TEST(DescribeTables, TextAndNumpy) {
   EXPECT_EQ(facts.find("columns")->items()[0].find("span")->items()[1].as_number(), 2.5);
 }
 
+TEST(DescribeTables, EventsByNameAndThoseOfOneTime) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "events.csv", "image,gps_sow_s\nIMG_1.jpg,100.5\nIMG_2.jpg,102.5\nIMG_3.jpg,102.5\nIMG_4.jpg,100.5\n");
+  const core::Value facts = describe_file(folder / "events.csv");
+  EXPECT_EQ(facts.find("rows")->as_int(), 4);
+  EXPECT_EQ(facts.find("columns")->items().size(), 2u);
+  EXPECT_EQ(facts.find("columns")->items()[1].find("span")->items()[1].as_number(), 102.5);
+  ASSERT_EQ(facts.find("warnings")->items().size(), 1u) << info_text(facts);
+  EXPECT_EQ(facts.find("warnings")->items()[0].as_text(), "events at the time of another one: 2 (lines 3 and 4)");
+  // Numbered events have the span of their numbers; a table that is not of events may repeat what it likes.
+  test::write_bytes(folder / "events.csv", "id,gps_sow_s\n7,1\n9,2\n");
+  EXPECT_EQ(describe_file(folder / "events.csv").find("columns")->items()[0].find("span")->items()[1].as_number(), 9);
+  test::write_bytes(folder / "a.csv", "t,r\n1,5\n1,6\n");
+  EXPECT_TRUE(describe_file(folder / "a.csv").find("warnings")->items().empty());
+}
+
 }  // namespace
 }  // namespace swath::io

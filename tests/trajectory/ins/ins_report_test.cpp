@@ -101,6 +101,32 @@ TEST(InsReport, FixesThatScatterMoreThanStated) {
   EXPECT_NEAR(r.report.figures.fixes.variance_factor, 4.0, 0.5);
 }
 
+TEST(InsReport, FixesThatScatterFarLessThanStated) {
+  for (const ImuGrade grade : {ImuGrade::navigation, ImuGrade::tactical}) {
+    Trial run = trial_of(grade, 2);
+    run.change_gnss = [](core::GnssData& g) {
+      for (auto& c : g.covariance) c *= 9.0;
+    };
+    EXPECT_NE(outcry(run, lines_and_turns(), "times too large by their scatter"), "");
+    const FixesUsed fixes = run.on(lines_and_turns()).report.figures.fixes;
+    ASSERT_TRUE(fixes.overstated);
+    EXPECT_GT(*fixes.overstated, 2.0);
+    EXPECT_LT(*fixes.overstated, 5.0);
+    EXPECT_GT(fixes.correlated, 0.9);
+  }
+}
+
+TEST(InsReport, FixesMostOfWhoseErrorIsCorrelatedAreNoAlarm) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Trial run = trial_of(ImuGrade::tactical, seed);
+    run.fixes.share = 0.9;
+    const InsGnssResult r = run.on(lines_and_turns());
+    EXPECT_GT(r.report.figures.fixes.correlated, 0.8);
+    EXPECT_FALSE(r.report.figures.fixes.overstated) << *r.report.figures.fixes.overstated;
+    EXPECT_EQ(warning_with(r, "too large"), "");
+  }
+}
+
 TEST(InsReport, AHeadingThatIsNotKnown) {
   Trial run = trial_of(ImuGrade::mems);
   const std::string w = outcry(run, test::straight_line(), "the heading is known to");
