@@ -135,7 +135,8 @@ void transform(std::vector<Breakline>& features, const BreaklineFile& f, const s
         "state crs in this [[breaklines]] with its vertical part, or as \"EPSG:25832+ellipsoidal\" where heights are ellipsoidal");
   if (from.epsg() != 0 && from.epsg() == to.epsg() && (!heights || (!from.has_vertical() && !to.has_vertical()))) return;
   const core::Transform operation = heights ? core::Transform(from, to) : core::Transform(from.horizontal(), to.horizontal());
-  const auto unit = [&](const core::Crs& crs) { return survey.height_unit && !crs.has_height_unit() ? survey.height_unit->value : 1.0; };
+  // PROJ takes heights of a known system in the CRS's own unit; those of an unknown one it hands through, or takes for metres.
+  const auto unit = [&](const core::Crs& crs) { return crs.heights() == core::Heights::unknown ? metres_per_height(survey, crs) : 1.0; };
   for (Breakline& b : features)
     for (auto& part : b.parts)
       for (Vector3d& v : part) {

@@ -124,6 +124,31 @@ TEST_F(Breaklines, OtherCrsIsTransformed) {
   EXPECT_LT((read()[0].parts.front()[1] - expected).norm(), projected);
 }
 
+TEST_F(Breaklines, HeightsCountInTheUnitsOfTheMaps) {
+  constexpr double foot = 1200.0 / 3937.0;
+  const std::string in_feet = "+proj=utm +zone=32 +datum=WGS84 +units=us-ft";
+  make(folder_ / "metres.gpkg", "GPKG", utm, {{edge}});
+  add("metres.gpkg", BreaklineKind::breakline);
+  survey_.points.emplace_back().file = "a.laz";
+  survey_.crs = in_feet;
+  Eigen::Vector3d at = read()[0].parts.front()[1];
+  EXPECT_NEAR(at.x() * foot, 500010.0, projected);
+  EXPECT_NEAR(at.z() * foot, 401.5, exact) << "heights of the cloud are in feet";
+  // A drawing in feet to a map in metres.
+  make(folder_ / "feet.dxf", "DXF", "", {{"LINESTRING Z (1640416.6667 17388416.6667 400,1640449.475 17388433.0708 401.5)"}});
+  survey_.breaklines.clear();
+  add("feet.dxf", BreaklineKind::breakline).crs = in_feet;
+  survey_.crs = utm;
+  at = read()[0].parts.front()[1];
+  EXPECT_NEAR(at.x(), 500010.0, 1e-3);
+  EXPECT_NEAR(at.z(), 401.5 * foot, exact);
+  // Without clouds, and where the survey says so, heights are in another unit than the map.
+  survey_.points.clear();
+  EXPECT_NEAR(read()[0].parts.front()[1].z(), 401.5, exact);
+  survey_.height_unit = core::Metres(0.3048);
+  EXPECT_NEAR(read()[0].parts.front()[1].z(), 401.5, exact) << "feet to feet";
+}
+
 TEST_F(Breaklines, WhatDoesNotSuitIsNamed) {
   const auto refused = [&](const char* wkt, BreaklineKind kind) {
     std::filesystem::remove(folder_ / "a.gpkg");
