@@ -163,6 +163,20 @@ TEST_F(Breaklines, WhatDoesNotSuitIsNamed) {
   EXPECT_EQ(refused("POINT Z (0 0 1)", BreaklineKind::breakline), first + "the feature is a POINT, not a line or an area");
 }
 
+TEST_F(Breaklines, HeightsAsTextAreNumbersOrAnError) {
+  const auto with = [&](const std::string& z) {
+    test::write_bytes(folder_ / "a.geojson",
+                      R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"z": )" + z +
+                          R"(}, "geometry": {"type": "LineString", "coordinates": [[9, 47.85], [9.001, 47.85]]}}]})");
+    return fault();
+  };
+  add("a.geojson", BreaklineKind::breakline);
+  EXPECT_EQ(with("\"401.5\""), "no error");
+  EXPECT_EQ(read()[0].parts.front()[1].z(), 401.5);
+  EXPECT_NE(with("\"401,5\"").find("attribute 'z' is '401,5', which is not a number"), std::string::npos);
+  EXPECT_NE(with("\"\"").find("the breakline has no heights"), std::string::npos);
+}
+
 TEST_F(Breaklines, HeightsOfAnUnknownDatumAreNotGuessedAt) {
   survey_.crs = "EPSG:25832+5783";
   make(folder_ / "a.gpkg", "GPKG", "EPSG:25832", {{edge}});
