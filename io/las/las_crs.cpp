@@ -52,7 +52,7 @@ std::string fault_of(const std::string& definition) {
 }
 
 struct Keys {
-  int model = 0, projected = 0, geographic = 0, vertical = 0, vertical_datum = 0, vertical_unit = 0;
+  int model = 0, projected = 0, geographic = 0, linear_unit = 0, vertical = 0, vertical_datum = 0, vertical_unit = 0;
   int horizontal() const { return projected != 0 ? projected : geographic; }  // ProjectedCSType goes before GeographicType
 };
 
@@ -65,6 +65,7 @@ Keys keys_of(const LasVlr& v) {
     if (place != 0) continue;
     if (id == 1024) k.model = value;
     if (id == 3072) k.projected = value;
+    if (id == 3076) k.linear_unit = value;
     if (id == 2048) k.geographic = value;
     if (id == 4096) k.vertical = value;
     if (id == 4098) k.vertical_datum = value;
@@ -143,12 +144,12 @@ std::vector<std::uint8_t> tiff_of(const LasHeader& h, const LasVlr& keys) {
 }
 
 /// What GDAL makes of keys that define a system parameter by parameter; empty where that is nothing.
-std::string defined_by(const LasHeader& h, const LasVlr& keys) {
+std::string defined_by(const LasHeader& h, const LasVlr& keys, bool and_heights = true) {
   static std::atomic<unsigned> number{0};
   std::vector<std::uint8_t> bytes = tiff_of(h, keys);
   const std::string name = "/vsimem/swath_las_crs_" + std::to_string(number++) + ".tif";
   const GdalMessages messages;
-  const GdalSetting with_vertical("GTIFF_REPORT_COMPD_CS", "YES");
+  const GdalSetting with_vertical("GTIFF_REPORT_COMPD_CS", and_heights ? "YES" : "NO");
   VSIFCloseL(VSIFileFromMemBuffer(name.c_str(), bytes.data(), bytes.size(), FALSE));
   std::string out;
   if (GDALDataset* set = GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY)) {
@@ -185,6 +186,29 @@ void add_vertical(const Keys& k, LasCrs& out) {
   out.definition = whole;
 }
 
+bool is_same_unit(double a, double b) { return std::abs(a / b - 1.0) < 1e-9; }
+
+/// ProjLinearUnitsGeoKey beside a code whose axes count in another unit, as LAStools writes UTM in feet: the key counts, as in GDAL.
+void set_linear_unit(const LasHeader& h, const LasVlr& keys, int unit, LasCrs& out) {
+  const double metres = metres_of(unit);
+  const core::Crs coded = fault_of(out.definition).empty() ? core::Crs(out.definition) : core::Crs();
+  if (metres == 0.0 || coded.empty() || !coded.is_projected() || is_same_unit(coded.metres_per_unit(), metres)) return;
+  const std::string map = defined_by(h, keys, false);
+  if (map.empty() || !is_same_unit(core::Crs(map).metres_per_unit(), metres)) {
+    out.note = "the GeoTIFF keys state a unit of " + core::format_number(metres) + " m beside " + coded.name() + ", which counts in " +
+               core::format_number(coded.metres_per_unit()) + " m";
+    out.definition.clear();
+    return;
+  }
+  const std::string whole = coded.wkt1();
+  if (coded.heights() == core::Heights::ellipsoidal)
+    out.definition = map + "+ellipsoidal";
+  else if (const std::size_t heights = whole.find(",VERT_CS["); heights != std::string::npos)
+    out.definition = "COMPD_CS[\"" + coded.name() + "\"," + core::Crs(map).wkt1() + whole.substr(heights);
+  else
+    out.definition = map;
+}
+
 void read_keys(const LasHeader& h, const LasVlr& keys, LasCrs& out) {
   const Keys k = keys_of(keys);
   out.vertical_metres = metres_of(k.vertical_unit);
@@ -197,7 +221,8 @@ void read_keys(const LasHeader& h, const LasVlr& keys, LasCrs& out) {
   }
   if (is_code(k.horizontal())) {
     out.definition = "EPSG:" + std::to_string(k.horizontal());
-    return add_vertical(k, out);
+    add_vertical(k, out);
+    return set_linear_unit(h, keys, k.linear_unit, out);
   }
   if (k.horizontal() != 0) out.definition = defined_by(h, keys);
   if (out.definition.empty())

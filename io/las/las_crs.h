@@ -15,7 +15,8 @@ struct LasCrs {
   std::string note;              ///< why a stated CRS could not be used
 };
 /// The WKT record where it is understood, else the GeoTIFF keys: codes, the vertical codes of GeoTIFF 1.0 (4096 = 5103 is NAVD88 in the
-/// unit of 4099; 5001 to 5033 are ellipsoidal heights), and systems defined parameter by parameter.
+/// unit of 4099; 5001 to 5033 are ellipsoidal heights), the unit of ProjLinearUnitsGeoKey where that is not the code's, and systems defined
+/// parameter by parameter.
 LasCrs las_crs(const LasHeader& header);
 
 /// The WKT record (R15, 3.4) for `header.vlrs`, as an extended record where it is longer than 65535 bytes.

@@ -3,12 +3,19 @@
 
 #include <algorithm>
 
+#include "core/geo/crs.h"
 #include "core/printable.h"
 
 namespace swath::io {
 
 std::filesystem::path resolve(const Survey& survey, const std::filesystem::path& file) {
   return file.is_absolute() ? file : survey.folder / file;
+}
+
+double metres_per_height(const Survey& survey, const core::Crs& crs) {
+  if (crs.has_height_unit()) return crs.vertical_metres_per_unit();
+  if (survey.height_unit) return survey.height_unit->value;
+  return survey.points.empty() || crs.is_geographic() ? 1.0 : crs.metres_per_unit();
 }
 
 LaserFormat format_of(const LaserFile& f) {

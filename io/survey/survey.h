@@ -17,6 +17,10 @@
 #include "io/survey/navigation.h"
 #include "io/survey/time_tags.h"
 
+namespace swath::core {
+class Crs;
+}
+
 namespace swath::io {
 
 enum class LaserFormat { automatic, text, npy, las, csd };
@@ -300,6 +304,10 @@ std::vector<LineWindow> line_windows(const Survey& survey);
 
 /// The path of a file named in the survey.
 std::filesystem::path resolve(const Survey& survey, const std::filesystem::path& file);
+
+/// Metres of one unit of the heights that control and breaklines in a CRS have: what the CRS states, else the survey's height_unit, else
+/// the unit of the horizontal axes in a survey of point clouds, whose heights are in it too; else the metre.
+double metres_per_height(const Survey& survey, const core::Crs& crs);
 
 }  // namespace swath::io
 

@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/geo/crs.h"
+#include "core/printable.h"
 #include "io/survey/survey.h"
 #include "io/survey/wild_records.h"
 #include "io/vector/gdal_door.h"
@@ -40,7 +41,10 @@ class Reader {
     const std::unique_ptr<OGRGeometry> linear(shape->getLinearGeometry());
     const int field = file_.z.empty() ? -1 : feature.GetFieldIndex(file_.z.c_str());
     height_.reset();
-    if (!linear->Is3D() && field >= 0 && feature.IsFieldSetAndNotNull(field)) height_ = feature.GetFieldAsDouble(field);
+    if (!linear->Is3D()) height_ = number_of(feature, field);
+    if (!linear->Is3D() && !height_ && field >= 0 && *feature.GetFieldAsString(field) != '\0')
+      throw core::Error("attribute '" + file_.z + "' is '" + core::printable(feature.GetFieldAsString(field)) + "', which is not a number",
+                        place, "heights are numbers with a decimal point: correct it, or name another attribute as z in [[breaklines]]");
     add_shape(*linear, place);
     if (features.size() > before)
       tally.keep(kind_of_record, 1);
@@ -135,7 +139,8 @@ void transform(std::vector<Breakline>& features, const BreaklineFile& f, const s
         "state crs in this [[breaklines]] with its vertical part, or as \"EPSG:25832+ellipsoidal\" where heights are ellipsoidal");
   if (from.epsg() != 0 && from.epsg() == to.epsg() && (!heights || (!from.has_vertical() && !to.has_vertical()))) return;
   const core::Transform operation = heights ? core::Transform(from, to) : core::Transform(from.horizontal(), to.horizontal());
-  const auto unit = [&](const core::Crs& crs) { return survey.height_unit && !crs.has_height_unit() ? survey.height_unit->value : 1.0; };
+  // PROJ takes heights of a known system in the CRS's own unit; those of an unknown one it hands through, or takes for metres.
+  const auto unit = [&](const core::Crs& crs) { return crs.heights() == core::Heights::unknown ? metres_per_height(survey, crs) : 1.0; };
   for (Breakline& b : features)
     for (auto& part : b.parts)
       for (Vector3d& v : part) {

@@ -279,7 +279,7 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
     if (layer.points.empty()) continue;
     const core::Crs crs = crs_of(survey, f, layer, file);
     const core::Transform to_ecef(crs, core::wgs84_ecef());
-    const double height_unit = survey.height_unit && !crs.has_height_unit() ? survey.height_unit->value : 1.0;
+    const double height_unit = crs.has_height_unit() ? 1.0 : metres_per_height(survey, crs);  // PROJ knows a unit that the CRS states
     // A target without one of its corners is another plane: all of it goes.
     all += layer.points.size();
     const auto leave_out = [&](const RawPoint& raw, const std::string& why) {

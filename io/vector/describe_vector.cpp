@@ -69,7 +69,7 @@ LayerFacts facts_of(OGRLayer& layer, std::vector<std::string>& warnings) {
   const int height = layer.GetLayerDefn()->GetFieldIndex("height");
   for (const auto& feature : layer) {
     ++out.features;
-    if (height >= 0 && feature->IsFieldSetAndNotNull(height)) out.height.add(feature->GetFieldAsDouble(height));
+    if (const auto number = number_of(*feature, height)) out.height.add(*number);
     const OGRGeometry* shape = feature->GetGeometryRef();
     if (!shape || shape->IsEmpty()) {
       ++empty;

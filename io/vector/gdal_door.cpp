@@ -10,6 +10,7 @@
 #include <ogr_spatialref.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <memory>
@@ -193,6 +194,20 @@ Dataset open_vector(const std::filesystem::path& file) { return open_plain(file,
 bool is_of_layer(OGRFeature& feature, const std::string& layer) {
   const int field = feature.GetFieldIndex("Layer");
   return field >= 0 && layer == feature.GetFieldAsString(field);
+}
+
+std::optional<double> number_of(const OGRFeature& feature, int field) {
+  if (field < 0 || !feature.IsFieldSetAndNotNull(field)) return std::nullopt;
+  if (feature.GetFieldDefnRef(field)->GetType() != OFTString) return feature.GetFieldAsDouble(field);
+  constexpr const char* blanks = " \t";
+  std::string_view text = feature.GetFieldAsString(field);
+  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  text.remove_suffix(text.size() - (text.find_last_not_of(blanks) + 1));
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || code != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
 }
 
 int height_field(const OGRFeatureDefn& fields, const std::string& stated) {

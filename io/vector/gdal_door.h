@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/geo/crs.h"
@@ -54,6 +55,10 @@ Dataset open_vector(const std::filesystem::path& file);
 bool is_of_layer(OGRFeature& feature, const std::string& layer);
 /// The field `stated`, or where that is empty `height`, `elev`, `elevation`, `contour` or `z`; -1 where there is none.
 int height_field(const OGRFeatureDefn& fields, const std::string& stated);
+
+/// The field as a number, also where its type is text; nothing where it is not set or is text that is not a number, which GDAL would take
+/// for 0 or cut at a decimal comma. `field` may be -1.
+std::optional<double> number_of(const OGRFeature& feature, int field);
 
 /// An empty GeoPackage 1.2 in place of `temporary`, for the product `file`, which messages name. Throws core::Error.
 Dataset new_geopackage(const std::filesystem::path& temporary, const std::filesystem::path& file, const GdalMessages& messages);

@@ -51,8 +51,7 @@ SpotFile read_spots(const std::filesystem::path& file, const std::string& field)
     for (const auto& feature : *layer) {
       const OGRGeometry* shape = feature->GetGeometryRef();
       if (!shape || shape->IsEmpty() || is_text(*feature)) continue;
-      const bool has = at >= 0 && feature->IsFieldSetAndNotNull(at);
-      add_points(*shape, has ? feature->GetFieldAsDouble(at) : std::nan(""), out);
+      add_points(*shape, number_of(*feature, at).value_or(std::nan("")), out);
     }
   }
   messages.check("cannot read the vector file", file);

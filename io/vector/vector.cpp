@@ -153,7 +153,7 @@ VectorLines read_lines(const std::filesystem::path& file, const std::string& fie
       like.layer = layer->GetName();
       if (fields.cad_layer >= 0 && feature->IsFieldSetAndNotNull(fields.cad_layer))
         like.layer = feature->GetFieldAsString(fields.cad_layer);
-      if (fields.height >= 0 && feature->IsFieldSetAndNotNull(fields.height)) like.height = feature->GetFieldAsDouble(fields.height);
+      if (const auto height = number_of(*feature, fields.height)) like.height = *height;
       like.index = (fields.index >= 0 && feature->GetFieldAsInteger(fields.index) != 0) || like.layer == "CONTOUR_INDEX";
       like.depression =
           (fields.depression >= 0 && feature->GetFieldAsInteger(fields.depression) != 0) || like.layer == "CONTOUR_DEPRESSION";

@@ -9,6 +9,7 @@
 
 #include "core/config/units.h"
 #include "core/error.h"
+#include "core/geo/same_map.h"
 #include "io/las/cloud_crs.h"
 #include "io/survey/read_survey.h"
 #include "io/text/toml_text.h"
@@ -100,8 +101,8 @@ class Translation {
 
   /// The readers at the beginning, and the CRS of the products where the pipeline names one: lengths need its units.
   void read_sources() {
-    std::vector<std::string> clouds;
-    std::string stated, target;
+    std::vector<fs::path> files;
+    std::vector<std::string> stated;  // CRS of each of the files by their readers; empty: its own
     Value reader = Value::object();
     reader["type"] = "readers.las";
     while (next_ < stages_.size() && type_of(stages_[next_]).starts_with("readers.")) {
@@ -109,34 +110,64 @@ class Translation {
       const std::string& type = type_of(s);
       if (type != "readers.las" && type != "readers.copc" && type != "readers.ept")
         refuse(s, "'" + type + "' has no counterpart here", "readers.las, readers.copc and readers.ept have");
+      std::string name_given, override_srs, default_srs;
       each_option(s, [&](const std::string& name, const Value& v) {
-        if (name == "filename") return clouds.push_back(text(v, name)), true;
-        if (name == "override_srs" || name == "default_srs" || name == "spatialreference") return stated = text(v, name), true;
+        if (name == "filename") return name_given = text(v, name), true;
+        if (name == "override_srs" || name == "spatialreference") return override_srs = text(v, name), true;
+        if (name == "default_srs") return default_srs = text(v, name), true;
         if (type != "readers.las" && name == "bounds") return reader["bounds"] = bounds(v), true;
         if (type != "readers.las" && name == "resolution") return resolution_ = number(v, name), true;
         return false;
       });
-      runs_as_.push_back(type + " " + (clouds.empty() ? "" : clouds.back()) + ": readers.las");
+      if (!name_given.empty())
+        for (fs::path& file : cloud_files({name_given})) {
+          if (std::any_of(files.begin(), files.end(), [&](const fs::path& f) { return fs::equivalent(f, file); })) continue;
+          stated.push_back(!override_srs.empty() || default_srs.empty() || states_crs(file) ? override_srs : default_srs);
+          files.push_back(std::move(file));
+        }
+      runs_as_.push_back(type + " " + name_given + ": readers.las");
     }
-    if (clouds.empty())
+    if (files.empty())
       throw core::usage_error("the PDAL pipeline does not begin with a reader of a file", file_.string(), "readers come first");
-    for (const Value& s : stages_)
-      if (type_of(s) == "filters.reprojection") target = reprojection(s, stated);
-    std::vector<fs::path> files = cloud_files(clouds);
-    survey_ = cloud_survey(files, target.empty() ? stated : target);
-    if (!stated.empty())
-      for (Value& cloud : survey_["points"].items()) cloud["crs"] = stated;
-    const io::Survey survey = io::read_survey(survey_, fs::path());
-    crs_ = survey.crs.empty() ? io::cloud_crs(survey, survey.points.front()) : core::Crs(survey.crs);
+    make_survey(files, std::move(stated));
     if (resolution_) reader["resolution"] = length(*resolution_, PdalUnit::across);
     config_["stage"].push(std::move(reader));
   }
 
-  std::string reprojection(const Value& s, std::string& stated) const {
+  static bool states_crs(const fs::path& file) {
+    io::Survey of_file;
+    of_file.points.emplace_back().file = fs::absolute(file);
+    try {
+      return !io::cloud_definition(of_file, of_file.points.front()).empty();
+    } catch (const core::Error&) {
+      return false;
+    }
+  }
+
+  /// The clouds with the CRS that each has by its reader, and that of the products.
+  void make_survey(const std::vector<fs::path>& files, std::vector<std::string> stated) {
+    std::string target;
+    for (const Value& s : stages_)
+      if (type_of(s) == "filters.reprojection") target = reprojection(s, stated);
+    const auto first = std::find_if(stated.begin(), stated.end(), [](const std::string& one) { return !one.empty(); });
+    survey_ = cloud_survey(files, !target.empty() ? target : first != stated.end() ? *first : "");
+    for (size_t k = 0; k < stated.size(); ++k)
+      if (!stated[k].empty()) survey_["points"].items()[k]["crs"] = stated[k];
+    const io::Survey survey = io::read_survey(survey_, fs::path());
+    crs_ = survey.crs.empty() ? io::cloud_crs(survey, survey.points.front()) : core::Crs(survey.crs);
+    if (!target.empty()) return;
+    for (const io::PointFile& cloud : survey.points)
+      if (const core::Crs crs = io::cloud_crs(survey, cloud); !core::is_same_crs(crs, crs_))
+        throw core::usage_error("the clouds are in different CRSs: this one in " + crs.name() + ", the products would be in " + crs_.name(),
+                                cloud.file.string(),
+                                "filters.reprojection with 'out_srs' right behind the readers names that of the products");
+  }
+
+  std::string reprojection(const Value& s, std::vector<std::string>& stated) const {
     std::string target;
     each_option(s, [&](const std::string& name, const Value& v) {
       if (name == "out_srs") return target = text(v, name), true;
-      if (name == "in_srs") return stated = text(v, name), true;
+      if (name == "in_srs") return std::fill(stated.begin(), stated.end(), text(v, name)), true;
       return false;
     });
     if (target.empty()) refuse(s, "filters.reprojection names no 'out_srs'");
@@ -199,7 +230,12 @@ class Translation {
     if (const PdalFilter* f = filter_of(s)) return filter(s, *f);
     if (type == "filters.range") return range(s);
     if (type == "filters.hag_delaunay") return heights(s);
-    if (type == "filters.reprojection") return runs_as_.push_back(type + ": the CRS of the products, from the reader on"), void();
+    if (type == "filters.reprojection") {
+      if (config_["stage"].items().size() > 1)
+        refuse(s, "points are transformed as they are read, and no stage works in the CRS before",
+               "filters.reprojection goes right behind the readers");
+      return runs_as_.push_back(type + ": the CRS of the products, from the reader on"), void();
+    }
     if (type == "filters.merge")
       return each_option(s, [](auto&, auto&) { return false; }), runs_as_.push_back(type + ": the clouds of a survey are one"), void();
     if (type == "writers.las" || type == "writers.copc") return points(s);

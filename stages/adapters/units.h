@@ -14,6 +14,10 @@ inline core::Grid in_crs_units(const Context& context, core::Grid grid) {
   return core::in_units(context.unit, context.vertical_unit, std::move(grid));
 }
 
+/// Metres of one unit of the heights that PROJ gives in the run's CRS: of a CRS that states no unit these are metres, whatever the run's
+/// heights count in.
+inline double metres_per_transformed_height(const Context& context) { return context.crs.has_height_unit() ? context.vertical_unit : 1.0; }
+
 /// Scales a Block's coordinates and origin from metres to CRS units.
 inline void to_crs_units(const Context& context, core::Block& block) {
   core::scale_block(1.0 / context.unit, 1.0 / context.vertical_unit, block);

@@ -118,5 +118,24 @@ TEST_F(CheckPoints, ABadOneAndAWrongGeoidAreNamed) {
   EXPECT_EQ(codes(run_with(0, 46.8, out / "b")), std::vector<std::string>{"check.heights"});
 }
 
+TEST_F(CheckPoints, HeightsInFeetAreThoseOfTheSurvey) {
+  const test::TemporaryFolder out;
+  const std::string survey = test::read_bytes(*folder_ / "survey.toml");
+  test::write_bytes(*folder_ / "survey.toml", "height_unit = \"1 ft\"\n" + survey);
+  const std::string good = test::read_bytes(*folder_ / "check.csv");
+  size_t z = 0;
+  test::write_bytes(*folder_ / "check.csv", test::with_rows(good, [&](int k, std::vector<std::string>& cells) {
+    if (k == 0)
+      z = static_cast<size_t>(std::find(cells.begin(), cells.end(), "z") - cells.begin());
+    else
+      cells[z] = std::to_string(std::stod(cells[z]) / 0.3048);
+  }));
+  const Outcome done = run_with(0, 0.0, out / "a");
+  test::write_bytes(*folder_ / "check.csv", good);
+  test::write_bytes(*folder_ / "survey.toml", survey);
+  EXPECT_TRUE(codes(done).empty());
+  for (const core::Value& a : findings(done).find("accuracy")->items()) EXPECT_LT(a.find("rms")->as_number(), 0.12);
+}
+
 }  // namespace
 }  // namespace swath::pipeline

@@ -16,6 +16,7 @@
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/cloud/scanner.h"
 #include "stages/adapters/quality/mark_files.h"
+#include "stages/adapters/units.h"
 #include "stages/tile.h"
 
 namespace swath::stages {
@@ -95,7 +96,7 @@ Marks marks_of(const Context& context) {
   for (const io::ControlPoint& p : io::read_control(context.survey, of_others)) {
     if (p.use != io::ControlUse::check) continue;
     const Eigen::Vector3d map = to_map(p.ecef);
-    const Eigen::Vector3d at(map.x() * context.unit, map.y() * context.unit, map.z() * context.vertical_unit);
+    const Eigen::Vector3d at(map.x() * context.unit, map.y() * context.unit, map.z() * metres_per_transformed_height(context));
     if (p.target.empty()) {
       out.list.push_back({p.name, p.cover, p.place, at, p.sigma_v});
       continue;

@@ -15,6 +15,7 @@
 #include "io/vector/vector.h"
 #include "stages/adapters/adapters.h"
 #include "stages/adapters/terrain/breaklines.h"
+#include "stages/adapters/units.h"
 #include "stages/segment_file.h"
 #include "terrain/contours/contour_labels.h"
 #include "terrain/contours/contour_lines.h"
@@ -120,7 +121,8 @@ double flying_height(const Context& context, const trajectory::Trajectory* flown
   const size_t step = std::max<size_t>(1, d.size() / 1000);
   std::vector<double> heights;
   for (size_t k = 0; k < d.size(); k += step)
-    heights.push_back(to_map({core::to_degrees(d.longitude[k]), core::to_degrees(d.latitude[k]), d.height[k]}).z() * context.vertical_unit);
+    heights.push_back(to_map({core::to_degrees(d.longitude[k]), core::to_degrees(d.latitude[k]), d.height[k]}).z() *
+                      metres_per_transformed_height(context));
   return core::median(std::move(heights));
 }
 

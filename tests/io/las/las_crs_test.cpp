@@ -69,6 +69,35 @@ TEST(LasCrs, OldVerticalCodes) {
   EXPECT_EQ(las_crs(h).definition, "EPSG:26910+5703");
 }
 
+// LAStools writes UTM in feet as the code of the zone and the unit (las2las -utm 10north -feet).
+TEST(LasCrs, TheUnitBesideACodeCounts) {
+  constexpr double survey_foot = 1200.0 / 3937.0;
+  LasHeader h;
+  const auto of = [&](std::initializer_list<std::array<std::uint16_t, 4>> rest) {
+    h.vlrs = {keys(rest)};
+    return core::Crs(las_crs(h).definition);
+  };
+  const core::Crs plain = of({{{1024, 0, 1, 1}}, {{3072, 0, 1, 26910}}, {{3076, 0, 1, 9003}}});
+  EXPECT_NEAR(plain.metres_per_unit(), survey_foot, 1e-15);
+  EXPECT_EQ(plain.heights(), core::Heights::unknown);
+  // The same place as in metres.
+  const core::Transform to_metres(plain, core::Crs("EPSG:26910"));
+  const Eigen::Vector3d at = to_metres({600000.0 / survey_foot, 4200000.0 / survey_foot, 0.0});
+  EXPECT_NEAR(at.x(), 600000.0, 1e-4);
+  EXPECT_NEAR(at.y(), 4200000.0, 1e-4);
+  const core::Crs with_heights =
+      of({{{1024, 0, 1, 1}}, {{3072, 0, 1, 26910}}, {{3076, 0, 1, 9003}}, {{4096, 0, 1, 5703}}, {{4099, 0, 1, 9003}}});
+  EXPECT_NEAR(with_heights.metres_per_unit(), survey_foot, 1e-15);
+  EXPECT_EQ(with_heights.vertical_epsg(), 6360);
+  EXPECT_NEAR(with_heights.vertical_metres_per_unit(), survey_foot, 1e-15);
+  const core::Crs ellipsoidal = of({{{1024, 0, 1, 1}}, {{3072, 0, 1, 26910}}, {{3076, 0, 1, 9002}}, {{4096, 0, 1, 5019}}});
+  EXPECT_DOUBLE_EQ(ellipsoidal.metres_per_unit(), 0.3048);
+  EXPECT_EQ(ellipsoidal.heights(), core::Heights::ellipsoidal);
+  // The code's own unit changes nothing.
+  h.vlrs = {keys({{{1024, 0, 1, 1}}, {{3072, 0, 1, 2994}}, {{3076, 0, 1, 9002}}})};
+  EXPECT_EQ(las_crs(h).definition, "EPSG:2994");
+}
+
 TEST(LasCrs, AnEmptyWktRecordLeavesTheKeys) {
   LasHeader h;
   h.vlrs = {keys({{{1024, 0, 1, 1}}, {{3072, 0, 1, 32632}}}), LasVlr{"LASF_Projection", 2112, "", {0}, 0, 0}};

@@ -124,6 +124,31 @@ TEST_F(Breaklines, OtherCrsIsTransformed) {
   EXPECT_LT((read()[0].parts.front()[1] - expected).norm(), projected);
 }
 
+TEST_F(Breaklines, HeightsCountInTheUnitsOfTheMaps) {
+  constexpr double foot = 1200.0 / 3937.0;
+  const std::string in_feet = "+proj=utm +zone=32 +datum=WGS84 +units=us-ft";
+  make(folder_ / "metres.gpkg", "GPKG", utm, {{edge}});
+  add("metres.gpkg", BreaklineKind::breakline);
+  survey_.points.emplace_back().file = "a.laz";
+  survey_.crs = in_feet;
+  Eigen::Vector3d at = read()[0].parts.front()[1];
+  EXPECT_NEAR(at.x() * foot, 500010.0, projected);
+  EXPECT_NEAR(at.z() * foot, 401.5, exact) << "heights of the cloud are in feet";
+  // A drawing in feet to a map in metres.
+  make(folder_ / "feet.dxf", "DXF", "", {{"LINESTRING Z (1640416.6667 17388416.6667 400,1640449.475 17388433.0708 401.5)"}});
+  survey_.breaklines.clear();
+  add("feet.dxf", BreaklineKind::breakline).crs = in_feet;
+  survey_.crs = utm;
+  at = read()[0].parts.front()[1];
+  EXPECT_NEAR(at.x(), 500010.0, 1e-3);
+  EXPECT_NEAR(at.z(), 401.5 * foot, exact);
+  // Without clouds, and where the survey says so, heights are in another unit than the map.
+  survey_.points.clear();
+  EXPECT_NEAR(read()[0].parts.front()[1].z(), 401.5, exact);
+  survey_.height_unit = core::Metres(0.3048);
+  EXPECT_NEAR(read()[0].parts.front()[1].z(), 401.5, exact) << "feet to feet";
+}
+
 TEST_F(Breaklines, WhatDoesNotSuitIsNamed) {
   const auto refused = [&](const char* wkt, BreaklineKind kind) {
     std::filesystem::remove(folder_ / "a.gpkg");
@@ -136,6 +161,20 @@ TEST_F(Breaklines, WhatDoesNotSuitIsNamed) {
   EXPECT_EQ(refused("LINESTRING (0 0,1 1)", BreaklineKind::breakline), first + "the breakline has no heights");
   EXPECT_EQ(refused("LINESTRING Z (0 0 1,1 1 1,2 0 1)", BreaklineKind::lake), first + "the line is not closed, while an area is needed");
   EXPECT_EQ(refused("POINT Z (0 0 1)", BreaklineKind::breakline), first + "the feature is a POINT, not a line or an area");
+}
+
+TEST_F(Breaklines, HeightsAsTextAreNumbersOrAnError) {
+  const auto with = [&](const std::string& z) {
+    test::write_bytes(folder_ / "a.geojson",
+                      R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"z": )" + z +
+                          R"(}, "geometry": {"type": "LineString", "coordinates": [[9, 47.85], [9.001, 47.85]]}}]})");
+    return fault();
+  };
+  add("a.geojson", BreaklineKind::breakline);
+  EXPECT_EQ(with("\"401.5\""), "no error");
+  EXPECT_EQ(read()[0].parts.front()[1].z(), 401.5);
+  EXPECT_NE(with("\"401,5\"").find("attribute 'z' is '401,5', which is not a number"), std::string::npos);
+  EXPECT_NE(with("\"\"").find("the breakline has no heights"), std::string::npos);
 }
 
 TEST_F(Breaklines, HeightsOfAnUnknownDatumAreNotGuessedAt) {

@@ -121,6 +121,21 @@ TEST_F(Control, HeightsFollowTheCrs) {
   EXPECT_NEAR(g.height, 480, exact);
 }
 
+TEST_F(Control, HeightsBesideCloudsCountInTheUnitOfTheMap) {
+  constexpr double foot = 1200.0 / 3937.0;
+  survey_.points.emplace_back().file = "a.laz";
+  EXPECT_LT((read("x,y,z\n500100,5300200,480\n")[0].ecef - ecef(easting, northing, height)).norm(), exact);
+  const auto in_feet = [&] {
+    return read("x,y,z\n" + std::to_string(easting / foot) + "," + std::to_string(northing / foot) + "," + std::to_string(height / foot) +
+                "\n");
+  };
+  file().crs = "+proj=utm +zone=32 +datum=WGS84 +units=us-ft";
+  EXPECT_LT((in_feet()[0].ecef - ecef(easting, northing, height)).norm(), 1e-5);  // six decimals of a foot
+  file().crs.clear();
+  survey_.crs = "+proj=utm +zone=32 +datum=WGS84 +units=us-ft";
+  EXPECT_LT((in_feet()[0].ecef - ecef(easting, northing, height)).norm(), 1e-5);
+}
+
 /// A table with `n` right points.
 std::string right_points(int n) {
   std::string out = "x,y,z,target\n";

@@ -31,6 +31,31 @@ TEST(GdalDoor, FailuresAreCaughtAndNamed) {
   EXPECT_THROW(messages.check("cannot read", "a.tif"), core::Error);
 }
 
+TEST(GdalDoor, TextIsANumberAsAWholeOrNotAtAll) {
+  const GdalMessages registered;
+  OGRFeatureDefn defn("table");
+  defn.Reference();
+  defn.SetGeomType(wkbNone);
+  OGRFieldDefn text("text", OFTString), real("real", OFTReal);
+  defn.AddFieldDefn(&text);
+  defn.AddFieldDefn(&real);
+  {
+    OGRFeature feature(&defn);
+    EXPECT_FALSE(number_of(feature, 0) || number_of(feature, 1) || number_of(feature, -1));
+    feature.SetField(1, 401.5);
+    EXPECT_EQ(number_of(feature, 1), 401.5);
+    for (const char* good : {"401.5", " 401.5 ", "+401.5", "4.015e2"}) {
+      feature.SetField(0, good);
+      EXPECT_EQ(number_of(feature, 0), 401.5) << good;
+    }
+    for (const char* bad : {"401,5", "n/a", "", "  ", "401.5 m"}) {
+      feature.SetField(0, bad);
+      EXPECT_FALSE(number_of(feature, 0)) << bad;
+    }
+  }
+  defn.Dereference();
+}
+
 TEST(GdalDoor, SettingsLastAsLongAsTheirObject) {
   const GdalSetting outer("SWATH_TEST_SETTING", "1");
   {

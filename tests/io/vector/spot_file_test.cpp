@@ -46,6 +46,12 @@ TEST(SpotFile, AStatedFieldStandsBeforeTheUsualOnesAndFlatPointsAreCounted) {
   EXPECT_EQ(stated.z, std::vector<double>{8.0});
   EXPECT_EQ(stated.without_height, 1u);
   EXPECT_THROW(read_spots(folder / "none.gpkg"), core::Error);
+  SpatialLayer words{"peaks", "", SpatialShape::point, true, {{"hoehe", std::string()}}, {}};
+  words.features.push_back({{{1, 2, 0}}, {std::string("401,5")}});
+  words.features.push_back({{{3, 4, 0}}, {std::string("402.5")}});
+  write_gpkg(folder / "words.gpkg", {words}, utm32);
+  EXPECT_EQ(read_spots(folder / "words.gpkg", "hoehe").z, std::vector<double>{402.5});
+  EXPECT_EQ(read_spots(folder / "words.gpkg", "hoehe").without_height, 1u);
 }
 
 }  // namespace

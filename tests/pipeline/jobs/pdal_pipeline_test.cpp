@@ -91,6 +91,41 @@ TEST_F(Pdal, OutliersByRadiusAreIsolatedPoints) {
   EXPECT_EQ(statistical.find("stage")->items()[1].find("type")->as_text(), "filters.outlier");
 }
 
+TEST_F(Pdal, TheCrsOfAReaderIsThatOfItsFileAlone) {
+  io::LasHeader bare = test::sample_header(6);
+  test::write_sample("bare.laz", bare, test::sample_points(bare, 100), 1);
+  const auto crs_of = [](const std::string& json) {
+    const Value survey = std::get<1>(read(json));
+    std::vector<std::string> out;
+    for (const Value& cloud : survey.find("points")->items()) out.push_back(cloud.find("crs") ? cloud.find("crs")->as_text() : "");
+    return out;
+  };
+  using Texts = std::vector<std::string>;
+  const std::string to_utm = R"({"type": "filters.reprojection", "out_srs": "EPSG:32610"}, "p.laz"])";
+  EXPECT_EQ(crs_of(R"([{"type": "readers.las", "filename": "feet.laz", "override_srs": "EPSG:2994"}, "metres.laz",
+                       {"type": "readers.las", "filename": "bare.laz", "override_srs": "EPSG:32633"}, )" +
+                   to_utm),
+            (Texts{"EPSG:2994", "", "EPSG:32633"}));
+  // default_srs is for files that state none.
+  EXPECT_EQ(crs_of(R"([{"type": "readers.las", "filename": "feet.laz", "default_srs": "EPSG:32633"},
+                       {"type": "readers.las", "filename": "bare.laz", "default_srs": "EPSG:32633"}, )" +
+                   to_utm),
+            (Texts{"", "EPSG:32633"}));
+  EXPECT_EQ(crs_of(R"([{"type": "readers.las", "filename": "metres.laz", "default_srs": "EPSG:32633"}, "p.laz"])"), Texts{""});
+  // A file named twice is one cloud.
+  EXPECT_EQ(crs_of(R"(["metres.laz", "./metres.laz", "p.laz"])"), Texts{""});
+  EXPECT_THROW(read(R"([{"type": "readers.las", "filename": "bare.laz", "override_srs": "EPSG:32633"}, "feet.laz", "p.laz"])"), core::Error)
+      << "nothing names the CRS of the products";
+}
+
+TEST_F(Pdal, PointsAreTransformedBeforeAllElse) {
+  EXPECT_NE(fault_of(chain(R"({"type": "filters.smrf"}, {"type": "filters.reprojection", "out_srs": "EPSG:32610"})"))
+                .find("filters.reprojection goes right behind the readers"),
+            std::string::npos);
+  EXPECT_NE(fault_of(chain(R"({"type": "writers.las", "filename": "a.laz"}, {"type": "filters.reprojection", "out_srs": "EPSG:32610"})")),
+            "");
+}
+
 TEST_F(Pdal, EveryStageThatBothHaveMakesAPlan) {
   test::write_bytes("x.json", R"([{"type": "readers.las", "filename": "metres.laz"}, {"type": "readers.las", "filename": "feet.laz"},
     {"type": "filters.merge"}, {"type": "filters.reprojection", "out_srs": "EPSG:32610"}, {"type": "filters.elm"}, {"type": "filters.outlier", "mean_k": 12},
