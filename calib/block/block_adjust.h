@@ -11,6 +11,7 @@
 
 #include "calib/block/block_inference.h"
 #include "core/config/option.h"
+#include "core/parallel.h"
 
 namespace swath::calib {
 
@@ -37,7 +38,7 @@ struct BlockOptions : BlockWeightOptions {
 template <class V>
 void describe(BlockOptions& o, V& v) {
   describe(static_cast<BlockWeightOptions&>(o), v);
-  v.option("threads", o.threads, core::within(0, 1024), "Threads; 0: one per processor.");
+  v.option("threads", o.threads, core::within(0, core::max_threads), "Threads; 0: one per processor.");
 }
 
 struct BlockSolution {

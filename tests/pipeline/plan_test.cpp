@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "io/las/las_writer.h"
 #include "io/text/value_file.h"
 #include "pipeline/describe.h"
@@ -59,6 +60,14 @@ TEST(Plan, ReadsConfigSurveyAndSets) {
   EXPECT_EQ(smrf.find("slope")->find("from")->as_text(), "--set");
   EXPECT_EQ(smrf.find("window")->find("from")->as_text(), "default");
   EXPECT_EQ(found.stages[3].options.find("cell")->find("value")->as_text(), "0.5 m");
+}
+
+TEST(Plan, ThreadsHaveTheLimitOfTheCommandLine) {
+  Case c(good);
+  c.request.sets = {"run.threads=1024"};
+  EXPECT_EQ(make_plan(c.request).run.threads, core::max_threads);
+  c.request.sets = {"run.threads=1025"};
+  EXPECT_NE(c.fault().find("0 to 1024"), std::string::npos) << c.fault();
 }
 
 TEST(Plan, ATreeInPlaceOfAFileMayNameStagesOfItsOwn) {
