@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "io/survey/read_survey.h"
 #include "io/survey/record_checks.h"
+#include "io/survey/tree_kind.h"
 #include "io/text/value_file.h"
 #include "pipeline/jobs/config_folder.h"
 #include "pipeline/jobs/pdal_pipeline.h"
@@ -199,10 +200,8 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
       for (const Product p : info.gives_products) cells[p] = s.stage->cell();
     products.insert(products.end(), info.gives_products.begin(), info.gives_products.end());
   }
-  if (sources == 0 && works_on_the_map(plan)) {
-    const core::Location place{plan.config.string(), 0, 0};
-    faults.push_back({place, "stage", "no reader: nothing to work on", "readers.laser or readers.las give points"});
-  }
+  if (sources == 0 && works_on_the_map(plan))
+    faults.push_back({{plan.config.string(), 0, 0}, "stage", "no reader: nothing to work on", "readers.laser or readers.las give points"});
 }
 
 /// The rasters of one tile must fit into the budget, however few points there are.
@@ -316,8 +315,7 @@ void read_plan_survey(const Request& request, Plan& plan, std::vector<Fault>& fa
     io::check_records(plan.survey, survey);
   } catch (const core::Error& e) {
     if (faults.empty()) throw;
-    const core::Location nowhere;
-    faults.push_back({nowhere, "", e.text(), ""});
+    faults.push_back({core::Location{}, "", e.text(), ""});
   }
 }
 
@@ -332,6 +330,7 @@ Plan make_plan(const Request& request) {
   if (is_pdal && !request.survey.empty()) throw core::usage_error("a PDAL pipeline names its clouds itself", "--survey");
   if (is_pdal) std::tie(tree, plan.survey_tree, plan.runs_as) = read_pdal_pipeline(tree, plan.config);
   if (!tree.is_object()) throw core::usage_error("a pipeline is a table with [run] and [[stage]]", plan.config.string());
+  if (!request.tree && !is_pdal) io::require_kind(tree, io::TreeKind::pipeline, plan.config);
   for (const std::string& s : request.sets) apply_set(tree, s);
 
   std::vector<Fault> faults;

@@ -13,6 +13,7 @@
 #include "core/config/option_visitors.h"
 #include "core/config/result_visitors.h"
 #include "core/error.h"
+#include "io/survey/tree_kind.h"
 #include "io/text/delimited.h"
 #include "io/text/text_table.h"
 #include "io/text/value_file.h"
@@ -121,6 +122,7 @@ void expect_apart(const BlockArguments& a, const calib::BlockConfig& config) {
 
 int block(const BlockArguments& a) {
   core::Value given = io::read_value_file(a.config);
+  io::require_kind(given, io::TreeKind::block, a.config);
   for (const std::string& set : a.sets) pipeline::set_option(given, set);
   const calib::BlockConfig config = calib::read_block_config(a.config, given);
   expect_apart(a, config);

@@ -5,6 +5,7 @@
 
 #include "core/config/result_visitors.h"
 #include "io/survey/info.h"
+#include "io/survey/tree_kind.h"
 #include "io/text/value_file.h"
 #include "simulate/files/earlier_survey.h"
 #include "simulate/simulate.h"
@@ -15,6 +16,7 @@ namespace swath::tools {
 simulate::Made make_survey(const std::filesystem::path& config, const std::vector<std::string>& sets, const std::filesystem::path& folder,
                            const Loudness& loudness) {
   core::Value given = config.empty() ? core::Value::object() : io::read_value_file(config);
+  io::require_kind(given, io::TreeKind::simulation, config);
   for (const std::string& set : sets) pipeline::set_option(given, set);
   const simulate::Options options = simulate::read_options(given);
   const simulate::EarlierSurvey earlier(folder);

@@ -43,7 +43,7 @@ int init(const Given& a) {
   print("written: " + file.string() + ", with " + std::to_string(proposal.files) + " of " + std::to_string(found.size()) + " files\n");
   if (!proposal.open.empty()) print("to be stated, in lines that begin with # ?\n");
   for (const std::string& one : proposal.open) print("  " + one + "\n");
-  print("then: swath check survey --survey " + file.string() + "\n");
+  print("then: swath check " + proposal.config + " --survey " + file.string() + "\n");
   return 0;
 }
 

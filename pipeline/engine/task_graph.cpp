@@ -8,6 +8,7 @@
 #include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "io/las/las_header.h"
+#include "io/survey/tree_kind.h"
 #include "io/text/value_file.h"
 #include "pipeline/engine/strips.h"
 #include "pipeline/engine/survey_stages.h"
@@ -231,6 +232,7 @@ std::string slurm_script(const TaskGraph& graph, const fs::path& tasks, const fs
 
 PlannedTask planned_task(const fs::path& tasks, const std::string& id) {
   const Value root = io::read_value_file(tasks);
+  io::require_kind(root, io::TreeKind::tasks, tasks);
   PlannedTask out;
   out.request.config = member(root, "config", tasks).as_text();
   out.request.survey = member(root, "survey", tasks).as_text();

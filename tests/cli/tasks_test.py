@@ -90,7 +90,7 @@ class Tasks(Case):
         other = swath("run", *self.request(survey), "--set", "run.tile=90 m", "--wave", "0", "--quiet")
         self.assert_error(other, 2, "it holds work of another plan")
         self.assert_error(swath("task", "1-strip.1", "--tasks", file, "--quiet"), 2, "did you mean '1-strips.1'")
-        self.assert_error(swath("task", "1-strips.2", "--tasks", CONFIG, "--quiet"), 1, "it is not a list of tasks")
+        self.assert_error(swath("task", "1-strips.2", "--tasks", CONFIG, "--quiet"), 2, "it is a pipeline, not a list of tasks")
         self.assert_error(swath("task", "1-strips.2", "--tasks", file, "--threads", "2000"), 2, "'2000' is not a number of threads", "1024")
         record = next(survey.glob("laser.*"))
         kept = record.stat()

@@ -72,7 +72,7 @@ TEST_F(Tasks, AreReadBackWithWhatIsKnownOfTheInputs) {
 TEST_F(Tasks, OfAnotherPlanOrAChangedSurveyAreRefused) {
   const fs::path plan = written(task_graph(request_, 4));
   EXPECT_NE(refusal(plan, "1-strip.3").find("did you mean '1-strips.3'?"), std::string::npos);
-  EXPECT_NE(refusal(request_.config, "0-survey").find("it is not a list of tasks"), std::string::npos);
+  EXPECT_NE(refusal(request_.config, "0-survey").find("it is a pipeline, not a list of tasks"), std::string::npos);
   fs::path changed;
   for (const auto& e : fs::directory_iterator(folder_ / "survey"))
     if (e.path().filename().string().starts_with("laser")) changed = e.path();
