@@ -189,12 +189,12 @@ std::optional<std::string> check_block_config(const std::filesystem::path& confi
   if (given.find("stage") || given.find("run")) return std::nullopt;
   if (given.find("image_points")) {
     for (const std::string& set : sets) pipeline::set_option(given, set);
-    return "a block of images, " + std::to_string(calib::read_block_config(config.string(), given).image_points.size()) +
-           " file(s) of image points";
+    return "a block of images, " + core::counted(calib::read_block_config(config.string(), given).image_points.size(), "file") +
+           " of image points";
   }
   if (!given.find("sigma_image")) return std::nullopt;
   const calib::TheoryOptions options = theory_options(given, sets);
-  return "the accuracy of a block of " + std::to_string(options.strips) + " strips of " + std::to_string(options.images) + " images";
+  return "the accuracy of a block of " + core::counted(options.strips, "strip") + " of " + core::counted(options.images, "image");
 }
 
 }  // namespace swath::tools

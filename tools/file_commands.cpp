@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files: simulated surveys, what a file holds.
-#include <algorithm>
 #include <cstdio>
 
 #include "core/config/result_visitors.h"
@@ -21,13 +20,8 @@ simulate::Made make_survey(const std::filesystem::path& config, const std::vecto
   const simulate::Options options = simulate::read_options(given);
   const simulate::EarlierSurvey earlier(folder);
   pipeline::Progress progress(loudness.voice());
-  progress.begin("simulate", 1000, "per mille");
-  std::uint64_t shown = 0;
-  simulate::Made made = simulate::run(options, folder, [&](double share) {
-    const auto now = static_cast<std::uint64_t>(share * 1000);
-    if (now > shown) progress.advance(now - shown);
-    shown = std::max(shown, now);
-  });
+  progress.begin("simulate", 0, "");
+  simulate::Made made = simulate::run(options, folder, [&](double share) { progress.share(share); });
   progress.end();
   std::vector<std::filesystem::path> inputs;
   for (const io::TrajectoryFile& f : options.flight.along) inputs.push_back(f.file);

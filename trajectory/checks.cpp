@@ -129,11 +129,13 @@ TrajectoryChecks check_trajectory(const core::TrajectoryData& d, const CheckOpti
   out.motion = check_motion(d, o.min_speed);
 
   const auto degrees = [](double a) { return core::format_number(std::round(core::to_degrees(a) * 100.0) / 100.0) + " deg"; };
-  if (out.duplicates) out.warnings.push_back(std::to_string(out.duplicates) + " records repeat the time of the one before");
-  if (out.backwards) out.warnings.push_back(std::to_string(out.backwards) + " records go back in time");
-  if (out.not_finite) out.warnings.push_back(std::to_string(out.not_finite) + " records hold a value that is not a number");
+  if (out.duplicates)
+    out.warnings.push_back(core::counted(out.duplicates, "record repeats", "records repeat") + " the time of the one before");
+  if (out.backwards) out.warnings.push_back(core::counted(out.backwards, "record goes", "records go") + " back in time");
+  if (out.not_finite)
+    out.warnings.push_back(core::counted(out.not_finite, "record holds", "records hold") + " a value that is not a number");
   if (!out.gaps.empty())
-    out.warnings.push_back(std::to_string(out.gaps.size()) + " gaps, the first after record " + std::to_string(out.gaps[0].record));
+    out.warnings.push_back(core::counted(out.gaps.size(), "gap") + ", the first after record " + std::to_string(out.gaps[0].record));
   if (out.straight > 0 && std::abs(out.crab_median) > crab_limit)
     out.warnings.push_back("heading differs from the track by " + degrees(out.crab_median) +
                            " in straight flight: wander angle not removed (or removed twice), IMU axes turned, or another north?");

@@ -171,13 +171,14 @@ void judge_returns(LasFacts& out) {
   if (s.by_return.size() == 1 && s.by_return.begin()->first == 0)
     out.warnings.push_back("no point has a return number");
   else if (s.returns_inconsistent)
-    out.warnings.push_back(std::to_string(s.returns_inconsistent) + " points have a return number of 0 or above the pulse's count");
+    out.warnings.push_back(core::counted(s.returns_inconsistent, "point has", "points have") +
+                           " a return number of 0 or above the pulse's count");
   for (size_t r = 1; r <= out.h.by_return.size(); ++r) {
     const std::uint64_t stated = out.h.by_return[r - 1];
     const auto at = s.by_return.find(static_cast<int>(r));
     const std::uint64_t n = at == s.by_return.end() ? 0 : at->second;
     if (stated != n && stated != 0)
-      out.warnings.push_back("the header states " + std::to_string(stated) + " points of return " + std::to_string(r) + ", there are " +
+      out.warnings.push_back("the header states " + core::counted(stated, "point") + " of return " + std::to_string(r) + ", there are " +
                              std::to_string(n));
   }
   if (s.angle.low == s.angle.high) out.warnings.push_back("all scan angles are " + core::format_number(s.angle.low));

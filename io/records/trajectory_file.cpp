@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/units.h"
 #include "core/error.h"
 #include "core/geo/crs.h"
 #include "core/geo/frames.h"
@@ -34,7 +35,8 @@ void to_geodetic(const std::string& crs, const std::string& name, double unit, s
       for (double& v : *c) v = core::to_degrees(v * unit);
   const core::Transform transform(from, core::wgs84_geodetic());
   if (const size_t lost = transform.apply(east.data(), north.data(), height.data(), east.size()); lost > 0 && !are_few(lost, east.size()))
-    throw core::Error(std::to_string(lost) + " positions lie outside the domain of " + from.name(), name, "check crs and the columns");
+    throw core::Error(core::counted(lost, "position lies", "positions lie") + " outside the domain of " + from.name(), name,
+                      "check crs and the columns");
   for (auto* c : {&east, &north})
     for (double& v : *c) v *= core::degree;
 }

@@ -94,7 +94,8 @@ void describe(const TableFacts& r, V& v) {
 core::Value reported(TableFacts& t) {
   for (const NamedColumn& c : t.columns)
     if (c.values.not_finite)
-      t.warnings.push_back("column " + c.name + " holds " + std::to_string(c.values.not_finite) + " values that are empty or not finite");
+      t.warnings.push_back("column " + c.name + " holds " + core::counted(c.values.not_finite, "value that is", "values that are") +
+                           " empty or not finite");
   return core::reported(t);
 }
 
@@ -158,7 +159,7 @@ core::Value describe_text(const Path& path) {
     indices.push_back(c);
   }
   if (!layout.names.empty() && layout.names.size() != layout.columns)
-    out.warnings.push_back("the header names " + std::to_string(layout.names.size()) + " columns, the first line has " +
+    out.warnings.push_back("the header names " + core::counted(layout.names.size(), "column") + ", the first line has " +
                            std::to_string(layout.columns));
   if (layout.cut_line > 0)
     out.warnings.push_back("line " + std::to_string(layout.cut_line) + " is only the end of a record and is left out");

@@ -106,8 +106,8 @@ PlanInput read_plan_input(const PlanRequest& request) {
     std::uint64_t left_out = 0;
     in.area = read_rings_in(in.options.area, in.crs, left_out);
     if (left_out > 0)
-      throw core::Error(std::to_string(left_out) + " vertices of the area are not finite or beyond every map", in.options.area.string(),
-                        "is the CRS of the file right?");
+      throw core::Error(core::counted(left_out, "vertex of the area is", "vertices of the area are") + " not finite or beyond every map",
+                        in.options.area.string(), "is the CRS of the file right?");
   }
   const core::Box box = box_of(in.area);
   in.ground = ground_of(in.options, in.crs, box);

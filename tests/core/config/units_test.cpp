@@ -27,6 +27,14 @@ TEST(Units, SaysWhatIsWrong) {
   EXPECT_FALSE(parse_quantity(Dimension::length, "inf m", fault));
 }
 
+TEST(Units, CountedNounsAreSingularOnlyForOne) {
+  EXPECT_EQ(counted(0, "point"), "0 points");
+  EXPECT_EQ(counted(1, "point"), "1 point");
+  EXPECT_EQ(counted(2, "point"), "2 points");
+  EXPECT_EQ(counted(1, "vertex is", "vertices are"), "1 vertex is");
+  EXPECT_EQ(counted(12345, "vertex is", "vertices are"), "12345 vertices are");
+}
+
 TEST(Units, WhatIsShownReadsBack) {
   std::string fault;
   for (const Unit& u : units()) {
