@@ -177,6 +177,7 @@ struct MergeJob {
   std::vector<TileKey> tiles;
   core::Tally tally;
   core::Value findings = core::Value::object();  ///< goes to the report under the stage
+  core::Tally of_tiles{};                        ///< what the tiles have counted
 };
 
 /// A stage of a plan. Every method that runs is const and may run in parallel with itself.

@@ -276,6 +276,7 @@ void run_tiles(RunState& run, size_t number) {
 void run_merge(RunState& run, size_t number) {
   stages::MergeJob job{run.folder(number), {}, {}};
   job.tiles = tiles_of(run, number);
+  job.of_tiles = run.accounts[number].tally;
   const Stopwatch watch(Whose::program);
   run.context.memory = run.memory.free();
   run.progress.begin(std::string(run.stage(number).info().name) + " merge", 0, "");
