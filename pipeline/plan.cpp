@@ -216,15 +216,16 @@ void check_memory(const Plan& plan, std::vector<Fault>& faults) {
       if (r.total(0.0) > largest.total(0.0)) largest = r;
     }
     if (needed <= plan.run.memory.value) continue;
-    const std::string option(largest.option);
-    const core::Value* given = option.empty() ? nullptr : s.table.find(option);
+    const auto written = [&](std::string_view key) { return key.empty() ? nullptr : s.table.find(key); };
+    const bool is_widened = !written(largest.option) && written(largest.widened_by);  // by what the user has written
+    const std::string option(is_widened ? largest.widened_by : largest.option);
     const auto megabytes = [](double bytes) { return core::format_quantity(core::Dimension::memory, std::ceil(bytes * 1e-6) * 1e6); };
     const auto length = [](double v) { return core::format_quantity(core::Dimension::length, v); };
-    faults.push_back({given ? given->where : s.table.where,
+    faults.push_back({written(option) ? written(option)->where : s.table.where,
                       s.path + " (" + std::string(s.stage->info().name) + ")" + (option.empty() ? "" : "." + option),
                       "cells of " + length(largest.cell) + " over a square of " + length(std::round(largest.side)) + " need " +
                           megabytes(needed) + " for a single tile, more than run.memory = " + megabytes(plan.run.memory.value),
-                      std::string(option.empty() ? "" : "a larger " + option + ", ") +
+                      std::string(option.empty() ? "" : (is_widened ? "a smaller " : "a larger ") + option + ", ") +
                           "smaller tiles (run.tile = " + length(plan.run.tile.value) + ") or more memory"});
   }
 }

@@ -179,7 +179,7 @@ TileMemory dtm_memory(const terrain::DtmOptions& o, const Context& c) {
   constexpr double room = 10.0;  // m: for triangles that reach beyond the border
   const double near = c.tile_side + 2.0 * terrain::triangulated_border(o) + room, all = c.tile_side + 2.0 * terrain::halo(o);
   return {330.0,
-          {{"cell", o.cell.value, c.tile_side, 26.0}, {"cell", o.cell.value, c.tile_side + 2.0 * o.max_edge.value, 8.0}},
+          {{"cell", o.cell.value, c.tile_side, 26.0}, {"cell", o.cell.value, c.tile_side + 2.0 * o.max_edge.value, 8.0, 0.0, "max_edge"}},
           std::min(1.0, near * near / (all * all))};
 }
 
