@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/survey/describe_tables.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/config/result_visitors.h"
 #include "core/error.h"
 #include "core/time.h"
 #include "io/records/csd.h"
+#include "io/survey/column_roles.h"
 #include "io/survey/file_facts.h"
 #include "io/text/delimited.h"
 #include "io/text/npy.h"
@@ -91,6 +94,41 @@ void describe(const TableFacts& r, V& v) {
   v.result("warnings", r.warnings, "What looks wrong.");
 }
 
+/// Times of records that do not grow. Records that each have a time of their own alone are judged: a pulse has several returns.
+class TimeOrder {
+ public:
+  explicit TimeOrder(const std::vector<NamedColumn>& columns) {
+    std::vector<std::string> names;
+    for (const NamedColumn& c : columns) names.push_back(c.name);
+    const ColumnRoles roles = roles_of(names);
+    if (roles.kind == TableKind::none || roles.kind == TableKind::laser || roles.kind == TableKind::image_points) return;
+    for (const auto& [key, name] : roles.columns) {
+      if (key == "time") column_ = static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+      has_weeks_ = has_weeks_ || key == "week";
+    }
+  }
+  bool is_of(size_t column) const { return column_ == column; }
+  void add(double time) {
+    repeated_ += time == last_;
+    back_ += time < last_;
+    last_ = time;
+  }
+  void warn(std::vector<std::string>& warnings) const {
+    if (repeated_ > 0)
+      warnings.push_back(
+          core::counted(repeated_, "record is at the time of the one before it", "records are at the time of the one before them") +
+          ": held twice, or times of too few digits");
+    if (back_ > 0 && !has_weeks_)
+      warnings.push_back("time goes back " + core::counted(back_, "time") + ": the records are not sorted, or held twice");
+  }
+
+ private:
+  std::optional<size_t> column_{};
+  bool has_weeks_ = false;  // whose seconds begin anew
+  double last_ = std::numeric_limits<double>::quiet_NaN();
+  std::uint64_t repeated_ = 0, back_ = 0;
+};
+
 core::Value reported(TableFacts& t) {
   for (const NamedColumn& c : t.columns)
     if (c.values.not_finite)
@@ -139,12 +177,17 @@ core::Value describe_npy(const Path& path) {
     if (std::string("uifb").find(f.kind) != std::string::npos && f.bytes <= 8) numeric.push_back(i);
   }
   NpyReader reader(path, numeric);
+  TimeOrder times(out.columns);
   std::vector<std::vector<double>> values;
   for (std::uint64_t at = 0; at < h.rows; at += chunk) {
     reader.read(at, static_cast<size_t>(std::min<std::uint64_t>(chunk, h.rows - at)), values);
     for (size_t c = 0; c < numeric.size(); ++c)
-      for (const double v : values[c]) out.columns[numeric[c]].values.add(v);
+      for (const double v : values[c]) {
+        out.columns[numeric[c]].values.add(v);
+        if (times.is_of(numeric[c])) times.add(v);
+      }
   }
+  times.warn(out.warnings);
   return reported(out);
 }
 
@@ -164,13 +207,18 @@ core::Value describe_text(const Path& path) {
   if (layout.cut_line > 0)
     out.warnings.push_back("line " + std::to_string(layout.cut_line) + " is only the end of a record and is left out");
   DelimitedReader reader(path, layout, indices);
+  TimeOrder times(out.columns);
   std::vector<double> row(indices.size());
   try {
     for (; reader.next(row.data()); ++out.rows)
-      for (size_t c = 0; c < row.size(); ++c) out.columns[c].values.add(row[c]);
+      for (size_t c = 0; c < row.size(); ++c) {
+        out.columns[c].values.add(row[c]);
+        if (times.is_of(c)) times.add(row[c]);
+      }
   } catch (const core::Error& e) {
     out.warnings.push_back("reading stopped: " + e.text());
   }
+  times.warn(out.warnings);
   return reported(out);
 }
 
