@@ -111,7 +111,7 @@ void check_angles(const core::TrajectoryData& d, TrajectoryChecks& out) {
     turn = std::max(turn, std::abs(d.heading[i]));
   }
   if (tilt > tilt_limit || turn > 3.0 * core::pi)
-    out.warnings.push_back("roll or pitch reaches " + core::format_number(tilt) + " rad, heading " + core::format_number(turn) +
+    out.warnings.push_back("roll or pitch reaches " + core::format_number(tilt, 3) + " rad, heading " + core::format_number(turn, 3) +
                            " rad: degrees read as radians?");
   else if (turn < 2.0 * core::pi * core::degree && out.straight > 0 && tilt < tiny_angle)
     out.warnings.push_back("headings are all below 0.11 rad, roll and pitch below 0.1 deg: radians read as degrees?");
@@ -145,7 +145,7 @@ TrajectoryChecks check_trajectory(const core::TrajectoryData& d, const CheckOpti
     out.warnings.push_back("heading differs from the track by another angle on each course (spread " + degrees(out.crab_range) +
                            "): sign of heading, or another unit?");
   if (out.velocity_difference > velocity_limit)
-    out.warnings.push_back("recorded velocity differs from that of the positions by " + core::format_number(out.velocity_difference) +
+    out.warnings.push_back("recorded velocity differs from that of the positions by " + core::format_number(out.velocity_difference, 3) +
                            " m/s (median): wander frame, or other axes?");
   out.warnings.insert(out.warnings.end(), out.motion.warnings.begin(), out.motion.warnings.end());
   return out;

@@ -2,9 +2,7 @@
 #include "core/config/option.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 
 namespace swath::core {
@@ -17,10 +15,7 @@ std::string bound_text(Dimension d, double si) {
   const size_t digits = std::min(exact.find(' '), exact.size());
   if (digits <= short_enough) return exact;
   const double value = std::strtod(exact.c_str(), nullptr), large = 1000.0;
-  if (!(std::abs(value) < large)) return exact;
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return text.data() + exact.substr(digits);
+  return std::abs(value) < large ? format_number(value, 4) + exact.substr(digits) : exact;
 }
 
 }  // namespace

@@ -174,9 +174,9 @@ void judge_header(LasFacts& out) {
   for (int k = 0; k < 3; ++k) {
     const core::Interval& e = out.s.xyz[static_cast<size_t>(k)];
     if (std::abs(h.min[k] - e.low) > std::abs(h.scale[k]) || std::abs(h.max[k] - e.high) > std::abs(h.scale[k]))
-      out.warnings.push_back(std::string("the header states ") + "xyz"[k] + " " + core::format_number(h.min[k]) + " to " +
-                             core::format_number(h.max[k]) + ", the points span " + core::format_number(e.low) + " to " +
-                             core::format_number(e.high));
+      out.warnings.push_back(std::string("the header states ") + "xyz"[k] + " " + core::format_number(h.min[k], 12) + " to " +
+                             core::format_number(h.max[k], 12) + ", the points span " + core::format_number(e.low, 12) + " to " +
+                             core::format_number(e.high, 12));
   }
 }
 
@@ -204,7 +204,7 @@ void judge_returns(LasFacts& out) {
       out.warnings.push_back("the header states " + core::counted(stated, "point") + " of return " + std::to_string(r) + ", there are " +
                              std::to_string(n));
   }
-  if (s.angle.low == s.angle.high) out.warnings.push_back("all scan angles are " + core::format_number(s.angle.low));
+  if (s.angle.low == s.angle.high) out.warnings.push_back("all scan angles are " + core::format_number(s.angle.low, 6));
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace swath::core {
 namespace {
 
@@ -25,6 +27,14 @@ TEST(Units, SaysWhatIsWrong) {
   EXPECT_NE(fault.find("'deg' is not a unit of length"), std::string::npos);
   EXPECT_FALSE(parse_quantity(Dimension::length, "wide", fault));
   EXPECT_FALSE(parse_quantity(Dimension::length, "inf m", fault));
+}
+
+TEST(Units, NumbersOfMessagesAreRounded) {
+  EXPECT_EQ(format_number(0.0099999997764826, 4), "0.01");
+  EXPECT_EQ(format_number(2.86478897565412, 4), "2.865");
+  EXPECT_EQ(format_number(-123456.0, 4), "-123500");
+  EXPECT_EQ(format_number(0.5, 4), "0.5");
+  EXPECT_EQ(format_number(std::numeric_limits<double>::infinity(), 4), format_number(std::numeric_limits<double>::infinity()));
 }
 
 TEST(Units, CountedNounsAreSingularOnlyForOne) {
