@@ -7,6 +7,9 @@
 
 namespace swath::core {
 
+/// The largest number of threads that a config or a command may ask for.
+inline constexpr int max_threads = 1024;
+
 /// Calls work(first, last) for the parts of 0 to n - 1, `grain` turns each, the last one shorter. The parts are the same for any number of
 /// threads, their order is not: no part may read what another writes. Threads that are busy with other tiles are not waited for. An
 /// exception of `work` is thrown again.

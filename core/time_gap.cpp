@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/config/units.h"
 #include "core/time.h"
 
 namespace swath::core {
@@ -15,8 +16,6 @@ constexpr double longest = 10 * 3600.0;      // s: records as long as a day fit 
 
 bool near(double apart, double mistake, double length) { return std::abs(std::abs(apart) - mistake) <= length; }
 
-std::string counted(double n, const char* unit) { return std::to_string(static_cast<long long>(n)) + " " + unit + (n == 1 ? "" : "s"); }
-
 }  // namespace
 
 std::string usual_time_gap(double apart, double length) {
@@ -25,9 +24,9 @@ std::string usual_time_gap(double apart, double length) {
   if (near(apart, gps_of_unix, length)) return "they are as far apart as the beginnings of Unix and GPS time: one taken for the other?";
   const double weeks = std::round(std::abs(apart) / seconds_per_week), days = std::round(std::abs(apart) / day);
   if (weeks > 0 && near(apart, weeks * seconds_per_week, length))
-    return "they are " + counted(weeks, "week") + " apart: check time.week of both";
+    return "they are " + counted(static_cast<std::uint64_t>(weeks), "week") + " apart: check time.week of both";
   if (days > 0 && days < 7 && near(apart, days * day, length))
-    return "they are " + counted(days, "day") + " apart: seconds of the day stated as seconds of the week?";
+    return "they are " + counted(static_cast<std::uint64_t>(days), "day") + " apart: seconds of the day stated as seconds of the week?";
   return {};
 }
 

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "io/survey/read_survey.h"
 #include "io/survey/record_checks.h"
+#include "io/survey/tree_kind.h"
 #include "io/text/value_file.h"
 #include "pipeline/jobs/config_folder.h"
 #include "pipeline/jobs/pdal_pipeline.h"
@@ -197,9 +198,8 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
       for (const Product p : info.gives_products) cells[p] = s.stage->cell();
     products.insert(products.end(), info.gives_products.begin(), info.gives_products.end());
   }
-  const core::Location place{plan.config.string(), 0, 0};
   if (sources == 0 && works_on_the_map(plan))
-    faults.push_back({place, "stage", "no reader: nothing to work on", "readers.laser or readers.las give points"});
+    faults.push_back({{plan.config.string(), 0, 0}, "stage", "no reader: nothing to work on", "readers.laser or readers.las give points"});
 }
 
 /// The rasters of one tile must fit into the budget, however few points there are.
@@ -214,15 +214,16 @@ void check_memory(const Plan& plan, std::vector<Fault>& faults) {
       if (r.total(0.0) > largest.total(0.0)) largest = r;
     }
     if (needed <= plan.run.memory.value) continue;
-    const std::string option(largest.option);
-    const core::Value* given = option.empty() ? nullptr : s.table.find(option);
+    const auto written = [&](std::string_view key) { return key.empty() ? nullptr : s.table.find(key); };
+    const bool is_widened = !written(largest.option) && written(largest.widened_by);  // by what the user has written
+    const std::string option(is_widened ? largest.widened_by : largest.option);
     const auto megabytes = [](double bytes) { return core::format_quantity(core::Dimension::memory, std::ceil(bytes * 1e-6) * 1e6); };
     const auto length = [](double v) { return core::format_quantity(core::Dimension::length, v); };
-    faults.push_back({given ? given->where : s.table.where,
+    faults.push_back({written(option) ? written(option)->where : s.table.where,
                       s.path + " (" + std::string(s.stage->info().name) + ")" + (option.empty() ? "" : "." + option),
                       "cells of " + length(largest.cell) + " over a square of " + length(std::round(largest.side)) + " need " +
                           megabytes(needed) + " for a single tile, more than run.memory = " + megabytes(plan.run.memory.value),
-                      std::string(option.empty() ? "" : "a larger " + option + ", ") +
+                      std::string(option.empty() ? "" : (is_widened ? "a smaller " : "a larger ") + option + ", ") +
                           "smaller tiles (run.tile = " + length(plan.run.tile.value) + ") or more memory"});
   }
 }
@@ -316,8 +317,7 @@ void read_plan_survey(const Request& request, Plan& plan, std::vector<Fault>& fa
     io::check_records(plan.survey, survey);
   } catch (const core::Error& e) {
     if (faults.empty()) throw;
-    const core::Location nowhere;
-    faults.push_back({nowhere, "", e.text(), ""});
+    faults.push_back({core::Location{}, "", e.text(), ""});
   }
 }
 
@@ -332,6 +332,7 @@ Plan make_plan(const Request& request) {
   if (is_pdal && !request.survey.empty()) throw core::usage_error("a PDAL pipeline names its clouds itself", "--survey");
   if (is_pdal) std::tie(tree, plan.survey_tree, plan.runs_as) = read_pdal_pipeline(tree, plan.config);
   if (!tree.is_object()) throw core::usage_error("a pipeline is a table with [run] and [[stage]]", plan.config.string());
+  if (!request.tree && !is_pdal) io::require_kind(tree, io::TreeKind::pipeline, plan.config);
   for (const std::string& s : request.sets) apply_set(tree, s);
 
   std::vector<Fault> faults;

@@ -9,6 +9,7 @@
 
 #include "core/config/option_visitors.h"
 #include "core/config/result.h"
+#include "core/parallel.h"
 #include "io/survey/survey.h"
 #include "io/survey/survey_checks.h"
 #include "pipeline/limits.h"
@@ -33,7 +34,7 @@ void describe(RunOptions& r, V& v) {
   v.option("output", r.output, "Folder of the products, relative to the working folder.");
   v.option("memory", r.memory, core::at_least(2e8), "Peak memory of the whole process.");
   v.option("tile", r.tile, core::within(10.0, 1e5), "Side of the tiles in which the survey is worked on and delivered.");
-  v.option("threads", r.threads, core::within(0, 4096), "Threads; 0: one per processor.");
+  v.option("threads", r.threads, core::within(0, core::max_threads), "Threads; 0: one per processor.");
   v.option("keep_work", r.keep_work, "Keep the intermediate point store after a finished run, so that changed late stages are done alone.");
   v.table("limits", r.limits, "Limits of quality.");
 }

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <map>
 
+#include "core/config/units.h"
 #include "core/error.h"
 #include "io/text/delimited.h"
 #include "pipeline/line_file.h"
@@ -52,7 +53,7 @@ std::vector<ProfileLine> lines_of_text(const fs::path& file) {
     const auto fields = io::split_delimited(row, delimiter);
     const std::string where = file.string() + ":" + std::to_string(n);
     if (fields.size() != names.size())
-      throw core::Error("the line has " + std::to_string(fields.size()) + " fields, the header " + std::to_string(names.size()), where);
+      throw core::Error("the line has " + core::counted(fields.size(), "field") + ", the header " + std::to_string(names.size()), where);
     const std::string mine = name < 0 ? "profile" : fields[static_cast<size_t>(name)];
     if (out.empty() || out.back().name != mine) out.push_back({mine, {}});
     out.back().vertices.emplace_back(number(fields[static_cast<size_t>(x)], where), number(fields[static_cast<size_t>(y)], where));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/units.h"
 #include "io/las/las_box.h"
 #include "pipeline/engine/map_fit.h"
 #include "pipeline/limits.h"
@@ -98,7 +99,8 @@ std::vector<Warning> warnings_in(const Value& report) {
   if (const Value* crs = report.find("crs")) add_crs(*crs, out);
   if (const Value* damaged = report.find("pieces_damaged"); damaged && damaged->as_int() > 0)
     out.push_back({std::string(damage_code),
-                   std::to_string(damaged->as_int()) + " pieces of an earlier run were damaged and were done again",
+                   core::counted(damaged->as_int(), "piece of an earlier run was damaged and was done again",
+                                 "pieces of an earlier run were damaged and were done again"),
                    {{"pieces", damaged->as_number(), {}}}});
   for (const Value& stage : report.find("stages")->items())
     if (const Value* tally = stage.find("tally"))

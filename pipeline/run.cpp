@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "core/config/units.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "pipeline/delivery.h"
@@ -59,12 +60,14 @@ void keep_whole(RunState& run) {
                                     [&](TileKey key) { return !run.keeps_store && is_tile_done(run, last_reader(run), key); });
   run.damaged = earlier.damaged;
   if (run.damaged > 0)
-    run.progress.say("damaged: " + std::to_string(run.damaged) + " pieces of an earlier run are not what they were and are done again");
+    run.progress.say("damaged: " + core::counted(run.damaged, "piece of an earlier run is not what it was and is done again",
+                                                 "pieces of an earlier run are not what they were and are done again"));
   if (run.read_again > 0)
-    run.progress.say("read again: " + std::to_string(run.read_again) + " flight lines or files, whose points were removed once written");
+    run.progress.say("read again: " + core::counted(run.read_again, "flight line or file", "flight lines or files") +
+                     ", whose points were removed once written");
   if (earlier.lines - run.read_again + earlier.pieces > 0)
-    run.progress.say("resumed: " + std::to_string(earlier.lines - run.read_again) + " flight lines or files and " +
-                     std::to_string(earlier.pieces) + " pieces of other stages were done by an earlier run and are not done again");
+    run.progress.say("resumed: " + core::counted(earlier.lines - run.read_again, "flight line or file", "flight lines or files") + " and " +
+                     core::counted(earlier.pieces, "piece") + " of other stages were done by an earlier run and are not done again");
 }
 
 /// Survey stages, strips, tile stages and merges.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/config/units.h"
 #include "io/text/value_file.h"
 #include "pipeline/progress.h"
 #include "pipeline/report_docs.h"
@@ -126,7 +127,7 @@ std::string summary(const Value& report, const std::filesystem::path& output) {
     if (const Value* findings = stage.find("findings")) out += FindingsText(stage.find("type")->as_text()).of(*findings, "    ");
   }
   if (const Value* resumed = report.find("pieces_resumed"); resumed && resumed->as_int() > 0)
-    out += "\nresumed: " + std::to_string(resumed->as_int()) + " pieces were done by an earlier run\n";
+    out += "\nresumed: " + core::counted(resumed->as_int(), "piece was", "pieces were") + " done by an earlier run\n";
   for (const Warning& w : warnings_in(report)) out += "\nwarning [" + w.code + "]: " + w.text + "\n";
   out += "\nproducts in " + output.generic_string() + ", report in " + (output / "report.json").generic_string() + " (" +
          duration_text(report.find("seconds")->as_number()) + ")\n";

@@ -68,8 +68,8 @@ void StripWriter::write(const Block& block) {
   for (std::uint32_t i = 0; i < block.size(); ++i) {
     const double east = block.origin.x() + block.x[i], north = block.origin.y() + block.y[i];
     if (!(std::abs(east) < farthest_tile && std::abs(north) < farthest_tile && std::isfinite(block.z[i])))
-      throw core::Error("a point lies at east " + core::format_number(east) + " m, north " + core::format_number(north) + " m, height " +
-                            core::format_number(block.origin.z() + block.z[i]) + " m",
+      throw core::Error("a point lies at east " + core::format_number(east, 10) + " m, north " + core::format_number(north, 10) +
+                            " m, height " + core::format_number(block.origin.z() + block.z[i], 8) + " m",
                         "line " + std::to_string(block.strip.empty() ? 0 : block.strip[i]) + ", record " +
                             std::to_string(block.record.empty() ? i : block.record[i]),
                         "no map projection reaches that far: is the file damaged, or its CRS another?");

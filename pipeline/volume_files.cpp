@@ -138,7 +138,8 @@ std::string volume_text(const VolumesFound& found) {
                 static_cast<unsigned long long>(v.left_out));
   out += line;
   if (found.vertices_left_out > 0)
-    out += "polygon: " + std::to_string(found.vertices_left_out) + " vertices that are not finite or beyond every map, left out\n";
+    out += "polygon: " + core::counted(found.vertices_left_out, "vertex that is", "vertices that are") +
+           " not finite or beyond every map, left out\n";
   if (has_sigma) {
     std::snprintf(line, sizeof line, "sigmas: errors of any two cells of a model correlated by %g\n", found.request.correlation);
     out += line;

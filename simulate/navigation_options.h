@@ -38,9 +38,9 @@ void describe(ImuOptions& o, V& v) {
   v.option("rate", o.rate, core::within(50, 1000), "Records per second.");
   v.option("kind", o.kind, "Increments over the interval that ends at the time stamp, or rates: their mean over it.");
   v.option("axes", o.axes, "Axes of the record that point forward, right and down, as in survey.toml.");
-  v.option("roll", o.roll, "Mounting: the rotation sensor to body after `axes`, as in survey.toml.");
+  v.option("roll", o.roll, core::one_turn(), "Mounting: the rotation sensor to body after `axes`, as in survey.toml.");
   v.option("pitch", o.pitch, core::within(-1.5, 1.5), "Pitch of the mounting.");
-  v.option("heading", o.heading, "Heading of the mounting.");
+  v.option("heading", o.heading, core::one_turn(), "Heading of the mounting.");
   v.check(o.spec.grade != core::ImuGrade::unstated, "the grade of the IMU must be stated (`perfect` has no errors)");
   v.check(o.kind != io::ImuKind::unstated, "the kind must be increments or rates");
   v.check(is_axes_rotation(o.axes), "axes name each of x, y and z once, each with its sign, and are right-handed");

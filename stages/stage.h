@@ -82,11 +82,12 @@ struct Strip {
 
 /// A raster that a stage works on, for the memory that it takes.
 struct Raster {
-  std::string_view option;       ///< of the stage, that sets the cells; empty where none does
-  double cell = 1.0;             ///< side of a cell, m
-  double side = 0.0;             ///< of the square that the raster covers, m
-  double bytes = 0.0;            ///< of working memory per cell
-  double cells_per_point = 0.0;  ///< most cells that a point makes, where only those are kept; 0: every cell is there
+  std::string_view option;        ///< of the stage, that sets the cells; empty where none does
+  double cell = 1.0;              ///< side of a cell, m
+  double side = 0.0;              ///< of the square that the raster covers, m
+  double bytes = 0.0;             ///< of working memory per cell
+  double cells_per_point = 0.0;   ///< most cells that a point makes, where only those are kept; 0: every cell is there
+  std::string_view widened_by{};  ///< option of the stage that makes the square wider than the tile; empty where none does
 
   /// Bytes, where `points` are worked on.
   double total(double points) const {
@@ -178,6 +179,7 @@ struct MergeJob {
   std::vector<TileKey> tiles;
   core::Tally tally;
   core::Value findings = core::Value::object();  ///< goes to the report under the stage
+  core::Tally of_tiles{};                        ///< what the tiles have counted
 };
 
 /// A stage of a plan. Every method that runs is const and may run in parallel with itself.

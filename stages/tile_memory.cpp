@@ -7,7 +7,7 @@ namespace swath::stages {
 
 /// Measured 62 and 63 bytes per cell of tile and halo, cells of 0.25 and 1 m.
 TileMemory memory_of(const filters::SmrfOptions& o, double side) {
-  return {16.0, {{"cell", o.cell.value, side + 2.0 * filters::halo(o), 66.0}}};
+  return {16.0, {{"cell", o.cell.value, side + 2.0 * filters::halo(o), 66.0, 0.0, "window"}}};
 }
 
 TileMemory memory_of(const filters::PtdOptions&, double) { return {230.0}; }
@@ -17,7 +17,7 @@ TileMemory memory_of(const filters::RobustOptions&, double) { return {600.0}; }
 // resolution 0.5 and 1 m).
 constexpr double patch_per_halo = 4.0 / 3.0;
 TileMemory memory_of(const filters::PmfOptions& o, double) {
-  return {80.0, {{"cell_size", o.cell_size.value, patch_per_halo * filters::halo(o), 150.0}}};
+  return {80.0, {{"cell_size", o.cell_size.value, patch_per_halo * filters::halo(o), 150.0, 0.0, "max_window_size"}}};
 }
 TileMemory memory_of(const filters::CsfOptions& o, double) {
   return {80.0, {{"resolution", o.resolution.value, patch_per_halo * filters::halo(o), 72.0}}};

@@ -13,6 +13,7 @@
 #include "core/config/option_visitors.h"
 #include "core/config/result_visitors.h"
 #include "core/error.h"
+#include "io/survey/tree_kind.h"
 #include "io/text/delimited.h"
 #include "io/text/text_table.h"
 #include "io/text/value_file.h"
@@ -121,6 +122,7 @@ void expect_apart(const BlockArguments& a, const calib::BlockConfig& config) {
 
 int block(const BlockArguments& a) {
   core::Value given = io::read_value_file(a.config);
+  io::require_kind(given, io::TreeKind::block, a.config);
   for (const std::string& set : a.sets) pipeline::set_option(given, set);
   const calib::BlockConfig config = calib::read_block_config(a.config, given);
   expect_apart(a, config);
@@ -182,12 +184,12 @@ std::optional<std::string> check_block_config(const std::filesystem::path& confi
   if (given.find("stage") || given.find("run")) return std::nullopt;
   if (given.find("image_points")) {
     for (const std::string& set : sets) pipeline::set_option(given, set);
-    return "a block of images, " + std::to_string(calib::read_block_config(config.string(), given).image_points.size()) +
-           " file(s) of image points";
+    return "a block of images, " + core::counted(calib::read_block_config(config.string(), given).image_points.size(), "file") +
+           " of image points";
   }
   if (!given.find("sigma_image")) return std::nullopt;
   const calib::TheoryOptions options = theory_options(given, sets);
-  return "the accuracy of a block of " + std::to_string(options.strips) + " strips of " + std::to_string(options.images) + " images";
+  return "the accuracy of a block of " + core::counted(options.strips, "strip") + " of " + core::counted(options.images, "image");
 }
 
 }  // namespace swath::tools

@@ -8,14 +8,13 @@
 
 #include "core/config/option.h"
 #include "core/error.h"
+#include "core/parallel.h"
 #include "core/printable.h"
 #include "io/text/value_file.h"
 #include "pipeline/provenance.h"
 
 namespace swath::tools {
 namespace {
-
-constexpr int most_threads = 1024;
 
 /// Help that opens with examples; the overview shows of each command in its last sentence alone.
 class HelpText : public CLI::Formatter {
@@ -86,8 +85,8 @@ CLI::Validator threads_check() {
       [](std::string& text) -> std::string {
         int n = 0;
         const auto [end, bad] = std::from_chars(text.data(), text.data() + text.size(), n);
-        if (bad == std::errc() && end == text.data() + text.size() && n >= 0 && n <= most_threads) return {};
-        return "'" + text + "' is not a number of threads: 1 to " + std::to_string(most_threads) + ", or 0 for one per processor";
+        if (bad == std::errc() && end == text.data() + text.size() && n >= 0 && n <= core::max_threads) return {};
+        return "'" + text + "' is not a number of threads: 1 to " + std::to_string(core::max_threads) + ", or 0 for one per processor";
       },
       "");
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files: simulated surveys, what a file holds.
-#include <algorithm>
 #include <cstdio>
 
 #include "core/config/result_visitors.h"
 #include "io/survey/info.h"
+#include "io/survey/tree_kind.h"
 #include "io/text/value_file.h"
 #include "simulate/files/earlier_survey.h"
 #include "simulate/simulate.h"
@@ -15,17 +15,13 @@ namespace swath::tools {
 simulate::Made make_survey(const std::filesystem::path& config, const std::vector<std::string>& sets, const std::filesystem::path& folder,
                            const Loudness& loudness) {
   core::Value given = config.empty() ? core::Value::object() : io::read_value_file(config);
+  io::require_kind(given, io::TreeKind::simulation, config);
   for (const std::string& set : sets) pipeline::set_option(given, set);
   const simulate::Options options = simulate::read_options(given);
   const simulate::EarlierSurvey earlier(folder);
   pipeline::Progress progress(loudness.voice());
-  progress.begin("simulate", 1000, "per mille");
-  std::uint64_t shown = 0;
-  simulate::Made made = simulate::run(options, folder, [&](double share) {
-    const auto now = static_cast<std::uint64_t>(share * 1000);
-    if (now > shown) progress.advance(now - shown);
-    shown = std::max(shown, now);
-  });
+  progress.begin("simulate", 0, "");
+  simulate::Made made = simulate::run(options, folder, [&](double share) { progress.share(share); });
   progress.end();
   std::vector<std::filesystem::path> inputs;
   for (const io::TrajectoryFile& f : options.flight.along) inputs.push_back(f.file);

@@ -36,14 +36,15 @@ int init(const Given& a) {
   if (a.print_only) return print(proposal.toml), 0;
   if (found.empty()) throw core::Error("the folder holds no file", a.folder.string(), "name the folder of a survey's records");
   if (proposal.files == 0)
-    throw core::Error("none of its " + std::to_string(found.size()) + " files is a record of a survey", a.folder.string(),
-                      "--print shows what each of them is");
+    throw core::Error(found.size() == 1 ? "its only file is no record of a survey"
+                                        : "none of its " + std::to_string(found.size()) + " files is a record of a survey",
+                      a.folder.string(), "--print shows what each of them is");
   io::write_text_file(file, proposal.toml);
   if (a.loudness.quiet) return 0;
-  print("written: " + file.string() + ", with " + std::to_string(proposal.files) + " of " + std::to_string(found.size()) + " files\n");
+  print("written: " + file.string() + ", with " + std::to_string(proposal.files) + " of " + core::counted(found.size(), "file") + "\n");
   if (!proposal.open.empty()) print("to be stated, in lines that begin with # ?\n");
   for (const std::string& one : proposal.open) print("  " + one + "\n");
-  print("then: swath check survey --survey " + file.string() + "\n");
+  print("then: swath check " + proposal.config + " --survey " + file.string() + "\n");
   return 0;
 }
 

@@ -67,7 +67,7 @@ int check(const Given& a) {
   const std::filesystem::path config = pipeline::find_config(a.request.config);
   if (pipeline::is_flight_plan(config)) {
     const planning::FlightPlan plan = pipeline::check_flight_plan({config, {}, {}, a.request.sets});
-    if (!a.loudness.quiet) std::printf("%s: a flight of %zu lines\n", a.request.config.c_str(), plan.lines.size());
+    if (!a.loudness.quiet) std::printf("%s: a flight of %s\n", a.request.config.c_str(), core::counted(plan.lines.size(), "line").c_str());
     return 0;
   }
   if (const auto block = check_block_config(config, a.request.sets)) {
@@ -77,7 +77,9 @@ int check(const Given& a) {
   const pipeline::Plan plan = pipeline::make_plan(a.request);
   if (!plan.survey_file.empty()) pipeline::check_output(plan);
   if (a.loudness.quiet) return 0;
-  std::printf("%s: %zu stages fit one another\n", a.request.config.c_str(), plan.stages.size());
+  std::printf(
+      "%s: %s\n", a.request.config.c_str(),
+      plan.stages.size() == 1 ? "its only stage is complete" : (core::counted(plan.stages.size(), "stage") + " fit one another").c_str());
   if (plan.survey_file.empty())
     std::printf("no survey was named: its files are not checked\n");
   else

@@ -95,8 +95,8 @@ int cross_sections(const ProfileArguments& a) {
   for (const pipeline::AxisSections& one : pipeline::write_cross_sections(r)) {
     list.push(core::reported(one));
     if (a.json || a.quiet) continue;
-    std::printf("%s: %zu sections over %.1f, cut %.2f, fill %.2f; %zu incomplete; sections.csv and section_points.csv in %s\n",
-                one.name.c_str(), one.sections, one.length, one.cut, one.fill, one.incomplete, r.axis.folder.c_str());
+    std::printf("%s: %s over %.1f, cut %.2f, fill %.2f; %zu incomplete; sections.csv and section_points.csv in %s\n", one.name.c_str(),
+                core::counted(one.sections, "section").c_str(), one.length, one.cut, one.fill, one.incomplete, r.axis.folder.c_str());
   }
   if (a.json) print_json(list);
   return 0;
@@ -114,10 +114,11 @@ int profile(ProfileArguments& a) {
     list.push(core::reported(one));
     if (!one.warning.empty()) std::fprintf(stderr, "swath: warning: %s: %s\n", one.name.c_str(), one.warning.c_str());
     if (a.json || a.quiet) continue;
-    std::printf("%s: %.1f long, %zu points, %zu places of the terrain model; .csv, .svg and .png in %s\n", one.name.c_str(), one.length,
-                one.points, one.terrain_samples, a.request.folder.c_str());
+    std::printf("%s: %.1f long, %s, %s of the terrain model; .csv, .svg and .png in %s\n", one.name.c_str(), one.length,
+                core::counted(one.points, "point").c_str(), core::counted(one.terrain_samples, "place").c_str(), a.request.folder.c_str());
     if (one.vertices_left_out > 0)
-      std::printf("  %zu of its vertices are not finite or beyond every map, left out\n", one.vertices_left_out);
+      std::printf("  %s not finite or beyond every map, left out\n",
+                  core::counted(one.vertices_left_out, "of its vertices is", "of its vertices are").c_str());
   }
   if (a.json) print_json(list);
   return 0;

@@ -81,7 +81,7 @@ void add_task_commands(Commands& commands) {
   c->add_option("ID", a->id, "The task, as `swath tasks` names it")->required();
   c->add_option("--tasks", a->tasks, "File that `swath tasks --save` wrote")->required();
   c->add_option("--output", a->output, "Folder of the products, in place of the file's: the same for every task");
-  c->add_option("--threads", a->threads, "Threads (0: one per processor)")->capture_default_str();
+  c->add_option("--threads", a->threads, "Threads (0: one per processor)")->capture_default_str()->check(threads_check());
   c->add_flag("--quiet", a->loudness.quiet, "Nothing but errors");
   c->add_flag("--json-log", a->loudness.json_log, "Progress as one JSON object per line on standard error");
 }

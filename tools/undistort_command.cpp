@@ -3,6 +3,7 @@
 #include <set>
 
 #include "calib/block/undistort.h"
+#include "core/config/units.h"
 #include "core/error.h"
 #include "io/text/output_file.h"
 #include "pipeline/input_guard.h"
@@ -51,7 +52,7 @@ int undistort(const UndistortArguments& a) {
   }
   io::write_text_file(a.folder / camera_name,
                       "# Camera of these images: no distortion, principal point in the middle.\n" + calib::undistorted_camera(camera));
-  print(std::to_string(a.images.size()) + " images written to " + a.folder.string() + "\n");
+  print(core::counted(a.images.size(), "image") + " written to " + a.folder.string() + "\n");
   return 0;
 }
 

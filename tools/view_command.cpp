@@ -27,13 +27,8 @@ constexpr std::uint64_t saved_points = 1000000, served_points = 3000000, first_p
 
 Scene scene_of(const ViewArguments& a, const ProductFiles& files, const SceneOptions& options) {
   pipeline::Progress progress(a.loudness.voice());
-  progress.begin("view", 1000, "per mille");
-  std::uint64_t shown = 0;
-  Scene scene = make_scene(files, options, [&](double share, std::string_view) {
-    const auto now = static_cast<std::uint64_t>(share * 1000);
-    if (now > shown) progress.advance(now - shown);
-    shown = std::max(shown, now);
-  });
+  progress.begin("view", 0, "");
+  Scene scene = make_scene(files, options, [&](double share, std::string_view) { progress.share(share); });
   progress.end();
   return scene;
 }

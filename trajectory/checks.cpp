@@ -111,7 +111,7 @@ void check_angles(const core::TrajectoryData& d, TrajectoryChecks& out) {
     turn = std::max(turn, std::abs(d.heading[i]));
   }
   if (tilt > tilt_limit || turn > 3.0 * core::pi)
-    out.warnings.push_back("roll or pitch reaches " + core::format_number(tilt) + " rad, heading " + core::format_number(turn) +
+    out.warnings.push_back("roll or pitch reaches " + core::format_number(tilt, 3) + " rad, heading " + core::format_number(turn, 3) +
                            " rad: degrees read as radians?");
   else if (turn < 2.0 * core::pi * core::degree && out.straight > 0 && tilt < tiny_angle)
     out.warnings.push_back("headings are all below 0.11 rad, roll and pitch below 0.1 deg: radians read as degrees?");
@@ -129,11 +129,13 @@ TrajectoryChecks check_trajectory(const core::TrajectoryData& d, const CheckOpti
   out.motion = check_motion(d, o.min_speed);
 
   const auto degrees = [](double a) { return core::format_number(std::round(core::to_degrees(a) * 100.0) / 100.0) + " deg"; };
-  if (out.duplicates) out.warnings.push_back(std::to_string(out.duplicates) + " records repeat the time of the one before");
-  if (out.backwards) out.warnings.push_back(std::to_string(out.backwards) + " records go back in time");
-  if (out.not_finite) out.warnings.push_back(std::to_string(out.not_finite) + " records hold a value that is not a number");
+  if (out.duplicates)
+    out.warnings.push_back(core::counted(out.duplicates, "record repeats", "records repeat") + " the time of the one before");
+  if (out.backwards) out.warnings.push_back(core::counted(out.backwards, "record goes", "records go") + " back in time");
+  if (out.not_finite)
+    out.warnings.push_back(core::counted(out.not_finite, "record holds", "records hold") + " a value that is not a number");
   if (!out.gaps.empty())
-    out.warnings.push_back(std::to_string(out.gaps.size()) + " gaps, the first after record " + std::to_string(out.gaps[0].record));
+    out.warnings.push_back(core::counted(out.gaps.size(), "gap") + ", the first after record " + std::to_string(out.gaps[0].record));
   if (out.straight > 0 && std::abs(out.crab_median) > crab_limit)
     out.warnings.push_back("heading differs from the track by " + degrees(out.crab_median) +
                            " in straight flight: wander angle not removed (or removed twice), IMU axes turned, or another north?");
@@ -143,7 +145,7 @@ TrajectoryChecks check_trajectory(const core::TrajectoryData& d, const CheckOpti
     out.warnings.push_back("heading differs from the track by another angle on each course (spread " + degrees(out.crab_range) +
                            "): sign of heading, or another unit?");
   if (out.velocity_difference > velocity_limit)
-    out.warnings.push_back("recorded velocity differs from that of the positions by " + core::format_number(out.velocity_difference) +
+    out.warnings.push_back("recorded velocity differs from that of the positions by " + core::format_number(out.velocity_difference, 3) +
                            " m/s (median): wander frame, or other axes?");
   out.warnings.insert(out.warnings.end(), out.motion.warnings.begin(), out.motion.warnings.end());
   return out;

@@ -6,6 +6,7 @@
 
 #include "calib/adjust/parameter_words.h"
 #include "calib/words.h"
+#include "core/config/units.h"
 
 namespace swath::calib {
 namespace {
@@ -94,7 +95,7 @@ void find_contradictions(const TieProblem& p, const AdjustRounds& r, Adjustment&
     tell("the adjustment did not converge: its last step still moves a value by " + number(out.last_step) + " of its sigmas",
          "start from better values, or allow more iterations", true);
   else if (!r.converged)
-    tell("the adjustment is not steady after " + std::to_string(r.rounds) + " rounds of linearisation", "allow more iterations");
+    tell("the adjustment is not steady after " + core::counted(r.rounds, "round") + " of linearisation", "allow more iterations");
 }
 
 }  // namespace swath::calib

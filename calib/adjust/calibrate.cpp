@@ -7,6 +7,7 @@
 #include "calib/adjust/parameter_words.h"
 #include "calib/adjust/tie_normals.h"
 #include "calib/words.h"
+#include "core/config/units.h"
 #include "core/error.h"
 #include "core/geo/geodesy.h"
 #include "core/statistics.h"
@@ -82,7 +83,7 @@ void refuse_unsettled(Adjustment& a, const Move& move, int rounds) {
   std::vector<Parameter> all;
   for (const Estimate& e : a.estimates)
     if (e.estimated) all.push_back(e.parameter);
-  a.findings.push_back({"the values did not settle in " + std::to_string(rounds) + " rounds: the last one still moved " +
+  a.findings.push_back({"the values did not settle in " + core::counted(rounds, "round") + ": the last one still moved " +
                             std::string(words_of(move.parameter).name) + words(" by %.2g of its sigmas", move.sigmas),
                         "allow more rounds, or fly lines that share more planes: opposite lines, cross lines, sloping roofs", all, true});
   withdraw(a, all, Grade::unsettled);
@@ -199,7 +200,7 @@ Calibrated calibrate(const CalibrationFlight& flight, const CalibrateOptions& op
     mismatch = std::min(mismatch, mismatch_after(out.adjustment));
     const bool settled = !first && move.sigmas <= settled_step;
     if (settled || out.rounds == options.rounds) {
-      out.notes.push_back("Planes were sought " + std::to_string(out.rounds) + " times; the last time moved the returns by " +
+      out.notes.push_back("Planes were sought " + core::counted(out.rounds, "time") + "; the last time moved the returns by " +
                           about_metres(change) + words(", and no value by more than %.2g of its sigmas.", move.sigmas));
       if (!settled) refuse_unsettled(out.adjustment, move, out.rounds);
       break;

@@ -160,7 +160,7 @@ AdjustedStrips adjust_strips(const CalibrationFlight& survey, const StripOptions
                                        {},
                                        false});
   out.differences = plane_differences(out.ties, out.adjustment);
-  out.notes.push_back("Planes were sought " + std::to_string(out.rounds) + " times; the last round moved the returns by " +
+  out.notes.push_back("Planes were sought " + core::counted(out.rounds, "time") + "; the last round moved the returns by " +
                       in_metres(change) + ".");
   if (how.corrections.spacing.value < options.adjust.corrections.spacing.value)
     out.notes.push_back("The trajectory's errors vary faster than its corrections could follow: their knots were brought closer, to " +

@@ -256,7 +256,9 @@ void add_sentences(BlockFound& out) {
                                  line(" have the correlation %.4f: hold one of them", c.correlation(i, j)));
   if (out.smallest_pivot < hardly) out.findings.push_back(line("the block is hardly determined: smallest pivot %.1e", out.smallest_pivot));
   if (!out.control_without_image.empty())
-    out.findings.push_back(std::to_string(out.control_without_image.size()) + " points of the control files are on no image");
+    out.findings.push_back(
+        core::counted(out.control_without_image.size(), "point of the control files is", "points of the control files are") +
+        " on no image");
   for (const FactorFound& f : out.factors)
     if (f.estimated && (f.factor > 2.0 || f.factor < 0.5))
       out.findings.push_back("the stated sigmas of " + f.kind + line(" were multiplied by %.2f: check them", f.factor));

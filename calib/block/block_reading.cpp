@@ -238,8 +238,8 @@ void expect_datum(const ReadBlock& read, const std::string& config_file) {
   const bool shift = read.block.datum == Datum::shift;
   const size_t plan = shift ? 1 : 2, heights = shift ? 1 : 3;
   if (known[0] >= plan && known[2] >= heights) return;
-  throw core::Error("the datum of the stations is not determinable: control has " + std::to_string(known[0]) + " points in plan and " +
-                        std::to_string(known[2]) + " heights, and " + std::string(core::Choices<Datum>::names.at(shift ? 1 : 2)) +
+  throw core::Error("the datum of the stations is not determinable: control has " + core::counted(known[0], "point") + " in plan and " +
+                        core::counted(known[2], "height") + ", and " + std::string(core::Choices<Datum>::names.at(shift ? 1 : 2)) +
                         " needs " + std::to_string(plan) + " and " + std::to_string(heights),
                     config_file, "survey more control, or state datum = \"none\"" + std::string(shift ? "" : " or \"shift\""));
 }
@@ -341,7 +341,7 @@ ReadBlock read_block(const BlockConfig& config, const std::string& config_file, 
   const bool by_file = config.images.angles == ImageAngles::none && start_from_file(read, poses, has_table);
   if (!by_file && !has_table)
     throw core::Error("nothing to start from: no table of images, and orientations of " + std::to_string(poses.size()) + " of " +
-                          std::to_string(read.block.images.size()) + " images",
+                          core::counted(read.block.images.size(), "image"),
                       config_file, "add [images] with a file of stations");
   if (!by_file) start_block(read, config);
   read.started_level = !by_file && config.images.angles == ImageAngles::none;

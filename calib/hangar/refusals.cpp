@@ -2,6 +2,7 @@
 #include "calib/hangar/refusals.h"
 
 #include "calib/words.h"
+#include "core/config/units.h"
 #include "core/error.h"
 
 namespace swath::calib {
@@ -16,7 +17,7 @@ void refuse(const Resection& r, const std::string& name, size_t distances, const
     case ResectionState::solved:
       return;
     case ResectionState::too_few:
-      throw Error(station + " has " + std::to_string(distances) + " distances to targets, 3 are needed and 4 for a check", file,
+      throw Error(station + " has " + core::counted(distances, "distance") + " to targets, 3 are needed and 4 for a check", file,
                   "measure more distances from it, or state its coordinates with `at` and `sigma`");
     case ResectionState::in_line:
       throw Error("the targets of " + station + " lie in one line: it may be anywhere on a circle around it", file,

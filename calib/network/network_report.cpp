@@ -8,6 +8,7 @@
 
 #include "calib/adjust/diagnosis.h"
 #include "calib/report_units.h"
+#include "core/config/units.h"
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
 #include "report/html.h"
@@ -207,7 +208,7 @@ void put_network(const AdjustedNetwork& network, const trajectory::Trajectory& b
   report.joint = true;
   report.strips = plane_differences(network.ties, a);
   report.sections_of_joint = {kinds_of(network), changes_of(a), biases_of(network)};
-  report.notes.push_back("Planes were sought " + std::to_string(network.rounds) + " times; the last round moved the returns by " +
+  report.notes.push_back("Planes were sought " + core::counted(network.rounds, "time") + "; the last round moved the returns by " +
                          number_text(network.last_move / millimetre, 1) +
                          " mm. A plane seen in one line departs from that of all lines by " +
                          number_text(network.surface_sigma / millimetre, 1) + " mm (sigma).");

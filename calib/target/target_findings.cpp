@@ -6,6 +6,7 @@
 
 #include "calib/target/attitude_displacement.h"
 #include "calib/words.h"
+#include "core/config/units.h"
 #include "core/geo/frames.h"
 
 namespace swath::calib {
@@ -128,7 +129,7 @@ std::vector<std::string> target_findings(const FlatTarget& t, const AngleReading
                                          const core::Calibration& present, bool steady) {
   Findings say;
   find_missing(t, readings, measures, say);
-  if (!steady) say(words("the rounds ended before the angles were steady (%d rounds)", t.rounds));
+  if (!steady) say("the rounds ended before the angles were steady (" + core::counted(t.rounds, "round") + ")");
   find_large_angles(t, measures, present, say);
   find_datum(t.joint, measures, say);
   find_lever_arms(t, say);

@@ -2,15 +2,30 @@
 #include "core/config/option.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 
 namespace swath::core {
+
+namespace {
+
+std::string bound_text(Dimension d, double si) {
+  constexpr size_t short_enough = 8;  // characters
+  const std::string exact = format_quantity(d, si);
+  const size_t digits = std::min(exact.find(' '), exact.size());
+  if (digits <= short_enough) return exact;
+  const double value = std::strtod(exact.c_str(), nullptr), large = 1000.0;
+  return std::abs(value) < large ? format_number(value, 4) + exact.substr(digits) : exact;
+}
+
+}  // namespace
 
 std::string Range::text(Dimension d) const {
   const bool has_low = std::isfinite(lowest);
   const bool has_high = std::isfinite(highest);
-  if (has_low && has_high) return (above_lowest ? "> " : "") + format_quantity(d, lowest) + " to " + format_quantity(d, highest);
-  if (has_low) return (above_lowest ? "> " : ">= ") + format_quantity(d, lowest);
-  if (has_high) return "<= " + format_quantity(d, highest);
+  if (has_low && has_high) return (above_lowest ? "> " : "") + bound_text(d, lowest) + " to " + bound_text(d, highest);
+  if (has_low) return (above_lowest ? "> " : ">= ") + bound_text(d, lowest);
+  if (has_high) return "<= " + bound_text(d, highest);
   return "";
 }
 

@@ -33,7 +33,7 @@ struct Range {
   bool above_lowest = false;  ///< the lowest value itself is not allowed
 
   bool holds(double v) const { return (above_lowest ? v > lowest : v >= lowest) && v <= highest; }
-  /// "> 0 m", "0 to 5", "any", in the dimension's shown unit.
+  /// "> 0 m", "0 to 5", "" for any, in the dimension's shown unit; four digits of a bound that is not round there (57.3 deg of 1 rad).
   std::string text(Dimension d) const;
 };
 inline Range any() { return {}; }
@@ -41,6 +41,8 @@ inline Range above(double lowest) { return {lowest, std::numeric_limits<double>:
 inline Range at_least(double lowest) { return {lowest, std::numeric_limits<double>::infinity(), false}; }
 inline Range within(double lowest, double highest) { return {lowest, highest, false}; }
 inline Range above_to(double lowest, double highest) { return {lowest, highest, true}; }
+/// Of an angle: a whole turn at most, either way.
+inline Range one_turn() { return within(-2.0 * pi, 2.0 * pi); }
 
 /// What an option holds.
 enum class Kind { boolean, integer, number, quantity, text, path, choice };

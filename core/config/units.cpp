@@ -167,6 +167,20 @@ std::string format_number(double v) {
   return std::string(buf.data(), r.ptr);
 }
 
+std::string format_number(double v, int digits) {
+  std::array<char, 40> buf{};
+  const auto r = std::to_chars(buf.data(), buf.data() + buf.size(), v, std::chars_format::general, digits);
+  double rounded = v;
+  std::from_chars(buf.data(), r.ptr, rounded);
+  return format_number(rounded);
+}
+
+std::string counted(std::uint64_t n, std::string_view one, std::string_view many) {
+  std::string out = std::to_string(n) + " ";
+  if (n == 1) return out.append(one);
+  return many.empty() ? out.append(one) + "s" : out.append(many);
+}
+
 std::string format_quantity(Dimension d, double si) {
   if (d == Dimension::none) return format_number(si);
   for (const Unit& u : units()) {

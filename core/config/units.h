@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <compare>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -107,5 +108,11 @@ std::string format_quantity(Dimension d, double si);
 
 /// Shortest decimal text that reads back to the same double.
 std::string format_number(double v);
+
+/// The same of the number rounded to so many significant digits: for messages, where more would say nothing.
+std::string format_number(double v, int digits);
+
+/// "1 point", "2 points"; `many`: where it is not `one` with an s, "vertices", "records repeat".
+std::string counted(std::uint64_t n, std::string_view one, std::string_view many = {});
 
 }  // namespace swath::core

@@ -55,6 +55,30 @@ std::string hint_for(const std::string& d) {
          "PROJ_DATA to its folder";
 }
 
+bool is_in_database(PJ_CONTEXT* c, const std::string& authority, const std::string& code) {
+  return Pj(proj_create_from_database(c, authority.c_str(), code.c_str(), PJ_CATEGORY_CRS, 0, nullptr)) != nullptr;
+}
+
+/// Throws for a definition by codes of which PROJ's database does not hold one. Without the database every code is unknown.
+void check_codes(PJ_CONTEXT* c, const std::string& d) {
+  const size_t colon = d.find(':');
+  if (colon == std::string::npos || d.find_first_not_of("0123456789+", colon + 1) != std::string::npos) return;
+  std::string authority = d.substr(0, colon);
+  std::transform(authority.begin(), authority.end(), authority.begin(), [](unsigned char a) { return std::toupper(a); });
+  if (!is_in_database(c, "EPSG", "4326")) return;
+  for (size_t at = colon + 1; at < d.size();) {
+    const size_t end = std::min(d.find('+', at), d.size());
+    const std::string code = d.substr(at, end - at);
+    at = end + 1;
+    if (code.empty() || is_in_database(c, authority, code)) continue;
+    const std::string other = authority == "EPSG" ? "ESRI" : "EPSG";
+    throw Error("PROJ's database does not hold the CRS \"" + authority + ":" + code + "\"", {},
+                is_in_database(c, other, code)
+                    ? "the code is one of " + other + "'s: \"" + other + ":" + code + "\""
+                    : "look the code up: `projinfo --list-crs`, or https://epsg.org; newer codes need a newer PROJ");
+  }
+}
+
 /// "EPSG:32632+ellipsoidal": takes the suffix off.
 bool take_ellipsoidal(std::string& d) {
   const std::string small = lower_case(d);
@@ -135,7 +159,8 @@ Pj made_from(PJ_CONTEXT* c, CrsFacts& s) {
   const bool ellipsoidal = take_ellipsoidal(s.definition);
   Pj crs = parse_crs(c, s.definition);
   if (!crs) {
-    const std::string why = proj_text(proj_context_errno_string(c, proj_context_errno(c)));
+    const std::string why = proj_reason(c);
+    check_codes(c, s.definition);
     throw Error("PROJ does not know the CRS \"" + short_form(s.definition) + "\"" + (why.empty() ? "" : " (" + why + ")"), {},
                 hint_for(s.definition));
   }

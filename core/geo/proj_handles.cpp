@@ -14,6 +14,11 @@ ProjContext new_proj_context() {
 
 std::string proj_text(const char* t) { return t ? t : ""; }
 
+std::string proj_reason(PJ_CONTEXT* c) {
+  std::string reason = proj_text(proj_context_errno_string(c, proj_context_errno(c)));
+  return reason.starts_with("Unknown error") ? std::string() : reason;
+}
+
 std::string short_form(const std::string& definition) { return definition.size() <= 80 ? definition : definition.substr(0, 77) + "..."; }
 
 Pj parse_crs(PJ_CONTEXT* c, const std::string& definition) { return Pj(proj_create(c, definition.c_str())); }

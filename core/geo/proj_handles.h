@@ -30,6 +30,8 @@ using PjFactory = std::unique_ptr<PJ_OPERATION_FACTORY_CONTEXT, PjFactoryEnd>;
 
 /// Log and network are off.
 ProjContext new_proj_context();
+/// The reason of the context's last failure; empty where PROJ has no more to say than "Unknown error (code 4096)".
+std::string proj_reason(PJ_CONTEXT* c);
 /// Empty for nullptr.
 std::string proj_text(const char* t);
 /// Null where PROJ does not understand the definition.

@@ -125,8 +125,11 @@ Pj operation_between(PJ_CONTEXT* c, const PJ* from, const PJ* to, const std::str
   const char* const options[] = {"ALLOW_BALLPARK=NO", nullptr};
   const Pj found(proj_create_crs_to_crs_from_pj(c, from, to, nullptr, options));
   Pj out(found ? proj_normalize_for_visualization(c, found.get()) : nullptr);
-  if (!out)
-    throw Error("PROJ cannot make the transformation from " + what, {}, proj_text(proj_context_errno_string(c, proj_context_errno(c))));
+  if (!out) {
+    const std::string why = proj_reason(c);
+    throw Error("PROJ cannot make the transformation from " + what, {},
+                why.empty() ? "PROJ knows no operation between these datums: `projinfo -s FROM -t TO` lists what there is" : why);
+  }
   return out;
 }
 

@@ -35,13 +35,13 @@ struct Calibration {
 
 template <class V>
 void describe(Calibration& c, V& v) {
-  v.option("roll", c.roll, "Boresight roll, positive right wing down.", "conventions");
-  v.option("pitch", c.pitch, "Boresight pitch, positive nose up.", "conventions");
-  v.option("heading", c.heading, "Boresight heading, clockwise seen from above.", "conventions");
+  v.option("roll", c.roll, one_turn(), "Boresight roll, positive right wing down.", "conventions");
+  v.option("pitch", c.pitch, one_turn(), "Boresight pitch, positive nose up.", "conventions");
+  v.option("heading", c.heading, one_turn(), "Boresight heading, clockwise seen from above.", "conventions");
   v.option("lever_arm_scanner", c.lever_arm_scanner, "IMU centre to scanner origin: forward, right, down.", "conventions");
   v.option("range_offset", c.range_offset, "Added to every recorded range.");
   v.option("range_scale", c.range_scale, within(0.5, 2.0), "Factor on every recorded range.");
-  v.option("scan_offset", c.scan_offset, "Added to every scaled scan angle.");
+  v.option("scan_offset", c.scan_offset, one_turn(), "Added to every scaled scan angle.");
   v.option("scan_scale", c.scan_scale, within(0.5, 2.0), "Factor on every recorded scan angle.");
   v.option("latency", c.latency, "Added to every record's time.");
 }

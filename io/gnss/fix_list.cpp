@@ -146,7 +146,7 @@ void FixList::take(const Read& read) {
   const double t = f.time + latency_;
   if (!out_.time.empty() && t < out_.time.back()) {
     if (!may_go_back_)
-      throw core::Error("time goes back by " + core::format_number(out_.time.back() - t) + " s", place(read),
+      throw core::Error("time goes back by " + core::format_number(out_.time.back() - t, 4) + " s", place(read),
                         "export the fixes in the order of time");
     ++back_;
     tally_.count("GNSS fixes whose time goes back, left out", place(read));

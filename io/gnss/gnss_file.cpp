@@ -181,7 +181,7 @@ core::GnssData read_gnss(const Survey& survey, core::Tally& tally) {
     }
     if (i > 0 && part.time.front() <= out.time.back())
       throw core::Error(parts[i - 1].second + " and " + parts[i].second + " overlap by " +
-                            core::format_number(out.time.back() - part.time.front()) + " s",
+                            core::format_number(out.time.back() - part.time.front(), 4) + " s",
                         parts[i].second, "trim one of them: two solutions for one instant have no order");
     core::for_each_gnss_column(
         [&](auto member) { (out.*member).insert((out.*member).end(), (part.*member).begin(), (part.*member).end()); });

@@ -2,12 +2,14 @@
 // Density is taken over the cells of 2 m (of the CRS's unit) that hold a point, so that voids and slanting strips do not lower it.
 #include "io/las/describe_las.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
 #include <unordered_set>
+#include <vector>
 
 #include "core/config/result_visitors.h"
 #include "core/config/units.h"
@@ -33,11 +35,23 @@ struct Sums {
   std::array<core::Interval, 3> xyz;
   core::Interval time, angle;
   std::map<int, std::uint64_t> by_return, by_count, classes, lines;
+  std::uint64_t looked_at = 0, twice = 0;  ///< of the first points: those that repeat another one
   std::uint64_t points = 0, returns_inconsistent = 0, time_zero = 0, time_back = 0, withheld = 0, overlap = 0, first_returns = 0;
   double last_time = -std::numeric_limits<double>::infinity();
   std::unordered_set<std::uint64_t> cells;
 
+  /// Points with the place, time and return number of another.
+  void find_twice(const LasPoints& p) {
+    std::vector<std::array<double, 5>> rows;
+    for (size_t i = 0; i < p.size(); ++i)
+      rows.push_back({p.x[i], p.y[i], p.z[i], p.gps_time.empty() ? 0.0 : p.gps_time[i], static_cast<double>(p.return_number[i])});
+    std::sort(rows.begin(), rows.end());
+    looked_at = rows.size();
+    for (size_t i = 1; i < rows.size(); ++i) twice += rows[i] == rows[i - 1];
+  }
+
   void add(const LasPoints& p) {
+    if (points == 0) find_twice(p);
     points += p.size();
     for (size_t i = 0; i < p.size(); ++i) {
       xyz[0].add(p.x[i]);
@@ -160,10 +174,19 @@ void judge_header(LasFacts& out) {
   for (int k = 0; k < 3; ++k) {
     const core::Interval& e = out.s.xyz[static_cast<size_t>(k)];
     if (std::abs(h.min[k] - e.low) > std::abs(h.scale[k]) || std::abs(h.max[k] - e.high) > std::abs(h.scale[k]))
-      out.warnings.push_back(std::string("the header states ") + "xyz"[k] + " " + core::format_number(h.min[k]) + " to " +
-                             core::format_number(h.max[k]) + ", the points span " + core::format_number(e.low) + " to " +
-                             core::format_number(e.high));
+      out.warnings.push_back(std::string("the header states ") + "xyz"[k] + " " + core::format_number(h.min[k], 12) + " to " +
+                             core::format_number(h.max[k], 12) + ", the points span " + core::format_number(e.low, 12) + " to " +
+                             core::format_number(e.high, 12));
   }
+}
+
+/// A file that was put together of others may hold points twice; few points of one place are chance.
+void judge_repeated(LasFacts& out) {
+  constexpr std::uint64_t one_in = 1000;
+  const Sums& s = out.s;
+  if (s.twice * one_in < s.looked_at || s.twice == 0) return;
+  out.warnings.push_back(std::to_string(s.twice) + " of the first " + core::counted(s.looked_at, "point") +
+                         " repeat place, time and return number of another: the file holds points twice");
 }
 
 void judge_returns(LasFacts& out) {
@@ -171,16 +194,17 @@ void judge_returns(LasFacts& out) {
   if (s.by_return.size() == 1 && s.by_return.begin()->first == 0)
     out.warnings.push_back("no point has a return number");
   else if (s.returns_inconsistent)
-    out.warnings.push_back(std::to_string(s.returns_inconsistent) + " points have a return number of 0 or above the pulse's count");
+    out.warnings.push_back(core::counted(s.returns_inconsistent, "point has", "points have") +
+                           " a return number of 0 or above the pulse's count");
   for (size_t r = 1; r <= out.h.by_return.size(); ++r) {
     const std::uint64_t stated = out.h.by_return[r - 1];
     const auto at = s.by_return.find(static_cast<int>(r));
     const std::uint64_t n = at == s.by_return.end() ? 0 : at->second;
     if (stated != n && stated != 0)
-      out.warnings.push_back("the header states " + std::to_string(stated) + " points of return " + std::to_string(r) + ", there are " +
+      out.warnings.push_back("the header states " + core::counted(stated, "point") + " of return " + std::to_string(r) + ", there are " +
                              std::to_string(n));
   }
-  if (s.angle.low == s.angle.high) out.warnings.push_back("all scan angles are " + core::format_number(s.angle.low));
+  if (s.angle.low == s.angle.high) out.warnings.push_back("all scan angles are " + core::format_number(s.angle.low, 6));
 }
 
 }  // namespace
@@ -199,6 +223,7 @@ core::Value describe_las(const std::filesystem::path& file) {
   judge_header(out);
   judge_times(out);
   judge_returns(out);
+  judge_repeated(out);
   return core::reported(out);
 }
 

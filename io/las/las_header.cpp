@@ -152,7 +152,7 @@ void check_records(const LasHeader& h, std::uint64_t file_size, const std::files
   const std::uint64_t room = file_size - h.offset_to_points;
   const std::uint64_t holds = room / h.record_length;
   if (h.point_count > holds)
-    throw core::Error("the header counts " + std::to_string(h.point_count) + " points, the file holds " + std::to_string(holds),
+    throw core::Error("the header counts " + core::counted(h.point_count, "point") + ", the file holds " + std::to_string(holds),
                       at_byte(file, h.offset_to_points + holds * h.record_length),
                       "the file is truncated or its header is damaged: fetch or export it again");
   const std::uint64_t end = h.offset_to_points + h.point_count * h.record_length;
@@ -160,11 +160,11 @@ void check_records(const LasHeader& h, std::uint64_t file_size, const std::files
   for (const std::uint64_t start : {evlr_start, h.waveform_start})
     if (start >= end) next = std::min(next, start);
   if (next - end >= h.record_length)
-    throw core::Error("the header counts " + std::to_string(h.point_count) + " points, but " + std::to_string(next - end) +
+    throw core::Error("the header counts " + core::counted(h.point_count, "point") + ", but " + std::to_string(next - end) +
                           " bytes follow the last of them, room for " + std::to_string((next - end) / h.record_length) + " more",
                       at_byte(file, end), "its writer was stopped before the end, or the header is damaged: export the file again");
   if (evlr_start == 0 && h.waveform_start == 0 && file_size > end)
-    warnings.push_back(std::to_string(file_size - end) + " bytes after the last point are not used");
+    warnings.push_back(core::counted(file_size - end, "byte after the last point is", "bytes after the last point are") + " not used");
 }
 
 }  // namespace

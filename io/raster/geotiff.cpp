@@ -238,13 +238,13 @@ core::Lattice lattice_of(const RasterInfo& info, const std::filesystem::path& fi
   const double cell = g[1];
   const double west = g[0] / cell, south = (g[3] + info.ny * g[5]) / cell;
   if (std::max(std::abs(west), std::abs(south)) > farthest_cell)
-    throw core::Error("the raster's corner lies " + core::format_number(std::max(std::abs(west), std::abs(south))) +
+    throw core::Error("the raster's corner lies " + core::format_number(std::max(std::abs(west), std::abs(south)), 4) +
                           " cells from the origin of its coordinates",
                       file.string(), "the georeference is damaged");
   const double shift = std::max(std::abs(west - std::round(west)), std::abs(south - std::round(south)));
   if (shift > lattice_tolerance)
-    throw core::Error("the raster's corner is " + std::to_string(shift) + " cells off the whole multiples of its cell", file.string(),
-                      "align it (gdalwarp -tap -tr " + std::to_string(cell) + " " + std::to_string(cell) + ")");
+    throw core::Error("the raster's corner is " + core::format_number(shift, 3) + " cells off the whole multiples of its cell",
+                      file.string(), "align it (gdalwarp -tap -tr " + std::to_string(cell) + " " + std::to_string(cell) + ")");
   return {cell, std::llround(west), std::llround(south), info.nx, info.ny};
 }
 

@@ -162,8 +162,9 @@ std::vector<Record> read_peerstats(const std::filesystem::path& file, core::Tall
     std::sort(out.begin(), out.end(), [](const Record& a, const Record& b) { return a.line < b.line; });
   }
   if (out.empty() && all > 0)
-    throw core::Error("none of its " + std::to_string(sources.size()) + " sources is ever selected", file.string(),
-                      "the clock was not steered: use loopstats, or a file of one source alone");
+    throw core::Error(sources.size() == 1 ? "its only source is never selected"
+                                          : "none of its " + std::to_string(sources.size()) + " sources is ever selected",
+                      file.string(), "the clock was not steered: use loopstats, or a file of one source alone");
   tally.read(clock_records, all - out.size());
   if (out.size() < all) tally.count("clock records of sources that did not steer the clock, left out", all - out.size());
   return out;

@@ -128,7 +128,7 @@ core::TrajectoryData read_csd_trajectory(CsdReader& file, core::Seconds spacing,
                           "the file is damaged: export it again");
       }
       if (p.time < last && last - p.time < core::seconds_per_week / 2)
-        throw core::Error("time goes back by " + core::format_number(last - p.time) + " s", file.path().string() + ": " + record,
+        throw core::Error("time goes back by " + core::format_number(last - p.time, 4) + " s", file.path().string() + ": " + record,
                           "export the records in the order of their time");
       if (p.time == last) {
         tally.count("CSD pulses at a repeated time, left out", record);

@@ -75,8 +75,8 @@ TimeFacts times_of(const std::vector<double>& time, std::vector<std::string>& wa
     if (step > 0) steps.push_back(step);
   }
   out.ends = {time.front(), time.back()};
-  if (back) warnings.push_back("time goes back " + std::to_string(back) + " times: the file is not sorted");
-  if (repeated) warnings.push_back(std::to_string(repeated) + " records repeat the time before them");
+  if (back) warnings.push_back("time goes back " + core::counted(back, "time") + ": the file is not sorted");
+  if (repeated) warnings.push_back(core::counted(repeated, "record repeats the time before it", "records repeat the time before them"));
   if (time.front() >= 0 && time.back() < 2 * core::seconds_per_week)
     warnings.push_back("times look like seconds of the GPS week (or of a day); the file does not say of which");
   if (steps.empty()) return out;
@@ -89,7 +89,7 @@ TimeFacts times_of(const std::vector<double>& time, std::vector<std::string>& wa
       ++gaps;
       longest = std::max(longest, s);
     }
-  if (gaps) warnings.push_back(std::to_string(gaps) + " gaps, the longest " + core::format_number(std::round(longest * 1e3) / 1e3) + " s");
+  if (gaps) warnings.push_back(core::counted(gaps, "gap") + ", the longest " + core::format_number(std::round(longest * 1e3) / 1e3) + " s");
   return out;
 }
 
@@ -228,7 +228,7 @@ core::Value describe_sbet(const std::filesystem::path& path) {
     out.pitch.add(r.pitch);
     out.wander.add(r.wander_angle);
   }
-  if (not_finite) out.warnings.push_back(std::to_string(not_finite) + " records hold values that are not finite");
+  if (not_finite) out.warnings.push_back(core::counted(not_finite, "record holds", "records hold") + " values that are not finite");
   if (!time.empty()) {
     out.times = times_of(time, out.warnings);
     judge(rows, path, not_finite == 0, out);

@@ -5,6 +5,7 @@
 // description, UBX-22008968).
 #include <map>
 
+#include "core/config/units.h"
 #include "core/error.h"
 #include "core/time.h"
 #include "io/records/event_marks.h"
@@ -129,7 +130,7 @@ std::vector<EventMark> read_ubx_marks(const std::filesystem::path& path, EventEd
   }
   if (frames == 0) throw core::Error("holds no message of UBX", path.string(), "u-blox receivers log them; text formats are others");
   if (out.empty())
-    throw core::Error("holds no event: " + std::to_string(frames) + " messages of UBX, " + std::to_string(marks) + " of them TIM-TM2",
+    throw core::Error("holds no event: " + core::counted(frames, "message") + " of UBX, " + std::to_string(marks) + " of them TIM-TM2",
                       path.string(), marks > 0 ? "event.edge and event.input choose among edges" : "let the receiver log UBX-TIM-TM2");
   return out;
 }

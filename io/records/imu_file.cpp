@@ -113,8 +113,8 @@ void leave_out(Raw& raw, std::vector<std::uint64_t>& numbers, const std::vector<
   for (size_t k = 0, next = 0; k < raw.time.size(); ++k) {
     if (next < bad.size() && bad[next] == k) {
       ++next;
-      tally.count(what, rows.place_of(numbers[k]) + ": " + core::format_number(s.turn_of(raw.gyro[k])) + " rad/s, " +
-                            core::format_number(s.force_of(raw.accelerometer[k])) + " m/s2");
+      tally.count(what, rows.place_of(numbers[k]) + ": " + core::format_number(s.turn_of(raw.gyro[k]), 4) + " rad/s, " +
+                            core::format_number(s.force_of(raw.accelerometer[k]), 4) + " m/s2");
       continue;
     }
     raw.move(k, kept);
@@ -184,8 +184,8 @@ Raw read_raw(const std::filesystem::path& path, const ImuFile& f, core::Tally& t
   size_t kept = 0;
   for (size_t k = 0; k < raw.time.size(); ++k) {
     if (kept > 0 && raw.time[k] < raw.time[kept - 1])
-      throw core::Error("time goes back by " + core::format_number(raw.time[kept - 1] - raw.time[k]) + " s", rows->place_of(all.numbers[k]),
-                        "export the records in the order of time");
+      throw core::Error("time goes back by " + core::format_number(raw.time[kept - 1] - raw.time[k], 4) + " s",
+                        rows->place_of(all.numbers[k]), "export the records in the order of time");
     if (kept > 0 && raw.time[k] == raw.time[kept - 1]) {
       ++repeated;
       tally.count("IMU records at a repeated time, left out", rows->place_of(all.numbers[k]));

@@ -329,7 +329,7 @@ struct LaserSource::State {
     if (std::abs(angle) > full_turn)
       return leave_out(angle_fault(raw.angle[i], file.angle_unit, name + ": " + record_text(record)), record);
     if (time < last_time)
-      throw core::Error("time goes back by " + core::format_number(last_time - time) + " s inside line " + std::to_string(line),
+      throw core::Error("time goes back by " + core::format_number(last_time - time, 4) + " s inside line " + std::to_string(line),
                         name + ": " + record_text(record), "records of a line must be in the order of their time");
     if (record > std::numeric_limits<std::uint32_t>::max())
       throw core::Error("more records than 32 bits count", name + ": " + record_text(record), "split the file by flight line");

@@ -84,7 +84,7 @@ void choose_velocities(core::TrajectoryData& t, VelocityAxes axes, const std::ve
     }
   }
   if (axes == VelocityAxes::automatic && !(least <= limit)) {
-    tally.count("SBET velocities that disagree with the positions, not used", "mean disagreement " + core::format_number(least) + " m/s",
+    tally.count("SBET velocities that disagree with the positions, not used", "mean disagreement " + core::format_number(least, 3) + " m/s",
                 t.size());
     return;
   }

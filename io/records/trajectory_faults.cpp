@@ -48,9 +48,9 @@ std::string value_text(const core::TrajectoryData& t, size_t i) {
   if (const std::string name = not_finite(t, i); !name.empty()) return name + " is not finite";
   const auto degrees = [](double v) { return core::format_number(std::round(core::to_degrees(v) * 1e6) / 1e6) + " deg"; };
   std::string text = "latitude " + degrees(t.latitude[i]) + ", longitude " + degrees(t.longitude[i]) + ", height " +
-                     core::format_number(t.height[i]) + " m, roll " + degrees(t.roll[i]) + ", pitch " + degrees(t.pitch[i]) + ", heading " +
-                     degrees(t.heading[i]);
-  if (t.has_velocity()) text += ", speed " + core::format_number(std::hypot(t.v_north[i], t.v_east[i], t.v_down[i])) + " m/s";
+                     core::format_number(t.height[i], 6) + " m, roll " + degrees(t.roll[i]) + ", pitch " + degrees(t.pitch[i]) +
+                     ", heading " + degrees(t.heading[i]);
+  if (t.has_velocity()) text += ", speed " + core::format_number(std::hypot(t.v_north[i], t.v_east[i], t.v_down[i]), 4) + " m/s";
   return text;
 }
 

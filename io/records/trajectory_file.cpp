@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/units.h"
 #include "core/error.h"
 #include "core/geo/crs.h"
 #include "core/geo/frames.h"
@@ -34,7 +35,8 @@ void to_geodetic(const std::string& crs, const std::string& name, double unit, s
       for (double& v : *c) v = core::to_degrees(v * unit);
   const core::Transform transform(from, core::wgs84_geodetic());
   if (const size_t lost = transform.apply(east.data(), north.data(), height.data(), east.size()); lost > 0 && !are_few(lost, east.size()))
-    throw core::Error(std::to_string(lost) + " positions lie outside the domain of " + from.name(), name, "check crs and the columns");
+    throw core::Error(core::counted(lost, "position lies", "positions lie") + " outside the domain of " + from.name(), name,
+                      "check crs and the columns");
   for (auto* c : {&east, &north})
     for (double& v : *c) v *= core::degree;
 }
@@ -135,7 +137,7 @@ void check_trajectory(TrajectoryData& t, const std::string& name, core::Tally& t
     if (i == 0) continue;
     const double step = t.time[i] - t.time[i - 1];
     if (step < 0)
-      throw core::Error("time goes back by " + core::format_number(-step) + " s", where(i), "export the trajectory sorted by time");
+      throw core::Error("time goes back by " + core::format_number(-step, 4) + " s", where(i), "export the trajectory sorted by time");
     repeated[i] = step == 0;
     if (step > 0) steps.push_back(step);
   }
@@ -201,7 +203,7 @@ TrajectoryData read_trajectory(const Survey& survey, core::Tally& tally) {
     }
     if (k > 0 && part.time.front() < out.time.back())
       throw core::Error(parts[k - 1].second + " and " + parts[k].second + " overlap by " +
-                            core::format_number(out.time.back() - part.time.front()) + " s",
+                            core::format_number(out.time.back() - part.time.front(), 4) + " s",
                         parts[k].second, "trim one of them: two solutions for one instant have no order");
     core::for_each_trajectory_column(
         [&](auto member, const char*) { (out.*member).insert((out.*member).end(), (part.*member).begin(), (part.*member).end()); });

@@ -78,8 +78,8 @@ void load_calibration(const std::filesystem::path& file, core::Calibration& cali
     const core::Calibration header = calibration_of(CsdReader(file).header());
     for (const core::Radians angle : {header.roll, header.pitch, header.heading})
       if (!(std::abs(angle.value) <= 2 * core::pi))
-        throw core::Error("the header states a boresight angle of " + core::format_number(core::to_degrees(angle)) + " deg", file.string(),
-                          "the file is damaged: export it again");
+        throw core::Error("the header states a boresight angle of " + core::format_number(core::to_degrees(angle), 6) + " deg",
+                          file.string(), "the file is damaged: export it again");
     calibration.roll = header.roll;
     calibration.pitch = header.pitch;
     calibration.heading = header.heading;

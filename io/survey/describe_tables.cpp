@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/config/result_visitors.h"
 #include "core/error.h"
@@ -94,10 +95,46 @@ void describe(const TableFacts& r, V& v) {
   v.result("warnings", r.warnings, "What looks wrong.");
 }
 
+/// Times of records that do not grow. Records that each have a time of their own alone are judged: a pulse has several returns.
+class TimeOrder {
+ public:
+  explicit TimeOrder(const std::vector<NamedColumn>& columns) {
+    std::vector<std::string> names;
+    for (const NamedColumn& c : columns) names.push_back(c.name);
+    const ColumnRoles roles = roles_of(names);
+    if (roles.kind == TableKind::none || roles.kind == TableKind::laser || roles.kind == TableKind::image_points) return;
+    for (const auto& [key, name] : roles.columns) {
+      if (key == "time") column_ = static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+      has_weeks_ = has_weeks_ || key == "week";
+    }
+  }
+  bool is_of(size_t column) const { return column_ == column; }
+  void add(double time) {
+    repeated_ += time == last_;
+    back_ += time < last_;
+    last_ = time;
+  }
+  void warn(std::vector<std::string>& warnings) const {
+    if (repeated_ > 0)
+      warnings.push_back(
+          core::counted(repeated_, "record is at the time of the one before it", "records are at the time of the one before them") +
+          ": held twice, or times of too few digits");
+    if (back_ > 0 && !has_weeks_)
+      warnings.push_back("time goes back " + core::counted(back_, "time") + ": the records are not sorted, or held twice");
+  }
+
+ private:
+  std::optional<size_t> column_{};
+  bool has_weeks_ = false;  // whose seconds begin anew
+  double last_ = std::numeric_limits<double>::quiet_NaN();
+  std::uint64_t repeated_ = 0, back_ = 0;
+};
+
 core::Value reported(TableFacts& t) {
   for (const NamedColumn& c : t.columns)
     if (c.values.not_finite)
-      t.warnings.push_back("column " + c.name + " holds " + std::to_string(c.values.not_finite) + " values that are empty or not finite");
+      t.warnings.push_back("column " + c.name + " holds " + core::counted(c.values.not_finite, "value that is", "values that are") +
+                           " empty or not finite");
   return core::reported(t);
 }
 
@@ -168,12 +205,17 @@ core::Value describe_npy(const Path& path) {
     if (std::string("uifb").find(f.kind) != std::string::npos && f.bytes <= 8) numeric.push_back(i);
   }
   NpyReader reader(path, numeric);
+  TimeOrder times(out.columns);
   std::vector<std::vector<double>> values;
   for (std::uint64_t at = 0; at < h.rows; at += chunk) {
     reader.read(at, static_cast<size_t>(std::min<std::uint64_t>(chunk, h.rows - at)), values);
     for (size_t c = 0; c < numeric.size(); ++c)
-      for (const double v : values[c]) out.columns[numeric[c]].values.add(v);
+      for (const double v : values[c]) {
+        out.columns[numeric[c]].values.add(v);
+        if (times.is_of(numeric[c])) times.add(v);
+      }
   }
+  times.warn(out.warnings);
   return reported(out);
 }
 
@@ -189,20 +231,24 @@ core::Value describe_text(const Path& path) {
     if (!events.are_events || c != events.id || holds_numbers(path, layout, c)) indices.push_back(c);
   }
   if (!layout.names.empty() && layout.names.size() != layout.columns)
-    out.warnings.push_back("the header names " + std::to_string(layout.names.size()) + " columns, the first line has " +
+    out.warnings.push_back("the header names " + core::counted(layout.names.size(), "column") + ", the first line has " +
                            std::to_string(layout.columns));
   if (layout.cut_line > 0)
     out.warnings.push_back("line " + std::to_string(layout.cut_line) + " is only the end of a record and is left out");
   DelimitedReader reader(path, layout, indices);
+  TimeOrder order(out.columns);
   std::vector<double> row(indices.size()), times;
   std::vector<std::uint64_t> lines;
   try {
     for (; reader.next(row.data()); ++out.rows)
       for (size_t c = 0; c < row.size(); ++c) {
         out.columns[indices[c]].values.add(row[c]);
-        if (!events.are_events || indices[c] != events.time) continue;
-        times.push_back(row[c]);
-        lines.push_back(reader.line());
+        if (!events.are_events) {
+          if (order.is_of(indices[c])) order.add(row[c]);
+        } else if (indices[c] == events.time) {
+          times.push_back(row[c]);
+          lines.push_back(reader.line());
+        }
       }
   } catch (const core::Error& e) {
     out.warnings.push_back("reading stopped: " + e.text());
@@ -210,6 +256,7 @@ core::Value describe_text(const Path& path) {
   if (const auto repeated = repeated_times(times); !repeated.empty())
     out.warnings.push_back("events at the time of another one: " + std::to_string(repeated.size()) + " (lines " +
                            std::to_string(lines[repeated[0].first]) + " and " + std::to_string(lines[repeated[0].second]) + ")");
+  order.warn(out.warnings);
   return reported(out);
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/config/option_visitors.h"
 #include "core/error.h"
+#include "io/survey/tree_kind.h"
 #include "io/text/text_table.h"
 #include "io/text/value_file.h"
 
@@ -218,6 +219,7 @@ std::vector<fs::path> hangar_tables(const HangarSurvey& h) {
 HangarSurvey read_hangar(const fs::path& file) {
   const core::Value tree = read_value_file(file);
   if (!tree.is_object()) throw core::usage_error("a hangar survey is a table", file.string());
+  require_kind(tree, TreeKind::hangar, file);
   HangarSurvey h;
   h.file = file;
   std::vector<core::Fault> faults;

@@ -135,7 +135,8 @@ void describe(HangarAxes& a, V& v) {
   v.option("pitch", a.pitch, core::within(-0.5, 0.5), "Its pitch, nose up.");
   v.option("roll_sigma", a.roll_sigma, core::at_least(0), "Sigma of the roll.");
   v.option("pitch_sigma", a.pitch_sigma, core::at_least(0), "Sigma of the pitch.");
-  v.option("heading", a.heading, "Its heading from the hangar's y axis, clockwise; without it the marks fore and aft give it.");
+  v.option("heading", a.heading, core::one_turn(),
+           "Its heading from the hangar's y axis, clockwise; without it the marks fore and aft give it.");
   v.option("heading_offset", a.heading_offset, "From the line of the marks (aft to fore) to the IMU's forward axis, clockwise.");
   v.option("heading_sigma", a.heading_sigma, core::at_least(0), "Sigma of the stated heading, or of heading_offset.");
 }

@@ -26,6 +26,7 @@
 #include "io/survey/describe_tables.h"
 #include "io/survey/file_facts.h"
 #include "io/survey/read_survey.h"
+#include "io/survey/tree_kind.h"
 #include "io/text/binary_file.h"
 #include "io/text/value_file.h"
 #include "io/vector/describe_vector.h"
@@ -118,17 +119,25 @@ Value describe_tree(const Path& path) {
   const auto has = [&](const char* key) { return tree.is_object() && tree.find(key); };
   if (has("type") && tree.find("type")->is_text() && (has("features") || has("coordinates") || has("geometry")))
     if (Value vector = describe_vector(path); !vector.is_null()) return vector;
-  if (has("program") && has("stages")) return core::reported(TreeFacts{"report of a run", tree, "stages"});
-  if (has("stage")) return core::reported(TreeFacts{"pipeline", tree, "stage"});
-  if (has("calibration") && has("sigma") && !has("laser") && !has("imu") && !has("crs") && !has("trajectory")) {
-    Value out = core::reported(TreeFacts{"calibration", tree});
-    out.members().insert(out.members().begin() + 1, {"calibration", *tree.find("calibration")});  // as the file has it
-    return out;
+  const TreeKind kind = kind_of(tree);
+  const std::string format(format_of(kind));
+  switch (kind) {
+    case TreeKind::hangar:
+      return describe_hangar(path);
+    case TreeKind::survey:
+      return describe_survey(path);
+    case TreeKind::report:
+      return core::reported(TreeFacts{format, tree, "stages"});
+    case TreeKind::pipeline:
+      return core::reported(TreeFacts{format, tree, "stage"});
+    case TreeKind::calibration: {
+      Value out = core::reported(TreeFacts{format, tree});
+      out.members().insert(out.members().begin() + 1, {"calibration", *tree.find("calibration")});  // as the file has it
+      return out;
+    }
+    default:
+      return core::reported(TreeFacts{format, tree});
   }
-  if (has("point") && (has("station") || has("target") || has("angle"))) return describe_hangar(path);
-  for (const char* key : {"laser", "trajectory", "imu", "gnss", "points", "event", "hangar", "rinex", "crs", "scanner"})
-    if (has(key)) return describe_survey(path);
-  return core::reported(TreeFacts{"JSON or TOML", tree});
 }
 
 struct BandFacts {

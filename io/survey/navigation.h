@@ -76,9 +76,10 @@ void describe(ImuFile& f, V& v) {
   v.option("even_times", f.even_times, "Smooth times that jitter by over 1 % of the step, over 101 records; false: keep them.");
   v.option("rate", f.rate, core::within(1, 1e4), "Records per second; without it from the median step.");
   v.option("axes", f.axes, "Axes of the record that point forward, right and down (x, y, z, -x, -y, -z), before the mounting.");
-  v.option("roll", f.roll, "Mounting: the rotation sensor to body after `axes`, body_R_sensor = Rz(heading) Ry(pitch) Rx(roll).");
-  v.option("pitch", f.pitch, "Pitch of the mounting.");
-  v.option("heading", f.heading, "Heading of the mounting.");
+  v.option("roll", f.roll, core::one_turn(),
+           "Mounting: the rotation sensor to body after `axes`, body_R_sensor = Rz(heading) Ry(pitch) Rx(roll).");
+  v.option("pitch", f.pitch, core::one_turn(), "Pitch of the mounting.");
+  v.option("heading", f.heading, core::one_turn(), "Heading of the mounting.");
   v.option("delimiter", f.delimiter, "Delimiter of a text file; empty: found in its first line.");
   v.table("columns", f.columns, "Columns of a text or NumPy file.");
 }

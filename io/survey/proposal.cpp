@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "io/survey/column_roles.h"
 #include "io/survey/info.h"
+#include "io/survey/tree_kind.h"
 #include "io/text/output_file.h"
 #include "io/text/toml_text.h"
 
@@ -68,7 +69,7 @@ class Draft {
   }
   void note(const std::string& text) { text_ += (text.starts_with("\n") ? "" : "# ") + text + "\n"; }
   void count_file() { ++files_; }
-  Proposal done() && { return {std::move(text_), files_, std::move(open_)}; }
+  Proposal done() && { return {std::move(text_), files_, std::move(open_), {}}; }
 
  private:
   std::string text_, table_;
@@ -81,11 +82,17 @@ using Files = std::vector<const FoundFile*>;
 
 /// The files by the part of the survey that they make.
 struct Sorted {
-  Files points, scanner, csd, sbet, smrmsg, pos, nmea, observations, navigation, calibration;
+  Files points, scanner, csd, sbet, smrmsg, pos, nmea, observations, navigation, calibration, hangar;
   std::vector<std::pair<const FoundFile*, ColumnRoles>> tables;
   std::vector<std::string> left;
   std::string zone;  ///< UTM zone of the first position found
 
+  /// Measurements in a hangar and no record of a flight.
+  bool only_hangar() const {
+    return !hangar.empty() && points.empty() && sbet.empty() && pos.empty() && nmea.empty() && observations.empty() && tables.empty() &&
+           !has_laser();
+  }
+  const char* config() const { return only_hangar() ? "lever_arm" : "survey"; }
   bool has_laser() const { return !scanner.empty() || !csd.empty() || has(TableKind::laser); }
   bool has(TableKind kind) const {
     return std::any_of(tables.begin(), tables.end(), [&](const auto& t) { return t.second.kind == kind; });
@@ -125,7 +132,8 @@ void sort_file(const FoundFile& f, Sorted& out) {
     note_zone(interval_of(f.facts, std::string(carrier) + "latitude_deg"), interval_of(f.facts, std::string(carrier) + "longitude_deg"),
               out);
   const std::map<std::string, Files*> by_format{{"Optech CSD", &out.csd},      {"SBET", &out.sbet}, {"smrmsg", &out.smrmsg},
-                                                {"RTKLIB solution", &out.pos}, {"NMEA", &out.nmea}, {"calibration", &out.calibration}};
+                                                {"RTKLIB solution", &out.pos}, {"NMEA", &out.nmea}, {"calibration", &out.calibration},
+                                                {"hangar survey", &out.hangar}};
   if (const auto at = by_format.find(format); at != by_format.end()) return at->second->push_back(&f);
   if (format == "LAS" || format == "LAZ") return (is_scanner_frame(f.facts) ? out.scanner : out.points).push_back(&f);
   if (format == "RINEX") return (kind == "observations" ? out.observations : out.navigation).push_back(&f);
@@ -136,6 +144,8 @@ void sort_file(const FoundFile& f, Sorted& out) {
     if (roles.angle_unit == "deg") note_zone(span_of(f.facts, roles, "latitude"), span_of(f.facts, roles, "longitude"), out);
     return out.tables.emplace_back(&f, std::move(roles)), void();
   }
+  if (const TreeKind tree = kind_of_format(format); tree != TreeKind::other)
+    return left(std::string(name_of(tree)) + ", no record: " + std::string(use_of(tree)));
   left(format + ", which has no place that can be known: a terrain model, lines or points may belong to [[breaklines]] or [[control]]");
 }
 
@@ -207,8 +217,12 @@ void add_head(Draft& d, const Sorted& s, const std::string& name) {
   d.note(
       "Proposed by swath init from the files of this folder. Lines with # ? are not known from the files: complete the line below each, "
       "and");
-  d.note("remove its #. Then: swath check survey --survey survey.toml");
+  d.note("remove its #. Then: swath check " + std::string(s.config()) + " --survey survey.toml");
   d.known("name", name);
+  if (!s.hangar.empty()) {
+    d.note("what was measured in a hangar: swath run lever_arm --survey survey.toml computes the lever arms (docs/lever-arm.md)");
+    d.known("hangar", s.hangar.front()->name.generic_string()), d.count_file();
+  }
   const std::string crs = "crs = \"" + (s.zone.empty() ? std::string("EPSG:25832") : s.zone) + "\"";
   if (s.has_laser()) {
     d.open(crs, "the CRS of the products is a choice" + std::string(s.zone.empty() ? "" : "; the files lie in this UTM zone"));
@@ -339,6 +353,7 @@ std::vector<FoundFile> find_records(const fs::path& folder, const std::function<
 Proposal propose_survey(const std::vector<FoundFile>& files, const std::string& name) {
   Sorted s;
   for (const FoundFile& f : files) sort_file(f, s);
+  for (size_t k = 1; k < s.hangar.size(); ++k) s.left.push_back(s.hangar[k]->name.generic_string() + ": a second hangar survey");
   Draft d;
   add_head(d, s, name);
   add_mounting(d, s);
@@ -359,7 +374,9 @@ Proposal propose_survey(const std::vector<FoundFile>& files, const std::string& 
   if (s.has_laser()) d.note("\n# Without [[line]] tables (id, start, end) the flight lines are those of the records; docs/survey.md.");
   if (!s.left.empty()) d.note("\n# Not part of this survey:");
   for (const std::string& one : s.left) d.note("  " + one);
-  return std::move(d).done();
+  Proposal out = std::move(d).done();
+  out.config = s.config();
+  return out;
 }
 
 }  // namespace swath::io

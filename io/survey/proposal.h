@@ -28,6 +28,7 @@ struct Proposal {
   std::string toml;               ///< what is known as keys; what is not as comments that begin with "# ?" and say why
   std::size_t files = 0;          ///< that have a place in it
   std::vector<std::string> open;  ///< what remains to be stated, "gnss[1] time.week: ..."
+  std::string config = "survey";  ///< that comes with the program and fits the files
 };
 
 /// The survey that the files make, named `name`. `swath check` passes once what is open is filled in.

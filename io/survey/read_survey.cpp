@@ -8,6 +8,7 @@
 #include "io/survey/calibration_file.h"
 #include "io/survey/camera_checks.h"
 #include "io/survey/survey_checks.h"
+#include "io/survey/tree_kind.h"
 #include "io/text/value_file.h"
 
 namespace swath::io {
@@ -31,6 +32,7 @@ void keep_stated_noise(const core::SensorSigma& stated, core::SensorSigma& sigma
 
 Survey read_survey(const core::Value& tree, const std::filesystem::path& folder, RecordsIn records) {
   if (!tree.is_object()) throw core::usage_error("a survey is a table", tree.where.text());
+  if (records == RecordsIn::files) require_kind(tree, TreeKind::survey, tree.where.file);
   Survey survey;
   survey.folder = folder;
   std::vector<Fault> faults;

@@ -90,8 +90,8 @@ Cadence settle_times(std::vector<double>& t, const CadenceRule& rule, const std:
   out.step = rule.step.value_or(found);
   if (std::abs(found - out.step) > tolerated_rate * out.step)
     throw core::usage_error(
-        "the records come every " + core::format_number(found) + " s, the stated rate makes " + core::format_number(out.step) + " s", name,
-        "state the rate of the file, or leave it out");
+        "the records come every " + core::format_number(found, 6) + " s, the stated rate makes " + core::format_number(out.step, 6) + " s",
+        name, "state the rate of the file, or leave it out");
   for (double& v : deviation) {
     v = std::abs(v - out.step);
     squares += v * v;

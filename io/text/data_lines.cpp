@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/units.h"
 #include "core/error.h"
 #include "io/text/delimited.h"
 #include "io/text/line_reader.h"
@@ -15,7 +16,7 @@ void DataLine::fault(const std::string& what, const std::string& hint) const { t
 
 const std::string& DataLine::field(size_t column) const {
   if (column >= fields.size())
-    fault("the line has " + std::to_string(fields.size()) + " fields, at least " + std::to_string(column + 1) + " are needed",
+    fault("the line has " + core::counted(fields.size(), "field") + ", at least " + std::to_string(column + 1) + " are needed",
           "the line is cut off, has another delimiter, or the file is of another format");
   return fields[column];
 }

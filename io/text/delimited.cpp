@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/config/units.h"
 #include "core/config/value.h"
 #include "core/error.h"
 #include "io/text/cut_line.h"
@@ -209,8 +210,8 @@ void require_text(std::string_view begin, const std::filesystem::path& file) {
 }
 
 std::string fields_and_columns(size_t fields, size_t columns, bool has_header) {
-  return "the line has " + std::to_string(fields) + (fields == 1 ? " field, " : " fields, ") +
-         (has_header ? "the header " : "the first line ") + std::to_string(columns) + (columns == 1 ? " column" : " columns");
+  return "the line has " + core::counted(fields, "field") + (has_header ? ", the header " : ", the first line ") +
+         core::counted(columns, "column");
 }
 
 const char* number_hint(std::string_view field, const char* otherwise) {
@@ -379,7 +380,7 @@ void DelimitedReader::expect_no_more(const char* at, const char* end) const {
 }
 
 void DelimitedReader::short_line(size_t fields) const {
-  throw core::Error("the line has " + std::to_string(fields) + " fields, at least " + std::to_string(fields_needed_) + " are needed",
+  throw core::Error("the line has " + core::counted(fields, "field") + ", at least " + std::to_string(fields_needed_) + " are needed",
                     file_.path().string() + ":" + std::to_string(line_),
                     "the line is cut off or has another delimiter: export the file again");
 }

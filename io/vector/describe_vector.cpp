@@ -89,7 +89,7 @@ LayerFacts facts_of(OGRLayer& layer, std::vector<std::string>& warnings) {
   if (const char* about = layer.GetMetadataItem("DESCRIPTION")) out.description = about;
   for (int k = 0; k < layer.GetLayerDefn()->GetFieldCount(); ++k) out.fields.push_back(layer.GetLayerDefn()->GetFieldDefn(k)->GetNameRef());
   if (out.features == 0) warnings.push_back("layer " + out.name + " has no feature");
-  if (empty > 0) warnings.push_back("layer " + out.name + " has " + std::to_string(empty) + " features without a geometry");
+  if (empty > 0) warnings.push_back("layer " + out.name + " has " + core::counted(empty, "feature") + " without a geometry");
   return out;
 }
 

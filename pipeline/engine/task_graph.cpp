@@ -7,11 +7,13 @@
 
 #include "core/config/result_visitors.h"
 #include "core/error.h"
-#include "io/las/las_header.h"
+#include "io/records/record_count.h"
+#include "io/survey/tree_kind.h"
 #include "io/text/value_file.h"
 #include "pipeline/engine/strips.h"
 #include "pipeline/engine/survey_stages.h"
 #include "pipeline/expected_time.h"
+#include "pipeline/progress.h"
 
 namespace swath::pipeline {
 namespace {
@@ -29,15 +31,15 @@ std::int64_t modified(const fs::path& file) {
   return ec ? 0 : static_cast<std::int64_t>(at.time_since_epoch().count());
 }
 
-std::uint64_t returns_in(const fs::path& file) {
-  const std::string ending = file.extension().string();
-  if (ending == ".las" || ending == ".laz" || ending == ".LAS" || ending == ".LAZ") {
-    std::vector<std::string> ignored;
-    return io::read_las_header(file, ignored).point_count;
+/// Adds the returns of a file.
+void count_returns(const fs::path& file, TaskGraph& graph) {
+  if (const auto stated = io::stated_records(file)) {
+    graph.returns += *stated;
+    return;
   }
-  std::error_code ec;
-  const auto bytes = fs::file_size(file, ec);
-  return ec ? 0 : static_cast<std::uint64_t>(static_cast<double>(bytes) / bytes_per_record);
+  const auto estimated = static_cast<std::uint64_t>(static_cast<double>(fs::file_size(file)) / bytes_per_record);
+  graph.returns += estimated;
+  graph.returns_estimated += estimated;
 }
 
 /// Processor time of a wave, s.
@@ -79,8 +81,8 @@ class GraphMaker {
       graph_.inputs.push_back({fs::absolute(i.file), i.bytes, modified(i.file), i.hash});
       graph_.bytes_in += i.bytes;
     }
-    for (const io::LaserFile& f : plan_.survey.laser) graph_.returns += returns_in(plan_.survey.folder / f.file);
-    for (const io::PointFile& f : plan_.survey.points) graph_.returns += returns_in(plan_.survey.folder / f.file);
+    for (const io::LaserFile& f : plan_.survey.laser) count_returns(plan_.survey.folder / f.file, graph_);
+    for (const io::PointFile& f : plan_.survey.points) count_returns(plan_.survey.folder / f.file, graph_);
     graph_.disk = work_per_input * static_cast<double>(graph_.bytes_in);
     const std::vector<Wave> waves = waves_of(plan_);
     for (size_t number = 0; number < waves.size(); ++number) add(waves[number], number);
@@ -190,7 +192,7 @@ TaskGraph task_graph(const Request& request, int parts) {
 
 std::string task_text(const TaskGraph& graph) {
   std::string out;
-  char line[200];
+  char line[260];
   for (const auto& wave : by_wave(graph)) {
     const Task& t = *wave.front();
     double seconds = 0.0;
@@ -200,10 +202,12 @@ std::string task_text(const TaskGraph& graph) {
     out += line;
   }
   std::snprintf(line, sizeof line,
-                "%.3g returns of %.1f GB: about %s of processor time, %s with a processor for every task; %.1f GB of memory for each, "
+                "%s returns%s of %.1f GB: about %s of processor time, %s with a processor for every task; %.1f GB of memory for each, "
                 "%.1f GB of disk for the work\n",
-                static_cast<double>(graph.returns), 1e-9 * static_cast<double>(graph.bytes_in), duration(graph.seconds).c_str(),
-                duration(graph.critical_seconds).c_str(), 1e-9 * graph.memory, 1e-9 * graph.disk);
+                count_text(static_cast<double>(graph.returns)).c_str(),
+                graph.returns_estimated > 0 ? " (estimated: not every file states its records)" : "",
+                1e-9 * static_cast<double>(graph.bytes_in), duration(graph.seconds).c_str(), duration(graph.critical_seconds).c_str(),
+                1e-9 * graph.memory, 1e-9 * graph.disk);
   return out + line;
 }
 
@@ -231,6 +235,7 @@ std::string slurm_script(const TaskGraph& graph, const fs::path& tasks, const fs
 
 PlannedTask planned_task(const fs::path& tasks, const std::string& id) {
   const Value root = io::read_value_file(tasks);
+  io::require_kind(root, io::TreeKind::tasks, tasks);
   PlannedTask out;
   out.request.config = member(root, "config", tasks).as_text();
   out.request.survey = member(root, "survey", tasks).as_text();

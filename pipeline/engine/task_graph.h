@@ -56,7 +56,7 @@ void describe(const Task& t, V& v) {
 struct TaskGraph {
   std::string config, survey, output, fingerprint;
   std::vector<std::string> sets{};
-  std::uint64_t returns = 0, bytes_in = 0;
+  std::uint64_t returns = 0, returns_estimated = 0, bytes_in = 0;
   double seconds = 0.0, critical_seconds = 0.0, memory = 0.0, disk = 0.0;
   std::vector<TaskInput> inputs{};
   std::vector<Task> tasks{};
@@ -69,7 +69,9 @@ void describe(const TaskGraph& g, V& v) {
   v.result("output", g.output, "The output folder, which all processes see.");
   v.result("sets", g.sets, "Options set beside the config.");
   v.result("fingerprint", g.fingerprint, "Of config, survey, inputs and program: a task of another is refused.");
-  v.result("returns", g.returns, "Returns of the inputs: counted by their headers, or guessed from their length.");
+  v.result("returns", g.returns, "Returns of the inputs, as their headers state them or estimated.");
+  v.result("returns_estimated", g.returns_estimated, core::if_any(),
+           "Returns among them that no header states: estimated from the files' length.");
   v.result("bytes_in", g.bytes_in, core::Form{"B"}, "Length of all inputs.");
   v.result("seconds", g.seconds, core::seconds(), "Processor time expected of all tasks; a rough guess.");
   v.result("critical_seconds", g.critical_seconds, core::seconds(), "The same with a processor for every task.");

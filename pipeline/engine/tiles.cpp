@@ -276,6 +276,7 @@ void run_tiles(RunState& run, size_t number) {
 void run_merge(RunState& run, size_t number) {
   stages::MergeJob job{run.folder(number), {}, {}};
   job.tiles = tiles_of(run, number);
+  job.of_tiles = run.accounts[number].tally;
   const Stopwatch watch(Whose::program);
   run.context.memory = run.memory.free();
   run.progress.begin(std::string(run.stage(number).info().name) + " merge", 0, "");
@@ -331,7 +332,7 @@ void expect_room_for_tiles(RunState& run) {
       const auto bytes = static_cast<double>(memory.cut(memory.of({key}), static_cast<std::uint64_t>(free), *run.squares).bytes);
       if (bytes <= most) continue;
       most = bytes;
-      what = std::string(run.stage(i).info().name) + " on the tile " + run.context.label(key) + " of " + std::to_string(n) + " points";
+      what = std::string(run.stage(i).info().name) + " on the tile " + run.context.label(key) + " of " + core::counted(n, "point");
     }
   }
   if (most > 0.0) run.memory.require(most, left, what);

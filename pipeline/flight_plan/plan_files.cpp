@@ -217,8 +217,8 @@ std::string plan_text(const planning::FlightPlan& p) {
     std::snprintf(line, sizeof line, format, values...);
     out += line;
   };
-  add("%zu lines, %.1f km, %.0f min with turns; %llu sorties, %.2f h, %.0f %s\n", p.lines.size(), 1e-3 * p.line_length, p.seconds / 60.0,
-      static_cast<unsigned long long>(p.cost.sorties), p.cost.hours, p.cost.total, p.cost.currency.c_str());
+  add("%s, %.1f km, %.0f min with turns; %s, %.2f h, %.0f %s\n", core::counted(p.lines.size(), "line").c_str(), 1e-3 * p.line_length,
+      p.seconds / 60.0, core::counted(p.cost.sorties, "sortie").c_str(), p.cost.hours, p.cost.total, p.cost.currency.c_str());
   add("swath %.0f m from %.0f m above the ground, footprint %.2f m\n", p.swath.width, p.swath.height, p.swath.footprint);
   if (p.least_overlap) add("overlap at least %.1f %%\n", 100.0 * *p.least_overlap);
   add("pulses per m2: %.2f to %.2f (5 to 95 %% of the cells), median %.2f\n", p.density.low, p.density.high, p.density.median);

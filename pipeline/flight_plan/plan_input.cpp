@@ -10,6 +10,7 @@
 #include "core/geo/same_map.h"
 #include "io/raster/geotiff.h"
 #include "io/raster/height_file.h"
+#include "io/survey/tree_kind.h"
 #include "io/text/value_file.h"
 #include "pipeline/line_file.h"
 #include "pipeline/plan.h"
@@ -27,6 +28,7 @@ fs::path beside(const fs::path& config, const fs::path& file) { return file.empt
 
 planning::PlanOptions options_of(const PlanRequest& request, core::Value& simulation) {
   core::Value given = io::read_value_file(request.config);
+  io::require_kind(given, io::TreeKind::flight_plan, request.config);
   for (const std::string& set : request.sets) set_option(given, set);
   if (const core::Value* table = given.find("simulate")) {
     if (!table->is_object()) throw core::usage_error("'simulate' is no table", request.config.string(), "write [simulate]");
@@ -104,8 +106,8 @@ PlanInput read_plan_input(const PlanRequest& request) {
     std::uint64_t left_out = 0;
     in.area = read_rings_in(in.options.area, in.crs, left_out);
     if (left_out > 0)
-      throw core::Error(std::to_string(left_out) + " vertices of the area are not finite or beyond every map", in.options.area.string(),
-                        "is the CRS of the file right?");
+      throw core::Error(core::counted(left_out, "vertex of the area is", "vertices of the area are") + " not finite or beyond every map",
+                        in.options.area.string(), "is the CRS of the file right?");
   }
   const core::Box box = box_of(in.area);
   in.ground = ground_of(in.options, in.crs, box);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/units.h"
 #include "io/raster/png.h"
 #include "report/chart.h"
 #include "report/html.h"
@@ -136,7 +137,8 @@ std::string plan_page(const planning::FlightPlan& p, const PlanInput& in) {
   if (p.warnings.empty())
     page.banner(report::Tone::good, "The plan can be flown, and nothing in it stands out.");
   else
-    page.banner(report::Tone::caution, "The plan can be flown; " + std::to_string(p.warnings.size()) + " points need a look.");
+    page.banner(report::Tone::caution,
+                "The plan can be flown; " + core::counted(p.warnings.size(), "point needs", "points need") + " a look.");
   if (!p.warnings.empty()) page.list(p.warnings);
   page.section("The flight");
   add_figures(page, p);

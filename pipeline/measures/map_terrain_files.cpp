@@ -120,8 +120,9 @@ MapTerrainFound write_map_terrain(const MapTerrainRequest& r) {
 
 std::string map_terrain_text(const MapTerrainFound& f) {
   char line[240];
-  std::snprintf(line, sizeof line, "%zu contours of %zu heights, interval %g; %zu spot heights, %zu breaklines; without a height: %llu\n",
-                f.contours, f.levels, f.interval, f.spots, f.breaklines, static_cast<unsigned long long>(f.without_height));
+  std::snprintf(line, sizeof line, "%s of %s, interval %g; %s, %s; without a height: %llu\n", core::counted(f.contours, "contour").c_str(),
+                core::counted(f.levels, "height").c_str(), f.interval, core::counted(f.spots, "spot height").c_str(),
+                core::counted(f.breaklines, "breakline").c_str(), static_cast<unsigned long long>(f.without_height));
   std::string out = line;
   std::snprintf(line, sizeof line, "%zu cells of %g, %zu void; flat parts filled: %zu, left flat: %zu\n", f.cells, f.cell, f.voids,
                 f.flat_parts, f.flat_parts_left);

@@ -44,7 +44,7 @@ void describe(ContourOptions& o, V& v) {
            "Maximum height error of smoothing and thinning; 0: as traced; default 1/20 of the interval.");
   v.option("min_length", o.min_length, core::at_least(0.0), "Lines shorter than this are left out.");
   v.option("min_area", o.min_area, "Rings that enclose less than this are left out: m2, ft2 or ha.");
-  v.check(square_metres(o.min_area).has_value(), "min_area must be an area with its unit, such as \"20 m2\"");
+  v.check(square_metres(o.min_area).has_value(), "min_area must be an area of 0 or more with its unit, such as \"20 m2\"");
   v.check(vertical_tolerance(o) <= 0.25 * interval_of(o),
           "tolerance must be at most a quarter of the interval, so that lines of two levels stay apart");
 }

@@ -71,9 +71,10 @@ CarriedInterval judge_interval(const SurfaceFacts& f, double interval, double fl
   if (kept != '-') return out;
   const std::string name = unit == 1.0 ? " m" : " ft";
   const auto carried = [&](size_t k) { return core::format_number(usual_interval(out.smallest->of[k] / unit)) + name; };
-  out.findings.push_back("contours every " + core::format_number(interval / unit) + name + " say more than the model knows: its sigma of " +
-                         core::format_number(std::round(sigma / unit * 1e3) / 1e3) + name + " (rms) carries " + carried(0) +
-                         " as class A, " + carried(1) + " as class B, " + carried(2) + " as class C");
+  out.findings.push_back("contours every " + core::format_number(interval / unit, 4) + name +
+                         " say more than the model knows: its sigma of " + core::format_number(std::round(sigma / unit * 1e3) / 1e3) +
+                         name + " (rms) carries " + carried(0) + " as class A, " + carried(1) + " as class B, " + carried(2) +
+                         " as class C");
   return out;
 }
 

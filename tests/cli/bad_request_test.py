@@ -195,6 +195,16 @@ class Clouds(Case):
     def test_all_points_at_one_place(self):
         self.refuse_cloud([(500010.5, 5300010.5, 100.0)] * 50)
 
+    def test_no_usable_point(self):
+        for code, words in ((0x87, "all 1600 points are withheld: "), (7, r"all 1600 points are noise \(class 7 or 18\)")):
+            with self.subTest(code=code):
+                toml = cloud_survey(self.folder / "survey", self.plane()[:1600])
+                cloud = self.folder / "survey" / "cloud.las"
+                data = bytearray(cloud.read_bytes())
+                data[227 + 15::28] = bytes([code]) * 1600  # class and flags of format 1
+                cloud.write_bytes(data)
+                self.assert_bad_data(toml, words, "hint: ", config=CLOUD)
+
     def test_no_crs_in_the_file(self):
         toml = cloud_survey(self.folder / "survey", self.plane())
         toml.write_text('crs = "EPSG:32632"\n[[points]]\nfile = "cloud.las"\n')

@@ -132,7 +132,7 @@ class Block(Case):
         self.assertIn("a block of 6 strips of 21 images", swath("check", theory).stdout)
         self.assert_error(swath("check", theory, "--set", "strips=0"), 2, "strips")
         write_block(self.folder)
-        self.assertIn("1 file(s) of image points", swath("check", self.folder / "block.toml").stdout)
+        self.assertIn("1 file of image points", swath("check", self.folder / "block.toml").stdout)
 
     def test_quadro_1(self):
         done = swath("block-theory", "--json")

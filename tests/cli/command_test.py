@@ -102,6 +102,13 @@ class Looks(Case):
             self.assertTrue(one.stdout.startswith(name + ": "))
             self.assertIn("Options", one.stdout)
 
+    def test_check_counts_stages(self):
+        config = self.folder / "one.toml"
+        config.write_text('[[stage]]\ntype = "readers.las"\n')
+        self.assertIn("one.toml: its only stage is complete\n", swath("check", config).stdout)
+        config.write_text('[[stage]]\ntype = "readers.las"\n[[stage]]\ntype = "writers.las"\n')
+        self.assertIn("one.toml: 2 stages fit one another\n", swath("check", config).stdout)
+
     def test_schema_knows_every_stage(self):
         schema = json.loads(swath("schema").stdout)
         types = {one["properties"]["type"]["const"] for one in schema["properties"]["stage"]["items"]["anyOf"]}
@@ -134,6 +141,8 @@ class Looks(Case):
     def test_simulate_again_gives_the_same_records(self):
         again = swath("simulate", self.folder / "again", *(w for s in self.simulated for w in ("--set", s)))
         self.assertEqual(again.returncode, 0)
+        self.assertRegex(again.stderr, r"(?m)^simulate +100 %")
+        self.assertNotIn("per mille", again.stderr)
         json.loads(again.stdout)
         self.assertEqual(products(self.folder / "again"), products(self.survey))
         mine = self.folder / "again" / "notes.txt"

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "io/las/las_writer.h"
 #include "io/text/value_file.h"
 #include "pipeline/describe.h"
@@ -61,6 +62,14 @@ TEST(Plan, ReadsConfigSurveyAndSets) {
   EXPECT_EQ(found.stages[3].options.find("cell")->find("value")->as_text(), "0.5 m");
 }
 
+TEST(Plan, ThreadsHaveTheLimitOfTheCommandLine) {
+  Case c(good);
+  c.request.sets = {"run.threads=1024"};
+  EXPECT_EQ(make_plan(c.request).run.threads, core::max_threads);
+  c.request.sets = {"run.threads=1025"};
+  EXPECT_NE(c.fault().find("0 to 1024"), std::string::npos) << c.fault();
+}
+
 TEST(Plan, ATreeInPlaceOfAFileMayNameStagesOfItsOwn) {
   Case c("");
   c.request.tree = io::parse_toml(std::string(good) + "[[stage]]\ntype = \"a.copy\"\n", "the tree");
@@ -112,9 +121,27 @@ TEST(Plan, RastersThatDoNotFitIntoTheMemoryAreRefused) {
   EXPECT_NE(c.fault().find("(terrain.dtm).cell"), std::string::npos) << c.fault();
   c.request.sets = {"terrain.dtm.cell=\"1 cm\"", "run.tile=\"10 m\"", "terrain.dtm.max_edge=\"3 m\"", "smrf.window=\"5 m\""};
   EXPECT_EQ(c.fault(), "");
+  c.request.sets = {"smrf.window=\"100 km\""};
+  text = c.fault();
+  for (const char* part : {"(filters.smrf).window", "a smaller window, smaller tiles"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
   // Of what is divided into cells none is so small that it gets by.
   const std::string noise = "[[stage]]\ntype = \"readers.las\"\n[[stage]]\ntype = \"filters.noise\"\nlow_radius = \"1 mm\"\n";
   EXPECT_NE(Case(noise).fault().find("(filters.noise).low_radius"), std::string::npos);
+}
+
+TEST(Plan, OptionsThatMakeNoSenseAreNamed) {
+  const std::string cloud = "[[stage]]\ntype = \"readers.las\"\n[[stage]]\ntype = \"terrain.dtm\"\n";
+  std::string text = Case(cloud + "[[stage]]\ntype = \"terrain.forest\"\ncell = \"1e9 m\"\n").fault();
+  EXPECT_NE(text.find("\"1e9 m\" is out of range, allowed: > 0 m to 1000 m"), std::string::npos) << text;
+  EXPECT_EQ(text.find("crown_cell"), std::string::npos) << text;
+  text = Case(cloud + "[[stage]]\ntype = \"terrain.buildings\"\nmin_area = \"-10 m2\"\n").fault();
+  EXPECT_NE(text.find("min_area must be an area of 0 or more"), std::string::npos) << text;
+  Case c(cloud);
+  test::write_bytes(c.folder / "survey.toml",
+                    "[[points]]\nfile = \"cloud.las\"\ncrs = \"EPSG:32632\"\n[calibration]\nroll = \"4000 deg\"\n");
+  c.request.survey = c.folder / "survey.toml";
+  EXPECT_NE(c.fault().find("calibration.roll: \"4000 deg\" is out of range, allowed: -360 deg to 360 deg"), std::string::npos) << c.fault();
 }
 
 TEST(Plan, ACanopyNeedsItsModelsOnTheSameCells) {

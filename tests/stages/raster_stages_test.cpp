@@ -86,6 +86,29 @@ TEST(RasterStages, CellsOutsideTheBoundaryAreNoHolesOfTheVisibility) {
   EXPECT_EQ(g.reason[g.lattice.at(50, 10)], core::Void::no_data);
 }
 
+TEST(RasterStages, ATerrainModelOfNoUsablePointSaysWhy) {
+  const auto fault = [](const std::function<void(core::Block&)>& change) {
+    Work w;
+    w.context.tile_side = 10.0;
+    core::Block all = points(20.0);
+    change(all);
+    return fault_of([&] { w.run_all(*stage_with("terrain.dtm", ""), all, w.folder / "dtm"); });
+  };
+  const auto all_of = [](auto& column, int value) { std::fill(column.begin(), column.end(), static_cast<std::uint8_t>(value)); };
+  EXPECT_EQ(fault([](core::Block&) {}), "");
+  std::string said = fault([&](core::Block& b) { all_of(b.flags, core::flag::withheld); });
+  EXPECT_NE(said.find("all 1600 points are withheld: "), std::string::npos) << said;
+  said = fault([&](core::Block& b) { all_of(b.classification, core::point_class::low_noise); });
+  EXPECT_NE(said.find("all 1600 points are noise (class 7 or 18)"), std::string::npos) << said;
+  said = fault([&](core::Block& b) {
+    all_of(b.classification, core::point_class::high_noise);
+    b.flags[3] = core::flag::withheld;
+  });
+  EXPECT_NE(said.find("all 1600 points are withheld (1) or noise (1599)"), std::string::npos) << said;
+  said = fault([&](core::Block& b) { all_of(b.classification, core::point_class::unassigned); });
+  EXPECT_NE(said.find("no triangle of ground points (class 2): none of the 1600 points is of it"), std::string::npos) << said;
+}
+
 TEST(RasterStages, ContoursTellOfDamagedIntermediateFiles) {
   Work w;
   w.context.tile_side = 60.0;

@@ -84,6 +84,7 @@ struct Work {
                    static_cast<int>(std::floor((all.origin.y() + all.y[p]) / context.tile_side))});
     MergeJob out{where, {keys.begin(), keys.end()}, {}};
     for (const TileKey key : out.tiles) out.tally.add(run(stage, all, key.ix, key.iy, where));
+    out.of_tiles = out.tally;
     stage.run_merge(context, out);
     return out;
   }

@@ -62,7 +62,7 @@ double settled_from(const core::ClockData& log, const ClockStretch& s, const std
 
 ClockModel::ClockModel(core::ClockData log, const ClockOptions& options) : log_(std::move(log)), options_(options) {
   const size_t n = log_.size();
-  if (n < 2) throw core::Error("the clock's log has " + std::to_string(n) + " records", "clock", "two are needed at least");
+  if (n < 2) throw core::Error("the clock's log has " + core::counted(n, "record"), "clock", "two are needed at least");
   for (size_t i = 1; i < n; ++i)
     if (!(log_.time[i] > log_.time[i - 1]))
       throw core::Error("the times of the clock's log do not rise", "clock: record " + std::to_string(i));

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/config/units.h"
 #include "core/distributions.h"
 #include "core/error.h"
 #include "core/geo/frames.h"
@@ -93,8 +94,8 @@ Trimmed trim(core::ImuData imu, core::GnssData gnss) {
   const auto first = static_cast<size_t>(std::lower_bound(gnss.time.begin(), gnss.time.end(), begin) - gnss.time.begin());
   const auto last = static_cast<size_t>(std::upper_bound(gnss.time.begin(), gnss.time.end(), end) - gnss.time.begin());
   if (last > first && last < first + 4)
-    throw core::Error("only " + std::to_string(last - first) + " fixes lie within the IMU's record from " + seconds(begin) + " to " +
-                          seconds(end) + " s GPS time, four are the least",
+    throw core::Error("only " + core::counted(last - first, "fix lies", "fixes lie") + " within the IMU's record from " + seconds(begin) +
+                          " to " + seconds(end) + " s GPS time, four are the least",
                       "trajectory.ins_gnss", "give longer records");
   const double apart = 0.5 * (begin + end - gnss.time.front() - gnss.time.back());
   const std::string gap = core::usual_time_gap(apart, end - begin + gnss.time.back() - gnss.time.front());

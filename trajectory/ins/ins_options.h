@@ -19,9 +19,10 @@ struct GivenAttitude {
 
 template <class V>
 void describe(GivenAttitude& a, V& v) {
-  v.option("roll", a.roll, "Roll at the first IMU record used, which lies at most 120 s before the first fix.");
-  v.option("pitch", a.pitch, "Pitch at the first IMU record used, which lies at most 120 s before the first fix.");
-  v.option("heading", a.heading, "Heading at the first IMU record used, which lies at most 120 s before the first fix.");
+  v.option("roll", a.roll, core::one_turn(), "Roll at the first IMU record used, which lies at most 120 s before the first fix.");
+  v.option("pitch", a.pitch, core::within(-0.5 * core::pi, 0.5 * core::pi),
+           "Pitch at the first IMU record used, which lies at most 120 s before the first fix.");
+  v.option("heading", a.heading, core::one_turn(), "Heading at the first IMU record used, which lies at most 120 s before the first fix.");
   v.option("sigma_roll_pitch", a.sigma_roll_pitch, core::above(0), "Sigma of roll and of pitch.");
   v.option("sigma_heading", a.sigma_heading, core::above(0), "Sigma of heading.");
 }

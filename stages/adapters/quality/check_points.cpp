@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "core/config/units.h"
 #include "core/statistics.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
@@ -229,14 +230,16 @@ void name_records(const MergeJob& job, const Context& context, const Marks& mark
   char distance[60];
   std::snprintf(distance, sizeof distance, "%.1f km", nearest);
   if (outside == all && all > 0)
-    found.named.push_back({"check.outside", "none of the " + std::to_string(all) + " check points lies within the survey, the nearest is " +
-                                                distance + " away: compare the CRS and the columns of [[control]] with the survey's"});
+    found.named.push_back(
+        {"check.outside",
+         (all == 1 ? std::string("the only check point does not lie") : "none of the " + std::to_string(all) + " check points lies") +
+             " within the survey, the nearest is " + distance + " away: compare the CRS and the columns of [[control]] with the survey's"});
   else if (outside > 0)
     found.named.push_back({"check.outside", std::to_string(outside) + " of " + std::to_string(all) +
                                                 " check points lie outside the survey's points: " + shown(found.outside)});
   if (!twice.empty())
-    found.named.push_back(
-        {"check.names", std::to_string(twice.size()) + " names stand for several check points: " + shown({twice.begin(), twice.end()})});
+    found.named.push_back({"check.names", core::counted(twice.size(), "name stands", "names stand") +
+                                              " for several check points: " + shown({twice.begin(), twice.end()})});
   if (compared < fewest_marks_judged && (all > 0 || marks.targets.empty()))
     found.named.push_back({"check.few", std::to_string(compared) + " of " + std::to_string(all) +
                                             " check points could be compared, fewer than 3: no accuracy is stated by them"});

@@ -50,7 +50,7 @@ void describe(BuildingStageOptions& o, V& v) {
   v.option("ground", o.ground, "Ground that heights count from: lowest or mean along the outline, 1 m outside.");
   v.option("block", o.block, "Top of the block (LoD 1): eaves, middle (median of the roof) or ridge.");
   const auto is_area = [&](const std::string& text, const std::string& key) {
-    v.check(terrain::square_metres(text).has_value(), key + " must be an area with its unit, such as \"10 m2\"");
+    v.check(terrain::square_metres(text).has_value(), key + " must be an area of 0 or more with its unit, such as \"10 m2\"");
   };
   is_area(o.min_area, "min_area");
   is_area(o.min_courtyard, "min_courtyard");

@@ -28,7 +28,7 @@ struct ForestOptions {
 
 template <class V>
 void describe(ForestOptions& o, V& v) {
-  v.option("cell", o.cell, core::above(0.0), "Side of one cell of cover and height percentiles.");
+  v.option("cell", o.cell, core::above_to(0.0, 1000.0), "Side of one cell of cover and height percentiles.");
   v.option("cover_height", o.cover_height, core::above(0.0), "Returns at this height or higher are of the canopy.");
   v.option("min_tree", o.min_tree, core::above(0.0), "Height of the lowest tree.");
   v.option("crown_cell", o.crown_cell, core::within(0.2, 2.0), "Side of the cells in which tops and crowns are looked for.");
@@ -159,7 +159,8 @@ ForestFindings gather_forest(const MergeJob& job, const Context& context) {
 // however small.
 TileMemory forest_memory(const ForestOptions& o, const Context& c) {
   const double side = c.tile_side + 2.0 * halo(o);
-  return {64.0, {{"crown_cell", o.crown_cell.value, side, 28.0}, {"cell", o.cell.value, c.tile_side, 160.0}, {"", 1.0, 1.0, 12e6}}};
+  return {64.0,
+          {{"crown_cell", o.crown_cell.value, side, 28.0, 0.0, "cell"}, {"cell", o.cell.value, c.tile_side, 160.0}, {"", 1.0, 1.0, 12e6}}};
 }
 
 }  // namespace

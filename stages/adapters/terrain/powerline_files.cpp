@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/config/units.h"
 #include "stages/adapters/terrain/on_map.h"
 
 namespace swath::stages {
@@ -152,8 +153,8 @@ io::SpatialLayer trees(const PowerLineResult& r, const OnMap& map) {
 std::string sheet_title(const PowerLineResult& r, size_t span) {
   const terrain::Span& s = r.lines.spans[span];
   char text[200];
-  std::snprintf(text, sizeof text, "Span %zu: %.1f m%s, %zu conductors", span + 1, s.length(), s.is_whole() ? "" : " (not whole)",
-                s.conductors.size());
+  std::snprintf(text, sizeof text, "Span %zu: %.1f m%s, %s", span + 1, s.length(), s.is_whole() ? "" : " (not whole)",
+                core::counted(s.conductors.size(), "conductor").c_str());
   std::string out = text;
   for (int kind = 0; kind < terrain::hazards; ++kind) {
     const terrain::Clearance* smallest = nullptr;

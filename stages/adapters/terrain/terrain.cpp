@@ -36,7 +36,35 @@ CellCounts cells_of(const core::Grid& grid) {
   return c;
 }
 
+/// Points of the tiles, by whether the model can use them. The names serve to find the counts again.
+constexpr const char *all_points = "points", *withheld_points = "points that are withheld: not used",
+                     *noise_points = "points of noise: not used", *ground_points = "points of the model's classes";
+struct PointCounts {
+  std::uint64_t all = 0, withheld = 0, noise = 0, ground = 0;
+};
+
+template <class V>
+void describe(const PointCounts& r, V& v) {
+  v.result(all_points, r.all, "Points of the tiles.");
+  v.result(withheld_points, r.withheld, core::if_any(), "Points with the flag withheld.");
+  v.result(noise_points, r.noise, core::if_any(), "Points of class 7 or 18.");
+  v.result(ground_points, r.ground, "Points of `classes` that are neither withheld nor noise.");
+}
+
+PointCounts points_of(const core::Block& b, size_t own, const std::vector<int>& classes) {
+  PointCounts n;
+  n.all = own;
+  for (size_t i = 0; i < own; ++i) {
+    if (core::is_usable(b, i))
+      n.ground += b.classification.empty() || std::find(classes.begin(), classes.end(), b.classification[i]) != classes.end();
+    else
+      ++(!b.flags.empty() && (b.flags[i] & core::flag::withheld) != 0 ? n.withheld : n.noise);
+  }
+  return n;
+}
+
 struct DtmCounts {
+  PointCounts points;
   CellCounts cells;
   std::uint64_t shared = 0, tiles_without_sigma = 0;
 };
@@ -44,6 +72,7 @@ struct DtmCounts {
 template <class V>
 void describe(const DtmCounts& r, V& v) {
   using core::if_any;
+  describe(r.points, v);
   v.result("ground points at the same place as a lower or equal one", r.shared, if_any(), "Ground points that are not triangulated.");
   describe(r.cells, v);
   v.result("tiles whose points carry no sigma: that of the model leaves out the errors that all lines share", r.tiles_without_sigma,
@@ -99,6 +128,7 @@ bool complete_sigmas(const Context& context, TileJob& job, const terrain::DtmOpt
 Tiled<DtmCounts, Product::dtm> model_terrain(TileJob& job, const Context& context, const terrain::DtmOptions& o, RunCache& cache) {
   const terrain::Breaklines* lines = breaklines_of(context, cache);
   DtmCounts counts;
+  counts.points = points_of(job.block, job.own, o.classes);
   counts.tiles_without_sigma = complete_sigmas(context, job, o) ? 1 : 0;
   core::Grid grid = terrain::dtm(job.block, lattice_in(o.cell.value, job.box), o, lines, &counts.shared);
   mark_never_seen(context, job, grid);
@@ -106,11 +136,34 @@ Tiled<DtmCounts, Product::dtm> model_terrain(TileJob& job, const Context& contex
   counts.cells = cells_of(grid);
   return {counts, {std::move(grid)}};
 }
+/// Throws where no point can be of the model, for the first reason that holds for all of them.
+void expect_ground_points(const core::Tally& of_tiles, const std::string& survey, const std::string& classes) {
+  const PointCounts n{of_tiles.of(all_points), of_tiles.of(withheld_points), of_tiles.of(noise_points), of_tiles.of(ground_points)};
+  if (n.all == 0 || n.ground > 0) return;
+  const std::string all = n.all == 1 ? "the only point" : "all " + std::to_string(n.all) + " points", are = n.all == 1 ? " is " : " are ";
+  if (n.withheld == n.all)
+    throw core::Error(all + are + "withheld: there is nothing to make a terrain model of", survey,
+                      "another program has set their flag withheld, or filters.crop leaves none: `swath info FILE` counts them");
+  if (n.noise == n.all)
+    throw core::Error(all + are + "noise (class 7 or 18): there is nothing to make a terrain model of", survey,
+                      "`swath info FILE` lists the classes of the file; where filters.noise has found them, are heights and units right?");
+  if (n.withheld + n.noise == n.all)
+    throw core::Error(all + are + "withheld (" + std::to_string(n.withheld) + ") or noise (" + std::to_string(n.noise) +
+                          "): there is nothing to make a terrain model of",
+                      survey, "`swath info FILE` counts the withheld points of a file and lists its classes");
+  throw core::Error("no triangle of ground points (class " + classes + "): " +
+                        (n.all == 1 ? "the only point is not of that class" : "none of the " + std::to_string(n.all) + " points is of it"),
+                    survey,
+                    "a ground filter before terrain.dtm finds ground where there is any, but not in points on one line or at one place; "
+                    "`swath info FILE` lists the classes of a file, terrain.dtm's `classes` says which of them are terrain");
+}
+
 DtmFindings judge_terrain(const MergeJob& job, const Context& context, const terrain::DtmOptions& o) {
   const Cover cover = cover_of(context, job);
   if (cover.known == 0) {
     std::string classes;
     for (const int c : o.classes) classes += (classes.empty() ? "" : ", ") + std::to_string(c);
+    expect_ground_points(job.of_tiles, context.survey.name, classes);
     throw core::Error("no triangle of ground points (class " + classes + ") is small enough to give any cell of the DTM a height",
                       context.survey.name,
                       "are there points of that class (`swath info FILE` lists the classes), three of them not on one line and closer than "
@@ -126,7 +179,7 @@ TileMemory dtm_memory(const terrain::DtmOptions& o, const Context& c) {
   constexpr double room = 10.0;  // m: for triangles that reach beyond the border
   const double near = c.tile_side + 2.0 * terrain::triangulated_border(o) + room, all = c.tile_side + 2.0 * terrain::halo(o);
   return {330.0,
-          {{"cell", o.cell.value, c.tile_side, 26.0}, {"cell", o.cell.value, c.tile_side + 2.0 * o.max_edge.value, 8.0}},
+          {{"cell", o.cell.value, c.tile_side, 26.0}, {"cell", o.cell.value, c.tile_side + 2.0 * o.max_edge.value, 8.0, 0.0, "max_edge"}},
           std::min(1.0, near * near / (all * all))};
 }
 

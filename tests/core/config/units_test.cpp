@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace swath::core {
 namespace {
 
@@ -25,6 +27,22 @@ TEST(Units, SaysWhatIsWrong) {
   EXPECT_NE(fault.find("'deg' is not a unit of length"), std::string::npos);
   EXPECT_FALSE(parse_quantity(Dimension::length, "wide", fault));
   EXPECT_FALSE(parse_quantity(Dimension::length, "inf m", fault));
+}
+
+TEST(Units, NumbersOfMessagesAreRounded) {
+  EXPECT_EQ(format_number(0.0099999997764826, 4), "0.01");
+  EXPECT_EQ(format_number(2.86478897565412, 4), "2.865");
+  EXPECT_EQ(format_number(-123456.0, 4), "-123500");
+  EXPECT_EQ(format_number(0.5, 4), "0.5");
+  EXPECT_EQ(format_number(std::numeric_limits<double>::infinity(), 4), format_number(std::numeric_limits<double>::infinity()));
+}
+
+TEST(Units, CountedNounsAreSingularOnlyForOne) {
+  EXPECT_EQ(counted(0, "point"), "0 points");
+  EXPECT_EQ(counted(1, "point"), "1 point");
+  EXPECT_EQ(counted(2, "point"), "2 points");
+  EXPECT_EQ(counted(1, "vertex is", "vertices are"), "1 vertex is");
+  EXPECT_EQ(counted(12345, "vertex is", "vertices are"), "12345 vertices are");
 }
 
 TEST(Units, WhatIsShownReadsBack) {

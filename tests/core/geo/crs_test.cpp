@@ -163,7 +163,11 @@ TEST(Crs, ReadsWkt1WithoutAuthorities) {
 }
 
 TEST(Crs, RefusesWhatIsNoCrs) {
-  EXPECT_TRUE(has(refusal([] { Crs("EPSG:999999"); }), "EPSG:999999"));
+  EXPECT_TRUE(has(refusal([] { Crs("EPSG:999999"); }), "PROJ's database does not hold the CRS \"EPSG:999999\""));
+  EXPECT_TRUE(has(refusal([] { Crs("EPSG:25832+99999"); }), "PROJ's database does not hold the CRS \"EPSG:99999\""));
+  EXPECT_TRUE(has(refusal([] { Crs("epsg:102003"); }), "\"ESRI:102003\""));
+  for (const char* unknown : {"EPSG:999999", "no such thing"})
+    EXPECT_FALSE(has(refusal([unknown] { (void)Crs(unknown); }), "Unknown error")) << unknown;
   EXPECT_TRUE(has(refusal([] { Crs("32632"); }), "\"EPSG:32632\""));
   EXPECT_TRUE(has(refusal([] { Crs(""); }), "empty"));
   EXPECT_TRUE(has(refusal([] { Crs("no such thing"); }), "no such thing"));

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "io/las/las_writer.h"
 #include "tests/world/support.h"
 
 namespace swath::io {
@@ -19,6 +20,23 @@ TEST(DescribeLas, TruncatedFilesAreErrors) {
   const test::TemporaryFolder folder;
   test::write_bytes(folder / "a.las", "LASF");
   EXPECT_THROW(describe_las(folder / "a.las"), core::Error);
+}
+
+TEST(DescribeLas, PointsThatAreThereTwiceAreNamed) {
+  const test::TemporaryFolder folder;
+  core::Block block;
+  core::resize(block, 100);
+  for (size_t i = 0; i < block.size(); ++i) block.x[i] = 500000.0 + static_cast<double>(i), block.y[i] = 5300000.0;
+  const auto written = [&](const char* name, int times) {
+    LasWriteOptions o;
+    o.threads = 1;
+    LasWriter writer(folder / name, o);
+    for (int k = 0; k < times; ++k) writer.write(block);
+    writer.finish();
+    return describe_las(folder / name);
+  };
+  EXPECT_FALSE(warns(written("once.las", 1), "points twice"));
+  EXPECT_TRUE(warns(written("twice.las", 2), "100 of the first 200 points repeat place, time and return number of another"));
 }
 
 TEST(DescribeLasReference, OneStripInFeet) {

@@ -71,7 +71,7 @@ TEST_F(DescribeTrajectory, WhatLooksWrongIsToldOf) {
   core::TrajectoryData gap = north();
   for (size_t i = 200; i < 400; ++i) gap.time[i] += 7;
   write_sbet(folder_ / "gap.out", gap);
-  EXPECT_TRUE(warns(describe_sbet(folder_ / "gap.out"), "1 gaps, the longest 7.01 s"));
+  EXPECT_TRUE(warns(describe_sbet(folder_ / "gap.out"), "1 gap, the longest 7.01 s"));
 }
 
 TEST_F(DescribeTrajectory, Accuracies) {

@@ -99,7 +99,7 @@ TEST_F(EventMarks, DamagedUbxIsPassedOverAndOtherFilesAreRefused) {
   const auto read = [&](const std::string& bytes) { read_ubx_marks(file("b.ubx", bytes), EventEdge::rising, 0, tally_); };
   EXPECT_EQ(fault_of([&] { read(""); }), "b.ubx: holds no message of UBX");
   EXPECT_EQ(fault_of([&] { read("t,id\n1,2\n"); }), "b.ubx: holds no message of UBX");
-  EXPECT_EQ(fault_of([&] { read(ubx(1, 7, "abc")); }), "b.ubx: holds no event: 1 messages of UBX, 0 of them TIM-TM2");
+  EXPECT_EQ(fault_of([&] { read(ubx(1, 7, "abc")); }), "b.ubx: holds no event: 1 message of UBX, 0 of them TIM-TM2");
 }
 
 // The maker's own example, with the CRC that it prints.

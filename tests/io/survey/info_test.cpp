@@ -27,6 +27,7 @@ TEST(Info, WhatThisProgramWritesAndReads) {
   EXPECT_NE(info_text(describe_file(folder / "report.json")).find("readers.las"), std::string::npos);
   EXPECT_EQ(format("calibration.json", R"({"calibration": {"roll": "0.1 deg"}, "sigma": {"roll": "1 arcsec"}})"), "calibration");
   EXPECT_EQ(format("p.toml", "[[stage]]\ntype = \"readers.las\"\n"), "pipeline");
+  EXPECT_EQ(format("tasks.json", R"({"fingerprint": "0", "tasks": []})"), "list of tasks");
   EXPECT_EQ(format("tiles.json", R"(["a.tif", "b.tif"])"), "JSON or TOML");
   EXPECT_EQ(format("a.geojson", R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": )"
                                 R"({"type": "LineString", "coordinates": [[9, 48], [9.1, 48]]}}]})"),

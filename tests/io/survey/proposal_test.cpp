@@ -126,6 +126,23 @@ TEST(Proposal, WhatCannotBeReadIsNamedAndTheRestIsProposed) {
   EXPECT_NE(p.toml.find("pipe.csv: cannot be read: it is not a file"), std::string::npos) << p.toml;
 }
 
+TEST(Proposal, AHangarSurveyIsNamedWithItsConfig) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "hangar.toml", "[[point]]\nname = \"imu\"\n[[station]]\nname = \"S1\"\n");
+  test::write_bytes(folder / "tasks.json", R"({"fingerprint": "0", "tasks": []})");
+  Proposal p = propose_survey(find_records(folder.path()), "hall");
+  EXPECT_EQ(p.files, 1u);
+  EXPECT_EQ(p.config, "lever_arm");
+  EXPECT_NE(p.toml.find("swath run lever_arm --survey survey.toml"), std::string::npos) << p.toml;
+  EXPECT_NE(p.toml.find("tasks.json: a list of tasks, no record: swath task ID --tasks FILE"), std::string::npos) << p.toml;
+  test::write_bytes(folder / "survey.toml", p.toml);
+  EXPECT_EQ(read_survey(folder / "survey.toml").hangar, "hangar.toml");
+  test::write_bytes(folder / "gnss.csv", "gps_sow_s,lat_deg,lon_deg,h_ell_m\n474006,47.9,10.5,1127\n474007,47.9,10.5,1127\n");
+  p = propose_survey(find_records(folder.path()), "hall");
+  EXPECT_EQ(p.config, "survey");
+  EXPECT_NE(p.toml.find("hangar = \"hangar.toml\""), std::string::npos) << "beside the records of a flight, too: " << p.toml;
+}
+
 TEST(Proposal, AFolderThatIsNotThere) { EXPECT_THROW(find_records("no/such/folder"), core::Error); }
 
 TEST(Proposal, ImagePointsAskForTheCameraAndTheirConventions) {

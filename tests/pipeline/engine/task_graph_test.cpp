@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/config/result_visitors.h"
+#include "io/records/record_count.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "simulate/simulate.h"
@@ -54,7 +55,9 @@ TEST_F(Tasks, NeedTasksThatComeBeforeThem) {
   EXPECT_EQ(graph.tasks[1].id, "1-strips.1");
   EXPECT_EQ(graph.tasks.back().grain, "finish");
   EXPECT_FALSE(fs::exists(folder_ / "out"));
+  EXPECT_EQ(graph.returns, io::stated_records(folder_ / "survey/laser.npy")) << "as the header states them";
   EXPECT_GT(graph.returns, 1000u);
+  EXPECT_EQ(graph.returns_estimated, 0u);
   EXPECT_GT(graph.seconds, graph.critical_seconds);
 }
 
@@ -69,10 +72,18 @@ TEST_F(Tasks, AreReadBackWithWhatIsKnownOfTheInputs) {
   EXPECT_EQ(task.inputs.size(), graph.inputs.size());
 }
 
+TEST(TaskText, NamesReturnsThatAreEstimated) {
+  TaskGraph graph;
+  graph.returns = 20000;
+  EXPECT_NE(task_text(graph).find("20.0 k returns of "), std::string::npos) << task_text(graph);
+  graph.returns_estimated = 5;
+  EXPECT_NE(task_text(graph).find("20.0 k returns (estimated: "), std::string::npos) << task_text(graph);
+}
+
 TEST_F(Tasks, OfAnotherPlanOrAChangedSurveyAreRefused) {
   const fs::path plan = written(task_graph(request_, 4));
   EXPECT_NE(refusal(plan, "1-strip.3").find("did you mean '1-strips.3'?"), std::string::npos);
-  EXPECT_NE(refusal(request_.config, "0-survey").find("it is not a list of tasks"), std::string::npos);
+  EXPECT_NE(refusal(request_.config, "0-survey").find("it is a pipeline, not a list of tasks"), std::string::npos);
   fs::path changed;
   for (const auto& e : fs::directory_iterator(folder_ / "survey"))
     if (e.path().filename().string().starts_with("laser")) changed = e.path();

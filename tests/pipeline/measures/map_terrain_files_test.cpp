@@ -56,7 +56,7 @@ TEST(MapTerrainFiles, ContoursSpotHeightsAndBreaklinesOfAnyFileMakeOneModel) {
     const core::Grid quality = io::read_grid(folder / "out/dtm_quality.tif");
     EXPECT_FALSE(quality.sigma.empty());
     EXPECT_EQ(test::entries(folder / "out"), 4u);
-    EXPECT_NE(map_terrain_text(found).find("11 contours of 11 heights, interval 2; 1 spot heights, 1 breaklines"), std::string::npos);
+    EXPECT_NE(map_terrain_text(found).find("11 contours of 11 heights, interval 2; 1 spot height, 1 breakline"), std::string::npos);
   }
 }
 
