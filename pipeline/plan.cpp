@@ -66,9 +66,7 @@ void apply_set(Value& tree, const std::string& set) {
     throw core::usage_error("'" + set + "' is not stage.key=value", "--set", "for example --set dtm.cell=\"50 cm\"");
   refuse_deep_key(path, set);
   const Value value = set_value(set.substr(equals + 1));
-  if (path.rfind("run.", 0) == 0) {
-    return set_member(tree["run"], path.substr(4), value, set);
-  }
+  if (path.starts_with("run.")) return set_member(tree["run"], path.substr(4), value, set);
   std::vector<std::string> types;
   bool found = false;
   if (Value* list = tree.find("stage"); list && list->is_array())
