@@ -40,11 +40,12 @@ Value camera_value(const FileCamera& c) {
 
 Value shot_value(const FilePose& pose, const std::string& camera) {
   const Eigen::Matrix3d R = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal() * pose.camera_R_frame;
-  Value::Object out;
-  out.emplace_back("rotation", list_of(core::log_so3(R)));
-  out.emplace_back("translation", list_of(-R * pose.position));
-  out.emplace_back("camera", Value(camera));
-  return Value(std::move(out));
+  return Value(
+      Value::Object{{"rotation", list_of(core::log_so3(R))}, {"translation", list_of(-R * pose.position)}, {"camera", Value(camera)}});
+}
+
+Value point_value(const PlacedPoint& p) {
+  return Value(Value::Object{{"color", list_of(Eigen::Vector3d::Constant(128.0))}, {"coordinates", list_of(p.position)}});
 }
 
 std::string tracks_text(const ImageData& data) {
@@ -73,17 +74,11 @@ void write_opensfm(const std::filesystem::path& folder, const ImageData& data, c
   for (const ImageMark& m : data.marks) marked[m.point] = 1;
   for (size_t p = 0; p < points.size(); ++p) {
     if (!marked[p]) continue;
-    Value::Object point;
-    point.emplace_back("color", list_of(Eigen::Vector3d::Constant(128.0)));
-    point.emplace_back("coordinates", list_of(points[p].position));
-    places.emplace_back(std::to_string(p + 1), Value(std::move(point)));
+    places.emplace_back(std::to_string(p + 1), point_value(points[p]));
   }
-  Value::Object one;
   Value all = Value::array();
-  one.emplace_back("cameras", Value(std::move(cameras)));
-  one.emplace_back("shots", Value(std::move(shots)));
-  one.emplace_back("points", Value(std::move(places)));
-  all.push(Value(std::move(one)));
+  all.push(Value(
+      Value::Object{{"cameras", Value(std::move(cameras))}, {"shots", Value(std::move(shots))}, {"points", Value(std::move(places))}}));
   write_text_file(folder / "reconstruction.json", to_json(all));
   write_text_file(folder / "tracks.csv", tracks_text(data));
 }

@@ -149,12 +149,12 @@ bool holds_numbers(const Path& path, const DelimitedLayout& layout, size_t colum
 }
 
 /// Which columns of a table of events hold times and names.
-struct EventColumns {
+struct EventTable {
   bool are_events = false;
   size_t time = 0, id = 0;
 };
-EventColumns event_columns(const DelimitedLayout& layout) {
-  EventColumns out;
+EventTable event_table(const DelimitedLayout& layout) {
+  EventTable out;
   const ColumnRoles roles = roles_of(layout.names);
   out.are_events = roles.kind == TableKind::event && layout.names.size() == layout.columns;
   const auto index_of = [&](std::string_view key) {
@@ -224,7 +224,7 @@ core::Value describe_text(const Path& path) {
   TableFacts out{"delimited text"};
   out.delimiter = layout.delimiter == '\t' ? "tab" : layout.delimiter == ' ' ? "blanks" : std::string(1, layout.delimiter);
   out.header = !layout.names.empty();
-  const EventColumns events = event_columns(layout);
+  const EventTable events = event_table(layout);
   std::vector<size_t> indices;
   for (size_t c = 0; c < layout.columns; ++c) {
     out.columns.push_back({c < layout.names.size() ? layout.names[c] : std::to_string(c + 1)});
