@@ -267,8 +267,9 @@ void Progress::show_text(bool last) {
     std::snprintf(part, sizeof part, "       ");
   text += part;
   if (total_ > 0)
-    text += count_text(static_cast<double>(done_)) + " " + unit_ + ", " +
-            count_text(time > 0 ? static_cast<double>(done_ - skipped_) / time : 0.0) + "/s, ";
+    text += (done_ == 1 && unit_.ends_with('s') ? "1 " + unit_.substr(0, unit_.size() - 1)
+                                                : count_text(static_cast<double>(done_)) + " " + unit_) +
+            ", " + count_text(time > 0 ? static_cast<double>(done_ - skipped_) / time : 0.0) + "/s, ";
   if (!last && !now_.empty()) text += now_ + ", ";
   if (last || l.step < 0.0)
     text += duration_text(time);

@@ -142,6 +142,21 @@ TEST(Progress, JsonIsOneObjectPerLineAndQuietIsQuiet) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
+TEST(Progress, OneOfThemIsSingular) {
+  const auto line = [](std::uint64_t n) {
+    testing::internal::CaptureStderr();
+    {
+      Progress p(Voice::lines);
+      p.begin("reading", n, "files");
+      p.advance(n);
+      p.end();
+    }
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_NE(line(1).find(" 1 file, "), std::string::npos) << line(1);
+  EXPECT_NE(line(2).find(" 2 files, "), std::string::npos) << line(2);
+}
+
 TEST(Progress, AStoppedRunEndsAtItsNextStep) {
   Progress p(Voice::quiet);
   p.begin("work", 10, "points");
