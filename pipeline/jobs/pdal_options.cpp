@@ -22,7 +22,7 @@ const std::vector<PdalFilter>& pdal_filters() {
         {"scalar", "scalar", PdalUnit::height, 1.25},
         {"cut", "cut", PdalUnit::across}},
        {},
-       "last returns alone, openings without an approximation"},
+       "last returns alone, noise (7, 18) and withheld points left out, openings without an approximation"},
       {"filters.pmf",
        "filters.pmf",
        {{"cell_size", "cell_size", PdalUnit::across, 1.0},
@@ -32,7 +32,7 @@ const std::vector<PdalFilter>& pdal_filters() {
         {"max_distance", "max_distance", PdalUnit::height, 2.5},
         {"exponential", "exponential"}},
        {},
-       "last returns alone"},
+       "last returns alone, noise (7, 18) and withheld points left out"},
       {"filters.csf",
        "filters.csf",
        {{"resolution", "resolution", PdalUnit::across, 1.0},
@@ -42,7 +42,7 @@ const std::vector<PdalFilter>& pdal_filters() {
         {"threshold", "threshold", PdalUnit::height, 0.5},
         {"smooth", "smooth"}},
        {},
-       "last returns alone, the cloth in squares of twice span"},
+       "last returns alone, noise (7, 18) and withheld points left out, the cloth in squares of twice span"},
       {"filters.elm",
        "filters.noise",
        {{"threshold", "low_depth", PdalUnit::height, 1.0}},
@@ -77,6 +77,8 @@ std::string pdal_nearest(const std::string& type) {
       {"filters.hag_nn", "nearest is filters.hag_delaunay"},
       {"filters.hag_dem", "nearest is filters.hag_delaunay"},
       {"filters.dem", "nearest is filters.noise of a config"},
+      {"filters.assign",
+       "leave it out where it clears classes: ground filters here give every point a new one but noise (7, 18) and withheld points"},
       {"filters.expression", "nearest is filters.range with Classification[a:b] right before writers.gdal"},
       {"filters.returns", "nearest is filters.returns of a config, which numbers the returns of pulses and deletes none"},
       {"writers.ept_addon", "nearest is writers.copc"},
@@ -87,20 +89,22 @@ std::string pdal_nearest(const std::string& type) {
 }
 
 bool is_the_case(const std::string& type, const std::string& name, const Value& value) {
-  static const std::map<std::string, std::vector<std::string>> same{{"returns", {"last, only", "last,only"}},
-                                                                    {"class", {"7"}},
-                                                                    {"dir", {""}},
-                                                                    {"gdaldriver", {"GTiff"}},
-                                                                    {"data_type", {"float", "float32"}},
-                                                                    {"nodata", {"-9999"}},
-                                                                    {"dimension", {"Z"}},
-                                                                    {"forward", {"all"}},
-                                                                    {"extra_dims", {"all"}},
-                                                                    {"offset_x", {"auto"}},
-                                                                    {"offset_y", {"auto"}},
-                                                                    {"offset_z", {"auto"}},
-                                                                    {"minor_version", {"4"}},
-                                                                    {"compression", {"true", "laszip", "lazperf"}}};
+  static const std::map<std::string, std::vector<std::string>> same{
+      {"returns", {"last, only", "last,only"}},
+      {"ignore", {"Classification[7:7]", "Classification[7:7],Classification[18:18]", "Classification[7:7], Classification[18:18]"}},
+      {"class", {"7"}},
+      {"dir", {""}},
+      {"gdaldriver", {"GTiff"}},
+      {"data_type", {"float", "float32"}},
+      {"nodata", {"-9999"}},
+      {"dimension", {"Z"}},
+      {"forward", {"all"}},
+      {"extra_dims", {"all"}},
+      {"offset_x", {"auto"}},
+      {"offset_y", {"auto"}},
+      {"offset_z", {"auto"}},
+      {"minor_version", {"4"}},
+      {"compression", {"true", "laszip", "lazperf"}}};
   if (name == "tag" || name == "type") return true;
   const auto at = same.find(name);
   if (at == same.end() || (name == "compression" && type != "writers.las")) return false;

@@ -31,7 +31,9 @@ TEST(PdalOptions, WhatIsTheCaseAnywayMayBeWritten) {
   EXPECT_FALSE(is_the_case("filters.elm", "class", 18));
   EXPECT_TRUE(is_the_case("writers.las", "compression", "laszip"));
   EXPECT_FALSE(is_the_case("writers.gdal", "compression", "laszip"));
-  EXPECT_FALSE(is_the_case("filters.smrf", "ignore", "Classification[7:7]"));
+  EXPECT_TRUE(is_the_case("filters.smrf", "ignore", "Classification[7:7]")) << "ground filters look at no noise";
+  EXPECT_FALSE(is_the_case("filters.smrf", "ignore", "Classification[6:6]"));
+  EXPECT_FALSE(is_the_case("filters.smrf", "ignore", "Classification[18:18]")) << "low noise would be looked at";
 }
 
 }  // namespace

@@ -68,6 +68,12 @@ TEST_F(Pdal, GroundAndTerrainModel) {
   EXPECT_EQ(c.find("run")->find("output")->as_text(), "out/dtm");
 }
 
+TEST_F(Pdal, NoiseThatAGroundFilterIsToIgnoreIsIgnoredAnyway) {
+  const auto [c, survey, runs_as] = read(chain(R"({"type": "filters.smrf", "ignore": "Classification[7:7]"})"));
+  EXPECT_EQ(c.find("stage")->items()[1].find("ignore"), nullptr);
+  EXPECT_NE(runs_as[1].find("noise (7, 18) and withheld points left out"), std::string::npos) << runs_as[1];
+}
+
 TEST_F(Pdal, LengthsAreInUnitsOfTheCrs) {
   const Value c = config(chain(R"({"type": "filters.smrf", "cell": 10})", "\"p.laz\"", "\"feet.laz\""));
   const Value& smrf = c.find("stage")->items()[1];
@@ -151,7 +157,8 @@ TEST_F(Pdal, WhatHasNoCounterpartIsRefusedWithItsPlace) {
   };
   refused(chain(R"({"type": "filters.sample", "radius": 1})"), "'filters.sample' has no counterpart here");
   refused(chain(R"({"type": "filters.sample", "radius": 1})"), "nearest is filters.key_points");
-  refused(chain(R"({"type": "filters.smrf", "ignore": "Classification[7:7]"})"), "filters.smrf: 'ignore'");
+  refused(chain(R"({"type": "filters.smrf", "ignore": "Classification[6:6]"})"), "filters.smrf: 'ignore'");
+  refused(chain(R"({"type": "filters.assign", "value": "Classification = 0"})"), "leave it out where it clears classes");
   refused(chain(R"({"type": "filters.smrf", "cell": "wide"})"), "'cell' is not a number");
   refused(chain(ground), "points of other classes would be deleted before writers.las");
   refused(chain(ground), "every point is written with its class");
