@@ -16,14 +16,14 @@ namespace swath::terrain {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Delaunay =
+using Growing =
     CGAL::Delaunay_triangulation_2<Kernel,
                                    CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<double, Kernel>>>;
 
 constexpr double patches = 20.0;  // side of a patch in freeze distances
 constexpr double border = 8.0;    // around it, in freeze distances
 
-bool is_closed(const Delaunay::Face_handle& f, double z, const SpikeFreeOptions& o) {
+bool is_closed(const Growing::Face_handle& f, double z, const SpikeFreeOptions& o) {
   const double longest = o.freeze.value * o.freeze.value;
   for (int k = 0; k < 3; ++k) {
     if (CGAL::squared_distance(f->vertex(k)->point(), f->vertex((k + 1) % 3)->point()) >= longest) return false;
@@ -38,25 +38,25 @@ std::vector<std::uint32_t> enter(const core::Block& b, std::vector<std::uint32_t
     return std::make_tuple(-b.z[p], b.x[p], b.y[p]) < std::make_tuple(-b.z[q], b.x[q], b.y[q]);
   });
   std::vector<std::uint32_t> out;
-  Delaunay dt;
+  Growing dt;
   // A face near a place: that of the last vertex in its cell.
-  std::map<std::pair<std::int64_t, std::int64_t>, Delaunay::Vertex_handle> near;
+  std::map<std::pair<std::int64_t, std::int64_t>, Growing::Vertex_handle> near;
   for (const std::uint32_t r : rows) {
     const Kernel::Point_2 p(b.x[r], b.y[r]);
     const std::pair cell{core::cell_index(b.x[r], o.freeze.value), core::cell_index(b.y[r], o.freeze.value)};
     const auto hint = near.find(cell);
-    Delaunay::Locate_type where = Delaunay::FACE;
+    Growing::Locate_type where = Growing::FACE;
     int which = 0;
-    Delaunay::Face_handle face;
+    Growing::Face_handle face;
     if (dt.dimension() == 2) {
-      face = dt.locate(p, where, which, hint == near.end() ? Delaunay::Face_handle() : hint->second->face());
-      if (where == Delaunay::VERTEX) continue;
-      if (where == Delaunay::FACE && is_closed(face, b.z[r], o)) continue;
-      if (where == Delaunay::EDGE && !dt.is_infinite(face) && !dt.is_infinite(face->neighbor(which)) && is_closed(face, b.z[r], o) &&
+      face = dt.locate(p, where, which, hint == near.end() ? Growing::Face_handle() : hint->second->face());
+      if (where == Growing::VERTEX) continue;
+      if (where == Growing::FACE && is_closed(face, b.z[r], o)) continue;
+      if (where == Growing::EDGE && !dt.is_infinite(face) && !dt.is_infinite(face->neighbor(which)) && is_closed(face, b.z[r], o) &&
           is_closed(face->neighbor(which), b.z[r], o))
         continue;
     }
-    const Delaunay::Vertex_handle v = dt.dimension() == 2 ? dt.insert(p, where, face, which) : dt.insert(p);
+    const Growing::Vertex_handle v = dt.dimension() == 2 ? dt.insert(p, where, face, which) : dt.insert(p);
     v->info() = b.z[r];
     near[cell] = v;
     out.push_back(r);

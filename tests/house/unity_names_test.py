@@ -2,7 +2,7 @@
 """Names that are local to a unit differ within a folder: with SWATH_UNITY a folder's units are compiled as one file (cmake/SwathRoom.cmake).
 
 A build with tests compiles each unit alone and does not see such a clash. Found are constants, types and functions that two files of a folder
-define in their unnamed namespaces, and constants that a header of the folder has, too; files with compile options of their own stay alone. Functions of one name may differ in their parameters, and two `using` of one name may say the same.
+define in their unnamed namespaces, and constants and types that a header of the folder has, too; files with compile options of their own stay alone. Functions of one name may differ in their parameters, and two `using` of one name may say the same.
 """
 import collections
 import re
@@ -48,8 +48,9 @@ def local_names(code):
         yield from ((m[1], f"({parameters(m[2])})") for m in FUNCTION.finditer(body))
 
 
-def header_constants(code):
+def header_names(code):
     text = plain(code)
+    yield from ((m[1], "type") for m in TYPE.finditer(text))
     yield from ((name, "constant") for m in CONSTANT.finditer(text) if m[0].startswith("inline") for name in declared(m[1]))
 
 
@@ -57,11 +58,12 @@ def clashes(files):
     """Sentences for the names that two of the files, path -> code, define."""
     seen = collections.defaultdict(dict)  # name -> kind -> file
     for path, code in files.items():
-        for name, kind in header_constants(code) if path.endswith(".h") else local_names(code):
+        for name, kind in header_names(code) if path.endswith(".h") else local_names(code):
             for other, where in seen[name].items():
                 same_alias = kind == other and kind.startswith("using")
                 overloads = kind != other and kind.startswith("(") and other.startswith("(")
-                if where != path and not same_alias and not overloads:
+                both_headers = where.endswith(".h") and path.endswith(".h")
+                if where != path and not both_headers and not same_alias and not overloads:
                     yield f"{name}: {where} and {path}"
             seen[name].setdefault(kind, path)
 
@@ -97,6 +99,7 @@ constexpr double outside = 1.0;
         self.assertEqual(list(clashes({"a": unit("using P = int;"), "b": unit("using P = int;")})), [])
         self.assertEqual(list(clashes({"a": unit("using P = int;"), "b": unit("using P = long;")})), ["P: a and b"])
         self.assertEqual(list(clashes({"a.h": "inline constexpr int n = 1;\n", "b": unit("constexpr double n = 2;")})), ["n: a.h and b"])
+        self.assertEqual(list(clashes({"a.h": "struct Way {\n};\n", "b": unit("struct Way {\n};")})), ["Way: a.h and b"])
 
     def test_names_differ_within_a_folder(self):
         folders = collections.defaultdict(dict)
