@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "io/records/record_count.h"
 #include "io/survey/tree_kind.h"
+#include "io/text/binary_file.h"
 #include "io/text/value_file.h"
 #include "pipeline/engine/strips.h"
 #include "pipeline/engine/survey_stages.h"
@@ -22,8 +23,9 @@ namespace fs = std::filesystem;
 using core::Value;
 using stages::Grain;
 
-constexpr double work_per_input = 2.0;     // the work folder at its largest, docs/memory.md
-constexpr double bytes_per_record = 32.0;  // of a laser record whose file does not count them
+constexpr double work_per_input = 2.0;         // the work folder at its largest, docs/memory.md
+constexpr double bytes_per_record = 32.0;      // of a laser record whose file does not count them
+constexpr double bytes_per_imu_record = 56.0;  // of a file without lines
 
 std::int64_t modified(const fs::path& file) {
   std::error_code ec;
@@ -42,12 +44,33 @@ void count_returns(const fs::path& file, TaskGraph& graph) {
   graph.returns_estimated += estimated;
 }
 
+/// Records of the IMU, from their headers, else from the lengths of the first lines.
+double imu_records(const Plan& plan) {
+  double out = 0.0;
+  for (const io::ImuFile& f : plan.survey.imu) {
+    const fs::path file = plan.survey.folder / f.file;
+    if (const auto stated = io::stated_records(file)) {
+      out += static_cast<double>(*stated);
+      continue;
+    }
+    const io::BinaryFile bytes(file);
+    std::string start(65536, '\0');
+    start.resize(bytes.read_some(0, start.data(), start.size()));
+    const auto lines = static_cast<double>(std::count(start.begin(), start.end(), '\n'));
+    const bool is_text = lines > 0.0 && start.find('\0') == std::string::npos;
+    out += static_cast<double>(bytes.size()) / (is_text ? static_cast<double>(start.size()) / lines : bytes_per_imu_record);
+  }
+  return out;
+}
+
 /// Processor time of a wave, s.
-double seconds_of(const Plan& plan, const Wave& wave, double returns) {
+double seconds_of(const Plan& plan, const Wave& wave, double returns, double records) {
   double out = 0.0;
   for (size_t i = 0; i < plan.stages.size(); ++i) {
     const stages::Stage& stage = *plan.stages[i].stage;
     const std::string_view name = stage.info().name;
+    if (wave.kind == WaveKind::survey && stage.works_on(Grain::survey))
+      out += returns * expected_seconds(name, Grain::survey) + records * expected_seconds_of_imu_record(name);
     if (wave.kind == WaveKind::strips && stage.works_on(Grain::strip)) out += returns * expected_seconds(name, Grain::strip);
     if (wave.kind == WaveKind::tiles && wave.stage == i) out += returns * expected_seconds(name, Grain::tile);
     if (wave.kind == WaveKind::finish && stage.works_on(Grain::merge)) out += returns * expected_seconds(name, Grain::merge);
@@ -84,6 +107,7 @@ class GraphMaker {
     for (const io::LaserFile& f : plan_.survey.laser) count_returns(plan_.survey.folder / f.file, graph_);
     for (const io::PointFile& f : plan_.survey.points) count_returns(plan_.survey.folder / f.file, graph_);
     graph_.disk = work_per_input * static_cast<double>(graph_.bytes_in);
+    records_ = imu_records(plan_);
     const std::vector<Wave> waves = waves_of(plan_);
     for (size_t number = 0; number < waves.size(); ++number) add(waves[number], number);
     return std::move(graph_);
@@ -92,7 +116,7 @@ class GraphMaker {
  private:
   void add(const Wave& wave, size_t number) {
     const std::uint64_t parts = wave.is_shared() ? parts_ : 1;
-    const double seconds = seconds_of(plan_, wave, static_cast<double>(graph_.returns));
+    const double seconds = seconds_of(plan_, wave, static_cast<double>(graph_.returns), records_);
     std::vector<std::string> mine;
     for (std::uint64_t part = 1; part <= parts; ++part) {
       Task t;
@@ -132,6 +156,7 @@ class GraphMaker {
   Progress quiet_;
   RunState run_;
   std::uint64_t parts_;
+  double records_ = 0.0;
   TaskGraph graph_;
   std::vector<std::string> before_, folders_;
 };

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/engine/task_graph.h"
 
+#include <algorithm>
 #include <set>
 
 #include "core/config/result_visitors.h"
 #include "io/records/record_count.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
+#include "pipeline/expected_time.h"
 #include "simulate/simulate.h"
 #include "tests/world/support.h"
 
@@ -59,6 +61,17 @@ TEST_F(Tasks, NeedTasksThatComeBeforeThem) {
   EXPECT_GT(graph.returns, 1000u);
   EXPECT_EQ(graph.returns_estimated, 0u);
   EXPECT_GT(graph.seconds, graph.critical_seconds);
+}
+
+TEST_F(Tasks, OfATrajectoryTakeTimeWithTheRecordsOfTheImu) {
+  request_.config = test::source_folder() / "configs/trajectory.toml";
+  request_.sets = {};
+  const std::string imu = test::read_bytes(folder_ / "survey/imu.csv");
+  const auto records = static_cast<double>(std::count(imu.begin(), imu.end(), '\n') - 1);
+  const double expected = records * expected_seconds_of_imu_record("trajectory.ins_gnss");
+  EXPECT_NEAR(task_graph(request_, 1).tasks.front().seconds / expected, 1.0, 0.02);
+  test::write_bytes(folder_ / "survey/imu.csv", imu.substr(0, imu.size() / 2));
+  EXPECT_NEAR(task_graph(request_, 1).tasks.front().seconds / expected, 0.5, 0.02);
 }
 
 TEST_F(Tasks, AreReadBackWithWhatIsKnownOfTheInputs) {
