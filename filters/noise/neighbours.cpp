@@ -2,21 +2,25 @@
 // Search by rings of lattice columns around the point's own, until the columns left out are farther than the k-th neighbour found. The
 // columns are made so wide that the first ring mostly is enough; three columns in a row are one stretch of memory. Surveys are thin in
 // height, so that columns in place of cubes cost little. The ball that holds a point's neighbours bounds where those of the next point in
-// the column can lie. How wide the columns are decides the time, not the result.
+// the column can lie. How wide the columns are decides the time, not the result. A crowded column has a tree of its own: otherwise many
+// returns at one place, walls and masts would be compared each with each.
 #include "filters/noise/neighbours.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
 #include "filters/bins.h"
+#include "filters/noise/column_tree.h"
 
 namespace swath::filters {
 namespace {
 
 constexpr double points_per_column = 3.5;
-constexpr double rounding = 1e-6;  // m, on the safe side of a column's border
+constexpr std::ptrdiff_t crowded = 100;  // points of a column, from which on a tree is faster
+constexpr double rounding = 1e-6;        // m, on the safe side of a column's border
 
 /// Side of columns that hold points_per_column on average where there are points at all.
 double column_side(const core::Block& b, const std::vector<std::uint8_t>& takes_part, double reach) {
@@ -77,21 +81,53 @@ double distance(const Bins::Point& a, const Bins::Point& b) {
   return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));
 }
 
-/// Offers the squared distances from p to all points of the columns i0 to i1 of row j.
-template <int K>
-void offer_row(const Bins& bins, int i0, int i1, int j, const Bins::Point& p, Least<K>& least) {
-  const core::Lattice& l = bins.lattice();
-  if (j < 0 || j >= l.ny) return;
-  i0 = std::max(i0, 0);
-  i1 = std::min(i1, l.nx - 1);
-  if (i0 > i1) return;
-  const auto last = bins.in(i1, j);
-  const Bins::Point* const end = last.data() + last.size();
-  for (const Bins::Point* q = bins.in(i0, j).data(); q != end; ++q) {
-    const double dx = q->x - p.x, dy = q->y - p.y, dz = q->z - p.z;
-    least.offer(dx * dx + dy * dy + dz * dz);
+/// The points that take part, by columns.
+class Columns {
+ public:
+  Columns(const core::Block& b, double side, const std::vector<std::uint8_t>& takes_part)
+      : bins_(b, side, 0, [&](size_t p) { return takes_part[p] != 0; }) {
+    const core::Lattice& l = bins_.lattice();
+    for (int j = 0; j < l.ny; ++j)
+      for (int i = 0; i < l.nx; ++i)
+        if (const auto points = bins_.in(i, j); std::ssize(points) > crowded) trees_.try_emplace(l.at(i, j), points);
   }
-}
+  const Bins& bins() const { return bins_; }
+
+  /// Offers the squared distances from p to the points of the columns i0 to i1 of row j, at least those that `least` would take.
+  template <int K>
+  void offer_row(int i0, int i1, int j, const Bins::Point& p, Least<K>& least) const {
+    const core::Lattice& l = bins_.lattice();
+    if (j < 0 || j >= l.ny) return;
+    i0 = std::max(i0, 0);
+    i1 = std::min(i1, l.nx - 1);
+    if (i0 > i1) return;
+    const auto last = bins_.in(i1, j);
+    const Bins::Point *const begin = bins_.in(i0, j).data(), *const end = last.data() + last.size();
+    if (end - begin <= crowded) {
+      offer_all(begin, end, p, least);
+      return;
+    }
+    for (int i = i0; i <= i1; ++i) {
+      const auto points = bins_.in(i, j);
+      if (std::ssize(points) > crowded)
+        trees_.at(l.at(i, j)).offer(p, least);
+      else
+        offer_all(points.data(), points.data() + points.size(), p, least);
+    }
+  }
+
+ private:
+  template <int K>
+  static void offer_all(const Bins::Point* q, const Bins::Point* end, const Bins::Point& p, Least<K>& least) {
+    for (; q != end; ++q) {
+      const double dx = q->x - p.x, dy = q->y - p.y, dz = q->z - p.z;
+      least.offer(dx * dx + dy * dy + dz * dz);
+    }
+  }
+
+  Bins bins_;
+  std::unordered_map<size_t, ColumnTree> trees_;  ///< of the crowded columns, by their place in the lattice
+};
 
 template <int K>
 std::vector<double> mean_distance(const core::Block& b, const std::vector<std::uint8_t>& takes_part,
@@ -99,7 +135,8 @@ std::vector<double> mean_distance(const core::Block& b, const std::vector<std::u
   std::vector<double> mean(b.size(), std::numeric_limits<double>::quiet_NaN());
   if (b.size() == 0) return mean;
   const double side = column_side(b, takes_part, reach);
-  const Bins bins(b, side, 0, [&](size_t p) { return takes_part[p] != 0; });
+  const Columns columns(b, side, takes_part);
+  const Bins& bins = columns.bins();
   const core::Lattice& l = bins.lattice();
   Least<K> least(k + 1);  // the point itself is one of them
   for (int j = 0; j < l.ny; ++j)
@@ -114,16 +151,16 @@ std::vector<double> mean_distance(const core::Block& b, const std::vector<std::u
         const double margin = std::min(std::min(p.x - west, west + side - p.x), std::min(p.y - south, south + side - p.y)) - rounding;
         const double farthest = before ? std::sqrt(least.worst()) + distance(*before, p) + rounding : reach;
         least.start(farthest < reach ? farthest * farthest : reach * reach);
-        for (int dj = -1; dj <= 1; ++dj) offer_row(bins, i - 1, i + 1, j + dj, p, least);
+        for (int dj = -1; dj <= 1; ++dj) columns.offer_row(i - 1, i + 1, j + dj, p, least);
         for (int ring = 1;; ++ring) {
           const double searched = margin + ring * side;
           if (searched >= reach || (least.full() && least.worst() <= searched * searched)) break;
           const int r = ring + 1;
-          offer_row(bins, i - r, i + r, j - r, p, least);
-          offer_row(bins, i - r, i + r, j + r, p, least);
+          columns.offer_row(i - r, i + r, j - r, p, least);
+          columns.offer_row(i - r, i + r, j + r, p, least);
           for (int dj = -ring; dj <= ring; ++dj) {
-            offer_row(bins, i - r, i - r, j + dj, p, least);
-            offer_row(bins, i + r, i + r, j + dj, p, least);
+            columns.offer_row(i - r, i - r, j + dj, p, least);
+            columns.offer_row(i + r, i + r, j + dj, p, least);
           }
         }
         double sum = (k + 1 - least.count()) * reach;

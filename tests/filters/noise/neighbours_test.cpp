@@ -32,6 +32,9 @@ TEST(Neighbours, MeanDistancesAreThoseOfTheDefinition) {
     core::Block b = cloud(1500, 60.0, height);
     for (size_t p = 0; p < 5; ++p) b.x[p] = b.x[100], b.y[p] = b.y[100], b.z[p] = b.z[100];  // twins
     b.z[7] += 500.0;
+    for (size_t p = 800; p < 1100; ++p) b.x[p] = b.x[100], b.y[p] = b.y[100];  // a mast
+    for (size_t p = 1100; p < 1400; ++p)
+      b.x[p] = b.x[101] + 1e-3 * static_cast<double>(p % 5), b.y[p] = b.y[101], b.z[p] = b.z[101];  // many at five places
     std::vector<std::uint8_t> takes_part(b.size(), 1), wanted(b.size(), 1);
     for (size_t p = 0; p < b.size(); p += 7) takes_part[p] = wanted[p] = 0;
     for (size_t p = 1; p < b.size(); p += 3) wanted[p] = 0;
