@@ -13,6 +13,7 @@
 #include "calib/block/block_start.h"
 #include "calib/block/checks/block_control_checks.h"
 #include "calib/block/checks/block_mistakes.h"
+#include "calib/block/checks/moved_residuals.h"
 #include "calib/block/checks/station_bases.h"
 #include "core/error.h"
 #include "core/statistics.h"
@@ -28,38 +29,6 @@ std::string shown(double millimetres) {
   char text[40];
   std::snprintf(text, sizeof text, millimetres < 0.1 ? "%.4f mm" : "%.2f mm", millimetres);
   return text;
-}
-
-std::vector<char> points_of_control(const ImageBlock& block) {
-  std::vector<char> out(block.points.size(), 0);
-  for (const BlockControl& c : block.control)
-    if (!c.check) out[c.point] = 1;
-  return out;
-}
-
-/// mm; of a ray from behind the camera a large value. Points must be intersected.
-double ray_residual(const ImageBlock& block, const ImageRay& r) {
-  const BlockImage& i = block.images[r.image];
-  const BlockCamera& camera = block.cameras[i.camera];
-  const auto seen = image_of(camera.value, camera.distortion, i.camera_R_local * (block.points[r.point].position - i.position));
-  return seen ? (*seen - Eigen::Vector2d(r.x, r.y)).norm() : 10.0 * camera.value[0];
-}
-
-std::vector<ImageRay> tie_rays(const ImageBlock& block) {
-  const std::vector<char> is_control = points_of_control(block);
-  std::vector<ImageRay> out;
-  for (const ImageRay& r : block.rays)
-    if (!is_control[r.point]) out.push_back(r);
-  return out;
-}
-
-/// Of tie_rays(), over the principal distance.
-std::vector<double> tie_residuals(const ImageBlock& given) {
-  ImageBlock block = given;
-  intersect_points(block);
-  std::vector<double> out;
-  for (const ImageRay& r : tie_rays(block)) out.push_back(ray_residual(block, r) / block.cameras[block.images[r.image].camera].value[0]);
-  return out;
 }
 
 /// Image points on the sensor, and not on a corner of it.
@@ -84,31 +53,33 @@ void refuse_off_sensor(const ReadBlock& read, const BlockConfig& config) {
   }
 }
 
-/// Residuals of tie points, each up to a fifth of the principal distance, over that distance: one strip's mistake shows in their mean.
-struct MeanResidual {
-  double all = 0.0, moved = 0.0;  ///< of all points; of those on an image that lies elsewhere than in `stated`
-};
-MeanResidual mean_residual(const ImageBlock& block, const ImageBlock& stated) {
-  constexpr double at_most = 0.2;
+constexpr double at_most = 0.2;  // of the principal distance: one strip's mistake shows in the mean of residuals up to this
+
+double mean_of(const std::vector<double>& residuals) {
+  double sum = 0.0, count = 0.0;
+  for (const double v : residuals) sum += std::min(at_most, v), count += 1.0;
+  return sum / std::max(1.0, count);
+}
+
+/// Of the tie points on an image that lies elsewhere than in `stated`.
+double mean_of_moved(const ImageBlock& block, const ImageBlock& stated) {
   std::vector<char> on_moved(block.points.size(), 0);
   for (const ImageRay& r : block.rays)
     if (block.images[r.image].position != stated.images[r.image].position) on_moved[r.point] = 1;
-  double all = 0.0, moved = 0.0, all_count = 0.0, moved_count = 0.0;
+  std::vector<double> of_moved;
   size_t k = 0;
-  const std::vector<double> residuals = tie_residuals(block);
+  const MovedResiduals residuals(block);
   for (const ImageRay& r : tie_rays(block)) {
-    const double v = std::min(at_most, residuals[k++]);
-    all += v, all_count += 1.0;
-    if (on_moved[r.point]) moved += v, moved_count += 1.0;
+    if (on_moved[r.point]) of_moved.push_back(residuals.stated()[k]);
+    ++k;
   }
-  return {all / std::max(1.0, all_count), moved / std::max(1.0, moved_count)};
+  return mean_of(of_moved);
 }
 
-/// The strips with the largest residuals, some of them.
-std::vector<int> worst_strips(const ImageBlock& block) {
+/// The strips with the largest residuals, some of them. `residuals`: of tie_rays().
+std::vector<int> worst_strips(const ImageBlock& block, const std::vector<double>& residuals) {
   constexpr size_t tried = 6;
   std::map<int, std::pair<double, double>> sums;
-  const std::vector<double> residuals = tie_residuals(block);
   size_t k = 0;
   for (const ImageRay& r : tie_rays(block)) {
     auto& [sum, n] = sums[block.images[r.image].strip];
@@ -126,20 +97,20 @@ std::vector<int> worst_strips(const ImageBlock& block) {
 void refuse_shifted_strip(const ReadBlock& sample, const BlockConfig& config, double times) {
   constexpr double suspicious = 0.02;  // of the principal distance; smaller
   if (sample.stations_observed == 0) return;
-  const double stated = mean_residual(sample.block, sample.block).all;
-  if (stated < suspicious) return;
+  MovedResiduals residuals(sample.block);
+  double least = mean_of(residuals.stated());
+  if (least < suspicious) return;
   std::optional<Mistake> best;
-  ImageBlock better;
-  double least = stated;
-  for (Mistake& m : mistakes_within_strips(sample, worst_strips(sample.block))) {
-    ReadBlock other = sample;
+  ReadBlock other = sample;
+  for (Mistake& m : mistakes_within_strips(sample, worst_strips(sample.block, residuals.stated()))) {
     m.instead(other);
-    const double found = mean_residual(other.block, sample.block).all;
-    if (found < least) best = std::move(m), least = found, better = std::move(other.block);
+    if (const double found = mean_of(residuals.at(other.block)); found < least) best = std::move(m), least = found;
+    for (size_t i = 0; i < other.block.images.size(); ++i) other.block.images[i].position = sample.block.images[i].position;
   }
   if (!best) return;
+  best->instead(other);
   // Without angles the level start leaves several per cent everywhere: the points of the moved images decide.
-  const double before = mean_residual(sample.block, better).moved, after = mean_residual(better, sample.block).moved;
+  const double before = mean_of_moved(sample.block, other.block), after = mean_of_moved(other.block, sample.block);
   if (times * after > before) return;
   char text[160];
   std::snprintf(text, sizeof text, ": image points are off by %.1f %% of the principal distance (mean) as stated, by %.1f %% otherwise",

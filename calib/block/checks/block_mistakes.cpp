@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <memory>
 
 #include "calib/block/block_start.h"
 #include "calib/block/checks/block_control_checks.h"
@@ -165,13 +166,14 @@ std::vector<Mistake> mistakes_of_stations(const ReadBlock& read) {
 std::vector<Mistake> mistakes_within_strips(const ReadBlock& read, const std::vector<int>& strips) {
   std::vector<Mistake> out;
   for (const int strip : strips) {
-    const std::vector<std::uint32_t> images = flown(read.block, strip);
+    const auto shared = std::make_shared<const std::vector<std::uint32_t>>(flown(read.block, strip));
+    const std::vector<std::uint32_t>& images = *shared;
     for (size_t first = 0; first + 1 < images.size(); ++first)
       for (const int step : {1, -1})
         out.push_back({"the stations of strip " + std::to_string(strip) +
                            (first > 0 ? " from image " + read.block.images[images[first]].name + " on" : "") + " are those of the image " +
                            (step > 0 ? "before" : "after"),
-                       by_time, [images, first, step](ReadBlock& r) { shift_positions(r.block, images, first, step); }});
+                       by_time, [shared, first, step](ReadBlock& r) { shift_positions(r.block, *shared, first, step); }});
   }
   return out;
 }
