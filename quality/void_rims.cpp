@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <span>
 #include <tuple>
 
 #include "core/statistics.h"
@@ -29,60 +30,136 @@ constexpr double rise = 0.1, least_rising = 0.8, most_falling = 0.15, above_leve
 class Rows {
  public:
   explicit Rows(const std::vector<VoidRun>& runs) {
-    for (const VoidRun& r : runs) rows_[r.j].push_back({r.i0, r.i1});
-    for (auto& [j, row] : rows_) std::sort(row.begin(), row.end());
+    std::int32_t west = runs[0].i0, east = runs[0].i1, south = runs[0].j, north = south;
+    for (const VoidRun& r : runs) {
+      west = std::min(west, r.i0), east = std::max(east, r.i1);
+      south = std::min(south, r.j), north = std::max(north, r.j);
+      runs_.push_back({r.j, r.i0, r.i1});
+    }
+    std::sort(runs_.begin(), runs_.end());
+    south_ = south;
+    for (std::int32_t j = south; j <= north + 1; ++j)
+      start_.push_back(std::lower_bound(runs_.begin() + (start_.empty() ? 0 : start_.back()), runs_.end(), Run{j, west, west}) -
+                       runs_.begin());
+    const auto index = [](double v) { return core::cell_index(v, square); };
+    squares_ = core::lattice_of(square, west - beside_void, south - beside_void, east + beside_void, north + 1 + beside_void);
+    near_.assign(squares_.size(), 0);
+    for (const Run& r : runs_)
+      for (std::int64_t v = index(r.j - beside_void); v <= index(r.j + beside_void); ++v)
+        for (std::int64_t u = index(r.i0 - beside_void); u <= index(r.i1 - 1 + beside_void); ++u)
+          near_[squares_.at(static_cast<int>(u - squares_.i0), static_cast<int>(v - squares_.j0))] = 1;
   }
-  /// False where none is within `beside`.
+  /// False where none is within `beside_void`.
   bool near(std::int32_t i, std::int32_t j, std::int32_t& vi, std::int32_t& vj) const {
+    const std::int64_t u = core::cell_index(i, square) - squares_.i0, v = core::cell_index(j, square) - squares_.j0;
+    if (u < 0 || v < 0 || u >= squares_.nx || v >= squares_.ny || !near_[squares_.at(static_cast<int>(u), static_cast<int>(v))])
+      return false;
     std::int64_t best = std::int64_t{beside_void} * beside_void + 1;
-    for (auto row = rows_.lower_bound(j - beside_void); row != rows_.end() && row->first <= j + beside_void; ++row) {
-      auto at = std::lower_bound(row->second.begin(), row->second.end(), std::pair(i - beside_void, i - beside_void));
-      if (at != row->second.begin() && std::prev(at)->second > i - beside_void) --at;
-      for (; at != row->second.end() && at->first <= i + beside_void; ++at) {
-        const std::int32_t u = std::clamp(i, at->first, at->second - 1);
-        const std::int64_t d = std::int64_t{u - i} * (u - i) + std::int64_t{row->first - j} * (row->first - j);
-        if (d < best) best = d, vi = u, vj = row->first;
+    const auto rows = static_cast<std::int32_t>(start_.size()) - 1;
+    for (std::int32_t row = std::max(0, j - beside_void - south_); row < rows && row <= j + beside_void - south_; ++row) {
+      const auto first = runs_.begin() + start_[static_cast<size_t>(row)], end = runs_.begin() + start_[static_cast<size_t>(row) + 1];
+      auto at = std::lower_bound(first, end, Run{south_ + row, i - beside_void, i - beside_void});
+      if (at != first && std::prev(at)->i1 > i - beside_void) --at;
+      for (; at != end && at->i0 <= i + beside_void; ++at) {
+        const std::int32_t c = std::clamp(i, at->i0, at->i1 - 1);
+        const std::int64_t d = std::int64_t{c - i} * (c - i) + std::int64_t{at->j - j} * (at->j - j);
+        if (d < best) best = d, vi = c, vj = at->j;
       }
     }
     return best <= std::int64_t{beside_void} * beside_void;
   }
 
  private:
-  std::map<std::int32_t, std::vector<std::pair<std::int32_t, std::int32_t>>> rows_;
+  struct Run {
+    std::int32_t j, i0, i1;
+    auto operator<=>(const Run&) const = default;
+  };
+  static constexpr double square = 16.0;  // cells: most returns are near no void, which a raster of these shows
+  std::vector<Run> runs_;
+  std::int32_t south_ = 0;
+  std::vector<std::ptrdiff_t> start_;  ///< of each row from south_ on, and the end
+  core::Lattice squares_;
+  std::vector<std::uint8_t> near_;
 };
+
+float order_statistic(std::span<float> values, size_t number) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(number);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// The middle value, as core::median has it, of many: a sample says between which two it lies, and only those are put in order. Changes
+/// the order; `between` is a store as long.
+float median_of(std::span<float> values, std::span<float> between) {
+  constexpr size_t sampled = 512;
+  const size_t middle = values.size() / 2;
+  if (values.size() < 4 * sampled) return order_statistic(values, middle);
+  for (size_t k = 0; k < sampled; ++k) between[k] = values[k * values.size() / sampled];
+  std::sort(between.begin(), between.begin() + sampled);
+  const float low = between[sampled * 43 / 100], high = between[sampled * 57 / 100];
+  size_t below = 0, n = 0;
+  for (const float v : values) {  // without branches
+    between[n] = v;
+    below += v < low;
+    n += v >= low && v <= high;
+  }
+  const bool found = below <= middle && middle < below + n;
+  return found ? order_statistic(between.first(n), middle - below) : order_statistic(values, middle);
+}
 
 /// Returns of the ground by squares of `bin`.
 class Ground {
  public:
-  explicit Ground(const core::Block& b) : block_(b) {
+  explicit Ground(const core::Block& b) {
     const auto is_ground = [&](size_t p) { return !b.classification.empty() && b.classification[p] == core::point_class::ground; };
     bool any = false;
     for (size_t p = 0; p < b.size() && !any; ++p) any = is_ground(p);
+    std::vector<std::pair<Bin, size_t>> rows;
     for (size_t p = 0; p < b.size(); ++p)
-      if (core::is_usable(b, p) && (any ? is_ground(p) : core::is_last_return(b, p))) rows_.emplace_back(bin_of(b.x[p], b.y[p]), p);
-    std::sort(rows_.begin(), rows_.end());
+      if (core::is_usable(b, p) && (any ? is_ground(p) : core::is_last_return(b, p))) rows.emplace_back(bin_of(b.x[p], b.y[p]), p);
+    std::sort(rows.begin(), rows.end());
+    for (const auto& [at, p] : rows) {
+      if (bins_.empty() || bins_.back() != at) bins_.push_back(at), start_.push_back(x_.size());
+      x_.push_back(b.x[p]), y_.push_back(b.y[p]), z_.push_back(static_cast<float>(b.origin.z() + b.z[p]));
+    }
+    start_.push_back(x_.size());
+    heights_.resize(x_.size()), between_.resize(x_.size());
   }
   /// x, y from the block's origin.
-  float behind(double x, double y) const {
-    std::vector<double> heights;
+  float behind(double x, double y) {
+    size_t n = 0;
     const auto [i0, j0] = bin_of(x - to, y - to);
     const auto [i1, j1] = bin_of(x + to, y + to);
-    for (std::int32_t i = i0; i <= i1; ++i)
-      for (auto at = std::lower_bound(rows_.begin(), rows_.end(), Row{{i, j0}, 0}); at != rows_.end() && at->first <= Bin{i, j1}; ++at) {
-        const double d = std::hypot(block_.x[at->second] - x, block_.y[at->second] - y);
-        if (d >= from && d <= to) heights.push_back(block_.origin.z() + block_.z[at->second]);
+    for (std::int32_t i = i0; i <= i1; ++i) {
+      const auto first = std::lower_bound(bins_.begin(), bins_.end(), Bin{i, j0}), end = std::upper_bound(first, bins_.end(), Bin{i, j1});
+      const size_t k1 = start_[static_cast<size_t>(end - bins_.begin())];
+      for (size_t k = start_[static_cast<size_t>(first - bins_.begin())]; k < k1; ++k) {
+        heights_[n] = z_[k];
+        n += in_ring(x_[k] - x, y_[k] - y);
       }
-    return heights.size() < fewest_behind ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(core::median(heights));
+    }
+    if (n < fewest_behind) return std::numeric_limits<float>::quiet_NaN();
+    return median_of({heights_.data(), n}, between_);
   }
 
  private:
   using Bin = std::pair<std::int32_t, std::int32_t>;
-  using Row = std::pair<Bin, size_t>;
   static Bin bin_of(double x, double y) {
     return {static_cast<std::int32_t>(core::cell_index(x, bin)), static_cast<std::int32_t>(core::cell_index(y, bin))};
   }
-  const core::Block& block_;
-  std::vector<Row> rows_;
+  static bool in_ring(double dx, double dy) {
+    constexpr double rounding = 1e-9;  // m2: nearer to a border the exact distance decides
+    const double d = dx * dx + dy * dy;
+    if (std::abs(d - from * from) > rounding && std::abs(d - to * to) > rounding) return d > from * from && d < to * to;
+    const double exact = std::hypot(dx, dy);
+    return exact >= from && exact <= to;
+  }
+
+  std::vector<Bin> bins_;      ///< those with returns, in order
+  std::vector<size_t> start_;  ///< of each bin's returns, and the end
+  std::vector<double> x_, y_;
+  std::vector<float> z_;
+  std::vector<float> heights_, between_;  ///< stores of behind()
 };
 
 /// The level at a piece: of those nearest to it.
@@ -103,7 +180,7 @@ std::vector<RimPiece> rims_of(const core::Block& b, const std::vector<VoidRun>& 
   if (runs.empty()) return {};
   const double cell = void_cell(spacing), side = rim_side(spacing.rule);
   const Rows rows(runs);
-  const Ground ground(b);
+  Ground ground(b);
   std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t>, RimPiece> pieces;  // by square, and that of the void's cell
   std::map<std::pair<std::int32_t, std::int32_t>, float> behind;
   const auto index = [](double v, double of) { return static_cast<std::int32_t>(core::cell_index(v, of)); };

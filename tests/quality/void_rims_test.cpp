@@ -3,10 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <random>
+#include <tuple>
 
+#include "core/statistics.h"
 #include "quality/void_areas.h"
 
 namespace swath::quality {
@@ -122,6 +127,65 @@ TEST(VoidRims, SeveralVoidsAreJudgedEachByItsOwnRim) {
   ASSERT_EQ(v.voids.size(), 2u);
   EXPECT_NEAR(v.water_area, canal_area, 0.02 * canal_area);
   EXPECT_NEAR(v.area, 400.0, 0.02 * 400.0);
+}
+
+/// The definition: all returns, all cells.
+std::vector<RimPiece> pieces_by_definition(const core::Block& b, const std::vector<VoidRun>& runs, const PulseSpacing& s) {
+  constexpr int beside = 6;  // cells
+  const double side = rim_side(s.rule);
+  const auto index = [](double v, double of) { return static_cast<std::int32_t>(core::cell_index(v, of)); };
+  std::map<std::array<std::int32_t, 4>, RimPiece> pieces;
+  for (size_t p = 0; p < b.size(); ++p) {
+    const double x = b.origin.x() + b.x[p], y = b.origin.y() + b.y[p];
+    const std::int32_t i = index(x, void_cell(s)), j = index(y, void_cell(s)), u = index(x, side), v = index(y, side);
+    std::int32_t best = beside * beside + 1, vi = 0, vj = 0;
+    for (const VoidRun& r : runs) {
+      if (std::abs(r.j - j) > beside) continue;
+      const std::int32_t c = std::clamp(i, r.i0, r.i1 - 1);
+      if (std::abs(c - i) > beside) continue;
+      if (const std::int32_t d = (c - i) * (c - i) + (r.j - j) * (r.j - j); d < best) best = d, vi = c, vj = r.j;
+    }
+    if (best > beside * beside) continue;
+    const auto z = static_cast<float>(b.origin.z() + b.z[p]);
+    const auto [at, fresh] = pieces.try_emplace({u, v, vi >> 4, vj >> 4}, RimPiece{u, v, vi, vj, z, 0.0F});
+    at->second.low = std::min(at->second.low, z);
+    if (!fresh) continue;
+    std::vector<double> heights;
+    for (size_t q = 0; q < b.size(); ++q) {
+      const double d = std::hypot(b.x[q] - ((u + 0.5) * side - b.origin.x()), b.y[q] - ((v + 0.5) * side - b.origin.y()));
+      if (b.classification[q] == core::point_class::ground && d >= 3.0 && d <= 6.0) heights.push_back(b.origin.z() + b.z[q]);
+    }
+    at->second.behind = heights.size() < 5 ? std::nanf("") : static_cast<float>(core::median(heights));
+  }
+  std::vector<RimPiece> out;
+  for (const auto& [key, piece] : pieces) out.push_back(piece);
+  return out;
+}
+
+TEST(VoidRims, PiecesOfADenseCloudAreThoseOfTheDefinition) {
+  // 70 returns per square metre: thousands lie behind each piece. Two voids, one of them with a return alone in it.
+  const PulseSpacing s{0.12, 0.12};
+  core::Block b;
+  b.origin = {1000.0, 2000.0, 50.0};
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(0.0, 18.0);
+  std::normal_distribution<double> error(0.0, 0.3);
+  for (int k = 0; k < 22000; ++k) {
+    const double x = place(random), y = place(random);
+    if ((std::hypot(x - 6.0, y - 9.0) < 1.5 && k > 0) || (std::abs(x - 13.0) < 1.0 && std::abs(y - 4.0) < 0.5)) continue;
+    b.x.push_back(k > 0 ? x : 6.0), b.y.push_back(k > 0 ? y : 9.0), b.z.push_back(std::floor(0.2 * x) + error(random));
+    b.return_number.push_back(1), b.return_count.push_back(1), b.flags.push_back(0), b.strip.push_back(1);
+    b.classification.push_back(k % 5 > 0 ? core::point_class::ground : core::point_class::building);
+  }
+  const std::vector<VoidRun> runs = find_voids(b, core::lattice_of(void_cell(s), 1000.0, 2000.0, 1018.0, 2018.0), s);
+  const std::vector<RimPiece> found = rims_of(b, runs, s), expected = pieces_by_definition(b, runs, s);
+  ASSERT_GT(found.size(), 20u);
+  ASSERT_EQ(found.size(), expected.size());
+  for (size_t k = 0; k < found.size(); ++k) {
+    const RimPiece &p = found[k], &e = expected[k];
+    EXPECT_EQ(std::tuple(p.i, p.j, p.void_i, p.void_j, p.low), std::tuple(e.i, e.j, e.void_i, e.void_j, e.low)) << k;
+    EXPECT_TRUE(p.behind == e.behind || (std::isnan(p.behind) && std::isnan(e.behind))) << k << " " << p.behind << " " << e.behind;
+  }
 }
 
 TEST(VoidRims, FewPiecesOrNoGroundBehindSayNothing) {
