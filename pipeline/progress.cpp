@@ -125,7 +125,7 @@ void Progress::begin(const std::string& what, std::uint64_t total, const std::st
   work_ = work;
   done_ = skipped_ = 0;
   work_done_ = work_skipped_ = 0.0;
-  share_ = -1.0;
+  share_ = -1.0, share_seconds_ = 0.0;
   expected_now_ = 0.0;
   if (!expected_.empty()) {
     expected_now_ = expected_.front();
@@ -153,7 +153,7 @@ void Progress::share(double done, std::string_view now) {
   expect_wanted();
   const std::lock_guard lock(mutex_);
   now_ = now;
-  share_ = std::max(share_, std::clamp(done, 0.0, 1.0));
+  if (const double share = std::clamp(done, 0.0, 1.0); share > share_) share_ = share, share_seconds_ = seconds();
   if (Clock::now() - shown_ >= pause_of(voice_)) show(false);
 }
 
@@ -208,7 +208,11 @@ Progress::Left Progress::left() const {
   else if (total_ > 0)
     skipped = static_cast<double>(skipped_) / static_cast<double>(total_);
   const double fresh = share - skipped;
-  if (share >= 0.0 && fresh >= least_share) out.step = time * (1.0 - share) / fresh;
+  if (share >= 0.0 && fresh >= least_share) {
+    // A share is said now and then: until the next one the time left falls. Where it is over by then, nothing is known.
+    const double said = work_ > 0.0 || total_ > 0 ? time : share_seconds_;
+    out.step = said * (1.0 - share) / fresh - (time - said);
+  }
   // The time that the work so far took, per expected time.
   const double expected = spent_expected_ + (out.step >= 0.0 ? expected_now_ * fresh : 0.0);
   const double to_come = std::accumulate(expected_.begin(), expected_.end(), 0.0);

@@ -74,7 +74,8 @@ class Progress {
   std::mutex mutex_;
   std::string what_, unit_, now_;
   std::uint64_t total_ = 0, done_ = 0, skipped_ = 0;
-  double work_ = 0.0, work_done_ = 0.0, work_skipped_ = 0.0, share_ = -1.0;
+  double work_ = 0.0, work_done_ = 0.0, work_skipped_ = 0.0;
+  double share_ = -1.0, share_seconds_ = 0.0;  ///< what share() said last, and when, s from the step's begin
   std::vector<double> expected_;               ///< of the steps to come
   double expected_now_ = 0.0;                  ///< of the step at work
   double spent_ = 0.0, spent_expected_ = 0.0;  ///< s on the steps done, and what was expected of them

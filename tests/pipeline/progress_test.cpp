@@ -73,6 +73,31 @@ TEST(Progress, AStepWithoutCountsSaysThatItIsAtWorkAndHowFarItIs) {
   EXPECT_DOUBLE_EQ(lines[2].find("share")->as_number(), 1.0);
 }
 
+TEST(Progress, UntilTheNextShareIsSaidTheTimeLeftFalls) {
+  const auto lines = said([](Progress& p) {
+    p.begin("calib.adjust", 0, "");
+    pass(1000);
+    p.share(0.1, "round 1: planes");  // 9 s are left
+    pass(pause - 1000);
+    p.end();
+  });
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_NEAR(lines[0].find("seconds_left")->as_number() + lines[0].find("seconds")->as_number(), 10.0, 0.5);
+}
+
+TEST(Progress, ATimeLeftThatIsOverIsNotSaid) {
+  const auto lines = said([](Progress& p) {
+    p.begin("calib.adjust", 0, "");
+    pass(100);
+    p.share(0.5, "round 1: planes");  // 0.1 s are left
+    pass(pause);
+    p.end();
+  });
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_DOUBLE_EQ(lines[0].find("share")->as_number(), 0.5);
+  EXPECT_EQ(lines[0].find("seconds_left"), nullptr);
+}
+
 TEST(Progress, TheTimeLeftOfTheRunIsThatOfTheStepsToCome) {
   const auto lines = said([](Progress& p) {
     p.expect({1.0, 1.0, 8.0});
