@@ -8,6 +8,7 @@
 #include <functional>
 #include <random>
 
+#include "core/config/units.h"
 #include "tests/world/scene.h"
 
 namespace swath::filters {
@@ -72,6 +73,37 @@ TEST(SparseReturns, EachLineIsJudgedOnItsOwn) {
   for (size_t p = 0; p < first; ++p) n += found.sparse[p];
   EXPECT_GT(n, 300.0);
   for (size_t p = first; p < b.size(); ++p) EXPECT_FALSE(found.sparse[p]);
+}
+
+TEST(SparseReturns, AreThoseOfTheDefinitionWhereverReturnsAreDense) {
+  core::Block b = fly([](double x, double y) { return std::hypot(x - 60.0, y - 60.0) < 30.0 ? 0.03 : 1.0; });
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int k = 0; k < 4000; ++k) test::add_point(b, 100.0 + 6.0 * uniform(random), 50.0 + 4.0 * uniform(random), 0.0);  // 166 per m2
+  for (int k = 0; k < 500; ++k) test::add_point(b, 61.0, 60.0 + 1e-4 * (k % 3), 0.0);                                   // nearly one place
+  const Bins bins(b, 4.0, sparse_circle, [](size_t) { return true; });
+  const SparseReturns found = judged(b);
+  size_t sparse = 0;
+  for (size_t p = 0; p < b.size(); p += 3) {
+    const CellIndex c = cell_of(bins.lattice(), b, p);
+    const double usual = found.usual[bins.lattice().at(c.i, c.j)];
+    const double radius = std::min(4.0 * std::sqrt(50.0 / (core::pi * usual)), 4.0 * sparse_circle);
+    const int most = static_cast<int>(0.12 * usual * core::pi * radius * radius / 16.0);
+    int n = 0;
+    for (size_t q = 0; q < b.size(); ++q)
+      n += (b.x[q] - b.x[p]) * (b.x[q] - b.x[p]) + (b.y[q] - b.y[p]) * (b.y[q] - b.y[p]) <= radius * radius;
+    ASSERT_EQ(found.sparse[p] != 0, n <= most) << b.x[p] << " " << b.y[p];
+    sparse += n <= most;
+  }
+  EXPECT_GT(sparse, 50u);
+}
+
+TEST(SparseReturns, ALineInOneRowOrAtOnePlace) {
+  for (const double width : {0.0, 300.0}) {
+    core::Block b;
+    for (int k = 0; k < 2000; ++k) test::add_point(b, 10.0 + width * k / 2000.0, 20.0, 0.0);
+    for (const std::uint8_t s : judged(b).sparse) ASSERT_EQ(s, 0);
+  }
 }
 
 }  // namespace
