@@ -36,6 +36,14 @@ TEST_F(Tables, NamesAndNumbers) {
   EXPECT_TRUE(t.place(1).ends_with("a.csv:6"));
 }
 
+TEST_F(Tables, ALineMayEndWithItsDelimiter) {
+  const TextTable t = table("name,x\na,1,\nb,2\n");
+  ASSERT_EQ(t.rows(), 2u);
+  EXPECT_EQ(t.number(0, 1), 1.0);
+  EXPECT_EQ(fault([&] { table("name,x\na,1,,\n"); }), "a.csv:2: the line has 4 fields, the header 2 columns");
+  EXPECT_EQ(fault([&] { table("name,x\na,1,2\n"); }), "a.csv:2: the line has 3 fields, the header 2 columns");
+}
+
 TEST_F(Tables, ColumnsThatNeedNotBeThere) {
   const TextTable t = table("name,x\na,1\n");
   EXPECT_EQ(t.column_if_there("Name", "Name"), 0u);
