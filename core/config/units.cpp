@@ -153,6 +153,10 @@ std::optional<double> parse_quantity(Dimension d, std::string_view text, std::st
     fault = "no unit: a " + std::string(name_of(d)) + " needs one of " + unit_list(d);
     return std::nullopt;
   }
+  if (unit.front() == ',') {
+    fault = "'" + std::string(text) + "' has a comma within its number: write a decimal point, and no mark between thousands";
+    return std::nullopt;
+  }
   const Unit* u = find_unit(d, unit);
   if (!u) {
     fault = "unit '" + std::string(unit) + "' is not a unit of " + std::string(name_of(d)) + " (" + unit_list(d) + ")";

@@ -22,6 +22,7 @@ TextTable::TextTable(const std::filesystem::path& file, const std::string& delim
       layout_.columns = layout_.names.size();
       return;
     }
+    if (line.fields.size() == layout_.columns + 1 && line.fields.back().empty()) line.fields.pop_back();  // the delimiter at the line's end
     line.expect_columns(layout_.columns);
     lines_.push_back(line.line);
     rows_.push_back(std::move(line.fields));

@@ -25,6 +25,10 @@ TEST(Units, SaysWhatIsWrong) {
   EXPECT_NE(fault.find("no unit"), std::string::npos);
   EXPECT_FALSE(parse_quantity(Dimension::length, "5 deg", fault));
   EXPECT_NE(fault.find("'deg' is not a unit of length"), std::string::npos);
+  for (const char* comma : {"0,5 m", "1,000 m"}) {
+    EXPECT_FALSE(parse_quantity(Dimension::length, comma, fault));
+    EXPECT_NE(fault.find("write a decimal point"), std::string::npos) << fault;
+  }
   EXPECT_FALSE(parse_quantity(Dimension::length, "wide", fault));
   EXPECT_FALSE(parse_quantity(Dimension::length, "inf m", fault));
 }

@@ -44,6 +44,14 @@ TEST_F(Tables, NamesAndWholeNumbersThatMustBeThere) {
   EXPECT_EQ(fault([&] { t.whole_number(1, 1, "the strip"); }), "a.csv:3: the strip is not a whole number: 2.5");
 }
 
+TEST_F(Tables, ALineMayEndWithItsDelimiter) {
+  const TextTable t = table("name,x\na,1,\nb,2\n");
+  ASSERT_EQ(t.rows(), 2u);
+  EXPECT_EQ(t.number(0, 1), 1.0);
+  EXPECT_EQ(fault([&] { table("name,x\na,1,,\n"); }), "a.csv:2: the line has 4 fields, the header 2 columns");
+  EXPECT_EQ(fault([&] { table("name,x\na,1,2\n"); }), "a.csv:2: the line has 3 fields, the header 2 columns");
+}
+
 TEST_F(Tables, ColumnsThatNeedNotBeThere) {
   const TextTable t = table("name,x\na,1\n");
   EXPECT_EQ(t.column_if_there("Name", "Name"), 0u);
