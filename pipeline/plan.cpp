@@ -196,8 +196,9 @@ void check_order(const Plan& plan, std::vector<Fault>& faults) {
       for (const Product p : info.gives_products) cells[p] = s.stage->cell();
     products.insert(products.end(), info.gives_products.begin(), info.gives_products.end());
   }
+  const core::Location place{plan.config.string(), 0, 0};
   if (sources == 0 && works_on_the_map(plan))
-    faults.push_back({{plan.config.string(), 0, 0}, "stage", "no reader: nothing to work on", "readers.laser or readers.las give points"});
+    faults.push_back({place, "stage", "no reader: nothing to work on", "readers.laser or readers.las give points"});
 }
 
 /// The rasters of one tile must fit into the budget, however few points there are.
