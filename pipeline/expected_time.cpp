@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measured 2026-11-27 by bench/scale/costs.py (waves) on one thread of a machine that built beside: 0.9 M returns of a town, 4 per square
-// metre, 107,401 IMU records. docs/scale.md holds expectations against what was measured.
+// Measured 2026-11-27 by bench/scale/costs.py (waves) on one thread, with a build at work on the same machine: 0.9 M returns of a town, 4
+// per square metre, 107,401 IMU records. docs/scale.md compares expectations with what was measured.
 #include "pipeline/expected_time.h"
 
 #include <algorithm>

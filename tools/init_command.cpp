@@ -36,7 +36,7 @@ int init(const Given& a) {
   if (a.print_only) return print(proposal.toml), 0;
   if (found.empty()) throw core::Error("the folder holds no file", a.folder.string(), "name the folder of a survey's records");
   if (proposal.files == 0)
-    throw core::Error(found.size() == 1 ? "its only file is no record of a survey"
+    throw core::Error(found.size() == 1 ? "its only file is not a record of a survey"
                                         : "none of its " + std::to_string(found.size()) + " files is a record of a survey",
                       a.folder.string(), "--print shows what each of them is");
   io::write_text_file(file, proposal.toml);

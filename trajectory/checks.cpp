@@ -130,7 +130,7 @@ TrajectoryChecks check_trajectory(const core::TrajectoryData& d, const CheckOpti
 
   const auto degrees = [](double a) { return core::format_number(std::round(core::to_degrees(a) * 100.0) / 100.0) + " deg"; };
   if (out.duplicates)
-    out.warnings.push_back(core::counted(out.duplicates, "record repeats", "records repeat") + " the time of the one before");
+    out.warnings.push_back(core::counted(out.duplicates, "record repeats the time before it", "records repeat the time before them"));
   if (out.backwards) out.warnings.push_back(core::counted(out.backwards, "record goes", "records go") + " back in time");
   if (out.not_finite)
     out.warnings.push_back(core::counted(out.not_finite, "record holds", "records hold") + " a value that is not a number");

@@ -31,9 +31,11 @@ std::optional<EventsOutside> outside_of(const std::string& technique, const std:
   if (static_cast<double>(outside) < nearly_all * static_cast<double>(times.size())) return std::nullopt;
   const auto [first, last] = std::minmax_element(times.begin(), times.end());
   EventsOutside out{technique, times.size(), static_cast<std::uint64_t>(outside), {*first, *last}, record, {}, {}};
-  out.what = (out.outside == out.events ? "all " : std::to_string(out.outside) + " of ") + std::to_string(out.events) + " events" +
-             (technique.empty() ? "" : " of '" + technique + "'") + " lie outside " + name + ": events " + in_utc(out.span) + ", " + name +
-             " " + in_utc(record);
+  const std::string which = out.events == 1             ? "the only event"
+                            : out.outside == out.events ? "all " + std::to_string(out.events) + " events"
+                                                        : std::to_string(out.outside) + " of " + std::to_string(out.events) + " events";
+  out.what = which + (technique.empty() ? "" : " of '" + technique + "'") + (out.outside == 1 ? " lies" : " lie") + " outside " + name +
+             ": events " + in_utc(out.span) + ", " + name + " " + in_utc(record);
   out.cause = cause_of(out.span, record);
   return out;
 }

@@ -36,15 +36,17 @@ struct Sums {
   core::Interval time, angle;
   std::map<int, std::uint64_t> by_return, by_count, classes, lines;
   std::uint64_t looked_at = 0, twice = 0;  ///< of the first points: those that repeat another one
+  bool looked_at_times = false;            ///< not all of one time
   std::uint64_t points = 0, returns_inconsistent = 0, time_zero = 0, time_back = 0, withheld = 0, overlap = 0, first_returns = 0;
   double last_time = -std::numeric_limits<double>::infinity();
   std::unordered_set<std::uint64_t> cells;
 
-  /// Points with the place, time and return number of another.
+  /// Points with the place, return number and time of another; without times two returns at one place differ by their intensity.
   void find_twice(const LasPoints& p) {
+    looked_at_times = std::any_of(p.gps_time.begin(), p.gps_time.end(), [&](double t) { return t != p.gps_time[0]; });
     std::vector<std::array<double, 5>> rows;
     for (size_t i = 0; i < p.size(); ++i)
-      rows.push_back({p.x[i], p.y[i], p.z[i], p.gps_time.empty() ? 0.0 : p.gps_time[i], static_cast<double>(p.return_number[i])});
+      rows.push_back({p.x[i], p.y[i], p.z[i], looked_at_times ? p.gps_time[i] : p.intensity[i], static_cast<double>(p.return_number[i])});
     std::sort(rows.begin(), rows.end());
     looked_at = rows.size();
     for (size_t i = 1; i < rows.size(); ++i) twice += rows[i] == rows[i - 1];
@@ -180,13 +182,16 @@ void judge_header(LasFacts& out) {
   }
 }
 
-/// A file that was put together of others may hold points twice; few points of one place are chance.
+/// A file that was merged from others may have points twice; a few points at one place are chance.
 void judge_repeated(LasFacts& out) {
   constexpr std::uint64_t one_in = 1000;
   const Sums& s = out.s;
   if (s.twice * one_in < s.looked_at || s.twice == 0) return;
-  out.warnings.push_back(std::to_string(s.twice) + " of the first " + core::counted(s.looked_at, "point") +
-                         " repeat place, time and return number of another: the file holds points twice");
+  const std::string of = "of the first " + core::counted(s.looked_at, "point") + " ",
+                    share = core::counted(s.twice, of + "has", of + "have");
+  out.warnings.push_back(
+      share + (s.looked_at_times ? " the place, time and return number of another: the file has points twice"
+                                 : " the place, intensity and return number of another: the file, without times, may have points twice"));
 }
 
 void judge_returns(LasFacts& out) {

@@ -195,8 +195,8 @@ void set_linear_unit(const LasHeader& h, const LasVlr& keys, int unit, LasCrs& o
   if (metres == 0.0 || coded.empty() || !coded.is_projected() || is_same_unit(coded.metres_per_unit(), metres)) return;
   const std::string map = defined_by(h, keys, false);
   if (map.empty() || !is_same_unit(core::Crs(map).metres_per_unit(), metres)) {
-    out.note = "the GeoTIFF keys state a unit of " + core::format_number(metres) + " m beside " + coded.name() + ", which counts in " +
-               core::format_number(coded.metres_per_unit()) + " m";
+    out.note = "the GeoTIFF keys state a unit of " + core::format_number(metres, 9) + " m beside " + coded.name() + ", which counts in " +
+               core::format_number(coded.metres_per_unit(), 9) + " m";
     out.definition.clear();
     return;
   }

@@ -95,7 +95,7 @@ void describe(const TableFacts& r, V& v) {
   v.result("warnings", r.warnings, "What looks wrong.");
 }
 
-/// Times of records that do not grow. Records that each have a time of their own alone are judged: a pulse has several returns.
+/// Times that do not increase, in records that each have a time of their own: a pulse has several returns.
 class TimeOrder {
  public:
   explicit TimeOrder(const std::vector<NamedColumn>& columns) {
@@ -116,11 +116,10 @@ class TimeOrder {
   }
   void warn(std::vector<std::string>& warnings) const {
     if (repeated_ > 0)
-      warnings.push_back(
-          core::counted(repeated_, "record is at the time of the one before it", "records are at the time of the one before them") +
-          ": held twice, or times of too few digits");
+      warnings.push_back(core::counted(repeated_, "record repeats the time before it", "records repeat the time before them") +
+                         ": written twice, or times with too few digits");
     if (back_ > 0 && !has_weeks_)
-      warnings.push_back("time goes back " + core::counted(back_, "time") + ": the records are not sorted, or held twice");
+      warnings.push_back("time goes back " + core::counted(back_, "time") + ": the file is not sorted, or records are written twice");
   }
 
  private:
@@ -138,7 +137,7 @@ core::Value reported(TableFacts& t) {
   return core::reported(t);
 }
 
-/// Is the first value of a column a number? Names of events are none.
+/// Is the first value of a column a number? Names of events are not.
 bool holds_numbers(const Path& path, const DelimitedLayout& layout, size_t column) {
   double value = 0;
   try {

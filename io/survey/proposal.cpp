@@ -145,7 +145,7 @@ void sort_file(const FoundFile& f, Sorted& out) {
     return out.tables.emplace_back(&f, std::move(roles)), void();
   }
   if (const TreeKind tree = kind_of_format(format); tree != TreeKind::other)
-    return left(std::string(name_of(tree)) + ", no record: " + std::string(use_of(tree)));
+    return left(std::string(name_of(tree)) + ", not a record: " + std::string(use_of(tree)));
   left(format + ", which has no place that can be known: a terrain model, lines or points may belong to [[breaklines]] or [[control]]");
 }
 

@@ -17,6 +17,7 @@
 #include "io/las/cloud_crs.h"
 #include "io/las/las_crs.h"
 #include "io/las/las_reader.h"
+#include "io/survey/read_survey.h"
 
 namespace swath::pipeline {
 namespace {
@@ -179,6 +180,18 @@ bool has_class(const std::vector<fs::path>& files, int point_class) {
       if (std::find(block.classification.begin(), block.classification.end(), point_class) != block.classification.end()) return true;
   }
   return false;
+}
+
+std::string lack_of_crs(const fs::path& cloud) {
+  core::Value tree = core::Value::object(), points = core::Value::array();
+  points.push(core::Value::object())["file"] = fs::absolute(cloud).lexically_normal().string();
+  tree["points"] = std::move(points);
+  const io::Survey survey = io::read_survey(tree, fs::path());  // an index as its files
+  for (const io::PointFile& f : survey.points) {
+    if (!f.crs.empty()) continue;
+    if (const Stated stated = stated_crs(io::resolve(survey, f.file)); !stated.crs) return stated.why;
+  }
+  return {};
 }
 
 std::string cloud_name(const std::vector<fs::path>& files) {

@@ -19,6 +19,10 @@ std::vector<std::filesystem::path> cloud_files(const std::vector<std::string>& n
 /// degrees.
 core::Value cloud_survey(const std::vector<std::filesystem::path>& files, const std::string& crs);
 
+/// Why a cloud has no CRS of its own that can be used; empty where it has one. Of an index (EPT, virtual point cloud) that of its files.
+/// Throws core::Error for a file that is not such a cloud.
+std::string lack_of_crs(const std::filesystem::path& cloud);
+
 /// The name of what is made of them: of the only file, or of the folder that all are in.
 std::string cloud_name(const std::vector<std::filesystem::path>& files);
 

@@ -122,7 +122,7 @@ class Translation {
       if (!name_given.empty())
         for (fs::path& file : cloud_files({name_given})) {
           if (std::any_of(files.begin(), files.end(), [&](const fs::path& f) { return fs::equivalent(f, file); })) continue;
-          stated.push_back(!override_srs.empty() || default_srs.empty() || states_crs(file) ? override_srs : default_srs);
+          stated.push_back(!override_srs.empty() || default_srs.empty() || lack_of_crs(file).empty() ? override_srs : default_srs);
           files.push_back(std::move(file));
         }
       runs_as_.push_back(type + " " + name_given + ": readers.las");
@@ -134,21 +134,14 @@ class Translation {
     config_["stage"].push(std::move(reader));
   }
 
-  static bool states_crs(const fs::path& file) {
-    io::Survey of_file;
-    of_file.points.emplace_back().file = fs::absolute(file);
-    try {
-      return !io::cloud_definition(of_file, of_file.points.front()).empty();
-    } catch (const core::Error&) {
-      return false;
-    }
-  }
-
   /// The clouds with the CRS that each has by its reader, and that of the products.
   void make_survey(const std::vector<fs::path>& files, std::vector<std::string> stated) {
     std::string target;
     for (const Value& s : stages_)
       if (type_of(s) == "filters.reprojection") target = reprojection(s, stated);
+    for (size_t k = 0; k < stated.size(); ++k)  // neither another reader's CRS nor that of the products is its own
+      if (const std::string why = stated[k].empty() ? lack_of_crs(files[k]) : ""; !why.empty())
+        throw core::usage_error(why, files[k].string(), "name its CRS as 'override_srs' of its reader, for example \"EPSG:25832\"");
     const auto first = std::find_if(stated.begin(), stated.end(), [](const std::string& one) { return !one.empty(); });
     survey_ = cloud_survey(files, !target.empty() ? target : first != stated.end() ? *first : "");
     for (size_t k = 0; k < stated.size(); ++k)

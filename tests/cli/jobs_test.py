@@ -175,7 +175,7 @@ class Named(Case):
         empty.mkdir()
         self.assert_error(swath("init", empty, "--quiet"), 1, "the folder holds no file", "hint: ")
         (empty / "notes.txt").write_text("nothing of a survey\n")
-        self.assert_error(swath("init", empty, "--quiet"), 1, "its only file is no record of a survey", "hint: ")
+        self.assert_error(swath("init", empty, "--quiet"), 1, "its only file is not a record of a survey", "hint: ")
         self.assertFalse((empty / "survey.toml").exists())
         shown = swath("init", empty, "--print")
         self.assertEqual(shown.returncode, 0)

@@ -246,7 +246,7 @@ TEST(KinematicStage, ATechniqueADayAwayIsNamed) {
   ASSERT_NE(outside, nullptr);
   ASSERT_EQ(outside->items().size(), 1u);
   const std::string& sentence = outside->items()[0].find("sentence")->as_text();
-  EXPECT_NE(sentence.find("all 1 events of 'camera' lie outside the GNSS record: events from 2024-05-18T16:53:22"), std::string::npos)
+  EXPECT_NE(sentence.find("the only event of 'camera' lies outside the GNSS record: events from 2024-05-18T16:53:22"), std::string::npos)
       << sentence;
   EXPECT_NE(sentence.find("1 day apart"), std::string::npos) << sentence;
 }

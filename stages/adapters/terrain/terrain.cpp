@@ -151,9 +151,10 @@ void expect_ground_points(const core::Tally& of_tiles, const std::string& survey
     throw core::Error(all + are + "withheld (" + std::to_string(n.withheld) + ") or noise (" + std::to_string(n.noise) +
                           "): there is nothing to make a terrain model of",
                       survey, "`swath info FILE` counts the withheld points of a file and lists its classes");
-  throw core::Error("no triangle of ground points (class " + classes + "): " +
-                        (n.all == 1 ? "the only point is not of that class" : "none of the " + std::to_string(n.all) + " points is of it"),
-                    survey,
+  const std::string others = n.withheld + n.noise > 0 ? "of other classes, withheld or noise"
+                             : n.all == 1             ? "of another class"
+                                                      : "of other classes";
+  throw core::Error("no triangle of ground points (class " + classes + "): " + all + are + others, survey,
                     "a ground filter before terrain.dtm finds ground where there is any, but not in points on one line or at one place; "
                     "`swath info FILE` lists the classes of a file, terrain.dtm's `classes` says which of them are terrain");
 }

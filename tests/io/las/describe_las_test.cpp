@@ -31,12 +31,20 @@ TEST(DescribeLas, PointsThatAreThereTwiceAreNamed) {
     LasWriteOptions o;
     o.threads = 1;
     LasWriter writer(folder / name, o);
-    for (int k = 0; k < times; ++k) writer.write(block);
+    for (int k = 0; k < times; ++k) {
+      block.intensity.assign(block.size(), static_cast<std::uint16_t>(k / 2));
+      writer.write(block);
+    }
     writer.finish();
     return describe_las(folder / name);
   };
   EXPECT_FALSE(warns(written("once.las", 1), "points twice"));
-  EXPECT_TRUE(warns(written("twice.las", 2), "100 of the first 200 points repeat place, time and return number of another"));
+  EXPECT_TRUE(warns(written("twice.las", 2), "100 of the first 200 points have the place, intensity and return number of another"));
+  EXPECT_TRUE(warns(written("more.las", 3), "100 of the first 300 points have")) << "returns of another intensity at one place are returns";
+  block.time.resize(block.size());
+  for (size_t i = 0; i < block.size(); ++i) block.time[i] = 1000.0 + static_cast<double>(i);
+  EXPECT_FALSE(warns(written("timed_once.las", 1), "points twice"));
+  EXPECT_TRUE(warns(written("timed.las", 2), "100 of the first 200 points have the place, time and return number of another"));
 }
 
 TEST(DescribeLasReference, OneStripInFeet) {

@@ -56,13 +56,13 @@ TEST(DescribeTables, RecordsAtOneTimeAreNamed) {
   const std::string gnss = "gps_sow_s,lat_deg,lon_deg,h_ell_m\n474006,47.9,10.5,1127\n474007,47.9,10.5,1127\n";
   EXPECT_EQ(said(gnss).find("warning"), std::string::npos) << said(gnss);
   std::string text = said(gnss + "474007,47.9,10.5,1127\n474007,47.9,10.5,1127\n");
-  EXPECT_NE(text.find("2 records are at the time of the one before them"), std::string::npos) << text;
+  EXPECT_NE(text.find("2 records repeat the time before them: written twice"), std::string::npos) << text;
   text = said(gnss + "474006,47.9,10.5,1127\n474007,47.9,10.5,1127\n");
   EXPECT_NE(text.find("time goes back 1 time: "), std::string::npos) << text;
   text = said("time,gx,gy,gz,ax,ay,az\n1,0,0,0,0,0,-9.8\n1,0,0,0,0,0,-9.8\n2,0,0,0,0,0,-9.8\n");
-  EXPECT_NE(text.find("1 record is at the time of the one before it"), std::string::npos) << text;
+  EXPECT_NE(text.find("1 record repeats the time before it"), std::string::npos) << text;
   text = said("gps_sow_s,line,scan_angle_deg,range_m\n474009,1,-20.5,500.1\n474009,1,-20.5,510.1\n");
-  EXPECT_EQ(text.find("at the time of"), std::string::npos) << "two returns of a pulse: " << text;
+  EXPECT_EQ(text.find("repeat"), std::string::npos) << "two returns of a pulse: " << text;
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ TEST(Proposal, AHangarSurveyIsNamedWithItsConfig) {
   EXPECT_EQ(p.files, 1u);
   EXPECT_EQ(p.config, "lever_arm");
   EXPECT_NE(p.toml.find("swath run lever_arm --survey survey.toml"), std::string::npos) << p.toml;
-  EXPECT_NE(p.toml.find("tasks.json: a list of tasks, no record: swath task ID --tasks FILE"), std::string::npos) << p.toml;
+  EXPECT_NE(p.toml.find("tasks.json: a list of tasks, not a record: swath task ID --tasks FILE"), std::string::npos) << p.toml;
   test::write_bytes(folder / "survey.toml", p.toml);
   EXPECT_EQ(read_survey(folder / "survey.toml").hangar, "hangar.toml");
   test::write_bytes(folder / "gnss.csv", "gps_sow_s,lat_deg,lon_deg,h_ell_m\n474006,47.9,10.5,1127\n474007,47.9,10.5,1127\n");

@@ -8,7 +8,7 @@
 #include "io/las/las_crs.h"
 #include "io/text/value_file.h"
 #include "pipeline/plan.h"
-#include "tests/io/las_sample.h"
+#include "tests/io/copc/copc_sample.h"
 #include "tests/world/support.h"
 
 namespace swath::pipeline {
@@ -130,6 +130,35 @@ TEST_F(Pdal, PointsAreTransformedBeforeAllElse) {
             std::string::npos);
   EXPECT_NE(fault_of(chain(R"({"type": "writers.las", "filename": "a.laz"}, {"type": "filters.reprojection", "out_srs": "EPSG:32610"})")),
             "");
+}
+
+TEST_F(Pdal, AFileWithoutACrsTakesThatOfNothingElse) {
+  io::LasHeader bare = test::sample_header(6);
+  test::write_sample("bare.laz", bare, test::sample_points(bare, 100), 1);
+  const auto refusal = [](const std::string& json) {
+    try {
+      read(json);
+    } catch (const core::Error& e) {
+      return e.text();
+    }
+    return std::string();
+  };
+  const std::string to_utm = R"({"type": "filters.reprojection", "out_srs": "EPSG:32610")";
+  for (const std::string& json :
+       {std::string(R"(["bare.laz", "p.laz"])"), R"(["bare.laz", )" + to_utm + R"(}, "p.laz"])",
+        std::string(R"([{"type": "readers.las", "filename": "feet.laz", "override_srs": "EPSG:2994"}, "bare.laz", "p.laz"])")}) {
+    EXPECT_NE(refusal(json).find("bare.laz: states no CRS"), std::string::npos) << refusal(json);
+    EXPECT_NE(refusal(json).find("'override_srs'"), std::string::npos) << refusal(json);
+  }
+  EXPECT_EQ(refusal(R"(["bare.laz", )" + to_utm + R"(, "in_srs": "EPSG:32611"}, "p.laz"])"), "");
+}
+
+TEST_F(Pdal, AnIndexStatesTheCrsOfItsFiles) {
+  const io::LasHeader h = test::sample_header(6);
+  test::write_copc_sample("a.copc.laz", h, test::copc_points(h, 2000));
+  test::write_ept("tile", "a.copc.laz");
+  const Value survey = std::get<1>(read(R"([{"type": "readers.ept", "filename": "tile/ept.json", "default_srs": "EPSG:32633"}, "p.laz"])"));
+  EXPECT_EQ(survey.find("points")->items()[0].find("crs"), nullptr);
 }
 
 TEST_F(Pdal, EveryStageThatBothHaveMakesAPlan) {
