@@ -22,10 +22,11 @@ constexpr std::string_view box_code = "points.outside_box", damage_code = "work.
                            mistake_code = "geometry.mistake", control_code = "control.unused", buildings_code = "buildings.none",
                            scale_code = "crs.scale", outside_code = "crs.outside", fixes_code = "trajectory.fixes",
                            noise_code = "trajectory.imu_noise", events_code = "events.outside", sigmas_code = "trajectory.gnss_sigmas",
-                           same_file_code = "clouds.same_file";
+                           same_file_code = "clouds.same_file", duplicates_code = "clouds.duplicates";
 constexpr double contradicting_share = 0.05, least_contradicting = 10.0;  // of the fixes; fixes
 constexpr size_t same_files_named = 5;
-constexpr double warned_noise = 30.0;  // times the stated noise
+constexpr double warned_duplicates = 1e-3;  // of the first returns
+constexpr double warned_noise = 30.0;       // times the stated noise
 
 /// An example for each file, and one for those that the report counts without.
 void add_boxes(const Value& wrong, std::vector<Warning>& out) {
@@ -118,6 +119,12 @@ void add_findings(const std::string& stage, const Value& findings, std::vector<W
   if (stage == "trajectory.ins_gnss") add_trajectory(findings, out);
   if (const Value* outside = findings.find("outside"); outside && (stage == "time.sync" || stage == "trajectory.kinematic"))
     add_events(*outside, out);
+  if (const Value* share = findings.find("duplicate_share"); share && share->as_number() > warned_duplicates)
+    out.push_back(
+        {std::string(duplicates_code),
+         core::format_number(findings.find("duplicates")->as_number()) + " first returns, " + one_decimal(100.0 * share->as_number()) +
+             " % of all, share place, time and number with another: they are not counted in the density, but are in every product",
+         {{"share", share->as_number(), {}}}});
   const Value *named = findings.find("named"), *returns = findings.find("returns");
   if (stage == "quality.points" && named)
     for (const Value& fault : named->items()) out.push_back({fault.find("code")->as_text(), fault.find("sentence")->as_text(), {}});

@@ -23,6 +23,9 @@ const std::vector<WarningKind>& warning_kinds() {
        "Where all do, compare the CRS and the order of the columns of this [[control]] with the survey's."},
       {"check.roof", "A surveyed roof lies elsewhere than the others place it, or its edges contradict one another.",
        "Compare it with a newer picture: it may have been changed since, or surveyed wrongly; it counts in no figure."},
+      {"clouds.duplicates", "More than 1 in 1000 first returns share place, time and return number with another: points are there twice.",
+       "Look for tiles with buffers, or for a tile in two deliveries, and have them cut to their squares; density and spacing are without "
+       "the copies."},
       {"clouds.same_file", "Two clouds of the run hold the same bytes under two names: their points are there twice.",
        "Name one of them, or take the copy out of the folder; density and every count of points are too large with it."},
       {"control.unused", "A [[control]] of the survey is used by no stage of the run.",

@@ -20,6 +20,7 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
                                                             {"code": "check.names", "sentence": "e"}, {"code": "check.outside", "sentence": "f"},
                                                             {"code": "check.roof", "sentence": "g"}]}},
           {"type": "trajectory.ins_gnss", "findings": {"fixes": {"used": 1061, "down_weighted": 316, "sigmas_overstated": 2.9}, "imu_noise_factor": 64}},
+          {"type": "quality.density", "findings": {"pulses": 900, "duplicates": 100, "duplicate_share": 0.1}},
           {"type": "time.sync", "findings": {"outside": [{"technique": "pc", "events": 40, "outside": 40, "sentence": "h"}]}},
           {"type": "terrain.buildings", "findings": {"buildings": 0, "returns": 0}}, {"type": "terrain.buildings", "findings": {"returns": 7}}],
           "inputs": [{"file": "a.laz", "bytes": 9, "xxh3": "1"}, {"file": "copy.LAZ", "bytes": 9, "xxh3": "1"}],
@@ -57,6 +58,18 @@ TEST(Warnings, AFewContradictingFixesAreNoWarning) {
   EXPECT_EQ(number(R"({"imu_noise_factor": 40})"), 1u);
   EXPECT_EQ(number(R"({"fixes": {"used": 60, "down_weighted": 0, "correlated_share": 0.94}})"), 0u);
   EXPECT_EQ(number(R"({"fixes": {"used": 60, "down_weighted": 0, "sigmas_overstated": 3}})"), 1u);
+}
+
+TEST(Warnings, OneDuplicateIn1000IsNoWarning) {
+  const auto number = [](const std::string& share) {
+    return warnings_in(io::parse_json(R"({"stages": [{"type": "quality.density", "findings": {"pulses": 1000, "duplicates": 1, )"
+                                      R"("duplicate_share": )" +
+                                          share + "}}]}",
+                                      "report"))
+        .size();
+  };
+  EXPECT_EQ(number("0.00099"), 0u);
+  EXPECT_EQ(number("0.0011"), 1u);
 }
 
 TEST(Warnings, CloudsWithTheSameBytesAreNamedBoth) {
