@@ -9,6 +9,8 @@ const std::vector<WarningKind>& warning_kinds() {
   static const std::vector<WarningKind> kinds{
       {"buildings.none", "No return is of class building (6): terrain.buildings has nothing to work on.",
        "Put filters.classify before it, or have a cloud whose buildings are of class 6; where nothing is built this is right."},
+      {"check.cover", "Covers of check points are not known words: these points count as vegetated.",
+       "Write open, bare, urban, grass, crops, brush or forest in the table, or name those without vegetation in quality.points.open."},
       {"check.few", "Fewer than three check points could be compared: no accuracy is stated by them.",
        "Survey more check points within the area; ASPRS 2024 wants 30 for a statement of accuracy."},
       {"check.heights", "The ground lies to one side of the check points on all lines, beyond four sigmas.",

@@ -18,7 +18,7 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
           {"type": "quality.points", "findings": {"named": [{"code": "check.heights", "sentence": "a"}, {"code": "check.line", "sentence": "b"},
                                                             {"code": "check.mark", "sentence": "c"}, {"code": "check.few", "sentence": "d"},
                                                             {"code": "check.names", "sentence": "e"}, {"code": "check.outside", "sentence": "f"},
-                                                            {"code": "check.roof", "sentence": "g"}]}},
+                                                            {"code": "check.roof", "sentence": "g"}, {"code": "check.cover", "sentence": "i"}]}},
           {"type": "trajectory.ins_gnss", "findings": {"fixes": {"used": 1061, "down_weighted": 316, "sigmas_overstated": 2.9}, "imu_noise_factor": 64}},
           {"type": "quality.density", "findings": {"pulses": 900, "duplicates": 100, "duplicate_share": 0.1}},
           {"type": "time.sync", "findings": {"outside": [{"technique": "pc", "events": 40, "outside": 40, "sentence": "h"}]}},
