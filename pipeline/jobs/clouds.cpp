@@ -99,23 +99,18 @@ std::string named(const core::Crs& crs) {
   return crs.name() + " (" + crs.unit_name() + heights + ")";
 }
 
-/// Hints of one who names CRSs.
-struct CrsHints {
-  std::string of_cloud, of_products, given;
-};
-
-CrsHints hints_of(CrsNamed by) {
-  if (by == CrsNamed::in_pdal_pipeline)
-    return {"name its CRS: \"override_srs\": \"EPSG:25832\" of its readers.las",
-            "name one with 'out_srs' of filters.reprojection right behind the readers, for example ", "CRS of the pipeline: "};
-  return {"name its CRS: --crs EPSG:25832", "name one with --crs, for example --crs ", "--crs "};
+/// What to do about a cloud that states no CRS.
+std::string unstated_hint(const fs::path& file, CrsNamed by) {
+  const io::CrsBeside beside = io::crs_beside(file);
+  return beside.stated + (by == CrsNamed::in_pdal_pipeline ? "name its CRS: \"override_srs\": \"" + beside.example + "\" of its readers.las"
+                                                           : "name its CRS: --crs " + beside.example);
 }
 
-void require_known(const std::string& crs, const CrsHints& hints) {
+void require_known(const std::string& crs, CrsNamed by) {
   try {
     core::Crs{crs};
   } catch (const core::Error& e) {
-    throw core::usage_error(e.what(), hints.given + crs, e.hint());
+    throw core::usage_error(e.what(), (by == CrsNamed::in_pdal_pipeline ? "CRS of the pipeline: " : "--crs ") + crs, e.hint());
   }
 }
 
@@ -123,7 +118,9 @@ void require_known(const std::string& crs, const CrsHints& hints) {
 void require_one_crs(const core::Crs& first, const fs::path& first_file, const Stated& cloud, const fs::path& file, CrsNamed by) {
   if (first.is_geographic())
     throw core::usage_error("its coordinates are degrees (" + first.name() + "), and products need a map projection", first_file.string(),
-                            hints_of(by).of_products +
+                            std::string(by == CrsNamed::in_pdal_pipeline
+                                            ? "name one with 'out_srs' of filters.reprojection right behind the readers, for example "
+                                            : "name one with --crs, for example --crs ") +
                                 core::utm_zone({cloud.is_across ? cloud.middle.x() + 180.0 : cloud.middle.x(), cloud.middle.y()}, first));
   if (core::is_same_crs(*cloud.crs, first)) return;
   const bool units = cloud.crs->unit_name() != first.unit_name() || (cloud.crs->has_height_unit() && first.has_height_unit() &&
@@ -159,7 +156,7 @@ std::vector<fs::path> cloud_files(const std::vector<std::string>& names) {
 }
 
 core::Value cloud_survey(const std::vector<fs::path>& files, const std::string& crs, CrsNamed by) {
-  if (!crs.empty()) require_known(crs, hints_of(by));
+  if (!crs.empty()) require_known(crs, by);
   core::Value points = core::Value::array();
   std::optional<core::Crs> first;
   fs::path first_file;
@@ -168,7 +165,7 @@ core::Value cloud_survey(const std::vector<fs::path>& files, const std::string& 
     cloud["file"] = fs::absolute(file).lexically_normal().string();
     if (!has_ending(file, {".las", ".laz"})) continue;  // their readers know them
     const Stated stated = stated_crs(file);
-    if (!stated.crs && crs.empty()) throw core::usage_error(stated.why, file.string(), hints_of(by).of_cloud);
+    if (!stated.crs && crs.empty()) throw core::usage_error(stated.why, file.string(), unstated_hint(file, by));
     if (!stated.crs) cloud["crs"] = crs;
     if (!crs.empty()) continue;
     if (!first) first = stated.crs, first_file = file;
