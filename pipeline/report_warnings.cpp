@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <map>
+#include <string_view>
+#include <utility>
 
 #include "core/config/units.h"
 #include "io/las/las_box.h"
@@ -17,9 +21,12 @@ using core::Value;
 constexpr std::string_view box_code = "points.outside_box", damage_code = "work.damaged", geometry_code = "geometry.contradiction",
                            mistake_code = "geometry.mistake", control_code = "control.unused", buildings_code = "buildings.none",
                            scale_code = "crs.scale", outside_code = "crs.outside", fixes_code = "trajectory.fixes",
-                           noise_code = "trajectory.imu_noise", events_code = "events.outside", sigmas_code = "trajectory.gnss_sigmas";
+                           noise_code = "trajectory.imu_noise", events_code = "events.outside", sigmas_code = "trajectory.gnss_sigmas",
+                           same_file_code = "clouds.same_file", duplicates_code = "clouds.duplicates";
 constexpr double contradicting_share = 0.05, least_contradicting = 10.0;  // of the fixes; fixes
-constexpr double warned_noise = 30.0;                                     // times the stated noise
+constexpr size_t same_files_named = 5;
+constexpr double warned_duplicates = 1e-3;  // of the first returns
+constexpr double warned_noise = 30.0;       // times the stated noise
 
 /// An example for each file, and one for those that the report counts without.
 void add_boxes(const Value& wrong, std::vector<Warning>& out) {
@@ -30,6 +37,33 @@ void add_boxes(const Value& wrong, std::vector<Warning>& out) {
     out.push_back({std::string(box_code),
                    "and " + std::to_string(more) + " more " + io::wrong_box + ": report.json",
                    {{"more", static_cast<double>(more), {}}}});
+}
+
+bool is_cloud_file(const std::string& file) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  constexpr std::string_view las = ".las", laz = ".laz";
+  const auto is = [&](std::string_view one) {
+    return std::equal(ending.begin(), ending.end(), one.begin(), one.end(), [](char a, char b) { return (a | 0x20) == (b | 0x20); });
+  };
+  return is(las) || is(laz);
+}
+
+/// Clouds of the same length and checksum; each is compared with the first of its kind.
+void add_same_files(const Value& inputs, std::vector<Warning>& out) {
+  std::map<std::pair<std::string, std::int64_t>, std::string> first;
+  size_t same = 0;
+  for (const Value& input : inputs.items()) {
+    const std::string& file = input.find("file")->as_text();
+    if (!is_cloud_file(file)) continue;
+    const auto [known, is_new] = first.try_emplace({input.find("xxh3")->as_text(), input.find("bytes")->as_int()}, file);
+    if (!is_new && ++same <= same_files_named)
+      out.push_back(
+          {std::string(same_file_code), file + " holds the same bytes as " + known->second + ": each of its points is there twice", {}});
+  }
+  if (same > same_files_named)
+    out.push_back({std::string(same_file_code),
+                   "and " + std::to_string(same - same_files_named) + " more clouds that hold the bytes of another: inputs in report.json",
+                   {{"more", static_cast<double>(same - same_files_named), {}}}});
 }
 
 void add_crs(const Value& crs, std::vector<Warning>& out) {
@@ -85,6 +119,12 @@ void add_findings(const std::string& stage, const Value& findings, std::vector<W
   if (stage == "trajectory.ins_gnss") add_trajectory(findings, out);
   if (const Value* outside = findings.find("outside"); outside && (stage == "time.sync" || stage == "trajectory.kinematic"))
     add_events(*outside, out);
+  if (const Value* share = findings.find("duplicate_share"); share && share->as_number() > warned_duplicates)
+    out.push_back(
+        {std::string(duplicates_code),
+         core::format_number(findings.find("duplicates")->as_number()) + " first returns, " + one_decimal(100.0 * share->as_number()) +
+             " % of all, share place, time and number with another: they are not counted in the density, but are in every product",
+         {{"share", share->as_number(), {}}}});
   const Value *named = findings.find("named"), *returns = findings.find("returns");
   if (stage == "quality.points" && named)
     for (const Value& fault : named->items()) out.push_back({fault.find("code")->as_text(), fault.find("sentence")->as_text(), {}});
@@ -102,6 +142,7 @@ std::vector<Warning> warnings_in(const Value& report) {
                    core::counted(damaged->as_int(), "piece of an earlier run was damaged and was done again",
                                  "pieces of an earlier run were damaged and were done again"),
                    {{"pieces", damaged->as_number(), {}}}});
+  if (const Value* inputs = report.find("inputs")) add_same_files(*inputs, out);
   for (const Value& stage : report.find("stages")->items())
     if (const Value* tally = stage.find("tally"))
       if (const Value* wrong = tally->find(io::wrong_box)) add_boxes(*wrong, out);

@@ -9,6 +9,8 @@ const std::vector<WarningKind>& warning_kinds() {
   static const std::vector<WarningKind> kinds{
       {"buildings.none", "No return is of class building (6): terrain.buildings has nothing to work on.",
        "Put filters.classify before it, or have a cloud whose buildings are of class 6; where nothing is built this is right."},
+      {"check.cover", "Covers of check points are not known words: these points count as vegetated.",
+       "Write open, bare, urban, grass, crops, brush or forest in the table, or name those without vegetation in quality.points.open."},
       {"check.few", "Fewer than three check points could be compared: no accuracy is stated by them.",
        "Survey more check points within the area; ASPRS 2024 wants 30 for a statement of accuracy."},
       {"check.heights", "The ground lies to one side of the check points on all lines, beyond four sigmas.",
@@ -23,6 +25,11 @@ const std::vector<WarningKind>& warning_kinds() {
        "Where all do, compare the CRS and the order of the columns of this [[control]] with the survey's."},
       {"check.roof", "A surveyed roof lies elsewhere than the others place it, or its edges contradict one another.",
        "Compare it with a newer picture: it may have been changed since, or surveyed wrongly; it counts in no figure."},
+      {"clouds.duplicates", "More than 1 in 1000 first returns share place, time and return number with another: points are there twice.",
+       "Look for tiles with buffers, or for a tile in two deliveries, and have them cut to their squares; density and spacing are without "
+       "the copies."},
+      {"clouds.same_file", "Two clouds of the run hold the same bytes under two names: their points are there twice.",
+       "Name one of them, or take the copy out of the folder; density and every count of points are too large with it."},
       {"control.unused", "A [[control]] of the survey is used by no stage of the run.",
        "Add a stage that uses it (quality.points for check points, calib.adjust for control), or leave it out of the survey."},
       {"crs.outside", "The data lie far outside the area of use of the products' CRS.",

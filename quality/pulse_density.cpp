@@ -14,13 +14,18 @@ constexpr double least_pulses = 0.01;  // of all: a line of fewer is not the spa
 /// First returns by cell of a lattice that reaches one cell farther than the window.
 using CellCounts = std::vector<std::uint32_t>;
 
-std::map<int, CellCounts> counts_by_line(const core::Block& b, const core::Lattice& around) {
+std::map<int, CellCounts> counts_by_line(const core::Block& b, const core::Lattice& around, const std::vector<std::uint8_t>& repeated,
+                                         std::uint64_t& duplicates) {
   std::map<int, CellCounts> out;
   for (size_t p = 0; p < b.size(); ++p) {
     if (!is_first(b, p)) continue;
     const std::int64_t i = core::cell_index(b.origin.x() + b.x[p], around.cell) - around.i0,
                        j = core::cell_index(b.origin.y() + b.y[p], around.cell) - around.j0;
     if (i < 0 || j < 0 || i >= around.nx || j >= around.ny) continue;
+    if (!repeated.empty() && repeated[p]) {
+      duplicates += i > 0 && j > 0 && i + 1 < around.nx && j + 1 < around.ny;
+      continue;
+    }
     CellCounts& counts = out[b.strip.empty() ? 0 : b.strip[p]];
     if (counts.empty()) counts.assign(around.size(), 0);
     ++counts[around.at(static_cast<int>(i), static_cast<int>(j))];
@@ -60,13 +65,14 @@ LineDensity density_of(const PulseSums& s, double cell) {
 
 }  // namespace
 
-PulseCells count_pulses(const core::Block& block, const core::Lattice& w) {
+PulseCells count_pulses(const core::Block& block, const core::Lattice& w, const std::vector<std::uint8_t>& repeated) {
   PulseCells out{core::Grid(w), core::Grid(w), {}, {}};
   out.density.count.assign(w.size(), 0);
   const core::Lattice around{w.cell, w.i0 - 1, w.j0 - 1, w.nx + 2, w.ny + 2};
   CellCounts all(around.size(), 0);
   const double area = w.cell * w.cell;
-  for (const auto& [line, counts] : counts_by_line(block, around)) {
+  std::uint64_t duplicates = 0;
+  for (const auto& [line, counts] : counts_by_line(block, around, repeated, duplicates)) {
     out.lines.push_back(sums_of(line, counts, around, nullptr));
     for (size_t c = 0; c < all.size(); ++c) all[c] += counts[c];
     for (int j = 0; j < w.ny; ++j)
@@ -82,6 +88,7 @@ PulseCells count_pulses(const core::Block& block, const core::Lattice& w) {
   }
   std::map<std::uint32_t, std::uint64_t> bins;
   out.lines.push_back(sums_of(all_lines, all, around, &bins));
+  out.lines.back().duplicates = duplicates;
   for (const auto& [pulses, cells] : bins) out.bins.push_back({pulses, cells});
   for (int j = 0; j < w.ny; ++j)
     for (int i = 0; i < w.nx; ++i)
@@ -98,6 +105,7 @@ SwathDensity judge_density(const std::vector<PulseSums>& lines, const std::vecto
     PulseSums& to = sums[s.line];
     to.line = s.line;
     to.cells += s.cells, to.pulses += s.pulses, to.inner_cells += s.inner_cells, to.inner_pulses += s.inner_pulses;
+    to.duplicates += s.duplicates;
   }
   SwathDensity out{cell};
   for (const auto& [line, s] : sums) {
@@ -107,6 +115,8 @@ SwathDensity judge_density(const std::vector<PulseSums>& lines, const std::vecto
     else
       out.lines.push_back(density_of(s, cell));
   }
+  out.duplicates = sums[all_lines].duplicates;
+  if (out.duplicates > 0) out.duplicate_share = static_cast<double>(out.duplicates) / static_cast<double>(out.all.pulses + out.duplicates);
   for (const LineDensity& l : out.lines)
     if (static_cast<double>(l.pulses) > least_pulses * static_cast<double>(out.all.pulses) &&
         (out.single_density == 0.0 || l.density < out.single_density))

@@ -23,6 +23,7 @@ inline bool is_first(const core::Block& b, std::size_t p) {
 struct PulseSums {
   std::int32_t line = 0;
   std::uint64_t cells = 0, pulses = 0, inner_cells = 0, inner_pulses = 0;
+  std::uint64_t duplicates = 0;  ///< of all_lines: first returns that were not counted because another one is the same
 };
 
 /// Inner cells of all lines together that hold `pulses`.
@@ -38,8 +39,9 @@ struct PulseCells {
   std::vector<PulseBin> bins;
 };
 
-/// The cells of `window`; points up to one cell around it are needed. Needs no column; without strip all points are of line 0.
-PulseCells count_pulses(const core::Block& block, const core::Lattice& window);
+/// The cells of `window`; points up to one cell around it are needed. Needs no column; without strip all points are of line 0. `repeated`:
+/// 1 for points that are left out (repeated_returns.h), or empty.
+PulseCells count_pulses(const core::Block& block, const core::Lattice& window, const std::vector<std::uint8_t>& repeated = {});
 
 /// ANPD and ANPS of one line or of all.
 struct LineDensity {
@@ -61,6 +63,8 @@ void describe(const LineDensity& r, V& v) {
 struct SwathDensity {
   double cell = 0.0;
   LineDensity all{};
+  std::uint64_t duplicates = 0;
+  double duplicate_share = 0.0;                       ///< of the first returns with them
   double single_density = 0.0, single_spacing = 0.0;  ///< of the sparsest line that has more than a hundredth of the pulses
   double low = 0.0, median = 0.0, high = 0.0;         ///< 1/m2: 5, 50, 95 % of the inner cells have less
   std::vector<LineDensity> lines{};
@@ -70,6 +74,8 @@ template <class V>
 void describe(const SwathDensity& r, V& v) {
   v.result("cell_m", r.cell, core::metres(2), "Side of the cells.");
   v.result("pulses", r.all.pulses, "First returns of all lines.");
+  v.result("duplicates", r.duplicates, core::if_any(), "First returns that share place, time and number with another: not counted.");
+  v.result("duplicate_share", r.duplicate_share, core::if_any(), "Their share of the first returns.");
   v.result("area_km2", 1e-6 * r.all.area, "Area in which they were counted.");
   v.result("density", r.all.density, core::plain().in_summary(), "First returns of all lines per square metre (ANPD).");
   v.result("spacing_m", r.all.spacing, core::metres(3).in_summary(), "1 / sqrt(density): ANPS.");

@@ -2,6 +2,7 @@
 #include "io/las/cloud_crs.h"
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <vector>
 
@@ -16,6 +17,7 @@ namespace fs = std::filesystem;
 using core::Heights;
 
 constexpr const char* hint = "name it as points.crs in the survey, for example crs = \"EPSG:25832+7837\" in [[points]]";
+constexpr std::size_t longest_prj = 1 << 16;
 
 std::string crs_example(const core::Crs& crs) { return crs.epsg() ? "EPSG:" + std::to_string(crs.epsg()) : std::string("EPSG:32632"); }
 
@@ -38,17 +40,55 @@ void hold_heights(const core::Crs& cloud, const core::Crs& run, const std::strin
                               : "state a vertical part in the survey's crs");
 }
 
+/// The code of the CRS of that name whose coordinates are the same: WKT of ESRI has names alone. 0: none.
+int code_by_name(const core::Crs& stated) {
+  if (stated.epsg() != 0 || stated.has_vertical()) return stated.epsg();
+  constexpr double same = 0.01;  // units of the CRS
+  const core::Crs known(stated.name());
+  double west = 0.0, south = 0.0, east = 0.0, north = 0.0;
+  if (!known.area_of_use(west, south, east, north)) return 0;
+  const Eigen::Vector3d at = core::Transform(core::wgs84_geodetic(), known)({0.5 * (west + east), 0.5 * (south + north), 0.0});
+  const Eigen::Vector3d moved = core::Transform(known, stated)(at);
+  return (moved - at).head<2>().norm() < same ? known.epsg() : 0;
+}
+
 core::Crs run_crs(const Survey& survey) { return survey.crs.empty() ? cloud_crs(survey, survey.points.front()) : core::Crs(survey.crs); }
 
 }  // namespace
+
+CrsBeside crs_beside(const fs::path& cloud) {
+  for (const char* ending : {".prj", ".PRJ"}) {
+    const fs::path file = fs::path(cloud).replace_extension(ending);
+    std::ifstream in(file, std::ios::binary);
+    std::string text(longest_prj, '\0');
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    if (text.empty()) continue;
+    CrsBeside out;
+    try {
+      const core::Crs crs(text);
+      out = {file.filename().string() + " beside it states " + crs.name() + ": ", "EPSG:CODE"};
+      if (const int code = code_by_name(crs)) out.example = "EPSG:" + std::to_string(code);
+      if (crs.epsg() && crs.vertical_epsg()) out.example += "+" + std::to_string(crs.vertical_epsg());
+    } catch (const core::Error&) {  // what is not understood is not stated
+    }
+    return out;
+  }
+  return {};
+}
 
 std::string cloud_definition(const Survey& survey, const PointFile& f) {
   if (!f.crs.empty()) return f.crs;
   std::vector<std::string> ignored;
   const fs::path file = resolve(survey, f.file);
   const LasCrs stated = las_crs(read_las_header(file, ignored));
-  if (stated.definition.empty())
-    throw core::Error("states no CRS" + (stated.note.empty() ? std::string() : ": " + stated.note), file.string(), hint);
+  if (stated.definition.empty()) {
+    const CrsBeside beside = crs_beside(file);
+    throw core::Error("states no CRS" + (stated.note.empty() ? std::string() : ": " + stated.note), file.string(),
+                      beside.stated.empty()
+                          ? std::string(hint)
+                          : beside.stated + "name it as points.crs in the survey, crs = \"" + beside.example + "\" in [[points]]");
+  }
   return stated.definition;
 }
 

@@ -2,12 +2,20 @@
 // The coordinate reference systems of point clouds: what the survey says of them, else what they state themselves.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "core/geo/crs.h"
 #include "io/survey/survey.h"
 
 namespace swath::io {
+
+/// A .prj beside a cloud that states no CRS: what a hint says of it. It is not taken unasked: it may be of another file's coordinates.
+struct CrsBeside {
+  std::string stated{};                ///< "a.prj beside it states NAME: "; empty where there is none that is understood
+  std::string example = "EPSG:25832";  ///< the CRS to name: its code, EPSG:CODE where the file states none
+};
+CrsBeside crs_beside(const std::filesystem::path& cloud);
 
 /// What states the CRS of a cloud: WKT, "EPSG:32632" ... Throws core::Error that names points.crs where neither survey nor file states it.
 std::string cloud_definition(const Survey& survey, const PointFile& file);

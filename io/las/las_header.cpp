@@ -13,6 +13,7 @@
 #include "core/config/units.h"
 #include "core/error.h"
 #include "io/las/las_bytes.h"
+#include "io/las/other_cloud.h"
 #include "io/text/output_file.h"
 
 namespace swath::io {
@@ -167,6 +168,14 @@ void check_records(const LasHeader& h, std::uint64_t file_size, const std::files
     warnings.push_back(core::counted(file_size - end, "byte after the last point is", "bytes after the last point are") + " not used");
 }
 
+[[noreturn]] void refuse_other(const std::vector<std::uint8_t>& first, const std::filesystem::path& file) {
+  const OtherCloud kind = other_cloud(std::string(first.begin(), first.end()));
+  if (kind != OtherCloud::none)
+    throw core::Error("not a LAS file: it is " + name_of(kind), at_byte(file, 0),
+                      "LAS 1.0 to 1.4 and LAZ are read here; " + conversion_of(kind, file));
+  throw core::Error("not a LAS file: it does not begin with LASF", at_byte(file, 0), "LAS 1.0 to 1.4 and LAZ are read here");
+}
+
 }  // namespace
 
 std::optional<LasLayout> las_layout(int format) {
@@ -200,8 +209,7 @@ std::optional<int> LasHeader::extra_offset(const std::string& name) const {
 LasHeader read_las_header(const std::filesystem::path& file, std::vector<std::string>& warnings) {
   Input in(file);
   const std::vector<std::uint8_t> first = in.read(0, std::min<std::uint64_t>(in.size(), 375), "header");
-  if (first.size() < 4 || std::memcmp(first.data(), "LASF", 4) != 0)
-    throw core::Error("not a LAS file: it does not begin with LASF", at_byte(file, 0), "LAS 1.0 to 1.4 and LAZ are read here");
+  if (first.size() < 4 || std::memcmp(first.data(), "LASF", 4) != 0) refuse_other(first, file);
   if (first.size() < 227) in.read(0, 227, "header");
   LasHeader h;
   h.version_major = first[24];

@@ -18,6 +18,7 @@
 #include "io/gnss/rinex_header.h"
 #include "io/gnss/rtklib_pos.h"
 #include "io/las/describe_las.h"
+#include "io/las/other_cloud.h"
 #include "io/raster/geotiff.h"
 #include "io/records/describe_events.h"
 #include "io/records/describe_pcap.h"
@@ -230,6 +231,8 @@ Value describe_content(const Path& path) {
   if (start.empty()) throw core::Error("the file is empty", path.string());
   const auto begins = [&](std::string_view magic) { return start.compare(0, magic.size(), magic) == 0; };
   if (begins("LASF")) return describe_las(path);
+  if (const OtherCloud kind = other_cloud(start); kind != OtherCloud::none && kind != OtherCloud::text)
+    throw core::Error("is " + name_of(kind) + ", which is not read here", path.string(), conversion_of(kind, path));
   if (begins(std::string_view("CSD\0", 4))) return describe_csd(path);
   if (begins("\x93NUMPY")) return describe_npy(path);
   if (looks_like_tag(path)) return describe_tag(path);

@@ -100,19 +100,28 @@ std::string named(const core::Crs& crs) {
   return crs.name() + " (" + crs.unit_name() + heights + ")";
 }
 
-void require_known(const std::string& crs) {
+/// What to do about a cloud that states no CRS.
+std::string unstated_hint(const fs::path& file, CrsNamed by) {
+  const io::CrsBeside beside = io::crs_beside(file);
+  return beside.stated + (by == CrsNamed::in_pdal_pipeline ? "name its CRS: \"override_srs\": \"" + beside.example + "\" of its readers.las"
+                                                           : "name its CRS: --crs " + beside.example);
+}
+
+void require_known(const std::string& crs, CrsNamed by) {
   try {
     core::Crs{crs};
   } catch (const core::Error& e) {
-    throw core::usage_error(e.what(), "--crs " + crs, e.hint());
+    throw core::usage_error(e.what(), (by == CrsNamed::in_pdal_pipeline ? "CRS of the pipeline: " : "--crs ") + crs, e.hint());
   }
 }
 
 /// One CRS for all, in units of length, or an error.
-void require_one_crs(const core::Crs& first, const fs::path& first_file, const Stated& cloud, const fs::path& file) {
+void require_one_crs(const core::Crs& first, const fs::path& first_file, const Stated& cloud, const fs::path& file, CrsNamed by) {
   if (first.is_geographic())
     throw core::usage_error("its coordinates are degrees (" + first.name() + "), and products need a map projection", first_file.string(),
-                            "name one with --crs, for example --crs " +
+                            std::string(by == CrsNamed::in_pdal_pipeline
+                                            ? "name one with 'out_srs' of filters.reprojection right behind the readers, for example "
+                                            : "name one with --crs, for example --crs ") +
                                 core::utm_zone({cloud.is_across ? cloud.middle.x() + 180.0 : cloud.middle.x(), cloud.middle.y()}, first));
   if (core::is_same_crs(*cloud.crs, first)) return;
   const bool units = cloud.crs->unit_name() != first.unit_name() || (cloud.crs->has_height_unit() && first.has_height_unit() &&
@@ -120,7 +129,9 @@ void require_one_crs(const core::Crs& first, const fs::path& first_file, const S
   throw core::usage_error("the clouds are in different " + std::string(units ? "units and CRSs" : "CRSs") + ": this one in " +
                               named(*cloud.crs) + ", " + first_file.string() + " in " + named(first),
                           file.string(),
-                          "name the CRS of the products with --crs, and clouds of others are transformed; or run each alone");
+                          by == CrsNamed::in_pdal_pipeline
+                              ? "filters.reprojection with 'out_srs' right behind the readers names that of the products"
+                              : "name the CRS of the products with --crs, and clouds of others are transformed; or run each alone");
 }
 
 }  // namespace
@@ -145,8 +156,8 @@ std::vector<fs::path> cloud_files(const std::vector<std::string>& names) {
   return out;
 }
 
-core::Value cloud_survey(const std::vector<fs::path>& files, const std::string& crs) {
-  if (!crs.empty()) require_known(crs);
+core::Value cloud_survey(const std::vector<fs::path>& files, const std::string& crs, CrsNamed by) {
+  if (!crs.empty()) require_known(crs, by);
   core::Value points = core::Value::array();
   std::optional<core::Crs> first;
   fs::path first_file;
@@ -155,11 +166,11 @@ core::Value cloud_survey(const std::vector<fs::path>& files, const std::string& 
     cloud["file"] = fs::absolute(file).lexically_normal().string();
     if (!has_ending(file, {".las", ".laz"})) continue;  // their readers know them
     const Stated stated = stated_crs(file);
-    if (!stated.crs && crs.empty()) throw core::usage_error(stated.why, file.string(), "name its CRS: --crs EPSG:25832");
+    if (!stated.crs && crs.empty()) throw core::usage_error(stated.why, file.string(), unstated_hint(file, by));
     if (!stated.crs) cloud["crs"] = crs;
     if (!crs.empty()) continue;
     if (!first) first = stated.crs, first_file = file;
-    require_one_crs(*first, first_file, stated, file);
+    require_one_crs(*first, first_file, stated, file, by);
   }
   core::Value survey = core::Value::object();
   survey["name"] = cloud_name(files);

@@ -14,10 +14,13 @@ namespace swath::pipeline {
 /// ?, [..]) for the files that match. Throws core::Error: no such file, nothing that matches, a folder that cannot be read.
 std::vector<std::filesystem::path> cloud_files(const std::vector<std::string>& names);
 
+/// Who names CRSs: hints say how.
+enum class CrsNamed { on_command_line, in_pdal_pipeline };
+
 /// A survey of these clouds with absolute names, as survey.toml would hold it. `crs`: of the products, and of clouds that state none;
 /// empty: what the clouds state. Throws core::Error (usage) where they state none or different ones and `crs` is empty, or coordinates in
 /// degrees.
-core::Value cloud_survey(const std::vector<std::filesystem::path>& files, const std::string& crs);
+core::Value cloud_survey(const std::vector<std::filesystem::path>& files, const std::string& crs, CrsNamed by = CrsNamed::on_command_line);
 
 /// Why a cloud has no CRS of its own that can be used; empty where it has one. Of an index (EPT, virtual point cloud) that of its files.
 /// Throws core::Error for a file that is not such a cloud.

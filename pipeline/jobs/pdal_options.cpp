@@ -3,7 +3,10 @@
 #include "pipeline/jobs/pdal_options.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
+#include <set>
+#include <sstream>
 
 #include "io/text/toml_text.h"
 
@@ -110,6 +113,30 @@ bool is_the_case(const std::string& type, const std::string& name, const Value& 
   if (at == same.end() || (name == "compression" && type != "writers.las")) return false;
   const std::string text = value.is_text() ? value.as_text() : io::toml_scalar(value);
   return std::find(at->second.begin(), at->second.end(), text) != at->second.end();
+}
+
+std::vector<int> classes_of_limits(const std::string& limits, std::string& why) {
+  constexpr std::string_view dimension = "Classification";
+  std::string plain = limits;
+  std::erase(plain, ' ');
+  std::set<int> out;
+  std::istringstream in(plain);
+  for (std::string one; std::getline(in, one, ',');) {
+    int low = 0, high = 0, used = 0;
+    const bool is_class = one.starts_with(dimension);
+    const std::string range = is_class ? one.substr(dimension.size()) : one;
+    if (!is_class)
+      why = "'" + one + "' is no range of Classification";
+    else if (range.starts_with('!'))
+      why = "'" + one + "' states the classes to leave out: state those to keep";
+    else if (std::sscanf(range.c_str(), "[%d:%d]%n", &low, &high, &used) != 2 || static_cast<size_t>(used) != range.size() || low < 0 ||
+             high > 255 || low > high)
+      why = "'" + one + "' is not Classification[a:b] with classes from 0 to 255";
+    if (!why.empty()) return {};
+    for (int c = low; c <= high; ++c) out.insert(c);
+  }
+  if (out.empty()) why = "no limit is stated";
+  return {out.begin(), out.end()};
 }
 
 }  // namespace swath::pipeline

@@ -37,4 +37,8 @@ std::string pdal_nearest(const std::string& type);
 /// May the option be written because its value is what is the case here: "returns" = "last, only"?
 bool is_the_case(const std::string& type, const std::string& name, const core::Value& value);
 
+/// The classes that the limits of a filters.range keep, "Classification[2:2],Classification[9:9]": ranges of one dimension are
+/// alternatives. Empty where they are none of whole numbers from 0 to 255; `why` then says what they are instead.
+std::vector<int> classes_of_limits(const std::string& limits, std::string& why);
+
 }  // namespace swath::pipeline

@@ -143,7 +143,7 @@ class Translation {
       if (const std::string why = stated[k].empty() ? lack_of_crs(files[k]) : ""; !why.empty())
         throw core::usage_error(why, files[k].string(), "name its CRS as 'override_srs' of its reader, for example \"EPSG:25832\"");
     const auto first = std::find_if(stated.begin(), stated.end(), [](const std::string& one) { return !one.empty(); });
-    survey_ = cloud_survey(files, !target.empty() ? target : first != stated.end() ? *first : "");
+    survey_ = cloud_survey(files, !target.empty() ? target : first != stated.end() ? *first : "", CrsNamed::in_pdal_pipeline);
     for (size_t k = 0; k < stated.size(); ++k)
       if (!stated[k].empty()) survey_["points"].items()[k]["crs"] = stated[k];
     const io::Survey survey = io::read_survey(survey_, fs::path());
@@ -268,21 +268,17 @@ class Translation {
     add(std::move(stage), f.type, f.differs);
   }
 
-  /// Which classes a terrain model is made of: "Classification[2:2]".
+  /// Which classes a terrain model is made of: "Classification[2:2]", or several such ranges.
   void range(const Value& s) {
     const Value* limits = s.find("limits");
     if (!limits) refuse(s, "filters.range has no 'limits'");
     each_option(s, [](const std::string& name, auto&) { return name == "limits"; });
-    std::string plain = text(*limits, "limits");
-    std::erase(plain, ' ');
-    constexpr std::string_view begin = "Classification[";
-    int low = 0, high = 0, used = 0;
-    if (!plain.starts_with(begin) || std::sscanf(plain.c_str() + begin.size(), "%d:%d]%n", &low, &high, &used) != 2 || used == 0 ||
-        begin.size() + static_cast<size_t>(used) != plain.size() || low < 0 || high > 255 || low > high)
-      refuse(*limits, "'" + limits->as_text() + "' has no counterpart here: filters flag points and never delete them",
-             "Classification[2:2] before writers.gdal chooses the terrain model's classes");
+    std::string why;
     classes_ = Value::array();
-    for (int c = low; c <= high; ++c) classes_.push(c);
+    for (const int c : classes_of_limits(text(*limits, "limits"), why)) classes_.push(c);
+    if (!why.empty())
+      refuse(*limits, "'" + limits->as_text() + "' has no counterpart here, filters flag points and never delete them: " + why,
+             "Classification[2:2],Classification[9:9] before writers.gdal chooses the terrain model's classes");
     limited_ = s;
     runs_as_.push_back("filters.range: the classes of terrain.dtm");
   }

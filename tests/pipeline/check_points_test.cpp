@@ -51,7 +51,8 @@ class CheckPoints : public testing::Test {
   static void TearDownTestSuite() { folder_.reset(); }
 
   /// check.csv with `by` metres added to the heights of the rows that `which` names (from 1; 0: all), and a cover.
-  static Outcome run_with(int which, double by, const std::filesystem::path& output) {
+  static Outcome run_with(int which, double by, const std::filesystem::path& output, const std::string& trees = "forest",
+                          const std::string& open = "open") {
     const std::string good = test::read_bytes(*folder_ / "check.csv");
     size_t z = 0;
     test::write_bytes(*folder_ / "check.csv", test::with_rows(good, [&](int k, std::vector<std::string>& cells) {
@@ -59,7 +60,7 @@ class CheckPoints : public testing::Test {
         z = static_cast<size_t>(std::find(cells.begin(), cells.end(), "z") - cells.begin());
       else if (which == 0 || which == k)
         cells[z] = std::to_string(std::stod(cells[z]) + by);
-      cells.push_back(k == 0 ? "cover" : k % 4 == 0 ? "forest" : "open");
+      cells.push_back(k == 0 ? "cover" : k % 4 == 0 ? trees : open);
     }));
     Request r;
     r.config = *folder_ / "points.toml";
@@ -110,6 +111,25 @@ TEST_F(CheckPoints, RightOnesAreJudgedByCoverAndNoneIsNamed) {
   EXPECT_EQ(models, 5);  // open, vegetated, all, and each cover by its name
   const std::string table = test::read_bytes(out / "a/check_points.csv");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 33);
+}
+
+TEST_F(CheckPoints, CoversAreKnownInOtherLanguagesAndUnknownOnesNamed) {
+  const test::TemporaryFolder out;
+  const auto open_of = [](const Outcome& o) {
+    for (const core::Value& a : findings(o).find("accuracy")->items())
+      if (a.find("product")->as_text() == "points" && a.find("cover")->as_text() == "open (NVA)") return a.find("n")->as_int();
+    return std::int64_t{0};
+  };
+  const Outcome english = run_with(0, 0.0, out / "a"), german = run_with(0, 0.0, out / "b", "Wald", "Offen");
+  EXPECT_TRUE(codes(german).empty());
+  EXPECT_EQ(open_of(german), open_of(english));
+  const Outcome unknown = run_with(0, 0.0, out / "c", "B17", "sol nu");
+  EXPECT_EQ(open_of(unknown), open_of(english));
+  ASSERT_EQ(codes(unknown), std::vector<std::string>{"check.cover"});
+  const std::string sentence = findings(unknown).find("named")->items()[0].find("sentence")->as_text();
+  EXPECT_NE(sentence.find("8 check points have covers"), std::string::npos) << sentence;
+  EXPECT_NE(sentence.find("'B17' ("), std::string::npos) << sentence;
+  EXPECT_NE(sentence.find("check.csv"), std::string::npos) << sentence;
 }
 
 TEST_F(CheckPoints, ABadOneAndAWrongGeoidAreNamed) {

@@ -18,10 +18,12 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
           {"type": "quality.points", "findings": {"named": [{"code": "check.heights", "sentence": "a"}, {"code": "check.line", "sentence": "b"},
                                                             {"code": "check.mark", "sentence": "c"}, {"code": "check.few", "sentence": "d"},
                                                             {"code": "check.names", "sentence": "e"}, {"code": "check.outside", "sentence": "f"},
-                                                            {"code": "check.roof", "sentence": "g"}]}},
+                                                            {"code": "check.roof", "sentence": "g"}, {"code": "check.cover", "sentence": "i"}]}},
           {"type": "trajectory.ins_gnss", "findings": {"fixes": {"used": 1061, "down_weighted": 316, "sigmas_overstated": 2.9}, "imu_noise_factor": 64}},
+          {"type": "quality.density", "findings": {"pulses": 900, "duplicates": 100, "duplicate_share": 0.1}},
           {"type": "time.sync", "findings": {"outside": [{"technique": "pc", "events": 40, "outside": 40, "sentence": "h"}]}},
           {"type": "terrain.buildings", "findings": {"buildings": 0, "returns": 0}}, {"type": "terrain.buildings", "findings": {"returns": 7}}],
+          "inputs": [{"file": "a.laz", "bytes": 9, "xxh3": "1"}, {"file": "copy.LAZ", "bytes": 9, "xxh3": "1"}],
           "crs": {"name": "WGS 84 / Arctic", "scale": 0.97, "degrees_outside": 12.5},
           "geometry": {"named": ["range_feet"], "warnings": ["lines disagree", "with ranges in feet: state range_unit"]},
           "limits": [{"name": "outside", "value": 0.3, "limit": 0.1, "held": false, "excess": 0.2},
@@ -56,6 +58,38 @@ TEST(Warnings, AFewContradictingFixesAreNoWarning) {
   EXPECT_EQ(number(R"({"imu_noise_factor": 40})"), 1u);
   EXPECT_EQ(number(R"({"fixes": {"used": 60, "down_weighted": 0, "correlated_share": 0.94}})"), 0u);
   EXPECT_EQ(number(R"({"fixes": {"used": 60, "down_weighted": 0, "sigmas_overstated": 3}})"), 1u);
+}
+
+TEST(Warnings, OneDuplicateIn1000IsNoWarning) {
+  const auto number = [](const std::string& share) {
+    return warnings_in(io::parse_json(R"({"stages": [{"type": "quality.density", "findings": {"pulses": 1000, "duplicates": 1, )"
+                                      R"("duplicate_share": )" +
+                                          share + "}}]}",
+                                      "report"))
+        .size();
+  };
+  EXPECT_EQ(number("0.00099"), 0u);
+  EXPECT_EQ(number("0.0011"), 1u);
+}
+
+TEST(Warnings, CloudsWithTheSameBytesAreNamedBoth) {
+  const auto warned = [](const std::string& inputs) {
+    return warnings_in(io::parse_json(R"({"stages": [], "inputs": [)" + inputs + "]}", "report"));
+  };
+  const auto input = [](const std::string& file, int bytes, const std::string& hash) {
+    return R"({"file": ")" + file + R"(", "bytes": )" + std::to_string(bytes) + R"(, "xxh3": ")" + hash + "\"}";
+  };
+  const auto same = warned(input("a.laz", 9, "1") + "," + input("b.laz", 9, "2") + "," + input("copy.LAZ", 9, "1"));
+  ASSERT_EQ(same.size(), 1u);
+  EXPECT_EQ(same[0].code, "clouds.same_file");
+  EXPECT_NE(same[0].text.find("copy.LAZ holds the same bytes as a.laz"), std::string::npos) << same[0].text;
+  EXPECT_TRUE(warned(input("a.laz", 9, "1") + "," + input("b.laz", 8, "1")).empty());
+  EXPECT_TRUE(warned(input("a.prj", 9, "1") + "," + input("b.prj", 9, "1")).empty()) << "only clouds have points";
+  std::string many = input("a.las", 9, "1");
+  for (int k = 0; k < 8; ++k) many += "," + input(std::to_string(k) + ".las", 9, "1");
+  const auto capped = warned(many);
+  ASSERT_EQ(capped.size(), 6u);
+  EXPECT_NE(capped.back().text.find("3 more"), std::string::npos) << capped.back().text;
 }
 
 TEST(Warnings, AnUnknownCodeNamesTheNearest) {

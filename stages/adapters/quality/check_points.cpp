@@ -11,6 +11,7 @@
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
 #include "io/vector/control.h"
+#include "quality/cover_words.h"
 #include "quality/mark_faults.h"
 #include "quality/roof_planimetry.h"
 #include "report/volumes.h"
@@ -42,7 +43,7 @@ void describe(CheckPointOptions& o, V& v) {
   v.option("name", o.name, "Name of the table and the layer of all check points: NAME.csv, NAME.gpkg.");
   v.option("radius", o.radius, core::above_to(0.0, 20.0), "Ground points within this distance of a check point are compared with it.");
   v.option("surface", o.surface, "plane: through the ground points, at the check point; mean: of their heights.");
-  v.option("open", o.open, "Covers that count as not vegetated; \"\": none stated.");
+  v.option("open", o.open, "Covers, also by their words in other languages, that count as not vegetated; \"\": none stated.");
   v.table("map", o.map, "Class of a map made from the survey.");
 }
 
@@ -245,6 +246,20 @@ void name_records(const MergeJob& job, const Context& context, const Marks& mark
                                             " check points could be compared, fewer than 3: no accuracy is stated by them"});
 }
 
+/// Covers that are neither open by the options nor a known word, with their rows; they count as vegetated.
+void name_covers(const Marks& marks, const std::vector<std::string>& open, CheckPointFindings& found) {
+  std::map<std::string, std::vector<std::string>> unknown;
+  size_t rows = 0;
+  for (const quality::CheckMark& m : marks.list)
+    if (!m.cover.empty() && !quality::is_open_cover(m.cover, open) && quality::cover_in_english(m.cover).empty())
+      unknown[m.cover].push_back(m.place), ++rows;
+  if (unknown.empty()) return;
+  std::vector<std::string> words;
+  for (const auto& [cover, places] : unknown) words.push_back("'" + cover + "' (" + shown(places) + ")");
+  found.named.push_back({"check.cover", core::counted(rows, "check point has a cover", "check points have covers") +
+                                            " that is not a known word, counted as vegetated: " + shown(words)});
+}
+
 void judge_planimetry(const Marks& marks, RoofRows rows, bool has_trajectory, CheckPointFindings& found) {
   if (marks.targets.empty()) return;
   std::vector<double> run_sigmas;
@@ -288,6 +303,7 @@ CheckPointFindings judge_points(const MergeJob& job, const Context& context, con
   found.marks = marks.list.size();
   found.corners = marks.corners;
   name_records(job, context, marks, at, found);
+  name_covers(marks, o.open, found);
   judge_planimetry(marks, std::move(rows), flown != nullptr, found);
   judge_accuracy(marks, at, o, found);
   quality::MarkFaults faults = quality::find_faults(marks.list, readings);

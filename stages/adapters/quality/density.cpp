@@ -2,6 +2,7 @@
 // Density of first returns, of each flight line and of all, for the stages that judge by the spacing of pulses.
 #include "io/text/value_file.h"
 #include "quality/pulse_density.h"
+#include "quality/repeated_returns.h"
 #include "report/value_map.h"
 #include "stages/adapters/quality/quality_stages.h"
 #include "stages/map_overview.h"
@@ -28,7 +29,7 @@ double halo(const PulseDensityOptions& o) { return 1.5 * o.cell.value; }
 
 void count_first_returns(const TileJob& job, const Context& context, const PulseDensityOptions& o) {
   const core::Lattice window = lattice_in(o.cell.value, job.box);
-  const quality::PulseCells cells = quality::count_pulses(job.block, window);
+  const quality::PulseCells cells = quality::count_pulses(job.block, window, quality::repeated_first_returns(job.block));
   std::vector<float> lines(window.size());
   for (size_t c = 0; c < lines.size(); ++c) lines[c] = static_cast<float>(cells.density.count[c]);
   TileRasters{context, swath_density_name}.write(job.key, window,
@@ -60,11 +61,14 @@ quality::SwathDensity judge_first_returns(const MergeJob& job, const Context& co
 Entry pulse_density_stage() {
   return tile<count_first_returns, judge_first_returns>(
       "quality.density", "Density and spacing of first returns, of each flight line and of all together; map as GeoTIFF.",
-      {.columns = {.needs = {Column::flags}, .reads = {Column::strip, Column::return_number, Column::classification}},
+      {.columns = {.needs = {Column::flags},
+                   .reads = {Column::strip, Column::return_number, Column::classification, Column::time, Column::intensity,
+                             Column::return_count, Column::scan_angle, Column::red, Column::green, Column::blue, Column::user_data}},
        .memory =
            [](const PulseDensityOptions& o, const Context& c) {
              // Per cell: counts of up to 20 lines, two grids, GDAL's blocks.
-             return TileMemory{8.0, {{"cell", o.cell.value, c.tile_side, 150.0}}};
+             // Per point: two slots and a mark for duplicates.
+             return TileMemory{26.0, {{"cell", o.cell.value, c.tile_side, 150.0}}};
            },
        .products =
            [](const PulseDensityOptions&) {

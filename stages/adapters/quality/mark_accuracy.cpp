@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/distributions.h"
+#include "quality/cover_words.h"
 
 namespace swath::stages {
 namespace {
@@ -53,8 +54,7 @@ std::vector<CoverAccuracy> accuracy_of(const std::vector<quality::CheckMark>& ma
       const double error = found[m].*difference;
       if (std::isnan(error)) continue;
       const std::string& cover = marks[m].cover;
-      const bool is_open = std::find(open.begin(), open.end(), cover) != open.end();
-      std::vector<std::string> kinds{is_open ? open_cover : vegetated_cover, every_cover};
+      std::vector<std::string> kinds{quality::is_open_cover(cover, open) ? open_cover : vegetated_cover, every_cover};
       if (!cover.empty()) kinds.push_back(cover);
       for (const std::string& kind : kinds) {
         MarkErrors& g = groups[kind];

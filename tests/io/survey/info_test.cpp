@@ -46,6 +46,20 @@ TEST(Info, UnknownFilesAreErrors) {
   EXPECT_THROW(describe_file(folder.path()), core::Error);
 }
 
+TEST(Info, CloudsOfOtherFormatsAreNamedWithTheirConversion) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nend_header\n1 2 3\n");
+  try {
+    describe_file(folder / "a.ply");
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_NE(e.text().find("a PLY file"), std::string::npos) << e.text();
+    EXPECT_NE(e.hint().find("pdal translate a.ply a.laz"), std::string::npos) << e.hint();
+  }
+  test::write_bytes(folder / "a.xyz", "1 2 3\n4 5 6\n");
+  EXPECT_EQ(describe_file(folder / "a.xyz").find("format")->as_text(), "delimited text");
+}
+
 TEST(InfoReference, EveryKind) {
   SWATH_SHARED_OR_SKIP(data, "data");
   for (const auto& [name, format] : {std::pair{"tiny_survey/laser_socs.las", "LAS"},

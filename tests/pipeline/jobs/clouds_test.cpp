@@ -98,6 +98,26 @@ TEST_F(Clouds, ACrsThatIsNotStatedIsAskedFor) {
   EXPECT_NE(fault_of({bare}, "EPSG:1").find("--crs EPSG:1"), std::string::npos);
 }
 
+TEST_F(Clouds, APrjBesideACloudIsMentioned) {
+  const auto bare = cloud("bare.laz", "");
+  test::write_bytes("bare.prj", core::Crs("EPSG:2056").wkt1());
+  EXPECT_NE(fault_of({bare}).find("bare.prj beside it states CH1903+ / LV95: name its CRS: --crs EPSG:2056"), std::string::npos)
+      << fault_of({bare});
+  test::write_bytes("bare.prj", R"(PROJCS["CH1903+_LV95",GEOGCS["GCS_CH1903+",DATUM["D_CH1903+",SPHEROID["Bessel_1841",6377397.155,)"
+                                R"(299.1528128]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],)"
+                                R"(PROJECTION["Hotine_Oblique_Mercator_Azimuth_Center"],PARAMETER["False_Easting",2600000.0],)"
+                                R"(PARAMETER["False_Northing",1200000.0],PARAMETER["Scale_Factor",1.0],PARAMETER["Azimuth",90.0],)"
+                                R"(PARAMETER["Longitude_Of_Center",7.439583333333333],PARAMETER["Latitude_Of_Center",46.95240555555556],)"
+                                R"(UNIT["Meter",1.0]])");
+  EXPECT_NE(fault_of({bare}).find("bare.prj beside it states CH1903+ / LV95: name its CRS: --crs EPSG:2056"), std::string::npos)
+      << "WKT of ESRI has no codes: " << fault_of({bare});
+  const std::string site = core::Crs("+proj=tmerc +lat_0=47 +lon_0=11 +x_0=1000 +y_0=2000 +ellps=GRS80 +units=m").wkt1();
+  test::write_bytes("bare.prj", site);
+  EXPECT_NE(fault_of({bare}).find("--crs EPSG:CODE"), std::string::npos) << fault_of({bare});
+  test::write_bytes("bare.prj", "nothing that is understood");
+  EXPECT_EQ(fault_of({bare}).find("beside"), std::string::npos) << fault_of({bare});
+}
+
 TEST_F(Clouds, DifferentCrssAndUnitsAreNamed) {
   const auto a = cloud("a.laz", "EPSG:32632"), zone = cloud("zone.laz", "EPSG:32633"), feet = cloud("feet.laz", "EPSG:2994");
   EXPECT_NE(fault_of({a, zone}).find("different CRSs"), std::string::npos);

@@ -36,5 +36,23 @@ TEST(PdalOptions, WhatIsTheCaseAnywayMayBeWritten) {
   EXPECT_FALSE(is_the_case("filters.smrf", "ignore", "Classification[18:18]")) << "low noise would be looked at";
 }
 
+TEST(PdalOptions, RangesOfClassesAreAlternatives) {
+  std::string why;
+  const auto classes = [&](const std::string& limits) { return why.clear(), classes_of_limits(limits, why); };
+  EXPECT_EQ(classes("Classification[2:2]"), std::vector<int>{2});
+  EXPECT_EQ(classes("Classification[9:9], Classification[2:3],Classification[3:3]"), (std::vector<int>{2, 3, 9}));
+  EXPECT_EQ(why, "");
+  const auto refused = [&](const std::string& limits, const std::string& reason) {
+    EXPECT_TRUE(classes(limits).empty()) << limits;
+    EXPECT_NE(why.find(reason), std::string::npos) << limits << ": " << why;
+  };
+  refused("Classification[2:2],Z[0:100]", "'Z[0:100]' is no range of Classification");
+  refused("Classification![7:7]", "state those to keep");
+  refused("Classification[2:256]", "classes from 0 to 255");
+  refused("Classification[3:2]", "classes from 0 to 255");
+  refused("Classification[2:2]x", "is not Classification[a:b]");
+  refused("", "no limit");
+}
+
 }  // namespace
 }  // namespace swath::pipeline

@@ -124,6 +124,29 @@ TEST_F(Pdal, TheCrsOfAReaderIsThatOfItsFileAlone) {
       << "nothing names the CRS of the products";
 }
 
+TEST_F(Pdal, HintsNameWhatAPipelineCanState) {
+  const io::LasHeader bare = test::sample_header(6);
+  test::write_sample("bare.laz", bare, test::sample_points(bare, 100), 1);
+  const auto hint = [](const std::string& json) {
+    try {
+      read(json);
+    } catch (const core::Error& e) {
+      return e.hint();
+    }
+    return std::string();
+  };
+  EXPECT_NE(hint(R"(["bare.laz", "p.laz"])").find("override_srs"), std::string::npos);
+  EXPECT_NE(hint(R"(["metres.laz", "feet.laz", "p.laz"])").find("out_srs"), std::string::npos);
+  EXPECT_EQ(hint(R"(["bare.laz", "p.laz"])").find("--crs"), std::string::npos);
+  EXPECT_EQ(hint(R"(["metres.laz", "feet.laz", "p.laz"])").find("--crs"), std::string::npos);
+}
+
+TEST_F(Pdal, SeveralRangesOfClassesMakeOneModel) {
+  const Value c = config(chain(R"({"type": "filters.range", "limits": "Classification[2:2],Classification[9:9]"})",
+                               R"({"type": "writers.gdal", "filename": "dtm.tif", "resolution": 1, "output_type": "idw"})"));
+  EXPECT_EQ(io::to_json(*c.find("stage")->items()[1].find("classes")), io::to_json(io::parse_json("[2, 9]", "made")));
+}
+
 TEST_F(Pdal, PointsAreTransformedBeforeAllElse) {
   EXPECT_NE(fault_of(chain(R"({"type": "filters.smrf"}, {"type": "filters.reprojection", "out_srs": "EPSG:32610"})"))
                 .find("filters.reprojection goes right behind the readers"),
