@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calib/block/block_config.h"
 #include "calib/block/direct_orientation.h"
 #include "calib/block/orientation_table.h"
 #include "core/config/units.h"
