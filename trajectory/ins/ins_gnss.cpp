@@ -37,6 +37,7 @@ constexpr double most_rate = 2.0;       // rad/s, rms over the record
 constexpr int most_iterations = 8;
 constexpr double settled = 0.05;    // sigmas by which the trajectory may still move
 constexpr double first_gate = 1e5;  // NIS in the first pass, whose start may be degrees off
+constexpr double stays = 0.9;       // of the gate before: spoilt by outliers no more
 
 std::string seconds(double t) { return core::format_number(std::round(t * 1000) / 1000); }
 
@@ -168,18 +169,24 @@ class PassCount {
 };
 
 /// Raises the IMU's noise to what the innovations ask for. Outliers, and a start that they spoilt, make them large as well: it is judged by
-/// passes about the first run (`again`) with a gate among innovations that may be large alike.
-template <class Pass>
-bool adapt_to_motion(Problem& problem, const SmootherRun& first, const Pass& again) {
-  if (!is_rough(problem, first.outcomes)) return false;
-  const double before = problem.roughness, gate = problem.gate;
-  problem.gate = gate_among(problem, first.outcomes);
-  std::vector<FixOutcome> outcomes = again();
-  do {
+/// passes about the run, repeated (`smooth`) with a gate among innovations that may be large alike until the gate stays. True where it did.
+template <class Smooth, class Pass>
+bool adapt_to_motion(Problem& problem, const SmootherRun& run, const Smooth& smooth, const Pass& pass) {
+  if (!is_rough(problem, run.outcomes)) return false;
+  const double before = problem.roughness, first = problem.gate;
+  double last = first;
+  for (int i = 0; i < most_iterations; ++i) {
+    problem.gate = gate_among(problem, run.outcomes);
+    smooth();
+    if (problem.gate > stays * last) break;
+    last = problem.gate;
+  }
+  std::vector<FixOutcome> outcomes = run.outcomes;
+  while (adapt_imu(problem, outcomes)) {
     problem.gate = gate_among(problem, outcomes);
-    outcomes = again();
-  } while (adapt_imu(problem, outcomes));
-  problem.gate = gate;
+    outcomes = pass();
+  }
+  problem.gate = first;
   return problem.roughness > before;
 }
 
@@ -242,7 +249,11 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
     for (size_t k = 0; k < nodes.size(); ++k) reference[k] = run.nodes[k].estimate;
   };
   refer();
-  if (adapt_to_motion(problem, run, [&] { return run_forward(problem, about(run.nodes.front())); })) {
+  const auto smooth_again = [&] {
+    run = run_smoother(problem, about(run.nodes.front()), false);
+    refer();
+  };
+  if (adapt_to_motion(problem, run, smooth_again, [&] { return run_forward(problem, about(run.nodes.front())); })) {
     run = run_smoother(problem, from_scratch(), false);
     refer();
   }
