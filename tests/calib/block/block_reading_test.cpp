@@ -132,10 +132,6 @@ TEST(BlockReading, CovariancesOfValuesToStartFromAreNoObservations) {
       EXPECT_EQ(read.block.chain.size(), stations || angles ? images : 0);
       for (const NavigationStep& step : read.block.chain) EXPECT_EQ(step.root.rows(), 3 * (stations + angles));
     }
-  config.images.stations = config.images.angle_use = ImageValues::start;
-  ReadBlock read = read_block(config, file);
-  const BlockSolution s = adjust_block(read.block, config.adjust);
-  EXPECT_EQ(s.inference.redundancy_of[1], 0.0) << "no station takes part";
 }
 
 /// Image points of a program that had the images smaller would be taken for others, all of them by one factor.
