@@ -25,7 +25,7 @@ TEST(PlanPage, HoldsMapsLinesAndErrors) {
 
 TEST(PlanPage, WarningsComeFirst) {
   const std::string html = page_of("height = \"600 m\"\n[[base]]\nname = \"far\"\neast = \"500000 m\"\nnorth = \"5300000 m\"");
-  EXPECT_NE(html.find("need a look"), std::string::npos);
+  EXPECT_NE(html.find("needs a look"), std::string::npos);
   EXPECT_LT(html.find("50 km"), html.find("The flight in figures"));
 }
 
