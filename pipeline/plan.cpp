@@ -68,26 +68,26 @@ void apply_set(Value& tree, const std::string& set) {
   const Value value = set_value(set.substr(equals + 1));
   if (path.starts_with("run.")) return set_member(tree["run"], path.substr(4), value, set);
   std::vector<std::string> types;
-  bool found = false;
+  std::vector<Value*> named;
+  size_t longest = 0;  // name of a stage that begins the path wins: "quality.swath.anps" is no option of report.quality
   if (Value* list = tree.find("stage"); list && list->is_array())
     for (Value& stage : list->items()) {
       const Value* type = stage.find("type");
       if (!type || !type->is_text()) continue;
       types.push_back(type->as_text());
-      // The longest stage name that begins the path wins: options of sub-tables have dots of their own.
       for (size_t d = path.find('.'); d != std::string::npos; d = path.find('.', d + 1)) {
-        if (!is_named(type->as_text(), path.substr(0, d))) continue;
-        set_member(stage, path.substr(d + 1), value, set);
-        found = true;
-        break;
+        if (d < longest || !is_named(type->as_text(), path.substr(0, d))) continue;
+        if (d > longest) named.clear(), longest = d;
+        named.push_back(&stage);
       }
     }
-  if (found) return;
+  for (Value* stage : named) set_member(*stage, path.substr(longest + 1), value, set);
+  if (!named.empty()) return;
   const std::string near = core::nearest(path.substr(0, dot), types);
-  std::string known;
-  for (const std::string& t : types) known += (known.empty() ? "" : ", ") + t;
+  std::string known = "its stages: run";
+  for (const std::string& t : types) known += ", " + t;
   throw core::usage_error("no stage '" + path.substr(0, dot) + "' in this pipeline", "--set " + set,
-                          near.empty() ? "its stages: run, " + known : "did you mean '" + near + "'?");
+                          near.empty() ? known : "did you mean '" + near + "'?");
 }
 
 /// What a stage uses of others and the plan does not name, where there are points for it.

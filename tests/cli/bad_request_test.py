@@ -159,7 +159,8 @@ class Clouds(Case):
         self.assertEqual(stage(report, "writers.las")["counts"], {"in": len(points), "out": len(points)})
 
     def test_one_point(self):
-        self.refuse_cloud([(500010.5, 5300010.5, 100.0)])
+        toml = cloud_survey(self.folder / "survey", [(500010.5, 5300010.5, 100.0)])
+        self.assert_bad_data(toml, r"the only point is noise \(class 7 or 18\)", config=CLOUD)  # it is isolated
 
     def test_collinear_points(self):
         self.refuse_cloud([(500000.5 + i, 5300000.5 + i, 100.0) for i in range(200)])

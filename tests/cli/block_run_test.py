@@ -212,7 +212,7 @@ class BlockRuns(Case):
                      "block.adjust.drift=strip")
         self.assert_error(done, 2, "drift and datum have no effect")
         survey = self.flown / "survey.toml"
-        survey.write_text(re.sub(r'lever_arm = "[^"\[]*"', 'lever_arm = "free"', survey.read_text()))
+        survey.write_text(re.sub(r'(\[camera\.sigma\]\n[^\[]*?)lever_arm = "[^"]*"', r'\1lever_arm = "free"', survey.read_text(), count=1))
         done = swath("check", self.config, "--survey", survey, "--set", "block.adjust.stations=start")
         self.assert_error(done, 2, "the lever arm of camera camera is free, and stations are values to start from")
 

@@ -199,6 +199,12 @@ TEST(Plan, SurveyStagesAloneNeedNoSourceAndNoMap) {
   EXPECT_NE(c.fault().find("not a map projection"), std::string::npos);
 }
 
+TEST(Plan, TheLongestNameOfAStageIsMeant) {
+  Case c(std::string(good) + "[[stage]]\ntype = \"quality.swath\"\n[[stage]]\ntype = \"report.quality\"\n");
+  c.request.sets = {"quality.swath.anps=5m", "quality.limits.nva=\"1 m\""};
+  EXPECT_EQ(c.fault().find("unknown key"), std::string::npos) << c.fault();
+}
+
 TEST(Plan, ASetThatFitsNothingIsAFault) {
   Case c(good);
   c.request.sets = {"smfr.slope=1"};
