@@ -14,8 +14,9 @@
 namespace swath::quality {
 namespace {
 
-constexpr double step = 0.005;  // m
-constexpr int places = 2 * static_cast<int>(farthest_edge / step + 0.5) + 1;
+constexpr int steps_aside = 240;  // to either side
+constexpr double step = farthest_edge / steps_aside;
+constexpr int places = 2 * steps_aside + 1;
 constexpr double wrong = 0.02;              // share of pulses: two sigmas of height, and what stands on roofs
 constexpr double certain = 6.0;             // widths from an edge beyond which a pulse is sure to miss or hit
 constexpr double widest_edge_sigma = 0.35;  // m: half the sigma of an edge that nothing is known of
