@@ -37,7 +37,6 @@ constexpr double most_rate = 2.0;       // rad/s, rms over the record
 constexpr int most_iterations = 8;
 constexpr double settled = 0.05;    // sigmas by which the trajectory may still move
 constexpr double first_gate = 1e5;  // NIS in the first pass, whose start may be degrees off
-constexpr double stays = 0.9;       // of the gate before: spoilt by outliers no more
 
 std::string seconds(double t) { return core::format_number(std::round(t * 1000) / 1000); }
 
@@ -168,26 +167,14 @@ class PassCount {
   const core::OnProgress& progress_;
 };
 
-/// Raises the IMU's noise to what the innovations ask for. Outliers, and a start that they spoilt, make them large as well: it is judged by
-/// passes about the run, repeated (`smooth`) with a gate among innovations that may be large alike until the gate stays. True where it did.
-template <class Smooth, class Pass>
-bool adapt_to_motion(Problem& problem, const SmootherRun& run, const Smooth& smooth, const Pass& pass) {
-  if (!is_rough(problem, run.outcomes)) return false;
-  const double before = problem.roughness, first = problem.gate;
-  double last = first;
-  for (int i = 0; i < most_iterations; ++i) {
-    problem.gate = gate_among(problem, run.outcomes);
-    smooth();
-    if (problem.gate > stays * last) break;
-    last = problem.gate;
+/// The first run, with as much noise of the IMU as its innovations ask for.
+template <class Start>
+SmootherRun first_run(Problem& problem, const Start& from_scratch) {
+  SmootherRun run = run_smoother(problem, from_scratch(), false);
+  if (!adapt_imu(problem, run.outcomes)) return run;
+  while (adapt_imu(problem, run_forward(problem, from_scratch()))) {
   }
-  std::vector<FixOutcome> outcomes = run.outcomes;
-  while (adapt_imu(problem, outcomes)) {
-    problem.gate = gate_among(problem, outcomes);
-    outcomes = pass();
-  }
-  problem.gate = first;
-  return problem.roughness > before;
+  return run_smoother(problem, from_scratch(), false);
 }
 
 void refuse_contradicting(const std::vector<double>& weights) {
@@ -234,7 +221,8 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
   // Repeated about the smoothed trajectory until it stays.
   problem.gate = first_gate;
   const auto from_scratch = [&] { return InsFilter(problem, start.estimate, StateVector::Zero(layout.size), start.covariance, nullptr); };
-  SmootherRun run = run_smoother(problem, from_scratch(), false);
+  SmootherRun run = first_run(problem, from_scratch);
+  problem.gate = core::chi_square_limit(options.outlier_probability, 3.0);  // the NIS of a position
   std::vector<Estimate> reference(nodes.size());
   const auto about_with = [&](const Problem& noise, const SmoothedNode& at) {
     const bool attitude = start.attitude_given && &at == &run.nodes.front();  // what is given is that of the beginning
@@ -249,15 +237,6 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
     for (size_t k = 0; k < nodes.size(); ++k) reference[k] = run.nodes[k].estimate;
   };
   refer();
-  const auto smooth_again = [&] {
-    run = run_smoother(problem, about(run.nodes.front()), false);
-    refer();
-  };
-  if (adapt_to_motion(problem, run, smooth_again, [&] { return run_forward(problem, about(run.nodes.front())); })) {
-    run = run_smoother(problem, from_scratch(), false);
-    refer();
-  }
-  problem.gate = core::chi_square_limit(options.outlier_probability, 3.0);  // the NIS of a position
   if (!options.correlated_share)
     for (int i = 0; i < most_iterations && adapt_fixes(problem, run_forward(problem, about(run.nodes.front()))); ++i) {
     }

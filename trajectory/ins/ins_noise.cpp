@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Deviation from the robust weights of the filter itself: a fix beyond the gate is an outlier here only where no neighbour is off with it.
 #include "trajectory/ins/ins_noise.h"
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
-
-#include "core/distributions.h"
-#include "core/statistics.h"
 
 namespace swath::trajectory {
 namespace {
@@ -18,32 +13,10 @@ constexpr double least_share = 0.02;
 constexpr double least_fixes = 100;                  // from which noise is estimated
 constexpr double too_large = 1.5, too_alike = 0.25;  // normalised innovations: mean square, correlation of neighbours
 constexpr double most_roughness = 64;
-constexpr double neighbours_alike = 0.5;  // cosine between the innovations of neighbours that are off together
 constexpr double much_correlated = 0.75;  // below, sigmas cannot be twice too large: the white part is part of them
 constexpr double sure_gain = 10.0;        // of the logarithm of the likelihood; right sigmas gave 3 at most
 constexpr double least_gain = 1.0;        // of a halving: less is noise
 constexpr int most_halvings = 6;          // of the correlated variance: an eighth of the sigma
-
-/// The normalised innovations in order, outliers by their weight.
-std::vector<Vector3d> counted(const Problem& problem, const std::vector<FixOutcome>& outcomes) {
-  std::vector<Vector3d> z;
-  std::vector<double> weight;
-  const double gate = gate_among(problem, outcomes);
-  for (size_t k = 0; k < problem.nodes.size(); ++k) {
-    if (problem.nodes[k].fix < 0) continue;
-    z.push_back(outcomes[k].innovation.cwiseQuotient(outcomes[k].innovation_sigma));
-    weight.push_back(std::min(1.0, gate / outcomes[k].nis));
-  }
-  const auto off_together = [&](size_t a, size_t b) {
-    return weight[a] < 1 && weight[b] < 1 && z[a].dot(z[b]) > neighbours_alike * z[a].norm() * z[b].norm();
-  };
-  std::vector<Vector3d> out;
-  for (size_t k = 0; k < z.size(); ++k) {
-    const bool alone = !(k > 0 && off_together(k - 1, k)) && !(k + 1 < z.size() && off_together(k, k + 1));
-    out.push_back(z[k] * (alone ? weight[k] : std::min(1.0, 2 * std::sqrt(weight[k]))));
-  }
-  return out;
-}
 
 /// Logarithm of the likelihood of the innovations of the fixes that count whole in `among`, up to a constant; axes as independent.
 double log_likelihood(const Problem& problem, const std::vector<FixOutcome>& among, const std::vector<FixOutcome>& outcomes) {
@@ -96,29 +69,19 @@ double overstatement(const Problem& problem, const std::function<std::vector<Fix
   return best - before < sure_gain ? 1.0 : std::sqrt(problem.variance / variance);
 }
 
-double gate_among(const Problem& problem, const std::vector<FixOutcome>& outcomes) {
-  std::vector<double> nis;
-  for (size_t k = 0; k < problem.nodes.size(); ++k)
-    if (problem.nodes[k].fix >= 0 && std::isfinite(outcomes[k].nis)) nis.push_back(outcomes[k].nis);
-  const double usual = core::median(std::move(nis), 0.0) / core::chi_square_limit(0.5, 3.0);
-  return core::chi_square_limit(problem.options.outlier_probability, 3.0) * std::max(1.0, usual);
-}
-
-bool is_rough(const Problem& problem, const std::vector<FixOutcome>& outcomes) {
+bool adapt_imu(Problem& problem, const std::vector<FixOutcome>& outcomes) {
+  if (problem.noise.angle == 0 && problem.noise.velocity == 0) return false;  // stated as perfect
   double alike = 0, squares = 0, n = 0;
   Vector3d before = Vector3d::Zero();
-  for (const Vector3d& z : counted(problem, outcomes)) {
+  for (size_t k = 0; k < problem.nodes.size(); ++k) {
+    if (problem.nodes[k].fix < 0) continue;
+    const Vector3d z = outcomes[k].innovation.cwiseQuotient(outcomes[k].innovation_sigma);
     alike += z.dot(before);
     squares += z.squaredNorm();
     before = z;
     n += 1;
   }
-  return n >= least_fixes && squares / (3 * n) >= too_large && alike / squares >= too_alike;
-}
-
-bool adapt_imu(Problem& problem, const std::vector<FixOutcome>& outcomes) {
-  if (problem.noise.angle == 0 && problem.noise.velocity == 0) return false;  // stated as perfect
-  if (problem.roughness >= most_roughness || !is_rough(problem, outcomes)) return false;
+  if (n < least_fixes || squares / (3 * n) < too_large || alike / squares < too_alike || problem.roughness >= most_roughness) return false;
   problem.roughness *= 2;
   for (double* density : {&problem.noise.angle, &problem.noise.velocity, &problem.noise.gyro_drift, &problem.noise.force_drift})
     *density *= 4;

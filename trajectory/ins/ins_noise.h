@@ -21,16 +21,8 @@ bool adapt_fixes(Problem& problem, const std::vector<FixOutcome>& outcomes);
 /// become more probable. Errors that change far more slowly than correlation_time look like small ones.
 double overstatement(const Problem& problem, const std::function<std::vector<FixOutcome>(const Problem&)>& pass);
 
-/// The NIS beyond which a fix is an outlier where all innovations may be too large alike: the limit of outlier_probability times their
-/// median over what is expected, where that is more than 1.
-double gate_among(const Problem& problem, const std::vector<FixOutcome>& outcomes);
-
-/// Are the innovations too large, and do they follow one another: more motion than the IMU shows, as under vibration? (White noise of the
-/// fixes makes them large too, but not alike.) A fix beyond gate_among that is alone counts with the weight that the gate gives it: an
-/// outlier. Where a neighbour is off with it, it counts as the IMU's, limited to twice the gate.
-bool is_rough(const Problem& problem, const std::vector<FixOutcome>& outcomes);
-
-/// Doubles the IMU's noise where is_rough. True where it did.
+/// Doubles the IMU's noise where the innovations are too large and follow one another: more motion than the IMU shows, as under
+/// vibration. (White noise of the fixes makes them large too, but not alike.) True where it did.
 bool adapt_imu(Problem& problem, const std::vector<FixOutcome>& outcomes);
 
 }  // namespace swath::trajectory

@@ -138,36 +138,6 @@ TEST(InsGnss, OutliersAreDownWeightedAndCounted) {
   EXPECT_LT(dirty.by_sigma().maxCoeff(), 1.8);
 }
 
-TEST(InsGnss, OutliersAreNotTakenForVibration) {
-  for (const double size : {1.0, 10.0}) {
-    Statistics dirty;
-    for (int seed = 1; seed <= 3; ++seed) {
-      Trial run = trial_of(ImuGrade::tactical, static_cast<std::uint64_t>(seed));
-      run.fixes.outliers = 0.10;
-      run.fixes.outlier = size;
-      const InsGnssResult r = run.on(lines_and_turns());
-      EXPECT_EQ(r.report.figures.imu_noise_factor, 1.0) << size << " m, seed " << seed;
-      EXPECT_NEAR(static_cast<double>(r.report.figures.fixes.down_weighted), 120, 40) << size << " m, seed " << seed;
-      dirty.add(r, lines_and_turns());
-    }
-    dirty.print(size > 1 ? "10 % of 10 m" : "10 % of 1 m");
-    EXPECT_LT(dirty.by_sigma().maxCoeff(), 1.8) << size;
-  }
-}
-
-TEST(InsGnss, AnImuUnderVibrationHasItsNoiseRaised) {
-  for (const double outliers : {0.0, 0.10}) {
-    Trial run;
-    run.fixes.outliers = outliers;
-    run.change_imu = [](core::ImuData& imu) {
-      const core::ImuErrorModel m = core::error_model_of(ImuGrade::tactical);
-      test::Dice dice(12);
-      for (size_t k = 0; k < imu.size(); ++k) imu.velocity[k] += 60 * m.velocity_random_walk.value * std::sqrt(imu.step[k]) * dice.vector();
-    };
-    EXPECT_GE(run.on(lines_and_turns()).report.figures.imu_noise_factor, 4.0) << outliers;
-  }
-}
-
 TEST(InsGnss, TheLatencyOfTheFixesIsFound) {
   Statistics s;
   for (int seed = 1; seed <= 3; ++seed) {

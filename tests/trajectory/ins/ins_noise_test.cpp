@@ -114,43 +114,5 @@ TEST(InsNoise, InnovationsThatAreLargeAndAlikeAreTheImus) {
   EXPECT_FALSE(adapt_imu(perfect.problem, perfect.outcomes));
 }
 
-/// Every tenth fix off by so many sigmas, each in its own direction.
-void add_outliers(Pass& pass, double sigmas) {
-  test::Dice dice(8);
-  for (size_t k = 0; k < fixes; k += 10) {
-    FixOutcome& o = pass.outcomes[k];
-    o.innovation += sigma * sigmas * dice.vector().normalized();
-    o.nis = o.innovation.squaredNorm() / (sigma * sigma);
-  }
-}
-
-TEST(InsNoise, OutliersNeitherRaiseTheImusNoiseNorHideIt) {
-  for (const double sigmas : {10.0, 50.0, 300.0}) {
-    Pass right(1.0);
-    add_outliers(right, sigmas);
-    EXPECT_FALSE(is_rough(right.problem, right.outcomes)) << sigmas;
-    Pass rough(3.0, 0.9);
-    add_outliers(rough, sigmas);
-    EXPECT_TRUE(is_rough(rough.problem, rough.outcomes)) << sigmas;
-  }
-  Pass clean(1.0), large(3.0);
-  EXPECT_NEAR(gate_among(clean.problem, clean.outcomes), 21.1, 1.5);
-  EXPECT_NEAR(gate_among(large.problem, large.outcomes), 9 * 21.1, 14.0);
-  add_outliers(clean, 300.0);
-  EXPECT_LT(gate_among(clean.problem, clean.outcomes), 26.0);
-}
-
-TEST(InsNoise, AStretchThatIsOffTogetherIsTheImus) {
-  Pass pass(1.0);
-  test::Dice dice(9);
-  Vector3d off = 20 * dice.vector();
-  for (size_t k = 1000; k < 1400; ++k) {
-    off = 0.98 * off + std::sqrt(1 - 0.98 * 0.98) * 20 * dice.vector();
-    pass.outcomes[k].innovation += sigma * off;
-    pass.outcomes[k].nis = pass.outcomes[k].innovation.squaredNorm() / (sigma * sigma);
-  }
-  EXPECT_TRUE(is_rough(pass.problem, pass.outcomes));
-}
-
 }  // namespace
 }  // namespace swath::trajectory
