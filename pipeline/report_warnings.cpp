@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/config/units.h"
+#include "core/printable.h"
 #include "io/las/las_box.h"
 #include "pipeline/engine/map_fit.h"
 #include "pipeline/limits.h"
@@ -40,12 +41,8 @@ void add_boxes(const Value& wrong, std::vector<Warning>& out) {
 }
 
 bool is_cloud_file(const std::string& file) {
-  const std::string ending = std::filesystem::path(file).extension().string();
-  constexpr std::string_view las = ".las", laz = ".laz";
-  const auto is = [&](std::string_view one) {
-    return std::equal(ending.begin(), ending.end(), one.begin(), one.end(), [](char a, char b) { return (a | 0x20) == (b | 0x20); });
-  };
-  return is(las) || is(laz);
+  const std::string ending = core::lower_case(std::filesystem::path(file).extension().string());
+  return ending == ".las" || ending == ".laz";
 }
 
 /// Clouds of the same length and checksum; each is compared with the first of its kind.

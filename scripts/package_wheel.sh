@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Makes out/packages/swath-*.whl, which holds the Python module, the program, every library that they need beside the C library's and the
 # compiler's own, PROJ's database and the charts' typeface: package_wheel.sh [PYTHON]
-# SWATH_UNITY=OFF compiles as a build with tests does, so that ccache has its objects. SOURCE_DATE_EPOCH dates the files; without it the last commit.
+# Compiled by folders, as scripts/test.sh does, so that ccache has its objects (SWATH_UNITY=OFF: one by one). SOURCE_DATE_EPOCH dates the files; without it the last commit.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 python="${1:-python3}"

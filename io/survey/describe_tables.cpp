@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string_view>
 
 #include "core/config/result_visitors.h"
 #include "core/error.h"
@@ -95,6 +97,13 @@ void describe(const TableFacts& r, V& v) {
   v.result("warnings", r.warnings, "What looks wrong.");
 }
 
+/// The number of the column in a role; nothing where none has it.
+std::optional<size_t> column_of(const ColumnRoles& roles, std::string_view key, const std::vector<std::string>& names) {
+  const auto role = std::find_if(roles.columns.begin(), roles.columns.end(), [&](const auto& c) { return c.first == key; });
+  if (role == roles.columns.end()) return std::nullopt;
+  return static_cast<size_t>(std::find(names.begin(), names.end(), role->second) - names.begin());
+}
+
 /// Times that do not increase, in records that each have a time of their own: a pulse has several returns.
 class TimeOrder {
  public:
@@ -103,10 +112,8 @@ class TimeOrder {
     for (const NamedColumn& c : columns) names.push_back(c.name);
     const ColumnRoles roles = roles_of(names);
     if (roles.kind == TableKind::none || roles.kind == TableKind::laser || roles.kind == TableKind::image_points) return;
-    for (const auto& [key, name] : roles.columns) {
-      if (key == "time") column_ = static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-      has_weeks_ = has_weeks_ || key == "week";
-    }
+    column_ = column_of(roles, "time", names);
+    has_weeks_ = column_of(roles, "week", names).has_value();
   }
   bool is_of(size_t column) const { return column_ == column; }
   void add(double time) {
@@ -156,11 +163,7 @@ EventTable event_table(const DelimitedLayout& layout) {
   EventTable out;
   const ColumnRoles roles = roles_of(layout.names);
   out.are_events = roles.kind == TableKind::event && layout.names.size() == layout.columns;
-  const auto index_of = [&](std::string_view key) {
-    const auto role = std::find_if(roles.columns.begin(), roles.columns.end(), [&](const auto& c) { return c.first == key; });
-    return static_cast<size_t>(std::find(layout.names.begin(), layout.names.end(), role->second) - layout.names.begin());
-  };
-  if (out.are_events) out.time = index_of("time"), out.id = index_of("id");
+  if (out.are_events) out.time = column_of(roles, "time", layout.names).value(), out.id = column_of(roles, "id", layout.names).value();
   return out;
 }
 

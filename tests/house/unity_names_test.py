@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Names that are local to a unit differ within a folder: with SWATH_UNITY a folder's units are compiled as one file (cmake/SwathRoom.cmake).
 
-A build with tests compiles each unit alone and does not see such a clash. Found are constants, types and functions that two files of a folder
+A build that compiles each unit alone (SWATH_UNITY=OFF) does not see such a clash. Found are constants, types and functions that two files of a folder
 define in their unnamed namespaces, and constants and types that a header of the folder has, too; files with compile options of their own stay alone. Functions of one name may differ in their parameters, and two `using` of one name may say the same.
 """
 import collections
