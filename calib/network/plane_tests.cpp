@@ -220,7 +220,7 @@ int reject_groups(PlaneFactors& planes, const PlaneTests& tests, double alpha, d
     bool found = false;
     const auto [begin, end] = planes.groups_of(k);
     for (size_t g = begin; g < end; ++g)
-      if (std::abs(tests.group[g].w) > worst.w) worst = {std::abs(tests.group[g].w), g}, found = true;
+      if (!planes.is_rejected(g) && std::abs(tests.group[g].w) > worst.w) worst = {std::abs(tests.group[g].w), g}, found = true;
     if (found) candidates.push_back(worst);
   }
   std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.w > b.w; });

@@ -52,8 +52,8 @@ bool surface_is_known(const PlaneTests& tests);
 /// where the groups' variances change by 2 % or more.
 bool update_surface(PlaneFactors& planes, const PlaneTests& tests);
 
-/// Leaves out groups with |w| above the critical value of `alpha`, one per plane, the largest first, not more than `share` of all. Returns
-/// their number.
+/// Leaves out groups with |w| above the critical value of `alpha`, one per plane, the largest first, not more than `share` of all together;
+/// none goes twice. Returns the number of those that went now.
 int reject_groups(PlaneFactors& planes, const PlaneTests& tests, double alpha, double share);
 
 }  // namespace swath::calib

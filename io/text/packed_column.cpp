@@ -100,7 +100,7 @@ bool has_numbers(size_t width) { return width == 1 || width == 2 || width == 4 |
 size_t compress(const void* values, size_t n, size_t width, Way way) {
   Codec& c = codec();
   std::vector<std::uint64_t> own((n * width + 7) / 8);
-  std::memcpy(own.data(), values, n * width);
+  if (n > 0) std::memcpy(own.data(), values, n * width);
   if (way == differences) as_numbers(own.data(), width, [n](auto* v) { difference(v, n); });
   c.planes.resize(n * width);
   to_planes(reinterpret_cast<const std::uint8_t*>(own.data()), n, width, c.planes.data());

@@ -145,12 +145,16 @@ TEST(PlaneTests, ADisplacedGroupIsLeftOut) {
   EXPECT_EQ(reject_groups(k.planes, k.tests, 1e-6, 0.0), 0);
   EXPECT_EQ(reject_groups(k.planes, k.tests, 1e-6, 0.1), 1);  // of two lines that disagree one goes
   int out = 0;
-  for (size_t g = begin; g < end; ++g) out += k.planes.weight(g) == 0.0;
+  GroupTest shown;  // what the group that went was tested by
+  size_t gone = begin;
+  for (size_t g = begin; g < end; ++g)
+    if (k.planes.weight(g) == 0.0) ++out, gone = g, shown = k.tests.group[g];
   EXPECT_EQ(out, 1);
   k.planes.linearise(*k.flight.off, k.flight.calibration);
   k.planes.weigh();
   EXPECT_EQ(k.planes.left_out(), 1u);  // and stays out
   k.step();
+  k.tests.group[gone] = shown;  // a group keeps the test that showed it and does not go twice
   EXPECT_EQ(reject_groups(k.planes, k.tests, 1e-6, 0.1), 0);
 }
 

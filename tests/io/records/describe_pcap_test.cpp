@@ -60,7 +60,7 @@ TEST(DescribePcap, ACutFileIsToldAndNextGenerationCounted) {
   std::string next;
   put(next, 0x0a0d0d0a, 4), put(next, 28, 4), put(next, 0x1a2b3c4d, 4), put(next, 1, 4), put(next, ~0ull, 8), put(next, 28, 4);
   std::string f = frame(2368, 102);
-  put(next, 6, 4), put(next, 32 + f.size(), 4), put(next, 0, 12), put(next, f.size(), 4), put(next, f.size(), 4);
+  put(next, 6, 4), put(next, 32 + f.size(), 4), put(next, 0, 8), put(next, 0, 4), put(next, f.size(), 4), put(next, f.size(), 4);
   next += f;
   put(next, 32 + f.size(), 4);
   ASSERT_EQ(f.size() % 4, 0u);
