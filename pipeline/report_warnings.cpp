@@ -55,7 +55,7 @@ void add_same_files(const Value& inputs, std::vector<Warning>& out) {
     const auto [known, is_new] = first.try_emplace({input.find("xxh3")->as_text(), input.find("bytes")->as_int()}, file);
     if (!is_new && ++same <= same_files_named)
       out.push_back(
-          {std::string(same_file_code), file + " holds the same bytes as " + known->second + ": each of its points is there twice", {}});
+          {std::string(same_file_code), file + " holds the same bytes as " + known->second + ": points that it has are there twice", {}});
   }
   if (same > same_files_named)
     out.push_back({std::string(same_file_code),

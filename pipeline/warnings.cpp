@@ -23,7 +23,8 @@ const std::vector<WarningKind>& warning_kinds() {
        "Give each check point a name of its own; all of them are compared."},
       {"check.outside", "Check points lie outside the survey's points.",
        "Where all do, compare the CRS and the order of the columns of this [[control]] with the survey's."},
-      {"check.roof", "A surveyed roof lies elsewhere than the others place it, or its edges contradict one another.",
+      {"check.roof",
+       "A surveyed roof lies elsewhere than the others place it, its edges contradict one another, or they all lie farther out or in.",
        "Compare it with a newer picture: it may have been changed since, or surveyed wrongly; it counts in no figure."},
       {"clouds.duplicates", "More than 1 in 1000 first returns share place, time and return number with another: points are there twice.",
        "Look for tiles with buffers, or for a tile in two deliveries, and have them cut to their squares; density and spacing are without "

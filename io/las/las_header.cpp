@@ -66,21 +66,41 @@ LasVlr parse_vlr_head(const std::uint8_t* b, bool extended) {
   return v;
 }
 
-void parse_counts(LasHeader& h, const std::vector<std::uint8_t>& b, const std::filesystem::path& file, std::vector<std::string>& warnings) {
+/// Records between the header and what follows them; not known of compressed ones.
+std::optional<std::uint64_t> room_for_points(const LasHeader& h, std::uint64_t file_size, std::uint64_t evlr_start) {
+  if (h.compressed || h.record_length == 0) return std::nullopt;
+  std::uint64_t end = file_size;
+  for (const std::uint64_t start : {evlr_start, h.waveform_start})
+    if (start >= h.offset_to_points) end = std::min(end, start);
+  return (end - h.offset_to_points) / h.record_length;
+}
+
+/// Of two counts that differ the one that the file bears out: some writers of LAS 1.4 set but one of them, or leave the other as it was.
+std::uint64_t chosen_count(std::uint64_t count, std::uint32_t legacy, std::optional<std::uint64_t> holds, const std::filesystem::path& file,
+                           std::vector<std::string>& warnings) {
+  const std::string contradiction =
+      "the legacy point count " + std::to_string(legacy) + " contradicts the point count " + std::to_string(count);
+  const bool is_legacy = count == 0 || holds == legacy;
+  const bool is_cut = legacy == (count & 0xffffffffu);  // its lower 32 bits
+  if (!is_legacy && !is_cut && holds != count)
+    throw core::Error(contradiction, at_byte(file, 107), "the header is damaged or its writer is at fault: export the file again");
+  warnings.push_back(contradiction + (is_legacy ? ": the legacy one is taken" : ": the legacy one is not used"));
+  return is_legacy ? legacy : count;
+}
+
+void parse_counts(LasHeader& h, const std::vector<std::uint8_t>& b, std::optional<std::uint64_t> holds, const std::filesystem::path& file,
+                  std::vector<std::string>& warnings) {
   h.legacy_point_count = get<std::uint32_t>(&b[107]);
   for (std::size_t i = 0; i < 5; ++i) h.legacy_by_return[i] = get<std::uint32_t>(&b[111 + 4 * i]);
-  h.point_count = h.legacy_point_count;
-  std::copy(h.legacy_by_return.begin(), h.legacy_by_return.end(), h.by_return.begin());
-  if (h.version_minor >= 4) {
-    h.point_count = get<std::uint64_t>(&b[247]);
+  const std::uint64_t count = h.version_minor >= 4 ? get<std::uint64_t>(&b[247]) : h.legacy_point_count;
+  const bool differ = h.legacy_point_count != 0 && h.legacy_point_count != count;
+  h.point_count = differ ? chosen_count(count, h.legacy_point_count, holds, file, warnings) : count;
+  if (h.point_count != count || h.version_minor < 4)
+    std::copy(h.legacy_by_return.begin(), h.legacy_by_return.end(), h.by_return.begin());
+  else
     for (std::size_t i = 0; i < 15; ++i) h.by_return[i] = get<std::uint64_t>(&b[255 + 8 * i]);
-    if (h.legacy_point_count != 0 && h.legacy_point_count != h.point_count)
-      throw core::Error("the legacy point count " + std::to_string(h.legacy_point_count) + " contradicts the point count " +
-                            std::to_string(h.point_count),
-                        at_byte(file, 107), "the header is damaged or its writer is at fault: export the file again");
-    if (h.legacy_point_count != 0 && h.point_format >= 6)
-      warnings.push_back("the legacy point count is set, though point format " + std::to_string(h.point_format) + " has none");
-  }
+  if (!differ && h.version_minor >= 4 && h.legacy_point_count != 0 && h.point_format >= 6)
+    warnings.push_back("the legacy point count is set, though point format " + std::to_string(h.point_format) + " has none");
   const std::uint64_t sum = std::accumulate(h.by_return.begin(), h.by_return.end(), std::uint64_t{0});
   if (sum > h.point_count)  // fewer is right where returns lie beyond the header's 5 or 15 or have no number
     warnings.push_back("the points by return add up to " + std::to_string(sum) + ", the point count is " + std::to_string(h.point_count));
@@ -239,10 +259,10 @@ LasHeader read_las_header(const std::filesystem::path& file, std::vector<std::st
                           " does not fit LAS 1." + std::to_string(h.version_minor),
                       at_byte(file, 94), "the header is damaged: export the file again");
   if (h.offset_to_points > in.size()) in.read(h.offset_to_points, 0, "point data");
-  parse_counts(h, b, file, warnings);
-  parse_geometry(h, b, file);
   if (h.version_minor >= 3) h.waveform_start = get<std::uint64_t>(&b[227]);
   const std::uint64_t evlr_start = h.version_minor >= 4 ? get<std::uint64_t>(&b[235]) : 0;
+  parse_counts(h, b, room_for_points(h, in.size(), evlr_start), file, warnings);
+  parse_geometry(h, b, file);
   read_vlrs(h, in, stated_size, vlr_count, file);
   check_records(h, in.size(), file, warnings, evlr_start);
   if (h.version_minor >= 4) read_evlrs(h, in, evlr_start, get<std::uint32_t>(&b[243]));

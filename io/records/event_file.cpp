@@ -45,8 +45,6 @@ std::vector<DataLine> rows_of(const std::filesystem::path& path, const EventFile
   return out;
 }
 
-std::string technique_of(const EventFile& file) { return file.technique.empty() ? file.file.stem().string() : file.technique; }
-
 void count_repeated(const core::EventTags& events, core::Tally& tally) {
   for (const auto& [first, again] : repeated_times(events.time))
     tally.count("events at the time of another one", events.technique + " " + events.id[first] + " and " + events.id[again]);
@@ -79,6 +77,8 @@ core::EventTags tags_of(const std::vector<EventMark>& marks, const EventFile& fi
 }
 
 }  // namespace
+
+std::string technique_of(const EventFile& file) { return file.technique.empty() ? file.file.stem().string() : file.technique; }
 
 core::EventTags read_event_file(const Survey& survey, const EventFile& file, core::Tally& tally) {
   const std::filesystem::path path = resolve(survey, file.file);

@@ -15,6 +15,9 @@ namespace swath::io {
 /// GPS. Throws Error "file:line" for a line that cannot be read.
 core::EventTags read_event_file(const Survey& survey, const EventFile& file, core::Tally& tally);
 
+/// As the file's entry states it, else the file's name without its ending.
+std::string technique_of(const EventFile& file);
+
 /// Every [[event]] file of the survey, in its order. Throws Error where there is none. Those with `computer_clock` wait for the clock's
 /// model (trajectory/clock/clock_model.h).
 std::vector<core::EventTags> read_event_files(const Survey& survey, core::Tally& tally);

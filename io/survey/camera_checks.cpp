@@ -72,9 +72,13 @@ class CameraChecks {
   /// That no camera has what coordinates in pixels need, before hours of work.
   void sensor(const ImageFile& f, const std::string& key) {
     const auto states = [](const SurveyCamera& c) { return c.pixel && c.columns > 0 && c.rows > 0; };
-    if (!needs_pixels(f) || survey_.cameras.empty() || std::any_of(survey_.cameras.begin(), survey_.cameras.end(), states)) return;
-    fault(numbered("camera", 0) + ".pixel", "pixels of " + key + " need columns, rows and pixel of the camera, which are not stated",
-          "columns = ..., rows = ..., pixel = \"5 um\"");
+    if (!needs_pixels(f)) return;
+    // Of several files each may be of another camera.
+    if (survey_.image_points.size() > 1 && std::any_of(survey_.cameras.begin(), survey_.cameras.end(), states)) return;
+    for (size_t i = 0; i < survey_.cameras.size(); ++i)
+      if (!states(survey_.cameras[i]))
+        fault(numbered("camera", i) + ".pixel", "pixels of " + key + " need columns, rows and pixel of the camera, which are not stated",
+              "columns = ..., rows = ..., pixel = \"5 um\"");
   }
 
   void points(const ImageFile& f, const std::string& key) {

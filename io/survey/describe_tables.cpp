@@ -114,11 +114,12 @@ class TimeOrder {
     if (roles.kind == TableKind::none || roles.kind == TableKind::laser || roles.kind == TableKind::image_points) return;
     column_ = column_of(roles, "time", names);
     has_weeks_ = column_of(roles, "week", names).has_value();
+    if (roles.time_unit == "1 ms") unit_ = 1e-3;
   }
   bool is_of(size_t column) const { return column_ == column; }
   void add(double time) {
     repeated_ += time == last_;
-    back_ += time < last_;
+    back_ += time < last_ && (last_ - time) * unit_ < least_restart;
     last_ = time;
   }
   void warn(std::vector<std::string>& warnings) const {
@@ -130,7 +131,9 @@ class TimeOrder {
   }
 
  private:
+  static constexpr double least_restart = 43200.0;  // s: farther back, seconds of the day or week begin anew
   std::optional<size_t> column_{};
+  double unit_ = 1.0;       // s
   bool has_weeks_ = false;  // whose seconds begin anew
   double last_ = std::numeric_limits<double>::quiet_NaN();
   std::uint64_t repeated_ = 0, back_ = 0;

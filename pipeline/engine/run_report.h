@@ -70,7 +70,8 @@ void describe(const StageReport& s, V& v) {
   v.other("findings", s.findings, "What the stage found.");
   v.other("options", s.options, "Every option: its value, and where it was set.");
   v.result("seconds", s.time.seconds, core::seconds(), "Time of its work, summed over threads.");
-  v.result("processor_seconds", s.time.processor, core::seconds(), "Processor time of its work; of readers, of reading alone.");
+  v.result("processor_seconds", s.time.processor, core::seconds(),
+           "Processor time of its work; of readers, of reading alone; without other threads that helped with a tile.");
 }
 
 struct RunReport {

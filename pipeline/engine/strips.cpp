@@ -285,6 +285,7 @@ void run_strips(RunState& run) {
   if (is_shared) return;
   if (run.accounts[source].in == 0 && run.stage(source).info().makes(stages::Product::points)) {
     const std::vector<io::PointFile>& files = run.plan.survey.points;
+    if (strips.size() < files.size()) throw none_of_the_clouds(run);  // some have points, none of which was read
     throw core::Error(files.size() == 1 ? "the file has no points" : "no file of [[points]] has a point",
                       io::resolve(run.plan.survey, files.front().file).string(), "see `swath info` of the file");
   }

@@ -33,13 +33,23 @@ std::int64_t modified(const fs::path& file) {
   return ec ? 0 : static_cast<std::int64_t>(at.time_since_epoch().count());
 }
 
+/// Records of a file whose header does not count them: by the lengths of its first lines, `otherwise` bytes each where it is no text.
+double records_by_length(const fs::path& file, double otherwise) {
+  const io::BinaryFile bytes(file);
+  std::string start(65536, '\0');
+  start.resize(bytes.read_some(0, start.data(), start.size()));
+  const auto lines = static_cast<double>(std::count(start.begin(), start.end(), '\n'));
+  const bool is_text = lines > 0.0 && start.find('\0') == std::string::npos;
+  return static_cast<double>(bytes.size()) / (is_text ? static_cast<double>(start.size()) / lines : otherwise);
+}
+
 /// Adds the returns of a file.
 void count_returns(const fs::path& file, TaskGraph& graph) {
   if (const auto stated = io::stated_records(file)) {
     graph.returns += *stated;
     return;
   }
-  const auto estimated = static_cast<std::uint64_t>(static_cast<double>(fs::file_size(file)) / bytes_per_record);
+  const auto estimated = static_cast<std::uint64_t>(records_by_length(file, bytes_per_record));
   graph.returns += estimated;
   graph.returns_estimated += estimated;
 }
@@ -49,16 +59,8 @@ double imu_records(const Plan& plan) {
   double out = 0.0;
   for (const io::ImuFile& f : plan.survey.imu) {
     const fs::path file = plan.survey.folder / f.file;
-    if (const auto stated = io::stated_records(file)) {
-      out += static_cast<double>(*stated);
-      continue;
-    }
-    const io::BinaryFile bytes(file);
-    std::string start(65536, '\0');
-    start.resize(bytes.read_some(0, start.data(), start.size()));
-    const auto lines = static_cast<double>(std::count(start.begin(), start.end(), '\n'));
-    const bool is_text = lines > 0.0 && start.find('\0') == std::string::npos;
-    out += static_cast<double>(bytes.size()) / (is_text ? static_cast<double>(start.size()) / lines : bytes_per_imu_record);
+    const auto stated = io::stated_records(file);
+    out += stated ? static_cast<double>(*stated) : records_by_length(file, bytes_per_imu_record);
   }
   return out;
 }

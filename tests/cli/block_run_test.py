@@ -194,6 +194,8 @@ class BlockRuns(Case):
     def test_a_camera_that_is_not_described(self):
         substitute(self.flown / "survey.toml", 'technique = "marks"', 'technique = "mark"')  # of the events
         self.refused(2, "no event is of the technique marks of camera camera", "the events are of mark, pc")
+        done = swath("check", self.config, "--survey", self.flown / "survey.toml")  # before hours of work
+        self.assert_error(done, 2, "no event is of the technique marks of camera camera")
 
     def test_covariances_that_nothing_writes_are_missed_before_the_run(self):
         done = swath("check", self.config, "--survey", self.flown / "survey.toml", "--set", "orientation.direct.correlated_images=0")

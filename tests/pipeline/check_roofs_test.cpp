@@ -57,7 +57,8 @@ class CheckRoofs : public testing::Test {
   static void TearDownTestSuite() { folder_.reset(); }
 
   /// The targets moved against the cloud; of the target named `of` by `more` m farther east.
-  static Outcome run_with(const std::filesystem::path& output, double more = 0.0, const std::vector<std::string>& sets = {}) {
+  static Outcome run_with(const std::filesystem::path& output, double more = 0.0, const std::vector<std::string>& sets = {},
+                          int threads = 2) {
     std::string changed;
     const auto move = [&](int k, std::vector<std::string>& cells) {
       if (k == 0) return;
@@ -71,7 +72,7 @@ class CheckRoofs : public testing::Test {
     r.survey = *folder_ / "check.toml";
     r.output = output;
     r.sets = sets;
-    r.threads = 2;
+    r.threads = threads;
     Plan plan = make_plan(r);
     Progress progress(Voice::quiet);
     return run(plan, progress, "test");
@@ -131,7 +132,7 @@ TEST_F(CheckRoofs, ALimitIsMissed) {
 TEST_F(CheckRoofs, TilesAndThreadsChangeNothing) {
   const test::TemporaryFolder out;
   const core::Value one = *findings(run_with(out / "a")).find("roofs"),
-                    other = *findings(run_with(out / "b", 0.0, {"run.tile=\"200 m\""})).find("roofs");
+                    other = *findings(run_with(out / "b", 0.0, {"run.tile=\"200 m\""}, 1)).find("roofs");
   ASSERT_EQ(one.items().size(), other.items().size());
   for (size_t k = 0; k < one.items().size(); ++k) {
     const core::Value &a = one.items()[k], &b = other.items()[k];

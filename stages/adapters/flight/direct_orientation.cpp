@@ -2,7 +2,10 @@
 // Orientation of images by the trajectory at their exposures.
 #include "calib/block/direct_orientation.h"
 
+#include <set>
+
 #include "core/error.h"
+#include "io/records/event_file.h"
 #include "io/text/output_file.h"
 #include "stages/adapters/adapters.h"
 #include "stages/once.h"
@@ -36,7 +39,15 @@ void expect_cameras(const Context& context, const DirectStageOptions&) {
   if (s.cameras.empty())
     throw core::usage_error("orientation.direct: the survey has no [[camera]]", s.name,
                             "describe it: mount, boresight and lever_arm, and the technique of its events");
-  for (const io::SurveyCamera& c : s.cameras) calib::direct_camera(c, s.name);
+  std::set<std::string> techniques;
+  for (const io::EventFile& f : s.events) techniques.insert(io::technique_of(f));
+  std::string known;
+  for (const std::string& t : techniques) known += (known.empty() ? "" : ", ") + t;
+  for (const io::SurveyCamera& c : s.cameras) {
+    if (!c.technique.empty() && !techniques.contains(c.technique))
+      throw core::usage_error("no event is of the technique " + c.technique + " of camera " + c.name, s.name, "the events are of " + known);
+    calib::direct_camera(c, s.name);
+  }
 }
 
 calib::Exposures exposures_in(const io::Survey& survey, const core::EventData& events) {

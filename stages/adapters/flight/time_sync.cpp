@@ -164,7 +164,7 @@ void expect_events(const Context& context, const TimeSyncOptions& o) {
   std::set<std::string> names;
   bool found = o.technique.empty();
   for (const io::EventFile& f : s.events) {
-    const std::string name = f.technique.empty() ? f.file.stem().string() : f.technique;
+    const std::string name = io::technique_of(f);
     found = found || name == o.technique;
     if (!names.insert(name).second)
       throw core::usage_error("time.sync: two files of events are named '" + name + "'", s.name, "state event.technique for each");

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/error.h"
 #include "io/las/las_bytes.h"
@@ -94,7 +95,8 @@ TEST(LasHeader, EveryFaultIsNamedWithItsByte) {
   EXPECT_NE(fault(folder, with(good, 171, std::numeric_limits<double>::infinity())).find("byte 171: the offset of z"), std::string::npos);
   EXPECT_NE(fault(folder, with(good, 247, std::uint64_t{11})).find("counts 11 points, the file holds 10"), std::string::npos);
   EXPECT_NE(fault(folder, with(good, 247, ~std::uint64_t{0})).find("the file holds 10"), std::string::npos);
-  EXPECT_NE(fault(folder, with(good, 107, std::uint32_t{9})).find("byte 107: the legacy point count 9"), std::string::npos);
+  EXPECT_NE(fault(folder, with(with(good, 107, std::uint32_t{9}), 247, std::uint64_t{8})).find("byte 107: the legacy point count 9"),
+            std::string::npos);
   EXPECT_NE(fault(folder, with(good, 100, std::uint32_t{1000})).find("variable length record 0 reaches beyond"), std::string::npos);
   EXPECT_NE(fault(folder, with(good, 94, std::uint16_t{227})).find("byte 94"), std::string::npos);
   EXPECT_NE(fault(folder, with(good, 96, std::uint32_t{1u << 30})).find("point data is cut off"), std::string::npos);
@@ -121,6 +123,28 @@ TEST(LasHeader, OddButHarmlessIsAWarning) {
   EXPECT_NE(warning(good + "tail").find("4 bytes after the last point"), std::string::npos);
   EXPECT_NE(warning(with(good, 255, std::uint64_t{1000})).find("add up to"), std::string::npos);
   EXPECT_NE(warning(with(good, 107, std::uint32_t{10})).find("legacy point count is set"), std::string::npos);
+}
+
+TEST(LasHeader, OfTwoCountsTheOneThatTheFileBearsOutIsTaken) {
+  const test::TemporaryFolder folder;
+  const std::string good = sample_bytes(folder, 1, 4);  // both counts are 10
+  const auto read = [&](const std::string& bytes, const std::string& warning) {
+    test::write_bytes(folder / "two.las", bytes);
+    std::vector<std::string> warnings;
+    const LasHeader h = read_las_header(folder / "two.las", warnings);
+    EXPECT_EQ(warnings.empty() ? "" : warnings.front(), warning);
+    EXPECT_EQ(h.point_count, 10u);
+    EXPECT_EQ(std::accumulate(h.by_return.begin(), h.by_return.end(), std::uint64_t{0}), 10u);
+  };
+  std::string only_legacy = with(good, 247, std::uint64_t{0});
+  for (std::size_t i = 0; i < 15; ++i) only_legacy = with(only_legacy, 255 + 8 * i, std::uint64_t{0});
+  read(only_legacy, "the legacy point count 10 contradicts the point count 0: the legacy one is taken");
+  read(with(good, 247, std::uint64_t{12}), "the legacy point count 10 contradicts the point count 12: the legacy one is taken");
+  read(with(good, 107, std::uint32_t{9}), "the legacy point count 9 contradicts the point count 10: the legacy one is not used");
+  // Compressed points do not tell; the lower half of a count beyond 32 bits is no contradiction.
+  const std::string packed = with(good, 104, char(1 | 0x80)), many = with(packed, 247, (std::uint64_t{1} << 32) + 10);
+  EXPECT_NE(fault(folder, with(packed, 247, std::uint64_t{12})).find("the legacy point count 10 contradicts"), std::string::npos);
+  EXPECT_NE(fault(folder, many).find("laszip record is missing"), std::string::npos);
 }
 
 TEST(LasHeader, TheVersionMustHoldTheFormat) {

@@ -59,6 +59,8 @@ TEST(DescribeTables, RecordsAtOneTimeAreNamed) {
   EXPECT_NE(text.find("2 records repeat the time before them: written twice"), std::string::npos) << text;
   text = said(gnss + "474006,47.9,10.5,1127\n474007,47.9,10.5,1127\n");
   EXPECT_NE(text.find("time goes back 1 time: "), std::string::npos) << text;
+  text = said("gps_sow_s,lat_deg,lon_deg,h_ell_m\n604798,47.9,10.5,1127\n604799,47.9,10.5,1127\n0,47.9,10.5,1127\n");
+  EXPECT_EQ(text.find("time goes back"), std::string::npos) << "the week begins anew: " << text;
   text = said("time,gx,gy,gz,ax,ay,az\n1,0,0,0,0,0,-9.8\n1,0,0,0,0,0,-9.8\n2,0,0,0,0,0,-9.8\n");
   EXPECT_NE(text.find("1 record repeats the time before it"), std::string::npos) << text;
   text = said("gps_sow_s,line,scan_angle_deg,range_m\n474009,1,-20.5,500.1\n474009,1,-20.5,510.1\n");
