@@ -26,7 +26,10 @@ def costs(out):
     if report["pieces_resumed"]:
         raise SystemExit(f"{out}: parts of the run were done before, so their times are not of one run")
     returns = max(s["counts"]["in"] for s in report["stages"] if "counts" in s)
-    return returns, {s["type"]: s["processor_seconds"] for s in report["stages"]}, report["processor_seconds"], report["seconds"]
+    stages = {}
+    for s in report["stages"]:
+        stages[s["type"]] = stages.get(s["type"], 0.0) + s["processor_seconds"]
+    return returns, stages, report["processor_seconds"], report["seconds"]
 
 
 def print_stages(args):

@@ -31,10 +31,21 @@ double sigma_from(const std::string& text, core::Dimension dimension, const std:
 
 }  // namespace
 
+void expect_distances(const core::Value& given, std::vector<core::Fault>& faults) {
+  const core::Value* cameras = given.find("camera");
+  if (!cameras || !cameras->is_array()) return;
+  for (size_t i = 0; i < cameras->items().size(); ++i) {
+    const std::string key = "camera[" + std::to_string(i + 1) + "].f";
+    if (const core::Value& camera = cameras->items()[i]; camera.is_object() && !camera.find("f"))
+      faults.push_back({camera.where, key, "the principal distance of the camera is not stated", "f = \"... mm\""});
+  }
+}
+
 BlockConfig read_block_config(const std::filesystem::path& file, const core::Value& given) {
   BlockConfig out;
   std::vector<core::Fault> faults;
   core::read_options(core::described(out), given, "", faults);
+  expect_distances(given, faults);
   core::throw_if_any(faults);
   const auto beside = [&](std::filesystem::path& path) {
     if (!path.empty() && path.is_relative()) path = file.parent_path() / path;

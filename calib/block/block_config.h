@@ -11,6 +11,7 @@
 
 #include "calib/block/block_adjust.h"
 #include "core/config/option.h"
+#include "core/config/option_visitors.h"
 #include "io/images/image_file.h"
 #include "io/survey/camera_file.h"
 #include "io/survey/control_file.h"
@@ -147,6 +148,9 @@ void describe(BlockConfig& b, V& v) {
   v.check(b.datum == Datum::none || b.drift == DriftSets::none,
           "datum and drift are both stated: the shift of a drift is that of the datum; state datum = \"none\"");
 }
+
+/// Adds a fault for each [[camera]] whose principal distance is not stated: any default would be a guess.
+void expect_distances(const core::Value& given, std::vector<core::Fault>& faults);
 
 /// Reads a config; paths in it become relative to where the program runs. Throws core::Error with all faults. `sets`: "key=value".
 BlockConfig read_block_config(const std::filesystem::path& file, const core::Value& given);

@@ -60,7 +60,8 @@ std::string bare_name(std::string name) {
   std::string hint =
       config.images.lacks_hint.empty() ? "add it to " + config.images.file.string() + ", or take its points out" : config.images.lacks_hint;
   for (const BlockImage& i : images)
-    if (bare_name(i.name) == bare_name(name)) {
+    // One that has image points of its own is another image.
+    if (bare_name(i.name) == bare_name(name) && std::find(data.images.begin(), data.images.end(), i.name) == data.images.end()) {
       hint = "there is an image " + i.name + ": the names must be the same, with folder, extension, upper and lower case";
       break;
     }
@@ -131,6 +132,8 @@ void add_control(const std::vector<SurveyedPoint>& points, const Numbers& point_
       read.control_without_image.push_back(p.name);
       continue;
     }
+    if (!p.map.allFinite())
+      throw core::Error("control point " + p.name + " is on an image and has no coordinates", p.place, "survey it, or take its line out");
     const auto [it, is_new] = known.try_emplace(p.name, p.place);
     if (!is_new) throw core::Error("control point " + p.name + " is there twice, first in " + it->second, p.place);
     BlockControl c;
@@ -238,10 +241,14 @@ void expect_datum(const ReadBlock& read, const std::string& config_file) {
   const bool shift = read.block.datum == Datum::shift;
   const size_t plan = shift ? 1 : 2, heights = shift ? 1 : 3;
   if (known[0] >= plan && known[2] >= heights) return;
+  const bool is_unseen = read.block.control.empty() && !read.control_without_image.empty();
   throw core::Error("the datum of the stations is not determinable: control has " + core::counted(known[0], "point") + " in plan and " +
                         core::counted(known[2], "height") + ", and " + std::string(core::Choices<Datum>::names.at(shift ? 1 : 2)) +
                         " needs " + std::to_string(plan) + " and " + std::to_string(heights),
-                    config_file, "survey more control, or state datum = \"none\"" + std::string(shift ? "" : " or \"shift\""));
+                    config_file,
+                    is_unseen ? "no control point is measured on an image: " + first_of(read.control_without_image) +
+                                    "; names in the control file and of the image points may differ"
+                              : "survey more control, or state datum = \"none\"" + std::string(shift ? "" : " or \"shift\""));
 }
 
 void expect_points(const BlockConfig& config, ReadBlock& read) {

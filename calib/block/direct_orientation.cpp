@@ -11,6 +11,7 @@
 
 #include "calib/block/block_config.h"
 #include "calib/block/block_frame.h"
+#include "core/config/units.h"
 #include "core/error.h"
 #include "core/geo/geodesy.h"
 #include "core/printable.h"
@@ -129,7 +130,7 @@ std::vector<DirectImage> direct_orientation(const trajectory::Trajectory& trajec
     out.push_back(std::move(image));
   }
   if (out.empty())
-    throw core::Error("orientation.direct: none of " + std::to_string(found.events) + " exposures is within the trajectory", "",
+    throw core::Error("orientation.direct: none of " + core::counted(found.events, "exposure") + " is within the trajectory", "",
                       "check the time scale of the events");
   found.images = out.size();
   found.position = core::median(plan), found.height = core::median(height), found.angle = core::median(tilt),

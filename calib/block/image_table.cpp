@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/block/image_table.h"
 
+#include <limits>
 #include <unordered_map>
 
 #include "core/config/units.h"
@@ -22,7 +23,9 @@ void add_control_table(const BlockControlFile& f, std::vector<SurveyedPoint>& ou
   for (size_t r = 0; r < table.rows(); ++r) {
     SurveyedPoint p;
     p.name = table.name(r, name, "the point");
-    p.map = {table.number(r, x), table.number(r, y), table.number(r, z)};
+    const bool is_blank = table.text(r, x).empty() && table.text(r, y).empty() && table.text(r, z).empty();
+    p.map.setConstant(std::numeric_limits<double>::quiet_NaN());  // planned, not surveyed
+    if (!is_blank) p.map = {table.number(r, x), table.number(r, y), table.number(r, z)};
     p.sigma_h = h ? table.number(r, *h) : f.sigma_horizontal.value, p.sigma_v = v ? table.number(r, *v) : f.sigma_vertical.value;
     if (!(p.sigma_h > 0.0 && p.sigma_v > 0.0)) throw core::Error("a sigma is not above 0", table.place(r));
     p.kind = f.kind, p.check = f.use == io::ControlUse::check, p.place = table.place(r);

@@ -50,6 +50,7 @@ std::vector<CameraConfig> read_cameras(const std::filesystem::path& file) {
         std::erase_if(camera.members(), [](const auto& m) { return m.first == "lever_arm" || m.first == "technique"; });
   std::vector<core::Fault> faults;
   core::read_options(core::described(out), tree, "", faults);
+  expect_distances(tree, faults);
   core::throw_if_any(faults);
   if (out.cameras.empty()) throw core::usage_error("no [[camera]]", file.string(), "`swath block` writes such a file: camera.toml");
   return out.cameras;

@@ -13,6 +13,7 @@
 #include "calib/geometry/geometry_control.h"
 #include "calib/geometry/geometry_trial.h"
 #include "calib/words.h"
+#include "core/config/units.h"
 #include "core/geo/geodesy.h"
 #include "trajectory/checks.h"
 
@@ -155,9 +156,10 @@ void say(const SampledFlight& flight, const GeometryOptions& o, bool sound, bool
         (out.control.compared >= fewest_control_points ? words(" and of the ground from control (%.3f m)", out.control.median) : "") +
         " have the pattern of an error of calibration");
   else if (sound && !worst)
-    out.warnings.push_back(
-        (out.lines.fit.cells > 0 ? words("only %.0f cells of ground were", static_cast<double>(out.lines.fit.cells)) : "no ground was") +
-        " found that two lines have seen, though their tracks come within " + words("%.0f m", flight.plan.nearest));
+    out.warnings.push_back((out.lines.fit.cells > 0
+                                ? "only " + core::counted(out.lines.fit.cells, "cell of ground was", "cells of ground were")
+                                : std::string("no ground was")) +
+                           " found that two lines have seen, though their tracks come within " + words("%.0f m", flight.plan.nearest));
   for (const TriedMistake& t : out.named) {
     const bool lines = t.fit.cells > 0;
     out.warnings.push_back(

@@ -38,8 +38,6 @@ TieNoise noise_of(const core::SensorSigma& s) {
   return {std::max(least_range_sigma, s.range.value), s.scan_angle.value, s.beam_divergence.value / 4.0, s.time.value};
 }
 
-}  // namespace
-
 /// Variance of a weighted sum of a Brownian motion's departures from the straight lines between instants, per unit of its spectral density:
 /// covariance dt s (1 - s') within an interval of dt, s before s' as shares of it. Times must rise.
 struct Bridge {
@@ -51,6 +49,8 @@ struct Bridge {
     before += weight * s;
   }
 };
+
+}  // namespace
 
 struct PlaneFactors::Worker {
   ShotGeometry geometry;

@@ -2,20 +2,26 @@
 #include "core/config/option.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 
 namespace swath::core {
 
 namespace {
 
-std::string bound_text(Dimension d, double si) {
+/// Four digits of a long bound, rounded into the range: what the text allows is allowed.
+std::string bound_text(Dimension d, double si, bool is_highest) {
   constexpr size_t short_enough = 8;  // characters
   const std::string exact = format_quantity(d, si);
   const size_t digits = std::min(exact.find(' '), exact.size());
   if (digits <= short_enough) return exact;
-  const double value = std::strtod(exact.c_str(), nullptr), large = 1000.0;
-  return std::abs(value) < large ? format_number(value, 4) + exact.substr(digits) : exact;
+  constexpr double large = 1000.0, slack = 1e-6;  // slack: of the last digit
+  double value = 0.0;
+  std::from_chars(exact.data(), exact.data() + digits, value);
+  if (value == 0.0 || !(std::abs(value) < large)) return exact;
+  const double step = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 3.0);
+  const double steps = is_highest ? std::floor(value / step + slack) : std::ceil(value / step - slack);
+  return format_number(steps * step, 4) + exact.substr(digits);
 }
 
 }  // namespace
@@ -23,9 +29,9 @@ std::string bound_text(Dimension d, double si) {
 std::string Range::text(Dimension d) const {
   const bool has_low = std::isfinite(lowest);
   const bool has_high = std::isfinite(highest);
-  if (has_low && has_high) return (above_lowest ? "> " : "") + bound_text(d, lowest) + " to " + bound_text(d, highest);
-  if (has_low) return (above_lowest ? "> " : ">= ") + bound_text(d, lowest);
-  if (has_high) return "<= " + bound_text(d, highest);
+  if (has_low && has_high) return (above_lowest ? "> " : "") + bound_text(d, lowest, false) + " to " + bound_text(d, highest, true);
+  if (has_low) return (above_lowest ? "> " : ">= ") + bound_text(d, lowest, false);
+  if (has_high) return "<= " + bound_text(d, highest, true);
   return "";
 }
 

@@ -3,6 +3,7 @@
 #include "core/config/shape_schema.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace swath::core {
@@ -20,6 +21,13 @@ std::string scalar_text(const Value& v) {
   if (v.is_array())
     for (const Value& item : v.items()) out += (out.size() > 1 ? ", " : "") + scalar_text(item);
   return out + "]";
+}
+
+/// A bound itself, written in any unit, is within: units are factors, and 400 gon come out a last digit above a turn.
+bool is_within(const Range& range, double v) {
+  constexpr double rounding = 1e-12;  // of the bound
+  const auto is_at = [v](double bound) { return std::isfinite(bound) && std::abs(v - bound) <= rounding * std::abs(bound); };
+  return range.holds(v) || is_at(range.highest) || (!range.above_lowest && is_at(range.lowest));
 }
 
 class Reader : public Visitor {
@@ -58,7 +66,7 @@ class Reader : public Visitor {
         fault(v, scalar_text(v) + ": " + why);
         return std::nullopt;
       }
-      if (read->is_number() && !f.range.holds(read->as_number())) {
+      if (read->is_number() && !is_within(f.range, read->as_number())) {
         fault(v, scalar_text(v) + " is out of range, allowed: " + f.range.text(f.shape.dimension));
         return std::nullopt;
       }

@@ -12,6 +12,7 @@ bool is_same_map(const Crs& a, const Crs& b) {
 
 bool are_heights_apart(const Crs& a, const Crs& b) {
   if (a.heights() == Heights::unknown || b.heights() == Heights::unknown) return false;
+  if (a.vertical_epsg() != 0 && a.vertical_epsg() == b.vertical_epsg()) return false;  // names differ from program to program
   return a.heights() != b.heights() || a.vertical_name() != b.vertical_name();
 }
 
@@ -20,7 +21,7 @@ bool are_comparable(const Crs& a, const Crs& b) { return a.empty() || b.empty() 
 bool is_same_crs(const Crs& a, const Crs& b) {
   if (a.key() == b.key()) return true;
   return a.epsg() != 0 && a.epsg() == b.epsg() && a.heights() == b.heights() && a.vertical_epsg() == b.vertical_epsg() &&
-         a.vertical_name() == b.vertical_name() && a.vertical_metres_per_unit() == b.vertical_metres_per_unit();
+         (a.vertical_epsg() != 0 || a.vertical_name() == b.vertical_name()) && a.vertical_metres_per_unit() == b.vertical_metres_per_unit();
 }
 
 }  // namespace swath::core

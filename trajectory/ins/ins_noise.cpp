@@ -44,8 +44,8 @@ bool adapt_fixes(Problem& problem, const std::vector<FixOutcome>& outcomes) {
   const double shown = std::clamp(white + (nis / n - 1) * (all / n), 0.2 * white, 5 * white);
   const double noise = std::sqrt(2 / (3 * n)) * (all / n);
   // Within the stated variance the rest of it is correlated; beyond, the share rises to the usual one as the statement proves worthless.
-  problem.share =
-      shown < 1 ? std::clamp(1 - shown, least_share, 0.95) : std::min(usual_share, least_share + (usual_share - least_share) * (shown - 1));
+  problem.share = shown < 1 ? std::clamp(1 - shown, least_share, largest_share)
+                            : std::min(usual_share, least_share + (usual_share - least_share) * (shown - 1));
   problem.variance = std::max(1.0, shown / (1 - problem.share));
   return std::abs(shown - white) > std::max(0.03 * white, 2 * noise);
 }

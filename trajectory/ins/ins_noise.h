@@ -9,7 +9,8 @@
 
 namespace swath::trajectory {
 
-constexpr double usual_share = 0.4;  ///< of the GNSS variance that is correlated, where nothing determines it
+constexpr double largest_share = 0.95;  ///< of the GNSS variance that may be found correlated
+constexpr double usual_share = 0.4;     ///< of the GNSS variance that is correlated, where nothing determines it
 
 /// Sets share and variance of the fixes to what the innovations show: their excess (nis / 3 - 1) S over what was expected belongs to the
 /// white part R. White noise above the stated variance raises that. True where they changed by more than noise.

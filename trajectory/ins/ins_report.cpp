@@ -10,6 +10,7 @@
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
 #include "core/statistics.h"
+#include "trajectory/ins/ins_noise.h"
 
 namespace swath::trajectory {
 namespace {
@@ -143,10 +144,16 @@ FixesUsed judged_fixes(const InsFindings& f, const core::SmootherSeries& s, Warn
     warnings.push_back(text("the fixes scatter %.2f times more than stated; their sigmas are raised by that", std::sqrt(problem.variance)));
   if (f.overstated >= too_cautious) {
     out.overstated = f.overstated;
-    warnings.push_back(text(
-        "the stated sigmas of the fixes are %.1f times too large by their scatter (%.0f %% of their variance would be correlated), and the "
-        "sigmas of the trajectory with them, unless the fixes' errors change far more slowly than correlation_time of %.0f s",
-        f.overstated, 100 * problem.share, problem.options.correlation_time.value));
+    // At its limit the share says no more than that they are too large by so much.
+    warnings.push_back(
+        text(problem.share < largest_share
+                 ? "the stated sigmas of the fixes are %.1f times too large by their scatter (%.0f %% of their variance would be "
+                   "correlated), and "
+                   "the sigmas of the trajectory with them, unless the fixes' errors change far more slowly than correlation_time of %.0f s"
+                 : "the stated sigmas of the fixes are at least %.1f times too large by their scatter (%.0f %% of their variance would be "
+                   "correlated), and the sigmas of the trajectory with them, unless the fixes' errors change far more slowly than "
+                   "correlation_time of %.0f s",
+             f.overstated, 100 * problem.share, problem.options.correlation_time.value));
   }
   return out;
 }

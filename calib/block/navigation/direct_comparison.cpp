@@ -62,7 +62,10 @@ std::vector<DirectCompared> compare_direct(const ReadBlock& stated, const ReadBl
     c.component = component_names[i], c.unit = i < 3 ? "m" : "deg";
     c.direct = unit * core::median(direct[i]), c.integrated = unit * core::median(integrated[i]);
     c.is_known = std::isfinite(c.direct);
-    c.is_tested = c.is_known && !over[i].empty() && !stated.block.stations.empty() && !stated.block.attitudes.empty();
+    // An unknown shift, drift or turn of the trajectory is in the differences and in none of their sigmas.
+    const ImageBlock& b = stated.block;
+    const bool is_moved = i < 3 ? b.datum != Datum::none || b.drift_sets != DriftSets::none : b.datum == Datum::similarity;
+    c.is_tested = c.is_known && !is_moved && !over[i].empty() && !b.stations.empty() && !b.attitudes.empty();
     double sum = 0.0, squares = 0.0, weighted = 0.0;
     for (const double v : difference[i]) sum += v, squares += v * v;
     for (const double v : over[i]) weighted += v * v;

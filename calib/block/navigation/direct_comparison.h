@@ -17,7 +17,7 @@ struct DirectCompared {
   double direct = 0.0, integrated = 0.0;           ///< medians of the standard deviations
   double mean = 0.0, rms = 0.0, over_sigma = 0.0;  ///< of integrated less direct
   bool is_known = true;                            ///< false: the boresight, or the lever arm, is free: direct orientation has no sigma
-  bool is_tested = true;                           ///< false: no sigma, or stations or attitudes took no part
+  bool is_tested = true;                           ///< false: no sigma, stations or attitudes took no part, or datum or drift moved them
 };
 template <class V>
 void describe(const DirectCompared& r, V& v) {

@@ -46,12 +46,15 @@ TEST(BlockConfig, ACameraWithItsSigmas) {
 }
 
 TEST(BlockConfig, Faults) {
-  EXPECT_NE(fault_of("sigma = { f = \"free\", k1 = \"free\" }").find("distortion = \"ideal\""), std::string::npos);
-  EXPECT_NE(fault_of("sigma = { f = \"0.01\" }").find("camera.sigma.f"), std::string::npos);
-  EXPECT_NE(fault_of("sigma = { k2 = \"-1\" }").find("not above 0"), std::string::npos);
-  EXPECT_NE(fault_of("", "").find("sigma of the image points is not stated"), std::string::npos);
-  EXPECT_NE(fault_of("", "sigma = \"3 um\"\n[images]\nangles = \"omega_phi_kappa\"").find("north"), std::string::npos);
+  EXPECT_NE(fault_of("f = \"50 mm\"\nsigma = { f = \"free\", k1 = \"free\" }").find("distortion = \"ideal\""), std::string::npos);
+  EXPECT_NE(fault_of("f = \"50 mm\"\nsigma = { f = \"0.01\" }").find("camera.sigma.f"), std::string::npos);
+  EXPECT_NE(fault_of("f = \"50 mm\"\nsigma = { k2 = \"-1\" }").find("not above 0"), std::string::npos);
+  EXPECT_NE(fault_of("f = \"50 mm\"", "").find("sigma of the image points is not stated"), std::string::npos);
+  EXPECT_NE(fault_of("f = \"50 mm\"", "sigma = \"3 um\"\n[images]\nangles = \"omega_phi_kappa\"").find("north"), std::string::npos);
   EXPECT_NE(fault_of("focal = 3").find("focal"), std::string::npos);
+  const std::string without = fault_of("x0 = \"12 um\"");  // any default would be a guess
+  EXPECT_NE(without.find("camera[1].f"), std::string::npos) << without;
+  EXPECT_NE(without.find("principal distance of the camera is not stated"), std::string::npos) << without;
 }
 
 }  // namespace

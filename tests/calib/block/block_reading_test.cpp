@@ -160,10 +160,10 @@ TEST(BlockReading, ImagesOfAnotherSizeThanTheCamerasAreRefused) {
   EXPECT_EQ(names, (std::vector<std::string>{"1", "2:1"}));
   // Which camera took an image must be stated somewhere.
   swath::test::write_bytes(folder.path() / "p.csv", "image,point,x,y\na,1,0,0\n");
-  swath::test::write_bytes(
-      file,
-      "kind = \"block_adjust\"\ncrs = \"local\"\n[[camera]]\nname = \"a\"\n[[camera]]\nname = \"b\"\n[[image_points]]\n"
-      "file = \"p.csv\"\nunit = \"mm\"\ny = \"up\"\norigin = \"middle\"\nsigma = \"5 um\"\n");
+  swath::test::write_bytes(file,
+                           "kind = \"block_adjust\"\ncrs = \"local\"\n[[camera]]\nname = \"a\"\nf = \"8 mm\"\n[[camera]]\nname = \"b\"\nf "
+                           "= \"8 mm\"\n[[image_points]]\n"
+                           "file = \"p.csv\"\nunit = \"mm\"\ny = \"up\"\norigin = \"middle\"\nsigma = \"5 um\"\n");
   EXPECT_NE(fault_of(file).find("several cameras, and the file does not say which took image a"), std::string::npos) << fault_of(file);
 }
 

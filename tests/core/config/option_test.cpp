@@ -12,7 +12,8 @@ TEST(Option, RangesSayWhatTheyHold) {
   EXPECT_TRUE(within(0, 5).holds(5));
   EXPECT_EQ(above(0.0).text(Dimension::length), "> 0 m");
   EXPECT_EQ(within(0, 5).text(Dimension::none), "0 to 5");
-  EXPECT_EQ(within(0.05, 1.0).text(Dimension::angle), "2.865 deg to 57.3 deg");
+  EXPECT_EQ(within(0.05, 1.0).text(Dimension::angle), "2.865 deg to 57.29 deg");
+  EXPECT_EQ(within(-0.5, 0.1).text(Dimension::angle), "-28.64 deg to 5.729 deg") << "rounded into the range";
   EXPECT_EQ(one_turn().text(Dimension::angle), "-360 deg to 360 deg");
   EXPECT_EQ(within(315964800.0, 1e9).text(Dimension::none), "315964800 to 1e+09") << "large numbers keep their digits";
 }

@@ -28,6 +28,11 @@ TEST(SameMap, HeightsAreApartWhereBothAreStated) {
   EXPECT_FALSE(are_heights_apart(unknown, levelled));
   EXPECT_FALSE(are_heights_apart(levelled, levelled));
   EXPECT_TRUE(are_heights_apart(levelled, older));
+  std::string renamed = Crs("EPSG:25832+7837").wkt();
+  const std::string name = levelled.vertical_name();
+  for (size_t at = renamed.find(name); at != std::string::npos; at = renamed.find(name, at + 4)) renamed.replace(at, name.size(), "DHHN");
+  EXPECT_EQ(Crs(renamed).vertical_name(), "DHHN");
+  EXPECT_FALSE(are_heights_apart(levelled, Crs(renamed))) << "the code holds whatever the name";
   EXPECT_TRUE(are_heights_apart(levelled, ellipsoidal));
   EXPECT_TRUE(are_comparable(unknown, levelled));
   EXPECT_TRUE(are_comparable(Crs(), levelled));
