@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "core/statistics.h"
+#include "quality/known_time.h"
 
 namespace swath::quality {
 namespace {
@@ -47,23 +48,32 @@ Unknowns solve(const std::vector<Row>& rows, Eigen::Matrix<double, 5, 5>& invers
 
 }  // namespace
 
-std::vector<PulseSpan> spans_in(const core::Block& b, size_t own, const core::Box& box) {
-  std::vector<PulseSpan> out;
+std::vector<PulseReturn> pulse_returns_in(const core::Block& b, size_t own, const std::vector<core::Box>& boxes) {
+  std::vector<PulseReturn> out;
   if (b.time.empty() || b.strip.empty() || b.return_number.empty() || b.return_count.empty()) return out;
-  std::vector<size_t> rows;
-  for (size_t p = 0; p < own; ++p)
-    if (b.return_count[p] > 1 && core::is_usable(b, p) && box.holds(b.origin.x() + b.x[p], b.origin.y() + b.y[p])) rows.push_back(p);
-  const auto pulse = [&](size_t p) { return std::tuple(b.strip[p], b.time[p]); };
-  std::sort(rows.begin(), rows.end(),
-            [&](size_t p, size_t q) { return std::tuple(pulse(p), b.return_number[p]) < std::tuple(pulse(q), b.return_number[q]); });
-  for (size_t k = 0; k < rows.size();) {
+  for (size_t p = 0; p < own; ++p) {
+    if (b.return_count[p] < 2 || !core::is_usable(b, p) || !is_known_time(b.time[p])) continue;
+    const Vector3d at = b.origin + Vector3d(b.x[p], b.y[p], b.z[p]);
+    if (std::none_of(boxes.begin(), boxes.end(), [&](const core::Box& box) { return box.holds(at.x(), at.y()); })) continue;
+    out.push_back({b.time[p], at.x(), at.y(), at.z(), b.strip[p], b.return_number[p]});
+  }
+  return out;
+}
+
+std::vector<PulseSpan> spans_of(std::vector<PulseReturn> returns) {
+  const auto pulse = [](const PulseReturn& r) { return std::tuple(r.line, r.time); };
+  std::sort(returns.begin(), returns.end(), [&](const PulseReturn& a, const PulseReturn& b) {
+    return std::tuple(pulse(a), a.number, a.x, a.y, a.z) < std::tuple(pulse(b), b.number, b.x, b.y, b.z);
+  });
+  std::vector<PulseSpan> out;
+  for (size_t k = 0; k < returns.size();) {
     size_t end = k + 1;
-    while (end < rows.size() && pulse(rows[end]) == pulse(rows[k])) ++end;
-    const size_t p = rows[k], q = rows[end - 1];
+    while (end < returns.size() && pulse(returns[end]) == pulse(returns[k])) ++end;
+    const PulseReturn &first = returns[k], &last = returns[end - 1];
     k = end;
-    if (!(b.z[p] - b.z[q] >= least_span)) continue;
-    out.push_back({b.time[p], b.origin.x() + b.x[p], b.origin.y() + b.y[p], b.origin.z() + b.z[p], static_cast<float>(b.x[q] - b.x[p]),
-                   static_cast<float>(b.y[q] - b.y[p]), static_cast<float>(b.z[q] - b.z[p]), b.strip[p]});
+    if (!(first.z - last.z >= least_span)) continue;
+    out.push_back({first.time, first.x, first.y, first.z, static_cast<float>(last.x - first.x), static_cast<float>(last.y - first.y),
+                   static_cast<float>(last.z - first.z), first.line});
   }
   return out;
 }

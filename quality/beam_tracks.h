@@ -19,9 +19,17 @@ struct PulseSpan {
   std::int32_t line = 0;
 };
 
-/// Of the first `own` points: pulses whose last return lies 3 m or more below the first, in a box of map metres. Needs columns time, strip,
+/// A return of a pulse with several; plain data. On the map, s and m.
+struct PulseReturn {
+  double time = 0.0, x = 0.0, y = 0.0, z = 0.0;
+  std::int32_t line = 0, number = 0;
+};
+
+/// Of the first `own` points the returns of pulses with several, in any of the boxes of map metres. Needs columns time, strip,
 /// return_number, return_count; none without them.
-std::vector<PulseSpan> spans_in(const core::Block& block, std::size_t own, const core::Box& box);
+std::vector<PulseReturn> pulse_returns_in(const core::Block& block, std::size_t own, const std::vector<core::Box>& boxes);
+/// Pulses whose last return lies 3 m or more below the first, by line and time; returns in any order give the same.
+std::vector<PulseSpan> spans_of(std::vector<PulseReturn> returns);
 
 /// The scanner's place and motion around a time.
 class ScannerTrack {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <tuple>
 
+#include "quality/known_time.h"
 #include "quality/pulse_density.h"
 
 namespace swath::quality {
@@ -39,7 +40,8 @@ class RecordedReturns {
   }
 
  private:
-  double time(std::size_t p) const { return b_.time.empty() ? 0.0 : b_.time[p] + 0.0; }
+  /// 0: not known.
+  double time(std::size_t p) const { return b_.time.empty() || !is_known_time(b_.time[p]) ? 0.0 : b_.time[p]; }
   static std::int64_t step(double v) { return std::llround(v * steps); }
   /// Finalizer of SplitMix64.
   static std::uint64_t mixed(std::uint64_t h) {

@@ -36,7 +36,6 @@ constexpr double over_tolerance = 2.5;  // times that above it; higher returns a
 constexpr size_t fewest_at_edge = 5;    // hits and misses at an edge
 constexpr double whole = 0.8;           // share of the pulses over a roof that meet it
 constexpr double clear_from = 0.2, clear_to = 1.5, falls = 1.0, falls_per_metre = 1.3, in_the_way = 0.15;
-constexpr double widest_rim = 0.5;      // m by which all edges may lie farther out or in: more is another roof
 constexpr double widest_sigma = 0.3;    // m of a component that counts as known
 constexpr double contradiction = 15.0;  // chi-square of the spare edges: by chance in one of 10 000 roofs
 

@@ -19,7 +19,7 @@ enum class RoofState {
   one,        ///< one component: edges of one direction, or of two without their opposites
   few_edges,  ///< nothing: too few edges, or none sharp enough
   not_there,  ///< nothing: no returns in the roof's plane, or gaps in it
-  disagrees,  ///< nothing: its edges contradict one another, it was changed or surveyed wrongly
+  disagrees,  ///< nothing: its edges contradict one another or all lie elsewhere, it was changed or surveyed wrongly
 };
 
 }  // namespace swath::quality
@@ -32,6 +32,8 @@ struct Choices<quality::RoofState> {
 }  // namespace swath::core
 
 namespace swath::quality {
+
+constexpr double widest_rim = 0.5;  ///< m by which all edges may lie farther out or in: more is another roof
 
 /// The direction that an information is largest in, as a unit vector between north and south by the east.
 Eigen::Vector2d best_direction(const Eigen::Matrix2d& information);

@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -79,7 +80,8 @@ Mean mean_of(const std::vector<RoofShift>& shifts, double between) {
 
 /// Scatter between roofs that their sigmas do not explain, of one axis.
 double scatter_between(const std::vector<RoofShift>& shifts, const Mean& fixed) {
-  double chi = 0.0, parts = -2.0, weights = 0.0;
+  const Eigen::CompleteOrthogonalDecomposition<Matrix2d> fixed_by(fixed.information);
+  double chi = 0.0, parts = -static_cast<double>(fixed_by.rank()), weights = 0.0;
   Matrix2d squares = Matrix2d::Zero();
   for (const RoofShift& s : shifts) {
     if (!s.is_known()) continue;
@@ -89,7 +91,7 @@ double scatter_between(const std::vector<RoofShift>& shifts, const Mean& fixed) 
     weights += s.information.trace();
     squares += s.information * s.information;
   }
-  const double own = (fixed.information.completeOrthogonalDecomposition().pseudoInverse() * squares).trace();
+  const double own = (Matrix2d(fixed_by.pseudoInverse()) * squares).trace();
   return parts > 0.0 && weights > own ? std::sqrt(std::max(0.0, (chi - parts) / (weights - own))) : 0.0;
 }
 
@@ -114,12 +116,20 @@ void judge_rmse(const std::vector<RoofShift>& shifts, RoofPlanimetry& out) {
   out.is_enough = out.roofs >= enough_roofs;
 }
 
+std::string what_is_wrong(const RoofShift& s) {
+  if (std::abs(s.wider) <= widest_rim) return " contradict one another: it was changed, or surveyed wrongly";
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                " lie %.2f m farther %s than surveyed on all sides: survey the eaves, not the walls, or it was changed", std::abs(s.wider),
+                s.wider > 0.0 ? "out" : "in");
+  return text.data();
+}
+
 }  // namespace
 
 RoofPlanimetry planimetry_of(std::vector<RoofShift>& shifts, std::vector<NamedFault>& named) {
   for (const RoofShift& s : shifts)
-    if (s.state == RoofState::disagrees)
-      named.push_back({"check.roof", "the edges of roof " + s.name + " contradict one another: it was changed, or surveyed wrongly"});
+    if (s.state == RoofState::disagrees) named.push_back({"check.roof", "the edges of roof " + s.name + what_is_wrong(s)});
   take_out_changed(shifts, named);
   RoofPlanimetry out;
   for (const RoofShift& s : shifts) {

@@ -4,9 +4,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <tuple>
+
+#include "quality/known_time.h"
 
 namespace swath::quality {
 namespace {
@@ -52,6 +55,15 @@ struct At {
     return place_at(sides, p).out <= around;
   }
 };
+
+std::tuple<std::int32_t, std::int32_t, double> pulse_of(const RoofReturn& r) { return {r.target, r.line, r.time}; }
+
+/// By target, line and time, whatever the order before.
+void sort_returns(std::vector<RoofReturn>& returns) {
+  std::sort(returns.begin(), returns.end(), [](const RoofReturn& a, const RoofReturn& b) {
+    return std::tuple(pulse_of(a), a.number, a.x, a.y, a.above) < std::tuple(pulse_of(b), b.number, b.x, b.y, b.above);
+  });
+}
 
 }  // namespace
 
@@ -99,9 +111,17 @@ Vector2d crossing_of(const RoofReturn& r, const RoofPlane& plane, double raise) 
   return Vector2d(static_cast<double>(r.x), static_cast<double>(r.y)) - up * run;
 }
 
+core::Box reach_of(const RoofTarget& target) {
+  const Vector3d& first = target.corners.front();
+  core::Box out{first.x(), first.y(), first.x(), first.y()};
+  for (const Vector3d& c : target.corners)
+    out = {std::min(out.x0, c.x()), std::min(out.y0, c.y()), std::max(out.x1, c.x()), std::max(out.y1, c.y())};
+  return out.grown(flattest * farthest_from_plane + roof_band);
+}
+
 bool is_near(const RoofTarget& target, const core::Box& box) {
-  const core::Box near = box.grown(flattest * farthest_from_plane + roof_band);
-  return std::any_of(target.corners.begin(), target.corners.end(), [&](const Vector3d& c) { return near.holds(c.x(), c.y()); });
+  const core::Box reach = reach_of(target);
+  return reach.x0 < box.x1 && box.x0 <= reach.x1 && reach.y0 < box.y1 && box.y0 <= reach.y1;
 }
 
 std::vector<RoofReturn> returns_at_roofs(const core::Block& b, size_t own, const std::vector<Vector3d>& scanner,
@@ -143,27 +163,37 @@ std::vector<RoofReturn> returns_at_roofs(const core::Block& b, size_t own, const
 
 std::vector<double> find_runs(std::vector<RoofReturn>& returns, const std::vector<PulseSpan>& spans,
                               const std::vector<RoofTarget>& targets) {
+  // A line may pass a target several times, or slowly: slices of its time have a track each.
+  using Pass = std::tuple<std::int32_t, std::int32_t, std::int64_t>;  // target, line, slice
+  const auto pass_of = [](const RoofReturn& r) {
+    return Pass(r.target, r.line, static_cast<std::int64_t>(std::floor(r.time / track_window)));
+  };
+  std::erase_if(returns, [](const RoofReturn& r) { return !is_known_time(r.time); });
+  sort_returns(returns);
   std::map<std::int32_t, std::vector<PulseSpan>> by_line;
   for (const PulseSpan& s : spans) by_line[s.line].push_back(s);
   struct Times {
     double sum = 0.0, n = 0.0;
   };
-  std::map<std::pair<std::int32_t, std::int32_t>, Times> times;  // by target and line
-  for (const RoofReturn& r : returns) times[{r.target, r.line}].sum += r.time, ++times[{r.target, r.line}].n;
-  std::map<std::pair<std::int32_t, std::int32_t>, ScannerTrack> tracks;
+  std::map<Pass, Times> times;
+  for (const RoofReturn& r : returns) times[pass_of(r)].sum += r.time, ++times[pass_of(r)].n;
+  std::map<Pass, ScannerTrack> tracks;
   std::vector<double> squares(targets.size(), 0.0), n(targets.size(), 0.0);
-  for (const auto& [key, t] : times) {
-    const auto track = ScannerTrack::around(t.sum / t.n, by_line[key.second]);
+  for (const auto& [pass, t] : times) {
+    const auto target = static_cast<size_t>(std::get<0>(pass));
+    const core::Box reach = reach_of(targets[target]);
+    std::vector<PulseSpan> near;
+    for (const PulseSpan& s : by_line[std::get<1>(pass)])
+      if (reach.holds(s.x, s.y)) near.push_back(s);
+    const auto track = ScannerTrack::around(t.sum / t.n, near);
     if (!track) continue;
-    tracks.emplace(key, *track);
-    const auto target = static_cast<size_t>(key.first);
+    tracks.emplace(pass, *track);
     squares[target] += t.n * track->run_sigma() * track->run_sigma(), n[target] += t.n;
   }
   std::vector<RoofPlane> planes(targets.begin(), targets.end());
   std::erase_if(returns, [&](RoofReturn& r) {
-    const auto track = tracks.find({r.target, r.line});
-    const Times& t = times[{r.target, r.line}];
-    if (track == tracks.end() || std::abs(r.time - t.sum / t.n) > track_window) return true;
+    const auto track = tracks.find(pass_of(r));
+    if (track == tracks.end()) return true;
     const auto target = static_cast<size_t>(r.target);
     const Vector2d at(static_cast<double>(r.x), static_cast<double>(r.y));
     const Vector2d place = targets[target].corners[0].head<2>() + at;
@@ -176,11 +206,8 @@ std::vector<double> find_runs(std::vector<RoofReturn>& returns, const std::vecto
 }
 
 std::vector<RoofReturn> first_of_pulses(std::vector<RoofReturn> returns) {
-  const auto pulse = [](const RoofReturn& r) { return std::tuple(r.target, r.line, r.time); };
-  std::sort(returns.begin(), returns.end(), [&](const RoofReturn& a, const RoofReturn& b) {
-    return std::tuple(pulse(a), a.number, a.x, a.y, a.above) < std::tuple(pulse(b), b.number, b.x, b.y, b.above);
-  });
-  returns.erase(std::unique(returns.begin(), returns.end(), [&](const auto& a, const auto& b) { return pulse(a) == pulse(b); }),
+  sort_returns(returns);
+  returns.erase(std::unique(returns.begin(), returns.end(), [](const auto& a, const auto& b) { return pulse_of(a) == pulse_of(b); }),
                 returns.end());
   return returns;
 }

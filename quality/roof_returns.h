@@ -54,6 +54,8 @@ struct RoofReturn {
 
 constexpr double roof_band = 2.0;  ///< m on both sides of an edge that it is looked for by
 
+/// On the map, m: returns of beams at the target lie in it.
+core::Box reach_of(const RoofTarget& target);
 /// Could returns of a beam at the target lie in the box?
 bool is_near(const RoofTarget& target, const core::Box& box);
 
@@ -65,8 +67,9 @@ constexpr double beside_roof = 15.0;  ///< m beyond that band where returns of b
 std::vector<RoofReturn> returns_at_roofs(const core::Block& block, std::size_t own, const std::vector<Eigen::Vector3d>& scanner,
                                          const std::vector<RoofTarget>& targets);
 
-/// Gives the returns their runs by the pulses that came back twice near each target, and leaves out those of lines where these do not show
-/// where the scanner was. The sigma of the runs at each target; 0 where it has no returns.
+/// Gives the returns their runs by the pulses that came back twice within reach of each target, 2.5 s of a line after the other, and leaves
+/// out those where these do not show where the scanner was, or whose times are not known. The sigma of the runs at each target; 0 where it
+/// has no returns. Returns in any order give the same.
 std::vector<double> find_runs(std::vector<RoofReturn>& returns, const std::vector<PulseSpan>& spans,
                               const std::vector<RoofTarget>& targets);
 

@@ -193,6 +193,7 @@ std::vector<RimPiece> rims_of(const core::Block& b, const std::vector<VoidRun>& 
     const auto z = static_cast<float>(b.origin.z() + b.z[p]);
     const auto [at, is_new] = pieces.try_emplace({i, j, vi >> 4, vj >> 4}, RimPiece{i, j, vi, vj, z, 0.0F});
     at->second.low = std::min(at->second.low, z);
+    if (std::pair(vi, vj) < std::pair(at->second.void_i, at->second.void_j)) at->second.void_i = vi, at->second.void_j = vj;
     if (!is_new) continue;
     const auto [ground_at, is_first] = behind.try_emplace({i, j}, 0.0F);
     if (is_first) ground_at->second = ground.behind((i + 0.5) * side - b.origin.x(), (j + 0.5) * side - b.origin.y());

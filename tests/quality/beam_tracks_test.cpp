@@ -42,6 +42,10 @@ struct Flight {
 };
 const core::Box everywhere{-1e6, -1e6, 1e6, 1e6};
 
+std::vector<PulseSpan> spans_in(const core::Block& b, size_t own, const core::Box& box) {
+  return spans_of(pulse_returns_in(b, own, {box}));
+}
+
 TEST(BeamTracks, TheRunOfABeamIsFoundWithinItsSigma) {
   const Flight flight;
   double chi = 0.0;

@@ -29,6 +29,7 @@ TEST(CoverWords, UnknownOnesAreNeither) {
 TEST(CoverWords, TheListOfOpenCoversDecides) {
   EXPECT_FALSE(is_open_cover("bebaut", {"open"})) << "urban is not in the list";
   EXPECT_TRUE(is_open_cover("X17", {"x17"}));
+  EXPECT_TRUE(is_open_cover("offen", {"Open"}));
   EXPECT_TRUE(is_open_cover("wald", {"forest"}));
   EXPECT_FALSE(is_open_cover("", {"open"}));
 }

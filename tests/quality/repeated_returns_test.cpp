@@ -105,6 +105,11 @@ TEST(RepeatedReturns, WithoutTimesOnlyWholeRecordsAreTheSame) {
   EXPECT_TRUE(repeated_first_returns(b).empty());
   const std::size_t n = repeat(b, 50.0, 80.0);
   EXPECT_EQ(count(repeated_first_returns(b)), n);
+  b.time.assign(b.size(), core::adjusted_offset);  // a file of adjusted standard time without times
+  EXPECT_EQ(count(repeated_first_returns(b)), n);
+  b.intensity[b.size() - 1] ^= 1;
+  EXPECT_EQ(count(repeated_first_returns(b)), n - 1);
+  b.intensity[b.size() - 1] ^= 1;
   b.time.clear();
   EXPECT_EQ(count(repeated_first_returns(b)), n);
 }

@@ -98,6 +98,9 @@ TEST(RoofPlanimetry, OneComponentAloneIsSaid) {
   EXPECT_NEAR(*p.azimuth, 45.0, 1e-9);
   EXPECT_NEAR(*p.along, 0.12, 1e-9);
   EXPECT_NEAR(*p.sigma_along, 0.02 / std::sqrt(2.0), 0.01);
+  for (const double along : {0.5, -0.5}) shifts[along > 0.0 ? 0 : 1].shift = along * best;  // two of one unknown do not fit
+  EXPECT_NEAR(planimetry_of(shifts, named).between, 0.7, 0.02);
+  for (const double along : {0.10, 0.14}) shifts[along < 0.12 ? 0 : 1].shift = along * best;
   // A roof of the other component completes it.
   const Vector2d other(-best.y(), best.x());
   RoofShift s = shifts[0];

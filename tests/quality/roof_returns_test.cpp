@@ -90,6 +90,8 @@ TEST(RoofReturns, OwnPointsWithAPlaceOfTheScannerCountAlone) {
   EXPECT_TRUE(returns_at_roofs(cloud.block, cloud.block.size(), cloud.scanner, targets).empty());
   EXPECT_TRUE(is_near(targets[0], {0.0, 0.0, 100.0, 100.0}));
   EXPECT_FALSE(is_near(targets[0], {500.0, 0.0, 600.0, 100.0}));
+  const RoofTarget hall{"hall", {{0, 0, 9}, {600, 0, 9}, {600, 40, 9}, {0, 40, 9}}, 0.01};
+  EXPECT_TRUE(is_near(hall, {250.0, 0.0, 350.0, 100.0})) << "no corner is near";
 }
 
 }  // namespace

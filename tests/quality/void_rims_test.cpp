@@ -149,6 +149,7 @@ std::vector<RimPiece> pieces_by_definition(const core::Block& b, const std::vect
     const auto z = static_cast<float>(b.origin.z() + b.z[p]);
     const auto [at, fresh] = pieces.try_emplace({u, v, vi >> 4, vj >> 4}, RimPiece{u, v, vi, vj, z, 0.0F});
     at->second.low = std::min(at->second.low, z);
+    if (std::pair(vi, vj) < std::pair(at->second.void_i, at->second.void_j)) at->second.void_i = vi, at->second.void_j = vj;
     if (!fresh) continue;
     std::vector<double> heights;
     for (size_t q = 0; q < b.size(); ++q) {

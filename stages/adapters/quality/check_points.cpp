@@ -113,7 +113,7 @@ Marks marks_of(const Context& context) {
 std::vector<fs::path> check_files(const io::Survey& survey) {
   std::vector<fs::path> out;
   for (const io::ControlFile& f : survey.control)
-    if (f.use == io::ControlUse::check) out.push_back(io::resolve(survey, f.file));
+    if (f.use == io::ControlUse::check && f.kind == io::ControlKind::xyz) out.push_back(io::resolve(survey, f.file));
   return out;
 }
 
@@ -132,15 +132,17 @@ fs::path readings_file(const fs::path& folder, TileKey key) { return piece_file(
 /// What a tile has at the targets: returns with their beams by the trajectory, or returns and the pulses that show the beams.
 struct RoofRows {
   std::vector<quality::RoofReturn> returns;
-  std::vector<quality::PulseSpan> spans;
+  std::vector<quality::PulseReturn> pulses;
 };
 
 RoofRows roof_rows(const TileJob& job, const Context& context, const trajectory::Trajectory* flown,
                    const std::vector<quality::RoofTarget>& targets, RunCache& cache) {
   const bool any = std::any_of(targets.begin(), targets.end(), [&](const quality::RoofTarget& t) { return quality::is_near(t, job.box); });
   if (!any) return {};
+  std::vector<Box> reaches;
+  for (const quality::RoofTarget& t : targets) reaches.push_back(quality::reach_of(t));
   if (flown) return {quality::returns_at_roofs(job.block, job.own, scanner_positions(context, *flown, job.block, cache), targets), {}};
-  return {quality::returns_at_roofs(job.block, job.own, {}, targets), quality::spans_in(job.block, job.own, job.box)};
+  return {quality::returns_at_roofs(job.block, job.own, {}, targets), quality::pulse_returns_in(job.block, job.own, reaches)};
 }
 
 void read_tile(const TileJob& job, const Context& context, const CheckPointOptions& o, const trajectory::Trajectory* flown,
@@ -155,7 +157,7 @@ void read_tile(const TileJob& job, const Context& context, const CheckPointOptio
     readings = quality::read_marks(job.block, marks.list, here, o.radius.value, o.surface);
     roofs = roof_rows(job, context, flown, marks.targets, cache);
   }
-  write_rows(readings_file(job.folder, job.key), readings, roofs.returns, roofs.spans);
+  write_rows(readings_file(job.folder, job.key), readings, roofs.returns, roofs.pulses);
 }
 
 /// What the readings of its lines say of each mark: differences weighted by their points, of sigma and slope the largest.
@@ -256,16 +258,17 @@ void name_covers(const Marks& marks, const std::vector<std::string>& open, Check
   if (unknown.empty()) return;
   std::vector<std::string> words;
   for (const auto& [cover, places] : unknown) words.push_back("'" + cover + "' (" + shown(places) + ")");
-  found.named.push_back({"check.cover", core::counted(rows, "check point has a cover", "check points have covers") +
-                                            " that is not a known word, counted as vegetated: " + shown(words)});
+  found.named.push_back({"check.cover", core::counted(rows, "check point has a cover that is not a known word",
+                                                      "check points have covers that are not known words") +
+                                            ", counted as vegetated: " + shown(words)});
 }
 
 void judge_planimetry(const Marks& marks, RoofRows rows, bool has_trajectory, CheckPointFindings& found) {
   if (marks.targets.empty()) return;
   std::vector<double> run_sigmas;
-  if (!has_trajectory) run_sigmas = quality::find_runs(rows.returns, rows.spans, marks.targets);
+  if (!has_trajectory) run_sigmas = quality::find_runs(rows.returns, quality::spans_of(std::move(rows.pulses)), marks.targets);
   if (rows.returns.empty() && !has_trajectory) {
-    found.no_planimetry = "there is no trajectory, and no pulses with several returns near the roofs that show the beams";
+    found.no_planimetry = "there is no trajectory, and near the roofs too few pulses with GPS times and several returns to show the beams";
     return;
   }
   found.beams = has_trajectory ? "trajectory" : "pulses with several returns";
@@ -290,20 +293,20 @@ CheckPointFindings judge_points(const MergeJob& job, const Context& context, con
                                 const trajectory::Trajectory* flown, RunCache& cache) {
   CheckPointFindings found;
   if (check_files(context.survey).empty()) {
-    found.none = "none: the survey has no [[control]] with use = \"check\"";
+    found.none = "none: the survey has no [[control]] of three coordinates with use = \"check\"";
     return found;
   }
   const Marks& marks = cache.get([&] { return marks_of(context); });
   std::vector<quality::MarkReading> readings;
   RoofRows rows;
-  for (const TileKey key : job.tiles) read_rows(readings_file(job.folder, key), readings, rows.returns, rows.spans);
+  for (const TileKey key : job.tiles) read_rows(readings_file(job.folder, key), readings, rows.returns, rows.pulses);
   std::sort(readings.begin(), readings.end(),
             [](const auto& a, const auto& b) { return std::pair(a.mark, a.line) < std::pair(b.mark, b.line); });
   const std::vector<MarkFound> at = found_at(job, context, marks, readings);
   found.marks = marks.list.size();
   found.corners = marks.corners;
   name_records(job, context, marks, at, found);
-  name_covers(marks, o.open, found);
+  if (o.open == CheckPointOptions().open) name_covers(marks, o.open, found);  // a list of one's own says what is open
   judge_planimetry(marks, std::move(rows), flown != nullptr, found);
   judge_accuracy(marks, at, o, found);
   quality::MarkFaults faults = quality::find_faults(marks.list, readings);

@@ -37,6 +37,7 @@ std::vector<std::string> gaps_in(const QualityFacts& f) {
   std::vector<std::string> out;
   if (!f.density.any()) out.push_back("Density: quality.density did not run.");
   if (!f.swath.any()) out.push_back("Overlaps, distribution and voids: quality.swath did not run.");
+  if (const std::string why = f.swath.text("no_voids"); !why.empty()) out.push_back("Distribution and voids: " + why + ".");
   if (f.swath.any() && f.swath.number("overlap_cells") == 0.0) out.push_back("Overlaps: no two lines see the same smooth level ground.");
   if (!f.points.any()) out.push_back("Accuracy: the survey has no check points ([[control]] with use = \"check\").");
   if (f.points.any() && !f.points.known("nva_m")) out.push_back("NVA: fewer than three check points on open ground could be compared.");

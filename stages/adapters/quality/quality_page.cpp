@@ -122,6 +122,7 @@ void add_density(QualitySheet& page, const QualityFacts& f) {
 void add_voids(QualitySheet& page, const QualityFacts& f) {
   if (!f.swath.any()) return;
   page.section("Spatial distribution and voids");
+  if (const std::string why = f.swath.text("no_voids"); !why.empty()) return page.paragraph("Not judged: " + why + ".");
   const auto text = [&](const char* key, int decimals, double scale = 1.0) { return number_text(scale * f.swath.number(key), decimals); };
   page.table(figures("By a pulse spacing of " + text("anps_m", 3) + " m (" + f.swath.text("anps_from") + ").",
                      {{"cells of twice the spacing with a first return (%)", text("even", 1, 100.0)},

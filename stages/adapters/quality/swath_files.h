@@ -67,16 +67,17 @@ void describe(const SwathFindings& r, V& v) {
            "overlap_rms_m over what the points' own sigmas predict; 1 where they are true.");
   v.result("no_voids", r.no_voids, core::plain().in_summary(), "Why neither the distribution nor voids are judged.");
   v.result("even", r.even, core::share().in_summary(), "Share of cells of twice the pulse spacing with a first return of any line.");
-  v.result("judged_km2", 1e-6 * r.voids.judged, core::plain(), "Area in which voids are looked for: the survey without its rim.");
-  v.result("least_void_m2", r.voids.least, "Area from which on a void counts: (4 ANPS)^2.");
   const bool judged = !r.no_voids;
+  v.result("judged_km2", 1e-6 * r.voids.judged, core::plain().only_if(judged),
+           "Area in which voids are looked for: the survey without its rim.");
+  v.result("least_void_m2", r.voids.least, core::plain().only_if(judged), "Area from which on a void counts: (4 ANPS)^2.");
   v.result("voids", static_cast<std::uint64_t>(r.count(false)), core::plain().in_summary().only_if(judged), "Voids apart from water.");
   v.result("void_m2", r.voids.area, core::plain().in_summary().only_if(judged), "Their area.");
   v.result("void_share", r.voids.judged > 0.0 ? r.voids.area / r.voids.judged : 0.0, core::share().limited_by("void_share").only_if(judged),
            "Their share of the judged area.");
-  v.result("largest_void_m2", r.largest(false), "The largest of them.");
-  v.result("water_voids", static_cast<std::uint64_t>(r.count(true)), "Voids that are water.");
-  v.result("water_void_m2", r.voids.water_area, "Their area.");
+  v.result("largest_void_m2", r.largest(false), core::plain().only_if(judged), "The largest of them.");
+  v.result("water_voids", static_cast<std::uint64_t>(r.count(true)), core::plain().only_if(judged), "Voids that are water.");
+  v.result("water_void_m2", r.voids.water_area, core::plain().only_if(judged), "Their area.");
   v.tables("largest", r.largest_voids(), "The ten largest voids, water or not.");
   v.tables("pairs", r.pairs, "Pairs of overlapping flight lines on smooth level cells.");
   v.tables("lines", r.lines, "Flight lines by themselves.");
