@@ -7,6 +7,7 @@
 #include <numeric>
 #include <random>
 
+#include "core/time.h"
 #include "quality/pulse_density.h"
 
 namespace swath::quality {

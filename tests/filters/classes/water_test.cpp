@@ -87,6 +87,10 @@ TEST(Water, APondUnderTheNadirIsFoundWhereTheLandRisesAround) {
   constexpr double found = 0.9, taken = 0.003;
   EXPECT_GE(share_of_water(f, cls::water), found);
   EXPECT_LE(share_of_water(f, cls::ground), taken);
+  f = fly(pond);
+  WaterOptions near;
+  near.reach = core::Metres(8.0);  // it goes on beyond: level land, of which a part is sparse
+  EXPECT_EQ(classify_water(f.block, f.block.size(), near).water, 0u);
   // What is not ground is none: a flat roof in the middle of higher ones.
   f = fly(pond);
   std::fill(f.block.classification.begin(), f.block.classification.end(), cls::unassigned);

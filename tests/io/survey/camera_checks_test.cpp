@@ -85,9 +85,9 @@ TEST_F(CameraTables, PixelsNeedASensor) {
 TEST_F(CameraTables, TablesNeedOneAnother) {
   EXPECT_EQ(faults_of([](Survey& s) { s.cameras.clear(); }), "image image_points");
   EXPECT_EQ(faults_of([](Survey& s) { s.events.clear(); }), "camera");
-  EXPECT_EQ(faults_of([](Survey& s) { s.cameras.emplace_back(); }), "camera[2].name");
+  EXPECT_EQ(faults_of([](Survey& s) { s.cameras.emplace_back(); }), "camera[2].name camera[2].pixel");
   const auto unnamed = [](Survey& s) { s.cameras.emplace_back().name.clear(); };
-  EXPECT_EQ(faults_of(unnamed), "camera[2].name");
+  EXPECT_EQ(faults_of(unnamed), "camera[2].name camera[2].pixel");
 }
 
 TEST_F(CameraTables, FilesAreThere) {
