@@ -60,9 +60,11 @@ std::string bare_name(std::string name) {
   std::string hint =
       config.images.lacks_hint.empty() ? "add it to " + config.images.file.string() + ", or take its points out" : config.images.lacks_hint;
   for (const BlockImage& i : images)
-    // One that has image points of its own is another image.
-    if (bare_name(i.name) == bare_name(name) && std::find(data.images.begin(), data.images.end(), i.name) == data.images.end()) {
-      hint = "there is an image " + i.name + ": the names must be the same, with folder, extension, upper and lower case";
+    if (bare_name(i.name) == bare_name(name)) {
+      const std::string same = "there is an image " + i.name + ": the names must be the same, with folder, extension, upper and lower case";
+      // One that has image points of its own may be another image.
+      const bool is_other = std::find(data.images.begin(), data.images.end(), i.name) != data.images.end();
+      hint = is_other ? hint + "; or " + same : same;
       break;
     }
   throw core::Error("image " + name + " has image points and " + config.images.lacks, data.file.string(), hint);
