@@ -34,6 +34,12 @@ class Network(Case):
         for kind in ("planes", "returns", "gnss_position"):
             self.assertLess(abs(kinds[kind]["factor"] - 1), 0.4, kind)
         self.assertLess(found["surface_sigma_m"], 0.003)  # roofs and ground of the simulation are planes to a millimetre
+        named = found.get("left_out", [])
+        self.assertEqual(len(named), min(20, found["groups_left_out"]))
+        self.assertEqual(sorted(named, key=lambda g: -abs(g["off_m"])), named)
+        for group in named:
+            self.assertIn(group["line"], (1, 2, 3))
+            self.assertGreater(abs(group["off_m"]), 3 * group["sigma_m"])
         page = (self.out / "report.html").read_text()
         for heading in ("Joint adjustment", "What the surfaces changed", "Biases of the IMU", "Differences between lines"):
             self.assertIn(heading, page)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // IMU, GNSS and laser surfaces of a survey in one adjustment.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -14,6 +15,8 @@
 #include "calib/report/calibration_report.h"
 #include "calib/report/flight_views.h"
 #include "core/config/result.h"
+#include "core/geo/geodesy.h"
+#include "core/time.h"
 #include "io/survey/calibration_file.h"
 #include "io/text/output_file.h"
 #include "io/text/value_file.h"
@@ -57,6 +60,43 @@ void describe(const ComponentRow& r, V& v) {
   v.result("factor", r.of.factor, core::plain(3), "Sigmas as the residuals show them over those used; absent below 3 degrees of freedom.");
 }
 
+/// One line on one plane that the adjustment took no part of.
+struct GroupLeftOut {
+  int line = 0;
+  core::Geodetic at;
+  std::string utc;
+  std::uint32_t returns = 0;
+  double off = 0.0, sigma = 0.0;
+};
+
+template <class V>
+void describe(const GroupLeftOut& r, V& v) {
+  v.result("line", r.line, "Number of the flight line.");
+  v.result("latitude_deg", core::to_degrees(r.at.latitude), core::plain(8), "Place of the plane.");
+  v.result("longitude_deg", core::to_degrees(r.at.longitude), core::plain(8), "The same.");
+  v.result("height_m", r.at.height, core::metres(2), "Its ellipsoidal height.");
+  v.result("utc", r.utc, "When the line passed it.");
+  v.result("returns", r.returns, "Returns of the line on it.");
+  v.result("off_m", r.off, core::metres(), "By which they lie off the plane, along its normal.");
+  v.result("sigma_m", r.sigma, core::metres(4), "Standard deviation of that by noise and surface.");
+}
+
+/// Those farthest off.
+std::vector<GroupLeftOut> left_out_of(const calib::AdjustedNetwork& n) {
+  constexpr size_t most = 20;
+  std::vector<GroupLeftOut> out;
+  for (size_t g = 0; g < n.after.size(); ++g) {
+    const calib::PlaneMisfit& m = n.after[g];
+    if (m.returns == 0 || m.weight > 0.0) continue;
+    const Eigen::Vector3d& centre = n.planes[m.plane].centre;
+    out.push_back({n.ties.lines[m.line].id, core::geodetic_of(n.ties.frame.origin + n.ties.frame.local_R_ecef.transpose() * centre),
+                   core::utc_text(m.time), m.returns, m.mean, m.sigma});
+  }
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return std::abs(a.off) > std::abs(b.off); });
+  if (out.size() > most) out.resize(most);
+  return out;
+}
+
 struct AgainstTruth {
   trajectory::TruthComparison smoother, network;
 };
@@ -74,6 +114,7 @@ struct NetworkFindings {
   double noise_factor = 0.0, last_move = 0.0, surface_sigma = 0.0, range_factor = 1.0, angle_factor = 1.0;
   std::vector<std::pair<std::string, ComponentRow>> components{};
   calib::PlaneAgreement on_planes{};
+  std::vector<GroupLeftOut> farthest_off{};
   std::vector<std::pair<std::string, ValueRow>> values{};
   std::optional<AgainstTruth> truth{};
 };
@@ -86,6 +127,8 @@ void describe(const NetworkFindings& r, V& v) {
   v.result("tie_returns", r.tie_returns, "Returns on these planes.");
   v.result("groups_left_out", r.left_out, "Groups of returns (one line on one plane) without weight: far off their plane.");
   v.result("groups_displaced", r.displaced, "Groups that the test of displacements (snooping) left out.");
+  v.tables("left_out", r.farthest_off,
+           "Up to 20 of these farthest off: moved or grown between two lines, moving, or a line that does not fit.");
   v.result("instants", r.instants, "Instants with a navigation state of their own.");
   v.result("unknowns", r.unknowns, "Unknowns of the system, planes not counted.");
   v.result("rounds", r.rounds, "Searches for planes.");
@@ -118,6 +161,7 @@ NetworkFindings found_by(const calib::AdjustedNetwork& n) {
   f.range_factor = n.range_factor, f.angle_factor = n.angle_factor;
   for (const calib::NetworkComponent& c : n.components) f.components.emplace_back(c.kind, ComponentRow{c});
   f.on_planes = calib::agreement_on_planes(n);
+  f.farthest_off = left_out_of(n);
   for (const calib::NetworkValue& v : n.values) f.values.emplace_back(std::string(calib::words_of(v.parameter).key), ValueRow{v});
   return f;
 }
