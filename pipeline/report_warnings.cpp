@@ -104,12 +104,16 @@ void add_trajectory(const Value& findings, std::vector<Warning>& out) {
                    {{"factor", noise->as_number(), {}}}});
 }
 
-/// Techniques whose events lie outside the record that should cover them.
+/// Techniques whose events lie outside the record that should cover them; each once, though several stages find it.
 void add_events(const Value& techniques, std::vector<Warning>& out) {
-  for (const Value& one : techniques.items())
+  for (const Value& one : techniques.items()) {
+    const std::string quoted = "'" + one.find("technique")->as_text() + "'";
+    if (std::any_of(out.begin(), out.end(), [&](const Warning& w) { return w.code == events_code && w.text.find(quoted) != w.text.npos; }))
+      continue;
     out.push_back({std::string(events_code),
                    one.find("sentence")->as_text(),
                    {{"outside", one.find("outside")->as_number(), {}}, {"events", one.find("events")->as_number(), {}}}});
+  }
 }
 
 void add_findings(const std::string& stage, const Value& findings, std::vector<Warning>& out) {

@@ -48,6 +48,21 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
   EXPECT_EQ(codes.size(), warning_kinds().size());
 }
 
+TEST(Warnings, EventsOfATechniqueAreNamedOnceThoughTwoStagesFindThem) {
+  const auto found = [](const std::string& technique, const std::string& record) {
+    return R"({"outside": [{"technique": ")" + technique + R"(", "events": 4, "outside": 4, "sentence": "all 4 events of ')" + technique +
+           "' lie outside the " + record + R"("}]})";
+  };
+  const auto number = [&](const std::string& other) {
+    return warnings_in(io::parse_json(R"({"stages": [{"type": "time.sync", "findings": )" + found("pc", "trajectory") +
+                                          R"(}, {"type": "trajectory.kinematic", "findings": )" + found(other, "GNSS record") + "}]}",
+                                      "report"))
+        .size();
+  };
+  EXPECT_EQ(number("pc"), 1u);
+  EXPECT_EQ(number("camera"), 2u);
+}
+
 TEST(Warnings, AFewContradictingFixesAreNoWarning) {
   const auto number = [](const std::string& findings) {
     return warnings_in(io::parse_json(R"({"stages": [{"type": "trajectory.ins_gnss", "findings": )" + findings + "}]}", "report")).size();
