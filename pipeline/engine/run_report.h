@@ -71,7 +71,7 @@ void describe(const StageReport& s, V& v) {
   v.other("options", s.options, "Every option: its value, and where it was set.");
   v.result("seconds", s.time.seconds, core::seconds(), "Time of its work, summed over threads.");
   v.result("processor_seconds", s.time.processor, core::seconds(),
-           "Processor time of its work; of readers, of reading alone; without other threads that helped with a tile.");
+           "Processor time of its work, of readers of reading alone; without threads that help with a tile.");
 }
 
 struct RunReport {
