@@ -127,8 +127,7 @@ void describe(const NetworkFindings& r, V& v) {
   v.result("tie_returns", r.tie_returns, "Returns on these planes.");
   v.result("groups_left_out", r.left_out, "Groups of returns (one line on one plane) without weight: far off their plane.");
   v.result("groups_displaced", r.displaced, "Groups that the test of displacements (snooping) left out.");
-  v.tables("left_out", r.farthest_off,
-           "Up to 20 of these, farthest off first: things that moved or grew, or a line that does not fit.");
+  v.tables("left_out", r.farthest_off, "Up to 20 of these, farthest off first: things that moved or grew, or a line that does not fit.");
   v.result("instants", r.instants, "Instants with a navigation state of their own.");
   v.result("unknowns", r.unknowns, "Unknowns of the system, planes not counted.");
   v.result("rounds", r.rounds, "Searches for planes.");
