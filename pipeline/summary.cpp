@@ -37,6 +37,7 @@ class FindingsText {
   std::string of(const Value& tables, const std::string& margin, const std::string& path = {}) const {
     std::string out;
     for (const auto& [key, value] : tables.members()) {
+      if (value.is_array() && value.items().empty()) continue;
       const std::string at = path.empty() ? key : path + "." + key;
       if (value.is_object()) {
         const std::string inner = of(value, margin + "  ", at);

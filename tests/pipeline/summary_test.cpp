@@ -41,6 +41,14 @@ TEST(Summary, AListOfTablesIsALineForEachAndNoJson) {
   EXPECT_EQ(text.find('{'), std::string::npos) << text;
 }
 
+TEST(Summary, EmptyListsAreNotShown) {
+  const core::Value report = io::parse_json(
+      R"({"seconds": 72, "stages": [{"type": "some.stage", "findings": {"lines": [], "named": [], "marks": 3}}]})", "report");
+  const std::string text = summary(report, "out");
+  EXPECT_EQ(text.find("[]"), std::string::npos) << text;
+  EXPECT_NE(text.find("marks: 3"), std::string::npos) << text;
+}
+
 TEST(Summary, LinesForAnotherFileAreShownAsLines) {
   const core::Value report = io::parse_json(
       R"({"seconds": 72, "stages": [{"type": "calib.lever_arm", "findings": {"survey_toml": "[mounting]\nlever_arm = [1, 2, 3]\n"}}]})",
