@@ -28,9 +28,15 @@ endif()
 
 # Counts the lines that run, of the rooms' own code alone: what the libraries' templates make is not counted and costs nothing (scripts/coverage.sh).
 add_library(swath_coverage INTERFACE)
+# ccache compiles nothing whose options it does not know: where it is in use, coverage_compiler.sh gives GCC the files to leave out.
 if(SWATH_COVERAGE)
-  target_compile_options(swath_coverage INTERFACE --coverage -fprofile-filter-files=${PROJECT_SOURCE_DIR}/.*)
+  target_compile_options(swath_coverage INTERFACE --coverage)
   target_link_options(swath_coverage INTERFACE --coverage)
+  set(coverage_compiler ${PROJECT_SOURCE_DIR}/cmake/coverage_compiler.sh)
+  set(coverage_launcher ${coverage_compiler})
+  if(CCACHE_PROGRAM)
+    set(coverage_launcher ${CMAKE_COMMAND} -E env CCACHE_PREFIX=${coverage_compiler} CCACHE_EXTRAFILES=${coverage_compiler} ${CCACHE_PROGRAM})
+  endif()
 endif()
 
 # A fault, should one be left, stops the program instead of running on (docs/security.md; tests/cli/hardening_test.py). Some systems' compilers
@@ -64,6 +70,9 @@ function(swath_room room)
   endforeach()
   target_link_libraries(swath_${room} PUBLIC ${R_PUBLIC_LIBRARIES} PRIVATE ${R_LIBRARIES}
     $<BUILD_INTERFACE:swath_settings> $<BUILD_INTERFACE:swath_coverage>)
+  if(SWATH_COVERAGE)
+    set_target_properties(swath_${room} PROPERTIES CXX_COMPILER_LAUNCHER "${coverage_launcher}")
+  endif()
   if(SWATH_UNITY)
     swath_unity(swath_${room} ${room} ${sources})
   endif()
