@@ -50,10 +50,7 @@ std::string grains_text(const Stage& s) {
 
 /// What it uses beside what it needs; nothing where that is nothing.
 std::string used_by(const Stage& s, const std::string& head) {
-  std::vector<stages::Product> once;  // a tile and the merge may both use one
-  for (const stages::Product& p : s.info().uses_products)
-    if (std::find(once.begin(), once.end(), p) == once.end()) once.push_back(p);
-  return once.empty() ? std::string() : head + products_text(once);
+  return s.info().uses_products.empty() ? std::string() : head + products_text(s.info().uses_products);
 }
 
 core::Describe describe_of(Stage& s) {

@@ -15,6 +15,7 @@
 #include "core/printable.h"
 #include "io/las/cloud_crs.h"
 #include "io/las/las_crs.h"
+#include "io/las/las_ending.h"
 #include "io/las/las_reader.h"
 #include "io/raster/geotiff.h"
 #include "io/raster/height_file.h"
@@ -86,10 +87,6 @@ Sample projected(const Section& s, const Point& p, double half_width) {
 
 std::vector<fs::path> las_files(const std::vector<fs::path>& given) {
   std::vector<fs::path> out;
-  const auto is_las = [](const fs::path& p) {
-    const std::string e = core::lower_case(p.extension().string());
-    return e == ".las" || e == ".laz";
-  };
   for (const fs::path& p : given) {
     if (!fs::is_directory(p)) {
       out.push_back(p);
@@ -97,7 +94,7 @@ std::vector<fs::path> las_files(const std::vector<fs::path>& given) {
     }
     const size_t before = out.size();
     for (const auto& e : fs::directory_iterator(p))
-      if (is_las(e.path())) out.push_back(e.path());
+      if (io::has_las_ending(e.path())) out.push_back(e.path());
     if (out.size() == before) throw core::Error("the folder holds no LAS or LAZ file", p.string());
     std::sort(out.begin() + static_cast<std::ptrdiff_t>(before), out.end());
   }

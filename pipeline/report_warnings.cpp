@@ -3,14 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
+#include <set>
 #include <string_view>
 #include <utility>
 
 #include "core/config/units.h"
 #include "core/printable.h"
 #include "io/las/las_box.h"
+#include "io/las/las_ending.h"
 #include "pipeline/engine/map_fit.h"
 #include "pipeline/limits.h"
 
@@ -40,18 +41,13 @@ void add_boxes(const Value& wrong, std::vector<Warning>& out) {
                    {{"more", static_cast<double>(more), {}}}});
 }
 
-bool is_cloud_file(const std::string& file) {
-  const std::string ending = core::lower_case(std::filesystem::path(file).extension().string());
-  return ending == ".las" || ending == ".laz";
-}
-
 /// Clouds of the same length and checksum; each is compared with the first of its kind.
 void add_same_files(const Value& inputs, std::vector<Warning>& out) {
   std::map<std::pair<std::string, std::int64_t>, std::string> first;
   size_t same = 0;
   for (const Value& input : inputs.items()) {
     const std::string& file = input.find("file")->as_text();
-    if (!is_cloud_file(file)) continue;
+    if (!io::has_las_ending(file)) continue;
     const auto [known, is_new] = first.try_emplace({input.find("xxh3")->as_text(), input.find("bytes")->as_int()}, file);
     if (!is_new && ++same <= same_files_named)
       out.push_back(
@@ -105,21 +101,20 @@ void add_trajectory(const Value& findings, std::vector<Warning>& out) {
 }
 
 /// Techniques whose events lie outside the record that should cover them; each once, though several stages find it.
-void add_events(const Value& techniques, std::vector<Warning>& out) {
+void add_events(const Value& techniques, std::set<std::string>& known, std::vector<Warning>& out) {
   for (const Value& one : techniques.items()) {
-    const std::string quoted = "'" + one.find("technique")->as_text() + "'";
-    if (std::any_of(out.begin(), out.end(), [&](const Warning& w) { return w.code == events_code && w.text.find(quoted) != w.text.npos; }))
-      continue;
+    if (!known.insert(one.find("technique")->as_text()).second) continue;
     out.push_back({std::string(events_code),
                    one.find("sentence")->as_text(),
                    {{"outside", one.find("outside")->as_number(), {}}, {"events", one.find("events")->as_number(), {}}}});
   }
 }
 
-void add_findings(const std::string& stage, const Value& findings, std::vector<Warning>& out) {
+/// `techniques`: those whose events earlier stages named.
+void add_findings(const std::string& stage, const Value& findings, std::set<std::string>& techniques, std::vector<Warning>& out) {
   if (stage == "trajectory.ins_gnss") add_trajectory(findings, out);
   if (const Value* outside = findings.find("outside"); outside && (stage == "time.sync" || stage == "trajectory.kinematic"))
-    add_events(*outside, out);
+    add_events(*outside, techniques, out);
   if (const Value* share = findings.find("duplicate_share"); share && share->as_number() > warned_duplicates)
     out.push_back(
         {std::string(duplicates_code),
@@ -147,8 +142,9 @@ std::vector<Warning> warnings_in(const Value& report) {
   for (const Value& stage : report.find("stages")->items())
     if (const Value* tally = stage.find("tally"))
       if (const Value* wrong = tally->find(io::wrong_box)) add_boxes(*wrong, out);
+  std::set<std::string> techniques;
   for (const Value& stage : report.find("stages")->items())
-    if (const Value* findings = stage.find("findings")) add_findings(stage.find("type")->as_text(), *findings, out);
+    if (const Value* findings = stage.find("findings")) add_findings(stage.find("type")->as_text(), *findings, techniques, out);
   if (const Value* unused = report.find("control_unused"))
     for (const Value& file : unused->items())
       out.push_back({std::string(control_code), "[[control]] " + file.as_text() + " is used by no stage of this run", {}});

@@ -94,7 +94,8 @@ std::string cover_in_english(const std::string& cover) {
 bool is_open_cover(const std::string& cover, const std::vector<std::string>& open) {
   const std::string plain = plain_cover(cover), english = plain_cover(cover_in_english(cover));
   return std::any_of(open.begin(), open.end(), [&](const std::string& one) {
-    return plain_cover(one) == plain || (!english.empty() && plain_cover(one) == english);
+    const std::string is_open = plain_cover(one);
+    return is_open == plain || (!english.empty() && is_open == english);
   });
 }
 

@@ -105,7 +105,9 @@ struct Argument<R> {
 };
 template <Record R>
 struct Argument<const R*> {
-  static void declare(Info& info) { info.uses_products.push_back(Product::of<R>()); }
+  static void declare(Info& info) {
+    if (std::ranges::count(info.uses_products, Product::of<R>()) == 0) info.uses_products.push_back(Product::of<R>());
+  }
   static const R* of(auto& s) { return s.context.records.template find<R>(); }
 };
 

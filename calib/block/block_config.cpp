@@ -7,6 +7,7 @@
 #include "core/config/option_visitors.h"
 #include "core/error.h"
 #include "core/geo/frames.h"
+#include "io/survey/camera_checks.h"
 #include "io/text/line_reader.h"
 
 namespace swath::calib {
@@ -34,11 +35,7 @@ double sigma_from(const std::string& text, core::Dimension dimension, const std:
 void expect_distances(const core::Value& given, std::vector<core::Fault>& faults) {
   const core::Value* cameras = given.find("camera");
   if (!cameras || !cameras->is_array()) return;
-  for (size_t i = 0; i < cameras->items().size(); ++i) {
-    const std::string key = "camera[" + std::to_string(i + 1) + "].f";
-    if (const core::Value& camera = cameras->items()[i]; camera.is_object() && !camera.find("f"))
-      faults.push_back({camera.where, key, "the principal distance of the camera is not stated", "f = \"... mm\""});
-  }
+  for (size_t i = 0; i < cameras->items().size(); ++i) io::expect_distance(given, i, faults);
 }
 
 BlockConfig read_block_config(const std::filesystem::path& file, const core::Value& given) {

@@ -233,6 +233,12 @@ void add_chain(const BlockConfig& config, const OrientationCorrelation& correlat
 }
 
 /// Before anything is adjusted: what its normal equations would say without names.
+constexpr const char* names_may_differ = "names in the control file and of the image points may differ";
+
+std::string unseen_control(const ReadBlock& read) {
+  return "no control point is measured on an image: " + first_of(read.control_without_image);
+}
+
 void expect_datum(const ReadBlock& read, const std::string& config_file) {
   if (read.block.datum == Datum::none) return;
   if (read.stations_observed == 0)
@@ -248,8 +254,7 @@ void expect_datum(const ReadBlock& read, const std::string& config_file) {
                         core::counted(known[2], "height") + ", and " + std::string(core::Choices<Datum>::names.at(shift ? 1 : 2)) +
                         " needs " + std::to_string(plan) + " and " + std::to_string(heights),
                     config_file,
-                    is_unseen ? "no control point is measured on an image: " + first_of(read.control_without_image) +
-                                    "; names in the control file and of the image points may differ"
+                    is_unseen ? unseen_control(read) + "; " + names_may_differ
                               : "survey more control, or state datum = \"none\"" + std::string(shift ? "" : " or \"shift\""));
 }
 
@@ -301,8 +306,7 @@ ReadBlock read_block(const BlockConfig& config, const std::string& config_file) 
   const std::vector<SurveyedPoint> control = read_control_tables(config);
   ReadBlock read = read_block(config, config_file, control);
   if (!control.empty() && read.block.control.empty())
-    throw core::Error("no control point is measured on an image: " + first_of(read.control_without_image), config.control[0].file.string(),
-                      "names in the control file and of the image points may differ");
+    throw core::Error(unseen_control(read), config.control[0].file.string(), names_may_differ);
   return read;
 }
 

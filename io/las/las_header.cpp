@@ -66,13 +66,18 @@ LasVlr parse_vlr_head(const std::uint8_t* b, bool extended) {
   return v;
 }
 
+/// Where the first part of the file from byte `at` on begins: extended records, waveforms, or the end.
+std::uint64_t next_part(const LasHeader& h, std::uint64_t at, std::uint64_t file_size, std::uint64_t evlr_start) {
+  std::uint64_t next = file_size;
+  for (const std::uint64_t start : {evlr_start, h.waveform_start})
+    if (start >= at) next = std::min(next, start);
+  return next;
+}
+
 /// Records between the header and what follows them; not known of compressed ones.
 std::optional<std::uint64_t> room_for_points(const LasHeader& h, std::uint64_t file_size, std::uint64_t evlr_start) {
   if (h.compressed || h.record_length == 0) return std::nullopt;
-  std::uint64_t end = file_size;
-  for (const std::uint64_t start : {evlr_start, h.waveform_start})
-    if (start >= h.offset_to_points) end = std::min(end, start);
-  return (end - h.offset_to_points) / h.record_length;
+  return (next_part(h, h.offset_to_points, file_size, evlr_start) - h.offset_to_points) / h.record_length;
 }
 
 /// Of two counts that differ the one that the file bears out: some writers of LAS 1.4 set but one of them, or leave the other as it was.
@@ -177,9 +182,7 @@ void check_records(const LasHeader& h, std::uint64_t file_size, const std::files
                       at_byte(file, h.offset_to_points + holds * h.record_length),
                       "the file is truncated or its header is damaged: fetch or export it again");
   const std::uint64_t end = h.offset_to_points + h.point_count * h.record_length;
-  std::uint64_t next = file_size;
-  for (const std::uint64_t start : {evlr_start, h.waveform_start})
-    if (start >= end) next = std::min(next, start);
+  const std::uint64_t next = next_part(h, end, file_size, evlr_start);
   if (next - end >= h.record_length)
     throw core::Error("the header counts " + core::counted(h.point_count, "point") + ", but " + std::to_string(next - end) +
                           " bytes follow the last of them, room for " + std::to_string((next - end) / h.record_length) + " more",

@@ -8,6 +8,22 @@
 namespace swath::io {
 namespace {
 
+std::string numbered(const char* name, size_t i) { return std::string(name) + "[" + std::to_string(i + 1) + "]"; }
+
+/// One fault for a key.
+void add_fault(const core::Value& tree, const std::string& key, std::string what, std::string hint, std::vector<core::Fault>& faults) {
+  if (std::none_of(faults.begin(), faults.end(), [&](const core::Fault& f) { return f.key == key; }))
+    faults.push_back({place_in(tree, key), key, std::move(what), std::move(hint)});
+}
+
+/// A key of a camera whose default would be a guess.
+void expect_stated(const core::Value& tree, size_t camera, const char* name, const char* what, const char* hint,
+                   std::vector<core::Fault>& faults) {
+  const core::Value* list = tree.find("camera");
+  if (list && list->is_array() && camera < list->items().size() && list->items()[camera].is_object() && !list->items()[camera].find(name))
+    add_fault(tree, numbered("camera", camera) + "." + name, what, hint, faults);
+}
+
 class CameraChecks {
  public:
   CameraChecks(const Survey& survey, const core::Value& tree, std::vector<core::Fault>& faults)
@@ -34,11 +50,8 @@ class CameraChecks {
   }
 
  private:
-  static std::string numbered(const char* name, size_t i) { return std::string(name) + "[" + std::to_string(i + 1) + "]"; }
-
   void fault(const std::string& key, std::string what, std::string hint = {}) {
-    if (std::none_of(faults_.begin(), faults_.end(), [&](const core::Fault& f) { return f.key == key; }))
-      faults_.push_back({place_in(tree_, key), key, std::move(what), std::move(hint)});
+    add_fault(tree_, key, std::move(what), std::move(hint), faults_);
   }
 
   void exists(const std::filesystem::path& path, const std::string& key) {
@@ -54,19 +67,13 @@ class CameraChecks {
     for (size_t other = 0; other < i; ++other)
       if (survey_.cameras[other].name == c.name)
         fault(key + ".name", "the name " + c.name + " is that of " + numbered("camera", other), "give each camera a name of its own");
-    stated(i, "mount", "the mount of the camera is not stated",
-           "the angle from the direction of flight to the image's x axis, clockwise from above: mount = \"90 deg\"");
-    stated(i, "lever_arm", "the lever arm of the camera is not stated",
-           "lever_arm = [\"... m\", \"... m\", \"... m\"] from the IMU's centre to the perspective centre: forward, right, down");
-    if (!survey_.image_points.empty()) stated(i, "f", "the principal distance of the camera is not stated", "f = \"... mm\"");
+    expect_stated(tree_, i, "mount", "the mount of the camera is not stated",
+                  "the angle from the direction of flight to the image's x axis, clockwise from above: mount = \"90 deg\"", faults_);
+    expect_stated(tree_, i, "lever_arm", "the lever arm of the camera is not stated",
+                  "lever_arm = [\"... m\", \"... m\", \"... m\"] from the IMU's centre to the perspective centre: forward, right, down",
+                  faults_);
+    if (!survey_.image_points.empty()) expect_distance(tree_, i, faults_);
     if (core::lacks_distortion(c, c.sigma)) fault(key + ".distortion", core::distortion_fault, core::distortion_hint);
-  }
-
-  /// A key whose default would be a guess.
-  void stated(size_t i, const char* name, const char* what, const char* hint) {
-    const core::Value* list = tree_.find("camera");
-    if (list && list->is_array() && i < list->items().size() && list->items()[i].is_object() && !list->items()[i].find(name))
-      fault(numbered("camera", i) + "." + name, what, hint);
   }
 
   /// That no camera has what coordinates in pixels need, before hours of work.
@@ -104,6 +111,10 @@ class CameraChecks {
 
 void check_cameras(const Survey& survey, const core::Value& tree, std::vector<core::Fault>& faults) {
   CameraChecks(survey, tree, faults).all();
+}
+
+void expect_distance(const core::Value& tree, size_t camera, std::vector<core::Fault>& faults) {
+  expect_stated(tree, camera, "f", "the principal distance of the camera is not stated", "f = \"... mm\"", faults);
 }
 
 }  // namespace swath::io

@@ -5,6 +5,7 @@
 
 #include "core/geo/crs.h"
 #include "core/printable.h"
+#include "io/las/las_ending.h"
 
 namespace swath::io {
 
@@ -23,7 +24,7 @@ LaserFormat format_of(const LaserFile& f) {
   const std::string e = core::lower_case(f.file.extension().string());
   if (e == ".csv" || e == ".txt" || e == ".asc") return LaserFormat::text;
   if (e == ".npy") return LaserFormat::npy;
-  if (e == ".las" || e == ".laz") return LaserFormat::las;
+  if (has_las_ending(f.file)) return LaserFormat::las;
   return e == ".csd" ? LaserFormat::csd : LaserFormat::automatic;
 }
 

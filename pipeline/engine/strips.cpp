@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/config/result_visitors.h"
-#include "core/printable.h"
+#include "io/las/las_ending.h"
 #include "io/las/las_header.h"
 #include "io/las/las_source.h"
 #include "io/survey/survey.h"
@@ -188,8 +188,7 @@ core::Error none_of_the_clouds(const RunState& run) {
       if (what.ends_with("left out")) why += (why.empty() ? "" : "; ") + std::to_string(one.find("count")->as_int()) + " " + what;
   }
   const fs::path file = io::resolve(run.plan.survey, run.plan.survey.points.front().file);
-  const std::string ending = core::lower_case(file.extension().string());
-  if (ending == ".las" || ending == ".laz") {
+  if (io::has_las_ending(file)) {
     std::vector<std::string> ignored;
     const io::LasHeader header = io::read_las_header(file, ignored);
     char text[160];

@@ -16,6 +16,7 @@
 #include "core/geo/same_map.h"
 #include "io/las/cloud_crs.h"
 #include "io/las/las_crs.h"
+#include "io/las/las_ending.h"
 #include "io/las/las_reader.h"
 #include "io/survey/read_survey.h"
 
@@ -23,12 +24,6 @@ namespace swath::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool has_ending(const fs::path& file, std::initializer_list<const char*> endings) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return std::any_of(endings.begin(), endings.end(), [&](const char* one) { return ending == one; });
-}
 
 [[noreturn]] void refuse_unreadable(const std::string& what, const fs::path& where, int code) {
   throw core::usage_error(what + ": " + std::generic_category().message(code), where.string(),
@@ -41,7 +36,7 @@ std::vector<fs::path> files_in_folder(const fs::path& folder) {
   std::error_code ec;
   if (const fs::path index = folder / "ept.json"; fs::exists(index, ec)) return {index};
   for (fs::directory_iterator at(folder, ec), end; !ec && at != end; at.increment(ec))
-    if (has_ending(at->path(), {".las", ".laz"})) out.push_back(at->path());
+    if (io::has_las_ending(at->path())) out.push_back(at->path());
   if (ec) refuse_unreadable("cannot read the folder", folder, ec.value());
   if (out.empty()) throw core::usage_error("the folder holds no LAS or LAZ file", folder.string(), "name the files, or another folder");
   std::sort(out.begin(), out.end());
@@ -164,7 +159,7 @@ core::Value cloud_survey(const std::vector<fs::path>& files, const std::string& 
   for (const fs::path& file : files) {
     core::Value& cloud = points.push(core::Value::object());
     cloud["file"] = fs::absolute(file).lexically_normal().string();
-    if (!has_ending(file, {".las", ".laz"})) continue;  // their readers know them
+    if (!io::has_las_ending(file)) continue;  // their readers know them
     const Stated stated = stated_crs(file);
     if (!stated.crs && crs.empty()) throw core::usage_error(stated.why, file.string(), unstated_hint(file, by));
     if (!stated.crs) cloud["crs"] = crs;
@@ -182,7 +177,7 @@ core::Value cloud_survey(const std::vector<fs::path>& files, const std::string& 
 bool has_class(const std::vector<fs::path>& files, int point_class) {
   constexpr size_t batch = 1 << 16;
   for (const fs::path& file : files) {
-    if (!has_ending(file, {".las", ".laz"})) return true;
+    if (!io::has_las_ending(file)) return true;
     io::LasReader reader(file);
     io::LasTime time;
     time.keep_unknown = true;

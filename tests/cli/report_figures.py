@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every figure of a calibration's report.html, computed again from the files beside it.
 
-  python3 report_figures.py FOLDER     tells what does not agree; exit code 1 where something does not.
+  python3 report_figures.py FOLDER     prints what does not agree; exit code 1 where something does not.
 Height differences need SWATH_RASTER_VALUES, the program of the tests that reads a GeoTIFF.
 """
 import csv
@@ -374,10 +374,10 @@ def check_texts(report, page):
             size = {"rad": ARC_SECOND, "1": 1e-6}.get(unit, 1e-3)
             known |= {n for n in numbers if agrees(n, abs(r["difference"]) / size) or agrees(n, abs(r["difference"]) / r["joint_sigma"])}
     for n in numbers - known:
-        yield f"the verdict tells {n}, which follows from no file"
+        yield f"the verdict states {n}, which follows from no file"
     for text in page.paragraphs:
         if re.search(r"\d", text) and tree["survey"] not in text:
-            yield f"a paragraph tells a number that is in no table: {text!r}"
+            yield f"a paragraph states a number that is in no table: {text!r}"
     notes = [i for i in page.items if i in tree["notes"]]
     if notes != tree["notes"]:
         yield "the notes are not those of calibration.json"
@@ -394,7 +394,7 @@ def check(folder):
     out = [*check_delivered(report), *check_texts(report, page)]
     for name, (heads, shown) in page.tables.items():
         if name not in makers:
-            out.append(f"table {name}: nothing tells what it should hold")
+            out.append(f"table {name}: nothing says what it should hold")
             continue
         expected = [list(row) for row in makers[name](shown)]
         if len(expected) != len(shown):

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/printable.h"
+#include "io/las/las_ending.h"
 #include "tools/view/scene.h"
 
 namespace swath::tools {
@@ -15,7 +16,6 @@ constexpr int depth = 2;  // folders below the output folder that products lie i
 
 std::string name_of(const fs::path& p) { return core::lower_case(p.filename().string()); }
 bool is_copc(const fs::path& p) { return name_of(p).ends_with(".copc.laz"); }
-bool is_cloud(const fs::path& p) { return name_of(p).ends_with(".las") || name_of(p).ends_with(".laz"); }
 
 /// Files below a folder, in the order of their names; what is hidden is not the user's.
 std::vector<fs::path> files_below(const fs::path& folder, int levels = depth) {
@@ -35,7 +35,7 @@ std::vector<fs::path> files_below(const fs::path& folder, int levels = depth) {
 std::vector<fs::path> clouds_of(const std::vector<fs::path>& files) {
   std::vector<fs::path> copc, points, all;
   for (const fs::path& f : files) {
-    if (!is_cloud(f)) continue;
+    if (!io::has_las_ending(f)) continue;
     all.push_back(f);
     if (is_copc(f)) copc.push_back(f);
     if (name_of(f.parent_path()) == "points") points.push_back(f);
@@ -58,7 +58,7 @@ ProductFiles products_of(const std::vector<fs::path>& given) {
   for (const fs::path& p : given) {
     if (!fs::exists(p)) throw core::Error("there is no such file or folder", p.string());
     if (!fs::is_directory(p)) {
-      if (!is_cloud(p))
+      if (!io::has_las_ending(p))
         throw core::usage_error("is neither a cloud nor a folder", p.string(),
                                 "give the output folder of a run, or LAS, LAZ or COPC files");
       out.clouds.push_back(p);

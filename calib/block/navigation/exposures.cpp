@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 #include "core/error.h"
 
@@ -84,9 +83,7 @@ class ExposureFinder {
       throw core::usage_error("the events are of several techniques, and camera " + c.name + " states none: " + list_of(techniques_),
                               survey_, "state technique of [[camera]]");
     if (c.technique.empty()) return techniques_.empty() ? std::string() : *techniques_.begin();
-    if (!techniques_.contains(c.technique))
-      throw core::usage_error("no event is of the technique " + c.technique + " of camera " + c.name, survey_,
-                              techniques_.empty() ? "there is no event" : "the events are of " + list_of(techniques_));
+    expect_technique(c, techniques_, survey_);
     return c.technique;
   }
 
@@ -126,6 +123,12 @@ class ExposureFinder {
 };
 
 }  // namespace
+
+void expect_technique(const io::SurveyCamera& c, const std::set<std::string>& techniques, const std::string& survey) {
+  if (!c.technique.empty() && !techniques.contains(c.technique))
+    throw core::usage_error("no event is of the technique " + c.technique + " of camera " + c.name, survey,
+                            techniques.empty() ? "there is no event" : "the events are of " + list_of(techniques));
+}
 
 Exposures exposures_of(const core::EventData& events, const std::vector<io::SurveyCamera>& cameras,
                        const std::vector<io::ListedImage>& listed, const std::vector<io::LineWindow>& lines, const std::string& survey) {

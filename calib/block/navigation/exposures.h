@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,9 @@ struct Exposures {
   std::vector<Exposure> images;  ///< by time
   size_t events_left_out = 0;    ///< of the cameras' techniques, that the lists do not name
 };
+
+/// Throws core::Error where camera `c` states a technique that no event is of.
+void expect_technique(const io::SurveyCamera& c, const std::set<std::string>& techniques, const std::string& survey);
 
 /// Without a list each event of a camera's technique is an image of the event's id. Strips: as listed, else the event's, else that of the
 /// flight line. Throws core::Error: an image or an event that is there twice, a camera or an event that is not there, events of several

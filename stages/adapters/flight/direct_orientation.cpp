@@ -41,11 +41,8 @@ void expect_cameras(const Context& context, const DirectStageOptions&) {
                             "describe it: mount, boresight and lever_arm, and the technique of its events");
   std::set<std::string> techniques;
   for (const io::EventFile& f : s.events) techniques.insert(io::technique_of(f));
-  std::string known;
-  for (const std::string& t : techniques) known += (known.empty() ? "" : ", ") + t;
   for (const io::SurveyCamera& c : s.cameras) {
-    if (!c.technique.empty() && !techniques.contains(c.technique))
-      throw core::usage_error("no event is of the technique " + c.technique + " of camera " + c.name, s.name, "the events are of " + known);
+    calib::expect_technique(c, techniques, s.name);
     calib::direct_camera(c, s.name);
   }
 }

@@ -137,10 +137,10 @@ struct RoofRows {
 
 RoofRows roof_rows(const TileJob& job, const Context& context, const trajectory::Trajectory* flown,
                    const std::vector<quality::RoofTarget>& targets, RunCache& cache) {
-  const bool any = std::any_of(targets.begin(), targets.end(), [&](const quality::RoofTarget& t) { return quality::is_near(t, job.box); });
-  if (!any) return {};
   std::vector<Box> reaches;
-  for (const quality::RoofTarget& t : targets) reaches.push_back(quality::reach_of(t));
+  for (const quality::RoofTarget& t : targets)
+    if (quality::is_near(t, job.box)) reaches.push_back(quality::reach_of(t));
+  if (reaches.empty()) return {};
   if (flown) return {quality::returns_at_roofs(job.block, job.own, scanner_positions(context, *flown, job.block, cache), targets), {}};
   return {quality::returns_at_roofs(job.block, job.own, {}, targets), quality::pulse_returns_in(job.block, job.own, reaches)};
 }
