@@ -306,15 +306,6 @@ TEST(Simulate, NavigationAloneNeedsNoWorld) {
   EXPECT_EQ(survey.lines.size(), 2u);
 }
 
-TEST(Simulate, RefusesOutagesThatLeaveNothing) {
-  const test::TemporaryFolder folder;
-  Options o = preset(Scene::flat);
-  o.output.laser = false;
-  o.gnss.outages = {{core::Seconds(0), core::Seconds(1e5)}};
-  EXPECT_THROW(run(o, folder / "a"), core::Error);
-  EXPECT_EQ(test::entries(folder.path()), 0u);
-}
-
 TEST(Simulate, FliesAlongAGivenTrajectory) {
   const test::TemporaryFolder folder;
   Options o = preset(Scene::flat);
@@ -384,20 +375,6 @@ TEST(Simulate, ReportsProgressAndCounts) {
   const core::Value& classes = *file.find("made")->find("returns_by_class");
   EXPECT_EQ(classes.items().size(), made.laser->by_class.size());
   EXPECT_EQ(classes.items().front().find("number")->as_int(), made.laser->by_class.begin()->first);
-}
-
-TEST(Simulate, RefusesWhatDoesNotGoTogetherBeforeItWrites) {
-  const test::TemporaryFolder folder;
-  Options o = preset(Scene::flat);
-  o.world.relief = core::Metres(500);
-  EXPECT_THROW(run(o, folder / "a"), core::Error);  // the ground reaches the aircraft
-  o = preset(Scene::flat);
-  o.crs = "EPSG:4326";
-  EXPECT_THROW(run(o, folder / "a"), core::Error);
-  o = preset(Scene::flat);
-  o.scanner.max_returns = 9;
-  EXPECT_THROW(run(o, folder / "a"), core::Error);
-  EXPECT_EQ(test::entries(folder.path()), 0u);
 }
 
 }  // namespace
