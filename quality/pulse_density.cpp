@@ -11,6 +11,18 @@ namespace {
 constexpr double least_inner = 0.1;    // of a line's cells: with fewer inner ones (a narrow corridor) all cells count
 constexpr double least_pulses = 0.01;  // of all: a line of fewer is not the sparsest
 
+/// Around both; an empty one counts for nothing.
+core::Box around_both(const core::Box& a, const core::Box& b) {
+  if (!(a.x1 > a.x0)) return b;
+  if (!(b.x1 > b.x0)) return a;
+  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+}
+
+core::Box box_of_cell(const core::Lattice& l, int i, int j) {
+  const double x = static_cast<double>(l.i0 + i) * l.cell, y = static_cast<double>(l.j0 + j) * l.cell;
+  return {x, y, x + l.cell, y + l.cell};
+}
+
 /// First returns by cell of a lattice that reaches one cell farther than the window.
 using CellCounts = std::vector<std::uint32_t>;
 
@@ -47,6 +59,7 @@ PulseSums sums_of(int line, const CellCounts& counts, const core::Lattice& aroun
       const std::uint32_t n = counts[around.at(i, j)];
       if (n == 0) continue;
       ++s.cells, s.pulses += n;
+      if (line == all_lines) s.extent = around_both(s.extent, box_of_cell(around, i, j));
       if (!is_inner(counts, around, i, j)) continue;
       ++s.inner_cells, s.inner_pulses += n;
       if (bins) ++(*bins)[n];
@@ -106,6 +119,7 @@ SwathDensity judge_density(const std::vector<PulseSums>& lines, const std::vecto
     to.line = s.line;
     to.cells += s.cells, to.pulses += s.pulses, to.inner_cells += s.inner_cells, to.inner_pulses += s.inner_pulses;
     to.duplicates += s.duplicates;
+    to.extent = around_both(to.extent, s.extent);
   }
   SwathDensity out{cell};
   for (const auto& [line, s] : sums) {
@@ -115,6 +129,7 @@ SwathDensity judge_density(const std::vector<PulseSums>& lines, const std::vecto
     else
       out.lines.push_back(density_of(s, cell));
   }
+  out.extent = sums[all_lines].extent;
   out.duplicates = sums[all_lines].duplicates;
   if (out.duplicates > 0) out.duplicate_share = static_cast<double>(out.duplicates) / static_cast<double>(out.all.pulses + out.duplicates);
   for (const LineDensity& l : out.lines)

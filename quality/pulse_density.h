@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/area.h"
 #include "core/block.h"
 #include "core/config/result.h"
 #include "core/grid.h"
@@ -24,6 +25,7 @@ struct PulseSums {
   std::int32_t line = 0;
   std::uint64_t cells = 0, pulses = 0, inner_cells = 0, inner_pulses = 0;
   std::uint64_t duplicates = 0;  ///< of all_lines: first returns that were not counted because another one is the same
+  core::Box extent{};            ///< of all_lines: around its cells, m; where there are none, empty
 };
 
 /// Inner cells of all lines together that hold `pulses`.
@@ -67,6 +69,7 @@ struct SwathDensity {
   double duplicate_share = 0.0;                       ///< of the first returns with them
   double single_density = 0.0, single_spacing = 0.0;  ///< of the sparsest line that has more than a hundredth of the pulses
   double low = 0.0, median = 0.0, high = 0.0;         ///< 1/m2: 5, 50, 95 % of the inner cells have less
+  core::Box extent{};  ///< around the cells with first returns, m
   std::vector<LineDensity> lines{};
 };
 
@@ -84,6 +87,10 @@ void describe(const SwathDensity& r, V& v) {
   v.result("density_5", r.low, "5 % of the cells have less per square metre.");
   v.result("density_50", r.median, "50 % of the cells have less.");
   v.result("density_95", r.high, "95 % of the cells have less.");
+  v.result("west", r.extent.x0, core::metres(2), "Western border of the cells with first returns, m.");
+  v.result("south", r.extent.y0, core::metres(2), "Southern border.");
+  v.result("east", r.extent.x1, core::metres(2), "Eastern border.");
+  v.result("north", r.extent.y1, core::metres(2), "Northern border.");
   v.tables("lines", r.lines, "Flight lines.");
 }
 

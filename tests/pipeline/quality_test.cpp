@@ -259,6 +259,33 @@ TEST_F(Quality, CheckPointsThatSayNothingAreNamed) {
   EXPECT_EQ(of("few.csv"), (std::vector<std::string>{"check.few", "control.unused"}));
 }
 
+/// A plot of a UAV: cells of 7.5 mm over its tile of 500 m would be 4.4 thousand million.
+TEST(QualityOfADensePlot, CostsWhatItsOwnAreaCosts) {
+  const test::TemporaryFolder folder;
+  core::Block b;
+  b.origin = {east0, north0, 0};
+  for (double y = 0.015; y < 6.0; y += 0.03)
+    for (double x = 0.015; x < 6.0; x += 0.03) {
+      if (std::abs(x - 3.0) < 0.5 && std::abs(y - 3.0) < 0.5) continue;
+      b.x.push_back(x), b.y.push_back(y), b.z.push_back(ground(x, y));
+    }
+  b.strip.assign(b.size(), 1), b.classification.assign(b.size(), core::point_class::ground);
+  b.return_number.assign(b.size(), 1), b.return_count.assign(b.size(), 1);
+  io::LasWriter writer(folder / "plot.las", {});
+  writer.write(b);
+  writer.finish();
+  test::write_bytes(folder / "survey.toml", "name = \"Plot\"\n[[points]]\nfile = \"plot.las\"\ncrs = \"EPSG:32632\"\n");
+  Request r{test::source_folder() / "configs/qc.toml", {}, folder / "survey.toml", folder / "out", 2};
+  r.sets = {"run.memory=\"500 MB\""};
+  Plan plan = make_plan(r);
+  Progress progress(Voice::quiet);
+  const Outcome o = pipeline::run(plan, progress, "test");
+  for (const core::Value& s : o.report.find("stages")->items()) {
+    if (s.find("type")->as_text() != "quality.swath") continue;
+    EXPECT_NEAR(number(*s.find("findings"), "void_m2"), 1.0, 0.03);
+  }
+}
+
 /// Ground points of a USGS project at its own 60 check points: their makers' mean within 1 m is off by 5.6 cm on open ground, 10.7 cm under
 /// vegetation.
 TEST(QualityOfRealPoints, CoconinoAgreesWithItsCheckPoints) {

@@ -71,6 +71,12 @@ TEST(PulseDensity, TilesMakeTheWhole) {
   EXPECT_EQ(a.all.pulses, c.all.pulses);
   EXPECT_EQ(a.all.density, c.all.density);
   EXPECT_EQ(a.median, c.median);
+  for (const SwathDensity* d : {&a, &c}) {
+    EXPECT_EQ(d->extent.x0, 0.0);
+    EXPECT_EQ(d->extent.y0, 0.0);
+    EXPECT_EQ(d->extent.x1, 200.0);
+    EXPECT_EQ(d->extent.y1, 200.0);
+  }
 }
 
 TEST(PulseDensity, OfNothingThereIsNone) {

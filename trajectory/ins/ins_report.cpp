@@ -146,9 +146,10 @@ FixesUsed judged_fixes(const InsFindings& f, const core::SmootherSeries& s, Warn
     out.overstated = f.overstated;
     // At its limit the share says no more than that they are too large by so much.
     warnings.push_back(
-        text("the stated sigmas of the fixes are %s%.1f times too large by their scatter (%.0f %% of their variance would be correlated), "
-             "and the sigmas of the trajectory with them, unless the fixes' errors change far more slowly than correlation_time of %.0f s",
-             problem.share < largest_share ? "" : "at least ", f.overstated, 100 * problem.share, problem.options.correlation_time.value));
+        std::string("the stated sigmas of the fixes are ") + (problem.share < largest_share ? "" : "at least ") +
+        text("%.1f times too large by their scatter (%.0f %% of their variance would be correlated), and the sigmas of the trajectory "
+             "with them, unless the fixes' errors change far more slowly than correlation_time of %.0f s",
+             f.overstated, 100 * problem.share, problem.options.correlation_time.value));
   }
   return out;
 }

@@ -47,7 +47,7 @@ quality::SwathDensity judge_first_returns(const MergeJob& job, const Context& co
   quality::SwathDensity found = quality::judge_density(lines, bins, o.cell.value);
   TileRasters{context, swath_density_name}.finish(job.tiles);
   io::write_text_file(context.output / "density.json", io::to_json(core::reported(found)));
-  const core::Grid map = overview_of(context, job.folder / "map", job.tiles, o.cell.value);
+  const core::Grid map = overview_of(job.folder / "map", job.tiles, o.cell.value);
   report::ValueMapOptions look;
   look.title = "First returns per m2 of all lines";
   look.value_unit = "per m2";

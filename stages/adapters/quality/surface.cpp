@@ -196,7 +196,7 @@ SurfaceFindings judge_surfaces(const MergeJob& job, const Context& context, cons
   look.title = "Terrain model less reference";
   const double cell = context.grids->cell(Product::dtm);
   write_picture(context, difference_name,
-                report::draw(report::difference_map(overview_of(context, job.folder / "map", job.tiles, cell), look)));
+                report::draw(report::difference_map(overview_of(job.folder / "map", job.tiles, cell), look)));
   return found;
 }
 

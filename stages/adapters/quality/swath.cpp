@@ -70,6 +70,7 @@ struct SwathRule {
   quality::PulseSpacing spacing{};
   std::string from;
   double cell = 2.0;                      ///< m, in which lines are compared
+  Box extent{};                           ///< of the first returns and a little more, m
   std::optional<std::string> no_voids{};  ///< why neither voids nor the distribution are judged
 };
 
@@ -92,9 +93,16 @@ SwathRule rule_of(const Context& context, const SwathOptions& o) {
                       " m apart, farther than 3 m: state the spacing to judge by, quality.swath.anps";
   }
   const double in_cell = cells_for_least * o.least;
+  rule.extent = Box{number("west"), number("south"), number("east"), number("north")}.grown(number("cell_m"));
   for (rule.cell = 1.0; rule.cell < 8.0 && rule.cell * rule.cell * number("single_density") < in_cell;) rule.cell *= 2.0;
   if (o.cell) rule.cell = o.cell->value;
   return rule;
+}
+
+/// The part of a tile that the survey may cover: a small and dense cloud would have millions of empty cells around it.
+Box covered_part(const Box& tile, const Box& extent) {
+  const Box part{std::max(tile.x0, extent.x0), std::max(tile.y0, extent.y0), std::min(tile.x1, extent.x1), std::min(tile.y1, extent.y1)};
+  return part.x1 > part.x0 && part.y1 > part.y0 ? part : Box{tile.x0, tile.y0, tile.x0, tile.y0};
 }
 
 /// Cells of each void that lie in the lakes and rivers of terrain.breaklines.
@@ -138,15 +146,16 @@ void look_at_tile(const TileJob& job, const Context& context, const SwathOptions
   TileRasters{context, overlap_name}.write(
       job.key, overlaps.difference.lattice,
       {{"largest difference of two lines, lower number minus higher", "m", &overlaps.difference.height}, {"lines", "", &seen}});
-  const core::Lattice squares = lattice_in(2.0 * rule.spacing.rule, job.box);
+  const Box covered = covered_part(job.box, rule.extent);
+  const core::Lattice squares = lattice_in(2.0 * rule.spacing.rule, covered);
   const quality::EvenSwath even = rule.no_voids ? quality::EvenSwath{core::Grid(squares), {}} : quality::even_cells(job.block, squares);
   std::vector<quality::VoidRun> voids;
   std::vector<quality::RimPiece> rims;
   if (!rule.no_voids) {
     const double cell = quality::void_cell(rule.spacing);
-    voids = quality::find_voids(job.block, lattice_in(cell, job.box), rule.spacing);
-    mark_water(context, job.box, cell, voids);
-    mark_lines(breaklines_of(context, cache), job.box, cell, voids);
+    voids = quality::find_voids(job.block, lattice_in(cell, covered), rule.spacing);
+    mark_water(context, covered, cell, voids);
+    mark_lines(breaklines_of(context, cache), covered, cell, voids);
     if (o.shores) rims = quality::rims_of(job.block, voids, rule.spacing);
   }
   write_rows(piece_file(job.folder, job.key, "swath"), overlaps.pairs, overlaps.bins, overlaps.lines, overlaps.line_bins, even.lines, voids,
@@ -198,17 +207,23 @@ SwathFindings judge_swaths(const MergeJob& job, const Context& context, const Sw
   report::DifferenceMapOptions look;
   look.title = "Largest difference of two lines, lower number minus higher";
   write_picture(context, overlap_name,
-                report::draw(report::difference_map(overview_of(context, job.folder / "dz", job.tiles, rule.cell), look)));
+                report::draw(report::difference_map(overview_of(job.folder / "dz", job.tiles, rule.cell), look)));
   write_picture(context, distribution_name,
-                distribution_map(overview_of(context, job.folder / "even", job.tiles, 2.0 * rule.spacing.rule), found.voids));
+                distribution_map(overview_of(job.folder / "even", job.tiles, 2.0 * rule.spacing.rule), found.voids));
   return found;
 }
 
 /// Overlaps: single returns, sorted. Voids: distances in squares of 1072 cells. Distribution: cells of every line.
 TileMemory swath_memory(const SwathOptions& o, const Context& c) {
-  double spacing = stated_spacing(o);
-  if (spacing == 0.0) spacing = c.made("density.json").empty() ? planned_spacing : rule_of(c, o).spacing.rule;
-  const double side = c.tile_side + 2.0 * halo(o);
+  double spacing = stated_spacing(o), side = c.tile_side;
+  if (!c.made("density.json").empty()) {
+    const SwathRule rule = rule_of(c, o);
+    spacing = rule.spacing.rule;
+    side = std::min(side, std::max(rule.extent.x1 - rule.extent.x0, rule.extent.y1 - rule.extent.y0));
+  } else if (spacing == 0.0) {
+    spacing = planned_spacing;
+  }
+  side += 2.0 * halo(o);
   return {48.0, {{"", side / 1072.0, side, 20.0}, {"anps", 2.0 * spacing, side, 30.0}}};
 }
 
