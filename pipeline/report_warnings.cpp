@@ -22,9 +22,10 @@ using core::Value;
 
 constexpr std::string_view box_code = "points.outside_box", damage_code = "work.damaged", geometry_code = "geometry.contradiction",
                            mistake_code = "geometry.mistake", control_code = "control.unused", buildings_code = "buildings.none",
-                           scale_code = "crs.scale", outside_code = "crs.outside", fixes_code = "trajectory.fixes",
-                           noise_code = "trajectory.imu_noise", events_code = "events.outside", sigmas_code = "trajectory.gnss_sigmas",
-                           same_file_code = "clouds.same_file", duplicates_code = "clouds.duplicates";
+                           contours_code = "contours.short", scale_code = "crs.scale", outside_code = "crs.outside",
+                           fixes_code = "trajectory.fixes", noise_code = "trajectory.imu_noise", events_code = "events.outside",
+                           sigmas_code = "trajectory.gnss_sigmas", same_file_code = "clouds.same_file",
+                           duplicates_code = "clouds.duplicates";
 constexpr double contradicting_share = 0.05, least_contradicting = 10.0;  // of the fixes; fixes
 constexpr size_t same_files_named = 5;
 constexpr double warned_duplicates = 1e-3;  // of the first returns
@@ -124,6 +125,12 @@ void add_findings(const std::string& stage, const Value& findings, std::set<std:
   const Value *named = findings.find("named"), *returns = findings.find("returns");
   if (stage == "quality.points" && named)
     for (const Value& fault : named->items()) out.push_back({fault.find("code")->as_text(), fault.find("sentence")->as_text(), {}});
+  const Value *lines = findings.find("lines"), *left_out = findings.find("left_out");
+  if (stage == "terrain.contours" && left_out && lines->as_int() == 0)
+    out.push_back({std::string(contours_code),
+                   "all " + core::counted(left_out->as_int(), "contour", "contours") +
+                       " are shorter than contours.min_length or around less than contours.min_area: none is written",
+                   {{"left_out", left_out->as_number(), {}}}});
   if (stage == "terrain.buildings" && returns && returns->as_int() == 0)
     out.push_back({std::string(buildings_code), "no return is of class building (6): terrain.buildings found nothing", {}});
 }

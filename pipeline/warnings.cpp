@@ -31,6 +31,8 @@ const std::vector<WarningKind>& warning_kinds() {
        "the copies."},
       {"clouds.same_file", "Two clouds of the run hold the same bytes under two names: their points are there twice.",
        "Name one of them, or take the copy out of the folder; density and every count of points are too large with it."},
+      {"contours.short", "Every contour is shorter than contours.min_length or encloses less than contours.min_area: none is written.",
+       "State them for the size of the area and the interval: --set contours.min_length=\"1 m\"."},
       {"control.unused", "A [[control]] of the survey is used by no stage of the run.",
        "Add a stage that uses it (quality.points for check points, calib.adjust for control), or leave it out of the survey."},
       {"crs.outside", "The data lie far outside the area of use of the products' CRS.",

@@ -106,6 +106,15 @@ void fit_tile(const std::string& cell, const JobOption& o, pipeline::Request& ou
   if (side > 0.0 && side < usual_tile) out.sets.insert(out.sets.begin(), "run.tile=" + core::format_quantity(Dimension::length, side));
 }
 
+/// For intervals below 1 m shorter lines are kept than the config has it: 20 times the interval, or a small plot would have none. `--set
+/// contours.min_length`, which comes later, decides.
+void fit_lines(const std::string& interval, const JobOption& o, pipeline::Request& out) {
+  constexpr double usual_length = 20.0, intervals = 20.0;  // m
+  const double length = intervals * quantity(o.dimension, interval, o.flag, o.example);
+  if (length > 0.0 && length < usual_length)
+    out.sets.insert(out.sets.begin(), "contours.min_length=" + core::format_quantity(Dimension::length, length));
+}
+
 /// Terrain, flight lines and check points are judged by the cloud's own ground.
 void require_ground(const std::vector<std::filesystem::path>& files, const std::vector<std::string>& sets) {
   const bool others = std::any_of(sets.begin(), sets.end(), [](const std::string& s) { return s.starts_with("dtm.classes"); });
@@ -126,6 +135,7 @@ pipeline::Request request_of(const Job& job, const Given& a) {
     quantity(o.dimension, a.values[k], o.flag, o.example);
     out.sets.push_back(o.option + "=" + a.values[k]);
     if (o.option == "dtm.cell") fit_tile(a.values[k], o, out);
+    if (o.option == "contours.interval") fit_lines(a.values[k], o, out);
   }
   out.survey_tree = pipeline::cloud_survey(files, a.crs);
   if (job.judges) add_judgement(a, out), require_ground(files, a.request.sets);

@@ -66,10 +66,10 @@ std::vector<ContourLine> join(std::vector<Segment> segments, const ContourOption
   return out;
 }
 
-std::vector<ContourLine> contour_lines(std::vector<Segment> segments, const ContourOptions& options, Facets& surface) {
+DrawnLines contour_lines(std::vector<Segment> segments, const ContourOptions& options, Facets& surface) {
   std::vector<ContourLine> lines = join(std::move(segments), options);
   const double least_area = square_metres(options.min_area).value_or(0.0);
-  std::erase_if(lines, [&](const ContourLine& l) {
+  const size_t left_out = std::erase_if(lines, [&](const ContourLine& l) {
     return length(l.vertices) < options.min_length.value || (l.closed && std::abs(signed_area(l.vertices)) < least_area);
   });
   std::vector<ContourLine> out, level;
@@ -80,7 +80,7 @@ std::vector<ContourLine> contour_lines(std::vector<Segment> segments, const Cont
     std::move(level.begin(), level.end(), std::back_inserter(out));
     level.clear();
   }
-  return out;
+  return {std::move(out), left_out};
 }
 
 }  // namespace swath::terrain

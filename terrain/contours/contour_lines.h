@@ -22,8 +22,13 @@ using core::signed_area;  // m2: positive round a summit, negative round a depre
 /// are one; what has no length is left out.
 std::vector<ContourLine> join(std::vector<Segment> segments, const ContourOptions& options);
 
-/// What a tile merge calls per level: join, leave out what is shorter than min_length or encloses less than min_area, and thin
-/// (terrain/contours/contour_shape.h) within the tolerance of `surface`, the model itself.
-std::vector<ContourLine> contour_lines(std::vector<Segment> segments, const ContourOptions& options, Facets& surface);
+struct DrawnLines {
+  std::vector<ContourLine> lines;
+  size_t left_out = 0;  ///< shorter than min_length, or around less than min_area
+};
+
+/// What a tile merge calls per level: join, leave out, and thin (terrain/contours/contour_shape.h) within the tolerance of `surface`, the
+/// model itself.
+DrawnLines contour_lines(std::vector<Segment> segments, const ContourOptions& options, Facets& surface);
 
 }  // namespace swath::terrain

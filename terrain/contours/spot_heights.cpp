@@ -15,8 +15,9 @@ class Search {
   Search(const core::Grid& grid, const SpotOptions& o)
       : grid_(grid), relief_(o.relief.value), reach_(static_cast<int>(std::floor(o.radius.value / grid.lattice.cell))) {
     const double square = o.radius.value * o.radius.value / (grid.lattice.cell * grid.lattice.cell);
-    for (int dj = -reach_; dj <= reach_; ++dj)
-      for (int di = -reach_; di <= reach_; ++di)
+    const int up = std::min(reach_, grid.lattice.ny - 1), across = std::min(reach_, grid.lattice.nx - 1);
+    for (int dj = -up; dj <= up; ++dj)
+      for (int di = -across; di <= across; ++di)
         if ((di != 0 || dj != 0) && di * di + dj * dj <= square) disc_.emplace_back(di, dj);
     // The nearest first: most candidates fail there.
     std::sort(disc_.begin(), disc_.end(), [](const auto& a, const auto& b) {

@@ -49,6 +49,15 @@ class Jobs(Case):
             done = swath("dtm", self.files[0], "-o", self.out, "--cell", "20cm", "--crs", "EPSG:32632", *given, "--save-config", saved, "--quiet")
             self.assertRegex(saved.read_text(), rf'tile = "{side} ?m"', done.stderr)
 
+    def test_close_contours_may_be_short(self):
+        for given, length in (((), "2"), (("--set", "contours.min_length=500m"), "500")):
+            saved = self.folder / f"{length}.toml"
+            done = swath("dtm", self.files[0], "-o", self.folder / f"of {length} m", "--contours", "10cm", "--crs", "EPSG:32632", *given,
+                         "--save-config", saved)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(saved.read_text(), rf'min_length = "{length} ?m"', done.stderr)
+            self.assertEqual("contours.short" in done.stdout + done.stderr, length == "500", done.stdout + done.stderr)
+
     def test_a_pipeline_of_pdal_is_what_our_own_stages_give(self):
         pipeline = self.folder / "x.json"
         pipeline.write_text("""{"pipeline": ["%s/*.las", {"type": "filters.smrf", "cell": 1.5}, {"type": "filters.range", "limits": "Classification[2:2]"},

@@ -27,5 +27,17 @@ TEST(Paste, PastesWhereTheyOverlap) {
   EXPECT_EQ(window.sigma[0], 0.5f);
 }
 
+TEST(Paste, KnownPartHasOneCellMore) {
+  Grid g(Lattice{0.5, 100, 200, 30, 20});
+  EXPECT_EQ(known_part(g).size(), 0u);
+  g.height[g.lattice.at(10, 4)] = g.height[g.lattice.at(12, 19)] = 1.0F;
+  EXPECT_EQ(known_part(g), (Lattice{0.5, 109, 203, 5, 17})) << "not beyond the grid's own northern rim";
+}
+
+TEST(Paste, CommonPart) {
+  EXPECT_EQ(common_part({1.0, 0, 0, 4, 4}, {1.0, 2, -1, 9, 3}), (Lattice{1.0, 2, 0, 2, 2}));
+  EXPECT_EQ(common_part({1.0, 0, 0, 4, 4}, {1.0, 7, 0, 9, 3}).size(), 0u);
+}
+
 }  // namespace
 }  // namespace swath::core

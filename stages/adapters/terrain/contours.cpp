@@ -95,7 +95,7 @@ void describe(const ContourCounts& r, V& v) {
 
 /// What is written, and how it fits the model.
 struct ContourFindings {
-  std::uint64_t lines = 0, closed = 0, depressions = 0;
+  std::uint64_t lines = 0, left_out = 0, closed = 0, depressions = 0;
   double metres = 0.0;
   std::uint64_t labels = 0, tops = 0, pits = 0;
   terrain::CarriedInterval interval{};
@@ -104,6 +104,7 @@ struct ContourFindings {
 template <class V>
 void describe(const ContourFindings& r, V& v) {
   v.result("lines", r.lines, core::plain().in_summary(), "Contour lines.");
+  v.result("left_out", r.left_out, core::if_any(), "Lines shorter than min_length or around less than min_area: not written.");
   v.result("closed", r.closed, "Lines that close.");
   v.result("depressions", r.depressions, "Lines around lower ground.");
   v.result("length_m", r.metres, core::metres(0), "Length of all lines.");
@@ -199,7 +200,7 @@ struct ContourRun {
       if ((sum += bytes[at_once]) > std::min(drawn_bytes, share)) break;
     at_once = std::max<size_t>(at_once, 1);
     using Segments = std::shared_ptr<std::vector<terrain::Segment>>;
-    using Lines = std::shared_ptr<std::vector<terrain::ContourLine>>;
+    using Lines = std::shared_ptr<terrain::DrawnLines>;
     auto level = levels.begin();
     const auto read = [&](tbb::flow_control& flow) -> Segments {
       if (level == levels.end()) {
@@ -212,12 +213,13 @@ struct ContourRun {
     };
     const terrain::ContourOptions drawn = spaced();
     const auto draw = [&](const Segments& segments) -> Lines {
-      return std::make_shared<std::vector<terrain::ContourLine>>(terrain::contour_lines(std::move(*segments), drawn, surfaces.local()));
+      return std::make_shared<terrain::DrawnLines>(terrain::contour_lines(std::move(*segments), drawn, surfaces.local()));
     };
     size_t finished = 0;
     const auto write = [&](const Lines& lines) {
       context.progress(static_cast<double>(++finished) / static_cast<double>(bytes.size()), {});
-      for (const terrain::ContourLine& line : *lines) {
+      found.left_out += lines->left_out;
+      for (const terrain::ContourLine& line : lines->lines) {
         found.metres += terrain::length(line.vertices);
         found.closed += line.closed ? 1 : 0;
         found.depressions += line.depression ? 1 : 0;
@@ -262,7 +264,7 @@ struct ContourRun {
 
 ContourCounts trace_contours(const TileJob& job, const Context& context, const ContourWriteOptions& o, RunCache& cache) {
   const ContourRun run{context, o};
-  const core::Lattice own = lattice_in(run.cell(), job.box);
+  core::Lattice own = lattice_in(run.cell(), job.box);
   const int around = border(o, own.cell);
   const core::Lattice window{own.cell, own.i0 - around, own.j0 - around, own.nx + 2 * around, own.ny + 2 * around};
   core::Grid grid;
@@ -275,6 +277,14 @@ ContourCounts trace_contours(const TileJob& job, const Context& context, const C
     core::Grid mine(own);
     core::paste(grid, mine);
     write_grid_tile(job.folder, job.key, mine);
+  }
+  // Cells without a height all around cost as much as others and draw nothing.
+  const core::Lattice part = core::known_part(grid);
+  if (part != grid.lattice) {
+    core::Grid known(part);
+    core::paste(grid, known);
+    grid = std::move(known);
+    own = core::common_part(own, part);
   }
   const terrain::SurfaceFacts facts = terrain::facts_of(grid, own, run.interval());
   write_rows(piece_file(job.folder, job.key, "facts"), std::vector{facts}, terrain::spot_heights(grid, own, o.spots));

@@ -18,7 +18,7 @@ using Vertices = std::vector<Eigen::Vector2d>;
 
 std::vector<ContourLine> lines_on(const core::Grid& g, std::vector<Segment> segments, const ContourOptions& o) {
   Facets surface = test::facets_of(g);
-  return contour_lines(std::move(segments), o, surface);
+  return contour_lines(std::move(segments), o, surface).lines;
 }
 
 bool same(const std::vector<ContourLine>& a, const std::vector<ContourLine>& b) {

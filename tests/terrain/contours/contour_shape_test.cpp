@@ -25,7 +25,7 @@ std::vector<Segment> traced(const core::Grid& g, const ContourOptions& o) {
 
 std::vector<ContourLine> lines_of(const core::Grid& g, const ContourOptions& o) {
   Facets f = test::facets_of(g);
-  return contour_lines(traced(g, o), o, f);
+  return contour_lines(traced(g, o), o, f).lines;
 }
 
 double rms_against(const std::vector<ContourLine>& lines, const test::Surface& truth) {

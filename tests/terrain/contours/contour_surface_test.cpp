@@ -103,7 +103,7 @@ TEST(ContourSurface, AWindowGivesTheHeightsOfTheWhole) {
 double turning(const core::Grid& model, const core::Grid& traced, const ContourOptions& o) {
   double turned = 0.0, metres = 0.0;
   Facets surface = test::facets_of(model);
-  for (const ContourLine& l : contour_lines(trace(traced, traced.lattice, o), o, surface)) {
+  for (const ContourLine& l : contour_lines(trace(traced, traced.lattice, o), o, surface).lines) {
     for (size_t k = 2; k < l.vertices.size(); ++k) {
       const Eigen::Vector2d a = l.vertices[k - 1] - l.vertices[k - 2], b = l.vertices[k] - l.vertices[k - 1];
       turned += std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)));
