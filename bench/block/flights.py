@@ -57,25 +57,45 @@ BODY_R_CAMERA = times(times(turn(2, math.radians(BORESIGHT[2])), times(turn(1, m
 
 
 class Sums(dict):
+    """Squares by kind and flight. What all images of a flight share, as a boresight, is one value and not as many as there are images, so
+    that the spread of the flights' means says how many independent values a ratio rests on."""
+
+    def begin(self):
+        for flights in self.values():
+            flights.append([0.0, 0.0, 0])
+
+    def add(self, kind, over, squares, n):
+        total = self.setdefault(kind, [[0.0, 0.0, 0]])[-1]
+        total[0], total[1], total[2] = total[0] + over, total[1] + squares, total[2] + n
+
     def note(self, kind, error, sigma):
-        total = self.setdefault(kind, [0.0, 0.0, 0])
-        total[0] += (error / sigma) ** 2
-        total[1] += error ** 2
-        total[2] += 1
+        self.add(kind, (error / sigma) ** 2, error**2, 1)
+
+    def lines(self):
+        for kind, flights in self.items():
+            over, squares, n = (sum(f[k] for f in flights) for k in range(3))
+            out = f"{kind}: rms {math.sqrt(squares / n):.3g}, over sigma {math.sqrt(over / n):.3f}"
+            used = [f for f in flights if f[2]]
+            spread = sum((f[0] - over / n * f[2]) ** 2 for f in used) * len(used) / max(1, len(used) - 1) / n**2
+            if len(used) > 1 and spread > 0.0:
+                independent = min(n, 2.0 * (over / n) ** 2 / spread)  # variance of a mean of squares of N(0, s): 2 s^4 / n
+                out += f" +- {math.sqrt(over / n / (2.0 * independent)):.3f} of {n} ({independent:.0f} independent)"
+            yield out
 
 
-def compare(sums, kind, found, truth, of_camera):
-    """`of_camera`: the table's roll, pitch, heading are of a body whose boresight was adjusted; its matrix is compared then."""
+def compare(sums, kind, found, truth, of_camera, positions=True, known=0.0):
+    """`of_camera`: the table's roll, pitch, heading are of a body whose boresight was adjusted; its matrix is compared then. `known`: a
+    sigma of each angle, rad, whose error `of_camera` does not have."""
     true = {r["name"]: r for r in truth}
     for row in found:
         t = true[row["image"]]
-        for k, axis in enumerate("xyz"):
+        for k, axis in enumerate("xyz" if positions else ""):
             sums.note(f"{kind} {'plan' if k < 2 else 'height'}, m", float(row[axis]) - float(t[axis]), math.sqrt(float(row[f"c{k + 1}{k + 1}"])))
         body = ned_r_body(row)
         camera = times(body, of_camera)
         e = times(transposed(camera), times(ned_r_body(t), BODY_R_CAMERA))
         for k, angle in enumerate(((e[2][1] - e[1][2]) / 2, (e[0][2] - e[2][0]) / 2, (e[1][0] - e[0][1]) / 2)):
-            sums.note(f"{kind} {'tilt' if k < 2 else 'heading'}, deg", math.degrees(angle), math.degrees(math.sqrt(float(row[f"c{k + 4}{k + 4}"]))))
+            sums.note(f"{kind} {'tilt' if k < 2 else 'heading'}, deg", math.degrees(angle), math.degrees(math.sqrt(float(row[f"c{k + 4}{k + 4}"]) - known**2)))
 
 
 def block_config(flown, drift, found, correlation):
@@ -113,10 +133,7 @@ def fly(program, seed, drift, components, correlation, sums):
         adjusted = times(times(turn(2, b[2]), times(turn(1, b[1]), turn(0, b[0]))), [[0, 1, 0], [1, 0, 0], [0, 0, -1]])
         compare(sums, "integrated", rows_of(flown / "out" / "orientation.csv"), truth, adjusted)
         for c in block["check"]:
-            total = sums.setdefault(f"check points {c['coordinate']}, m", [0.0, 0.0, 0])
-            total[0] += c["over_sigma"] ** 2 * c["points"]
-            total[1] += c["rms_m"] ** 2 * c["points"]
-            total[2] += c["points"]
+            sums.add(f"check points {c['coordinate']}, m", c["over_sigma"] ** 2 * c["points"], c["rms_m"] ** 2 * c["points"], c["points"])
         for name, true in zip(("roll", "pitch", "heading"), BORESIGHT):
             v = values[f"boresight_{name}"]
             sums.note("boresight, deg", v["value"] - true, v["sigma"])
@@ -127,9 +144,9 @@ def fly(program, seed, drift, components, correlation, sums):
 def main(program, number=20, drift="none", components="false", correlation="true"):
     sums = Sums()
     for seed in range(1, number + 1):
+        sums.begin()
         fly(program, seed, drift, components, correlation, sums)
-    for kind, (over, squares, n) in sums.items():
-        print(f"{kind}: rms {math.sqrt(squares / n):.4f}, over sigma {math.sqrt(over / n):.3f} of {n}")
+    print(*sums.lines(), sep="\n")
 
 
 if __name__ == "__main__":

@@ -44,7 +44,12 @@ def fly(program, seed, more, sums):
         call(program, "run", CONFIG, "--survey", flown / "survey.toml", "--output", out, "--quiet", "--set", "orientation.direct.correlated_images=30", *more)
         stated = tomllib.loads((flown / "survey.toml").read_text())["camera"][0]
         truth = rows_of(flown / "truth" / "images.csv")
-        compare(sums, "direct", rows_of(out / "orientation_direct.csv"), truth, mounting([float(a.split()[0]) for a in stated["boresight"]]))
+        direct, boresight = rows_of(out / "orientation_direct.csv"), [float(a.split()[0]) for a in stated["boresight"]]
+        compare(sums, "direct", direct, truth, mounting(boresight))
+        sigma = float(stated["sigma"]["boresight"].split()[0])
+        for name, given, true_angle in zip(("roll", "pitch", "heading"), boresight, BORESIGHT):
+            sums.note(f"stated boresight {name}, deg", given - true_angle, sigma)
+        compare(sums, "direct, true boresight:", direct, truth, mounting(BORESIGHT), positions=False, known=math.radians(sigma))
         block = json.loads((out / "block" / "block.json").read_text())
         values = {v["name"]: v for v in block["cameras"][0]["values"]}
         angles = [values[f"boresight_{k}"]["value"] for k in ("roll", "pitch", "heading")]
@@ -56,10 +61,7 @@ def fly(program, seed, more, sums):
             for axis, at, sigma in zip("xyz", place, sigmas):
                 sums.note(f"points {'plan' if axis < 'z' else 'height'}, m", at - float(true[name][axis]), sigma)
         for c in block["check"]:
-            total = sums.setdefault(f"check points {c['coordinate']}, m", [0.0, 0.0, 0])
-            total[0] += c["over_sigma"] ** 2 * c["points"]
-            total[1] += c["rms_m"] ** 2 * c["points"]
-            total[2] += c["points"]
+            sums.add(f"check points {c['coordinate']}, m", c["over_sigma"] ** 2 * c["points"], c["rms_m"] ** 2 * c["points"], c["points"])
         for name, true_value in CAMERA.items():
             sums.note(f"camera {'f, x0, y0, mm' if len(name) < 2 or name[1] == '0' else name}", values[name]["value"] - true_value, values[name]["sigma"])
         for name, true_angle in zip(("roll", "pitch", "heading"), BORESIGHT):
@@ -73,10 +75,9 @@ def fly(program, seed, more, sums):
 def main(program, number=20, *more):
     sums = Sums()
     for seed in range(1, int(number) + 1):
+        sums.begin()
         fly(program, seed, more, sums)
-        print(f"--- {seed} flights")
-        for kind, (over, squares, n) in sums.items():
-            print(f"{kind}: rms {math.sqrt(squares / n):.3g}, over sigma {math.sqrt(over / n):.3f} of {n}", flush=True)
+        print(f"--- {seed} flights", *sums.lines(), sep="\n", flush=True)
 
 
 if __name__ == "__main__":
