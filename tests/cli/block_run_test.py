@@ -209,6 +209,18 @@ class BlockRuns(Case):
             config.write('drift = "strip"\n')
         self.refused(2, "drift is per strip, and no image has the number of a strip")
 
+    def test_a_drift_per_strip_is_not_that_of_turns(self):
+        with open(self.config, "a") as config:
+            config.write('drift = "strip"\n')
+        events = rows_of(self.flown / "events_marks.csv")
+        listed = "".join(f"{e['id']},{e['id']},{0 if k in (2, 3) else e['strip']}\n" for k, e in enumerate(events))
+        (self.flown / "list.csv").write_text("name,event,strip\n" + listed)
+        survey = self.flown / "survey.toml"
+        text = re.sub(r'\n\[\[line\]\]\n(?:[^\[\n].*\n)*|\n\[line_time\]\n(?:[^\[\n].*\n)*', "\n", survey.read_text())
+        survey.write_text(text + '\n[[image]]\nfile = "list.csv"\nstrip = "strip"\n')
+        names = f"{events[2]['id']}, {events[3]['id']}"
+        self.refused(1, f"drift is per strip, and 2 images of {len(events)} have no strip, or strip 0: {names}", "leave those of turns out")
+
     def test_options_that_do_nothing_are_refused(self):
         done = swath("check", self.config, "--survey", self.flown / "survey.toml", "--set", "block.adjust.stations=start", "--set",
                      "block.adjust.drift=strip")

@@ -8,6 +8,7 @@
 
 #include "calib/block/block_files.h"
 #include "calib/block/checks/checked_adjustment.h"
+#include "core/config/units.h"
 #include "core/error.h"
 #include "core/geo/geodesy.h"
 #include "io/vector/control.h"
@@ -129,12 +130,25 @@ std::vector<std::string> files_without_image(const std::vector<calib::SurveyedPo
   return out;
 }
 
-/// Strips of images are those of a list, of the events or of flight lines; without any of them all images are of strip 0.
+/// Strips of images are those of a list, of the events or of flight lines. Images of none of them, as those taken in a turn, are not one
+/// strip: a shift and a drift in common would bend those before the first line to those after the last, and one of its own takes two
+/// stations.
 void expect_strips(const calib::ReadBlock& read, const BlockStageOptions& o, const std::string& survey) {
-  const auto& images = read.block.images;
-  if (o.drift == calib::DriftSets::strip && std::all_of(images.begin(), images.end(), [](const auto& i) { return i.strip == 0; }))
+  if (o.drift != calib::DriftSets::strip) return;
+  constexpr size_t listed = 5;
+  size_t without = 0;
+  std::string names;
+  for (const calib::BlockImage& i : read.block.images)
+    if (i.strip == 0 && without++ < listed) names += (without > 1 ? ", " : "") + i.name;
+  if (without == 0) return;
+  if (without == read.block.images.size())
     throw core::usage_error("block.adjust: drift is per strip, and no image has the number of a strip", survey,
                             "name the column of strips in [[event]] or [[image]], or list the flight lines in [[line]]");
+  if (without > listed) names += " and " + std::to_string(without - listed) + " more";
+  throw core::Error(
+      "block.adjust: drift is per strip, and " + core::counted(without, "image") + " of " + std::to_string(read.block.images.size()) +
+          " have no strip, or strip 0: " + names,
+      survey, "list the images of strips in [[image]] and leave those of turns out; number strips from 1; or state drift = \"block\"");
 }
 
 calib::BlockFound adjust_images(const Context& context, const BlockStageOptions& o, const Output& to, core::Tally& tally) {
