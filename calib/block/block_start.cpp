@@ -32,9 +32,15 @@ std::vector<double> headings(const ImageBlock& block, const std::vector<char>& n
     for (size_t k = 0; k < images.size(); ++k) {
       const std::uint32_t before = images[k > 0 ? k - 1 : k], after = images[std::min(k + 1, images.size() - 1)];
       const Vector3d way = block.images[after].position - block.images[before].position;
-      if (needed[images[k]] && !(way.head<2>().norm() > 0.0))
-        throw core::Error("strip " + std::to_string(strip) + " has one image: its direction is not known", "",
-                          "give the attitude of image " + block.images[images[k]].name + ", or its strip's other images");
+      if (needed[images[k]] && !(way.head<2>().norm() > 0.0)) {
+        const std::string number = std::to_string(strip);
+        if (images.size() == 1)
+          throw core::Error("strip " + number + " has one image: its direction is not known", "",
+                            "give the attitude of image " + block.images[images[k]].name + ", or its strip's other images");
+        throw core::Error("images " + block.images[before].name + " and " + block.images[after].name + " of strip " + number +
+                              " have one place: the direction of flight is not known",
+                          "", "an event may be listed twice: match images and events by their time; or give the attitudes");
+      }
       out[images[k]] = std::atan2(way.x(), way.y());
     }
   }
@@ -67,35 +73,35 @@ void start_poses(ImageBlock& block) {
   for (BlockImage& i : block.images) i.position -= i.camera_R_local.transpose() * block.cameras[i.camera].antenna;
 }
 
+void RayIntersection::add(const Vector3d& from, const Vector3d& direction) {
+  const Matrix3d across = Matrix3d::Identity() - direction * direction.transpose();
+  N_ += across;
+  b_ += across * from;
+  ++rays_;
+}
+
+std::optional<Vector3d> RayIntersection::point() const {
+  constexpr double smallest = 1e-8;  // squared angle between rays, rad^2
+  const Eigen::LDLT<Matrix3d> ldlt(N_);
+  if (ldlt.vectorD().minCoeff() < smallest) return {};
+  return ldlt.solve(b_);
+}
+
 size_t intersect_points(ImageBlock& block) {
-  struct Sum {
-    Matrix3d N = Matrix3d::Zero();
-    Vector3d b = Vector3d::Zero();
-    int rays = 0;
-  };
-  std::vector<Sum> sums(block.points.size());
+  std::vector<RayIntersection> sums(block.points.size());
   for (const ImageRay& r : block.rays) {
     const BlockImage& image = block.images[r.image];
     const BlockCamera& camera = block.cameras[image.camera];
-    const auto d = direction_of(camera.value, camera.distortion, {r.x, r.y});
-    if (!d) continue;
-    const Vector3d u = (image.camera_R_local.transpose() * *d).normalized();
-    const Matrix3d across = Matrix3d::Identity() - u * u.transpose();
-    Sum& s = sums[r.point];
-    s.N += across;
-    s.b += across * image.position;
-    ++s.rays;
+    if (const auto d = direction_of(camera.value, camera.distortion, {r.x, r.y}))
+      sums[r.point].add(image.position, (image.camera_R_local.transpose() * *d).normalized());
   }
-  constexpr double smallest = 1e-8;  // squared angle between rays, rad^2
   size_t parallel = 0;
   for (size_t p = 0; p < sums.size(); ++p) {
-    if (sums[p].rays < 2) continue;
-    const Eigen::LDLT<Matrix3d> ldlt(sums[p].N);
-    if (ldlt.vectorD().minCoeff() < smallest) {
+    if (sums[p].rays() < 2) continue;
+    if (const auto point = sums[p].point())
+      block.points[p].position = *point;
+    else
       ++parallel;
-      continue;
-    }
-    block.points[p].position = ldlt.solve(sums[p].b);
   }
   for (const BlockControl& c : block.control)
     for (int k = 0; k < 3; ++k)

@@ -73,6 +73,7 @@ MISTAKES = [
     ("images", exchange("roll", "pitch"), "roll and pitch are exchanged"),
     ("images", scale(roll=DEGREE, pitch=DEGREE, heading=DEGREE), "the angles are in radians"),
     ("images", scale(roll=1 / 0.9, pitch=1 / 0.9, heading=1 / 0.9), "the angles are in gon"),
+    ("images", lambda rows: [r.update(heading=float(r["heading"]) + 180.0) for r in rows] and rows, "headings are off by 180 deg"),
     ("images", scale(x=1 / 0.3048, y=1 / 0.3048, z=1 / 0.3048), "stations are in feet"),
     ("images", scale(z=1 / 0.3048), "heights of the stations are in feet"),
     ("images", next_station("2", 0), "the stations of strip 2 are those of the image after"),
@@ -113,6 +114,18 @@ class Mistakes(Case):
             config = self.folder / "block.toml"
             config.write_text(config.read_text().replace(old, new))
             self.refused(message)
+
+    def test_an_antenna_with_other_signs(self):
+        write(self.folder, antenna=(0.4, -0.3, -1.1))
+        config = self.folder / "block.toml"
+        config.write_text(config.read_text().replace('["0.4 m", "-0.3 m", "-1.1 m"]', '["0.4 m", "0.3 m", "-1.1 m"]'))
+        done = swath("block", config, "--output", self.folder / "out")
+        self.assertRegex(done.stdout, "stations of C lie .* of where its antenna is stated .means.; it fits with the other sign of right\n")
+
+    def test_heights_of_control_in_feet_without_angles(self):
+        write(self.folder, angles=None)
+        change(self.folder / "control.csv", scale(z=1 / 0.3048))
+        self.refused("heights of control are in feet")
 
     def test_what_is_not_determined(self):
         write(self.folder, angles=None, control=False, sets="strip")

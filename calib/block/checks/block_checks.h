@@ -17,9 +17,6 @@ struct StartResidual {
 };
 StartResidual start_residual(const ImageBlock& block);
 
-/// A part of a block for tests: points that most strips see, all control, all images.
-ReadBlock sample_of(const ReadBlock& read, size_t points);
-
 /// Throws core::Error that names the mistake where another convention fits the image points three times better: image axes (y up or down,
 /// mirrored, turned), kind, sense and unit of angles, north, stations of the neighbouring image in the block or in one strip from an image
 /// on; or where image points are off the sensor, or control is far from where the images see it.

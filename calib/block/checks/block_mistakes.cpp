@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <memory>
 
 #include "calib/block/block_start.h"
 #include "calib/block/checks/block_control_checks.h"
@@ -17,42 +16,21 @@ using Eigen::Matrix2d;
 using Eigen::Vector3d;
 using Triple = std::array<double, 3>;
 
-const char* const by_time = "an event is missing or was counted twice: match images and events by their time";
-
 Matrix2d matrix(double a, double b, double c, double d) {
   Matrix2d M;
   M << a, b, c, d;
   return M;
 }
 
-/// Images of a strip in the order of time.
-std::vector<std::uint32_t> flown(const ImageBlock& block, int strip) {
-  std::vector<std::uint32_t> images;
-  for (std::uint32_t i = 0; i < block.images.size(); ++i)
-    if (block.images[i].strip == strip) images.push_back(i);
-  std::sort(images.begin(), images.end(), [&](auto a, auto b) { return block.images[a].time < block.images[b].time; });
-  return images;
-}
-
-/// Images of a strip from number `first` on at the position of the one after (`step` 1) or before (-1); beyond the ends straight on.
-void shift_positions(ImageBlock& block, const std::vector<std::uint32_t>& images, size_t first, int step) {
-  if (images.size() < 3) return;
-  std::vector<Vector3d> at;
-  for (const std::uint32_t i : images) at.push_back(block.images[i].position);
-  const auto n = static_cast<int>(at.size());
-  for (int k = static_cast<int>(first); k < n; ++k) {
-    const int from = k + step;
-    block.images[images[static_cast<size_t>(k)]].position =
-        from < 0    ? Vector3d(2.0 * at[0] - at[1])
-        : from >= n ? Vector3d(2.0 * at[static_cast<size_t>(n - 1)] - at[static_cast<size_t>(n - 2)])
-                    : at[static_cast<size_t>(from)];
-  }
-}
-
 void shift_all(ImageBlock& block, int step) {
   std::map<int, char> strips;
   for (const BlockImage& i : block.images) strips[i.strip] = 1;
-  for (const auto& [strip, there] : strips) shift_positions(block, flown(block, strip), 0, step);
+  for (const auto& [strip, there] : strips) {
+    const std::vector<std::uint32_t> images = flown(block, strip);
+    if (images.size() < 3) continue;
+    const std::vector<Vector3d> next = positions_of_next(block, images, step);
+    for (size_t k = 0; k < images.size(); ++k) block.images[images[k]].position = next[k];
+  }
 }
 
 /// The angles that a table would have, from those that it has.
@@ -104,6 +82,15 @@ void add_signs(ImageAngles kind, ImageNorth north, std::vector<Mistake>& out) {
        }}));
 }
 
+void add_turns(ImageNorth north, std::vector<Mistake>& out) {
+  for (const auto& [turn, what] : {std::pair{180.0, "by 180 deg"}, {90.0, "by -90 deg"}, {-90.0, "by 90 deg"}})
+    out.push_back(
+        with_angles({std::string("headings are off ") + what, "headings of the body count clockwise from north: correct the column",
+                     ImageAngles::roll_pitch_heading, north, [by = turn * core::degree](const Triple& v) {
+                       return Triple{v[0], v[1], v[2] + by};
+                     }}));
+}
+
 void add_units(ImageAngles kind, ImageNorth north, std::vector<Mistake>& out) {
   for (const auto& [factor, what] :
        {std::pair{1.0 / core::degree, "the angles are in radians, not in degrees"}, {0.9, "the angles are in gon, not in degrees"}})
@@ -113,6 +100,29 @@ void add_units(ImageAngles kind, ImageNorth north, std::vector<Mistake>& out) {
 }
 
 }  // namespace
+
+const char* const match_by_time = "an event is missing or was counted twice: match images and events by their time";
+
+std::vector<std::uint32_t> flown(const ImageBlock& block, int strip) {
+  std::vector<std::uint32_t> images;
+  for (std::uint32_t i = 0; i < block.images.size(); ++i)
+    if (block.images[i].strip == strip) images.push_back(i);
+  std::sort(images.begin(), images.end(), [&](auto a, auto b) { return block.images[a].time < block.images[b].time; });
+  return images;
+}
+
+std::vector<Vector3d> positions_of_next(const ImageBlock& block, const std::vector<std::uint32_t>& images, int step) {
+  const auto at = [&](size_t k) -> const Vector3d& { return block.images[images[k]].position; };
+  const size_t n = images.size();
+  std::vector<Vector3d> out;
+  for (size_t k = 0; k < n; ++k) {
+    if (step < 0)
+      out.push_back(k == 0 ? Vector3d(2.0 * at(0) - at(1)) : at(k - 1));
+    else
+      out.push_back(k + 1 == n ? Vector3d(2.0 * at(n - 1) - at(n - 2)) : at(k + 1));
+  }
+  return out;
+}
 
 std::vector<Mistake> mistakes_of_image_axes() {
   const auto axes = [](const std::string& what, const std::string& hint, const Matrix2d& M) {
@@ -148,36 +158,34 @@ std::vector<Mistake> mistakes_of_angles(const ReadBlock& read, const BlockConfig
   add_kinds(kind, north, out);
   add_signs(kind, north, out);
   add_units(kind, north, out);
+  if (kind == ImageAngles::roll_pitch_heading) add_turns(north, out);
   if (!config.images.angles_hint.empty())
     for (Mistake& m : out) m.hint = config.images.angles_hint;
   return out;
 }
 
+std::vector<Mistake> mistakes_of_cameras(const ReadBlock& read) {
+  constexpr int shape = camera_values - 3;  // k1 to b2
+  const auto is_held = [](const BlockCamera& c) {
+    return (c.sigma.tail<shape>().array() == held_value).all() && !c.value.tail<shape>().isZero(0.0);
+  };
+  if (std::none_of(read.block.cameras.begin(), read.block.cameras.end(), is_held)) return {};
+  return {{"the distortion has the other sign", "k1 to b2 are measured less ideal: turn the signs of corrections", [is_held](ReadBlock& r) {
+             for (BlockCamera& c : r.block.cameras)
+               if (is_held(c)) c.value.tail<shape>() *= -1.0;
+           }}};
+}
+
 std::vector<Mistake> mistakes_of_stations(const ReadBlock& read) {
   if (read.stations_observed == 0) return {};
-  return {{"the stations are those of the image before", by_time, [](ReadBlock& r) { shift_all(r.block, 1); }},
-          {"the stations are those of the image after", by_time, [](ReadBlock& r) { shift_all(r.block, -1); }},
+  return {{"the stations are those of the image before", match_by_time, [](ReadBlock& r) { shift_all(r.block, 1); }},
+          {"the stations are those of the image after", match_by_time, [](ReadBlock& r) { shift_all(r.block, -1); }},
           {"heights of the stations are in feet", "convert to metres: 1 ft = 0.3048 m", [](ReadBlock& r) {
              for (BlockImage& i : r.block.images) {
                const Vector3d map = r.frame.map_of(i.position);
                i.position = r.frame.local_of({map.x(), map.y(), foot * map.z()});
              }
            }}};
-}
-
-std::vector<Mistake> mistakes_within_strips(const ReadBlock& read, const std::vector<int>& strips) {
-  std::vector<Mistake> out;
-  for (const int strip : strips) {
-    const auto shared = std::make_shared<const std::vector<std::uint32_t>>(flown(read.block, strip));
-    const std::vector<std::uint32_t>& images = *shared;
-    for (size_t first = 0; first + 1 < images.size(); ++first)
-      for (const int step : {1, -1})
-        out.push_back({"the stations of strip " + std::to_string(strip) +
-                           (first > 0 ? " from image " + read.block.images[images[first]].name + " on" : "") + " are those of the image " +
-                           (step > 0 ? "before" : "after"),
-                       by_time, [shared, first, step](ReadBlock& r) { shift_positions(r.block, *shared, first, step); }});
-  }
-  return out;
 }
 
 }  // namespace swath::calib

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/block/checks/checked_adjustment.h"
 
+#include "calib/block/checks/antenna_offsets.h"
 #include "calib/block/checks/block_checks.h"
+#include "calib/block/checks/block_sample.h"
 
 namespace swath::calib {
 
@@ -13,6 +15,7 @@ CheckedAdjustment adjust_checked(ReadBlock& read, const BlockConfig& config) {
   out.solution = adjust_block(read.block, config.adjust);
   refuse_wrong_stations(out.stated, read, out.solution, config);
   out.found = findings_of(read, config, out.solution);
+  for (std::string& sentence : antenna_findings(read.block)) out.found.findings.push_back(std::move(sentence));
   out.found.start_tie = start.tie, out.found.start_control = start.control;
   return out;
 }

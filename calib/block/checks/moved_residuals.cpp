@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/block/checks/moved_residuals.h"
 
+#include <algorithm>
+
 #include "calib/block/block_start.h"
 
 namespace swath::calib {
@@ -27,47 +29,52 @@ double ray_residual(const ImageBlock& block, const ImageRay& r) {
   return seen ? (*seen - Eigen::Vector2d(r.x, r.y)).norm() : 10.0 * camera.value[0];
 }
 
-MovedResiduals::MovedResiduals(const ImageBlock& block) : rays_(tie_rays(block)), seen_(block.images.size()) {
+MovedResiduals::MovedResiduals(const ImageBlock& block)
+    : rays_(tie_rays(block)), seen_(block.images.size()), rays_of_(block.points.size()) {
   block_.cameras = block.cameras;
   block_.images = block.images;
   block_.points = block.points;
-  block_.rays = rays_;
   for (const BlockPoint& p : block_.points) given_.push_back(p.position);
-  intersect_points(block_);
-  for (const BlockPoint& p : block_.points) intersected_.push_back(p.position);
-  for (const ImageRay& r : rays_) {
-    residuals_.push_back(residual(r));
+  for (std::uint32_t k = 0; k < rays_.size(); ++k) {
+    const ImageRay& r = rays_[k];
+    const BlockImage& image = block_.images[r.image];
+    const BlockCamera& camera = block_.cameras[image.camera];
+    const auto d = direction_of(camera.value, camera.distortion, {r.x, r.y});
+    directions_.push_back(d ? std::optional((image.camera_R_local.transpose() * *d).normalized()) : std::nullopt);
     seen_[r.image].push_back(r.point);
+    rays_of_[r.point].push_back(k);
+  }
+  residuals_.resize(rays_.size(), 0.0);
+  for (std::uint32_t p = 0; p < rays_of_.size(); ++p) intersect(p);
+}
+
+void MovedResiduals::intersect(std::uint32_t point) {
+  RayIntersection sum;
+  for (const std::uint32_t k : rays_of_[point])
+    if (directions_[k]) sum.add(block_.images[rays_[k].image].position, *directions_[k]);
+  block_.points[point].position = (sum.rays() < 2 ? std::nullopt : sum.point()).value_or(given_[point]);
+  for (const std::uint32_t k : rays_of_[point]) {
+    const double now = ray_residual(block_, rays_[k]) / block_.cameras[block_.images[rays_[k].image].camera].value[0];
+    sum_ += std::min(at_most, now) - std::min(at_most, residuals_[k]);
+    residuals_[k] = now;
   }
 }
 
-double MovedResiduals::residual(const ImageRay& r) const {
-  return ray_residual(block_, r) / block_.cameras[block_.images[r.image].camera].value[0];
+void MovedResiduals::move(std::uint32_t image, const Eigen::Vector3d& position) {
+  block_.images[image].position = position;
+  for (const std::uint32_t p : seen_[image]) intersect(p);
 }
 
-std::vector<double> MovedResiduals::at(const ImageBlock& moved) {
-  std::vector<std::pair<size_t, Eigen::Vector3d>> images;  // those moved, and where they were
-  std::vector<char> again(block_.points.size(), 0);
-  for (size_t i = 0; i < block_.images.size(); ++i) {
-    Eigen::Vector3d& position = block_.images[i].position;
-    if (position == moved.images[i].position) continue;
-    images.emplace_back(i, position);
-    position = moved.images[i].position;
-    for (const std::uint32_t p : seen_[i]) again[p] = 1;
-  }
-  block_.rays.clear();
-  for (const ImageRay& r : rays_)
-    if (again[r.point]) block_.rays.push_back(r);
-  for (size_t p = 0; p < again.size(); ++p)
-    if (again[p]) block_.points[p].position = given_[p];
-  intersect_points(block_);
-  std::vector<double> out = residuals_;
+double MovedResiduals::mean() const { return sum_ / std::max(1.0, static_cast<double>(residuals_.size())); }
+
+double MovedResiduals::mean_on(const std::vector<std::uint32_t>& images) const {
+  std::vector<char> wanted(rays_of_.size(), 0);
+  for (const std::uint32_t i : images)
+    for (const std::uint32_t p : seen_[i]) wanted[p] = 1;
+  double sum = 0.0, count = 0.0;
   for (size_t k = 0; k < rays_.size(); ++k)
-    if (again[rays_[k].point]) out[k] = residual(rays_[k]);
-  for (const auto& [image, position] : images) block_.images[image].position = position;
-  for (size_t p = 0; p < again.size(); ++p)
-    if (again[p]) block_.points[p].position = intersected_[p];
-  return out;
+    if (wanted[rays_[k].point]) sum += std::min(at_most, residuals_[k]), count += 1.0;
+  return sum / std::max(1.0, count);
 }
 
 }  // namespace swath::calib

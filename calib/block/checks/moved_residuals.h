@@ -2,6 +2,8 @@
 // Residuals of tie points at start values, and how they change where images are moved.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <vector>
 
 #include "calib/block/image_block.h"
@@ -17,24 +19,33 @@ std::vector<ImageRay> tie_rays(const ImageBlock& block);
 /// mm; of a ray from behind the camera a large value. Points must be intersected.
 double ray_residual(const ImageBlock& block, const ImageRay& ray);
 
-/// Residuals of tie_rays() over the principal distance, of one block with images at one place and another. Only points that a moved image
-/// sees are intersected again: a block is not copied for each trial.
+/// Residuals of tie_rays() over the principal distance while images are moved one by one. A move costs what the points of that image cost,
+/// whatever the size of the block.
 class MovedResiduals {
  public:
+  static constexpr double at_most = 0.2;  ///< what a residual counts in a mean: one strip's mistake shows up to this
+
   explicit MovedResiduals(const ImageBlock& block);
-  /// As the block was given.
-  const std::vector<double>& stated() const { return residuals_; }
-  /// `moved`: the block as it was given, but for positions of images.
-  std::vector<double> at(const ImageBlock& moved);
+  void move(std::uint32_t image, const Eigen::Vector3d& position);
+  const Eigen::Vector3d& position(std::uint32_t image) const { return block_.images[image].position; }
+
+  /// Of tie_rays(), with the images where they are now.
+  const std::vector<double>& all() const { return residuals_; }
+  double mean() const;
+  /// Of the rays of the points that any of these images sees.
+  double mean_on(const std::vector<std::uint32_t>& images) const;
 
  private:
-  double residual(const ImageRay& ray) const;
+  void intersect(std::uint32_t point);
 
   ImageBlock block_;  ///< points intersected; without control
   std::vector<ImageRay> rays_;
+  std::vector<std::optional<Eigen::Vector3d>> directions_;  ///< of the rays, local
   std::vector<double> residuals_;
-  std::vector<Eigen::Vector3d> given_, intersected_;  ///< positions of the points
-  std::vector<std::vector<std::uint32_t>> seen_;      ///< points by image
+  double sum_ = 0.0;                                 ///< of what the residuals count
+  std::vector<Eigen::Vector3d> given_;               ///< positions of the points
+  std::vector<std::vector<std::uint32_t>> seen_;     ///< points by image
+  std::vector<std::vector<std::uint32_t>> rays_of_;  ///< by point
 };
 
 }  // namespace swath::calib

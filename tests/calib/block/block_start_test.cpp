@@ -52,6 +52,15 @@ TEST(BlockStart, WhatIsMissingIsNamed) {
   b = test::make_block({});
   b.given.images[0].strip = 99;
   EXPECT_THROW(start_poses(b.given), core::Error);
+  b = test::make_block({});
+  b.given.images[0].name = "P3", b.given.images[1].name = "P4";
+  b.given.stations[1].position = b.given.stations[0].position;
+  try {
+    start_poses(b.given);
+    FAIL() << "two images on one place were started";
+  } catch (const core::Error& e) {
+    EXPECT_NE(e.text().find("images P3 and P4 of strip"), std::string::npos) << e.text();
+  }
 }
 
 }  // namespace

@@ -38,6 +38,36 @@ TEST(BlockMistakes, UnitsAndOrderOfAngles) {
   expect_in(refused([](core::Attitude& a) { a.heading = core::pi / 2.0 - a.heading; }), "heading counts counter-clockwise from east");
 }
 
+TEST(BlockMistakes, HeadingsTurnedByQuarters) {
+  for (const auto& [by, what] : {std::pair{180.0, "by 180 deg"}, {90.0, "by 90 deg"}, {-90.0, "by -90 deg"}})
+    expect_in(refused([turn = by * core::degree](core::Attitude& a) { a.heading += turn; }), std::string("headings are off ") + what);
+}
+
+TEST(BlockMistakes, DistortionWithTheSignOfCorrections) {
+  test::Making making = test::small_making();
+  making.boresight.setZero();
+  making.camera[3] = 4e-7;  // k1: 0.6 mm in the corners
+  test::MadeFiles m;
+  m.block = test::make_block(making).given;
+  m.write_angles = true;
+  m.angles = m.stated_angles = "roll_pitch_heading";
+  const test::TemporaryFolder folder;
+  const std::string file = test::write_made(m, folder.path());
+  const BlockConfig config = test::read_made(file);
+  ReadBlock read = read_block(config, file);
+  read.block.cameras[0].value[3] = making.camera[3];
+  EXPECT_NO_THROW(refuse_mistakes(read, config));
+  read.block.cameras[0].value[3] = -making.camera[3];
+  try {
+    refuse_mistakes(read, config);
+    FAIL() << "corrections were taken for distortion";
+  } catch (const core::Error& e) {
+    expect_in(e.text(), "the distortion has the other sign");
+  }
+  read.block.cameras[0].sigma[3] = free_value;  // a start value
+  EXPECT_NO_THROW(refuse_mistakes(read, config));
+}
+
 /// A run has no table of angles to correct.
 TEST(BlockMistakes, AnglesOfATrajectoryHaveItsHint) {
   ReadBlock read;
