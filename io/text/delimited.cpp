@@ -11,6 +11,7 @@
 #include "core/config/value.h"
 #include "core/error.h"
 #include "io/text/cut_line.h"
+#include "io/text/table_start.h"
 
 namespace swath::io {
 namespace {
@@ -220,13 +221,14 @@ const char* number_hint(std::string_view field, const char* otherwise) {
 
 DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::string& delimiter) {
   require_not_utf16(path);
+  const TableStart table = table_start(path, delimiter);
   FirstLines lines(path);
   DelimitedLayout out;
   std::string comment, header, line;
-  bool have_header = false, anything = false;
+  bool have_header = false, anything = table.data > 0;
   std::vector<NumberedLine> data;
   while (data.size() <= cut_line_context && lines.next(line)) {
-    if (line.empty()) continue;
+    if (line.empty() || (lines.number() < table.data && lines.number() != table.names)) continue;
     if (is_comment(line)) {
       anything = true;
       if (data.empty()) comment = line.substr(std::min(line.find_first_not_of("#% \t"), line.size()));
@@ -256,6 +258,7 @@ DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::
   out.data_line = first.number;
   if (have_header) {
     out.names = split(header, out.delimiter);
+    if (table.names > 0 && out.names.size() != out.columns) out.names = split(header, find_delimiter(header));
   } else if (!comment.empty()) {
     const std::vector<std::string> words = split(comment, out.delimiter);
     if (words.size() == out.columns && !all_numbers(words)) out.names = words;

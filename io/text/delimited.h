@@ -34,9 +34,9 @@ struct DelimitedLayout {
 };
 
 /// Reads the first lines: byte order mark, comments (# or %), header, first data line. A header is a first line with a field that is
-/// no number; or, where there is none, the last comment with as many words as the data have fields. A first line of data that is cut off is
-/// passed over.
-/// `delimiter`: "," ";" "tab" "\t" "blank" " ", or "" to find it in the first data line. Throws Error where the file has no data line.
+/// no number; or, where there is none, the last comment with as many words as the data have fields. A description above the header, and
+/// units below it, are passed over (io/text/table_start.h), as is a first line of data that is cut off. `delimiter`: "," ";" "tab" "\t"
+/// "blank" " ", or "" to find it in the first data line. Throws Error where the file has no data line.
 DelimitedLayout inspect_delimited(const std::filesystem::path& file, const std::string& delimiter = {});
 
 /// Index from 0 of the column that a survey names: the header's name (letter case matters only where two names differ by it alone),

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/text/table_start.h"
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "io/text/delimited.h"
+#include "io/text/line_reader.h"
+
+namespace swath::io {
+namespace {
+
+constexpr size_t max_lines = 400;  // a longer description is none of a table
+
+struct Line {
+  std::uint64_t number = 0;
+  std::string text;
+  size_t fields = 0, numbers = 0, empty = 0;
+  char delimiter = ' ';
+
+  bool is_record() const { return fields >= 2 && numbers == fields; }
+  bool may_be_record() const { return fields >= 2 && numbers > 0 && numbers + empty == fields; }
+};
+
+bool is_number(const std::string& field) {
+  double ignored = 0;
+  return read_number(field, ignored);
+}
+
+Line line_of(std::uint64_t number, std::string_view text, const std::string& delimiter, const std::filesystem::path& file) {
+  Line out{number, std::string(text)};
+  out.delimiter = delimiter.empty() ? delimiter_in(out.text) : delimiter_from(delimiter, file);
+  const std::vector<std::string> fields = split_delimited(out.text, out.delimiter);
+  out.fields = fields.size();
+  out.empty = static_cast<size_t>(std::count(fields.begin(), fields.end(), ""));
+  out.numbers = static_cast<size_t>(std::count_if(fields.begin(), fields.end(), is_number));
+  return out;
+}
+
+/// The lines that are neither empty nor comments, up to the first two records of one length; the first of these is the last line.
+std::vector<Line> lines_above_records(const std::filesystem::path& file, const std::string& delimiter) {
+  std::vector<Line> out;
+  LineReader reader(file);
+  for (std::string_view text; out.size() < max_lines && reader.next(text);) {
+    const size_t begin = text.find_first_not_of(" \t\r");
+    if (begin == text.npos || text[begin] == '#' || text[begin] == '%') continue;
+    out.push_back(line_of(reader.number(), text, delimiter, file));
+    if (out.size() < 2) continue;
+    const Line &last = out.back(), &before = out[out.size() - 2];
+    if (last.is_record() && before.is_record() && last.fields == before.fields) {
+      out.pop_back();
+      return out;
+    }
+  }
+  return {};
+}
+
+/// A word for each column of a record.
+bool names_of(const Line& line, const Line& record) {
+  if (line.numbers > 0) return false;
+  return line.fields == record.fields || split_delimited(line.text, record.delimiter).size() == record.fields;
+}
+
+/// Units for each column below its name: blanks part descriptions, too, so that units between them need brackets.
+bool units_below(const Line& names, const Line& units, const Line& record) {
+  if (!names_of(names, record) || names.delimiter != record.delimiter || units.delimiter != record.delimiter) return false;
+  const std::vector<std::string> fields = split_delimited(units.text, units.delimiter);
+  const auto in_brackets = [](const std::string& f) { return f.starts_with('(') || f.starts_with('['); };
+  return record.delimiter != ' ' || std::all_of(fields.begin(), fields.end(), in_brackets);
+}
+
+}  // namespace
+
+TableStart table_start(const std::filesystem::path& file, const std::string& delimiter) {
+  const std::vector<Line> lines = lines_above_records(file, delimiter);
+  if (lines.size() < 3 || lines[1].is_record()) return {};
+  const Line& record = lines.back();
+  if (lines[0].may_be_record() && lines[0].fields == record.fields) return {};
+  if (names_of(lines[0], record) && (lines[1].numbers > 0 || lines[1].fields == 1)) return {};
+  size_t data = lines.size() - 1;  // records with empty fields belong to the table
+  while (data > 0 && lines[data - 1].may_be_record() && lines[data - 1].fields == record.fields) --data;
+  size_t names = data;
+  while (names > 0 && !names_of(lines[names - 1], record)) --names;
+  if (names > 1 && units_below(lines[names - 2], lines[names - 1], record)) --names;
+  if (names == 0) return {0, lines[data].number};
+  const auto first =
+      std::find_if(lines.begin() + static_cast<std::ptrdiff_t>(names), lines.end(), [](const Line& l) { return l.numbers > 0; });
+  return {lines[names - 1].number, first->number};
+}
+
+}  // namespace swath::io

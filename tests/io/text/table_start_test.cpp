@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/text/table_start.h"
+
+#include "core/error.h"
+#include "io/text/delimited.h"
+#include "tests/world/support.h"
+
+namespace swath::io {
+namespace {
+
+std::vector<std::vector<double>> read_all(const std::filesystem::path& file, const std::vector<std::string>& columns) {
+  const DelimitedLayout layout = inspect_delimited(file);
+  std::vector<size_t> at;
+  for (const std::string& c : columns) at.push_back(column_of(layout, c, file));
+  DelimitedReader reader(file, layout, at);
+  std::vector<std::vector<double>> out;
+  std::vector<double> row(columns.size());
+  while (reader.next(row.data())) out.push_back(row);
+  return out;
+}
+
+class TableStarts : public ::testing::Test {
+ protected:
+  std::filesystem::path made(const std::string& text) {
+    test::write_bytes(folder_ / "a.csv", text);
+    return folder_ / "a.csv";
+  }
+  core::Error error_of(const std::string& text, const std::vector<std::string>& columns) {
+    try {
+      read_all(made(text), columns);
+    } catch (const core::Error& e) {
+      return e;
+    }
+    ADD_FAILURE() << "no error for: " << text;
+    return core::Error("none");
+  }
+  test::TemporaryFolder folder_;
+};
+
+using Rows = std::vector<std::vector<double>>;
+
+TEST_F(TableStarts, ADescriptionAboveTheTableIsPassedOver) {
+  const Rows rows{{1, 2, 3}, {4, 5, 6}};
+  const std::vector<std::string> named{"GPSTime", "H-Ell", "Roll"};
+  const std::string table = "1 2 3\n4 5 6\n";
+  // Inertial Explorer: project, names, units of some columns.
+  EXPECT_EQ(
+      read_all(made("Project:  flight\nProgram:  IE Version 8.90\nSource:  TC\n\n GPSTime  H-Ell  Roll\n (sec) (deg)\n" + table), named),
+      rows);
+  // Units below the names, one for each column.
+  EXPECT_EQ(read_all(made("GPSTime,H-Ell,Roll\ns,m,deg\n1,2,3\n4,5,6\n"), named), rows);
+  EXPECT_EQ(read_all(made("a flight here\nGPSTime H-Ell Roll\n(sec) [m] (deg)\n" + table), named), rows);
+  EXPECT_EQ(read_all(made("// rate: 100\n// firmware 4.2.0\nGPSTime\tH-Ell\tRoll\n1\t2\t3\n4\t5\t6\n"), named), rows);
+  // POSPac: names of several words between commas, records between blanks.
+  const auto pospac =
+      made("POSPAC MMS SBET ASCII EXPORT\nMission: 1\nTIME, ELLIPSOID HEIGHT, ROLL\n(time in Sec, height in Meters)\n\n" + table);
+  EXPECT_EQ(read_all(pospac, {"TIME", "ELLIPSOID HEIGHT", "ROLL"}), rows);
+  EXPECT_EQ(inspect_delimited(pospac).data_line, 6u);
+  // Without names the columns have numbers.
+  EXPECT_EQ(read_all(made("made by a logger\non a day in June\n" + table), {"1", "2", "3"}), rows);
+}
+
+TEST_F(TableStarts, ADamagedFirstRecordIsNoDescription) {
+  const std::string rest = "1,2,3\n4,5,6\n7,8,9\n";
+  for (const std::string& text : {rest, "a,b,c\n" + rest, "a,b,c\nx,2,3\n" + rest, "1,,3\n2,,4\n" + rest, std::string("P1,2,3\nP2,5,6\n")})
+    EXPECT_EQ(table_start(made(text)).data, 0u) << text;
+  EXPECT_NE(error_of("a,b,c\nx,2,3\n" + rest, {"a"}).where().find(":2"), std::string::npos);
+  EXPECT_EQ(inspect_delimited(made("a,b,c\nx,2\n" + rest)).cut_line, 2u);
+  EXPECT_EQ(inspect_delimited(made("a,b,c\nbroken\n" + rest)).cut_line, 2u);
+  EXPECT_NE(error_of("logger 1\nof June\na,b,c\nx,2,3\n" + rest, {"a"}).where().find(":4"), std::string::npos);
+  // Records with empty fields are records, with a description above them or not.
+  EXPECT_EQ(read_all(made("a,b,c\n1,,3\n2,,4\n" + rest), {"a", "c"}).size(), 5u);
+  EXPECT_EQ(read_all(made("logger\nof June\na,b,c\n1,,3\n2,,4\n" + rest), {"a", "c"}).size(), 5u);
+  EXPECT_EQ(read_all(made("1,,3\n2,,4\n" + rest), {"1", "3"}).size(), 5u);
+}
+
+}  // namespace
+}  // namespace swath::io
