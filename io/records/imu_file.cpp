@@ -27,9 +27,10 @@ constexpr const char *records = "IMU records", *gap_count = "IMU gaps";
 constexpr double fastest_turn = 100.0, largest_force = 1000.0;    // rad/s, m/s2: twice what the widest sensors measure
 constexpr double least_jump_turn = 2.0, least_jump_force = 20.0;  // rad/s, m/s2: of one record against its neighbours
 constexpr double jump_ratio = 25.0;                               // of the median change from record to record
-constexpr double most_standing_out = 1e-3;                        // of the records
-constexpr size_t neighbours = 5;                                  // records on either side
-constexpr size_t changes_looked_at = 100000;                      // changes for their median
+constexpr double most_wild = 0.5;             // of the records: where more are, kind or units are others, which the median shows
+constexpr double most_standing_out = 1e-3;    // of the records
+constexpr size_t neighbours = 5;              // records on either side
+constexpr size_t changes_looked_at = 100000;  // changes for their median
 
 /// Records as recorded, in the record's axes and units.
 struct Raw {
@@ -126,8 +127,8 @@ void leave_out(Raw& raw, std::vector<std::uint64_t>& numbers, const std::vector<
 void leave_out_wild(Raw& raw, const ImuFile& f, std::vector<std::uint64_t>& numbers, const TableRows& rows, core::Tally& tally) {
   const std::optional<Scale> scale = scale_of(raw, f);
   if (!scale) return;
-  leave_out(raw, numbers, beyond_any_imu(raw, *scale), 1.0, *scale, rows, "IMU records with rates or forces that no IMU measures, left out",
-            tally);
+  leave_out(raw, numbers, beyond_any_imu(raw, *scale), most_wild, *scale, rows,
+            "IMU records with rates or forces that no IMU measures, left out", tally);
   leave_out(raw, numbers, standing_out(raw, *scale), most_standing_out, *scale, rows,
             "IMU records that stand out from all around them, left out", tally);
 }

@@ -217,6 +217,16 @@ TEST_F(ImuFiles, WhatIsDamagedIsLeftOutOrRefused) {
   EXPECT_NE(refusal(f).find("did you mean 'wy'"), std::string::npos);
 }
 
+TEST_F(ImuFiles, RatesStatedAsIncrementsAreNamedAtAnyRate) {
+  for (const double rate : {50.0, 200.0, 2000.0}) {  // gravity as an increment is 490 to 19 620 m/s2
+    ImuFile f = made(
+        4000, [&](int k) { return 1000 + k / rate; }, level);
+    f.kind = ImuKind::increments;
+    const std::string text = refusal(f);
+    EXPECT_NE(text.find("with kind = \"rates\" it would be 9.8"), std::string::npos) << rate << ": " << text;
+  }
+}
+
 TEST_F(ImuFiles, ARecordThatStandsOutIsLeftOut) {
   const char* what = "IMU records that stand out from all around them, left out";
   for (const char* row : {"0.01,0.02,0.03,0.1,0.2,-98.1", "0.01,3,0.03,0.1,0.2,-9.81", "0.01,0.02,0.03,0.1,0.2,98.1"}) {
