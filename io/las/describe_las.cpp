@@ -23,6 +23,7 @@ namespace {
 
 constexpr size_t batch = 65536;
 constexpr double cell = 2.0;
+constexpr double full_cell = 4.0;  // points in the mean of cells that hold one: 1 in 50 of a covered area is empty by chance
 
 /// Number of a coordinate's cell, whose lowest 32 bits suffice: header and points may state places beyond any map.
 std::uint64_t index_of(double coordinate) {
@@ -78,6 +79,21 @@ struct Sums {
   }
 };
 
+/// Area of the cells that hold a point. Sparse points, and those of a CRS in feet, leave many cells of a covered area empty: the cells are
+/// doubled until they are full. No more than the box of the points and a cell about it.
+double covered_area(const Sums& s) {
+  std::unordered_set<std::uint64_t> cells = s.cells;
+  double side = cell;
+  while (cells.size() > 1 && static_cast<double>(s.points) < full_cell * static_cast<double>(cells.size())) {
+    std::unordered_set<std::uint64_t> wider;
+    for (const std::uint64_t c : cells) wider.insert((c >> 33) << 32 | (c & 0xffffffff) >> 1);
+    cells = std::move(wider);
+    side *= 2;
+  }
+  const double box = (s.xyz[0].high - s.xyz[0].low + cell) * (s.xyz[1].high - s.xyz[1].low + cell);
+  return std::min(static_cast<double>(cells.size()) * side * side, box);
+}
+
 /// GPS times of the points.
 struct LasTimes {
   std::string scale;
@@ -105,7 +121,7 @@ template <class V>
 void describe(const LasFacts& r, V& v) {
   const LasHeader& h = r.h;
   const core::Form where_any = core::Form{}.only_if(r.s.points > 0);
-  const double area = static_cast<double>(r.s.cells.size()) * cell * cell;
+  const double area = r.s.points > 0 ? covered_area(r.s) : 0.0;
   std::vector<std::string> extras;
   for (const LasExtra& e : h.extras) extras.push_back(e.name);
   v.result("format", std::string(h.compressed ? "LAZ" : "LAS"), "Format.");
@@ -129,7 +145,7 @@ void describe(const LasFacts& r, V& v) {
   v.result("scan_angle_deg", r.s.angle, "Smallest and largest scan angle.");
   v.result("withheld", r.s.withheld, core::if_any(), "Points flagged as withheld.");
   v.result("overlap", r.s.overlap, core::if_any(), "Points flagged as overlap.");
-  v.result("covered_area", area, where_any, "Area of the cells of 2 units that hold a point, square units of the CRS.");
+  v.result("covered_area", area, where_any, "Area of the cells that hold a point: 2 units wide, or wider until they hold 4 in the mean.");
   v.result("points_per_square_unit", static_cast<double>(r.s.points) / area, where_any, "Points per square unit of that area.");
   v.result("first_returns_per_square_unit", static_cast<double>(r.s.first_returns) / area, where_any, "First returns per square unit.");
   v.result("extra_fields", extras, core::Form{}.only_if(!extras.empty() && r.s.points > 0), "Names of the extra fields.");

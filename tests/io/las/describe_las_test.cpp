@@ -2,6 +2,7 @@
 #include "io/las/describe_las.h"
 
 #include <cstring>
+#include <random>
 
 #include "core/error.h"
 #include "io/las/las_writer.h"
@@ -45,6 +46,37 @@ TEST(DescribeLas, PointsThatAreThereTwiceAreNamed) {
   for (size_t i = 0; i < block.size(); ++i) block.time[i] = 1000.0 + static_cast<double>(i);
   EXPECT_FALSE(warns(written("timed_once.las", 1), "points twice"));
   EXPECT_TRUE(warns(written("timed.las", 2), "100 of the first 200 points have the place, time and return number of another"));
+}
+
+TEST(DescribeLas, DensityOfSparsePointsCountsNoEmptyCellsAsUncovered) {
+  const test::TemporaryFolder folder;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> place(0.0, 300.0);
+  const double area = 300.0 * 300.0;
+  for (const double density : {4.0, 1.0, 0.186, 0.02}) {  // of 1 square unit; 0.186 is 2 points per m2 in feet
+    core::Block block;
+    core::resize(block, static_cast<size_t>(density * area));
+    for (size_t i = 0; i < block.size(); ++i) block.x[i] = place(random) - 150.0, block.y[i] = 5300000.0 + place(random);
+    LasWriteOptions o;
+    o.threads = 1;
+    LasWriter writer(folder / "a.las", o);
+    writer.write(block);
+    writer.finish();
+    const double stated = describe_las(folder / "a.las").find("points_per_square_unit")->as_number();
+    EXPECT_NEAR(stated / density, 1.0, 0.1) << density;
+  }
+}
+
+TEST(DescribeLas, APointAloneCoversOneCell) {
+  const test::TemporaryFolder folder;
+  core::Block block;
+  core::resize(block, 1);
+  LasWriteOptions o;
+  o.threads = 1;
+  LasWriter writer(folder / "a.las", o);
+  writer.write(block);
+  writer.finish();
+  EXPECT_EQ(describe_las(folder / "a.las").find("covered_area")->as_number(), 4.0);
 }
 
 TEST(DescribeLasReference, OneStripInFeet) {
