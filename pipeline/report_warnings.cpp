@@ -123,7 +123,7 @@ void add_findings(const std::string& stage, const Value& findings, std::set<std:
              " % of all, share place, time and number with another: they are not counted in the density, but are in every product",
          {{"share", share->as_number(), {}}}});
   const Value *named = findings.find("named"), *returns = findings.find("returns");
-  if (stage == "quality.points" && named)
+  if (named && (stage == "quality.points" || stage == "trajectory.ins_gnss"))
     for (const Value& fault : named->items()) out.push_back({fault.find("code")->as_text(), fault.find("sentence")->as_text(), {}});
   const Value *lines = findings.find("lines"), *left_out = findings.find("left_out");
   if (stage == "terrain.contours" && left_out && lines->as_int() == 0)

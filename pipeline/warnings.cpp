@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/warnings.h"
 
+#include <algorithm>
+
 #include "core/error.h"
 
 namespace swath::pipeline {
@@ -73,6 +75,8 @@ const std::vector<WarningKind>& warning_kinds() {
        "See quality.points in report.json by cover; or raise the limit."},
       {"points.outside_box", "Points lie well outside the box that their file's header states.",
        "The points are used as they are; have the file written again, for other programs trust the box."},
+      {"trajectory.clocks", "The clocks of IMU and GNSS records differ by more than 2 ms and four sigmas.",
+       "State the offset that the warning names in survey.toml: as it is, positions are off along the track by speed times offset."},
       {"trajectory.fixes", "Many GNSS fixes contradict the smoothed trajectory; the stated sigmas do not hold.",
        "See trajectory.json and what the readers counted: damaged records, clocks apart, a wrong lever arm, fixes of poor quality."},
       {"trajectory.gnss_sigmas",
@@ -82,6 +86,10 @@ const std::vector<WarningKind>& warning_kinds() {
       {"trajectory.imu_noise", "The IMU's records hold many times the noise that its specification states.",
        "See what readers.imu counted in report.json: damaged records, wrong units or axes, strong vibration; correct imu_spec if the IMU "
        "is so."},
+      {"trajectory.lever_arm", "The records show another lever arm of the antenna than the survey states.",
+       "Measure it again: forward, right, down from the IMU's centre; a turned IMU, a wrong sign or clocks apart look like it, too."},
+      {"trajectory.motion", "The attitude does not follow the flight: heading against track, roll and pitch against the turns.",
+       "Correct axes, or the mounting roll, pitch and heading, of [[imu]]; it is right for a craft that flies sideways."},
       {"work.damaged", "Pieces of an earlier run's work were changed or damaged, and were done again.",
        "Look for what writes into the work folder, and check the disk."},
   };
@@ -91,9 +99,11 @@ const std::vector<WarningKind>& warning_kinds() {
 std::string warning_help(const std::string& code) {
   std::string out;
   std::vector<std::string> codes;
+  size_t width = 0;
+  for (const WarningKind& k : warning_kinds()) width = std::max(width, k.code.size() + 1);
   for (const WarningKind& k : warning_kinds()) {
     codes.emplace_back(k.code);
-    if (code.empty()) out += std::string(k.code) + std::string(24 - k.code.size(), ' ') + std::string(k.meaning) + "\n";
+    if (code.empty()) out += std::string(k.code) + std::string(width - k.code.size(), ' ') + std::string(k.meaning) + "\n";
     if (code == k.code) out = code + ": " + std::string(k.meaning) + "\n\n" + std::string(k.remedy) + "\n";
   }
   if (!out.empty()) return out;

@@ -19,7 +19,8 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
                                                             {"code": "check.mark", "sentence": "c"}, {"code": "check.few", "sentence": "d"},
                                                             {"code": "check.names", "sentence": "e"}, {"code": "check.outside", "sentence": "f"},
                                                             {"code": "check.roof", "sentence": "g"}, {"code": "check.cover", "sentence": "i"}]}},
-          {"type": "trajectory.ins_gnss", "findings": {"fixes": {"used": 1061, "down_weighted": 316, "sigmas_overstated": 2.9}, "imu_noise_factor": 64}},
+          {"type": "trajectory.ins_gnss", "findings": {"fixes": {"used": 1061, "down_weighted": 316, "sigmas_overstated": 2.9}, "imu_noise_factor": 64,
+              "named": [{"code": "trajectory.clocks", "sentence": "j"}, {"code": "trajectory.lever_arm", "sentence": "k"}, {"code": "trajectory.motion", "sentence": "l"}]}},
           {"type": "quality.density", "findings": {"pulses": 900, "duplicates": 100, "duplicate_share": 0.1}},
           {"type": "time.sync", "findings": {"outside": [{"technique": "pc", "events": 40, "outside": 40, "sentence": "h"}]}},
           {"type": "terrain.contours", "findings": {"lines": 0, "left_out": 41}}, {"type": "terrain.contours", "findings": {"lines": 3, "left_out": 4}},
@@ -47,6 +48,10 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
     EXPECT_NE(warning_help(w.code).find(w.code + ": "), std::string::npos);
   }
   EXPECT_EQ(codes.size(), warning_kinds().size());
+}
+
+TEST(Warnings, TheListHasABlankBehindEveryCode) {
+  for (const WarningKind& k : warning_kinds()) EXPECT_NE(warning_help("").find(std::string(k.code) + " "), std::string::npos) << k.code;
 }
 
 TEST(Warnings, EventsOfATechniqueAreNamedOnceThoughTwoStagesFindThem) {

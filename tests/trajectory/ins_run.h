@@ -99,6 +99,8 @@ struct Statistics {
 
 /// The first warning that holds the text, or "".
 inline std::string warning_with(const InsGnssResult& r, const std::string& part) {
+  for (const NamedFault& n : r.report.figures.named)
+    if (n.sentence.find(part) != std::string::npos) return n.sentence;
   for (const std::string& w : r.report.warnings)
     if (w.find(part) != std::string::npos) return w;
   return "";

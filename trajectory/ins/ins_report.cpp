@@ -55,10 +55,10 @@ InsEstimates sensor_constants(const InsFindings& f) {
 }
 
 /// What the clocks show. With gnss_latency the filter has allowed for a small offset.
-void judge_clocks(const InsFindings& f, Warnings& warnings) {
+void judge_clocks(const InsFindings& f, InsFigures& out, Warnings& warnings) {
   const InsGnssOptions& o = f.problem.options;
   if (f.clocks.apart() && !(o.gnss_latency && std::abs(f.clocks.imu.value) < sure_sigmas * o.latency_sigma.value))
-    warnings.push_back(f.clocks.advice());
+    out.named.push_back({"trajectory.clocks", f.clocks.advice()});
   if (f.clocks.velocities_lag())
     warnings.push_back(text("the GNSS velocities are %.3f s late (sigma %.4f s) against the positions of the same fixes and are not used",
                             f.clocks.velocity.value, f.clocks.velocity.sigma));
@@ -213,7 +213,7 @@ SeparationFigures separation_of(const core::SmootherSeries& s) {
 }
 
 /// What was estimated of antenna and vehicle, with what contradicts the survey.
-void judge_mounting(const InsFindings& f, InsEstimates& out, Warnings& warnings) {
+void judge_mounting(const InsFindings& f, InsEstimates& out, std::vector<NamedFault>& named, Warnings& warnings) {
   const SmoothedNode& last = f.run.nodes.back();
   const Estimate& e = last.estimate;
   const Layout& l = f.problem.layout;
@@ -223,10 +223,11 @@ void judge_mounting(const InsFindings& f, InsEstimates& out, Warnings& warnings)
     for (Eigen::Index i = 0; i < 3; ++i) {
       const double spread = std::sqrt(std::max(1e-12, f.lever_arm_sigma * f.lever_arm_sigma - sigma[i] * sigma[i]));
       if (sigma[i] < 0.95 * f.lever_arm_sigma && std::abs(change[i]) > 3.3 * spread)
-        warnings.push_back(
-            std::string("the antenna's lever arm ") + std::array{"forward", "right", "down"}[static_cast<size_t>(i)] +
-            text(" is estimated at %.3f m (sigma %.3f m) but stated as %.3f m: check antenna.lever_arm, its sign and its sigma", e.lever[i],
-                 sigma[i], f.lever_arm[i]));
+        named.push_back(
+            {"trajectory.lever_arm",
+             std::string("the antenna's lever arm ") + std::array{"forward", "right", "down"}[static_cast<size_t>(i)] +
+                 text(" is estimated at %.3f m (sigma %.3f m) but stated as %.3f m: check antenna.lever_arm, its sign and its sigma",
+                      e.lever[i], sigma[i], f.lever_arm[i])});
     }
   }
   if (l.latency >= 0) {
@@ -313,7 +314,7 @@ InsReport report_of(const InsFindings& f, const core::SmootherSeries& s) {
   r.span = {nodes.front().time, nodes.back().time, f.problem.path.imu.size(), nodes.size(), f.iterations};
   r.gaps = judged_gaps(f.problem.path.gaps, warnings);
   r.clocks = f.clocks;
-  judge_clocks(f, warnings);
+  judge_clocks(f, r, warnings);
   r.alignment = {f.alignment.method, f.alignment.time, f.alignment.worst_sigma()};
   judge_given(f, r.alignment, warnings);
   for (const Span& still : f.standstills) r.standstill += still.last - still.first;
@@ -329,7 +330,7 @@ InsReport report_of(const InsFindings& f, const core::SmootherSeries& s) {
   if (!f.backward.empty()) r.separation = separation_of(s);
   r.estimates = sensor_constants(f);
   judge_constants(r.estimates, warnings);
-  judge_mounting(f, r.estimates, warnings);
+  judge_mounting(f, r.estimates, r.named, warnings);
   r.sigma = sigmas_of(f);
   // Heading: what smoothing took away.
   double heading = 0;

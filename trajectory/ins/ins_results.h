@@ -193,6 +193,18 @@ void describe(const SigmaFigures& r, V& v) {
   v.result("largest_roll_pitch_heading_arcsec", r.worst_attitude, arcsec, "Largest sigmas.");
 }
 
+/// What contradicts the survey's description: a warning of the run.
+struct NamedFault {
+  std::string_view code;
+  std::string sentence;
+};
+
+template <class V>
+void describe(const NamedFault& r, V& v) {
+  v.result("code", r.code, "Code of the warning.");
+  v.result("sentence", r.sentence, "What it is, with its figures.");
+}
+
 /// What the smoother found.
 struct InsFigures {
   SmootherSpan span{};
@@ -208,6 +220,7 @@ struct InsFigures {
   InsEstimates estimates{};
   SigmaFigures sigma{};
   double heading_smoothed_away = 0.0;  ///< arc seconds
+  std::vector<NamedFault> named{};
   std::optional<TruthComparison> truth{};
 };
 
@@ -227,6 +240,7 @@ void describe(const InsFigures& r, V& v) {
   v.table("sigma", r.sigma, "Sigmas of the trajectory.");
   v.result("heading_smoothed_away_rms_arcsec", r.heading_smoothed_away, core::Form{"arcsec", 1}.always(),
            "RMS of the forward filter's heading less the smoothed one.");
+  v.tables("named", r.named, "What contradicts the survey's description.");
   v.table("truth", r.truth, "Errors against the truth of a simulated survey.");
 }
 

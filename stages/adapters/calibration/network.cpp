@@ -227,6 +227,7 @@ Given<trajectory::Trajectory, NetworkFindings> adjust_survey(core::ImuData imu, 
   trajectory::SmoothedFlight left;
   trajectory::InsGnssResult smoothed = smooth_records(std::move(imu), gnss, survey, o.smoother, progress, &left);
   for (const std::string& w : smoothed.report.warnings) tally.count("warnings of the smoother", w);
+  for (const trajectory::NamedFault& n : smoothed.report.figures.named) tally.count("warnings of the smoother", n.sentence);
   const trajectory::Trajectory before = as_flown(std::move(smoothed.trajectory), rate, "calib.network");
   const calib::PreparedFlight prepared(survey, shots, context.threads, before, {}, tally);
   calib::NetworkOptions how = o;

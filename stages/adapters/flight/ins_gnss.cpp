@@ -77,7 +77,8 @@ Given<trajectory::Trajectory, trajectory::InsFigures> smooth_flight(core::ImuDat
   // Axes that are turned fit the fixes, but not the way the aircraft flies.
   trajectory::CheckOptions motion_alone;
   motion_alone.max_gap.value = std::numeric_limits<double>::infinity();
-  for (const std::string& w : trajectory::check_trajectory(result.trajectory, motion_alone).warnings) tally.count(w);
+  for (std::string& w : trajectory::check_trajectory(result.trajectory, motion_alone).warnings)
+    result.report.figures.named.push_back({"trajectory.motion", std::move(w)});
 
   std::optional<core::TrajectoryErrors> errors;
   if (const auto truth = truth_of(survey, result.trajectory)) {

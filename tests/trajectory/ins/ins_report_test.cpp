@@ -18,6 +18,7 @@ std::string outcry(const Trial& run, const test::Course& course, const std::stri
   try {
     const InsGnssResult r = run.on(course);
     for (const std::string& w : r.report.warnings) std::printf("  %s\n", w.c_str());
+    for (const NamedFault& n : r.report.figures.named) std::printf("  %s\n", n.sentence.c_str());
     return warning_with(r, part);
   } catch (const core::Error& e) {
     std::printf("  error: %s\n", e.text().c_str());
@@ -27,9 +28,29 @@ std::string outcry(const Trial& run, const test::Course& course, const std::stri
 
 TEST(InsReport, ACleanFlightRaisesNoAlarm) {
   for (const ImuGrade grade : {ImuGrade::navigation, ImuGrade::tactical, ImuGrade::mems})
-    for (std::uint64_t seed = 11; seed <= 20; ++seed)
-      for (const std::string& w : trial_of(grade, seed).on(lines_and_turns()).report.warnings)
-        ADD_FAILURE() << "seed " << seed << ", grade " << static_cast<int>(grade) << ": " << w;
+    for (std::uint64_t seed = 11; seed <= 20; ++seed) {
+      const InsReport report = trial_of(grade, seed).on(lines_and_turns()).report;
+      for (const std::string& w : report.warnings) ADD_FAILURE() << "seed " << seed << ", grade " << static_cast<int>(grade) << ": " << w;
+      for (const NamedFault& n : report.figures.named) ADD_FAILURE() << "seed " << seed << ": " << n.sentence;
+    }
+}
+
+TEST(InsReport, ClocksAndLeverArmThatContradictHaveACode) {
+  Trial run;
+  EXPECT_TRUE(run.on(lines_and_turns()).report.figures.named.empty());
+  run.lever_off = Vector3d(0.1, 0, 0);
+  const std::vector<NamedFault> arm = run.on(lines_and_turns()).report.figures.named;
+  ASSERT_EQ(arm.size(), 1u);
+  EXPECT_EQ(arm[0].code, "trajectory.lever_arm");
+  EXPECT_NE(arm[0].sentence.find("lever arm forward"), std::string::npos) << arm[0].sentence;
+  run.lever_off.setZero();
+  run.change_gnss = [](core::GnssData& g) {
+    for (double& t : g.time) t += 0.05;
+  };
+  const std::vector<NamedFault> clocks = run.on(lines_and_turns()).report.figures.named;
+  ASSERT_FALSE(clocks.empty());
+  EXPECT_EQ(clocks[0].code, "trajectory.clocks");
+  EXPECT_NE(clocks[0].sentence.find("antenna.latency"), std::string::npos) << clocks[0].sentence;
 }
 
 TEST(InsReport, AnImuWorseThanStated) {
