@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/wide.h"
+
 namespace swath::quality {
 namespace {
 
@@ -59,6 +61,11 @@ void distances_in_row(const std::uint8_t* mask, std::uint8_t* out, int n) {
   }
 }
 
+/// Sets those of `to` whose distance along the row is at most `most`.
+SWATH_WIDE void set_within(const std::uint8_t* __restrict distance, std::uint8_t most, std::uint8_t* __restrict to, int n) {
+  for (int i = 0; i < n; ++i) to[i] = static_cast<std::uint8_t>(to[i] | static_cast<std::uint8_t>(distance[i] <= most));
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> cells_within(const std::vector<std::uint8_t>& mask, int nx, int ny, double radius) {
@@ -70,10 +77,7 @@ std::vector<std::uint8_t> cells_within(const std::vector<std::uint8_t>& mask, in
     for (int v = std::max(0, j - reach); v <= std::min(ny - 1, j + reach); ++v) {
       int left = reach;  // of the radius, along the row
       while (left > 0 && left * left + (v - j) * (v - j) > radius * radius) --left;
-      const auto most = static_cast<std::uint8_t>(left);
-      const std::uint8_t* from = along.data() + row(v);
-      std::uint8_t* to = out.data() + row(j);
-      for (int i = 0; i < nx; ++i) to[i] = static_cast<std::uint8_t>(to[i] | (from[i] <= most));
+      set_within(along.data() + row(v), static_cast<std::uint8_t>(left), out.data() + row(j), nx);
     }
   return out;
 }

@@ -37,66 +37,84 @@ bool cell_of(const core::Block& b, size_t p, const core::Lattice& l, int& i, int
   return true;
 }
 
-/// A first return of a window, by the square of block_cells that holds it.
-struct PlacedReturn {
-  std::uint32_t square;
-  std::int32_t i, j;  ///< cell, from the window's corner
-  std::uint8_t kind;
-};
-
-/// The squares of a window in rows, with a ring of them around it.
-struct Squares {
-  int across;
-  explicit Squares(const core::Lattice& window) : across((window.nx + block_cells - 1) / block_cells + 2) {}
-  std::uint32_t at(int column, int row) const { return static_cast<std::uint32_t>((row + 1) * across + column + 1); }
-};
-
-std::vector<PlacedReturn> placed_returns(const core::Block& b, const core::Lattice& window, const core::Lattice& around) {
-  const Squares squares(window);
-  std::vector<PlacedReturn> out;
-  int i = 0, j = 0;
-  for (size_t p = 0; p < b.size(); ++p) {
-    if (!is_first(b, p) || !cell_of(b, p, around, i, j)) continue;
-    i -= around_window, j -= around_window;
-    const bool is_water = !b.classification.empty() && b.classification[p] == core::point_class::water;
-    const auto square = [](int cell) { return static_cast<int>(core::floor_div(cell, block_cells)); };
-    out.push_back({squares.at(square(i), square(j)), i, j, is_water ? has_water : has_return});
-  }
-  std::sort(out.begin(), out.end(), [](const PlacedReturn& a, const PlacedReturn& c) { return a.square < c.square; });
-  return out;
-}
-
-/// The returns of a square and around_window farther.
-Mask mask_of(const std::vector<PlacedReturn>& returns, const core::Lattice& window, int column, int row, const core::Lattice& lattice) {
-  const Squares squares(window);
-  Mask out(lattice);
-  for (int v = row - 1; v <= row + 1; ++v)
-    for (int u = column - 1; u <= column + 1; ++u) {
-      const std::uint32_t square = squares.at(u, v);
-      auto at =
-          std::lower_bound(returns.begin(), returns.end(), square, [](const PlacedReturn& r, std::uint32_t s) { return r.square < s; });
-      for (; at != returns.end() && at->square == square; ++at) {
-        const auto i = static_cast<int>(window.i0 + at->i - lattice.i0), j = static_cast<int>(window.j0 + at->j - lattice.j0);
-        if (lattice.holds(i, j)) out.set[lattice.at(i, j)] |= at->kind;
-      }
-    }
-  return out;
-}
-
 core::Lattice grown(const core::Lattice& l, int by) { return {l.cell, l.i0 - by, l.j0 - by, l.nx + 2 * by, l.ny + 2 * by}; }
+
+/// The squares of block_cells that a window is cut into.
+struct Squares {
+  core::Lattice window;
+  int across, rows;
+  explicit Squares(const core::Lattice& w)
+      : window(w), across((w.nx + block_cells - 1) / block_cells), rows((w.ny + block_cells - 1) / block_cells) {}
+  core::Lattice lattice(int column, int row) const {
+    const int i = column * block_cells, j = row * block_cells;
+    return {window.cell, window.i0 + i, window.j0 + j, std::min(block_cells, window.nx - i), std::min(block_cells, window.ny - j)};
+  }
+  size_t at(int column, int row) const { return static_cast<size_t>(row) * static_cast<size_t>(across) + static_cast<size_t>(column); }
+  /// Calls see(square, i, j) for every square from which cell (i, j) of the window is no farther than around_window; i, j from the corner
+  /// of what is so near to it.
+  template <class See>
+  void each_near(int i, int j, See&& see) const {
+    const auto first = [](int c) { return std::max(0, (c - around_window) / block_cells); };
+    const auto last = [](int c, int n) { return std::min(n - 1, (c + around_window) / block_cells); };
+    const auto within = [](int c, int square) { return static_cast<std::uint16_t>(c - square * block_cells + around_window); };
+    for (int row = first(j); row <= last(j, rows); ++row)
+      for (int column = first(i); column <= last(i, across); ++column) see(at(column, row), within(i, column), within(j, row));
+  }
+};
+
+/// The first returns of a window by the squares that they are near to (counting sort).
+class PlacedReturns {
+ public:
+  PlacedReturns(const core::Block& b, const Squares& squares) : start_(squares.at(0, squares.rows) + 1, 0) {
+    const core::Lattice around = grown(squares.window, around_window);
+    int i = 0, j = 0;
+    const auto each = [&](auto&& see) {
+      for (size_t p = 0; p < b.size(); ++p)
+        if (is_first(b, p) && cell_of(b, p, around, i, j))
+          squares.each_near(i - around_window, j - around_window,
+                            [&](size_t square, std::uint16_t u, std::uint16_t v) { see(p, square, u, v); });
+    };
+    each([&](size_t, size_t square, std::uint16_t, std::uint16_t) { ++start_[square]; });
+    std::uint32_t sum = 0;
+    for (std::uint32_t& s : start_) s = sum += s;  // the end of each, which moves to the start as it is filled
+    returns_.resize(sum);
+    each([&](size_t p, size_t square, std::uint16_t u, std::uint16_t v) {
+      const bool is_water = !b.classification.empty() && b.classification[p] == core::point_class::water;
+      returns_[--start_[square]] = {u, v, is_water ? has_water : has_return};
+    });
+  }
+  /// Of a square and around_window farther, which is `lattice`.
+  Mask mask(size_t square, const core::Lattice& lattice) const {
+    Mask out(lattice);
+    for (std::uint32_t k = start_[square]; k < start_[square + 1]; ++k)
+      out.set[lattice.at(returns_[k].i, returns_[k].j)] |= returns_[k].kind;
+    return out;
+  }
+
+ private:
+  struct Return {
+    std::uint16_t i, j;
+    std::uint8_t kind;
+  };
+  std::vector<std::uint32_t> start_;  ///< of each square, and the end
+  std::vector<Return> returns_;
+};
 
 /// Is there a square block of cells without returns? Without one no disc is empty, and no distance need be known.
 bool has_empty_block(const Mask& m) {
   const core::Lattice& l = m.lattice;
-  std::vector<std::uint8_t> blocks(static_cast<size_t>(l.nx / empty_block + 1) * static_cast<size_t>(l.ny / empty_block + 1), 0);
-  const auto at = [&](int i, int j) {
-    return static_cast<size_t>(j / empty_block) * static_cast<size_t>(l.nx / empty_block + 1) + static_cast<size_t>(i / empty_block);
-  };
-  for (int j = 0; j < l.ny; ++j)
-    for (int i = 0; i < l.nx; ++i) blocks[at(i, j)] |= m.set[l.at(i, j)];
-  for (int j = 0; j + empty_block <= l.ny; j += empty_block)
-    for (int i = 0; i + empty_block <= l.nx; i += empty_block)
-      if (!blocks[at(i, j)]) return true;
+  const auto width = static_cast<size_t>(l.nx);
+  std::vector<std::uint8_t> band(width);
+  std::uint8_t* const to = band.data();
+  for (int j = 0; j + empty_block <= l.ny; j += empty_block) {
+    std::fill(band.begin(), band.end(), std::uint8_t{0});
+    for (int v = j; v < j + empty_block; ++v) {
+      const std::uint8_t* row = m.set.data() + l.at(0, v);
+      for (size_t i = 0; i < width; ++i) to[i] = static_cast<std::uint8_t>(to[i] | row[i]);
+    }
+    for (size_t i = 0; i + empty_block <= width; i += empty_block)
+      if (std::all_of(to + i, to + i + empty_block, [](std::uint8_t c) { return c == 0; })) return true;
+  }
   return false;
 }
 
@@ -129,26 +147,34 @@ void add_runs(const Mask& returns, const PulseSpacing& spacing, std::vector<Void
   const core::Lattice& around = returns.lattice;
   const Mask voids = void_mask(returns, spacing);
   const size_t before = out.size();
-  std::vector<int> run_at(around.size(), -1);
-  for (int j = around_window; j < around.ny - around_window; ++j)
+  std::vector<size_t> of_row(static_cast<size_t>(around.ny) + 1, before);  // the first run of each row
+  for (int j = around_window; j < around.ny - around_window; ++j) {
     for (int i = around_window; i < around.nx - around_window; ++i) {
       if (!voids.set[around.at(i, j)]) continue;
       const auto column = static_cast<std::int32_t>(around.i0 + i), row = static_cast<std::int32_t>(around.j0 + j);
       if (out.size() == before || out.back().j != row || out.back().i1 != column) out.push_back({row, column, column});
       ++out.back().i1;
-      run_at[around.at(i, j)] = static_cast<int>(out.size()) - 1;
     }
+    of_row[static_cast<size_t>(j) + 1] = out.size();
+  }
   if (out.size() == before) return;
+  const auto run_at = [&](int i, int j) -> VoidRun* {  // null outside the square
+    if (i < around_window || j < around_window || i >= around.nx - around_window || j >= around.ny - around_window) return nullptr;
+    const auto column = static_cast<std::int32_t>(around.i0 + i);
+    const auto begin = out.begin() + static_cast<std::ptrdiff_t>(of_row[static_cast<size_t>(j)]),
+               end = out.begin() + static_cast<std::ptrdiff_t>(of_row[static_cast<size_t>(j) + 1]);
+    return &*std::prev(std::upper_bound(begin, end, column, [](std::int32_t c, const VoidRun& r) { return c < r.i0; }));
+  };
   const std::vector<std::uint8_t> near_void = cells_within(voids.set, around.nx, around.ny, beside);
   int vi = 0, vj = 0;
   for (int j = 0; j < around.ny; ++j)
     for (int i = 0; i < around.nx; ++i) {
       const size_t c = around.at(i, j);
       if (!returns.set[c] || !near_void[c] || !nearest_void(voids, i, j, vi, vj)) continue;
-      const int run = run_at[around.at(vi, vj)];
-      if (run < 0) continue;  // of another square
-      ++out[static_cast<size_t>(run)].rim;
-      out[static_cast<size_t>(run)].rim_water += returns.set[c] == has_water;
+      VoidRun* const run = run_at(vi, vj);
+      if (!run) continue;  // of another square
+      ++run->rim;
+      run->rim_water += returns.set[c] == has_water;
     }
 }
 
@@ -163,13 +189,13 @@ void add_rows(const core::Lattice& square, std::vector<VoidRun>& out) {
 }  // namespace
 
 std::vector<VoidRun> find_voids(const core::Block& b, const core::Lattice& w, const PulseSpacing& spacing) {
-  const std::vector<PlacedReturn> returns = placed_returns(b, w, grown(w, around_window));
+  const Squares squares(w);
+  const PlacedReturns returns(b, squares);
   std::vector<VoidRun> out;
-  for (int row = 0; row * block_cells < w.ny; ++row)
-    for (int column = 0; column * block_cells < w.nx; ++column) {
-      const int i = column * block_cells, j = row * block_cells;
-      const core::Lattice square{w.cell, w.i0 + i, w.j0 + j, std::min(block_cells, w.nx - i), std::min(block_cells, w.ny - j)};
-      const Mask mask = mask_of(returns, w, column, row, grown(square, around_window));
+  for (int row = 0; row < squares.rows; ++row)
+    for (int column = 0; column < squares.across; ++column) {
+      const core::Lattice square = squares.lattice(column, row);
+      const Mask mask = returns.mask(squares.at(column, row), grown(square, around_window));
       if (std::none_of(mask.set.begin(), mask.set.end(), [](std::uint8_t s) { return s != 0; }))
         add_rows(square, out);
       else if (has_empty_block(mask))
@@ -186,11 +212,13 @@ EvenSwath even_cells(const core::Block& b, const core::Lattice& w) {
   const core::Lattice around{w.cell, i0, j0, reach(i0, w.i0 + w.nx), reach(j0, w.j0 + w.ny)};
   std::map<int, Mask> lines;
   lines.emplace(all_lines, around);
-  int i = 0, j = 0;
+  std::vector<std::uint8_t>& all = lines.at(all_lines).set;
+  std::vector<std::uint8_t>* own = nullptr;  // of the line of the point before
+  int i = 0, j = 0, last = all_lines;
   for (size_t p = 0; p < b.size(); ++p) {
     if (!is_first(b, p) || !cell_of(b, p, around, i, j)) continue;
-    lines.at(all_lines).set[around.at(i, j)] = 1;
-    lines.try_emplace(b.strip.empty() ? 0 : b.strip[p], around).first->second.set[around.at(i, j)] = 1;
+    if (const int line = b.strip.empty() ? 0 : b.strip[p]; line != last) own = &lines.try_emplace(last = line, around).first->second.set;
+    all[around.at(i, j)] = (*own)[around.at(i, j)] = 1;
   }
   EvenSwath out{core::Grid(w), {}};
   for (const auto& [line, mask] : lines) {

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <random>
+#include <set>
+#include <utility>
 
 #include "quality/pulse_density.h"
 
@@ -86,6 +88,29 @@ TEST(VoidCells, TilesMakeTheWhole) {
 }
 
 /// A window of 5 x 5 squares of cells with returns in the middle: those that no return comes near are void as a whole.
+/// Distances are taken in squares of 1024 cells, here 64 m: voids that cross their borders are those of windows that lie in one of them.
+TEST(VoidCells, SquaresOfTheSearchMakeTheWhole) {
+  const PulseSpacing s{0.5 * spacing, spacing};
+  const core::Block b = pattern([](double x, double y) { return std::hypot(x - 64.0, y - 63.0) < 9.0 || std::abs(x - y) < 1.0; });
+  const auto cells_and_rim = [&](const core::Lattice& w, std::set<std::pair<int, int>>& cells) {
+    std::uint64_t rim = 0;
+    for (const VoidRun& r : find_voids(b, w, s)) {
+      rim += r.rim;
+      for (std::int32_t i = r.i0; i < r.i1; ++i) EXPECT_TRUE(cells.insert({r.j, i}).second);
+    }
+    return rim;
+  };
+  std::set<std::pair<int, int>> whole, parts;
+  const std::uint64_t rim = cells_and_rim(window(s), whole);
+  std::uint64_t rim_of_parts = 0;
+  for (const double x : {0.0, 50.0})
+    for (const double y : {0.0, 50.0}) rim_of_parts += cells_and_rim(core::lattice_of(void_cell(s), x, y, x + 50.0, y + 50.0), parts);
+  ASSERT_GT(window(s).nx, 1024);
+  EXPECT_GT(whole.size(), 60000u);
+  EXPECT_EQ(whole, parts);
+  EXPECT_EQ(rim, rim_of_parts);
+}
+
 TEST(VoidCells, WhereThereAreNoReturnsAllIsVoid) {
   const PulseSpacing s{spacing, spacing};
   const core::Block b = pattern([](double x, double y) { return std::abs(x - 50.0) > 20.0 || std::abs(y - 50.0) > 20.0; });
