@@ -19,21 +19,14 @@
 namespace swath::quality {
 namespace {
 
-constexpr int block_side = 16;     // narrowest cells
+constexpr int block_side = 16;  // narrowest cells
+constexpr size_t cells_of_block = size_t{block_side} * block_side;
 constexpr double steep = 0.35;     // rise / run: level ground up to this
 constexpr size_t least_cells = 3;  // of a block
 
 struct BlockKey {
   std::int64_t i, j;
   auto operator<=>(const BlockKey&) const = default;
-};
-
-/// A single return, by block, cell within the block and line.
-struct Return {
-  std::uint32_t block;
-  std::uint16_t cell, line;
-  double x, y, z;  ///< m; x, y from the block's centre
-  auto operator<=>(const Return&) const = default;
 };
 
 struct Moments {
@@ -47,41 +40,52 @@ int aspect_of(const CellPlane& p) {
   return p.north < 0.0 ? 2 : 4;
 }
 
-/// The returns of blocks that hold one of the first `own` points.
-std::vector<Return> returns_in_blocks(const core::Block& b, size_t own, double cell, std::vector<BlockKey>& blocks) {
+/// The blocks that hold one of the first `own` points, rising.
+template <class BlockOf>
+std::vector<BlockKey> blocks_of(const core::Block& b, size_t own, BlockOf&& block_of) {
+  std::vector<BlockKey> blocks;
+  for (size_t p = 0; p < own; ++p)
+    if (is_single(b, p))
+      if (const BlockKey key = block_of(p); blocks.empty() || blocks.back() != key) blocks.push_back(key);
+  std::sort(blocks.begin(), blocks.end());
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  return blocks;
+}
+
+/// The returns of such blocks; a block's cells follow one another. x, y from the block's centre.
+ReturnsByCell returns_in_blocks(const core::Block& b, size_t own, double cell, std::vector<BlockKey>& blocks) {
   const double side = cell * block_side;
   const auto block_of = [&](size_t p) {
     return BlockKey{core::cell_index(b.origin.x() + b.x[p], side), core::cell_index(b.origin.y() + b.y[p], side)};
   };
-  for (size_t p = 0; p < own; ++p)
-    if (const BlockKey key = block_of(p); is_single(b, p) && (blocks.empty() || blocks.back() != key)) blocks.push_back(key);
-  std::sort(blocks.begin(), blocks.end());
-  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
-  std::vector<Return> out;
-  out.reserve(b.size());
+  blocks = blocks_of(b, own, block_of);
+  const auto east = [&](size_t p, const BlockKey& key) { return b.origin.x() + b.x[p] - static_cast<double>(key.i) * side; };
+  const auto north = [&](size_t p, const BlockKey& key) { return b.origin.y() + b.y[p] - static_cast<double>(key.j) * side; };
   size_t last = 0;
-  for (size_t p = 0; p < b.size(); ++p) {
-    if (!is_single(b, p)) continue;
+  const auto cell_of = [&](size_t p) {
+    if (!is_single(b, p)) return no_cell;
     const BlockKey key = block_of(p);
     if (last >= blocks.size() || blocks[last] != key)
       last = static_cast<size_t>(std::lower_bound(blocks.begin(), blocks.end(), key) - blocks.begin());
-    if (last >= blocks.size() || blocks[last] != key) continue;
-    const double east = b.origin.x() + b.x[p] - static_cast<double>(key.i) * side,
-                 north = b.origin.y() + b.y[p] - static_cast<double>(key.j) * side;
+    if (last >= blocks.size() || blocks[last] != key) return no_cell;
     const auto place = [cell](double v) { return std::clamp(static_cast<int>(v / cell), 0, block_side - 1); };
-    out.push_back({static_cast<std::uint32_t>(last), static_cast<std::uint16_t>(place(north) * block_side + place(east)),
-                   b.strip.empty() ? std::uint16_t{0} : b.strip[p], east - 0.5 * side, north - 0.5 * side, b.z[p]});
-  }
-  std::sort(out.begin(), out.end());
-  return out;
+    return static_cast<std::uint32_t>(last * cells_of_block) +
+           static_cast<std::uint32_t>(place(north(p, key)) * block_side + place(east(p, key)));
+  };
+  const auto return_of = [&](size_t p) {
+    const BlockKey key = block_of(p);
+    return CellReturn{east(p, key) - 0.5 * side, north(p, key) - 0.5 * side, b.z[p], 0.0F, b.strip.empty() ? std::uint16_t{0} : b.strip[p]};
+  };
+  return {b.size(), blocks.size() * cells_of_block, cell_of, return_of};
 }
 
-std::vector<Moments> moments_of(std::span<const Return> returns) {
+std::vector<Moments> moments_of(const ReturnsByCell& returns, size_t block) {
   std::vector<Moments> out;
-  for (const Return& r : returns) {
-    if (out.empty() || out.back().cell != r.cell || out.back().line != r.line) out.push_back({r.cell, r.line});
-    out.back().sums.add(r.x, r.y, r.z);
-  }
+  for (std::uint16_t cell = 0; cell < cells_of_block; ++cell)
+    for (const CellReturn& r : returns.in(block * cells_of_block + cell)) {
+      if (out.empty() || out.back().cell != cell || out.back().line != r.line) out.push_back({cell, r.line});
+      out.back().sums.add(r.x, r.y, r.z);
+    }
   return out;
 }
 
@@ -178,17 +182,16 @@ double halo(const LineOptions& o) { return block_side * cell_sides(o).front(); }
 LineCells compare_cells(const core::Block& b, size_t own, const LineOptions& o) {
   const std::vector<double> sides = cell_sides(o);
   std::vector<BlockKey> blocks;
-  const std::vector<Return> returns = returns_in_blocks(b, own, sides.front(), blocks);
+  const ReturnsByCell returns = returns_in_blocks(b, own, sides.front(), blocks);
   LineCells out;
-  for (size_t begin = 0, end = 0; begin < returns.size(); begin = end) {
-    while (end < returns.size() && returns[end].block == returns[begin].block) ++end;
-    std::vector<Moments> moments = moments_of({returns.data() + begin, end - begin});
+  for (size_t block = 0; block < blocks.size(); ++block) {
+    std::vector<Moments> moments = moments_of(returns, block);
     int across = block_side;
     for (size_t level = 0; level < sides.size(); ++level, across /= 2) {
       if (level > 0) moments = doubled(std::move(moments), 2 * across);
       BlockAtLevel judge(o, sides[level], across);
       judge.see(moments);
-      judge.give(out, static_cast<std::int32_t>(level), blocks[returns[begin].block]);
+      judge.give(out, static_cast<std::int32_t>(level), blocks[block]);
     }
   }
   return out;

@@ -23,14 +23,6 @@ constexpr double difference_bin = 0.5e-3;  // m
 constexpr double scatter_bin = 0.1e-3;     // m
 constexpr double histogram_bin = 5e-3;     // m
 
-struct SingleReturn {
-  std::uint32_t cell;
-  std::uint16_t line;
-  double x, y, z;  ///< m from the window's corner
-  float sigma;
-  auto operator<=>(const SingleReturn&) const = default;
-};
-
 struct LinePlane {
   int line;
   double n;
@@ -38,26 +30,27 @@ struct LinePlane {
   double variance;  ///< m2, of the height at the centre by the points' own sigmas; NaN without them
 };
 
-std::vector<SingleReturn> returns_in(const core::Block& b, const core::Lattice& window) {
-  std::vector<SingleReturn> out;
-  for (size_t p = 0; p < b.size(); ++p) {
-    if (!is_single(b, p)) continue;
-    const double x = b.origin.x() + b.x[p], y = b.origin.y() + b.y[p];
-    const std::int64_t i = core::cell_index(x, window.cell) - window.i0, j = core::cell_index(y, window.cell) - window.j0;
-    if (i < 0 || j < 0 || i >= window.nx || j >= window.ny) continue;
-    out.push_back({static_cast<std::uint32_t>(window.at(static_cast<int>(i), static_cast<int>(j))),
-                   b.strip.empty() ? std::uint16_t{0} : b.strip[p], x - window.west(), y - window.south(), b.z[p],
-                   b.sigma_v.empty() ? 0.0F : b.sigma_v[p]});
-  }
-  std::sort(out.begin(), out.end());  // sums do not depend on the order of the points
-  return out;
+/// x, y from the window's corner.
+ReturnsByCell returns_in(const core::Block& b, const core::Lattice& window) {
+  const double west = window.west(), south = window.south();
+  const auto cell_of = [&](size_t p) {
+    if (!is_single(b, p)) return no_cell;
+    const std::int64_t i = core::cell_index(b.origin.x() + b.x[p], window.cell) - window.i0,
+                       j = core::cell_index(b.origin.y() + b.y[p], window.cell) - window.j0;
+    if (i < 0 || j < 0 || i >= window.nx || j >= window.ny) return no_cell;
+    return static_cast<std::uint32_t>(window.at(static_cast<int>(i), static_cast<int>(j)));
+  };
+  const auto return_of = [&](size_t p) {
+    return CellReturn{b.origin.x() + b.x[p] - west, b.origin.y() + b.y[p] - south, b.z[p], b.sigma_v.empty() ? 0.0F : b.sigma_v[p],
+                      b.strip.empty() ? std::uint16_t{0} : b.strip[p]};
+  };
+  return {b.size(), window.size(), cell_of, return_of};
 }
 
 /// The lines' planes in one cell, by rising line.
-std::vector<LinePlane> planes_in(std::span<const SingleReturn> returns, const core::Lattice& w, const LineOptions& o) {
+std::vector<LinePlane> planes_in(std::span<const CellReturn> returns, int i, int j, double cell, const LineOptions& o) {
   std::vector<LinePlane> out;
-  const auto nx = static_cast<std::uint32_t>(w.nx);
-  const double cx = (returns[0].cell % nx + 0.5) * w.cell, cy = (returns[0].cell / nx + 0.5) * w.cell;
+  const double cx = (i + 0.5) * cell, cy = (j + 0.5) * cell;
   for (size_t begin = 0, end = 0; begin < returns.size(); begin = end) {
     PlaneSums sums;
     double squares = 0.0;
@@ -66,7 +59,7 @@ std::vector<LinePlane> planes_in(std::span<const SingleReturn> returns, const co
       squares += static_cast<double>(returns[end].sigma) * static_cast<double>(returns[end].sigma);
     }
     if (sums.n < o.least) continue;
-    const std::optional<CellPlane> plane = plane_of(sums, cx, cy, w.cell);
+    const std::optional<CellPlane> plane = plane_of(sums, cx, cy, cell);
     if (!plane || plane->rms > o.roughness.value) continue;
     const double own = squares / sums.n, scatter = plane->rms * plane->rms;
     out.push_back({returns[begin].line, sums.n, *plane,
@@ -165,13 +158,11 @@ std::vector<SwathLine> lines_of(const OverlapCells& c) {
 OverlapCells compare_overlaps(const core::Block& block, const core::Lattice& window, const LineOptions& o) {
   OverlapCells out{core::Grid(window), {}, {}, {}, {}};
   out.difference.count.assign(window.size(), 0);
-  const std::vector<SingleReturn> returns = returns_in(block, window);
+  const ReturnsByCell returns = returns_in(block, window);
   OverlapBooks books;
-  for (size_t begin = 0, end = 0; begin < returns.size(); begin = end) {
-    while (end < returns.size() && returns[end].cell == returns[begin].cell) ++end;
-    const std::vector<LinePlane> planes = planes_in({returns.data() + begin, end - begin}, window, o);
-    const std::uint32_t cell = returns[begin].cell;
+  for (size_t cell = 0; cell < window.size(); ++cell) {
     const int i = static_cast<int>(cell) % window.nx, j = static_cast<int>(cell) / window.nx;
+    const std::vector<LinePlane> planes = planes_in(returns.in(cell), i, j, window.cell, o);
     out.difference.count[cell] = static_cast<std::uint32_t>(planes.size());
     books.see(planes, window.centre_x(i), window.centre_y(j));
     if (planes.size() < 2) continue;

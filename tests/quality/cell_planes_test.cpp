@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
+#include <tuple>
 
 namespace swath::quality {
 namespace {
@@ -57,6 +60,34 @@ TEST(CellPlanes, OnlyUsableSingleReturnsCount) {
   b.flags = {0, 0, 0, core::flag::withheld};
   EXPECT_TRUE(is_single(b, 0));
   for (size_t p = 1; p < 4; ++p) EXPECT_FALSE(is_single(b, p)) << p;
+}
+
+/// As one sort by cell, line, place and sigma has them, whatever the order of the points; those of no cell are left out.
+TEST(CellPlanes, ReturnsByCellStandInTheOrderOfCellLineAndPlace) {
+  constexpr std::uint32_t cells = 5;
+  std::mt19937 random(7);
+  std::vector<std::pair<std::uint32_t, CellReturn>> points;
+  const auto one_of = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
+  for (int k = 0; k < 400; ++k)  // few values, so that many are equal in part
+    points.push_back(
+        {one_of(6) == 0 ? no_cell : one_of(cells - 1),  // the last cell stays empty
+         {1.0 * one_of(2), 1.0 * one_of(2), 1.0 * one_of(2), static_cast<float>(one_of(2)), static_cast<std::uint16_t>(one_of(3))}});
+  using Row = std::tuple<std::uint32_t, int, double, double, double, float>;
+  const auto row = [](std::uint32_t cell, const CellReturn& r) { return Row(cell, r.line, r.x, r.y, r.z, r.sigma); };
+  std::vector<Row> expected;
+  for (const auto& [cell, r] : points)
+    if (cell != no_cell) expected.push_back(row(cell, r));
+  std::sort(expected.begin(), expected.end());
+  for (int round = 0; round < 2; ++round) {
+    const ReturnsByCell returns(
+        points.size(), cells, [&](size_t p) { return points[p].first; }, [&](size_t p) { return points[p].second; });
+    std::vector<Row> found;
+    for (std::uint32_t c = 0; c < cells; ++c)
+      for (const CellReturn& r : returns.in(c)) found.push_back(row(c, r));
+    EXPECT_EQ(found, expected);
+    EXPECT_TRUE(returns.in(cells - 1).empty());
+    std::shuffle(points.begin(), points.end(), random);
+  }
 }
 
 }  // namespace
