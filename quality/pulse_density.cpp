@@ -29,6 +29,8 @@ using CellCounts = std::vector<std::uint32_t>;
 std::map<int, CellCounts> counts_by_line(const core::Block& b, const core::Lattice& around, const std::vector<std::uint8_t>& repeated,
                                          std::uint64_t& duplicates) {
   std::map<int, CellCounts> out;
+  CellCounts* counts = nullptr;  // of the line of the point before
+  int last = all_lines;
   for (size_t p = 0; p < b.size(); ++p) {
     if (!is_first(b, p)) continue;
     const std::int64_t i = core::cell_index(b.origin.x() + b.x[p], around.cell) - around.i0,
@@ -38,9 +40,11 @@ std::map<int, CellCounts> counts_by_line(const core::Block& b, const core::Latti
       duplicates += i > 0 && j > 0 && i + 1 < around.nx && j + 1 < around.ny;
       continue;
     }
-    CellCounts& counts = out[b.strip.empty() ? 0 : b.strip[p]];
-    if (counts.empty()) counts.assign(around.size(), 0);
-    ++counts[around.at(static_cast<int>(i), static_cast<int>(j))];
+    if (const int line = b.strip.empty() ? 0 : b.strip[p]; line != last) {
+      counts = &out[last = line];
+      if (counts->empty()) counts->assign(around.size(), 0);
+    }
+    ++(*counts)[around.at(static_cast<int>(i), static_cast<int>(j))];
   }
   return out;
 }

@@ -107,33 +107,45 @@ float median_of(std::span<float> values, std::span<float> between) {
   return found ? order_statistic(between.first(n), middle - below) : order_statistic(values, middle);
 }
 
-/// Returns of the ground by squares of `bin`.
+/// Returns of the ground by squares of `bin`, column by column (counting sort).
 class Ground {
  public:
   explicit Ground(const core::Block& b) {
     const auto is_ground = [&](size_t p) { return !b.classification.empty() && b.classification[p] == core::point_class::ground; };
     bool any = false;
     for (size_t p = 0; p < b.size() && !any; ++p) any = is_ground(p);
-    std::vector<std::pair<Bin, size_t>> rows;
-    for (size_t p = 0; p < b.size(); ++p)
-      if (core::is_usable(b, p) && (any ? is_ground(p) : core::is_last_return(b, p))) rows.emplace_back(bin_of(b.x[p], b.y[p]), p);
-    std::sort(rows.begin(), rows.end());
-    for (const auto& [at, p] : rows) {
-      if (bins_.empty() || bins_.back() != at) bins_.push_back(at), start_.push_back(x_.size());
-      x_.push_back(b.x[p]), y_.push_back(b.y[p]), z_.push_back(static_cast<float>(b.origin.z() + b.z[p]));
+    constexpr double far = std::numeric_limits<double>::infinity();
+    double west = far, south = far, east = -far, north = -far;
+    std::vector<std::uint32_t> rows;
+    for (std::uint32_t p = 0; p < b.size(); ++p) {
+      if (!core::is_usable(b, p) || !(any ? is_ground(p) : core::is_last_return(b, p))) continue;
+      if (!std::isfinite(b.x[p]) || !std::isfinite(b.y[p])) continue;
+      rows.push_back(p);
+      west = std::min(west, b.x[p]), east = std::max(east, b.x[p]);
+      south = std::min(south, b.y[p]), north = std::max(north, b.y[p]);
     }
-    start_.push_back(x_.size());
-    heights_.resize(x_.size()), between_.resize(x_.size());
+    if (!rows.empty()) squares_ = core::lattice_of(bin, west, south, std::nextafter(east, far), std::nextafter(north, far));
+    std::vector<std::uint32_t> square;
+    for (const std::uint32_t p : rows) square.push_back(static_cast<std::uint32_t>(at(column(b.x[p]), row(b.y[p]))));
+    start_.assign(squares_.size() + 1, 0);
+    for (const std::uint32_t s : square) ++start_[s];
+    std::uint32_t sum = 0;
+    for (std::uint32_t& s : start_) s = sum += s;  // the end of each, which moves to the start as it is filled
+    for (auto* values : {&x_, &y_}) values->resize(sum);
+    for (auto* values : {&z_, &heights_, &between_}) values->resize(sum);
+    for (size_t k = rows.size(); k-- > 0;) {
+      const std::uint32_t p = rows[k], place = --start_[square[k]];
+      x_[place] = b.x[p], y_[place] = b.y[p], z_[place] = static_cast<float>(b.origin.z() + b.z[p]);
+    }
   }
   /// x, y from the block's origin.
   float behind(double x, double y) {
     size_t n = 0;
-    const auto [i0, j0] = bin_of(x - to, y - to);
-    const auto [i1, j1] = bin_of(x + to, y + to);
-    for (std::int32_t i = i0; i <= i1; ++i) {
-      const auto first = std::lower_bound(bins_.begin(), bins_.end(), Bin{i, j0}), end = std::upper_bound(first, bins_.end(), Bin{i, j1});
-      const size_t k1 = start_[static_cast<size_t>(end - bins_.begin())];
-      for (size_t k = start_[static_cast<size_t>(first - bins_.begin())]; k < k1; ++k) {
+    const std::int64_t j0 = std::max<std::int64_t>(row(y - to), 0), j1 = std::min<std::int64_t>(row(y + to), squares_.ny - 1);
+    for (std::int64_t i = std::max<std::int64_t>(column(x - to), 0); i <= std::min<std::int64_t>(column(x + to), squares_.nx - 1); ++i) {
+      if (j0 > j1) break;
+      const std::uint32_t end = start_[at(i, j1) + 1];
+      for (std::uint32_t k = start_[at(i, j0)]; k < end; ++k) {
         heights_[n] = z_[k];
         n += in_ring(x_[k] - x, y_[k] - y);
       }
@@ -143,10 +155,9 @@ class Ground {
   }
 
  private:
-  using Bin = std::pair<std::int32_t, std::int32_t>;
-  static Bin bin_of(double x, double y) {
-    return {static_cast<std::int32_t>(core::cell_index(x, bin)), static_cast<std::int32_t>(core::cell_index(y, bin))};
-  }
+  std::int64_t column(double x) const { return core::cell_index(x, bin) - squares_.i0; }
+  std::int64_t row(double y) const { return core::cell_index(y, bin) - squares_.j0; }
+  size_t at(std::int64_t i, std::int64_t j) const { return static_cast<size_t>(i * squares_.ny + j); }
   static bool in_ring(double dx, double dy) {
     constexpr double rounding = 1e-9;  // m2: nearer to a border the exact distance decides
     const double d = dx * dx + dy * dy;
@@ -155,8 +166,8 @@ class Ground {
     return exact >= from && exact <= to;
   }
 
-  std::vector<Bin> bins_;      ///< those with returns, in order
-  std::vector<size_t> start_;  ///< of each bin's returns, and the end
+  core::Lattice squares_;
+  std::vector<std::uint32_t> start_;  ///< of each square's returns, and the end
   std::vector<double> x_, y_;
   std::vector<float> z_;
   std::vector<float> heights_, between_;  ///< stores of behind()

@@ -120,12 +120,15 @@ void mark_water(const Context& context, const Box& box, double cell, std::vector
   if (runs.empty() || !context.grids || !context.grids->has(Product::dtm)) return;
   const In<Product::dtm> terrain{*context.grids};
   const core::Grid model = terrain.over(box.grown(terrain.cell()));
+  std::vector<std::uint8_t> has_water(static_cast<size_t>(model.lattice.ny), 0);  // rows, few of which have any
+  for (size_t c = 0; c < model.reason.size(); ++c)
+    if (model.reason[c] == core::Void::water) has_water[c / static_cast<size_t>(model.lattice.nx)] = 1;
   const auto column_of = [&](std::int32_t i) {
     return static_cast<int>(core::cell_index((i + 0.5) * cell, model.lattice.cell) - model.lattice.i0);
   };
   for (quality::VoidRun& r : runs) {
     const auto row = static_cast<int>(core::cell_index((r.j + 0.5) * cell, model.lattice.cell) - model.lattice.j0);
-    if (row < 0 || row >= model.lattice.ny) continue;
+    if (row < 0 || row >= model.lattice.ny || !has_water[static_cast<size_t>(row)]) continue;
     for (std::int32_t i = r.i0, next = 0; i < r.i1; i = next) {  // by columns of the model, which are many cells wide
       const int column = column_of(i);
       next = static_cast<std::int32_t>(std::ceil(static_cast<double>(column + 1 + model.lattice.i0) * model.lattice.cell / cell - 0.5));
