@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -124,23 +125,40 @@ class Thinning {
 
   /// Where all points are within the tolerance: of every disc that is too wide the point nearest its centre.
   std::vector<std::int32_t> in_wide_discs() const {
-    std::vector<std::int32_t> out;
+    std::vector<std::int32_t> open, out;
+    for (auto p = static_cast<std::int32_t>(fixed_); p < static_cast<std::int32_t>(vertices_.size()); ++p)
+      if (!is_key_[p]) open.push_back(p);
     for (const Face& face : dt_.faces()) {
       if (!face.is_finite()) continue;
       const Circumcircle c = circle(face.v);
       if (c.radius <= widest_) continue;
+      const double around = c.radius + rounding_of(face, c.radius);
       std::int32_t nearest = -1;
       const auto distance = [&](std::int32_t p) { return std::hypot(places_[p].x - c.x, places_[p].y - c.y); };
-      for (auto p = static_cast<std::int32_t>(fixed_); p < static_cast<std::int32_t>(vertices_.size()); ++p)
-        if (!is_key_[p] && in_circle(places_[face.v[0]], places_[face.v[1]], places_[face.v[2]], places_[p]) >= 0 &&
+      for (const std::int32_t p : open) {
+        const double dx = places_[p].x - c.x, dy = places_[p].y - c.y;
+        if (dx * dx + dy * dy > around * around) continue;
+        if (in_circle(places_[face.v[0]], places_[face.v[1]], places_[face.v[2]], places_[p]) >= 0 &&
             (nearest < 0 || std::make_tuple(distance(p), places_[p].x, places_[p].y) <
                                 std::make_tuple(distance(nearest), places_[nearest].x, places_[nearest].y)))
           nearest = p;
+      }
       if (nearest >= 0) out.push_back(nearest);
     }
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
+  }
+
+  /// Bound of the rounding errors of a face's circle, m: doubled area, radius and centre lose up to 4e-15 radii per radius over the
+  /// shortest side, coordinates less than 1e-9 m.
+  double rounding_of(const Face& face, double radius) const {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (size_t k = 0; k < 3; ++k) {
+      const Place &a = places_[face.v[k]], &b = places_[face.v[(k + 1) % 3]];
+      shortest = std::min(shortest, std::hypot(a.x - b.x, a.y - b.y));
+    }
+    return 1e-13 * radius * radius / shortest + 1e-9;
   }
 
   const Tin& tin_;
