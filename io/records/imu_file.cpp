@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -10,6 +11,7 @@
 #include "core/geo/frames.h"
 #include "core/records/imu_columns.h"
 #include "core/statistics.h"
+#include "io/records/frozen_axes.h"
 #include "io/records/imu_axes.h"
 #include "io/records/imu_checks.h"
 #include "io/survey/record_times.h"
@@ -105,23 +107,45 @@ std::vector<size_t> standing_out(const Raw& raw, const Scale& s) {
   return out;
 }
 
-/// Takes out records, counted as `what` with the place and the values; leaves all where they are more than `most` of all and not few: then
-/// the units are others than stated, which check_imu() says, or the carrier shakes so.
-void leave_out(Raw& raw, std::vector<std::uint64_t>& numbers, const std::vector<size_t>& bad, double most, const Scale& s,
-               const TableRows& rows, const char* what, core::Tally& tally) {
-  if (bad.empty() || !are_few(bad.size(), raw.time.size(), most)) return;
+/// Takes out the records of these numbers, rising.
+void erase(Raw& raw, std::vector<std::uint64_t>& numbers, const std::vector<size_t>& bad) {
   size_t kept = 0;
   for (size_t k = 0, next = 0; k < raw.time.size(); ++k) {
     if (next < bad.size() && bad[next] == k) {
       ++next;
-      tally.count(what, rows.place_of(numbers[k]) + ": " + core::format_number(s.turn_of(raw.gyro[k]), 4) + " rad/s, " +
-                            core::format_number(s.force_of(raw.accelerometer[k]), 4) + " m/s2");
       continue;
     }
     raw.move(k, kept);
     numbers[kept++] = numbers[k];
   }
   raw.resize(kept);
+}
+
+/// Takes out records, counted as `what` with the place and the values; leaves all where they are more than `most` of all and not few: then
+/// the units are others than stated, which check_imu() says, or the carrier shakes so.
+void leave_out(Raw& raw, std::vector<std::uint64_t>& numbers, const std::vector<size_t>& bad, double most, const Scale& s,
+               const TableRows& rows, const char* what, core::Tally& tally) {
+  if (bad.empty() || !are_few(bad.size(), raw.time.size(), most)) return;
+  for (const size_t k : bad)
+    tally.count(what, rows.place_of(numbers[k]) + ": " + core::format_number(s.turn_of(raw.gyro[k]), 4) + " rad/s, " +
+                          core::format_number(s.force_of(raw.accelerometer[k]), 4) + " m/s2");
+  erase(raw, numbers, bad);
+}
+
+/// Records of a sensor that stopped tell nothing of the motion: without them there is a gap, of which smoothers know.
+void leave_out_frozen(Raw& raw, std::vector<std::uint64_t>& numbers, const TableRows& rows, core::Tally& tally) {
+  constexpr std::array<const char*, 6> names{"gyro_x", "gyro_y", "gyro_z", "accelerometer_x", "accelerometer_y", "accelerometer_z"};
+  std::vector<size_t> bad;
+  for (const FrozenAxis& f : frozen_axes(raw.gyro, raw.accelerometer)) {
+    tally.count("IMU records in which an axis is frozen while others go on, left out",
+                rows.place_of(numbers[f.first]) + ": " + names[f.axis] + " repeats one value for " +
+                    core::format_number(std::round((raw.time[f.last - 1] - raw.time[f.first - 1]) * 1e4) / 1e4) + " s",
+                f.last - f.first);
+    for (size_t k = f.first; k < f.last; ++k) bad.push_back(k);
+  }
+  std::sort(bad.begin(), bad.end());
+  bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
+  erase(raw, numbers, bad);
 }
 
 void leave_out_wild(Raw& raw, const ImuFile& f, std::vector<std::uint64_t>& numbers, const TableRows& rows, core::Tally& tally) {
@@ -201,6 +225,7 @@ Raw read_raw(const std::filesystem::path& path, const ImuFile& f, core::Tally& t
                "the times are too coarse for the rate: export them with more digits");
   if (raw.time.empty()) throw core::Error("the file has no IMU records", name);
   leave_out_wild(raw, f, all.numbers, *rows, tally);
+  leave_out_frozen(raw, all.numbers, *rows, tally);
   tally.read(records, all.read);
   tally.keep(records, raw.time.size());
   if (same > 0)

@@ -249,6 +249,28 @@ TEST_F(ImuFiles, ARecordThatStandsOutIsLeftOut) {
   }
 }
 
+// A gyro that stops for a second: what it says of the motion is wrong by its noise, and a gap of which the smoother knows is better.
+TEST_F(ImuFiles, RecordsOfAFrozenAxisAreLeftOut) {
+  const char* what = "IMU records in which an axis is frozen while others go on, left out";
+  const auto noise = [](int k, double size) { return size * (std::fmod(0.5 + 0.618033988749895 * k * k, 1.0) - 0.5); };
+  const auto row = [&](int k, bool frozen) {
+    std::string out;
+    for (int c = 0; c < 6; ++c) {
+      const int at = frozen && c == 2 && k >= 500 && k < 600 ? 499 : k;
+      out += (c ? "," : "") + core::format_number((c == 5 ? -g : 0.0) + noise(7 * at + c, c < 3 ? 1e-3 : 0.05));
+    }
+    return out;
+  };
+  EXPECT_EQ(read(made(1500, at_100_hz, [&](int k) { return row(k, false); })).size(), 1500u);
+  EXPECT_EQ(tally_.of(what), 0u);
+  const core::ImuData imu = read(made(1500, at_100_hz, [&](int k) { return row(k, true); }));
+  EXPECT_EQ(imu.size(), 1400u);
+  EXPECT_EQ(tally_.of(what), 100u);
+  EXPECT_NE(example(what).find("imu.csv:502: gyro_z repeats one value for 1 s"), std::string::npos) << example(what);
+  EXPECT_EQ(tally_.of("IMU gaps"), 1u);
+  EXPECT_NEAR(imu.time[500] - imu.time[499], 1.01, place);
+}
+
 TEST_F(ImuFiles, TheWeekRollsOver) {
   const auto over = [](int k) { return std::fmod(604799 + 0.01 * k, 604800); };
   const core::ImuData imu = read(made(300, over, level));
