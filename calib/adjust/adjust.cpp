@@ -211,6 +211,7 @@ Adjustment adjust(const TieSet& ties, const core::Scanner& scanner, const core::
   put_estimates(problem, rounds, separation, held, apriori, options.jackknife, out);
   keep_covariance(problem, rounds, held, out);
   put_diagnosis(problem, rounds, separation, apriori, options.limits, out);
+  find_wide_knots(options.corrections, knots.spacing(), knots.size(), out);
   find_contradictions(problem, rounds, out);
 
   for (size_t i = 0; i < problem.globals.size(); ++i) {

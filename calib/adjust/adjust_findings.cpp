@@ -16,6 +16,7 @@ constexpr double factor_to_tell = 2.0;    // of a stated sigma
 constexpr double hardly_apart = 0.9;      // correlation
 constexpr double planes_apart = 10.0;     // of the ranges' sigma: lines that disagree so much were not put together rightly
 constexpr double outside_to_tell = 0.01;  // share of returns
+constexpr double wide_knots = 1.5;        // of the spacing that was asked for
 
 std::string metres(double v) { return words(std::abs(v) < 10.0 ? "%.3f m" : "%.2f m", v); }
 std::string number(double v) { return words("%.2g", v); }
@@ -53,6 +54,16 @@ void find_correlated(const std::vector<Parameter>& globals, const std::vector<Pa
                               {a, b},
                               false});
     }
+}
+
+void find_wide_knots(const CorrectionOptions& o, double spacing, int unknowns, Adjustment& out) {
+  if (unknowns == 0 || spacing <= wide_knots * o.spacing.value) return;
+  out.findings.push_back({"the corrections' knots are " + number(spacing) + " s apart in place of " + number(o.spacing.value) +
+                              " s: all lines together have " + std::to_string(unknowns) + " unknowns, corrections.most allows " +
+                              std::to_string(o.most) + "; errors that change faster stay in the points, and sigmas do not show them",
+                          "adjust fewer lines in one run, or raise corrections.most (time grows with its third power)",
+                          {},
+                          false});
 }
 
 void find_contradictions(const TieProblem& p, const AdjustRounds& r, Adjustment& out) {

@@ -18,6 +18,9 @@ void find_contradicted_starts(const TieProblem& problem, const AdjustRounds& rou
 void find_correlated(const std::vector<Parameter>& globals, const std::vector<Parameter>& refused, const FlightShape& shape,
                      Adjustment& out);
 
+/// Knots much farther apart than options.spacing, which options.most asks for; `unknowns`: of all corrections.
+void find_wide_knots(const CorrectionOptions& options, double spacing, int unknowns, Adjustment& out);
+
 /// Where control, stated sigmas or the lines themselves do not fit, and whether the rounds came to an end.
 void find_contradictions(const TieProblem& problem, const AdjustRounds& rounds, Adjustment& out);
 

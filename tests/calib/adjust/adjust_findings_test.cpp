@@ -77,6 +77,21 @@ TEST(AdjustFindings, ValuesThatAreStillMovingAreNotDelivered) {
   }
 }
 
+// A survey of many lines has its knots spread to keep corrections.most: it must be said.
+TEST(AdjustFindings, KnotsFartherApartThanAskedForAreNamed) {
+  const World w = pattern_of(full_pattern());
+  AdjustOptions o = plain();
+  o.corrections.spacing = core::Seconds(2.0);
+  const Adjustment asked = flown(w, o, 1, near_truth(w));
+  EXPECT_LE(asked.knot_spacing, 2.0);
+  EXPECT_FALSE(says(asked, "knots are", false));
+  o.corrections.most = 100;
+  const Adjustment wide = flown(w, o, 1, near_truth(w));
+  EXPECT_GT(wide.knot_spacing, 3.0);
+  EXPECT_TRUE(says(wide, "s apart in place of 2 s: all lines together have", false));
+  EXPECT_TRUE(says(wide, "corrections.most allows 100;", false));
+}
+
 TEST(AdjustFindings, ControlInAnotherDatumIsNamed) {
   World w = pattern_of(full_pattern(), 12, 6);
   Dice dice(9);
