@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "calib/adjust/diagnosis.h"
+#include "calib/network/doubtful_lines.h"
 #include "calib/report_units.h"
 #include "core/config/units.h"
 #include "core/geo/frames.h"
@@ -204,6 +205,7 @@ void put_network(const AdjustedNetwork& network, const trajectory::Trajectory& b
   if (!network.settled)
     a.findings.push_back(
         {"the states still moved when the iterations ended", "raise iterations, or look for lines that do not fit", {}, false});
+  for (Finding& f : doubtful_lines(network.ties.lines, a.corrections, a.groups)) a.findings.push_back(std::move(f));
   report.ties = network.ties;
   report.joint = true;
   report.strips = plane_differences(network.ties, a);

@@ -132,7 +132,7 @@ void leave_out(Raw& raw, std::vector<std::uint64_t>& numbers, const std::vector<
   erase(raw, numbers, bad);
 }
 
-/// Records of a sensor that stopped tell nothing of the motion: without them there is a gap, of which smoothers know.
+/// Records of a sensor that stopped do not show the motion: without them there is a gap, of which smoothers know.
 void leave_out_frozen(Raw& raw, std::vector<std::uint64_t>& numbers, const TableRows& rows, core::Tally& tally) {
   constexpr std::array<const char*, 6> names{"gyro_x", "gyro_y", "gyro_z", "accelerometer_x", "accelerometer_y", "accelerometer_z"};
   std::vector<size_t> bad;

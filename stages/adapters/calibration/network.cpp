@@ -116,6 +116,7 @@ struct NetworkFindings {
   calib::PlaneAgreement on_planes{};
   std::vector<GroupLeftOut> farthest_off{};
   std::vector<std::pair<std::string, ValueRow>> values{};
+  std::vector<std::string> findings{};
   std::optional<AgainstTruth> truth{};
 };
 
@@ -145,6 +146,7 @@ void describe(const NetworkFindings& r, V& v) {
   v.result("rms_before_m", r.on_planes.before, m.in_summary(), "RMS difference of two lines on a plane, with the smoother's trajectory.");
   v.result("rms_after_m", r.on_planes.after, m.in_summary(), "The same with the adjusted trajectory.");
   v.named_tables("values", r.values, "Calibration values that were unknowns.");
+  v.result("findings", r.findings, shown, "What the adjustment found, as sentences.");
   v.table("truth", r.truth, "Errors against the truth of a simulated survey.");
 }
 
@@ -242,6 +244,7 @@ Given<trajectory::Trajectory, NetworkFindings> adjust_survey(core::ImuData imu, 
                                   compare_with_truth(survey, trajectory::errors_against(after.data(), *truth))};
   calib::CalibrationReport report = report_on(context, prepared.lines);
   calib::put_network(network, before, after, report);
+  findings.findings = calib::sentences(report.adjustment.findings);
   calib::add_views(prepared.flight, {context.crs, context.unit, context.origin}, {network.calibration, after}, o.differences,
                    prepared.cell(), o.sections, report);
   calib::write_calibration_report(report, to.folder);

@@ -138,6 +138,18 @@ TEST(NetworkReport, TheTreeHasValuesAndSigmasAndClaimsNothingElse) {
   EXPECT_EQ(text.find("\"condition\": 0"), std::string::npos);
 }
 
+TEST(NetworkReport, ALineMovedBeyondItsSigmasIsAFinding) {
+  CalibrationReport report;
+  put_network(made(), flight(0.0, 0.0, 0.1), flight(10 * shift_north, turn, 0.06), report);
+  ASSERT_EQ(report.adjustment.findings.size(), 2u);  // both lines
+  EXPECT_NE(report.adjustment.findings[1].what.find("line 2: the surfaces move the smoother's trajectory by 50.0 cm north, 6.2 times"),
+            std::string::npos)
+      << report.adjustment.findings[1].what;
+  CalibrationReport right;
+  put_network(made(), flight(0.0, 0.0, 0.1), flight(shift_north, turn, 0.06), right);
+  EXPECT_TRUE(right.adjustment.findings.empty());
+}
+
 TEST(NetworkReport, StatesThatStillMoveAreAFinding) {
   AdjustedNetwork n = made();
   n.settled = false;
