@@ -16,72 +16,14 @@
 namespace swath::io {
 namespace {
 
+using fields::field_end;
+using fields::is_blank;
+using fields::parse_number;
+using fields::trim;
+using fields::trim_line;
+
 constexpr size_t buffer_bytes = 1 << 18;
 constexpr size_t longest_line = 1 << 20;  // a longer one is no text table
-
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-
-void trim(const char*& begin, const char*& end) {
-  while (begin < end && (is_blank(*begin) || *begin == '\r')) ++begin;
-  while (begin < end && (is_blank(end[-1]) || end[-1] == '\r')) --end;
-}
-
-/// Parses a trimmed field; quotes around it and a leading plus are allowed, an empty field is NaN.
-bool parse_number(const char* begin, const char* end, double& value) {
-  trim(begin, end);
-  if (end - begin >= 2 && *begin == '"' && end[-1] == '"') {
-    ++begin;
-    --end;
-    trim(begin, end);
-  }
-  if (begin == end) {
-    value = std::nan("");
-    return true;
-  }
-  if (*begin == '+' && end - begin > 1 && begin[1] != '-') ++begin;
-  const auto [at, ec] = std::from_chars(begin, end, value);
-  if (ec == std::errc::result_out_of_range && at == end) {
-    // Too small counts as zero, too large as infinity, as strtod has it.
-    value = std::strtod(std::string(begin, end).c_str(), nullptr);
-    return true;
-  }
-  return ec == std::errc() && at == end;
-}
-
-/// The end of the field that starts at `at`; quotes protect delimiters.
-const char* field_end(const char* at, const char* end, char delimiter) {
-  if (delimiter == ' ') {
-    while (at < end && !is_blank(*at)) ++at;
-    return at;
-  }
-  bool quoted = false;
-  for (; at < end; ++at) {
-    if (*at == '"') quoted = !quoted;
-    if (*at == delimiter && !quoted) return at;
-  }
-  return end;
-}
-
-std::vector<std::string> split(const std::string& line, char delimiter) {
-  std::vector<std::string> out;
-  const char* at = line.data();
-  const char* end = at + line.size();
-  trim(at, end);
-  for (;;) {
-    if (delimiter == ' ')
-      while (at < end && is_blank(*at)) ++at;
-    const char* stop = field_end(at, end, delimiter);
-    const char *b = at, *e = stop;
-    trim(b, e);
-    if (e - b >= 2 && *b == '"' && e[-1] == '"') {
-      ++b;
-      --e;
-    }
-    out.emplace_back(b, e);
-    if (stop >= end) return out;
-    at = stop + 1;
-  }
-}
 
 bool all_numbers(const std::vector<std::string>& fields) {
   bool any = false;
@@ -91,21 +33,6 @@ bool all_numbers(const std::vector<std::string>& fields) {
     any = any || !f.empty();
   }
   return any;
-}
-
-char find_delimiter(const std::string& line) {
-  const char *b = line.data(), *e = b + line.size();
-  trim(b, e);
-  for (const char c : {'\t', ';', ','})
-    if (std::find(b, e, c) != e) return c;
-  return ' ';
-}
-
-char delimiter_of(const std::string& stated, const std::filesystem::path& file) {
-  if (stated == "tab" || stated == "\\t") return '\t';
-  if (stated == "blank" || stated == "space") return ' ';
-  if (stated.size() == 1 && std::strchr(",;\t |:", stated[0])) return stated[0];
-  throw core::usage_error("delimiter '" + stated + "' is not one of , ; tab blank | :", file.string());
 }
 
 bool is_comment(const std::string& line) { return !line.empty() && (line[0] == '#' || line[0] == '%'); }
@@ -122,14 +49,6 @@ std::string list_of(const DelimitedLayout& layout) {
   for (const std::string& n : layout.names) list += (list.empty() ? "" : ", ") + n;
   return "columns: " + list;
 }
-
-}  // namespace
-
-std::vector<std::string> split_delimited(const std::string& line, char delimiter) { return split(line, delimiter); }
-char delimiter_in(const std::string& line) { return find_delimiter(line); }
-char delimiter_from(const std::string& stated, const std::filesystem::path& file) { return delimiter_of(stated, file); }
-
-namespace {
 
 /// The lines at the beginning of a file.
 class FirstLines {
@@ -162,7 +81,7 @@ class FirstLines {
       begin_ += 3;
     }
     const char *b = line.data(), *e = b + line.size();
-    trim(b, e);
+    trim_line(b, e, '\t');
     line = std::string(b, e);
     return true;
   }
@@ -190,6 +109,31 @@ void require_not_utf16(const std::filesystem::path& path) {
   const size_t got = file.read_some(0, begin.data(), std::min<std::uint64_t>(begin.size(), file.size()));
   const std::string_view text(begin.data(), got);
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) require_text(text, path);
+}
+
+/// Which fields are numbers.
+std::vector<bool> form_of(const std::vector<std::string>& fields) {
+  std::vector<bool> out;
+  double ignored;
+  for (const std::string& f : fields) out.push_back(!f.empty() && parse_number(f.data(), f.data() + f.size(), ignored));
+  return out;
+}
+
+/// Is the line above a record one itself, with texts in the same fields? A name is no number.
+bool is_record_above(const std::vector<std::string>& line, const std::vector<std::string>& record) {
+  const std::vector<bool> form = form_of(line);
+  return std::find(form.begin(), form.end(), true) != form.end() && form == form_of(record);
+}
+
+/// Fields of all first lines of data where the names are none of theirs; 0 where they fit. Of lines parted by a character those with more
+/// fields are found as they are read.
+size_t misfit_of(DelimitedLayout& layout, const std::vector<std::vector<std::string>>& lines) {
+  size_t widest = 0, narrowest = std::numeric_limits<size_t>::max();
+  for (const std::vector<std::string>& line : lines) widest = std::max(widest, line.size()), narrowest = std::min(narrowest, line.size());
+  std::vector<std::string>& names = layout.names;
+  while (names.size() > widest && names.back().empty()) names.pop_back();  // the header alone ends with its delimiter
+  if (widest < names.size()) return widest;
+  return layout.delimiter == ' ' && narrowest > names.size() ? narrowest : 0;
 }
 
 /// A record whose first number is cut off counts as a header no more than one that is whole.
@@ -227,20 +171,26 @@ DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::
   std::string comment, header, line;
   bool have_header = false, anything = table.data > 0;
   std::vector<NumberedLine> data;
+  NumberedLine above;  // what was taken for the header
   while (data.size() <= cut_line_context && lines.next(line)) {
-    if (line.empty() || (lines.number() < table.data && lines.number() != table.names)) continue;
+    if (line.find_first_not_of('\t') == line.npos || (lines.number() < table.data && lines.number() != table.names)) continue;
     if (is_comment(line)) {
       anything = true;
       if (data.empty()) comment = line.substr(std::min(line.find_first_not_of("#% \t"), line.size()));
       continue;
     }
-    if (data.empty()) out.delimiter = delimiter.empty() ? find_delimiter(line) : delimiter_of(delimiter, path);
-    if (data.size() == 1 && data[0].fields.size() == 1 && delimiter.empty()) out.delimiter = find_delimiter(line);  // a cut line has none
-    std::vector<std::string> fields = split(line, out.delimiter);
+    if (data.empty()) out.delimiter = delimiter.empty() ? delimiter_in(line) : delimiter_from(delimiter, path);
+    if (data.size() == 1 && data[0].fields.size() == 1 && delimiter.empty()) out.delimiter = delimiter_in(line);  // a cut line has none
+    std::vector<std::string> fields = split_delimited(line, out.delimiter);
     if (data.empty() && !have_header && is_header(fields)) {
-      have_header = anything = true;
+      above = {std::move(fields), lines.begin(), lines.number()};
+      have_header = true;
       header = line;
       continue;
+    }
+    if (data.empty() && have_header && lines.number() != table.data && is_record_above(above.fields, fields)) {
+      have_header = false;
+      data.push_back(std::move(above));
     }
     data.push_back({std::move(fields), lines.begin(), lines.number()});
   }
@@ -248,6 +198,7 @@ DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::
   if (data.empty())
     throw core::Error("no line of numbers", path.string(),
                       lines.number() == 0 ? "the file is empty" : "the file holds a header or comments only");
+  anything = anything || have_header;
   std::vector<std::vector<std::string>> fields;
   for (const NumberedLine& d : data) fields.push_back(d.fields);
   const bool cut = first_line_is_cut(fields, !anything);
@@ -257,10 +208,11 @@ DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::
   out.data_begin = first.begin;
   out.data_line = first.number;
   if (have_header) {
-    out.names = split(header, out.delimiter);
-    if (table.names > 0 && out.names.size() != out.columns) out.names = split(header, find_delimiter(header));
+    out.names = split_delimited(header, out.delimiter);
+    if (table.names > 0 && out.names.size() != out.columns) out.names = split_delimited(header, delimiter_in(header));
+    out.misfit = misfit_of(out, {fields.begin() + (cut ? 1 : 0), fields.end()});
   } else if (!comment.empty()) {
-    const std::vector<std::string> words = split(comment, out.delimiter);
+    const std::vector<std::string> words = split_delimited(comment, out.delimiter);
     if (words.size() == out.columns && !all_numbers(words)) out.names = words;
   }
   return out;
@@ -275,8 +227,11 @@ size_t column_of(const DelimitedLayout& layout, const std::string& column, const
   const auto folded = [&](const std::string& n) { return lower(n) == lower(column); };
   if (count(exact) > 1)
     throw core::Error("column '" + column + "' stands more than once in the header", file.string(), "name it by number");
-  if (count(exact) == 1) return place(exact);
-  if (count(folded) == 1) return place(folded);
+  const bool is_name = count(exact) == 1 || count(folded) == 1;
+  if (is_name && layout.misfit > 0)
+    throw core::Error(fields_and_columns(layout.misfit, layout.names.size(), true), file.string() + ":" + std::to_string(layout.data_line),
+                      "a name that holds the delimiter, or none for a column? Quote it, or state the columns by number");
+  if (is_name) return count(exact) == 1 ? place(exact) : place(folded);
   size_t number = 0;
   const auto [at, ec] = std::from_chars(column.data(), column.data() + column.size(), number);
   if (ec == std::errc() && at == column.data() + column.size() && number >= 1) {
@@ -345,7 +300,10 @@ bool DelimitedReader::next(double* values) {
   const char *at, *end;
   do {
     if (!next_line(at, end)) return false;
-    trim(at, end);
+    const char *b = at, *e = end;
+    trim(b, e);
+    if (b == e) at = end;  // blanks alone
+    trim_line(at, end, delimiter_);
   } while (at == end || *at == '#' || *at == '%');
   for (size_t field = 0; field < fields_needed_; ++field) {
     if (delimiter_ == ' ')

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "io/text/binary_file.h"
+#include "io/text/fields.h"
 
 namespace swath::io {
 
@@ -28,27 +29,23 @@ struct DelimitedLayout {
   char delimiter = ',';            ///< ',', ';', '\t', or ' ' for any run of blanks and tabs
   std::vector<std::string> names;  ///< the header's names; empty where there is none
   size_t columns = 0;              ///< fields of the first data line (0: no data line)
+  size_t misfit = 0;               ///< fields of the first data lines where the header has another number of names; 0: it fits them
   std::uint64_t data_begin = 0;    ///< byte of the first data line
   std::uint64_t data_line = 1;     ///< its number, from 1
   std::uint64_t cut_line = 0;      ///< the line before it, where that is the end of a record only (io/text/cut_line.h); 0: none
 };
 
 /// Reads the first lines: byte order mark, comments (# or %), header, first data line. A header is a first line with a field that is
-/// no number; or, where there is none, the last comment with as many words as the data have fields. A description above the header, and
-/// units below it, are passed over (io/text/table_start.h), as is a first line of data that is cut off. `delimiter`: "," ";" "tab" "\t"
-/// "blank" " ", or "" to find it in the first data line. Throws Error where the file has no data line.
+/// no number, unless the next line has texts and numbers in the same fields; or, where there is none, the last comment with as many words
+/// as the data have fields. A description above the header, and units below it, are passed over (io/text/table_start.h), as is a first line
+/// of data that is cut off. `delimiter`: "," ";" "tab" "\t" "blank" " ", or "" to find it in the first data line. Throws Error where the
+/// file has no data line.
 DelimitedLayout inspect_delimited(const std::filesystem::path& file, const std::string& delimiter = {});
 
 /// Index from 0 of the column that a survey names: the header's name (letter case matters only where two names differ by it alone),
-/// or a number from 1. Throws Error naming the file, the columns that exist and the nearest name.
+/// or a number from 1. Throws Error naming the file, the columns that exist and the nearest name; and, for a name, where the header has
+/// more or fewer names than the data have fields, for then none says which column is whose.
 size_t column_of(const DelimitedLayout& layout, const std::string& column, const std::filesystem::path& file);
-
-/// The fields of one line, without blanks and quotes around them.
-std::vector<std::string> split_delimited(const std::string& line, char delimiter);
-/// The delimiter of a line of data: tab, semicolon or comma where it has one, else ' ' for blanks.
-char delimiter_in(const std::string& line);
-/// The delimiter that a survey states as "," ";" "tab" "blank" ...; ' ' stands for blanks. Throws Error where it is none.
-char delimiter_from(const std::string& stated, const std::filesystem::path& file);
 
 /// Streams the numbers of chosen columns. Comments and empty lines are passed over. "nan" and "inf" are handed over as such, an empty
 /// field as NaN. Throws Error "file:line" for a field that is no number, for a line with too few fields, and for one with more fields than

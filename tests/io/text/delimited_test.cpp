@@ -98,6 +98,35 @@ TEST_F(Delimited, LinesWithMoreFieldsThanTheHeaderAreNamed) {
   EXPECT_EQ(read_all(made("a b\n1 2 fixed\n3 4\n"), {"a", "b"}), (Rows{{1, 2}, {3, 4}}));
 }
 
+/// "ell height" is one column: its name's second word would move all that follows.
+TEST_F(Delimited, AHeaderThatDoesNotFitItsDataIsNamed) {
+  for (const char* text : {"time lat ell height\n1 2 3\n4 5 6\n", "time,lat, ell,height\n1,2,3\n4,5,6\n", "time lat\n1 2 3\n4 5 6\n"}) {
+    const core::Error e = error_of(text, {"lat"});
+    EXPECT_NE(e.where().find("a.csv:2"), std::string::npos) << e.text();
+    EXPECT_NE(e.text().find("the line has 3 fields"), std::string::npos) << e.text();
+    EXPECT_EQ(read_all(made(text), {"3"}), (std::vector<std::vector<double>>{{3}, {6}})) << "numbers need no names";
+  }
+  EXPECT_EQ(read_all(made("time,lat,note,\n1,2,3\n4,5,6\n"), {"lat"}), (std::vector<std::vector<double>>{{2}, {5}}));
+  EXPECT_EQ(read_all(made("time,lat\n1,2,\n4,5,\n"), {"lat"}), (std::vector<std::vector<double>>{{2}, {5}}));
+  EXPECT_EQ(read_all(made("time,lat,note\n1,2\n4,5,6\n"), {"lat"}), (std::vector<std::vector<double>>{{2}, {5}})) << "one line is short";
+}
+
+TEST_F(Delimited, EmptyFieldsBetweenTabsStayWhereverTheyAre) {
+  const auto rows = read_all(made("mark\ttime\tsigma\nA\t1\t0.5\n\t2\t0.5\nC\t3\t\n\t\t\n"), {"time", "sigma"});
+  ASSERT_EQ(rows.size(), 3u) << "tabs alone are no record";
+  EXPECT_EQ(rows[1], (std::vector<double>{2, 0.5}));
+  EXPECT_EQ(rows[2][0], 3.0);
+  EXPECT_TRUE(std::isnan(rows[2][1]));
+  EXPECT_EQ(read_all(made("\t1 \t 2\n\t3 \t 4\n"), {"2"}, "blank"), (std::vector<std::vector<double>>{{2}, {4}}));
+}
+
+TEST_F(Delimited, ARecordThatBeginsWithATextIsNoHeader) {
+  const std::string rows = "POS,100,48,ok\nPOS,101,49,ok\nPOS,102,50,ok\n";
+  EXPECT_EQ(read_all(made(rows), {"2"}), (std::vector<std::vector<double>>{{100}, {101}, {102}}));
+  EXPECT_EQ(read_all(made("kind,time,height,state\n" + rows), {"time"}).size(), 3u);
+  EXPECT_EQ(inspect_delimited(made(rows)).data_line, 1u);
+}
+
 TEST_F(Delimited, EmptyAndBinaryFilesAreErrors) {
   error_of("", {"1"});
   error_of("a,b\n", {"a"});
