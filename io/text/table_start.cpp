@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/text/delimited.h"
+#include "io/text/fields.h"
 #include "io/text/line_reader.h"
 
 namespace swath::io {

@@ -209,8 +209,7 @@ SwathFindings judge_swaths(const MergeJob& job, const Context& context, const Sw
   write_swath_files(context, found);
   report::DifferenceMapOptions look;
   look.title = "Largest difference of two lines, lower number minus higher";
-  write_picture(context, overlap_name,
-                report::draw(report::difference_map(overview_of(job.folder / "dz", job.tiles, rule.cell), look)));
+  write_picture(context, overlap_name, report::draw(report::difference_map(overview_of(job.folder / "dz", job.tiles, rule.cell), look)));
   write_picture(context, distribution_name,
                 distribution_map(overview_of(job.folder / "even", job.tiles, 2.0 * rule.spacing.rule), found.voids));
   return found;
