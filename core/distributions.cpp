@@ -27,4 +27,6 @@ double interpolated_quantile(std::vector<double>& values, double share) {
   return low + (at - static_cast<double>(number)) * (high - low);
 }
 
+double middle(std::vector<double> values, double none) { return values.empty() ? none : interpolated_quantile(values, 0.5); }
+
 }  // namespace swath::core

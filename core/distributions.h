@@ -2,6 +2,7 @@
 // Quantiles: of distributions, from Boost.Math, and of samples.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 namespace swath::core {
@@ -18,5 +19,9 @@ double chi_square_limit(double q, double f);
 /// Between the two values next to share (n - 1), by a straight line (type 7 of Hyndman and Fan 1996; NumPy's default). Reorders `values`,
 /// which are finite and at least one; `share` in [0, 1].
 double interpolated_quantile(std::vector<double>& values, double share);
+
+/// The median of signed values: of an even number the mean of the two in the middle, so that it changes its sign with them, which
+/// core::median() does not; `none` where there are no values. Values finite.
+double middle(std::vector<double> values, double none = std::numeric_limits<double>::quiet_NaN());
 
 }  // namespace swath::core

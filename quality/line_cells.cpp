@@ -12,6 +12,7 @@
 #include <span>
 #include <tuple>
 
+#include "core/distributions.h"
 #include "core/grid.h"
 #include "core/statistics.h"
 #include "quality/cell_planes.h"
@@ -127,7 +128,7 @@ class BlockAtLevel {
       const auto& [a, b, aspect] = pair;
       if (compared.differences.size() < least_cells) continue;
       const auto count = static_cast<std::uint32_t>(compared.differences.size());
-      const double middle = core::median(compared.differences);
+      const double middle = core::middle(compared.differences);
       std::vector<double> apart;
       for (const double d : compared.differences) apart.push_back(std::abs(d - middle));
       out.differences.push_back({level, i, j, a, b, count, static_cast<float>(middle),

@@ -15,6 +15,7 @@
 #include <numeric>
 #include <set>
 
+#include "core/distributions.h"
 #include "core/floor_div.h"
 #include "core/statistics.h"
 
@@ -72,7 +73,7 @@ struct Overlap {
       white += white_variance(d);
     }
     p.blocks = blocks.size();
-    p.difference = core::median(values);
+    p.difference = core::middle(values);
     for (const double v : values) apart.push_back(std::abs(v - p.difference));
     const auto n = static_cast<double>(blocks.size());
     const double drift = core::mad_to_sigma * core::median(apart);
@@ -89,7 +90,7 @@ std::vector<Overlap> overlaps_of(const std::vector<LineDifference>& differences,
   for (const auto& [pair, blocks] : by_pair) {
     std::vector<double> values, apart;
     for (const LineDifference& d : blocks) values.push_back(d.difference);
-    const double middle = core::median(values);
+    const double middle = core::middle(values);
     for (const double v : values) apart.push_back(std::abs(v - middle));
     const double reach = outlying * std::max(core::mad_to_sigma * core::median(apart), 0.01);
     Overlap o{pair.first, pair.second, {}};

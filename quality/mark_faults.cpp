@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <map>
 
+#include "core/distributions.h"
 #include "core/statistics.h"
 
 namespace swath::quality {
@@ -17,6 +18,7 @@ constexpr double beyond = 4.0;              // sigmas
 constexpr double of_median = 1.2533;        // standard error of a median over that of a mean, large samples
 constexpr double least_mark_sigma = 0.005;  // m: marks and points are never better known
 constexpr size_t least_marks = 3;           // of a line that is judged
+constexpr size_t least_lines = 3;           // of a mark of which one line may say otherwise
 
 std::string text(const char* format, const std::string& who, double difference, double sigma, size_t n) {
   char out[300];
@@ -34,6 +36,16 @@ double sigma_of(const Group& g, double mark_sigma, double scatter) {
   return std::hypot(own, of_median * each / std::sqrt(static_cast<double>(g.difference.size())));
 }
 
+/// Differences to the side of `own` and at least half as large.
+size_t agreeing(const std::vector<double>& differences, double own) {
+  return static_cast<size_t>(std::count_if(differences.begin(), differences.end(), [own](double d) { return d * own > 0.5 * own * own; }));
+}
+
+std::string seen_in(size_t agree, size_t all) {
+  if (all == 1) return "the line that shows it";
+  return (agree == all ? "all of the " : std::to_string(agree) + " of the ") + std::to_string(all) + " lines that show it";
+}
+
 }  // namespace
 
 MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<MarkReading>& readings) {
@@ -49,7 +61,7 @@ MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<Ma
   }
   const double mark_sigma = core::median(mark_sigmas, 0.0);
   std::map<int, double> offset;
-  for (const auto& [line, g] : lines) offset[line] = core::median(g.difference);
+  for (const auto& [line, g] : lines) offset[line] = core::middle(g.difference);
   std::vector<double> rest;
   for (const MarkReading& r : readings) rest.push_back(std::abs(static_cast<double>(r.difference) - offset[r.line]));
   const double scatter = core::mad_to_sigma * core::median(rest, 0.0);
@@ -71,7 +83,7 @@ MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<Ma
         offsets.push_back(l.difference);
         sigmas.push_back(l.sigma);
       }
-    out.common = core::median(offsets);
+    out.common = core::middle(offsets);
     out.named.push_back(
         {"check.heights", text("%s lies %.3f m %s the check points on all of its %zu lines (sigma %.3f m): compare geoid, height "
                                "system and antenna heights",
@@ -96,13 +108,15 @@ MarkFaults find_faults(const std::vector<CheckMark>& marks, const std::vector<Ma
   if (of_mark.size() < least_marks) return out;  // of two that differ nothing says which is wrong
   for (const auto& [m, group] : of_mark) {
     const CheckMark& mark = marks[static_cast<size_t>(m)];
-    const double own = core::median(group.difference);
+    const double own = core::middle(group.difference);
     const double sigma = std::hypot(mark.sigma, std::max({scatter, least_mark_sigma, core::median(group.sigma)}));
-    if (std::abs(own) > beyond * sigma)
-      out.named.push_back(
-          {"check.mark", text("at check point %s the ground lies %.3f m %s its height in all of the %zu lines that show it (sigma "
-                              "%.3f m): check its record",
-                              mark.name + " (" + mark.place + ")", own, sigma, group.difference.size())});
+    const size_t agree = agreeing(group.difference, own), all = group.difference.size();
+    if (std::abs(own) <= beyond * sigma || !(agree == all || (all >= least_lines && agree + 1 == all))) continue;
+    char sentence[400];
+    std::snprintf(sentence, sizeof sentence,
+                  "at check point %s (%s) the ground lies %.3f m %s its height in %s (sigma %.3f m): check its record", mark.name.c_str(),
+                  mark.place.c_str(), std::abs(own), own < 0 ? "below" : "above", seen_in(agree, all).c_str(), sigma);
+    out.named.push_back({"check.mark", sentence});
   }
   return out;
 }

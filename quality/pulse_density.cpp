@@ -8,8 +8,8 @@
 namespace swath::quality {
 namespace {
 
-constexpr double least_inner = 0.1;    // of a line's cells: with fewer inner ones (a narrow corridor) all cells count
-constexpr double least_pulses = 0.01;  // of all: a line of fewer is not the sparsest
+constexpr double least_inner = 0.1;   // of a line's cells: with fewer inner ones (a narrow corridor) all cells count
+constexpr double least_pulses = 0.1;  // of the mean line: a line of fewer, a cross line's rest, is not the sparsest
 
 /// Around both; an empty one counts for nothing.
 core::Box around_both(const core::Box& a, const core::Box& b) {
@@ -137,7 +137,7 @@ SwathDensity judge_density(const std::vector<PulseSums>& lines, const std::vecto
   out.duplicates = sums[all_lines].duplicates;
   if (out.duplicates > 0) out.duplicate_share = static_cast<double>(out.duplicates) / static_cast<double>(out.all.pulses + out.duplicates);
   for (const LineDensity& l : out.lines)
-    if (static_cast<double>(l.pulses) > least_pulses * static_cast<double>(out.all.pulses) &&
+    if (static_cast<double>(l.pulses * out.lines.size()) > least_pulses * static_cast<double>(out.all.pulses) &&
         (out.single_density == 0.0 || l.density < out.single_density))
       out.single_density = l.density, out.single_spacing = l.spacing;
   std::map<std::uint32_t, std::uint64_t> by_count;

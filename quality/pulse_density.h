@@ -67,9 +67,9 @@ struct SwathDensity {
   LineDensity all{};
   std::uint64_t duplicates = 0;
   double duplicate_share = 0.0;                       ///< of the first returns with them
-  double single_density = 0.0, single_spacing = 0.0;  ///< of the sparsest line that has more than a hundredth of the pulses
+  double single_density = 0.0, single_spacing = 0.0;  ///< of the sparsest line with more than a tenth of the mean line's pulses
   double low = 0.0, median = 0.0, high = 0.0;         ///< 1/m2: 5, 50, 95 % of the inner cells have less
-  core::Box extent{};  ///< around the cells with first returns, m
+  core::Box extent{};                                 ///< around the cells with first returns, m
   std::vector<LineDensity> lines{};
 };
 
@@ -82,7 +82,7 @@ void describe(const SwathDensity& r, V& v) {
   v.result("area_km2", 1e-6 * r.all.area, "Area in which they were counted.");
   v.result("density", r.all.density, core::plain().in_summary(), "First returns of all lines per square metre (ANPD).");
   v.result("spacing_m", r.all.spacing, core::metres(3).in_summary(), "1 / sqrt(density): ANPS.");
-  v.result("single_density", r.single_density, "The same of the sparsest line that has more than 1 % of the pulses (NPD).");
+  v.result("single_density", r.single_density, "The same of the sparsest line with more than a tenth of the mean line's pulses (NPD).");
   v.result("single_spacing_m", r.single_spacing, core::metres(3), "Its spacing (NPS).");
   v.result("density_5", r.low, "5 % of the cells have less per square metre.");
   v.result("density_50", r.median, "50 % of the cells have less.");

@@ -32,13 +32,14 @@ std::vector<Requirement> judge_level(QualityLevel level, const StatedLimits& sta
   const auto add = [&](const char* what, const char* unit, std::optional<double> value, std::optional<double> own,
                        double LevelLimits::*usual, bool is_least) {
     if (!own && !of_level) return;
-    out.push_back({what, unit, value, own ? *own : (*of_level).*usual, is_least});
+    out.push_back({what, unit, value, own ? *own : (*of_level).*usual, is_least, own.has_value()});
   };
   const auto metres = [](const std::optional<core::Metres>& v) { return v ? std::optional(v->value) : std::nullopt; };
   add("nominal pulse spacing of all lines (ANPS)", "m", m.spacing, metres(stated.spacing), &LevelLimits::spacing, false);
   add("nominal pulse density of all lines (ANPD)", "1/m2", m.density, stated.density, &LevelLimits::density, true);
   if (of_level || stated.even)
-    out.push_back({"share of cells of 2 ANPS with a first return", "", m.even, stated.even.value_or(least_even), true});
+    out.push_back(
+        {"share of cells of 2 ANPS with a first return", "", m.even, stated.even.value_or(least_even), true, stated.even.has_value()});
   if (of_level) out.push_back({"area of voids of (4 ANPS)^2 or more apart from water", "m2", m.void_area, 0.0, false});
   add("scatter of one line on smooth hard ground (intraswath)", "m", m.intraswath, metres(stated.intraswath), &LevelLimits::intraswath,
       false);

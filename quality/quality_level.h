@@ -56,7 +56,8 @@ struct Requirement {
   std::string what, unit;
   std::optional<double> value{};
   double limit = 0.0;
-  bool is_least = false;  ///< the value must not be below the limit; otherwise not above
+  bool is_least = false;   ///< the value must not be below the limit; otherwise not above
+  bool is_stated = false;  ///< the limit is the survey's own, not the level's
   bool is_met() const { return value && (is_least ? *value >= limit : *value <= limit); }
   bool is_missed() const { return value && !is_met(); }
 };
@@ -68,6 +69,7 @@ void describe(const Requirement& r, V& v) {
   v.result("value", r.value, core::plain().always(), "What was measured; null where no stage measured it.");
   v.result("limit", r.limit, "The limit.");
   v.result("at_least", r.is_least, "The value must not be below the limit; otherwise not above it.");
+  v.result("stated", r.is_stated, "The limit was stated for this survey; otherwise it is that of the quality level.");
   v.result("met", r.is_met(), core::plain().only_if(r.value.has_value()), "Whether it is met.");
 }
 

@@ -25,6 +25,46 @@ bool holds(const Ring& r, const Eigen::Vector2d& p) {
   return odd;
 }
 
+/// A place inside the ring, away from its sides: the middle of the widest stretch of a row between two of its vertices.
+Eigen::Vector2d place_within(const Ring& r) {
+  std::vector<double> rows;
+  for (const Eigen::Vector2d& p : r) rows.push_back(p.y());
+  std::sort(rows.begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  if (rows.size() < 2) return r[0];
+  const size_t middle = (rows.size() - 1) / 2;
+  const double y = 0.5 * (rows[middle] + rows[middle + 1]);
+  std::vector<double> crossings;
+  for (size_t k = 0; k < r.size(); ++k) {
+    const Eigen::Vector2d &a = r[k], &b = r[(k + 1) % r.size()];
+    if ((a.y() > y) != (b.y() > y)) crossings.push_back(a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
+  }
+  std::sort(crossings.begin(), crossings.end());
+  size_t widest = 0;
+  for (size_t k = 0; k + 1 < crossings.size(); k += 2)
+    if (crossings[k + 1] - crossings[k] > crossings[widest + 1] - crossings[widest]) widest = k;
+  return {0.5 * (crossings[widest] + crossings[widest + 1]), y};
+}
+
+double distance_to_side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& p) {
+  const Eigen::Vector2d side = b - a;
+  const double length = side.squaredNorm(), t = length > 0.0 ? std::clamp((p - a).dot(side) / length, 0.0, 1.0) : 0.0;
+  return (a + t * side - p).norm();
+}
+
+bool is_on_side(const Ring& r, const Eigen::Vector2d& p) {
+  constexpr double near = 1e-4;  // m or feet: of rounded coordinates
+  for (size_t k = 0; k < r.size(); ++k)
+    if (distance_to_side(r[k], r[(k + 1) % r.size()], p) <= near) return true;
+  return false;
+}
+
+/// Is the ring a hole or an island of the other one? Neighbours that share a side are none, nor are polygons that overlap in part.
+bool lies_in(const Ring& ring, const Ring& other) {
+  return std::abs(core::signed_area(other)) > std::abs(core::signed_area(ring)) && holds(other, place_within(ring)) &&
+         std::all_of(ring.begin(), ring.end(), [&](const Eigen::Vector2d& p) { return holds(other, p) || is_on_side(other, p); });
+}
+
 /// What of a ring lies where axis (0 x, 1 y) times `sign` is at most `limit` times sign (Sutherland and Hodgman 1974); areas stay right
 /// for any simple ring.
 Ring clipped(const Ring& r, int axis, double limit, double sign) {
@@ -47,7 +87,7 @@ std::vector<double> shares_inside(const core::Lattice& l, const std::vector<Ring
     if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
     if (ring.size() < 3) continue;
     int around = 0;
-    for (size_t m = 0; m < polygon.size(); ++m) around += m != n && holds(polygon[m], ring[0]);
+    for (size_t m = 0; m < polygon.size(); ++m) around += m != n && lies_in(ring, polygon[m]);
     const double sign = (around % 2 == 0 ? 1.0 : -1.0) * (core::signed_area(ring) >= 0.0 ? 1.0 : -1.0);
     // Row by row, then cell by cell of what is left of the ring.
     for (int j = 0; j < l.ny; ++j) {

@@ -12,7 +12,8 @@
 
 namespace swath::report {
 
-/// A closed line without its repeated vertex, or with it. Of several, those inside an odd number of others are holes.
+/// A closed line without its repeated vertex, or with it. Of several, those inside an odd number of others are holes; neighbours and such
+/// that overlap in part count together, once.
 using Ring = std::vector<Eigen::Vector2d>;
 
 /// Earth that is taken away (cut) and heaped up (fill) from `before` to `after`. Units are those of the grids: lengths cubed, squared.

@@ -66,7 +66,7 @@ void check_times(const core::TrajectoryData& d, const CheckOptions& o, Trajector
     if (step > 0.0) steps.push_back(step);
     if (step == 0.0) ++out.duplicates;
     if (step < 0.0) ++out.backwards;
-    if (step > o.max_gap.value) out.gaps.push_back({i - 1, d.time[i - 1], step});
+    if (step > o.max_gap.value + time_rounding) out.gaps.push_back({i - 1, d.time[i - 1], step});
   }
   if (const double step = core::median(std::move(steps), 0.0); step > 0.0) out.rate = 1.0 / step;
 }

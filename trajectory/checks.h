@@ -12,6 +12,9 @@
 
 namespace swath::trajectory {
 
+/// s: a step may exceed max_gap by the rounding of GPS times.
+constexpr double time_rounding = 1e-6;
+
 struct CheckOptions {
   core::Seconds max_gap{0.1};
   core::MetresPerSecond min_speed{10.0};

@@ -10,13 +10,11 @@
 #include "core/error.h"
 #include "core/geo/frames.h"
 #include "core/geo/geodesy.h"
+#include "trajectory/checks.h"
 
 namespace swath::trajectory {
 
 namespace {
-
-// A step may exceed max_gap by the rounding of GPS times.
-constexpr double time_rounding = 1e-6;
 
 std::string at_record(const std::string& where, size_t record) { return where + ": record " + std::to_string(record); }
 

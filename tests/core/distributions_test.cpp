@@ -38,5 +38,12 @@ TEST(Distributions, AQuantileBetweenTwoValuesLiesOnTheLineBetweenThem) {
   EXPECT_DOUBLE_EQ(interpolated_quantile(one, 0.3), 7.0);
 }
 
+TEST(Distributions, TheMiddleChangesItsSignWithTheValues) {
+  EXPECT_EQ(middle({0.0, 0.3}), 0.15);
+  EXPECT_EQ(middle({0.0, -0.3}), -0.15);
+  EXPECT_EQ(middle({5.0, 1.0, 2.0}), 2.0);
+  EXPECT_TRUE(std::isnan(middle({})));
+}
+
 }  // namespace
 }  // namespace swath::core

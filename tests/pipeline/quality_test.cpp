@@ -93,7 +93,7 @@ class Quality : public testing::Test {
     r.survey = *folder_ / (check + ".toml");
     r.output = output;
     r.sets = sets;
-    r.sets.push_back("run.tile=\"100 m\"");
+    r.sets.insert(r.sets.begin(), "run.tile=\"100 m\"");
     r.threads = 2;
     Plan plan = make_plan(r);
     Progress progress(Voice::quiet);
@@ -195,6 +195,17 @@ TEST_F(Quality, EveryLimitCanBeMissed) {
   EXPECT_TRUE(missed("wide", 0.06, 0.03, 0.13, 0.08, 0.16).empty());
 }
 
+TEST_F(Quality, TheXmlCitesTheSpecificationForItsOwnLimitsAlone) {
+  const test::TemporaryFolder out;
+  run(out / "a", {"swath.quality_level=QL2", "quality.limits.nva=\"2 m\""});
+  const std::string xml = test::read_bytes(out / "a/quality.xml"), own = "limits stated for this survey";
+  const size_t at = xml.find(own);
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(xml.find(own, at + 1), std::string::npos);
+  EXPECT_NE(xml.find("RMSE of heights on open ground (NVA): at most 2 m", at), std::string::npos);
+  EXPECT_NE(xml.find("Lidar Base Specification 2025 rev. A, QL2"), std::string::npos);
+}
+
 TEST_F(Quality, WithoutLevelReferenceAndLimitsThereIsNoVerdict) {
   const test::TemporaryFolder out;
   const Outcome o = run(out / "a", {});
@@ -255,6 +266,11 @@ TEST_F(Quality, CheckPointsThatSayNothingAreNamed) {
   survey("few.csv", marks(2));
   const auto of = [&](const std::string& check) { return codes(run(out / check, {}, check)); };
   EXPECT_EQ(of("outside.csv"), (std::vector<std::string>{"check.outside", "check.few", "control.unused"}));
+  survey("beside.csv", marks(5, 310.0));  // 118 m and more beyond the cloud, in the same tile where tiles are large
+  for (const char* tile : {"100 m", "500 m"})
+    EXPECT_EQ(codes(run(out / tile, {std::string("run.tile=\"") + tile + "\""}, "beside.csv")),
+              (std::vector<std::string>{"check.outside", "check.few", "control.unused"}))
+        << tile;
   EXPECT_EQ(of("same.csv"), (std::vector<std::string>{"check.names", "control.unused"}));
   EXPECT_EQ(of("few.csv"), (std::vector<std::string>{"check.few", "control.unused"}));
 }

@@ -79,6 +79,12 @@ TEST(PulseDensity, TilesMakeTheWhole) {
   }
 }
 
+TEST(PulseDensity, OfManyLinesOneIsTheSparsest) {
+  std::vector<PulseSums> lines{{all_lines, 2400, 121000}};
+  for (int line = 1; line <= 120; ++line) lines.push_back({line, 20, line == 7 ? 400u : line == 9 ? 50u : 1000u});
+  EXPECT_NEAR(judge_density(lines, {}, 5.0).single_density, 400.0 / (20 * 25.0), 1e-12) << "line 9 has hardly any";
+}
+
 TEST(PulseDensity, OfNothingThereIsNone) {
   const PulseCells cells = counted(core::Block(), 100, 100);
   const SwathDensity d = judge_density(cells.lines, cells.bins, 5.0);

@@ -82,6 +82,33 @@ TEST(Volumes, APolygonCountsWithItsExactArea) {
   EXPECT_NEAR(volumes(before, after, 1.0, 1.0, {beyond}).area, 12000.0, 1e-6);
 }
 
+/// Whatever vertex its ring begins with, a neighbour is no hole; nor is a polygon that overlaps in part.
+TEST(Volumes, NeighboursCountBoth) {
+  const core::Lattice l{1.0, 0, 0, 60, 40};
+  const auto total = [&](const std::vector<Ring>& polygon) {
+    double sum = 0.0;
+    for (const double s : shares_inside(l, polygon)) sum += s;
+    return sum;
+  };
+  const Ring west{{10, 10}, {30, 10}, {30, 30}, {10, 30}}, east{{30, 10}, {50, 10}, {50, 30}, {30, 30}};
+  const Ring inner{{35, 15}, {45, 15}, {45, 25}, {35, 25}}, over{{20, 20}, {26, 20}, {26, 36}, {20, 36}},
+      corner{{30, 10}, {34, 10}, {34, 14}, {30, 14}};
+  for (size_t turn = 0; turn < 4; ++turn) {
+    const auto turned = [&](Ring r, bool back) {
+      std::rotate(r.begin(), r.begin() + static_cast<std::ptrdiff_t>(turn), r.end());
+      if (back) std::reverse(r.begin(), r.end());
+      return r;
+    };
+    for (const bool back : {false, true}) {
+      EXPECT_NEAR(total({turned(west, back), east}), 800.0, 1e-9) << turn;
+      EXPECT_NEAR(total({west, turned(east, back)}), 800.0, 1e-9) << turn;
+      EXPECT_NEAR(total({west, east, turned(inner, back)}), 700.0, 1e-9) << turn;
+      EXPECT_NEAR(total({west, turned(over, back)}), 400.0 + 6.0 * 6.0, 1e-9) << turn;
+      EXPECT_NEAR(total({east, turned(corner, back)}), 400.0 - 16.0, 1e-9) << "a hole in the corner " << turn;
+    }
+  }
+}
+
 TEST(Volumes, SigmaByTheStatedCorrelation) {
   const core::Lattice l{1.0, 0, 0, 20, 20};
   const core::Grid before = sampled(l, ground, 0.03f), after = sampled(

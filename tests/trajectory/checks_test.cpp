@@ -120,6 +120,13 @@ TEST(TrajectoryChecks, GapsDuplicatesAndJumpsAreCounted) {
   EXPECT_EQ(core::reported(c).find("gaps")->items().size(), 1u);
 }
 
+/// Steps of 0.1 s at GPS times of 1.3e9 s, of which a double holds 2.4e-7 s.
+TEST(TrajectoryChecks, StepsAsLongAsTheLongestAreNoGaps) {
+  core::TrajectoryData d = line(10.0 * deg, 0.0, 200);
+  for (size_t i = 0; i < d.size(); ++i) d.time[i] = 1330560000.0 + 0.1 * static_cast<double>(i);
+  EXPECT_TRUE(check_trajectory(d).gaps.empty());
+}
+
 TEST(TrajectoryChecks, TurnsAndStandingAreLeftOut) {
   core::TrajectoryData d = line(0.0, 0.0);
   for (double& r : d.roll) r = 25.0 * deg;

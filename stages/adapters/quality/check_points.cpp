@@ -28,6 +28,8 @@ namespace fs = std::filesystem;
 using core::Column;
 
 constexpr size_t names_shown = 6;
+constexpr double seen_side = 25.0;                        // m: cells that hold points
+constexpr double outside_from = 100.0;                    // m: a check point this far from any of them lies outside
 constexpr const char* points_file = "check_points.json";  // for report.quality
 
 struct CheckPointOptions {
@@ -145,10 +147,41 @@ RoofRows roof_rows(const TileJob& job, const Context& context, const trajectory:
   return {quality::returns_at_roofs(job.block, job.own, {}, targets), quality::pulse_returns_in(job.block, job.own, reaches)};
 }
 
+/// A square of the absolute lattice that holds points; plain data.
+struct SeenCell {
+  std::int32_t i = 0, j = 0;
+  auto operator<=>(const SeenCell&) const = default;
+};
+
+std::vector<SeenCell> seen_cells(const TileJob& job) {
+  std::vector<SeenCell> out;
+  for (size_t p = 0; p < job.own; ++p) {
+    if (!core::is_usable(job.block, p)) continue;
+    const SeenCell cell{static_cast<std::int32_t>(core::cell_index(job.block.origin.x() + job.block.x[p], seen_side)),
+                        static_cast<std::int32_t>(core::cell_index(job.block.origin.y() + job.block.y[p], seen_side))};
+    if (out.empty() || out.back() != cell) out.push_back(cell);
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+/// Distance of a place from the nearest cell with points, m.
+double away(const std::vector<SeenCell>& seen, const Eigen::Vector3d& at) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const SeenCell& c : seen) {
+    const double x0 = c.i * seen_side, y0 = c.j * seen_side;
+    nearest = std::min(
+        nearest, std::hypot(std::max({x0 - at.x(), 0.0, at.x() - x0 - seen_side}), std::max({y0 - at.y(), 0.0, at.y() - y0 - seen_side})));
+  }
+  return nearest;
+}
+
 void read_tile(const TileJob& job, const Context& context, const CheckPointOptions& o, const trajectory::Trajectory* flown,
                RunCache& cache) {
   std::vector<quality::MarkReading> readings;
   RoofRows roofs;
+  std::vector<SeenCell> seen;
   if (!check_files(context.survey).empty() && !context.crs.empty()) {
     const Marks& marks = cache.get([&] { return marks_of(context); });
     std::vector<size_t> here;
@@ -156,8 +189,9 @@ void read_tile(const TileJob& job, const Context& context, const CheckPointOptio
       if (job.box.holds(marks.list[m].at.x(), marks.list[m].at.y())) here.push_back(m);
     readings = quality::read_marks(job.block, marks.list, here, o.radius.value, o.surface);
     roofs = roof_rows(job, context, flown, marks.targets, cache);
+    seen = seen_cells(job);
   }
-  write_rows(readings_file(job.folder, job.key), readings, roofs.returns, roofs.pulses);
+  write_rows(readings_file(job.folder, job.key), readings, roofs.returns, roofs.pulses, seen);
 }
 
 /// What the readings of its lines say of each mark: differences weighted by their points, of sigma and slope the largest.
@@ -177,22 +211,37 @@ void add_readings(const std::vector<quality::MarkReading>& readings, std::vector
     if (n[m] > 0.0) found[m].points /= n[m];
 }
 
-std::vector<MarkFound> found_at(const MergeJob& job, const Context& context, const Marks& marks,
-                                const std::vector<quality::MarkReading>& readings) {
+/// The terrain model less the check points `here`, which lie in one tile.
+void add_model_heights(const Grids& grids, const Marks& marks, const std::vector<size_t>& here, std::vector<MarkFound>& found) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  Box box{far, far, -far, -far};
+  for (const size_t m : here) {
+    const Eigen::Vector3d& at = marks.list[m].at;
+    box = {std::min(box.x0, at.x()), std::min(box.y0, at.y()), std::max(box.x1, at.x()), std::max(box.y1, at.y())};
+  }
+  const double cell = grids.cell(Product::dtm);
+  box = box.grown(2.0 * cell);
+  const core::Grid model = grids.window(Product::dtm, core::lattice_of(cell, box.x0, box.y0, box.x1, box.y1));
+  for (const size_t m : here) {
+    const Eigen::Vector3d& at = marks.list[m].at;
+    found[m].dtm = report::sample(model, at.x(), at.y()).height - at.z();
+  }
+}
+
+std::vector<MarkFound> found_at(const Context& context, const Marks& marks, const std::vector<quality::MarkReading>& readings,
+                                const std::vector<SeenCell>& seen) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   std::vector<MarkFound> out(marks.list.size(), MarkFound{none, none, 0.0, 0.0, none, false});
   add_readings(readings, out);
-  const bool has_dtm = context.grids && context.grids->has(Product::dtm);
+  std::map<TileKey, std::vector<size_t>> by_tile;  // a window reads whole tiles from the disk
   for (size_t m = 0; m < marks.list.size(); ++m) {
     const Eigen::Vector3d& at = marks.list[m].at;
-    out[m].is_outside =
-        std::none_of(job.tiles.begin(), job.tiles.end(), [&](TileKey k) { return context.box_of(k).holds(at.x(), at.y()); });
-    if (!has_dtm || out[m].is_outside) continue;
-    const double cell = context.grids->cell(Product::dtm);
-    const core::Grid around = context.grids->window(
-        Product::dtm, core::lattice_of(cell, at.x() - 2 * cell, at.y() - 2 * cell, at.x() + 2 * cell, at.y() + 2 * cell));
-    out[m].dtm = report::sample(around, at.x(), at.y()).height - at.z();
+    out[m].is_outside = away(seen, at) > outside_from;
+    const auto tile = [&](double v) { return static_cast<int>(std::floor(v / context.tile_side)); };
+    if (!out[m].is_outside) by_tile[{tile(at.x()), tile(at.y())}].push_back(m);
   }
+  if (!context.grids || !context.grids->has(Product::dtm)) return out;
+  for (const auto& [key, here] : by_tile) add_model_heights(*context.grids, marks, here, out);
   return out;
 }
 
@@ -202,19 +251,8 @@ std::string shown(const std::vector<std::string>& names) {
   return names.size() > names_shown ? out + " and " + std::to_string(names.size() - names_shown) + " more" : out;
 }
 
-/// Distance of a place from the nearest tile with points, km.
-double away(const MergeJob& job, const Context& context, const Eigen::Vector3d& at) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const TileKey key : job.tiles) {
-    const Box b = context.box_of(key);
-    nearest = std::min(nearest, std::hypot(std::max({b.x0 - at.x(), 0.0, at.x() - b.x1}), std::max({b.y0 - at.y(), 0.0, at.y() - b.y1})));
-  }
-  return 1e-3 * nearest;
-}
-
 /// What is wrong with the check points as a whole.
-void name_records(const MergeJob& job, const Context& context, const Marks& marks, const std::vector<MarkFound>& at,
-                  CheckPointFindings& found) {
+void name_records(const Marks& marks, const std::vector<MarkFound>& at, const std::vector<SeenCell>& seen, CheckPointFindings& found) {
   std::set<std::string> names, twice;
   double nearest = std::numeric_limits<double>::infinity();
   size_t compared = 0;
@@ -223,7 +261,7 @@ void name_records(const MergeJob& job, const Context& context, const Marks& mark
     if (!names.insert(mark.name).second) twice.insert(mark.name);
     if (at[m].is_outside) {
       found.outside.push_back(mark.name);
-      nearest = std::min(nearest, away(job, context, mark.at));
+      nearest = std::min(nearest, 1e-3 * away(seen, mark.at));
     } else if (std::isnan(at[m].points)) {
       found.unread.push_back(mark.name);
     }
@@ -299,13 +337,14 @@ CheckPointFindings judge_points(const MergeJob& job, const Context& context, con
   const Marks& marks = cache.get([&] { return marks_of(context); });
   std::vector<quality::MarkReading> readings;
   RoofRows rows;
-  for (const TileKey key : job.tiles) read_rows(readings_file(job.folder, key), readings, rows.returns, rows.pulses);
+  std::vector<SeenCell> seen;
+  for (const TileKey key : job.tiles) read_rows(readings_file(job.folder, key), readings, rows.returns, rows.pulses, seen);
   std::sort(readings.begin(), readings.end(),
             [](const auto& a, const auto& b) { return std::pair(a.mark, a.line) < std::pair(b.mark, b.line); });
-  const std::vector<MarkFound> at = found_at(job, context, marks, readings);
+  const std::vector<MarkFound> at = found_at(context, marks, readings, seen);
   found.marks = marks.list.size();
   found.corners = marks.corners;
-  name_records(job, context, marks, at, found);
+  name_records(marks, at, seen, found);
   if (o.open == CheckPointOptions().open) name_covers(marks, o.open, found);  // a list of one's own says what is open
   judge_planimetry(marks, std::move(rows), flown != nullptr, found);
   judge_accuracy(marks, at, o, found);

@@ -39,7 +39,7 @@ std::string quantity(const Measure& m, int number) {
 std::string conformance(const quality::Requirement& r, const std::string& level) {
   char text[80];
   std::snprintf(text, sizeof text, "%s %.6g %s", r.is_least ? "at least" : "at most", r.limit, r.unit.c_str());
-  const std::string title = level == "none" ? "limits stated for this survey" : std::string(specification) + ", " + level;
+  const std::string title = r.is_stated ? "limits stated for this survey" : std::string(specification) + ", " + level;
   return element("mdq:result", element("mdq:DQ_ConformanceResult",
                                        element("mdq:specification", element("cit:CI_Citation", element("cit:title", characters(title)))) +
                                            element("mdq:explanation", characters(r.what + ": " + text)) +
