@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import zipfile
 from pathlib import Path
 
 # Of the C library, and what the interpreter and every compiler bring with them.
@@ -87,6 +88,16 @@ def add_licences(folder, libraries):
     return packages, without
 
 
+def pack(root, to):
+    """Writes the wheel to a folder, compressed as far as a zip of every reader goes."""
+    with tempfile.TemporaryDirectory() as name:
+        said(sys.executable, "-m", "wheel", "pack", "-d", name, str(root))
+        quick = next(Path(name).iterdir())
+        with zipfile.ZipFile(quick) as source, zipfile.ZipFile(to / quick.name, "w") as smallest:
+            for entry in source.infolist():
+                smallest.writestr(entry, source.read(entry), zipfile.ZIP_DEFLATED, compresslevel=9)
+
+
 def main():
     wheel, to = map(Path, sys.argv[1:])
     to.mkdir(parents=True, exist_ok=True)
@@ -96,7 +107,7 @@ def main():
         libraries = root / "swath.libs"
         added = add_missing(root, libraries)
         packages, without = add_licences(root / "swath/share/doc/licences", libraries)
-        said(sys.executable, "-m", "wheel", "pack", "-d", str(to), str(root))
+        pack(root, to)
         size = sum(f.stat().st_size for f in root.rglob("*") if f.is_file())
         print(f"unpacked: {size / 1e6:.0f} MB, {len(list(libraries.iterdir()))} libraries of {len(packages)} packages; added: {' '.join(added) or 'none'}")
         if without:
