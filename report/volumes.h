@@ -13,7 +13,7 @@
 namespace swath::report {
 
 /// A closed line without its repeated vertex, or with it. Of several, those inside an odd number of others are holes; neighbours and such
-/// that overlap in part count together, once.
+/// that overlap in part count together, once, but for cells on a border of one within the other: there shares add up, to 1 at most.
 using Ring = std::vector<Eigen::Vector2d>;
 
 /// Earth that is taken away (cut) and heaped up (fill) from `before` to `after`. Units are those of the grids: lengths cubed, squared.

@@ -137,17 +137,18 @@ TrajectoryChecks check_trajectory(const core::TrajectoryData& d, const CheckOpti
   if (!out.gaps.empty())
     out.warnings.push_back(core::counted(out.gaps.size(), "gap") + ", the first after record " + std::to_string(out.gaps[0].record));
   if (out.straight > 0 && std::abs(out.crab_median) > crab_limit)
-    out.warnings.push_back("heading differs from the track by " + degrees(out.crab_median) +
-                           " in straight flight: wander angle not removed (or removed twice), IMU axes turned, or another north?");
+    out.turned.push_back("heading differs from the track by " + degrees(out.crab_median) +
+                         " in straight flight: wander angle not removed (or removed twice), IMU axes turned, or another north?");
   if (out.straight > 0 && out.crab_spread > spread_limit)
-    out.warnings.push_back("heading scatters about the track by " + degrees(out.crab_spread) + " in straight flight");
+    out.turned.push_back("heading scatters about the track by " + degrees(out.crab_spread) + " in straight flight");
   else if (out.straight > 0 && out.crab_range > turned_limit)
-    out.warnings.push_back("heading differs from the track by another angle on each course (spread " + degrees(out.crab_range) +
-                           "): sign of heading, or another unit?");
+    out.turned.push_back("heading differs from the track by another angle on each course (spread " + degrees(out.crab_range) +
+                         "): sign of heading, or another unit?");
   if (out.velocity_difference > velocity_limit)
     out.warnings.push_back("recorded velocity differs from that of the positions by " + core::format_number(out.velocity_difference, 3) +
                            " m/s (median): wander frame, or other axes?");
-  out.warnings.insert(out.warnings.end(), out.motion.warnings.begin(), out.motion.warnings.end());
+  out.turned.insert(out.turned.end(), out.motion.warnings.begin(), out.motion.warnings.end());
+  out.warnings.insert(out.warnings.end(), out.turned.begin(), out.turned.end());
   return out;
 }
 

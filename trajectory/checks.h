@@ -57,7 +57,8 @@ struct TrajectoryChecks {
   double speed_median = 0.0;         ///< m/s over the ground
   double velocity_difference = 0.0;  ///< median of |recorded - differenced horizontal velocity|, m/s; 0 where none is recorded
   MotionChecks motion;
-  std::vector<std::string> warnings;  ///< those of `motion` among them
+  std::vector<std::string> turned;    ///< warnings of an attitude that does not follow the flight, those of `motion` among them
+  std::vector<std::string> warnings;  ///< all, those of `turned` among them
 };
 
 template <class V>

@@ -58,9 +58,10 @@ void find_correlated(const std::vector<Parameter>& globals, const std::vector<Pa
 
 void find_wide_knots(const CorrectionOptions& o, double spacing, int unknowns, Adjustment& out) {
   if (unknowns == 0 || spacing <= wide_knots * o.spacing.value) return;
-  out.findings.push_back({"the corrections' knots are " + number(spacing) + " s apart in place of " + number(o.spacing.value) +
-                              " s: all lines together have " + std::to_string(unknowns) + " unknowns, corrections.most allows " +
-                              std::to_string(o.most) + "; errors that change faster stay in the points, and sigmas do not show them",
+  out.findings.push_back({"the corrections' knots are " + words("%.1f", spacing) + " s apart in place of " +
+                              words("%.1f", o.spacing.value) + " s: all lines together have " + std::to_string(unknowns) +
+                              " unknowns, corrections.most allows " + std::to_string(o.most) +
+                              "; errors that change faster stay in the points, and sigmas do not show them",
                           "adjust fewer lines in one run, or raise corrections.most (time grows with its third power)",
                           {},
                           false});

@@ -232,13 +232,13 @@ void add_chain(const BlockConfig& config, const OrientationCorrelation& correlat
   read.block.chain = navigation_chain(correlation, image_number, turn, parts, config.images.correlation.string());
 }
 
-/// Before anything is adjusted: what its normal equations would say without names.
 constexpr const char* names_may_differ = "names in the control file and of the image points may differ";
 
 std::string unseen_control(const ReadBlock& read) {
   return "no control point is measured on an image: " + first_of(read.control_without_image);
 }
 
+/// Before anything is adjusted: what its normal equations would say without names.
 void expect_datum(const ReadBlock& read, const std::string& config_file) {
   if (read.block.datum == Datum::none) return;
   if (read.stations_observed == 0)

@@ -38,7 +38,7 @@ std::vector<double> headings(const ImageBlock& block, const std::vector<char>& n
           throw core::Error("strip " + number + " has one image: its direction is not known", "",
                             "give the attitude of image " + block.images[images[k]].name + ", or its strip's other images");
         throw core::Error("images " + block.images[before].name + " and " + block.images[after].name + " of strip " + number +
-                              " have one place: the direction of flight is not known",
+                              " are at the same place: the direction of flight is not known",
                           "", "an event may be listed twice: match images and events by their time; or give the attitudes");
       }
       out[images[k]] = std::atan2(way.x(), way.y());

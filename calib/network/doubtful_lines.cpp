@@ -23,15 +23,15 @@ constexpr double more_than_others = 3.0;
 constexpr double fewest_out = 10.0;
 
 struct ChangeAxis {
-  const char *name, *unit;
+  const char *name, *opposite, *unit;  ///< opposite: of a negative change; "" where its sign says it
   double size;
 };
-constexpr std::array<ChangeAxis, 6> change_axes{{{"north", "cm", centimetre},
-                                                 {"east", "cm", centimetre},
-                                                 {"down", "cm", centimetre},
-                                                 {"in roll", "arcsec", arc_second},
-                                                 {"in pitch", "arcsec", arc_second},
-                                                 {"in heading", "arcsec", arc_second}}};
+constexpr std::array<ChangeAxis, 6> change_axes{{{"north", "south", "cm", centimetre},
+                                                 {"east", "west", "cm", centimetre},
+                                                 {"down", "up", "cm", centimetre},
+                                                 {"in roll", "", "arcsec", arc_second},
+                                                 {"in pitch", "", "arcsec", arc_second},
+                                                 {"in heading", "", "arcsec", arc_second}}};
 
 /// Mean change of one component along a line, and its sigma.
 struct MeanChange {
@@ -62,11 +62,14 @@ void find_moved(const std::vector<LineCorrection>& corrections, std::vector<Find
     for (size_t axis = 0; axis < change_axes.size(); ++axis)
       if (const MeanChange change = change_of(c, axis); change.ratio() > worst.ratio()) worst = change, at = axis;
     if (worst.ratio() <= critical) continue;
-    out.push_back({words("line %d: the surfaces move the smoother's trajectory by %.1f %s %s, %.1f times the sigma of such a change",
-                         c.line, worst.mean / change_axes[at].size, change_axes[at].unit, change_axes[at].name, worst.ratio()),
-                   "look at the fixes, the antenna's lever arm and the times of this line's records; sigmas of this line are too small",
-                   {},
-                   false});
+    const ChangeAxis& axis = change_axes[at];
+    const bool turned = worst.mean < 0.0 && *axis.opposite;
+    out.push_back(
+        {words("line %d: the surfaces move the smoother's trajectory by %.1f %s %s, %.1f times the sigma of such a change", c.line,
+               (turned ? -worst.mean : worst.mean) / axis.size, axis.unit, turned ? axis.opposite : axis.name, worst.ratio()),
+         "look at the fixes, the antenna's lever arm and the times of this line's records; sigmas of this line are too small",
+         {},
+         false});
   }
 }
 

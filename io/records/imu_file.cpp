@@ -135,16 +135,18 @@ void leave_out(Raw& raw, std::vector<std::uint64_t>& numbers, const std::vector<
 /// Records of a sensor that stopped do not show the motion: without them there is a gap, of which smoothers know.
 void leave_out_frozen(Raw& raw, std::vector<std::uint64_t>& numbers, const TableRows& rows, core::Tally& tally) {
   constexpr std::array<const char*, 6> names{"gyro_x", "gyro_y", "gyro_z", "accelerometer_x", "accelerometer_y", "accelerometer_z"};
-  std::vector<size_t> bad;
+  std::vector<char> is_bad(raw.time.size(), 0);
   for (const FrozenAxis& f : frozen_axes(raw.gyro, raw.accelerometer)) {
+    std::uint64_t others = 0;  // of an axis before this one
+    for (size_t k = f.first; k < f.last; ++k) others += is_bad[k] != 0, is_bad[k] = 1;
     tally.count("IMU records in which an axis is frozen while others go on, left out",
                 rows.place_of(numbers[f.first]) + ": " + names[f.axis] + " repeats one value for " +
                     core::format_number(std::round((raw.time[f.last - 1] - raw.time[f.first - 1]) * 1e4) / 1e4) + " s",
-                f.last - f.first);
-    for (size_t k = f.first; k < f.last; ++k) bad.push_back(k);
+                f.last - f.first - others);
   }
-  std::sort(bad.begin(), bad.end());
-  bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
+  std::vector<size_t> bad;
+  for (size_t k = 0; k < is_bad.size(); ++k)
+    if (is_bad[k]) bad.push_back(k);
   erase(raw, numbers, bad);
 }
 

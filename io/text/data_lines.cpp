@@ -22,8 +22,10 @@ const std::string& DataLine::field(size_t column) const {
 }
 
 void DataLine::expect_columns(size_t columns) const {
-  if (fields.size() != columns)
-    fault(fields_and_columns(fields.size(), columns, true), "the line is cut off, or a name holds the delimiter and needs quotes");
+  const size_t found =
+      fields.size() - (fields.size() == columns + 1 && fields.back().empty() ? 1 : 0);  // a line may end with its delimiter
+  if (found != columns)
+    fault(fields_and_columns(found, columns, true), "the line is cut off, or a name holds the delimiter and needs quotes");
 }
 
 void DataLine::expect_at_most(size_t columns, bool has_header) const {

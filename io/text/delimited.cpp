@@ -35,7 +35,11 @@ bool all_numbers(const std::vector<std::string>& fields) {
   return any;
 }
 
-bool is_comment(const std::string& line) { return !line.empty() && (line[0] == '#' || line[0] == '%'); }
+bool begins_comment(char c) { return c == '#' || c == '%'; }
+bool is_comment(const std::string& line) {
+  const size_t first = line.find_first_not_of(" \t");
+  return first != line.npos && begins_comment(line[first]);
+}
 
 std::string lower(std::string s) {
   for (char& c : s)
@@ -100,7 +104,7 @@ class FirstLines {
 /// A line of data with its place.
 struct NumberedLine {
   std::vector<std::string> fields;
-  std::uint64_t begin, number;
+  std::uint64_t begin = 0, number = 0;
 };
 
 void require_not_utf16(const std::filesystem::path& path) {
@@ -298,13 +302,14 @@ bool DelimitedReader::next_line(const char*& begin, const char*& end) {
 
 bool DelimitedReader::next(double* values) {
   const char *at, *end;
+  bool is_data = false;
   do {
     if (!next_line(at, end)) return false;
     const char *b = at, *e = end;
     trim(b, e);
-    if (b == e) at = end;  // blanks alone
-    trim_line(at, end, delimiter_);
-  } while (at == end || *at == '#' || *at == '%');
+    is_data = b < e && !begins_comment(*b);
+  } while (!is_data);
+  trim_line(at, end, delimiter_);
   for (size_t field = 0; field < fields_needed_; ++field) {
     if (delimiter_ == ' ')
       while (at < end && is_blank(*at)) ++at;

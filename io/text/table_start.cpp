@@ -2,9 +2,12 @@
 #include "io/text/table_start.h"
 
 #include <algorithm>
+#include <functional>
+#include <set>
 #include <string_view>
 #include <vector>
 
+#include "core/printable.h"
 #include "io/text/fields.h"
 #include "io/text/line_reader.h"
 
@@ -62,12 +65,23 @@ bool names_of(const Line& line, const Line& record) {
   return line.fields == record.fields || split_delimited(line.text, record.delimiter).size() == record.fields;
 }
 
+bool in_brackets(const std::string& field) { return field.starts_with('(') || field.starts_with('['); }
+
+/// In brackets, or a unit as such tables have it: names of columns and words of a description are longer.
+bool is_unit(const std::string& field) {
+  static const std::set<std::string, std::less<>> units{
+      "",       "-",     "%",      "m",    "cm",    "mm",    "km",    "ft",    "usft",  "deg",   "rad",  "mrad",  "gon",  "arcsec",
+      "arcmin", "s",     "sec",    "secs", "ms",    "us",    "ns",    "min",   "h",     "hz",    "m/s",  "cm/s",  "ft/s", "km/h",
+      "kn",     "knots", "g",      "mg",   "m/s2",  "m/s^2", "m/s/s", "deg/s", "deg/h", "rad/s", "dms",  "d-m-s", "m2",   "m^2",
+      "1",      "count", "counts", "num",  "weeks", "week",  "sow",   "gpst",  "utc",   "hms",   "degc", "nt",    "v"};
+  return in_brackets(field) || units.contains(core::lower_case(field));
+}
+
 /// Units for each column below its name: blanks part descriptions, too, so that units between them need brackets.
 bool units_below(const Line& names, const Line& units, const Line& record) {
   if (!names_of(names, record) || names.delimiter != record.delimiter || units.delimiter != record.delimiter) return false;
   const std::vector<std::string> fields = split_delimited(units.text, units.delimiter);
-  const auto in_brackets = [](const std::string& f) { return f.starts_with('(') || f.starts_with('['); };
-  return record.delimiter != ' ' || std::all_of(fields.begin(), fields.end(), in_brackets);
+  return std::all_of(fields.begin(), fields.end(), record.delimiter == ' ' ? in_brackets : is_unit);
 }
 
 }  // namespace

@@ -120,7 +120,7 @@ class Mistakes(Case):
         config = self.folder / "block.toml"
         config.write_text(config.read_text().replace('["0.4 m", "-0.3 m", "-1.1 m"]', '["0.4 m", "0.3 m", "-1.1 m"]'))
         done = swath("block", config, "--output", self.folder / "out")
-        self.assertRegex(done.stdout, "stations of C lie .* of where its antenna is stated .means.; it fits with the other sign of right\n")
+        self.assertRegex(done.stdout, "stations of camera C are on average .* of the stated antenna; the opposite sign of right explains it\n")
 
     def test_heights_of_control_in_feet_without_angles(self):
         write(self.folder, angles=None)

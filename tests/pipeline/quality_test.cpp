@@ -296,10 +296,13 @@ TEST(QualityOfADensePlot, CostsWhatItsOwnAreaCosts) {
   Plan plan = make_plan(r);
   Progress progress(Voice::quiet);
   const Outcome o = pipeline::run(plan, progress, "test");
+  int found = 0;
   for (const core::Value& s : o.report.find("stages")->items()) {
     if (s.find("type")->as_text() != "quality.swath") continue;
     EXPECT_NEAR(number(*s.find("findings"), "void_m2"), 1.0, 0.03);
+    ++found;
   }
+  EXPECT_EQ(found, 1);
 }
 
 /// Ground points of a USGS project at its own 60 check points: their makers' mean within 1 m is off by 5.6 cm on open ground, 10.7 cm under

@@ -61,7 +61,6 @@ TEST(MarkFaults, ABadMarkIsNamed) {
   }
 }
 
-/// Plants that passed as ground scatter about their plane: a mark among them is not named for what they do.
 /// Whichever way one line of two differs, the mark is not to blame, for the other line agrees with it.
 TEST(MarkFaults, OneLineOfTwoIsNoBadMark) {
   for (const double wrong : {0.4, -0.4})
@@ -69,6 +68,7 @@ TEST(MarkFaults, OneLineOfTwoIsNoBadMark) {
       EXPECT_EQ(codes(drawn(seed, [&](int m, int line) { return m == 5 && line == 2 ? wrong : 0.0; })), Codes{}) << wrong << " " << seed;
 }
 
+/// Plants that passed as ground scatter about their plane: a mark among them is not named for what they do.
 TEST(MarkFaults, PlantsAreNoBadMark) {
   Case c = drawn(4, [](int m, int) { return m == 5 ? 0.2 : 0.0; });
   EXPECT_EQ(codes(c), Codes{"check.mark"});

@@ -87,7 +87,6 @@ TEST(VoidCells, TilesMakeTheWhole) {
   EXPECT_NEAR(area_of(find_voids(b, window(s, 0.0, 50.0), s), s) + area_of(find_voids(b, window(s, 50.0, side), s), s), whole, 1e-9);
 }
 
-/// A window of 5 x 5 squares of cells with returns in the middle: those that no return comes near are void as a whole.
 /// Distances are taken in squares of 1024 cells, here 64 m: voids that cross their borders are those of windows that lie in one of them.
 TEST(VoidCells, SquaresOfTheSearchMakeTheWhole) {
   const PulseSpacing s{0.5 * spacing, spacing};
@@ -111,6 +110,7 @@ TEST(VoidCells, SquaresOfTheSearchMakeTheWhole) {
   EXPECT_EQ(rim, rim_of_parts);
 }
 
+/// A window of 5 x 5 squares of cells with returns in the middle: those that no return comes near are void as a whole.
 TEST(VoidCells, WhereThereAreNoReturnsAllIsVoid) {
   const PulseSpacing s{spacing, spacing};
   const core::Block b = pattern([](double x, double y) { return std::abs(x - 50.0) > 20.0 || std::abs(y - 50.0) > 20.0; });

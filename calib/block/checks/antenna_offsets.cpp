@@ -37,9 +37,9 @@ std::string sentence(const BlockCamera& camera, const MeanResidual& r) {
     if (by_sign) turned += (turned.empty() ? "" : ", ") + std::string(axes[static_cast<size_t>(k)]);
   }
   char text[200];
-  std::snprintf(text, sizeof text, " lie %+.2f m forward, %+.2f m right, %+.2f m down of where its antenna is stated (means)", mean.x(),
-                mean.y(), mean.z());
-  return "stations of " + camera.name + text + (!turned.empty() ? "; it fits with the other sign of " + turned : "") +
+  std::snprintf(text, sizeof text, " are on average %+.2f m forward, %+.2f m right, %+.2f m down of the stated antenna", mean.x(), mean.y(),
+                mean.z());
+  return "the stations of camera " + camera.name + text + (!turned.empty() ? "; the opposite sign of " + turned + " explains it" : "") +
          (explained ? "" : "; check its axes, and the heights of stations and control");
 }
 

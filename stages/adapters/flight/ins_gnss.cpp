@@ -77,8 +77,10 @@ Given<trajectory::Trajectory, trajectory::InsFigures> smooth_flight(core::ImuDat
   // Axes that are turned fit the fixes, but not the way the aircraft flies.
   trajectory::CheckOptions motion_alone;
   motion_alone.max_gap.value = std::numeric_limits<double>::infinity();
-  for (std::string& w : trajectory::check_trajectory(result.trajectory, motion_alone).warnings)
-    result.report.figures.named.push_back({"trajectory.motion", std::move(w)});
+  const trajectory::TrajectoryChecks checks = trajectory::check_trajectory(result.trajectory, motion_alone);
+  for (const std::string& w : checks.warnings)
+    if (std::find(checks.turned.begin(), checks.turned.end(), w) == checks.turned.end()) tally.count(w);
+  for (const std::string& w : checks.turned) result.report.figures.named.push_back({"trajectory.motion", w});
 
   std::optional<core::TrajectoryErrors> errors;
   if (const auto truth = truth_of(survey, result.trajectory)) {

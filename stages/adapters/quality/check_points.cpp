@@ -29,7 +29,7 @@ using core::Column;
 
 constexpr size_t names_shown = 6;
 constexpr double seen_side = 25.0;                        // m: cells that hold points
-constexpr double outside_from = 100.0;                    // m: a check point this far from any of them lies outside
+constexpr double outside_from = 100.0;                    // m: a check point farther from all of these cells lies outside
 constexpr const char* points_file = "check_points.json";  // for report.quality
 
 struct CheckPointOptions {
@@ -166,7 +166,7 @@ std::vector<SeenCell> seen_cells(const TileJob& job) {
   return out;
 }
 
-/// Distance of a place from the nearest cell with points, m.
+/// Distance of a place from the nearest cell with points, m: up to the cell's diagonal less than from the points.
 double away(const std::vector<SeenCell>& seen, const Eigen::Vector3d& at) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const SeenCell& c : seen) {

@@ -120,6 +120,10 @@ TEST_F(Delimited, EmptyFieldsBetweenTabsStayWhereverTheyAre) {
   EXPECT_EQ(read_all(made("\t1 \t 2\n\t3 \t 4\n"), {"2"}, "blank"), (std::vector<std::vector<double>>{{2}, {4}}));
 }
 
+TEST_F(Delimited, CommentsMayBeginWithBlanksAndTabs) {
+  EXPECT_EQ(read_all(made("\t# one\n  % two\na\tb\n1\t2\n\t# three\n3\t4\n"), {"b"}), (std::vector<std::vector<double>>{{2}, {4}}));
+}
+
 TEST_F(Delimited, ARecordThatBeginsWithATextIsNoHeader) {
   const std::string rows = "POS,100,48,ok\nPOS,101,49,ok\nPOS,102,50,ok\n";
   EXPECT_EQ(read_all(made(rows), {"2"}), (std::vector<std::vector<double>>{{100}, {101}, {102}}));

@@ -60,6 +60,12 @@ TEST_F(TableStarts, ADescriptionAboveTheTableIsPassedOver) {
   EXPECT_EQ(read_all(made("made by a logger\non a day in June\n" + table), {"1", "2", "3"}), rows);
 }
 
+TEST_F(TableStarts, WordsAboveTheNamesAreNoNames) {
+  const DelimitedLayout layout = inspect_delimited(made("Company,Plane,Pilot\ntime,lat,height\n1,2,3\n4,5,6\n7,8,9\n"));
+  EXPECT_EQ(layout.names, (std::vector<std::string>{"time", "lat", "height"}));
+  EXPECT_EQ(inspect_delimited(made("flight 7\ntime,lat,height\ns,deg,m\n1,2,3\n4,5,6\n7,8,9\n")).names, layout.names) << "units below them";
+}
+
 TEST_F(TableStarts, ADamagedFirstRecordIsNoDescription) {
   const std::string rest = "1,2,3\n4,5,6\n7,8,9\n";
   for (const std::string& text : {rest, "a,b,c\n" + rest, "a,b,c\nx,2,3\n" + rest, "1,,3\n2,,4\n" + rest, std::string("P1,2,3\nP2,5,6\n")})

@@ -100,7 +100,7 @@ TEST(ClockReference, RobustCorrectionAndDetectedConvergence) {
     robust.push_back(std::abs(c.events.time[i] + (c.events.epoch - ref.week_epoch) - ref.marks.time[i]));
     plain.push_back(std::abs(ref.difference[i]));
   }
-  // A few stamps are late by 20 us by themselves, which no clock's log tells: the median speaks of the clock.
+  // A few stamps are late by 20 us by themselves, which no clock's log shows: the median speaks of the clock.
   std::sort(robust.begin(), robust.end());
   std::sort(plain.begin(), plain.end());
   std::printf("robust: median |difference| %.2f us, largest %.2f us; literal %.2f and %.2f us\n", robust[19] * 1e6, robust.back() * 1e6,

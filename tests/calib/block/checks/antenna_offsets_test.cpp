@@ -34,11 +34,11 @@ TEST(AntennaOffsets, ARightAntennaIsNotNamed) { EXPECT_EQ(finding(made(arm)), ""
 
 TEST(AntennaOffsets, SignsAreNamed) {
   const std::string down = finding(made({arm.x(), arm.y(), -arm.z()}));
-  EXPECT_NE(down.find("it fits with the other sign of down"), std::string::npos) << down;
+  EXPECT_NE(down.find("the opposite sign of down explains it"), std::string::npos) << down;
   EXPECT_EQ(down.find("check its axes"), std::string::npos) << down;
   const std::string all = finding(made(-arm));
   EXPECT_NE(all.find(" m right, -4."), std::string::npos) << all;
-  EXPECT_NE(all.find("it fits with the other sign of forward, right, down"), std::string::npos) << all;
+  EXPECT_NE(all.find("the opposite sign of forward, right, down explains it"), std::string::npos) << all;
 }
 
 TEST(AntennaOffsets, AnotherPlaceIsNamedWithoutASign) {
