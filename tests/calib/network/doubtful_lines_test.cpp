@@ -62,7 +62,7 @@ TEST(DoubtfulLines, AShiftedLineIsNamedByItsWorstComponent) {
   const std::vector<Finding> found = doubtful_lines(lines, corrections, {});
   ASSERT_EQ(found.size(), 1u);
   EXPECT_NE(found[0].what.find("line 7: "), std::string::npos) << found[0].what;
-  EXPECT_NE(found[0].what.find("by -15.0 cm down, 6.7 times"), std::string::npos) << found[0].what;
+  EXPECT_NE(found[0].what.find("by 15.0 cm up, 6.7 times"), std::string::npos) << found[0].what;
   EXPECT_FALSE(found[0].refuses);
   for (auto& v : corrections[2].value) v = {0.0, 0.0, 0.0, 0.0, -0.01, 0.0};
   EXPECT_NE(doubtful_lines(lines, corrections, {})[0].what.find("by -2062.6 arcsec in pitch"), std::string::npos);
