@@ -5,6 +5,7 @@
 Height differences need SWATH_RASTER_VALUES, the program of the tests that reads a GeoTIFF.
 """
 import csv
+import json
 import math
 import os
 import re
