@@ -194,7 +194,7 @@ DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::
     }
     if (data.empty() && have_header && lines.number() != table.data && is_record_above(above.fields, fields)) {
       have_header = false;
-      data.push_back(std::move(above));
+      data.push_back(above);
     }
     data.push_back({std::move(fields), lines.begin(), lines.number()});
   }
