@@ -88,7 +88,7 @@ TEST(AdjustFindings, KnotsFartherApartThanAskedForAreNamed) {
   o.corrections.most = 100;
   const Adjustment wide = flown(w, o, 1, near_truth(w));
   EXPECT_GT(wide.knot_spacing, 3.0);
-  EXPECT_TRUE(says(wide, "s apart in place of 2 s: all lines together have", false));
+  EXPECT_TRUE(says(wide, "s apart in place of 2.0 s: all lines together have", false));
   EXPECT_TRUE(says(wide, "corrections.most allows 100;", false));
 }
 
