@@ -195,8 +195,7 @@ SurfaceFindings judge_surfaces(const MergeJob& job, const Context& context, cons
   report::DifferenceMapOptions look;
   look.title = "Terrain model less reference";
   const double cell = context.grids->cell(Product::dtm);
-  write_picture(context, difference_name,
-                report::draw(report::difference_map(overview_of(job.folder / "map", job.tiles, cell), look)));
+  write_picture(context, difference_name, report::draw(report::difference_map(overview_of(job.folder / "map", job.tiles, cell), look)));
   return found;
 }
 
