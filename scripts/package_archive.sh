@@ -9,6 +9,7 @@ for tool in patchelf zstd zip; do
   command -v "$tool" >/dev/null || { echo "swath: $tool is missing; apt-get install patchelf zstd zip" >&2; exit 1; }
 done
 source scripts/package_build.sh
+bash scripts/build_gdal.sh
 
 version="$(sed -n 's/^project(swath VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)"
 name="swath-$version-linux-$(uname -m)"
@@ -19,14 +20,17 @@ mkdir -p "$root"
 cmake --install "$build" --prefix "$root" --strip >/dev/null
 program="$root/bin/swath"
 
-# The libraries that the loader finds for the program and for those that it loads at their first use, but for the C library's own.
+# The libraries that the loader finds for the program and for those that it loads at their first use, but for the C library's own. GDAL is the
+# small one of scripts/build_gdal.sh.
 mkdir -p "$root/lib"
+small="$PWD/build/gdal/lib"
 late="$(readelf -p .note.dlopen "$program" 2>/dev/null | sed -n 's/.*"soname":\["\([^"]*\)"\].*/\1/p')"
-needed() { ldd "$1" | sed -n 's/^[[:space:]]*[^ ]* => \(\/[^ ]*\) .*/\1/p'; }
+needed() { LD_LIBRARY_PATH="$small" ldd "$1" | sed -n 's/^[[:space:]]*[^ ]* => \(\/[^ ]*\) .*/\1/p'; }
 {
   needed "$program"
   for soname in $late; do
-    file="$(/sbin/ldconfig -p | sed -n "s/^[[:space:]]*$soname .* => //p" | head -1)"
+    file="$small/$soname"
+    [ -e "$file" ] || file="$(/sbin/ldconfig -p | sed -n "s/^[[:space:]]*$soname .* => //p" | head -1)"
     echo "$file"
     needed "$file"
   done

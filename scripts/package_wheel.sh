@@ -17,7 +17,8 @@ export PATH="$tools/bin:$PATH"
 rm -rf build/wheel_raw build/wheel_repaired
 python -m build --wheel --no-isolation --skip-dependency-check "-Ccmake.define.SWATH_UNITY=${SWATH_UNITY:-ON}" -Ccmake.define.SWATH_PAGES=ON \
   -Ccmake.define.CMAKE_CXX_COMPILER="${CXX:-c++}" --outdir build/wheel_raw .
-auditwheel repair --wheel-dir build/wheel_repaired build/wheel_raw/swath-*.whl
+bash scripts/build_gdal.sh # the small one, found before the system's
+LD_LIBRARY_PATH="$PWD/build/gdal/lib" auditwheel repair --wheel-dir build/wheel_repaired build/wheel_raw/swath-*.whl
 mkdir -p out/packages
 rm -f out/packages/swath-*.whl
 python scripts/finish_wheel.py build/wheel_repaired/swath-*.whl out/packages
