@@ -8,8 +8,6 @@
 namespace swath::io {
 namespace {
 
-std::string numbered(const char* name, size_t i) { return std::string(name) + "[" + std::to_string(i + 1) + "]"; }
-
 /// One fault for a key.
 void add_fault(const core::Value& tree, const std::string& key, std::string what, std::string hint, std::vector<core::Fault>& faults) {
   if (std::none_of(faults.begin(), faults.end(), [&](const core::Fault& f) { return f.key == key; }))

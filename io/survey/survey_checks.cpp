@@ -66,8 +66,6 @@ class Checks {
   }
 
  private:
-  static std::string numbered(const char* name, size_t i) { return std::string(name) + "[" + std::to_string(i + 1) + "]"; }
-
   void fault(const std::string& key, std::string what, std::string hint = {}) {
     for (const Fault& f : faults_)
       if (f.key == key) return;

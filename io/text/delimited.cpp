@@ -229,13 +229,13 @@ size_t column_of(const DelimitedLayout& layout, const std::string& column, const
   };
   const auto exact = [&](const std::string& n) { return n == column; };
   const auto folded = [&](const std::string& n) { return lower(n) == lower(column); };
-  if (count(exact) > 1)
-    throw core::Error("column '" + column + "' stands more than once in the header", file.string(), "name it by number");
-  const bool is_name = count(exact) == 1 || count(folded) == 1;
+  const auto same = count(exact);
+  if (same > 1) throw core::Error("column '" + column + "' stands more than once in the header", file.string(), "name it by number");
+  const bool is_name = same == 1 || count(folded) == 1;
   if (is_name && layout.misfit > 0)
     throw core::Error(fields_and_columns(layout.misfit, layout.names.size(), true), file.string() + ":" + std::to_string(layout.data_line),
                       "a name that holds the delimiter, or none for a column? Quote it, or state the columns by number");
-  if (is_name) return count(exact) == 1 ? place(exact) : place(folded);
+  if (is_name) return same == 1 ? place(exact) : place(folded);
   size_t number = 0;
   const auto [at, ec] = std::from_chars(column.data(), column.data() + column.size(), number);
   if (ec == std::errc() && at == column.data() + column.size() && number >= 1) {
@@ -305,9 +305,9 @@ bool DelimitedReader::next(double* values) {
   bool is_data = false;
   do {
     if (!next_line(at, end)) return false;
-    const char *b = at, *e = end;
-    trim(b, e);
-    is_data = b < e && !begins_comment(*b);
+    const char* first = at;
+    while (first < end && is_blank(*first)) ++first;
+    is_data = first < end && *first != '\r' && !begins_comment(*first);
   } while (!is_data);
   trim_line(at, end, delimiter_);
   for (size_t field = 0; field < fields_needed_; ++field) {

@@ -51,8 +51,8 @@ class ImuFiles : public ::testing::Test {
     return "was read";
   }
   std::string example(const std::string& what) {
-    const core::Value told = tally_.value();
-    const core::Value* one = told.find(what);
+    const core::Value counts = tally_.value();
+    const core::Value* one = counts.find(what);
     return one && one->find("examples") ? one->find("examples")->items()[0].as_text() : "";
   }
 
