@@ -183,6 +183,14 @@ GpsTime TimeReader::operator()(double recorded) {
   return on_scale(recorded * unit_) + offset_;
 }
 
+GpsTime TimeReader::in_week(int week, double recorded) const {
+  const double seconds = recorded * unit_;
+  if (!(seconds >= 0.0 && seconds < 2.0 * seconds_per_week))
+    throw Error(std::to_string(seconds) + " is no second of a week", where_,
+                "milliseconds need time.unit = \"1 ms\"; otherwise check the columns of time and week");
+  return from_week(week, seconds) + offset_;
+}
+
 GpsTime TimeReader::on_scale(double recorded) {
   if (period_ > 0.0) follow(recorded);
   switch (scale_) {

@@ -76,8 +76,8 @@ class TimeReader {
   /// `week`: for gps_week; `date`: "YYYY-MM-DD" for utc_day; `where` names the file in errors.
   TimeReader(TimeScale scale, std::optional<int> week, std::string_view date, std::string where, const TimeNumbers& numbers = {});
   GpsTime operator()(double recorded);
-  /// An instant whose GPS week has a column of its own.
-  GpsTime in_week(int week, double recorded) const { return from_week(week, recorded * unit_) + offset_; }
+  /// An instant whose GPS week has a column of its own. Throws Error for a time outside of two weeks.
+  GpsTime in_week(int week, double recorded) const;
 
  private:
   GpsTime on_scale(double seconds);

@@ -128,8 +128,10 @@ void add_findings(const std::string& stage, const Value& findings, std::set<std:
   const Value *lines = findings.find("lines"), *left_out = findings.find("left_out");
   if (stage == "terrain.contours" && left_out && lines->as_int() == 0)
     out.push_back({std::string(contours_code),
-                   "no contour is written: " + core::counted(left_out->as_int(), "line is", "lines are") +
-                       " shorter than contours.min_length or around less than contours.min_area",
+                   "no contour is written: " +
+                       core::counted(left_out->as_int(), "line is shorter than contours.min_length or encloses",
+                                     "lines are shorter than contours.min_length or enclose") +
+                       " less than contours.min_area",
                    {{"left_out", left_out->as_number(), {}}}});
   if (stage == "terrain.buildings" && returns && returns->as_int() == 0)
     out.push_back({std::string(buildings_code), "no return is of class building (6): terrain.buildings found nothing", {}});

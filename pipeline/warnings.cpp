@@ -89,7 +89,7 @@ const std::vector<WarningKind>& warning_kinds() {
       {"trajectory.lever_arm", "The records show another lever arm of the antenna than the survey states.",
        "Measure it again: forward, right, down from the IMU's centre; a turned IMU, a wrong sign or clocks apart look like it, too."},
       {"trajectory.motion", "The attitude does not follow the flight: heading against track, roll and pitch against the turns.",
-       "Correct axes, or the mounting roll, pitch and heading, of [[imu]]; it is right for a craft that flies sideways."},
+       "Correct axes, or the mounting roll, pitch and heading, of [[imu]]; a craft that flies sideways may be flagged without a fault."},
       {"work.damaged", "Pieces of an earlier run's work were changed or damaged, and were done again.",
        "Look for what writes into the work folder, and check the disk."},
   };

@@ -82,7 +82,7 @@ void describe(const SwathDensity& r, V& v) {
   v.result("area_km2", 1e-6 * r.all.area, "Area in which they were counted.");
   v.result("density", r.all.density, core::plain().in_summary(), "First returns of all lines per square metre (ANPD).");
   v.result("spacing_m", r.all.spacing, core::metres(3).in_summary(), "1 / sqrt(density): ANPS.");
-  v.result("single_density", r.single_density, "The same of the sparsest line with more than a tenth of the mean line's pulses (NPD).");
+  v.result("single_density", r.single_density, "The same of the sparsest line with more than 10 % of the mean line's pulses (NPD).");
   v.result("single_spacing_m", r.single_spacing, core::metres(3), "Its spacing (NPS).");
   v.result("density_5", r.low, "5 % of the cells have less per square metre.");
   v.result("density_50", r.median, "50 % of the cells have less.");

@@ -124,7 +124,11 @@ class Ground {
       west = std::min(west, b.x[p]), east = std::max(east, b.x[p]);
       south = std::min(south, b.y[p]), north = std::max(north, b.y[p]);
     }
-    if (!rows.empty()) squares_ = core::lattice_of(bin, west, south, std::nextafter(east, far), std::nextafter(north, far));
+    if (!rows.empty()) {  // the easternmost and northernmost may lie on the border of a square
+      const std::int64_t i0 = core::cell_index(west, bin), j0 = core::cell_index(south, bin);
+      squares_ = {bin, i0, j0, static_cast<int>(core::cell_index(east, bin) - i0 + 1),
+                  static_cast<int>(core::cell_index(north, bin) - j0 + 1)};
+    }
     std::vector<std::uint32_t> square;
     for (const std::uint32_t p : rows) square.push_back(static_cast<std::uint32_t>(at(column(b.x[p]), row(b.y[p]))));
     start_.assign(squares_.size() + 1, 0);

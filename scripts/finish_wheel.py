@@ -89,7 +89,7 @@ def add_licences(folder, libraries):
 
 
 def pack(root, to):
-    """Writes the wheel to a folder, compressed as far as a zip of every reader goes."""
+    """Writes the wheel to a folder, with the strongest compression that every zip reader reads."""
     with tempfile.TemporaryDirectory() as name:
         said(sys.executable, "-m", "wheel", "pack", "-d", name, str(root))
         quick = next(Path(name).iterdir())

@@ -188,7 +188,8 @@ core::GnssData FixList::finish() {
       throw core::Error(std::to_string(n) + " of " + std::to_string(all_) + " fixes " + what, name_, hint);
   };
   refuse(not_finite_, most_not_finite, "have a value that is empty or not finite", "check the columns, or export again");
-  refuse(repeated_, most_repeated, "are at the time of the fix before", "the times are too coarse: export them with more digits");
+  refuse(repeated_, most_repeated, "are at the time of the fix before",
+         "times too coarse (export them with more digits), or each fix written twice, as by the talkers GP and GN (keep one)");
   refuse(back_, most_back, "go back in time", "the file holds several sessions: part them, or sort it");
   tally_.read("GNSS fixes", added_);
   tally_.keep("GNSS fixes", out_.size());

@@ -139,7 +139,8 @@ class Scanner {
     if (f.size() < 12) return tally_.count("NMEA positions that are cut off, left out", at.place());
     fix.quality = f[6].size() == 1 ? f[6][0] - '0' : 0;
     if (fix.quality < 1) return tally_.count("NMEA positions without a solution, left out", at.place());
-    if (fix.quality > 5) return tally_.count("NMEA positions estimated, entered by hand or simulated, left out", at.place());
+    if (fix.quality > 5 && fix.quality != 9)
+      return tally_.count("NMEA positions estimated, entered by hand or simulated, left out", at.place());
     const double separation = number(f[11]);
     if (std::isnan(separation)) return tally_.count("NMEA positions without a geoid separation, left out", at.place());
     fix.of_day = of_day(f[1]);
@@ -229,6 +230,8 @@ FixQuality quality_of(int number) {
       return FixQuality::fixed;
     case 5:
       return FixQuality::float_ambiguity;
+    case 9:  // NovAtel
+      return FixQuality::sbas;
     default:
       return FixQuality::unknown;
   }

@@ -153,10 +153,10 @@ EventFormat event_format(const std::filesystem::path& path) {
   if (ending == ".ubx") return EventFormat::ubx;
   if (ending == ".mrk") return EventFormat::mrk;
   const BinaryFile file(path);
-  std::string start(4096, '\0');
+  std::string start(std::size_t{1} << 20, '\0');  // settings and other logs may come first
   start.resize(file.read_some(0, start.data(), start.size()));
   if (start.starts_with("\xb5\x62")) return EventFormat::ubx;
-  if (start.find('\0') == std::string::npos) {
+  if (std::string_view(start).substr(0, 4096).find('\0') == std::string::npos) {
     for (size_t at = start.find("#MARK"); at != std::string::npos; at = start.find("#MARK", at + 1))
       if (input_of(std::string_view(start).substr(at)) > 0) return EventFormat::novatel;
     if (rinex_kind(path) == RinexKind::observations) return EventFormat::rinex;

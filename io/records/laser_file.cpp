@@ -40,12 +40,10 @@ class Clock {
   double operator()(const LaserRecords& r, size_t i) {
     const auto place = [&] { return name_ + ": " + record_text(r.record[i]); };
     if (!std::isfinite(r.time[i])) throw core::Error("the time is missing or not finite", place(), damaged);
-    if (!r.week.empty()) {
-      if (!(r.week[i] >= 0 && r.week[i] <= 10000))
-        throw core::Error("the GPS week is " + core::format_number(r.week[i]) + ", which is none from 0 to 10000", place(), damaged);
-      return reader_.in_week(static_cast<int>(r.week[i]), r.time[i]);
-    }
+    if (!r.week.empty() && !(r.week[i] >= 0 && r.week[i] <= 10000))
+      throw core::Error("the GPS week is " + core::format_number(r.week[i]) + ", which is none from 0 to 10000", place(), damaged);
     try {
+      if (!r.week.empty()) return reader_.in_week(static_cast<int>(r.week[i]), r.time[i]);
       const double time = reader_(r.time[i]);
       if (is_instant(time)) return time;
     } catch (const core::Error& e) {

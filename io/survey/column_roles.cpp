@@ -6,10 +6,12 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "core/printable.h"
+
 namespace swath::io {
 namespace {
 
-/// A key of [columns] and names in use for it, without their unit endings.
+/// A key of [columns] and names in use for it, without their units, the more telling first.
 struct Role {
   std::string_view key;
   std::vector<std::string_view> names;
@@ -22,8 +24,11 @@ struct Kind {
 };
 
 const Role time_role{
-    "time", {"time", "t", "gps_time", "gpstime", "gps_sow", "sow", "tow", "gps_tow", "seconds_of_week", "timestamp", "unix_time", "utc"}};
-const Role week_role{"week", {"week", "gps_week", "wn"}};
+    "time",
+    {"gps_sow", "gpssow", "sow", "tow", "gps_tow", "seconds_of_week", "gps_time", "gpstime", "unix_time", "time", "t", "timestamp", "utc"}};
+const Role week_role{"week", {"week", "gps_week", "gpsw", "wn"}};
+const Role height_role{"height",
+                       {"h_ell", "ellipsoidal_height", "ellipsoid_height", "altitude_ellipsoid", "height", "h", "altitude", "alt"}};
 
 /// In the order of the search: what needs more columns comes first.
 const std::vector<Kind>& kinds() {
@@ -43,10 +48,19 @@ const std::vector<Kind>& kinds() {
         week_role,
         {"latitude", {"latitude", "lat", "northing"}},
         {"longitude", {"longitude", "lon", "lng", "long", "easting"}},
-        {"height", {"height", "h", "h_ell", "ellipsoidal_height", "alt", "altitude"}},
+        height_role,
         {"roll", {"roll"}},
         {"pitch", {"pitch"}},
-        {"heading", {"heading", "yaw", "azimuth"}}},
+        {"heading", {"heading", "yaw", "azimuth"}},
+        {"v_north", {"v_north"}},
+        {"v_east", {"v_east"}},
+        {"v_down", {"v_down"}},
+        {"sigma_north", {"sigma_north", "sdnorth", "sd_north", "north_sd"}},
+        {"sigma_east", {"sigma_east", "sdeast", "sd_east", "east_sd"}},
+        {"sigma_down", {"sigma_down", "sdheight", "sd_down", "sd_height", "height_sd"}},
+        {"sigma_roll", {"sigma_roll", "rollsd", "sd_roll", "roll_sd"}},
+        {"sigma_pitch", {"sigma_pitch", "pitchsd", "sd_pitch", "pitch_sd"}},
+        {"sigma_heading", {"sigma_heading", "hdngsd", "headingsd", "sd_heading", "heading_sd"}}},
        {{"time", "latitude", "longitude", "height", "roll", "pitch", "heading"}}},
       {TableKind::laser,
        {time_role,
@@ -63,7 +77,7 @@ const std::vector<Kind>& kinds() {
         week_role,
         {"latitude", {"latitude", "lat"}},
         {"longitude", {"longitude", "lon", "lng", "long"}},
-        {"height", {"height", "h", "h_ell", "ellipsoidal_height", "alt", "altitude"}},
+        height_role,
         {"x", {"ecef_x"}},
         {"y", {"ecef_y"}},
         {"z", {"ecef_z"}},
@@ -73,9 +87,9 @@ const std::vector<Kind>& kinds() {
         {"cov_yy", {"cov_yy"}},
         {"cov_yz", {"cov_yz"}},
         {"cov_zz", {"cov_zz"}},
-        {"sigma_north", {"sigma_north", "sd_north", "sdn", "std_north"}},
-        {"sigma_east", {"sigma_east", "sd_east", "sde", "std_east"}},
-        {"sigma_up", {"sigma_up", "sd_up", "sdu", "std_up", "sd_down", "sigma_down", "sd_height"}},
+        {"sigma_north", {"sigma_north", "sd_north", "sdn", "std_north", "sdnorth"}},
+        {"sigma_east", {"sigma_east", "sd_east", "sde", "std_east", "sdeast"}},
+        {"sigma_up", {"sigma_up", "sd_up", "sdu", "std_up", "sd_down", "sigma_down", "sd_height", "sdheight"}},
         {"quality", {"quality", "q", "fix"}},
         {"satellites", {"satellites", "n_sat", "nsat", "ns", "sats"}}},
        {{"time", "latitude", "longitude", "height"}, {"time", "x", "y", "z"}}},
@@ -94,11 +108,17 @@ struct PlainName {
   std::string name, unit;
 };
 
-/// "lat_deg" is "lat" in deg.
+/// "lat_deg" and "Lat (deg)" are "lat" in deg; "H-Ell" is "h_ell".
 PlainName plain_name(const std::string& given) {
   static constexpr std::array<std::string_view, 11> units{"deg", "rad", "degps", "radps", "mps2", "mps", "m2", "m", "s", "g", "ms"};
-  std::string name = given;
-  std::transform(name.begin(), name.end(), name.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  std::string name = core::lower_case(given), unit;
+  if (const size_t open = name.find_first_of("(["); open != name.npos && open > 0 && (name.back() == ')' || name.back() == ']')) {
+    unit = name.substr(open + 1, name.size() - open - 2);
+    name.resize(name.find_last_not_of(" _", open - 1) + 1);
+  }
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
+  if (!unit.empty()) return {name, unit};
   const size_t cut = name.rfind('_');
   if (cut == std::string::npos || cut == 0) return {name, ""};
   const std::string ending = name.substr(cut + 1);
@@ -125,18 +145,48 @@ void drop_second_form(ColumnRoles& found) {
   if (!has_all(found, {"sigma_north", "sigma_east", "sigma_up"})) drop({"sigma_north", "sigma_east", "sigma_up"});
 }
 
+/// Columns that mean something only together.
+void drop_incomplete(ColumnRoles& found) {
+  const std::vector<std::vector<std::string_view>> groups{
+      {"v_north", "v_east", "v_down"}, {"sigma_north", "sigma_east", "sigma_down"}, {"sigma_roll", "sigma_pitch", "sigma_heading"}};
+  for (const auto& group : groups)
+    if (!has_all(found, group))
+      std::erase_if(found.columns, [&](const auto& column) { return std::find(group.begin(), group.end(), column.first) != group.end(); });
+}
+
 /// What a column's name and unit say of its file.
 void note_units(const PlainName& plain, std::string_view key, ColumnRoles& found) {
-  if (plain.unit.starts_with("deg") || plain.unit.starts_with("rad")) found.angle_unit = plain.unit.substr(0, 3);
+  if (plain.unit.starts_with("deg") || plain.unit.starts_with("rad")) {
+    const std::string unit = plain.unit.substr(0, 3);
+    found.mixed_angles = found.mixed_angles || (!found.angle_unit.empty() && found.angle_unit != unit);
+    found.angle_unit = unit;
+  }
   const bool acceleration = key.starts_with("accelerometer"), gyro = key.starts_with("gyro");
-  if (acceleration && plain.unit.starts_with("mps")) found.acceleration_unit = "m/s2";
+  if (acceleration && (plain.unit.starts_with("mps") || plain.unit.starts_with("m/s"))) found.acceleration_unit = "m/s2";
   if (acceleration && plain.unit == "g") found.acceleration_unit = "g";
   if (gyro && (plain.name.starts_with("dtheta") || plain.name.starts_with("dangle"))) found.imu_kind = "increments";
-  if (gyro && plain.unit.ends_with("ps")) found.imu_kind = "rates";
+  if (gyro && (plain.unit.ends_with("ps") || plain.unit.ends_with("/s"))) found.imu_kind = "rates";
   if (key != "time") return;
   if (plain.name.ends_with("sow") || plain.name.ends_with("tow") || plain.name == "seconds_of_week") found.time_scale = "gps_week";
   if (plain.name == "unix_time") found.time_scale = "unix";
   if (plain.unit == "ms") found.time_unit = "1 ms";
+}
+
+bool has_any(const std::vector<PlainName>& plain, std::initializer_list<std::string_view> names) {
+  return std::any_of(plain.begin(), plain.end(),
+                     [&](const PlainName& p) { return std::find(names.begin(), names.end(), p.name) != names.end(); });
+}
+
+/// Takes the column of the role's most telling name; by its number from 1 where the name stands more than once.
+void take_column(const Role& role, const std::vector<std::string>& names, const std::vector<PlainName>& plain, ColumnRoles& found) {
+  for (const std::string_view wanted : role.names) {
+    const auto at = std::find_if(plain.begin(), plain.end(), [&](const PlainName& p) { return p.name == wanted; });
+    if (at == plain.end()) continue;
+    const auto c = static_cast<size_t>(at - plain.begin());
+    const bool is_repeated = std::count(names.begin(), names.end(), names[c]) > 1;
+    found.columns.emplace_back(role.key, is_repeated ? std::to_string(c + 1) : names[c]);
+    return note_units(*at, role.key, found);
+  }
 }
 
 }  // namespace
@@ -145,17 +195,15 @@ ColumnRoles roles_of(const std::vector<std::string>& names) {
   std::vector<PlainName> plain;
   for (const std::string& name : names) plain.push_back(plain_name(name));
   for (const Kind& kind : kinds()) {
+    // A distance beside a position or an attitude is a way flown, and no range of a laser.
+    if (kind.kind == TableKind::laser && has_any(plain, {"latitude", "lat", "northing", "roll", "pitch"})) continue;
     ColumnRoles found;
     found.kind = kind.kind;
-    for (const Role& role : kind.roles)
-      for (size_t c = 0; c < names.size(); ++c) {
-        if (std::find(role.names.begin(), role.names.end(), plain[c].name) == role.names.end()) continue;
-        found.columns.emplace_back(role.key, names[c]);
-        note_units(plain[c], role.key, found);
-        break;
-      }
+    for (const Role& role : kind.roles) take_column(role, names, plain, found);
+    if (found.mixed_angles) found.angle_unit.clear();
     if (std::none_of(kind.required.begin(), kind.required.end(), [&](const auto& keys) { return has_all(found, keys); })) continue;
     if (kind.kind == TableKind::gnss) drop_second_form(found);
+    if (kind.kind == TableKind::trajectory) drop_incomplete(found);
     return found;
   }
   return {};

@@ -13,16 +13,17 @@ enum class TableKind { none, laser, imu, gnss, trajectory, event, image_points }
 
 struct ColumnRoles {
   TableKind kind = TableKind::none;
-  std::vector<std::pair<std::string, std::string>> columns{};  ///< key of [columns] and the file's name, in the order of survey.toml
-  std::string angle_unit{};                                    ///< "deg" or "rad" as the names state it; empty: they do not
+  std::vector<std::pair<std::string, std::string>> columns{};  ///< key of [columns]; name, or number of one that stands twice
+  std::string angle_unit{};                                    ///< "deg" or "rad" as the names state it; empty: they do not, or mixed
+  bool mixed_angles = false;                                   ///< some names state deg, others rad
   std::string acceleration_unit{};                             ///< "m/s2" or "g"
   std::string imu_kind{};                                      ///< "increments" or "rates"
   std::string time_scale{};                                    ///< "gps_week" (seconds of week), "unix"
   std::string time_unit{};                                     ///< "1 ms" where times are no seconds
 };
 
-/// Judges a header by common names with their unit endings ("lat_deg", "gyro_x_radps", "gps_sow_s"). Columns that only have numbers have
-/// none.
+/// Judges a header by common names with their unit endings ("lat_deg", "gyro_x_radps", "Latitude (deg)"). Columns that only have numbers
+/// have none.
 ColumnRoles roles_of(const std::vector<std::string>& names);
 
 }  // namespace swath::io

@@ -2,6 +2,7 @@
 #include "io/survey/describe_tables.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -15,6 +16,8 @@
 #include "io/survey/column_roles.h"
 #include "io/survey/file_facts.h"
 #include "io/text/delimited.h"
+#include "io/text/fields.h"
+#include "io/text/line_reader.h"
 #include "io/text/npy.h"
 
 namespace swath::io {
@@ -224,16 +227,35 @@ core::Value describe_npy(const Path& path) {
   return reported(out);
 }
 
+/// A word, a date or a time of day. A number with a decimal comma is none: it is a number with a fault.
+bool is_word(const std::string& field) {
+  double ignored = 0;
+  const auto is_of_words = [](unsigned char c) { return std::isalpha(c) || c == ':' || c == '/'; };
+  return !read_number(field, ignored) && std::any_of(field.begin(), field.end(), is_of_words);
+}
+
+std::vector<std::string> first_record(const Path& path, const DelimitedLayout& layout) {
+  LineReader lines(path);
+  for (std::string_view line; lines.next(line);)
+    if (lines.number() == layout.data_line) return split_delimited(std::string(line), layout.delimiter);
+  return {};
+}
+
 core::Value describe_text(const Path& path) {
   const DelimitedLayout layout = inspect_delimited(path);
   TableFacts out{"delimited text"};
   out.delimiter = layout.delimiter == '\t' ? "tab" : layout.delimiter == ' ' ? "blanks" : std::string(1, layout.delimiter);
   out.header = !layout.names.empty();
   const EventTable events = event_table(layout);
+  const std::vector<std::string> first = first_record(path, layout);
   std::vector<size_t> indices;
   for (size_t c = 0; c < layout.columns; ++c) {
     out.columns.push_back({c < layout.names.size() ? layout.names[c] : std::to_string(c + 1)});
-    if (!events.are_events || c != events.id || holds_numbers(path, layout, c)) indices.push_back(c);
+    if (events.are_events && c == events.id && !holds_numbers(path, layout, c)) continue;
+    if (c < first.size() && is_word(first[c]))
+      out.warnings.push_back("column " + out.columns.back().name + " holds text");
+    else
+      indices.push_back(c);
   }
   if (!layout.names.empty() && layout.names.size() != layout.columns)
     out.warnings.push_back("the header names " + core::counted(layout.names.size(), "column") + ", the first line has " +

@@ -224,6 +224,21 @@ Value describe_raster(const Path& path) {
   return core::reported(out);
 }
 
+/// Whether a line is a log of NovAtel's: "#BESTPOSA,COM1,...;..." or "%RAWIMUSA,...;...".
+bool holds_novatel_log(std::string_view text) {
+  for (size_t at = 0; at < text.size();) {
+    const size_t stop = std::min(text.find('\n', at), text.size());
+    const std::string_view line = text.substr(at, stop - at);
+    const size_t comma = line.find(','), half = line.find(';');
+    const auto is_name = [](std::string_view s) { return s.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789") == s.npos; };
+    if (comma != line.npos && comma > 3 && half != line.npos && half > comma && (line[0] == '#' || line[0] == '%') &&
+        line[comma - 1] == 'A' && is_name(line.substr(1, comma - 1)))
+      return true;
+    at = stop + 1;
+  }
+  return false;
+}
+
 Value describe_content(const Path& path) {
   const BinaryFile file(path);
   std::string start(4096, '\0');
@@ -249,6 +264,9 @@ Value describe_content(const Path& path) {
   if (binary && looks_like_smrmsg(path)) return describe_smrmsg(path);
   if (Value raster = describe_raster(path); !raster.is_null()) return raster;
   if (Value vector = describe_vector(path); !vector.is_null()) return vector;
+  if (!binary && holds_novatel_log(start))
+    throw core::Error("is a NovAtel log, whose positions and IMU records are not read", path.string(),
+                      "export text by Inertial Explorer, or RINEX by NovAtel Convert; event marks in it: [[event]] format = \"novatel\"");
   if (!binary) return describe_text(path);
   throw core::Error(
       "is of no kind that is known here", path.string(),

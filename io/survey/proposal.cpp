@@ -7,11 +7,10 @@
 #include <map>
 #include <optional>
 
-#include "core/error.h"
+#include "core/printable.h"
 #include "io/survey/column_roles.h"
-#include "io/survey/info.h"
+#include "io/survey/survey_draft.h"
 #include "io/survey/tree_kind.h"
-#include "io/text/output_file.h"
 #include "io/text/toml_text.h"
 
 namespace swath::io {
@@ -43,46 +42,11 @@ bool is_scanner_frame(const Value& facts) {
   return near(*x) && near(*y) && near(*z) && y->first < 0.0 && y->second > 0.0;
 }
 
-/// The survey while it is written.
-class Draft {
- public:
-  void list(const std::string& name, const fs::path& file) {
-    list(name);
-    ++files_;
-    known("file", file.generic_string());
-  }
-  void list(const std::string& name) {
-    table_ = name + "[" + std::to_string(++tables_[name]) + "]";
-    text_ += "\n[[" + name + "]]\n";
-  }
-  void table(const std::string& name) {
-    table_ = name;
-    text_ += "\n[" + name + "]\n";
-  }
-  void known(const std::string& key, const Value& value) { line(key + " = " + toml_scalar(value)); }
-  void line(const std::string& text) { text_ += text + "\n"; }
-  /// A line to be completed, and why it is not known.
-  void open(const std::string& line, const std::string& why) {
-    text_ += "# ? " + why + "\n# " + line + "\n";
-    const std::string key = line.substr(0, line.find(" = "));
-    open_.push_back((table_.empty() ? key : table_ + "." + key) + ": " + why);
-  }
-  void note(const std::string& text) { text_ += (text.starts_with("\n") ? "" : "# ") + text + "\n"; }
-  void count_file() { ++files_; }
-  Proposal done() && { return {std::move(text_), files_, std::move(open_), {}}; }
-
- private:
-  std::string text_, table_;
-  std::map<std::string, int> tables_;
-  std::size_t files_ = 0;
-  std::vector<std::string> open_;
-};
-
 using Files = std::vector<const FoundFile*>;
 
 /// The files by the part of the survey that they make.
 struct Sorted {
-  Files points, scanner, csd, sbet, smrmsg, pos, nmea, observations, navigation, calibration, hangar;
+  Files points, scanner, csd, sbet, smrmsg, pos, nmea, observations, navigation, calibration, hangar, marks;
   std::vector<std::pair<const FoundFile*, ColumnRoles>> tables;
   std::vector<std::string> left;
   std::string zone;  ///< UTM zone of the first position found
@@ -90,7 +54,7 @@ struct Sorted {
   /// Measurements in a hangar and no record of a flight.
   bool only_hangar() const {
     return !hangar.empty() && points.empty() && sbet.empty() && pos.empty() && nmea.empty() && observations.empty() && tables.empty() &&
-           !has_laser();
+           marks.empty() && !has_laser();
   }
   const char* config() const { return only_hangar() ? "lever_arm" : "survey"; }
   bool has_laser() const { return !scanner.empty() || !csd.empty() || has(TableKind::laser); }
@@ -103,6 +67,8 @@ using Span = std::optional<std::pair<double, double>>;
 
 void note_zone(const Span& latitude, const Span& longitude, Sorted& out) {
   if (!out.zone.empty() || !latitude || !longitude) return;
+  constexpr double widest = 6.0;  // deg: wider where rows without a fix hold zeros
+  if (longitude->second - longitude->first > widest || latitude->second - latitude->first > widest) return;
   if (!(std::abs(latitude->first) < 84.0) || !(std::abs(longitude->first) < 180.0)) return;
   const int zone = static_cast<int>(std::floor((longitude->first + 180.0) / 6.0)) + 1;
   out.zone = "EPSG:" + std::to_string((latitude->first < 0.0 ? 32700 : 32600) + zone);
@@ -134,6 +100,8 @@ void sort_file(const FoundFile& f, Sorted& out) {
   const std::map<std::string, Files*> by_format{{"Optech CSD", &out.csd},      {"SBET", &out.sbet}, {"smrmsg", &out.smrmsg},
                                                 {"RTKLIB solution", &out.pos}, {"NMEA", &out.nmea}, {"calibration", &out.calibration},
                                                 {"hangar survey", &out.hangar}};
+  if (format == "RTKLIB solution" && f.name.stem().string().ends_with("_events"))
+    return left("positions at event marks, which are no record of a flight");
   if (const auto at = by_format.find(format); at != by_format.end()) return at->second->push_back(&f);
   if (format == "LAS" || format == "LAZ") return (is_scanner_frame(f.facts) ? out.scanner : out.points).push_back(&f);
   if (format == "RINEX") return (kind == "observations" ? out.observations : out.navigation).push_back(&f);
@@ -146,6 +114,13 @@ void sort_file(const FoundFile& f, Sorted& out) {
   }
   if (const TreeKind tree = kind_of_format(format); tree != TreeKind::other)
     return left(std::string(name_of(tree)) + ", not a record: " + std::string(use_of(tree)));
+  if (format == "UBX (u-blox)" || format == "Timestamp.MRK (DJI)" || format == "MARKTIME (NovAtel)") {
+    const Value* events = f.facts.find("events");
+    if (events && events->is_int() && events->as_int() > 0) return out.marks.push_back(&f);
+    return left(format + " without event marks: RTKLIB's convbin makes RINEX of raw observations");
+  }
+  if (format == "loopstats") return left("a log of clocks, which belongs to [[clock]] (docs/time.md)");
+  if (format.find("capture") != std::string::npos) return left("packets of a sensor: export points or ranges by the maker's software");
   left(format + ", which has no place that can be known: a terrain model, lines or points may belong to [[breaklines]] or [[control]]");
 }
 
@@ -161,6 +136,20 @@ void add_record(Draft& d, const std::string& list, const FoundFile& f, const cha
 }
 
 void open_week(Draft& d, const std::string& why) { d.open("time = { scale = \"gps_week\", week = 2317 }", why); }
+
+/// What the names of the columns leave open.
+std::string doubts_of(const ColumnRoles& r) {
+  std::string out;
+  const auto add = [&](const std::string& why) { out += (out.empty() ? "" : "; ") + why; };
+  for (const auto& [key, name] : r.columns) {
+    const std::string low = core::lower_case(name);
+    if (key == "quality")
+      add("quality = " + toml_scalar(name) + " only where its numbers are RTKLIB's (1 fixed, 2 float, 4 differential, 5 single)");
+    if (key == "height" && low.starts_with("alt") && low.find("ell") == low.npos)
+      add(name + " must be above the ellipsoid: the logs of autopilots and GPX count from sea level");
+  }
+  return out;
+}
 
 /// Times, units and columns of a table of records.
 void add_table(Draft& d, const FoundFile& f, const ColumnRoles& r) {
@@ -183,12 +172,19 @@ void add_table(Draft& d, const FoundFile& f, const ColumnRoles& r) {
     return std::any_of(r.columns.begin(), r.columns.end(), [&](const auto& c) { return c.first == key; });
   };
   if (r.kind == TableKind::imu) unit_of("kind", r.imu_kind, "increments", "increments or rates");
-  if (r.kind == TableKind::imu || r.kind == TableKind::trajectory || has("scan_angle") || has("latitude"))
+  if (r.mixed_angles)
+    d.open("angle_unit = \"deg\"", "some columns are in deg and others in rad, and one unit is read: convert the file");
+  else if (r.kind == TableKind::imu || r.kind == TableKind::trajectory || has("scan_angle") || has("latitude"))
     unit_of("angle_unit", r.angle_unit, "deg", "deg, rad or gon");
   if (r.kind == TableKind::imu) unit_of("acceleration_unit", r.acceleration_unit, "m/s2", "m/s2, g or mg");
   if (r.kind == TableKind::imu) d.open("axes = [\"x\", \"y\", \"z\"]", "which axes of the sensor point forward, right and down");
   std::string columns;
-  for (const auto& [key, name] : r.columns) columns += (columns.empty() ? "" : ", ") + key + " = " + toml_scalar(name);
+  for (const auto& [key, name] : r.columns) {
+    if (key == "latitude" && core::lower_case(name).starts_with("northing"))
+      d.open("crs = \"EPSG:25832\"", "northings and eastings are of a CRS that the file does not name");
+    if (key != "quality") columns += (columns.empty() ? "" : ", ") + key + " = " + toml_scalar(name);
+  }
+  if (const std::string why = doubts_of(r); !why.empty()) d.doubt("columns", why);
   d.line("columns = { " + columns + " }  # by their names: check them");
 }
 
@@ -236,14 +232,28 @@ void add_head(Draft& d, const Sorted& s, const std::string& name) {
     d.line("calibration_file = " + toml_scalar(s.csd.front()->name.generic_string()) + "  # boresight of its header");
 }
 
+/// Times of LAS points whose scale or week has to be stated: by the header, where the times do not contradict it.
+void open_scale(Draft& d, const Value& time) {
+  constexpr double longest = 2.0 * 604800.0;
+  const Span span = interval_of(time, "span");
+  const bool says_week = text_of(time, "scale").starts_with("seconds");
+  const bool may_be_week = !span || (span->first >= 0.0 && span->second < longest);
+  if (says_week && may_be_week)
+    open_week(d, "times are seconds of the GPS week, and the file does not say of which");
+  else if (says_week)
+    d.open("time = { scale = \"gps_adjusted\" }", "the header says seconds of the GPS week, the times are none");
+  else if (span && span->second > 0.0 && may_be_week)
+    open_week(d, "the header says adjusted standard GPS time, the times look like seconds of the week");
+}
+
 void add_laser(Draft& d, const Sorted& s) {
   const auto tables = std::count_if(s.tables.begin(), s.tables.end(), [](const auto& t) { return t.second.kind == TableKind::laser; });
   if (!s.scanner.empty() + !s.csd.empty() + (tables > 0) > 1)
     d.note("\n# ? Laser records in several formats may be the same records: keep one [[laser]] for each.");
   for (const FoundFile* f : s.scanner) {
     d.list("laser", f->name);
-    if (const Value* time = f->facts.find("time"); time && text_of(*time, "scale").starts_with("seconds"))
-      open_week(d, "times are seconds of the GPS week, and the file does not say of which");
+    d.note("? taken for the scanner's own frame: for a map in local coordinates write points in place of laser");
+    if (const Value* time = f->facts.find("time")) open_scale(d, *time);
   }
   for (const FoundFile* f : s.csd) add_record(d, "laser", *f, "csd", {".csd"});
 }
@@ -258,7 +268,23 @@ void add_trajectory(Draft& d, const Sorted& s) {
     for (const FoundFile* f : s.smrmsg) d.note("? " + f->name.generic_string() + ": the SBET that these accuracies belong to is not known");
 }
 
+/// Solutions of one time, of which a survey takes one. UTC texts are in the order of time.
+void note_rivals(Draft& d, const Files& files) {
+  const auto meet = [](const Value& a, const Value& b) {
+    const std::string from = text_of(a, "from"), again = text_of(b, "from");
+    return !from.empty() && !again.empty() && from <= text_of(b, "to") && again <= text_of(a, "to");
+  };
+  for (size_t i = 0; i < files.size(); ++i)
+    for (size_t j = i + 1; j < files.size(); ++j)
+      if (meet(files[i]->facts, files[j]->facts))
+        d.note("\n# ? " + files[i]->name.generic_string() + " and " + files[j]->name.generic_string() +
+               " cover the same time: keep one [[gnss]] of them.");
+}
+
 void add_gnss(Draft& d, const Sorted& s) {
+  Files solutions = s.pos;
+  solutions.insert(solutions.end(), s.nmea.begin(), s.nmea.end());
+  note_rivals(d, solutions);
   for (const FoundFile* f : s.pos) add_record(d, "gnss", *f, "pos", {".pos"});
   for (const FoundFile* f : s.nmea) {
     add_record(d, "gnss", *f, "nmea", {".nmea", ".log"});
@@ -306,49 +332,7 @@ void add_mounting(Draft& d, const Sorted& s) {
   d.open("lever_arm_scanner = [\"0 m\", \"0 m\", \"0 m\"]", "no file holds it: from the IMU's centre to the scanner, forward, right, down");
 }
 
-/// The files of folder / `inner` and of the folders in it, by their names relative to `folder`. A folder that cannot be read and what is no
-/// file at all (a pipe, a link to nothing) are entries with a fault; `folder` itself must be readable.
-void add_files(const fs::path& folder, const fs::path& inner, std::vector<FoundFile>& out) {
-  std::error_code ec;
-  fs::directory_iterator at(folder / inner, ec);
-  if (ec && inner.empty()) throw_system_error("cannot read the folder", folder, ec.value());
-  if (ec) return out.push_back({inner, {}, "the folder is not readable: " + ec.message()}), void();
-  for (const fs::directory_iterator end; at != end; at.increment(ec)) {
-    if (ec) throw_system_error("cannot read the folder", folder / inner, ec.value());
-    const fs::path name = inner / at->path().filename();
-    std::error_code absent;
-    const fs::file_status status = at->status(absent);
-    if (at->path().filename().string().starts_with(".") || name == "survey.toml") continue;
-    if (fs::is_directory(status)) {
-      if (!at->is_symlink(absent) && !fs::exists(at->path() / "report.json", absent)) add_files(folder, name, out);
-    } else if (fs::is_regular_file(status)) {
-      out.push_back({name});
-    } else {
-      out.push_back({name, {}, fs::exists(status) ? "it is not a file" : "the link leads to nothing"});
-    }
-  }
-}
-
 }  // namespace
-
-std::vector<FoundFile> find_records(const fs::path& folder, const std::function<void(std::size_t, std::size_t, const fs::path&)>& on_file) {
-  std::error_code ec;
-  if (!fs::is_directory(folder, ec)) throw core::usage_error("no such folder", folder.string(), "name the folder of a survey's files");
-  std::vector<FoundFile> out;
-  add_files(folder, {}, out);
-  std::sort(out.begin(), out.end(), [](const FoundFile& a, const FoundFile& b) { return a.name < b.name; });
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    FoundFile& f = out[k];
-    if (on_file) on_file(k, out.size(), f.name);
-    if (!f.fault.empty()) continue;
-    try {
-      f.facts = describe_file(folder / f.name);
-    } catch (const std::exception& e) {  // a file that is not what its name says may fail in any way
-      f.fault = e.what();
-    }
-  }
-  return out;
-}
 
 Proposal propose_survey(const std::vector<FoundFile>& files, const std::string& name) {
   Sorted s;
@@ -363,6 +347,7 @@ Proposal propose_survey(const std::vector<FoundFile>& files, const std::string& 
   if (s.has(TableKind::image_points)) add_camera(d);
   for (const auto& [file, roles] : s.tables)
     roles.kind == TableKind::image_points ? add_image_points(d, *file, roles) : add_table(d, *file, roles);
+  for (const FoundFile* f : s.marks) d.list("event", f->name);
   for (const FoundFile* f : s.points) {
     if (s.has_laser()) {
       s.left.push_back(f->name.generic_string() + ": a cloud in map coordinates, which a survey of raw records does not take");

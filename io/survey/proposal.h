@@ -2,27 +2,13 @@
 // A survey.toml proposed from the files of a folder.
 #pragma once
 
-#include <filesystem>
-#include <functional>
+#include <cstddef>
 #include <string>
 #include <vector>
 
-#include "core/config/value.h"
+#include "io/survey/find_records.h"
 
 namespace swath::io {
-
-/// One file of the folder: what describe_file says of it, or why it cannot.
-struct FoundFile {
-  std::filesystem::path name;  ///< relative to the folder
-  core::Value facts{};         ///< null where it cannot be read
-  std::string fault{};
-};
-
-/// Every file of the folder and the folders in it, by name; hidden ones, survey.toml, links to folders and the products of runs (folders
-/// with a report.json) are passed over. What cannot be read, be it a folder, has its fault. `on_file`: called before each is read, with the
-/// files read so far and their number. Throws core::Error: `folder` is not there or cannot be read.
-std::vector<FoundFile> find_records(const std::filesystem::path& folder,
-                                    const std::function<void(std::size_t, std::size_t, const std::filesystem::path&)>& on_file = {});
 
 struct Proposal {
   std::string toml;               ///< what is known as keys; what is not as comments that begin with "# ?" and say why

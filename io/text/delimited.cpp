@@ -140,6 +140,14 @@ size_t misfit_of(DelimitedLayout& layout, const std::vector<std::vector<std::str
   return layout.delimiter == ' ' && narrowest > names.size() ? narrowest : 0;
 }
 
+/// Where all lines end with their delimiter, nothing is a column behind it.
+void drop_last_column(DelimitedLayout& layout, const std::vector<std::vector<std::string>>& lines) {
+  if (!std::all_of(lines.begin(), lines.end(), [](const auto& fields) { return fields.size() > 1 && fields.back().empty(); })) return;
+  std::vector<std::string>& names = layout.names;
+  if (names.size() == layout.columns && names.back().empty()) names.pop_back();
+  if (names.size() + 1 == layout.columns) --layout.columns;
+}
+
 /// A record whose first number is cut off counts as a header no more than one that is whole.
 bool is_header(const std::vector<std::string>& fields) {
   if (all_numbers(fields)) return false;
@@ -164,7 +172,12 @@ std::string fields_and_columns(size_t fields, size_t columns, bool has_header) {
 }
 
 const char* number_hint(std::string_view field, const char* otherwise) {
-  return field.find(',') != std::string_view::npos ? "decimal commas are not read: write decimal points" : otherwise;
+  if (field.find(',') != field.npos) return "decimal commas are not read: write decimal points";
+  const bool digits = field.find_first_of("0123456789") != field.npos;
+  if (digits && field.find(':') != field.npos) return "times of day are not read here: export seconds, of the GPS week or of Unix";
+  if (digits && (field.find_first_of(" '") != field.npos || field.find("\xC2\xB0") != field.npos))
+    return "degrees, minutes and seconds are not read: export decimal degrees";
+  return otherwise;
 }
 
 DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::string& delimiter) {
@@ -177,12 +190,13 @@ DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::
   std::vector<NumberedLine> data;
   NumberedLine above;  // what was taken for the header
   while (data.size() <= cut_line_context && lines.next(line)) {
-    if (line.find_first_not_of('\t') == line.npos || (lines.number() < table.data && lines.number() != table.names)) continue;
+    if (line.find_first_not_of('\t') == line.npos) continue;
     if (is_comment(line)) {
       anything = true;
       if (data.empty()) comment = line.substr(std::min(line.find_first_not_of("#% \t"), line.size()));
       continue;
     }
+    if (lines.number() < table.data && lines.number() != table.names) continue;
     if (data.empty()) out.delimiter = delimiter.empty() ? delimiter_in(line) : delimiter_from(delimiter, path);
     if (data.size() == 1 && data[0].fields.size() == 1 && delimiter.empty()) out.delimiter = delimiter_in(line);  // a cut line has none
     std::vector<std::string> fields = split_delimited(line, out.delimiter);
@@ -215,6 +229,7 @@ DelimitedLayout inspect_delimited(const std::filesystem::path& path, const std::
     out.names = split_delimited(header, out.delimiter);
     if (table.names > 0 && out.names.size() != out.columns) out.names = split_delimited(header, delimiter_in(header));
     out.misfit = misfit_of(out, {fields.begin() + (cut ? 1 : 0), fields.end()});
+    drop_last_column(out, {fields.begin() + (cut ? 1 : 0), fields.end()});
   } else if (!comment.empty()) {
     const std::vector<std::string> words = split_delimited(comment, out.delimiter);
     if (words.size() == out.columns && !all_numbers(words)) out.names = words;
@@ -257,6 +272,7 @@ DelimitedReader::DelimitedReader(const std::filesystem::path& file, const Delimi
       delimiter_(layout.delimiter),
       fields_needed_(columns.empty() ? 0 : *std::max_element(columns.begin(), columns.end()) + 1),
       columns_(layout.names.empty() ? layout.columns : layout.names.size()),
+      fields_of_all_(std::min(columns_, layout.columns)),
       slots_(fields_needed_),
       buffer_(buffer_bytes),
       file_at_(begin),
@@ -330,8 +346,21 @@ bool DelimitedReader::next(double* values) {
     }
     at = stop + 1;
   }
-  if (delimiter_ != ' ') expect_no_more(at, end);
+  if (delimiter_ == ' ')
+    expect_all(at, end);
+  else
+    expect_no_more(at, end);
   return true;
+}
+
+void DelimitedReader::expect_all(const char* at, const char* end) const {
+  for (size_t fields = fields_needed_; fields < fields_of_all_; ++fields) {
+    while (at < end && is_blank(*at)) ++at;
+    if (at >= end)
+      throw core::Error(fields_and_columns(fields, fields_of_all_, !names_.empty()), file_.path().string() + ":" + std::to_string(line_),
+                        "blanks do not show which field is empty: export with commas");
+    at = field_end(at, end, ' ') + 1;
+  }
 }
 
 void DelimitedReader::expect_no_more(const char* at, const char* end) const {

@@ -69,12 +69,15 @@ class DelimitedReader {
   [[noreturn]] void short_line(size_t fields) const;
   /// `at`: behind the fields that are needed.
   void expect_no_more(const char* at, const char* end) const;
+  /// The same of lines parted by blanks, where an empty field moves all that follow it.
+  void expect_all(const char* at, const char* end) const;
   [[noreturn]] void bad_number(const char* begin, const char* end, size_t column) const;
 
   BinaryFile file_;
   std::vector<std::string> names_;
   char delimiter_;
   size_t fields_needed_, columns_;
+  size_t fields_of_all_;                    // that a line has at least
   std::vector<std::vector<size_t>> slots_;  // per field of the line: places in `values`
   std::vector<char> buffer_;
   size_t begin_ = 0, fill_ = 0;  // unread part of the buffer

@@ -20,9 +20,12 @@ struct Line {
   std::uint64_t number = 0;
   std::string text;
   size_t fields = 0, numbers = 0, empty = 0;
+  std::string form{};  ///< a letter for each field: n number, date or time of day; t text; - empty
   char delimiter = ' ';
 
   bool is_record() const { return fields >= 2 && numbers == fields; }
+  /// May be a record with words among its numbers, which the next one has in the same fields.
+  bool is_mixed() const { return fields >= 4 && form.front() == 'n' && std::count(form.begin(), form.end(), 'n') >= 3; }
   bool may_be_record() const { return fields >= 2 && numbers > 0 && numbers + empty == fields; }
 };
 
@@ -31,13 +34,20 @@ bool is_number(const std::string& field) {
   return read_number(field, ignored);
 }
 
+/// A number, a date or a time of day.
+bool is_value(const std::string& field) {
+  if (is_number(field)) return true;
+  return !field.empty() && field.front() >= '0' && field.front() <= '9' && field.find_first_not_of("0123456789.:/-TZ") == field.npos;
+}
+
 Line line_of(std::uint64_t number, std::string_view text, const std::string& delimiter, const std::filesystem::path& file) {
   Line out{number, std::string(text)};
   out.delimiter = delimiter.empty() ? delimiter_in(out.text) : delimiter_from(delimiter, file);
   const std::vector<std::string> fields = split_delimited(out.text, out.delimiter);
   out.fields = fields.size();
   out.empty = static_cast<size_t>(std::count(fields.begin(), fields.end(), ""));
-  out.numbers = static_cast<size_t>(std::count_if(fields.begin(), fields.end(), is_number));
+  for (const std::string& f : fields) out.form += f.empty() ? '-' : is_value(f) ? 'n' : 't';
+  out.numbers = static_cast<size_t>(std::count(out.form.begin(), out.form.end(), 'n'));
   return out;
 }
 
@@ -51,7 +61,8 @@ std::vector<Line> lines_above_records(const std::filesystem::path& file, const s
     out.push_back(line_of(reader.number(), text, delimiter, file));
     if (out.size() < 2) continue;
     const Line &last = out.back(), &before = out[out.size() - 2];
-    if (last.is_record() && before.is_record() && last.fields == before.fields) {
+    const bool alike = last.is_mixed() ? last.form == before.form : last.is_record() && before.is_record();
+    if (alike && last.fields == before.fields) {
       out.pop_back();
       return out;
     }
@@ -70,18 +81,21 @@ bool in_brackets(const std::string& field) { return field.starts_with('(') || fi
 /// In brackets, or a unit as such tables have it: names of columns and words of a description are longer.
 bool is_unit(const std::string& field) {
   static const std::set<std::string, std::less<>> units{
-      "",       "-",     "%",      "m",    "cm",    "mm",    "km",    "ft",    "usft",  "deg",   "rad",  "mrad",  "gon",  "arcsec",
-      "arcmin", "s",     "sec",    "secs", "ms",    "us",    "ns",    "min",   "h",     "hz",    "m/s",  "cm/s",  "ft/s", "km/h",
-      "kn",     "knots", "g",      "mg",   "m/s2",  "m/s^2", "m/s/s", "deg/s", "deg/h", "rad/s", "dms",  "d-m-s", "m2",   "m^2",
-      "1",      "count", "counts", "num",  "weeks", "week",  "sow",   "gpst",  "utc",   "hms",   "degc", "nt",    "v"};
+      "",       "-",       "%",      "m",       "cm",     "mm",      "km",    "ft",     "usft",  "deg",    "rad",   "mrad",
+      "gon",    "arcsec",  "arcmin", "s",       "sec",    "secs",    "ms",    "us",     "ns",    "min",    "h",     "hz",
+      "m/s",    "cm/s",    "ft/s",   "km/h",    "kn",     "knots",   "g",     "mg",     "m/s2",  "m/s^2",  "m/s/s", "deg/s",
+      "deg/h",  "rad/s",   "dms",    "d-m-s",   "m2",     "m^2",     "count", "counts", "num",   "weeks",  "week",  "sow",
+      "gpst",   "utc",     "hms",    "degc",    "nt",     "v",       "d",     "none",   "metre", "metres", "meter", "meters",
+      "degree", "degrees", "radian", "radians", "second", "seconds", "feet",  "foot"};
   return in_brackets(field) || units.contains(core::lower_case(field));
 }
 
-/// Units for each column below its name: blanks part descriptions, too, so that units between them need brackets.
+/// Units for each column below its name: blanks part descriptions, too, so that of units between them one at least is in brackets.
 bool units_below(const Line& names, const Line& units, const Line& record) {
   if (!names_of(names, record) || names.delimiter != record.delimiter || units.delimiter != record.delimiter) return false;
   const std::vector<std::string> fields = split_delimited(units.text, units.delimiter);
-  return std::all_of(fields.begin(), fields.end(), record.delimiter == ' ' ? in_brackets : is_unit);
+  const bool by_blanks = record.delimiter == ' ';
+  return std::all_of(fields.begin(), fields.end(), is_unit) && (!by_blanks || std::any_of(fields.begin(), fields.end(), in_brackets));
 }
 
 }  // namespace

@@ -164,6 +164,10 @@ TEST(Time, RefusesTimesThatCannotBeRead) {
   EXPECT_NE(refusal([&] { day(212415.0); }).find("no second of a day"), std::string::npos);
   EXPECT_NE(refusal([&] { day(std::nan("")); }).find("not a number"), std::string::npos);
   EXPECT_NO_THROW(week(604799.0));
+  EXPECT_NE(refusal([&] { week.in_week(2317, 474006000.0); }).find("no second of a week"), std::string::npos) << "milliseconds";
+  TimeNumbers milliseconds;
+  milliseconds.unit = 0.001;
+  EXPECT_EQ(TimeReader(TimeScale::gps_week, 0, "", "a.csv", milliseconds).in_week(2317, 474006000.0), from_week(2317, 474006.0));
 }
 
 TEST(Time, Dates) {

@@ -40,7 +40,9 @@ std::string sentence(const BlockCamera& camera, const MeanResidual& r) {
   std::snprintf(text, sizeof text, " are on average %+.2f m forward, %+.2f m right, %+.2f m down of the stated antenna", mean.x(), mean.y(),
                 mean.z());
   return "the stations of camera " + camera.name + text + (!turned.empty() ? "; the opposite sign of " + turned + " explains it" : "") +
-         (explained ? "" : "; check its axes, and the heights of stations and control");
+         (explained
+              ? ""
+              : "; check its axes, the times of the events (late ones show as an offset forward), and the heights of stations and control");
 }
 
 }  // namespace

@@ -170,7 +170,8 @@ std::vector<Mistake> mistakes_of_cameras(const ReadBlock& read) {
     return (c.sigma.tail<shape>().array() == held_value).all() && !c.value.tail<shape>().isZero(0.0);
   };
   if (std::none_of(read.block.cameras.begin(), read.block.cameras.end(), is_held)) return {};
-  return {{"the distortion has the other sign", "k1 to b2 are measured less ideal: turn the signs of corrections", [is_held](ReadBlock& r) {
+  return {{"the distortion has the other sign", "k1 to b2 are measured less ideal: change the signs of the values if they are corrections",
+           [is_held](ReadBlock& r) {
              for (BlockCamera& c : r.block.cameras)
                if (is_held(c)) c.value.tail<shape>() *= -1.0;
            }}};

@@ -147,7 +147,7 @@ void expect_strips(const calib::ReadBlock& read, const BlockStageOptions& o, con
   if (without > listed) names += " and " + std::to_string(without - listed) + " more";
   throw core::Error(
       "block.adjust: drift is per strip, and " + core::counted(without, "image") + " of " + std::to_string(read.block.images.size()) +
-          " have no strip, or strip 0: " + names,
+          (without == 1 ? " has" : " have") + " no strip, or strip 0: " + names,
       survey, "list the images of strips in [[image]] and leave those of turns out; number strips from 1; or state drift = \"block\"");
 }
 

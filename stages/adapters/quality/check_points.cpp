@@ -71,7 +71,8 @@ void describe(const CheckPointFindings& r, V& v) {
   v.result("check_points", r.none, core::plain().in_summary(), "Why nothing was compared.");
   v.result("marks", r.marks, core::plain().only_if(!r.none), "Check points of the survey.");
   v.result("corners", r.corners, core::if_any(), "Corners of targets, whose edges are compared.");
-  v.result("outside", r.outside, core::plain().only_if(!r.outside.empty()), "Check points where the survey has no points at all.");
+  v.result("outside", r.outside, core::plain().only_if(!r.outside.empty()),
+           "Check points farther than 100 m from all points of the survey.");
   v.result("unread", r.unread, core::plain().only_if(!r.unread.empty()), "Check points without ground points around them.");
   v.result("nva_m", r.nva, metres().in_summary().limited_by("nva"),
            "RMSE of the ground points at three or more open check points, their error added.");
@@ -171,10 +172,10 @@ double away(const std::vector<SeenCell>& seen, const Eigen::Vector3d& at) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const SeenCell& c : seen) {
     const double x0 = c.i * seen_side, y0 = c.j * seen_side;
-    nearest = std::min(
-        nearest, std::hypot(std::max({x0 - at.x(), 0.0, at.x() - x0 - seen_side}), std::max({y0 - at.y(), 0.0, at.y() - y0 - seen_side})));
+    const double dx = std::max({x0 - at.x(), 0.0, at.x() - x0 - seen_side}), dy = std::max({y0 - at.y(), 0.0, at.y() - y0 - seen_side});
+    nearest = std::min(nearest, dx * dx + dy * dy);
   }
-  return nearest;
+  return std::sqrt(nearest);
 }
 
 void read_tile(const TileJob& job, const Context& context, const CheckPointOptions& o, const trajectory::Trajectory* flown,
@@ -274,7 +275,8 @@ void name_records(const Marks& marks, const std::vector<MarkFound>& at, const st
     found.named.push_back(
         {"check.outside",
          (all == 1 ? std::string("the only check point does not lie") : "none of the " + std::to_string(all) + " check points lies") +
-             " within the survey, the nearest is " + distance + " away: compare the CRS and the columns of [[control]] with the survey's"});
+             " within the survey" + (std::isfinite(nearest) ? std::string(", the nearest is ") + distance + " away" : std::string()) +
+             ": compare the CRS and the columns of [[control]] with the survey's"});
   else if (outside > 0)
     found.named.push_back({"check.outside", std::to_string(outside) + " of " + std::to_string(all) +
                                                 " check points lie outside the survey's points: " + shown(found.outside)});

@@ -104,7 +104,7 @@ struct ContourFindings {
 template <class V>
 void describe(const ContourFindings& r, V& v) {
   v.result("lines", r.lines, core::plain().in_summary(), "Contour lines.");
-  v.result("left_out", r.left_out, core::if_any(), "Lines shorter than min_length or around less than min_area: not written.");
+  v.result("left_out", r.left_out, core::if_any(), "Lines shorter than min_length or enclosing less than min_area: not written.");
   v.result("closed", r.closed, "Lines that close.");
   v.result("depressions", r.depressions, "Lines around lower ground.");
   v.result("length_m", r.metres, core::metres(0), "Length of all lines.");

@@ -50,9 +50,10 @@ class Nmea : public ::testing::Test {
 
 TEST_F(Nmea, PositionsQualitiesAndLeapSeconds) {
   std::string text;
-  for (int q = 1; q <= 5; ++q) text += gga("10000" + std::to_string(q) + ".50", q) + rmc("10000" + std::to_string(q) + ".50", "180320");
+  for (const int q : {1, 2, 3, 4, 5, 9})
+    text += gga("10000" + std::to_string(q) + ".50", q) + rmc("10000" + std::to_string(q) + ".50", "180320");
   const core::GnssData g = read(text);
-  ASSERT_EQ(g.size(), 5u);
+  ASSERT_EQ(g.size(), 6u);
   EXPECT_EQ(g.time[0], utc("2020-03-18", 36001.5));
   EXPECT_EQ(core::utc_text(g.time[0]), "2020-03-18T10:00:01.500Z");
   const core::Geodetic p = core::geodetic_of(g.position[0]);
@@ -61,7 +62,7 @@ TEST_F(Nmea, PositionsQualitiesAndLeapSeconds) {
   EXPECT_NEAR(p.height, 547.05, 1e-6);
   using core::FixQuality;
   EXPECT_EQ(g.quality, (std::vector<FixQuality>{FixQuality::single, FixQuality::differential, FixQuality::single, FixQuality::fixed,
-                                                FixQuality::float_ambiguity}));
+                                                FixQuality::float_ambiguity, FixQuality::sbas}));
   EXPECT_EQ(g.satellites[0], 12);
   EXPECT_FALSE(g.has_velocity());
   EXPECT_GT(g.covariance[0](0, 0), 100 * g.covariance[3](0, 0));

@@ -110,6 +110,9 @@ constexpr const char* novatel =
 TEST_F(EventMarks, NovatelTakesTheReceiverClockOff) {
   const auto path = file("marks.txt", std::string("#BESTPOSA,COM1*00000000\n") + novatel);
   EXPECT_EQ(event_format(path), EventFormat::novatel);
+  std::string settings;
+  for (int k = 0; k < 200; ++k) settings += "#RXCONFIGA,COM1,0,77.5,FINESTEERING,2317,474006.000;#SETTINGA*12345678\n";
+  EXPECT_EQ(event_format(file("late.txt", settings + novatel)), EventFormat::novatel) << "behind its settings";
   const std::vector<EventMark> marks = read_novatel_marks(path, 0, tally_);
   ASSERT_EQ(marks.size(), 1u);
   EXPECT_EQ(marks[0].second, 1358 * 604800.0 + 422621);

@@ -53,6 +53,28 @@ TEST(ColumnRoles, WithAttitudeItIsATrajectory) {
   EXPECT_EQ(events.time_unit, "1 ms");
 }
 
+TEST(ColumnRoles, ExportsOfOtherPrograms) {
+  auto r = roles_of({"TIME", "DISTANCE", "EASTING", "NORTHING", "ELLIPSOID HEIGHT", "LATITUDE", "LONGITUDE", "ELLIPSOID HEIGHT", "ROLL",
+                     "PITCH", "HEADING", "ROLL SD", "PITCH SD", "HEADING SD"});
+  EXPECT_EQ(r.kind, TableKind::trajectory);
+  EXPECT_EQ(column(r, "latitude"), "LATITUDE");
+  EXPECT_EQ(column(r, "height"), "5") << "its name stands twice";
+  EXPECT_EQ(column(r, "sigma_roll"), "ROLL SD");
+  r = roles_of({"Week", "GPSTime", "Latitude", "Longitude", "H-Ell", "Roll", "Pitch", "Heading"});
+  EXPECT_EQ(r.kind, TableKind::trajectory);
+  EXPECT_EQ(column(r, "height"), "H-Ell");
+  r = roles_of({"GPSW", "GPSSoW", "latitude(deg)", "longitude(deg)", "height(m)", "sdn(m)", "sde(m)", "sdu(m)"});
+  EXPECT_EQ(r.kind, TableKind::gnss);
+  EXPECT_EQ(r.angle_unit, "deg");
+  EXPECT_EQ(r.time_scale, "gps_week");
+  EXPECT_EQ(column(r, "sigma_up"), "sdu(m)");
+  r = roles_of({"t", "lat_deg", "lon_deg", "h_m", "roll_rad", "pitch_rad", "yaw_rad", "sigma_roll_rad"});
+  EXPECT_TRUE(r.mixed_angles);
+  EXPECT_EQ(r.angle_unit, "");
+  EXPECT_EQ(column(r, "sigma_roll"), "") << "one of three";
+  EXPECT_NE(roles_of({"time", "distance", "lat"}).kind, TableKind::laser);
+}
+
 TEST(ColumnRoles, NamesThatSayNothingAreNone) {
   EXPECT_EQ(roles_of({"1", "2", "3", "4", "5", "6", "7"}).kind, TableKind::none);
   EXPECT_EQ(roles_of({"x", "y", "z"}).kind, TableKind::none);

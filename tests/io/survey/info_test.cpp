@@ -46,6 +46,29 @@ TEST(Info, UnknownFilesAreErrors) {
   EXPECT_THROW(describe_file(folder.path()), core::Error);
 }
 
+TEST(Info, ColumnsOfTextAreNamedAndTheOthersRead) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "a.csv", "t,status,r\n1,a_link,5\n2,a_link,7\n");
+  const core::Value facts = describe_file(folder / "a.csv");
+  EXPECT_EQ(facts.find("rows")->as_int(), 2);
+  EXPECT_EQ(facts.find("columns")->items()[2].find("span")->items()[1].as_number(), 7.0);
+  EXPECT_EQ(facts.find("warnings")->items()[0].as_text(), "column status holds text");
+  test::write_bytes(folder / "b.csv", "t,r\n1,5\n2,x\n");
+  EXPECT_NE(describe_file(folder / "b.csv").find("warnings")->items()[0].as_text().find("reading stopped"), std::string::npos);
+}
+
+TEST(Info, LogsOfNovatelAreNamed) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "log.txt",
+                    "#BESTPOSA,COM1,0,62.5,FINESTEERING,2317,474006.000,00000000,0000,0;SOL_COMPUTED,NARROW_INT,47.9,10.5*1051ada9\n");
+  try {
+    describe_file(folder / "log.txt");
+    FAIL() << "it is no table";
+  } catch (const core::Error& e) {
+    EXPECT_NE(e.text().find("NovAtel log"), std::string::npos) << e.text();
+  }
+}
+
 TEST(Info, CloudsOfOtherFormatsAreNamedWithTheirConversion) {
   const test::TemporaryFolder folder;
   test::write_bytes(folder / "a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nend_header\n1 2 3\n");

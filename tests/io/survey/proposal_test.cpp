@@ -2,7 +2,6 @@
 #include "io/survey/proposal.h"
 
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <regex>
@@ -107,25 +106,6 @@ TEST(Proposal, FormatsWithTheirOwnFields) {
   EXPECT_NO_THROW(parse_toml(completed(p.toml), "made"));
 }
 
-TEST(Proposal, WhatCannotBeReadIsNamedAndTheRestIsProposed) {
-  const test::TemporaryFolder folder;
-  test::write_bytes(folder / "a.pos", "% GPST latitude(deg) longitude(deg) height(m) Q ns\n");
-  test::write_bytes(folder / "cut.las", "LASF");
-  test::write_bytes(folder / "empty.csv", "");
-  test::write_bytes(folder / "laser.csv", "gps_sow_s,range_m\n474009,500.1\n474010,500.2\n");
-  fs::create_symlink("nothing.laz", folder / "linked.laz");
-  fs::create_directory_symlink(".", folder / "itself");
-  ASSERT_EQ(::mkfifo((folder / "pipe.csv").c_str(), 0600), 0);
-  const auto found = find_records(folder.path());
-  ASSERT_EQ(found.size(), 6u) << "a link to a folder is passed over";
-  const Proposal p = propose_survey(found, "odd");
-  EXPECT_NE(p.toml.find("[[laser]]\nfile = \"laser.csv\""), std::string::npos) << p.toml;
-  EXPECT_NE(p.toml.find("cut.las: cannot be read: "), std::string::npos) << p.toml;
-  EXPECT_NE(p.toml.find("empty.csv: cannot be read: the file is empty"), std::string::npos) << p.toml;
-  EXPECT_NE(p.toml.find("linked.laz: cannot be read: the link leads to nothing"), std::string::npos) << p.toml;
-  EXPECT_NE(p.toml.find("pipe.csv: cannot be read: it is not a file"), std::string::npos) << p.toml;
-}
-
 TEST(Proposal, AHangarSurveyIsNamedWithItsConfig) {
   const test::TemporaryFolder folder;
   test::write_bytes(folder / "hangar.toml", "[[point]]\nname = \"imu\"\n[[station]]\nname = \"S1\"\n");
@@ -143,7 +123,70 @@ TEST(Proposal, AHangarSurveyIsNamedWithItsConfig) {
   EXPECT_NE(p.toml.find("hangar = \"hangar.toml\""), std::string::npos) << "beside the records of a flight, too: " << p.toml;
 }
 
-TEST(Proposal, AFolderThatIsNotThere) { EXPECT_THROW(find_records("no/such/folder"), core::Error); }
+/// The proposal of one text file.
+Proposal proposed_of(const std::string& text) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "a.csv", text);
+  return propose_survey(find_records(folder.path()), "a");
+}
+
+TEST(Proposal, HeightsAboveTheSeaAndForeignQualityCodesAreDoubted) {
+  const Proposal p =
+      proposed_of("gps_sow_s,gps_week,lat_deg,lon_deg,h_ell_m,quality\n474006,2317,47.9,10.5,1127,1\n474007,2317,47.9,10.5,1127,1\n");
+  EXPECT_EQ(p.toml.find(", quality = "), std::string::npos) << p.toml;
+  EXPECT_TRUE(is_open(p, "gnss[1].columns"));
+  const Proposal log = proposed_of("timestamp,Lat,Lng,Alt\n1717760406,47.9,10.5,1079\n1717760407,47.9,10.5,1079\n");
+  EXPECT_TRUE(is_open(log, "gnss[1].columns")) << log.toml;
+  const Proposal plain = proposed_of("gps_sow_s,lat_deg,lon_deg,h_ell_m\n474006,47.9,10.5,1127\n474007,47.9,10.5,1127\n");
+  EXPECT_FALSE(is_open(plain, "gnss[1].columns")) << plain.toml;
+  const Proposal zeros = proposed_of("time,lat_deg,lon_deg,h_ell_m\n1,0,0,0\n2,47.9,10.5,1127\n");
+  EXPECT_EQ(zeros.toml.find("EPSG:32631"), std::string::npos) << "rows of zeros lie in no zone: " << zeros.toml;
+}
+
+TEST(Proposal, AnExportOfPospacIsATrajectory) {
+  const Proposal p = proposed_of(
+      " TIME, DISTANCE, EASTING, NORTHING, ELLIPSOID HEIGHT, LATITUDE, LONGITUDE, ELLIPSOID HEIGHT, ROLL, PITCH, HEADING\n"
+      "474009.0,12.3,500123.1,5300456.2,611.2,47.9064,10.512,611.2,0.5,1.2,88.0\n"
+      "474009.1,12.4,500123.2,5300456.2,611.2,47.9064,10.512,611.2,0.5,1.2,88.0\n");
+  EXPECT_NE(p.toml.find("[[trajectory]]"), std::string::npos) << p.toml;
+  EXPECT_EQ(p.toml.find("[[laser]]"), std::string::npos) << "the distance is the way flown";
+  EXPECT_NE(p.toml.find("latitude = \"LATITUDE\", longitude = \"LONGITUDE\", height = \"5\""), std::string::npos) << p.toml;
+}
+
+TEST(Proposal, SolutionsOfOneTimeAreRivals) {
+  const auto solution = [](const char* name, const char* from, const char* to) {
+    return file(name, std::string("{\"format\": \"RTKLIB solution\", \"from\": \"") + from + "\", \"to\": \"" + to + "\"}");
+  };
+  const Proposal p = propose_survey({solution("rover.pos", "2024-06-07T10:00:00.000Z", "2024-06-07T11:00:00.000Z"),
+                                     solution("rover_events.pos", "2024-06-07T10:05:00.000Z", "2024-06-07T10:50:00.000Z"),
+                                     solution("single.pos", "2024-06-07T10:30:00.000Z", "2024-06-07T10:40:00.000Z"),
+                                     solution("later.pos", "2024-06-07T12:00:00.000Z", "2024-06-07T12:40:00.000Z")},
+                                    "m");
+  EXPECT_EQ(p.files, 3u) << "positions at events are no record: " << p.toml;
+  EXPECT_NE(p.toml.find("rover.pos and single.pos cover the same time"), std::string::npos) << p.toml;
+  EXPECT_EQ(p.toml.find("later.pos cover"), std::string::npos) << p.toml;
+}
+
+TEST(Proposal, MarksOfReceiversAreEvents) {
+  const Proposal p = propose_survey({file("a_Timestamp.MRK", R"x({"format": "Timestamp.MRK (DJI)", "events": 12})x"),
+                                     file("raw.ubx", R"x({"format": "UBX (u-blox)", "events": 0})x"),
+                                     file("scan.pcap", R"({"format": "pcap capture"})"), file("loopstats", R"({"format": "loopstats"})")},
+                                    "m");
+  EXPECT_NE(p.toml.find("[[event]]\nfile = \"a_Timestamp.MRK\""), std::string::npos) << p.toml;
+  EXPECT_NE(p.toml.find("raw.ubx: UBX (u-blox) without event marks"), std::string::npos) << p.toml;
+  EXPECT_NE(p.toml.find("loopstats: a log of clocks"), std::string::npos) << p.toml;
+  EXPECT_EQ(p.toml.find("[[breaklines]]"), std::string::npos) << p.toml;
+}
+
+TEST(Proposal, TimesOfAScannersFrameThatContradictTheHeader) {
+  const auto proposed = [](const std::string& scale, const std::string& span) {
+    const std::string facts = R"({"format": "LAS", "x": [-10, 10], "y": [-10, 10], "z": [0, 900], "time": {"scale": )";
+    return propose_survey({file("frame.las", facts + '"' + scale + R"(", "span": )" + span + "}}")}, "m");
+  };
+  EXPECT_NE(proposed("seconds of the GPS week", "[390000000, 390003600]").toml.find("gps_adjusted"), std::string::npos);
+  EXPECT_TRUE(is_open(proposed("adjusted standard GPS time", "[474006, 477600]"), "laser[1].time"));
+  EXPECT_FALSE(is_open(proposed("adjusted standard GPS time", "[390000000, 390003600]"), "laser[1].time"));
+}
 
 TEST(Proposal, ImagePointsAskForTheCameraAndTheirConventions) {
   const test::TemporaryFolder folder;

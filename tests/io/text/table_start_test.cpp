@@ -66,6 +66,43 @@ TEST_F(TableStarts, WordsAboveTheNamesAreNoNames) {
   EXPECT_EQ(inspect_delimited(made("flight 7\ntime,lat,height\ns,deg,m\n1,2,3\n4,5,6\n7,8,9\n")).names, layout.names) << "units below them";
 }
 
+TEST_F(TableStarts, RecordsMayHoldDatesAndWords) {
+  const Rows rows{{1, 2, 3}, {4, 5, 6}};
+  const std::vector<std::string> named{"GPSTime", "H-Ell", "Roll"};
+  const std::string head = "Project:  flight\nProgram:  IE Version 8.90\n\n";
+  EXPECT_EQ(read_all(made(head + "Date GPSTime H-Ell Roll\n(MDY) (sec) (m) (deg)\n6/12/2020 1 2 3\n6/12/2020 4 5 6\n"), named), rows);
+  EXPECT_EQ(read_all(made(head + "GPSTime H-Ell AmbStatus Roll\n(sec) (m) (deg)\n1 2 Fixed 3\n4 5 Float 6\n"), named), rows);
+}
+
+TEST_F(TableStarts, UnitsAreWordsOrBareBetweenBrackets) {
+  const Rows rows{{1}, {4}};
+  EXPECT_EQ(read_all(made("Week D GPSTime H-Ell\n(weeks) d (sec) (m)\n2317 5 1 2\n2317 5 4 5\n"), {"GPSTime"}), rows);
+  EXPECT_EQ(read_all(made("time,lat,lon,height\nseconds,degrees,degrees,meters\n1,2,3,4\n4,6,7,8\n"), {"time"}), rows);
+}
+
+TEST_F(TableStarts, NamesMayBeInACommentBelowADescription) {
+  EXPECT_EQ(read_all(made("made by a logger\non a day in June\n# time lat h\n1 2 3\n4 5 6\n"), {"lat"}), (Rows{{2}, {5}}));
+}
+
+TEST_F(TableStarts, ALastDelimiterEndsNoColumn) {
+  const DelimitedLayout ended = inspect_delimited(made("t\ta\tr\t\n1\t2\t3\t\n4\t5\t6\t\n"));
+  EXPECT_EQ(ended.names, (std::vector<std::string>{"t", "a", "r"}));
+  EXPECT_EQ(ended.columns, 3U);
+  EXPECT_EQ(inspect_delimited(made("t,a,r\n1,2,3,\n4,5,6,\n")).columns, 3U);
+  EXPECT_EQ(read_all(made("t,a,r\n1,2,3,\n4,5,6,\n"), {"r"}), (Rows{{3}, {6}}));
+}
+
+TEST_F(TableStarts, ARowPartedByBlanksThatLacksAFieldIsRefused) {
+  const core::Error e = error_of("t lat h roll\n1 47 611 0.5\n2 47 0.5\n", {"h"});
+  EXPECT_NE(e.where().find(":3"), std::string::npos) << e.text();
+  EXPECT_NE(e.text().find("the line has 3 fields, the header 4 columns"), std::string::npos) << e.text();
+}
+
+TEST_F(TableStarts, TimesOfDayAndMinutesOfArcAreNamed) {
+  EXPECT_NE(error_of("t,lat\n19:34:18,1\n", {"t"}).hint().find("times of day"), std::string::npos);
+  EXPECT_NE(error_of("t,lat\n1,47 54 23.1\n", {"t", "lat"}).hint().find("decimal degrees"), std::string::npos);
+}
+
 TEST_F(TableStarts, ADamagedFirstRecordIsNoDescription) {
   const std::string rest = "1,2,3\n4,5,6\n7,8,9\n";
   for (const std::string& text : {rest, "a,b,c\n" + rest, "a,b,c\nx,2,3\n" + rest, "1,,3\n2,,4\n" + rest, std::string("P1,2,3\nP2,5,6\n")})
