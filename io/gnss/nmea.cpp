@@ -144,6 +144,9 @@ class Scanner {
     const double separation = number(f[11]);
     if (std::isnan(separation)) return tally_.count("NMEA positions without a geoid separation, left out", at.place());
     fix.of_day = of_day(f[1]);
+    if (!out_.fixes.empty() && out_.fixes.back().of_day == fix.of_day && f[0] != address_)
+      return tally_.count("NMEA positions that another talker has stated for the same time, left out", at.place());
+    address_ = f[0];
     fix.latitude = degrees_of(f[2], f[3], 'N', 'S');
     fix.longitude = degrees_of(f[4], f[5], 'E', 'W');
     fix.height = number(f[9]) + separation;
@@ -171,6 +174,7 @@ class Scanner {
   static constexpr size_t none = ~size_t{0};
   NmeaFile& out_;
   core::Tally& tally_;
+  std::string address_;  ///< of the last position, "GNGGA"
   double sigma_time_ = Fix::none;
   std::array<double, 3> sigma_{};
 };

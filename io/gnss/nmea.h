@@ -18,7 +18,7 @@ namespace swath::io {
 struct NmeaFix {
   double of_day = 0;                               ///< UTC, s since midnight
   double latitude = 0, longitude = 0, height = 0;  ///< deg, deg, ellipsoidal m (height above the geoid + its separation)
-  int quality = 0;                                 ///< 1 single, 2 differential, 3 PPS, 4 fixed, 5 float
+  int quality = 0;                                 ///< 1 single, 2 differential, 3 PPS, 4 fixed, 5 float, 9 SBAS
   double satellites = 0;
   double sigma_north, sigma_east, sigma_up;  ///< m; NaN without GST
   std::uint64_t line = 0;
@@ -43,7 +43,8 @@ bool looks_like_nmea(const std::filesystem::path& file);
 
 /// Reads GGA, RMC, ZDA and GST of any talker, wherever they stand in a line. Left out and counted: sentences with a wrong checksum or
 /// none, lines that hold no sentence (binary data, text; comments with # are passed over), positions without a solution, estimated,
-/// entered by hand or simulated (quality 0, 6, 7, 8), and those without a geoid separation, whose ellipsoidal height is not known.
+/// entered by hand or simulated (quality 0, 6, 7, 8), those of a second talker at the time of the one before, and those without a geoid
+/// separation, whose ellipsoidal height is not known.
 NmeaFile scan_nmea(const std::filesystem::path& file, core::Tally& tally);
 
 /// The positions on GPS time. The day of a position is that of the nearest RMC (status A) or ZDA sentence, midnight between them followed;

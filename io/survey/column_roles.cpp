@@ -11,7 +11,7 @@
 namespace swath::io {
 namespace {
 
-/// A key of [columns] and names in use for it, without their units, the more telling first.
+/// A key of [columns] and names in use for it, without their units, those that are clearer first.
 struct Role {
   std::string_view key;
   std::vector<std::string_view> names;
@@ -177,7 +177,7 @@ bool has_any(const std::vector<PlainName>& plain, std::initializer_list<std::str
                      [&](const PlainName& p) { return std::find(names.begin(), names.end(), p.name) != names.end(); });
 }
 
-/// Takes the column of the role's most telling name; by its number from 1 where the name stands more than once.
+/// Takes the column of the role's clearest name; by its number from 1 where the name stands more than once.
 void take_column(const Role& role, const std::vector<std::string>& names, const std::vector<PlainName>& plain, ColumnRoles& found) {
   for (const std::string_view wanted : role.names) {
     const auto at = std::find_if(plain.begin(), plain.end(), [&](const PlainName& p) { return p.name == wanted; });

@@ -130,12 +130,13 @@ bool ends_in(const FoundFile& f, std::initializer_list<const char*> endings) {
 }
 
 /// A record of the list with its format, where the name's ending does not say it.
-void add_record(Draft& d, const std::string& list, const FoundFile& f, const char* format, std::initializer_list<const char*> endings) {
+void add_record(SurveyDraft& d, const std::string& list, const FoundFile& f, const char* format,
+                std::initializer_list<const char*> endings) {
   d.list(list, f.name);
   if (!ends_in(f, endings)) d.known("format", format);
 }
 
-void open_week(Draft& d, const std::string& why) { d.open("time = { scale = \"gps_week\", week = 2317 }", why); }
+void open_week(SurveyDraft& d, const std::string& why) { d.open("time = { scale = \"gps_week\", week = 2317 }", why); }
 
 /// What the names of the columns leave open.
 std::string doubts_of(const ColumnRoles& r) {
@@ -152,7 +153,7 @@ std::string doubts_of(const ColumnRoles& r) {
 }
 
 /// Times, units and columns of a table of records.
-void add_table(Draft& d, const FoundFile& f, const ColumnRoles& r) {
+void add_table(SurveyDraft& d, const FoundFile& f, const ColumnRoles& r) {
   static constexpr std::array names{"", "laser", "imu", "gnss", "trajectory", "event"};
   d.list(names[static_cast<size_t>(r.kind)], f.name);
   if (r.kind != TableKind::event && !ends_in(f, {".csv", ".txt", ".npy"})) d.known("format", "text");
@@ -189,7 +190,7 @@ void add_table(Draft& d, const FoundFile& f, const ColumnRoles& r) {
 }
 
 /// Nothing of a table of image points says what its coordinates are.
-void add_image_points(Draft& d, const FoundFile& f, const ColumnRoles& r) {
+void add_image_points(SurveyDraft& d, const FoundFile& f, const ColumnRoles& r) {
   d.list("image_points", f.name);
   for (const auto& [key, name] : r.columns)
     if (name + "_column" != key) d.known(key, name);
@@ -199,7 +200,7 @@ void add_image_points(Draft& d, const FoundFile& f, const ColumnRoles& r) {
   d.open("sigma_pixels = 0.5", "no file holds how well the points are measured");
 }
 
-void add_camera(Draft& d) {
+void add_camera(SurveyDraft& d) {
   d.list("camera");
   d.open("f = \"50 mm\"", "no file holds the camera: principal distance, and x0, y0, k1 ... where they are known (docs/block.md)");
   d.open("columns = 7216", "pixels across");
@@ -209,7 +210,7 @@ void add_camera(Draft& d) {
   d.open("lever_arm = [\"0 m\", \"0 m\", \"0 m\"]", "from the IMU's centre to the perspective centre, forward, right, down");
 }
 
-void add_head(Draft& d, const Sorted& s, const std::string& name) {
+void add_head(SurveyDraft& d, const Sorted& s, const std::string& name) {
   d.note(
       "Proposed by swath init from the files of this folder. Lines with # ? are not known from the files: complete the line below each, "
       "and");
@@ -233,7 +234,7 @@ void add_head(Draft& d, const Sorted& s, const std::string& name) {
 }
 
 /// Times of LAS points whose scale or week has to be stated: by the header, where the times do not contradict it.
-void open_scale(Draft& d, const Value& time) {
+void open_scale(SurveyDraft& d, const Value& time) {
   constexpr double longest = 2.0 * 604800.0;
   const Span span = interval_of(time, "span");
   const bool says_week = text_of(time, "scale").starts_with("seconds");
@@ -246,7 +247,7 @@ void open_scale(Draft& d, const Value& time) {
     open_week(d, "the header says adjusted standard GPS time, the times look like seconds of the week");
 }
 
-void add_laser(Draft& d, const Sorted& s) {
+void add_laser(SurveyDraft& d, const Sorted& s) {
   const auto tables = std::count_if(s.tables.begin(), s.tables.end(), [](const auto& t) { return t.second.kind == TableKind::laser; });
   if (!s.scanner.empty() + !s.csd.empty() + (tables > 0) > 1)
     d.note("\n# ? Laser records in several formats may be the same records: keep one [[laser]] for each.");
@@ -258,7 +259,7 @@ void add_laser(Draft& d, const Sorted& s) {
   for (const FoundFile* f : s.csd) add_record(d, "laser", *f, "csd", {".csd"});
 }
 
-void add_trajectory(Draft& d, const Sorted& s) {
+void add_trajectory(SurveyDraft& d, const Sorted& s) {
   for (size_t k = 0; k < s.sbet.size(); ++k) {
     add_record(d, "trajectory", *s.sbet[k], "sbet", {".out", ".sbet"});
     open_week(d, "an SBET holds seconds of the GPS week, and not of which");
@@ -269,7 +270,7 @@ void add_trajectory(Draft& d, const Sorted& s) {
 }
 
 /// Solutions of one time, of which a survey takes one. UTC texts are in the order of time.
-void note_rivals(Draft& d, const Files& files) {
+void note_rivals(SurveyDraft& d, const Files& files) {
   const auto meet = [](const Value& a, const Value& b) {
     const std::string from = text_of(a, "from"), again = text_of(b, "from");
     return !from.empty() && !again.empty() && from <= text_of(b, "to") && again <= text_of(a, "to");
@@ -281,7 +282,7 @@ void note_rivals(Draft& d, const Files& files) {
                " cover the same time: keep one [[gnss]] of them.");
 }
 
-void add_gnss(Draft& d, const Sorted& s) {
+void add_gnss(SurveyDraft& d, const Sorted& s) {
   Files solutions = s.pos;
   solutions.insert(solutions.end(), s.nmea.begin(), s.nmea.end());
   note_rivals(d, solutions);
@@ -308,7 +309,7 @@ void add_gnss(Draft& d, const Sorted& s) {
 }
 
 /// What no file holds: scanner, mounting, lever arms.
-void add_mounting(Draft& d, const Sorted& s) {
+void add_mounting(SurveyDraft& d, const Sorted& s) {
   const bool fixes = !s.pos.empty() || !s.nmea.empty() || !s.observations.empty() || s.has(TableKind::gnss);
   if (s.has(TableKind::imu)) {
     d.table("imu_spec");
@@ -338,7 +339,7 @@ Proposal propose_survey(const std::vector<FoundFile>& files, const std::string& 
   Sorted s;
   for (const FoundFile& f : files) sort_file(f, s);
   for (size_t k = 1; k < s.hangar.size(); ++k) s.left.push_back(s.hangar[k]->name.generic_string() + ": a second hangar survey");
-  Draft d;
+  SurveyDraft d;
   add_head(d, s, name);
   add_mounting(d, s);
   add_laser(d, s);
@@ -359,9 +360,7 @@ Proposal propose_survey(const std::vector<FoundFile>& files, const std::string& 
   if (s.has_laser()) d.note("\n# Without [[line]] tables (id, start, end) the flight lines are those of the records; docs/survey.md.");
   if (!s.left.empty()) d.note("\n# Not part of this survey:");
   for (const std::string& one : s.left) d.note("  " + one);
-  Proposal out = std::move(d).done();
-  out.config = s.config();
-  return out;
+  return {d.text(), d.files(), d.questions(), s.config()};
 }
 
 }  // namespace swath::io

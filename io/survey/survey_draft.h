@@ -10,13 +10,12 @@
 #include <vector>
 
 #include "core/config/value.h"
-#include "io/survey/proposal.h"
 #include "io/text/toml_text.h"
 
 namespace swath::io {
 
 /// The survey while it is written.
-class Draft {
+class SurveyDraft {
  public:
   void list(const std::string& name, const std::filesystem::path& file) {
     list(name);
@@ -46,7 +45,9 @@ class Draft {
   }
   void note(const std::string& text) { text_ += (text.starts_with("\n") ? "" : "# ") + text + "\n"; }
   void count_file() { ++files_; }
-  Proposal done() && { return {std::move(text_), files_, std::move(open_), {}}; }
+  const std::string& text() const { return text_; }
+  std::size_t files() const { return files_; }
+  const std::vector<std::string>& questions() const { return open_; }
 
  private:
   std::string text_, table_;

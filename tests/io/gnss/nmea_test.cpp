@@ -68,6 +68,15 @@ TEST_F(Nmea, PositionsQualitiesAndLeapSeconds) {
   EXPECT_GT(g.covariance[0](0, 0), 100 * g.covariance[3](0, 0));
 }
 
+TEST_F(Nmea, OfTwoTalkersAtOneTimeTheFirstCounts) {
+  std::string text = rmc("100001.00", "180320");
+  for (int k = 1; k <= 5; ++k) {
+    const std::string of_gn = gga("10000" + std::to_string(k) + ".00");
+    text += of_gn + sentence("GP" + of_gn.substr(3, of_gn.find('*') - 3));
+  }
+  EXPECT_EQ(read(text).size(), 5u);
+}
+
 TEST_F(Nmea, SigmasOfGstBeforeOrBehindThePosition) {
   const std::string date = sentence("GPZDA,100001.00,18,03,2020,00,00");
   const auto gst = [](const std::string& time) { return sentence("GPGST," + time + ",1.0,,,,0.3,0.4,0.5"); };
