@@ -17,34 +17,88 @@ namespace {
 constexpr int cells_a_side = 64;    // of a footprint cell
 constexpr double rule_side = 16.0;  // void cells: (4 ANPS)^2 in cells of a quarter of it
 
-/// What the survey covers, on footprint cells.
+/// Numbers of runs that are joined through neighbouring rows.
+std::vector<std::vector<size_t>> joined_runs(const std::vector<VoidRun>& runs) {
+  std::vector<size_t> parent(runs.size());
+  std::iota(parent.begin(), parent.end(), size_t{0});
+  const auto root = [&parent](size_t k) {
+    while (parent[k] != k) k = parent[k] = parent[parent[k]];
+    return k;
+  };
+  size_t below = 0;
+  for (size_t k = 0; k < runs.size(); ++k) {
+    while (below < k && (runs[below].j < runs[k].j - 1 || (runs[below].j == runs[k].j - 1 && runs[below].i1 <= runs[k].i0))) ++below;
+    for (size_t n = below; n < k && runs[n].j == runs[k].j - 1 && runs[n].i0 < runs[k].i1; ++n)
+      if (const size_t a = root(n), b = root(k); a != b) parent[std::max(a, b)] = std::min(a, b);
+  }
+  std::map<size_t, std::vector<size_t>> groups;
+  for (size_t k = 0; k < runs.size(); ++k) groups[root(k)].push_back(k);
+  std::vector<std::vector<size_t>> out;
+  for (auto& [first, group] : groups) out.push_back(std::move(group));
+  return out;
+}
+
+/// What the survey covers, on footprint cells: a bit for each, for a corridor's box is nearly empty and may have 10^8.
 struct Footprint {
   core::Lattice lattice;
-  std::vector<std::uint8_t> covered;
+  std::vector<bool> covered;
   bool holds(std::int64_t i, std::int64_t j) const {
     i -= lattice.i0, j -= lattice.j0;
-    return i >= 0 && j >= 0 && i < lattice.nx && j < lattice.ny && covered[lattice.at(static_cast<int>(i), static_cast<int>(j))] != 0;
+    return i >= 0 && j >= 0 && i < lattice.nx && j < lattice.ny && covered[lattice.at(static_cast<int>(i), static_cast<int>(j))];
   }
 };
 
-/// Cells that are not covered and are joined to the lattice's border, where nothing is covered.
-std::vector<std::uint8_t> outside_of(const Footprint& f) {
-  std::vector<std::uint8_t> out(f.covered.size(), 0);
-  std::vector<std::pair<int, int>> open{{0, 0}};
-  out[0] = 1;
-  while (!open.empty()) {
-    const auto [i, j] = open.back();
-    open.pop_back();
-    for (const auto& [di, dj] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
-      const int u = i + di, v = j + dj;
-      if (!f.lattice.holds(u, v)) continue;
-      const size_t c = f.lattice.at(u, v);
-      if (f.covered[c] || out[c]) continue;
-      out[c] = 1;
-      open.push_back({u, v});
+/// Closing by a disc of `reach` cells, of a lattice whose cells that near to the border are not covered. In bands of rows, with as many on
+/// either side as a cell of the band may depend on.
+void close_gaps(Footprint& f, double reach) {
+  constexpr int band = 256;
+  const int nx = f.lattice.nx, ny = f.lattice.ny, halo = 2 * (static_cast<int>(reach) + 2);
+  std::vector<bool> closed = f.covered;
+  for (int a = 0; a < ny; a += band) {
+    const int b = std::min(ny, a + band), first = std::max(0, a - halo), last = std::min(ny, b + halo);
+    std::vector<std::uint8_t> mask(static_cast<size_t>(nx) * static_cast<size_t>(last - first));
+    const size_t offset = f.lattice.at(0, first);
+    for (size_t c = 0; c < mask.size(); ++c) mask[c] = f.covered[offset + c];
+    if (std::find(mask.begin(), mask.end(), 1) == mask.end()) continue;
+    std::vector<float> d = squared_distances(mask, nx, last - first);
+    for (size_t c = 0; c < mask.size(); ++c) mask[c] = static_cast<double>(d[c]) > reach * reach;
+    d = squared_distances(mask, nx, last - first);
+    for (size_t c = f.lattice.at(0, a) - offset; c < f.lattice.at(0, b) - offset; ++c)
+      if (static_cast<double>(d[c]) > reach * reach) closed[offset + c] = true;
+  }
+  f.covered.swap(closed);
+}
+
+/// Covers what is not joined to the lattice's border, where nothing is covered.
+void fill_enclosed(Footprint& f) {
+  std::vector<VoidRun> empty;  // of cells, row by row
+  for (int j = 0; j < f.lattice.ny; ++j)
+    for (int i = 0; i < f.lattice.nx; ++i) {
+      if (f.covered[f.lattice.at(i, j)]) continue;
+      if (empty.empty() || empty.back().j != j || empty.back().i1 != i) empty.push_back({j, i, i});
+      ++empty.back().i1;
+    }
+  const std::vector<std::vector<size_t>> groups = joined_runs(empty);
+  for (const std::vector<size_t>& group : groups) {
+    if (group.front() == 0) continue;  // with the lattice's first row
+    for (const size_t k : group)
+      for (int i = empty[k].i0; i < empty[k].i1; ++i) f.covered[f.lattice.at(i, empty[k].j)] = true;
+  }
+}
+
+/// Leaves out the cells beside one that is not covered, across a corner, too.
+void shrink(Footprint& f) {
+  const int nx = f.lattice.nx, ny = f.lattice.ny;
+  std::vector<bool> out(f.covered.size(), false);
+  for (int j = 1; j + 1 < ny; ++j) {
+    int run = 0;  // columns that are covered in all three rows, up to this one
+    for (int i = 0; i < nx; ++i) {
+      const bool all = f.covered[f.lattice.at(i, j - 1)] && f.covered[f.lattice.at(i, j)] && f.covered[f.lattice.at(i, j + 1)];
+      run = all ? run + 1 : 0;
+      if (run >= 3) out[f.lattice.at(i - 1, j)] = true;
     }
   }
-  return out;
+  f.covered.swap(out);
 }
 
 /// A closing by a disc as wide as the widest gap, with what it encloses, without its outermost cells.
@@ -56,19 +110,12 @@ Footprint footprint_around(const std::vector<FootprintCell>& cells, double side,
   const auto [south, north] = std::minmax_element(cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.j < b.j; });
   const int rim = static_cast<int>(reach) + 3;
   f.lattice = {side, west->i - rim, south->j - rim, east->i - west->i + 1 + 2 * rim, north->j - south->j + 1 + 2 * rim};
-  f.covered.assign(f.lattice.size(), 0);
+  f.covered.assign(f.lattice.size(), false);
   for (const FootprintCell& c : cells)
-    f.covered[f.lattice.at(static_cast<int>(c.i - f.lattice.i0), static_cast<int>(c.j - f.lattice.j0))] = 1;
-  const int nx = f.lattice.nx, ny = f.lattice.ny;
-  if (reach >= 0.5) {
-    std::vector<float> d = squared_distances(f.covered, nx, ny);
-    std::vector<std::uint8_t> beyond(d.size());
-    for (size_t c = 0; c < d.size(); ++c) beyond[c] = static_cast<double>(d[c]) > reach * reach;
-    d = squared_distances(beyond, nx, ny);
-    for (size_t c = 0; c < d.size(); ++c) f.covered[c] |= static_cast<double>(d[c]) > reach * reach;
-  }
-  const std::vector<float> to_outside = squared_distances(outside_of(f), nx, ny);
-  for (size_t c = 0; c < to_outside.size(); ++c) f.covered[c] = to_outside[c] > 2.0F;  // farther than a neighbour across a corner
+    f.covered[f.lattice.at(static_cast<int>(c.i - f.lattice.i0), static_cast<int>(c.j - f.lattice.j0))] = true;
+  if (reach >= 0.5) close_gaps(f, reach);
+  fill_enclosed(f);
+  shrink(f);
   return f;
 }
 
@@ -108,27 +155,6 @@ void add_box(const core::Box& box, const Footprint& f, double cell, std::vector<
   if (!any) return;
   const auto index = [cell](double v) { return static_cast<std::int32_t>(core::cell_index(v, cell)); };
   for (std::int32_t j = index(box.y0); j < index(box.y1); ++j) runs.push_back({j, index(box.x0), index(box.x1)});
-}
-
-/// Numbers of runs that are joined through neighbouring rows.
-std::vector<std::vector<size_t>> joined_runs(const std::vector<VoidRun>& runs) {
-  std::vector<size_t> parent(runs.size());
-  std::iota(parent.begin(), parent.end(), size_t{0});
-  const auto root = [&parent](size_t k) {
-    while (parent[k] != k) k = parent[k] = parent[parent[k]];
-    return k;
-  };
-  size_t below = 0;
-  for (size_t k = 0; k < runs.size(); ++k) {
-    while (below < k && (runs[below].j < runs[k].j - 1 || (runs[below].j == runs[k].j - 1 && runs[below].i1 <= runs[k].i0))) ++below;
-    for (size_t n = below; n < k && runs[n].j == runs[k].j - 1 && runs[n].i0 < runs[k].i1; ++n)
-      if (const size_t a = root(n), b = root(k); a != b) parent[std::max(a, b)] = std::min(a, b);
-  }
-  std::map<size_t, std::vector<size_t>> groups;
-  for (size_t k = 0; k < runs.size(); ++k) groups[root(k)].push_back(k);
-  std::vector<std::vector<size_t>> out;
-  for (auto& [first, group] : groups) out.push_back(std::move(group));
-  return out;
 }
 
 VoidArea area_of_runs(const std::vector<VoidRun>& runs, double cell) {
@@ -192,7 +218,7 @@ SwathVoids judge_voids(std::vector<VoidRun> runs, const std::vector<FootprintCel
   const Footprint f = footprint_around(cells, side, max_gap);
   SwathVoids out;
   out.least = rule_side * rule_side * cell * cell;
-  out.judged = static_cast<double>(std::count(f.covered.begin(), f.covered.end(), 1)) * side * side;
+  out.judged = static_cast<double>(std::count(f.covered.begin(), f.covered.end(), true)) * side * side;
   for (const core::Box& box : without_points) add_box(box, f, cell, runs);
   const std::vector<VoidRun> all = cut_runs(std::move(runs), f);
   const std::vector<std::vector<size_t>> groups = joined_runs(all);

@@ -9,6 +9,8 @@ source scripts/package_build.sh
 own=()
 rm -rf "$build/deb" "$build/deb_own"
 if [ -z "${SWATH_SYSTEM_GDAL:-}" ]; then
+  grep -q 'lib/swath' "$build/tools/cmake_install.cmake" ||
+    { echo "swath: $build was made before the program looked into lib/swath; run cmake and build it again" >&2; exit 1; }
   bash scripts/build_gdal.sh
   mkdir -p "$build/deb_own/lib/swath" "$build/deb_own/share/doc/swath/licences"
   cp -L build/gdal/lib/libgdal.so.?? "$build/deb_own/lib/swath/"

@@ -155,6 +155,11 @@ class Named(Case):
         self.assert_error(swath("run", "survey_sbe"), 2, "no config of that name", "did you mean 'survey_sbet'")
         self.assert_error(swath("explain", "nothing_like_it"), 2, "there are .*survey")
 
+    def test_a_program_without_its_configs_says_so(self):
+        alone = shutil.copy(SWATH, self.folder / "swath")
+        done = subprocess.run([alone, "dtm", "a.las"], capture_output=True, text=True, env={k: v for k, v in os.environ.items() if k != "SWATH_CONFIGS"})
+        self.assert_error(done, 2, "'dtm' is no command, or one that needs the configs of the program, which are not found", "SWATH_CONFIGS names another folder")
+
     def test_configs_of_ones_own_come_first(self):
         shutil.copy(CONFIG, self.folder / "ours.toml")
         done = swath("check", "ours", env={**os.environ, "SWATH_CONFIGS": str(self.folder)})

@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
+#include <set>
+#include <utility>
+#include <vector>
 
 namespace swath::quality {
 namespace {
@@ -83,6 +87,83 @@ TEST(VoidAreas, ASquareWithoutPointsInTheMiddleIsAVoid) {
   const SwathVoids v = judge_voids({}, ring, {{160, 160, 320, 320}, {1000, 1000, 1160, 1160}}, half_metre, 0.0);
   ASSERT_EQ(v.voids.size(), 1u);
   EXPECT_NEAR(v.area, 160 * 160, 1e-6);
+}
+
+/// The definition, cell by cell: a closing by a disc, what it encloses, and one cell less on all sides.
+class Covered {
+ public:
+  Covered(const std::set<std::pair<int, int>>& cells, int nx, int ny, double reach) : rim_(static_cast<int>(reach) + 3), nx_(nx), ny_(ny) {
+    const auto disc = [&](const std::set<std::pair<int, int>>& from, int i, int j) {
+      const int r = static_cast<int>(reach);
+      for (int dj = -r; dj <= r; ++dj)
+        for (int di = -r; di <= r; ++di)
+          if (di * di + dj * dj <= reach * reach && from.contains({i + di, j + dj})) return true;
+      return false;
+    };
+    std::set<std::pair<int, int>> beyond;
+    for_each([&](int i, int j) {
+      if (!disc(cells, i, j)) beyond.insert({i, j});
+    });
+    std::vector<std::pair<int, int>> open{{-rim_, -rim_}};
+    for_each([&](int i, int j) {
+      if (cells.contains({i, j}) || (reach >= 0.5 && !disc(beyond, i, j))) closed_.insert({i, j});
+    });
+    outside_.insert(open.front());
+    while (!open.empty()) {
+      const auto [i, j] = open.back();
+      open.pop_back();
+      for (const auto& [di, dj] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+        const std::pair<int, int> next{i + di, j + dj};
+        const bool there = next.first >= -rim_ && next.second >= -rim_ && next.first < nx_ + rim_ && next.second < ny_ + rim_;
+        if (there && !closed_.contains(next) && outside_.insert(next).second) open.push_back(next);
+      }
+    }
+  }
+  bool holds(int i, int j) const {
+    for (int dj = -1; dj <= 1; ++dj)
+      for (int di = -1; di <= 1; ++di)
+        if (outside_.contains({i + di, j + dj})) return false;
+    return true;
+  }
+
+ private:
+  template <class F>
+  void for_each(F f) {
+    for (int j = -rim_; j < ny_ + rim_; ++j)
+      for (int i = -rim_; i < nx_ + rim_; ++i) f(i, j);
+  }
+  int rim_, nx_, ny_;
+  std::set<std::pair<int, int>> closed_, outside_;
+};
+
+TEST(VoidAreas, TheFootprintIsThatOfItsDefinition) {
+  constexpr int nx = 40, ny = 300;  // more than a band of rows
+  std::mt19937 random(7);
+  for (const double gap : {0.0, 20.0, 50.0}) {
+    std::vector<FootprintCell> cells;
+    std::set<std::pair<int, int>> set;
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i) {
+        const bool corner = (i == 0 && j == 0) || (i == nx - 1 && j == ny - 1);
+        const bool patch = random() % 4 == 0 && (i / 9 + j / 13) % 2 == 0;
+        if (corner || patch) cells.push_back({i, j}), set.insert({i, j});
+      }
+    const Covered expected(set, nx, ny, 0.5 * gap / 8.0);
+    std::vector<VoidRun> runs;
+    double judged = 0.0, area = 0.0;
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i) {
+        const bool is_covered = expected.holds(i, j), is_void = random() % 2 == 0;
+        judged += is_covered ? 64.0 : 0.0;
+        if (!is_void) continue;
+        area += is_covered ? 64.0 : 0.0;
+        for (std::int32_t k = 0; k < 64; ++k) runs.push_back({64 * j + k, 64 * i, 64 * (i + 1)});
+      }
+    const SwathVoids v = judge_voids(runs, cells, {}, half_metre, gap);
+    EXPECT_NEAR(v.judged, judged, 1e-6) << gap;
+    EXPECT_NEAR(v.area, area, 1e-6) << gap;
+    EXPECT_TRUE(gap == 0.0 || judged > 0.0);
+  }
 }
 
 TEST(VoidAreas, FootprintsHoldFirstReturnsAlone) {
