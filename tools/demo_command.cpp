@@ -2,6 +2,7 @@
 // A survey from nothing to products: simulated, run, judged against its truth.
 #include <cstdio>
 
+#include "pipeline/jobs/config_folder.h"
 #include "tools/command.h"
 
 namespace swath::tools {
@@ -16,8 +17,9 @@ struct Given {
 
 int demo(Given a, const std::string& typed) {
   const std::filesystem::path survey = a.folder / "survey", products = a.folder / "products";
-  make_survey({}, a.simulation, survey, a.loudness);
   a.request.config = "survey";
+  pipeline::find_config(a.request.config);  // before the work
+  make_survey({}, a.simulation, survey, a.loudness);
   a.request.survey = survey / "survey.toml";
   a.request.output = products;
   const int code = run_pipeline(a.request, a.loudness, typed, a.save);

@@ -157,8 +157,12 @@ class Named(Case):
 
     def test_a_program_without_its_configs_says_so(self):
         alone = shutil.copy(SWATH, self.folder / "swath")
-        done = subprocess.run([alone, "dtm", "a.las"], capture_output=True, text=True, env={k: v for k, v in os.environ.items() if k != "SWATH_CONFIGS"})
+        bare = {k: v for k, v in os.environ.items() if k != "SWATH_CONFIGS"}
+        done = subprocess.run([alone, "dtm", "a.las"], capture_output=True, text=True, env=bare)
         self.assert_error(done, 2, "'dtm' is no command, or one that needs the configs of the program, which are not found", "SWATH_CONFIGS names another folder")
+        done = subprocess.run([alone, "demo", "-o", self.out], capture_output=True, text=True, env=bare)
+        self.assert_error(done, 2, "no config of that name", "SWATH_CONFIGS")
+        self.assertFalse(self.out.exists(), "nothing is simulated before")
 
     def test_configs_of_ones_own_come_first(self):
         shutil.copy(CONFIG, self.folder / "ours.toml")
