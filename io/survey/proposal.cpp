@@ -120,6 +120,7 @@ void sort_file(const FoundFile& f, Sorted& out) {
     return left(format + " without event marks: RTKLIB's convbin makes RINEX of raw observations");
   }
   if (format == "loopstats") return left("a log of clocks, which belongs to [[clock]] (docs/time.md)");
+  if (format == "RTKLIB time tags") return left("times at which RTKLIB logged another file; `swath info` shows when the log began");
   if (format.find("capture") != std::string::npos) return left("packets of a sensor: export points or ranges by the maker's software");
   left(format + ", which has no place that can be known: a terrain model, lines or points may belong to [[breaklines]] or [[control]]");
 }
