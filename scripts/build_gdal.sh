@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Makes build/gdal/lib/libgdal.so.N for the archive and the wheel: the system's GDAL, of the same version, patches and binary interface, with the
+# Makes build/gdal/lib/libgdal.so.N for the packages: the system's GDAL, of the same version, patches and binary interface, with the
 # drivers alone that swath opens files with (io/vector/gdal_door.cpp). The system's own brings some 60 libraries of 110 MB: databases, web
 # services, PDF. Its source is the distribution's; nothing is installed. About a quarter of an hour of one processor, once: a later call finds it.
 set -euo pipefail
@@ -24,7 +24,7 @@ done
 own=(-q -o "Dir::Etc::SourceList=/dev/null" -o "Dir::Etc::SourceParts=$build/sources" -o "Dir::State::Lists=$build/lists"
   -o "Dir::Cache::SrcPkgCache=" -o "Dir::Cache::PkgCache=")
 echo "== GDAL $version: source"
-apt-get "${own[@]}" update >"$build/source.log" 2>&1 || echo "swath: some lists of sources were not to be had ($build/source.log)" >&2
+apt-get "${own[@]}" update >"$build/source.log" 2>&1 || echo "swath: some lists of sources could not be fetched ($build/source.log)" >&2
 (cd "$build" && apt-get "${own[@]}" --only-source --download-only source "gdal=$version" >>source.log 2>&1) || { tail -5 "$build/source.log" >&2; exit 1; }
 dpkg-source --extract "$build"/gdal_*.dsc "$build/source" >/dev/null
 

@@ -38,8 +38,8 @@ core::Error usage_fault(const CLI::App& app, const CLI::ParseError& e, int argc,
   if (known || first.empty() || first[0] == '-')
     return core::usage_error(e.what(), known ? "swath " + first : "swath", known ? "see swath " + first + " --help" : "see swath --help");
   if (pipeline::config_names().empty())  // as where the program's file alone was copied
-    return core::usage_error("'" + first + "' is no command, or one that needs the configs of the program, which are not found", "swath",
-                             "they lie in share/swath/configs beside the folder of the program; SWATH_CONFIGS names another folder");
+    return core::usage_error("'" + first + "' is not a command, or one that needs the configs of the program, which are not found", "swath",
+                             "they are in share/swath/configs beside the folder of the program; SWATH_CONFIGS names another folder");
   const std::string near = core::nearest(first, names);
   return core::usage_error("'" + first + "' is no command", "swath", near.empty() ? "see swath --help" : "did you mean '" + near + "'?");
 }

@@ -21,7 +21,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double most_not_finite = 0.03, most_back = 0.03;
-constexpr double most_repeated = 0.2;       // two talkers of one receiver repeat each other for a while
+constexpr double most_repeated = 0.2;       // receivers repeat a fix now and then
 constexpr double near_ground = 1e5;         // m
 constexpr double fastest = 500.0;           // m/s
 constexpr double near_one_another = 100.0;  // m: errors of single positions
@@ -189,7 +189,7 @@ core::GnssData FixList::finish() {
   };
   refuse(not_finite_, most_not_finite, "have a value that is empty or not finite", "check the columns, or export again");
   refuse(repeated_, most_repeated, "are at the time of the fix before",
-         "times too coarse (export them with more digits), or each fix written twice, as by the talkers GP and GN (keep one)");
+         "times too coarse (export them with more digits), or each fix written twice (keep one)");
   refuse(back_, most_back, "go back in time", "the file holds several sessions: part them, or sort it");
   tally_.read("GNSS fixes", added_);
   tally_.keep("GNSS fixes", out_.size());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <set>
 #include <string_view>
 
 #include "core/printable.h"
@@ -154,8 +155,17 @@ void drop_incomplete(ColumnRoles& found) {
       std::erase_if(found.columns, [&](const auto& column) { return std::find(group.begin(), group.end(), column.first) != group.end(); });
 }
 
+/// Units that a survey.toml states or that are read as they are.
+bool is_known_unit(std::string_view unit, std::string_view key) {
+  static const std::set<std::string_view> known{"",      "deg",   "degrees", "rad",  "radians", "gon",  "degps", "radps",
+                                                "deg/s", "rad/s", "mps",     "mps2", "m/s",     "m/s2", "m/s^2", "m2",
+                                                "m^2",   "m",     "s",       "sec",  "seconds", "g",    "weeks"};
+  return known.contains(unit) || (unit == "ms" && key == "time");
+}
+
 /// What a column's name and unit say of its file.
 void note_units(const PlainName& plain, std::string_view key, ColumnRoles& found) {
+  if (!is_known_unit(plain.unit, key)) return;
   if (plain.unit.starts_with("deg") || plain.unit.starts_with("rad")) {
     const std::string unit = plain.unit.substr(0, 3);
     found.mixed_angles = found.mixed_angles || (!found.angle_unit.empty() && found.angle_unit != unit);
@@ -185,6 +195,8 @@ void take_column(const Role& role, const std::vector<std::string>& names, const 
     const auto c = static_cast<size_t>(at - plain.begin());
     const bool is_repeated = std::count(names.begin(), names.end(), names[c]) > 1;
     found.columns.emplace_back(role.key, is_repeated ? std::to_string(c + 1) : names[c]);
+    if (!is_known_unit(at->unit, role.key)) found.foreign_units.push_back(names[c]);
+    if (role.key == "height" && at->name.starts_with("alt") && at->name.find("ell") == std::string::npos) found.altitude = names[c];
     return note_units(*at, role.key, found);
   }
 }
@@ -195,8 +207,9 @@ ColumnRoles roles_of(const std::vector<std::string>& names) {
   std::vector<PlainName> plain;
   for (const std::string& name : names) plain.push_back(plain_name(name));
   for (const Kind& kind : kinds()) {
-    // A distance beside a position or an attitude is a way flown, and no range of a laser.
-    if (kind.kind == TableKind::laser && has_any(plain, {"latitude", "lat", "northing", "roll", "pitch"})) continue;
+    // A distance beside a position or an attitude is the distance flown, and no range of a laser.
+    const bool is_flown = !has_any(plain, {"range", "slant_range"}) && has_any(plain, {"latitude", "lat", "northing", "roll", "pitch"});
+    if (kind.kind == TableKind::laser && is_flown) continue;
     ColumnRoles found;
     found.kind = kind.kind;
     for (const Role& role : kind.roles) take_column(role, names, plain, found);

@@ -13,9 +13,11 @@ enum class TableKind { none, laser, imu, gnss, trajectory, event, image_points }
 
 struct ColumnRoles {
   TableKind kind = TableKind::none;
-  std::vector<std::pair<std::string, std::string>> columns{};  ///< key of [columns]; name, or number of one that stands twice
+  std::vector<std::pair<std::string, std::string>> columns{};  ///< key of [columns]; name, or number of one that occurs twice
   std::string angle_unit{};                                    ///< "deg" or "rad" as the names state it; empty: they do not, or mixed
   bool mixed_angles = false;                                   ///< some names state deg, others rad
+  std::string altitude{};                                      ///< the height's name, where it may count from sea level
+  std::vector<std::string> foreign_units{};                    ///< names of columns in units that are not read
   std::string acceleration_unit{};                             ///< "m/s2" or "g"
   std::string imu_kind{};                                      ///< "increments" or "rates"
   std::string time_scale{};                                    ///< "gps_week" (seconds of week), "unix"

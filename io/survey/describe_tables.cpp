@@ -234,11 +234,21 @@ bool is_word(const std::string& field) {
   return !read_number(field, ignored) && std::any_of(field.begin(), field.end(), is_of_words);
 }
 
-std::vector<std::string> first_record(const Path& path, const DelimitedLayout& layout) {
+/// Up to two.
+std::vector<std::vector<std::string>> first_records(const Path& path, const DelimitedLayout& layout) {
+  std::vector<std::vector<std::string>> out;
   LineReader lines(path);
-  for (std::string_view line; lines.next(line);)
-    if (lines.number() == layout.data_line) return split_delimited(std::string(line), layout.delimiter);
-  return {};
+  for (std::string_view line; out.size() < 2 && lines.next(line);)
+    if (lines.number() >= layout.data_line && line.find_first_not_of(" \t\r") != line.npos)
+      out.push_back(split_delimited(std::string(line), layout.delimiter));
+  return out;
+}
+
+/// Words in the first records: in one of them alone they are a fault.
+bool holds_words(const std::vector<std::vector<std::string>>& records, size_t column) {
+  return !records.empty() && std::all_of(records.begin(), records.end(), [column](const std::vector<std::string>& fields) {
+    return column < fields.size() && is_word(fields[column]);
+  });
 }
 
 core::Value describe_text(const Path& path) {
@@ -247,12 +257,12 @@ core::Value describe_text(const Path& path) {
   out.delimiter = layout.delimiter == '\t' ? "tab" : layout.delimiter == ' ' ? "blanks" : std::string(1, layout.delimiter);
   out.header = !layout.names.empty();
   const EventTable events = event_table(layout);
-  const std::vector<std::string> first = first_record(path, layout);
+  const std::vector<std::vector<std::string>> first = first_records(path, layout);
   std::vector<size_t> indices;
   for (size_t c = 0; c < layout.columns; ++c) {
     out.columns.push_back({c < layout.names.size() ? layout.names[c] : std::to_string(c + 1)});
     if (events.are_events && c == events.id && !holds_numbers(path, layout, c)) continue;
-    if (c < first.size() && is_word(first[c]))
+    if (holds_words(first, c))
       out.warnings.push_back("column " + out.columns.back().name + " holds text");
     else
       indices.push_back(c);

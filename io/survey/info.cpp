@@ -231,8 +231,10 @@ bool holds_novatel_log(std::string_view text) {
     const std::string_view line = text.substr(at, stop - at);
     const size_t comma = line.find(','), half = line.find(';');
     const auto is_name = [](std::string_view s) { return s.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789") == s.npos; };
+    constexpr std::ptrdiff_t header = 8;  // commas at least
     if (comma != line.npos && comma > 3 && half != line.npos && half > comma && (line[0] == '#' || line[0] == '%') &&
-        line[comma - 1] == 'A' && is_name(line.substr(1, comma - 1)))
+        line[comma - 1] == 'A' && is_name(line.substr(1, comma - 1)) &&
+        std::count(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(half), ',') >= header)
       return true;
     at = stop + 1;
   }

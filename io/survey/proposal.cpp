@@ -143,13 +143,11 @@ void open_week(SurveyDraft& d, const std::string& why) { d.open("time = { scale 
 std::string doubts_of(const ColumnRoles& r) {
   std::string out;
   const auto add = [&](const std::string& why) { out += (out.empty() ? "" : "; ") + why; };
-  for (const auto& [key, name] : r.columns) {
-    const std::string low = core::lower_case(name);
+  for (const auto& [key, name] : r.columns)
     if (key == "quality")
       add("quality = " + toml_scalar(name) + " only where its numbers are RTKLIB's (1 fixed, 2 float, 4 differential, 5 single)");
-    if (key == "height" && low.starts_with("alt") && low.find("ell") == low.npos)
-      add(name + " must be above the ellipsoid: the logs of autopilots and GPX count from sea level");
-  }
+  if (!r.altitude.empty()) add(r.altitude + " must be above the ellipsoid: the logs of autopilots and GPX count from sea level");
+  for (const std::string& name : r.foreign_units) add(name + " has a unit that is not read: convert it to m, s or the angle_unit");
   return out;
 }
 
@@ -213,9 +211,9 @@ void add_camera(SurveyDraft& d) {
 
 void add_head(SurveyDraft& d, const Sorted& s, const std::string& name) {
   d.note(
-      "Proposed by swath init from the files of this folder. Lines with # ? are not known from the files: complete the line below each, "
+      "Proposed by swath init from the files of this folder. What # ? says is not known from the files: complete the line below it "
       "and");
-  d.note("remove its #. Then: swath check " + std::string(s.config()) + " --survey survey.toml");
+  d.note("remove its #, or check the line where it has none. Then: swath check " + std::string(s.config()) + " --survey survey.toml");
   d.known("name", name);
   if (!s.hangar.empty()) {
     d.note("what was measured in a hangar: swath run lever_arm --survey survey.toml computes the lever arms (docs/lever-arm.md)");

@@ -15,7 +15,7 @@ struct KindText {
   std::string_view name, use;
 };
 
-constexpr std::array<KindText, 11> texts{{
+constexpr std::array<KindText, 12> texts{{
     {"", ""},
     {"a pipeline", "swath run FILE --survey survey.toml"},
     {"a survey", "swath run CONFIG --survey FILE"},
@@ -27,6 +27,7 @@ constexpr std::array<KindText, 11> texts{{
     {"a block of images", "swath block FILE"},
     {"the accuracy of a block", "swath block-theory FILE"},
     {"a simulation", "swath simulate FOLDER --config FILE"},
+    {"an Entwine point tile", "a cloud like any other: swath dtm FOLDER, or [[points]] file = \"FILE\""},
 }};
 
 bool has_any(const core::Value& tree, std::initializer_list<const char*> keys) {
@@ -43,6 +44,7 @@ bool is_surely_survey(const core::Value& tree) {
 
 TreeKind kind_of(const core::Value& tree) {
   const auto has = [&](const char* key) { return tree.find(key) != nullptr; };
+  if (has("hierarchyType") && has("schema")) return TreeKind::entwine;
   if (has("tasks") && has("fingerprint")) return TreeKind::tasks;
   if (has("program") && has("stages")) return TreeKind::report;
   if (has("stage")) return TreeKind::pipeline;

@@ -21,6 +21,7 @@ enum class TreeKind {
   block,
   block_theory,
   simulation,
+  entwine,
 };
 
 TreeKind kind_of(const core::Value& tree);

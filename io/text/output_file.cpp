@@ -58,7 +58,8 @@ void throw_system_error(std::string_view doing, const std::filesystem::path& fil
   std::string hint;
   if (code == ENOSPC || code == EDQUOT) hint = full_hint;
   if (code == EFBIG) hint = limit_hint;
-  if (code == EACCES || code == EPERM || code == EROFS) hint = "choose a folder that you may write to";
+  if (code == EACCES || code == EPERM) hint = "check the rights of the file and of its folder";
+  if (code == EROFS) hint = "choose a folder that you may write to";
   if (code == ENOENT) hint = "check the name; names in a survey are relative to its survey.toml";
   if (code == ENAMETOOLONG) hint = "choose a folder with a shorter path, or shorter names";
   throw core::SystemError(std::string(doing) + ": " + (code ? std::strerror(code) : "unknown reason"), file.string(), hint);

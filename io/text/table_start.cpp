@@ -40,28 +40,34 @@ bool is_value(const std::string& field) {
   return !field.empty() && field.front() >= '0' && field.front() <= '9' && field.find_first_not_of("0123456789.:/-TZ") == field.npos;
 }
 
-Line line_of(std::uint64_t number, std::string_view text, const std::string& delimiter, const std::filesystem::path& file) {
+/// What counts as a number: alone, or with dates and times of day, where records hold words, too.
+enum class Records { of_numbers, mixed };
+
+Line line_of(std::uint64_t number, std::string_view text, const std::string& delimiter, const std::filesystem::path& file,
+             Records records) {
   Line out{number, std::string(text)};
   out.delimiter = delimiter.empty() ? delimiter_in(out.text) : delimiter_from(delimiter, file);
   const std::vector<std::string> fields = split_delimited(out.text, out.delimiter);
   out.fields = fields.size();
   out.empty = static_cast<size_t>(std::count(fields.begin(), fields.end(), ""));
-  for (const std::string& f : fields) out.form += f.empty() ? '-' : is_value(f) ? 'n' : 't';
+  const auto counts = [&](const std::string& f) { return records == Records::mixed ? is_value(f) : is_number(f); };
+  for (const std::string& f : fields) out.form += f.empty() ? '-' : counts(f) ? 'n' : 't';
   out.numbers = static_cast<size_t>(std::count(out.form.begin(), out.form.end(), 'n'));
   return out;
 }
 
-/// The lines that are neither empty nor comments, up to the first two records of one length; the first of these is the last line.
-std::vector<Line> lines_above_records(const std::filesystem::path& file, const std::string& delimiter) {
+/// The lines that are neither empty nor comments, up to the first two records of one length, or of one form; the first of these is the last
+/// line.
+std::vector<Line> lines_above_records(const std::filesystem::path& file, const std::string& delimiter, Records records) {
   std::vector<Line> out;
   LineReader reader(file);
   for (std::string_view text; out.size() < max_lines && reader.next(text);) {
     const size_t begin = text.find_first_not_of(" \t\r");
     if (begin == text.npos || text[begin] == '#' || text[begin] == '%') continue;
-    out.push_back(line_of(reader.number(), text, delimiter, file));
+    out.push_back(line_of(reader.number(), text, delimiter, file, records));
     if (out.size() < 2) continue;
     const Line &last = out.back(), &before = out[out.size() - 2];
-    const bool alike = last.is_mixed() ? last.form == before.form : last.is_record() && before.is_record();
+    const bool alike = records == Records::mixed ? last.is_mixed() && last.form == before.form : last.is_record() && before.is_record();
     if (alike && last.fields == before.fields) {
       out.pop_back();
       return out;
@@ -101,7 +107,9 @@ bool units_below(const Line& names, const Line& units, const Line& record) {
 }  // namespace
 
 TableStart table_start(const std::filesystem::path& file, const std::string& delimiter) {
-  const std::vector<Line> lines = lines_above_records(file, delimiter);
+  std::vector<Line> lines = lines_above_records(file, delimiter, Records::of_numbers);
+  const bool are_mixed = lines.empty();
+  if (are_mixed) lines = lines_above_records(file, delimiter, Records::mixed);
   if (lines.size() < 3 || lines[1].is_record()) return {};
   const Line& record = lines.back();
   if (lines[0].may_be_record() && lines[0].fields == record.fields) return {};
@@ -111,7 +119,7 @@ TableStart table_start(const std::filesystem::path& file, const std::string& del
   size_t names = data;
   while (names > 0 && !names_of(lines[names - 1], record)) --names;
   if (names > 1 && units_below(lines[names - 2], lines[names - 1], record)) --names;
-  if (names == 0) return {0, lines[data].number};
+  if (names == 0) return are_mixed ? TableStart{} : TableStart{0, lines[data].number};  // records of other forms may be above
   const auto first =
       std::find_if(lines.begin() + static_cast<std::ptrdiff_t>(names), lines.end(), [](const Line& l) { return l.numbers > 0; });
   return {lines[names - 1].number, first->number};

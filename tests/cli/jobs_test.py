@@ -159,7 +159,7 @@ class Named(Case):
         alone = shutil.copy(SWATH, self.folder / "swath")
         bare = {k: v for k, v in os.environ.items() if k != "SWATH_CONFIGS"}
         done = subprocess.run([alone, "dtm", "a.las"], capture_output=True, text=True, env=bare)
-        self.assert_error(done, 2, "'dtm' is no command, or one that needs the configs of the program, which are not found", "SWATH_CONFIGS names another folder")
+        self.assert_error(done, 2, "'dtm' is not a command, or one that needs the configs of the program, which are not found", "SWATH_CONFIGS names another folder")
         done = subprocess.run([alone, "demo", "-o", self.out], capture_output=True, text=True, env=bare)
         self.assert_error(done, 2, "no config of that name", "SWATH_CONFIGS")
         self.assertFalse(self.out.exists(), "nothing is simulated before")

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a wheel adds: its own PROJ database and typeface, where the system or the user has none. scripts/test_packages.sh installs whole wheels."""
 import os
+import subprocess
+import sys
 import unittest
 
 from support import InFolder
 
-from swath import _program, _wheel
+import _swath_command
+
+from swath import _wheel
 
 
 class Wheel(InFolder):
@@ -29,10 +33,14 @@ class Wheel(InFolder):
         self.assertEqual(_wheel.users_proj_folder({}), "")
 
     def test_the_programs_environment(self):
-        share, _program.proj_folders = _program.proj_folders, lambda environment: _wheel.proj_folders(environment, self.share)
-        self.addCleanup(setattr, _program, "proj_folders", share)
-        self.assertEqual(_program.environment_of({"PROJ_DATA": self.grids, "A": "b"}), {"PROJ_DATA": os.pathsep.join([self.grids, self.own]), "A": "b"})
-        self.assertEqual(_program.environment_of({"PROJ_DATA": self.theirs}), {"PROJ_DATA": self.theirs})
+        environment_of = lambda environment: _swath_command.environment_of(environment, self.folder)
+        self.assertEqual(environment_of({"PROJ_DATA": self.grids, "A": "b"}), {"PROJ_DATA": os.pathsep.join([self.grids, self.own]), "A": "b"})
+        self.assertEqual(environment_of({"PROJ_DATA": self.theirs}), {"PROJ_DATA": self.theirs})
+
+    def test_the_program_starts_without_the_package(self):
+        done = subprocess.run([sys.executable, "-c", "import _swath_command, sys; print('numpy' in sys.modules or 'swath' in sys.modules)"],
+                              capture_output=True, text=True, check=True)
+        self.assertEqual(done.stdout.strip(), "False")
 
     def test_the_typeface_is_that_of_the_system_where_it_has_one(self):
         system = self.folder / "system.conf"

@@ -70,6 +70,20 @@ Place canal(double x, double y, double fall = 0.0) {
 }
 constexpr double canal_area = 10.0 * 80.0;
 
+TEST(VoidRims, ReturnsOnTheBlocksOriginAreTheFarthest) {
+  const PulseSpacing s{spacing, spacing};
+  const core::Lattice w = core::lattice_of(void_cell(s), 1000.0, 2000.0, 1000.0 + length, 2000.0 + width);
+  core::Block b = cloud([](double x, double y) { return canal(x, y); }), moved = b;
+  moved.origin += Eigen::Vector3d(length, width, 0.0);
+  for (double& x : moved.x) x -= length;
+  for (double& y : moved.y) y -= width;
+  *std::max_element(moved.x.begin(), moved.x.end()) = 0.0;
+  *std::max_element(moved.y.begin(), moved.y.end()) = 0.0;
+  const std::vector<RimPiece> expected = rims_of(b, find_voids(b, w, s), s), found = rims_of(moved, find_voids(moved, w, s), s);
+  EXPECT_GT(found.size(), 20U);
+  EXPECT_EQ(found.size(), expected.size());
+}
+
 TEST(VoidRims, ACanalWithoutWaterPointsIsWaterAndItsAreaIsRight) {
   for (const double fall : {0.0, 0.002}) {
     const SwathVoids v = voids_of(cloud([&](double x, double y) { return canal(x, y, fall); }));

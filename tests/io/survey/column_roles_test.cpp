@@ -73,6 +73,19 @@ TEST(ColumnRoles, ExportsOfOtherPrograms) {
   EXPECT_EQ(r.angle_unit, "");
   EXPECT_EQ(column(r, "sigma_roll"), "") << "one of three";
   EXPECT_NE(roles_of({"time", "distance", "lat"}).kind, TableKind::laser);
+  EXPECT_EQ(roles_of({"gps_sow_s", "range_m", "scan_angle_deg", "roll", "pitch"}).kind, TableKind::laser);
+  EXPECT_EQ(roles_of({"time", "range_m", "lat_deg", "lon_deg", "h_m"}).kind, TableKind::laser);
+}
+
+TEST(ColumnRoles, UnitsThatAreNotReadAreNamed) {
+  const auto r =
+      roles_of({"time", "Latitude (dms)", "Longitude (dms)", "H-Ell (ft)", "Roll (arcmin)", "Pitch (arcmin)", "Heading (arcmin)"});
+  EXPECT_EQ(r.kind, TableKind::trajectory);
+  EXPECT_EQ(r.angle_unit, "");
+  EXPECT_EQ(r.foreign_units.size(), 6U);
+  EXPECT_EQ(roles_of({"time", "range (ft)"}).foreign_units, (std::vector<std::string>{"range (ft)"}));
+  EXPECT_TRUE(roles_of({"time_ms", "range_m"}).foreign_units.empty());
+  EXPECT_EQ(roles_of({"t", "lat", "lon", "Altitude (m)", "Altitude (m)"}).altitude, "Altitude (m)");
 }
 
 TEST(ColumnRoles, NamesThatSayNothingAreNone) {

@@ -53,6 +53,8 @@ TEST(Info, ColumnsOfTextAreNamedAndTheOthersRead) {
   EXPECT_EQ(facts.find("rows")->as_int(), 2);
   EXPECT_EQ(facts.find("columns")->items()[2].find("span")->items()[1].as_number(), 7.0);
   EXPECT_EQ(facts.find("warnings")->items()[0].as_text(), "column status holds text");
+  test::write_bytes(folder / "b.csv", "a,b,c\nx,2,3\n1,2,3\n4,5,6\n");
+  EXPECT_NE(describe_file(folder / "b.csv").find("warnings")->items()[0].as_text().find("reading stopped"), std::string::npos);
   test::write_bytes(folder / "b.csv", "t,r\n1,5\n2,x\n");
   EXPECT_NE(describe_file(folder / "b.csv").find("warnings")->items()[0].as_text().find("reading stopped"), std::string::npos);
 }

@@ -168,10 +168,11 @@ TEST(Proposal, SolutionsOfOneTimeAreRivals) {
 }
 
 TEST(Proposal, MarksOfReceiversAreEvents) {
-  const Proposal p = propose_survey({file("a_Timestamp.MRK", R"x({"format": "Timestamp.MRK (DJI)", "events": 12})x"),
-                                     file("raw.ubx", R"x({"format": "UBX (u-blox)", "events": 0})x"),
-                                     file("scan.pcap", R"({"format": "pcap capture"})"), file("loopstats", R"({"format": "loopstats"})")},
-                                    "m");
+  const Proposal p =
+      propose_survey({file("a_Timestamp.MRK", R"x({"format": "Timestamp.MRK (DJI)", "events": 12})x"),
+                      file("raw.ubx", R"x({"format": "UBX (u-blox)", "events": 0})x"), file("scan.pcap", R"({"format": "pcap capture"})"),
+                      file("raw.ubx.tag", R"({"format": "RTKLIB time tags"})"), file("loopstats", R"({"format": "loopstats"})")},
+                     "m");
   EXPECT_NE(p.toml.find("[[event]]\nfile = \"a_Timestamp.MRK\""), std::string::npos) << p.toml;
   EXPECT_NE(p.toml.find("raw.ubx: UBX (u-blox) without event marks"), std::string::npos) << p.toml;
   EXPECT_NE(p.toml.find("loopstats: a log of clocks"), std::string::npos) << p.toml;

@@ -27,13 +27,14 @@ TEST(TreeKind, FollowsFromTheKeys) {
   EXPECT_EQ(kind("[[camera]]\n[[image_points]]\n[[event]]\n"), TreeKind::survey) << "a block of a survey";
   EXPECT_EQ(kind("sigma_image = \"20 um\"\n"), TreeKind::block_theory);
   EXPECT_EQ(kind("[world]\n[flight]\n[scanner]\n"), TreeKind::simulation);
+  EXPECT_EQ(kind("hierarchyType = \"json\"\nschema = []\npoints = 4\n"), TreeKind::entwine);
   EXPECT_EQ(kind("[run]\n"), TreeKind::other);
   EXPECT_EQ(kind_of(parse_json("[1, 2]", "a.json")), TreeKind::other);
 }
 
 TEST(TreeKind, FormatsAndKindsAreOneToOne) {
   for (const TreeKind k : {TreeKind::pipeline, TreeKind::survey, TreeKind::hangar, TreeKind::tasks, TreeKind::report, TreeKind::calibration,
-                           TreeKind::flight_plan, TreeKind::block, TreeKind::block_theory, TreeKind::simulation}) {
+                           TreeKind::flight_plan, TreeKind::block, TreeKind::block_theory, TreeKind::simulation, TreeKind::entwine}) {
     EXPECT_EQ(kind_of_format(format_of(k)), k) << format_of(k);
     EXPECT_FALSE(use_of(k).empty());
   }

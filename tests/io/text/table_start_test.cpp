@@ -74,6 +74,29 @@ TEST_F(TableStarts, RecordsMayHoldDatesAndWords) {
   EXPECT_EQ(read_all(made(head + "GPSTime H-Ell AmbStatus Roll\n(sec) (m) (deg)\n1 2 Fixed 3\n4 5 Float 6\n"), named), rows);
 }
 
+TEST_F(TableStarts, RecordsOfOtherFormsAboveAreNotLost) {
+  std::string rows;
+  for (int k = 0; k < 40; ++k)
+    rows += std::to_string(474006 + k) + ",47.1,10.5,600," + (k < 20 ? (k % 2 == 0 ? "Fixed" : "") : "Float") + "\n";
+  EXPECT_EQ(read_all(made(rows), {"1"}).size(), 40U);
+  EXPECT_EQ(read_all(made("# t,lat,lon,h,status\n" + rows), {"t"}).size(), 40U);
+  EXPECT_EQ(read_all(made("t,lat,lon,h,status\n" + rows), {"t"}).size(), 40U);
+  EXPECT_EQ(read_all(made("1,474006,47.1,10.5,first\n2,474007,47.1,10.5,\n3,474008,47.1,10.5,turn\n4,474009,47.1,10.5,\n"
+                          "5,474010,47.1,10.5,\n6,474011,47.1,10.5,\n"),
+                     {"1"})
+                .size(),
+            6U);
+}
+
+TEST_F(TableStarts, ADescriptionMayHoldDatesAndPlaces) {
+  const Rows rows{{1}, {4}};
+  const std::string table = "time lat lon h\n1 47.1 10.5 600\n4 47.1 10.5 600\n";
+  EXPECT_EQ(read_all(made("Project: x\nStations of the base:\n1 BASE1 47.1 10.5 600.0\n2 BASE2 47.2 10.6 610.0\n" + table), {"time"}),
+            rows);
+  EXPECT_EQ(read_all(made("2020-06-12 10:00:01 2.5 start of log\n2020-06-12 10:00:02 3.5 file opened ok\n" + table), {"time"}), rows);
+  EXPECT_EQ(read_all(made("2020-06-12 19:34:18\ntime range\n1 2\n4 4\n"), {"time"}), rows);
+}
+
 TEST_F(TableStarts, UnitsAreWordsOrBareBetweenBrackets) {
   const Rows rows{{1}, {4}};
   EXPECT_EQ(read_all(made("Week D GPSTime H-Ell\n(weeks) d (sec) (m)\n2317 5 1 2\n2317 5 4 5\n"), {"GPSTime"}), rows);

@@ -75,6 +75,7 @@ TEST_F(Clouds, NamesThatStandForNothingAreOneError) {
   EXPECT_NE(text("away.laz").find("away.laz: no such file or folder"), std::string::npos);
   EXPECT_NE(text("empty").find("holds no LAS or LAZ file"), std::string::npos);
   EXPECT_NE(text("away*.laz").find("no file matches the pattern"), std::string::npos);
+  EXPECT_NE(text("nowhere/*.laz").find("no such folder"), std::string::npos) << text("nowhere/*.laz");
   EXPECT_NE(text("loop/*.laz").find("cannot read a folder of the pattern"), std::string::npos) << text("loop/*.laz");
 }
 
