@@ -49,8 +49,7 @@ std::vector<fs::path> files_matching(const std::string& pattern) {
   errno = 0;
   const int code = ::glob(pattern.c_str(), GLOB_ERR, nullptr, &found);
   if (code == GLOB_NOMATCH) throw core::usage_error("no file matches the pattern", pattern, "quote it where the shell must not expand it");
-  if (code != 0 && errno == ENOENT)
-    throw core::usage_error("no such folder as the pattern names", pattern, "check its name");
+  if (code != 0 && errno == ENOENT) throw core::usage_error("no such folder as the pattern names", pattern, "check its name");
   if (code != 0) refuse_unreadable("cannot read a folder of the pattern", pattern, errno ? errno : EIO);
   std::vector<fs::path> out;
   std::error_code ec;
