@@ -54,10 +54,11 @@ def turn(axis, a):
 
 
 class Block:
-    """East, north, up. `strips`: (x, y, heading deg, images, base, height) of the first image."""
+    """East, north, up. `strips`: (x, y, heading deg, images, base, height) of the first image. `across`: the long side of the sensor lies
+    across the direction of flight, as survey cameras are mounted; otherwise along it."""
 
-    def __init__(self, seed, camera, strips, relief=60.0, tilt=2.0, interval=10.0):
-        self.random, self.camera = random.Random(seed), camera
+    def __init__(self, seed, camera, strips, relief=60.0, tilt=2.0, interval=10.0, across=False):
+        self.random, self.camera, self.across = random.Random(seed), camera, across
         self.images, self.points, self.relief = [], {}, relief
         for number, (x, y, heading, images, base, height) in enumerate(strips, 1):
             h = math.radians(heading)
@@ -86,7 +87,7 @@ class Block:
         self.points[name] = [x, y, self.relief * math.sin(x / 173.0) * math.cos(y / 219.0)]
 
     def marks(self, noise):
-        """(image, point, x, y): camera x forward, y left, z up of the body (mount 0)."""
+        """(image, point, x, y): camera x forward, y left, z up of the body (mount 0), or x right, y forward (mount 90 deg)."""
         out = []
         reach = 1.2 * max(self.camera.columns, self.camera.rows) * self.camera.pixel / self.camera.value["f"]
         cells = {}
@@ -101,12 +102,12 @@ class Block:
                 e, n, u = (p[k] - at[k] for k in range(3))
                 ned = (n, e, -u)
                 body = [sum(B[k][j] * ned[k] for k in range(3)) for j in range(3)]
-                seen = self.camera.project((body[0], -body[1], -body[2]))
+                seen = self.camera.project((body[1], body[0], -body[2]) if self.across else (body[0], -body[1], -body[2]))
                 if seen:
                     out.append((image["name"], name, seen[0] + self.random.gauss(0, noise), seen[1] + self.random.gauss(0, noise)))
         return out
 
-    def write(self, folder, noise, free=(), stations=None, shift=0.0, drift=0.0, angles=None, boresight=(0.0, 0.0, 0.0), control=None, check=None, sigma_control=0.02,
+    def write(self, folder, noise, free=(), stations=None, shift=0.0, drift=0.0, angles=None, boresight=(0.0, 0.0, 0.0), control=None, check=None, sigma_control=0.02, sigma_check=0.0,
               sets="none", start=None, antenna=(0.0, 0.0, 0.0), more=""):
         """`stations`, `angles`: sigmas (m, deg) of what is observed. Returns the truth of shifts and drifts by strip."""
         g = self.random.gauss
@@ -138,7 +139,7 @@ class Block:
         with open(folder / "points.csv", "w") as f:
             f.write("image,point,x,y\n")
             f.writelines(f"{i},{p},{x:.7f},{y:.7f}\n" for i, p, x, y in marks if count[p] > 1)
-        for name, names, sigma in (("control", control, sigma_control), ("check", check, 0.0)):
+        for name, names, sigma in (("control", control, sigma_control), ("check", check, sigma_check)):
             if names:
                 rows = [",".join([n, *(f"{c + g(0, sigma):.5f}" for c in self.points[n])]) for n in names]
                 (folder / f"{name}.csv").write_text("name,x,y,z\n" + "\n".join(rows) + "\n")
@@ -150,13 +151,14 @@ class Block:
         if angles:
             text += f'angles = "roll_pitch_heading"\nnorth = "grid"\nangle_use = "observed"\nsigma_angle = "{angles} deg"\nsigma_heading = "{angles} deg"\n'
         text += f'[[camera]]\nname = "C"\nf = "{values["f"]} mm"\nx0 = "{values["x0"]} mm"\ny0 = "{values["y0"]} mm"\n'
+        text += 'mount = "90 deg"\n' if self.across else ""
         text += "".join(f"{n} = {values[n]}\n" for n in KEYS[3:]) + f'distortion = "ideal"\ncolumns = {k.columns}\nrows = {k.rows}\npixel = "{1000 * k.pixel} um"\n'
         text += f'antenna = ["{antenna[0]} m", "{antenna[1]} m", "{antenna[2]} m"]\n' + (f"sigma = {{ {sigma} }}\n" if free else "")
         text += f'[[image_points]]\nfile = "points.csv"\nunit = "mm"\ny = "up"\norigin = "middle"\nsigma = "{1000 * noise} um"\n'
         if control:
             text += f'[[control]]\nfile = "control.csv"\nsigma_horizontal = "{sigma_control} m"\nsigma_vertical = "{sigma_control} m"\n'
         if check:
-            text += '[[control]]\nfile = "check.csv"\nuse = "check"\nsigma_horizontal = "0.001 m"\nsigma_vertical = "0.001 m"\n'
+            text += f'[[control]]\nfile = "check.csv"\nuse = "check"\nsigma_horizontal = "{sigma_check or 0.001} m"\nsigma_vertical = "{sigma_check or 0.001} m"\n'
         (folder / "block.toml").write_text(text + more)
         return truth
 
@@ -176,17 +178,17 @@ PLAIN = ("adjust.robust=false", "adjust.components=false")
 TRUE = {"x0": 0.021, "y0": -0.034, "k1": -2.1e-5, "k2": 1.2e-8, "k3": -2e-12, "p1": 3e-6, "p2": -4e-6}
 
 
-def calibration(program, height=900.0, f=50.0, spacing=None, stations=0.3, noise=0.33, relief=22.0):
-    """22 images in two parallel strips and one across, 9 control points."""
+def calibration(program, height=900.0, f=50.0, spacing=0.3, stations=0.25, noise=0.33, relief=16.0):
+    """22 images in two parallel strips and one across, 9 control points, overlaps 60 and 30 %."""
     camera = Camera(f, **TRUE)
-    base, apart = 0.4 * height * camera.columns * camera.pixel / f, 0.6 * height * camera.rows * camera.pixel / f
+    base, apart = 0.4 * height * camera.rows * camera.pixel / f, 0.7 * height * camera.columns * camera.pixel / f
     long = 7 * base
     strips = [(0, 0, 90, 8, base, height), (long, apart, 270, 8, base, height), (long / 2, apart / 2 - 2.5 * base, 0, 6, base, height)]
     free = ("f", "x0", "y0", "k1", "k2", "k3", "p1", "p2")
     for name, drop, observed in (("with stations", 0, stations), ("without stations", 0, None), ("without the cross strip", 1, stations)):
         with tempfile.TemporaryDirectory() as made:
-            block = Block(1, camera, strips[: 3 - drop], relief)
-            block.grid(spacing or 0.22 * base, 0.5 * base)
+            block = Block(1, camera, strips[: 3 - drop], relief, across=True)
+            block.grid(spacing * base, 0.5 * base)
             names = []
             for a in range(3):
                 for b in range(3):
@@ -204,17 +206,18 @@ def calibration(program, height=900.0, f=50.0, spacing=None, stations=0.3, noise
                 print("   note:", note)
 
 
-def control(program, height=900.0, f=50.0, noise=0.5, stations=0.2, seeds=60):
-    """60 images in four strips; 8, 3 and no control points; root mean square of 20 check points over seeds."""
+def control(program, height=900.0, f=50.0, noise=0.37, stations=0.2, surveyed=0.05, seeds=60):
+    """60 images in four strips, overlaps 60 and 20 %; 8, 3 and no control points; root mean square of 20 check points, surveyed as control
+    is, over seeds."""
     camera = Camera(f)
-    base, apart = 0.4 * height * camera.columns * camera.pixel / f, 0.7 * height * camera.rows * camera.pixel / f
+    base, apart = 0.4 * height * camera.rows * camera.pixel / f, 0.8 * height * camera.columns * camera.pixel / f
     strips = [(0 if k % 2 == 0 else 14 * base, k * apart, 90 if k % 2 == 0 else 270, 15, base, height) for k in range(4)]
     for count in (8, 3, 0):
         squares = [[], [], []]
         for seed in range(1, seeds + 1):
             with tempfile.TemporaryDirectory() as made:
-                block = Block(seed, camera, strips)
-                block.grid(0.3 * base, 0.4 * base)
+                block = Block(seed, camera, strips, across=True)
+                block.grid(0.35 * base, 0.4 * base)
                 places = [(0, 0), (14, 0), (0, 3), (14, 3), (7, 0), (7, 3), (0, 1.5), (14, 1.5)]
                 names, check = [], []
                 for k, (a, b) in enumerate(places):
@@ -224,7 +227,7 @@ def control(program, height=900.0, f=50.0, noise=0.5, stations=0.2, seeds=60):
                     check.append(f"q{k}")
                     block.add(check[-1], block.random.uniform(0, 14) * base, block.random.uniform(0, 3) * apart)
                 used = {8: names, 3: [names[0], names[1], names[5]], 0: None}[count]
-                block.write(Path(made), noise * camera.pixel, stations=stations, control=used, check=check, sigma_control=0.05)
+                block.write(Path(made), noise * camera.pixel, stations=stations, control=used, check=check, sigma_control=surveyed, sigma_check=surveyed)
                 found = adjust(program, Path(made), *PLAIN)
                 if isinstance(found, str):
                     print(count, seed, found)

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <set>
 
 #include "calib/adjust/robust_weight.h"
 #include "calib/block/block_diagnosis.h"
@@ -17,6 +19,8 @@ constexpr int max_component_rounds = 4;
 constexpr double settled = 1e-3;  // change of a weight, or of a factor relative to itself
 
 /// Robust weights from the residuals over their own sigmas; true where one changed. `redundancy`: per row, of the plain adjustment.
+/// The residual of a ray that has lost weight grows by 1 / (r + p (1 - r)), r its redundancy and p its weight, and tests the same: without
+/// this factor two rays of a point, one of which yields, become a blunder from 3.5 sigmas on.
 bool reweigh(const LinearBlock& l, const std::vector<float>& redundancy, const BlockOptions& o, BlockWeights& weights) {
   constexpr float least = 0.05f;  // a residual with less says too little
   std::vector<double> size(weights.of_ray.size(), 0.0), counted;
@@ -25,7 +29,8 @@ bool reweigh(const LinearBlock& l, const std::vector<float>& redundancy, const B
     const double root = std::sqrt(weights.of_ray[b.index]);
     for (size_t row = b.row; row < b.row + 2; ++row) {
       if (redundancy[row] < least) continue;
-      const double w = std::abs(l.residual[row]) / root / std::sqrt(static_cast<double>(redundancy[row]));
+      const double r = static_cast<double>(redundancy[row]);
+      const double w = std::abs(l.residual[row]) / root / std::sqrt(r) * (r + weights.of_ray[b.index] * (1.0 - r));
       size[b.index] = std::max(size[b.index], w);
       counted.push_back(w);
     }
@@ -73,10 +78,37 @@ void expect_observations(const ImageBlock& block) {
                         "measure at least three points that other images see, or leave the image out");
 }
 
-BlockInference inferred(const ImageBlock& block, const LinearBlock& linear, const BlockWeights& weights) {
-  BlockInference out = infer(linear, weights.of_ray);
-  if (!out.determined() || !out.unsound_points.empty()) refuse_undetermined(block, linear, out.unsound_points);
+void expect_determined(const ImageBlock& block, const LinearBlock& start) {
+  const BlockNormals normals(start);
+  const NodeFactor factor(normals.reduced());
+  BlockInference rough;
+  rough.smallest_pivot = factor.smallest_pivot();
+  if (!rough.determined()) refuse_undetermined(block, start, {});
+}
+
+void expect_sound(const ImageBlock& block, const LinearBlock& linear, const BlockInference& found) {
+  if (!found.determined() || !found.unsound_points.empty()) refuse_undetermined(block, linear, found.unsound_points);
+}
+
+/// Points whose rays are parallel, or whose position has a standard deviation of more than a third of the distance.
+std::set<std::uint32_t> parallel_points(const ImageBlock& block, const BlockInference& found) {
+  constexpr double most = 1.0 / 3.0;
+  std::set<std::uint32_t> out(found.unsound_points.begin(), found.unsound_points.end());
+  if (found.points.empty()) return out;
+  for (const ImageRay& r : block.rays) {
+    const double distance = (block.points[r.point].position - block.images[r.image].position).norm();
+    if (std::sqrt(found.points[r.point].trace()) > most * distance) out.insert(r.point);
+  }
   return out;
+}
+
+/// These take no part, if they are few: a block has thousands of tie points, and its user need not edit their file.
+bool leave_out_parallel(ImageBlock& block, const BlockInference& found) {
+  constexpr size_t one_in = 10;
+  const std::set<std::uint32_t> points = parallel_points(block, found);
+  if (points.empty() || one_in * points.size() > block.points.size()) return false;
+  for (const std::uint32_t p : points) block.points[p].left_out = true;
+  return true;
 }
 
 }  // namespace
@@ -88,18 +120,20 @@ BlockSolution adjust_block(ImageBlock& block, const BlockOptions& o) {
   find_drift_sets(block);
   BlockSolution out;
   out.weights.of_ray.assign(block.rays.size(), 1.0);
-  BlockSystem system(block, out.weights);
-  {
-    const LinearBlock start = system.linearise();
-    const BlockNormals normals(start);
-    const NodeFactor factor(normals.reduced());
-    BlockInference rough;
-    rough.smallest_pivot = factor.smallest_pivot();
-    if (!rough.determined()) refuse_undetermined(block, start, {});
+  BlockSystem stated(block, out.weights);
+  expect_determined(block, stated.linearise());
+  out.convergence = stated.solve();
+  LinearBlock linear = stated.linearise();
+  out.inference = infer(linear, out.weights.of_ray);
+  std::optional<BlockSystem> without_parallel;
+  if (leave_out_parallel(block, out.inference)) {
+    without_parallel.emplace(block, out.weights);
+    out.convergence = without_parallel->solve();
+    linear = without_parallel->linearise();
+    out.inference = infer(linear, out.weights.of_ray);
   }
-  out.convergence = system.solve();
-  LinearBlock linear = system.linearise();
-  out.inference = inferred(block, linear, out.weights);
+  expect_sound(block, linear, out.inference);
+  BlockSystem& system = without_parallel ? *without_parallel : stated;
   for (int component_round = 0;; ++component_round) {
     bool changed = false;
     const std::vector<float> redundancy = out.inference.redundancy;
@@ -110,7 +144,10 @@ BlockSolution adjust_block(ImageBlock& block, const BlockOptions& o) {
       ++out.rounds;
       changed = true;
     }
-    if (changed || component_round > 0) out.inference = inferred(block, linear, out.weights);
+    if (changed || component_round > 0) {
+      out.inference = infer(linear, out.weights.of_ray);
+      expect_sound(block, linear, out.inference);
+    }
     if (!o.components || component_round == max_component_rounds || !rescale(out.inference, o, out)) break;
     system.weigh(out.weights);
     out.convergence = system.solve();

@@ -39,7 +39,7 @@ struct BlockSolution {
   double square_sum = 0.0;  ///< v' P v of all that has a weight
   int rounds = 0;
   size_t without_weight = 0;              ///< image points
-  size_t points_left_out = 0;             ///< seen too rarely
+  size_t points_left_out = 0;             ///< seen too rarely, or of parallel rays
   std::vector<char> component_estimated;  ///< rays, stations, attitudes, control
 
   /// Observations less unknowns, and less what image points without weight have of it.

@@ -273,6 +273,9 @@ void add_sentences(BlockFound& out) {
   if (!out.unfit.others.empty())
     out.findings.push_back("points that do not fit on two images: " + names_of(out.unfit.others) +
                            "; one name may be given to two points. They are not counted in the precision");
+  if (!out.parallel_points.empty())
+    out.findings.push_back("points whose rays are parallel are left out: " + names_of(out.parallel_points) +
+                           "; measure them in images from other places");
   if (!out.images_without_points.empty())
     out.findings.push_back("images without image points have their observed orientation: " + names_of(out.images_without_points));
   for (const CheckFound& c : out.check)
@@ -301,6 +304,8 @@ BlockFound findings_of(const ReadBlock& read, const BlockConfig& config, const B
   for (std::uint32_t c = 0; c < read.block.cameras.size(); ++c) out.cameras.push_back(camera_found(read, config, s, c));
   add_drifts(read, s, out);
   add_datum(read, s, out);
+  for (const BlockPoint& p : read.block.points)
+    if (p.left_out) out.parallel_points.push_back(p.name);
   out.unfit = unfit_points(read.block, s.weights.of_ray);
   add_precision(read, s, out);
   add_tests(read, s, out);

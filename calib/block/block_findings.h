@@ -167,7 +167,7 @@ struct BlockFound {
   std::vector<CheckFound> check;
   std::vector<PointDifference> differences;
   std::vector<SuspectFound> suspects;
-  std::vector<std::string> findings, control_without_image, images_without_points;
+  std::vector<std::string> findings, control_without_image, images_without_points, parallel_points;
 };
 
 template <class V>
@@ -180,7 +180,7 @@ void describe(const BlockFound& r, V& v) {
   v.result("attitudes", r.attitudes, "Observed attitudes.");
   v.result("control", r.control, "Control points.");
   v.result("check_points", r.checks, "Check points.");
-  v.result("points_left_out", r.points_left_out, "Points with too few image points.");
+  v.result("points_left_out", r.points_left_out, "Points with too few image points, or parallel rays.");
   v.result("without_weight", r.without_weight, "Image points whose weight fell to nothing.");
   v.result("observations", r.observations, "Observation equations.");
   v.result("unknowns", r.unknowns, "Unknowns.");
@@ -215,6 +215,8 @@ void describe(const BlockFound& r, V& v) {
   v.result("findings", r.findings, core::plain().in_summary(), "What to look at, as sentences.");
   v.result("control_without_image", r.control_without_image, core::plain().only_if(!r.control_without_image.empty()),
            "Control points that no image shows.");
+  v.result("parallel_points", r.parallel_points, core::plain().only_if(!r.parallel_points.empty()),
+           "Points left out because their rays are parallel.");
   v.result("images_without_points", r.images_without_points, core::plain().only_if(!r.images_without_points.empty()),
            "Images that have observed angles alone.");
 }

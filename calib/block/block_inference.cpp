@@ -18,7 +18,6 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr double least_redundancy = 1e-6;  // below it a residual says nothing
-constexpr double parallel_rays = 1e-12;
 
 /// Redundancy and w of one row whose adjusted value has the variance `h` (of the row's unit).
 void judge_row(BlockInference& out, const LinearBlock& l, size_t row, double h) {

@@ -106,7 +106,7 @@ PointPart BlockNormals::part(size_t point) const {
     }
   }
   out.smallest_pivot = smallest_pivot_of(N_pp);
-  if (out.smallest_pivot > 0.0) out.inverse = N_pp.inverse();
+  if (out.smallest_pivot > parallel_rays) out.inverse = N_pp.inverse();
   out.K = N_xp * out.inverse;
   out.N.noalias() -= out.K * N_xp.transpose();
   return out;

@@ -10,11 +10,15 @@
 
 namespace swath::calib {
 
+/// PointPart::smallest_pivot, about the square of the angle between rays, up to which they are parallel: below what is measured (1e-5 rad),
+/// and above what would cost the digits of the normal equations. The point is eliminated as if it were known.
+inline constexpr double parallel_rays = 1e-9;
+
 /// What a point has in the normal equations of its observations.
 struct PointPart {
   std::vector<int> nodes;                             ///< that its rays touch, rising
   std::vector<int> begin;                             ///< per node, its first row in K
-  Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();  ///< N_pp^-1
+  Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();  ///< N_pp^-1; zero where rays are parallel
   Eigen::MatrixXd K;                                  ///< N_xp N_pp^-1, k x 3
   Eigen::MatrixXd N;                                  ///< of the nodes, the point eliminated, k x k
   double smallest_pivot = 0.0;                        ///< of N_pp, scaled: near 0 where its rays are parallel

@@ -2,12 +2,16 @@
 #include "calib/block/block_start.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "core/config/units.h"
 #include "core/error.h"
 #include "core/geo/frames.h"
+#include "core/statistics.h"
 
 namespace swath::calib {
 namespace {
@@ -47,6 +51,63 @@ std::vector<double> headings(const ImageBlock& block, const std::vector<char>& n
   return out;
 }
 
+/// Per ray, in the camera's axes; zero where the distortion has no inverse.
+std::vector<Vector3d> directions_of(const ImageBlock& block) {
+  std::vector<Vector3d> out;
+  out.reserve(block.rays.size());
+  for (const ImageRay& r : block.rays) {
+    const BlockCamera& camera = block.cameras[block.images[r.image].camera];
+    const auto d = direction_of(camera.value, camera.distortion, {r.x, r.y});
+    out.push_back(d ? *d : Vector3d::Zero());
+  }
+  return out;
+}
+
+/// Points by intersection, or where their rays cross the block's middle height if that is far from their own: the mean of the crossings.
+void place_points(ImageBlock& block, const std::vector<Vector3d>& directions) {
+  constexpr double near = 0.5;  // of the middle depth
+  intersect_points(block);
+  std::vector<double> depths;
+  for (size_t r = 0; r < block.rays.size(); ++r)
+    if (!directions[r].isZero())
+      depths.push_back(block.images[block.rays[r].image].position.z() - block.points[block.rays[r].point].position.z());
+  const double middle = core::median(depths, 0.0);
+  if (!(middle > 0.0)) return;
+  std::vector<Vector3d> sum(block.points.size(), Vector3d::Zero());
+  std::vector<int> crossings(block.points.size(), 0);
+  std::vector<char> far(block.points.size(), 0);
+  for (size_t r = 0; r < block.rays.size(); ++r) {
+    if (directions[r].isZero()) continue;
+    const size_t p = block.rays[r].point;
+    const BlockImage& image = block.images[block.rays[r].image];
+    const Vector3d local = image.camera_R_local.transpose() * directions[r];
+    if (std::abs(image.position.z() - block.points[p].position.z() - middle) > near * middle) far[p] = 1;
+    if (!(local.z() < 0.0)) continue;
+    sum[p] += image.position - local * (middle / local.z());
+    ++crossings[p];
+  }
+  for (size_t p = 0; p < far.size(); ++p)
+    if (far[p] && crossings[p] > 0) block.points[p].position = sum[p] / crossings[p];
+}
+
+/// Rotation that takes `from` to `to` with the least sum of squares, weighted (Wahba 1965; Kabsch 1976).
+Matrix3d turned(const std::vector<Vector3d>& from, const std::vector<Vector3d>& to, const std::vector<double>& weight) {
+  Matrix3d B = Matrix3d::Zero();
+  for (size_t k = 0; k < from.size(); ++k) B += weight[k] * to[k] * from[k].transpose();
+  const Eigen::JacobiSVD<Matrix3d> svd(B, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant();
+  return svd.matrixU() * Vector3d(1.0, 1.0, sign).asDiagonal() * svd.matrixV().transpose();
+}
+
+/// Attitude of an image from its points, far ones with less weight.
+Matrix3d attitude_of(const Matrix3d& camera_R_local, const std::vector<Vector3d>& seen, const std::vector<Vector3d>& towards) {
+  std::vector<double> off;
+  for (size_t k = 0; k < seen.size(); ++k) off.push_back((seen[k] - camera_R_local * towards[k]).norm());
+  const double scale = std::max(core::median(off, 0.0), 1e-9);
+  for (double& o : off) o = 1.0 / (1.0 + o * o / (4.0 * scale * scale));
+  return turned(towards, seen, off);
+}
+
 }  // namespace
 
 void set_attitude(ImageBlock& block, std::uint32_t image, const Matrix3d& local_R_body) {
@@ -73,6 +134,35 @@ void start_poses(ImageBlock& block) {
   for (BlockImage& i : block.images) i.position -= i.camera_R_local.transpose() * block.cameras[i.camera].antenna;
 }
 
+void turn_level_images(ImageBlock& block) {
+  constexpr int rounds = 12;
+  constexpr size_t enough = 3;              // rays
+  const double most = 40.0 * core::degree;  // from level: beyond it something else is wrong, which the checks of residuals name
+  std::vector<Vector3d> directions = directions_of(block);
+  std::vector<int> rays(block.points.size(), 0);
+  for (const ImageRay& r : block.rays) ++rays[r.point];
+  for (size_t r = 0; r < directions.size(); ++r)
+    if (rays[block.rays[r].point] < 2) directions[r].setZero();
+  std::vector<Matrix3d> level;
+  for (const BlockImage& i : block.images) level.push_back(i.camera_R_local);
+  for (int round = 0; round < rounds; ++round) {
+    place_points(block, directions);
+    std::vector<std::vector<Vector3d>> seen(block.images.size()), towards(block.images.size());
+    for (size_t r = 0; r < block.rays.size(); ++r) {
+      const std::uint32_t i = block.rays[r].image;
+      if (directions[r].isZero()) continue;
+      seen[i].push_back(directions[r].normalized());
+      towards[i].push_back((block.points[block.rays[r].point].position - block.images[i].position).normalized());
+    }
+    for (size_t i = 0; i < block.images.size(); ++i) {
+      if (seen[i].size() < enough) continue;
+      const Matrix3d turned = attitude_of(block.images[i].camera_R_local, seen[i], towards[i]);
+      if (Eigen::AngleAxisd(turned * level[i].transpose()).angle() < most) block.images[i].camera_R_local = turned;
+    }
+  }
+  intersect_points(block);
+}
+
 void RayIntersection::add(const Vector3d& from, const Vector3d& direction) {
   const Matrix3d across = Matrix3d::Identity() - direction * direction.transpose();
   N_ += across;
@@ -89,11 +179,11 @@ std::optional<Vector3d> RayIntersection::point() const {
 
 size_t intersect_points(ImageBlock& block) {
   std::vector<RayIntersection> sums(block.points.size());
-  for (const ImageRay& r : block.rays) {
-    const BlockImage& image = block.images[r.image];
-    const BlockCamera& camera = block.cameras[image.camera];
-    if (const auto d = direction_of(camera.value, camera.distortion, {r.x, r.y}))
-      sums[r.point].add(image.position, (image.camera_R_local.transpose() * *d).normalized());
+  const std::vector<Vector3d> directions = directions_of(block);
+  for (size_t r = 0; r < block.rays.size(); ++r) {
+    const BlockImage& image = block.images[block.rays[r].image];
+    if (!directions[r].isZero())
+      sums[block.rays[r].point].add(image.position, (image.camera_R_local.transpose() * directions[r]).normalized());
   }
   size_t parallel = 0;
   for (size_t p = 0; p < sums.size(); ++p) {

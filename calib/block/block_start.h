@@ -15,6 +15,11 @@ void set_attitude(ImageBlock& block, std::uint32_t image, const Eigen::Matrix3d&
 /// of the strip at its neighbours in time. Throws core::Error: an image without station, a strip of one image without attitude.
 void start_poses(ImageBlock& block);
 
+/// Turns images that started level until their rays meet those of the others, their perspective centres held: rounds of points by
+/// intersection (on level ground where their rays meet behind an image or far off) and of each
+/// image's attitude from its points; then points by intersection.
+void turn_level_images(ImageBlock& block);
+
 /// The point whose sum of squared distances from rays is least.
 class RayIntersection {
  public:

@@ -391,7 +391,7 @@ std::vector<char> determined_points(const ImageBlock& block) {
   for (const BlockControl& c : block.control)
     if (!c.check) coordinates[c.point] += static_cast<int>(std::count(c.known.begin(), c.known.end(), true));
   std::vector<char> out(block.points.size(), 0);
-  for (size_t p = 0; p < out.size(); ++p) out[p] = rays[p] >= 2 || (rays[p] == 1 && coordinates[p] >= 3);
+  for (size_t p = 0; p < out.size(); ++p) out[p] = !block.points[p].left_out && (rays[p] >= 2 || (rays[p] == 1 && coordinates[p] >= 3));
   return out;
 }
 

@@ -41,6 +41,7 @@ struct BlockImage {
 struct BlockPoint {
   std::string name;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< local, m
+  bool left_out = false;                               ///< by the adjustment: its rays are parallel
 };
 
 /// One measured image point.

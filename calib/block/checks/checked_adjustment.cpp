@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calib/block/checks/checked_adjustment.h"
 
+#include "calib/block/block_start.h"
 #include "calib/block/checks/antenna_offsets.h"
 #include "calib/block/checks/block_checks.h"
 #include "calib/block/checks/block_sample.h"
@@ -12,6 +13,7 @@ CheckedAdjustment adjust_checked(ReadBlock& read, const BlockConfig& config) {
   refuse_mistakes(read, config);
   const StartResidual start = start_residual(sample_of(read, points).block);
   CheckedAdjustment out{read, {}, {}};
+  if (read.started_level) turn_level_images(read.block);
   out.solution = adjust_block(read.block, config.adjust);
   refuse_wrong_stations(out.stated, read, out.solution, config);
   out.found = findings_of(read, config, out.solution);

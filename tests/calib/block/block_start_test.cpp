@@ -23,6 +23,26 @@ TEST(BlockStart, PosesFollowTheStripsAndPointsTheirRays) {
   for (size_t p = 0; p < b.given.points.size(); ++p) EXPECT_LT((b.given.points[p].position - b.truth.points[p].position).norm(), 4.0);
 }
 
+TEST(BlockStart, LevelImagesTurnUntilTheirRaysMeet) {
+  test::Making m;
+  m.tilt = 0.1;
+  test::MadeBlock b = test::make_block(m);
+  const auto off = [&] {
+    double sum = 0.0;
+    for (size_t i = 0; i < b.given.images.size(); ++i) {
+      const Eigen::Matrix3d turn = b.given.images[i].camera_R_local * b.truth.images[i].camera_R_local.transpose();
+      sum += core::log_so3(turn).squaredNorm() / static_cast<double>(b.given.images.size());
+    }
+    return std::sqrt(sum);
+  };
+  const double level = off();
+  EXPECT_GT(level, 0.12);
+  turn_level_images(b.given);
+  EXPECT_LT(off(), level / 4.0);
+  for (size_t p = 0; p < b.given.points.size(); ++p)  // none behind an image or at infinity: images are at 4,500 m
+    EXPECT_LT((b.given.points[p].position - b.truth.points[p].position).norm(), 1000.0) << p;
+}
+
 TEST(BlockStart, ObservedAttitudesAndTheLeverArmAreUsed) {
   test::Making m;
   m.attitudes = true;
