@@ -86,6 +86,9 @@ const std::vector<WarningKind>& warning_kinds() {
       {"trajectory.imu_noise", "The IMU's records hold many times the noise that its specification states.",
        "See what readers.imu counted in report.json: damaged records, wrong units or axes, strong vibration; correct imu_spec if the IMU "
        "is so."},
+      {"trajectory.fix_step", "From one fix on all GNSS fixes are elsewhere by more than the IMU and their own scatter allow.",
+       "Process the fixes again: another base station or frame, a wrong ambiguity, another antenna. The records do not show which of two "
+       "levels is right; sigmas beside the step allow for both."},
       {"trajectory.lever_arm", "The records show another lever arm of the antenna than the survey states.",
        "Measure it again: forward, right, down from the IMU's centre; a turned IMU, a wrong sign or clocks apart look like it, too."},
       {"trajectory.motion", "The attitude does not follow the flight: heading against track, roll and pitch against the turns.",

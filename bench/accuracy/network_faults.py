@@ -85,9 +85,10 @@ def fly(fault, seed):
     report = common.run(STAGES, survey / "survey.toml", output)
     found = json.loads((output / "network.json").read_text())
     frozen = [f"{k}: {v['examples'][0].split('/')[-1]}" for k, v in common.stage_of(report, "readers.imu")["tally"].items() if "frozen" in k]
+    warned = common.stage_of(report, "calib.network")["tally"].get("warnings of the smoother", {"examples": []})["examples"]
     if not os.environ.get("KEEP"):
         shutil.rmtree(folder)
-    return found, frozen
+    return found, frozen + warned
 
 
 def row(fault, seed, found, which):

@@ -19,6 +19,7 @@
 #include "core/records/imu_columns.h"
 #include "core/time_gap.h"
 #include "trajectory/ins/alignment.h"
+#include "trajectory/ins/fix_steps.h"
 #include "trajectory/ins/ins_noise.h"
 #include "trajectory/ins/ins_output.h"
 #include "trajectory/ins/ins_problem.h"
@@ -192,6 +193,7 @@ SmoothedFlight left_by(const Problem& p, const SmootherRun& run, const Start& st
   out.noise = p.noise;
   out.options = p.options;
   out.share = p.share, out.variance = p.variance, out.roughness = p.roughness, out.gate = p.gate;
+  out.steps = p.steps;
   for (const SmoothedNode& n : run.nodes) out.estimates.push_back(n.estimate);
   out.outcomes = run.outcomes;
   out.stated = start.estimate;
@@ -240,6 +242,8 @@ InsGnssResult smooth_path(const ImuPath& path, const core::GnssData& gnss, const
   if (!options.correlated_share)
     for (int i = 0; i < most_iterations && adapt_fixes(problem, run_forward(problem, about(run.nodes.front()))); ++i) {
     }
+  for (int i = 0; i < most_iterations && add_fix_steps(problem, about(run.nodes.front())); ++i) {
+  }
   int iterations = 1;
   double shift = std::numeric_limits<double>::infinity();
   for (; shift > settled && iterations < most_iterations; ++iterations) {

@@ -19,6 +19,15 @@ struct Node {
   bool still = false;     ///< the body stands on the ground
 };
 
+/// A step of the fixes' error, from one level to another.
+struct FixStep {
+  size_t fix = 0;                                                ///< the first one after it
+  double time = 0.0, first = 0.0;                                ///< of the step, and of that fix; GPS time, s
+  Eigen::Vector3d size = Eigen::Vector3d::Zero(), sigma = size;  ///< north east down, m
+  double chi_square = 0.0;                                       ///< of three degrees of freedom
+  Eigen::Vector3d before = size, after = size;                   ///< levels beside that of most of the time, m
+};
+
 /// What one GNSS fix did.
 struct FixOutcome {
   Eigen::Vector3d innovation, innovation_sigma;  ///< north east down, m
@@ -34,10 +43,11 @@ struct Problem {
   Layout layout;
   ProcessNoise noise;
   InsGnssOptions options;
-  double share = 0.4;      ///< of the fixes' variance that is correlated in time
-  double variance = 1.0;   ///< factor on the fixes' stated covariances
-  double roughness = 1.0;  ///< factor on the IMU's stated noise: what vibration adds
-  double gate = 21.1;      ///< NIS of three degrees of freedom beyond which a fix is down-weighted
+  double share = 0.4;            ///< of the fixes' variance that is correlated in time
+  double variance = 1.0;         ///< factor on the fixes' stated covariances
+  double roughness = 1.0;        ///< factor on the IMU's stated noise: what vibration adds
+  double gate = 21.1;            ///< NIS of three degrees of freedom beyond which a fix is down-weighted
+  std::vector<FixStep> steps{};  ///< in the order of time; the fixes' correlated error is another one after each
   /// Called at every node that a pass comes to, for the progress.
   std::function<void()> at_node = [] {};
 };
@@ -51,6 +61,7 @@ struct SmoothedFlight {
   ProcessNoise noise;
   InsGnssOptions options;
   double share = 0.0, variance = 1.0, roughness = 1.0, gate = 0.0;
+  std::vector<FixStep> steps;
   std::vector<Estimate> estimates;   ///< per node
   std::vector<FixOutcome> outcomes;  ///< per node; those without a fix are empty
   Estimate stated;                   ///< of the beginning, before any measurement
@@ -58,7 +69,7 @@ struct SmoothedFlight {
   bool attitude_given = false;       ///< the stated attitude counts with its sigmas
 
   /// Points at the members above.
-  Problem problem() const { return {path, gnss, nodes, layout, noise, options, share, variance, roughness, gate}; }
+  Problem problem() const { return {path, gnss, nodes, layout, noise, options, share, variance, roughness, gate, steps}; }
 };
 
 }  // namespace swath::trajectory

@@ -154,6 +154,24 @@ FixesUsed judged_fixes(const InsFindings& f, const core::SmootherSeries& s, Warn
   return out;
 }
 
+/// The largest steps, each with its figures, and how many more there are.
+void judge_steps(const InsFindings& f, InsFigures& out) {
+  constexpr size_t shown = 3;
+  std::vector<FixStep> steps = f.problem.steps;
+  for (const FixStep& s : steps) out.steps.push_back({s.first, s.size, s.sigma});
+  std::stable_sort(steps.begin(), steps.end(), [](const FixStep& a, const FixStep& b) { return a.chi_square > b.chi_square; });
+  for (size_t k = 0; k < std::min(shown, steps.size()); ++k) {
+    const FixStep& s = steps[k];
+    out.named.push_back(
+        {"trajectory.fix_step", text("from the fix at %.3f s of GPS time on the fixes are elsewhere by %.3f m north, %.3f east, %.3f down",
+                                     s.first, s.size.x(), s.size.y(), s.size.z()) +
+                                    text(", %.1f sigmas", std::sqrt(s.chi_square)) +
+                                    (k + 1 == shown && steps.size() > shown
+                                         ? text("; %.0f more such steps are in the report", static_cast<double>(steps.size() - shown))
+                                         : "")});
+  }
+}
+
 std::vector<Interruption> outages_of(const std::vector<double>& fix_time, double first, double last) {
   std::vector<Interruption> out;
   const auto until = [&](double t) {
@@ -325,6 +343,7 @@ InsReport report_of(const InsFindings& f, const core::SmootherSeries& s) {
         text("the IMU's records hold %.0f times the stated noise, which is allowed for: vibration, a better grade stated than flown "
              "(imu_spec), or a wrong time offset",
              f.problem.roughness));
+  judge_steps(f, r);
   r.outages = outages_of(s.fix_time, nodes.front().time, nodes.back().time);
   r.innovations = judged_innovations(s, warnings);
   if (!f.backward.empty()) r.separation = separation_of(s);

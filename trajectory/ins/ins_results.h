@@ -205,6 +205,19 @@ void describe(const NamedFault& r, V& v) {
   v.result("sentence", r.sentence, "What it is, with its figures.");
 }
 
+/// A step of the fixes' error.
+struct StepFound {
+  double first = 0.0;                                                               ///< GPS time of the first fix after it, s
+  Eigen::Vector3d size = Eigen::Vector3d::Zero(), sigma = Eigen::Vector3d::Zero();  ///< north east down, m
+};
+
+template <class V>
+void describe(const StepFound& r, V& v) {
+  v.result("first_gps_s", r.first, core::seconds(), "GPS time of the first fix after it.");
+  v.result("ned_m", r.size, core::metres(), "Its size: north, east, down.");
+  v.result("sigma_ned_m", r.sigma, core::metres(), "Its sigmas.");
+}
+
 /// What the smoother found.
 struct InsFigures {
   SmootherSpan span{};
@@ -213,6 +226,7 @@ struct InsFigures {
   AlignmentFound alignment{};
   double standstill = 0.0;  ///< s
   FixesUsed fixes{};
+  std::vector<StepFound> steps{};
   double imu_noise_factor = 1.0;
   std::vector<Interruption> outages{};
   InnovationFigures innovations{};
@@ -232,6 +246,7 @@ void describe(const InsFigures& r, V& v) {
   v.table("alignment", r.alignment, "The first attitude.");
   v.result("standstill_s", r.standstill, core::seconds(1), "Time that the body stands still.");
   v.table("fixes", r.fixes, "The GNSS fixes.");
+  v.tables("fix_steps", r.steps, "Steps of the fixes' error.");
   v.result("imu_noise_factor", r.imu_noise_factor, core::plain(1), "Factor on the stated noise of the IMU.");
   v.tables("outages", r.outages, "Stretches of 10 s or more without a fix.");
   v.table("innovations", r.innovations, "Fixes against the forward filter's prediction.");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trajectory/ins/ins_steps.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/geo/geodesy.h"
@@ -29,6 +30,28 @@ StateMatrix Passage::noise() const {
   return out;
 }
 
+/// The fixes' correlated error among steps: each level's error is a draw of its own, with the level's distance from that of most of the
+/// time as its sigma beside what is stated. In units of the stated one.
+void pass_steps(const Problem& problem, double begin, double end, Passage& passage) {
+  const auto after = std::lower_bound(problem.steps.begin(), problem.steps.end(), std::max(begin, end),
+                                      [](const FixStep& s, double t) { return s.time < t; });
+  const bool any_before = after != problem.steps.begin();
+  const FixStep& step = any_before ? *(after - 1) : *after;
+  const bool crossed = any_before && step.time > std::min(begin, end);
+  const Vector3d level = any_before && (!crossed || end > begin) ? step.after : step.before;
+  const Matrix3d ned = ned_at(problem.gnss.position[step.fix]);
+  const Vector3d stated = (ned.transpose() * problem.gnss.covariance[step.fix] * ned).diagonal().cwiseMax(1e-12);
+  const Vector3d more = level.cwiseAbs2().cwiseQuotient(problem.share * problem.variance * stated);
+  const int fix = problem.layout.fix;
+  if (crossed) {
+    passage.transition.middleRows<3>(fix).setZero();
+    passage.gained.segment<3>(fix) = 2.0 * (more.array() + 1.0);  // half of it passes the transition, which is zero
+  } else {
+    const double kept = passage.transition(fix, fix);
+    passage.gained.segment<3>(fix) += (1.0 - kept * kept) * more;
+  }
+}
+
 Passage passage_to(const Problem& problem, const Estimate& from, ImuWalk& walk, double until) {
   Passage out;
   Propagation propagation(problem.layout, from);
@@ -48,7 +71,10 @@ Passage passage_to(const Problem& problem, const Estimate& from, ImuWalk& walk, 
   out.gained = propagation.gained(problem.noise, problem.path.bridged_within(std::min(begin, until), std::max(begin, until)));
   out.carried = from;
   out.carried.nav = propagation.nav();
-  if (const int fix = problem.layout.fix; fix >= 0) out.carried.fix *= out.transition(fix, fix);
+  if (const int fix = problem.layout.fix; fix >= 0) {
+    if (!problem.steps.empty() && problem.share > 0.0) pass_steps(problem, begin, until, out);
+    out.carried.fix *= out.transition(fix, fix);
+  }
   return out;
 }
 
