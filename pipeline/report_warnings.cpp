@@ -84,16 +84,20 @@ void add_trajectory(const Value& findings, std::vector<Warning>& out) {
   if (const Value* fixes = findings.find("fixes")) {
     const double used = fixes->find("used")->as_number(), contradict = fixes->find("down_weighted")->as_number();
     if (contradict > std::max(least_contradicting, contradicting_share * used))
-      out.push_back({std::string(fixes_code),
-                     core::format_number(contradict) + " of " + core::format_number(used) +
-                         " fixes contradict the trajectory: it may be off by far more than its sigmas",
-                     {{"contradicting", contradict, {}}, {"fixes", used, {}}}});
+      out.push_back(
+          {std::string(fixes_code),
+           core::format_number(contradict) + " of " + core::format_number(used) +
+               " fixes contradict the trajectory and are down-weighted: where they follow one another it may be off by far more than its "
+               "sigmas",
+           {{"contradicting", contradict, {}}, {"fixes", used, {}}}});
   }
   if (const Value* fixes = findings.find("fixes"); fixes && fixes->find("sigmas_overstated"))
-    out.push_back({std::string(sigmas_code),
-                   "the stated sigmas of the GNSS fixes are " + one_decimal(fixes->find("sigmas_overstated")->as_number()) +
-                       " times too large by their scatter: the trajectory's sigmas are too large with them",
-                   {{"times", fixes->find("sigmas_overstated")->as_number(), {}}}});
+    out.push_back(
+        {std::string(sigmas_code),
+         "the stated sigmas of the GNSS fixes are " + one_decimal(fixes->find("sigmas_overstated")->as_number()) +
+             " times too large by their scatter, and the trajectory's sigmas with them, unless the fixes' errors change more slowly than "
+             "trajectory.ins_gnss.correlation_time",
+         {{"times", fixes->find("sigmas_overstated")->as_number(), {}}}});
   if (const Value* noise = findings.find("imu_noise_factor"); noise && noise->as_number() >= warned_noise)
     out.push_back({std::string(noise_code),
                    "the IMU's records hold " + core::format_number(std::round(noise->as_number())) +

@@ -89,6 +89,9 @@ const std::vector<WarningKind>& warning_kinds() {
       {"trajectory.fix_step", "From one fix on all GNSS fixes are elsewhere by more than the IMU and their own scatter allow.",
        "Process the fixes again: another base station or frame, a wrong ambiguity, another antenna. The records do not show which of two "
        "levels is right; sigmas beside the step allow for both."},
+      {"trajectory.heading", "The heading is known to 0.2 deg or worse, and points beside the track with it.",
+       "Turns, or changes of speed, before and after the lines show the heading to an IMU; where another source knows it, state "
+       "trajectory.ins_gnss.alignment = \"given\" with its sigma, or use the processed trajectory."},
       {"trajectory.lever_arm", "The records show another lever arm of the antenna than the survey states.",
        "Measure it again: forward, right, down from the IMU's centre; a turned IMU, a wrong sign or clocks apart look like it, too."},
       {"trajectory.motion", "The attitude does not follow the flight: heading against track, roll and pitch against the turns.",

@@ -20,7 +20,7 @@ TEST(Warnings, EveryWarningOfAReportHasACodeThatCanBeLookedUp) {
                                                             {"code": "check.names", "sentence": "e"}, {"code": "check.outside", "sentence": "f"},
                                                             {"code": "check.roof", "sentence": "g"}, {"code": "check.cover", "sentence": "i"}]}},
           {"type": "trajectory.ins_gnss", "findings": {"fixes": {"used": 1061, "down_weighted": 316, "sigmas_overstated": 2.9}, "imu_noise_factor": 64,
-              "named": [{"code": "trajectory.clocks", "sentence": "j"}, {"code": "trajectory.fix_step", "sentence": "m"}, {"code": "trajectory.lever_arm", "sentence": "k"}, {"code": "trajectory.motion", "sentence": "l"}]}},
+              "named": [{"code": "trajectory.clocks", "sentence": "j"}, {"code": "trajectory.fix_step", "sentence": "m"}, {"code": "trajectory.heading", "sentence": "n"}, {"code": "trajectory.lever_arm", "sentence": "k"}, {"code": "trajectory.motion", "sentence": "l"}]}},
           {"type": "quality.density", "findings": {"pulses": 900, "duplicates": 100, "duplicate_share": 0.1}},
           {"type": "time.sync", "findings": {"outside": [{"technique": "pc", "events": 40, "outside": 40, "sentence": "h"}]}},
           {"type": "terrain.contours", "findings": {"lines": 0, "left_out": 41}}, {"type": "terrain.contours", "findings": {"lines": 3, "left_out": 4}},

@@ -356,9 +356,11 @@ InsReport report_of(const InsFindings& f, const core::SmootherSeries& s) {
   for (const double h : s.heading_forward) heading += h * h;
   r.heading_smoothed_away = std::sqrt(heading / static_cast<double>(nodes.size())) / arcsec;
   if (const double sigma = r.sigma.attitude.z() * arcsec; sigma > 0.2 * core::degree)
-    warnings.push_back(
-        text("the heading is known to %.2f deg only (rms sigma): the flight has too few changes of speed or course for this IMU",
-             sigma / core::degree));
+    r.named.push_back(
+        {"trajectory.heading",
+         text("the heading is known to %.2f deg only (rms sigma), so that points 100 m beside the track are uncertain by %.2f m: "
+              "the flight has too few changes of speed or course for this IMU",
+              sigma / core::degree, 100.0 * sigma)});
   if (f.unsettled > 0)
     warnings.push_back(text("the smoother had not settled after %.0f rounds: the trajectory still moved by %.2f sigmas",
                             static_cast<double>(f.iterations), f.unsettled));

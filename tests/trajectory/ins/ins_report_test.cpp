@@ -153,6 +153,7 @@ TEST(InsReport, AHeadingThatIsNotKnown) {
   const std::string w = outcry(run, test::straight_line(), "the heading is known to");
   EXPECT_NE(w, "");
   EXPECT_NE(w.find("deg only"), std::string::npos);
+  EXPECT_EQ(run.on(test::straight_line()).report.figures.named.back().code, "trajectory.heading");
 }
 
 TEST(InsReport, Gaps) {
