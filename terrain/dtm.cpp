@@ -94,10 +94,12 @@ class SigmaModel {
 
 bool smooths(const DtmOptions& o) { return o.smoothing.value > 0.0 && !o.key_points; }
 
+/// Metres about the window where heights are read.
+double around_read(const DtmOptions& o) { return o.interpolation == Interpolation::natural_neighbour ? o.max_edge.value : 0.0; }
+
 /// Metres about the window where triangles have a say: where roughness is estimated, natural neighbours are, and heights are smoothed.
 double around_window(const DtmOptions& o) {
-  const double read = o.interpolation == Interpolation::natural_neighbour ? o.max_edge.value : 0.0;
-  return std::max(RoughnessMap::reach(roughness_block(o)), read + (smooths(o) ? smoothing_reach(o.smoothing.value) : 0.0));
+  return std::max(RoughnessMap::reach(roughness_block(o)), around_read(o) + (smooths(o) ? smoothing_reach(o.smoothing.value) : 0.0));
 }
 
 Rectangle reached(const core::Lattice& window, const Eigen::Vector3d& origin, double around) {
@@ -138,7 +140,8 @@ core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmO
   Tin tin = triangulate(block, rows, constraints, 0.5 * options.max_edge.value, reached(window, block.origin, around_window(options)));
   const RoughnessMap roughness(tin, block.origin, window, roughness_block(options));
   Smoothed smoothed;
-  if (smooths(options)) smoothed = smooth_heights(tin, block.size(), options.smoothing.value);
+  if (smooths(options))
+    smoothed = smooth_heights(tin, block.size(), options.smoothing.value, reached(window, block.origin, around_read(options)));
   const std::vector<std::int32_t> triangle = triangles_at_centres(tin, block.origin, window);
 
   if (left_out)

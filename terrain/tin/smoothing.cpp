@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <span>
 #include <utility>
 
@@ -25,9 +24,12 @@ constexpr int passes = 3;
 constexpr double longest_edge = 2.0;  // radii
 constexpr float least_taken = 0.25F;  // share of the variance
 constexpr int scatter_rings = 2;      // over which it is averaged how far vertices have moved
-constexpr float alike = 0.05F;        // m: planes of less misfit have the same say
-constexpr size_t least_ring = 4;      // neighbours of a plane
-constexpr float least_area = 0.01F;   // det / trace^2 of the neighbours' spread, 0.25 where it is round
+// A height follows from planes one ring around it, each of these from heights another ring around, pass by pass.
+constexpr int moving_rings = scatter_rings + 2 * passes - 1;
+constexpr size_t part_size = 65536;  // vertices smoothed together: they stay in the processor's cache, and a tenth is around them
+constexpr float alike = 0.05F;       // m: planes of less misfit have the same say
+constexpr size_t least_ring = 4;     // neighbours of a plane
+constexpr float least_area = 0.01F;  // det / trace^2 of the neighbours' spread, 0.25 where it is round
 
 /// What goes the same way from pass to pass: m that a vertex has moved up, and three draws of white noise.
 using Signal = Eigen::Array4f;
@@ -45,9 +47,13 @@ float noise_square(const Signal& s) { return (s[1] * s[1] + s[2] * s[2] + s[3] *
 
 /// To a neighbour, m; the rise is that of the heights as they came.
 struct Edge {
-  std::int32_t to;
   float east, north, rise;
+  float weight;  ///< Tukey's biweight
+  std::int32_t to;
 };
+
+/// {east, north, rise, weight}
+Eigen::Map<const Eigen::Array4f> vector(const Edge& e) { return Eigen::Map<const Eigen::Array4f>(&e.east); }
 
 /// A neighbour on its way to its place in the order.
 struct Near {
@@ -61,13 +67,10 @@ std::uint64_t key_of(const Edge& e) {
   return (bits(e.east) << 32 | bits(e.north)) ^ bits(e.rise) * 0x9e3779b97f4a7c15U;
 }
 
-/// The neighbours of each vertex that moves, in an order that their places and heights alone decide.
-class Rings {
+/// The vertices that share an edge with each vertex of a TIN.
+class Neighbours {
  public:
-  Rings(const Tin& tin, size_t points, double radius) : start_(tin.x.size() + 1, 0) {
-    const size_t size = tin.x.size();
-    std::vector<std::uint32_t> start(size + 1, 0);
-    std::vector<char> open(size, 0);
+  explicit Neighbours(const Tin& tin) : end_(tin.x.size() + 1, 0), is_open_(tin.x.size(), 0) {
     const auto each_edge = [&tin](auto&& see) {  // once
       for (std::int32_t t = 0; t < static_cast<std::int32_t>(tin.size()); ++t) {
         const auto& v = tin.triangles[static_cast<size_t>(t)];
@@ -78,64 +81,142 @@ class Rings {
       }
     };
     each_edge([&](size_t p, size_t q, bool is_border) {
-      ++start[p], ++start[q];
-      if (is_border) open[p] = open[q] = 1;
+      ++end_[p], ++end_[q];
+      if (is_border) is_open_[p] = is_open_[q] = 1;
     });
     std::uint32_t sum = 0;
-    for (std::uint32_t& s : start) sum += std::exchange(s, sum);
-    std::vector<std::int32_t> neighbours(sum);
+    for (std::uint32_t& e : end_) sum += std::exchange(e, sum);
+    all_.resize(sum);
     each_edge([&](size_t p, size_t q, bool) {
-      neighbours[start[p]++] = static_cast<std::int32_t>(q);
-      neighbours[start[q]++] = static_cast<std::int32_t>(p);
+      all_[end_[p]++] = static_cast<std::int32_t>(q);
+      all_[end_[q]++] = static_cast<std::int32_t>(p);
     });
-    std::vector<Eigen::Vector3d> place(size);
-    for (size_t v = 0; v < size; ++v) place[v] = {tin.x[v], tin.y[v], tin.z[v]};
-    edges_ = std::make_unique_for_overwrite<Edge[]>(sum);
-    std::vector<Near> near;
-    std::uint32_t first = 0, taken = 0;
-    for (size_t v = 0; v < size; first = start[v++]) {
-      if (tin.row[v] < points && !open[v]) {
-        look_around(place, v, std::span(neighbours).subspan(first, start[v] - first), radius, near);
-        put_in_order(near, edges_.get() + taken);
-        taken += static_cast<std::uint32_t>(near.size());
-      }
-      start_[v + 1] = taken;
+  }
+
+  std::span<const std::int32_t> of(size_t v) const { return {all_.data() + (v == 0 ? 0 : end_[v - 1]), all_.data() + end_[v]}; }
+  /// Of all vertices together.
+  size_t size() const { return all_.size(); }
+  /// Whether it is on the border.
+  bool is_open(size_t v) const { return is_open_[v]; }
+
+ private:
+  std::vector<std::uint32_t> end_;
+  std::vector<std::int32_t> all_;
+  std::vector<char> is_open_;
+};
+
+/// Whether a triangle may touch the rectangle.
+bool comes_near(const Tin& tin, const std::array<std::int32_t, 3>& v, const Rectangle& r) {
+  const double a = tin.y[v[0]], b = tin.y[v[1]], c = tin.y[v[2]];
+  return (tin.x[v[2]] >= r.west) & (tin.x[v[0]] <= r.east) & (std::max(std::max(a, b), c) >= r.south) &
+         (std::min(std::min(a, b), c) <= r.north);
+}
+
+/// The vertices of triangles that touch `where`.
+std::vector<char> vertices_near(const Tin& tin, const Rectangle& where) {
+  std::vector<char> is_near(tin.x.size(), 0);
+  for (const auto& t : tin.triangles)
+    if (comes_near(tin, t, where))
+      for (const std::int32_t v : t) is_near[static_cast<size_t>(v)] = 1;
+  return is_near;
+}
+
+/// Some vertices with numbers of their own: those whose heights count, then ring by ring those that have a say in them.
+class Part {
+ public:
+  Part(const Neighbours& neighbours, size_t vertices) : neighbours_(neighbours), number_(vertices, -1) {}
+
+  /// Those of `first` to `last` - 1 that count.
+  void take(size_t first, size_t last, const std::vector<char>& counts) {
+    for (const std::int32_t v : vertices_) number_[static_cast<size_t>(v)] = -1;
+    vertices_.clear();
+    for (size_t v = first; v < last; ++v)
+      if (counts[v]) add(static_cast<std::int32_t>(v));
+    counting_ = vertices_.size();
+    size_t from = 0;
+    for (int ring = 0; ring <= moving_rings; ++ring) {
+      moving_ = vertices_.size();
+      for (size_t i = from; i < moving_; ++i)
+        for (const std::int32_t n : neighbours_.of(at(i)))
+          if (number_[static_cast<size_t>(n)] < 0) add(n);
+      from = moving_;
     }
   }
 
-  std::span<const Edge> of(size_t v) const { return {edges_.get() + start_[v], edges_.get() + start_[v + 1]}; }
+  size_t size() const { return vertices_.size(); }
+  size_t counting() const { return counting_; }  ///< the first, whose heights count
+  size_t moving() const { return moving_; }      ///< the first, that move and have all their neighbours here
+  size_t at(size_t number) const { return static_cast<size_t>(vertices_[number]); }
+  std::int32_t number(std::int32_t vertex) const { return number_[static_cast<size_t>(vertex)]; }
+  const Neighbours& neighbours() const { return neighbours_; }
+
+ private:
+  void add(std::int32_t v) {
+    number_[static_cast<size_t>(v)] = static_cast<std::int32_t>(vertices_.size());
+    vertices_.push_back(v);
+  }
+
+  const Neighbours& neighbours_;
+  std::vector<std::int32_t> vertices_, number_;
+  size_t counting_ = 0, moving_ = 0;
+};
+
+/// The neighbours of each vertex of a part that moves, in an order that their places and heights alone decide.
+class Rings {
+ public:
+  void take(const Tin& tin, const Part& part, size_t points, double radius) {
+    edges_.clear();
+    start_.assign(1, 0);
+    for (size_t i = 0; i < part.size(); ++i) {
+      const size_t v = part.at(i);
+      if (i < part.moving() && tin.row[v] < points && !part.neighbours().is_open(v)) {
+        look_around(tin, part, v, radius);
+        put_in_order();
+      }
+      start_.push_back(static_cast<std::uint32_t>(edges_.size()));
+    }
+  }
+
+  std::span<const Edge> of(size_t i) const { return {edges_.data() + start_[i], edges_.data() + start_[i + 1]}; }
 
  private:
   /// None where one of them is far or too few are near.
-  static void look_around(const std::vector<Eigen::Vector3d>& place, size_t v, std::span<const std::int32_t> neighbours, double radius,
-                          std::vector<Near>& near) {
-    near.resize(neighbours.size());
+  void look_around(const Tin& tin, const Part& part, size_t v, double radius) {
+    const auto per_square = static_cast<float>(1.0 / (radius * radius));
+    const double x = tin.x[v], y = tin.y[v], z = tin.z[v];
+    const std::span<const std::int32_t> neighbours = part.neighbours().of(v);
+    near_.resize(neighbours.size());
     size_t count = 0;
     double longest = 0.0;
     for (const std::int32_t n : neighbours) {
-      const Eigen::Vector3d d = place[static_cast<size_t>(n)] - place[v];
-      const double square = d.x() * d.x() + d.y() * d.y();
-      const Edge e{n, static_cast<float>(d.x()), static_cast<float>(d.y()), static_cast<float>(d.z())};
-      near[count] = {e, key_of(e), 0};
+      const auto at = static_cast<size_t>(n);
+      const double dx = tin.x[at] - x, dy = tin.y[at] - y, square = dx * dx + dy * dy;
+      Edge e{static_cast<float>(dx), static_cast<float>(dy), static_cast<float>(tin.z[at] - z), 0.0F, part.number(n)};
+      const float u = 1.0F - (e.east * e.east + e.north * e.north) * per_square;
+      e.weight = u * u;
+      near_[count] = {e, key_of(e), 0};
       count += square < radius * radius;
       longest = std::max(longest, square);
     }
-    near.resize(longest > longest_edge * longest_edge * radius * radius || count < least_ring ? 0 : count);
+    near_.resize(longest > longest_edge * longest_edge * radius * radius || count < least_ring ? 0 : count);
   }
 
   /// Each to where as many are before it: a few, nearly always six.
-  static void put_in_order(std::vector<Near>& near, Edge* out) {
-    for (size_t i = 0; i < near.size(); ++i)
+  void put_in_order() {
+    for (size_t i = 0; i < near_.size(); ++i)
       for (size_t j = 0; j < i; ++j) {
-        const bool before = near[j].key < near[i].key;
-        near[i].rank += before;
-        near[j].rank += !before;
+        const bool before = near_[j].key < near_[i].key;
+        near_[i].rank += before;
+        near_[j].rank += !before;
       }
-    for (const Near& n : near) out[n.rank] = n.edge;
+    const size_t first = edges_.size();
+    edges_.resize(first + near_.size());
+    for (const Near& n : near_) edges_[first + n.rank] = n.edge;
   }
 
   std::vector<std::uint32_t> start_;
-  std::unique_ptr<Edge[]> edges_;
+  std::vector<Edge> edges_;
+  std::vector<Near> near_;
 };
 
 /// Through a vertex's surroundings: the signal at the vertex and its change per metre, heights over the vertex's own as it came.
@@ -144,26 +225,22 @@ struct Plane {
   float quality = 0.0F;  ///< 0 where there is none
 };
 
-/// Tukey's biweight.
-float weight(const Edge& e, float per_square) {
-  const float u = 1.0F - (e.east * e.east + e.north * e.north) * per_square;
-  return u * u;
-}
-
-/// By weighted least squares through a vertex and its neighbours. `per_square`: of the radius.
-Plane plane_at(const std::vector<Signal>& signals, size_t v, std::span<const Edge> ring, float per_square) {
-  float s = 1.0F, sx = 0.0F, sy = 0.0F, sxx = 0.0F, sxy = 0.0F, syy = 0.0F, rise = 0.0F, rise_x = 0.0F, rise_y = 0.0F;
+/// By weighted least squares through a vertex and its neighbours.
+Plane plane_at(const std::vector<Signal>& signals, size_t v, std::span<const Edge> ring) {
+  float s = 1.0F;
   Signal f = signals[v], fx = Signal::Zero(), fy = Signal::Zero();
+  Eigen::Array4f sum = Signal::Zero(), sum_x = Signal::Zero(), sum_y = Signal::Zero();  // of {x, y, rise}, times 1, x and y
   for (const Edge& e : ring) {
-    const float w = weight(e, per_square), wx = w * e.east, wy = w * e.north;
-    s += w, sx += wx, sy += wy, sxx += wx * e.east, sxy += wx * e.north, syy += wy * e.north;
-    rise += w * e.rise, rise_x += wx * e.rise, rise_y += wy * e.rise;
+    const Eigen::Array4f weighted = e.weight * vector(e);
+    const float wx = weighted[0], wy = weighted[1];
+    s += e.weight, sum += weighted, sum_x += wx * vector(e), sum_y += wy * vector(e);
     const Signal& at = signals[static_cast<size_t>(e.to)];
-    f += w * at, fx += wx * at, fy += wy * at;
+    f += e.weight * at, fx += wx * at, fy += wy * at;
   }
-  f[0] += rise, fx[0] += rise_x, fy[0] += rise_y;
+  f[0] += sum[2], fx[0] += sum_x[2], fy[0] += sum_y[2];
   // About the places' mean.
-  const float per_s = 1.0F / s, mx = sx * per_s, my = sy * per_s, xx = sxx - mx * sx, xy = sxy - mx * sy, yy = syy - my * sy;
+  const float per_s = 1.0F / s, mx = sum[0] * per_s, my = sum[1] * per_s;
+  const float xx = sum_x[0] - mx * sum[0], xy = sum_x[1] - mx * sum[1], yy = sum_y[1] - my * sum[1];
   const float det = xx * yy - xy * xy;
   Plane p;
   if (!(det > least_area * (xx + yy) * (xx + yy))) return p;
@@ -175,7 +252,7 @@ Plane plane_at(const std::vector<Signal>& signals, size_t v, std::span<const Edg
   float left = (signals[v][0] - p.at[0]) * (signals[v][0] - p.at[0]);
   for (const Edge& e : ring) {
     const float misfit = signals[static_cast<size_t>(e.to)][0] + e.rise - p.at[0] - p.east[0] * e.east - p.north[0] * e.north;
-    left += weight(e, per_square) * misfit * misfit;
+    left += e.weight * misfit * misfit;
   }
   const auto count = static_cast<float>(ring.size() + 1);
   const float misfit = alike * alike + left * per_s * count / (count - 3.0F);
@@ -184,18 +261,31 @@ Plane plane_at(const std::vector<Signal>& signals, size_t v, std::span<const Edg
 }
 
 /// The mean of what the planes foretell.
-Signal moved(const Signal& signal, const std::vector<Plane>& planes, size_t v, std::span<const Edge> ring, float per_square) {
+Signal moved(const Signal& signal, const std::vector<Plane>& planes, size_t v, std::span<const Edge> ring) {
   float weights = planes[v].quality, rise = 0.0F;
   Signal sum = weights * planes[v].at;
   for (const Edge& e : ring) {
     const Plane& p = planes[static_cast<size_t>(e.to)];
-    const float w = p.quality * weight(e, per_square);
+    const float w = p.quality * e.weight;
     weights += w;
     rise += w * e.rise;
     sum += w * (p.at - e.east * p.east - e.north * p.north);
   }
   sum[0] += rise;
   return weights > 0.0F ? Signal(sum * (1.0F / weights)) : signal;
+}
+
+/// The signals of a part's vertices after all passes; those on its rim are not of use.
+void smooth(const Tin& tin, const Part& part, const Rings& rings, std::vector<Signal>& signals, std::vector<Plane>& planes) {
+  signals.resize(part.size());
+  for (size_t i = 0; i < part.size(); ++i) signals[i] = white_noise(tin.x[part.at(i)], tin.y[part.at(i)]);
+  planes.assign(part.size(), Plane());
+  for (int pass = 0; pass < passes; ++pass) {
+    for (size_t i = 0; i < part.moving(); ++i)
+      if (!rings.of(i).empty()) planes[i] = plane_at(signals, i, rings.of(i));
+    for (size_t i = 0; i < part.moving(); ++i)
+      if (!rings.of(i).empty()) signals[i] = moved(signals[i], planes, i, rings.of(i));
+  }
 }
 
 /// Mean square of what vertices have moved, over rings around each; NaN where none has.
@@ -223,29 +313,33 @@ std::vector<float> squares_around(const Rings& rings, const std::vector<Signal>&
 
 double smoothing_reach(double radius) { return (longest_edge + 2.0 * passes + longest_edge * scatter_rings) * radius; }
 
-Smoothed smooth_heights(Tin& tin, size_t points, double radius) {
-  const Rings rings(tin, points, radius);
+Smoothed smooth_heights(Tin& tin, size_t points, double radius, const Rectangle& where) {
   const size_t size = tin.x.size();
-  const auto per_square = static_cast<float>(1.0 / (radius * radius));
-  std::vector<Signal> signals(size);
-  for (size_t v = 0; v < size; ++v) signals[v] = white_noise(tin.x[v], tin.y[v]);
-  std::vector<Plane> planes(size);
-  for (int pass = 0; pass < passes; ++pass) {
-    for (size_t v = 0; v < size; ++v)
-      if (!rings.of(v).empty()) planes[v] = plane_at(signals, v, rings.of(v), per_square);
-    for (size_t v = 0; v < size; ++v)
-      if (!rings.of(v).empty()) signals[v] = moved(signals[v], planes, v, rings.of(v), per_square);
+  const Neighbours neighbours(tin);
+  const std::vector<char> counts = vertices_near(tin, where);
+  std::vector<double> height = tin.z;
+  Smoothed out{std::vector<float>(size, 1.0F), std::vector<float>(size, std::numeric_limits<float>::quiet_NaN())};
+  Part part(neighbours, size);
+  Rings rings;
+  std::vector<Signal> signals;
+  std::vector<Plane> planes;
+  for (size_t first = 0; first < size; first += part_size) {
+    part.take(first, std::min(first + part_size, size), counts);
+    rings.take(tin, part, points, radius);
+    smooth(tin, part, rings, signals, planes);
+    const std::vector<float> scatter = squares_around(rings, signals);
+    for (size_t i = 0; i < part.counting(); ++i) {
+      const auto ring = rings.of(i);
+      if (ring.empty()) continue;
+      const size_t v = part.at(i);
+      height[v] += static_cast<double>(signals[i][0]);
+      float sum = noise_square(signals[i]);
+      for (const Edge& e : ring) sum += noise_square(signals[static_cast<size_t>(e.to)]);
+      out.left[v] = std::min(1.0F, sum / static_cast<float>(ring.size() + 1));
+      out.scatter[v] = scatter[i] / std::max(least_taken, 1.0F - out.left[v]);
+    }
   }
-  Smoothed out{std::vector<float>(size, 1.0F), squares_around(rings, signals)};
-  for (size_t v = 0; v < size; ++v) {
-    const auto ring = rings.of(v);
-    if (ring.empty()) continue;
-    tin.z[v] += static_cast<double>(signals[v][0]);
-    float sum = noise_square(signals[v]);
-    for (const Edge& e : ring) sum += noise_square(signals[static_cast<size_t>(e.to)]);
-    out.left[v] = std::min(1.0F, sum / static_cast<float>(ring.size() + 1));
-    out.scatter[v] /= std::max(least_taken, 1.0F - out.left[v]);
-  }
+  tin.z.swap(height);
   return out;
 }
 

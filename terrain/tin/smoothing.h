@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "terrain/tin/rectangle.h"
 #include "terrain/tin/tin.h"
 
 namespace swath::terrain {
@@ -18,8 +19,8 @@ struct Smoothed {
 /// foretell, the most from planes that fit their points. Vertices of constraints (row `points` and more) keep their height, and so do those
 /// on the border, those with an edge longer than twice the radius and those with fewer than four neighbours within it, or all on one line.
 /// The heights of a triangle and the scatter about it depend on the triangles within smoothing_reach() of any place in it, and on
-/// nothing else.
-Smoothed smooth_heights(Tin& tin, size_t points, double radius);
+/// nothing else. Only triangles that touch `where` count: beyond it vertices may keep their height.
+Smoothed smooth_heights(Tin& tin, size_t points, double radius, const Rectangle& where = {});
 
 /// m
 double smoothing_reach(double radius);

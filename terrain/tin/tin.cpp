@@ -122,12 +122,12 @@ class Selection {
   void take() {
     const auto size = static_cast<std::int32_t>(faces_.size());
     std::vector<std::int8_t> order(faces_.size(), -1);
-    for (std::int32_t f = 0; f < size; ++f)
-      if (faces_[f].is_finite()) order[f] = order_of(faces_[f]);
     std::vector<std::int32_t> number(faces_.size(), -1);
     std::int32_t count = 0;
-    for (std::int32_t f = 0; f < size; ++f)
+    for (std::int32_t f = 0; f < size; ++f) {
+      if (faces_[f].is_finite()) order[f] = order_of(faces_[f]);
       if (order[f] >= 0) number[f] = count++;
+    }
     tin_.triangles.reserve(static_cast<size_t>(count));
     tin_.across.reserve(static_cast<size_t>(count));
     for (std::int32_t f = 0; f < size; ++f) {

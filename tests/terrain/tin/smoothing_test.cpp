@@ -135,5 +135,34 @@ TEST(Smoothing, NeitherOrderNorWhatLiesFarAwayMatters) {
   EXPECT_GT(compared, 1000u);
 }
 
+TEST(Smoothing, WhatIsReadIsTheSameWhereOnlyThatCounts) {
+  const core::Block b = noisy(12000, scarp, 0.05, 5);
+  const Rectangle where{25.0, 25.0, 35.0, 35.0};
+  Tin whole = tin_of(b), part = whole;
+  const std::vector<double> before = whole.z;
+  const Smoothed of_whole = smooth_heights(whole, b.size(), 1.0), of_part = smooth_heights(part, b.size(), 1.0, where);
+  size_t compared = 0;
+  for (const auto& t : whole.triangles) {
+    const auto touches = [&](const std::vector<double>& at, double low, double high) {
+      const auto [least, most] = std::minmax({at[t[0]], at[t[1]], at[t[2]]});
+      return most >= low && least <= high;
+    };
+    if (!touches(whole.x, where.west, where.east) || !touches(whole.y, where.south, where.north)) continue;
+    ++compared;
+    for (const std::int32_t v : t) {
+      ASSERT_EQ(part.z[v], whole.z[v]);
+      ASSERT_EQ(of_part.left[v], of_whole.left[v]);
+      ASSERT_EQ(std::isnan(of_part.scatter[v]), std::isnan(of_whole.scatter[v]));
+      if (!std::isnan(of_whole.scatter[v])) {
+        ASSERT_EQ(of_part.scatter[v], of_whole.scatter[v]);
+      }
+    }
+  }
+  EXPECT_GT(compared, 600u);
+  size_t kept = 0;
+  for (size_t v = 0; v < before.size(); ++v) kept += part.z[v] == before[v] && whole.z[v] != before[v];
+  EXPECT_GT(kept, before.size() / 2);
+}
+
 }  // namespace
 }  // namespace swath::terrain
