@@ -157,15 +157,19 @@ core::Grid dtm(const core::Block& block, const core::Lattice& window, const DtmO
   const SigmaModel sigma(tin, roughness, smoothed, options);
   std::optional<NaturalNeighbours> neighbourhood;
   if (natural) neighbourhood.emplace(tin);
-  for (int j = 0; j < window.ny; ++j)
-    for (int i = 0; i < window.nx; ++i) {
-      const size_t at = window.at(i, j);
-      if (triangle[at] < 0) continue;
-      const double x = window.centre_x(i) - block.origin.x(), y = window.centre_y(j) - block.origin.y();
-      const double z = natural ? neighbourhood->height(triangle[at], x, y) : height_in(tin, triangle[at], x, y);
-      grid.height[at] = static_cast<float>(block.origin.z() + z);
-      grid.sigma[at] = static_cast<float>(sigma.at(triangle[at], x, y));
-    }
+  const auto read = [&](int i, int j) {
+    const size_t at = window.at(i, j);
+    if (triangle[at] < 0) return;
+    const double x = window.centre_x(i) - block.origin.x(), y = window.centre_y(j) - block.origin.y();
+    const double z = natural ? neighbourhood->height(triangle[at], x, y) : height_in(tin, triangle[at], x, y);
+    grid.height[at] = static_cast<float>(block.origin.z() + z);
+    grid.sigma[at] = static_cast<float>(sigma.at(triangle[at], x, y));
+  };
+  constexpr int side = 32;  // squares of cells: the vertices of one row's triangles are far apart in memory
+  for (int j0 = 0; j0 < window.ny; j0 += side)
+    for (int i0 = 0; i0 < window.nx; i0 += side)
+      for (int j = j0; j < std::min(j0 + side, window.ny); ++j)
+        for (int i = i0; i < std::min(i0 + side, window.nx); ++i) read(i, j);
   give_void_reasons(grid, block, rows, options.max_edge.value);
   if (lines) lines->apply(grid);
   return grid;

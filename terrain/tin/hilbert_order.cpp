@@ -12,15 +12,43 @@ namespace {
 constexpr int levels = 12;  // 4096 x 4096 cells: two passes of a radix sort
 constexpr std::uint32_t side = 1u << levels;
 
-// Place of a cell on the curve. Each quadrant's curve is its parent's, mirrored in both axes (flip) and in the diagonal (swap).
-std::uint32_t index_of(std::uint32_t x, std::uint32_t y) {
-  std::uint32_t index = 0, flip = 0, swap = 0;
-  for (int level = levels - 1; level >= 0; --level) {
+// Each quadrant's curve is its parent's, mirrored in both axes (flip) and in the diagonal (swap). Steps of several levels are read from a
+// table: of the place within the step's square, row by row, and how the curve through it is mirrored.
+constexpr int step = 4;
+constexpr std::uint32_t step_side = 1u << step;
+struct Step {
+  std::uint8_t index, mirrored;  // mirrored: flip | swap << 1, of the curve in that place
+};
+using Steps = std::array<std::array<Step, step_side * step_side>, 4>;
+
+constexpr Step step_to(std::uint32_t x, std::uint32_t y, std::uint32_t mirrored) {
+  std::uint32_t index = 0, flip = mirrored & 1u, swap = mirrored >> 1;
+  for (int level = step - 1; level >= 0; --level) {
     const std::uint32_t bx = (x >> level) & 1u, by = (y >> level) & 1u;
     const std::uint32_t rx = (swap ? by : bx) ^ flip, ry = (swap ? bx : by) ^ flip;
     index = index << 2 | ((3 * rx) ^ ry);
     flip ^= rx & ~ry;
     swap ^= ry ^ 1u;
+  }
+  return {static_cast<std::uint8_t>(index), static_cast<std::uint8_t>((flip & 1u) | (swap & 1u) << 1)};
+}
+
+constexpr Steps all_steps() {
+  Steps out{};
+  for (std::uint32_t mirrored = 0; mirrored < 4; ++mirrored)
+    for (std::uint32_t y = 0; y < step_side; ++y)
+      for (std::uint32_t x = 0; x < step_side; ++x) out[mirrored][y * step_side + x] = step_to(x, y, mirrored);
+  return out;
+}
+constexpr Steps steps = all_steps();
+
+/// Place of a cell on the curve.
+std::uint32_t index_of(std::uint32_t x, std::uint32_t y) {
+  std::uint32_t index = 0, mirrored = 0;
+  for (int level = levels - step; level >= 0; level -= step) {
+    const Step s = steps[mirrored][((y >> level) % step_side) * step_side + (x >> level) % step_side];
+    index = index << 2 * step | s.index;
+    mirrored = s.mirrored;
   }
   return index;
 }

@@ -71,26 +71,26 @@ std::uint64_t key_of(const Edge& e) {
 class Neighbours {
  public:
   explicit Neighbours(const Tin& tin) : end_(tin.x.size() + 1, 0), is_open_(tin.x.size(), 0) {
-    const auto each_edge = [&tin](auto&& see) {  // once
-      for (std::int32_t t = 0; t < static_cast<std::int32_t>(tin.size()); ++t) {
+    const auto size = static_cast<std::int32_t>(tin.size());
+    // As many as triangles, and one more for every two edges on the border.
+    for (std::int32_t t = 0; t < size; ++t)
+      for (int k = 0; k < 3; ++k) {
         const auto& v = tin.triangles[static_cast<size_t>(t)];
-        for (int k = 0; k < 3; ++k) {
-          const std::int32_t other = tin.across[static_cast<size_t>(t)][k];
-          if (other < t) see(static_cast<size_t>(v[ccw(k)]), static_cast<size_t>(v[cw(k)]), other < 0);
-        }
+        end_[static_cast<size_t>(v[k])] += 2;
+        if (tin.across[static_cast<size_t>(t)][k] >= 0) continue;
+        for (const std::int32_t p : {v[ccw(k)], v[cw(k)]}) ++end_[static_cast<size_t>(p)], is_open_[static_cast<size_t>(p)] = 1;
       }
-    };
-    each_edge([&](size_t p, size_t q, bool is_border) {
-      ++end_[p], ++end_[q];
-      if (is_border) is_open_[p] = is_open_[q] = 1;
-    });
     std::uint32_t sum = 0;
-    for (std::uint32_t& e : end_) sum += std::exchange(e, sum);
+    for (std::uint32_t& e : end_) sum += std::exchange(e, sum) / 2;
     all_.resize(sum);
-    each_edge([&](size_t p, size_t q, bool) {
-      all_[end_[p]++] = static_cast<std::int32_t>(q);
-      all_[end_[q]++] = static_cast<std::int32_t>(p);
-    });
+    for (std::int32_t t = 0; t < size; ++t)
+      for (int k = 0; k < 3; ++k) {
+        if (tin.across[static_cast<size_t>(t)][k] >= t) continue;  // each edge once
+        const auto& v = tin.triangles[static_cast<size_t>(t)];
+        const std::int32_t p = v[ccw(k)], q = v[cw(k)];
+        all_[end_[static_cast<size_t>(p)]++] = q;
+        all_[end_[static_cast<size_t>(q)]++] = p;
+      }
   }
 
   std::span<const std::int32_t> of(size_t v) const { return {all_.data() + (v == 0 ? 0 : end_[v - 1]), all_.data() + end_[v]}; }
