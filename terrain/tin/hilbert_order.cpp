@@ -80,4 +80,17 @@ std::vector<OnCurve> along_hilbert_curve(const std::vector<Place>& places) {
   return order;
 }
 
+std::vector<std::int32_t> from_coarse_to_fine(std::int32_t first, std::int32_t last) {
+  constexpr std::int32_t row_size = 4096, coarsest = 32;  // the finest selection is every second place
+  std::vector<std::int32_t> order;
+  order.reserve(static_cast<size_t>(last - first));
+  for (std::int32_t row = first; row < last; row += row_size) {
+    const std::int32_t end = std::min(row + row_size, last);
+    for (std::int32_t p = row; p < end; p += coarsest) order.push_back(p);
+    for (std::int32_t step = coarsest; step > 1; step /= 2)
+      for (std::int32_t p = row + step / 2; p < end; p += step) order.push_back(p);
+  }
+  return order;
+}
+
 }  // namespace swath::terrain

@@ -17,4 +17,9 @@ struct OnCurve {
 /// Equal places have one cell; within a cell numbers ascend. Places must be finite, fewer than 2^32.
 std::vector<OnCurve> along_hilbert_curve(const std::vector<Place>& places);
 
+/// The numbers `first` to `last` - 1 of places that lie along the curve, in the order in which a triangulation by insertion is quickest:
+/// rows of 4096, each from a coarse selection to those between (Amenta, Choi & Rote 2003, "Incremental constructions con BRIO"). In a row
+/// from one end to the other the triangles ahead of it would be long and each new place would change more of them.
+std::vector<std::int32_t> from_coarse_to_fine(std::int32_t first, std::int32_t last);
+
 }  // namespace swath::terrain

@@ -185,7 +185,7 @@ Tin triangulate(const core::Block& block, const std::vector<std::uint32_t>& rows
   for (std::vector<std::uint32_t> more = around.first(); !more.empty(); more = around.needed(dt, vertices.places())) {
     const std::int32_t first = vertices.count();
     vertices.take(more);
-    dt.insert(first, vertices.count());
+    dt.insert(from_coarse_to_fine(first, vertices.count()));
   }
   dt.settle(dt.cocircular());
   Selection(dt.faces(), vertices.places(), max_radius, where, tin).take();

@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <set>
+#include <utility>
+#include <vector>
 
 namespace swath::terrain {
 namespace {
@@ -45,6 +48,15 @@ TEST(HilbertOrder, EveryPlaceOnceAndEqualOnesTogether) {
   EXPECT_EQ(seen.size(), places.size());
   EXPECT_TRUE(along_hilbert_curve({}).empty());
   EXPECT_EQ(along_hilbert_curve({{1, 1}, {1, 1}}).size(), 2u);
+}
+
+TEST(HilbertOrder, FromCoarseToFineEveryNumberOnceRowByRow) {
+  EXPECT_EQ(from_coarse_to_fine(3, 8), (std::vector<std::int32_t>{3, 7, 5, 4, 6}));
+  EXPECT_TRUE(from_coarse_to_fine(5, 5).empty());
+  const auto order = from_coarse_to_fine(7, 10007);
+  ASSERT_EQ(order.size(), 10000u);
+  EXPECT_EQ(std::set<std::int32_t>(order.begin(), order.end()).size(), order.size());
+  for (std::ptrdiff_t k = 0; k < 10000; ++k) ASSERT_EQ((order[static_cast<size_t>(k)] - 7) / 4096, k / 4096);
 }
 
 }  // namespace
