@@ -67,6 +67,13 @@ void add_turns(const trajectory::FlightChecks& c, std::vector<GeometryCheck>& ou
   }
 }
 
+/// Root of the square of the median and of the squared robust scatter about it: the RMS of noise, of an offset, and of both.
+double robust_rms(std::vector<double> d) {
+  const double middle = core::median(d, 0.0);
+  for (double& x : d) x = std::abs(x - middle);
+  return std::hypot(middle, core::mad_to_sigma * core::median(std::move(d), 0.0));
+}
+
 }  // namespace
 
 LineCells line_cells(const SampledFlight& f, const Chain& chain, const trajectory::Trajectory& t) {
@@ -92,8 +99,7 @@ LineFit fit_lines(const SampledFlight& f, LineCells& of, const Chain& chain, con
   std::map<size_t, const core::Shots*> shots;
   for (const PassSample& s : f.sample.surfaces) shots[s.pass] = &s.shots;
   LineFit out;
-  std::vector<double> all;
-  double outside = 0, squares = 0, expected = 0, cells = 0, smooth = 0;
+  double outside = 0, squares = 0, robust = 0, expected = 0, n = 0, cells = 0, smooth = 0;
   for (const PassGround& g : of.ground) cells += static_cast<double>(g.cells), smooth += static_cast<double>(g.smooth.size());
   for (auto& [a, b, shared] : of.pairs) {
     LinePair p;
@@ -104,30 +110,31 @@ LineFit fit_lines(const SampledFlight& f, LineCells& of, const Chain& chain, con
     const double sigma = std::max(p.predicted, finest);
     p.water = take_out_water(shared, sigma).value_or(0.0);
     p.cells = shared.size();
-    std::vector<double> d, size;
+    std::vector<double> d;
     double off = 0;
     for (const SharedCell& s : shared) {
-      d.push_back(s.apart), size.push_back(std::abs(s.apart));
-      off += size.back() > far_off * sigma;
-      squares += std::pow(std::min(size.back(), cut * sigma), 2);
+      d.push_back(s.apart);
+      const double size = std::abs(s.apart);
+      off += size > far_off * sigma;
+      squares += std::pow(std::min(size, cut * sigma), 2);
     }
-    all.insert(all.end(), size.begin(), size.end());
-    const auto n = static_cast<double>(shared.size());
+    const auto count = static_cast<double>(shared.size());
     outside += off;
-    p.outside = off / n;
-    expected += n * p.predicted * p.predicted;
-    p.median = core::median(std::move(d), 0.0);
-    p.rms = core::mad_to_sigma * core::median(std::move(size), 0.0);
+    p.outside = off / count;
+    p.median = core::median(d, 0.0);
+    p.rms = robust_rms(std::move(d));
+    n += count;
+    expected += count * p.predicted * p.predicted;
+    robust += count * p.rms * p.rms;
+    out.fit.cells += p.cells;
     out.pairs.push_back(p);
   }
   out.fit.smooth = cells > 0 ? smooth / cells : 0.0;
-  out.fit.cells = all.size();
-  if (all.empty()) return out;
-  const auto n = static_cast<double>(all.size());
+  if (out.fit.cells == 0) return out;
   out.predicted = std::sqrt(expected / n);
   out.fit.outside = outside / n;
   out.fit.cost = std::sqrt(squares / n);
-  out.fit.rms = core::mad_to_sigma * core::median(std::move(all), 0.0);
+  out.fit.rms = std::sqrt(robust / n);
   return out;
 }
 

@@ -22,7 +22,7 @@ namespace swath::calib {
 /// How the lines fit together.
 struct Fit {
   std::uint64_t cells = 0;
-  double rms = 0.0;      ///< robust, over all pairs, m
+  double rms = 0.0;      ///< robust, of the pairs by their cells, m
   double outside = 0.0;  ///< share of shared cells off by five predicted sigmas
   double cost = 0.0;     ///< root of the mean square, each difference cut at twenty sigmas, m
   double smooth = 0.0;   ///< share of cells that are smooth

@@ -59,7 +59,7 @@ struct LinePair {
   size_t pass_a = 0, pass_b = 0;
   std::uint64_t cells = 0;
   double median = 0.0;     ///< a minus b along the normal, m
-  double rms = 0.0;        ///< about zero, robust: 1.4826 of the median size, m
+  double rms = 0.0;        ///< about zero, robust: of the median and the scatter about it, m
   double predicted = 0.0;  ///< what the sigmas make one expect, m
   double outside = 0.0;    ///< share of cells that differ by more than five times that
   double water = 0.0;      ///< difference of the water's level, m; its cells are not among `cells`

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/calib/gate_flight.h"
 
@@ -23,15 +24,40 @@ double cost_of(const SampledFlight& s, const Chain& chain, const trajectory::Tra
   return fit_lines(s, cells, chain, t, predicted).fit.cost;
 }
 
-TEST(GeometryFit, ReturnsContradictARolledMountAndWrongHeights) {
-  const GateFlight f(true);
-  const trajectory::Trajectory t(f.data);
+SampledFlight sample_of(const GateFlight& f, const trajectory::Trajectory& t) {
   SampledFlight s;
   s.frame = GateFlight::local();
   s.plan = plan_sample(f.lines, t, s.frame, 0.0, 300.0, {});
   s.sample = collect_samples({&s.plan}, f.input(t).shots).front();
   s.ground = {s.plan.cell, 0.13};
   s.sensor = f.sensor;
+  return s;
+}
+
+TEST(GeometryFit, AnOffsetOfALineIsReportedAsItIs) {
+  constexpr double offset = 0.4;      // m
+  constexpr double tolerance = 0.02;  // m: roughness of the ground and its slope
+  GateFlight f(true);
+  for (size_t i = 0; i < f.data.size(); ++i)
+    if (f.data.time[i] > f.lines[1].first - 2 && f.data.time[i] < f.lines[1].last + 2) f.data.height[i] += offset;
+  const trajectory::Trajectory t(f.data);
+  const SampledFlight s = sample_of(f, t);
+  LineCells cells = line_cells(s, f.chain, t);
+  const LineFit fit = fit_lines(s, cells, f.chain, t, 0.0);
+  double squares = 0;
+  for (const LinePair& p : fit.pairs) {
+    const double expected = p.line_a == 2 || p.line_b == 2 ? offset : 0.0;
+    EXPECT_NEAR(p.rms, expected, tolerance) << p.line_a << " " << p.line_b;
+    squares += static_cast<double>(p.cells) * expected * expected;
+  }
+  ASSERT_EQ(fit.pairs.size(), 3u);
+  EXPECT_NEAR(fit.fit.rms, std::sqrt(squares / static_cast<double>(fit.fit.cells)), tolerance);
+}
+
+TEST(GeometryFit, ReturnsContradictARolledMountAndWrongHeights) {
+  const GateFlight f(true);
+  const trajectory::Trajectory t(f.data);
+  const SampledFlight s = sample_of(f, t);
   const auto right = check_returns(s, f.chain, t, f.data);
   for (const char* name : {"beams_down", "ground_height", "ground_tilt"}) EXPECT_TRUE(held(right, name)) << name;
   Chain rolled = f.chain;
