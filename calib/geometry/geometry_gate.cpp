@@ -20,12 +20,15 @@
 namespace swath::calib {
 namespace {
 
+constexpr double least_sigma = 0.03;    // m, as in geometry_fit.cpp: ground differs by this from pass to pass
 constexpr double far_better = 0.5;      // of the cost as described
 constexpr double as_good = 1.12;        // of the best cost: the same
 constexpr double fewer_cells = 0.1;     // of the largest number of cells that any assumption gives
 constexpr double near_predicted = 2.5;  // of the predicted sigma
 constexpr double few_outside = 0.1;
-constexpr double no_worse = 1.02;  // of the cost as described, with a small mistake undone
+constexpr double no_worse = 1.02;    // of the cost as described, with a small mistake undone
+constexpr double clearly_off = 1.5;  // of the predicted sigma: smaller differences are what the sigmas allow
+constexpr double as_predicted = 1.25, less_left = 0.95;
 constexpr size_t most_named = 3;
 constexpr std::uint64_t few_cells = 5;
 constexpr double least_covered = 0.5, nearly_all = 0.95, all_covered = 0.995;
@@ -52,7 +55,7 @@ std::vector<TriedMistake> explain(const GeometryFigures& found, std::uint64_t le
   const size_t now = not_held(found.checks);
   size_t fewest = now;
   // Lines that fit must fit as their sigmas say.
-  const double sigma = std::max(found.lines.predicted, 0.03);
+  const double sigma = std::max(found.lines.predicted, least_sigma);
   const auto fits = [&](const Fit& f) {
     return found.lines.predicted > 0 ? f.cost < near_predicted * sigma && f.outside < few_outside : f.rms < 0.3;
   };
@@ -181,6 +184,19 @@ std::string doubt_of(const GeometryFigures& g, const GeometryOptions& o) {
   return {};
 }
 
+/// Clear differences of the lines are brought down by far, or to about what is predicted. Smaller ones are what the sigmas allow: only
+/// where those are small does their pattern show a mistake, which brings them down as well.
+bool explains_lines(const Fit& with, const GeometryFigures& g, double tolerance) {
+  const double sigma = std::max(g.lines.predicted, least_sigma), now = g.lines.fit.rms;
+  if (now > clearly_off * sigma) return with.rms < std::max(far_better * now, as_predicted * sigma);
+  return sigma < tolerance && with.cost < less_left * g.lines.fit.cost;
+}
+
+/// What the ground's heights differ from control by is evidence of its own.
+bool is_control_off(const GeometryFigures& g) {
+  return g.control.compared >= fewest_control_points && std::abs(g.control.median) > near_predicted * g.control.predicted;
+}
+
 /// Small mistakes that the lines' and the control's differences show; confirmed on the sample.
 std::vector<TriedMistake> small_mistakes(const GeometryInput& in, const GeometryOptions& o, const SampledFlight& flight,
                                          const std::vector<UsualMistake>& usual, const LineCells& cells, const GeometryFigures& found) {
@@ -210,9 +226,11 @@ std::vector<TriedMistake> small_mistakes(const GeometryInput& in, const Geometry
   if (little) std::erase_if(all, [](const SmallExplanation& e) { return !e.usual; });
   // Where control alone is off, a mistake that does not set it right explains nothing.
   const size_t now = not_held(found.checks), most = now > 0 ? now - 1 : 0;
+  const bool by_control = now > 0 || is_control_off(found);
   const Trial trial(in, o, flight, found, usual);
   for (const SmallExplanation& e : all)
-    if (TriedMistake t = trial.judged(e); t.fit.cost <= no_worse * found.lines.fit.cost && t.contradictions <= most)
+    if (TriedMistake t = trial.judged(e); t.fit.cost <= no_worse * found.lines.fit.cost && t.contradictions <= most &&
+                                          (by_control || explains_lines(t.fit, found, o.tolerance.value)))
       out.push_back(std::move(t));
   return out;
 }

@@ -124,6 +124,34 @@ TEST_F(Geometry, HeightsAreNotJudgedByRoofs) {
   EXPECT_EQ(o.report.find("geometry")->find("control"), nullptr);
 }
 
+TEST(PoorGnss, ErrorsThatTheSigmasAllowAreNotAMistake) {
+  const test::TemporaryFolder folder;
+  simulate::Options o;
+  o.seed = 1;
+  o.world.length.value = 200;
+  o.world.width.value = 200;
+  o.flight.lines = 3;
+  o.flight.cross_lines = 1;
+  o.gnss.sigma_horizontal.value = 1.5;
+  o.gnss.sigma_vertical.value = 3;
+  simulate::run(o, folder.path());
+  std::string text = test::read_bytes(test::source_folder() / "configs/survey.toml");
+  const size_t behind = text.find("[[stage]]", text.find("quality.geometry"));
+  ASSERT_NE(behind, std::string::npos);
+  io::write_text_file(folder.path() / "gate.toml", text.substr(0, behind));
+  Request r;
+  r.config = folder.path() / "gate.toml";
+  r.survey = folder.path() / "survey.toml";
+  r.output = folder.path() / "out";
+  r.threads = 2;
+  Plan plan = make_plan(r);
+  Progress progress(Voice::quiet);
+  const Outcome found = run(plan, progress, "test");
+  const core::Value& geometry = *found.report.find("geometry");
+  EXPECT_EQ(geometry.find("verdict")->as_text(), "consistent");
+  EXPECT_TRUE(geometry.find("named")->items().empty());
+}
+
 TEST_F(Geometry, AUsualMistakeIsNotHiddenByAnAdjustment) {
   const Outcome o = run_with("angle_unit = \"deg\"", "angle_unit = \"gon\"", {}, adjusting());
   EXPECT_EQ(named(o), "scan_angle_gon");
