@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "pipeline/jobs/check_columns.h"
 #include "pipeline/jobs/clouds.h"
 #include "pipeline/jobs/config_folder.h"
 #include "tools/command.h"
@@ -60,7 +61,7 @@ struct Given {
   std::string crs;
   std::vector<std::string> values;  ///< of the job's options, in their order; empty: not given
   std::vector<std::filesystem::path> check;
-  std::string check_crs, level = "none";
+  std::string check_crs, check_columns, level = "none";
   std::filesystem::path reference;
   pipeline::Request request;
   std::filesystem::path save;
@@ -80,10 +81,21 @@ std::string class_list(const std::vector<std::string>& classes) {
   return "dtm.classes=[" + list + "]";
 }
 
+void add_columns(const pipeline::CheckColumns& columns, const Loudness& loudness, core::Value& control) {
+  if (!columns.are_stated()) return;
+  control["name"] = columns.name;
+  control["x"] = columns.x;
+  control["y"] = columns.y;
+  control["z"] = columns.z;
+  if (!columns.note.empty() && loudness.voice() == pipeline::Voice::bar) print(columns.note + "\n");
+}
+
 /// What a job that judges is given beside its clouds.
-void add_judgement(const Given& a, pipeline::Request& out) {
+void add_judgement(const Given& a, const std::vector<std::filesystem::path>& clouds, pipeline::Request& out) {
   if (a.check.empty() && !a.check_crs.empty())
     throw core::usage_error("there are no check points that it is the CRS of", "--check-crs", "name them by --check FILE");
+  if (a.check.empty() && !a.check_columns.empty())
+    throw core::usage_error("there are no check points that these are columns of", "--check-columns", "name them by --check FILE");
   std::vector<std::string> sets{"swath.quality_level=" + a.level};
   if (!a.reference.empty()) sets.push_back("surface.reference=" + std::filesystem::absolute(a.reference).string());
   out.sets.insert(out.sets.begin(), sets.begin(), sets.end());
@@ -94,6 +106,7 @@ void add_judgement(const Given& a, pipeline::Request& out) {
     one["file"] = core::Value(std::filesystem::absolute(file).string());
     one["use"] = core::Value(std::string("check"));
     if (!a.check_crs.empty()) one["crs"] = core::Value(a.check_crs);
+    add_columns(pipeline::check_columns(file, a.check_columns, {clouds, a.crs, a.check_crs}), a.loudness, one);
     control.push(std::move(one));
   }
   (*out.survey_tree)["control"] = std::move(control);
@@ -138,9 +151,19 @@ pipeline::Request request_of(const Job& job, const Given& a) {
     if (o.option == "contours.interval") fit_lines(a.values[k], o, out);
   }
   out.survey_tree = pipeline::cloud_survey(files, a.crs);
-  if (job.judges) add_judgement(a, out), require_ground(files, a.request.sets);
+  if (job.judges) add_judgement(a, files, out), require_ground(files, a.request.sets);
   if (out.output.empty()) out.output = pipeline::proposed_output(files, job.name);
   return out;
+}
+
+/// The keys of survey.toml that a hint names are options of a job.
+std::string of_options(std::string hint) {
+  const std::pair<std::string_view, std::string_view> keys[]{
+      {"the columns and the CRS of this [[control]]", "the columns (--check-columns) and the CRS (--check-crs)"},
+      {"crs in this [[control]]", "--check-crs"}};
+  for (const auto& [key, option] : keys)
+    if (const size_t at = hint.find(key); at != hint.npos) hint.replace(at, key.size(), option);
+  return hint;
 }
 
 /// A fault of an option that a short name set is that one's, and not the config's.
@@ -148,6 +171,7 @@ int run_job(const Job& job, const Given& a, const std::string& typed) {
   try {
     return run_pipeline(request_of(job, a), a.loudness, typed, a.save);
   } catch (const core::Error& e) {
+    if (e.hint().find("[[control]]") != std::string::npos) throw core::Error(e.what(), e.where(), of_options(e.hint()), e.code());
     if (e.code() != core::Exit::bad_usage || e.where().starts_with("--")) throw;
     for (size_t k = 0; k < job.options.size(); ++k) {
       const std::string& key = job.options[k].option;
@@ -176,6 +200,7 @@ void add_job(Commands& commands, const Job& job) {
         ->allow_extra_args(false);
   if (job.judges) {
     c->add_option("--check", a->check, "Check points: CSV with name,x,y,z or GeoPackage")->allow_extra_args(false);
+    c->add_option("--check-columns", a->check_columns, "Their columns NAME,X,Y,Z or X,Y,Z, by names or numbers from 1: 1,3,2,4");
     c->add_option("--check-crs", a->check_crs, "Their CRS, where it is not the survey's");
     c->add_option("--reference", a->reference, "Terrain model to compare with, GeoTIFF or VRT");
     c->add_option("--level", a->level, "Quality level of the USGS, QL0 to QL3; none: figures without a verdict")->capture_default_str();

@@ -105,6 +105,16 @@ const std::vector<Kind>& kinds() {
   return list;
 }
 
+/// Of surveyed points. Letters beyond ASCII are as UTF-8 and as Latin-1 have them.
+const std::vector<Role>& control_roles() {
+  static const std::vector<Role> list{
+      {"name", {"name", "p", "point", "id", "point_id", "pt", "punkt", "punktnummer", "punktnr", "punkt_nr", "pkt", "nr", "no", "number"}},
+      {"x", {"x", "e", "east", "easting", "rechtswert", "rechts", "ost", "ostwert"}},
+      {"y", {"y", "n", "north", "northing", "hochwert", "hoch", "nord", "nordwert"}},
+      {"z", {"z", "h", "height", "elev", "elevation", "altitude", "alt", "hoehe", "h\xc3\xb6he", "h\xc3\x96he", "h\xf6he", "h\xd6he"}}};
+  return list;
+}
+
 struct PlainName {
   std::string name, unit;
 };
@@ -220,6 +230,22 @@ ColumnRoles roles_of(const std::vector<std::string>& names) {
     return found;
   }
   return {};
+}
+
+ColumnRoles roles_of_control(const std::vector<std::string>& names) {
+  ColumnRoles found;
+  std::vector<PlainName> plain;
+  for (const std::string& name : names) plain.push_back(plain_name(name));
+  for (const Role& role : control_roles()) {
+    const auto count = [&](std::string_view wanted) {
+      return std::count_if(plain.begin(), plain.end(), [&](const PlainName& p) { return p.name == wanted; });
+    };
+    std::ptrdiff_t all = 0;
+    for (const std::string_view wanted : role.names) all += count(wanted);
+    if (role.key == "name" || count(role.key) == 1 || (count(role.key) == 0 && all == 1)) take_column(role, names, plain, found);
+  }
+  if (has_all(found, {"x", "y", "z"})) found.kind = TableKind::control;
+  return found;
 }
 
 }  // namespace swath::io

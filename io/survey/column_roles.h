@@ -9,7 +9,7 @@
 namespace swath::io {
 
 /// The list of survey.toml that a table of records belongs to; `none` where its names do not say.
-enum class TableKind { none, laser, imu, gnss, trajectory, event, image_points };
+enum class TableKind { none, laser, imu, gnss, trajectory, event, image_points, control };
 
 struct ColumnRoles {
   TableKind kind = TableKind::none;
@@ -27,5 +27,9 @@ struct ColumnRoles {
 /// Judges a header by common names with their unit endings ("lat_deg", "gyro_x_radps", "Latitude (deg)"). Columns that only have numbers
 /// have none.
 ColumnRoles roles_of(const std::vector<std::string>& names);
+
+/// The columns "name", "x", "y", "z" of surveyed points by usual names in English and German ("Easting", "Hochwert", "Z [m]"). A coordinate
+/// is left out where none of the names is one of it, or several are and none is its key.
+ColumnRoles roles_of_control(const std::vector<std::string>& names);
 
 }  // namespace swath::io

@@ -21,11 +21,11 @@ const std::string& DataLine::field(size_t column) const {
   return fields[column];
 }
 
-void DataLine::expect_columns(size_t columns) const {
+void DataLine::expect_columns(size_t columns, bool has_header) const {
   const size_t found =
       fields.size() - (fields.size() == columns + 1 && fields.back().empty() ? 1 : 0);  // a line may end with its delimiter
   if (found != columns)
-    fault(fields_and_columns(found, columns, true), "the line is cut off, or a name holds the delimiter and needs quotes");
+    fault(fields_and_columns(found, columns, has_header), "the line is cut off, or a name holds the delimiter and needs quotes");
 }
 
 void DataLine::expect_at_most(size_t columns, bool has_header) const {

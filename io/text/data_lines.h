@@ -19,8 +19,8 @@ struct DataLine {
   [[noreturn]] void fault(const std::string& what, const std::string& hint) const;
   /// Throws Error where the line has fewer fields.
   const std::string& field(size_t column) const;
-  /// Throws Error where the line has not as many fields as the header has columns.
-  void expect_columns(size_t columns) const;
+  /// Throws Error where the line has not as many fields as the header, or the first line, has columns.
+  void expect_columns(size_t columns, bool has_header = true) const;
   /// Throws Error where the line has more fields; an empty last one is the delimiter at the line's end.
   void expect_at_most(size_t columns, bool has_header) const;
   /// Throws Error where the field is no finite number.

@@ -9,26 +9,62 @@
 
 #include "core/error.h"
 #include "io/text/data_lines.h"
+#include "io/text/line_reader.h"
 
 namespace swath::io {
 
-TextTable::TextTable(const std::filesystem::path& file, const std::string& delimiter) : file_(file) {
+namespace {
+
+bool is_row(const std::vector<std::string>& fields) {
+  const auto is_number = [](const std::string& f) {
+    double ignored = 0;
+    return read_number(f, ignored);
+  };
+  return std::count_if(fields.begin(), fields.end(), is_number) >= 2;
+}
+
+/// Without columns where a header or a single row is all that the file holds.
+DelimitedLayout layout_of(const std::filesystem::path& file, const std::string& delimiter) {
+  try {
+    DelimitedLayout out = inspect_delimited(file, delimiter);
+    if (!is_row(out.names)) return out;  // else a row of another form than the next one
+  } catch (const core::Error&) {         // what is no text is refused as it is read
+  }
+  return {};
+}
+
+}  // namespace
+
+TextTable::TextTable(const std::filesystem::path& file, const std::string& delimiter, Header header) : file_(file) {
+  if (header == Header::if_any) layout_ = layout_of(file, delimiter);
+  const bool is_known = layout_.columns > 0;
+  const std::uint64_t begin = layout_.cut_line > 0 ? layout_.cut_line : layout_.data_line;
+  layout_.columns = layout_.names.size();
   const auto parted_by = [&](const std::string& line) {
+    if (is_known) return layout_.delimiter;
     return layout_.delimiter = delimiter.empty() ? delimiter_in(line) : delimiter_from(delimiter, file);
   };
   for_each_data_line(file, parted_by, [&](DataLine& line) {
-    if (layout_.names.empty()) {
-      layout_.names = std::move(line.fields);
-      layout_.columns = layout_.names.size();
-      return;
+    if (is_known && line.line < begin) return;
+    if (layout_.columns == 0) {
+      layout_.columns = line.fields.size();
+      if (!is_known && (header == Header::first_line || !is_row(line.fields))) {
+        layout_.names = std::move(line.fields);
+        return;
+      }
+      if (line.fields.back().empty()) --layout_.columns;  // the delimiter at the line's end
     }
-    if (line.fields.size() == layout_.columns + 1 && line.fields.back().empty()) line.fields.pop_back();  // the delimiter at the line's end
-    line.expect_columns(layout_.columns);
+    if (line.fields.size() == layout_.columns + 1 && line.fields.back().empty()) line.fields.pop_back();
+    line.expect_columns(layout_.columns, !layout_.names.empty());
     lines_.push_back(line.line);
     rows_.push_back(std::move(line.fields));
   });
   if (rows_.empty())
     throw core::Error("no row of data", file.string(), layout_.names.empty() ? "the file is empty" : "the file holds a header only");
+}
+
+std::string TextTable::column_name(size_t column) const {
+  return column < layout_.names.size() ? "'" + layout_.names[column] + "'" : std::to_string(column + 1);
 }
 
 std::optional<size_t> TextTable::column_if_there(const std::string& name, const std::string& usual) const {
@@ -44,7 +80,7 @@ std::optional<size_t> TextTable::column_if_there(const std::string& name, const 
 
 const std::string& TextTable::name(size_t row, size_t column, const std::string& of) const {
   if (text(row, column).empty())
-    throw core::Error(of + " has no name in column '" + layout_.names[column] + "'", place(row), "name it, or take the line out");
+    throw core::Error(of + " has no name in column " + column_name(column), place(row), "name it, or take the line out");
   return text(row, column);
 }
 
@@ -64,7 +100,7 @@ double TextTable::coordinate(size_t row, size_t column) const {
   if (bad == std::errc::result_out_of_range && end == stop) return std::numeric_limits<double>::infinity();
   if (bad != std::errc{} || end != stop)
     throw core::Error(
-        (field.empty() ? "the field is empty" : "'" + field + "' is no number") + std::string(" in column '") + layout_.names[column] + "'",
+        (field.empty() ? "the field is empty" : "'" + field + "' is no number") + std::string(" in column ") + column_name(column),
         place(row), number_hint(field, "correct the line, or name another column"));
   return value;
 }
@@ -72,7 +108,7 @@ double TextTable::coordinate(size_t row, size_t column) const {
 double TextTable::number(size_t row, size_t column) const {
   const double value = coordinate(row, column);
   if (!std::isfinite(value))
-    throw core::Error("'" + text(row, column) + "' is no finite number in column '" + layout_.names[column] + "'", place(row),
+    throw core::Error("'" + text(row, column) + "' is no finite number in column " + column_name(column), place(row),
                       "correct the line, or name another column");
   return value;
 }

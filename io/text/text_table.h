@@ -12,12 +12,22 @@
 
 namespace swath::io {
 
-/// A whole table in memory. Its first line that is neither empty nor a comment (# or %) holds the names of the columns.
+/// Where the names of a table's columns are.
+enum class Header {
+  first_line,  ///< that is neither empty nor a comment (# or %)
+  if_any,      ///< where inspect_delimited() finds them, or nowhere; a line with two numbers or more is a row
+};
+
+/// A whole table in memory.
 class TextTable {
  public:
   /// `delimiter`: as inspect_delimited() takes it. Throws Error: file not readable, no row under the header, a row with more or fewer
-  /// fields than the header (with "file:line").
-  explicit TextTable(const std::filesystem::path& file, const std::string& delimiter = {});
+  /// fields than the header, or the first row, has (with "file:line").
+  explicit TextTable(const std::filesystem::path& file, const std::string& delimiter = {}, Header header = Header::first_line);
+
+  /// The header's names; empty where there is none, and columns are named by their numbers from 1.
+  const std::vector<std::string>& names() const { return layout_.names; }
+  size_t columns() const { return layout_.columns; }
 
   size_t rows() const { return rows_.size(); }
   /// "file:line" of a row.
@@ -39,6 +49,8 @@ class TextTable {
   double coordinate(size_t row, size_t column) const;
 
  private:
+  std::string column_name(size_t column) const;
+
   std::filesystem::path file_;
   DelimitedLayout layout_;
   std::vector<std::vector<std::string>> rows_;

@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "core/geo/crs.h"
 #include "core/printable.h"
+#include "io/survey/column_roles.h"
 #include "io/survey/survey.h"
 #include "io/survey/wild_records.h"
 #include "io/text/text_table.h"
@@ -53,28 +54,23 @@ void hold_sigma(double sigma, const char* of, const std::string& place) {
                       "a point that is not known at all is left out of the file; sigmas are in metres");
 }
 
-/// Usual names of a coordinate, where the survey does not name its column. Throws core::Error where there is none, or more than one.
-size_t coordinate_column(const TextTable& table, const std::string& asked, const std::string& usual,
-                         std::initializer_list<const char*> names) {
-  if (asked != usual || table.column_if_there(usual, usual)) return table.column(asked);
-  std::optional<size_t> found;
-  for (const char* name : names)
-    if (const auto at = table.column_if_there(name, name)) {
-      if (found) return table.column(asked);
-      found = at;
-    }
-  return found ? *found : table.column(asked);
+/// The column that the survey names, or where it names none, the one of a usual name.
+std::optional<size_t> column_in_role(const TextTable& table, const ColumnRoles& roles, const std::string& asked, const std::string& usual) {
+  if (asked != usual) return table.column_if_there(asked, usual);
+  const auto role = std::find_if(roles.columns.begin(), roles.columns.end(), [&](const auto& c) { return c.first == usual; });
+  return role == roles.columns.end() ? std::nullopt : std::optional(table.column(role->second));
 }
 
 RawLayer read_table(const std::filesystem::path& path, const ControlFile& f) {
   const ControlFile usual;
-  const TextTable table(path);
-  const std::array<size_t, 3> xyz{coordinate_column(table, f.x, usual.x, {"e", "east", "easting"}),
-                                  coordinate_column(table, f.y, usual.y, {"n", "north", "northing"}),
-                                  coordinate_column(table, f.z, usual.z, {"h", "height", "elev", "elevation"})};
-  auto name = table.column_if_there(f.name, usual.name);
-  for (const char* other : {"p", "point", "id", "point_id"})
-    if (!name && f.name == usual.name) name = table.column_if_there(other, other);
+  const TextTable table(path, {}, Header::if_any);
+  const ColumnRoles roles = roles_of_control(table.names());
+  const auto coordinate = [&](const std::string& asked, const std::string& key) {
+    const auto found = column_in_role(table, roles, asked, key);
+    return found ? *found : table.column(asked);
+  };
+  const std::array<size_t, 3> xyz{coordinate(f.x, usual.x), coordinate(f.y, usual.y), coordinate(f.z, usual.z)};
+  const auto name = column_in_role(table, roles, f.name, usual.name);
   const auto target = table.column_if_there(f.target, usual.target), cover = table.column_if_there(f.cover, usual.cover);
   const auto sigma_h = table.column_if_there(f.sigma_h, usual.sigma_h), sigma_v = table.column_if_there(f.sigma_v, usual.sigma_v);
   RawLayer out;

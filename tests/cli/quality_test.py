@@ -70,13 +70,26 @@ class Quality(Case):
         # Places of zone 33 in zone 32 lie far off, those of zone 32 that say so do not.
         self.assertEqual(self.codes("--check", self.rows(), "--check-crs", "EPSG:32633"), ["check.outside", "check.few"])
 
+    def test_check_points_without_a_header(self):
+        names = self.marks[0].split(",")
+        name, x, y, z = (names.index(k) for k in ("name", "x", "y", "z"))
+        file = self.folder / "pnezd.csv"
+        rows = [r.split(",") for r in self.marks[1:]]
+        file.write_text("".join(f"{r[name]},{r[y]},{r[x]},{r[z]},MON\n" for r in rows))
+        self.assertEqual(self.codes("--check", file), [])
+        said = swath("qc", self.cloud, "--output", self.folder / "said", "--check", file)
+        self.assertRegex(said.stdout, r"pnezd\.csv has no header: column 3 is taken as easting, 2 as northing, 4 as height, 1 as name: so 12 of 12 points lie")
+        self.assertEqual(self.codes("--check", file, "--check-columns", "1,3,2,4"), [])
+        self.assertIn("check.outside", self.codes("--check", file, "--check-columns", "1,2,3,4"))
+
     def test_the_hint_of_check_points_far_away(self):
         warning = self.judged("--check", self.moved("x", 20000))["warnings"][0]["text"]
         self.assertRegex(warning, r"none of the 12 check points lies within the survey, the nearest is (19|20)\.\d km away.*CRS")
 
     def test_wrong_requests(self):
         for more, words in ((["--level", "QL7"], ["QL7", "QL2"]), (["--reference", "none.tif"], ["none.tif"]), (["--check", "none.csv"], ["none.csv"]),
-                            (["--crs", "EPSG:1"], ["EPSG:1"]), (["--check-crs", "EPSG:32633"], ["--check-crs", "--check FILE"])):
+                            (["--crs", "EPSG:1"], ["EPSG:1"]), (["--check-crs", "EPSG:32633"], ["--check-crs", "--check FILE"]),
+                            (["--check-columns", "1,2,3,4"], ["--check-columns", "--check FILE"])):
             with self.subTest(more=more):
                 self.assert_error(swath("qc", self.cloud, "--output", self.out, "--quiet", *more), 2, *words)
                 self.assertFalse(self.out.exists())

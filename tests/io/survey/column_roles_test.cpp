@@ -97,5 +97,18 @@ TEST(ColumnRoles, NamesThatSayNothingAreNone) {
   EXPECT_EQ(roles_of({}).kind, TableKind::none);
 }
 
+TEST(ColumnRoles, SurveyedPoints) {
+  const auto all = [](const std::vector<std::string>& names) {
+    const ColumnRoles r = roles_of_control(names);
+    return column(r, "name") + "|" + column(r, "x") + "|" + column(r, "y") + "|" + column(r, "z");
+  };
+  EXPECT_EQ(all({"Name", "X [m]", "Y [m]", "Z [m]"}), "Name|X [m]|Y [m]|Z [m]");
+  EXPECT_EQ(all({"Punkt", "Rechtswert", "Hochwert", "H\xc3\xb6he"}), "Punkt|Rechtswert|Hochwert|H\xc3\xb6he");
+  EXPECT_EQ(all({"Nr", "Hochwert (m)", "Rechtswert (m)", "H\xf6he (m)"}), "Nr|Rechtswert (m)|Hochwert (m)|H\xf6he (m)") << "Latin-1";
+  EXPECT_EQ(all({"P", "Nord", "Ost", "Altitude"}), "P|Ost|Nord|Altitude");
+  EXPECT_EQ(all({"x", "easting", "y", "h", "elev"}), "|x|y|") << "a key is clearer than other names, two of which say nothing";
+  EXPECT_EQ(roles_of_control({"x", "y"}).kind, TableKind::none);
+}
+
 }  // namespace
 }  // namespace swath::io

@@ -85,5 +85,25 @@ TEST_F(Tables, FaultsNameTheirLine) {
   EXPECT_EQ(fault([&] { table(std::string("a\0b\n1\n", 6)); }), "a.csv: is not delimited text");
 }
 
+TEST_F(Tables, AHeaderThatNeedNotBeThere) {
+  const auto any = [&](const std::string& text) {
+    test::write_bytes(folder_ / "a.csv", text);
+    return TextTable(folder_ / "a.csv", {}, Header::if_any);
+  };
+  const TextTable bare = any("P1,1.5,2,3\nP2,4,,6\n");
+  ASSERT_EQ(bare.rows(), 2u) << "rows of different forms";
+  EXPECT_TRUE(bare.names().empty());
+  EXPECT_EQ(bare.number(0, bare.column("2")), 1.5);
+  EXPECT_EQ(fault([&] { bare.number(1, 2); }), "a.csv:2: the field is empty in column 3");
+  EXPECT_EQ(any("P1,1.5,2,3\n").rows(), 1u);
+  EXPECT_EQ(any("P1,1.5,2,3,\nP2,4,5,6,\n").columns(), 4u);
+  const TextTable described = any("Check points of 2024\nname,x,y,z\n,m,m,m\n1,1,2,3\n2,4,5,6\n");
+  EXPECT_EQ(described.rows(), 2u);
+  EXPECT_EQ(described.names(), (std::vector<std::string>{"name", "x", "y", "z"}));
+  EXPECT_EQ(any("name;x\na;1\n").names().size(), 2u);
+  EXPECT_EQ(fault([&] { any("P1,1,2,3\nP2,4,5\n"); }), "a.csv:2: the line has 3 fields, the first line 4 columns");
+  EXPECT_EQ(fault([&] { any("name,x\n"); }), "a.csv: no row of data");
+}
+
 }  // namespace
 }  // namespace swath::io

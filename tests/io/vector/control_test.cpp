@@ -94,7 +94,8 @@ TEST_F(Control, OtherColumnsAndNames) {
 }
 
 TEST_F(Control, UsualNamesOfColumnsAreUnderstood) {
-  for (const char* header : {"P,N,E,Z", "Point,Northing,Easting,Elevation", "id,north,east,height", "name,y,x,h"}) {
+  for (const char* header : {"P,N,E,Z", "Point,Northing,Easting,Elevation", "id,north,east,height", "name,y,x,h", "Name,Y [m],X [m],Z [m]",
+                             "Punkt,Hochwert,Rechtswert,H\xc3\xb6he"}) {
     const auto points = read(std::string(header) + "\nA7,5300200,500100,480\n");
     ASSERT_EQ(points.size(), 1u) << header;
     EXPECT_EQ(points[0].name, "A7") << header;
@@ -102,6 +103,16 @@ TEST_F(Control, UsualNamesOfColumnsAreUnderstood) {
   }
   EXPECT_EQ(fault("P,N,E,easting,Z\nA7,5300200,500100,500100,480\n"), "control.csv: no column 'x'; columns: P, N, E, easting, Z");
   EXPECT_EQ(fault("P,N,Q,Z\nA7,5300200,500100,480\n"), "control.csv: no column 'x'; columns: P, N, Q, Z");
+}
+
+TEST_F(Control, AFileWithoutAHeaderByTheNumbersOfItsColumns) {
+  EXPECT_EQ(fault("A7,5300200,500100,480\nA8,5300200,500100,480\n"),
+            "control.csv: no column 'x'; the file has no header; columns are numbered 1 to 4");
+  file().name = "1", file().x = "3", file().y = "2", file().z = "4";
+  const auto points = read("A7,5300200,500100,480\nA8,5300200,500100,480\n");
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_EQ(points[0].name, "A7");
+  EXPECT_NEAR((points[1].ecef - ecef(500100, 5300200, 480)).norm(), 0.0, 1e-3);
 }
 
 TEST_F(Control, HeightsFollowTheCrs) {
