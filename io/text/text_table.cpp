@@ -94,22 +94,23 @@ int TextTable::whole_number(size_t row, size_t column, const std::string& what) 
 
 double TextTable::coordinate(size_t row, size_t column) const {
   const std::string& field = text(row, column);
+  if (field.empty()) return std::numeric_limits<double>::quiet_NaN();
   const char *begin = field.data() + (field.size() > 1 && field[0] == '+' ? 1 : 0), *stop = field.data() + field.size();
   double value = 0;
   const auto [end, bad] = std::from_chars(begin, stop, value);
   if (bad == std::errc::result_out_of_range && end == stop) return std::numeric_limits<double>::infinity();
   if (bad != std::errc{} || end != stop)
-    throw core::Error(
-        (field.empty() ? "the field is empty" : "'" + field + "' is no number") + std::string(" in column ") + column_name(column),
-        place(row), number_hint(field, "correct the line, or name another column"));
+    throw core::Error("'" + field + "' is no number in column " + column_name(column), place(row),
+                      number_hint(field, "correct the line, or name another column"));
   return value;
 }
 
 double TextTable::number(size_t row, size_t column) const {
   const double value = coordinate(row, column);
   if (!std::isfinite(value))
-    throw core::Error("'" + text(row, column) + "' is no finite number in column " + column_name(column), place(row),
-                      "correct the line, or name another column");
+    throw core::Error((text(row, column).empty() ? "the field is empty" : "'" + text(row, column) + "' is no finite number") +
+                          std::string(" in column ") + column_name(column),
+                      place(row), "correct the line, or name another column");
   return value;
 }
 

@@ -45,7 +45,7 @@ class TextTable {
   int whole_number(size_t row, size_t column, const std::string& what) const;
   /// Throws Error with "file:line" where the field is empty or no finite number.
   double number(size_t row, size_t column) const;
-  /// The same of a number that may be infinite or none ("nan").
+  /// The same of a number that may be infinite or none ("nan", or an empty field).
   double coordinate(size_t row, size_t column) const;
 
  private:

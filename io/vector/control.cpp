@@ -286,7 +286,7 @@ std::vector<ControlPoint> points_of(const Survey& survey, const ControlFile& f, 
     };
     for (const RawPoint& raw : layer.points) {
       if (!raw.at.allFinite() || !(raw.at.cwiseAbs().maxCoeff() < farthest)) {
-        leave_out(raw, "a coordinate is not finite");
+        leave_out(raw, "a coordinate is empty or not finite");
         continue;
       }
       hold_sigma(raw.sigma_h, "easting and northing", raw.place);

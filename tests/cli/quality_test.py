@@ -82,6 +82,14 @@ class Quality(Case):
         self.assertEqual(self.codes("--check", file, "--check-columns", "1,3,2,4"), [])
         self.assertIn("check.outside", self.codes("--check", file, "--check-columns", "1,2,3,4"))
 
+    def test_an_empty_height_costs_its_point_alone(self):
+        z = self.marks[0].split(",").index("z")
+        first = self.marks[1].split(",")[0]
+        report = self.judged("--check", self.rows(lambda cells: [*cells[:z], "", *cells[z + 1:]] if cells[0] == first else cells))
+        self.assertEqual(stage(report, "quality.points")["findings"]["marks"], 11)
+        done = swath("qc", self.cloud, "--output", self.folder / "no", "--quiet", "--check", self.rows(lambda cells: [*cells[:z], "", *cells[z + 1:]]))
+        self.assert_error(done, 1, "a coordinate is empty or not finite", r"hint: check the columns \(--check-columns\) and the CRS \(--check-crs\)")
+
     def test_the_hint_of_check_points_far_away(self):
         warning = self.judged("--check", self.moved("x", 20000))["warnings"][0]["text"]
         self.assertRegex(warning, r"none of the 12 check points lies within the survey, the nearest is (19|20)\.\d km away.*CRS")

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/text/text_table.h"
 
+#include <cmath>
+
 #include "core/error.h"
 #include "tests/world/support.h"
 
@@ -95,6 +97,7 @@ TEST_F(Tables, AHeaderThatNeedNotBeThere) {
   EXPECT_TRUE(bare.names().empty());
   EXPECT_EQ(bare.number(0, bare.column("2")), 1.5);
   EXPECT_EQ(fault([&] { bare.number(1, 2); }), "a.csv:2: the field is empty in column 3");
+  EXPECT_TRUE(std::isnan(bare.coordinate(1, 2)));
   EXPECT_EQ(any("P1,1.5,2,3\n").rows(), 1u);
   EXPECT_EQ(any("P1,1.5,2,3,\nP2,4,5,6,\n").columns(), 4u);
   const TextTable described = any("Check points of 2024\nname,x,y,z\n,m,m,m\n1,1,2,3\n2,4,5,6\n");

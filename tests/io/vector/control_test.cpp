@@ -156,7 +156,8 @@ std::string right_points(int n) {
 
 TEST_F(Control, ImpossibleCoordinatesAreLeftOutAndCounted) {
   constexpr const char* what = "control points with an impossible coordinate, left out";
-  for (const char* bad : {"500100,5300200,nan,", "inf,5300200,480,", "1e9,5300200,480,", "500100,1e300,480,", "500100,1e400,480,"}) {
+  for (const char* bad : {"500100,5300200,,", ",5300200,480,", "500100,5300200,nan,", "inf,5300200,480,", "1e9,5300200,480,",
+                          "500100,1e300,480,", "500100,1e400,480,"}) {
     tally_ = {};
     EXPECT_EQ(read(right_points(9) + bad + "\n").size(), 9u) << bad;
     EXPECT_EQ(tally_.of(what), 1u) << bad;
@@ -168,7 +169,7 @@ TEST_F(Control, ImpossibleCoordinatesAreLeftOutAndCounted) {
 TEST_F(Control, AFileOfImpossibleCoordinatesIsRefused) {
   std::string text = right_points(9);
   for (int i = 0; i < 4; ++i) text += "500100,nan,480,\n";
-  EXPECT_EQ(fault(text), "control.csv:11: a coordinate is not finite");
+  EXPECT_EQ(fault(text), "control.csv:11: a coordinate is empty or not finite");
   file().crs = "EPSG:4326";
   EXPECT_NE(fault(right_points(20)).find("control.csv:2: x 500100, y 5300200, z 480 is not a place of WGS 84"), std::string::npos)
       << fault(right_points(20));
