@@ -10,6 +10,7 @@
 #include "core/config/units.h"
 #include "core/config/value.h"
 #include "core/error.h"
+#include "core/printable.h"
 #include "io/text/cut_line.h"
 #include "io/text/table_start.h"
 
@@ -39,12 +40,6 @@ bool begins_comment(char c) { return c == '#' || c == '%'; }
 bool is_comment(const std::string& line) {
   const size_t first = line.find_first_not_of(" \t");
   return first != line.npos && begins_comment(line[first]);
-}
-
-std::string lower(std::string s) {
-  for (char& c : s)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return s;
 }
 
 std::string list_of(const DelimitedLayout& layout) {
@@ -243,7 +238,7 @@ size_t column_of(const DelimitedLayout& layout, const std::string& column, const
     return static_cast<size_t>(std::find_if(layout.names.begin(), layout.names.end(), same) - layout.names.begin());
   };
   const auto exact = [&](const std::string& n) { return n == column; };
-  const auto folded = [&](const std::string& n) { return lower(n) == lower(column); };
+  const auto folded = [&](const std::string& n) { return core::lower_case(n) == core::lower_case(column); };
   const auto same = count(exact);
   if (same > 1) throw core::Error("column '" + column + "' stands more than once in the header", file.string(), "name it by number");
   const bool is_name = same == 1 || count(folded) == 1;
@@ -382,8 +377,14 @@ void DelimitedReader::short_line(size_t fields) const {
 
 void DelimitedReader::bad_number(const char* begin, const char* end, size_t column) const {
   trim(begin, end);
-  const std::string text(begin, std::min(end, begin + 40));
+  constexpr std::ptrdiff_t longest = 40, longest_of_zeros = 8;  // bytes shown
+  const bool holds_zeros = std::find(begin, end, '\0') != end;
+  const std::string text = core::printable({begin, std::min(end, begin + (holds_zeros ? longest_of_zeros : longest))});
   const std::string name = column < names_.size() ? "'" + names_[column] + "'" : std::to_string(column + 1);
+  if (holds_zeros)
+    throw core::Error("the line holds zero bytes: '" + text + "...' in column " + name + " is no number",
+                      file_.path().string() + ":" + std::to_string(line_),
+                      "the file was not written or copied to its end: copy it again, or take the line out");
   throw core::Error("'" + text + "' in column " + name + " is no number", file_.path().string() + ":" + std::to_string(line_),
                     number_hint(text, "correct the line, or export the file again"));
 }

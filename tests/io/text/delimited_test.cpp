@@ -50,6 +50,15 @@ TEST_F(Delimited, EveryDelimiterGivesTheSameRows) {
     EXPECT_EQ(read_all(made(text), {"r", "t"}), wanted) << text;
 }
 
+TEST_F(Delimited, ZeroBytesInARecordAreSaidInAMessageWithoutThem) {
+  std::string text = "t,a\n";
+  for (int k = 0; k < 3000; ++k) text += "1,2\n";  // the first lines are read by another reader
+  const core::Error e = error_of(text + "3," + std::string(500, '\0') + "\n4,5\n", {"t", "a"});
+  EXPECT_TRUE(e.where().ends_with("a.csv:3002")) << e.where();
+  EXPECT_STREQ(e.what(), R"(the line holds zero bytes: '\x00\x00\x00\x00\x00\x00\x00\x00...' in column 'a' is no number)");
+  EXPECT_STREQ(error_of("t,a\n1,2\x01\x02\n", {"a"}).what(), R"('2\x01\x02' in column 'a' is no number)");
+}
+
 TEST_F(Delimited, ColumnsByNumber) {
   EXPECT_EQ(read_all(made("1,2,3\n4,5,6\n"), {"3", "1", "3"}), (Rows{{3, 1, 3}, {6, 4, 6}}));
   EXPECT_EQ(read_all(made("a,b,c\n4,5,6\n"), {"3"}), (Rows{{6}}));
