@@ -29,6 +29,7 @@
 #include "io/survey/read_survey.h"
 #include "io/survey/tree_kind.h"
 #include "io/text/binary_file.h"
+#include "io/text/delimited.h"
 #include "io/text/value_file.h"
 #include "io/vector/describe_vector.h"
 #include "io/vector/gdal_door.h"
@@ -266,6 +267,7 @@ Value describe_content(const Path& path) {
   if (binary && looks_like_smrmsg(path)) return describe_smrmsg(path);
   if (Value raster = describe_raster(path); !raster.is_null()) return raster;
   if (Value vector = describe_vector(path); !vector.is_null()) return vector;
+  if (begins("\x1F\x8B") || begins("PK\x03\x04")) require_text(start, path);  // compressed: it says so
   if (!binary && holds_novatel_log(start))
     throw core::Error("is a NovAtel log, whose positions and IMU records are not read", path.string(),
                       "export text by Inertial Explorer, or RINEX by NovAtel Convert; event marks in it: [[event]] format = \"novatel\"");

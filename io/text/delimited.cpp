@@ -102,12 +102,18 @@ struct NumberedLine {
   std::uint64_t begin = 0, number = 0;
 };
 
+/// The program that packed a file with these first bytes; empty: none.
+std::string packing_of(std::string_view begin) {
+  if (begin.starts_with("\x1F\x8B")) return "gzip";
+  return begin.starts_with("PK\x03\x04") ? "zip" : "";
+}
+
 void require_not_utf16(const std::filesystem::path& path) {
   const BinaryFile file(path);
   std::array<char, 4> begin{};
   const size_t got = file.read_some(0, begin.data(), std::min<std::uint64_t>(begin.size(), file.size()));
   const std::string_view text(begin.data(), got);
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) require_text(text, path);
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF") || !packing_of(text).empty()) require_text(text, path);
 }
 
 /// Which fields are numbers.
@@ -153,6 +159,8 @@ bool is_header(const std::vector<std::string>& fields) {
 }  // namespace
 
 void require_text(std::string_view begin, const std::filesystem::path& file) {
+  if (const std::string by = packing_of(begin); !by.empty())
+    throw core::Error("is compressed by " + by, file.string(), "unpack it first: " + std::string(by == "gzip" ? "gunzip" : "unzip"));
   const bool marked = begin.starts_with("\xFF\xFE") || begin.starts_with("\xFE\xFF");
   const bool bare = begin.size() >= 4 && (begin[0] == '\0') != (begin[1] == '\0') && (begin[2] == '\0') != (begin[3] == '\0');
   if (marked || bare)

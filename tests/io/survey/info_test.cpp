@@ -46,6 +46,19 @@ TEST(Info, UnknownFilesAreErrors) {
   EXPECT_THROW(describe_file(folder.path()), core::Error);
 }
 
+TEST(Info, CompressedFilesAreToBeUnpacked) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "a.txt.gz", std::string("\x1F\x8B\x08\x00\x00\x00", 6));
+  test::write_bytes(folder / "a.zip", "PK\x03\x04 and more");
+  for (const auto& [name, by] : {std::pair("a.txt.gz", "gzip"), std::pair("a.zip", "zip")}) try {
+      describe_file(folder / name);
+      ADD_FAILURE() << name;
+    } catch (const core::Error& e) {
+      EXPECT_EQ(e.what(), std::string("is compressed by ") + by);
+      EXPECT_TRUE(e.hint().starts_with("unpack it first")) << e.hint();
+    }
+}
+
 TEST(Info, ColumnsOfTextAreNamedAndTheOthersRead) {
   const test::TemporaryFolder folder;
   test::write_bytes(folder / "a.csv", "t,status,r\n1,a_link,5\n2,a_link,7\n");

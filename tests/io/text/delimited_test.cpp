@@ -59,6 +59,11 @@ TEST_F(Delimited, ZeroBytesInARecordAreSaidInAMessageWithoutThem) {
   EXPECT_STREQ(error_of("t,a\n1,2\x01\x02\n", {"a"}).what(), R"('2\x01\x02' in column 'a' is no number)");
 }
 
+TEST_F(Delimited, CompressedFilesAreToBeUnpacked) {
+  EXPECT_STREQ(error_of(std::string("\x1F\x8B\x08\x00\x00 1,2\n", 10), {"1"}).what(), "is compressed by gzip");
+  EXPECT_STREQ(error_of("PK\x03\x04 1,2\n", {"1"}).what(), "is compressed by zip");
+}
+
 TEST_F(Delimited, ColumnsByNumber) {
   EXPECT_EQ(read_all(made("1,2,3\n4,5,6\n"), {"3", "1", "3"}), (Rows{{3, 1, 3}, {6, 4, 6}}));
   EXPECT_EQ(read_all(made("a,b,c\n4,5,6\n"), {"3"}), (Rows{{6}}));
