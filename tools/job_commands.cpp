@@ -114,8 +114,13 @@ void add_judgement(const Given& a, const std::vector<std::filesystem::path>& clo
 
 /// Tiles of at most max_cells a side, for cells finer than the usual tile is made for. `--set run.tile`, which comes later, decides.
 void fit_tile(const std::string& cell, const JobOption& o, pipeline::Request& out) {
-  constexpr double usual_tile = 500.0, max_cells = 2000.0;  // m; along a side
+  constexpr double usual_tile = 500.0, least_tile = 10.0, max_cells = 2000.0;  // m, m; along a side
   const double side = max_cells * quantity(o.dimension, cell, o.flag, o.example);
+  const bool decides = std::any_of(out.sets.begin(), out.sets.end(), [](const std::string& s) { return s.starts_with("run.tile"); });
+  if (side > 0.0 && side < least_tile && !decides)
+    throw core::usage_error("the cell is too small", o.flag + " " + cell,
+                            "the smallest is " + core::format_quantity(Dimension::length, least_tile / max_cells) +
+                                "; returns of a survey from the air lie decimetres apart");
   if (side > 0.0 && side < usual_tile) out.sets.insert(out.sets.begin(), "run.tile=" + core::format_quantity(Dimension::length, side));
 }
 
@@ -156,6 +161,14 @@ pipeline::Request request_of(const Job& job, const Given& a) {
   return out;
 }
 
+/// What to do about an option that a short name sets.
+std::string hint_of(const Job& job, const JobOption& o, const std::string& value, const core::Error& e) {
+  if (!e.hint().empty()) return e.hint();
+  const std::string sets = "it sets " + o.option + ", see `swath explain " + job.config + "`";
+  const bool too_wide = std::string_view(e.what()).find("max_edge") != std::string_view::npos;
+  return too_wide ? "name a smaller cell, or have wider gaps bridged, too: --set dtm.max_edge=" + value + "; " + sets : sets;
+}
+
 /// The keys of survey.toml that a hint names are options of a job.
 std::string of_options(std::string hint) {
   const std::pair<std::string_view, std::string_view> keys[]{
@@ -177,8 +190,7 @@ int run_job(const Job& job, const Given& a, const std::string& typed) {
       const std::string& key = job.options[k].option;
       const std::string option = key.substr(key.find('.') + 1), said = e.where() + " " + e.what();
       if (!a.values[k].empty() && said.find(option) != std::string::npos)
-        throw core::usage_error(e.what(), job.options[k].flag + " " + a.values[k],
-                                e.hint().empty() ? "it sets " + key + ", see `swath explain " + job.config + "`" : e.hint());
+        throw core::usage_error(e.what(), job.options[k].flag + " " + a.values[k], hint_of(job, job.options[k], a.values[k], e));
     }
     throw;
   }

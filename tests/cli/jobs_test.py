@@ -112,7 +112,8 @@ class Jobs(Case):
             self.assert_error(swath("dtm", cloud, "--threads", n, "-o", self.out), 2, f"'{n}' is not a number of threads", "1024")
         for command in ("dtm", "run"):
             self.assert_error(swath(command, cloud, "-o", ""), 2, "the name is empty")
-        self.assert_error(swath("dtm", cloud, "--cell", "1km", "-o", self.out), 2, "--cell 1km: .*max_edge must span", "hint: .*dtm.cell")
+        self.assert_error(swath("dtm", cloud, "--cell", "1km", "-o", self.out), 2, "--cell 1km: .*max_edge must span", "hint: .*--set dtm.max_edge=1km.*dtm.cell")
+        self.assert_error(swath("dtm", cloud, "--cell", "1mm", "-o", self.out), 2, "--cell 1mm: the cell is too small", "hint: the smallest is (5 mm|0.005 m)")
         self.assert_error(swath("check", self.clouds), 2, "is a folder, and a config is needed", "hint: ")
         self.assert_error(swath("init", cloud), 2, "is a file, and a folder", "hint: ")
         self.assertFalse(self.out.exists())
